@@ -1,0 +1,2 @@
+//! The command `morec`.
+fn main() {}

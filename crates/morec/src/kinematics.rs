@@ -1,0 +1,50 @@
+//! Forward kinematics: from joint rotations to joint positions in the world.
+
+use crate::clip::Clip;
+use crate::math::{Quat, Vec3};
+
+/// World positions and orientations of every joint at one frame; buffers are reused from frame to frame.
+#[derive(Debug, Clone, Default)]
+pub struct WorldPose {
+    /// World position of each joint, in the clip's length unit.
+    pub positions: Vec<Vec3>,
+    /// `world_from_joint` of each joint.
+    pub rotations: Vec<Quat>,
+}
+
+impl WorldPose {
+    /// Poses `clip`'s skeleton as in `frame`. O(joints); allocates only when the skeleton grew.
+    pub fn set(&mut self, clip: &Clip, frame: usize) {
+        self.positions.clear();
+        self.rotations.clear();
+        let locals = clip.frame_rotations(frame);
+        let mut tracks = clip.tracks.iter().peekable();
+        for (j, joint) in clip.skeleton.joints().iter().enumerate() {
+            let local_position = match tracks.next_if(|t| t.joint == j) {
+                Some(track) => track.positions[frame],
+                None => joint.offset,
+            };
+            let (position, rotation) = match joint.parent {
+                Some(p) => (self.positions[p] + self.rotations[p] * local_position, self.rotations[p] * locals[j]),
+                None => (local_position, locals[j]),
+            };
+            self.positions.push(position);
+            self.rotations.push(rotation);
+        }
+    }
+
+    /// The pose of one frame in buffers of its own.
+    pub fn of(clip: &Clip, frame: usize) -> Self {
+        let mut pose = Self::default();
+        pose.set(clip, frame);
+        pose
+    }
+
+    /// World position of where the bone of an end joint ends; the joint itself if the file says nothing.
+    pub fn tip(&self, clip: &Clip, joint: usize) -> Vec3 {
+        match clip.skeleton.joints()[joint].tip {
+            Some(tip) => self.positions[joint] + self.rotations[joint] * tip,
+            None => self.positions[joint],
+        }
+    }
+}

@@ -1,0 +1,7 @@
+//! Index a motion-capture database, recognise its motions live.
+#![doc = ""]
+pub mod clip;
+pub mod formats;
+pub mod kinematics;
+pub mod math;
+pub mod roles;

@@ -1,0 +1,123 @@
+//! The few pieces of geometry that every stage shares, over [`nalgebra`].
+
+use nalgebra::{Unit, UnitQuaternion, Vector3};
+
+/// A point or direction, in the units its name or docs give.
+pub type Vec3 = Vector3<f64>;
+/// A rotation; named `a_from_b`, it takes coordinates in frame `b` to coordinates in frame `a`.
+pub type Quat = UnitQuaternion<f64>;
+
+/// A coordinate axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Axis {
+    /// First coordinate.
+    X,
+    /// Second coordinate.
+    Y,
+    /// Third coordinate.
+    Z,
+}
+
+impl Axis {
+    /// All three, in coordinate order.
+    pub const ALL: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
+
+    /// 0, 1 or 2.
+    pub fn index(self) -> usize {
+        self as usize
+    }
+
+    /// The unit vector along this axis.
+    pub fn unit(self) -> Unit<Vec3> {
+        match self {
+            Axis::X => Vec3::x_axis(),
+            Axis::Y => Vec3::y_axis(),
+            Axis::Z => Vec3::z_axis(),
+        }
+    }
+
+    /// Rotation by `angle_rad` about this axis.
+    pub fn rotation(self, angle_rad: f64) -> Quat {
+        Quat::from_axis_angle(&self.unit(), angle_rad)
+    }
+}
+
+/// The sign of `q` (it and its negative are one rotation) that lies nearer to `previous`.
+pub fn same_hemisphere(previous: &Quat, q: Quat) -> Quat {
+    if previous.coords.dot(&q.coords) < 0.0 { Quat::new_unchecked(-q.into_inner()) } else { q }
+}
+
+/// Spherical interpolation along the shorter arc; exactly `a` at 0 and exactly `b` at 1.
+pub fn slerp(a: &Quat, b: &Quat, t: f64) -> Quat {
+    if t <= 0.0 {
+        return *a;
+    }
+    if t >= 1.0 {
+        return *b;
+    }
+    let b = same_hemisphere(a, *b);
+    let cos = a.coords.dot(&b.coords).min(1.0);
+    let (weight_a, weight_b) = slerp_weights(cos, t);
+    Quat::new_normalize(nalgebra::Quaternion::from(a.coords * weight_a + b.coords * weight_b))
+}
+
+/// Interpolation of unit vectors along the great circle; exactly `a` at 0 and exactly `b` at 1.
+///
+/// Opposite vectors have no shortest arc: the result then passes through `a`'s side and stays finite.
+pub fn slerp_direction(a: &Vec3, b: &Vec3, t: f64) -> Vec3 {
+    if t <= 0.0 {
+        return *a;
+    }
+    if t >= 1.0 {
+        return *b;
+    }
+    let cos = a.dot(b).clamp(-1.0, 1.0);
+    let (weight_a, weight_b) = slerp_weights(cos, t);
+    let mixed = a * weight_a + b * weight_b;
+    let length = mixed.norm();
+    if length > 1e-9 { mixed / length } else { *a }
+}
+
+fn slerp_weights(cos: f64, t: f64) -> (f64, f64) {
+    // Near-equal ends: the arc is its chord, and dividing by its sine would lose every digit.
+    if cos > 1.0 - 1e-9 || cos < -1.0 + 1e-9 {
+        return (1.0 - t, t);
+    }
+    let angle = cos.acos();
+    let sin = angle.sin();
+    (((1.0 - t) * angle).sin() / sin, (t * angle).sin() / sin)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn quat() -> impl Strategy<Value = Quat> {
+        (-1.0f64..1.0, -1.0f64..1.0, -1.0f64..1.0, 0.1f64..1.0)
+            .prop_map(|(x, y, z, w)| Quat::new_normalize(nalgebra::Quaternion::new(w, x, y, z)))
+    }
+
+    proptest! {
+        #[test]
+        fn slerp_divides_the_angle(a in quat(), b in quat(), t in 0.0f64..1.0) {
+            let whole = a.angle_to(&b);
+            prop_assert!((a.angle_to(&slerp(&a, &b, t)) - t * whole).abs() < 1e-6);
+        }
+
+        #[test]
+        fn slerp_ignores_the_sign_of_its_ends(a in quat(), b in quat(), t in 0.0f64..1.0) {
+            let flipped = Quat::new_unchecked(-b.into_inner());
+            prop_assert!(slerp(&a, &b, t).angle_to(&slerp(&a, &flipped, t)) < 1e-6);
+        }
+    }
+
+    #[test]
+    fn the_ends_are_exact() {
+        let a = Axis::X.rotation(0.3);
+        let b = Axis::Y.rotation(2.0);
+        assert_eq!(slerp(&a, &b, 0.0), a);
+        assert_eq!(slerp(&a, &b, 1.0), b);
+    }
+}
