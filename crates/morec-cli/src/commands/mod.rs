@@ -1,0 +1,4 @@
+//! One file per command. Each has its arguments, `Args`, and `run(Args) -> anyhow::Result<ExitCode>`.
+//!
+//! Exit codes: 0 all went well; 1 something could not be done (the message says what); 2 the command line was
+//! wrong.
