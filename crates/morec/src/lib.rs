@@ -1,7 +1,12 @@
 //! Index a motion-capture database, recognise its motions live.
-#![doc = ""]
+
+pub mod classes;
 pub mod clip;
+pub mod decode;
+pub mod features;
 pub mod formats;
 pub mod kinematics;
+pub mod live;
 pub mod math;
 pub mod roles;
+pub mod templates;

@@ -1,0 +1,23 @@
+//! The classes an index tells apart.
+
+/// Number of a class in one index.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ClassId(pub u16);
+
+impl ClassId {
+    /// Its place in a list of classes.
+    pub fn index(self) -> usize {
+        usize::from(self.0)
+    }
+}
+
+/// A class and what it was learned from.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct ClassInfo {
+    /// Its name in the labels.
+    pub name: String,
+    /// How many samples it was learned from.
+    pub samples: usize,
+    /// How many people these show, as far as they were named; 0 if nobody was.
+    pub people: usize,
+}

@@ -1,0 +1,276 @@
+//! From distances at every tick to one detection for each motion, with nothing taken back.
+
+use crate::classes::ClassId;
+
+/// Distance of a class that nothing has matched yet.
+pub const FAR: f32 = 1e30;
+
+/// How distances become detections. An index keeps the values it was trained with.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct DecodeParams {
+    /// A class's distance counts only while it is below this times the smallest distance to any negative
+    /// template nearby.
+    pub gate: f32,
+    /// How many ticks before and after count as nearby.
+    pub gate_ticks: usize,
+    /// A candidate's distance must be the smallest of this many ticks before and after.
+    pub peak_ticks: usize,
+    /// A detection is held back until it ended this many ticks ago, in case a better one takes its place.
+    pub lag_ticks: usize,
+    /// A candidate may reach this many ticks into the detection before it; the overlap is cut off.
+    pub overlap_ticks: usize,
+}
+
+impl Default for DecodeParams {
+    /// The short windows: as accurate as the long ones on referee signals, and a fifth of a second earlier.
+    fn default() -> Self {
+        Self { gate: 1.2, gate_ticks: 1, peak_ticks: 1, lag_ticks: 0, overlap_ticks: 2 }
+    }
+}
+
+impl DecodeParams {
+    /// The values of the reference prototype.
+    pub fn reference() -> Self {
+        Self { gate_ticks: 3, peak_ticks: 2, lag_ticks: 3, ..Self::default() }
+    }
+
+    /// Ticks that must follow a motion's last tick before it can be reported.
+    pub fn look_ahead_ticks(&self) -> usize {
+        self.gate_ticks + self.peak_ticks + self.lag_ticks
+    }
+}
+
+/// How near one class is at one tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClassDistance {
+    /// Smallest distance to any of the class's templates; [`FAR`] if none has matched.
+    pub distance: f32,
+    /// Ticks since that template's match began.
+    pub age: usize,
+}
+
+/// A motion recognised, in ticks of the present stretch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TickDetection {
+    /// What it is.
+    pub class: ClassId,
+    /// First tick.
+    pub start: i64,
+    /// One past the last tick.
+    pub stop: i64,
+    /// 1 − distance / threshold: 0 just accepted, 1 identical to a sample.
+    pub score: f64,
+}
+
+/// The best sequence of detections that ends at or before a tick, as a chain.
+#[derive(Debug, Clone, Copy, Default)]
+struct PathCell {
+    /// Sum of scores along it.
+    total: f64,
+    /// The detection that ends exactly here, if the best sequence has one.
+    ends_here: Option<(i64, ClassId, f64)>,
+}
+
+/// Weighted interval scheduling over candidates as they come (Kleinberg and Tardos 2005, §6.1), made causal by
+/// a fixed lag.
+///
+/// A tick costs O(classes × window). Memory is fixed at construction.
+#[derive(Debug, Clone)]
+pub struct Decoder {
+    params: DecodeParams,
+    threshold: f32,
+    classes: usize,
+    /// The last few ticks' distances, `ring_len` × `classes`.
+    ring: Vec<ClassDistance>,
+    negatives: Vec<f32>,
+    ring_len: usize,
+    paths: Vec<PathCell>,
+    /// Ticks pushed.
+    ticks: i64,
+    /// Ticks decided: `paths` is known up to here.
+    decided: i64,
+    /// Everything up to here has been reported.
+    reported: i64,
+    chain: Vec<TickDetection>,
+}
+
+impl Decoder {
+    /// For `classes` classes whose matches are at most `longest` ticks long.
+    pub fn new(params: &DecodeParams, threshold: f32, classes: usize, longest: usize) -> Self {
+        let ring_len = (2 * (params.gate_ticks + params.peak_ticks) + 2).next_power_of_two();
+        // A match of n template rows spans at most 2 n ticks; twice that leaves room for the chain behind it.
+        let path_len = (4 * longest + params.look_ahead_ticks() + params.overlap_ticks + 8).next_power_of_two();
+        Self {
+            params: params.clone(),
+            threshold,
+            classes,
+            ring: vec![ClassDistance { distance: FAR, age: 0 }; ring_len * classes],
+            negatives: vec![FAR; ring_len],
+            ring_len,
+            paths: vec![PathCell::default(); path_len],
+            ticks: 0,
+            decided: 0,
+            reported: 0,
+            chain: Vec::with_capacity(path_len),
+        }
+    }
+
+    /// Forgets the stream so far.
+    pub fn reset(&mut self) {
+        self.paths.fill(PathCell::default());
+        (self.ticks, self.decided, self.reported) = (0, 0, 0);
+    }
+
+    /// Takes the next tick: one distance for each class and the smallest to any negative ([`FAR`] if there is
+    /// none). Calls `out` with what is now certain.
+    pub fn push(&mut self, near: &[ClassDistance], negative: f32, out: &mut impl FnMut(TickDetection)) {
+        let slot = self.ticks as usize & (self.ring_len - 1);
+        self.ring[slot * self.classes..][..self.classes].copy_from_slice(near);
+        self.negatives[slot] = negative;
+        self.ticks += 1;
+        let wait = (self.params.gate_ticks + self.params.peak_ticks) as i64;
+        if self.ticks > wait {
+            self.decide(self.ticks - 1 - wait);
+            self.report(self.params.lag_ticks as i64, out);
+        }
+    }
+
+    /// Ends the stretch: decides the last ticks with what there is and reports all that is left.
+    pub fn finish(&mut self, out: &mut impl FnMut(TickDetection)) {
+        while self.decided < self.ticks {
+            self.decide(self.decided);
+        }
+        self.report(0, out);
+    }
+
+    fn path(&self, tick: i64) -> &PathCell {
+        &self.paths[tick as usize & (self.paths.len() - 1)]
+    }
+
+    fn near(&self, tick: i64, class: usize) -> ClassDistance {
+        self.ring[(tick as usize & (self.ring_len - 1)) * self.classes + class]
+    }
+
+    /// Distances at `tick` count only below this.
+    fn gate(&self, tick: i64) -> f32 {
+        let reach = self.params.gate_ticks as i64;
+        let (first, last) = ((tick - reach).max(0), (tick + reach).min(self.ticks - 1));
+        let nearest = (first..=last).map(|t| self.negatives[t as usize & (self.ring_len - 1)]);
+        self.params.gate * nearest.fold(FAR, f32::min)
+    }
+
+    /// The class's distance at `tick` if it is a candidate there: below threshold and gate, and no larger than
+    /// any gated distance nearby.
+    fn candidate(&self, tick: i64, class: usize) -> Option<ClassDistance> {
+        let here = self.near(tick, class);
+        if here.distance >= self.threshold || here.distance >= self.gate(tick) {
+            return None;
+        }
+        let reach = self.params.peak_ticks as i64;
+        let (first, last) = ((tick - reach).max(0), (tick + reach).min(self.ticks - 1));
+        let beaten = (first..=last).any(|t| {
+            let there = self.near(t, class).distance;
+            there < here.distance && there < self.gate(t)
+        });
+        (!beaten).then_some(here)
+    }
+
+    fn decide(&mut self, tick: i64) {
+        let mut cell = PathCell { total: self.path(tick).total, ends_here: None };
+        for class in 0..self.classes {
+            let Some(near) = self.candidate(tick, class) else { continue };
+            let (start, slack) = (tick - near.age as i64, self.params.overlap_ticks as i64);
+            if start < self.reported - slack {
+                continue;
+            }
+            let score = 1.0 - f64::from(near.distance) / f64::from(self.threshold);
+            let start = start.max(self.reported);
+            for begin in start..=(start + slack).min(tick) {
+                let total = self.path(begin).total + score;
+                if total > cell.total + 1e-12 {
+                    cell = PathCell { total, ends_here: Some((begin, ClassId(class as u16), score)) };
+                }
+            }
+        }
+        let index = (tick + 1) as usize & (self.paths.len() - 1);
+        self.paths[index] = cell;
+        self.decided = tick + 1;
+    }
+
+    /// Reports what lies on the best path and ended at least `lag` ticks ago.
+    fn report(&mut self, lag: i64, out: &mut impl FnMut(TickDetection)) {
+        let mut chain = std::mem::take(&mut self.chain);
+        chain.clear();
+        let oldest = self.reported.max(self.decided - self.paths.len() as i64 + 1);
+        let mut tick = self.decided;
+        while tick > oldest {
+            match self.path(tick).ends_here {
+                Some((start, class, score)) => {
+                    chain.push(TickDetection { class, start, stop: tick, score });
+                    tick = start;
+                }
+                None => tick -= 1,
+            }
+        }
+        for detection in chain.iter().rev() {
+            if detection.start >= self.reported && self.decided - detection.stop >= lag {
+                self.reported = detection.stop;
+                out(*detection);
+            }
+        }
+        self.chain = chain;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Runs one class's distances (age: always 3 ticks) through a decoder and returns spans.
+    fn spans(distances: &[f32], negatives: &[f32], params: &DecodeParams) -> Vec<(i64, i64)> {
+        let mut decoder = Decoder::new(params, 2.0, 1, 4);
+        let mut found = vec![];
+        for (t, d) in distances.iter().enumerate() {
+            let negative = negatives.get(t).copied().unwrap_or(FAR);
+            decoder.push(&[ClassDistance { distance: *d, age: t.min(3) }], negative, &mut |d| {
+                found.push((d.start, d.stop));
+            });
+        }
+        decoder.finish(&mut |d| found.push((d.start, d.stop)));
+        found
+    }
+
+    #[test]
+    fn a_dip_below_the_threshold_is_one_detection_at_its_bottom() {
+        let dip = [5.0, 5.0, 5.0, 5.0, 1.5, 1.0, 0.5, 1.0, 1.5, 5.0, 5.0, 5.0];
+        assert_eq!(spans(&dip, &[], &DecodeParams::default()), [(3, 7)]);
+        assert_eq!(spans(&dip, &[], &DecodeParams::reference()), [(3, 7)]);
+    }
+
+    #[test]
+    fn a_dip_in_the_last_ticks_is_not_lost() {
+        let dip = [5.0, 5.0, 5.0, 5.0, 1.5, 1.0, 0.5];
+        assert_eq!(spans(&dip, &[], &DecodeParams::default()), [(3, 7)]);
+    }
+
+    #[test]
+    fn a_nearer_negative_silences_a_class() {
+        let dip = [5.0, 5.0, 5.0, 5.0, 1.5, 1.0, 0.5, 1.0, 1.5, 5.0, 5.0, 5.0];
+        assert_eq!(spans(&dip, &[0.3; 12], &DecodeParams::default()), []);
+        assert_eq!(spans(&dip, &[0.6; 12], &DecodeParams::default()), [(3, 7)]);
+    }
+
+    #[test]
+    fn of_two_overlapping_candidates_the_better_remains_when_the_lag_allows() {
+        let params = DecodeParams { gate: 1.2, gate_ticks: 0, peak_ticks: 0, lag_ticks: 4, overlap_ticks: 0 };
+        let twice = [5.0, 5.0, 5.0, 1.5, 1.2, 0.2, 5.0, 5.0, 5.0, 5.0, 5.0];
+        assert_eq!(spans(&twice, &[], &params), [(2, 6)]);
+    }
+
+    #[test]
+    fn long_silence_neither_grows_memory_nor_loses_what_follows() {
+        let mut stream = vec![9.0; 5000];
+        stream.extend([1.0, 0.5, 1.0, 9.0, 9.0, 9.0, 9.0]);
+        assert_eq!(spans(&stream, &[], &DecodeParams::default()), [(4998, 5002)]);
+    }
+}

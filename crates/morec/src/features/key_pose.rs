@@ -1,0 +1,48 @@
+//! What recognition needs of one frame: where the role joints are.
+
+use crate::kinematics::WorldPose;
+use crate::math::Vec3;
+use crate::roles::{Role, RoleMap};
+
+/// World positions of the role joints at one instant, Y up, in any one length unit.
+///
+/// This is what every source comes down to: files by forward kinematics, trackers that send positions directly.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct KeyPose {
+    positions: [Vec3; Role::COUNT],
+    present: u32,
+}
+
+impl Default for KeyPose {
+    fn default() -> Self {
+        Self { positions: [Vec3::zeros(); Role::COUNT], present: 0 }
+    }
+}
+
+impl KeyPose {
+    /// The role joints of a posed skeleton.
+    pub fn of(pose: &WorldPose, roles: &RoleMap) -> Self {
+        let mut key = Self::default();
+        for role in Role::ALL {
+            if let Some(joint) = roles.joint(role) {
+                key.set(role, pose.positions[joint]);
+            }
+        }
+        key
+    }
+
+    /// Where `role` is, if the source knows.
+    pub fn get(&self, role: Role) -> Option<Vec3> {
+        (self.present >> role.index() & 1 == 1).then(|| self.positions[role.index()])
+    }
+
+    /// Puts `role` at `position`; a position that is not finite counts as unknown.
+    pub fn set(&mut self, role: Role, position: Vec3) {
+        if position.iter().all(|c| c.is_finite()) {
+            self.positions[role.index()] = position;
+            self.present |= 1 << role.index();
+        } else {
+            self.present &= !(1 << role.index());
+        }
+    }
+}

@@ -1,0 +1,24 @@
+//! Feature rows: what training and live recognition compare.
+//!
+//! A row describes one tick (1/30 s): for each bone its direction in the performer's heading frame and its
+//! velocity with saturated length, then the root's velocity and turning. People of any size, facing anywhere,
+//! on any skeleton come out alike.
+//!
+//! Notation: `b` bones, `d = 6 b + 4` values in a row: `[x (3 b) ; β v (3 b) ; γ root (4)]`, single precision.
+//! The same [`FeatureStream`] makes the rows of training clips and of live streams.
+
+mod bones;
+mod key_pose;
+mod observe;
+mod params;
+mod rows;
+mod smooth;
+mod stream;
+
+pub use bones::{ALL_BONES, BONES, Bone, BoneSet};
+pub use key_pose::KeyPose;
+pub use observe::{Observation, Observer};
+pub use params::FeatureParams;
+pub use rows::Rows;
+pub use smooth::row_dim;
+pub use stream::{FeatureStream, MAX_GAP_SECS, Pushed};

@@ -1,0 +1,83 @@
+//! The figures that turn observations into feature rows.
+
+/// How observations are resampled, smoothed and weighted. An index keeps the values it was trained with.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct FeatureParams {
+    /// Every source is resampled to this many frames a second before anything else.
+    pub rate_hz: f64,
+    /// A feature row is made of every so-manieth frame: 4 at 120 Hz gives 30 ticks a second.
+    pub frames_per_tick: usize,
+    /// Standard deviation of the Gaussian over bone directions, in frames.
+    pub smooth_sigma_frames: f64,
+    /// The Gaussian is cut off this many frames away: its half width, and its delay.
+    pub smooth_cut_frames: usize,
+    /// Standard deviation of the Gaussian over root motion, in frames.
+    pub root_sigma_frames: f64,
+    /// Half width of the Gaussian over root motion, in frames.
+    pub root_cut_frames: usize,
+    /// Bone velocities saturate towards this speed, per second: fast is fast, whoever does it.
+    pub velocity_saturation: f64,
+    /// How much velocities count against directions.
+    pub velocity_weight: f64,
+    /// How much root motion counts against directions.
+    pub root_weight: f64,
+}
+
+impl Default for FeatureParams {
+    /// As chosen on referee signals, with the root's smoothing cut to the delay of the directions'.
+    fn default() -> Self {
+        Self { root_sigma_frames: 3.0, root_cut_frames: 6, ..Self::reference() }
+    }
+}
+
+impl FeatureParams {
+    /// The values of the reference prototype, whose golden figures the tests hold us to.
+    pub fn reference() -> Self {
+        Self {
+            rate_hz: 120.0,
+            frames_per_tick: 4,
+            smooth_sigma_frames: 3.0,
+            smooth_cut_frames: 6,
+            root_sigma_frames: 6.0,
+            root_cut_frames: 12,
+            velocity_saturation: 2.0,
+            velocity_weight: 0.5,
+            root_weight: 0.3,
+        }
+    }
+
+    /// Feature rows a second.
+    pub fn tick_hz(&self) -> f64 {
+        self.rate_hz / self.frames_per_tick as f64
+    }
+
+    /// Frames that must follow a frame before its features are known: the filters' half width and one more for
+    /// the central difference.
+    pub fn look_ahead_frames(&self) -> usize {
+        self.smooth_cut_frames.max(self.root_cut_frames) + 1
+    }
+
+    /// Says what is wrong with these values, if anything is.
+    pub fn check(&self) -> Result<(), String> {
+        let positive = [
+            ("rate_hz", self.rate_hz),
+            ("smooth_sigma_frames", self.smooth_sigma_frames),
+            ("root_sigma_frames", self.root_sigma_frames),
+            ("velocity_saturation", self.velocity_saturation),
+        ];
+        if let Some((name, value)) = positive.iter().find(|(_, v)| !(v.is_finite() && *v > 0.0)) {
+            return Err(format!("{name} must be above 0, found {value}"));
+        }
+        let weights = [("velocity_weight", self.velocity_weight), ("root_weight", self.root_weight)];
+        if let Some((name, value)) = weights.iter().find(|(_, v)| !(v.is_finite() && *v >= 0.0)) {
+            return Err(format!("{name} must be 0 or more, found {value}"));
+        }
+        if !(1..=64).contains(&self.frames_per_tick) {
+            return Err(format!("frames_per_tick must be 1 to 64, found {}", self.frames_per_tick));
+        }
+        if self.look_ahead_frames() > 64 {
+            return Err(format!("filters of {} frames a side are too wide", self.look_ahead_frames() - 1));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,142 @@
+//! Smoothing and velocities of a stream, frame by frame, with the edges mirrored.
+
+use nalgebra::{SVector, Vector4};
+
+use crate::math::Vec3;
+
+use super::bones::{ALL_BONES, BONES, BoneSet};
+use super::observe::{Observation, heading_from_world};
+use super::params::FeatureParams;
+
+/// Keeps as many frames as the filters reach over and makes feature rows of them.
+///
+/// Edges follow the convention of mirrored signals, `d c b a | a b c d | d c b a`: at the start from the first
+/// frame on, at the end only when [`finish`](Smoother::finish) says that no more will come.
+#[derive(Debug, Clone)]
+pub struct Smoother {
+    bones: BoneSet,
+    params: FeatureParams,
+    kernel: Vec<f64>,
+    root_kernel: Vec<f64>,
+    ring: Vec<Observation>,
+    pushed: usize,
+    next_row_frame: usize,
+    row: Vec<f32>,
+}
+
+/// Weights of a sampled Gaussian from its centre outwards, `cut + 1` values, the whole normalised to 1.
+fn half_gaussian(sigma: f64, cut: usize) -> Vec<f64> {
+    let raw: Vec<f64> = (0..=cut).map(|i| (-0.5 * (i as f64 / sigma).powi(2)).exp()).collect();
+    let sum = raw[0] + 2.0 * raw[1..].iter().sum::<f64>();
+    raw.iter().map(|w| w / sum).collect()
+}
+
+impl Smoother {
+    /// Allocates everything that will be needed.
+    pub fn new(bones: BoneSet, params: &FeatureParams) -> Self {
+        let reach = 2 * (params.look_ahead_frames() + 1) + params.frames_per_tick;
+        let empty =
+            Observation { directions: [Vec3::zeros(); BONES], root: Vec3::zeros(), yaw_rad: 0.0, leg_length: 1.0 };
+        Self {
+            bones,
+            kernel: half_gaussian(params.smooth_sigma_frames, params.smooth_cut_frames),
+            root_kernel: half_gaussian(params.root_sigma_frames, params.root_cut_frames),
+            ring: vec![empty; reach.next_power_of_two()],
+            pushed: 0,
+            next_row_frame: params.frames_per_tick - 1,
+            row: vec![0.0; row_dim(bones)],
+            params: params.clone(),
+        }
+    }
+
+    /// Forgets the stream so far.
+    pub fn reset(&mut self) {
+        self.pushed = 0;
+        self.next_row_frame = self.params.frames_per_tick - 1;
+    }
+
+    /// Takes the next frame; calls `out` with each row that is now complete (at most one).
+    pub fn push(&mut self, observation: &Observation, out: &mut impl FnMut(&[f32])) {
+        let mask = self.ring.len() - 1;
+        self.ring[self.pushed & mask] = *observation;
+        self.pushed += 1;
+        if self.next_row_frame + self.params.look_ahead_frames() < self.pushed {
+            self.emit(out);
+        }
+    }
+
+    /// Calls `out` with the rows that were still waiting for frames that will not come.
+    pub fn finish(&mut self, out: &mut impl FnMut(&[f32])) {
+        while self.next_row_frame < self.pushed {
+            self.emit(out);
+        }
+    }
+
+    fn emit(&mut self, out: &mut impl FnMut(&[f32])) {
+        let frame = self.next_row_frame as isize;
+        let mut row = std::mem::take(&mut self.row);
+        let bones = self.bones.len();
+        let rate = self.params.rate_hz;
+        // np.gradient's convention: central inside, one-sided at an edge.
+        let (before, after) = ((frame - 1).max(0), (frame + 1).min(self.pushed as isize - 1));
+        let per_secs = rate / ((after - before).max(1) as f64);
+        for (slot, bone) in self.bones.indices().enumerate() {
+            let weight = ALL_BONES[bone].weight;
+            let position = self.direction(bone, frame) * weight;
+            let velocity = (self.direction(bone, after) - self.direction(bone, before)) * (weight * per_secs);
+            let saturated = velocity / (1.0 + velocity.norm() / self.params.velocity_saturation);
+            for axis in 0..3 {
+                row[3 * slot + axis] = position[axis] as f32;
+                row[3 * (bones + slot) + axis] = (saturated[axis] * self.params.velocity_weight) as f32;
+            }
+        }
+        for (slot, value) in self.root_motion(frame).iter().enumerate() {
+            row[6 * bones + slot] = (value * self.params.root_weight) as f32;
+        }
+        out(&row);
+        self.row = row;
+        self.next_row_frame += self.params.frames_per_tick;
+    }
+
+    /// The frame that a possibly mirrored index stands for.
+    fn mirrored(&self, index: isize) -> isize {
+        let (mut i, n) = (index, self.pushed as isize);
+        while !(0..n).contains(&i) {
+            i = if i < 0 { -1 - i } else { 2 * n - 1 - i };
+        }
+        i
+    }
+
+    fn at(&self, index: isize) -> &Observation {
+        &self.ring[self.mirrored(index) as usize & (self.ring.len() - 1)]
+    }
+
+    fn direction(&self, bone: usize, frame: isize) -> Vec3 {
+        convolve(&self.kernel, |k| self.at(frame + k).directions[bone])
+    }
+
+    /// Velocity in the heading frame in leg lengths a second (lateral, up, forward) and yaw rate, smoothed.
+    fn root_motion(&self, frame: isize) -> Vector4<f64> {
+        convolve(&self.root_kernel, |k| self.raw_root_motion(self.mirrored(frame + k)))
+    }
+
+    fn raw_root_motion(&self, frame: isize) -> Vector4<f64> {
+        let (before, after) = ((frame - 1).max(0), (frame + 1).min(self.pushed as isize - 1));
+        let per_secs = self.params.rate_hz / ((after - before).max(1) as f64);
+        let (a, b, here) = (self.at(before), self.at(after), self.at(frame));
+        let (sin, cos) = here.yaw_rad.sin_cos();
+        let velocity = heading_from_world(sin, cos, &((b.root - a.root) * (per_secs / here.leg_length)));
+        velocity.push((b.yaw_rad - a.yaw_rad) * per_secs)
+    }
+}
+
+/// Values in a feature row over `bones`: directions, velocities (3 each) and 4 of root motion.
+pub fn row_dim(bones: BoneSet) -> usize {
+    6 * bones.len() + 4
+}
+
+fn convolve<const N: usize>(half_kernel: &[f64], value: impl Fn(isize) -> SVector<f64, N>) -> SVector<f64, N> {
+    half_kernel.iter().enumerate().skip(1).fold(value(0) * half_kernel[0], |sum, (k, weight)| {
+        sum + (value(-(k as isize)) + value(k as isize)) * *weight
+    })
+}

@@ -1,0 +1,9 @@
+//! Live recognition: poses in, detections out, nothing taken back.
+//!
+//! Real-time contract: construction allocates and may fail with a reason; `push` afterwards does not allocate,
+//! lock, log or fail. A recogniser is owned by one thread at a time. Detections are the same however the stream
+//! is cut into pushes.
+
+mod recognizer;
+
+pub use recognizer::{Detection, Recognizer};

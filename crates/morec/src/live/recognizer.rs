@@ -1,0 +1,117 @@
+//! The template recogniser on a live stream.
+
+use std::sync::Arc;
+
+use crate::classes::ClassId;
+use crate::decode::TickDetection;
+use crate::features::{BoneSet, FeatureStream, KeyPose, Pushed};
+use crate::templates::{TemplateEngine, TemplateModel, TemplateModelError};
+
+/// Detections that one push can complete at most; more than a motion a tick is not a motion.
+const MAX_DETECTIONS_PER_PUSH: usize = 64;
+
+/// A motion recognised in a stream.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Detection {
+    /// What it is: an index into the model's classes.
+    pub class: ClassId,
+    /// When it began, on the stream's clock.
+    pub start_secs: f64,
+    /// When it ended.
+    pub stop_secs: f64,
+    /// 0 just accepted … 1 identical to a sample.
+    pub score: f64,
+    /// The stream's clock when it was reported: the time of the pose that settled it.
+    pub reported_secs: f64,
+}
+
+/// Recognises motions in one performer's stream of poses.
+#[derive(Debug, Clone)]
+pub struct Recognizer {
+    model: Arc<TemplateModel>,
+    features: FeatureStream,
+    engine: TemplateEngine,
+    found: Vec<Detection>,
+    now_secs: f64,
+}
+
+impl Recognizer {
+    /// For a stream that offers `bones`; what the index uses beyond them is left out of every comparison.
+    ///
+    /// Fails if the model's parts do not fit together or no bone is left.
+    pub fn new(model: &Arc<TemplateModel>, bones: BoneSet) -> Result<Self, TemplateModelError> {
+        let model =
+            if model.bones.and(bones) == model.bones { model.clone() } else { Arc::new(model.restricted(bones)?) };
+        Ok(Self {
+            features: FeatureStream::new(model.bones, &model.features),
+            engine: TemplateEngine::new(&model)?,
+            found: Vec::with_capacity(MAX_DETECTIONS_PER_PUSH),
+            now_secs: 0.0,
+            model,
+        })
+    }
+
+    /// The model in use, already without what the stream does not offer.
+    pub fn model(&self) -> &TemplateModel {
+        &self.model
+    }
+
+    /// Seconds from the end of a motion to its report at the earliest: filters, peak and gate windows, lag.
+    pub fn latency_secs(&self) -> f64 {
+        let features = &self.model.features;
+        // A row stands at its tick's last frame; the tick itself ends one frame later.
+        let filters = (features.look_ahead_frames() - 1) as f64 / features.rate_hz;
+        filters + self.model.decode.look_ahead_ticks() as f64 / features.tick_hz()
+    }
+
+    /// Takes the pose at `time_secs` on the stream's clock and returns what it settled, in order of time.
+    ///
+    /// Poses may come at any rate, also unevenly; late and duplicate ones are ignored. After a gap of more than
+    /// [`MAX_GAP_SECS`](crate::features::MAX_GAP_SECS) the stream begins anew. No allocation.
+    pub fn push(&mut self, time_secs: f64, pose: &KeyPose) -> &[Detection] {
+        self.found.clear();
+        if self.features.breaks_at(time_secs) {
+            self.end_stretch();
+        }
+        let (engine, found) = (&mut self.engine, &mut self.found);
+        let tick_secs = 1.0 / self.model.features.tick_hz();
+        // The first pose of a stretch sets its origin and completes no row: the origin read here is right.
+        let origin_secs = self.features.origin_secs();
+        let pushed = self.features.push(time_secs, pose, &mut |row| {
+            engine.push(row, &mut |d| report(found, d, origin_secs, tick_secs, time_secs));
+        });
+        if matches!(pushed, Pushed::Taken | Pushed::Restarted) {
+            self.now_secs = time_secs;
+        }
+        &self.found
+    }
+
+    /// Ends the stream: returns what its last moments still hold. The next push begins a new stream.
+    pub fn finish(&mut self) -> &[Detection] {
+        self.found.clear();
+        self.end_stretch();
+        &self.found
+    }
+
+    fn end_stretch(&mut self) {
+        let (engine, found, now_secs) = (&mut self.engine, &mut self.found, self.now_secs);
+        let tick_secs = 1.0 / self.model.features.tick_hz();
+        let origin_secs = self.features.origin_secs();
+        let mut out = |d: TickDetection| report(found, d, origin_secs, tick_secs, now_secs);
+        self.features.finish(&mut |row| engine.push(row, &mut out));
+        engine.finish(&mut out);
+    }
+}
+
+fn report(found: &mut Vec<Detection>, d: TickDetection, origin_secs: f64, tick_secs: f64, now_secs: f64) {
+    // The buffer never grows: pushing must not allocate.
+    if found.len() < found.capacity() {
+        found.push(Detection {
+            class: d.class,
+            start_secs: origin_secs + d.start as f64 * tick_secs,
+            stop_secs: origin_secs + d.stop as f64 * tick_secs,
+            score: d.score,
+            reported_secs: now_secs,
+        });
+    }
+}

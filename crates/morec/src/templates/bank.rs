@@ -1,0 +1,293 @@
+//! Subsequence dynamic time warping of many templates against one stream, a tick at a time.
+
+use crate::decode::FAR;
+use crate::features::Rows;
+
+/// Cells left empty before each template, so that transitions from "before the first row" cost [`FAR`] without
+/// a branch.
+const GUARDS: usize = 2;
+
+/// A set of templates laid end to end, and the dynamic program that matches all of them at once.
+///
+/// For template rows `T_j` and stream rows `z_t`, with `c(j,t) = |T_j − z_t|²`:
+///
+/// ```text
+/// D(1,t) = c(1,t)
+/// D(j,t) = min { D(j−1,t−1) + c(j,t),
+///                D(j−1,t−2) + (c(j,t−1) + c(j,t)) / 2,
+///                D(j−2,t−1) + c(j−1,t) + c(j,t) }
+/// ```
+///
+/// Every path has weight `n`, the template's length, so `D(n,t) / n` is a mean squared distance; the slope stays
+/// between 1/2 and 2. (Sakoe and Chiba 1978, slope constraint P = 1, weighted along the template; open start as
+/// in Müller 2007, §4.4.) Transitions read the two ticks before only, so all cells of a tick are independent.
+///
+/// One step costs O(F·d) for `F` template rows in all; nothing is allocated after construction.
+#[derive(Debug, Clone)]
+pub struct Bank {
+    dim: usize,
+    /// Template values, one row of cells for each of the `dim` coordinates: `dim` × `cells`.
+    transposed: Vec<f32>,
+    /// `|T_j|²` of every cell.
+    norms: Vec<f32>,
+    /// First and last cell of each template.
+    extents: Vec<(usize, usize)>,
+    columns: [Column; 3],
+    tick: usize,
+}
+
+/// The dynamic program's cells at one tick.
+#[derive(Debug, Clone, Default)]
+struct Column {
+    /// `c(j,t)`.
+    local: Vec<f32>,
+    /// `D(j,t)`.
+    total: Vec<f32>,
+    /// Ticks since the path began: an age needs no clock and so never overflows.
+    age: Vec<i32>,
+}
+
+/// How a template matches a stretch that ends now.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Match {
+    /// Mean squared distance along the path.
+    pub distance: f32,
+    /// How many ticks ago the path began: 0 means with this tick.
+    pub age: usize,
+}
+
+impl Bank {
+    /// Lays out `templates`, all of rows of `dim` values; empty ones never match.
+    pub fn new(templates: &[Rows], dim: usize) -> Self {
+        let mut extents = Vec::with_capacity(templates.len());
+        let mut cells = GUARDS;
+        for template in templates {
+            extents.push((cells, (cells + template.len()).saturating_sub(1)));
+            cells += template.len() + GUARDS;
+        }
+        let mut transposed = vec![0.0; dim * cells];
+        let mut norms = vec![0.0; cells];
+        for (template, &(first, _)) in templates.iter().zip(&extents) {
+            for (j, row) in template.iter().enumerate() {
+                norms[first + j] = row.iter().map(|v| v * v).sum();
+                for (k, value) in row.iter().enumerate() {
+                    transposed[k * cells + first + j] = *value;
+                }
+            }
+        }
+        let column = Column { local: vec![0.0; cells], total: vec![FAR; cells], age: vec![0; cells] };
+        Self { dim, transposed, norms, extents, columns: std::array::from_fn(|_| column.clone()), tick: 0 }
+    }
+
+    /// Number of templates.
+    pub fn len(&self) -> usize {
+        self.extents.len()
+    }
+
+    /// Whether there is no template.
+    pub fn is_empty(&self) -> bool {
+        self.extents.is_empty()
+    }
+
+    /// Rows of template `index`.
+    pub fn template_len(&self, index: usize) -> usize {
+        let (first, last) = self.extents[index];
+        (last + 1).saturating_sub(first)
+    }
+
+    /// Rows of the longest template.
+    pub fn longest(&self) -> usize {
+        (0..self.len()).map(|i| self.template_len(i)).max().unwrap_or(0)
+    }
+
+    /// Forgets the stream so far.
+    pub fn reset(&mut self) {
+        for column in &mut self.columns {
+            column.total.fill(FAR);
+            column.local.fill(0.0);
+        }
+        self.tick = 0;
+    }
+
+    /// Advances by one tick with the stream's row `z`, of `dim` values.
+    pub fn step(&mut self, z: &[f32]) {
+        assert_eq!(z.len(), self.dim, "a stream row of another width than the templates'");
+        let [a, b, c] = &mut self.columns;
+        let (now, before, earlier) = match self.tick % 3 {
+            0 => (a, &*c, &*b),
+            1 => (b, &*a, &*c),
+            _ => (c, &*b, &*a),
+        };
+        local_costs(&self.transposed, &self.norms, z, &mut now.local);
+        advance(now, before, earlier);
+        for &(first, last) in &self.extents {
+            now.total[first - GUARDS..first].fill(FAR);
+            if last >= first {
+                now.total[first] = now.local[first];
+                now.age[first] = 0;
+            }
+        }
+        let cells = now.total.len();
+        now.total[cells - GUARDS..].fill(FAR);
+        self.tick += 1;
+    }
+
+    /// How template `index` matches a stretch that ends with the last tick stepped.
+    pub fn matched(&self, index: usize) -> Match {
+        let length = self.template_len(index);
+        if length == 0 || self.tick == 0 {
+            return Match { distance: FAR, age: 0 };
+        }
+        let column = &self.columns[(self.tick - 1) % 3];
+        let last = self.extents[index].1;
+        // A path that came out of a guard cell is no path.
+        if column.total[last] >= FAR / 2.0 {
+            return Match { distance: FAR, age: 0 };
+        }
+        Match { distance: column.total[last] / length as f32, age: column.age[last] as usize }
+    }
+}
+
+/// `|T_j − z|²` of every cell, as `|T_j|² + |z|² − 2 T_j·z`.
+fn local_costs(transposed: &[f32], norms: &[f32], z: &[f32], out: &mut [f32]) {
+    let z_norm: f32 = z.iter().map(|v| v * v).sum();
+    for (cost, norm) in out.iter_mut().zip(norms) {
+        *cost = norm + z_norm;
+    }
+    for (coordinate, value) in transposed.chunks_exact(norms.len()).zip(z) {
+        let twice = -2.0 * value;
+        for (cost, t) in out.iter_mut().zip(coordinate) {
+            *cost += twice * t;
+        }
+    }
+    // Cancellation can leave a hair below zero where stream and template agree.
+    for cost in out.iter_mut() {
+        *cost = cost.max(0.0);
+    }
+}
+
+/// The three transitions for every cell from the second on; first cells and guards are put right afterwards.
+fn advance(now: &mut Column, before: &Column, earlier: &Column) {
+    let n = now.total.len();
+    let (local, local_1) = (&now.local[2..n], &now.local[1..n - 1]);
+    let before_local = &before.local[2..n];
+    let (diagonal, diagonal_age) = (&before.total[1..n - 1], &before.age[1..n - 1]);
+    let (slow, slow_age) = (&earlier.total[1..n - 1], &earlier.age[1..n - 1]);
+    let (fast, fast_age) = (&before.total[..n - 2], &before.age[..n - 2]);
+    let (total, age) = (&mut now.total[2..n], &mut now.age[2..n]);
+    for j in 0..total.len() {
+        let mut best = diagonal[j] + local[j];
+        let mut best_age = diagonal_age[j] + 1;
+        let two_stream = slow[j] + 0.5 * (before_local[j] + local[j]);
+        let better = two_stream < best;
+        best = if better { two_stream } else { best };
+        best_age = if better { slow_age[j] + 2 } else { best_age };
+        let two_template = fast[j] + local_1[j] + local[j];
+        let better = two_template < best;
+        total[j] = if better { two_template } else { best };
+        age[j] = if better { fast_age[j] + 1 } else { best_age };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// The recurrence as written, over the whole table, in double precision. Returns `D(n,t)/n` and the start
+    /// for every tick.
+    fn plain(template: &Rows, stream: &Rows) -> Vec<(f64, usize)> {
+        let cost = |j: usize, t: usize| -> f64 {
+            let pairs = template.row(j).iter().zip(stream.row(t));
+            pairs.map(|(a, b)| (f64::from(*a) - f64::from(*b)).powi(2)).sum()
+        };
+        let n = template.len();
+        let mut table = vec![vec![(1e30, 0usize); n]; stream.len()];
+        for t in 0..stream.len() {
+            for j in 0..n {
+                if j == 0 {
+                    table[t][j] = (cost(0, t), t);
+                    continue;
+                }
+                let mut options = vec![];
+                if t >= 1 {
+                    options.push((table[t - 1][j - 1].0 + cost(j, t), table[t - 1][j - 1].1));
+                }
+                if t >= 2 {
+                    let c = (cost(j, t - 1) + cost(j, t)) / 2.0;
+                    options.push((table[t - 2][j - 1].0 + c, table[t - 2][j - 1].1));
+                }
+                if t >= 1 && j >= 2 {
+                    let c = cost(j - 1, t) + cost(j, t);
+                    options.push((table[t - 1][j - 2].0 + c, table[t - 1][j - 2].1));
+                }
+                if let Some(best) = options.into_iter().reduce(|a, b| if b.0 < a.0 { b } else { a }) {
+                    table[t][j] = best;
+                }
+            }
+        }
+        table.into_iter().map(|row| (row[n - 1].0 / n as f64, row[n - 1].1)).collect()
+    }
+
+    /// Small whole numbers: single and double precision then agree to the last bit, ties included.
+    fn rows(len: std::ops::Range<usize>) -> impl Strategy<Value = Rows> {
+        len.prop_flat_map(|n| prop::collection::vec((-3i8..=3).prop_map(f32::from), 3 * n))
+            .prop_map(|v| Rows::from_values(3, v))
+    }
+
+    proptest! {
+        #[test]
+        fn every_template_matches_as_it_would_alone(
+            templates in prop::collection::vec(rows(1..9), 1..5),
+            stream in rows(1..40),
+        ) {
+            let mut bank = Bank::new(&templates, 3);
+            let expected: Vec<_> = templates.iter().map(|t| plain(t, &stream)).collect();
+            for (t, z) in stream.iter().enumerate() {
+                bank.step(z);
+                for (i, expected) in expected.iter().enumerate() {
+                    let (distance, start) = expected[t];
+                    let found = bank.matched(i);
+                    if distance > 1e20 {
+                        prop_assert!(found.distance > 1e20);
+                    } else {
+                        prop_assert_eq!(found.distance, distance as f32);
+                        prop_assert_eq!(t - found.age, start);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_template_finds_itself_where_it_lies() {
+        let template = Rows::from_values(1, vec![0.0, 1.0, 3.0, 2.0, -1.0]);
+        let stream = Rows::from_values(1, vec![9.0, 9.0, 0.0, 1.0, 3.0, 2.0, -1.0, 9.0]);
+        let mut bank = Bank::new(&[template], 1);
+        let mut best = (FAR, 0, 0);
+        for (t, z) in stream.iter().enumerate() {
+            bank.step(z);
+            let m = bank.matched(0);
+            if m.distance < best.0 {
+                best = (m.distance, t - m.age, t);
+            }
+        }
+        assert_eq!(best, (0.0, 2, 6));
+    }
+
+    #[test]
+    fn a_reset_bank_is_a_new_bank() {
+        let template = Rows::from_values(1, vec![0.0, 1.0, 2.0]);
+        let mut used = Bank::new(std::slice::from_ref(&template), 1);
+        for v in [0.0, 1.0, 2.0, 3.0] {
+            used.step(&[v]);
+        }
+        used.reset();
+        let mut fresh = Bank::new(&[template], 1);
+        for v in [0.5, 1.0, 2.5, 1.0] {
+            used.step(&[v]);
+            fresh.step(&[v]);
+            assert_eq!(used.matched(0), fresh.matched(0));
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! The metric that forgets what differs between people doing the same.
+
+use nalgebra::{DMatrix, SymmetricEigen};
+
+use crate::features::Rows;
+
+/// A symmetric `dim` × `dim` matrix, its lower triangle packed row by row: what an index file stores.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Symmetric {
+    dim: usize,
+    packed: Vec<f32>,
+}
+
+impl Symmetric {
+    /// Packs the lower triangle of a square matrix.
+    pub fn pack(matrix: &DMatrix<f64>) -> Self {
+        let dim = matrix.nrows();
+        let lower = (0..dim).flat_map(|i| (0..=i).map(move |j| (i, j)));
+        Self { dim, packed: lower.map(|(i, j)| matrix[(i, j)] as f32).collect() }
+    }
+
+    /// From packed values; `None` unless there are `dim (dim + 1) / 2` finite ones.
+    pub fn from_packed(dim: usize, packed: Vec<f32>) -> Option<Self> {
+        let fits = packed.len() == dim * (dim + 1) / 2 && packed.iter().all(|v| v.is_finite());
+        fits.then_some(Self { dim, packed })
+    }
+
+    /// The packed lower triangle.
+    pub fn packed(&self) -> &[f32] {
+        &self.packed
+    }
+
+    /// Number of rows and columns.
+    pub fn dim(&self) -> usize {
+        self.dim
+    }
+
+    /// The square matrix.
+    pub fn unpack(&self) -> DMatrix<f64> {
+        DMatrix::from_fn(self.dim, self.dim, |i, j| {
+            let (row, column) = if i >= j { (i, j) } else { (j, i) };
+            f64::from(self.packed[row * (row + 1) / 2 + column])
+        })
+    }
+
+    /// The rows and columns in `keep`.
+    #[must_use]
+    pub fn restricted(&self, keep: &[usize]) -> Self {
+        let full = self.unpack();
+        Self::pack(&DMatrix::from_fn(keep.len(), keep.len(), |i, j| full[(keep[i], keep[j])]))
+    }
+}
+
+/// A linear map `A` of feature rows, after which squared Euclidean distance says how unlike two poses are.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Metric {
+    dim: usize,
+    /// `A`, row-major; symmetric.
+    map: Vec<f32>,
+}
+
+impl Metric {
+    /// `A = (S_w + ρ tr(S_t)/d · I)^(−1/2)`, scaled so that `tr(A S_t Aᵀ) = tr(S_t)`: distances stay on the scale
+    /// they had. `ridged` is the matrix in the brackets, `total` is `S_t`. O(d³).
+    ///
+    /// (Within-class whitening as in Hastie and Tibshirani 1996; the ridge is what keeps directions in which
+    /// few samples happen to agree from taking over.)
+    pub fn new(ridged: &Symmetric, total: &Symmetric) -> Self {
+        let dim = ridged.dim();
+        let eigen = SymmetricEigen::new(ridged.unpack());
+        // Packing to single precision can push the smallest eigenvalue below zero; it then counts as tiny.
+        let floor = eigen.eigenvalues.amax() * 1e-9 + f64::MIN_POSITIVE;
+        let scaled =
+            DMatrix::from_fn(dim, dim, |i, j| eigen.eigenvectors[(i, j)] * eigen.eigenvalues[j].max(floor).powf(-0.5));
+        let map = &scaled * eigen.eigenvectors.transpose();
+        let total = total.unpack();
+        let after = (&map * &total * map.transpose()).trace();
+        let scale = if after > 0.0 { (total.trace() / after).sqrt() } else { 1.0 };
+        Self { dim, map: (map * scale).transpose().iter().map(|v| *v as f32).collect() }
+    }
+
+    /// Values in a row.
+    pub fn dim(&self) -> usize {
+        self.dim
+    }
+
+    /// `out = A row`. O(d²), no allocation.
+    pub fn apply(&self, row: &[f32], out: &mut [f32]) {
+        out.fill(0.0);
+        // A is symmetric: adding its rows, scaled, runs along memory and vectorises.
+        for (line, value) in self.map.chunks_exact(self.dim).zip(row) {
+            for (o, a) in out.iter_mut().zip(line) {
+                *o += a * value;
+            }
+        }
+    }
+
+    /// Every row mapped.
+    pub fn apply_all(&self, rows: &Rows) -> Rows {
+        let mut out = Rows::new(self.dim);
+        let mut mapped = vec![0.0; self.dim];
+        for row in rows.iter() {
+            self.apply(row, &mut mapped);
+            out.push(&mapped);
+        }
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whitening_makes_the_within_class_spread_round_and_keeps_the_total() {
+        let within = DMatrix::from_row_slice(2, 2, &[4.0, 1.0, 1.0, 2.0]);
+        let total = DMatrix::from_row_slice(2, 2, &[9.0, 0.5, 0.5, 3.0]);
+        let metric = Metric::new(&Symmetric::pack(&within), &Symmetric::pack(&total));
+        let map = DMatrix::from_row_slice(2, 2, &metric.map.iter().map(|v| f64::from(*v)).collect::<Vec<_>>());
+        let round = &map * &within * map.transpose();
+        assert!((round[(0, 0)] - round[(1, 1)]).abs() < 1e-5 && round[(0, 1)].abs() < 1e-5);
+        assert!(((&map * &total * map.transpose()).trace() - total.trace()).abs() < 1e-4);
+    }
+}

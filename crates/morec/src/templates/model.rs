@@ -1,0 +1,129 @@
+//! A trained set of templates: what an index file holds for this method.
+
+use crate::classes::{ClassId, ClassInfo};
+use crate::decode::DecodeParams;
+use crate::features::{BoneSet, FeatureParams, Rows, row_dim};
+
+use super::Symmetric;
+
+/// One labelled sample's rows, before the metric.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sample {
+    /// Its class.
+    pub class: ClassId,
+    /// One row for each tick.
+    pub rows: Rows,
+}
+
+/// Everything the template recogniser needs, immutable.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TemplateModel {
+    /// How rows are made.
+    pub features: FeatureParams,
+    /// Which bones the rows hold.
+    pub bones: BoneSet,
+    /// How distances become detections.
+    pub decode: DecodeParams,
+    /// The classes; a [`ClassId`] is an index into this.
+    pub classes: Vec<ClassInfo>,
+    /// The templates.
+    pub samples: Vec<Sample>,
+    /// Templates of what must not be taken for any class, before the metric.
+    pub negatives: Vec<Rows>,
+    /// `S_w + ρ tr(S_t)/d I`: see [`Metric::new`](super::Metric::new).
+    pub ridged: Symmetric,
+    /// `S_t`.
+    pub total: Symmetric,
+    /// Distances at or above this are never reported.
+    pub threshold: f32,
+}
+
+/// Parts that do not fit together.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum TemplateModelError {
+    /// A table's width is not what the bones give.
+    #[error("{what} has {found} values in a row, the bones give {expected}")]
+    Width {
+        /// Which part.
+        what: &'static str,
+        /// What the bones give.
+        expected: usize,
+        /// What it has.
+        found: usize,
+    },
+    /// A number that must be sensible is not.
+    #[error("{0}")]
+    Value(String),
+    /// The bones in common with a stream are too few to tell anything by.
+    #[error("the stream offers none of the bones this index uses")]
+    NoBones,
+}
+
+impl TemplateModel {
+    /// Checks that all parts fit together.
+    pub fn check(&self) -> Result<(), TemplateModelError> {
+        self.features.check().map_err(TemplateModelError::Value)?;
+        let expected = row_dim(self.bones);
+        let tables = self.samples.iter().map(|s| ("a template", s.rows.dim()));
+        let tables = tables.chain(self.negatives.iter().map(|r| ("a negative", r.dim())));
+        let matrices = [("the within-class covariance", self.ridged.dim()), ("the covariance", self.total.dim())];
+        if let Some((what, found)) = tables.chain(matrices).find(|(_, found)| *found != expected) {
+            return Err(TemplateModelError::Width { what, expected, found });
+        }
+        if self.bones.is_empty() {
+            return Err(TemplateModelError::NoBones);
+        }
+        if let Some(sample) = self.samples.iter().find(|s| s.class.index() >= self.classes.len()) {
+            let message = format!("a template of class {}, of {}", sample.class.0, self.classes.len());
+            return Err(TemplateModelError::Value(message));
+        }
+        if !(self.threshold.is_finite() && self.threshold > 0.0) {
+            let message = format!("the threshold must be above 0, found {}", self.threshold);
+            return Err(TemplateModelError::Value(message));
+        }
+        Ok(())
+    }
+
+    /// Rows of the longest template.
+    pub fn longest(&self) -> usize {
+        self.samples.iter().map(|s| s.rows.len()).max().unwrap_or(0)
+    }
+
+    /// The model for streams that offer only `bones`: the columns of the others are dropped everywhere and the
+    /// threshold shrinks with the share of variance that is left.
+    pub fn restricted(&self, bones: BoneSet) -> Result<Self, TemplateModelError> {
+        let bones = self.bones.and(bones);
+        if bones.is_empty() {
+            return Err(TemplateModelError::NoBones);
+        }
+        if bones == self.bones {
+            return Ok(self.clone());
+        }
+        let keep = kept_columns(self.bones, bones);
+        let total = self.total.restricted(&keep);
+        let share = total.unpack().trace() / self.total.unpack().trace();
+        let pick = |rows: &Rows| {
+            let values = rows.iter().flat_map(|row| keep.iter().map(|&k| row[k])).collect();
+            Rows::from_values(keep.len(), values)
+        };
+        Ok(Self {
+            bones,
+            samples: self.samples.iter().map(|s| Sample { class: s.class, rows: pick(&s.rows) }).collect(),
+            negatives: self.negatives.iter().map(pick).collect(),
+            ridged: self.ridged.restricted(&keep),
+            threshold: self.threshold * share as f32,
+            total,
+            features: self.features.clone(),
+            decode: self.decode.clone(),
+            classes: self.classes.clone(),
+        })
+    }
+}
+
+/// Columns of a row over `all` that a row over `kept` has too.
+fn kept_columns(all: BoneSet, kept: BoneSet) -> Vec<usize> {
+    let slots: Vec<usize> = all.indices().enumerate().filter(|(_, b)| kept.contains(*b)).map(|(s, _)| s).collect();
+    let coordinates = |base: usize| slots.iter().flat_map(move |s| (0..3).map(move |axis| base + 3 * s + axis));
+    let root = 6 * all.len();
+    coordinates(0).chain(coordinates(3 * all.len())).chain(root..root + 4).collect()
+}
