@@ -99,7 +99,8 @@ impl Decoder {
     pub fn new(params: &DecodeParams, threshold: f32, classes: usize, longest: usize) -> Self {
         let ring_len = (2 * (params.gate_ticks + params.peak_ticks) + 2).next_power_of_two();
         // A match of n template rows spans at most 2 n ticks; twice that leaves room for the chain behind it.
-        let path_len = (4 * longest + params.look_ahead_ticks() + params.overlap_ticks + 8).next_power_of_two();
+        let path_len =
+            (4 * longest + params.look_ahead_ticks() + params.overlap_ticks + 8).next_power_of_two();
         Self {
             params: params.clone(),
             threshold,

@@ -10,6 +10,7 @@
 mod bones;
 mod key_pose;
 mod observe;
+mod of_clip;
 mod params;
 mod rows;
 mod smooth;
@@ -18,6 +19,7 @@ mod stream;
 pub use bones::{ALL_BONES, BONES, Bone, BoneSet};
 pub use key_pose::KeyPose;
 pub use observe::{Observation, Observer};
+pub use of_clip::{bones_of_clip, for_each_pose, rows_of_clip};
 pub use params::FeatureParams;
 pub use rows::Rows;
 pub use smooth::row_dim;

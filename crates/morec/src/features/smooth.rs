@@ -35,8 +35,12 @@ impl Smoother {
     /// Allocates everything that will be needed.
     pub fn new(bones: BoneSet, params: &FeatureParams) -> Self {
         let reach = 2 * (params.look_ahead_frames() + 1) + params.frames_per_tick;
-        let empty =
-            Observation { directions: [Vec3::zeros(); BONES], root: Vec3::zeros(), yaw_rad: 0.0, leg_length: 1.0 };
+        let empty = Observation {
+            directions: [Vec3::zeros(); BONES],
+            root: Vec3::zeros(),
+            yaw_rad: 0.0,
+            leg_length: 1.0,
+        };
         Self {
             bones,
             kernel: half_gaussian(params.smooth_sigma_frames, params.smooth_cut_frames),
@@ -135,7 +139,10 @@ pub fn row_dim(bones: BoneSet) -> usize {
     6 * bones.len() + 4
 }
 
-fn convolve<const N: usize>(half_kernel: &[f64], value: impl Fn(isize) -> SVector<f64, N>) -> SVector<f64, N> {
+fn convolve<const N: usize>(
+    half_kernel: &[f64],
+    value: impl Fn(isize) -> SVector<f64, N>,
+) -> SVector<f64, N> {
     half_kernel.iter().enumerate().skip(1).fold(value(0) * half_kernel[0], |sum, (k, weight)| {
         sum + (value(-(k as isize)) + value(k as isize)) * *weight
     })

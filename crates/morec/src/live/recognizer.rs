@@ -40,8 +40,11 @@ impl Recognizer {
     ///
     /// Fails if the model's parts do not fit together or no bone is left.
     pub fn new(model: &Arc<TemplateModel>, bones: BoneSet) -> Result<Self, TemplateModelError> {
-        let model =
-            if model.bones.and(bones) == model.bones { model.clone() } else { Arc::new(model.restricted(bones)?) };
+        let model = if model.bones.and(bones) == model.bones {
+            model.clone()
+        } else {
+            Arc::new(model.restricted(bones)?)
+        };
         Ok(Self {
             features: FeatureStream::new(model.bones, &model.features),
             engine: TemplateEngine::new(&model)?,

@@ -58,7 +58,8 @@ impl TemplateEngine {
                 *best = ClassDistance { distance: found.distance, age: found.age };
             }
         }
-        let negative = (0..self.negatives.len()).map(|i| self.negatives.matched(i).distance).fold(FAR, f32::min);
+        let negative =
+            (0..self.negatives.len()).map(|i| self.negatives.matched(i).distance).fold(FAR, f32::min);
         self.decoder.push(&self.near, negative, out);
     }
 

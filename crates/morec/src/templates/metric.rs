@@ -70,8 +70,9 @@ impl Metric {
         let eigen = SymmetricEigen::new(ridged.unpack());
         // Packing to single precision can push the smallest eigenvalue below zero; it then counts as tiny.
         let floor = eigen.eigenvalues.amax() * 1e-9 + f64::MIN_POSITIVE;
-        let scaled =
-            DMatrix::from_fn(dim, dim, |i, j| eigen.eigenvectors[(i, j)] * eigen.eigenvalues[j].max(floor).powf(-0.5));
+        let scaled = DMatrix::from_fn(dim, dim, |i, j| {
+            eigen.eigenvectors[(i, j)] * eigen.eigenvalues[j].max(floor).powf(-0.5)
+        });
         let map = &scaled * eigen.eigenvectors.transpose();
         let total = total.unpack();
         let after = (&map * &total * map.transpose()).trace();
@@ -116,7 +117,8 @@ mod tests {
         let within = DMatrix::from_row_slice(2, 2, &[4.0, 1.0, 1.0, 2.0]);
         let total = DMatrix::from_row_slice(2, 2, &[9.0, 0.5, 0.5, 3.0]);
         let metric = Metric::new(&Symmetric::pack(&within), &Symmetric::pack(&total));
-        let map = DMatrix::from_row_slice(2, 2, &metric.map.iter().map(|v| f64::from(*v)).collect::<Vec<_>>());
+        let map =
+            DMatrix::from_row_slice(2, 2, &metric.map.iter().map(|v| f64::from(*v)).collect::<Vec<_>>());
         let round = &map * &within * map.transpose();
         assert!((round[(0, 0)] - round[(1, 1)]).abs() < 1e-5 && round[(0, 1)].abs() < 1e-5);
         assert!(((&map * &total * map.transpose()).trace() - total.trace()).abs() < 1e-4);

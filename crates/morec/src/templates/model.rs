@@ -66,7 +66,8 @@ impl TemplateModel {
         let expected = row_dim(self.bones);
         let tables = self.samples.iter().map(|s| ("a template", s.rows.dim()));
         let tables = tables.chain(self.negatives.iter().map(|r| ("a negative", r.dim())));
-        let matrices = [("the within-class covariance", self.ridged.dim()), ("the covariance", self.total.dim())];
+        let matrices =
+            [("the within-class covariance", self.ridged.dim()), ("the covariance", self.total.dim())];
         if let Some((what, found)) = tables.chain(matrices).find(|(_, found)| *found != expected) {
             return Err(TemplateModelError::Width { what, expected, found });
         }
@@ -122,8 +123,10 @@ impl TemplateModel {
 
 /// Columns of a row over `all` that a row over `kept` has too.
 fn kept_columns(all: BoneSet, kept: BoneSet) -> Vec<usize> {
-    let slots: Vec<usize> = all.indices().enumerate().filter(|(_, b)| kept.contains(*b)).map(|(s, _)| s).collect();
-    let coordinates = |base: usize| slots.iter().flat_map(move |s| (0..3).map(move |axis| base + 3 * s + axis));
+    let slots: Vec<usize> =
+        all.indices().enumerate().filter(|(_, b)| kept.contains(*b)).map(|(s, _)| s).collect();
+    let coordinates =
+        |base: usize| slots.iter().flat_map(move |s| (0..3).map(move |axis| base + 3 * s + axis));
     let root = 6 * all.len();
     coordinates(0).chain(coordinates(3 * all.len())).chain(root..root + 4).collect()
 }

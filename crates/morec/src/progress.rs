@@ -1,0 +1,18 @@
+//! How long jobs say how far they are, and are told to stop.
+
+/// Told about a long job's progress; asked whether to go on.
+///
+/// Every method has a default that does nothing, so `()` is the silent listener.
+pub trait Progress: Sync {
+    /// `done` of `total` steps of `stage` are finished.
+    fn report(&self, stage: &str, done: usize, total: usize) {
+        let _ = (stage, done, total);
+    }
+
+    /// Whether the job should stop as soon as it can.
+    fn cancelled(&self) -> bool {
+        false
+    }
+}
+
+impl Progress for () {}
