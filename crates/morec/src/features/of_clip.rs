@@ -29,7 +29,13 @@ pub fn bones_of_clip(clip: &Clip, roles: &RoleMap, rest: &Span) -> BoneSet {
 }
 
 /// The feature rows of a clip over `bones`; row `i` ends at `(i + 1) / tick_hz` seconds.
-pub fn rows_of_clip(clip: &Clip, roles: &RoleMap, rest: &Span, bones: BoneSet, params: &FeatureParams) -> Rows {
+pub fn rows_of_clip(
+    clip: &Clip,
+    roles: &RoleMap,
+    rest: &Span,
+    bones: BoneSet,
+    params: &FeatureParams,
+) -> Rows {
     let mut stream = FeatureStream::new(bones, params);
     let mut rows = Rows::new(stream.dim());
     for_each_pose(clip, roles, rest, |time_secs, pose| {

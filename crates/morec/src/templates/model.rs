@@ -36,6 +36,8 @@ pub struct TemplateModel {
     pub total: Symmetric,
     /// Distances at or above this are never reported.
     pub threshold: f32,
+    /// If template rows are whole multiples of a step, column by column: the steps. Files then hold bytes.
+    pub step: Option<Vec<f32>>,
 }
 
 /// Parts that do not fit together.
@@ -114,6 +116,7 @@ impl TemplateModel {
             ridged: self.ridged.restricted(&keep),
             threshold: self.threshold * share as f32,
             total,
+            step: self.step.as_ref().map(|step| keep.iter().map(|&k| step[k]).collect()),
             features: self.features.clone(),
             decode: self.decode.clone(),
             classes: self.classes.clone(),

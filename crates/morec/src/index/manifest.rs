@@ -1,0 +1,52 @@
+//! What an index file says in words.
+
+use std::collections::BTreeMap;
+
+use crate::classes::ClassInfo;
+use crate::decode::DecodeParams;
+use crate::features::{BoneSet, FeatureParams};
+use crate::roles::Role;
+
+use super::Provenance;
+
+/// Value of [`Manifest::format`]: says that a safetensors file is one of ours.
+pub const FORMAT: &str = "morec-index";
+
+/// Everything in an index that is not a table of numbers.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Manifest {
+    /// Always [`FORMAT`].
+    pub format: String,
+    /// Version of the layout.
+    pub version: u32,
+    /// Which recogniser the model is for.
+    pub method: String,
+    /// CRC-32 of the manifest with this field 0, then of every tensor's name, type, shape and bytes in order of
+    /// names.
+    pub checksum: u32,
+    /// The classes, in the order of their numbers.
+    pub classes: Vec<ClassInfo>,
+    /// Bones that rows hold.
+    pub bones: BoneSet,
+    /// How rows are made.
+    pub features: FeatureParams,
+    /// How distances become detections.
+    pub decode: DecodeParams,
+    /// Largest distance that is reported.
+    pub threshold: f32,
+    /// Joints of the training clips, by role.
+    pub roles: BTreeMap<Role, String>,
+    /// Where the index came from.
+    pub provenance: Provenance,
+}
+
+/// The part that can be read whatever the version.
+#[derive(Debug, serde::Deserialize)]
+pub struct Preamble {
+    /// See [`Manifest::format`].
+    pub format: String,
+    /// See [`Manifest::version`].
+    pub version: u32,
+    /// See [`Manifest::method`].
+    pub method: String,
+}

@@ -1,0 +1,93 @@
+//! The index file: everything recognition needs, in one immutable, versioned file with a checksum.
+//!
+//! The container is [safetensors](https://huggingface.co/docs/safetensors): eight bytes of header length, a JSON
+//! header naming every tensor, the tensors' bytes. Any program that knows the format can look inside
+//! (`safetensors.numpy.load_file` in Python), and the bytes can be mapped into memory. What is not a tensor
+//! stands as JSON in the header's metadata under the key `morec`: see [`Manifest`](manifest).
+//!
+//! A file of a version this program knows opens in every later release; `testdata/index/` keeps one of each.
+
+mod manifest;
+mod read;
+mod tensors;
+mod write;
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use crate::roles::{Role, RoleMap};
+use crate::templates::TemplateModel;
+
+/// Version of index files that this program writes, and the newest it reads.
+pub const INDEX_VERSION: u32 = 1;
+
+/// Where an index came from.
+#[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+pub struct Provenance {
+    /// When it was trained, `2026-11-21T10:00:00Z`.
+    pub created: String,
+    /// Version of morec that trained it.
+    pub morec_version: String,
+    /// Labelled clips it learned from.
+    pub clips: Vec<String>,
+    /// Samples it learned from.
+    pub samples: usize,
+    /// Seconds of background motion, by where it came from.
+    pub background_secs: BTreeMap<String, f64>,
+}
+
+/// A trained index: what a file holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MotionIndex {
+    /// The trained model.
+    pub model: Arc<TemplateModel>,
+    /// Which joint played which role in training, by name: a hint for skeletons on which the role map fails.
+    pub roles: BTreeMap<Role, String>,
+    /// Where it came from.
+    pub provenance: Provenance,
+}
+
+impl MotionIndex {
+    /// Fills roles that `map` left empty with the joints that played them in training, where `skeleton` has
+    /// joints of those names that play nothing else. Returns the roles that were filled.
+    pub fn complete_roles(&self, map: &mut RoleMap, skeleton: &crate::clip::Skeleton) -> Vec<Role> {
+        let mut filled = Vec::new();
+        for (&role, name) in &self.roles {
+            let Some(joint) = skeleton.find(name) else { continue };
+            let taken = Role::ALL.into_iter().any(|r| map.joint(r) == Some(joint));
+            if map.joint(role).is_none() && !taken {
+                map.set(role, Some(joint));
+                filled.push(role);
+            }
+        }
+        filled
+    }
+}
+
+/// Why bytes are not a usable index.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum IndexError {
+    /// Another kind of file, or one cut off inside its header.
+    #[error("not a morec index, or cut short: {0}")]
+    Foreign(String),
+    /// Written by a later release.
+    #[error("index version {found}, this morec reads up to {INDEX_VERSION}: use a newer morec")]
+    Newer {
+        /// The file's version.
+        found: u32,
+    },
+    /// Trained by a method this release does not have.
+    #[error("trained by the method {0:?}, which this morec does not have: use a newer morec")]
+    Method(String),
+    /// The bytes are not those that were written.
+    #[error("damaged: the checksum is {found:08x}, the file says {expected:08x}")]
+    Checksum {
+        /// What the file says.
+        expected: u32,
+        /// What its bytes give.
+        found: u32,
+    },
+    /// Parts that do not fit together.
+    #[error("damaged: {0}")]
+    Content(String),
+}

@@ -1,0 +1,109 @@
+//! Looking for what might be mistaken for a class: the threshold and the hard negatives.
+
+use std::ops::Range;
+
+use crate::decode::FAR;
+use crate::features::Rows;
+use crate::templates::{Bank, Match};
+
+use super::params::TrainParams;
+use super::set::{Source, TrainSample, TrainStream, overlap_share};
+
+/// Every template's match at every tick of one stream: `ticks` × `templates`.
+pub struct Distances {
+    templates: usize,
+    matches: Vec<Match>,
+}
+
+impl Distances {
+    /// Runs `bank` over rows that are already in its metric. O(ticks · template rows · d).
+    pub fn of(bank: &mut Bank, rows: &Rows) -> Self {
+        bank.reset();
+        let templates = bank.len();
+        let mut matches = Vec::with_capacity(rows.len() * templates);
+        for row in rows.iter() {
+            bank.step(row);
+            matches.extend((0..templates).map(|i| bank.matched(i)));
+        }
+        Self { templates, matches }
+    }
+
+    /// Number of ticks.
+    pub fn len(&self) -> usize {
+        self.matches.len().checked_div(self.templates).unwrap_or(0)
+    }
+
+    /// Matches of all templates at `tick`.
+    pub fn at(&self, tick: usize) -> &[Match] {
+        &self.matches[tick * self.templates..(tick + 1) * self.templates]
+    }
+
+    /// The smallest distance anywhere.
+    pub fn smallest(&self) -> f32 {
+        self.matches.iter().map(|m| m.distance).fold(FAR, f32::min)
+    }
+
+    /// The nearest of the templates that `counts` admits, at `tick`.
+    pub fn nearest(&self, tick: usize, counts: impl Fn(usize) -> bool) -> Match {
+        let admitted = self.at(tick).iter().enumerate().filter(|(i, _)| counts(*i)).map(|(_, m)| *m);
+        admitted.reduce(|best, m| if m.distance < best.distance { m } else { best }).unwrap_or(NO_MATCH)
+    }
+}
+
+const NO_MATCH: Match = Match { distance: FAR, age: 0 };
+
+/// A stretch of a stream that comes near to some template.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NearMiss {
+    /// How near.
+    pub distance: f32,
+    /// Its stream's place in the set.
+    pub stream: usize,
+    /// Which ticks.
+    pub ticks: Range<usize>,
+}
+
+/// Local minima of the nearest template's distance outside everything labelled, nearest first and none
+/// overlapping another by more than half.
+///
+/// In labelled streams this is done twice, the second time without the same person's templates, as a new person's
+/// stream would be seen.
+pub fn near_misses(
+    distances: &Distances,
+    samples: &[TrainSample],
+    (index, stream): (usize, &TrainStream),
+    threshold: f32,
+    params: &TrainParams,
+) -> Vec<NearMiss> {
+    let labelled = stream.source == Source::Labelled;
+    let floor = if labelled { params.suspicious_below as f32 * threshold } else { 0.0 };
+    let mut found = Vec::new();
+    let all = |_: usize| true;
+    let others = |template: usize| samples[template].group != stream.group;
+    let views: [&dyn Fn(usize) -> bool; 2] = [&all, &others];
+    for counts in &views[..if labelled { 2 } else { 1 }] {
+        let nearest: Vec<Match> = (0..distances.len()).map(|t| distances.nearest(t, counts)).collect();
+        for t in 1..nearest.len().saturating_sub(1) {
+            let Match { distance, age } = nearest[t];
+            let dip = distance <= nearest[t - 1].distance && distance < nearest[t + 1].distance;
+            let ticks = t - age.min(t)..t + 1;
+            let near = floor <= distance && distance < params.negative_below as f32;
+            if near && dip && !stream.overlaps_known(&ticks, 0.3) {
+                found.push(NearMiss { distance, stream: index, ticks });
+            }
+        }
+    }
+    keep_apart(found)
+}
+
+/// The nearest first; none that shares more than half of the shorter with one already kept.
+fn keep_apart(mut found: Vec<NearMiss>) -> Vec<NearMiss> {
+    found.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+    let mut kept: Vec<NearMiss> = Vec::new();
+    for miss in found {
+        if kept.iter().all(|k| overlap_share(&k.ticks, &miss.ticks) <= 0.5) {
+            kept.push(miss);
+        }
+    }
+    kept
+}

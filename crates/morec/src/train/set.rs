@@ -1,0 +1,114 @@
+//! What training works on: streams of feature rows and what is known about them.
+
+use std::ops::Range;
+
+use crate::classes::ClassId;
+use crate::features::Rows;
+
+/// Where a training stream came from, and so how far its unlabelled parts may be trusted to hold no class.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Source {
+    /// A clip with labels.
+    Labelled,
+    /// A clip that the user says holds none of the classes.
+    Background,
+    /// Everyday motion made by [`synth`](crate::synth).
+    Everyday,
+}
+
+/// A stretch of a stream, in ticks.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Known {
+    /// Which ticks.
+    pub ticks: Range<usize>,
+    /// The class it shows; `None` for a stretch that must be used for nothing (a sample held back for testing,
+    /// a label outside the chosen classes).
+    pub class: Option<ClassId>,
+}
+
+/// One clip's rows and what is known about them.
+#[derive(Debug, Clone)]
+pub struct TrainStream {
+    /// The clip's name.
+    pub name: String,
+    /// Who moves; the clip's name if nobody is named, so that clips then count as people.
+    pub group: String,
+    /// Where it came from.
+    pub source: Source,
+    /// Whether what is not in `known` holds none of the classes.
+    pub rest_is_background: bool,
+    /// One row for each tick.
+    pub rows: Rows,
+    /// Labelled stretches, in order of their starts.
+    pub known: Vec<Known>,
+}
+
+impl TrainStream {
+    /// Whether `ticks` shares more than `share` of the shorter of the two with any known stretch.
+    pub fn overlaps_known(&self, ticks: &Range<usize>, share: f64) -> bool {
+        self.known.iter().any(|k| overlap_share(ticks, &k.ticks) > share)
+    }
+}
+
+/// A labelled sample cut out of its stream.
+#[derive(Debug, Clone)]
+pub struct TrainSample {
+    /// Its class.
+    pub class: ClassId,
+    /// Who shows it: see [`TrainStream::group`].
+    pub group: String,
+    /// Its stream's place in the set.
+    pub stream: usize,
+    /// Which ticks of the stream.
+    pub ticks: Range<usize>,
+    /// Those rows.
+    pub rows: Rows,
+}
+
+/// Everything to train from.
+#[derive(Debug, Clone, Default)]
+pub struct TrainSet {
+    /// Names of the classes; a [`ClassId`] is an index into this.
+    pub classes: Vec<String>,
+    /// All streams.
+    pub streams: Vec<TrainStream>,
+}
+
+/// A sample shorter than this many ticks is lengthened to it: three rows are no motion.
+pub const MIN_SAMPLE_TICKS: usize = 4;
+
+impl TrainSet {
+    /// Every labelled sample, in order of streams and of time; those that do not fit their stream are left out.
+    pub fn samples(&self) -> Vec<TrainSample> {
+        let mut samples = Vec::new();
+        for (index, stream) in self.streams.iter().enumerate() {
+            for known in &stream.known {
+                let Some(class) = known.class else { continue };
+                let stop = known.ticks.end.max(known.ticks.start + MIN_SAMPLE_TICKS).min(stream.rows.len());
+                if known.ticks.start + MIN_SAMPLE_TICKS <= stop {
+                    let ticks = known.ticks.start..stop;
+                    let rows = stream.rows.slice(ticks.clone());
+                    samples.push(TrainSample {
+                        class,
+                        group: stream.group.clone(),
+                        stream: index,
+                        ticks,
+                        rows,
+                    });
+                }
+            }
+        }
+        samples
+    }
+}
+
+/// Ticks in both ranges.
+pub fn overlap(a: &Range<usize>, b: &Range<usize>) -> usize {
+    a.end.min(b.end).saturating_sub(a.start.max(b.start))
+}
+
+/// Overlap as a share of the shorter range; 0 if either is empty.
+pub fn overlap_share(a: &Range<usize>, b: &Range<usize>) -> f64 {
+    let shorter = a.len().min(b.len());
+    if shorter == 0 { 0.0 } else { overlap(a, b) as f64 / shorter as f64 }
+}
