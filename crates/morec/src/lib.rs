@@ -3,10 +3,12 @@
 pub mod classes;
 pub mod clip;
 pub mod decode;
+pub mod eval;
 pub mod features;
 pub mod formats;
 pub mod index;
 pub mod kinematics;
+pub mod labels;
 pub mod live;
 pub mod math;
 pub mod progress;

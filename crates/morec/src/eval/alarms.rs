@@ -1,0 +1,81 @@
+//! Detections where there is nothing to detect.
+
+use serde::Serialize;
+
+use super::Stream;
+use super::figures::share;
+use super::interval::{mostly_outside, union};
+
+/// Detections of which less than half lies in labelled samples, of whatever class, in known streams.
+///
+/// Samples are taken together: a detection that spans two repetitions, half in each, is badly placed but no
+/// false alarm.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct FalseAlarms {
+    /// How many.
+    pub count: usize,
+    /// Length of the known streams.
+    pub minutes: f64,
+    /// How many in a minute.
+    pub per_minute: Option<f64>,
+}
+
+/// What was found in streams that hold none of the classes. Every detection there is a false alarm.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct UnknownFigures {
+    /// How many unknown streams there are.
+    pub clips: usize,
+    /// How many of them have at least one detection.
+    pub clips_accepted: usize,
+    /// Their share.
+    pub unknown_accepted: Option<f64>,
+    /// How many detections there are.
+    pub detections: usize,
+    /// Length of the unknown streams.
+    pub minutes: f64,
+    /// Detections in a minute.
+    pub per_minute: Option<f64>,
+}
+
+/// Which detections of a stream are false alarms. O(samples × detections).
+pub(super) fn are_false_alarms(stream: &Stream<'_>) -> Vec<bool> {
+    let labelled = union(stream.truths.iter().map(|t| t.interval()));
+    stream.founds.iter().map(|f| mostly_outside(f.interval(), &labelled)).collect()
+}
+
+fn per_minute(count: usize, minutes: f64) -> Option<f64> {
+    (minutes > 0.0).then(|| count as f64 / minutes)
+}
+
+fn minutes(streams: &[Stream<'_>]) -> f64 {
+    streams.iter().map(|s| s.info.duration_secs).sum::<f64>() / 60.0
+}
+
+impl FalseAlarms {
+    /// In known streams, those of one class or of all.
+    pub(super) fn count(known: &[Stream<'_>], class: Option<&str>) -> Self {
+        let of_stream = |stream: &Stream<'_>| {
+            let founds = stream.founds.iter().zip(are_false_alarms(stream));
+            founds.filter(|(found, alarm)| *alarm && class.is_none_or(|c| c == found.class)).count()
+        };
+        let count = known.iter().map(of_stream).sum();
+        let minutes = minutes(known);
+        Self { count, minutes, per_minute: per_minute(count, minutes) }
+    }
+}
+
+impl UnknownFigures {
+    pub(super) fn count(unknown: &[Stream<'_>]) -> Self {
+        let clips_accepted = unknown.iter().filter(|s| !s.founds.is_empty()).count();
+        let detections = unknown.iter().map(|s| s.founds.len()).sum();
+        let minutes = minutes(unknown);
+        Self {
+            clips: unknown.len(),
+            clips_accepted,
+            unknown_accepted: share(clips_accepted, unknown.len()),
+            detections,
+            minutes,
+            per_minute: per_minute(detections, minutes),
+        }
+    }
+}

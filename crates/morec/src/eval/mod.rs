@@ -1,0 +1,230 @@
+//! Evaluation: how good are these detections, held against labelled samples.
+//!
+//! [`Evaluation::of`] computes every measure, [`timelines`] says of each sample and each detection what became of
+//! it. Both are functions of their arguments alone and do not depend on the order of rows.
+//!
+//! Two kinds of streams are told apart. In *known* streams samples are labelled, and what is not labelled is
+//! known to be none of the classes. *Unknown* streams ([`StreamInfo::unknown`]) hold none of the classes at all:
+//! they count towards [`UnknownFigures`] alone, so that adding hours of rest cannot raise an accuracy.
+//!
+//! Measures and their sources: thesis accuracy ([`ThesisAccuracy`], §5.4), F1 at overlap ([`OverlapScore`]),
+//! false alarms ([`FalseAlarms`]), delay and boundary errors ([`Delay`], [`Boundaries`]), P_C, P_E and P_R
+//! ([`Classification`], §5.3) and the confusion matrix ([`Confusion`]).
+
+mod alarms;
+mod confusion;
+mod decisions;
+mod evaluation;
+mod figures;
+mod interval;
+mod pairs;
+mod timeline;
+mod timing;
+
+#[cfg(test)]
+mod tests;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use interval::Interval;
+
+pub use alarms::{FalseAlarms, UnknownFigures};
+pub use confusion::{Confusion, Mistake};
+pub use decisions::{Classification, ThesisAccuracy};
+pub use evaluation::{ClassFigures, Evaluation, Totals};
+pub use pairs::OverlapScore;
+pub use timeline::{FoundVerdict, Timeline, TruthVerdict, timelines};
+pub use timing::{Boundaries, Delay};
+
+/// Least overlaps, as intersection over union, at which F1 is given.
+pub const OVERLAPS: [f64; 4] = [0.1, 0.25, 0.5, 0.75];
+
+/// The least overlap of a detection whose delay and boundaries are measured, and that counts as right in
+/// [`timelines`].
+pub const MEASURED_OVERLAP: f64 = 0.5;
+
+/// Unlabelled stretches shorter than this take part in no decision (`data/README.md`, thesis accuracy).
+pub const UNLABELLED_MIN_SECS: f64 = 0.4;
+
+/// A labelled sample.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Truth {
+    /// The stream's name.
+    pub clip: String,
+    /// What happens.
+    pub class: String,
+    /// Where it starts, from the stream's beginning.
+    pub start_secs: f64,
+    /// Where it stops.
+    pub stop_secs: f64,
+}
+
+/// A detection.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Found {
+    /// The stream's name.
+    pub clip: String,
+    /// The detected class.
+    pub class: String,
+    /// Where it starts, from the stream's beginning.
+    pub start_secs: f64,
+    /// Where it stops.
+    pub stop_secs: f64,
+    /// How sure the recogniser is, if it says; larger is surer.
+    pub score: Option<f64>,
+    /// When it was reported, in seconds of the stream, if known.
+    pub reported_secs: Option<f64>,
+}
+
+/// A stream that was searched.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct StreamInfo {
+    /// Its name.
+    pub clip: String,
+    /// Its length.
+    pub duration_secs: f64,
+    /// Whether it is known to hold none of the classes.
+    pub unknown: bool,
+}
+
+/// Input that cannot be evaluated.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum EvalError {
+    /// A stream is named twice.
+    #[error("the stream {clip} is named twice; names must differ")]
+    TwoStreams {
+        /// The name.
+        clip: String,
+    },
+    /// A stream without a length.
+    #[error("the stream {clip} lasts {duration_secs} s; expected a positive length")]
+    NoLength {
+        /// The stream.
+        clip: String,
+        /// What was given.
+        duration_secs: f64,
+    },
+    /// A sample or a detection in a stream that is not there.
+    #[error("{what} of {class} lies in the stream {clip}, which is not among those evaluated")]
+    NoStream {
+        /// `"a sample"` or `"a detection"`.
+        what: &'static str,
+        /// Its class.
+        class: String,
+        /// The stream it names.
+        clip: String,
+    },
+    /// A sample or a detection that is no stretch of time.
+    #[error(
+        "{what} of {class} in {clip} goes from {start_secs} s to {stop_secs} s; expected a stop after the start"
+    )]
+    NoStretch {
+        /// `"a sample"` or `"a detection"`.
+        what: &'static str,
+        /// Its class.
+        class: String,
+        /// Its stream.
+        clip: String,
+        /// Its start.
+        start_secs: f64,
+        /// Its stop.
+        stop_secs: f64,
+    },
+    /// A labelled sample in a stream that is said to hold none.
+    #[error("{clip} is named as unknown motion but holds a sample of {class}")]
+    SampleInUnknown {
+        /// The stream.
+        clip: String,
+        /// The sample's class.
+        class: String,
+    },
+}
+
+impl Truth {
+    fn interval(&self) -> Interval {
+        Interval { start: self.start_secs, stop: self.stop_secs }
+    }
+}
+
+impl Found {
+    fn interval(&self) -> Interval {
+        Interval { start: self.start_secs, stop: self.stop_secs }
+    }
+}
+
+/// One stream with what lies in it, each kind ordered by start, stop, class (and score).
+#[derive(Debug)]
+struct Stream<'a> {
+    info: &'a StreamInfo,
+    truths: Vec<&'a Truth>,
+    founds: Vec<&'a Found>,
+}
+
+/// Sorts samples and detections into their streams, streams in order of name. O(n log n).
+fn streams<'a>(
+    infos: &'a [StreamInfo],
+    truths: &'a [Truth],
+    founds: &'a [Found],
+) -> Result<Vec<Stream<'a>>, EvalError> {
+    let mut by_clip: BTreeMap<&str, Stream<'a>> = BTreeMap::new();
+    for info in infos {
+        let (clip, duration_secs) = (info.clip.clone(), info.duration_secs);
+        if !(duration_secs > 0.0 && duration_secs.is_finite()) {
+            return Err(EvalError::NoLength { clip, duration_secs });
+        }
+        if by_clip.insert(&info.clip, Stream { info, truths: Vec::new(), founds: Vec::new() }).is_some() {
+            return Err(EvalError::TwoStreams { clip });
+        }
+    }
+    for truth in truths {
+        let stream = stream_of(&mut by_clip, "a sample", &truth.clip, &truth.class, truth.interval())?;
+        if stream.info.unknown {
+            return Err(EvalError::SampleInUnknown { clip: truth.clip.clone(), class: truth.class.clone() });
+        }
+        stream.truths.push(truth);
+    }
+    for found in founds {
+        stream_of(&mut by_clip, "a detection", &found.clip, &found.class, found.interval())?
+            .founds
+            .push(found);
+    }
+    let mut streams: Vec<Stream<'a>> = by_clip.into_values().collect();
+    for stream in &mut streams {
+        stream.truths.sort_by(|a, b| a.interval().order(b.interval()).then_with(|| a.class.cmp(&b.class)));
+        stream.founds.sort_by(|a, b| {
+            let score = |f: &Found| f.score.unwrap_or(f64::NEG_INFINITY);
+            let reported = |f: &Found| f.reported_secs.unwrap_or(f64::NEG_INFINITY);
+            (a.interval().order(b.interval()).then_with(|| a.class.cmp(&b.class)))
+                .then_with(|| score(b).total_cmp(&score(a)))
+                .then_with(|| reported(a).total_cmp(&reported(b)))
+        });
+    }
+    Ok(streams)
+}
+
+fn stream_of<'s, 'a>(
+    by_clip: &'s mut BTreeMap<&str, Stream<'a>>,
+    what: &'static str,
+    clip: &str,
+    class: &str,
+    at: Interval,
+) -> Result<&'s mut Stream<'a>, EvalError> {
+    let (class, name) = (class.to_owned(), clip.to_owned());
+    if !at.is_stretch() {
+        return Err(EvalError::NoStretch {
+            what,
+            class,
+            clip: name,
+            start_secs: at.start,
+            stop_secs: at.stop,
+        });
+    }
+    by_clip.get_mut(clip).ok_or(EvalError::NoStream { what, class, clip: name })
+}
+
+/// Every class that is labelled or found in any stream.
+fn all_classes<'a>(streams: &[Stream<'a>]) -> BTreeSet<&'a str> {
+    let truths = streams.iter().flat_map(|s| s.truths.iter().map(|t| t.class.as_str()));
+    let founds = streams.iter().flat_map(|s| s.founds.iter().map(|f| f.class.as_str()));
+    truths.chain(founds).collect()
+}

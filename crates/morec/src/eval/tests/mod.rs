@@ -1,0 +1,23 @@
+//! Measures against counts made by hand, against brute force, and against what must not change them.
+
+mod by_hand;
+mod properties;
+mod reference;
+
+use super::*;
+
+fn truth(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> Truth {
+    Truth { clip: clip.into(), class: class.into(), start_secs, stop_secs }
+}
+
+fn found(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> Found {
+    Found { clip: clip.into(), class: class.into(), start_secs, stop_secs, score: None, reported_secs: None }
+}
+
+fn stream(clip: &str, duration_secs: f64) -> StreamInfo {
+    StreamInfo { clip: clip.into(), duration_secs, unknown: false }
+}
+
+fn unknown(clip: &str, duration_secs: f64) -> StreamInfo {
+    StreamInfo { unknown: true, ..stream(clip, duration_secs) }
+}

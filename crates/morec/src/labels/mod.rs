@@ -1,0 +1,78 @@
+//! Labels: which stretch of which clip is a sample of which class, and the tables that carry them.
+//!
+//! Every table is text in UTF-8, cells separated by tabs, names of the columns in the first line. Order of the
+//! columns is free, unknown columns are left out with a warning; blank lines, CRLF, a byte order mark and
+//! trailing tabs are taken as they come. Readers take bytes; a mistake names its line and column.
+//!
+//! - Labels ([`Labels::read`]): `clip`, `class`, then `start` and `stop` (frames, stop exclusive) or
+//!   `start_secs` and `stop_secs`, or neither: the whole clip is one sample. `person` if it is known.
+//! - People ([`read_people`]): `clip`, `person`.
+//! - Detections ([`read_found`], [`FoundLine`]): what `morec recognize` writes.
+
+mod found;
+mod people;
+mod read;
+mod resolve;
+mod table;
+
+use std::collections::BTreeMap;
+
+use crate::clip::Span;
+use crate::formats::Warning;
+
+pub use found::{FOUND_HEADER, FoundLine, FoundRow, FoundTable, ReportedAt, read_found};
+pub use people::{People, read_people};
+pub use resolve::{ClipLength, Resolved, Sample};
+
+/// Where in its clip a label lies, as the table gives it.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Extent {
+    /// Frames at the clip's own rate, from 0, stop exclusive.
+    Frames(Span),
+    /// Start and stop in seconds from the clip's beginning.
+    Secs(f64, f64),
+    /// From the clip's first frame to its last.
+    WholeClip,
+}
+
+/// One row of a table of labels.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Label {
+    /// The clip's name: the stem of its file.
+    pub clip: String,
+    /// What happens there.
+    pub class: String,
+    /// When it happens.
+    pub extent: Extent,
+    /// Who does it, where the table says so.
+    pub person: Option<String>,
+    /// The row's line in its file, from 1.
+    pub line: u64,
+}
+
+/// A table of labels.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Labels {
+    /// The rows in file order.
+    pub rows: Vec<Label>,
+    /// What was left out or looks wrong.
+    pub warnings: Vec<Warning>,
+}
+
+impl Labels {
+    /// How many rows each class has, by class name.
+    pub fn class_counts(&self) -> BTreeMap<&str, usize> {
+        let mut counts = BTreeMap::new();
+        for row in &self.rows {
+            *counts.entry(row.class.as_str()).or_insert(0) += 1;
+        }
+        counts
+    }
+
+    /// Gives each row without a person the one that `people` names for its clip.
+    pub fn add_people(&mut self, people: &People) {
+        for row in self.rows.iter_mut().filter(|r| r.person.is_none()) {
+            row.person = people.by_clip.get(&row.clip).cloned();
+        }
+    }
+}
