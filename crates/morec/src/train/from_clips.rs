@@ -1,0 +1,123 @@
+//! From clips and labels to what training works on.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+
+use crate::classes::ClassId;
+use crate::clip::{Clip, Span};
+use crate::features::{BoneSet, FeatureParams, bones_of_clip, rows_of_clip};
+use crate::labels::Sample;
+use crate::roles::RoleMap;
+
+use super::set::{Known, Source, TrainSet, TrainStream};
+use super::trim::moving_part;
+
+/// A clip ready for training: Y up, its joints' roles known.
+#[derive(Debug, Clone)]
+pub struct TrainClip {
+    /// Name under which labels speak of it.
+    pub name: String,
+    /// Skeleton and frames.
+    pub clip: Clip,
+    /// Who plays what.
+    pub roles: RoleMap,
+    /// Frames that a conversion left at the start.
+    pub rest: Span,
+    /// What it is here for.
+    pub source: Source,
+    /// Who moves, if known.
+    pub person: Option<String>,
+}
+
+/// What labels say about clips, and what is to be made of the rest.
+#[derive(Debug, Clone, Default)]
+pub struct Labelling<'a> {
+    /// Samples to learn from.
+    pub samples: &'a [Sample],
+    /// Samples held back: to be learned neither as a class nor as background.
+    pub held_back: &'a [Sample],
+    /// The classes to learn, in order; labels of others say that a stretch is none of these.
+    pub classes: &'a [String],
+    /// Whether unlabelled parts of labelled clips are background.
+    pub unlabelled_is_background: bool,
+}
+
+/// Streams to train from, and which clips could not serve.
+#[derive(Debug, Clone)]
+pub struct Prepared {
+    /// Streams and classes.
+    pub set: TrainSet,
+    /// Bones that every labelled clip shows.
+    pub bones: BoneSet,
+    /// Background clips left out because they lack bones that the labelled ones have.
+    pub lacking: Vec<String>,
+}
+
+/// Cuts clips into what training needs. Rows are made in parallel, in the order of `clips`.
+pub fn prepare(clips: &[TrainClip], labelling: &Labelling<'_>, params: &FeatureParams) -> Prepared {
+    let by_clip = by_clip(labelling.samples);
+    let shown: Vec<BoneSet> = clips.par_iter().map(|c| bones_of_clip(&c.clip, &c.roles, &c.rest)).collect();
+    let taught = clips.iter().zip(&shown).filter(|(c, _)| by_clip.contains_key(c.name.as_str()));
+    let bones = taught.map(|(_, b)| *b).reduce(BoneSet::and).unwrap_or(BoneSet::NONE);
+    let serves = |shown: &BoneSet| shown.and(bones) == bones && !bones.is_empty();
+    let (usable, left_out): (Vec<_>, Vec<_>) = clips.iter().zip(&shown).partition(|(_, b)| serves(b));
+    let held_back = self::by_clip(labelling.held_back);
+    let streams = usable
+        .par_iter()
+        .map(|(clip, _)| stream(clip, bones, params, labelling, &by_clip, &held_back))
+        .collect();
+    Prepared {
+        set: TrainSet { classes: labelling.classes.to_vec(), streams },
+        bones,
+        lacking: left_out.into_iter().map(|(c, _)| c.name.clone()).collect(),
+    }
+}
+
+type ByClip<'a> = BTreeMap<&'a str, Vec<&'a Sample>>;
+
+fn by_clip(samples: &[Sample]) -> ByClip<'_> {
+    let mut map = ByClip::new();
+    for sample in samples {
+        map.entry(&sample.clip).or_default().push(sample);
+    }
+    map
+}
+
+fn stream(
+    clip: &TrainClip,
+    bones: BoneSet,
+    params: &FeatureParams,
+    labelling: &Labelling<'_>,
+    taught: &ByClip<'_>,
+    held_back: &ByClip<'_>,
+) -> TrainStream {
+    let rows = rows_of_clip(&clip.clip, &clip.roles, &clip.rest, bones, params);
+    let none = Vec::new();
+    let samples = taught.get(clip.name.as_str()).unwrap_or(&none);
+    let held = held_back.get(clip.name.as_str()).unwrap_or(&none);
+    let ticks = |sample: &Sample| {
+        if sample.whole_clip {
+            return moving_part(&rows, bones);
+        }
+        // Half a frame's tolerance: a label given in seconds must not gain a tick by rounding.
+        let (first, last) = (sample.start_secs * params.tick_hz(), sample.stop_secs * params.tick_hz());
+        (first + 0.05).floor().max(0.0) as usize..(last - 0.05).ceil().max(0.0) as usize
+    };
+    let class = |s: &Sample| labelling.classes.iter().position(|c| *c == s.class).map(|c| ClassId(c as u16));
+    let wanted = samples.iter().filter_map(|s| Some(Known { ticks: ticks(s), class: Some(class(s)?) }));
+    let spared = held.iter().map(|s| Known { ticks: ticks(s), class: None });
+    let mut known: Vec<Known> = wanted.chain(spared).collect();
+    known.sort_by_key(|k| (k.ticks.start, k.ticks.end));
+    let whole = samples.iter().chain(held).any(|s| s.whole_clip);
+    let labelled = clip.source == Source::Labelled;
+    let named = samples.iter().chain(held).find_map(|s| s.person.clone());
+    TrainStream {
+        name: clip.name.clone(),
+        group: clip.person.clone().or(named).unwrap_or_else(|| clip.name.clone()),
+        source: clip.source,
+        rest_is_background: !labelled || (labelling.unlabelled_is_background && !whole),
+        rows,
+        known,
+    }
+}
