@@ -5,3 +5,4 @@ pub mod formats;
 pub mod kinematics;
 pub mod math;
 pub mod roles;
+pub mod synth;
