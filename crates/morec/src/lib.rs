@@ -1,5 +1,4 @@
 //! Index a motion-capture database, recognise its motions live.
-
 pub mod classes;
 pub mod clip;
 pub mod decode;
@@ -13,5 +12,6 @@ pub mod live;
 pub mod math;
 pub mod progress;
 pub mod roles;
+pub mod synth;
 pub mod templates;
 pub mod train;

@@ -1,0 +1,67 @@
+//! Synthetic people performing scripted motions: a stand-in for a motion-capture studio.
+//!
+//! For the demo, the documentation, tests and benchmarks, and as background: [`everyday`] motion from which a
+//! first index learns what is none of its classes. Nothing here imitates a particular recording, and no figure
+//! measured on it says anything about accuracy on real people.
+//!
+//! How it is made, from the outside in: a [`Script`] or [`database`] lets an actor perform named motions; a
+//! motion schedules smooth movements of hands, feet, hips, trunk and head on a timeline; for each frame, inverse
+//! kinematics turns these into joint rotations; sway and sensor noise are added on the way. All arithmetic is
+//! fixed by IEEE 754 (no platform sine), so a seed gives the same clip everywhere, to the bit.
+
+mod actor;
+mod body;
+mod database;
+mod everyday;
+mod film;
+mod gait;
+mod gestures;
+mod limb;
+mod motion;
+mod person;
+mod rng;
+mod script;
+mod smooth;
+#[cfg(test)]
+mod tests;
+mod timeline;
+mod unknown;
+
+pub use database::{DatabaseSpec, database};
+pub use everyday::everyday;
+pub use motion::{Kind, Motion, all as motions, of_kind as motions_of};
+pub use person::Person;
+pub use rng::Rng;
+pub use script::{Script, UnknownMotion};
+pub use timeline::Side;
+
+use crate::clip::{Clip, Span};
+
+/// A labelled stretch of a take.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Label {
+    /// The class; the motion's name.
+    pub class: &'static str,
+    /// When it leaves rest.
+    pub start_secs: f64,
+    /// When it has returned.
+    pub stop_secs: f64,
+}
+
+impl Label {
+    /// The frames it covers at `rate_hz`, half-open.
+    pub fn span(&self, rate_hz: f64) -> Span {
+        (self.start_secs * rate_hz).round() as usize..(self.stop_secs * rate_hz).round() as usize
+    }
+}
+
+/// A clip with what was performed in it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Take {
+    /// The clip.
+    pub clip: Clip,
+    /// What was performed when, in order, without overlap.
+    pub labels: Vec<Label>,
+    /// Who is seen.
+    pub person: String,
+}

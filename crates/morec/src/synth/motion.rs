@@ -1,0 +1,93 @@
+//! The motions by name.
+
+use super::actor::Actor;
+use super::{everyday, gestures, unknown};
+
+/// What a motion is there for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// A class of the demo.
+    Gesture,
+    /// What people do between gestures.
+    Unknown,
+    /// What the everyday library shows.
+    Everyday,
+}
+
+/// A motion that a synthetic person can perform.
+#[derive(Debug, Clone, Copy)]
+pub struct Motion {
+    name: &'static str,
+    kind: Kind,
+    perform: Perform,
+}
+
+/// Schedules a motion from the actor's present time on.
+pub(super) type Perform = fn(&mut Actor);
+
+const GESTURES: [(&str, Perform); 8] = [
+    ("wave", gestures::wave),
+    ("raise_hands", gestures::raise_hands),
+    ("point_side", gestures::point_side),
+    ("clap", gestures::clap),
+    ("push", gestures::push),
+    ("circle", gestures::circle),
+    ("bow", gestures::bow),
+    ("kick", gestures::kick),
+];
+
+const UNKNOWN: [(&str, Perform); 10] = [
+    ("scratch_head", unknown::scratch_head),
+    ("look_around", unknown::look_around),
+    ("shift_weight", unknown::shift_weight),
+    ("stretch", unknown::stretch),
+    ("step_aside", unknown::step_aside),
+    ("phone", unknown::phone),
+    ("cross_arms", unknown::cross_arms),
+    ("wipe", unknown::wipe),
+    ("hands_on_hips", unknown::hands_on_hips),
+    ("look_at_watch", unknown::look_at_watch),
+];
+
+/// All motions: gestures, unknown ones, everyday ones.
+pub fn all() -> impl Iterator<Item = Motion> {
+    let everyday = everyday::CONTENTS;
+    let of = |kind| move |(name, perform)| Motion { name, kind, perform };
+    (GESTURES.into_iter().map(of(Kind::Gesture)))
+        .chain(UNKNOWN.into_iter().map(of(Kind::Unknown)))
+        .chain(everyday.into_iter().map(of(Kind::Everyday)))
+}
+
+/// The motions of one kind.
+pub fn of_kind(kind: Kind) -> impl Iterator<Item = Motion> {
+    all().filter(move |m| m.kind == kind)
+}
+
+impl Motion {
+    /// The motion of this name.
+    pub fn named(name: &str) -> Option<Motion> {
+        all().find(|m| m.name == name)
+    }
+
+    /// What it is called; for a gesture, its class.
+    pub fn name(&self) -> &'static str {
+        self.name
+    }
+
+    /// What it is there for.
+    pub fn kind(&self) -> Kind {
+        self.kind
+    }
+
+    /// Performs it in a way never seen before and returns when it can be seen: from leaving rest to return.
+    ///
+    /// The first and last hundredths of a reach move nothing that an annotator would see: with a minimum-jerk
+    /// course, a tenth of its time covers a hundredth of its way.
+    pub(super) fn perform(&self, actor: &mut Actor) -> (f64, f64) {
+        actor.vary();
+        let start_secs = actor.now_secs;
+        (self.perform)(actor);
+        let unseen = 0.06f64.min(0.1 * (actor.now_secs - start_secs));
+        (start_secs + unseen, actor.now_secs - unseen)
+    }
+}
