@@ -4,4 +4,5 @@ pub mod clip;
 pub mod formats;
 pub mod kinematics;
 pub mod math;
+pub mod resample;
 pub mod roles;
