@@ -1,4 +1,5 @@
 //! Index a motion-capture database, recognise its motions live.
+
 pub mod classes;
 pub mod clip;
 pub mod decode;
@@ -11,6 +12,7 @@ pub mod labels;
 pub mod live;
 pub mod math;
 pub mod progress;
+pub mod resample;
 pub mod roles;
 pub mod synth;
 pub mod templates;
