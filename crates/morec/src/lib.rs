@@ -2,6 +2,7 @@
 #![doc = ""]
 pub mod clip;
 pub mod formats;
+pub mod import;
 pub mod kinematics;
 pub mod math;
 pub mod roles;
