@@ -4,6 +4,7 @@
 //! cannot is refused with a [`ParseError`] that says where, what was expected and what was found.
 
 pub mod acclaim;
+pub mod bvh;
 pub mod probe;
 
 use std::fmt;
