@@ -28,8 +28,9 @@ pub fn rest_frames(clip: &Clip, map: &RoleMap) -> Span {
     let poses: Vec<Vec<Vec3>> = (0..clip.frames.min(LOOKED_AT)).map(|f| about_hips(clip, hips, f)).collect();
     let steps: Vec<f64> = poses.windows(2).map(|pair| apart(&pair[0], &pair[1])).collect();
     let usual = median(steps[1..].to_vec()).unwrap_or(0.0);
+    // Motion may jerk where it begins; a rest pose is still farther away.
     let most = steps[1..].iter().take(3).copied().fold(0.0, f64::max);
-    let jumps = steps[0] > LEAST && steps[0] > JUMP * usual && steps[0] > 3.0 * most;
+    let jumps = steps[0] > LEAST && steps[0] > JUMP * usual && steps[0] > most;
     if jumps && (is_zero_pose(clip) || is_symmetric(&poses[0], map)) { 0..1 } else { 0..0 }
 }
 
