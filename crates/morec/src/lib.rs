@@ -6,6 +6,7 @@ pub mod decode;
 pub mod eval;
 pub mod features;
 pub mod formats;
+pub mod import;
 pub mod index;
 pub mod kinematics;
 pub mod labels;
