@@ -25,7 +25,9 @@ impl WorldPose {
                 None => joint.offset,
             };
             let (position, rotation) = match joint.parent {
-                Some(p) => (self.positions[p] + self.rotations[p] * local_position, self.rotations[p] * locals[j]),
+                Some(p) => {
+                    (self.positions[p] + self.rotations[p] * local_position, self.rotations[p] * locals[j])
+                }
                 None => (local_position, locals[j]),
             };
             self.positions.push(position);

@@ -6,4 +6,5 @@ pub mod formats;
 pub mod kinematics;
 pub mod labels;
 pub mod math;
+pub mod report;
 pub mod roles;
