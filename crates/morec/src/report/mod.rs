@@ -47,6 +47,9 @@ pub struct Report<'a> {
     pub training: &'a [TrainedClass],
 }
 
+/// Notes that are shown at once; the others unfold.
+const NOTES_SHOWN: usize = 12;
+
 const STYLE: &str = include_str!("style.css");
 
 impl Report<'_> {
@@ -82,10 +85,20 @@ impl Report<'_> {
     }
 
     fn push_notes(&self, out: &mut String) {
-        out.push_str("<h2>What to teach next</h2>\n<ul class=\"notes\">\n");
-        for note in learning_notes(self.evaluation, self.training) {
-            out.push_str(&format!("<li>{}</li>\n", Text(&note)));
+        out.push_str("<h2>What to teach next</h2>\n");
+        let notes = learning_notes(self.evaluation, self.training);
+        let (first, rest) = notes.split_at(notes.len().min(NOTES_SHOWN));
+        push_list(out, first);
+        if !rest.is_empty() {
+            out.push_str(&format!("<details><summary>{} more</summary>\n", rest.len()));
+            push_list(out, rest);
+            out.push_str("</details>\n");
         }
-        out.push_str("</ul>\n");
     }
+}
+
+fn push_list(out: &mut String, notes: &[String]) {
+    out.push_str("<ul class=\"notes\">\n");
+    notes.iter().for_each(|note| out.push_str(&format!("<li>{}</li>\n", Text(note))));
+    out.push_str("</ul>\n");
 }

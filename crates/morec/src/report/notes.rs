@@ -1,7 +1,7 @@
 //! Notes in plain words: what the figures say about what to teach next.
 
 use super::TrainedClass;
-use crate::eval::{ClassFigures, Evaluation};
+use crate::eval::{Boundaries, ClassFigures, Evaluation};
 
 /// Fewer training samples than this are called few.
 const FEW_SAMPLES: usize = 5;
@@ -27,6 +27,7 @@ pub fn learning_notes(evaluation: &Evaluation, training: &[TrainedClass]) -> Vec
         untested
             .map(|t| (0, format!("{} is trained but has no sample here: nothing is known of it.", t.class))),
     );
+    bias_notes(evaluation, &mut notes);
     // Stable: notes of equal weight stay in the order of the classes.
     notes.sort_by_key(|(weight, _)| std::cmp::Reverse(*weight));
     if notes.is_empty() {
@@ -56,9 +57,10 @@ fn notes_on_class(class: &ClassFigures, notes: &mut Vec<(usize, String)>) {
             format!("{name}: {} of {} missed.", class.missed, count(class.samples, "sample")),
         ));
     }
-    for mistake in &class.mistaken_for {
-        let text = format!("{name} is mistaken for {} {}.", mistake.class, times(mistake.count));
-        notes.push((mistake.count, text));
+    if !class.mistaken_for.is_empty() {
+        let mistakes = class.mistaken_for.iter().map(|m| format!("{} {}", m.class, times(m.count)));
+        let total = class.mistaken_for.iter().map(|m| m.count).sum();
+        notes.push((total, format!("{name} is mistaken for {}.", listed(mistakes.collect()))));
     }
     if class.false_alarms.count > 0 {
         let alarms = class.false_alarms.count;
@@ -75,19 +77,27 @@ fn notes_on_class(class: &ClassFigures, notes: &mut Vec<(usize, String)>) {
     if class.samples == 0 && class.detections > 0 {
         notes.push((class.detections, format!("{name} is found but labelled nowhere in these clips.")));
     }
-    bias_note(class, notes);
 }
 
-fn bias_note(class: &ClassFigures, notes: &mut Vec<(usize, String)>) {
-    let ends = [("start", class.boundaries.start_median_secs), ("stop", class.boundaries.stop_median_secs)];
-    for (end, bias) in ends {
+/// Notes on detections that lie early or late: of all classes together, and of classes that differ from that.
+fn bias_notes(evaluation: &Evaluation, notes: &mut Vec<(usize, String)>) {
+    let ends_of = |b: &Boundaries| [("start", b.start_median_secs), ("stop", b.stop_median_secs)];
+    let mut note = |whose: &str, end: &str, bias: f64| {
+        let late = if bias > 0.0 { "late" } else { "early" };
+        notes.push((1, format!("{whose} {end} {:.1} s {late} (median).", bias.abs())));
+    };
+    let notable = |bias: f64| bias.abs() >= NOTABLE_BIAS_SECS;
+    for (i, (end, bias)) in ends_of(&evaluation.boundaries).into_iter().enumerate() {
+        let common = bias.filter(|b| notable(*b)).unwrap_or(0.0);
+        if notable(common) {
+            note("Detections", end, common);
+        }
         // A single detection has no tendency.
-        if let Some(bias) = bias.filter(|b| b.abs() >= NOTABLE_BIAS_SECS && class.boundaries.count > 1) {
-            let late = if bias > 0.0 { "late" } else { "early" };
-            notes.push((
-                1,
-                format!("Detections of {} {end} {:.1} s {late} (median).", class.class, bias.abs()),
-            ));
+        for class in evaluation.classes.iter().filter(|c| c.boundaries.count > 1) {
+            if let Some(bias) = ends_of(&class.boundaries)[i].1.filter(|b| notable(*b) && notable(b - common))
+            {
+                note(&format!("Detections of {}", class.class), end, bias);
+            }
         }
     }
 }
@@ -110,6 +120,15 @@ fn need_of(trained: &TrainedClass) -> Option<String> {
 
 fn count(n: usize, what: &str) -> String {
     format!("{n} {what}{}", if n == 1 { "" } else { "s" })
+}
+
+/// "a", "a and b", "a, b and c".
+fn listed(mut items: Vec<String>) -> String {
+    match items.pop() {
+        Some(last) if items.is_empty() => last,
+        Some(last) => format!("{} and {last}", items.join(", ")),
+        None => String::new(),
+    }
 }
 
 fn times(n: usize) -> String {

@@ -9,9 +9,12 @@ const STRONGEST: f64 = 0.6;
 
 pub(super) fn push_confusion(out: &mut String, confusion: &Confusion) {
     out.push_str(
-        "<h2>What was taken for what</h2>\n<div class=\"wide\"><table class=\"heat\">\n<caption>Rows: what is \
-         labelled. Columns: what was found. Green is right, red is wrong; the stronger, the larger its share of \
-         the row.</caption>\n<tr><td></td>",
+        "<h2>What was taken for what</h2>
+<p class=\"small\">Rows: what is labelled. Columns: what was found. Green \
+         is right, red is wrong; the stronger, the larger its share of the row.</p>
+<div class=\"wide\"><table \
+         class=\"heat\">
+<tr><td></td>",
     );
     let nothing = ["nothing".to_owned()];
     for name in confusion.columns.iter().chain(&nothing) {
@@ -52,10 +55,10 @@ pub(super) fn push_classes(out: &mut String, e: &Evaluation, training: &[Trained
     let unknown = e.unknown.clips > 0;
     out.push_str(
         "<th>samples</th><th>found</th><th>F1</th><th>precision</th><th>recall</th><th>P_C</th><th>P_E</th><th>P_R</th>\
-         <th>missed</th><th>mistaken for</th><th>false alarms</th>",
+         <th>missed</th><th>false alarms</th>",
     );
     out.push_str(if unknown { "<th>in unknown</th>" } else { "" });
-    out.push_str("<th>delay</th><th>start</th><th>stop</th></tr>\n");
+    out.push_str("<th>delay</th><th>start</th><th>stop</th><th>mistaken for</th></tr>\n");
     for class in &e.classes {
         out.push_str(&format!("<tr><th scope=\"row\">{}</th>", Text(&class.class)));
         if !training.is_empty() {
@@ -81,9 +84,6 @@ fn push_class_figures(out: &mut String, class: &crate::eval::ClassFigures, unkno
     let c = &class.classification;
     [c.p_c, c.p_e, c.p_r].into_iter().for_each(|v| cell(Figure(v).to_string()));
     cell(class.missed.to_string());
-    let mistakes: Vec<String> =
-        class.mistaken_for.iter().map(|m| format!("{}&nbsp;×{}", Text(&m.class), m.count)).collect();
-    cell(if mistakes.is_empty() { "–".to_owned() } else { mistakes.join(", ") });
     cell(class.false_alarms.count.to_string());
     if unknown {
         cell(class.unknown_detections.to_string());
@@ -91,6 +91,9 @@ fn push_class_figures(out: &mut String, class: &crate::eval::ClassFigures, unkno
     cell(secs(class.delay.median_secs, false));
     cell(secs(class.boundaries.start_median_secs, true));
     cell(secs(class.boundaries.stop_median_secs, true));
+    let mistakes: Vec<String> =
+        class.mistaken_for.iter().map(|m| format!("{}&nbsp;×{}", Text(&m.class), m.count)).collect();
+    cell(if mistakes.is_empty() { "–".to_owned() } else { mistakes.join(", ") });
 }
 
 fn trained_by(trained: &TrainedClass) -> String {

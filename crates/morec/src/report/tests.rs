@@ -100,8 +100,9 @@ fn every_sample_and_detection_is_drawn_and_said() {
     ] {
         assert!(html.contains(title), "{title}");
     }
-    // 100 s make four rows.
-    assert_eq!(html.matches("<svg").count(), 4);
+    // 100 s make four rows, of which the second, from 25 s to 50 s, is blank.
+    assert_eq!(html.matches("<svg").count(), 3);
+    assert!(html.contains("; rows without anything are left out: 1"));
 }
 
 #[test]

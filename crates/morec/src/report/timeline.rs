@@ -23,8 +23,9 @@ pub(super) fn push(out: &mut String, timelines: &[Timeline], palette: &Palette) 
     out.push_str("<h2>Timelines</h2>\n");
     push_legend(out, palette);
     let (short, long) = grid::split(timelines);
-    let (empty, drawn): (Vec<&Timeline>, Vec<_>) =
+    let (empty, mut drawn): (Vec<&Timeline>, Vec<_>) =
         long.into_iter().partition(|t| t.truths.is_empty() && t.founds.is_empty());
+    drawn.sort_by_key(|t| t.stream.unknown);
     let row_secs = drawn.iter().map(|t| t.stream.duration_secs / rows_of(t) as f64).fold(1.0, f64::max);
     let scale = (WIDTH - LEFT - RIGHT) / row_secs;
     let mut rows = 0;
@@ -66,24 +67,35 @@ fn rows_of(timeline: &Timeline) -> usize {
 
 fn push_clip(out: &mut String, timeline: &Timeline, scale: f64, palette: &Palette) {
     let stream = &timeline.stream;
-    let kind = if stream.unknown { ", unknown motion" } else { "" };
-    let wrong = timeline.truths.iter().filter(|(_, v)| *v != TruthVerdict::Right).count();
-    let alarms = timeline.founds.iter().filter(|(_, v)| *v == FoundVerdict::FalseAlarm).count();
     out.push_str(&format!(
-        "<figure class=\"clip\"><figcaption><b>{}</b> {:.1} s{kind}: {} labelled, {wrong} not recognised, {} found, {alarms} \
-         false</figcaption>\n",
+        "<figure class=\"clip\"><figcaption><b>{}</b> {:.1} s, {}",
         Text(&stream.clip),
         stream.duration_secs,
-        timeline.truths.len(),
-        timeline.founds.len(),
+        summary(timeline)
     ));
     let rows = rows_of(timeline);
     let row_secs = stream.duration_secs / rows as f64;
-    for row in 0..rows {
-        let window = Window { from: row as f64 * row_secs, to: (row + 1) as f64 * row_secs, scale };
+    let windows =
+        (0..rows).map(|r| Window { from: r as f64 * row_secs, to: (r + 1) as f64 * row_secs, scale });
+    let (shown, blank): (Vec<Window>, Vec<Window>) = windows.partition(|window| window.holds_any(timeline));
+    if !blank.is_empty() {
+        out.push_str(&format!("; rows without anything are left out: {}", blank.len()));
+    }
+    out.push_str("</figcaption>\n");
+    for window in shown {
         push_row(out, timeline, window, palette);
     }
     out.push_str("</figure>\n");
+}
+
+fn summary(timeline: &Timeline) -> String {
+    let found = timeline.founds.len();
+    if timeline.stream.unknown {
+        return format!("unknown motion: {found} found");
+    }
+    let lost = timeline.truths.iter().filter(|(_, v)| *v != TruthVerdict::Right).count();
+    let alarms = timeline.founds.iter().filter(|(_, v)| *v == FoundVerdict::FalseAlarm).count();
+    format!("{} labelled, {lost} not recognised, {found} found, {alarms} false", timeline.truths.len())
 }
 
 /// The part of a clip that a row shows.
@@ -101,6 +113,11 @@ impl Window {
 
     fn shows(self, start: f64, stop: f64) -> bool {
         stop > self.from && start < self.to
+    }
+
+    fn holds_any(self, timeline: &Timeline) -> bool {
+        timeline.truths.iter().any(|(t, _)| self.shows(t.start_secs, t.stop_secs))
+            || timeline.founds.iter().any(|(f, _)| self.shows(f.start_secs, f.stop_secs))
     }
 }
 
@@ -120,12 +137,12 @@ fn push_row(out: &mut String, timeline: &Timeline, window: Window, palette: &Pal
     ));
     let truths = timeline.truths.iter().filter(|(t, _)| window.shows(t.start_secs, t.stop_secs));
     let founds = timeline.founds.iter().filter(|(f, _)| window.shows(f.start_secs, f.stop_secs));
-    let mut truth_names = Names::new(TRUTH_Y);
+    let mut truth_names = Names::new(TRUTH_Y, right);
     for (truth, verdict) in truths {
         push_truth(out, truth, verdict, window, palette);
         truth_names.add(&truth.class, window.x(truth.start_secs), window.x(truth.stop_secs));
     }
-    let mut found_names = Names::new(FOUND_Y);
+    let mut found_names = Names::new(FOUND_Y, right);
     for (found, verdict) in founds {
         push_found(out, found, *verdict, window, palette);
         found_names.add(&found.class, window.x(found.start_secs), window.x(found.stop_secs));
@@ -205,9 +222,10 @@ fn push_axis(out: &mut String, window: Window) {
     out.push('\n');
 }
 
-/// Class names on the bars. Bars that follow each other closely share one name, written where it fits.
+/// Class names on the bars, or beside them where there is room. Bars that follow each other closely share one.
 struct Names {
     y: f64,
+    end: f64,
     runs: Vec<(String, f64, f64)>,
 }
 
@@ -216,8 +234,8 @@ impl Names {
     const CLOSE: f64 = 6.0;
     const LETTER: f64 = 5.9;
 
-    fn new(lane_y: f64) -> Self {
-        Self { y: lane_y + 15.0, runs: Vec::new() }
+    fn new(lane_y: f64, end: f64) -> Self {
+        Self { y: lane_y + 15.0, end, runs: Vec::new() }
     }
 
     fn add(&mut self, class: &str, from: f64, to: f64) {
@@ -229,16 +247,20 @@ impl Names {
 
     fn push(&self, out: &mut String) {
         for (i, (name, from, to)) in self.runs.iter().enumerate() {
-            let next = self.runs.get(i + 1).map_or(f64::INFINITY, |(_, start, _)| *start);
-            let room = to.min(next) - from - 6.0;
-            if name.chars().count() as f64 * Self::LETTER <= room {
-                let x = from + 4.0;
-                out.push_str(&format!(
-                    "<text class=\"name\" x=\"{x:.1}\" y=\"{}\">{}</text>\n",
-                    self.y,
-                    Text(name)
-                ));
-            }
+            let next = self.runs.get(i + 1).map_or(self.end, |(_, start, _)| *start);
+            let width = name.chars().count() as f64 * Self::LETTER + 6.0;
+            let (class, x) = if width <= to.min(next) - from {
+                ("name", from + 4.0)
+            } else if width <= next - to {
+                ("beside", to + 3.0)
+            } else {
+                continue;
+            };
+            out.push_str(&format!(
+                "<text class=\"{class}\" x=\"{x:.1}\" y=\"{}\">{}</text>\n",
+                self.y,
+                Text(name)
+            ));
         }
     }
 }
