@@ -62,6 +62,20 @@ impl Skeleton {
         self.joints.is_empty()
     }
 
+    /// Moves the joints in their parents' frames.
+    pub(crate) fn map_offsets(&mut self, new: impl Fn(&Joint, Vec3) -> Vec3) {
+        for joint in &mut self.joints {
+            joint.offset = new(joint, joint.offset);
+        }
+    }
+
+    /// Moves the ends of the chains.
+    pub(crate) fn map_tips(&mut self, new: impl Fn(Vec3) -> Vec3) {
+        for tip in self.joints.iter_mut().filter_map(|joint| joint.tip.as_mut()) {
+            *tip = new(*tip);
+        }
+    }
+
     /// Index of the first joint with exactly this name.
     pub fn find(&self, name: &str) -> Option<usize> {
         self.joints.iter().position(|j| j.name == name)

@@ -3,6 +3,7 @@
 pub mod clip;
 pub mod eval;
 pub mod formats;
+pub mod import;
 pub mod kinematics;
 pub mod labels;
 pub mod math;

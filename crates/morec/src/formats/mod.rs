@@ -3,6 +3,10 @@
 //! Readers take bytes, never paths. What can be saved is loaded with a [`Warning`] that names the place; what
 //! cannot is refused with a [`ParseError`] that says where, what was expected and what was found.
 
+pub mod acclaim;
+pub mod bvh;
+pub mod probe;
+
 use std::fmt;
 
 use crate::clip::Clip;

@@ -1,6 +1,16 @@
 //! Which joint of a skeleton plays which part of the body.
 
+mod find;
+mod limbs;
+pub mod mapping;
+mod names;
+mod tree;
+
+pub use find::{Found, find, find_posed};
+
 use std::fmt;
+
+use crate::clip::Skeleton;
 
 /// A body part that recognition knows; played by the joint at its near end (the thigh by the hip joint, the
 /// shin by the knee, the hand by the wrist).
@@ -103,6 +113,11 @@ pub struct RoleMap {
 }
 
 impl RoleMap {
+    /// The roles of `skeleton`, by its tree first and its names second; [`find`] says more.
+    pub fn find(skeleton: &Skeleton) -> Self {
+        find(skeleton).map
+    }
+
     /// The joint that plays `role`.
     pub fn joint(&self, role: Role) -> Option<usize> {
         self.joints[role.index()]
@@ -118,3 +133,6 @@ impl RoleMap {
         Role::ALL.into_iter().filter(|r| self.joint(*r).is_none())
     }
 }
+
+#[cfg(test)]
+mod tests;

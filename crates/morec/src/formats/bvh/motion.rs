@@ -1,0 +1,278 @@
+//! The MOTION section: its header and its table.
+
+use super::character::Character;
+use super::notes::Notes;
+use super::number;
+use super::rows::{Row, Rows};
+use super::text::{Cursor, show};
+use crate::formats::{Limits, ParseError, Place};
+
+/// What stands between MOTION and the table.
+#[derive(Debug)]
+pub(super) struct Header {
+    /// `Frames:`, if it is a count.
+    pub frames: Option<u64>,
+    /// `Frame Time:`, if it is a number.
+    pub frame_time_secs: Option<f64>,
+    /// Where the frame time stands, or would.
+    pub at: Place,
+}
+
+/// Reads `Frames` and `Frame Time`, in any order, as far as they are there.
+pub(super) fn header(cursor: &mut Cursor<'_>, notes: &mut Notes) -> Result<Header, ParseError> {
+    let mut header = Header { frames: None, frame_time_secs: None, at: cursor.place() };
+    loop {
+        cursor.skip_space()?;
+        let mut ahead = cursor.clone();
+        let key = key(&mut ahead);
+        let value = match key.as_slice() {
+            b"frames:" | b"frames" => {
+                let value = value(&mut ahead);
+                header.frames = value.filter(|v| *v >= 0.0 && v.fract() == 0.0).map(|v| v as u64);
+                value
+            }
+            b"frame time:" | b"frame time" | b"frametime:" => {
+                header.at = ahead.place();
+                header.frame_time_secs = value(&mut ahead);
+                header.frame_time_secs
+            }
+            _ if cursor.at_comment() || key.ends_with(b":") => None,
+            _ => return Ok(header),
+        };
+        if value.is_none() {
+            let skipped = ahead.rest_of_line();
+            let text = || format!("{}{} skipped", String::from_utf8_lossy(&key), show(Some(skipped)));
+            notes.count("header line", cursor.line, text);
+        }
+        *cursor = ahead;
+    }
+}
+
+/// The lower-case words up to and with a colon, or up to a number; one blank between `frame` and `time`.
+fn key(cursor: &mut Cursor<'_>) -> Vec<u8> {
+    let mut key = Vec::new();
+    while let Some(byte) = cursor.peek().filter(u8::is_ascii_alphabetic) {
+        key.push(byte.to_ascii_lowercase());
+        cursor.pos += 1;
+        let word_end = cursor.pos;
+        cursor.skip_blanks();
+        if cursor.pos > word_end && key == b"frame" {
+            key.push(b' ');
+        } else if cursor.pos > word_end {
+            break;
+        }
+    }
+    if cursor.peek() == Some(b':') {
+        cursor.pos += 1;
+        key.push(b':');
+    }
+    key
+}
+
+/// A number on the rest of the line.
+fn value(cursor: &mut Cursor<'_>) -> Option<f64> {
+    let mut ahead = cursor.clone();
+    let token = ahead.token_on_line()?;
+    let value = number::parse(token).or_else(|| number::parse_with_comma(token))?;
+    *cursor = ahead;
+    cursor.skip_blanks();
+    Some(value)
+}
+
+/// Joint rotations a file may ask for, for each of its bytes: ordinary files stay below a tenth, and without a
+/// limit a short file with many joints and one channel would fill the memory.
+const SAMPLES_PER_BYTE: usize = 64;
+
+/// Reads the table into `characters`, `width` numbers a frame. Returns the frames that were lost, as frame numbers
+/// of the whole; the characters hold the others.
+pub(super) fn table(
+    cursor: Cursor<'_>,
+    width: usize,
+    characters: &mut [Character],
+    request: &Request<'_>,
+    notes: &mut Notes,
+) -> Result<Vec<usize>, ParseError> {
+    let joints = characters.iter().map(|c| c.joints.len()).sum::<usize>().max(1);
+    let by_size = ((1 << 20) + cursor.text.len().saturating_mul(SAMPLES_PER_BYTE)) / joints;
+    let max_frames = request.limits.frames.min(by_size);
+    let table = Table { width, max_frames, characters, tally: Tally::default() };
+    let Table { characters, tally, .. } = table.by_line(Rows::new(cursor.clone(), notes), notes)?;
+    if tally.flows(width, request.declared) {
+        characters.iter_mut().for_each(Character::clear);
+        let text =
+            "the frames are not one to a line; the numbers are read as one stream, as their count fits";
+        notes.add(Place::Line(tally.first_line), text);
+        let table = Table { width, max_frames, characters, tally: Tally::default() };
+        table.as_stream(Rows::new(cursor, &mut Notes::default()), notes)?;
+        return Ok(Vec::new());
+    }
+    tally.judge(width, request, notes)
+}
+
+/// What the file and the caller say about the table.
+pub(super) struct Request<'a> {
+    /// Frames the header declares.
+    pub declared: Option<u64>,
+    /// Share of bad lines above which the table is refused.
+    pub bad_line_share: f64,
+    pub limits: &'a Limits,
+}
+
+struct Table<'a> {
+    width: usize,
+    max_frames: usize,
+    characters: &'a mut [Character],
+    tally: Tally,
+}
+
+impl Table<'_> {
+    fn push(&mut self, row: &[f64], line: u64) -> Result<(), ParseError> {
+        if self.characters.first().is_some_and(|c| c.frames >= self.max_frames) {
+            let expected = format!("at most {} frames", self.max_frames);
+            return Err(ParseError::new(Place::Line(line), expected, "more"));
+        }
+        self.characters.iter_mut().for_each(|c| c.push(row));
+        Ok(())
+    }
+
+    /// One frame a line; lines that are none are counted and remembered.
+    fn by_line(mut self, mut rows: Rows<'_>, notes: &mut Notes) -> Result<Self, ParseError> {
+        let mut values = Vec::with_capacity(self.width);
+        while let Some((line, row)) = rows.next(&mut values, notes)? {
+            self.tally.numbers += values.len() as u64;
+            match row {
+                Row::Numbers if values.len() == self.width => {
+                    self.push(&values, line)?;
+                    self.tally.good(line);
+                    note_missing(&values, line, notes);
+                }
+                Row::Numbers => {
+                    self.tally.bad(line, values.len() < self.width, || format!("{} values", values.len()))
+                }
+                Row::Spoilt(token) => {
+                    self.tally.spoilt += 1;
+                    self.tally.bad(line, true, || token);
+                }
+            }
+        }
+        Ok(self)
+    }
+
+    /// A frame every `width` numbers, whatever the lines.
+    fn as_stream(mut self, mut rows: Rows<'_>, notes: &mut Notes) -> Result<(), ParseError> {
+        let (mut values, mut pending) = (Vec::new(), Vec::new());
+        while let Some((line, _)) = rows.next(&mut values, &mut Notes::default())? {
+            note_missing(&values, line, notes);
+            pending.append(&mut values);
+            let whole = pending.len() / self.width * self.width;
+            for row in pending[..whole].chunks_exact(self.width) {
+                self.push(row, line)?;
+            }
+            pending.drain(..whole);
+        }
+        Ok(())
+    }
+}
+
+fn note_missing(values: &[f64], line: u64, notes: &mut Notes) {
+    if let Some(column) = values.iter().position(|v| v.is_nan()) {
+        let text = || format!("value {} is no usable number; such samples are interpolated", column + 1);
+        notes.count("nan", line, text);
+    }
+}
+
+/// What was counted while reading line by line.
+#[derive(Debug, Default)]
+struct Tally {
+    lines: u64,
+    numbers: u64,
+    first_line: u64,
+    spoilt: u64,
+    /// Bad lines: index among the table's lines, line number, whether it only lacks something.
+    bad: Vec<(usize, u64, bool)>,
+    first_bad: Option<(u64, String)>,
+    last_good: Option<usize>,
+}
+
+impl Tally {
+    fn good(&mut self, line: u64) {
+        self.start(line);
+        self.last_good = Some(self.lines as usize);
+        self.lines += 1;
+    }
+
+    fn bad(&mut self, line: u64, is_short: bool, found: impl FnOnce() -> String) {
+        self.start(line);
+        self.bad.push((self.lines as usize, line, is_short));
+        self.first_bad.get_or_insert_with(|| (line, found()));
+        self.lines += 1;
+    }
+
+    fn start(&mut self, line: u64) {
+        if self.lines == 0 {
+            self.first_line = line;
+        }
+    }
+
+    /// Whether the numbers are meant as one stream: their count is what the header declares, that of the lines
+    /// is not.
+    fn flows(&self, width: usize, declared: Option<u64>) -> bool {
+        let fits =
+            declared.is_some_and(|d| d != self.lines && d.checked_mul(width as u64) == Some(self.numbers));
+        fits && !self.bad.is_empty() && self.spoilt == 0
+    }
+
+    /// Drops what is broken at the end, refuses a table with too much that is broken before it, and returns the
+    /// frames that are to be filled.
+    fn judge(
+        mut self,
+        width: usize,
+        request: &Request<'_>,
+        notes: &mut Notes,
+    ) -> Result<Vec<usize>, ParseError> {
+        let keep = self.last_good.map_or(0, |f| f + 1);
+        let trailing: Vec<_> = self.bad.iter().copied().filter(|b| b.0 >= keep).collect();
+        let excused = match trailing.as_slice() {
+            [(_, _, true)] => 1,
+            _ => {
+                trailing.iter().filter(|b| request.declared.is_some_and(|d| b.0 as u64 >= d && d > 0)).count()
+            }
+        };
+        self.refuse_if_bad(self.bad.len() - excused, width, request)?;
+        for (k, &(_, line, is_short)) in trailing.iter().enumerate() {
+            let what = if is_short && k == 0 {
+                "an incomplete last line"
+            } else {
+                "a broken line after the last frame"
+            };
+            notes.count("trailing", line, || format!("{what} is dropped: expected {width} values"));
+        }
+        self.bad.truncate(self.bad.len() - trailing.len());
+        for &(_, line, _) in &self.bad {
+            notes.count("ragged", line, || {
+                format!("not a frame of {width} values; the frame is interpolated")
+            });
+        }
+        Ok(self.bad.iter().map(|b| b.0).collect())
+    }
+
+    fn refuse_if_bad(&self, bad: usize, width: usize, request: &Request<'_>) -> Result<(), ParseError> {
+        if bad as f64 <= request.bad_line_share * self.lines as f64 {
+            return Ok(());
+        }
+        let Some((line, found)) = &self.first_bad else { return Ok(()) };
+        let found = format!("{found}; {bad} of {} lines are bad", self.lines);
+        Err(ParseError::new(Place::Line(*line), format!("{width} values on each line"), found))
+    }
+}
+
+/// Says what is wrong with a header whose counts do not match the `frames` that were found.
+pub(super) fn compare_counts(header: &Header, frames: usize, notes: &mut Notes) {
+    match header.frames {
+        None => notes.add(header.at, format!("no frame count declared, {frames} found")),
+        Some(declared) if declared != frames as u64 => {
+            notes.add(header.at, format!("{declared} frames declared, {frames} found; all found are read"));
+        }
+        Some(_) => {}
+    }
+}

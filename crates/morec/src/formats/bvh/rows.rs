@@ -1,0 +1,151 @@
+//! The lines of the motion table, one row of numbers at a time.
+
+use super::notes::Notes;
+use super::number::{self, is_newline};
+use super::text::{Cursor, show};
+use crate::formats::ParseError;
+
+/// What a line of the motion table held; its numbers are in the caller's buffer.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Row {
+    /// Numbers only.
+    Numbers,
+    /// Numbers and something that is none.
+    Spoilt(String),
+}
+
+/// Reads the motion table line by line, skipping what is blank, a comment or foreign text.
+pub(super) struct Rows<'t> {
+    cursor: Cursor<'t>,
+    decimal_comma: bool,
+}
+
+impl<'t> Rows<'t> {
+    /// Starts at `cursor`. Commas are decimal points if the first line with numbers has them and no points.
+    pub fn new(cursor: Cursor<'t>, notes: &mut Notes) -> Self {
+        let mut first = cursor.clone();
+        let line = if first.skip_space().is_ok() { first.rest_of_line() } else { &[] };
+        let decimal_comma = has_decimal_commas(line);
+        if decimal_comma {
+            let text = || format!("decimal commas read as points, as in {}", show(first_token(line)));
+            notes.count("decimal commas", first.line, text);
+        }
+        Self { cursor, decimal_comma }
+    }
+
+    /// The next line with numbers on it and its line number; `values` becomes its numbers.
+    pub fn next(
+        &mut self,
+        values: &mut Vec<f64>,
+        notes: &mut Notes,
+    ) -> Result<Option<(u64, Row)>, ParseError> {
+        loop {
+            self.cursor.skip_space()?;
+            if self.cursor.peek().is_none() {
+                return Ok(None);
+            }
+            values.clear();
+            let line = self.cursor.line;
+            let row = self.line(values, notes);
+            self.cursor.newline()?;
+            if let Some(row) = row {
+                return Ok(Some((line, row)));
+            }
+        }
+    }
+
+    /// Reads the rest of the line; `None` if it held no number.
+    fn line(&mut self, values: &mut Vec<f64>, notes: &mut Notes) -> Option<Row> {
+        loop {
+            // The common case in a tight loop; whatever it does not understand is looked at closely.
+            while let Some(value) = number::fixed(self.cursor.text, &mut self.cursor.pos) {
+                values.push(value);
+                self.cursor.skip_blanks();
+            }
+            if self.cursor.at_line_end() {
+                return Some(Row::Numbers);
+            }
+            if self.cursor.at_comment() {
+                notes.count("comment", self.cursor.line, || "comment skipped".into());
+                self.cursor.rest_of_line();
+                return (!values.is_empty()).then_some(Row::Numbers);
+            }
+            let start = self.cursor.pos;
+            let token = self.word();
+            if self.token(token, values, notes).is_none() {
+                return self.not_a_number(start, token, values, notes);
+            }
+            self.cursor.skip_blanks();
+        }
+    }
+
+    /// What stands up to the next blank or the line's end.
+    fn word(&mut self) -> &'t [u8] {
+        let start = self.cursor.pos;
+        while self.cursor.peek().is_some_and(|b| b > b' ') {
+            self.cursor.pos += 1;
+        }
+        &self.cursor.text[start..self.cursor.pos]
+    }
+
+    /// Appends the value or values of a token that is no plain decimal.
+    fn token(&self, token: &[u8], values: &mut Vec<f64>, notes: &mut Notes) -> Option<()> {
+        if let Some(value) = number::parse(token) {
+            values.push(value);
+            return Some(());
+        }
+        if let Some(value) = number::parse_with_comma(token).filter(|_| self.decimal_comma) {
+            values.push(value);
+            return Some(());
+        }
+        number::parse_glued(token, values)?;
+        let text =
+            || format!("numbers without a blank between them split at the sign, {}", show(Some(token)));
+        notes.count("glued", self.cursor.line, text);
+        Some(())
+    }
+
+    /// A line with a token that is no number: spoilt if it has numbers as well, else foreign and skipped.
+    fn not_a_number(&mut self, start: usize, token: &[u8], values: &[f64], notes: &mut Notes) -> Option<Row> {
+        let rest = self.cursor.rest_of_line();
+        let mut others = rest.split(|&b| b <= b' ');
+        if !values.is_empty() || others.any(|t| number::parse(t).is_some()) {
+            return Some(Row::Spoilt(show(Some(token))));
+        }
+        let whole = &self.cursor.text[start..self.cursor.pos];
+        let text = || format!("a line without a number skipped, {}", show(Some(whole)));
+        notes.count("foreign line", self.cursor.line, text);
+        None
+    }
+}
+
+fn has_decimal_commas(line: &[u8]) -> bool {
+    line.contains(&b',')
+        && line.split(|&b| b <= b' ').filter(|t| !t.is_empty()).all(|t| {
+            number::parse_with_comma(t).is_some() || t.iter().all(|&b| b.is_ascii_digit() || b == b'-')
+        })
+}
+
+fn first_token(line: &[u8]) -> Option<&[u8]> {
+    line.split(|&b| b <= b' ').find(|t| t.contains(&b','))
+}
+
+/// Counts the lines of `text` that hold nothing but numbers, and the numbers on the first of them.
+pub(super) fn count_numbers(text: &[u8]) -> (usize, usize) {
+    let (mut lines, mut width) = (0, 0);
+    for line in text.split(|&b| is_newline(b)) {
+        let mut tokens = line.split(|&b| b <= b' ').filter(|t| !t.is_empty()).peekable();
+        if tokens.peek().is_none() {
+            continue;
+        }
+        let mut numbers = 0;
+        if tokens.all(|t| {
+            numbers += 1;
+            number::parse(t).is_some()
+        }) {
+            lines += 1;
+            width = if width == 0 { numbers } else { width };
+        }
+    }
+    (lines, width)
+}

@@ -1,0 +1,119 @@
+//! Which way is up, and making it Y.
+
+use std::fmt;
+use std::str::FromStr;
+
+use super::body::Body;
+use crate::clip::Clip;
+use crate::math::{Axis, Quat, Vec3, same_hemisphere};
+
+/// An axis with a direction; written `y`, `-z`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SignedAxis {
+    /// The axis.
+    pub axis: Axis,
+    /// Against its direction.
+    pub negative: bool,
+}
+
+impl SignedAxis {
+    /// Up in every imported clip.
+    pub const Y: SignedAxis = SignedAxis { axis: Axis::Y, negative: false };
+
+    /// The unit vector.
+    pub fn unit(self) -> Vec3 {
+        let unit = self.axis.unit().into_inner();
+        if self.negative { -unit } else { unit }
+    }
+}
+
+impl fmt::Display for SignedAxis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let sign = if self.negative { "-" } else { "" };
+        write!(f, "{sign}{}", ["x", "y", "z"][self.axis.index()])
+    }
+}
+
+/// Text that is no axis.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("expected x, y, z, -x, -y or -z, found `{0}`")]
+pub struct NoAxis(String);
+
+impl FromStr for SignedAxis {
+    type Err = NoAxis;
+
+    fn from_str(text: &str) -> Result<Self, NoAxis> {
+        let (negative, letter) = match text.strip_prefix('-') {
+            Some(letter) => (true, letter),
+            None => (false, text.strip_prefix('+').unwrap_or(text)),
+        };
+        let axis = match letter.to_ascii_lowercase().as_str() {
+            "x" => Axis::X,
+            "y" => Axis::Y,
+            "z" => Axis::Z,
+            _ => return Err(NoAxis(text.to_owned())),
+        };
+        Ok(Self { axis, negative })
+    }
+}
+
+impl serde::Serialize for SignedAxis {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+/// The axis along which the head is above the feet, over the whole clip.
+pub(super) fn infer_up(body: &Body, notes: &mut Vec<String>) -> SignedAxis {
+    let sum: Vec3 = body.feet_to_head.iter().sum();
+    let biggest = sum.iamax();
+    if sum[biggest] == 0.0 {
+        notes.push("no head above feet to tell which way is up; Y is assumed".to_owned());
+        return SignedAxis::Y;
+    }
+    // Someone lying or bent double for the whole clip: the usual axis, if it is at all possible.
+    let doubtful = sum.y > 0.0 && sum.y > 0.6 * sum[biggest].abs() && biggest != Axis::Y.index();
+    if doubtful {
+        notes.push("the body hardly stands; Y is assumed to be up".to_owned());
+        return SignedAxis::Y;
+    }
+    SignedAxis { axis: Axis::ALL[biggest], negative: sum[biggest] < 0.0 }
+}
+
+/// Turns the whole clip so that `up` becomes Y: only what is in the world's frame changes, that is, the roots.
+pub(super) fn turn_up(clip: &mut Clip, up: SignedAxis) {
+    if up == SignedAxis::Y {
+        return;
+    }
+    let turn = y_from(up);
+    let joints = clip.skeleton.len();
+    let roots: Vec<usize> = (0..joints).filter(|&j| clip.skeleton.joints()[j].parent.is_none()).collect();
+    for &root in &roots {
+        let mut previous: Option<Quat> = None;
+        for frame in 0..clip.frames {
+            let rotation = &mut clip.rotations[frame * joints + root];
+            let turned = turn * *rotation;
+            *rotation = previous.map_or(turned, |p| same_hemisphere(&p, turned));
+            previous = Some(*rotation);
+        }
+    }
+    for track in clip.tracks.iter_mut().filter(|track| roots.contains(&track.joint)) {
+        for position in &mut track.positions {
+            *position = turn * *position;
+        }
+    }
+    clip.skeleton.map_offsets(|joint, offset| if joint.parent.is_none() { turn * offset } else { offset });
+}
+
+/// A rotation by quarter turns that takes `up` to Y.
+fn y_from(up: SignedAxis) -> Quat {
+    use std::f64::consts::{FRAC_PI_2, PI};
+    match (up.axis, up.negative) {
+        (Axis::Y, false) => Quat::identity(),
+        (Axis::Y, true) => Axis::X.rotation(PI),
+        (Axis::Z, false) => Axis::X.rotation(-FRAC_PI_2),
+        (Axis::Z, true) => Axis::X.rotation(FRAC_PI_2),
+        (Axis::X, false) => Axis::Z.rotation(FRAC_PI_2),
+        (Axis::X, true) => Axis::Z.rotation(-FRAC_PI_2),
+    }
+}

@@ -1,0 +1,92 @@
+//! Measurements of the body over a clip, in the file's own units and axes.
+
+use super::SignedAxis;
+use crate::clip::Clip;
+use crate::kinematics::WorldPose;
+use crate::math::Vec3;
+use crate::roles::{Role, RoleMap};
+
+/// Frames looked at, evenly spread: bodies do not change within a clip.
+const FRAMES: usize = 200;
+
+/// What the poses of a clip say about the body.
+pub(super) struct Body {
+    /// From the lower end to the upper end of the body, frame by frame.
+    pub(super) feet_to_head: Vec<Vec3>,
+    /// Thigh and shin together.
+    pub(super) leg: Option<f64>,
+    /// Leg, hips to neck, neck to head: the height of someone who stands straight, up to the head's joint.
+    pub(super) chain: Option<f64>,
+}
+
+impl Body {
+    pub(super) fn measure(clip: &Clip, map: &RoleMap) -> Self {
+        let mut pose = WorldPose::default();
+        let step = clip.frames.div_ceil(FRAMES).max(1);
+        // The first frame is left out if there are others: it may be a rest pose of another size.
+        let frames = || (usize::from(clip.frames > 1)..clip.frames).step_by(step);
+        let mut feet_to_head = Vec::new();
+        let (mut legs, mut chains) = (Vec::new(), Vec::new());
+        for frame in frames() {
+            pose.set(clip, frame);
+            feet_to_head.extend(extent(clip, map, &pose));
+            let leg = mean([leg_length(map, &pose, true), leg_length(map, &pose, false)]);
+            legs.extend(leg);
+            chains.extend(leg.and_then(|leg| Some(leg + trunk_length(map, &pose)?)));
+        }
+        Self { feet_to_head, leg: median(legs), chain: median(chains) }
+    }
+
+    /// From the feet to the top of the head where the body stands straightest.
+    pub(super) fn height(&self, up: SignedAxis) -> Option<f64> {
+        let mut heights: Vec<f64> = self.feet_to_head.iter().map(|v| v.dot(&up.unit())).collect();
+        heights.sort_by(f64::total_cmp);
+        let tall = heights.get(heights.len() * 9 / 10).or(heights.last()).copied();
+        // Someone who never stands up is measured along the limbs.
+        match (tall, self.chain) {
+            (Some(tall), Some(chain)) => Some(tall.max(chain)),
+            (tall, chain) => tall.or(chain),
+        }
+    }
+}
+
+/// From the mean of the feet (or the lowest ends of the legs that are known) to the head (or neck).
+fn extent(clip: &Clip, map: &RoleMap, pose: &WorldPose) -> Option<Vec3> {
+    let any = |roles: &[Role]| roles.iter().find_map(|&role| map.joint(role));
+    let head = any(&[Role::Head, Role::Neck])?;
+    let feet = [
+        any(&[Role::LeftFoot, Role::LeftShin, Role::LeftThigh]),
+        any(&[Role::RightFoot, Role::RightShin, Role::RightThigh]),
+    ];
+    let feet: Vec<Vec3> = feet.into_iter().flatten().map(|foot| pose.positions[foot]).collect();
+    let count = feet.len();
+    (count > 0).then(|| pose.tip(clip, head) - feet.iter().sum::<Vec3>() / count as f64)
+}
+
+fn distance(map: &RoleMap, pose: &WorldPose, a: Role, b: Role) -> Option<f64> {
+    Some((pose.positions[map.joint(a)?] - pose.positions[map.joint(b)?]).norm())
+}
+
+fn leg_length(map: &RoleMap, pose: &WorldPose, left: bool) -> Option<f64> {
+    let [thigh, shin, foot] = match left {
+        true => [Role::LeftThigh, Role::LeftShin, Role::LeftFoot],
+        false => [Role::RightThigh, Role::RightShin, Role::RightFoot],
+    };
+    Some(distance(map, pose, thigh, shin)? + distance(map, pose, shin, foot)?)
+}
+
+fn trunk_length(map: &RoleMap, pose: &WorldPose) -> Option<f64> {
+    Some(distance(map, pose, Role::Hips, Role::Neck)? + distance(map, pose, Role::Neck, Role::Head)?)
+}
+
+fn mean(values: [Option<f64>; 2]) -> Option<f64> {
+    match values {
+        [Some(a), Some(b)] => Some((a + b) / 2.0),
+        [a, b] => a.or(b),
+    }
+}
+
+pub(super) fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
+}

@@ -1,0 +1,120 @@
+//! Making clips alike: metres, Y up, the parts of the body found, and what kind of clip it is.
+//!
+//! Everything is inferred from the motion itself, never from the zero pose, which need not be a pose that anybody
+//! ever stood in; and everything inferred can be overridden in [`ImportOptions`].
+
+mod axes;
+mod body;
+mod rest;
+mod travel;
+mod units;
+
+pub use axes::SignedAxis;
+pub use rest::rest_frames;
+
+use crate::clip::{Clip, Span};
+use crate::formats::ParseError;
+use crate::kinematics::WorldPose;
+use crate::math::Axis;
+use crate::roles::mapping::Mapping;
+use crate::roles::{self, Role, RoleMap};
+use body::Body;
+
+/// What a person knows better than inference.
+#[derive(Debug, Clone, Default)]
+pub struct ImportOptions {
+    /// Which way is up in the file.
+    pub up: Option<SignedAxis>,
+    /// Metres in one of the file's units of length.
+    pub metres_per_unit: Option<f64>,
+    /// Frames at the start that show a rest pose and not the motion.
+    pub rest_frames: Option<usize>,
+    /// Roles that override those found.
+    pub mapping: Option<Mapping>,
+}
+
+/// What was inferred about a clip, or given in the options.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Facts {
+    /// Which way was up in the file; it is Y in the imported clip.
+    pub up: SignedAxis,
+    /// Metres in one of the file's units.
+    pub metres_per_unit: f64,
+    /// The unit's name, if it is a known one.
+    pub unit: Option<&'static str>,
+    /// Frames at the start that show a rest pose: `0..1`, or `0..0` if there is none.
+    pub rest_frames: Span,
+    /// From the soles to the top of the head, metres, as far as the joints tell.
+    pub body_height: Option<f64>,
+    /// Thigh and shin together, metres.
+    pub leg_length: Option<f64>,
+    /// Whether the hips travel along the floor; without it, root motion says nothing.
+    pub travels: bool,
+    /// Guesses worth doubting, each in a sentence.
+    pub notes: Vec<String>,
+}
+
+/// A clip made ready for everything that follows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Imported {
+    /// The motion, in metres and Y-up. No frame is taken away.
+    pub clip: Clip,
+    /// Who plays what.
+    pub roles: RoleMap,
+    /// What was inferred.
+    pub facts: Facts,
+}
+
+/// Infers what `clip` is and makes it Y-up in metres. O(frames · joints).
+///
+/// # Errors
+/// A mapping in `options` that names a joint which `clip` does not have.
+pub fn prepare(mut clip: Clip, options: &ImportOptions) -> Result<Imported, ParseError> {
+    let mut notes = Vec::new();
+    let mut map = find_roles(&clip, &mut notes);
+    if let Some(mapping) = &options.mapping {
+        mapping.apply(&clip.skeleton, &mut map)?;
+    }
+    let body = Body::measure(&clip, &map);
+    let up = options.up.unwrap_or_else(|| axes::infer_up(&body, &mut notes));
+    let metres_per_unit = options.metres_per_unit.unwrap_or_else(|| units::infer(&body, up, &mut notes));
+    axes::turn_up(&mut clip, up);
+    units::scale(&mut clip, metres_per_unit);
+    let rest = match options.rest_frames {
+        Some(frames) => 0..frames.min(clip.frames),
+        None => rest_frames(&clip, &map),
+    };
+    let facts = Facts {
+        up,
+        metres_per_unit,
+        unit: units::name(metres_per_unit),
+        body_height: body.height(up).map(|height| height * metres_per_unit),
+        leg_length: body.leg.map(|leg| leg * metres_per_unit),
+        travels: travel::travels(&clip, &map, &rest),
+        rest_frames: rest,
+        notes,
+    };
+    Ok(Imported { clip, roles: map, facts })
+}
+
+/// The roles, with the side of nameless limbs judged in a posed frame.
+fn find_roles(clip: &Clip, notes: &mut Vec<String>) -> RoleMap {
+    let found = if clip.frames == 0 {
+        roles::find(&clip.skeleton)
+    } else {
+        // The first frame may be a rest pose or spoiled; the second is as good as any.
+        let pose = WorldPose::of(clip, 1.min(clip.frames - 1));
+        roles::find_posed(&clip.skeleton, &pose.positions)
+    };
+    notes.extend(found.notes);
+    found.map
+}
+
+/// The axis that is up in every imported clip.
+pub const UP: Axis = Axis::Y;
+
+/// Roles without which a clip cannot be recognised at all.
+pub const NEEDED: [Role; 5] = [Role::Hips, Role::LeftThigh, Role::RightThigh, Role::LeftArm, Role::RightArm];
+
+#[cfg(test)]
+mod tests;

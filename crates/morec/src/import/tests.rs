@@ -1,0 +1,249 @@
+//! Inference on people made for the test, and on real clips where they are.
+
+use std::path::{Path, PathBuf};
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::clip::{Joint, JointTrack, Skeleton};
+use crate::formats::{Limits, acclaim, bvh};
+use crate::math::{Quat, Vec3};
+
+/// A person of 1.75 m, Y-up, metres, who swings the right arm forward; `walks` metres a frame along Z.
+fn person(frames: usize, walks: f64) -> Clip {
+    let joints: [(&str, Option<usize>, [f64; 3]); 15] = [
+        ("Hips", None, [0.0, 0.95, 0.0]),
+        ("LeftUpLeg", Some(0), [0.09, -0.05, 0.0]),
+        ("LeftLeg", Some(1), [0.0, -0.42, 0.0]),
+        ("LeftFoot", Some(2), [0.0, -0.4, 0.0]),
+        ("RightUpLeg", Some(0), [-0.09, -0.05, 0.0]),
+        ("RightLeg", Some(4), [0.0, -0.42, 0.0]),
+        ("RightFoot", Some(5), [0.0, -0.4, 0.0]),
+        ("Neck", Some(0), [0.0, 0.52, 0.0]),
+        ("Head", Some(7), [0.0, 0.1, 0.0]),
+        ("LeftArm", Some(0), [0.18, 0.45, 0.0]),
+        ("LeftForeArm", Some(9), [0.28, 0.0, 0.0]),
+        ("LeftHand", Some(10), [0.25, 0.0, 0.0]),
+        ("RightArm", Some(0), [-0.18, 0.45, 0.0]),
+        ("RightForeArm", Some(12), [-0.28, 0.0, 0.0]),
+        ("RightHand", Some(13), [-0.25, 0.0, 0.0]),
+    ];
+    let joint = |&(name, parent, [x, y, z]): &(&str, Option<usize>, [f64; 3])| Joint {
+        name: name.to_owned(),
+        parent,
+        offset: Vec3::new(x, y, z),
+        tip: (name == "Head").then(|| Vec3::new(0.0, 0.18, 0.0)),
+    };
+    let skeleton = Skeleton::new(joints.iter().map(joint).collect()).unwrap();
+    let mut rotations = Vec::new();
+    for frame in 0..frames {
+        let mut pose = vec![Quat::identity(); skeleton.len()];
+        // Arms hang; the right one swings.
+        pose[9] = Axis::Z.rotation(-1.3);
+        pose[12] = Axis::X.rotation(-0.02 * frame as f64) * Axis::Z.rotation(1.3);
+        pose[1] = Axis::X.rotation(0.1);
+        rotations.extend(pose);
+    }
+    let positions = (0..frames).map(|f| Vec3::new(0.0, 0.95, walks * f as f64)).collect();
+    Clip {
+        name: "person".to_owned(),
+        skeleton,
+        rate_hz: 60.0,
+        rotations,
+        tracks: vec![JointTrack { joint: 0, positions }],
+        frames,
+        repaired: Vec::new(),
+    }
+}
+
+fn ready(clip: Clip) -> Imported {
+    prepare(clip, &ImportOptions::default()).unwrap()
+}
+
+/// Puts a T-pose (all rotations zero) before the motion.
+fn with_t_pose(mut clip: Clip) -> Clip {
+    let zero = vec![Quat::identity(); clip.skeleton.len()];
+    clip.rotations.splice(0..0, zero);
+    for track in &mut clip.tracks {
+        track.positions.insert(0, track.positions[0]);
+    }
+    clip.frames += 1;
+    clip
+}
+
+fn signed(axis: Axis, negative: bool) -> SignedAxis {
+    SignedAxis { axis, negative }
+}
+
+#[test]
+fn a_plain_person_is_left_alone() {
+    let clip = person(50, 0.0);
+    let imported = ready(clip.clone());
+    assert_eq!(imported.clip, clip);
+    let facts = &imported.facts;
+    assert_eq!((facts.up, facts.unit), (SignedAxis::Y, Some("m")));
+    assert_eq!((facts.travels, facts.rest_frames.clone()), (false, 0..0));
+    assert!((facts.leg_length.unwrap() - 0.82).abs() < 1e-9);
+    assert!((facts.body_height.unwrap() - 1.67).abs() < 0.02, "{facts:?}");
+    assert!(facts.notes.is_empty(), "{facts:?}");
+}
+
+#[test]
+fn whoever_walks_travels() {
+    assert!(ready(person(50, 0.02)).facts.travels);
+    assert!(!ready(person(50, 0.001)).facts.travels);
+}
+
+#[test]
+fn a_t_pose_before_the_motion_is_seen_and_kept() {
+    let imported = ready(with_t_pose(person(50, 0.01)));
+    assert_eq!(imported.facts.rest_frames, 0..1);
+    assert_eq!(imported.clip.frames, 51);
+}
+
+#[test]
+fn clips_that_begin_in_motion_have_no_rest_pose() {
+    let mut clip = person(50, 0.0);
+    assert_eq!(ready(clip.clone()).facts.rest_frames, 0..0);
+    // A jerk after the first frame of an unsymmetric pose.
+    let joints = clip.skeleton.len();
+    clip.rotations[12] = Axis::X.rotation(-2.5) * Axis::Z.rotation(1.3);
+    clip.rotations[1] = Axis::X.rotation(-1.0);
+    assert_eq!(ready(clip.clone()).facts.rest_frames, 0..0);
+    // Stillness: nothing jumps.
+    let still = clip.rotations[..joints].to_vec();
+    clip.rotations = still.iter().cycle().take(joints * 50).copied().collect();
+    assert_eq!(ready(clip).facts.rest_frames, 0..0);
+}
+
+#[test]
+fn what_a_person_says_counts() {
+    let options = ImportOptions {
+        up: Some(signed(Axis::Z, false)),
+        metres_per_unit: Some(2.0),
+        rest_frames: Some(7),
+        mapping: Some(Mapping::read(b"neck\t-\n").unwrap()),
+    };
+    let imported = prepare(person(20, 0.0), &options).unwrap();
+    assert_eq!(imported.facts.up, signed(Axis::Z, false));
+    assert_eq!((imported.facts.metres_per_unit, imported.facts.unit), (2.0, None));
+    assert_eq!(imported.facts.rest_frames, 0..7);
+    assert_eq!(imported.roles.joint(Role::Neck), None);
+    assert!((imported.clip.tracks[0].positions[0] - Vec3::new(0.0, 0.0, -1.9)).norm() < 1e-9);
+    let wrong = ImportOptions { mapping: Some(Mapping::read(b"neck\tN\n").unwrap()), ..Default::default() };
+    assert!(prepare(person(20, 0.0), &wrong).is_err());
+}
+
+#[test]
+fn clips_without_frames_or_bodies_are_answered() {
+    let empty = ready(person(0, 0.0));
+    assert_eq!(empty.clip.frames, 0);
+    assert!(!empty.facts.notes.is_empty());
+    let nobody =
+        Clip { skeleton: Skeleton::default(), rotations: Vec::new(), tracks: Vec::new(), ..person(3, 0.0) };
+    assert_eq!(ready(nobody).roles.missing().count(), Role::COUNT);
+}
+
+proptest! {
+    #[test]
+    fn any_axes_and_any_known_unit_come_out_the_same(
+        axis in prop::sample::select(Axis::ALL.to_vec()),
+        negative: bool,
+        (name, metres) in prop::sample::select(vec![
+            ("m", 1.0), ("cm", 0.01), ("mm", 0.001), ("inch", 0.0254), ("CMU unit (inch / 0.45)", 0.0254 / 0.45),
+        ]),
+        walks in 0.0f64..0.02,
+    ) {
+        let expected = person(30, walks);
+        // The other way round: from metres and Y-up to the file's.
+        let mut file = expected.clone();
+        let up = signed(axis, negative);
+        let there = Quat::rotation_between(&Vec3::y(), &up.unit()).unwrap_or_else(|| Axis::X.rotation(std::f64::consts::PI));
+        let joints = file.skeleton.len();
+        for f in 0..file.frames {
+            file.rotations[f * joints] = there * file.rotations[f * joints];
+        }
+        for position in &mut file.tracks[0].positions {
+            *position = there * *position / metres;
+        }
+        file.skeleton.map_offsets(|j, o| if j.parent.is_none() { there * o / metres } else { o / metres });
+        file.skeleton.map_tips(|tip| tip / metres);
+
+        let imported = ready(file);
+        prop_assert_eq!(imported.facts.up, up);
+        prop_assert_eq!(imported.facts.unit, Some(name));
+        for frame in [0, 29] {
+            let (a, b) = (WorldPose::of(&expected, frame), WorldPose::of(&imported.clip, frame));
+            // Up and lengths are as they were; which way the body faces is not said by "up".
+            for (p, q) in a.positions.iter().zip(&b.positions) {
+                prop_assert!((p.y - q.y).abs() < 1e-9, "{p} {q}");
+                prop_assert!((p.norm() - q.norm()).abs() < 1e-9);
+            }
+        }
+    }
+}
+
+/// The folder of real clips, if it is there.
+fn data() -> Option<PathBuf> {
+    let folder = std::env::var_os("MOREC_DATA")
+        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"), PathBuf::from);
+    if !folder.is_dir() {
+        println!("skipped: no clips at {} (set MOREC_DATA)", folder.display());
+        return None;
+    }
+    Some(folder)
+}
+
+fn clips_in(folder: &Path) -> Vec<(String, Clip)> {
+    let mut files: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
+    files.sort();
+    let skeletons: Vec<PathBuf> = std::fs::read_dir(folder.join(".."))
+        .unwrap()
+        .map(|e| e.unwrap().path())
+        .filter(|p| p.extension().is_some_and(|e| e == "asf"))
+        .collect();
+    let limits = Limits::default();
+    let read = |path: &PathBuf| {
+        let bytes = std::fs::read(path).unwrap();
+        let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+        let loaded = match skeletons.first() {
+            None => bvh::read(&bytes, &name, &bvh::BvhOptions::default(), &limits),
+            Some(asf) => {
+                let asf = acclaim::read_asf(&std::fs::read(asf).unwrap(), &limits).unwrap().0;
+                acclaim::read_amc(&bytes, &name, &asf, &acclaim::AmcOptions::default(), &limits)
+            }
+        };
+        (name, loaded.unwrap().clips.remove(0))
+    };
+    files.iter().map(read).collect()
+}
+
+#[test]
+fn real_clips_are_understood() {
+    let Some(data) = data() else { return };
+    use Role::*;
+    let collars = [LeftShoulder, RightShoulder];
+    for (folder, missing, unit, rest) in [
+        ("referee", vec![], "CMU unit (inch / 0.45)", 0..1),
+        ("exercises", vec![], "CMU unit (inch / 0.45)", 0..0),
+        ("segmentation", vec![], "CMU unit (inch / 0.45)", 0..0),
+        ("everyday", vec![], "cm", 0..0),
+        ("gestures", [&[Torso][..], &collars].concat(), "mm", 0..0),
+    ] {
+        let mut wrong = Vec::new();
+        for (name, clip) in clips_in(&data.join(folder).join("clips")) {
+            let imported = ready(clip);
+            let facts = &imported.facts;
+            let lacks: Vec<Role> = imported.roles.missing().collect();
+            let right = lacks == missing
+                && facts.unit == Some(unit)
+                && facts.up == SignedAxis::Y
+                && facts.rest_frames == rest;
+            if !right {
+                wrong.push(format!("{name}: lacks {lacks:?}; {facts:?}"));
+            }
+        }
+        println!("{folder}: {} wrong", wrong.len());
+        assert!(wrong.is_empty(), "{folder}:\n{}", wrong.join("\n"));
+    }
+}

@@ -1,0 +1,95 @@
+//! Mapping files: who plays what, said by a person.
+//!
+//! Text, one role a line: the role's name, a tab, the joint's name as the clip spells it, blanks and all (the
+//! first of that name). `-` gives the role to nobody. Roles that are not named keep what was found. Empty lines
+//! and lines that begin with `#` are skipped.
+
+use std::fmt::Write;
+
+use super::{Role, RoleMap};
+use crate::clip::Skeleton;
+use crate::formats::{ParseError, Place};
+
+/// The lines of a mapping file: each role at most once.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Mapping {
+    entries: Vec<Entry>,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Entry {
+    line: u64,
+    role: Role,
+    joint: Option<String>,
+}
+
+impl Mapping {
+    /// Reads a mapping file.
+    ///
+    /// # Errors
+    /// Text that is not UTF-8, a line without a tab, an unknown role, a role named twice, no joint's name.
+    pub fn read(bytes: &[u8]) -> Result<Self, ParseError> {
+        let text = std::str::from_utf8(bytes).map_err(|error| {
+            ParseError::new(Place::Byte(error.valid_up_to() as u64), "UTF-8", "other bytes")
+        })?;
+        let mut entries: Vec<Entry> = Vec::new();
+        for (line, content) in (1..).zip(text.trim_start_matches('\u{feff}').lines()) {
+            if content.trim().is_empty() || content.starts_with('#') {
+                continue;
+            }
+            let entry = entry(line, content)?;
+            if let Some(before) = entries.iter().find(|e| e.role == entry.role) {
+                let found = format!("{} here and on line {}", entry.role, before.line);
+                return Err(ParseError::new(Place::Line(line), "each role once", found));
+            }
+            entries.push(entry);
+        }
+        Ok(Self { entries })
+    }
+
+    /// Overrides what was found.
+    ///
+    /// # Errors
+    /// A joint that `skeleton` does not have, with its line in the mapping file; `map` is then unchanged.
+    pub fn apply(&self, skeleton: &Skeleton, map: &mut RoleMap) -> Result<(), ParseError> {
+        let mut changed = map.clone();
+        for Entry { line, role, joint } in &self.entries {
+            let joint = match joint {
+                None => None,
+                Some(name) => Some(skeleton.find(name).ok_or_else(|| {
+                    ParseError::new(Place::Line(*line), "a joint of the skeleton", format!("`{name}`"))
+                })?),
+            };
+            changed.set(*role, joint);
+        }
+        *map = changed;
+        Ok(())
+    }
+}
+
+fn entry(line: u64, content: &str) -> Result<Entry, ParseError> {
+    let at = Place::Line(line);
+    let (role, joint) = content
+        .split_once('\t')
+        .ok_or_else(|| ParseError::new(at, "a role, a tab and a joint's name", format!("`{content}`")))?;
+    let role = Role::from_name(role.trim()).ok_or_else(|| {
+        let known: Vec<_> = Role::ALL.iter().map(|r| r.name()).collect();
+        ParseError::new(at, format!("a role ({})", known.join(", ")), format!("`{}`", role.trim()))
+    })?;
+    match joint.trim() {
+        "" => Err(ParseError::new(at, format!("a joint's name or - for {role}"), "nothing")),
+        "-" => Ok(Entry { line, role, joint: None }),
+        name => Ok(Entry { line, role, joint: Some(name.to_owned()) }),
+    }
+}
+
+/// Writes `map` as a mapping file that names every role.
+pub fn write(map: &RoleMap, skeleton: &Skeleton) -> String {
+    let mut text = String::from("# role\tjoint (- for none)\n");
+    for role in Role::ALL {
+        let name = map.joint(role).map_or("-", |joint| skeleton.joints()[joint].name.as_str());
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{role}\t{name}");
+    }
+    text
+}

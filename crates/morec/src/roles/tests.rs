@@ -1,0 +1,174 @@
+//! Roles over the namings that are met in the wild.
+
+use super::mapping::{self, Mapping};
+use super::*;
+use crate::clip::Joint;
+use crate::formats::Place;
+use crate::math::Vec3;
+
+const SKELETONS: &str = include_str!("../../testdata/roles/skeletons.txt");
+
+struct Case {
+    title: String,
+    joints: Vec<Joint>,
+    expected: RoleMap,
+}
+
+impl Case {
+    fn skeleton(&self) -> Skeleton {
+        Skeleton::new(self.joints.clone()).unwrap()
+    }
+}
+
+fn cases() -> Vec<Case> {
+    let mut cases: Vec<Case> = Vec::new();
+    let mut open: Vec<usize> = Vec::new();
+    for line in SKELETONS.lines().filter(|l| !l.starts_with('#')) {
+        if let Some(title) = line.strip_prefix("== ") {
+            cases.push(Case { title: title.to_owned(), joints: Vec::new(), expected: RoleMap::default() });
+            open.clear();
+            continue;
+        }
+        let case = cases.last_mut().unwrap();
+        let depth = (line.len() - line.trim_start().len()) / 2;
+        let fields: Vec<&str> = line.trim_start().split('\t').collect();
+        let offset: Vec<f64> = fields[1].split(' ').map(|n| n.parse().unwrap()).collect();
+        open.truncate(depth);
+        assert_eq!(open.len(), depth, "{}: {line}", case.title);
+        let joint = case.joints.len();
+        case.joints.push(Joint {
+            name: fields[0].to_owned(),
+            parent: open.last().copied(),
+            offset: Vec3::from_column_slice(&offset),
+            tip: None,
+        });
+        if let Some(role) = fields.get(2) {
+            case.expected.set(Role::from_name(role).unwrap(), Some(joint));
+        }
+        open.push(joint);
+    }
+    for case in &mut cases {
+        let parents: Vec<_> = case.joints.iter().filter_map(|j| j.parent).collect();
+        for (j, joint) in case.joints.iter_mut().enumerate() {
+            joint.tip = (!parents.contains(&j)).then(|| joint.offset * 0.3);
+        }
+    }
+    cases
+}
+
+/// The roles that differ, as `role: found, expected`.
+fn differences(case: &Case, found: &RoleMap) -> Vec<String> {
+    let name = |joint: Option<usize>| joint.map_or("-", |j| case.joints[j].name.as_str());
+    Role::ALL
+        .into_iter()
+        .filter(|&role| found.joint(role) != case.expected.joint(role))
+        .map(|role| format!("{role}: {}, not {}", name(found.joint(role)), name(case.expected.joint(role))))
+        .collect()
+}
+
+#[test]
+fn every_naming_is_understood() {
+    let wrong: Vec<String> = cases()
+        .iter()
+        .map(|case| (case, differences(case, &RoleMap::find(&case.skeleton()))))
+        .filter(|(_, wrong)| !wrong.is_empty())
+        .map(|(case, wrong)| format!("{}: {}", case.title, wrong.join("; ")))
+        .collect();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(cases().len() >= 15);
+}
+
+#[test]
+fn the_tree_alone_is_enough() {
+    // Every skeleton again with numbers for names: arms, legs and head must come out in the same chains, sides
+    // by the toes. Where only a name could tell, the role is not asked for.
+    let asked = [
+        Role::LeftThigh,
+        Role::LeftShin,
+        Role::LeftFoot,
+        Role::RightThigh,
+        Role::LeftArm,
+        Role::LeftForearm,
+        Role::LeftHand,
+        Role::RightForearm,
+    ];
+    // Halved bones look like whole ones; a mirrored body cannot be seen; with no toes, a foot looks like any end.
+    let blind = ["MakeHuman", "Mirrored: the names decide"];
+    for mut case in cases().into_iter().filter(|case| !blind.contains(&case.title.as_str())) {
+        case.joints.iter_mut().enumerate().for_each(|(j, joint)| joint.name = format!("joint_{j}"));
+        let found = find(&case.skeleton());
+        for role in asked {
+            assert_eq!(found.map.joint(role), case.expected.joint(role), "{}: {role}", case.title);
+        }
+        assert!(found.notes.iter().any(|n| n.contains("toes point")), "{}", case.title);
+    }
+}
+
+#[test]
+fn what_is_not_there_is_missing_and_nothing_panics() {
+    let one = Joint { name: "root".to_owned(), parent: None, offset: Vec3::zeros(), tip: None };
+    let alone = RoleMap::find(&Skeleton::new(vec![one]).unwrap());
+    assert_eq!(alone.missing().count(), Role::COUNT - 1);
+    assert_eq!(RoleMap::find(&Skeleton::default()).missing().count(), Role::COUNT);
+}
+
+#[test]
+fn one_armed_people_keep_their_other_limbs() {
+    let case = cases().into_iter().find(|c| c.title == "MotionBuilder").unwrap();
+    let right_arm = case.expected.joint(Role::RightShoulder).unwrap();
+    let skeleton = case.skeleton();
+    let gone = |mut j: usize| loop {
+        match skeleton.joints()[j].parent {
+            _ if j == right_arm => return true,
+            Some(p) => j = p,
+            None => return false,
+        }
+    };
+    let kept: Vec<usize> = (0..skeleton.len()).filter(|&j| !gone(j)).collect();
+    let joints = kept.iter().map(|&j| {
+        let joint = skeleton.joints()[j].clone();
+        let parent = joint.parent.and_then(|p| kept.iter().position(|&k| k == p));
+        Joint { parent, ..joint }
+    });
+    let skeleton = Skeleton::new(joints.collect()).unwrap();
+    let map = RoleMap::find(&skeleton);
+    let missing: Vec<Role> = map.missing().collect();
+    assert_eq!(missing, [Role::RightShoulder, Role::RightArm, Role::RightForearm, Role::RightHand]);
+    assert_eq!(map.joint(Role::LeftForearm), skeleton.find("LeftForeArm"));
+}
+
+#[test]
+fn mapping_files_override_and_come_back() {
+    let case = &cases()[0];
+    let skeleton = case.skeleton();
+    let mut map = RoleMap::find(&skeleton);
+    let text = "# mine\r\n\r\nhead\tNeck\r\nleft_shoulder\t-\r\n";
+    Mapping::read(text.as_bytes()).unwrap().apply(&skeleton, &mut map).unwrap();
+    assert_eq!(map.joint(Role::Head), skeleton.find("Neck"));
+    assert_eq!(map.joint(Role::LeftShoulder), None);
+    assert_eq!(map.joint(Role::LeftArm), case.expected.joint(Role::LeftArm));
+
+    let mut again = RoleMap::default();
+    let written = mapping::write(&map, &skeleton);
+    Mapping::read(written.as_bytes()).unwrap().apply(&skeleton, &mut again).unwrap();
+    assert_eq!(again, map);
+}
+
+#[test]
+fn mistakes_in_mapping_files_are_located() {
+    for (text, line, expected) in [
+        ("hips Hips\n", 1, "a tab"),
+        ("#\nhip\tHips\n", 2, "left_forearm"),
+        ("hips\tHips\nhips\t-\n", 2, "once"),
+        ("hips\t\n", 1, "a joint's name or -"),
+    ] {
+        let error = Mapping::read(text.as_bytes()).unwrap_err();
+        assert_eq!(error.at, Place::Line(line), "{error}");
+        assert!(error.expected.contains(expected), "{error}");
+    }
+    let mut map = RoleMap::default();
+    let mapping = Mapping::read(b"head\t-\nhips\tHip\n").unwrap();
+    let error = mapping.apply(&cases()[0].skeleton(), &mut map).unwrap_err();
+    assert_eq!((error.at, error.found.as_str()), (Place::Line(2), "`Hip`"));
+    assert_eq!(map, RoleMap::default());
+}
