@@ -13,6 +13,7 @@ pub mod labels;
 pub mod live;
 pub mod math;
 pub mod progress;
+pub mod report;
 pub mod resample;
 pub mod roles;
 pub mod synth;

@@ -1,0 +1,104 @@
+//! A report: one HTML file that stands alone, with figures, timelines, confusion and notes on what to teach next.
+//!
+//! Timelines follow the thesis's Figures 5.13 and 5.14: ground truth above, detections below, colour by class.
+//! The file has no scripts and no outside links; its pictures are inline SVG, whose titles say in words what
+//! they show. It follows the reader's light or dark theme and prints in the light one.
+
+mod figures;
+mod grid;
+mod html;
+mod notes;
+mod palette;
+mod tables;
+mod timeline;
+
+#[cfg(test)]
+mod tests;
+
+use crate::eval::{Evaluation, Timeline};
+use html::Text;
+use palette::Palette;
+
+pub use notes::learning_notes;
+
+/// What trained a class, for the notes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TrainedClass {
+    /// Its name.
+    pub class: String,
+    /// How many samples trained it.
+    pub samples: usize,
+    /// How many people made them, if that is known.
+    pub people: Option<usize>,
+}
+
+/// Everything a report shows.
+#[derive(Debug, Clone, Copy)]
+pub struct Report<'a> {
+    /// The heading.
+    pub title: &'a str,
+    /// How this came about, as pairs of name and value: command, data, method, date.
+    pub about: &'a [(String, String)],
+    /// The measures.
+    pub evaluation: &'a Evaluation,
+    /// What became of samples and detections, stream by stream.
+    pub timelines: &'a [Timeline],
+    /// What trained the classes; empty if unknown.
+    pub training: &'a [TrainedClass],
+}
+
+/// Notes that are shown at once; the others unfold.
+const NOTES_SHOWN: usize = 12;
+
+const STYLE: &str = include_str!("style.css");
+
+impl Report<'_> {
+    /// The report as one HTML document. O(samples + detections), apart from the tables.
+    pub fn html(&self) -> String {
+        let palette = Palette::new(self.evaluation);
+        let title = Text(self.title);
+        let mut out = format!(
+            "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+             <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+             <meta name=\"color-scheme\" content=\"light dark\">\n\
+             <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n"
+        );
+        self.push_about(&mut out);
+        figures::push(&mut out, self.evaluation);
+        self.push_notes(&mut out);
+        timeline::push(&mut out, self.timelines, &palette);
+        tables::push_confusion(&mut out, &self.evaluation.confusion);
+        tables::push_classes(&mut out, self.evaluation, self.training);
+        out.push_str("</body>\n</html>\n");
+        out
+    }
+
+    fn push_about(&self, out: &mut String) {
+        if self.about.is_empty() {
+            return;
+        }
+        out.push_str("<dl class=\"about\">\n");
+        for (name, value) in self.about {
+            out.push_str(&format!("<div><dt>{}</dt><dd>{}</dd></div>\n", Text(name), Text(value)));
+        }
+        out.push_str("</dl>\n");
+    }
+
+    fn push_notes(&self, out: &mut String) {
+        out.push_str("<h2>What to teach next</h2>\n");
+        let notes = learning_notes(self.evaluation, self.training);
+        let (first, rest) = notes.split_at(notes.len().min(NOTES_SHOWN));
+        push_list(out, first);
+        if !rest.is_empty() {
+            out.push_str(&format!("<details><summary>{} more</summary>\n", rest.len()));
+            push_list(out, rest);
+            out.push_str("</details>\n");
+        }
+    }
+}
+
+fn push_list(out: &mut String, notes: &[String]) {
+    out.push_str("<ul class=\"notes\">\n");
+    notes.iter().for_each(|note| out.push_str(&format!("<li>{}</li>\n", Text(note))));
+    out.push_str("</ul>\n");
+}
