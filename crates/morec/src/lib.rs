@@ -2,6 +2,7 @@
 
 pub mod classes;
 pub mod clip;
+pub mod crossval;
 pub mod decode;
 pub mod eval;
 pub mod features;

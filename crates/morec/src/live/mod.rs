@@ -4,6 +4,8 @@
 //! lock, log or fail. A recogniser is owned by one thread at a time. Detections are the same however the stream
 //! is cut into pushes.
 
+mod of_clip;
 mod recognizer;
 
+pub use of_clip::recognize_clip;
 pub use recognizer::{Detection, Recognizer};

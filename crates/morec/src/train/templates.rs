@@ -1,8 +1,12 @@
 //! The training itself, step by step as in the method's description.
 
 use std::collections::BTreeSet;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use rayon::prelude::*;
 
 use crate::classes::ClassInfo;
+use crate::decode::FAR;
 use crate::features::{BoneSet, Rows};
 use crate::progress::Progress;
 use crate::templates::{Bank, Metric, Sample, Symmetric, TemplateModel, TemplateModelError};
@@ -10,7 +14,7 @@ use crate::templates::{Bank, Metric, Sample, Symmetric, TemplateModel, TemplateM
 use super::mining::{Distances, NearMiss, near_misses};
 use super::params::TrainParams;
 use super::scatter::{covariance, ridged, within_class};
-use super::set::{Source, TrainSample, TrainSet};
+use super::set::{Source, TrainSample, TrainSet, TrainStream};
 
 /// Why nothing could be trained.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -34,8 +38,12 @@ pub enum TrainError {
 pub struct Trained {
     /// The model.
     pub model: TemplateModel,
-    /// Unlabelled stretches of labelled clips so near to a class that they are probably samples nobody labelled.
+    /// The stretches that became negatives.
     pub negatives: Vec<NearMiss>,
+    /// What set the threshold, in words.
+    pub threshold_from: String,
+    /// What the user should know.
+    pub notes: Vec<String>,
 }
 
 /// Trains templates for `set`, whose rows hold `bones`.
@@ -60,16 +68,9 @@ pub fn train(
     let (ridged, total) = metric_of(set, &samples, params);
     let metric = Metric::new(&ridged, &total);
     let mapped: Vec<Rows> = samples.iter().map(|s| metric.apply_all(&s.rows)).collect();
-    let mut bank = Bank::new(&mapped, metric.dim());
-    let mut distances = Vec::with_capacity(set.streams.len());
-    for (i, stream) in set.streams.iter().enumerate() {
-        progress.report("comparing clips", i, set.streams.len());
-        if progress.cancelled() {
-            return Err(TrainError::Cancelled);
-        }
-        distances.push(Distances::of(&mut bank, &metric.apply_all(&stream.rows)));
-    }
-    let threshold = threshold_of(set, &distances, params);
+    let bank = Bank::new(&mapped, metric.dim());
+    let distances = all_distances(set, &bank, &metric, progress)?;
+    let (threshold, threshold_from) = threshold_of(set, &distances, params);
     let negatives =
         if params.mine_negatives { mine(set, &samples, &distances, threshold, params) } else { vec![] };
     let model = TemplateModel {
@@ -85,7 +86,7 @@ pub fn train(
         step: None,
     };
     model.check()?;
-    Ok(Trained { model, negatives })
+    Ok(Trained { model, negatives, threshold_from, notes: Vec::new() })
 }
 
 fn metric_of(set: &TrainSet, samples: &[TrainSample], params: &TrainParams) -> (Symmetric, Symmetric) {
@@ -96,11 +97,35 @@ fn metric_of(set: &TrainSet, samples: &[TrainSample], params: &TrainParams) -> (
     (ridged(&within, &total, params.rho), Symmetric::pack(&total))
 }
 
-fn threshold_of(set: &TrainSet, distances: &[Distances], params: &TrainParams) -> f32 {
+/// Every stream against every template, in parallel, in the order of the set.
+fn all_distances(
+    set: &TrainSet,
+    bank: &Bank,
+    metric: &Metric,
+    progress: &dyn Progress,
+) -> Result<Vec<Distances>, TrainError> {
+    let (done, total) = (AtomicUsize::new(0), set.streams.len());
+    let compare = |bank: &mut Bank, stream: &TrainStream| {
+        if progress.cancelled() {
+            return Err(TrainError::Cancelled);
+        }
+        let distances = Distances::of(bank, &metric.apply_all(&stream.rows));
+        progress.report("comparing clips", done.fetch_add(1, Ordering::Relaxed) + 1, total);
+        Ok(distances)
+    };
+    set.streams.par_iter().map_init(|| bank.clone(), compare).collect()
+}
+
+/// A share of the smallest distance that background motion has to any template, and what set it.
+fn threshold_of(set: &TrainSet, distances: &[Distances], params: &TrainParams) -> (f32, String) {
     let background = set.streams.iter().zip(distances).filter(|(s, _)| s.source != Source::Labelled);
-    let nearest = background.map(|(_, d)| f64::from(d.smallest())).fold(f64::INFINITY, f64::min);
-    let threshold = params.background_share * nearest;
-    if threshold < 1e6 { threshold as f32 } else { params.fallback_threshold as f32 }
+    let nearest = background.min_by(|a, b| a.1.smallest().total_cmp(&b.1.smallest()));
+    match nearest {
+        Some((stream, d)) if d.smallest() < FAR / 2.0 => {
+            (params.background_share as f32 * d.smallest(), format!("background clip {}", stream.name))
+        }
+        _ => (params.fallback_threshold as f32, "no background: a general value".to_owned()),
+    }
 }
 
 fn mine(

@@ -1,0 +1,143 @@
+//! Which samples teach and which clips are tested, fold by fold.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::labels::Sample;
+use crate::synth::Rng;
+
+/// What is left out of training in turn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum By {
+    /// Half of each class's samples, rounded down, chosen by a seeded shuffle; all clips are tested once.
+    Half {
+        /// Of the shuffle.
+        seed: u64,
+    },
+    /// One clip after the other.
+    Clip,
+    /// One person after the other; a clip of nobody known counts as a person.
+    Person,
+}
+
+/// One round of training and testing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fold {
+    /// What is left out: `half`, a clip or a person.
+    pub name: String,
+    /// Samples that teach, as places in the list of samples.
+    pub taught: Vec<usize>,
+    /// Samples of clips in training that must be used for nothing.
+    pub held_back: Vec<usize>,
+    /// Clips that must not train, and (those with samples) are tested.
+    pub left_out: BTreeSet<String>,
+    /// Clips that are tested, all of them with samples.
+    pub tested: BTreeSet<String>,
+}
+
+/// The folds for `samples`, whose clips' people are in `people`.
+pub fn folds(by: By, samples: &[Sample], people: &BTreeMap<String, String>) -> Vec<Fold> {
+    match by {
+        By::Half { seed } => vec![half(samples, seed)],
+        By::Clip => leave_out(samples, people.keys(), |clip| clip.to_owned()),
+        By::Person => {
+            leave_out(samples, people.keys(), |clip| people.get(clip).map_or(clip, |p| p).to_owned())
+        }
+    }
+}
+
+fn half(samples: &[Sample], seed: u64) -> Fold {
+    let mut by_class: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+    for (i, sample) in samples.iter().enumerate() {
+        by_class.entry(&sample.class).or_default().push(i);
+    }
+    let (mut taught, mut held_back) = (Vec::new(), Vec::new());
+    for (number, of_class) in by_class.values_mut().enumerate() {
+        Rng::for_part(seed, number as u64).shuffle(of_class);
+        let (first, second) = of_class.split_at(of_class.len().div_ceil(2));
+        taught.extend_from_slice(first);
+        held_back.extend_from_slice(second);
+    }
+    taught.sort_unstable();
+    held_back.sort_unstable();
+    let tested = samples.iter().map(|s| s.clip.clone()).collect();
+    Fold { name: format!("half {seed}"), taught, held_back, left_out: BTreeSet::new(), tested }
+}
+
+fn leave_out<'p>(
+    samples: &[Sample],
+    other_clips: impl Iterator<Item = &'p String>,
+    group_of: impl Fn(&str) -> String,
+) -> Vec<Fold> {
+    let groups: BTreeSet<String> = samples.iter().map(|s| group_of(&s.clip)).collect();
+    let clips: BTreeSet<&String> = samples.iter().map(|s| &s.clip).chain(other_clips).collect();
+    let fold = |group: String| {
+        let inside = |clip: &str| group_of(clip) == group;
+        Fold {
+            taught: (0..samples.len()).filter(|&i| !inside(&samples[i].clip)).collect(),
+            held_back: Vec::new(),
+            left_out: clips.iter().filter(|c| inside(c)).map(|c| (*c).clone()).collect(),
+            tested: samples.iter().filter(|s| inside(&s.clip)).map(|s| s.clip.clone()).collect(),
+            name: group,
+        }
+    };
+    groups.into_iter().map(fold).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample(clip: &str, class: &str, person: &str) -> Sample {
+        Sample {
+            clip: clip.into(),
+            class: class.into(),
+            start_secs: 0.0,
+            stop_secs: 1.0,
+            whole_clip: false,
+            person: Some(person.into()),
+            line: 1,
+        }
+    }
+
+    fn samples() -> Vec<Sample> {
+        let rows = [
+            ("1", "a", "x"),
+            ("1", "b", "x"),
+            ("2", "a", "x"),
+            ("2", "a", "x"),
+            ("3", "a", "y"),
+            ("3", "a", "y"),
+        ];
+        rows.iter().map(|(c, k, p)| sample(c, k, p)).collect()
+    }
+
+    fn people() -> BTreeMap<String, String> {
+        [("1", "x"), ("2", "x"), ("3", "y"), ("4", "y")].map(|(c, p)| (c.to_owned(), p.to_owned())).into()
+    }
+
+    #[test]
+    fn half_rounds_up_and_gives_every_sample_one_place() {
+        let fold = &folds(By::Half { seed: 3 }, &samples(), &people())[0];
+        assert_eq!((fold.taught.len(), fold.held_back.len()), (4, 2));
+        assert!(fold.taught.contains(&1), "the only sample of b must teach");
+        assert!(fold.taught.iter().all(|t| !fold.held_back.contains(t)));
+        assert_eq!(fold.tested.len(), 3);
+        assert_ne!(fold.taught, folds(By::Half { seed: 4 }, &samples(), &people())[0].taught);
+    }
+
+    #[test]
+    fn a_person_left_out_takes_all_their_clips_along() {
+        let all = folds(By::Person, &samples(), &people());
+        assert_eq!(all.len(), 2);
+        assert_eq!(all[1].name, "y");
+        assert_eq!(all[1].taught, [0, 1, 2, 3]);
+        assert!(all[1].left_out.contains("4"), "their clip without samples must not train either");
+        assert_eq!(all[1].tested.iter().collect::<Vec<_>>(), ["3"]);
+    }
+
+    #[test]
+    fn every_clip_with_samples_is_left_out_once() {
+        let names: Vec<String> = folds(By::Clip, &samples(), &people()).into_iter().map(|f| f.name).collect();
+        assert_eq!(names, ["1", "2", "3"]);
+    }
+}

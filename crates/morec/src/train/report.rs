@@ -1,0 +1,81 @@
+//! What training did, for people to read.
+
+use std::collections::BTreeMap;
+
+use crate::classes::ClassInfo;
+
+use super::from_clips::Prepared;
+use super::set::Source;
+use super::templates::Trained;
+
+/// How a training run went.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct TrainingReport {
+    /// The classes and what they were learned from.
+    pub classes: Vec<ClassInfo>,
+    /// Bones that every labelled clip shows, by name.
+    pub bones: Vec<String>,
+    /// Seconds of background motion by source: `unlabelled`, `clips`, `everyday`.
+    pub background_secs: BTreeMap<String, f64>,
+    /// Largest distance that is reported.
+    pub threshold: f32,
+    /// What set the threshold.
+    pub threshold_from: String,
+    /// Hard negatives found, by the same sources.
+    pub negatives: BTreeMap<String, usize>,
+    /// What the user should know or do.
+    pub notes: Vec<String>,
+}
+
+impl TrainingReport {
+    /// The report on `trained`, from `prepared`.
+    pub fn of(prepared: &Prepared, trained: &Trained, tick_hz: f64) -> Self {
+        let streams = &prepared.set.streams;
+        let mut background_secs = BTreeMap::new();
+        for stream in streams.iter().filter(|s| s.rest_is_background) {
+            let known: usize = stream.known.iter().map(|k| k.ticks.len()).sum();
+            let secs = stream.rows.len().saturating_sub(known) as f64 / tick_hz;
+            *background_secs.entry(source_name(stream.source).to_owned()).or_insert(0.0) += secs;
+        }
+        let mut negatives = BTreeMap::new();
+        for miss in &trained.negatives {
+            *negatives.entry(source_name(streams[miss.stream].source).to_owned()).or_insert(0) += 1;
+        }
+        let classes = trained.model.classes.clone();
+        let mut notes = class_notes(&classes);
+        if !prepared.lacking.is_empty() {
+            notes.push(format!(
+                "left out because they lack bones that the labelled clips have: {}",
+                prepared.lacking.join(", ")
+            ));
+        }
+        notes.extend(trained.notes.iter().cloned());
+        Self {
+            classes,
+            bones: prepared.bones.into(),
+            background_secs,
+            threshold: trained.model.threshold,
+            threshold_from: trained.threshold_from.clone(),
+            negatives,
+            notes,
+        }
+    }
+}
+
+fn class_notes(classes: &[ClassInfo]) -> Vec<String> {
+    let note = |class: &ClassInfo| match class.samples {
+        0 => Some(format!("{}: no sample, it will never be recognised", class.name)),
+        1 => Some(format!("{}: a single sample; give more, by several people", class.name)),
+        _ => None,
+    };
+    classes.iter().filter_map(note).collect()
+}
+
+/// How reports name where background motion came from.
+pub fn source_name(source: Source) -> &'static str {
+    match source {
+        Source::Labelled => "unlabelled",
+        Source::Background => "clips",
+        Source::Everyday => "everyday",
+    }
+}
