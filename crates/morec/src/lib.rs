@@ -5,4 +5,5 @@ pub mod formats;
 pub mod import;
 pub mod kinematics;
 pub mod math;
+pub mod resample;
 pub mod roles;
