@@ -1,6 +1,8 @@
 //! The command `morec`: what was typed becomes arguments, each command's file does the rest.
 
 mod commands;
+mod files;
+mod progress;
 
 use std::process::ExitCode;
 
@@ -15,11 +17,17 @@ struct Cli {
 }
 
 #[derive(Subcommand)]
-enum Command {}
+enum Command {
+    Inspect(commands::inspect::Args),
+    Convert(commands::convert::Args),
+}
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
-    let outcome: anyhow::Result<ExitCode> = match cli.command {};
+    let outcome = match cli.command {
+        Command::Inspect(args) => commands::inspect::run(args),
+        Command::Convert(args) => commands::convert::run(args),
+    };
     match outcome {
         Ok(code) => code,
         // Whoever reads our output has seen enough: that is not a failure of ours.

@@ -1,0 +1,5 @@
+//! The commands as they are typed: one binary for all of them, a module for each.
+
+mod convert;
+mod inspect;
+mod kit;
