@@ -1,6 +1,9 @@
 //! The command `morec`: what was typed becomes arguments, each command's file does the rest.
 
 mod commands;
+mod figures;
+mod lengths;
+mod table;
 
 use std::process::ExitCode;
 
@@ -15,11 +18,15 @@ struct Cli {
 }
 
 #[derive(Subcommand)]
-enum Command {}
+enum Command {
+    Evaluate(commands::evaluate::Args),
+}
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
-    let outcome: anyhow::Result<ExitCode> = match cli.command {};
+    let outcome: anyhow::Result<ExitCode> = match &cli.command {
+        Command::Evaluate(args) => commands::evaluate::run(args),
+    };
     match outcome {
         Ok(code) => code,
         // Whoever reads our output has seen enough: that is not a failure of ours.
