@@ -40,8 +40,9 @@ fn write_figures(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
         totals.known_clips, totals.known_secs, totals.samples, totals.detections
     )?;
     let t = &e.thesis;
-    let mut line =
-        |name: &str, value: String, detail: String| writeln!(out, "{name:<24} {value:>8}   {detail}");
+    let mut line = |name: &str, value: String, detail: String| {
+        writeln!(out, "{}", format!("{name:<24} {value:>8}   {detail}").trim_end())
+    };
     line(
         "thesis accuracy",
         figure(t.accuracy),
