@@ -3,6 +3,9 @@
 mod commands;
 mod files;
 mod progress;
+mod figures;
+mod lengths;
+mod table;
 
 use std::process::ExitCode;
 
@@ -20,6 +23,7 @@ struct Cli {
 enum Command {
     Inspect(commands::inspect::Args),
     Convert(commands::convert::Args),
+    Evaluate(commands::evaluate::Args),
 }
 
 fn main() -> ExitCode {
@@ -27,6 +31,8 @@ fn main() -> ExitCode {
     let outcome = match cli.command {
         Command::Inspect(args) => commands::inspect::run(args),
         Command::Convert(args) => commands::convert::run(args),
+    let outcome: anyhow::Result<ExitCode> = match &cli.command {
+        Command::Evaluate(args) => commands::evaluate::run(args),
     };
     match outcome {
         Ok(code) => code,

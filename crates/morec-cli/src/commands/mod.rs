@@ -5,3 +5,4 @@
 
 pub mod convert;
 pub mod inspect;
+pub mod evaluate;

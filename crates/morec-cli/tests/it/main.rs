@@ -3,3 +3,5 @@
 mod convert;
 mod inspect;
 mod kit;
+//! The command line, as a person or a script meets it.
+mod evaluate;

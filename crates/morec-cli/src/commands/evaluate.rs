@@ -1,0 +1,229 @@
+//! `morec evaluate`: detections held against labels.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::{Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::{Context, bail};
+use morec::eval::{Evaluation, StreamInfo, Truth, timelines};
+use morec::formats::Warning;
+use morec::labels::{ClipLength, Labels, Resolved, read_found};
+use morec::report::Report;
+
+use crate::figures;
+use crate::lengths::lengths;
+
+/// Measure detections against labels.
+///
+/// Prints thesis accuracy with its four counts, F1 at overlaps of 0.1, 0.25, 0.5 and 0.75, false alarms a minute,
+/// delay, errors of starts and stops, P_C/P_E/P_R and the confusion matrix, over all clips and class by class.
+///
+/// Labels and detections are tables of tab-separated text with a header: `clip`, `class`, and `start`, `stop`
+/// (frames of the clip, stop exclusive) or `start_secs`, `stop_secs`. In a labelled clip, what has no label counts
+/// as none of the classes. Clips that no label names are left out, unless --unknown says that they hold none of
+/// the classes.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Exit codes: 0 measured; 1 a file cannot be read or nothing can be measured; 2 wrong command line.\n\n\
+    Example: morec recognize signs.index new/ -o found.tsv\n         \
+    morec evaluate --truth labels.tsv --found found.tsv --clips new/ --report out/"
+)]
+pub struct Args {
+    /// Labels: columns clip, class, and start, stop or start_secs, stop_secs, or neither for whole clips
+    #[arg(long, value_name = "TSV")]
+    truth: PathBuf,
+    /// Detections, as `morec recognize` writes them or with as little as clip, start, stop, class; - reads them
+    /// from standard input
+    #[arg(long, value_name = "TSV")]
+    found: PathBuf,
+    /// Clips, or folders of clips, that were searched: they tell each clip's rate and length
+    #[arg(long, value_name = "DIR|CLIP", num_args = 1.., required = true)]
+    clips: Vec<PathBuf>,
+    /// Clips, or folders, that hold none of the classes: what is found there counts apart from the rest
+    #[arg(long, value_name = "DIR|CLIP", num_args = 1..)]
+    unknown: Vec<PathBuf>,
+    /// Classes that count, separated by commas; samples of others are taken as unlabelled, and a clip with samples
+    /// of others only as unknown [default: every class of the labels]
+    #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
+    classes: Vec<String>,
+    /// Print one JSON object instead of tables
+    #[arg(long)]
+    json: bool,
+    /// Write report.html, one file without outside links, into this folder
+    #[arg(long, value_name = "DIR")]
+    report: Option<PathBuf>,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    let labels = Labels::read(&read(&args.truth)?).with_context(|| args.truth.display().to_string())?;
+    let table = read_found(&read(&args.found)?).with_context(|| args.found.display().to_string())?;
+    warn(&args.truth, &labels.warnings);
+    warn(&args.found, &table.warnings);
+    let mut clips = lengths(&args.clips)?;
+    let unknown = lengths(&args.unknown)?;
+    let unknown_names: BTreeSet<String> = unknown.keys().cloned().collect();
+    clips.extend(unknown);
+
+    let resolved = labels.resolve(&clips);
+    warn(&args.truth, &resolved.warnings);
+    let cases = Cases::new(&clips, resolved, &unknown_names, &args.classes)?;
+    cases.notes.iter().for_each(|note| eprintln!("morec: {note}"));
+    // Left-out clips keep their detections out, too, without a word for each.
+    let (founds, strangers) = table.resolve(&clips);
+    warn(&args.found, &strangers);
+    let streams: BTreeSet<&str> = cases.streams.iter().map(|s| s.clip.as_str()).collect();
+    let founds: Vec<_> = founds.into_iter().filter(|f| streams.contains(f.clip.as_str())).collect();
+
+    let evaluation = Evaluation::of(&cases.streams, &cases.truths, &founds)?;
+    let mut out = std::io::stdout().lock();
+    if args.json {
+        figures::write_json(&mut out, &evaluation)?;
+    } else {
+        figures::write_tables(&mut out, &evaluation)?;
+    }
+    out.flush()?;
+    if let Some(folder) = &args.report {
+        let timelines = timelines(&cases.streams, &cases.truths, &founds)?;
+        let named = |path: &Path| path.display().to_string();
+        let about =
+            [("labels".to_owned(), named(&args.truth)), ("detections".to_owned(), named(&args.found))];
+        let title = "Detections against labels";
+        let report =
+            Report { title, about: &about, evaluation: &evaluation, timelines: &timelines, training: &[] };
+        figures::write_report(folder, &report)?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// What is evaluated: the streams and their samples.
+#[derive(Debug)]
+struct Cases {
+    streams: Vec<StreamInfo>,
+    truths: Vec<Truth>,
+    /// What was left out, for the person at the terminal.
+    notes: Vec<String>,
+}
+
+impl Cases {
+    /// Sorts clips into known, unknown and left out. `classes` empty: all count.
+    fn new(
+        clips: &BTreeMap<String, ClipLength>,
+        resolved: Resolved,
+        unknown: &BTreeSet<String>,
+        classes: &[String],
+    ) -> anyhow::Result<Self> {
+        let labelled: BTreeSet<String> = resolved.samples.iter().map(|s| s.clip.clone()).collect();
+        if let Some(class) = classes.iter().find(|c| !resolved.samples.iter().any(|s| s.class == **c)) {
+            bail!("--classes names {class}, which no label of these clips has");
+        }
+        let mut notes = Vec::new();
+        if !resolved.absent.is_empty() {
+            let rows: usize = resolved.absent.values().sum();
+            let names = some_of(resolved.absent.keys());
+            notes.push(format!("{rows} labels are of clips that --clips does not hold; left out: {names}"));
+        }
+        let counts = |class: &str| classes.is_empty() || classes.iter().any(|c| c == class);
+        let counted = resolved.samples.into_iter().filter(|s| counts(&s.class));
+        let (lost, kept): (Vec<_>, Vec<_>) = counted.partition(|s| unknown.contains(&s.clip));
+        if !lost.is_empty() {
+            notes.push(format!("{} labels lie in clips that --unknown names; left out", lost.len()));
+        }
+        let truths: Vec<Truth> = kept.into_iter().map(Truth::from).collect();
+        let known: BTreeSet<&str> = truths.iter().map(|t| t.clip.as_str()).collect();
+        let (used, unlabelled): (Vec<_>, Vec<_>) =
+            clips.iter().partition(|(name, _)| labelled.contains(*name) || unknown.contains(*name));
+        if !unlabelled.is_empty() {
+            let names = some_of(unlabelled.iter().map(|(name, _)| *name));
+            let count = unlabelled.len();
+            notes.push(format!(
+                "{count} clips have no label; left out (--unknown if they hold no class): {names}"
+            ));
+        }
+        let streams = used.into_iter().map(|(name, length)| StreamInfo {
+            clip: name.clone(),
+            duration_secs: length.duration_secs(),
+            unknown: !known.contains(name.as_str()),
+        });
+        let streams: Vec<StreamInfo> = streams.filter(|s| s.duration_secs > 0.0).collect();
+        if streams.is_empty() {
+            bail!("nothing to measure: no label names any of the clips, and none is given with --unknown");
+        }
+        Ok(Self { streams, truths, notes })
+    }
+}
+
+/// The first few of many names.
+fn some_of<'a>(names: impl ExactSizeIterator<Item = &'a String>) -> String {
+    const SHOWN: usize = 5;
+    let more = names.len().saturating_sub(SHOWN);
+    let shown: Vec<&str> = names.take(SHOWN).map(String::as_str).collect();
+    if more == 0 { shown.join(", ") } else { format!("{} and {more} more", shown.join(", ")) }
+}
+
+fn read(path: &Path) -> anyhow::Result<Vec<u8>> {
+    if path.as_os_str() == "-" {
+        let mut bytes = Vec::new();
+        std::io::stdin().lock().read_to_end(&mut bytes).context("standard input")?;
+        return Ok(bytes);
+    }
+    std::fs::read(path).with_context(|| path.display().to_string())
+}
+
+fn warn(path: &Path, warnings: &[Warning]) {
+    const SHOWN: usize = 10;
+    for warning in warnings.iter().take(SHOWN) {
+        eprintln!("morec: {}: {warning}", path.display());
+    }
+    if warnings.len() > SHOWN {
+        eprintln!("morec: {}: {} more warnings", path.display(), warnings.len() - SHOWN);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cases(labels: &str, unknown: &[&str], classes: &[&str]) -> anyhow::Result<Cases> {
+        let length = ClipLength { frames: 300, rate_hz: 30.0 };
+        let clips: BTreeMap<String, ClipLength> =
+            ["a", "b", "c"].map(|name| (name.to_owned(), length)).into();
+        let resolved = Labels::read(labels.as_bytes()).unwrap().resolve(&clips);
+        let owned = |names: &[&str]| names.iter().map(|n| (*n).to_owned()).collect::<Vec<_>>();
+        Cases::new(&clips, resolved, &owned(unknown).into_iter().collect(), &owned(classes))
+    }
+
+    fn streams(cases: &Cases) -> Vec<(&str, bool)> {
+        cases.streams.iter().map(|s| (s.clip.as_str(), s.unknown)).collect()
+    }
+
+    const LABELS: &str = "clip\tclass\tstart\tstop\na\tx\t0\t30\nb\ty\t0\t30\nz\ty\t0\t30\n";
+
+    #[test]
+    fn clips_without_labels_are_left_out_unless_named_unknown() {
+        let plain = cases(LABELS, &[], &[]).unwrap();
+        assert_eq!(streams(&plain), [("a", false), ("b", false)]);
+        assert!(plain.notes.iter().any(|n| n.ends_with("left out: z")), "{:?}", plain.notes);
+        assert!(plain.notes.iter().any(|n| n.starts_with("1 clips have no label")), "{:?}", plain.notes);
+        let with_unknown = cases(LABELS, &["c", "b"], &[]).unwrap();
+        assert_eq!(streams(&with_unknown), [("a", false), ("b", true), ("c", true)]);
+        assert_eq!(with_unknown.truths.len(), 1);
+        assert!(with_unknown.notes.iter().any(|n| n.starts_with("1 labels lie in clips that --unknown")));
+    }
+
+    #[test]
+    fn a_clip_with_other_classes_only_is_unknown() {
+        let only_x = cases(LABELS, &[], &["x"]).unwrap();
+        assert_eq!(streams(&only_x), [("a", false), ("b", true)]);
+        assert_eq!(only_x.truths.len(), 1);
+        assert!(cases(LABELS, &[], &["walk"]).unwrap_err().to_string().contains("--classes names walk"));
+    }
+
+    #[test]
+    fn nothing_to_measure_is_said() {
+        assert!(
+            cases("clip\tclass\nz\tx\n", &[], &[]).unwrap_err().to_string().contains("nothing to measure")
+        );
+    }
+}

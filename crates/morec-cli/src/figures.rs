@@ -1,0 +1,165 @@
+//! An evaluation in the terminal: the same tables and the same JSON for every command that evaluates.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use anyhow::Context;
+use morec::eval::{ClassFigures, Evaluation, MEASURED_OVERLAP};
+use morec::report::Report;
+
+use crate::table::Table;
+
+/// Writes the evaluation as one JSON object, indented, with a line ending.
+pub fn write_json(out: &mut impl Write, evaluation: &Evaluation) -> io::Result<()> {
+    serde_json::to_writer_pretty(&mut *out, evaluation)?;
+    writeln!(out)
+}
+
+/// Writes the report as `report.html` into `folder`, which is made if need be, and says so on standard error.
+pub fn write_report(folder: &Path, report: &Report<'_>) -> anyhow::Result<PathBuf> {
+    std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
+    let path = folder.join("report.html");
+    std::fs::write(&path, report.html()).with_context(|| path.display().to_string())?;
+    eprintln!("morec: report: {}", path.display());
+    Ok(path)
+}
+
+/// Writes every measure as text tables.
+pub fn write_tables(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
+    write_figures(out, e)?;
+    write_overlaps(out, e)?;
+    write_classes(out, e)?;
+    write_confusion(out, e)
+}
+
+fn write_figures(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
+    let totals = &e.totals;
+    writeln!(
+        out,
+        "{} clips, {:.1} s; {} samples, {} detections\n",
+        totals.known_clips, totals.known_secs, totals.samples, totals.detections
+    )?;
+    let t = &e.thesis;
+    let mut line = |name: &str, value: String, detail: String| {
+        writeln!(out, "{}", format!("{name:<24} {value:>8}   {detail}").trim_end())
+    };
+    line(
+        "thesis accuracy",
+        figure(t.accuracy),
+        format!(
+            "TP {}  FP {}  FN {}  TN {}",
+            t.true_positives, t.false_positives, t.false_negatives, t.true_negatives
+        ),
+    )?;
+    line("F1 at half overlap", figure(e.f1_at(MEASURED_OVERLAP)), String::new())?;
+    let alarms = &e.false_alarms;
+    let detail = format!("{} in {:.2} min", alarms.count, alarms.minutes);
+    line("false alarms a minute", figure(alarms.per_minute), detail)?;
+    if e.unknown.clips > 0 {
+        let u = &e.unknown;
+        let detail = format!("{} in {:.2} min of unknown motion", u.detections, u.minutes);
+        line("  in unknown motion", figure(u.per_minute), detail)?;
+        let detail = format!("{} of {} clips with a detection", u.clips_accepted, u.clips);
+        line("unknown accepted", figure(u.unknown_accepted), detail)?;
+    }
+    let d = &e.delay;
+    let detail = format!("90 % within {}, {} measured", secs(d.p90_secs), d.count);
+    line("delay, median", secs(d.median_secs), detail)?;
+    let b = &e.boundaries;
+    let bias = |bias: Option<f64>| format!("bias {}, positive is late", signed_secs(bias));
+    line("start error, median", secs(b.start_median_abs_secs), bias(b.start_median_secs))?;
+    line("stop error, median", secs(b.stop_median_abs_secs), bias(b.stop_median_secs))?;
+    let c = &e.classification;
+    line("P_C  (right)", figure(c.p_c), format!("{} samples", c.right))?;
+    line("P_E  (wrong)", figure(c.p_e), format!("{} samples", c.wrong))?;
+    line("P_R  (rejected)", figure(c.p_r), format!("{} samples", c.rejected))
+}
+
+fn write_overlaps(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
+    let mut table = Table::new(["overlap", "F1", "precision", "recall", "matched", "missed", "surplus"]);
+    for o in &e.overlap {
+        let rates = [o.f1, o.precision, o.recall].map(figure);
+        let counts = [o.matched, o.missed, o.spurious].map(|n| n.to_string());
+        table.row([format!("{:.2}", o.min_iou)].into_iter().chain(rates).chain(counts));
+    }
+    write!(out, "\ndetections matched one to one with samples of their class\n{table}")
+}
+
+fn write_classes(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
+    let mut table = Table::new([
+        "class",
+        "samples",
+        "found",
+        "F1",
+        "precision",
+        "recall",
+        "P_C",
+        "P_E",
+        "P_R",
+        "missed",
+        "false alarms",
+        "in unknown",
+        "delay",
+        "start",
+        "stop",
+    ]);
+    e.classes.iter().for_each(|class| table.row(class_row(class)));
+    write!(
+        out,
+        "\nclass by class (overlap {MEASURED_OVERLAP}; delay, start and stop are medians, positive is late)\n{table}"
+    )
+}
+
+fn class_row(class: &ClassFigures) -> Vec<String> {
+    let mut row = vec![class.class.clone(), class.samples.to_string(), class.detections.to_string()];
+    if let Some(o) = class.overlap.iter().find(|o| o.min_iou == MEASURED_OVERLAP) {
+        row.extend([o.f1, o.precision, o.recall].map(figure));
+    }
+    let c = &class.classification;
+    row.extend([c.p_c, c.p_e, c.p_r].map(figure));
+    row.extend([class.missed, class.false_alarms.count, class.unknown_detections].map(|n| n.to_string()));
+    row.push(secs(class.delay.median_secs));
+    row.extend([class.boundaries.start_median_secs, class.boundaries.stop_median_secs].map(signed_secs));
+    row
+}
+
+fn write_confusion(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
+    // Long class names would make the columns of a matrix too wide: columns are numbered, rows say the names.
+    let columns = &e.confusion.columns;
+    let number = |class: &String| columns.iter().position(|c| c == class).map_or(0, |i| i + 1);
+    let mut header = vec![String::new()];
+    header.extend((1..=columns.len()).map(|i| i.to_string()));
+    header.push("nothing".to_owned());
+    let mut table = Table::with_header(header);
+    let names = e.confusion.rows.iter().map(|name| format!("{} {name}", number(name)));
+    for (name, counts) in names.chain(["nothing".to_owned()]).zip(&e.confusion.counts) {
+        let cells = counts.iter().map(|n| if *n == 0 { "·".to_owned() } else { n.to_string() });
+        table.row([name].into_iter().chain(cells));
+    }
+    write!(out, "\nconfusion (rows: what is labelled; columns: what was found)\n{table}")?;
+    let unlabelled: Vec<String> = columns
+        .iter()
+        .filter(|c| !e.confusion.rows.contains(c))
+        .map(|c| format!("{} {c}", number(c)))
+        .collect();
+    match unlabelled.is_empty() {
+        true => Ok(()),
+        false => writeln!(out, "  found only: {}", unlabelled.join(", ")),
+    }
+}
+
+fn figure(value: Option<f64>) -> String {
+    value.map_or("–".to_owned(), |v| format!("{v:.3}"))
+}
+
+fn secs(value: Option<f64>) -> String {
+    value.map_or("–".to_owned(), |v| format!("{:.2} s", no_minus_zero(v)))
+}
+
+fn signed_secs(value: Option<f64>) -> String {
+    value.map_or("–".to_owned(), |v| format!("{:+.2} s", no_minus_zero(v)))
+}
+
+fn no_minus_zero(secs: f64) -> f64 {
+    if secs.abs() < 0.005 { 0.0 } else { secs }
+}
