@@ -72,11 +72,6 @@ impl Actor {
         self.size = (1.0 + 0.06 * self.rng.normal()).clamp(0.85, 1.12);
     }
 
-    /// Multiplies the speed of what follows, until the next [`Actor::vary`].
-    pub fn hurry(&mut self, factor: f64) {
-        self.pace *= factor;
-    }
-
     /// `secs` as long as this person takes for it now, never twice the same.
     pub fn secs(&mut self, secs: f64) -> f64 {
         secs / (self.person.tempo * self.pace) * (1.0 + 0.05 * self.rng.normal())

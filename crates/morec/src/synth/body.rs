@@ -42,7 +42,7 @@ impl Body {
             arm,
             leg,
             ankle_height,
-            stand_height: ankle_height + 0.985 * (leg[0] + leg[1]),
+            stand_height: ankle_height + 0.99 * (leg[0] + leg[1]),
             stoop_rad: person.stoop_rad,
             elbow_rad: person.elbow_rad,
         }
@@ -150,9 +150,9 @@ impl Body {
             let joint = world_from_hips * self.offset(LEG[side.index()]);
             let ankle = feet[side.index()].ankle;
             let (dx, dz) = (hips.x + joint.x - ankle.x, hips.z + joint.z - ankle.z);
-            let reach = 0.988 * length;
+            let reach = 0.99 * length;
             let rise = (reach * reach - dx * dx - dz * dz).max(0.04 * length * length).sqrt();
-            hips.y = soft_min(hips.y, ankle.y + rise - joint.y, 0.01);
+            hips.y = soft_min(hips.y, ankle.y + rise - joint.y, 0.025);
         }
         hips
     }

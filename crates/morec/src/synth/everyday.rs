@@ -16,11 +16,13 @@ use crate::clip::Clip;
 /// People in the library.
 const PEOPLE: usize = 4;
 /// Length of each clip, at least.
-const CLIP_SECS: f64 = 12.0;
+const CLIP_SECS: f64 = 10.0;
+/// Length of the clips of gesticulating and flailing: arms are the most various, and the most often indexed.
+const ARMS_SECS: f64 = 36.0;
 /// Frame rate of the library.
 const RATE_HZ: f64 = 60.0;
 
-/// What the library shows, each by every person. Talking comes more often: arms are the most various.
+/// What the library shows, each by every person.
 pub const CONTENTS: [(&str, Perform); 16] = [
     ("stand", stand),
     ("walk", walk),
@@ -50,7 +52,8 @@ pub fn everyday(seed: u64) -> Vec<Clip> {
             let rng = Rng::for_part(seed, (number * CONTENTS.len() + at) as u64);
             let mut actor = Actor::new(&person, rng);
             actor.wait(0.4);
-            while actor.now_secs < CLIP_SECS {
+            let secs = if ["talk", "flail"].contains(content) { ARMS_SECS } else { CLIP_SECS };
+            while actor.now_secs < secs {
                 actor.vary();
                 perform(&mut actor);
                 let pause = actor.rng.range(0.1, 0.8);
@@ -285,9 +288,9 @@ pub fn flail(a: &mut Actor) {
     let stop = a.now_secs + a.rng.range(3.0, 6.0);
     while a.now_secs < stop {
         let (t, secs) = (a.now_secs, a.rng.range(0.3, 1.4));
-        let (mirrored, shared) = (a.rng.chance(0.4), direction(a, 0.4, 1.0));
+        let (mirrored, shared) = (a.rng.chance(0.4), direction(a, 0.5, 1.0));
         for side in Side::BOTH {
-            let own = if mirrored { shared } else { direction(a, 0.4, 1.0) };
+            let own = if mirrored { shared } else { direction(a, 0.5, 1.0) };
             if a.rng.chance(0.8) {
                 a.hand(side, t, secs, own);
                 let turn = a.rng.range(-0.4, 0.6);

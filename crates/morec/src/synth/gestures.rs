@@ -29,7 +29,7 @@ pub fn raise_hands(a: &mut Actor) {
     let t = a.now_secs;
     for side in Side::BOTH {
         let late = 0.03 * a.rng.unit();
-        a.hand(side, t + late, up, [0.2, 0.95, 0.12]);
+        a.hand(side, t + late, up, [0.2, 1.02, 0.12]);
         a.rest_hand(side, t + up + hold + late, down);
     }
     a.head(t, up, [-0.15, 0.0, 0.0]);
@@ -41,7 +41,7 @@ pub fn raise_hands(a: &mut Actor) {
 pub fn point_side(a: &mut Actor) {
     let (side, out, hold, back) = (a.hand, a.secs(0.6), a.secs(0.45), a.secs(0.65));
     let t = a.now_secs;
-    a.hand(side, t, out, [0.95, 0.02, 0.22]);
+    a.hand(side, t, out, [1.05, 0.03, 0.22]);
     a.head(t, out, [0.0, 0.6 * side.sign(), 0.0]);
     a.spine(t, out, [0.0, 0.12 * side.sign(), 0.0]);
     let leave = t + out + hold;
@@ -117,6 +117,11 @@ pub fn bow(a: &mut Actor) {
         a.hips(start, secs, [0.0, 0.0, -0.16 * share]);
         a.spine(start, secs, [0.45 * share, 0.0, 0.0]);
         a.head(start, secs, [0.3 * share, 0.0, 0.0]);
+    }
+    // The hands slide down the thighs.
+    for side in Side::BOTH {
+        a.hand(side, t, down, [0.05, -0.82, 0.42]);
+        a.rest_hand(side, leave, up);
     }
     a.now_secs = leave + up;
 }

@@ -75,12 +75,14 @@ pub fn phone(a: &mut Actor) {
     let (side, up, stay, down) = (a.hand, a.secs(0.8), a.secs(2.2), a.secs(0.8));
     let t = a.now_secs;
     a.hand(side, t, up, [-0.08, 0.28, 0.16]);
+    a.timeline.to(SWIVEL[side.index()], t, up, -0.6);
     a.head(t, up, [0.05, 0.0, -0.15 * side.sign()]);
     for k in 0..3 {
         let hz = a.rng.range(0.3, 0.8);
         a.timeline.wave(SPINE + k, t + up, stay, (hz, 0.0), 0.05);
     }
     a.rest_hand(side, t + up + stay, down);
+    a.timeline.to(SWIVEL[side.index()], t + up + stay, down, 0.0);
     a.head(t + up + stay, down, [0.0; 3]);
     a.now_secs = t + up + stay + down;
 }

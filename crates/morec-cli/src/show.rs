@@ -1,0 +1,167 @@
+//! The demo's show: a stream played in the terminal, with what is said about it and when.
+//!
+//! [`frame::draw`] makes one picture as text and knows no terminal. [`play`] writes pictures to one at accelerated
+//! real time, or just the events where there is none.
+
+mod frame;
+mod picture;
+
+use std::io::{self, IsTerminal, Write};
+use std::time::{Duration, Instant};
+
+use morec::clip::Clip;
+
+pub use frame::Look;
+use frame::Stage;
+
+/// Pictures a second.
+const PICTURES_HZ: f64 = 25.0;
+
+/// A stretch that is known to hold a class.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Truth {
+    pub class: String,
+    pub start_secs: f64,
+    pub stop_secs: f64,
+}
+
+/// A detection, and when it was said.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Said {
+    pub class: String,
+    pub start_secs: f64,
+    pub stop_secs: f64,
+    pub score: f64,
+    pub reported_secs: f64,
+}
+
+/// What is shown.
+#[derive(Debug, Clone, Copy)]
+pub struct Scene<'a> {
+    /// Above the picture: who is seen.
+    pub title: &'a str,
+    /// The stream, Y up.
+    pub clip: &'a Clip,
+    /// What was performed, in order.
+    pub truth: &'a [Truth],
+    /// What was said about it, in the order of `reported_secs`.
+    pub said: &'a [Said],
+}
+
+/// The line of one event: `12.40 s  wave  0.93  (said 0.12 s after its end)`.
+pub fn event_line(said: &Said) -> String {
+    let delay = said.reported_secs - said.stop_secs;
+    let (size, side) = (delay.abs(), if delay < 0.0 { "before" } else { "after" });
+    format!(
+        "{:6.2} s  {}  {:.2}  (said {size:.2} s {side} its end)",
+        said.reported_secs,
+        printable(&said.class),
+        said.score
+    )
+}
+
+/// `name` without the characters that would move the cursor.
+fn printable(name: &str) -> String {
+    name.chars().map(|c| if c.is_control() { '?' } else { c }).collect()
+}
+
+/// Writes the events, a line each: the show where nobody watches.
+pub fn write_events(scene: &Scene, out: &mut impl Write) -> io::Result<()> {
+    for said in scene.said {
+        writeln!(out, "{}", event_line(said))?;
+    }
+    out.flush()
+}
+
+/// Plays the scene on standard output, `speed` times as fast as it was performed; only the events, at once, if
+/// that is not a terminal.
+pub fn play(scene: &Scene, speed: f64) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    if !out.is_terminal() || std::env::var_os("TERM").is_some_and(|term| term == "dumb") {
+        return write_events(scene, &mut out);
+    }
+    let stage = Stage::of(scene.clip);
+    let (started, length_secs) = (Instant::now(), scene.clip.duration_secs());
+    let mut lines = 0;
+    loop {
+        let now_secs = (started.elapsed().as_secs_f64() * speed.max(0.01)).min(length_secs);
+        let picture = frame::draw(scene, &stage, now_secs, &look());
+        out.write_all(over(&picture, lines).as_bytes())?;
+        out.flush()?;
+        lines = picture.lines().count();
+        if now_secs >= length_secs {
+            return Ok(());
+        }
+        std::thread::sleep(Duration::from_secs_f64(1.0 / PICTURES_HZ));
+    }
+}
+
+/// What this terminal can show now; asked for every picture, as windows change their size.
+fn look() -> Look {
+    let (columns, rows) = match terminal_size::terminal_size() {
+        Some((width, height)) => (usize::from(width.0), usize::from(height.0)),
+        None => (80, 24),
+    };
+    let set = |name| std::env::var(name).ok().filter(|value: &String| !value.is_empty());
+    let locale = set("LC_ALL").or_else(|| set("LC_CTYPE")).or_else(|| set("LANG"));
+    let ascii = locale.is_some_and(|l| matches!(l.as_str(), "C" | "POSIX"));
+    Look { columns, rows, colour: set("NO_COLOR").is_none(), unicode: !ascii }
+}
+
+/// The bytes that draw `picture` over the `before` lines of the last one, in one write.
+///
+/// The cursor is hidden only within the write and is then below the picture: whenever somebody presses Ctrl-C,
+/// there is nothing to restore.
+fn over(picture: &str, before: usize) -> String {
+    let mut bytes = String::from("\x1b[?2026h\x1b[?25l\r");
+    if before > 0 {
+        bytes += &format!("\x1b[{before}A");
+    }
+    for line in picture.lines() {
+        bytes += line;
+        bytes += "\x1b[K\n";
+    }
+    bytes += "\x1b[J\x1b[?25h\x1b[?2026l";
+    bytes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_event_says_what_when_and_how_late() {
+        let mut said = Said {
+            class: "wave".to_owned(),
+            start_secs: 10.0,
+            stop_secs: 12.28,
+            score: 0.934,
+            reported_secs: 12.40,
+        };
+        assert_eq!(event_line(&said), " 12.40 s  wave  0.93  (said 0.12 s after its end)");
+        said.stop_secs = 12.5;
+        assert!(event_line(&said).ends_with("(said 0.10 s before its end)"));
+        said.class = "a\x1b[2Jb\n".to_owned();
+        assert!(event_line(&said).contains("  a?[2Jb?  "));
+    }
+
+    #[test]
+    fn without_a_terminal_there_are_just_the_events() {
+        let take = frame::tests::take();
+        let said = frame::tests::said(&take);
+        let scene = Scene { title: "ada", clip: &take.clip, truth: &[], said: &said };
+        let mut out = Vec::new();
+        write_events(&scene, &mut out).unwrap();
+        let text = String::from_utf8(out).unwrap();
+        assert_eq!(text.lines().count(), said.len());
+        assert!(!text.contains('\x1b'));
+    }
+
+    #[test]
+    fn a_picture_is_drawn_over_the_last_and_leaves_the_cursor_on() {
+        let bytes = over("one\ntwo\n", 5);
+        assert!(bytes.contains("\x1b[5A") && bytes.contains("one\x1b[K\ntwo\x1b[K\n"));
+        assert!(bytes.rfind("\x1b[?25h").unwrap() > bytes.rfind("\x1b[?25l").unwrap());
+        assert!(!over("one\n", 0).contains('A'));
+    }
+}
