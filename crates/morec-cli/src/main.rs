@@ -1,14 +1,16 @@
 //! The command `morec`: what was typed becomes arguments, each command's file does the rest.
 
 mod commands;
-mod files;
-mod progress;
 mod figures;
+mod files;
 mod lengths;
-mod table;
+mod material;
+mod progress;
 // `demo` is its one user; without it the compiler finds nobody.
 #[allow(dead_code)]
 mod show;
+mod stats;
+mod table;
 
 use std::process::ExitCode;
 
@@ -26,7 +28,10 @@ struct Cli {
 enum Command {
     Inspect(commands::inspect::Args),
     Convert(commands::convert::Args),
+    Train(commands::train::Args),
+    Recognize(commands::recognize::Args),
     Evaluate(commands::evaluate::Args),
+    Crossval(commands::crossval::Args),
 }
 
 fn main() -> ExitCode {
@@ -34,8 +39,10 @@ fn main() -> ExitCode {
     let outcome = match cli.command {
         Command::Inspect(args) => commands::inspect::run(args),
         Command::Convert(args) => commands::convert::run(args),
-    let outcome: anyhow::Result<ExitCode> = match &cli.command {
-        Command::Evaluate(args) => commands::evaluate::run(args),
+        Command::Train(args) => commands::train::run(&args),
+        Command::Recognize(args) => commands::recognize::run(&args),
+        Command::Evaluate(args) => commands::evaluate::run(&args),
+        Command::Crossval(args) => commands::crossval::run(&args),
     };
     match outcome {
         Ok(code) => code,

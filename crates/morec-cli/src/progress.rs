@@ -42,3 +42,37 @@ impl Drop for Progress {
         self.bar.finish_and_clear();
     }
 }
+
+/// A bar that follows a long job of the library, stage by stage; it shows itself only once a second has passed.
+pub struct Bar {
+    bar: ProgressBar,
+    begun: Instant,
+}
+
+impl Bar {
+    /// A hidden bar.
+    pub fn new() -> Self {
+        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
+        if let Ok(style) = ProgressStyle::with_template("{msg} [{bar:30}] {pos}/{len}") {
+            bar.set_style(style);
+        }
+        Self { bar, begun: Instant::now() }
+    }
+}
+
+impl morec::progress::Progress for Bar {
+    fn report(&self, stage: &str, done: usize, total: usize) {
+        if self.bar.is_hidden() && self.begun.elapsed() > Duration::from_secs(1) {
+            self.bar.set_draw_target(ProgressDrawTarget::stderr());
+        }
+        self.bar.set_message(stage.to_owned());
+        self.bar.set_length(total as u64);
+        self.bar.set_position(done as u64);
+    }
+}
+
+impl Drop for Bar {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}

@@ -4,5 +4,8 @@
 //! wrong.
 
 pub mod convert;
-pub mod inspect;
+pub mod crossval;
 pub mod evaluate;
+pub mod inspect;
+pub mod recognize;
+pub mod train;

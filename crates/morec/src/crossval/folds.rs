@@ -64,18 +64,19 @@ fn half(samples: &[Sample], seed: u64) -> Fold {
 }
 
 fn leave_out<'p>(
-    samples: &[Sample],
+    samples: &'p [Sample],
     other_clips: impl Iterator<Item = &'p String>,
     group_of: impl Fn(&str) -> String,
 ) -> Vec<Fold> {
     let groups: BTreeSet<String> = samples.iter().map(|s| group_of(&s.clip)).collect();
-    let clips: BTreeSet<&String> = samples.iter().map(|s| &s.clip).chain(other_clips).collect();
+    let clips: BTreeSet<&str> =
+        samples.iter().map(|s| s.clip.as_str()).chain(other_clips.map(String::as_str)).collect();
     let fold = |group: String| {
         let inside = |clip: &str| group_of(clip) == group;
         Fold {
             taught: (0..samples.len()).filter(|&i| !inside(&samples[i].clip)).collect(),
             held_back: Vec::new(),
-            left_out: clips.iter().filter(|c| inside(c)).map(|c| (*c).clone()).collect(),
+            left_out: clips.iter().filter(|c| inside(c)).map(|c| (*c).to_owned()).collect(),
             tested: samples.iter().filter(|s| inside(&s.clip)).map(|s| s.clip.clone()).collect(),
             name: group,
         }

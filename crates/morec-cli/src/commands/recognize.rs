@@ -1,0 +1,191 @@
+//! `morec recognize`: clips played through an index as a live stream would be.
+
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::{Context, Result};
+use clap::ValueEnum;
+use morec::clip::Clip;
+use morec::features::bones_of_clip;
+use morec::import::{ImportOptions, Imported, prepare};
+use morec::index::MotionIndex;
+use morec::labels::{FOUND_HEADER, FoundLine};
+use morec::live::{Detection, recognize_clip};
+use morec::roles::Role;
+use morec::roles::mapping::Mapping;
+
+use crate::files::{ReadArgs, expand, open};
+use crate::progress::Progress;
+use crate::stats::Stats;
+
+/// Recognise motions in clips, frame by frame as in a live stream.
+///
+/// Writes one line for each motion: clip, start, stop and reported_at in frames of the clip (stop exclusive), class,
+/// score (0 just accepted … 1 identical to a sample), and the times in seconds.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Exit codes: 0 all clips done; 1 something cannot be read (the others are done all the same); \
+    2 wrong command line.\n\n\
+    Example: morec recognize signs.index new/ -o found.tsv\n         \
+    cat take.bvh | morec recognize signs.index -"
+)]
+pub struct Args {
+    /// The index, as `morec train` writes it
+    index: PathBuf,
+    /// Clips, or folders of clips; - reads one clip from standard input
+    #[arg(required = true, value_name = "CLIP")]
+    clips: Vec<PathBuf>,
+    /// How to write detections
+    #[arg(long, value_enum, default_value = "tsv")]
+    format: Format,
+    /// Where to write them [default: standard output]
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Say on standard error how many frames a second one core recognises, as a whole and by stage
+    #[arg(long)]
+    stats: bool,
+    /// Roles of joints, where inference fails: lines of `role<TAB>joint name`
+    #[arg(long, value_name = "FILE")]
+    roles: Option<PathBuf>,
+    #[command(flatten)]
+    read: ReadArgs,
+}
+
+/// Forms of output.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+enum Format {
+    /// Tab-separated text with a header
+    Tsv,
+    /// One JSON object a line
+    Jsonl,
+}
+
+/// Opens an index file; errors begin with its path.
+pub fn open_index(path: &Path) -> Result<MotionIndex> {
+    let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
+    MotionIndex::from_bytes(&bytes).with_context(|| path.display().to_string())
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<ExitCode> {
+    let index = open_index(&args.index)?;
+    let mapping = match &args.roles {
+        Some(path) => {
+            let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
+            Some(Mapping::read(&bytes).with_context(|| path.display().to_string())?)
+        }
+        None => None,
+    };
+    let options = ImportOptions { mapping, ..ImportOptions::default() };
+    let paths = expand(&args.clips)?;
+    let mut out: Box<dyn Write> = match &args.output {
+        Some(path) => {
+            Box::new(BufWriter::new(File::create(path).with_context(|| path.display().to_string())?))
+        }
+        None => Box::new(std::io::stdout().lock()),
+    };
+    if args.format == Format::Tsv {
+        writeln!(out, "{FOUND_HEADER}")?;
+    }
+    let mut stats = Stats::default();
+    let mut failed = false;
+    let mut progress = Progress::new(paths.len(), "recognising");
+    for path in &paths {
+        match recognize_file(path, &index, &options, args, &mut stats) {
+            Ok(found) => {
+                found.iter().try_for_each(|(clip, d)| write_found(&mut out, args.format, clip, d, &index))?
+            }
+            Err(error) => {
+                failed = true;
+                progress.suspend(|| eprintln!("morec: {error:#}"));
+            }
+        }
+        progress.step();
+    }
+    out.flush()?;
+    drop(progress);
+    if args.stats {
+        eprint!("{stats}");
+    }
+    Ok(if failed { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+}
+
+type FoundInClip = (Clip, Detection);
+
+fn recognize_file(
+    path: &Path,
+    index: &MotionIndex,
+    options: &ImportOptions,
+    args: &Args,
+    stats: &mut Stats,
+) -> Result<Vec<FoundInClip>> {
+    let shown = || path.display().to_string();
+    let opened = stats.reading(|| open(path, &args.read))?;
+    let mut all = Vec::new();
+    for clip in opened.clips {
+        let mut imported = prepare(clip, options).with_context(shown)?;
+        adapt(&mut imported, index, path);
+        let Imported { clip, roles, facts } = &imported;
+        let rest = &facts.rest_frames;
+        let found = stats.recognising(clip.frames, || recognize_clip(&index.model, clip, roles, rest));
+        let found = found.with_context(|| format!("{} ({})", shown(), clip.name))?;
+        if args.stats {
+            stats.stages(&index.model, &imported)?;
+        }
+        let header = Clip { rotations: vec![], tracks: vec![], ..clip.clone() };
+        all.extend(found.into_iter().map(|d| (header.clone(), d)));
+    }
+    Ok(all)
+}
+
+/// Fills roles from the index's training clips and says what stays missing.
+pub fn adapt(imported: &mut Imported, index: &MotionIndex, path: &Path) {
+    index.complete_roles(&mut imported.roles, &imported.clip.skeleton);
+    let shown = bones_of_clip(&imported.clip, &imported.roles, &imported.facts.rest_frames);
+    let used = index.model.bones;
+    if imported.clip.frames > 0 && shown.and(used) != used {
+        let missing: Vec<&str> = imported.roles.missing().filter(|r| needed(*r)).map(Role::name).collect();
+        eprintln!(
+            "morec: {}: the index uses bones that this clip does not show (missing: {}); recognising without them",
+            path.display(),
+            if missing.is_empty() { "bones of no length".to_owned() } else { missing.join(", ") }
+        );
+    }
+}
+
+fn needed(role: Role) -> bool {
+    !matches!(role, Role::Torso | Role::LeftShoulder | Role::RightShoulder)
+}
+
+fn write_found(
+    out: &mut dyn Write,
+    format: Format,
+    clip: &Clip,
+    found: &Detection,
+    index: &MotionIndex,
+) -> std::io::Result<()> {
+    let class = &index.model.classes[found.class.index()].name;
+    let line = FoundLine {
+        clip: &clip.name,
+        class,
+        start_secs: found.start_secs,
+        stop_secs: found.stop_secs,
+        score: found.score,
+        reported_secs: found.reported_secs,
+        rate_hz: clip.rate_hz,
+    };
+    match format {
+        Format::Tsv => writeln!(out, "{line}"),
+        Format::Jsonl => {
+            let frame = |secs: f64| (secs * clip.rate_hz).round() as u64;
+            let object = serde_json::json!({
+                "clip": clip.name, "start": frame(found.start_secs), "stop": frame(found.stop_secs), "class": class,
+                "score": found.score, "reported_at": frame(found.reported_secs),
+                "start_secs": found.start_secs, "stop_secs": found.stop_secs, "reported_secs": found.reported_secs,
+            });
+            writeln!(out, "{object}")
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! `morec train`: labelled clips in, one index file out.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use anyhow::{Context, Result};
+use clap::ValueEnum;
+use morec::index::{MotionIndex, Provenance};
+use morec::roles::Role;
+use morec::train::{Labelling, Source, TrainClip, TrainingReport, train_clips};
+
+use crate::material::{Material, MaterialArgs};
+use crate::progress::Bar;
+use crate::table::Table;
+
+/// Train an index from labelled clips.
+///
+/// Prints what was learned, from what, and what background motion decided how near is near enough: the unlabelled
+/// parts of the labelled clips, the clips named with --background, and made everyday motion.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Exit codes: 0 trained; 1 something cannot be read or trained; 2 wrong command line.\n\n\
+    Example: morec train --clips takes/ --labels labels.tsv --background walks/ -o signs.index"
+)]
+pub struct Args {
+    #[command(flatten)]
+    material: MaterialArgs,
+    /// The method of recognition
+    #[arg(long, value_enum, default_value = "templates")]
+    method: Method,
+    /// Where to write the index
+    #[arg(short, long, value_name = "INDEX")]
+    output: PathBuf,
+    /// Print the training report as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Methods of recognition.
+#[derive(ValueEnum, Clone, Copy, Debug)]
+enum Method {
+    /// Gestures and cycles of up to about three seconds, matched elastically
+    Templates,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<ExitCode> {
+    let Method::Templates = args.method;
+    let material = args.material.load(&[])?;
+    let options = args.material.options();
+    let labelling = Labelling {
+        samples: &material.samples,
+        held_back: &[],
+        classes: &material.classes,
+        unlabelled_is_background: options.unlabelled_is_background,
+    };
+    let (model, report) = train_clips(&material.clips, &labelling, &options, &Bar::new())?;
+    let index = MotionIndex {
+        model: Arc::new(model),
+        roles: role_names(&material.clips),
+        provenance: provenance(&material, &report),
+    };
+    let bytes = index.to_bytes()?;
+    write_whole(&args.output, &bytes)?;
+    if args.json {
+        println!("{}", serde_json::to_string_pretty(&report)?);
+    } else {
+        print_report(&report, bytes.len(), &material, &args.output);
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Writes beside the file and renames: whoever reads meanwhile sees the old index or the new one.
+fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
+    let mut beside = path.as_os_str().to_owned();
+    beside.push(".part");
+    let beside = PathBuf::from(beside);
+    let written = std::fs::write(&beside, bytes).and_then(|()| std::fs::rename(&beside, path));
+    if written.is_err() {
+        let _ = std::fs::remove_file(&beside);
+    }
+    written.with_context(|| path.display().to_string())
+}
+
+/// Joint names by role, of the first labelled clip.
+fn role_names(clips: &[TrainClip]) -> BTreeMap<Role, String> {
+    let Some(clip) = clips.iter().find(|c| c.source == Source::Labelled) else { return BTreeMap::new() };
+    let joints = clip.clip.skeleton.joints();
+    let name = |role: Role| Some((role, joints[clip.roles.joint(role)?].name.clone()));
+    Role::ALL.into_iter().filter_map(name).collect()
+}
+
+fn provenance(material: &Material, report: &TrainingReport) -> Provenance {
+    let labelled = material.clips.iter().filter(|c| c.source == Source::Labelled);
+    Provenance {
+        created: now(),
+        morec_version: env!("CARGO_PKG_VERSION").to_owned(),
+        clips: labelled.map(|c| c.name.clone()).collect(),
+        samples: material.samples.len(),
+        background_secs: report.background_secs.clone(),
+    }
+}
+
+/// The present time as ISO 8601 in UTC, to the second.
+fn now() -> String {
+    let secs = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |d| d.as_secs() as i64);
+    let (days, time) = (secs.div_euclid(86_400), secs.rem_euclid(86_400));
+    let (year, month, day) = civil(days);
+    format!("{year:04}-{month:02}-{day:02}T{:02}:{:02}:{:02}Z", time / 3600, time / 60 % 60, time % 60)
+}
+
+/// Year, month and day of a day counted from 1970-01-01, in the Gregorian calendar. Years are counted from March,
+/// so that the leap day is their last.
+fn civil(days: i64) -> (i64, i64, i64) {
+    let since_0000_03_01 = days + 719_468;
+    let era = since_0000_03_01.div_euclid(146_097);
+    let day_of_era = since_0000_03_01.rem_euclid(146_097);
+    let year_of_era = (day_of_era - day_of_era / 1460 + day_of_era / 36_524 - day_of_era / 146_096) / 365;
+    let day_of_year = day_of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
+    let month_from_march = (5 * day_of_year + 2) / 153;
+    let day = day_of_year - (153 * month_from_march + 2) / 5 + 1;
+    let month = if month_from_march < 10 { month_from_march + 3 } else { month_from_march - 9 };
+    (year_of_era + era * 400 + i64::from(month <= 2), month, day)
+}
+
+fn print_report(report: &TrainingReport, bytes: usize, material: &Material, output: &Path) {
+    let mut table = Table::new(["class", "samples", "people"]);
+    for class in &report.classes {
+        table.row([class.name.clone(), class.samples.to_string(), class.people.to_string()]);
+    }
+    print!("{table}");
+    println!("\nbones: {}", report.bones.join(", "));
+    let secs: Vec<String> =
+        report.background_secs.iter().map(|(source, secs)| format!("{source} {secs:.0} s")).collect();
+    println!("background: {}", if secs.is_empty() { "none".to_owned() } else { secs.join(", ") });
+    println!("threshold: {:.3}, set by {}", report.threshold, report.threshold_from);
+    let negatives: Vec<String> = report.negatives.iter().map(|(source, n)| format!("{source} {n}")).collect();
+    println!(
+        "hard negatives: {}",
+        if negatives.is_empty() { "none".to_owned() } else { negatives.join(", ") }
+    );
+    for note in &report.notes {
+        println!("note: {note}");
+    }
+    let share = 100.0 * bytes as f64 / material.labelled_bytes.max(1) as f64;
+    println!("\n{}: {bytes} bytes, {share:.1} % of the labelled clips' files", output.display());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::civil;
+
+    #[test]
+    fn days_are_dates() {
+        assert_eq!(civil(0), (1970, 1, 1));
+        assert_eq!(civil(-1), (1969, 12, 31));
+        assert_eq!(civil(11_016), (2000, 2, 29));
+        assert_eq!(civil(20_778), (2026, 11, 21));
+    }
+}

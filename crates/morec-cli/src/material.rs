@@ -1,0 +1,287 @@
+//! Clips, labels and people as training and cross-validation need them, from what was typed.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use clap::{Args, ValueEnum};
+use morec::formats::Warning;
+use morec::import::{ImportOptions, prepare};
+use morec::labels::{ClipLength, Labels, Sample, read_people};
+use morec::roles::mapping::Mapping;
+use morec::train::{Source, TrainClip, TrainOptions};
+use rayon::prelude::*;
+
+use crate::files::{ReadArgs, expand, open};
+
+/// Which clips teach what.
+#[derive(Args, Debug)]
+pub struct MaterialArgs {
+    /// Clips, or folders of clips, that the labels speak of
+    #[arg(long, value_name = "DIR|CLIP", num_args = 1.., required = true)]
+    pub clips: Vec<PathBuf>,
+    /// Labels: tab-separated text with a header; columns clip (file stem), class, and start, stop (frames, stop
+    /// exclusive) or start_secs, stop_secs, or neither: then the whole clip is one sample, its still ends trimmed
+    #[arg(long, value_name = "TSV")]
+    pub labels: PathBuf,
+    /// Learn only these classes, separated by commas [default: every class of the labels]
+    #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
+    pub classes: Vec<String>,
+    /// Leave these clips out, by file stem, separated by commas
+    #[arg(long, value_delimiter = ',', value_name = "CLIPS")]
+    pub exclude: Vec<String>,
+    /// Who is seen in which clip: columns clip and person (or give the labels a column person)
+    #[arg(long, value_name = "TSV")]
+    pub people: Option<PathBuf>,
+    /// Clips or folders that hold none of the classes, also by the file stem of one of --clips: what comes near
+    /// the classes in them sets how near is near enough
+    #[arg(long, value_name = "DIR|CLIP", num_args = 1..)]
+    pub background: Vec<PathBuf>,
+    /// What the unlabelled parts of labelled clips are: motion that is none of the classes, or nothing to go by
+    #[arg(long, value_enum, default_value = "background")]
+    pub unlabelled: Unlabelled,
+    /// Do not add made everyday motion to the background
+    #[arg(long)]
+    pub no_everyday: bool,
+    /// Roles of joints, where inference fails: lines of `role<TAB>joint name`
+    #[arg(long, value_name = "FILE")]
+    pub roles: Option<PathBuf>,
+    #[command(flatten)]
+    pub read: ReadArgs,
+}
+
+/// What unlabelled parts of labelled clips are.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unlabelled {
+    /// None of the classes.
+    Background,
+    /// Unknown: used for nothing.
+    Ignore,
+}
+
+/// Everything loaded.
+pub struct Material {
+    /// Labelled and background clips.
+    pub clips: Vec<TrainClip>,
+    /// Clips that hold none of the classes, for testing.
+    pub unknown: Vec<TrainClip>,
+    /// Samples of the classes, in clips that are there.
+    pub samples: Vec<Sample>,
+    /// The classes, in order.
+    pub classes: Vec<String>,
+    /// Bytes that the labelled clips would take as BVH.
+    pub labelled_bytes: u64,
+}
+
+impl MaterialArgs {
+    /// How to train.
+    pub fn options(&self) -> TrainOptions {
+        let unlabelled_is_background = self.unlabelled == Unlabelled::Background;
+        let everyday = if self.no_everyday { None } else { TrainOptions::default().everyday };
+        TrainOptions { unlabelled_is_background, everyday, ..TrainOptions::default() }
+    }
+
+    /// Loads everything; `unknown` are paths like those of `--background`. What is left out is said on standard
+    /// error.
+    pub fn load(&self, unknown: &[PathBuf]) -> Result<Material> {
+        let (labels, people) = self.labels()?;
+        let taught = expand(&self.clips)?;
+        let background = self.named(&taught, &self.background)?;
+        let unknown = self.named(&taught, unknown)?;
+        let excluded: BTreeSet<&str> = self.exclude.iter().map(String::as_str).collect();
+        let mut paths = taught.clone();
+        paths.extend(background.iter().chain(&unknown).cloned());
+        let mut clips = load_clips(&paths, &self.read, &self.import_options()?)?;
+        clips.retain(|c| !excluded.contains(c.clip.name.as_str()));
+        for loaded in &mut clips {
+            loaded.clip.person = people.get(&loaded.clip.name).cloned();
+        }
+        sort_out(clips, &labels, &self.classes, &set_of(&background), &set_of(&unknown))
+    }
+
+    /// The labels, and who is seen in which clip, labelled or not.
+    fn labels(&self) -> Result<(Labels, BTreeMap<String, String>)> {
+        let mut labels = Labels::read(&read(&self.labels)?).with_context(|| shown(&self.labels))?;
+        warn(&self.labels, &labels.warnings);
+        let mut by_clip = BTreeMap::new();
+        if let Some(path) = &self.people {
+            let people = read_people(&read(path)?).with_context(|| shown(path))?;
+            warn(path, &people.warnings);
+            labels.add_people(&people);
+            by_clip = people.by_clip;
+        }
+        let labelled = labels.rows.iter().filter_map(|r| Some((r.clip.clone(), r.person.clone()?)));
+        by_clip.extend(labelled);
+        Ok((labels, by_clip))
+    }
+
+    fn import_options(&self) -> Result<ImportOptions> {
+        let Some(path) = &self.roles else { return Ok(ImportOptions::default()) };
+        let mapping = Mapping::read(&read(path)?).with_context(|| shown(path))?;
+        Ok(ImportOptions { mapping: Some(mapping), ..ImportOptions::default() })
+    }
+
+    /// Paths as they are; what is no path but the file stem of one of `taught` is that clip.
+    fn named(&self, taught: &[PathBuf], given: &[PathBuf]) -> Result<Vec<PathBuf>> {
+        let mut paths = Vec::new();
+        for path in given {
+            if path.exists() {
+                paths.extend(expand(std::slice::from_ref(path))?);
+                continue;
+            }
+            let stem = path.as_os_str();
+            match taught.iter().find(|t| t.file_stem() == Some(stem)) {
+                Some(clip) => paths.push(clip.clone()),
+                None => bail!("{}: no such file or folder, and none of --clips is called so", path.display()),
+            }
+        }
+        Ok(paths)
+    }
+}
+
+/// A clip and the file it came from.
+pub struct LoadedClip {
+    /// The clip, as a labelled one.
+    pub clip: TrainClip,
+    path: PathBuf,
+    file_bytes: u64,
+}
+
+/// Reads and imports files in parallel, each once. Files that cannot be read are named on standard error and left
+/// out; two clips of one name are an error, as labels could not tell them apart.
+pub fn load_clips(paths: &[PathBuf], args: &ReadArgs, options: &ImportOptions) -> Result<Vec<LoadedClip>> {
+    let mut seen = BTreeSet::new();
+    let distinct: Vec<&PathBuf> = paths.iter().filter(|p| seen.insert(canonical(p))).collect();
+    let loaded: Vec<Result<Vec<LoadedClip>>> =
+        distinct.par_iter().map(|p| load_file(p, args, options)).collect();
+    let mut clips: Vec<LoadedClip> = Vec::new();
+    let mut failed = 0;
+    for result in loaded {
+        match result {
+            Ok(found) => clips.extend(found),
+            Err(error) => {
+                failed += 1;
+                eprintln!("morec: left out: {error:#}");
+            }
+        }
+    }
+    if clips.is_empty() {
+        bail!("none of the {failed} files could be read");
+    }
+    let mut names: BTreeMap<&str, &Path> = BTreeMap::new();
+    for clip in &clips {
+        if let Some(other) = names.insert(&clip.clip.name, &clip.path) {
+            let (a, b) = (other.display(), clip.path.display());
+            bail!("{a} and {b} are both called {}: labels could not tell them apart", clip.clip.name);
+        }
+    }
+    Ok(clips)
+}
+
+fn load_file(path: &Path, args: &ReadArgs, options: &ImportOptions) -> Result<Vec<LoadedClip>> {
+    let opened = open(path, args)?;
+    let file_bytes = std::fs::metadata(path).map_or(0, |m| m.len());
+    let import = |clip| {
+        let imported = prepare(clip, options).with_context(|| shown(path))?;
+        let clip = TrainClip {
+            name: imported.clip.name.clone(),
+            rest: imported.facts.rest_frames,
+            roles: imported.roles,
+            clip: imported.clip,
+            source: Source::Labelled,
+            person: None,
+        };
+        Ok(LoadedClip { clip, path: canonical(path), file_bytes })
+    };
+    opened.clips.into_iter().map(import).collect()
+}
+
+/// Gives every clip its part.
+fn sort_out(
+    clips: Vec<LoadedClip>,
+    labels: &Labels,
+    classes: &[String],
+    background: &BTreeSet<PathBuf>,
+    unknown: &BTreeSet<PathBuf>,
+) -> Result<Material> {
+    let length = |c: &LoadedClip| ClipLength { frames: c.clip.clip.frames, rate_hz: c.clip.clip.rate_hz };
+    let lengths = clips.iter().map(|c| (c.clip.name.clone(), length(c))).collect();
+    let resolved = labels.resolve(&lengths);
+    resolved.warnings.iter().for_each(|w| eprintln!("morec: labels, {w}"));
+    if !resolved.absent.is_empty() {
+        let rows: usize = resolved.absent.values().sum();
+        eprintln!("morec: {rows} labels are of clips that are not there ({} clips)", resolved.absent.len());
+    }
+    let aside: BTreeSet<&str> = clips
+        .iter()
+        .filter(|c| background.contains(&c.path) || unknown.contains(&c.path))
+        .map(|c| c.clip.name.as_str())
+        .collect();
+    let wanted = |s: &Sample| classes.is_empty() || classes.contains(&s.class);
+    let samples: Vec<Sample> =
+        resolved.samples.into_iter().filter(|s| wanted(s) && !aside.contains(s.clip.as_str())).collect();
+    let present: BTreeSet<&str> = samples.iter().map(|s| s.class.as_str()).collect();
+    if let Some(class) = classes.iter().find(|c| !present.contains(c.as_str())) {
+        bail!("--classes names {class}, of which no clip holds a sample");
+    }
+    if samples.is_empty() {
+        bail!("no sample to learn from: no label names any of these clips (labels name clips by file stem)");
+    }
+    let names: Vec<String> =
+        if classes.is_empty() { present.iter().map(|c| (*c).to_owned()).collect() } else { classes.to_vec() };
+    let with_samples: BTreeSet<String> = samples.iter().map(|s| s.clip.clone()).collect();
+    let mut material =
+        Material { clips: vec![], unknown: vec![], samples, classes: names, labelled_bytes: 0 };
+    let mut idle = Vec::new();
+    for mut loaded in clips {
+        let (is_background, is_unknown) = (background.contains(&loaded.path), unknown.contains(&loaded.path));
+        if is_unknown {
+            material.unknown.push(loaded.clip.clone());
+        }
+        if is_background {
+            loaded.clip.source = Source::Background;
+            material.clips.push(loaded.clip);
+        } else if with_samples.contains(&loaded.clip.name) {
+            material.labelled_bytes += loaded.file_bytes;
+            material.clips.push(loaded.clip);
+        } else if !is_unknown {
+            idle.push(loaded.clip.name);
+        }
+    }
+    if !idle.is_empty() {
+        eprintln!(
+            "morec: {} clips hold no sample of the classes and are not used (--background if they hold none): {}",
+            idle.len(),
+            some_of(&idle)
+        );
+    }
+    Ok(material)
+}
+
+/// The first few of many names.
+fn some_of(names: &[String]) -> String {
+    const SHOWN: usize = 5;
+    let more = names.len().saturating_sub(SHOWN);
+    let shown = names[..names.len() - more].join(", ");
+    if more == 0 { shown } else { format!("{shown} and {more} more") }
+}
+
+fn set_of(paths: &[PathBuf]) -> BTreeSet<PathBuf> {
+    paths.iter().map(|p| canonical(p)).collect()
+}
+
+fn canonical(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| path.to_owned())
+}
+
+fn shown(path: &Path) -> String {
+    path.display().to_string()
+}
+
+fn read(path: &Path) -> Result<Vec<u8>> {
+    std::fs::read(path).with_context(|| shown(path))
+}
+
+fn warn(path: &Path, warnings: &[Warning]) {
+    warnings.iter().for_each(|warning| eprintln!("morec: {}: {warning}", path.display()));
+}
