@@ -2,7 +2,9 @@
 
 mod commands;
 mod figures;
+mod files;
 mod lengths;
+mod progress;
 mod table;
 
 use std::process::ExitCode;
@@ -19,12 +21,16 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    Inspect(commands::inspect::Args),
+    Convert(commands::convert::Args),
     Evaluate(commands::evaluate::Args),
 }
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
-    let outcome: anyhow::Result<ExitCode> = match &cli.command {
+    let outcome = match cli.command {
+        Command::Inspect(args) => commands::inspect::run(args),
+        Command::Convert(args) => commands::convert::run(args),
         Command::Evaluate(args) => commands::evaluate::run(args),
     };
     match outcome {

@@ -8,4 +8,5 @@ pub mod kinematics;
 pub mod labels;
 pub mod math;
 pub mod report;
+pub mod resample;
 pub mod roles;

@@ -3,4 +3,6 @@
 //! Exit codes: 0 all went well; 1 something could not be done (the message says what); 2 the command line was
 //! wrong.
 
+pub mod convert;
 pub mod evaluate;
+pub mod inspect;

@@ -1,3 +1,6 @@
-//! The command line, as a person or a script meets it.
+//! The commands as they are typed: one binary for all of them, a module for each.
 
+mod convert;
 mod evaluate;
+mod inspect;
+mod kit;

@@ -47,6 +47,25 @@ fn joints_sit_at_the_far_end_of_their_parent_bone() {
 }
 
 #[test]
+fn bvh_and_acclaim_give_the_same_poses() {
+    const WAVE_BVH: &[u8] = include_bytes!("../../../testdata/acclaim/wave.bvh");
+    let options = crate::formats::bvh::BvhOptions::default();
+    let bvh =
+        crate::formats::bvh::read(WAVE_BVH, "wave", &options, &Limits::default()).unwrap().clips.remove(0);
+    let acclaim = clip(&asf(ARM), WAVE);
+    assert_eq!((bvh.frames, bvh.rate_hz), (acclaim.frames, acclaim.rate_hz));
+    assert_eq!(bvh.skeleton, acclaim.skeleton);
+    for frame in 0..bvh.frames {
+        let (a, b) = (WorldPose::of(&bvh, frame), WorldPose::of(&acclaim, frame));
+        for joint in 0..bvh.skeleton.len() {
+            assert!((a.positions[joint] - b.positions[joint]).norm() < 1e-9, "frame {frame}, joint {joint}");
+            assert!(a.rotations[joint].angle_to(&b.rotations[joint]) < 1e-7, "frame {frame}, joint {joint}");
+        }
+        assert!((a.tip(&bvh, 4) - b.tip(&acclaim, 4)).norm() < 1e-9);
+    }
+}
+
+#[test]
 fn the_same_motion_written_as_world_positions_comes_out() {
     // The forearm's axes are turned by 90° about X, so that its Z is the world's −Y: −90° about it are 90° about
     // Y, which swings the hand from +X to −Z.

@@ -164,11 +164,15 @@ impl<'t> Parser<'_, 't> {
                 Ok(())
             }
             other => {
-                let name = &self.found.joints[joint].name;
-                let what = if is_end { "the End Site of" } else { "joint" };
-                Err(self.error(format!("`{{` after {what} {name} (line {line})"), other))
+                let what = self.describe(joint, is_end);
+                Err(self.error(format!("`{{` after {what} (line {line})"), other))
             }
         }
+    }
+
+    fn describe(&self, joint: usize, is_end: bool) -> String {
+        let what = if is_end { "the End Site of" } else { "joint" };
+        format!("{what} {}", self.found.joints[joint].name)
     }
 
     fn close(&mut self) -> Result<(), ParseError> {
@@ -283,8 +287,8 @@ impl<'t> Parser<'_, 't> {
 
     fn finish(mut self) -> Result<Hierarchy, ParseError> {
         if let Some(open) = self.open.last() {
-            let name = &self.found.joints[open.joint].name;
-            return Err(self.error(format!("`}}` closing {name} (opened on line {})", open.line), None));
+            let what = self.describe(open.joint, open.is_end);
+            return Err(self.error(format!("`}}` closing {what} (opened on line {})", open.line), None));
         }
         if self.found.roots.is_empty() {
             return Err(self.error("ROOT", self.found.motion_follows.then_some(b"MOTION")));

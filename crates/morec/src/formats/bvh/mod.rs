@@ -4,6 +4,7 @@
 //! with a [`Warning`](super::Warning) where something had to be guessed or repaired; what cannot is refused.
 
 mod character;
+mod euler;
 mod gaps;
 mod hierarchy;
 mod motion;
@@ -13,8 +14,10 @@ mod positions;
 mod rate;
 mod rows;
 mod text;
+mod write;
 
 pub use positions::PositionChannels;
+pub use write::write;
 
 use self::character::Character;
 use self::hierarchy::Hierarchy;

@@ -36,7 +36,12 @@ pub(super) fn header(cursor: &mut Cursor<'_>, notes: &mut Notes) -> Result<Heade
                 header.frame_time_secs = value(&mut ahead);
                 header.frame_time_secs
             }
-            _ if cursor.at_comment() || key.ends_with(b":") => None,
+            _ if cursor.at_comment() => {
+                notes.count("comment", cursor.line, || "comment skipped".into());
+                cursor.rest_of_line();
+                continue;
+            }
+            _ if key.ends_with(b":") => None,
             _ => return Ok(header),
         };
         if value.is_none() {

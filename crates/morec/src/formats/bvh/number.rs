@@ -99,6 +99,9 @@ pub(super) fn parse_with_comma(token: &[u8]) -> Option<f64> {
 /// Splits numbers written without a blank between them, `0.0-7.5`, at each sign that follows a digit or point;
 /// appends their values to `out`. `None`, with `out` as it was, if the parts are not all numbers.
 pub(super) fn parse_glued(token: &[u8], out: &mut Vec<f64>) -> Option<()> {
+    if token.is_empty() {
+        return None;
+    }
     let before = out.len();
     let mut start = 0;
     for p in 1..=token.len() {
@@ -194,6 +197,7 @@ mod tests {
         assert_eq!(parse_glued(b"-1e-3+2E+1-.5", &mut out), Some(()));
         assert_eq!(out, [0.0, -7.5094748, -1e-3, 20.0, -0.5]);
         assert_eq!(parse_glued(b"1-x", &mut out), None);
+        assert_eq!(parse_glued(b"", &mut out), None);
         assert_eq!(out.len(), 5);
     }
 

@@ -29,18 +29,16 @@ impl Votes {
     pub fn of(characters: &[Character]) -> Self {
         let mut votes = Self::default();
         for (joint, positions) in characters.iter().flat_map(Character::positions_below_root) {
-            let (mut from_offset, mut from_zero, mut offset) = (0.0, 0.0, 0.0);
-            for axis in (0..3).filter(|&a| positions.columns[a].is_some()) {
-                let median = median(positions.values.iter().map(|p| p[axis]).collect());
-                from_offset += (median - joint.offset[axis]).powi(2);
-                from_zero += median.powi(2);
-                offset += joint.offset[axis].powi(2);
-            }
-            if offset <= 1e-12 || positions.are_missing() {
+            if positions.are_missing() {
                 continue;
             }
-            let vote = if from_offset < from_zero { &mut votes.replace } else { &mut votes.add };
-            *vote += 1;
+            let driven = Vec3::from(positions.columns.map(|c| f64::from(u8::from(c.is_some()))));
+            let median = median(&positions.values).component_mul(&driven);
+            match vote(&joint.offset.component_mul(&driven), &median) {
+                Some(PositionChannels::Replace) => votes.replace += 1,
+                Some(PositionChannels::Add) => votes.add += 1,
+                None => {}
+            }
         }
         votes
     }
@@ -60,12 +58,25 @@ impl fmt::Display for PositionChannels {
     }
 }
 
-fn median(mut values: Vec<f64>) -> f64 {
-    if values.is_empty() {
-        return 0.0;
+/// What a joint says whose positions have this `median`; nothing if its OFFSET is 0.
+pub(super) fn vote(offset: &Vec3, median: &Vec3) -> Option<PositionChannels> {
+    if offset.amax() <= 1e-6 {
+        return None;
     }
-    let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+    let replaces = (median - offset).norm_squared() < median.norm_squared();
+    Some(if replaces { PositionChannels::Replace } else { PositionChannels::Add })
+}
+
+/// The median of each coordinate; 0 of nothing. O(positions).
+pub(super) fn median(positions: &[Vec3]) -> Vec3 {
+    Vec3::from_fn(|axis, _| {
+        let mut values: Vec<f64> = positions.iter().map(|p| p[axis]).collect();
+        if values.is_empty() {
+            return 0.0;
+        }
+        let middle = values.len() / 2;
+        *values.select_nth_unstable_by(middle, f64::total_cmp).1
+    })
 }
 
 impl Character {

@@ -1,0 +1,121 @@
+//! `morec inspect`: what a clip is, and what will be made of it.
+
+mod report;
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::{Context, Result};
+use morec::import::{ImportOptions, SignedAxis, prepare};
+use morec::roles::mapping::Mapping;
+
+use crate::files::{self, ReadArgs};
+use crate::progress::Progress;
+use report::{FileReport, Report};
+
+/// Show what a clip is: skeleton, roles, rate, units, repairs
+///
+/// One clip is shown joint by joint, several in a few lines each; a folder stands for all clips in it and below.
+/// Unit, up axis and rest pose are inferred from the motion; how they were taken is how every other command
+/// takes them. Exit code 1 if a file could not be read (the others are shown).
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  morec inspect walk.bvh
+  morec inspect recordings/ --json
+  morec inspect 13_29.amc --skeleton 13.asf --file-rate 60
+  morec inspect odd.bvh --roles mine.tsv
+
+A roles file has one role a line, a tab, and the joint's name (or - for none):
+  hips<TAB>Pelvis
+  left_shoulder<TAB>-")]
+pub struct Args {
+    /// Clips (BVH, AMC), skeletons (ASF) or folders of clips; - is standard input
+    #[arg(required = true, value_name = "CLIP")]
+    clips: Vec<PathBuf>,
+    /// Print one JSON array, with an object for each file
+    #[arg(long)]
+    json: bool,
+    /// Print every joint of every clip, even of several
+    #[arg(long, conflicts_with = "json")]
+    full: bool,
+    /// Roles that override those found: a file of `role<TAB>joint` lines
+    #[arg(long, value_name = "FILE")]
+    roles: Option<PathBuf>,
+    /// Which way is up in the files: x, y, z, -x, -y or -z
+    #[arg(long, value_name = "AXIS", allow_hyphen_values = true)]
+    up: Option<SignedAxis>,
+    /// Metres in the files' unit of length, 0.01 for centimetres
+    #[arg(long, value_name = "METRES", value_parser = metres)]
+    unit: Option<f64>,
+    #[command(flatten)]
+    read: ReadArgs,
+}
+
+/// Reads and shows every clip.
+pub fn run(args: Args) -> Result<ExitCode> {
+    let options = import_options(&args)?;
+    let paths = files::expand(&args.clips)?;
+    let full = args.full || paths.len() == 1;
+    let mut progress = Progress::new(paths.len(), "reading clips");
+    let mut failed = false;
+    let mut reports: Vec<FileReport> = Vec::new();
+    for path in paths {
+        let report = match inspect(&path, &args.read, &options) {
+            Ok(report) => FileReport::Read(Box::new(report)),
+            Err(error) => {
+                failed = true;
+                FileReport::failed(&path, &error)
+            }
+        };
+        if args.json {
+            reports.push(report);
+        } else {
+            progress.suspend(|| print(&report, full))?;
+        }
+        progress.step();
+    }
+    drop(progress);
+    if args.json {
+        let mut out = std::io::stdout().lock();
+        serde_json::to_writer_pretty(&mut out, &reports).map_err(std::io::Error::from)?;
+        writeln!(out)?;
+    }
+    Ok(if failed { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+}
+
+fn print(report: &FileReport, full: bool) -> Result<()> {
+    match report {
+        FileReport::Read(report) => report.write(&mut std::io::stdout().lock(), full)?,
+        FileReport::Failed { error, .. } => eprintln!("morec: {error}"),
+    }
+    Ok(())
+}
+
+fn inspect(path: &std::path::Path, read: &ReadArgs, options: &ImportOptions) -> Result<Report> {
+    let opened = files::open(path, read)?;
+    let mut imported = Vec::with_capacity(opened.clips.len());
+    for clip in opened.clips {
+        imported.push(prepare(clip, options).with_context(|| format!("{}: --roles", path.display()))?);
+    }
+    Ok(Report::new(path, opened.format, opened.skeleton, &imported, opened.warnings))
+}
+
+fn import_options(args: &Args) -> Result<ImportOptions> {
+    let mapping = match &args.roles {
+        None => None,
+        Some(path) => {
+            let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
+            Some(Mapping::read(&bytes).with_context(|| path.display().to_string())?)
+        }
+    };
+    Ok(ImportOptions { up: args.up, metres_per_unit: args.unit, rest_frames: None, mapping })
+}
+
+fn metres(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(metres) if metres.is_finite() && metres > 0.0 => Ok(metres),
+        _ => Err("expected a length in metres, above 0".to_owned()),
+    }
+}

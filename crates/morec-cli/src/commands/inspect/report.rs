@@ -1,0 +1,263 @@
+//! What `inspect` says about a file, as text and as JSON.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use morec::clip::{Clip, Span};
+use morec::formats::Warning;
+use morec::formats::probe::Format;
+use morec::import::{Facts, Imported};
+use morec::roles::{Role, RoleMap};
+use serde::Serialize;
+
+/// A file, read or not.
+#[derive(Serialize)]
+#[serde(untagged)]
+pub enum FileReport {
+    /// It was read.
+    Read(Box<Report>),
+    /// It was not.
+    Failed {
+        /// Where it is.
+        path: PathBuf,
+        /// Why.
+        error: String,
+    },
+}
+
+impl FileReport {
+    /// A file that could not be read.
+    pub fn failed(path: &Path, error: &anyhow::Error) -> Self {
+        Self::Failed { path: path.to_owned(), error: format!("{error:#}") }
+    }
+}
+
+/// A file that was read.
+#[derive(Serialize)]
+pub struct Report {
+    path: PathBuf,
+    format: Format,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    skeleton: Option<PathBuf>,
+    clips: Vec<ClipReport>,
+    warnings: Vec<Warning>,
+}
+
+#[derive(Serialize)]
+struct ClipReport {
+    name: String,
+    frames: usize,
+    rate_hz: f64,
+    duration_secs: f64,
+    joints: Vec<JointReport>,
+    missing_roles: Vec<Role>,
+    #[serde(flatten)]
+    facts: Facts,
+    repaired: Vec<Span>,
+}
+
+#[derive(Serialize)]
+struct JointReport {
+    name: String,
+    parent: Option<usize>,
+    roles: Vec<Role>,
+    #[serde(skip)]
+    depth: usize,
+}
+
+impl Report {
+    /// Gathers what there is to say.
+    pub fn new(
+        path: &Path,
+        format: Format,
+        skeleton: Option<PathBuf>,
+        imported: &[Imported],
+        warnings: Vec<Warning>,
+    ) -> Self {
+        let clips = imported.iter().map(ClipReport::new).collect();
+        Self { path: path.to_owned(), format, skeleton, clips, warnings }
+    }
+
+    /// Writes it for people: joint by joint if `full`.
+    pub fn write(&self, out: &mut dyn Write, full: bool) -> io::Result<()> {
+        writeln!(out, "{}", self.path.display())?;
+        for clip in &self.clips {
+            if full {
+                self.write_clip(out, clip)?;
+            } else {
+                clip.write_summary(out, self.format)?;
+            }
+        }
+        if full {
+            for warning in &self.warnings {
+                writeln!(out, "  warning    {warning}")?;
+            }
+        } else if !self.warnings.is_empty() {
+            let more = match self.warnings.len() - 1 {
+                0 => String::new(),
+                more => format!(" (and {more} more)"),
+            };
+            writeln!(out, "  warning: {}{more}", self.warnings[0])?;
+        }
+        Ok(())
+    }
+
+    fn write_clip(&self, out: &mut dyn Write, clip: &ClipReport) -> io::Result<()> {
+        let format = format_name(self.format);
+        match &self.skeleton {
+            Some(skeleton) => writeln!(out, "  format     {format}, skeleton {}", skeleton.display())?,
+            None => writeln!(out, "  format     {format}")?,
+        }
+        if self.clips.len() > 1 {
+            writeln!(out, "  character  {}", clip.name)?;
+        }
+        clip.write(out)
+    }
+}
+
+impl ClipReport {
+    fn new(imported: &Imported) -> Self {
+        let Imported { clip, roles, facts } = imported;
+        Self {
+            name: clip.name.clone(),
+            frames: clip.frames,
+            rate_hz: clip.rate_hz,
+            duration_secs: clip.duration_secs(),
+            joints: joints(clip, roles),
+            missing_roles: roles.missing().collect(),
+            facts: facts.clone(),
+            repaired: clip.repaired.clone(),
+        }
+    }
+
+    fn write(&self, out: &mut dyn Write) -> io::Result<()> {
+        let facts = &self.facts;
+        writeln!(out, "  length     {}", self.length())?;
+        writeln!(out, "  up         {}", facts.up)?;
+        writeln!(out, "  unit       {} ({} m)", self.unit(), significant(facts.metres_per_unit))?;
+        if let Some(height) = facts.body_height {
+            write!(out, "  body       {height:.2} m from feet to head")?;
+            match facts.leg_length {
+                Some(leg) => writeln!(out, ", legs {leg:.2} m")?,
+                None => writeln!(out)?,
+            }
+        }
+        writeln!(out, "  place      {}", if facts.travels { "travels" } else { "stays in place" })?;
+        writeln!(out, "  rest pose  {}", self.rest())?;
+        if !self.repaired.is_empty() {
+            let total: usize = self.repaired.iter().map(Span::len).sum();
+            writeln!(out, "  repaired   {total} frames: {}", spans(&self.repaired))?;
+        }
+        let found = Role::COUNT - self.missing_roles.len();
+        writeln!(out, "  roles      {found} of {}{}", Role::COUNT, self.missing())?;
+        writeln!(out, "  joints     {}", self.joints.len())?;
+        self.write_joints(out)?;
+        for note in &facts.notes {
+            writeln!(out, "  note       {note}")?;
+        }
+        Ok(())
+    }
+
+    fn write_joints(&self, out: &mut dyn Write) -> io::Result<()> {
+        let indented = |joint: &JointReport| format!("{}{}", "  ".repeat(joint.depth), joint.name);
+        let width = self.joints.iter().map(|j| indented(j).chars().count()).max().unwrap_or(0);
+        for joint in depth_first(&self.joints).into_iter().map(|j| &self.joints[j]) {
+            let roles: Vec<&str> = joint.roles.iter().map(|role| role.name()).collect();
+            let line = format!("    {:width$}  {}", indented(joint), roles.join(", "));
+            writeln!(out, "{}", line.trim_end())?;
+        }
+        Ok(())
+    }
+
+    fn write_summary(&self, out: &mut dyn Write, format: Format) -> io::Result<()> {
+        let found = Role::COUNT - self.missing_roles.len();
+        writeln!(
+            out,
+            "  {}, {} joints, {}; up {}, {}, rest pose {}; {found} of {} roles{}",
+            format_name(format),
+            self.joints.len(),
+            self.length(),
+            self.facts.up,
+            self.unit(),
+            self.rest(),
+            Role::COUNT,
+            self.missing(),
+        )?;
+        for note in &self.facts.notes {
+            writeln!(out, "  note: {note}")?;
+        }
+        Ok(())
+    }
+
+    fn length(&self) -> String {
+        let rate = significant(self.rate_hz);
+        format!("{} frames, {:.2} s at {rate} Hz", self.frames, self.duration_secs)
+    }
+
+    fn unit(&self) -> &'static str {
+        self.facts.unit.unwrap_or("no known unit")
+    }
+
+    fn rest(&self) -> String {
+        match self.facts.rest_frames.len() {
+            0 => "none".to_owned(),
+            _ => format!("frames {}", spans(std::slice::from_ref(&self.facts.rest_frames))),
+        }
+    }
+
+    fn missing(&self) -> String {
+        let names: Vec<&str> = self.missing_roles.iter().map(|role| role.name()).collect();
+        if names.is_empty() { String::new() } else { format!("; missing: {}", names.join(", ")) }
+    }
+}
+
+fn joints(clip: &Clip, map: &RoleMap) -> Vec<JointReport> {
+    let mut joints: Vec<JointReport> = Vec::with_capacity(clip.skeleton.len());
+    for (j, joint) in clip.skeleton.joints().iter().enumerate() {
+        let roles = Role::ALL.into_iter().filter(|&role| map.joint(role) == Some(j)).collect();
+        let depth = joint.parent.map_or(0, |parent| joints[parent].depth + 1);
+        joints.push(JointReport { name: joint.name.clone(), parent: joint.parent, roles, depth });
+    }
+    joints
+}
+
+/// Each joint followed by what hangs on it; files may list them level by level.
+fn depth_first(joints: &[JointReport]) -> Vec<usize> {
+    let mut children = vec![Vec::new(); joints.len()];
+    let mut left = Vec::new();
+    for (j, joint) in joints.iter().enumerate().rev() {
+        match joint.parent {
+            Some(parent) => children[parent].push(j),
+            None => left.push(j),
+        }
+    }
+    let mut order = Vec::with_capacity(joints.len());
+    while let Some(j) = left.pop() {
+        order.push(j);
+        left.extend(&children[j]);
+    }
+    order
+}
+
+fn format_name(format: Format) -> &'static str {
+    match format {
+        Format::Bvh => "BVH",
+        Format::Asf => "ASF (skeleton only)",
+        Format::Amc => "AMC",
+    }
+}
+
+/// Half-open, as spans are everywhere; the first ten.
+fn spans(spans: &[Span]) -> String {
+    const SHOWN: usize = 10;
+    let shown: Vec<String> = spans.iter().take(SHOWN).map(|s| format!("{}..{}", s.start, s.end)).collect();
+    let more = if spans.len() > SHOWN { ", …" } else { "" };
+    format!("{}{more}", shown.join(", "))
+}
+
+/// Five significant digits at most, no trailing zeros.
+fn significant(value: f64) -> String {
+    let digits = (4 - value.abs().max(1e-300).log10().floor() as i32).clamp(0, 12) as usize;
+    let text = format!("{value:.digits$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}

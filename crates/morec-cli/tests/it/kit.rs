@@ -1,0 +1,81 @@
+//! What the tests share: a folder with small clips, and the command run in it.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use tempfile::TempDir;
+
+pub const WAVE_BVH: &str = include_str!("../../../morec/testdata/acclaim/wave.bvh");
+pub const ARM_ASF: &str = include_str!("../../../morec/testdata/acclaim/arm.asf");
+pub const WAVE_AMC: &str = include_str!("../../../morec/testdata/acclaim/wave.amc");
+
+/// A folder that lives as long as the test.
+pub struct Folder(TempDir);
+
+/// What a command did.
+#[derive(Debug)]
+pub struct Ran {
+    pub code: Option<i32>,
+    pub out: String,
+    pub err: String,
+}
+
+impl Folder {
+    /// A folder with these files in it.
+    pub fn with(files: &[(&str, &str)]) -> Self {
+        let folder = Self(TempDir::new().unwrap());
+        for (path, content) in files {
+            let path = folder.path().join(path);
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(path, content).unwrap();
+        }
+        folder
+    }
+
+    pub fn path(&self) -> &Path {
+        self.0.path()
+    }
+
+    /// Runs `morec` in this folder.
+    pub fn morec(&self, args: &[&str]) -> Ran {
+        self.morec_fed(args, None)
+    }
+
+    /// Runs `morec` with a file of this folder as its standard input.
+    pub fn morec_fed(&self, args: &[&str], input: Option<&str>) -> Ran {
+        let stdin = match input {
+            Some(file) => Stdio::from(std::fs::File::open(self.path().join(file)).unwrap()),
+            None => Stdio::null(),
+        };
+        let output = Command::new(env!("CARGO_BIN_EXE_morec"))
+            .args(args)
+            .current_dir(self.path())
+            .stdin(stdin)
+            .output()
+            .unwrap();
+        Ran {
+            code: output.status.code(),
+            out: String::from_utf8(output.stdout).unwrap(),
+            err: String::from_utf8(output.stderr).unwrap(),
+        }
+    }
+}
+
+impl Ran {
+    /// Its standard output, if all went well.
+    pub fn ok(self) -> String {
+        assert_eq!(self.code, Some(0), "{self:?}");
+        self.out
+    }
+}
+
+/// The folder of real clips, if it is there.
+pub fn data() -> Option<PathBuf> {
+    let folder = std::env::var_os("MOREC_DATA")
+        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"), PathBuf::from);
+    if !folder.is_dir() {
+        println!("skipped: no clips at {} (set MOREC_DATA)", folder.display());
+        return None;
+    }
+    Some(folder)
+}
