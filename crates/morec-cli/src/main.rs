@@ -43,6 +43,7 @@ fn main() -> ExitCode {
         Command::Recognize(args) => commands::recognize::run(&args),
         Command::Evaluate(args) => commands::evaluate::run(&args),
         Command::Crossval(args) => commands::crossval::run(&args),
+        Command::Evaluate(args) => commands::evaluate::run(args),
     };
     match outcome {
         Ok(code) => code,

@@ -12,6 +12,7 @@ use morec::labels::{ClipLength, Labels, Resolved, read_found};
 use morec::report::Report;
 
 use crate::figures;
+use crate::files::ReadArgs;
 use crate::lengths::lengths;
 
 /// Measure detections against labels.
@@ -53,16 +54,18 @@ pub struct Args {
     /// Write report.html, one file without outside links, into this folder
     #[arg(long, value_name = "DIR")]
     report: Option<PathBuf>,
+    #[command(flatten)]
+    read: ReadArgs,
 }
 
 /// Runs the command.
-pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+pub fn run(args: Args) -> anyhow::Result<ExitCode> {
     let labels = Labels::read(&read(&args.truth)?).with_context(|| args.truth.display().to_string())?;
     let table = read_found(&read(&args.found)?).with_context(|| args.found.display().to_string())?;
     warn(&args.truth, &labels.warnings);
     warn(&args.found, &table.warnings);
-    let mut clips = lengths(&args.clips)?;
-    let unknown = lengths(&args.unknown)?;
+    let mut clips = lengths(&args.clips, &args.read)?;
+    let unknown = lengths(&args.unknown, &args.read)?;
     let unknown_names: BTreeSet<String> = unknown.keys().cloned().collect();
     clips.extend(unknown);
 

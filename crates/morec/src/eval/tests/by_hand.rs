@@ -99,6 +99,15 @@ fn several_detections_on_one_sample_count_once() {
 }
 
 #[test]
+fn the_closest_pair_does_not_cost_another_pair() {
+    // The second sample overlaps the first detection most (0.57), but then the first sample would have none.
+    let truths = [truth("a", "x", 0.0, 1.0), truth("a", "x", 0.8, 2.0)];
+    let founds = [found("a", "x", 0.6, 1.6), found("a", "x", 1.7, 2.4)];
+    let e = Evaluation::of(&[stream("a", 3.0)], &truths, &founds).unwrap();
+    assert_eq!(e.overlap[0].matched, 2);
+}
+
+#[test]
 fn one_long_detection_decides_every_stretch_it_swallows() {
     // §5.4 looks from the ground truth only: two samples right, the pause between them wrong. One to one, only
     // one sample can have it, and hardly overlaps it.
