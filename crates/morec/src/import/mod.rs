@@ -15,9 +15,8 @@ pub use rest::rest_frames;
 use crate::clip::{Clip, Span};
 use crate::formats::ParseError;
 use crate::kinematics::WorldPose;
-use crate::math::Axis;
 use crate::roles::mapping::Mapping;
-use crate::roles::{self, Role, RoleMap};
+use crate::roles::{self, RoleMap};
 use body::Body;
 
 /// What a person knows better than inference.
@@ -109,12 +108,6 @@ fn find_roles(clip: &Clip, notes: &mut Vec<String>) -> RoleMap {
     notes.extend(found.notes);
     found.map
 }
-
-/// The axis that is up in every imported clip.
-pub const UP: Axis = Axis::Y;
-
-/// Roles without which a clip cannot be recognised at all.
-pub const NEEDED: [Role; 5] = [Role::Hips, Role::LeftThigh, Role::RightThigh, Role::LeftArm, Role::RightArm];
 
 #[cfg(test)]
 mod tests;

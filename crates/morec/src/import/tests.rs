@@ -7,7 +7,8 @@ use proptest::prelude::*;
 use super::*;
 use crate::clip::{Joint, JointTrack, Skeleton};
 use crate::formats::{Limits, acclaim, bvh};
-use crate::math::{Quat, Vec3};
+use crate::math::{Axis, Quat, Vec3};
+use crate::roles::Role;
 
 /// A person of 1.75 m, Y-up, metres, who swings the right arm forward; `walks` metres a frame along Z.
 fn person(frames: usize, walks: f64) -> Clip {

@@ -1,5 +1,7 @@
 //! Roles over the namings that are met in the wild.
 
+use proptest::prelude::*;
+
 use super::mapping::{self, Mapping};
 use super::*;
 use crate::clip::Joint;
@@ -171,4 +173,34 @@ fn mistakes_in_mapping_files_are_located() {
     let error = mapping.apply(&cases()[0].skeleton(), &mut map).unwrap_err();
     assert_eq!((error.at, error.found.as_str()), (Place::Line(2), "`Hip`"));
     assert_eq!(map, RoleMap::default());
+}
+
+proptest! {
+    #[test]
+    fn any_tree_is_answered(
+        joints in prop::collection::vec(
+            (
+                any::<prop::sample::Index>(),
+                prop::sample::select(vec![
+                    "Hips", "LeftLeg", "LeftUpLeg", "RightFoot", "lfemur", "rradius", "Neck", "head", "LeftShoulder",
+                    "R Hand", "L Arm", "spine", "twist", "x", "LeftEye", "",
+                ]),
+                prop::array::uniform3(-1i8..=1),
+            ),
+            1..40,
+        ),
+    ) {
+        let joint = |(j, (parent, name, offset)): (usize, &(prop::sample::Index, &str, [i8; 3]))| Joint {
+            name: (*name).to_owned(),
+            parent: (j > 0).then(|| parent.index(j.max(1))),
+            offset: Vec3::from(offset.map(f64::from)),
+            tip: None,
+        };
+        let skeleton = Skeleton::new(joints.iter().enumerate().map(joint).collect()).unwrap();
+        let map = RoleMap::find(&skeleton);
+        prop_assert!(map.joint(Role::Hips).is_some());
+        for role in Role::ALL {
+            prop_assert!(map.joint(role).is_none_or(|j| j < skeleton.len()));
+        }
+    }
 }

@@ -251,8 +251,13 @@ fn frame_number(token: &[u8]) -> Option<u64> {
 }
 
 fn rate(name: &str, options: &AmcOptions, warnings: &mut Vec<Warning>) -> f64 {
-    if let Some(rate_hz) = options.rate_hz {
-        return rate_hz;
+    match options.rate_hz {
+        Some(rate_hz) if rate_hz.is_finite() && rate_hz > 0.0 => return rate_hz,
+        Some(rate_hz) => {
+            let note = format!("a rate of {rate_hz} Hz cannot be and is not used");
+            warnings.push(Warning::new(Place::File, note));
+        }
+        None => {}
     }
     let (rate_hz, why) = match rate_in_name(name) {
         Some(rate_hz) => (rate_hz, "as its name says"),

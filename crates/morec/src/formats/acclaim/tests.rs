@@ -316,3 +316,53 @@ fn a_presetting_of_the_root_moves_everything() {
     let pose = WorldPose::of(&clip(&skeleton, b"1\nroot 1 0 0 0 0 0\n"), 0);
     assert!((pose.positions[2] - Vec3::new(0.0, 1.0, -3.0)).norm() < 1e-9);
 }
+
+/// World positions by an independent reader (numpy, C·R·C⁻¹ as quaternions), in the files' own unit.
+const REAL: [(&str, &str, usize, &str, [f64; 3]); 10] = [
+    ("exercises/skeleton.asf", "exercises/clips/13_29.amc", 0, "lwrist", [7.664488, 15.629520, 4.326834]),
+    ("exercises/skeleton.asf", "exercises/clips/13_29.amc", 0, "rtoes", [-3.024529, 0.941005, 4.216080]),
+    ("exercises/skeleton.asf", "exercises/clips/13_29.amc", 1000, "lwrist", [2.530879, 22.577220, -4.658270]),
+    ("exercises/skeleton.asf", "exercises/clips/13_29.amc", 4591, "head", [-4.281199, 27.786891, 5.072620]),
+    ("exercises/skeleton.asf", "exercises/clips/13_29.amc", 4591, "rtoes", [-6.113474, 1.400627, 4.775795]),
+    ("segmentation/86.asf", "segmentation/clips/86_01.amc", 0, "head", [16.495963, 27.278906, -0.123190]),
+    (
+        "segmentation/86.asf",
+        "segmentation/clips/86_01.amc",
+        1000,
+        "lwrist",
+        [27.262833, 24.541776, -6.076791],
+    ),
+    ("segmentation/86.asf", "segmentation/clips/86_01.amc", 1000, "rtoes", [20.858093, 5.637588, -0.297873]),
+    ("segmentation/86.asf", "segmentation/clips/86_01.amc", 4578, "root", [27.662600, 18.041800, -6.123110]),
+    (
+        "segmentation/86.asf",
+        "segmentation/clips/86_01.amc",
+        4578,
+        "lwrist",
+        [26.928068, 20.106111, -2.460078],
+    ),
+];
+
+#[test]
+fn real_motions_pose_as_an_independent_reader_poses_them() {
+    let data = std::env::var_os("MOREC_DATA").map_or_else(
+        || std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
+        std::path::PathBuf::from,
+    );
+    if !data.is_dir() {
+        println!("skipped: no clips at {} (set MOREC_DATA)", data.display());
+        return;
+    }
+    let mut read = std::collections::HashMap::new();
+    for (skeleton, motion, frame, joint, expected) in REAL {
+        let clip = read.entry(motion).or_insert_with(|| {
+            let skeleton = asf(&std::fs::read(data.join(skeleton)).unwrap());
+            let loaded = amc(&skeleton, &std::fs::read(data.join(motion)).unwrap()).unwrap();
+            assert_eq!(loaded.warnings.len(), 1, "only the rate: {:?}", loaded.warnings);
+            loaded.clips.into_iter().next().unwrap()
+        });
+        let pose = WorldPose::of(clip, frame);
+        let at = pose.positions[clip.skeleton.find(joint).unwrap()];
+        assert!((at - Vec3::from(expected)).norm() < 2e-6, "{motion} frame {frame} {joint}: {at}");
+    }
+}

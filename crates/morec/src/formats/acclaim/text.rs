@@ -73,9 +73,10 @@ pub(super) fn quoted(token: &[u8]) -> String {
     }
 }
 
-/// A finite number.
+/// A number that a length or an angle can be: sums and products of such stay finite.
 pub(super) fn number(token: &[u8]) -> Option<f64> {
-    fast_float2::parse::<f64, _>(token).ok().filter(|value| value.is_finite())
+    const LARGEST: f64 = 1e12;
+    fast_float2::parse::<f64, _>(token).ok().filter(|value| value.abs() <= LARGEST)
 }
 
 #[cfg(test)]
