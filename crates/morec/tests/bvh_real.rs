@@ -1,4 +1,5 @@
 //! Reads every BVH file of the motion data that lies beside the project, if it is there.
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,5 @@
 //! What is written as BVH is read back the same.
+#![allow(clippy::unwrap_used)]
 
 use morec::clip::{Clip, Joint, JointTrack, Skeleton};
 use morec::formats::Limits;

@@ -108,7 +108,7 @@ pub(super) fn table(
             "the frames are not one to a line; the numbers are read as one stream, as their count fits";
         notes.add(Place::Line(tally.first_line), text);
         let table = Table { width, max_frames, characters, tally: Tally::default() };
-        table.as_stream(Rows::new(cursor, &mut Notes::default()), notes)?;
+        table.by_stream(Rows::new(cursor, &mut Notes::default()), notes)?;
         return Ok(Vec::new());
     }
     tally.judge(width, request, notes)
@@ -164,7 +164,7 @@ impl Table<'_> {
     }
 
     /// A frame every `width` numbers, whatever the lines.
-    fn as_stream(mut self, mut rows: Rows<'_>, notes: &mut Notes) -> Result<(), ParseError> {
+    fn by_stream(mut self, mut rows: Rows<'_>, notes: &mut Notes) -> Result<(), ParseError> {
         let (mut values, mut pending) = (Vec::new(), Vec::new());
         while let Some((line, _)) = rows.next(&mut values, &mut Notes::default())? {
             note_missing(&values, line, notes);
