@@ -273,30 +273,33 @@ pub fn turn_round(a: &mut Actor) {
     gait::steps(a, gait, &vec![each; count]);
 }
 
-/// Gesticulates while talking: the hands wander before the body, with beats and pauses.
+/// Gesticulates while talking: one hand wanders before the body, with beats and pauses; the other hangs, holds on
+/// or joins in now and then on a way of its own. The weight is on one leg.
 pub fn talk(a: &mut Actor) {
     let stop = a.now_secs + a.rng.range(3.0, 6.0);
-    let size = a.rng.range(0.3, 0.9);
+    let (size, side) = (a.rng.range(0.4, 1.0), any_side(a));
+    let (joins, aside) = (a.rng.range(0.0, 0.35), a.rng.range(0.0, 0.08) * any_side(a).sign());
+    a.hips(a.now_secs, 0.8, [aside, -0.01, 0.0]);
+    if a.rng.chance(0.6) {
+        let hold = if a.rng.chance(0.5) { [0.12, -0.66, 0.1] } else { [-0.3, -0.6, 0.36] };
+        a.hand(side.other(), a.now_secs, 0.9, hold);
+    }
     while a.now_secs < stop {
-        let (t, secs) = (a.now_secs, a.rng.range(0.25, 0.9));
-        let shared = direction(a, 0.35, 0.75);
-        for side in Side::BOTH {
-            if a.rng.chance(0.65) {
-                let own = if a.rng.chance(0.4) { shared } else { direction(a, 0.35, 0.75) };
-                let late = a.rng.range(0.0, 0.25);
-                let centre = [0.05, -0.45, 0.5];
-                a.hand(
-                    side,
-                    t + late,
-                    secs,
-                    [0, 1, 2].map(|k| centre[k] + size * (own[k] - centre[k]) * 0.7),
-                );
+        let (t, secs) = (a.now_secs, a.rng.range(0.3, 0.9));
+        for (hand, share) in [(side, 0.8), (side.other(), joins)] {
+            if a.rng.chance(share) {
+                let (mut to, late) = (direction(a, 0.4, 0.85), a.rng.range(0.0, 0.3));
+                to[1] = to[1].min(0.1);
+                let centre = [0.1, -0.4, 0.5];
+                a.hand(hand, t + late, secs, [0, 1, 2].map(|k| centre[k] + size * (to[k] - centre[k])));
                 let bend = a.rng.range(-0.5, 0.5);
-                a.timeline.to(WRIST[side.index()], t, secs, bend);
+                a.timeline.to(WRIST[hand.index()], t, secs, bend);
             }
         }
         let nod = [0.1, 0.25, 0.06].map(|v| v * a.rng.normal());
         a.head(t, secs, nod);
+        let turn = [0.04, 0.12, 0.05].map(|v| v * a.rng.normal());
+        a.spine(t, 1.3 * secs, turn);
         a.now_secs += secs * a.rng.range(0.6, 1.5);
     }
     finish(a);
@@ -361,17 +364,19 @@ pub fn swing_arms(a: &mut Actor) {
     a.now_secs = t + secs;
 }
 
-/// Applauds: small quick claps, held low, for a while.
+/// Applauds: one hand held low before the belly, the other striking it from the side, small and quick.
 pub fn applaud(a: &mut Actor) {
     let (up, secs, hz) = (a.secs(0.6), a.rng.range(1.5, 3.5), a.hz(3.4));
-    let (t, high) = (a.now_secs, a.rng.range(-0.55, -0.3));
-    for side in Side::BOTH {
-        a.hand(side, t, up, [-0.28, high, 0.42]);
-        a.timeline.wave(HAND[side.index()], t + 0.8 * up, secs, (hz, 0.0), 0.06);
-        a.rest_hand(side, t + 0.8 * up + secs, 0.7);
-    }
+    let (t, high, side) = (a.now_secs, a.rng.range(-0.62, -0.5), any_side(a));
+    let on = t + 0.8 * up;
+    a.hand(side.other(), t, up, [-0.3, high, 0.34]);
+    a.hand(side, t + 0.1, up, [-0.25, high + 0.2, 0.46]);
+    a.timeline.wave(HAND[side.index()], on, secs, (hz, 0.0), 0.05);
     a.timeline.wave(HEAD, t, secs, (0.5 * hz, 0.0), 0.03);
-    a.now_secs = t + 0.8 * up + secs + 0.7;
+    for hand in Side::BOTH {
+        a.rest_hand(hand, on + secs, 0.7);
+    }
+    a.now_secs = on + secs + 0.7;
 }
 
 /// Everything back to rest.
@@ -384,6 +389,7 @@ fn finish(a: &mut Actor) {
     }
     a.spine(t, secs, [0.0; 3]);
     a.head(t, secs, [0.0; 3]);
+    a.hips(t, secs, [0.0; 3]);
     a.now_secs = t + secs;
 }
 
