@@ -43,7 +43,7 @@ pub const CONTENTS: [(&str, Perform); 16] = [
     ("applaud", applaud),
 ];
 
-/// The library: clips of everyday motion by several people at 60 Hz, some 15 minutes in all. Each is named
+/// The library: clips of everyday motion by several people at 60 Hz, about 17 minutes in all. Each is named
 /// `everyday_<content>_<person>`. The same seed gives the same clips on every platform.
 pub fn everyday(seed: u64) -> Vec<Clip> {
     let mut clips = Vec::with_capacity(PEOPLE * CONTENTS.len());
