@@ -1,7 +1,8 @@
 //! Everyday motion: what a recogniser has to keep silent at.
 //!
 //! Broad and random on purpose: walking, reaching and gesticulating of all sizes and speeds. None of it is one
-//! of the demo's gesture classes.
+//! of the demo's gesture classes, and what people choose as signals is left out: both arms raised alike, one arm
+//! held out by a standing body. A class that lay within the library would be refused together with it.
 
 use super::actor::Actor;
 use super::film::film;
@@ -42,7 +43,7 @@ pub const CONTENTS: [(&str, Perform); 16] = [
     ("applaud", applaud),
 ];
 
-/// The library: clips of everyday motion by several people at 60 Hz, some 15 minutes in all. Each is named
+/// The library: clips of everyday motion by several people at 60 Hz, about 17 minutes in all. Each is named
 /// `everyday_<content>_<person>`. The same seed gives the same clips on every platform.
 pub fn everyday(seed: u64) -> Vec<Clip> {
     let mut clips = Vec::with_capacity(PEOPLE * CONTENTS.len());
@@ -132,20 +133,27 @@ pub fn sit_down(a: &mut Actor) {
     gait::sit(a, depth, stay);
 }
 
-/// Reaches high, low, to the side or across with one hand, the other joining at times.
+/// Reaches for something high, low, to the side or across: a foot goes ahead, the trunk leans after the hand, the
+/// other hand holds on. (An arm just held out from a standing body is a signal, and no background.)
 pub fn reach(a: &mut Actor) {
-    let (side, out, hold, back) = (any_side(a), a.secs(0.8), a.rng.range(0.1, 0.6), a.secs(0.8));
-    let (t, both) = (a.now_secs, a.rng.chance(0.3));
-    let target = direction(a, 0.75, 0.98);
-    a.hand(side, t, out, target);
-    if both {
-        let near = [target[0] - 0.1, target[1] - 0.05, target[2]];
-        a.hand(side.other(), t + 0.1, out, near);
-    }
-    let lean = [(-0.5 * target[1]).max(-0.12) + 0.1, -0.3 * target[0] * side.sign(), 0.0];
-    a.spine(t, out, lean);
-    a.head(t, 0.6 * out, [-0.4 * target[1], 0.5 * target[0] * side.sign(), 0.0]);
+    let (side, out, hold, back) = (any_side(a), a.secs(0.9), a.rng.range(0.0, 0.4), a.secs(0.9));
+    let t = a.now_secs;
+    let target = direction(a, 0.6, 0.9);
+    let outward = side.sign() * target[0];
+    a.hand(side, t + 0.1, out, target);
+    let near = [a.rng.range(-0.2, 0.3), a.rng.range(-0.6, -0.3), a.rng.range(0.2, 0.5)];
+    a.hand(side.other(), t, out, near);
+    let (ahead, low) = (a.rng.range(0.12, 0.4), (-target[1]).max(0.0));
+    a.foot(side, t, 0.7 * out, [0.2 * target[0].max(0.0), 0.0, ahead], 0.0);
+    let foot = FOOT[side.index()];
+    a.timeline.pulse(foot + 1, t, 0.7 * out, 0.06);
+    a.hips(t, out, [0.15 * outward, -0.04 - 0.25 * low, 0.5 * ahead]);
+    a.spine(t, out, [0.15 + 0.5 * low, -0.3 * side.sign() + 0.4 * outward, -0.2 * outward]);
+    a.head(t, 0.6 * out, [-0.4 * target[1], 0.5 * outward, 0.0]);
     let leave = t + out + hold;
+    a.foot(side, leave + 0.2 * back, 0.7 * back, [0.0; 3], 0.0);
+    a.timeline.pulse(foot + 1, leave + 0.2 * back, 0.7 * back, 0.06);
+    a.hips(leave, back, [0.0; 3]);
     for hand in Side::BOTH {
         a.rest_hand(hand, leave, back);
     }
@@ -177,27 +185,32 @@ pub fn pick_up(a: &mut Actor) {
     a.now_secs = leave + up + keep + 0.8;
 }
 
-/// Loosens up: bends sideways, twists, circles with stretched arms.
+/// Loosens up: one arm over the head and a bend to the side, twists with bent arms, one arm circling.
 pub fn exercise(a: &mut Actor) {
-    let (t, secs, hz) = (a.now_secs, a.rng.range(3.0, 5.0), a.rng.range(0.3, 0.7));
-    let kind = a.rng.below(3);
-    let up = a.secs(0.8);
-    let arms = direction(a, 0.7, 0.95);
-    for side in Side::BOTH {
-        a.hand(side, t, up, arms);
-        if kind == 2 {
-            let radius = a.rng.range(0.15, 0.4);
-            a.timeline.wave(HAND[side.index()] + 1, t + up, secs, (hz * 2.0, 1.57), radius);
-            a.timeline.wave(HAND[side.index()] + 2, t + up, secs, (hz * 2.0, 0.0), radius);
-        }
-        a.rest_hand(side, t + up + secs, 0.9);
-    }
+    let (t, secs, hz) = (a.now_secs, a.rng.range(3.0, 5.0), a.rng.range(0.35, 0.7));
+    let (side, up, down, kind) = (any_side(a), a.secs(0.8), a.secs(0.9), a.rng.below(3));
+    let on = t + 0.9 * up;
+    let (first, second) = match kind {
+        0 => ([-0.35, 0.75, 0.1], [0.12, -0.66, 0.1]),
+        1 => ([-0.1, -0.25, 0.45], [-0.1, -0.4, 0.4]),
+        _ => ([0.4, -0.1, 0.35], [0.12, -0.66, 0.1]),
+    };
+    a.hand(side, t, up, first);
+    a.hand(side.other(), t, up, second);
     match kind {
-        0 => a.timeline.wave(SPINE + 2, t + up, secs, (hz, 0.0), 0.4),
-        1 => a.timeline.wave(SPINE + 1, t + up, secs, (hz, 0.0), 0.7),
-        _ => (),
+        0 => a.timeline.wave(SPINE + 2, on, secs, (hz, 0.0), 0.35),
+        1 => a.timeline.wave(SPINE + 1, on, secs, (hz, 0.0), 0.6),
+        _ => {
+            let (at, phase) = (HAND[side.index()], a.rng.range(0.0, 6.0));
+            a.timeline.wave(at + 1, on, secs, (hz * 2.0, phase), 0.55);
+            a.timeline.wave(at + 2, on, secs, (hz * 2.0, phase + 1.57), 0.4);
+            a.timeline.wave(SPINE + 1, on, secs, (hz * 2.0, phase), 0.15);
+        }
     }
-    a.now_secs = t + up + secs + 0.9;
+    for hand in Side::BOTH {
+        a.rest_hand(hand, on + secs, down);
+    }
+    a.now_secs = on + secs + down;
 }
 
 /// Jumps up or forward.
@@ -260,24 +273,33 @@ pub fn turn_round(a: &mut Actor) {
     gait::steps(a, gait, &vec![each; count]);
 }
 
-/// Gesticulates while talking: the hands wander before the body, with beats and pauses.
+/// Gesticulates while talking: one hand wanders before the body, with beats and pauses; the other hangs, holds on
+/// or joins in now and then on a way of its own. The weight is on one leg.
 pub fn talk(a: &mut Actor) {
     let stop = a.now_secs + a.rng.range(3.0, 6.0);
-    let size = a.rng.range(0.3, 1.0);
+    let (size, side) = (a.rng.range(0.4, 1.0), any_side(a));
+    let (joins, aside) = (a.rng.range(0.0, 0.35), a.rng.range(0.0, 0.08) * any_side(a).sign());
+    a.hips(a.now_secs, 0.8, [aside, -0.01, 0.0]);
+    if a.rng.chance(0.6) {
+        let hold = if a.rng.chance(0.5) { [0.12, -0.66, 0.1] } else { [-0.3, -0.6, 0.36] };
+        a.hand(side.other(), a.now_secs, 0.9, hold);
+    }
     while a.now_secs < stop {
-        let (t, secs) = (a.now_secs, a.rng.range(0.25, 0.9));
-        let shared = direction(a, 0.35, 0.75);
-        for side in Side::BOTH {
-            if a.rng.chance(0.65) {
-                let own = if a.rng.chance(0.6) { shared } else { direction(a, 0.35, 0.75) };
-                let centre = [0.05, -0.45, 0.5];
-                a.hand(side, t, secs, [0, 1, 2].map(|k| centre[k] + size * (own[k] - centre[k]) * 0.7));
+        let (t, secs) = (a.now_secs, a.rng.range(0.3, 0.9));
+        for (hand, share) in [(side, 0.8), (side.other(), joins)] {
+            if a.rng.chance(share) {
+                let (mut to, late) = (direction(a, 0.4, 0.85), a.rng.range(0.0, 0.3));
+                to[1] = to[1].min(0.1);
+                let centre = [0.1, -0.4, 0.5];
+                a.hand(hand, t + late, secs, [0, 1, 2].map(|k| centre[k] + size * (to[k] - centre[k])));
                 let bend = a.rng.range(-0.5, 0.5);
-                a.timeline.to(WRIST[side.index()], t, secs, bend);
+                a.timeline.to(WRIST[hand.index()], t, secs, bend);
             }
         }
         let nod = [0.1, 0.25, 0.06].map(|v| v * a.rng.normal());
         a.head(t, secs, nod);
+        let turn = [0.04, 0.12, 0.05].map(|v| v * a.rng.normal());
+        a.spine(t, 1.3 * secs, turn);
         a.now_secs += secs * a.rng.range(0.6, 1.5);
     }
     finish(a);
@@ -287,12 +309,13 @@ pub fn talk(a: &mut Actor) {
 pub fn flail(a: &mut Actor) {
     let stop = a.now_secs + a.rng.range(3.0, 6.0);
     while a.now_secs < stop {
-        let (t, secs) = (a.now_secs, a.rng.range(0.3, 1.4));
-        let (mirrored, shared) = (a.rng.chance(0.4), direction(a, 0.5, 1.0));
+        let (t, secs) = (a.now_secs, a.rng.range(0.42, 1.4));
         for side in Side::BOTH {
-            let own = if mirrored { shared } else { direction(a, 0.5, 1.0) };
+            // Each arm on its own: arms raised alike are what signals are made of.
+            let own = direction(a, 0.45, 1.0);
             if a.rng.chance(0.8) {
-                a.hand(side, t, secs, own);
+                let late = a.rng.range(0.0, 0.3);
+                a.hand(side, t + late, secs, own);
                 let turn = a.rng.range(-0.4, 0.6);
                 a.timeline.to(SWIVEL[side.index()], t, secs, turn);
             }
@@ -341,17 +364,19 @@ pub fn swing_arms(a: &mut Actor) {
     a.now_secs = t + secs;
 }
 
-/// Applauds: small quick claps, low or before the face, for a while.
+/// Applauds: one hand held low before the belly, the other striking it from the side, small and quick.
 pub fn applaud(a: &mut Actor) {
     let (up, secs, hz) = (a.secs(0.6), a.rng.range(1.5, 3.5), a.hz(3.4));
-    let (t, high) = (a.now_secs, a.rng.range(-0.5, 0.15));
-    for side in Side::BOTH {
-        a.hand(side, t, up, [-0.26, high, 0.5]);
-        a.timeline.wave(HAND[side.index()], t + 0.8 * up, secs, (hz, 0.0), 0.08);
-        a.rest_hand(side, t + 0.8 * up + secs, 0.7);
-    }
+    let (t, high, side) = (a.now_secs, a.rng.range(-0.62, -0.5), any_side(a));
+    let on = t + 0.8 * up;
+    a.hand(side.other(), t, up, [-0.3, high, 0.34]);
+    a.hand(side, t + 0.1, up, [-0.25, high + 0.2, 0.46]);
+    a.timeline.wave(HAND[side.index()], on, secs, (hz, 0.0), 0.05);
     a.timeline.wave(HEAD, t, secs, (0.5 * hz, 0.0), 0.03);
-    a.now_secs = t + 0.8 * up + secs + 0.7;
+    for hand in Side::BOTH {
+        a.rest_hand(hand, on + secs, 0.7);
+    }
+    a.now_secs = on + secs + 0.7;
 }
 
 /// Everything back to rest.
@@ -364,6 +389,7 @@ fn finish(a: &mut Actor) {
     }
     a.spine(t, secs, [0.0; 3]);
     a.head(t, secs, [0.0; 3]);
+    a.hips(t, secs, [0.0; 3]);
     a.now_secs = t + secs;
 }
 

@@ -55,8 +55,8 @@ pub fn point_side(a: &mut Actor) {
 pub fn clap(a: &mut Actor) {
     let (up, down) = (a.secs(0.5), a.secs(0.6));
     let (t, claps) = (a.now_secs, 3);
-    let (apart, together) = ([0.02, -0.12, 0.68], [-0.36, -0.12, 0.62]);
-    let stroke = a.secs(0.24);
+    let (apart, together) = ([0.42, -0.08, 0.66], [-0.36, -0.08, 0.64]);
+    let stroke = a.secs(0.27);
     for side in Side::BOTH {
         a.hand(side, t, up, apart);
     }
@@ -107,21 +107,21 @@ pub fn circle(a: &mut Actor) {
     a.now_secs = on + secs - 0.15 + down;
 }
 
-/// Bows from the hips.
+/// Bows like an actor: deep from the hips, one hand before the belly, the other spread.
 pub fn bow(a: &mut Actor) {
-    let (down, hold, up) = (a.secs(0.9), a.secs(0.4), a.secs(0.95));
+    let (side, down, hold, up) = (a.hand, a.secs(0.95), a.secs(0.35), a.secs(0.95));
     let t = a.now_secs;
     let leave = t + down + hold;
     for (start, secs, share) in [(t, down, 1.0), (leave, up, 0.0)] {
-        a.hips_pitch(start, secs, 0.55 * share);
+        a.hips_pitch(start, secs, 0.65 * share);
         a.hips(start, secs, [0.0, 0.0, -0.16 * share]);
-        a.spine(start, secs, [0.45 * share, 0.0, 0.0]);
-        a.head(start, secs, [0.3 * share, 0.0, 0.0]);
+        a.spine(start, secs, [0.5 * share, 0.0, 0.0]);
+        a.head(start, secs, [0.2 * share, 0.0, 0.0]);
     }
-    // The hands slide down the thighs.
-    for side in Side::BOTH {
-        a.hand(side, t, down, [0.05, -0.82, 0.42]);
-        a.rest_hand(side, leave, up);
+    a.hand(side, t, 0.9 * down, [-0.35, -0.5, 0.34]);
+    a.hand(side.other(), t, 0.9 * down, [0.75, -0.5, -0.05]);
+    for hand in Side::BOTH {
+        a.rest_hand(hand, leave, up);
     }
     a.now_secs = leave + up;
 }

@@ -1,5 +1,7 @@
 //! What holds for every motion, whoever performs it.
 
+use std::collections::BTreeMap;
+
 use super::*;
 use crate::kinematics::WorldPose;
 use crate::math::Vec3;
@@ -42,7 +44,7 @@ fn a_seed_gives_the_same_clips_on_every_platform() {
     assert_eq!(hash(takes(1).iter().map(|t| &t.clip)), DATABASE_1);
 }
 
-const DATABASE_1: u64 = 0;
+const DATABASE_1: u64 = 9_666_035_036_872_803_270;
 
 #[test]
 fn joints_turn_no_faster_than_bodies_can() {
@@ -112,7 +114,7 @@ fn bones_keep_their_lengths_and_feet_keep_to_the_ground() {
 #[test]
 fn a_planted_foot_stays_where_it_is() {
     // While standing and gesticulating, no ankle moves by more than noise and sway let it.
-    for name in ["talk", "wave", "bow", "circle", "reach"] {
+    for name in ["talk", "wave", "bow", "circle", "phone"] {
         let script = Script::new(4, Person::draw(8, 2)).rest(0.3).play(name).rest(0.3);
         let clip = script.film(name, 60.0).expect("known").clip;
         for foot in ["LeftFoot", "RightFoot"] {
@@ -220,10 +222,10 @@ fn everyday_motion_goes_everywhere_but_shows_no_class() {
     }
 }
 
-/// Share of 15-degree cells of the directions that an upper arm can take (not far behind or across the body) in
-/// which it is seen at least once.
+/// Share of the 15-degree cells of directions that an upper arm can take in which it is seen at least once. Cells
+/// that reach far behind or across the body do not count.
 fn occupied_directions(clips: &[Clip], side: &str, sign: f64) -> f64 {
-    let mut cells = std::collections::BTreeMap::new();
+    let mut whole = BTreeMap::new();
     let cell = |v: &Vec3| {
         let polar = (v.y.clamp(-1.0, 1.0).acos().to_degrees() / 15.0) as i32;
         let turns = (v.x.atan2(v.z).to_degrees() + 180.0) / 15.0;
@@ -235,10 +237,9 @@ fn occupied_directions(clips: &[Clip], side: &str, sign: f64) -> f64 {
         let y = 1.0 - 2.0 * (k as f64 + 0.5) / 40_000.0;
         let (sin, cos) = (k as f64 * 2.399_963).sin_cos();
         let v = Vec3::new(cos * (1.0 - y * y).sqrt(), y, sin * (1.0 - y * y).sqrt());
-        if reachable(&v) {
-            cells.insert(cell(&v), false);
-        }
+        *whole.entry(cell(&v)).or_insert(true) &= reachable(&v);
     }
+    let mut cells: BTreeMap<_, _> = whole.into_iter().filter(|c| c.1).map(|c| (c.0, false)).collect();
     for clip in clips {
         let (chest, arm, elbow) = (
             joint(clip, "Chest"),
