@@ -41,7 +41,6 @@ fn main() -> ExitCode {
         Command::Convert(args) => commands::convert::run(args),
         Command::Train(args) => commands::train::run(&args),
         Command::Recognize(args) => commands::recognize::run(&args),
-        Command::Evaluate(args) => commands::evaluate::run(&args),
         Command::Crossval(args) => commands::crossval::run(&args),
         Command::Evaluate(args) => commands::evaluate::run(args),
     };
