@@ -35,8 +35,16 @@ impl DecodeParams {
     }
 
     /// Ticks that must follow a motion's last tick before it can be reported.
-    pub fn look_ahead_ticks(&self) -> usize {
-        self.gate_ticks + self.peak_ticks + self.lag_ticks
+    pub fn look_ahead_ticks(&self, rule: Rule) -> usize {
+        self.window_ticks(rule) + self.lag_ticks
+    }
+
+    /// Ticks that must follow a tick before it is known whether it is a candidate.
+    fn window_ticks(&self, rule: Rule) -> usize {
+        match rule {
+            Rule::Gate { .. } => self.gate_ticks + self.peak_ticks,
+            Rule::Verify { .. } => self.peak_ticks,
+        }
     }
 }
 
@@ -49,6 +57,39 @@ pub struct ClassDistance {
     pub age: usize,
 }
 
+/// What makes a candidate of a distance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Rule {
+    /// Distances below the threshold and below [`DecodeParams::gate`] times the smallest negative distance nearby;
+    /// the score is 1 − distance / threshold.
+    Gate {
+        /// Distances at or above this are never reported.
+        threshold: f32,
+    },
+    /// Distances up to `reach`; a judge gives the score, and above 0 is accepted.
+    Verify {
+        /// Farther ones are not looked at.
+        reach: f32,
+    },
+}
+
+/// A stretch that may be a motion, for a judge to look at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Candidate {
+    /// What it may be.
+    pub class: ClassId,
+    /// Its last tick.
+    pub tick: i64,
+    /// Ticks from its first to its last.
+    pub age: usize,
+    /// The class's distance there.
+    pub distance: f32,
+    /// Smallest distance of another class within [`DecodeParams::peak_ticks`]; [`FAR`] if there is none.
+    pub other: f32,
+    /// Smallest negative distance within the same ticks.
+    pub negative: f32,
+}
+
 /// A motion recognised, in ticks of the present stretch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TickDetection {
@@ -58,9 +99,12 @@ pub struct TickDetection {
     pub start: i64,
     /// One past the last tick.
     pub stop: i64,
-    /// 1 − distance / threshold: 0 just accepted, 1 identical to a sample.
+    /// 0 just accepted … 1 certain.
     pub score: f64,
 }
+
+/// A stretch of fewer ticks than this after its first is no motion.
+pub const MIN_AGE_TICKS: usize = 3;
 
 /// The best sequence of detections that ends at or before a tick, as a chain.
 #[derive(Debug, Clone, Copy, Default)]
@@ -78,7 +122,7 @@ struct PathCell {
 #[derive(Debug, Clone)]
 pub struct Decoder {
     params: DecodeParams,
-    threshold: f32,
+    rule: Rule,
     classes: usize,
     /// The last few ticks' distances, `ring_len` × `classes`.
     ring: Vec<ClassDistance>,
@@ -96,14 +140,14 @@ pub struct Decoder {
 
 impl Decoder {
     /// For `classes` classes whose matches are at most `longest` ticks long.
-    pub fn new(params: &DecodeParams, threshold: f32, classes: usize, longest: usize) -> Self {
+    pub fn new(params: &DecodeParams, rule: Rule, classes: usize, longest: usize) -> Self {
         let ring_len = (2 * (params.gate_ticks + params.peak_ticks) + 2).next_power_of_two();
         // A match of n template rows spans at most 2 n ticks; twice that leaves room for the chain behind it.
         let path_len =
-            (4 * longest + params.look_ahead_ticks() + params.overlap_ticks + 8).next_power_of_two();
+            (4 * longest + params.look_ahead_ticks(rule) + params.overlap_ticks + 8).next_power_of_two();
         Self {
             params: params.clone(),
-            threshold,
+            rule,
             classes,
             ring: vec![ClassDistance { distance: FAR, age: 0 }; ring_len * classes],
             negatives: vec![FAR; ring_len],
@@ -123,23 +167,29 @@ impl Decoder {
     }
 
     /// Takes the next tick: one distance for each class and the smallest to any negative ([`FAR`] if there is
-    /// none). Calls `out` with what is now certain.
-    pub fn push(&mut self, near: &[ClassDistance], negative: f32, out: &mut impl FnMut(TickDetection)) {
+    /// none). Calls `out` with what is now certain; `judge` scores candidates under [`Rule::Verify`].
+    pub fn push(
+        &mut self,
+        near: &[ClassDistance],
+        negative: f32,
+        judge: &mut impl FnMut(&Candidate) -> f64,
+        out: &mut impl FnMut(TickDetection),
+    ) {
         let slot = self.ticks as usize & (self.ring_len - 1);
         self.ring[slot * self.classes..][..self.classes].copy_from_slice(near);
         self.negatives[slot] = negative;
         self.ticks += 1;
-        let wait = (self.params.gate_ticks + self.params.peak_ticks) as i64;
+        let wait = self.params.window_ticks(self.rule) as i64;
         if self.ticks > wait {
-            self.decide(self.ticks - 1 - wait);
+            self.decide(self.ticks - 1 - wait, judge);
             self.report(self.params.lag_ticks as i64, out);
         }
     }
 
     /// Ends the stretch: decides the last ticks with what there is and reports all that is left.
-    pub fn finish(&mut self, out: &mut impl FnMut(TickDetection)) {
+    pub fn finish(&mut self, judge: &mut impl FnMut(&Candidate) -> f64, out: &mut impl FnMut(TickDetection)) {
         while self.decided < self.ticks {
-            self.decide(self.decided);
+            self.decide(self.decided, judge);
         }
         self.report(0, out);
     }
@@ -160,31 +210,60 @@ impl Decoder {
         self.params.gate * nearest.fold(FAR, f32::min)
     }
 
-    /// The class's distance at `tick` if it is a candidate there: below threshold and gate, and no larger than
-    /// any gated distance nearby.
-    fn candidate(&self, tick: i64, class: usize) -> Option<ClassDistance> {
-        let here = self.near(tick, class);
-        if here.distance >= self.threshold || here.distance >= self.gate(tick) {
-            return None;
-        }
+    /// Ticks around `tick` that a peak is compared with.
+    fn around(&self, tick: i64) -> std::ops::RangeInclusive<i64> {
         let reach = self.params.peak_ticks as i64;
-        let (first, last) = ((tick - reach).max(0), (tick + reach).min(self.ticks - 1));
-        let beaten = (first..=last).any(|t| {
-            let there = self.near(t, class).distance;
-            there < here.distance && there < self.gate(t)
-        });
-        (!beaten).then_some(here)
+        (tick - reach).max(0)..=(tick + reach).min(self.ticks - 1)
     }
 
-    fn decide(&mut self, tick: i64) {
+    /// The class's score at `tick` if it is a candidate there: near enough, and no larger than any distance that
+    /// counts nearby.
+    fn score(&self, tick: i64, class: usize, judge: &mut impl FnMut(&Candidate) -> f64) -> Option<f64> {
+        let distance = self.near(tick, class).distance;
+        match self.rule {
+            Rule::Gate { threshold } => {
+                if distance >= threshold || distance >= self.gate(tick) {
+                    return None;
+                }
+                let beaten = self.around(tick).any(|t| {
+                    let there = self.near(t, class).distance;
+                    there < distance && there < self.gate(t)
+                });
+                (!beaten).then(|| 1.0 - f64::from(distance) / f64::from(threshold))
+            }
+            Rule::Verify { reach } => {
+                let candidate = self.unverified(tick, class, reach)?;
+                Some(judge(&candidate)).filter(|score| *score > 0.0)
+            }
+        }
+    }
+
+    fn unverified(&self, tick: i64, class: usize, reach: f32) -> Option<Candidate> {
+        let ClassDistance { distance, age } = self.near(tick, class);
+        if distance > reach || age < MIN_AGE_TICKS {
+            return None;
+        }
+        let (mut other, mut negative) = (FAR, FAR);
+        for t in self.around(tick) {
+            if self.near(t, class).distance < distance {
+                return None;
+            }
+            negative = negative.min(self.negatives[t as usize & (self.ring_len - 1)]);
+            for rival in (0..self.classes).filter(|c| *c != class) {
+                other = other.min(self.near(t, rival).distance);
+            }
+        }
+        Some(Candidate { class: ClassId(class as u16), tick, age, distance, other, negative })
+    }
+
+    fn decide(&mut self, tick: i64, judge: &mut impl FnMut(&Candidate) -> f64) {
         let mut cell = PathCell { total: self.path(tick).total, ends_here: None };
         for class in 0..self.classes {
-            let Some(near) = self.candidate(tick, class) else { continue };
-            let (start, slack) = (tick - near.age as i64, self.params.overlap_ticks as i64);
+            let (start, slack) = (tick - self.near(tick, class).age as i64, self.params.overlap_ticks as i64);
             if start < self.reported - slack {
                 continue;
             }
-            let score = 1.0 - f64::from(near.distance) / f64::from(self.threshold);
+            let Some(score) = self.score(tick, class, judge) else { continue };
             let start = start.max(self.reported);
             for begin in start..=(start + slack).min(tick) {
                 let total = self.path(begin).total + score;
@@ -229,15 +308,16 @@ mod tests {
 
     /// Runs one class's distances (age: always 3 ticks) through a decoder and returns spans.
     fn spans(distances: &[f32], negatives: &[f32], params: &DecodeParams) -> Vec<(i64, i64)> {
-        let mut decoder = Decoder::new(params, 2.0, 1, 4);
+        let rule = Rule::Gate { threshold: 2.0 };
+        let mut decoder = Decoder::new(params, rule, 1, 4);
+        let mut judge = |_: &Candidate| 0.0;
         let mut found = vec![];
         for (t, d) in distances.iter().enumerate() {
             let negative = negatives.get(t).copied().unwrap_or(FAR);
-            decoder.push(&[ClassDistance { distance: *d, age: t.min(3) }], negative, &mut |d| {
-                found.push((d.start, d.stop));
-            });
+            let near = [ClassDistance { distance: *d, age: t.min(3) }];
+            decoder.push(&near, negative, &mut judge, &mut |d| found.push((d.start, d.stop)));
         }
-        decoder.finish(&mut |d| found.push((d.start, d.stop)));
+        decoder.finish(&mut judge, &mut |d| found.push((d.start, d.stop)));
         found
     }
 

@@ -26,7 +26,7 @@ pub struct FeatureParams {
 impl Default for FeatureParams {
     /// As chosen on referee signals, with the root's smoothing cut to the delay of the directions'.
     fn default() -> Self {
-        Self { root_sigma_frames: 3.0, root_cut_frames: 6, ..Self::reference() }
+        Self { root_sigma_frames: 4.0, root_cut_frames: 6, ..Self::reference() }
     }
 }
 

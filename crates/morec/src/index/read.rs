@@ -85,6 +85,7 @@ fn model(manifest: &Manifest, tables: &Tables) -> Result<TemplateModel, IndexErr
         ridged: symmetric(tables, "metric.ridged", dim)?,
         total: symmetric(tables, "metric.total", dim)?,
         threshold: manifest.threshold,
+        verifier: None,
         step,
     };
     model.check().map_err(|e| IndexError::Content(e.to_string()))?;

@@ -64,7 +64,7 @@ impl Recognizer {
         let features = &self.model.features;
         // A row stands at its tick's last frame; the tick itself ends one frame later.
         let filters = (features.look_ahead_frames() - 1) as f64 / features.rate_hz;
-        filters + self.model.decode.look_ahead_ticks() as f64 / features.tick_hz()
+        filters + self.model.decode.look_ahead_ticks(self.model.rule()) as f64 / features.tick_hz()
     }
 
     /// Takes the pose at `time_secs` on the stream's clock and returns what it settled, in order of time.

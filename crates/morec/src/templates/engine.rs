@@ -1,21 +1,50 @@
 //! Feature rows in, detections in ticks out.
 
 use crate::classes::ClassId;
-use crate::decode::{ClassDistance, Decoder, FAR, TickDetection};
+use crate::decode::{Candidate, ClassDistance, Decoder, FAR, TickDetection};
 use crate::features::Rows;
 
+use super::verifier::{Evidence, Judge};
 use super::{Bank, Metric, TemplateModel, TemplateModelError};
 
-/// Feature rows in, detections in ticks out: the part of recognition that knows no clock.
+/// The part of recognition that knows no clock: metric, templates, verifier, decoding.
 #[derive(Debug, Clone)]
 pub struct TemplateEngine {
     metric: Metric,
     bank: Bank,
     negatives: Bank,
     template_classes: Vec<ClassId>,
+    judge: Option<Judge>,
     decoder: Decoder,
+    recent: RecentRows,
     mapped: Vec<f32>,
     near: Vec<ClassDistance>,
+}
+
+/// The last rows of the stream, as many as a match can span.
+#[derive(Debug, Clone)]
+struct RecentRows {
+    rows: Vec<f32>,
+    dim: usize,
+    mask: usize,
+    pushed: usize,
+}
+
+impl RecentRows {
+    fn new(dim: usize, capacity: usize) -> Self {
+        let capacity = capacity.next_power_of_two();
+        Self { rows: vec![0.0; dim * capacity], dim, mask: capacity - 1, pushed: 0 }
+    }
+
+    fn push(&mut self, row: &[f32]) {
+        let slot = self.pushed & self.mask;
+        self.rows[slot * self.dim..][..self.dim].copy_from_slice(row);
+        self.pushed += 1;
+    }
+
+    fn row(&self, tick: usize) -> &[f32] {
+        &self.rows[(tick & self.mask) * self.dim..][..self.dim]
+    }
 }
 
 impl TemplateEngine {
@@ -27,11 +56,16 @@ impl TemplateEngine {
         let templates: Vec<Rows> = model.samples.iter().map(|s| map(&s.rows)).collect();
         let negatives: Vec<Rows> = model.negatives.iter().map(map).collect();
         let dim = metric.dim();
+        let rule = model.rule();
+        let window = model.decode.look_ahead_ticks(rule);
         Ok(Self {
             bank: Bank::new(&templates, dim),
             negatives: Bank::new(&negatives, dim),
             template_classes: model.samples.iter().map(|s| s.class).collect(),
-            decoder: Decoder::new(&model.decode, model.threshold, model.classes.len(), model.longest()),
+            judge: model.verifier.as_ref().map(|v| Judge::new(v, &metric, model.threshold)),
+            decoder: Decoder::new(&model.decode, rule, model.classes.len(), model.longest()),
+            // A match of n rows spans at most 2 n ticks and is judged when its window has passed.
+            recent: RecentRows::new(dim, 2 * model.longest() + window + 2),
             mapped: vec![0.0; dim],
             near: vec![ClassDistance { distance: FAR, age: 0 }; model.classes.len()],
             metric,
@@ -43,29 +77,49 @@ impl TemplateEngine {
         self.bank.reset();
         self.negatives.reset();
         self.decoder.reset();
+        self.recent.pushed = 0;
     }
 
     /// Takes the next tick's row; calls `out` with what is now certain.
     pub fn push(&mut self, row: &[f32], out: &mut impl FnMut(TickDetection)) {
+        self.recent.push(row);
         self.metric.apply(row, &mut self.mapped);
         self.bank.step(&self.mapped);
         self.negatives.step(&self.mapped);
-        self.near.fill(ClassDistance { distance: FAR, age: 0 });
-        for (template, class) in self.template_classes.iter().enumerate() {
-            let found = self.bank.matched(template);
-            let best = &mut self.near[class.index()];
-            if found.distance < best.distance {
-                *best = ClassDistance { distance: found.distance, age: found.age };
-            }
-        }
-        let negative =
-            (0..self.negatives.len()).map(|i| self.negatives.matched(i).distance).fold(FAR, f32::min);
-        self.decoder.push(&self.near, negative, out);
+        nearest_by_class(&self.bank, &self.template_classes, &mut self.near);
+        let negative = nearest(&self.negatives);
+        let (judge, recent, metric) = (&mut self.judge, &self.recent, &self.metric);
+        self.decoder.push(&self.near, negative, &mut |c| score(judge, recent, metric, c), out);
     }
 
     /// Ends the stretch: calls `out` with what the last ticks still hold.
     pub fn finish(&mut self, out: &mut impl FnMut(TickDetection)) {
-        self.decoder.finish(out);
+        let (judge, recent, metric) = (&mut self.judge, &self.recent, &self.metric);
+        self.decoder.finish(&mut |c| score(judge, recent, metric, c), out);
         self.reset();
     }
+}
+
+/// The nearest template of each class, as the bank stands.
+fn nearest_by_class(bank: &Bank, classes: &[ClassId], near: &mut [ClassDistance]) {
+    near.fill(ClassDistance { distance: FAR, age: 0 });
+    for (template, class) in classes.iter().enumerate() {
+        let found = bank.matched(template);
+        let best = &mut near[class.index()];
+        if found.distance < best.distance {
+            *best = ClassDistance { distance: found.distance, age: found.age };
+        }
+    }
+}
+
+fn nearest(bank: &Bank) -> f32 {
+    (0..bank.len()).map(|i| bank.matched(i).distance).fold(FAR, f32::min)
+}
+
+fn score(judge: &mut Option<Judge>, recent: &RecentRows, metric: &Metric, candidate: &Candidate) -> f64 {
+    let Some(judge) = judge else { return 0.0 };
+    let first = candidate.tick as usize - candidate.age;
+    judge.score(candidate.class, &Evidence::of(candidate), metric, candidate.age + 1, |i| {
+        recent.row(first + i)
+    })
 }

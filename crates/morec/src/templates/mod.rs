@@ -4,8 +4,12 @@ mod bank;
 mod engine;
 mod metric;
 mod model;
+mod verifier;
 
 pub use bank::{Bank, Match};
 pub use engine::TemplateEngine;
 pub use metric::{Metric, Symmetric};
 pub use model::{Sample, TemplateModel, TemplateModelError};
+pub use verifier::{
+    Evidence, Exemplars, Generic, SHAPE_ROWS, Verifier, shape_distance, shape_of, squared_distance,
+};

@@ -1,10 +1,10 @@
 //! A trained set of templates: what an index file holds for this method.
 
 use crate::classes::{ClassId, ClassInfo};
-use crate::decode::DecodeParams;
+use crate::decode::{DecodeParams, Rule};
 use crate::features::{BoneSet, FeatureParams, Rows, row_dim};
 
-use super::Symmetric;
+use super::{Exemplars, Symmetric, Verifier};
 
 /// One labelled sample's rows, before the metric.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,6 +36,8 @@ pub struct TemplateModel {
     pub total: Symmetric,
     /// Distances at or above this are never reported.
     pub threshold: f32,
+    /// The second look at candidates, if there was enough to learn it from.
+    pub verifier: Option<Verifier>,
     /// If template rows are whole multiples of a step, column by column: the steps. Files then hold bytes.
     pub step: Option<Vec<f32>>,
 }
@@ -80,11 +82,22 @@ impl TemplateModel {
             let message = format!("a template of class {}, of {}", sample.class.0, self.classes.len());
             return Err(TemplateModelError::Value(message));
         }
+        if let Some(verifier) = &self.verifier {
+            verifier.check(self.classes.len()).map_err(TemplateModelError::Value)?;
+        }
         if !(self.threshold.is_finite() && self.threshold > 0.0) {
             let message = format!("the threshold must be above 0, found {}", self.threshold);
             return Err(TemplateModelError::Value(message));
         }
         Ok(())
+    }
+
+    /// What makes a candidate of a distance.
+    pub fn rule(&self) -> Rule {
+        match &self.verifier {
+            Some(verifier) => Rule::Verify { reach: verifier.reach },
+            None => Rule::Gate { threshold: self.threshold },
+        }
     }
 
     /// Rows of the longest template.
@@ -115,12 +128,27 @@ impl TemplateModel {
             negatives: self.negatives.iter().map(pick).collect(),
             ridged: self.ridged.restricted(&keep),
             threshold: self.threshold * share as f32,
+            verifier: self.verifier.as_ref().map(|v| restricted_verifier(v, share as f32, pick)),
             total,
             step: self.step.as_ref().map(|step| keep.iter().map(|&k| step[k]).collect()),
             features: self.features.clone(),
             decode: self.decode.clone(),
             classes: self.classes.clone(),
         })
+    }
+}
+
+/// Distances shrink with the share of variance that is left, and everything that is held against them too.
+fn restricted_verifier(verifier: &Verifier, share: f32, pick: impl Fn(&Rows) -> Rows) -> Verifier {
+    let restrict = |class: &Exemplars| Exemplars {
+        shapes: pick(&class.shapes),
+        sharpness: class.sharpness / share,
+        ..class.clone()
+    };
+    Verifier {
+        reach: verifier.reach * share,
+        classes: verifier.classes.iter().map(restrict).collect(),
+        ..verifier.clone()
     }
 }
 

@@ -2,15 +2,18 @@
 
 mod align;
 mod clips;
+mod examples;
 mod from_clips;
 mod mining;
 mod options;
 mod params;
 mod report;
+mod ridge;
 mod scatter;
 mod set;
 mod templates;
 mod trim;
+mod verifier;
 
 pub use align::align;
 pub use clips::train_clips;

@@ -16,6 +16,8 @@ pub struct TrainParams {
     pub max_pairs: usize,
     /// The threshold is this times the smallest distance from a template to background motion.
     pub background_share: f64,
+    /// Share of everyday clips that may come nearer than what sets the threshold.
+    pub everyday_may_pass: f64,
     /// The threshold where there is no background at all.
     pub fallback_threshold: f64,
     /// Stretches nearer than this to a template may become negatives.
@@ -27,11 +29,41 @@ pub struct TrainParams {
     pub max_negatives: usize,
     /// Whether negatives are looked for at all.
     pub mine_negatives: bool,
+    /// Templates of a class at most, taken from its people in turn.
+    pub max_templates: usize,
+    /// Background clips up to this times the longest template are negatives as a whole: they are examples of what
+    /// a class is not, and what comes before and after is part of it.
+    pub whole_background: f64,
+    /// Whether candidates are verified.
+    pub verify: bool,
+    /// Candidates are looked at up to this times the distance that nine in ten samples of new people need.
+    pub reach: f64,
+    /// Examples of a class and sign from one clip, or from two seconds of a long stream, at most.
+    pub examples_per_piece: usize,
+    /// Near misses of a class to learn from at most, from background and from other classes each.
+    pub max_negative_examples: usize,
+    /// The nearest so many are learned from however far they are.
+    pub min_negative_examples: usize,
+    /// Samples needed to verify at all, and to verify a class by itself.
+    pub min_positives: usize,
+    /// Near misses needed to verify at all.
+    pub min_negatives: usize,
+    /// Ridge of the verifier's kernel regression; .03 to .3 are alike.
+    pub verifier_ridge: f64,
+    /// Bounds of the score above which a candidate is accepted.
+    pub bar_range: (f64, f64),
 }
 
 impl Default for TrainParams {
     fn default() -> Self {
-        Self { features: FeatureParams::default(), decode: DecodeParams::default(), ..Self::reference() }
+        Self {
+            features: FeatureParams::default(),
+            decode: DecodeParams::default(),
+            max_templates: 24,
+            whole_background: 1.5,
+            verify: true,
+            ..Self::reference()
+        }
     }
 }
 
@@ -44,11 +76,23 @@ impl TrainParams {
             rho: 0.3,
             max_pairs: 200,
             background_share: 0.85,
+            everyday_may_pass: 0.1,
             fallback_threshold: 2.0,
             negative_below: 2.6,
             suspicious_below: 0.7,
             max_negatives: 60,
             mine_negatives: true,
+            max_templates: usize::MAX,
+            whole_background: 0.0,
+            verify: false,
+            reach: 2.0,
+            examples_per_piece: 3,
+            max_negative_examples: 400,
+            min_negative_examples: 60,
+            min_positives: 2,
+            min_negatives: 10,
+            verifier_ridge: 0.03,
+            bar_range: (0.1, 0.3),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The training itself, step by step as in the method's description.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
@@ -9,12 +9,15 @@ use crate::classes::ClassInfo;
 use crate::decode::FAR;
 use crate::features::{BoneSet, Rows};
 use crate::progress::Progress;
-use crate::templates::{Bank, Metric, Sample, Symmetric, TemplateModel, TemplateModelError};
+use crate::templates::{Bank, Metric, Sample, Symmetric, TemplateModel, TemplateModelError, Verifier};
 
+use super::examples::{self, Example, Seen};
 use super::mining::{Distances, NearMiss, near_misses};
 use super::params::TrainParams;
 use super::scatter::{covariance, ridged, within_class};
 use super::set::{Source, TrainSample, TrainSet, TrainStream};
+use super::trim::moving_part;
+use super::verifier;
 
 /// Why nothing could be trained.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -67,26 +70,76 @@ pub fn train(
     }
     let (ridged, total) = metric_of(set, &samples, params);
     let metric = Metric::new(&ridged, &total);
-    let mapped: Vec<Rows> = samples.iter().map(|s| metric.apply_all(&s.rows)).collect();
-    let bank = Bank::new(&mapped, metric.dim());
-    let distances = all_distances(set, &bank, &metric, progress)?;
+    let classes = class_infos(set, &samples);
+    let samples = templates_of(samples, set.classes.len(), params.max_templates);
+    let bank = bank_of(samples.iter().map(|s| metric.apply_all(&s.rows)), &metric);
+    let distances = all_distances(set, &bank, &metric, "comparing clips", progress)?;
     let (threshold, threshold_from) = threshold_of(set, &distances, params);
-    let negatives =
-        if params.mine_negatives { mine(set, &samples, &distances, threshold, params) } else { vec![] };
+    let negatives = negatives_of(set, bones, (&samples, &distances), threshold, params);
+    let verifier = if params.verify {
+        let found = (samples.as_slice(), distances.as_slice(), negatives.as_slice());
+        verifier_of(set, found, &metric, threshold, params, progress)?
+    } else {
+        None
+    };
     let model = TemplateModel {
         features: params.features.clone(),
         bones,
         decode: params.decode.clone(),
-        classes: class_infos(set, &samples),
+        classes,
         samples: samples.into_iter().map(|s| Sample { class: s.class, rows: s.rows }).collect(),
         negatives: negatives.iter().map(|n| negative_rows(set, n)).collect(),
         ridged,
         total,
         threshold,
+        verifier,
         step: None,
     };
     model.check()?;
     Ok(Trained { model, negatives, threshold_from, notes: Vec::new() })
+}
+
+/// At most `most` samples of each class, from its groups in turn, in the order of the set.
+fn templates_of(samples: Vec<TrainSample>, classes: usize, most: usize) -> Vec<TrainSample> {
+    let mut kept = BTreeSet::new();
+    for class in 0..classes {
+        let mut by_group: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+        for (i, sample) in samples.iter().enumerate().filter(|(_, s)| s.class.index() == class) {
+            by_group.entry(&sample.group).or_default().push(i);
+        }
+        let longest = by_group.values().map(Vec::len).max().unwrap_or(0);
+        let turns = (0..longest).flat_map(|turn| by_group.values().filter_map(move |g| g.get(turn)));
+        kept.extend(turns.take(most).copied());
+    }
+    samples.into_iter().enumerate().filter(|(i, _)| kept.contains(i)).map(|(_, s)| s).collect()
+}
+
+fn bank_of(mapped: impl Iterator<Item = Rows>, metric: &Metric) -> Bank {
+    Bank::new(&mapped.collect::<Vec<_>>(), metric.dim())
+}
+
+/// Candidates of all streams, each seen without its own person, and what a verifier learns from them.
+fn verifier_of(
+    set: &TrainSet,
+    (samples, distances, negatives): (&[TrainSample], &[Distances], &[NearMiss]),
+    metric: &Metric,
+    threshold: f32,
+    params: &TrainParams,
+    progress: &dyn Progress,
+) -> Result<Option<Verifier>, TrainError> {
+    let groups = |class: usize| -> BTreeSet<&str> {
+        samples.iter().filter(|s| s.class.index() == class).map(|s| s.group.as_str()).collect()
+    };
+    let single: Vec<bool> = (0..set.classes.len()).map(|class| groups(class).len() < 2).collect();
+    let bank = bank_of(negatives.iter().map(|n| metric.apply_all(&negative_rows(set, n))), metric);
+    let strange = all_distances(set, &bank, metric, "comparing with near misses", progress)?;
+    let suspicious = params.suspicious_below as f32 * threshold;
+    let seen = Seen { set, samples, single: &single, distances, negatives, suspicious };
+    let examples: Vec<Example> =
+        (0..set.streams.len()).into_par_iter().flat_map_iter(|i| seen.examples(i, &strange[i])).collect();
+    let reach = examples::reach(&examples, threshold, params);
+    let chosen = examples::select(examples, set, reach, params);
+    Ok(verifier::learn(&chosen, set, metric, threshold, reach, params))
 }
 
 fn metric_of(set: &TrainSet, samples: &[TrainSample], params: &TrainParams) -> (Symmetric, Symmetric) {
@@ -102,6 +155,7 @@ fn all_distances(
     set: &TrainSet,
     bank: &Bank,
     metric: &Metric,
+    stage: &str,
     progress: &dyn Progress,
 ) -> Result<Vec<Distances>, TrainError> {
     let (done, total) = (AtomicUsize::new(0), set.streams.len());
@@ -110,36 +164,62 @@ fn all_distances(
             return Err(TrainError::Cancelled);
         }
         let distances = Distances::of(bank, &metric.apply_all(&stream.rows));
-        progress.report("comparing clips", done.fetch_add(1, Ordering::Relaxed) + 1, total);
+        progress.report(stage, done.fetch_add(1, Ordering::Relaxed) + 1, total);
         Ok(distances)
     };
     set.streams.par_iter().map_init(|| bank.clone(), compare).collect()
 }
 
 /// A share of the smallest distance that background motion has to any template, and what set it.
+///
+/// Clips that the user calls background count in full. Of made everyday motion a tenth may come nearer: some of it
+/// may happen to be one of the classes, and what comes that near becomes a hard negative.
 fn threshold_of(set: &TrainSet, distances: &[Distances], params: &TrainParams) -> (f32, String) {
-    let background = set.streams.iter().zip(distances).filter(|(s, _)| s.source != Source::Labelled);
-    let nearest = background.min_by(|a, b| a.1.smallest().total_cmp(&b.1.smallest()));
+    let of = |source: Source, share: f64| {
+        let streams = set.streams.iter().zip(distances).filter(|(s, _)| s.source == source);
+        let mut nearest: Vec<(f32, &str)> = streams.map(|(s, d)| (d.smallest(), s.name.as_str())).collect();
+        nearest.sort_by(|a, b| a.0.total_cmp(&b.0));
+        nearest.get((share * nearest.len() as f64) as usize).copied()
+    };
+    let clips = of(Source::Background, 0.0);
+    let everyday = of(Source::Everyday, params.everyday_may_pass);
+    let nearest = clips.into_iter().chain(everyday).min_by(|a, b| a.0.total_cmp(&b.0));
     match nearest {
-        Some((stream, d)) if d.smallest() < FAR / 2.0 => {
-            (params.background_share as f32 * d.smallest(), format!("background clip {}", stream.name))
+        Some((distance, name)) if distance < FAR / 2.0 => {
+            (params.background_share as f32 * distance, format!("background clip {name}"))
         }
         _ => (params.fallback_threshold as f32, "no background: a general value".to_owned()),
     }
 }
 
-fn mine(
+/// Short background clips as a whole, and the nearest misses in everything else that is background.
+fn negatives_of(
     set: &TrainSet,
-    samples: &[TrainSample],
-    distances: &[Distances],
+    bones: BoneSet,
+    (samples, distances): (&[TrainSample], &[Distances]),
     threshold: f32,
     params: &TrainParams,
 ) -> Vec<NearMiss> {
-    let streams = set.streams.iter().enumerate().filter(|(_, s)| s.rest_is_background);
-    let mut found: Vec<NearMiss> =
-        streams.flat_map(|(i, s)| near_misses(&distances[i], samples, (i, s), threshold, params)).collect();
+    if !params.mine_negatives {
+        return Vec::new();
+    }
+    let longest = samples.iter().map(|s| s.rows.len()).max().unwrap_or(0) as f64;
+    let short = |s: &TrainStream| {
+        s.source == Source::Background && s.rows.len() as f64 <= params.whole_background * longest
+    };
+    let (whole, long): (Vec<_>, Vec<_>) =
+        set.streams.iter().enumerate().filter(|(_, s)| s.rest_is_background).partition(|(_, s)| short(s));
+    let mut found: Vec<NearMiss> = long
+        .into_iter()
+        .flat_map(|(i, s)| near_misses(&distances[i], samples, (i, s), threshold, params))
+        .collect();
     found.sort_by(|a, b| a.distance.total_cmp(&b.distance));
     found.truncate(params.max_negatives);
+    found.extend(whole.into_iter().map(|(stream, s)| NearMiss {
+        distance: distances[stream].smallest(),
+        stream,
+        ticks: moving_part(&s.rows, bones),
+    }));
     found
 }
 

@@ -1,0 +1,235 @@
+//! A second look at every candidate: is this stretch, as a whole, one of the class's samples?
+//!
+//! Warping finds where a class could be and is generous with it. The verifier compares the whole stretch, at eight
+//! even steps, with stretches that were the class and stretches that only came near it, and weighs how near the
+//! class is against how near everything else is.
+
+use crate::classes::ClassId;
+use crate::decode::Candidate;
+use crate::features::Rows;
+
+use super::Metric;
+
+/// Rows that a stretch is resampled to.
+pub const SHAPE_ROWS: usize = 8;
+
+/// Distances below this share of the threshold count as equally good: people trained on are alike, new ones are
+/// not, and nearer than near must not be held against anybody.
+const NEAR_ENOUGH: f64 = 0.6;
+/// Distances are cut off here: beyond it everything is equally far.
+const CUT: f64 = 6.0;
+/// Missing distances (no other class, no negatives) count as this.
+const NOTHING_NEAR: f64 = 9.0;
+
+/// How near a stretch is to a class and to what it should not be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Evidence {
+    /// Smallest distance to the class's templates.
+    pub distance: f64,
+    /// Smallest distance to another class's templates around its end.
+    pub other: f64,
+    /// Smallest distance to a negative template around its end.
+    pub negative: f64,
+}
+
+impl Evidence {
+    /// That of a candidate.
+    pub fn of(candidate: &Candidate) -> Self {
+        let Candidate { distance, other, negative, .. } = *candidate;
+        Self { distance: distance.into(), other: other.into(), negative: negative.into() }
+    }
+
+    /// Three logarithmic ratios, each bounded: to the threshold, to other classes, to negatives.
+    pub fn ratios(&self, threshold: f64) -> [f64; 3] {
+        let bounded = |ratio: f64| ratio.max(1e-3).ln().clamp(NEAR_ENOUGH.ln(), 2.0);
+        let (other, negative) =
+            (self.other.clamp(1e-3, NOTHING_NEAR), self.negative.clamp(1e-3, NOTHING_NEAR));
+        [
+            bounded(self.distance / threshold),
+            bounded(self.distance / other),
+            bounded(self.distance / negative),
+        ]
+    }
+
+    /// Four values beside the shape in the class kernels.
+    pub fn beside_shape(&self, threshold: f64) -> [f64; 4] {
+        let (other, negative) = (self.other.clamp(0.1, NOTHING_NEAR), self.negative.min(NOTHING_NEAR));
+        [
+            self.distance.max(NEAR_ENOUGH * threshold).min(CUT),
+            (self.distance / other).clamp(NEAR_ENOUGH, CUT),
+            negative.min(CUT),
+            (self.distance / negative.max(0.1)).clamp(NEAR_ENOUGH, CUT),
+        ]
+    }
+}
+
+/// `rows` at [`SHAPE_ROWS`] even steps from first to last, linearly between rows, one after the other into `out`
+/// (`SHAPE_ROWS · dim` values). `row(i)` gives row `i` of `len`, which must be positive.
+pub fn shape_of<'r>(len: usize, row: impl Fn(usize) -> &'r [f32], out: &mut [f32]) {
+    let dim = row(0).len();
+    for (step, out) in out.chunks_exact_mut(dim).enumerate() {
+        let at = step as f32 * (len - 1) as f32 / (SHAPE_ROWS - 1) as f32;
+        let before = (at as usize).min(len.saturating_sub(2));
+        let (a, b, t) = (row(before), row((before + 1).min(len - 1)), at - before as f32);
+        for ((o, a), b) in out.iter_mut().zip(a).zip(b) {
+            *o = a * (1.0 - t) + b * t;
+        }
+    }
+}
+
+/// How all classes together weigh evidence: a linear score of standardised ratios, bounded to ±1.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Generic {
+    /// Mean of each ratio in training.
+    pub mean: [f64; 3],
+    /// Standard deviation of each ratio in training.
+    pub deviation: [f64; 3],
+    /// Constant and a weight for each ratio.
+    pub weights: [f64; 4],
+}
+
+impl Generic {
+    /// The score: above 0 for, below 0 against.
+    pub fn score(&self, ratios: &[f64; 3]) -> f64 {
+        let mut sum = self.weights[0];
+        for k in 0..3 {
+            sum += self.weights[k + 1] * (ratios[k] - self.mean[k]) / self.deviation[k];
+        }
+        sum.clamp(-1.0, 1.0)
+    }
+}
+
+/// One class's stretches that were and that were not it, and what each says of a stretch like it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Exemplars {
+    /// The class.
+    pub class: ClassId,
+    /// Shapes, before the metric: `SHAPE_ROWS` rows for each exemplar.
+    pub shapes: Rows,
+    /// [`Evidence::beside_shape`] of each exemplar.
+    pub beside: Vec<[f32; 4]>,
+    /// Weight of each exemplar.
+    pub weights: Vec<f32>,
+    /// `1 / (2 s²)` of the Gaussian kernel.
+    pub sharpness: f32,
+}
+
+impl Exemplars {
+    /// Number of exemplars.
+    pub fn len(&self) -> usize {
+        self.weights.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.weights.is_empty()
+    }
+}
+
+/// Weighs candidates: kernel ridge regression on top of the generic score.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Verifier {
+    /// Candidates farther than this are not looked at.
+    pub reach: f32,
+    /// Scores must be above this.
+    pub bar: f64,
+    /// What holds for all classes.
+    pub generic: Generic,
+    /// What holds for single classes.
+    pub classes: Vec<Exemplars>,
+}
+
+impl Verifier {
+    /// Says which part does not fit the others, if one does not.
+    pub fn check(&self, classes: usize) -> Result<(), String> {
+        for exemplars in &self.classes {
+            let n = exemplars.len();
+            if exemplars.class.index() >= classes {
+                return Err(format!("exemplars of class {}, of {classes}", exemplars.class.0));
+            }
+            if exemplars.shapes.len() != n * SHAPE_ROWS || exemplars.beside.len() != n {
+                return Err(format!(
+                    "exemplars of class {}: shapes and weights differ in number",
+                    exemplars.class.0
+                ));
+            }
+            if !(exemplars.sharpness.is_finite() && exemplars.sharpness > 0.0) {
+                return Err(format!(
+                    "exemplars of class {}: sharpness {}",
+                    exemplars.class.0, exemplars.sharpness
+                ));
+            }
+        }
+        let sane =
+            self.reach > 0.0 && self.bar.abs() < 1.0 && self.generic.deviation.iter().all(|d| *d > 0.0);
+        if sane { Ok(()) } else { Err(format!("verifier: reach {}, bar {}", self.reach, self.bar)) }
+    }
+}
+
+/// A verifier laid out for streaming.
+#[derive(Debug, Clone)]
+pub struct Judge {
+    verifier: Verifier,
+    /// Mapped shapes of each class's exemplars.
+    shapes: Vec<Rows>,
+    threshold: f64,
+    shape: Vec<f32>,
+    mapped: Vec<f32>,
+}
+
+impl Judge {
+    /// Maps all exemplars with `metric`.
+    pub fn new(verifier: &Verifier, metric: &Metric, threshold: f32) -> Self {
+        let len = SHAPE_ROWS * metric.dim();
+        Self {
+            shapes: verifier.classes.iter().map(|c| metric.apply_all(&c.shapes)).collect(),
+            verifier: verifier.clone(),
+            threshold: f64::from(threshold),
+            shape: vec![0.0; len],
+            mapped: vec![0.0; len],
+        }
+    }
+
+    /// Score of the stretch of `len` rows that `row` gives, before the metric: above 0 is accepted, 1 is certain.
+    /// O(exemplars of the class · shape), no allocation.
+    pub fn score<'r>(
+        &mut self,
+        class: ClassId,
+        evidence: &Evidence,
+        metric: &Metric,
+        len: usize,
+        row: impl Fn(usize) -> &'r [f32],
+    ) -> f64 {
+        let mut score = self.verifier.generic.score(&evidence.ratios(self.threshold));
+        if let Some(place) = self.verifier.classes.iter().position(|c| c.class == class) {
+            shape_of(len, row, &mut self.shape);
+            let dim = metric.dim();
+            for (raw, mapped) in self.shape.chunks_exact(dim).zip(self.mapped.chunks_exact_mut(dim)) {
+                metric.apply(raw, mapped);
+            }
+            let beside = evidence.beside_shape(self.threshold).map(|v| v as f32);
+            score += kernel_sum(&self.verifier.classes[place], &self.shapes[place], &self.mapped, &beside);
+        }
+        (score - self.verifier.bar) / (1.0 - self.verifier.bar)
+    }
+}
+
+fn kernel_sum(exemplars: &Exemplars, shapes: &Rows, mapped: &[f32], beside: &[f32; 4]) -> f64 {
+    let shapes = shapes.values().chunks_exact(mapped.len());
+    let all = shapes.zip(&exemplars.beside).zip(&exemplars.weights);
+    all.map(|((shape, other), weight)| {
+        let distance = shape_distance(shape, mapped) + squared_distance(other, beside);
+        f64::from(weight * (-exemplars.sharpness * distance).exp())
+    })
+    .sum()
+}
+
+/// Mean over the steps of a shape of the squared distance of its rows.
+pub fn shape_distance(a: &[f32], b: &[f32]) -> f32 {
+    squared_distance(a, b) / SHAPE_ROWS as f32
+}
+
+/// |a − b|².
+pub fn squared_distance(a: &[f32], b: &[f32]) -> f32 {
+    a.iter().zip(b).map(|(x, y)| (x - y) * (x - y)).sum()
+}
