@@ -9,7 +9,7 @@ use morec::formats::Warning;
 use morec::import::{ImportOptions, prepare};
 use morec::labels::{ClipLength, Labels, Sample, read_people};
 use morec::roles::mapping::Mapping;
-use morec::train::{Source, TrainClip, TrainOptions};
+use morec::train::{Source, TrainClip, TrainOptions, TrainParams};
 use rayon::prelude::*;
 
 use crate::files::{ReadArgs, expand, open};
@@ -46,6 +46,9 @@ pub struct MaterialArgs {
     /// Roles of joints, where inference fails: lines of `role<TAB>joint name`
     #[arg(long, value_name = "FILE")]
     pub roles: Option<PathBuf>,
+    /// Set a figure of the method by its path, as `rho=0.4` or `decode.lag_ticks=2`; may be given several times
+    #[arg(long = "param", value_name = "NAME=VALUE")]
+    pub params: Vec<String>,
     #[command(flatten)]
     pub read: ReadArgs,
 }
@@ -57,6 +60,22 @@ pub enum Unlabelled {
     Background,
     /// Unknown: used for nothing.
     Ignore,
+}
+
+/// `params` with the figures that `settings` name.
+fn with_figures(params: TrainParams, settings: &[String]) -> Result<TrainParams> {
+    let mut tree = serde_json::to_value(&params)?;
+    for setting in settings {
+        let (name, value) =
+            setting.split_once('=').context(format!("--param {setting}: expected NAME=VALUE"))?;
+        let pointer = format!("/{}", name.replace('.', "/"));
+        let Some(figure) = tree.pointer_mut(&pointer).filter(|f| !f.is_object()) else {
+            let known = serde_json::to_string_pretty(&params)?;
+            bail!("--param {setting}: no figure is called {name}; there are {known}");
+        };
+        *figure = serde_json::from_str(value).context(format!("--param {setting}: expected a number"))?;
+    }
+    serde_json::from_value(tree).context("--param")
 }
 
 /// Everything loaded.
@@ -75,10 +94,11 @@ pub struct Material {
 
 impl MaterialArgs {
     /// How to train.
-    pub fn options(&self) -> TrainOptions {
+    pub fn options(&self) -> Result<TrainOptions> {
         let unlabelled_is_background = self.unlabelled == Unlabelled::Background;
         let everyday = if self.no_everyday { None } else { TrainOptions::default().everyday };
-        TrainOptions { unlabelled_is_background, everyday, ..TrainOptions::default() }
+        let params = with_figures(TrainParams::default(), &self.params)?;
+        Ok(TrainOptions { unlabelled_is_background, everyday, params })
     }
 
     /// Loads everything; `unknown` are paths like those of `--background`. What is left out is said on standard

@@ -50,7 +50,7 @@ enum Method {
 pub fn run(args: &Args) -> Result<ExitCode> {
     let Method::Templates = args.method;
     let material = args.material.load(&[])?;
-    let options = args.material.options();
+    let options = args.material.options()?;
     let labelling = Labelling {
         samples: &material.samples,
         held_back: &[],
