@@ -8,7 +8,7 @@ use morec::labels::Sample;
 use morec::roles::RoleMap;
 use morec::synth::{DatabaseSpec, Take, database, everyday};
 use morec::templates::TemplateModel;
-use morec::train::{EVERYDAY_SEED, Labelling, Source, TrainClip, TrainOptions, train_clips};
+use morec::train::{EVERYDAY_SEED, Labelling, Source, TrainClip, TrainOptions, TrainParams, train_clips};
 
 /// A pose and its time on the stream's clock.
 pub type Timed = (f64, KeyPose);
@@ -26,13 +26,14 @@ pub fn model() -> Arc<TemplateModel> {
     static MODEL: OnceLock<Arc<TemplateModel>> = OnceLock::new();
     MODEL
         .get_or_init(|| {
-            Arc::new(train(&DatabaseSpec { people: 6, repetitions: 1, rate_hz: 30.0, ..Default::default() }))
+            let spec = DatabaseSpec { people: 6, repetitions: 1, rate_hz: 30.0, ..Default::default() };
+            Arc::new(train(&spec, TrainParams::default()))
         })
         .clone()
 }
 
 /// Trained on what `spec` makes, with some everyday motion as background.
-pub fn train(spec: &DatabaseSpec) -> TemplateModel {
+pub fn train(spec: &DatabaseSpec, params: TrainParams) -> TemplateModel {
     let takes = database(71, spec);
     let samples: Vec<Sample> = takes.iter().flat_map(samples_of).collect();
     let mut clips: Vec<TrainClip> =
@@ -43,7 +44,7 @@ pub fn train(spec: &DatabaseSpec) -> TemplateModel {
     let classes: Vec<String> = spec.classes.iter().map(|c| (*c).to_owned()).collect();
     let labelling =
         Labelling { samples: &samples, held_back: &[], classes: &classes, unlabelled_is_background: true };
-    let options = TrainOptions { everyday: None, ..TrainOptions::default() };
+    let options = TrainOptions { params, everyday: None, ..TrainOptions::default() };
     train_clips(&clips, &labelling, &options, &()).unwrap().0
 }
 

@@ -4,6 +4,7 @@ mod conformance;
 mod cuts;
 mod engines;
 mod golden;
+mod index_file;
 mod kit;
 mod layers;
 mod made;
