@@ -169,3 +169,20 @@ fn write_index_of_this_version() {
     let found = serde_json::to_string_pretty(&recognised(index())).unwrap();
     std::fs::write(committed(&format!("{name}.json")), found + "\n").unwrap();
 }
+
+#[test]
+fn figures_no_training_gives_are_refused() {
+    let refused = |change: &dyn Fn(&mut morec::templates::TemplateModel)| {
+        let mut index = index().clone();
+        change(Arc::make_mut(&mut index.model));
+        match MotionIndex::from_bytes(&index.to_bytes().unwrap()) {
+            Err(IndexError::Content(message)) => assert!(!message.is_empty()),
+            other => panic!("opened: {:?}", other.map(|_| ())),
+        }
+    };
+    refused(&|m| m.threshold = -1.0);
+    refused(&|m| m.features.frames_per_tick = 0);
+    refused(&|m| m.features.smooth_cut_frames = usize::MAX);
+    refused(&|m| m.features.rate_hz = 1e12);
+    refused(&|m| m.classes.clear());
+}
