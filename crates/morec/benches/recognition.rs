@@ -4,6 +4,9 @@
 //! items a second say how many streams one core could follow. `bank/plain` is the same dynamic program as it is
 //! written in books, to hold `bank/step` against: a double loop in single precision over the same rows.
 
+// What tests share lies outside of test functions, where the lint looks for it.
+#![allow(clippy::unwrap_used)]
+
 #[path = "../tests/it/made.rs"]
 mod made;
 
