@@ -45,8 +45,6 @@ pub struct Trained {
     pub negatives: Vec<NearMiss>,
     /// What set the threshold, in words.
     pub threshold_from: String,
-    /// What the user should know.
-    pub notes: Vec<String>,
 }
 
 /// Trains templates for `set`, whose rows hold `bones`.
@@ -95,8 +93,9 @@ pub fn train(
         verifier,
         step: None,
     };
+    let model = if params.compact { model.compacted() } else { model };
     model.check()?;
-    Ok(Trained { model, negatives, threshold_from, notes: Vec::new() })
+    Ok(Trained { model, negatives, threshold_from })
 }
 
 /// At most `most` samples of each class, from its groups in turn, in the order of the set.

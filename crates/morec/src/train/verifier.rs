@@ -13,12 +13,14 @@ use crate::templates::{
 use super::examples::Example;
 use super::params::TrainParams;
 use super::ridge::{balanced, kernel, linear};
-use super::set::TrainSet;
+use super::set::{Source, TrainSet};
 
 /// No example weighs more than this times the mean: three samples against hundreds of near misses.
 const MOST_WEIGHT: f64 = 20.0;
 
-/// Learns a verifier from `examples`, or `None` if there are too few.
+/// Learns a verifier from `examples`, or `None` if there are too few samples, or too few near misses in clips that
+/// the user calls background: with none but the unlabelled parts of the labelled clips and made motion to learn
+/// from, a verifier lets more unknown motion pass than the plain rule (measured on referee clips).
 ///
 /// 1. A linear score of three ratios that holds for all classes.
 /// 2. For each class a kernel ridge regression of what the linear score leaves.
@@ -35,7 +37,8 @@ pub fn learn(
 ) -> Option<Verifier> {
     let targets: Vec<f64> = examples.iter().map(|e| if e.positive { 1.0 } else { -1.0 }).collect();
     let positives = targets.iter().filter(|t| **t > 0.0).count();
-    if positives < params.min_positives || targets.len() - positives < params.min_negatives {
+    let given = |e: &&Example| !e.positive && set.streams[e.stream].source == Source::Background;
+    if positives < params.min_positives || examples.iter().filter(given).count() < params.min_negatives {
         return None;
     }
     let groups = group_numbers(examples, |e| set.streams[e.stream].group.clone());
