@@ -6,8 +6,6 @@ mod files;
 mod lengths;
 mod material;
 mod progress;
-// `demo` is its one user; without it the compiler finds nobody.
-#[allow(dead_code)]
 mod show;
 mod stats;
 mod table;
@@ -32,6 +30,7 @@ enum Command {
     Recognize(commands::recognize::Args),
     Evaluate(commands::evaluate::Args),
     Crossval(commands::crossval::Args),
+    Demo(commands::demo::Args),
 }
 
 fn main() -> ExitCode {
@@ -42,7 +41,8 @@ fn main() -> ExitCode {
         Command::Train(args) => commands::train::run(&args),
         Command::Recognize(args) => commands::recognize::run(&args),
         Command::Crossval(args) => commands::crossval::run(&args),
-        Command::Evaluate(args) => commands::evaluate::run(args),
+        Command::Evaluate(args) => commands::evaluate::run(&args),
+        Command::Demo(args) => commands::demo::run(&args),
     };
     match outcome {
         Ok(code) => code,

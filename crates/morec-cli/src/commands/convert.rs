@@ -52,7 +52,7 @@ pub fn run(args: Args) -> Result<ExitCode> {
         bvh::write(&clip, &mut out).context("standard output")?;
         out.flush().context("standard output")?;
     } else {
-        write_file(&clip, &args.output).with_context(|| args.output.display().to_string())?;
+        write_clip(&clip, &args.output).with_context(|| args.output.display().to_string())?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -68,7 +68,7 @@ fn one_of(mut clips: Vec<Clip>, character: Option<usize>) -> Result<Clip> {
 }
 
 /// Writes beside the target first, so that a failure leaves no half file under its name.
-fn write_file(clip: &Clip, path: &Path) -> Result<()> {
+pub fn write_clip(clip: &Clip, path: &Path) -> Result<()> {
     let mut partial = path.as_os_str().to_owned();
     partial.push(".partial");
     let partial = PathBuf::from(partial);

@@ -59,7 +59,7 @@ pub struct Args {
 }
 
 /// Runs the command.
-pub fn run(args: Args) -> anyhow::Result<ExitCode> {
+pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let labels = Labels::read(&read(&args.truth)?).with_context(|| args.truth.display().to_string())?;
     let table = read_found(&read(&args.found)?).with_context(|| args.found.display().to_string())?;
     warn(&args.truth, &labels.warnings);

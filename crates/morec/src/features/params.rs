@@ -75,8 +75,13 @@ impl FeatureParams {
         if !(1..=64).contains(&self.frames_per_tick) {
             return Err(format!("frames_per_tick must be 1 to 64, found {}", self.frames_per_tick));
         }
-        if self.look_ahead_frames() > 64 {
-            return Err(format!("filters of {} frames a side are too wide", self.look_ahead_frames() - 1));
+        let widest = self.smooth_cut_frames.max(self.root_cut_frames);
+        if widest > 63 {
+            return Err(format!("filters must be at most 63 frames a side, found {widest}"));
+        }
+        // A push makes every frame since the one before: a rate without bounds would be a push without end.
+        if self.rate_hz > 1000.0 {
+            return Err(format!("rate_hz must be at most 1000, found {}", self.rate_hz));
         }
         Ok(())
     }

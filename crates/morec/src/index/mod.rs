@@ -5,6 +5,17 @@
 //! (`safetensors.numpy.load_file` in Python), and the bytes can be mapped into memory. What is not a tensor
 //! stands as JSON in the header's metadata under the key `morec`: see [`Manifest`](manifest).
 //!
+//! ```python
+//! import json
+//! from safetensors import safe_open
+//! from safetensors.numpy import load_file
+//!
+//! tables = load_file("signs.index")
+//! with safe_open("signs.index", "np") as file:
+//!     manifest = json.loads(file.metadata()["morec"])
+//! print([c["name"] for c in manifest["classes"]], tables["templates.rows"].shape)
+//! ```
+//!
 //! A file of a version this program knows opens in every later release; `testdata/index/` keeps one of each.
 
 mod manifest;

@@ -26,13 +26,28 @@ pub struct Detection {
 }
 
 /// Recognises motions in one performer's stream of poses.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Recognizer {
     model: Arc<TemplateModel>,
     features: FeatureStream,
     engine: TemplateEngine,
     found: Vec<Detection>,
     now_secs: f64,
+}
+
+impl Clone for Recognizer {
+    /// A copy in the same state; by hand, because a copied vector has room only for what it holds.
+    fn clone(&self) -> Self {
+        let mut found = Vec::with_capacity(MAX_DETECTIONS_PER_PUSH);
+        found.extend_from_slice(&self.found);
+        Self {
+            model: self.model.clone(),
+            features: self.features.clone(),
+            engine: self.engine.clone(),
+            found,
+            now_secs: self.now_secs,
+        }
+    }
 }
 
 impl Recognizer {
@@ -87,6 +102,14 @@ impl Recognizer {
             self.now_secs = time_secs;
         }
         &self.found
+    }
+
+    /// Takes poses with their times, in order, and adds what they settled to `out`: the same detections as of
+    /// pushing one by one. Allocates only if `out` has to grow.
+    pub fn push_all(&mut self, poses: &[(f64, KeyPose)], out: &mut Vec<Detection>) {
+        for (time_secs, pose) in poses {
+            out.extend_from_slice(self.push(*time_secs, pose));
+        }
     }
 
     /// Ends the stream: returns what its last moments still hold. The next push begins a new stream.

@@ -1,4 +1,10 @@
-//! Behaviour of the library as a whole, on real clips where they are there.
+//! Behaviour of the library as a whole, on synthetic people, and on real clips where they are there.
 
+mod conformance;
+mod cuts;
+mod engines;
 mod golden;
+mod index_file;
 mod kit;
+mod layers;
+mod made;

@@ -1,0 +1,55 @@
+//! `morec demo` from a newcomer's side: one command, then the commands it printed.
+
+use crate::kit::Folder;
+
+/// The words of every command that the demo printed.
+fn printed_commands(out: &str) -> Vec<Vec<&str>> {
+    out.lines().filter_map(|l| l.strip_prefix("$ morec ")).map(|l| l.split(' ').collect()).collect()
+}
+
+#[test]
+fn the_whole_job_and_then_again_by_hand() {
+    let folder = Folder::with(&[]);
+    let out = folder.morec(&["demo", "--quiet"]).ok();
+    for file in ["labels.tsv", "people.tsv", "truth.tsv", "found.tsv", "demo.index", "report/report.html"] {
+        let path = folder.path().join("morec-demo").join(file);
+        assert!(std::fs::metadata(&path).unwrap().len() > 0, "{file}");
+    }
+    let clips = std::fs::read_dir(folder.path().join("morec-demo/clips")).unwrap().count();
+    assert!(clips >= 5, "{clips} people to train on");
+    assert!(out.contains("say nothing about accuracy on real people"));
+
+    let commands = printed_commands(&out);
+    let names: Vec<&str> = commands.iter().map(|c| c[0]).collect();
+    assert_eq!(names, ["train", "recognize", "evaluate"]);
+    let with = |n: usize, more: &[&str]| {
+        let words: Vec<&str> = commands[n].iter().copied().chain(more.iter().copied()).collect();
+        folder.morec(&words).ok()
+    };
+    let read = |name: &str| std::fs::read_to_string(folder.path().join("morec-demo").join(name)).unwrap();
+    let found = read("found.tsv");
+    std::fs::remove_file(folder.path().join("morec-demo/found.tsv")).unwrap();
+    with(1, &[]);
+    assert_eq!(read("found.tsv"), found);
+
+    let figures: serde_json::Value = serde_json::from_str(&with(2, &["--json"])).unwrap();
+    let rate = |name: &str| figures["overlap"][2][name].as_f64().unwrap();
+    // Far below what it reaches, far above what anything broken would.
+    assert!(rate("recall") >= 0.6 && rate("precision") >= 0.6, "{}", figures["overlap"][2]);
+
+    // Training is the long step: two classes and no everyday motion show that the line works.
+    let trained = with(0, &["--classes", "bow,clap", "--no-everyday"]);
+    assert!(trained.contains("bow") && trained.contains("demo.index"), "{trained}");
+}
+
+#[test]
+fn other_peoples_folders_are_left_alone() {
+    let folder = Folder::with(&[("mine/clip.bvh", "mine"), ("file", "mine")]);
+    for (given, said) in [("mine", "nothing was written"), ("file", "is a file")] {
+        let ran = folder.morec(&["demo", "--quiet", "--folder", given]);
+        assert_eq!(ran.code, Some(1), "{ran:?}");
+        assert!(ran.err.contains(said), "{}", ran.err);
+    }
+    assert_eq!(std::fs::read_dir(folder.path().join("mine")).unwrap().count(), 1);
+    assert_eq!(folder.morec(&["demo", "--speed", "0"]).code, Some(2));
+}
