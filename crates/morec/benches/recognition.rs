@@ -3,6 +3,7 @@
 //! Items are ticks of a stream (30 a second) in `bank` and frames at 60 Hz in `features` and `whole_path`, so that
 //! items a second say how many streams one core could follow. `bank/plain` is the same dynamic program as it is
 //! written in books, to hold `bank/step` against: a double loop in single precision over the same rows.
+#![allow(clippy::unwrap_used)]
 
 #[path = "../tests/it/made.rs"]
 mod made;

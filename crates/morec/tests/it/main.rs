@@ -1,4 +1,5 @@
 //! Behaviour of the library as a whole, on synthetic people, and on real clips where they are there.
+#![allow(clippy::unwrap_used, clippy::print_stderr)]
 
 mod conformance;
 mod cuts;
