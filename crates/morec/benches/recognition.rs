@@ -5,6 +5,9 @@
 //! written in books, to hold `bank/step` against: a double loop in single precision over the same rows.
 #![allow(clippy::unwrap_used)]
 
+// What tests share lies outside of test functions, where the lint looks for it.
+#![allow(clippy::unwrap_used)]
+
 #[path = "../tests/it/made.rs"]
 mod made;
 

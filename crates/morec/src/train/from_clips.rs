@@ -1,6 +1,6 @@
 //! From clips and labels to what training works on.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
@@ -63,14 +63,24 @@ pub fn prepare(clips: &[TrainClip], labelling: &Labelling<'_>, params: &FeatureP
     let serves = |shown: &BoneSet| shown.and(bones) == bones && !bones.is_empty();
     let (usable, left_out): (Vec<_>, Vec<_>) = clips.iter().zip(&shown).partition(|(_, b)| serves(b));
     let held_back = self::by_clip(labelling.held_back);
-    let streams = usable
+    let mut streams: Vec<TrainStream> = usable
         .par_iter()
         .map(|(clip, _)| stream(clip, bones, params, labelling, &by_clip, &held_back))
         .collect();
+    clips_are_people_if_one_is_named(&mut streams);
     Prepared {
         set: TrainSet { classes: labelling.classes.to_vec(), streams },
         bones,
         lacking: left_out.into_iter().map(|(c, _)| c.name.clone()).collect(),
+    }
+}
+
+/// Leaving out a person needs a second one: where a single person shows all samples, clips count as people.
+fn clips_are_people_if_one_is_named(streams: &mut [TrainStream]) {
+    let teaching = || streams.iter().filter(|s| s.known.iter().any(|k| k.class.is_some()));
+    let people: BTreeSet<&str> = teaching().map(|s| s.group.as_str()).collect();
+    if people.len() < 2 {
+        streams.iter_mut().for_each(|s| s.group.clone_from(&s.name));
     }
 }
 
