@@ -56,9 +56,8 @@
 //!     unlabelled_is_background: true,
 //!     ..Default::default()
 //! };
-//! // Without made everyday motion this takes a moment; an index for use should have it.
-//! let options = TrainOptions { everyday: None, ..Default::default() };
-//! let (model, report) = train_clips(&clips, &labelling, &options, &())?;
+//! // The last argument hears of progress and may cancel; () does neither.
+//! let (model, report) = train_clips(&clips, &labelling, &TrainOptions::default(), &())?;
 //! assert_eq!(report.classes.len(), 2);
 //!
 //! // The live side: poses come with a time, at any rate, even or uneven.
