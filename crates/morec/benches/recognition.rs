@@ -3,7 +3,6 @@
 //! Items are ticks of a stream (30 a second) in `bank` and frames at 60 Hz in `features` and `whole_path`, so that
 //! items a second say how many streams one core could follow. `bank/plain` is the same dynamic program as it is
 //! written in books, to hold `bank/step` against: a double loop in single precision over the same rows.
-#![allow(clippy::unwrap_used)]
 
 // What tests share lies outside of test functions, where the lint looks for it.
 #![allow(clippy::unwrap_used)]
