@@ -81,7 +81,7 @@ pub fn slerp_direction(a: &Vec3, b: &Vec3, t: f64) -> Vec3 {
 
 fn slerp_weights(cos: f64, t: f64) -> (f64, f64) {
     // Near-equal ends: the arc is its chord, and dividing by its sine would lose every digit.
-    if cos > 1.0 - 1e-9 || cos < -1.0 + 1e-9 {
+    if !(-1.0 + 1e-9..=1.0 - 1e-9).contains(&cos) {
         return (1.0 - t, t);
     }
     let angle = cos.acos();

@@ -1,6 +1,6 @@
 //! Telling formats apart: by content first, by name where the content says nothing.
 //!
-//! A new format is registered in [`READ`]; one that is only recognised, to be refused by its name, in [`UNREAD`].
+//! A new format is registered in `READ`; one that is only recognised, to be refused by its name, in `UNREAD`.
 
 use super::{ParseError, Place};
 

@@ -1,7 +1,7 @@
 //! Behaviour of the library as a whole, on synthetic people, and on real clips where they are there.
 
 // What tests share lies outside of test functions, where the lint looks for it.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stderr)]
 
 mod conformance;
 mod cuts;
