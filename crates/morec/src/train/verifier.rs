@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use nalgebra::DMatrix;
+use rayon::prelude::*;
 
 use crate::classes::ClassId;
 use crate::features::Rows;
@@ -45,23 +46,28 @@ pub fn learn(
     let ratios: Vec<[f64; 3]> = examples.iter().map(|e| e.evidence.ratios(f64::from(threshold))).collect();
     let (generic, cross_fitted) = fit_generic(&ratios, &targets, &groups)?;
     let residuals: Vec<f64> = targets.iter().zip(&cross_fitted).map(|(t, g)| t - g).collect();
-    let mut scores = cross_fitted.clone();
-    let mut classes = Vec::new();
-    for class in 0..set.classes.len() {
-        let members: Vec<usize> = (0..examples.len()).filter(|&i| examples[i].class == class).collect();
-        let problem = ClassProblem {
-            examples,
-            set,
-            metric,
-            threshold,
-            targets: &targets,
-            residuals: &residuals,
-            groups: &groups,
-        };
-        if let Some((exemplars, corrections)) = problem.fit(class, &members, params) {
-            members.iter().zip(corrections).for_each(|(&i, c)| scores[i] += c);
-            classes.push(exemplars);
-        }
+    let problem = ClassProblem {
+        examples,
+        set,
+        metric,
+        threshold,
+        targets: &targets,
+        residuals: &residuals,
+        groups: &groups,
+    };
+    let members = |class: usize| -> Vec<usize> {
+        (0..examples.len()).filter(|&i| examples[i].class == class).collect()
+    };
+    let fit = |class: usize| {
+        let members = members(class);
+        problem.fit(class, &members, params).map(|(exemplars, corrections)| (exemplars, members, corrections))
+    };
+    let fits: Vec<_> = (0..set.classes.len()).into_par_iter().filter_map(fit).collect();
+    let mut scores = cross_fitted;
+    let mut classes = Vec::with_capacity(fits.len());
+    for (exemplars, members, corrections) in fits {
+        members.iter().zip(corrections).for_each(|(&i, c)| scores[i] += c);
+        classes.push(exemplars);
     }
     let of = |keep: &dyn Fn(&Example) -> bool| -> Vec<f64> {
         examples.iter().zip(&scores).filter(|(e, _)| keep(e)).map(|(_, s)| *s).collect()
