@@ -235,7 +235,10 @@ fn class_infos(set: &TrainSet, samples: &[TrainSample]) -> Vec<ClassInfo> {
         .map(|(class, name)| ClassInfo {
             name: name.clone(),
             samples: of(class).count(),
-            people: of(class).map(|s| s.group.as_str()).collect::<BTreeSet<_>>().len(),
+            people: of(class)
+                .filter_map(|s| set.streams[s.stream].person.as_deref())
+                .collect::<BTreeSet<_>>()
+                .len(),
         })
         .collect()
 }
