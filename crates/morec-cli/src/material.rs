@@ -9,7 +9,7 @@ use morec::formats::Warning;
 use morec::import::{ImportOptions, prepare};
 use morec::labels::{ClipLength, Labels, Sample, read_people};
 use morec::roles::mapping::Mapping;
-use morec::train::{Source, TrainClip, TrainOptions, TrainParams};
+use morec::train::{Everyday, Source, TrainClip, TrainOptions, TrainParams};
 use rayon::prelude::*;
 
 use crate::files::{ReadArgs, expand, open};
@@ -40,9 +40,9 @@ pub struct MaterialArgs {
     /// What the unlabelled parts of labelled clips are: motion that is none of the classes, or nothing to go by
     #[arg(long, value_enum, default_value = "background")]
     pub unlabelled: Unlabelled,
-    /// Do not add made everyday motion to the background
-    #[arg(long)]
-    pub no_everyday: bool,
+    /// Whether made everyday motion is background too; auto: if --background holds less than a minute
+    #[arg(long, value_enum, default_value = "auto")]
+    pub everyday: EverydayArg,
     /// Roles of joints, where inference fails: lines of `role<TAB>joint name`
     #[arg(long, value_name = "FILE")]
     pub roles: Option<PathBuf>,
@@ -78,6 +78,17 @@ fn with_figures(params: TrainParams, settings: &[String]) -> Result<TrainParams>
     serde_json::from_value(tree).context("--param")
 }
 
+/// When made everyday motion is background.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EverydayArg {
+    /// If the clips named as background hold less than a minute.
+    Auto,
+    /// In any case.
+    Always,
+    /// Not at all.
+    Never,
+}
+
 /// Everything loaded.
 pub struct Material {
     /// Labelled and background clips.
@@ -96,7 +107,11 @@ impl MaterialArgs {
     /// How to train.
     pub fn options(&self) -> Result<TrainOptions> {
         let unlabelled_is_background = self.unlabelled == Unlabelled::Background;
-        let everyday = if self.no_everyday { None } else { TrainOptions::default().everyday };
+        let everyday = match self.everyday {
+            EverydayArg::Auto => Everyday::Auto,
+            EverydayArg::Always => Everyday::Always,
+            EverydayArg::Never => Everyday::Never,
+        };
         let params = with_figures(TrainParams::default(), &self.params)?;
         Ok(TrainOptions { unlabelled_is_background, everyday, params })
     }

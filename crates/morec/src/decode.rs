@@ -37,6 +37,23 @@ impl DecodeParams {
         Self { gate_ticks: 3, peak_ticks: 2, lag_ticks: 3, trust_end: true, ..Self::default() }
     }
 
+    /// Says what is wrong with these values, if anything is.
+    pub fn check(&self) -> Result<(), String> {
+        if !(self.gate.is_finite() && self.gate > 0.0) {
+            return Err(format!("gate must be above 0, found {}", self.gate));
+        }
+        let ticks = [
+            ("gate_ticks", self.gate_ticks),
+            ("peak_ticks", self.peak_ticks),
+            ("lag_ticks", self.lag_ticks),
+            ("overlap_ticks", self.overlap_ticks),
+        ];
+        match ticks.iter().find(|(_, ticks)| *ticks > MOST_TICKS) {
+            Some((name, ticks)) => Err(format!("{name} must be at most {MOST_TICKS}, found {ticks}")),
+            None => Ok(()),
+        }
+    }
+
     /// Ticks that must follow a motion's last tick before it can be reported.
     pub fn look_ahead_ticks(&self, rule: Rule) -> usize {
         self.window_ticks(rule) + self.lag_ticks
@@ -106,6 +123,9 @@ pub struct TickDetection {
     pub score: f64,
 }
 
+/// No window is wider than this: ten seconds of waiting are no live recognition.
+const MOST_TICKS: usize = 300;
+
 /// A stretch of fewer ticks than this after its first is no motion.
 pub const MIN_AGE_TICKS: usize = 3;
 
@@ -122,7 +142,7 @@ struct PathCell {
 /// a fixed lag.
 ///
 /// A tick costs O(classes × window). Memory is fixed at construction.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Decoder {
     params: DecodeParams,
     rule: Rule,
@@ -139,6 +159,22 @@ pub struct Decoder {
     /// Everything up to here has been reported.
     reported: i64,
     chain: Vec<TickDetection>,
+}
+
+impl Clone for Decoder {
+    fn clone(&self) -> Self {
+        // A derived copy of a vector has room for what it holds only, and pushing must not allocate.
+        let mut chain = Vec::with_capacity(self.chain.capacity());
+        chain.extend_from_slice(&self.chain);
+        Self {
+            params: self.params.clone(),
+            ring: self.ring.clone(),
+            negatives: self.negatives.clone(),
+            paths: self.paths.clone(),
+            chain,
+            ..*self
+        }
+    }
 }
 
 impl Decoder {
@@ -299,7 +335,7 @@ impl Decoder {
         for detection in chain.iter().rev() {
             if detection.start >= self.reported && self.decided - detection.stop >= lag {
                 self.reported = detection.stop;
-                out(*detection);
+                out(TickDetection { score: detection.score.min(1.0), ..*detection });
             }
         }
         self.chain = chain;

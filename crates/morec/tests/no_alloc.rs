@@ -35,7 +35,7 @@ fn pushing_takes_no_memory() {
     poses.extend_from_within(..60);
 
     let model = made::model();
-    let mut recognizer = Recognizer::new(&model, bones).unwrap();
+    let mut recognizer = Recognizer::new(&model, bones).unwrap().clone();
     let mut found = 0;
     let allocations = allocations(|| {
         for (time_secs, pose) in &poses {

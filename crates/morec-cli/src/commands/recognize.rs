@@ -126,7 +126,7 @@ fn recognize_file(
     let mut all = Vec::new();
     for clip in opened.clips {
         let mut imported = prepare(clip, options).with_context(shown)?;
-        adapt(&mut imported, index, path);
+        adapt(&mut imported, index, path, options.mapping.is_none());
         let Imported { clip, roles, facts } = &imported;
         let rest = &facts.rest_frames;
         let found = stats.recognising(clip.frames, || recognize_clip(&index.model, clip, roles, rest));
@@ -140,9 +140,11 @@ fn recognize_file(
     Ok(all)
 }
 
-/// Fills roles from the index's training clips and says what stays missing.
-pub fn adapt(imported: &mut Imported, index: &MotionIndex, path: &Path) {
-    index.complete_roles(&mut imported.roles, &imported.clip.skeleton);
+/// Fills roles from the index's training clips, unless a mapping file has had its say, and says what stays missing.
+fn adapt(imported: &mut Imported, index: &MotionIndex, path: &Path, complete: bool) {
+    if complete {
+        index.complete_roles(&mut imported.roles, &imported.clip.skeleton);
+    }
     let shown = bones_of_clip(&imported.clip, &imported.roles, &imported.facts.rest_frames);
     let used = index.model.bones;
     if imported.clip.frames > 0 && shown.and(used) != used {

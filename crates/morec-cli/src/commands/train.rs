@@ -142,6 +142,9 @@ fn print_report(report: &TrainingReport, bytes: usize, material: &Material, outp
         "hard negatives: {}",
         if negatives.is_empty() { "none".to_owned() } else { negatives.join(", ") }
     );
+    let verified =
+        if report.verified { "yes" } else { "no (too little named as background to learn it from)" };
+    println!("candidates verified: {verified}");
     for note in &report.notes {
         println!("note: {note}");
     }

@@ -38,7 +38,7 @@ fn the_whole_job_and_then_again_by_hand() {
     assert!(rate("recall") >= 0.6 && rate("precision") >= 0.6, "{}", figures["overlap"][2]);
 
     // Training is the long step: two classes and no everyday motion show that the line works.
-    let trained = with(0, &["--classes", "bow,clap", "--no-everyday"]);
+    let trained = with(0, &["--classes", "bow,clap", "--everyday", "never"]);
     assert!(trained.contains("bow") && trained.contains("demo.index"), "{trained}");
 }
 

@@ -6,6 +6,7 @@ use crate::classes::ClassInfo;
 use crate::decode::DecodeParams;
 use crate::features::{BoneSet, FeatureParams};
 use crate::roles::Role;
+use crate::templates::Generic;
 
 use super::Provenance;
 
@@ -34,10 +35,24 @@ pub struct Manifest {
     pub decode: DecodeParams,
     /// Largest distance that is reported.
     pub threshold: f32,
+    /// What the verifier is beside its tables, if there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub verifier: Option<VerifierWords>,
     /// Joints of the training clips, by role.
     pub roles: BTreeMap<Role, String>,
     /// Where the index came from.
     pub provenance: Provenance,
+}
+
+/// A verifier without its exemplars.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct VerifierWords {
+    /// Candidates farther than this are not looked at.
+    pub reach: f32,
+    /// Scores must be above this.
+    pub bar: f64,
+    /// What holds for all classes.
+    pub generic: Generic,
 }
 
 /// The part that can be read whatever the version.

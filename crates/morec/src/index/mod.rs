@@ -3,7 +3,7 @@
 //! The container is [safetensors](https://huggingface.co/docs/safetensors): eight bytes of header length, a JSON
 //! header naming every tensor, the tensors' bytes. Any program that knows the format can look inside
 //! (`safetensors.numpy.load_file` in Python), and the bytes can be mapped into memory. What is not a tensor
-//! stands as JSON in the header's metadata under the key `morec`: see [`Manifest`](manifest).
+//! stands as JSON in the header's metadata under the key `morec`: classes, parameters, provenance and the checksum.
 //!
 //! ```python
 //! import json

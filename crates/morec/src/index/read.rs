@@ -6,9 +6,9 @@ use safetensors::SafeTensors;
 
 use crate::classes::ClassId;
 use crate::features::row_dim;
-use crate::templates::{Sample, Symmetric, TemplateModel};
+use crate::templates::{Exemplars, SHAPE_ROWS, Sample, Symmetric, TemplateModel, Verifier};
 
-use super::manifest::{FORMAT, Manifest, Preamble};
+use super::manifest::{FORMAT, Manifest, Preamble, VerifierWords};
 use super::tensors::{Tables, checksum};
 use super::{INDEX_VERSION, IndexError, MotionIndex};
 
@@ -65,11 +65,8 @@ fn model(manifest: &Manifest, tables: &Tables) -> Result<TemplateModel, IndexErr
         return Err(IndexError::Content(message));
     }
     let rows = tables.pieces("templates.rows", dim, &lengths, step.as_deref())?;
-    let class = |number: u32| {
-        u16::try_from(number).map(ClassId).map_err(|_| IndexError::Content(format!("class number {number}")))
-    };
     let samples: Result<_, IndexError> =
-        rows.into_iter().zip(classes).map(|(rows, c)| Ok(Sample { class: class(c)?, rows })).collect();
+        rows.into_iter().zip(classes).map(|(rows, c)| Ok(Sample { class: class_id(c)?, rows })).collect();
     let model = TemplateModel {
         features: manifest.features.clone(),
         bones: manifest.bones,
@@ -85,11 +82,46 @@ fn model(manifest: &Manifest, tables: &Tables) -> Result<TemplateModel, IndexErr
         ridged: symmetric(tables, "metric.ridged", dim)?,
         total: symmetric(tables, "metric.total", dim)?,
         threshold: manifest.threshold,
-        verifier: None,
+        verifier: verifier(manifest, tables, dim, step.as_deref())?,
         step,
     };
     model.check().map_err(|e| IndexError::Content(e.to_string()))?;
     Ok(model)
+}
+
+fn verifier(
+    manifest: &Manifest,
+    tables: &Tables,
+    dim: usize,
+    step: Option<&[f32]>,
+) -> Result<Option<Verifier>, IndexError> {
+    let Some(words) = &manifest.verifier else { return Ok(None) };
+    let counts = tables.u32s("verifier.counts")?;
+    let rows: Option<Vec<u32>> = counts.iter().map(|n| n.checked_mul(SHAPE_ROWS as u32)).collect();
+    let rows = rows.ok_or_else(|| IndexError::Content("verifier.counts: too many exemplars".to_owned()))?;
+    let shapes = tables.pieces("verifier.shapes", dim, &rows, step)?;
+    let beside = tables.pieces("verifier.beside", 4, &counts, None)?;
+    let weights = tables.pieces("verifier.weights", 1, &counts, None)?;
+    let (numbers, sharpness) = (tables.u32s("verifier.classes")?, tables.f32s("verifier.sharpness")?);
+    if numbers.len() != counts.len() || sharpness.len() != counts.len() {
+        return Err(IndexError::Content(
+            "the verifier's tables differ in their number of classes".to_owned(),
+        ));
+    }
+    let mut classes = Vec::with_capacity(counts.len());
+    for (((shapes, beside), weights), (number, sharpness)) in
+        shapes.into_iter().zip(beside).zip(weights).zip(numbers.into_iter().zip(sharpness))
+    {
+        let beside = beside.values().as_chunks::<4>().0.to_vec();
+        let (class, weights) = (class_id(number)?, weights.values().to_vec());
+        classes.push(Exemplars { class, shapes, beside, weights, sharpness });
+    }
+    let VerifierWords { reach, bar, generic } = words.clone();
+    Ok(Some(Verifier { reach, bar, generic, classes }))
+}
+
+fn class_id(number: u32) -> Result<ClassId, IndexError> {
+    u16::try_from(number).map(ClassId).map_err(|_| IndexError::Content(format!("class number {number}")))
 }
 
 fn symmetric(tables: &Tables, name: &str, dim: usize) -> Result<Symmetric, IndexError> {

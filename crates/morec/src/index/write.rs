@@ -3,8 +3,9 @@
 use std::collections::{BTreeMap, HashMap};
 
 use crate::features::Rows;
+use crate::templates::Exemplars;
 
-use super::manifest::{FORMAT, Manifest};
+use super::manifest::{FORMAT, Manifest, VerifierWords};
 use super::tensors::{Tensor, checksum};
 use super::{INDEX_VERSION, IndexError, MotionIndex};
 
@@ -30,6 +31,11 @@ impl MotionIndex {
             features: model.features.clone(),
             decode: model.decode.clone(),
             threshold: model.threshold,
+            verifier: model.verifier.as_ref().map(|v| VerifierWords {
+                reach: v.reach,
+                bar: v.bar,
+                generic: v.generic.clone(),
+            }),
             roles: self.roles.clone(),
             provenance: self.provenance.clone(),
         }
@@ -58,8 +64,26 @@ impl MotionIndex {
         if let Some(step) = step {
             tensors.insert("rows.step".to_owned(), Tensor::of_f32(step));
         }
+        if let Some(verifier) = &model.verifier {
+            tensors.extend(exemplars(&verifier.classes, dim, step));
+        }
         tensors
     }
+}
+
+/// All classes' exemplars, one class after the other.
+fn exemplars(classes: &[Exemplars], dim: usize, step: Option<&[f32]>) -> [(String, Tensor); 6] {
+    let flat =
+        |values: &dyn Fn(&Exemplars) -> Vec<f32>| -> Vec<f32> { classes.iter().flat_map(values).collect() };
+    let shapes = Tensor::of_rows(classes.iter().flat_map(|c| c.shapes.iter()), dim, step);
+    [
+        ("verifier.beside".to_owned(), Tensor::of_f32(&flat(&|c| c.beside.concat()))),
+        ("verifier.classes".to_owned(), Tensor::of_u32(classes.iter().map(|c| u32::from(c.class.0)))),
+        ("verifier.counts".to_owned(), Tensor::of_u32(classes.iter().map(|c| c.len() as u32))),
+        ("verifier.shapes".to_owned(), shapes),
+        ("verifier.sharpness".to_owned(), Tensor::of_f32(&flat(&|c| vec![c.sharpness]))),
+        ("verifier.weights".to_owned(), Tensor::of_f32(&flat(&|c| c.weights.clone()))),
+    ]
 }
 
 /// JSON with the fields in the order they are declared: the checksum depends on it.

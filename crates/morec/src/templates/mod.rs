@@ -1,6 +1,7 @@
 //! Matching a stream against labelled samples, elastically in time.
 
 mod bank;
+mod compact;
 mod engine;
 mod metric;
 mod model;

@@ -67,6 +67,7 @@ impl TemplateModel {
     /// Checks that all parts fit together.
     pub fn check(&self) -> Result<(), TemplateModelError> {
         self.features.check().map_err(TemplateModelError::Value)?;
+        self.decode.check().map_err(TemplateModelError::Value)?;
         let expected = row_dim(self.bones);
         let tables = self.samples.iter().map(|s| ("a template", s.rows.dim()));
         let tables = tables.chain(self.negatives.iter().map(|r| ("a negative", r.dim())));

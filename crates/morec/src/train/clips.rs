@@ -7,12 +7,12 @@ use crate::synth;
 use crate::templates::TemplateModel;
 
 use super::from_clips::{Labelling, TrainClip, prepare};
-use super::options::TrainOptions;
+use super::options::{ENOUGH_BACKGROUND_SECS, EVERYDAY_SEED, Everyday, TrainOptions};
 use super::report::TrainingReport;
 use super::set::Source;
 use super::templates::{TrainError, train};
 
-/// Trains on labelled and background clips, and on everyday motion if the options say so.
+/// Trains on labelled and background clips, and on everyday motion as the options say.
 pub fn train_clips(
     clips: &[TrainClip],
     labelling: &Labelling<'_>,
@@ -20,7 +20,9 @@ pub fn train_clips(
     progress: &dyn Progress,
 ) -> Result<(TemplateModel, TrainingReport), TrainError> {
     let mut all = clips.to_vec();
-    all.extend(options.everyday.into_iter().flat_map(everyday_clips));
+    if adds_everyday(clips, options.everyday) {
+        all.extend(everyday_clips(EVERYDAY_SEED));
+    }
     let prepared = prepare(&all, labelling, &options.params.features);
     if prepared.bones == BoneSet::NONE {
         return Err(TrainError::NoSamples);
@@ -28,6 +30,15 @@ pub fn train_clips(
     let trained = train(&prepared.set, prepared.bones, &options.params, progress)?;
     let report = TrainingReport::of(&prepared, &trained, options.params.features.tick_hz());
     Ok((trained.model, report))
+}
+
+fn adds_everyday(clips: &[TrainClip], everyday: Everyday) -> bool {
+    let background = clips.iter().filter(|c| c.source == Source::Background);
+    match everyday {
+        Everyday::Auto => background.map(|c| c.clip.duration_secs()).sum::<f64>() < ENOUGH_BACKGROUND_SECS,
+        Everyday::Always => true,
+        Everyday::Never => false,
+    }
 }
 
 fn everyday_clips(seed: u64) -> Vec<TrainClip> {

@@ -122,9 +122,11 @@ fn stream(
     let whole = samples.iter().chain(held).any(|s| s.whole_clip);
     let labelled = clip.source == Source::Labelled;
     let named = samples.iter().chain(held).find_map(|s| s.person.clone());
+    let person = clip.person.clone().or(named);
     TrainStream {
         name: clip.name.clone(),
-        group: clip.person.clone().or(named).unwrap_or_else(|| clip.name.clone()),
+        group: person.clone().unwrap_or_else(|| clip.name.clone()),
+        person,
         source: clip.source,
         rest_is_background: !labelled || (labelling.unlabelled_is_background && !whole),
         rows,

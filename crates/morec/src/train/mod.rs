@@ -18,7 +18,7 @@ mod verifier;
 pub use align::align;
 pub use clips::train_clips;
 pub use from_clips::{Labelling, Prepared, TrainClip, prepare};
-pub use options::{EVERYDAY_SEED, TrainOptions};
+pub use options::{ENOUGH_BACKGROUND_SECS, EVERYDAY_SEED, Everyday, TrainOptions};
 pub use params::TrainParams;
 pub use report::TrainingReport;
 pub use set::{Known, Source, TrainSample, TrainSet, TrainStream};

@@ -2,6 +2,18 @@
 
 use super::params::TrainParams;
 
+/// When made everyday motion is background too.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Everyday {
+    /// Where clips named as background hold less than [`ENOUGH_BACKGROUND_SECS`]: real motion says more about what
+    /// will be met than made motion does, and on referee clips the two together were worse than the real alone.
+    Auto,
+    /// In any case.
+    Always,
+    /// Not at all.
+    Never,
+}
+
 /// How to train from clips.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrainOptions {
@@ -9,15 +21,18 @@ pub struct TrainOptions {
     pub params: TrainParams,
     /// Whether unlabelled parts of labelled clips are background.
     pub unlabelled_is_background: bool,
-    /// Whether made everyday motion is background too, and from which seed.
-    pub everyday: Option<u64>,
+    /// Whether made everyday motion is background.
+    pub everyday: Everyday,
 }
 
 impl Default for TrainOptions {
     fn default() -> Self {
-        Self { params: TrainParams::default(), unlabelled_is_background: true, everyday: Some(EVERYDAY_SEED) }
+        Self { params: TrainParams::default(), unlabelled_is_background: true, everyday: Everyday::Auto }
     }
 }
 
-/// Seed of the everyday motion that indexes are trained with unless told otherwise.
+/// Seed of the everyday motion that indexes are trained with.
 pub const EVERYDAY_SEED: u64 = 2009;
+
+/// Named background of this length needs no made motion beside it.
+pub const ENOUGH_BACKGROUND_SECS: f64 = 60.0;

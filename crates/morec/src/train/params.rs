@@ -50,6 +50,8 @@ pub struct TrainParams {
     pub min_negatives: usize,
     /// Ridge of the verifier's kernel regression; .03 to .3 are alike.
     pub verifier_ridge: f64,
+    /// Whether rows are kept in steps of a byte.
+    pub compact: bool,
     /// Bounds of the score above which a candidate is accepted.
     pub bar_range: (f64, f64),
 }
@@ -62,6 +64,7 @@ impl Default for TrainParams {
             max_templates: 24,
             whole_background: 1.5,
             verify: true,
+            compact: true,
             ..Self::reference()
         }
     }
@@ -92,6 +95,7 @@ impl TrainParams {
             min_positives: 2,
             min_negatives: 10,
             verifier_ridge: 0.03,
+            compact: false,
             bar_range: (0.1, 0.3),
         }
     }

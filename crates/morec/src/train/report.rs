@@ -23,6 +23,8 @@ pub struct TrainingReport {
     pub threshold_from: String,
     /// Hard negatives found, by the same sources.
     pub negatives: BTreeMap<String, usize>,
+    /// Whether candidates are verified; it takes clips named as background to learn that.
+    pub verified: bool,
     /// What the user should know or do.
     pub notes: Vec<String>,
 }
@@ -49,7 +51,13 @@ impl TrainingReport {
                 prepared.lacking.join(", ")
             ));
         }
-        notes.extend(trained.notes.iter().cloned());
+        if streams.iter().all(|s| s.source == Source::Labelled) {
+            notes.push(
+                "no background clips and no everyday motion: the threshold is a general value; name clips that \
+                 hold none of the classes as background"
+                    .to_owned(),
+            );
+        }
         Self {
             classes,
             bones: prepared.bones.into(),
@@ -57,6 +65,7 @@ impl TrainingReport {
             threshold: trained.model.threshold,
             threshold_from: trained.threshold_from.clone(),
             negatives,
+            verified: trained.model.verifier.is_some(),
             notes,
         }
     }

@@ -33,6 +33,8 @@ pub struct TrainStream {
     pub name: String,
     /// Who moves; the clip's name if nobody is named, so that clips then count as people.
     pub group: String,
+    /// Who moves, if named.
+    pub person: Option<String>,
     /// Where it came from.
     pub source: Source,
     /// Whether what is not in `known` holds none of the classes.

@@ -45,8 +45,6 @@ pub struct Trained {
     pub negatives: Vec<NearMiss>,
     /// What set the threshold, in words.
     pub threshold_from: String,
-    /// What the user should know.
-    pub notes: Vec<String>,
 }
 
 /// Trains templates for `set`, whose rows hold `bones`.
@@ -95,8 +93,9 @@ pub fn train(
         verifier,
         step: None,
     };
+    let model = if params.compact { model.compacted() } else { model };
     model.check()?;
-    Ok(Trained { model, negatives, threshold_from, notes: Vec::new() })
+    Ok(Trained { model, negatives, threshold_from })
 }
 
 /// At most `most` samples of each class, from its groups in turn, in the order of the set.
@@ -236,7 +235,10 @@ fn class_infos(set: &TrainSet, samples: &[TrainSample]) -> Vec<ClassInfo> {
         .map(|(class, name)| ClassInfo {
             name: name.clone(),
             samples: of(class).count(),
-            people: of(class).map(|s| s.group.as_str()).collect::<BTreeSet<_>>().len(),
+            people: of(class)
+                .filter_map(|s| set.streams[s.stream].person.as_deref())
+                .collect::<BTreeSet<_>>()
+                .len(),
         })
         .collect()
 }

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use nalgebra::DMatrix;
+use rayon::prelude::*;
 
 use crate::classes::ClassId;
 use crate::features::Rows;
@@ -13,12 +14,14 @@ use crate::templates::{
 use super::examples::Example;
 use super::params::TrainParams;
 use super::ridge::{balanced, kernel, linear};
-use super::set::TrainSet;
+use super::set::{Source, TrainSet};
 
 /// No example weighs more than this times the mean: three samples against hundreds of near misses.
 const MOST_WEIGHT: f64 = 20.0;
 
-/// Learns a verifier from `examples`, or `None` if there are too few.
+/// Learns a verifier from `examples`, or `None` if there are too few samples, or too few near misses in clips that
+/// the user calls background: with none but the unlabelled parts of the labelled clips and made motion to learn
+/// from, a verifier lets more unknown motion pass than the plain rule (measured on referee clips).
 ///
 /// 1. A linear score of three ratios that holds for all classes.
 /// 2. For each class a kernel ridge regression of what the linear score leaves.
@@ -35,30 +38,36 @@ pub fn learn(
 ) -> Option<Verifier> {
     let targets: Vec<f64> = examples.iter().map(|e| if e.positive { 1.0 } else { -1.0 }).collect();
     let positives = targets.iter().filter(|t| **t > 0.0).count();
-    if positives < params.min_positives || targets.len() - positives < params.min_negatives {
+    let given = |e: &&Example| !e.positive && set.streams[e.stream].source == Source::Background;
+    if positives < params.min_positives || examples.iter().filter(given).count() < params.min_negatives {
         return None;
     }
     let groups = group_numbers(examples, |e| set.streams[e.stream].group.clone());
     let ratios: Vec<[f64; 3]> = examples.iter().map(|e| e.evidence.ratios(f64::from(threshold))).collect();
     let (generic, cross_fitted) = fit_generic(&ratios, &targets, &groups)?;
     let residuals: Vec<f64> = targets.iter().zip(&cross_fitted).map(|(t, g)| t - g).collect();
-    let mut scores = cross_fitted.clone();
-    let mut classes = Vec::new();
-    for class in 0..set.classes.len() {
-        let members: Vec<usize> = (0..examples.len()).filter(|&i| examples[i].class == class).collect();
-        let problem = ClassProblem {
-            examples,
-            set,
-            metric,
-            threshold,
-            targets: &targets,
-            residuals: &residuals,
-            groups: &groups,
-        };
-        if let Some((exemplars, corrections)) = problem.fit(class, &members, params) {
-            members.iter().zip(corrections).for_each(|(&i, c)| scores[i] += c);
-            classes.push(exemplars);
-        }
+    let problem = ClassProblem {
+        examples,
+        set,
+        metric,
+        threshold,
+        targets: &targets,
+        residuals: &residuals,
+        groups: &groups,
+    };
+    let members = |class: usize| -> Vec<usize> {
+        (0..examples.len()).filter(|&i| examples[i].class == class).collect()
+    };
+    let fit = |class: usize| {
+        let members = members(class);
+        problem.fit(class, &members, params).map(|(exemplars, corrections)| (exemplars, members, corrections))
+    };
+    let fits: Vec<_> = (0..set.classes.len()).into_par_iter().filter_map(fit).collect();
+    let mut scores = cross_fitted;
+    let mut classes = Vec::with_capacity(fits.len());
+    for (exemplars, members, corrections) in fits {
+        members.iter().zip(corrections).for_each(|(&i, c)| scores[i] += c);
+        classes.push(exemplars);
     }
     let of = |keep: &dyn Fn(&Example) -> bool| -> Vec<f64> {
         examples.iter().zip(&scores).filter(|(e, _)| keep(e)).map(|(_, s)| *s).collect()

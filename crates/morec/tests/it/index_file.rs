@@ -185,4 +185,6 @@ fn figures_no_training_gives_are_refused() {
     refused(&|m| m.features.smooth_cut_frames = usize::MAX);
     refused(&|m| m.features.rate_hz = 1e12);
     refused(&|m| m.classes.clear());
+    refused(&|m| m.decode.gate_ticks = 1 << 60);
+    refused(&|m| m.decode.gate = -1.0);
 }

@@ -44,7 +44,7 @@ pub fn train(spec: &DatabaseSpec, params: TrainParams) -> TemplateModel {
     let classes: Vec<String> = spec.classes.iter().map(|c| (*c).to_owned()).collect();
     let labelling =
         Labelling { samples: &samples, held_back: &[], classes: &classes, unlabelled_is_background: true };
-    let options = TrainOptions { params, everyday: None, ..TrainOptions::default() };
+    let options = TrainOptions { params, everyday: morec::train::Everyday::Never, ..TrainOptions::default() };
     train_clips(&clips, &labelling, &options, &()).unwrap().0
 }
 
