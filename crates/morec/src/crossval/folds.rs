@@ -127,6 +127,12 @@ mod tests {
         assert_eq!(taught(3), fold.taught);
         assert!((0..20).any(|seed| taught(seed) != fold.taught), "the seed must matter");
     }
+    #[test]
+    fn every_half_comes_up_with_some_seed() {
+        let taught = |seed| folds(By::Half { seed }, &samples(), &people()).remove(0).taught;
+        let halves: BTreeSet<Vec<usize>> = (0..100).map(taught).collect();
+        assert_eq!(halves.len(), 10, "three of the five samples of a, in as many ways: {halves:?}");
+    }
 
     #[test]
     fn a_person_left_out_takes_all_their_clips_along() {
