@@ -19,22 +19,22 @@ pub struct DecodeParams {
     pub lag_ticks: usize,
     /// A candidate may reach this many ticks into the detection before it; the overlap is cut off.
     pub overlap_ticks: usize,
-    /// Whether a motion may end with the very last ticks of a stream. Nobody can tell there whether it was over:
-    /// a walk cut off in mid-step is nearest to a step at the cut.
-    pub trust_end: bool,
+    /// A motion may end with the very last ticks of a stream only if its distance fell by less than this share over
+    /// the last tick: a walk cut off in mid-step is nearest to a step at the cut, but still coming nearer.
+    pub end_fall: f32,
 }
 
 impl Default for DecodeParams {
     /// The short windows: as accurate as the long ones on referee signals, and a fifth of a second earlier.
     fn default() -> Self {
-        Self { gate: 1.2, gate_ticks: 1, peak_ticks: 1, lag_ticks: 0, overlap_ticks: 2, trust_end: false }
+        Self { gate: 1.2, gate_ticks: 1, peak_ticks: 1, lag_ticks: 0, overlap_ticks: 2, end_fall: 0.1 }
     }
 }
 
 impl DecodeParams {
     /// The values of the reference prototype.
     pub fn reference() -> Self {
-        Self { gate_ticks: 3, peak_ticks: 2, lag_ticks: 3, trust_end: true, ..Self::default() }
+        Self { gate_ticks: 3, peak_ticks: 2, lag_ticks: 3, end_fall: f32::MAX, ..Self::default() }
     }
 
     /// Says what is wrong with these values, if anything is.
@@ -48,6 +48,9 @@ impl DecodeParams {
             ("lag_ticks", self.lag_ticks),
             ("overlap_ticks", self.overlap_ticks),
         ];
+        if self.end_fall.is_nan() || self.end_fall < 0.0 {
+            return Err(format!("end_fall must be 0 or more, found {}", self.end_fall));
+        }
         match ticks.iter().find(|(_, ticks)| *ticks > MOST_TICKS) {
             Some((name, ticks)) => Err(format!("{name} must be at most {MOST_TICKS}, found {ticks}")),
             None => Ok(()),
@@ -227,8 +230,7 @@ impl Decoder {
 
     /// Ends the stretch: decides the last ticks with what there is and reports all that is left.
     pub fn finish(&mut self, judge: &mut impl FnMut(&Candidate) -> f64, out: &mut impl FnMut(TickDetection)) {
-        let unsure = if self.params.trust_end { 0 } else { self.params.peak_ticks as i64 };
-        while self.decided < self.ticks - unsure {
+        while self.decided < self.ticks {
             self.decide(self.decided, judge);
         }
         self.report(0, out);
@@ -296,11 +298,23 @@ impl Decoder {
         Some(Candidate { class: ClassId(class as u16), tick, age, distance, other, negative })
     }
 
+    /// Whether the stream ends before the peak at `tick` could be told from a class still coming nearer.
+    fn cut_off(&self, tick: i64, class: usize) -> bool {
+        if tick + (self.params.peak_ticks as i64) < self.ticks || tick == 0 {
+            return false;
+        }
+        let (before, here) = (self.near(tick - 1, class).distance, self.near(tick, class).distance);
+        before > here * (1.0 + self.params.end_fall)
+    }
+
     fn decide(&mut self, tick: i64, judge: &mut impl FnMut(&Candidate) -> f64) {
         let mut cell = PathCell { total: self.path(tick).total, ends_here: None };
         for class in 0..self.classes {
             let (start, slack) = (tick - self.near(tick, class).age as i64, self.params.overlap_ticks as i64);
             if start < self.reported - slack {
+                continue;
+            }
+            if self.cut_off(tick, class) {
                 continue;
             }
             let Some(score) = self.score(tick, class, judge) else { continue };
@@ -369,10 +383,12 @@ mod tests {
     }
 
     #[test]
-    fn a_dip_in_the_last_ticks_is_trusted_only_if_asked() {
+    fn a_dip_in_the_last_ticks_counts_once_it_no_longer_falls() {
         let dip = [5.0, 5.0, 5.0, 5.0, 1.5, 1.0, 0.5];
         assert_eq!(spans(&dip, &[], &DecodeParams::default()), []);
         assert_eq!(spans(&dip, &[], &DecodeParams::reference()), [(3, 7)]);
+        let level = [5.0, 5.0, 5.0, 5.0, 1.5, 1.0, 0.52, 0.5];
+        assert_eq!(spans(&level, &[], &DecodeParams::default()), [(4, 8)]);
         let over = [5.0, 5.0, 5.0, 5.0, 1.5, 1.0, 0.5, 1.0];
         assert_eq!(spans(&over, &[], &DecodeParams::default()), [(3, 7)]);
     }
@@ -392,7 +408,7 @@ mod tests {
             peak_ticks: 0,
             lag_ticks: 4,
             overlap_ticks: 0,
-            trust_end: true,
+            end_fall: 1.0,
         };
         let twice = [5.0, 5.0, 5.0, 1.5, 1.2, 0.2, 5.0, 5.0, 5.0, 5.0, 5.0];
         assert_eq!(spans(&twice, &[], &params), [(2, 6)]);
