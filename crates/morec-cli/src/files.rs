@@ -1,7 +1,7 @@
 //! Clips on disk: from what was typed to bytes, from bytes to clips, and from a motion to its skeleton.
 
 use std::fs;
-use std::io::Read;
+use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow, bail};
@@ -11,6 +11,7 @@ use morec::formats::acclaim::{self, AmcOptions, Asf};
 use morec::formats::bvh::{self, BvhOptions, PositionChannels};
 use morec::formats::probe::{Format, format_of_name, probe};
 use morec::formats::{Limits, Loaded, Place, Warning};
+use morec::roles::mapping::Mapping;
 
 /// What files do not say about themselves.
 #[derive(Args, Clone, Debug, Default)]
@@ -56,6 +57,44 @@ pub fn rate(text: &str) -> Result<f64, String> {
         Ok(rate) if rate.is_finite() && rate > 0.0 && rate <= 100_000.0 => Ok(rate),
         _ => Err("expected a rate in Hz, above 0 and at most 100000".to_owned()),
     }
+}
+
+/// A file's bytes; errors begin with the path.
+pub fn read(path: &Path) -> Result<Vec<u8>> {
+    fs::read(path).with_context(|| path.display().to_string())
+}
+
+/// Writes beside the target and renames: a failure leaves no half file under its name, and whoever reads meanwhile
+/// sees the old file or the new one.
+pub fn write_whole(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+    let mut partial = path.as_os_str().to_owned();
+    partial.push(".partial");
+    let partial = PathBuf::from(partial);
+    let written = fs::File::create(&partial).and_then(|file| {
+        let mut out = BufWriter::new(file);
+        write(&mut out)?;
+        out.flush()?;
+        fs::rename(&partial, path)
+    });
+    if written.is_err() {
+        // Best effort: the first error is the one to tell.
+        let _ = fs::remove_file(&partial);
+    }
+    Ok(written?)
+}
+
+/// The mapping file of roles, if one is given; errors begin with its path.
+pub fn mapping(path: Option<&Path>) -> Result<Option<Mapping>> {
+    let Some(path) = path else { return Ok(None) };
+    Ok(Some(Mapping::read(&read(path)?).with_context(|| path.display().to_string())?))
+}
+
+/// The first few of many names.
+pub fn some_of<'a>(names: impl ExactSizeIterator<Item = &'a String>) -> String {
+    const SHOWN: usize = 5;
+    let more = names.len().saturating_sub(SHOWN);
+    let shown: Vec<&str> = names.take(SHOWN).map(String::as_str).collect();
+    if more == 0 { shown.join(", ") } else { format!("{} and {more} more", shown.join(", ")) }
 }
 
 /// Folders become the clips in them, however deep, in the order of their paths; files stay where they are named.

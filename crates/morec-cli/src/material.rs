@@ -8,11 +8,10 @@ use clap::{Args, ValueEnum};
 use morec::formats::Warning;
 use morec::import::{ImportOptions, prepare};
 use morec::labels::{ClipLength, Labels, Sample, read_people};
-use morec::roles::mapping::Mapping;
 use morec::train::{Everyday, Source, TrainClip, TrainOptions, TrainParams};
 use rayon::prelude::*;
 
-use crate::files::{ReadArgs, expand, open};
+use crate::files::{ReadArgs, expand, mapping, open, read, some_of};
 
 /// Which clips teach what.
 #[derive(Args, Debug)]
@@ -151,9 +150,7 @@ impl MaterialArgs {
     }
 
     fn import_options(&self) -> Result<ImportOptions> {
-        let Some(path) = &self.roles else { return Ok(ImportOptions::default()) };
-        let mapping = Mapping::read(&read(path)?).with_context(|| shown(path))?;
-        Ok(ImportOptions { mapping: Some(mapping), ..ImportOptions::default() })
+        Ok(ImportOptions { mapping: mapping(self.roles.as_deref())?, ..ImportOptions::default() })
     }
 
     /// Paths as they are; what is no path but the file stem of one of `taught` is that clip.
@@ -287,18 +284,10 @@ fn sort_out(
         eprintln!(
             "morec: {} clips hold no sample of the classes and are not used (--background if they hold none): {}",
             idle.len(),
-            some_of(&idle)
+            some_of(idle.iter())
         );
     }
     Ok(material)
-}
-
-/// The first few of many names.
-fn some_of(names: &[String]) -> String {
-    const SHOWN: usize = 5;
-    let more = names.len().saturating_sub(SHOWN);
-    let shown = names[..names.len() - more].join(", ");
-    if more == 0 { shown } else { format!("{shown} and {more} more") }
 }
 
 fn set_of(paths: &[PathBuf]) -> BTreeSet<PathBuf> {
@@ -311,10 +300,6 @@ fn canonical(path: &Path) -> PathBuf {
 
 fn shown(path: &Path) -> String {
     path.display().to_string()
-}
-
-fn read(path: &Path) -> Result<Vec<u8>> {
-    std::fs::read(path).with_context(|| shown(path))
 }
 
 fn warn(path: &Path, warnings: &[Warning]) {

@@ -1,7 +1,6 @@
 //! `morec convert`: any clip becomes BVH.
 
-use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -67,21 +66,7 @@ fn one_of(mut clips: Vec<Clip>, character: Option<usize>) -> Result<Clip> {
     }
 }
 
-/// Writes beside the target first, so that a failure leaves no half file under its name.
+/// Writes a clip as BVH, whole or not at all.
 pub fn write_clip(clip: &Clip, path: &Path) -> Result<()> {
-    let mut partial = path.as_os_str().to_owned();
-    partial.push(".partial");
-    let partial = PathBuf::from(partial);
-    let written = File::create(&partial).map_err(anyhow::Error::from).and_then(|file| {
-        let mut out = BufWriter::new(file);
-        bvh::write(clip, &mut out)?;
-        out.flush()?;
-        std::fs::rename(&partial, path)?;
-        Ok(())
-    });
-    if written.is_err() {
-        // Best effort: the first error is the one to tell.
-        let _ = std::fs::remove_file(&partial);
-    }
-    written
+    files::write_whole(path, |out| bvh::write(clip, out))
 }

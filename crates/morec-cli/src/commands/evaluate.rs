@@ -12,7 +12,7 @@ use morec::labels::{ClipLength, Labels, Resolved, read_found};
 use morec::report::Report;
 
 use crate::figures;
-use crate::files::ReadArgs;
+use crate::files::{self, ReadArgs, some_of};
 use crate::lengths::lengths;
 
 /// Measure detections against labels.
@@ -157,21 +157,13 @@ impl Cases {
     }
 }
 
-/// The first few of many names.
-fn some_of<'a>(names: impl ExactSizeIterator<Item = &'a String>) -> String {
-    const SHOWN: usize = 5;
-    let more = names.len().saturating_sub(SHOWN);
-    let shown: Vec<&str> = names.take(SHOWN).map(String::as_str).collect();
-    if more == 0 { shown.join(", ") } else { format!("{} and {more} more", shown.join(", ")) }
-}
-
 fn read(path: &Path) -> anyhow::Result<Vec<u8>> {
     if path.as_os_str() == "-" {
         let mut bytes = Vec::new();
         std::io::stdin().lock().read_to_end(&mut bytes).context("standard input")?;
         return Ok(bytes);
     }
-    std::fs::read(path).with_context(|| path.display().to_string())
+    files::read(path)
 }
 
 fn warn(path: &Path, warnings: &[Warning]) {

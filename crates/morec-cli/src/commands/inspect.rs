@@ -8,7 +8,6 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result};
 use morec::import::{ImportOptions, SignedAxis, prepare};
-use morec::roles::mapping::Mapping;
 
 use crate::files::{self, ReadArgs};
 use crate::progress::Progress;
@@ -103,13 +102,7 @@ fn inspect(path: &std::path::Path, read: &ReadArgs, options: &ImportOptions) -> 
 }
 
 fn import_options(args: &Args) -> Result<ImportOptions> {
-    let mapping = match &args.roles {
-        None => None,
-        Some(path) => {
-            let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
-            Some(Mapping::read(&bytes).with_context(|| path.display().to_string())?)
-        }
-    };
+    let mapping = files::mapping(args.roles.as_deref())?;
     Ok(ImportOptions { up: args.up, metres_per_unit: args.unit, rest_frames: None, mapping })
 }
 

@@ -7,16 +7,14 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result};
 use clap::ValueEnum;
-use morec::clip::Clip;
 use morec::features::bones_of_clip;
 use morec::import::{ImportOptions, Imported, prepare};
 use morec::index::MotionIndex;
 use morec::labels::{FOUND_HEADER, FoundLine};
 use morec::live::{Detection, recognize_clip};
 use morec::roles::Role;
-use morec::roles::mapping::Mapping;
 
-use crate::files::{ReadArgs, expand, open};
+use crate::files::{ReadArgs, expand, mapping, open, read};
 use crate::progress::Progress;
 use crate::stats::Stats;
 
@@ -64,20 +62,14 @@ enum Format {
 
 /// Opens an index file; errors begin with its path.
 pub fn open_index(path: &Path) -> Result<MotionIndex> {
-    let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
+    let bytes = read(path)?;
     MotionIndex::from_bytes(&bytes).with_context(|| path.display().to_string())
 }
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let index = open_index(&args.index)?;
-    let mapping = match &args.roles {
-        Some(path) => {
-            let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
-            Some(Mapping::read(&bytes).with_context(|| path.display().to_string())?)
-        }
-        None => None,
-    };
+    let mapping = mapping(args.roles.as_deref())?;
     let options = ImportOptions { mapping, ..ImportOptions::default() };
     let paths = expand(&args.clips)?;
     let mut out: Box<dyn Write> = match &args.output {
@@ -94,9 +86,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let mut progress = Progress::new(paths.len(), "recognising");
     for path in &paths {
         match recognize_file(path, &index, &options, args, &mut stats) {
-            Ok(found) => {
-                found.iter().try_for_each(|(clip, d)| write_found(&mut out, args.format, clip, d, &index))?
-            }
+            Ok(found) => found.iter().try_for_each(|f| write_found(&mut out, args.format, f, &index))?,
             Err(error) => {
                 failed = true;
                 progress.suspend(|| eprintln!("morec: {error:#}"));
@@ -112,7 +102,12 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     Ok(if failed { ExitCode::FAILURE } else { ExitCode::SUCCESS })
 }
 
-type FoundInClip = (Clip, Detection);
+/// A detection and what its line says of the clip.
+struct FoundInClip {
+    clip: String,
+    rate_hz: f64,
+    detection: Detection,
+}
 
 fn recognize_file(
     path: &Path,
@@ -134,8 +129,8 @@ fn recognize_file(
         if args.stats {
             stats.stages(&index.model, &imported)?;
         }
-        let header = Clip { rotations: vec![], tracks: vec![], ..clip.clone() };
-        all.extend(found.into_iter().map(|d| (header.clone(), d)));
+        let in_clip = |detection| FoundInClip { clip: clip.name.clone(), rate_hz: clip.rate_hz, detection };
+        all.extend(found.into_iter().map(in_clip));
     }
     Ok(all)
 }
@@ -164,26 +159,26 @@ fn needed(role: Role) -> bool {
 fn write_found(
     out: &mut dyn Write,
     format: Format,
-    clip: &Clip,
-    found: &Detection,
+    in_clip: &FoundInClip,
     index: &MotionIndex,
 ) -> std::io::Result<()> {
+    let FoundInClip { clip, rate_hz, detection: found } = in_clip;
     let class = &index.model.classes[found.class.index()].name;
     let line = FoundLine {
-        clip: &clip.name,
+        clip,
         class,
         start_secs: found.start_secs,
         stop_secs: found.stop_secs,
         score: found.score,
         reported_secs: found.reported_secs,
-        rate_hz: clip.rate_hz,
+        rate_hz: *rate_hz,
     };
     match format {
         Format::Tsv => writeln!(out, "{line}"),
         Format::Jsonl => {
-            let frame = |secs: f64| (secs * clip.rate_hz).round() as u64;
+            let frame = |secs: f64| (secs * rate_hz).round() as u64;
             let object = serde_json::json!({
-                "clip": clip.name, "start": frame(found.start_secs), "stop": frame(found.stop_secs), "class": class,
+                "clip": clip, "start": frame(found.start_secs), "stop": frame(found.stop_secs), "class": class,
                 "score": found.score, "reported_at": frame(found.reported_secs),
                 "start_secs": found.start_secs, "stop_secs": found.stop_secs, "reported_secs": found.reported_secs,
             });

@@ -12,6 +12,7 @@ use morec::index::{MotionIndex, Provenance};
 use morec::roles::Role;
 use morec::train::{Labelling, Source, TrainClip, TrainingReport, train_clips};
 
+use crate::files;
 use crate::material::{Material, MaterialArgs};
 use crate::progress::Bar;
 use crate::table::Table;
@@ -64,25 +65,14 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         provenance: provenance(&material, &report),
     };
     let bytes = index.to_bytes()?;
-    write_whole(&args.output, &bytes)?;
+    files::write_whole(&args.output, |out| out.write_all(&bytes))
+        .with_context(|| args.output.display().to_string())?;
     if args.json {
         println!("{}", serde_json::to_string_pretty(&report)?);
     } else {
         print_report(&report, bytes.len(), &material, &args.output);
     }
     Ok(ExitCode::SUCCESS)
-}
-
-/// Writes beside the file and renames: whoever reads meanwhile sees the old index or the new one.
-fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
-    let mut beside = path.as_os_str().to_owned();
-    beside.push(".part");
-    let beside = PathBuf::from(beside);
-    let written = std::fs::write(&beside, bytes).and_then(|()| std::fs::rename(&beside, path));
-    if written.is_err() {
-        let _ = std::fs::remove_file(&beside);
-    }
-    written.with_context(|| path.display().to_string())
 }
 
 /// Joint names by role, of the first labelled clip.
