@@ -1,0 +1,159 @@
+//! The tree of classes: at each branch two machines say left, right or neither (thesis, §3.7.6 and §4.6.5).
+
+use serde::{Deserialize, Serialize};
+
+use crate::classes::ClassId;
+
+use super::kernel::Gaussian;
+
+mod check;
+mod descent;
+#[cfg(test)]
+mod tests;
+
+pub use check::{MAX_CLASSES, TreeError};
+pub use descent::{Candidate, Candidates, Descent, MAX_CANDIDATES};
+
+/// A trained classifier: branches that part the classes in two until each stands alone.
+///
+/// Training vectors that enclosing spheres rest on are kept once, however many branches use them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Parts", into = "Parts")]
+pub struct Tree {
+    parts: Parts,
+}
+
+/// What a tree is made of.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Parts {
+    /// Values in a feature vector, `n`.
+    pub dim: usize,
+    /// Training vectors that branches refer to, `rows × n`, row by row.
+    pub vectors: Vec<f64>,
+    /// The nodes; the root is the first, children come after their parent.
+    pub nodes: Vec<Node>,
+}
+
+/// A place in the tree.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Node {
+    /// One class is left.
+    Leaf(ClassId),
+    /// Two macro-classes are told apart.
+    Branch(Box<Branch>),
+}
+
+/// A node that tells two macro-classes apart and rejects what is neither (thesis, Alg. 8).
+///
+/// A vector `x` is taken to the plane of the two centroids in feature space, `x̂ = L⁻¹ [k₁(x), k₂(x)]`, where `k_j` is
+/// the mean of `K(a, x)` over the exemplars of side `j` (Eq. 3.40; both parts are means over `i`, as in 3.39). There
+/// the machines are `f_j(x̂) = Σᵢ w_ji K(zᵢ, x̂)` (the solutions of Eqs. 3.27 and 3.28).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Branch {
+    /// Width `σ_f` of the kernel between feature vectors.
+    pub sigma_full: f64,
+    /// For each side, the rows of [`Parts::vectors`] that its enclosing sphere rests on.
+    pub exemplars: [Vec<u32>; 2],
+    /// `L₁₁`, `L₂₁`, `L₂₂` of the Cholesky factor of the centroids' products (Eq. 3.39).
+    pub factor: [f64; 3],
+    /// Width `σ_r` of the kernel in the plane.
+    pub sigma_reduced: f64,
+    /// Training samples in the plane, `zᵢ`: those with a weight in either machine.
+    pub points: Vec<[f64; 2]>,
+    /// For each machine, the weights `±αᵢ` of the points.
+    pub weights: [Vec<f64>; 2],
+    /// For each side, its node.
+    pub children: [u32; 2],
+    /// For each side, its classes, in ascending order.
+    pub classes: [Vec<ClassId>; 2],
+}
+
+impl Tree {
+    /// A tree of these parts, if they fit together. O(size).
+    pub fn new(parts: Parts) -> Result<Self, TreeError> {
+        check::check(&parts)?;
+        Ok(Self { parts })
+    }
+
+    /// What it is made of.
+    pub fn parts(&self) -> &Parts {
+        &self.parts
+    }
+
+    /// What it is made of, to keep.
+    pub fn into_parts(self) -> Parts {
+        self.parts
+    }
+
+    /// Values in a feature vector.
+    pub fn dim(&self) -> usize {
+        self.parts.dim
+    }
+
+    /// The nodes; the root is the first, children come after their parent.
+    pub fn nodes(&self) -> &[Node] {
+        &self.parts.nodes
+    }
+
+    /// The branches with their places among the nodes, the root first.
+    pub fn branches(&self) -> impl Iterator<Item = (usize, &Branch)> {
+        self.nodes().iter().enumerate().filter_map(|(at, node)| match node {
+            Node::Branch(branch) => Some((at, &**branch)),
+            Node::Leaf(_) => None,
+        })
+    }
+
+    /// `vector` (`n` values) in the plane of `branch`, one of this tree's (Eq. 3.40). O(exemplars · n), no
+    /// allocation.
+    pub fn reduce(&self, branch: &Branch, vector: &[f64]) -> [f64; 2] {
+        debug_assert_eq!(vector.len(), self.dim());
+        let kernel = Gaussian::new(branch.sigma_full);
+        let near = |rows: &[u32]| {
+            let sum: f64 = rows.iter().map(|&row| kernel.of(self.exemplar(row), vector)).sum();
+            sum / rows.len() as f64
+        };
+        let [l11, l21, l22] = branch.factor;
+        let first = near(&branch.exemplars[0]) / l11;
+        [first, (near(&branch.exemplars[1]) - l21 * first) / l22]
+    }
+
+    /// What both machines of `branch` say of `vector`. O(exemplars · n + points), no allocation.
+    pub fn outputs(&self, branch: &Branch, vector: &[f64]) -> [f64; 2] {
+        branch.outputs_at(self.reduce(branch, vector))
+    }
+
+    fn exemplar(&self, row: u32) -> &[f64] {
+        let start = row as usize * self.parts.dim;
+        &self.parts.vectors[start..start + self.parts.dim]
+    }
+}
+
+impl Branch {
+    /// What both machines say at a place in the plane: about `T` and more at samples of their own side. O(points), no
+    /// allocation.
+    pub fn outputs_at(&self, place: [f64; 2]) -> [f64; 2] {
+        let kernel = Gaussian::new(self.sigma_reduced);
+        let mut outputs = [0.0; 2];
+        for (i, point) in self.points.iter().enumerate() {
+            let k = kernel.of(point, &place);
+            outputs[0] += self.weights[0][i] * k;
+            outputs[1] += self.weights[1][i] * k;
+        }
+        outputs
+    }
+}
+
+impl TryFrom<Parts> for Tree {
+    type Error = TreeError;
+
+    fn try_from(parts: Parts) -> Result<Self, TreeError> {
+        Self::new(parts)
+    }
+}
+
+impl From<Tree> for Parts {
+    fn from(tree: Tree) -> Self {
+        tree.parts
+    }
+}
