@@ -1,7 +1,42 @@
 //! The recogniser of the thesis (Bucur 2009): support vector machines that may say "none of these", in a binary tree
 //! of classes. Live side: nothing here knows of training (`train::svrdm`).
+//!
+//! The stages of §4.6, each a struct that can be run alone; [`SvrdmEngine`] runs them all:
+//!
+//! | stage | takes | gives |
+//! |---|---|---|
+//! | input assembly: [`Pca`](crate::pca::Pca), [`ChunkAssembly`] | pose rows, `D` values | chunks of 16 rows of `r` values, with their [`Gram`] |
+//! | segment assembly: [`SegmentAssembly`] | a chunk's [`Gram`] | the [`Gram`] of each [`Window`] of 4 to 20 chunks that ends with it |
+//! | feature vector extraction: [`FeatureExtraction`] | a segment's [`Gram`], its rows | `k · r` values; one value a row, the profile |
+//! | classification: [`Tree`] | `k · r` values | at most four classes |
+//! | scoring: [`SegmentScoring`] | a class, a profile | a confidence |
+//! | tracking: [`SegmentTracking`] | for each chunk, a [`Cell`] for each window that ends with it | [`ChunkDetection`]s |
+//!
+//! Real-time contract: construction allocates and may fail with a reason; nothing that comes after allocates, locks
+//! or fails. Memory does not grow with the stream.
 
+pub mod edr;
+mod engine;
+mod extraction;
+mod gram;
 pub mod kernel;
+mod map;
+mod model;
+mod params;
+mod scoring;
+mod segments;
+mod tracking;
 pub mod tree;
+mod vectors;
 
+pub use engine::{FrameDetection, SvrdmEngine};
+pub use extraction::FeatureExtraction;
+pub use gram::Gram;
+pub use map::ConfidenceMap;
+pub use model::{ModelError, Profiles, SvrdmModel};
+pub use params::{Centring, MAX_PROFILE_FRAMES, Normalisation, Scaling, SvrdmParams};
+pub use scoring::{SegmentScoring, confidence};
+pub use segments::{ChunkAssembly, SegmentAssembly, Window};
+pub use tracking::{Cell, ChunkDetection, SegmentTracking};
 pub use tree::{Branch, Candidate, Candidates, Descent, MAX_CANDIDATES, Node, Parts, Tree, TreeError};
+pub use vectors::{Directions, MAX_DIM};

@@ -1,0 +1,153 @@
+//! Pose rows in, detections in frames out.
+
+use std::sync::Arc;
+
+use crate::classes::ClassId;
+
+use super::{
+    Candidates, Cell, ChunkAssembly, ChunkDetection, FeatureExtraction, Gram, ModelError, SegmentAssembly,
+    SegmentScoring, SegmentTracking, SvrdmModel, SvrdmParams, Window,
+};
+
+/// A motion recognised, in frames of the present stretch at the model's rate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FrameDetection {
+    /// What it is.
+    pub class: ClassId,
+    /// First frame.
+    pub start: i64,
+    /// One past the last frame.
+    pub stop: i64,
+    /// Its confidence (thesis, Eq. 4.5), 0 … 1.
+    pub score: f64,
+}
+
+/// The live stages of the thesis one after the other (§4.6): input assembly, segment assembly, feature vector
+/// extraction, classification, scoring, tracking. It knows no clock: rows come at the model's rate.
+///
+/// Construction allocates and may fail with a reason; nothing after it does either. What it gives depends on the rows
+/// alone.
+#[derive(Debug, Clone)]
+pub struct SvrdmEngine {
+    model: Arc<SvrdmModel>,
+    reduced: Vec<f32>,
+    chunks: ChunkAssembly,
+    segments: SegmentAssembly,
+    recogniser: SegmentRecogniser,
+    tracking: SegmentTracking,
+    column: Vec<Cell>,
+}
+
+/// From one segment to what it seems to be.
+#[derive(Debug, Clone)]
+struct SegmentRecogniser {
+    model: Arc<SvrdmModel>,
+    extraction: FeatureExtraction,
+    candidates: Candidates,
+    scoring: SegmentScoring,
+}
+
+impl SvrdmEngine {
+    /// Lays the model out for streaming; fails if its parts do not fit together.
+    pub fn new(model: &Arc<SvrdmModel>) -> Result<Self, ModelError> {
+        model.check()?;
+        let (params, dim) = (&model.params, model.pca.dims());
+        let scoring = SegmentScoring::new(model)?;
+        let most = (params.min_chunks..=params.max_chunks).map(|chunks| {
+            let classes = (0..model.classes.len()).map(|class| ClassId(class as u16));
+            // A hair more, lest the exponential's rounding makes a bound of what is none.
+            let bounds = classes.map(|class| scoring.most(class, chunks * params.chunk_frames) * (1.0 + 1e-9));
+            bounds.fold(0.0, f64::max)
+        });
+        Ok(Self {
+            reduced: vec![0.0; dim],
+            chunks: ChunkAssembly::new(params, dim),
+            segments: SegmentAssembly::new(params, dim),
+            tracking: SegmentTracking::new(params, most.collect()),
+            column: vec![Cell::NOTHING; params.lengths()],
+            recogniser: SegmentRecogniser {
+                model: model.clone(),
+                extraction: FeatureExtraction::new(params, dim, &model.signs),
+                candidates: Candidates::default(),
+                scoring,
+            },
+            model: model.clone(),
+        })
+    }
+
+    /// The model in use.
+    pub fn model(&self) -> &SvrdmModel {
+        &self.model
+    }
+
+    /// Forgets the stream so far.
+    pub fn reset(&mut self) {
+        self.chunks.reset();
+        self.segments.reset();
+        self.tracking.reset();
+    }
+
+    /// Takes the next pose row, `D` values; calls `out` with what is now certain, in order of time.
+    ///
+    /// Every [`chunk_frames`](super::SvrdmParams::chunk_frames)th row completes a chunk and does all the work.
+    pub fn push(&mut self, row: &[f32], out: &mut impl FnMut(FrameDetection)) {
+        self.push_watched(row, &mut |_, _| (), out);
+    }
+
+    /// The same, and calls `watch` with every segment that was looked at: the map of Fig. 4.3, cell by cell. See
+    /// [`ConfidenceMap`](super::ConfidenceMap).
+    pub fn push_watched(
+        &mut self,
+        row: &[f32],
+        watch: &mut impl FnMut(Window, Cell),
+        out: &mut impl FnMut(FrameDetection),
+    ) {
+        self.model.pca.project_into(row, &mut self.reduced);
+        if !self.chunks.push(&self.reduced) {
+            return;
+        }
+        self.column.fill(Cell::NOTHING);
+        let shortest = self.model.params.min_chunks;
+        let (column, recogniser, chunks) = (&mut self.column, &mut self.recogniser, &self.chunks);
+        self.segments.push(chunks.chunk(), &mut |window, segment| {
+            let cell = recogniser.recognise(segment, chunks);
+            column[window.chunks() - shortest] = cell;
+            watch(window, cell);
+        });
+        let frames = self.model.params.chunk_frames as i64;
+        self.tracking.push(&self.column, &mut |found| out(in_frames(found, frames)));
+    }
+
+    /// Ends the stretch: calls `out` with what is left. Rows that make no whole chunk are left out.
+    pub fn finish(&mut self, out: &mut impl FnMut(FrameDetection)) {
+        let frames = self.model.params.chunk_frames as i64;
+        self.tracking.finish(&mut |found| out(in_frames(found, frames)));
+        self.reset();
+    }
+}
+
+impl SegmentRecogniser {
+    /// The class that the segment, whose rows are the last of `chunks`, most certainly is.
+    fn recognise(&mut self, segment: &Gram, chunks: &ChunkAssembly) -> Cell {
+        let Some(feature) = self.extraction.feature(segment) else { return Cell::NOTHING };
+        let SvrdmParams { accept, descent, .. } = self.model.params;
+        self.model.tree.descend(feature, accept, descent, &mut self.candidates);
+        if self.candidates.is_empty() {
+            return Cell::NOTHING;
+        }
+        let profile = self.extraction.profile(segment, chunks.last_rows(segment.frames()));
+        let mut best = Cell::NOTHING;
+        for candidate in self.candidates.iter() {
+            let confidence = self.scoring.score(candidate.class, profile);
+            if confidence > best.confidence {
+                best = Cell { class: candidate.class, confidence };
+            }
+        }
+        best
+    }
+}
+
+fn in_frames(found: ChunkDetection, chunk_frames: i64) -> FrameDetection {
+    let ChunkDetection { class, start, stop, score } = found;
+    FrameDetection { class, start: start * chunk_frames, stop: stop * chunk_frames, score }
+}

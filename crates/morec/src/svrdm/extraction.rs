@@ -1,0 +1,58 @@
+//! Segments to feature vectors and profiles (thesis, §4.6.4).
+
+use super::{Centring, Directions, Gram, Scaling, SvrdmParams};
+
+/// Feature vector extraction: a segment's `AᵀA` in; its feature vector and, where asked for, its profile out.
+///
+/// Training describes its samples by the same struct, in the same precision.
+#[derive(Debug, Clone)]
+pub struct FeatureExtraction {
+    scaling: Scaling,
+    centring: Centring,
+    signs: Vec<f64>,
+    directions: Directions,
+    feature: Vec<f64>,
+    profile: Vec<f32>,
+}
+
+impl FeatureExtraction {
+    /// For rows of `dim` values, `r`, and `signs` as of [`SvrdmModel::signs`](super::SvrdmModel::signs): `k × r`.
+    pub fn new(params: &SvrdmParams, dim: usize, signs: &[f64]) -> Self {
+        assert_eq!(signs.len(), params.feature_dim(dim), "sign vectors of another size");
+        Self {
+            scaling: params.scaling,
+            centring: params.centring,
+            signs: signs.to_vec(),
+            directions: Directions::new(params.eigenvectors, dim),
+            feature: vec![0.0; signs.len()],
+            profile: vec![0.0; params.max_frames()],
+        }
+    }
+
+    /// The feature vector, `k · r` values; `None` for a segment without direction ([`Directions::find`]).
+    /// O(r³), no allocation.
+    pub fn feature(&mut self, segment: &Gram) -> Option<&[f64]> {
+        if !self.directions.find(segment, self.centring) {
+            return None;
+        }
+        self.directions.fix_signs(&self.signs);
+        self.directions.feature(self.scaling, &mut self.feature);
+        Some(&self.feature)
+    }
+
+    /// The directions that the last feature vector is of.
+    pub fn directions(&self) -> &Directions {
+        &self.directions
+    }
+
+    /// The profile of the segment that the last feature vector is of: one value for each of its `rows`. Allocates
+    /// only for segments longer than the parameters' longest, as training may have them. O(rows · r).
+    pub fn profile<'a>(&mut self, segment: &Gram, rows: impl Iterator<Item = &'a [f32]>) -> &[f32] {
+        if self.profile.len() < segment.frames() {
+            self.profile.resize(segment.frames(), 0.0);
+        }
+        let out = &mut self.profile[..segment.frames()];
+        self.directions.profile(rows, segment, self.centring, out);
+        out
+    }
+}

@@ -1,0 +1,183 @@
+//! A trained recogniser of the thesis's kind: what an index file holds for this method.
+
+use crate::classes::{ClassId, ClassInfo};
+use crate::pca::Pca;
+use crate::pivots::{PivotSet, PoseParams};
+
+use super::vectors::MAX_DIM;
+use super::{MAX_PROFILE_FRAMES, Node, SvrdmParams, Tree};
+
+/// Everything this recogniser needs, immutable (thesis, §4.7.2, lists the same).
+///
+/// Notation: `D` values in a pose row, `r` after projection, `k` directions, `n = k · r` values in a feature vector.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SvrdmModel {
+    /// The classes; a [`ClassId`] is an index into this.
+    pub classes: Vec<ClassInfo>,
+    /// Which joints make a pose row.
+    pub pivots: PivotSet,
+    /// How rows are made of poses; their rate is the model's.
+    pub pose: PoseParams,
+    /// From `D` values to `r`.
+    pub pca: Pca,
+    /// How the stages work.
+    pub params: SvrdmParams,
+    /// Sign vectors (thesis, Alg. 5): `k × r`, one after the other.
+    pub signs: Vec<f64>,
+    /// Feature vectors to classes.
+    pub tree: Tree,
+    /// The training samples' profiles.
+    pub profiles: Profiles,
+    /// For each class, its samples' mean length.
+    pub mean_secs: Vec<f64>,
+    /// Profile values match if they differ by at most this.
+    pub epsilon: f32,
+}
+
+/// Profiles of training samples (the thesis's "motion vectors"): each sample's rows projected on its own first
+/// direction.
+#[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+pub struct Profiles {
+    /// All values end to end.
+    pub values: Vec<f32>,
+    /// For each profile, its length in frames.
+    pub lengths: Vec<usize>,
+    /// For each profile, the class of its sample.
+    pub classes: Vec<ClassId>,
+}
+
+impl Profiles {
+    /// Adds a sample's.
+    pub fn push(&mut self, class: ClassId, profile: &[f32]) {
+        self.values.extend_from_slice(profile);
+        self.lengths.push(profile.len());
+        self.classes.push(class);
+    }
+
+    /// How many.
+    pub fn len(&self) -> usize {
+        self.lengths.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.lengths.is_empty()
+    }
+
+    /// Each with its class, in order.
+    pub fn iter(&self) -> impl Iterator<Item = (ClassId, &[f32])> {
+        let mut rest = &self.values[..];
+        self.lengths.iter().zip(&self.classes).map(move |(length, class)| {
+            let (profile, after) = rest.split_at((*length).min(rest.len()));
+            rest = after;
+            (*class, profile)
+        })
+    }
+
+    /// How near two values must be to match: `tolerance` times the standard deviation of all values of all profiles
+    /// (thesis, §3.8).
+    pub fn epsilon(&self, tolerance: f64) -> f32 {
+        let count = self.values.len().max(1) as f64;
+        let mean = self.values.iter().map(|v| f64::from(*v)).sum::<f64>() / count;
+        let squares: f64 = self.values.iter().map(|v| (f64::from(*v) - mean).powi(2)).sum();
+        (tolerance * (squares / count).sqrt()) as f32
+    }
+
+    /// For each of `classes` classes, the mean length of its profiles in seconds at `rate_hz`; 0 for one without any.
+    pub fn mean_secs(&self, classes: usize, rate_hz: f64) -> Vec<f64> {
+        let (mut frames, mut counts) = (vec![0; classes], vec![0usize; classes]);
+        for (length, class) in self.lengths.iter().zip(&self.classes) {
+            frames[class.index()] += length;
+            counts[class.index()] += 1;
+        }
+        let mean = |(frames, count): (&usize, &usize)| *frames as f64 / (*count).max(1) as f64 / rate_hz;
+        frames.iter().zip(&counts).map(mean).collect()
+    }
+}
+
+/// Parts that do not fit together.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ModelError {
+    /// A table has another size than others ask for.
+    #[error("{what}: expected {expected}, found {found}")]
+    Size {
+        /// Which table, and of what.
+        what: &'static str,
+        /// What the others ask for.
+        expected: usize,
+        /// What it has.
+        found: usize,
+    },
+    /// A number that must be sensible is not.
+    #[error("{0}")]
+    Value(String),
+}
+
+impl SvrdmModel {
+    /// Frames a second of rows and everything after them.
+    pub fn rate_hz(&self) -> f64 {
+        self.pose.rate_hz
+    }
+
+    /// Checks that all parts fit together. O(size).
+    pub fn check(&self) -> Result<(), ModelError> {
+        self.pose.check().map_err(ModelError::Value)?;
+        self.params.check().map_err(ModelError::Value)?;
+        let (dim, reduced) = (self.pivots.row_dim(), self.pca.dims());
+        if reduced < self.params.eigenvectors || reduced > MAX_DIM {
+            let (low, high) = (self.params.eigenvectors, MAX_DIM);
+            return Err(value(format!("reduced rows must have {low} to {high} values, found {reduced}")));
+        }
+        let feature_dim = self.params.feature_dim(reduced);
+        let profiles = &self.profiles;
+        let sizes = [
+            ("values in a row that is projected", dim, self.pca.dim()),
+            ("values in the sign vectors", feature_dim, self.signs.len()),
+            ("values in a feature vector of the tree", feature_dim, self.tree.dim()),
+            ("mean lengths of classes", self.classes.len(), self.mean_secs.len()),
+            ("classes of profiles", profiles.len(), profiles.classes.len()),
+            ("values of profiles", profiles.lengths.iter().sum(), profiles.values.len()),
+        ];
+        if let Some((what, expected, found)) = sizes.into_iter().find(|(_, e, f)| e != f) {
+            return Err(ModelError::Size { what, expected, found });
+        }
+        self.check_values()?;
+        self.check_classes()
+    }
+
+    fn check_values(&self) -> Result<(), ModelError> {
+        if let Some(length) = self.profiles.lengths.iter().find(|l| !(1..=MAX_PROFILE_FRAMES).contains(*l)) {
+            return Err(value(format!("a profile must have 1 to {MAX_PROFILE_FRAMES} frames, found {length}")));
+        }
+        if self.signs.iter().any(|v| !v.is_finite()) || self.profiles.values.iter().any(|v| !v.is_finite()) {
+            return Err(value("a sign vector or profile holds a value that is not finite".to_owned()));
+        }
+        if !(self.epsilon.is_finite() && self.epsilon >= 0.0) {
+            return Err(value(format!("epsilon must be 0 or more, found {}", self.epsilon)));
+        }
+        match self.mean_secs.iter().find(|mean| !(mean.is_finite() && **mean > 0.0)) {
+            Some(mean) => Err(value(format!("a class's mean length must be above 0 s, found {mean}"))),
+            None => Ok(()),
+        }
+    }
+
+    fn check_classes(&self) -> Result<(), ModelError> {
+        let count = self.classes.len();
+        let leaves = self.tree.nodes().iter().filter_map(|node| match node {
+            Node::Leaf(class) => Some(*class),
+            Node::Branch(_) => None,
+        });
+        let named = leaves.chain(self.profiles.classes.iter().copied());
+        if let Some(class) = named.into_iter().find(|class| class.index() >= count) {
+            return Err(value(format!("the tree or a profile is of class {}, of {count}", class.0)));
+        }
+        match (0..count).find(|index| !self.profiles.classes.iter().any(|class| class.index() == *index)) {
+            Some(index) => Err(value(format!("class {} has no profile", self.classes[index].name))),
+            None => Ok(()),
+        }
+    }
+}
+
+fn value(message: String) -> ModelError {
+    ModelError::Value(message)
+}

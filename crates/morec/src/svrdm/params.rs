@@ -1,0 +1,175 @@
+//! The figures of the live stages.
+
+use super::Descent;
+use super::vectors::MAX_DIM;
+
+/// Longest segment, in frames, and longest profile: the edit distance counts exactly up to their sum.
+pub const MAX_PROFILE_FRAMES: usize = 2047;
+
+/// Most chunks in a segment.
+const MAX_CHUNKS: usize = 64;
+
+/// Most chunks that a segment may wait for its report.
+const MAX_WAIT_CHUNKS: usize = 256;
+
+/// What a feature vector is made of eigenvectors by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Scaling {
+    /// Each eigenvector times its share of all singular values (thesis, Eq. 3.37; what it calls eigenvalues of `A`
+    /// are singular values, as corrected).
+    SingularShare,
+    /// `(v + 1) / 2`: components of a unit vector lie in [−1, 1], so these lie in [0, 1] (thesis, §5.3, last
+    /// paragraph; a fixed map is our reading of it).
+    UnitRange,
+}
+
+/// What is subtracted from a segment's rows before its directions are sought.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Centring {
+    /// The mean of the whole database, which projection has subtracted already (thesis, §4.2, §4.6.2). The first
+    /// direction is then mostly the mean pose.
+    Database,
+    /// The segment's own mean.
+    Segment,
+}
+
+/// What an edit distance is divided by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Normalisation {
+    /// The length of the cheapest path; of equally cheap ones the longest counts (thesis, §4.6.5).
+    CheapestPath,
+    /// The path is chosen for the least cost per step itself (Marzal and Vidal, *Computation of normalized edit
+    /// distance and applications*, 1993). Several times slower.
+    LeastRatio,
+}
+
+/// How segments are formed, described, scored and tracked. A model keeps the values it was trained with.
+///
+/// Chunks are counted at the model's rate: 16 frames at 120 Hz are 0.133 s.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(default)]
+pub struct SvrdmParams {
+    /// Frames in a chunk, Δ. 16 (thesis, §4.6.2).
+    pub chunk_frames: usize,
+    /// Chunks in the shortest segment. 4 (thesis, §4.6.3): 0.53 s; motions much shorter than this go unseen.
+    pub min_chunks: usize,
+    /// Chunks in the longest segment. 20 (thesis, §4.6.3): 2.67 s.
+    pub max_chunks: usize,
+    /// Eigenvectors in a feature vector, `k`. 2 (thesis, §4.5).
+    pub eigenvectors: usize,
+    /// How eigenvectors make a feature vector. `UnitRange` (thesis, §5.3).
+    pub scaling: Scaling,
+    /// What segments are centred on. `Database` (thesis, §4.6.2).
+    pub centring: Centring,
+    /// A branch of the tree is followed if its machine says at least this, `T`. 0.92 (thesis, §4.6.5).
+    pub accept: f64,
+    /// Where both machines of a branch accept: both ways, so that up to four classes are scored (thesis, §4.7.2), or
+    /// that of the larger output (§4.6.5). `Larger`.
+    pub descent: Descent,
+    /// Profile values match if they differ by at most this many standard deviations of all training profiles.
+    /// 0.25 (thesis, §3.8).
+    pub tolerance: f64,
+    /// What edit distances are divided by. `CheapestPath` (thesis, §4.6.5).
+    pub normalisation: Normalisation,
+    /// Standard deviation of the length prior, as a share of the class's mean length. 0.25 (thesis, Eq. 4.5).
+    pub prior_spread: f64,
+    /// Of two segments that share more than this of the shorter one, only the better is reported. 0.3 (thesis,
+    /// §4.6.5).
+    pub overlap: f64,
+    /// Segments less certain than this are left out of account. 0 (the thesis names no bound).
+    pub min_confidence: f64,
+    /// A segment is decided upon at the latest this many chunks after its last, on what is known then. 40: by then
+    /// everything that overlaps it has been seen twice over; smaller values report sooner and are final all the same.
+    pub wait_chunks: usize,
+}
+
+impl Default for SvrdmParams {
+    /// The values of the thesis.
+    fn default() -> Self {
+        Self {
+            chunk_frames: 16,
+            min_chunks: 4,
+            max_chunks: 20,
+            eigenvectors: 2,
+            scaling: Scaling::UnitRange,
+            centring: Centring::Database,
+            accept: 0.92,
+            descent: Descent::Larger,
+            tolerance: 0.25,
+            normalisation: Normalisation::CheapestPath,
+            prior_spread: 0.25,
+            overlap: 0.3,
+            min_confidence: 0.0,
+            wait_chunks: 40,
+        }
+    }
+}
+
+impl SvrdmParams {
+    /// Segment lengths that are tried.
+    pub fn lengths(&self) -> usize {
+        self.max_chunks - self.min_chunks + 1
+    }
+
+    /// Frames of the longest segment.
+    pub fn max_frames(&self) -> usize {
+        self.max_chunks * self.chunk_frames
+    }
+
+    /// Values in a feature vector of rows of `dim` values.
+    pub fn feature_dim(&self, dim: usize) -> usize {
+        self.eigenvectors * dim
+    }
+
+    /// Says what is wrong with these values, if anything is.
+    pub fn check(&self) -> Result<(), String> {
+        let counts = [
+            ("chunk_frames", self.chunk_frames, 1, MAX_PROFILE_FRAMES),
+            ("min_chunks", self.min_chunks, 1, MAX_CHUNKS),
+            ("max_chunks", self.max_chunks, self.min_chunks, MAX_CHUNKS),
+            ("eigenvectors", self.eigenvectors, 1, MAX_DIM),
+            ("wait_chunks", self.wait_chunks, 1, MAX_WAIT_CHUNKS),
+        ];
+        if let Some((name, value, low, high)) = counts.iter().find(|(_, v, low, high)| v < low || v > high) {
+            return Err(format!("{name} must be {low} to {high}, found {value}"));
+        }
+        if self.max_frames() > MAX_PROFILE_FRAMES {
+            let frames = self.max_frames();
+            return Err(format!("segments must be at most {MAX_PROFILE_FRAMES} frames, found {frames}"));
+        }
+        let positive = [("accept", self.accept), ("prior_spread", self.prior_spread)];
+        if let Some((name, value)) = positive.iter().find(|(_, v)| !(v.is_finite() && *v > 0.0)) {
+            return Err(format!("{name} must be above 0, found {value}"));
+        }
+        if !(self.tolerance.is_finite() && self.tolerance >= 0.0) {
+            return Err(format!("tolerance must be 0 or more, found {}", self.tolerance));
+        }
+        let shares = [("overlap", self.overlap), ("min_confidence", self.min_confidence)];
+        match shares.iter().find(|(_, v)| !(0.0..1.0).contains(v)) {
+            Some((name, value)) => Err(format!("{name} must be from 0 to below 1, found {value}")),
+            None => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn defaults_pass_and_nonsense_is_named() {
+        assert_eq!(SvrdmParams::default().check(), Ok(()));
+        let wrong = |change: fn(&mut SvrdmParams)| {
+            let mut params = SvrdmParams::default();
+            change(&mut params);
+            params.check().unwrap_err()
+        };
+        assert!(wrong(|p| p.max_chunks = 3).contains("max_chunks must be 4 to 64, found 3"));
+        assert!(wrong(|p| p.chunk_frames = 200).contains("at most 2047 frames, found 4000"));
+        assert!(wrong(|p| p.prior_spread = f64::NAN).contains("prior_spread"));
+        assert!(wrong(|p| p.overlap = 1.0).contains("overlap"));
+    }
+}

@@ -1,0 +1,102 @@
+//! How certain it is that a segment is a class (thesis, §4.6.5, Eq. 4.5).
+
+use crate::classes::ClassId;
+
+use super::edr::{Edr, least_ratio};
+use super::{MAX_PROFILE_FRAMES, ModelError, Normalisation, SvrdmModel};
+
+/// Eq. 4.5: `(1 − 0.9 / (1 + e^(−30 EDR + 15))) · e^(−(len − mean)² / (2 (spread · mean)²))`, lengths in seconds.
+pub fn confidence(edr: f64, length_secs: f64, mean_secs: f64, spread: f64) -> f64 {
+    let likeness = 1.0 - 0.9 / (1.0 + (-30.0 * edr + 15.0).exp());
+    let deviation = (length_secs - mean_secs) / (spread * mean_secs);
+    likeness * (-0.5 * deviation * deviation).exp()
+}
+
+/// One class's profiles, among those of all.
+#[derive(Debug, Clone)]
+struct OfClass {
+    /// For each profile, where it lies in [`SegmentScoring::values`].
+    profiles: Vec<std::ops::Range<usize>>,
+    mean_secs: f64,
+    /// The profile that came nearest last time: it goes first, because it most likely does so again, and the others
+    /// then have little room to be nearer.
+    nearest: usize,
+}
+
+/// Segment scoring: a class and a segment's profile in, a confidence out.
+#[derive(Debug, Clone)]
+pub struct SegmentScoring {
+    values: Vec<f32>,
+    classes: Vec<OfClass>,
+    edr: Edr,
+    normalisation: Normalisation,
+    spread: f64,
+    min_confidence: f64,
+    rate_hz: f64,
+}
+
+impl SegmentScoring {
+    /// For the profiles of a model whose parts fit together.
+    pub fn new(model: &SvrdmModel) -> Result<Self, ModelError> {
+        model.check()?;
+        let mut classes: Vec<OfClass> = model
+            .mean_secs
+            .iter()
+            .map(|mean| OfClass { profiles: vec![], mean_secs: *mean, nearest: 0 })
+            .collect();
+        let mut at = 0;
+        for (length, class) in model.profiles.lengths.iter().zip(&model.profiles.classes) {
+            classes[class.index()].profiles.push(at..at + length);
+            at += length;
+        }
+        Ok(Self {
+            values: model.profiles.values.clone(),
+            classes,
+            edr: Edr::new(model.epsilon, MAX_PROFILE_FRAMES),
+            normalisation: model.params.normalisation,
+            spread: model.params.prior_spread,
+            min_confidence: model.params.min_confidence,
+            rate_hz: model.rate_hz,
+        })
+    }
+
+    /// How certain it is that a segment with this profile, one value a frame, is `class`; 0 if less than the least
+    /// confidence that counts. O(frames of the segment · frames of the class's profiles), no allocation.
+    pub fn score(&mut self, class: ClassId, profile: &[f32]) -> f64 {
+        if self.most(class, profile.len()) < self.min_confidence {
+            return 0.0;
+        }
+        let edr = self.distance(class, profile);
+        let of = &self.classes[class.index()];
+        let found = confidence(edr, profile.len() as f64 / self.rate_hz, of.mean_secs, self.spread);
+        if found < self.min_confidence { 0.0 } else { found }
+    }
+
+    /// The most that [`score`](Self::score) can give a segment of so many frames, whatever its profile.
+    pub fn most(&self, class: ClassId, frames: usize) -> f64 {
+        let of = &self.classes[class.index()];
+        let lengths = of.profiles.iter().map(|p| least_ratio(p.len(), frames));
+        let edr = lengths.fold(1.0, f64::min);
+        confidence(edr, frames as f64 / self.rate_hz, of.mean_secs, self.spread)
+    }
+
+    /// Least normalised edit distance to any profile of `class`, 0 … 1.
+    pub fn distance(&mut self, class: ClassId, profile: &[f32]) -> f64 {
+        let of = &mut self.classes[class.index()];
+        let (mut least, mut nearest) = (f64::INFINITY, of.nearest);
+        for turn in 0..of.profiles.len() {
+            // The nearest of last time, then the others in order.
+            let index = match turn {
+                0 => of.nearest,
+                _ if turn <= of.nearest => turn - 1,
+                _ => turn,
+            };
+            let known = &self.values[of.profiles[index].clone()];
+            if let Some(edr) = self.edr.normalised(profile, known, self.normalisation, least) {
+                (least, nearest) = (edr, index);
+            }
+        }
+        of.nearest = nearest;
+        least.min(1.0)
+    }
+}
