@@ -132,6 +132,8 @@ pub mod kinematics;
 pub mod labels;
 pub mod live;
 pub mod math;
+pub mod pca;
+pub mod pivots;
 pub mod plot;
 pub mod progress;
 pub mod report;

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 const OFFLINE: [&str; 8] = ["train", "crossval", "formats", "labels", "eval", "report", "synth", "index"];
 
 /// Modules of the live path.
-const LIVE: [&str; 5] = ["live", "decode", "features", "templates", "svrdm"];
+const LIVE: [&str; 7] = ["live", "decode", "features", "templates", "pivots", "pca", "svrdm"];
 
 struct Source {
     /// Module at the top: `live` for `live/recognizer.rs`.
