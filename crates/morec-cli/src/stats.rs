@@ -1,11 +1,16 @@
 //! How fast recognition runs, as a whole and stage by stage.
 
 use std::fmt;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use anyhow::Result;
 use morec::features::rows_of_clip;
 use morec::import::Imported;
-use morec::templates::{TemplateEngine, TemplateModel, TemplateModelError};
+use morec::live::Model;
+use morec::pivots::{PivotMap, pose_rows_of_clip};
+use morec::svrdm::{SvrdmEngine, SvrdmModel};
+use morec::templates::{TemplateEngine, TemplateModel};
 
 /// Frames and times, summed over clips; all on one thread.
 #[derive(Debug, Default)]
@@ -15,7 +20,7 @@ pub struct Stats {
     whole: Duration,
     features: Duration,
     matching: Duration,
-    template_rows: usize,
+    size: String,
 }
 
 impl Stats {
@@ -31,7 +36,14 @@ impl Stats {
     }
 
     /// Runs the stages once more, one after the other, and times each.
-    pub fn stages(&mut self, model: &TemplateModel, imported: &Imported) -> Result<(), TemplateModelError> {
+    pub fn stages(&mut self, model: &Model, imported: &Imported) -> Result<()> {
+        match model {
+            Model::Templates(model) => self.template_stages(model, imported),
+            Model::Svrdm(model) => self.svrdm_stages(model, imported),
+        }
+    }
+
+    fn template_stages(&mut self, model: &TemplateModel, imported: &Imported) -> Result<()> {
         let Imported { clip, roles, facts } = imported;
         let rest = &facts.rest_frames;
         let rows =
@@ -41,8 +53,24 @@ impl Stats {
             rows.iter().for_each(|row| engine.push(row, &mut |_| {}));
             engine.finish(&mut |_| {});
         });
-        self.template_rows = model.samples.iter().map(|s| s.rows.len()).sum::<usize>()
+        let template_rows = model.samples.iter().map(|s| s.rows.len()).sum::<usize>()
             + model.negatives.iter().map(morec::features::Rows::len).sum::<usize>();
+        self.size = format!("{template_rows} template rows");
+        Ok(())
+    }
+
+    fn svrdm_stages(&mut self, model: &Arc<SvrdmModel>, imported: &Imported) -> Result<()> {
+        let Imported { clip, roles, facts } = imported;
+        let map = PivotMap::resolve(&model.pivots, &clip.skeleton, roles)?;
+        let rest = &facts.rest_frames;
+        let rows =
+            timed(&mut self.features, || pose_rows_of_clip(clip, &model.pivots, &map, rest, &model.pose));
+        let mut engine = SvrdmEngine::new(model)?;
+        timed(&mut self.matching, || {
+            rows.iter().for_each(|row| engine.push(row, &mut |_| {}));
+            engine.finish(&mut |_| {});
+        });
+        self.size = format!("{} classes, {} profiles", model.classes.len(), model.profiles.len());
         Ok(())
     }
 }
@@ -56,11 +84,7 @@ fn timed<T>(total: &mut Duration, job: impl FnOnce() -> T) -> T {
 
 impl fmt::Display for Stats {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(
-            f,
-            "frames a second on one core ({} frames, {} template rows)",
-            self.frames, self.template_rows
-        )?;
+        writeln!(f, "frames a second on one core ({} frames, {})", self.frames, self.size)?;
         let stages = [
             ("whole path, poses to detections", self.whole),
             ("  poses to feature rows", self.features),

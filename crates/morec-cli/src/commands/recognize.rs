@@ -7,11 +7,11 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result};
 use clap::ValueEnum;
-use morec::features::bones_of_clip;
+use morec::features::{BoneSet, bones_of_clip};
 use morec::import::{ImportOptions, Imported, prepare};
 use morec::index::MotionIndex;
 use morec::labels::{FOUND_HEADER, FoundLine};
-use morec::live::{Detection, recognize_clip};
+use morec::live::{Detection, Model, PoseReader, recognize_clip};
 use morec::roles::Role;
 
 use crate::files::{ReadArgs, expand, mapping, open, read};
@@ -140,16 +140,35 @@ fn adapt(imported: &mut Imported, index: &MotionIndex, path: &Path, complete: bo
     if complete {
         index.complete_roles(&mut imported.roles, &imported.clip.skeleton);
     }
-    let shown = bones_of_clip(&imported.clip, &imported.roles, &imported.facts.rest_frames);
-    let used = index.model.bones;
-    if imported.clip.frames > 0 && shown.and(used) != used {
-        let missing: Vec<&str> = imported.roles.missing().filter(|r| needed(*r)).map(Role::name).collect();
+    if imported.clip.frames == 0 {
+        return;
+    }
+    let (what, missing) = match &index.model {
+        Model::Templates(model) => ("bones", missing_roles(imported, model.bones)),
+        Model::Svrdm(_) => {
+            // Without a root there is an error to come, which says more.
+            let reader = PoseReader::new(&index.model, &imported.clip.skeleton, &imported.roles);
+            ("joints", reader.map_or_else(|_| vec![], |reader| reader.missing_pivots().to_vec()))
+        }
+    };
+    if !missing.is_empty() {
         eprintln!(
-            "morec: {}: the index uses bones that this clip does not show (missing: {}); recognising without them",
+            "morec: {}: the index uses {what} that this clip does not show (missing: {}); recognising without them",
             path.display(),
-            if missing.is_empty() { "bones of no length".to_owned() } else { missing.join(", ") }
+            missing.join(", ")
         );
     }
+}
+
+/// What a clip lacks of the bones `used`.
+fn missing_roles(imported: &Imported, used: BoneSet) -> Vec<String> {
+    let shown = bones_of_clip(&imported.clip, &imported.roles, &imported.facts.rest_frames);
+    if shown.and(used) == used {
+        return vec![];
+    }
+    let missing: Vec<String> =
+        imported.roles.missing().filter(|r| needed(*r)).map(|r| r.name().to_owned()).collect();
+    if missing.is_empty() { vec!["bones of no length".to_owned()] } else { missing }
 }
 
 fn needed(role: Role) -> bool {
@@ -163,7 +182,7 @@ fn write_found(
     index: &MotionIndex,
 ) -> std::io::Result<()> {
     let FoundInClip { clip, rate_hz, detection: found } = in_clip;
-    let class = &index.model.classes[found.class.index()].name;
+    let class = index.model.class_name(found.class);
     let line = FoundLine {
         clip,
         class,

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Arc;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use anyhow::{Context, Result};
@@ -60,7 +59,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     };
     let (model, report) = train_clips(&material.clips, &labelling, &options, &Bar::new())?;
     let index = MotionIndex {
-        model: Arc::new(model),
+        model: model.into(),
         roles: role_names(&material.clips),
         provenance: provenance(&material, &report),
     };

@@ -3,15 +3,13 @@
 mod folds;
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Arc;
 
 use rayon::prelude::*;
 
 use crate::eval::{Found, StreamInfo, Truth};
 use crate::labels::Sample;
-use crate::live::recognize_clip;
+use crate::live::{Model, StartError, recognize_clip};
 use crate::progress::Progress;
-use crate::templates::{TemplateModel, TemplateModelError};
 use crate::train::{Labelling, Source, TrainClip, TrainError, TrainOptions, TrainingReport, train_clips};
 
 pub use folds::{By, Fold, folds};
@@ -74,7 +72,7 @@ pub enum CrossvalError {
         /// Which clip.
         clip: String,
         /// Why.
-        source: TemplateModelError,
+        source: StartError,
     },
 }
 
@@ -134,7 +132,7 @@ fn run_fold(
     let trained = train_clips(&training, &labelling, options, &());
     let (model, report) =
         trained.map_err(|source| CrossvalError::Train { fold: fold.name.clone(), source })?;
-    let model = Arc::new(model);
+    let model = Model::from(model);
 
     let trained_on: BTreeSet<&str> = training.iter().map(|c| c.name.as_str()).collect();
     let known = material.clips.iter().filter(|c| fold.tested.contains(&c.name)).map(|c| (c, false));
@@ -155,7 +153,7 @@ fn run_fold(
 }
 
 fn test(
-    model: &Arc<TemplateModel>,
+    model: &Model,
     clip: &TrainClip,
     unknown: bool,
     fold: &Fold,
@@ -168,7 +166,7 @@ fn test(
     let name = if again { format!("{} (without {})", clip.name, fold.name) } else { clip.name.clone() };
     let founds = found.iter().map(|d| Found {
         clip: name.clone(),
-        class: model.classes[d.class.index()].name.clone(),
+        class: model.class_name(d.class).to_owned(),
         start_secs: d.start_secs,
         stop_secs: d.stop_secs,
         score: Some(d.score),

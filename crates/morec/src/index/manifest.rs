@@ -2,10 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use crate::classes::ClassInfo;
+use crate::classes::{ClassId, ClassInfo};
 use crate::decode::DecodeParams;
 use crate::features::{BoneSet, FeatureParams};
+use crate::pivots::{PivotSet, PoseParams};
 use crate::roles::Role;
+use crate::svrdm::SvrdmParams;
 use crate::templates::Generic;
 
 use super::Provenance;
@@ -13,7 +15,7 @@ use super::Provenance;
 /// Value of [`Manifest::format`]: says that a safetensors file is one of ours.
 pub const FORMAT: &str = "morec-index";
 
-/// Everything in an index that is not a table of numbers.
+/// Everything in an index of templates that is not a table of numbers.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Manifest {
     /// Always [`FORMAT`].
@@ -53,6 +55,60 @@ pub struct VerifierWords {
     pub bar: f64,
     /// What holds for all classes.
     pub generic: Generic,
+}
+
+/// Everything in an index of the thesis's method that is not a table of numbers.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct SvrdmManifest {
+    /// Always [`FORMAT`].
+    pub format: String,
+    /// Version of the layout.
+    pub version: u32,
+    /// Which recogniser the model is for.
+    pub method: String,
+    /// As in [`Manifest::checksum`].
+    pub checksum: u32,
+    /// The classes, in the order of their numbers.
+    pub classes: Vec<ClassInfo>,
+    /// Which joints make a pose row.
+    pub pivots: PivotSet,
+    /// How rows are made of poses.
+    pub pose: PoseParams,
+    /// How the stages work.
+    pub params: SvrdmParams,
+    /// Rows that the principal components were fitted to.
+    pub pca_rows: u64,
+    /// The tree, but for its tables.
+    pub nodes: Vec<NodeWords>,
+    /// For each class, its samples' mean length in seconds.
+    pub mean_secs: Vec<f64>,
+    /// How near profile values must be.
+    pub epsilon: f32,
+    /// Joints of the training clips, by role.
+    pub roles: BTreeMap<Role, String>,
+    /// Where the index came from.
+    pub provenance: Provenance,
+}
+
+/// A node of the tree without its tables.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NodeWords {
+    /// One class is left.
+    Leaf(ClassId),
+    /// Two macro-classes are told apart.
+    Branch(BranchWords),
+}
+
+/// What a branch is beside its tables.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[allow(missing_docs)] // As in svrdm::Branch.
+pub struct BranchWords {
+    pub sigma_full: f64,
+    pub sigma_reduced: f64,
+    pub factor: [f64; 3],
+    pub children: [u32; 2],
+    pub classes: [Vec<ClassId>; 2],
 }
 
 /// The part that can be read whatever the version.

@@ -20,14 +20,15 @@
 
 mod manifest;
 mod read;
+mod svrdm;
+mod templates;
 mod tensors;
 mod write;
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
+use crate::live::Model;
 use crate::roles::{Role, RoleMap};
-use crate::templates::TemplateModel;
 
 /// Version of index files that this program writes, and the newest it reads.
 pub const INDEX_VERSION: u32 = 1;
@@ -51,7 +52,7 @@ pub struct Provenance {
 #[derive(Debug, Clone, PartialEq)]
 pub struct MotionIndex {
     /// The trained model.
-    pub model: Arc<TemplateModel>,
+    pub model: Model,
     /// Which joint played which role in training, by name: a hint for skeletons on which the role map fails.
     pub roles: BTreeMap<Role, String>,
     /// Where it came from.

@@ -4,8 +4,13 @@
 //! lock, log or fail. A recogniser is owned by one thread at a time. Detections are the same however the stream
 //! is cut into pushes.
 
+mod model;
 mod of_clip;
+mod paths;
+mod pose;
 mod recognizer;
 
+pub use model::{Model, StartError};
 pub use of_clip::recognize_clip;
+pub use pose::{Pose, PoseReader};
 pub use recognizer::{Detection, Recognizer};

@@ -1,27 +1,34 @@
 //! A stored clip played through the live recogniser.
 
-use std::sync::Arc;
-
 use crate::clip::{Clip, Span};
-use crate::features::{bones_of_clip, for_each_pose};
+use crate::features::bones_of_clip;
+use crate::kinematics::WorldPose;
 use crate::roles::RoleMap;
-use crate::templates::{TemplateModel, TemplateModelError};
 
-use super::{Detection, Recognizer};
+use super::{Detection, Model, PoseReader, Recognizer, StartError};
 
 /// Everything that the recogniser reports of a clip, pose by pose as it would be live; times from the clip's
-/// beginning. `rest` are the frames that a conversion left at the start.
-pub fn recognize_clip(
-    model: &Arc<TemplateModel>,
+/// beginning. `rest` are the frames that a conversion left at the start; the first pose after them stands in for them.
+pub fn recognize_clip<M: Clone + Into<Model>>(
+    model: &M,
     clip: &Clip,
     roles: &RoleMap,
     rest: &Span,
-) -> Result<Vec<Detection>, TemplateModelError> {
-    let mut recognizer = Recognizer::new(model, bones_of_clip(clip, roles, rest))?;
+) -> Result<Vec<Detection>, StartError> {
+    let model = model.clone().into();
+    let mut recognizer = Recognizer::new(&model, bones_of_clip(clip, roles, rest))?;
     let mut found = Vec::new();
-    for_each_pose(clip, roles, rest, |time_secs, pose| {
-        found.extend_from_slice(recognizer.push(time_secs, pose))
-    });
+    if clip.frames == 0 {
+        return Ok(found);
+    }
+    let mut reader = PoseReader::new(&model, &clip.skeleton, roles)?;
+    let mut world = WorldPose::default();
+    for frame in 0..clip.frames {
+        let shown = if rest.contains(&frame) { rest.end.min(clip.frames - 1) } else { frame };
+        world.set(clip, shown);
+        let time_secs = frame as f64 / clip.rate_hz;
+        found.extend_from_slice(recognizer.push(time_secs, reader.read(&world)));
+    }
     found.extend_from_slice(recognizer.finish());
     Ok(found)
 }

@@ -1,11 +1,10 @@
-//! The template recogniser on a live stream.
-
-use std::sync::Arc;
+//! The recogniser on a live stream, whatever the method.
 
 use crate::classes::ClassId;
-use crate::decode::TickDetection;
-use crate::features::{BoneSet, FeatureStream, KeyPose, Pushed};
-use crate::templates::{TemplateEngine, TemplateModel, TemplateModelError};
+use crate::features::{BoneSet, KeyPose, Pushed};
+
+use super::paths::{SvrdmPath, TemplatePath};
+use super::{Model, Pose, StartError};
 
 /// Detections that one push can complete at most; more than a motion a tick is not a motion.
 const MAX_DETECTIONS_PER_PUSH: usize = 64;
@@ -26,82 +25,119 @@ pub struct Detection {
 }
 
 /// Recognises motions in one performer's stream of poses.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Recognizer {
-    model: Arc<TemplateModel>,
-    features: FeatureStream,
-    engine: TemplateEngine,
-    found: Vec<Detection>,
+    model: Model,
+    path: Path,
+    found: Found,
     now_secs: f64,
 }
 
-impl Clone for Recognizer {
-    /// A copy in the same state; by hand, because a copied vector has room only for what it holds.
-    fn clone(&self) -> Self {
-        let mut found = Vec::with_capacity(MAX_DETECTIONS_PER_PUSH);
-        found.extend_from_slice(&self.found);
-        Self {
-            model: self.model.clone(),
-            features: self.features.clone(),
-            engine: self.engine.clone(),
-            found,
-            now_secs: self.now_secs,
+#[derive(Debug, Clone)]
+enum Path {
+    Templates(Box<TemplatePath>),
+    Svrdm(Box<SvrdmPath>),
+}
+
+/// Detections of the present push, with the time at which they are reported.
+#[derive(Debug)]
+pub(super) struct Found {
+    detections: Vec<Detection>,
+    reported_secs: f64,
+}
+
+impl Found {
+    fn new() -> Self {
+        Self { detections: Vec::with_capacity(MAX_DETECTIONS_PER_PUSH), reported_secs: 0.0 }
+    }
+
+    fn begin(&mut self, reported_secs: f64) {
+        self.detections.clear();
+        self.reported_secs = reported_secs;
+    }
+
+    /// Adds what lies from `start_secs` to `stop_secs` after `origin_secs`.
+    pub(super) fn add(
+        &mut self,
+        class: ClassId,
+        origin_secs: f64,
+        start_secs: f64,
+        stop_secs: f64,
+        score: f64,
+    ) {
+        // The buffer never grows: pushing must not allocate.
+        if self.detections.len() < self.detections.capacity() {
+            self.detections.push(Detection {
+                class,
+                start_secs: origin_secs + start_secs,
+                stop_secs: origin_secs + stop_secs,
+                score,
+                reported_secs: self.reported_secs,
+            });
         }
     }
 }
 
+impl Clone for Found {
+    /// By hand, because a copied vector has room only for what it holds.
+    fn clone(&self) -> Self {
+        let mut copy = Self { reported_secs: self.reported_secs, ..Self::new() };
+        copy.detections.extend_from_slice(&self.detections);
+        copy
+    }
+}
+
 impl Recognizer {
-    /// For a stream that offers `bones`; what the index uses beyond them is left out of every comparison.
+    /// For a stream that offers `bones`; what a template model uses beyond them is left out of every comparison.
     ///
-    /// Fails if the model's parts do not fit together or no bone is left.
-    pub fn new(model: &Arc<TemplateModel>, bones: BoneSet) -> Result<Self, TemplateModelError> {
-        let model = if model.bones.and(bones) == model.bones {
-            model.clone()
-        } else {
-            Arc::new(model.restricted(bones)?)
+    /// Fails if the model's parts do not fit together, or no bone is left of a template model's.
+    pub fn new<M: Clone + Into<Model>>(model: &M, bones: BoneSet) -> Result<Self, StartError> {
+        let model = model.clone().into();
+        let (model, path) = match model {
+            Model::Templates(model) => {
+                let path = TemplatePath::new(&model, bones)?;
+                (Model::Templates(path.model.clone()), Path::Templates(Box::new(path)))
+            }
+            Model::Svrdm(model) => {
+                let path = SvrdmPath::new(&model)?;
+                (Model::Svrdm(model), Path::Svrdm(Box::new(path)))
+            }
         };
-        Ok(Self {
-            features: FeatureStream::new(model.bones, &model.features),
-            engine: TemplateEngine::new(&model)?,
-            found: Vec::with_capacity(MAX_DETECTIONS_PER_PUSH),
-            now_secs: 0.0,
-            model,
-        })
+        Ok(Self { model, path, found: Found::new(), now_secs: 0.0 })
     }
 
     /// The model in use, already without what the stream does not offer.
-    pub fn model(&self) -> &TemplateModel {
+    pub fn model(&self) -> &Model {
         &self.model
     }
 
-    /// Seconds from the end of a motion to its report at the earliest: filters, peak and gate windows, lag.
+    /// Seconds from the end of a motion to its report at the earliest: filters, windows, lag.
     pub fn latency_secs(&self) -> f64 {
-        let features = &self.model.features;
-        // A row stands at its tick's last frame; the tick itself ends one frame later.
-        let filters = (features.look_ahead_frames() - 1) as f64 / features.rate_hz;
-        filters + self.model.decode.look_ahead_ticks(self.model.rule()) as f64 / features.tick_hz()
+        match &self.path {
+            Path::Templates(path) => path.latency_secs(),
+            Path::Svrdm(path) => path.latency_secs(),
+        }
     }
 
     /// Takes the pose at `time_secs` on the stream's clock and returns what it settled, in order of time.
     ///
     /// Poses may come at any rate, also unevenly; late and duplicate ones are ignored. After a gap of more than
     /// [`MAX_GAP_SECS`](crate::features::MAX_GAP_SECS) the stream begins anew. No allocation.
-    pub fn push(&mut self, time_secs: f64, pose: &KeyPose) -> &[Detection] {
-        self.found.clear();
-        if self.features.breaks_at(time_secs) {
+    pub fn push<'p>(&mut self, time_secs: f64, pose: impl Into<Pose<'p>>) -> &[Detection] {
+        self.found.begin(self.now_secs);
+        if self.breaks_at(time_secs) {
             self.end_stretch();
         }
-        let (engine, found) = (&mut self.engine, &mut self.found);
-        let tick_secs = 1.0 / self.model.features.tick_hz();
-        // The first pose of a stretch sets its origin and completes no row: the origin read here is right.
-        let origin_secs = self.features.origin_secs();
-        let pushed = self.features.push(time_secs, pose, &mut |row| {
-            engine.push(row, &mut |d| report(found, d, origin_secs, tick_secs, time_secs));
-        });
+        self.found.reported_secs = time_secs;
+        let (pose, found) = (pose.into(), &mut self.found);
+        let pushed = match &mut self.path {
+            Path::Templates(path) => path.push(time_secs, pose, found),
+            Path::Svrdm(path) => path.push(time_secs, pose, found),
+        };
         if matches!(pushed, Pushed::Taken | Pushed::Restarted) {
             self.now_secs = time_secs;
         }
-        &self.found
+        &self.found.detections
     }
 
     /// Takes poses with their times, in order, and adds what they settled to `out`: the same detections as of
@@ -114,30 +150,22 @@ impl Recognizer {
 
     /// Ends the stream: returns what its last moments still hold. The next push begins a new stream.
     pub fn finish(&mut self) -> &[Detection] {
-        self.found.clear();
+        self.found.begin(self.now_secs);
         self.end_stretch();
-        &self.found
+        &self.found.detections
+    }
+
+    fn breaks_at(&self, time_secs: f64) -> bool {
+        match &self.path {
+            Path::Templates(path) => path.breaks_at(time_secs),
+            Path::Svrdm(path) => path.breaks_at(time_secs),
+        }
     }
 
     fn end_stretch(&mut self) {
-        let (engine, found, now_secs) = (&mut self.engine, &mut self.found, self.now_secs);
-        let tick_secs = 1.0 / self.model.features.tick_hz();
-        let origin_secs = self.features.origin_secs();
-        let mut out = |d: TickDetection| report(found, d, origin_secs, tick_secs, now_secs);
-        self.features.finish(&mut |row| engine.push(row, &mut out));
-        engine.finish(&mut out);
-    }
-}
-
-fn report(found: &mut Vec<Detection>, d: TickDetection, origin_secs: f64, tick_secs: f64, now_secs: f64) {
-    // The buffer never grows: pushing must not allocate.
-    if found.len() < found.capacity() {
-        found.push(Detection {
-            class: d.class,
-            start_secs: origin_secs + d.start as f64 * tick_secs,
-            stop_secs: origin_secs + d.stop as f64 * tick_secs,
-            score: d.score,
-            reported_secs: now_secs,
-        });
+        match &mut self.path {
+            Path::Templates(path) => path.end_stretch(&mut self.found),
+            Path::Svrdm(path) => path.end_stretch(&mut self.found),
+        }
     }
 }

@@ -15,6 +15,7 @@
 //! Real-time contract: construction allocates and may fail with a reason; nothing that comes after allocates, locks
 //! or fails. Memory does not grow with the stream.
 
+mod compact;
 pub mod edr;
 mod engine;
 mod extraction;

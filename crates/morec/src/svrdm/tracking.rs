@@ -257,7 +257,8 @@ impl SegmentTracking {
                 rival.score > found.score && rival.overlaps(found, self.overlap)
             };
             // Of those still to come the next overlaps most.
-            rival(self.chunks, self.columns[2][length].confidence) || rival(self.chunks + 1, self.most[length])
+            rival(self.chunks, self.columns[2][length].confidence)
+                || rival(self.chunks + 1, self.most[length])
         })
     }
 

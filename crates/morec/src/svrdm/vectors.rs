@@ -120,7 +120,9 @@ impl Directions {
         let mut taken = [false; MAX_DIM];
         for (j, share) in self.shares.iter_mut().enumerate() {
             let free = (0..values.len()).filter(|i| !taken[*i]);
-            let Some(best) = free.reduce(|a, b| if values[b] > values[a] { b } else { a }) else { return false };
+            let Some(best) = free.reduce(|a, b| if values[b] > values[a] { b } else { a }) else {
+                return false;
+            };
             taken[best] = true;
             *share = values[best].max(0.0).sqrt() / total;
             for i in 0..self.dim {

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
 
 use morec::index::{INDEX_VERSION, IndexError, MotionIndex, Provenance};
+use morec::live::Model;
 use morec::roles::Role;
 use morec::synth::{DatabaseSpec, Person, Script, Side, Take};
 use morec::train::TrainParams;
@@ -21,7 +22,7 @@ fn index() -> &'static MotionIndex {
             DatabaseSpec { people: 2, repetitions: 1, rate_hz: 30.0, classes, ..DatabaseSpec::default() };
         let model = made::train(&spec, TrainParams { max_negatives: 6, ..TrainParams::default() });
         MotionIndex {
-            model: Arc::new(model),
+            model: model.into(),
             roles: BTreeMap::from([
                 (Role::Hips, "Hips".to_owned()),
                 (Role::LeftHand, "ma\"in\tgauche".to_owned()),
@@ -133,8 +134,9 @@ fn stream() -> Take {
 /// What `index` recognises in it: class, start, stop, score; times in hundredths of a second.
 fn recognised(index: &MotionIndex) -> Vec<(String, f64, f64, f64)> {
     let (bones, poses) = made::poses(&stream());
-    let found = inline(&index.model, bones, &poses);
-    let name = |d: &morec::live::Detection| index.model.classes[d.class.index()].name.clone();
+    let Model::Templates(model) = &index.model else { panic!("another method") };
+    let found = inline(model, bones, &poses);
+    let name = |d: &morec::live::Detection| index.model.class_name(d.class).to_owned();
     found.iter().map(|d| (name(d), d.start_secs, d.stop_secs, d.score)).collect()
 }
 
@@ -174,7 +176,8 @@ fn write_index_of_this_version() {
 fn figures_no_training_gives_are_refused() {
     let refused = |change: &dyn Fn(&mut morec::templates::TemplateModel)| {
         let mut index = index().clone();
-        change(Arc::make_mut(&mut index.model));
+        let Model::Templates(model) = &mut index.model else { panic!("another method") };
+        change(Arc::make_mut(model));
         match MotionIndex::from_bytes(&index.to_bytes().unwrap()) {
             Err(IndexError::Content(message)) => assert!(!message.is_empty()),
             other => panic!("opened: {:?}", other.map(|_| ())),

@@ -1,0 +1,156 @@
+//! An index of templates, as words and tables.
+
+use std::collections::BTreeMap;
+
+use crate::features::{Rows, row_dim};
+use crate::templates::{Exemplars, SHAPE_ROWS, Sample, Symmetric, TemplateModel, Verifier};
+
+use super::manifest::{FORMAT, Manifest, VerifierWords};
+use super::read::class_id;
+use super::tensors::{Tables, Tensor};
+use super::{INDEX_VERSION, IndexError, MotionIndex};
+
+/// What is written in words of `model`.
+pub(super) fn manifest(model: &TemplateModel, index: &MotionIndex) -> Manifest {
+    Manifest {
+        format: FORMAT.to_owned(),
+        version: INDEX_VERSION,
+        method: "templates".to_owned(),
+        checksum: 0,
+        classes: model.classes.clone(),
+        bones: model.bones,
+        features: model.features.clone(),
+        decode: model.decode.clone(),
+        threshold: model.threshold,
+        verifier: model.verifier.as_ref().map(|v| VerifierWords {
+            reach: v.reach,
+            bar: v.bar,
+            generic: v.generic.clone(),
+        }),
+        roles: index.roles.clone(),
+        provenance: index.provenance.clone(),
+    }
+}
+
+/// What is written in tables of `model`.
+pub(super) fn tensors(model: &TemplateModel) -> BTreeMap<String, Tensor> {
+    let dim = model.ridged.dim();
+    let step = model.step.as_deref();
+    let samples: Vec<&Rows> = model.samples.iter().map(|s| &s.rows).collect();
+    let negatives: Vec<&Rows> = model.negatives.iter().collect();
+    let table = |tables: &[&Rows]| Tensor::of_rows(tables.iter().flat_map(|r| r.iter()), dim, step);
+    let lengths = |tables: &[&Rows]| Tensor::of_u32(tables.iter().map(|r| r.len() as u32));
+    let mut tensors = BTreeMap::from([
+        ("metric.ridged".to_owned(), Tensor::of_f32(model.ridged.packed())),
+        ("metric.total".to_owned(), Tensor::of_f32(model.total.packed())),
+        ("negatives.lengths".to_owned(), lengths(&negatives)),
+        ("negatives.rows".to_owned(), table(&negatives)),
+        ("templates.classes".to_owned(), Tensor::of_u32(model.samples.iter().map(|s| u32::from(s.class.0)))),
+        ("templates.lengths".to_owned(), lengths(&samples)),
+        ("templates.rows".to_owned(), table(&samples)),
+    ]);
+    if let Some(step) = step {
+        tensors.insert("rows.step".to_owned(), Tensor::of_f32(step));
+    }
+    if let Some(verifier) = &model.verifier {
+        tensors.extend(exemplars(&verifier.classes, dim, step));
+    }
+    tensors
+}
+
+/// All classes' exemplars, one class after the other.
+fn exemplars(classes: &[Exemplars], dim: usize, step: Option<&[f32]>) -> [(String, Tensor); 6] {
+    let flat =
+        |values: &dyn Fn(&Exemplars) -> Vec<f32>| -> Vec<f32> { classes.iter().flat_map(values).collect() };
+    let shapes = Tensor::of_rows(classes.iter().flat_map(|c| c.shapes.iter()), dim, step);
+    [
+        ("verifier.beside".to_owned(), Tensor::of_f32(&flat(&|c| c.beside.concat()))),
+        ("verifier.classes".to_owned(), Tensor::of_u32(classes.iter().map(|c| u32::from(c.class.0)))),
+        ("verifier.counts".to_owned(), Tensor::of_u32(classes.iter().map(|c| c.len() as u32))),
+        ("verifier.shapes".to_owned(), shapes),
+        ("verifier.sharpness".to_owned(), Tensor::of_f32(&flat(&|c| vec![c.sharpness]))),
+        ("verifier.weights".to_owned(), Tensor::of_f32(&flat(&|c| c.weights.clone()))),
+    ]
+}
+
+/// The model of an opened file.
+pub(super) fn read(manifest: &Manifest, tables: &Tables) -> Result<TemplateModel, IndexError> {
+    let dim = row_dim(manifest.bones);
+    let step = if tables.has("rows.step") { Some(tables.f32s("rows.step")?) } else { None };
+    if let Some(found) = step.as_ref().map(Vec::len).filter(|found| *found != dim) {
+        return Err(IndexError::Content(format!(
+            "tensor \"rows.step\": expected {dim} values, found {found}"
+        )));
+    }
+    let lengths = tables.u32s("templates.lengths")?;
+    let classes = tables.u32s("templates.classes")?;
+    if classes.len() != lengths.len() {
+        let message = format!("{} templates, classes for {}", lengths.len(), classes.len());
+        return Err(IndexError::Content(message));
+    }
+    let rows = tables.pieces("templates.rows", dim, &lengths, step.as_deref())?;
+    let samples: Result<_, IndexError> =
+        rows.into_iter().zip(classes).map(|(rows, c)| Ok(Sample { class: class_id(c)?, rows })).collect();
+    let model = TemplateModel {
+        features: manifest.features.clone(),
+        bones: manifest.bones,
+        decode: manifest.decode.clone(),
+        classes: manifest.classes.clone(),
+        samples: samples?,
+        negatives: tables.pieces(
+            "negatives.rows",
+            dim,
+            &tables.u32s("negatives.lengths")?,
+            step.as_deref(),
+        )?,
+        ridged: symmetric(tables, "metric.ridged", dim)?,
+        total: symmetric(tables, "metric.total", dim)?,
+        threshold: manifest.threshold,
+        verifier: verifier(manifest, tables, dim, step.as_deref())?,
+        step,
+    };
+    model.check().map_err(|e| IndexError::Content(e.to_string()))?;
+    Ok(model)
+}
+
+fn verifier(
+    manifest: &Manifest,
+    tables: &Tables,
+    dim: usize,
+    step: Option<&[f32]>,
+) -> Result<Option<Verifier>, IndexError> {
+    let Some(words) = &manifest.verifier else { return Ok(None) };
+    let counts = tables.u32s("verifier.counts")?;
+    let rows: Option<Vec<u32>> = counts.iter().map(|n| n.checked_mul(SHAPE_ROWS as u32)).collect();
+    let rows = rows.ok_or_else(|| IndexError::Content("verifier.counts: too many exemplars".to_owned()))?;
+    let shapes = tables.pieces("verifier.shapes", dim, &rows, step)?;
+    let beside = tables.pieces("verifier.beside", 4, &counts, None)?;
+    let weights = tables.pieces("verifier.weights", 1, &counts, None)?;
+    let (numbers, sharpness) = (tables.u32s("verifier.classes")?, tables.f32s("verifier.sharpness")?);
+    if numbers.len() != counts.len() || sharpness.len() != counts.len() {
+        return Err(IndexError::Content(
+            "the verifier's tables differ in their number of classes".to_owned(),
+        ));
+    }
+    let mut classes = Vec::with_capacity(counts.len());
+    for (((shapes, beside), weights), (number, sharpness)) in
+        shapes.into_iter().zip(beside).zip(weights).zip(numbers.into_iter().zip(sharpness))
+    {
+        let beside = beside.values().as_chunks::<4>().0.to_vec();
+        let (class, weights) = (class_id(number)?, weights.values().to_vec());
+        classes.push(Exemplars { class, shapes, beside, weights, sharpness });
+    }
+    let VerifierWords { reach, bar, generic } = words.clone();
+    Ok(Some(Verifier { reach, bar, generic, classes }))
+}
+
+fn symmetric(tables: &Tables, name: &str, dim: usize) -> Result<Symmetric, IndexError> {
+    let packed = tables.f32s(name)?;
+    let found = packed.len();
+    Symmetric::from_packed(dim, packed).ok_or_else(|| {
+        IndexError::Content(format!(
+            "tensor {name:?}: expected {} values, found {found}",
+            dim * (dim + 1) / 2
+        ))
+    })
+}

@@ -1,0 +1,83 @@
+//! What an index recognises with, whatever the method.
+
+use std::sync::Arc;
+
+use crate::classes::{ClassId, ClassInfo};
+use crate::pivots::UnplayedRoot;
+use crate::svrdm::SvrdmModel;
+use crate::templates::{TemplateModel, TemplateModelError};
+
+/// A trained model of any method. Cheap to copy: the tables are shared.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Model {
+    /// Templates matched elastically, over the places of joints.
+    Templates(Arc<TemplateModel>),
+    /// The method of the thesis, over the rotations of joints.
+    Svrdm(Arc<SvrdmModel>),
+}
+
+impl Model {
+    /// What `--method` and an index's manifest call the method.
+    pub fn method(&self) -> &'static str {
+        match self {
+            Model::Templates(_) => "templates",
+            Model::Svrdm(_) => "svrdm",
+        }
+    }
+
+    /// The classes; a [`ClassId`] is an index into this.
+    pub fn classes(&self) -> &[ClassInfo] {
+        match self {
+            Model::Templates(model) => &model.classes,
+            Model::Svrdm(model) => &model.classes,
+        }
+    }
+
+    /// The name of a class of this model.
+    pub fn class_name(&self, class: ClassId) -> &str {
+        &self.classes()[class.index()].name
+    }
+
+    /// Whether poses must say how joints are turned; where they are is enough otherwise.
+    pub fn needs_rotations(&self) -> bool {
+        matches!(self, Model::Svrdm(_))
+    }
+}
+
+impl From<Arc<TemplateModel>> for Model {
+    fn from(model: Arc<TemplateModel>) -> Self {
+        Model::Templates(model)
+    }
+}
+
+impl From<TemplateModel> for Model {
+    fn from(model: TemplateModel) -> Self {
+        Model::Templates(Arc::new(model))
+    }
+}
+
+impl From<Arc<SvrdmModel>> for Model {
+    fn from(model: Arc<SvrdmModel>) -> Self {
+        Model::Svrdm(model)
+    }
+}
+
+impl From<SvrdmModel> for Model {
+    fn from(model: SvrdmModel) -> Self {
+        Model::Svrdm(Arc::new(model))
+    }
+}
+
+/// Why a stream cannot be recognised with a model.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum StartError {
+    /// The model's parts do not fit together, or the stream shows none of its bones.
+    #[error(transparent)]
+    Templates(#[from] TemplateModelError),
+    /// The model's parts do not fit together.
+    #[error(transparent)]
+    Svrdm(#[from] crate::svrdm::ModelError),
+    /// The skeleton lacks the pivot that all others hang from.
+    #[error(transparent)]
+    Root(#[from] UnplayedRoot),
+}

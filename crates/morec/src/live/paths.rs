@@ -1,0 +1,119 @@
+//! From poses to detections by each method: what a [`Recognizer`](super::Recognizer) runs inside.
+
+use std::sync::Arc;
+
+use crate::decode::TickDetection;
+use crate::features::{BoneSet, FeatureStream, Pushed};
+use crate::pivots::PoseStream;
+use crate::svrdm::{FrameDetection, SvrdmEngine, SvrdmModel};
+use crate::templates::{TemplateEngine, TemplateModel};
+
+use super::recognizer::Found;
+use super::{Pose, StartError};
+
+/// Feature rows and templates.
+#[derive(Debug, Clone)]
+pub(super) struct TemplatePath {
+    pub(super) model: Arc<TemplateModel>,
+    features: FeatureStream,
+    engine: TemplateEngine,
+}
+
+impl TemplatePath {
+    pub(super) fn new(model: &Arc<TemplateModel>, bones: BoneSet) -> Result<Self, StartError> {
+        let model = if model.bones.and(bones) == model.bones {
+            model.clone()
+        } else {
+            Arc::new(model.restricted(bones)?)
+        };
+        let features = FeatureStream::new(model.bones, &model.features);
+        Ok(Self { features, engine: TemplateEngine::new(&model)?, model })
+    }
+
+    pub(super) fn latency_secs(&self) -> f64 {
+        let features = &self.model.features;
+        // A row stands at its tick's last frame; the tick itself ends one frame later.
+        let filters = (features.look_ahead_frames() - 1) as f64 / features.rate_hz;
+        filters + self.model.decode.look_ahead_ticks(self.model.rule()) as f64 / features.tick_hz()
+    }
+
+    pub(super) fn breaks_at(&self, time_secs: f64) -> bool {
+        self.features.breaks_at(time_secs)
+    }
+
+    pub(super) fn push(&mut self, time_secs: f64, pose: Pose<'_>, found: &mut Found) -> Pushed {
+        let tick_secs = 1.0 / self.model.features.tick_hz();
+        // The first pose of a stretch sets its origin and completes no row: the origin read here is right.
+        let origin_secs = self.features.origin_secs();
+        let engine = &mut self.engine;
+        self.features.push(time_secs, pose.key, &mut |row| {
+            engine.push(row, &mut |d| {
+                found.add(
+                    d.class,
+                    origin_secs,
+                    d.start as f64 * tick_secs,
+                    d.stop as f64 * tick_secs,
+                    d.score,
+                );
+            });
+        })
+    }
+
+    pub(super) fn end_stretch(&mut self, found: &mut Found) {
+        let tick_secs = 1.0 / self.model.features.tick_hz();
+        let origin_secs = self.features.origin_secs();
+        let engine = &mut self.engine;
+        let mut out = |d: TickDetection| {
+            found.add(d.class, origin_secs, d.start as f64 * tick_secs, d.stop as f64 * tick_secs, d.score);
+        };
+        self.features.finish(&mut |row| engine.push(row, &mut out));
+        engine.finish(&mut out);
+    }
+}
+
+/// Pose rows and the stages of the thesis.
+#[derive(Debug, Clone)]
+pub(super) struct SvrdmPath {
+    rows: PoseStream,
+    engine: SvrdmEngine,
+}
+
+impl SvrdmPath {
+    pub(super) fn new(model: &Arc<SvrdmModel>) -> Result<Self, StartError> {
+        let engine = SvrdmEngine::new(model)?;
+        Ok(Self { rows: PoseStream::new(&model.pivots, &model.pose), engine })
+    }
+
+    /// A segment is compared with those that end a chunk later, and a row waits for the frame after it.
+    pub(super) fn latency_secs(&self) -> f64 {
+        let model = self.engine.model();
+        (model.params.chunk_frames + 1) as f64 / model.rate_hz()
+    }
+
+    pub(super) fn breaks_at(&self, time_secs: f64) -> bool {
+        self.rows.breaks_at(time_secs)
+    }
+
+    pub(super) fn push(&mut self, time_secs: f64, pose: Pose<'_>, found: &mut Found) -> Pushed {
+        let frame_secs = 1.0 / self.engine.model().rate_hz();
+        let origin_secs = self.rows.origin_secs();
+        let engine = &mut self.engine;
+        let pivots = pose.pivots.copied().unwrap_or_default();
+        self.rows.push(time_secs, &pivots, &mut |row| {
+            engine.push(row, &mut |d| add_frames(found, d, origin_secs, frame_secs));
+        })
+    }
+
+    pub(super) fn end_stretch(&mut self, found: &mut Found) {
+        let frame_secs = 1.0 / self.engine.model().rate_hz();
+        let origin_secs = self.rows.origin_secs();
+        let engine = &mut self.engine;
+        let mut out = |d: FrameDetection| add_frames(found, d, origin_secs, frame_secs);
+        self.rows.finish(&mut |row| engine.push(row, &mut out));
+        engine.finish(&mut out);
+    }
+}
+
+fn add_frames(found: &mut Found, d: FrameDetection, origin_secs: f64, frame_secs: f64) {
+    found.add(d.class, origin_secs, d.start as f64 * frame_secs, d.stop as f64 * frame_secs, d.score);
+}

@@ -1,0 +1,59 @@
+//! One instant of a stream, as recognition takes it.
+
+use crate::clip::Skeleton;
+use crate::features::KeyPose;
+use crate::kinematics::WorldPose;
+use crate::pivots::{PivotMap, PivotPose};
+use crate::roles::RoleMap;
+
+use super::{Model, StartError};
+
+/// Where the role joints are, and how the model's pivots are turned if it asks for that.
+#[derive(Debug, Clone, Copy)]
+pub struct Pose<'p> {
+    /// Places of the role joints.
+    pub key: &'p KeyPose,
+    /// Rotations of the pivots; a model that [needs them](Model::needs_rotations) recognises nothing without.
+    pub pivots: Option<&'p PivotPose>,
+}
+
+impl<'p> From<&'p KeyPose> for Pose<'p> {
+    fn from(key: &'p KeyPose) -> Self {
+        Self { key, pivots: None }
+    }
+}
+
+/// Takes from a posed skeleton what a model's recogniser needs.
+#[derive(Debug, Clone)]
+pub struct PoseReader {
+    roles: RoleMap,
+    pivots: Option<PivotMap>,
+    key: KeyPose,
+    pivot: PivotPose,
+}
+
+impl PoseReader {
+    /// For poses of `skeleton`, whose joints play `roles`. Fails if nothing plays a pivot that the model cannot do
+    /// without.
+    pub fn new(model: &Model, skeleton: &Skeleton, roles: &RoleMap) -> Result<Self, StartError> {
+        let pivots = match model {
+            Model::Templates(_) => None,
+            Model::Svrdm(model) => Some(PivotMap::resolve(&model.pivots, skeleton, roles)?),
+        };
+        Ok(Self { roles: roles.clone(), pivots, key: KeyPose::default(), pivot: PivotPose::default() })
+    }
+
+    /// Names of the pivots that the skeleton lacks.
+    pub fn missing_pivots(&self) -> &[String] {
+        self.pivots.as_ref().map_or(&[], |pivots| pivots.missing())
+    }
+
+    /// The pose, valid until the next is read. No allocation.
+    pub fn read(&mut self, world: &WorldPose) -> Pose<'_> {
+        self.key = KeyPose::of(world, &self.roles);
+        if let Some(pivots) = &self.pivots {
+            self.pivot = pivots.pose(world);
+        }
+        Pose { key: &self.key, pivots: self.pivots.is_some().then_some(&self.pivot) }
+    }
+}

@@ -1,0 +1,31 @@
+//! A model in the precision of its file, so that what was trained is what will be read.
+
+use crate::pca::Pca;
+
+use super::tree::{Node, Tree};
+use super::{ModelError, SvrdmModel};
+
+impl SvrdmModel {
+    /// This model with every table rounded to single precision, as an index file keeps it. What is judged in
+    /// training is then what recognises later.
+    pub fn compact(&self) -> Result<Self, ModelError> {
+        let invalid = |e: &dyn std::fmt::Display| ModelError::Value(e.to_string());
+        let axes = (0..self.pca.dims()).flat_map(|i| single(self.pca.axis(i))).collect();
+        let (mean, eigenvalues) = (single(self.pca.mean()), single(self.pca.eigenvalues()));
+        let pca = Pca::from_parts(mean, axes, eigenvalues, self.pca.rows()).map_err(|e| invalid(&e))?;
+        let mut parts = self.tree.parts().clone();
+        parts.vectors = single(&parts.vectors);
+        for node in &mut parts.nodes {
+            if let Node::Branch(branch) = node {
+                branch.points.iter_mut().for_each(|p| *p = p.map(|v| f64::from(v as f32)));
+                branch.weights.iter_mut().for_each(|w| *w = single(w));
+            }
+        }
+        let tree = Tree::new(parts).map_err(|e| invalid(&e))?;
+        Ok(Self { pca, tree, signs: single(&self.signs), ..self.clone() })
+    }
+}
+
+fn single(values: &[f64]) -> Vec<f64> {
+    values.iter().map(|v| f64::from(*v as f32)).collect()
+}
