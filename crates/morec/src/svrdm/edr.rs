@@ -155,7 +155,8 @@ impl Edr {
 
     /// The path of least `cost − tilt · steps`.
     fn tilted(&mut self, r: &[f32], s: &[f32], tilt: f64) -> Path {
-        let (epsilon, value) = (self.epsilon, |path: Path| f64::from(path.cost) - tilt * f64::from(path.steps));
+        let (epsilon, value) =
+            (self.epsilon, |path: Path| f64::from(path.cost) - tilt * f64::from(path.steps));
         let [above, here] = &mut self.paths;
         let [above_value, here_value] = &mut self.values;
         for i in 0..=r.len() {

@@ -56,7 +56,8 @@ impl SvrdmEngine {
         let most = (params.min_chunks..=params.max_chunks).map(|chunks| {
             let classes = (0..model.classes.len()).map(|class| ClassId(class as u16));
             // A hair more, lest the exponential's rounding makes a bound of what is none.
-            let bounds = classes.map(|class| scoring.most(class, chunks * params.chunk_frames) * (1.0 + 1e-9));
+            let bounds =
+                classes.map(|class| scoring.most(class, chunks * params.chunk_frames) * (1.0 + 1e-9));
             bounds.fold(0.0, f64::max)
         });
         Ok(Self {

@@ -43,7 +43,8 @@ impl ConfidenceMap {
             let at = (params.max_chunks - window.chunks()) * starts + window.start as usize;
             (values[at], kinds[at]) = (cell.confidence, cell.class.index());
         }
-        let rows = (params.min_chunks..=params.max_chunks).rev().map(|k| format!("{:.2} s", k as f64 * chunk_secs));
+        let rows =
+            (params.min_chunks..=params.max_chunks).rev().map(|k| format!("{:.2} s", k as f64 * chunk_secs));
         HeatMap::new(title, starts, values)
             .axes("start, s", "length")
             .names(rows.collect(), vec![])
