@@ -5,6 +5,8 @@
 
 #[path = "it/made.rs"]
 mod made;
+#[path = "it/thesis.rs"]
+mod thesis;
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc, reset_violation_count, violation_count};
 use morec::features::MAX_GAP_SECS;
@@ -12,6 +14,7 @@ use morec::live::Recognizer;
 use morec::pca::{Keep, Moments, Pca};
 use morec::pivots::{PivotMap, PivotSet, PoseParams, PoseStream, for_each_pivot_pose};
 use morec::roles::RoleMap;
+use morec::svrdm::SvrdmEngine;
 use morec::synth::{Person, Script, Side};
 
 #[global_allocator]
@@ -81,4 +84,24 @@ fn pose_rows_and_their_reduction_take_no_memory() {
     });
     assert_eq!(allocations, 0);
     assert!(rows > 2 * clip.frames - 4, "{rows} rows of {} frames at half the rate", clip.frames);
+}
+
+#[test]
+fn the_thesiss_stages_take_no_memory() {
+    let reference = thesis::reference();
+    let (rows, model) = (reference.rows(), reference.model(&reference.models[0]));
+    let mut engine = SvrdmEngine::new(&model).unwrap().clone();
+    let spoilt = vec![f32::NAN; rows[0].len()];
+    let mut found = 0;
+    let allocations = allocations(|| {
+        for row in rows.iter().chain([&spoilt]).chain(&rows) {
+            engine.push(row, &mut |_| found += 1);
+        }
+        engine.finish(&mut |_| found += 1);
+        for row in &rows {
+            engine.push(row, &mut |_| found += 1);
+        }
+    });
+    assert_eq!(allocations, 0);
+    assert!(found >= 20, "too little happened to prove anything: {found} detections");
 }

@@ -56,7 +56,7 @@ impl SegmentScoring {
             normalisation: model.params.normalisation,
             spread: model.params.prior_spread,
             min_confidence: model.params.min_confidence,
-            rate_hz: model.rate_hz,
+            rate_hz: model.rate_hz(),
         })
     }
 
@@ -98,5 +98,19 @@ impl SegmentScoring {
         }
         of.nearest = nearest;
         least.min(1.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn confidence_is_the_equation() {
+        // A perfect match of mean length; the middle of the sigmoid; one deviation too long.
+        assert!((confidence(0.0, 1.5, 1.5, 0.25) - 1.0).abs() < 1e-6);
+        assert!((confidence(0.5, 1.5, 1.5, 0.25) - 0.55).abs() < 1e-12);
+        assert!((confidence(0.5, 1.875, 1.5, 0.25) - 0.55 * (-0.5f64).exp()).abs() < 1e-12);
+        assert!((confidence(1.0, 1.5, 1.5, 0.25) - 0.1).abs() < 1e-6);
     }
 }

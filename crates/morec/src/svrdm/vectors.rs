@@ -171,3 +171,95 @@ find_in!(find_8, 8);
 find_in!(find_16, 16);
 find_in!(find_32, 32);
 find_in!(find_64, 64);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::DMatrix;
+    use proptest::prelude::*;
+
+    /// Rows that go mostly along the first coordinates, less along each after it.
+    fn rows(dim: usize) -> impl Strategy<Value = Vec<f32>> {
+        prop::collection::vec(prop::collection::vec(-1.0f32..1.0, dim), dim + 2..dim + 30).prop_map(|rows| {
+            let scaled = |row: Vec<f32>| row.into_iter().enumerate().map(|(i, v)| v / (1.0 + 2.0 * i as f32));
+            rows.into_iter().flat_map(scaled).collect()
+        })
+    }
+
+    fn any_rows() -> impl Strategy<Value = (usize, Vec<f32>)> {
+        prop_oneof![2usize..=6, 15usize..=17, Just(40)].prop_flat_map(|dim| (Just(dim), rows(dim)))
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 64, ..Default::default() })]
+
+        #[test]
+        fn directions_are_the_singular_vectors((dim, rows) in any_rows(), own_mean in any::<bool>()) {
+            let centring = if own_mean { Centring::Segment } else { Centring::Database };
+            let mut directions = Directions::new(2, dim);
+            prop_assert!(directions.find(&Gram::of_rows(&rows, dim, 16), centring));
+            let mut matrix = DMatrix::from_row_iterator(rows.len() / dim, dim, rows.iter().map(|v| f64::from(*v)));
+            if own_mean {
+                let mean = matrix.row_mean();
+                matrix.row_iter_mut().for_each(|mut row| row -= &mean);
+            }
+            // Of the rows themselves, not of their products.
+            let found = matrix.svd(false, true);
+            let (values, turned) = (&found.singular_values, found.v_t.as_ref().unwrap());
+            prop_assume!(values[0] - values[1] > 0.02 && values[1] - values[2.min(dim - 1)] > 0.02 || dim == 2);
+            for j in 0..2 {
+                let share = values[j] / values.sum();
+                prop_assert!((directions.shares()[j] - share).abs() < 1e-6, "{} {share}", directions.shares()[j]);
+                let along: f64 = directions.vector(j).iter().zip(turned.row(j).iter()).map(|(a, b)| a * b).sum();
+                prop_assert!(along.abs() > 1.0 - 1e-8, "{along}");
+            }
+        }
+
+        #[test]
+        fn signs_are_put_right_whatever_they_were((dim, rows) in any_rows(), flip in any::<[bool; 2]>()) {
+            let mut directions = Directions::new(2, dim);
+            prop_assert!(directions.find(&Gram::of_rows(&rows, dim, 16), Centring::Database));
+            let mut flipped = directions.clone();
+            for j in (0..2).filter(|j| flip[*j]) {
+                flipped.vectors[j * dim..][..dim].iter_mut().for_each(|v| *v = -*v);
+            }
+            let signs: Vec<f64> = (0..2 * dim).map(|i| 1.0 / (1.0 + i as f64)).collect();
+            directions.fix_signs(&signs);
+            flipped.fix_signs(&signs);
+            prop_assert_eq!(&directions, &flipped);
+            for j in 0..2 {
+                let side: f64 = directions.vector(j).iter().zip(&signs[j * dim..]).map(|(a, b)| a * b).sum();
+                prop_assert!(side >= 0.0);
+            }
+        }
+    }
+
+    #[test]
+    fn scalings_are_the_printed_ones() {
+        // Two rows at right angles, lengths 3 and 1: singular values 3 and 1.
+        let gram = Gram::of_rows(&[3.0, 0.0, 0.0, 1.0], 2, 16);
+        let mut directions = Directions::new(2, 2);
+        assert!(directions.find(&gram, Centring::Database));
+        directions.fix_signs(&[1.0, 0.0, 0.0, -1.0]);
+        let mut out = [0.0; 4];
+        directions.feature(Scaling::SingularShare, &mut out);
+        assert_eq!(out, [0.75, 0.0, 0.0, -0.25]);
+        directions.feature(Scaling::UnitRange, &mut out);
+        assert_eq!(out, [1.0, 0.5, 0.5, 0.0]);
+        let rows = [[3.0f32, 0.0], [0.0, 1.0]];
+        let mut profile = [0.0; 2];
+        directions.profile(rows.iter().map(|r| &r[..]), &gram, Centring::Database, &mut profile);
+        assert_eq!(profile, [3.0, 0.0]);
+        directions.profile(rows.iter().map(|r| &r[..]), &gram, Centring::Segment, &mut profile);
+        assert_eq!(profile, [1.5, -1.5]);
+    }
+
+    #[test]
+    fn no_motion_and_no_number_have_no_direction() {
+        let mut directions = Directions::new(1, 3);
+        assert!(!directions.find(&Gram::of_rows(&[0.0; 12], 3, 16), Centring::Database));
+        assert!(!directions.find(&Gram::of_rows(&[0.5; 12], 3, 16), Centring::Segment));
+        let spoilt = [0.1, f32::NAN, 0.2, 0.0, f32::INFINITY, 0.0];
+        assert!(!directions.find(&Gram::of_rows(&spoilt, 3, 16), Centring::Database));
+    }
+}

@@ -11,3 +11,5 @@ mod index_file;
 mod kit;
 mod layers;
 mod made;
+mod svrdm;
+mod thesis;
