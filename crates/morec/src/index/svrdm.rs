@@ -86,7 +86,8 @@ pub(super) fn read(manifest: &SvrdmManifest, tables: &Tables) -> Result<SvrdmMod
     let classes: Result<Vec<ClassId>, _> =
         tables.u32s("profiles.classes")?.into_iter().map(class_id).collect();
     let lengths = tables.u32s("profiles.lengths")?.into_iter().map(|n| n as usize).collect();
-    let profiles = Profiles { values: tables.f32s("profiles.values")?, lengths, classes: classes? };
+    let width = manifest.params.comparison.width(pca.dims());
+    let profiles = Profiles { width, values: tables.f32s("profiles.values")?, lengths, classes: classes? };
     let dim = manifest.params.eigenvectors.saturating_mul(pca.dims());
     let nodes = nodes(manifest, tables)?;
     let parts = Parts { dim, vectors: double("tree.vectors")?, nodes };

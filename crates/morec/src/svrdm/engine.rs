@@ -139,7 +139,7 @@ impl SegmentRecogniser {
         let profile = self.extraction.profile(segment, chunks.last_rows(segment.frames()));
         let mut best = Cell::NOTHING;
         for candidate in self.candidates.iter() {
-            let confidence = self.scoring.score(candidate.class, profile);
+            let confidence = self.scoring.score(candidate.class, profile, segment.frames());
             if confidence > best.confidence {
                 best = Cell { class: candidate.class, confidence };
             }

@@ -1,6 +1,6 @@
 //! Segments to feature vectors and profiles (thesis, §4.6.4).
 
-use super::{Centring, Directions, Gram, Scaling, SvrdmParams};
+use super::{Centring, Comparison, Directions, Gram, Scaling, SvrdmParams};
 
 /// Feature vector extraction: a segment's `AᵀA` in; its feature vector and, where asked for, its profile out.
 ///
@@ -9,6 +9,7 @@ use super::{Centring, Directions, Gram, Scaling, SvrdmParams};
 pub struct FeatureExtraction {
     scaling: Scaling,
     centring: Centring,
+    comparison: Comparison,
     signs: Vec<f64>,
     directions: Directions,
     feature: Vec<f64>,
@@ -22,10 +23,11 @@ impl FeatureExtraction {
         Self {
             scaling: params.scaling,
             centring: params.centring,
+            comparison: params.comparison,
             signs: signs.to_vec(),
             directions: Directions::new(params.eigenvectors, dim),
             feature: vec![0.0; signs.len()],
-            profile: vec![0.0; params.max_frames()],
+            profile: vec![0.0; params.comparison.rows(params.max_frames()) * params.comparison.width(dim)],
         }
     }
 
@@ -45,14 +47,24 @@ impl FeatureExtraction {
         &self.directions
     }
 
-    /// The profile of the segment that the last feature vector is of: one value for each of its `rows`. Allocates
-    /// only for segments longer than the parameters' longest, as training may have them. O(rows · r).
+    /// The profile of the segment that the last feature vector is of: a value for each of its `rows`, or some of them
+    /// whole ([`Comparison`]). Allocates only for segments longer than the parameters' longest, as training may have
+    /// them. O(rows · r).
     pub fn profile<'a>(&mut self, segment: &Gram, rows: impl Iterator<Item = &'a [f32]>) -> &[f32] {
-        if self.profile.len() < segment.frames() {
-            self.profile.resize(segment.frames(), 0.0);
+        let width = self.comparison.width(segment.dim());
+        let values = self.comparison.rows(segment.frames()) * width;
+        if self.profile.len() < values {
+            self.profile.resize(values, 0.0);
         }
-        let out = &mut self.profile[..segment.frames()];
-        self.directions.profile(rows, segment, self.centring, out);
+        let out = &mut self.profile[..values];
+        match self.comparison {
+            Comparison::Profiles => self.directions.profile(rows, segment, self.centring, out),
+            Comparison::Rows { every } => {
+                for (kept, row) in out.chunks_exact_mut(width).zip(rows.step_by(every)) {
+                    kept.copy_from_slice(row);
+                }
+            }
+        }
         out
     }
 }

@@ -34,23 +34,35 @@ pub struct SvrdmModel {
     pub epsilon: f32,
 }
 
-/// Profiles of training samples (the thesis's "motion vectors"): each sample's rows projected on its own first
-/// direction.
-#[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+/// Profiles of training samples: what segments are compared with ([`Comparison`](super::Comparison)). In the thesis
+/// ("motion vectors") each sample's rows projected on its own first direction.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Profiles {
+    /// Values in a row; 1 in the thesis.
+    #[serde(default = "one")]
+    pub width: usize,
     /// All values end to end.
     pub values: Vec<f32>,
-    /// For each profile, its length in frames.
+    /// For each profile, its length in rows.
     pub lengths: Vec<usize>,
     /// For each profile, the class of its sample.
     pub classes: Vec<ClassId>,
 }
 
+fn one() -> usize {
+    1
+}
+
 impl Profiles {
+    /// None so far, of rows of `width` values.
+    pub fn new(width: usize) -> Self {
+        Self { width: width.max(1), values: vec![], lengths: vec![], classes: vec![] }
+    }
+
     /// Adds a sample's.
     pub fn push(&mut self, class: ClassId, profile: &[f32]) {
         self.values.extend_from_slice(profile);
-        self.lengths.push(profile.len());
+        self.lengths.push(profile.len() / self.width);
         self.classes.push(class);
     }
 
@@ -68,30 +80,25 @@ impl Profiles {
     pub fn iter(&self) -> impl Iterator<Item = (ClassId, &[f32])> {
         let mut rest = &self.values[..];
         self.lengths.iter().zip(&self.classes).map(move |(length, class)| {
-            let (profile, after) = rest.split_at((*length).min(rest.len()));
+            let (profile, after) = rest.split_at((length * self.width).min(rest.len()));
             rest = after;
             (*class, profile)
         })
     }
 
-    /// How near two values must be to match: `tolerance` times the standard deviation of all values of all profiles
-    /// (thesis, §3.8).
+    /// ε: `tolerance` times the root mean square distance of all rows from their mean; the standard deviation where
+    /// rows are single values (thesis, §3.8).
     pub fn epsilon(&self, tolerance: f64) -> f32 {
-        let count = self.values.len().max(1) as f64;
-        let mean = self.values.iter().map(|v| f64::from(*v)).sum::<f64>() / count;
-        let squares: f64 = self.values.iter().map(|v| (f64::from(*v) - mean).powi(2)).sum();
-        (tolerance * (squares / count).sqrt()) as f32
-    }
-
-    /// For each of `classes` classes, the mean length of its profiles in seconds at `rate_hz`; 0 for one without any.
-    pub fn mean_secs(&self, classes: usize, rate_hz: f64) -> Vec<f64> {
-        let (mut frames, mut counts) = (vec![0; classes], vec![0usize; classes]);
-        for (length, class) in self.lengths.iter().zip(&self.classes) {
-            frames[class.index()] += length;
-            counts[class.index()] += 1;
+        let rows = (self.values.len() / self.width).max(1) as f64;
+        let mut mean = vec![0.0; self.width];
+        for row in self.values.chunks_exact(self.width) {
+            mean.iter_mut().zip(row).for_each(|(mean, v)| *mean += f64::from(*v) / rows);
         }
-        let mean = |(frames, count): (&usize, &usize)| *frames as f64 / (*count).max(1) as f64 / rate_hz;
-        frames.iter().zip(&counts).map(mean).collect()
+        let deviation = |row: &[f32]| -> f64 {
+            row.iter().zip(&mean).map(|(v, mean)| (f64::from(*v) - mean).powi(2)).sum()
+        };
+        let squares: f64 = self.values.chunks_exact(self.width).map(deviation).sum();
+        (tolerance * (squares / rows).sqrt()) as f32
     }
 }
 
@@ -136,7 +143,12 @@ impl SvrdmModel {
             ("values in a feature vector of the tree", feature_dim, self.tree.dim()),
             ("mean lengths of classes", self.classes.len(), self.mean_secs.len()),
             ("classes of profiles", profiles.len(), profiles.classes.len()),
-            ("values of profiles", profiles.lengths.iter().sum(), profiles.values.len()),
+            ("values in a profile's row", self.params.comparison.width(reduced), profiles.width),
+            (
+                "values of profiles",
+                profiles.lengths.iter().sum::<usize>() * profiles.width,
+                profiles.values.len(),
+            ),
         ];
         if let Some((what, expected, found)) = sizes.into_iter().find(|(_, e, f)| e != f) {
             return Err(ModelError::Size { what, expected, found });

@@ -46,6 +46,46 @@ pub enum Normalisation {
     LeastRatio,
 }
 
+/// What a segment is compared with its class's samples by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Comparison {
+    /// One value a frame, along the segment's first direction, which matches or does not (thesis, §3.8): see
+    /// [`edr`](super::edr).
+    #[default]
+    Profiles,
+    /// Every `every`th reduced row whole, at a cost that grows with the difference: see
+    /// [`rows_edr`](super::rows_edr). Confidence is `1 − distance` then, in place of Eq. 4.5's curve, which is flat
+    /// where these distances lie.
+    Rows {
+        /// Frames from one row to the next.
+        every: usize,
+    },
+}
+
+impl Comparison {
+    /// Values in one row of a profile, of rows of `dim` values.
+    pub fn width(self, dim: usize) -> usize {
+        match self {
+            Comparison::Profiles => 1,
+            Comparison::Rows { .. } => dim,
+        }
+    }
+
+    /// Frames from one row of a profile to the next.
+    pub fn every(self) -> usize {
+        match self {
+            Comparison::Profiles => 1,
+            Comparison::Rows { every } => every,
+        }
+    }
+
+    /// Rows in the profile of a segment of so many frames.
+    pub fn rows(self, frames: usize) -> usize {
+        frames.div_ceil(self.every())
+    }
+}
+
 /// How segments are formed, described, scored and tracked. A model keeps the values it was trained with.
 ///
 /// Chunks are counted at the model's rate: 16 frames at 120 Hz are 0.133 s.
@@ -69,7 +109,9 @@ pub struct SvrdmParams {
     /// Where both machines of a branch accept: both ways, so that up to four classes are scored (thesis, §4.7.2), or
     /// that of the larger output (§4.6.5). `Larger`.
     pub descent: Descent,
-    /// Profile values match if they differ by at most this many standard deviations of all training profiles.
+    /// What segments and samples are compared by. `Profiles` (thesis, §3.8).
+    pub comparison: Comparison,
+    /// ε: profile values match if they differ by at most this many standard deviations of all training profiles.
     /// 0.25 (thesis, §3.8).
     pub tolerance: f64,
     /// What edit distances are divided by. `CheapestPath` (thesis, §4.6.5).
@@ -98,6 +140,7 @@ impl Default for SvrdmParams {
             centring: Centring::Database,
             accept: 0.92,
             descent: Descent::Larger,
+            comparison: Comparison::Profiles,
             tolerance: 0.25,
             normalisation: Normalisation::CheapestPath,
             prior_spread: 0.25,
@@ -132,6 +175,7 @@ impl SvrdmParams {
             ("max_chunks", self.max_chunks, self.min_chunks, MAX_CHUNKS),
             ("eigenvectors", self.eigenvectors, 1, MAX_DIM),
             ("wait_chunks", self.wait_chunks, 1, MAX_WAIT_CHUNKS),
+            ("comparison.rows.every", self.comparison.every(), 1, MAX_PROFILE_FRAMES),
         ];
         if let Some((name, value, low, high)) = counts.iter().find(|(_, v, low, high)| v < low || v > high) {
             return Err(format!("{name} must be {low} to {high}, found {value}"));

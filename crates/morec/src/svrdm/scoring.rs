@@ -3,13 +3,19 @@
 use crate::classes::ClassId;
 
 use super::edr::{Edr, least_ratio};
-use super::{MAX_PROFILE_FRAMES, ModelError, Normalisation, SvrdmModel};
+use super::rows_edr::RowsEdr;
+use super::{Comparison, MAX_PROFILE_FRAMES, ModelError, Normalisation, SvrdmModel};
 
 /// Eq. 4.5: `(1 − 0.9 / (1 + e^(−30 EDR + 15))) · e^(−(len − mean)² / (2 (spread · mean)²))`, lengths in seconds.
 pub fn confidence(edr: f64, length_secs: f64, mean_secs: f64, spread: f64) -> f64 {
     let likeness = 1.0 - 0.9 / (1.0 + (-30.0 * edr + 15.0).exp());
+    likeness * length_prior(length_secs, mean_secs, spread)
+}
+
+/// The second factor of Eq. 4.5.
+fn length_prior(length_secs: f64, mean_secs: f64, spread: f64) -> f64 {
     let deviation = (length_secs - mean_secs) / (spread * mean_secs);
-    likeness * (-0.5 * deviation * deviation).exp()
+    (-0.5 * deviation * deviation).exp()
 }
 
 /// One class's profiles, among those of all.
@@ -23,13 +29,21 @@ struct OfClass {
     nearest: usize,
 }
 
+/// What distances are taken with.
+#[derive(Debug, Clone)]
+enum Measure {
+    Values(Edr, Normalisation),
+    Rows(RowsEdr),
+}
+
 /// Segment scoring: a class and a segment's profile in, a confidence out.
 #[derive(Debug, Clone)]
 pub struct SegmentScoring {
     values: Vec<f32>,
     classes: Vec<OfClass>,
-    edr: Edr,
-    normalisation: Normalisation,
+    width: usize,
+    comparison: Comparison,
+    edr: Measure,
     spread: f64,
     min_confidence: f64,
     rate_hz: f64,
@@ -46,38 +60,54 @@ impl SegmentScoring {
             .collect();
         let mut at = 0;
         for (length, class) in model.profiles.lengths.iter().zip(&model.profiles.classes) {
-            classes[class.index()].profiles.push(at..at + length);
-            at += length;
+            let values = length * model.profiles.width;
+            classes[class.index()].profiles.push(at..at + values);
+            at += values;
         }
         Ok(Self {
             values: model.profiles.values.clone(),
             classes,
-            edr: Edr::new(model.epsilon, MAX_PROFILE_FRAMES),
-            normalisation: model.params.normalisation,
+            width: model.profiles.width,
+            comparison: model.params.comparison,
+            edr: match model.params.comparison {
+                Comparison::Profiles => {
+                    Measure::Values(Edr::new(model.epsilon, MAX_PROFILE_FRAMES), model.params.normalisation)
+                }
+                Comparison::Rows { .. } => {
+                    Measure::Rows(RowsEdr::new(model.profiles.width, model.epsilon, MAX_PROFILE_FRAMES))
+                }
+            },
             spread: model.params.prior_spread,
             min_confidence: model.params.min_confidence,
             rate_hz: model.rate_hz(),
         })
     }
 
-    /// How certain it is that a segment with this profile, one value a frame, is `class`; 0 if less than the least
-    /// confidence that counts. O(frames of the segment · frames of the class's profiles), no allocation.
-    pub fn score(&mut self, class: ClassId, profile: &[f32]) -> f64 {
-        if self.most(class, profile.len()) < self.min_confidence {
+    /// How certain it is that a segment of `frames` frames with this profile is `class`; 0 if less than the least
+    /// confidence that counts. O(rows of the profile · rows of the class's profiles), no allocation.
+    pub fn score(&mut self, class: ClassId, profile: &[f32], frames: usize) -> f64 {
+        if self.most(class, frames) < self.min_confidence {
             return 0.0;
         }
         let edr = self.distance(class, profile);
-        let of = &self.classes[class.index()];
-        let found = confidence(edr, profile.len() as f64 / self.rate_hz, of.mean_secs, self.spread);
+        let found = self.confidence(class, edr, frames);
         if found < self.min_confidence { 0.0 } else { found }
     }
 
     /// The most that [`score`](Self::score) can give a segment of so many frames, whatever its profile.
     pub fn most(&self, class: ClassId, frames: usize) -> f64 {
-        let of = &self.classes[class.index()];
-        let lengths = of.profiles.iter().map(|p| least_ratio(p.len(), frames));
-        let edr = lengths.fold(1.0, f64::min);
-        confidence(edr, frames as f64 / self.rate_hz, of.mean_secs, self.spread)
+        let rows = self.comparison.rows(frames);
+        let lengths = self.classes[class.index()].profiles.iter();
+        let edr = lengths.map(|p| least_ratio(p.len() / self.width, rows)).fold(1.0, f64::min);
+        self.confidence(class, edr, frames)
+    }
+
+    fn confidence(&self, class: ClassId, edr: f64, frames: usize) -> f64 {
+        let (secs, mean_secs) = (frames as f64 / self.rate_hz, self.classes[class.index()].mean_secs);
+        match self.comparison {
+            Comparison::Profiles => confidence(edr, secs, mean_secs, self.spread),
+            Comparison::Rows { .. } => (1.0 - edr) * length_prior(secs, mean_secs, self.spread),
+        }
     }
 
     /// Least normalised edit distance to any profile of `class`, 0 … 1.
@@ -92,7 +122,11 @@ impl SegmentScoring {
                 _ => turn,
             };
             let known = &self.values[of.profiles[index].clone()];
-            if let Some(edr) = self.edr.normalised(profile, known, self.normalisation, least) {
+            let edr = match &mut self.edr {
+                Measure::Values(edr, normalisation) => edr.normalised(profile, known, *normalisation, least),
+                Measure::Rows(edr) => edr.normalised(profile, known, least),
+            };
+            if let Some(edr) = edr {
                 (least, nearest) = (edr, index);
             }
         }
