@@ -8,8 +8,11 @@ use clap::{Args, ValueEnum};
 use morec::formats::Warning;
 use morec::import::{ImportOptions, prepare};
 use morec::labels::{ClipLength, Labels, Sample, read_people};
-use morec::train::{Everyday, Source, TrainClip, TrainOptions, TrainParams};
+use morec::train::thesis::{SvrdmOptions, SvrdmTrainParams};
+use morec::train::{Everyday, Recipe, Source, TrainClip, TrainOptions, TrainParams};
 use rayon::prelude::*;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 use crate::files::{ReadArgs, expand, mapping, open, read, some_of};
 
@@ -36,16 +39,24 @@ pub struct MaterialArgs {
     /// the classes in them sets how near is near enough
     #[arg(long, value_name = "DIR|CLIP", num_args = 1..)]
     pub background: Vec<PathBuf>,
+    /// The method of recognition
+    #[arg(long, value_enum, default_value = "templates")]
+    pub method: Method,
+    /// With --method svrdm: its figures as the thesis has them, or tuned to accept what was not seen
+    #[arg(long, value_enum, default_value = "tuned")]
+    pub svrdm: Setting,
     /// What the unlabelled parts of labelled clips are: motion that is none of the classes, or nothing to go by
     #[arg(long, value_enum, default_value = "background")]
     pub unlabelled: Unlabelled,
-    /// Whether made everyday motion is background too; auto: if --background holds less than a minute
+    /// Whether made everyday motion is background too (templates only); auto: if --background holds less than a
+    /// minute
     #[arg(long, value_enum, default_value = "auto")]
     pub everyday: EverydayArg,
     /// Roles of joints, where inference fails: lines of `role<TAB>joint name`
     #[arg(long, value_name = "FILE")]
     pub roles: Option<PathBuf>,
-    /// Set a figure of the method by its path, as `rho=0.4` or `decode.lag_ticks=2`; may be given several times
+    /// Set a figure of the method by its path, as `rho=0.4`, `decode.lag_ticks=2`, `stages.scaling=unit_range`; may be
+    /// given several times
     #[arg(long = "param", value_name = "NAME=VALUE")]
     pub params: Vec<String>,
     #[command(flatten)]
@@ -62,19 +73,42 @@ pub enum Unlabelled {
 }
 
 /// `params` with the figures that `settings` name.
-fn with_figures(params: TrainParams, settings: &[String]) -> Result<TrainParams> {
+fn with_figures<P: Serialize + DeserializeOwned>(params: P, settings: &[String]) -> Result<P> {
     let mut tree = serde_json::to_value(&params)?;
     for setting in settings {
         let (name, value) =
             setting.split_once('=').context(format!("--param {setting}: expected NAME=VALUE"))?;
         let pointer = format!("/{}", name.replace('.', "/"));
-        let Some(figure) = tree.pointer_mut(&pointer).filter(|f| !f.is_object()) else {
+        let Some(figure) = tree.pointer_mut(&pointer) else {
             let known = serde_json::to_string_pretty(&params)?;
             bail!("--param {setting}: no figure is called {name}; there are {known}");
         };
-        *figure = serde_json::from_str(value).context(format!("--param {setting}: expected a number"))?;
+        // What is no JSON is the name of a choice.
+        let named = || serde_json::Value::String(value.to_owned());
+        *figure = serde_json::from_str(value).unwrap_or_else(|_| named());
+        if let Err(error) = serde_json::from_value::<P>(tree.clone()) {
+            bail!("--param {setting}: {error}");
+        }
     }
     serde_json::from_value(tree).context("--param")
+}
+
+/// Methods of recognition.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// Gestures and cycles of up to about three seconds, matched elastically
+    Templates,
+    /// The method of the thesis of 2009: support vector machines over the directions of motion, in a tree
+    Svrdm,
+}
+
+/// Settings of the thesis's method.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Setting {
+    /// The thesis's own figures: rejects nearly all it has not seen
+    Faithful,
+    /// The same method, made to accept what it has not seen
+    Tuned,
 }
 
 /// When made everyday motion is background.
@@ -104,8 +138,22 @@ pub struct Material {
 
 impl MaterialArgs {
     /// How to train.
-    pub fn options(&self) -> Result<TrainOptions> {
+    pub fn recipe(&self) -> Result<Recipe> {
         let unlabelled_is_background = self.unlabelled == Unlabelled::Background;
+        match self.method {
+            Method::Templates => Ok(self.template_options(unlabelled_is_background)?.into()),
+            Method::Svrdm => {
+                let params = match self.svrdm {
+                    Setting::Faithful => SvrdmTrainParams::faithful(),
+                    Setting::Tuned => SvrdmTrainParams::tuned(),
+                };
+                let params = with_figures(params, &self.params)?;
+                Ok(SvrdmOptions { params, unlabelled_is_background }.into())
+            }
+        }
+    }
+
+    fn template_options(&self, unlabelled_is_background: bool) -> Result<TrainOptions> {
         let everyday = match self.everyday {
             EverydayArg::Auto => Everyday::Auto,
             EverydayArg::Always => Everyday::Always,

@@ -73,7 +73,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         classes: &material.classes,
         unknown: &material.unknown,
     };
-    let outcome = crossval(&of, by, &args.material.options()?, &Bar::new())?;
+    let outcome = crossval(&of, by, &args.material.recipe()?, &Bar::new())?;
     let evaluation = Evaluation::of(&outcome.streams, &outcome.truths, &outcome.founds)?;
     let mut out = std::io::stdout().lock();
     if args.json {

@@ -6,10 +6,10 @@ use std::process::ExitCode;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use anyhow::{Context, Result};
-use clap::ValueEnum;
 use morec::index::{MotionIndex, Provenance};
 use morec::roles::Role;
-use morec::train::{Labelling, Source, TrainClip, TrainingReport, train_clips};
+use morec::train::thesis::SvrdmReport;
+use morec::train::{Labelling, Source, TrainClip, TrainingReport, train_model};
 
 use crate::files;
 use crate::material::{Material, MaterialArgs};
@@ -28,9 +28,6 @@ use crate::table::Table;
 pub struct Args {
     #[command(flatten)]
     material: MaterialArgs,
-    /// The method of recognition
-    #[arg(long, value_enum, default_value = "templates")]
-    method: Method,
     /// Where to write the index
     #[arg(short, long, value_name = "INDEX")]
     output: PathBuf,
@@ -39,30 +36,19 @@ pub struct Args {
     json: bool,
 }
 
-/// Methods of recognition.
-#[derive(ValueEnum, Clone, Copy, Debug)]
-enum Method {
-    /// Gestures and cycles of up to about three seconds, matched elastically
-    Templates,
-}
-
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let Method::Templates = args.method;
     let material = args.material.load(&[])?;
-    let options = args.material.options()?;
+    let recipe = args.material.recipe()?;
     let labelling = Labelling {
         samples: &material.samples,
         held_back: &[],
         classes: &material.classes,
-        unlabelled_is_background: options.unlabelled_is_background,
+        unlabelled_is_background: recipe.unlabelled_is_background(),
     };
-    let (model, report) = train_clips(&material.clips, &labelling, &options, &Bar::new())?;
-    let index = MotionIndex {
-        model: model.into(),
-        roles: role_names(&material.clips),
-        provenance: provenance(&material, &report),
-    };
+    let (model, report) = train_model(&material.clips, &labelling, &recipe, &Bar::new())?;
+    let index =
+        MotionIndex { model, roles: role_names(&material.clips), provenance: provenance(&material, &report) };
     let bytes = index.to_bytes()?;
     files::write_whole(&args.output, |out| out.write_all(&bytes))
         .with_context(|| args.output.display().to_string())?;
@@ -125,6 +111,18 @@ fn print_report(report: &TrainingReport, bytes: usize, material: &Material, outp
     let secs: Vec<String> =
         report.background_secs.iter().map(|(source, secs)| format!("{source} {secs:.0} s")).collect();
     println!("background: {}", if secs.is_empty() { "none".to_owned() } else { secs.join(", ") });
+    match &report.svrdm {
+        None => print_templates(report),
+        Some(svrdm) => print_svrdm(report, svrdm),
+    }
+    for note in &report.notes {
+        println!("note: {note}");
+    }
+    let share = 100.0 * bytes as f64 / material.labelled_bytes.max(1) as f64;
+    println!("\n{}: {bytes} bytes, {share:.1} % of the labelled clips' files", output.display());
+}
+
+fn print_templates(report: &TrainingReport) {
     println!("threshold: {:.3}, set by {}", report.threshold, report.threshold_from);
     let negatives: Vec<String> = report.negatives.iter().map(|(source, n)| format!("{source} {n}")).collect();
     println!(
@@ -134,11 +132,31 @@ fn print_report(report: &TrainingReport, bytes: usize, material: &Material, outp
     let verified =
         if report.verified { "yes" } else { "no (too little named as background to learn it from)" };
     println!("candidates verified: {verified}");
-    for note in &report.notes {
-        println!("note: {note}");
+}
+
+fn print_svrdm(report: &TrainingReport, svrdm: &SvrdmReport) {
+    println!(
+        "reduced to {} dimensions, which keep {:.1} % of the variance",
+        svrdm.dims,
+        100.0 * svrdm.quality
+    );
+    let unsure: Vec<String> = svrdm.unsure_signs.iter().map(|s| format!("{:.0} %", 100.0 * s)).collect();
+    println!("samples whose sign is close to flipping, direction by direction: {}", unsure.join(", "));
+    let mut table = Table::new(["branch", "samples", "exemplars", "width", "width in the plane"]);
+    for branch in &svrdm.branches {
+        table.row([
+            branch.node.to_string(),
+            format!("{} + {}", branch.samples[0], branch.samples[1]),
+            format!("{} + {}", branch.exemplars[0], branch.exemplars[1]),
+            format!("{:.4}", branch.sigma_full),
+            format!("{:.4}", branch.sigma_reduced),
+        ]);
     }
-    let share = 100.0 * bytes as f64 / material.labelled_bytes.max(1) as f64;
-    println!("\n{}: {bytes} bytes, {share:.1} % of the labelled clips' files", output.display());
+    print!("{table}");
+    println!(
+        "accepts from T = {:.2}, confidence {:.2}, set by {}",
+        svrdm.accept, svrdm.min_confidence, report.threshold_from
+    );
 }
 
 #[cfg(test)]

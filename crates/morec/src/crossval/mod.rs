@@ -10,7 +10,7 @@ use crate::eval::{Found, StreamInfo, Truth};
 use crate::labels::Sample;
 use crate::live::{Model, StartError, recognize_clip};
 use crate::progress::Progress;
-use crate::train::{Labelling, Source, TrainClip, TrainError, TrainOptions, TrainingReport, train_clips};
+use crate::train::{Labelling, Recipe, Source, TrainClip, TrainError, TrainingReport, train_model};
 
 pub use folds::{By, Fold, folds};
 
@@ -81,7 +81,7 @@ pub enum CrossvalError {
 pub fn crossval(
     material: &Material<'_>,
     by: By,
-    options: &TrainOptions,
+    recipe: &Recipe,
     progress: &dyn Progress,
 ) -> Result<Outcome, CrossvalError> {
     let folds = folds(by, material.samples, &people(material));
@@ -95,7 +95,7 @@ pub fn crossval(
             let source = TrainError::Cancelled;
             return Err(CrossvalError::Train { fold: fold.name.clone(), source });
         }
-        run_fold(material, fold, folds.len() > 1, options, &mut outcome)?;
+        run_fold(material, fold, folds.len() > 1, recipe, &mut outcome)?;
     }
     progress.report("folds", folds.len(), folds.len());
     Ok(outcome)
@@ -111,7 +111,7 @@ fn run_fold(
     material: &Material<'_>,
     fold: &Fold,
     several: bool,
-    options: &TrainOptions,
+    recipe: &Recipe,
     outcome: &mut Outcome,
 ) -> Result<(), CrossvalError> {
     let pick =
@@ -127,12 +127,11 @@ fn run_fold(
         samples: &taught,
         held_back: &held_back,
         classes: material.classes,
-        unlabelled_is_background: options.unlabelled_is_background,
+        unlabelled_is_background: recipe.unlabelled_is_background(),
     };
-    let trained = train_clips(&training, &labelling, options, &());
+    let trained = train_model(&training, &labelling, recipe, &());
     let (model, report) =
         trained.map_err(|source| CrossvalError::Train { fold: fold.name.clone(), source })?;
-    let model = Model::from(model);
 
     let trained_on: BTreeSet<&str> = training.iter().map(|c| c.name.as_str()).collect();
     let known = material.clips.iter().filter(|c| fold.tested.contains(&c.name)).map(|c| (c, false));

@@ -1,4 +1,4 @@
-//! Training the template recogniser from labelled samples and background motion.
+//! Training from labelled samples and background motion, by either method.
 
 mod align;
 mod clips;
@@ -7,11 +7,14 @@ mod from_clips;
 mod mining;
 mod options;
 mod params;
+mod recipe;
 mod report;
 mod ridge;
 mod scatter;
 mod set;
+pub mod svrdm;
 mod templates;
+pub mod thesis;
 mod trim;
 mod verifier;
 
@@ -20,6 +23,7 @@ pub use clips::train_clips;
 pub use from_clips::{Labelling, Prepared, TrainClip, prepare};
 pub use options::{ENOUGH_BACKGROUND_SECS, EVERYDAY_SEED, Everyday, TrainOptions};
 pub use params::TrainParams;
+pub use recipe::{Recipe, train_model};
 pub use report::TrainingReport;
 pub use set::{Known, Source, TrainSample, TrainSet, TrainStream};
 pub use templates::{TrainError, Trained, train};

@@ -7,6 +7,7 @@ use crate::classes::ClassInfo;
 use super::from_clips::Prepared;
 use super::set::Source;
 use super::templates::Trained;
+use super::thesis::SvrdmReport;
 
 /// How a training run went.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -27,6 +28,9 @@ pub struct TrainingReport {
     pub verified: bool,
     /// What the user should know or do.
     pub notes: Vec<String>,
+    /// What only the thesis's method reports.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub svrdm: Option<SvrdmReport>,
 }
 
 impl TrainingReport {
@@ -67,11 +71,13 @@ impl TrainingReport {
             negatives,
             verified: trained.model.verifier.is_some(),
             notes,
+            svrdm: None,
         }
     }
 }
 
-fn class_notes(classes: &[ClassInfo]) -> Vec<String> {
+/// What to say of classes with few samples.
+pub(super) fn class_notes(classes: &[ClassInfo]) -> Vec<String> {
     let note = |class: &ClassInfo| match class.samples {
         0 => Some(format!("{}: no sample, it will never be recognised", class.name)),
         1 => Some(format!("{}: a single sample; give more, by several people", class.name)),

@@ -28,6 +28,26 @@ pub enum TrainError {
     /// More classes than an index numbers.
     #[error("{0} classes; an index holds at most 65535")]
     TooManyClasses(usize),
+    /// A class that an index must know well enough to show is not shown.
+    #[error("class {class}: no sample of it can be described; each needs some motion inside its clip")]
+    NoSample {
+        /// Which.
+        class: String,
+    },
+    /// A clip cannot serve.
+    #[error("clip {clip}: {problem}")]
+    Clip {
+        /// Which.
+        clip: String,
+        /// Why.
+        problem: String,
+    },
+    /// Options that make no sense, alone or with these clips.
+    #[error("{0}")]
+    Params(String),
+    /// Parts came out unusable.
+    #[error(transparent)]
+    Svrdm(#[from] crate::svrdm::ModelError),
     /// Parts came out unusable.
     #[error(transparent)]
     Model(#[from] TemplateModelError),

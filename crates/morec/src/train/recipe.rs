@@ -1,0 +1,61 @@
+//! How to train, whatever the method.
+
+use crate::live::Model;
+use crate::progress::Progress;
+
+use super::clips::train_clips;
+use super::from_clips::{Labelling, TrainClip};
+use super::options::TrainOptions;
+use super::report::TrainingReport;
+use super::templates::TrainError;
+use super::thesis::{SvrdmOptions, train_svrdm};
+
+/// A method with its options.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Recipe {
+    /// Templates matched elastically.
+    Templates(Box<TrainOptions>),
+    /// The method of the thesis.
+    Svrdm(Box<SvrdmOptions>),
+}
+
+impl Recipe {
+    /// Whether unlabelled parts of labelled clips are background.
+    pub fn unlabelled_is_background(&self) -> bool {
+        match self {
+            Recipe::Templates(options) => options.unlabelled_is_background,
+            Recipe::Svrdm(options) => options.unlabelled_is_background,
+        }
+    }
+}
+
+impl From<TrainOptions> for Recipe {
+    fn from(options: TrainOptions) -> Self {
+        Recipe::Templates(Box::new(options))
+    }
+}
+
+impl From<SvrdmOptions> for Recipe {
+    fn from(options: SvrdmOptions) -> Self {
+        Recipe::Svrdm(Box::new(options))
+    }
+}
+
+/// Trains as `recipe` says.
+pub fn train_model(
+    clips: &[TrainClip],
+    labelling: &Labelling<'_>,
+    recipe: &Recipe,
+    progress: &dyn Progress,
+) -> Result<(Model, TrainingReport), TrainError> {
+    match recipe {
+        Recipe::Templates(options) => {
+            let (model, report) = train_clips(clips, labelling, options, progress)?;
+            Ok((model.into(), report))
+        }
+        Recipe::Svrdm(options) => {
+            let (model, report) = train_svrdm(clips, labelling, options, progress)?;
+            Ok((model.into(), report))
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! Samples to a model.
+
+use crate::classes::ClassInfo;
+use crate::pca::Pca;
+use crate::svrdm::{Directions, FeatureExtraction, Gram, Profiles, SvrdmModel};
+use crate::train::TrainError;
+use crate::train::svrdm::{BranchReport, FeatureSample, SignVector, grow, sign_vector};
+
+use super::{SvrdmTrainParams, ThesisSample};
+
+/// A model and how it came about.
+#[derive(Debug, Clone)]
+pub struct Fitted {
+    /// The model, in the precision of its file.
+    pub model: SvrdmModel,
+    /// Of each branch of the tree, the root first.
+    pub branches: Vec<BranchReport>,
+    /// Of each direction, how its signs were put right.
+    pub signs: Vec<SignVector>,
+    /// The samples as the tree was grown on them.
+    pub features: Vec<FeatureSample>,
+}
+
+/// Trains on samples of reduced rows (§4.5): sign vectors (Alg. 5), feature vectors (Eq. 3.37), the tree (Alg. 7),
+/// profiles (§3.8). O(samples³) in the largest branch.
+pub fn fit(
+    samples: &[ThesisSample],
+    classes: &[ClassInfo],
+    pca: &Pca,
+    params: &SvrdmTrainParams,
+) -> Result<Fitted, TrainError> {
+    let stages = &params.stages;
+    let dim = pca.dims();
+    if stages.eigenvectors > dim {
+        return Err(TrainError::Params(format!(
+            "{} eigenvectors of rows of {dim} values",
+            stages.eigenvectors
+        )));
+    }
+    let described: Vec<(&ThesisSample, Gram, Directions)> =
+        samples.iter().filter_map(|s| described(s, dim, params)).collect();
+    let signs: Vec<SignVector> = (0..stages.eigenvectors)
+        .filter_map(|j| {
+            let vectors: Vec<&[f64]> = described.iter().map(|(_, _, d)| d.vector(j)).collect();
+            sign_vector(&vectors, params.sign)
+        })
+        .collect();
+    let directions: Vec<f64> = signs.iter().flat_map(|s| s.direction.iter().copied()).collect();
+    // As the file keeps them, since features depend on their sides.
+    let directions: Vec<f64> = directions.into_iter().map(|v| f64::from(v as f32)).collect();
+    if directions.len() != stages.feature_dim(dim) {
+        return Err(TrainError::NoSamples);
+    }
+    let mut extraction = FeatureExtraction::new(stages, dim, &directions);
+    let mut profiles = Profiles::new(stages.comparison.width(dim));
+    let (mut features, mut frames) = (vec![], vec![(0, 0usize); classes.len()]);
+    for (sample, gram, _) in &described {
+        let Some(feature) = extraction.feature(gram) else { continue };
+        features.push(FeatureSample { class: sample.class, group: sample.group, vector: feature.to_vec() });
+        profiles.push(sample.class, extraction.profile(gram, sample.rows.iter()));
+        let (sum, count) = &mut frames[sample.class.index()];
+        (*sum, *count) = (*sum + sample.rows.len(), *count + 1);
+    }
+    if let Some(class) = frames.iter().position(|(_, count)| *count == 0) {
+        return Err(TrainError::NoSample { class: classes[class].name.clone() });
+    }
+    let grown = grow(&features, &[], &params.tree).map_err(|e| TrainError::Params(e.to_string()))?;
+    let mean_secs = frames.iter().map(|(sum, count)| *sum as f64 / *count as f64 / params.pose.rate_hz);
+    let model = SvrdmModel {
+        classes: classes.to_vec(),
+        pivots: params.pivots.set(),
+        pose: params.pose,
+        pca: pca.clone(),
+        params: stages.clone(),
+        signs: directions,
+        tree: grown.tree,
+        epsilon: profiles.epsilon(stages.tolerance),
+        profiles,
+        mean_secs: mean_secs.collect(),
+    };
+    model.check().map_err(TrainError::Svrdm)?;
+    let model = model.compact().map_err(TrainError::Svrdm)?;
+    Ok(Fitted { model, branches: grown.branches, signs, features })
+}
+
+/// A sample with its `AᵀA` and directions; `None` if it does not move at all.
+fn described<'s>(
+    sample: &'s ThesisSample,
+    dim: usize,
+    params: &SvrdmTrainParams,
+) -> Option<(&'s ThesisSample, Gram, Directions)> {
+    let gram = Gram::of_rows(sample.rows.values(), dim, params.stages.chunk_frames);
+    let mut directions = Directions::new(params.stages.eigenvectors, dim);
+    directions.find(&gram, params.stages.centring).then_some((sample, gram, directions))
+}

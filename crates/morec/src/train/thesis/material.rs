@@ -1,0 +1,166 @@
+//! Clips and labels as training takes them: principal components, cut-out samples, background streams.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use crate::classes::{ClassId, ClassInfo};
+use crate::features::Rows;
+use crate::labels::Sample;
+use crate::pca::{Moments, Pca};
+use crate::pivots::{PivotMap, PivotSet, pose_rows_of_clip};
+use crate::train::TrainError;
+use crate::train::from_clips::{Labelling, TrainClip};
+use crate::train::set::Source;
+
+use super::SvrdmOptions;
+
+/// A sample cut out of its clip.
+#[derive(Debug, Clone)]
+pub struct ThesisSample {
+    /// Its class.
+    pub class: ClassId,
+    /// Who shows it, by number: the clip where nobody is named.
+    pub group: usize,
+    /// Its reduced rows, `frames × r`.
+    pub rows: Rows,
+}
+
+/// A stream that holds stretches which are none of the classes.
+#[derive(Debug, Clone)]
+pub struct Background {
+    /// Pose rows, `frames × D`.
+    pub rows: Rows,
+    /// Frames of what is labelled or held back: to be left out of account.
+    pub known: Vec<Range<usize>>,
+    /// Whether it is the rest of a labelled clip.
+    pub unlabelled: bool,
+}
+
+/// What training works on.
+#[derive(Debug, Clone)]
+pub struct Material {
+    pub classes: Vec<ClassInfo>,
+    pub pivots: PivotSet,
+    pub pca: Pca,
+    pub samples: Vec<ThesisSample>,
+    pub background: Vec<Background>,
+    /// Pivots that a clip lacks, with the clip's name.
+    pub missing: Vec<String>,
+}
+
+/// Pose rows of every clip, the components of all of them (Eqs. 4.2 and 4.3), the samples of the classes.
+pub fn of_clips(
+    clips: &[TrainClip],
+    labelling: &Labelling<'_>,
+    options: &SvrdmOptions,
+) -> Result<Material, TrainError> {
+    let params = &options.params;
+    params.pose.check().map_err(TrainError::Params)?;
+    params.stages.check().map_err(TrainError::Params)?;
+    let pivots = params.pivots.set();
+    let made: Result<Vec<(Rows, Vec<String>)>, TrainError> = clips
+        .par_iter()
+        .map(|clip| {
+            let map = PivotMap::resolve(&pivots, &clip.clip.skeleton, &clip.roles)
+                .map_err(|e| TrainError::Clip { clip: clip.name.clone(), problem: e.to_string() })?;
+            let rows = pose_rows_of_clip(&clip.clip, &pivots, &map, &clip.rest, &params.pose);
+            let missing = map.missing();
+            let note = (!missing.is_empty()).then(|| format!("{} lacks {}", clip.name, missing.join(", ")));
+            Ok((rows, note.into_iter().collect()))
+        })
+        .collect();
+    let (rows, missing): (Vec<Rows>, Vec<Vec<String>>) = made?.into_iter().unzip();
+    let mut moments = Moments::new(pivots.row_dim());
+    // One clip after the other: the sum is the same for any number of threads.
+    rows.iter().for_each(|rows| moments.push_rows(rows));
+    let pca = Pca::fit(&moments, params.keep).map_err(|e| TrainError::Params(e.to_string()))?;
+    let groups = groups(clips);
+    let mut material = Material {
+        classes: vec![],
+        pivots,
+        pca,
+        samples: vec![],
+        background: vec![],
+        missing: missing.concat(),
+    };
+    for ((clip, rows), group) in clips.iter().zip(rows).zip(groups) {
+        material.add(clip, rows, group, labelling, options);
+    }
+    if material.samples.is_empty() {
+        return Err(TrainError::NoSamples);
+    }
+    material.classes = classes(labelling);
+    Ok(material)
+}
+
+impl Material {
+    fn add(
+        &mut self,
+        clip: &TrainClip,
+        rows: Rows,
+        group: usize,
+        labelling: &Labelling<'_>,
+        options: &SvrdmOptions,
+    ) {
+        let of_clip = |s: &&Sample| s.clip == clip.name;
+        let rate_hz = options.params.pose.rate_hz;
+        let mut known = vec![];
+        let mut whole = false;
+        for sample in labelling.samples.iter().filter(of_clip) {
+            let span = frames(sample, rate_hz, rows.len());
+            whole |= sample.whole_clip;
+            known.push(span.clone());
+            let Some(class) = labelling.classes.iter().position(|c| *c == sample.class) else { continue };
+            // Shorter than its directions are many, a sample has no feature vector.
+            if span.len() > options.params.stages.eigenvectors {
+                let rows = self.pca.project(&rows.slice(span));
+                self.samples.push(ThesisSample { class: ClassId(class as u16), group, rows });
+            }
+        }
+        for sample in labelling.held_back.iter().filter(of_clip) {
+            whole |= sample.whole_clip;
+            known.push(frames(sample, rate_hz, rows.len()));
+        }
+        let unlabelled = clip.source == Source::Labelled;
+        let serves = match clip.source {
+            Source::Labelled => {
+                options.unlabelled_is_background && labelling.unlabelled_is_background && !whole
+            }
+            Source::Background => true,
+            Source::Everyday => false,
+        };
+        if serves {
+            self.background.push(Background { rows, known, unlabelled });
+        }
+    }
+}
+
+/// Frames of a sample at `rate_hz`.
+fn frames(sample: &Sample, rate_hz: f64, count: usize) -> Range<usize> {
+    if sample.whole_clip {
+        return 0..count;
+    }
+    let frame = |secs: f64| ((secs * rate_hz).round().max(0.0) as usize).min(count);
+    frame(sample.start_secs)..frame(sample.stop_secs).max(frame(sample.start_secs))
+}
+
+/// For each clip, a number that it shares with the clips of its person.
+fn groups(clips: &[TrainClip]) -> Vec<usize> {
+    let mut numbers = BTreeMap::new();
+    let mut number = |name: &str| {
+        let next = numbers.len();
+        *numbers.entry(name.to_owned()).or_insert(next)
+    };
+    clips.iter().map(|c| number(c.person.as_deref().unwrap_or(&c.name))).collect()
+}
+
+fn classes(labelling: &Labelling<'_>) -> Vec<ClassInfo> {
+    let info = |name: &String| {
+        let of_class: Vec<&Sample> = labelling.samples.iter().filter(|s| s.class == *name).collect();
+        let people: BTreeSet<&String> = of_class.iter().filter_map(|s| s.person.as_ref()).collect();
+        ClassInfo { name: name.clone(), samples: of_class.len(), people: people.len() }
+    };
+    labelling.classes.iter().map(info).collect()
+}

@@ -1,0 +1,47 @@
+//! From clips and labels to a model of the thesis's kind: pose rows, principal components, feature vectors, the tree
+//! ([`train::svrdm`](super::svrdm)), profiles, and the thresholds of recognition.
+
+mod fit;
+mod material;
+mod options;
+mod report;
+mod thresholds;
+
+pub use material::ThesisSample;
+pub use options::{Pivots, SvrdmOptions, SvrdmTrainParams};
+pub use report::SvrdmReport;
+pub use thresholds::{Estimated, ThresholdRule};
+
+use crate::progress::Progress;
+use crate::svrdm::SvrdmModel;
+
+use super::from_clips::{Labelling, TrainClip};
+use super::report::TrainingReport;
+use super::templates::TrainError;
+
+/// Trains the thesis's recogniser on labelled and background clips (§4.2 to §4.5).
+///
+/// Pose rows depend on the axes that a rig gave its joints, so made everyday motion, which has a rig of its own, is no
+/// background here.
+pub fn train_svrdm(
+    clips: &[TrainClip],
+    labelling: &Labelling<'_>,
+    options: &SvrdmOptions,
+    progress: &dyn Progress,
+) -> Result<(SvrdmModel, TrainingReport), TrainError> {
+    let params = &options.params;
+    let material = material::of_clips(clips, labelling, options)?;
+    if progress.cancelled() {
+        return Err(TrainError::Cancelled);
+    }
+    let fitted = fit::fit(&material.samples, &material.classes, &material.pca, params)?;
+    let (model, estimated) = match params.thresholds {
+        ThresholdRule::Fixed => (fitted.model.clone(), None),
+        ThresholdRule::Estimated { folds } => {
+            let estimated = thresholds::estimate(&material, &fitted.model, params, folds, progress)?;
+            (estimated.applied_to(&fitted.model), Some(estimated))
+        }
+    };
+    let report = report::of(&material, &fitted, &model, estimated);
+    Ok((model, report))
+}

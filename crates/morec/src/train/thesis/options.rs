@@ -1,0 +1,110 @@
+//! How the thesis's recogniser is trained.
+
+use serde::{Deserialize, Serialize};
+
+use crate::pca::Keep;
+use crate::pivots::{PivotSet, PoseParams};
+use crate::svrdm::{Centring, Comparison, Descent, Scaling, SvrdmParams};
+use crate::train::svrdm::{SigmaRule, SignRule, TreeParams};
+
+use super::thresholds::ThresholdRule;
+
+/// Which joints count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Pivots {
+    /// The 16 of Table 4.2, by name, and by role where no joint has the name.
+    #[default]
+    Thesis,
+    /// Those that every skeleton has whose parts are known.
+    Roles,
+}
+
+impl Pivots {
+    /// The set.
+    pub fn set(self) -> PivotSet {
+        match self {
+            Pivots::Thesis => PivotSet::thesis(),
+            Pivots::Roles => PivotSet::roles(),
+        }
+    }
+}
+
+/// The figures of training.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SvrdmTrainParams {
+    /// Which joints make pose rows.
+    pub pivots: Pivots,
+    /// How rows are made of poses.
+    pub pose: PoseParams,
+    /// How many principal components are kept: 16 (thesis, §4.2).
+    pub keep: Keep,
+    /// How the stages work; training describes its samples the same way.
+    pub stages: SvrdmParams,
+    /// How sign vectors are found.
+    pub sign: SignRule,
+    /// How the tree is grown.
+    pub tree: TreeParams,
+    /// Where the thresholds of recognition come from.
+    pub thresholds: ThresholdRule,
+}
+
+impl SvrdmTrainParams {
+    /// The thesis's own figures, with no knob turned. Rejects nearly all it has not seen: Algorithm 4 settles on
+    /// widths so small that every sample is an island.
+    pub fn faithful() -> Self {
+        Self {
+            pivots: Pivots::Thesis,
+            pose: PoseParams::default(),
+            keep: Keep::Dims(16),
+            stages: SvrdmParams::default(),
+            sign: SignRule::Centred,
+            tree: TreeParams::default(),
+            thresholds: ThresholdRule::Fixed,
+        }
+    }
+
+    /// The same method, made to accept what it has not seen and still to reject what is none of the classes: wider
+    /// kernels, vectors of four directions about the segment's own mean as Eq. 3.37 scales them, samples compared by
+    /// whole rows, thresholds estimated.
+    pub fn tuned() -> Self {
+        let faithful = Self::faithful();
+        Self {
+            stages: SvrdmParams {
+                eigenvectors: 4,
+                scaling: Scaling::SingularShare,
+                centring: Centring::Segment,
+                accept: 0.8,
+                descent: Descent::Larger,
+                comparison: Comparison::Rows { every: 4 },
+                tolerance: 0.7,
+                min_confidence: 0.5,
+                ..faithful.stages
+            },
+            tree: TreeParams { sigma: SigmaRule::Scaled { full: 4.0, reduced: 4.0 }, ..faithful.tree },
+            thresholds: ThresholdRule::Estimated { folds: 4 },
+            ..faithful
+        }
+    }
+}
+
+impl Default for SvrdmTrainParams {
+    fn default() -> Self {
+        Self::tuned()
+    }
+}
+
+/// How to train from clips.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SvrdmOptions {
+    /// The figures of the method.
+    pub params: SvrdmTrainParams,
+    /// Whether unlabelled parts of labelled clips are background.
+    pub unlabelled_is_background: bool,
+}
+
+impl Default for SvrdmOptions {
+    fn default() -> Self {
+        Self { params: SvrdmTrainParams::default(), unlabelled_is_background: true }
+    }
+}

@@ -1,0 +1,94 @@
+//! How a training run of the thesis's method went.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::pca::QualityRow;
+use crate::svrdm::SvrdmModel;
+use crate::train::TrainingReport;
+use crate::train::report::class_notes;
+use crate::train::svrdm::BranchReport;
+
+use super::fit::Fitted;
+use super::material::Material;
+use super::thresholds::Estimated;
+
+/// Vectors whose product with their sign vector is below this are close to being turned round.
+const CLOSE_TO_FLIPPING: f64 = 0.1;
+
+/// What training found, beyond what it reports of every method.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SvrdmReport {
+    /// Values in a reduced row, `r`.
+    pub dims: usize,
+    /// Share of the variance that they keep (Eq. 3.8).
+    pub quality: f64,
+    /// What fewer or more would keep.
+    pub quality_table: Vec<QualityRow>,
+    /// Of each direction, the share of samples whose sign was close to flipping (Alg. 5).
+    pub unsure_signs: Vec<f64>,
+    /// The branches of the tree, the root first.
+    pub branches: Vec<BranchReport>,
+    /// `T` in recognition.
+    pub accept: f64,
+    /// Least confidence that is reported.
+    pub min_confidence: f64,
+    /// How these two were estimated, if they were.
+    pub estimated: Option<Estimated>,
+}
+
+pub(super) fn of(
+    material: &Material,
+    fitted: &Fitted,
+    model: &SvrdmModel,
+    estimated: Option<Estimated>,
+) -> TrainingReport {
+    let mut background_secs = BTreeMap::new();
+    for background in &material.background {
+        let known: usize = background.known.iter().map(ExactSizeIterator::len).sum();
+        let secs = background.rows.len().saturating_sub(known) as f64 / model.rate_hz();
+        let source = if background.unlabelled { "unlabelled" } else { "clips" };
+        *background_secs.entry(source.to_owned()).or_insert(0.0) += secs;
+    }
+    let mut notes = class_notes(&model.classes);
+    if !material.missing.is_empty() {
+        notes.push(format!(
+            "joints that a clip lacks turn with their parents there: {}",
+            material.missing.join("; ")
+        ));
+    }
+    let shortest = model.params.min_chunks as f64 * model.params.chunk_frames as f64 / model.rate_hz();
+    let short = model.classes.iter().zip(&model.mean_secs).filter(|(_, mean)| **mean < shortest);
+    notes.extend(short.map(|(class, mean)| {
+        format!("{}: {mean:.2} s on average, the shortest segment looked at is {shortest:.2} s", class.name)
+    }));
+    let threshold_from = match &estimated {
+        Some(e) => format!(
+            "{} left-out samples and {:.1} min of background, the most confident of which had {:.2}",
+            e.samples, e.background_minutes, e.background_confidence
+        ),
+        None => "the parameters".to_owned(),
+    };
+    let svrdm = SvrdmReport {
+        dims: model.pca.dims(),
+        quality: model.pca.quality(),
+        quality_table: model.pca.quality_table(),
+        unsure_signs: fitted.signs.iter().map(|s| s.unsure(CLOSE_TO_FLIPPING)).collect(),
+        branches: fitted.branches.clone(),
+        accept: model.params.accept,
+        min_confidence: model.params.min_confidence,
+        estimated,
+    };
+    TrainingReport {
+        classes: model.classes.clone(),
+        bones: material.pivots.pivots().iter().map(|p| p.name.clone()).collect(),
+        background_secs,
+        threshold: model.params.min_confidence as f32,
+        threshold_from,
+        negatives: BTreeMap::new(),
+        verified: false,
+        notes,
+        svrdm: Some(svrdm),
+    }
+}

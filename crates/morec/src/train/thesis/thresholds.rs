@@ -1,0 +1,215 @@
+//! Thresholds of recognition from training samples and background motion (future work in the thesis, ch. 6).
+//!
+//! The thesis trains with `T = 1` and recognises with a `T` of 0.92 that was chosen by hand. Here `T` is as low as
+//! samples need that were left out of training, and a second threshold, on the confidence of what the tree let pass, is
+//! as high as motion asks for that is none of the classes.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::progress::Progress;
+use crate::svrdm::{Candidates, Descent, FeatureExtraction, Gram, SegmentScoring, SvrdmEngine, SvrdmModel};
+use crate::train::TrainError;
+
+use super::fit::fit;
+use super::material::{Background, Material};
+use super::{SvrdmTrainParams, ThesisSample};
+
+/// `T` is not below this: outputs between the sides of a branch are about this large.
+const LEAST_ACCEPT: f64 = 0.5;
+/// `T` is not above what the thesis recognises with.
+const MOST_ACCEPT: f64 = 0.92;
+/// This share of left-out samples may fall below `T`.
+const MAY_MISS: f64 = 0.05;
+/// This share of the left-out samples that the tree gets right may fall below the least confidence, if background
+/// asks for as much: what lies near a motion in its own clip must not silence the class.
+const MAY_SILENCE: f64 = 0.25;
+/// Background must stay below the least confidence by so much.
+const MARGIN: f64 = 0.01;
+/// The least confidence where there is no background to ask for more.
+const LEAST_CONFIDENCE: f64 = 0.3;
+/// Detections that share more than this with a sample say nothing about background.
+const MAX_OVERLAP: f64 = 0.3;
+
+/// Where the thresholds come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ThresholdRule {
+    /// Those that the parameters name.
+    Fixed,
+    /// Estimated.
+    Estimated {
+        /// Parts into which each class's samples are dealt; each is left out in turn.
+        folds: usize,
+    },
+}
+
+/// What was estimated, and from what.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Estimated {
+    /// `T`.
+    pub accept: f64,
+    /// The least confidence that is reported.
+    pub min_confidence: f64,
+    /// Left-out samples that were judged.
+    pub samples: usize,
+    /// Of these, the share that the tree takes to their class with at least `accept`.
+    pub right: f64,
+    /// The share that it takes to another.
+    pub wrong: f64,
+    /// Of the right ones, the share that is confident enough.
+    pub confident: f64,
+    /// Minutes of background that were looked at.
+    pub background_minutes: f64,
+    /// What was detected in it before the threshold on confidence.
+    pub background_detections: usize,
+    /// The most confident of these.
+    pub background_confidence: f64,
+}
+
+impl Estimated {
+    /// The model with these thresholds.
+    pub fn applied_to(&self, model: &SvrdmModel) -> SvrdmModel {
+        let mut model = model.clone();
+        (model.params.accept, model.params.min_confidence) = (self.accept, self.min_confidence);
+        model
+    }
+}
+
+/// How one left-out sample came through.
+struct Judged {
+    right: bool,
+    /// Least output on its way down the tree.
+    output: f64,
+    confidence: f64,
+}
+
+/// Estimates both thresholds. Trains `folds` times, then plays all background through the model.
+pub(super) fn estimate(
+    material: &Material,
+    model: &SvrdmModel,
+    params: &SvrdmTrainParams,
+    folds: usize,
+    progress: &dyn Progress,
+) -> Result<Estimated, TrainError> {
+    let folds = folds.max(2);
+    let places = dealt(&material.samples, folds);
+    let mut judged = vec![];
+    for fold in 0..folds {
+        progress.report("thresholds", fold, folds + 1);
+        if progress.cancelled() {
+            return Err(TrainError::Cancelled);
+        }
+        judged.extend(judge_fold(material, params, &places, fold)?);
+    }
+    let mut outputs: Vec<f64> = judged.iter().filter(|j| j.right).map(|j| j.output).collect();
+    let accept = low_quantile(&mut outputs, MAY_MISS).unwrap_or(params.stages.accept);
+    let accept = accept.clamp(LEAST_ACCEPT, MOST_ACCEPT);
+
+    let mut listening = model.clone();
+    (listening.params.accept, listening.params.min_confidence) = (accept, 0.2);
+    let listening = Arc::new(listening);
+    let scores: Result<Vec<Vec<f64>>, TrainError> =
+        material.background.par_iter().map(|b| heard(&listening, b)).collect();
+    let scores = scores?.concat();
+    let background_confidence = scores.iter().copied().fold(0.0, f64::max);
+
+    let passing = || judged.iter().filter(|j| j.right && j.output >= accept);
+    let mut confidences: Vec<f64> = passing().map(|j| j.confidence).collect();
+    let most = low_quantile(&mut confidences, MAY_SILENCE).unwrap_or(1.0).max(LEAST_CONFIDENCE);
+    let min_confidence = (background_confidence + MARGIN).clamp(LEAST_CONFIDENCE, most);
+    let share = |count: usize, of: usize| count as f64 / of.max(1) as f64;
+    let right = passing().count();
+    let frames: usize = material.background.iter().map(|b| b.rows.len() - known_frames(b)).sum();
+    Ok(Estimated {
+        accept,
+        min_confidence: min_confidence.min(0.99),
+        samples: judged.len(),
+        right: share(right, judged.len()),
+        wrong: share(judged.iter().filter(|j| !j.right && j.output >= accept).count(), judged.len()),
+        confident: share(passing().filter(|j| j.confidence >= min_confidence).count(), right),
+        background_minutes: frames as f64 / params.pose.rate_hz / 60.0,
+        background_detections: scores.len(),
+        background_confidence,
+    })
+}
+
+/// For each sample the fold that leaves it out; `None` for the only one of its class.
+fn dealt(samples: &[ThesisSample], folds: usize) -> Vec<Option<usize>> {
+    let mut met = std::collections::BTreeMap::new();
+    let count = |s: &ThesisSample| samples.iter().filter(|other| other.class == s.class).count();
+    samples
+        .iter()
+        .map(|s| {
+            let at = met.entry(s.class).or_insert(0usize);
+            *at += 1;
+            (count(s) > 1).then_some((*at - 1) % folds)
+        })
+        .collect()
+}
+
+/// Trains without one fold and puts its samples through.
+fn judge_fold(
+    material: &Material,
+    params: &SvrdmTrainParams,
+    places: &[Option<usize>],
+    fold: usize,
+) -> Result<Vec<Judged>, TrainError> {
+    let (mut out, mut taught) = (vec![], vec![]);
+    for (sample, place) in material.samples.iter().zip(places) {
+        if *place == Some(fold) { out.push(sample) } else { taught.push(sample.clone()) }
+    }
+    if out.is_empty() {
+        return Ok(vec![]);
+    }
+    let mut model = fit(&taught, &material.classes, &material.pca, params)?.model;
+    model.params.min_confidence = 0.0;
+    let stages = &model.params;
+    let mut extraction = FeatureExtraction::new(stages, model.pca.dims(), &model.signs);
+    let mut scoring = SegmentScoring::new(&model).map_err(TrainError::Svrdm)?;
+    let mut candidates = Candidates::default();
+    let judge = |sample: &ThesisSample| {
+        let gram = Gram::of_rows(sample.rows.values(), model.pca.dims(), stages.chunk_frames);
+        let feature = extraction.feature(&gram)?;
+        model.tree.descend(feature, f64::NEG_INFINITY, Descent::Larger, &mut candidates);
+        let found = *candidates.first()?;
+        let confidence =
+            scoring.score(sample.class, extraction.profile(&gram, sample.rows.iter()), gram.frames());
+        Some(Judged { right: found.class == sample.class, output: found.output, confidence })
+    };
+    Ok(out.into_iter().filter_map(judge).collect())
+}
+
+/// Confidences of what is detected in background.
+fn heard(model: &Arc<SvrdmModel>, background: &Background) -> Result<Vec<f64>, TrainError> {
+    let mut engine = SvrdmEngine::new(model).map_err(TrainError::Svrdm)?;
+    let mut scores = vec![];
+    let mut hear = |d: crate::svrdm::FrameDetection| {
+        let span = d.start.max(0) as usize..d.stop.max(0) as usize;
+        if background.known.iter().all(|known| overlap(&span, known) <= MAX_OVERLAP) {
+            scores.push(d.score);
+        }
+    };
+    background.rows.iter().for_each(|row| engine.push(row, &mut hear));
+    engine.finish(&mut hear);
+    Ok(scores)
+}
+
+/// What two spans share, as a share of the shorter one.
+fn overlap(a: &Range<usize>, b: &Range<usize>) -> f64 {
+    let common = a.end.min(b.end).saturating_sub(a.start.max(b.start));
+    common as f64 / a.len().min(b.len()).max(1) as f64
+}
+
+fn known_frames(background: &Background) -> usize {
+    background.known.iter().map(ExactSizeIterator::len).sum::<usize>().min(background.rows.len())
+}
+
+/// The value below which at most the share `below` of `values` lies.
+fn low_quantile(values: &mut [f64], below: f64) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get((below * values.len() as f64).floor() as usize).copied()
+}
