@@ -11,6 +11,7 @@ mod report;
 mod ridge;
 mod scatter;
 mod set;
+pub mod svrdm;
 mod templates;
 mod trim;
 mod verifier;
