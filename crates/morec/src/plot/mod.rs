@@ -7,6 +7,7 @@ mod axis;
 mod chart;
 mod heat_map;
 mod text;
+mod tree;
 
 #[cfg(test)]
 mod tests;
@@ -14,6 +15,7 @@ mod tests;
 pub use chart::{Chart, Regions};
 pub use heat_map::HeatMap;
 pub(crate) use text::Text;
+pub use tree::{TreeBox, tree_svg};
 
 /// Colour of the `i`th thing in a picture; neighbours differ well, however many there are.
 pub fn colour(i: usize) -> String {

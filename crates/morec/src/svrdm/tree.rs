@@ -108,14 +108,8 @@ impl Tree {
     /// allocation.
     pub fn reduce(&self, branch: &Branch, vector: &[f64]) -> [f64; 2] {
         debug_assert_eq!(vector.len(), self.dim());
-        let kernel = Gaussian::new(branch.sigma_full);
-        let near = |rows: &[u32]| {
-            let sum: f64 = rows.iter().map(|&row| kernel.of(self.exemplar(row), vector)).sum();
-            sum / rows.len() as f64
-        };
-        let [l11, l21, l22] = branch.factor;
-        let first = near(&branch.exemplars[0]) / l11;
-        [first, (near(&branch.exemplars[1]) - l21 * first) / l22]
+        let exemplars = [0, 1].map(|side| branch.exemplars[side].iter().map(|&row| self.exemplar(row)));
+        reduce(exemplars, branch.factor, branch.sigma_full, vector)
     }
 
     /// What both machines of `branch` say of `vector`. O(exemplars · n + points), no allocation.
@@ -142,6 +136,24 @@ impl Branch {
         }
         outputs
     }
+}
+
+/// `vector` in the plane of two sets of exemplars (none empty), whose centroids have this factor under a kernel of this
+/// width (Eq. 3.40). O(exemplars · n), no allocation.
+pub fn reduce<'a>(
+    exemplars: [impl Iterator<Item = &'a [f64]>; 2],
+    factor: [f64; 3],
+    sigma: f64,
+    vector: &[f64],
+) -> [f64; 2] {
+    let kernel = Gaussian::new(sigma);
+    let [first, second] = exemplars.map(|side| {
+        let (sum, count) = side.fold((0.0, 0), |(sum, count), x| (sum + kernel.of(x, vector), count + 1));
+        sum / f64::from(count)
+    });
+    let [l11, l21, l22] = factor;
+    let along = first / l11;
+    [along, (second - l21 * along) / l22]
 }
 
 impl TryFrom<Parts> for Tree {
