@@ -89,7 +89,7 @@
 //! | feature rows | [`features`] | 30 rows a second, alike for people of any size, facing anywhere |
 //! | learning | [`labels`], [`train`] | a [`TemplateModel`](templates::TemplateModel) and a report |
 //! | keeping | [`index`] | one file, with a checksum and where it came from |
-//! | recognising | [`templates`], [`decode`], [`live`] | [`Detection`](live::Detection)s, nothing taken back |
+//! | recognising | [`templates`] or [`svrdm`], [`decode`], [`live`] | [`Detection`](live::Detection)s, nothing taken back |
 //! | measuring | [`eval`], [`crossval`], [`report`], [`plot`] | figures, timelines, charts, one page of HTML |
 //!
 //! [`synth`] makes people, clips and labels where there are none; [`resample`], [`math`], [`classes`] and

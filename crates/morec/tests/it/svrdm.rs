@@ -123,7 +123,7 @@ fn a_stream_without_end_keeps_its_precision() {
     let reference = reference();
     let (rows, model) = (reference.rows(), reference.model(&reference.models[0]));
     let mut model = SvrdmModel::clone(&model);
-    // Every fourth length, or the test would take a minute.
+    // Long chunks and few lengths: with the thesis's, the test would take twenty times as long.
     model.params =
         morec::svrdm::SvrdmParams { chunk_frames: 64, min_chunks: 2, max_chunks: 4, ..model.params };
     let mut engine = SvrdmEngine::new(&Arc::new(model)).unwrap();
