@@ -121,6 +121,7 @@
 
 pub mod classes;
 pub mod clip;
+pub mod cluster;
 pub mod crossval;
 pub mod decode;
 pub mod eval;
@@ -139,6 +140,7 @@ pub mod progress;
 pub mod report;
 pub mod resample;
 pub mod roles;
+pub mod segment;
 pub mod synth;
 pub mod templates;
 pub mod train;
