@@ -5,11 +5,11 @@
 //! such matrices (of `M`, not of `A`: Eq. 3.17), `uᵢ, vᵢ` their eigenvectors.
 
 mod agreement;
-mod groups;
+mod clusters;
 mod kwas;
 
 pub use agreement::{Pairs, adjusted_rand_index};
-pub use groups::{Groups, connected, kwas_groups};
+pub use clusters::{Clusters, connected, kwas_clusters};
 pub use kwas::{KwasForm, KwasParams, Spectrum, kwas};
 
 #[cfg(test)]
