@@ -89,7 +89,8 @@
 //! | feature rows | [`features`] | 30 rows a second, alike for people of any size, facing anywhere |
 //! | learning | [`labels`], [`train`] | a [`TemplateModel`](templates::TemplateModel) and a report |
 //! | keeping | [`index`] | one file, with a checksum and where it came from |
-//! | recognising | [`templates`], [`decode`], [`live`] | [`Detection`](live::Detection)s, nothing taken back |
+//! | recognising | [`templates`] or [`svrdm`], [`decode`], [`live`] | [`Detection`](live::Detection)s, nothing taken back |
+//! | without labels | [`pivots`], [`pca`], [`segment`], [`cluster`] | pose rows, fewer dimensions, cuts, samples that are alike |
 //! | measuring | [`eval`], [`crossval`], [`report`], [`plot`] | figures, timelines, charts, one page of HTML |
 //!
 //! [`synth`] makes people, clips and labels where there are none; [`resample`], [`math`], [`classes`] and
@@ -121,6 +122,7 @@
 
 pub mod classes;
 pub mod clip;
+pub mod cluster;
 pub mod crossval;
 pub mod decode;
 pub mod eval;
@@ -139,6 +141,7 @@ pub mod progress;
 pub mod report;
 pub mod resample;
 pub mod roles;
+pub mod segment;
 pub mod svrdm;
 pub mod synth;
 pub mod templates;

@@ -95,6 +95,12 @@ impl Pca {
         self.eigenvalues[..self.dims].iter().sum::<f64>() / self.eigenvalues.iter().sum::<f64>()
     }
 
+    /// Root mean square of what a value of the fitted rows is off after reduction and reconstruction.
+    pub fn rms_error(&self) -> f64 {
+        let lost: f64 = self.eigenvalues[self.dims..].iter().sum();
+        (lost / (self.rows as f64 * self.dim() as f64)).sqrt()
+    }
+
     /// What each number of dimensions would keep, `1..=D`.
     pub fn quality_table(&self) -> Vec<QualityRow> {
         let all: f64 = self.eigenvalues.iter().sum();

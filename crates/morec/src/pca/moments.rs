@@ -53,8 +53,9 @@ impl Moments {
         self.push_values(rows.values());
     }
 
-    /// Adds rows given as their values, one row after the other; what is no whole row at the end is left out.
-    pub fn push_values(&mut self, values: &[f32]) {
+    /// Adds rows given as their values in either precision, one row after the other; what is no whole row at the end
+    /// is left out.
+    pub fn push_values<V: Copy + Into<f64>>(&mut self, values: &[V]) {
         let dim = self.dim().max(1);
         let whole = values.len() / dim * dim;
         for block in values[..whole].chunks(BLOCK * dim) {
@@ -62,15 +63,15 @@ impl Moments {
         }
     }
 
-    fn push_block(&mut self, block: &[f32]) {
+    fn push_block<V: Copy + Into<f64>>(&mut self, block: &[V]) {
         let (dim, rows) = (self.dim(), block.len() / self.dim());
         let mut mean = vec![0.0; dim];
         for row in block.chunks_exact(dim) {
-            mean.iter_mut().zip(row).for_each(|(m, v)| *m += f64::from(*v) / rows as f64);
+            mean.iter_mut().zip(row).for_each(|(m, v)| *m += (*v).into() / rows as f64);
         }
         let mut centred = vec![0.0; dim];
         for row in block.chunks_exact(dim) {
-            (0..dim).for_each(|k| centred[k] = f64::from(row[k]) - mean[k]);
+            (0..dim).for_each(|k| centred[k] = row[k].into() - mean[k]);
             add_outer(&mut self.scatter, &centred, 1.0);
         }
         self.shift(rows as u64, &mean);

@@ -1,7 +1,7 @@
 use nalgebra::DMatrix;
 use proptest::prelude::*;
 
-use super::{Eigen, Keep, Moments, Pca, PcaError};
+use super::{Eigen, Keep, Moments, Pca, PcaError, quality_chart};
 use crate::features::Rows;
 
 /// Rows about a mean that may be far from 0.
@@ -121,6 +121,10 @@ fn known_axes_are_found() {
     assert!((table[1].quality - 1.0).abs() < 1e-6 && (table[1].eigenvalue - 2.0).abs() < 1e-5);
     assert!((pca.project(&cross()).row(0)[0] - 3.0).abs() < 1e-5);
     assert!((pca.mean()[2] - 7.0).abs() < 1e-12);
+    // What one dimension loses: 1 twice, of twelve values.
+    assert!((pca.rms_error() - (2.0f64 / 12.0).sqrt()).abs() < 1e-6);
+    let svg = quality_chart(&table, pca.dims(), "kept").svg();
+    assert!(svg.contains("share of the variance") && svg.contains("chosen"));
 }
 
 #[test]

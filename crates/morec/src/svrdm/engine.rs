@@ -81,6 +81,13 @@ impl SvrdmEngine {
         &self.model
     }
 
+    /// Rows that must follow a motion's last before it can be reported: those of the chunk that shows its segment to be
+    /// a maximum. How long it then waits for rivals, [`SegmentTracking`] says: until
+    /// [`wait_chunks`](SvrdmParams::wait_chunks) at the most.
+    pub fn latency_frames(&self) -> usize {
+        self.model.params.chunk_frames
+    }
+
     /// Forgets the stream so far.
     pub fn reset(&mut self) {
         self.chunks.reset();

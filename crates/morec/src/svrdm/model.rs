@@ -10,7 +10,7 @@ use super::{MAX_PROFILE_FRAMES, Node, SvrdmParams, Tree};
 /// Everything this recogniser needs, immutable (thesis, §4.7.2, lists the same).
 ///
 /// Notation: `D` values in a pose row, `r` after projection, `k` directions, `n = k · r` values in a feature vector.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct SvrdmModel {
     /// The classes; a [`ClassId`] is an index into this.
     pub classes: Vec<ClassInfo>,
@@ -134,6 +134,12 @@ impl SvrdmModel {
         if reduced < self.params.eigenvectors || reduced > MAX_DIM {
             let (low, high) = (self.params.eigenvectors, MAX_DIM);
             return Err(value(format!("reduced rows must have {low} to {high} values, found {reduced}")));
+        }
+        // First of all the lengths, which are summed up below.
+        if let Some(length) = self.profiles.lengths.iter().find(|l| !(1..=MAX_PROFILE_FRAMES).contains(*l)) {
+            return Err(value(format!(
+                "a profile must have 1 to {MAX_PROFILE_FRAMES} frames, found {length}"
+            )));
         }
         let feature_dim = self.params.feature_dim(reduced);
         let profiles = &self.profiles;

@@ -58,10 +58,10 @@ impl Directions {
     pub fn find(&mut self, gram: &Gram, centring: Centring) -> bool {
         assert_eq!(gram.dim(), self.dim, "rows of another width");
         match self.dim {
-            ..=4 => find_4(self, gram, centring),
-            ..=8 => find_8(self, gram, centring),
-            ..=16 => find_16(self, gram, centring),
-            ..=32 => find_32(self, gram, centring),
+            0..=4 => find_4(self, gram, centring),
+            5..=8 => find_8(self, gram, centring),
+            9..=16 => find_16(self, gram, centring),
+            17..=32 => find_32(self, gram, centring),
             _ => find_64(self, gram, centring),
         }
     }

@@ -11,5 +11,6 @@ mod index_file;
 mod kit;
 mod layers;
 mod made;
+mod pose_golden;
 mod svrdm;
 mod thesis;

@@ -123,7 +123,7 @@ fn a_stream_without_end_keeps_its_precision() {
     let reference = reference();
     let (rows, model) = (reference.rows(), reference.model(&reference.models[0]));
     let mut model = SvrdmModel::clone(&model);
-    // Every fourth length, or the test would take a minute.
+    // Long chunks and few lengths: with the thesis's, the test would take twenty times as long.
     model.params =
         morec::svrdm::SvrdmParams { chunk_frames: 64, min_chunks: 2, max_chunks: 4, ..model.params };
     let mut engine = SvrdmEngine::new(&Arc::new(model)).unwrap();
@@ -144,6 +144,14 @@ fn a_stream_without_end_keeps_its_precision() {
 }
 
 #[test]
+fn a_model_comes_back_from_its_words() {
+    let reference = reference();
+    let model = reference.model(&reference.models[1]);
+    let words = serde_json::to_string(&*model).unwrap();
+    assert_eq!(serde_json::from_str::<SvrdmModel>(&words).unwrap(), *model);
+}
+
+#[test]
 fn parts_that_do_not_fit_are_refused() {
     let reference = reference();
     let good = reference.model(&reference.models[0]);
@@ -160,7 +168,9 @@ fn parts_that_do_not_fit_are_refused() {
     assert_eq!(wrong(|m| m.profiles.classes.truncate(3)), size("classes of profiles", 25, 3));
     assert!(wrong(|m| m.params.eigenvectors = 3).to_string().starts_with("values in the sign vectors"));
     let message = |change| wrong(change).to_string();
-    assert!(message(|m| m.profiles.lengths[0] = 0).contains("values of profiles"));
+    assert!(message(|m| m.profiles.lengths[0] -= 1).contains("values of profiles"));
+    assert!(message(|m| m.profiles.lengths[0] = 0).contains("1 to 2047 frames, found 0"));
+    assert!(message(|m| m.profiles.lengths.fill(usize::MAX)).contains("1 to 2047 frames"));
     assert!(message(|m| m.profiles.values[7] = f32::NAN).contains("not finite"));
     assert!(
         message(|m| m.profiles.classes.fill(morec::classes::ClassId(1))).contains("class 0 has no profile")

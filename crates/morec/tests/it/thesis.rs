@@ -20,6 +20,7 @@ pub struct Reference {
 
 /// One model and what the prototype makes of the stream with it.
 #[derive(serde::Deserialize)]
+#[allow(dead_code)] // Not all who include this file compare figures.
 pub struct Figures {
     scaling: Scaling,
     pca: Pca,
