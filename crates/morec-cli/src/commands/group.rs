@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
+use clap::ValueEnum;
 use morec::cluster::{Clusters, KwasForm, KwasParams, Pairs, Spectrum, adjusted_rand_index, kwas_clusters};
 use morec::features::Rows;
 use morec::labels::Labels;
@@ -26,7 +27,7 @@ use crate::table::Table;
 #[command(after_help = "\
 Examples:
   morec group --clips recordings/ --labels labels.tsv
-  morec group --clips recordings/ --labels labels.tsv --tau 0.99 --json
+  morec group --clips recordings/ --labels labels.tsv --centre none --tau 0.995
   morec group --clips 86_01.amc")]
 pub struct Args {
     /// Clips, or folders of clips
@@ -48,6 +49,9 @@ pub struct Args {
     /// Scale similarity so that a sample is 1 like itself, however few directions count
     #[arg(long)]
     normalised: bool,
+    /// What samples are centred on before they are compared
+    #[arg(long, value_enum, default_value = "database")]
+    centre: Centre,
     /// Share of the variance of all poses that is kept before samples are compared
     #[arg(long, value_name = "SHARE", default_value_t = 0.99)]
     quality: f64,
@@ -59,6 +63,16 @@ pub struct Args {
     json: bool,
     #[command(flatten)]
     poses: PoseArgs,
+}
+
+/// What samples are centred on.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+enum Centre {
+    /// The mean of all poses, which are then reduced to --quality or --dims: samples are many small clusters
+    Database,
+    /// Nothing, and all dimensions are kept: the mean pose counts, samples are more alike, and --tau belongs near 1
+    None,
 }
 
 /// A stretch of a clip to be grouped.
@@ -82,6 +96,7 @@ struct Agreement {
 #[derive(Serialize)]
 struct Grouped {
     kwas: KwasParams,
+    centre: Centre,
     dims: usize,
     quality: f64,
     clusters: Vec<Vec<Sample>>,
@@ -100,16 +115,18 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         Some(_) => labelled(args, &clips)?,
         None => cut(&reader, &clips)?,
     };
-    let mut moments = Moments::new(reader.set.row_dim());
-    clips.values().for_each(|clip| moments.push_rows(&clip.rows));
-    let pca = Pca::fit(&moments, keep)?;
-    let (samples, spectra) = spectra(samples, &clips, reader.rate_hz(), &pca)?;
+    let pca = match args.centre {
+        Centre::Database => Some(components(&clips, reader.set.row_dim(), keep)?),
+        Centre::None => None,
+    };
+    let (samples, spectra) = spectra(samples, &clips, reader.rate_hz(), pca.as_ref())?;
     let clusters = kwas_clusters(&spectra, &kwas);
     let agreement = args.labels.is_some().then(|| Agreement::of(&samples, &clusters));
     let take = |members: Vec<usize>| members.into_iter().map(|i| samples[i].clone()).collect();
     let mut clusters: Vec<Vec<Sample>> = clusters.members().into_iter().map(take).collect();
     clusters.sort_by_key(|cluster| std::cmp::Reverse(cluster.len()));
-    let grouped = Grouped { kwas, dims: pca.dims(), quality: pca.quality(), clusters, agreement };
+    let (dims, quality) = pca.map_or((reader.set.row_dim(), 1.0), |pca| (pca.dims(), pca.quality()));
+    let grouped = Grouped { kwas, centre: args.centre, dims, quality, clusters, agreement };
     let mut out = std::io::stdout().lock();
     if args.json {
         serde_json::to_writer_pretty(&mut out, &grouped).map_err(std::io::Error::from)?;
@@ -191,12 +208,18 @@ fn cut(reader: &PoseReader<'_>, clips: &BTreeMap<String, PosedClip>) -> Result<V
     Ok(samples)
 }
 
+fn components(clips: &BTreeMap<String, PosedClip>, dim: usize, keep: Keep) -> Result<Pca> {
+    let mut moments = Moments::new(dim);
+    clips.values().for_each(|clip| moments.push_rows(&clip.rows));
+    Ok(Pca::fit(&moments, keep)?)
+}
+
 /// The samples of at least one pose, and what kWAS knows of each.
 fn spectra(
     samples: Vec<Sample>,
     clips: &BTreeMap<String, PosedClip>,
     rate_hz: f64,
-    pca: &Pca,
+    pca: Option<&Pca>,
 ) -> Result<(Vec<Sample>, Vec<Spectrum>)> {
     let (mut kept, mut spectra) = (Vec::new(), Vec::new());
     for sample in samples {
@@ -207,7 +230,8 @@ fn spectra(
             eprintln!("morec: {}: a sample at {:.2} s holds no pose", sample.clip, sample.start_secs);
             continue;
         }
-        spectra.push(Spectrum::of_rows(&pca.project(&rows.slice(start..stop))));
+        let rows = rows.slice(start..stop);
+        spectra.push(Spectrum::of_rows(&pca.map_or_else(|| rows.clone(), |pca| pca.project(&rows))));
         kept.push(sample);
     }
     Ok((kept, spectra))

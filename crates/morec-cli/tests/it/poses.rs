@@ -72,6 +72,11 @@ fn samples_are_grouped_and_held_against_their_classes() {
     let none = group(&["--tau", "1"]);
     assert_eq!(none["clusters"].as_array().unwrap().len(), 6);
     assert_eq!(none["agreement"]["adjusted_rand_index"].as_f64(), Some(0.0));
+    // Uncentred, the mean pose makes everything alike.
+    let uncentred = group(&["--centre", "none"]);
+    assert_eq!((uncentred["dims"].as_u64(), uncentred["quality"].as_f64()), (Some(48), Some(1.0)));
+    let count = |found: &Value| found["clusters"].as_array().unwrap().len();
+    assert!(count(&uncentred) < count(&group(&[])));
     assert_eq!(samples(&group(&["--classes", "bow", "--normalised"])), 2usize);
     let text = folder
         .morec(&["group", "--clips", "clips", "--pivots", "roles", "--labels", "labels.tsv", "--tau", "0"])
