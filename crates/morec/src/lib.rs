@@ -136,6 +136,7 @@ pub mod progress;
 pub mod report;
 pub mod resample;
 pub mod roles;
+pub mod smooth;
 pub mod synth;
 pub mod templates;
 pub mod train;
