@@ -90,7 +90,7 @@
 //! | learning | [`labels`], [`train`] | a [`TemplateModel`](templates::TemplateModel) and a report |
 //! | keeping | [`index`] | one file, with a checksum and where it came from |
 //! | recognising | [`templates`], [`decode`], [`live`] | [`Detection`](live::Detection)s, nothing taken back |
-//! | measuring | [`eval`], [`crossval`], [`report`] | figures, timelines, one page of HTML |
+//! | measuring | [`eval`], [`crossval`], [`report`], [`plot`] | figures, timelines, charts, one page of HTML |
 //!
 //! [`synth`] makes people, clips and labels where there are none; [`resample`], [`math`], [`classes`] and
 //! [`progress`] are shared by several of these.
@@ -132,6 +132,7 @@ pub mod kinematics;
 pub mod labels;
 pub mod live;
 pub mod math;
+pub mod plot;
 pub mod progress;
 pub mod report;
 pub mod resample;

@@ -1,27 +1,8 @@
-//! Writing HTML and SVG: names come from files and may hold anything.
+//! Figures and times as the report writes them.
 
-use std::fmt::{self, Display, Write};
+use std::fmt::{self, Display};
 
-/// Text made safe for element content and for attributes in double quotes.
-pub(super) struct Text<'a>(pub &'a str);
-
-impl Display for Text<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for c in self.0.chars() {
-            match c {
-                '&' => f.write_str("&amp;")?,
-                '<' => f.write_str("&lt;")?,
-                '>' => f.write_str("&gt;")?,
-                '"' => f.write_str("&quot;")?,
-                '\'' => f.write_str("&#39;")?,
-                // Control characters are not allowed in HTML at all.
-                c if c.is_control() => f.write_str(" ")?,
-                c => f.write_char(c)?,
-            }
-        }
-        Ok(())
-    }
-}
+pub(super) use crate::plot::Text;
 
 /// A figure with three decimals, or a dash.
 pub(super) struct Figure(pub Option<f64>);
