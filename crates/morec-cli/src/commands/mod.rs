@@ -9,4 +9,5 @@ pub mod demo;
 pub mod evaluate;
 pub mod inspect;
 pub mod recognize;
+pub mod smooth;
 pub mod train;
