@@ -78,8 +78,9 @@ impl Report {
         if let Some(written) = &self.written {
             writeln!(out, "  written    {}", written.display())?;
         }
-        let (frames, secs, rate) = (self.frames, self.duration_secs, self.rate_hz);
-        writeln!(out, "  length     {frames} frames, {secs:.2} s at {rate:.6} Hz")?;
+        let (frames, secs) = (self.frames, self.duration_secs);
+        let rate = (self.rate_hz * 1e3).round() / 1e3;
+        writeln!(out, "  length     {frames} frames, {secs:.2} s at {rate} Hz")?;
         writeln!(
             out,
             "  keyframes  {} in {} channels, {} of which stand still",
