@@ -10,7 +10,7 @@ use morec::clip::Clip;
 use morec::formats::acclaim::{self, AmcOptions, Asf};
 use morec::formats::bvh::{self, BvhOptions, PositionChannels};
 use morec::formats::probe::{Format, format_of_name, probe};
-use morec::formats::{Limits, Loaded, Place, Warning};
+use morec::formats::{Limits, Loaded, Place, Warning, mclip};
 use morec::roles::mapping::Mapping;
 
 /// What files do not say about themselves.
@@ -109,7 +109,7 @@ pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>> {
         collect(path, &mut clips)?;
         clips[before..].sort();
         if clips.len() == before {
-            bail!("{}: no clip (.bvh, .amc) in this folder or below", path.display());
+            bail!("{}: no clip (.bvh, .amc, .mclip) in this folder or below", path.display());
         }
     }
     Ok(clips)
@@ -130,7 +130,7 @@ fn collect(folder: &Path, clips: &mut Vec<PathBuf>) -> Result<()> {
 }
 
 fn is_clip(path: &Path) -> bool {
-    matches!(format_of_name(&path.to_string_lossy()), Some(Format::Bvh | Format::Amc))
+    matches!(format_of_name(&path.to_string_lossy()), Some(Format::Bvh | Format::Amc | Format::Mclip))
 }
 
 /// Reads a clip; `-` is standard input. Errors begin with the path.
@@ -157,6 +157,7 @@ pub fn open(path: &Path, args: &ReadArgs) -> Result<Opened> {
             let (loaded, skeleton) = read_amc(path, &bytes, &stem, args)?;
             (loaded, Some(skeleton))
         }
+        Format::Mclip => (read_mclip(&bytes, &stem, args).with_context(|| shown.to_string())?, None),
     };
     Ok(Opened { format, skeleton, clips: loaded.clips, warnings: loaded.warnings })
 }
@@ -169,6 +170,14 @@ impl ReadArgs {
         });
         BvhOptions { positions, rate_hz: self.file_rate, ..BvhOptions::default() }
     }
+}
+
+fn read_mclip(bytes: &[u8], stem: &str, args: &ReadArgs) -> Result<Loaded> {
+    let mut loaded = mclip::read(bytes, stem, &Limits::default())?;
+    for clip in &mut loaded.clips {
+        clip.rate_hz = args.file_rate.unwrap_or(clip.rate_hz);
+    }
+    Ok(loaded)
 }
 
 fn stem(path: &Path) -> String {

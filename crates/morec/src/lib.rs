@@ -93,8 +93,8 @@
 //! | without labels | [`pivots`], [`pca`], [`segment`], [`cluster`] | pose rows, fewer dimensions, cuts, samples that are alike |
 //! | measuring | [`eval`], [`crossval`], [`report`], [`plot`] | figures, timelines, charts, one page of HTML |
 //!
-//! [`synth`] makes people, clips and labels where there are none; [`resample`], [`math`], [`classes`] and
-//! [`progress`] are shared by several of these.
+//! [`smooth`] turns clips into keyframes and curves, a small form to keep them in. [`synth`] makes people, clips and
+//! labels where there are none; [`resample`], [`math`], [`classes`] and [`progress`] are shared by several of these.
 //!
 //! # Notation
 //!
@@ -143,6 +143,7 @@ pub mod resample;
 pub mod roles;
 pub mod segment;
 pub mod svrdm;
+pub mod smooth;
 pub mod synth;
 pub mod templates;
 pub mod train;

@@ -25,26 +25,15 @@ impl Clip {
     /// # Errors
     /// If one of the two rates is not finite or beyond all use.
     pub fn resampled(&self, rate_hz: f64) -> Result<Clip, RateError> {
-        let error = RateError { from_hz: self.rate_hz, to_hz: rate_hz };
-        if ![self.rate_hz, rate_hz].iter().all(|rate| (1e-3..=1e5).contains(rate)) {
-            return Err(error);
-        }
-        let old_per_new = self.rate_hz / rate_hz;
-        let last = self.frames.saturating_sub(1) as f64;
-        let frames = match self.frames {
-            0 => 0,
-            _ => ((last + SAME_FRAME) / old_per_new).floor() as usize + 1,
-        };
-        let instants: Vec<(usize, f64)> =
-            (0..frames).map(|f| instant(f as f64 * old_per_new, last)).collect();
+        let instants = instants(self.frames, self.rate_hz, rate_hz)?;
         Ok(Clip {
             name: self.name.clone(),
             skeleton: self.skeleton.clone(),
             rate_hz,
             rotations: self.rotations_at(&instants),
             tracks: self.tracks.iter().map(|t| track_at(t, &instants)).collect(),
-            frames,
-            repaired: self.repaired_at(&instants),
+            frames: instants.len(),
+            repaired: repaired_at(&self.repaired, &instants),
         })
     }
 
@@ -62,24 +51,42 @@ impl Clip {
         }
         rotations
     }
+}
 
-    /// Runs of new frames that a repaired old one has a part in.
-    fn repaired_at(&self, instants: &[(usize, f64)]) -> Vec<Span> {
-        let mut spans: Vec<Span> = Vec::new();
-        let mut repaired = self.repaired.iter().peekable();
-        for (new, &(frame, t)) in instants.iter().enumerate() {
-            while repaired.next_if(|span| span.end <= frame).is_some() {}
-            let last_used = frame + usize::from(t > 0.0);
-            if repaired.peek().is_none_or(|span| span.start > last_used) {
-                continue;
-            }
-            match spans.last_mut().filter(|s| s.end == new) {
-                Some(span) => span.end += 1,
-                None => spans.push(new..new + 1),
-            }
-        }
-        spans
+/// Where the frames of a clip of `frames` frames at `to_hz` lie among those it has at `from_hz`: a frame, and how far
+/// towards the next. All of them lie within the clip.
+///
+/// # Errors
+/// If one of the two rates is not finite or beyond all use.
+pub(crate) fn instants(frames: usize, from_hz: f64, to_hz: f64) -> Result<Vec<(usize, f64)>, RateError> {
+    if ![from_hz, to_hz].iter().all(|rate| (1e-3..=1e5).contains(rate)) {
+        return Err(RateError { from_hz, to_hz });
     }
+    let old_per_new = from_hz / to_hz;
+    let last = frames.saturating_sub(1) as f64;
+    let new_frames = match frames {
+        0 => 0,
+        _ => ((last + SAME_FRAME) / old_per_new).floor() as usize + 1,
+    };
+    Ok((0..new_frames).map(|f| instant(f as f64 * old_per_new, last)).collect())
+}
+
+/// Runs of new frames that a repaired old one has a part in.
+pub(crate) fn repaired_at(repaired: &[Span], instants: &[(usize, f64)]) -> Vec<Span> {
+    let mut spans: Vec<Span> = Vec::new();
+    let mut repaired = repaired.iter().peekable();
+    for (new, &(frame, t)) in instants.iter().enumerate() {
+        while repaired.next_if(|span| span.end <= frame).is_some() {}
+        let last_used = frame + usize::from(t > 0.0);
+        if repaired.peek().is_none_or(|span| span.start > last_used) {
+            continue;
+        }
+        match spans.last_mut().filter(|s| s.end == new) {
+            Some(span) => span.end += 1,
+            None => spans.push(new..new + 1),
+        }
+    }
+    spans
 }
 
 /// The frame at or before the place `at` (in frames), and how far it lies towards the next, 0 to 1 exclusive.

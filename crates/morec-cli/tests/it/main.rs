@@ -6,3 +6,4 @@ mod evaluate;
 mod inspect;
 mod kit;
 mod poses;
+mod smooth;

@@ -5,6 +5,7 @@
 
 pub mod acclaim;
 pub mod bvh;
+pub mod mclip;
 pub mod probe;
 
 use std::fmt;

@@ -3,6 +3,7 @@
 //! A new format is registered in `READ`; one that is only recognised, to be refused by its name, in `UNREAD`.
 
 use super::{ParseError, Place};
+use crate::smooth::MAGIC;
 
 /// A format that can be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize)]
@@ -14,6 +15,8 @@ pub enum Format {
     Asf,
     /// Acclaim motion of an [`Format::Asf`] skeleton.
     Amc,
+    /// The stored form of a compressed clip ([`smooth`](crate::smooth)).
+    Mclip,
 }
 
 struct Readable {
@@ -23,7 +26,8 @@ struct Readable {
 }
 
 /// Every format that is read, in the order in which its content is asked for.
-const READ: [Readable; 3] = [
+const READ: [Readable; 4] = [
+    Readable { format: Format::Mclip, extension: "mclip", looks_so: |h| h.bytes.starts_with(MAGIC) },
     Readable { format: Format::Bvh, extension: "bvh", looks_so: is_bvh },
     Readable { format: Format::Asf, extension: "asf", looks_so: is_asf },
     Readable { format: Format::Amc, extension: "amc", looks_so: is_amc },
@@ -57,7 +61,7 @@ pub fn probe(bytes: &[u8], name: &str) -> Result<Format, ParseError> {
     if let Some(found) = READ.iter().find(|readable| (readable.looks_so)(&head)) {
         return Ok(found.format);
     }
-    let expected = "BVH, ASF or AMC";
+    let expected = "BVH, ASF, AMC or MCLIP";
     if let Some(unread) = UNREAD.iter().find(|unread| (unread.looks_so)(&head)) {
         return Err(ParseError::new(
             Place::File,
@@ -160,6 +164,7 @@ mod tests {
             (b"#!OML:ASF X:\\f\xFCr\n:FULLY-SPECIFIED\n1\n", "a", Format::Amc),
             (b"1\nroot 0 1 0 0 0 0\n", "a.bvh", Format::Amc),
             (b"hello", "dir.x/a.AMC", Format::Amc),
+            (b"MCLIP\n\x01\0", "a.bvh", Format::Mclip),
             (b"", "a.bvh", Format::Bvh),
         ] {
             assert_eq!(probe(bytes, name), Ok(format), "{name}");

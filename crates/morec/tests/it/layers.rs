@@ -4,7 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What live recognition must do without.
-const OFFLINE: [&str; 8] = ["train", "crossval", "formats", "labels", "eval", "report", "synth", "index"];
+const OFFLINE: [&str; 9] =
+    ["train", "crossval", "formats", "labels", "eval", "report", "synth", "index", "smooth"];
 
 /// Modules of the live path.
 const LIVE: [&str; 7] = ["live", "decode", "features", "templates", "pivots", "pca", "svrdm"];

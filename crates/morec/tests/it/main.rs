@@ -14,3 +14,4 @@ mod made;
 mod pose_golden;
 mod svrdm;
 mod thesis;
+mod smooth_real;

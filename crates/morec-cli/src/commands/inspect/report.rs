@@ -244,6 +244,7 @@ fn format_name(format: Format) -> &'static str {
         Format::Bvh => "BVH",
         Format::Asf => "ASF (skeleton only)",
         Format::Amc => "AMC",
+        Format::Mclip => "MCLIP (curves)",
     }
 }
 

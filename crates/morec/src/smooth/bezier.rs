@@ -1,0 +1,99 @@
+//! Cubic Bézier segments of one channel.
+
+use nalgebra::{Matrix4x3, Vector3, Vector4};
+
+/// A value of a channel: a quaternion `[x, y, z, w]`, or a position `[x, y, z, 0]`.
+pub(super) type Point = Vector4<f64>;
+/// A tangent: of a rotation in the frame of its key, of a position as it is.
+pub(super) type Tangent = Vector3<f64>;
+
+/// What the values of a channel are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// Rotations of a joint, as unit quaternions. A curve's value is brought to length 1.
+    Rotation,
+    /// Positions of a joint in its parent's frame.
+    Position,
+}
+
+/// Bernstein polynomials of degree 3 at `t` (thesis, Eq. 3.3).
+pub(super) fn bernstein(t: f64) -> [f64; 4] {
+    let s = 1.0 - t;
+    [s * s * s, 3.0 * s * s * t, 3.0 * s * t * t, t * t * t]
+}
+
+/// A stretch of a channel: a cubic Bézier curve (thesis, Eq. 3.2 and 3.4) over `frames` sample periods.
+///
+/// Lower degrees stand in their cubic form. The parameter runs evenly in time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Segment {
+    /// First sample.
+    pub start: u32,
+    /// Sample periods that the curve lasts.
+    pub frames: u32,
+    /// Control points P0 to P3; P0 and P3 are the keys.
+    pub points: [Point; 4],
+}
+
+impl Segment {
+    /// The value at `place` (in sample periods from the clip's start).
+    pub fn at(&self, kind: Kind, place: f64) -> Point {
+        let t = ((place - f64::from(self.start)) / f64::from(self.frames)).clamp(0.0, 1.0);
+        let weights = bernstein(t);
+        let [p0, p1, p2, p3] = &self.points;
+        let sum = p0 * weights[0] + p1 * weights[1] + p2 * weights[2] + p3 * weights[3];
+        kind.finish(sum).unwrap_or(*p0)
+    }
+}
+
+impl Kind {
+    /// A curve's raw value made a value of the channel; `None` for a quaternion that vanishes.
+    pub(super) fn finish(self, raw: Point) -> Option<Point> {
+        match self {
+            Kind::Position => Some(raw),
+            Kind::Rotation => {
+                let norm = raw.norm();
+                (norm > 1e-9).then(|| raw / norm)
+            }
+        }
+    }
+
+    /// `value` as seen from `origin`: `origin* value` for rotations, the difference for positions. Keeps distances.
+    pub(super) fn local(self, origin: &Point, value: &Point) -> Point {
+        match self {
+            Kind::Position => value - origin,
+            Kind::Rotation => product(&Point::new(-origin.x, -origin.y, -origin.z, origin.w), value),
+        }
+    }
+
+    /// What the origin is when seen from itself.
+    pub(super) fn identity(self) -> Point {
+        match self {
+            Kind::Position => Point::zeros(),
+            Kind::Rotation => Point::w(),
+        }
+    }
+
+    /// How a tangent at `key` moves the value, in the coordinates that `key` is given in: 4 × 3, columns
+    /// orthonormal.
+    pub(super) fn tangents(self, key: &Point) -> Matrix4x3<f64> {
+        match self {
+            Kind::Position => Matrix4x3::identity(),
+            Kind::Rotation => {
+                let [x, y, z, w]: [f64; 4] = (*key).into();
+                Matrix4x3::new(w, -z, y, z, w, -x, -y, x, w, -x, -y, -z)
+            }
+        }
+    }
+}
+
+/// Hamilton's product.
+fn product(a: &Point, b: &Point) -> Point {
+    Point::new(
+        a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+        a.w * b.y + a.y * b.w + a.z * b.x - a.x * b.z,
+        a.w * b.z + a.z * b.w + a.x * b.y - a.y * b.x,
+        a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z,
+    )
+}

@@ -1,0 +1,123 @@
+//! How far a compressed clip lies from its source, frame by frame.
+
+use super::CompressedClip;
+use crate::clip::Clip;
+use crate::kinematics::WorldPose;
+use crate::math::Quat;
+
+/// Distances between a clip and its curves, over all frames and joints.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
+pub struct Errors {
+    /// Largest angle between a joint's rotations in its parent's frame, radians.
+    pub max_angle_rad: f64,
+    /// Mean of these angles over joints and frames.
+    pub mean_angle_rad: f64,
+    /// Largest distance between positions in the parent's frame, metres, over joints that move in it.
+    pub max_position_metres: f64,
+    /// Mean of these distances.
+    pub mean_position_metres: f64,
+    /// Largest distance between positions in the world, metres, over all joints.
+    pub max_joint_position_metres: f64,
+    /// Mean of these distances.
+    pub mean_joint_position_metres: f64,
+}
+
+/// The largest and the mean of many.
+#[derive(Default)]
+struct Spread {
+    largest: f64,
+    sum: f64,
+    count: usize,
+}
+
+impl Spread {
+    fn add(&mut self, value: f64) {
+        self.largest = self.largest.max(value);
+        self.sum += value;
+        self.count += 1;
+    }
+
+    fn mean(&self) -> f64 {
+        self.sum / self.count.max(1) as f64
+    }
+}
+
+/// The angle between two rotations; exact near 0, where an arc cosine would lose half the digits.
+pub(super) fn angle_between(a: &Quat, b: &Quat) -> f64 {
+    let (minus, plus) = ((a.coords - b.coords).norm(), (a.coords + b.coords).norm());
+    4.0 * minus.min(plus).atan2(minus.max(plus))
+}
+
+impl Errors {
+    pub(super) fn as_array(&self) -> [f64; 6] {
+        let Self {
+            max_angle_rad,
+            mean_angle_rad,
+            max_position_metres,
+            mean_position_metres,
+            max_joint_position_metres,
+            mean_joint_position_metres,
+        } = *self;
+        [
+            max_angle_rad,
+            mean_angle_rad,
+            max_position_metres,
+            mean_position_metres,
+            max_joint_position_metres,
+            mean_joint_position_metres,
+        ]
+    }
+
+    pub(super) fn from_array(values: [f64; 6]) -> Self {
+        Self {
+            max_angle_rad: values[0],
+            mean_angle_rad: values[1],
+            max_position_metres: values[2],
+            mean_position_metres: values[3],
+            max_joint_position_metres: values[4],
+            mean_joint_position_metres: values[5],
+        }
+    }
+
+    /// The distances between two clips of the same skeleton and frames. O(frames × joints).
+    pub(super) fn between(a: &Clip, b: &Clip, metres_per_unit: f64) -> Self {
+        let (mut angle, mut position, mut world) = (Spread::default(), Spread::default(), Spread::default());
+        for (x, y) in a.rotations.iter().zip(&b.rotations) {
+            angle.add(angle_between(x, y));
+        }
+        for (x, y) in a.tracks.iter().zip(&b.tracks) {
+            for (x, y) in x.positions.iter().zip(&y.positions) {
+                position.add((x - y).norm() * metres_per_unit);
+            }
+        }
+        let (mut pose_a, mut pose_b) = (WorldPose::default(), WorldPose::default());
+        for frame in 0..a.frames {
+            pose_a.set(a, frame);
+            pose_b.set(b, frame);
+            for (x, y) in pose_a.positions.iter().zip(&pose_b.positions) {
+                world.add((x - y).norm() * metres_per_unit);
+            }
+        }
+        Self {
+            max_angle_rad: angle.largest,
+            mean_angle_rad: angle.mean(),
+            max_position_metres: position.largest,
+            mean_position_metres: position.mean(),
+            max_joint_position_metres: world.largest,
+            mean_joint_position_metres: world.mean(),
+        }
+    }
+}
+
+impl CompressedClip {
+    /// How far the curves lie from `clip`, at each of its frames; `None` if its joints, tracks or number of frames
+    /// are not those of the clip that was compressed. O(frames × joints).
+    pub fn measure(&self, clip: &Clip) -> Option<Errors> {
+        let same = clip.frames == self.frames
+            && clip.skeleton == self.skeleton
+            && clip.rotations.len() == clip.frames * clip.skeleton.len()
+            && clip.tracks.iter().map(|t| t.joint).eq(self.positions.iter().map(|c| c.joint))
+            && clip.tracks.iter().all(|t| t.positions.len() == clip.frames);
+        same.then(|| Errors::between(clip, &self.at_source_frames(), self.params.metres_per_unit))
+    }
+}

@@ -1,0 +1,187 @@
+//! The curves of all channels through the coder, each number as its difference from what those before it promise.
+
+use super::coder::{Coder, Flag, Whole};
+use crate::smooth::Kind;
+use crate::smooth::bezier::{Point, Tangent};
+use crate::smooth::lattice::{Code, Lattice, MOST_STEPS, Piece, Step, Tangents};
+
+/// Why a channel could not be read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Fault {
+    /// The bytes are used up.
+    Cut,
+    /// More curves than there can be.
+    TooMany,
+    /// A number that no writer writes.
+    Number,
+}
+
+/// What is foreseen of one kind of channel.
+#[derive(Default)]
+struct Model {
+    steps: [Whole; 2],
+    constant: Flag,
+    same_steps: Flag,
+    first: Whole,
+    frames: Whole,
+    line: Flag,
+    parabola: Flag,
+    key: [Whole; 2],
+    leaving: Whole,
+    arriving: Whole,
+}
+
+/// Foresees and codes channels, one after the other.
+#[derive(Default)]
+pub(super) struct Motion {
+    rotation: Model,
+    position: Model,
+    steps: [Option<Lattice>; 2],
+}
+
+/// A channel as it is stored.
+pub(super) struct Stored {
+    pub lattice: Lattice,
+    pub first: Code,
+    pub pieces: Vec<Piece>,
+}
+
+/// Where a curve stands, between one piece and the next.
+struct State {
+    key: Code,
+    point: Point,
+    /// Velocity at which the last piece arrived, in tangents a sample period; zero at the start.
+    arrival: Tangent,
+}
+
+/// How much of the way to the next key the leaving tangent foretells: 3 were the curve a line, and less the more it
+/// slows down.
+const REACH_OF_TANGENT: f64 = 1.8;
+
+impl Motion {
+    /// Writes `channel`, or reads one (whatever `channel` then is) of `frames` frames and at most `most` pieces.
+    pub fn channel<C: Coder>(
+        &mut self,
+        coder: &mut C,
+        kind: Kind,
+        channel: &Stored,
+        frames: usize,
+        most: usize,
+    ) -> Result<Stored, Fault> {
+        let (model, last) = match kind {
+            Kind::Rotation => (&mut self.rotation, &mut self.steps[0]),
+            Kind::Position => (&mut self.position, &mut self.steps[1]),
+        };
+        let lattice = model.lattice(coder, kind, channel.lattice, *last)?;
+        *last = Some(lattice);
+        let first = code(coder, &mut model.first, channel.first, [0; 3])?;
+        let mut pieces = Vec::new();
+        if model.constant.code(coder, channel.pieces.is_empty()) {
+            return Ok(Stored { lattice, first, pieces });
+        }
+        let mut state =
+            State { key: first, point: lattice.key_point(&first, None), arrival: Tangent::zeros() };
+        let mut left = frames.saturating_sub(1);
+        while left > 0 {
+            if coder.is_beyond_end() {
+                return Err(Fault::Cut);
+            }
+            if pieces.len() >= most {
+                return Err(Fault::TooMany);
+            }
+            let given = channel.pieces.get(pieces.len()).copied();
+            let piece = model.piece(coder, &lattice, given, &mut state)?;
+            left = left.checked_sub(piece.frames as usize).ok_or(Fault::Number)?;
+            pieces.push(piece);
+        }
+        Ok(Stored { lattice, first, pieces })
+    }
+}
+
+impl Model {
+    /// The steps of a channel: mostly those of the channel before.
+    fn lattice<C: Coder>(
+        &mut self,
+        coder: &mut C,
+        kind: Kind,
+        given: Lattice,
+        last: Option<Lattice>,
+    ) -> Result<Lattice, Fault> {
+        if let Some(last) = last
+            && self.same_steps.code(coder, given == last)
+        {
+            return Ok(last);
+        }
+        let mut step = |given: Step, model: &mut Whole| {
+            i8::try_from(model.signed(coder, i64::from(given.0))).map(Step).map_err(|_| Fault::Number)
+        };
+        let key = step(given.key, &mut self.steps[0])?;
+        let tangent = step(given.tangent, &mut self.steps[1])?;
+        Ok(Lattice { kind, key, tangent })
+    }
+
+    fn piece<C: Coder>(
+        &mut self,
+        coder: &mut C,
+        lattice: &Lattice,
+        given: Option<Piece>,
+        state: &mut State,
+    ) -> Result<Piece, Fault> {
+        let given =
+            given.unwrap_or(Piece { frames: 1, key: state.key, tangents: Tangents::Cubic([0; 3], [0; 3]) });
+        let frames = self.frames.natural(coder, u64::from(given.frames - 1));
+        let frames = u32::try_from(frames).ok().and_then(|f| f.checked_add(1)).ok_or(Fault::Number)?;
+        let line = self.line.code(coder, matches!(given.tangents, Tangents::Line));
+        let parabola = !line && self.parabola.code(coder, matches!(given.tangents, Tangents::Parabola(_)));
+        let leaving_as_arrived = state.arrival * f64::from(frames);
+        let (given_leaving, given_arriving) = match given.tangents {
+            Tangents::Line => ([0; 3], [0; 3]),
+            Tangents::Parabola(a) => (a, [0; 3]),
+            Tangents::Cubic(a, b) => (a, b),
+        };
+        let mut leaving = leaving_as_arrived;
+        let mut a = [0; 3];
+        if !line {
+            a = code(coder, &mut self.leaving, given_leaving, lattice.tangent_code(&leaving))?;
+            leaving = lattice.tangent(&a);
+        }
+        let promised = self.promised_key(lattice, state, &leaving);
+        let key = code(coder, &mut self.key[usize::from(line)], given.key, promised)?;
+        let end = lattice.key_point(&key, Some(&state.point));
+        let chord = lattice.kind.local(&state.point, &end).xyz();
+        let tangents = if line {
+            Tangents::Line
+        } else if parabola {
+            Tangents::Parabola(a)
+        } else {
+            let as_parabola = lattice.tangent_code(&(leaving - chord * (2.0 / 3.0)));
+            Tangents::Cubic(a, code(coder, &mut self.arriving, given_arriving, as_parabola)?)
+        };
+        let (_, b) = tangents.resolve(lattice, &chord);
+        *state = State { key, point: end, arrival: -b / f64::from(frames) };
+        Ok(Piece { frames, key, tangents })
+    }
+
+    /// The key that the tangent points to.
+    fn promised_key(&self, lattice: &Lattice, state: &State, leaving: &Tangent) -> Code {
+        let kind = lattice.kind;
+        let ahead = state.point + kind.tangents(&state.point) * (leaving * REACH_OF_TANGENT);
+        kind.finish(ahead).map_or(state.key, |ahead| lattice.key_code(&ahead))
+    }
+}
+
+/// Tangents may reach beyond keys, but not so far.
+const MOST_CODE: u64 = 1 << 60;
+
+/// Three numbers as differences from those promised.
+fn code<C: Coder>(coder: &mut C, model: &mut Whole, given: Code, promised: Code) -> Result<Code, Fault> {
+    let mut found = [0; 3];
+    for axis in 0..3 {
+        let promised = promised[axis].clamp(-MOST_STEPS, MOST_STEPS);
+        found[axis] = promised.saturating_add(model.signed(coder, given[axis].saturating_sub(promised)));
+        if found[axis].unsigned_abs() > MOST_CODE {
+            return Err(Fault::Number);
+        }
+    }
+    Ok(found)
+}
