@@ -82,6 +82,7 @@ fn model(manifest: &Manifest, tables: &Tables) -> Result<TemplateModel, IndexErr
         ridged: symmetric(tables, "metric.ridged", dim)?,
         total: symmetric(tables, "metric.total", dim)?,
         threshold: manifest.threshold,
+        class_thresholds: manifest.class_thresholds.clone(),
         verifier: verifier(manifest, tables, dim, step.as_deref())?,
         step,
     };

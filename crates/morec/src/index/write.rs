@@ -31,6 +31,7 @@ impl MotionIndex {
             features: model.features.clone(),
             decode: model.decode.clone(),
             threshold: model.threshold,
+            class_thresholds: model.class_thresholds.clone(),
             verifier: model.verifier.as_ref().map(|v| VerifierWords {
                 reach: v.reach,
                 bar: v.bar,

@@ -12,6 +12,7 @@ mod ridge;
 mod scatter;
 mod set;
 mod templates;
+mod thresholds;
 mod trim;
 mod verifier;
 
