@@ -19,6 +19,15 @@ pub struct DecodeParams {
     pub lag_ticks: usize,
     /// A candidate may reach this many ticks into the detection before it; the overlap is cut off.
     pub overlap_ticks: usize,
+    /// It may also reach this share of its own length into it, if that is more: what was reported a little too long
+    /// must not swallow the motion that follows. Older indexes have 0.
+    #[serde(default)]
+    pub overlap_share: f32,
+    /// A detection waits up to this many ticks while another class's match that encloses it is near enough and still
+    /// coming nearer: a short motion may only be the end of a longer one. Older indexes have 0. Under
+    /// [`Rule::Verify`] nothing waits.
+    #[serde(default)]
+    pub hold_ticks: usize,
     /// A motion may end with the very last ticks of a stream only if its distance fell by less than this share over
     /// the last tick: a walk cut off in mid-step is nearest to a step at the cut, but still coming nearer.
     pub end_fall: f32,
@@ -27,14 +36,32 @@ pub struct DecodeParams {
 impl Default for DecodeParams {
     /// The short windows: as accurate as the long ones on referee signals, and a fifth of a second earlier.
     fn default() -> Self {
-        Self { gate: 1.2, gate_ticks: 1, peak_ticks: 1, lag_ticks: 0, overlap_ticks: 2, end_fall: 0.1 }
+        Self {
+            gate: 1.0,
+            gate_ticks: 1,
+            peak_ticks: 1,
+            lag_ticks: 0,
+            overlap_ticks: 2,
+            overlap_share: 0.5,
+            hold_ticks: 2,
+            end_fall: 0.1,
+        }
     }
 }
 
 impl DecodeParams {
     /// The values of the reference prototype.
     pub fn reference() -> Self {
-        Self { gate_ticks: 3, peak_ticks: 2, lag_ticks: 3, end_fall: f32::MAX, ..Self::default() }
+        Self {
+            gate: 1.2,
+            gate_ticks: 3,
+            peak_ticks: 2,
+            lag_ticks: 3,
+            overlap_ticks: 2,
+            overlap_share: 0.0,
+            hold_ticks: 0,
+            end_fall: f32::MAX,
+        }
     }
 
     /// Says what is wrong with these values, if anything is.
@@ -47,7 +74,11 @@ impl DecodeParams {
             ("peak_ticks", self.peak_ticks),
             ("lag_ticks", self.lag_ticks),
             ("overlap_ticks", self.overlap_ticks),
+            ("hold_ticks", self.hold_ticks),
         ];
+        if !(0.0..1.0).contains(&self.overlap_share) {
+            return Err(format!("overlap_share must be from 0 to below 1, found {}", self.overlap_share));
+        }
         if self.end_fall.is_nan() || self.end_fall < 0.0 {
             return Err(format!("end_fall must be 0 or more, found {}", self.end_fall));
         }
@@ -83,10 +114,10 @@ pub struct ClassDistance {
 /// What makes a candidate of a distance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Rule {
-    /// Distances below the threshold and below [`DecodeParams::gate`] times the smallest negative distance nearby;
-    /// the score is 1 − distance / threshold.
+    /// Distances below the class's threshold and below [`DecodeParams::gate`] times the smallest negative distance
+    /// nearby; the score is 1 − distance / threshold.
     Gate {
-        /// Distances at or above this are never reported.
+        /// Distances at or above this are never reported, unless [`Decoder::set_thresholds`] says otherwise.
         threshold: f32,
     },
     /// Distances up to `reach`; a judge gives the score, and above 0 is accepted.
@@ -150,6 +181,8 @@ pub struct Decoder {
     params: DecodeParams,
     rule: Rule,
     classes: usize,
+    /// Of each class, under [`Rule::Gate`].
+    thresholds: Vec<f32>,
     /// The last few ticks' distances, `ring_len` × `classes`.
     ring: Vec<ClassDistance>,
     negatives: Vec<f32>,
@@ -171,6 +204,7 @@ impl Clone for Decoder {
         chain.extend_from_slice(&self.chain);
         Self {
             params: self.params.clone(),
+            thresholds: self.thresholds.clone(),
             ring: self.ring.clone(),
             negatives: self.negatives.clone(),
             paths: self.paths.clone(),
@@ -191,6 +225,7 @@ impl Decoder {
             params: params.clone(),
             rule,
             classes,
+            thresholds: vec![if let Rule::Gate { threshold } = rule { threshold } else { FAR }; classes],
             ring: vec![ClassDistance { distance: FAR, age: 0 }; ring_len * classes],
             negatives: vec![FAR; ring_len],
             ring_len,
@@ -200,6 +235,11 @@ impl Decoder {
             reported: 0,
             chain: Vec::with_capacity(path_len),
         }
+    }
+
+    /// A threshold for each class instead of the common one; fewer than there are classes change the first only.
+    pub fn set_thresholds(&mut self, thresholds: &[f32]) {
+        self.thresholds.iter_mut().zip(thresholds).for_each(|(mine, given)| *mine = *given);
     }
 
     /// Forgets the stream so far.
@@ -263,7 +303,8 @@ impl Decoder {
     fn score(&self, tick: i64, class: usize, judge: &mut impl FnMut(&Candidate) -> f64) -> Option<f64> {
         let distance = self.near(tick, class).distance;
         match self.rule {
-            Rule::Gate { threshold } => {
+            Rule::Gate { .. } => {
+                let threshold = self.thresholds[class];
                 if distance >= threshold || distance >= self.gate(tick) {
                     return None;
                 }
@@ -310,7 +351,8 @@ impl Decoder {
     fn decide(&mut self, tick: i64, judge: &mut impl FnMut(&Candidate) -> f64) {
         let mut cell = PathCell { total: self.path(tick).total, ends_here: None };
         for class in 0..self.classes {
-            let (start, slack) = (tick - self.near(tick, class).age as i64, self.params.overlap_ticks as i64);
+            let age = self.near(tick, class).age;
+            let (start, slack) = (tick - age as i64, self.slack(age));
             if start < self.reported - slack {
                 continue;
             }
@@ -331,7 +373,30 @@ impl Decoder {
         self.decided = tick + 1;
     }
 
-    /// Reports what lies on the best path and ended at least `lag` ticks ago.
+    /// Ticks that a candidate of this age may reach into the detection before it.
+    fn slack(&self, age: usize) -> i64 {
+        let share = (self.params.overlap_share * (age + 1) as f32) as usize;
+        self.params.overlap_ticks.max(share) as i64
+    }
+
+    /// Whether a match of another class that encloses `detection` may yet become a better candidate.
+    fn waits(&self, detection: &TickDetection) -> bool {
+        let waited = self.decided - detection.stop;
+        if !matches!(self.rule, Rule::Gate { .. }) || waited >= self.params.hold_ticks as i64 {
+            return false;
+        }
+        let last = self.ticks - 1;
+        let grows = |t: i64, class: usize| {
+            let ClassDistance { distance, age } = self.near(t, class);
+            let encloses = t - age as i64 <= detection.start;
+            let near_enough = distance < self.thresholds[class] && distance < self.gate(t);
+            encloses && near_enough && (t < last || distance < self.near(t - 1, class).distance)
+        };
+        let mut others = (0..self.classes).filter(|c| *c != detection.class.index());
+        others.any(|class| (self.decided.max(1)..=last).any(|t| grows(t, class)))
+    }
+
+    /// Reports what lies on the best path and ended at least `lag` ticks ago, up to the first that must wait.
     fn report(&mut self, lag: i64, out: &mut impl FnMut(TickDetection)) {
         let mut chain = std::mem::take(&mut self.chain);
         chain.clear();
@@ -347,6 +412,9 @@ impl Decoder {
             }
         }
         for detection in chain.iter().rev() {
+            if self.waits(detection) {
+                break;
+            }
             if detection.start >= self.reported && self.decided - detection.stop >= lag {
                 self.reported = detection.stop;
                 out(TickDetection { score: detection.score.min(1.0), ..*detection });
@@ -408,10 +476,96 @@ mod tests {
             peak_ticks: 0,
             lag_ticks: 4,
             overlap_ticks: 0,
+            overlap_share: 0.0,
+            hold_ticks: 0,
             end_fall: 1.0,
         };
         let twice = [5.0, 5.0, 5.0, 1.5, 1.2, 0.2, 5.0, 5.0, 5.0, 5.0, 5.0];
         assert_eq!(spans(&twice, &[], &params), [(2, 6)]);
+    }
+
+    /// Runs several classes' distances and ages; returns class, span and the tick before which each was out.
+    fn reports(ticks: &[Vec<(f32, usize)>], params: &DecodeParams) -> Vec<(u16, i64, i64, usize)> {
+        let mut decoder = Decoder::new(params, Rule::Gate { threshold: 2.0 }, ticks[0].len(), 20);
+        let mut judge = |_: &Candidate| 0.0;
+        let mut found = vec![];
+        for (t, near) in ticks.iter().enumerate() {
+            let near: Vec<_> =
+                near.iter().map(|&(distance, age)| ClassDistance { distance, age: age.min(t) }).collect();
+            decoder.push(&near, FAR, &mut judge, &mut |d| found.push((d.class.0, d.start, d.stop, t)));
+        }
+        decoder.finish(&mut judge, &mut |d| found.push((d.class.0, d.start, d.stop, ticks.len())));
+        found
+    }
+
+    const AWAY: (f32, usize) = (9.0, 0);
+
+    /// A short class that ends with tick 20, six ticks long, and one that began ten ticks before it and ends with
+    /// tick 21, at `distance`.
+    fn short_inside_long(distance: f32) -> Vec<Vec<(f32, usize)>> {
+        let mut ticks = vec![vec![AWAY, AWAY]; 30];
+        for (t, d) in [(19, 1.5), (20, 1.0), (21, 1.5)] {
+            ticks[t][0] = (d, t - 15);
+        }
+        for (t, d) in [(19, 1.9), (20, 1.0), (21, 0.0), (22, 1.0)] {
+            ticks[t][1] = (distance + d, t - 5);
+        }
+        ticks
+    }
+
+    #[test]
+    fn a_short_motion_waits_for_the_longer_one_that_it_ends() {
+        let params = DecodeParams { hold_ticks: 2, ..DecodeParams::default() };
+        let once = DecodeParams { hold_ticks: 0, ..params.clone() };
+        assert_eq!(reports(&short_inside_long(0.2), &params), [(1, 5, 22, 23)]);
+        assert_eq!(reports(&short_inside_long(0.2), &once), [(0, 15, 21, 22)]);
+        // The longer one is not near enough: nothing waits.
+        assert_eq!(reports(&short_inside_long(3.0), &params), [(0, 15, 21, 22)]);
+    }
+
+    #[test]
+    fn what_waits_in_vain_is_reported_after_its_hold() {
+        let mut ticks = short_inside_long(3.0);
+        // A longer class comes nearer for ever and never arrives.
+        for (t, near) in ticks.iter_mut().enumerate().skip(15) {
+            near[1] = (1.95 - 0.01 * t as f32, t - 5);
+        }
+        let params = DecodeParams { hold_ticks: 3, ..DecodeParams::default() };
+        assert_eq!(reports(&ticks, &params)[0], (0, 15, 21, 25));
+    }
+
+    #[test]
+    fn a_motion_that_overlaps_the_one_before_is_cut_not_lost() {
+        let mut ticks = vec![vec![AWAY]; 40];
+        for (end, age) in [(15, 9), (30, 19)] {
+            for (t, d) in [(end - 1, 1.0), (end, 0.5), (end + 1, 1.0)] {
+                ticks[t][0] = (d, age);
+            }
+        }
+        let spans = |params: &DecodeParams| -> Vec<_> {
+            reports(&ticks, params).iter().map(|r| (r.1, r.2)).collect()
+        };
+        let default = DecodeParams::default();
+        assert_eq!(
+            spans(&default),
+            [(6, 16), (16, 31)],
+            "it reaches five of its twenty ticks into the first"
+        );
+        assert_eq!(spans(&DecodeParams { overlap_share: 0.2, ..default }), [(6, 16)]);
+    }
+
+    #[test]
+    fn classes_may_have_thresholds_of_their_own() {
+        let mut decoder = Decoder::new(&DecodeParams::default(), Rule::Gate { threshold: 1.0 }, 2, 20);
+        decoder.set_thresholds(&[1.0, 3.0]);
+        let mut found = vec![];
+        for d in [9.0, 9.0, 9.0, 9.0, 9.0, 2.5, 2.0, 2.5, 9.0, 9.0, 9.0] {
+            let near = [ClassDistance { distance: d, age: 4 }; 2];
+            decoder.push(&near, FAR, &mut |_| 0.0, &mut |d| found.push((d.class.0, d.stop, d.score)));
+        }
+        assert_eq!(found.len(), 1);
+        assert_eq!((found[0].0, found[0].1), (1, 7));
+        assert!((found[0].2 - 1.0 / 3.0).abs() < 1e-6, "the score is a share of the class's own threshold");
     }
 
     #[test]

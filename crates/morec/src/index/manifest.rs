@@ -37,6 +37,9 @@ pub struct Manifest {
     pub decode: DecodeParams,
     /// Largest distance that is reported.
     pub threshold: f32,
+    /// The same for each class, if they differ.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub class_thresholds: Vec<f32>,
     /// What the verifier is beside its tables, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub verifier: Option<VerifierWords>,

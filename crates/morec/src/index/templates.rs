@@ -22,6 +22,7 @@ pub(super) fn manifest(model: &TemplateModel, index: &MotionIndex) -> Manifest {
         features: model.features.clone(),
         decode: model.decode.clone(),
         threshold: model.threshold,
+        class_thresholds: model.class_thresholds.clone(),
         verifier: model.verifier.as_ref().map(|v| VerifierWords {
             reach: v.reach,
             bar: v.bar,
@@ -106,6 +107,7 @@ pub(super) fn read(manifest: &Manifest, tables: &Tables) -> Result<TemplateModel
         ridged: symmetric(tables, "metric.ridged", dim)?,
         total: symmetric(tables, "metric.total", dim)?,
         threshold: manifest.threshold,
+        class_thresholds: manifest.class_thresholds.clone(),
         verifier: verifier(manifest, tables, dim, step.as_deref())?,
         step,
     };

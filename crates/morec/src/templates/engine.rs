@@ -58,12 +58,14 @@ impl TemplateEngine {
         let dim = metric.dim();
         let rule = model.rule();
         let window = model.decode.look_ahead_ticks(rule);
+        let mut decoder = Decoder::new(&model.decode, rule, model.classes.len(), model.longest());
+        decoder.set_thresholds(&model.class_thresholds);
         Ok(Self {
             bank: Bank::new(&templates, dim),
             negatives: Bank::new(&negatives, dim),
             template_classes: model.samples.iter().map(|s| s.class).collect(),
             judge: model.verifier.as_ref().map(|v| Judge::new(v, &metric, model.threshold)),
-            decoder: Decoder::new(&model.decode, rule, model.classes.len(), model.longest()),
+            decoder,
             // A match of n rows spans at most 2 n ticks and is judged when its window has passed.
             recent: RecentRows::new(dim, 2 * model.longest() + window + 2),
             mapped: vec![0.0; dim],

@@ -36,6 +36,8 @@ pub struct TemplateModel {
     pub total: Symmetric,
     /// Distances at or above this are never reported.
     pub threshold: f32,
+    /// The same for each class by itself, where there is no verifier; empty if the one holds for all.
+    pub class_thresholds: Vec<f32>,
     /// The second look at candidates, if there was enough to learn it from.
     pub verifier: Option<Verifier>,
     /// If template rows are whole multiples of a step, column by column: the steps. Files then hold bytes.
@@ -90,7 +92,18 @@ impl TemplateModel {
             let message = format!("the threshold must be above 0, found {}", self.threshold);
             return Err(TemplateModelError::Value(message));
         }
-        Ok(())
+        self.check_class_thresholds().map_err(TemplateModelError::Value)
+    }
+
+    fn check_class_thresholds(&self) -> Result<(), String> {
+        let given = &self.class_thresholds;
+        if !given.is_empty() && given.len() != self.classes.len() {
+            return Err(format!("thresholds for {} classes, of {}", given.len(), self.classes.len()));
+        }
+        match given.iter().find(|t| !(t.is_finite() && **t > 0.0)) {
+            Some(found) => Err(format!("the threshold of a class must be above 0, found {found}")),
+            None => Ok(()),
+        }
     }
 
     /// What makes a candidate of a distance.
@@ -129,6 +142,7 @@ impl TemplateModel {
             negatives: self.negatives.iter().map(pick).collect(),
             ridged: self.ridged.restricted(&keep),
             threshold: self.threshold * share as f32,
+            class_thresholds: self.class_thresholds.iter().map(|t| t * share as f32).collect(),
             verifier: self.verifier.as_ref().map(|v| restricted_verifier(v, share as f32, pick)),
             total,
             step: self.step.as_ref().map(|step| keep.iter().map(|&k| step[k]).collect()),

@@ -15,6 +15,7 @@ mod set;
 pub mod svrdm;
 mod templates;
 pub mod thesis;
+mod thresholds;
 mod trim;
 mod verifier;
 

@@ -16,6 +16,10 @@ pub struct TrainParams {
     pub max_pairs: usize,
     /// The threshold is this times the smallest distance from a template to background motion.
     pub background_share: f64,
+    /// A class's own threshold is this times the smallest distance to motion that is not the class; 0: none has one.
+    pub class_share: f64,
+    /// A class's own threshold is at least the common one and at most this times it.
+    pub class_range: f64,
     /// Share of everyday clips that may come nearer than what sets the threshold.
     pub everyday_may_pass: f64,
     /// The threshold where there is no background at all.
@@ -61,6 +65,7 @@ impl Default for TrainParams {
         Self {
             features: FeatureParams::default(),
             decode: DecodeParams::default(),
+            class_share: 0.5,
             max_templates: 24,
             whole_background: 1.5,
             verify: true,
@@ -79,6 +84,8 @@ impl TrainParams {
             rho: 0.3,
             max_pairs: 200,
             background_share: 0.85,
+            class_share: 0.0,
+            class_range: 1.5,
             everyday_may_pass: 0.1,
             fallback_threshold: 2.0,
             negative_below: 2.6,

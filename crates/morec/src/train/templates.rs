@@ -6,7 +6,6 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use crate::classes::ClassInfo;
-use crate::decode::FAR;
 use crate::features::{BoneSet, Rows};
 use crate::progress::Progress;
 use crate::templates::{Bank, Metric, Sample, Symmetric, TemplateModel, TemplateModelError, Verifier};
@@ -16,6 +15,7 @@ use super::mining::{Distances, NearMiss, near_misses};
 use super::params::TrainParams;
 use super::scatter::{covariance, ridged, within_class};
 use super::set::{Source, TrainSample, TrainSet, TrainStream};
+use super::thresholds;
 use super::trim::moving_part;
 use super::verifier;
 
@@ -92,13 +92,19 @@ pub fn train(
     let samples = templates_of(samples, set.classes.len(), params.max_templates);
     let bank = bank_of(samples.iter().map(|s| metric.apply_all(&s.rows)), &metric);
     let distances = all_distances(set, &bank, &metric, "comparing clips", progress)?;
-    let (threshold, threshold_from) = threshold_of(set, &distances, params);
+    let (threshold, threshold_from) = thresholds::common(set, &distances, params);
     let negatives = negatives_of(set, bones, (&samples, &distances), threshold, params);
     let verifier = if params.verify {
         let found = (samples.as_slice(), distances.as_slice(), negatives.as_slice());
         verifier_of(set, found, &metric, threshold, params, progress)?
     } else {
         None
+    };
+    let class_thresholds = match verifier {
+        None if params.class_share > 0.0 => {
+            thresholds::of_classes(set, &samples, &distances, threshold, params)
+        }
+        _ => Vec::new(),
     };
     let model = TemplateModel {
         features: params.features.clone(),
@@ -110,6 +116,7 @@ pub fn train(
         ridged,
         total,
         threshold,
+        class_thresholds,
         verifier,
         step: None,
     };
@@ -187,28 +194,6 @@ fn all_distances(
         Ok(distances)
     };
     set.streams.par_iter().map_init(|| bank.clone(), compare).collect()
-}
-
-/// A share of the smallest distance that background motion has to any template, and what set it.
-///
-/// Clips that the user calls background count in full. Of made everyday motion a tenth may come nearer: some of it
-/// may happen to be one of the classes, and what comes that near becomes a hard negative.
-fn threshold_of(set: &TrainSet, distances: &[Distances], params: &TrainParams) -> (f32, String) {
-    let of = |source: Source, share: f64| {
-        let streams = set.streams.iter().zip(distances).filter(|(s, _)| s.source == source);
-        let mut nearest: Vec<(f32, &str)> = streams.map(|(s, d)| (d.smallest(), s.name.as_str())).collect();
-        nearest.sort_by(|a, b| a.0.total_cmp(&b.0));
-        nearest.get((share * nearest.len() as f64) as usize).copied()
-    };
-    let clips = of(Source::Background, 0.0);
-    let everyday = of(Source::Everyday, params.everyday_may_pass);
-    let nearest = clips.into_iter().chain(everyday).min_by(|a, b| a.0.total_cmp(&b.0));
-    match nearest {
-        Some((distance, name)) if distance < FAR / 2.0 => {
-            (params.background_share as f32 * distance, format!("background clip {name}"))
-        }
-        _ => (params.fallback_threshold as f32, "no background: a general value".to_owned()),
-    }
 }
 
 /// Short background clips as a whole, and the nearest misses in everything else that is background.
