@@ -78,7 +78,7 @@ fn model() -> Arc<SvrdmModel> {
     moments.push_values(&rows(1, 2000, 4 * PIVOTS).concat());
     let pca = Pca::fit(&moments, Keep::Dims(REDUCED)).unwrap();
     let mut rng = Rng::new(2);
-    let mut profiles = Profiles::default();
+    let mut profiles = Profiles::new(1);
     for sample in 0..CLASSES * SAMPLES {
         let frames = 90 + rng.below(150);
         let values: Vec<f32> = rows(100 + sample as u64, frames, 1).concat();

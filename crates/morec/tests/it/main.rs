@@ -12,6 +12,6 @@ mod kit;
 mod layers;
 mod made;
 mod pose_golden;
+mod smooth_real;
 mod svrdm;
 mod thesis;
-mod smooth_real;
