@@ -139,6 +139,7 @@ pub mod pivots;
 pub mod plot;
 pub mod progress;
 pub mod report;
+pub mod reproduce;
 pub mod resample;
 pub mod roles;
 pub mod segment;

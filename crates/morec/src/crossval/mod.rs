@@ -39,6 +39,8 @@ pub struct Outcome {
     pub founds: Vec<Found>,
     /// How each fold's training went.
     pub folds: Vec<FoldReport>,
+    /// What each fold trained.
+    pub models: Vec<Model>,
 }
 
 /// One fold's training.
@@ -148,6 +150,7 @@ fn run_fold(
     let truths = material.samples.iter().filter(|s| fold.tested.contains(&s.clip));
     outcome.truths.extend(truths.map(|s| Truth::from(s.clone())));
     outcome.folds.push(FoldReport { name: fold.name.clone(), training: report });
+    outcome.models.push(model);
     Ok(())
 }
 

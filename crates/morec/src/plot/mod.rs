@@ -6,6 +6,7 @@
 mod axis;
 mod chart;
 mod heat_map;
+mod lanes;
 mod text;
 mod tree;
 
@@ -14,6 +15,7 @@ mod tests;
 
 pub use chart::{Chart, Regions};
 pub use heat_map::HeatMap;
+pub use lanes::{Bar, Lanes};
 pub(crate) use text::Text;
 pub use tree::{TreeBox, tree_svg};
 

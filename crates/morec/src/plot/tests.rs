@@ -1,6 +1,6 @@
 //! Pictures hold what was put in, whatever it was called, and nothing that is not a number.
 
-use super::{Chart, HeatMap, Regions};
+use super::{Bar, Chart, HeatMap, Lanes, Regions};
 
 fn whole(svg: &str) {
     assert!(svg.starts_with("<svg ") && svg.trim_end().ends_with("</svg>"), "{svg}");
@@ -75,4 +75,19 @@ fn a_heat_map_draws_what_is_positive() {
     assert_eq!(svg.matches("opacity=").count(), 2);
     assert!(svg.contains(">3</text>") && svg.contains(">1.50</text>"));
     assert_eq!(svg.matches("a&amp;b").count(), 2);
+}
+
+#[test]
+fn lanes_hold_their_bars_and_name_what_is_there() {
+    let bar = |from_secs, to_secs, kind| Bar { from_secs, to_secs, kind };
+    let kinds = ["walk", "<jump>", "never"].map(str::to_owned).to_vec();
+    let lanes = Lanes::new("clip", kinds, 10.0)
+        .lane("labelled", [bar(0.0, 2.0, 0), bar(3.0, 99.0, 1)])
+        .lane("found", [bar(f64::NAN, 2.0, 0), bar(1.0, 2.0, 7)]);
+    let svg = lanes.svg();
+    whole(&svg);
+    assert!(svg.contains("&lt;jump&gt;, 3.00 to 10.00 s"));
+    assert_eq!(svg.matches(">walk</text>").count(), 1);
+    assert!(!svg.contains("never"));
+    whole(&Lanes::new("nothing", vec![], 0.0).svg());
 }

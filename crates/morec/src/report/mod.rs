@@ -50,7 +50,7 @@ pub struct Report<'a> {
 /// Notes that are shown at once; the others unfold.
 const NOTES_SHOWN: usize = 12;
 
-const STYLE: &str = include_str!("style.css");
+pub(crate) const STYLE: &str = include_str!("style.css");
 
 impl Report<'_> {
     /// The report as one HTML document. O(samples + detections), apart from the tables.

@@ -15,6 +15,7 @@
 //! Real-time contract: construction allocates and may fail with a reason; nothing that comes after allocates, locks
 //! or fails. Memory does not grow with the stream.
 
+mod classify;
 mod compact;
 pub mod edr;
 mod engine;
@@ -31,6 +32,7 @@ mod tracking;
 pub mod tree;
 mod vectors;
 
+pub use classify::{Classified, SampleClassifier};
 pub use engine::{FrameDetection, SvrdmEngine};
 pub use extraction::FeatureExtraction;
 pub use gram::Gram;

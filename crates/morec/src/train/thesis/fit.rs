@@ -17,8 +17,6 @@ pub struct Fitted {
     pub branches: Vec<BranchReport>,
     /// Of each direction, how its signs were put right.
     pub signs: Vec<SignVector>,
-    /// The samples as the tree was grown on them.
-    pub features: Vec<FeatureSample>,
 }
 
 /// Trains on samples of reduced rows (§4.5): sign vectors (Alg. 5), feature vectors (Eq. 3.37), the tree (Alg. 7),
@@ -80,7 +78,7 @@ pub fn fit(
     };
     model.check().map_err(TrainError::Svrdm)?;
     let model = model.compact().map_err(TrainError::Svrdm)?;
-    Ok(Fitted { model, branches: grown.branches, signs, features })
+    Ok(Fitted { model, branches: grown.branches, signs })
 }
 
 /// A sample with its `AᵀA` and directions; `None` if it does not move at all.

@@ -79,6 +79,7 @@ impl SvrdmTrainParams {
                 comparison: Comparison::Rows { every: 4 },
                 tolerance: 0.7,
                 min_confidence: 0.5,
+                wait_chunks: 4,
                 ..faithful.stages
             },
             tree: TreeParams { sigma: SigmaRule::Scaled { full: 4.0, reduced: 4.0 }, ..faithful.tree },

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::progress::Progress;
-use crate::svrdm::{Candidates, Descent, FeatureExtraction, Gram, SegmentScoring, SvrdmEngine, SvrdmModel};
+use crate::svrdm::{FrameDetection, SampleClassifier, SvrdmEngine, SvrdmModel};
 use crate::train::TrainError;
 
 use super::fit::fit;
@@ -165,20 +165,15 @@ fn judge_fold(
     if out.is_empty() {
         return Ok(vec![]);
     }
-    let mut model = fit(&taught, &material.classes, &material.pca, params)?.model;
-    model.params.min_confidence = 0.0;
-    let stages = &model.params;
-    let mut extraction = FeatureExtraction::new(stages, model.pca.dims(), &model.signs);
-    let mut scoring = SegmentScoring::new(&model).map_err(TrainError::Svrdm)?;
-    let mut candidates = Candidates::default();
+    let model = fit(&taught, &material.classes, &material.pca, params)?.model;
+    let mut classifier = SampleClassifier::new(&model).map_err(TrainError::Svrdm)?;
     let judge = |sample: &ThesisSample| {
-        let gram = Gram::of_rows(sample.rows.values(), model.pca.dims(), stages.chunk_frames);
-        let feature = extraction.feature(&gram)?;
-        model.tree.descend(feature, f64::NEG_INFINITY, Descent::Larger, &mut candidates);
-        let found = *candidates.first()?;
-        let confidence =
-            scoring.score(sample.class, extraction.profile(&gram, sample.rows.iter()), gram.frames());
-        Some(Judged { right: found.class == sample.class, output: found.output, confidence })
+        let found = classifier.classify(&sample.rows)?;
+        Some(Judged {
+            right: found.class == sample.class,
+            output: found.output,
+            confidence: found.confidence,
+        })
     };
     Ok(out.into_iter().filter_map(judge).collect())
 }
@@ -187,7 +182,7 @@ fn judge_fold(
 fn heard(model: &Arc<SvrdmModel>, background: &Background) -> Result<Vec<f64>, TrainError> {
     let mut engine = SvrdmEngine::new(model).map_err(TrainError::Svrdm)?;
     let mut scores = vec![];
-    let mut hear = |d: crate::svrdm::FrameDetection| {
+    let mut hear = |d: FrameDetection| {
         let span = d.start.max(0) as usize..d.stop.max(0) as usize;
         if background.known.iter().all(|known| overlap(&span, known) <= MAX_OVERLAP) {
             scores.push(d.score);

@@ -1,0 +1,81 @@
+//! §5.2: grouping samples by kWAS, held against their classes.
+
+use nalgebra::DMatrix;
+use serde::Serialize;
+
+use crate::cluster::{KwasForm, KwasParams, Pairs, Spectrum, adjusted_rand_index, kwas_clusters};
+use crate::features::Rows;
+use crate::pca::{Keep, Moments, Pca};
+use crate::pivots::{PivotMap, PivotSet, PoseParams, pose_rows_of_clip};
+use crate::train::Source;
+
+use super::{ReproduceError, Study};
+
+/// Clusters at one τ.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Clustering {
+    /// How alike two samples must be.
+    pub tau: f64,
+    /// Whether samples are centred on the database's mean and reduced to 16 dimensions (§4.2), or taken as they are.
+    pub centred: bool,
+    /// Samples.
+    pub samples: usize,
+    /// Clusters found.
+    pub clusters: usize,
+    /// Pairs of samples.
+    pub pairs: Pairs,
+    /// Rand index.
+    pub rand_index: f64,
+    /// The same, 0 for chance.
+    pub adjusted_rand_index: f64,
+}
+
+/// The values of τ in Tables 5.2 to 5.4.
+pub(super) const TAUS: [f64; 3] = [0.95, 0.98, 0.99];
+
+pub(super) fn run(study: &Study<'_>) -> Result<Vec<Clustering>, ReproduceError> {
+    let (set, params) = (PivotSet::thesis(), PoseParams::default());
+    let mut moments = Moments::new(set.row_dim());
+    let mut cut: Vec<(usize, Rows)> = vec![];
+    for clip in study.clips.iter().filter(|c| c.source == Source::Labelled) {
+        let map = PivotMap::resolve(&set, &clip.clip.skeleton, &clip.roles)
+            .map_err(|source| ReproduceError::Pivots { clip: clip.name.clone(), source })?;
+        let rows = pose_rows_of_clip(&clip.clip, &set, &map, &clip.rest, &params);
+        moments.push_rows(&rows);
+        for sample in study.samples.iter().filter(|s| s.clip == clip.name) {
+            let frame = |secs: f64| ((secs * params.rate_hz).round() as usize).min(rows.len());
+            let span = frame(sample.start_secs)..frame(sample.stop_secs);
+            let class = study.classes.iter().position(|c| *c == sample.class);
+            if let Some(class) = class.filter(|_| span.len() > 1) {
+                cut.push((class, rows.slice(span)));
+            }
+        }
+    }
+    let pca = Pca::fit(&moments, Keep::Dims(16)).map_err(|e| ReproduceError::Other(e.to_string()))?;
+    let classes: Vec<usize> = cut.iter().map(|(class, _)| *class).collect();
+    let centred: Vec<Spectrum> = cut.iter().map(|(_, rows)| Spectrum::of_rows(&pca.project(rows))).collect();
+    let as_they_are: Vec<Spectrum> = cut.iter().map(|(_, rows)| Spectrum::of_matrix(product(rows))).collect();
+    let mut found = vec![];
+    for (is_centred, spectra) in [(true, &centred), (false, &as_they_are)] {
+        for tau in TAUS {
+            let clusters = kwas_clusters(spectra, &KwasParams { k: 12, tau, form: KwasForm::Printed });
+            let pairs = Pairs::count(&classes, &clusters.of);
+            found.push(Clustering {
+                tau,
+                centred: is_centred,
+                samples: classes.len(),
+                clusters: clusters.count,
+                rand_index: pairs.rand_index(),
+                adjusted_rand_index: adjusted_rand_index(&classes, &clusters.of),
+                pairs,
+            });
+        }
+    }
+    Ok(found)
+}
+
+/// `AᵀA` of rows as they are.
+fn product(rows: &Rows) -> DMatrix<f64> {
+    let a = DMatrix::from_row_iterator(rows.len(), rows.dim(), rows.values().iter().map(|v| f64::from(*v)));
+    a.tr_mul(&a)
+}

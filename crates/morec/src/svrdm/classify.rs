@@ -1,0 +1,60 @@
+//! Cut-out samples through the tree: classification without segmentation (thesis, §5.3).
+
+use std::sync::Arc;
+
+use crate::classes::ClassId;
+use crate::features::Rows;
+
+use super::{Candidates, Descent, FeatureExtraction, Gram, ModelError, SegmentScoring, SvrdmModel};
+
+/// What the tree says of a cut-out sample.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Classified {
+    /// The class at the leaf.
+    pub class: ClassId,
+    /// The least output on the way there; rejected if below `T`.
+    pub output: f64,
+    /// How confident the recogniser would be of a segment of just these frames (Eq. 4.5).
+    pub confidence: f64,
+}
+
+/// Classifies cut-out samples.
+#[derive(Debug, Clone)]
+pub struct SampleClassifier {
+    model: Arc<SvrdmModel>,
+    extraction: FeatureExtraction,
+    scoring: SegmentScoring,
+    candidates: Candidates,
+}
+
+impl SampleClassifier {
+    /// For a model whose parts fit together.
+    pub fn new(model: &SvrdmModel) -> Result<Self, ModelError> {
+        let mut model = model.clone();
+        // Confidence is for the caller to judge.
+        model.params.min_confidence = 0.0;
+        Ok(Self {
+            extraction: FeatureExtraction::new(&model.params, model.pca.dims(), &model.signs),
+            scoring: SegmentScoring::new(&model)?,
+            candidates: Candidates::default(),
+            model: Arc::new(model),
+        })
+    }
+
+    /// The feature vector of reduced rows, `frames × r`; `None` if they do not move.
+    pub fn feature(&mut self, rows: &Rows) -> Option<Vec<f64>> {
+        let gram = Gram::of_rows(rows.values(), rows.dim(), self.model.params.chunk_frames);
+        self.extraction.feature(&gram).map(<[f64]>::to_vec)
+    }
+
+    /// Down the tree the way of the larger output, to its end; `None` if the rows do not move.
+    pub fn classify(&mut self, rows: &Rows) -> Option<Classified> {
+        let gram = Gram::of_rows(rows.values(), rows.dim(), self.model.params.chunk_frames);
+        let feature = self.extraction.feature(&gram)?;
+        self.model.tree.descend(feature, f64::NEG_INFINITY, Descent::Larger, &mut self.candidates);
+        let found = *self.candidates.first()?;
+        let profile = self.extraction.profile(&gram, rows.iter());
+        let confidence = self.scoring.score(found.class, profile, gram.frames());
+        Some(Classified { class: found.class, output: found.output, confidence })
+    }
+}
