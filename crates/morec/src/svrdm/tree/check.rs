@@ -45,7 +45,7 @@ pub(super) fn check(parts: &Parts) -> Result<(), TreeError> {
         return Err(TreeError::NoValues);
     }
     let found = parts.vectors.len();
-    if found % parts.dim != 0 || parts.vectors.iter().any(|v| !v.is_finite()) {
+    if !found.is_multiple_of(parts.dim) || parts.vectors.iter().any(|v| !v.is_finite()) {
         return Err(TreeError::Ragged { dim: parts.dim, found });
     }
     let leaves = parts.nodes.iter().filter(|n| matches!(n, Node::Leaf(_))).count();
