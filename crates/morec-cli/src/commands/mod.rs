@@ -12,5 +12,6 @@ pub mod group;
 pub mod inspect;
 pub mod recognize;
 pub mod reduce;
+pub mod reproduce;
 pub mod smooth;
 pub mod train;

@@ -127,15 +127,21 @@ impl Branch {
     /// What both machines say at a place in the plane: about `T` and more at samples of their own side. O(points), no
     /// allocation.
     pub fn outputs_at(&self, place: [f64; 2]) -> [f64; 2] {
-        let kernel = Gaussian::new(self.sigma_reduced);
-        let mut outputs = [0.0; 2];
-        for (i, point) in self.points.iter().enumerate() {
-            let k = kernel.of(point, &place);
-            outputs[0] += self.weights[0][i] * k;
-            outputs[1] += self.weights[1][i] * k;
-        }
-        outputs
+        outputs_at(&self.points, &self.weights, self.sigma_reduced, place)
     }
+}
+
+/// What two machines of these points and weights say at a place in the plane: `f_j = Σᵢ w_ji K(zᵢ, place)`. O(points),
+/// no allocation.
+pub fn outputs_at(points: &[[f64; 2]], weights: &[Vec<f64>; 2], sigma: f64, place: [f64; 2]) -> [f64; 2] {
+    let kernel = Gaussian::new(sigma);
+    let mut outputs = [0.0; 2];
+    for (i, point) in points.iter().enumerate() {
+        let k = kernel.of(point, &place);
+        outputs[0] += weights[0][i] * k;
+        outputs[1] += weights[1][i] * k;
+    }
+    outputs
 }
 
 /// `vector` in the plane of two sets of exemplars (none empty), whose centroids have this factor under a kernel of this

@@ -1,7 +1,6 @@
 //! One branch of the tree: the plane of two sides, and the machines in it (thesis, Alg. 8).
 
-use crate::svrdm::kernel::Gaussian;
-use crate::svrdm::tree::reduce;
+use crate::svrdm::tree::{outputs_at, reduce};
 
 use super::cross;
 use super::gram::Distances;
@@ -82,16 +81,9 @@ impl Machines {
         }
     }
 
-    /// What both say of a place in the plane.
+    /// What both say of a place in the plane, by the function that recognises.
     pub fn outputs(&self, place: &[f64; 2]) -> [f64; 2] {
-        let kernel = Gaussian::new(self.sigma);
-        let mut outputs = [0.0; 2];
-        for (i, point) in self.points.iter().enumerate() {
-            let k = kernel.of(point, place);
-            outputs[0] += self.weights[0][i] * k;
-            outputs[1] += self.weights[1][i] * k;
-        }
-        outputs
+        outputs_at(&self.points, &self.weights, self.sigma, *place)
     }
 }
 

@@ -112,14 +112,14 @@ fn what_cannot_be_learned_is_said() {
 #[test]
 fn two_families_of_classes_are_parted_and_clustering_from_chance_finds_them_too() {
     let mut rng = Rng::new(21);
-    let family = |i: usize| if i % 3 == 0 { [0.0; 4] } else { [1.0; 4] };
+    let family = |i: usize| if i.is_multiple_of(3) { [0.0; 4] } else { [1.0; 4] };
     let by_class: Vec<Vec<Vec<f64>>> = (0..9)
         .map(|i| {
             let centre = family(i).map(|c| c + 0.15 * rng.normal());
             cloud(&mut rng, 5, &centre, 0.05)
         })
         .collect();
-    let expected: Vec<usize> = (0..9).map(|i| usize::from(i % 3 != 0)).collect();
+    let expected: Vec<usize> = (0..9usize).map(|i| usize::from(!i.is_multiple_of(3))).collect();
     let products = function_products(&by_class, 0.6, &MachineParams::default());
     for unit_length in [false, true] {
         let exact = partition(&products, &PartitionParams { unit_length, ..Default::default() });
@@ -134,14 +134,15 @@ fn sign_vectors_turn_eigenvectors_one_way() {
     let mut rng = Rng::new(8);
     let mut vectors = cloud(&mut rng, 40, &[1.0, 0.3, -0.2, 0.0], 0.1);
     for (i, v) in vectors.iter_mut().enumerate() {
-        let length = v.iter().map(|x| x * x).sum::<f64>().sqrt() * if i % 3 == 0 { -1.0 } else { 1.0 };
+        let length =
+            v.iter().map(|x| x * x).sum::<f64>().sqrt() * if i.is_multiple_of(3) { -1.0 } else { 1.0 };
         v.iter_mut().for_each(|x| *x /= length);
     }
     let views: Vec<&[f64]> = vectors.iter().map(Vec::as_slice).collect();
     for rule in [SignRule::Centred, SignRule::Common] {
         let found = sign_vector(&views, rule).unwrap();
         let turned: Vec<bool> = found.products.iter().map(|p| *p < 0.0).collect();
-        let expected: Vec<bool> = (0..40).map(|i| i % 3 == 0).collect();
+        let expected: Vec<bool> = (0..40usize).map(|i| i.is_multiple_of(3)).collect();
         assert_eq!(turned, expected, "{rule:?}");
         assert_eq!(found.unsure(0.5), 0.0);
         assert_eq!(found.unsure(1.1), 1.0);
