@@ -8,6 +8,7 @@ use clap::{Args, ValueEnum};
 use morec::formats::Warning;
 use morec::import::{ImportOptions, prepare};
 use morec::labels::{ClipLength, Labels, Sample, read_people};
+use morec::reproduce;
 use morec::train::thesis::{SvrdmOptions, SvrdmTrainParams};
 use morec::train::{Everyday, Recipe, Source, TrainClip, TrainOptions, TrainParams};
 use rayon::prelude::*;
@@ -151,6 +152,15 @@ impl MaterialArgs {
                 Ok(SvrdmOptions { params, unlabelled_is_background }.into())
             }
         }
+    }
+
+    /// How to train for the thesis's evaluation: figures that were typed are those of the tuned setting.
+    pub fn svrdm_options(&self, setting: reproduce::Setting) -> Result<SvrdmOptions> {
+        let params = match setting {
+            reproduce::Setting::Faithful => SvrdmTrainParams::faithful(),
+            reproduce::Setting::Tuned => with_figures(SvrdmTrainParams::tuned(), &self.params)?,
+        };
+        Ok(SvrdmOptions { params, unlabelled_is_background: self.unlabelled == Unlabelled::Background })
     }
 
     fn template_options(&self, unlabelled_is_background: bool) -> Result<TrainOptions> {

@@ -52,13 +52,15 @@ pub(super) fn tensors(model: &SvrdmModel) -> BTreeMap<String, Tensor> {
     let points: Vec<f64> = branches.iter().flat_map(|b| b.points.iter().flatten().copied()).collect();
     let weights: Vec<f64> = branches.iter().flat_map(|b| b.weights.iter().flatten().copied()).collect();
     let profiles = &model.profiles;
-    BTreeMap::from([
+    let step = profiles.step.as_deref();
+    let rows = profiles.values.chunks_exact(profiles.width);
+    let mut tensors = BTreeMap::from([
         ("pca.axes".to_owned(), single(&axes)),
         ("pca.eigenvalues".to_owned(), single(pca.eigenvalues())),
         ("pca.mean".to_owned(), single(pca.mean())),
         ("profiles.classes".to_owned(), Tensor::of_u32(profiles.classes.iter().map(|c| u32::from(c.0)))),
         ("profiles.lengths".to_owned(), Tensor::of_u32(profiles.lengths.iter().map(|n| *n as u32))),
-        ("profiles.values".to_owned(), Tensor::of_f32(&profiles.values)),
+        ("profiles.values".to_owned(), Tensor::of_rows(rows, profiles.width, step)),
         ("signs".to_owned(), single(&model.signs)),
         ("tree.exemplar_counts".to_owned(), Tensor::of_u32(sides().map(|s| s.len() as u32))),
         ("tree.exemplars".to_owned(), Tensor::of_u32(sides().flatten().copied())),
@@ -66,7 +68,11 @@ pub(super) fn tensors(model: &SvrdmModel) -> BTreeMap<String, Tensor> {
         ("tree.points".to_owned(), single(&points)),
         ("tree.vectors".to_owned(), single(&model.tree.parts().vectors)),
         ("tree.weights".to_owned(), single(&weights)),
-    ])
+    ]);
+    if let Some(step) = step {
+        tensors.insert("profiles.step".to_owned(), Tensor::of_f32(step));
+    }
+    tensors
 }
 
 fn single(values: &[f64]) -> Tensor {
@@ -83,11 +89,8 @@ pub(super) fn read(manifest: &SvrdmManifest, tables: &Tables) -> Result<SvrdmMod
     let (mean, axes, eigenvalues) = (double("pca.mean")?, double("pca.axes")?, double("pca.eigenvalues")?);
     let pca =
         Pca::from_parts(mean, axes, eigenvalues, manifest.pca_rows).map_err(|e| content(e.to_string()))?;
-    let classes: Result<Vec<ClassId>, _> =
-        tables.u32s("profiles.classes")?.into_iter().map(class_id).collect();
-    let lengths = tables.u32s("profiles.lengths")?.into_iter().map(|n| n as usize).collect();
     let width = manifest.params.comparison.width(pca.dims());
-    let profiles = Profiles { width, values: tables.f32s("profiles.values")?, lengths, classes: classes? };
+    let profiles = profiles(tables, width)?;
     let dim = manifest.params.eigenvectors.saturating_mul(pca.dims());
     let nodes = nodes(manifest, tables)?;
     let parts = Parts { dim, vectors: double("tree.vectors")?, nodes };
@@ -105,6 +108,21 @@ pub(super) fn read(manifest: &SvrdmManifest, tables: &Tables) -> Result<SvrdmMod
     };
     model.check().map_err(|e| content(e.to_string()))?;
     Ok(model)
+}
+
+fn profiles(tables: &Tables, width: usize) -> Result<Profiles, IndexError> {
+    let step = if tables.has("profiles.step") { Some(tables.f32s("profiles.step")?) } else { None };
+    if let Some(found) = step.as_ref().map(Vec::len).filter(|found| *found != width) {
+        let message = format!("tensor \"profiles.step\": expected {width} values, found {found}");
+        return Err(IndexError::Content(message));
+    }
+    let classes: Result<Vec<ClassId>, _> =
+        tables.u32s("profiles.classes")?.into_iter().map(class_id).collect();
+    let lengths = tables.u32s("profiles.lengths")?;
+    let rows = tables.pieces("profiles.values", width, &lengths, step.as_deref())?;
+    let values = rows.iter().flat_map(|rows| rows.values().iter().copied()).collect();
+    let lengths = lengths.into_iter().map(|n| n as usize).collect();
+    Ok(Profiles { width, values, step, lengths, classes: classes? })
 }
 
 /// The tree's nodes: words and tables put together again.

@@ -13,7 +13,7 @@ use crate::pivots::{PivotMap, pose_rows_of_clip};
 use crate::plot::HeatMap;
 use crate::svrdm::{SampleClassifier, SvrdmModel};
 use crate::train::svrdm::{BranchReport, FeatureSample, branch_picture, tree_picture};
-use crate::train::thesis::{Estimated, train_svrdm};
+use crate::train::thesis::{Estimated, SvrdmOptions, train_svrdm};
 use crate::train::{Labelling, TrainClip};
 
 use super::{Picture, ReproduceError, Setting, Study};
@@ -60,7 +60,7 @@ pub struct Classification {
 
 pub(super) fn run(
     study: &Study<'_>,
-    setting: Setting,
+    (setting, options): &(Setting, SvrdmOptions),
     seed: u64,
     pictures: &mut Vec<Picture>,
 ) -> Result<Classification, ReproduceError> {
@@ -75,7 +75,7 @@ pub(super) fn run(
         classes: study.classes,
         unlabelled_is_background: true,
     };
-    let (model, report) = train_svrdm(study.clips, &labelling, &setting.options(), &())?;
+    let (model, report) = train_svrdm(study.clips, &labelling, options, &())?;
     let mut classifier = SampleClassifier::new(&model).map_err(|e| ReproduceError::Other(e.to_string()))?;
     let trained: BTreeSet<usize> = fold.taught.iter().copied().collect();
     let mut tally = Tally::new(study.classes.len());
@@ -90,7 +90,7 @@ pub(super) fn run(
             features.push(FeatureSample { class, group: 0, vector });
         }
     }
-    draw(study, setting, &model, &features, &tally, pictures);
+    draw(study, *setting, &model, &features, &tally, pictures);
     let index = MotionIndex {
         model: model.clone().into(),
         roles: BTreeMap::new(),
@@ -98,7 +98,7 @@ pub(super) fn run(
     };
     let svrdm = report.svrdm;
     Ok(Classification {
-        setting,
+        setting: *setting,
         seed,
         taught: taught.len(),
         accept: model.params.accept,

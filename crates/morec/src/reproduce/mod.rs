@@ -18,7 +18,7 @@ use crate::labels::Sample;
 use crate::pivots::UnplayedRoot;
 use crate::progress::Progress;
 use crate::segment::SegmentError;
-use crate::train::thesis::{SvrdmOptions, SvrdmTrainParams};
+use crate::train::thesis::SvrdmOptions;
 use crate::train::{TrainClip, TrainError};
 
 pub use classification::Classification;
@@ -40,6 +40,8 @@ pub struct Study<'a> {
     pub unknown: &'a [TrainClip],
     /// Seeds of the half splits.
     pub seeds: &'a [u64],
+    /// How to train.
+    pub settings: &'a [(Setting, SvrdmOptions)],
 }
 
 /// The two settings.
@@ -53,23 +55,12 @@ pub enum Setting {
 }
 
 impl Setting {
-    /// Both.
-    pub const ALL: [Setting; 2] = [Setting::Faithful, Setting::Tuned];
-
     /// As it is written.
     pub fn name(self) -> &'static str {
         match self {
             Setting::Faithful => "faithful",
             Setting::Tuned => "tuned",
         }
-    }
-
-    fn options(self) -> SvrdmOptions {
-        let params = match self {
-            Setting::Faithful => SvrdmTrainParams::faithful(),
-            Setting::Tuned => SvrdmTrainParams::tuned(),
-        };
-        SvrdmOptions { params, unlabelled_is_background: true }
     }
 }
 
@@ -124,7 +115,7 @@ pub enum ReproduceError {
 
 /// Runs the whole evaluation. Trains twice for each setting and seed.
 pub fn reproduce(study: &Study<'_>, progress: &dyn Progress) -> Result<Reproduction, ReproduceError> {
-    let steps = 2 + Setting::ALL.len() * study.seeds.len();
+    let steps = 2 + study.settings.len() * study.seeds.len();
     let at = |step: usize| {
         progress.report("evaluation", step, steps);
         if progress.cancelled() { Err(ReproduceError::Cancelled) } else { Ok(()) }
@@ -135,7 +126,7 @@ pub fn reproduce(study: &Study<'_>, progress: &dyn Progress) -> Result<Reproduct
     at(1)?;
     let clustering = clustering::run(study)?;
     let (mut classification, mut streams) = (vec![], vec![]);
-    for setting in Setting::ALL {
+    for setting in study.settings {
         for (turn, seed) in study.seeds.iter().enumerate() {
             at(2 + classification.len())?;
             // Pictures of the first seed; the others look alike.

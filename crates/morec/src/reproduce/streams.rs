@@ -12,6 +12,8 @@ use crate::plot::{Bar, Lanes};
 use crate::svrdm::{ConfidenceMap, SvrdmEngine, SvrdmModel};
 use crate::train::Source;
 
+use crate::train::thesis::SvrdmOptions;
+
 use super::{Picture, ReproduceError, Setting, Study};
 
 /// One half split.
@@ -30,7 +32,7 @@ const DRAWN: usize = 4;
 
 pub(super) fn run(
     study: &Study<'_>,
-    setting: Setting,
+    (setting, options): &(Setting, SvrdmOptions),
     seed: u64,
     pictures: &mut Vec<Picture>,
 ) -> Result<Streamed, ReproduceError> {
@@ -40,18 +42,18 @@ pub(super) fn run(
         classes: study.classes,
         unknown: study.unknown,
     };
-    let outcome = crossval(&material, By::Half { seed }, &setting.options().into(), &())?;
+    let outcome = crossval(&material, By::Half { seed }, &options.clone().into(), &())?;
     let evaluation = Evaluation::of(&outcome.streams, &outcome.truths, &outcome.founds)?;
     let mut lines = timelines(&outcome.streams, &outcome.truths, &outcome.founds)?;
     lines.sort_by_key(|line| std::cmp::Reverse(line.truths.len()));
     for line in lines.iter().take(DRAWN) {
-        pictures.push(timeline_picture(study, setting, line));
+        pictures.push(timeline_picture(study, *setting, line));
     }
     let longest = lines.first().map(|line| line.stream.clip.clone());
     if let (Some(Model::Svrdm(model)), Some(clip)) = (outcome.models.first(), longest) {
-        pictures.extend(map_picture(study, setting, model, &clip)?);
+        pictures.extend(map_picture(study, *setting, model, &clip)?);
     }
-    Ok(Streamed { setting, seed, evaluation })
+    Ok(Streamed { setting: *setting, seed, evaluation })
 }
 
 fn timeline_picture(study: &Study<'_>, setting: Setting, line: &Timeline) -> Picture {

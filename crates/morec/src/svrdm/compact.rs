@@ -3,10 +3,11 @@
 use crate::pca::Pca;
 
 use super::tree::{Node, Tree};
-use super::{ModelError, SvrdmModel};
+use super::{Comparison, ModelError, SvrdmModel};
 
 impl SvrdmModel {
-    /// This model with every table rounded to single precision, as an index file keeps it. What is judged in
+    /// This model with every table rounded to single precision, and profiles of whole rows to a byte a value, as an index
+    /// file keeps them. What is judged in
     /// training is then what recognises later.
     pub fn compact(&self) -> Result<Self, ModelError> {
         let invalid = |e: &dyn std::fmt::Display| ModelError::Value(e.to_string());
@@ -22,7 +23,11 @@ impl SvrdmModel {
             }
         }
         let tree = Tree::new(parts).map_err(|e| invalid(&e))?;
-        Ok(Self { pca, tree, signs: single(&self.signs), ..self.clone() })
+        let profiles = match self.params.comparison {
+            Comparison::Profiles => self.profiles.clone(),
+            Comparison::Rows { .. } => self.profiles.in_steps(),
+        };
+        Ok(Self { pca, tree, signs: single(&self.signs), profiles, ..self.clone() })
     }
 }
 

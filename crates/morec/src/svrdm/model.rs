@@ -43,6 +43,9 @@ pub struct Profiles {
     pub width: usize,
     /// All values end to end.
     pub values: Vec<f32>,
+    /// Where values were rounded to multiples of a step, as a file of whole rows keeps them: for each column, its step.
+    #[serde(default)]
+    pub step: Option<Vec<f32>>,
     /// For each profile, its length in rows.
     pub lengths: Vec<usize>,
     /// For each profile, the class of its sample.
@@ -56,7 +59,7 @@ fn one() -> usize {
 impl Profiles {
     /// None so far, of rows of `width` values.
     pub fn new(width: usize) -> Self {
-        Self { width: width.max(1), values: vec![], lengths: vec![], classes: vec![] }
+        Self { width: width.max(1), values: vec![], step: None, lengths: vec![], classes: vec![] }
     }
 
     /// Adds a sample's.
@@ -64,6 +67,20 @@ impl Profiles {
         self.values.extend_from_slice(profile);
         self.lengths.push(profile.len() / self.width);
         self.classes.push(class);
+    }
+
+    /// The same profiles with every value at a multiple of its column's step, 127 of which make its largest value: a
+    /// byte a value. Rows are many, and an edit distance does not see the difference.
+    #[must_use]
+    pub fn in_steps(&self) -> Self {
+        let mut most = vec![0.0f32; self.width];
+        for row in self.values.chunks_exact(self.width) {
+            most.iter_mut().zip(row).for_each(|(most, v)| *most = most.max(v.abs()));
+        }
+        let step: Vec<f32> = most.into_iter().map(|most| most / 127.0).collect();
+        let round = |(v, step): (&f32, &f32)| if *step > 0.0 { (v / step).round() * step } else { 0.0 };
+        let values = self.values.chunks_exact(self.width).flat_map(|row| row.iter().zip(&step).map(round));
+        Self { values: values.collect(), step: Some(step), ..self.clone() }
     }
 
     /// How many.
@@ -148,6 +165,7 @@ impl SvrdmModel {
             ("values in the sign vectors", feature_dim, self.signs.len()),
             ("values in a feature vector of the tree", feature_dim, self.tree.dim()),
             ("mean lengths of classes", self.classes.len(), self.mean_secs.len()),
+            ("steps of profiles", profiles.width, profiles.step.as_ref().map_or(profiles.width, Vec::len)),
             ("classes of profiles", profiles.len(), profiles.classes.len()),
             ("values in a profile's row", self.params.comparison.width(reduced), profiles.width),
             (

@@ -1,7 +1,7 @@
 //! Thresholds of recognition from training samples and background motion (future work in the thesis, ch. 6).
 //!
-//! The thesis trains with `T = 1` and recognises with a `T` of 0.92 that was chosen by hand. Here `T` is as low as
-//! samples need that were left out of training, and a second threshold, on the confidence of what the tree let pass, is
+//! The thesis trains with `T = 1` and recognises with a `T` of 0.92 that was chosen by hand. Here `T` is as low as it may
+//! be without samples that were left out of training being taken for another class, and a second threshold, on the confidence of what the tree let pass, is
 //! as high as motion asks for that is none of the classes.
 
 use std::ops::Range;
@@ -18,16 +18,16 @@ use super::fit::fit;
 use super::material::{Background, Material};
 use super::{SvrdmTrainParams, ThesisSample};
 
-/// `T` is not below this: outputs between the sides of a branch are about this large.
+/// `T` is not below this: outputs between the sides of a branch are about `t = 0.4`.
 const LEAST_ACCEPT: f64 = 0.5;
 /// `T` is not above what the thesis recognises with.
 const MOST_ACCEPT: f64 = 0.92;
-/// This share of left-out samples may fall below `T`.
-const MAY_MISS: f64 = 0.05;
+/// This share of left-out samples may be taken for another class.
+const MAY_MISTAKE: f64 = 0.01;
 /// This share of the left-out samples that the tree gets right may fall below the least confidence, if background
 /// asks for as much: what lies near a motion in its own clip must not silence the class.
 const MAY_SILENCE: f64 = 0.25;
-/// Background must stay below the least confidence by so much.
+/// What is to be refused must stay below a threshold by so much.
 const MARGIN: f64 = 0.01;
 /// The least confidence where there is no background to ask for more.
 const LEAST_CONFIDENCE: f64 = 0.3;
@@ -105,8 +105,10 @@ pub(super) fn estimate(
         }
         judged.extend(judge_fold(material, params, &places, fold)?);
     }
-    let mut outputs: Vec<f64> = judged.iter().filter(|j| j.right).map(|j| j.output).collect();
-    let accept = low_quantile(&mut outputs, MAY_MISS).unwrap_or(params.stages.accept);
+    let mut mistaken: Vec<f64> = judged.iter().filter(|j| !j.right).map(|j| j.output).collect();
+    mistaken.sort_by(|a, b| b.total_cmp(a));
+    let spared = (MAY_MISTAKE * judged.len() as f64) as usize;
+    let accept = mistaken.get(spared).map_or(LEAST_ACCEPT, |output| output + MARGIN);
     let accept = accept.clamp(LEAST_ACCEPT, MOST_ACCEPT);
 
     let mut listening = model.clone();
