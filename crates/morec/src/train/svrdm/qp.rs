@@ -154,7 +154,14 @@ impl BoxQp {
         let right = DVector::from_iterator(inside.len(), inside.iter().map(|&i| -gradient[i]));
         let Some(factor) = self.factor(&inside) else { return true };
         let direction = factor.solve(&right);
-        let room = |i: usize, d: f64| if d > 0.0 { (self.upper - alpha[i]) / d } else { alpha[i] / -d };
+        if direction.iter().any(|d| !d.is_finite()) {
+            return true;
+        }
+        let room = |i: usize, d: f64| match d {
+            0.0 => f64::INFINITY,
+            d if d > 0.0 => (self.upper - alpha[i]) / d,
+            d => alpha[i] / -d,
+        };
         let rooms: Vec<f64> = inside.iter().zip(&direction).map(|(&i, d)| room(i, *d)).collect();
         let share = rooms.iter().copied().fold(1.0, f64::min);
         for ((&i, d), room) in inside.iter().zip(&direction).zip(rooms) {

@@ -103,3 +103,18 @@ fn each_machine_of_a_pair_speaks_for_its_own_side() {
         }
     }
 }
+
+#[test]
+fn samples_in_one_place_have_a_finite_machine() {
+    for place in [[0.0, 0.0], [1.0, -2.0]] {
+        let (mut samples, mut sides) = (vec![place.to_vec(); 6], vec![0, 0, 0, 1, 1, 1]);
+        for width in [0.01, 1.0, 100.0] {
+            let pair = svrdm(&Distances::new(&samples).kernel(width), &sides, &MachineParams::default());
+            assert!(pair.weights.iter().flatten().all(|w| w.is_finite()), "{pair:?}");
+        }
+        samples.push(vec![5.0, 5.0]);
+        sides.push(1);
+        let pair = svrdm(&Distances::new(&samples).kernel(1e4), &sides, &MachineParams::default());
+        assert!(pair.weights.iter().flatten().all(|w| w.is_finite()), "{pair:?}");
+    }
+}
