@@ -4,6 +4,7 @@ mod commands;
 mod figures;
 mod files;
 mod lengths;
+mod live;
 mod material;
 mod poses;
 mod progress;
@@ -36,6 +37,9 @@ enum Command {
     Cut(commands::cut::Args),
     Group(commands::group::Args),
     Reduce(commands::reduce::Args),
+    Live(commands::live::Args),
+    Send(commands::send::Args),
+    Soak(commands::soak::Args),
     Demo(commands::demo::Args),
 }
 
@@ -53,6 +57,9 @@ fn main() -> ExitCode {
         Command::Cut(args) => commands::cut::run(&args),
         Command::Group(args) => commands::group::run(&args),
         Command::Reduce(args) => commands::reduce::run(&args),
+        Command::Live(args) => commands::live::run(&args),
+        Command::Send(args) => commands::send::run(&args),
+        Command::Soak(args) => commands::soak::run(&args),
         Command::Demo(args) => commands::demo::run(&args),
     };
     match outcome {

@@ -5,5 +5,6 @@ mod demo;
 mod evaluate;
 mod inspect;
 mod kit;
+mod live;
 mod poses;
 mod smooth;

@@ -6,10 +6,10 @@ use crate::decode::TickDetection;
 use crate::features::{BoneSet, FeatureStream, Pushed};
 use crate::pivots::PoseStream;
 use crate::svrdm::{FrameDetection, SvrdmEngine, SvrdmModel};
-use crate::templates::{TemplateEngine, TemplateModel};
+use crate::templates::{EarlyParams, TemplateEngine, TemplateModel, Underway};
 
 use super::recognizer::Found;
-use super::{Pose, StartError};
+use super::{Hunch, Pose, StartError};
 
 /// Feature rows and templates.
 #[derive(Debug, Clone)]
@@ -17,6 +17,25 @@ pub(super) struct TemplatePath {
     pub(super) model: Arc<TemplateModel>,
     features: FeatureStream,
     engine: TemplateEngine,
+    early: EarlyParams,
+    seen: Seen,
+}
+
+/// What was under way at the last tick that was asked about.
+#[derive(Debug, Clone, Copy, Default)]
+struct Seen {
+    ticks: usize,
+    underway: Option<Underway>,
+    /// Ticks in a row at which it was this class.
+    streak: usize,
+}
+
+impl Seen {
+    fn take(&mut self, ticks: usize, underway: Option<Underway>) {
+        let same = ticks > self.ticks && underway.map(|u| u.class) == self.underway.map(|u| u.class);
+        self.streak = if same { self.streak + 1 } else { 1 };
+        (self.ticks, self.underway) = (ticks, underway);
+    }
 }
 
 impl TemplatePath {
@@ -27,7 +46,8 @@ impl TemplatePath {
             Arc::new(model.restricted(bones)?)
         };
         let features = FeatureStream::new(model.bones, &model.features);
-        Ok(Self { features, engine: TemplateEngine::new(&model)?, model })
+        let (early, seen) = (EarlyParams::default(), Seen::default());
+        Ok(Self { features, engine: TemplateEngine::new(&model)?, model, early, seen })
     }
 
     pub(super) fn latency_secs(&self) -> f64 {
@@ -68,6 +88,28 @@ impl TemplatePath {
         };
         self.features.finish(&mut |row| engine.push(row, &mut out));
         engine.finish(&mut out);
+    }
+
+    pub(super) fn hunch(&mut self) -> Option<Hunch> {
+        let ticks = self.engine.ticks();
+        if ticks != self.seen.ticks {
+            let underway = self.engine.underway(&self.early);
+            self.seen.take(ticks, underway);
+        }
+        let underway = self.seen.underway.filter(|_| self.seen.streak >= self.early.streak)?;
+        let tick_secs = 1.0 / self.model.features.tick_hz();
+        let seen_secs = self.features.origin_secs() + ticks as f64 * tick_secs;
+        Some(Hunch {
+            class: underway.class,
+            score: 1.0 - f64::from(underway.distance / (self.early.reach * self.engine.threshold())),
+            progress: f64::from(underway.progress),
+            start_secs: seen_secs - (underway.age + 1) as f64 * tick_secs,
+            seen_secs,
+        })
+    }
+
+    pub(super) fn set_early(&mut self, params: EarlyParams) {
+        self.early = params;
     }
 }
 

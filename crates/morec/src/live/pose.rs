@@ -28,6 +28,7 @@ impl<'p> From<&'p KeyPose> for Pose<'p> {
 pub struct PoseReader {
     roles: RoleMap,
     pivots: Option<PivotMap>,
+    joints: usize,
     key: KeyPose,
     pivot: PivotPose,
 }
@@ -40,7 +41,8 @@ impl PoseReader {
             Model::Templates(_) => None,
             Model::Svrdm(model) => Some(PivotMap::resolve(&model.pivots, skeleton, roles)?),
         };
-        Ok(Self { roles: roles.clone(), pivots, key: KeyPose::default(), pivot: PivotPose::default() })
+        let (key, pivot) = (KeyPose::default(), PivotPose::default());
+        Ok(Self { roles: roles.clone(), pivots, joints: skeleton.len(), key, pivot })
     }
 
     /// Names of the pivots that the skeleton lacks.
@@ -48,12 +50,20 @@ impl PoseReader {
         self.pivots.as_ref().map_or(&[], |pivots| pivots.missing())
     }
 
+    /// How the pivots are turned in `world`; `None` if the model does not ask, or the source does not say.
+    pub fn pivots(&mut self, world: &WorldPose) -> Option<&PivotPose> {
+        let pivots = self.pivots.as_ref().filter(|_| world.rotations.len() == self.joints)?;
+        self.pivot = pivots.pose(world);
+        Some(&self.pivot)
+    }
+
     /// The pose, valid until the next is read. No allocation.
     pub fn read(&mut self, world: &WorldPose) -> Pose<'_> {
         self.key = KeyPose::of(world, &self.roles);
-        if let Some(pivots) = &self.pivots {
+        let pivots = self.pivots.as_ref().filter(|_| world.rotations.len() == self.joints);
+        if let Some(pivots) = pivots {
             self.pivot = pivots.pose(world);
         }
-        Pose { key: &self.key, pivots: self.pivots.is_some().then_some(&self.pivot) }
+        Pose { key: &self.key, pivots: pivots.is_some().then_some(&self.pivot) }
     }
 }

@@ -2,9 +2,10 @@
 
 use crate::classes::ClassId;
 use crate::features::{BoneSet, KeyPose, Pushed};
+use crate::templates::EarlyParams;
 
 use super::paths::{SvrdmPath, TemplatePath};
-use super::{Model, Pose, StartError};
+use super::{Hunch, Model, Pose, StartError};
 
 /// Detections that one push can complete at most; more than a motion a tick is not a motion.
 const MAX_DETECTIONS_PER_PUSH: usize = 64;
@@ -153,6 +154,22 @@ impl Recognizer {
         self.found.begin(self.now_secs);
         self.end_stretch();
         &self.found.detections
+    }
+
+    /// What seems to be under way after the last push, if anything does. Tentative: it says nothing about what
+    /// [`push`](Self::push) will report, and asking changes nothing of that. Templates only. No allocation.
+    pub fn hunch(&mut self) -> Option<Hunch> {
+        match &mut self.path {
+            Path::Templates(path) => path.hunch(),
+            Path::Svrdm(_) => None,
+        }
+    }
+
+    /// How near a beginning must be for [`hunch`](Self::hunch).
+    pub fn set_early(&mut self, params: EarlyParams) {
+        if let Path::Templates(path) = &mut self.path {
+            path.set_early(params);
+        }
     }
 
     fn breaks_at(&self, time_secs: f64) -> bool {

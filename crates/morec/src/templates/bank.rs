@@ -1,5 +1,7 @@
 //! Subsequence dynamic time warping of many templates against one stream, a tick at a time.
 
+use std::sync::Arc;
+
 use crate::decode::FAR;
 use crate::features::Rows;
 
@@ -22,16 +24,17 @@ const GUARDS: usize = 2;
 /// between 1/2 and 2. (Sakoe and Chiba 1978, slope constraint P = 1, weighted along the template; open start as
 /// in Müller 2007, §4.4.) Transitions read the two ticks before only, so all cells of a tick are independent.
 ///
-/// One step costs O(F·d) for `F` template rows in all; nothing is allocated after construction.
+/// One step costs O(F·d) for `F` template rows in all; nothing is allocated after construction. Copies share the
+/// templates and have cells of their own.
 #[derive(Debug, Clone)]
 pub struct Bank {
     dim: usize,
     /// Template values, one row of cells for each of the `dim` coordinates: `dim` × `cells`.
-    transposed: Vec<f32>,
+    transposed: Arc<[f32]>,
     /// `|T_j|²` of every cell.
-    norms: Vec<f32>,
+    norms: Arc<[f32]>,
     /// First and last cell of each template.
-    extents: Vec<(usize, usize)>,
+    extents: Arc<[(usize, usize)]>,
     columns: [Column; 3],
     tick: usize,
 }
@@ -76,7 +79,14 @@ impl Bank {
             }
         }
         let column = Column { local: vec![0.0; cells], total: vec![FAR; cells], age: vec![0; cells] };
-        Self { dim, transposed, norms, extents, columns: std::array::from_fn(|_| column.clone()), tick: 0 }
+        Self {
+            dim,
+            transposed: transposed.into(),
+            norms: norms.into(),
+            extents: extents.into(),
+            columns: std::array::from_fn(|_| column.clone()),
+            tick: 0,
+        }
     }
 
     /// Number of templates.
@@ -120,7 +130,7 @@ impl Bank {
         };
         local_costs(&self.transposed, &self.norms, z, &mut now.local);
         advance(now, before, earlier);
-        for &(first, last) in &self.extents {
+        for &(first, last) in self.extents.iter() {
             now.total[first - GUARDS..first].fill(FAR);
             if last >= first {
                 now.total[first] = now.local[first];
@@ -146,6 +156,38 @@ impl Bank {
         }
         Match { distance: column.total[last] / length as f32, age: column.age[last] as usize }
     }
+
+    /// How the first rows of template `index`, at least `least` of them, match a stretch that ends with the last tick
+    /// stepped: where they match best. O(rows), changes nothing.
+    pub fn partial(&self, index: usize, least: usize) -> Option<PartialMatch> {
+        let (first, last) = self.extents[index];
+        let from = first + least.max(1) - 1;
+        if self.tick == 0 || from > last {
+            return None;
+        }
+        let column = &self.columns[(self.tick - 1) % 3];
+        let mut best: Option<PartialMatch> = None;
+        for cell in from..=last {
+            let rows = cell - first + 1;
+            let distance = column.total[cell] / rows as f32;
+            // A path that came out of a guard cell is no path.
+            if column.total[cell] < FAR / 2.0 && best.is_none_or(|b| distance < b.distance) {
+                best = Some(PartialMatch { distance, age: column.age[cell] as usize, rows });
+            }
+        }
+        best
+    }
+}
+
+/// How the beginning of a template matches a stretch that ends now.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PartialMatch {
+    /// Mean squared distance along the path, over the rows it has come to: `D(j,t) / j`.
+    pub distance: f32,
+    /// How many ticks ago the path began.
+    pub age: usize,
+    /// Rows it has come to, of the template's.
+    pub rows: usize,
 }
 
 /// `|T_j − z|²` of every cell, as `|T_j|² + |z|² − 2 T_j·z`.
@@ -254,6 +296,32 @@ mod tests {
                         prop_assert_eq!(found.distance, distance as f32);
                         prop_assert_eq!(t - found.age, start);
                     }
+                }
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn a_beginning_matches_as_a_template_of_its_own_would(
+            template in rows(2..9),
+            stream in rows(1..30),
+            least in 1usize..9,
+        ) {
+            let least = least.min(template.len());
+            let alone: Vec<_> =
+                (least..=template.len()).map(|n| plain(&template.slice(0..n), &stream)).collect();
+            let mut bank = Bank::new(std::slice::from_ref(&template), 3);
+            for (t, z) in stream.iter().enumerate() {
+                bank.step(z);
+                let best = alone.iter().map(|table| table[t].0).fold(f64::INFINITY, f64::min);
+                match bank.partial(0, least) {
+                    Some(found) => {
+                        prop_assert_eq!(found.distance, best as f32);
+                        let (_, start) = alone[found.rows - least][t];
+                        prop_assert_eq!(t - found.age, start);
+                    }
+                    None => prop_assert!(best > 1e20),
                 }
             }
         }

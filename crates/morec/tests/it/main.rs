@@ -12,6 +12,7 @@ mod kit;
 mod layers;
 mod made;
 mod pose_golden;
+mod session;
 mod smooth_real;
 mod svrdm;
 mod thesis;
