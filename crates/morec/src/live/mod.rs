@@ -1,11 +1,41 @@
 //! Live recognition: poses in, detections out, nothing taken back.
 //!
-//! Real-time contract: construction allocates and may fail with a reason; `push` afterwards does not allocate,
-//! lock, log or fail. A recogniser is owned by one thread at a time. Detections are the same however the stream
-//! is cut into pushes.
+//! Three ways to run it, with the same detections:
+//!
+//! - [`Recognizer`]: poses of one performer in, detections out, on the caller's thread.
+//! - [`Session`]: a [`Source`] on a thread, recognition on another, events for any number of readers. Several
+//!   performers, skeletons that change, sources that break off and come back.
+//! - [`Pool`]: many streams on a few threads.
+//!
+//! Real-time contract: construction allocates and may fail with a reason; [`Recognizer::push`] afterwards does not
+//! allocate, lock, log or fail. A recogniser is owned by one thread at a time. Detections are the same however the
+//! stream is cut into pushes. In sessions and pools frames travel over bounded wait-free rings; when one is full,
+//! [`Overload`] says who gives way, and everything that is dropped is counted in [`Status`].
 
+mod clock;
+mod early;
+mod event;
+mod feed;
+mod frame;
+mod lane;
 mod of_clip;
+mod performer;
+mod pool;
 mod recognizer;
+mod session;
+mod source;
+mod status;
 
+pub use clock::wall_now_secs;
+pub use early::Hunch;
+pub use event::{Event, Phase};
+pub use feed::{FeedSender, Overload};
+pub use frame::{Actor, Frame, Rig};
+pub use lane::EventReader;
 pub use of_clip::recognize_clip;
+pub use performer::{EventOptions, Performer};
+pub use pool::{Pool, PoolStream};
 pub use recognizer::{Detection, Recognizer};
+pub use session::{Session, SessionError, SessionOptions};
+pub use source::{Next, Source, SourceCounts};
+pub use status::{ActorStatus, MAX_ACTORS, Status, StatusHandle};

@@ -7,6 +7,8 @@ use crate::decode::TickDetection;
 use crate::features::{BoneSet, FeatureStream, KeyPose, Pushed};
 use crate::templates::{TemplateEngine, TemplateModel, TemplateModelError};
 
+use super::Hunch;
+
 /// Detections that one push can complete at most; more than a motion a tick is not a motion.
 const MAX_DETECTIONS_PER_PUSH: usize = 64;
 
@@ -117,6 +119,12 @@ impl Recognizer {
         self.found.clear();
         self.end_stretch();
         &self.found
+    }
+
+    /// What seems to be under way after the last push, if anything does. Tentative: it says nothing about what
+    /// [`push`](Self::push) will report, and asking changes nothing. No allocation.
+    pub fn hunch(&self) -> Option<Hunch> {
+        None
     }
 
     fn end_stretch(&mut self) {

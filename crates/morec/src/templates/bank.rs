@@ -1,5 +1,7 @@
 //! Subsequence dynamic time warping of many templates against one stream, a tick at a time.
 
+use std::sync::Arc;
+
 use crate::decode::FAR;
 use crate::features::Rows;
 
@@ -22,16 +24,17 @@ const GUARDS: usize = 2;
 /// between 1/2 and 2. (Sakoe and Chiba 1978, slope constraint P = 1, weighted along the template; open start as
 /// in Müller 2007, §4.4.) Transitions read the two ticks before only, so all cells of a tick are independent.
 ///
-/// One step costs O(F·d) for `F` template rows in all; nothing is allocated after construction.
+/// One step costs O(F·d) for `F` template rows in all; nothing is allocated after construction. Copies share the
+/// templates and have cells of their own.
 #[derive(Debug, Clone)]
 pub struct Bank {
     dim: usize,
     /// Template values, one row of cells for each of the `dim` coordinates: `dim` × `cells`.
-    transposed: Vec<f32>,
+    transposed: Arc<[f32]>,
     /// `|T_j|²` of every cell.
-    norms: Vec<f32>,
+    norms: Arc<[f32]>,
     /// First and last cell of each template.
-    extents: Vec<(usize, usize)>,
+    extents: Arc<[(usize, usize)]>,
     columns: [Column; 3],
     tick: usize,
 }
@@ -76,7 +79,14 @@ impl Bank {
             }
         }
         let column = Column { local: vec![0.0; cells], total: vec![FAR; cells], age: vec![0; cells] };
-        Self { dim, transposed, norms, extents, columns: std::array::from_fn(|_| column.clone()), tick: 0 }
+        Self {
+            dim,
+            transposed: transposed.into(),
+            norms: norms.into(),
+            extents: extents.into(),
+            columns: std::array::from_fn(|_| column.clone()),
+            tick: 0,
+        }
     }
 
     /// Number of templates.
@@ -120,7 +130,7 @@ impl Bank {
         };
         local_costs(&self.transposed, &self.norms, z, &mut now.local);
         advance(now, before, earlier);
-        for &(first, last) in &self.extents {
+        for &(first, last) in self.extents.iter() {
             now.total[first - GUARDS..first].fill(FAR);
             if last >= first {
                 now.total[first] = now.local[first];

@@ -1,5 +1,7 @@
 //! Feature rows in, detections in ticks out.
 
+use std::sync::Arc;
+
 use crate::classes::ClassId;
 use crate::decode::{Candidate, ClassDistance, Decoder, FAR, TickDetection};
 use crate::features::Rows;
@@ -13,7 +15,7 @@ pub struct TemplateEngine {
     metric: Metric,
     bank: Bank,
     negatives: Bank,
-    template_classes: Vec<ClassId>,
+    template_classes: Arc<[ClassId]>,
     judge: Option<Judge>,
     decoder: Decoder,
     recent: RecentRows,

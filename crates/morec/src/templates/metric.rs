@@ -1,5 +1,7 @@
 //! The metric that forgets what differs between people doing the same.
 
+use std::sync::Arc;
+
 use nalgebra::{DMatrix, SymmetricEigen};
 
 use crate::features::Rows;
@@ -56,7 +58,7 @@ impl Symmetric {
 pub struct Metric {
     dim: usize,
     /// `A`, row-major; symmetric.
-    map: Vec<f32>,
+    map: Arc<[f32]>,
 }
 
 impl Metric {

@@ -4,6 +4,8 @@
 //! even steps, with stretches that were the class and stretches that only came near it, and weighs how near the
 //! class is against how near everything else is.
 
+use std::sync::Arc;
+
 use crate::classes::ClassId;
 use crate::decode::Candidate;
 use crate::features::Rows;
@@ -166,12 +168,12 @@ impl Verifier {
     }
 }
 
-/// A verifier laid out for streaming.
+/// A verifier laid out for streaming; copies share the exemplars.
 #[derive(Debug, Clone)]
 pub struct Judge {
-    verifier: Verifier,
+    verifier: Arc<Verifier>,
     /// Mapped shapes of each class's exemplars.
-    shapes: Vec<Rows>,
+    shapes: Arc<[Rows]>,
     threshold: f64,
     shape: Vec<f32>,
     mapped: Vec<f32>,
@@ -183,7 +185,7 @@ impl Judge {
         let len = SHAPE_ROWS * metric.dim();
         Self {
             shapes: verifier.classes.iter().map(|c| metric.apply_all(&c.shapes)).collect(),
-            verifier: verifier.clone(),
+            verifier: Arc::new(verifier.clone()),
             threshold: f64::from(threshold),
             shape: vec![0.0; len],
             mapped: vec![0.0; len],

@@ -1,9 +1,13 @@
 //! The ways there are of running recognition; the conformance suite goes through all of them.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use morec::features::BoneSet;
-use morec::live::{Detection, Recognizer};
+use morec::live::{
+    Actor, Detection, Event, EventReader, Frame, Next, Overload, Phase, Pool, PoolStream, Recognizer, Rig,
+    Session, SessionOptions, Source,
+};
 use morec::templates::TemplateModel;
 
 use crate::made::Timed;
@@ -17,8 +21,12 @@ pub struct Engine {
 }
 
 /// All of them.
-pub const ENGINES: [Engine; 2] =
-    [Engine { name: "inline", run: inline }, Engine { name: "inline, in batches", run: batches }];
+pub const ENGINES: [Engine; 4] = [
+    Engine { name: "inline", run: inline },
+    Engine { name: "inline, in batches", run: batches },
+    Engine { name: "session", run: session },
+    Engine { name: "pool of two threads and three streams", run: pool },
+];
 
 pub fn inline(model: &Arc<TemplateModel>, bones: BoneSet, poses: &[Timed]) -> Vec<Detection> {
     let mut recognizer = Recognizer::new(model, bones).unwrap();
@@ -38,4 +46,87 @@ fn batches(model: &Arc<TemplateModel>, bones: BoneSet, poses: &[Timed]) -> Vec<D
     }
     found.extend_from_slice(recognizer.finish());
     found
+}
+
+/// A stream as a source, whose frames are poses of `rig`.
+pub struct Played {
+    pub poses: std::vec::IntoIter<Timed>,
+    pub rig: Option<Arc<Rig>>,
+}
+
+impl Played {
+    pub fn new(poses: &[Timed]) -> Self {
+        Self { poses: poses.to_vec().into_iter(), rig: Some(Arc::new(Rig::of_roles())) }
+    }
+}
+
+impl Source for Played {
+    fn next(&mut self, frame: &mut Frame) -> Next {
+        if let Some(rig) = self.rig.take() {
+            return Next::Rig(Actor(0), rig);
+        }
+        let Some((time_secs, pose)) = self.poses.next() else { return Next::Ended };
+        fill(frame, time_secs, &pose);
+        Next::Frame
+    }
+}
+
+fn fill(frame: &mut Frame, time_secs: f64, pose: &morec::features::KeyPose) {
+    frame.time_secs = time_secs;
+    frame.wall_secs = morec::live::wall_now_secs();
+    frame.actor = Actor(0);
+    frame.set_key_pose(pose);
+}
+
+/// The motions that ended among everything a reader gives, until the stream ends.
+pub fn ended(mut reader: EventReader) -> Vec<Detection> {
+    let mut found = Vec::new();
+    while !reader.is_ended() {
+        found.extend(reader.wait(Duration::from_secs(60)).filter(|e| e.phase == Phase::End).map(detection));
+    }
+    found
+}
+
+fn detection(event: Event) -> Detection {
+    Detection {
+        class: event.class,
+        start_secs: event.start_secs,
+        stop_secs: event.stop_secs,
+        score: event.score,
+        reported_secs: event.reported_secs,
+    }
+}
+
+fn session(model: &Arc<TemplateModel>, _: BoneSet, poses: &[Timed]) -> Vec<Detection> {
+    let options = SessionOptions { overload: Overload::Wait, frame_capacity: 7, ..Default::default() };
+    let (session, readers) = Session::start(model, Box::new(Played::new(poses)), &options).unwrap();
+    let found = readers.into_iter().map(ended).next().unwrap();
+    let status = session.join();
+    assert!(status.ended && status.frames == poses.len() as u64 && status.dropped_frames == 0);
+    found
+}
+
+/// The same stream three times at once, so that one thread has two of them.
+fn pool(model: &Arc<TemplateModel>, _: BoneSet, poses: &[Timed]) -> Vec<Detection> {
+    let pool = Pool::new(model, 2).unwrap();
+    let options = SessionOptions { frame_capacity: 9, ..Default::default() };
+    let (mut feeds, mut readers) = (Vec::new(), Vec::new());
+    for PoolStream { feed, readers: of_stream, .. } in (0..3).map(|_| pool.open(&options)) {
+        feeds.push((feed, Box::<Frame>::default()));
+        readers.extend(of_stream);
+    }
+    let rig = Arc::new(Rig::of_roles());
+    feeds.iter_mut().for_each(|(feed, _)| feed.set_rig(Actor(0), &rig));
+    for (time_secs, pose) in poses {
+        for (feed, frame) in &mut feeds {
+            fill(frame, *time_secs, pose);
+            assert!(feed.send(frame));
+        }
+    }
+    drop(feeds);
+    let mut found = readers.into_iter().map(ended);
+    let first = found.next().unwrap();
+    found.for_each(|other| assert_eq!(other, first));
+    pool.join();
+    first
 }

@@ -1,0 +1,64 @@
+//! What a live session says of a motion.
+
+use crate::classes::ClassId;
+
+use super::Actor;
+
+/// What is being said.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Phase {
+    /// A motion seems to be under way. Tentative.
+    Start,
+    /// Its progress, or what it seems to be, has changed. Tentative.
+    Update,
+    /// It came to nothing. Ends what a start began.
+    Cancel,
+    /// It has happened. Final: nothing that ended is taken back, and every motion ends once.
+    End,
+}
+
+impl Phase {
+    /// Its name on the wire.
+    pub fn name(self) -> &'static str {
+        match self {
+            Phase::Start => "start",
+            Phase::Update => "update",
+            Phase::Cancel => "cancel",
+            Phase::End => "end",
+        }
+    }
+}
+
+/// Something said of a motion. Times are on the source's clock, if not said otherwise.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Event {
+    /// What is being said.
+    pub phase: Phase,
+    /// Number of the motion, from 1, for each performer: its start, updates and end share it.
+    pub motion: u64,
+    /// Number of the event in its session, from 1, without gaps as long as nothing is lost on the way.
+    pub sequence: u64,
+    /// Whose motion.
+    pub actor: Actor,
+    /// What it is, or seems to be.
+    pub class: ClassId,
+    /// Of an end: 0 just accepted … 1 identical to a sample. Tentative: how near what was seen so far is, likewise.
+    pub score: f64,
+    /// How much of the motion has been seen, 0 to 1; 1 at its end.
+    pub progress: f64,
+    /// When it began.
+    pub start_secs: f64,
+    /// When it ended; when it was last seen, if it has not.
+    pub stop_secs: f64,
+    /// The source's clock at the frame that settled it.
+    pub reported_secs: f64,
+    /// Wall clock at the arrival of that frame: seconds since 1970, UTC.
+    pub wall_secs: f64,
+}
+
+impl Event {
+    /// The wall clock at a time of the source's clock, seen from this event.
+    pub fn wall_at_secs(&self, time_secs: f64) -> f64 {
+        self.wall_secs - (self.reported_secs - time_secs)
+    }
+}

@@ -1,0 +1,206 @@
+//! Frames from one thread to another: a bounded, wait-free ring whose buffers go round.
+
+use std::sync::Arc;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering, fence};
+use std::thread::{self, Thread};
+use std::time::Duration;
+
+use super::{Actor, Frame, Rig};
+
+/// What happens to a frame when recognition has not caught up with the ones before it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Overload {
+    /// The source waits for room. Nothing is lost and the outcome does not depend on timing: for files.
+    #[default]
+    Wait,
+    /// The new frame is dropped and counted; the source is never held up: for devices that go on regardless.
+    Drop,
+}
+
+/// What goes over the ring.
+#[derive(Debug)]
+pub(super) enum Item {
+    Frame(Box<Frame>),
+    Rig(Actor, Arc<Rig>),
+    Gone(Actor),
+}
+
+/// Room for skeletons beside the frames, so that these are never dropped for want of it.
+const BESIDE_FRAMES: usize = 16;
+
+/// How long a thread sleeps that missed its waking call, if such a thing should happen.
+const NAP: Duration = Duration::from_millis(20);
+
+/// Lets one thread sleep until others have something for it.
+#[derive(Debug, Default)]
+pub(super) struct Waker {
+    asleep: AtomicBool,
+    thread: OnceLock<Thread>,
+}
+
+impl Waker {
+    /// Wakes the sleeper, if it sleeps. Never waits.
+    pub(super) fn wake(&self) {
+        // What was done before must be seen by whoever falls asleep after this look at it.
+        fence(Ordering::SeqCst);
+        if self.asleep.load(Ordering::Relaxed)
+            && self.asleep.swap(false, Ordering::AcqRel)
+            && let Some(thread) = self.thread.get()
+        {
+            thread.unpark();
+        }
+    }
+
+    /// Sleeps for at most `most` unless `ready`, or until woken.
+    pub(super) fn sleep(&self, most: Duration, ready: impl FnOnce() -> bool) {
+        let me = thread::current();
+        // Another thread than the one that slept first is not woken; it looks again soon.
+        let known = self.thread.get_or_init(|| me.clone()).id() == me.id();
+        self.asleep.store(true, Ordering::Relaxed);
+        fence(Ordering::SeqCst);
+        if !ready() {
+            thread::park_timeout(if known { most.min(NAP) } else { most.min(Duration::from_millis(2)) });
+        }
+        self.asleep.store(false, Ordering::Relaxed);
+    }
+}
+
+/// The end of a feed that frames are put into. Dropping it ends the stream.
+#[derive(Debug)]
+pub struct FeedSender {
+    items: rtrb::Producer<Item>,
+    spare: rtrb::Consumer<Box<Frame>>,
+    overload: Overload,
+    wakers: Arc<Wakers>,
+    dropped: Arc<AtomicU64>,
+    stop: Arc<AtomicBool>,
+}
+
+/// The end that frames come out of.
+#[derive(Debug)]
+pub(super) struct FeedReceiver {
+    items: rtrb::Consumer<Item>,
+    spare: rtrb::Producer<Box<Frame>>,
+    wakers: Arc<Wakers>,
+}
+
+#[derive(Debug)]
+struct Wakers {
+    /// Waits for frames; shared with other feeds that the same thread serves.
+    receiver: Arc<Waker>,
+    /// Waits for room.
+    sender: Waker,
+}
+
+/// A ring for `frames` frames whose receiver is woken by `receiver`; it counts what it drops in `dropped` and gives up
+/// waiting when `stop` is set.
+pub(super) fn feed(
+    frames: usize,
+    overload: Overload,
+    receiver: &Arc<Waker>,
+    dropped: &Arc<AtomicU64>,
+    stop: &Arc<AtomicBool>,
+) -> (FeedSender, FeedReceiver) {
+    let frames = frames.max(1);
+    let (items, taken) = rtrb::RingBuffer::new(frames + BESIDE_FRAMES);
+    let (mut back, spare) = rtrb::RingBuffer::new(frames);
+    for _ in 0..frames {
+        // There is room for exactly as many.
+        let _ = back.push(Box::default());
+    }
+    let wakers = Arc::new(Wakers { receiver: receiver.clone(), sender: Waker::default() });
+    let (dropped, stop) = (dropped.clone(), stop.clone());
+    let sender = FeedSender { items, spare, overload, wakers: wakers.clone(), dropped, stop };
+    (sender, FeedReceiver { items: taken, spare: back, wakers })
+}
+
+impl FeedSender {
+    /// Sends `frame` and leaves a used one in its place, to be filled anew. Returns whether it went: not if the ring
+    /// was full and [`Overload::Drop`] holds (it is then counted), nor if the session has ended. Takes no memory.
+    pub fn send(&mut self, frame: &mut Box<Frame>) -> bool {
+        loop {
+            if let Ok(spare) = self.spare.pop() {
+                let full = std::mem::replace(frame, spare);
+                return self.push(Item::Frame(full));
+            }
+            if self.items.is_abandoned() || self.stop.load(Ordering::Relaxed) {
+                return false;
+            }
+            if self.overload == Overload::Drop {
+                self.dropped.fetch_add(1, Ordering::Relaxed);
+                return false;
+            }
+            self.wait(|s| !s.spare.is_empty());
+        }
+    }
+
+    /// Says that frames of `actor` from now on are poses of `rig`. Waits for room if there is none: never dropped.
+    pub fn set_rig(&mut self, actor: Actor, rig: &Arc<Rig>) {
+        self.push(Item::Rig(actor, rig.clone()));
+    }
+
+    /// Says that `actor` has stopped for now. Waits for room if there is none.
+    pub fn set_gone(&mut self, actor: Actor) {
+        self.push(Item::Gone(actor));
+    }
+
+    /// Frames there is room for now.
+    pub fn room(&self) -> usize {
+        self.spare.slots()
+    }
+
+    fn push(&mut self, item: Item) -> bool {
+        let mut item = item;
+        loop {
+            match self.items.push(item) {
+                Ok(()) => {
+                    self.wakers.receiver.wake();
+                    return true;
+                }
+                Err(rtrb::PushError::Full(back)) => item = back,
+            }
+            if self.items.is_abandoned() || self.stop.load(Ordering::Relaxed) {
+                return false;
+            }
+            self.wait(|s| !s.items.is_full());
+        }
+    }
+
+    fn wait(&self, ready: impl Fn(&Self) -> bool) {
+        let over = || self.items.is_abandoned() || self.stop.load(Ordering::Relaxed);
+        self.wakers.sender.sleep(NAP, || ready(self) || over());
+    }
+}
+
+impl Drop for FeedSender {
+    fn drop(&mut self) {
+        // The receiver must not sleep through the end. It sees the end once the ring's half is dropped, after this:
+        // a nap is the longest it can miss it by.
+        self.wakers.receiver.wake();
+    }
+}
+
+impl FeedReceiver {
+    pub(super) fn next(&mut self) -> Option<Item> {
+        self.items.pop().ok()
+    }
+
+    /// Gives a frame's buffer back to the sender.
+    pub(super) fn give_back(&mut self, frame: Box<Frame>) {
+        // As many go round as there is room for; after the sender's end it does not matter.
+        let _ = self.spare.push(frame);
+        self.wakers.sender.wake();
+    }
+
+    /// Whether something waits to be taken.
+    pub(super) fn has_more(&self) -> bool {
+        !self.items.is_empty()
+    }
+
+    /// Whether the sender is gone and everything it sent was taken.
+    pub(super) fn is_ended(&self) -> bool {
+        // In this order: what was sent before the end is seen after it.
+        self.items.is_abandoned() && self.items.is_empty()
+    }
+}

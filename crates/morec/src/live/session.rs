@@ -1,0 +1,171 @@
+//! A source, recognition and readers, each at its own pace.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+use crate::templates::TemplateModel;
+
+use super::feed::{FeedSender, Waker, feed};
+use super::lane::{EventReader, Lane, LaneOptions, Stock, Work};
+use super::performer::EventOptions;
+use super::status::{Cells, Status, StatusHandle};
+use super::{Frame, Next, Overload, Source};
+
+/// How a session is run.
+#[derive(Debug, Clone)]
+pub struct SessionOptions {
+    /// What is said of motions.
+    pub events: EventOptions,
+    /// What happens when recognition, or a reader, does not keep up.
+    pub overload: Overload,
+    /// Frames that may wait for recognition.
+    pub frame_capacity: usize,
+    /// Events that may wait for each reader; at least 256.
+    pub event_capacity: usize,
+    /// Number of readers; each gets every event.
+    pub readers: usize,
+}
+
+impl Default for SessionOptions {
+    fn default() -> Self {
+        Self {
+            events: EventOptions::default(),
+            overload: Overload::Wait,
+            // Two seconds at 120 Hz: longer waits are no live recognition.
+            frame_capacity: 240,
+            event_capacity: 1024,
+            readers: 1,
+        }
+    }
+}
+
+/// A session that could not begin.
+#[derive(Debug, thiserror::Error)]
+pub enum SessionError {
+    /// The system gave no thread.
+    #[error("no thread for {what}: {error}")]
+    Thread {
+        /// What it was for.
+        what: &'static str,
+        /// What the system said.
+        error: std::io::Error,
+    },
+}
+
+/// A source on a thread of its own, recognition on another, joined by bounded wait-free rings.
+///
+/// Events come out of [`EventReader`]s; [`status`](Session::status) can be read at any time. Neither a slow reader
+/// nor a curious one holds up the stream unless [`Overload::Wait`] asks for just that. The frame path takes no lock,
+/// and no memory once every buffer has been round.
+#[derive(Debug)]
+pub struct Session {
+    cells: Arc<Cells>,
+    stop: Arc<AtomicBool>,
+    waker: Arc<Waker>,
+    threads: Vec<JoinHandle<()>>,
+}
+
+impl Session {
+    /// Starts recognising what `source` gives; returns the session and its readers.
+    pub fn start(
+        model: &Arc<TemplateModel>,
+        source: Box<dyn Source>,
+        options: &SessionOptions,
+    ) -> Result<(Self, Vec<EventReader>), SessionError> {
+        let (cells, stop, waker) = (Arc::new(Cells::default()), Arc::default(), Arc::new(Waker::default()));
+        let (sender, receiver) =
+            feed(options.frame_capacity, options.overload, &waker, &cells.dropped_frames, &stop);
+        let lane_options = LaneOptions {
+            events: options.events.clone(),
+            overload: options.overload,
+            readers: options.readers,
+            capacity: options.event_capacity,
+        };
+        let (lane, readers) = Lane::new(receiver, &Arc::new(Stock::new(model)), &lane_options, &cells, &stop);
+        let mut session = Self { cells, stop, waker, threads: Vec::with_capacity(2) };
+        let waker = session.waker.clone();
+        session.spawn("recognition", move || recognise(lane, &waker))?;
+        let (cells, stop) = (session.cells.clone(), session.stop.clone());
+        session.spawn("source", move || carry(source, sender, &cells, &stop))?;
+        Ok((session, readers))
+    }
+
+    fn spawn(&mut self, what: &'static str, job: impl FnOnce() + Send + 'static) -> Result<(), SessionError> {
+        let named = thread::Builder::new().name(format!("morec {what}"));
+        self.threads.push(named.spawn(job).map_err(|error| SessionError::Thread { what, error })?);
+        Ok(())
+    }
+
+    /// How it stands. Never waits, holds nothing up.
+    pub fn status(&self) -> Status {
+        self.handle().get()
+    }
+
+    /// For reading the status from elsewhere.
+    pub fn handle(&self) -> StatusHandle {
+        StatusHandle { cells: self.cells.clone() }
+    }
+
+    /// Waits until the source has ended and everything is told. Under [`Overload::Wait`] somebody must go on reading.
+    pub fn join(mut self) -> Status {
+        self.wait();
+        self.status()
+    }
+
+    /// Ends it now: the source is not asked again, what was taken is recognised, what a full reader has no room for
+    /// is dropped and counted.
+    pub fn stop(mut self) -> Status {
+        self.end();
+        self.status()
+    }
+
+    fn end(&mut self) {
+        self.stop.store(true, Relaxed);
+        self.waker.wake();
+        self.wait();
+    }
+
+    fn wait(&mut self) {
+        for thread in self.threads.drain(..) {
+            // A thread that panicked has ended, too; its ends of the rings say so to the others.
+            let _ = thread.join();
+        }
+    }
+}
+
+impl Drop for Session {
+    fn drop(&mut self) {
+        self.end();
+    }
+}
+
+/// The source's thread.
+fn carry(mut source: Box<dyn Source>, mut sender: FeedSender, cells: &Cells, stop: &AtomicBool) {
+    let mut frame: Box<Frame> = Box::default();
+    while !stop.load(Relaxed) {
+        match source.next(&mut frame) {
+            Next::Frame => _ = sender.send(&mut frame),
+            Next::Rig(actor, rig) => sender.set_rig(actor, &rig),
+            Next::Gone(actor) => sender.set_gone(actor),
+            Next::Quiet => {}
+            Next::Ended => break,
+        }
+        cells.source(&source.counts());
+    }
+    cells.source(&source.counts());
+}
+
+/// Recognition's thread.
+fn recognise(mut lane: Lane, waker: &Waker) {
+    loop {
+        match lane.work(64) {
+            Work::Some => {}
+            Work::Idle => waker.sleep(Duration::from_millis(20), || lane.is_ready()),
+            // Readers do not wake recognition: they would have to know of it.
+            Work::Blocked => thread::sleep(Duration::from_millis(1)),
+            Work::Ended => return,
+        }
+    }
+}

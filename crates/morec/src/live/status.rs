@@ -1,0 +1,210 @@
+//! How a session stands, readable at any time by anybody without holding anything up.
+
+use std::array;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
+
+use crate::classes::ClassId;
+
+use super::{Actor, Event, Frame, Phase, SourceCounts};
+
+/// Performers that one session can follow at once.
+pub const MAX_ACTORS: usize = 16;
+
+/// How a session stands. Each figure is right at some instant of the reading; figures of different lines may be a
+/// frame apart.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Status {
+    /// Frames that went through recognition.
+    pub frames: u64,
+    /// Frames dropped because recognition had not caught up ([`Overload::Drop`](super::Overload)).
+    pub dropped_frames: u64,
+    /// Frames of no known skeleton, or of one that shows none of the index's bones.
+    pub unusable_frames: u64,
+    /// Events said, tentative ones included.
+    pub events: u64,
+    /// Events that a reader had no room for.
+    pub dropped_events: u64,
+    /// Motions that ended.
+    pub motions: u64,
+    /// Motions not told because of the refractory time.
+    pub suppressed: u64,
+    /// What the source counted.
+    pub source: SourceCounts,
+    /// The longest that a frame has waited from its arrival to the end of its recognition, seconds.
+    pub longest_wait_secs: f64,
+    /// Whether the stream has ended and everything is told.
+    pub ended: bool,
+    /// The performers seen so far.
+    pub actors: Vec<ActorStatus>,
+}
+
+/// How one performer stands: the solution at this moment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ActorStatus {
+    /// Who.
+    pub actor: Actor,
+    /// Frames of this performer.
+    pub frames: u64,
+    /// The source's clock at the last of them.
+    pub time_secs: f64,
+    /// When that arrived ([`wall_now_secs`](super::wall_now_secs)).
+    pub wall_secs: f64,
+    /// From its arrival to the end of its recognition, seconds.
+    pub wait_secs: f64,
+    /// What seems to be under way, and its progress, 0 to 1.
+    pub hunch: Option<(ClassId, f64)>,
+    /// The last motion that ended, and its score.
+    pub last: Option<(ClassId, f64)>,
+}
+
+/// A handle on a session's status; copies are cheap and may outlive the session.
+#[derive(Debug, Clone)]
+pub struct StatusHandle {
+    pub(super) cells: Arc<Cells>,
+}
+
+impl StatusHandle {
+    /// The status now. Never waits and holds nothing up.
+    pub fn get(&self) -> Status {
+        self.cells.read()
+    }
+}
+
+/// What the threads of a session write; single words, each by one thread.
+#[derive(Debug, Default)]
+pub(super) struct Cells {
+    pub(super) frames: AtomicU64,
+    pub(super) dropped_frames: Arc<AtomicU64>,
+    pub(super) unusable: AtomicU64,
+    pub(super) events: AtomicU64,
+    pub(super) dropped_events: AtomicU64,
+    pub(super) motions: AtomicU64,
+    pub(super) suppressed: AtomicU64,
+    pub(super) source: [AtomicU64; 8],
+    pub(super) longest_wait: AtomicU64,
+    pub(super) ended: AtomicBool,
+    actors: [ActorCells; MAX_ACTORS],
+}
+
+#[derive(Debug, Default)]
+struct ActorCells {
+    frames: AtomicU64,
+    time: AtomicU64,
+    wall: AtomicU64,
+    wait: AtomicU64,
+    hunch: AtomicU64,
+    last: AtomicU64,
+}
+
+/// A class and a share of 1 in one word, so that they cannot come apart; 0 is nothing.
+fn pack(class: ClassId, share: f64) -> u64 {
+    1 << 63 | u64::from(class.0) << 32 | (share.clamp(0.0, 1.0) * f64::from(u32::MAX)) as u64
+}
+
+fn unpack(word: u64) -> Option<(ClassId, f64)> {
+    let share = f64::from(word as u32) / f64::from(u32::MAX);
+    (word >> 63 == 1).then_some((ClassId((word >> 32) as u16), share))
+}
+
+impl Cells {
+    /// A frame has been through recognition at `now_secs`.
+    pub(super) fn frame(&self, frame: &Frame, now_secs: f64) {
+        self.frames.fetch_add(1, Relaxed);
+        let wait_secs = (now_secs - frame.wall_secs).max(0.0);
+        if wait_secs > f64::from_bits(self.longest_wait.load(Relaxed)) {
+            self.longest_wait.store(wait_secs.to_bits(), Relaxed);
+        }
+        let Some(cells) = self.actors.get(frame.actor.index()) else { return };
+        cells.frames.fetch_add(1, Relaxed);
+        cells.time.store(frame.time_secs.to_bits(), Relaxed);
+        cells.wall.store(frame.wall_secs.to_bits(), Relaxed);
+        cells.wait.store(wait_secs.to_bits(), Relaxed);
+    }
+
+    /// An event was said.
+    pub(super) fn event(&self, event: &Event) {
+        self.events.fetch_add(1, Relaxed);
+        if event.phase == Phase::End {
+            self.motions.fetch_add(1, Relaxed);
+        }
+        let Some(cells) = self.actors.get(event.actor.index()) else { return };
+        match event.phase {
+            Phase::Start | Phase::Update => cells.hunch.store(pack(event.class, event.progress), Relaxed),
+            Phase::Cancel => cells.hunch.store(0, Relaxed),
+            Phase::End => {
+                cells.hunch.store(0, Relaxed);
+                cells.last.store(pack(event.class, event.score), Relaxed);
+            }
+        }
+    }
+
+    pub(super) fn source(&self, c: &SourceCounts) {
+        let counts = [
+            c.packets,
+            c.malformed,
+            c.ignored,
+            c.not_motion,
+            c.incomplete,
+            c.late,
+            c.refused,
+            c.interruptions,
+        ];
+        for (cell, count) in self.source.iter().zip(counts) {
+            cell.store(count, Relaxed);
+        }
+    }
+
+    fn read(&self) -> Status {
+        let [packets, malformed, ignored, not_motion, incomplete, late, refused, interruptions] =
+            array::from_fn(|i| self.source[i].load(Relaxed));
+        let source = SourceCounts {
+            packets,
+            malformed,
+            ignored,
+            not_motion,
+            incomplete,
+            late,
+            refused,
+            interruptions,
+        };
+        let bits = |cell: &AtomicU64| f64::from_bits(cell.load(Relaxed));
+        let actor = |(i, cells): (usize, &ActorCells)| ActorStatus {
+            actor: Actor(i as u16),
+            frames: cells.frames.load(Relaxed),
+            time_secs: bits(&cells.time),
+            wall_secs: bits(&cells.wall),
+            wait_secs: bits(&cells.wait),
+            hunch: unpack(cells.hunch.load(Relaxed)),
+            last: unpack(cells.last.load(Relaxed)),
+        };
+        Status {
+            frames: self.frames.load(Relaxed),
+            dropped_frames: self.dropped_frames.load(Relaxed),
+            unusable_frames: self.unusable.load(Relaxed),
+            events: self.events.load(Relaxed),
+            dropped_events: self.dropped_events.load(Relaxed),
+            motions: self.motions.load(Relaxed),
+            suppressed: self.suppressed.load(Relaxed),
+            source,
+            longest_wait_secs: bits(&self.longest_wait),
+            ended: self.ended.load(std::sync::atomic::Ordering::Acquire),
+            actors: self.actors.iter().enumerate().map(actor).filter(|a| a.frames > 0).collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_class_and_its_share_fit_one_word() {
+        assert_eq!(unpack(0), None);
+        for (class, share) in [(0, 0.0), (7, 0.25), (u16::MAX, 1.0)] {
+            let (found, of) = unpack(pack(ClassId(class), share)).unwrap();
+            assert_eq!(found, ClassId(class));
+            assert!((of - share).abs() < 1e-9);
+        }
+    }
+}
