@@ -4,6 +4,7 @@ mod commands;
 mod figures;
 mod files;
 mod lengths;
+mod live;
 mod material;
 mod progress;
 mod show;
@@ -30,6 +31,9 @@ enum Command {
     Recognize(commands::recognize::Args),
     Evaluate(commands::evaluate::Args),
     Crossval(commands::crossval::Args),
+    Live(commands::live::Args),
+    Send(commands::send::Args),
+    Soak(commands::soak::Args),
     Demo(commands::demo::Args),
 }
 
@@ -42,6 +46,9 @@ fn main() -> ExitCode {
         Command::Recognize(args) => commands::recognize::run(&args),
         Command::Crossval(args) => commands::crossval::run(&args),
         Command::Evaluate(args) => commands::evaluate::run(&args),
+        Command::Live(args) => commands::live::run(&args),
+        Command::Send(args) => commands::send::run(&args),
+        Command::Soak(args) => commands::soak::run(&args),
         Command::Demo(args) => commands::demo::run(&args),
     };
     match outcome {

@@ -8,5 +8,8 @@ pub mod crossval;
 pub mod demo;
 pub mod evaluate;
 pub mod inspect;
+pub mod live;
 pub mod recognize;
+pub mod send;
+pub mod soak;
 pub mod train;

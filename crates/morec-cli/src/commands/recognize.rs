@@ -11,10 +11,15 @@ use morec::features::bones_of_clip;
 use morec::import::{ImportOptions, Imported, prepare};
 use morec::index::MotionIndex;
 use morec::labels::{FOUND_HEADER, FoundLine};
+use morec::live::vmc::Bundling;
 use morec::live::{Detection, recognize_clip};
 use morec::roles::Role;
 
-use crate::files::{ReadArgs, expand, mapping, open, read};
+use super::send::bundling;
+use crate::files::{ReadArgs, expand, mapping, open, rate, read};
+use crate::live::loaded::Loaded;
+use crate::live::network::Conditions;
+use crate::live::wire::recognise_over_vmc;
 use crate::progress::Progress;
 use crate::stats::Stats;
 
@@ -47,6 +52,14 @@ pub struct Args {
     /// Roles of joints, where inference fails: lines of `role<TAB>joint name`
     #[arg(long, value_name = "FILE")]
     roles: Option<PathBuf>,
+    /// Recognise clips as if they had come over VMC at so many frames a second, with the accidents below
+    #[arg(long, value_name = "HZ", value_parser = rate)]
+    over_vmc: Option<f64>,
+    /// How messages are put into datagrams, for --over-vmc: whole, single or a number of bytes
+    #[arg(long, value_name = "whole|single|BYTES", default_value = "1500", value_parser = bundling)]
+    bundle: Bundling,
+    #[command(flatten)]
+    conditions: Conditions,
     #[command(flatten)]
     read: ReadArgs,
 }
@@ -122,10 +135,17 @@ fn recognize_file(
     for clip in opened.clips {
         let mut imported = prepare(clip, options).with_context(shown)?;
         adapt(&mut imported, index, path, options.mapping.is_none());
-        let Imported { clip, roles, facts } = &imported;
-        let rest = &facts.rest_frames;
-        let found = stats.recognising(clip.frames, || recognize_clip(&index.model, clip, roles, rest));
-        let found = found.with_context(|| format!("{} ({})", shown(), clip.name))?;
+        let found = match args.over_vmc {
+            Some(rate_hz) => over_vmc(&imported, rate_hz, index, args)?,
+            None => {
+                let Imported { clip, roles, facts } = &imported;
+                let rest = &facts.rest_frames;
+                let found =
+                    stats.recognising(clip.frames, || recognize_clip(&index.model, clip, roles, rest));
+                found.with_context(|| format!("{} ({})", shown(), clip.name))?
+            }
+        };
+        let clip = &imported.clip;
         if args.stats {
             stats.stages(&index.model, &imported)?;
         }
@@ -133,6 +153,15 @@ fn recognize_file(
         all.extend(found.into_iter().map(in_clip));
     }
     Ok(all)
+}
+
+fn over_vmc(imported: &Imported, rate_hz: f64, index: &MotionIndex, args: &Args) -> Result<Vec<Detection>> {
+    let loaded = Loaded::of(imported.clone(), Some(rate_hz))?;
+    let (found, counts) = recognise_over_vmc(&index.model, &loaded, args.bundle, &args.conditions);
+    if args.stats {
+        eprintln!("{}: {}", imported.clip.name, serde_json::to_string(&counts)?);
+    }
+    Ok(found)
 }
 
 /// Fills roles from the index's training clips, unless a mapping file has had its say, and says what stays missing.

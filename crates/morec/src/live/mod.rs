@@ -19,12 +19,14 @@ mod feed;
 mod frame;
 mod lane;
 mod of_clip;
+pub mod osc;
 mod performer;
 mod pool;
 mod recognizer;
 mod session;
 mod source;
 mod status;
+pub mod vmc;
 
 pub use clock::wall_now_secs;
 pub use early::Hunch;

@@ -124,9 +124,10 @@ impl Performer {
         self.stops.forget();
     }
 
-    /// A recogniser for `bones`, as [`push`](Performer::push) wants it.
-    pub fn recognizer(&self, bones: BoneSet) -> Option<Recognizer> {
-        Recognizer::new(&self.model, bones).ok()
+    /// [`push`](Self::push) that makes recognisers of its own.
+    pub fn push_own(&mut self, frame: &Frame, out: &mut impl FnMut(Event)) {
+        let model = self.model.clone();
+        self.push(frame, &mut |bones| Recognizer::new(&model, bones).ok(), out);
     }
 
     /// Frames that could not be used: no skeleton was known, or none of its bones are the index's.

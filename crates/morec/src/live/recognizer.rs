@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::classes::ClassId;
 use crate::decode::TickDetection;
 use crate::features::{BoneSet, FeatureStream, KeyPose, Pushed};
-use crate::templates::{TemplateEngine, TemplateModel, TemplateModelError};
+use crate::templates::{EarlyParams, TemplateEngine, TemplateModel, TemplateModelError, Underway};
 
 use super::Hunch;
 
@@ -35,6 +35,25 @@ pub struct Recognizer {
     engine: TemplateEngine,
     found: Vec<Detection>,
     now_secs: f64,
+    early: EarlyParams,
+    seen: Seen,
+}
+
+/// What was under way at the last tick that was asked about.
+#[derive(Debug, Clone, Copy, Default)]
+struct Seen {
+    ticks: usize,
+    underway: Option<Underway>,
+    /// Ticks in a row at which it was this class.
+    streak: usize,
+}
+
+impl Seen {
+    fn take(&mut self, ticks: usize, underway: Option<Underway>) {
+        let same = ticks > self.ticks && underway.map(|u| u.class) == self.underway.map(|u| u.class);
+        self.streak = if same { self.streak + 1 } else { 1 };
+        (self.ticks, self.underway) = (ticks, underway);
+    }
 }
 
 impl Clone for Recognizer {
@@ -48,6 +67,8 @@ impl Clone for Recognizer {
             engine: self.engine.clone(),
             found,
             now_secs: self.now_secs,
+            early: self.early,
+            seen: self.seen,
         }
     }
 }
@@ -67,6 +88,8 @@ impl Recognizer {
             engine: TemplateEngine::new(&model)?,
             found: Vec::with_capacity(MAX_DETECTIONS_PER_PUSH),
             now_secs: 0.0,
+            early: EarlyParams::default(),
+            seen: Seen::default(),
             model,
         })
     }
@@ -122,9 +145,28 @@ impl Recognizer {
     }
 
     /// What seems to be under way after the last push, if anything does. Tentative: it says nothing about what
-    /// [`push`](Self::push) will report, and asking changes nothing. No allocation.
-    pub fn hunch(&self) -> Option<Hunch> {
-        None
+    /// [`push`](Self::push) will report, and asking changes nothing of that. No allocation.
+    pub fn hunch(&mut self) -> Option<Hunch> {
+        let ticks = self.engine.ticks();
+        if ticks != self.seen.ticks {
+            let underway = self.engine.underway(&self.early);
+            self.seen.take(ticks, underway);
+        }
+        let underway = self.seen.underway.filter(|_| self.seen.streak >= self.early.streak)?;
+        let tick_secs = 1.0 / self.model.features.tick_hz();
+        let seen_secs = self.features.origin_secs() + ticks as f64 * tick_secs;
+        Some(Hunch {
+            class: underway.class,
+            score: 1.0 - f64::from(underway.distance / (self.early.reach * self.engine.threshold())),
+            progress: f64::from(underway.progress),
+            start_secs: seen_secs - (underway.age + 1) as f64 * tick_secs,
+            seen_secs,
+        })
+    }
+
+    /// How near a beginning must be for [`hunch`](Self::hunch).
+    pub fn set_early(&mut self, params: EarlyParams) {
+        self.early = params;
     }
 
     fn end_stretch(&mut self) {

@@ -156,6 +156,38 @@ impl Bank {
         }
         Match { distance: column.total[last] / length as f32, age: column.age[last] as usize }
     }
+
+    /// How the first rows of template `index`, at least `least` of them, match a stretch that ends with the last tick
+    /// stepped: where they match best. O(rows), changes nothing.
+    pub fn partial(&self, index: usize, least: usize) -> Option<PartialMatch> {
+        let (first, last) = self.extents[index];
+        let from = first + least.max(1) - 1;
+        if self.tick == 0 || from > last {
+            return None;
+        }
+        let column = &self.columns[(self.tick - 1) % 3];
+        let mut best: Option<PartialMatch> = None;
+        for cell in from..=last {
+            let rows = cell - first + 1;
+            let distance = column.total[cell] / rows as f32;
+            // A path that came out of a guard cell is no path.
+            if column.total[cell] < FAR / 2.0 && best.is_none_or(|b| distance < b.distance) {
+                best = Some(PartialMatch { distance, age: column.age[cell] as usize, rows });
+            }
+        }
+        best
+    }
+}
+
+/// How the beginning of a template matches a stretch that ends now.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PartialMatch {
+    /// Mean squared distance along the path, over the rows it has come to: `D(j,t) / j`.
+    pub distance: f32,
+    /// How many ticks ago the path began.
+    pub age: usize,
+    /// Rows it has come to, of the template's.
+    pub rows: usize,
 }
 
 /// `|T_j − z|²` of every cell, as `|T_j|² + |z|² − 2 T_j·z`.

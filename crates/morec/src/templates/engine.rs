@@ -6,6 +6,7 @@ use crate::classes::ClassId;
 use crate::decode::{Candidate, ClassDistance, Decoder, FAR, TickDetection};
 use crate::features::Rows;
 
+use super::early::{EarlyParams, Underway};
 use super::verifier::{Evidence, Judge};
 use super::{Bank, Metric, TemplateModel, TemplateModelError};
 
@@ -21,6 +22,7 @@ pub struct TemplateEngine {
     recent: RecentRows,
     mapped: Vec<f32>,
     near: Vec<ClassDistance>,
+    threshold: f32,
 }
 
 /// The last rows of the stream, as many as a match can span.
@@ -69,6 +71,7 @@ impl TemplateEngine {
             // A match of n rows spans at most 2 n ticks and is judged when its window has passed.
             recent: RecentRows::new(dim, 2 * model.longest() + window + 2),
             mapped: vec![0.0; dim],
+            threshold: model.threshold,
             near: vec![ClassDistance { distance: FAR, age: 0 }; model.classes.len()],
             metric,
         })
@@ -92,6 +95,50 @@ impl TemplateEngine {
         let negative = nearest(&self.negatives);
         let (judge, recent, metric) = (&mut self.judge, &self.recent, &self.metric);
         self.decoder.push(&self.near, negative, &mut |c| score(judge, recent, metric, c), out);
+    }
+
+    /// Ticks taken since the stretch began.
+    pub fn ticks(&self) -> usize {
+        self.recent.pushed
+    }
+
+    /// The class whose beginning is nearest at the last tick, if one is near enough by `params`. O(template rows),
+    /// no allocation; changes nothing.
+    pub fn underway(&self, params: &EarlyParams) -> Option<Underway> {
+        let (mut best, mut other) = (None::<Underway>, FAR);
+        for (template, class) in self.template_classes.iter().enumerate() {
+            let length = self.bank.template_len(template);
+            let Some(found) = self.bank.partial(template, params.least_rows(length)) else { continue };
+            let progress = found.rows as f32 / length as f32;
+            let new = Underway { class: *class, distance: found.distance, age: found.age, progress };
+            match best {
+                Some(old) if found.distance >= old.distance => {
+                    if old.class != *class {
+                        other = other.min(found.distance);
+                    }
+                }
+                old => {
+                    if let Some(old) = old.filter(|old| old.class != *class) {
+                        other = other.min(old.distance);
+                    }
+                    best = Some(new);
+                }
+            }
+        }
+        let negatives = (0..self.negatives.len())
+            .filter_map(|i| self.negatives.partial(i, params.least_rows(self.negatives.template_len(i))));
+        let negative = negatives.map(|n| n.distance).fold(FAR, f32::min);
+        best.filter(|b| {
+            b.distance < params.reach * self.threshold
+                && b.distance < params.gate * negative
+                && b.distance < params.rival * other
+                && b.age + 1 >= params.least_ticks
+        })
+    }
+
+    /// Distances at or above this are never reported.
+    pub fn threshold(&self) -> f32 {
+        self.threshold
     }
 
     /// Ends the stretch: calls `out` with what the last ticks still hold.

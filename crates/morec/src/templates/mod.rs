@@ -2,12 +2,14 @@
 
 mod bank;
 mod compact;
+mod early;
 mod engine;
 mod metric;
 mod model;
 mod verifier;
 
-pub use bank::{Bank, Match};
+pub use bank::{Bank, Match, PartialMatch};
+pub use early::{EarlyParams, Underway};
 pub use engine::TemplateEngine;
 pub use metric::{Metric, Symmetric};
 pub use model::{Sample, TemplateModel, TemplateModelError};

@@ -50,13 +50,14 @@ fn batches(model: &Arc<TemplateModel>, bones: BoneSet, poses: &[Timed]) -> Vec<D
 
 /// A stream as a source, whose frames are poses of `rig`.
 pub struct Played {
-    pub poses: std::vec::IntoIter<Timed>,
-    pub rig: Option<Arc<Rig>>,
+    poses: Vec<Timed>,
+    played: usize,
+    rig: Option<Arc<Rig>>,
 }
 
 impl Played {
     pub fn new(poses: &[Timed]) -> Self {
-        Self { poses: poses.to_vec().into_iter(), rig: Some(Arc::new(Rig::of_roles())) }
+        Self { poses: poses.to_vec(), played: 0, rig: Some(Arc::new(Rig::of_roles())) }
     }
 }
 
@@ -65,8 +66,9 @@ impl Source for Played {
         if let Some(rig) = self.rig.take() {
             return Next::Rig(Actor(0), rig);
         }
-        let Some((time_secs, pose)) = self.poses.next() else { return Next::Ended };
-        fill(frame, time_secs, &pose);
+        let Some((time_secs, pose)) = self.poses.get(self.played) else { return Next::Ended };
+        self.played += 1;
+        fill(frame, *time_secs, pose);
         Next::Frame
     }
 }

@@ -27,14 +27,7 @@ impl HumanoidBone {
     }
 }
 
-const fn bone(
-    name: &'static str,
-    parent: usize,
-    role: Option<Role>,
-    x: f64,
-    y: f64,
-    z: f64,
-) -> HumanoidBone {
+const fn bone(name: &'static str, parent: usize, role: Option<Role>, x: f64, y: f64, z: f64) -> HumanoidBone {
     HumanoidBone { name, parent: Some(parent), role, offset: [x, y, z] }
 }
 

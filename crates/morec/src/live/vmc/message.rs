@@ -173,6 +173,9 @@ mod tests {
         assert!(rotation_of_unity([f64::NAN, 0.0, 0.0, 1.0]).is_none());
         assert!(position_of_unity(Vec3::new(f64::INFINITY, 0.0, 0.0)).is_none());
         let quarter = Axis::Y.rotation(1.0);
-        assert!(rotation_of_unity(rotation_to_unity(&quarter).map(|c| c * 3.0)).unwrap().angle_to(&quarter) < 1e-9);
+        assert!(
+            rotation_of_unity(rotation_to_unity(&quarter).map(|c| c * 3.0)).unwrap().angle_to(&quarter)
+                < 1e-9
+        );
     }
 }

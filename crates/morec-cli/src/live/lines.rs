@@ -1,0 +1,117 @@
+//! Lines of text from standard input or from whoever connects, each on a thread of its own.
+
+use std::io::{BufRead, BufReader, ErrorKind, Read};
+use std::net::{SocketAddr, TcpListener};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
+use std::thread;
+use std::time::Duration;
+
+use anyhow::{Context, Result};
+
+/// A longer line is no pose.
+pub const LONGEST: u64 = 1 << 16;
+/// Lines that may wait; then whoever sends them does.
+const WAITING: usize = 1024;
+/// Connections at once.
+const CONNECTIONS: usize = 16;
+
+/// Something that came.
+pub enum Came {
+    /// A line of this connection, without its end; `None` if it was too long or no text.
+    Line(u64, Option<String>),
+    /// This connection has ended.
+    Closed(u64),
+    /// Nothing came in a while.
+    Nothing,
+    /// Nothing will come.
+    Ended,
+}
+
+/// Where lines come from.
+pub struct Lines {
+    came: Receiver<Came>,
+}
+
+impl Lines {
+    /// Standard input.
+    pub fn stdin() -> Result<Self> {
+        let (sender, came) = sync_channel(WAITING);
+        spawn("standard input", move || forward(0, std::io::stdin().lock(), &sender))?;
+        Ok(Self { came })
+    }
+
+    /// Whoever connects to `address` over TCP. Returns where it listens, too.
+    pub fn listen(address: SocketAddr) -> Result<(Self, SocketAddr)> {
+        let listener =
+            TcpListener::bind(address).with_context(|| format!("cannot listen at {address} (TCP)"))?;
+        let at = listener.local_addr()?;
+        let (sender, came) = sync_channel(WAITING);
+        spawn("connections", move || accept(&listener, &sender))?;
+        Ok((Self { came }, at))
+    }
+
+    /// What comes next; waits for it a little.
+    pub fn next(&mut self, most: Duration) -> Came {
+        match self.came.recv_timeout(most) {
+            Ok(came) => came,
+            Err(RecvTimeoutError::Timeout) => Came::Nothing,
+            Err(RecvTimeoutError::Disconnected) => Came::Ended,
+        }
+    }
+}
+
+fn spawn(name: &str, job: impl FnOnce() + Send + 'static) -> Result<()> {
+    thread::Builder::new()
+        .name(name.to_owned())
+        .spawn(job)
+        .with_context(|| format!("no thread for {name}"))?;
+    Ok(())
+}
+
+fn accept(listener: &TcpListener, sender: &SyncSender<Came>) {
+    let open = std::sync::Arc::new(std::sync::atomic::AtomicUsize::new(0));
+    for (number, stream) in (1..).zip(listener.incoming()) {
+        use std::sync::atomic::Ordering::SeqCst;
+        let Ok(stream) = stream else {
+            // Out of files, most likely; others may close theirs.
+            thread::sleep(Duration::from_millis(100));
+            continue;
+        };
+        if open.fetch_add(1, SeqCst) >= CONNECTIONS {
+            open.fetch_sub(1, SeqCst);
+            continue;
+        }
+        let (sender, count) = (sender.clone(), open.clone());
+        let job = move || {
+            forward(number, BufReader::new(stream), &sender);
+            count.fetch_sub(1, SeqCst);
+        };
+        if spawn("a connection", job).is_err() {
+            open.fetch_sub(1, SeqCst);
+        }
+    }
+}
+
+/// Sends every line until the end of `reader`, or until nobody takes them.
+fn forward(number: u64, mut reader: impl BufRead, sender: &SyncSender<Came>) {
+    let mut bytes = Vec::new();
+    loop {
+        bytes.clear();
+        match reader.by_ref().take(LONGEST).read_until(b'\n', &mut bytes) {
+            Ok(0) => break,
+            Ok(_) => {}
+            Err(error) if error.kind() == ErrorKind::Interrupted => continue,
+            Err(_) => break,
+        }
+        let whole = bytes.ends_with(b"\n") || (bytes.len() as u64) < LONGEST;
+        let text = std::str::from_utf8(&bytes).ok().filter(|_| whole);
+        if text.is_some_and(|text| text.trim().is_empty()) {
+            continue;
+        }
+        if sender.send(Came::Line(number, text.map(|text| text.trim_end().to_owned()))).is_err() {
+            return;
+        }
+    }
+    // If nobody takes it, nobody needs to know.
+    let _ = sender.send(Came::Closed(number));
+}

@@ -1,0 +1,119 @@
+//! One line that says how a session stands, renewed in place.
+
+use std::io::{IsTerminal, Write};
+use std::time::{Duration, Instant};
+
+use morec::classes::ClassInfo;
+use morec::live::Status;
+
+/// How often the line is renewed.
+const EVERY: Duration = Duration::from_millis(250);
+
+/// The line; silent where standard error is no terminal.
+pub struct StatusLine {
+    shown: bool,
+    last: Instant,
+    frames: u64,
+    rate_hz: f64,
+    drawn: bool,
+}
+
+impl StatusLine {
+    /// A line, drawn unless `quiet`.
+    pub fn new(quiet: bool) -> Self {
+        Self {
+            shown: !quiet && std::io::stderr().is_terminal(),
+            last: Instant::now(),
+            frames: 0,
+            rate_hz: 0.0,
+            drawn: false,
+        }
+    }
+
+    /// Draws the line if it is time to.
+    pub fn draw(&mut self, statuses: &[Status], classes: &[ClassInfo]) {
+        let passed = self.last.elapsed();
+        if !self.shown || passed < EVERY {
+            return;
+        }
+        let frames: u64 = statuses.iter().map(|s| s.frames).sum();
+        let now_hz = (frames - self.frames) as f64 / passed.as_secs_f64();
+        // Half new, half old: a rate that can be read.
+        self.rate_hz = if self.rate_hz > 0.0 { 0.5 * (self.rate_hz + now_hz) } else { now_hz };
+        (self.frames, self.last, self.drawn) = (frames, Instant::now(), true);
+        let text = describe(statuses, classes, self.rate_hz);
+        let width = terminal_size::terminal_size().map_or(100, |(width, _)| usize::from(width.0));
+        let text: String = text.chars().take(width.saturating_sub(1)).collect();
+        eprint!("\r\x1b[2K{text}");
+        // If nobody sees it, nothing is lost.
+        let _ = std::io::stderr().flush();
+    }
+
+    /// Takes the line away, so that something else can be printed.
+    pub fn clear(&mut self) {
+        if std::mem::take(&mut self.drawn) {
+            eprint!("\r\x1b[2K");
+            let _ = std::io::stderr().flush();
+        }
+    }
+}
+
+/// Frames lost on the way, as far as anybody can tell.
+fn losses(status: &Status) -> u64 {
+    status.dropped_frames + status.dropped_events + status.source.late + status.source.malformed
+}
+
+fn describe(statuses: &[Status], classes: &[ClassInfo], rate_hz: f64) -> String {
+    let sum = |of: fn(&Status) -> u64| statuses.iter().map(of).sum::<u64>();
+    let actors: Vec<_> = statuses.iter().flat_map(|s| &s.actors).collect();
+    let wait_secs = actors.iter().map(|a| a.wait_secs).fold(0.0, f64::max);
+    let mut text = format!(
+        "{rate_hz:5.1} Hz  wait {:.1} ms  lost {}  incomplete {}  motions {}",
+        1000.0 * wait_secs,
+        sum(losses),
+        sum(|s| s.source.incomplete),
+        sum(|s| s.motions),
+    );
+    if actors.is_empty() {
+        let heard = sum(|s| s.source.packets);
+        text += if heard == 0 { "  nobody yet" } else { "  no pose yet" };
+        if sum(|s| s.source.not_motion) > 0 {
+            text += " (only a rest pose, or tracking is lost)";
+        }
+    }
+    for actor in actors {
+        let name =
+            |class: morec::classes::ClassId| classes.get(class.index()).map_or("?", |c| c.name.as_str());
+        match (actor.hunch, actor.last) {
+            (Some((class, progress)), _) => {
+                text += &format!("  | {} {:.0} % …", name(class), 100.0 * progress);
+            }
+            (None, Some((class, score))) => text += &format!("  | last {} {score:.2}", name(class)),
+            (None, None) => text += "  | –",
+        }
+    }
+    text
+}
+
+/// What a session did, at its end.
+pub fn summary(source: &str, status: &Status) -> String {
+    let mut text = format!("{source}: {} frames, {} motions", status.frames, status.motions);
+    let counts = &status.source;
+    let parts = [
+        (counts.packets, "packets"),
+        (counts.malformed, "malformed packets"),
+        (counts.late, "late packets"),
+        (counts.refused, "packets of senders beyond --actors"),
+        (counts.incomplete, "incomplete frames"),
+        (counts.not_motion, "frames of a rest pose or without tracking"),
+        (counts.interruptions, "interruptions"),
+        (status.dropped_frames, "frames dropped for want of time"),
+        (status.unusable_frames, "frames without a bone of the index"),
+        (status.dropped_events, "events dropped"),
+        (status.suppressed, "motions within the refractory time"),
+    ];
+    for (count, what) in parts.into_iter().filter(|(count, _)| *count > 0) {
+        text += &format!(", {count} {what}");
+    }
+    text + &format!("; longest wait {:.1} ms", 1000.0 * status.longest_wait_secs)
+}

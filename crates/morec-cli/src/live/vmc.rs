@@ -1,0 +1,59 @@
+//! VMC senders on a UDP port.
+
+use std::io::ErrorKind;
+use std::net::{SocketAddr, UdpSocket};
+use std::time::Duration;
+
+use anyhow::{Context, Result};
+use morec::live::vmc::{VmcOptions, VmcReceiver};
+use morec::live::{Frame, Next, Source, SourceCounts, wall_now_secs};
+
+/// The socket is asked this long at a time: the quiet that closes a frame.
+const WAIT: Duration = Duration::from_millis(5);
+/// The largest datagram there is.
+const LARGEST: usize = 65_536;
+
+/// A UDP port on which VMC senders are heard.
+pub struct VmcSource {
+    socket: UdpSocket,
+    receiver: VmcReceiver<SocketAddr>,
+    buffer: Vec<u8>,
+}
+
+impl VmcSource {
+    /// Listens at `address`; port 0 takes any that is free.
+    pub fn bind(address: SocketAddr, options: &VmcOptions) -> Result<Self> {
+        let socket = UdpSocket::bind(address).with_context(|| {
+            format!(
+                "cannot listen at {address} (UDP): is another program, or another morec, listening there?"
+            )
+        })?;
+        socket.set_read_timeout(Some(WAIT)).context("UDP socket")?;
+        Ok(Self { socket, receiver: VmcReceiver::new(options), buffer: vec![0; LARGEST] })
+    }
+
+    /// Where it listens.
+    pub fn address(&self) -> Result<SocketAddr> {
+        Ok(self.socket.local_addr()?)
+    }
+}
+
+impl Source for VmcSource {
+    fn next(&mut self, frame: &mut Frame) -> Next {
+        if let Some(next) = self.receiver.next(frame) {
+            return next;
+        }
+        match self.socket.recv_from(&mut self.buffer) {
+            Ok((length, peer)) => self.receiver.packet(peer, wall_now_secs(), &self.buffer[..length]),
+            Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
+            // A sender's port that is closed may be told here; it concerns packets that were never sent by us.
+            Err(_) => std::thread::sleep(WAIT),
+        }
+        self.receiver.tick(wall_now_secs());
+        self.receiver.next(frame).unwrap_or(Next::Quiet)
+    }
+
+    fn counts(&self) -> SourceCounts {
+        self.receiver.counts()
+    }
+}

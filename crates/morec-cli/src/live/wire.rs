@@ -1,0 +1,95 @@
+//! A clip recognised as if it had come over VMC, without a network: the same accidents every time.
+
+use std::sync::Arc;
+
+use morec::kinematics::WorldPose;
+use morec::live::vmc::{Bundling, VmcOptions, VmcReceiver, VmcSender};
+use morec::live::{Detection, Event, EventOptions, Frame, Next, Performer, Phase, SourceCounts};
+use morec::templates::TemplateModel;
+
+use super::loaded::Loaded;
+use super::network::{Conditions, Network};
+
+/// Somebody stands still before the performance, until the receiver knows the skeleton.
+const BEFORE_SECS: f64 = 1.0;
+
+/// Sends `loaded` frame by frame, carries the packets and recognises what arrives. Times are the clip's.
+pub fn recognise_over_vmc(
+    model: &Arc<TemplateModel>,
+    loaded: &Loaded,
+    bundle: Bundling,
+    conditions: &Conditions,
+) -> (Vec<Detection>, SourceCounts) {
+    let mut sender = VmcSender::new(bundle, true);
+    let mut network = Network::new(conditions);
+    let mut over = Over {
+        receiver: VmcReceiver::new(&VmcOptions::default()),
+        performer: Performer::new(
+            model,
+            Default::default(),
+            &EventOptions { early: false, refractory_secs: 0.0 },
+        ),
+        frame: Frame::default(),
+        found: Vec::new(),
+    };
+    let (mut pose, mut now_secs) = (WorldPose::default(), 0.0f64);
+    let rate_hz = loaded.clip.rate_hz;
+    let before = (BEFORE_SECS * rate_hz) as usize;
+    for step in 0..before + loaded.clip.frames - loaded.first {
+        let time_secs = step as f64 / rate_hz;
+        pose.set(&loaded.clip, loaded.first + step.saturating_sub(before));
+        now_secs = now_secs.max(time_secs + network.delay_secs());
+        for packet in sender.frame(time_secs, &pose, &loaded.roles) {
+            // Taking a packet cannot fail.
+            let _ = network.carry::<()>(packet, &mut |bytes| {
+                over.receiver.packet((), now_secs, bytes);
+                Ok(())
+            });
+        }
+        over.take();
+        over.receiver.tick(now_secs + (0.9 / rate_hz).min(0.006));
+        over.take();
+    }
+    let Over { receiver, mut performer, mut found, .. } = over;
+    performer.finish(&mut |event| found.extend(detection(&event)));
+    // From the receiver's clock to the clip's.
+    let shift_secs = (loaded.first as f64 - before as f64) / rate_hz;
+    for d in &mut found {
+        d.start_secs = (d.start_secs + shift_secs).max(0.0);
+        d.stop_secs += shift_secs;
+        d.reported_secs += shift_secs;
+    }
+    (found, receiver.counts())
+}
+
+struct Over {
+    receiver: VmcReceiver<()>,
+    performer: Performer,
+    frame: Frame,
+    found: Vec<Detection>,
+}
+
+impl Over {
+    fn take(&mut self) {
+        let found = &mut self.found;
+        let mut out = |event: Event| found.extend(detection(&event));
+        while let Some(next) = self.receiver.next(&mut self.frame) {
+            match next {
+                Next::Rig(_, rig) => self.performer.set_rig(&rig, &mut out),
+                Next::Frame => self.performer.push_own(&self.frame, &mut out),
+                Next::Gone(_) => self.performer.finish(&mut out),
+                Next::Quiet | Next::Ended => {}
+            }
+        }
+    }
+}
+
+fn detection(event: &Event) -> Option<Detection> {
+    (event.phase == Phase::End).then_some(Detection {
+        class: event.class,
+        start_secs: event.start_secs,
+        stop_secs: event.stop_secs,
+        score: event.score,
+        reported_secs: event.reported_secs,
+    })
+}

@@ -1,0 +1,438 @@
+//! Packets to frames.
+//!
+//! VMC marks no frames. One is taken to be complete
+//!
+//! - (a) at the end of a datagram after which it holds every bone that its sender usually sends,
+//! - (b) at the next time stamp or state message,
+//! - (c) when a bone comes that it already holds,
+//! - (d) when nothing has come for 5 ms.
+//!
+//! A bone that a frame lacks keeps its rotation; one that has been missing for a quarter of a second is stale, and the
+//! joints that hang on it are unknown until it comes again.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use super::clock::SenderClock;
+use super::humanoid::{BoneMask, HUMANOID, HUMANOID_BONES, bone_of_name, parent_among, standard_offset};
+use super::message::{Said, mirror, seen_in_mirror, understand};
+use super::rest::is_t_pose;
+use crate::clip::{Joint, Skeleton};
+use crate::live::osc::{self, Message};
+use crate::live::{Actor, Frame, MAX_ACTORS, Next, Rig, SourceCounts};
+use crate::math::{Quat, Vec3};
+use crate::roles::RoleMap;
+
+/// (d) of the rules.
+const QUIET_SECS: f64 = 0.005;
+/// A bone that has been missing for so long is stale.
+const STALE_SECS: f64 = 0.25;
+/// So long a sender is watched before its skeleton is believed, and a new bone before it becomes part of it.
+const LEARN_SECS: f64 = 0.25;
+/// A bone that has been missing for so long is no longer part of the skeleton.
+const FORGET_SECS: f64 = 2.0;
+/// A sender that has been silent for so long has stopped, for now.
+const GONE_SECS: f64 = 1.0;
+/// A time stamp that lies back by less than this is a packet that was overtaken; by more, a sender begun anew.
+const LATE_SECS: f64 = 1.0;
+
+/// How a receiver takes what it is sent.
+#[derive(Debug, Clone, PartialEq)]
+pub struct VmcOptions {
+    /// Exchange left and right: for senders that show their performer as a mirror would.
+    pub mirrored: bool,
+    /// Performers that are followed at once, at most [`MAX_ACTORS`]; packets of others are counted and left.
+    pub actors: usize,
+    /// Leave out frames that show a T-pose too exact to be a person's.
+    pub skip_t_pose: bool,
+}
+
+impl Default for VmcOptions {
+    fn default() -> Self {
+        Self { mirrored: false, actors: 4, skip_t_pose: true }
+    }
+}
+
+/// Makes frames of VMC packets, for several senders at once, told apart by where they send from (`P`: an address).
+///
+/// Times are seconds on one clock of the caller's that never goes back; frames are stamped on the same clock, steadied by
+/// the sender's where it sends one. Takes no memory once every sender has been seen for a while.
+#[derive(Debug)]
+pub struct VmcReceiver<P> {
+    options: VmcOptions,
+    senders: Vec<Sender<P>>,
+    ready: Ready,
+    counts: SourceCounts,
+    begun_secs: Option<f64>,
+}
+
+/// What is complete and waits to be taken.
+#[derive(Debug, Default)]
+struct Ready {
+    items: VecDeque<Item>,
+    spare: Vec<Frame>,
+}
+
+#[derive(Debug)]
+enum Item {
+    Frame(Frame),
+    Rig(Actor, Arc<Rig>),
+    Gone(Actor),
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Bone {
+    position: Vec3,
+    rotation: Quat,
+    seen_secs: f64,
+}
+
+#[derive(Debug)]
+struct Sender<P> {
+    peer: P,
+    actor: Actor,
+    bones: [Bone; HUMANOID_BONES],
+    root: (Vec3, Quat),
+    /// Bones that the open frame holds.
+    fresh: BoneMask,
+    last_bone_secs: f64,
+    /// The open frame's time, by its sender.
+    sent_secs: Option<f64>,
+    clock: SenderClock,
+    heard_secs: f64,
+    /// No performer to be seen, it says.
+    bad: bool,
+    gone: bool,
+    rig: Option<(BoneMask, Arc<Rig>)>,
+    /// Since when the bones that come are not the rig's.
+    changed_secs: Option<f64>,
+}
+
+impl<P: Copy + PartialEq> VmcReceiver<P> {
+    /// A receiver that has heard nothing yet.
+    pub fn new(options: &VmcOptions) -> Self {
+        Self {
+            options: options.clone(),
+            senders: Vec::new(),
+            ready: Ready::default(),
+            counts: SourceCounts::default(),
+            begun_secs: None,
+        }
+    }
+
+    /// What it has seen so far.
+    pub fn counts(&self) -> SourceCounts {
+        self.counts
+    }
+
+    /// Whether a frame is open that [`tick`](Self::tick) would close soon.
+    pub fn is_open(&self) -> bool {
+        self.senders.iter().any(|sender| sender.fresh != 0)
+    }
+
+    /// Takes a datagram that came from `peer` at `now_secs`. Any bytes will do.
+    pub fn packet(&mut self, peer: P, now_secs: f64, bytes: &[u8]) {
+        self.counts.packets += 1;
+        let begun_secs = *self.begun_secs.get_or_insert(now_secs);
+        let Some(at) = self.sender(peer, now_secs) else {
+            self.counts.refused += 1;
+            return;
+        };
+        let sender = &mut self.senders[at];
+        if sender.gone {
+            sender.gone = false;
+            sender.clock = SenderClock::default();
+            self.counts.interruptions += 1;
+        }
+        sender.heard_secs = now_secs;
+        let mut taking = Taking {
+            sender,
+            ready: &mut self.ready,
+            counts: &mut self.counts,
+            options: &self.options,
+            now_secs,
+            begun_secs,
+        };
+        taking.datagram(bytes);
+    }
+
+    /// Time passes: closes frames after a silence, and says who has gone.
+    pub fn tick(&mut self, now_secs: f64) {
+        let begun_secs = self.begun_secs.unwrap_or(now_secs);
+        for sender in &mut self.senders {
+            let quiet = sender.fresh != 0 && now_secs - sender.last_bone_secs >= QUIET_SECS;
+            let gone = !sender.gone && now_secs - sender.heard_secs > GONE_SECS;
+            let (ready, counts, options) = (&mut self.ready, &mut self.counts, &self.options);
+            if quiet {
+                Taking { sender, ready, counts, options, now_secs, begun_secs }.close();
+            }
+            if gone {
+                sender.gone = true;
+                self.ready.items.push_back(Item::Gone(sender.actor));
+            }
+        }
+    }
+
+    /// What is complete, oldest first; fills `frame` for [`Next::Frame`].
+    pub fn next(&mut self, frame: &mut Frame) -> Option<Next> {
+        Some(match self.ready.items.pop_front()? {
+            Item::Frame(mut full) => {
+                std::mem::swap(frame, &mut full);
+                self.ready.spare.push(full);
+                Next::Frame
+            }
+            Item::Rig(actor, rig) => Next::Rig(actor, rig),
+            Item::Gone(actor) => Next::Gone(actor),
+        })
+    }
+
+    /// The sender at `peer`, a new one if need be and there is room. A sender that has gone makes room.
+    fn sender(&mut self, peer: P, now_secs: f64) -> Option<usize> {
+        if let Some(at) = self.senders.iter().position(|sender| sender.peer == peer) {
+            return Some(at);
+        }
+        let gone = self.senders.iter().position(|sender| sender.gone);
+        let most = self.options.actors.clamp(1, MAX_ACTORS);
+        match gone {
+            Some(at) => {
+                self.senders[at] = Sender::new(peer, self.senders[at].actor, now_secs);
+                self.counts.interruptions += 1;
+                Some(at)
+            }
+            None if self.senders.len() < most => {
+                self.senders.push(Sender::new(peer, Actor(self.senders.len() as u16), now_secs));
+                Some(self.senders.len() - 1)
+            }
+            None => None,
+        }
+    }
+}
+
+impl<P> Sender<P> {
+    fn new(peer: P, actor: Actor, now_secs: f64) -> Self {
+        let bone = Bone { position: Vec3::zeros(), rotation: Quat::identity(), seen_secs: f64::NEG_INFINITY };
+        Self {
+            peer,
+            actor,
+            bones: [bone; HUMANOID_BONES],
+            root: (Vec3::zeros(), Quat::identity()),
+            fresh: 0,
+            last_bone_secs: now_secs,
+            sent_secs: None,
+            clock: SenderClock::default(),
+            heard_secs: now_secs,
+            bad: false,
+            gone: false,
+            rig: None,
+            changed_secs: None,
+        }
+    }
+
+    /// Bones that came lately.
+    fn alive(&self, now_secs: f64) -> BoneMask {
+        let is = |b: &usize| now_secs - self.bones[*b].seen_secs < STALE_SECS;
+        (0..HUMANOID_BONES).filter(is).fold(0, |mask, b| mask | 1 << b)
+    }
+
+    /// Whether the open frame holds all there usually is.
+    fn is_complete(&self, now_secs: f64) -> bool {
+        // As long as it is not known what usually comes, the other rules must do.
+        let expected = self.rig.as_ref().map_or(0, |(mask, _)| mask & self.alive(now_secs));
+        expected != 0 && self.fresh & expected == expected
+    }
+}
+
+/// One sender's packet on its way in.
+struct Taking<'a, P> {
+    sender: &'a mut Sender<P>,
+    ready: &'a mut Ready,
+    counts: &'a mut SourceCounts,
+    options: &'a VmcOptions,
+    now_secs: f64,
+    begun_secs: f64,
+}
+
+impl<P> Taking<'_, P> {
+    fn datagram(&mut self, bytes: &[u8]) {
+        if self.was_overtaken(bytes) {
+            self.counts.late += 1;
+            return;
+        }
+        let mut bones = 0;
+        let mut spoiled = 0;
+        let malformed = osc::read(bytes, &mut |message| match understand(&message) {
+            Some(said) => self.take(said, &mut bones),
+            None => spoiled += 1,
+        });
+        self.counts.malformed += u64::from(malformed + spoiled > 0);
+        if bones > 0 && self.sender.is_complete(self.now_secs) {
+            self.close();
+        }
+    }
+
+    /// Whether the sender stamped this packet earlier than one before it.
+    fn was_overtaken(&self, bytes: &[u8]) -> bool {
+        let mut stamp = None;
+        osc::read(bytes, &mut |message: Message| {
+            if message.address == "/VMC/Ext/T"
+                && let Some(Said::Time(secs)) = understand(&message)
+            {
+                stamp = Some(secs);
+            }
+        });
+        let newest = self.sender.sent_secs.or(self.sender.clock.sent_secs());
+        stamp.zip(newest).is_some_and(|(sent, newest)| sent < newest && newest - sent < LATE_SECS)
+    }
+
+    /// Takes a message; `bones` counts those of its datagram.
+    fn take(&mut self, said: Said, bones: &mut usize) {
+        match said {
+            Said::State { good } => {
+                self.close();
+                self.sender.bad = !good;
+            }
+            Said::Time(secs) => {
+                let news = self.sender.sent_secs != Some(secs);
+                if news && *bones > 0 {
+                    // It ends the datagram of its frame.
+                    self.sender.sent_secs = Some(secs);
+                    self.close();
+                } else if news {
+                    self.close();
+                    self.sender.sent_secs = Some(secs);
+                }
+            }
+            Said::Root(position, rotation) => {
+                let mirrored = self.options.mirrored;
+                self.sender.root = if mirrored { mirror(position, rotation) } else { (position, rotation) };
+            }
+            Said::Bone(bone, position, rotation) => {
+                *bones += 1;
+                let seen = if self.options.mirrored {
+                    seen_in_mirror(bone, position, rotation)
+                } else {
+                    (bone, position, rotation)
+                };
+                self.bone(seen);
+            }
+            Said::Other => self.counts.ignored += 1,
+        }
+    }
+
+    fn bone(&mut self, (bone, position, rotation): (usize, Vec3, Quat)) {
+        if self.sender.fresh >> bone & 1 == 1 {
+            self.close();
+        }
+        self.sender.bones[bone] = Bone { position, rotation, seen_secs: self.now_secs };
+        self.sender.fresh |= 1 << bone;
+        self.sender.last_bone_secs = self.now_secs;
+    }
+
+    /// Ends the open frame, if there is one.
+    fn close(&mut self) {
+        let fresh = std::mem::take(&mut self.sender.fresh);
+        let sent_secs = self.sender.sent_secs.take();
+        if fresh == 0 {
+            // A stamp waits for its frame.
+            self.sender.sent_secs = sent_secs;
+            return;
+        }
+        let arrival_secs = self.sender.last_bone_secs;
+        let time_secs = self.sender.clock.stamp(sent_secs, arrival_secs - self.begun_secs);
+        if self.sender.bad {
+            self.counts.not_motion += 1;
+            return;
+        }
+        self.learn();
+        let Some((mask, rig)) = self.sender.rig.clone() else {
+            self.counts.incomplete += 1;
+            return;
+        };
+        self.counts.incomplete += u64::from(fresh & mask != mask);
+        let mut frame = self.ready.spare.pop().unwrap_or_default();
+        self.pose(mask, &mut frame);
+        frame.time_secs = time_secs;
+        frame.wall_secs = arrival_secs;
+        frame.actor = self.sender.actor;
+        if self.options.skip_t_pose && is_t_pose(&frame.key_pose(&rig)) {
+            self.counts.not_motion += 1;
+            self.ready.spare.push(frame);
+        } else {
+            self.ready.items.push_back(Item::Frame(frame));
+        }
+    }
+
+    /// Learns which bones there are, and says so when it has changed.
+    fn learn(&mut self) {
+        let alive = self.sender.alive(self.now_secs);
+        let known = self.sender.rig.as_ref().map_or(0, |(mask, _)| *mask);
+        if alive == known {
+            self.sender.changed_secs = None;
+            return;
+        }
+        let since_secs = *self.sender.changed_secs.get_or_insert(self.now_secs);
+        let patience_secs = if alive & !known != 0 { LEARN_SECS } else { FORGET_SECS };
+        if self.now_secs - since_secs >= patience_secs {
+            let rig = Arc::new(rig_of(alive, &self.sender.bones));
+            self.ready.items.push_back(Item::Rig(self.sender.actor, rig.clone()));
+            self.sender.rig = Some((alive, rig));
+            self.sender.changed_secs = None;
+        }
+    }
+
+    /// Joints of the rig in the world, one for each bone of `mask` in the table's order.
+    fn pose(&self, mask: BoneMask, frame: &mut Frame) {
+        let alive = self.sender.alive(self.now_secs);
+        let (root_position, root_rotation) = self.sender.root;
+        frame.clear(mask.count_ones() as usize);
+        for (joint, bone) in bones_of(mask).enumerate() {
+            let Bone { position, rotation, .. } = self.sender.bones[bone];
+            let parent = parent_among(bone, mask);
+            let (world, turned, known) = match parent {
+                Some(parent) => {
+                    let at = place(mask, parent);
+                    let known = alive >> parent & 1 == 1;
+                    (frame.pose.positions[at], frame.pose.rotations[at], known)
+                }
+                None => (root_position, root_rotation, alive >> bone & 1 == 1),
+            };
+            let local = local_position(bone, parent, position);
+            let unknown = Vec3::repeat(f64::NAN);
+            // Not a number spreads to everything that hangs on it.
+            frame.pose.positions[joint] = if known { world + turned * local } else { unknown };
+            frame.pose.rotations[joint] = turned * rotation;
+        }
+    }
+}
+
+/// Senders without lengths send zeros; a body has none of these.
+fn local_position(bone: usize, parent: Option<usize>, sent: Vec3) -> Vec3 {
+    if parent.is_some() && sent.norm() < 1e-6 { standard_offset(bone, parent) } else { sent }
+}
+
+fn bones_of(mask: BoneMask) -> impl Iterator<Item = usize> {
+    (0..HUMANOID_BONES).filter(move |bone| mask >> bone & 1 == 1)
+}
+
+/// The place of `bone` among the bones of `mask`.
+fn place(mask: BoneMask, bone: usize) -> usize {
+    (mask & ((1 << bone) - 1)).count_ones() as usize
+}
+
+fn rig_of(mask: BoneMask, bones: &[Bone; HUMANOID_BONES]) -> Rig {
+    let mut roles = RoleMap::default();
+    let joint = |bone: usize| {
+        let parent = parent_among(bone, mask);
+        let offset = local_position(bone, parent, bones[bone].position);
+        let parent = parent.map(|parent| place(mask, parent));
+        Joint { name: HUMANOID[bone].name.to_owned(), parent, offset, tip: None }
+    };
+    let joints: Vec<Joint> = bones_of(mask).map(joint).collect();
+    for (place, joint) in joints.iter().enumerate() {
+        if let Some(role) = bone_of_name(&joint.name).and_then(|bone| HUMANOID[bone].role) {
+            roles.set(role, Some(place));
+        }
+    }
+    // Parents come first in the table, so this cannot fail.
+    Rig { skeleton: Skeleton::new(joints).unwrap_or_default(), roles }
+}

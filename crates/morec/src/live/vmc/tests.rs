@@ -1,0 +1,321 @@
+//! Senders of every kind, and what becomes of what they send.
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::features::KeyPose;
+use crate::kinematics::WorldPose;
+use crate::live::osc::{Arg, begin_bundle, write_element, write_message};
+use crate::live::{Actor, Frame, Next, Rig};
+use crate::math::{Axis, Quat, Vec3};
+use crate::roles::{Role, RoleMap};
+
+/// A person made of the humanoid's own joints, role by role, with an arm that swings.
+fn swinging(secs: f64) -> WorldPose {
+    let mut pose = WorldPose::default();
+    let mut at = [(Vec3::zeros(), Quat::identity()); HUMANOID_BONES];
+    for (b, bone) in HUMANOID.iter().enumerate() {
+        let local = match bone.role {
+            Some(Role::LeftArm) => Axis::Z.rotation(1.2) * Axis::X.rotation((3.0 * secs).sin()),
+            Some(Role::RightArm) => Axis::Z.rotation(-1.3),
+            Some(Role::Hips) => Axis::Y.rotation(0.3 * secs),
+            _ => Axis::X.rotation(0.05),
+        };
+        at[b] = match bone.parent {
+            Some(p) => (at[p].0 + at[p].1 * bone.offset(), at[p].1 * local),
+            None => (bone.offset(), local),
+        };
+    }
+    for role in Role::ALL {
+        let bone = HUMANOID.iter().position(|b| b.role == Some(role)).unwrap();
+        pose.positions.push(at[bone].0);
+        pose.rotations.push(at[bone].1);
+    }
+    pose
+}
+
+/// Joint `i` plays `Role::ALL[i]`.
+fn roles() -> RoleMap {
+    Rig::of_roles().roles
+}
+
+/// A receiver with all that came out of it.
+struct Heard {
+    receiver: VmcReceiver<u8>,
+    rigs: Vec<(Actor, Rig)>,
+    frames: Vec<(Actor, f64, KeyPose)>,
+    gone: Vec<Actor>,
+}
+
+impl Heard {
+    fn new(options: &VmcOptions) -> Self {
+        Self { receiver: VmcReceiver::new(options), rigs: vec![], frames: vec![], gone: vec![] }
+    }
+
+    fn packet(&mut self, peer: u8, now_secs: f64, bytes: &[u8]) {
+        self.receiver.packet(peer, now_secs, bytes);
+        self.drain();
+    }
+
+    fn tick(&mut self, now_secs: f64) {
+        self.receiver.tick(now_secs);
+        self.drain();
+    }
+
+    fn drain(&mut self) {
+        let mut frame = Frame::default();
+        while let Some(next) = self.receiver.next(&mut frame) {
+            match next {
+                Next::Frame => {
+                    let rig = self.rigs.iter().rev().find(|(actor, _)| *actor == frame.actor).unwrap();
+                    self.frames.push((frame.actor, frame.time_secs, frame.key_pose(&rig.1)));
+                }
+                Next::Rig(actor, rig) => self.rigs.push((actor, (*rig).clone())),
+                Next::Gone(actor) => self.gone.push(actor),
+                Next::Quiet | Next::Ended => unreachable!(),
+            }
+        }
+    }
+
+    /// Plays `secs` of the swinging person at `rate_hz`, packet by packet, dropping those `lose` names.
+    fn play(
+        &mut self,
+        sender: &mut VmcSender,
+        from_secs: f64,
+        secs: f64,
+        rate_hz: f64,
+        lose: impl Fn(usize) -> bool,
+    ) {
+        let mut nth = 0;
+        for i in 0..(secs * rate_hz) as usize {
+            let time_secs = from_secs + i as f64 / rate_hz;
+            for packet in sender.frame(time_secs, &swinging(time_secs), &roles()) {
+                nth += 1;
+                if !lose(nth) {
+                    self.packet(1, 100.0 + time_secs, packet);
+                }
+            }
+            self.tick(100.0 + time_secs + 0.6 / rate_hz);
+        }
+    }
+}
+
+fn far(a: &KeyPose, b: &WorldPose) -> f64 {
+    Role::ALL.iter().map(|r| (a.get(*r).unwrap() - b.positions[r.index()]).norm()).fold(0.0, f64::max)
+}
+
+const WAYS: [Bundling; 4] = [Bundling::Whole, Bundling::Bytes(1500), Bundling::Bytes(300), Bundling::Single];
+
+#[test]
+fn any_bundling_at_any_rate_gives_the_poses_that_were_sent() {
+    for bundling in WAYS {
+        for (rate_hz, every_bone) in [(15.0, false), (60.0, true), (200.0, false)] {
+            let mut heard = Heard::new(&VmcOptions::default());
+            heard.play(&mut VmcSender::new(bundling, every_bone), 5.0, 2.0, rate_hz, |_| false);
+            let what = format!("{bundling:?} at {rate_hz} Hz");
+            assert_eq!(heard.rigs.len(), 1, "{what}");
+            assert!(heard.frames.len() as f64 > 1.6 * rate_hz, "{what}: {}", heard.frames.len());
+            let counts = heard.receiver.counts();
+            assert_eq!((counts.malformed, counts.late, counts.not_motion), (0, 0, 0), "{what}");
+            let (_, first_secs, _) = heard.frames[0];
+            for (i, (_, time_secs, pose)) in heard.frames.iter().enumerate() {
+                let expected_secs = first_secs + i as f64 / rate_hz;
+                assert!((time_secs - expected_secs).abs() < 1e-3, "{what}: {time_secs} for {expected_secs}");
+                // The receiver's clock begins with the first packet, the performance at 5 s.
+                let off = far(pose, &swinging(5.0 + expected_secs));
+                assert!(off < 0.02, "{what}: {off} m off at {time_secs}");
+            }
+        }
+    }
+}
+
+#[test]
+fn lost_packets_cost_frames_and_never_the_stream() {
+    for bundling in WAYS {
+        let mut heard = Heard::new(&VmcOptions::default());
+        heard.play(&mut VmcSender::new(bundling, false), 0.0, 4.0, 60.0, |nth| nth % 17 == 3);
+        assert_eq!(heard.rigs.len(), 1, "{bundling:?}");
+        assert!(heard.frames.len() > 180, "{bundling:?}: {}", heard.frames.len());
+        assert!(heard.frames.windows(2).all(|w| w[1].1 > w[0].1));
+        let off = heard.frames.iter().map(|(_, t, pose)| far(pose, &swinging(*t))).fold(0.0, f64::max);
+        assert!(off < 0.1, "{bundling:?}: {off}");
+    }
+}
+
+#[test]
+fn packets_that_were_overtaken_are_left_and_counted() {
+    let mut heard = Heard::new(&VmcOptions::default());
+    let mut sender = VmcSender::new(Bundling::Whole, false);
+    let mut held = None;
+    for i in 0..240 {
+        let secs = f64::from(i) / 60.0;
+        let packet = sender.frame(secs, &swinging(secs), &roles())[0].clone();
+        if i % 10 == 5 {
+            held = Some(packet);
+            continue;
+        }
+        heard.packet(1, secs, &packet);
+        if let Some(late) = held.take() {
+            heard.packet(1, secs, &late);
+        }
+    }
+    assert_eq!(heard.receiver.counts().late, 24);
+    assert!(heard.frames.windows(2).all(|w| w[1].1 - w[0].1 > 0.01));
+}
+
+/// One message with seven numbers.
+fn bone(out: &mut Vec<u8>, name: &str, position: [f32; 3], rotation: [f32; 4]) {
+    let numbers = position.into_iter().chain(rotation).map(Arg::Float);
+    let args: Vec<Arg> = [Arg::Text(name)].into_iter().chain(numbers).collect();
+    write_message(out, "/VMC/Ext/Bone/Pos", &args);
+}
+
+/// A T-pose of all bones without positions, as senders that only know rotations have it, the left arm turned.
+fn rotations_only(arm: [f32; 4]) -> Vec<u8> {
+    let mut packet = vec![];
+    begin_bundle(&mut packet);
+    for b in &HUMANOID[..20] {
+        let rotation = if b.name == "LeftUpperArm" { arm } else { [0.0, 0.0, 0.0, 1.0] };
+        write_element(&mut packet, |out| bone(out, b.name, [0.0; 3], rotation));
+    }
+    packet
+}
+
+const AHEAD: [f32; 4] = [0.0, std::f32::consts::FRAC_1_SQRT_2, 0.0, std::f32::consts::FRAC_1_SQRT_2];
+
+#[test]
+fn senders_without_positions_get_a_standard_skeleton_and_left_stays_left() {
+    let mut heard = Heard::new(&VmcOptions::default());
+    for i in 0..60 {
+        heard.packet(1, f64::from(i) / 60.0, &rotations_only(AHEAD));
+    }
+    let (_, _, pose) = heard.frames.last().unwrap();
+    let at = |role| pose.get(role).unwrap();
+    let (left, up) = (at(Role::LeftThigh) - at(Role::RightThigh), at(Role::Neck) - at(Role::Hips));
+    let forward = left.cross(&up).normalize();
+    let arm = (at(Role::LeftForearm) - at(Role::LeftArm)).normalize();
+    assert!((arm - forward).norm() < 1e-6, "left × up is forward, and so is the arm: {arm}");
+    let other = (at(Role::RightForearm) - at(Role::RightArm)).normalize();
+    assert!((other + left.normalize()).norm() < 1e-6);
+    assert!((at(Role::LeftShin) - at(Role::LeftThigh)).norm() > 0.3);
+}
+
+#[test]
+fn a_mirrored_sender_is_turned_back() {
+    let mut heard = Heard::new(&VmcOptions { mirrored: true, ..Default::default() });
+    for i in 0..60 {
+        heard.packet(1, f64::from(i) / 60.0, &rotations_only(AHEAD));
+    }
+    let (_, _, pose) = heard.frames.last().unwrap();
+    let at = |role| pose.get(role).unwrap();
+    let forward =
+        (at(Role::LeftThigh) - at(Role::RightThigh)).cross(&(at(Role::Neck) - at(Role::Hips))).normalize();
+    let right = (at(Role::RightForearm) - at(Role::RightArm)).normalize();
+    assert!((right - forward).norm() < 1e-6, "now the right arm reaches forward");
+    assert!((at(Role::LeftForearm) - at(Role::LeftArm)).normalize().dot(&forward).abs() < 1e-6);
+}
+
+#[test]
+fn a_t_pose_and_a_sender_that_says_so_are_no_motion() {
+    let mut heard = Heard::new(&VmcOptions::default());
+    for i in 0..60 {
+        heard.packet(1, f64::from(i) / 60.0, &rotations_only([0.0, 0.0, 0.0, 1.0]));
+    }
+    assert!(heard.frames.is_empty() && heard.receiver.counts().not_motion > 30);
+    let mut state = vec![];
+    write_message(&mut state, "/VMC/Ext/OK", &[Arg::Int(1), Arg::Int(3), Arg::Int(0), Arg::Int(0)]);
+    heard.packet(1, 1.0, &state);
+    for i in 60..90 {
+        heard.packet(1, f64::from(i) / 60.0, &rotations_only(AHEAD));
+    }
+    assert!(heard.frames.is_empty());
+    state.clear();
+    write_message(&mut state, "/VMC/Ext/OK", &[Arg::Int(1)]);
+    heard.packet(1, 1.5, &state);
+    heard.packet(1, 1.51, &rotations_only(AHEAD));
+    assert_eq!(heard.frames.len(), 1);
+}
+
+#[test]
+fn a_bone_that_is_lost_takes_what_hangs_on_it_along_and_comes_back() {
+    let mut heard = Heard::new(&VmcOptions::default());
+    let mut sender = VmcSender::new(Bundling::Whole, false);
+    heard.play(&mut sender, 0.0, 1.0, 60.0, |_| false);
+    let mut armless = roles();
+    armless.set(Role::LeftForearm, None);
+    for i in 0..60 {
+        let secs = 1.0 + f64::from(i) / 60.0;
+        let packet = sender.frame(secs, &swinging(secs), &armless)[0].clone();
+        heard.packet(1, 100.0 + secs, &packet);
+        heard.tick(100.0 + secs + 0.01);
+    }
+    let (_, _, pose) = heard.frames.last().unwrap();
+    assert!(pose.get(Role::LeftHand).is_none() && pose.get(Role::RightHand).is_some());
+    heard.play(&mut sender, 2.0, 0.5, 60.0, |_| false);
+    assert!(heard.frames.last().unwrap().2.get(Role::LeftHand).is_some());
+    assert_eq!(heard.rigs.len(), 1, "the skeleton was the same all along");
+}
+
+#[test]
+fn a_bone_that_stays_away_leaves_the_skeleton_and_a_new_one_joins_it() {
+    let mut heard = Heard::new(&VmcOptions::default());
+    let mut sender = VmcSender::new(Bundling::Whole, false);
+    let mut headless = roles();
+    headless.set(Role::Head, None);
+    for (part, roles) in [roles(), headless, roles()].iter().enumerate() {
+        for i in 0..240 {
+            let secs = 4.0 * part as f64 + f64::from(i) / 60.0;
+            let packet = sender.frame(secs, &swinging(secs), roles)[0].clone();
+            heard.packet(1, secs, &packet);
+            heard.tick(secs + 0.01);
+        }
+    }
+    let heads: Vec<bool> = heard.rigs.iter().map(|(_, rig)| rig.roles.joint(Role::Head).is_some()).collect();
+    assert_eq!(heads, [true, false, true]);
+}
+
+#[test]
+fn senders_are_told_apart_bounded_and_replaced_when_they_have_gone() {
+    let mut heard = Heard::new(&VmcOptions { actors: 2, ..Default::default() });
+    for i in 0..60 {
+        for peer in [1, 2, 3] {
+            heard.packet(peer, f64::from(i) / 60.0, &rotations_only(AHEAD));
+        }
+    }
+    assert_eq!(heard.receiver.counts().refused, 60);
+    let actors =
+        |heard: &Heard| heard.frames.iter().map(|f| f.0.0).collect::<std::collections::BTreeSet<_>>();
+    assert_eq!(actors(&heard).into_iter().collect::<Vec<_>>(), [0, 1]);
+    heard.tick(2.5);
+    assert_eq!(heard.gone.len(), 2);
+    heard.frames.clear();
+    for i in 0..60 {
+        heard.packet(3, 3.0 + f64::from(i) / 60.0, &rotations_only(AHEAD));
+    }
+    assert_eq!(actors(&heard).into_iter().collect::<Vec<_>>(), [0], "in the place of one that has gone");
+}
+
+proptest! {
+    #[test]
+    fn no_packet_panics_or_gives_a_pose_of_infinities(
+        packets in prop::collection::vec((0u8..4, prop::collection::vec(any::<u8>(), 0..120)), 0..40),
+        numbers in prop::collection::vec((0usize..56, any::<[f32; 7]>()), 0..200),
+    ) {
+        let mut heard = Heard::new(&VmcOptions::default());
+        for (i, (name, values)) in numbers.iter().enumerate() {
+            let name = HUMANOID.get(*name).map_or("LastBone", |b| b.name);
+            let mut packet = vec![];
+            let [a, b, c, rotation @ ..] = *values;
+            bone(&mut packet, name, [a, b, c], rotation);
+            heard.packet(1, i as f64 * 0.01, &packet);
+            if let Some((peer, bytes)) = packets.get(i) {
+                heard.packet(*peer, i as f64 * 0.01, bytes);
+            }
+            heard.tick(i as f64 * 0.01 + 0.006);
+        }
+        for (_, time_secs, pose) in &heard.frames {
+            prop_assert!(time_secs.is_finite());
+            prop_assert!(Role::ALL.iter().filter_map(|r| pose.get(*r)).all(|p| p.norm().is_finite()));
+        }
+    }
+}
