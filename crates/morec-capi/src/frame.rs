@@ -161,7 +161,7 @@ fn position(joint: usize, p: [f64; 3]) -> Result<Option<Vec3>, Error> {
 
 /// NaN throughout: not seen.
 fn rotation(joint: usize, [x, y, z, w]: [f64; 4]) -> Result<Quat, Error> {
-    let q = morec::math::quaternion(x, y, z, w);
+    let q = nalgebra::Quaternion::new(w, x, y, z);
     if [x, y, z, w].iter().any(|c| c.is_nan()) {
         return Ok(Quat::new_unchecked(q * f64::NAN));
     }

@@ -3,7 +3,7 @@
 use std::ffi::c_char;
 
 use morec::clip::{Joint, Skeleton};
-use morec::features::{ALL_BONES, BoneSet, KeyPose};
+use morec::features::{BoneSet, KeyPose};
 use morec::index::MotionIndex;
 use morec::kinematics::WorldPose;
 use morec::live::Rig;
@@ -187,7 +187,7 @@ pub(crate) unsafe fn read(
 /// `names` is null or points to `count` texts that end with a zero.
 unsafe fn names(names: *const *const c_char, count: usize) -> Result<Vec<String>, Error> {
     // SAFETY: as promised to this function.
-    let Some(names) = (unsafe { memory::values_if_any(names, count, "names") }?) else {
+    let Some(names) = unsafe { memory::values_if_any(names, count, "names") }? else {
         return Ok(vec![String::new(); count]);
     };
     let name = |(joint, name): (usize, &*const c_char)| {
