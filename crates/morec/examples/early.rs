@@ -50,7 +50,8 @@ fn main() {
     let mut samples = labels.resolve(&lengths.collect()).samples;
     samples.retain(|s| CLASSES.contains(&s.class.as_str()));
 
-    let (mut all, mut known, mut told, mut right, mut false_unknown) = (0, 0, 0, 0, 0);
+    let (mut all, mut known, mut told, mut right, mut false_unknown) =
+        (0usize, 0usize, 0usize, 0usize, 0usize);
     let mut starts = Vec::new();
     for test in 0..signals.len() {
         let mut clips: Vec<TrainClip> = background.clone();
@@ -84,14 +85,8 @@ fn main() {
         }
     }
     starts.sort_by(f64::total_cmp);
-    println!(
-        "known at the middle of {all} samples: {known}, recall {:.2}",
-        f64::from(known as u32) / f64::from(all)
-    );
-    println!(
-        "told as half done or more: {told}, right {right}, precision {:.2}",
-        f64::from(right) / f64::from(told)
-    );
+    println!("known at the middle of {all} samples: {known}, recall {:.2}", known as f64 / all as f64);
+    println!("told as half done or more: {told}, right {right}, precision {:.2}", right as f64 / told as f64);
     println!("first told right at {:.2} of the sample, median", starts[starts.len() / 2]);
     let secs: f64 = unknown.iter().map(|c| c.clip.duration_secs()).sum();
     println!("in {:.1} min without the signals: {false_unknown} told", secs / 60.0);

@@ -8,7 +8,10 @@ mod made;
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc, reset_violation_count, violation_count};
 use morec::features::MAX_GAP_SECS;
-use morec::live::Recognizer;
+use std::sync::Arc;
+
+use morec::live::vmc::{Bundling, VmcOptions, VmcReceiver, VmcSender};
+use morec::live::{Actor, EventOptions, Frame, Next, Performer, Recognizer, Rig};
 use morec::synth::{Person, Script, Side};
 
 #[global_allocator]
@@ -21,6 +24,7 @@ fn allocations(job: impl FnOnce()) -> u32 {
     violation_count()
 }
 
+/// Violations are counted for the whole process: one test, so that nothing else runs beside it.
 #[test]
 fn pushing_takes_no_memory() {
     assert!(allocations(|| drop(std::hint::black_box(vec![1]))) > 0, "the counter must count");
@@ -40,6 +44,7 @@ fn pushing_takes_no_memory() {
     let allocations = allocations(|| {
         for (time_secs, pose) in &poses {
             found += recognizer.push(*time_secs, pose).len();
+            std::hint::black_box(recognizer.hunch());
         }
         found += recognizer.finish().len();
         for (time_secs, pose) in &poses {
@@ -48,4 +53,54 @@ fn pushing_takes_no_memory() {
     });
     assert_eq!(allocations, 0);
     assert!(found >= 4, "too little happened to prove anything: {found} detections");
+    events_take_no_memory(&model, &poses);
+    packets_take_no_memory();
+}
+
+/// From frames to events, tentative ones included.
+fn events_take_no_memory(model: &Arc<morec::templates::TemplateModel>, poses: &[made::Timed]) {
+    let mut performer = Performer::new(model, Actor(0), &EventOptions::default());
+    let (mut frame, mut events) = (Frame::default(), 0);
+    let mut play = |performer: &mut Performer| {
+        for (time_secs, pose) in poses {
+            frame.time_secs = *time_secs;
+            frame.set_key_pose(pose);
+            performer.push_own(&frame, &mut |_| events += 1);
+        }
+        performer.finish(&mut |_| events += 1);
+    };
+    performer.set_rig(&Arc::new(Rig::of_roles()), &mut |_| {});
+    // A new skeleton's first frame makes the recogniser.
+    play(&mut performer);
+    assert_eq!(allocations(|| play(&mut performer)), 0);
+    assert!(events >= 8, "too little was said to prove anything: {events} events");
+}
+
+/// From packets to frames.
+fn packets_take_no_memory() {
+    let person = Person { hand: Side::Right, ..Person::draw(89, 1) };
+    let take = Script::new(89, person).rest(0.5).play("push").film("packets", 60.0).unwrap();
+    let roles = morec::roles::RoleMap::find(&take.clip.skeleton);
+    let mut sender = VmcSender::new(Bundling::Bytes(700), true);
+    let packets: Vec<(f64, Vec<u8>)> = (0..take.clip.frames)
+        .flat_map(|frame| {
+            let (secs, pose) = (frame as f64 / 60.0, morec::kinematics::WorldPose::of(&take.clip, frame));
+            sender.frame(secs, &pose, &roles).iter().map(|p| (secs, p.clone())).collect::<Vec<_>>()
+        })
+        .collect();
+    let mut receiver = VmcReceiver::new(&VmcOptions::default());
+    let (mut frame, mut frames) = (Frame::default(), 0);
+    let mut play = |packets: &[(f64, Vec<u8>)]| {
+        for (secs, packet) in packets {
+            receiver.packet(1, *secs, packet);
+            receiver.tick(*secs);
+            while let Some(next) = receiver.next(&mut frame) {
+                frames += usize::from(matches!(next, Next::Frame));
+            }
+        }
+    };
+    let (before, after) = packets.split_at(packets.len() / 2);
+    play(before);
+    assert_eq!(allocations(|| play(after)), 0);
+    assert!(frames > 50, "{frames} frames");
 }

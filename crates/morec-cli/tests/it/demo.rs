@@ -37,6 +37,25 @@ fn the_whole_job_and_then_again_by_hand() {
     // Far below what it reaches, far above what anything broken would.
     assert!(rate("recall") >= 0.6 && rate("precision") >= 0.6, "{}", figures["overlap"][2]);
 
+    // The same person live, as fast as it goes: the same motions.
+    let clip = std::fs::read_dir(folder.path().join("morec-demo/new")).unwrap().next().unwrap().unwrap();
+    let source = format!("clip://morec-demo/new/{}?speed=0", clip.file_name().to_string_lossy());
+    let told = folder.morec(&["live", "morec-demo/demo.index", "--listen", &source, "--emit", "json:-"]).ok();
+    let events: Vec<serde_json::Value> = told.lines().map(|l| serde_json::from_str(l).unwrap()).collect();
+    let ends: Vec<String> = events
+        .iter()
+        .filter(|e| e["phase"] == "end")
+        .map(|e| format!("{} {:.3}", e["class"].as_str().unwrap(), e["start_secs"].as_f64().unwrap()))
+        .collect();
+    let recognised: Vec<String> = found
+        .lines()
+        .skip(1)
+        .map(|line| line.split('\t').collect::<Vec<_>>())
+        .map(|cells| format!("{} {:.3}", cells[3], cells[6].parse::<f64>().unwrap()))
+        .collect();
+    assert_eq!(ends, recognised);
+    assert!(events.iter().any(|e| e["phase"] == "start"), "something must be told before its end");
+
     // Training is the long step: two classes and no everyday motion show that the line works.
     let trained = with(0, &["--classes", "bow,clap", "--everyday", "never"]);
     assert!(trained.contains("bow") && trained.contains("demo.index"), "{trained}");

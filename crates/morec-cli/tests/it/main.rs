@@ -5,3 +5,4 @@ mod demo;
 mod evaluate;
 mod inspect;
 mod kit;
+mod live;

@@ -1,0 +1,141 @@
+//! `morec live` and `morec send` with each other, over the loopback network.
+
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::{TcpStream, UdpSocket};
+use std::process::{Child, ChildStderr, Command, Stdio};
+use std::time::Duration;
+
+use morec::formats::bvh;
+use morec::synth::{Person, Script};
+
+use crate::kit::Folder;
+
+/// An index of an old release: what it recognises does not matter here.
+const INDEX: &[u8] = include_bytes!("../../../morec/testdata/index/v1.index");
+
+/// A folder with an index and a person who moves for some seconds.
+fn folder() -> Folder {
+    let folder = Folder::with(&[]);
+    std::fs::write(folder.path().join("v1.index"), INDEX).unwrap();
+    let take =
+        Script::new(5, Person::draw(5, 0)).rest(1.0).play("wave").rest(0.5).film("person", 60.0).unwrap();
+    let mut bytes = Vec::new();
+    bvh::write(&take.clip, &mut bytes).unwrap();
+    std::fs::write(folder.path().join("person.bvh"), bytes).unwrap();
+    folder
+}
+
+/// `morec live`, running.
+struct Live {
+    child: Child,
+    err: BufReader<ChildStderr>,
+    /// Where it listens: host and port.
+    at: String,
+}
+
+impl Live {
+    fn start(folder: &Folder, listen: &str, more: &[&str]) -> Self {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_morec"))
+            .args(["live", "v1.index", "--listen", listen])
+            .args(more)
+            .current_dir(folder.path())
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut err = BufReader::new(child.stderr.take().unwrap());
+        let mut line = String::new();
+        while !line.contains("listening to") {
+            line.clear();
+            assert!(err.read_line(&mut line).unwrap() > 0, "it ended before it listened");
+        }
+        let at = line.trim().rsplit("//").next().unwrap().to_owned();
+        Self { child, err, at }
+    }
+
+    /// Interrupts it as Ctrl-C would; returns what it said in the end.
+    fn interrupt(mut self) -> String {
+        let done = Command::new("kill").args(["-INT", &self.child.id().to_string()]).status().unwrap();
+        assert!(done.success());
+        let mut said = String::new();
+        self.err.read_to_string(&mut said).unwrap();
+        assert_eq!(self.child.wait().unwrap().code(), Some(0), "{said}");
+        said
+    }
+}
+
+/// The number before `what` in a summary.
+fn count(summary: &str, what: &str) -> u64 {
+    let before = summary.split(what).next().unwrap().trim_end();
+    before.rsplit([' ', ',']).next().unwrap().parse().unwrap_or_else(|_| panic!("{what} in {summary}"))
+}
+
+#[test]
+#[cfg(unix)]
+fn what_send_sends_live_hears_and_rubbish_does_not_end_it() {
+    let folder = folder();
+    let live = Live::start(&folder, "vmc://127.0.0.1:0", &["--emit", "json:events.jsonl"]);
+    let rubbish = UdpSocket::bind("127.0.0.1:0").unwrap();
+    for bytes in [&b""[..], b"#bundle\0", b"/VMC/Ext/Bone/Pos\0\0\0,s\0\0", &[0xff; 60_000]] {
+        rubbish.send_to(bytes, &live.at).unwrap();
+    }
+    let to = format!("vmc://{}", live.at);
+    let sent = folder.morec(&["send", "person.bvh", "--to", &to, "--bundle", "300", "--loss", "0.02"]);
+    assert!(sent.err.contains("sent "), "{sent:?}");
+    let summary = live.interrupt();
+    // Most of some three seconds at 60 Hz; a loaded machine may lose some on the way.
+    assert!(count(&summary, " frames,") > 30, "{summary}");
+    assert!(count(&summary, " malformed packets") >= 2, "{summary}");
+}
+
+#[test]
+#[cfg(unix)]
+fn lines_over_tcp_are_poses_and_connections_come_and_go() {
+    let folder = folder();
+    let live = Live::start(&folder, "json+tcp://127.0.0.1:0", &["--emit", "json:-"]);
+    for _ in 0..2 {
+        let mut stream = TcpStream::connect(&live.at).unwrap();
+        for i in 0..50 {
+            let turned = f64::from(i) * 0.01;
+            writeln!(
+                stream,
+                r#"{{"t": {turned}, "rotations": {{"hips": [0,0,0,1], "left_arm": [0,0,{turned},1]}}}}"#
+            )
+            .unwrap();
+        }
+        writeln!(stream, "hello?").unwrap();
+    }
+    // Until everything has arrived; if it never does, the counts below say so.
+    std::thread::sleep(Duration::from_secs(3));
+    let summary = live.interrupt();
+    assert_eq!((count(&summary, " frames,"), count(&summary, " malformed packets")), (100, 2), "{summary}");
+}
+
+#[test]
+fn a_clip_ends_by_itself_and_what_cannot_be_opened_says_why() {
+    let folder = folder();
+    let ran = folder.morec(&["live", "v1.index", "--listen", "clip://person.bvh?speed=0"]);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    assert!(count(&ran.err, " frames,") > 100, "{}", ran.err);
+    for (listen, emit, said) in [
+        ("midi://x", "terminal:-", "no source is called midi"),
+        ("vmc://nowhere", "terminal:-", "HOST:PORT"),
+        ("clip://absent.bvh", "terminal:-", "absent.bvh"),
+        ("clip://person.bvh?sped=2", "terminal:-", "no option sped"),
+        ("clip://person.bvh", "midi:1", "no sink is called midi"),
+    ] {
+        let ran = folder.morec(&["live", "v1.index", "--listen", listen, "--emit", emit]);
+        assert_eq!(ran.code, Some(1), "{ran:?}");
+        assert!(ran.err.contains(said), "{}", ran.err);
+    }
+    assert_eq!(folder.morec(&["live", "v1.index"]).code, Some(2));
+    assert_eq!(folder.morec(&["live", "v1.index", "--listen", "vmc"]).code, Some(2));
+}
+
+#[test]
+fn every_lap_of_a_soak_finds_the_same() {
+    let folder = folder();
+    let out = folder.morec(&["soak", "v1.index", "person.bvh", "--hours", "0.02"]).ok();
+    assert!(out.contains("every lap found the same"), "{out}");
+}
