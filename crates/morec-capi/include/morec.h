@@ -414,7 +414,7 @@ typedef struct MorecFrame {
     size_t struct_size;
     /**
      * When it was, seconds on any clock that does not go back; at any rate, even or uneven. Late and duplicate frames
-     * are left out; after a gap of more than half a second the stream begins anew.
+     * are left out; after a gap of more than half a second, or a step back by as much, the stream begins anew.
      */
     double time_secs;
     /**
@@ -738,7 +738,8 @@ int32_t morec_role_from_name(const char *name);
 
 #endif  /* MOREC_H */
 
-#ifdef __cplusplus
+#if defined(__cplusplus) && !defined(MOREC_LISTING_4_1)
+#define MOREC_LISTING_4_1
 /** `mrQueryMotionSegments` with the number by reference, as Listing 4.1 has it. */
 inline bool mrQueryMotionSegments(MotionSeg *pSegments, int &nSegments) {
     return mrQueryMotionSegments(pSegments, &nSegments);

@@ -44,7 +44,7 @@ pub struct MorecEvent {
 
 impl MorecEvent {
     /// Size of the first release's.
-    pub(crate) const FIRST_SIZE: usize = 72;
+    pub(crate) const FIRST_SIZE: usize = size_of::<Self>();
 }
 
 impl From<&Event> for MorecEvent {

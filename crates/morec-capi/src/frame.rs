@@ -30,7 +30,7 @@ pub struct MorecFrame {
     /// Set to `sizeof(MorecFrame)`.
     pub struct_size: usize,
     /// When it was, seconds on any clock that does not go back; at any rate, even or uneven. Late and duplicate frames
-    /// are left out; after a gap of more than half a second the stream begins anew.
+    /// are left out; after a gap of more than half a second, or a step back by as much, the stream begins anew.
     pub time_secs: f64,
     /// Number of joints: that of the skeleton; `MOREC_ROLE_COUNT` for a stream of roles.
     pub joint_count: usize,
@@ -47,7 +47,7 @@ pub struct MorecFrame {
 // SAFETY: repr(C), begins with its size, numbers and pointers only.
 unsafe impl Versioned for MorecFrame {
     const NAME: &'static str = "MorecFrame";
-    const FIRST_SIZE: usize = 4 * size_of::<usize>() + 16;
+    const FIRST_SIZE: usize = size_of::<Self>();
 }
 
 /// A frame whose pointers were followed.

@@ -112,7 +112,10 @@ pub(crate) fn take_back<H: Handle>(handle: *const H) -> Result<(), Error> {
 }
 
 fn other_kind<H: Handle>() -> Error {
-    Error::new(MorecStatus::BadHandle, format!("this handle is not of an {}", H::NAME).replace("an rec", "a rec"))
+    Error::new(
+        MorecStatus::BadHandle,
+        format!("this handle is not of an {}", H::NAME).replace("an rec", "a rec"),
+    )
 }
 
 fn unknown<H: Handle>(table: &Table, number: usize) -> Error {

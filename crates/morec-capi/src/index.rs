@@ -30,7 +30,7 @@ pub struct MorecIndexFacts {
 // SAFETY: repr(C), begins with its size, numbers only.
 unsafe impl Versioned for MorecIndexFacts {
     const NAME: &'static str = "MorecIndexFacts";
-    const FIRST_SIZE: usize = size_of::<usize>() + 24;
+    const FIRST_SIZE: usize = size_of::<Self>();
 }
 
 /// Loads an index from a file that `morec train` wrote. `path` is UTF-8.

@@ -30,8 +30,8 @@ mod stream;
 mod words;
 
 pub use eight::{
-    MotionSeg, mrInit, mrIsDataSourceDepleted, mrQueryMotionSegments, mrSetDataSource, mrSetDataSourceSpeed, mrStart,
-    mrStop, mrStopDataSource, mrTerminate,
+    MotionSeg, mrInit, mrIsDataSourceDepleted, mrQueryMotionSegments, mrSetDataSource, mrSetDataSourceSpeed,
+    mrStart, mrStop, mrStopDataSource, mrTerminate,
 };
 pub use event::{MorecEvent, MorecPhase};
 pub use frame::{MorecFrame, MorecSpace};

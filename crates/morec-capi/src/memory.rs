@@ -19,7 +19,7 @@ const LONGEST_STRUCT: usize = 1024;
 pub(crate) unsafe trait Versioned: Copy {
     /// Its name in C.
     const NAME: &'static str;
-    /// Its size in the first release that had it.
+    /// Its size in the first release that had it. When a field is added at its end: `offset_of!(Self, that_field)`.
     const FIRST_SIZE: usize;
 }
 
@@ -174,7 +174,10 @@ impl<T: Copy> Places<T> {
             look(pointer.cast_const(), what)?;
         }
         if !(first_size..=LONGEST_STRUCT).contains(&size) || !size.is_multiple_of(align_of::<T>()) {
-            let text = format!("{what}: the size of one is given as {size}, in this release it is {}", size_of::<T>());
+            let text = format!(
+                "{what}: the size of one is given as {size}, in this release it is {}",
+                size_of::<T>()
+            );
             return Err(Error::new(MorecStatus::StructSize, text));
         }
         if size.checked_mul(capacity).is_none_or(|bytes| bytes > isize::MAX as usize) {

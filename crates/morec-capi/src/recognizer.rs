@@ -41,7 +41,7 @@ pub struct MorecOptions {
 // SAFETY: repr(C), begins with its size, numbers and pointers only.
 unsafe impl Versioned for MorecOptions {
     const NAME: &'static str = "MorecOptions";
-    const FIRST_SIZE: usize = 3 * size_of::<usize>() + 24;
+    const FIRST_SIZE: usize = size_of::<Self>();
 }
 
 /// What a recogniser has done since it was made or reset.
@@ -67,7 +67,7 @@ pub struct MorecStats {
 // SAFETY: repr(C), begins with its size, numbers only.
 unsafe impl Versioned for MorecStats {
     const NAME: &'static str = "MorecStats";
-    const FIRST_SIZE: usize = size_of::<usize>() + 48;
+    const FIRST_SIZE: usize = size_of::<Self>();
 }
 
 /// Makes a recogniser of one performer's motions and puts its handle into `*recognizer`, to be given back with
@@ -111,10 +111,7 @@ fn stream_options(c: &MorecOptions) -> Result<StreamOptions, Error> {
     }
     Ok(StreamOptions {
         convention: Convention::new(c.handedness, c.up_axis)?,
-        events: EventOptions {
-            early: c.flags & MOREC_EARLY_EVENTS != 0,
-            refractory_secs: c.refractory_secs,
-        },
+        events: EventOptions { early: c.flags & MOREC_EARLY_EVENTS != 0, refractory_secs: c.refractory_secs },
         event_capacity: c.event_capacity,
     })
 }
@@ -184,7 +181,8 @@ pub unsafe extern "C" fn morec_recognizer_poll(
         unsafe { memory::put(count, 0, "count") }?;
         let stream = handles::find(recognizer)?;
         // SAFETY: as promised to this function.
-        let mut places = unsafe { Places::new(events, event_size, capacity, MorecEvent::FIRST_SIZE, "events") }?;
+        let mut places =
+            unsafe { Places::new(events, event_size, capacity, MorecEvent::FIRST_SIZE, "events") }?;
         let taken = stream.poll(places.capacity(), |at, event| places.put(at, &MorecEvent::from(event)))?;
         // SAFETY: as promised to this function.
         unsafe { memory::put(count, taken, "count") }

@@ -58,7 +58,7 @@ pub struct MorecSkeleton {
 // SAFETY: repr(C), begins with its size, numbers and pointers only.
 unsafe impl Versioned for MorecSkeleton {
     const NAME: &'static str = "MorecSkeleton";
-    const FIRST_SIZE: usize = 6 * size_of::<usize>();
+    const FIRST_SIZE: usize = size_of::<Self>();
 }
 
 /// From a caller's coordinates to right-handed ones with Y up.
@@ -134,7 +134,10 @@ pub(crate) struct Declared {
 pub(crate) fn of_roles(mask: u32) -> Result<Declared, Error> {
     let mut rig = Rig::of_roles();
     if mask >> Role::COUNT != 0 {
-        return Err(Error::invalid(format!("roles is {mask:#x}, which has bits beyond the {} roles", Role::COUNT)));
+        return Err(Error::invalid(format!(
+            "roles is {mask:#x}, which has bits beyond the {} roles",
+            Role::COUNT
+        )));
     }
     for role in Role::ALL.into_iter().filter(|role| mask >> role.index() & 1 == 0) {
         rig.roles.set(role, None);

@@ -139,3 +139,35 @@ pub extern "C" fn morec_last_error() -> *const c_char {
 pub extern "C" fn morec_status_text(status: i32) -> *const c_char {
     MorecStatus::of_number(status).map_or(std::ptr::null(), |status| status.text().as_ptr())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn last() -> String {
+        // SAFETY: a text of ours, with a zero at its end.
+        unsafe { CStr::from_ptr(morec_last_error()) }.to_string_lossy().into_owned()
+    }
+
+    #[test]
+    fn no_panic_comes_out() {
+        assert_eq!(guard(|| panic!("on purpose")), MorecStatus::Internal);
+        assert_eq!(last(), "a fault in morec itself");
+    }
+
+    #[test]
+    fn the_last_error_is_each_threads_own_and_outlasts_what_succeeds() {
+        assert_eq!(guard(|| Err(Error::invalid("too \0 many"))), MorecStatus::InvalidValue);
+        assert_eq!(guard(|| Ok(())), MorecStatus::Ok);
+        assert_eq!(last(), "too  many");
+        assert_eq!(std::thread::spawn(last).join().unwrap(), "");
+    }
+
+    #[test]
+    fn every_status_has_a_text() {
+        for number in 0..=12 {
+            assert!(!morec_status_text(number).is_null());
+        }
+        assert!(morec_status_text(13).is_null() && morec_status_text(-1).is_null());
+    }
+}

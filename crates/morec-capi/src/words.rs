@@ -37,7 +37,8 @@ pub enum MorecRole {
 /// Number of parts of the body; they are numbered from 0.
 pub const MOREC_ROLE_COUNT: u32 = 18;
 
-const _: () = assert!(MOREC_ROLE_COUNT as usize == Role::COUNT && MorecRole::RightHand as usize + 1 == Role::COUNT);
+const _: () =
+    assert!(MOREC_ROLE_COUNT as usize == Role::COUNT && MorecRole::RightHand as usize + 1 == Role::COUNT);
 
 const NAMES: [&CStr; Role::COUNT] = [
     c"hips",

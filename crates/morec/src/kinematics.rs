@@ -34,9 +34,10 @@ impl WorldPose {
     /// If `parent` has not been posed yet.
     pub fn add(&mut self, parent: Option<usize>, local_position: Vec3, parent_from_joint: Quat) {
         let (position, rotation) = match parent {
-            Some(p) => {
-                (self.positions[p] + self.rotations[p] * local_position, self.rotations[p] * parent_from_joint)
-            }
+            Some(p) => (
+                self.positions[p] + self.rotations[p] * local_position,
+                self.rotations[p] * parent_from_joint,
+            ),
             None => (local_position, parent_from_joint),
         };
         self.positions.push(position);

@@ -21,8 +21,7 @@ pub(super) fn load(path: &Path, index: &MotionIndex) -> Result<Imported, Error> 
     let bytes = std::fs::read(path).map_err(|error| file_error(path, error))?;
     let clip = read(path, &bytes)?.filter(|clip| clip.frames > 0);
     let clip = clip.ok_or_else(|| file_error(path, "no frame of motion in it"))?;
-    let mut imported =
-        prepare(clip, &ImportOptions::default()).map_err(|error| file_error(path, error))?;
+    let mut imported = prepare(clip, &ImportOptions::default()).map_err(|error| file_error(path, error))?;
     index.complete_roles(&mut imported.roles, &imported.clip.skeleton);
     Ok(imported)
 }

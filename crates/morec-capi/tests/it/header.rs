@@ -7,8 +7,7 @@ use std::path::Path;
 fn the_header_is_current() {
     let crate_folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let config = cbindgen::Config::from_file(crate_folder.join("cbindgen.toml")).unwrap();
-    let bindings =
-        cbindgen::Builder::new().with_crate(crate_folder).with_config(config).generate().unwrap();
+    let bindings = cbindgen::Builder::new().with_crate(crate_folder).with_config(config).generate().unwrap();
     let mut made = Vec::new();
     bindings.write(&mut made);
     let made = String::from_utf8(made).unwrap();
@@ -18,5 +17,8 @@ fn the_header_is_current() {
     }
     // A checkout may have its own line ends.
     let kept = fs::read_to_string(&path).unwrap_or_default().replace("\r\n", "\n");
-    assert!(kept == made, "include/morec.h is not what the sources give; MOREC_WRITE_HEADER=1 writes it anew");
+    assert!(
+        kept == made,
+        "include/morec.h is not what the sources give; MOREC_WRITE_HEADER=1 writes it anew"
+    );
 }
