@@ -20,8 +20,9 @@ pub struct EarlyParams {
 }
 
 impl Default for EarlyParams {
+    /// Chosen on referee signals by `examples/early.rs`: wider reach and gates tell more, and more that is wrong.
     fn default() -> Self {
-        Self { least_progress: 0.35, least_ticks: 4, reach: 0.8, gate: 1.0, rival: 0.9, streak: 2 }
+        Self { least_progress: 0.25, least_ticks: 3, reach: 1.5, gate: 1.0, rival: 1.0, streak: 1 }
     }
 }
 
