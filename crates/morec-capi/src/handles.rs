@@ -37,7 +37,7 @@ static TABLE: RwLock<Table> = RwLock::new(Table { objects: BTreeMap::new(), give
 pub(crate) trait Handle: Sized {
     /// What it stands for.
     type Of;
-    /// What messages call it.
+    /// What messages call it, with its article.
     const NAME: &'static str;
     #[allow(private_interfaces)]
     fn wrap(of: Arc<Self::Of>) -> Object;
@@ -47,7 +47,7 @@ pub(crate) trait Handle: Sized {
 
 impl Handle for MorecIndex {
     type Of = MotionIndex;
-    const NAME: &'static str = "index";
+    const NAME: &'static str = "an index";
 
     #[allow(private_interfaces)]
     fn wrap(of: Arc<MotionIndex>) -> Object {
@@ -62,7 +62,7 @@ impl Handle for MorecIndex {
 
 impl Handle for MorecRecognizer {
     type Of = Stream;
-    const NAME: &'static str = "recogniser";
+    const NAME: &'static str = "a recogniser";
 
     #[allow(private_interfaces)]
     fn wrap(of: Arc<Stream>) -> Object {
@@ -112,15 +112,12 @@ pub(crate) fn take_back<H: Handle>(handle: *const H) -> Result<(), Error> {
 }
 
 fn other_kind<H: Handle>() -> Error {
-    Error::new(
-        MorecStatus::BadHandle,
-        format!("this handle is not of an {}", H::NAME).replace("an rec", "a rec"),
-    )
+    Error::new(MorecStatus::BadHandle, format!("this handle is not of {}", H::NAME))
 }
 
 fn unknown<H: Handle>(table: &Table, number: usize) -> Error {
     if number == 0 {
-        return Error::new(MorecStatus::NullPointer, format!("the {} is null", H::NAME));
+        return Error::new(MorecStatus::NullPointer, format!("expected {}, found null", H::NAME));
     }
     let was = number % 2 == 1 && (1..=table.given).contains(&(number / 2));
     let text = if was { "this handle was destroyed" } else { "this is no handle of morec's" };
