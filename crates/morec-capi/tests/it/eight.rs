@@ -166,3 +166,30 @@ fn a_slow_source_can_be_stopped_at_once_and_made_faster() {
     // What goes on when the library is terminated, ends.
     mrTerminate();
 }
+
+#[test]
+fn an_amc_finds_its_skeleton_and_a_source_without_a_body_is_refused() {
+    let (_turn, files) = turn();
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../morec/testdata/acclaim");
+    let (with, without) = (files.path("with"), files.path("without"));
+    for folder in [&with, &without] {
+        std::fs::create_dir_all(folder).unwrap();
+        std::fs::copy(data.join("wave.amc"), folder.join("wave.amc")).unwrap();
+    }
+    std::fs::copy(data.join("arm.asf"), with.join("wave.asf")).unwrap();
+    std::fs::copy(data.join("arm.asf"), with.join("another.asf")).unwrap();
+    let source = |folder: &Path, name: &str| {
+        let path = CString::new(folder.join(name).to_str().unwrap()).unwrap();
+        unsafe { mrSetDataSource(path.as_ptr()) }
+    };
+    assert!(unsafe { mrInit(files.index.as_ptr()) });
+    assert!(!source(&without, "wave.amc"));
+    assert!(last_error().contains("wave.asf"), "{}", last_error());
+    assert!(!source(&with, "wave.asf"));
+    assert!(last_error().contains("name the AMC"), "{}", last_error());
+    assert!(source(&with, "wave.amc"), "{}", last_error());
+    // One arm is nobody.
+    assert!(!mrStart());
+    assert!(last_error().contains("none of the bones"), "{}", last_error());
+    mrTerminate();
+}

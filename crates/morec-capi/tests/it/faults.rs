@@ -146,6 +146,23 @@ fn frames_that_cannot_be_are_refused_and_change_nothing() {
 }
 
 #[test]
+fn a_joint_that_is_not_seen_at_first_counts_from_when_it_is() {
+    let index = Index::new(kit::index_bytes());
+    let (_, poses) = made::poses(&kit::take(60.0));
+    let recognizer = Recognizer::new(&index, &options()).unwrap();
+    let expected = recognizer.run(&poses);
+    let mut hidden = poses.clone();
+    for (_, pose) in &mut hidden[..3] {
+        pose.set(morec::roles::Role::RightHand, morec::math::Vec3::repeat(f64::NAN));
+    }
+    assert_eq!(morec_recognizer_reset(recognizer.0), MorecStatus::Ok);
+    let found = recognizer.run(&hidden);
+    assert_eq!(found.len(), expected.len());
+    // The second motion is seen as if nothing had been: the hand is compared again.
+    assert_eq!(found[1], expected[1]);
+}
+
+#[test]
 fn options_that_cannot_be_are_refused() {
     let index = Index::new(&kit::small_index());
     let status = |change: &dyn Fn(&mut MorecOptions)| {
