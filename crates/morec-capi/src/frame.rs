@@ -3,8 +3,9 @@
 use morec::live::{Frame, wall_now_secs};
 use morec::math::{Quat, Vec3};
 
+use crate::axes::Convention;
 use crate::memory::{self, Versioned};
-use crate::skeleton::{Convention, Declared, is_place};
+use crate::skeleton::{Declared, is_place};
 use crate::status::Error;
 
 /// Where positions and rotations are seen from.

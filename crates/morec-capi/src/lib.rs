@@ -17,6 +17,7 @@
 
 #![deny(unsafe_op_in_unsafe_fn)]
 
+mod axes;
 mod eight;
 mod event;
 mod frame;
@@ -29,6 +30,7 @@ mod status;
 mod stream;
 mod words;
 
+pub use axes::{MorecHandedness, MorecUpAxis};
 pub use eight::{
     MotionSeg, mrInit, mrIsDataSourceDepleted, mrQueryMotionSegments, mrSetDataSource, mrSetDataSourceSpeed,
     mrStart, mrStop, mrStopDataSource, mrTerminate,
@@ -45,6 +47,6 @@ pub use recognizer::{
     morec_recognizer_finish, morec_recognizer_joint_of_role, morec_recognizer_poll, morec_recognizer_push,
     morec_recognizer_reset, morec_recognizer_stats,
 };
-pub use skeleton::{MorecHandedness, MorecSkeleton, MorecUpAxis};
+pub use skeleton::MorecSkeleton;
 pub use status::{MorecStatus, morec_last_error, morec_status_text};
 pub use words::{MOREC_ROLE_COUNT, MorecRole, morec_role_from_name, morec_role_name, morec_version};

@@ -3,11 +3,12 @@
 use morec::live::EventOptions;
 use morec::roles::Role;
 
+use crate::axes::Convention;
 use crate::event::MorecEvent;
 use crate::frame::{Given, MorecFrame};
 use crate::handles::{self, MorecIndex, MorecRecognizer};
 use crate::memory::{self, Places, Versioned};
-use crate::skeleton::{self, Convention, MorecSkeleton};
+use crate::skeleton::{self, MorecSkeleton};
 use crate::status::{Error, MorecStatus, guard};
 use crate::stream::{Stream, StreamOptions};
 use crate::words;

@@ -7,8 +7,9 @@ use morec::index::MotionIndex;
 use morec::live::{Actor, Event, EventOptions, Frame, Performer, Recognizer};
 
 use crate::MorecStatus;
+use crate::axes::Convention;
 use crate::frame::Given;
-use crate::skeleton::{Convention, Declared};
+use crate::skeleton::Declared;
 use crate::status::Error;
 
 /// Events that one frame can settle at most, with room to spare; no frame is taken with less.

@@ -5,6 +5,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stderr, clippy::undocumented_unsafe_blocks)]
 
 mod any_calls;
+mod calls;
 #[allow(dead_code)]
 #[path = "../../../morec/tests/it/cases.rs"]
 mod cases;
