@@ -14,6 +14,7 @@ pub struct Address {
     /// Where it is: a host and a port, a file, `-`.
     pub place: String,
     options: Vec<(String, String)>,
+    typed: String,
 }
 
 impl FromStr for Address {
@@ -33,13 +34,14 @@ impl FromStr for Address {
             (name.to_owned(), value.to_owned())
         };
         let options = options.split('&').filter(|o| !o.is_empty()).map(option).collect();
-        Ok(Self { kind: kind.to_owned(), place: place.to_owned(), options })
+        let typed = text.split('?').next().unwrap_or(text).to_owned();
+        Ok(Self { kind: kind.to_owned(), place: place.to_owned(), options, typed })
     }
 }
 
 impl fmt::Display for Address {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{}", self.kind, self.place)
+        f.write_str(&self.typed)
     }
 }
 

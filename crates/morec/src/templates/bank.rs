@@ -301,6 +301,32 @@ mod tests {
         }
     }
 
+    proptest! {
+        #[test]
+        fn a_beginning_matches_as_a_template_of_its_own_would(
+            template in rows(2..9),
+            stream in rows(1..30),
+            least in 1usize..9,
+        ) {
+            let least = least.min(template.len());
+            let alone: Vec<_> =
+                (least..=template.len()).map(|n| plain(&template.slice(0..n), &stream)).collect();
+            let mut bank = Bank::new(std::slice::from_ref(&template), 3);
+            for (t, z) in stream.iter().enumerate() {
+                bank.step(z);
+                let best = alone.iter().map(|table| table[t].0).fold(f64::INFINITY, f64::min);
+                match bank.partial(0, least) {
+                    Some(found) => {
+                        prop_assert_eq!(found.distance, best as f32);
+                        let (_, start) = alone[found.rows - least][t];
+                        prop_assert_eq!(t - found.age, start);
+                    }
+                    None => prop_assert!(best > 1e20),
+                }
+            }
+        }
+    }
+
     #[test]
     fn a_template_finds_itself_where_it_lies() {
         let template = Rows::from_values(1, vec![0.0, 1.0, 3.0, 2.0, -1.0]);

