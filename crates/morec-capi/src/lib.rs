@@ -11,8 +11,8 @@
 //! What must hold at the boundary, and where:
 //!
 //! - No panic crosses it: every function runs inside `status::guard`.
-//! - Handles are numbers, never followed: null, foreign and destroyed ones are looked up in [`handles`] and refused.
-//! - Pointers to data are followed in [`memory`] only, after looking at whether they are null or misaligned.
+//! - Handles are numbers, never followed: null, foreign and destroyed ones are looked up in `handles` and refused.
+//! - Pointers to data are followed in `memory` only, after looking at whether they are null or misaligned.
 //! - A recogniser in use by another thread is refused, not waited for.
 
 #![deny(unsafe_op_in_unsafe_fn)]
