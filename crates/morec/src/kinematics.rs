@@ -24,15 +24,24 @@ impl WorldPose {
                 Some(track) => track.positions[frame],
                 None => joint.offset,
             };
-            let (position, rotation) = match joint.parent {
-                Some(p) => {
-                    (self.positions[p] + self.rotations[p] * local_position, self.rotations[p] * locals[j])
-                }
-                None => (local_position, locals[j]),
-            };
-            self.positions.push(position);
-            self.rotations.push(rotation);
+            self.add(joint.parent, local_position, locals[j]);
         }
+    }
+
+    /// Poses the next joint: where it is and how it is turned in the frame of `parent`, in the world if it has none.
+    ///
+    /// # Panics
+    /// If `parent` has not been posed yet.
+    pub fn add(&mut self, parent: Option<usize>, local_position: Vec3, parent_from_joint: Quat) {
+        let (position, rotation) = match parent {
+            Some(p) => (
+                self.positions[p] + self.rotations[p] * local_position,
+                self.rotations[p] * parent_from_joint,
+            ),
+            None => (local_position, parent_from_joint),
+        };
+        self.positions.push(position);
+        self.rotations.push(rotation);
     }
 
     /// The pose of one frame in buffers of its own.

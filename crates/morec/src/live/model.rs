@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use crate::classes::{ClassId, ClassInfo};
+use crate::features::{ALL_BONES, BoneSet};
 use crate::pivots::UnplayedRoot;
+use crate::roles::Role;
 use crate::svrdm::SvrdmModel;
 use crate::templates::{TemplateModel, TemplateModelError};
 
@@ -36,6 +38,24 @@ impl Model {
     /// The name of a class of this model.
     pub fn class_name(&self, class: ClassId) -> &str {
         &self.classes()[class.index()].name
+    }
+
+    /// The parts of the body that recognition looks at, some perhaps more than once.
+    pub fn roles(&self) -> impl Iterator<Item = Role> {
+        let (bones, pivots) = match self {
+            Model::Templates(model) => (model.bones, &[][..]),
+            Model::Svrdm(model) => (BoneSet::NONE, model.pivots.pivots()),
+        };
+        let ends = bones.indices().flat_map(|bone| [ALL_BONES[bone].from, ALL_BONES[bone].to]);
+        ends.chain(pivots.iter().filter_map(|pivot| pivot.role))
+    }
+
+    /// How often a second the stream is compared.
+    pub fn tick_hz(&self) -> f64 {
+        match self {
+            Model::Templates(model) => model.features.tick_hz(),
+            Model::Svrdm(model) => model.rate_hz() / model.params.chunk_frames as f64,
+        }
     }
 
     /// Whether poses must say how joints are turned; where they are is enough otherwise.

@@ -6,8 +6,8 @@ use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
-use morec::live::{Event, EventOptions, Overload, Phase, Session, SessionOptions};
 use morec::live::Model;
+use morec::live::{Event, EventOptions, Overload, Phase, Session, SessionOptions};
 
 use super::Args;
 use crate::commands::live::stop_on_ctrl_c;

@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 use anyhow::Result;
 use morec::features::KeyPose;
 use morec::kinematics::WorldPose;
-use morec::live::{Actor, Frame, Overload, Pool, PoolStream, Rig, SessionOptions, wall_now_secs};
 use morec::live::Model;
+use morec::live::{Actor, Frame, Overload, Pool, PoolStream, Rig, SessionOptions, wall_now_secs};
 
 use super::Args;
 use crate::commands::live::stop_on_ctrl_c;
@@ -21,12 +21,7 @@ const ON_TIME_SECS: f64 = 0.050;
 /// Waits are counted from here on: recognisers are made at the beginning.
 const WARM_UP_SECS: f64 = 2.0;
 
-pub fn run(
-    model: &Model,
-    clips: &Arc<Vec<Loaded>>,
-    streams: usize,
-    args: &Args,
-) -> Result<ExitCode> {
+pub fn run(model: &Model, clips: &Arc<Vec<Loaded>>, streams: usize, args: &Args) -> Result<ExitCode> {
     let rate_hz = clips[0].clip.rate_hz;
     // Poses are made beforehand: what is to be measured is recognition.
     let poses: Vec<KeyPose> = clips.iter().flat_map(poses_of).collect();

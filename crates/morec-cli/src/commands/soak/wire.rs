@@ -10,9 +10,9 @@ use std::time::Duration;
 use anyhow::{Context, Result, anyhow};
 use morec::kinematics::WorldPose;
 use morec::labels::{ClipLength, Labels, Sample};
+use morec::live::Model;
 use morec::live::vmc::{VmcOptions, VmcSender};
 use morec::live::{Overload, Phase, Session, SessionOptions, wall_now_secs};
-use morec::live::Model;
 
 use super::Args;
 use crate::commands::live::stop_on_ctrl_c;
@@ -60,7 +60,7 @@ pub fn run(model: &Model, clips: &Arc<Vec<Loaded>>, args: &Args) -> Result<ExitC
     let mut told = Vec::new();
     while !sender.is_finished() {
         let Some(event) = reader.wait(Duration::from_millis(50)) else { continue };
-        let class = &model.classes[event.class.index()].name;
+        let class = model.class_name(event.class);
         sink.tell(&Said { event: &event, class, source: "wire" })?;
         let left_wall_secs = wall_now_secs();
         if event.phase == Phase::End {
@@ -111,7 +111,7 @@ fn samples(path: &std::path::Path, clips: &[Loaded], model: &Model) -> Result<Ve
     let lengths = clips.iter().map(|c| (c.clip.name.clone(), ClipLength { rate_hz: c.file_hz, ..length(c) }));
     let mut samples =
         labels.resolve(&lengths.map(|(n, l)| (n, ClipLength { frames: usize::MAX, ..l })).collect()).samples;
-    samples.retain(|s| model.classes.iter().any(|c| c.name == s.class));
+    samples.retain(|s| model.classes().iter().any(|c| c.name == s.class));
     Ok(samples)
 }
 

@@ -1,0 +1,170 @@
+//! The eight calls of Bucur 2009, Table 4.3, and one more: one index, one source of motion and one recognition in the
+//! process.
+//!
+//! Each says whether it did what it is for; `morec_last_error` says why not. They may be called from any thread, one
+//! after the other: a call waits for the one before it.
+
+mod clips;
+mod player;
+mod state;
+
+use std::ffi::{c_char, c_int};
+use std::path::Path;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use crate::memory;
+use crate::status::{Error, MorecStatus, guard};
+use state::State;
+
+/// Bytes for the name of a class, with the zero at its end; longer names are cut.
+pub(crate) const NAME_BYTES: usize = 64;
+
+/// A motion that was recognised: a segment of the stream, and what it shows.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MotionSeg {
+    /// Its number, from 1 since `mrStart`.
+    pub number: u64,
+    /// Its class in the index, from 0.
+    pub class_id: u32,
+    /// Frame of the clip at which it began.
+    pub start_frame: u32,
+    /// Frame at which it had ended.
+    pub stop_frame: u32,
+    /// Bytes of `class_name` without the zero.
+    pub class_name_bytes: u32,
+    /// When it began, seconds from the beginning of the clip.
+    pub start_secs: f64,
+    /// When it ended.
+    pub stop_secs: f64,
+    /// 0 just accepted … 1 identical to a sample.
+    pub confidence: f64,
+    /// The name of its class, UTF-8, with a zero at its end; cut if it is longer.
+    pub class_name: [c_char; 64],
+}
+
+static STATE: Mutex<State> = Mutex::new(State::new());
+
+fn state() -> MutexGuard<'static, State> {
+    // After a fault the parts are as they were before it or gone; every call looks at what is there.
+    STATE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn done(call: impl FnOnce() -> Result<(), Error>) -> bool {
+    guard(call) == MorecStatus::Ok
+}
+
+/// Initialises the library with an index file, which `morec train` wrote; `szClassifierFile` is UTF-8.
+///
+/// # Safety
+/// `szClassifierFile` is null or ends with a zero.
+#[unsafe(no_mangle)]
+#[allow(non_snake_case)]
+pub unsafe extern "C" fn mrInit(szClassifierFile: *const c_char) -> bool {
+    done(|| {
+        // SAFETY: as promised to this function.
+        let path = unsafe { memory::text(szClassifierFile, "szClassifierFile") }?;
+        state().init(Path::new(path))
+    })
+}
+
+/// Ends whatever goes on and lets go of everything. Never fails; the speed of the source is 1 again.
+#[unsafe(no_mangle)]
+#[allow(non_snake_case)]
+pub extern "C" fn mrTerminate() {
+    done(|| {
+        state().terminate();
+        Ok(())
+    });
+}
+
+/// Takes the clip in a file (BVH; AMC with its ASF beside it) as the source of motion. Of several people in one file,
+/// the first. `szSourceFile` is UTF-8.
+///
+/// It is played frame by frame, in the time it took to perform. It begins when recognition does, so that nothing of it
+/// is missed.
+///
+/// # Safety
+/// `szSourceFile` is null or ends with a zero.
+#[unsafe(no_mangle)]
+#[allow(non_snake_case)]
+pub unsafe extern "C" fn mrSetDataSource(szSourceFile: *const c_char) -> bool {
+    done(|| {
+        // SAFETY: as promised to this function.
+        let path = unsafe { memory::text(szSourceFile, "szSourceFile") }?;
+        state().set_source(Path::new(path))
+    })
+}
+
+/// How fast sources are played from now on, also while they are: 1 as they were performed, 2 twice as fast, infinity as
+/// fast as recognition goes. Not one of the eight.
+#[unsafe(no_mangle)]
+#[allow(non_snake_case)]
+pub extern "C" fn mrSetDataSourceSpeed(speed: f64) -> bool {
+    done(|| state().set_speed(speed))
+}
+
+/// Stops the source: no further frame comes from it. What has come is still recognised.
+#[unsafe(no_mangle)]
+#[allow(non_snake_case)]
+pub extern "C" fn mrStopDataSource() -> bool {
+    done(|| state().stop_source())
+}
+
+/// Whether nothing more will come from the source: it has played to its end or was stopped, or there is none.
+#[unsafe(no_mangle)]
+#[allow(non_snake_case)]
+pub extern "C" fn mrIsDataSourceDepleted() -> bool {
+    let mut depleted = true;
+    done(|| {
+        depleted = state().is_depleted();
+        Ok(())
+    });
+    depleted
+}
+
+/// Starts recognition of the source, in threads of its own; a source that was played before begins anew.
+#[unsafe(no_mangle)]
+#[allow(non_snake_case)]
+pub extern "C" fn mrStart() -> bool {
+    done(|| state().start())
+}
+
+/// Stops recognition, once everything that has come from the source is recognised. The solution remains.
+#[unsafe(no_mangle)]
+#[allow(non_snake_case)]
+pub extern "C" fn mrStop() -> bool {
+    done(|| state().stop())
+}
+
+/// Gives the solution so far: the last motions that were recognised since `mrStart`, at most `*nSegments`, in the order
+/// of time. `*nSegments` becomes their number.
+///
+/// A motion stays in the solution: `number` tells which ones are new. Of more than 16384 the last are kept. If
+/// `pSegments` is null, `*nSegments` becomes the number of all that are kept.
+///
+/// # Safety
+/// `pSegments` is null or has room for `*nSegments`; `nSegments` is null or may be read and written.
+#[unsafe(no_mangle)]
+#[allow(non_snake_case)]
+pub unsafe extern "C" fn mrQueryMotionSegments(pSegments: *mut MotionSeg, nSegments: *mut c_int) -> bool {
+    done(|| {
+        // SAFETY: as promised to this function.
+        let room = unsafe { memory::get(nSegments, "nSegments") }?;
+        let room = usize::try_from(room).map_err(|_| Error::invalid(format!("nSegments is {room}")))?;
+        let mut state = state();
+        let solution = state.solution()?;
+        let mut count = solution.len();
+        if !pSegments.is_null() {
+            let of = size_of::<MotionSeg>();
+            // SAFETY: as promised to this function.
+            let mut places = unsafe { memory::Places::new(pSegments, of, room, of, "pSegments") }?;
+            count = count.min(room);
+            for (at, segment) in solution.iter().skip(solution.len() - count).enumerate() {
+                places.put(at, segment);
+            }
+        }
+        // SAFETY: as promised to this function.
+        unsafe { memory::put(nSegments, count as c_int, "nSegments") }
+    })
+}

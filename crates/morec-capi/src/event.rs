@@ -1,0 +1,71 @@
+//! Events as C sees them.
+
+use morec::live::{Event, Phase};
+
+/// What is being said of a motion.
+#[repr(i32)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MorecPhase {
+    /// A motion seems to be under way. Tentative; only with `MOREC_EARLY_EVENTS`.
+    Start = 0,
+    /// Its progress, or what it seems to be, has changed. Tentative.
+    Update = 1,
+    /// It came to nothing. Ends what a start began.
+    Cancel = 2,
+    /// It has happened. Final: nothing that ended is taken back, and every motion ends once.
+    End = 3,
+}
+
+/// Something said of a motion. Times are seconds on the clock of the frames, if not said otherwise.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MorecEvent {
+    /// A `MorecPhase`.
+    pub phase: i32,
+    /// What it is, or seems to be: a class of the index.
+    pub class_id: u32,
+    /// Number of the motion, from 1: its start, updates and end share it.
+    pub motion: u64,
+    /// Number of the event, from 1. A gap would be a lost event, and be counted in `MorecStats.lost_events`.
+    pub sequence: u64,
+    /// Of an end: 0 just accepted … 1 identical to a sample. Tentative: how near what was seen so far is, likewise.
+    pub score: f64,
+    /// How much of the motion has been seen, 0 to 1; 1 at its end.
+    pub progress: f64,
+    /// When it began.
+    pub start_secs: f64,
+    /// When it ended; when it was last seen, if it has not.
+    pub stop_secs: f64,
+    /// The time of the frame that settled it.
+    pub reported_secs: f64,
+    /// Wall clock when that frame was pushed: seconds since 1970, UTC.
+    pub wall_secs: f64,
+}
+
+impl MorecEvent {
+    /// Size of the first release's.
+    pub(crate) const FIRST_SIZE: usize = size_of::<Self>();
+}
+
+impl From<&Event> for MorecEvent {
+    fn from(event: &Event) -> Self {
+        let phase = match event.phase {
+            Phase::Start => MorecPhase::Start,
+            Phase::Update => MorecPhase::Update,
+            Phase::Cancel => MorecPhase::Cancel,
+            Phase::End => MorecPhase::End,
+        };
+        Self {
+            phase: phase as i32,
+            class_id: u32::from(event.class.0),
+            motion: event.motion,
+            sequence: event.sequence,
+            score: event.score,
+            progress: event.progress,
+            start_secs: event.start_secs,
+            stop_secs: event.stop_secs,
+            reported_secs: event.reported_secs,
+            wall_secs: event.wall_secs,
+        }
+    }
+}

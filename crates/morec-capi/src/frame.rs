@@ -1,0 +1,175 @@
+//! Frames as C gives them, to frames as recognition takes them: the one place where this happens, whatever the method.
+
+use morec::live::{Frame, wall_now_secs};
+use morec::math::{Quat, Vec3};
+
+use crate::axes::Convention;
+use crate::memory::{self, Versioned};
+use crate::skeleton::{Declared, is_place};
+use crate::status::Error;
+
+/// Where positions and rotations are seen from.
+#[repr(i32)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MorecSpace {
+    /// Not said: refused.
+    Unknown = 0,
+    /// The world: `positions` are needed; `rotations` turn joints' axes into the world's.
+    World = 1,
+    /// The parent's frame: `rotations` are needed; `positions` take the place of the skeleton's offsets. A root's are in
+    /// the world. Needs a skeleton.
+    Local = 2,
+}
+
+/// One performer's pose at one instant. Nothing of it is needed after the call.
+///
+/// A joint that is not seen at this instant has a position, in local space a rotation, that is NaN; in local space a
+/// position that is NaN stands for the skeleton's offset. Metres are best, but any one unit of length will do.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct MorecFrame {
+    /// Set to `sizeof(MorecFrame)`.
+    pub struct_size: usize,
+    /// When it was, seconds on any clock that does not go back; at any rate, even or uneven. Late and duplicate frames
+    /// are left out; after a gap of more than half a second, or a step back by as much, the stream begins anew.
+    pub time_secs: f64,
+    /// Number of joints: that of the skeleton; `MOREC_ROLE_COUNT` for a stream of roles.
+    pub joint_count: usize,
+    /// `joint_count` times x, y, z, or null. For a stream of roles: in the order of `MorecRole`.
+    pub positions: *const f64,
+    /// `joint_count` times x, y, z, w, or null; of any length but 0.
+    pub rotations: *const f64,
+    /// A `MorecSpace`.
+    pub space: i32,
+    /// 0.
+    pub reserved: u32,
+}
+
+// SAFETY: repr(C), begins with its size, numbers and pointers only.
+unsafe impl Versioned for MorecFrame {
+    const NAME: &'static str = "MorecFrame";
+    const FIRST_SIZE: usize = size_of::<Self>();
+}
+
+/// A frame whose pointers were followed.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Given<'a> {
+    time_secs: f64,
+    space: MorecSpace,
+    positions: Option<&'a [[f64; 3]]>,
+    rotations: Option<&'a [[f64; 4]]>,
+}
+
+impl Given<'_> {
+    /// Follows the pointers of a frame of `joints` joints.
+    ///
+    /// # Safety
+    /// `frame` is null or as its fields say, for `'a`.
+    pub(crate) unsafe fn read<'a>(frame: *const MorecFrame, joints: usize) -> Result<Given<'a>, Error> {
+        // SAFETY: as promised to this function.
+        let c = unsafe { memory::read_struct(frame) }?;
+        if c.joint_count != joints {
+            let text = format!("joint_count is {}, the stream has {joints}", c.joint_count);
+            return Err(Error::invalid(text));
+        }
+        if !c.time_secs.is_finite() {
+            return Err(Error::invalid("time_secs is not a number"));
+        }
+        if c.reserved != 0 {
+            return Err(Error::invalid("reserved is not 0"));
+        }
+        let space = [MorecSpace::World, MorecSpace::Local].into_iter().find(|space| *space as i32 == c.space);
+        let text = "expected MOREC_SPACE_WORLD or MOREC_SPACE_LOCAL";
+        let space = space.ok_or_else(|| Error::invalid(format!("space is {}, {text}", c.space)))?;
+        // SAFETY: as promised to this function; three numbers are aligned as one.
+        let positions = unsafe { memory::values_if_any(c.positions.cast(), joints, "positions") }?;
+        // SAFETY: as promised to this function; four numbers are aligned as one.
+        let rotations = unsafe { memory::values_if_any(c.rotations.cast(), joints, "rotations") }?;
+        Ok(Given { time_secs: c.time_secs, space, positions, rotations })
+    }
+
+    /// Poses the skeleton of `declared` in `frame`, right-handed and Y up. `frame` is spoiled by an error.
+    pub(crate) fn pose(
+        &self,
+        declared: &Declared,
+        convention: &Convention,
+        frame: &mut Frame,
+    ) -> Result<(), Error> {
+        frame.time_secs = self.time_secs;
+        frame.wall_secs = wall_now_secs();
+        frame.pose.positions.clear();
+        frame.pose.rotations.clear();
+        match self.space {
+            MorecSpace::Local => self.pose_local(declared, convention, frame)?,
+            _ => self.pose_world(convention, frame)?,
+        }
+        let seen = |p: &Vec3| p.iter().all(|c| c.is_finite());
+        if !frame.pose.positions.iter().any(seen) {
+            return Err(Error::invalid("the frame shows no joint at all"));
+        }
+        Ok(())
+    }
+
+    fn pose_world(&self, convention: &Convention, frame: &mut Frame) -> Result<(), Error> {
+        let Some(positions) = self.positions else {
+            return Err(Error::invalid("a frame in world space needs positions"));
+        };
+        for (joint, &p) in positions.iter().enumerate() {
+            frame.pose.positions.push(convention.position(position(joint, p)?.unwrap_or(UNSEEN), true));
+        }
+        for (joint, &q) in self.rotations.unwrap_or_default().iter().enumerate() {
+            frame.pose.rotations.push(convention.rotation(rotation(joint, q)?, true));
+        }
+        Ok(())
+    }
+
+    fn pose_local(
+        &self,
+        declared: &Declared,
+        convention: &Convention,
+        frame: &mut Frame,
+    ) -> Result<(), Error> {
+        let Some(rotations) = self.rotations else {
+            return Err(Error::invalid("a frame in local space needs rotations"));
+        };
+        if self.positions.is_none() && !declared.has_offsets {
+            return Err(Error::invalid("a frame in local space needs positions, or a skeleton with offsets"));
+        }
+        for (j, joint) in declared.rig.skeleton.joints().iter().enumerate() {
+            let is_root = joint.parent.is_none();
+            let given = match self.positions {
+                Some(positions) => position(j, positions[j])?.map(|p| convention.position(p, is_root)),
+                None => None,
+            };
+            let offset = if declared.has_offsets { joint.offset } else { UNSEEN };
+            let turned = convention.rotation(rotation(j, rotations[j])?, is_root);
+            frame.pose.add(joint.parent, given.unwrap_or(offset), turned);
+        }
+        Ok(())
+    }
+}
+
+const UNSEEN: Vec3 = Vec3::new(f64::NAN, f64::NAN, f64::NAN);
+
+/// `None`: not seen.
+fn position(joint: usize, p: [f64; 3]) -> Result<Option<Vec3>, Error> {
+    let p = Vec3::from(p);
+    if p.iter().any(|c| c.is_nan()) {
+        return Ok(None);
+    }
+    if is_place(&p) { Ok(Some(p)) } else { Err(Error::invalid(format!("joint {joint} is nowhere: {p:?}"))) }
+}
+
+/// NaN throughout: not seen.
+fn rotation(joint: usize, [x, y, z, w]: [f64; 4]) -> Result<Quat, Error> {
+    let q = nalgebra::Quaternion::new(w, x, y, z);
+    if [x, y, z, w].iter().any(|c| c.is_nan()) {
+        return Ok(Quat::new_unchecked(q * f64::NAN));
+    }
+    let length = q.norm();
+    if length.is_finite() && length > 1e-9 {
+        Ok(Quat::new_unchecked(q / length))
+    } else {
+        Err(Error::invalid(format!("the rotation of joint {joint} has the length {length}")))
+    }
+}

@@ -1,0 +1,125 @@
+//! Handles: numbers that look like pointers and are never followed.
+//!
+//! A table says what each stands for, so a null, foreign or destroyed handle is found missing instead of crashing.
+//! Numbers are odd, which no object's address is, and never given twice.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, PoisonError, RwLock};
+
+use morec::index::MotionIndex;
+
+use crate::MorecStatus;
+use crate::status::Error;
+use crate::stream::Stream;
+
+/// A loaded index: what recognition knows. It does not change; any number of threads may use it at once.
+pub struct MorecIndex(());
+
+/// A recogniser of one performer's motions.
+pub struct MorecRecognizer(());
+
+/// What a handle stands for.
+#[derive(Clone)]
+enum Object {
+    Index(Arc<MotionIndex>),
+    Recognizer(Arc<Stream>),
+}
+
+#[derive(Default)]
+struct Table {
+    objects: BTreeMap<usize, Object>,
+    given: usize,
+}
+
+static TABLE: RwLock<Table> = RwLock::new(Table { objects: BTreeMap::new(), given: 0 });
+
+/// A kind of handle.
+pub(crate) trait Handle: Sized {
+    /// What it stands for.
+    type Of;
+    /// What messages call it, with its article.
+    const NAME: &'static str;
+    #[allow(private_interfaces)]
+    fn wrap(of: Arc<Self::Of>) -> Object;
+    #[allow(private_interfaces)]
+    fn unwrap(object: &Object) -> Option<&Arc<Self::Of>>;
+}
+
+impl Handle for MorecIndex {
+    type Of = MotionIndex;
+    const NAME: &'static str = "an index";
+
+    #[allow(private_interfaces)]
+    fn wrap(of: Arc<MotionIndex>) -> Object {
+        Object::Index(of)
+    }
+
+    #[allow(private_interfaces)]
+    fn unwrap(object: &Object) -> Option<&Arc<MotionIndex>> {
+        if let Object::Index(index) = object { Some(index) } else { None }
+    }
+}
+
+impl Handle for MorecRecognizer {
+    type Of = Stream;
+    const NAME: &'static str = "a recogniser";
+
+    #[allow(private_interfaces)]
+    fn wrap(of: Arc<Stream>) -> Object {
+        Object::Recognizer(of)
+    }
+
+    #[allow(private_interfaces)]
+    fn unwrap(object: &Object) -> Option<&Arc<Stream>> {
+        if let Object::Recognizer(stream) = object { Some(stream) } else { None }
+    }
+}
+
+/// A handle for `of`.
+pub(crate) fn give<H: Handle>(of: H::Of) -> Result<*mut H, Error> {
+    let mut table = TABLE.write().unwrap_or_else(PoisonError::into_inner);
+    let number = table.given.checked_add(1).and_then(|given| given.checked_mul(2)?.checked_add(1));
+    let number = number.ok_or_else(|| Error::new(MorecStatus::Internal, "no handles are left"))?;
+    table.given += 1;
+    table.objects.insert(number, H::wrap(Arc::new(of)));
+    Ok(std::ptr::without_provenance_mut(number))
+}
+
+/// What `handle` stands for. It lives on while it is in use, even if it is destroyed meanwhile.
+pub(crate) fn find<H: Handle>(handle: *const H) -> Result<Arc<H::Of>, Error> {
+    let table = TABLE.read().unwrap_or_else(PoisonError::into_inner);
+    match table.objects.get(&handle.addr()) {
+        Some(object) => H::unwrap(object).cloned().ok_or_else(|| other_kind::<H>()),
+        None => Err(unknown::<H>(&table, handle.addr())),
+    }
+}
+
+/// Takes `handle` back.
+pub(crate) fn take_back<H: Handle>(handle: *const H) -> Result<(), Error> {
+    let mut table = TABLE.write().unwrap_or_else(PoisonError::into_inner);
+    let number = handle.addr();
+    match table.objects.get(&number) {
+        Some(object) if H::unwrap(object).is_none() => Err(other_kind::<H>()),
+        Some(_) => {
+            let object = table.objects.remove(&number);
+            // What it held is let go of after the table is free again: that may take a while.
+            drop(table);
+            drop(object);
+            Ok(())
+        }
+        None => Err(unknown::<H>(&table, number)),
+    }
+}
+
+fn other_kind<H: Handle>() -> Error {
+    Error::new(MorecStatus::BadHandle, format!("this handle is not of {}", H::NAME))
+}
+
+fn unknown<H: Handle>(table: &Table, number: usize) -> Error {
+    if number == 0 {
+        return Error::new(MorecStatus::NullPointer, format!("expected {}, found null", H::NAME));
+    }
+    let was = number % 2 == 1 && (1..=table.given).contains(&(number / 2));
+    let text = if was { "this handle was destroyed" } else { "this is no handle of morec's" };
+    Error::new(MorecStatus::BadHandle, text)
+}

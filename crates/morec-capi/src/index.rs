@@ -1,0 +1,149 @@
+//! Loading an index, and what it says of itself.
+
+use std::ffi::c_char;
+use std::path::Path;
+
+use morec::index::MotionIndex;
+
+use crate::handles::{self, MorecIndex};
+use crate::memory::{self, Versioned};
+use crate::status::{Error, MorecStatus, guard};
+
+/// What an index is.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MorecIndexFacts {
+    /// Set to `sizeof(MorecIndexFacts)` before the call.
+    pub struct_size: usize,
+    /// Number of classes; they are numbered from 0.
+    pub class_count: u32,
+    /// The parts of the body that recognition looks at: bit `r` for the `MorecRole` `r`. A stream that lacks some is
+    /// compared by the others.
+    pub roles: u32,
+    /// Number of samples it learned from.
+    pub sample_count: u64,
+    /// How often a second the stream is compared.
+    pub tick_hz: f64,
+}
+
+// SAFETY: repr(C), begins with its size, numbers only.
+unsafe impl Versioned for MorecIndexFacts {
+    const NAME: &'static str = "MorecIndexFacts";
+    const FIRST_SIZE: usize = size_of::<Self>();
+}
+
+/// Loads an index from a file that `morec train` wrote. `path` is UTF-8.
+///
+/// Puts the handle into `*index`, to be given back with `morec_index_destroy`.
+///
+/// # Safety
+/// `path` is null or ends with a zero; `index` is null or may be written to.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn morec_index_load(path: *const c_char, index: *mut *mut MorecIndex) -> MorecStatus {
+    guard(|| {
+        // SAFETY: as promised to this function.
+        let path = unsafe { memory::text(path, "path") }?;
+        // SAFETY: as promised to this function.
+        unsafe { memory::put(index, std::ptr::null_mut(), "index") }?;
+        let loaded = load(Path::new(path))?;
+        // SAFETY: as promised to this function.
+        unsafe { memory::put(index, handles::give(loaded)?, "index") }
+    })
+}
+
+/// Loads an index from the bytes of such a file. They are not needed after the call.
+///
+/// # Safety
+/// `bytes` is null or points to `size` bytes; `index` is null or may be written to.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn morec_index_from_memory(
+    bytes: *const u8,
+    size: usize,
+    index: *mut *mut MorecIndex,
+) -> MorecStatus {
+    guard(|| {
+        // SAFETY: as promised to this function.
+        let bytes = unsafe { memory::values(bytes, size, "bytes") }?;
+        // SAFETY: as promised to this function.
+        unsafe { memory::put(index, std::ptr::null_mut(), "index") }?;
+        let loaded = MotionIndex::from_bytes(bytes)
+            .map_err(|error| Error::new(MorecStatus::BadIndex, error.to_string()))?;
+        // SAFETY: as promised to this function.
+        unsafe { memory::put(index, handles::give(loaded)?, "index") }
+    })
+}
+
+/// The index in a file.
+pub(crate) fn load(path: &Path) -> Result<MotionIndex, Error> {
+    let shown = path.display();
+    let bytes =
+        std::fs::read(path).map_err(|error| Error::new(MorecStatus::File, format!("{shown}: {error}")))?;
+    MotionIndex::from_bytes(&bytes)
+        .map_err(|error| Error::new(MorecStatus::BadIndex, format!("{shown}: {error}")))
+}
+
+/// Gives an index back. Recognisers that were made of it go on.
+#[unsafe(no_mangle)]
+pub extern "C" fn morec_index_destroy(index: *mut MorecIndex) -> MorecStatus {
+    guard(|| handles::take_back(index.cast_const()))
+}
+
+/// Fills in `*facts`, whose `struct_size` must be set.
+///
+/// # Safety
+/// `facts` is null or points to a struct of the size it says.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn morec_index_facts(
+    index: *const MorecIndex,
+    facts: *mut MorecIndexFacts,
+) -> MorecStatus {
+    guard(|| {
+        let model = &handles::find(index)?.model;
+        let known = MorecIndexFacts {
+            struct_size: 0,
+            class_count: model.classes().len() as u32,
+            roles: model.roles().fold(0, |roles, role| roles | 1 << role.index()),
+            sample_count: model.classes().iter().map(|class| class.samples as u64).sum(),
+            tick_hz: model.tick_hz(),
+        };
+        // SAFETY: as promised to this function.
+        unsafe { memory::write_struct(facts, &known) }
+    })
+}
+
+/// Writes the name of class `class_id` and a zero into the `size` bytes at `buffer`. UTF-8.
+///
+/// `*needed`, if `needed` is not null, becomes the number of bytes that takes, with the zero. If `size` is less, the
+/// characters that fit are written with a zero, and the status is `MOREC_STATUS_BUFFER_TOO_SMALL`. With a `size` of 0,
+/// `buffer` may be null.
+///
+/// # Safety
+/// `buffer` is null or may be written to for `size` bytes; `needed` is null or may be written to.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn morec_index_class_name(
+    index: *const MorecIndex,
+    class_id: u32,
+    buffer: *mut c_char,
+    size: usize,
+    needed: *mut usize,
+) -> MorecStatus {
+    guard(|| {
+        let index = handles::find(index)?;
+        let classes = index.model.classes();
+        let class = classes.get(class_id as usize).ok_or_else(|| {
+            Error::invalid(format!("class {class_id}: the index has {}, numbered from 0", classes.len()))
+        })?;
+        // A zero inside would end the name early for every reader of it.
+        let name = class.name.replace('\0', " ");
+        if !needed.is_null() {
+            // SAFETY: as promised to this function.
+            unsafe { memory::put(needed, name.len() + 1, "needed") }?;
+        }
+        // SAFETY: as promised to this function.
+        if unsafe { memory::write_text(buffer, size, &name) }? {
+            return Ok(());
+        }
+        let text = format!("the name takes {} bytes, the buffer has {size}", name.len() + 1);
+        Err(Error::new(MorecStatus::BufferTooSmall, text))
+    })
+}

@@ -1,0 +1,228 @@
+//! Following pointers that a caller gave. All of it is here, but for handing on from the exported functions.
+//!
+//! What can be seen is looked at: null, misaligned, longer than memory can be. That a pointer points to what its
+//! function asks for is the caller's promise; there is no way to look at that.
+
+use std::ffi::{CStr, c_char};
+use std::mem::size_of;
+
+use crate::MorecStatus;
+use crate::status::Error;
+
+/// A struct may be so many bytes longer than this release's at most; more than that is not a size.
+const LONGEST_STRUCT: usize = 1024;
+
+/// A struct whose first field is `struct_size`, which says how much of it the caller knows.
+///
+/// # Safety
+/// `repr(C)`, the first field a `usize`, every bit pattern a value (numbers and pointers only).
+pub(crate) unsafe trait Versioned: Copy {
+    /// Its name in C.
+    const NAME: &'static str;
+    /// Its size in the first release that had it. When a field is added at its end: `offset_of!(Self, that_field)`.
+    const FIRST_SIZE: usize;
+}
+
+fn look<T>(pointer: *const T, what: &str) -> Result<(), Error> {
+    if pointer.is_null() {
+        return Err(Error::new(MorecStatus::NullPointer, format!("{what} is null")));
+    }
+    if !pointer.is_aligned() {
+        return Err(Error::invalid(format!("{what} is not aligned to {} bytes", align_of::<T>())));
+    }
+    Ok(())
+}
+
+/// The text at `pointer`.
+///
+/// # Safety
+/// If it is not null, it points to bytes that end with a zero and stay as they are for `'a`.
+pub(crate) unsafe fn text<'a>(pointer: *const c_char, what: &str) -> Result<&'a str, Error> {
+    look(pointer, what)?;
+    // SAFETY: not null; that it ends with a zero is the caller's promise.
+    let text = unsafe { CStr::from_ptr(pointer) };
+    text.to_str().map_err(|_| Error::invalid(format!("{what} is not UTF-8")))
+}
+
+/// The `len` values at `pointer`.
+///
+/// # Safety
+/// If it is not null, it points to `len` values that stay as they are for `'a`. Any bit pattern must be a `T`.
+pub(crate) unsafe fn values<'a, T: Copy>(
+    pointer: *const T,
+    len: usize,
+    what: &str,
+) -> Result<&'a [T], Error> {
+    look(pointer, what)?;
+    if len.checked_mul(size_of::<T>()).is_none_or(|bytes| bytes > isize::MAX as usize) {
+        return Err(Error::invalid(format!("{what}: {len} values do not fit into memory")));
+    }
+    // SAFETY: not null, aligned, no longer than an object can be; the rest is the caller's promise.
+    Ok(unsafe { std::slice::from_raw_parts(pointer, len) })
+}
+
+/// [`values`], or nothing if the pointer is null.
+///
+/// # Safety
+/// As of [`values`].
+pub(crate) unsafe fn values_if_any<'a, T: Copy>(
+    pointer: *const T,
+    len: usize,
+    what: &str,
+) -> Result<Option<&'a [T]>, Error> {
+    if pointer.is_null() {
+        return Ok(None);
+    }
+    // SAFETY: as promised to this function.
+    unsafe { values(pointer, len, what) }.map(Some)
+}
+
+/// Puts `value` where `pointer` points.
+///
+/// # Safety
+/// If it is not null, a `T` may be written there.
+pub(crate) unsafe fn put<T: Copy>(pointer: *mut T, value: T, what: &str) -> Result<(), Error> {
+    look(pointer, what)?;
+    // SAFETY: not null, aligned; that it may be written to is the caller's promise.
+    unsafe { pointer.write(value) };
+    Ok(())
+}
+
+/// Reads the value at `pointer`.
+///
+/// # Safety
+/// If it is not null, it points to a `T`. Any bit pattern must be a `T`.
+pub(crate) unsafe fn get<T: Copy>(pointer: *const T, what: &str) -> Result<T, Error> {
+    look(pointer, what)?;
+    // SAFETY: not null, aligned; that there is a value is the caller's promise.
+    Ok(unsafe { pointer.read() })
+}
+
+/// The size that a struct says it has, if it is one that can be.
+///
+/// # Safety
+/// If `pointer` is not null, it points to a `T` of any release.
+unsafe fn struct_size<T: Versioned>(pointer: *const T) -> Result<usize, Error> {
+    look(pointer, T::NAME)?;
+    // SAFETY: not null, aligned; the first field of every release is its size.
+    let size = unsafe { pointer.cast::<usize>().read() };
+    if (T::FIRST_SIZE..=LONGEST_STRUCT).contains(&size) {
+        return Ok(size);
+    }
+    let text = format!("{}: struct_size is {size}; set it to sizeof({0})", T::NAME);
+    Err(Error::new(MorecStatus::StructSize, text))
+}
+
+/// Reads a struct of any release: what an older one lacks is 0, what a newer one has beyond this must be 0.
+///
+/// # Safety
+/// If `pointer` is not null, it points to as many bytes as its first field says.
+pub(crate) unsafe fn read_struct<T: Versioned>(pointer: *const T) -> Result<T, Error> {
+    // SAFETY: as promised to this function.
+    let size = unsafe { struct_size(pointer) }?;
+    // SAFETY: `size` bytes are there, by the caller's promise.
+    let bytes = unsafe { std::slice::from_raw_parts(pointer.cast::<u8>(), size) };
+    let known = size.min(size_of::<T>());
+    if bytes[known..].iter().any(|byte| *byte != 0) {
+        let text = format!("{} has fields set that this release does not know", T::NAME);
+        return Err(Error::new(MorecStatus::StructSize, text));
+    }
+    let mut value = std::mem::MaybeUninit::<T>::zeroed();
+    // SAFETY: `known` bytes are there to read and to write, in different places.
+    unsafe { std::ptr::copy_nonoverlapping(bytes.as_ptr(), value.as_mut_ptr().cast::<u8>(), known) };
+    // SAFETY: every bit pattern is a value, says the trait.
+    Ok(unsafe { value.assume_init() })
+}
+
+/// Writes as much of `value` as the caller's struct has room for, and leaves its `struct_size` as it is.
+///
+/// # Safety
+/// If `pointer` is not null, as many bytes as its first field says may be written there.
+pub(crate) unsafe fn write_struct<T: Versioned>(pointer: *mut T, value: &T) -> Result<(), Error> {
+    // SAFETY: as promised to this function.
+    let size = unsafe { struct_size(pointer.cast_const()) }?;
+    let (from, known) = (size_of::<usize>(), size.min(size_of::<T>()));
+    // SAFETY: both have `known` bytes, and a value of ours is nowhere in the caller's.
+    unsafe {
+        let source = std::ptr::from_ref(value).cast::<u8>().add(from);
+        std::ptr::copy_nonoverlapping(source, pointer.cast::<u8>().add(from), known - from);
+    }
+    Ok(())
+}
+
+/// Room for `capacity` structs of `size` bytes each, as the caller's release knows them.
+pub(crate) struct Places<T> {
+    first: *mut u8,
+    size: usize,
+    capacity: usize,
+    of: std::marker::PhantomData<T>,
+}
+
+impl<T: Copy> Places<T> {
+    /// Looks at what can be seen of them; `first_size` is the struct's size in the first release that had it.
+    ///
+    /// # Safety
+    /// If it is not null, `capacity` times `size` bytes may be written to `pointer` as long as this lives.
+    pub(crate) unsafe fn new(
+        pointer: *mut T,
+        size: usize,
+        capacity: usize,
+        first_size: usize,
+        what: &str,
+    ) -> Result<Self, Error> {
+        if capacity > 0 {
+            look(pointer.cast_const(), what)?;
+        }
+        if !(first_size..=LONGEST_STRUCT).contains(&size) || !size.is_multiple_of(align_of::<T>()) {
+            let text = format!(
+                "{what}: the size of one is given as {size}, in this release it is {}",
+                size_of::<T>()
+            );
+            return Err(Error::new(MorecStatus::StructSize, text));
+        }
+        if size.checked_mul(capacity).is_none_or(|bytes| bytes > isize::MAX as usize) {
+            return Err(Error::invalid(format!("{what}: {capacity} do not fit into memory")));
+        }
+        Ok(Self { first: pointer.cast(), size, capacity, of: std::marker::PhantomData })
+    }
+
+    /// How many there are.
+    pub(crate) fn capacity(&self) -> usize {
+        self.capacity
+    }
+
+    /// Puts `value` in place `index`, as much of it as there is room for; what the caller's release has beyond this
+    /// becomes 0. Nothing happens beyond the last place.
+    pub(crate) fn put(&mut self, index: usize, value: &T) {
+        if index >= self.capacity {
+            return;
+        }
+        let known = self.size.min(size_of::<T>());
+        // SAFETY: the place is inside what may be written, says `new`; `known` is no longer than either.
+        unsafe {
+            let place = self.first.add(index * self.size);
+            std::ptr::copy_nonoverlapping(std::ptr::from_ref(value).cast::<u8>(), place, known);
+            place.add(known).write_bytes(0, self.size - known);
+        }
+    }
+}
+
+/// Writes `text` with a zero at its end into `size` bytes at `buffer`; if there is no room for all of it, the
+/// characters that fit, and `false`.
+///
+/// # Safety
+/// If it is not null, `size` bytes may be written to `buffer`.
+pub(crate) unsafe fn write_text(buffer: *mut c_char, size: usize, text: &str) -> Result<bool, Error> {
+    if size == 0 {
+        return Ok(false);
+    }
+    look(buffer.cast_const(), "the buffer")?;
+    let room = text.len().min(size - 1);
+    let fits = (0..=room).rev().find(|&end| text.is_char_boundary(end)).unwrap_or(0);
+    // SAFETY: `fits` + 1 is at most `size`, and `size` bytes may be written, by the caller's promise.
+    unsafe {
+        std::ptr::copy_nonoverlapping(text.as_ptr(), buffer.cast::<u8>(), fits);
+        buffer.add(fits).write(0);
+    }
+    Ok(fits == text.len())
+}

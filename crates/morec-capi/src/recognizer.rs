@@ -1,0 +1,230 @@
+//! Recognisers: made of an index, fed with frames, asked for events.
+
+use morec::live::EventOptions;
+use morec::roles::Role;
+
+use crate::axes::Convention;
+use crate::event::MorecEvent;
+use crate::frame::{Given, MorecFrame};
+use crate::handles::{self, MorecIndex, MorecRecognizer};
+use crate::memory::{self, Places, Versioned};
+use crate::skeleton::{self, MorecSkeleton};
+use crate::status::{Error, MorecStatus, guard};
+use crate::stream::{Stream, StreamOptions};
+use crate::words;
+
+/// Say what seems to be under way, too: starts, updates and cancellations beside the ends.
+pub const MOREC_EARLY_EVENTS: u32 = 1;
+
+/// How a recogniser is made.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct MorecOptions {
+    /// Set to `sizeof(MorecOptions)`.
+    pub struct_size: usize,
+    /// A `MorecHandedness`; must be said.
+    pub handedness: i32,
+    /// A `MorecUpAxis`.
+    pub up_axis: i32,
+    /// The stream's joints; null for a stream of roles, whose joint `r` plays `MorecRole` `r`.
+    pub skeleton: *const MorecSkeleton,
+    /// For a stream of roles: bit `r` for each `MorecRole` `r` that it shows; 0 for all.
+    pub roles: u32,
+    /// `MOREC_EARLY_EVENTS` or 0.
+    pub flags: u32,
+    /// Events that can wait to be polled, 128 to 1048576; 0 for 256. Memory is taken for as many.
+    pub event_capacity: usize,
+    /// A motion of the same class that ends less than this after the one before it is not told, but counted. 0: every
+    /// motion is told once.
+    pub refractory_secs: f64,
+}
+
+// SAFETY: repr(C), begins with its size, numbers and pointers only.
+unsafe impl Versioned for MorecOptions {
+    const NAME: &'static str = "MorecOptions";
+    const FIRST_SIZE: usize = size_of::<Self>();
+}
+
+/// What a recogniser has done since it was made or reset.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MorecStats {
+    /// Set to `sizeof(MorecStats)` before the call.
+    pub struct_size: usize,
+    /// Frames taken.
+    pub frames: u64,
+    /// Frames refused because events waited to be polled (`MOREC_STATUS_QUEUE_FULL`).
+    pub refused_frames: u64,
+    /// Events said, polled or waiting.
+    pub events: u64,
+    /// Events for which there was no room in the queue. Frames are refused before that happens: 0.
+    pub lost_events: u64,
+    /// Motions not told because of `refractory_secs`.
+    pub suppressed_motions: u64,
+    /// From the end of a motion to its event at the earliest, on the clock of the frames.
+    pub latency_secs: f64,
+}
+
+// SAFETY: repr(C), begins with its size, numbers only.
+unsafe impl Versioned for MorecStats {
+    const NAME: &'static str = "MorecStats";
+    const FIRST_SIZE: usize = size_of::<Self>();
+}
+
+/// Makes a recogniser of one performer's motions and puts its handle into `*recognizer`, to be given back with
+/// `morec_recognizer_destroy`. Takes memory; may take some milliseconds.
+///
+/// # Safety
+/// `options` is null or as its fields say; `recognizer` is null or may be written to.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn morec_recognizer_create(
+    index: *const MorecIndex,
+    options: *const MorecOptions,
+    recognizer: *mut *mut MorecRecognizer,
+) -> MorecStatus {
+    guard(|| {
+        // SAFETY: as promised to this function.
+        unsafe { memory::put(recognizer, std::ptr::null_mut(), "recognizer") }?;
+        let index = handles::find(index)?;
+        // SAFETY: as promised to this function.
+        let c = unsafe { memory::read_struct(options) }?;
+        let options = stream_options(&c)?;
+        let declared = if c.skeleton.is_null() {
+            skeleton::of_roles(if c.roles == 0 { (1 << Role::COUNT) - 1 } else { c.roles })?
+        } else if c.roles == 0 {
+            // SAFETY: as promised to this function.
+            unsafe { skeleton::read(c.skeleton, &options.convention, &index) }?
+        } else {
+            return Err(Error::invalid("roles is for streams of roles; a skeleton says its own"));
+        };
+        let stream = Stream::new(&index, declared, &options)?;
+        // SAFETY: as promised to this function.
+        unsafe { memory::put(recognizer, handles::give(stream)?, "recognizer") }
+    })
+}
+
+fn stream_options(c: &MorecOptions) -> Result<StreamOptions, Error> {
+    if c.flags & !MOREC_EARLY_EVENTS != 0 {
+        return Err(Error::invalid(format!("flags is {:#x}, which this release does not know", c.flags)));
+    }
+    if !(c.refractory_secs.is_finite() && c.refractory_secs >= 0.0) {
+        return Err(Error::invalid(format!("refractory_secs is {}, expected 0 or more", c.refractory_secs)));
+    }
+    Ok(StreamOptions {
+        convention: Convention::new(c.handedness, c.up_axis)?,
+        events: EventOptions { early: c.flags & MOREC_EARLY_EVENTS != 0, refractory_secs: c.refractory_secs },
+        event_capacity: c.event_capacity,
+    })
+}
+
+/// Gives a recogniser back. Events that wait are gone. A call that is under way on another thread ends well.
+#[unsafe(no_mangle)]
+pub extern "C" fn morec_recognizer_destroy(recognizer: *mut MorecRecognizer) -> MorecStatus {
+    guard(|| handles::take_back(recognizer.cast_const()))
+}
+
+/// Puts the joint that plays the `MorecRole` `role` into `*joint`, or −1 if none does.
+///
+/// # Safety
+/// `joint` is null or may be written to.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn morec_recognizer_joint_of_role(
+    recognizer: *const MorecRecognizer,
+    role: i32,
+    joint: *mut i32,
+) -> MorecStatus {
+    guard(|| {
+        let stream = handles::find(recognizer)?;
+        let role = words::role(role).ok_or_else(|| Error::invalid(format!("role {role} is none")))?;
+        let number = stream.declared().rig.roles.joint(role).map_or(-1, |joint| joint as i32);
+        // SAFETY: as promised to this function.
+        unsafe { memory::put(joint, number, "joint") }
+    })
+}
+
+/// Takes a frame. What it settles waits to be polled. Takes no memory after the first frame, unless it fails.
+///
+/// Refused with `MOREC_STATUS_QUEUE_FULL` while so many events wait that there might not be room for what it settles:
+/// nothing is ever lost.
+///
+/// # Safety
+/// `frame` is null or as its fields say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn morec_recognizer_push(
+    recognizer: *mut MorecRecognizer,
+    frame: *const MorecFrame,
+) -> MorecStatus {
+    guard(|| {
+        let stream = handles::find(recognizer)?;
+        // SAFETY: as promised to this function; the frame is not used after it.
+        let given = unsafe { Given::read(frame, stream.declared().rig.skeleton.len()) }?;
+        stream.push(&given)
+    })
+}
+
+/// Moves events that wait into the `capacity` places at `events`, the oldest first, and says in `*count` how many.
+///
+/// `event_size` is `sizeof(MorecEvent)`: how far the places lie apart. If `*count` is `capacity`, more may wait. With a
+/// `capacity` of 0, `events` may be null, and the status is `MOREC_STATUS_BUFFER_TOO_SMALL` if any wait.
+///
+/// # Safety
+/// `events` is null or may be written to for `capacity` times `event_size` bytes; `count` is null or may be written to.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn morec_recognizer_poll(
+    recognizer: *mut MorecRecognizer,
+    events: *mut MorecEvent,
+    event_size: usize,
+    capacity: usize,
+    count: *mut usize,
+) -> MorecStatus {
+    guard(|| {
+        // SAFETY: as promised to this function.
+        unsafe { memory::put(count, 0, "count") }?;
+        let stream = handles::find(recognizer)?;
+        // SAFETY: as promised to this function.
+        let mut places =
+            unsafe { Places::new(events, event_size, capacity, MorecEvent::FIRST_SIZE, "events") }?;
+        let taken = stream.poll(places.capacity(), |at, event| places.put(at, &MorecEvent::from(event)))?;
+        // SAFETY: as promised to this function.
+        unsafe { memory::put(count, taken, "count") }
+    })
+}
+
+/// Ends the stream: what its last moments hold waits to be polled. The next frame begins a new stream.
+///
+/// Refused with `MOREC_STATUS_QUEUE_FULL` as a frame would be.
+#[unsafe(no_mangle)]
+pub extern "C" fn morec_recognizer_finish(recognizer: *mut MorecRecognizer) -> MorecStatus {
+    guard(|| handles::find(recognizer.cast_const())?.finish())
+}
+
+/// Makes the recogniser as it was when it was made: the stream so far, events that wait, and counts are forgotten.
+#[unsafe(no_mangle)]
+pub extern "C" fn morec_recognizer_reset(recognizer: *mut MorecRecognizer) -> MorecStatus {
+    guard(|| handles::find(recognizer.cast_const())?.reset())
+}
+
+/// Fills in `*stats`, whose `struct_size` must be set. May be called from any thread at any time.
+///
+/// # Safety
+/// `stats` is null or points to a struct of the size it says.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn morec_recognizer_stats(
+    recognizer: *const MorecRecognizer,
+    stats: *mut MorecStats,
+) -> MorecStatus {
+    guard(|| {
+        let status = handles::find(recognizer)?.status();
+        let known = MorecStats {
+            struct_size: 0,
+            frames: status.frames,
+            refused_frames: status.refused_frames,
+            events: status.events,
+            lost_events: status.lost_events,
+            suppressed_motions: status.suppressed,
+            latency_secs: status.latency_secs,
+        };
+        // SAFETY: as promised to this function.
+        unsafe { memory::write_struct(stats, &known) }
+    })
+}

@@ -1,0 +1,196 @@
+//! What a caller says about its skeleton.
+
+use std::ffi::c_char;
+
+use morec::clip::{Joint, Skeleton};
+use morec::features::{BoneSet, KeyPose};
+use morec::index::MotionIndex;
+use morec::kinematics::WorldPose;
+use morec::live::Rig;
+use morec::math::{Quat, Vec3};
+use morec::roles::{Role, RoleMap};
+
+use crate::axes::Convention;
+use crate::memory::{self, Versioned};
+use crate::status::Error;
+use crate::words;
+
+/// The joints of a stream's skeleton. Everything is copied; nothing is needed after the call it is given to.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct MorecSkeleton {
+    /// Set to `sizeof(MorecSkeleton)`.
+    pub struct_size: usize,
+    /// Number of joints, 1 to 4096.
+    pub joint_count: usize,
+    /// `joint_count` numbers: the joint's parent, which must come before it, or −1 for a root.
+    pub parents: *const i32,
+    /// `joint_count` names, UTF-8, by which roles are found if they are not given; or null.
+    pub names: *const *const c_char,
+    /// `joint_count` times x, y, z: where the joint is in its parent's frame; or null if every frame says it.
+    pub offsets: *const f64,
+    /// `joint_count` times a `MorecRole`, `MOREC_ROLE_NONE` for most; or null: found by the tree, then the names.
+    pub roles: *const i32,
+}
+
+// SAFETY: repr(C), begins with its size, numbers and pointers only.
+unsafe impl Versioned for MorecSkeleton {
+    const NAME: &'static str = "MorecSkeleton";
+    const FIRST_SIZE: usize = size_of::<Self>();
+}
+
+/// A skeleton as recognition takes it, and what was said of it.
+#[derive(Debug)]
+pub(crate) struct Declared {
+    /// Joints and roles; offsets right-handed with Y up.
+    pub(crate) rig: Rig,
+    /// Bones that its frames can be expected to show.
+    pub(crate) bones: BoneSet,
+    /// Whether there are offsets: else every frame must say where the joints are.
+    pub(crate) has_offsets: bool,
+}
+
+/// For a stream that shows roles: joint `r` plays role `r`. `mask` has bit `r` for each that it shows.
+pub(crate) fn of_roles(mask: u32) -> Result<Declared, Error> {
+    let mut rig = Rig::of_roles();
+    if mask >> Role::COUNT != 0 {
+        return Err(Error::invalid(format!(
+            "roles is {mask:#x}, which has bits beyond the {} roles",
+            Role::COUNT
+        )));
+    }
+    for role in Role::ALL.into_iter().filter(|role| mask >> role.index() & 1 == 0) {
+        rig.roles.set(role, None);
+    }
+    Ok(Declared { bones: BoneSet::of_roles(&rig.roles), rig, has_offsets: false })
+}
+
+/// Reads a skeleton.
+///
+/// # Safety
+/// `skeleton` is null or as its fields say.
+pub(crate) unsafe fn read(
+    skeleton: *const MorecSkeleton,
+    convention: &Convention,
+    index: &MotionIndex,
+) -> Result<Declared, Error> {
+    // SAFETY: as promised to this function.
+    let c = unsafe { memory::read_struct(skeleton) }?;
+    let most = morec::formats::Limits::default().joints;
+    if !(1..=most).contains(&c.joint_count) {
+        return Err(Error::invalid(format!("joint_count is {}, expected 1 to {most}", c.joint_count)));
+    }
+    // SAFETY: as promised to this function.
+    let parents = unsafe { memory::values(c.parents, c.joint_count, "parents") }?;
+    // SAFETY: as promised to this function.
+    let offsets = unsafe { memory::values_if_any(c.offsets, 3 * c.joint_count, "offsets") }?;
+    // SAFETY: as promised to this function.
+    let names = unsafe { names(c.names, c.joint_count) }?;
+    // SAFETY: as promised to this function.
+    let roles = unsafe { memory::values_if_any(c.roles, c.joint_count, "roles") }?;
+    let skeleton = joints(parents, &names, offsets, convention)?;
+    let roles = match roles {
+        Some(roles) => given_roles(roles)?,
+        None => {
+            let mut found = RoleMap::find(&skeleton);
+            index.complete_roles(&mut found, &skeleton);
+            found
+        }
+    };
+    let has_offsets = offsets.is_some();
+    let mut bones = BoneSet::of_roles(&roles);
+    if has_offsets {
+        // Joints in one place are no bone, and will not become one.
+        bones = bones.and(BoneSet::of_pose(&rest(&skeleton, &roles)));
+    }
+    Ok(Declared { rig: Rig { skeleton, roles }, bones, has_offsets })
+}
+
+/// # Safety
+/// `names` is null or points to `count` texts that end with a zero.
+unsafe fn names(names: *const *const c_char, count: usize) -> Result<Vec<String>, Error> {
+    // SAFETY: as promised to this function.
+    let Some(names) = unsafe { memory::values_if_any(names, count, "names") }? else {
+        return Ok(vec![String::new(); count]);
+    };
+    let name = |(joint, name): (usize, &*const c_char)| {
+        // SAFETY: as promised to this function.
+        unsafe { memory::text(*name, &format!("the name of joint {joint}")) }.map(str::to_owned)
+    };
+    names.iter().enumerate().map(name).collect()
+}
+
+fn joints(
+    parents: &[i32],
+    names: &[String],
+    offsets: Option<&[f64]>,
+    convention: &Convention,
+) -> Result<Skeleton, Error> {
+    let mut joints = Vec::with_capacity(parents.len());
+    for (j, (&parent, name)) in parents.iter().zip(names).enumerate() {
+        let parent = match usize::try_from(parent) {
+            Ok(parent) => Some(parent),
+            Err(_) if parent == -1 => None,
+            Err(_) => {
+                let text = format!("the parent of joint {j} is {parent}, expected a joint or -1");
+                return Err(Error::invalid(text));
+            }
+        };
+        let offset = offsets.map_or_else(Vec3::zeros, |o| Vec3::new(o[3 * j], o[3 * j + 1], o[3 * j + 2]));
+        if !is_place(&offset) {
+            return Err(Error::invalid(format!("the offset of joint {j} is not a place")));
+        }
+        let offset = convention.position(offset, parent.is_none());
+        joints.push(Joint { name: name.clone(), parent, offset, tip: None });
+    }
+    Skeleton::new(joints).map_err(|error| Error::invalid(error.to_string()))
+}
+
+/// Farther away than this is nobody; and lengths of such numbers can still be squared.
+const FARTHEST: f64 = 1e9;
+
+/// Whether it is where something can be.
+pub(crate) fn is_place(p: &Vec3) -> bool {
+    p.iter().all(|c| c.abs() <= FARTHEST)
+}
+
+fn given_roles(roles: &[i32]) -> Result<RoleMap, Error> {
+    let mut map = RoleMap::default();
+    for (joint, &number) in roles.iter().enumerate() {
+        if number == words::MorecRole::None as i32 {
+            continue;
+        }
+        let role = words::role(number)
+            .ok_or_else(|| Error::invalid(format!("the role of joint {joint} is {number}, which is none")))?;
+        if let Some(other) = map.joint(role) {
+            return Err(Error::invalid(format!("joints {other} and {joint} are both {role}")));
+        }
+        map.set(role, Some(joint));
+    }
+    Ok(map)
+}
+
+/// Where the role joints are if nothing is turned.
+fn rest(skeleton: &Skeleton, roles: &RoleMap) -> KeyPose {
+    let mut pose = WorldPose::default();
+    for joint in skeleton.joints() {
+        pose.add(joint.parent, joint.offset, Quat::identity());
+    }
+    KeyPose::of(&pose, roles)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_role_has_one_joint_and_a_parent_comes_first() {
+        assert!(given_roles(&[0, -1, 0]).is_err());
+        assert!(given_roles(&[18]).is_err());
+        let convention = Convention::new(1, 0).unwrap();
+        let names = vec![String::new(); 2];
+        assert!(joints(&[1, -1], &names, None, &convention).is_err());
+        assert!(joints(&[-1, -2], &names, None, &convention).is_err());
+        assert!(joints(&[-1, 0], &names, Some(&[0.0, 0.0, 0.0, f64::NAN, 0.0, 0.0]), &convention).is_err());
+    }
+}

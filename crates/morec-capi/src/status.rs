@@ -1,0 +1,173 @@
+//! What a call says of itself: a code, and a text for people.
+
+use std::borrow::Cow;
+use std::cell::RefCell;
+use std::ffi::{CStr, CString, c_char};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// What became of a call. Numbers stay what they are; later versions may add some.
+#[repr(i32)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MorecStatus {
+    /// Done.
+    Ok = 0,
+    /// A pointer that must point to something is null.
+    NullPointer = 1,
+    /// A handle that is none: never was one, of another kind, or destroyed.
+    BadHandle = 2,
+    /// A value that cannot be; nothing was changed.
+    InvalidValue = 3,
+    /// There is not enough room for the answer; what it takes is said where the function says so.
+    BufferTooSmall = 4,
+    /// Another thread is using this recogniser just now; nothing was changed.
+    Busy = 5,
+    /// Events wait to be polled, and there is no room for more; the frame was not taken. Poll, and push it again.
+    QueueFull = 6,
+    /// A file cannot be read.
+    File = 7,
+    /// Bytes are not an index that this release reads.
+    BadIndex = 8,
+    /// The index and what the stream shows of a body have no bone in common.
+    NothingInCommon = 9,
+    /// Not now: another call must come first.
+    WrongOrder = 10,
+    /// A struct is smaller than its first version, or has fields set that this release does not know.
+    StructSize = 11,
+    /// A fault in morec itself. The handle should be destroyed; please report it.
+    Internal = 12,
+}
+
+impl MorecStatus {
+    fn text(self) -> &'static CStr {
+        match self {
+            MorecStatus::Ok => c"done",
+            MorecStatus::NullPointer => c"a pointer is null",
+            MorecStatus::BadHandle => c"not a handle, or one that was destroyed",
+            MorecStatus::InvalidValue => c"a value that cannot be",
+            MorecStatus::BufferTooSmall => c"the buffer is too small",
+            MorecStatus::Busy => c"another thread is using this recogniser",
+            MorecStatus::QueueFull => c"events wait to be polled, and there is no room for more",
+            MorecStatus::File => c"a file cannot be read",
+            MorecStatus::BadIndex => c"not an index that this release reads",
+            MorecStatus::NothingInCommon => c"the stream shows none of the index's bones",
+            MorecStatus::WrongOrder => c"another call must come first",
+            MorecStatus::StructSize => c"a struct of the wrong size",
+            MorecStatus::Internal => c"a fault in morec itself",
+        }
+    }
+
+    fn of_number(number: i32) -> Option<Self> {
+        use MorecStatus::*;
+        let all = [
+            Ok,
+            NullPointer,
+            BadHandle,
+            InvalidValue,
+            BufferTooSmall,
+            Busy,
+            QueueFull,
+            File,
+            BadIndex,
+            NothingInCommon,
+            WrongOrder,
+            StructSize,
+            Internal,
+        ];
+        all.into_iter().find(|status| *status as i32 == number)
+    }
+}
+
+/// A code and, where there is more to say than the code does, a text.
+#[derive(Debug)]
+pub(crate) struct Error {
+    status: MorecStatus,
+    text: Cow<'static, CStr>,
+}
+
+impl Error {
+    /// With a text for people: what was expected, what was found.
+    pub(crate) fn new(status: MorecStatus, text: impl Into<String>) -> Self {
+        // A text from a caller's own strings may hold anything but should not end early.
+        let text: String = text.into().chars().filter(|c| *c != '\0').collect();
+        Self { status, text: CString::new(text).map_or(Cow::Borrowed(status.text()), Cow::Owned) }
+    }
+
+    /// A value that cannot be.
+    pub(crate) fn invalid(text: impl Into<String>) -> Self {
+        Self::new(MorecStatus::InvalidValue, text)
+    }
+}
+
+impl From<MorecStatus> for Error {
+    /// Without memory: for what happens on the frame path.
+    fn from(status: MorecStatus) -> Self {
+        Self { status, text: Cow::Borrowed(status.text()) }
+    }
+}
+
+thread_local! {
+    static LAST: RefCell<Cow<'static, CStr>> = const { RefCell::new(Cow::Borrowed(c"")) };
+}
+
+/// Runs a call so that nothing but a status comes out of it.
+pub(crate) fn guard(call: impl FnOnce() -> Result<(), Error>) -> MorecStatus {
+    let caught = catch_unwind(AssertUnwindSafe(call));
+    match caught.unwrap_or_else(|_| Err(MorecStatus::Internal.into())) {
+        Ok(()) => MorecStatus::Ok,
+        Err(error) => {
+            // A thread that is ending has no last error any more; the status is there all the same.
+            let _ = LAST.try_with(|last| {
+                if let Ok(mut last) = last.try_borrow_mut() {
+                    *last = error.text;
+                }
+            });
+            error.status
+        }
+    }
+}
+
+/// What went wrong in the last call on this thread that did not succeed, in a sentence; empty if none has failed yet.
+/// UTF-8. The text stays where it is until the next call on this thread that does not succeed. Never null.
+#[unsafe(no_mangle)]
+pub extern "C" fn morec_last_error() -> *const c_char {
+    let text = LAST.try_with(|last| last.try_borrow().map_or(c"".as_ptr(), |text| text.as_ptr()));
+    text.unwrap_or(c"".as_ptr())
+}
+
+/// What a status means, in a few words; null for a number that is no status. The text stays for ever.
+#[unsafe(no_mangle)]
+pub extern "C" fn morec_status_text(status: i32) -> *const c_char {
+    MorecStatus::of_number(status).map_or(std::ptr::null(), |status| status.text().as_ptr())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn last() -> String {
+        // SAFETY: a text of ours, with a zero at its end.
+        unsafe { CStr::from_ptr(morec_last_error()) }.to_string_lossy().into_owned()
+    }
+
+    #[test]
+    fn no_panic_comes_out() {
+        assert_eq!(guard(|| panic!("on purpose")), MorecStatus::Internal);
+        assert_eq!(last(), "a fault in morec itself");
+    }
+
+    #[test]
+    fn the_last_error_is_each_threads_own_and_outlasts_what_succeeds() {
+        assert_eq!(guard(|| Err(Error::invalid("too \0 many"))), MorecStatus::InvalidValue);
+        assert_eq!(guard(|| Ok(())), MorecStatus::Ok);
+        assert_eq!(last(), "too  many");
+        assert_eq!(std::thread::spawn(last).join().unwrap(), "");
+    }
+
+    #[test]
+    fn every_status_has_a_text() {
+        for number in 0..=12 {
+            assert!(!morec_status_text(number).is_null());
+        }
+        assert!(morec_status_text(13).is_null() && morec_status_text(-1).is_null());
+    }
+}

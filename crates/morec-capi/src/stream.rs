@@ -1,0 +1,243 @@
+//! One performer's stream behind a handle: what pushing and polling do once every pointer was followed.
+
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
+
+use morec::index::MotionIndex;
+use morec::live::{Actor, Event, EventOptions, Frame, Performer, Recognizer, Rig};
+
+use crate::MorecStatus;
+use crate::axes::Convention;
+use crate::frame::Given;
+use crate::skeleton::Declared;
+use crate::status::Error;
+
+/// Events that one frame can settle at most, with room to spare; no frame is taken with less.
+const ROOM: usize = 96;
+/// Events that can wait, if nobody says.
+const USUAL_EVENTS: usize = 256;
+/// The fewest, and the most.
+const EVENTS: std::ops::RangeInclusive<usize> = 128..=1 << 20;
+
+/// What can be chosen about a stream.
+#[derive(Debug, Clone)]
+pub(crate) struct StreamOptions {
+    pub(crate) convention: Convention,
+    pub(crate) events: EventOptions,
+    /// Events that can wait to be polled; 0 for the usual number.
+    pub(crate) event_capacity: usize,
+}
+
+/// A recogniser with a queue of events behind it. One thread may push while another polls.
+pub(crate) struct Stream {
+    declared: Declared,
+    convention: Convention,
+    input: Mutex<Input>,
+    output: Mutex<rtrb::Consumer<Event>>,
+    counts: Counts,
+    latency_secs: f64,
+}
+
+struct Input {
+    performer: Performer,
+    /// For [`Performer`] to take at its next first frame.
+    ready: Option<Recognizer>,
+    /// As it was made.
+    new: Recognizer,
+    made: Made,
+    frame: Frame,
+    events: rtrb::Producer<Event>,
+    sequence: u64,
+}
+
+/// What another performer can be made of.
+struct Made {
+    index: Arc<MotionIndex>,
+    options: EventOptions,
+    rig: Arc<morec::live::Rig>,
+}
+
+impl Made {
+    fn performer(&self) -> Performer {
+        let mut performer = Performer::new(&self.index.model, Actor(0), &self.options);
+        performer.set_rig(&self.rig, &mut |_| {});
+        performer
+    }
+}
+
+#[derive(Debug, Default)]
+struct Counts {
+    frames: AtomicU64,
+    refused: AtomicU64,
+    events: AtomicU64,
+    lost: AtomicU64,
+    suppressed: AtomicU64,
+}
+
+/// How a stream stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct StreamStatus {
+    pub(crate) frames: u64,
+    pub(crate) refused_frames: u64,
+    pub(crate) events: u64,
+    pub(crate) lost_events: u64,
+    pub(crate) suppressed: u64,
+    pub(crate) latency_secs: f64,
+}
+
+impl Stream {
+    /// A stream of what `declared` shows.
+    pub(crate) fn new(
+        index: &Arc<MotionIndex>,
+        declared: Declared,
+        options: &StreamOptions,
+    ) -> Result<Self, Error> {
+        let capacity = match options.event_capacity {
+            0 => USUAL_EVENTS,
+            capacity if EVENTS.contains(&capacity) => capacity,
+            capacity => {
+                let text = format!("event_capacity is {capacity}, expected 0 or {EVENTS:?}");
+                return Err(Error::invalid(text));
+            }
+        };
+        // Made now and not at the first frame, so that what does not fit is said now, and no bone is given up because
+        // the first frame happens not to show it.
+        if index.model.needs_rotations() && declared.rig == Rig::of_roles() {
+            let text = "the index looks at how joints are turned: declare a skeleton and give rotations";
+            return Err(Error::new(MorecStatus::NothingInCommon, text.to_owned()));
+        }
+        let new = Recognizer::new(&index.model, declared.bones)
+            .map_err(|error| Error::new(MorecStatus::NothingInCommon, error.to_string()))?;
+        let made = Made {
+            index: index.clone(),
+            options: options.events.clone(),
+            rig: Arc::new(declared.rig.clone()),
+        };
+        let (producer, consumer) = rtrb::RingBuffer::new(capacity);
+        let input = Input {
+            performer: made.performer(),
+            ready: Some(new.clone()),
+            new,
+            made,
+            frame: Frame::default(),
+            events: producer,
+            sequence: 0,
+        };
+        Ok(Self {
+            latency_secs: input.new.latency_secs(),
+            declared,
+            convention: options.convention,
+            input: Mutex::new(input),
+            output: Mutex::new(consumer),
+            counts: Counts::default(),
+        })
+    }
+
+    /// What it shows.
+    pub(crate) fn declared(&self) -> &Declared {
+        &self.declared
+    }
+
+    /// Takes a frame; its events go to the queue.
+    pub(crate) fn push(&self, given: &Given) -> Result<(), Error> {
+        let input = &mut *turn(&self.input)?;
+        self.make_room(input)?;
+        given.pose(&self.declared, &self.convention, &mut input.frame)?;
+        let mut out = Out { events: &mut input.events, sequence: &mut input.sequence, counts: &self.counts };
+        let ready = &mut input.ready;
+        input.performer.push(&input.frame, &mut |_| ready.take(), &mut |event| out.event(event));
+        self.counts.frames.fetch_add(1, Relaxed);
+        self.counts.suppressed.store(input.performer.suppressed(), Relaxed);
+        Ok(())
+    }
+
+    /// Ends the stream: its last events go to the queue. The next frame begins a new one.
+    pub(crate) fn finish(&self) -> Result<(), Error> {
+        let input = &mut *turn(&self.input)?;
+        self.make_room(input)?;
+        let mut out = Out { events: &mut input.events, sequence: &mut input.sequence, counts: &self.counts };
+        input.performer.finish(&mut |event| out.event(event));
+        self.counts.suppressed.store(input.performer.suppressed(), Relaxed);
+        Ok(())
+    }
+
+    /// Forgets everything, waiting events too.
+    pub(crate) fn reset(&self) -> Result<(), Error> {
+        let input = &mut *turn(&self.input)?;
+        let output = &mut *turn(&self.output)?;
+        while output.pop().is_ok() {}
+        input.performer = input.made.performer();
+        input.ready = Some(input.new.clone());
+        input.sequence = 0;
+        let counts = &self.counts;
+        for count in [&counts.frames, &counts.refused, &counts.events, &counts.lost, &counts.suppressed] {
+            count.store(0, Relaxed);
+        }
+        Ok(())
+    }
+
+    /// Hands events to `take` in their order, at most `most`; says how many.
+    pub(crate) fn poll(&self, most: usize, mut take: impl FnMut(usize, &Event)) -> Result<usize, Error> {
+        let output = &mut *turn(&self.output)?;
+        if most == 0 && !output.is_empty() {
+            return Err(MorecStatus::BufferTooSmall.into());
+        }
+        let mut taken = 0;
+        while taken < most {
+            let Ok(event) = output.pop() else { break };
+            take(taken, &event);
+            taken += 1;
+        }
+        Ok(taken)
+    }
+
+    /// How it stands.
+    pub(crate) fn status(&self) -> StreamStatus {
+        let counts = &self.counts;
+        StreamStatus {
+            frames: counts.frames.load(Relaxed),
+            refused_frames: counts.refused.load(Relaxed),
+            events: counts.events.load(Relaxed),
+            lost_events: counts.lost.load(Relaxed),
+            suppressed: counts.suppressed.load(Relaxed),
+            latency_secs: self.latency_secs,
+        }
+    }
+
+    fn make_room(&self, input: &Input) -> Result<(), Error> {
+        if input.events.slots() >= ROOM {
+            return Ok(());
+        }
+        self.counts.refused.fetch_add(1, Relaxed);
+        Err(MorecStatus::QueueFull.into())
+    }
+}
+
+/// Where events go.
+struct Out<'a> {
+    events: &'a mut rtrb::Producer<Event>,
+    sequence: &'a mut u64,
+    counts: &'a Counts,
+}
+
+impl Out<'_> {
+    fn event(&mut self, mut event: Event) {
+        *self.sequence += 1;
+        event.sequence = *self.sequence;
+        self.counts.events.fetch_add(1, Relaxed);
+        // There is room, or the frame would not have been taken; if ever not, it is told.
+        if self.events.push(event).is_err() {
+            self.counts.lost.fetch_add(1, Relaxed);
+        }
+    }
+}
+
+/// This thread's turn, if no other thread has it. Never waits.
+fn turn<T>(of: &Mutex<T>) -> Result<MutexGuard<'_, T>, Error> {
+    match of.try_lock() {
+        Ok(guard) => Ok(guard),
+        Err(TryLockError::WouldBlock) => Err(MorecStatus::Busy.into()),
+        // A fault came in between, once; what is behind it cannot be trusted.
+        Err(TryLockError::Poisoned(_)) => Err(MorecStatus::Internal.into()),
+    }
+}

@@ -1,0 +1,109 @@
+//! Version, and the parts of the body by number and by name.
+
+use std::ffi::{CStr, c_char};
+
+use morec::roles::Role;
+
+use crate::memory;
+
+/// A part of the body, played by the joint at its near end: the thigh by the hip joint, the shin by the knee, the hand
+/// by the wrist. Torso is the first joint of the spine above the hips.
+#[repr(i32)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[allow(missing_docs)] // The names say it all.
+pub enum MorecRole {
+    /// No part that recognition knows.
+    None = -1,
+    Hips = 0,
+    LeftThigh = 1,
+    LeftShin = 2,
+    LeftFoot = 3,
+    RightThigh = 4,
+    RightShin = 5,
+    RightFoot = 6,
+    Torso = 7,
+    Neck = 8,
+    Head = 9,
+    LeftShoulder = 10,
+    LeftArm = 11,
+    LeftForearm = 12,
+    LeftHand = 13,
+    RightShoulder = 14,
+    RightArm = 15,
+    RightForearm = 16,
+    RightHand = 17,
+}
+
+/// Number of parts of the body; they are numbered from 0.
+pub const MOREC_ROLE_COUNT: u32 = 18;
+
+const _: () =
+    assert!(MOREC_ROLE_COUNT as usize == Role::COUNT && MorecRole::RightHand as usize + 1 == Role::COUNT);
+
+const NAMES: [&CStr; Role::COUNT] = [
+    c"hips",
+    c"left_thigh",
+    c"left_shin",
+    c"left_foot",
+    c"right_thigh",
+    c"right_shin",
+    c"right_foot",
+    c"torso",
+    c"neck",
+    c"head",
+    c"left_shoulder",
+    c"left_arm",
+    c"left_forearm",
+    c"left_hand",
+    c"right_shoulder",
+    c"right_arm",
+    c"right_forearm",
+    c"right_hand",
+];
+
+/// The role of this number, if it is one.
+pub(crate) fn role(number: i32) -> Option<Role> {
+    usize::try_from(number).ok().and_then(|index| Role::ALL.get(index).copied())
+}
+
+/// Version of the library, as in `0.1.0`. The text stays for ever.
+#[unsafe(no_mangle)]
+pub extern "C" fn morec_version() -> *const c_char {
+    const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), "\0");
+    VERSION.as_ptr().cast()
+}
+
+/// The name of a `MorecRole`, as in `left_forearm`; null for a number that is none. The text stays for ever.
+#[unsafe(no_mangle)]
+pub extern "C" fn morec_role_name(role: i32) -> *const c_char {
+    self::role(role).map_or(std::ptr::null(), |role| NAMES[role.index()].as_ptr())
+}
+
+/// The `MorecRole` of this name; `MOREC_ROLE_NONE` if there is none, or `name` is null.
+///
+/// # Safety
+/// `name` is null or ends with a zero.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn morec_role_from_name(name: *const c_char) -> i32 {
+    // SAFETY: as promised to this function.
+    let name = unsafe { memory::text(name, "name") };
+    let role = name.ok().and_then(Role::from_name);
+    role.map_or(MorecRole::None as i32, |role| role.index() as i32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn roles_have_the_numbers_and_names_of_the_library() {
+        for known in Role::ALL {
+            let number = known.index() as i32;
+            assert_eq!(role(number), Some(known));
+            assert_eq!(NAMES[known.index()].to_str(), Ok(known.name()));
+            // SAFETY: a text that ends with a zero.
+            assert_eq!(unsafe { morec_role_from_name(NAMES[known.index()].as_ptr()) }, number);
+        }
+        assert_eq!((role(-1), role(18), role(i32::MIN)), (None, None, None));
+    }
+}
