@@ -15,7 +15,7 @@ use crate::made;
 /// Lines as the examples print them.
 fn lines(found: &[Detection]) -> String {
     found.iter().fold(String::new(), |mut text, d| {
-        let class = &index().model.classes[d.class.index()].name;
+        let class = index().model.class_name(d.class);
         writeln!(text, "{class} {:.4} {:.4} {:.4}", d.start_secs, d.stop_secs, d.score).unwrap();
         text
     })

@@ -94,7 +94,7 @@ fn the_solution_is_what_the_recogniser_finds() {
         assert_eq!((segment.confidence, segment.number), (expected.score, number));
         assert_eq!(segment.stop_frame, (expected.stop_secs * 60.0).round() as u32);
         let name = unsafe { CStr::from_ptr(segment.class_name.as_ptr()) }.to_str().unwrap();
-        assert_eq!(name, kit::index().model.classes[expected.class.index()].name);
+        assert_eq!(name, kit::index().model.class_name(expected.class));
         assert_eq!(name.len(), segment.class_name_bytes as usize);
     }
     // It stays; of a part of it, the last are given.

@@ -25,10 +25,10 @@ fn facts_and_names_are_those_of_the_index() {
     facts.struct_size = size_of::<MorecIndexFacts>();
     assert_eq!(unsafe { morec_index_facts(index.0, &mut facts) }, MorecStatus::Ok);
     let model = &kit::index().model;
-    assert_eq!(facts.class_count as usize, model.classes.len());
-    assert_eq!(facts.sample_count as usize, model.samples.len());
+    assert_eq!(facts.class_count as usize, model.classes().len());
+    assert_eq!(facts.sample_count as usize, model.classes().iter().map(|c| c.samples).sum::<usize>());
     assert_eq!(facts.struct_size, size_of::<MorecIndexFacts>());
-    for (number, class) in model.classes.iter().enumerate() {
+    for (number, class) in model.classes().iter().enumerate() {
         let (status, name, needed) = name_of(&index, number as u32, 80);
         assert_eq!((status, needed), (MorecStatus::Ok, class.name.len() + 1));
         assert_eq!(name, class.name);

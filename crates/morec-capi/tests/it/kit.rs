@@ -21,7 +21,7 @@ pub fn index_bytes() -> &'static [u8] {
     static BYTES: OnceLock<Vec<u8>> = OnceLock::new();
     BYTES.get_or_init(|| {
         let provenance = Provenance::default();
-        let index = MotionIndex { model: made::model(), roles: BTreeMap::new(), provenance };
+        let index = MotionIndex { model: made::model().into(), roles: BTreeMap::new(), provenance };
         index.to_bytes().unwrap()
     })
 }

@@ -65,7 +65,7 @@ pub fn run(model: &Model, clips: &Arc<Vec<Loaded>>, args: &Args) -> Result<ExitC
         let left_wall_secs = wall_now_secs();
         if event.phase == Phase::End {
             let ended_wall_secs = event.wall_at_secs(event.stop_secs);
-            told.push(Told { class: class.clone(), ended_wall_secs, left_wall_secs });
+            told.push(Told { class: class.to_owned(), ended_wall_secs, left_wall_secs });
         }
     }
     let begins = sender.join().map_err(|_| anyhow!("the sender's thread panicked"))??;
