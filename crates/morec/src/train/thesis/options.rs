@@ -64,9 +64,10 @@ impl SvrdmTrainParams {
         }
     }
 
-    /// The same method, made to accept what it has not seen and still to reject what is none of the classes: wider
-    /// kernels, vectors of four directions about the segment's own mean as Eq. 3.37 scales them, samples compared by
-    /// whole rows, thresholds estimated.
+    /// The same method, made to accept what it has not seen and still to reject what is none of the classes: kernels
+    /// as wide as most distances between samples of a side; vectors of four directions about the segment's own mean as
+    /// Eq. 3.37 scales them, their signs by what they have in common; samples compared by whole rows, which is what
+    /// rejects; thresholds estimated.
     pub fn tuned() -> Self {
         let faithful = Self::faithful();
         Self {
@@ -82,7 +83,8 @@ impl SvrdmTrainParams {
                 wait_chunks: 4,
                 ..faithful.stages
             },
-            tree: TreeParams { sigma: SigmaRule::Scaled { full: 4.0, reduced: 4.0 }, ..faithful.tree },
+            sign: SignRule::Common,
+            tree: TreeParams { sigma: SigmaRule::Quantile { full: 0.8, reduced: 0.9 }, ..faithful.tree },
             thresholds: ThresholdRule::Estimated { folds: 4 },
             ..faithful
         }
