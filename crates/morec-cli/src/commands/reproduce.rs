@@ -106,7 +106,7 @@ fn print(result: &Reproduction) {
     print!("{table}");
     println!("\nCut-out samples (§5.3)");
     let mut table =
-        Table::new(["", "seed", "T", "all P_C", "P_E", "unseen P_C", "P_E", "confident, all", "index"]);
+        Table::new(["", "seed", "T", "all P_C", "P_E", "unseen P_C", "P_E", "alike, all", "unseen", "index"]);
     for c in &result.classification {
         table.row([
             c.setting.name().to_owned(),
@@ -116,7 +116,8 @@ fn print(result: &Reproduction) {
             format!("{:.3}", c.all.p_e),
             format!("{:.3}", c.unseen.p_c),
             format!("{:.3}", c.unseen.p_e),
-            format!("{:.3} / {:.3}", c.confident[0].p_c, c.confident[0].p_e),
+            format!("{:.3} / {:.3}", c.alike[0].p_c, c.alike[0].p_e),
+            format!("{:.3} / {:.3}", c.alike[1].p_c, c.alike[1].p_e),
             format!("{:.1} KB", c.index_bytes as f64 / 1000.0),
         ]);
     }

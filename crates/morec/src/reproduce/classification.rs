@@ -46,8 +46,8 @@ pub struct Classification {
     pub all: Rates,
     /// The samples that did not train.
     pub unseen: Rates,
-    /// The same two, where the recogniser must be confident as well.
-    pub confident: [Rates; 2],
+    /// The same two, where a sample must be as like the class's samples as the recogniser asks of confidence.
+    pub alike: [Rates; 2],
     /// Rows: what the tree says, the last row "none"; columns: what it is (Tables 5.5 and 5.6).
     pub confusion: Vec<Vec<usize>>,
     /// Bytes of the index file.
@@ -83,9 +83,9 @@ pub(super) fn run(
     for (place, class, rows) in cut_out(study, &model)? {
         let found = classifier.classify(&rows);
         let accepted = found.filter(|f| f.output >= model.params.accept);
-        let confident = accepted.filter(|f| f.confidence >= model.params.min_confidence);
+        let alike = accepted.filter(|f| f.likeness >= model.params.min_confidence);
         let unseen = !trained.contains(&place);
-        tally.count(class, accepted.map(|f| f.class), confident.map(|f| f.class), unseen);
+        tally.count(class, accepted.map(|f| f.class), alike.map(|f| f.class), unseen);
         if let Some(vector) = classifier.feature(&rows).filter(|_| !unseen) {
             features.push(FeatureSample { class, group: 0, vector });
         }
@@ -104,7 +104,7 @@ pub(super) fn run(
         accept: model.params.accept,
         all: tally.rates(|_| true, 0),
         unseen: tally.rates(|unseen| unseen, 0),
-        confident: [tally.rates(|_| true, 1), tally.rates(|unseen| unseen, 1)],
+        alike: [tally.rates(|_| true, 1), tally.rates(|unseen| unseen, 1)],
         confusion: tally.confusion,
         index_bytes: index.to_bytes()?.len(),
         branches: svrdm.as_ref().map_or_else(Vec::new, |s| s.branches.clone()),
@@ -140,7 +140,7 @@ fn reduced(clip: &TrainClip, model: &SvrdmModel) -> Result<Rows, ReproduceError>
 }
 
 struct Tally {
-    /// For each sample: whether unseen; whether right or wrong by the tree, and by the tree with confidence.
+    /// For each sample: whether unseen; whether right or wrong by the tree, and by the tree with likeness.
     outcomes: Vec<(bool, [Option<bool>; 2])>,
     confusion: Vec<Vec<usize>>,
 }
@@ -150,10 +150,10 @@ impl Tally {
         Self { outcomes: vec![], confusion: vec![vec![0; classes]; classes + 1] }
     }
 
-    fn count(&mut self, class: ClassId, tree: Option<ClassId>, confident: Option<ClassId>, unseen: bool) {
+    fn count(&mut self, class: ClassId, tree: Option<ClassId>, alike: Option<ClassId>, unseen: bool) {
         let row = tree.map_or(self.confusion.len() - 1, ClassId::index);
         self.confusion[row][class.index()] += 1;
-        self.outcomes.push((unseen, [tree, confident].map(|found| found.map(|found| found == class))));
+        self.outcomes.push((unseen, [tree, alike].map(|found| found.map(|found| found == class))));
     }
 
     fn rates(&self, which: impl Fn(bool) -> bool, by: usize) -> Rates {

@@ -93,10 +93,11 @@ fn push_cells(out: &mut String, name: &str, first: &[String], counts: &[u64], la
 fn push_classification(out: &mut String, result: &Reproduction) {
     out.push_str(
         "<h2>Cut-out samples (§5.3)</h2>\n<p>Half of each class trains. The thesis counts the samples that trained \
-         among those it classifies; the samples that did not are what matters. The last columns ask the recogniser to \
-         be confident as well (Eq. 4.5 or what stands for it).</p>\n<div class=\"wide\"><table>\n\
+         among those it classifies; the samples that did not are what matters. In the last columns a sample \
+         must also be as like its class as the recogniser asks of confidence (Eq. 4.5 without the length, or what \
+         stands for it).</p>\n<div class=\"wide\"><table>\n\
          <tr><th></th><th>seed</th><th>trained</th><th>T</th><th>all: P_C</th><th>P_E</th><th>P_R</th>\
-         <th>unseen: P_C</th><th>P_E</th><th>P_R</th><th>confident, all: P_C / P_E</th><th>unseen: P_C / P_E</th>\
+         <th>unseen: P_C</th><th>P_E</th><th>P_R</th><th>alike, all: P_C / P_E</th><th>unseen: P_C / P_E</th>\
          <th>index</th></tr>\n",
     );
     for (i, [c, e, r]) in thesis::CLASSIFICATION.iter().enumerate() {
@@ -108,7 +109,7 @@ fn push_classification(out: &mut String, result: &Reproduction) {
     }
     let rates = |r: &Rates| format!("<td>{:.3}</td><td>{:.3}</td><td>{:.3}</td>", r.p_c, r.p_e, r.p_r);
     for c in &result.classification {
-        let [all, unseen] = &c.confident;
+        let [all, unseen] = &c.alike;
         out.push_str(&format!(
             "<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td><td>{:.2}</td>{}{}<td>{:.3} / {:.3}</td>\
              <td>{:.3} / {:.3}</td><td>{:.1} KB</td></tr>\n",

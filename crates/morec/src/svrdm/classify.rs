@@ -14,6 +14,9 @@ pub struct Classified {
     pub class: ClassId,
     /// The least output on the way there; rejected if below `T`.
     pub output: f64,
+    /// How like the class's samples these frames are, 0 … 1: confidence without the prior on length, as somebody else
+    /// has said where the sample begins and ends.
+    pub likeness: f64,
     /// How confident the recogniser would be of a segment of just these frames (Eq. 4.5).
     pub confidence: f64,
 }
@@ -54,7 +57,8 @@ impl SampleClassifier {
         self.model.tree.descend(feature, f64::NEG_INFINITY, Descent::Larger, &mut self.candidates);
         let found = *self.candidates.first()?;
         let profile = self.extraction.profile(&gram, rows.iter());
+        let likeness = self.scoring.likeness(found.class, profile);
         let confidence = self.scoring.score(found.class, profile, gram.frames());
-        Some(Classified { class: found.class, output: found.output, confidence })
+        Some(Classified { class: found.class, output: found.output, likeness, confidence })
     }
 }

@@ -94,6 +94,16 @@ impl SegmentScoring {
         if found < self.min_confidence { 0.0 } else { found }
     }
 
+    /// How like a class's samples a segment with this profile is, whatever its length: the first factor of Eq. 4.5, or
+    /// what stands for it.
+    pub fn likeness(&mut self, class: ClassId, profile: &[f32]) -> f64 {
+        let edr = self.distance(class, profile);
+        match self.comparison {
+            Comparison::Profiles => confidence(edr, 1.0, 1.0, 1.0),
+            Comparison::Rows { .. } => 1.0 - edr,
+        }
+    }
+
     /// The most that [`score`](Self::score) can give a segment of so many frames, whatever its profile.
     pub fn most(&self, class: ClassId, frames: usize) -> f64 {
         let rows = self.comparison.rows(frames);
