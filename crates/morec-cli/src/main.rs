@@ -5,6 +5,7 @@ mod figures;
 mod files;
 mod lengths;
 mod material;
+mod poses;
 mod progress;
 mod show;
 mod stats;
@@ -30,6 +31,9 @@ enum Command {
     Recognize(commands::recognize::Args),
     Evaluate(commands::evaluate::Args),
     Crossval(commands::crossval::Args),
+    Cut(commands::cut::Args),
+    Group(commands::group::Args),
+    Reduce(commands::reduce::Args),
     Demo(commands::demo::Args),
 }
 
@@ -42,6 +46,9 @@ fn main() -> ExitCode {
         Command::Recognize(args) => commands::recognize::run(&args),
         Command::Crossval(args) => commands::crossval::run(&args),
         Command::Evaluate(args) => commands::evaluate::run(&args),
+        Command::Cut(args) => commands::cut::run(&args),
+        Command::Group(args) => commands::group::run(&args),
+        Command::Reduce(args) => commands::reduce::run(&args),
         Command::Demo(args) => commands::demo::run(&args),
     };
     match outcome {

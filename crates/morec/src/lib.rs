@@ -121,6 +121,7 @@
 
 pub mod classes;
 pub mod clip;
+pub mod cluster;
 pub mod crossval;
 pub mod decode;
 pub mod eval;
@@ -132,11 +133,14 @@ pub mod kinematics;
 pub mod labels;
 pub mod live;
 pub mod math;
+pub mod pca;
+pub mod pivots;
 pub mod plot;
 pub mod progress;
 pub mod report;
 pub mod resample;
 pub mod roles;
+pub mod segment;
 pub mod smooth;
 pub mod synth;
 pub mod templates;

@@ -9,6 +9,9 @@ mod made;
 use assert_no_alloc::{AllocDisabler, assert_no_alloc, reset_violation_count, violation_count};
 use morec::features::MAX_GAP_SECS;
 use morec::live::Recognizer;
+use morec::pca::{Keep, Moments, Pca};
+use morec::pivots::{PivotMap, PivotSet, PoseParams, PoseStream, for_each_pivot_pose};
+use morec::roles::RoleMap;
 use morec::synth::{Person, Script, Side};
 
 #[global_allocator]
@@ -48,4 +51,34 @@ fn pushing_takes_no_memory() {
     });
     assert_eq!(allocations, 0);
     assert!(found >= 4, "too little happened to prove anything: {found} detections");
+}
+
+#[test]
+fn pose_rows_and_their_reduction_take_no_memory() {
+    let person = Person { hand: Side::Right, ..Person::draw(89, 1) };
+    let clip = Script::new(89, person).rest(0.5).play("bow").film("quiet", 60.0).unwrap().clip;
+    let set = PivotSet::roles();
+    let map = PivotMap::resolve(&set, &clip.skeleton, &RoleMap::find(&clip.skeleton)).unwrap();
+    let mut poses = vec![];
+    for_each_pivot_pose(&clip, &map, &(0..0), |time_secs, pose| poses.push((time_secs, *pose)));
+    poses.push((99.0, poses[0].1));
+    let mut stream = PoseStream::new(&set, &PoseParams::default());
+    let mut moments = Moments::new(stream.dim());
+    for (time_secs, pose) in &poses {
+        stream.push(*time_secs, pose, &mut |row| moments.push_values(row));
+    }
+    stream.finish(&mut |_| ());
+    let pca = Pca::fit(&moments, Keep::Dims(8)).unwrap();
+    let (mut reduced, mut rows) = ([0f32; 8], 0);
+    let allocations = allocations(|| {
+        for (time_secs, pose) in &poses {
+            stream.push(*time_secs, pose, &mut |row| {
+                pca.project_into(row, &mut reduced);
+                rows += 1;
+            });
+        }
+        stream.finish(&mut |_| rows += 1);
+    });
+    assert_eq!(allocations, 0);
+    assert!(rows > 2 * clip.frames - 4, "{rows} rows of {} frames at half the rate", clip.frames);
 }

@@ -5,8 +5,11 @@
 
 pub mod convert;
 pub mod crossval;
+pub mod cut;
 pub mod demo;
 pub mod evaluate;
+pub mod group;
 pub mod inspect;
 pub mod recognize;
+pub mod reduce;
 pub mod train;

@@ -8,7 +8,7 @@ const OFFLINE: [&str; 9] =
     ["train", "crossval", "formats", "labels", "eval", "report", "synth", "index", "smooth"];
 
 /// Modules of the live path.
-const LIVE: [&str; 4] = ["live", "decode", "features", "templates"];
+const LIVE: [&str; 6] = ["live", "decode", "features", "templates", "pivots", "pca"];
 
 struct Source {
     /// Module at the top: `live` for `live/recognizer.rs`.

@@ -11,3 +11,4 @@ mod index_file;
 mod kit;
 mod layers;
 mod made;
+mod pose_golden;

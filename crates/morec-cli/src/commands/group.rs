@@ -1,0 +1,267 @@
+//! `morec group`: which samples are alike, and whether classes would say the same.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::{Context, Result, bail};
+use morec::cluster::{Groups, KwasForm, KwasParams, Pairs, Spectrum, adjusted_rand_index, kwas_groups};
+use morec::features::Rows;
+use morec::labels::Labels;
+use morec::pca::{Keep, Moments, Pca};
+use morec::segment::{PpcaParams, segment};
+use serde::Serialize;
+
+use crate::files::{self, some_of};
+use crate::poses::{PoseArgs, PoseReader, PosedClip};
+use crate::table::Table;
+
+/// Group samples that are alike
+///
+/// Two samples are alike if the principal directions of their poses are (kWAS, above --tau); whoever is alike, over
+/// however many others, is one group. With labels their samples are grouped, and the groups held against the
+/// classes; without, clips are cut first (as `morec cut` does) and the segments grouped.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  morec group --clips recordings/ --labels labels.tsv
+  morec group --clips recordings/ --labels labels.tsv --tau 0.99 --json
+  morec group --clips 86_01.amc")]
+pub struct Args {
+    /// Clips, or folders of clips
+    #[arg(long, value_name = "DIR|CLIP", num_args = 1.., required = true)]
+    clips: Vec<PathBuf>,
+    /// Labels: tab-separated text with a header; columns clip (file stem), class, and start, stop (frames, stop
+    /// exclusive) or start_secs, stop_secs, or neither: then the whole clip is one sample
+    #[arg(long, value_name = "TSV")]
+    labels: Option<PathBuf>,
+    /// Group samples of these classes only, separated by commas [default: every class of the labels]
+    #[arg(long, value_delimiter = ',', value_name = "CLASSES", requires = "labels")]
+    classes: Vec<String>,
+    /// How alike two samples must be to be one group, 0 to 1
+    #[arg(long, value_name = "TAU", default_value_t = KwasParams::default().tau)]
+    tau: f64,
+    /// Principal directions of a sample that count
+    #[arg(short, long, value_name = "N", default_value_t = KwasParams::default().k)]
+    k: usize,
+    /// Scale similarity so that a sample is 1 like itself, however few directions count
+    #[arg(long)]
+    normalised: bool,
+    /// Share of the variance of all poses that is kept before samples are compared
+    #[arg(long, value_name = "SHARE", default_value_t = 0.99)]
+    quality: f64,
+    /// Keep so many dimensions instead
+    #[arg(long, value_name = "N", conflicts_with = "quality")]
+    dims: Option<usize>,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    poses: PoseArgs,
+}
+
+/// A stretch of a clip to be grouped.
+#[derive(Debug, Clone, Serialize)]
+struct Sample {
+    clip: String,
+    start_secs: f64,
+    stop_secs: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    class: Option<String>,
+}
+
+#[derive(Serialize)]
+struct Agreement {
+    classes: usize,
+    pairs: Pairs,
+    rand_index: f64,
+    adjusted_rand_index: f64,
+}
+
+#[derive(Serialize)]
+struct Grouped {
+    kwas: KwasParams,
+    dims: usize,
+    quality: f64,
+    groups: Vec<Vec<Sample>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    agreement: Option<Agreement>,
+}
+
+/// Reads, groups, compares and prints.
+pub fn run(args: &Args) -> Result<ExitCode> {
+    let keep = args.dims.map_or(Keep::Quality(args.quality), Keep::Dims);
+    keep.check().map_err(anyhow::Error::msg)?;
+    let kwas = args.kwas()?;
+    let reader = args.poses.reader()?;
+    let clips = read_clips(args, &reader)?;
+    let samples = match &args.labels {
+        Some(_) => labelled(args, &clips)?,
+        None => cut(&reader, &clips)?,
+    };
+    let mut moments = Moments::new(reader.set.row_dim());
+    clips.values().for_each(|clip| moments.push_rows(&clip.rows));
+    let pca = Pca::fit(&moments, keep)?;
+    let (samples, spectra) = spectra(samples, &clips, reader.rate_hz(), &pca)?;
+    let groups = kwas_groups(&spectra, &kwas);
+    let agreement = args.labels.is_some().then(|| Agreement::of(&samples, &groups));
+    let take = |members: Vec<usize>| members.into_iter().map(|i| samples[i].clone()).collect();
+    let mut groups: Vec<Vec<Sample>> = groups.members().into_iter().map(take).collect();
+    groups.sort_by_key(|group| std::cmp::Reverse(group.len()));
+    let grouped = Grouped { kwas, dims: pca.dims(), quality: pca.quality(), groups, agreement };
+    let mut out = std::io::stdout().lock();
+    if args.json {
+        serde_json::to_writer_pretty(&mut out, &grouped).map_err(std::io::Error::from)?;
+        writeln!(out)?;
+    } else {
+        grouped.write(&mut out)?;
+    }
+    out.flush()?;
+    Ok(ExitCode::SUCCESS)
+}
+
+impl Args {
+    fn kwas(&self) -> Result<KwasParams> {
+        if !(0.0..=1.0).contains(&self.tau) {
+            bail!("--tau {}: expected 0 to 1", self.tau);
+        }
+        if self.k == 0 {
+            bail!("--k 0: at least one direction must count");
+        }
+        let form = if self.normalised { KwasForm::Normalised } else { KwasForm::Printed };
+        Ok(KwasParams { k: self.k, tau: self.tau, form })
+    }
+}
+
+fn read_clips(args: &Args, reader: &PoseReader<'_>) -> Result<BTreeMap<String, PosedClip>> {
+    let mut clips = BTreeMap::new();
+    reader.each(&args.clips, |clip| {
+        let name = clip.name.clone();
+        if clips.insert(name.clone(), clip).is_some() {
+            bail!("two clips are called {name}: labels could not tell them apart");
+        }
+        Ok(())
+    })?;
+    Ok(clips)
+}
+
+/// The samples of the labels that lie in `clips`.
+fn labelled(args: &Args, clips: &BTreeMap<String, PosedClip>) -> Result<Vec<Sample>> {
+    let Some(path) = &args.labels else { return Ok(Vec::new()) };
+    let labels = Labels::read(&files::read(path)?).with_context(|| path.display().to_string())?;
+    let resolved = labels.resolve(&clips.iter().map(|(name, clip)| (name.clone(), clip.length)).collect());
+    for warning in labels.warnings.iter().chain(&resolved.warnings) {
+        eprintln!("morec: {}: {warning}", path.display());
+    }
+    if !resolved.absent.is_empty() {
+        let (rows, names) = (resolved.absent.values().sum::<usize>(), some_of(resolved.absent.keys()));
+        eprintln!("morec: {rows} labels are of clips that are not there: {names}");
+    }
+    let wanted = |class: &String| args.classes.is_empty() || args.classes.contains(class);
+    let samples: Vec<Sample> = resolved
+        .samples
+        .into_iter()
+        .filter(|s| wanted(&s.class))
+        .map(|s| Sample {
+            clip: s.clip,
+            start_secs: s.start_secs,
+            stop_secs: s.stop_secs,
+            class: Some(s.class),
+        })
+        .collect();
+    if samples.is_empty() {
+        bail!("no sample to group: no label names any of these clips (labels name clips by file stem)");
+    }
+    Ok(samples)
+}
+
+/// The segments of all clips.
+fn cut(reader: &PoseReader<'_>, clips: &BTreeMap<String, PosedClip>) -> Result<Vec<Sample>> {
+    let mut samples = Vec::new();
+    for (name, clip) in clips {
+        let found = segment(&clip.rows, reader.rate_hz(), &PpcaParams::default()).context(name.clone())?;
+        let mut start_secs = 0.0;
+        let end_secs = clip.length.duration_secs();
+        for stop_secs in found.cuts.iter().map(|c| c.secs).chain([end_secs]) {
+            samples.push(Sample { clip: name.clone(), start_secs, stop_secs, class: None });
+            start_secs = stop_secs;
+        }
+    }
+    Ok(samples)
+}
+
+/// The samples of at least one pose, and what kWAS knows of each.
+fn spectra(
+    samples: Vec<Sample>,
+    clips: &BTreeMap<String, PosedClip>,
+    rate_hz: f64,
+    pca: &Pca,
+) -> Result<(Vec<Sample>, Vec<Spectrum>)> {
+    let (mut kept, mut spectra) = (Vec::new(), Vec::new());
+    for sample in samples {
+        let rows: &Rows = &clips.get(&sample.clip).context("a sample of no clip")?.rows;
+        let row = |secs: f64| ((secs * rate_hz).round() as usize).min(rows.len());
+        let (start, stop) = (row(sample.start_secs), row(sample.stop_secs));
+        if start >= stop {
+            eprintln!("morec: {}: a sample at {:.2} s holds no pose", sample.clip, sample.start_secs);
+            continue;
+        }
+        spectra.push(Spectrum::of_rows(&pca.project(&rows.slice(start..stop))));
+        kept.push(sample);
+    }
+    Ok((kept, spectra))
+}
+
+impl Agreement {
+    fn of(samples: &[Sample], groups: &Groups) -> Self {
+        let names: BTreeSet<Option<&str>> = samples.iter().map(|s| s.class.as_deref()).collect();
+        let number = |s: &Sample| names.range(..s.class.as_deref()).count();
+        let classes: Vec<usize> = samples.iter().map(number).collect();
+        let pairs = Pairs::count(&classes, &groups.of);
+        Self {
+            classes: names.len(),
+            pairs,
+            rand_index: pairs.rand_index(),
+            adjusted_rand_index: adjusted_rand_index(&classes, &groups.of),
+        }
+    }
+}
+
+impl Grouped {
+    fn write(&self, out: &mut impl Write) -> std::io::Result<()> {
+        let samples: usize = self.groups.iter().map(Vec::len).sum();
+        let (groups, dims, percent) = (self.groups.len(), self.dims, 100.0 * self.quality);
+        writeln!(
+            out,
+            "{samples} samples in {groups} groups; {dims} dimensions, {percent:.1} % of all poses"
+        )?;
+        for (number, group) in self.groups.iter().enumerate() {
+            writeln!(out, "  group {}: {} samples: {}", number + 1, group.len(), contents(group))?;
+        }
+        let Some(agreement) = &self.agreement else { return Ok(()) };
+        let pairs = &agreement.pairs;
+        writeln!(out, "\nagainst {} classes, pair by pair", agreement.classes)?;
+        let mut table = Table::new(["", "one class", "two classes"]);
+        let row = |name: &str, one: u64, two: u64| [name.to_owned(), one.to_string(), two.to_string()];
+        table.row(row("one group", pairs.true_positive, pairs.false_positive));
+        table.row(row("two groups", pairs.false_negative, pairs.true_negative));
+        write!(out, "{table}")?;
+        let (rand, adjusted) = (agreement.rand_index, agreement.adjusted_rand_index);
+        writeln!(out, "Rand index {rand:.3}, adjusted {adjusted:.3}")
+    }
+}
+
+/// Classes and how often, or where the segments lie.
+fn contents(group: &[Sample]) -> String {
+    let mut classes: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut parts = Vec::new();
+    for sample in group {
+        match &sample.class {
+            Some(class) => *classes.entry(class).or_default() += 1,
+            None => parts.push(format!("{} {:.2}-{:.2} s", sample.clip, sample.start_secs, sample.stop_secs)),
+        }
+    }
+    parts.extend(classes.iter().map(|(class, count)| format!("{class} {count}")));
+    parts.join(", ")
+}

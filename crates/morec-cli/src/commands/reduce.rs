@@ -1,0 +1,113 @@
+//! `morec reduce`: how few numbers describe a pose of a database.
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::{Context, Result};
+use morec::pca::{Keep, Moments, Pca, QualityRow, quality_chart};
+use serde::Serialize;
+
+use crate::files;
+use crate::poses::PoseArgs;
+use crate::table::Table;
+
+/// Show how many dimensions the poses of clips have
+///
+/// Principal components of every pose of every clip, read one after the other: any number of clips takes the memory
+/// of the longest. The table says how much of the variance each number of dimensions keeps.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  morec reduce recordings/
+  morec reduce recordings/ --quality 0.9 --plot quality.svg
+  morec reduce recordings/ --pivots roles --dims 16 --json")]
+pub struct Args {
+    /// Clips (BVH, AMC) or folders of clips
+    #[arg(required = true, value_name = "CLIP")]
+    clips: Vec<PathBuf>,
+    /// Share of the variance to keep
+    #[arg(long, value_name = "SHARE", default_value_t = 0.99)]
+    quality: f64,
+    /// Keep so many dimensions instead
+    #[arg(long, value_name = "N", conflicts_with = "quality")]
+    dims: Option<usize>,
+    /// Print one JSON object: the table, and the components with their mean
+    #[arg(long)]
+    json: bool,
+    /// Draw how much each number of dimensions keeps
+    #[arg(long, value_name = "SVG")]
+    plot: Option<PathBuf>,
+    #[command(flatten)]
+    poses: PoseArgs,
+}
+
+#[derive(Serialize)]
+struct Reduced<'a> {
+    clips: usize,
+    pivots: usize,
+    dims: usize,
+    quality: f64,
+    rms_error: f64,
+    table: &'a [QualityRow],
+    components: &'a Pca,
+}
+
+/// Reads all clips, prints what they come down to.
+pub fn run(args: &Args) -> Result<ExitCode> {
+    let keep = args.dims.map_or(Keep::Quality(args.quality), Keep::Dims);
+    keep.check().map_err(anyhow::Error::msg)?;
+    let reader = args.poses.reader()?;
+    let mut moments = Moments::new(reader.set.row_dim());
+    let mut clips = 0;
+    reader.each(&args.clips, |clip| {
+        moments.push_rows(&clip.rows);
+        clips += 1;
+        Ok(())
+    })?;
+    let pca = Pca::fit(&moments, keep)?;
+    let table = pca.quality_table();
+    if let Some(path) = &args.plot {
+        let svg = quality_chart(&table, pca.dims(), "Dimensions and what they keep").svg();
+        files::write_whole(path, |out| out.write_all(svg.as_bytes()))
+            .with_context(|| path.display().to_string())?;
+    }
+    let reduced = Reduced {
+        clips,
+        pivots: reader.set.len(),
+        dims: pca.dims(),
+        quality: pca.quality(),
+        rms_error: pca.rms_error(),
+        table: &table,
+        components: &pca,
+    };
+    let mut out = std::io::stdout().lock();
+    if args.json {
+        serde_json::to_writer_pretty(&mut out, &reduced).map_err(std::io::Error::from)?;
+        writeln!(out)?;
+    } else {
+        reduced.write(&mut out)?;
+    }
+    out.flush()?;
+    Ok(ExitCode::SUCCESS)
+}
+
+impl Reduced<'_> {
+    fn write(&self, out: &mut impl Write) -> std::io::Result<()> {
+        let (clips, rows, values) = (self.clips, self.components.rows(), self.components.dim());
+        let plural = if clips == 1 { "" } else { "s" };
+        writeln!(out, "{clips} clip{plural}, {rows} poses of {} pivots, {values} values each", self.pivots)?;
+        let (dims, percent) = (self.dims, 100.0 * self.quality);
+        writeln!(out, "{dims} dimensions keep {percent:.2} %, off by {:.4} a value", self.rms_error)?;
+        writeln!(out)?;
+        let mut table = Table::new(["dimensions", "keep", "the last adds"]);
+        let mut before = 0.0;
+        // Up to what was asked for and a little on: the rest is all but nothing.
+        for row in self.table.iter().take((self.dims + 4).max(20)) {
+            let (keep, adds) = (100.0 * row.quality, 100.0 * (row.quality - before));
+            before = row.quality;
+            table.row([row.dims.to_string(), format!("{keep:.2} %"), format!("{adds:.2} %")]);
+        }
+        write!(out, "{table}")
+    }
+}

@@ -1,0 +1,115 @@
+//! Clips as pose rows: what cutting, grouping and reducing work on.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use clap::Args;
+use morec::features::Rows;
+use morec::import::{ImportOptions, prepare};
+use morec::labels::ClipLength;
+use morec::pivots::{PivotMap, PivotSet, PoseParams, pose_rows_of_clip};
+
+use crate::files::{self, ReadArgs};
+use crate::progress::Progress;
+
+/// How clips become pose rows.
+#[derive(Args, Debug)]
+#[command(next_help_heading = "Poses")]
+pub struct PoseArgs {
+    /// The joints whose rotations count: `thesis` (16, by the CMU skeleton's names, by role on others), `roles` (12,
+    /// by role alone) or a JSON file: a list of {"name", "parent", "joints", "role"}
+    #[arg(long, value_name = "SET|FILE", default_value = "thesis")]
+    pub pivots: String,
+    /// Roles of joints, where inference fails: lines of `role<TAB>joint name`
+    #[arg(long, value_name = "FILE")]
+    pub roles: Option<PathBuf>,
+    #[command(flatten)]
+    pub read: ReadArgs,
+}
+
+/// A clip as pose rows.
+pub struct PosedClip {
+    /// The clip's name.
+    pub name: String,
+    /// Frames and rate of the clip itself.
+    pub length: ClipLength,
+    /// A row for each 1 / [`PoseParams::rate_hz`] s.
+    pub rows: Rows,
+}
+
+/// What [`PoseArgs`] say, read and checked.
+pub struct PoseReader<'a> {
+    /// The pivots.
+    pub set: PivotSet,
+    /// How poses become rows.
+    pub params: PoseParams,
+    options: ImportOptions,
+    read: &'a ReadArgs,
+}
+
+impl PoseArgs {
+    /// Reads the files that the arguments name.
+    pub fn reader(&self) -> Result<PoseReader<'_>> {
+        let set = match self.pivots.as_str() {
+            "thesis" => PivotSet::thesis(),
+            "roles" => PivotSet::roles(),
+            file => serde_json::from_slice(&files::read(Path::new(file)).context("--pivots")?)
+                .with_context(|| format!("--pivots {file}"))?,
+        };
+        let options =
+            ImportOptions { mapping: files::mapping(self.roles.as_deref())?, ..ImportOptions::default() };
+        Ok(PoseReader { set, params: PoseParams::default(), options, read: &self.read })
+    }
+}
+
+impl PoseReader<'_> {
+    /// Rows a second.
+    pub fn rate_hz(&self) -> f64 {
+        self.params.rate_hz
+    }
+
+    /// Calls `each` with every clip of `paths` (folders: the clips in them) in turn; no two are in memory at once
+    /// unless `each` keeps them. Files that cannot be read are named on standard error and left out.
+    ///
+    /// # Errors
+    /// There is nothing to read, or no file could be; what `each` fails with.
+    pub fn each(&self, paths: &[PathBuf], mut each: impl FnMut(PosedClip) -> Result<()>) -> Result<()> {
+        let paths = files::expand(paths)?;
+        let mut progress = Progress::new(paths.len(), "reading clips");
+        let mut failed = 0;
+        for path in &paths {
+            match self.open(path, &progress) {
+                Ok(clips) => clips.into_iter().try_for_each(&mut each)?,
+                Err(error) => {
+                    failed += 1;
+                    progress.suspend(|| eprintln!("morec: left out: {error:#}"));
+                }
+            }
+            progress.step();
+        }
+        if failed == paths.len() {
+            bail!("none of the {failed} files could be used");
+        }
+        Ok(())
+    }
+
+    fn open(&self, path: &Path, progress: &Progress) -> Result<Vec<PosedClip>> {
+        let opened = files::open(path, self.read)?;
+        let mut posed = Vec::with_capacity(opened.clips.len());
+        for clip in opened.clips {
+            let imported = prepare(clip, &self.options).with_context(|| path.display().to_string())?;
+            let clip = &imported.clip;
+            let map = PivotMap::resolve(&self.set, &clip.skeleton, &imported.roles)
+                .with_context(|| path.display().to_string())?;
+            if !map.missing().is_empty() {
+                let missing = map.missing().join(", ");
+                let what = "no joint plays these pivots, they turn with their parents";
+                progress.suspend(|| eprintln!("morec: {}: {what}: {missing}", path.display()));
+            }
+            let rows = pose_rows_of_clip(clip, &self.set, &map, &imported.facts.rest_frames, &self.params);
+            let length = ClipLength { frames: clip.frames, rate_hz: clip.rate_hz };
+            posed.push(PosedClip { name: clip.name.clone(), length, rows });
+        }
+        Ok(posed)
+    }
+}

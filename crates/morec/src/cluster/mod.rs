@@ -1,0 +1,16 @@
+//! Grouping samples that are alike without knowing their classes, and how well that agrees with the classes (thesis
+//! §3.6, §4.4, §5.2).
+//!
+//! Notation: `M = AᵀA` of a sample's reduced rows, centred on the mean of the database; `σᵢ, λᵢ` the eigenvalues of two
+//! such matrices (of `M`, not of `A`: Eq. 3.17), `uᵢ, vᵢ` their eigenvectors.
+
+mod agreement;
+mod groups;
+mod kwas;
+
+pub use agreement::{Pairs, adjusted_rand_index};
+pub use groups::{Groups, connected, kwas_groups};
+pub use kwas::{KwasForm, KwasParams, Spectrum, kwas};
+
+#[cfg(test)]
+mod tests;

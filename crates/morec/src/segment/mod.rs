@@ -1,0 +1,22 @@
+//! Cutting a clip where one behaviour ends and another begins, without labels (thesis §3.5, Algorithm 2).
+//!
+//! The first `K` frames of a segment are modelled by probabilistic principal components (Tipping and Bishop 1999); the
+//! next `T` frames are held against the model; `K` grows by `Δ` until the frames ahead stop fitting (Barbič, Safonova,
+//! Pan, Faloutsos, Hodgins, Pollard: *Segmenting motion capture data into distinct behaviors*, 2004). Cycles of one
+//! behaviour stay together: what is found are changes of behaviour, not repetitions.
+//!
+//! Notation: `n` values in a row, `r` dimensions of the model, `λᵢ` its eigenvalues, `λ` the mean of the others, `H` the
+//! mean Mahalanobis distance of the frames ahead. Rows may be of any description at any even rate.
+
+mod cuts;
+mod params;
+mod pass;
+mod peaks;
+mod ppca;
+
+pub use cuts::{Cut, HPoint, Segmentation, segment};
+pub use params::{Directions, PpcaParams, SegmentError};
+pub use ppca::Ppca;
+
+#[cfg(test)]
+mod tests;
