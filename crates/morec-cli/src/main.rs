@@ -34,6 +34,7 @@ enum Command {
     Cut(commands::cut::Args),
     Group(commands::group::Args),
     Reduce(commands::reduce::Args),
+    Db(commands::db::Args),
     Demo(commands::demo::Args),
 }
 
@@ -49,6 +50,7 @@ fn main() -> ExitCode {
         Command::Cut(args) => commands::cut::run(&args),
         Command::Group(args) => commands::group::run(&args),
         Command::Reduce(args) => commands::reduce::run(&args),
+        Command::Db(args) => commands::db::run(args),
         Command::Demo(args) => commands::demo::run(&args),
     };
     match outcome {
