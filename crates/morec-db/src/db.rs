@@ -66,6 +66,8 @@ impl MotionDb {
         }
         let mut conn = Connection::open(path)?;
         configure(&conn)?;
+        // A clip's motion is a few kilobytes: in larger pages half of the file would be their unused ends.
+        conn.pragma_update(None, "page_size", 1024)?;
         conn.pragma_update(None, "journal_mode", "wal")?;
         schema::migrate(&mut conn)?;
         Ok(Self { conn, path: path.to_owned() })
@@ -93,7 +95,8 @@ impl MotionDb {
     /// # Errors
     /// No such file, another kind of file, another schema.
     pub fn open_read_only(path: &Path) -> Result<Self, DbError> {
-        let conn = existing(path, OpenFlags::SQLITE_OPEN_READ_ONLY)?;
+        // Opened as a writer would, the last to close leaves one file behind and not its log; and writes nothing.
+        let conn = existing(path, OpenFlags::SQLITE_OPEN_READ_WRITE)?;
         let found = match schema::check(&conn, path) {
             // Beside a write-ahead log, readers need a file of their own; where none can be made nobody writes either.
             Err(DbError::Disk(_) | DbError::ReadOnly) => return Self::open_immutable(path),
@@ -103,6 +106,7 @@ impl MotionDb {
             return Err(DbError::Older { path: path.to_owned(), found, known: SCHEMA });
         }
         configure(&conn)?;
+        conn.pragma_update(None, "query_only", true)?;
         Ok(Self { conn, path: path.to_owned() })
     }
 

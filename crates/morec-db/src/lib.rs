@@ -25,6 +25,7 @@ mod motion;
 pub mod rows;
 mod schema;
 pub mod search;
+mod segments;
 #[cfg(test)]
 mod testing;
 #[cfg(test)]
@@ -37,3 +38,4 @@ pub use error::DbError;
 pub use import::{ClipReader, ImportReport, ImportSettings, Outcome, ReadFile, Refused};
 pub use motion::StoredClip;
 pub use schema::{APPLICATION_ID, SCHEMA};
+pub use segments::{Segment, SegmentKind};

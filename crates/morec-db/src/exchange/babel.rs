@@ -25,10 +25,11 @@ pub fn read(bytes: &[u8]) -> Result<ReadLabels, ParseError> {
     Ok(read)
 }
 
-/// The file's stem: `feat_p` is a path.
+/// The file's stem where `feat_p` is a path to poses; a name of ours may hold a slash, too.
 fn stem(path: &str) -> &str {
+    let Some(path) = path.strip_suffix(".npz") else { return path };
     let name = path.rsplit(['/', '\\']).next().unwrap_or(path);
-    name.strip_suffix("_poses.npz").or_else(|| name.strip_suffix(".npz")).unwrap_or(name)
+    name.strip_suffix("_poses").unwrap_or(name)
 }
 
 fn read_label(clip: &str, label: &Value, timed: bool, read: &mut ReadLabels) -> Result<(), String> {

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::layout::mirrored;
+use super::layout::{directions, mirrored};
 use super::rank::warp;
 use super::windows::{SUMMARY, distance, shown};
 use super::{Indexed, SearchIndex};
@@ -19,7 +19,7 @@ pub struct NearCopy {
     pub start_secs: f64,
     /// Until where.
     pub stop_secs: f64,
-    /// Mean squared distance of their rows.
+    /// Mean squared distance of their directions.
     pub distance: f32,
     /// Whether one is the other's mirror image.
     pub mirrored: bool,
@@ -81,7 +81,9 @@ fn pair(
     }
     let (longer, shorter) = (&index.clips[long], &index.clips[short]);
     let example = if mirror { mirrored(&shorter.laid) } else { shorter.laid.clone() };
-    let (distance, span) = warp(&example, &longer.laid, 0..longer.laid.rows.len())?;
+    // Velocities depend on the rate that a copy went through; directions do not.
+    let columns = directions(example.bones.and(longer.laid.bones));
+    let (distance, span) = warp(&example, &longer.laid, 0..longer.laid.rows.len(), &columns)?;
     (distance < SAME).then(|| NearCopy {
         of: longer.clip,
         copy: shorter.clip,

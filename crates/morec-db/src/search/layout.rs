@@ -32,6 +32,11 @@ pub fn lay_out(rows: &Rows, bones: BoneSet) -> Laid {
     Laid { rows: out, bones }
 }
 
+/// The columns of the directions of `bones`.
+pub fn directions(bones: BoneSet) -> Vec<usize> {
+    bones.indices().flat_map(|b| 3 * b..3 * b + 3).collect()
+}
+
 /// The columns of `bones` and the root: what two clips can be compared by.
 pub fn shared_columns(bones: BoneSet) -> Vec<usize> {
     let of_block =

@@ -100,7 +100,8 @@ impl SearchIndex {
         let n = example.laid.rows.len();
         let from = candidate.span.start.saturating_sub(n / 3);
         let to = (candidate.span.end + n / 3).min(clip.laid.rows.len());
-        let (warp, span) = warp(&example.laid, &clip.laid, from..to)?;
+        let shared = example.laid.bones.and(clip.laid.bones);
+        let (warp, span) = warp(&example.laid, &clip.laid, from..to, &shared_columns(shared))?;
         let share = options.warp_share;
         let distance = (1.0 - share) * candidate.distance + share * warp;
         Some(Hit {
@@ -164,12 +165,16 @@ fn overlap(a: &Hit, b: &Hit) -> f64 {
     shared / (a.stop_secs - a.start_secs).min(b.stop_secs - b.start_secs).max(1e-9)
 }
 
-/// The best path of `example` through rows `within` of a clip: mean squared distance, and where it lies.
-pub fn warp(example: &Laid, clip: &Laid, within: Range<usize>) -> Option<(f32, Range<usize>)> {
+/// The best path of `example` through rows `within` of a clip, by these columns: mean squared distance, and where it lies.
+pub fn warp(
+    example: &Laid,
+    clip: &Laid,
+    within: Range<usize>,
+    columns: &[usize],
+) -> Option<(f32, Range<usize>)> {
     let shared = example.bones.and(clip.bones);
-    let columns = shared_columns(shared);
-    let mut bank = Bank::new(&[take(&example.rows, &columns)], columns.len());
-    let stream = take(&clip.rows.slice(within.clone()), &columns);
+    let mut bank = Bank::new(&[take(&example.rows, columns)], columns.len());
+    let stream = take(&clip.rows.slice(within.clone()), columns);
     let mut best: Option<(f32, Range<usize>)> = None;
     for (tick, row) in stream.iter().enumerate() {
         bank.step(row);

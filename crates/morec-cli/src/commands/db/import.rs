@@ -121,18 +121,35 @@ fn text(report: &ImportReport, secs: f64) -> String {
     let mut lines = vec![format!(
         "{imported} files imported ({clips} clips, {warned} files with notes), {known} known, {copies} copies, {refused} refused; {secs:.1} s"
     )];
-    let mut notes = Vec::new();
+    // The same note of a hundred files is one line: what differs is figures.
+    let mut notes: Vec<(String, String, usize)> = Vec::new();
     for (path, outcome) in &report.files {
         let shown = path.display();
         match outcome {
             Outcome::Refused(refused) => lines.push(format!("  refused {shown}: {}", refused.reason)),
-            Outcome::Copy { of } => notes.push(format!("  {shown} is a copy of {}", of.display())),
+            Outcome::Copy { of } => {
+                notes.push((String::new(), format!("  {shown} is a copy of {}", of.display()), 1))
+            }
             Outcome::Imported { warnings, .. } => {
-                notes.extend(warnings.iter().map(|warning| format!("  {shown}: {warning}")));
+                for warning in warnings {
+                    let kind: String = warning.chars().filter(|c| !c.is_ascii_digit()).collect();
+                    match notes.iter_mut().find(|(known, ..)| *known == kind) {
+                        Some((.., count)) => *count += 1,
+                        None => notes.push((kind, format!("  {shown}: {warning}"), 1)),
+                    }
+                }
             }
             Outcome::Known => {}
         }
     }
+    let notes: Vec<String> = notes
+        .into_iter()
+        .map(
+            |(_, text, count)| {
+                if count > 1 { format!("{text} (and {} more like it)", count - 1) } else { text }
+            },
+        )
+        .collect();
     let more = notes.len().saturating_sub(SHOWN);
     lines.extend(notes.into_iter().take(SHOWN));
     if more > 0 {

@@ -1,10 +1,17 @@
 //! `morec db`: a database of motion in one file. One file per subcommand.
 
 mod check;
+mod classes;
 mod clips;
+mod cut;
+mod cycles;
+mod export;
+mod group;
 mod import;
 mod info;
 mod init;
+mod label;
+mod search;
 mod vacuum;
 
 use std::io::Write;
@@ -12,6 +19,9 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use clap::Subcommand;
+use morec::labels::ClipLength;
+use morec_db::exchange::Lengths;
+use morec_db::{ClipFilter, ClipInfo, MotionDb};
 use serde::Serialize;
 
 /// Keep clips, cuts, classes and labels in one file, and search them
@@ -22,7 +32,8 @@ use serde::Serialize;
 Examples:
   morec db init moves.mdb
   morec db import moves.mdb recordings/ --licence CC-BY
-  morec db info moves.mdb")]
+  morec db label moves.mdb labels.tsv
+  morec db search moves.mdb walk_01 --start 1 --stop 2")]
 pub struct Args {
     #[command(subcommand)]
     command: Command,
@@ -34,6 +45,13 @@ enum Command {
     Import(import::Args),
     Info(info::Args),
     Clips(clips::Args),
+    Cut(cut::Args),
+    Cycles(cycles::Args),
+    Group(group::Args),
+    Classes(classes::Args),
+    Label(label::Args),
+    Search(search::Args),
+    Export(export::Args),
     Check(check::Args),
     Vacuum(vacuum::Args),
 }
@@ -45,9 +63,22 @@ pub fn run(args: Args) -> Result<ExitCode> {
         Command::Import(args) => import::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Clips(args) => clips::run(&args),
+        Command::Cut(args) => cut::run(&args),
+        Command::Cycles(args) => cycles::run(&args),
+        Command::Group(args) => group::run(&args),
+        Command::Classes(args) => classes::run(&args),
+        Command::Label(args) => label::run(&args),
+        Command::Search(args) => search::run(&args),
+        Command::Export(args) => export::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Vacuum(args) => vacuum::run(&args),
     }
+}
+
+/// The lengths of all clips by name.
+fn lengths(db: &MotionDb) -> Result<Lengths> {
+    let length = |c: ClipInfo| (c.name, ClipLength { frames: c.frames, rate_hz: c.rate_hz });
+    Ok(db.clips(&ClipFilter::default())?.into_iter().map(length).collect())
 }
 
 /// One value as JSON on standard output.
