@@ -128,6 +128,12 @@ impl MotionDb {
         Ok(Self { conn, path: path.to_owned() })
     }
 
+    /// Whether it was opened for reading only.
+    pub(crate) fn is_read_only(&self) -> Result<bool, DbError> {
+        let query_only: bool = self.conn.pragma_query_value(None, "query_only", |row| row.get(0))?;
+        Ok(query_only || self.conn.is_readonly("main")?)
+    }
+
     /// Where it lies.
     pub fn path(&self) -> &Path {
         &self.path

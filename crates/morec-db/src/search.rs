@@ -7,7 +7,7 @@
 //! styles best without learning.
 
 mod copies;
-mod layout;
+pub(crate) mod layout;
 mod rank;
 #[cfg(test)]
 mod tests;

@@ -100,6 +100,6 @@ fn features_of_the_index_are_those_of_recognition() {
     let (bones, fresh) = crate::rows::rows_of(&stored, &params);
     assert_eq!(bones, rows[0].bones);
     for (a, b) in fresh.values().iter().zip(rows[0].rows.values()) {
-        assert!((a - b).abs() < 0.02);
+        assert!((a - b).abs() < 0.04);
     }
 }

@@ -11,7 +11,10 @@ mod import;
 mod info;
 mod init;
 mod label;
+mod propose;
+mod report;
 mod search;
+mod strip;
 mod vacuum;
 
 use std::io::Write;
@@ -51,7 +54,9 @@ enum Command {
     Classes(classes::Args),
     Label(label::Args),
     Search(search::Args),
+    Propose(propose::Args),
     Export(export::Args),
+    Report(report::Args),
     Check(check::Args),
     Vacuum(vacuum::Args),
 }
@@ -69,6 +74,8 @@ pub fn run(args: Args) -> Result<ExitCode> {
         Command::Classes(args) => classes::run(&args),
         Command::Label(args) => label::run(&args),
         Command::Search(args) => search::run(&args),
+        Command::Propose(args) => propose::run(&args),
+        Command::Report(args) => report::run(&args),
         Command::Export(args) => export::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Vacuum(args) => vacuum::run(&args),
