@@ -65,11 +65,7 @@ impl MotionDb {
             return Err(DbError::Exists(path.to_owned()));
         }
         let mut conn = Connection::open(path)?;
-        configure(&conn)?;
-        // A clip's motion is a few kilobytes: in larger pages half of the file would be their unused ends.
-        conn.pragma_update(None, "page_size", 1024)?;
-        conn.pragma_update(None, "journal_mode", "wal")?;
-        schema::migrate(&mut conn)?;
+        begin(&mut conn)?;
         Ok(Self { conn, path: path.to_owned() })
     }
 
@@ -80,10 +76,12 @@ impl MotionDb {
     pub fn open(path: &Path) -> Result<Self, DbError> {
         let mut conn = existing(path, OpenFlags::SQLITE_OPEN_READ_WRITE)?;
         let found = schema::check(&conn, path)?;
-        configure(&conn)?;
-        if found < SCHEMA {
-            schema::migrate(&mut conn)?;
+        match found {
+            0 => begin(&mut conn)?,
+            found if found < SCHEMA => schema::migrate(&mut conn)?,
+            _ => {}
         }
+        configure(&conn)?;
         if conn.is_readonly("main")? {
             return Err(DbError::ReadOnly);
         }
@@ -203,6 +201,15 @@ impl MotionDb {
         self.conn.execute_batch("VACUUM; PRAGMA wal_checkpoint(TRUNCATE);")?;
         Ok(())
     }
+}
+
+/// Makes an empty file a database.
+fn begin(conn: &mut Connection) -> Result<(), DbError> {
+    configure(conn)?;
+    // A clip's motion is a few kilobytes: in larger pages half of the file would be their unused ends.
+    conn.pragma_update(None, "page_size", 1024)?;
+    conn.pragma_update(None, "journal_mode", "wal")?;
+    schema::migrate(conn)
 }
 
 fn existing(path: &Path, mode: OpenFlags) -> Result<Connection, DbError> {

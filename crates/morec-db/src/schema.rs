@@ -22,6 +22,11 @@ pub const SCHEMA: i32 = MIGRATIONS.len() as i32;
 pub(crate) fn check(conn: &Connection, path: &Path) -> Result<i32, DbError> {
     let id: i32 = pragma(conn, path, "application_id")?;
     let version: i32 = pragma(conn, path, "user_version")?;
+    // A program that was killed while it made the database leaves an empty one: that is ours to finish.
+    let empty = || conn.query_row("SELECT count(*) = 0 FROM sqlite_schema", [], |row| row.get::<_, bool>(0));
+    if id == 0 && version == 0 && empty()? {
+        return Ok(0);
+    }
     if id != APPLICATION_ID {
         return Err(DbError::Foreign { path: path.to_owned(), found: id });
     }

@@ -20,6 +20,9 @@ fn other_files_are_plain_errors() {
     other.execute_batch("CREATE TABLE t (a); PRAGMA application_id = 7;").unwrap();
     assert!(matches!(MotionDb::open(&path("other")), Err(DbError::Foreign { found: 7, .. })));
     assert!(matches!(MotionDb::open_read_only(&path("other")), Err(DbError::Foreign { found: 7, .. })));
+    // What a program that was killed while it made a database left behind.
+    std::fs::write(path("begun"), "").unwrap();
+    assert!(MotionDb::open(&path("begun")).unwrap().summary().unwrap().clips == 0);
     MotionDb::create(&path("newer")).unwrap();
     rusqlite::Connection::open(path("newer")).unwrap().pragma_update(None, "user_version", 99).unwrap();
     assert!(matches!(MotionDb::open(&path("newer")), Err(DbError::Newer { found: 99, .. })));

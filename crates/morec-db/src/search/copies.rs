@@ -1,9 +1,9 @@
 //! Clips that are other clips over again: resampled, cut a little shorter, on another skeleton, mirrored.
 
+use morec::features::Rows;
 use rayon::prelude::*;
 
 use super::layout::{directions, mirrored};
-use super::rank::warp;
 use super::windows::{SUMMARY, distance, shown};
 use super::{Indexed, SearchIndex};
 use crate::ClipId;
@@ -25,9 +25,9 @@ pub struct NearCopy {
     pub mirrored: bool,
 }
 
-/// Distances of copies stay below this. A second take of the same move by the same person is further: rows tell
-/// poses apart that a person cannot repeat.
-const SAME: f32 = 0.012;
+/// Distances of copies at the same pace stay below this. A second take of the same move by the same person is further:
+/// rows tell poses apart that a person cannot repeat.
+const SAME: f32 = 0.02;
 
 /// Lengths of copies differ by this share at most.
 const SHORTER: f64 = 0.8;
@@ -83,13 +83,38 @@ fn pair(
     let example = if mirror { mirrored(&shorter.laid) } else { shorter.laid.clone() };
     // Velocities depend on the rate that a copy went through; directions do not.
     let columns = directions(example.bones.and(longer.laid.bones));
-    let (distance, span) = warp(&example, &longer.laid, 0..longer.laid.rows.len(), &columns)?;
+    let (distance, at) = alongside(&example.rows, &longer.laid.rows, &columns)?;
+    let distance = distance / share;
     (distance < SAME).then(|| NearCopy {
         of: longer.clip,
         copy: shorter.clip,
-        start_secs: span.start as f64 / index.tick_hz,
-        stop_secs: span.end as f64 / index.tick_hz,
+        start_secs: at as f64 / index.tick_hz,
+        stop_secs: (at + rows(short)) as f64 / index.tick_hz,
         distance,
         mirrored: mirror,
     })
+}
+
+/// Where `short` lies in `long` at the same pace, and the mean squared distance there. Warping would forgive a second
+/// take its timing, and timing is what no second take has in common with the first.
+fn alongside(short: &Rows, long: &Rows, columns: &[usize]) -> Option<(f32, usize)> {
+    let limit = SAME * short.len() as f32;
+    let sum = |at: usize, limit: f32| {
+        let mut sum = 0.0;
+        for t in 0..short.len() {
+            let (a, b) = (short.row(t), long.row(at + t));
+            sum += columns.iter().map(|c| (a[*c] - b[*c]).powi(2)).sum::<f32>();
+            if sum > limit {
+                return None;
+            }
+        }
+        Some(sum)
+    };
+    let mut best: Option<(f32, usize)> = None;
+    for at in 0..=long.len() - short.len() {
+        if let Some(sum) = sum(at, best.map_or(limit, |b| b.0)) {
+            best = Some((sum, at));
+        }
+    }
+    best.map(|(sum, at)| (sum / short.len() as f32, at))
 }

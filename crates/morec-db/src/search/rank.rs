@@ -91,36 +91,38 @@ impl SearchIndex {
             candidates.select_nth_unstable_by(wanted, |a, b| a.distance.total_cmp(&b.distance));
             candidates.truncate(wanted);
         }
-        candidates.par_iter().filter_map(|c| self.place(c, example, options)).collect()
+        candidates.par_iter().map(|c| self.place(c, example, options)).collect()
     }
 
     /// Where within a candidate's surroundings the example lies exactly.
-    fn place(&self, candidate: &Candidate, example: &Example, options: &SearchOptions) -> Option<Hit> {
+    fn place(&self, candidate: &Candidate, example: &Example, options: &SearchOptions) -> Hit {
         let clip = &self.clips[candidate.clip];
         let n = example.laid.rows.len();
         let from = candidate.span.start.saturating_sub(n / 3);
         let to = (candidate.span.end + n / 3).min(clip.laid.rows.len());
         let shared = example.laid.bones.and(clip.laid.bones);
-        let (warp, span) = warp(&example.laid, &clip.laid, from..to, &shared_columns(shared))?;
+        // A clip of less than half the example's length holds no path: its summary alone says how near it is.
+        let (warp, span) = warp(&example.laid, &clip.laid, from..to, &shared_columns(shared))
+            .unwrap_or_else(|| (2.0 * candidate.distance, candidate.span.clone()));
         let share = options.warp_share;
         let distance = (1.0 - share) * candidate.distance + share * warp;
-        Some(Hit {
+        Hit {
             clip: clip.clip,
             start_secs: span.start as f64 / self.tick_hz,
             stop_secs: span.end as f64 / self.tick_hz,
             score: (-distance / 2.0).exp(),
             warp_distance: warp,
             mirrored: candidate.mirrored,
-        })
+        }
     }
 }
 
-/// Windows of a clip at three lengths, a quarter apart; a clip that is a little too short counts as one window.
+/// Windows of a clip at three lengths, a quarter apart; a clip that is too short counts as one window.
 fn candidates(number: usize, clip: &Indexed, example: &Example, mirrored: bool) -> Vec<Candidate> {
     let n = example.laid.rows.len();
     let rows = clip.laid.rows.len();
     let shared = example.laid.bones.and(clip.laid.bones);
-    if shared.is_empty() || 2 * rows < n {
+    if shared.is_empty() || rows < 3 {
         return Vec::new();
     }
     let (shown, share) = shown(shared);

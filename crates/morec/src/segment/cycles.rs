@@ -16,7 +16,7 @@ pub struct CycleParams {
 
 impl Default for CycleParams {
     fn default() -> Self {
-        Self { least_secs: 0.25, share: 0.7, least_correlation: 0.25 }
+        Self { least_secs: 0.25, share: 0.7, least_correlation: 0.15 }
     }
 }
 

@@ -131,7 +131,7 @@ fn text(cuts: &[Cut]) -> String {
     let mut table = Table::new(["clip", "secs", "still", "T-pose", "cuts"]);
     for cut in cuts {
         let of = |kind| -> f64 {
-            cut.still.iter().filter(|s| s.kind == kind).map(|s| s.stop_secs - s.start_secs).sum()
+            cut.still.iter().filter(|s| s.kind == kind).fold(0.0, |sum, s| sum + s.stop_secs - s.start_secs)
         };
         let mut at: Vec<String> = cut.cuts_secs.iter().take(SHOWN).map(|secs| format!("{secs:.1}")).collect();
         if cut.cuts_secs.len() > SHOWN {
