@@ -154,8 +154,12 @@ fn templates(
     (classes, taken.collect())
 }
 
-/// For each class: how far from its nearest sample a stretch may be. The median distance of its samples from one another,
-/// or, for a class of one sample, the mean of the other classes'; never more than most of the way to another class.
+/// Where nothing says otherwise, stretches of one motion by different people are so far apart.
+const WIDE: f32 = 1.5;
+
+/// For each class: how far from its nearest sample a stretch may be. So many times the median distance of its samples
+/// from one another, or, for a class of one sample, the mean of the other classes'. Samples of one person say little of
+/// how others differ: so half of the way to the next class is allowed at least, and never more than most of it.
 fn reaches(classes: usize, templates: &[Template], share: f32) -> Vec<f32> {
     let mut own: Vec<Vec<f32>> = vec![Vec::new(); classes];
     let mut other = vec![f32::INFINITY; classes];
@@ -191,11 +195,11 @@ fn reaches(classes: usize, templates: &[Template], share: f32) -> Vec<f32> {
         .collect();
     let known: Vec<f32> = medians.iter().flatten().copied().collect();
     let usual = if known.is_empty() { 0.8 } else { known.iter().sum::<f32>() / known.len() as f32 };
-    medians
-        .iter()
-        .zip(&other)
-        .map(|(m, other)| (share * m.unwrap_or(usual)).max(0.2).min(0.9 * other))
-        .collect()
+    let reach = |(median, other): (&Option<f32>, &f32)| {
+        let own = share * median.unwrap_or(usual);
+        own.max((0.5 * other).min(WIDE)).min(0.9 * other)
+    };
+    medians.iter().zip(&other).map(reach).collect()
 }
 
 /// A row held at the end for as long as the sample: a longer template must be able to end.

@@ -119,7 +119,7 @@ fn proposals_are_judged_in_bulk() {
     std::fs::write(folder.path().join("few.tsv"), own.join("\n")).unwrap();
     json(&folder, &["db", "label", "m.mdb", "few.tsv"]);
     let proposed = json(&folder, &["db", "propose", "m.mdb"]).as_array().unwrap().len();
-    assert!(proposed > 2);
+    assert!(proposed > 2, "{proposed}");
     json(&folder, &["db", "export", "m.mdb", "ask.csv", "--state", "proposed"]);
     let ask = std::fs::read_to_string(folder.path().join("ask.csv")).unwrap();
     std::fs::write(folder.path().join("answer.csv"), ask.replacen("proposed", "accepted", 1)).unwrap();
@@ -142,7 +142,7 @@ fn kill_nine_leaves_whole_clips() {
     bvh::write(&takes[0].clip, &mut bytes).unwrap();
     let text = String::from_utf8(bytes).unwrap();
     // Files of different content: a comment's worth of difference in one offset is enough.
-    for number in 0..100 {
+    for number in 1..=100 {
         let path = folder.path().join(format!("clips/c{number:03}.bvh"));
         std::fs::write(path, text.replacen("0.000000", &format!("0.{number:06}"), 1)).unwrap();
     }
