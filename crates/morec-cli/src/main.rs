@@ -27,6 +27,7 @@ struct Cli {
 enum Command {
     Inspect(commands::inspect::Args),
     Convert(commands::convert::Args),
+    Smooth(commands::smooth::Args),
     Train(commands::train::Args),
     Recognize(commands::recognize::Args),
     Evaluate(commands::evaluate::Args),
@@ -43,6 +44,7 @@ fn main() -> ExitCode {
     let outcome = match cli.command {
         Command::Inspect(args) => commands::inspect::run(args),
         Command::Convert(args) => commands::convert::run(args),
+        Command::Smooth(args) => commands::smooth::run(&args),
         Command::Train(args) => commands::train::run(&args),
         Command::Recognize(args) => commands::recognize::run(&args),
         Command::Crossval(args) => commands::crossval::run(&args),

@@ -92,8 +92,8 @@
 //! | recognising | [`templates`], [`decode`], [`live`] | [`Detection`](live::Detection)s, nothing taken back |
 //! | measuring | [`eval`], [`crossval`], [`report`], [`plot`] | figures, timelines, charts, one page of HTML |
 //!
-//! [`synth`] makes people, clips and labels where there are none; [`resample`], [`math`], [`classes`] and
-//! [`progress`] are shared by several of these.
+//! [`smooth`] turns clips into keyframes and curves, a small form to keep them in. [`synth`] makes people, clips and
+//! labels where there are none; [`resample`], [`math`], [`classes`] and [`progress`] are shared by several of these.
 //!
 //! # Notation
 //!

@@ -21,7 +21,7 @@ Examples:
   morec convert walk.bvh -o walk30.bvh --rate 30
   morec convert 13_29.amc --skeleton 13.asf -o - | head")]
 pub struct Args {
-    /// The clip: BVH, or AMC with its ASF; - is standard input
+    /// The clip: BVH, AMC with its ASF, or MCLIP; - is standard input
     clip: PathBuf,
     /// The BVH file to write; - is standard output
     #[arg(short, long, value_name = "BVH")]

@@ -30,7 +30,7 @@ A roles file has one role a line, a tab, and the joint's name (or - for none):
   hips<TAB>Pelvis
   left_shoulder<TAB>-")]
 pub struct Args {
-    /// Clips (BVH, AMC), skeletons (ASF) or folders of clips; - is standard input
+    /// Clips (BVH, AMC, MCLIP), skeletons (ASF) or folders of clips; - is standard input
     #[arg(required = true, value_name = "CLIP")]
     clips: Vec<PathBuf>,
     /// Print one JSON array, with an object for each file

@@ -13,4 +13,5 @@ pub mod group;
 pub mod inspect;
 pub mod recognize;
 pub mod reduce;
+pub mod smooth;
 pub mod train;

@@ -6,3 +6,4 @@ mod demo;
 mod evaluate;
 mod inspect;
 mod kit;
+mod smooth;

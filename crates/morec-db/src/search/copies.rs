@@ -27,7 +27,7 @@ pub struct NearCopy {
 
 /// Distances of copies at the same pace stay below this. A second take of the same move by the same person is further:
 /// rows tell poses apart that a person cannot repeat.
-const SAME: f32 = 0.02;
+const SAME: f32 = 0.005;
 
 /// Lengths of copies differ by this share at most.
 const SHORTER: f64 = 0.8;

@@ -141,7 +141,7 @@ fn candidates(number: usize, clip: &Indexed, example: &Example, mirrored: bool) 
                 continue;
             }
             clip.sums.summary(&span, &mut summary);
-            let distance = distance(&wanted, &summary, &shown, share);
+            let distance = distance(&wanted, &summary, &shown, share) + missing(length, n);
             found.push(Candidate { clip: number, span, distance, mirrored });
         }
     }
@@ -154,6 +154,12 @@ fn candidates(number: usize, clip: &Indexed, example: &Example, mirrored: bool) 
         }
     }
     kept
+}
+
+/// What a window costs for what it lacks of the example's length, beyond a difference in pace.
+fn missing(length: usize, example: usize) -> f32 {
+    let share = (length as f32 / (SCALES[0] as f32 * example as f32)).min(1.0);
+    4.0 * (1.0 - share)
 }
 
 /// More than a third of the shorter.

@@ -38,14 +38,14 @@ impl Sums {
         Self { sums, squares }
     }
 
-    /// The summary of rows `span`: `[0.7 mean x; 2 std x; 2 tanh(mean root)]`. `shown` are coordinates of shared bones.
+    /// The summary of rows `span`: `[mean x; 2 std x; 2 tanh(mean root)]`. `shown` are coordinates of shared bones.
     pub fn summary(&self, span: &Range<usize>, out: &mut [f32; SUMMARY]) {
         let n = span.len().max(1) as f64;
         let entry = |table: &[f64], width: usize, at: usize, i: usize| table[at * width + i];
         for i in 0..X {
             let mean = (entry(&self.sums, X + 4, span.end, i) - entry(&self.sums, X + 4, span.start, i)) / n;
             let square = (entry(&self.squares, X, span.end, i) - entry(&self.squares, X, span.start, i)) / n;
-            out[i] = 0.7 * mean as f32;
+            out[i] = mean as f32;
             out[X + i] = 2.0 * (square - mean * mean).max(0.0).sqrt() as f32;
         }
         for i in 0..4 {

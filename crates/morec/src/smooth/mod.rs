@@ -32,6 +32,7 @@ mod fit;
 mod lattice;
 mod measure;
 mod params;
+mod picture;
 mod sample;
 mod split;
 mod stored;

@@ -32,12 +32,6 @@ pub(super) struct TooCoarse {
     pub frame: usize,
 }
 
-/// What trying one curve on a stretch gave.
-enum Outcome {
-    Near(Piece, Segment),
-    Far(Worst),
-}
-
 impl Channel {
     pub fn new(kind: Kind, samples: Vec<Point>, tolerance: f64) -> Self {
         let lattice = Lattice::new(kind, tolerance);
@@ -107,7 +101,7 @@ impl Channel {
     pub fn refine(&mut self, frames: &[usize]) -> Result<Vec<Span>, TooCoarse> {
         if self.pieces.is_empty() {
             self.fit_with_steps()?;
-            return Ok(vec![0..self.samples.len()]);
+            return Ok(std::iter::once(0..self.samples.len()).collect());
         }
         let (mut pieces, mut segments, mut ranges) = (Vec::new(), Vec::new(), Vec::new());
         let mut frames = frames;
@@ -146,12 +140,12 @@ impl Channel {
                 continue; // A clip of one frame: its key is all there is.
             }
             match self.one_curve(from, to, key) {
-                Outcome::Near(piece, segment) => {
+                Ok((piece, segment)) => {
                     key = segment.points[3];
                     pieces.push(piece);
                     segments.push(segment);
                 }
-                Outcome::Far(worst) => {
+                Err(worst) => {
                     if to - from == 1 {
                         return Err(TooCoarse { frame: from + worst.index });
                     }
@@ -168,8 +162,8 @@ impl Channel {
         Ok(())
     }
 
-    /// The lowest degree that is near enough, if a cubic is.
-    fn one_curve(&mut self, from: usize, to: usize, start: Point) -> Outcome {
+    /// The curve of the lowest degree that is near enough, if a cubic is; else where that is furthest.
+    fn one_curve(&mut self, from: usize, to: usize, start: Point) -> Result<(Piece, Segment), Worst> {
         let (lattice, kind) = (self.lattice, self.lattice.kind);
         let sign = if kind == Kind::Rotation && start.dot(&self.samples[from]) < 0.0 { -1.0 } else { 1.0 };
         let mut local = std::mem::take(&mut self.local);
@@ -192,9 +186,9 @@ impl Channel {
             let near = |tried: &(Tangents, Worst)| tried.1.ratio <= 1.0;
             let lowest = Some(line()).filter(near).or_else(|| parabola().filter(near)).unwrap_or(highest);
             let piece = Piece { frames: (to - from) as u32, key, tangents: lowest.0 };
-            Outcome::Near(piece, piece.segment(&lattice, from as u32, start))
+            Ok((piece, piece.segment(&lattice, from as u32, start)))
         } else {
-            Outcome::Far(highest.1)
+            Err(highest.1)
         };
         self.local = local;
         outcome

@@ -12,3 +12,4 @@ mod kit;
 mod layers;
 mod made;
 mod pose_golden;
+mod smooth_real;

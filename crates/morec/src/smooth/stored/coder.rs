@@ -1,8 +1,9 @@
 //! An adaptive binary range coder, and whole numbers on top of it.
 //!
-//! Subbotin's carry-less scheme with a carry, as LZMA made it common: Martin, *Range encoding: an algorithm for removing
-//! redundancy from a digitised message*, 1979; the adaptive bits as in Howard and Vitter, *Arithmetic coding for data
-//! compression*, 1994. Writing and reading go through the same functions, so that they cannot drift apart.
+//! The coder narrows a range bit by bit and carries into bytes already made (Martin, *Range encoding: an algorithm for
+//! removing redundancy from a digitised message*, 1979); chances follow what comes as in Howard and Vitter, *Arithmetic
+//! coding for data compression*, 1994. Writing and reading go through the same functions, so that they cannot drift
+//! apart.
 
 /// How likely a 0 is, of 4096.
 pub(super) type Chance = u16;

@@ -168,7 +168,7 @@ fn check_header(bytes: &[u8]) -> Result<(), ParseError> {
 /// Everything but skeleton and curves.
 fn read_facts(fields: &mut Fields, limits: &Limits) -> Result<CompressedClip, ParseError> {
     let name = fields.text(limits.line_bytes, "the clip's name")?;
-    let frames = fields.up_to(limits.frames, "frames")?;
+    let frames = fields.up_to(limits.frames.min(u32::MAX as usize / 2), "frames")?;
     let rate_hz = fields.number("frames a second")?;
     if !(1e-3..=1e5).contains(&rate_hz) {
         return Err(fields.wrong("frames a second, 0.001 to 100000", rate_hz.to_string()));

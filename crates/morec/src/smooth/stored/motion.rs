@@ -170,13 +170,16 @@ impl Model {
     }
 }
 
+/// Tangents may reach beyond keys, but not so far.
+const MOST_CODE: u64 = 1 << 60;
+
 /// Three numbers as differences from those promised.
 fn code<C: Coder>(coder: &mut C, model: &mut Whole, given: Code, promised: Code) -> Result<Code, Fault> {
     let mut found = [0; 3];
     for axis in 0..3 {
         let promised = promised[axis].clamp(-MOST_STEPS, MOST_STEPS);
         found[axis] = promised.saturating_add(model.signed(coder, given[axis].saturating_sub(promised)));
-        if found[axis].abs() > 4 * MOST_STEPS {
+        if found[axis].unsigned_abs() > MOST_CODE {
             return Err(Fault::Number);
         }
     }

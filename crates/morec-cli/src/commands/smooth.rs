@@ -1,0 +1,170 @@
+//! `morec smooth`: clips as keyframes and Bézier curves, and what that costs and saves.
+
+mod output;
+mod picture;
+mod report;
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use anyhow::{Context, Result, bail};
+use morec::clip::Clip;
+use morec::import::{ImportOptions, prepare};
+use morec::progress::Progress as _;
+use morec::smooth::{SmoothParams, compress};
+use rayon::prelude::*;
+
+use crate::files::{self, ReadArgs};
+use crate::progress::Bar;
+use output::{Form, Target};
+use report::{FileReport, Report};
+
+/// Smooth clips into keyframes and Bézier curves
+///
+/// Each channel (the rotation of a joint, the position of one that moves in its parent's frame) becomes a run of
+/// cubic Bézier curves, fitted by least squares and split where they are furthest from the frames, until they are
+/// within the thresholds everywhere. What is finer than that, noise and jitter, is smoothed away, and the curves
+/// can be sampled at any rate.
+///
+/// Writes them sampled as BVH, or as they are as .mclip, the stored form, a small fraction of the size, which every
+/// command reads like any clip. Prints how much smaller and how far off they are: values are the numbers in control
+/// points against those in frames, bytes the stored form against the file.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  morec smooth walk.bvh                         only say what it would come to
+  morec smooth walk.bvh -o smooth.bvh --max-angle 1
+  morec smooth recordings/ -o stored/ --form mclip --max-joint 5
+  morec smooth walk.bvh --plot Hips hips.svg --plot LeftArm.x arm.svg
+
+Exit codes: 0 all clips done; 1 something could not be read or written (the others are done all the same);
+2 wrong command line.")]
+pub struct Args {
+    /// Clips (BVH, AMC, MCLIP) or folders of clips; - is standard input
+    #[arg(required = true, value_name = "CLIP")]
+    clips: Vec<PathBuf>,
+    /// What to write: a .bvh or .mclip file for one clip, a folder for several. Without it, nothing is written
+    #[arg(short, long, value_name = "OUT")]
+    output: Option<PathBuf>,
+    /// What to write into a folder: bvh if not given. A file's ending says it for a file
+    #[arg(long, value_enum, requires = "output")]
+    form: Option<Form>,
+    /// Largest angle between a joint's rotation in its parent's frame and its curve, at any frame, in degrees
+    #[arg(long, value_name = "DEGREES", default_value = "0.5", value_parser = figure)]
+    max_angle: f64,
+    /// Largest distance between a moving joint's position in its parent's frame and its curve, in millimetres
+    #[arg(long, value_name = "MM", default_value = "5", value_parser = figure)]
+    max_position: f64,
+    /// Largest distance between where any joint is in the world and where the curves put it, in millimetres. Not
+    /// bounded if not given: errors along a chain of joints then add up
+    #[arg(long, value_name = "MM", value_parser = figure)]
+    max_joint: Option<f64>,
+    /// Frames a second of the BVH written; those of the clip if not given
+    #[arg(long, value_name = "HZ", value_parser = files::rate)]
+    rate: Option<f64>,
+    /// Metres in the files' unit of length, 0.01 for centimetres; inferred if not given
+    #[arg(long, value_name = "METRES", value_parser = figure)]
+    unit: Option<f64>,
+    /// Draw a channel of the clip with its curves and keyframes as SVG: a joint's name for its rotation, with .x .y
+    /// .z or .w for one component and its control points, .position for its position, .px .py or .pz for one of it.
+    /// Can be given several times
+    #[arg(long, num_args = 2, value_names = ["JOINT[.CHANNEL]", "SVG"])]
+    plot: Vec<String>,
+    /// Print one JSON array, with an object for each file
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    read: ReadArgs,
+}
+
+fn figure(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
+        _ => Err("expected a number above 0".to_owned()),
+    }
+}
+
+/// Compresses every clip, writes, and says what came of it.
+pub fn run(args: &Args) -> Result<ExitCode> {
+    let paths = files::expand(&args.clips)?;
+    let target = Target::new(args.output.as_deref(), args.form, &args.clips, &paths)?;
+    if !args.plot.is_empty() && paths.len() > 1 {
+        bail!("--plot draws one clip; {} are given", paths.len());
+    }
+    let (bar, done) = (Bar::new(), AtomicUsize::new(0));
+    let reports: Vec<FileReport> = paths
+        .par_iter()
+        .map(|path| {
+            let report = match smooth(path, args, &target) {
+                Ok(clips) => FileReport::Done { path: path.clone(), clips },
+                Err(error) => FileReport::failed(path, &error),
+            };
+            bar.report("smoothing clips", done.fetch_add(1, Ordering::Relaxed) + 1, paths.len());
+            report
+        })
+        .collect();
+    drop(bar);
+    for report in &reports {
+        if let FileReport::Failed { error, .. } = report {
+            eprintln!("morec: {error}");
+        }
+    }
+    let mut out = std::io::stdout().lock();
+    if args.json {
+        serde_json::to_writer_pretty(&mut out, &reports)?;
+        writeln!(out)?;
+    } else {
+        report::write(&mut out, &reports)?;
+    }
+    let failed = reports.iter().any(|report| matches!(report, FileReport::Failed { .. }));
+    Ok(if failed { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+}
+
+/// One file, from reading to writing: a report for each character in it.
+fn smooth(path: &Path, args: &Args, target: &Target) -> Result<Vec<Report>> {
+    let opened = files::open(path, &args.read)?;
+    for warning in &opened.warnings {
+        eprintln!("morec: {}: {warning}", path.display());
+    }
+    let shown = || path.display().to_string();
+    let file_bytes = std::fs::metadata(path).map(|data| data.len()).ok();
+    let several = opened.clips.len() > 1;
+    let mut reports = Vec::new();
+    for (i, clip) in opened.clips.into_iter().enumerate() {
+        if clip.frames == 0 {
+            bail!("{}: no frames to smooth", path.display());
+        }
+        let compressed = compress(&clip, &params(&clip, args)?, &()).with_context(shown)?;
+        let bytes = compressed.to_bytes();
+        let character = several.then_some(i + 1);
+        let written = target.path(path, character);
+        if let Some(output) = &written {
+            let rate_hz = args.rate.unwrap_or(clip.rate_hz);
+            target
+                .write(output, &compressed, &bytes, rate_hz)
+                .with_context(|| output.display().to_string())?;
+        }
+        for plot in args.plot.chunks_exact(2) {
+            picture::write(&clip, &compressed, &plot[0], Path::new(&plot[1]))?;
+        }
+        let file_bytes = file_bytes.filter(|_| !several);
+        reports.push(Report::new(&compressed, written, bytes.len(), file_bytes));
+    }
+    Ok(reports)
+}
+
+/// Thresholds in the clip's own unit of length.
+fn params(clip: &Clip, args: &Args) -> Result<SmoothParams> {
+    let metres_per_unit = match args.unit {
+        Some(unit) => unit,
+        None => prepare(clip.clone(), &ImportOptions::default())?.facts.metres_per_unit,
+    };
+    Ok(SmoothParams {
+        angle_rad: args.max_angle.to_radians(),
+        position_metres: args.max_position / 1e3,
+        joint_position_metres: args.max_joint.map(|mm| mm / 1e3),
+        metres_per_unit,
+    })
+}

@@ -1,0 +1,50 @@
+//! `--plot`: one channel of a clip as a picture.
+
+use std::path::Path;
+
+use anyhow::{Context, Result, anyhow, bail};
+use morec::clip::{Clip, Skeleton};
+use morec::smooth::{CompressedClip, Kind};
+
+use crate::files::{some_of, write_whole};
+
+/// What can follow a joint's name.
+const CHANNELS: [(&str, Kind, Option<usize>); 8] = [
+    ("x", Kind::Rotation, Some(0)),
+    ("y", Kind::Rotation, Some(1)),
+    ("z", Kind::Rotation, Some(2)),
+    ("w", Kind::Rotation, Some(3)),
+    ("position", Kind::Position, None),
+    ("px", Kind::Position, Some(0)),
+    ("py", Kind::Position, Some(1)),
+    ("pz", Kind::Position, Some(2)),
+];
+
+/// Draws what `channel` names.
+pub fn write(clip: &Clip, compressed: &CompressedClip, channel: &str, path: &Path) -> Result<()> {
+    let (joint, kind, axis) = find(&clip.skeleton, channel)?;
+    let name = &clip.skeleton.joints()[joint].name;
+    let chart = compressed
+        .chart(clip, joint, kind, axis)
+        .ok_or_else(|| anyhow!("--plot {channel}: {name} does not move in its parent's frame"))?;
+    write_whole(path, |out| out.write_all(chart.svg().as_bytes())).with_context(|| path.display().to_string())
+}
+
+/// A joint's name alone comes first: it may have points in it.
+fn find(skeleton: &Skeleton, channel: &str) -> Result<(usize, Kind, Option<usize>)> {
+    if let Some(joint) = skeleton.find(channel) {
+        return Ok((joint, Kind::Rotation, None));
+    }
+    if let Some((name, ending)) = channel.rsplit_once('.')
+        && let Some(joint) = skeleton.find(name)
+    {
+        let found = CHANNELS.iter().find(|(known, ..)| *known == ending);
+        let names: Vec<&str> = CHANNELS.iter().map(|channel| channel.0).collect();
+        let (_, kind, axis) = found.ok_or_else(|| {
+            anyhow!("--plot {channel}: expected one of {}, found {ending}", names.join(", "))
+        })?;
+        return Ok((joint, *kind, *axis));
+    }
+    let names: Vec<String> = skeleton.joints().iter().map(|joint| joint.name.clone()).collect();
+    bail!("--plot {channel}: no such joint; there are {}", some_of(names.iter()))
+}
