@@ -90,6 +90,7 @@
 //! | learning | [`labels`], [`train`] | a [`TemplateModel`](templates::TemplateModel) and a report |
 //! | keeping | [`index`] | one file, with a checksum and where it came from |
 //! | recognising | [`templates`], [`decode`], [`live`] | [`Detection`](live::Detection)s, nothing taken back |
+//! | without labels | [`pivots`], [`pca`], [`segment`], [`cluster`] | pose rows, fewer dimensions, cuts, samples that are alike |
 //! | measuring | [`eval`], [`crossval`], [`report`], [`plot`] | figures, timelines, charts, one page of HTML |
 //!
 //! [`smooth`] turns clips into keyframes and curves, a small form to keep them in. [`synth`] makes people, clips and

@@ -6,7 +6,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
-use morec::cluster::{Groups, KwasForm, KwasParams, Pairs, Spectrum, adjusted_rand_index, kwas_groups};
+use clap::ValueEnum;
+use morec::cluster::{Clusters, KwasForm, KwasParams, Pairs, Spectrum, adjusted_rand_index, kwas_clusters};
 use morec::features::Rows;
 use morec::labels::Labels;
 use morec::pca::{Keep, Moments, Pca};
@@ -20,13 +21,13 @@ use crate::table::Table;
 /// Group samples that are alike
 ///
 /// Two samples are alike if the principal directions of their poses are (kWAS, above --tau); whoever is alike, over
-/// however many others, is one group. With labels their samples are grouped, and the groups held against the
+/// however many others, is one cluster. With labels their samples are grouped, and the clusters held against the
 /// classes; without, clips are cut first (as `morec cut` does) and the segments grouped.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   morec group --clips recordings/ --labels labels.tsv
-  morec group --clips recordings/ --labels labels.tsv --tau 0.99 --json
+  morec group --clips recordings/ --labels labels.tsv --centre none --tau 0.995
   morec group --clips 86_01.amc")]
 pub struct Args {
     /// Clips, or folders of clips
@@ -39,7 +40,7 @@ pub struct Args {
     /// Group samples of these classes only, separated by commas [default: every class of the labels]
     #[arg(long, value_delimiter = ',', value_name = "CLASSES", requires = "labels")]
     classes: Vec<String>,
-    /// How alike two samples must be to be one group, 0 to 1
+    /// How alike two samples must be to be one cluster, 0 to 1
     #[arg(long, value_name = "TAU", default_value_t = KwasParams::default().tau)]
     tau: f64,
     /// Principal directions of a sample that count
@@ -48,6 +49,9 @@ pub struct Args {
     /// Scale similarity so that a sample is 1 like itself, however few directions count
     #[arg(long)]
     normalised: bool,
+    /// What samples are centred on before they are compared
+    #[arg(long, value_enum, default_value = "database")]
+    centre: Centre,
     /// Share of the variance of all poses that is kept before samples are compared
     #[arg(long, value_name = "SHARE", default_value_t = 0.99)]
     quality: f64,
@@ -59,6 +63,16 @@ pub struct Args {
     json: bool,
     #[command(flatten)]
     poses: PoseArgs,
+}
+
+/// What samples are centred on.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+enum Centre {
+    /// The mean of all poses, which are then reduced to --quality or --dims: samples are many small clusters
+    Database,
+    /// Nothing, and all dimensions are kept: the mean pose counts, samples are more alike, and --tau belongs near 1
+    None,
 }
 
 /// A stretch of a clip to be grouped.
@@ -82,9 +96,10 @@ struct Agreement {
 #[derive(Serialize)]
 struct Grouped {
     kwas: KwasParams,
+    centre: Centre,
     dims: usize,
     quality: f64,
-    groups: Vec<Vec<Sample>>,
+    clusters: Vec<Vec<Sample>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     agreement: Option<Agreement>,
 }
@@ -100,16 +115,18 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         Some(_) => labelled(args, &clips)?,
         None => cut(&reader, &clips)?,
     };
-    let mut moments = Moments::new(reader.set.row_dim());
-    clips.values().for_each(|clip| moments.push_rows(&clip.rows));
-    let pca = Pca::fit(&moments, keep)?;
-    let (samples, spectra) = spectra(samples, &clips, reader.rate_hz(), &pca)?;
-    let groups = kwas_groups(&spectra, &kwas);
-    let agreement = args.labels.is_some().then(|| Agreement::of(&samples, &groups));
+    let pca = match args.centre {
+        Centre::Database => Some(components(&clips, reader.set.row_dim(), keep)?),
+        Centre::None => None,
+    };
+    let (samples, spectra) = spectra(samples, &clips, reader.rate_hz(), pca.as_ref())?;
+    let clusters = kwas_clusters(&spectra, &kwas);
+    let agreement = args.labels.is_some().then(|| Agreement::of(&samples, &clusters));
     let take = |members: Vec<usize>| members.into_iter().map(|i| samples[i].clone()).collect();
-    let mut groups: Vec<Vec<Sample>> = groups.members().into_iter().map(take).collect();
-    groups.sort_by_key(|group| std::cmp::Reverse(group.len()));
-    let grouped = Grouped { kwas, dims: pca.dims(), quality: pca.quality(), groups, agreement };
+    let mut clusters: Vec<Vec<Sample>> = clusters.members().into_iter().map(take).collect();
+    clusters.sort_by_key(|cluster| std::cmp::Reverse(cluster.len()));
+    let (dims, quality) = pca.map_or((reader.set.row_dim(), 1.0), |pca| (pca.dims(), pca.quality()));
+    let grouped = Grouped { kwas, centre: args.centre, dims, quality, clusters, agreement };
     let mut out = std::io::stdout().lock();
     if args.json {
         serde_json::to_writer_pretty(&mut out, &grouped).map_err(std::io::Error::from)?;
@@ -191,12 +208,18 @@ fn cut(reader: &PoseReader<'_>, clips: &BTreeMap<String, PosedClip>) -> Result<V
     Ok(samples)
 }
 
+fn components(clips: &BTreeMap<String, PosedClip>, dim: usize, keep: Keep) -> Result<Pca> {
+    let mut moments = Moments::new(dim);
+    clips.values().for_each(|clip| moments.push_rows(&clip.rows));
+    Ok(Pca::fit(&moments, keep)?)
+}
+
 /// The samples of at least one pose, and what kWAS knows of each.
 fn spectra(
     samples: Vec<Sample>,
     clips: &BTreeMap<String, PosedClip>,
     rate_hz: f64,
-    pca: &Pca,
+    pca: Option<&Pca>,
 ) -> Result<(Vec<Sample>, Vec<Spectrum>)> {
     let (mut kept, mut spectra) = (Vec::new(), Vec::new());
     for sample in samples {
@@ -207,45 +230,45 @@ fn spectra(
             eprintln!("morec: {}: a sample at {:.2} s holds no pose", sample.clip, sample.start_secs);
             continue;
         }
-        spectra.push(Spectrum::of_rows(&pca.project(&rows.slice(start..stop))));
+        let rows = rows.slice(start..stop);
+        spectra.push(Spectrum::of_rows(&pca.map_or_else(|| rows.clone(), |pca| pca.project(&rows))));
         kept.push(sample);
     }
     Ok((kept, spectra))
 }
 
 impl Agreement {
-    fn of(samples: &[Sample], groups: &Groups) -> Self {
+    fn of(samples: &[Sample], clusters: &Clusters) -> Self {
         let names: BTreeSet<Option<&str>> = samples.iter().map(|s| s.class.as_deref()).collect();
         let number = |s: &Sample| names.range(..s.class.as_deref()).count();
         let classes: Vec<usize> = samples.iter().map(number).collect();
-        let pairs = Pairs::count(&classes, &groups.of);
+        let pairs = Pairs::count(&classes, &clusters.of);
         Self {
             classes: names.len(),
             pairs,
             rand_index: pairs.rand_index(),
-            adjusted_rand_index: adjusted_rand_index(&classes, &groups.of),
+            adjusted_rand_index: adjusted_rand_index(&classes, &clusters.of),
         }
     }
 }
 
 impl Grouped {
     fn write(&self, out: &mut impl Write) -> std::io::Result<()> {
-        let samples: usize = self.groups.iter().map(Vec::len).sum();
-        let (groups, dims, percent) = (self.groups.len(), self.dims, 100.0 * self.quality);
-        writeln!(
-            out,
-            "{samples} samples in {groups} groups; {dims} dimensions, {percent:.1} % of all poses"
-        )?;
-        for (number, group) in self.groups.iter().enumerate() {
-            writeln!(out, "  group {}: {} samples: {}", number + 1, group.len(), contents(group))?;
+        let samples: usize = self.clusters.iter().map(Vec::len).sum();
+        let (clusters, dims, percent) = (self.clusters.len(), self.dims, 100.0 * self.quality);
+        let plural = if clusters == 1 { "" } else { "s" };
+        let kept = format!("{dims} dimensions, {percent:.1} % of all poses");
+        writeln!(out, "{samples} samples in {clusters} cluster{plural}; {kept}")?;
+        for (number, cluster) in self.clusters.iter().enumerate() {
+            writeln!(out, "  cluster {}: {} samples: {}", number + 1, cluster.len(), contents(cluster))?;
         }
         let Some(agreement) = &self.agreement else { return Ok(()) };
         let pairs = &agreement.pairs;
         writeln!(out, "\nagainst {} classes, pair by pair", agreement.classes)?;
         let mut table = Table::new(["", "one class", "two classes"]);
         let row = |name: &str, one: u64, two: u64| [name.to_owned(), one.to_string(), two.to_string()];
-        table.row(row("one group", pairs.true_positive, pairs.false_positive));
-        table.row(row("two groups", pairs.false_negative, pairs.true_negative));
+        table.row(row("one cluster", pairs.true_positive, pairs.false_positive));
+        table.row(row("two clusters", pairs.false_negative, pairs.true_negative));
         write!(out, "{table}")?;
         let (rand, adjusted) = (agreement.rand_index, agreement.adjusted_rand_index);
         writeln!(out, "Rand index {rand:.3}, adjusted {adjusted:.3}")
@@ -253,10 +276,10 @@ impl Grouped {
 }
 
 /// Classes and how often, or where the segments lie.
-fn contents(group: &[Sample]) -> String {
+fn contents(cluster: &[Sample]) -> String {
     let mut classes: BTreeMap<&str, usize> = BTreeMap::new();
     let mut parts = Vec::new();
-    for sample in group {
+    for sample in cluster {
         match &sample.class {
             Some(class) => *classes.entry(class).or_default() += 1,
             None => parts.push(format!("{} {:.2}-{:.2} s", sample.clip, sample.start_secs, sample.stop_secs)),

@@ -6,4 +6,5 @@ mod demo;
 mod evaluate;
 mod inspect;
 mod kit;
+mod poses;
 mod smooth;

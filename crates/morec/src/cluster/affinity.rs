@@ -1,7 +1,7 @@
 //! Affinity propagation: groups around exemplars, their number not given (Frey and Dueck, *Clustering by passing
 //! messages between data points*, 2007).
 
-use super::Groups;
+use super::Clusters;
 
 /// Figures of [`affinity_propagation`].
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
@@ -23,15 +23,15 @@ impl Default for AffinityParams {
     }
 }
 
-/// Groups of `n` items by their similarity (minus a squared distance, say). O(rounds · n²) time, O(n²) memory. If the
+/// Clusters of `n` items by their similarity (minus a squared distance, say). O(rounds · n²) time, O(n²) memory. If the
 /// messages never settle, the exemplars of the last round count.
 pub fn affinity_propagation(
     n: usize,
     similarity: impl Fn(usize, usize) -> f64,
     params: &AffinityParams,
-) -> Groups {
+) -> Clusters {
     if n < 2 {
-        return Groups { of: vec![0; n], count: n };
+        return Clusters { of: vec![0; n], count: n };
     }
     let s = similarities(n, similarity, params.preference);
     let (mut r, mut a) = (vec![0.0; n * n], vec![0.0; n * n]);
@@ -114,10 +114,10 @@ fn availabilities(n: usize, r: &[f64], a: &mut [f64], damping: f64) {
     }
 }
 
-/// Every item to its most similar exemplar; exemplars to themselves. Groups in order of their first items.
-fn assign(n: usize, s: &[f64], exemplars: &[usize]) -> Groups {
+/// Every item to its most similar exemplar; exemplars to themselves. Clusters in order of their first items.
+fn assign(n: usize, s: &[f64], exemplars: &[usize]) -> Clusters {
     if exemplars.is_empty() {
-        return Groups { of: vec![0; n], count: 1 };
+        return Clusters { of: vec![0; n], count: 1 };
     }
     let nearest = |i: usize| {
         let own = exemplars.iter().position(|&k| k == i);
@@ -126,7 +126,7 @@ fn assign(n: usize, s: &[f64], exemplars: &[usize]) -> Groups {
         })
         .unwrap_or(0)
     };
-    super::groups::numbered((0..n).map(nearest))
+    super::clusters::numbered((0..n).map(nearest))
 }
 
 #[cfg(test)]

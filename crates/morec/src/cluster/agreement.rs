@@ -1,31 +1,31 @@
-//! How well groups agree with classes.
+//! How well clusters agree with classes.
 
 use std::collections::BTreeMap;
 
-/// Pairs of samples by whether they are of one class and in one group (thesis Table 3.1, Tables 5.2–5.4).
+/// Pairs of samples by whether they are of one class and in one cluster (thesis Table 3.1, Tables 5.2–5.4).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 pub struct Pairs {
-    /// One class, one group.
+    /// One class, one cluster.
     pub true_positive: u64,
-    /// Two classes, one group.
+    /// Two classes, one cluster.
     pub false_positive: u64,
-    /// One class, two groups.
+    /// One class, two clusters.
     pub false_negative: u64,
-    /// Two classes, two groups.
+    /// Two classes, two clusters.
     pub true_negative: u64,
 }
 
 impl Pairs {
-    /// Every pair of samples, whose classes and groups have any numbers; what one list has more than the other is left
+    /// Every pair of samples, whose classes and clusters have any numbers; what one list has more than the other is left
     /// out. O(samples · log samples).
-    pub fn count(classes: &[usize], groups: &[usize]) -> Self {
-        let counts = Counts::of(classes, groups);
-        let (both, class, group) = (counts.both(), counts.one_class(), counts.one_group());
+    pub fn count(classes: &[usize], clusters: &[usize]) -> Self {
+        let counts = Counts::of(classes, clusters);
+        let (both, class, cluster) = (counts.both(), counts.one_class(), counts.one_cluster());
         Self {
             true_positive: both,
-            false_positive: group - both,
+            false_positive: cluster - both,
             false_negative: class - both,
-            true_negative: pairs(counts.samples) + both - class - group,
+            true_negative: pairs(counts.samples) + both - class - cluster,
         }
     }
 
@@ -45,11 +45,11 @@ impl Pairs {
 
 /// Rand index corrected for chance (Hubert and Arabie 1985): 1 for the same partition, about 0 for one at random. 1 if
 /// both partitions are trivial in the same way. O(samples · log samples).
-pub fn adjusted_rand_index(classes: &[usize], groups: &[usize]) -> f64 {
-    let counts = Counts::of(classes, groups);
-    let (class, group) = (counts.one_class() as f64, counts.one_group() as f64);
-    let expected = class * group / pairs(counts.samples).max(1) as f64;
-    let most = (class + group) / 2.0;
+pub fn adjusted_rand_index(classes: &[usize], clusters: &[usize]) -> f64 {
+    let counts = Counts::of(classes, clusters);
+    let (class, cluster) = (counts.one_class() as f64, counts.one_cluster() as f64);
+    let expected = class * cluster / pairs(counts.samples).max(1) as f64;
+    let most = (class + cluster) / 2.0;
     if most == expected { 1.0 } else { (counts.both() as f64 - expected) / (most - expected) }
 }
 
@@ -58,22 +58,22 @@ fn pairs(n: u64) -> u64 {
     n * n.saturating_sub(1) / 2
 }
 
-/// Samples by class, by group and by both.
+/// Samples by class, by cluster and by both.
 struct Counts {
     classes: BTreeMap<usize, u64>,
-    groups: BTreeMap<usize, u64>,
+    clusters: BTreeMap<usize, u64>,
     cells: BTreeMap<(usize, usize), u64>,
     samples: u64,
 }
 
 impl Counts {
-    fn of(classes: &[usize], groups: &[usize]) -> Self {
+    fn of(classes: &[usize], clusters: &[usize]) -> Self {
         let mut counts =
-            Self { classes: BTreeMap::new(), groups: BTreeMap::new(), cells: BTreeMap::new(), samples: 0 };
-        for (&class, &group) in classes.iter().zip(groups) {
+            Self { classes: BTreeMap::new(), clusters: BTreeMap::new(), cells: BTreeMap::new(), samples: 0 };
+        for (&class, &cluster) in classes.iter().zip(clusters) {
             *counts.classes.entry(class).or_default() += 1;
-            *counts.groups.entry(group).or_default() += 1;
-            *counts.cells.entry((class, group)).or_default() += 1;
+            *counts.clusters.entry(cluster).or_default() += 1;
+            *counts.cells.entry((class, cluster)).or_default() += 1;
             counts.samples += 1;
         }
         counts
@@ -87,7 +87,7 @@ impl Counts {
         self.classes.values().copied().map(pairs).sum()
     }
 
-    fn one_group(&self) -> u64 {
-        self.groups.values().copied().map(pairs).sum()
+    fn one_cluster(&self) -> u64 {
+        self.clusters.values().copied().map(pairs).sum()
     }
 }

@@ -1,7 +1,7 @@
 //! A hierarchy of groups that is cut where the user likes: average linkage by chains of nearest neighbours (Murtagh,
 //! *A survey of recent advances in hierarchical clustering algorithms*, 1983).
 
-use super::Groups;
+use super::Clusters;
 
 /// Two groups that became one.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
@@ -59,16 +59,16 @@ impl Hierarchy {
     }
 
     /// The groups whose items are on average no further apart than `height`.
-    pub fn at_height(&self, height: f64) -> Groups {
+    pub fn at_height(&self, height: f64) -> Clusters {
         self.after(self.merges.partition_point(|m| m.height <= height))
     }
 
     /// So many groups, or as many as there are items.
-    pub fn into_groups(&self, count: usize) -> Groups {
+    pub fn into_clusters(&self, count: usize) -> Clusters {
         self.after(self.items.saturating_sub(count.max(1)).min(self.merges.len()))
     }
 
-    fn after(&self, merges: usize) -> Groups {
+    fn after(&self, merges: usize) -> Clusters {
         let mut parent: Vec<usize> = (0..self.items).collect();
         fn root(parent: &mut [usize], mut i: usize) -> usize {
             while parent[i] != i {
@@ -82,7 +82,7 @@ impl Hierarchy {
             parent[a] = b;
         }
         let roots: Vec<usize> = (0..self.items).map(|i| root(&mut parent, i)).collect();
-        super::groups::numbered(roots.into_iter())
+        super::clusters::numbered(roots.into_iter())
     }
 }
 
@@ -135,7 +135,7 @@ mod tests {
             count in 1usize..9,
         ) {
             let tree = Hierarchy::average(points.len(), |a, b| (points[a] - points[b]).abs());
-            let mut members = tree.into_groups(count).members();
+            let mut members = tree.into_clusters(count).members();
             members.sort();
             prop_assert_eq!(members, plain(&points, count.min(points.len())));
         }

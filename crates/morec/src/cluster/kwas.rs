@@ -44,8 +44,11 @@ pub struct Spectrum {
 }
 
 impl Spectrum {
-    /// Of a sample's rows, `m × n`, as they are: centred on the database's mean, as
-    /// [`Pca::project`](crate::pca::Pca::project) gives them. O(m n² + n³).
+    /// Of a sample's rows, `m × n`, as they are. O(m n² + n³).
+    ///
+    /// Thesis §4.2 centres rows on the mean of the database, as [`Pca::project`](crate::pca::Pca::project) does; §3.6 does
+    /// not say. The numbers of classes in Tables 5.2–5.4 (2, 3 and 14) are those of rows that are not centred, whose
+    /// first direction is the mean pose: on referee samples 1, 4 and 11 against 60, 81 and 94.
     pub fn of_rows(rows: &Rows) -> Self {
         let a = DMatrix::from_fn(rows.dim(), rows.len(), |k, i| f64::from(rows.row(i)[k]));
         Self::of_matrix(&a * a.transpose())

@@ -6,14 +6,14 @@
 
 mod affinity;
 mod agreement;
-mod groups;
+mod clusters;
 mod hierarchy;
 mod kwas;
 mod shape;
 
 pub use affinity::{AffinityParams, affinity_propagation};
 pub use agreement::{Pairs, adjusted_rand_index};
-pub use groups::{Groups, connected, kwas_groups};
+pub use clusters::{Clusters, connected, kwas_clusters};
 pub use hierarchy::{Hierarchy, Merge};
 pub use kwas::{KwasForm, KwasParams, Spectrum, kwas};
 pub use shape::{resampled, squared_distance};

@@ -37,11 +37,11 @@ proptest! {
     }
 
     #[test]
-    fn pairs_are_those_counted_one_by_one((classes, groups) in labels()) {
+    fn pairs_are_those_counted_one_by_one((classes, clusters) in labels()) {
         let mut expected = Pairs::default();
         for i in 0..classes.len() {
             for j in 0..i {
-                *match (classes[i] == classes[j], groups[i] == groups[j]) {
+                *match (classes[i] == classes[j], clusters[i] == clusters[j]) {
                     (true, true) => &mut expected.true_positive,
                     (false, true) => &mut expected.false_positive,
                     (true, false) => &mut expected.false_negative,
@@ -49,22 +49,22 @@ proptest! {
                 } += 1;
             }
         }
-        let found = Pairs::count(&classes, &groups);
+        let found = Pairs::count(&classes, &clusters);
         prop_assert_eq!(found, expected);
-        prop_assert_eq!(Pairs::count(&groups, &classes).rand_index(), found.rand_index());
+        prop_assert_eq!(Pairs::count(&clusters, &classes).rand_index(), found.rand_index());
         // The adjusted index by its pair-counting form (Hubert and Arabie 1985; Steinley 2004).
         let [tp, fp, fneg, tn] =
             [found.true_positive, found.false_positive, found.false_negative, found.true_negative]
                 .map(|n| n as f64);
         let below = (tp + fp) * (fp + tn) + (tp + fneg) * (fneg + tn);
         let direct = if below == 0.0 { 1.0 } else { 2.0 * (tp * tn - fp * fneg) / below };
-        prop_assert!((adjusted_rand_index(&classes, &groups) - direct).abs() < 1e-9);
+        prop_assert!((adjusted_rand_index(&classes, &clusters) - direct).abs() < 1e-9);
     }
 
     #[test]
-    fn groups_are_the_closure_of_the_links(items in 0usize..14, seed in any::<u64>()) {
+    fn clusters_are_the_closure_of_the_links(items in 0usize..14, seed in any::<u64>()) {
         let linked = |a: usize, b: usize| (seed >> ((a * 7 + b * 5) % 64)) & 7 == 1;
-        let groups = connected(items, linked);
+        let clusters = connected(items, linked);
         // Warshall's closure.
         let mut reach: Vec<Vec<bool>> = (0..items)
             .map(|a| (0..items).map(|b| a == b || linked(a.min(b), a.max(b))).collect())
@@ -78,11 +78,11 @@ proptest! {
         }
         for a in 0..items {
             for b in 0..items {
-                prop_assert_eq!(groups.of[a] == groups.of[b], reach[a][b]);
+                prop_assert_eq!(clusters.of[a] == clusters.of[b], reach[a][b]);
             }
         }
-        prop_assert_eq!(groups.members().iter().map(Vec::len).sum::<usize>(), items);
-        prop_assert!(groups.members().iter().all(|m| !m.is_empty()));
+        prop_assert_eq!(clusters.members().iter().map(Vec::len).sum::<usize>(), items);
+        prop_assert!(clusters.members().iter().all(|m| !m.is_empty()));
     }
 }
 
@@ -112,9 +112,9 @@ fn samples_of_one_direction_are_grouped() {
         Spectrum::of_rows(&Rows::from_values(3, rows.collect()))
     };
     let samples = [along(1.0, 0.0), along(0.0, 1.0), along(2.0, 0.1), along(0.1, 1.0)];
-    let groups = kwas_groups(&samples, &KwasParams::default());
-    assert_eq!(groups, Groups { of: vec![0, 1, 0, 1], count: 2 });
-    assert_eq!(kwas_groups(&samples, &KwasParams { tau: 1.0, ..KwasParams::default() }).count, 4);
+    let clusters = kwas_clusters(&samples, &KwasParams::default());
+    assert_eq!(clusters, Clusters { of: vec![0, 1, 0, 1], count: 2 });
+    assert_eq!(kwas_clusters(&samples, &KwasParams { tau: 1.0, ..KwasParams::default() }).count, 4);
     let nothing = Spectrum::of_rows(&Rows::new(3));
     assert!(kwas(&nothing, &samples[0], 3, KwasForm::Normalised).is_finite());
 }

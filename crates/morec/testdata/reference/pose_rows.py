@@ -93,11 +93,11 @@ def main(folder):
     reduced = {name: (x - mean) @ axes[:, :16] for name, x in rows.items()}
     samples = [(r["clip"], int(r["start"]), int(r["stop"]), r["class"])
                for r in csv.DictReader(open(f"{folder}/labels.tsv"), delimiter="\t") if r["clip"] in CLIPS]
-    chosen = samples[::7]
+    chosen = samples[::4]
     cut = [reduced[clip][start:stop] for clip, start, stop, _ in chosen]
     similar = [[i, j, kwas(cut[i], cut[j])] for i in range(len(cut)) for j in range(i + 1)]
     distances = {}
-    for name in ("signals_1", "running_1", "basketball_1"):
+    for name in ("signals_1", "basketball_1", "basketball_3"):
         dims, h = ppca(rows[name], 0)
         distances[name] = {"dims": dims, "h": h}
     json.dump({

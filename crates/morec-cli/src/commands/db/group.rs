@@ -6,8 +6,8 @@ use std::process::ExitCode;
 
 use anyhow::{Result, bail};
 use morec::cluster::{
-    AffinityParams, Groups, Hierarchy, KwasParams, Pairs, Spectrum, adjusted_rand_index,
-    affinity_propagation, kwas_groups, resampled, squared_distance,
+    AffinityParams, Clusters, Hierarchy, KwasParams, Pairs, Spectrum, adjusted_rand_index,
+    affinity_propagation, kwas_clusters, resampled, squared_distance,
 };
 use morec::features::{BoneSet, FeatureParams, Rows};
 use morec_db::labels::{NewSample, SampleFilter, State};
@@ -108,7 +108,7 @@ struct Grouped {
 /// Rows that a sample of any length becomes.
 const POINTS: usize = 16;
 
-/// Groups, prints, and proposes if asked to.
+/// Clusters, prints, and proposes if asked to.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let mut db =
         if args.name_as.is_some() { MotionDb::open(&args.db)? } else { MotionDb::open_read_only(&args.db)? };
@@ -184,7 +184,7 @@ fn only(rows: &Rows, of: BoneSet, wanted: BoneSet) -> Rows {
     out
 }
 
-fn groups(items: &[Item], args: &Args) -> Groups {
+fn groups(items: &[Item], args: &Args) -> Clusters {
     let points: Vec<Vec<f32>> = items.iter().map(|item| resampled(&item.rows, POINTS)).collect();
     let apart = |a: usize, b: usize| squared_distance(&points[a], &points[b], POINTS);
     match args.method {
@@ -195,14 +195,14 @@ fn groups(items: &[Item], args: &Args) -> Groups {
         Method::Hierarchy => {
             let tree = Hierarchy::average(items.len(), |a, b| apart(a, b).sqrt());
             match (args.groups, args.height) {
-                (Some(count), _) => tree.into_groups(count),
+                (Some(count), _) => tree.into_clusters(count),
                 (None, Some(height)) => tree.at_height(height),
-                (None, None) => tree.into_groups((items.len() as f64).sqrt().ceil() as usize),
+                (None, None) => tree.into_clusters((items.len() as f64).sqrt().ceil() as usize),
             }
         }
         Method::Kwas => {
             let spectra: Vec<Spectrum> = items.iter().map(|item| Spectrum::of_rows(&item.rows)).collect();
-            kwas_groups(&spectra, &KwasParams { tau: args.tau, ..KwasParams::default() })
+            kwas_clusters(&spectra, &KwasParams { tau: args.tau, ..KwasParams::default() })
         }
     }
 }

@@ -1,27 +1,27 @@
-//! Groups as connected components.
+//! Clusters as connected components.
 
 use super::{KwasParams, Spectrum, kwas};
 
-/// Which group each item is in. Groups are numbered by their first item.
+/// Which cluster each item is in. Clusters are numbered by their first item.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
-pub struct Groups {
-    /// Group of each item.
+pub struct Clusters {
+    /// Cluster of each item.
     pub of: Vec<usize>,
-    /// Number of groups.
+    /// Number of clusters.
     pub count: usize,
 }
 
-impl Groups {
-    /// The items of each group.
+impl Clusters {
+    /// The items of each cluster.
     pub fn members(&self) -> Vec<Vec<usize>> {
         let mut members = vec![Vec::new(); self.count];
-        self.of.iter().enumerate().for_each(|(item, &group)| members[group].push(item));
+        self.of.iter().enumerate().for_each(|(item, &cluster)| members[cluster].push(item));
         members
     }
 }
 
-/// Groups from any numbers: items of one number are together.
-pub(super) fn numbered(numbers: impl Iterator<Item = usize>) -> Groups {
+/// Clusters from any numbers: items of one number are together.
+pub(super) fn numbered(numbers: impl Iterator<Item = usize>) -> Clusters {
     let mut known = std::collections::BTreeMap::new();
     let of = numbers
         .map(|number| {
@@ -29,11 +29,11 @@ pub(super) fn numbered(numbers: impl Iterator<Item = usize>) -> Groups {
             *known.entry(number).or_insert(next)
         })
         .collect();
-    Groups { of, count: known.len() }
+    Clusters { of, count: known.len() }
 }
 
-/// Groups of `items` items: whoever is linked, over however many others, is together. O(items² ) links asked for.
-pub fn connected(items: usize, linked: impl Fn(usize, usize) -> bool) -> Groups {
+/// Clusters of `items` items: whoever is linked, over however many others, is together. O(items² ) links asked for.
+pub fn connected(items: usize, linked: impl Fn(usize, usize) -> bool) -> Clusters {
     const NONE: usize = usize::MAX;
     let mut of = vec![NONE; items];
     let mut count = 0;
@@ -53,10 +53,10 @@ pub fn connected(items: usize, linked: impl Fn(usize, usize) -> bool) -> Groups 
         }
         count += 1;
     }
-    Groups { of, count }
+    Clusters { of, count }
 }
 
-/// Groups of samples (thesis §3.6): connected components of the pairs whose similarity is above τ. O(samples² k n).
-pub fn kwas_groups(samples: &[Spectrum], params: &KwasParams) -> Groups {
+/// Clusters of samples (thesis §3.6): connected components of the pairs whose similarity is above τ. O(samples² k n).
+pub fn kwas_clusters(samples: &[Spectrum], params: &KwasParams) -> Clusters {
     connected(samples.len(), |a, b| kwas(&samples[a], &samples[b], params.k, params.form) > params.tau)
 }
