@@ -6,8 +6,10 @@ use super::*;
 use crate::testing::database_of_waves;
 use crate::{ClipId, MotionDb};
 
-/// What a user sees: class, start in frames, state.
-fn seen(db: &MotionDb) -> (Vec<String>, Vec<(i64, String, String, State)>) {
+/// What a user sees: the classes; clip, class, start and state of each sample.
+type Seen = (Vec<String>, Vec<(i64, String, String, State)>);
+
+fn seen(db: &MotionDb) -> Seen {
     let samples = db.samples(&SampleFilter::default()).unwrap();
     let classes = db.classes().unwrap().into_iter().map(|c| c.name).collect();
     let mut rows: Vec<_> =

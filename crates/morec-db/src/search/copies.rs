@@ -48,7 +48,7 @@ pub fn near_copies(index: &SearchIndex) -> Vec<NearCopy> {
         })
         .collect();
     // A motion that is its own mirror image is found both ways; the plain one says enough.
-    found.sort_by(|a, b| (a.of, a.copy, a.mirrored).cmp(&(b.of, b.copy, b.mirrored)));
+    found.sort_by_key(|c| (c.of, c.copy, c.mirrored));
     found.dedup_by_key(|c| (c.of, c.copy));
     found
 }
