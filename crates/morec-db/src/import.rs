@@ -126,7 +126,7 @@ struct NewClip {
 }
 
 impl MotionDb {
-    /// Imports files. Parsing, compressing and feature rows run on all threads of the pool; every [`BATCH`] files are
+    /// Imports files. Parsing, compressing and feature rows run on all threads of the pool; every 32 files are
     /// committed together. Importing again after a crash, or the same files twice, adds only what is missing.
     ///
     /// # Errors

@@ -1,7 +1,7 @@
 //! Classes and samples, and every change of them with a way back.
 //!
 //! A sample is a stretch of a clip said to show a class: accepted, proposed (by a program, to be looked at) or rejected
-//! (looked at, and not it). Each call that changes something is one edit, done wholly or not at all; [`MotionDb::undo`]
+//! (looked at, and not it). Each call that changes something is one edit, done wholly or not at all; [`MotionDb::undo`](crate::MotionDb::undo)
 //! takes back the last one, again and again, for the last [`EDITS_KEPT`] edits.
 
 mod classes;
