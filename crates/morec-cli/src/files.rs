@@ -135,29 +135,35 @@ fn is_clip(path: &Path) -> bool {
 
 /// Reads a clip; `-` is standard input. Errors begin with the path.
 pub fn open(path: &Path, args: &ReadArgs) -> Result<Opened> {
-    let shown = path.display();
-    let (bytes, stem) = if path == Path::new("-") {
+    let bytes = if path == Path::new("-") {
         let mut bytes = Vec::new();
         std::io::stdin().lock().read_to_end(&mut bytes).context("standard input")?;
-        (bytes, "stdin".to_owned())
+        bytes
     } else {
-        (fs::read(path).with_context(|| shown.to_string())?, stem(path))
+        read(path)?
     };
+    parse(path, &bytes, args)
+}
+
+/// Reads a clip whose bytes are at hand. Errors begin with the path.
+pub fn parse(path: &Path, bytes: &[u8], args: &ReadArgs) -> Result<Opened> {
+    let shown = path.display();
+    let stem = if path == Path::new("-") { "stdin".to_owned() } else { stem(path) };
     let limits = Limits::default();
-    let format = probe(&bytes, &path.to_string_lossy()).with_context(|| shown.to_string())?;
+    let format = probe(bytes, &path.to_string_lossy()).with_context(|| shown.to_string())?;
     let (loaded, skeleton) = match format {
         Format::Bvh => {
-            (bvh::read(&bytes, &stem, &args.bvh(), &limits).with_context(|| shown.to_string())?, None)
+            (bvh::read(bytes, &stem, &args.bvh(), &limits).with_context(|| shown.to_string())?, None)
         }
         Format::Asf => {
-            let (asf, warnings) = acclaim::read_asf(&bytes, &limits).with_context(|| shown.to_string())?;
+            let (asf, warnings) = acclaim::read_asf(bytes, &limits).with_context(|| shown.to_string())?;
             (Loaded { clips: vec![without_frames(&asf, stem)], warnings }, None)
         }
         Format::Amc => {
-            let (loaded, skeleton) = read_amc(path, &bytes, &stem, args)?;
+            let (loaded, skeleton) = read_amc(path, bytes, &stem, args)?;
             (loaded, Some(skeleton))
         }
-        Format::Mclip => (read_mclip(&bytes, &stem, args).with_context(|| shown.to_string())?, None),
+        Format::Mclip => (read_mclip(bytes, &stem, args).with_context(|| shown.to_string())?, None),
     };
     Ok(Opened { format, skeleton, clips: loaded.clips, warnings: loaded.warnings })
 }

@@ -40,6 +40,7 @@ enum Command {
     Live(commands::live::Args),
     Send(commands::send::Args),
     Soak(commands::soak::Args),
+    Db(commands::db::Args),
     Demo(commands::demo::Args),
 }
 
@@ -60,6 +61,7 @@ fn main() -> ExitCode {
         Command::Live(args) => commands::live::run(&args),
         Command::Send(args) => commands::send::run(&args),
         Command::Soak(args) => commands::soak::run(&args),
+        Command::Db(args) => commands::db::run(args),
         Command::Demo(args) => commands::demo::run(&args),
     };
     match outcome {

@@ -7,10 +7,12 @@ use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 use morec::formats::Warning;
 use morec::import::{ImportOptions, prepare};
-use morec::labels::{ClipLength, Labels, Sample, read_people};
+use morec::labels::{ClipLength, Extent, Label, Labels, Sample, read_people};
 use morec::reproduce;
 use morec::train::thesis::{SvrdmOptions, SvrdmTrainParams};
 use morec::train::{Everyday, Recipe, Source, TrainClip, TrainOptions, TrainParams};
+use morec_db::labels::{DbSample, SampleFilter, State};
+use morec_db::{ClipFilter, MotionDb};
 use rayon::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -21,12 +23,16 @@ use crate::files::{ReadArgs, expand, mapping, open, read, some_of};
 #[derive(Args, Debug)]
 pub struct MaterialArgs {
     /// Clips, or folders of clips, that the labels speak of
-    #[arg(long, value_name = "DIR|CLIP", num_args = 1.., required = true)]
+    #[arg(long, value_name = "DIR|CLIP", num_args = 1.., required_unless_present = "db")]
     pub clips: Vec<PathBuf>,
+    /// Clips and accepted samples of this database, in place of --clips and --labels; --background then also names its
+    /// clips. See `morec db`
+    #[arg(long, value_name = "DB", conflicts_with_all = ["clips", "labels"])]
+    pub db: Option<PathBuf>,
     /// Labels: tab-separated text with a header; columns clip (file stem), class, and start, stop (frames, stop
     /// exclusive) or start_secs, stop_secs, or neither: then the whole clip is one sample, its still ends trimmed
-    #[arg(long, value_name = "TSV")]
-    pub labels: PathBuf,
+    #[arg(long, value_name = "TSV", required_unless_present = "db")]
+    pub labels: Option<PathBuf>,
     /// Learn only these classes, separated by commas [default: every class of the labels]
     #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
     pub classes: Vec<String>,
@@ -173,9 +179,17 @@ impl MaterialArgs {
         Ok(TrainOptions { unlabelled_is_background, everyday, params })
     }
 
+    /// Where the labels are from.
+    pub fn label_source(&self) -> String {
+        self.db.as_ref().or(self.labels.as_ref()).map_or_else(String::new, |path| path.display().to_string())
+    }
+
     /// Loads everything; `unknown` are paths like those of `--background`. What is left out is said on standard
     /// error.
     pub fn load(&self, unknown: &[PathBuf]) -> Result<Material> {
+        if let Some(db) = &self.db {
+            return self.load_db(db, unknown);
+        }
         let (labels, people) = self.labels()?;
         let taught = expand(&self.clips)?;
         let background = self.named(&taught, &self.background)?;
@@ -191,10 +205,55 @@ impl MaterialArgs {
         sort_out(clips, &labels, &self.classes, &set_of(&background), &set_of(&unknown))
     }
 
+    /// The same from a database: its clips that hold samples, and those named as background or unknown. A clip's
+    /// path is its name here.
+    fn load_db(&self, path: &Path, unknown: &[PathBuf]) -> Result<Material> {
+        let db = MotionDb::open_read_only(path)?;
+        let infos = db.clips(&ClipFilter::default())?;
+        let (mut files, mut names) = (Vec::new(), BTreeSet::new());
+        let mut aside = |given: &[PathBuf]| -> Result<BTreeSet<PathBuf>> {
+            let mut set = BTreeSet::new();
+            for path in given {
+                if infos.iter().any(|info| Path::new(&info.name) == path) {
+                    names.insert(path.to_string_lossy().into_owned());
+                    set.insert(path.clone());
+                } else {
+                    let found = expand(std::slice::from_ref(path))?;
+                    set.extend(found.iter().map(|p| canonical(p)));
+                    files.extend(found);
+                }
+            }
+            Ok(set)
+        };
+        let (background, unknown) = (aside(&self.background)?, aside(unknown)?);
+        let labels = database_labels(&db)?;
+        names.extend(labels.rows.iter().map(|row| row.clip.clone()));
+        let excluded = |name: &String| self.exclude.contains(name);
+        let mut clips: Vec<LoadedClip> = Vec::new();
+        for info in infos.iter().filter(|info| names.contains(&info.name) && !excluded(&info.name)) {
+            let stored = db.clip(info.id)?;
+            let clip = TrainClip {
+                name: info.name.clone(),
+                clip: stored.clip,
+                roles: stored.roles,
+                rest: stored.rest,
+                source: Source::Labelled,
+                person: info.subject.clone(),
+            };
+            let file_bytes = std::fs::metadata(&info.path).map_or(0, |m| m.len());
+            clips.push(LoadedClip { clip, path: PathBuf::from(&info.name), file_bytes });
+        }
+        if !files.is_empty() {
+            clips.extend(load_clips(&files, &self.read, &self.import_options()?)?);
+        }
+        sort_out(clips, &labels, &self.classes, &background, &unknown)
+    }
+
     /// The labels, and who is seen in which clip, labelled or not.
     fn labels(&self) -> Result<(Labels, BTreeMap<String, String>)> {
-        let mut labels = Labels::read(&read(&self.labels)?).with_context(|| shown(&self.labels))?;
-        warn(&self.labels, &labels.warnings);
+        let path = self.labels.as_deref().context("--labels: which?")?;
+        let mut labels = Labels::read(&read(path)?).with_context(|| shown(path))?;
+        warn(path, &labels.warnings);
         let mut by_clip = BTreeMap::new();
         if let Some(path) = &self.people {
             let people = read_people(&read(path)?).with_context(|| shown(path))?;
@@ -227,6 +286,20 @@ impl MaterialArgs {
         }
         Ok(paths)
     }
+}
+
+/// The accepted samples of a database as a table of labels.
+fn database_labels(db: &MotionDb) -> Result<Labels> {
+    let filter = SampleFilter { state: Some(State::Accepted), ..SampleFilter::default() };
+    let label = |(s, line): (DbSample, u64)| Label {
+        extent: if s.whole_clip { Extent::WholeClip } else { Extent::Secs(s.start_secs, s.stop_secs) },
+        clip: s.clip_name,
+        class: s.class,
+        person: s.subject,
+        line,
+    };
+    let rows = db.samples(&filter)?.into_iter().zip(1..).map(label).collect();
+    Ok(Labels { rows, warnings: Vec::new() })
 }
 
 /// A clip and the file it came from.

@@ -85,10 +85,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     out.flush()?;
     if let Some(folder) = &args.report {
         let timelines = timelines(&outcome.streams, &outcome.truths, &outcome.founds)?;
-        let about = [
-            ("labels".to_owned(), args.material.labels.display().to_string()),
-            ("left out".to_owned(), format!("{by:?}")),
-        ];
+        let about =
+            [("labels".to_owned(), args.material.label_source()), ("left out".to_owned(), format!("{by:?}"))];
         let training = trained_classes(&material.samples, &material.classes);
         let title = "Cross-validation";
         let report = Report {

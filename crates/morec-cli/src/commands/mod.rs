@@ -6,6 +6,7 @@
 pub mod convert;
 pub mod crossval;
 pub mod cut;
+pub mod db;
 pub mod demo;
 pub mod evaluate;
 pub mod group;

@@ -66,7 +66,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 fn about(args: &Args, study: &Study<'_>) -> Vec<(String, String)> {
     let pair = |name: &str, value: String| (name.to_owned(), value);
     vec![
-        pair("labels", args.material.labels.display().to_string()),
+        pair("labels", args.material.label_source()),
         pair("samples", study.samples.len().to_string()),
         pair("classes", study.classes.join(", ")),
         pair("clips of unknown motion", study.unknown.len().to_string()),

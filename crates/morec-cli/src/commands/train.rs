@@ -15,6 +15,7 @@ use crate::files;
 use crate::material::{Material, MaterialArgs};
 use crate::progress::Bar;
 use crate::table::Table;
+use morec_db::MotionDb;
 
 /// Train an index from labelled clips.
 ///
@@ -52,6 +53,10 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let bytes = index.to_bytes()?;
     files::write_whole(&args.output, |out| out.write_all(&bytes))
         .with_context(|| args.output.display().to_string())?;
+    if let Some(db) = &args.material.db {
+        let name = args.output.file_stem().unwrap_or_default().to_string_lossy();
+        MotionDb::open(db)?.keep_index(&name, &bytes)?;
+    }
     if args.json {
         println!("{}", serde_json::to_string_pretty(&report)?);
     } else {

@@ -20,6 +20,18 @@ impl Clusters {
     }
 }
 
+/// Clusters from any numbers: items of one number are together.
+pub(super) fn numbered(numbers: impl Iterator<Item = usize>) -> Clusters {
+    let mut known = std::collections::BTreeMap::new();
+    let of = numbers
+        .map(|number| {
+            let next = known.len();
+            *known.entry(number).or_insert(next)
+        })
+        .collect();
+    Clusters { of, count: known.len() }
+}
+
 /// Clusters of `items` items: whoever is linked, over however many others, is together. O(items² ) links asked for.
 pub fn connected(items: usize, linked: impl Fn(usize, usize) -> bool) -> Clusters {
     const NONE: usize = usize::MAX;

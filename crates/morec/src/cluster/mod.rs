@@ -4,13 +4,19 @@
 //! Notation: `M = AᵀA` of a sample's reduced rows, centred on the mean of the database; `σᵢ, λᵢ` the eigenvalues of two
 //! such matrices (of `M`, not of `A`: Eq. 3.17), `uᵢ, vᵢ` their eigenvectors.
 
+mod affinity;
 mod agreement;
 mod clusters;
+mod hierarchy;
 mod kwas;
+mod shape;
 
+pub use affinity::{AffinityParams, affinity_propagation};
 pub use agreement::{Pairs, adjusted_rand_index};
 pub use clusters::{Clusters, connected, kwas_clusters};
+pub use hierarchy::{Hierarchy, Merge};
 pub use kwas::{KwasForm, KwasParams, Spectrum, kwas};
+pub use shape::{resampled, squared_distance};
 
 #[cfg(test)]
 mod tests;

@@ -9,14 +9,22 @@
 //! mean Mahalanobis distance of the frames ahead. Rows may be of any description at any even rate.
 
 mod cuts;
+mod cycles;
+mod kernel;
 mod params;
 mod pass;
 mod peaks;
 mod ppca;
+mod still;
+mod windows;
 
 pub use cuts::{Cut, HPoint, Segmentation, segment};
+pub use cycles::{CycleParams, Cycles, cycles};
+pub use kernel::{KernelParams, change_points, kernel_cuts};
 pub use params::{Directions, PpcaParams, SegmentError};
 pub use ppca::Ppca;
+pub use still::{StillKind, StillParams, still_stretches};
+pub use windows::{WindowRows, window_rows};
 
 #[cfg(test)]
 mod tests;

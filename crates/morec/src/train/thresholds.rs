@@ -111,11 +111,13 @@ mod tests {
         TrainStream { name: name.into(), group, person: None, source, rest_is_background, rows, known }
     }
 
-    /// Classes at 0, 10 and 12 for four ticks each, and background that stays at `background`.
+    /// Classes at 0, 10 and 12 for four ticks each, too far apart for a match to lie on two of them, and background that
+    /// stays at `background`.
     fn trained(background: Option<f32>) -> Vec<f32> {
-        let values = [vec![5.0; 6], vec![0.0; 4], vec![10.0; 4], vec![12.0; 4]].concat();
+        let samples = [0.0, 10.0, 12.0];
+        let values = samples.iter().flat_map(|v| [vec![5.0; 8], vec![*v; 4]].concat()).collect();
         let known = (0..3).map(|c| {
-            let start = 6 + 4 * usize::from(c);
+            let start = 8 + 12 * usize::from(c);
             Known { ticks: start..start + 4, class: Some(ClassId(c)) }
         });
         let mut set = TrainSet { classes: vec!["a".into(), "b".into(), "c".into()], ..TrainSet::default() };

@@ -1,0 +1,126 @@
+//! `morec db classes`: list, rename, merge, split and forget classes.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::{Result, bail};
+use morec_db::MotionDb;
+use morec_db::labels::SampleId;
+
+use crate::table::Table;
+
+/// List the classes, or rename, merge, split and forget them
+///
+/// Every change can be taken back: morec db label DB --undo.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  morec db classes moves.mdb
+  morec db classes moves.mdb --rename hopp hop
+  morec db classes moves.mdb --merge hop,leap --into jump
+  morec db classes moves.mdb --split 12,15,19 --into skip     # sample numbers, see --samples
+  morec db classes moves.mdb --forget test")]
+pub struct Args {
+    /// The database
+    #[arg(value_name = "DB")]
+    db: PathBuf,
+    /// Give a class another name
+    #[arg(long, num_args = 2, value_names = ["OLD", "NEW"])]
+    rename: Vec<String>,
+    /// Make one class of several, separated by commas
+    #[arg(long, value_delimiter = ',', value_name = "CLASSES", requires = "into")]
+    merge: Vec<String>,
+    /// Move samples to another class, by number
+    #[arg(long, value_delimiter = ',', value_name = "NUMBERS", requires = "into")]
+    split: Vec<i64>,
+    /// Where --merge and --split move samples; a new class or one that is there
+    #[arg(long, value_name = "CLASS")]
+    into: Option<String>,
+    /// Forget a class and its samples
+    #[arg(long, value_name = "CLASS")]
+    forget: Option<String>,
+    /// List the samples of this class with their numbers
+    #[arg(long, value_name = "CLASS")]
+    samples: Option<String>,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Changes, then lists.
+pub fn run(args: &Args) -> Result<ExitCode> {
+    let changes =
+        [!args.rename.is_empty(), !args.merge.is_empty(), !args.split.is_empty(), args.forget.is_some()];
+    let db = match changes.iter().filter(|c| **c).count() {
+        0 => MotionDb::open_read_only(&args.db)?,
+        1 => changed(args)?,
+        _ => bail!("one change at a time: each can then be taken back"),
+    };
+    if let Some(class) = &args.samples {
+        return samples(&db, class, args.json);
+    }
+    let classes = db.classes()?;
+    if args.json {
+        super::print_json(&classes)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let mut table = Table::new(["class", "samples", "secs", "proposed", "rejected"]);
+    for class in &classes {
+        table.row([
+            class.name.clone(),
+            class.accepted.to_string(),
+            format!("{:.1}", class.secs),
+            class.proposed.to_string(),
+            class.rejected.to_string(),
+        ]);
+    }
+    super::print(format_args!("{table}{} classes\n", classes.len()))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn changed(args: &Args) -> Result<MotionDb> {
+    let mut db = MotionDb::open(&args.db)?;
+    let into = args.into.as_deref().unwrap_or_default();
+    if let [old, new] = args.rename.as_slice() {
+        db.rename_class(old, new)?;
+    } else if !args.merge.is_empty() {
+        db.merge_classes(&args.merge, into)?;
+    } else if let Some(class) = &args.forget {
+        db.remove_class(class)?;
+    } else {
+        let ids: Vec<SampleId> = args.split.iter().copied().map(SampleId).collect();
+        let moved = db.split_class(&ids, into)?;
+        if moved < ids.len() {
+            eprintln!(
+                "morec: {moved} of {} samples moved; the others are not there, or were there already",
+                ids.len()
+            );
+        }
+    }
+    Ok(db)
+}
+
+fn samples(db: &MotionDb, class: &str, json: bool) -> Result<ExitCode> {
+    let filter = morec_db::labels::SampleFilter { class: Some(class.to_owned()), ..Default::default() };
+    let samples = db.samples(&filter)?;
+    if json {
+        super::print_json(&samples)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let mut table = Table::new(["clip", "number", "start", "stop", "frames", "state", "score", "by"]);
+    for s in &samples {
+        let frames = s.frames();
+        table.row([
+            s.clip_name.clone(),
+            s.id.0.to_string(),
+            format!("{:.2}", s.start_secs),
+            format!("{:.2}", s.stop_secs),
+            format!("{}-{}", frames.start, frames.end),
+            s.state.name().to_owned(),
+            s.score.map_or_else(String::new, |score| format!("{score:.2}")),
+            s.set_by.clone(),
+        ]);
+    }
+    super::print(table)?;
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,102 @@
+//! `morec db clips`: list clips, and say more about them.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::Result;
+use morec_db::{ClipFilter, ClipId, ClipInfo, ClipUpdate, MotionDb};
+
+use crate::table::Table;
+
+/// List the clips of a database, or change what is known about them
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  morec db clips moves.mdb --name 'walk*'
+  morec db clips moves.mdb --class wave --subject anna
+  morec db clips moves.mdb --name 'ah_*' --set-subject ah --add-tag gesture")]
+pub struct Args {
+    /// The database
+    #[arg(value_name = "DB")]
+    db: PathBuf,
+    /// Clips whose name matches (`*` any text, `?` one character)
+    #[arg(long, value_name = "PATTERN")]
+    name: Option<String>,
+    /// Clips in which this person is seen
+    #[arg(long, value_name = "NAME")]
+    subject: Option<String>,
+    /// Clips with this tag
+    #[arg(long, value_name = "WORD")]
+    tag: Option<String>,
+    /// Clips that hold a sample of this class
+    #[arg(long, value_name = "CLASS")]
+    class: Option<String>,
+    /// Say who is seen in the clips listed; empty forgets it
+    #[arg(long, value_name = "NAME")]
+    set_subject: Option<String>,
+    /// Say where they are from
+    #[arg(long, value_name = "TEXT")]
+    set_source: Option<String>,
+    /// Say under which terms they may be used
+    #[arg(long, value_name = "TEXT")]
+    set_licence: Option<String>,
+    /// Attach a tag
+    #[arg(long, value_name = "WORD")]
+    add_tag: Vec<String>,
+    /// Take a tag off
+    #[arg(long, value_name = "WORD")]
+    remove_tag: Vec<String>,
+    /// Print one JSON array
+    #[arg(long)]
+    json: bool,
+}
+
+/// Changes, then lists.
+pub fn run(args: &Args) -> Result<ExitCode> {
+    let filter = ClipFilter {
+        name: args.name.clone(),
+        subject: args.subject.clone(),
+        tag: args.tag.clone(),
+        class: args.class.clone(),
+    };
+    let update = ClipUpdate {
+        source: args.set_source.clone(),
+        licence: args.set_licence.clone(),
+        subject: args.set_subject.clone(),
+        add_tags: args.add_tag.clone(),
+        remove_tags: args.remove_tag.clone(),
+    };
+    let mut clips = if update == ClipUpdate::default() {
+        MotionDb::open_read_only(&args.db)?.clips(&filter)?
+    } else {
+        let mut db = MotionDb::open(&args.db)?;
+        let ids: Vec<ClipId> = db.clips(&filter)?.iter().map(|clip| clip.id).collect();
+        db.update_clips(&ids, &update)?;
+        let all = db.clips(&ClipFilter::default())?;
+        all.into_iter().filter(|clip| ids.contains(&clip.id)).collect()
+    };
+    clips.sort_by(|a, b| a.name.cmp(&b.name));
+    if args.json {
+        super::print_json(&clips)?;
+    } else {
+        super::print(text(&clips))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn text(clips: &[ClipInfo]) -> String {
+    let mut table = Table::new(["clip", "secs", "Hz", "joints", "samples", "kB", "who", "tags"]);
+    for clip in clips {
+        table.row([
+            clip.name.clone(),
+            format!("{:.2}", clip.duration_secs()),
+            format!("{:.0}", clip.rate_hz),
+            clip.joints.to_string(),
+            clip.samples.to_string(),
+            format!("{:.1}", clip.motion_bytes as f64 / 1e3),
+            clip.subject.clone().unwrap_or_default(),
+            clip.tags.join(" "),
+        ]);
+    }
+    format!("{table}{} clips\n", clips.len())
+}

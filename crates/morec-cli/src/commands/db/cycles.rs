@@ -1,0 +1,195 @@
+//! `morec db cycles`: how often something is repeated, and how long one repetition is.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::Result;
+use morec::features::FeatureParams;
+use morec::segment::{CycleParams, Cycles, cycles};
+use morec_db::labels::{NewSample, SampleFilter, SampleId, State};
+use morec_db::{ClipFilter, ClipId, MotionDb};
+use serde::Serialize;
+
+use super::cut::METHOD;
+use crate::progress::Bar;
+use crate::table::Table;
+
+/// Count repetitions within cuts, clips or labelled stretches
+///
+/// With --of labels, stretches of one class that follow each other without a gap are taken together: their number is what
+/// should be found. --split divides labelled stretches evenly into their repetitions (undo: morec db label DB --undo).
+#[derive(clap::Args)]
+pub struct Args {
+    /// The database
+    #[arg(value_name = "DB")]
+    db: PathBuf,
+    /// What is looked at
+    #[arg(long, value_enum, default_value = "cuts")]
+    of: Of,
+    /// Labelled stretches of this class only
+    #[arg(long, value_name = "CLASS")]
+    class: Option<String>,
+    /// Clips whose name matches
+    #[arg(long, value_name = "PATTERN")]
+    name: Option<String>,
+    /// Replace each labelled stretch that repeats by its repetitions
+    #[arg(long)]
+    split: bool,
+    /// Print one JSON array
+    #[arg(long)]
+    json: bool,
+}
+
+/// What is looked at.
+#[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+enum Of {
+    /// Segments that morec db cut found
+    Cuts,
+    /// Whole clips
+    Clips,
+    /// Labelled stretches
+    Labels,
+}
+
+#[derive(Serialize)]
+struct Counted {
+    clip: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    class: Option<String>,
+    start_secs: f64,
+    stop_secs: f64,
+    /// How many labels the stretch was put together from.
+    labels: usize,
+    cycles: Option<Cycles>,
+    #[serde(skip)]
+    samples: Vec<SampleId>,
+    #[serde(skip)]
+    id: ClipId,
+}
+
+/// Counts and prints; splits if asked to.
+pub fn run(args: &Args) -> Result<ExitCode> {
+    let mut db = if args.split { MotionDb::open(&args.db)? } else { MotionDb::open_read_only(&args.db)? };
+    let params = FeatureParams::default();
+    let rows: BTreeMap<ClipId, _> =
+        db.rows(&params, &Bar::new())?.into_iter().map(|r| (r.clip, r.rows)).collect();
+    let mut found = stretches(&db, args)?;
+    for stretch in &mut found {
+        let Some(rows) = rows.get(&stretch.id) else { continue };
+        let tick = |secs: f64| ((secs * params.tick_hz()).round() as usize).min(rows.len());
+        let span = tick(stretch.start_secs)..tick(stretch.stop_secs);
+        if !span.is_empty() {
+            stretch.cycles = cycles(&rows.slice(span), params.tick_hz(), &CycleParams::default());
+        }
+    }
+    if args.split {
+        split(&mut db, &found)?;
+    }
+    if args.json {
+        super::print_json(&found)?;
+    } else {
+        super::print(text(&found))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn stretches(db: &MotionDb, args: &Args) -> Result<Vec<Counted>> {
+    let clips = db.clips(&ClipFilter { name: args.name.clone(), ..ClipFilter::default() })?;
+    let names: BTreeMap<ClipId, &str> = clips.iter().map(|c| (c.id, c.name.as_str())).collect();
+    let stretch = |id: ClipId, start_secs, stop_secs| {
+        Some(Counted {
+            clip: (*names.get(&id)?).to_owned(),
+            class: None,
+            start_secs,
+            stop_secs,
+            labels: 0,
+            cycles: None,
+            samples: Vec::new(),
+            id,
+        })
+    };
+    Ok(match args.of {
+        Of::Clips => clips.iter().filter_map(|c| stretch(c.id, 0.0, c.duration_secs())).collect(),
+        Of::Cuts => {
+            let segments = db.segments(METHOD)?;
+            let moving = segments.iter().filter(|s| s.kind == morec_db::SegmentKind::Motion);
+            moving.filter_map(|s| stretch(s.clip, s.start_secs, s.stop_secs)).collect()
+        }
+        Of::Labels => {
+            let filter = SampleFilter {
+                class: args.class.clone(),
+                state: Some(State::Accepted),
+                ..Default::default()
+            };
+            let mut found: Vec<Counted> = Vec::new();
+            for sample in db.samples(&filter)? {
+                let follows = |c: &&mut Counted| {
+                    c.id == sample.clip
+                        && c.class.as_deref() == Some(&sample.class)
+                        && (c.stop_secs - sample.start_secs).abs() < 1.5 / sample.rate_hz
+                        && !args.split
+                };
+                if let Some(last) = found.iter_mut().rev().find(follows) {
+                    last.stop_secs = sample.stop_secs;
+                    last.labels += 1;
+                    last.samples.push(sample.id);
+                } else if let Some(mut new) = stretch(sample.clip, sample.start_secs, sample.stop_secs) {
+                    (new.class, new.labels, new.samples) = (Some(sample.class), 1, vec![sample.id]);
+                    found.push(new);
+                }
+            }
+            found
+        }
+    })
+}
+
+/// Repetitions in place of stretches; the new ones are added before the old ones go, so that nothing can be lost.
+fn split(db: &mut MotionDb, found: &[Counted]) -> Result<()> {
+    let (mut new, mut old) = (Vec::new(), Vec::new());
+    for stretch in found {
+        let (Some(cycles), Some(class)) = (&stretch.cycles, &stretch.class) else { continue };
+        if cycles.whole() < 2 {
+            continue;
+        }
+        old.extend(&stretch.samples);
+        for pair in cycles.bounds(stretch.stop_secs - stretch.start_secs).windows(2) {
+            new.push(NewSample {
+                clip: stretch.id,
+                class: class.clone(),
+                start_secs: stretch.start_secs + pair[0],
+                stop_secs: stretch.start_secs + pair[1],
+                whole_clip: false,
+                state: State::Accepted,
+                score: None,
+            });
+        }
+    }
+    db.add_samples(&new, "cycles")?;
+    db.remove_samples(&old)?;
+    Ok(())
+}
+
+fn text(found: &[Counted]) -> String {
+    let mut table = Table::new(["clip", "class", "start", "stop", "labels", "cycles", "period", "alike"]);
+    for c in found {
+        let figure =
+            |value: Option<f64>, decimals| value.map_or_else(String::new, |v| format!("{v:.decimals$}"));
+        table.row([
+            c.clip.clone(),
+            c.class.clone().unwrap_or_default(),
+            format!("{:.2}", c.start_secs),
+            format!("{:.2}", c.stop_secs),
+            if c.labels > 0 { c.labels.to_string() } else { String::new() },
+            figure(c.cycles.map(|c| c.count), 1),
+            figure(c.cycles.map(|c| c.period_secs), 2),
+            figure(c.cycles.map(|c| c.correlation), 2),
+        ]);
+    }
+    let repeated: Vec<&Counted> = found.iter().filter(|c| c.labels > 1).collect();
+    let right = repeated.iter().filter(|c| c.cycles.is_some_and(|k| k.whole() == c.labels)).count();
+    match repeated.len() {
+        0 => table.to_string(),
+        all => format!("{table}{right} of {all} stretches of several labels counted right\n"),
+    }
+}

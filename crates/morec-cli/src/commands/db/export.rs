@@ -1,0 +1,123 @@
+//! `morec db export`: labels in other programs' forms, or a clip.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::{Context, Result, bail};
+use morec::formats::bvh;
+use morec_db::MotionDb;
+use morec_db::exchange::{self, Annotation, Form};
+use morec_db::labels::{SampleFilter, State};
+
+use super::label::{FormArg, StateArg};
+use crate::files;
+
+/// Write labels for other programs, or a clip as BVH
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  morec db export moves.mdb labels.tsv
+  morec db export moves.mdb proposals.csv --state proposed
+  morec db export moves.mdb eaf/ --form eaf            # a file for each clip
+  morec db export moves.mdb walk.bvh --motion walk_01")]
+pub struct Args {
+    /// The database
+    #[arg(value_name = "DB")]
+    db: PathBuf,
+    /// The file to write, `-` for standard output; a folder for forms of one clip
+    #[arg(value_name = "FILE|DIR")]
+    output: PathBuf,
+    /// What form to write [default: by the file's ending]
+    #[arg(long, value_enum)]
+    form: Option<FormArg>,
+    /// Labels of this clip only
+    #[arg(long, value_name = "CLIP")]
+    clip: Option<String>,
+    /// Labels of this class only
+    #[arg(long, value_name = "CLASS")]
+    class: Option<String>,
+    /// Which samples
+    #[arg(long, value_enum, default_value = "accepted")]
+    state: StateArg,
+    /// Write this clip's motion as BVH instead of labels
+    #[arg(long, value_name = "CLIP")]
+    motion: Option<String>,
+    /// Print one JSON object: what was written
+    #[arg(long)]
+    json: bool,
+}
+
+/// Writes what was asked for.
+pub fn run(args: &Args) -> Result<ExitCode> {
+    let db = MotionDb::open_read_only(&args.db)?;
+    if let Some(name) = &args.motion {
+        let stored = db.clip(db.find_clip(name)?.id)?;
+        files::write_whole(&args.output, |out| bvh::write(&stored.clip, out))
+            .with_context(|| args.output.display().to_string())?;
+        return said(args, 1, stored.clip.frames, "frames");
+    }
+    let clip = args.clip.as_deref().map(|name| db.find_clip(name)).transpose()?.map(|info| info.id);
+    let filter = SampleFilter { clip, class: args.class.clone(), state: Some(args.state.into()) };
+    let annotations: Vec<Annotation> = db
+        .samples(&filter)?
+        .into_iter()
+        .map(|s| Annotation {
+            extent: (!s.whole_clip).then_some((s.start_secs, s.stop_secs)),
+            clip: s.clip_name,
+            class: s.class,
+            person: s.subject,
+            score: s.score,
+            state: State::from(args.state),
+        })
+        .collect();
+    let shown = args.output.to_string_lossy();
+    let form = match args.form {
+        Some(form) => form.into(),
+        None => Form::of_file(&shown, b"{\"labels\":[]}")
+            .with_context(|| format!("{shown}: its ending says no form of labels; give --form"))?,
+    };
+    let lengths = super::lengths(&db)?;
+    let mut files = 1;
+    if form.is_of_one_clip() && args.clip.is_none() {
+        files = a_file_a_clip(&args.output, form, &annotations, &lengths)?;
+    } else {
+        let text = exchange::write(form, &annotations, &lengths).map_err(anyhow::Error::msg)?;
+        if args.output == Path::new("-") {
+            return super::print(text).map(|()| ExitCode::SUCCESS);
+        }
+        files::write_whole(&args.output, |out| out.write_all(text.as_bytes()))
+            .with_context(|| args.output.display().to_string())?;
+    }
+    said(args, files, annotations.len(), "labels")
+}
+
+fn said(args: &Args, files: usize, count: usize, what: &str) -> Result<ExitCode> {
+    if args.json {
+        super::print_json(&serde_json::json!({ "files": files, what: count }))?;
+    } else if args.output != Path::new("-") {
+        super::print(format_args!("{}: {count} {what} in {files} files\n", args.output.display()))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn a_file_a_clip(
+    folder: &Path,
+    form: Form,
+    annotations: &[Annotation],
+    lengths: &exchange::Lengths,
+) -> Result<usize> {
+    if folder.is_file() {
+        bail!("{}: {} holds one clip: give a folder, or --clip", folder.display(), form.name());
+    }
+    std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
+    let ending = if form == Form::Eaf { "eaf" } else { "txt" };
+    let mut files = 0;
+    for of_clip in annotations.chunk_by(|a, b| a.clip == b.clip) {
+        let text = exchange::write(form, of_clip, lengths).map_err(anyhow::Error::msg)?;
+        let path = folder.join(format!("{}.{ending}", of_clip[0].clip.replace(['/', '\\'], "_")));
+        files::write_whole(&path, |out| out.write_all(text.as_bytes()))
+            .with_context(|| path.display().to_string())?;
+        files += 1;
+    }
+    Ok(files)
+}

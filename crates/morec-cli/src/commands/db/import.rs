@@ -1,0 +1,162 @@
+//! `morec db import`: clips into a database.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Instant;
+
+use anyhow::Result;
+use morec::import::ImportOptions;
+use morec_db::{ClipReader, ClipUpdate, ImportReport, ImportSettings, MotionDb, Outcome, ReadFile};
+
+use crate::files::{self, ReadArgs};
+use crate::progress::Bar;
+
+/// Import clips, or folders of clips
+///
+/// The same content is imported once, whatever it is called; importing again after an interruption goes on where it
+/// stopped. A file that cannot be read is named with the reason, and the others are imported.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  morec db import moves.mdb recordings/
+  morec db import moves.mdb 13_29.amc --skeleton 13.asf --subject 13 --tag exercise
+
+Exit code 1 if a file was refused.")]
+pub struct Args {
+    /// The database; it is made if there is none
+    #[arg(value_name = "DB")]
+    db: PathBuf,
+    /// Clips (BVH, AMC, MCLIP) or folders of clips
+    #[arg(required = true, value_name = "DIR|CLIP")]
+    clips: Vec<PathBuf>,
+    /// Where the material is from
+    #[arg(long, value_name = "TEXT")]
+    source: Option<String>,
+    /// Under which terms it may be used
+    #[arg(long, value_name = "TEXT")]
+    licence: Option<String>,
+    /// Who is seen
+    #[arg(long, value_name = "NAME")]
+    subject: Option<String>,
+    /// A word to find the clips by; may be given several times
+    #[arg(long = "tag", value_name = "WORD")]
+    tags: Vec<String>,
+    /// Roles of joints, where inference fails: lines of `role<TAB>joint name`
+    #[arg(long, value_name = "FILE")]
+    roles: Option<PathBuf>,
+    /// Print one JSON object: what became of every file
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    read: ReadArgs,
+}
+
+/// Reads files as all commands do.
+struct Reader<'a>(&'a ReadArgs);
+
+impl ClipReader for Reader<'_> {
+    fn read(&self, path: &Path, bytes: &[u8]) -> Result<ReadFile, String> {
+        let opened = files::parse(path, bytes, self.0).map_err(|error| {
+            // The report names the path itself.
+            let text = format!("{error:#}");
+            let prefix = format!("{}: ", path.display());
+            text.strip_prefix(&prefix).map_or(text.clone(), str::to_owned)
+        })?;
+        Ok(ReadFile {
+            format: format!("{:?}", opened.format).to_lowercase(),
+            skeleton: opened.skeleton,
+            clips: opened.clips,
+            warnings: opened.warnings,
+        })
+    }
+}
+
+/// Imports and reports.
+pub fn run(args: &Args) -> Result<ExitCode> {
+    let begun = Instant::now();
+    let paths: Vec<PathBuf> = files::expand(&args.clips)?.into_iter().map(absolute).collect();
+    let mut db = match args.db.exists() {
+        true => MotionDb::open(&args.db)?,
+        false => MotionDb::create(&args.db)?,
+    };
+    let settings = ImportSettings {
+        options: ImportOptions {
+            mapping: files::mapping(args.roles.as_deref())?,
+            ..ImportOptions::default()
+        },
+        about: ClipUpdate {
+            source: args.source.clone(),
+            licence: args.licence.clone(),
+            subject: args.subject.clone(),
+            add_tags: args.tags.clone(),
+            remove_tags: Vec::new(),
+        },
+    };
+    let report = db.import(&paths, &Reader(&args.read), &settings, &Bar::new())?;
+    if args.json {
+        super::print_json(&report)?;
+    } else {
+        super::print(text(&report, begun.elapsed().as_secs_f64()))?;
+    }
+    let refused = report.counts()[4];
+    Ok(if refused > 0 { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+}
+
+/// The same file is the same path, wherever the command is run.
+fn absolute(path: PathBuf) -> PathBuf {
+    path.canonicalize().unwrap_or(path)
+}
+
+fn text(report: &ImportReport, secs: f64) -> String {
+    const SHOWN: usize = 20;
+    let [imported, warned, known, copies, refused] = report.counts();
+    let clips: usize = report
+        .files
+        .iter()
+        .map(|(_, outcome)| match outcome {
+            Outcome::Imported { clips, .. } => clips.len(),
+            _ => 0,
+        })
+        .sum();
+    let mut lines = vec![format!(
+        "{imported} files imported ({clips} clips, {warned} files with notes), {known} known, {copies} copies, {refused} refused; {secs:.1} s"
+    )];
+    // The same note of a hundred files is one line: what differs is figures.
+    let mut notes: Vec<(String, String, usize)> = Vec::new();
+    for (path, outcome) in &report.files {
+        let shown = path.display();
+        match outcome {
+            Outcome::Refused(refused) => lines.push(format!("  refused {shown}: {}", refused.reason)),
+            Outcome::Copy { of } => {
+                notes.push((String::new(), format!("  {shown} is a copy of {}", of.display()), 1))
+            }
+            Outcome::Imported { warnings, .. } => {
+                for warning in warnings {
+                    let kind: String = warning.chars().filter(|c| !c.is_ascii_digit()).collect();
+                    match notes.iter_mut().find(|(known, ..)| *known == kind) {
+                        Some((.., count)) => *count += 1,
+                        None => notes.push((kind, format!("  {shown}: {warning}"), 1)),
+                    }
+                }
+            }
+            Outcome::Known => {}
+        }
+    }
+    let notes: Vec<String> = notes
+        .into_iter()
+        .map(
+            |(_, text, count)| {
+                if count > 1 { format!("{text} (and {} more like it)", count - 1) } else { text }
+            },
+        )
+        .collect();
+    let more = notes.len().saturating_sub(SHOWN);
+    lines.extend(notes.into_iter().take(SHOWN));
+    if more > 0 {
+        lines.push(format!("  and {more} more notes (--json has all)"));
+    }
+    if report.cancelled {
+        lines.push("cancelled: the files named above are done, the rest was not looked at".to_owned());
+    }
+    lines.join("\n") + "\n"
+}

@@ -1,0 +1,29 @@
+//! `morec db init`: a new database.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::Result;
+use morec_db::{MotionDb, SCHEMA};
+
+/// Make a new, empty database
+#[derive(clap::Args)]
+pub struct Args {
+    /// The file to make; it must not exist
+    #[arg(value_name = "DB")]
+    db: PathBuf,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// Makes it.
+pub fn run(args: &Args) -> Result<ExitCode> {
+    MotionDb::create(&args.db)?;
+    if args.json {
+        super::print_json(&serde_json::json!({ "path": args.db, "schema": SCHEMA }))?;
+    } else {
+        super::print(format_args!("{}: an empty database\n", args.db.display()))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,115 @@
+//! `morec db`: a database of motion in one file. One file per subcommand.
+
+mod check;
+mod classes;
+mod clips;
+mod cut;
+mod cycles;
+mod export;
+mod group;
+mod import;
+mod info;
+mod init;
+mod label;
+mod propose;
+mod report;
+mod search;
+mod strip;
+mod vacuum;
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use anyhow::Result;
+use clap::Subcommand;
+use morec::labels::ClipLength;
+use morec_db::exchange::Lengths;
+use morec_db::{ClipFilter, ClipInfo, MotionDb};
+use serde::Serialize;
+
+/// Keep clips, cuts, classes and labels in one file, and search them
+///
+/// One program writes to a database at a time, any number read beside it. A crash loses nothing that was said to be done.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  morec db init moves.mdb
+  morec db import moves.mdb recordings/ --licence CC-BY
+  morec db label moves.mdb labels.tsv
+  morec db search moves.mdb walk_01 --start 1 --stop 2")]
+pub struct Args {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Init(init::Args),
+    Import(import::Args),
+    Info(info::Args),
+    Clips(clips::Args),
+    Cut(cut::Args),
+    Cycles(cycles::Args),
+    Group(group::Args),
+    Classes(classes::Args),
+    Label(label::Args),
+    Search(search::Args),
+    Propose(propose::Args),
+    Export(export::Args),
+    Report(report::Args),
+    Check(check::Args),
+    Vacuum(vacuum::Args),
+}
+
+/// Does what was asked.
+pub fn run(args: Args) -> Result<ExitCode> {
+    match args.command {
+        Command::Init(args) => init::run(&args),
+        Command::Import(args) => import::run(&args),
+        Command::Info(args) => info::run(&args),
+        Command::Clips(args) => clips::run(&args),
+        Command::Cut(args) => cut::run(&args),
+        Command::Cycles(args) => cycles::run(&args),
+        Command::Group(args) => group::run(&args),
+        Command::Classes(args) => classes::run(&args),
+        Command::Label(args) => label::run(&args),
+        Command::Search(args) => search::run(&args),
+        Command::Propose(args) => propose::run(&args),
+        Command::Report(args) => report::run(&args),
+        Command::Export(args) => export::run(&args),
+        Command::Check(args) => check::run(&args),
+        Command::Vacuum(args) => vacuum::run(&args),
+    }
+}
+
+/// The lengths of all clips by name.
+fn lengths(db: &MotionDb) -> Result<Lengths> {
+    let length = |c: ClipInfo| (c.name, ClipLength { frames: c.frames, rate_hz: c.rate_hz });
+    Ok(db.clips(&ClipFilter::default())?.into_iter().map(length).collect())
+}
+
+/// One value as JSON on standard output.
+fn print_json(value: &impl Serialize) -> Result<()> {
+    let mut out = std::io::stdout().lock();
+    serde_json::to_writer_pretty(&mut out, value).map_err(std::io::Error::from)?;
+    writeln!(out)?;
+    out.flush()?;
+    Ok(())
+}
+
+/// Text on standard output.
+fn print(text: impl std::fmt::Display) -> Result<()> {
+    let mut out = std::io::stdout().lock();
+    write!(out, "{text}")?;
+    out.flush()?;
+    Ok(())
+}
+
+/// `12.3 MB`.
+fn megabytes(bytes: u64) -> String {
+    match bytes {
+        0..10_000 => format!("{:.1} kB", bytes as f64 / 1e3),
+        10_000..1_000_000 => format!("{:.0} kB", bytes as f64 / 1e3),
+        _ => format!("{:.1} MB", bytes as f64 / 1e6),
+    }
+}

@@ -1,0 +1,153 @@
+//! `morec db propose`: label a few, confirm the rest.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::Result;
+use morec_db::labels::{NewSample, SampleFilter, SampleId, State};
+use morec_db::{ClipFilter, ClipId, MotionDb, Proposal, ProposeOptions};
+use serde::Serialize;
+
+use crate::progress::Bar;
+use crate::table::Table;
+
+/// Propose the other samples of the classes that are labelled
+///
+/// The accepted samples look for their like in all clips; what they find is kept as proposed, the surest first. Look at
+/// the sure ones in bulk and at the doubtful ones singly; what you accept teaches the next round, what you reject is not
+/// asked about again. Proposals of an earlier round that nobody judged are replaced.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  morec db propose moves.mdb
+  morec db propose moves.mdb --accept 0.6               # take those of at least this score
+  morec db propose moves.mdb --list --doubtful          # the least certain first
+  morec db export moves.mdb ask.csv --state proposed    # edit its column state, then: morec db label moves.mdb ask.csv")]
+pub struct Args {
+    /// The database
+    #[arg(value_name = "DB")]
+    db: PathBuf,
+    /// Only these classes, separated by commas
+    #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
+    classes: Vec<String>,
+    /// How far a proposal may be, in multiples of how far samples of its class are from one another
+    #[arg(long, value_name = "SHARE", default_value_t = ProposeOptions::default().reach)]
+    reach: f32,
+    /// Accept the proposals that are there with at least this score, 0 to 1
+    #[arg(long, value_name = "SCORE")]
+    accept: Option<f64>,
+    /// Reject the proposals that are there with less than this score
+    #[arg(long, value_name = "SCORE")]
+    reject: Option<f64>,
+    /// Only list the proposals that are there
+    #[arg(long)]
+    list: bool,
+    /// List the least certain first
+    #[arg(long)]
+    doubtful: bool,
+    /// List at most so many
+    #[arg(long, value_name = "N", default_value_t = 30)]
+    limit: usize,
+    /// Print one JSON array
+    #[arg(long)]
+    json: bool,
+}
+
+/// Judges, or proposes anew; then lists.
+pub fn run(args: &Args) -> Result<ExitCode> {
+    if args.accept.is_some() || args.reject.is_some() {
+        return judge(args);
+    }
+    if args.list {
+        return list(args, &MotionDb::open_read_only(&args.db)?);
+    }
+    let mut db = MotionDb::open(&args.db)?;
+    let options =
+        ProposeOptions { classes: args.classes.clone(), reach: args.reach, ..ProposeOptions::default() };
+    let proposals = db.propose(&options, &Bar::new())?;
+    let old: Vec<SampleId> = proposed(&db)?.into_iter().map(|s| s.id).collect();
+    db.remove_samples(&old)?;
+    let samples: Vec<NewSample> = proposals.iter().cloned().map(NewSample::from).collect();
+    db.add_samples(&samples, "propose")?;
+    show(args, &db, proposals)
+}
+
+fn proposed(db: &MotionDb) -> Result<Vec<morec_db::labels::DbSample>> {
+    Ok(db.samples(&SampleFilter { state: Some(State::Proposed), ..SampleFilter::default() })?)
+}
+
+fn judge(args: &Args) -> Result<ExitCode> {
+    let mut db = MotionDb::open(&args.db)?;
+    let all = proposed(&db)?;
+    let wanted = |s: &&morec_db::labels::DbSample| args.classes.is_empty() || args.classes.contains(&s.class);
+    let score = |s: &morec_db::labels::DbSample| s.score.unwrap_or(0.0);
+    let pick = |holds: &dyn Fn(f64) -> bool| -> Vec<SampleId> {
+        all.iter().filter(wanted).filter(|s| holds(score(s))).map(|s| s.id).collect()
+    };
+    let accepted = args.accept.map_or_else(Vec::new, |least| pick(&|score| score >= least));
+    let rejected = args.reject.map_or_else(Vec::new, |least| {
+        pick(&|score| score < least && args.accept.is_none_or(|accept| score < accept))
+    });
+    db.judge(&accepted, State::Accepted, "user")?;
+    db.judge(&rejected, State::Rejected, "user")?;
+    let (accepted, rejected) = (accepted.len(), rejected.len());
+    let left = all.len() - accepted - rejected;
+    if args.json {
+        super::print_json(&serde_json::json!({ "accepted": accepted, "rejected": rejected, "left": left }))?;
+    } else {
+        super::print(format_args!("{accepted} accepted, {rejected} rejected, {left} left to look at\n"))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn list(args: &Args, db: &MotionDb) -> Result<ExitCode> {
+    let mut proposals: Vec<Proposal> = proposed(db)?
+        .into_iter()
+        .map(|s| Proposal {
+            clip: s.clip,
+            class: s.class,
+            start_secs: s.start_secs,
+            stop_secs: s.stop_secs,
+            score: s.score.unwrap_or(0.0) as f32,
+        })
+        .collect();
+    proposals.sort_by(|a, b| b.score.total_cmp(&a.score));
+    show(args, db, proposals)
+}
+
+#[derive(Serialize)]
+struct Named {
+    name: String,
+    #[serde(flatten)]
+    proposal: Proposal,
+}
+
+fn show(args: &Args, db: &MotionDb, mut proposals: Vec<Proposal>) -> Result<ExitCode> {
+    if args.doubtful {
+        proposals.reverse();
+    }
+    let names: BTreeMap<ClipId, String> =
+        db.clips(&ClipFilter::default())?.into_iter().map(|c| (c.id, c.name)).collect();
+    let named = |p: Proposal| Named { name: names.get(&p.clip).cloned().unwrap_or_default(), proposal: p };
+    let all: Vec<Named> = proposals.into_iter().map(named).collect();
+    if args.json {
+        super::print_json(&all)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let mut table = Table::new(["clip", "class", "start", "stop", "score"]);
+    for Named { name, proposal: p } in all.iter().take(args.limit) {
+        let secs = |secs: f64| format!("{secs:.2}");
+        table.row([
+            name.clone(),
+            p.class.clone(),
+            secs(p.start_secs),
+            secs(p.stop_secs),
+            format!("{:.2}", p.score),
+        ]);
+    }
+    let more = all.len().saturating_sub(args.limit);
+    let more = if more > 0 { format!(", {more} of them not shown") } else { String::new() };
+    super::print(format_args!("{table}{} proposed{more}\n", all.len()))?;
+    Ok(ExitCode::SUCCESS)
+}

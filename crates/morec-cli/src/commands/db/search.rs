@@ -1,0 +1,142 @@
+//! `morec db search`: where in the database is a motion like this one?
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Instant;
+
+use anyhow::{Context, Result, bail};
+use morec::features::{FeatureParams, bones_of_clip, rows_of_clip};
+use morec::import::{ImportOptions, prepare};
+use morec_db::search::{Example, Hit, SearchIndex, SearchOptions};
+use morec_db::{ClipFilter, ClipId, MotionDb};
+use serde::Serialize;
+
+use crate::files::{self, ReadArgs};
+use crate::progress::Bar;
+use crate::table::Table;
+
+/// Find stretches that are like an example
+///
+/// The example is a stretch of a clip in the database, or a clip file from elsewhere, on any skeleton, at any rate.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  morec db search moves.mdb walk_01 --start 1.2 --stop 2.5
+  morec db search moves.mdb recorded.bvh --mirror
+  morec db search moves.mdb walk_01 --one-a-clip --limit 50 --json")]
+pub struct Args {
+    /// The database
+    #[arg(value_name = "DB")]
+    db: PathBuf,
+    /// The example: a clip of the database by name, or a file
+    #[arg(value_name = "CLIP|FILE")]
+    example: String,
+    /// Where the example starts, seconds [default: the clip's beginning]
+    #[arg(long, value_name = "SECS", default_value_t = 0.0)]
+    start: f64,
+    /// Where it stops [default: the clip's end]
+    #[arg(long, value_name = "SECS")]
+    stop: Option<f64>,
+    /// Find what the example's mirror image is like, too
+    #[arg(long)]
+    mirror: bool,
+    /// At most so many
+    #[arg(long, value_name = "N", default_value_t = 20)]
+    limit: usize,
+    /// Only the best of each clip
+    #[arg(long)]
+    one_a_clip: bool,
+    /// How much the exact path counts against the summary of poses and pace, 0 to 1
+    #[arg(long, value_name = "SHARE", default_value_t = SearchOptions::default().warp_share)]
+    warp_share: f32,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    read: ReadArgs,
+}
+
+#[derive(Serialize)]
+struct Found {
+    ticks: usize,
+    load_secs: f64,
+    search_secs: f64,
+    hits: Vec<Named>,
+}
+
+#[derive(Serialize)]
+struct Named {
+    name: String,
+    #[serde(flatten)]
+    hit: Hit,
+}
+
+/// Searches and prints.
+pub fn run(args: &Args) -> Result<ExitCode> {
+    let begun = Instant::now();
+    let mut db = MotionDb::open_read_only(&args.db)?;
+    let index = SearchIndex::of_db(&mut db, &Bar::new())?;
+    let example = example(&db, &index, args)?;
+    let names: BTreeMap<ClipId, String> =
+        db.clips(&ClipFilter::default())?.into_iter().map(|c| (c.id, c.name)).collect();
+    let load_secs = begun.elapsed().as_secs_f64();
+    let begun = Instant::now();
+    let options = SearchOptions {
+        limit: args.limit,
+        mirror: args.mirror,
+        one_a_clip: args.one_a_clip,
+        warp_share: args.warp_share.clamp(0.0, 1.0),
+    };
+    let hits = index.search(&example, &options);
+    let search_secs = begun.elapsed().as_secs_f64();
+    let named = |hit: Hit| Named { name: names.get(&hit.clip).cloned().unwrap_or_default(), hit };
+    let hits: Vec<Named> = hits.into_iter().map(named).collect();
+    let found = Found { ticks: index.ticks(), load_secs, search_secs, hits };
+    if args.json {
+        super::print_json(&found)?;
+    } else {
+        super::print(text(&found, index.tick_hz()))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn example(db: &MotionDb, index: &SearchIndex, args: &Args) -> Result<Example> {
+    let short = || format!("{}: the example must hold at least 0.1 s of motion", args.example);
+    if let Ok(clip) = db.find_clip(&args.example) {
+        let stop = args.stop.unwrap_or(clip.duration_secs());
+        return index.example(clip.id, args.start, stop).with_context(short);
+    }
+    let path = Path::new(&args.example);
+    if !path.exists() && path != Path::new("-") {
+        bail!("{}: neither a clip of the database nor a file", args.example);
+    }
+    let opened = files::open(path, &args.read)?;
+    let clip = opened.clips.into_iter().next().with_context(|| format!("{}: no clip in it", args.example))?;
+    let imported = prepare(clip, &ImportOptions::default())?;
+    let (clip, roles, rest) = (&imported.clip, &imported.roles, &imported.facts.rest_frames);
+    let params = FeatureParams::default();
+    let bones = bones_of_clip(clip, roles, rest);
+    let rows = rows_of_clip(clip, roles, rest, bones, &params);
+    let tick = |secs: f64| ((secs * params.tick_hz()).round().max(0.0) as usize).min(rows.len());
+    let (start, stop) = (tick(args.start), args.stop.map_or(rows.len(), tick));
+    let span = rows.slice(start..stop.max(start));
+    SearchIndex::example_of(&span, bones).with_context(short)
+}
+
+fn text(found: &Found, tick_hz: f64) -> String {
+    let mut table = Table::new(["clip", "start", "stop", "score", "path", ""]);
+    for named in &found.hits {
+        let hit = &named.hit;
+        table.row([
+            named.name.clone(),
+            format!("{:.2}", hit.start_secs),
+            format!("{:.2}", hit.stop_secs),
+            format!("{:.3}", hit.score),
+            format!("{:.2}", hit.warp_distance),
+            if hit.mirrored { "mirrored".to_owned() } else { String::new() },
+        ]);
+    }
+    let minutes = found.ticks as f64 / tick_hz / 60.0;
+    format!("{table}{minutes:.1} min searched in {:.1} ms\n", 1e3 * found.search_secs)
+}

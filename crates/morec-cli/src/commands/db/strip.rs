@@ -1,0 +1,100 @@
+//! A strip of stick figures: what a stretch of motion looks like at a glance.
+
+use std::fmt::Write;
+
+use morec::clip::Clip;
+use morec::kinematics::WorldPose;
+use morec::math::Vec3;
+use morec::roles::{Role, RoleMap};
+use morec_db::StoredClip;
+
+/// Height of a strip, in pixels.
+const HEIGHT: f64 = 90.0;
+/// Width of one pose.
+const WIDTH: f64 = 52.0;
+
+/// `poses` stick figures evenly over a stretch, each seen from its own three-quarter front; left limbs and right limbs in
+/// two colours.
+pub fn strip(stored: &StoredClip, start_secs: f64, stop_secs: f64, poses: usize) -> String {
+    let clip = &stored.clip;
+    let frame =
+        |secs: f64| ((secs * clip.rate_hz).round().max(0.0) as usize).min(clip.frames.saturating_sub(1));
+    let (first, last) =
+        (frame(start_secs).max(stored.rest.end.min(clip.frames.saturating_sub(1))), frame(stop_secs));
+    let mut svg = format!(
+        "<svg width=\"{0}\" height=\"{HEIGHT}\" viewBox=\"0 0 {0} {HEIGHT}\" role=\"img\">",
+        WIDTH * poses as f64
+    );
+    let height = body_height(clip, first);
+    for pose in 0..poses {
+        let at = first + (last.max(first) - first) * pose / (poses - 1).max(1);
+        figure(&mut svg, stored, at, WIDTH * (pose as f64 + 0.5), 0.75 * HEIGHT / height);
+    }
+    svg.push_str("</svg>");
+    svg
+}
+
+/// How tall the pose of a frame is; never nothing.
+fn body_height(clip: &Clip, frame: usize) -> f64 {
+    let pose = WorldPose::of(clip, frame);
+    let heights = || pose.positions.iter().map(|p| p.y);
+    (heights().fold(f64::MIN, f64::max) - heights().fold(f64::MAX, f64::min)).max(0.3)
+}
+
+fn figure(svg: &mut String, stored: &StoredClip, frame: usize, x: f64, scale: f64) {
+    let pose = WorldPose::of(&stored.clip, frame);
+    let (right, hips) = view(&pose, &stored.roles);
+    let low = pose.positions.iter().map(|p| p.y).fold(f64::MAX, f64::min);
+    // A jump is seen: the floor is where the feet are, but not above the world's.
+    let floor = low.min(hips.y - 0.5 / scale);
+    let at = |p: &Vec3| (x + (p - hips).dot(&right) * scale, 0.93 * HEIGHT - (p.y - floor) * scale);
+    let (mut left, mut others, mut rights) = (String::new(), String::new(), String::new());
+    for (j, joint) in stored.clip.skeleton.joints().iter().enumerate() {
+        let Some(parent) = joint.parent else { continue };
+        // Props and worlds: a root's children far away are no bones.
+        let (from, to) = (at(&pose.positions[parent]), at(&pose.positions[j]));
+        let path = match side(&stored.clip, &stored.roles, j) {
+            Some(true) => &mut left,
+            Some(false) => &mut rights,
+            None => &mut others,
+        };
+        let _ = write!(path, "M{:.1} {:.1}L{:.1} {:.1}", from.0, from.1, to.0, to.1);
+    }
+    for (path, colour) in [(rights, "#c8553d"), (others, "#888"), (left, "#3d7bc8")] {
+        if !path.is_empty() {
+            let _ = write!(svg, "<path stroke=\"{colour}\" d=\"{path}\"/>");
+        }
+    }
+}
+
+/// The direction that points right in the picture, and where the hips are.
+fn view(pose: &WorldPose, roles: &RoleMap) -> (Vec3, Vec3) {
+    let of = |role| roles.joint(role).map(|j: usize| pose.positions[j]);
+    let hips = of(Role::Hips).or(pose.positions.first().copied()).unwrap_or_else(Vec3::zeros);
+    let lateral = match (of(Role::LeftThigh), of(Role::RightThigh)) {
+        (Some(left), Some(right)) => left - right,
+        _ => Vec3::x(),
+    };
+    let flat = Vec3::new(lateral.x, 0.0, lateral.z);
+    let flat = if flat.norm() > 1e-9 { flat.normalize() } else { Vec3::x() };
+    // Turned by 35° from the front, so that arms stretched forward are seen too.
+    (morec::math::Axis::Y.rotation(35f64.to_radians()) * flat, hips)
+}
+
+/// Whether a joint belongs to a left limb, a right one, or neither.
+fn side(clip: &Clip, roles: &RoleMap, joint: usize) -> Option<bool> {
+    const LEFT: [Role; 3] = [Role::LeftThigh, Role::LeftShoulder, Role::LeftArm];
+    const RIGHT: [Role; 3] = [Role::RightThigh, Role::RightShoulder, Role::RightArm];
+    let mut at = Some(joint);
+    while let Some(j) = at {
+        let plays = |sides: &[Role]| sides.iter().any(|role| roles.joint(*role) == Some(j));
+        if plays(&LEFT) {
+            return Some(true);
+        }
+        if plays(&RIGHT) {
+            return Some(false);
+        }
+        at = clip.skeleton.joints()[j].parent;
+    }
+    None
+}

@@ -1,0 +1,37 @@
+//! `morec db vacuum`: give unused room back.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::Result;
+use morec_db::MotionDb;
+
+use super::megabytes;
+
+/// Give room that is no longer used back to the disk
+#[derive(clap::Args)]
+pub struct Args {
+    /// The database
+    #[arg(value_name = "DB")]
+    db: PathBuf,
+    /// Drop feature rows too; they are made again when they are needed
+    #[arg(long)]
+    caches: bool,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// Shrinks it.
+pub fn run(args: &Args) -> Result<ExitCode> {
+    let mut db = MotionDb::open(&args.db)?;
+    let before = db.summary()?.file_bytes;
+    db.vacuum(args.caches)?;
+    let after = db.summary()?.file_bytes;
+    if args.json {
+        super::print_json(&serde_json::json!({ "bytes_before": before, "bytes_after": after }))?;
+    } else {
+        super::print(format_args!("{} before, {} now\n", megabytes(before), megabytes(after)))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}

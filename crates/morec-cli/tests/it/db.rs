@@ -1,0 +1,180 @@
+//! The database from the command line, from an empty file to a trained index.
+
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+use morec::formats::bvh;
+use morec::synth::{DatabaseSpec, Take, database};
+use serde_json::Value;
+
+use crate::kit::Folder;
+
+fn takes(people: usize) -> Vec<Take> {
+    let spec = DatabaseSpec { people, repetitions: 2, classes: vec!["wave", "bow"], ..Default::default() };
+    database(3, &spec)
+}
+
+/// A folder with `clips/` and `labels.tsv` of made people.
+fn studio(people: usize) -> (Folder, Vec<Take>) {
+    let folder = Folder::with(&[("clips/readme.txt", "not a clip")]);
+    let takes = takes(people);
+    let mut labels = String::from("clip\tstart\tstop\tclass\n");
+    for take in &takes {
+        let name = &take.clip.name;
+        let mut bytes = Vec::new();
+        bvh::write(&take.clip, &mut bytes).unwrap();
+        std::fs::write(folder.path().join(format!("clips/{name}.bvh")), bytes).unwrap();
+        for label in &take.labels {
+            let span = label.span(take.clip.rate_hz);
+            labels.push_str(&format!("{name}\t{}\t{}\t{}\n", span.start, span.end, label.class));
+        }
+    }
+    std::fs::write(folder.path().join("labels.tsv"), labels).unwrap();
+    (folder, takes)
+}
+
+fn json(folder: &Folder, args: &[&str]) -> Value {
+    let mut args = args.to_vec();
+    args.push("--json");
+    serde_json::from_str(&folder.morec(&args).ok()).unwrap()
+}
+
+#[test]
+fn from_clips_to_labels_and_back() {
+    let (folder, takes) = studio(3);
+    let db = |args: &[&str]| {
+        let args: Vec<&str> = ["db", args[0], "m.mdb"].into_iter().chain(args[1..].iter().copied()).collect();
+        json(&folder, &args)
+    };
+    db(&["init"]);
+    assert_eq!(folder.morec(&["db", "init", "m.mdb"]).code, Some(1));
+    db(&["import", "clips", "--licence", "CC0", "--tag", "made"]);
+    let clips = db(&["clips", "--tag", "made"]);
+    assert_eq!(clips.as_array().unwrap().len(), 3);
+    assert_eq!(clips[0]["licence"], "CC0");
+
+    let all: usize = takes.iter().map(|t| t.labels.len()).sum();
+    assert_eq!(db(&["label", "labels.tsv"])["samples"]["added"], all);
+    assert_eq!(db(&["label", "labels.tsv"])["samples"]["unchanged"], all);
+    for form in ["tsv", "csv", "json", "babel", "label-studio"] {
+        db(&["export", "out", "--form", form]);
+        let again = db(&["label", "out", "--form", form, "--state", "accepted"]);
+        assert_eq!(again["samples"]["unchanged"], all, "{form}");
+    }
+    db(&["export", "eaf", "--form", "eaf"]);
+    for take in &takes {
+        let file = format!("eaf/{}.eaf", take.clip.name);
+        assert_eq!(db(&["label", &file])["samples"]["unchanged"], take.labels.len());
+    }
+
+    db(&["classes", "--rename", "bow", "nod"]);
+    assert_eq!(db(&["classes"])[0]["name"], "nod");
+    db(&["label", "--undo"]);
+    assert_eq!(db(&["classes"])[0]["name"], "bow");
+
+    let name = &takes[0].clip.name;
+    let label = &takes[0].labels[0];
+    let (start, stop) = (label.start_secs.to_string(), label.stop_secs.to_string());
+    let hits = db(&["search", name, "--start", &start, "--stop", &stop, "--limit", "3"]);
+    assert_eq!(hits["hits"].as_array().unwrap().len(), 3);
+    let outside =
+        db(&["search", &format!("clips/{name}.bvh"), "--start", &start, "--stop", &stop, "--limit", "1"]);
+    assert_eq!(outside["hits"][0]["name"], Value::from(name.as_str()), "a file finds itself");
+
+    assert_eq!(db(&["cut"]).as_array().unwrap().len(), 3);
+    assert!(!db(&["cycles"]).as_array().unwrap().is_empty());
+    assert!(db(&["group", "--of", "labels"])["adjusted_rand_index"].as_f64().unwrap() > 0.3);
+    assert!(db(&["check"])["faults"].as_array().unwrap().is_empty());
+    db(&["vacuum", "--caches"]);
+    assert!(db(&["report", "-o", "page.html"])["strips"].as_u64().unwrap() > 3);
+    let page = std::fs::read_to_string(folder.path().join("page.html")).unwrap();
+    assert!(page.contains("<svg") && !page.contains("http"));
+    let left: Vec<_> = std::fs::read_dir(folder.path())
+        .unwrap()
+        .filter_map(|f| f.ok()?.file_name().into_string().ok())
+        .collect();
+    assert!(!left.iter().any(|f| f.contains("wal") || f.contains("shm")), "one file stays: {left:?}");
+}
+
+#[test]
+fn a_database_trains_an_index_and_keeps_it() {
+    let (folder, _) = studio(3);
+    json(&folder, &["db", "import", "m.mdb", "clips"]);
+    json(&folder, &["db", "label", "m.mdb", "labels.tsv"]);
+    folder.morec(&["train", "--db", "m.mdb", "-o", "moves.idx"]).ok();
+    assert_eq!(json(&folder, &["db", "info", "m.mdb"])["indexes"], 1);
+    let found = folder.morec(&["recognize", "moves.idx", "clips"]).ok();
+    assert!(found.contains("wave"), "{found}");
+}
+
+#[test]
+fn proposals_are_judged_in_bulk() {
+    let (folder, takes) = studio(3);
+    json(&folder, &["db", "import", "m.mdb", "clips"]);
+    let text = std::fs::read_to_string(folder.path().join("labels.tsv")).unwrap();
+    let own: Vec<&str> = text
+        .lines()
+        .filter(|l| l.starts_with("clip") || l.starts_with(takes[0].clip.name.as_str()))
+        .collect();
+    std::fs::write(folder.path().join("few.tsv"), own.join("\n")).unwrap();
+    json(&folder, &["db", "label", "m.mdb", "few.tsv"]);
+    let proposed = json(&folder, &["db", "propose", "m.mdb"]).as_array().unwrap().len();
+    assert!(proposed > 2, "{proposed}");
+    json(&folder, &["db", "export", "m.mdb", "ask.csv", "--state", "proposed"]);
+    let ask = std::fs::read_to_string(folder.path().join("ask.csv")).unwrap();
+    std::fs::write(folder.path().join("answer.csv"), ask.replacen("proposed", "accepted", 1)).unwrap();
+    let answered = json(&folder, &["db", "label", "m.mdb", "answer.csv"]);
+    assert_eq!(answered["samples"]["changed"], 1, "{answered}");
+    let judged = json(&folder, &["db", "propose", "m.mdb", "--accept", "0.5", "--reject", "0.5"]);
+    assert_eq!(judged["left"], 0);
+    assert_eq!(
+        judged["accepted"].as_u64().unwrap() + judged["rejected"].as_u64().unwrap(),
+        proposed as u64 - 1
+    );
+}
+
+/// Killed at any moment, what is there is whole, and importing again completes it.
+#[cfg(unix)]
+#[test]
+fn kill_nine_leaves_whole_clips() {
+    let (folder, takes) = studio(1);
+    let mut bytes = Vec::new();
+    bvh::write(&takes[0].clip, &mut bytes).unwrap();
+    let text = String::from_utf8(bytes).unwrap();
+    // Files of different content: a comment's worth of difference in one offset is enough.
+    for number in 1..=100 {
+        let path = folder.path().join(format!("clips/c{number:03}.bvh"));
+        std::fs::write(path, text.replacen("0.000000", &format!("0.{number:06}"), 1)).unwrap();
+    }
+    let mut seen = 0;
+    for millis in [30, 200, 600, 1200] {
+        let mut import = Command::new(env!("CARGO_BIN_EXE_morec"))
+            .args(["db", "import", "m.mdb", "clips"])
+            .current_dir(folder.path())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        std::thread::sleep(Duration::from_millis(millis));
+        import.kill().unwrap(); // SIGKILL
+        import.wait().unwrap();
+        if !folder.path().join("m.mdb").exists() {
+            continue;
+        }
+        let info = folder.morec(&["db", "info", "m.mdb", "--json"]);
+        if info.code != Some(0) {
+            // Killed while the empty database was being made: the next import finishes it.
+            assert_eq!(seen, 0, "{info:?}");
+            continue;
+        }
+        let info: Value = serde_json::from_str(&info.out).unwrap();
+        let check = json(&folder, &["db", "check", "m.mdb"]);
+        assert!(check["faults"].as_array().unwrap().is_empty(), "{check}");
+        assert_eq!(check["clips"], info["clips"]);
+        let clips = info["clips"].as_u64().unwrap();
+        assert!(clips >= seen, "what was committed stays");
+        seen = clips;
+    }
+    folder.morec(&["db", "import", "m.mdb", "clips"]).ok();
+    assert_eq!(json(&folder, &["db", "info", "m.mdb"])["clips"], 101);
+}

@@ -1,0 +1,159 @@
+//! What is known about clips, without their motion.
+
+use rusqlite::{OptionalExtension, Row, params};
+
+use crate::{DbError, MotionDb};
+
+/// A clip's number in its database.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
+pub struct ClipId(pub i64);
+
+/// A clip without its motion.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct ClipInfo {
+    /// Its number.
+    pub id: ClipId,
+    /// Its name, one of a kind in the database.
+    pub name: String,
+    /// Frames at the file's rate.
+    pub frames: usize,
+    /// Frames a second.
+    pub rate_hz: f64,
+    /// T-pose frames at the start.
+    pub rest_frames: usize,
+    /// Frames that reading filled in.
+    pub repaired_frames: usize,
+    /// Joints of its skeleton.
+    pub joints: usize,
+    /// Which skeleton: clips of one skeleton share the number.
+    pub skeleton: i64,
+    /// Where its file was.
+    pub path: String,
+    /// Its file's format.
+    pub format: String,
+    /// Bytes of compressed motion.
+    pub motion_bytes: usize,
+    /// Where the material is from.
+    pub source: Option<String>,
+    /// Under which terms.
+    pub licence: Option<String>,
+    /// Who is seen.
+    pub subject: Option<String>,
+    /// Words attached to it.
+    pub tags: Vec<String>,
+    /// How many accepted samples lie in it.
+    pub samples: usize,
+}
+
+impl ClipInfo {
+    /// Length in seconds.
+    pub fn duration_secs(&self) -> f64 {
+        self.frames as f64 / self.rate_hz
+    }
+}
+
+/// Which clips; all conditions must hold.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ClipFilter {
+    /// The name matches this pattern (`*` any text, `?` one character).
+    pub name: Option<String>,
+    /// This person is seen.
+    pub subject: Option<String>,
+    /// This tag is attached.
+    pub tag: Option<String>,
+    /// It holds an accepted sample of this class.
+    pub class: Option<String>,
+}
+
+/// What to change of clips; what is `None` stays.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ClipUpdate {
+    /// New source; empty takes it away.
+    pub source: Option<String>,
+    /// New licence; empty takes it away.
+    pub licence: Option<String>,
+    /// New subject; empty takes it away.
+    pub subject: Option<String>,
+    /// Tags to attach.
+    pub add_tags: Vec<String>,
+    /// Tags to take off.
+    pub remove_tags: Vec<String>,
+}
+
+const COLUMNS: &str = "c.id, c.name, c.frames, c.rate_hz, c.rest_frames, c.repaired_frames, k.joints, c.skeleton, \
+    f.path, f.format, length(c.motion), c.source, c.licence, c.subject, \
+    (SELECT group_concat(tag, char(10)) FROM tags t WHERE t.clip = c.id), \
+    (SELECT count(*) FROM samples s WHERE s.clip = c.id AND s.state = 'accepted') \
+    FROM clips c JOIN files f ON f.id = c.file JOIN skeletons k ON k.id = c.skeleton";
+
+fn info(row: &Row<'_>) -> rusqlite::Result<ClipInfo> {
+    let count = |column| -> rusqlite::Result<usize> { Ok(row.get::<_, i64>(column)?.max(0) as usize) };
+    let tags: Option<String> = row.get(14)?;
+    Ok(ClipInfo {
+        id: ClipId(row.get(0)?),
+        name: row.get(1)?,
+        frames: count(2)?,
+        rate_hz: row.get(3)?,
+        rest_frames: count(4)?,
+        repaired_frames: count(5)?,
+        joints: count(6)?,
+        skeleton: row.get(7)?,
+        path: row.get(8)?,
+        format: row.get(9)?,
+        motion_bytes: count(10)?,
+        source: row.get(11)?,
+        licence: row.get(12)?,
+        subject: row.get(13)?,
+        tags: tags.map_or_else(Vec::new, |tags| tags.split('\n').map(str::to_owned).collect()),
+        samples: count(15)?,
+    })
+}
+
+impl MotionDb {
+    /// The clips of a filter, by name.
+    pub fn clips(&self, filter: &ClipFilter) -> Result<Vec<ClipInfo>, DbError> {
+        let sql = format!(
+            "SELECT {COLUMNS} WHERE (?1 IS NULL OR c.name GLOB ?1) AND (?2 IS NULL OR c.subject = ?2) \
+             AND (?3 IS NULL OR EXISTS (SELECT 1 FROM tags t WHERE t.clip = c.id AND t.tag = ?3)) \
+             AND (?4 IS NULL OR EXISTS (SELECT 1 FROM samples s JOIN classes n ON n.id = s.class \
+                  WHERE s.clip = c.id AND s.state = 'accepted' AND n.name = ?4)) ORDER BY c.name"
+        );
+        let mut statement = self.conn.prepare(&sql)?;
+        let given = params![filter.name, filter.subject, filter.tag, filter.class];
+        let clips = statement.query_map(given, info)?.collect::<Result<_, _>>()?;
+        Ok(clips)
+    }
+
+    /// The clip of a name; its file ending may stand behind it.
+    pub fn find_clip(&self, name: &str) -> Result<ClipInfo, DbError> {
+        let sql = format!("SELECT {COLUMNS} WHERE c.name = ?1");
+        let find = |name: &str| self.conn.query_row(&sql, params![name], info).optional();
+        if let Some(found) = find(name)? {
+            return Ok(found);
+        }
+        let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+        find(stem)?.ok_or_else(|| DbError::unknown("clip", name))
+    }
+
+    /// Changes what is known about clips, all or none. Gives how many there were.
+    pub fn update_clips(&mut self, clips: &[ClipId], update: &ClipUpdate) -> Result<usize, DbError> {
+        let tx = self.write()?;
+        let mut changed = 0;
+        for id in clips {
+            changed += tx.execute(
+                "UPDATE clips SET source = CASE WHEN ?2 IS NULL THEN source ELSE nullif(?2, '') END, \
+                 licence = CASE WHEN ?3 IS NULL THEN licence ELSE nullif(?3, '') END, \
+                 subject = CASE WHEN ?4 IS NULL THEN subject ELSE nullif(?4, '') END WHERE id = ?1",
+                params![id.0, update.source, update.licence, update.subject],
+            )?;
+            for tag in &update.add_tags {
+                tx.execute("INSERT OR IGNORE INTO tags (clip, tag) VALUES (?1, ?2)", params![id.0, tag])?;
+            }
+            for tag in &update.remove_tags {
+                tx.execute("DELETE FROM tags WHERE clip = ?1 AND tag = ?2", params![id.0, tag])?;
+            }
+        }
+        tx.commit()?;
+        Ok(changed)
+    }
+}

@@ -1,0 +1,104 @@
+//! What can go wrong with a database, in plain words.
+
+use std::path::PathBuf;
+
+use rusqlite::ErrorCode;
+
+/// A database operation that was not done, and why. Nothing of it remains in the file.
+#[derive(Debug, thiserror::Error)]
+pub enum DbError {
+    /// A database was to be made where something is.
+    #[error("{0}: there is a file already")]
+    Exists(PathBuf),
+    /// There is no such file.
+    #[error("{0}: no such file; make a database with `morec db init`")]
+    Missing(PathBuf),
+    /// The file is no SQLite database.
+    #[error("{0}: expected a motion database, found another kind of file")]
+    NotADatabase(PathBuf),
+    /// The file is another program's SQLite database.
+    #[error(
+        "{path}: expected a motion database, found an SQLite file of another program (application id {found:#x})"
+    )]
+    Foreign {
+        /// The file.
+        path: PathBuf,
+        /// Its application id.
+        found: i32,
+    },
+    /// The file was written by a newer version.
+    #[error("{path}: schema {found} is newer than this program knows ({known}); a newer morec reads it")]
+    Newer {
+        /// The file.
+        path: PathBuf,
+        /// Its schema.
+        found: i32,
+        /// The newest schema known here.
+        known: i32,
+    },
+    /// The file was written by an older version and is open for reading only.
+    #[error("{path}: schema {found} must be brought to {known} first: open it once for writing")]
+    Older {
+        /// The file.
+        path: PathBuf,
+        /// Its schema.
+        found: i32,
+        /// The schema needed.
+        known: i32,
+    },
+    /// The file may not be written.
+    #[error("the database cannot be written: the file or its folder is read-only")]
+    ReadOnly,
+    /// Another program writes for longer than was waited.
+    #[error("the database is busy: another program is writing to it; try again when it is done")]
+    Busy,
+    /// No room is left.
+    #[error("the disk is full: nothing of the last step was kept, what was there before is whole")]
+    Full,
+    /// The file is damaged.
+    #[error("the database is damaged: {0}")]
+    Damaged(String),
+    /// Reading or writing the disk failed.
+    #[error("the disk could not be read or written: {0}")]
+    Disk(String),
+    /// A name that is not there.
+    #[error("no {kind} is called {name:?}{hint}")]
+    Unknown {
+        /// Of what: clip, class, edit.
+        kind: &'static str,
+        /// The name.
+        name: String,
+        /// What is there instead, after a semicolon; or nothing.
+        hint: String,
+    },
+    /// What was asked for makes no sense.
+    #[error("{0}")]
+    Invalid(String),
+    /// The listener said so.
+    #[error("cancelled")]
+    Cancelled,
+    /// Anything else that SQLite reports.
+    #[error("database: {0}")]
+    Sqlite(rusqlite::Error),
+}
+
+impl From<rusqlite::Error> for DbError {
+    fn from(error: rusqlite::Error) -> Self {
+        let rusqlite::Error::SqliteFailure(code, message) = &error else { return Self::Sqlite(error) };
+        let text = || message.clone().unwrap_or_else(|| code.to_string());
+        match code.code {
+            ErrorCode::ReadOnly => Self::ReadOnly,
+            ErrorCode::DatabaseBusy | ErrorCode::DatabaseLocked => Self::Busy,
+            ErrorCode::DiskFull => Self::Full,
+            ErrorCode::DatabaseCorrupt => Self::Damaged(text()),
+            ErrorCode::SystemIoFailure | ErrorCode::CannotOpen => Self::Disk(text()),
+            _ => Self::Sqlite(error),
+        }
+    }
+}
+
+impl DbError {
+    pub(crate) fn unknown(kind: &'static str, name: &str) -> Self {
+        Self::Unknown { kind, name: name.to_owned(), hint: String::new() }
+    }
+}

@@ -1,0 +1,42 @@
+//! Audacity label tracks: a line of `start<TAB>stop<TAB>name` for each label, seconds.
+
+use morec::formats::{ParseError, Place};
+
+use super::{Annotation, Lengths, ReadLabels, checked, secs};
+use crate::labels::State;
+
+pub fn read(text: &str, clip: Option<&str>) -> Result<ReadLabels, ParseError> {
+    let clip = clip.ok_or_else(|| {
+        ParseError::new(Place::File, "to be told the clip (a label track does not name it)", "no clip given")
+    })?;
+    let mut read = ReadLabels::default();
+    for (line, raw) in (1..).zip(text.lines()) {
+        // Lines that begin with a backslash hold frequencies of the label above.
+        if raw.trim().is_empty() || raw.starts_with('\\') {
+            continue;
+        }
+        let error =
+            |found: &str| ParseError::new(Place::Line(line), "start<TAB>stop<TAB>name, in seconds", found);
+        let mut cells = raw.splitn(3, '\t');
+        let mut number = || cells.next().and_then(|cell| cell.trim().replace(',', ".").parse::<f64>().ok());
+        let (start, stop) = number().zip(number()).ok_or_else(|| error(raw))?;
+        let class = cells.next().unwrap_or("").trim();
+        let extent = checked(start, stop).map_err(|found| error(&found))?;
+        read.annotations.push(Annotation {
+            clip: clip.to_owned(),
+            class: class.to_owned(),
+            extent: Some(extent),
+            person: None,
+            score: None,
+            state: State::Accepted,
+        });
+    }
+    Ok(read)
+}
+
+pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, String> {
+    annotations
+        .iter()
+        .map(|a| secs(a, lengths).map(|(start, stop)| format!("{start}\t{stop}\t{}\n", a.class)))
+        .collect()
+}

@@ -1,0 +1,85 @@
+//! BABEL-like JSON (Punnakkal et al. 2021): by sequence, `seq_ann` for the whole and `frame_ann` for stretches of it.
+
+use morec::formats::{ParseError, Place};
+use serde_json::{Map, Value, json};
+
+use super::{Annotation, Lengths, ReadLabels, checked, json_error, secs};
+use crate::labels::State;
+
+pub fn read(bytes: &[u8]) -> Result<ReadLabels, ParseError> {
+    let expected = "a BABEL object: sequence number to {feat_p, dur, seq_ann, frame_ann}";
+    let file: Map<String, Value> =
+        serde_json::from_slice(bytes).map_err(|error| json_error(&error, expected))?;
+    let mut read = ReadLabels::default();
+    for (key, sequence) in &file {
+        let clip = sequence["feat_p"].as_str().map_or(key.as_str(), stem);
+        for (one, several, timed) in [("seq_ann", "seq_anns", false), ("frame_ann", "frame_anns", true)] {
+            let sets = sequence[several].as_array().into_iter().flatten().chain([&sequence[one]]);
+            for label in sets.filter_map(|set| set["labels"].as_array()).flatten() {
+                read_label(clip, label, timed, &mut read).map_err(|found| {
+                    ParseError::new(Place::File, format!("{key}: a label with times"), found)
+                })?;
+            }
+        }
+    }
+    Ok(read)
+}
+
+/// The file's stem where `feat_p` is a path to poses; a name of ours may hold a slash, too.
+fn stem(path: &str) -> &str {
+    let Some(path) = path.strip_suffix(".npz") else { return path };
+    let name = path.rsplit(['/', '\\']).next().unwrap_or(path);
+    name.strip_suffix("_poses").unwrap_or(name)
+}
+
+fn read_label(clip: &str, label: &Value, timed: bool, read: &mut ReadLabels) -> Result<(), String> {
+    let extent = match (timed, label["start_t"].as_f64(), label["end_t"].as_f64()) {
+        (false, _, _) => None,
+        (true, Some(start), Some(stop)) => Some(checked(start, stop)?),
+        (true, _, _) => return Err(label.to_string()),
+    };
+    let categories: Vec<&str> =
+        label["act_cat"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
+    let named = ["proc_label", "raw_label"].into_iter().filter_map(|key| label[key].as_str());
+    let classes = if categories.is_empty() { named.take(1).collect() } else { categories };
+    for class in classes {
+        read.annotations.push(Annotation {
+            clip: clip.to_owned(),
+            class: class.to_owned(),
+            extent,
+            person: None,
+            score: None,
+            state: State::Accepted,
+        });
+    }
+    Ok(())
+}
+
+pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, String> {
+    let mut file: Map<String, Value> = Map::new();
+    for a in annotations {
+        let sid = file.len();
+        let sequence = file.entry(a.clip.clone()).or_insert_with(|| {
+            let dur = lengths.get(&a.clip).map(|length| length.duration_secs());
+            json!({ "babel_sid": sid, "feat_p": a.clip, "dur": dur,
+                    "seq_ann": null, "frame_ann": null })
+        });
+        let mut label = json!({ "raw_label": a.class, "proc_label": a.class, "act_cat": [a.class] });
+        let set = match a.extent {
+            None => "seq_ann",
+            Some(_) => {
+                let (start, stop) = secs(a, lengths)?;
+                label["start_t"] = start.into();
+                label["end_t"] = stop.into();
+                "frame_ann"
+            }
+        };
+        if sequence[set].is_null() {
+            sequence[set] = json!({ "labels": [] });
+        }
+        if let Some(labels) = sequence[set]["labels"].as_array_mut() {
+            labels.push(label);
+        }
+    }
+    serde_json::to_string_pretty(&file).map(|text| text + "\n").map_err(|error| error.to_string())
+}

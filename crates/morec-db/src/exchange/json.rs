@@ -1,0 +1,103 @@
+//! morec's own JSON: `{"labels": [{"clip": …, "class": …, "start_secs": …, "stop_secs": …}]}`.
+
+use morec::formats::{ParseError, Place};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::{Annotation, Form, Lengths, ReadLabels, checked, frames, json_error, secs};
+use crate::labels::State;
+
+#[derive(Serialize, Deserialize)]
+struct File {
+    labels: Vec<Row>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Row {
+    clip: String,
+    class: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    start_secs: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    stop_secs: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    start: Option<u64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    stop: Option<u64>,
+    #[serde(default)]
+    whole_clip: bool,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    person: Option<String>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    score: Option<f64>,
+    #[serde(default)]
+    state: Option<State>,
+}
+
+/// Which of the forms in JSON a file is.
+pub fn which(bytes: &[u8]) -> Form {
+    match serde_json::from_slice(bytes) {
+        Ok(Value::Array(_)) => Form::LabelStudio,
+        Ok(Value::Object(map)) if map.contains_key("labels") => Form::Json,
+        Ok(Value::Object(map)) if map.contains_key("predictions") || map.contains_key("annotations") => {
+            Form::LabelStudio
+        }
+        Ok(Value::Object(_)) => Form::Babel,
+        _ => Form::Json,
+    }
+}
+
+pub fn read(bytes: &[u8], lengths: &Lengths) -> Result<ReadLabels, ParseError> {
+    let expected = "{\"labels\": [{\"clip\", \"class\", \"start_secs\", \"stop_secs\"}]}";
+    let file: File = serde_json::from_slice(bytes).map_err(|error| json_error(&error, expected))?;
+    let mut read = ReadLabels::default();
+    for (index, row) in file.labels.into_iter().enumerate() {
+        let rate = super::length_of(&row.clip, lengths).map(|length| length.rate_hz);
+        let extent = match (row.start_secs.zip(row.stop_secs), row.start.zip(row.stop), rate) {
+            _ if row.whole_clip => None,
+            (Some(secs), _, _) => Some(secs),
+            (None, Some((start, stop)), Some(rate)) => Some((start as f64 / rate, stop as f64 / rate)),
+            (None, Some(_), None) => {
+                read.warnings.push(super::no_clip(index as u64 + 1, &row.clip));
+                continue;
+            }
+            (None, None, _) => None,
+        };
+        if let Some((start, stop)) = extent {
+            checked(start, stop).map_err(|found| {
+                let expected = format!("labels[{index}]: a stop after a start of at least 0");
+                ParseError::new(Place::File, expected, found)
+            })?;
+        }
+        read.annotations.push(Annotation {
+            clip: row.clip,
+            class: row.class,
+            extent,
+            person: row.person,
+            score: row.score,
+            state: row.state.unwrap_or(State::Accepted),
+        });
+    }
+    Ok(read)
+}
+
+pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, String> {
+    let row = |a: &Annotation| -> Result<Row, String> {
+        let (start_secs, stop_secs) = secs(a, lengths)?;
+        let framed = frames(&Annotation { extent: Some((start_secs, stop_secs)), ..a.clone() }, lengths);
+        Ok(Row {
+            clip: a.clip.clone(),
+            class: a.class.clone(),
+            start_secs: Some(start_secs),
+            stop_secs: Some(stop_secs),
+            start: framed.map(|f| f.0),
+            stop: framed.map(|f| f.1),
+            whole_clip: a.extent.is_none(),
+            person: a.person.clone(),
+            score: a.score,
+            state: Some(a.state),
+        })
+    };
+    let file = File { labels: annotations.iter().map(row).collect::<Result<_, _>>()? };
+    serde_json::to_string_pretty(&file).map(|text| text + "\n").map_err(|error| error.to_string())
+}

@@ -1,0 +1,140 @@
+//! What is written is read back the same, in every form, as far as the form can say it.
+
+use proptest::prelude::*;
+
+use super::*;
+
+fn lengths() -> Lengths {
+    let length = |frames, rate_hz| ClipLength { frames, rate_hz };
+    [
+        ("take_1", length(1000, 120.0)),
+        ("b/été 2", length(3000, 30.0)),
+        ("c,\"d\"", length(500, 1.0 / 0.0083333)),
+    ]
+    .map(|(name, length)| (name.to_owned(), length))
+    .into()
+}
+
+fn annotation() -> impl Strategy<Value = Annotation> {
+    let clip = prop::sample::select(lengths().into_iter().collect::<Vec<_>>());
+    let class = prop_oneof![Just("walk"), Just("a & <b> \"c\""), Just("größe, 2;x"), Just("wave in")];
+    let person = prop_oneof![Just(None), Just(Some("anna".to_owned())), Just(Some("o'b <1>".to_owned()))];
+    let state = prop_oneof![Just(State::Accepted), Just(State::Proposed), Just(State::Rejected)];
+    (clip, class, 0usize..400, 1usize..90, any::<bool>(), person, prop::option::of(0.0f64..1.0), state)
+        .prop_map(|((clip, length), class, start, frames, whole, person, score, state)| Annotation {
+            clip,
+            class: class.to_owned(),
+            extent: (!whole)
+                .then(|| (start as f64 / length.rate_hz, (start + frames) as f64 / length.rate_hz)),
+            person,
+            score,
+            state,
+        })
+}
+
+fn sorted(mut annotations: Vec<Annotation>) -> Vec<String> {
+    annotations.sort_by(|a, b| format!("{a:?}").cmp(&format!("{b:?}")));
+    annotations.into_iter().map(|a| format!("{a:?}")).collect()
+}
+
+/// What a form can say of an annotation.
+fn sayable(form: Form, all: &[Annotation]) -> Vec<Annotation> {
+    let all_whole = all.iter().all(|a| a.extent.is_none());
+    let says = |a: &Annotation| {
+        let mut said = a.clone();
+        let spelled = || a.extent.or_else(|| secs(a, &lengths()).ok());
+        match form {
+            Form::Csv | Form::Json => return said,
+            Form::Tsv => said.extent = if all_whole { None } else { spelled() },
+            Form::Babel => {}
+            _ => said.extent = spelled(),
+        }
+        if !matches!(form, Form::Tsv | Form::Eaf) {
+            said.person = None;
+        }
+        if form != Form::LabelStudio {
+            said.score = None;
+        }
+        said.state = if form == Form::LabelStudio { State::Proposed } else { State::Accepted };
+        said
+    };
+    all.iter().map(says).collect()
+}
+
+proptest! {
+    #[test]
+    fn round_trips_lose_nothing(all in prop::collection::vec(annotation(), 1..20)) {
+        for form in Form::ALL {
+            let all: Vec<Annotation> = match form.is_of_one_clip() {
+                true => all.iter().filter(|a| a.clip == all[0].clip).cloned().collect(),
+                false => all.clone(),
+            };
+            let text = write(form, &all, &lengths()).unwrap();
+            let clip = (form == Form::Audacity).then(|| all[0].clip.as_str());
+            let again = read(form, text.as_bytes(), clip, &lengths()).unwrap();
+            prop_assert!(again.warnings.is_empty(), "{form:?} {:?}", again.warnings);
+            let snapped = again.annotations.into_iter().map(|mut a| {
+                let rate_hz = lengths()[&a.clip].rate_hz;
+                a.extent = a.extent.map(|(start, stop)| (snap(start, rate_hz), snap(stop, rate_hz)));
+                a
+            });
+            prop_assert_eq!(sorted(snapped.collect()), sorted(sayable(form, &all)), "{:?}\n{}", form, text);
+        }
+    }
+
+    #[test]
+    fn no_bytes_panic(text in "[\\PC\t\n<>&\",:{}\\[\\]0-9a-z]{0,200}") {
+        for form in Form::ALL {
+            let _ = read(form, text.as_bytes(), Some("take_1"), &lengths());
+        }
+    }
+}
+
+#[test]
+fn files_of_other_programs() {
+    let eaf = r#"<?xml version="1.0"?><ANNOTATION_DOCUMENT><HEADER><MEDIA_DESCRIPTOR MEDIA_URL="file:///x/take_1.mp4"/>
+        </HEADER><TIME_ORDER><TIME_SLOT TIME_SLOT_ID="ts1" TIME_VALUE="500"/><TIME_SLOT TIME_SLOT_ID="ts2" TIME_VALUE="1508"/>
+        <TIME_SLOT TIME_SLOT_ID="ts3"/></TIME_ORDER><TIER TIER_ID="t" PARTICIPANT="p">
+        <ANNOTATION><ALIGNABLE_ANNOTATION ANNOTATION_ID="a1" TIME_SLOT_REF1="ts1" TIME_SLOT_REF2="ts2"><ANNOTATION_VALUE>nod</ANNOTATION_VALUE></ALIGNABLE_ANNOTATION></ANNOTATION>
+        <ANNOTATION><ALIGNABLE_ANNOTATION ANNOTATION_ID="a2" TIME_SLOT_REF1="ts1" TIME_SLOT_REF2="ts3"><ANNOTATION_VALUE>open</ANNOTATION_VALUE></ALIGNABLE_ANNOTATION></ANNOTATION>
+        </TIER></ANNOTATION_DOCUMENT>"#;
+    let labels = read(Form::Eaf, eaf.as_bytes(), None, &lengths()).unwrap();
+    assert_eq!((labels.annotations.len(), labels.warnings.len()), (1, 1));
+    let a = &labels.annotations[0];
+    assert_eq!((a.clip.as_str(), a.class.as_str(), a.extent), ("take_1", "nod", Some((0.5, 1.508))));
+    // 1.508 s is what ELAN makes of frame 181 at 120 Hz.
+    assert_eq!(snap(1.508, 120.0), 181.0 / 120.0);
+
+    let babel = br#"{"12": {"babel_sid": 12, "feat_p": "CMU/CMU/86/86_01_poses.npz", "dur": 9.0,
+        "seq_ann": {"labels": [{"raw_label": "he walks", "proc_label": "walk", "act_cat": ["walk", "move"]}]},
+        "frame_ann": null}}"#;
+    let labels = read(Form::Babel, babel, None, &lengths()).unwrap();
+    let classes: Vec<&str> = labels.annotations.iter().map(|a| a.class.as_str()).collect();
+    assert_eq!((labels.annotations[0].clip.as_str(), classes), ("86_01", vec!["walk", "move"]));
+
+    let track = read(Form::Audacity, b"0,5\t1,25\tnod\n\\\t100\t200\n", Some("a"), &lengths()).unwrap();
+    assert_eq!(track.annotations[0].extent, Some((0.5, 1.25)));
+}
+
+#[test]
+fn mistakes_are_located() {
+    let fails =
+        |form, text: &str| read(form, text.as_bytes(), Some("a"), &lengths()).unwrap_err().to_string();
+    assert!(fails(Form::Csv, "a,b\n1,2\n").starts_with("line 1: expected a column `file`"));
+    assert!(
+        fails(Form::Csv, "file,label,start_s,end_s\na,b,3,2\n").starts_with("line 2: expected a stop after")
+    );
+    assert!(fails(Form::Csv, "file,label\n\"a,b\n").starts_with("line 2: expected a closing quote"));
+    assert!(fails(Form::Audacity, "1\t2\ta\nx\t2\ta\n").starts_with("line 2: expected start<TAB>stop"));
+    assert!(fails(Form::Eaf, "<a>").contains("line 1"));
+    assert!(fails(Form::Json, "{\"labels\": [{\"clip\": 3}]}").starts_with("line 1"));
+    let several = [("a", 1), ("b", 2)].map(|(clip, _)| Annotation {
+        clip: clip.into(),
+        class: "x".into(),
+        extent: Some((0.0, 1.0)),
+        person: None,
+        score: None,
+        state: State::Accepted,
+    });
+    assert!(write(Form::Eaf, &several, &lengths()).unwrap_err().contains("one clip"));
+}

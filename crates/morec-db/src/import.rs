@@ -1,0 +1,351 @@
+//! Files into the database: in parallel, whole files or nothing, each content once.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use morec::clip::Clip;
+use morec::features::{BoneSet, FeatureParams};
+use morec::formats::Warning;
+use morec::import::{ImportOptions, prepare};
+use morec::progress::Progress;
+use rayon::prelude::*;
+use rusqlite::{Connection, OptionalExtension, params};
+
+use crate::motion::{Packed, pack};
+use crate::time::now_secs;
+use crate::{ClipId, ClipUpdate, DbError, MotionDb, rows};
+
+/// Files in one transaction: a crash loses the work of so many at most, and nothing that was committed.
+const BATCH: usize = 32;
+
+/// Reads clips of a file; where skeletons of AMC motions lie is its business.
+pub trait ClipReader: Sync {
+    /// Clips in `bytes`, which are the file at `path`; the error says why there are none.
+    fn read(&self, path: &Path, bytes: &[u8]) -> Result<ReadFile, String>;
+}
+
+/// What a [`ClipReader`] gives.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReadFile {
+    /// The format's name.
+    pub format: String,
+    /// The skeleton file that an AMC motion was read with.
+    pub skeleton: Option<PathBuf>,
+    /// One clip for each character.
+    pub clips: Vec<Clip>,
+    /// What was repaired or looks wrong.
+    pub warnings: Vec<Warning>,
+}
+
+/// How to import.
+#[derive(Debug, Clone, Default)]
+pub struct ImportSettings {
+    /// What a person knows better than inference.
+    pub options: ImportOptions,
+    /// Source, licence, subject and tags of every new clip.
+    pub about: ClipUpdate,
+}
+
+/// What became of one file.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[serde(rename_all = "snake_case", tag = "outcome")]
+pub enum Outcome {
+    /// Its clips are in the database now.
+    Imported {
+        /// Their names.
+        clips: Vec<String>,
+        /// What was repaired or looks wrong.
+        warnings: Vec<String>,
+    },
+    /// It was there already, from this path.
+    Known,
+    /// The same bytes are there from another path.
+    Copy {
+        /// Which.
+        of: PathBuf,
+    },
+    /// It could not be used.
+    Refused(Refused),
+}
+
+/// Why a file was refused.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+pub struct Refused {
+    /// The reason in a sentence.
+    pub reason: String,
+}
+
+/// What became of every file, in their order.
+#[derive(Debug, Clone, PartialEq, Default, serde::Serialize)]
+pub struct ImportReport {
+    /// Path and outcome.
+    pub files: Vec<(PathBuf, Outcome)>,
+    /// Whether it was cancelled: files that are not named were not looked at.
+    pub cancelled: bool,
+}
+
+impl ImportReport {
+    /// How many files were imported, of these with warnings, known, copies, refused.
+    pub fn counts(&self) -> [usize; 5] {
+        let mut counts = [0; 5];
+        for (_, outcome) in &self.files {
+            match outcome {
+                Outcome::Imported { warnings, .. } => {
+                    counts[0] += 1;
+                    counts[1] += usize::from(!warnings.is_empty());
+                }
+                Outcome::Known => counts[2] += 1,
+                Outcome::Copy { .. } => counts[3] += 1,
+                Outcome::Refused(_) => counts[4] += 1,
+            }
+        }
+        counts
+    }
+}
+
+/// A file after the parallel part.
+enum Made {
+    Known(i64),
+    Refused(String),
+    New(Box<NewFile>),
+}
+
+struct NewFile {
+    hash: [u8; 32],
+    bytes: usize,
+    read: ReadFile,
+    clips: Vec<NewClip>,
+}
+
+struct NewClip {
+    name: String,
+    packed: Packed,
+    bones: BoneSet,
+    rows: Vec<u8>,
+}
+
+impl MotionDb {
+    /// Imports files. Parsing, compressing and feature rows run on all threads of the pool; every 32 files are
+    /// committed together. Importing again after a crash, or the same files twice, adds only what is missing.
+    ///
+    /// # Errors
+    /// The database cannot be written. Files that cannot be read are no error but part of the report.
+    pub fn import(
+        &mut self,
+        paths: &[PathBuf],
+        reader: &dyn ClipReader,
+        settings: &ImportSettings,
+        progress: &dyn Progress,
+    ) -> Result<ImportReport, DbError> {
+        let mut report = ImportReport::default();
+        let done = AtomicUsize::new(0);
+        let params = FeatureParams::default();
+        let recipe = rows::recipe(&params);
+        for batch in paths.chunks(BATCH) {
+            if progress.cancelled() {
+                report.cancelled = true;
+                break;
+            }
+            let known = self.known_hashes()?;
+            let made: Vec<Option<Made>> = batch
+                .par_iter()
+                .map(|path| {
+                    if progress.cancelled() {
+                        return None;
+                    }
+                    let made = make(path, reader, settings, &params, &known);
+                    progress.report("importing", done.fetch_add(1, Ordering::Relaxed) + 1, paths.len());
+                    Some(made)
+                })
+                .collect();
+            let tx = self.write()?;
+            for (path, made) in batch.iter().zip(made) {
+                match made {
+                    Some(made) => {
+                        report.files.push((path.clone(), store(&tx, path, made, settings, &recipe)?))
+                    }
+                    None => report.cancelled = true,
+                }
+            }
+            tx.commit()?;
+        }
+        Ok(report)
+    }
+
+    fn known_hashes(&self) -> Result<std::collections::HashMap<[u8; 32], i64>, DbError> {
+        let mut statement = self.conn.prepare("SELECT hash, id FROM files")?;
+        let pairs = statement.query_map([], |row| Ok((row.get(0)?, row.get(1)?)))?;
+        Ok(pairs.collect::<Result<_, _>>()?)
+    }
+}
+
+fn make(
+    path: &Path,
+    reader: &dyn ClipReader,
+    settings: &ImportSettings,
+    params: &FeatureParams,
+    known: &std::collections::HashMap<[u8; 32], i64>,
+) -> Made {
+    let bytes = match std::fs::read(path) {
+        Ok(bytes) => bytes,
+        Err(error) => return Made::Refused(error.to_string()),
+    };
+    let hash = *blake3::hash(&bytes).as_bytes();
+    if let Some(file) = known.get(&hash) {
+        return Made::Known(*file);
+    }
+    let mut read = match reader.read(path, &bytes) {
+        Ok(read) => read,
+        Err(reason) => return Made::Refused(reason),
+    };
+    let mut clips = Vec::new();
+    for clip in std::mem::take(&mut read.clips) {
+        match new_clip(clip, settings, params) {
+            Ok(clip) => clips.push(clip),
+            Err(reason) => return Made::Refused(reason),
+        }
+    }
+    if clips.is_empty() {
+        return Made::Refused("there is no clip in it".to_owned());
+    }
+    Made::New(Box::new(NewFile { hash, bytes: bytes.len(), read, clips }))
+}
+
+fn new_clip(clip: Clip, settings: &ImportSettings, params: &FeatureParams) -> Result<NewClip, String> {
+    if clip.frames == 0 {
+        return Err(format!("{}: expected frames, found none", clip.name));
+    }
+    let name = clip.name.clone();
+    let imported = prepare(clip, &settings.options).map_err(|error| error.to_string())?;
+    let packed = pack(imported, &()).map_err(|reason| format!("{name}: {reason}"))?;
+    let (bones, rows) = rows::rows_of(&packed.stored, params);
+    Ok(NewClip { name, bones, rows: rows::encode(&rows), packed })
+}
+
+fn store(
+    conn: &Connection,
+    path: &Path,
+    made: Made,
+    settings: &ImportSettings,
+    recipe: &str,
+) -> Result<Outcome, DbError> {
+    let shown = path.to_string_lossy();
+    match made {
+        Made::Refused(reason) => {
+            let sql = "INSERT OR REPLACE INTO refused (path, reason, tried_secs) VALUES (?1, ?2, ?3)";
+            conn.execute(sql, params![shown, reason, now_secs()])?;
+            Ok(Outcome::Refused(Refused { reason }))
+        }
+        Made::Known(file) => known(conn, &shown, file),
+        Made::New(new) => {
+            conn.execute("DELETE FROM refused WHERE path = ?1", params![shown])?;
+            // Two files of one batch may hold the same bytes.
+            let twin = conn
+                .query_row("SELECT id FROM files WHERE hash = ?1", params![new.hash], |row| row.get(0))
+                .optional()?;
+            match twin {
+                Some(file) => known(conn, &shown, file),
+                None => insert(conn, path, *new, settings, recipe),
+            }
+        }
+    }
+}
+
+fn known(conn: &Connection, shown: &str, file: i64) -> Result<Outcome, DbError> {
+    let first: String =
+        conn.query_row("SELECT path FROM files WHERE id = ?1", params![file], |row| row.get(0))?;
+    if first == shown {
+        return Ok(Outcome::Known);
+    }
+    conn.execute("INSERT OR IGNORE INTO file_copies (file, path) VALUES (?1, ?2)", params![file, shown])?;
+    Ok(Outcome::Copy { of: first.into() })
+}
+
+fn insert(
+    conn: &Connection,
+    path: &Path,
+    new: NewFile,
+    settings: &ImportSettings,
+    recipe: &str,
+) -> Result<Outcome, DbError> {
+    let warnings: Vec<String> = new.read.warnings.iter().map(ToString::to_string).collect();
+    conn.prepare(
+        "INSERT INTO files (hash, path, skeleton_path, format, bytes, imported_secs, warnings) \
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)",
+    )?
+    .execute(params![
+        new.hash,
+        path.to_string_lossy(),
+        new.read.skeleton.as_ref().map(|p| p.to_string_lossy().into_owned()),
+        new.read.format,
+        new.bytes as i64,
+        now_secs(),
+        serde_json::to_string(&warnings).unwrap_or_default(),
+    ])?;
+    let file = conn.last_insert_rowid();
+    let mut names = Vec::new();
+    for (character, clip) in new.clips.into_iter().enumerate() {
+        let name = free_name(conn, path, &clip.name)?;
+        let id = insert_clip(conn, file, character, &name, &clip, settings)?;
+        rows::keep(conn, id, recipe, clip.bones, &clip.rows)?;
+        names.push(name);
+    }
+    Ok(Outcome::Imported { clips: names, warnings })
+}
+
+/// The clip's own name, else with its folder before it, else with a number behind it.
+fn free_name(conn: &Connection, path: &Path, name: &str) -> Result<String, DbError> {
+    let taken = |name: &str| conn.prepare("SELECT 1 FROM clips WHERE name = ?1")?.exists(params![name]);
+    let folder = path.parent().and_then(Path::file_name).map(|f| format!("{}/{name}", f.to_string_lossy()));
+    let numbered = (2..).map(|number| format!("{name}~{number}"));
+    for candidate in [name.to_owned()].into_iter().chain(folder).chain(numbered) {
+        if !taken(&candidate)? {
+            return Ok(candidate);
+        }
+    }
+    unreachable!("numbers do not end")
+}
+
+fn insert_clip(
+    conn: &Connection,
+    file: i64,
+    character: usize,
+    name: &str,
+    clip: &NewClip,
+    settings: &ImportSettings,
+) -> Result<ClipId, DbError> {
+    let packed = &clip.packed;
+    let sql = "INSERT OR IGNORE INTO skeletons (hash, joints) VALUES (?1, ?2)";
+    conn.prepare(sql)?.execute(params![packed.skeleton_hash, packed.joints as i64])?;
+    let motion = &packed.stored.clip;
+    let about = &settings.about;
+    conn.prepare(
+        "INSERT INTO clips (name, file, character, skeleton, frames, rate_hz, rest_frames, repaired_frames, roles, \
+         facts, max_angle_rad, max_position_metres, motion, source, licence, subject) VALUES (?1, ?2, ?3, \
+         (SELECT id FROM skeletons WHERE hash = ?4), ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16)",
+    )?
+    .execute(params![
+        name,
+        file,
+        character as i64,
+        packed.skeleton_hash,
+        motion.frames as i64,
+        motion.rate_hz,
+        packed.stored.rest.len() as i64,
+        motion.repaired.iter().map(|span| span.len() as i64).sum::<i64>(),
+        packed.roles,
+        packed.facts,
+        packed.max_angle_rad,
+        packed.max_position_metres,
+        packed.motion,
+        about.source,
+        about.licence,
+        about.subject,
+    ])?;
+    let id = ClipId(conn.last_insert_rowid());
+    for tag in about.add_tags.iter().collect::<BTreeSet<_>>() {
+        conn.execute("INSERT INTO tags (clip, tag) VALUES (?1, ?2)", params![id.0, tag])?;
+    }
+    Ok(id)
+}

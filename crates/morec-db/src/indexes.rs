@@ -1,0 +1,71 @@
+//! Trained indexes, kept with what taught them.
+
+use rusqlite::{OptionalExtension, params};
+
+use crate::time::now_secs;
+use crate::{DbError, MotionDb};
+
+/// An index without its bytes.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct IndexInfo {
+    /// Its name.
+    pub name: String,
+    /// When it was trained, seconds since 1970.
+    pub trained_secs: i64,
+    /// Its size.
+    pub bytes: usize,
+    /// How many samples taught it.
+    pub samples: usize,
+    /// Whether accepted samples have changed since.
+    pub stale: bool,
+}
+
+impl MotionDb {
+    /// What an index trained now would be taught: clip, class, start and stop of every accepted sample.
+    fn taught(&self) -> Result<String, DbError> {
+        let filter =
+            crate::labels::SampleFilter { state: Some(crate::labels::State::Accepted), ..Default::default() };
+        let rows: Vec<(String, String, f64, f64)> = self
+            .samples(&filter)?
+            .into_iter()
+            .map(|s| (s.clip_name, s.class, s.start_secs, s.stop_secs))
+            .collect();
+        Ok(serde_json::to_string(&rows).unwrap_or_default())
+    }
+
+    /// Keeps an index that the accepted samples of now have taught, in place of one of the same name.
+    pub fn keep_index(&mut self, name: &str, bytes: &[u8]) -> Result<(), DbError> {
+        let taught = self.taught()?;
+        self.conn.execute(
+            "INSERT INTO indexes (name, trained_secs, samples, bytes) VALUES (?1, ?2, ?3, ?4) \
+             ON CONFLICT (name) DO UPDATE SET trained_secs = excluded.trained_secs, samples = excluded.samples, \
+             bytes = excluded.bytes",
+            params![name, now_secs(), taught, bytes],
+        )?;
+        Ok(())
+    }
+
+    /// The bytes of an index.
+    pub fn index(&self, name: &str) -> Result<Vec<u8>, DbError> {
+        let sql = "SELECT bytes FROM indexes WHERE name = ?1";
+        let found = self.conn.query_row(sql, params![name], |row| row.get(0)).optional()?;
+        found.ok_or_else(|| DbError::unknown("index", name))
+    }
+
+    /// All indexes, by name.
+    pub fn indexes(&self) -> Result<Vec<IndexInfo>, DbError> {
+        let taught = self.taught()?;
+        let sql = "SELECT name, trained_secs, length(bytes), json_array_length(samples), samples FROM indexes ORDER BY name";
+        let mut statement = self.conn.prepare(sql)?;
+        let indexes = statement.query_map([], |row| {
+            Ok(IndexInfo {
+                name: row.get(0)?,
+                trained_secs: row.get(1)?,
+                bytes: row.get::<_, i64>(2)? as usize,
+                samples: row.get::<_, i64>(3)? as usize,
+                stale: row.get::<_, String>(4)? != taught,
+            })
+        })?;
+        Ok(indexes.collect::<Result<_, _>>()?)
+    }
+}

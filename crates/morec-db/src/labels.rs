@@ -1,0 +1,44 @@
+//! Classes and samples, and every change of them with a way back.
+//!
+//! A sample is a stretch of a clip said to show a class: accepted, proposed (by a program, to be looked at) or rejected
+//! (looked at, and not it). Each call that changes something is one edit, done wholly or not at all; [`MotionDb::undo`](crate::MotionDb::undo)
+//! takes back the last one, again and again, for the last [`EDITS_KEPT`] edits.
+
+mod classes;
+mod samples;
+mod undo;
+
+pub use classes::ClassInfo;
+pub use samples::{Added, DbSample, NewSample, SampleFilter, SampleId};
+pub use undo::{EDITS_KEPT, Edit};
+
+/// What is thought of a sample.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum State {
+    /// It shows its class.
+    Accepted,
+    /// It may show its class; nobody has looked yet.
+    Proposed,
+    /// It does not show its class.
+    Rejected,
+}
+
+impl State {
+    /// Its name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            State::Accepted => "accepted",
+            State::Proposed => "proposed",
+            State::Rejected => "rejected",
+        }
+    }
+
+    /// The state of this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        [Self::Accepted, Self::Proposed, Self::Rejected].into_iter().find(|s| s.name() == name)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,135 @@
+//! Classes: made by labelling; renamed, merged and split by hand.
+
+use rusqlite::{Connection, OptionalExtension, params};
+
+use super::SampleId;
+use crate::{DbError, MotionDb};
+
+/// A class and how many samples it has.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct ClassInfo {
+    /// Its name.
+    pub name: String,
+    /// Samples that show it.
+    pub accepted: usize,
+    /// Samples to be looked at.
+    pub proposed: usize,
+    /// Samples that do not show it.
+    pub rejected: usize,
+    /// Length of all accepted samples, seconds.
+    pub secs: f64,
+}
+
+/// What may be a class's name: it must survive tables, track names and terminals.
+pub(super) fn check_name(name: &str) -> Result<&str, DbError> {
+    let trimmed = name.trim();
+    if trimmed.is_empty() || trimmed.len() > 200 || trimmed.chars().any(char::is_control) {
+        let expected = "a class's name: 1 to 200 bytes without tabs, line ends or other control characters";
+        return Err(DbError::Invalid(format!("expected {expected}, found {name:?}")));
+    }
+    Ok(trimmed)
+}
+
+pub(super) fn find(conn: &Connection, name: &str) -> Result<Option<i64>, DbError> {
+    let sql = "SELECT id FROM classes WHERE name = ?1";
+    Ok(conn.prepare(sql)?.query_row(params![name], |row| row.get(0)).optional()?)
+}
+
+fn need(conn: &Connection, name: &str) -> Result<i64, DbError> {
+    if let Some(id) = find(conn, name)? {
+        return Ok(id);
+    }
+    let mut statement = conn.prepare("SELECT name FROM classes ORDER BY name LIMIT 20")?;
+    let names: Vec<String> = statement.query_map([], |row| row.get(0))?.collect::<Result<_, _>>()?;
+    let hint = if names.is_empty() { String::new() } else { format!("; there are {}", names.join(", ")) };
+    Err(DbError::Unknown { kind: "class", name: name.to_owned(), hint })
+}
+
+pub(super) fn find_or_make(conn: &Connection, name: &str) -> Result<i64, DbError> {
+    let name = check_name(name)?;
+    if let Some(id) = find(conn, name)? {
+        return Ok(id);
+    }
+    conn.execute("INSERT INTO classes (name) VALUES (?1)", params![name])?;
+    Ok(conn.last_insert_rowid())
+}
+
+/// Gives samples another class. One that is there already under that class is dropped instead of kept twice.
+fn move_samples(conn: &Connection, which: &str, of: i64, to: i64) -> Result<usize, DbError> {
+    let moved = conn
+        .execute(&format!("UPDATE OR IGNORE samples SET class = ?2 WHERE {which} = ?1"), params![of, to])?;
+    conn.execute(&format!("DELETE FROM samples WHERE {which} = ?1 AND class <> ?2"), params![of, to])?;
+    Ok(moved)
+}
+
+impl MotionDb {
+    /// All classes, by name.
+    pub fn classes(&self) -> Result<Vec<ClassInfo>, DbError> {
+        let mut statement = self.conn.prepare(
+            "SELECT n.name, coalesce(sum(s.state = 'accepted'), 0), coalesce(sum(s.state = 'proposed'), 0), \
+             coalesce(sum(s.state = 'rejected'), 0), \
+             coalesce(sum((s.stop_secs - s.start_secs) * (s.state = 'accepted')), 0.0) \
+             FROM classes n LEFT JOIN samples s ON s.class = n.id GROUP BY n.id ORDER BY n.name",
+        )?;
+        let classes = statement.query_map([], |row| {
+            let count =
+                |column| -> rusqlite::Result<usize> { Ok(row.get::<_, i64>(column)?.max(0) as usize) };
+            Ok(ClassInfo {
+                name: row.get(0)?,
+                accepted: count(1)?,
+                proposed: count(2)?,
+                rejected: count(3)?,
+                secs: row.get(4)?,
+            })
+        })?;
+        Ok(classes.collect::<Result<_, _>>()?)
+    }
+
+    /// Gives a class another name.
+    ///
+    /// # Errors
+    /// There is no such class, or another one of the new name (merge them instead).
+    pub fn rename_class(&mut self, from: &str, to: &str) -> Result<(), DbError> {
+        let to = check_name(to)?;
+        self.edit(&format!("rename {from} to {to}"), |conn| {
+            let id = need(conn, from)?;
+            if find(conn, to)?.is_some_and(|other| other != id) {
+                return Err(DbError::Invalid(format!("there is a class {to} already: merge them instead")));
+            }
+            conn.execute("UPDATE classes SET name = ?2 WHERE id = ?1", params![id, to])?;
+            Ok(())
+        })
+    }
+
+    /// Moves the samples of `from` to `into`, which is made if it is new, and forgets the emptied classes. Gives how
+    /// many samples moved.
+    pub fn merge_classes(&mut self, from: &[String], into: &str) -> Result<usize, DbError> {
+        self.edit(&format!("merge {} into {into}", from.join(", ")), |conn| {
+            let olds = from.iter().map(|name| need(conn, name)).collect::<Result<Vec<_>, _>>()?;
+            let target = find_or_make(conn, into)?;
+            let mut moved = 0;
+            for old in olds.into_iter().filter(|old| *old != target) {
+                moved += move_samples(conn, "class", old, target)?;
+                conn.execute("DELETE FROM classes WHERE id = ?1", params![old])?;
+            }
+            Ok(moved)
+        })
+    }
+
+    /// Moves samples, whatever their class, to `into`, which is made if it is new. Gives how many moved.
+    pub fn split_class(&mut self, samples: &[SampleId], into: &str) -> Result<usize, DbError> {
+        self.edit(&format!("move {} samples to {into}", samples.len()), |conn| {
+            let target = find_or_make(conn, into)?;
+            samples.iter().try_fold(0, |moved, id| Ok(moved + move_samples(conn, "id", id.0, target)?))
+        })
+    }
+
+    /// Forgets a class and its samples.
+    pub fn remove_class(&mut self, name: &str) -> Result<(), DbError> {
+        self.edit(&format!("remove {name}"), |conn| {
+            let id = need(conn, name)?;
+            conn.execute("DELETE FROM classes WHERE id = ?1", params![id])?;
+            Ok(())
+        })
+    }
+}

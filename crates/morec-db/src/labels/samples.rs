@@ -1,0 +1,232 @@
+//! Samples: added, judged, listed.
+
+use rusqlite::{Connection, OptionalExtension, Row, params};
+
+use super::{State, classes};
+use crate::time::now_secs;
+use crate::{ClipId, DbError, MotionDb};
+
+/// A sample's number in its database.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
+pub struct SampleId(pub i64);
+
+/// A sample as it is kept.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct DbSample {
+    /// Its number.
+    pub id: SampleId,
+    /// Its clip.
+    pub clip: ClipId,
+    /// Its clip's name.
+    pub clip_name: String,
+    /// Who is seen in the clip.
+    pub subject: Option<String>,
+    /// What it shows.
+    pub class: String,
+    /// Where it starts, seconds from the clip's beginning.
+    pub start_secs: f64,
+    /// Where it stops.
+    pub stop_secs: f64,
+    /// Whether the clip as a whole was labelled, still ends and all.
+    pub whole_clip: bool,
+    /// What is thought of it.
+    pub state: State,
+    /// How sure a program was of it.
+    pub score: Option<f64>,
+    /// Who said so.
+    pub set_by: String,
+    /// When, seconds since 1970.
+    pub set_secs: i64,
+    /// Frames a second of its clip.
+    pub rate_hz: f64,
+}
+
+impl DbSample {
+    /// Its frames in the clip's file, rounded to whole ones.
+    pub fn frames(&self) -> std::ops::Range<usize> {
+        let frame = |secs: f64| (secs * self.rate_hz).round().max(0.0) as usize;
+        frame(self.start_secs)..frame(self.stop_secs)
+    }
+}
+
+/// A sample to add.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NewSample {
+    /// Its clip.
+    pub clip: ClipId,
+    /// What it shows.
+    pub class: String,
+    /// Where it starts, seconds.
+    pub start_secs: f64,
+    /// Where it stops.
+    pub stop_secs: f64,
+    /// Whether the clip as a whole is meant.
+    pub whole_clip: bool,
+    /// What is thought of it.
+    pub state: State,
+    /// How sure a program is of it.
+    pub score: Option<f64>,
+}
+
+/// What became of samples that were added.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+pub struct Added {
+    /// They are new.
+    pub added: usize,
+    /// They were there and are judged anew.
+    pub changed: usize,
+    /// They were there just so; or a proposal of what had been judged.
+    pub unchanged: usize,
+}
+
+/// Which samples; all conditions must hold.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct SampleFilter {
+    /// In this clip.
+    pub clip: Option<ClipId>,
+    /// Of this class.
+    pub class: Option<String>,
+    /// In this state.
+    pub state: Option<State>,
+}
+
+fn sample(row: &Row<'_>) -> rusqlite::Result<DbSample> {
+    let state: String = row.get(8)?;
+    Ok(DbSample {
+        id: SampleId(row.get(0)?),
+        clip: ClipId(row.get(1)?),
+        clip_name: row.get(2)?,
+        subject: row.get(3)?,
+        class: row.get(4)?,
+        start_secs: row.get(5)?,
+        stop_secs: row.get(6)?,
+        whole_clip: row.get(7)?,
+        // The table allows no other.
+        state: State::from_name(&state).unwrap_or(State::Proposed),
+        score: row.get(9)?,
+        set_by: row.get(10)?,
+        set_secs: row.get(11)?,
+        rate_hz: row.get(12)?,
+    })
+}
+
+impl MotionDb {
+    /// The samples of a filter, by clip and time.
+    pub fn samples(&self, filter: &SampleFilter) -> Result<Vec<DbSample>, DbError> {
+        let mut statement = self.conn.prepare(
+            "SELECT s.id, s.clip, c.name, c.subject, n.name, s.start_secs, s.stop_secs, s.whole_clip, s.state, s.score, \
+             s.set_by, s.set_secs, c.rate_hz FROM samples s JOIN clips c ON c.id = s.clip JOIN classes n ON n.id = s.class \
+             WHERE (?1 IS NULL OR s.clip = ?1) AND (?2 IS NULL OR n.name = ?2) AND (?3 IS NULL OR s.state = ?3) \
+             ORDER BY c.name, s.start_secs, s.stop_secs, n.name",
+        )?;
+        let given = params![filter.clip.map(|c| c.0), filter.class, filter.state.map(State::name)];
+        let samples = statement.query_map(given, sample)?.collect::<Result<_, _>>()?;
+        Ok(samples)
+    }
+
+    /// Adds samples, all or none, as one edit. A sample that is there already (clip, class and extent) is judged anew;
+    /// but a proposal changes nothing that was accepted or rejected.
+    ///
+    /// # Errors
+    /// A sample that stops before it starts or lies outside its clip, a class name that cannot be, no such clip.
+    pub fn add_samples(&mut self, samples: &[NewSample], by: &str) -> Result<Added, DbError> {
+        self.edit(&format!("add {} samples", samples.len()), |conn| {
+            let mut added = Added::default();
+            for sample in samples {
+                match add(conn, sample, by)? {
+                    Change::New => added.added += 1,
+                    Change::Judged => added.changed += 1,
+                    Change::None => added.unchanged += 1,
+                }
+            }
+            Ok(added)
+        })
+    }
+
+    /// Says what is thought of samples. Gives how many changed.
+    pub fn judge(&mut self, samples: &[SampleId], state: State, by: &str) -> Result<usize, DbError> {
+        self.edit(&format!("{} {} samples", state.name(), samples.len()), |conn| {
+            let sql =
+                "UPDATE samples SET state = ?2, set_by = ?3, set_secs = ?4 WHERE id = ?1 AND state <> ?2";
+            let mut statement = conn.prepare(sql)?;
+            let mut changed = 0;
+            for id in samples {
+                changed += statement.execute(params![id.0, state.name(), by, now_secs()])?;
+            }
+            Ok(changed)
+        })
+    }
+
+    /// Forgets samples. Gives how many there were.
+    pub fn remove_samples(&mut self, samples: &[SampleId]) -> Result<usize, DbError> {
+        self.edit(&format!("remove {} samples", samples.len()), |conn| {
+            let mut statement = conn.prepare("DELETE FROM samples WHERE id = ?1")?;
+            let mut removed = 0;
+            for id in samples {
+                removed += statement.execute(params![id.0])?;
+            }
+            Ok(removed)
+        })
+    }
+}
+
+enum Change {
+    New,
+    Judged,
+    None,
+}
+
+fn add(conn: &Connection, sample: &NewSample, by: &str) -> Result<Change, DbError> {
+    check_extent(conn, sample)?;
+    let class = classes::find_or_make(conn, &sample.class)?;
+    let extent = params![sample.clip.0, class, sample.start_secs, sample.stop_secs];
+    let there: Option<(i64, String)> = conn
+        .prepare(
+            "SELECT id, state FROM samples WHERE clip = ?1 AND class = ?2 AND start_secs = ?3 AND stop_secs = ?4",
+        )?
+        .query_row(extent, |row| Ok((row.get(0)?, row.get(1)?)))
+        .optional()?;
+    let Some((id, state)) = there else {
+        conn.prepare(
+            "INSERT INTO samples (clip, class, start_secs, stop_secs, whole_clip, state, score, set_by, set_secs) \
+             VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)",
+        )?
+        .execute(params![
+            sample.clip.0,
+            class,
+            sample.start_secs,
+            sample.stop_secs,
+            sample.whole_clip,
+            sample.state.name(),
+            sample.score,
+            by,
+            now_secs()
+        ])?;
+        return Ok(Change::New);
+    };
+    if state == sample.state.name() || sample.state == State::Proposed {
+        return Ok(Change::None);
+    }
+    conn.prepare("UPDATE samples SET state = ?2, set_by = ?3, set_secs = ?4 WHERE id = ?1")?
+        .execute(params![id, sample.state.name(), by, now_secs()])?;
+    Ok(Change::Judged)
+}
+
+fn check_extent(conn: &Connection, sample: &NewSample) -> Result<(), DbError> {
+    let sql = "SELECT name, frames / rate_hz, rate_hz FROM clips WHERE id = ?1";
+    let clip: Option<(String, f64, f64)> = conn
+        .prepare(sql)?
+        .query_row(params![sample.clip.0], |row| Ok((row.get(0)?, row.get(1)?, row.get(2)?)))
+        .optional()?;
+    let (name, secs, rate_hz) =
+        clip.ok_or_else(|| DbError::unknown("clip", &format!("#{}", sample.clip.0)))?;
+    let (start, stop) = (sample.start_secs, sample.stop_secs);
+    // A frame counts for its whole period; half a frame is rounding.
+    if !(start >= 0.0 && stop > start && stop <= secs + 0.5 / rate_hz) {
+        let class = &sample.class;
+        return Err(DbError::Invalid(format!(
+            "{name}: expected a sample of {class} within 0 to {secs:.3} s, found {start:.3} to {stop:.3} s"
+        )));
+    }
+    Ok(())
+}

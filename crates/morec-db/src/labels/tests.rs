@@ -1,0 +1,126 @@
+//! Edits against a plain list, and the way back.
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::testing::database_of_waves;
+use crate::{ClipId, MotionDb};
+
+/// What a user sees: the classes; clip, class, start and state of each sample.
+type Seen = (Vec<String>, Vec<(i64, String, String, State)>);
+
+fn seen(db: &MotionDb) -> Seen {
+    let samples = db.samples(&SampleFilter::default()).unwrap();
+    let classes = db.classes().unwrap().into_iter().map(|c| c.name).collect();
+    let mut rows: Vec<_> =
+        samples.into_iter().map(|s| (s.clip.0, s.class, format!("{}", s.start_secs), s.state)).collect();
+    rows.sort();
+    (classes, rows)
+}
+
+fn sample(class: &str, start: u8, state: State) -> NewSample {
+    NewSample {
+        clip: ClipId(1),
+        class: class.to_owned(),
+        start_secs: f64::from(start) / 10.0,
+        stop_secs: f64::from(start) / 10.0 + 0.5,
+        whole_clip: false,
+        state,
+        score: None,
+    }
+}
+
+#[derive(Debug, Clone)]
+enum Step {
+    Add(usize, u8, State),
+    Judge(u8, State),
+    Rename(usize, usize),
+    Merge(usize, usize),
+    Split(u8, usize),
+    Remove(usize),
+    RemoveSample(u8),
+}
+
+const NAMES: [&str; 4] = ["walk", "run", "it's; DROP", "größer"];
+
+fn step() -> impl Strategy<Value = Step> {
+    let state = prop_oneof![Just(State::Accepted), Just(State::Proposed), Just(State::Rejected)];
+    prop_oneof![
+        4 => (0..4usize, 0..6u8, state.clone()).prop_map(|(c, s, state)| Step::Add(c, s, state)),
+        1 => (0..6u8, state).prop_map(|(s, state)| Step::Judge(s, state)),
+        1 => (0..4usize, 0..4usize).prop_map(|(a, b)| Step::Rename(a, b)),
+        1 => (0..4usize, 0..4usize).prop_map(|(a, b)| Step::Merge(a, b)),
+        1 => (0..6u8, 0..4usize).prop_map(|(s, c)| Step::Split(s, c)),
+        1 => (0..4usize).prop_map(Step::Remove),
+        1 => (0..6u8).prop_map(Step::RemoveSample),
+    ]
+}
+
+/// Does a step; steps that make no sense fail and must change nothing.
+fn take(db: &mut MotionDb, step: &Step) {
+    let ids: Vec<SampleId> = db.samples(&SampleFilter::default()).unwrap().iter().map(|s| s.id).collect();
+    let some = |n: u8| ids.iter().copied().skip(usize::from(n) / 2).take(2).collect::<Vec<_>>();
+    match step {
+        Step::Add(class, start, state) => {
+            db.add_samples(&[sample(NAMES[*class], *start, *state)], "test").unwrap();
+        }
+        Step::Judge(n, state) => _ = db.judge(&some(*n), *state, "test").unwrap(),
+        Step::Rename(a, b) => _ = db.rename_class(NAMES[*a], NAMES[*b]),
+        Step::Merge(a, b) => _ = db.merge_classes(&[NAMES[*a].to_owned()], NAMES[*b]),
+        Step::Split(n, class) => _ = db.split_class(&some(*n), NAMES[*class]).unwrap(),
+        Step::Remove(class) => _ = db.remove_class(NAMES[*class]),
+        Step::RemoveSample(n) => _ = db.remove_samples(&some(*n)).unwrap(),
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+    #[test]
+    fn undo_goes_back_through_every_state(steps in prop::collection::vec(step(), 1..25)) {
+        let (_folder, mut db) = database_of_waves(1);
+        let mut history = vec![(db.edits().unwrap().len(), seen(&db))];
+        for step in &steps {
+            take(&mut db, step);
+            let edits = db.edits().unwrap().len();
+            if edits > history.last().unwrap().0 {
+                history.push((edits, seen(&db)));
+            } else {
+                prop_assert_eq!(&seen(&db), &history.last().unwrap().1, "changed without an edit: {:?}", step);
+            }
+        }
+        while history.len() > 1 {
+            history.pop();
+            prop_assert!(db.undo().unwrap().is_some());
+            prop_assert_eq!(&seen(&db), &history.last().unwrap().1);
+        }
+        prop_assert!(db.undo().unwrap().is_none());
+        prop_assert!(db.check().unwrap().faults.is_empty());
+    }
+}
+
+#[test]
+fn a_proposal_does_not_change_what_was_judged() {
+    let (_folder, mut db) = database_of_waves(1);
+    db.add_samples(&[sample("walk", 0, State::Rejected)], "me").unwrap();
+    let added = db.add_samples(&[sample("walk", 0, State::Proposed)], "morec").unwrap();
+    assert_eq!((added.added, added.unchanged), (0, 1));
+    assert_eq!(db.samples(&SampleFilter::default()).unwrap()[0].state, State::Rejected);
+}
+
+#[test]
+fn samples_outside_their_clip_and_wild_names_are_refused_whole() {
+    let (_folder, mut db) = database_of_waves(1);
+    let good = sample("walk", 0, State::Accepted);
+    for bad in [
+        NewSample { stop_secs: 1e6, ..good.clone() },
+        NewSample { start_secs: -1.0, ..good.clone() },
+        NewSample { start_secs: f64::NAN, ..good.clone() },
+        NewSample { stop_secs: 0.0, ..good.clone() },
+        NewSample { class: "a\tb".into(), ..good.clone() },
+        NewSample { class: "  ".into(), ..good.clone() },
+        NewSample { clip: ClipId(99), ..good.clone() },
+    ] {
+        assert!(db.add_samples(&[good.clone(), bad.clone()], "me").is_err(), "{bad:?}");
+        assert!(db.samples(&SampleFilter::default()).unwrap().is_empty());
+    }
+}

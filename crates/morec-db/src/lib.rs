@@ -1,0 +1,45 @@
+//! The motion database: clips, segments, classes, labels and indexes in one SQLite file.
+//!
+//! One program writes, any number read beside it (write-ahead log); a crash at any moment leaves a database that opens,
+//! with whole clips in it. Motion is kept as curves within half a degree and five millimetres of the file's, in metres and
+//! Y up; where the original lies is remembered by path and hash. Feature rows are kept ready for searching and made again
+//! when the recipe changes.
+//!
+//! The library prints nothing and knows no terminal; files are read through a [`ClipReader`] that the caller gives.
+//!
+//! | job | begins at |
+//! |---|---|
+//! | open, make, check, shrink | [`MotionDb`] |
+//! | clips in | [`MotionDb::import`] |
+//! | classes and samples | [`labels`] |
+//! | labels in other programs' forms | [`exchange`] |
+//! | rows, search by example, near copies | [`rows`], [`search`] |
+
+mod clips;
+mod db;
+mod error;
+pub mod exchange;
+mod import;
+mod indexes;
+pub mod labels;
+mod motion;
+mod propose;
+pub mod rows;
+mod schema;
+pub mod search;
+mod segments;
+#[cfg(test)]
+mod testing;
+#[cfg(test)]
+mod tests;
+mod time;
+
+pub use clips::{ClipFilter, ClipId, ClipInfo, ClipUpdate};
+pub use db::{Health, MotionDb, Summary};
+pub use error::DbError;
+pub use import::{ClipReader, ImportReport, ImportSettings, Outcome, ReadFile, Refused};
+pub use indexes::IndexInfo;
+pub use motion::StoredClip;
+pub use propose::{Proposal, ProposeOptions};
+pub use schema::{APPLICATION_ID, SCHEMA};
+pub use segments::{Segment, SegmentKind};

@@ -1,0 +1,130 @@
+//! The stored form of a clip's motion, and back. Nothing else knows what the bytes are.
+
+use morec::clip::{Clip, Span};
+use morec::import::{Facts, Imported};
+use morec::progress::Progress;
+use morec::roles::{Role, RoleMap};
+use morec::smooth::{CompressedClip, SmoothError, SmoothParams, compress};
+use rusqlite::{OptionalExtension, params};
+
+use crate::{ClipId, DbError, MotionDb};
+
+/// A clip as it is kept: metres, Y up, within the stated error of its file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StoredClip {
+    /// Skeleton and frames, at the rate of its file.
+    pub clip: Clip,
+    /// Who plays what.
+    pub roles: RoleMap,
+    /// T-pose frames at the start.
+    pub rest: Span,
+}
+
+/// What goes into the file for one clip.
+pub(crate) struct Packed {
+    pub motion: Vec<u8>,
+    pub max_angle_rad: f64,
+    pub max_position_metres: f64,
+    pub skeleton_hash: [u8; 32],
+    pub joints: usize,
+    pub roles: String,
+    pub facts: String,
+    pub stored: StoredClip,
+}
+
+/// Compresses a clip. Motion so wild that joints cannot be kept within the bound is kept channel by channel, and
+/// says how far it is off.
+pub(crate) fn pack(imported: Imported, progress: &dyn Progress) -> Result<Packed, String> {
+    let Imported { clip, roles, facts } = imported;
+    let bounded = match compress(&clip, &SmoothParams::database(), progress) {
+        Err(SmoothError::Bound { .. }) => compress(&clip, &SmoothParams::default(), progress),
+        other => other,
+    };
+    let compressed = bounded.map_err(|error| error.to_string())?;
+    let errors = compressed.errors();
+    Ok(Packed {
+        max_angle_rad: errors.max_angle_rad,
+        max_position_metres: errors.max_joint_position_metres,
+        skeleton_hash: skeleton_hash(&clip),
+        joints: clip.skeleton.len(),
+        roles: roles_to_json(&roles),
+        facts: facts_to_json(&facts),
+        stored: StoredClip {
+            clip: compressed.sample(compressed.source_rate_hz()).map_err(|error| error.to_string())?,
+            roles,
+            rest: facts.rest_frames,
+        },
+        motion: compressed.to_bytes(),
+    })
+}
+
+fn facts_to_json(facts: &Facts) -> String {
+    serde_json::to_string(facts).unwrap_or_default()
+}
+
+fn roles_to_json(roles: &RoleMap) -> String {
+    let pairs: serde_json::Map<String, serde_json::Value> = Role::ALL
+        .into_iter()
+        .filter_map(|role| Some((role.name().to_owned(), roles.joint(role)?.into())))
+        .collect();
+    serde_json::Value::Object(pairs).to_string()
+}
+
+fn roles_from_json(json: &str, joints: usize) -> Option<RoleMap> {
+    let pairs: std::collections::BTreeMap<String, usize> = serde_json::from_str(json).ok()?;
+    let mut map = RoleMap::default();
+    for (role, joint) in pairs {
+        map.set(Role::from_name(&role)?, Some(joint).filter(|j| *j < joints));
+    }
+    Some(map)
+}
+
+/// Names, parents and offsets to a tenth of a millimetre: what makes two clips' skeletons one.
+fn skeleton_hash(clip: &Clip) -> [u8; 32] {
+    let mut hasher = blake3::Hasher::new();
+    for joint in clip.skeleton.joints() {
+        hasher.update(joint.name.as_bytes());
+        hasher.update(&[0]);
+        hasher.update(&joint.parent.map_or(u64::MAX, |p| p as u64).to_le_bytes());
+        for value in joint.offset.iter() {
+            hasher.update(&((value * 1e4).round() as i64).to_le_bytes());
+        }
+    }
+    *hasher.finalize().as_bytes()
+}
+
+impl MotionDb {
+    /// A clip's motion, decoded. O(frames · joints).
+    ///
+    /// # Errors
+    /// There is no such clip; its bytes are damaged.
+    pub fn clip(&self, id: ClipId) -> Result<StoredClip, DbError> {
+        let sql = "SELECT motion, roles, rest_frames, name FROM clips WHERE id = ?1";
+        let row: Option<(Vec<u8>, String, i64, String)> = self
+            .conn
+            .query_row(sql, params![id.0], |row| Ok((row.get(0)?, row.get(1)?, row.get(2)?, row.get(3)?)))
+            .optional()?;
+        let (bytes, roles, rest, name) =
+            row.ok_or_else(|| DbError::unknown("clip", &format!("#{}", id.0)))?;
+        unpack(&bytes, &roles, rest, &name)
+    }
+
+    /// A clip's motion as it is kept, the bytes of an `.mclip` file.
+    pub fn motion_bytes(&self, id: ClipId) -> Result<Vec<u8>, DbError> {
+        let found = self
+            .conn
+            .query_row("SELECT motion FROM clips WHERE id = ?1", params![id.0], |row| row.get(0))
+            .optional()?;
+        found.ok_or_else(|| DbError::unknown("clip", &format!("#{}", id.0)))
+    }
+}
+
+fn unpack(bytes: &[u8], roles: &str, rest: i64, name: &str) -> Result<StoredClip, DbError> {
+    let damaged = |what: String| DbError::Damaged(format!("clip {name}: {what}"));
+    let compressed = CompressedClip::from_bytes(bytes).map_err(|e| damaged(e.to_string()))?;
+    let sampled = compressed.sample(compressed.source_rate_hz()).map_err(|e| damaged(e.to_string()))?;
+    let clip = Clip { name: name.to_owned(), ..sampled };
+    let roles = roles_from_json(roles, clip.skeleton.len()).ok_or_else(|| damaged("its roles".to_owned()))?;
+    let rest = 0..(rest.max(0) as usize).min(clip.frames);
+    Ok(StoredClip { clip, roles, rest })
+}

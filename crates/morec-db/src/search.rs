@@ -1,0 +1,92 @@
+//! Search by example: where in the whole database is a motion like this one?
+//!
+//! Rows of all clips lie in memory in one layout, so that skeletons, sizes and frame rates do not matter. Every window of
+//! about the example's length is first compared by a summary of its rows (prefix sums: nothing of the length of a window
+//! is gone through); the nearest are placed exactly by subsequence dynamic time warping ([`morec::templates::Bank`]) and
+//! ranked by both. The summary (two standard deviations, mean pose, mean travel) is the one that finds a motion across
+//! styles best without learning.
+
+mod copies;
+pub(crate) mod layout;
+mod rank;
+#[cfg(test)]
+mod tests;
+mod windows;
+
+pub use copies::{NearCopy, near_copies};
+pub use rank::{Hit, SearchOptions};
+
+use morec::features::FeatureParams;
+use morec::progress::Progress;
+
+use crate::rows::ClipRows;
+use crate::{ClipId, DbError, MotionDb};
+use layout::{Laid, lay_out};
+use windows::Sums;
+
+/// The rows of a whole database, ready to be searched. O(rows) memory: 0.5 MB for a minute.
+#[derive(Debug, Clone)]
+pub struct SearchIndex {
+    clips: Vec<Indexed>,
+    tick_hz: f64,
+}
+
+#[derive(Debug, Clone)]
+struct Indexed {
+    clip: ClipId,
+    laid: Laid,
+    sums: Sums,
+}
+
+/// An example to search for.
+#[derive(Debug, Clone)]
+pub struct Example {
+    laid: Laid,
+    /// Where it is from, to leave it out of the hits.
+    from: Option<(ClipId, std::ops::Range<usize>)>,
+}
+
+impl SearchIndex {
+    /// Lays out rows of which `tick_hz` make a second.
+    pub fn new(rows: &[ClipRows], tick_hz: f64) -> Self {
+        let index = |clip: &ClipRows| {
+            let laid = lay_out(&clip.rows, clip.bones);
+            Indexed { clip: clip.clip, sums: Sums::of(&laid.rows), laid }
+        };
+        Self { clips: rows.iter().filter(|clip| !clip.rows.is_empty()).map(index).collect(), tick_hz }
+    }
+
+    /// Of a database; rows that are not kept ready are made.
+    pub fn of_db(db: &mut MotionDb, progress: &dyn Progress) -> Result<Self, DbError> {
+        let params = FeatureParams::default();
+        Ok(Self::new(&db.rows(&params, progress)?, params.tick_hz()))
+    }
+
+    /// Rows a second.
+    pub fn tick_hz(&self) -> f64 {
+        self.tick_hz
+    }
+
+    /// Rows in all.
+    pub fn ticks(&self) -> usize {
+        self.clips.iter().map(|clip| clip.laid.rows.len()).sum()
+    }
+
+    /// A stretch of one of the clips as an example; `None` if the clip is not there or the stretch holds no three rows.
+    pub fn example(&self, clip: ClipId, start_secs: f64, stop_secs: f64) -> Option<Example> {
+        let found = self.clips.iter().find(|c| c.clip == clip)?;
+        let rows = &found.laid.rows;
+        let tick = |secs: f64| ((secs * self.tick_hz).round().max(0.0) as usize).min(rows.len());
+        let span = tick(start_secs)..tick(stop_secs);
+        if span.len() < 3 {
+            return None;
+        }
+        let laid = Laid { rows: rows.slice(span.clone()), bones: found.laid.bones };
+        Some(Example { laid, from: Some((clip, span)) })
+    }
+
+    /// Rows from elsewhere as an example, of the usual features at the same rate; `None` for less than three.
+    pub fn example_of(rows: &morec::features::Rows, bones: morec::features::BoneSet) -> Option<Example> {
+        (rows.len() >= 3).then(|| Example { laid: lay_out(rows, bones), from: None })
+    }
+}

@@ -1,0 +1,79 @@
+//! Summaries of windows from prefix sums: O(columns) each, however long the window.
+
+use std::ops::Range;
+
+use morec::features::{BONES, Rows};
+
+use super::layout::DIM;
+
+/// Coordinates of directions.
+const X: usize = 3 * BONES;
+/// Values in a summary: means and standard deviations of directions, mean root motion.
+pub const SUMMARY: usize = 2 * X + 4;
+
+/// Running sums over rows; entry `i` is over the rows before `i`.
+#[derive(Debug, Clone)]
+pub struct Sums {
+    /// Directions, then root: `X + 4` values for each entry.
+    sums: Vec<f64>,
+    /// Squares of directions.
+    squares: Vec<f64>,
+}
+
+impl Sums {
+    pub fn of(rows: &Rows) -> Self {
+        let (mut sum, mut square) = ([0f64; X + 4], [0f64; X]);
+        let mut sums = sum.to_vec();
+        let mut squares = square.to_vec();
+        for row in rows.iter() {
+            for (i, value) in row[..X].iter().chain(&row[DIM - 4..]).enumerate() {
+                sum[i] += f64::from(*value);
+            }
+            for (i, value) in row[..X].iter().enumerate() {
+                square[i] += f64::from(*value).powi(2);
+            }
+            sums.extend(sum);
+            squares.extend(square);
+        }
+        Self { sums, squares }
+    }
+
+    /// The summary of rows `span`: `[mean x; 2 std x; 2 tanh(mean root)]`. `shown` are coordinates of shared bones.
+    pub fn summary(&self, span: &Range<usize>, out: &mut [f32; SUMMARY]) {
+        let n = span.len().max(1) as f64;
+        let entry = |table: &[f64], width: usize, at: usize, i: usize| table[at * width + i];
+        for i in 0..X {
+            let mean = (entry(&self.sums, X + 4, span.end, i) - entry(&self.sums, X + 4, span.start, i)) / n;
+            let square = (entry(&self.squares, X, span.end, i) - entry(&self.squares, X, span.start, i)) / n;
+            out[i] = mean as f32;
+            out[X + i] = 2.0 * (square - mean * mean).max(0.0).sqrt() as f32;
+        }
+        for i in 0..4 {
+            let mean =
+                (entry(&self.sums, X + 4, span.end, X + i) - entry(&self.sums, X + 4, span.start, X + i)) / n;
+            // Rows hold root motion weighted; the summary wants it in leg lengths a second.
+            out[2 * X + i] = 2.0 * ((mean / 0.3).tanh() as f32);
+        }
+    }
+}
+
+/// Squared distance of two summaries over the coordinates of shared bones, as if all bones were shared.
+pub fn distance(a: &[f32; SUMMARY], b: &[f32; SUMMARY], shown: &[bool; X], share: f32) -> f32 {
+    let mut sum = 0.0;
+    for i in 0..X {
+        if shown[i] {
+            sum += (a[i] - b[i]).powi(2) + (a[X + i] - b[X + i]).powi(2);
+        }
+    }
+    let root: f32 = (2 * X..SUMMARY).map(|i| (a[i] - b[i]).powi(2)).sum();
+    sum / share + root
+}
+
+/// Which coordinates belong to bones of the set, and the set's share of all.
+pub fn shown(bones: morec::features::BoneSet) -> ([bool; X], f32) {
+    let mut shown = [false; X];
+    for bone in bones.indices() {
+        shown[3 * bone..3 * bone + 3].fill(true);
+    }
+    (shown, bones.len().max(1) as f32 / BONES as f32)
+}

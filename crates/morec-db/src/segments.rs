@@ -1,0 +1,86 @@
+//! Stretches that a method found in clips.
+
+use rusqlite::params;
+
+use crate::{ClipId, DbError, MotionDb};
+
+/// What a segment is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SegmentKind {
+    /// Somebody moves.
+    Motion,
+    /// A pose is held.
+    Still,
+    /// A T-pose or another pose of rest.
+    Rest,
+}
+
+impl SegmentKind {
+    fn name(self) -> &'static str {
+        match self {
+            SegmentKind::Motion => "motion",
+            SegmentKind::Still => "still",
+            SegmentKind::Rest => "rest",
+        }
+    }
+}
+
+/// A stretch of a clip between two cuts.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Segment {
+    /// Its clip.
+    pub clip: ClipId,
+    /// What it is.
+    pub kind: SegmentKind,
+    /// Where it starts, seconds.
+    pub start_secs: f64,
+    /// Where it stops.
+    pub stop_secs: f64,
+}
+
+impl MotionDb {
+    /// Keeps what `method` found in clips, in place of what it found in them before.
+    pub fn set_segments(
+        &mut self,
+        method: &str,
+        clips: &[ClipId],
+        segments: &[Segment],
+    ) -> Result<(), DbError> {
+        let tx = self.write()?;
+        {
+            let mut forget = tx.prepare("DELETE FROM segments WHERE clip = ?1 AND method = ?2")?;
+            for clip in clips {
+                forget.execute(params![clip.0, method])?;
+            }
+            let sql = "INSERT INTO segments (clip, method, kind, start_secs, stop_secs) VALUES (?1, ?2, ?3, ?4, ?5)";
+            let mut keep = tx.prepare(sql)?;
+            for s in segments {
+                keep.execute(params![s.clip.0, method, s.kind.name(), s.start_secs, s.stop_secs])?;
+            }
+        }
+        tx.commit()?;
+        Ok(())
+    }
+
+    /// What `method` found, by clip and time.
+    pub fn segments(&self, method: &str) -> Result<Vec<Segment>, DbError> {
+        let mut statement = self.conn.prepare(
+            "SELECT clip, kind, start_secs, stop_secs FROM segments WHERE method = ?1 ORDER BY clip, start_secs",
+        )?;
+        let segments = statement.query_map(params![method], |row| {
+            let kind: String = row.get(1)?;
+            Ok(Segment {
+                clip: ClipId(row.get(0)?),
+                kind: match kind.as_str() {
+                    "still" => SegmentKind::Still,
+                    "rest" => SegmentKind::Rest,
+                    _ => SegmentKind::Motion,
+                },
+                start_secs: row.get(2)?,
+                stop_secs: row.get(3)?,
+            })
+        })?;
+        Ok(segments.collect::<Result<_, _>>()?)
+    }
+}
