@@ -6,6 +6,8 @@ use super::{Text, colour, open};
 const TOP: f64 = 34.0;
 const RIGHT: f64 = 18.0;
 const WIDTH: f64 = 960.0;
+/// Height of a row of the legend.
+const LEGEND: f64 = 18.0;
 /// Cells are not higher than this.
 const HIGHEST: f64 = 26.0;
 
@@ -91,7 +93,7 @@ impl HeatMap {
         let high = HIGHEST.min((480.0 / rows as f64).max(4.0));
         let bottom = TOP + rows as f64 * high;
         let names = if self.column_names.is_empty() { 0.0 } else { 10.0 + 4.6 * widest(&self.column_names) };
-        let legend = if self.kinds.is_empty() { 0.0 } else { 20.0 };
+        let legend = self.legend_rows(left) * LEGEND;
         let mut out = String::new();
         open(&mut out, WIDTH, bottom + 44.0 + names + legend, &self.title);
         self.push_cells(&mut out, left, wide, high);
@@ -170,9 +172,13 @@ impl HeatMap {
         ));
     }
 
-    fn push_kinds(&self, out: &mut String, left: f64, y: f64) {
-        let mut x = left;
+    fn push_kinds(&self, out: &mut String, left: f64, first_y: f64) {
+        let (mut x, mut y) = (left, first_y);
         for (kind, name) in self.kinds.iter().enumerate() {
+            let wide = 34.0 + 6.2 * name.chars().count() as f64;
+            if x + wide > WIDTH - RIGHT && x > left {
+                (x, y) = (left, y + LEGEND);
+            }
             out.push_str(&format!(
                 "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"12\" height=\"8\" fill=\"{}\"/>\
                  <text x=\"{:.1}\" y=\"{:.1}\">{}</text>\n",
@@ -181,7 +187,14 @@ impl HeatMap {
                 y + 8.0,
                 Text(name)
             ));
-            x += 34.0 + 6.2 * name.chars().count() as f64;
+            x += wide;
         }
+    }
+
+    /// Rows that the legend takes, at most.
+    fn legend_rows(&self, left: f64) -> f64 {
+        let wide: f64 = self.kinds.iter().map(|name| 34.0 + 6.2 * name.chars().count() as f64).sum();
+        // A row may end with room for most of a name.
+        (1.25 * wide / (WIDTH - left - RIGHT)).ceil()
     }
 }

@@ -17,3 +17,4 @@ mod session;
 mod smooth_real;
 mod svrdm;
 mod thesis;
+mod thesis_method;

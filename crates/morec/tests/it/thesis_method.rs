@@ -1,0 +1,196 @@
+//! The thesis's method as a whole: clips to a model, to a file and back, to detections; and its evaluation.
+
+use std::collections::BTreeMap;
+use std::sync::OnceLock;
+
+use morec::features::{BoneSet, for_each_pose};
+use morec::index::{MotionIndex, Provenance};
+use morec::labels::Sample;
+use morec::live::{Model, Recognizer, recognize_clip};
+use morec::reproduce::{Setting, Study, page, reproduce};
+use morec::roles::RoleMap;
+use morec::synth::{DatabaseSpec, Take, database};
+use morec::train::thesis::{SvrdmOptions, SvrdmTrainParams, train_svrdm};
+use morec::train::{Labelling, Source, TrainClip, TrainError, TrainingReport};
+
+const CLASSES: [&str; 3] = ["wave", "bow", "push"];
+
+fn takes() -> &'static Vec<Take> {
+    static TAKES: OnceLock<Vec<Take>> = OnceLock::new();
+    TAKES.get_or_init(|| {
+        let classes = CLASSES.to_vec();
+        database(5, &DatabaseSpec { people: 3, repetitions: 2, rate_hz: 60.0, classes, ..Default::default() })
+    })
+}
+
+fn clips(takes: &[Take]) -> (Vec<TrainClip>, Vec<Sample>) {
+    let clip = |take: &Take| TrainClip {
+        name: take.clip.name.clone(),
+        roles: RoleMap::find(&take.clip.skeleton),
+        clip: take.clip.clone(),
+        rest: 0..0,
+        source: Source::Labelled,
+        person: Some(take.person.clone()),
+    };
+    let samples = takes.iter().flat_map(|take| {
+        take.labels.iter().map(|label| Sample {
+            clip: take.clip.name.clone(),
+            class: label.class.to_owned(),
+            start_secs: label.start_secs,
+            stop_secs: label.stop_secs,
+            whole_clip: false,
+            person: Some(take.person.clone()),
+            line: 0,
+        })
+    });
+    (takes.iter().map(clip).collect(), samples.collect())
+}
+
+fn classes() -> Vec<String> {
+    CLASSES.map(str::to_owned).to_vec()
+}
+
+fn trained(params: SvrdmTrainParams) -> (Model, TrainingReport) {
+    let (clips, samples) = clips(takes());
+    let classes = classes();
+    let labelling = Labelling {
+        samples: &samples,
+        classes: &classes,
+        unlabelled_is_background: true,
+        ..Default::default()
+    };
+    let options = SvrdmOptions { params, unlabelled_is_background: true };
+    let (model, report) = train_svrdm(&clips, &labelling, &options, &()).unwrap();
+    (model.into(), report)
+}
+
+fn index_of(model: Model) -> MotionIndex {
+    MotionIndex { model, roles: BTreeMap::new(), provenance: Provenance::default() }
+}
+
+#[test]
+fn both_settings_come_back_from_their_file_and_recognise_what_they_learned() {
+    for params in [SvrdmTrainParams::faithful(), SvrdmTrainParams::tuned()] {
+        let (model, report) = trained(params);
+        let svrdm = report.svrdm.expect("what this method reports");
+        assert_eq!(svrdm.branches.len(), CLASSES.len() - 1);
+        let bytes = index_of(model.clone()).to_bytes().unwrap();
+        let read = MotionIndex::from_bytes(&bytes).unwrap();
+        assert_eq!(read.model, model, "what was trained is what is read");
+        assert_eq!(read.to_bytes().unwrap(), bytes);
+
+        let (mut right, mut samples) = (0, 0);
+        for take in takes() {
+            let roles = RoleMap::find(&take.clip.skeleton);
+            let found = recognize_clip(&read.model, &take.clip, &roles, &(0..0)).unwrap();
+            samples += take.labels.len();
+            right += take
+                .labels
+                .iter()
+                .filter(|label| {
+                    found.iter().any(|d| {
+                        let common = d.stop_secs.min(label.stop_secs) - d.start_secs.max(label.start_secs);
+                        let shorter = (d.stop_secs - d.start_secs).min(label.stop_secs - label.start_secs);
+                        read.model.class_name(d.class) == label.class && common > 0.5 * shorter
+                    })
+                })
+                .count();
+            assert!(found.iter().all(|d| d.reported_secs >= d.stop_secs && d.stop_secs > d.start_secs));
+        }
+        assert!(2 * right >= samples, "{right} of {samples} samples that it was trained on");
+    }
+}
+
+#[test]
+fn damaged_files_are_errors() {
+    let bytes = index_of(trained(SvrdmTrainParams::tuned()).0).to_bytes().unwrap();
+    for cut in (0..bytes.len()).step_by(bytes.len() / 97 + 1) {
+        assert!(MotionIndex::from_bytes(&bytes[..cut]).is_err(), "cut at {cut}");
+    }
+    for at in (8..bytes.len()).step_by(bytes.len() / 211 + 1) {
+        let mut altered = bytes.clone();
+        altered[at] ^= 0x10;
+        assert!(MotionIndex::from_bytes(&altered).is_err(), "altered at {at}");
+    }
+}
+
+#[test]
+fn places_of_joints_alone_say_nothing_to_it() {
+    let (model, _) = trained(SvrdmTrainParams::tuned());
+    assert!(model.needs_rotations());
+    let take = &takes()[0];
+    let roles = RoleMap::find(&take.clip.skeleton);
+    let mut recognizer = Recognizer::new(&model, BoneSet::NONE).unwrap();
+    for_each_pose(&take.clip, &roles, &(0..0), |secs, pose| assert!(recognizer.push(secs, pose).is_empty()));
+    assert!(recognizer.finish().is_empty());
+}
+
+#[test]
+fn thresholds_come_from_left_out_samples_and_background() {
+    let (model, report) = trained(SvrdmTrainParams::tuned());
+    let estimated = report.svrdm.unwrap().estimated.expect("tuned estimates");
+    let Model::Svrdm(model) = model else { panic!("another method") };
+    assert_eq!(model.params.accept, estimated.accept);
+    assert_eq!(model.params.min_confidence, estimated.min_confidence);
+    assert_eq!(estimated.samples, takes().iter().map(|t| t.labels.len()).sum::<usize>());
+    assert!(estimated.background_minutes > 0.0);
+    assert!((0.5..=0.92).contains(&estimated.accept), "{estimated:?}");
+    assert!(estimated.wrong <= 0.1, "{estimated:?}");
+}
+
+#[test]
+fn one_class_or_none_is_refused() {
+    let (clips, samples) = clips(takes());
+    let train = |classes: &[String], samples: &[Sample]| {
+        let labelling = Labelling { samples, classes, unlabelled_is_background: true, ..Default::default() };
+        train_svrdm(&clips, &labelling, &SvrdmOptions::default(), &()).map(|_| ())
+    };
+    assert_eq!(train(&classes(), &[]), Err(TrainError::NoSamples));
+    let one = vec!["bow".to_owned()];
+    let error = train(&one, &samples).unwrap_err();
+    assert!(error.to_string().contains("at least 2 classes"), "{error}");
+    let more = [classes(), vec!["fly".to_owned()]].concat();
+    assert_eq!(train(&more, &samples), Err(TrainError::NoSample { class: "fly".to_owned() }));
+}
+
+#[test]
+fn the_evaluation_counts_every_sample_and_draws_every_branch() {
+    let (clips, samples) = clips(takes());
+    let classes = classes();
+    let settings = [
+        (Setting::Faithful, SvrdmOptions { params: SvrdmTrainParams::faithful(), ..Default::default() }),
+        (Setting::Tuned, SvrdmOptions::default()),
+    ];
+    let study = Study {
+        clips: &clips,
+        samples: &samples,
+        classes: &classes,
+        unknown: &[],
+        seeds: &[3],
+        settings: &settings,
+    };
+    let result = reproduce(&study, &()).unwrap();
+    assert_eq!(result.segmentation.len(), clips.len());
+    for c in &result.clustering {
+        assert_eq!(c.samples, samples.len());
+        assert_eq!(c.pairs.total(), (samples.len() * (samples.len() - 1) / 2) as u64);
+    }
+    for c in &result.classification {
+        assert_eq!(c.all.samples, samples.len());
+        assert_eq!(c.unseen.samples + c.taught, samples.len());
+        assert_eq!(c.confusion.iter().flatten().sum::<usize>(), samples.len());
+        for rates in [c.all, c.unseen, c.alike[0], c.alike[1]] {
+            assert!((rates.p_c + rates.p_e + rates.p_r - 1.0).abs() < 1e-12);
+        }
+        let drawn =
+            result.pictures.iter().filter(|p| p.name.starts_with(&format!("{}_branch", c.setting.name())));
+        assert_eq!(drawn.count(), CLASSES.len() - 1);
+    }
+    assert_eq!(result.streams.len(), 2);
+    let page = page(&result, &[("clips".to_owned(), "a <b> & c".to_owned())]);
+    assert!(page.contains("a &lt;b&gt; &amp; c") && page.ends_with("</html>\n"));
+    assert_eq!(page.matches("<svg").count(), page.matches("</svg>").count());
+    for picture in &result.pictures {
+        assert!(!picture.svg.contains("NaN"), "{}", picture.name);
+    }
+}
