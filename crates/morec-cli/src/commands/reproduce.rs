@@ -32,7 +32,7 @@ pub struct Args {
     /// Seeds of the half splits, separated by commas
     #[arg(long, value_delimiter = ',', value_name = "N", default_values_t = [1, 2])]
     seed: Vec<u64>,
-    /// Folder for reproduction.html, reproduction.json and the pictures as SVG files
+    /// Folder for reproduction.html, reproduction.json, the pictures as SVG files and the confidence maps as TSV
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
 }
@@ -86,7 +86,11 @@ fn write(folder: &Path, result: &Reproduction, about: &[(String, String)]) -> Re
     for picture in &result.pictures {
         // Names come from clips, which may be called anything.
         let safe = |c: char| if c.is_alphanumeric() || "_-.".contains(c) { c } else { '_' };
-        keep(&format!("{}.svg", picture.name.chars().map(safe).collect::<String>()), &picture.svg)?;
+        let name: String = picture.name.chars().map(safe).collect();
+        keep(&format!("{name}.svg"), &picture.svg)?;
+        if let Some(table) = &picture.table {
+            keep(&format!("{name}.tsv"), table)?;
+        }
     }
     Ok(())
 }

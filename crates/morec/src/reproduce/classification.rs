@@ -179,6 +179,7 @@ fn draw(
         name: format!("{name}_tree"),
         caption: format!("{name}: the tree of classes (Fig. 5.2)"),
         svg: tree_picture(&model.tree, study.classes),
+        table: None,
     });
     // The thesis draws where a machine says at least T and at least t of training.
     let levels = [0.4, 1.0];
@@ -186,7 +187,7 @@ fn draw(
         let Some(svg) = branch_picture(&model.tree, node, features, study.classes, levels) else { continue };
         let caption =
             format!("{name}: decision boundaries of branch {node} with its samples (Figs. 5.3 to 5.12)");
-        pictures.push(Picture { name: format!("{name}_branch_{node}"), caption, svg });
+        pictures.push(Picture { name: format!("{name}_branch_{node}"), caption, svg, table: None });
     }
     let columns = study.classes.len();
     let values = tally.confusion.iter().flatten().map(|n| *n as f64);
@@ -200,5 +201,6 @@ fn draw(
         name: format!("{name}_confusion"),
         caption: format!("{name}: cut-out samples through the tree (Tables 5.5 and 5.6)"),
         svg: map.names(rows, study.classes.to_vec()).with_values().svg(),
+        table: None,
     });
 }

@@ -73,6 +73,8 @@ pub struct Picture {
     pub caption: String,
     /// The picture.
     pub svg: String,
+    /// What it is drawn from, as tab-separated text with a header, where that is not in [`Reproduction`].
+    pub table: Option<String>,
 }
 
 /// Everything that came out.

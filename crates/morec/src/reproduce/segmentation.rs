@@ -72,5 +72,5 @@ fn one(study: &Study<'_>, clip: &TrainClip) -> Result<(Segmented, Picture), Repr
     let caption = format!("{}: what is labelled, and where it was cut (Fig. 5.1)", clip.name);
     let alone = samples.iter().filter(has_its_own).count();
     let segmented = Segmented { clip: clip.name.clone(), secs, samples: samples.len(), cuts_secs, alone };
-    Ok((segmented, Picture { name, caption, svg }))
+    Ok((segmented, Picture { name, caption, svg, table: None }))
 }

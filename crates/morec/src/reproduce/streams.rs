@@ -66,7 +66,7 @@ fn timeline_picture(study: &Study<'_>, setting: Setting, line: &Timeline) -> Pic
         .lane("recognised", line.founds.iter().map(|(f, _)| bar(&f.class, f.start_secs, f.stop_secs)))
         .svg();
     let caption = format!("{name}: {clip} as a stream (Figs. 5.13 and 5.14)");
-    Picture { name: format!("{name}_timeline_{clip}"), caption, svg }
+    Picture { name: format!("{name}_timeline_{clip}"), caption, svg, table: None }
 }
 
 /// The map of confidences of one clip (Fig. 4.3).
@@ -93,5 +93,18 @@ fn map_picture(
         name: format!("{setting}_map_{name}"),
         caption: format!("{setting}: confidences of {name}'s segments (Fig. 4.3)"),
         svg: cells.picture(&title, &model.classes, &model.params, model.rate_hz()).svg(),
+        table: Some(map_table(&cells, model)),
     }))
+}
+
+/// The map as text: a line for each segment that is some class.
+fn map_table(map: &ConfidenceMap, model: &SvrdmModel) -> String {
+    let chunk_secs = model.params.chunk_frames as f64 / model.rate_hz();
+    let mut out = "start_secs\tstop_secs\tclass\tconfidence\n".to_owned();
+    for (window, cell) in map.cells() {
+        let (start, stop) = (window.start as f64 * chunk_secs, window.stop as f64 * chunk_secs);
+        let class = &model.classes[cell.class.index()].name;
+        out.push_str(&format!("{start:.4}\t{stop:.4}\t{class}\t{:.6}\n", cell.confidence));
+    }
+    out
 }

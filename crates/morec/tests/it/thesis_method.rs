@@ -192,5 +192,8 @@ fn the_evaluation_counts_every_sample_and_draws_every_branch() {
     assert_eq!(page.matches("<svg").count(), page.matches("</svg>").count());
     for picture in &result.pictures {
         assert!(!picture.svg.contains("NaN"), "{}", picture.name);
+        assert_eq!(picture.table.is_some(), picture.name.contains("_map_"));
+        let mut lines = picture.table.iter().flat_map(|table| table.lines());
+        assert!(lines.all(|line| line.split('\t').count() == 4));
     }
 }
