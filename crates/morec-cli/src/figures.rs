@@ -1,4 +1,4 @@
-//! An evaluation in the terminal: the same tables and the same JSON for every command that evaluates.
+//! Results in the terminal: the same tables for every command that evaluates, JSON for every command.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -6,12 +6,13 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 use morec::eval::{ClassFigures, Evaluation, MEASURED_OVERLAP};
 use morec::report::Report;
+use serde::Serialize;
 
 use crate::table::Table;
 
-/// Writes the evaluation as one JSON object, indented, with a line ending.
-pub fn write_json(out: &mut impl Write, evaluation: &Evaluation) -> io::Result<()> {
-    serde_json::to_writer_pretty(&mut *out, evaluation)?;
+/// Writes a value as JSON, indented, with a line ending. A reader that has gone is an [`io::Error`] that says so.
+pub fn write_json(out: &mut impl Write, value: &impl Serialize) -> io::Result<()> {
+    serde_json::to_writer_pretty(&mut *out, value)?;
     writeln!(out)
 }
 

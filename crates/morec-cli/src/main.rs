@@ -1,6 +1,7 @@
 //! The command `morec`: what was typed becomes arguments, each command's file does the rest.
 
 mod commands;
+mod dates;
 mod figures;
 mod files;
 mod lengths;

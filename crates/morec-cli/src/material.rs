@@ -9,7 +9,7 @@ use morec::formats::Warning;
 use morec::import::{ImportOptions, prepare};
 use morec::labels::{ClipLength, Extent, Label, Labels, Sample, read_people};
 use morec::reproduce;
-use morec::train::thesis::{SvrdmOptions, SvrdmTrainParams};
+use morec::train::thesis::SvrdmOptions;
 use morec::train::{Everyday, Recipe, Source, TrainClip, TrainOptions, TrainParams};
 use morec_db::labels::{DbSample, SampleFilter, State};
 use morec_db::{ClipFilter, MotionDb};
@@ -118,6 +118,15 @@ pub enum Setting {
     Tuned,
 }
 
+impl From<Setting> for reproduce::Setting {
+    fn from(setting: Setting) -> Self {
+        match setting {
+            Setting::Faithful => reproduce::Setting::Faithful,
+            Setting::Tuned => reproduce::Setting::Tuned,
+        }
+    }
+}
+
 /// When made everyday motion is background.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EverydayArg {
@@ -150,11 +159,7 @@ impl MaterialArgs {
         match self.method {
             Method::Templates => Ok(self.template_options(unlabelled_is_background)?.into()),
             Method::Svrdm => {
-                let params = match self.svrdm {
-                    Setting::Faithful => SvrdmTrainParams::faithful(),
-                    Setting::Tuned => SvrdmTrainParams::tuned(),
-                };
-                let params = with_figures(params, &self.params)?;
+                let params = with_figures(reproduce::Setting::from(self.svrdm).params(), &self.params)?;
                 Ok(SvrdmOptions { params, unlabelled_is_background }.into())
             }
         }
@@ -163,8 +168,8 @@ impl MaterialArgs {
     /// How to train for the thesis's evaluation: figures that were typed are those of the tuned setting.
     pub fn svrdm_options(&self, setting: reproduce::Setting) -> Result<SvrdmOptions> {
         let params = match setting {
-            reproduce::Setting::Faithful => SvrdmTrainParams::faithful(),
-            reproduce::Setting::Tuned => with_figures(SvrdmTrainParams::tuned(), &self.params)?,
+            reproduce::Setting::Faithful => setting.params(),
+            reproduce::Setting::Tuned => with_figures(setting.params(), &self.params)?,
         };
         Ok(SvrdmOptions { params, unlabelled_is_background: self.unlabelled == Unlabelled::Background })
     }

@@ -1,6 +1,6 @@
 //! Forward kinematics: from joint rotations to joint positions in the world.
 
-use crate::clip::Clip;
+use crate::clip::{Clip, Span};
 use crate::math::{Quat, Vec3};
 
 /// World positions and orientations of every joint at one frame; buffers are reused from frame to frame.
@@ -57,5 +57,18 @@ impl WorldPose {
             Some(tip) => self.positions[joint] + self.rotations[joint] * tip,
             None => self.positions[joint],
         }
+    }
+}
+
+/// Calls `each` with the time and pose of every frame of `clip` in turn, frame `f` at `f / rate_hz`.
+///
+/// Frames in `rest` (the T-pose that a conversion left at the start) show the first pose after them instead:
+/// times stay those of the file, and the jump out of the T-pose is not taken for motion.
+pub fn for_each_world_pose(clip: &Clip, rest: &Span, mut each: impl FnMut(f64, &WorldPose)) {
+    let mut world = WorldPose::default();
+    for frame in 0..clip.frames {
+        let shown = if rest.contains(&frame) { rest.end.min(clip.frames - 1) } else { frame };
+        world.set(clip, shown);
+        each(frame as f64 / clip.rate_hz, &world);
     }
 }

@@ -9,6 +9,7 @@ use clap::ValueEnum;
 use morec::segment::{Directions, PpcaParams, Segmentation, segment};
 use serde::Serialize;
 
+use crate::figures::write_json;
 use crate::files;
 use crate::poses::{PoseArgs, PosedClip};
 
@@ -106,8 +107,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     })?;
     let mut out = std::io::stdout().lock();
     if args.json {
-        serde_json::to_writer_pretty(&mut out, &found).map_err(std::io::Error::from)?;
-        writeln!(out)?;
+        write_json(&mut out, &found)?;
     } else {
         found.iter().try_for_each(|f| f.write(&mut out))?;
     }

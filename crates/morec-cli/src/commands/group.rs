@@ -14,6 +14,7 @@ use morec::pca::{Keep, Moments, Pca};
 use morec::segment::{PpcaParams, segment};
 use serde::Serialize;
 
+use crate::figures::write_json;
 use crate::files::{self, some_of};
 use crate::poses::{PoseArgs, PoseReader, PosedClip};
 use crate::table::Table;
@@ -129,8 +130,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let grouped = Grouped { kwas, centre: args.centre, dims, quality, clusters, agreement };
     let mut out = std::io::stdout().lock();
     if args.json {
-        serde_json::to_writer_pretty(&mut out, &grouped).map_err(std::io::Error::from)?;
-        writeln!(out)?;
+        write_json(&mut out, &grouped)?;
     } else {
         grouped.write(&mut out)?;
     }

@@ -2,13 +2,13 @@
 
 mod report;
 
-use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Context, Result};
 use morec::import::{ImportOptions, SignedAxis, prepare};
 
+use crate::figures::write_json;
 use crate::files::{self, ReadArgs};
 use crate::progress::Progress;
 use report::{FileReport, Report};
@@ -78,8 +78,7 @@ pub fn run(args: Args) -> Result<ExitCode> {
     drop(progress);
     if args.json {
         let mut out = std::io::stdout().lock();
-        serde_json::to_writer_pretty(&mut out, &reports).map_err(std::io::Error::from)?;
-        writeln!(out)?;
+        write_json(&mut out, &reports)?;
     }
     Ok(if failed { ExitCode::FAILURE } else { ExitCode::SUCCESS })
 }

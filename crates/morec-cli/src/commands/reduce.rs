@@ -8,6 +8,7 @@ use anyhow::{Context, Result};
 use morec::pca::{Keep, Moments, Pca, QualityRow, quality_chart};
 use serde::Serialize;
 
+use crate::figures::write_json;
 use crate::files;
 use crate::poses::PoseArgs;
 use crate::table::Table;
@@ -83,8 +84,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     };
     let mut out = std::io::stdout().lock();
     if args.json {
-        serde_json::to_writer_pretty(&mut out, &reduced).map_err(std::io::Error::from)?;
-        writeln!(out)?;
+        write_json(&mut out, &reduced)?;
     } else {
         reduced.write(&mut out)?;
     }

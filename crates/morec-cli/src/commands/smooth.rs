@@ -4,7 +4,6 @@ mod output;
 mod picture;
 mod report;
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -16,6 +15,7 @@ use morec::progress::Progress as _;
 use morec::smooth::{SmoothParams, compress};
 use rayon::prelude::*;
 
+use crate::figures::write_json;
 use crate::files::{self, ReadArgs};
 use crate::progress::Bar;
 use output::{Form, Target};
@@ -113,8 +113,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     }
     let mut out = std::io::stdout().lock();
     if args.json {
-        serde_json::to_writer_pretty(&mut out, &reports)?;
-        writeln!(out)?;
+        write_json(&mut out, &reports)?;
     } else {
         report::write(&mut out, &reports)?;
     }

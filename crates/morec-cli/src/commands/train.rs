@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::time::{SystemTime, UNIX_EPOCH};
 
 use anyhow::{Context, Result};
 use morec::index::{MotionIndex, Provenance};
@@ -11,6 +10,7 @@ use morec::roles::Role;
 use morec::train::thesis::SvrdmReport;
 use morec::train::{Labelling, Source, TrainClip, TrainingReport, train_model};
 
+use crate::dates;
 use crate::files;
 use crate::material::{Material, MaterialArgs};
 use crate::progress::Bar;
@@ -76,34 +76,12 @@ fn role_names(clips: &[TrainClip]) -> BTreeMap<Role, String> {
 fn provenance(material: &Material, report: &TrainingReport) -> Provenance {
     let labelled = material.clips.iter().filter(|c| c.source == Source::Labelled);
     Provenance {
-        created: now(),
+        created: dates::now(),
         morec_version: env!("CARGO_PKG_VERSION").to_owned(),
         clips: labelled.map(|c| c.name.clone()).collect(),
         samples: material.samples.len(),
         background_secs: report.background_secs.clone(),
     }
-}
-
-/// The present time as ISO 8601 in UTC, to the second.
-fn now() -> String {
-    let secs = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |d| d.as_secs() as i64);
-    let (days, time) = (secs.div_euclid(86_400), secs.rem_euclid(86_400));
-    let (year, month, day) = civil(days);
-    format!("{year:04}-{month:02}-{day:02}T{:02}:{:02}:{:02}Z", time / 3600, time / 60 % 60, time % 60)
-}
-
-/// Year, month and day of a day counted from 1970-01-01, in the Gregorian calendar. Years are counted from March,
-/// so that the leap day is their last.
-fn civil(days: i64) -> (i64, i64, i64) {
-    let since_0000_03_01 = days + 719_468;
-    let era = since_0000_03_01.div_euclid(146_097);
-    let day_of_era = since_0000_03_01.rem_euclid(146_097);
-    let year_of_era = (day_of_era - day_of_era / 1460 + day_of_era / 36_524 - day_of_era / 146_096) / 365;
-    let day_of_year = day_of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
-    let month_from_march = (5 * day_of_year + 2) / 153;
-    let day = day_of_year - (153 * month_from_march + 2) / 5 + 1;
-    let month = if month_from_march < 10 { month_from_march + 3 } else { month_from_march - 9 };
-    (year_of_era + era * 400 + i64::from(month <= 2), month, day)
 }
 
 fn print_report(report: &TrainingReport, bytes: usize, material: &Material, output: &Path) {
@@ -162,17 +140,4 @@ fn print_svrdm(report: &TrainingReport, svrdm: &SvrdmReport) {
         "accepts from T = {:.2}, confidence {:.2}, set by {}",
         svrdm.accept, svrdm.min_confidence, report.threshold_from
     );
-}
-
-#[cfg(test)]
-mod tests {
-    use super::civil;
-
-    #[test]
-    fn days_are_dates() {
-        assert_eq!(civil(0), (1970, 1, 1));
-        assert_eq!(civil(-1), (1969, 12, 31));
-        assert_eq!(civil(11_016), (2000, 2, 29));
-        assert_eq!(civil(20_778), (2026, 11, 21));
-    }
 }

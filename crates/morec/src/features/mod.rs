@@ -8,6 +8,7 @@
 //! The same [`FeatureStream`] makes the rows of training clips and of live streams.
 
 mod bones;
+pub(crate) mod grid;
 mod key_pose;
 mod observe;
 mod of_clip;

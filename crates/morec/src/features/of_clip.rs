@@ -1,22 +1,14 @@
 //! A whole clip through the same door as a live stream.
 
 use crate::clip::{Clip, Span};
-use crate::kinematics::WorldPose;
+use crate::kinematics::{WorldPose, for_each_world_pose};
 use crate::roles::RoleMap;
 
 use super::{BoneSet, FeatureParams, FeatureStream, KeyPose, Rows};
 
-/// Calls `each` with the time and pose of every frame of `clip` in turn, frame `f` at `f / rate_hz`.
-///
-/// Frames in `rest` (the T-pose that a conversion left at the start) show the first pose after them instead:
-/// times stay those of the file, and the jump out of the T-pose is not taken for motion.
+/// Calls `each` with the time and pose of every frame of `clip` in turn, as [`for_each_world_pose`] shows them.
 pub fn for_each_pose(clip: &Clip, roles: &RoleMap, rest: &Span, mut each: impl FnMut(f64, &KeyPose)) {
-    let mut world = WorldPose::default();
-    for frame in 0..clip.frames {
-        let shown = if rest.contains(&frame) { rest.end.min(clip.frames - 1) } else { frame };
-        world.set(clip, shown);
-        each(frame as f64 / clip.rate_hz, &KeyPose::of(&world, roles));
-    }
+    for_each_world_pose(clip, rest, |time_secs, world| each(time_secs, &KeyPose::of(world, roles)));
 }
 
 /// The bones that `clip` shows: both ends mapped, and of some length in its first frame of motion.

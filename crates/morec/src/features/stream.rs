@@ -1,6 +1,7 @@
 //! From a stream of poses at any rate to feature rows at the model's.
 
 use super::bones::BoneSet;
+use super::grid::Grid;
 use super::observe::{Observation, Observer};
 use super::params::FeatureParams;
 use super::smooth::Smoother;
@@ -31,13 +32,8 @@ pub enum Pushed {
 pub struct FeatureStream {
     observer: Observer,
     smoother: Smoother,
-    rate_hz: f64,
+    grid: Grid<Observation>,
     dim: usize,
-    /// Time of grid frame 0 of this stretch.
-    origin_secs: f64,
-    /// Grid frames made in this stretch.
-    grid_frames: u64,
-    last: Option<(f64, Observation)>,
     bones: BoneSet,
 }
 
@@ -47,11 +43,8 @@ impl FeatureStream {
         Self {
             observer: Observer::new(bones),
             smoother: Smoother::new(bones, params),
-            rate_hz: params.rate_hz,
+            grid: Grid::new(params.rate_hz),
             dim: row_dim(bones),
-            origin_secs: 0.0,
-            grid_frames: 0,
-            last: None,
             bones,
         }
     }
@@ -64,13 +57,13 @@ impl FeatureStream {
     /// Time of the first frame of the present stretch: tick `i`'s row ends at
     /// `origin_secs() + (i + 1) * frames_per_tick / rate_hz`.
     pub fn origin_secs(&self) -> f64 {
-        self.origin_secs
+        self.grid.origin_secs()
     }
 
     /// Whether a pose at `time_secs` would begin a new stretch, so that the caller can
     /// [`finish`](FeatureStream::finish) the old one first.
     pub fn breaks_at(&self, time_secs: f64) -> bool {
-        self.last.is_some_and(|(last, _)| time_secs > last + MAX_GAP_SECS || time_secs < last - MAX_GAP_SECS)
+        self.grid.breaks_at(time_secs)
     }
 
     /// Takes the pose at `time_secs` on the stream's clock; calls `out` with every row now complete.
@@ -84,43 +77,16 @@ impl FeatureStream {
         if restarted {
             self.finish(out);
         }
-        if self.last.is_some_and(|(last, _)| time_secs <= last) {
+        if self.grid.ignores(time_secs) {
             return Pushed::Ignored;
         }
         let Some(observation) = self.observer.observe(pose) else { return Pushed::NoHips };
-        match self.last {
-            None => {
-                self.origin_secs = time_secs;
-                self.grid_frames = 1;
-                self.smoother.push(&observation, out);
-            }
-            Some((last_secs, last)) => self.fill(last_secs, &last, time_secs, &observation, out),
-        }
-        self.last = Some((time_secs, observation));
+        let (smoother, bones) = (&mut self.smoother, self.bones);
+        self.grid.push(time_secs, observation, &mut |before, now| match before {
+            Some((last, t)) => smoother.push(&Observation::between(last, now, t, bones), out),
+            None => smoother.push(now, out),
+        });
         if restarted { Pushed::Restarted } else { Pushed::Taken }
-    }
-
-    /// Every grid frame in `(last_secs, time_secs]`, interpolated.
-    fn fill(
-        &mut self,
-        last_secs: f64,
-        last: &Observation,
-        time_secs: f64,
-        now: &Observation,
-        out: &mut impl FnMut(&[f32]),
-    ) {
-        // A source at the model's own rate must fall on the grid whatever its clock's last bits say.
-        let tolerance_secs = 1e-6;
-        loop {
-            let grid_secs = self.origin_secs + self.grid_frames as f64 / self.rate_hz;
-            if grid_secs > time_secs + tolerance_secs {
-                return;
-            }
-            let t = (grid_secs - last_secs) / (time_secs - last_secs);
-            let t = if time_secs - grid_secs < tolerance_secs { 1.0 } else { t };
-            self.smoother.push(&Observation::between(last, now, t, self.bones), out);
-            self.grid_frames += 1;
-        }
     }
 
     /// Ends the stretch: calls `out` with the rows that still waited for later frames, and forgets it.
@@ -128,7 +94,6 @@ impl FeatureStream {
         self.smoother.finish(out);
         self.smoother.reset();
         self.observer.reset();
-        self.last = None;
-        self.grid_frames = 0;
+        self.grid.end();
     }
 }

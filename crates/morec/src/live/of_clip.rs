@@ -2,7 +2,7 @@
 
 use crate::clip::{Clip, Span};
 use crate::features::bones_of_clip;
-use crate::kinematics::WorldPose;
+use crate::kinematics::for_each_world_pose;
 use crate::roles::RoleMap;
 
 use super::{Detection, Model, PoseReader, Recognizer, StartError};
@@ -22,13 +22,9 @@ pub fn recognize_clip<M: Clone + Into<Model>>(
         return Ok(found);
     }
     let mut reader = PoseReader::new(&model, &clip.skeleton, roles)?;
-    let mut world = WorldPose::default();
-    for frame in 0..clip.frames {
-        let shown = if rest.contains(&frame) { rest.end.min(clip.frames - 1) } else { frame };
-        world.set(clip, shown);
-        let time_secs = frame as f64 / clip.rate_hz;
-        found.extend_from_slice(recognizer.push(time_secs, reader.read(&world)));
-    }
+    for_each_world_pose(clip, rest, |time_secs, world| {
+        found.extend_from_slice(recognizer.push(time_secs, reader.read(world)));
+    });
     found.extend_from_slice(recognizer.finish());
     Ok(found)
 }

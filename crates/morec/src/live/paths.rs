@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use crate::decode::TickDetection;
 use crate::features::{BoneSet, FeatureStream, Pushed};
-use crate::pivots::PoseStream;
+use crate::pivots::{PivotPose, PoseStream};
 use crate::svrdm::{FrameDetection, SvrdmEngine, SvrdmModel};
 use crate::templates::{EarlyParams, TemplateEngine, TemplateModel, Underway};
 
-use super::recognizer::Found;
+use super::recognizer::{Found, Steps};
 use super::{Hunch, Pose, StartError};
 
 /// Feature rows and templates.
@@ -62,32 +62,23 @@ impl TemplatePath {
     }
 
     pub(super) fn push(&mut self, time_secs: f64, pose: Pose<'_>, found: &mut Found) -> Pushed {
-        let tick_secs = 1.0 / self.model.features.tick_hz();
         // The first pose of a stretch sets its origin and completes no row: the origin read here is right.
-        let origin_secs = self.features.origin_secs();
-        let engine = &mut self.engine;
+        let (steps, engine) = (self.steps(), &mut self.engine);
         self.features.push(time_secs, pose.key, &mut |row| {
-            engine.push(row, &mut |d| {
-                found.add(
-                    d.class,
-                    origin_secs,
-                    d.start as f64 * tick_secs,
-                    d.stop as f64 * tick_secs,
-                    d.score,
-                );
-            });
+            engine.push(row, &mut |d| found.add(d.class, steps, d.start, d.stop, d.score));
         })
     }
 
     pub(super) fn end_stretch(&mut self, found: &mut Found) {
-        let tick_secs = 1.0 / self.model.features.tick_hz();
-        let origin_secs = self.features.origin_secs();
-        let engine = &mut self.engine;
-        let mut out = |d: TickDetection| {
-            found.add(d.class, origin_secs, d.start as f64 * tick_secs, d.stop as f64 * tick_secs, d.score);
-        };
+        let (steps, engine) = (self.steps(), &mut self.engine);
+        let mut out = |d: TickDetection| found.add(d.class, steps, d.start, d.stop, d.score);
         self.features.finish(&mut |row| engine.push(row, &mut out));
         engine.finish(&mut out);
+    }
+
+    fn steps(&self) -> Steps {
+        let step_secs = 1.0 / self.model.features.tick_hz();
+        Steps { origin_secs: self.features.origin_secs(), step_secs }
     }
 
     pub(super) fn hunch(&mut self) -> Option<Hunch> {
@@ -128,8 +119,7 @@ impl SvrdmPath {
 
     /// A segment is compared with those that end a chunk later, and a row waits for the frame after it.
     pub(super) fn latency_secs(&self) -> f64 {
-        let model = self.engine.model();
-        (model.params.chunk_frames + 1) as f64 / model.rate_hz()
+        (self.engine.latency_frames() + 1) as f64 / self.engine.model().rate_hz()
     }
 
     pub(super) fn breaks_at(&self, time_secs: f64) -> bool {
@@ -137,25 +127,29 @@ impl SvrdmPath {
     }
 
     pub(super) fn push(&mut self, time_secs: f64, pose: Pose<'_>, found: &mut Found) -> Pushed {
-        let frame_secs = 1.0 / self.engine.model().rate_hz();
-        let origin_secs = self.rows.origin_secs();
-        let engine = &mut self.engine;
-        let pivots = pose.pivots.copied().unwrap_or_default();
-        self.rows.push(time_secs, &pivots, &mut |row| {
-            engine.push(row, &mut |d| add_frames(found, d, origin_secs, frame_secs));
+        let (steps, engine) = (self.steps(), &mut self.engine);
+        let unknown;
+        let pivots = match pose.pivots {
+            Some(pivots) => pivots,
+            None => {
+                unknown = PivotPose::default();
+                &unknown
+            }
+        };
+        self.rows.push(time_secs, pivots, &mut |row| {
+            engine.push(row, &mut |d| found.add(d.class, steps, d.start, d.stop, d.score));
         })
     }
 
     pub(super) fn end_stretch(&mut self, found: &mut Found) {
-        let frame_secs = 1.0 / self.engine.model().rate_hz();
-        let origin_secs = self.rows.origin_secs();
-        let engine = &mut self.engine;
-        let mut out = |d: FrameDetection| add_frames(found, d, origin_secs, frame_secs);
+        let (steps, engine) = (self.steps(), &mut self.engine);
+        let mut out = |d: FrameDetection| found.add(d.class, steps, d.start, d.stop, d.score);
         self.rows.finish(&mut |row| engine.push(row, &mut out));
         engine.finish(&mut out);
     }
-}
 
-fn add_frames(found: &mut Found, d: FrameDetection, origin_secs: f64, frame_secs: f64) {
-    found.add(d.class, origin_secs, d.start as f64 * frame_secs, d.stop as f64 * frame_secs, d.score);
+    fn steps(&self) -> Steps {
+        let step_secs = 1.0 / self.engine.model().rate_hz();
+        Steps { origin_secs: self.rows.origin_secs(), step_secs }
+    }
 }

@@ -60,10 +60,7 @@ impl PoseReader {
     /// The pose, valid until the next is read. No allocation.
     pub fn read(&mut self, world: &WorldPose) -> Pose<'_> {
         self.key = KeyPose::of(world, &self.roles);
-        let pivots = self.pivots.as_ref().filter(|_| world.rotations.len() == self.joints);
-        if let Some(pivots) = pivots {
-            self.pivot = pivots.pose(world);
-        }
-        Pose { key: &self.key, pivots: pivots.is_some().then_some(&self.pivot) }
+        let turned = self.pivots(world).is_some();
+        Pose { key: &self.key, pivots: turned.then_some(&self.pivot) }
     }
 }

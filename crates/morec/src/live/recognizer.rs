@@ -40,6 +40,13 @@ enum Path {
     Svrdm(Box<SvrdmPath>),
 }
 
+/// How a path counts time: from where, and in what.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Steps {
+    pub origin_secs: f64,
+    pub step_secs: f64,
+}
+
 /// Detections of the present push, with the time at which they are reported.
 #[derive(Debug)]
 pub(super) struct Found {
@@ -57,21 +64,14 @@ impl Found {
         self.reported_secs = reported_secs;
     }
 
-    /// Adds what lies from `start_secs` to `stop_secs` after `origin_secs`.
-    pub(super) fn add(
-        &mut self,
-        class: ClassId,
-        origin_secs: f64,
-        start_secs: f64,
-        stop_secs: f64,
-        score: f64,
-    ) {
+    /// Adds what lies from step `start` to step `stop`.
+    pub(super) fn add(&mut self, class: ClassId, at: Steps, start: i64, stop: i64, score: f64) {
         // The buffer never grows: pushing must not allocate.
         if self.detections.len() < self.detections.capacity() {
             self.detections.push(Detection {
                 class,
-                start_secs: origin_secs + start_secs,
-                stop_secs: origin_secs + stop_secs,
+                start_secs: at.origin_secs + start as f64 * at.step_secs,
+                stop_secs: at.origin_secs + stop as f64 * at.step_secs,
                 score,
                 reported_secs: self.reported_secs,
             });

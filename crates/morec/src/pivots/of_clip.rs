@@ -2,7 +2,7 @@
 
 use crate::clip::{Clip, Span};
 use crate::features::Rows;
-use crate::kinematics::WorldPose;
+use crate::kinematics::for_each_world_pose;
 
 use super::{PivotMap, PivotPose, PivotSet, PoseParams, PoseStream};
 
@@ -10,12 +10,7 @@ use super::{PivotMap, PivotPose, PivotSet, PoseParams, PoseStream};
 ///
 /// Frames in `rest` show the first pose after them, as in [`for_each_pose`](crate::features::for_each_pose).
 pub fn for_each_pivot_pose(clip: &Clip, map: &PivotMap, rest: &Span, mut each: impl FnMut(f64, &PivotPose)) {
-    let mut world = WorldPose::default();
-    for frame in 0..clip.frames {
-        let shown = if rest.contains(&frame) { rest.end.min(clip.frames - 1) } else { frame };
-        world.set(clip, shown);
-        each(frame as f64 / clip.rate_hz, &map.pose(&world));
-    }
+    for_each_world_pose(clip, rest, |time_secs, world| each(time_secs, &map.pose(world)));
 }
 
 /// The pose rows of a clip, `frames × 4 pivots` at the rate of `params`; row `i` is the pose at `i / rate_hz`

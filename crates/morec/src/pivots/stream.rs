@@ -1,6 +1,7 @@
 //! From a stream of poses at any rate to pose rows at the model's.
 
-use crate::features::{MAX_GAP_SECS, Pushed};
+use crate::features::Pushed;
+use crate::features::grid::Grid;
 use crate::math::{Quat, same_hemisphere, slerp};
 
 use super::{MAX_PIVOTS, PivotPose, PivotSet, PoseParams, RootForm, SignRule};
@@ -17,14 +18,18 @@ type Locals = [Quat; MAX_PIVOTS];
 #[derive(Debug, Clone)]
 pub struct PoseStream {
     parents: [usize; MAX_PIVOTS],
+    grid: Grid<Locals>,
+    rows: RowMaker,
+}
+
+/// Grid frames in, rows out, one frame later.
+#[derive(Debug, Clone)]
+struct RowMaker {
     pivots: usize,
     params: PoseParams,
-    /// Time of grid frame 0 of this stretch.
-    origin_secs: f64,
-    /// Grid frames made in this stretch.
-    grid_frames: u64,
-    last: Option<(f64, Locals)>,
-    /// The last grid frame, with the signs it goes into its row with.
+    /// Whether a grid frame of this stretch waits for the next.
+    waits: bool,
+    /// That frame, with the signs it goes into its row with.
     waiting: Locals,
     /// The turn of the root in the last row.
     turn: Quat,
@@ -36,32 +41,30 @@ impl PoseStream {
     pub fn new(set: &PivotSet, params: &PoseParams) -> Self {
         let mut parents = [0; MAX_PIVOTS];
         (0..set.len()).for_each(|pivot| parents[pivot] = set.parent(pivot));
-        Self {
-            parents,
+        let rows = RowMaker {
             pivots: set.len(),
             params: *params,
-            origin_secs: 0.0,
-            grid_frames: 0,
-            last: None,
+            waits: false,
             waiting: [Quat::identity(); MAX_PIVOTS],
             turn: Quat::identity(),
-        }
+        };
+        Self { parents, grid: Grid::new(params.rate_hz), rows }
     }
 
     /// Values in a row, `4 pivots`: each as `w x y z`.
     pub fn dim(&self) -> usize {
-        4 * self.pivots
+        4 * self.rows.pivots
     }
 
     /// Time of the present stretch's first row: row `i` is the pose at `origin_secs() + i / rate_hz`.
     pub fn origin_secs(&self) -> f64 {
-        self.origin_secs
+        self.grid.origin_secs()
     }
 
     /// Whether a pose at `time_secs` would begin a new stretch, so that the caller can
     /// [`finish`](PoseStream::finish) the old one first.
     pub fn breaks_at(&self, time_secs: f64) -> bool {
-        self.last.is_some_and(|(last, _)| time_secs > last + MAX_GAP_SECS || time_secs < last - MAX_GAP_SECS)
+        self.grid.breaks_at(time_secs)
     }
 
     /// Takes the pose at `time_secs` on the stream's clock; calls `out` with every row now complete.
@@ -76,76 +79,61 @@ impl PoseStream {
         if restarted {
             self.finish(out);
         }
-        if self.last.is_some_and(|(last, _)| time_secs <= last) {
+        if self.grid.ignores(time_secs) {
             return Pushed::Ignored;
         }
         let Some(locals) = self.locals(pose) else { return Pushed::NoHips };
-        match self.last {
-            None => {
-                self.origin_secs = time_secs;
-                self.grid_frames = 0;
-                self.grid_frame(&locals, out);
-            }
-            Some((last_secs, last)) => self.fill(last_secs, &last, time_secs, &locals, out),
-        }
-        self.last = Some((time_secs, locals));
+        let rows = &mut self.rows;
+        self.grid.push(time_secs, locals, &mut |before, now| match before {
+            Some((last, t)) => rows.grid_frame(&rows.between(last, now, t), out),
+            None => rows.grid_frame(now, out),
+        });
         if restarted { Pushed::Restarted } else { Pushed::Taken }
     }
 
     /// Ends the stretch: calls `out` with the row that still waited for the next frame, and forgets it.
     pub fn finish(&mut self, out: &mut impl FnMut(&[f32])) {
-        if self.grid_frames > 0 {
-            self.emit(out);
-        }
-        self.last = None;
-        self.grid_frames = 0;
-        self.turn = Quat::identity();
+        self.rows.finish(out);
+        self.grid.end();
     }
 
     fn locals(&self, pose: &PivotPose) -> Option<Locals> {
-        let last = self.last.as_ref().map(|(_, locals)| locals);
+        let last = self.grid.last();
         let mut locals = last.copied().unwrap_or([Quat::identity(); MAX_PIVOTS]);
         match pose.get(0) {
             Some(root) => locals[0] = *root,
             None => _ = last?,
         }
-        for pivot in 1..self.pivots {
+        for pivot in 1..self.rows.pivots {
             if let (Some(parent), Some(own)) = (pose.get(self.parents[pivot]), pose.get(pivot)) {
                 locals[pivot] = parent.conjugate() * own;
             }
         }
         Some(locals)
     }
+}
 
-    /// Every grid frame in `(last_secs, time_secs]`, interpolated.
-    fn fill(
-        &mut self,
-        last_secs: f64,
-        last: &Locals,
-        time_secs: f64,
-        now: &Locals,
-        out: &mut impl FnMut(&[f32]),
-    ) {
-        // A source at the model's own rate must fall on the grid whatever its clock's last bits say.
-        let tolerance_secs = 1e-6;
-        loop {
-            let grid_secs = self.origin_secs + self.grid_frames as f64 / self.params.rate_hz;
-            if grid_secs > time_secs + tolerance_secs {
-                return;
-            }
-            let t = (grid_secs - last_secs) / (time_secs - last_secs);
-            let t = if time_secs - grid_secs < tolerance_secs { 1.0 } else { t };
-            let mut between = *now;
-            for pivot in 0..self.pivots {
-                between[pivot] = slerp(&last[pivot], &now[pivot], t);
-            }
-            self.grid_frame(&between, out);
+impl RowMaker {
+    fn between(&self, last: &Locals, now: &Locals, t: f64) -> Locals {
+        let mut between = *now;
+        for pivot in 0..self.pivots {
+            between[pivot] = slerp(&last[pivot], &now[pivot], t);
         }
+        between
+    }
+
+    /// Ends the stretch with the row that still waits.
+    fn finish(&mut self, out: &mut impl FnMut(&[f32])) {
+        if self.waits {
+            self.emit(out);
+        }
+        self.waits = false;
+        self.turn = Quat::identity();
     }
 
     /// Takes the next frame of the grid; the one before it is complete now.
     fn grid_frame(&mut self, locals: &Locals, out: &mut impl FnMut(&[f32])) {
-        if self.grid_frames > 0 {
+        if self.waits {
             let (now, next) = (self.waiting[0], locals[0]);
             let turn = match self.params.root {
                 RootForm::World => next * now.conjugate(),
@@ -154,16 +142,15 @@ impl PoseStream {
             self.turn = same_hemisphere(&Quat::identity(), turn);
             self.emit(out);
         }
-        let first = self.grid_frames == 0;
         self.waiting[0] = locals[0];
         for pivot in 1..self.pivots {
             let like = match self.params.signs {
-                SignRule::Continuous if !first => self.waiting[pivot],
+                SignRule::Continuous if self.waits => self.waiting[pivot],
                 _ => Quat::identity(),
             };
             self.waiting[pivot] = same_hemisphere(&like, locals[pivot]);
         }
-        self.grid_frames += 1;
+        self.waits = true;
     }
 
     fn emit(&self, out: &mut impl FnMut(&[f32])) {
@@ -172,6 +159,6 @@ impl PoseStream {
             let q = if pivot == 0 { &self.turn } else { &self.waiting[pivot] };
             values.copy_from_slice(&[q.w as f32, q.i as f32, q.j as f32, q.k as f32]);
         }
-        out(&row[..self.dim()]);
+        out(&row[..4 * self.pivots]);
     }
 }

@@ -1,6 +1,7 @@
 //! §5.3: cut-out samples through a tree that half of them trained.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use serde::Serialize;
 
@@ -9,14 +10,13 @@ use crate::crossval::{By, folds};
 use crate::features::Rows;
 use crate::index::{MotionIndex, Provenance};
 use crate::labels::Sample;
-use crate::pivots::{PivotMap, pose_rows_of_clip};
 use crate::plot::HeatMap;
 use crate::svrdm::{SampleClassifier, SvrdmModel};
+use crate::train::Labelling;
 use crate::train::svrdm::{BranchReport, FeatureSample, branch_picture, tree_picture};
 use crate::train::thesis::{Estimated, SvrdmOptions, train_svrdm};
-use crate::train::{Labelling, TrainClip};
 
-use super::{Picture, ReproduceError, Setting, Study};
+use super::{Picture, ReproduceError, Setting, Study, frames_of, rows_of};
 
 /// What became of samples (Eq. 5.1).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
@@ -76,6 +76,7 @@ pub(super) fn run(
         unlabelled_is_background: true,
     };
     let (model, report) = train_svrdm(study.clips, &labelling, options, &())?;
+    let model = Arc::new(model);
     let mut classifier = SampleClassifier::new(&model).map_err(|e| ReproduceError::Other(e.to_string()))?;
     let trained: BTreeSet<usize> = fold.taught.iter().copied().collect();
     let mut tally = Tally::new(study.classes.len());
@@ -120,23 +121,16 @@ fn cut_out(study: &Study<'_>, model: &SvrdmModel) -> Result<Vec<(usize, ClassId,
         if of_clip().next().is_none() {
             continue;
         }
-        let rows = reduced(clip, model)?;
+        let rows = model.pca.project(&rows_of(clip, &model.pivots, &model.pose)?);
         for (place, sample) in of_clip() {
-            let frame = |secs: f64| ((secs * model.rate_hz()).round() as usize).min(rows.len());
             let class = study.classes.iter().position(|c| *c == sample.class);
             if let Some(class) = class {
-                let cut = rows.slice(frame(sample.start_secs)..frame(sample.stop_secs));
+                let cut = rows.slice(frames_of(sample, model.rate_hz(), rows.len()));
                 all.push((place, ClassId(class as u16), cut));
             }
         }
     }
     Ok(all)
-}
-
-fn reduced(clip: &TrainClip, model: &SvrdmModel) -> Result<Rows, ReproduceError> {
-    let map = PivotMap::resolve(&model.pivots, &clip.clip.skeleton, &clip.roles)
-        .map_err(|source| ReproduceError::Pivots { clip: clip.name.clone(), source })?;
-    Ok(model.pca.project(&pose_rows_of_clip(&clip.clip, &model.pivots, &map, &clip.rest, &model.pose)))
 }
 
 struct Tally {

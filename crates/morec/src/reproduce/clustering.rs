@@ -1,15 +1,14 @@
 //! §5.2: grouping samples by kWAS, held against their classes.
 
-use nalgebra::DMatrix;
 use serde::Serialize;
 
 use crate::cluster::{KwasForm, KwasParams, Pairs, Spectrum, adjusted_rand_index, kwas_clusters};
 use crate::features::Rows;
 use crate::pca::{Keep, Moments, Pca};
-use crate::pivots::{PivotMap, PivotSet, PoseParams, pose_rows_of_clip};
+use crate::pivots::{PivotSet, PoseParams};
 use crate::train::Source;
 
-use super::{ReproduceError, Study};
+use super::{ReproduceError, Study, frames_of, rows_of};
 
 /// Clusters at one τ.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -38,13 +37,10 @@ pub(super) fn run(study: &Study<'_>) -> Result<Vec<Clustering>, ReproduceError> 
     let mut moments = Moments::new(set.row_dim());
     let mut cut: Vec<(usize, Rows)> = vec![];
     for clip in study.clips.iter().filter(|c| c.source == Source::Labelled) {
-        let map = PivotMap::resolve(&set, &clip.clip.skeleton, &clip.roles)
-            .map_err(|source| ReproduceError::Pivots { clip: clip.name.clone(), source })?;
-        let rows = pose_rows_of_clip(&clip.clip, &set, &map, &clip.rest, &params);
+        let rows = rows_of(clip, &set, &params)?;
         moments.push_rows(&rows);
         for sample in study.samples.iter().filter(|s| s.clip == clip.name) {
-            let frame = |secs: f64| ((secs * params.rate_hz).round() as usize).min(rows.len());
-            let span = frame(sample.start_secs)..frame(sample.stop_secs);
+            let span = frames_of(sample, params.rate_hz, rows.len());
             let class = study.classes.iter().position(|c| *c == sample.class);
             if let Some(class) = class.filter(|_| span.len() > 1) {
                 cut.push((class, rows.slice(span)));
@@ -54,7 +50,7 @@ pub(super) fn run(study: &Study<'_>) -> Result<Vec<Clustering>, ReproduceError> 
     let pca = Pca::fit(&moments, Keep::Dims(16)).map_err(|e| ReproduceError::Other(e.to_string()))?;
     let classes: Vec<usize> = cut.iter().map(|(class, _)| *class).collect();
     let centred: Vec<Spectrum> = cut.iter().map(|(_, rows)| Spectrum::of_rows(&pca.project(rows))).collect();
-    let as_they_are: Vec<Spectrum> = cut.iter().map(|(_, rows)| Spectrum::of_matrix(product(rows))).collect();
+    let as_they_are: Vec<Spectrum> = cut.iter().map(|(_, rows)| Spectrum::of_rows(rows)).collect();
     let mut found = vec![];
     for (is_centred, spectra) in [(true, &centred), (false, &as_they_are)] {
         for tau in TAUS {
@@ -72,10 +68,4 @@ pub(super) fn run(study: &Study<'_>) -> Result<Vec<Clustering>, ReproduceError> 
         }
     }
     Ok(found)
-}
-
-/// `AᵀA` of rows as they are.
-fn product(rows: &Rows) -> DMatrix<f64> {
-    let a = DMatrix::from_row_iterator(rows.len(), rows.dim(), rows.values().iter().map(|v| f64::from(*v)));
-    a.tr_mul(&a)
 }

@@ -9,16 +9,19 @@ mod segmentation;
 mod streams;
 mod thesis;
 
+use std::ops::Range;
+
 use serde::Serialize;
 
 use crate::crossval::CrossvalError;
 use crate::eval::EvalError;
+use crate::features::Rows;
 use crate::index::IndexError;
 use crate::labels::Sample;
-use crate::pivots::UnplayedRoot;
+use crate::pivots::{PivotMap, PivotSet, PoseParams, UnplayedRoot, pose_rows_of_clip};
 use crate::progress::Progress;
 use crate::segment::SegmentError;
-use crate::train::thesis::SvrdmOptions;
+use crate::train::thesis::{SvrdmOptions, SvrdmTrainParams};
 use crate::train::{TrainClip, TrainError};
 
 pub use classification::Classification;
@@ -60,6 +63,14 @@ impl Setting {
         match self {
             Setting::Faithful => "faithful",
             Setting::Tuned => "tuned",
+        }
+    }
+
+    /// The figures of training.
+    pub fn params(self) -> SvrdmTrainParams {
+        match self {
+            Setting::Faithful => SvrdmTrainParams::faithful(),
+            Setting::Tuned => SvrdmTrainParams::tuned(),
         }
     }
 }
@@ -113,6 +124,19 @@ pub enum ReproduceError {
     Index(#[from] IndexError),
     #[error("{0}")]
     Other(String),
+}
+
+/// The pose rows of a clip.
+fn rows_of(clip: &TrainClip, set: &PivotSet, params: &PoseParams) -> Result<Rows, ReproduceError> {
+    let map = PivotMap::resolve(set, &clip.clip.skeleton, &clip.roles)
+        .map_err(|source| ReproduceError::Pivots { clip: clip.name.clone(), source })?;
+    Ok(pose_rows_of_clip(&clip.clip, set, &map, &clip.rest, params))
+}
+
+/// The frames of a sample among `count` rows at `rate_hz`.
+fn frames_of(sample: &Sample, rate_hz: f64, count: usize) -> Range<usize> {
+    let frame = |secs: f64| ((secs * rate_hz).round() as usize).min(count);
+    frame(sample.start_secs)..frame(sample.stop_secs)
 }
 
 /// Runs the whole evaluation. Trains twice for each setting and seed.

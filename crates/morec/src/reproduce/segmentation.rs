@@ -3,12 +3,12 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::pivots::{PivotMap, PivotSet, PoseParams, pose_rows_of_clip};
+use crate::pivots::{PivotSet, PoseParams};
 use crate::plot::{Bar, Lanes};
 use crate::segment::{PpcaParams, segment};
 use crate::train::{Source, TrainClip};
 
-use super::{Picture, ReproduceError, Study};
+use super::{Picture, ReproduceError, Study, rows_of};
 
 /// A clip and where it was cut.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -35,10 +35,8 @@ pub(super) fn run(study: &Study<'_>, pictures: &mut Vec<Picture>) -> Result<Vec<
 }
 
 fn one(study: &Study<'_>, clip: &TrainClip) -> Result<(Segmented, Picture), ReproduceError> {
-    let (set, params) = (PivotSet::thesis(), PoseParams::default());
-    let map = PivotMap::resolve(&set, &clip.clip.skeleton, &clip.roles)
-        .map_err(|source| ReproduceError::Pivots { clip: clip.name.clone(), source })?;
-    let rows = pose_rows_of_clip(&clip.clip, &set, &map, &clip.rest, &params);
+    let params = PoseParams::default();
+    let rows = rows_of(clip, &PivotSet::thesis(), &params)?;
     let found = segment(&rows, params.rate_hz, &PpcaParams::default())
         .map_err(|source| ReproduceError::Segment { clip: clip.name.clone(), source })?;
     let secs = clip.clip.duration_secs();

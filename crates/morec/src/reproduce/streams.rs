@@ -7,14 +7,13 @@ use serde::Serialize;
 use crate::crossval::{By, Material, crossval};
 use crate::eval::{Evaluation, Timeline, timelines};
 use crate::live::Model;
-use crate::pivots::{PivotMap, pose_rows_of_clip};
 use crate::plot::{Bar, Lanes};
 use crate::svrdm::{ConfidenceMap, SvrdmEngine, SvrdmModel};
 use crate::train::Source;
 
 use crate::train::thesis::SvrdmOptions;
 
-use super::{Picture, ReproduceError, Setting, Study};
+use super::{Picture, ReproduceError, Setting, Study, rows_of};
 
 /// One half split.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -79,9 +78,7 @@ fn map_picture(
     let Some(clip) = study.clips.iter().find(|c| c.name == name && c.source == Source::Labelled) else {
         return Ok(None);
     };
-    let map = PivotMap::resolve(&model.pivots, &clip.clip.skeleton, &clip.roles)
-        .map_err(|source| ReproduceError::Pivots { clip: clip.name.clone(), source })?;
-    let rows = pose_rows_of_clip(&clip.clip, &model.pivots, &map, &clip.rest, &model.pose);
+    let rows = rows_of(clip, &model.pivots, &model.pose)?;
     let mut engine = SvrdmEngine::new(model).map_err(|e| ReproduceError::Other(e.to_string()))?;
     let mut cells = ConfidenceMap::new();
     rows.iter().for_each(|row| {

@@ -32,15 +32,12 @@ pub struct SampleClassifier {
 
 impl SampleClassifier {
     /// For a model whose parts fit together.
-    pub fn new(model: &SvrdmModel) -> Result<Self, ModelError> {
-        let mut model = model.clone();
-        // Confidence is for the caller to judge.
-        model.params.min_confidence = 0.0;
+    pub fn new(model: &Arc<SvrdmModel>) -> Result<Self, ModelError> {
         Ok(Self {
             extraction: FeatureExtraction::new(&model.params, model.pca.dims(), &model.signs),
-            scoring: SegmentScoring::new(&model)?,
+            scoring: SegmentScoring::new(model)?,
             candidates: Candidates::default(),
-            model: Arc::new(model),
+            model: model.clone(),
         })
     }
 
@@ -57,8 +54,9 @@ impl SampleClassifier {
         self.model.tree.descend(feature, f64::NEG_INFINITY, Descent::Larger, &mut self.candidates);
         let found = *self.candidates.first()?;
         let profile = self.extraction.profile(&gram, rows.iter());
-        let likeness = self.scoring.likeness(found.class, profile);
-        let confidence = self.scoring.score(found.class, profile, gram.frames());
+        let edr = self.scoring.distance(found.class, profile);
+        let likeness = self.scoring.likeness(edr);
+        let confidence = self.scoring.confidence(found.class, edr, gram.frames());
         Some(Classified { class: found.class, output: found.output, likeness, confidence })
     }
 }

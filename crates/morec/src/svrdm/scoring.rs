@@ -8,8 +8,12 @@ use super::{Comparison, MAX_PROFILE_FRAMES, ModelError, Normalisation, SvrdmMode
 
 /// Eq. 4.5: `(1 − 0.9 / (1 + e^(−30 EDR + 15))) · e^(−(len − mean)² / (2 (spread · mean)²))`, lengths in seconds.
 pub fn confidence(edr: f64, length_secs: f64, mean_secs: f64, spread: f64) -> f64 {
-    let likeness = 1.0 - 0.9 / (1.0 + (-30.0 * edr + 15.0).exp());
-    likeness * length_prior(length_secs, mean_secs, spread)
+    sigmoid(edr) * length_prior(length_secs, mean_secs, spread)
+}
+
+/// The first factor of Eq. 4.5.
+fn sigmoid(edr: f64) -> f64 {
+    1.0 - 0.9 / (1.0 + (-30.0 * edr + 15.0).exp())
 }
 
 /// The second factor of Eq. 4.5.
@@ -94,12 +98,11 @@ impl SegmentScoring {
         if found < self.min_confidence { 0.0 } else { found }
     }
 
-    /// How like a class's samples a segment with this profile is, whatever its length: the first factor of Eq. 4.5, or
-    /// what stands for it.
-    pub fn likeness(&mut self, class: ClassId, profile: &[f32]) -> f64 {
-        let edr = self.distance(class, profile);
+    /// How like a class's samples what lies at distance `edr` from them is, whatever its length: the first factor of
+    /// Eq. 4.5, or what stands for it.
+    pub fn likeness(&self, edr: f64) -> f64 {
         match self.comparison {
-            Comparison::Profiles => confidence(edr, 1.0, 1.0, 1.0),
+            Comparison::Profiles => sigmoid(edr),
             Comparison::Rows { .. } => 1.0 - edr,
         }
     }
@@ -112,12 +115,10 @@ impl SegmentScoring {
         self.confidence(class, edr, frames)
     }
 
-    fn confidence(&self, class: ClassId, edr: f64, frames: usize) -> f64 {
+    /// Eq. 4.5 for a segment of `frames` frames at distance `edr` from the class's samples.
+    pub fn confidence(&self, class: ClassId, edr: f64, frames: usize) -> f64 {
         let (secs, mean_secs) = (frames as f64 / self.rate_hz, self.classes[class.index()].mean_secs);
-        match self.comparison {
-            Comparison::Profiles => confidence(edr, secs, mean_secs, self.spread),
-            Comparison::Rows { .. } => (1.0 - edr) * length_prior(secs, mean_secs, self.spread),
-        }
+        self.likeness(edr) * length_prior(secs, mean_secs, self.spread)
     }
 
     /// Least normalised edit distance to any profile of `class`, 0 … 1.

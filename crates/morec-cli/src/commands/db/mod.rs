@@ -27,6 +27,8 @@ use morec_db::exchange::Lengths;
 use morec_db::{ClipFilter, ClipInfo, MotionDb};
 use serde::Serialize;
 
+use crate::figures::write_json;
+
 /// Keep clips, cuts, classes and labels in one file, and search them
 ///
 /// One program writes to a database at a time, any number read beside it. A crash loses nothing that was said to be done.
@@ -91,8 +93,7 @@ fn lengths(db: &MotionDb) -> Result<Lengths> {
 /// One value as JSON on standard output.
 fn print_json(value: &impl Serialize) -> Result<()> {
     let mut out = std::io::stdout().lock();
-    serde_json::to_writer_pretty(&mut out, value).map_err(std::io::Error::from)?;
-    writeln!(out)?;
+    write_json(&mut out, value)?;
     out.flush()?;
     Ok(())
 }

@@ -4,7 +4,6 @@
 //! be without samples that were left out of training being taken for another class, and a second threshold, on the confidence of what the tree let pass, is
 //! as high as motion asks for that is none of the classes.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use rayon::prelude::*;
@@ -13,6 +12,7 @@ use serde::{Deserialize, Serialize};
 use crate::progress::Progress;
 use crate::svrdm::{FrameDetection, SampleClassifier, SvrdmEngine, SvrdmModel};
 use crate::train::TrainError;
+use crate::train::set::overlap_share;
 
 use super::fit::fit;
 use super::material::{Background, Material};
@@ -167,7 +167,7 @@ fn judge_fold(
     if out.is_empty() {
         return Ok(vec![]);
     }
-    let model = fit(&taught, &material.classes, &material.pca, params)?.model;
+    let model = Arc::new(fit(&taught, &material.classes, &material.pca, params)?.model);
     let mut classifier = SampleClassifier::new(&model).map_err(TrainError::Svrdm)?;
     let judge = |sample: &ThesisSample| {
         let found = classifier.classify(&sample.rows)?;
@@ -186,19 +186,13 @@ fn heard(model: &Arc<SvrdmModel>, background: &Background) -> Result<Vec<f64>, T
     let mut scores = vec![];
     let mut hear = |d: FrameDetection| {
         let span = d.start.max(0) as usize..d.stop.max(0) as usize;
-        if background.known.iter().all(|known| overlap(&span, known) <= MAX_OVERLAP) {
+        if background.known.iter().all(|known| overlap_share(&span, known) <= MAX_OVERLAP) {
             scores.push(d.score);
         }
     };
     background.rows.iter().for_each(|row| engine.push(row, &mut hear));
     engine.finish(&mut hear);
     Ok(scores)
-}
-
-/// What two spans share, as a share of the shorter one.
-fn overlap(a: &Range<usize>, b: &Range<usize>) -> f64 {
-    let common = a.end.min(b.end).saturating_sub(a.start.max(b.start));
-    common as f64 / a.len().min(b.len()).max(1) as f64
 }
 
 fn known_frames(background: &Background) -> usize {
