@@ -220,7 +220,7 @@ fn new_clip(clip: Clip, settings: &ImportSettings, params: &FeatureParams) -> Re
     let imported = prepare(clip, &settings.options).map_err(|error| error.to_string())?;
     let packed = pack(imported, &()).map_err(|reason| format!("{name}: {reason}"))?;
     let (bones, rows) = rows::rows_of(&packed.stored, params);
-    Ok(NewClip { name, bones, rows: rows::encode(&rows), packed })
+    Ok(NewClip { name, bones, rows: rows.to_packed(&FeatureParams::default()), packed })
 }
 
 fn store(

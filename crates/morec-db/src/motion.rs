@@ -62,19 +62,17 @@ fn facts_to_json(facts: &Facts) -> String {
     serde_json::to_string(facts).unwrap_or_default()
 }
 
+/// The joint of each role, in the order of [`Role::ALL`].
 fn roles_to_json(roles: &RoleMap) -> String {
-    let pairs: serde_json::Map<String, serde_json::Value> = Role::ALL
-        .into_iter()
-        .filter_map(|role| Some((role.name().to_owned(), roles.joint(role)?.into())))
-        .collect();
-    serde_json::Value::Object(pairs).to_string()
+    let joints: Vec<Option<usize>> = Role::ALL.into_iter().map(|role| roles.joint(role)).collect();
+    serde_json::to_string(&joints).unwrap_or_default()
 }
 
 fn roles_from_json(json: &str, joints: usize) -> Option<RoleMap> {
-    let pairs: std::collections::BTreeMap<String, usize> = serde_json::from_str(json).ok()?;
+    let list: Vec<Option<usize>> = serde_json::from_str(json).ok()?;
     let mut map = RoleMap::default();
-    for (role, joint) in pairs {
-        map.set(Role::from_name(&role)?, Some(joint).filter(|j| *j < joints));
+    for (role, joint) in Role::ALL.into_iter().zip(list) {
+        map.set(role, joint.filter(|j| *j < joints));
     }
     Some(map)
 }

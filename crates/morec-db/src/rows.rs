@@ -1,4 +1,4 @@
-//! Feature rows of clips, kept ready in a few bits a value.
+//! Feature rows of clips, kept ready in about two bits a value ([`Rows::to_packed`]).
 //!
 //! Rows are those of [`morec::features`] over every bone a clip shows. They are made of the stored motion, so that
 //! making them again gives them again.
@@ -8,16 +8,12 @@ use morec::progress::Progress;
 use rayon::prelude::*;
 use rusqlite::params;
 
-mod code;
-
-pub(crate) use code::{decode, encode};
-
 use crate::{ClipId, DbError, MotionDb, StoredClip};
 
 /// Says how rows are made. Rows of another recipe are made again.
 pub(crate) fn recipe(params: &FeatureParams) -> String {
     // Counts up when the method changes while its figures do not.
-    const METHOD: u32 = 2;
+    const METHOD: u32 = 3;
     format!("{METHOD} {}", serde_json::to_string(params).unwrap_or_default())
 }
 
@@ -68,14 +64,13 @@ impl MotionDb {
         let kept = statement.query_map(params![recipe(params)], |row| {
             Ok((ClipId(row.get(0)?), row.get::<_, i64>(1)?, row.get::<_, Vec<u8>>(2)?))
         })?;
-        let mut all = stale;
-        for found in kept {
-            let (clip, bits, bytes) = found?;
+        let kept = kept.collect::<Result<Vec<_>, _>>()?;
+        let unpacked = kept.into_par_iter().filter_map(|(clip, bits, bytes)| {
             let bones = bones_of_bits(bits);
-            if let Some(rows) = decode(&bytes, row_dim(bones)).filter(|_| !bones.is_empty()) {
-                all.push(ClipRows { clip, bones, rows });
-            }
-        }
+            let rows = Rows::from_packed(&bytes, row_dim(bones), params).filter(|_| !bones.is_empty())?;
+            Some(ClipRows { clip, bones, rows })
+        });
+        let mut all: Vec<ClipRows> = unpacked.chain(stale).collect();
         all.sort_by_key(|rows| rows.clip);
         Ok(all)
     }
@@ -93,7 +88,8 @@ impl MotionDb {
             clips.iter().map(|id| Ok((*id, self.clip(*id)?))).collect::<Result<_, DbError>>()?;
         let made = stored.par_iter().filter_map(|(clip, stored)| {
             let (bones, rows) = rows_of(stored, params);
-            let rows = decode(&encode(&rows), row_dim(bones)).filter(|_| !bones.is_empty())?;
+            let rows = Rows::from_packed(&rows.to_packed(params), row_dim(bones), params)
+                .filter(|_| !bones.is_empty())?;
             Some(ClipRows { clip: *clip, bones, rows })
         });
         Ok(made.collect())
@@ -118,7 +114,7 @@ impl MotionDb {
                 .par_iter()
                 .map(|(id, stored)| {
                     let (bones, rows) = rows_of(stored, params);
-                    (*id, bones, encode(&rows))
+                    (*id, bones, rows.to_packed(params))
                 })
                 .collect();
             let tx = self.write()?;

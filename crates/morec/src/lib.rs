@@ -123,6 +123,7 @@
 pub mod classes;
 pub mod clip;
 pub mod cluster;
+mod coder;
 pub mod crossval;
 pub mod decode;
 pub mod eval;

@@ -42,7 +42,7 @@ CREATE TABLE clips (
     rate_hz REAL NOT NULL,
     rest_frames INTEGER NOT NULL,       -- T-pose frames at the start
     repaired_frames INTEGER NOT NULL,
-    roles TEXT NOT NULL,                -- JSON: role to joint number
+    roles TEXT NOT NULL,                -- JSON: joint number or null for each role, in their order
     facts TEXT NOT NULL,                -- JSON: what import inferred
     max_angle_rad REAL NOT NULL,        -- of the stored motion from the file's
     max_position_metres REAL NOT NULL,

@@ -12,6 +12,7 @@ pub(crate) mod grid;
 mod key_pose;
 mod observe;
 mod of_clip;
+mod packed;
 mod params;
 mod rows;
 mod smooth;

@@ -11,16 +11,15 @@
 //! Whole numbers are little-endian. Control points are whole steps of a size given for each channel, so what is read
 //! is to the bit what was written, on every machine.
 
-mod coder;
 mod motion;
 mod words;
 
 use super::lattice::{Lattice, Step};
 use super::{CompressedClip, Curve, Errors, Kind, SmoothParams};
 use crate::clip::{Joint, Skeleton, Span};
+use crate::coder::{Coder, Reader, Writer};
 use crate::formats::{Limits, ParseError, Place};
 use crate::math::Vec3;
-use coder::{Reader, Writer};
 use motion::{Fault, Motion, Stored};
 use words::{Fields, Words};
 
@@ -129,7 +128,7 @@ impl CompressedClip {
         for joint in tracks {
             clip.positions.push(channel(Kind::Position, joint)?);
         }
-        if coder::Coder::is_beyond_end(&reader) {
+        if reader.is_beyond_end() {
             return Err(fault(Fault::Cut));
         }
         Ok(clip)

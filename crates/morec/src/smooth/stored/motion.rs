@@ -1,6 +1,6 @@
 //! The curves of all channels through the coder, each number as its difference from what those before it promise.
 
-use super::coder::{Coder, Flag, Whole};
+use crate::coder::{Coder, Flag, Whole};
 use crate::smooth::Kind;
 use crate::smooth::bezier::{Point, Tangent};
 use crate::smooth::lattice::{Code, Lattice, MOST_STEPS, Piece, Step, Tangents};

@@ -6,18 +6,20 @@
 //! apart.
 
 /// How likely a 0 is, of 4096.
-pub(super) type Chance = u16;
+pub(crate) type Chance = u16;
 
 const CHANCE_BITS: u32 = 12;
 const EVEN: Chance = 1 << (CHANCE_BITS - 1);
 /// How slowly chances follow what comes; motions are short.
 const PATIENCE: u32 = 4;
+/// A 1 is next to never seen.
+const FEW: Chance = (1 << CHANCE_BITS) - 32;
 const LEAST_RANGE: u32 = 1 << 24;
 /// Zeros that a reader adds to the end.
 const TAKEN_FOR_GRANTED: usize = 4;
 
 /// Writes bits, or reads them: a writer returns what it was given, a reader pays it no heed.
-pub(super) trait Coder {
+pub(crate) trait Coder {
     /// A bit that is foreseen by its chance.
     fn bit(&mut self, chance: &mut Chance, bit: bool) -> bool;
     /// A bit that nothing is known of.
@@ -34,7 +36,7 @@ fn learn(chance: &mut Chance, bit: bool) {
 }
 
 /// The writing side.
-pub(super) struct Writer {
+pub(crate) struct Writer {
     low: u64,
     range: u32,
     /// The byte that a carry may still raise, and how many 255s follow it.
@@ -107,7 +109,7 @@ impl Coder for Writer {
 }
 
 /// The reading side.
-pub(super) struct Reader<'a> {
+pub(crate) struct Reader<'a> {
     bytes: &'a [u8],
     at: usize,
     code: u32,
@@ -162,7 +164,7 @@ impl Coder for Reader<'_> {
 }
 
 /// Foresees a flag.
-pub(super) struct Flag(Chance);
+pub(crate) struct Flag(Chance);
 
 impl Default for Flag {
     fn default() -> Self {
@@ -178,7 +180,7 @@ impl Flag {
 
 /// Foresees whole numbers below 2^63 in absolute value: how many binary digits, then the digits, the first of them by
 /// its chance.
-pub(super) struct Whole {
+pub(crate) struct Whole {
     /// A tree over 0 to 63 digits.
     digits: [Chance; 64],
     second: [Chance; 64],
@@ -191,6 +193,14 @@ impl Default for Whole {
 }
 
 impl Whole {
+    /// Foresees from the start that few numbers have 16 binary digits or more: short series need not learn it.
+    pub fn of_few_digits() -> Self {
+        let mut whole = Self::default();
+        whole.digits[1] = FEW;
+        whole.digits[2] = FEW;
+        whole
+    }
+
     /// A number of at least 0.
     pub fn natural(&mut self, coder: &mut impl Coder, value: u64) -> u64 {
         let digits = u64::BITS - value.leading_zeros();

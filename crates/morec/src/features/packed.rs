@@ -1,0 +1,263 @@
+//! Feature rows in about two bits a value, for keeping.
+//!
+//! Values are rounded to 1/64. Little is left to say after that, because a row says much twice: where a bone points
+//! follows from where it pointed and how it turned; a bone moves at right angles to its direction, so that two
+//! coordinates of its velocity give the third; and motion goes on as it began. What nothing foretells goes through an
+//! adaptive range coder. The first `u32` is the number of rows.
+
+use crate::coder::{Coder, Reader, Whole, Writer};
+
+use super::{FeatureParams, Rows};
+
+/// Values are whole multiples of this.
+const STEP: f64 = 1.0 / 64.0;
+/// Levels stay within this; rows hold directions and saturated velocities, so only root motion could come near.
+const LIMIT: i64 = 1 << 24;
+/// How much of the last change is expected again.
+const GOES_ON: f64 = 0.3;
+/// Of a velocity's share of its largest: nearer to saturation than this says no more about its size.
+const MOST_SATURATED: f64 = 0.95;
+
+impl Rows {
+    /// The rows in as few bytes as may be, each value moved by 1/128 at most (values are held to ±2^18; what is no number
+    /// becomes 0). `params` must be those the rows were made with: they foretell directions from velocities. Rows
+    /// must be whole feature rows of `6 b + 4` values. O(values).
+    pub fn to_packed(&self, params: &FeatureParams) -> Vec<u8> {
+        let mut bytes = (self.len() as u32).to_le_bytes().to_vec();
+        let mut forecast = Forecast::new(self.dim(), params);
+        let mut coder = Writer::new();
+        for row in self.iter() {
+            let mut levels: Vec<i64> = row.iter().map(|value| level(f64::from(*value))).collect();
+            forecast.row(&mut coder, &mut levels);
+        }
+        bytes.extend(coder.finish());
+        bytes
+    }
+
+    /// What [`to_packed`](Self::to_packed) wrote of rows of `dim` values; `None` for bytes that are none of it.
+    pub fn from_packed(bytes: &[u8], dim: usize, params: &FeatureParams) -> Option<Rows> {
+        let (len, codes) = bytes.split_first_chunk::<4>()?;
+        let len = u32::from_le_bytes(*len) as usize;
+        if dim < 4 || !(dim - 4).is_multiple_of(6) {
+            return None;
+        }
+        let mut forecast = Forecast::new(dim, params);
+        let mut coder = Reader::new(codes);
+        let mut rows = Rows::new(dim);
+        let (mut levels, mut row) = (vec![0i64; dim], vec![0f32; dim]);
+        for _ in 0..len {
+            forecast.row(&mut coder, &mut levels);
+            // Every row takes a share of a bit at least: what claims to be endless ends here.
+            if coder.is_beyond_end() {
+                return None;
+            }
+            row.iter_mut().zip(&levels).for_each(|(value, level)| *value = (*level as f64 * STEP) as f32);
+            rows.push(&row);
+        }
+        Some(rows)
+    }
+}
+
+fn level(value: f64) -> i64 {
+    // A cast of what is no number gives 0.
+    ((value / STEP).round() as i64).clamp(-LIMIT, LIMIT)
+}
+
+/// What is expected of the next row, and how far expectations of each kind have been off.
+struct Forecast {
+    bones: Vec<Bone>,
+    root: [Channel; 4],
+    tick_secs: f64,
+    saturation: f64,
+    velocity_weight: f64,
+    /// The first two coordinates of a velocity.
+    velocity: [Misses; 2],
+    /// The third, from the direction.
+    across: Misses,
+    direction: Misses,
+    root_misses: [Misses; 4],
+}
+
+/// A coordinate's last two levels, and how far the last forecast of it was off.
+#[derive(Clone, Copy, Default)]
+struct Channel {
+    last: i64,
+    before: i64,
+    missed: u64,
+}
+
+#[derive(Clone, Default)]
+struct Bone {
+    velocity: [Channel; 3],
+    direction: [Channel; 3],
+    /// Velocity before it was saturated, per second.
+    rate: [f64; 3],
+}
+
+/// Numbers, foreseen by how large those around them were.
+struct Misses([Whole; 12]);
+
+impl Forecast {
+    fn new(dim: usize, params: &FeatureParams) -> Self {
+        let new = || Misses(std::array::from_fn(|_| Whole::of_few_digits()));
+        Self {
+            bones: vec![Bone::default(); dim.saturating_sub(4) / 6],
+            root: Default::default(),
+            tick_secs: 1.0 / params.tick_hz(),
+            saturation: params.velocity_saturation,
+            velocity_weight: params.velocity_weight,
+            velocity: std::array::from_fn(|_| new()),
+            across: new(),
+            direction: new(),
+            root_misses: std::array::from_fn(|_| new()),
+        }
+    }
+
+    /// Writes a row's levels, or reads them.
+    fn row(&mut self, coder: &mut impl Coder, levels: &mut [i64]) {
+        let (directions, rest) = levels.split_at_mut(3 * self.bones.len());
+        let (velocities, root) = rest.split_at_mut(directions.len());
+        let mut bones = std::mem::take(&mut self.bones);
+        let of_bones = directions.as_chunks_mut().0.iter_mut().zip(velocities.as_chunks_mut().0);
+        for (bone, (direction, velocity)) in bones.iter_mut().zip(of_bones) {
+            self.velocity(coder, bone, velocity);
+            self.direction(coder, bone, direction);
+        }
+        self.bones = bones;
+        for ((level, channel), misses) in root.iter_mut().zip(&mut self.root).zip(&mut self.root_misses) {
+            let expected = channel.goes_on();
+            *level = misses.code(coder, channel, expected, *level, 0);
+        }
+    }
+
+    fn velocity(&mut self, coder: &mut impl Coder, bone: &mut Bone, levels: &mut [i64; 3]) {
+        let expected: [f64; 3] = std::array::from_fn(|axis| {
+            bone.direction[axis].last as f64 * STEP + bone.rate[axis] * self.tick_secs
+        });
+        // The largest coordinate of the direction comes last: dividing by it is safe.
+        let largest = (0..3).max_by(|a, b| expected[*a].abs().total_cmp(&expected[*b].abs())).unwrap_or(2);
+        let [first, second] = [(largest + 1) % 3, (largest + 2) % 3];
+        let mut around = 0;
+        for (axis, misses) in [first, second].into_iter().zip(&mut self.velocity) {
+            let channel = &mut bone.velocity[axis];
+            let forecast = channel.goes_on();
+            levels[axis] = misses.code(coder, channel, forecast, levels[axis], around);
+            around += channel.missed;
+        }
+        let channel = &mut bone.velocity[largest];
+        let along = expected[first] * levels[first] as f64 + expected[second] * levels[second] as f64;
+        let across = -along / expected[largest];
+        let forecast = if expected[largest].abs() > STEP { across } else { channel.goes_on() };
+        levels[largest] = self.across.code(coder, channel, forecast, levels[largest], around / 2);
+    }
+
+    fn direction(&mut self, coder: &mut impl Coder, bone: &mut Bone, levels: &mut [i64; 3]) {
+        let rate = self.unsaturated(bone.velocity.map(|channel| channel.last as f64 * STEP));
+        let mut around = 0;
+        for axis in 0..3 {
+            let channel = &mut bone.direction[axis];
+            let turned = (bone.rate[axis] + rate[axis]) / 2.0 * self.tick_secs;
+            let forecast = channel.last as f64 + turned / STEP;
+            levels[axis] = self.direction.code(coder, channel, forecast, levels[axis], around);
+            around = channel.missed;
+        }
+        bone.rate = rate;
+    }
+
+    /// Undoes `v / (1 + |v| / saturation)` and the weight.
+    fn unsaturated(&self, velocity: [f64; 3]) -> [f64; 3] {
+        let velocity = velocity.map(|v| v / self.velocity_weight);
+        let size = velocity.iter().map(|v| v * v).sum::<f64>().sqrt();
+        let share = (size / self.saturation).min(MOST_SATURATED);
+        velocity.map(|v| v / (1.0 - share))
+    }
+}
+
+impl Channel {
+    /// The next level if the last change goes on in part.
+    fn goes_on(&self) -> f64 {
+        self.last as f64 + GOES_ON * (self.last - self.before) as f64
+    }
+}
+
+impl Misses {
+    /// Codes how far `level` is from what was expected; `around`: how far others like it have just been off.
+    fn code(
+        &mut self,
+        coder: &mut impl Coder,
+        channel: &mut Channel,
+        expected: f64,
+        level: i64,
+        around: u64,
+    ) -> i64 {
+        let expected = (expected.round() as i64).clamp(-LIMIT, LIMIT);
+        let digits = u64::BITS - (2 * channel.missed + around).leading_zeros();
+        let whole = &mut self.0[(digits as usize).min(11)];
+        let level = expected.saturating_add(whole.signed(coder, level - expected)).clamp(-LIMIT, LIMIT);
+        *channel = Channel { last: level, before: channel.last, missed: level.abs_diff(expected) };
+        level
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::features::{bones_of_clip, rows_of_clip};
+    use crate::roles::RoleMap;
+    use crate::synth;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn values_are_within_half_a_step(values in prop::collection::vec(-9f32..9.0, 0..400), bones in 0usize..4) {
+            let rows = Rows::from_values(6 * bones + 4, values);
+            let params = FeatureParams::default();
+            let again = Rows::from_packed(&rows.to_packed(&params), rows.dim(), &params).unwrap();
+            prop_assert_eq!(again.len(), rows.len());
+            for (a, b) in rows.values().iter().zip(again.values()) {
+                prop_assert!((a - b).abs() <= 0.5 * STEP as f32 + 1e-6);
+            }
+            // What has been rounded is not rounded again.
+            prop_assert_eq!(Rows::from_packed(&again.to_packed(&params), rows.dim(), &params).unwrap(), again);
+        }
+
+        #[test]
+        fn wild_values_do_no_harm(values in prop::collection::vec(any::<f32>(), 0..200)) {
+            let rows = Rows::from_values(10, values);
+            let params = FeatureParams::default();
+            let again = Rows::from_packed(&rows.to_packed(&params), 10, &params).unwrap();
+            for (a, b) in rows.values().iter().zip(again.values()) {
+                let held = if a.is_nan() { 0.0 } else { a.clamp(-(1 << 18) as f32, (1 << 18) as f32) };
+                prop_assert!((held - b).abs() <= 0.5 * STEP as f32 + held.abs() * 1e-6);
+            }
+        }
+
+        #[test]
+        fn any_bytes_are_rows_or_nothing(bytes in prop::collection::vec(any::<u8>(), 0..300), dim in 0usize..20) {
+            let _ = Rows::from_packed(&bytes, dim, &FeatureParams::default());
+        }
+
+        #[test]
+        fn what_is_cut_short_is_nothing(keep in 0usize..100) {
+            let rows = Rows::from_values(10, (0..1000).map(|i| ((i * i) as f32).sin()).collect());
+            let params = FeatureParams::default();
+            let bytes = rows.to_packed(&params);
+            prop_assert!(Rows::from_packed(&bytes[..keep.min(bytes.len() / 2)], 10, &params).is_none());
+        }
+    }
+
+    #[test]
+    fn moving_people_take_little_more_than_two_bits_a_value() {
+        let params = FeatureParams::default();
+        let (mut values, mut bytes) = (0, 0);
+        for made in synth::everyday(1).into_iter().take(6) {
+            let roles = RoleMap::find(&made.skeleton);
+            let bones = bones_of_clip(&made, &roles, &(0..0));
+            let rows = rows_of_clip(&made, &roles, &(0..0), bones, &params);
+            values += rows.values().len();
+            bytes += rows.to_packed(&params).len();
+        }
+        assert!(values > 10_000);
+        assert!(16 * bytes < 5 * values, "{bytes} bytes for {values} values");
+    }
+}
