@@ -72,23 +72,33 @@ fn from_clips_to_labels_and_back() {
     db(&["label", "--undo"]);
     assert_eq!(db(&["classes"])[0]["name"], "bow");
 
+    let strips = |page: &str| {
+        let page = std::fs::read_to_string(folder.path().join(page)).unwrap();
+        assert!(!page.contains("http"), "nothing is loaded from elsewhere");
+        page.matches("<svg").count()
+    };
     let name = &takes[0].clip.name;
     let label = &takes[0].labels[0];
     let (start, stop) = (label.start_secs.to_string(), label.stop_secs.to_string());
-    let hits = db(&["search", name, "--start", &start, "--stop", &stop, "--limit", "3"]);
+    let hits =
+        db(&["search", name, "--start", &start, "--stop", &stop, "--limit", "3", "--report", "hits.html"]);
     assert_eq!(hits["hits"].as_array().unwrap().len(), 3);
+    assert_eq!(strips("hits.html"), 4, "the example and its hits");
     let outside =
         db(&["search", &format!("clips/{name}.bvh"), "--start", &start, "--stop", &stop, "--limit", "1"]);
     assert_eq!(outside["hits"][0]["name"], Value::from(name.as_str()), "a file finds itself");
 
     assert_eq!(db(&["cut"]).as_array().unwrap().len(), 3);
     assert!(!db(&["cycles"]).as_array().unwrap().is_empty());
-    assert!(db(&["group", "--of", "labels"])["adjusted_rand_index"].as_f64().unwrap() > 0.3);
+    let groups = db(&["group", "--of", "labels", "--report", "groups.html"]);
+    assert!(groups["adjusted_rand_index"].as_f64().unwrap() > 0.3);
+    let members: usize =
+        groups["groups"].as_array().unwrap().iter().map(|g| g.as_array().unwrap().len()).sum();
+    assert_eq!(strips("groups.html"), members);
     assert!(db(&["check"])["faults"].as_array().unwrap().is_empty());
     db(&["vacuum", "--caches"]);
     assert!(db(&["report", "-o", "page.html"])["strips"].as_u64().unwrap() > 3);
-    let page = std::fs::read_to_string(folder.path().join("page.html")).unwrap();
-    assert!(page.contains("<svg") && !page.contains("http"));
+    assert!(strips("page.html") > 3);
     let left: Vec<_> = std::fs::read_dir(folder.path())
         .unwrap()
         .filter_map(|f| f.ok()?.file_name().into_string().ok())

@@ -1,7 +1,7 @@
 //! `morec db group`: samples or segments that are alike.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
@@ -15,6 +15,7 @@ use morec_db::{ClipFilter, ClipId, MotionDb, SegmentKind};
 use serde::Serialize;
 
 use super::cut::METHOD;
+use super::page::Page;
 use crate::progress::Bar;
 use crate::table::Table;
 
@@ -56,6 +57,9 @@ pub struct Args {
     /// Propose each member of a group as a sample of the class NAME_1, NAME_2, …
     #[arg(long, value_name = "NAME")]
     name_as: Option<String>,
+    /// Write a page with a strip of poses for each member of each group, too
+    #[arg(long, value_name = "HTML")]
+    report: Option<PathBuf>,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -129,6 +133,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     grouped.groups.sort_by_key(|group: &Vec<Item>| std::cmp::Reverse(group.len()));
     if let Some(name) = &args.name_as {
         propose(&mut db, &grouped.groups, name)?;
+    }
+    if let Some(path) = &args.report {
+        report(path, &db, args, &grouped)?;
     }
     if args.json {
         super::print_json(&grouped)?;
@@ -222,6 +229,29 @@ fn propose(db: &mut MotionDb, groups: &[Vec<Item>], name: &str) -> Result<()> {
     }
     db.add_samples(&samples, "group")?;
     Ok(())
+}
+
+fn report(path: &Path, db: &MotionDb, args: &Args, grouped: &Grouped) -> Result<()> {
+    /// A page people look through: of a large group the first members tell what it is.
+    const SHOWN: usize = 24;
+    let mut page = Page::default();
+    for (number, group) in grouped.groups.iter().enumerate() {
+        page.heading(&format!("Group {}: {} members", number + 1, group.len()));
+        for item in group.iter().take(SHOWN) {
+            let class = item.class.as_ref().map_or_else(String::new, |class| format!(", {class}"));
+            let caption = format!("{} {:.2}–{:.2} s{class}", item.clip, item.start_secs, item.stop_secs);
+            page.figure(db, item.id, item.start_secs, item.stop_secs, &caption)?;
+        }
+        if group.len() > SHOWN {
+            page.paragraph(&format!("and {} more", group.len() - SHOWN));
+        }
+    }
+    let members: usize = grouped.groups.iter().map(Vec::len).sum();
+    page.write(
+        path,
+        &format!("Groups of {}", args.db.display()),
+        &format!("{members} in {} groups", grouped.groups.len()),
+    )
 }
 
 fn text(grouped: &Grouped) -> String {

@@ -11,6 +11,7 @@ mod import;
 mod info;
 mod init;
 mod label;
+mod page;
 mod propose;
 mod report;
 mod search;

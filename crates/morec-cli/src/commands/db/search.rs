@@ -7,11 +7,12 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 use morec::features::{FeatureParams, bones_of_clip, rows_of_clip};
-use morec::import::{ImportOptions, prepare};
+use morec::import::{ImportOptions, Imported, prepare};
 use morec_db::search::{Example, Hit, SearchIndex, SearchOptions};
-use morec_db::{ClipFilter, ClipId, MotionDb};
+use morec_db::{ClipFilter, ClipId, MotionDb, StoredClip};
 use serde::Serialize;
 
+use super::page::Page;
 use crate::files::{self, ReadArgs};
 use crate::progress::Bar;
 use crate::table::Table;
@@ -23,7 +24,7 @@ use crate::table::Table;
 #[command(after_help = "\
 Examples:
   morec db search moves.mdb walk_01 --start 1.2 --stop 2.5
-  morec db search moves.mdb recorded.bvh --mirror
+  morec db search moves.mdb recorded.bvh --mirror --report hits.html
   morec db search moves.mdb walk_01 --one-a-clip --limit 50 --json")]
 pub struct Args {
     /// The database
@@ -50,6 +51,9 @@ pub struct Args {
     /// How much the exact path counts against the summary of poses and pace, 0 to 1
     #[arg(long, value_name = "SHARE", default_value_t = SearchOptions::default().warp_share)]
     warp_share: f32,
+    /// Write a page with a strip of poses for the example and for each hit, too
+    #[arg(long, value_name = "HTML")]
+    report: Option<PathBuf>,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -77,7 +81,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let begun = Instant::now();
     let mut db = MotionDb::open_read_only(&args.db)?;
     let index = SearchIndex::of_db(&mut db, &Bar::new())?;
-    let example = example(&db, &index, args)?;
+    let (example, shown) = example(&db, &index, args)?;
     let names: BTreeMap<ClipId, String> =
         db.clips(&ClipFilter::default())?.into_iter().map(|c| (c.id, c.name)).collect();
     let load_secs = begun.elapsed().as_secs_f64();
@@ -93,6 +97,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let named = |hit: Hit| Named { name: names.get(&hit.clip).cloned().unwrap_or_default(), hit };
     let hits: Vec<Named> = hits.into_iter().map(named).collect();
     let found = Found { ticks: index.ticks(), load_secs, search_secs, hits };
+    if let Some(path) = &args.report {
+        report(path, &db, &shown, args, &found)?;
+    }
     if args.json {
         super::print_json(&found)?;
     } else {
@@ -101,11 +108,13 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn example(db: &MotionDb, index: &SearchIndex, args: &Args) -> Result<Example> {
+/// The example's rows, and the clip they are of.
+fn example(db: &MotionDb, index: &SearchIndex, args: &Args) -> Result<(Example, StoredClip)> {
     let short = || format!("{}: the example must hold at least 0.1 s of motion", args.example);
     if let Ok(clip) = db.find_clip(&args.example) {
         let stop = args.stop.unwrap_or(clip.duration_secs());
-        return index.example(clip.id, args.start, stop).with_context(short);
+        let example = index.example(clip.id, args.start, stop).with_context(short)?;
+        return Ok((example, db.clip(clip.id)?));
     }
     let path = Path::new(&args.example);
     if !path.exists() && path != Path::new("-") {
@@ -113,15 +122,32 @@ fn example(db: &MotionDb, index: &SearchIndex, args: &Args) -> Result<Example> {
     }
     let opened = files::open(path, &args.read)?;
     let clip = opened.clips.into_iter().next().with_context(|| format!("{}: no clip in it", args.example))?;
-    let imported = prepare(clip, &ImportOptions::default())?;
-    let (clip, roles, rest) = (&imported.clip, &imported.roles, &imported.facts.rest_frames);
+    let Imported { clip, roles, facts } = prepare(clip, &ImportOptions::default())?;
+    let stored = StoredClip { clip, roles, rest: facts.rest_frames };
     let params = FeatureParams::default();
-    let bones = bones_of_clip(clip, roles, rest);
-    let rows = rows_of_clip(clip, roles, rest, bones, &params);
+    let bones = bones_of_clip(&stored.clip, &stored.roles, &stored.rest);
+    let rows = rows_of_clip(&stored.clip, &stored.roles, &stored.rest, bones, &params);
     let tick = |secs: f64| ((secs * params.tick_hz()).round().max(0.0) as usize).min(rows.len());
     let (start, stop) = (tick(args.start), args.stop.map_or(rows.len(), tick));
     let span = rows.slice(start..stop.max(start));
-    SearchIndex::example_of(&span, bones).with_context(short)
+    Ok((SearchIndex::example_of(&span, bones).with_context(short)?, stored))
+}
+
+fn report(path: &Path, db: &MotionDb, example: &StoredClip, args: &Args, found: &Found) -> Result<()> {
+    let mut page = Page::default();
+    page.heading("Looked for");
+    let stop = args.stop.unwrap_or(example.clip.duration_secs());
+    let caption = format!("{} {:.2}–{stop:.2} s", args.example, args.start);
+    page.figure_of(example, args.start, stop, &caption);
+    page.heading("Found");
+    for Named { name, hit } in &found.hits {
+        let mirrored = if hit.mirrored { ", mirrored" } else { "" };
+        let span = format!("{:.2}–{:.2} s", hit.start_secs, hit.stop_secs);
+        let caption = format!("{name} {span}, score {:.3}{mirrored}", hit.score);
+        page.figure(db, hit.clip, hit.start_secs, hit.stop_secs, &caption)?;
+    }
+    let head = format!("{} hits in {}", found.hits.len(), args.db.display());
+    page.write(path, &format!("Like {}", args.example), &head)
 }
 
 fn text(found: &Found, tick_hz: f64) -> String {
