@@ -13,7 +13,7 @@ mod rank;
 mod tests;
 mod windows;
 
-pub use copies::{NearCopy, near_copies};
+pub use copies::{NearCopy, near_copies, near_copies_of};
 pub use rank::{Hit, SearchOptions};
 
 use morec::features::FeatureParams;

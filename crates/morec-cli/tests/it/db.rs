@@ -48,7 +48,8 @@ fn from_clips_to_labels_and_back() {
     };
     db(&["init"]);
     assert_eq!(folder.morec(&["db", "init", "m.mdb"]).code, Some(1));
-    db(&["import", "clips", "--licence", "CC0", "--tag", "made"]);
+    let imported = db(&["import", "clips", "--licence", "CC0", "--tag", "made"]);
+    assert_eq!(imported["near_copies"], serde_json::json!([]));
     let clips = db(&["clips", "--tag", "made"]);
     assert_eq!(clips.as_array().unwrap().len(), 3);
     assert_eq!(clips[0]["licence"], "CC0");
@@ -97,6 +98,15 @@ fn from_clips_to_labels_and_back() {
     assert_eq!(strips("groups.html"), members);
     assert!(db(&["check"])["faults"].as_array().unwrap().is_empty());
     db(&["vacuum", "--caches"]);
+
+    folder.morec(&["convert", &format!("clips/{name}.bvh"), "--rate", "50", "-o", "clips/again.bvh"]).ok();
+    let copies = db(&["import", "clips/again.bvh"])["near_copies"].clone();
+    assert_eq!(
+        (copies.as_array().unwrap().len(), &copies[0]["copy"]),
+        (1, &Value::from("again")),
+        "{copies}"
+    );
+
     assert!(db(&["report", "-o", "page.html"])["strips"].as_u64().unwrap() > 3);
     assert!(strips("page.html") > 3);
     let left: Vec<_> = std::fs::read_dir(folder.path())

@@ -1,5 +1,7 @@
 //! Clips that are other clips over again: resampled, cut a little shorter, on another skeleton, mirrored.
 
+use std::collections::BTreeSet;
+
 use morec::features::Rows;
 use rayon::prelude::*;
 
@@ -32,14 +34,26 @@ const SAME: f32 = 0.005;
 /// Lengths of copies differ by this share at most.
 const SHORTER: f64 = 0.8;
 
-/// Every pair of which one is nearly the other. O(clips²) summaries, and warping where these agree.
+/// Every pair of which one is nearly the other. O(clips²) summaries, and rows against rows where these agree.
 pub fn near_copies(index: &SearchIndex) -> Vec<NearCopy> {
+    pairs(index, |_| true)
+}
+
+/// The same of pairs with at least one of `clips`: O(clips · all clips).
+pub fn near_copies_of(index: &SearchIndex, clips: &BTreeSet<ClipId>) -> Vec<NearCopy> {
+    pairs(index, |clip| clips.contains(&clip))
+}
+
+/// Pairs of which one at least is `wanted`.
+fn pairs(index: &SearchIndex, wanted: impl Fn(ClipId) -> bool) -> Vec<NearCopy> {
+    let wanted: Vec<bool> = index.clips.iter().map(|clip| wanted(clip.clip)).collect();
     let summaries: Vec<[[f32; SUMMARY]; 2]> = index.clips.par_iter().map(summaries).collect();
     let mut found: Vec<NearCopy> = (0..index.clips.len())
         .into_par_iter()
         .flat_map_iter(|a| {
-            let summaries = &summaries;
-            (a + 1..index.clips.len()).flat_map(move |b| [false, true].map(|mirror| (b, mirror))).filter_map(
+            let (summaries, wanted) = (&summaries, &wanted);
+            let others = (a + 1..index.clips.len()).filter(move |b| wanted[a] || wanted[*b]);
+            others.flat_map(move |b| [false, true].map(|mirror| (b, mirror))).filter_map(
                 move |(b, mirror)| {
                     let near = (&summaries[a][0], &summaries[b][usize::from(mirror)]);
                     pair(index, a, b, mirror, near)

@@ -1,5 +1,6 @@
 //! `morec db import`: clips into a database.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
@@ -7,14 +8,17 @@ use std::time::Instant;
 use anyhow::Result;
 use morec::import::ImportOptions;
 use morec_db::{ClipReader, ClipUpdate, ImportReport, ImportSettings, MotionDb, Outcome, ReadFile};
+use serde::Serialize;
 
+use super::copies::{self, Copy};
 use crate::files::{self, ReadArgs};
 use crate::progress::Bar;
 
 /// Import clips, or folders of clips
 ///
 /// The same content is imported once, whatever it is called; importing again after an interruption goes on where it
-/// stopped. A file that cannot be read is named with the reason, and the others are imported.
+/// stopped. A file that cannot be read is named with the reason, and the others are imported. New clips that are nearly
+/// others (resampled, cut a little, mirrored) are named.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -93,13 +97,34 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         },
     };
     let report = db.import(&paths, &Reader(&args.read), &settings, &Bar::new())?;
+    let near_copies = near_copies(&mut db, &report)?;
     if args.json {
-        super::print_json(&report)?;
+        super::print_json(&Reported { report: &report, near_copies: &near_copies })?;
     } else {
         super::print(text(&report, begun.elapsed().as_secs_f64()))?;
+        for copy in &near_copies {
+            super::print(format_args!("  {copy}\n"))?;
+        }
     }
     let refused = report.counts()[4];
     Ok(if refused > 0 { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+}
+
+#[derive(Serialize)]
+struct Reported<'a> {
+    #[serde(flatten)]
+    report: &'a ImportReport,
+    near_copies: &'a [Copy],
+}
+
+/// Which of the clips that have just come are nearly others.
+fn near_copies(db: &mut MotionDb, report: &ImportReport) -> Result<Vec<Copy>> {
+    let names = report.files.iter().flat_map(|(_, outcome)| match outcome {
+        Outcome::Imported { clips, .. } => clips.as_slice(),
+        _ => &[],
+    });
+    let names: BTreeSet<&str> = names.map(String::as_str).collect();
+    if names.is_empty() || report.cancelled { Ok(Vec::new()) } else { copies::find(db, Some(&names)) }
 }
 
 /// The same file is the same path, wherever the command is run.

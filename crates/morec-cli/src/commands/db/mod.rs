@@ -3,6 +3,7 @@
 mod check;
 mod classes;
 mod clips;
+mod copies;
 mod cut;
 mod cycles;
 mod export;
