@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::decode::FAR;
 use crate::features::Rows;
 
-use super::kernel::{self, LANES, Lanes, Paths, interleaved};
+use super::kernel::{self, Cells, LANES, Lanes, interleaved};
 
 /// Cells left empty before each template, so that transitions from "before the first row" cost [`FAR`] without
 /// a branch.
@@ -37,10 +37,8 @@ pub struct Bank {
     norms: Arc<[Lanes]>,
     /// First and last cell of each template.
     extents: Arc<[(usize, usize)]>,
-    /// `c(j,t)` at this tick and at the one before, in turn.
-    local: [Vec<Lanes>; 2],
-    /// Paths at this tick and at the two before, in turn.
-    paths: [Paths; 3],
+    /// At this tick and the one before, in turn.
+    cells: Vec<Cells>,
     tick: usize,
 }
 
@@ -69,19 +67,17 @@ impl Bank {
             })
         };
         let rows = interleaved(cells, dim, cell_rows());
-        let mut norms = vec![[0.0; LANES]; cells.div_ceil(LANES)];
+        let blocks = cells.div_ceil(LANES);
+        let mut norms = vec![[0.0; LANES]; blocks];
         for (cell, row) in cell_rows() {
             norms[cell / LANES][cell % LANES] = row.iter().map(|v| v * v).sum();
         }
-        let local = vec![[0.0; LANES]; norms.len()];
-        let paths = Paths { total: vec![FAR; cells], age: vec![0; cells] };
         Self {
             dim,
             rows: rows.into(),
             norms: norms.into(),
             extents: extents.into(),
-            local: [local.clone(), local],
-            paths: [paths.clone(), paths.clone(), paths],
+            cells: vec![Cells::EMPTY; blocks],
             tick: 0,
         }
     }
@@ -109,34 +105,25 @@ impl Bank {
 
     /// Forgets the stream so far.
     pub fn reset(&mut self) {
-        self.local.iter_mut().for_each(|local| local.fill([0.0; LANES]));
-        self.paths.iter_mut().for_each(|paths| paths.total.fill(FAR));
+        self.cells.fill(Cells::EMPTY);
         self.tick = 0;
     }
 
     /// Advances by one tick with the stream's row `z`, of `dim` values.
     pub fn step(&mut self, z: &[f32]) {
         assert_eq!(z.len(), self.dim, "a stream row of another width than the templates'");
-        let [a, b, c] = &mut self.paths;
-        let (now, before, earlier) = match self.tick % 3 {
-            0 => (a, &*c, &*b),
-            1 => (b, &*a, &*c),
-            _ => (c, &*b, &*a),
-        };
-        let [even, odd] = &mut self.local;
-        let (local, local_before) = if self.tick % 2 == 0 { (even, &*odd) } else { (odd, &*even) };
-        kernel::local_costs(&self.rows, &self.norms, z, local);
-        let local = local.as_flattened();
-        kernel::advance(local, local_before.as_flattened(), now, before, earlier);
+        let now = self.tick % 2;
+        kernel::step(&self.rows, &self.norms, z, now, &mut self.cells);
         for &(first, last) in self.extents.iter() {
-            now.total[first - GUARDS..first].fill(FAR);
+            for guard in first - GUARDS..first {
+                self.cells[guard / LANES].total[now][guard % LANES] = FAR;
+            }
             if last >= first {
-                now.total[first] = local[first];
-                now.age[first] = 0;
+                let block = &mut self.cells[first / LANES];
+                block.total[now][first % LANES] = block.local[first % LANES];
+                block.age[now][first % LANES] = 0;
             }
         }
-        let cells = now.total.len();
-        now.total[cells - GUARDS..].fill(FAR);
         self.tick += 1;
     }
 
@@ -146,13 +133,18 @@ impl Bank {
         if length == 0 || self.tick == 0 {
             return Match { distance: FAR, age: 0 };
         }
-        let paths = &self.paths[(self.tick - 1) % 3];
-        let last = self.extents[index].1;
+        let (total, age) = self.at(self.extents[index].1);
         // A path that came out of a guard cell is no path.
-        if paths.total[last] >= FAR / 2.0 {
+        if total >= FAR / 2.0 {
             return Match { distance: FAR, age: 0 };
         }
-        Match { distance: paths.total[last] / length as f32, age: paths.age[last] as usize }
+        Match { distance: total / length as f32, age: age as usize }
+    }
+
+    /// Total and age of a cell at the last tick.
+    fn at(&self, cell: usize) -> (f32, i32) {
+        let (block, now) = (&self.cells[cell / LANES], (self.tick + 1) % 2);
+        (block.total[now][cell % LANES], block.age[now][cell % LANES])
     }
 
     /// How the first rows of template `index`, at least `least` of them, match a stretch that ends with the last tick
@@ -163,12 +155,22 @@ impl Bank {
         if self.tick == 0 || from > last {
             return None;
         }
-        let paths = &self.paths[(self.tick - 1) % 3];
-        let (place, distance) = kernel::least_mean(&paths.total[from..=last], from - first + 1)?;
-        let cell = from + place;
+        let now = (self.tick + 1) % 2;
+        let (mut best, mut cell) = ((from, f32::INFINITY), from);
+        while cell <= last {
+            // As much of the template as lies in one block.
+            let end = (cell / LANES * LANES + LANES).min(last + 1);
+            let total = &self.cells[cell / LANES].total[now][cell % LANES..][..end - cell];
+            let (place, mean) = kernel::least_mean(total, cell - first + 1);
+            if mean < best.1 {
+                best = (cell + place, mean);
+            }
+            cell = end;
+        }
+        let (total, age) = self.at(best.0);
         // A path that came out of a guard cell is no path.
-        let real = paths.total[cell] < FAR / 2.0;
-        real.then(|| PartialMatch { distance, age: paths.age[cell] as usize, rows: cell - first + 1 })
+        let real = total < FAR / 2.0;
+        real.then(|| PartialMatch { distance: best.1, age: age as usize, rows: best.0 - first + 1 })
     }
 }
 

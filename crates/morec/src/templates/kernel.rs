@@ -6,6 +6,8 @@
 
 use multiversion::multiversion;
 
+use crate::decode::FAR;
+
 /// Cells or exemplars that are worked on at once, kept in registers while the coordinates go by: four of AVX-512, eight
 /// of AVX2, sixteen of SSE2 and NEON. Memory is then read once and in order, which is what bounds the time.
 pub const LANES: usize = 64;
@@ -25,27 +27,92 @@ pub fn interleaved<'r>(len: usize, dim: usize, rows: impl Iterator<Item = (usize
     blocks
 }
 
-/// `max(0, |T|² + |z|² − 2 T·z)` for every cell's row `T`: its squared distance from `z`, without cancellation's hair
-/// below zero. `rows` as [`interleaved`], `norms` with the `|T|²`; a block of `out` for each of `norms`.
+/// [`LANES`] cells of the dynamic program, all that is kept of them together: of thousands of streams each comes from
+/// memory anew, and what lies together comes at once.
+#[derive(Debug, Clone)]
+#[repr(align(64))]
+pub struct Cells {
+    /// `c(j,t)` at the last tick.
+    pub local: Lanes,
+    /// `D(j,t)` at the last two ticks, in turn.
+    pub total: [Lanes; 2],
+    /// Ticks since these paths began: an age needs no clock and so never overflows.
+    pub age: [[i32; LANES]; 2],
+}
+
+impl Cells {
+    /// Before the first tick.
+    pub const EMPTY: Self = Self { local: [0.0; LANES], total: [[FAR; LANES]; 2], age: [[0; LANES]; 2] };
+}
+
+/// The last of a block's cells, which the first of the next look back to.
+struct Behind {
+    local: f32,
+    before: [(f32, i32); 2],
+    earlier: (f32, i32),
+}
+
+/// One tick of [`Bank`](super::Bank): distances of the cells' rows `T` from `z`, as `max(0, |T|² + |z|² − 2 T·z)`
+/// (cancellation can leave a hair below zero), and the three transitions of every cell. `rows` are [`interleaved`], `norms`
+/// hold the `|T|²`; the totals and ages at `now` are those of two ticks before and become those of this tick.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-pub fn local_costs(rows: &[Lanes], norms: &[Lanes], z: &[f32], out: &mut [Lanes]) {
+pub fn step(rows: &[Lanes], norms: &[Lanes], z: &[f32], now: usize, cells: &mut [Cells]) {
     let z_norm: f32 = z.iter().map(|v| v * v).sum();
-    for ((block, norm), out) in rows.chunks_exact(z.len()).zip(norms).zip(out) {
-        let mut cost = *norm;
+    let mut behind = Behind { local: 0.0, before: [(FAR, 0); 2], earlier: (FAR, 0) };
+    for ((block, norm), cells) in rows.chunks_exact(z.len()).zip(norms).zip(cells) {
+        // Columns with the cells behind them in front: a step back along the template is a step back in these.
+        let [mut before, mut earlier] = [[0.0; LANES + 2], [0.0; LANES + 2]];
+        let [mut before_age, mut earlier_age] = [[0; LANES + 2], [0; LANES + 2]];
+        [(before[0], before_age[0]), (before[1], before_age[1])] = behind.before;
+        (earlier[1], earlier_age[1]) = behind.earlier;
+        before[2..].copy_from_slice(&cells.total[1 - now]);
+        before_age[2..].copy_from_slice(&cells.age[1 - now]);
+        earlier[2..].copy_from_slice(&cells.total[now]);
+        earlier_age[2..].copy_from_slice(&cells.age[now]);
+
+        let local_before = cells.local;
+        distances(block, norm, z_norm, z, &mut cells.local);
+        let mut local = [0.0; LANES + 1];
+        local[0] = behind.local;
+        local[1..].copy_from_slice(&cells.local);
+
+        let (total, age) = (&mut cells.total[now], &mut cells.age[now]);
         for lane in 0..LANES {
-            cost[lane] += z_norm;
+            let mut best = before[lane + 1] + local[lane + 1];
+            let mut best_age = before_age[lane + 1] + 1;
+            let two_stream = earlier[lane + 1] + 0.5 * (local_before[lane] + local[lane + 1]);
+            let better = two_stream < best;
+            best = if better { two_stream } else { best };
+            best_age = if better { earlier_age[lane + 1] + 2 } else { best_age };
+            let two_template = before[lane] + local[lane] + local[lane + 1];
+            let better = two_template < best;
+            total[lane] = if better { two_template } else { best };
+            age[lane] = if better { before_age[lane] + 1 } else { best_age };
         }
-        for (t, value) in block.iter().zip(z) {
-            let twice = -2.0 * value;
-            for lane in 0..LANES {
-                cost[lane] += twice * t[lane];
-            }
-        }
-        for lane in 0..LANES {
-            cost[lane] = cost[lane].max(0.0);
-        }
-        *out = cost;
+        behind = Behind {
+            local: local[LANES],
+            before: [(before[LANES], before_age[LANES]), (before[LANES + 1], before_age[LANES + 1])],
+            earlier: (earlier[LANES + 1], earlier_age[LANES + 1]),
+        };
     }
+}
+
+#[inline(always)]
+fn distances(block: &[Lanes], norm: &Lanes, z_norm: f32, z: &[f32], out: &mut Lanes) {
+    let mut cost = *norm;
+    for lane in 0..LANES {
+        cost[lane] += z_norm;
+    }
+    for (t, value) in block.iter().zip(z) {
+        let twice = -2.0 * value;
+        for lane in 0..LANES {
+            cost[lane] += twice * t[lane];
+        }
+    }
+    for lane in 0..LANES {
+        cost[lane] = cost[lane].max(0.0);
+    }
+    *out = cost;
 }
 
 /// `|T − z|²` for every row `T` of `rows`, as [`interleaved`]: the sum of the squares in order of the coordinates.
@@ -74,65 +141,34 @@ pub fn combination(lines: &[f32], row: &[f32], out: &mut [f32]) {
     }
 }
 
-/// Paths that end in each cell at one tick.
-#[derive(Debug, Clone, Default)]
-pub struct Paths {
-    /// `D(j,t)`.
-    pub total: Vec<f32>,
-    /// Ticks since the path began: an age needs no clock and so never overflows.
-    pub age: Vec<i32>,
-}
-
-/// The three transitions of [`Bank`](super::Bank) for every cell from the third on, of all there are in `now`. `local`
-/// and `local_before` are the costs at this tick and at the one before.
+/// The place of the smallest `total[i] / (rows + i)`, the first of equals, and that quotient; infinite of nothing.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-pub fn advance(local: &[f32], local_before: &[f32], now: &mut Paths, before: &Paths, earlier: &Paths) {
-    let n = now.total.len();
-    let (local, local_1) = (&local[2..n], &local[1..n - 1]);
-    let local_before = &local_before[2..n];
-    let (diagonal, diagonal_age) = (&before.total[1..n - 1], &before.age[1..n - 1]);
-    let (slow, slow_age) = (&earlier.total[1..n - 1], &earlier.age[1..n - 1]);
-    let (fast, fast_age) = (&before.total[..n - 2], &before.age[..n - 2]);
-    let (total, age) = (&mut now.total[2..n], &mut now.age[2..n]);
-    for j in 0..total.len() {
-        let mut best = diagonal[j] + local[j];
-        let mut best_age = diagonal_age[j] + 1;
-        let two_stream = slow[j] + 0.5 * (local_before[j] + local[j]);
-        let better = two_stream < best;
-        best = if better { two_stream } else { best };
-        best_age = if better { slow_age[j] + 2 } else { best_age };
-        let two_template = fast[j] + local_1[j] + local[j];
-        let better = two_template < best;
-        total[j] = if better { two_template } else { best };
-        age[j] = if better { fast_age[j] + 1 } else { best_age };
-    }
-}
-
-/// The place of the smallest `total[i] / (rows + i)`, the first of equals, and that quotient; `None` of nothing.
-#[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-pub fn least_mean(total: &[f32], rows: usize) -> Option<(usize, f32)> {
-    const WIDE: usize = 16;
+pub fn least_mean(total: &[f32], rows: usize) -> (usize, f32) {
+    const WIDE: usize = 8;
     let mut least = [f32::INFINITY; WIDE];
     let mut place = [0i32; WIDE];
     let (chunks, rest) = total.as_chunks::<WIDE>();
-    for (n, chunk) in chunks.iter().enumerate() {
-        let from = n * WIDE;
+    let mut from = 0;
+    for chunk in chunks {
         for lane in 0..WIDE {
-            let mean = chunk[lane] / (rows + from + lane) as i32 as f32;
+            let mean = chunk[lane] / (rows as i32 + from + lane as i32) as f32;
             let less = mean < least[lane];
             least[lane] = if less { mean } else { least[lane] };
-            place[lane] = if less { (from + lane) as i32 } else { place[lane] };
+            place[lane] = if less { from + lane as i32 } else { place[lane] };
         }
+        from += WIDE as i32;
     }
-    let from = chunks.len() * WIDE;
-    for (lane, total) in rest.iter().enumerate() {
-        let mean = total / (rows + from + lane) as i32 as f32;
-        if mean < least[lane] {
-            (least[lane], place[lane]) = (mean, (from + lane) as i32);
-        }
+    let mut best = (place[0], least[0]);
+    for lane in 1..WIDE {
+        let less = least[lane] < best.1 || (least[lane] == best.1 && place[lane] < best.0);
+        best = if less { (place[lane], least[lane]) } else { best };
     }
-    let lanes = place.iter().zip(&least).map(|(place, mean)| (*place as usize, *mean));
-    lanes.filter(|(_, mean)| mean.is_finite()).reduce(|a, b| if (b.1, b.0) < (a.1, a.0) { b } else { a })
+    for total in rest {
+        let mean = total / (rows as i32 + from) as f32;
+        best = if mean < best.1 { (from, mean) } else { best };
+        from += 1;
+    }
+    (best.0 as usize, best.1)
 }
 
 #[cfg(test)]
@@ -158,18 +194,7 @@ mod tests {
         fn distances_are_those_of_one_row_after_the_other((dim, rows, z) in table()) {
             let rows: Vec<&[f32]> = rows.chunks_exact(dim).collect();
             let blocks = interleaved(rows.len(), dim, rows.iter().copied().enumerate());
-            let mut norms = vec![[0.0; LANES]; rows.len().div_ceil(LANES)];
-            let norm = |row: &[f32]| row.iter().map(|v| v * v).sum::<f32>();
-            rows.iter().enumerate().for_each(|(i, row)| norms.as_flattened_mut()[i] = norm(row));
-            let mut out = vec![[f32::NAN; LANES]; norms.len()];
-            local_costs(&blocks, &norms, &z, &mut out);
-            let cost = |row: &&[f32]| {
-                let from = norm(row) + norm(&z);
-                row.iter().zip(&z).fold(from, |sum, (t, v)| sum + -2.0 * v * t).max(0.0)
-            };
-            let plain: Vec<f32> = rows.iter().map(cost).collect();
-            prop_assert_eq!(bits(&out.as_flattened()[..rows.len()]), bits(&plain));
-
+            let mut out = vec![[f32::NAN; LANES]; rows.len().div_ceil(LANES)];
             squared_distances(&blocks, &z, &mut out);
             let square = |row: &&[f32]| row.iter().zip(&z).fold(0.0, |sum, (t, v)| sum + (t - v) * (t - v));
             let plain: Vec<f32> = rows.iter().map(square).collect();
@@ -185,29 +210,53 @@ mod tests {
         }
 
         #[test]
-        fn transitions_are_taken_as_written(
-            (local, local_before) in (3usize..90).prop_flat_map(|n| (values(n), values(n))),
-            seeds in prop::collection::vec(0i32..5, 3 * 90),
-        ) {
-            // Few different totals: equal ones come up, and who wins them is part of the result.
-            let n = local.len();
-            let paths = |from: &[i32]| Paths {
-                total: from[..n].iter().map(|v| *v as f32).collect(),
-                age: from[..n].iter().map(|v| 7 * v).collect(),
-            };
-            let (before, earlier) = (paths(&seeds[..90]), paths(&seeds[90..180]));
-            let mut now = paths(&seeds[180..]);
-            let first = now.clone();
-            advance(&local, &local_before, &mut now, &before, &earlier);
-            prop_assert_eq!(&now.total[..2], &first.total[..2]);
-            for j in 2..n {
-                let ways = [
-                    (before.total[j - 1] + local[j], before.age[j - 1] + 1),
-                    (earlier.total[j - 1] + 0.5 * (local_before[j] + local[j]), earlier.age[j - 1] + 2),
-                    (before.total[j - 2] + local[j - 1] + local[j], before.age[j - 2] + 1),
-                ];
-                let best = ways.into_iter().reduce(|a, b| if b.0 < a.0 { b } else { a }).unwrap();
-                prop_assert_eq!((now.total[j].to_bits(), now.age[j]), (best.0.to_bits(), best.1));
+        fn a_tick_is_as_it_is_written((dim, rows, _) in table(), stream in values(9 * 8)) {
+            let rows: Vec<&[f32]> = rows.chunks_exact(dim).collect();
+            let n = rows.len();
+            let blocks = interleaved(n, dim, rows.iter().copied().enumerate());
+            let norm = |row: &[f32]| row.iter().map(|v| v * v).sum::<f32>();
+            let mut norms = vec![[0.0; LANES]; n.div_ceil(LANES)];
+            rows.iter().enumerate().for_each(|(i, row)| norms.as_flattened_mut()[i] = norm(row));
+            let mut cells = vec![Cells::EMPTY; norms.len()];
+            // The column before the last, and the last one: cost, total and age of each cell.
+            let nothing = vec![(0.0f32, FAR, 0i32); n];
+            let (mut earlier, mut before) = (nothing.clone(), nothing);
+            for (tick, z) in stream.chunks_exact(dim).enumerate() {
+                // Something to begin with: without first cells every path would come from nowhere.
+                if tick == 2 {
+                    before.iter_mut().zip(0..).for_each(|(cell, j)| (cell.1, cell.2) = ((j % 3) as f32, j));
+                    before.iter().enumerate().for_each(|(j, (_, total, age))| {
+                        cells[j / LANES].total[1][j % LANES] = *total;
+                        cells[j / LANES].age[1][j % LANES] = *age;
+                    });
+                }
+                step(&blocks, &norms, z, tick % 2, &mut cells);
+                let cost = |row: &&[f32]| {
+                    let from = norm(row) + norm(z);
+                    row.iter().zip(z).fold(from, |sum, (t, v)| sum + -2.0 * v * t).max(0.0)
+                };
+                let costs: Vec<f32> = rows.iter().map(cost).collect();
+                let back = |column: &[(f32, f32, i32)], j: usize, by: usize| {
+                    j.checked_sub(by).map_or((0.0, FAR, 0), |j| column[j])
+                };
+                let now: Vec<_> = (0..n).map(|j| {
+                    let (even, slow, fast) = (back(&before, j, 1), back(&earlier, j, 1), back(&before, j, 2));
+                    let cost_1 = if j > 0 { costs[j - 1] } else { 0.0 };
+                    let ways = [
+                        (even.1 + costs[j], even.2 + 1),
+                        (slow.1 + 0.5 * (before[j].0 + costs[j]), slow.2 + 2),
+                        (fast.1 + cost_1 + costs[j], fast.2 + 1),
+                    ];
+                    let best = ways.into_iter().reduce(|a, b| if b.0 < a.0 { b } else { a }).unwrap();
+                    (costs[j], best.0, best.1)
+                }).collect();
+                for (j, (cost, total, age)) in now.iter().enumerate() {
+                    let (block, lane) = (&cells[j / LANES], j % LANES);
+                    prop_assert_eq!(block.local[lane].to_bits(), cost.to_bits());
+                    prop_assert_eq!(block.total[tick % 2][lane].to_bits(), total.to_bits());
+                    prop_assert_eq!(block.age[tick % 2][lane], *age);
+                }
+                (earlier, before) = (before, now);
             }
         }
 
@@ -218,7 +267,7 @@ mod tests {
         ) {
             let means = total.iter().enumerate().map(|(i, t)| (i, t / (rows + i) as f32));
             let plain = means.reduce(|a, b| if b.1 < a.1 { b } else { a });
-            prop_assert_eq!(least_mean(&total, rows), plain);
+            prop_assert_eq!(least_mean(&total, rows), plain.unwrap_or((0, f32::INFINITY)));
         }
     }
 }
