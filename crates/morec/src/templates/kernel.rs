@@ -145,30 +145,41 @@ pub fn combination(lines: &[f32], row: &[f32], out: &mut [f32]) {
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 pub fn least_mean(total: &[f32], rows: usize) -> (usize, f32) {
     const WIDE: usize = 8;
+    if total.len() < WIDE {
+        let mut best = (0, f32::INFINITY);
+        for (place, total) in total.iter().enumerate() {
+            let mean = total / (rows + place) as i32 as f32;
+            best = if mean < best.1 { (place, mean) } else { best };
+        }
+        return best;
+    }
     let mut least = [f32::INFINITY; WIDE];
     let mut place = [0i32; WIDE];
-    let (chunks, rest) = total.as_chunks::<WIDE>();
     let mut from = 0;
-    for chunk in chunks {
+    while from < total.len() {
+        // The last chunk overlaps the one before it: looking twice changes nothing.
+        let start = from.min(total.len() - WIDE);
+        let Some(chunk) = total[start..].first_chunk::<WIDE>() else { break };
         for lane in 0..WIDE {
-            let mean = chunk[lane] / (rows as i32 + from + lane as i32) as f32;
+            let at = (start + lane) as i32;
+            let mean = chunk[lane] / (rows as i32 + at) as f32;
             let less = mean < least[lane];
             least[lane] = if less { mean } else { least[lane] };
-            place[lane] = if less { from + lane as i32 } else { place[lane] };
+            place[lane] = if less { at } else { place[lane] };
         }
-        from += WIDE as i32;
+        from += WIDE;
     }
-    let mut best = (place[0], least[0]);
-    for lane in 1..WIDE {
-        let less = least[lane] < best.1 || (least[lane] == best.1 && place[lane] < best.0);
-        best = if less { (place[lane], least[lane]) } else { best };
+    let mut half = WIDE / 2;
+    while half > 0 {
+        for lane in 0..half {
+            let (mean, at) = (least[lane + half], place[lane + half]);
+            let less = mean < least[lane] || (mean == least[lane] && at < place[lane]);
+            least[lane] = if less { mean } else { least[lane] };
+            place[lane] = if less { at } else { place[lane] };
+        }
+        half /= 2;
     }
-    for total in rest {
-        let mean = total / (rows as i32 + from) as f32;
-        best = if mean < best.1 { (from, mean) } else { best };
-        from += 1;
-    }
-    (best.0 as usize, best.1)
+    (place[0] as usize, least[0])
 }
 
 #[cfg(test)]
