@@ -2,7 +2,9 @@
 //!
 //! Items are ticks of a stream (30 a second) in `bank` and frames at 60 Hz in `features` and `whole_path`, so that
 //! items a second say how many streams one core could follow. `bank/plain` is the same dynamic program as it is
-//! written in books, to hold `bank/step` against: a double loop in single precision over the same rows.
+//! written in books, to hold `bank/step` against: a double loop in single precision over the same rows. `bank/read` adds
+//! up the table of templates once a tick and does nothing else: no step that looks at every row can be faster than
+//! memory is.
 
 // What tests share lies outside of test functions, where the lint looks for it.
 #![allow(clippy::unwrap_used)]
@@ -58,6 +60,22 @@ mod bank {
                 templates.iter().zip(&mut tables).for_each(|(template, table)| table.step(template, row));
             }
             tables[0].columns[0][LENGTH - 1]
+        });
+    }
+
+    /// Reading as many values as the templates have.
+    #[divan::bench(args = [600, 1800])]
+    fn read(bencher: Bencher, template_rows: usize) {
+        let table = rows(7, template_rows);
+        let ticks = 64usize;
+        bencher.counter(ItemsCount::new(ticks)).bench_local(|| {
+            let mut sums = [0.0f32; 64];
+            for _ in 0..ticks {
+                for chunk in divan::black_box(table.values()).as_chunks::<64>().0 {
+                    sums.iter_mut().zip(chunk).for_each(|(sum, value)| *sum += value);
+                }
+            }
+            sums
         });
     }
 

@@ -170,6 +170,8 @@ struct PathCell {
     total: f64,
     /// The detection that ends exactly here, if the best sequence has one.
     ends_here: Option<(i64, ClassId, f64)>,
+    /// The last tick up to here at which a detection of it ends; 0 if there is none.
+    last_end: i64,
 }
 
 /// Weighted interval scheduling over candidates as they come (Kleinberg and Tardos 2005, §6.1), made causal by
@@ -349,7 +351,7 @@ impl Decoder {
     }
 
     fn decide(&mut self, tick: i64, judge: &mut impl FnMut(&Candidate) -> f64) {
-        let mut cell = PathCell { total: self.path(tick).total, ends_here: None };
+        let mut cell = PathCell { ends_here: None, ..*self.path(tick) };
         for class in 0..self.classes {
             let age = self.near(tick, class).age;
             let (start, slack) = (tick - age as i64, self.slack(age));
@@ -364,7 +366,8 @@ impl Decoder {
             for begin in start..=(start + slack).min(tick) {
                 let total = self.path(begin).total + score;
                 if total > cell.total + 1e-12 {
-                    cell = PathCell { total, ends_here: Some((begin, ClassId(class as u16), score)) };
+                    let ends_here = Some((begin, ClassId(class as u16), score));
+                    cell = PathCell { total, ends_here, last_end: tick + 1 };
                 }
             }
         }
@@ -401,15 +404,12 @@ impl Decoder {
         let mut chain = std::mem::take(&mut self.chain);
         chain.clear();
         let oldest = self.reported.max(self.decided - self.paths.len() as i64 + 1);
-        let mut tick = self.decided;
+        let mut tick = self.path(self.decided).last_end;
         while tick > oldest {
-            match self.path(tick).ends_here {
-                Some((start, class, score)) => {
-                    chain.push(TickDetection { class, start, stop: tick, score });
-                    tick = start;
-                }
-                None => tick -= 1,
-            }
+            let Some((start, class, score)) = self.path(tick).ends_here else { break };
+            chain.push(TickDetection { class, start, stop: tick, score });
+            // What begins before the oldest tick that is kept has nothing before it that could still be reported.
+            tick = if start > oldest { self.path(start).last_end } else { oldest };
         }
         for detection in chain.iter().rev() {
             if self.waits(detection) {

@@ -1,12 +1,14 @@
 //! `morec soak`: streams without end, to see whether anything gives way.
 
 mod endless;
+mod inline;
 mod many;
 mod wire;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
+use std::time::Duration;
 
 use anyhow::Result;
 use morec::import::ImportOptions;
@@ -20,7 +22,7 @@ use crate::live::network::Conditions;
 
 /// Recognise clips round and round and see whether memory stays flat, every lap finds the same, and everything is on time.
 ///
-/// By default one stream, as fast as it goes. With --streams many at once, each at its own pace in real time, on
+/// By default one stream, as fast as it goes, and first how long one frame takes. With --streams many at once, each at its own pace in real time, on
 /// --threads. With --wire over VMC and the loopback network in real time: how long after a motion's last packet its
 /// event leaves.
 #[derive(clap::Args)]
@@ -80,6 +82,10 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     match args.streams {
         Some(streams) => many::run(&index.model, &clips, streams, args),
         None if args.wire => wire::run(&index.model, &clips, args),
-        None => endless::run(&index.model, &clips, args),
+        None => {
+            let most_secs = args.secs.map_or(10.0, |secs| secs / 4.0).min(10.0);
+            inline::tell(&index.model, &clips, Duration::from_secs_f64(most_secs.max(0.0)));
+            endless::run(&index.model, &clips, args)
+        }
     }
 }

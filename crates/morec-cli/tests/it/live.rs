@@ -138,4 +138,5 @@ fn every_lap_of_a_soak_finds_the_same() {
     let folder = folder();
     let out = folder.morec(&["soak", "v1.index", "person.bvh", "--hours", "0.02"]).ok();
     assert!(out.contains("every lap found the same"), "{out}");
+    assert!(out.contains("processing of one frame"), "{out}");
 }

@@ -1,12 +1,30 @@
 //! Smoothing and velocities of a stream, frame by frame, with the edges mirrored.
 
-use nalgebra::{SVector, Vector4};
+use nalgebra::Vector4;
 
 use crate::math::Vec3;
 
 use super::bones::{ALL_BONES, BONES, BoneSet};
 use super::observe::{Observation, heading_from_world};
 use super::params::FeatureParams;
+
+/// A frame as the filters want it.
+#[derive(Debug, Clone, Copy)]
+struct Seen {
+    directions: [Vec3; BONES],
+    root: Vec3,
+    yaw_rad: f64,
+    /// Of the yaw: each frame is asked for it as often as the filter is wide.
+    sin_cos: (f64, f64),
+    leg_length: f64,
+}
+
+impl Seen {
+    fn of(observation: &Observation) -> Self {
+        let Observation { directions, root, yaw_rad, leg_length } = *observation;
+        Self { directions, root, yaw_rad, sin_cos: yaw_rad.sin_cos(), leg_length }
+    }
+}
 
 /// Keeps as many frames as the filters reach over and makes feature rows of them.
 ///
@@ -18,7 +36,7 @@ pub struct Smoother {
     params: FeatureParams,
     kernel: Vec<f64>,
     root_kernel: Vec<f64>,
-    ring: Vec<Observation>,
+    ring: Vec<Seen>,
     pushed: usize,
     next_row_frame: usize,
     row: Vec<f32>,
@@ -45,7 +63,7 @@ impl Smoother {
             bones,
             kernel: half_gaussian(params.smooth_sigma_frames, params.smooth_cut_frames),
             root_kernel: half_gaussian(params.root_sigma_frames, params.root_cut_frames),
-            ring: vec![empty; reach.next_power_of_two()],
+            ring: vec![Seen::of(&empty); reach.next_power_of_two()],
             pushed: 0,
             next_row_frame: params.frames_per_tick - 1,
             row: vec![0.0; row_dim(bones)],
@@ -62,7 +80,7 @@ impl Smoother {
     /// Takes the next frame; calls `out` with each row that is now complete (at most one).
     pub fn push(&mut self, observation: &Observation, out: &mut impl FnMut(&[f32])) {
         let mask = self.ring.len() - 1;
-        self.ring[self.pushed & mask] = *observation;
+        self.ring[self.pushed & mask] = Seen::of(observation);
         self.pushed += 1;
         if self.next_row_frame + self.params.look_ahead_frames() < self.pushed {
             self.emit(out);
@@ -84,10 +102,11 @@ impl Smoother {
         // np.gradient's convention: central inside, one-sided at an edge.
         let (before, after) = ((frame - 1).max(0), (frame + 1).min(self.pushed as isize - 1));
         let per_secs = rate / ((after - before).max(1) as f64);
+        let [then, here, soon] = [before, frame, after].map(|frame| self.directions(frame));
         for (slot, bone) in self.bones.indices().enumerate() {
             let weight = ALL_BONES[bone].weight;
-            let position = self.direction(bone, frame) * weight;
-            let velocity = (self.direction(bone, after) - self.direction(bone, before)) * (weight * per_secs);
+            let position = here[bone] * weight;
+            let velocity = (soon[bone] - then[bone]) * (weight * per_secs);
             let saturated = velocity / (1.0 + velocity.norm() / self.params.velocity_saturation);
             for axis in 0..3 {
                 row[3 * slot + axis] = position[axis] as f32;
@@ -111,24 +130,36 @@ impl Smoother {
         i
     }
 
-    fn at(&self, index: isize) -> &Observation {
+    fn at(&self, index: isize) -> &Seen {
         &self.ring[self.mirrored(index) as usize & (self.ring.len() - 1)]
     }
 
-    fn direction(&self, bone: usize, frame: isize) -> Vec3 {
-        convolve(&self.kernel, |k| self.at(frame + k).directions[bone])
+    /// Smoothed directions of all bones.
+    fn directions(&self, frame: isize) -> [Vec3; BONES] {
+        let mut sum = self.at(frame).directions.map(|direction| direction * self.kernel[0]);
+        for (k, weight) in self.kernel.iter().enumerate().skip(1) {
+            let (a, b) = (self.at(frame - k as isize), self.at(frame + k as isize));
+            for ((sum, a), b) in sum.iter_mut().zip(&a.directions).zip(&b.directions) {
+                *sum += (a + b) * *weight;
+            }
+        }
+        sum
     }
 
     /// Velocity in the heading frame in leg lengths a second (lateral, up, forward) and yaw rate, smoothed.
     fn root_motion(&self, frame: isize) -> Vector4<f64> {
-        convolve(&self.root_kernel, |k| self.raw_root_motion(self.mirrored(frame + k)))
+        let raw = |k: isize| self.raw_root_motion(self.mirrored(frame + k));
+        let outwards = self.root_kernel.iter().enumerate().skip(1);
+        outwards.fold(raw(0) * self.root_kernel[0], |sum, (k, weight)| {
+            sum + (raw(-(k as isize)) + raw(k as isize)) * *weight
+        })
     }
 
     fn raw_root_motion(&self, frame: isize) -> Vector4<f64> {
         let (before, after) = ((frame - 1).max(0), (frame + 1).min(self.pushed as isize - 1));
         let per_secs = self.params.rate_hz / ((after - before).max(1) as f64);
         let (a, b, here) = (self.at(before), self.at(after), self.at(frame));
-        let (sin, cos) = here.yaw_rad.sin_cos();
+        let (sin, cos) = here.sin_cos;
         let velocity = heading_from_world(sin, cos, &((b.root - a.root) * (per_secs / here.leg_length)));
         velocity.push((b.yaw_rad - a.yaw_rad) * per_secs)
     }
@@ -137,13 +168,4 @@ impl Smoother {
 /// Values in a feature row over `bones`: directions, velocities (3 each) and 4 of root motion.
 pub fn row_dim(bones: BoneSet) -> usize {
     6 * bones.len() + 4
-}
-
-fn convolve<const N: usize>(
-    half_kernel: &[f64],
-    value: impl Fn(isize) -> SVector<f64, N>,
-) -> SVector<f64, N> {
-    half_kernel.iter().enumerate().skip(1).fold(value(0) * half_kernel[0], |sum, (k, weight)| {
-        sum + (value(-(k as isize)) + value(k as isize)) * *weight
-    })
 }

@@ -5,6 +5,8 @@ use std::sync::Arc;
 use crate::decode::FAR;
 use crate::features::Rows;
 
+use super::kernel::{self, Cells, LANES, Lanes, interleaved};
+
 /// Cells left empty before each template, so that transitions from "before the first row" cost [`FAR`] without
 /// a branch.
 const GUARDS: usize = 2;
@@ -29,25 +31,15 @@ const GUARDS: usize = 2;
 #[derive(Debug, Clone)]
 pub struct Bank {
     dim: usize,
-    /// Template values, one row of cells for each of the `dim` coordinates: `dim` × `cells`.
-    transposed: Arc<[f32]>,
+    /// The cells' rows, [`interleaved`].
+    rows: Arc<[Lanes]>,
     /// `|T_j|²` of every cell.
-    norms: Arc<[f32]>,
+    norms: Arc<[Lanes]>,
     /// First and last cell of each template.
     extents: Arc<[(usize, usize)]>,
-    columns: [Column; 3],
+    /// At this tick and the one before, in turn.
+    cells: Vec<Cells>,
     tick: usize,
-}
-
-/// The dynamic program's cells at one tick.
-#[derive(Debug, Clone, Default)]
-struct Column {
-    /// `c(j,t)`.
-    local: Vec<f32>,
-    /// `D(j,t)`.
-    total: Vec<f32>,
-    /// Ticks since the path began: an age needs no clock and so never overflows.
-    age: Vec<i32>,
 }
 
 /// How a template matches a stretch that ends now.
@@ -68,23 +60,24 @@ impl Bank {
             extents.push((cells, (cells + template.len()).saturating_sub(1)));
             cells += template.len() + GUARDS;
         }
-        let mut transposed = vec![0.0; dim * cells];
-        let mut norms = vec![0.0; cells];
-        for (template, &(first, _)) in templates.iter().zip(&extents) {
-            for (j, row) in template.iter().enumerate() {
-                norms[first + j] = row.iter().map(|v| v * v).sum();
-                for (k, value) in row.iter().enumerate() {
-                    transposed[k * cells + first + j] = *value;
-                }
-            }
+        let cell_rows = || {
+            let pairs = templates.iter().zip(&extents);
+            pairs.flat_map(|(template, (first, _))| {
+                template.iter().enumerate().map(move |(j, r)| (first + j, r))
+            })
+        };
+        let rows = interleaved(cells, dim, cell_rows());
+        let blocks = cells.div_ceil(LANES);
+        let mut norms = vec![[0.0; LANES]; blocks];
+        for (cell, row) in cell_rows() {
+            norms[cell / LANES][cell % LANES] = row.iter().map(|v| v * v).sum();
         }
-        let column = Column { local: vec![0.0; cells], total: vec![FAR; cells], age: vec![0; cells] };
         Self {
             dim,
-            transposed: transposed.into(),
+            rows: rows.into(),
             norms: norms.into(),
             extents: extents.into(),
-            columns: std::array::from_fn(|_| column.clone()),
+            cells: vec![Cells::EMPTY; blocks],
             tick: 0,
         }
     }
@@ -112,33 +105,25 @@ impl Bank {
 
     /// Forgets the stream so far.
     pub fn reset(&mut self) {
-        for column in &mut self.columns {
-            column.total.fill(FAR);
-            column.local.fill(0.0);
-        }
+        self.cells.fill(Cells::EMPTY);
         self.tick = 0;
     }
 
     /// Advances by one tick with the stream's row `z`, of `dim` values.
     pub fn step(&mut self, z: &[f32]) {
         assert_eq!(z.len(), self.dim, "a stream row of another width than the templates'");
-        let [a, b, c] = &mut self.columns;
-        let (now, before, earlier) = match self.tick % 3 {
-            0 => (a, &*c, &*b),
-            1 => (b, &*a, &*c),
-            _ => (c, &*b, &*a),
-        };
-        local_costs(&self.transposed, &self.norms, z, &mut now.local);
-        advance(now, before, earlier);
+        let now = self.tick % 2;
+        kernel::step(&self.rows, &self.norms, z, now, &mut self.cells);
         for &(first, last) in self.extents.iter() {
-            now.total[first - GUARDS..first].fill(FAR);
+            for guard in first - GUARDS..first {
+                self.cells[guard / LANES].total[now][guard % LANES] = FAR;
+            }
             if last >= first {
-                now.total[first] = now.local[first];
-                now.age[first] = 0;
+                let block = &mut self.cells[first / LANES];
+                block.total[now][first % LANES] = block.local[first % LANES];
+                block.age[now][first % LANES] = 0;
             }
         }
-        let cells = now.total.len();
-        now.total[cells - GUARDS..].fill(FAR);
         self.tick += 1;
     }
 
@@ -148,13 +133,18 @@ impl Bank {
         if length == 0 || self.tick == 0 {
             return Match { distance: FAR, age: 0 };
         }
-        let column = &self.columns[(self.tick - 1) % 3];
-        let last = self.extents[index].1;
+        let (total, age) = self.at(self.extents[index].1);
         // A path that came out of a guard cell is no path.
-        if column.total[last] >= FAR / 2.0 {
+        if total >= FAR / 2.0 {
             return Match { distance: FAR, age: 0 };
         }
-        Match { distance: column.total[last] / length as f32, age: column.age[last] as usize }
+        Match { distance: total / length as f32, age: age as usize }
+    }
+
+    /// Total and age of a cell at the last tick.
+    fn at(&self, cell: usize) -> (f32, i32) {
+        let (block, now) = (&self.cells[cell / LANES], (self.tick + 1) % 2);
+        (block.total[now][cell % LANES], block.age[now][cell % LANES])
     }
 
     /// How the first rows of template `index`, at least `least` of them, match a stretch that ends with the last tick
@@ -165,17 +155,22 @@ impl Bank {
         if self.tick == 0 || from > last {
             return None;
         }
-        let column = &self.columns[(self.tick - 1) % 3];
-        let mut best: Option<PartialMatch> = None;
-        for cell in from..=last {
-            let rows = cell - first + 1;
-            let distance = column.total[cell] / rows as f32;
-            // A path that came out of a guard cell is no path.
-            if column.total[cell] < FAR / 2.0 && best.is_none_or(|b| distance < b.distance) {
-                best = Some(PartialMatch { distance, age: column.age[cell] as usize, rows });
+        let now = (self.tick + 1) % 2;
+        let (mut best, mut cell) = ((from, f32::INFINITY), from);
+        while cell <= last {
+            // As much of the template as lies in one block.
+            let end = (cell / LANES * LANES + LANES).min(last + 1);
+            let total = &self.cells[cell / LANES].total[now][cell % LANES..][..end - cell];
+            let (place, mean) = kernel::least_mean(total, cell - first + 1);
+            if mean < best.1 {
+                best = (cell + place, mean);
             }
+            cell = end;
         }
-        best
+        let (total, age) = self.at(best.0);
+        // A path that came out of a guard cell is no path.
+        let real = total < FAR / 2.0;
+        real.then(|| PartialMatch { distance: best.1, age: age as usize, rows: best.0 - first + 1 })
     }
 }
 
@@ -188,47 +183,6 @@ pub struct PartialMatch {
     pub age: usize,
     /// Rows it has come to, of the template's.
     pub rows: usize,
-}
-
-/// `|T_j − z|²` of every cell, as `|T_j|² + |z|² − 2 T_j·z`.
-fn local_costs(transposed: &[f32], norms: &[f32], z: &[f32], out: &mut [f32]) {
-    let z_norm: f32 = z.iter().map(|v| v * v).sum();
-    for (cost, norm) in out.iter_mut().zip(norms) {
-        *cost = norm + z_norm;
-    }
-    for (coordinate, value) in transposed.chunks_exact(norms.len()).zip(z) {
-        let twice = -2.0 * value;
-        for (cost, t) in out.iter_mut().zip(coordinate) {
-            *cost += twice * t;
-        }
-    }
-    // Cancellation can leave a hair below zero where stream and template agree.
-    for cost in out.iter_mut() {
-        *cost = cost.max(0.0);
-    }
-}
-
-/// The three transitions for every cell from the second on; first cells and guards are put right afterwards.
-fn advance(now: &mut Column, before: &Column, earlier: &Column) {
-    let n = now.total.len();
-    let (local, local_1) = (&now.local[2..n], &now.local[1..n - 1]);
-    let before_local = &before.local[2..n];
-    let (diagonal, diagonal_age) = (&before.total[1..n - 1], &before.age[1..n - 1]);
-    let (slow, slow_age) = (&earlier.total[1..n - 1], &earlier.age[1..n - 1]);
-    let (fast, fast_age) = (&before.total[..n - 2], &before.age[..n - 2]);
-    let (total, age) = (&mut now.total[2..n], &mut now.age[2..n]);
-    for j in 0..total.len() {
-        let mut best = diagonal[j] + local[j];
-        let mut best_age = diagonal_age[j] + 1;
-        let two_stream = slow[j] + 0.5 * (before_local[j] + local[j]);
-        let better = two_stream < best;
-        best = if better { two_stream } else { best };
-        best_age = if better { slow_age[j] + 2 } else { best_age };
-        let two_template = fast[j] + local_1[j] + local[j];
-        let better = two_template < best;
-        total[j] = if better { two_template } else { best };
-        age[j] = if better { fast_age[j] + 1 } else { best_age };
-    }
 }
 
 #[cfg(test)]

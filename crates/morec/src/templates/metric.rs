@@ -6,6 +6,8 @@ use nalgebra::{DMatrix, SymmetricEigen};
 
 use crate::features::Rows;
 
+use super::kernel;
+
 /// A symmetric `dim` × `dim` matrix, its lower triangle packed row by row: what an index file stores.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Symmetric {
@@ -89,13 +91,8 @@ impl Metric {
 
     /// `out = A row`. O(d²), no allocation.
     pub fn apply(&self, row: &[f32], out: &mut [f32]) {
-        out.fill(0.0);
         // A is symmetric: adding its rows, scaled, runs along memory and vectorises.
-        for (line, value) in self.map.chunks_exact(self.dim).zip(row) {
-            for (o, a) in out.iter_mut().zip(line) {
-                *o += a * value;
-            }
-        }
+        kernel::combination(&self.map, row, &mut out[..self.dim]);
     }
 
     /// Every row mapped.

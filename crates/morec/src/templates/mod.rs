@@ -4,6 +4,7 @@ mod bank;
 mod compact;
 mod early;
 mod engine;
+mod kernel;
 mod metric;
 mod model;
 mod verifier;

@@ -11,6 +11,7 @@ use crate::decode::Candidate;
 use crate::features::Rows;
 
 use super::Metric;
+use super::kernel::{self, LANES, Lanes, interleaved};
 
 /// Rows that a stretch is resampled to.
 pub const SHAPE_ROWS: usize = 8;
@@ -172,9 +173,11 @@ impl Verifier {
 #[derive(Debug, Clone)]
 pub struct Judge {
     verifier: Arc<Verifier>,
-    /// Mapped shapes of each class's exemplars.
-    shapes: Arc<[Rows]>,
+    /// Mapped shapes of each class's exemplars, [`interleaved`].
+    shapes: Arc<[Vec<Lanes>]>,
     threshold: f64,
+    /// Distances from the exemplars of a class.
+    apart: Vec<Lanes>,
     shape: Vec<f32>,
     mapped: Vec<f32>,
 }
@@ -183,8 +186,14 @@ impl Judge {
     /// Maps all exemplars with `metric`.
     pub fn new(verifier: &Verifier, metric: &Metric, threshold: f32) -> Self {
         let len = SHAPE_ROWS * metric.dim();
+        let mapped = |exemplars: &Exemplars| {
+            let rows = metric.apply_all(&exemplars.shapes);
+            interleaved(exemplars.len(), len, rows.values().chunks_exact(len).enumerate())
+        };
+        let most = verifier.classes.iter().map(Exemplars::len).max().unwrap_or(0);
         Self {
-            shapes: verifier.classes.iter().map(|c| metric.apply_all(&c.shapes)).collect(),
+            shapes: verifier.classes.iter().map(mapped).collect(),
+            apart: vec![[0.0; LANES]; most.div_ceil(LANES)],
             verifier: Arc::new(verifier.clone()),
             threshold: f64::from(threshold),
             shape: vec![0.0; len],
@@ -210,17 +219,18 @@ impl Judge {
                 metric.apply(raw, mapped);
             }
             let beside = evidence.beside_shape(self.threshold).map(|v| v as f32);
-            score += kernel_sum(&self.verifier.classes[place], &self.shapes[place], &self.mapped, &beside);
+            kernel::squared_distances(&self.shapes[place], &self.mapped, &mut self.apart);
+            score += kernel_sum(&self.verifier.classes[place], self.apart.as_flattened(), &beside);
         }
         (score - self.verifier.bar) / (1.0 - self.verifier.bar)
     }
 }
 
-fn kernel_sum(exemplars: &Exemplars, shapes: &Rows, mapped: &[f32], beside: &[f32; 4]) -> f64 {
-    let shapes = shapes.values().chunks_exact(mapped.len());
-    let all = shapes.zip(&exemplars.beside).zip(&exemplars.weights);
-    all.map(|((shape, other), weight)| {
-        let distance = shape_distance(shape, mapped) + squared_distance(other, beside);
+/// `apart` holds the squared distance of every exemplar's shape.
+fn kernel_sum(exemplars: &Exemplars, apart: &[f32], beside: &[f32; 4]) -> f64 {
+    let all = apart.iter().zip(&exemplars.beside).zip(&exemplars.weights);
+    all.map(|((apart, other), weight)| {
+        let distance = apart / SHAPE_ROWS as f32 + squared_distance(other, beside);
         f64::from(weight * (-exemplars.sharpness * distance).exp())
     })
     .sum()

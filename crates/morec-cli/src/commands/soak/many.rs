@@ -10,6 +10,7 @@ use morec::features::KeyPose;
 use morec::kinematics::WorldPose;
 use morec::live::Model;
 use morec::live::{Actor, Frame, Overload, Pool, PoolStream, Rig, SessionOptions, wall_now_secs};
+use morec::math::Vec3;
 
 use super::Args;
 use crate::commands::live::stop_on_ctrl_c;
@@ -20,14 +21,16 @@ use crate::live::memory::resident_bytes;
 const ON_TIME_SECS: f64 = 0.050;
 /// Waits are counted from here on: recognisers are made at the beginning.
 const WARM_UP_SECS: f64 = 2.0;
+/// Within so many frames every stream has begun.
+const BEGIN_FRAMES: usize = 64;
 
 pub fn run(model: &Model, clips: &Arc<Vec<Loaded>>, streams: usize, args: &Args) -> Result<ExitCode> {
     let rate_hz = clips[0].clip.rate_hz;
     // Poses are made beforehand: what is to be measured is recognition.
-    let poses: Vec<KeyPose> = clips.iter().flat_map(poses_of).collect();
+    let poses: Vec<Vec<Vec3>> = clips.iter().flat_map(poses_of).collect();
     let pool = Pool::new(model, args.threads)?;
     let options =
-        SessionOptions { overload: Overload::Drop, frame_capacity: 24, ..SessionOptions::default() };
+        SessionOptions { overload: Overload::Drop, frame_capacity: 12, ..SessionOptions::default() };
     let rig = Arc::new(Rig::of_roles());
     let mut open: Vec<Stream> = (0..streams)
         .map(|number| {
@@ -49,8 +52,7 @@ pub fn run(model: &Model, clips: &Arc<Vec<Loaded>>, streams: usize, args: &Args)
         std::thread::sleep(due.saturating_sub(begun.elapsed()));
         behind_secs = behind_secs.max(begun.elapsed().saturating_sub(due).as_secs_f64());
         for stream in &mut open {
-            stream.send(&poses, tick as usize, rate_hz);
-            sent += 1;
+            sent += u64::from(stream.send(&poses, tick as usize, rate_hz));
         }
         if sampled.elapsed().as_secs_f64() > 0.1 {
             sampled = Instant::now();
@@ -88,14 +90,15 @@ pub fn run(model: &Model, clips: &Arc<Vec<Loaded>>, streams: usize, args: &Args)
     Ok(if sound { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-fn poses_of(loaded: &Loaded) -> Vec<KeyPose> {
-    let mut world = WorldPose::default();
-    (loaded.first..loaded.clip.frames)
-        .map(|frame| {
-            world.set(&loaded.clip, frame);
-            KeyPose::of(&world, &loaded.roles)
-        })
-        .collect()
+/// Positions of the roles, frame by frame.
+fn poses_of(loaded: &Loaded) -> Vec<Vec<Vec3>> {
+    let (mut world, mut frame) = (WorldPose::default(), Frame::default());
+    let mut positions = |at| {
+        world.set(&loaded.clip, at);
+        frame.set_key_pose(&KeyPose::of(&world, &loaded.roles));
+        frame.pose.positions.clone()
+    };
+    (loaded.first..loaded.clip.frames).map(&mut positions).collect()
 }
 
 struct Stream {
@@ -105,13 +108,18 @@ struct Stream {
 }
 
 impl Stream {
-    /// Sends the next pose; every stream is at another place of the clips.
-    fn send(&mut self, poses: &[KeyPose], tick: usize, rate_hz: f64) {
+    /// Sends the next pose, if the stream has begun; says whether it has. Every stream is at another place of the
+    /// clips, and they begin one after the other: nobody's performers move in step.
+    fn send(&mut self, poses: &[Vec<Vec3>], tick: usize, rate_hz: f64) -> bool {
+        if tick < self.number % BEGIN_FRAMES {
+            return false;
+        }
         let at = (tick + 97 * self.number) % poses.len();
         self.frame.time_secs = tick as f64 / rate_hz;
         self.frame.wall_secs = wall_now_secs();
-        self.frame.set_key_pose(&poses[at]);
+        self.frame.pose.positions.clone_from(&poses[at]);
         // What is dropped is counted.
         self.of_pool.feed.send(&mut self.frame);
+        true
     }
 }
