@@ -2,18 +2,24 @@
 //!
 //! Rows of all clips lie in memory in one layout, so that skeletons, sizes and frame rates do not matter. Every window of
 //! about the example's length is first compared by a summary of its rows (prefix sums: nothing of the length of a window
-//! is gone through); the nearest are placed exactly by subsequence dynamic time warping ([`morec::templates::Bank`]) and
-//! ranked by both. The summary (two standard deviations, mean pose, mean travel) is the one that finds a motion across
-//! styles best without learning.
+//! is gone through): how much moves at which pace, mean pose, mean travel. The nearest are ranked by their distance and by
+//! the company they keep: similarity spreads over a graph of neighbours, so that far styles of a motion are found by way
+//! of those between. The first are placed exactly by subsequence dynamic time warping ([`morec::templates::Bank`]). Where
+//! samples are labelled, a [`LearnedMetric`] says which differences matter.
 
+mod candidates;
 mod copies;
+mod graph;
 pub(crate) mod layout;
+mod learned;
 mod rank;
+mod summary;
 #[cfg(test)]
 mod tests;
 mod windows;
 
 pub use copies::{NearCopy, near_copies, near_copies_of};
+pub use learned::LearnedMetric;
 pub use rank::{Hit, SearchOptions};
 
 use morec::features::FeatureParams;
@@ -44,6 +50,16 @@ pub struct Example {
     laid: Laid,
     /// Where it is from, to leave it out of the hits.
     from: Option<(ClipId, std::ops::Range<usize>)>,
+    /// Whether it is all of its clip.
+    whole: bool,
+}
+
+impl Example {
+    /// The same as a stretch cut from a longer clip.
+    #[must_use]
+    pub fn cut_out(self) -> Self {
+        Self { whole: false, ..self }
+    }
 }
 
 impl SearchIndex {
@@ -82,11 +98,14 @@ impl SearchIndex {
             return None;
         }
         let laid = Laid { rows: rows.slice(span.clone()), bones: found.laid.bones };
-        Some(Example { laid, from: Some((clip, span)) })
+        // Frames and rows do not end at the same instant.
+        let whole = span.len() + 2 >= rows.len();
+        Some(Example { laid, from: Some((clip, span)), whole })
     }
 
-    /// Rows from elsewhere as an example, of the usual features at the same rate; `None` for less than three.
+    /// Rows of a whole clip from elsewhere as an example, of the usual features at the same rate; `None` for less than
+    /// three.
     pub fn example_of(rows: &morec::features::Rows, bones: morec::features::BoneSet) -> Option<Example> {
-        (rows.len() >= 3).then(|| Example { laid: lay_out(rows, bones), from: None })
+        (rows.len() >= 3).then(|| Example { laid: lay_out(rows, bones), from: None, whole: true })
     }
 }

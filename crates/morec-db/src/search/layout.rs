@@ -45,7 +45,7 @@ pub fn shared_columns(bones: BoneSet) -> Vec<usize> {
 }
 
 /// The bone on the other side.
-fn opposite(bone: usize) -> usize {
+pub fn opposite(bone: usize) -> usize {
     let name = ALL_BONES[bone].name;
     let other = match name.split_once('_') {
         Some(("left", rest)) => format!("right_{rest}"),
@@ -55,22 +55,24 @@ fn opposite(bone: usize) -> usize {
     ALL_BONES.iter().position(|b| b.name == other).unwrap_or(bone)
 }
 
+/// The direction of `bone` in a mirror beside the performer, of that of its opposite.
+pub fn reflected(bone: usize, of_opposite: &[f32]) -> [f32; 3] {
+    let sign = if ALL_BONES[bone].name == "shoulder_line" { -1.0 } else { 1.0 };
+    [-sign * of_opposite[0], sign * of_opposite[1], sign * of_opposite[2]]
+}
+
 /// What a mirror beside the performer shows: sides swapped, lateral parts and turning the other way.
 ///
 /// The line of the shoulders goes from left to right: its image runs the other way, so its lateral part stays and
 /// the others turn.
 pub fn mirrored(laid: &Laid) -> Laid {
-    let shoulders = ALL_BONES.iter().position(|b| b.name == "shoulder_line");
     let mut rows = Rows::new(DIM);
     let mut image = [0f32; DIM];
     for row in laid.rows.iter() {
         for block in 0..2 {
             for bone in 0..BONES {
                 let (from, to) = (3 * (block * BONES + opposite(bone)), 3 * (block * BONES + bone));
-                let sign = if Some(bone) == shoulders { -1.0 } else { 1.0 };
-                image[to] = -sign * row[from];
-                image[to + 1] = sign * row[from + 1];
-                image[to + 2] = sign * row[from + 2];
+                image[to..to + 3].copy_from_slice(&reflected(bone, &row[from..from + 3]));
             }
         }
         let root = 6 * BONES;
@@ -80,6 +82,11 @@ pub fn mirrored(laid: &Laid) -> Laid {
         image[root + 3] = -row[root + 3];
         rows.push(&image);
     }
-    let bones = laid.bones.indices().map(opposite).fold(BoneSet::NONE, BoneSet::with);
+    let bones = opposite_bones(laid.bones);
     Laid { rows, bones }
+}
+
+/// What the mirror image of a skeleton with `bones` shows.
+pub fn opposite_bones(bones: BoneSet) -> BoneSet {
+    bones.indices().map(opposite).fold(BoneSet::NONE, BoneSet::with)
 }

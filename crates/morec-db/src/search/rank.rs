@@ -1,14 +1,18 @@
-//! Candidates by summary, exact places by warping, one ranking.
+//! Candidates by summary, their company over a graph, exact places by warping, one ranking.
 
 use std::ops::Range;
 
-use morec::features::Rows;
+use morec::features::{BoneSet, Rows};
 use morec::templates::Bank;
 use rayon::prelude::*;
 
-use super::layout::{Laid, mirrored, shared_columns};
-use super::windows::{SUMMARY, Sums, distance, shown};
-use super::{Example, Indexed, SearchIndex};
+use super::candidates::{Candidate, Look, Probe, length_cost};
+use super::graph::{SCALE_NEIGHBOUR, spread};
+use super::layout::{Laid, mirrored, opposite_bones, shared_columns};
+use super::learned::LearnedMetric;
+use super::summary::{Comparison, mirrored_summary};
+use super::windows::shown;
+use super::{Example, SearchIndex};
 use crate::ClipId;
 
 /// How to search.
@@ -20,13 +24,13 @@ pub struct SearchOptions {
     pub mirror: bool,
     /// One hit for each clip, its best.
     pub one_a_clip: bool,
-    /// How much the distance along the warping path counts against the summary's, 0 to 1.
+    /// How much the distance along the warping path counts against the summary's and its company's, 0 to 1.
     pub warp_share: f32,
 }
 
 impl Default for SearchOptions {
     fn default() -> Self {
-        Self { limit: 20, mirror: false, one_a_clip: false, warp_share: 0.5 }
+        Self { limit: 20, mirror: false, one_a_clip: false, warp_share: 0.0 }
     }
 }
 
@@ -47,55 +51,116 @@ pub struct Hit {
     pub mirrored: bool,
 }
 
-/// A window that looks like the example by its summary.
-#[derive(Clone)]
-struct Candidate {
-    clip: usize,
-    span: Range<usize>,
-    distance: f32,
-    mirrored: bool,
-}
+/// Windows that the graph links at least, as far as there are so many, and at most: distances of all pairs are taken.
+const LINKED: std::ops::RangeInclusive<usize> = 300..=1200;
 
-/// Example lengths that windows are tried at.
-const SCALES: [f64; 3] = [0.7, 1.0, 1.4];
+/// How much what comes over the graph counts, as the logarithm of its share.
+const COMPANY: f32 = 0.67;
+
+/// What is reached by less than this share is not reached.
+const UNREACHED: f32 = 1e-6;
+
+/// Costs of unlike motion are some times this.
+const UNLIKE: f32 = 3.0;
 
 impl SearchIndex {
-    /// The stretches most like `example`, best first. O(rows / example rows) summaries, then exact warping of the
-    /// nearest few hundred.
+    /// The stretches most like `example`, best first. O(rows / example rows) summaries; a graph of the nearest few
+    /// hundred (of up to 1,200 for many hits), O(windows²); then exact warping of a few times `limit`.
     pub fn search(&self, example: &Example, options: &SearchOptions) -> Vec<Hit> {
-        let mut hits = self.ranked(example, options, false);
+        self.search_by(example, options, None)
+    }
+
+    /// The same by a learned metric and the usual one, half each.
+    pub fn search_by(
+        &self,
+        example: &Example,
+        options: &SearchOptions,
+        metric: Option<&LearnedMetric>,
+    ) -> Vec<Hit> {
+        // Whoever shows a clip and asks for clips compares wholes.
+        let whole = example.whole && options.one_a_clip;
+        let mut probes = vec![Probe::new(example, metric, false, whole)];
         if options.mirror {
-            let image = Example { laid: mirrored(&example.laid), from: example.from.clone() };
-            hits.extend(self.ranked(&image, options, true));
+            probes.push(Probe::new(example, metric, true, whole));
         }
+        let candidates = self.candidates(example, &probes, options.one_a_clip);
+        let mut ranked = self.ranked(candidates, example, options, &probes, metric);
+        // Places move a little and may come to overlap.
+        ranked.truncate(4 * options.limit.max(8));
+        let image = options.mirror.then(|| Example { laid: mirrored(&example.laid), ..example.clone() });
+        let place = |(cost, c): &(f32, Candidate)| {
+            let shown = image.as_ref().filter(|_| c.mirrored).unwrap_or(example);
+            self.place(c, *cost, shown, options)
+        };
+        let mut hits: Vec<Hit> = ranked.par_iter().map(place).collect();
         hits.sort_by(|a, b| b.score.total_cmp(&a.score).then(a.clip.cmp(&b.clip)));
         let mut kept: Vec<Hit> = Vec::new();
         for hit in hits {
-            let same = |k: &&Hit| k.clip == hit.clip && (options.one_a_clip || overlap(k, &hit) > 0.3);
-            if kept.len() < options.limit && !kept.iter().any(|k| same(&k)) {
+            let same = |k: &Hit| k.clip == hit.clip && (options.one_a_clip || overlap(k, &hit) > 0.3);
+            if kept.len() < options.limit && !kept.iter().any(same) {
                 kept.push(hit);
             }
         }
         kept
     }
 
-    fn ranked(&self, example: &Example, options: &SearchOptions, mirrored: bool) -> Vec<Hit> {
-        let mut candidates: Vec<Candidate> = self
-            .clips
-            .par_iter()
-            .enumerate()
-            .flat_map_iter(|(number, clip)| candidates(number, clip, example, mirrored))
-            .collect();
-        let wanted = 8 * options.limit.max(8);
-        if candidates.len() > wanted {
-            candidates.select_nth_unstable_by(wanted, |a, b| a.distance.total_cmp(&b.distance));
-            candidates.truncate(wanted);
-        }
-        candidates.par_iter().map(|c| self.place(c, example, options)).collect()
+    /// Candidates with what they cost, cheapest first: their distance, and how little of the example's company they
+    /// keep. What is the example over again needs no company.
+    fn ranked(
+        &self,
+        candidates: Vec<Candidate>,
+        example: &Example,
+        options: &SearchOptions,
+        probes: &[Probe<'_>],
+        metric: Option<&LearnedMetric>,
+    ) -> Vec<(f32, Candidate)> {
+        let linked = (8 * options.limit).clamp(*LINKED.start(), *LINKED.end()).min(candidates.len());
+        let reached = self.company(&candidates[..linked], example, probes, metric);
+        let scale = candidates.get(SCALE_NEIGHBOUR.min(linked).max(1) - 1).map_or(1.0, |c| c.distance);
+        let cost = |(at, c): (usize, Candidate)| {
+            let reached = reached.get(at).map_or(UNREACHED, |r| r.max(UNREACHED));
+            let apart = 1.0 - (-(c.distance / scale.max(1e-6)).powi(2)).exp();
+            (c.distance - COMPANY * apart * reached.ln(), c)
+        };
+        let mut ranked: Vec<(f32, Candidate)> = candidates.into_iter().enumerate().map(cost).collect();
+        ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+        ranked
+    }
+
+    /// What comes to each candidate from the example. Mirrored ones stand in the graph as the example sees them.
+    fn company(
+        &self,
+        candidates: &[Candidate],
+        example: &Example,
+        probes: &[Probe<'_>],
+        metric: Option<&LearnedMetric>,
+    ) -> Vec<f32> {
+        let whole = probes.iter().any(|probe| probe.whole);
+        let node = |c: &Candidate| {
+            let clip = &self.clips[c.clip];
+            let (summary, bones) = (clip.sums.octaves(&c.span), clip.laid.bones);
+            let (summary, bones) = if c.mirrored {
+                (mirrored_summary(&summary), opposite_bones(bones))
+            } else {
+                (summary, bones)
+            };
+            Node { look: Look::new(summary, c.span.len(), bones, metric), bones, rows: clip.laid.rows.len() }
+        };
+        let nodes: Vec<Node> = candidates.par_iter().map(node).collect();
+        spread(nodes.len() + 1, |i, j| {
+            let (i, j) = (i.min(j), i.max(j));
+            if i == 0 {
+                return candidates[j - 1].distance;
+            }
+            let (a, b) = (&nodes[i - 1], &nodes[j - 1]);
+            let over = Comparison::over(a.bones.and(b.bones).and(example.laid.bones));
+            let lengths = if whole { length_cost(a.rows.min(b.rows), a.rows.max(b.rows), 1.4) } else { 0.0 };
+            a.look.distance(&b.look, &over) + lengths
+        })
     }
 
     /// Where within a candidate's surroundings the example lies exactly.
-    fn place(&self, candidate: &Candidate, example: &Example, options: &SearchOptions) -> Hit {
+    fn place(&self, candidate: &Candidate, cost: f32, example: &Example, options: &SearchOptions) -> Hit {
         let clip = &self.clips[candidate.clip];
         let n = example.laid.rows.len();
         let from = candidate.span.start.saturating_sub(n / 3);
@@ -103,69 +168,26 @@ impl SearchIndex {
         let shared = example.laid.bones.and(clip.laid.bones);
         // A clip of less than half the example's length holds no path: its summary alone says how near it is.
         let (warp, span) = warp(&example.laid, &clip.laid, from..to, &shared_columns(shared))
-            .unwrap_or_else(|| (2.0 * candidate.distance, candidate.span.clone()));
+            .unwrap_or_else(|| (candidate.distance.powi(2), candidate.span.clone()));
         let share = options.warp_share;
-        let distance = (1.0 - share) * candidate.distance + share * warp;
+        let cost = (1.0 - share) * cost + share * warp.max(0.0).sqrt();
         Hit {
             clip: clip.clip,
             start_secs: span.start as f64 / self.tick_hz,
             stop_secs: span.end as f64 / self.tick_hz,
-            score: (-distance / 2.0).exp(),
+            score: (-cost / UNLIKE).exp(),
             warp_distance: warp,
             mirrored: candidate.mirrored,
         }
     }
 }
 
-/// Windows of a clip at three lengths, a quarter apart; a clip that is too short counts as one window.
-fn candidates(number: usize, clip: &Indexed, example: &Example, mirrored: bool) -> Vec<Candidate> {
-    let n = example.laid.rows.len();
-    let rows = clip.laid.rows.len();
-    let shared = example.laid.bones.and(clip.laid.bones);
-    if shared.is_empty() || rows < 3 {
-        return Vec::new();
-    }
-    let (shown, share) = shown(shared);
-    let mut wanted = [0f32; SUMMARY];
-    Sums::of(&example.laid.rows).summary(&(0..n), &mut wanted);
-    let mut found = Vec::new();
-    let mut summary = [0f32; SUMMARY];
-    for scale in SCALES {
-        let length = ((n as f64 * scale).round() as usize).clamp(3, rows.max(3)).min(rows);
-        let hop = (length / 4).max(1);
-        for start in (0..=rows - length).step_by(hop) {
-            let span = start..start + length;
-            let own =
-                |(id, own): &(ClipId, Range<usize>)| *id == clip.clip && overlaps(own, &span) && !mirrored;
-            if example.from.as_ref().is_some_and(own) {
-                continue;
-            }
-            clip.sums.summary(&span, &mut summary);
-            let distance = distance(&wanted, &summary, &shown, share) + missing(length, n);
-            found.push(Candidate { clip: number, span, distance, mirrored });
-        }
-    }
-    // Neighbours of a good window say the same: the best of each surroundings is enough.
-    found.sort_by(|a, b| a.distance.total_cmp(&b.distance));
-    let mut kept: Vec<Candidate> = Vec::new();
-    for candidate in found {
-        if !kept.iter().any(|k| overlaps(&k.span, &candidate.span)) {
-            kept.push(candidate);
-        }
-    }
-    kept
-}
-
-/// What a window costs for what it lacks of the example's length, beyond a difference in pace.
-fn missing(length: usize, example: usize) -> f32 {
-    let share = (length as f32 / (SCALES[0] as f32 * example as f32)).min(1.0);
-    4.0 * (1.0 - share)
-}
-
-/// More than a third of the shorter.
-fn overlaps(a: &Range<usize>, b: &Range<usize>) -> bool {
-    let shared = a.end.min(b.end).saturating_sub(a.start.max(b.start));
-    3 * shared > a.len().min(b.len())
+/// A candidate in the graph.
+struct Node {
+    look: Look,
+    bones: BoneSet,
+    /// Of its whole clip.
+    rows: usize,
 }
 
 fn overlap(a: &Hit, b: &Hit) -> f64 {

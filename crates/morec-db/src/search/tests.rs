@@ -4,6 +4,8 @@ use morec::features::{FeatureParams, Rows};
 
 use super::layout::{DIM, lay_out, mirrored};
 use super::*;
+use crate::labels::{NewSample, SampleFilter, State};
+use crate::rows::ClipRows;
 use crate::testing::{BvhReader, database_of_waves, waves, write_bvh};
 use crate::{ClipFilter, ImportSettings};
 
@@ -36,6 +38,124 @@ fn a_stretch_finds_its_like_in_other_clips() {
     });
     assert!(right.count() >= 3, "{hits:?}");
     assert!(hits.windows(2).all(|pair| pair[0].score >= pair[1].score));
+}
+
+/// What is in the database once more, bit for bit, is the first hit, and its mirror image the first mirrored one.
+#[test]
+fn an_exact_copy_comes_first() {
+    let (_folder, db) = indexed(4);
+    let rows = db.1;
+    let mut again = rows.clone();
+    again.push(ClipRows { clip: ClipId(1000), ..rows[2].clone() });
+    let bones = rows[2].bones;
+    let image = mirrored(&lay_out(&rows[2].rows, bones)).rows;
+    again.push(ClipRows { clip: ClipId(1001), bones: morec::features::BoneSet::ALL, rows: image });
+    let index = SearchIndex::new(&again, 30.0);
+    for (start, stop, one_a_clip) in
+        [(0.0, 1e9, true), (0.0, 1e9, false), (2.0, 3.5, false), (1.0, 4.0, true)]
+    {
+        let example = index.example(rows[2].clip, start, stop).unwrap();
+        let options = SearchOptions { one_a_clip, mirror: true, ..Default::default() };
+        let hits = index.search(&example, &options);
+        assert_eq!((hits[0].clip, hits[0].mirrored), (ClipId(1000), false), "{hits:?}");
+        assert!(hits[0].score > 0.97 && hits[0].warp_distance < 0.02, "{hits:?}");
+        let image = hits.iter().find(|hit| hit.mirrored).unwrap();
+        assert_eq!(image.clip, ClipId(1001), "{hits:?}");
+    }
+}
+
+fn indexed(people: usize) -> (tempfile::TempDir, (crate::MotionDb, Vec<ClipRows>)) {
+    let (folder, mut db) = database_of_waves(people);
+    let rows = db.rows(&FeatureParams::default(), &()).unwrap();
+    (folder, (db, rows))
+}
+
+/// All labels of these takes, as accepted samples.
+fn label(db: &mut crate::MotionDb, takes: &[morec::synth::Take]) {
+    let mut samples = Vec::new();
+    for take in takes {
+        let clip = db.find_clip(&take.clip.name).unwrap().id;
+        samples.extend(take.labels.iter().map(|l| NewSample {
+            clip,
+            class: l.class.to_owned(),
+            start_secs: l.start_secs,
+            stop_secs: l.stop_secs,
+            whole_clip: false,
+            state: State::Accepted,
+            score: None,
+        }));
+    }
+    db.add_samples(&samples, "test").unwrap();
+}
+
+/// Learned from three people, the metric brings waves of a fourth nearer to those of a fifth, relative to bows.
+#[test]
+fn a_learned_metric_tells_classes_of_others_apart() {
+    let takes = waves(5);
+    let (_folder, (mut db, rows)) = indexed(5);
+    let index = SearchIndex::new(&rows, 30.0);
+    let samples = |db: &crate::MotionDb| db.samples(&SampleFilter::default()).unwrap();
+    assert!(index.learn(&samples(&db)).unwrap_err().to_string().contains("2 classes"));
+    label(&mut db, &takes[..3]);
+    let one: Vec<_> = samples(&db).into_iter().filter(|s| s.class == "wave").collect();
+    assert!(index.learn(&one).is_err());
+    let metric = index.learn(&samples(&db)).unwrap();
+    assert_eq!(metric.classes(), ["bow", "wave"]);
+    assert_eq!(metric.samples(), samples(&db).len());
+    label(&mut db, &takes[3..]);
+    let place = |take: usize, class: &str| {
+        let clip = db.find_clip(&takes[take].clip.name).unwrap().id;
+        let of = samples(&db).into_iter().find(|s| s.clip == clip && s.class == class).unwrap();
+        let indexed = index.clips.iter().find(|c| c.clip == clip).unwrap();
+        let span = (of.start_secs * 30.0) as usize..(of.stop_secs * 30.0) as usize;
+        let summary = indexed.sums.octaves(&span);
+        (metric.place(&summary, span.len(), indexed.laid.bones), summary)
+    };
+    let (wave, bow, other) = (place(3, "wave"), place(3, "bow"), place(4, "wave"));
+    let plain = |a: &summary::Summary, b: &summary::Summary| {
+        summary::Comparison::over(morec::features::BoneSet::ALL).distance(a, b)
+    };
+    let learned = wave.0.distance(&other.0) / wave.0.distance(&bow.0);
+    assert!(learned < plain(&wave.1, &other.1) / plain(&wave.1, &bow.1), "{learned}");
+    assert!(learned < 0.5, "{learned}");
+
+    let label = takes[3].labels.iter().find(|l| l.class == "wave").unwrap();
+    let clip = db.find_clip(&takes[3].clip.name).unwrap().id;
+    let example = index.example(clip, label.start_secs, label.stop_secs).unwrap();
+    let hits = index.search_by(&example, &SearchOptions { limit: 6, ..Default::default() }, Some(&metric));
+    let right = hits.iter().filter(|hit| {
+        let all = samples(&db);
+        all.iter().any(|s| {
+            let shared = s.stop_secs.min(hit.stop_secs) - s.start_secs.max(hit.start_secs);
+            s.clip == hit.clip && s.class == "wave" && shared > 0.5 * (s.stop_secs - s.start_secs)
+        })
+    });
+    assert!(right.count() >= 5, "{hits:?}");
+}
+
+/// A clip as the example of clips: one that goes on with something else is less like it than one that does not.
+#[test]
+fn whole_clips_are_compared_with_whole_clips() {
+    let (_folder, (_db, rows)) = indexed(2);
+    let tick = |secs: f64| (secs * 30.0) as usize;
+    let takes = waves(2);
+    let take = |n: usize| takes.iter().position(|t| t.clip.name == takes[n].clip.name).unwrap();
+    let first = |n: usize| takes[take(n)].labels[0];
+    let cut = |n: usize, id: i64, stop: f64| {
+        let span = tick(first(n).start_secs)..tick(stop).min(rows[n].rows.len());
+        ClipRows { clip: ClipId(id), bones: rows[n].bones, rows: rows[n].rows.slice(span) }
+    };
+    let clips = [cut(0, 1, first(0).stop_secs), cut(0, 2, 1e9), cut(1, 3, first(1).stop_secs)];
+    let index = SearchIndex::new(&clips, 30.0);
+    let options = SearchOptions { one_a_clip: true, ..Default::default() };
+    let example = index.example(ClipId(1), 0.0, 1e9).unwrap();
+    let of = |hits: &[Hit]| hits.iter().map(|h| h.clip.0).collect::<Vec<_>>();
+    // As a stretch the beginning of the second clip is the very same.
+    assert_eq!(of(&index.search(&example.clone().cut_out(), &options))[0], 2);
+    let whole = index.search(&example, &options);
+    let stretch = index.search(&example.cut_out(), &options);
+    let score = |hits: &[Hit], id: i64| hits.iter().find(|h| h.clip.0 == id).unwrap().score;
+    assert!(score(&whole, 2) < score(&stretch, 2), "{whole:?}");
 }
 
 /// The same motion at another rate, turned, and cut short is found as a copy; its mirror image as a mirrored one; and

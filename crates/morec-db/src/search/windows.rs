@@ -1,4 +1,4 @@
-//! Summaries of windows from prefix sums: O(columns) each, however long the window.
+//! Prefix sums over rows, and the small summary that finds copies: O(columns) each, however long the window.
 
 use std::ops::Range;
 
@@ -36,6 +36,29 @@ impl Sums {
             squares.extend(square);
         }
         Self { sums, squares }
+    }
+
+    /// Sums of the coordinates of directions over the rows before `at`, which may lie within a row.
+    pub fn until(&self, at: f64, out: &mut [f64; X]) {
+        let width = X + 4;
+        let row = at.floor() as usize;
+        let share = at - at.floor();
+        let below = &self.sums[row * width..row * width + X];
+        // The end of the last row has none after it.
+        let above = self.sums.get((row + 1) * width..(row + 1) * width + X).unwrap_or(below);
+        for ((out, below), above) in out.iter_mut().zip(below).zip(above) {
+            *out = below + share * (above - below);
+        }
+    }
+
+    /// Mean and variance of the coordinates over `span`, not empty, and the root's sums.
+    pub fn moments(&self, span: &Range<usize>) -> ([f64; X], [f64; X], [f64; 4]) {
+        let (width, n) = (X + 4, span.len() as f64);
+        let sum = |i: usize| self.sums[span.end * width + i] - self.sums[span.start * width + i];
+        let square = |i: usize| self.squares[span.end * X + i] - self.squares[span.start * X + i];
+        let means: [f64; X] = std::array::from_fn(|i| sum(i) / n);
+        let variances = std::array::from_fn(|i| (square(i) / n - means[i] * means[i]).max(0.0));
+        (means, variances, std::array::from_fn(|i| sum(X + i)))
     }
 
     /// The summary of rows `span`: `[mean x; 2 std x; 2 tanh(mean root)]`. `shown` are coordinates of shared bones.

@@ -8,7 +8,8 @@ use std::time::Instant;
 use anyhow::{Context, Result, bail};
 use morec::features::{FeatureParams, bones_of_clip, rows_of_clip};
 use morec::import::{ImportOptions, Imported, prepare};
-use morec_db::search::{Example, Hit, SearchIndex, SearchOptions};
+use morec_db::labels::{SampleFilter, State};
+use morec_db::search::{Example, Hit, LearnedMetric, SearchIndex, SearchOptions};
 use morec_db::{ClipFilter, ClipId, MotionDb, StoredClip};
 use serde::Serialize;
 
@@ -19,13 +20,16 @@ use crate::table::Table;
 
 /// Find stretches that are like an example
 ///
-/// The example is a stretch of a clip in the database, or a clip file from elsewhere, on any skeleton, at any rate.
+/// The example is a stretch of a clip in the database, or a clip file from elsewhere, on any skeleton, at any rate. With
+/// --learned, accepted samples say which differences matter: what varies within their classes then counts less. A whole
+/// clip with --one-a-clip asks for clips: what they hold beyond the example counts against them, too.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   morec db search moves.mdb walk_01 --start 1.2 --stop 2.5
   morec db search moves.mdb recorded.bvh --mirror --report hits.html
-  morec db search moves.mdb walk_01 --one-a-clip --limit 50 --json")]
+  morec db search moves.mdb walk_01 --one-a-clip --limit 50 --json
+  morec db search moves.mdb walk_01 --one-a-clip --learned")]
 pub struct Args {
     /// The database
     #[arg(value_name = "DB")]
@@ -48,6 +52,12 @@ pub struct Args {
     /// Only the best of each clip
     #[arg(long)]
     one_a_clip: bool,
+    /// Learn from the accepted samples what matters: at least two classes with two samples each
+    #[arg(long)]
+    learned: bool,
+    /// Learn from these classes only
+    #[arg(long, value_name = "A,B,…", value_delimiter = ',', requires = "learned")]
+    classes: Vec<String>,
     /// How much the exact path counts against the summary of poses and pace, 0 to 1
     #[arg(long, value_name = "SHARE", default_value_t = SearchOptions::default().warp_share)]
     warp_share: f32,
@@ -66,7 +76,16 @@ struct Found {
     ticks: usize,
     load_secs: f64,
     search_secs: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    learned: Option<Learned>,
     hits: Vec<Named>,
+}
+
+/// What the metric was learned from.
+#[derive(Serialize)]
+struct Learned {
+    classes: usize,
+    samples: usize,
 }
 
 #[derive(Serialize)]
@@ -82,6 +101,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let mut db = MotionDb::open_read_only(&args.db)?;
     let index = SearchIndex::of_db(&mut db, &Bar::new())?;
     let (example, shown) = example(&db, &index, args)?;
+    let metric = if args.learned { Some(learn(&db, &index, args)?) } else { None };
     let names: BTreeMap<ClipId, String> =
         db.clips(&ClipFilter::default())?.into_iter().map(|c| (c.id, c.name)).collect();
     let load_secs = begun.elapsed().as_secs_f64();
@@ -92,11 +112,12 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         one_a_clip: args.one_a_clip,
         warp_share: args.warp_share.clamp(0.0, 1.0),
     };
-    let hits = index.search(&example, &options);
+    let hits = index.search_by(&example, &options, metric.as_ref());
     let search_secs = begun.elapsed().as_secs_f64();
     let named = |hit: Hit| Named { name: names.get(&hit.clip).cloned().unwrap_or_default(), hit };
     let hits: Vec<Named> = hits.into_iter().map(named).collect();
-    let found = Found { ticks: index.ticks(), load_secs, search_secs, hits };
+    let learned = metric.map(|m| Learned { classes: m.classes().len(), samples: m.samples() });
+    let found = Found { ticks: index.ticks(), load_secs, search_secs, learned, hits };
     if let Some(path) = &args.report {
         report(path, &db, &shown, args, &found)?;
     }
@@ -106,6 +127,12 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         super::print(text(&found, index.tick_hz()))?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+fn learn(db: &MotionDb, index: &SearchIndex, args: &Args) -> Result<LearnedMetric> {
+    let mut samples = db.samples(&SampleFilter { state: Some(State::Accepted), ..Default::default() })?;
+    samples.retain(|s| args.classes.is_empty() || args.classes.contains(&s.class));
+    index.learn(&samples).context("--learned: label some clips first (morec db label), or search without it")
 }
 
 /// The example's rows, and the clip they are of.
@@ -130,7 +157,9 @@ fn example(db: &MotionDb, index: &SearchIndex, args: &Args) -> Result<(Example, 
     let tick = |secs: f64| ((secs * params.tick_hz()).round().max(0.0) as usize).min(rows.len());
     let (start, stop) = (tick(args.start), args.stop.map_or(rows.len(), tick));
     let span = rows.slice(start..stop.max(start));
-    Ok((SearchIndex::example_of(&span, bones).with_context(short)?, stored))
+    let all = span.len() == rows.len();
+    let example = SearchIndex::example_of(&span, bones).with_context(short)?;
+    Ok((if all { example } else { example.cut_out() }, stored))
 }
 
 fn report(path: &Path, db: &MotionDb, example: &StoredClip, args: &Args, found: &Found) -> Result<()> {
@@ -164,5 +193,12 @@ fn text(found: &Found, tick_hz: f64) -> String {
         ]);
     }
     let minutes = found.ticks as f64 / tick_hz / 60.0;
-    format!("{table}{minutes:.1} min searched in {:.1} ms\n", 1e3 * found.search_secs)
+    let mut text = format!("{table}{minutes:.1} min searched in {:.1} ms\n", 1e3 * found.search_secs);
+    if let Some(learned) = &found.learned {
+        text.push_str(&format!(
+            "by a metric learned from {} samples of {} classes\n",
+            learned.samples, learned.classes
+        ));
+    }
+    text
 }

@@ -1,0 +1,138 @@
+//! Which stretches come into question: windows of all clips, compared with the example by their summaries.
+
+use std::ops::Range;
+
+use morec::features::BoneSet;
+use rayon::prelude::*;
+
+use super::learned::{LearnedMetric, Place};
+use super::summary::{Comparison, Summary, mirrored_summary};
+use super::{Example, Indexed, SearchIndex};
+
+/// A window and how far it is from the example.
+#[derive(Debug, Clone)]
+pub struct Candidate {
+    pub clip: usize,
+    pub span: Range<usize>,
+    pub distance: f32,
+    pub mirrored: bool,
+}
+
+/// Example lengths that windows are tried at.
+const SCALES: [f64; 3] = [0.7, 1.0, 1.4];
+
+/// What compares the example, or its image, with windows.
+pub struct Probe<'a> {
+    pub look: Look,
+    bones: BoneSet,
+    mirrored: bool,
+    metric: Option<&'a LearnedMetric>,
+    rows: usize,
+    /// Clips are compared as wholes: what a clip has beyond the example's length counts, too.
+    pub whole: bool,
+}
+
+/// A stretch as it is compared.
+pub struct Look {
+    pub summary: Summary,
+    pub place: Option<Place>,
+}
+
+impl Look {
+    pub fn new(summary: Summary, rows: usize, bones: BoneSet, metric: Option<&LearnedMetric>) -> Self {
+        Self { place: metric.map(|m| m.place(&summary, rows, bones)), summary }
+    }
+
+    /// By their summaries; with a learned metric half by it.
+    pub fn distance(&self, other: &Self, comparison: &Comparison) -> f32 {
+        let plain = comparison.distance(&self.summary, &other.summary);
+        match (&self.place, &other.place) {
+            (Some(a), Some(b)) => 0.5 * (plain + a.distance(b)),
+            _ => plain,
+        }
+    }
+}
+
+impl<'a> Probe<'a> {
+    pub fn new(example: &Example, metric: Option<&'a LearnedMetric>, mirrored: bool, whole: bool) -> Self {
+        let rows = example.laid.rows.len();
+        let plain = super::Sums::of(&example.laid.rows).octaves(&(0..rows));
+        let (summary, bones) = if mirrored {
+            (mirrored_summary(&plain), super::layout::opposite_bones(example.laid.bones))
+        } else {
+            (plain, example.laid.bones)
+        };
+        Self { look: Look::new(summary, rows, bones, metric), bones, mirrored, metric, rows, whole }
+    }
+
+    fn distance(&self, clip: &Indexed, span: &Range<usize>, summary: &Summary, over: &Comparison) -> f32 {
+        let look = Look::new(*summary, span.len(), clip.laid.bones, self.metric);
+        let excess = if self.whole { length_cost(self.rows, clip.laid.rows.len(), 1.4) } else { 0.0 };
+        self.look.distance(&look, over) + length_cost(span.len(), self.rows, 1.0 / SCALES[0]) + excess
+    }
+}
+
+/// What it costs that `length` is less than `other` by more than a difference in pace explains: 0 to 1.
+pub fn length_cost(length: usize, other: usize, pace: f64) -> f32 {
+    (1.0 - pace * length as f64 / other.max(1) as f64).max(0.0) as f32
+}
+
+impl SearchIndex {
+    /// The nearest windows of all clips, none of which overlap much, nearest first; of each clip one, if asked.
+    /// O(rows / example rows) summaries.
+    pub(super) fn candidates(
+        &self,
+        example: &Example,
+        probes: &[Probe<'_>],
+        one_a_clip: bool,
+    ) -> Vec<Candidate> {
+        let of_clip = |(number, clip): (usize, &Indexed)| {
+            let mut found = windows(number, clip, example, probes);
+            found.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+            // Neighbours of a good window say the same: the best of each surroundings is enough.
+            let mut kept: Vec<Candidate> = Vec::new();
+            for candidate in found {
+                let same = |k: &Candidate| one_a_clip || overlaps(&k.span, &candidate.span);
+                if !kept.iter().any(same) {
+                    kept.push(candidate);
+                }
+            }
+            kept
+        };
+        let mut all: Vec<Candidate> = self.clips.par_iter().enumerate().flat_map_iter(of_clip).collect();
+        all.sort_by(|a, b| a.distance.total_cmp(&b.distance).then(a.clip.cmp(&b.clip)));
+        all
+    }
+}
+
+/// Windows of a clip at three lengths, a quarter apart, and, of wholes, the clip itself; a clip that is too short counts
+/// as one window.
+fn windows(number: usize, clip: &Indexed, example: &Example, probes: &[Probe<'_>]) -> Vec<Candidate> {
+    let (n, rows) = (example.laid.rows.len(), clip.laid.rows.len());
+    let over: Vec<Comparison> =
+        probes.iter().map(|probe| Comparison::over(probe.bones.and(clip.laid.bones))).collect();
+    if rows < 3 || probes.iter().any(|probe| probe.bones.and(clip.laid.bones).is_empty()) {
+        return Vec::new();
+    }
+    let spans = SCALES.iter().flat_map(|scale| {
+        let length = ((n as f64 * scale).round() as usize).clamp(3, rows);
+        (0..=rows - length).step_by((length / 4).max(1)).map(move |start| start..start + length)
+    });
+    let whole = probes.first().filter(|probe| probe.whole).map(|_| 0..rows);
+    let mut found = Vec::new();
+    for span in spans.chain(whole) {
+        let own = example.from.as_ref().is_some_and(|(id, own)| *id == clip.clip && overlaps(own, &span));
+        let summary = clip.sums.octaves(&span);
+        for (probe, over) in probes.iter().zip(&over).filter(|(probe, _)| probe.mirrored || !own) {
+            let distance = probe.distance(clip, &span, &summary, over);
+            found.push(Candidate { clip: number, span: span.clone(), distance, mirrored: probe.mirrored });
+        }
+    }
+    found
+}
+
+/// More than a third of the shorter.
+fn overlaps(a: &Range<usize>, b: &Range<usize>) -> bool {
+    let shared = a.end.min(b.end).saturating_sub(a.start.max(b.start));
+    3 * shared > a.len().min(b.len())
+}

@@ -1,0 +1,264 @@
+//! What a stretch is like in a few numbers, from prefix sums: how much moves at which pace, the mean pose, the travel.
+//!
+//! How much: the variance of every coordinate, split by octaves of a Haar transform over the stretch (Mallat, *A theory
+//! for multiresolution signal decomposition*, 1989): between its halves, quarters, eighths, sixteenths, and within these.
+//! Raising an arm once and waving with it vary as much, but not at the same pace. Paces are relative to the stretch, so
+//! slow and fast performances agree; phases are left out, so it does not matter where in its cycle a motion begins.
+
+use std::ops::Range;
+
+use morec::features::{BONES, BoneSet};
+
+use super::layout::{opposite, reflected};
+use super::windows::Sums;
+
+/// Coordinates of directions.
+const X: usize = 3 * BONES;
+/// Parts that a stretch is divided into.
+const PARTS: usize = 16;
+/// Octaves: between halves, quarters, eighths and sixteenths; within sixteenths.
+const OCTAVES: usize = 5;
+/// Where the mean pose begins.
+const MEAN: usize = OCTAVES * X;
+/// Where the travel begins.
+const ROOT: usize = MEAN + X;
+/// Values in a summary.
+pub const SUMMARY: usize = ROOT + 4;
+
+/// `[standard deviation by octave and coordinate (5 × 33); mean pose (33); asinh of the mean root motion (4)]`.
+pub type Summary = [f32; SUMMARY];
+
+/// What each part's distance counts: about one over its median among windows of everyday motion, except that the mean
+/// pose, which tells people and styles apart better than motions, counts a sixth of that.
+const WEIGHTS: Weights = Weights { motion: 0.9, pose: 0.1, travel: 1.6 };
+
+struct Weights {
+    motion: f32,
+    pose: f32,
+    travel: f32,
+}
+
+impl Sums {
+    /// The summary of the rows of `span`. O(columns), however long it is; zeros for none.
+    pub fn octaves(&self, span: &Range<usize>) -> Summary {
+        let mut out = [0f32; SUMMARY];
+        if span.is_empty() {
+            return out;
+        }
+        let n = span.len() as f64;
+        let mut parts = self.parts(span);
+        let (means, variances, root) = self.moments(span);
+        let mut within = [0f32; X];
+        for (within, variance) in within.iter_mut().zip(&variances) {
+            *within = *variance as f32;
+        }
+        // From sixteenths up: what two neighbours differ by belongs to their octave, their mean goes on to the next.
+        let mut count = PARTS;
+        for octave in (0..OCTAVES - 1).rev() {
+            count /= 2;
+            let mut energy = [0f32; X];
+            for k in 0..count {
+                for i in 0..X {
+                    let (a, b) = (parts[2 * k][i], parts[2 * k + 1][i]);
+                    energy[i] += (0.5 * (a - b)).powi(2);
+                    parts[k][i] = 0.5 * (a + b);
+                }
+            }
+            for i in 0..X {
+                let energy = energy[i] / count as f32;
+                within[i] -= energy;
+                out[octave * X + i] = energy.sqrt();
+            }
+        }
+        for i in 0..X {
+            out[(OCTAVES - 1) * X + i] = within[i].max(0.0).sqrt();
+            out[MEAN + i] = means[i] as f32;
+        }
+        for (i, sum) in root.iter().enumerate() {
+            // Rows hold root motion weighted; leg lengths a second and radians a second are meant. Twice as fast is as
+            // much for a slow walk as for a run.
+            out[ROOT + i] = (sum / n / 0.3).asinh() as f32;
+        }
+        out
+    }
+
+    /// Means of the coordinates over sixteenths of `span`, whose ends lie between rows as they fall.
+    fn parts(&self, span: &Range<usize>) -> [[f32; X]; PARTS] {
+        let mut parts = [[0f32; X]; PARTS];
+        let length = span.len() as f64 / PARTS as f64;
+        let mut before = [0f64; X];
+        self.until(span.start as f64, &mut before);
+        let mut after = [0f64; X];
+        for (k, part) in parts.iter_mut().enumerate() {
+            self.until(span.start as f64 + length * (k + 1) as f64, &mut after);
+            for i in 0..X {
+                part[i] = ((after[i] - before[i]) / length) as f32;
+            }
+            before = after;
+        }
+        parts
+    }
+}
+
+/// Distances of summaries over the bones that two clips share, as if they shared all. A sum of lengths, not of squares:
+/// what differs in one respect (style in the pose, say) does not drown agreement in the others.
+pub struct Comparison {
+    shared: BoneSet,
+    /// All bones over shared ones.
+    scale: f32,
+}
+
+impl Comparison {
+    /// Over these bones.
+    pub fn over(shared: BoneSet) -> Self {
+        Self { shared, scale: BONES as f32 / shared.len().max(1) as f32 }
+    }
+
+    /// 0 for the same, around 3 for unlike motion.
+    pub fn distance(&self, a: &Summary, b: &Summary) -> f32 {
+        let (motion, pose) = if self.shared == BoneSet::ALL {
+            (squared(&a[..MEAN], &b[..MEAN]), squared(&a[MEAN..ROOT], &b[MEAN..ROOT]))
+        } else {
+            self.masked(a, b)
+        };
+        let travel = squared(&a[ROOT..], &b[ROOT..]);
+        WEIGHTS.motion * (self.scale * motion).sqrt()
+            + WEIGHTS.pose * (self.scale * pose).sqrt()
+            + WEIGHTS.travel * travel.sqrt()
+    }
+
+    fn masked(&self, a: &Summary, b: &Summary) -> (f32, f32) {
+        let of = |block: usize| -> f32 {
+            let bone = |bone: usize| {
+                let at = block * X + 3 * bone;
+                squared(&a[at..at + 3], &b[at..at + 3])
+            };
+            self.shared.indices().map(bone).sum()
+        };
+        ((0..OCTAVES).map(of).sum(), of(OCTAVES))
+    }
+}
+
+/// Squared Euclidean distance, in eight sums side by side.
+fn squared(a: &[f32], b: &[f32]) -> f32 {
+    let (a8, a_rest) = a.as_chunks::<8>();
+    let (b8, b_rest) = b.as_chunks::<8>();
+    let mut sums = [0f32; 8];
+    for (a, b) in a8.iter().zip(b8) {
+        for ((sum, a), b) in sums.iter_mut().zip(a).zip(b) {
+            *sum += (a - b) * (a - b);
+        }
+    }
+    let rest: f32 = a_rest.iter().zip(b_rest).map(|(a, b)| (a - b) * (a - b)).sum();
+    sums.iter().sum::<f32>() + rest
+}
+
+/// The summary that the stretch's mirror image has: sides swapped, lateral parts of pose and travel the other way.
+pub fn mirrored_summary(of: &Summary) -> Summary {
+    let mut out = *of;
+    for bone in 0..BONES {
+        let (to, from) = (3 * bone, 3 * opposite(bone));
+        for octave in 0..OCTAVES {
+            out[octave * X + to..octave * X + to + 3]
+                .copy_from_slice(&of[octave * X + from..octave * X + from + 3]);
+        }
+        out[MEAN + to..MEAN + to + 3].copy_from_slice(&reflected(bone, &of[MEAN + from..MEAN + from + 3]));
+    }
+    out[ROOT] = -of[ROOT];
+    out[ROOT + 3] = -of[ROOT + 3];
+    out
+}
+
+/// The bone that value `i` of a summary speaks of; `None` for the root's.
+pub fn bone_of(i: usize) -> Option<usize> {
+    (i < ROOT).then_some(i % X / 3)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::search::layout::{DIM, lay_out, mirrored};
+    use morec::features::Rows;
+    use proptest::prelude::*;
+
+    /// The obvious slow version: row by row, with every row cut up for the sixteenths it lies in.
+    fn slowly(rows: &Rows, span: Range<usize>) -> Vec<f64> {
+        let n = span.len();
+        let value = |t: usize, i: usize| f64::from(rows.row(span.start + t)[i]);
+        let mut out = vec![0.0; SUMMARY];
+        for i in 0..X {
+            // Sixteen rows of each row: then every sixteenth of the stretch is `n` whole ones.
+            let fine: Vec<f64> = (0..PARTS * n).map(|t| value(t / PARTS, i)).collect();
+            let mean = fine.iter().sum::<f64>() / fine.len() as f64;
+            let mut left = fine.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / fine.len() as f64;
+            // Variance of the means over 2, 4, 8, 16 parts: what each adds is its octave.
+            let mut coarser = 0.0;
+            for octave in 0..OCTAVES - 1 {
+                let length = fine.len() >> (octave + 1);
+                let means: Vec<f64> =
+                    fine.chunks(length).map(|c| c.iter().sum::<f64>() / length as f64).collect();
+                let variance = means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / means.len() as f64;
+                out[octave * X + i] = (variance - coarser).max(0.0).sqrt();
+                left -= variance - coarser;
+                coarser = variance;
+            }
+            out[(OCTAVES - 1) * X + i] = left.max(0.0).sqrt();
+            out[MEAN + i] = mean;
+        }
+        for i in 0..4 {
+            let mean = (0..n).map(|t| value(t, DIM - 4 + i)).sum::<f64>() / n as f64;
+            out[ROOT + i] = (mean / 0.3).asinh();
+        }
+        out
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn octaves_are_those_of_all_rows(
+            values in prop::collection::vec(-1f32..1.0, 40 * DIM),
+            start in 0usize..10,
+            length in 1usize..30,
+        ) {
+            let rows = Rows::from_values(DIM, values);
+            let fast = Sums::of(&rows).octaves(&(start..start + length));
+            for (fast, slow) in fast.iter().zip(slowly(&rows, start..start + length)) {
+                // Roots of differences: an error of 1e-7 in a variance of nothing is one of 1e-3 here.
+                prop_assert!((f64::from(*fast) - slow).abs() < 2e-3, "{} {}", fast, slow);
+            }
+        }
+
+        #[test]
+        fn the_mirror_image_is_summed_up_in_the_mirror(values in prop::collection::vec(-1f32..1.0, 20 * DIM)) {
+            let laid = lay_out(&Rows::from_values(DIM, values), BoneSet::ALL);
+            let of = Sums::of(&laid.rows).octaves(&(2..19));
+            let image = Sums::of(&mirrored(&laid).rows).octaves(&(2..19));
+            for (a, b) in mirrored_summary(&of).iter().zip(&image) {
+                prop_assert!((a - b).abs() < 2e-3);
+            }
+        }
+
+        #[test]
+        fn distance_over_bones_leaves_the_others_out(
+            a in prop::collection::vec(-1f32..1.0, SUMMARY),
+            b in prop::collection::vec(-1f32..1.0, SUMMARY),
+        ) {
+            let (a, b): (Summary, Summary) = (a.try_into().unwrap(), b.try_into().unwrap());
+            let few = BoneSet::NONE.with(1).with(7);
+            let over = Comparison::over(few);
+            let mut changed = b;
+            for (i, value) in changed.iter_mut().enumerate() {
+                if bone_of(i).is_some_and(|bone| !few.contains(bone)) {
+                    *value += 1.0;
+                }
+            }
+            prop_assert_eq!(over.distance(&a, &b), over.distance(&a, &changed));
+            let all = Comparison::over(BoneSet::ALL);
+            prop_assert!(all.distance(&a, &b) < all.distance(&a, &changed) + all.distance(&b, &changed) + 1e-4);
+            let masked = Comparison { shared: BoneSet::ALL, scale: 1.0 }.masked(&a, &b);
+            prop_assert!((masked.0 - squared(&a[..MEAN], &b[..MEAN])).abs() < 1e-3);
+            prop_assert_eq!(all.distance(&a, &a), 0.0);
+        }
+    }
+}
