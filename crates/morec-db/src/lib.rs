@@ -40,6 +40,6 @@ pub use error::DbError;
 pub use import::{ClipReader, ImportReport, ImportSettings, Outcome, ReadFile, Refused};
 pub use indexes::IndexInfo;
 pub use motion::StoredClip;
-pub use propose::{Proposal, ProposeOptions};
+pub use propose::{Proposal, ProposeOptions, questions};
 pub use schema::{APPLICATION_ID, SCHEMA};
 pub use segments::{Segment, SegmentKind};
