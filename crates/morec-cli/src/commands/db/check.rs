@@ -74,7 +74,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 
 fn copies(path: &Path) -> Result<Vec<Copy>> {
     let mut db = MotionDb::open_read_only(path)?;
-    let index = SearchIndex::of_db(&mut db, &Bar::new())?;
+    let index = SearchIndex::of_db(&mut db, &Bar::stoppable()?)?;
     let names: BTreeMap<ClipId, String> =
         db.clips(&ClipFilter::default())?.into_iter().map(|c| (c.id, c.name)).collect();
     let name = |id: ClipId| names.get(&id).cloned().unwrap_or_default();

@@ -21,7 +21,9 @@ Examples:
   morec db import moves.mdb recordings/
   morec db import moves.mdb 13_29.amc --skeleton 13.asf --subject 13 --tag exercise
 
-Exit code 1 if a file was refused.")]
+Ctrl-C finishes what is being written and says what was imported; the same command then goes on where it stopped.
+
+Exit code 1 if a file was refused, 130 if it was stopped.")]
 pub struct Args {
     /// The database; it is made if there is none
     #[arg(value_name = "DB")]
@@ -92,11 +94,14 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             remove_tags: Vec::new(),
         },
     };
-    let report = db.import(&paths, &Reader(&args.read), &settings, &Bar::new())?;
+    let report = db.import(&paths, &Reader(&args.read), &settings, &Bar::stoppable()?)?;
     if args.json {
         super::print_json(&report)?;
     } else {
-        super::print(text(&report, begun.elapsed().as_secs_f64()))?;
+        super::print(text(&report, paths.len(), begun.elapsed().as_secs_f64()))?;
+    }
+    if report.cancelled {
+        return Ok(super::STOPPED.into());
     }
     let refused = report.counts()[4];
     Ok(if refused > 0 { ExitCode::FAILURE } else { ExitCode::SUCCESS })
@@ -107,7 +112,7 @@ fn absolute(path: PathBuf) -> PathBuf {
     path.canonicalize().unwrap_or(path)
 }
 
-fn text(report: &ImportReport, secs: f64) -> String {
+fn text(report: &ImportReport, files: usize, secs: f64) -> String {
     const SHOWN: usize = 20;
     let [imported, warned, known, copies, refused] = report.counts();
     let clips: usize = report
@@ -156,7 +161,10 @@ fn text(report: &ImportReport, secs: f64) -> String {
         lines.push(format!("  and {more} more notes (--json has all)"));
     }
     if report.cancelled {
-        lines.push("cancelled: the files named above are done, the rest was not looked at".to_owned());
+        let left = files - report.files.len();
+        lines.push(format!(
+            "stopped: {left} files were not looked at; the same command goes on where this one stopped"
+        ));
     }
     lines.join("\n") + "\n"
 }

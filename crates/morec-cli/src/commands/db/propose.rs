@@ -62,7 +62,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     }
     let mut db = MotionDb::open(&args.db)?;
     let options = ProposeOptions { classes: args.classes.clone(), ..ProposeOptions::default() };
-    let proposals = db.propose(&options, &Bar::new())?;
+    let proposals = db.propose(&options, &Bar::stoppable()?)?;
     let old: Vec<SampleId> = proposed(&db)?.into_iter().map(|s| s.id).collect();
     db.remove_samples(&old)?;
     let samples: Vec<NewSample> = proposals.iter().cloned().map(NewSample::from).collect();
@@ -135,7 +135,7 @@ fn show(args: &Args, db: &MotionDb, mut proposals: Vec<Proposal>) -> Result<Exit
         super::print_json(&all)?;
         return Ok(ExitCode::SUCCESS);
     }
-    let mut table = Table::new(["clip", "class", "start", "stop", "score"]);
+    let mut table = Table::new(["clip", "class", "start", "stop", "score"]).least(["stop"]);
     for Named { name, proposal: p } in all.iter().take(args.limit) {
         let secs = |secs: f64| format!("{secs:.2}");
         table.row([
@@ -148,9 +148,11 @@ fn show(args: &Args, db: &MotionDb, mut proposals: Vec<Proposal>) -> Result<Exit
     }
     let more = all.len().saturating_sub(args.limit);
     let more = if more > 0 { format!("; {more} not shown") } else { String::new() };
-    super::print(format_args!(
-        "{table}{} proposed, {sure} of them likelier right than wrong{more}\n",
+    let last = format!(
+        "{} proposed, {sure} of them likelier right than wrong{more}
+",
         all.len()
-    ))?;
+    );
+    super::print_table(&table, &last)?;
     Ok(ExitCode::SUCCESS)
 }

@@ -7,8 +7,8 @@ use anyhow::{Context, Result};
 use morec_db::labels::{SampleFilter, State};
 use morec_db::{ClipFilter, ClipId, MotionDb, StoredClip};
 
+use super::megabytes;
 use super::strip::strip;
-use super::{cut, megabytes};
 use crate::files;
 
 /// Write a page of HTML with a strip of poses for clips, cuts and samples
@@ -121,7 +121,7 @@ impl Page {
     }
 
     fn clips(&mut self, db: &MotionDb, args: &Args) -> Result<()> {
-        let segments = db.segments(cut::METHOD)?;
+        let segments = db.segments()?;
         let clips = db.clips(&ClipFilter { name: args.name.clone(), ..ClipFilter::default() })?;
         self.html.push_str("<h2>Clips</h2>\n");
         for clip in clips.iter().take(args.limit) {

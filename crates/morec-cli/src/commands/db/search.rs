@@ -76,7 +76,7 @@ struct Named {
 pub fn run(args: &Args) -> Result<ExitCode> {
     let begun = Instant::now();
     let mut db = MotionDb::open_read_only(&args.db)?;
-    let index = SearchIndex::of_db(&mut db, &Bar::new())?;
+    let index = SearchIndex::of_db(&mut db, &Bar::stoppable()?)?;
     let example = example(&db, &index, args)?;
     let names: BTreeMap<ClipId, String> =
         db.clips(&ClipFilter::default())?.into_iter().map(|c| (c.id, c.name)).collect();
@@ -96,7 +96,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if args.json {
         super::print_json(&found)?;
     } else {
-        super::print(text(&found, index.tick_hz()))?;
+        print(&found, index.tick_hz())?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -124,8 +124,8 @@ fn example(db: &MotionDb, index: &SearchIndex, args: &Args) -> Result<Example> {
     SearchIndex::example_of(&span, bones).with_context(short)
 }
 
-fn text(found: &Found, tick_hz: f64) -> String {
-    let mut table = Table::new(["clip", "start", "stop", "score", "path", ""]);
+fn print(found: &Found, tick_hz: f64) -> Result<()> {
+    let mut table = Table::new(["clip", "start", "stop", "score", "path", "seen"]).least(["path"]);
     for named in &found.hits {
         let hit = &named.hit;
         table.row([
@@ -138,5 +138,5 @@ fn text(found: &Found, tick_hz: f64) -> String {
         ]);
     }
     let minutes = found.ticks as f64 / tick_hz / 60.0;
-    format!("{table}{minutes:.1} min searched in {:.1} ms\n", 1e3 * found.search_secs)
+    super::print_table(&table, &format!("{minutes:.1} min searched in {:.1} ms\n", 1e3 * found.search_secs))
 }
