@@ -9,17 +9,16 @@
 //! sample of another class it is accepted as that class; anywhere else it is rejected. A sample is right if it was
 //! accepted so, or lies at half overlap with a sure proposal of its class.
 
+#![allow(clippy::print_stdout, clippy::print_stderr)] // It is a program.
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-use morec::formats::Limits;
-use morec::formats::bvh::{self, BvhOptions};
 use morec_db::labels::{NewSample, State};
 use morec_db::{
-    ClipFilter, ClipId, ClipReader, ClipUpdate, ImportSettings, MotionDb, Proposal, ProposeOptions, ReadFile,
-    questions,
+    ClipFilter, ClipId, ClipUpdate, FileReader, ImportSettings, MotionDb, Proposal, ProposeOptions, questions,
 };
 
 /// The classes of the database figure: seven signals, walking and two dribbles.
@@ -37,17 +36,6 @@ const TEN: [&str; 10] = [
 ];
 
 type Failure = Box<dyn std::error::Error>;
-
-struct Bvh;
-
-impl ClipReader for Bvh {
-    fn read(&self, path: &Path, bytes: &[u8]) -> Result<ReadFile, String> {
-        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let loaded =
-            bvh::read(bytes, &name, &BvhOptions::default(), &Limits::default()).map_err(|e| e.to_string())?;
-        Ok(ReadFile { format: "bvh".into(), skeleton: None, clips: loaded.clips, warnings: loaded.warnings })
-    }
-}
 
 /// A labelled stretch; without times the whole clip.
 #[derive(Clone)]
@@ -104,7 +92,7 @@ fn imported(material: &Material, path: &Path) -> Result<MotionDb, Failure> {
         std::fs::read_dir(&material.folder)?.filter_map(|entry| Some(entry.ok()?.path())).collect();
     paths.sort();
     let mut db = MotionDb::create(path)?;
-    db.import(&paths, &Bvh, &ImportSettings::default(), &())?;
+    db.import(&paths, &FileReader::default(), &ImportSettings::default(), &())?;
     let people: BTreeMap<&str, &str> =
         material.truth.iter().filter_map(|t| Some((t.clip.as_str(), t.person.as_deref()?))).collect();
     for (clip, person) in people {

@@ -1,12 +1,12 @@
 //! `morec db import`: clips into a database.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::Result;
 use morec::import::ImportOptions;
-use morec_db::{ClipReader, ClipUpdate, ImportReport, ImportSettings, MotionDb, Outcome, ReadFile};
+use morec_db::{ClipUpdate, ImportReport, ImportSettings, MotionDb, Outcome};
 
 use crate::files::{self, ReadArgs};
 use crate::progress::Bar;
@@ -53,26 +53,6 @@ pub struct Args {
     read: ReadArgs,
 }
 
-/// Reads files as all commands do.
-struct Reader<'a>(&'a ReadArgs);
-
-impl ClipReader for Reader<'_> {
-    fn read(&self, path: &Path, bytes: &[u8]) -> Result<ReadFile, String> {
-        let opened = files::parse(path, bytes, self.0).map_err(|error| {
-            // The report names the path itself.
-            let text = format!("{error:#}");
-            let prefix = format!("{}: ", path.display());
-            text.strip_prefix(&prefix).map_or(text.clone(), str::to_owned)
-        })?;
-        Ok(ReadFile {
-            format: format!("{:?}", opened.format).to_lowercase(),
-            skeleton: opened.skeleton,
-            clips: opened.clips,
-            warnings: opened.warnings,
-        })
-    }
-}
-
 /// Imports and reports.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let begun = Instant::now();
@@ -94,7 +74,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             remove_tags: Vec::new(),
         },
     };
-    let report = db.import(&paths, &Reader(&args.read), &settings, &Bar::stoppable()?)?;
+    let report = db.import(&paths, &args.read.reader(), &settings, &Bar::stoppable()?)?;
     if args.json {
         super::print_json(&report)?;
     } else {
