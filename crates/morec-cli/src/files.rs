@@ -1,17 +1,15 @@
-//! Clips on disk: from what was typed to bytes, from bytes to clips, and from a motion to its skeleton.
+//! Clips on disk: from what was typed to bytes, and from bytes to clips.
 
 use std::fs;
 use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
-use morec::clip::Clip;
-use morec::formats::acclaim::{self, AmcOptions, Asf};
-use morec::formats::bvh::{self, BvhOptions, PositionChannels};
-use morec::formats::probe::{Format, format_of_name, probe};
-use morec::formats::{Limits, Loaded, Place, Warning, mclip};
+use morec::formats::bvh::PositionChannels;
+use morec::formats::probe::{Format, format_of_name};
 use morec::roles::mapping::Mapping;
+use morec_db::{FileReader, OpenedFile};
 
 /// What files do not say about themselves.
 #[derive(Args, Clone, Debug, Default)]
@@ -36,19 +34,6 @@ pub enum Positions {
     Replace,
     /// A movement from OFFSET.
     Add,
-}
-
-/// A file that was read.
-#[derive(Debug)]
-pub struct Opened {
-    /// What it is.
-    pub format: Format,
-    /// The skeleton file that an AMC clip was read with.
-    pub skeleton: Option<PathBuf>,
-    /// One clip for each character; an ASF file gives one without frames.
-    pub clips: Vec<Clip>,
-    /// What was repaired or looks wrong.
-    pub warnings: Vec<Warning>,
 }
 
 /// A rate that can be: more than nothing, and finite.
@@ -134,7 +119,7 @@ fn is_clip(path: &Path) -> bool {
 }
 
 /// Reads a clip; `-` is standard input. Errors begin with the path.
-pub fn open(path: &Path, args: &ReadArgs) -> Result<Opened> {
+pub fn open(path: &Path, args: &ReadArgs) -> Result<OpenedFile> {
     let bytes = if path == Path::new("-") {
         let mut bytes = Vec::new();
         std::io::stdin().lock().read_to_end(&mut bytes).context("standard input")?;
@@ -146,173 +131,18 @@ pub fn open(path: &Path, args: &ReadArgs) -> Result<Opened> {
 }
 
 /// Reads a clip whose bytes are at hand. Errors begin with the path.
-pub fn parse(path: &Path, bytes: &[u8], args: &ReadArgs) -> Result<Opened> {
-    let shown = path.display();
-    let stem = if path == Path::new("-") { "stdin".to_owned() } else { stem(path) };
-    let limits = Limits::default();
-    let format = probe(bytes, &path.to_string_lossy()).with_context(|| shown.to_string())?;
-    let (loaded, skeleton) = match format {
-        Format::Bvh => {
-            (bvh::read(bytes, &stem, &args.bvh(), &limits).with_context(|| shown.to_string())?, None)
-        }
-        Format::Asf => {
-            let (asf, warnings) = acclaim::read_asf(bytes, &limits).with_context(|| shown.to_string())?;
-            (Loaded { clips: vec![without_frames(&asf, stem)], warnings }, None)
-        }
-        Format::Amc => {
-            let (loaded, skeleton) = read_amc(path, bytes, &stem, args)?;
-            (loaded, Some(skeleton))
-        }
-        Format::Mclip => (read_mclip(bytes, &stem, args).with_context(|| shown.to_string())?, None),
-    };
-    Ok(Opened { format, skeleton, clips: loaded.clips, warnings: loaded.warnings })
+pub fn parse(path: &Path, bytes: &[u8], args: &ReadArgs) -> Result<OpenedFile> {
+    args.reader().open(path, bytes).with_context(|| path.display().to_string())
 }
 
 impl ReadArgs {
-    fn bvh(&self) -> BvhOptions {
+    /// What reads files so.
+    pub fn reader(&self) -> FileReader {
         let positions = self.positions.map(|positions| match positions {
             Positions::Replace => PositionChannels::Replace,
             Positions::Add => PositionChannels::Add,
         });
-        BvhOptions { positions, rate_hz: self.file_rate, ..BvhOptions::default() }
-    }
-}
-
-fn read_mclip(bytes: &[u8], stem: &str, args: &ReadArgs) -> Result<Loaded> {
-    let mut loaded = mclip::read(bytes, stem, &Limits::default())?;
-    for clip in &mut loaded.clips {
-        clip.rate_hz = args.file_rate.unwrap_or(clip.rate_hz);
-    }
-    Ok(loaded)
-}
-
-fn stem(path: &Path) -> String {
-    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
-}
-
-fn without_frames(asf: &Asf, name: String) -> Clip {
-    Clip {
-        name,
-        skeleton: asf.skeleton(),
-        rate_hz: acclaim::DEFAULT_RATE_HZ,
-        rotations: Vec::new(),
-        tracks: Vec::new(),
-        frames: 0,
-        repaired: Vec::new(),
-    }
-}
-
-/// Reads a motion with the skeleton given, or with the first one near it that it fits.
-fn read_amc(path: &Path, bytes: &[u8], stem: &str, args: &ReadArgs) -> Result<(Loaded, PathBuf)> {
-    let read = |skeleton: &Path| -> Result<Loaded> {
-        let limits = Limits::default();
-        let asf = fs::read(skeleton).with_context(|| skeleton.display().to_string())?;
-        let (asf, mut warnings) =
-            acclaim::read_asf(&asf, &limits).with_context(|| skeleton.display().to_string())?;
-        for warning in &mut warnings {
-            warning.text = format!("{} {}: {}", skeleton.display(), warning.at, warning.text);
-            warning.at = Place::File;
-        }
-        let options = AmcOptions { rate_hz: args.file_rate };
-        let mut loaded = acclaim::read_amc(bytes, stem, &asf, &options, &limits)
-            .with_context(|| format!("{} (with skeleton {})", path.display(), skeleton.display()))?;
-        loaded.warnings.splice(0..0, warnings);
-        Ok(loaded)
-    };
-    if let Some(skeleton) = &args.skeleton {
-        return Ok((read(skeleton)?, skeleton.clone()));
-    }
-    let candidates = skeletons_near(path, stem);
-    let mut best: Option<(Loaded, &Skeleton)> = None;
-    let mut first_error = None;
-    for skeleton in &candidates {
-        match read(&skeleton.path) {
-            // Fewer warnings: a skeleton that lacks bones of the motion is not the right one.
-            Ok(loaded) if best.as_ref().is_none_or(|(b, _)| loaded.warnings.len() < b.warnings.len()) => {
-                let clean = loaded.warnings.len() <= usize::from(args.file_rate.is_none());
-                best = Some((loaded, skeleton));
-                if clean {
-                    break;
-                }
-            }
-            Ok(_) => {}
-            Err(error) => _ = first_error.get_or_insert(error),
-        }
-    }
-    if let Some((mut loaded, skeleton)) = best {
-        if skeleton.kinship == 0 && candidates.len() > 1 {
-            let note =
-                format!("skeleton {} is the first that fits; its name does not say", skeleton.path.display());
-            loaded.warnings.push(Warning::new(Place::File, note));
-        }
-        return Ok((loaded, skeleton.path.clone()));
-    }
-    Err(first_error.unwrap_or_else(|| {
-        anyhow!(
-            "{}: an AMC motion needs its ASF skeleton, and none lies beside it or a folder above; give --skeleton",
-            path.display()
-        )
-    }))
-}
-
-/// A skeleton file that may be a motion's.
-struct Skeleton {
-    kinship: usize,
-    path: PathBuf,
-}
-
-/// Skeletons beside a motion and then those a folder above, in each the likeliest first: of the same stem, of
-/// the longest part of it (`13` for `13_29`), the others.
-fn skeletons_near(path: &Path, stem: &str) -> Vec<Skeleton> {
-    // So many skeletons in one folder are a library's, and trying them all no way to find the right one.
-    const MOST: usize = 64;
-    if path == Path::new("-") {
-        return Vec::new();
-    }
-    let beside = match path.parent() {
-        Some(folder) if folder != Path::new("") => folder.to_owned(),
-        _ => PathBuf::from("."),
-    };
-    let above = match (beside.file_name(), beside.parent()) {
-        (Some(_), Some(above)) if above != Path::new("") => above.to_owned(),
-        (Some(_), _) => PathBuf::from("."),
-        (None, _) => beside.join(".."),
-    };
-    let mut found = Vec::new();
-    for folder in [beside, above] {
-        let mut here: Vec<Skeleton> = fs::read_dir(&folder)
-            .into_iter()
-            .flatten()
-            .filter_map(|entry| Some(entry.ok()?.path()))
-            .filter(|path| format_of_name(&path.to_string_lossy()) == Some(Format::Asf))
-            .map(|path| Skeleton { kinship: kinship(&self::stem(&path), stem), path })
-            .collect();
-        here.sort_by(|a, b| b.kinship.cmp(&a.kinship).then_with(|| a.path.cmp(&b.path)));
-        here.truncate(MOST);
-        found.append(&mut here);
-    }
-    found
-}
-
-/// How much of a motion's stem a skeleton's stem says: its length if the motion's begins with it and a mark
-/// follows, else 0.
-fn kinship(skeleton: &str, motion: &str) -> usize {
-    match motion.to_lowercase().strip_prefix(&skeleton.to_lowercase()) {
-        Some(rest) if rest.chars().next().is_none_or(|c| !c.is_alphanumeric()) => skeleton.len() + 1,
-        _ => 0,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::kinship;
-
-    #[test]
-    fn subjects_own_their_trials() {
-        assert!(kinship("13_29", "13_29") > kinship("13", "13_29"));
-        assert!(kinship("13", "13_29") > 0);
-        assert_eq!(kinship("1", "13_29"), 0);
-        assert_eq!(kinship("skeleton", "13_29"), 0);
-        assert!(kinship("HDM_dg", "hdm_dg_06-03_120") > 0);
+        let (skeleton, rate_hz) = (self.skeleton.clone(), self.file_rate);
+        FileReader { skeleton, rate_hz, positions, ..FileReader::default() }
     }
 }

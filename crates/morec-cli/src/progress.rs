@@ -1,8 +1,13 @@
 //! A bar for work that takes more than a second, on standard error, if that is a terminal.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use anyhow::Result;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use crate::commands::live::stop_on_ctrl_c;
 
 /// A bar that shows itself only once a second has passed.
 pub struct Progress {
@@ -47,6 +52,7 @@ impl Drop for Progress {
 pub struct Bar {
     bar: ProgressBar,
     begun: Instant,
+    stop: Arc<AtomicBool>,
 }
 
 impl Bar {
@@ -56,7 +62,15 @@ impl Bar {
         if let Ok(style) = ProgressStyle::with_template("{msg} [{bar:30}] {pos}/{len}") {
             bar.set_style(style);
         }
-        Self { bar, begun: Instant::now() }
+        Self { bar, begun: Instant::now(), stop: Arc::default() }
+    }
+
+    /// A hidden bar under which Ctrl-C asks the job to stop as soon as it can leave things whole; a second one ends the
+    /// program at once. One for each run of the program.
+    pub fn stoppable() -> Result<Self> {
+        let mut bar = Self::new();
+        bar.stop = stop_on_ctrl_c()?;
+        Ok(bar)
     }
 }
 
@@ -68,6 +82,10 @@ impl morec::progress::Progress for Bar {
         self.bar.set_message(stage.to_owned());
         self.bar.set_length(total as u64);
         self.bar.set_position(done as u64);
+    }
+
+    fn cancelled(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
     }
 }
 

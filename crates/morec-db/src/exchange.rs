@@ -6,7 +6,7 @@
 //!
 //! | form | times | keeps |
 //! |---|---|---|
-//! | TSV ([`morec::labels`]) | frames, or seconds where they lie on no frame | clip, class, person; whole clips if all are |
+//! | TSV ([`morec::labels`]) | frames, or seconds where they lie on no frame | clip, class, person, whole clips |
 //! | CSV | seconds and frames | all but who set it |
 //! | JSON | seconds and frames | all but who set it |
 //! | ELAN | milliseconds, so frames of up to 500 Hz | clip, class, person |

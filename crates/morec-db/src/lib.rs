@@ -5,7 +5,8 @@
 //! Y up; where the original lies is remembered by path and hash. Feature rows are kept ready for searching and made again
 //! when the recipe changes.
 //!
-//! The library prints nothing and knows no terminal; files are read through a [`ClipReader`] that the caller gives.
+//! The library prints nothing and knows no terminal; files are read through a [`ClipReader`] that the caller gives, mostly
+//! [`FileReader`], which knows BVH, AMC with its ASF skeleton and stored clips.
 //!
 //! | job | begins at |
 //! |---|---|
@@ -14,11 +15,13 @@
 //! | classes and samples | [`labels`] |
 //! | labels in other programs' forms | [`exchange`] |
 //! | rows, search by example, near copies | [`rows`], [`search`] |
+//! | the other samples of classes that a few are labelled of | [`MotionDb::propose`], [`questions`] |
 
 mod clips;
 mod db;
 mod error;
 pub mod exchange;
+mod files;
 mod import;
 mod indexes;
 pub mod labels;
@@ -37,9 +40,10 @@ mod time;
 pub use clips::{ClipFilter, ClipId, ClipInfo, ClipUpdate};
 pub use db::{Health, MotionDb, Summary};
 pub use error::DbError;
+pub use files::{FileError, FileReader, OpenedFile};
 pub use import::{ClipReader, ImportReport, ImportSettings, Outcome, ReadFile, Refused};
 pub use indexes::IndexInfo;
 pub use motion::StoredClip;
-pub use propose::{Proposal, ProposeOptions};
+pub use propose::{Proposal, ProposeOptions, questions};
 pub use schema::{APPLICATION_ID, SCHEMA};
 pub use segments::{Segment, SegmentKind};

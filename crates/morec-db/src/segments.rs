@@ -40,7 +40,8 @@ pub struct Segment {
 }
 
 impl MotionDb {
-    /// Keeps what `method` found in clips, in place of what it found in them before.
+    /// Keeps what `method` found in clips, in place of what was found in them before, by whatever method: a clip is cut
+    /// in one way.
     pub fn set_segments(
         &mut self,
         method: &str,
@@ -49,9 +50,9 @@ impl MotionDb {
     ) -> Result<(), DbError> {
         let tx = self.write()?;
         {
-            let mut forget = tx.prepare("DELETE FROM segments WHERE clip = ?1 AND method = ?2")?;
+            let mut forget = tx.prepare("DELETE FROM segments WHERE clip = ?1")?;
             for clip in clips {
-                forget.execute(params![clip.0, method])?;
+                forget.execute(params![clip.0])?;
             }
             let sql = "INSERT INTO segments (clip, method, kind, start_secs, stop_secs) VALUES (?1, ?2, ?3, ?4, ?5)";
             let mut keep = tx.prepare(sql)?;
@@ -63,12 +64,12 @@ impl MotionDb {
         Ok(())
     }
 
-    /// What `method` found, by clip and time.
-    pub fn segments(&self, method: &str) -> Result<Vec<Segment>, DbError> {
-        let mut statement = self.conn.prepare(
-            "SELECT clip, kind, start_secs, stop_secs FROM segments WHERE method = ?1 ORDER BY clip, start_secs",
-        )?;
-        let segments = statement.query_map(params![method], |row| {
+    /// The segments of all clips, by clip and time.
+    pub fn segments(&self) -> Result<Vec<Segment>, DbError> {
+        let mut statement = self
+            .conn
+            .prepare("SELECT clip, kind, start_secs, stop_secs FROM segments ORDER BY clip, start_secs")?;
+        let segments = statement.query_map([], |row| {
             let kind: String = row.get(1)?;
             Ok(Segment {
                 clip: ClipId(row.get(0)?),

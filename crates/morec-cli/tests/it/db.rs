@@ -153,19 +153,91 @@ fn proposals_are_judged_in_bulk() {
     );
 }
 
+/// Ctrl-C ends an import with what is done kept, said, and to be gone on with.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_import_says_what_it_did() {
+    let (folder, takes) = studio(1);
+    copies(&folder, &takes, 150);
+    let begin = || {
+        Command::new(env!("CARGO_BIN_EXE_morec"))
+            .args(["db", "import", "m.mdb", "clips"])
+            .current_dir(folder.path())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap()
+    };
+    // Once it has made the file, it listens.
+    let import = begin();
+    while !folder.path().join("m.mdb").exists() {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    std::thread::sleep(Duration::from_millis(300));
+    let sent = Command::new("kill").args(["-INT", &import.id().to_string()]).status();
+    let done = import.wait_with_output().unwrap();
+    let said = String::from_utf8(done.stdout).unwrap();
+    if !sent.is_ok_and(|status| status.success()) || done.status.code() == Some(0) {
+        eprintln!("skipped: no `kill` here, or the import was done before it came");
+        return;
+    }
+    assert_eq!(done.status.code(), Some(130), "{said}");
+    assert!(said.contains("stopped: ") && said.contains("goes on where this one stopped"), "{said}");
+    let clips = json(&folder, &["db", "info", "m.mdb"])["clips"].as_u64().unwrap();
+    assert!(said.starts_with(&format!("{clips} files imported")) && clips < 151, "{clips} clips: {said}");
+    folder.morec(&["db", "import", "m.mdb", "clips"]).ok();
+    assert_eq!(json(&folder, &["db", "info", "m.mdb"])["clips"], 151);
+}
+
+#[test]
+fn clips_are_cut_by_either_method_and_one_at_a_time() {
+    let (folder, _) = studio(1);
+    json(&folder, &["db", "import", "m.mdb", "clips"]);
+    let cuts = |method: &str| json(&folder, &["db", "cut", "m.mdb", "--method", method]);
+    let segments = || json(&folder, &["db", "info", "m.mdb"])["segments"].as_u64().unwrap();
+    cuts("kernel");
+    let kernel = segments();
+    let ppca = cuts("ppca");
+    assert!(ppca[0]["cuts_secs"].is_array() && segments() > 0);
+    cuts("kernel");
+    assert_eq!(segments(), kernel, "earlier cuts are replaced, by whatever method they are");
+}
+
+#[test]
+fn tables_through_a_pipe_are_separated_by_tabs() {
+    let (folder, takes) = studio(2);
+    json(&folder, &["db", "import", "m.mdb", "clips"]);
+    let listed = folder.morec(&["db", "clips", "m.mdb"]).ok();
+    let rows: Vec<Vec<&str>> = listed.lines().map(|line| line.split('\t').collect()).collect();
+    assert_eq!(rows[0][..2], ["clip", "secs"]);
+    assert!(rows.iter().all(|row| row.len() == rows[0].len()), "{listed}");
+    assert_eq!(rows[1..].iter().map(|row| row[0]).collect::<Vec<_>>(), names(&takes));
+}
+
+fn names(takes: &[Take]) -> Vec<&str> {
+    let mut names: Vec<&str> = takes.iter().map(|take| take.clip.name.as_str()).collect();
+    names.sort_unstable();
+    names
+}
+
+/// Files of different content: a comment's worth of difference in one offset is enough.
+#[cfg(unix)]
+fn copies(folder: &Folder, takes: &[Take], count: usize) {
+    let mut bytes = Vec::new();
+    bvh::write(&takes[0].clip, &mut bytes).unwrap();
+    let text = String::from_utf8(bytes).unwrap();
+    for number in 1..=count {
+        let path = folder.path().join(format!("clips/c{number:03}.bvh"));
+        std::fs::write(path, text.replacen("0.000000", &format!("0.{number:06}"), 1)).unwrap();
+    }
+}
+
 /// Killed at any moment, what is there is whole, and importing again completes it.
 #[cfg(unix)]
 #[test]
 fn kill_nine_leaves_whole_clips() {
     let (folder, takes) = studio(1);
-    let mut bytes = Vec::new();
-    bvh::write(&takes[0].clip, &mut bytes).unwrap();
-    let text = String::from_utf8(bytes).unwrap();
-    // Files of different content: a comment's worth of difference in one offset is enough.
-    for number in 1..=100 {
-        let path = folder.path().join(format!("clips/c{number:03}.bvh"));
-        std::fs::write(path, text.replacen("0.000000", &format!("0.{number:06}"), 1)).unwrap();
-    }
+    copies(&folder, &takes, 100);
     let mut seen = 0;
     for millis in [30, 200, 600, 1200] {
         let mut import = Command::new(env!("CARGO_BIN_EXE_morec"))

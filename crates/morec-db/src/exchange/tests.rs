@@ -39,14 +39,12 @@ fn sorted(mut annotations: Vec<Annotation>) -> Vec<String> {
 
 /// What a form can say of an annotation.
 fn sayable(form: Form, all: &[Annotation]) -> Vec<Annotation> {
-    let all_whole = all.iter().all(|a| a.extent.is_none());
     let says = |a: &Annotation| {
         let mut said = a.clone();
         let spelled = || a.extent.or_else(|| secs(a, &lengths()).ok());
         match form {
             Form::Csv | Form::Json => return said,
-            Form::Tsv => said.extent = if all_whole { None } else { spelled() },
-            Form::Babel => {}
+            Form::Tsv | Form::Babel => {}
             _ => said.extent = spelled(),
         }
         if !matches!(form, Form::Tsv | Form::Eaf) {
@@ -59,6 +57,17 @@ fn sayable(form: Form, all: &[Annotation]) -> Vec<Annotation> {
         said
     };
     all.iter().map(says).collect()
+}
+
+/// Reads bytes: an error, or annotations whose times are times.
+fn can_be_said(form: Form, bytes: &[u8]) {
+    let Ok(labels) = read(form, bytes, Some("take_1"), &lengths()) else { return };
+    for a in labels.annotations {
+        if let Some((start, stop)) = a.extent {
+            assert!(start.is_finite() && stop.is_finite() && start >= 0.0 && stop > start, "{form:?} {a:?}");
+        }
+        assert!(a.score.is_none_or(f64::is_finite), "{form:?} {a:?}");
+    }
 }
 
 proptest! {
@@ -83,9 +92,42 @@ proptest! {
     }
 
     #[test]
-    fn no_bytes_panic(text in "[\\PC\t\n<>&\",:{}\\[\\]0-9a-z]{0,200}") {
+    fn no_bytes_panic(bytes in prop_oneof![
+        prop::collection::vec(any::<u8>(), 0..300),
+        "[\\PC\t\n<>&\",:{}\\[\\]0-9a-z]{0,200}".prop_map(String::into_bytes),
+    ]) {
         for form in Form::ALL {
-            let _ = read(form, text.as_bytes(), Some("take_1"), &lengths());
+            can_be_said(form, &bytes);
+        }
+    }
+
+    /// What was written well and then damaged: pieces of it repeated, lost, changed.
+    #[test]
+    fn damaged_files_are_read_or_refused(
+        all in prop::collection::vec(annotation(), 1..6),
+        damage in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>(), 0..4u8, any::<u8>()), 1..6),
+    ) {
+        for form in Form::ALL {
+            let of_clip = |a: &&Annotation| !form.is_of_one_clip() || a.clip == all[0].clip;
+            let all: Vec<Annotation> = all.iter().filter(of_clip).cloned().collect();
+            let mut bytes = write(form, &all, &lengths()).unwrap().into_bytes();
+            for (at, length, how, byte) in &damage {
+                if bytes.is_empty() {
+                    break;
+                }
+                let at = at.index(bytes.len());
+                let end = at + length.index(bytes.len() - at);
+                match how {
+                    0 => bytes[at] = *byte,
+                    1 => drop(bytes.drain(at..end)),
+                    2 => bytes.truncate(at),
+                    _ => {
+                        let again = bytes[at..end].to_vec();
+                        bytes.splice(at..at, again);
+                    }
+                }
+            }
+            can_be_said(form, &bytes);
         }
     }
 }

@@ -47,14 +47,22 @@ pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, St
         }
         return Ok(out);
     }
-    out.push_str(&format!("clip\tstart\tstop\tstart_secs\tstop_secs\tclass{last}\n"));
+    // Whole clips among stretches: they say so, and when they begin and end for whoever does not know the column.
+    let mixed = annotations.iter().any(|a| a.extent.is_none());
+    let column = if mixed { "\twhole_clip" } else { "" };
+    out.push_str(&format!("clip\tstart\tstop\tstart_secs\tstop_secs{column}\tclass{last}\n"));
     for a in annotations {
         let (start, stop) = secs(a, lengths)?;
         let cells = match frames(&Annotation { extent: Some((start, stop)), ..a.clone() }, lengths) {
             Some((from, to)) => format!("{from}\t{to}"),
             None => "\t".to_owned(),
         };
-        out.push_str(&format!("{}\t{cells}\t{start}\t{stop}\t{}{}\n", a.clip, a.class, person(a)));
+        let whole = match (mixed, a.extent) {
+            (false, _) => "",
+            (true, None) => "\t1",
+            (true, Some(_)) => "\t0",
+        };
+        out.push_str(&format!("{}\t{cells}\t{start}\t{stop}{whole}\t{}{}\n", a.clip, a.class, person(a)));
     }
     Ok(out)
 }

@@ -13,14 +13,15 @@ pub(super) struct ExtentColumns {
 impl Labels {
     /// Reads a table of labels, or of whole clips, which is one without extents.
     ///
-    /// Where a row gives both frames and seconds, the frames count. Fails on a missing column, an empty clip or
+    /// Where a row gives both frames and seconds, the frames count; where a column `whole_clip` says 1, neither. Fails on a missing column, an empty clip or
     /// class, a cell that is no number, a negative one, and a stop that does not come after its start.
     pub fn read(bytes: &[u8]) -> Result<Self, ParseError> {
         let table = Table::new(bytes)?;
         let (clip, class) = (table.need("clip")?, table.need("class")?);
         let person = table.find("person");
         let extents = ExtentColumns::find(&table)?;
-        let known = ["clip", "class", "person", "start", "stop", "start_secs", "stop_secs"];
+        let known = ["clip", "class", "person", "start", "stop", "start_secs", "stop_secs", "whole_clip"];
+        let whole = table.find("whole_clip");
         let mut warnings = table.unknown_columns(&known);
         let (rows, too_long) = table.rows();
         warnings.extend(too_long);
@@ -30,7 +31,10 @@ impl Labels {
                 Ok(Label {
                     clip: row.text(clip, "a clip's name")?,
                     class: row.text(class, "a class")?,
-                    extent: extents.read(row)?,
+                    extent: match whole.map(|column| row.cell(column)) {
+                        Some("1") => Extent::WholeClip,
+                        _ => extents.read(row)?,
+                    },
                     person: person.map(|p| row.cell(p)).filter(|p| !p.is_empty()).map(str::to_owned),
                     line: row.line,
                 })
@@ -104,6 +108,9 @@ mod tests {
         assert_eq!(secs.rows[0].extent, Extent::Secs(0.5, 1.25));
         assert_eq!(secs.rows[0].person.as_deref(), Some("p"));
         assert_eq!(secs.rows[1].person, None);
+        let some = read("clip\tclass\tstart\tstop\twhole_clip\na\tw\t3\t9\t0\nb\tw\t0\t9\t1\nc\tw\t\t\t1\n");
+        let extents: Vec<&Extent> = some.rows.iter().map(|row| &row.extent).collect();
+        assert_eq!(extents, [&Extent::Frames(3..9), &Extent::WholeClip, &Extent::WholeClip]);
         let whole = read("clip\tclass\tstyle\na\twave\tsoft\n");
         assert_eq!(whole.rows[0].extent, Extent::WholeClip);
         assert_eq!(whole.warnings.len(), 1);

@@ -27,4 +27,5 @@ pub use params::TrainParams;
 pub use recipe::{Recipe, train_model};
 pub use report::TrainingReport;
 pub use set::{Known, Source, TrainSample, TrainSet, TrainStream};
-pub use templates::{TrainError, Trained, train};
+pub use templates::{TrainError, Trained, scatters, train};
+pub use trim::moving_part;

@@ -168,6 +168,13 @@ fn verifier_of(
     Ok(verifier::learn(&chosen, set, metric, threshold, reach, params))
 }
 
+/// What [`Metric::new`] takes, of the samples of a set: `S_w + ρ tr(S_t)/d · I` and `S_t`. With no two samples of any class
+/// the metric is the identity. `None` if there is no sample.
+pub fn scatters(set: &TrainSet, params: &TrainParams) -> Option<(Symmetric, Symmetric)> {
+    let samples = set.samples();
+    (!samples.is_empty()).then(|| metric_of(set, &samples, params))
+}
+
 fn metric_of(set: &TrainSet, samples: &[TrainSample], params: &TrainParams) -> (Symmetric, Symmetric) {
     let dim = samples[0].rows.dim();
     let labelled = set.streams.iter().filter(|s| s.known.iter().any(|k| k.class.is_some()));

@@ -8,6 +8,7 @@ use morec_db::{Health, MotionDb};
 use serde::Serialize;
 
 use super::copies::{self, Copy};
+use crate::progress::Bar;
 
 /// Read everything in a database and say what is wrong
 #[derive(clap::Args)]
@@ -36,7 +37,7 @@ struct Checked {
 pub fn run(args: &Args) -> Result<ExitCode> {
     let health = MotionDb::open_read_only(&args.db)?.check()?;
     let copies = match args.copies {
-        true => Some(copies::find(&mut MotionDb::open_read_only(&args.db)?, None)?),
+        true => Some(copies::find(&mut MotionDb::open_read_only(&args.db)?, None, &Bar::stoppable()?)?),
         false => None,
     };
     let code = if health.faults.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE };

@@ -64,7 +64,8 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         super::print_json(&classes)?;
         return Ok(ExitCode::SUCCESS);
     }
-    let mut table = Table::new(["class", "samples", "secs", "proposed", "rejected"]);
+    let mut table = Table::new(["class", "samples", "secs", "proposed", "rejected"])
+        .least(["rejected", "secs", "proposed"]);
     for class in &classes {
         table.row([
             class.name.clone(),
@@ -74,7 +75,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             class.rejected.to_string(),
         ]);
     }
-    super::print(format_args!("{table}{} classes\n", classes.len()))?;
+    super::print_table(&table, &format!("{} classes\n", classes.len()))?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -107,7 +108,8 @@ fn samples(db: &MotionDb, class: &str, json: bool) -> Result<ExitCode> {
         super::print_json(&samples)?;
         return Ok(ExitCode::SUCCESS);
     }
-    let mut table = Table::new(["clip", "number", "start", "stop", "frames", "state", "score", "by"]);
+    let mut table = Table::new(["clip", "number", "start", "stop", "frames", "state", "score", "by"])
+        .least(["by", "frames", "score"]);
     for s in &samples {
         let frames = s.frames();
         table.row([
@@ -121,6 +123,6 @@ fn samples(db: &MotionDb, class: &str, json: bool) -> Result<ExitCode> {
             s.set_by.clone(),
         ]);
     }
-    super::print(table)?;
+    super::print_table(&table, "")?;
     Ok(ExitCode::SUCCESS)
 }

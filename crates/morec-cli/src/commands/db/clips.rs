@@ -79,13 +79,14 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if args.json {
         super::print_json(&clips)?;
     } else {
-        super::print(text(&clips))?;
+        print(&clips)?;
     }
     Ok(ExitCode::SUCCESS)
 }
 
-fn text(clips: &[ClipInfo]) -> String {
-    let mut table = Table::new(["clip", "secs", "Hz", "joints", "samples", "kB", "who", "tags"]);
+fn print(clips: &[ClipInfo]) -> Result<()> {
+    let mut table = Table::new(["clip", "secs", "Hz", "joints", "samples", "kB", "who", "tags"])
+        .least(["kB", "joints", "Hz", "tags", "who", "secs"]);
     for clip in clips {
         table.row([
             clip.name.clone(),
@@ -98,5 +99,5 @@ fn text(clips: &[ClipInfo]) -> String {
             clip.tags.join(" "),
         ]);
     }
-    format!("{table}{} clips\n", clips.len())
+    super::print_table(&table, &format!("{} clips\n", clips.len()))
 }

@@ -31,8 +31,8 @@ impl fmt::Display for Copy {
 }
 
 /// Every pair of near copies, or those with at least one of the clips `among` these names.
-pub fn find(db: &mut MotionDb, among: Option<&BTreeSet<&str>>) -> Result<Vec<Copy>> {
-    let index = SearchIndex::of_db(db, &Bar::new())?;
+pub fn find(db: &mut MotionDb, among: Option<&BTreeSet<&str>>, bar: &Bar) -> Result<Vec<Copy>> {
+    let index = SearchIndex::of_db(db, bar)?;
     let names: BTreeMap<ClipId, String> =
         db.clips(&ClipFilter::default())?.into_iter().map(|c| (c.id, c.name)).collect();
     let found = match among {

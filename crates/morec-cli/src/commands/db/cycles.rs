@@ -11,7 +11,6 @@ use morec_db::labels::{NewSample, SampleFilter, SampleId, State};
 use morec_db::{ClipFilter, ClipId, MotionDb};
 use serde::Serialize;
 
-use super::cut::METHOD;
 use crate::progress::Bar;
 use crate::table::Table;
 
@@ -73,7 +72,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let mut db = if args.split { MotionDb::open(&args.db)? } else { MotionDb::open_read_only(&args.db)? };
     let params = FeatureParams::default();
     let rows: BTreeMap<ClipId, _> =
-        db.rows(&params, &Bar::new())?.into_iter().map(|r| (r.clip, r.rows)).collect();
+        db.rows(&params, &Bar::stoppable()?)?.into_iter().map(|r| (r.clip, r.rows)).collect();
     let mut found = stretches(&db, args)?;
     for stretch in &mut found {
         let Some(rows) = rows.get(&stretch.id) else { continue };
@@ -89,7 +88,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if args.json {
         super::print_json(&found)?;
     } else {
-        super::print(text(&found))?;
+        print(&found)?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -112,7 +111,7 @@ fn stretches(db: &MotionDb, args: &Args) -> Result<Vec<Counted>> {
     Ok(match args.of {
         Of::Clips => clips.iter().filter_map(|c| stretch(c.id, 0.0, c.duration_secs())).collect(),
         Of::Cuts => {
-            let segments = db.segments(METHOD)?;
+            let segments = db.segments()?;
             let moving = segments.iter().filter(|s| s.kind == morec_db::SegmentKind::Motion);
             moving.filter_map(|s| stretch(s.clip, s.start_secs, s.stop_secs)).collect()
         }
@@ -170,8 +169,9 @@ fn split(db: &mut MotionDb, found: &[Counted]) -> Result<()> {
     Ok(())
 }
 
-fn text(found: &[Counted]) -> String {
-    let mut table = Table::new(["clip", "class", "start", "stop", "labels", "cycles", "period", "alike"]);
+fn print(found: &[Counted]) -> Result<()> {
+    let mut table = Table::new(["clip", "class", "start", "stop", "labels", "cycles", "period", "alike"])
+        .least(["alike", "labels", "class"]);
     for c in found {
         let figure =
             |value: Option<f64>, decimals| value.map_or_else(String::new, |v| format!("{v:.decimals$}"));
@@ -188,8 +188,9 @@ fn text(found: &[Counted]) -> String {
     }
     let repeated: Vec<&Counted> = found.iter().filter(|c| c.labels > 1).collect();
     let right = repeated.iter().filter(|c| c.cycles.is_some_and(|k| k.whole() == c.labels)).count();
-    match repeated.len() {
-        0 => table.to_string(),
-        all => format!("{table}{right} of {all} stretches of several labels counted right\n"),
-    }
+    let last = match repeated.len() {
+        0 => String::new(),
+        all => format!("{right} of {all} stretches of several labels counted right\n"),
+    };
+    super::print_table(&table, &last)
 }

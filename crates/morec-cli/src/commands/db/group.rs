@@ -14,7 +14,6 @@ use morec_db::labels::{NewSample, SampleFilter, State};
 use morec_db::{ClipFilter, ClipId, MotionDb, SegmentKind};
 use serde::Serialize;
 
-use super::cut::METHOD;
 use super::page::Page;
 use crate::progress::Bar;
 use crate::table::Table;
@@ -140,20 +139,20 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if args.json {
         super::print_json(&grouped)?;
     } else {
-        super::print(text(&grouped))?;
+        print(&grouped)?;
     }
     Ok(ExitCode::SUCCESS)
 }
 
 fn items(db: &mut MotionDb, args: &Args) -> Result<Vec<Item>> {
     let params = FeatureParams::default();
-    let rows = db.rows(&params, &Bar::new())?;
+    let rows = db.rows(&params, &Bar::stoppable()?)?;
     let clips = db.clips(&ClipFilter::default())?;
     let names: BTreeMap<ClipId, &str> = clips.iter().map(|c| (c.id, c.name.as_str())).collect();
     let spans: Vec<(ClipId, f64, f64, Option<String>)> = match args.of {
         Of::Clips => clips.iter().map(|c| (c.id, 0.0, c.duration_secs(), None)).collect(),
         Of::Cuts => {
-            let moving = db.segments(METHOD)?.into_iter().filter(|s| s.kind == SegmentKind::Motion);
+            let moving = db.segments()?.into_iter().filter(|s| s.kind == SegmentKind::Motion);
             moving.map(|s| (s.clip, s.start_secs, s.stop_secs, None)).collect()
         }
         Of::Labels => {
@@ -254,7 +253,7 @@ fn report(path: &Path, db: &MotionDb, args: &Args, grouped: &Grouped) -> Result<
     )
 }
 
-fn text(grouped: &Grouped) -> String {
+fn print(grouped: &Grouped) -> Result<()> {
     const SHOWN: usize = 6;
     let mut table = Table::new(["group", "members", "what"]);
     for (number, group) in grouped.groups.iter().enumerate() {
@@ -271,9 +270,9 @@ fn text(grouped: &Grouped) -> String {
         table.row([(number + 1).to_string(), group.len().to_string(), what.join(", ")]);
     }
     let members: usize = grouped.groups.iter().map(Vec::len).sum();
-    let mut out = format!("{table}{members} in {} groups\n", grouped.groups.len());
+    let mut last = format!("{members} in {} groups\n", grouped.groups.len());
     if let (Some(rand), Some(adjusted)) = (grouped.rand_index, grouped.adjusted_rand_index) {
-        out.push_str(&format!("against the classes: Rand index {rand:.3}, adjusted {adjusted:.3}\n"));
+        last.push_str(&format!("against the classes: Rand index {rand:.3}, adjusted {adjusted:.3}\n"));
     }
-    out
+    super::print_table(&table, &last)
 }

@@ -1,13 +1,13 @@
 //! `morec db import`: clips into a database.
 
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::Result;
 use morec::import::ImportOptions;
-use morec_db::{ClipReader, ClipUpdate, ImportReport, ImportSettings, MotionDb, Outcome, ReadFile};
+use morec_db::{ClipUpdate, ImportReport, ImportSettings, MotionDb, Outcome};
 use serde::Serialize;
 
 use super::copies::{self, Copy};
@@ -25,7 +25,9 @@ Examples:
   morec db import moves.mdb recordings/
   morec db import moves.mdb 13_29.amc --skeleton 13.asf --subject 13 --tag exercise
 
-Exit code 1 if a file was refused.")]
+Ctrl-C finishes what is being written and says what was imported; the same command then goes on where it stopped.
+
+Exit code 1 if a file was refused, 130 if it was stopped.")]
 pub struct Args {
     /// The database; it is made if there is none
     #[arg(value_name = "DB")]
@@ -55,26 +57,6 @@ pub struct Args {
     read: ReadArgs,
 }
 
-/// Reads files as all commands do.
-struct Reader<'a>(&'a ReadArgs);
-
-impl ClipReader for Reader<'_> {
-    fn read(&self, path: &Path, bytes: &[u8]) -> Result<ReadFile, String> {
-        let opened = files::parse(path, bytes, self.0).map_err(|error| {
-            // The report names the path itself.
-            let text = format!("{error:#}");
-            let prefix = format!("{}: ", path.display());
-            text.strip_prefix(&prefix).map_or(text.clone(), str::to_owned)
-        })?;
-        Ok(ReadFile {
-            format: format!("{:?}", opened.format).to_lowercase(),
-            skeleton: opened.skeleton,
-            clips: opened.clips,
-            warnings: opened.warnings,
-        })
-    }
-}
-
 /// Imports and reports.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let begun = Instant::now();
@@ -96,15 +78,19 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             remove_tags: Vec::new(),
         },
     };
-    let report = db.import(&paths, &Reader(&args.read), &settings, &Bar::new())?;
-    let near_copies = near_copies(&mut db, &report)?;
+    let bar = Bar::stoppable()?;
+    let report = db.import(&paths, &args.read.reader(), &settings, &bar)?;
+    let near_copies = near_copies(&mut db, &report, &bar)?;
     if args.json {
         super::print_json(&Reported { report: &report, near_copies: &near_copies })?;
     } else {
-        super::print(text(&report, begun.elapsed().as_secs_f64()))?;
+        super::print(text(&report, paths.len(), begun.elapsed().as_secs_f64()))?;
         for copy in &near_copies {
             super::print(format_args!("  {copy}\n"))?;
         }
+    }
+    if report.cancelled {
+        return Ok(super::STOPPED.into());
     }
     let refused = report.counts()[4];
     Ok(if refused > 0 { ExitCode::FAILURE } else { ExitCode::SUCCESS })
@@ -118,13 +104,13 @@ struct Reported<'a> {
 }
 
 /// Which of the clips that have just come are nearly others.
-fn near_copies(db: &mut MotionDb, report: &ImportReport) -> Result<Vec<Copy>> {
+fn near_copies(db: &mut MotionDb, report: &ImportReport, bar: &Bar) -> Result<Vec<Copy>> {
     let names = report.files.iter().flat_map(|(_, outcome)| match outcome {
         Outcome::Imported { clips, .. } => clips.as_slice(),
         _ => &[],
     });
     let names: BTreeSet<&str> = names.map(String::as_str).collect();
-    if names.is_empty() || report.cancelled { Ok(Vec::new()) } else { copies::find(db, Some(&names)) }
+    if names.is_empty() || report.cancelled { Ok(Vec::new()) } else { copies::find(db, Some(&names), bar) }
 }
 
 /// The same file is the same path, wherever the command is run.
@@ -132,7 +118,7 @@ fn absolute(path: PathBuf) -> PathBuf {
     path.canonicalize().unwrap_or(path)
 }
 
-fn text(report: &ImportReport, secs: f64) -> String {
+fn text(report: &ImportReport, files: usize, secs: f64) -> String {
     const SHOWN: usize = 20;
     let [imported, warned, known, copies, refused] = report.counts();
     let clips: usize = report
@@ -181,7 +167,10 @@ fn text(report: &ImportReport, secs: f64) -> String {
         lines.push(format!("  and {more} more notes (--json has all)"));
     }
     if report.cancelled {
-        lines.push("cancelled: the files named above are done, the rest was not looked at".to_owned());
+        let left = files - report.files.len();
+        lines.push(format!(
+            "stopped: {left} files were not looked at; the same command goes on where this one stopped"
+        ));
     }
     lines.join("\n") + "\n"
 }

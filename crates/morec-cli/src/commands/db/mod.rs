@@ -19,17 +19,18 @@ mod search;
 mod strip;
 mod vacuum;
 
-use std::io::Write;
+use std::io::{IsTerminal, Write};
 use std::process::ExitCode;
 
 use anyhow::Result;
 use clap::Subcommand;
 use morec::labels::ClipLength;
 use morec_db::exchange::Lengths;
-use morec_db::{ClipFilter, ClipInfo, MotionDb};
+use morec_db::{ClipFilter, ClipInfo, DbError, MotionDb};
 use serde::Serialize;
 
 use crate::figures::write_json;
+use crate::table::Table;
 
 /// Keep clips, cuts, classes and labels in one file, and search them
 ///
@@ -65,8 +66,21 @@ enum Command {
     Vacuum(vacuum::Args),
 }
 
+/// Exit code of a command that was told to stop by Ctrl-C.
+const STOPPED: u8 = 130;
+
 /// Does what was asked.
 pub fn run(args: Args) -> Result<ExitCode> {
+    match of(args) {
+        Err(error) if matches!(error.downcast_ref(), Some(DbError::Cancelled)) => {
+            eprintln!("morec: stopped; the database is as it was before");
+            Ok(STOPPED.into())
+        }
+        other => other,
+    }
+}
+
+fn of(args: Args) -> Result<ExitCode> {
     match args.command {
         Command::Init(args) => init::run(&args),
         Command::Import(args) => import::run(&args),
@@ -104,6 +118,21 @@ fn print_json(value: &impl Serialize) -> Result<()> {
 fn print(text: impl std::fmt::Display) -> Result<()> {
     let mut out = std::io::stdout().lock();
     write!(out, "{text}")?;
+    out.flush()?;
+    Ok(())
+}
+
+/// A table that fits the terminal, and a last line below it. Whoever reads it through a pipe gets all of it, separated by
+/// tabs, and the last line on standard error.
+fn print_table(table: &Table, last: &str) -> Result<()> {
+    let mut out = std::io::stdout().lock();
+    if std::io::stdout().is_terminal() {
+        let width = terminal_size::terminal_size().map_or(80, |(width, _)| usize::from(width.0));
+        write!(out, "{}{last}", table.fitted(width))?;
+    } else {
+        write!(out, "{}", table.tabbed())?;
+        eprint!("{last}");
+    }
     out.flush()?;
     Ok(())
 }

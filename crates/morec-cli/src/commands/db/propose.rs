@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use morec_db::labels::{NewSample, SampleFilter, SampleId, State};
-use morec_db::{ClipFilter, ClipId, MotionDb, Proposal, ProposeOptions};
+use morec_db::{ClipFilter, ClipId, MotionDb, Proposal, ProposeOptions, questions};
 use serde::Serialize;
 
 use crate::progress::Bar;
@@ -14,15 +14,16 @@ use crate::table::Table;
 
 /// Propose the other samples of the classes that are labelled
 ///
-/// The accepted samples look for their like in all clips; what they find is kept as proposed, the surest first. Look at
-/// the sure ones in bulk and at the doubtful ones singly; what you accept teaches the next round, what you reject is not
-/// asked about again. Proposals of an earlier round that nobody judged are replaced.
+/// The accepted samples look for their like in all clips; what they find is kept as proposed, with how likely it is right
+/// as far as your answers tell. Look at the sure ones in bulk and at the doubtful ones singly; what you accept teaches
+/// the next round, what you reject speaks against its like and is not asked about again. Every class goes on being asked
+/// about, however unlikely its best candidates are. Proposals of an earlier round that nobody judged are replaced.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   morec db propose moves.mdb
   morec db propose moves.mdb --accept 0.6               # take those of at least this score
-  morec db propose moves.mdb --list --doubtful          # the least certain first
+  morec db propose moves.mdb --list --doubtful          # those whose answers tell most first
   morec db export moves.mdb ask.csv --state proposed    # edit its column state, then: morec db label moves.mdb ask.csv")]
 pub struct Args {
     /// The database
@@ -31,9 +32,6 @@ pub struct Args {
     /// Only these classes, separated by commas
     #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
     classes: Vec<String>,
-    /// How far a proposal may be, in multiples of how far samples of its class are from one another
-    #[arg(long, value_name = "SHARE", default_value_t = ProposeOptions::default().reach)]
-    reach: f32,
     /// Accept the proposals that are there with at least this score, 0 to 1
     #[arg(long, value_name = "SCORE")]
     accept: Option<f64>,
@@ -43,7 +41,7 @@ pub struct Args {
     /// Only list the proposals that are there
     #[arg(long)]
     list: bool,
-    /// List the least certain first
+    /// List those whose answers tell most first: the least certain, classes in turn
     #[arg(long)]
     doubtful: bool,
     /// List at most so many
@@ -63,9 +61,8 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         return list(args, &MotionDb::open_read_only(&args.db)?);
     }
     let mut db = MotionDb::open(&args.db)?;
-    let options =
-        ProposeOptions { classes: args.classes.clone(), reach: args.reach, ..ProposeOptions::default() };
-    let proposals = db.propose(&options, &Bar::new())?;
+    let options = ProposeOptions { classes: args.classes.clone(), ..ProposeOptions::default() };
+    let proposals = db.propose(&options, &Bar::stoppable()?)?;
     let old: Vec<SampleId> = proposed(&db)?.into_iter().map(|s| s.id).collect();
     db.remove_samples(&old)?;
     let samples: Vec<NewSample> = proposals.iter().cloned().map(NewSample::from).collect();
@@ -109,6 +106,7 @@ fn list(args: &Args, db: &MotionDb) -> Result<ExitCode> {
             class: s.class,
             start_secs: s.start_secs,
             stop_secs: s.stop_secs,
+            whole_clip: s.whole_clip,
             score: s.score.unwrap_or(0.0) as f32,
         })
         .collect();
@@ -124,8 +122,10 @@ struct Named {
 }
 
 fn show(args: &Args, db: &MotionDb, mut proposals: Vec<Proposal>) -> Result<ExitCode> {
+    let sure = proposals.iter().filter(|p| p.is_sure()).count();
     if args.doubtful {
-        proposals.reverse();
+        let order = questions(&proposals, proposals.len());
+        proposals = order.into_iter().map(|at| proposals[at].clone()).collect();
     }
     let names: BTreeMap<ClipId, String> =
         db.clips(&ClipFilter::default())?.into_iter().map(|c| (c.id, c.name)).collect();
@@ -135,7 +135,7 @@ fn show(args: &Args, db: &MotionDb, mut proposals: Vec<Proposal>) -> Result<Exit
         super::print_json(&all)?;
         return Ok(ExitCode::SUCCESS);
     }
-    let mut table = Table::new(["clip", "class", "start", "stop", "score"]);
+    let mut table = Table::new(["clip", "class", "start", "stop", "score"]).least(["stop"]);
     for Named { name, proposal: p } in all.iter().take(args.limit) {
         let secs = |secs: f64| format!("{secs:.2}");
         table.row([
@@ -147,7 +147,12 @@ fn show(args: &Args, db: &MotionDb, mut proposals: Vec<Proposal>) -> Result<Exit
         ]);
     }
     let more = all.len().saturating_sub(args.limit);
-    let more = if more > 0 { format!(", {more} of them not shown") } else { String::new() };
-    super::print(format_args!("{table}{} proposed{more}\n", all.len()))?;
+    let more = if more > 0 { format!("; {more} not shown") } else { String::new() };
+    let last = format!(
+        "{} proposed, {sure} of them likelier right than wrong{more}
+",
+        all.len()
+    );
+    super::print_table(&table, &last)?;
     Ok(ExitCode::SUCCESS)
 }

@@ -7,8 +7,8 @@ use anyhow::Result;
 use morec_db::labels::{SampleFilter, State};
 use morec_db::{ClipFilter, MotionDb, SegmentKind};
 
+use super::megabytes;
 use super::page::Page;
-use super::{cut, megabytes};
 
 /// Write a page of HTML with a strip of poses for clips, cuts and samples
 ///
@@ -82,7 +82,7 @@ fn classes(page: &mut Page, db: &MotionDb, limit: usize) -> Result<()> {
 
 /// Clips as a whole, and their cuts.
 fn clips(page: &mut Page, db: &MotionDb, args: &Args) -> Result<()> {
-    let segments = db.segments(cut::METHOD)?;
+    let segments = db.segments()?;
     let clips = db.clips(&ClipFilter { name: args.name.clone(), ..ClipFilter::default() })?;
     page.heading("Clips");
     for clip in clips.iter().take(args.limit) {

@@ -99,7 +99,7 @@ struct Named {
 pub fn run(args: &Args) -> Result<ExitCode> {
     let begun = Instant::now();
     let mut db = MotionDb::open_read_only(&args.db)?;
-    let index = SearchIndex::of_db(&mut db, &Bar::new())?;
+    let index = SearchIndex::of_db(&mut db, &Bar::stoppable()?)?;
     let (example, shown) = example(&db, &index, args)?;
     let metric = if args.learned { Some(learn(&db, &index, args)?) } else { None };
     let names: BTreeMap<ClipId, String> =
@@ -124,7 +124,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if args.json {
         super::print_json(&found)?;
     } else {
-        super::print(text(&found, index.tick_hz()))?;
+        print(&found, index.tick_hz())?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -179,8 +179,8 @@ fn report(path: &Path, db: &MotionDb, example: &StoredClip, args: &Args, found: 
     page.write(path, &format!("Like {}", args.example), &head)
 }
 
-fn text(found: &Found, tick_hz: f64) -> String {
-    let mut table = Table::new(["clip", "start", "stop", "score", "path", ""]);
+fn print(found: &Found, tick_hz: f64) -> Result<()> {
+    let mut table = Table::new(["clip", "start", "stop", "score", "path", "seen"]).least(["path"]);
     for named in &found.hits {
         let hit = &named.hit;
         table.row([
@@ -193,12 +193,12 @@ fn text(found: &Found, tick_hz: f64) -> String {
         ]);
     }
     let minutes = found.ticks as f64 / tick_hz / 60.0;
-    let mut text = format!("{table}{minutes:.1} min searched in {:.1} ms\n", 1e3 * found.search_secs);
+    let mut text = format!("{minutes:.1} min searched in {:.1} ms\n", 1e3 * found.search_secs);
     if let Some(learned) = &found.learned {
         text.push_str(&format!(
             "by a metric learned from {} samples of {} classes\n",
             learned.samples, learned.classes
         ));
     }
-    text
+    super::print_table(&table, &text)
 }

@@ -1,0 +1,120 @@
+//! What proposing works on: rows of all clips, and the stretches that were judged.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use morec::features::BoneSet;
+use morec::train::moving_part;
+
+use crate::labels::{DbSample, State};
+use crate::rows::ClipRows;
+use crate::search::layout::{Laid, lay_out};
+use crate::{ClipId, ClipInfo};
+
+/// Shorter samples are no motion.
+const LEAST_TICKS: usize = 4;
+
+/// A clip's rows over all bones, and what else counts.
+pub struct Clip {
+    pub id: ClipId,
+    pub laid: Laid,
+    pub end_secs: f64,
+    /// Who is seen; the clip's name if nobody is named.
+    pub group: String,
+}
+
+/// A stretch that somebody judged.
+pub struct Judged {
+    /// Its clip's place in [`Material::clips`].
+    pub clip: usize,
+    /// Its class's place in [`Material::classes`]; none if no sample of the class is accepted.
+    pub class: Option<usize>,
+    pub accepted: bool,
+    /// Whether the clip as a whole was judged; `ticks` are then its moving part.
+    pub whole: bool,
+    pub ticks: Range<usize>,
+}
+
+pub struct Material {
+    /// Names of classes of which a sample is accepted.
+    pub classes: Vec<String>,
+    /// For each class, whether all its samples are whole clips.
+    pub whole: Vec<bool>,
+    pub clips: Vec<Clip>,
+    pub judged: Vec<Judged>,
+    /// Bones that every clip with an accepted sample shows.
+    pub bones: BoneSet,
+}
+
+impl Material {
+    pub fn new(rows: Vec<ClipRows>, infos: &[ClipInfo], samples: &[DbSample], tick_hz: f64) -> Self {
+        let infos: BTreeMap<ClipId, &ClipInfo> = infos.iter().map(|c| (c.id, c)).collect();
+        let mut taught = BoneSet::ALL;
+        let (mut moving, mut places) = (Vec::new(), BTreeMap::new());
+        let mut clips = Vec::new();
+        for of in rows {
+            let Some(info) = infos.get(&of.clip) else { continue };
+            let own: Vec<&DbSample> = samples.iter().filter(|s| s.clip == of.clip).collect();
+            if own.iter().any(|s| s.state == State::Accepted) {
+                taught = taught.and(of.bones);
+            }
+            let whole = own.iter().any(|s| s.whole_clip);
+            moving.push(if whole { moving_part(&of.rows, of.bones) } else { 0..0 });
+            places.insert(of.clip, clips.len());
+            clips.push(Clip {
+                id: of.clip,
+                laid: lay_out(&of.rows, of.bones),
+                end_secs: info.duration_secs(),
+                group: info.subject.clone().unwrap_or_else(|| info.name.clone()),
+            });
+        }
+        let ticks = |s: &DbSample| {
+            let clip = *places.get(&s.clip)?;
+            let tick = |secs: f64| ((secs * tick_hz).round() as usize).min(clips[clip].laid.rows.len());
+            let ticks =
+                if s.whole_clip { moving[clip].clone() } else { tick(s.start_secs)..tick(s.stop_secs) };
+            (ticks.len() >= LEAST_TICKS).then_some((clip, ticks))
+        };
+        let usable: Vec<(&DbSample, (usize, Range<usize>))> = samples
+            .iter()
+            .filter(|s| s.state != State::Proposed)
+            .filter_map(|s| Some((s, ticks(s)?)))
+            .collect();
+        let accepted = || usable.iter().filter(|(s, _)| s.state == State::Accepted);
+        let mut classes: Vec<String> = accepted().map(|(s, _)| s.class.clone()).collect();
+        classes.sort();
+        classes.dedup();
+        let whole = classes
+            .iter()
+            .map(|c| accepted().filter(|(s, _)| s.class == *c).all(|(s, _)| s.whole_clip))
+            .collect();
+        let judged = usable
+            .iter()
+            .map(|(s, (clip, ticks))| Judged {
+                clip: *clip,
+                class: classes.iter().position(|c| *c == s.class),
+                accepted: s.state == State::Accepted,
+                whole: s.whole_clip,
+                ticks: ticks.clone(),
+            })
+            .collect();
+        Self { classes, whole, clips, judged, bones: taught }
+    }
+
+    /// Accepted samples of each class.
+    pub fn accepted(&self, class: usize) -> impl Iterator<Item = (usize, &Judged)> {
+        self.judged.iter().enumerate().filter(move |(_, j)| j.accepted && j.class == Some(class))
+    }
+}
+
+/// Ticks in both, of ticks in either.
+pub fn overlap(a: &Range<usize>, b: &Range<usize>) -> f64 {
+    let shared = a.end.min(b.end).saturating_sub(a.start.max(b.start));
+    shared as f64 / (a.end.max(b.end) - a.start.min(b.start)).max(1) as f64
+}
+
+/// Ticks in both, of the shorter.
+pub fn overlap_share(a: &Range<usize>, b: &Range<usize>) -> f64 {
+    let shared = a.end.min(b.end).saturating_sub(a.start.max(b.start));
+    shared as f64 / a.len().min(b.len()).max(1) as f64
+}

@@ -1,0 +1,119 @@
+//! Templates and metric as clips of one set of bones see them.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use morec::classes::ClassId;
+use morec::features::{BoneSet, Rows};
+use morec::templates::{Bank, Metric, Symmetric};
+use morec::train::{Known, Source, TrainParams, TrainSet, TrainStream, scatters};
+
+use super::ProposeOptions;
+use super::material::{Judged, Material};
+use crate::search::layout::shared_columns;
+
+/// Pairs of samples that tell how a class varies: more say the same, and a round must stay quick.
+const PAIRS: usize = 40;
+
+/// What clips that show these bones are compared with.
+pub struct View {
+    /// Columns of laid-out rows that count.
+    columns: Vec<usize>,
+    metric: Metric,
+    /// Brings distances over these bones to the scale of all.
+    pub factor: f32,
+    /// A template for each of the chosen stretches; empty where its clip lacks bones.
+    pub bank: Bank,
+}
+
+impl View {
+    /// Laid-out rows under the metric.
+    pub fn map(&self, laid: &Rows) -> Rows {
+        self.metric.apply_all(&picked(laid, &self.columns))
+    }
+}
+
+fn picked(rows: &Rows, columns: &[usize]) -> Rows {
+    let values = rows.iter().flat_map(|row| columns.iter().map(|c| row[*c])).collect();
+    Rows::from_values(columns.len(), values)
+}
+
+/// Samples that look for others and rejected stretches that speak against them, as places in [`Material::judged`].
+pub fn chosen(material: &Material, options: &ProposeOptions) -> Vec<usize> {
+    let mut chosen = Vec::new();
+    for class in 0..material.classes.len() {
+        let mut by_group: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+        for (at, sample) in material.accepted(class) {
+            by_group.entry(&material.clips[sample.clip].group).or_default().push(at);
+        }
+        let longest = by_group.values().map(Vec::len).max().unwrap_or(0);
+        let turns = (0..longest).flat_map(|turn| by_group.values().filter_map(move |g| g.get(turn)));
+        chosen.extend(turns.take(options.templates_a_class.max(1)));
+    }
+    let rejected: Vec<usize> =
+        material.judged.iter().enumerate().filter(|(_, j)| !j.accepted).map(|(at, _)| at).collect();
+    let stride = rejected.len().div_ceil(options.negatives.max(1)).max(1);
+    chosen.extend(rejected.into_iter().step_by(stride));
+    chosen
+}
+
+/// A view for each set of bones that clips show, of those that are taught. O(pairs · rows² · d + d³).
+pub fn views(material: &Material, chosen: &[usize]) -> BTreeMap<u16, View> {
+    let columns = shared_columns(material.bones);
+    let Some((ridged, total)) = scatters(&train_set(material, &columns), &params()) else {
+        return BTreeMap::new();
+    };
+    let sets: BTreeSet<u16> = material.clips.iter().map(|c| bits(c.laid.bones.and(material.bones))).collect();
+    let view = |set: u16| {
+        let bones = material.bones.indices().filter(|b| set >> b & 1 == 1).fold(BoneSet::NONE, BoneSet::with);
+        let kept = shared_columns(bones);
+        let keep: Vec<usize> = (0..columns.len()).filter(|at| kept.contains(&columns[*at])).collect();
+        let part = total.restricted(&keep);
+        let factor = (trace(&total) / trace(&part).max(1e-12)) as f32;
+        let metric = Metric::new(&ridged.restricted(&keep), &part);
+        let template = |judged: &Judged| {
+            let laid = &material.clips[judged.clip].laid;
+            match laid.bones.and(bones) == bones {
+                true => metric.apply_all(&picked(&laid.rows.slice(judged.ticks.clone()), &kept)),
+                false => Rows::new(kept.len()),
+            }
+        };
+        let templates: Vec<Rows> = chosen.iter().map(|at| template(&material.judged[*at])).collect();
+        (set, View { bank: Bank::new(&templates, kept.len()), columns: kept, metric, factor })
+    };
+    sets.into_iter().filter(|set| *set != 0).map(view).collect()
+}
+
+/// Which view a clip is seen with.
+pub fn bits(bones: BoneSet) -> u16 {
+    bones.indices().fold(0, |bits, bone| bits | 1 << bone)
+}
+
+fn trace(matrix: &Symmetric) -> f64 {
+    matrix.unpack().trace()
+}
+
+fn params() -> TrainParams {
+    TrainParams { max_pairs: PAIRS, ..TrainParams::default() }
+}
+
+/// The clips that hold accepted samples.
+fn train_set(material: &Material, columns: &[usize]) -> TrainSet {
+    let mut by_clip: BTreeMap<usize, Vec<&Judged>> = BTreeMap::new();
+    for judged in material.judged.iter().filter(|j| j.accepted) {
+        by_clip.entry(judged.clip).or_default().push(judged);
+    }
+    let stream = |(clip, judged): (usize, Vec<&Judged>)| {
+        let known =
+            |j: &&Judged| Some(Known { ticks: j.ticks.clone(), class: Some(ClassId(j.class? as u16)) });
+        TrainStream {
+            name: String::new(),
+            group: material.clips[clip].group.clone(),
+            person: None,
+            source: Source::Labelled,
+            rest_is_background: false,
+            rows: picked(&material.clips[clip].laid.rows, columns),
+            known: judged.iter().filter_map(known).collect(),
+        }
+    };
+    TrainSet { classes: material.classes.clone(), streams: by_clip.into_iter().map(stream).collect() }
+}
