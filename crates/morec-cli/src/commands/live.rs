@@ -20,6 +20,7 @@ use crate::live::Said;
 use crate::live::address::Address;
 use crate::live::clip::ClipSource;
 use crate::live::json::JsonSource;
+use crate::live::layout::LayoutArg;
 use crate::live::sinks::Outlet;
 use crate::live::status::{StatusLine, summary};
 use crate::live::vmc::VmcSource;
@@ -73,6 +74,9 @@ pub struct Args {
     /// Tell motions at their end only
     #[arg(long)]
     no_early: bool,
+    /// How recognition is laid out on threads; detections are the same
+    #[arg(long, value_enum, default_value = "inline")]
+    layout: LayoutArg,
     /// End after so many seconds
     #[arg(long = "for", value_name = "SECS", value_parser = secs)]
     secs: Option<f64>,
@@ -201,7 +205,8 @@ fn listen(address: &Address, index: &MotionIndex, options: &ImportOptions, args:
     };
     eprintln!("morec: listening to {name}");
     let events = EventOptions { early: !args.no_early, refractory_secs: args.refractory };
-    let session_options = SessionOptions { events, overload, ..SessionOptions::default() };
+    let session_options =
+        SessionOptions { layout: args.layout.into(), events, overload, ..SessionOptions::default() };
     let (session, readers) = Session::start(&index.model, source, &session_options)?;
     let reader = readers.into_iter().next().context("a session has a reader")?;
     Ok(Listening { name, session, reader })

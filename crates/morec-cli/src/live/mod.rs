@@ -3,6 +3,7 @@
 pub mod address;
 pub mod clip;
 pub mod json;
+pub mod layout;
 pub mod lines;
 pub mod loaded;
 pub mod memory;

@@ -67,6 +67,8 @@ pub(super) struct Lane {
     outlets: Outlets,
     cells: Arc<Cells>,
     stop: Arc<AtomicBool>,
+    /// Frames of performers beyond those that can be followed.
+    beyond: u64,
     /// The feed has ended, and the performers have said their last.
     finished: bool,
 }
@@ -89,6 +91,7 @@ impl Lane {
             outlets,
             cells: cells.clone(),
             stop: stop.clone(),
+            beyond: 0,
             finished: false,
         };
         (lane, readers)
@@ -136,7 +139,7 @@ impl Lane {
                 let (stock, outlets) = (&self.stock, &mut self.outlets);
                 performer.push(frame, &mut |bones| stock.get(bones), &mut |event| outlets.keep(event));
             }
-            None => _ = self.cells.unusable.fetch_add(1, Relaxed),
+            None => self.beyond += 1,
         }
         self.cells.frame(frame, wall_now_secs());
     }
@@ -162,9 +165,9 @@ impl Lane {
     }
 
     fn count(&self) {
-        let sum = |of: fn(&Performer) -> u64| self.performers.iter().map(of).sum();
+        let sum = |of: fn(&Performer) -> u64| self.performers.iter().map(of).sum::<u64>();
         self.cells.suppressed.store(sum(Performer::suppressed), Relaxed);
-        self.cells.unusable.store(sum(Performer::unusable), Relaxed);
+        self.cells.unusable.store(sum(Performer::unusable) + self.beyond, Relaxed);
     }
 }
 

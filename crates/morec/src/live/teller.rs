@@ -30,13 +30,14 @@ impl Teller {
         out: &mut impl FnMut(Event),
     ) {
         let before_secs = &mut self.class_secs[d.class.index()];
-        if d.stop_secs - *before_secs < self.refractory_secs {
+        // A method that lets rivals wait may report what ended first after what ended later.
+        if (d.stop_secs - *before_secs).abs() < self.refractory_secs {
             self.suppressed += 1;
             early.cancel(Some(d.reported_secs), &mut self.say(wall_secs, out));
             return;
         }
-        *before_secs = d.stop_secs;
-        self.any_secs = d.stop_secs;
+        *before_secs = before_secs.max(d.stop_secs);
+        self.any_secs = self.any_secs.max(d.stop_secs);
         let mut say = self.say(wall_secs, out);
         let motion = early.take(d).unwrap_or_else(|| say.new_motion());
         say.event(

@@ -15,6 +15,7 @@ mod made;
 mod pose_golden;
 mod session;
 mod smooth_real;
+mod stages;
 mod svrdm;
 mod thesis;
 mod thesis_method;
