@@ -98,7 +98,7 @@ fn packets_take_no_memory() {
     let (mut frame, mut frames) = (Frame::default(), 0);
     let mut play = |packets: &[(f64, Vec<u8>)]| {
         for (secs, packet) in packets {
-            receiver.packet(1, *secs, packet);
+            receiver.packet(1u8, *secs, packet);
             receiver.tick(*secs);
             while let Some(next) = receiver.next(&mut frame) {
                 frames += usize::from(matches!(next, Next::Frame));

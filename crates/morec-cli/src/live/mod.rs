@@ -1,6 +1,8 @@
 //! What has sockets and files: sources of poses for live sessions, and where events go.
 
 pub mod address;
+pub mod axis;
+pub mod broadcast;
 pub mod clip;
 pub mod json;
 pub mod layout;

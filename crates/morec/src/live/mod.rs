@@ -12,6 +12,7 @@
 //! stream is cut into pushes. In sessions and pools frames travel over bounded wait-free rings; when one is full,
 //! [`Overload`] says who gives way, and everything that is dropped is counted in [`Status`].
 
+pub mod axis;
 mod clock;
 mod early;
 mod event;
