@@ -32,6 +32,7 @@ mod session;
 mod source;
 mod stages;
 mod status;
+mod sync;
 mod teller;
 pub mod vmc;
 mod waits;

@@ -1,9 +1,9 @@
 //! Sleep of a thread that has nothing to do, and its end.
 
-use std::sync::OnceLock;
-use std::sync::atomic::{AtomicBool, Ordering, fence};
-use std::thread::{self, Thread};
 use std::time::Duration;
+
+// By this name, so that the models in `loom/` can put theirs in its place.
+use super::sync::{AtomicBool, OnceLock, Ordering, Thread, current, fence, park_timeout};
 
 /// How long a thread sleeps that missed its waking call, if such a thing should happen.
 pub(super) const NAP: Duration = Duration::from_millis(20);
@@ -30,13 +30,14 @@ impl Waker {
 
     /// Sleeps for at most `most` unless `ready`, or until woken.
     pub(super) fn sleep(&self, most: Duration, ready: impl FnOnce() -> bool) {
-        let me = thread::current();
+        let me = current();
         // Another thread than the one that slept first is not woken; it looks again soon.
         let known = self.thread.get_or_init(|| me.clone()).id() == me.id();
-        self.asleep.store(true, Ordering::Relaxed);
+        // Whoever reads this knows the thread, too.
+        self.asleep.store(true, Ordering::Release);
         fence(Ordering::SeqCst);
         if !ready() {
-            thread::park_timeout(if known { most.min(NAP) } else { most.min(Duration::from_millis(2)) });
+            park_timeout(if known { most.min(NAP) } else { most.min(Duration::from_millis(2)) });
         }
         self.asleep.store(false, Ordering::Relaxed);
     }

@@ -7,6 +7,7 @@ mod cases;
 mod conformance;
 mod cuts;
 mod engines;
+mod for_ever;
 mod golden;
 mod index_file;
 mod kit;

@@ -64,7 +64,7 @@ pub fn trained(params: SvrdmTrainParams) -> (Model, TrainingReport) {
     (model.into(), report)
 }
 
-fn index_of(model: Model) -> MotionIndex {
+pub fn index_of(model: Model) -> MotionIndex {
     MotionIndex { model, roles: BTreeMap::new(), provenance: Provenance::default() }
 }
 

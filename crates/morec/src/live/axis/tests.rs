@@ -174,8 +174,11 @@ fn frames_without_positions_are_of_the_skeleton_that_was_given() {
     assert!((length - 0.45).abs() < 1e-9, "{length}");
 }
 
+/// A frame's avatar, number and values.
+type Decoded = (u32, u32, Vec<f32>);
+
 /// What a decoder makes of `bytes` in these pieces: frames' numbers, and errors.
-fn decoded(bytes: &[u8], cuts: &[usize]) -> (Vec<(u32, u32, Vec<f32>)>, Vec<AxisError>) {
+fn decoded(bytes: &[u8], cuts: &[usize]) -> (Vec<Decoded>, Vec<AxisError>) {
     let mut decoder = AxisDecoder::new();
     let (mut frames, mut errors) = (vec![], vec![]);
     let mut out = |found: Result<AxisFrame<'_>, AxisError>| match found {
