@@ -330,6 +330,14 @@ typedef struct MorecIndexFacts {
      * How often a second the stream is compared.
      */
     double tick_hz;
+    /**
+     * How it recognises: a `MorecMethod`. Later releases may know more of them. Not in the first version of this struct.
+     */
+    int32_t method;
+    /**
+     * 1 if frames must say how joints are turned, 0 if where they are is enough. Not in the first version of this struct.
+     */
+    uint32_t needs_rotations;
 } MorecIndexFacts;
 
 /**

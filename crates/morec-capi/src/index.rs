@@ -4,10 +4,21 @@ use std::ffi::c_char;
 use std::path::Path;
 
 use morec::index::MotionIndex;
+use morec::live::Model;
 
 use crate::handles::{self, MorecIndex};
 use crate::memory::{self, Versioned};
 use crate::status::{Error, MorecStatus, guard};
+
+/// How an index recognises.
+#[repr(i32)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MorecMethod {
+    /// Templates matched elastically, over the places of joints.
+    Templates = 0,
+    /// The method of 2009, over the rotations of joints.
+    Svrdm = 1,
+}
 
 /// What an index is.
 #[repr(C)]
@@ -24,12 +35,16 @@ pub struct MorecIndexFacts {
     pub sample_count: u64,
     /// How often a second the stream is compared.
     pub tick_hz: f64,
+    /// How it recognises: a `MorecMethod`. Later releases may know more of them. Not in the first version of this struct.
+    pub method: i32,
+    /// 1 if frames must say how joints are turned, 0 if where they are is enough. Not in the first version of this struct.
+    pub needs_rotations: u32,
 }
 
 // SAFETY: repr(C), begins with its size, numbers only.
 unsafe impl Versioned for MorecIndexFacts {
     const NAME: &'static str = "MorecIndexFacts";
-    const FIRST_SIZE: usize = size_of::<Self>();
+    const FIRST_SIZE: usize = std::mem::offset_of!(Self, method);
 }
 
 /// Loads an index from a file that `morec train` wrote. `path` is UTF-8.
@@ -105,6 +120,11 @@ pub unsafe extern "C" fn morec_index_facts(
             roles: model.roles().fold(0, |roles, role| roles | 1 << role.index()),
             sample_count: model.classes().iter().map(|class| class.samples as u64).sum(),
             tick_hz: model.tick_hz(),
+            method: match model {
+                Model::Templates(_) => MorecMethod::Templates as i32,
+                Model::Svrdm(_) => MorecMethod::Svrdm as i32,
+            },
+            needs_rotations: u32::from(model.needs_rotations()),
         };
         // SAFETY: as promised to this function.
         unsafe { memory::write_struct(facts, &known) }

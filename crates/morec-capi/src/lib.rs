@@ -39,8 +39,8 @@ pub use event::{MorecEvent, MorecPhase};
 pub use frame::{MorecFrame, MorecSpace};
 pub use handles::{MorecIndex, MorecRecognizer};
 pub use index::{
-    MorecIndexFacts, morec_index_class_name, morec_index_destroy, morec_index_facts, morec_index_from_memory,
-    morec_index_load,
+    MorecIndexFacts, MorecMethod, morec_index_class_name, morec_index_destroy, morec_index_facts,
+    morec_index_from_memory, morec_index_load,
 };
 pub use recognizer::{
     MOREC_EARLY_EVENTS, MorecOptions, MorecStats, morec_recognizer_create, morec_recognizer_destroy,

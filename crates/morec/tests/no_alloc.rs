@@ -14,7 +14,7 @@ use morec::pca::{Keep, Moments, Pca};
 use morec::pivots::{PivotMap, PivotSet, PoseParams, PoseStream, for_each_pivot_pose};
 use morec::roles::RoleMap;
 use morec::svrdm::SvrdmEngine;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use morec::live::vmc::{Bundling, VmcOptions, VmcReceiver, VmcSender};
 use morec::live::{Actor, EventOptions, Frame, Next, Performer, Recognizer, Rig};
@@ -23,14 +23,15 @@ use morec::synth::{Person, Script, Side};
 #[global_allocator]
 static ALLOCATOR: AllocDisabler = AllocDisabler;
 
-/// How often `job` asks for memory or gives it back.
+/// How often `job` asks for memory or gives it back. Counts are of the whole process: one at a time.
 fn allocations(job: impl FnOnce()) -> u32 {
+    static ONE: Mutex<()> = Mutex::new(());
+    let _one = ONE.lock().unwrap_or_else(PoisonError::into_inner);
     reset_violation_count();
     assert_no_alloc(job);
     violation_count()
 }
 
-/// Violations are counted for the whole process: one test, so that nothing else runs beside it.
 #[test]
 fn pushing_takes_no_memory() {
     assert!(allocations(|| drop(std::hint::black_box(vec![1]))) > 0, "the counter must count");
@@ -98,7 +99,7 @@ fn packets_take_no_memory() {
     let (mut frame, mut frames) = (Frame::default(), 0);
     let mut play = |packets: &[(f64, Vec<u8>)]| {
         for (secs, packet) in packets {
-            receiver.packet(1, *secs, packet);
+            receiver.packet(1u8, *secs, packet);
             receiver.tick(*secs);
             while let Some(next) = receiver.next(&mut frame) {
                 frames += usize::from(matches!(next, Next::Frame));
@@ -159,4 +160,38 @@ fn the_thesiss_stages_take_no_memory() {
     });
     assert_eq!(allocations, 0);
     assert!(found >= 20, "too little happened to prove anything: {found} detections");
+}
+
+/// From frames to events by the method of 2009, by an index as it comes out of its file.
+#[test]
+fn the_thesiss_method_from_frames_to_events_takes_no_memory() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/testdata/index/svrdm_v1.index");
+    let model = morec::index::MotionIndex::from_bytes(&std::fs::read(file).unwrap()).unwrap().model;
+    let person = Person { hand: Side::Right, ..Person::draw(90, 3) };
+    let script = Script::new(90, person).rest(1.0).play("wave").rest(0.8).play("bow").rest(1.0);
+    let clip = script.play("push").rest(1.5).film("quiet", 60.0).unwrap().clip;
+    let poses: Vec<_> =
+        (0..clip.frames).map(|frame| morec::kinematics::WorldPose::of(&clip, frame)).collect();
+    let roles = RoleMap::find(&clip.skeleton);
+    let rig = Arc::new(Rig { skeleton: clip.skeleton.clone(), roles });
+    let mut performer = Performer::new(&model, Actor(0), &EventOptions::default());
+    let (mut frame, mut events) = (Frame::default(), 0);
+    let mut play = |performer: &mut Performer, lap: f64| {
+        for (number, pose) in poses.iter().enumerate() {
+            // A late frame and a gap in each lap.
+            let late = if number == 40 { -0.2 } else { 0.0 };
+            let gap = if number > 200 { 1.0 } else { 0.0 };
+            frame.time_secs = 100.0 * lap + number as f64 / 60.0 + late + gap;
+            frame.pose.positions.clone_from(&pose.positions);
+            frame.pose.rotations.clone_from(&pose.rotations);
+            performer.push_own(&frame, &mut |_| events += 1);
+        }
+        performer.finish(&mut |_| events += 1);
+    };
+    performer.set_rig(&rig, &mut |_| {});
+    // A new skeleton's first frame makes the recogniser.
+    play(&mut performer, 0.0);
+    let allocations = allocations(|| (1..5).for_each(|lap| play(&mut performer, f64::from(lap))));
+    assert_eq!(allocations, 0);
+    assert!(events >= 5, "too little was said to prove anything: {events} events");
 }

@@ -19,6 +19,23 @@ fn name_of(index: &Index, class: u32, size: usize) -> (MorecStatus, String, usiz
 }
 
 #[test]
+fn facts_name_the_method_to_those_who_have_room_for_it() {
+    let index = Index::new(&kit::svrdm_index());
+    let mut facts: MorecIndexFacts = unsafe { std::mem::zeroed() };
+    facts.struct_size = size_of::<MorecIndexFacts>();
+    assert_eq!(unsafe { morec_index_facts(index.0, &mut facts) }, MorecStatus::Ok);
+    assert_eq!((facts.method, facts.needs_rotations), (MorecMethod::Svrdm as i32, 1));
+    // Of the first version, which ended before it.
+    (facts.method, facts.needs_rotations, facts.class_count) = (77, 78, 0);
+    facts.struct_size = std::mem::offset_of!(MorecIndexFacts, method);
+    assert_eq!(unsafe { morec_index_facts(index.0, &mut facts) }, MorecStatus::Ok);
+    assert_eq!((facts.method, facts.needs_rotations), (77, 78));
+    assert!(facts.class_count > 0);
+    facts.struct_size -= 1;
+    assert_eq!(unsafe { morec_index_facts(index.0, &mut facts) }, MorecStatus::StructSize);
+}
+
+#[test]
 fn facts_and_names_are_those_of_the_index() {
     let index = Index::new(kit::index_bytes());
     let mut facts: MorecIndexFacts = unsafe { std::mem::zeroed() };
@@ -28,6 +45,7 @@ fn facts_and_names_are_those_of_the_index() {
     assert_eq!(facts.class_count as usize, model.classes().len());
     assert_eq!(facts.sample_count as usize, model.classes().iter().map(|c| c.samples).sum::<usize>());
     assert_eq!(facts.struct_size, size_of::<MorecIndexFacts>());
+    assert_eq!((facts.method, facts.needs_rotations), (MorecMethod::Templates as i32, 0));
     for (number, class) in model.classes().iter().enumerate() {
         let (status, name, needed) = name_of(&index, number as u32, 80);
         assert_eq!((status, needed), (MorecStatus::Ok, class.name.len() + 1));

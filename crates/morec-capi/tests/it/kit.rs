@@ -34,8 +34,17 @@ pub fn index() -> &'static MotionIndex {
 
 /// A small index that loads at once.
 pub fn small_index() -> Vec<u8> {
+    committed("v1.index")
+}
+
+/// One of the method of 2009.
+pub fn svrdm_index() -> Vec<u8> {
+    committed("svrdm_v1.index")
+}
+
+fn committed(name: &str) -> Vec<u8> {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../morec/testdata/index");
-    std::fs::read(PathBuf::from(folder).join("v1.index")).unwrap()
+    std::fs::read(PathBuf::from(folder).join(name)).unwrap()
 }
 
 /// A person who performs some gestures.

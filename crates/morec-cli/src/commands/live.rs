@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result, bail};
 use morec::import::ImportOptions;
 use morec::index::MotionIndex;
+use morec::live::axis::AxisOptions;
 use morec::live::vmc::VmcOptions;
 use morec::live::{
     EventOptions, EventReader, MAX_ACTORS, Overload, Session, SessionOptions, Source, Status, StatusHandle,
@@ -18,8 +19,10 @@ use super::recognize::open_index;
 use crate::files::mapping;
 use crate::live::Said;
 use crate::live::address::Address;
+use crate::live::axis::{self, AxisSource};
 use crate::live::clip::ClipSource;
 use crate::live::json::JsonSource;
+use crate::live::layout::LayoutArg;
 use crate::live::sinks::Outlet;
 use crate::live::status::{StatusLine, summary};
 use crate::live::vmc::VmcSource;
@@ -28,6 +31,7 @@ use crate::live::vmc::VmcSource;
 ///
 /// Sources (--listen, several if you like):
 ///   vmc://0.0.0.0:39539     VMC senders on this UDP port, any number of performers
+///   axis://127.0.0.1:7001   the BVH broadcast of Axis Neuron or Axis Studio at this address; axis+udp:// listens
 ///   json:-                  poses as lines of JSON on standard input
 ///   json+tcp://0.0.0.0:9000 the same from whoever connects
 ///   clip://FILE             a clip, in real time; ?speed=4 (0: as fast as it goes), ?loop, ?loss=0.05, ?jitter=20
@@ -61,9 +65,13 @@ pub struct Args {
     /// Exchange left and right, for VMC senders that show their performer as a mirror would
     #[arg(long)]
     mirror: bool,
-    /// Performers that one VMC port follows at once
+    /// Performers that one VMC port, or one broadcast, follows at once
     #[arg(long, value_name = "N", default_value = "4", value_parser = clap::value_parser!(u16).range(1..=MAX_ACTORS as i64))]
     actors: u16,
+    /// A BVH file of the program at axis://, for how bones hang together and how long they are [default: a person of
+    /// 1.7 m]
+    #[arg(long, value_name = "BVH")]
+    skeleton: Option<PathBuf>,
     /// Recognise T-poses that are too exact to be a person's, too: else they are a sender's that lost its tracker
     #[arg(long)]
     keep_t_pose: bool,
@@ -73,6 +81,9 @@ pub struct Args {
     /// Tell motions at their end only
     #[arg(long)]
     no_early: bool,
+    /// How recognition is laid out on threads; detections are the same
+    #[arg(long, value_enum, default_value = "inline")]
+    layout: LayoutArg,
     /// End after so many seconds
     #[arg(long = "for", value_name = "SECS", value_parser = secs)]
     secs: Option<f64>,
@@ -185,6 +196,12 @@ fn listen(address: &Address, index: &MotionIndex, options: &ImportOptions, args:
             let name = format!("vmc://{}", source.address()?);
             (Box::new(source), Overload::Drop, name)
         }
+        "axis" | "axis+udp" => {
+            let skeleton = args.skeleton.as_deref().map(axis::skeleton).transpose()?.unwrap_or_default();
+            let axis = AxisOptions { skeleton, actors: args.actors.into() };
+            let (source, name) = AxisSource::open(address, &axis)?;
+            (Box::new(source), Overload::Drop, name)
+        }
         "json" => (Box::new(JsonSource::open(address)?), Overload::Wait, address.to_string()),
         "json+tcp" => {
             let (source, at) = JsonSource::listen(address)?;
@@ -196,12 +213,13 @@ fn listen(address: &Address, index: &MotionIndex, options: &ImportOptions, args:
             (Box::new(source), overload, address.to_string())
         }
         other => bail!(
-            "{address}: no source is called {other}; there are vmc://HOST:PORT, json:-, json+tcp://HOST:PORT, clip://FILE"
+            "{address}: no source is called {other}; there are vmc://HOST:PORT, axis://HOST:PORT, axis+udp://HOST:PORT, json:-, json+tcp://HOST:PORT, clip://FILE"
         ),
     };
     eprintln!("morec: listening to {name}");
     let events = EventOptions { early: !args.no_early, refractory_secs: args.refractory };
-    let session_options = SessionOptions { events, overload, ..SessionOptions::default() };
+    let session_options =
+        SessionOptions { layout: args.layout.into(), events, overload, ..SessionOptions::default() };
     let (session, readers) = Session::start(&index.model, source, &session_options)?;
     let reader = readers.into_iter().next().context("a session has a reader")?;
     Ok(Listening { name, session, reader })

@@ -12,11 +12,12 @@ use morec::import::{ImportOptions, Imported, prepare};
 use morec::index::MotionIndex;
 use morec::labels::{FOUND_HEADER, FoundLine};
 use morec::live::vmc::Bundling;
-use morec::live::{Detection, Model, PoseReader, recognize_clip};
+use morec::live::{Detection, Model, PoseReader, SessionOptions, recognize_clip, recognize_clip_in_session};
 use morec::roles::Role;
 
 use super::send::bundling;
 use crate::files::{ReadArgs, expand, mapping, open, rate, read};
+use crate::live::layout::LayoutArg;
 use crate::live::loaded::Loaded;
 use crate::live::network::Conditions;
 use crate::live::wire::recognise_over_vmc;
@@ -52,6 +53,9 @@ pub struct Args {
     /// Roles of joints, where inference fails: lines of `role<TAB>joint name`
     #[arg(long, value_name = "FILE")]
     roles: Option<PathBuf>,
+    /// How recognition is laid out on threads; detections are the same
+    #[arg(long, value_enum, default_value = "inline")]
+    layout: LayoutArg,
     /// Recognise clips as if they had come over VMC at so many frames a second, with the accidents below
     #[arg(long, value_name = "HZ", value_parser = rate)]
     over_vmc: Option<f64>,
@@ -140,8 +144,13 @@ fn recognize_file(
             None => {
                 let Imported { clip, roles, facts } = &imported;
                 let rest = &facts.rest_frames;
-                let found =
-                    stats.recognising(clip.frames, || recognize_clip(&index.model, clip, roles, rest));
+                let found = stats.recognising(clip.frames, || match args.layout {
+                    LayoutArg::Inline => Ok(recognize_clip(&index.model, clip, roles, rest)?),
+                    layout => {
+                        let options = SessionOptions { layout: layout.into(), ..SessionOptions::default() };
+                        recognize_clip_in_session(&index.model, clip, roles, rest, &options)
+                    }
+                });
                 found.with_context(|| format!("{} ({})", shown(), clip.name))?
             }
         };

@@ -3,36 +3,42 @@
 use std::net::UdpSocket;
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail};
 use morec::import::ImportOptions;
 use morec::kinematics::WorldPose;
+use morec::live::axis::AxisSender;
 use morec::live::vmc::{Bundling, VmcSender};
+use morec::roles::RoleMap;
 
 use super::live::stop_on_ctrl_c;
 use crate::files::{ReadArgs, mapping, rate};
 use crate::live::address::Address;
+use crate::live::broadcast::Broadcast;
 use crate::live::clip::PAUSE_SECS;
-use crate::live::loaded::{Loaded, load};
+use crate::live::loaded::load;
 use crate::live::network::{Conditions, Network};
 
-/// Play clips as a VMC sender, so that anything that listens to VMC can be tried without a tracker.
+/// Play clips as a VMC sender, so that anything that listens to VMC can be tried without a tracker; or as Axis
+/// Neuron would broadcast them.
 ///
 /// Each joint that plays a role is sent as the humanoid bone of that part, in Unity's left-handed axes, as it is in the
-/// clip. Between clips there is a pause of a second. The accidents of a bad network can be had on request.
+/// clip. As a broadcast (--to axis://HOST:PORT) frames go to whoever connects there over TCP, each bone with its position,
+/// or without (?positions=0); it begins when the first has come. Between clips there is a pause of a second. The accidents of a bad network can be had on request.
 #[derive(clap::Args)]
 #[command(
     after_help = "Exit codes: 0 everything was sent, or Ctrl-C; 1 something cannot be read or sent; 2 wrong command line.\n\n\
-    Example: morec send take.bvh --to vmc://127.0.0.1:39539 --loop"
+    Example: morec send take.bvh --to vmc://127.0.0.1:39539 --loop\n         \
+    morec send take.bvh --to axis://127.0.0.1:7001"
 )]
 pub struct Args {
     /// Clips, or folders of clips
     #[arg(required = true, value_name = "CLIP")]
     clips: Vec<PathBuf>,
     /// Where to send them
-    #[arg(long, value_name = "vmc://HOST:PORT", default_value = "vmc://127.0.0.1:39539")]
+    #[arg(long, value_name = "vmc|axis://HOST:PORT", default_value = "vmc://127.0.0.1:39539")]
     to: Address,
     /// Frames a second
     #[arg(long, value_name = "HZ", default_value = "60", value_parser = rate)]
@@ -71,73 +77,95 @@ pub fn bundling(text: &str) -> Result<Bundling, String> {
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    if args.to.kind != "vmc" {
-        bail!("{}: expected vmc://HOST:PORT", args.to);
-    }
-    args.to.allow(&[])?;
     let options = ImportOptions { mapping: mapping(args.roles.as_deref())?, ..ImportOptions::default() };
     let clips = load(&args.clips, &args.read, &options, None, Some(args.rate))?;
-    let to = args.to.socket()?;
-    let here = if to.is_ipv4() { "0.0.0.0:0" } else { "[::]:0" };
-    let socket = UdpSocket::bind(here).context("UDP socket")?;
     let stop = stop_on_ctrl_c()?;
-    eprintln!("morec: sending to {} at {} Hz", args.to, args.rate);
-    let mut playing = Playing {
-        socket,
-        to,
-        sender: VmcSender::new(args.bundle, args.every_bone),
-        network: Network::new(&args.conditions),
-        begun: Instant::now(),
-        at_secs: 0.0,
-        speed: args.speed,
-        packets: 0,
-        frames: 0,
-        pose: WorldPose::default(),
+    let mut to: Box<dyn Receiver> = match args.to.kind.as_str() {
+        "vmc" => Box::new(ToVmc::open(args)?),
+        "axis" | "axis+udp" => Box::new(ToAxis::open(args, &stop)?),
+        _ => bail!("{}: expected vmc://HOST:PORT, axis://HOST:PORT or axis+udp://HOST:PORT", args.to),
     };
+    eprintln!("morec: sending to {} at {} Hz", args.to, args.rate);
+    let (mut time, mut pose, mut frames) = (Time::begin(args), WorldPose::default(), 0u64);
     'all: loop {
         for loaded in &clips {
             for frame in loaded.first..loaded.clip.frames {
                 if stop.load(Ordering::Relaxed) {
                     break 'all;
                 }
-                playing.frame(loaded, frame).with_context(|| args.to.to_string())?;
+                time.wait(to.delay_secs());
+                pose.set(&loaded.clip, frame);
+                to.frame(time.at_secs / args.speed, &pose, &loaded.roles)
+                    .with_context(|| args.to.to_string())?;
+                frames += 1;
+                time.at_secs += 1.0 / loaded.clip.rate_hz;
             }
-            playing.at_secs += PAUSE_SECS;
+            time.at_secs += PAUSE_SECS;
         }
         if !args.looped {
             break;
         }
     }
-    let Playing { frames, packets, network, .. } = playing;
-    eprintln!(
-        "morec: sent {frames} frames in {packets} packets; lost {} and delayed {} of them on purpose",
-        network.lost, network.overtaken
-    );
+    eprintln!("morec: sent {frames} frames{}", to.summary());
     Ok(ExitCode::SUCCESS)
 }
 
-/// A performance under way.
-struct Playing {
+/// Time of the performance.
+struct Time {
+    begun: Instant,
+    at_secs: f64,
+    speed: f64,
+}
+
+impl Time {
+    fn begin(args: &Args) -> Self {
+        Self { begun: Instant::now(), at_secs: 0.0, speed: args.speed }
+    }
+
+    /// Waits until it is time to send the next frame, and `delay_secs` more.
+    fn wait(&self, delay_secs: f64) {
+        let due = Duration::from_secs_f64(self.at_secs / self.speed + delay_secs);
+        std::thread::sleep(due.saturating_sub(self.begun.elapsed()));
+    }
+}
+
+/// What is at the other end.
+trait Receiver {
+    /// Sends a frame; `time_secs` of the performance as it is played.
+    fn frame(&mut self, time_secs: f64, pose: &WorldPose, roles: &RoleMap) -> std::io::Result<()>;
+
+    /// How late the next frame is to be.
+    fn delay_secs(&mut self) -> f64 {
+        0.0
+    }
+
+    /// What to say at the end.
+    fn summary(&self) -> String;
+}
+
+struct ToVmc {
     socket: UdpSocket,
     to: std::net::SocketAddr,
     sender: VmcSender,
     network: Network,
-    begun: Instant,
-    /// Time of the performance.
-    at_secs: f64,
-    speed: f64,
     packets: u64,
-    frames: u64,
-    pose: WorldPose,
 }
 
-impl Playing {
-    fn frame(&mut self, loaded: &Loaded, frame: usize) -> std::io::Result<()> {
-        let due = Duration::from_secs_f64(self.at_secs / self.speed + self.network.delay_secs());
-        std::thread::sleep(due.saturating_sub(self.begun.elapsed()));
-        self.pose.set(&loaded.clip, frame);
+impl ToVmc {
+    fn open(args: &Args) -> Result<Self> {
+        args.to.allow(&[])?;
+        let to = args.to.socket()?;
+        let here = if to.is_ipv4() { "0.0.0.0:0" } else { "[::]:0" };
+        let socket = UdpSocket::bind(here).context("UDP socket")?;
+        let sender = VmcSender::new(args.bundle, args.every_bone);
+        Ok(Self { socket, to, sender, network: Network::new(&args.conditions), packets: 0 })
+    }
+}
+
+impl Receiver for ToVmc {
+    fn frame(&mut self, time_secs: f64, pose: &WorldPose, roles: &RoleMap) -> std::io::Result<()> {
         let (socket, to, packets) = (&self.socket, self.to, &mut self.packets);
-        for packet in self.sender.frame(self.at_secs / self.speed, &self.pose, &loaded.roles) {
+        for packet in self.sender.frame(time_secs, pose, roles) {
             self.network.carry(packet, &mut |bytes| {
                 *packets += 1;
                 match socket.send_to(bytes, to) {
@@ -147,8 +175,57 @@ impl Playing {
                 }
             })?;
         }
-        self.frames += 1;
-        self.at_secs += 1.0 / loaded.clip.rate_hz;
         Ok(())
+    }
+
+    fn delay_secs(&mut self) -> f64 {
+        self.network.delay_secs()
+    }
+
+    fn summary(&self) -> String {
+        let Network { lost, overtaken, .. } = self.network;
+        format!(" in {} packets; lost {lost} and delayed {overtaken} of them on purpose", self.packets)
+    }
+}
+
+struct ToAxis {
+    to: Broadcast,
+    sender: AxisSender,
+    network: Network,
+}
+
+impl ToAxis {
+    /// Opens it, and waits for somebody to come.
+    fn open(args: &Args, stop: &AtomicBool) -> Result<Self> {
+        args.to.allow(&["positions"])?;
+        let positions = args.to.number("positions", 1.0)?.unwrap_or(1.0) > 0.0;
+        let mut to = Broadcast::open(&args.to)?;
+        if let Some(at) = to.address() {
+            eprintln!("morec: waiting for whoever listens to axis://{at}");
+        }
+        while to.accept() == 0 && !stop.load(Ordering::Relaxed) {
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        let sender = AxisSender::new(0, "morec", positions);
+        Ok(Self { to, sender, network: Network::new(&args.conditions) })
+    }
+}
+
+impl Receiver for ToAxis {
+    fn frame(&mut self, _: f64, pose: &WorldPose, roles: &RoleMap) -> std::io::Result<()> {
+        let to = &mut self.to;
+        self.network.carry(self.sender.frame(pose, roles), &mut |bytes| {
+            to.send(bytes);
+            Ok(())
+        })
+    }
+
+    fn delay_secs(&mut self) -> f64 {
+        self.network.delay_secs()
+    }
+
+    fn summary(&self) -> String {
+        let Network { lost, overtaken, .. } = self.network;
+        format!("; lost {lost} and delayed {overtaken} of them on purpose")
     }
 }

@@ -2,6 +2,7 @@
 
 mod endless;
 mod inline;
+mod layouts;
 mod many;
 mod wire;
 
@@ -12,6 +13,7 @@ use std::time::Duration;
 
 use anyhow::Result;
 use morec::import::ImportOptions;
+use morec::live::Layout;
 use morec::live::vmc::Bundling;
 
 use super::recognize::open_index;
@@ -31,7 +33,8 @@ use crate::live::network::Conditions;
     command line.\n\n\
     Examples: morec soak signs.index clips/ --hours 24\n          \
     morec soak signs.index clips/ --streams 500 --threads 2 --for 30\n          \
-    morec soak signs.index clips/ --wire --labels labels.tsv"
+    morec soak signs.index clips/ --wire --labels labels.tsv\n          \
+    morec soak thesis.index clips/ --layout both --for 20"
 )]
 pub struct Args {
     /// The index, as `morec train` writes it
@@ -57,6 +60,9 @@ pub struct Args {
     /// Labels of the clips: with --wire, delays are counted from where these say that a motion ends
     #[arg(long, value_name = "TSV", requires = "wire")]
     labels: Option<PathBuf>,
+    /// How recognition is laid out on threads, for one stream; both takes turns and tells which is the better
+    #[arg(long, value_enum, default_value = "inline", conflicts_with_all = ["streams", "wire"])]
+    layout: Layouts,
     /// Frames a second [default: the clips' own; 120 with --streams, 60 with --wire]
     #[arg(long, value_name = "HZ", value_parser = rate)]
     rate: Option<f64>,
@@ -72,6 +78,17 @@ pub struct Args {
     read: ReadArgs,
 }
 
+/// `--layout` of this command.
+#[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+enum Layouts {
+    /// All of recognition on one thread
+    Inline,
+    /// A thread for each stage (indexes of svrdm only)
+    Stages,
+    /// One after the other, in turns of --for seconds: throughput, and how long frames wait in real time
+    Both,
+}
+
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let index = open_index(&args.index)?;
@@ -82,10 +99,14 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     match args.streams {
         Some(streams) => many::run(&index.model, &clips, streams, args),
         None if args.wire => wire::run(&index.model, &clips, args),
-        None => {
-            let most_secs = args.secs.map_or(10.0, |secs| secs / 4.0).min(10.0);
-            inline::tell(&index.model, &clips, Duration::from_secs_f64(most_secs.max(0.0)));
-            endless::run(&index.model, &clips, args)
-        }
+        None => match args.layout {
+            Layouts::Inline => {
+                let most_secs = args.secs.map_or(10.0, |secs| secs / 4.0).min(10.0);
+                inline::tell(&index.model, &clips, Duration::from_secs_f64(most_secs.max(0.0)));
+                endless::run(&index.model, &clips, Layout::Inline, args)
+            }
+            Layouts::Stages => endless::run(&index.model, &clips, Layout::Stages, args),
+            Layouts::Both => layouts::run(&index.model, &clips, args),
+        },
     }
 }

@@ -65,6 +65,12 @@ impl ClipSource {
         self
     }
 
+    /// So many times as fast as it was performed.
+    pub fn speed(mut self, speed: f64) -> Self {
+        self.speed = speed;
+        self
+    }
+
     /// Opens `clip://FILE` with the options speed (0: as fast as it goes), loop (so many laps), loss (a share),
     /// jitter (milliseconds).
     pub fn open(address: &Address, index: &MotionIndex, options: &ImportOptions) -> Result<Self> {

@@ -1,8 +1,11 @@
 //! What has sockets and files: sources of poses for live sessions, and where events go.
 
 pub mod address;
+pub mod axis;
+pub mod broadcast;
 pub mod clip;
 pub mod json;
+pub mod layout;
 pub mod lines;
 pub mod loaded;
 pub mod memory;

@@ -2,7 +2,7 @@
 
 use crate::classes::ClassId;
 
-use super::performer::Say;
+use super::teller::Say;
 use super::{Detection, Event, Phase};
 
 /// A motion that seems to be under way.

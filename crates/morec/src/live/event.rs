@@ -2,7 +2,7 @@
 
 use crate::classes::ClassId;
 
-use super::Actor;
+use super::{Actor, Detection};
 
 /// What is being said.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -57,6 +57,17 @@ pub struct Event {
 }
 
 impl Event {
+    /// What ended, as a [`Recognizer`](super::Recognizer) says it.
+    pub fn detection(&self) -> Detection {
+        Detection {
+            class: self.class,
+            start_secs: self.start_secs,
+            stop_secs: self.stop_secs,
+            score: self.score,
+            reported_secs: self.reported_secs,
+        }
+    }
+
     /// The wall clock at a time of the source's clock, seen from this event.
     pub fn wall_at_secs(&self, time_secs: f64) -> f64 {
         self.wall_secs - (self.reported_secs - time_secs)

@@ -1,11 +1,11 @@
 //! Frames from one thread to another: a bounded, wait-free ring whose buffers go round.
 
 use std::sync::Arc;
-use std::sync::OnceLock;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering, fence};
-use std::thread::{self, Thread};
-use std::time::Duration;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
+pub(super) use super::waker::Waker;
+
+use super::waker::NAP;
 use super::{Actor, Frame, Rig};
 
 /// What happens to a frame when recognition has not caught up with the ones before it.
@@ -28,43 +28,6 @@ pub(super) enum Item {
 
 /// Room for skeletons beside the frames, so that these are never dropped for want of it.
 const BESIDE_FRAMES: usize = 16;
-
-/// How long a thread sleeps that missed its waking call, if such a thing should happen.
-const NAP: Duration = Duration::from_millis(20);
-
-/// Lets one thread sleep until others have something for it.
-#[derive(Debug, Default)]
-pub(super) struct Waker {
-    asleep: AtomicBool,
-    thread: OnceLock<Thread>,
-}
-
-impl Waker {
-    /// Wakes the sleeper, if it sleeps. Never waits.
-    pub(super) fn wake(&self) {
-        // What was done before must be seen by whoever falls asleep after this look at it.
-        fence(Ordering::SeqCst);
-        if self.asleep.load(Ordering::Relaxed)
-            && self.asleep.swap(false, Ordering::AcqRel)
-            && let Some(thread) = self.thread.get()
-        {
-            thread.unpark();
-        }
-    }
-
-    /// Sleeps for at most `most` unless `ready`, or until woken.
-    pub(super) fn sleep(&self, most: Duration, ready: impl FnOnce() -> bool) {
-        let me = thread::current();
-        // Another thread than the one that slept first is not woken; it looks again soon.
-        let known = self.thread.get_or_init(|| me.clone()).id() == me.id();
-        self.asleep.store(true, Ordering::Relaxed);
-        fence(Ordering::SeqCst);
-        if !ready() {
-            thread::park_timeout(if known { most.min(NAP) } else { most.min(Duration::from_millis(2)) });
-        }
-        self.asleep.store(false, Ordering::Relaxed);
-    }
-}
 
 /// The end of a feed that frames are put into. Dropping it ends the stream.
 #[derive(Debug)]

@@ -12,6 +12,7 @@
 //! stream is cut into pushes. In sessions and pools frames travel over bounded wait-free rings; when one is full,
 //! [`Overload`] says who gives way, and everything that is dropped is counted in [`Status`].
 
+pub mod axis;
 mod clock;
 mod early;
 mod event;
@@ -21,6 +22,7 @@ mod lane;
 mod model;
 mod of_clip;
 pub mod osc;
+mod outlets;
 mod paths;
 mod performer;
 mod pool;
@@ -28,21 +30,27 @@ mod pose;
 mod recognizer;
 mod session;
 mod source;
+mod stages;
 mod status;
+mod sync;
+mod teller;
 pub mod vmc;
+mod waits;
+mod waker;
 
 pub use clock::wall_now_secs;
 pub use early::Hunch;
 pub use event::{Event, Phase};
 pub use feed::{FeedSender, Overload};
 pub use frame::{Actor, Frame, Rig};
-pub use lane::EventReader;
 pub use model::{Model, StartError};
-pub use of_clip::recognize_clip;
+pub use of_clip::{recognize_clip, recognize_clip_in_session};
+pub use outlets::EventReader;
 pub use performer::{EventOptions, Performer};
 pub use pool::{Pool, PoolStream};
 pub use pose::{Pose, PoseReader};
 pub use recognizer::{Detection, Recognizer};
-pub use session::{Session, SessionError, SessionOptions};
+pub use session::{Layout, Session, SessionError, SessionOptions};
 pub use source::{Next, Source, SourceCounts};
 pub use status::{ActorStatus, MAX_ACTORS, Status, StatusHandle};
+pub use waits::Waits;

@@ -1,11 +1,18 @@
 //! A stored clip played through the live recogniser.
 
+use std::sync::Arc;
+use std::thread;
+use std::time::Duration;
+
 use crate::clip::{Clip, Span};
 use crate::features::bones_of_clip;
 use crate::kinematics::for_each_world_pose;
 use crate::roles::RoleMap;
 
-use super::{Detection, Model, PoseReader, Recognizer, StartError};
+use super::{
+    Actor, Detection, Event, EventReader, Frame, Model, Phase, PoseReader, Recognizer, Rig, Session,
+    SessionError, SessionOptions, StartError, wall_now_secs,
+};
 
 /// Everything that the recogniser reports of a clip, pose by pose as it would be live; times from the clip's
 /// beginning. `rest` are the frames that a conversion left at the start; the first pose after them stands in for them.
@@ -27,4 +34,45 @@ pub fn recognize_clip<M: Clone + Into<Model>>(
     });
     found.extend_from_slice(recognizer.finish());
     Ok(found)
+}
+
+/// The same through a [`Session`], and on as many threads as its layout has. The session waits for room, whatever
+/// `options` say of that.
+pub fn recognize_clip_in_session<M: Clone + Into<Model>>(
+    model: &M,
+    clip: &Clip,
+    roles: &RoleMap,
+    rest: &Span,
+    options: &SessionOptions,
+) -> Result<Vec<Detection>, SessionError> {
+    let model = model.clone().into();
+    // What keeps a clip from being recognised is said as it is without a session.
+    PoseReader::new(&model, &clip.skeleton, roles)?;
+    let options = SessionOptions { overload: super::Overload::Wait, readers: 1, ..options.clone() };
+    let (session, mut feed, readers) = Session::open(&model, &options)?;
+    let rig = Arc::new(Rig { skeleton: clip.skeleton.clone(), roles: roles.clone() });
+    let found = thread::scope(|scope| {
+        let found = scope.spawn(|| readers.into_iter().flat_map(ended).collect());
+        feed.set_rig(Actor(0), &rig);
+        let mut frame: Box<Frame> = Box::default();
+        for_each_world_pose(clip, rest, |time_secs, world| {
+            (frame.time_secs, frame.wall_secs) = (time_secs, wall_now_secs());
+            frame.pose.clone_from(world);
+            feed.send(&mut frame);
+        });
+        drop(feed);
+        found.join().unwrap_or_default()
+    });
+    session.join();
+    Ok(found)
+}
+
+/// The motions that end among everything a reader gives, until its stream ends.
+fn ended(mut reader: EventReader) -> Vec<Detection> {
+    let mut found = Vec::new();
+    while !reader.is_ended() {
+        let event = reader.wait(Duration::from_millis(200)).filter(|event| event.phase == Phase::End);
+        found.extend(event.map(|event: Event| event.detection()));
+    }
+    found
 }

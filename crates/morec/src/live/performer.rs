@@ -5,7 +5,8 @@ use std::sync::Arc;
 use crate::features::BoneSet;
 
 use super::early::{Early, Hunch};
-use super::{Actor, Detection, Event, Frame, Model, Phase, Pose, PoseReader, Recognizer, Rig};
+use super::teller::Teller;
+use super::{Actor, Event, Frame, Model, Pose, PoseReader, Recognizer, Rig};
 
 /// What is to be said, and how often.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,18 +32,14 @@ impl Default for EventOptions {
 #[derive(Debug)]
 pub struct Performer {
     model: Model,
-    options: EventOptions,
-    actor: Actor,
+    tells_early: bool,
     rig: Option<Arc<Rig>>,
     recognizer: Option<Recognizer>,
     /// Reads what a model asks for beyond places of joints.
     reader: Option<PoseReader>,
     early: Early,
-    motions: u64,
-    /// When the last motion ended that was told: of each class, and of all.
-    stops: Stops,
+    teller: Teller,
     wall_secs: f64,
-    suppressed: u64,
     unusable: u64,
 }
 
@@ -51,17 +48,14 @@ impl Performer {
     pub fn new<M: Clone + Into<Model>>(model: &M, actor: Actor, options: &EventOptions) -> Self {
         let model: Model = model.clone().into();
         Self {
-            stops: Stops::new(model.classes().len()),
+            teller: Teller::new(actor, model.classes().len(), options.refractory_secs),
             model,
             reader: None,
-            options: options.clone(),
-            actor,
+            tells_early: options.early,
             rig: None,
             recognizer: None,
             early: Early::default(),
-            motions: 0,
             wall_secs: 0.0,
-            suppressed: 0,
             unusable: 0,
         }
     }
@@ -97,36 +91,25 @@ impl Performer {
             return;
         };
         self.wall_secs = frame.wall_secs;
-        let mut ended = Ended {
-            refractory_secs: self.options.refractory_secs,
-            stops: &mut self.stops,
-            suppressed: &mut self.suppressed,
-        };
-        let mut say = Say { actor: self.actor, wall_secs: self.wall_secs, motions: &mut self.motions, out };
         let pivots = self.reader.as_mut().and_then(|reader| reader.pivots(&frame.pose));
         for detection in recognizer.push(frame.time_secs, Pose { key: &pose, pivots }) {
-            ended.tell(detection, &mut self.early, &mut say);
+            self.teller.tell(detection, &mut self.early, self.wall_secs, out);
         }
-        if self.options.early {
-            self.early.look(recognizer.hunch(), self.stops.any_secs, frame.time_secs, &mut say);
+        if self.tells_early {
+            let after_secs = self.teller.last_stop_secs();
+            let say = &mut self.teller.say(self.wall_secs, out);
+            self.early.look(recognizer.hunch(), after_secs, frame.time_secs, say);
         }
     }
 
     /// The stream ends or breaks off: tells what its last moments hold. It may go on with another frame.
     pub fn finish(&mut self, out: &mut impl FnMut(Event)) {
         let Some(recognizer) = &mut self.recognizer else { return };
-        let mut ended = Ended {
-            refractory_secs: self.options.refractory_secs,
-            stops: &mut self.stops,
-            suppressed: &mut self.suppressed,
-        };
-        let mut say = Say { actor: self.actor, wall_secs: self.wall_secs, motions: &mut self.motions, out };
         for detection in recognizer.finish() {
-            ended.tell(detection, &mut self.early, &mut say);
+            self.teller.tell(detection, &mut self.early, self.wall_secs, out);
         }
-        self.early.cancel(None, &mut say);
-        // A clock that begins anew must not find its motions refused for the old one's.
-        self.stops.forget();
+        self.early.cancel(None, &mut self.teller.say(self.wall_secs, out));
+        self.teller.forget();
     }
 
     /// [`push`](Self::push) that makes recognisers of its own.
@@ -142,94 +125,11 @@ impl Performer {
 
     /// Motions that were not told because of [`EventOptions::refractory_secs`].
     pub fn suppressed(&self) -> u64 {
-        self.suppressed
+        self.teller.suppressed()
     }
 
     /// What seems to be under way.
     pub fn hunch(&self) -> Option<Hunch> {
         self.early.told()
-    }
-}
-
-/// When motions ended, on the stream's clock.
-#[derive(Debug)]
-struct Stops {
-    any_secs: f64,
-    class_secs: Vec<f64>,
-}
-
-impl Stops {
-    fn new(classes: usize) -> Self {
-        Self { any_secs: f64::NEG_INFINITY, class_secs: vec![f64::NEG_INFINITY; classes] }
-    }
-
-    fn forget(&mut self) {
-        self.any_secs = f64::NEG_INFINITY;
-        self.class_secs.fill(f64::NEG_INFINITY);
-    }
-}
-
-/// Applies the refractory rule to detections.
-struct Ended<'a> {
-    refractory_secs: f64,
-    stops: &'a mut Stops,
-    suppressed: &'a mut u64,
-}
-
-impl Ended<'_> {
-    fn tell(&mut self, d: &Detection, early: &mut Early, say: &mut Say<impl FnMut(Event)>) {
-        let before_secs = &mut self.stops.class_secs[d.class.index()];
-        if d.stop_secs - *before_secs < self.refractory_secs {
-            *self.suppressed += 1;
-            early.cancel(Some(d.reported_secs), say);
-            return;
-        }
-        *before_secs = d.stop_secs;
-        self.stops.any_secs = d.stop_secs;
-        let motion = early.take(d).unwrap_or_else(|| say.new_motion());
-        say.event(
-            Phase::End,
-            motion,
-            Hunch {
-                class: d.class,
-                score: d.score,
-                progress: 1.0,
-                start_secs: d.start_secs,
-                seen_secs: d.stop_secs,
-            },
-            d.reported_secs,
-        );
-    }
-}
-
-/// Numbers motions and gives events their common parts.
-pub(super) struct Say<'a, F: FnMut(Event)> {
-    actor: Actor,
-    wall_secs: f64,
-    motions: &'a mut u64,
-    out: &'a mut F,
-}
-
-impl<F: FnMut(Event)> Say<'_, F> {
-    pub(super) fn new_motion(&mut self) -> u64 {
-        *self.motions += 1;
-        *self.motions
-    }
-
-    pub(super) fn event(&mut self, phase: Phase, motion: u64, what: Hunch, reported_secs: f64) {
-        (self.out)(Event {
-            phase,
-            motion,
-            // Whoever carries events out numbers them.
-            sequence: 0,
-            actor: self.actor,
-            class: what.class,
-            score: what.score,
-            progress: what.progress,
-            start_secs: what.start_secs,
-            stop_secs: what.seen_secs,
-            reported_secs,
-            wall_secs: self.wall_secs,
-        });
     }
 }

@@ -5,15 +5,29 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use super::feed::{FeedSender, Waker, feed};
+use super::feed::{FeedReceiver, FeedSender, feed};
 use super::lane::{EventReader, Lane, LaneOptions, Stock, Work};
 use super::performer::EventOptions;
 use super::status::{Cells, Status, StatusHandle};
-use super::{Frame, Model, Next, Overload, Source};
+use super::waker::Waker;
+use super::{Frame, Model, Next, Overload, Source, StartError, stages};
+
+/// How recognition is laid out on threads. Events are the same.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Layout {
+    /// All of it on one thread.
+    #[default]
+    Inline,
+    /// Each stage on its own, as the thesis has it; of the `svrdm` method only. Six threads beside the source's, for
+    /// one stream: worth trying where cores are idle.
+    Stages,
+}
 
 /// How a session is run.
 #[derive(Debug, Clone)]
 pub struct SessionOptions {
+    /// How recognition is laid out on threads; pools are always inline.
+    pub layout: Layout,
     /// What is said of motions.
     pub events: EventOptions,
     /// What happens when recognition, or a reader, does not keep up.
@@ -29,6 +43,7 @@ pub struct SessionOptions {
 impl Default for SessionOptions {
     fn default() -> Self {
         Self {
+            layout: Layout::default(),
             events: EventOptions::default(),
             overload: Overload::Wait,
             // Two seconds at 120 Hz: longer waits are no live recognition.
@@ -50,6 +65,15 @@ pub enum SessionError {
         /// What the system said.
         error: std::io::Error,
     },
+    /// Stages on threads of their own were asked for of a method that has none.
+    #[error("layout in stages: expected an index of method svrdm, found {method}")]
+    NoStages {
+        /// The method of the model.
+        method: &'static str,
+    },
+    /// The model's parts do not fit together.
+    #[error(transparent)]
+    Start(#[from] StartError),
 }
 
 /// A source on a thread of its own, recognition on another, joined by bounded wait-free rings.
@@ -72,6 +96,17 @@ impl Session {
         source: Box<dyn Source>,
         options: &SessionOptions,
     ) -> Result<(Self, Vec<EventReader>), SessionError> {
+        let (mut session, sender, readers) = Self::open(model, options)?;
+        let (cells, stop) = (session.cells.clone(), session.stop.clone());
+        session.spawn("source", Box::new(move || carry(source, sender, &cells, &stop)))?;
+        Ok((session, readers))
+    }
+
+    /// A session without a source: the caller feeds it. Dropping the [`FeedSender`] ends the stream.
+    pub fn open<M: Clone + Into<Model>>(
+        model: &M,
+        options: &SessionOptions,
+    ) -> Result<(Self, FeedSender, Vec<EventReader>), SessionError> {
         let (cells, stop, waker) = (Arc::new(Cells::default()), Arc::default(), Arc::new(Waker::default()));
         let (sender, receiver) =
             feed(options.frame_capacity, options.overload, &waker, &cells.dropped_frames, &stop);
@@ -81,17 +116,34 @@ impl Session {
             readers: options.readers,
             capacity: options.event_capacity,
         };
-        let (lane, readers) =
-            Lane::new(receiver, &Arc::new(Stock::new(model.clone().into())), &lane_options, &cells, &stop);
-        let mut session = Self { cells, stop, waker, threads: Vec::with_capacity(2) };
-        let waker = session.waker.clone();
-        session.spawn("recognition", move || recognise(lane, &waker))?;
-        let (cells, stop) = (session.cells.clone(), session.stop.clone());
-        session.spawn("source", move || carry(source, sender, &cells, &stop))?;
-        Ok((session, readers))
+        let mut session = Self { cells, stop, waker, threads: Vec::with_capacity(7) };
+        let readers = session.recognise(model.clone().into(), receiver, options.layout, &lane_options)?;
+        Ok((session, sender, readers))
     }
 
-    fn spawn(&mut self, what: &'static str, job: impl FnOnce() + Send + 'static) -> Result<(), SessionError> {
+    fn recognise(
+        &mut self,
+        model: Model,
+        feed: FeedReceiver,
+        layout: Layout,
+        options: &LaneOptions,
+    ) -> Result<Vec<EventReader>, SessionError> {
+        let (cells, stop, waker) = (self.cells.clone(), self.stop.clone(), self.waker.clone());
+        match (layout, model) {
+            (Layout::Inline, model) => {
+                let (lane, readers) = Lane::new(feed, &Arc::new(Stock::new(model)), options, &cells, &stop);
+                self.spawn("recognition", Box::new(move || recognise(lane, &waker)))?;
+                Ok(readers)
+            }
+            (Layout::Stages, Model::Svrdm(model)) => {
+                let shared = stages::Shared { cells: &cells, stop: &stop, waker: &waker };
+                stages::start(&model, feed, options, &shared, &mut |what, job| self.spawn(what, job))
+            }
+            (Layout::Stages, other) => Err(SessionError::NoStages { method: other.method() }),
+        }
+    }
+
+    fn spawn(&mut self, what: &'static str, job: Box<dyn FnOnce() + Send>) -> Result<(), SessionError> {
         let named = thread::Builder::new().name(format!("morec {what}"));
         self.threads.push(named.spawn(job).map_err(|error| SessionError::Thread { what, error })?);
         Ok(())

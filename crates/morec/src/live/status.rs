@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 
 use crate::classes::ClassId;
 
+use super::waits::{WaitCells, Waits};
 use super::{Actor, Event, Frame, Phase, SourceCounts};
 
 /// Performers that one session can follow at once.
@@ -33,6 +34,8 @@ pub struct Status {
     pub source: SourceCounts,
     /// The longest that a frame has waited from its arrival to the end of its recognition, seconds.
     pub longest_wait_secs: f64,
+    /// How long frames have waited likewise.
+    pub waits: Waits,
     /// Whether the stream has ended and everything is told.
     pub ended: bool,
     /// The performers seen so far.
@@ -71,7 +74,7 @@ impl StatusHandle {
     }
 }
 
-/// What the threads of a session write; single words, each by one thread.
+/// What the threads of a session write; single words.
 #[derive(Debug, Default)]
 pub(super) struct Cells {
     pub(super) frames: AtomicU64,
@@ -83,6 +86,7 @@ pub(super) struct Cells {
     pub(super) suppressed: AtomicU64,
     pub(super) source: [AtomicU64; 8],
     pub(super) longest_wait: AtomicU64,
+    waits: WaitCells,
     pub(super) ended: AtomicBool,
     actors: [ActorCells; MAX_ACTORS],
 }
@@ -110,15 +114,20 @@ fn unpack(word: u64) -> Option<(ClassId, f64)> {
 impl Cells {
     /// A frame has been through recognition at `now_secs`.
     pub(super) fn frame(&self, frame: &Frame, now_secs: f64) {
+        self.frame_of(frame.actor, frame.time_secs, frame.wall_secs, now_secs);
+    }
+
+    /// A frame of `actor`, of `time_secs` on the source's clock, which arrived at `wall_secs`, is through.
+    pub(super) fn frame_of(&self, actor: Actor, time_secs: f64, wall_secs: f64, now_secs: f64) {
         self.frames.fetch_add(1, Relaxed);
-        let wait_secs = (now_secs - frame.wall_secs).max(0.0);
-        if wait_secs > f64::from_bits(self.longest_wait.load(Relaxed)) {
-            self.longest_wait.store(wait_secs.to_bits(), Relaxed);
-        }
-        let Some(cells) = self.actors.get(frame.actor.index()) else { return };
+        let wait_secs = (now_secs - wall_secs).max(0.0);
+        // What is not negative is in the order of its bits.
+        self.longest_wait.fetch_max(wait_secs.to_bits(), Relaxed);
+        self.waits.add(wait_secs);
+        let Some(cells) = self.actors.get(actor.index()) else { return };
         cells.frames.fetch_add(1, Relaxed);
-        cells.time.store(frame.time_secs.to_bits(), Relaxed);
-        cells.wall.store(frame.wall_secs.to_bits(), Relaxed);
+        cells.time.store(time_secs.to_bits(), Relaxed);
+        cells.wall.store(wall_secs.to_bits(), Relaxed);
         cells.wait.store(wait_secs.to_bits(), Relaxed);
     }
 
@@ -188,6 +197,7 @@ impl Cells {
             suppressed: self.suppressed.load(Relaxed),
             source,
             longest_wait_secs: bits(&self.longest_wait),
+            waits: self.waits.read(),
             ended: self.ended.load(std::sync::atomic::Ordering::Acquire),
             actors: self.actors.iter().enumerate().map(actor).filter(|a| a.frames > 0).collect(),
         }

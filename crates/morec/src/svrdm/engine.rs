@@ -5,8 +5,8 @@ use std::sync::Arc;
 use crate::classes::ClassId;
 
 use super::{
-    Candidates, Cell, ChunkAssembly, ChunkDetection, FeatureExtraction, Gram, ModelError, SegmentAssembly,
-    SegmentScoring, SegmentTracking, SvrdmModel, SvrdmParams, Window,
+    Candidates, Cell, ChunkAssembly, FeatureExtraction, Gram, ModelError, SegmentAssembly, SegmentScoring,
+    SegmentTracking, SvrdmModel, SvrdmParams, Window,
 };
 
 /// A motion recognised, in frames of the present stretch at the model's rate.
@@ -53,18 +53,11 @@ impl SvrdmEngine {
         model.check()?;
         let (params, dim) = (&model.params, model.pca.dims());
         let scoring = SegmentScoring::new(model)?;
-        let most = (params.min_chunks..=params.max_chunks).map(|chunks| {
-            let classes = (0..model.classes.len()).map(|class| ClassId(class as u16));
-            // A hair more, lest the exponential's rounding makes a bound of what is none.
-            let bounds =
-                classes.map(|class| scoring.most(class, chunks * params.chunk_frames) * (1.0 + 1e-9));
-            bounds.fold(0.0, f64::max)
-        });
         Ok(Self {
             reduced: vec![0.0; dim],
             chunks: ChunkAssembly::new(params, dim),
             segments: SegmentAssembly::new(params, dim),
-            tracking: SegmentTracking::new(params, most.collect()),
+            tracking: SegmentTracking::of_model(model, &scoring),
             column: vec![Cell::NOTHING; params.lengths()],
             recogniser: SegmentRecogniser {
                 model: model.clone(),
@@ -123,13 +116,13 @@ impl SvrdmEngine {
             watch(window, cell);
         });
         let frames = self.model.params.chunk_frames as i64;
-        self.tracking.push(&self.column, &mut |found| out(in_frames(found, frames)));
+        self.tracking.push(&self.column, &mut |found| out(found.in_frames(frames)));
     }
 
     /// Ends the stretch: calls `out` with what is left. Rows that make no whole chunk are left out.
     pub fn finish(&mut self, out: &mut impl FnMut(FrameDetection)) {
         let frames = self.model.params.chunk_frames as i64;
-        self.tracking.finish(&mut |found| out(in_frames(found, frames)));
+        self.tracking.finish(&mut |found| out(found.in_frames(frames)));
         self.reset();
     }
 }
@@ -144,18 +137,6 @@ impl SegmentRecogniser {
             return Cell::NOTHING;
         }
         let profile = self.extraction.profile(segment, chunks.last_rows(segment.frames()));
-        let mut best = Cell::NOTHING;
-        for candidate in self.candidates.iter() {
-            let confidence = self.scoring.score(candidate.class, profile, segment.frames());
-            if confidence > best.confidence {
-                best = Cell { class: candidate.class, confidence };
-            }
-        }
-        best
+        self.scoring.best(&self.candidates, profile, segment.frames())
     }
-}
-
-fn in_frames(found: ChunkDetection, chunk_frames: i64) -> FrameDetection {
-    let ChunkDetection { class, start, stop, score } = found;
-    FrameDetection { class, start: start * chunk_frames, stop: stop * chunk_frames, score }
 }

@@ -40,7 +40,7 @@ pub use map::ConfidenceMap;
 pub use model::{ModelError, Profiles, SvrdmModel};
 pub use params::{Centring, Comparison, MAX_PROFILE_FRAMES, Normalisation, Scaling, SvrdmParams};
 pub use scoring::{SegmentScoring, confidence};
-pub use segments::{ChunkAssembly, SegmentAssembly, Window};
+pub use segments::{ChunkAssembly, RowRing, SegmentAssembly, Window};
 pub use tracking::{Cell, ChunkDetection, SegmentTracking};
 pub use tree::{Branch, Candidate, Candidates, Descent, MAX_CANDIDATES, Node, Parts, Tree, TreeError};
 pub use vectors::{Directions, MAX_DIM};

@@ -4,7 +4,7 @@ use crate::classes::ClassId;
 
 use super::edr::{Edr, least_ratio};
 use super::rows_edr::RowsEdr;
-use super::{Comparison, MAX_PROFILE_FRAMES, ModelError, Normalisation, SvrdmModel};
+use super::{Candidates, Cell, Comparison, MAX_PROFILE_FRAMES, ModelError, Normalisation, SvrdmModel};
 
 /// Eq. 4.5: `(1 − 0.9 / (1 + e^(−30 EDR + 15))) · e^(−(len − mean)² / (2 (spread · mean)²))`, lengths in seconds.
 pub fn confidence(edr: f64, length_secs: f64, mean_secs: f64, spread: f64) -> f64 {
@@ -96,6 +96,18 @@ impl SegmentScoring {
         let edr = self.distance(class, profile);
         let found = self.confidence(class, edr, frames);
         if found < self.min_confidence { 0.0 } else { found }
+    }
+
+    /// The most certain of `candidates` for a segment of `frames` frames with this profile; of equals the first.
+    pub fn best(&mut self, candidates: &Candidates, profile: &[f32], frames: usize) -> Cell {
+        let mut best = Cell::NOTHING;
+        for candidate in candidates.iter() {
+            let confidence = self.score(candidate.class, profile, frames);
+            if confidence > best.confidence {
+                best = Cell { class: candidate.class, confidence };
+            }
+        }
+        best
     }
 
     /// How like a class's samples what lies at distance `edr` from them is, whatever its length: the first factor of

@@ -18,36 +18,64 @@ impl Window {
     }
 }
 
-/// The second half of input assembly: projected rows in, chunks with their `AᵀA` out; the rows are kept for as long
-/// as a segment may need them.
+/// The last rows of a stream, for as long as a segment may need them.
 #[derive(Debug, Clone)]
-pub struct ChunkAssembly {
-    chunk_frames: usize,
+pub struct RowRing {
     /// A ring of `capacity` rows of `dim` values.
     rows: Vec<f32>,
     dim: usize,
     capacity: usize,
     frames: usize,
+}
+
+impl RowRing {
+    /// For rows of `dim` values: as many as the longest segment has.
+    pub fn new(params: &SvrdmParams, dim: usize) -> Self {
+        let capacity = params.max_frames();
+        Self { rows: vec![0.0; capacity * dim], dim, capacity, frames: 0 }
+    }
+
+    /// Forgets the stream so far.
+    pub fn reset(&mut self) {
+        self.frames = 0;
+    }
+
+    /// Takes the next row, `r` values. No allocation.
+    pub fn push(&mut self, row: &[f32]) {
+        let slot = self.frames % self.capacity;
+        self.rows[slot * self.dim..][..self.dim].copy_from_slice(row);
+        // Whole turns of the ring may be left out: only the place in it and the kept rows matter.
+        self.frames = if self.frames + 1 == 2 * self.capacity { self.capacity } else { self.frames + 1 };
+    }
+
+    /// The last `frames` rows, oldest first; as many as there are, if fewer are kept.
+    pub fn last(&self, frames: usize) -> impl Iterator<Item = &[f32]> {
+        let kept = frames.min(self.frames).min(self.capacity);
+        (self.frames - kept..self.frames).map(|at| {
+            let slot = at % self.capacity;
+            &self.rows[slot * self.dim..][..self.dim]
+        })
+    }
+}
+
+/// The second half of input assembly: projected rows in, chunks with their `AᵀA` out; the rows are kept for as long
+/// as a segment may need them.
+#[derive(Debug, Clone)]
+pub struct ChunkAssembly {
+    chunk_frames: usize,
+    rows: RowRing,
     gram: Gram,
 }
 
 impl ChunkAssembly {
     /// For rows of `dim` values.
     pub fn new(params: &SvrdmParams, dim: usize) -> Self {
-        let capacity = params.max_frames();
-        Self {
-            chunk_frames: params.chunk_frames,
-            rows: vec![0.0; capacity * dim],
-            dim,
-            capacity,
-            frames: 0,
-            gram: Gram::new(dim),
-        }
+        Self { chunk_frames: params.chunk_frames, rows: RowRing::new(params, dim), gram: Gram::new(dim) }
     }
 
     /// Forgets the stream so far.
     pub fn reset(&mut self) {
-        self.frames = 0;
+        self.rows.reset();
         self.gram.clear();
     }
 
@@ -56,10 +84,7 @@ impl ChunkAssembly {
         if self.gram.frames() == self.chunk_frames {
             self.gram.clear();
         }
-        let slot = self.frames % self.capacity;
-        self.rows[slot * self.dim..][..self.dim].copy_from_slice(row);
-        // Whole turns of the ring may be left out: only the place in it and the kept rows matter.
-        self.frames = if self.frames + 1 == 2 * self.capacity { self.capacity } else { self.frames + 1 };
+        self.rows.push(row);
         self.gram.add_row(row);
         self.gram.frames() == self.chunk_frames
     }
@@ -71,11 +96,7 @@ impl ChunkAssembly {
 
     /// The last `frames` rows, oldest first; as many as there are, if fewer are kept.
     pub fn last_rows(&self, frames: usize) -> impl Iterator<Item = &[f32]> {
-        let kept = frames.min(self.frames).min(self.capacity);
-        (self.frames - kept..self.frames).map(|at| {
-            let slot = at % self.capacity;
-            &self.rows[slot * self.dim..][..self.dim]
-        })
+        self.rows.last(frames)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::classes::ClassId;
 
-use super::SvrdmParams;
+use super::{FrameDetection, SegmentScoring, SvrdmModel, SvrdmParams};
 
 #[cfg(test)]
 mod tests;
@@ -35,6 +35,12 @@ pub struct ChunkDetection {
 }
 
 impl ChunkDetection {
+    /// The same in frames, of which a chunk has `chunk_frames`.
+    pub fn in_frames(&self, chunk_frames: i64) -> FrameDetection {
+        let (start, stop) = (self.start * chunk_frames, self.stop * chunk_frames);
+        FrameDetection { class: self.class, start, stop, score: self.score }
+    }
+
     fn chunks(&self) -> i64 {
         self.stop - self.start
     }
@@ -131,6 +137,19 @@ impl SegmentTracking {
             chunks: 0,
             tracked: Vec::with_capacity(room),
         }
+    }
+
+    /// For what `scoring` gives the segments of a model's stream.
+    pub fn of_model(model: &SvrdmModel, scoring: &SegmentScoring) -> Self {
+        let params = &model.params;
+        let most = (params.min_chunks..=params.max_chunks).map(|chunks| {
+            let classes = (0..model.classes.len()).map(|class| ClassId(class as u16));
+            // A hair more, lest the exponential's rounding makes a bound of what is none.
+            let bounds =
+                classes.map(|class| scoring.most(class, chunks * params.chunk_frames) * (1.0 + 1e-9));
+            bounds.fold(0.0, f64::max)
+        });
+        Self::new(params, most.collect())
     }
 
     /// Forgets the stream so far.

@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use morec::features::BoneSet;
 use morec::live::{
-    Actor, Detection, Event, EventReader, Frame, Next, Overload, Phase, Pool, PoolStream, Recognizer, Rig,
-    Session, SessionOptions, Source,
+    Actor, Detection, EventReader, Frame, Next, Overload, Phase, Pool, PoolStream, Recognizer, Rig, Session,
+    SessionOptions, Source,
 };
 use morec::templates::TemplateModel;
 
@@ -84,19 +84,11 @@ fn fill(frame: &mut Frame, time_secs: f64, pose: &morec::features::KeyPose) {
 pub fn ended(mut reader: EventReader) -> Vec<Detection> {
     let mut found = Vec::new();
     while !reader.is_ended() {
-        found.extend(reader.wait(Duration::from_secs(60)).filter(|e| e.phase == Phase::End).map(detection));
+        found.extend(
+            reader.wait(Duration::from_secs(60)).filter(|e| e.phase == Phase::End).map(|e| e.detection()),
+        );
     }
     found
-}
-
-fn detection(event: Event) -> Detection {
-    Detection {
-        class: event.class,
-        start_secs: event.start_secs,
-        stop_secs: event.stop_secs,
-        score: event.score,
-        reported_secs: event.reported_secs,
-    }
 }
 
 fn session(model: &Arc<TemplateModel>, _: BoneSet, poses: &[Timed]) -> Vec<Detection> {

@@ -98,7 +98,7 @@ fn a_source_that_breaks_off_changes_its_skeleton_and_sends_rubbish_does_not_end_
     let ends = events.iter().filter(|e| e.phase == Phase::End).count();
     assert_eq!(ends, 4, "two streams of two motions: {events:?}");
     let frames = stream().len() as u64;
-    assert_eq!(status.unusable_frames, 2 * frames, "{status:?}");
+    assert_eq!(status.unusable_frames, 3 * frames, "{status:?}");
     assert_eq!(status.motions, 4);
 }
 

@@ -15,7 +15,7 @@ use morec::train::{Labelling, Source, TrainClip, TrainError, TrainingReport};
 
 const CLASSES: [&str; 3] = ["wave", "bow", "push"];
 
-fn takes() -> &'static Vec<Take> {
+pub fn takes() -> &'static Vec<Take> {
     static TAKES: OnceLock<Vec<Take>> = OnceLock::new();
     TAKES.get_or_init(|| {
         let classes = CLASSES.to_vec();
@@ -50,7 +50,7 @@ fn classes() -> Vec<String> {
     CLASSES.map(str::to_owned).to_vec()
 }
 
-fn trained(params: SvrdmTrainParams) -> (Model, TrainingReport) {
+pub fn trained(params: SvrdmTrainParams) -> (Model, TrainingReport) {
     let (clips, samples) = clips(takes());
     let classes = classes();
     let labelling = Labelling {
@@ -64,7 +64,7 @@ fn trained(params: SvrdmTrainParams) -> (Model, TrainingReport) {
     (model.into(), report)
 }
 
-fn index_of(model: Model) -> MotionIndex {
+pub fn index_of(model: Model) -> MotionIndex {
     MotionIndex { model, roles: BTreeMap::new(), provenance: Provenance::default() }
 }
 

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
 use morec::live::Model;
-use morec::live::{Event, EventOptions, Overload, Phase, Session, SessionOptions};
+use morec::live::{Event, EventOptions, Layout, Overload, Phase, Session, SessionOptions};
 
 use super::Args;
 use crate::commands::live::stop_on_ctrl_c;
@@ -24,11 +24,12 @@ const GROWTH: f64 = 0.05;
 /// unnoticed.
 type Lap = Vec<(u16, i64, i64, i64)>;
 
-pub fn run(model: &Model, clips: &Arc<Vec<Loaded>>, args: &Args) -> Result<ExitCode> {
+pub fn run(model: &Model, clips: &Arc<Vec<Loaded>>, layout: Layout, args: &Args) -> Result<ExitCode> {
     let lap_secs: f64 = clips.iter().map(|c| c.clip.duration_secs() + PAUSE_SECS).sum();
     let laps = ((args.hours * 3600.0 / lap_secs).ceil() as u64).max(2);
     let source = ClipSource::new(clips.clone()).laps(laps);
     let options = SessionOptions {
+        layout,
         overload: Overload::Wait,
         events: EventOptions { early: true, refractory_secs: 0.0 },
         ..SessionOptions::default()

@@ -14,14 +14,14 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use super::clock::SenderClock;
-use super::humanoid::{BoneMask, HUMANOID, HUMANOID_BONES, bone_of_name, parent_among, standard_offset};
+use super::humanoid::{BoneMask, HUMANOID_BONES, parent_among};
 use super::message::{Said, mirror, seen_in_mirror, understand};
+use super::peers::{Peer, Ports};
 use super::rest::is_t_pose;
-use crate::clip::{Joint, Skeleton};
+use super::skeleton::{AssumedNeck, assumed_neck, bones_of, local_position, place, rig_of};
 use crate::live::osc::{self, Message};
 use crate::live::{Actor, Frame, MAX_ACTORS, Next, Rig, SourceCounts};
 use crate::math::{Quat, Vec3};
-use crate::roles::RoleMap;
 
 /// (d) of the rules.
 const QUIET_SECS: f64 = 0.005;
@@ -89,7 +89,7 @@ struct Bone {
 
 #[derive(Debug)]
 struct Sender<P> {
-    peer: P,
+    ports: Ports<P>,
     actor: Actor,
     bones: [Bone; HUMANOID_BONES],
     root: (Vec3, Quat),
@@ -108,7 +108,7 @@ struct Sender<P> {
     changed_secs: Option<f64>,
 }
 
-impl<P: Copy + PartialEq> VmcReceiver<P> {
+impl<P: Peer> VmcReceiver<P> {
     /// A receiver that has heard nothing yet.
     pub fn new(options: &VmcOptions) -> Self {
         Self {
@@ -145,6 +145,7 @@ impl<P: Copy + PartialEq> VmcReceiver<P> {
             self.counts.interruptions += 1;
         }
         sender.heard_secs = now_secs;
+        sender.ports.hear(now_secs);
         let mut taking = Taking {
             sender,
             ready: &mut self.ready,
@@ -188,7 +189,13 @@ impl<P: Copy + PartialEq> VmcReceiver<P> {
 
     /// The sender at `peer`, a new one if need be and there is room. A sender that has gone makes room.
     fn sender(&mut self, peer: P, now_secs: f64) -> Option<usize> {
-        if let Some(at) = self.senders.iter().position(|sender| sender.peer == peer) {
+        if let Some(at) = self.senders.iter().position(|sender| sender.ports.is_at(peer)) {
+            return Some(at);
+        }
+        // One that has been here before and was taken for a sender that changes its port is one of its own.
+        let parted = self.senders.iter_mut().any(|sender| sender.ports.part_with(peer));
+        let roams = |sender: &mut Sender<P>| !sender.gone && sender.ports.follow(peer, now_secs);
+        if !parted && let Some(at) = self.senders.iter_mut().position(roams) {
             return Some(at);
         }
         let gone = self.senders.iter().position(|sender| sender.gone);
@@ -208,11 +215,11 @@ impl<P: Copy + PartialEq> VmcReceiver<P> {
     }
 }
 
-impl<P> Sender<P> {
+impl<P: Peer> Sender<P> {
     fn new(peer: P, actor: Actor, now_secs: f64) -> Self {
         let bone = Bone { position: Vec3::zeros(), rotation: Quat::identity(), seen_secs: f64::NEG_INFINITY };
         Self {
-            peer,
+            ports: Ports::new(peer, now_secs),
             actor,
             bones: [bone; HUMANOID_BONES],
             root: (Vec3::zeros(), Quat::identity()),
@@ -252,7 +259,7 @@ struct Taking<'a, P> {
     begun_secs: f64,
 }
 
-impl<P> Taking<'_, P> {
+impl<P: Peer> Taking<'_, P> {
     fn datagram(&mut self, bytes: &[u8]) {
         if self.was_overtaken(bytes) {
             self.counts.late += 1;
@@ -373,7 +380,7 @@ impl<P> Taking<'_, P> {
         let since_secs = *self.sender.changed_secs.get_or_insert(self.now_secs);
         let patience_secs = if alive & !known != 0 { LEARN_SECS } else { FORGET_SECS };
         if self.now_secs - since_secs >= patience_secs {
-            let rig = Arc::new(rig_of(alive, &self.sender.bones));
+            let rig = Arc::new(rig_of(alive, |bone| self.sender.bones[bone].position));
             self.ready.items.push_back(Item::Rig(self.sender.actor, rig.clone()));
             self.sender.rig = Some((alive, rig));
             self.sender.changed_secs = None;
@@ -384,7 +391,8 @@ impl<P> Taking<'_, P> {
     fn pose(&self, mask: BoneMask, frame: &mut Frame) {
         let alive = self.sender.alive(self.now_secs);
         let (root_position, root_rotation) = self.sender.root;
-        frame.clear(mask.count_ones() as usize);
+        let neck = assumed_neck(mask);
+        frame.clear(mask.count_ones() as usize + usize::from(neck.is_some()));
         for (joint, bone) in bones_of(mask).enumerate() {
             let Bone { position, rotation, .. } = self.sender.bones[bone];
             let parent = parent_among(bone, mask);
@@ -402,37 +410,11 @@ impl<P> Taking<'_, P> {
             frame.pose.positions[joint] = if known { world + turned * local } else { unknown };
             frame.pose.rotations[joint] = turned * rotation;
         }
-    }
-}
-
-/// Senders without lengths send zeros; a body has none of these.
-fn local_position(bone: usize, parent: Option<usize>, sent: Vec3) -> Vec3 {
-    if parent.is_some() && sent.norm() < 1e-6 { standard_offset(bone, parent) } else { sent }
-}
-
-fn bones_of(mask: BoneMask) -> impl Iterator<Item = usize> {
-    (0..HUMANOID_BONES).filter(move |bone| mask >> bone & 1 == 1)
-}
-
-/// The place of `bone` among the bones of `mask`.
-fn place(mask: BoneMask, bone: usize) -> usize {
-    (mask & ((1 << bone) - 1)).count_ones() as usize
-}
-
-fn rig_of(mask: BoneMask, bones: &[Bone; HUMANOID_BONES]) -> Rig {
-    let mut roles = RoleMap::default();
-    let joint = |bone: usize| {
-        let parent = parent_among(bone, mask);
-        let offset = local_position(bone, parent, bones[bone].position);
-        let parent = parent.map(|parent| place(mask, parent));
-        Joint { name: HUMANOID[bone].name.to_owned(), parent, offset, tip: None }
-    };
-    let joints: Vec<Joint> = bones_of(mask).map(joint).collect();
-    for (place, joint) in joints.iter().enumerate() {
-        if let Some(role) = bone_of_name(&joint.name).and_then(|bone| HUMANOID[bone].role) {
-            roles.set(role, Some(place));
+        if let Some((head, AssumedNeck { parent, share })) = neck {
+            let (pose, joint) = (&mut frame.pose, mask.count_ones() as usize);
+            let (above, head) = (place(mask, parent), place(mask, head));
+            pose.positions[joint] = pose.positions[above].lerp(&pose.positions[head], share);
+            pose.rotations[joint] = pose.rotations[above];
         }
     }
-    // Parents come first in the table, so this cannot fail.
-    Rig { skeleton: Skeleton::new(joints).unwrap_or_default(), roles }
 }

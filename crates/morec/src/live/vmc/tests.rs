@@ -319,3 +319,114 @@ proptest! {
         }
     }
 }
+
+/// A neckless sender: bones of the trunk under their names, the arms and the head.
+fn without(names: &[&str]) -> Vec<u8> {
+    let mut packet = vec![];
+    begin_bundle(&mut packet);
+    for b in HUMANOID[..20].iter().filter(|b| !names.contains(&b.name)) {
+        let turned = if b.name == "Hips" { [0.2, 0.0, 0.0, 0.98] } else { [0.0, 0.0, 0.0, 1.0] };
+        write_element(&mut packet, |out| bone(out, b.name, [0.0; 3], turned));
+    }
+    packet
+}
+
+#[test]
+fn a_sender_without_a_neck_or_a_spine_has_trunk_and_head_all_the_same() {
+    let options = VmcOptions { skip_t_pose: false, ..VmcOptions::default() };
+    let posed = |packet: &[u8]| {
+        let mut heard = Heard::new(&options);
+        (0..60).for_each(|i| heard.packet(1, f64::from(i) / 60.0, packet));
+        assert_eq!((heard.rigs.len(), heard.receiver.counts().malformed), (1, 0));
+        let rig = heard.rigs.pop().unwrap().1;
+        (heard.frames.pop().unwrap().2, rig)
+    };
+    let (whole, _) = posed(&without(&[]));
+    let lacks =
+        [&["Neck"][..], &["Neck", "UpperChest"], &["Neck", "UpperChest", "Chest", "Spine"], &["Spine"]];
+    for missing in lacks {
+        let (pose, rig) = posed(&without(missing));
+        for role in [Role::Neck, Role::Head] {
+            let off = (pose.get(role).unwrap() - whole.get(role).unwrap()).norm();
+            assert!(off < 1e-9, "without {missing:?}: {role} is {off} m off");
+        }
+        assert_eq!(pose.get(Role::Torso).is_some(), missing.len() < 4, "without {missing:?}");
+        assert!(rig.bones(&pose).indices().count() >= 11, "without {missing:?}");
+        // The neck moves with the trunk.
+        let neck = rig.roles.joint(Role::Neck).unwrap();
+        assert!(rig.skeleton.joints()[neck].parent.is_some());
+    }
+    // Nobody can tell where the neck of a headless body is.
+    let (pose, _) = posed(&without(&["Neck", "Head"]));
+    assert_eq!((pose.get(Role::Neck), pose.get(Role::Head)), (None, None));
+}
+
+/// Machines with ports.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct At(u8, u32);
+
+impl Peer for At {
+    fn same_host(&self, other: &Self) -> bool {
+        self.0 == other.0
+    }
+}
+
+#[test]
+fn a_sender_that_opens_a_new_port_for_every_packet_or_frame_is_one_performer() {
+    for (bundling, packets_a_port) in
+        [(Bundling::Whole, 1), (Bundling::Bytes(300), 1), (Bundling::Single, 19)]
+    {
+        let mut receiver = VmcReceiver::new(&VmcOptions::default());
+        let mut sender = VmcSender::new(bundling, false);
+        let (mut frame, mut frames, mut sent) = (Frame::default(), 0, 0);
+        for i in 0..240 {
+            let secs = f64::from(i) / 60.0;
+            for packet in sender.frame(secs, &swinging(secs), &roles()) {
+                receiver.packet(At(1, sent / packets_a_port), secs, packet);
+                sent += 1;
+            }
+            receiver.tick(secs + 0.01);
+            while let Some(next) = receiver.next(&mut frame) {
+                assert!(!matches!(next, Next::Gone(_)));
+                if let Next::Frame = next {
+                    assert_eq!(frame.actor, Actor(0));
+                    frames += 1;
+                }
+            }
+        }
+        assert!(frames > 200, "{bundling:?}: {frames}");
+        assert_eq!((receiver.counts().refused, receiver.counts().interruptions), (0, 0));
+    }
+}
+
+#[test]
+fn two_senders_on_one_machine_are_two_performers_though_they_begin_together() {
+    let mut receiver = VmcReceiver::new(&VmcOptions::default());
+    let mut senders = [0, 1].map(|_| VmcSender::new(Bundling::Bytes(1500), false));
+    let mut rigs: std::collections::BTreeMap<Actor, std::sync::Arc<Rig>> = Default::default();
+    let (mut frame, mut frames) = (Frame::default(), [0; 2]);
+    for i in 0..240 {
+        let secs = f64::from(i) / 60.0;
+        for (s, sender) in senders.iter_mut().enumerate() {
+            // One is half a second ahead of the other.
+            let pose = swinging(secs + 0.5 * s as f64);
+            for packet in sender.frame(secs, &pose, &roles()) {
+                receiver.packet(At(1, 50_000 + s as u32), secs, packet);
+            }
+            receiver.tick(secs);
+            while let Some(next) = receiver.next(&mut frame) {
+                match next {
+                    Next::Rig(actor, rig) => _ = rigs.insert(actor, rig),
+                    Next::Frame => {
+                        frames[frame.actor.index()] += 1;
+                        let key = frame.key_pose(&rigs[&frame.actor]);
+                        let off = [0.0, 0.5].map(|ahead| far(&key, &swinging(secs + ahead)));
+                        assert!(off[0].min(off[1]) < 0.03, "{off:?} m off at {secs}");
+                    }
+                    _ => {}
+                }
+            }
+        }
+    }
+    assert!(frames.iter().all(|n| *n > 180), "{frames:?}");
+}

@@ -1,0 +1,108 @@
+//! The stages between chunks and detections (thesis, §4.6.3–4.6.5), each the body of a thread: it ends when what it
+//! takes from has ended, and its going ends the next.
+
+use crate::live::MAX_ACTORS;
+use crate::svrdm::{
+    Cell, FeatureExtraction, Gram, RowRing, SegmentAssembly, SegmentScoring, SvrdmModel, SvrdmParams,
+};
+
+use super::belt::{In, Out};
+use super::parcel::{Chunk, Mark, Of, Parcel, What};
+
+/// Segment assembly's ends of the belts.
+pub(super) struct Segments {
+    pub(super) chunks: In<Chunk>,
+    pub(super) used: Out<Chunk>,
+    pub(super) out: Out<Parcel>,
+    pub(super) spare: In<Parcel>,
+}
+
+impl Segments {
+    /// Sends what `fill` makes of a spare parcel.
+    fn send(&mut self, mark: Mark, what: What, fill: impl FnOnce(&mut Parcel)) {
+        if let Some(mut parcel) = self.spare.next() {
+            (parcel.mark, parcel.what) = (mark, what);
+            fill(&mut parcel);
+            self.out.send(parcel);
+        }
+    }
+
+    /// Chunks in, segments out.
+    pub(super) fn run(mut self, model: &SvrdmModel) {
+        let mut assemblies: Vec<_> =
+            (0..MAX_ACTORS).map(|_| SegmentAssembly::new(&model.params, model.pca.dims())).collect();
+        while let Some(mut chunk) = self.chunks.next() {
+            let (mark, assembly) = (chunk.mark, &mut assemblies[chunk.mark.actor]);
+            match chunk.of {
+                Of::Chunk => {
+                    self.send(mark, What::Rows, |parcel| std::mem::swap(&mut parcel.rows, &mut chunk.rows));
+                    assembly.push(&chunk.gram, &mut |window, gram: &Gram| {
+                        self.send(mark, What::Segment(window), |parcel| parcel.gram.copy_from(gram));
+                    });
+                    self.send(mark, What::Column, |_| ());
+                }
+                Of::End(end) => {
+                    assembly.reset();
+                    self.send(mark, What::End(end), |_| ());
+                }
+                Of::Frame { time_secs } => self.send(mark, What::Frame { time_secs }, |_| ()),
+            }
+            self.used.send(chunk);
+        }
+    }
+}
+
+/// Feature vector extraction: segments get their feature vector and profile.
+pub(super) fn extract(model: &SvrdmModel, mut from: In<Parcel>, mut to: Out<Parcel>) {
+    let dim = model.pca.dims();
+    let mut extraction = FeatureExtraction::new(&model.params, dim, &model.signs);
+    let mut rings: Vec<_> = (0..MAX_ACTORS).map(|_| RowRing::new(&model.params, dim)).collect();
+    while let Some(mut parcel) = from.next() {
+        let ring = &mut rings[parcel.mark.actor];
+        match parcel.what {
+            What::Rows => parcel.rows.chunks_exact(dim).for_each(|row| ring.push(row)),
+            What::End(_) => ring.reset(),
+            What::Segment(_) => {
+                let Parcel { gram, has_feature, feature, profile, profile_len, .. } = &mut *parcel;
+                let found = extraction.feature(gram).map(|found| feature.copy_from_slice(found));
+                *has_feature = found.is_some();
+                if *has_feature {
+                    let found = extraction.profile(gram, ring.last(gram.frames()));
+                    *profile_len = found.len();
+                    profile[..found.len()].copy_from_slice(found);
+                }
+            }
+            What::Column | What::Frame { .. } => {}
+        }
+        to.send(parcel);
+    }
+}
+
+/// Classification: segments get the classes that they may be.
+pub(super) fn classify(model: &SvrdmModel, mut from: In<Parcel>, mut to: Out<Parcel>) {
+    let SvrdmParams { accept, descent, .. } = model.params;
+    while let Some(mut parcel) = from.next() {
+        if let What::Segment(_) = parcel.what {
+            let Parcel { has_feature, feature, candidates, .. } = &mut *parcel;
+            candidates.clear();
+            if *has_feature {
+                model.tree.descend(feature, accept, descent, candidates);
+            }
+        }
+        to.send(parcel);
+    }
+}
+
+/// Scoring: segments get what they most certainly are.
+pub(super) fn score(mut scoring: SegmentScoring, mut from: In<Parcel>, mut to: Out<Parcel>) {
+    while let Some(mut parcel) = from.next() {
+        if let What::Segment(_) = parcel.what {
+            let Parcel { candidates, profile, profile_len, gram, cell, .. } = &mut *parcel;
+            *cell = match candidates.is_empty() {
+                true => Cell::NOTHING,
+                false => scoring.best(candidates, &profile[..*profile_len], gram.frames()),
+            };
+        }
+        to.send(parcel);
+    }
+}

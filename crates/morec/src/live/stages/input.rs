@@ -1,0 +1,165 @@
+//! Input assembly (thesis, §4.6.2): frames to pose rows, rows to chunks.
+
+use std::sync::Arc;
+
+use crate::features::Pushed;
+use crate::live::recognizer::Steps;
+use crate::live::{Frame, Model, PoseReader, Rig};
+use crate::pivots::{PivotPose, PoseStream};
+use crate::svrdm::{ChunkAssembly, SvrdmModel};
+
+use super::belt::{In, Out};
+use super::parcel::{Chunk, End, Mark, Of};
+
+/// Where chunks go, and where used boxes come back.
+#[derive(Debug)]
+pub(super) struct Chunks {
+    pub(super) out: Out<Chunk>,
+    pub(super) spare: In<Chunk>,
+}
+
+impl Chunks {
+    /// Sends what `fill` makes of a spare box; nothing once the stages have ended.
+    fn send(&mut self, mark: Mark, of: Of, fill: impl FnOnce(&mut Chunk)) {
+        if let Some(mut chunk) = self.spare.next() {
+            (chunk.mark, chunk.of) = (mark, of);
+            fill(&mut chunk);
+            self.out.send(chunk);
+        }
+    }
+}
+
+/// What became of a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Fate {
+    /// Its skeleton is not known.
+    Unusable,
+    /// It completed no chunk: nothing more comes of it.
+    Through,
+    /// It is on its way; the last stage counts it.
+    Sent,
+}
+
+/// One performer's way from frames to chunks: what [`Recognizer`](crate::live::Recognizer) does with a pose before the
+/// engine has it, and the engine's first stage.
+#[derive(Debug)]
+pub(super) struct Input {
+    actor: usize,
+    model: Arc<SvrdmModel>,
+    known: bool,
+    reader: Option<PoseReader>,
+    rows: PoseStream,
+    reduced: Vec<f32>,
+    chunks: ChunkAssembly,
+    now_secs: f64,
+    wall_secs: f64,
+}
+
+impl Input {
+    pub(super) fn new(model: &Arc<SvrdmModel>, actor: usize) -> Self {
+        let dim = model.pca.dims();
+        Self {
+            actor,
+            model: model.clone(),
+            known: false,
+            reader: None,
+            rows: PoseStream::new(&model.pivots, &model.pose),
+            reduced: vec![0.0; dim],
+            chunks: ChunkAssembly::new(&model.params, dim),
+            now_secs: 0.0,
+            wall_secs: 0.0,
+        }
+    }
+
+    /// Begins with a new skeleton; ends what went on with the old one.
+    pub(super) fn set_rig(&mut self, rig: &Rig, to: &mut Chunks) {
+        self.finish(to);
+        let model = Model::Svrdm(self.model.clone());
+        self.known = true;
+        self.reader = PoseReader::new(&model, &rig.skeleton, &rig.roles).ok();
+        self.rows = PoseStream::new(&self.model.pivots, &self.model.pose);
+        self.now_secs = 0.0;
+    }
+
+    /// The performer has gone for now.
+    pub(super) fn finish(&mut self, to: &mut Chunks) {
+        self.end(End::Gone, to);
+    }
+
+    /// Takes a frame. What comes of it is reported with its times.
+    pub(super) fn push(&mut self, frame: &Frame, to: &mut Chunks) -> Fate {
+        if !self.known {
+            return Fate::Unusable;
+        }
+        self.wall_secs = frame.wall_secs;
+        if self.rows.breaks_at(frame.time_secs) {
+            self.end(End::Gap, to);
+        }
+        let unknown;
+        let pivots = match self.reader.as_mut().and_then(|reader| reader.pivots(&frame.pose)) {
+            Some(pivots) => *pivots,
+            None => {
+                unknown = PivotPose::default();
+                unknown
+            }
+        };
+        // The first pose of a stretch sets its origin and completes no row: the origin read here is right.
+        let mark = self.mark(frame.time_secs);
+        let (model, reduced, chunks) = (&self.model, &mut self.reduced, &mut self.chunks);
+        let mut row = RowSink { model, reduced, chunks, mark, to, sent: false };
+        let pushed = self.rows.push(frame.time_secs, &pivots, &mut |values| row.push(values));
+        if matches!(pushed, Pushed::Taken | Pushed::Restarted) {
+            self.now_secs = frame.time_secs;
+        }
+        if !row.sent {
+            return Fate::Through;
+        }
+        to.send(mark, Of::Frame { time_secs: frame.time_secs }, |_| ());
+        Fate::Sent
+    }
+
+    fn mark(&self, reported_secs: f64) -> Mark {
+        let step_secs = 1.0 / self.model.rate_hz();
+        let steps = Steps { origin_secs: self.rows.origin_secs(), step_secs };
+        Mark { actor: self.actor, reported_secs, wall_secs: self.wall_secs, steps }
+    }
+
+    /// Ends the stretch with the row that still waits.
+    fn end(&mut self, end: End, to: &mut Chunks) {
+        let mark = self.mark(self.now_secs);
+        let (model, reduced, chunks) = (&self.model, &mut self.reduced, &mut self.chunks);
+        let mut row = RowSink { model, reduced, chunks, mark, to, sent: false };
+        self.rows.finish(&mut |values| row.push(values));
+        self.chunks.reset();
+        to.send(mark, Of::End(end), |_| ());
+    }
+}
+
+/// Rows to chunks.
+struct RowSink<'a> {
+    model: &'a SvrdmModel,
+    reduced: &'a mut [f32],
+    chunks: &'a mut ChunkAssembly,
+    mark: Mark,
+    to: &'a mut Chunks,
+    /// Whether a chunk has gone.
+    sent: bool,
+}
+
+impl RowSink<'_> {
+    fn push(&mut self, row: &[f32]) {
+        self.model.pca.project_into(row, self.reduced);
+        if !self.chunks.push(self.reduced) {
+            return;
+        }
+        self.sent = true;
+        let (chunks, frames) = (&*self.chunks, self.model.params.chunk_frames);
+        self.to.send(self.mark, Of::Chunk, |chunk| {
+            chunk.gram.copy_from(chunks.chunk());
+            let dim = chunk.gram.dim();
+            for (kept, row) in chunk.rows.chunks_exact_mut(dim).zip(chunks.last_rows(frames)) {
+                kept.copy_from_slice(row);
+            }
+        });
+    }
+}

@@ -1,0 +1,44 @@
+//! Sleep of a thread that has nothing to do, and its end.
+
+use std::time::Duration;
+
+// By this name, so that the models in `loom/` can put theirs in its place.
+use super::sync::{AtomicBool, OnceLock, Ordering, Thread, current, fence, park_timeout};
+
+/// How long a thread sleeps that missed its waking call, if such a thing should happen.
+pub(super) const NAP: Duration = Duration::from_millis(20);
+
+/// Lets one thread sleep until others have something for it.
+#[derive(Debug, Default)]
+pub(super) struct Waker {
+    asleep: AtomicBool,
+    thread: OnceLock<Thread>,
+}
+
+impl Waker {
+    /// Wakes the sleeper, if it sleeps. Never waits.
+    pub(super) fn wake(&self) {
+        // What was done before must be seen by whoever falls asleep after this look at it.
+        fence(Ordering::SeqCst);
+        if self.asleep.load(Ordering::Relaxed)
+            && self.asleep.swap(false, Ordering::AcqRel)
+            && let Some(thread) = self.thread.get()
+        {
+            thread.unpark();
+        }
+    }
+
+    /// Sleeps for at most `most` unless `ready`, or until woken.
+    pub(super) fn sleep(&self, most: Duration, ready: impl FnOnce() -> bool) {
+        let me = current();
+        // Another thread than the one that slept first is not woken; it looks again soon.
+        let known = self.thread.get_or_init(|| me.clone()).id() == me.id();
+        // Whoever reads this knows the thread, too.
+        self.asleep.store(true, Ordering::Release);
+        fence(Ordering::SeqCst);
+        if !ready() {
+            park_timeout(if known { most.min(NAP) } else { most.min(Duration::from_millis(2)) });
+        }
+        self.asleep.store(false, Ordering::Relaxed);
+    }
+}
