@@ -161,6 +161,8 @@ struct Round {
     right: usize,
     sure: usize,
     wrong: usize,
+    /// Proposals of a score of at least 0.9, and the wrong ones among them.
+    surest: [usize; 2],
     secs: f64,
 }
 
@@ -191,15 +193,19 @@ fn play(
         let begun = Instant::now();
         let proposals = db.propose(&ProposeOptions::default(), &())?;
         let secs = begun.elapsed().as_secs_f64();
-        let (mut right, mut sure, mut wrong) = (labelled.clone(), 0, 0);
+        let (mut right, mut sure, mut wrong, mut surest) = (labelled.clone(), 0, 0, [0; 2]);
         for p in proposals.iter().filter(|p| p.is_sure()) {
             sure += 1;
+            surest[0] += usize::from(p.score >= 0.9);
             match user.under(p.clip, p.start_secs, p.stop_secs) {
                 Some(t) if user.truth[t].class == p.class && right.insert(t) => {}
-                _ => wrong += 1,
+                _ => {
+                    wrong += 1;
+                    surest[1] += usize::from(p.score >= 0.9);
+                }
             }
         }
-        done.push(Round { answers, labelled: labelled.len(), right: right.len(), sure, wrong, secs });
+        done.push(Round { answers, labelled: labelled.len(), right: right.len(), sure, wrong, surest, secs });
         if right.len() == user.truth.len() && wrong == 0 {
             break;
         }
@@ -247,12 +253,12 @@ fn main() -> Result<ExitCode, Failure> {
     println!("{which}: {} clips, {secs:.0} s, {total} samples", clips.len());
     for seed in 0..seeds as u64 {
         let done = play(&mut db, &user, seed, ask, rounds)?;
-        println!("seed {seed}\n  answers  labelled   right  share    sure  wrong    secs");
+        println!("seed {seed}\n  answers  labelled   right  share    sure  wrong  of 0.9  wrong    secs");
         for r in &done {
             let share = r.right as f64 / total as f64;
             println!(
-                "  {:7}  {:8}  {:6}  {share:5.3}  {:6}  {:5}  {:6.2}",
-                r.answers, r.labelled, r.right, r.sure, r.wrong, r.secs
+                "  {:7}  {:8}  {:6}  {share:5.3}  {:6}  {:5}  {:6}  {:5}  {:6.2}",
+                r.answers, r.labelled, r.right, r.sure, r.wrong, r.surest[0], r.surest[1], r.secs
             );
         }
         let reached = done.iter().find(|r| r.right as f64 >= 0.95 * total as f64);

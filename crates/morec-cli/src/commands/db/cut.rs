@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use morec::features::FeatureParams;
 use morec::pivots::{PivotMap, PivotSet, PoseParams, pose_rows_of_clip};
 use morec::progress::Progress;
@@ -13,7 +13,7 @@ use morec::segment::{
     KernelParams, PpcaParams, StillKind, StillParams, kernel_cuts, segment, still_stretches,
 };
 use morec_db::rows::ClipRows;
-use morec_db::{ClipFilter, ClipInfo, DbError, MotionDb, Segment, SegmentKind};
+use morec_db::{ClipFilter, ClipId, ClipInfo, DbError, MotionDb, Segment, SegmentKind};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -133,24 +133,31 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let rows = db.rows(&FeatureParams::default(), &bar)?;
     let clips = db.clips(&ClipFilter { name: args.name.clone(), ..ClipFilter::default() })?;
     let (db, done) = (Mutex::new(db), AtomicUsize::new(0));
-    let found: Vec<(Cut, Vec<Segment>)> = clips
-        .par_iter()
-        .map(|clip| {
-            if bar.cancelled() {
-                return Err(DbError::Cancelled.into());
+    let one = |clip: &ClipInfo| -> Result<Option<Done>> {
+        if bar.cancelled() {
+            return Err(DbError::Cancelled.into());
+        }
+        bar.report("cutting", done.fetch_add(1, Ordering::Relaxed), clips.len());
+        let Some(rows) = rows.iter().find(|r| r.clip == clip.id) else {
+            return Ok(Some((clip.id, nothing(clip), Vec::new())));
+        };
+        match cutter.cuts(&db, clip, rows) {
+            Ok(cuts) => Ok(Some(cut(clip, rows, cuts))),
+            Err(error) => {
+                bar.suspend(|| eprintln!("morec: left as it is: {}: {error:#}", clip.name));
+                Ok(None)
             }
-            bar.report("cutting", done.fetch_add(1, Ordering::Relaxed), clips.len());
-            let Some(rows) = rows.iter().find(|r| r.clip == clip.id) else {
-                return Ok((nothing(clip), Vec::new()));
-            };
-            let cuts = cutter.cuts(&db, clip, rows).with_context(|| clip.name.clone())?;
-            Ok(cut(clip, rows, cuts))
-        })
-        .collect::<Result<_>>()?;
-    let ids: Vec<_> = clips.iter().map(|c| c.id).collect();
-    let (cuts, segments): (Vec<Cut>, Vec<Vec<Segment>>) = found.into_iter().unzip();
+        }
+    };
+    let found: Vec<Option<Done>> = clips.par_iter().map(one).collect::<Result<_>>()?;
+    let (mut ids, mut cuts, mut segments) = (Vec::new(), Vec::new(), Vec::new());
+    for (id, cut, of_clip) in found.into_iter().flatten() {
+        ids.push(id);
+        cuts.push(cut);
+        segments.extend(of_clip);
+    }
     let mut db = db.into_inner().unwrap_or_else(PoisonError::into_inner);
-    db.set_segments(args.method.name(), &ids, &segments.concat())?;
+    db.set_segments(args.method.name(), &ids, &segments)?;
     drop(bar);
     if args.json {
         super::print_json(&cuts)?;
@@ -160,12 +167,15 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// A clip that was cut: what is told of it and what is kept.
+type Done = (ClipId, Cut, Vec<Segment>);
+
 fn nothing(clip: &ClipInfo) -> Cut {
     Cut { clip: clip.name.clone(), secs: clip.duration_secs(), cuts_secs: Vec::new(), still: Vec::new() }
 }
 
 /// What is kept and told of a clip cut at `cuts`.
-fn cut(clip: &ClipInfo, rows: &ClipRows, cuts: Vec<f64>) -> (Cut, Vec<Segment>) {
+fn cut(clip: &ClipInfo, rows: &ClipRows, cuts: Vec<f64>) -> Done {
     let features = FeatureParams::default();
     let still = still_stretches(&rows.rows, rows.bones, &features, &StillParams::default());
     let stretch = |kind, start_secs, stop_secs| Segment { clip: clip.id, kind, start_secs, stop_secs };
@@ -190,7 +200,7 @@ fn cut(clip: &ClipInfo, rows: &ClipRows, cuts: Vec<f64>) -> (Cut, Vec<Segment>) 
         start = stop;
     }
     segments.retain(|s| s.stop_secs > s.start_secs);
-    (Cut { cuts_secs: cuts, still, ..nothing(clip) }, segments)
+    (clip.id, Cut { cuts_secs: cuts, still, ..nothing(clip) }, segments)
 }
 
 fn print(cuts: &[Cut]) -> Result<()> {
