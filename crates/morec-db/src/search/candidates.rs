@@ -21,6 +21,9 @@ pub struct Candidate {
 /// Example lengths that windows are tried at.
 const SCALES: [f64; 3] = [0.7, 1.0, 1.4];
 
+/// Windows of a clip of which only the best is wanted.
+const A_CLIP: usize = 4;
+
 /// What compares the example, or its image, with windows.
 pub struct Probe<'a> {
     pub look: Look,
@@ -65,6 +68,12 @@ impl<'a> Probe<'a> {
         Self { look: Look::new(summary, rows, bones, metric), bones, mirrored, metric, rows, whole }
     }
 
+    /// How far a stretch of a clip is.
+    pub fn distance_of(&self, clip: &Indexed, span: &Range<usize>) -> f32 {
+        let over = Comparison::over(self.bones.and(clip.laid.bones));
+        self.distance(clip, span, &clip.sums.octaves(span), &over)
+    }
+
     fn distance(&self, clip: &Indexed, span: &Range<usize>, summary: &Summary, over: &Comparison) -> f32 {
         let look = Look::new(*summary, span.len(), clip.laid.bones, self.metric);
         let excess = if self.whole { length_cost(self.rows, clip.laid.rows.len(), 1.4) } else { 0.0 };
@@ -78,7 +87,8 @@ pub fn length_cost(length: usize, other: usize, pace: f64) -> f32 {
 }
 
 impl SearchIndex {
-    /// The nearest windows of all clips, none of which overlap much, nearest first; of each clip one, if asked.
+    /// The nearest windows of all clips, none of which overlap much, nearest first; of each clip a few, if only its best
+    /// hit is wanted: windows lie a quarter apart, and only its exact place says which is best.
     /// O(rows / example rows) summaries.
     pub(super) fn candidates(
         &self,
@@ -92,8 +102,8 @@ impl SearchIndex {
             // Neighbours of a good window say the same: the best of each surroundings is enough.
             let mut kept: Vec<Candidate> = Vec::new();
             for candidate in found {
-                let same = |k: &Candidate| one_a_clip || overlaps(&k.span, &candidate.span);
-                if !kept.iter().any(same) {
+                let full = one_a_clip && kept.len() >= A_CLIP;
+                if !full && !kept.iter().any(|k| overlaps(&k.span, &candidate.span)) {
                     kept.push(candidate);
                 }
             }
