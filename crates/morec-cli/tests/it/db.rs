@@ -89,6 +89,12 @@ fn from_clips_to_labels_and_back() {
         db(&["search", &format!("clips/{name}.bvh"), "--start", &start, "--stop", &stop, "--limit", "1"]);
     assert_eq!(outside["hits"][0]["name"], Value::from(name.as_str()), "a file finds itself");
 
+    let learned = db(&["search", name, "--start", &start, "--stop", &stop, "--limit", "3", "--learned"]);
+    assert_eq!((&learned["learned"]["classes"], &learned["learned"]["samples"]), (&2.into(), &all.into()));
+    assert_eq!(learned["hits"].as_array().unwrap().len(), 3);
+    let few = folder.morec(&["db", "search", "m.mdb", name, "--learned", "--classes", "bow"]);
+    assert!(few.code == Some(1) && few.err.contains("at least 2 classes"), "{}", few.err);
+
     assert_eq!(db(&["cut"]).as_array().unwrap().len(), 3);
     assert!(!db(&["cycles"]).as_array().unwrap().is_empty());
     let groups = db(&["group", "--of", "labels", "--report", "groups.html"]);

@@ -6,7 +6,7 @@ use morec::features::BoneSet;
 use rayon::prelude::*;
 
 use super::learned::{LearnedMetric, Place};
-use super::summary::{Comparison, Summary, mirrored_summary};
+use super::summary::{Comparison, Moments, Summary, mirrored_summary, moments_in};
 use super::{Example, Indexed, SearchIndex};
 
 /// A window and how far it is from the example.
@@ -20,6 +20,9 @@ pub struct Candidate {
 
 /// Example lengths that windows are tried at.
 const SCALES: [f64; 3] = [0.7, 1.0, 1.4];
+
+/// Windows of a clip of which only the best is wanted.
+const A_CLIP: usize = 4;
 
 /// What compares the example, or its image, with windows.
 pub struct Probe<'a> {
@@ -65,6 +68,12 @@ impl<'a> Probe<'a> {
         Self { look: Look::new(summary, rows, bones, metric), bones, mirrored, metric, rows, whole }
     }
 
+    /// How far a stretch of a clip is.
+    pub fn distance_of(&self, clip: &Indexed, span: &Range<usize>) -> f32 {
+        let over = Comparison::over(self.bones.and(clip.laid.bones));
+        self.distance(clip, span, &clip.sums.octaves(span), &over)
+    }
+
     fn distance(&self, clip: &Indexed, span: &Range<usize>, summary: &Summary, over: &Comparison) -> f32 {
         let look = Look::new(*summary, span.len(), clip.laid.bones, self.metric);
         let excess = if self.whole { length_cost(self.rows, clip.laid.rows.len(), 1.4) } else { 0.0 };
@@ -78,7 +87,8 @@ pub fn length_cost(length: usize, other: usize, pace: f64) -> f32 {
 }
 
 impl SearchIndex {
-    /// The nearest windows of all clips, none of which overlap much, nearest first; of each clip one, if asked.
+    /// The nearest windows of all clips, none of which overlap much, nearest first; of each clip a few, if only its best
+    /// hit is wanted: windows lie a quarter apart, and only its exact place says which is best.
     /// O(rows / example rows) summaries.
     pub(super) fn candidates(
         &self,
@@ -92,8 +102,8 @@ impl SearchIndex {
             // Neighbours of a good window say the same: the best of each surroundings is enough.
             let mut kept: Vec<Candidate> = Vec::new();
             for candidate in found {
-                let same = |k: &Candidate| one_a_clip || overlaps(&k.span, &candidate.span);
-                if !kept.iter().any(same) {
+                let full = one_a_clip && kept.len() >= A_CLIP;
+                if !full && !kept.iter().any(|k| overlaps(&k.span, &candidate.span)) {
                     kept.push(candidate);
                 }
             }
@@ -119,8 +129,12 @@ fn windows(number: usize, clip: &Indexed, example: &Example, probes: &[Probe<'_>
         (0..=rows - length).step_by((length / 4).max(1)).map(move |start| start..start + length)
     });
     let whole = probes.first().filter(|probe| probe.whole).map(|_| 0..rows);
+    let mut spans: Vec<Range<usize>> = spans.chain(whole).collect();
+    if !probes.iter().any(|probe| probe.whole) {
+        spans = nearest_by_moments(clip, probes, &over, spans);
+    }
     let mut found = Vec::new();
-    for span in spans.chain(whole) {
+    for span in spans {
         let own = example.from.as_ref().is_some_and(|(id, own)| *id == clip.clip && overlaps(own, &span));
         let summary = clip.sums.octaves(&span);
         for (probe, over) in probes.iter().zip(&over).filter(|(probe, _)| probe.mirrored || !own) {
@@ -129,6 +143,37 @@ fn windows(number: usize, clip: &Indexed, example: &Example, probes: &[Probe<'_>
         }
     }
     found
+}
+
+/// Of windows in the same surroundings those that are nearest by their moments, for each probe. These cost a tenth of a
+/// summary, and what they say is never more than what that says: what its octaves add is at least as long as the
+/// standard deviations.
+fn nearest_by_moments(
+    clip: &Indexed,
+    probes: &[Probe<'_>],
+    over: &[Comparison],
+    spans: Vec<Range<usize>>,
+) -> Vec<Range<usize>> {
+    let moments: Vec<Moments> = spans.iter().map(|span| clip.sums.moments_of(span)).collect();
+    let mut kept: Vec<Range<usize>> = Vec::new();
+    for (probe, over) in probes.iter().zip(over) {
+        let wanted = moments_in(&probe.look.summary);
+        let distance = |at: usize| {
+            over.by_moments(&wanted, &moments[at]) + length_cost(spans[at].len(), probe.rows, 1.0 / SCALES[0])
+        };
+        let mut order: Vec<(f32, usize)> = (0..spans.len()).map(|at| (distance(at), at)).collect();
+        order.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut own: Vec<Range<usize>> = Vec::new();
+        for (_, at) in order {
+            if !own.iter().any(|k| overlaps(k, &spans[at])) {
+                own.push(spans[at].clone());
+            }
+        }
+        kept.extend(own);
+    }
+    kept.sort_by_key(|span| (span.start, span.end));
+    kept.dedup();
+    kept
 }
 
 /// More than a third of the shorter.

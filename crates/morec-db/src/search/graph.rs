@@ -131,11 +131,11 @@ mod tests {
     /// Two rows of points side by side: what lies on the example's own row comes before what is nearer across.
     #[test]
     fn what_is_linked_comes_before_what_is_near() {
-        let at = |i: usize| if i < 40 { (0.1 * i as f32, 0.0) } else { (0.1 * (i - 40) as f32, 1.5) };
+        let at = |i: usize| if i < 40 { (0.1 * i as f32, 0.0) } else { (0.1 * (i - 40) as f32, 2.0) };
         let distance = |i: usize, j: usize| (at(i).0 - at(j).0).hypot(at(i).1 - at(j).1);
         let reached = spread(80, distance);
         let along = reached[38]; // node 39, 3.9 away
-        let across = reached[39]; // node 40, 1.5 away
+        let across = reached[39]; // node 40, 2 away
         assert!(along > across, "{along} {across}");
         assert!(distance(0, 39) > distance(0, 40));
         assert!(spread(1, |_, _| 0.0).is_empty());

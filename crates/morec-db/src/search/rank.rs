@@ -1,5 +1,6 @@
 //! Candidates by summary, their company over a graph, exact places by warping, one ranking.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use morec::features::{BoneSet, Rows};
@@ -88,9 +89,11 @@ impl SearchIndex {
         // Places move a little and may come to overlap.
         ranked.truncate(4 * options.limit.max(8));
         let image = options.mirror.then(|| Example { laid: mirrored(&example.laid), ..example.clone() });
-        let place = |(cost, c): &(f32, Candidate)| {
-            let shown = image.as_ref().filter(|_| c.mirrored).unwrap_or(example);
-            self.place(c, *cost, shown, options)
+        let place = |found: &Ranked| {
+            let mirrored = found.candidate.mirrored;
+            let shown = image.as_ref().filter(|_| mirrored).unwrap_or(example);
+            let probe = probes.last().filter(|_| mirrored).unwrap_or(&probes[0]);
+            self.place(found, shown, probe, options)
         };
         let mut hits: Vec<Hit> = ranked.par_iter().map(place).collect();
         hits.sort_by(|a, b| b.score.total_cmp(&a.score).then(a.clip.cmp(&b.clip)));
@@ -104,8 +107,7 @@ impl SearchIndex {
         kept
     }
 
-    /// Candidates with what they cost, cheapest first: their distance, and how little of the example's company they
-    /// keep. What is the example over again needs no company.
+    /// Candidates with the company they keep, cheapest first.
     fn ranked(
         &self,
         candidates: Vec<Candidate>,
@@ -113,30 +115,35 @@ impl SearchIndex {
         options: &SearchOptions,
         probes: &[Probe<'_>],
         metric: Option<&LearnedMetric>,
-    ) -> Vec<(f32, Candidate)> {
-        let linked = (8 * options.limit).clamp(*LINKED.start(), *LINKED.end()).min(candidates.len());
-        let reached = self.company(&candidates[..linked], example, probes, metric);
-        let scale = candidates.get(SCALE_NEIGHBOUR.min(linked).max(1) - 1).map_or(1.0, |c| c.distance);
-        let cost = |(at, c): (usize, Candidate)| {
-            let reached = reached.get(at).map_or(UNREACHED, |r| r.max(UNREACHED));
-            let apart = 1.0 - (-(c.distance / scale.max(1e-6)).powi(2)).exp();
-            (c.distance - COMPANY * apart * reached.ln(), c)
+    ) -> Vec<Ranked> {
+        // Where clips are asked for, a clip is one node, at its nearest window.
+        let mut seen = BTreeSet::new();
+        let node = |c: &&Candidate| !options.one_a_clip || seen.insert(c.clip);
+        let linked = (8 * options.limit).clamp(*LINKED.start(), *LINKED.end());
+        let nodes: Vec<&Candidate> = candidates.iter().filter(node).take(linked).collect();
+        let reached = self.company(&nodes, example, probes, metric);
+        let of_node: BTreeMap<(usize, usize), f32> =
+            nodes.iter().zip(&reached).map(|(c, r)| (key(c, options), *r)).collect();
+        let scale = nodes.get(SCALE_NEIGHBOUR.min(nodes.len()).max(1) - 1).map_or(1.0, |c| c.distance);
+        let rank = |candidate: Candidate| {
+            let reached = of_node.get(&key(&candidate, options)).map_or(UNREACHED, |r| r.max(UNREACHED));
+            Ranked { candidate, reached, scale: scale.max(1e-6) }
         };
-        let mut ranked: Vec<(f32, Candidate)> = candidates.into_iter().enumerate().map(cost).collect();
-        ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut ranked: Vec<Ranked> = candidates.into_iter().map(rank).collect();
+        ranked.sort_by(|a, b| a.cost(a.candidate.distance).total_cmp(&b.cost(b.candidate.distance)));
         ranked
     }
 
     /// What comes to each candidate from the example. Mirrored ones stand in the graph as the example sees them.
     fn company(
         &self,
-        candidates: &[Candidate],
+        candidates: &[&Candidate],
         example: &Example,
         probes: &[Probe<'_>],
         metric: Option<&LearnedMetric>,
     ) -> Vec<f32> {
         let whole = probes.iter().any(|probe| probe.whole);
-        let node = |c: &Candidate| {
+        let node = |c: &&Candidate| {
             let clip = &self.clips[c.clip];
             let (summary, bones) = (clip.sums.octaves(&c.span), clip.laid.bones);
             let (summary, bones) = if c.mirrored {
@@ -160,7 +167,8 @@ impl SearchIndex {
     }
 
     /// Where within a candidate's surroundings the example lies exactly.
-    fn place(&self, candidate: &Candidate, cost: f32, example: &Example, options: &SearchOptions) -> Hit {
+    fn place(&self, ranked: &Ranked, example: &Example, probe: &Probe<'_>, options: &SearchOptions) -> Hit {
+        let candidate = &ranked.candidate;
         let clip = &self.clips[candidate.clip];
         let n = example.laid.rows.len();
         let from = candidate.span.start.saturating_sub(n / 3);
@@ -170,6 +178,8 @@ impl SearchIndex {
         let (warp, span) = warp(&example.laid, &clip.laid, from..to, &shared_columns(shared))
             .unwrap_or_else(|| (candidate.distance.powi(2), candidate.span.clone()));
         let share = options.warp_share;
+        // Windows lie a quarter apart: in its place the stretch may be nearer than its window was.
+        let cost = ranked.cost(candidate.distance.min(probe.distance_of(clip, &span)));
         let cost = (1.0 - share) * cost + share * warp.max(0.0).sqrt();
         Hit {
             clip: clip.clip,
@@ -180,6 +190,29 @@ impl SearchIndex {
             mirrored: candidate.mirrored,
         }
     }
+}
+
+/// A candidate and the company it keeps.
+struct Ranked {
+    candidate: Candidate,
+    /// What came to it over the graph.
+    reached: f32,
+    /// The distance of the nearest few candidates.
+    scale: f32,
+}
+
+impl Ranked {
+    /// What a stretch costs at this distance: that, and how little of the example's company it keeps. What is the
+    /// example over again needs no company.
+    fn cost(&self, distance: f32) -> f32 {
+        let apart = 1.0 - (-(distance / self.scale).powi(2)).exp();
+        distance - COMPANY * apart * self.reached.ln()
+    }
+}
+
+/// What makes a node: a clip, or a window of it.
+fn key(c: &Candidate, options: &SearchOptions) -> (usize, usize) {
+    (c.clip, if options.one_a_clip { 0 } else { c.span.start })
 }
 
 /// A candidate in the graph.

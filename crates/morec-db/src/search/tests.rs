@@ -59,6 +59,7 @@ fn an_exact_copy_comes_first() {
         let hits = index.search(&example, &options);
         assert_eq!((hits[0].clip, hits[0].mirrored), (ClipId(1000), false), "{hits:?}");
         assert!(hits[0].score > 0.97 && hits[0].warp_distance < 0.02, "{hits:?}");
+        assert!((hits[0].start_secs - start).abs() < 0.05, "{hits:?}");
         let image = hits.iter().find(|hit| hit.mirrored).unwrap();
         assert_eq!(image.clip, ClipId(1001), "{hits:?}");
     }
