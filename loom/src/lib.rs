@@ -8,7 +8,7 @@
 mod waker;
 
 mod sync {
-    pub(super) use loom::sync::atomic::{AtomicBool, Ordering, fence};
+    pub(super) use loom::sync::atomic::{AtomicBool, Ordering};
     pub(super) use loom::thread::{Thread, current};
 
     /// Sleeps until it is called, however long that takes.
@@ -50,6 +50,20 @@ mod tests {
 
     use crate::waker::{NAP, Waker};
 
+    /// Runs `sleeper` beside `others`, each on its own thread. (Who joins must not be the sleeper: a call that comes
+    /// when nobody sleeps any more would end loom's joining, too.)
+    fn model(make: impl Fn() -> (Job, Vec<Job>) + Send + Sync + 'static) {
+        let mut builder = loom::model::Builder::new();
+        builder.preemption_bound = Some(3);
+        builder.check(move || {
+            let (sleeper, others) = make();
+            let threads: Vec<_> = [sleeper].into_iter().chain(others).map(thread::spawn).collect();
+            threads.into_iter().for_each(|thread| thread.join().unwrap());
+        });
+    }
+
+    type Job = Box<dyn FnOnce() + Send>;
+
     /// Sleeps until `ready`.
     fn wait(waker: &Waker, ready: impl Fn() -> bool) {
         while !ready() {
@@ -57,31 +71,42 @@ mod tests {
         }
     }
 
+    fn setting(flag: &Arc<AtomicBool>, order: std::sync::atomic::Ordering, waker: &Arc<Waker>) -> Job {
+        let (flag, waker) = (flag.clone(), waker.clone());
+        Box::new(move || {
+            flag.store(true, order);
+            waker.wake();
+        })
+    }
+
     #[test]
     fn a_call_after_the_news_is_never_lost() {
-        loom::model(|| {
+        model(|| {
             let (waker, news) = (Arc::new(Waker::default()), Arc::new(AtomicBool::new(false)));
-            let other = {
-                let (waker, news) = (waker.clone(), news.clone());
-                thread::spawn(move || {
-                    news.store(true, Release);
-                    waker.wake();
-                })
-            };
-            wait(&waker, || news.load(Acquire));
-            other.join().unwrap();
+            let other = setting(&news, Release, &waker);
+            (Box::new(move || wait(&waker, || news.load(Acquire))), vec![other])
         });
     }
 
-    /// A ring with two items: the sleeper takes the first and sleeps again.
+    /// A session that is stopped: the flag needs no order of its own, the call makes it seen.
+    #[test]
+    fn a_flag_without_an_order_is_seen_after_the_call() {
+        model(|| {
+            let (waker, stop) = (Arc::new(Waker::default()), Arc::new(AtomicBool::new(false)));
+            let other = setting(&stop, Relaxed, &waker);
+            (Box::new(move || wait(&waker, || stop.load(Relaxed))), vec![other])
+        });
+    }
+
+    /// A belt: an item is taken, and then the end is seen.
     #[test]
     fn every_item_is_taken_and_then_the_end() {
-        loom::model(|| {
+        model(|| {
             let waker = Arc::new(Waker::default());
             let (sent, ended) = (Arc::new(AtomicUsize::new(0)), Arc::new(AtomicBool::new(false)));
-            let other = {
+            let other: Job = {
                 let (waker, sent, ended) = (waker.clone(), sent.clone(), ended.clone());
-                thread::spawn(move || {
+                Box::new(move || {
                     sent.store(1, Release);
                     waker.wake();
                     // As the belts do: first the end, then the call.
@@ -89,58 +114,28 @@ mod tests {
                     waker.wake();
                 })
             };
-            let mut taken = 0;
-            loop {
-                if sent.load(Acquire) > taken {
-                    taken += 1;
-                } else if ended.load(Acquire) {
-                    // What was sent before the end is seen after it.
-                    taken += usize::from(sent.load(Acquire) > taken);
-                    break;
-                } else {
-                    waker.sleep(NAP, || sent.load(Acquire) > taken || ended.load(Acquire));
-                }
-            }
-            assert_eq!(taken, 1);
-            other.join().unwrap();
+            let sleeper = move || {
+                wait(&waker, || sent.load(Acquire) > 0 || ended.load(Acquire));
+                // What was sent before the end is seen after it.
+                assert_eq!(sent.load(Acquire), 1);
+                wait(&waker, || ended.load(Acquire));
+            };
+            (Box::new(sleeper), vec![other])
         });
     }
 
     /// Segment assembly: chunks come from one side, used boxes from the other, and both call the same sleeper.
     #[test]
     fn two_who_call_the_same_sleeper_do_not_lose_each_others_calls() {
-        let mut model = loom::model::Builder::new();
-        model.preemption_bound = Some(3);
-        model.check(|| {
+        model(|| {
             let waker = Arc::new(Waker::default());
             let news = [(); 2].map(|()| Arc::new(AtomicBool::new(false)));
-            let others = news.clone().map(|news| {
-                let waker = waker.clone();
-                thread::spawn(move || {
-                    news.store(true, Release);
-                    waker.wake();
-                })
-            });
-            wait(&waker, || news[0].load(Acquire));
-            wait(&waker, || news[1].load(Acquire));
-            others.map(|other| other.join().unwrap());
-        });
-    }
-
-    /// A session that is stopped: the flag needs no order of its own, the call makes it seen.
-    #[test]
-    fn a_flag_without_an_order_is_seen_after_the_call() {
-        loom::model(|| {
-            let (waker, stop) = (Arc::new(Waker::default()), Arc::new(AtomicBool::new(false)));
-            let other = {
-                let (waker, stop) = (waker.clone(), stop.clone());
-                thread::spawn(move || {
-                    stop.store(true, Relaxed);
-                    waker.wake();
-                })
+            let others = news.iter().map(|news| setting(news, Release, &waker)).collect();
+            let sleeper = move || {
+                wait(&waker, || news[0].load(Acquire));
+                wait(&waker, || news[1].load(Acquire));
             };
-            wait(&waker, || stop.load(Relaxed));
-            other.join().unwrap();
+            (Box::new(sleeper), others)
         });
     }
 }

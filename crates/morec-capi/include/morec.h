@@ -254,6 +254,31 @@ typedef int32_t MorecPhase;
 #endif // __cplusplus
 
 /**
+ * How an index recognises.
+ */
+enum MorecMethod
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : int32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    /**
+     * Templates matched elastically, over the places of joints.
+     */
+    MOREC_METHOD_TEMPLATES = 0,
+    /**
+     * The method of 2009, over the rotations of joints.
+     */
+    MOREC_METHOD_SVRDM = 1,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum MorecMethod MorecMethod;
+#else
+typedef int32_t MorecMethod;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
+/**
  * A loaded index: what recognition knows. It does not change; any number of threads may use it at once.
  */
 typedef struct MorecIndex MorecIndex;

@@ -140,3 +140,68 @@ fn every_lap_of_a_soak_finds_the_same() {
     assert!(out.contains("every lap found the same"), "{out}");
     assert!(out.contains("processing of one frame"), "{out}");
 }
+
+/// `morec send` as a broadcast, waiting for somebody to listen; and where it is.
+fn broadcast(folder: &Folder, at: &str) -> (Child, String) {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_morec"))
+        .args(["send", "person.bvh", "--to", &format!("axis://{at}"), "--speed", "4"])
+        .current_dir(folder.path())
+        .stdin(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut err = BufReader::new(child.stderr.take().unwrap());
+    let mut line = String::new();
+    while !line.contains("axis://") {
+        line.clear();
+        assert!(err.read_line(&mut line).unwrap() > 0, "it ended before it listened");
+    }
+    let at = line.trim().rsplit("//").next().unwrap().to_owned();
+    // Whatever else it says must not make it wait.
+    std::thread::spawn(move || std::io::copy(&mut err, &mut std::io::sink()));
+    (child, at)
+}
+
+#[test]
+#[cfg(unix)]
+fn an_axis_broadcast_is_heard_and_waited_for_when_it_ends() {
+    let folder = folder();
+    let (mut first, at) = broadcast(&folder, "127.0.0.1:0");
+    let live = Live::start(&folder, &format!("axis://{at}"), &["--emit", "json:-"]);
+    assert!(first.wait().unwrap().success());
+    // Another at the same place, which the listener must find by itself.
+    let (mut second, _) = broadcast(&folder, &at);
+    assert!(second.wait().unwrap().success());
+    let summary = live.interrupt();
+    // Twice some three seconds at 60 Hz; a loaded machine may lose some on the way.
+    assert!(count(&summary, " packets") > 200, "{summary}");
+    assert!(count(&summary, " frames,") > 60, "{summary}");
+    assert_eq!(count(&summary, " interruptions"), 1, "{summary}");
+    assert!(!summary.contains("malformed"), "{summary}");
+}
+
+#[test]
+fn a_skeleton_that_is_not_the_broadcasts_is_refused() {
+    let folder = folder();
+    let args = ["live", "v1.index", "--listen", "axis://127.0.0.1:7001", "--skeleton", "person.bvh"];
+    let ran = folder.morec(&args);
+    assert_eq!(ran.code, Some(1), "{ran:?}");
+    assert!(ran.err.contains("person.bvh") && ran.err.contains("expected 59 joints"), "{}", ran.err);
+}
+
+#[test]
+fn both_layouts_recognise_the_same_and_soak_in_stages() {
+    let folder = folder();
+    let svrdm = include_bytes!("../../../morec/testdata/index/svrdm_v1.index");
+    std::fs::write(folder.path().join("svrdm.index"), svrdm).unwrap();
+    let inline = folder.morec(&["recognize", "svrdm.index", "person.bvh"]).ok();
+    let staged = folder.morec(&["recognize", "svrdm.index", "person.bvh", "--layout", "stages"]).ok();
+    assert_eq!(staged, inline);
+    let out =
+        folder.morec(&["soak", "svrdm.index", "person.bvh", "--hours", "0.01", "--layout", "stages"]).ok();
+    assert!(out.contains("every lap found the same"), "{out}");
+    let out = folder.morec(&["soak", "svrdm.index", "person.bvh", "--layout", "both", "--for", "1"]).ok();
+    assert!(out.contains("stages to inline"), "{out}");
+    let ran = folder.morec(&["soak", "v1.index", "person.bvh", "--layout", "stages"]);
+    assert!(ran.code == Some(1) && ran.err.contains("expected an index of method svrdm"), "{ran:?}");
+}

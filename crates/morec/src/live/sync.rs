@@ -1,5 +1,5 @@
 //! What [`Waker`](super::waker::Waker) is made of.
 
 pub(super) use std::sync::OnceLock;
-pub(super) use std::sync::atomic::{AtomicBool, Ordering, fence};
+pub(super) use std::sync::atomic::{AtomicBool, Ordering};
 pub(super) use std::thread::{Thread, current, park_timeout};

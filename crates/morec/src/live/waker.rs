@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 // By this name, so that the models in `loom/` can put theirs in its place.
-use super::sync::{AtomicBool, OnceLock, Ordering, Thread, current, fence, park_timeout};
+use super::sync::{AtomicBool, OnceLock, Ordering, Thread, current, park_timeout};
 
 /// How long a thread sleeps that missed its waking call, if such a thing should happen.
 pub(super) const NAP: Duration = Duration::from_millis(20);
@@ -18,10 +18,9 @@ pub(super) struct Waker {
 impl Waker {
     /// Wakes the sleeper, if it sleeps. Never waits.
     pub(super) fn wake(&self) {
-        // What was done before must be seen by whoever falls asleep after this look at it.
-        fence(Ordering::SeqCst);
-        if self.asleep.load(Ordering::Relaxed)
-            && self.asleep.swap(false, Ordering::AcqRel)
+        // Read and written at once, here and where the sleeper lies down: whichever comes second sees what the other
+        // did before.
+        if self.asleep.swap(false, Ordering::AcqRel)
             && let Some(thread) = self.thread.get()
         {
             thread.unpark();
@@ -33,12 +32,10 @@ impl Waker {
         let me = current();
         // Another thread than the one that slept first is not woken; it looks again soon.
         let known = self.thread.get_or_init(|| me.clone()).id() == me.id();
-        // Whoever reads this knows the thread, too.
-        self.asleep.store(true, Ordering::Release);
-        fence(Ordering::SeqCst);
+        self.asleep.swap(true, Ordering::AcqRel);
         if !ready() {
             park_timeout(if known { most.min(NAP) } else { most.min(Duration::from_millis(2)) });
         }
-        self.asleep.store(false, Ordering::Relaxed);
+        self.asleep.swap(false, Ordering::AcqRel);
     }
 }

@@ -1,6 +1,6 @@
 //! Who sends, as far as an address tells.
 
-use std::net::SocketAddr;
+use core::net::SocketAddr;
 
 /// A port that has been heard for so long is where its sender stays.
 const SETTLED_SECS: f64 = 0.25;
@@ -13,6 +13,7 @@ pub trait Peer: Copy + PartialEq {
     fn same_host(&self, other: &Self) -> bool;
 }
 
+/// An address is a value; sockets are others' business.
 impl Peer for SocketAddr {
     fn same_host(&self, other: &Self) -> bool {
         self.ip() == other.ip()
