@@ -101,10 +101,10 @@ fn means(
         let found: Vec<&Shown> = hits.iter().filter_map(|hit| by_id.get(&hit.clip).copied()).collect();
         let relevant = |c: &&Shown| c.class == clip.class && c.id != clip.id;
         let elsewhere = |c: &&Shown| c.style != clip.style;
-        let count = by_id.values().copied().filter(|c| relevant(&c)).count();
-        all.extend(average_precision(found.iter().map(|c| relevant(&c)), count));
-        let count = by_id.values().copied().filter(|c| relevant(&c) && elsewhere(&c)).count();
-        other.extend(average_precision(found.iter().filter(|c| elsewhere(c)).map(|c| relevant(&c)), count));
+        let count = by_id.values().copied().filter(|c| relevant(c)).count();
+        all.extend(average_precision(found.iter().map(&relevant), count));
+        let count = by_id.values().copied().filter(|c| relevant(c) && elsewhere(c)).count();
+        other.extend(average_precision(found.iter().filter(|c| elsewhere(c)).map(relevant), count));
     }
     (mean(&all), mean(&other))
 }

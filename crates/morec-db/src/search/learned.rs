@@ -5,7 +5,7 @@
 //! discriminant analysis*, 1989, Eq. 18): `Σ = (1 − γ) S_w + γ tr(S_w)/p I`; the space is spanned by the eigenvectors of
 //! `Σ^(−1/2) S_b Σ^(−1/2)`, at most one less than there are classes.
 //!
-//! It is learned when it is asked for: a few hundred samples take a tenth of a second, and nothing can be stale.
+//! It is learned when it is asked for, so that nothing can be stale.
 
 use std::collections::BTreeMap;
 
