@@ -171,11 +171,20 @@ impl SearchIndex {
         let candidate = &ranked.candidate;
         let clip = &self.clips[candidate.clip];
         let n = example.laid.rows.len();
-        let from = candidate.span.start.saturating_sub(n / 3);
-        let to = (candidate.span.end + n / 3).min(clip.laid.rows.len());
+        let mut around = candidate.span.start.saturating_sub(n / 3)
+            ..(candidate.span.end + n / 3).min(clip.laid.rows.len());
+        // The example itself is no hit: beside it, paths, of half its length at least, stay out of all but a sixth of it.
+        if let Some((_, own)) =
+            example.from.as_ref().filter(|(id, _)| *id == clip.clip && !candidate.mirrored)
+        {
+            match candidate.span.start < own.start {
+                true => around.end = around.end.min(own.start + n / 6),
+                false => around.start = around.start.max(own.end - n / 6),
+            }
+        }
         let shared = example.laid.bones.and(clip.laid.bones);
         // A clip of less than half the example's length holds no path: its summary alone says how near it is.
-        let (warp, span) = warp(&example.laid, &clip.laid, from..to, &shared_columns(shared))
+        let (warp, span) = warp(&example.laid, &clip.laid, around, &shared_columns(shared))
             .unwrap_or_else(|| (candidate.distance.powi(2), candidate.span.clone()));
         let share = options.warp_share;
         // Windows lie a quarter apart: in its place the stretch may be nearer than its window was.

@@ -159,6 +159,24 @@ fn whole_clips_are_compared_with_whole_clips() {
     assert!(score(&whole, 2) < score(&stretch, 2), "{whole:?}");
 }
 
+/// Wherever the example is cut out, what lies beside it in its clip is found without it.
+#[test]
+fn the_example_itself_is_no_hit() {
+    let (_folder, mut db) = database_of_waves(2);
+    let index = SearchIndex::of_db(&mut db, &()).unwrap();
+    let clip = db.clips(&ClipFilter::default()).unwrap().remove(0);
+    for start in 0..((clip.duration_secs() - 1.5) * 4.0) as usize {
+        let (start, stop) = (start as f64 / 4.0, start as f64 / 4.0 + 1.5);
+        let example = index.example(clip.id, start, stop).unwrap();
+        for hit in index.search(&example, &SearchOptions::default()) {
+            let shared = (hit.stop_secs.min(stop) - hit.start_secs.max(start)).max(0.0);
+            let own =
+                if hit.clip == clip.id { shared / (hit.stop_secs - hit.start_secs).min(1.5) } else { 0.0 };
+            assert!(own < 0.5, "{start} to {stop} s: {hit:?}");
+        }
+    }
+}
+
 /// The same motion at another rate, turned, and cut short is found as a copy; its mirror image as a mirrored one; and
 /// clips of others are not.
 #[test]
