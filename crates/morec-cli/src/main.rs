@@ -4,6 +4,7 @@ mod commands;
 mod dates;
 mod figures;
 mod files;
+mod interrupt;
 mod lengths;
 mod live;
 mod material;

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use anyhow::Result;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use crate::commands::live::stop_on_ctrl_c;
+use crate::interrupt::stop_on_ctrl_c;
 
 /// A bar that shows itself only once a second has passed.
 pub struct Progress {

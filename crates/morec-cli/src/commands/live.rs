@@ -2,8 +2,7 @@
 
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail};
@@ -17,6 +16,7 @@ use morec::live::{
 
 use super::recognize::open_index;
 use crate::files::mapping;
+use crate::interrupt::stop_on_ctrl_c;
 use crate::live::Said;
 use crate::live::address::Address;
 use crate::live::axis::{self, AxisSource};
@@ -167,20 +167,6 @@ fn tell(said: &Said, outlets: &mut [Outlet], line: &mut StatusLine) -> Result<()
         }
     }
     Ok(())
-}
-
-/// Set when somebody wants the program to end.
-pub fn stop_on_ctrl_c() -> Result<Arc<AtomicBool>> {
-    let stop = Arc::new(AtomicBool::new(false));
-    let set = stop.clone();
-    let handler = move || {
-        if set.swap(true, Ordering::Relaxed) {
-            // Asked twice: whatever is in the way stays there.
-            std::process::exit(130);
-        }
-    };
-    ctrlc::set_handler(handler).context("cannot take Ctrl-C")?;
-    Ok(stop)
 }
 
 fn listen(address: &Address, index: &MotionIndex, options: &ImportOptions, args: &Args) -> Result<Listening> {

@@ -13,8 +13,8 @@ use morec::live::axis::AxisSender;
 use morec::live::vmc::{Bundling, VmcSender};
 use morec::roles::RoleMap;
 
-use super::live::stop_on_ctrl_c;
 use crate::files::{ReadArgs, mapping, rate};
+use crate::interrupt::stop_on_ctrl_c;
 use crate::live::address::Address;
 use crate::live::broadcast::Broadcast;
 use crate::live::clip::PAUSE_SECS;

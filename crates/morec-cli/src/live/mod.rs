@@ -18,4 +18,4 @@ pub mod vmc;
 pub mod websocket;
 pub mod wire;
 
-pub use said::Said;
+pub use said::{Said, Sink};

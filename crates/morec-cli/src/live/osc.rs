@@ -5,9 +5,8 @@ use std::net::UdpSocket;
 use anyhow::{Context, Result};
 use morec::live::osc::{Arg, write_message};
 
-use super::Said;
 use super::address::Address;
-use super::sinks::Sink;
+use super::{Said, Sink};
 
 /// Sends two messages an event, each in a packet of its own:
 ///

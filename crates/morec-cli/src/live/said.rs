@@ -1,5 +1,6 @@
 //! An event with everything that a sink may want to tell of it.
 
+use anyhow::Result;
 use morec::live::{Event, Phase};
 
 use crate::dates::with_millis;
@@ -47,4 +48,10 @@ impl Said<'_> {
 fn rounded(value: f64, digits: i32) -> f64 {
     let scale = 10f64.powi(digits);
     (value * scale).round() / scale
+}
+
+/// Takes events, one by one, without holding up whoever tells them.
+pub trait Sink {
+    /// Tells one event.
+    fn tell(&mut self, said: &Said) -> Result<()>;
 }

@@ -6,16 +6,10 @@ use std::io::{BufWriter, Write};
 use anyhow::{Context, Result, bail};
 use morec::live::Phase;
 
-use super::Said;
 use super::address::Address;
 use super::osc::OscSink;
 use super::websocket::WebSocketSink;
-
-/// Takes events, one by one, without holding up whoever tells them.
-pub trait Sink {
-    /// Tells one event.
-    fn tell(&mut self, said: &Said) -> Result<()>;
-}
+use super::{Said, Sink};
 
 /// Opens a sink as it was typed; says where it is, if that was left open.
 pub fn open(address: &Address) -> Result<Box<dyn Sink>> {

@@ -10,9 +10,8 @@ use std::time::Duration;
 use anyhow::{Context, Result};
 use tungstenite::{Error, Message, WebSocket};
 
-use super::Said;
 use super::address::Address;
-use super::sinks::Sink;
+use super::{Said, Sink};
 
 /// Events that may wait for one listener; one that is slower than this is let go.
 const WAITING: usize = 256;

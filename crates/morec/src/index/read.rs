@@ -2,8 +2,6 @@
 
 use safetensors::SafeTensors;
 
-use crate::classes::ClassId;
-
 use super::manifest::{FORMAT, Manifest, Preamble, SvrdmManifest};
 use super::tensors::{Tables, checksum};
 use super::{INDEX_VERSION, IndexError, MotionIndex, svrdm, templates};
@@ -51,9 +49,4 @@ fn check(words: &str, expected: u32, tables: &Tables) -> Result<(), IndexError> 
     let text = words.replacen(&format!("\"checksum\":{expected}"), "\"checksum\":0", 1);
     let found = checksum(&text, tables.all());
     if found == expected { Ok(()) } else { Err(IndexError::Checksum { expected, found }) }
-}
-
-/// A class's number as tables hold it.
-pub(super) fn class_id(number: u32) -> Result<ClassId, IndexError> {
-    u16::try_from(number).map(ClassId).map_err(|_| IndexError::Content(format!("class number {number}")))
 }

@@ -8,8 +8,7 @@ use crate::svrdm::tree::{Branch, Node, Parts, Tree};
 use crate::svrdm::{Profiles, SvrdmModel};
 
 use super::manifest::{BranchWords, FORMAT, NodeWords, SvrdmManifest};
-use super::read::class_id;
-use super::tensors::{Tables, Tensor};
+use super::tensors::{Tables, Tensor, class_id};
 use super::{INDEX_VERSION, IndexError, MotionIndex};
 
 /// What is written in words of `model`.

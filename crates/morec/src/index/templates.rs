@@ -6,8 +6,7 @@ use crate::features::{Rows, row_dim};
 use crate::templates::{Exemplars, SHAPE_ROWS, Sample, Symmetric, TemplateModel, Verifier};
 
 use super::manifest::{FORMAT, Manifest, VerifierWords};
-use super::read::class_id;
-use super::tensors::{Tables, Tensor};
+use super::tensors::{Tables, Tensor, class_id};
 use super::{INDEX_VERSION, IndexError, MotionIndex};
 
 /// What is written in words of `model`.

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use safetensors::tensor::{Dtype, SafeTensors, View};
 
+use crate::classes::ClassId;
 use crate::features::Rows;
 
 use super::IndexError;
@@ -149,4 +150,9 @@ impl Tables {
         };
         Ok(lengths.iter().map(&mut cut).collect())
     }
+}
+
+/// A class's number as tables hold it.
+pub(super) fn class_id(number: u32) -> Result<ClassId, IndexError> {
+    u16::try_from(number).map(ClassId).map_err(|_| IndexError::Content(format!("class number {number}")))
 }

@@ -16,8 +16,8 @@ const PAD_TICKS: usize = 2;
 /// The stretch of `rows` from the first to the last movement: a clip that holds one motion mostly begins and
 /// ends at rest, and the rest is not the motion.
 ///
-/// Movement of a tick is how far the bone directions travel over ±[`REACH_TICKS`] of the averaged rows; it
-/// counts above [`MOVING_SHARE`] of the way from the stillest tenth to the largest. Never empty if `rows` is not.
+/// Movement of a tick is how far the bone directions travel over ±3 ticks of the averaged rows; it
+/// counts above a fifth of the way from the stillest tenth to the largest. Never empty if `rows` is not.
 pub fn moving_part(rows: &Rows, bones: BoneSet) -> Range<usize> {
     let n = rows.len();
     if n == 0 {

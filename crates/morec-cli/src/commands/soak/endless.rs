@@ -10,7 +10,7 @@ use morec::live::Model;
 use morec::live::{Event, EventOptions, Layout, Overload, Phase, Session, SessionOptions};
 
 use super::Args;
-use crate::commands::live::stop_on_ctrl_c;
+use crate::interrupt::stop_on_ctrl_c;
 use crate::live::clip::{ClipSource, PAUSE_SECS};
 use crate::live::loaded::Loaded;
 use crate::live::memory::resident_bytes;

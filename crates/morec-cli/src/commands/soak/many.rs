@@ -13,7 +13,7 @@ use morec::live::{Actor, Frame, Overload, Pool, PoolStream, Rig, SessionOptions,
 use morec::math::Vec3;
 
 use super::Args;
-use crate::commands::live::stop_on_ctrl_c;
+use crate::interrupt::stop_on_ctrl_c;
 use crate::live::loaded::Loaded;
 use crate::live::memory::resident_bytes;
 

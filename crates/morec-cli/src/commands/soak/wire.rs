@@ -15,14 +15,14 @@ use morec::live::vmc::{VmcOptions, VmcSender};
 use morec::live::{Overload, Phase, Session, SessionOptions, wall_now_secs};
 
 use super::Args;
-use crate::commands::live::stop_on_ctrl_c;
 use crate::files::read;
+use crate::interrupt::stop_on_ctrl_c;
 use crate::live::Said;
+use crate::live::Sink;
 use crate::live::clip::PAUSE_SECS;
 use crate::live::loaded::Loaded;
 use crate::live::network::Network;
 use crate::live::osc::OscSink;
-use crate::live::sinks::Sink;
 use crate::live::status::summary;
 use crate::live::vmc::VmcSource;
 

@@ -1,0 +1,20 @@
+//! Ctrl-C as a wish to end, told to whatever runs.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use anyhow::{Context, Result};
+
+/// Set when somebody wants the program to end.
+pub fn stop_on_ctrl_c() -> Result<Arc<AtomicBool>> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let set = stop.clone();
+    let handler = move || {
+        if set.swap(true, Ordering::Relaxed) {
+            // Asked twice: whatever is in the way stays there.
+            std::process::exit(130);
+        }
+    };
+    ctrlc::set_handler(handler).context("cannot take Ctrl-C")?;
+    Ok(stop)
+}
