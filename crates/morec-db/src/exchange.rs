@@ -6,13 +6,13 @@
 //!
 //! | form | times | keeps |
 //! |---|---|---|
-//! | TSV ([`morec::labels`]) | frames, or seconds where they lie on no frame | clip, class, person, whole clips |
+//! | TSV ([`morec::labels`]) | frames, or seconds where they lie on no frame | clip, class, person, whole clips, state |
 //! | CSV | seconds and frames | all but who set it |
 //! | JSON | seconds and frames | all but who set it |
 //! | ELAN | milliseconds, so frames of up to 500 Hz | clip, class, person |
 //! | Audacity | seconds | class |
 //! | BABEL | seconds | clip, class, whole clips |
-//! | Label Studio | seconds | clip, class, score |
+//! | Label Studio | seconds | clip, class, score; accepted ones as annotations, others as predictions |
 
 mod audacity;
 mod babel;
@@ -91,6 +91,15 @@ impl Form {
         }
     }
 
+    /// Whether a label of this state is read again in the same state.
+    pub fn keeps(self, state: State) -> bool {
+        match self {
+            Form::Tsv | Form::Csv | Form::Json => true,
+            Form::LabelStudio => state != State::Rejected,
+            Form::Eaf | Form::Audacity | Form::Babel => state == State::Accepted,
+        }
+    }
+
     /// Whether a file of this form tells of one clip only.
     pub fn is_of_one_clip(self) -> bool {
         matches!(self, Form::Eaf | Form::Audacity)
@@ -104,6 +113,8 @@ pub struct ReadLabels {
     pub annotations: Vec<Annotation>,
     /// What was left out or looks wrong.
     pub warnings: Vec<Warning>,
+    /// Clips that are not known and whose frames can therefore not be told in seconds, with how many labels each had.
+    pub absent: BTreeMap<String, usize>,
 }
 
 /// Lengths of the clips by name: frames need a rate.
@@ -112,8 +123,7 @@ pub type Lengths = BTreeMap<String, ClipLength>;
 /// Reads labels. `clip` is the clip that a file of one clip speaks of.
 ///
 /// # Errors
-/// Where and why the file cannot be read; frames of a clip that `lengths` does not know are not an error but left out
-/// with a warning.
+/// Where and why the file cannot be read; frames of a clip that `lengths` does not know are not an error but counted.
 pub fn read(
     form: Form,
     bytes: &[u8],
@@ -186,6 +196,17 @@ fn text(bytes: &[u8]) -> Result<&str, ParseError> {
     })
 }
 
+/// What a cell of the column `state` says. Nothing is no judgement: what was judged before stays so.
+fn state(cell: &str, line: u64) -> Result<State, ParseError> {
+    let name = cell.trim().to_ascii_lowercase();
+    if name.is_empty() {
+        return Ok(State::Proposed);
+    }
+    State::from_name(&name).ok_or_else(|| {
+        ParseError::new(Place::Line(line), "state `accepted`, `rejected` or `proposed`", format!("`{cell}`"))
+    })
+}
+
 /// A time that can be one.
 fn checked(start: f64, stop: f64) -> Result<(f64, f64), String> {
     if start.is_finite() && stop.is_finite() && start >= 0.0 && stop > start {
@@ -204,8 +225,4 @@ fn json_error(error: &serde_json::Error, expected: &str) -> ParseError {
 fn length_of(clip: &str, lengths: &Lengths) -> Option<ClipLength> {
     let stem = || clip.rsplit_once('.').and_then(|(stem, _)| lengths.get(stem));
     lengths.get(clip).or_else(stem).copied()
-}
-
-fn no_clip(line: u64, clip: &str) -> Warning {
-    Warning::new(Place::Line(line), format!("frames of {clip}, of which no rate is known; left out"))
 }

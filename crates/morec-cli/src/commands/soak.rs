@@ -54,8 +54,8 @@ pub struct Args {
     /// Threads for --streams
     #[arg(long, value_name = "N", default_value = "2")]
     threads: usize,
-    /// Over VMC and the loopback network, in real time
-    #[arg(long)]
+    /// Over VMC and the loopback network, in real time, every clip once
+    #[arg(long, conflicts_with = "secs")]
     wire: bool,
     /// Labels of the clips: with --wire, delays are counted from where these say that a motion ends
     #[arg(long, value_name = "TSV", requires = "wire")]

@@ -151,12 +151,19 @@ fn proposals_are_judged_in_bulk() {
     std::fs::write(folder.path().join("answer.csv"), ask.replacen("proposed", "accepted", 1)).unwrap();
     let answered = json(&folder, &["db", "label", "m.mdb", "answer.csv"]);
     assert_eq!(answered["samples"]["changed"], 1, "{answered}");
+    std::fs::write(folder.path().join("answer.csv"), ask.replacen("proposed", "reject", 1)).unwrap();
+    assert_eq!(folder.morec(&["db", "label", "m.mdb", "answer.csv"]).code, Some(1), "no such state");
     let judged = json(&folder, &["db", "propose", "m.mdb", "--accept", "0.5", "--reject", "0.5"]);
     assert_eq!(judged["left"], 0);
     assert_eq!(
         judged["accepted"].as_u64().unwrap() + judged["rejected"].as_u64().unwrap(),
         proposed as u64 - 1
     );
+    json(&folder, &["db", "group", "m.mdb", "--of", "clips", "--name-as", "like"]);
+    json(&folder, &["db", "propose", "m.mdb"]);
+    let likes = json(&folder, &["db", "classes", "m.mdb"]).as_array().unwrap().clone();
+    let likes = likes.iter().filter(|c| c["name"].as_str().unwrap().starts_with("like"));
+    assert_eq!(likes.map(|c| c["proposed"].as_u64().unwrap()).sum::<u64>(), 3, "others' proposals stay");
 }
 
 /// Ctrl-C ends an import with what is done kept, said, and to be gone on with.

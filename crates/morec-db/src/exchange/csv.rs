@@ -42,7 +42,7 @@ pub fn read(bytes: &[u8], lengths: &Lengths) -> Result<ReadLabels, ParseError> {
             Some((number(start)?, number(stop)?))
         } else if let Some((start, stop)) = framed.filter(filled) {
             let Some(length) = super::length_of(cell(Some(file)), lengths) else {
-                read.warnings.push(super::no_clip(line, cell(Some(file))));
+                *read.absent.entry(cell(Some(file)).to_owned()).or_default() += 1;
                 continue;
             };
             Some((number(start)? / length.rate_hz, number(stop)? / length.rate_hz))
@@ -54,7 +54,7 @@ pub fn read(bytes: &[u8], lengths: &Lengths) -> Result<ReadLabels, ParseError> {
                 ParseError::new(Place::Line(line), "a stop after a start of at least 0", found)
             })?;
         }
-        let state = State::from_name(cell(state)).unwrap_or(State::Accepted);
+        let state = state.map_or(Ok(State::Accepted), |column| super::state(cell(Some(column)), line))?;
         if cell(Some(label)).is_empty() {
             read.warnings.push(Warning::new(Place::Line(line), "a row without a label; left out"));
             continue;

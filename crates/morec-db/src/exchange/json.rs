@@ -58,7 +58,7 @@ pub fn read(bytes: &[u8], lengths: &Lengths) -> Result<ReadLabels, ParseError> {
             (Some(secs), _, _) => Some(secs),
             (None, Some((start, stop)), Some(rate)) => Some((start as f64 / rate, stop as f64 / rate)),
             (None, Some(_), None) => {
-                read.warnings.push(super::no_clip(index as u64 + 1, &row.clip));
+                *read.absent.entry(row.clip.clone()).or_default() += 1;
                 continue;
             }
             (None, None, _) => None,

@@ -57,15 +57,19 @@ fn clip_of(task: &Value) -> Option<String> {
     Some(name.rsplit_once('.').map_or(name, |(stem, _)| stem).to_owned())
 }
 
+/// Accepted labels as annotations, others as predictions; a clip that has both is two tasks, as a task's annotations
+/// are said instead of its predictions.
 pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, String> {
     let mut tasks: Vec<Value> = Vec::new();
     for (number, a) in annotations.iter().enumerate() {
         let (start, stop) = secs(a, lengths)?;
-        let there = tasks.iter().position(|task| task["data"]["clip"].as_str() == Some(&a.clip));
-        let place = there.unwrap_or_else(|| {
+        let set = if a.state == State::Accepted { "annotations" } else { "predictions" };
+        let there = |task: &Value| task["data"]["clip"].as_str() == Some(&a.clip) && task.get(set).is_some();
+        let place = tasks.iter().position(there).unwrap_or_else(|| {
             let version = concat!("morec ", env!("CARGO_PKG_VERSION"));
-            tasks.push(json!({ "data": { "clip": a.clip },
-                "predictions": [{ "model_version": version, "result": [] }] }));
+            tasks.push(
+                json!({ "data": { "clip": a.clip }, set: [{ "model_version": version, "result": [] }] }),
+            );
             tasks.len() - 1
         });
         let mut result = json!({
@@ -75,7 +79,7 @@ pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, St
         if let Some(score) = a.score {
             result["score"] = score.into();
         }
-        if let Some(results) = tasks[place]["predictions"][0]["result"].as_array_mut() {
+        if let Some(results) = tasks[place][set][0]["result"].as_array_mut() {
             results.push(result);
         }
     }

@@ -53,7 +53,11 @@ fn sayable(form: Form, all: &[Annotation]) -> Vec<Annotation> {
         if form != Form::LabelStudio {
             said.score = None;
         }
-        said.state = if form == Form::LabelStudio { State::Proposed } else { State::Accepted };
+        said.state = match (form, a.state) {
+            (Form::Tsv, state) => state,
+            (Form::LabelStudio, State::Proposed | State::Rejected) => State::Proposed,
+            _ => State::Accepted,
+        };
         said
     };
     all.iter().map(says).collect()
@@ -179,4 +183,27 @@ fn mistakes_are_located() {
         state: State::Accepted,
     });
     assert!(write(Form::Eaf, &several, &lengths()).unwrap_err().contains("one clip"));
+}
+
+#[test]
+fn a_state_is_one_of_three_or_an_error_with_its_line() {
+    let csv = |state: &str| format!("file,label,start_s,end_s,state\ntake_1,nod,0.5,1.5,{state}\n");
+    let tsv =
+        |state: &str| format!("clip\tclass\tstart_secs\tstop_secs\tstate\ntake_1\tnod\t0.5\t1.5\t{state}\n");
+    let forms: [(Form, &dyn Fn(&str) -> String); 2] = [(Form::Csv, &csv), (Form::Tsv, &tsv)];
+    for (form, text) in forms {
+        let found = |state: &str| read(form, text(state).as_bytes(), None, &lengths());
+        assert_eq!(found("Rejected").unwrap().annotations[0].state, State::Rejected);
+        assert_eq!(found("").unwrap().annotations[0].state, State::Proposed, "nothing is no judgement");
+        let error = found("reject").unwrap_err().to_string();
+        assert!(error.contains("line 2") && error.contains("`reject`"), "{error}");
+    }
+}
+
+#[test]
+fn labels_of_clips_that_are_not_there_are_counted() {
+    let tsv = "clip\tclass\tstart\tstop\nelsewhere\tnod\t5\t15\nelsewhere\tnod\t25\t35\n";
+    let labels = read(Form::Tsv, tsv.as_bytes(), None, &lengths()).unwrap();
+    assert_eq!(labels.absent, [("elsewhere".to_owned(), 2)].into());
+    assert!(labels.annotations.is_empty());
 }

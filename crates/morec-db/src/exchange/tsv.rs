@@ -7,7 +7,11 @@ use super::{Annotation, Lengths, ReadLabels, frames, secs};
 use crate::labels::State;
 
 pub fn read(bytes: &[u8], lengths: &Lengths) -> Result<ReadLabels, ParseError> {
-    let labels = Labels::read(bytes)?;
+    let mut labels = Labels::read(bytes)?;
+    let states = States::of(super::text(bytes)?);
+    if states.column.is_some() {
+        labels.warnings.retain(|warning| !warning.text.contains("`state`"));
+    }
     // Rows with seconds need no clip to be understood; those with frames need its rate.
     let mut read = ReadLabels { warnings: labels.warnings, ..ReadLabels::default() };
     for row in labels.rows {
@@ -16,7 +20,7 @@ pub fn read(bytes: &[u8], lengths: &Lengths) -> Result<ReadLabels, ParseError> {
             (Extent::WholeClip, _) => None,
             (Extent::Frames(_), Some(length)) => Some(length.secs(&row.extent)),
             (Extent::Frames(_), None) => {
-                read.warnings.push(super::no_clip(row.line, &row.clip));
+                *read.absent.entry(row.clip).or_default() += 1;
                 continue;
             }
         };
@@ -26,24 +30,50 @@ pub fn read(bytes: &[u8], lengths: &Lengths) -> Result<ReadLabels, ParseError> {
             extent,
             person: row.person,
             score: None,
-            state: State::Accepted,
+            state: states.at(row.line)?,
         });
     }
     Ok(read)
 }
 
+/// The column `state`, which [`Labels`] knows nothing of.
+struct States<'a> {
+    lines: Vec<&'a str>,
+    column: Option<usize>,
+}
+
+impl<'a> States<'a> {
+    fn of(text: &'a str) -> Self {
+        let lines: Vec<&str> = text.lines().collect();
+        // The header is the first line that has anything to say.
+        let header = lines.iter().find(|line| !line.trim().is_empty() && !line.starts_with('#'));
+        let is_state = |cell: &str| cell.trim().eq_ignore_ascii_case("state");
+        let column = header.and_then(|header| header.split('\t').position(is_state));
+        Self { lines, column }
+    }
+
+    fn at(&self, line: u64) -> Result<State, ParseError> {
+        let Some(column) = self.column else { return Ok(State::Accepted) };
+        let row = self.lines.get((line as usize).saturating_sub(1)).unwrap_or(&"");
+        super::state(row.split('\t').nth(column).unwrap_or(""), line)
+    }
+}
+
 pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, String> {
     let people = annotations.iter().any(|a| a.person.is_some());
-    let person = |a: &Annotation| match people {
-        true => format!("\t{}", a.person.as_deref().unwrap_or("")),
-        false => String::new(),
+    let judged = annotations.iter().any(|a| a.state != State::Accepted);
+    let more = |a: &Annotation| {
+        let person = people.then(|| format!("\t{}", a.person.as_deref().unwrap_or("")));
+        let state = judged.then(|| format!("\t{}", a.state.name()));
+        person.unwrap_or_default() + &state.unwrap_or_default()
     };
     let mut out = String::new();
-    let last = if people { "\tperson" } else { "" };
+    let last =
+        [people.then_some("\tperson"), judged.then_some("\tstate")].into_iter().flatten().collect::<String>();
     if !annotations.is_empty() && annotations.iter().all(|a| a.extent.is_none()) {
         out.push_str(&format!("clip\tclass{last}\n"));
         for a in annotations {
-            out.push_str(&format!("{}\t{}{}\n", a.clip, a.class, person(a)));
+            out.push_str(&format!("{}\t{}{}\n", a.clip, a.class, more(a)));
         }
         return Ok(out);
     }
@@ -62,7 +92,7 @@ pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, St
             (true, None) => "\t1",
             (true, Some(_)) => "\t0",
         };
-        out.push_str(&format!("{}\t{cells}\t{start}\t{stop}{whole}\t{}{}\n", a.clip, a.class, person(a)));
+        out.push_str(&format!("{}\t{cells}\t{start}\t{stop}{whole}\t{}{}\n", a.clip, a.class, more(a)));
     }
     Ok(out)
 }

@@ -119,6 +119,12 @@ impl MotionDb {
     /// Moves samples, whatever their class, to `into`, which is made if it is new. Gives how many moved.
     pub fn split_class(&mut self, samples: &[SampleId], into: &str) -> Result<usize, DbError> {
         self.edit(&format!("move {} samples to {into}", samples.len()), |conn| {
+            let mut known = conn.prepare("SELECT 1 FROM samples WHERE id = ?1")?;
+            for id in samples {
+                if !known.exists(params![id.0])? {
+                    return Err(DbError::unknown("sample", &format!("#{}", id.0)));
+                }
+            }
             let target = find_or_make(conn, into)?;
             samples.iter().try_fold(0, |moved, id| Ok(moved + move_samples(conn, "id", id.0, target)?))
         })

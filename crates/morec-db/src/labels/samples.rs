@@ -125,7 +125,8 @@ impl MotionDb {
     }
 
     /// Adds samples, all or none, as one edit. A sample that is there already (clip, class and extent) is judged anew;
-    /// but a proposal changes nothing that was accepted or rejected.
+    /// but a proposal changes nothing that was accepted or rejected. A new accepted sample rejects what other classes were
+    /// proposed for just that stretch.
     ///
     /// # Errors
     /// A sample that stops before it starts or lies outside its clip, a class name that cannot be, no such clip.
@@ -202,6 +203,9 @@ fn add(conn: &Connection, sample: &NewSample, by: &str) -> Result<Change, DbErro
             by,
             now_secs()
         ])?;
+        if sample.state == State::Accepted {
+            reject_instead(conn, sample, class, by)?;
+        }
         return Ok(Change::New);
     };
     if state == sample.state.name() || sample.state == State::Proposed {
@@ -210,6 +214,16 @@ fn add(conn: &Connection, sample: &NewSample, by: &str) -> Result<Change, DbErro
     conn.prepare("UPDATE samples SET state = ?2, set_by = ?3, set_secs = ?4 WHERE id = ?1")?
         .execute(params![id, sample.state.name(), by, now_secs()])?;
     Ok(Change::Judged)
+}
+
+/// Proposals of other classes for the very stretch that is now known to be of `class` were wrong.
+fn reject_instead(conn: &Connection, sample: &NewSample, class: i64, by: &str) -> Result<(), DbError> {
+    conn.prepare(
+        "UPDATE samples SET state = 'rejected', set_by = ?5, set_secs = ?6 \
+         WHERE clip = ?1 AND start_secs = ?2 AND stop_secs = ?3 AND class <> ?4 AND state = 'proposed'",
+    )?
+    .execute(params![sample.clip.0, sample.start_secs, sample.stop_secs, class, by, now_secs()])?;
+    Ok(())
 }
 
 fn check_extent(conn: &Connection, sample: &NewSample) -> Result<(), DbError> {

@@ -124,3 +124,26 @@ fn samples_outside_their_clip_and_wild_names_are_refused_whole() {
         assert!(db.samples(&SampleFilter::default()).unwrap().is_empty());
     }
 }
+
+/// Whoever is told a stretch's class knows what it is not.
+#[test]
+fn another_class_for_a_proposed_stretch_rejects_the_proposal() {
+    let (_folder, mut db) = database_of_waves(1);
+    db.add_samples(&[sample("walk", 3, State::Proposed), sample("walk", 9, State::Proposed)], "propose")
+        .unwrap();
+    db.add_samples(&[sample("run", 3, State::Accepted)], "user").unwrap();
+    let states: Vec<_> =
+        seen(&db).1.into_iter().map(|(_, class, start, state)| (class, start, state)).collect();
+    let row = |class: &str, start: &str, state| (class.to_owned(), start.to_owned(), state);
+    assert_eq!(
+        states,
+        [
+            row("run", "0.3", State::Accepted),
+            row("walk", "0.3", State::Rejected),
+            row("walk", "0.9", State::Proposed),
+        ]
+    );
+    let before = seen(&db);
+    assert!(db.split_class(&[SampleId(99_999)], "new").is_err());
+    assert_eq!(seen(&db), before, "what fails changes nothing");
+}

@@ -76,6 +76,10 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         None => Form::of_file(&shown, b"{\"labels\":[]}")
             .with_context(|| format!("{shown}: its ending says no form of labels; give --form"))?,
     };
+    if annotations.iter().any(|a| !form.keeps(a.state)) {
+        let (form, state) = (form.name(), State::from(args.state).name());
+        eprintln!("morec: {form} does not say that these are {state}; read back, give --state {state} again");
+    }
     let lengths = super::lengths(&db)?;
     let mut files = 1;
     if form.is_of_one_clip() && args.clip.is_none() {

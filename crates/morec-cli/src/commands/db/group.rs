@@ -42,7 +42,7 @@ pub struct Args {
     #[arg(long, value_enum, default_value = "affinity")]
     method: Method,
     /// How willing a sample is to stand for a group, as a quantile of similarities (affinity)
-    #[arg(long, value_name = "Q", default_value_t = AffinityParams::default().preference)]
+    #[arg(long, value_name = "Q", value_parser = super::share, default_value_t = AffinityParams::default().preference)]
     preference: f64,
     /// Cut the hierarchy into so many groups
     #[arg(long, value_name = "N", conflicts_with = "height")]
@@ -51,7 +51,7 @@ pub struct Args {
     #[arg(long, value_name = "DISTANCE")]
     height: Option<f64>,
     /// Similarity above which two are of one group (kwas)
-    #[arg(long, value_name = "TAU", default_value_t = KwasParams::default().tau)]
+    #[arg(long, value_name = "TAU", value_parser = super::share, default_value_t = KwasParams::default().tau)]
     tau: f64,
     /// Propose each member of a group as a sample of the class NAME_1, NAME_2, …
     #[arg(long, value_name = "NAME")]

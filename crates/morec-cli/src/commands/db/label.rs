@@ -1,5 +1,6 @@
 //! `morec db label`: labels in, and judging them.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -24,8 +25,8 @@ Examples:
   morec db label moves.mdb reviewed.tsv --state rejected
   morec db label moves.mdb --undo
 
-A file of proposals that was looked at (morec db export --state proposed --form csv, its column `state` edited) is
-read back as it is.")]
+A file of proposals that was looked at (morec db export --state proposed --form csv) is read back as it is: `accepted`,
+`rejected` or `proposed` in its column `state`, and in `label` another class where it is one.")]
 pub struct Args {
     /// The database
     #[arg(value_name = "DB")]
@@ -115,19 +116,25 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         return undo(&mut db, args.json);
     }
     let lengths = super::lengths(&db)?;
+    let mut absent = BTreeMap::new();
     let annotations = match &args.class {
         Some(class) => vec![by_hand(args, class, &lengths)?],
         None if args.labels.is_empty() => bail!("nothing to label: give a file, or --clip and --class"),
-        None => read(args, &lengths)?,
+        None => read(args, &lengths, &mut absent)?,
     };
-    let (samples, absent) = resolve(&db, args, annotations, &lengths)?;
+    let samples = resolve(&db, args, annotations, &lengths, &mut absent)?;
     let added = db.add_samples(&samples, &args.by)?;
     if args.json {
         super::print_json(&serde_json::json!({ "samples": added, "absent_clips": absent }))?;
         return Ok(ExitCode::SUCCESS);
     }
     if !absent.is_empty() {
-        eprintln!("morec: labels of clips that are not there were left out: {}", some_of(absent.iter()));
+        eprintln!(
+            "morec: {} labels of {} clips that are not there were left out: {}",
+            absent.values().sum::<usize>(),
+            absent.len(),
+            some_of(absent.keys())
+        );
     }
     super::print(format_args!(
         "{} samples added, {} judged anew, {} as before\n",
@@ -169,7 +176,7 @@ fn by_hand(args: &Args, class: &str, lengths: &Lengths) -> Result<Annotation> {
     })
 }
 
-fn read(args: &Args, lengths: &Lengths) -> Result<Vec<Annotation>> {
+fn read(args: &Args, lengths: &Lengths, absent: &mut Absent) -> Result<Vec<Annotation>> {
     let mut all = Vec::new();
     for path in &args.labels {
         let shown = path.display().to_string();
@@ -185,26 +192,31 @@ fn read(args: &Args, lengths: &Lengths) -> Result<Vec<Annotation>> {
             eprintln!("morec: {shown}: {warning}");
         }
         all.extend(read.annotations);
+        for (clip, count) in read.absent {
+            *absent.entry(clip).or_default() += count;
+        }
     }
     Ok(all)
 }
 
-/// Annotations as samples of clips that are there, and the names of clips that are not.
+/// Clips that are not there, and how many labels each has.
+type Absent = BTreeMap<String, usize>;
+
+/// Annotations as samples of clips that are there.
 fn resolve(
     db: &MotionDb,
     args: &Args,
     annotations: Vec<Annotation>,
     lengths: &Lengths,
-) -> Result<(Vec<NewSample>, Vec<String>)> {
-    let ids: std::collections::BTreeMap<String, _> =
+    absent: &mut Absent,
+) -> Result<Vec<NewSample>> {
+    let ids: BTreeMap<String, _> =
         db.clips(&ClipFilter::default())?.into_iter().map(|c| (c.name, c.id)).collect();
-    let (mut samples, mut absent) = (Vec::new(), Vec::new());
+    let mut samples = Vec::new();
     for a in annotations {
         let stem = a.clip.rsplit_once('.').map_or(a.clip.as_str(), |(stem, _)| stem);
         let Some(name) = [a.clip.as_str(), stem].into_iter().find(|name| ids.contains_key(*name)) else {
-            if !absent.contains(&a.clip) {
-                absent.push(a.clip);
-            }
+            *absent.entry(a.clip).or_default() += 1;
             continue;
         };
         let length = lengths[name];
@@ -223,5 +235,5 @@ fn resolve(
             score: a.score,
         });
     }
-    Ok((samples, absent))
+    Ok(samples)
 }

@@ -17,7 +17,8 @@ use crate::table::Table;
 /// The accepted samples look for their like in all clips; what they find is kept as proposed, with how likely it is right
 /// as far as your answers tell. Look at the sure ones in bulk and at the doubtful ones singly; what you accept teaches
 /// the next round, what you reject speaks against its like and is not asked about again. Every class goes on being asked
-/// about, however unlikely its best candidates are. Proposals of an earlier round that nobody judged are replaced.
+/// about, however unlikely its best candidates are. Proposals of an earlier round that nobody judged are replaced;
+/// those of others (`morec db group --name-as`, a file) stay.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -32,16 +33,16 @@ pub struct Args {
     /// Only these classes, separated by commas
     #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
     classes: Vec<String>,
-    /// Accept the proposals that are there with at least this score, 0 to 1
-    #[arg(long, value_name = "SCORE")]
+    /// Accept the proposals that are there with at least this score, 0 to 1 (those of groups have 0)
+    #[arg(long, value_name = "SCORE", value_parser = super::share)]
     accept: Option<f64>,
     /// Reject the proposals that are there with less than this score
-    #[arg(long, value_name = "SCORE")]
+    #[arg(long, value_name = "SCORE", value_parser = super::share)]
     reject: Option<f64>,
     /// Only list the proposals that are there
     #[arg(long)]
     list: bool,
-    /// List those whose answers tell most first: the least certain, classes in turn
+    /// List those whose answers tell most first: the least certain, classes in turn. Without --list after a new round
     #[arg(long)]
     doubtful: bool,
     /// List at most so many
@@ -51,6 +52,9 @@ pub struct Args {
     #[arg(long)]
     json: bool,
 }
+
+/// Who says what this command proposes.
+const BY: &str = "propose";
 
 /// Judges, or proposes anew; then lists.
 pub fn run(args: &Args) -> Result<ExitCode> {
@@ -63,10 +67,10 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let mut db = MotionDb::open(&args.db)?;
     let options = ProposeOptions { classes: args.classes.clone(), ..ProposeOptions::default() };
     let proposals = db.propose(&options, &Bar::stoppable()?)?;
-    let old: Vec<SampleId> = proposed(&db)?.into_iter().map(|s| s.id).collect();
+    let old: Vec<SampleId> = proposed(&db)?.into_iter().filter(|s| s.set_by == BY).map(|s| s.id).collect();
     db.remove_samples(&old)?;
     let samples: Vec<NewSample> = proposals.iter().cloned().map(NewSample::from).collect();
-    db.add_samples(&samples, "propose")?;
+    db.add_samples(&samples, BY)?;
     show(args, &db, proposals)
 }
 
