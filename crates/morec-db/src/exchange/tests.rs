@@ -187,11 +187,11 @@ fn mistakes_are_located() {
 
 #[test]
 fn a_state_is_one_of_three_or_an_error_with_its_line() {
-    let csv = |state: &str| format!("file,label,start_s,end_s,state\ntake_1,nod,0.5,1.5,{state}\n");
-    let tsv =
-        |state: &str| format!("clip\tclass\tstart_secs\tstop_secs\tstate\ntake_1\tnod\t0.5\t1.5\t{state}\n");
-    let forms: [(Form, &dyn Fn(&str) -> String); 2] = [(Form::Csv, &csv), (Form::Tsv, &tsv)];
-    for (form, text) in forms {
+    for (form, between) in [(Form::Csv, ","), (Form::Tsv, "\t")] {
+        let text = |state: &str| {
+            let header = ["clip", "class", "start_secs", "stop_secs", "state"].join(between);
+            format!("{header}\n{}\n", ["take_1", "nod", "0.5", "1.5", state].join(between))
+        };
         let found = |state: &str| read(form, text(state).as_bytes(), None, &lengths());
         assert_eq!(found("Rejected").unwrap().annotations[0].state, State::Rejected);
         assert_eq!(found("").unwrap().annotations[0].state, State::Proposed, "nothing is no judgement");
