@@ -204,8 +204,7 @@ fn listen(address: &Address, index: &MotionIndex, options: &ImportOptions, args:
     };
     eprintln!("morec: listening to {name}");
     let events = EventOptions { early: !args.no_early, refractory_secs: args.refractory };
-    let session_options =
-        SessionOptions { layout: args.layout.into(), events, overload, ..SessionOptions::default() };
+    let session_options = SessionOptions { events, overload, ..args.layout.options() };
     let (session, readers) = Session::start(&index.model, source, &session_options)?;
     let reader = readers.into_iter().next().context("a session has a reader")?;
     Ok(Listening { name, session, reader })

@@ -12,7 +12,7 @@ use morec::import::{ImportOptions, Imported, prepare};
 use morec::index::MotionIndex;
 use morec::labels::{FOUND_HEADER, FoundLine};
 use morec::live::vmc::Bundling;
-use morec::live::{Detection, Model, PoseReader, SessionOptions, recognize_clip, recognize_clip_in_session};
+use morec::live::{Detection, Model, PoseReader, recognize_clip, recognize_clip_in_session};
 use morec::roles::Role;
 
 use super::send::bundling;
@@ -147,7 +147,7 @@ fn recognize_file(
                 let found = stats.recognising(clip.frames, || match args.layout {
                     LayoutArg::Inline => Ok(recognize_clip(&index.model, clip, roles, rest)?),
                     layout => {
-                        let options = SessionOptions { layout: layout.into(), ..SessionOptions::default() };
+                        let options = layout.options();
                         recognize_clip_in_session(&index.model, clip, roles, rest, &options)
                     }
                 });

@@ -13,12 +13,12 @@ use std::time::Duration;
 
 use anyhow::Result;
 use morec::import::ImportOptions;
-use morec::live::Layout;
 use morec::live::vmc::Bundling;
 
 use super::recognize::open_index;
 use super::send::bundling;
 use crate::files::{ReadArgs, mapping, rate};
+use crate::live::layout::LayoutArg;
 use crate::live::loaded::load;
 use crate::live::network::Conditions;
 
@@ -60,7 +60,7 @@ pub struct Args {
     /// Labels of the clips: with --wire, delays are counted from where these say that a motion ends
     #[arg(long, value_name = "TSV", requires = "wire")]
     labels: Option<PathBuf>,
-    /// How recognition is laid out on threads, for one stream; both takes turns and tells which is the better
+    /// How recognition is laid out on threads, for one stream; both takes turns with all of them and compares
     #[arg(long, value_enum, default_value = "inline", conflicts_with_all = ["streams", "wire"])]
     layout: Layouts,
     /// Frames a second [default: the clips' own; 120 with --streams, 60 with --wire]
@@ -85,6 +85,8 @@ enum Layouts {
     Inline,
     /// A thread for each stage (indexes of svrdm only)
     Stages,
+    /// The same, every thread tied to a core
+    Pinned,
     /// One after the other, in turns of --for seconds: throughput, and how long frames wait in real time
     Both,
 }
@@ -103,9 +105,10 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             Layouts::Inline => {
                 let most_secs = args.secs.map_or(10.0, |secs| secs / 4.0).min(10.0);
                 inline::tell(&index.model, &clips, Duration::from_secs_f64(most_secs.max(0.0)));
-                endless::run(&index.model, &clips, Layout::Inline, args)
+                endless::run(&index.model, &clips, LayoutArg::Inline, args)
             }
-            Layouts::Stages => endless::run(&index.model, &clips, Layout::Stages, args),
+            Layouts::Stages => endless::run(&index.model, &clips, LayoutArg::Stages, args),
+            Layouts::Pinned => endless::run(&index.model, &clips, LayoutArg::Pinned, args),
             Layouts::Both => layouts::run(&index.model, &clips, args),
         },
     }

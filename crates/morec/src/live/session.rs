@@ -28,6 +28,9 @@ pub enum Layout {
 pub struct SessionOptions {
     /// How recognition is laid out on threads; pools are always inline.
     pub layout: Layout,
+    /// Called first on every thread of the session, with what the thread is for: `source`, `recognition`, or the stage.
+    /// The place to tie it to a core or to give it a priority.
+    pub on_thread: Option<fn(&'static str)>,
     /// What is said of motions.
     pub events: EventOptions,
     /// What happens when recognition, or a reader, does not keep up.
@@ -44,6 +47,7 @@ impl Default for SessionOptions {
     fn default() -> Self {
         Self {
             layout: Layout::default(),
+            on_thread: None,
             events: EventOptions::default(),
             overload: Overload::Wait,
             // Two seconds at 120 Hz: longer waits are no live recognition.
@@ -87,6 +91,7 @@ pub struct Session {
     stop: Arc<AtomicBool>,
     waker: Arc<Waker>,
     threads: Vec<JoinHandle<()>>,
+    on_thread: Option<fn(&'static str)>,
 }
 
 impl Session {
@@ -116,7 +121,8 @@ impl Session {
             readers: options.readers,
             capacity: options.event_capacity,
         };
-        let mut session = Self { cells, stop, waker, threads: Vec::with_capacity(7) };
+        let on_thread = options.on_thread;
+        let mut session = Self { cells, stop, waker, threads: Vec::with_capacity(7), on_thread };
         let readers = session.recognise(model.clone().into(), receiver, options.layout, &lane_options)?;
         Ok((session, sender, readers))
     }
@@ -145,6 +151,13 @@ impl Session {
 
     fn spawn(&mut self, what: &'static str, job: Box<dyn FnOnce() + Send>) -> Result<(), SessionError> {
         let named = thread::Builder::new().name(format!("morec {what}"));
+        let on_thread = self.on_thread;
+        let job = move || {
+            if let Some(on_thread) = on_thread {
+                on_thread(what);
+            }
+            job();
+        };
         self.threads.push(named.spawn(job).map_err(|error| SessionError::Thread { what, error })?);
         Ok(())
     }

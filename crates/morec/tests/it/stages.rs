@@ -135,6 +135,25 @@ fn a_clip_recognised_in_stages_has_the_detections_it_has_inline() {
     }
 }
 
+/// Whoever ties threads to cores hears of each once, on that thread.
+#[test]
+fn every_thread_says_what_it_is_for() {
+    static HEARD: std::sync::Mutex<Vec<(String, &str)>> = std::sync::Mutex::new(Vec::new());
+    fn hear(what: &'static str) {
+        let thread = std::thread::current().name().unwrap_or_default().to_owned();
+        HEARD.lock().unwrap().push((thread, what));
+    }
+    let options = SessionOptions { layout: Layout::Stages, on_thread: Some(hear), ..Default::default() };
+    let source = Box::new(Scripted(vec![].into_iter()));
+    let (session, readers) = Session::start(&tuned(), source, &options).unwrap();
+    drop(readers);
+    session.join();
+    let mut heard = HEARD.lock().unwrap().clone();
+    heard.sort();
+    let stages = ["classification", "extraction", "input", "scoring", "segments", "source", "tracking"];
+    assert_eq!(heard, stages.map(|what| (format!("morec {what}"), what)));
+}
+
 #[test]
 fn a_method_without_stages_is_refused() {
     let options = SessionOptions { layout: Layout::Stages, ..Default::default() };

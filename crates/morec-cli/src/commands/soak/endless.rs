@@ -7,11 +7,12 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
 use morec::live::Model;
-use morec::live::{Event, EventOptions, Layout, Overload, Phase, Session, SessionOptions};
+use morec::live::{Event, EventOptions, Overload, Phase, Session, SessionOptions};
 
 use super::Args;
 use crate::interrupt::stop_on_ctrl_c;
 use crate::live::clip::{ClipSource, PAUSE_SECS};
+use crate::live::layout::LayoutArg;
 use crate::live::loaded::Loaded;
 use crate::live::memory::resident_bytes;
 
@@ -24,15 +25,14 @@ const GROWTH: f64 = 0.05;
 /// unnoticed.
 type Lap = Vec<(u16, i64, i64, i64)>;
 
-pub fn run(model: &Model, clips: &Arc<Vec<Loaded>>, layout: Layout, args: &Args) -> Result<ExitCode> {
+pub fn run(model: &Model, clips: &Arc<Vec<Loaded>>, layout: LayoutArg, args: &Args) -> Result<ExitCode> {
     let lap_secs: f64 = clips.iter().map(|c| c.clip.duration_secs() + PAUSE_SECS).sum();
     let laps = ((args.hours * 3600.0 / lap_secs).ceil() as u64).max(2);
     let source = ClipSource::new(clips.clone()).laps(laps);
     let options = SessionOptions {
-        layout,
         overload: Overload::Wait,
         events: EventOptions { early: true, refractory_secs: 0.0 },
-        ..SessionOptions::default()
+        ..layout.options()
     };
     println!("{laps} laps of {lap_secs:.1} s: {:.1} hours of stream", laps as f64 * lap_secs / 3600.0);
     let stop = stop_on_ctrl_c()?;

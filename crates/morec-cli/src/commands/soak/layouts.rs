@@ -1,17 +1,19 @@
-//! The two layouts of the method of 2009 against each other.
+//! The layouts of the method of 2009 against each other.
 
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
-use morec::live::{EventOptions, Layout, Model, Overload, Session, SessionOptions, Waits};
+use morec::live::{EventOptions, Model, Overload, Session, SessionOptions, Waits};
 
 use super::Args;
 use crate::live::clip::ClipSource;
+use crate::live::layout::LayoutArg;
 use crate::live::loaded::Loaded;
 
-const LAYOUTS: [(&str, Layout); 2] = [("inline", Layout::Inline), ("stages", Layout::Stages)];
+const LAYOUTS: [(&str, LayoutArg); 3] =
+    [("inline", LayoutArg::Inline), ("stages", LayoutArg::Stages), ("pinned", LayoutArg::Pinned)];
 /// Turns of each; whatever else the machine does should meet both alike.
 const TURNS: usize = 3;
 /// The beginning of a turn does not count: buffers go round for the first time.
@@ -28,7 +30,7 @@ struct Measured {
 
 pub fn run(model: &Model, clips: &Arc<Vec<Loaded>>, args: &Args) -> Result<ExitCode> {
     let turn = Duration::from_secs_f64(args.secs.unwrap_or(20.0) / TURNS as f64);
-    let mut measured = [Measured::default(), Measured::default()];
+    let mut measured: [Measured; LAYOUTS.len()] = Default::default();
     for _ in 0..TURNS {
         for ((_, layout), of) in LAYOUTS.iter().zip(&mut measured) {
             let (frames, secs, _) = play(model, clips, *layout, f64::INFINITY, turn)?;
@@ -52,12 +54,14 @@ pub fn run(model: &Model, clips: &Arc<Vec<Loaded>>, args: &Args) -> Result<ExitC
             of.wait_ms(0.999)
         );
     }
-    let [inline, stages] = &measured;
-    println!(
-        "stages to inline: {:.2} times the frames a second, {:.2} times the wait at p99",
-        stages.rate() / inline.rate(),
-        stages.wait_ms(0.99) / inline.wait_ms(0.99)
-    );
+    let inline = &measured[0];
+    for ((name, _), of) in LAYOUTS.iter().zip(&measured).skip(1) {
+        println!(
+            "{name} to inline: {:.2} times the frames a second, {:.2} times the wait at p99",
+            of.rate() / inline.rate(),
+            of.wait_ms(0.99) / inline.wait_ms(0.99)
+        );
+    }
     Ok(ExitCode::SUCCESS)
 }
 
@@ -84,14 +88,14 @@ impl Measured {
 fn play(
     model: &Model,
     clips: &Arc<Vec<Loaded>>,
-    layout: Layout,
+    layout: LayoutArg,
     speed: f64,
     turn: Duration,
 ) -> Result<(u64, f64, Waits)> {
     let source = ClipSource::new(clips.clone()).laps(0).speed(speed);
     let overload = if speed.is_finite() { Overload::Drop } else { Overload::Wait };
     let events = EventOptions { early: false, refractory_secs: 0.0 };
-    let options = SessionOptions { layout, overload, events, ..SessionOptions::default() };
+    let options = SessionOptions { overload, events, ..layout.options() };
     let (session, readers) = Session::start(model, Box::new(source), &options)?;
     let mut reader = readers.into_iter().next().context("a session has a reader")?;
     std::thread::sleep(WARM_UP);
