@@ -68,6 +68,35 @@ fn from_clips_to_labels_and_back() {
         assert_eq!(db(&["label", &file])["samples"]["unchanged"], take.labels.len());
     }
 
+    let over = folder.morec(&[
+        "db",
+        "label",
+        "m.mdb",
+        "--clip",
+        &takes[0].clip.name,
+        "--class",
+        "bow",
+        "--start",
+        "1",
+        "--stop",
+        "900",
+    ]);
+    assert!(over.code == Some(0) && over.err.contains("cut there"), "{}", over.err);
+    let beyond = folder.morec(&[
+        "db",
+        "label",
+        "m.mdb",
+        "--clip",
+        &takes[0].clip.name,
+        "--class",
+        "bow",
+        "--start",
+        "900",
+        "--stop",
+        "901",
+    ]);
+    assert!(beyond.out.contains("0 samples added") && beyond.err.contains("left out"), "{}", beyond.err);
+    db(&["label", "--undo"]);
     db(&["classes", "--rename", "bow", "nod"]);
     assert_eq!(db(&["classes"])[0]["name"], "nod");
     db(&["label", "--undo"]);

@@ -199,6 +199,9 @@ fn read(args: &Args, lengths: &Lengths, absent: &mut Absent) -> Result<Vec<Annot
     Ok(all)
 }
 
+/// Labels drawn by hand run over a clip's end by so much without a word.
+const OVER_SECS: f64 = 0.1;
+
 /// Clips that are not there, and how many labels each has.
 type Absent = BTreeMap<String, usize>;
 
@@ -221,10 +224,27 @@ fn resolve(
         };
         let length = lengths[name];
         let snap = |secs: f64| exchange::snap(secs, length.rate_hz);
-        // A label that runs a little over the end is cut there.
         let end = length.duration_secs();
-        let (start_secs, stop_secs) =
-            a.extent.map_or((0.0, end), |(start, stop)| (snap(start), snap(stop).min(end)));
+        let (start_secs, stop_secs) = match a.extent {
+            None => (0.0, end),
+            Some((start, stop)) if snap(start) >= end => {
+                eprintln!(
+                    "morec: {name} ends at {end:.2} s: {} from {start:.2} to {stop:.2} s left out",
+                    a.class
+                );
+                continue;
+            }
+            // A label that runs over the end is cut there.
+            Some((start, stop)) => {
+                if stop > end + OVER_SECS {
+                    eprintln!(
+                        "morec: {name} ends at {end:.2} s: {} from {start:.2} to {stop:.2} s cut there",
+                        a.class
+                    );
+                }
+                (snap(start), snap(stop).min(end))
+            }
+        };
         samples.push(NewSample {
             clip: ids[name],
             class: a.class,
