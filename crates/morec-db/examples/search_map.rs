@@ -11,22 +11,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use morec::formats::Limits;
-use morec::formats::bvh::{self, BvhOptions};
 use morec_db::labels::{NewSample, SampleFilter, State};
 use morec_db::search::{LearnedMetric, SearchIndex, SearchOptions};
-use morec_db::{ClipFilter, ClipId, ClipReader, ImportSettings, MotionDb, ReadFile};
-
-struct BvhReader;
-
-impl ClipReader for BvhReader {
-    fn read(&self, path: &Path, bytes: &[u8]) -> Result<ReadFile, String> {
-        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let loaded =
-            bvh::read(bytes, &name, &BvhOptions::default(), &Limits::default()).map_err(|e| e.to_string())?;
-        Ok(ReadFile { format: "bvh".into(), skeleton: None, clips: loaded.clips, warnings: loaded.warnings })
-    }
-}
+use morec_db::{ClipFilter, ClipId, FileReader, ImportSettings, MotionDb};
 
 /// A clip with what it shows and how.
 struct Shown {
@@ -75,7 +62,7 @@ fn imported(db: &mut MotionDb, folder: &Path, table: &str) -> Vec<Shown> {
     let mut paths: Vec<PathBuf> =
         cells.keys().map(|name| folder.join(format!("clips/{name}.bvh"))).filter(|p| p.exists()).collect();
     paths.sort();
-    db.import(&paths, &BvhReader, &ImportSettings::default(), &()).unwrap();
+    db.import(&paths, &FileReader::default(), &ImportSettings::default(), &()).unwrap();
     let clips = db.clips(&ClipFilter::default()).unwrap();
     let shown = clips.into_iter().filter_map(|clip| {
         let (class, style) = cells.get(clip.name.as_str())?;

@@ -14,6 +14,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use morec::features::FeatureParams;
 use morec::progress::Progress;
+use morec::train::overlap_share;
 use rayon::prelude::*;
 
 use crate::labels::{NewSample, SampleFilter, State};
@@ -29,8 +30,8 @@ pub use questions::questions;
 
 use candidates::{Candidate, Seen};
 use confidence::{Confidence, Judgement, NEAR_NOTHING};
-use material::{Judged, Material, overlap, overlap_share};
-use views::{bits, chosen, views};
+use material::{Judged, Material, overlap};
+use views::{chosen, views};
 
 /// How to propose.
 #[derive(Debug, Clone, PartialEq)]
@@ -132,7 +133,7 @@ fn look(
         if progress.cancelled() {
             return Some(Err(DbError::Cancelled));
         }
-        let view = views.get(&bits(material.clips[clip].laid.bones.and(material.bones)))?;
+        let view = views.get(&material.clips[clip].laid.bones.and(material.bones))?;
         let seen = Seen::of(material, clip, &templates, view);
         progress.report("looking", done.fetch_add(1, Ordering::Relaxed) + 1, total);
         Some(Ok((clip, seen)))

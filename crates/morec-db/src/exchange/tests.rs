@@ -194,6 +194,11 @@ fn a_state_is_one_of_three_or_an_error_with_its_line() {
         };
         let found = |state: &str| read(form, text(state).as_bytes(), None, &lengths());
         assert_eq!(found("Rejected").unwrap().annotations[0].state, State::Rejected);
+        if form == Form::Tsv {
+            let by_cr = text("rejected").replace('\n', "\r");
+            let labels = read(form, by_cr.as_bytes(), None, &lengths()).unwrap();
+            assert_eq!(labels.annotations[0].state, State::Rejected, "whatever ends the lines");
+        }
         assert_eq!(found("").unwrap().annotations[0].state, State::Proposed, "nothing is no judgement");
         let error = found("reject").unwrap_err().to_string();
         assert!(error.contains("line 2") && error.contains("`reject`"), "{error}");

@@ -7,14 +7,10 @@ use super::{Annotation, Lengths, ReadLabels, frames, secs};
 use crate::labels::State;
 
 pub fn read(bytes: &[u8], lengths: &Lengths) -> Result<ReadLabels, ParseError> {
-    let mut labels = Labels::read(bytes)?;
-    let states = States::of(super::text(bytes)?);
-    if states.column.is_some() {
-        labels.warnings.retain(|warning| !warning.text.contains("`state`"));
-    }
+    let (labels, states) = Labels::read_with(bytes, "state")?;
     // Rows with seconds need no clip to be understood; those with frames need its rate.
     let mut read = ReadLabels { warnings: labels.warnings, ..ReadLabels::default() };
-    for row in labels.rows {
+    for (at, row) in labels.rows.into_iter().enumerate() {
         let extent = match (&row.extent, super::length_of(&row.clip, lengths)) {
             (Extent::Secs(start, stop), _) => Some((*start, *stop)),
             (Extent::WholeClip, _) => None,
@@ -30,33 +26,10 @@ pub fn read(bytes: &[u8], lengths: &Lengths) -> Result<ReadLabels, ParseError> {
             extent,
             person: row.person,
             score: None,
-            state: states.at(row.line)?,
+            state: states.as_ref().map_or(Ok(State::Accepted), |cells| super::state(&cells[at], row.line))?,
         });
     }
     Ok(read)
-}
-
-/// The column `state`, which [`Labels`] knows nothing of.
-struct States<'a> {
-    lines: Vec<&'a str>,
-    column: Option<usize>,
-}
-
-impl<'a> States<'a> {
-    fn of(text: &'a str) -> Self {
-        let lines: Vec<&str> = text.lines().collect();
-        // The header is the first line that has anything to say.
-        let header = lines.iter().find(|line| !line.trim().is_empty() && !line.starts_with('#'));
-        let is_state = |cell: &str| cell.trim().eq_ignore_ascii_case("state");
-        let column = header.and_then(|header| header.split('\t').position(is_state));
-        Self { lines, column }
-    }
-
-    fn at(&self, line: u64) -> Result<State, ParseError> {
-        let Some(column) = self.column else { return Ok(State::Accepted) };
-        let row = self.lines.get((line as usize).saturating_sub(1)).unwrap_or(&"");
-        super::state(row.split('\t').nth(column).unwrap_or(""), line)
-    }
 }
 
 pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, String> {

@@ -3,8 +3,9 @@
 use std::ops::Range;
 
 use morec::templates::{Evidence, Match};
+use morec::train::overlap_share;
 
-use super::material::{Material, overlap, overlap_share};
+use super::material::{Material, overlap};
 use super::views::View;
 
 /// Distance of what was not found.

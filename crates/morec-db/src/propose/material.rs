@@ -112,9 +112,3 @@ pub fn overlap(a: &Range<usize>, b: &Range<usize>) -> f64 {
     let shared = a.end.min(b.end).saturating_sub(a.start.max(b.start));
     shared as f64 / (a.end.max(b.end) - a.start.min(b.start)).max(1) as f64
 }
-
-/// Ticks in both, of the shorter.
-pub fn overlap_share(a: &Range<usize>, b: &Range<usize>) -> f64 {
-    let shared = a.end.min(b.end).saturating_sub(a.start.max(b.start));
-    shared as f64 / a.len().min(b.len()).max(1) as f64
-}

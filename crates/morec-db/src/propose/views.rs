@@ -28,13 +28,8 @@ pub struct View {
 impl View {
     /// Laid-out rows under the metric.
     pub fn map(&self, laid: &Rows) -> Rows {
-        self.metric.apply_all(&picked(laid, &self.columns))
+        self.metric.apply_all(&laid.columns(&self.columns))
     }
-}
-
-fn picked(rows: &Rows, columns: &[usize]) -> Rows {
-    let values = rows.iter().flat_map(|row| columns.iter().map(|c| row[*c])).collect();
-    Rows::from_values(columns.len(), values)
 }
 
 /// Samples that look for others and rejected stretches that speak against them, as places in [`Material::judged`].
@@ -57,14 +52,13 @@ pub fn chosen(material: &Material, options: &ProposeOptions) -> Vec<usize> {
 }
 
 /// A view for each set of bones that clips show, of those that are taught. O(pairs · rows² · d + d³).
-pub fn views(material: &Material, chosen: &[usize]) -> BTreeMap<u16, View> {
+pub fn views(material: &Material, chosen: &[usize]) -> BTreeMap<BoneSet, View> {
     let columns = shared_columns(material.bones);
     let Some((ridged, total)) = scatters(&train_set(material, &columns), &params()) else {
         return BTreeMap::new();
     };
-    let sets: BTreeSet<u16> = material.clips.iter().map(|c| bits(c.laid.bones.and(material.bones))).collect();
-    let view = |set: u16| {
-        let bones = material.bones.indices().filter(|b| set >> b & 1 == 1).fold(BoneSet::NONE, BoneSet::with);
+    let sets: BTreeSet<BoneSet> = material.clips.iter().map(|c| c.laid.bones.and(material.bones)).collect();
+    let view = |bones: BoneSet| {
         let kept = shared_columns(bones);
         let keep: Vec<usize> = (0..columns.len()).filter(|at| kept.contains(&columns[*at])).collect();
         let part = total.restricted(&keep);
@@ -73,19 +67,14 @@ pub fn views(material: &Material, chosen: &[usize]) -> BTreeMap<u16, View> {
         let template = |judged: &Judged| {
             let laid = &material.clips[judged.clip].laid;
             match laid.bones.and(bones) == bones {
-                true => metric.apply_all(&picked(&laid.rows.slice(judged.ticks.clone()), &kept)),
+                true => metric.apply_all(&laid.rows.slice(judged.ticks.clone()).columns(&kept)),
                 false => Rows::new(kept.len()),
             }
         };
         let templates: Vec<Rows> = chosen.iter().map(|at| template(&material.judged[*at])).collect();
-        (set, View { bank: Bank::new(&templates, kept.len()), columns: kept, metric, factor })
+        (bones, View { bank: Bank::new(&templates, kept.len()), columns: kept, metric, factor })
     };
-    sets.into_iter().filter(|set| *set != 0).map(view).collect()
-}
-
-/// Which view a clip is seen with.
-pub fn bits(bones: BoneSet) -> u16 {
-    bones.indices().fold(0, |bits, bone| bits | 1 << bone)
+    sets.into_iter().filter(|bones| !bones.is_empty()).map(view).collect()
 }
 
 fn trace(matrix: &Symmetric) -> f64 {
@@ -111,7 +100,7 @@ fn train_set(material: &Material, columns: &[usize]) -> TrainSet {
             person: None,
             source: Source::Labelled,
             rest_is_background: false,
-            rows: picked(&material.clips[clip].laid.rows, columns),
+            rows: material.clips[clip].laid.rows.columns(columns),
             known: judged.iter().filter_map(known).collect(),
         }
     };

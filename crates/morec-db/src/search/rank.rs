@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-use morec::features::{BoneSet, Rows};
+use morec::features::BoneSet;
 use morec::templates::Bank;
 use rayon::prelude::*;
 
@@ -245,8 +245,8 @@ pub fn warp(
     columns: &[usize],
 ) -> Option<(f32, Range<usize>)> {
     let shared = example.bones.and(clip.bones);
-    let mut bank = Bank::new(&[take(&example.rows, columns)], columns.len());
-    let stream = take(&clip.rows.slice(within.clone()), columns);
+    let mut bank = Bank::new(&[example.rows.columns(columns)], columns.len());
+    let stream = clip.rows.slice(within.clone()).columns(columns);
     let mut best: Option<(f32, Range<usize>)> = None;
     for (tick, row) in stream.iter().enumerate() {
         bank.step(row);
@@ -257,16 +257,4 @@ pub fn warp(
     }
     let (_, share) = shown(shared);
     best.map(|(distance, span)| (distance / share, span))
-}
-
-fn take(rows: &Rows, columns: &[usize]) -> Rows {
-    let mut out = Rows::new(columns.len());
-    let mut taken = vec![0f32; columns.len()];
-    for row in rows.iter() {
-        for (value, column) in taken.iter_mut().zip(columns) {
-            *value = row[*column];
-        }
-        out.push(&taken);
-    }
-    out
 }

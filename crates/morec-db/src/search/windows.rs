@@ -61,21 +61,16 @@ impl Sums {
         (means, variances, std::array::from_fn(|i| sum(X + i)))
     }
 
-    /// The summary of rows `span`: `[mean x; 2 std x; 2 tanh(mean root)]`. `shown` are coordinates of shared bones.
+    /// The summary of rows `span`, which is not empty: `[mean x; 2 std x; 2 tanh(mean root)]`. `shown` are coordinates of shared bones.
     pub fn summary(&self, span: &Range<usize>, out: &mut [f32; SUMMARY]) {
-        let n = span.len().max(1) as f64;
-        let entry = |table: &[f64], width: usize, at: usize, i: usize| table[at * width + i];
+        let (means, variances, root) = self.moments(span);
         for i in 0..X {
-            let mean = (entry(&self.sums, X + 4, span.end, i) - entry(&self.sums, X + 4, span.start, i)) / n;
-            let square = (entry(&self.squares, X, span.end, i) - entry(&self.squares, X, span.start, i)) / n;
-            out[i] = mean as f32;
-            out[X + i] = 2.0 * (square - mean * mean).max(0.0).sqrt() as f32;
+            out[i] = means[i] as f32;
+            out[X + i] = 2.0 * variances[i].sqrt() as f32;
         }
-        for i in 0..4 {
-            let mean =
-                (entry(&self.sums, X + 4, span.end, X + i) - entry(&self.sums, X + 4, span.start, X + i)) / n;
+        for (out, sum) in out[2 * X..].iter_mut().zip(root) {
             // Rows hold root motion weighted; the summary wants it in leg lengths a second.
-            out[2 * X + i] = 2.0 * ((mean / 0.3).tanh() as f32);
+            *out = 2.0 * ((sum / span.len() as f64 / 0.3).tanh() as f32);
         }
     }
 }

@@ -42,7 +42,7 @@ pub const ALL_BONES: [Bone; BONES] = [
 ];
 
 /// A set of bones of [`ALL_BONES`]: what a skeleton offers, or what an index uses.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
 #[serde(try_from = "Vec<String>", into = "Vec<String>")]
 pub struct BoneSet(u16);
 

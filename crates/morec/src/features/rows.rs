@@ -55,6 +55,12 @@ impl Rows {
         self.data.extend_from_slice(row);
     }
 
+    /// A copy of some columns, in the order of `columns`, which must lie inside the table.
+    pub fn columns(&self, columns: &[usize]) -> Rows {
+        let data = self.iter().flat_map(|row| columns.iter().map(|c| row[*c])).collect();
+        Rows { dim: columns.len(), data }
+    }
+
     /// A copy of rows `span`, which must lie inside the table.
     pub fn slice(&self, span: std::ops::Range<usize>) -> Rows {
         Rows { dim: self.dim, data: self.data[span.start * self.dim..span.end * self.dim].to_vec() }

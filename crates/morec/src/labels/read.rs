@@ -16,16 +16,28 @@ impl Labels {
     /// Where a row gives both frames and seconds, the frames count; where a column `whole_clip` says 1, neither. Fails on a missing column, an empty clip or
     /// class, a cell that is no number, a negative one, and a stop that does not come after its start.
     pub fn read(bytes: &[u8]) -> Result<Self, ParseError> {
+        Ok(Self::of_table(&Table::new(bytes)?, &[])?.0)
+    }
+
+    /// The same, and the cells of one more column, one for each row; `None` if the table has no such column.
+    pub fn read_with(bytes: &[u8], column: &str) -> Result<(Self, Option<Vec<String>>), ParseError> {
         let table = Table::new(bytes)?;
+        let (labels, rows) = Self::of_table(&table, &[column])?;
+        let cells = |at: usize| rows.iter().map(|row| row.cell(at).to_owned()).collect();
+        Ok((labels, table.find(column).map(cells)))
+    }
+
+    /// Labels and the rows that they are of. Columns in `more` are somebody else's, not unknown.
+    fn of_table<'a>(table: &Table<'a>, more: &[&str]) -> Result<(Self, Vec<Row<'a>>), ParseError> {
         let (clip, class) = (table.need("clip")?, table.need("class")?);
         let person = table.find("person");
-        let extents = ExtentColumns::find(&table)?;
+        let extents = ExtentColumns::find(table)?;
         let known = ["clip", "class", "person", "start", "stop", "start_secs", "stop_secs", "whole_clip"];
         let whole = table.find("whole_clip");
-        let mut warnings = table.unknown_columns(&known);
+        let mut warnings = table.unknown_columns(&[&known, more].concat());
         let (rows, too_long) = table.rows();
         warnings.extend(too_long);
-        let rows = rows
+        let labels = rows
             .iter()
             .map(|row| {
                 Ok(Label {
@@ -40,7 +52,7 @@ impl Labels {
                 })
             })
             .collect::<Result<_, _>>()?;
-        Ok(Self { rows, warnings })
+        Ok((Self { rows: labels, warnings }, rows))
     }
 }
 

@@ -26,6 +26,6 @@ pub use options::{ENOUGH_BACKGROUND_SECS, EVERYDAY_SEED, Everyday, TrainOptions}
 pub use params::TrainParams;
 pub use recipe::{Recipe, train_model};
 pub use report::TrainingReport;
-pub use set::{Known, Source, TrainSample, TrainSet, TrainStream};
+pub use set::{Known, Source, TrainSample, TrainSet, TrainStream, overlap_share};
 pub use templates::{TrainError, Trained, scatters, train};
 pub use trim::moving_part;

@@ -183,11 +183,7 @@ fn only(rows: &Rows, of: BoneSet, wanted: BoneSet) -> Rows {
         of.indices().enumerate().filter(|(_, bone)| wanted.contains(*bone)).map(|(at, _)| at).collect();
     let block = |start: usize| places.iter().flat_map(move |at| (0..3).map(move |i| start + 3 * at + i));
     let columns: Vec<usize> = block(0).chain(block(3 * b)).chain(6 * b..6 * b + 4).collect();
-    let mut out = Rows::new(columns.len());
-    for row in rows.iter() {
-        out.push(&columns.iter().map(|c| row[*c]).collect::<Vec<f32>>());
-    }
-    out
+    rows.columns(&columns)
 }
 
 fn groups(items: &[Item], args: &Args) -> Clusters {

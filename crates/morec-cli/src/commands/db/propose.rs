@@ -152,11 +152,7 @@ fn show(args: &Args, db: &MotionDb, mut proposals: Vec<Proposal>) -> Result<Exit
     }
     let more = all.len().saturating_sub(args.limit);
     let more = if more > 0 { format!("; {more} not shown") } else { String::new() };
-    let last = format!(
-        "{} proposed, {sure} of them likelier right than wrong{more}
-",
-        all.len()
-    );
+    let last = format!("{} proposed, {sure} of them likelier right than wrong{more}\n", all.len());
     super::print_table(&table, &last)?;
     Ok(ExitCode::SUCCESS)
 }

@@ -10,7 +10,7 @@ use morec::features::{FeatureParams, bones_of_clip, rows_of_clip};
 use morec::import::{ImportOptions, Imported, prepare};
 use morec_db::labels::{SampleFilter, State};
 use morec_db::search::{Example, Hit, LearnedMetric, SearchIndex, SearchOptions};
-use morec_db::{ClipFilter, ClipId, MotionDb, StoredClip};
+use morec_db::{ClipFilter, ClipId, ClipInfo, MotionDb, StoredClip};
 use serde::Serialize;
 
 use super::page::Page;
@@ -135,13 +135,19 @@ fn learn(db: &MotionDb, index: &SearchIndex, args: &Args) -> Result<LearnedMetri
     index.learn(&samples).context("--learned: label some clips first (morec db label), or search without it")
 }
 
+/// What the example is a stretch of.
+enum Shown {
+    Kept(ClipInfo),
+    File(StoredClip),
+}
+
 /// The example's rows, and the clip they are of.
-fn example(db: &MotionDb, index: &SearchIndex, args: &Args) -> Result<(Example, StoredClip)> {
+fn example(db: &MotionDb, index: &SearchIndex, args: &Args) -> Result<(Example, Shown)> {
     let short = || format!("{}: the example must hold at least 0.1 s of motion", args.example);
     if let Ok(clip) = db.find_clip(&args.example) {
         let stop = args.stop.unwrap_or(clip.duration_secs());
         let example = index.example(clip.id, args.start, stop).with_context(short)?;
-        return Ok((example, db.clip(clip.id)?));
+        return Ok((example, Shown::Kept(clip)));
     }
     let path = Path::new(&args.example);
     if !path.exists() && path != Path::new("-") {
@@ -159,15 +165,22 @@ fn example(db: &MotionDb, index: &SearchIndex, args: &Args) -> Result<(Example, 
     let span = rows.slice(start..stop.max(start));
     let all = span.len() == rows.len();
     let example = SearchIndex::example_of(&span, bones).with_context(short)?;
-    Ok((if all { example } else { example.cut_out() }, stored))
+    Ok((if all { example } else { example.cut_out() }, Shown::File(stored)))
 }
 
-fn report(path: &Path, db: &MotionDb, example: &StoredClip, args: &Args, found: &Found) -> Result<()> {
+fn report(path: &Path, db: &MotionDb, example: &Shown, args: &Args, found: &Found) -> Result<()> {
     let mut page = Page::default();
     page.heading("Looked for");
-    let stop = args.stop.unwrap_or(example.clip.duration_secs());
-    let caption = format!("{} {:.2}–{stop:.2} s", args.example, args.start);
-    page.figure_of(example, args.start, stop, &caption);
+    let end = match example {
+        Shown::Kept(clip) => clip.duration_secs(),
+        Shown::File(stored) => stored.clip.duration_secs(),
+    };
+    let (start, stop) = (args.start, args.stop.unwrap_or(end));
+    let caption = format!("{} {start:.2}–{stop:.2} s", args.example);
+    match example {
+        Shown::Kept(clip) => page.figure(db, clip.id, start, stop, &caption)?,
+        Shown::File(stored) => page.figure_of(stored, start, stop, &caption),
+    }
     page.heading("Found");
     for Named { name, hit } in &found.hits {
         let mirrored = if hit.mirrored { ", mirrored" } else { "" };

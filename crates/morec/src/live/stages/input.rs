@@ -95,14 +95,8 @@ impl Input {
         if self.rows.breaks_at(frame.time_secs) {
             self.end(End::Gap, to);
         }
-        let unknown;
-        let pivots = match self.reader.as_mut().and_then(|reader| reader.pivots(&frame.pose)) {
-            Some(pivots) => *pivots,
-            None => {
-                unknown = PivotPose::default();
-                unknown
-            }
-        };
+        let pivots: PivotPose =
+            self.reader.as_mut().and_then(|reader| reader.pivots(&frame.pose)).copied().unwrap_or_default();
         // The first pose of a stretch sets its origin and completes no row: the origin read here is right.
         let mark = self.mark(frame.time_secs);
         let (model, reduced, chunks) = (&self.model, &mut self.reduced, &mut self.chunks);
