@@ -15,8 +15,14 @@ fn decoded<'a>(pieces: impl Iterator<Item = &'a [u8]>) -> Vec<String> {
 fuzz_target!(|input: (u16, u8, &[u8])| {
     let (piece, wait, bytes) = input;
     let piece = usize::from(piece).max(1);
-    assert_eq!(decoded(bytes.chunks(piece)), decoded(std::iter::once(bytes)));
-    let mut receiver = AxisReceiver::new(&AxisOptions { actors: 2, ..AxisOptions::default() });
+    assert_eq!(
+        decoded(bytes.chunks(piece)),
+        decoded(std::iter::once(bytes))
+    );
+    let mut receiver = AxisReceiver::new(&AxisOptions {
+        actors: 2,
+        ..AxisOptions::default()
+    });
     let (mut now_secs, mut frame) = (0.0, Frame::default());
     let mut last_secs = [f64::NEG_INFINITY; MAX_ACTORS];
     for bytes in bytes.chunks(piece) {

@@ -12,7 +12,9 @@ use morec::live::Recognizer;
 fuzz_target!(|bytes: &[u8]| {
     let index = match MotionIndex::from_bytes(bytes) {
         Err(IndexError::Checksum { expected, found }) => {
-            let Some(right) = with_checksum(bytes, expected, found) else { return };
+            let Some(right) = with_checksum(bytes, expected, found) else {
+                return;
+            };
             MotionIndex::from_bytes(&right)
         }
         other => other,
@@ -20,7 +22,9 @@ fuzz_target!(|bytes: &[u8]| {
     let Ok(index) = index else { return };
     let written = index.to_bytes().expect("what was read can be written");
     assert_eq!(MotionIndex::from_bytes(&written).as_ref(), Ok(&index));
-    let Ok(mut recognizer) = Recognizer::new(&index.model, BoneSet::ALL) else { return };
+    let Ok(mut recognizer) = Recognizer::new(&index.model, BoneSet::ALL) else {
+        return;
+    };
     for n in 0..30 {
         recognizer.push(f64::from(n) / 30.0, &KeyPose::default());
     }
@@ -35,6 +39,10 @@ fn with_checksum(bytes: &[u8], old: u32, new: u32) -> Option<Vec<u8>> {
     let header = u64::from_le_bytes(bytes.get(..8)?.try_into().ok()?);
     let mut right = bytes.to_vec();
     right.splice(at..at + from.len(), to.iter().copied());
-    right[..8].copy_from_slice(&(header + to.len() as u64).checked_sub(from.len() as u64)?.to_le_bytes());
+    right[..8].copy_from_slice(
+        &(header + to.len() as u64)
+            .checked_sub(from.len() as u64)?
+            .to_le_bytes(),
+    );
     Some(right)
 }

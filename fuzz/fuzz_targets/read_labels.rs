@@ -8,8 +8,20 @@ use morec::labels::{ClipLength, Labels, read_found, read_people};
 
 fuzz_target!(|bytes: &[u8]| {
     let lengths = BTreeMap::from([
-        ("a".to_owned(), ClipLength { frames: 300, rate_hz: 30.0 }),
-        ("b".to_owned(), ClipLength { frames: 0, rate_hz: 120.0 }),
+        (
+            "a".to_owned(),
+            ClipLength {
+                frames: 300,
+                rate_hz: 30.0,
+            },
+        ),
+        (
+            "b".to_owned(),
+            ClipLength {
+                frames: 0,
+                rate_hz: 120.0,
+            },
+        ),
     ]);
     let people = read_people(bytes);
     if let Ok(mut labels) = Labels::read(bytes) {
@@ -19,11 +31,19 @@ fuzz_target!(|bytes: &[u8]| {
         }
         for sample in labels.resolve(&lengths).samples {
             let secs = lengths[&sample.clip].duration_secs();
-            assert!(0.0 <= sample.start_secs && sample.start_secs < sample.stop_secs && sample.stop_secs <= secs + 1e-9);
+            assert!(
+                0.0 <= sample.start_secs
+                    && sample.start_secs < sample.stop_secs
+                    && sample.stop_secs <= secs + 1e-9
+            );
         }
     }
     if let Ok(table) = read_found(bytes) {
         let (found, _) = table.resolve(&lengths);
-        assert!(found.iter().all(|f| f.start_secs < f.stop_secs && lengths.contains_key(&f.clip)));
+        assert!(
+            found
+                .iter()
+                .all(|f| f.start_secs < f.stop_secs && lengths.contains_key(&f.clip))
+        );
     }
 });

@@ -17,18 +17,36 @@ fuzz_target!(|bytes: &[u8]| {
         header[8..16].copy_from_slice(&(body.len() as u64).to_le_bytes());
         header[16..].copy_from_slice(&crc32(body).to_le_bytes());
     }
-    let limits = Limits { frames: 5000, joints: 100, ..Limits::default() };
-    let Ok(clip) = CompressedClip::from_bytes_within(&bytes, &limits) else { return };
+    let limits = Limits {
+        frames: 5000,
+        joints: 100,
+        ..Limits::default()
+    };
+    let Ok(clip) = CompressedClip::from_bytes_within(&bytes, &limits) else {
+        return;
+    };
     let written = clip.to_bytes();
-    assert_eq!(CompressedClip::from_bytes_within(&written, &limits).as_ref(), Ok(&clip));
-    let sampled = clip.sample(clip.source_rate_hz()).expect("a rate that was read can be sampled");
+    assert_eq!(
+        CompressedClip::from_bytes_within(&written, &limits).as_ref(),
+        Ok(&clip)
+    );
+    let sampled = clip
+        .sample(clip.source_rate_hz())
+        .expect("a rate that was read can be sampled");
     assert_eq!(sampled.frames, clip.source_frames());
-    assert!(sampled.rotations.iter().all(|q| (q.coords.norm() - 1.0).abs() < 1e-6));
+    assert!(
+        sampled
+            .rotations
+            .iter()
+            .all(|q| (q.coords.norm() - 1.0).abs() < 1e-6)
+    );
 });
 
 /// CRC-32 bit by bit.
 fn crc32(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(!0, |sum, &byte| {
-        (0..8).fold(sum ^ u32::from(byte), |sum, _| (sum >> 1) ^ (0xEDB8_8320 & (sum & 1).wrapping_neg()))
+        (0..8).fold(sum ^ u32::from(byte), |sum, _| {
+            (sum >> 1) ^ (0xEDB8_8320 & (sum & 1).wrapping_neg())
+        })
     })
 }

@@ -6,7 +6,10 @@ use morec::live::vmc::{VmcOptions, VmcReceiver};
 use morec::live::{Frame, MAX_ACTORS, Next};
 
 fuzz_target!(|packets: Vec<(u8, u8, Vec<u8>)>| {
-    let mut receiver = VmcReceiver::new(&VmcOptions { actors: 3, ..VmcOptions::default() });
+    let mut receiver = VmcReceiver::new(&VmcOptions {
+        actors: 3,
+        ..VmcOptions::default()
+    });
     let (mut now_secs, mut frame) = (0.0, Frame::default());
     let mut last_secs = [f64::NEG_INFINITY; MAX_ACTORS];
     for (peer, wait, bytes) in &packets {
@@ -21,7 +24,14 @@ fuzz_target!(|packets: Vec<(u8, u8, Vec<u8>)>| {
             let last = &mut last_secs[frame.actor.index()];
             assert!(frame.time_secs > *last);
             *last = frame.time_secs;
-            assert!(frame.pose.positions.iter().flatten().all(|c| !c.is_infinite()));
+            assert!(
+                frame
+                    .pose
+                    .positions
+                    .iter()
+                    .flatten()
+                    .all(|c| !c.is_infinite())
+            );
         }
     }
 });

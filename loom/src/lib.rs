@@ -25,13 +25,20 @@ mod sync {
 
     impl<T> Default for OnceLock<T> {
         fn default() -> Self {
-            Self { set: AtomicBool::new(false), value: std::sync::OnceLock::new() }
+            Self {
+                set: AtomicBool::new(false),
+                value: std::sync::OnceLock::new(),
+            }
         }
     }
 
     impl<T> OnceLock<T> {
         pub(super) fn get(&self) -> Option<&T> {
-            if self.set.load(Ordering::Acquire) { self.value.get() } else { None }
+            if self.set.load(Ordering::Acquire) {
+                self.value.get()
+            } else {
+                None
+            }
         }
 
         pub(super) fn get_or_init(&self, make: impl FnOnce() -> T) -> &T {
@@ -57,8 +64,14 @@ mod tests {
         builder.preemption_bound = Some(3);
         builder.check(move || {
             let (sleeper, others) = make();
-            let threads: Vec<_> = [sleeper].into_iter().chain(others).map(thread::spawn).collect();
-            threads.into_iter().for_each(|thread| thread.join().unwrap());
+            let threads: Vec<_> = [sleeper]
+                .into_iter()
+                .chain(others)
+                .map(thread::spawn)
+                .collect();
+            threads
+                .into_iter()
+                .for_each(|thread| thread.join().unwrap());
         });
     }
 
@@ -71,7 +84,11 @@ mod tests {
         }
     }
 
-    fn setting(flag: &Arc<AtomicBool>, order: std::sync::atomic::Ordering, waker: &Arc<Waker>) -> Job {
+    fn setting(
+        flag: &Arc<AtomicBool>,
+        order: std::sync::atomic::Ordering,
+        waker: &Arc<Waker>,
+    ) -> Job {
         let (flag, waker) = (flag.clone(), waker.clone());
         Box::new(move || {
             flag.store(true, order);
@@ -84,7 +101,10 @@ mod tests {
         model(|| {
             let (waker, news) = (Arc::new(Waker::default()), Arc::new(AtomicBool::new(false)));
             let other = setting(&news, Release, &waker);
-            (Box::new(move || wait(&waker, || news.load(Acquire))), vec![other])
+            (
+                Box::new(move || wait(&waker, || news.load(Acquire))),
+                vec![other],
+            )
         });
     }
 
@@ -94,7 +114,10 @@ mod tests {
         model(|| {
             let (waker, stop) = (Arc::new(Waker::default()), Arc::new(AtomicBool::new(false)));
             let other = setting(&stop, Relaxed, &waker);
-            (Box::new(move || wait(&waker, || stop.load(Relaxed))), vec![other])
+            (
+                Box::new(move || wait(&waker, || stop.load(Relaxed))),
+                vec![other],
+            )
         });
     }
 
@@ -103,7 +126,10 @@ mod tests {
     fn every_item_is_taken_and_then_the_end() {
         model(|| {
             let waker = Arc::new(Waker::default());
-            let (sent, ended) = (Arc::new(AtomicUsize::new(0)), Arc::new(AtomicBool::new(false)));
+            let (sent, ended) = (
+                Arc::new(AtomicUsize::new(0)),
+                Arc::new(AtomicBool::new(false)),
+            );
             let other: Job = {
                 let (waker, sent, ended) = (waker.clone(), sent.clone(), ended.clone());
                 Box::new(move || {
@@ -130,7 +156,10 @@ mod tests {
         model(|| {
             let waker = Arc::new(Waker::default());
             let news = [(); 2].map(|()| Arc::new(AtomicBool::new(false)));
-            let others = news.iter().map(|news| setting(news, Release, &waker)).collect();
+            let others = news
+                .iter()
+                .map(|news| setting(news, Release, &waker))
+                .collect();
             let sleeper = move || {
                 wait(&waker, || news[0].load(Acquire));
                 wait(&waker, || news[1].load(Acquire));

@@ -44,7 +44,9 @@ impl Convention {
         } else if up == MorecUpAxis::Z as i32 {
             true
         } else {
-            return Err(Error::invalid(format!("up_axis is {up}, expected a MorecUpAxis")));
+            return Err(Error::invalid(format!(
+                "up_axis is {up}, expected a MorecUpAxis"
+            )));
         };
         // A level axis; which of the two is the same but for the heading.
         let mirror = if handedness == MorecHandedness::Right as i32 {
@@ -53,9 +55,14 @@ impl Convention {
             Some(if z_up { Axis::Y } else { Axis::Z })
         } else {
             let text = "expected MOREC_HANDEDNESS_RIGHT or MOREC_HANDEDNESS_LEFT";
-            return Err(Error::invalid(format!("handedness is {handedness}, {text}")));
+            return Err(Error::invalid(format!(
+                "handedness is {handedness}, {text}"
+            )));
         };
-        Ok(Self { mirror, turn: z_up.then(|| Axis::X.rotation(-FRAC_PI_2)) })
+        Ok(Self {
+            mirror,
+            turn: z_up.then(|| Axis::X.rotation(-FRAC_PI_2)),
+        })
     }
 
     /// A position in a parent's frame; in the world's, if the joint is a root.
@@ -110,14 +117,24 @@ mod tests {
         // Unity: right, up, forward.
         let unity = Convention::new(2, 0).unwrap();
         let seen = |c: &Convention, x, y, z| c.position(Vec3::new(x, y, z), true);
-        let (right, up, forward) =
-            (seen(&unity, 1.0, 0.0, 0.0), seen(&unity, 0.0, 1.0, 0.0), seen(&unity, 0.0, 0.0, 1.0));
+        let (right, up, forward) = (
+            seen(&unity, 1.0, 0.0, 0.0),
+            seen(&unity, 0.0, 1.0, 0.0),
+            seen(&unity, 0.0, 0.0, 1.0),
+        );
         assert_eq!(up, Vec3::y());
-        assert_eq!(right.cross(&up), -forward, "right, up, backward are a right hand");
+        assert_eq!(
+            right.cross(&up),
+            -forward,
+            "right, up, backward are a right hand"
+        );
         // Unreal: forward, right, up.
         let unreal = Convention::new(2, 1).unwrap();
-        let (forward, right, up) =
-            (seen(&unreal, 1.0, 0.0, 0.0), seen(&unreal, 0.0, 1.0, 0.0), seen(&unreal, 0.0, 0.0, 1.0));
+        let (forward, right, up) = (
+            seen(&unreal, 1.0, 0.0, 0.0),
+            seen(&unreal, 0.0, 1.0, 0.0),
+            seen(&unreal, 0.0, 0.0, 1.0),
+        );
         assert!((up - Vec3::y()).norm() < 1e-12);
         assert!((right.cross(&up) + forward).norm() < 1e-12);
     }

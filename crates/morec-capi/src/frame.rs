@@ -65,7 +65,10 @@ impl Given<'_> {
     ///
     /// # Safety
     /// `frame` is null or as its fields say, for `'a`.
-    pub(crate) unsafe fn read<'a>(frame: *const MorecFrame, joints: usize) -> Result<Given<'a>, Error> {
+    pub(crate) unsafe fn read<'a>(
+        frame: *const MorecFrame,
+        joints: usize,
+    ) -> Result<Given<'a>, Error> {
         // SAFETY: as promised to this function.
         let c = unsafe { memory::read_struct(frame) }?;
         if c.joint_count != joints {
@@ -78,14 +81,21 @@ impl Given<'_> {
         if c.reserved != 0 {
             return Err(Error::invalid("reserved is not 0"));
         }
-        let space = [MorecSpace::World, MorecSpace::Local].into_iter().find(|space| *space as i32 == c.space);
+        let space = [MorecSpace::World, MorecSpace::Local]
+            .into_iter()
+            .find(|space| *space as i32 == c.space);
         let text = "expected MOREC_SPACE_WORLD or MOREC_SPACE_LOCAL";
         let space = space.ok_or_else(|| Error::invalid(format!("space is {}, {text}", c.space)))?;
         // SAFETY: as promised to this function; three numbers are aligned as one.
         let positions = unsafe { memory::values_if_any(c.positions.cast(), joints, "positions") }?;
         // SAFETY: as promised to this function; four numbers are aligned as one.
         let rotations = unsafe { memory::values_if_any(c.rotations.cast(), joints, "rotations") }?;
-        Ok(Given { time_secs: c.time_secs, space, positions, rotations })
+        Ok(Given {
+            time_secs: c.time_secs,
+            space,
+            positions,
+            rotations,
+        })
     }
 
     /// Poses the skeleton of `declared` in `frame`, right-handed and Y up. `frame` is spoiled by an error.
@@ -115,10 +125,16 @@ impl Given<'_> {
             return Err(Error::invalid("a frame in world space needs positions"));
         };
         for (joint, &p) in positions.iter().enumerate() {
-            frame.pose.positions.push(convention.position(position(joint, p)?.unwrap_or(UNSEEN), true));
+            frame
+                .pose
+                .positions
+                .push(convention.position(position(joint, p)?.unwrap_or(UNSEEN), true));
         }
         for (joint, &q) in self.rotations.unwrap_or_default().iter().enumerate() {
-            frame.pose.rotations.push(convention.rotation(rotation(joint, q)?, true));
+            frame
+                .pose
+                .rotations
+                .push(convention.rotation(rotation(joint, q)?, true));
         }
         Ok(())
     }
@@ -133,17 +149,27 @@ impl Given<'_> {
             return Err(Error::invalid("a frame in local space needs rotations"));
         };
         if self.positions.is_none() && !declared.has_offsets {
-            return Err(Error::invalid("a frame in local space needs positions, or a skeleton with offsets"));
+            return Err(Error::invalid(
+                "a frame in local space needs positions, or a skeleton with offsets",
+            ));
         }
         for (j, joint) in declared.rig.skeleton.joints().iter().enumerate() {
             let is_root = joint.parent.is_none();
             let given = match self.positions {
-                Some(positions) => position(j, positions[j])?.map(|p| convention.position(p, is_root)),
+                Some(positions) => {
+                    position(j, positions[j])?.map(|p| convention.position(p, is_root))
+                }
                 None => None,
             };
-            let offset = if declared.has_offsets { joint.offset } else { UNSEEN };
+            let offset = if declared.has_offsets {
+                joint.offset
+            } else {
+                UNSEEN
+            };
             let turned = convention.rotation(rotation(j, rotations[j])?, is_root);
-            frame.pose.add(joint.parent, given.unwrap_or(offset), turned);
+            frame
+                .pose
+                .add(joint.parent, given.unwrap_or(offset), turned);
         }
         Ok(())
     }
@@ -157,7 +183,11 @@ fn position(joint: usize, p: [f64; 3]) -> Result<Option<Vec3>, Error> {
     if p.iter().any(|c| c.is_nan()) {
         return Ok(None);
     }
-    if is_place(&p) { Ok(Some(p)) } else { Err(Error::invalid(format!("joint {joint} is nowhere: {p:?}"))) }
+    if is_place(&p) {
+        Ok(Some(p))
+    } else {
+        Err(Error::invalid(format!("joint {joint} is nowhere: {p:?}")))
+    }
 }
 
 /// NaN throughout: not seen.
@@ -170,6 +200,8 @@ fn rotation(joint: usize, [x, y, z, w]: [f64; 4]) -> Result<Quat, Error> {
     if length.is_finite() && length > 1e-9 {
         Ok(Quat::new_unchecked(q / length))
     } else {
-        Err(Error::invalid(format!("the rotation of joint {joint} has the length {length}")))
+        Err(Error::invalid(format!(
+            "the rotation of joint {joint} has the length {length}"
+        )))
     }
 }

@@ -31,7 +31,10 @@ struct Table {
     given: usize,
 }
 
-static TABLE: RwLock<Table> = RwLock::new(Table { objects: BTreeMap::new(), given: 0 });
+static TABLE: RwLock<Table> = RwLock::new(Table {
+    objects: BTreeMap::new(),
+    given: 0,
+});
 
 /// A kind of handle.
 pub(crate) trait Handle: Sized {
@@ -56,7 +59,11 @@ impl Handle for MorecIndex {
 
     #[allow(private_interfaces)]
     fn unwrap(object: &Object) -> Option<&Arc<MotionIndex>> {
-        if let Object::Index(index) = object { Some(index) } else { None }
+        if let Object::Index(index) = object {
+            Some(index)
+        } else {
+            None
+        }
     }
 }
 
@@ -71,14 +78,21 @@ impl Handle for MorecRecognizer {
 
     #[allow(private_interfaces)]
     fn unwrap(object: &Object) -> Option<&Arc<Stream>> {
-        if let Object::Recognizer(stream) = object { Some(stream) } else { None }
+        if let Object::Recognizer(stream) = object {
+            Some(stream)
+        } else {
+            None
+        }
     }
 }
 
 /// A handle for `of`.
 pub(crate) fn give<H: Handle>(of: H::Of) -> Result<*mut H, Error> {
     let mut table = TABLE.write().unwrap_or_else(PoisonError::into_inner);
-    let number = table.given.checked_add(1).and_then(|given| given.checked_mul(2)?.checked_add(1));
+    let number = table
+        .given
+        .checked_add(1)
+        .and_then(|given| given.checked_mul(2)?.checked_add(1));
     let number = number.ok_or_else(|| Error::new(MorecStatus::Internal, "no handles are left"))?;
     table.given += 1;
     table.objects.insert(number, H::wrap(Arc::new(of)));
@@ -112,14 +126,24 @@ pub(crate) fn take_back<H: Handle>(handle: *const H) -> Result<(), Error> {
 }
 
 fn other_kind<H: Handle>() -> Error {
-    Error::new(MorecStatus::BadHandle, format!("this handle is not of {}", H::NAME))
+    Error::new(
+        MorecStatus::BadHandle,
+        format!("this handle is not of {}", H::NAME),
+    )
 }
 
 fn unknown<H: Handle>(table: &Table, number: usize) -> Error {
     if number == 0 {
-        return Error::new(MorecStatus::NullPointer, format!("expected {}, found null", H::NAME));
+        return Error::new(
+            MorecStatus::NullPointer,
+            format!("expected {}, found null", H::NAME),
+        );
     }
     let was = number % 2 == 1 && (1..=table.given).contains(&(number / 2));
-    let text = if was { "this handle was destroyed" } else { "this is no handle of morec's" };
+    let text = if was {
+        "this handle was destroyed"
+    } else {
+        "this is no handle of morec's"
+    };
     Error::new(MorecStatus::BadHandle, text)
 }

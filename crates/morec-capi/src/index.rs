@@ -54,7 +54,10 @@ unsafe impl Versioned for MorecIndexFacts {
 /// # Safety
 /// `path` is null or ends with a zero; `index` is null or may be written to.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn morec_index_load(path: *const c_char, index: *mut *mut MorecIndex) -> MorecStatus {
+pub unsafe extern "C" fn morec_index_load(
+    path: *const c_char,
+    index: *mut *mut MorecIndex,
+) -> MorecStatus {
     guard(|| {
         // SAFETY: as promised to this function.
         let path = unsafe { memory::text(path, "path") }?;
@@ -91,8 +94,8 @@ pub unsafe extern "C" fn morec_index_from_memory(
 /// The index in a file.
 pub(crate) fn load(path: &Path) -> Result<MotionIndex, Error> {
     let shown = path.display();
-    let bytes =
-        std::fs::read(path).map_err(|error| Error::new(MorecStatus::File, format!("{shown}: {error}")))?;
+    let bytes = std::fs::read(path)
+        .map_err(|error| Error::new(MorecStatus::File, format!("{shown}: {error}")))?;
     MotionIndex::from_bytes(&bytes)
         .map_err(|error| Error::new(MorecStatus::BadIndex, format!("{shown}: {error}")))
 }
@@ -117,8 +120,14 @@ pub unsafe extern "C" fn morec_index_facts(
         let known = MorecIndexFacts {
             struct_size: 0,
             class_count: model.classes().len() as u32,
-            roles: model.roles().fold(0, |roles, role| roles | 1 << role.index()),
-            sample_count: model.classes().iter().map(|class| class.samples as u64).sum(),
+            roles: model
+                .roles()
+                .fold(0, |roles, role| roles | 1 << role.index()),
+            sample_count: model
+                .classes()
+                .iter()
+                .map(|class| class.samples as u64)
+                .sum(),
             tick_hz: model.tick_hz(),
             method: match model {
                 Model::Templates(_) => MorecMethod::Templates as i32,
@@ -151,7 +160,10 @@ pub unsafe extern "C" fn morec_index_class_name(
         let index = handles::find(index)?;
         let classes = index.model.classes();
         let class = classes.get(class_id as usize).ok_or_else(|| {
-            Error::invalid(format!("class {class_id}: the index has {}, numbered from 0", classes.len()))
+            Error::invalid(format!(
+                "class {class_id}: the index has {}, numbered from 0",
+                classes.len()
+            ))
         })?;
         // A zero inside would end the name early for every reader of it.
         let name = class.name.replace('\0', " ");
@@ -163,7 +175,10 @@ pub unsafe extern "C" fn morec_index_class_name(
         if unsafe { memory::write_text(buffer, size, &name) }? {
             return Ok(());
         }
-        let text = format!("the name takes {} bytes, the buffer has {size}", name.len() + 1);
+        let text = format!(
+            "the name takes {} bytes, the buffer has {size}",
+            name.len() + 1
+        );
         Err(Error::new(MorecStatus::BufferTooSmall, text))
     })
 }

@@ -32,8 +32,8 @@ mod words;
 
 pub use axes::{MorecHandedness, MorecUpAxis};
 pub use eight::{
-    MotionSeg, mrInit, mrIsDataSourceDepleted, mrQueryMotionSegments, mrSetDataSource, mrSetDataSourceSpeed,
-    mrStart, mrStop, mrStopDataSource, mrTerminate,
+    MotionSeg, mrInit, mrIsDataSourceDepleted, mrQueryMotionSegments, mrSetDataSource,
+    mrSetDataSourceSpeed, mrStart, mrStop, mrStopDataSource, mrTerminate,
 };
 pub use event::{MorecEvent, MorecPhase};
 pub use frame::{MorecFrame, MorecSpace};
@@ -43,10 +43,12 @@ pub use index::{
     morec_index_from_memory, morec_index_load,
 };
 pub use recognizer::{
-    MOREC_EARLY_EVENTS, MorecOptions, MorecStats, morec_recognizer_create, morec_recognizer_destroy,
-    morec_recognizer_finish, morec_recognizer_joint_of_role, morec_recognizer_poll, morec_recognizer_push,
-    morec_recognizer_reset, morec_recognizer_stats,
+    MOREC_EARLY_EVENTS, MorecOptions, MorecStats, morec_recognizer_create,
+    morec_recognizer_destroy, morec_recognizer_finish, morec_recognizer_joint_of_role,
+    morec_recognizer_poll, morec_recognizer_push, morec_recognizer_reset, morec_recognizer_stats,
 };
 pub use skeleton::MorecSkeleton;
 pub use status::{MorecStatus, morec_last_error, morec_status_text};
-pub use words::{MOREC_ROLE_COUNT, MorecRole, morec_role_from_name, morec_role_name, morec_version};
+pub use words::{
+    MOREC_ROLE_COUNT, MorecRole, morec_role_from_name, morec_role_name, morec_version,
+};

@@ -25,10 +25,16 @@ pub(crate) unsafe trait Versioned: Copy {
 
 fn look<T>(pointer: *const T, what: &str) -> Result<(), Error> {
     if pointer.is_null() {
-        return Err(Error::new(MorecStatus::NullPointer, format!("{what} is null")));
+        return Err(Error::new(
+            MorecStatus::NullPointer,
+            format!("{what} is null"),
+        ));
     }
     if !pointer.is_aligned() {
-        return Err(Error::invalid(format!("{what} is not aligned to {} bytes", align_of::<T>())));
+        return Err(Error::invalid(format!(
+            "{what} is not aligned to {} bytes",
+            align_of::<T>()
+        )));
     }
     Ok(())
 }
@@ -41,7 +47,8 @@ pub(crate) unsafe fn text<'a>(pointer: *const c_char, what: &str) -> Result<&'a 
     look(pointer, what)?;
     // SAFETY: not null; that it ends with a zero is the caller's promise.
     let text = unsafe { CStr::from_ptr(pointer) };
-    text.to_str().map_err(|_| Error::invalid(format!("{what} is not UTF-8")))
+    text.to_str()
+        .map_err(|_| Error::invalid(format!("{what} is not UTF-8")))
 }
 
 /// The `len` values at `pointer`.
@@ -54,8 +61,13 @@ pub(crate) unsafe fn values<'a, T: Copy>(
     what: &str,
 ) -> Result<&'a [T], Error> {
     look(pointer, what)?;
-    if len.checked_mul(size_of::<T>()).is_none_or(|bytes| bytes > isize::MAX as usize) {
-        return Err(Error::invalid(format!("{what}: {len} values do not fit into memory")));
+    if len
+        .checked_mul(size_of::<T>())
+        .is_none_or(|bytes| bytes > isize::MAX as usize)
+    {
+        return Err(Error::invalid(format!(
+            "{what}: {len} values do not fit into memory"
+        )));
     }
     // SAFETY: not null, aligned, no longer than an object can be; the rest is the caller's promise.
     Ok(unsafe { std::slice::from_raw_parts(pointer, len) })
@@ -129,7 +141,9 @@ pub(crate) unsafe fn read_struct<T: Versioned>(pointer: *const T) -> Result<T, E
     }
     let mut value = std::mem::MaybeUninit::<T>::zeroed();
     // SAFETY: `known` bytes are there to read and to write, in different places.
-    unsafe { std::ptr::copy_nonoverlapping(bytes.as_ptr(), value.as_mut_ptr().cast::<u8>(), known) };
+    unsafe {
+        std::ptr::copy_nonoverlapping(bytes.as_ptr(), value.as_mut_ptr().cast::<u8>(), known)
+    };
     // SAFETY: every bit pattern is a value, says the trait.
     Ok(unsafe { value.assume_init() })
 }
@@ -180,10 +194,20 @@ impl<T: Copy> Places<T> {
             );
             return Err(Error::new(MorecStatus::StructSize, text));
         }
-        if size.checked_mul(capacity).is_none_or(|bytes| bytes > isize::MAX as usize) {
-            return Err(Error::invalid(format!("{what}: {capacity} do not fit into memory")));
+        if size
+            .checked_mul(capacity)
+            .is_none_or(|bytes| bytes > isize::MAX as usize)
+        {
+            return Err(Error::invalid(format!(
+                "{what}: {capacity} do not fit into memory"
+            )));
         }
-        Ok(Self { first: pointer.cast(), size, capacity, of: std::marker::PhantomData })
+        Ok(Self {
+            first: pointer.cast(),
+            size,
+            capacity,
+            of: std::marker::PhantomData,
+        })
     }
 
     /// How many there are.
@@ -212,13 +236,20 @@ impl<T: Copy> Places<T> {
 ///
 /// # Safety
 /// If it is not null, `size` bytes may be written to `buffer`.
-pub(crate) unsafe fn write_text(buffer: *mut c_char, size: usize, text: &str) -> Result<bool, Error> {
+pub(crate) unsafe fn write_text(
+    buffer: *mut c_char,
+    size: usize,
+    text: &str,
+) -> Result<bool, Error> {
     if size == 0 {
         return Ok(false);
     }
     look(buffer.cast_const(), "the buffer")?;
     let room = text.len().min(size - 1);
-    let fits = (0..=room).rev().find(|&end| text.is_char_boundary(end)).unwrap_or(0);
+    let fits = (0..=room)
+        .rev()
+        .find(|&end| text.is_char_boundary(end))
+        .unwrap_or(0);
     // SAFETY: `fits` + 1 is at most `size`, and `size` bytes may be written, by the caller's promise.
     unsafe {
         std::ptr::copy_nonoverlapping(text.as_ptr(), buffer.cast::<u8>(), fits);

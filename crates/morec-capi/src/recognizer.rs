@@ -90,12 +90,18 @@ pub unsafe extern "C" fn morec_recognizer_create(
         let c = unsafe { memory::read_struct(options) }?;
         let options = stream_options(&c)?;
         let declared = if c.skeleton.is_null() {
-            skeleton::of_roles(if c.roles == 0 { (1 << Role::COUNT) - 1 } else { c.roles })?
+            skeleton::of_roles(if c.roles == 0 {
+                (1 << Role::COUNT) - 1
+            } else {
+                c.roles
+            })?
         } else if c.roles == 0 {
             // SAFETY: as promised to this function.
             unsafe { skeleton::read(c.skeleton, &options.convention, &index) }?
         } else {
-            return Err(Error::invalid("roles is for streams of roles; a skeleton says its own"));
+            return Err(Error::invalid(
+                "roles is for streams of roles; a skeleton says its own",
+            ));
         };
         let stream = Stream::new(&index, declared, &options)?;
         // SAFETY: as promised to this function.
@@ -105,14 +111,23 @@ pub unsafe extern "C" fn morec_recognizer_create(
 
 fn stream_options(c: &MorecOptions) -> Result<StreamOptions, Error> {
     if c.flags & !MOREC_EARLY_EVENTS != 0 {
-        return Err(Error::invalid(format!("flags is {:#x}, which this release does not know", c.flags)));
+        return Err(Error::invalid(format!(
+            "flags is {:#x}, which this release does not know",
+            c.flags
+        )));
     }
     if !(c.refractory_secs.is_finite() && c.refractory_secs >= 0.0) {
-        return Err(Error::invalid(format!("refractory_secs is {}, expected 0 or more", c.refractory_secs)));
+        return Err(Error::invalid(format!(
+            "refractory_secs is {}, expected 0 or more",
+            c.refractory_secs
+        )));
     }
     Ok(StreamOptions {
         convention: Convention::new(c.handedness, c.up_axis)?,
-        events: EventOptions { early: c.flags & MOREC_EARLY_EVENTS != 0, refractory_secs: c.refractory_secs },
+        events: EventOptions {
+            early: c.flags & MOREC_EARLY_EVENTS != 0,
+            refractory_secs: c.refractory_secs,
+        },
         event_capacity: c.event_capacity,
     })
 }
@@ -135,8 +150,14 @@ pub unsafe extern "C" fn morec_recognizer_joint_of_role(
 ) -> MorecStatus {
     guard(|| {
         let stream = handles::find(recognizer)?;
-        let role = words::role(role).ok_or_else(|| Error::invalid(format!("role {role} is none")))?;
-        let number = stream.declared().rig.roles.joint(role).map_or(-1, |joint| joint as i32);
+        let role =
+            words::role(role).ok_or_else(|| Error::invalid(format!("role {role} is none")))?;
+        let number = stream
+            .declared()
+            .rig
+            .roles
+            .joint(role)
+            .map_or(-1, |joint| joint as i32);
         // SAFETY: as promised to this function.
         unsafe { memory::put(joint, number, "joint") }
     })
@@ -182,9 +203,18 @@ pub unsafe extern "C" fn morec_recognizer_poll(
         unsafe { memory::put(count, 0, "count") }?;
         let stream = handles::find(recognizer)?;
         // SAFETY: as promised to this function.
-        let mut places =
-            unsafe { Places::new(events, event_size, capacity, MorecEvent::FIRST_SIZE, "events") }?;
-        let taken = stream.poll(places.capacity(), |at, event| places.put(at, &MorecEvent::from(event)))?;
+        let mut places = unsafe {
+            Places::new(
+                events,
+                event_size,
+                capacity,
+                MorecEvent::FIRST_SIZE,
+                "events",
+            )
+        }?;
+        let taken = stream.poll(places.capacity(), |at, event| {
+            places.put(at, &MorecEvent::from(event))
+        })?;
         // SAFETY: as promised to this function.
         unsafe { memory::put(count, taken, "count") }
     })

@@ -59,10 +59,17 @@ pub(crate) fn of_roles(mask: u32) -> Result<Declared, Error> {
             Role::COUNT
         )));
     }
-    for role in Role::ALL.into_iter().filter(|role| mask >> role.index() & 1 == 0) {
+    for role in Role::ALL
+        .into_iter()
+        .filter(|role| mask >> role.index() & 1 == 0)
+    {
         rig.roles.set(role, None);
     }
-    Ok(Declared { bones: BoneSet::of_roles(&rig.roles), rig, has_offsets: false })
+    Ok(Declared {
+        bones: BoneSet::of_roles(&rig.roles),
+        rig,
+        has_offsets: false,
+    })
 }
 
 /// Reads a skeleton.
@@ -78,7 +85,10 @@ pub(crate) unsafe fn read(
     let c = unsafe { memory::read_struct(skeleton) }?;
     let most = morec::formats::Limits::default().joints;
     if !(1..=most).contains(&c.joint_count) {
-        return Err(Error::invalid(format!("joint_count is {}, expected 1 to {most}", c.joint_count)));
+        return Err(Error::invalid(format!(
+            "joint_count is {}, expected 1 to {most}",
+            c.joint_count
+        )));
     }
     // SAFETY: as promised to this function.
     let parents = unsafe { memory::values(c.parents, c.joint_count, "parents") }?;
@@ -103,7 +113,11 @@ pub(crate) unsafe fn read(
         // Joints in one place are no bone, and will not become one.
         bones = bones.and(BoneSet::of_pose(&rest(&skeleton, &roles)));
     }
-    Ok(Declared { rig: Rig { skeleton, roles }, bones, has_offsets })
+    Ok(Declared {
+        rig: Rig { skeleton, roles },
+        bones,
+        has_offsets,
+    })
 }
 
 /// # Safety
@@ -136,12 +150,21 @@ fn joints(
                 return Err(Error::invalid(text));
             }
         };
-        let offset = offsets.map_or_else(Vec3::zeros, |o| Vec3::new(o[3 * j], o[3 * j + 1], o[3 * j + 2]));
+        let offset = offsets.map_or_else(Vec3::zeros, |o| {
+            Vec3::new(o[3 * j], o[3 * j + 1], o[3 * j + 2])
+        });
         if !is_place(&offset) {
-            return Err(Error::invalid(format!("the offset of joint {j} is not a place")));
+            return Err(Error::invalid(format!(
+                "the offset of joint {j} is not a place"
+            )));
         }
         let offset = convention.position(offset, parent.is_none());
-        joints.push(Joint { name: name.clone(), parent, offset, tip: None });
+        joints.push(Joint {
+            name: name.clone(),
+            parent,
+            offset,
+            tip: None,
+        });
     }
     Skeleton::new(joints).map_err(|error| Error::invalid(error.to_string()))
 }
@@ -160,10 +183,15 @@ fn given_roles(roles: &[i32]) -> Result<RoleMap, Error> {
         if number == words::MorecRole::None as i32 {
             continue;
         }
-        let role = words::role(number)
-            .ok_or_else(|| Error::invalid(format!("the role of joint {joint} is {number}, which is none")))?;
+        let role = words::role(number).ok_or_else(|| {
+            Error::invalid(format!(
+                "the role of joint {joint} is {number}, which is none"
+            ))
+        })?;
         if let Some(other) = map.joint(role) {
-            return Err(Error::invalid(format!("joints {other} and {joint} are both {role}")));
+            return Err(Error::invalid(format!(
+                "joints {other} and {joint} are both {role}"
+            )));
         }
         map.set(role, Some(joint));
     }
@@ -191,6 +219,14 @@ mod tests {
         let names = vec![String::new(); 2];
         assert!(joints(&[1, -1], &names, None, &convention).is_err());
         assert!(joints(&[-1, -2], &names, None, &convention).is_err());
-        assert!(joints(&[-1, 0], &names, Some(&[0.0, 0.0, 0.0, f64::NAN, 0.0, 0.0]), &convention).is_err());
+        assert!(
+            joints(
+                &[-1, 0],
+                &names,
+                Some(&[0.0, 0.0, 0.0, f64::NAN, 0.0, 0.0]),
+                &convention
+            )
+            .is_err()
+        );
     }
 }

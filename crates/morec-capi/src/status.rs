@@ -89,7 +89,10 @@ impl Error {
     pub(crate) fn new(status: MorecStatus, text: impl Into<String>) -> Self {
         // A text from a caller's own strings may hold anything but should not end early.
         let text: String = text.into().chars().filter(|c| *c != '\0').collect();
-        Self { status, text: CString::new(text).map_or(Cow::Borrowed(status.text()), Cow::Owned) }
+        Self {
+            status,
+            text: CString::new(text).map_or(Cow::Borrowed(status.text()), Cow::Owned),
+        }
     }
 
     /// A value that cannot be.
@@ -101,7 +104,10 @@ impl Error {
 impl From<MorecStatus> for Error {
     /// Without memory: for what happens on the frame path.
     fn from(status: MorecStatus) -> Self {
-        Self { status, text: Cow::Borrowed(status.text()) }
+        Self {
+            status,
+            text: Cow::Borrowed(status.text()),
+        }
     }
 }
 
@@ -146,7 +152,9 @@ mod tests {
 
     fn last() -> String {
         // SAFETY: a text of ours, with a zero at its end.
-        unsafe { CStr::from_ptr(morec_last_error()) }.to_string_lossy().into_owned()
+        unsafe { CStr::from_ptr(morec_last_error()) }
+            .to_string_lossy()
+            .into_owned()
     }
 
     #[test]
@@ -157,7 +165,10 @@ mod tests {
 
     #[test]
     fn the_last_error_is_each_threads_own_and_outlasts_what_succeeds() {
-        assert_eq!(guard(|| Err(Error::invalid("too \0 many"))), MorecStatus::InvalidValue);
+        assert_eq!(
+            guard(|| Err(Error::invalid("too \0 many"))),
+            MorecStatus::InvalidValue
+        );
         assert_eq!(guard(|| Ok(())), MorecStatus::Ok);
         assert_eq!(last(), "too  many");
         assert_eq!(std::thread::spawn(last).join().unwrap(), "");

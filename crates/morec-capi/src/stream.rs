@@ -103,7 +103,8 @@ impl Stream {
         // Made now and not at the first frame, so that what does not fit is said now, and no bone is given up because
         // the first frame happens not to show it.
         if index.model.needs_rotations() && declared.rig == Rig::of_roles() {
-            let text = "the index looks at how joints are turned: declare a skeleton and give rotations";
+            let text =
+                "the index looks at how joints are turned: declare a skeleton and give rotations";
             return Err(Error::new(MorecStatus::NothingInCommon, text.to_owned()));
         }
         let new = Recognizer::new(&index.model, declared.bones)
@@ -143,11 +144,21 @@ impl Stream {
         let input = &mut *turn(&self.input)?;
         self.make_room(input)?;
         given.pose(&self.declared, &self.convention, &mut input.frame)?;
-        let mut out = Out { events: &mut input.events, sequence: &mut input.sequence, counts: &self.counts };
+        let mut out = Out {
+            events: &mut input.events,
+            sequence: &mut input.sequence,
+            counts: &self.counts,
+        };
         let ready = &mut input.ready;
-        input.performer.push(&input.frame, &mut |_| ready.take(), &mut |event| out.event(event));
+        input
+            .performer
+            .push(&input.frame, &mut |_| ready.take(), &mut |event| {
+                out.event(event)
+            });
         self.counts.frames.fetch_add(1, Relaxed);
-        self.counts.suppressed.store(input.performer.suppressed(), Relaxed);
+        self.counts
+            .suppressed
+            .store(input.performer.suppressed(), Relaxed);
         Ok(())
     }
 
@@ -155,9 +166,15 @@ impl Stream {
     pub(crate) fn finish(&self) -> Result<(), Error> {
         let input = &mut *turn(&self.input)?;
         self.make_room(input)?;
-        let mut out = Out { events: &mut input.events, sequence: &mut input.sequence, counts: &self.counts };
+        let mut out = Out {
+            events: &mut input.events,
+            sequence: &mut input.sequence,
+            counts: &self.counts,
+        };
         input.performer.finish(&mut |event| out.event(event));
-        self.counts.suppressed.store(input.performer.suppressed(), Relaxed);
+        self.counts
+            .suppressed
+            .store(input.performer.suppressed(), Relaxed);
         Ok(())
     }
 
@@ -170,14 +187,24 @@ impl Stream {
         input.ready = Some(input.new.clone());
         input.sequence = 0;
         let counts = &self.counts;
-        for count in [&counts.frames, &counts.refused, &counts.events, &counts.lost, &counts.suppressed] {
+        for count in [
+            &counts.frames,
+            &counts.refused,
+            &counts.events,
+            &counts.lost,
+            &counts.suppressed,
+        ] {
             count.store(0, Relaxed);
         }
         Ok(())
     }
 
     /// Hands events to `take` in their order, at most `most`; says how many.
-    pub(crate) fn poll(&self, most: usize, mut take: impl FnMut(usize, &Event)) -> Result<usize, Error> {
+    pub(crate) fn poll(
+        &self,
+        most: usize,
+        mut take: impl FnMut(usize, &Event),
+    ) -> Result<usize, Error> {
         let output = &mut *turn(&self.output)?;
         if most == 0 && !output.is_empty() {
             return Err(MorecStatus::BufferTooSmall.into());

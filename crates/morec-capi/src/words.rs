@@ -37,8 +37,9 @@ pub enum MorecRole {
 /// Number of parts of the body; they are numbered from 0.
 pub const MOREC_ROLE_COUNT: u32 = 18;
 
-const _: () =
-    assert!(MOREC_ROLE_COUNT as usize == Role::COUNT && MorecRole::RightHand as usize + 1 == Role::COUNT);
+const _: () = assert!(
+    MOREC_ROLE_COUNT as usize == Role::COUNT && MorecRole::RightHand as usize + 1 == Role::COUNT
+);
 
 const NAMES: [&CStr; Role::COUNT] = [
     c"hips",
@@ -63,7 +64,9 @@ const NAMES: [&CStr; Role::COUNT] = [
 
 /// The role of this number, if it is one.
 pub(crate) fn role(number: i32) -> Option<Role> {
-    usize::try_from(number).ok().and_then(|index| Role::ALL.get(index).copied())
+    usize::try_from(number)
+        .ok()
+        .and_then(|index| Role::ALL.get(index).copied())
 }
 
 /// Version of the library, as in `0.1.0`. The text stays for ever.
@@ -102,7 +105,10 @@ mod tests {
             assert_eq!(role(number), Some(known));
             assert_eq!(NAMES[known.index()].to_str(), Ok(known.name()));
             // SAFETY: a text that ends with a zero.
-            assert_eq!(unsafe { morec_role_from_name(NAMES[known.index()].as_ptr()) }, number);
+            assert_eq!(
+                unsafe { morec_role_from_name(NAMES[known.index()].as_ptr()) },
+                number
+            );
         }
         assert_eq!((role(-1), role(18), role(i32::MIN)), (None, None, None));
     }

@@ -22,7 +22,10 @@ fn pushing_and_polling_take_no_memory() {
     options.flags = MOREC_EARLY_EVENTS;
     let recognizer = kit::Recognizer::new(&index, &options).unwrap();
     let (_, poses) = made::poses(&kit::take(60.0));
-    let poses: Vec<(f64, Vec<f64>)> = poses.iter().map(|(t, pose)| (*t, kit::positions(pose))).collect();
+    let poses: Vec<(f64, Vec<f64>)> = poses
+        .iter()
+        .map(|(t, pose)| (*t, kit::positions(pose)))
+        .collect();
     let mut events: [MorecEvent; 8] = unsafe { std::mem::zeroed() };
     let mut said = 0;
     let mut play = |lap: f64| {
@@ -30,7 +33,13 @@ fn pushing_and_polling_take_no_memory() {
             let (mut count, size) = (0, size_of::<MorecEvent>());
             recognizer.push(&kit::frame(time_secs + 20.0 * lap, positions));
             unsafe {
-                morec_recognizer_poll(recognizer.0, events.as_mut_ptr(), size, events.len(), &mut count)
+                morec_recognizer_poll(
+                    recognizer.0,
+                    events.as_mut_ptr(),
+                    size,
+                    events.len(),
+                    &mut count,
+                )
             };
             said += count;
         }
@@ -40,7 +49,10 @@ fn pushing_and_polling_take_no_memory() {
     reset_violation_count();
     assert_no_alloc(|| play(1.0));
     assert_eq!(violation_count(), 0);
-    assert!(said > 4, "too little happened to prove anything: {said} events");
+    assert!(
+        said > 4,
+        "too little happened to prove anything: {said} events"
+    );
     assert_no_alloc(|| drop(std::hint::black_box(vec![1])));
     assert!(violation_count() > 0, "the counter must count");
 }

@@ -42,7 +42,11 @@ fn write_figures(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
     )?;
     let t = &e.thesis;
     let mut line = |name: &str, value: String, detail: String| {
-        writeln!(out, "{}", format!("{name:<24} {value:>8}   {detail}").trim_end())
+        writeln!(
+            out,
+            "{}",
+            format!("{name:<24} {value:>8}   {detail}").trim_end()
+        )
     };
     line(
         "thesis accuracy",
@@ -52,7 +56,11 @@ fn write_figures(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
             t.true_positives, t.false_positives, t.false_negatives, t.true_negatives
         ),
     )?;
-    line("F1 at half overlap", figure(e.f1_at(MEASURED_OVERLAP)), String::new())?;
+    line(
+        "F1 at half overlap",
+        figure(e.f1_at(MEASURED_OVERLAP)),
+        String::new(),
+    )?;
     let alarms = &e.false_alarms;
     let detail = format!("{} in {:.2} min", alarms.count, alarms.minutes);
     line("false alarms a minute", figure(alarms.per_minute), detail)?;
@@ -68,22 +76,58 @@ fn write_figures(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
     line("delay, median", secs(d.median_secs), detail)?;
     let b = &e.boundaries;
     let bias = |bias: Option<f64>| format!("bias {}, positive is late", signed_secs(bias));
-    line("start error, median", secs(b.start_median_abs_secs), bias(b.start_median_secs))?;
-    line("stop error, median", secs(b.stop_median_abs_secs), bias(b.stop_median_secs))?;
+    line(
+        "start error, median",
+        secs(b.start_median_abs_secs),
+        bias(b.start_median_secs),
+    )?;
+    line(
+        "stop error, median",
+        secs(b.stop_median_abs_secs),
+        bias(b.stop_median_secs),
+    )?;
     let c = &e.classification;
-    line("P_C  (right)", figure(c.p_c), format!("{} samples", c.right))?;
-    line("P_E  (wrong)", figure(c.p_e), format!("{} samples", c.wrong))?;
-    line("P_R  (rejected)", figure(c.p_r), format!("{} samples", c.rejected))
+    line(
+        "P_C  (right)",
+        figure(c.p_c),
+        format!("{} samples", c.right),
+    )?;
+    line(
+        "P_E  (wrong)",
+        figure(c.p_e),
+        format!("{} samples", c.wrong),
+    )?;
+    line(
+        "P_R  (rejected)",
+        figure(c.p_r),
+        format!("{} samples", c.rejected),
+    )
 }
 
 fn write_overlaps(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
-    let mut table = Table::new(["overlap", "F1", "precision", "recall", "matched", "missed", "surplus"]);
+    let mut table = Table::new([
+        "overlap",
+        "F1",
+        "precision",
+        "recall",
+        "matched",
+        "missed",
+        "surplus",
+    ]);
     for o in &e.overlap {
         let rates = [o.f1, o.precision, o.recall].map(figure);
         let counts = [o.matched, o.missed, o.spurious].map(|n| n.to_string());
-        table.row([format!("{:.2}", o.min_iou)].into_iter().chain(rates).chain(counts));
+        table.row(
+            [format!("{:.2}", o.min_iou)]
+                .into_iter()
+                .chain(rates)
+                .chain(counts),
+        );
     }
-    write!(out, "\ndetections matched one to one with samples of their class\n{table}")
+    write!(
+        out,
+        "\ndetections matched one to one with samples of their class\n{table}"
+    )
 }
 
 fn write_classes(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
@@ -104,7 +148,9 @@ fn write_classes(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
         "start",
         "stop",
     ]);
-    e.classes.iter().for_each(|class| table.row(class_row(class)));
+    e.classes
+        .iter()
+        .for_each(|class| table.row(class_row(class)));
     write!(
         out,
         "\nclass by class (overlap {MEASURED_OVERLAP}; delay, start and stop are medians, positive is late)\n{table}"
@@ -112,15 +158,32 @@ fn write_classes(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
 }
 
 fn class_row(class: &ClassFigures) -> Vec<String> {
-    let mut row = vec![class.class.clone(), class.samples.to_string(), class.detections.to_string()];
+    let mut row = vec![
+        class.class.clone(),
+        class.samples.to_string(),
+        class.detections.to_string(),
+    ];
     if let Some(o) = class.overlap.iter().find(|o| o.min_iou == MEASURED_OVERLAP) {
         row.extend([o.f1, o.precision, o.recall].map(figure));
     }
     let c = &class.classification;
     row.extend([c.p_c, c.p_e, c.p_r].map(figure));
-    row.extend([class.missed, class.false_alarms.count, class.unknown_detections].map(|n| n.to_string()));
+    row.extend(
+        [
+            class.missed,
+            class.false_alarms.count,
+            class.unknown_detections,
+        ]
+        .map(|n| n.to_string()),
+    );
     row.push(secs(class.delay.median_secs));
-    row.extend([class.boundaries.start_median_secs, class.boundaries.stop_median_secs].map(signed_secs));
+    row.extend(
+        [
+            class.boundaries.start_median_secs,
+            class.boundaries.stop_median_secs,
+        ]
+        .map(signed_secs),
+    );
     row
 }
 
@@ -132,12 +195,25 @@ fn write_confusion(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
     header.extend((1..=columns.len()).map(|i| i.to_string()));
     header.push("nothing".to_owned());
     let mut table = Table::with_header(header);
-    let names = e.confusion.rows.iter().map(|name| format!("{} {name}", number(name)));
+    let names = e
+        .confusion
+        .rows
+        .iter()
+        .map(|name| format!("{} {name}", number(name)));
     for (name, counts) in names.chain(["nothing".to_owned()]).zip(&e.confusion.counts) {
-        let cells = counts.iter().map(|n| if *n == 0 { "·".to_owned() } else { n.to_string() });
+        let cells = counts.iter().map(|n| {
+            if *n == 0 {
+                "·".to_owned()
+            } else {
+                n.to_string()
+            }
+        });
         table.row([name].into_iter().chain(cells));
     }
-    write!(out, "\nconfusion (rows: what is labelled; columns: what was found)\n{table}")?;
+    write!(
+        out,
+        "\nconfusion (rows: what is labelled; columns: what was found)\n{table}"
+    )?;
     let unlabelled: Vec<String> = columns
         .iter()
         .filter(|c| !e.confusion.rows.contains(c))

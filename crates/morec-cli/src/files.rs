@@ -51,7 +51,10 @@ pub fn read(path: &Path) -> Result<Vec<u8>> {
 
 /// Writes beside the target and renames: a failure leaves no half file under its name, and whoever reads meanwhile
 /// sees the old file or the new one.
-pub fn write_whole(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+pub fn write_whole(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<()> {
     let mut partial = path.as_os_str().to_owned();
     partial.push(".partial");
     let partial = PathBuf::from(partial);
@@ -71,7 +74,9 @@ pub fn write_whole(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result
 /// The mapping file of roles, if one is given; errors begin with its path.
 pub fn mapping(path: Option<&Path>) -> Result<Option<Mapping>> {
     let Some(path) = path else { return Ok(None) };
-    Ok(Some(Mapping::read(&read(path)?).with_context(|| path.display().to_string())?))
+    Ok(Some(
+        Mapping::read(&read(path)?).with_context(|| path.display().to_string())?,
+    ))
 }
 
 /// The first few of many names.
@@ -79,7 +84,11 @@ pub fn some_of<'a>(names: impl ExactSizeIterator<Item = &'a String>) -> String {
     const SHOWN: usize = 5;
     let more = names.len().saturating_sub(SHOWN);
     let shown: Vec<&str> = names.take(SHOWN).map(String::as_str).collect();
-    if more == 0 { shown.join(", ") } else { format!("{} and {more} more", shown.join(", ")) }
+    if more == 0 {
+        shown.join(", ")
+    } else {
+        format!("{} and {more} more", shown.join(", "))
+    }
 }
 
 /// Folders become the clips in them, however deep, in the order of their paths; files stay where they are named.
@@ -94,7 +103,10 @@ pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>> {
         collect(path, &mut clips)?;
         clips[before..].sort();
         if clips.len() == before {
-            bail!("{}: no clip (.bvh, .amc, .mclip) in this folder or below", path.display());
+            bail!(
+                "{}: no clip (.bvh, .amc, .mclip) in this folder or below",
+                path.display()
+            );
         }
     }
     Ok(clips)
@@ -115,14 +127,20 @@ fn collect(folder: &Path, clips: &mut Vec<PathBuf>) -> Result<()> {
 }
 
 fn is_clip(path: &Path) -> bool {
-    matches!(format_of_name(&path.to_string_lossy()), Some(Format::Bvh | Format::Amc | Format::Mclip))
+    matches!(
+        format_of_name(&path.to_string_lossy()),
+        Some(Format::Bvh | Format::Amc | Format::Mclip)
+    )
 }
 
 /// Reads a clip; `-` is standard input. Errors begin with the path.
 pub fn open(path: &Path, args: &ReadArgs) -> Result<OpenedFile> {
     let bytes = if path == Path::new("-") {
         let mut bytes = Vec::new();
-        std::io::stdin().lock().read_to_end(&mut bytes).context("standard input")?;
+        std::io::stdin()
+            .lock()
+            .read_to_end(&mut bytes)
+            .context("standard input")?;
         bytes
     } else {
         read(path)?
@@ -132,7 +150,9 @@ pub fn open(path: &Path, args: &ReadArgs) -> Result<OpenedFile> {
 
 /// Reads a clip whose bytes are at hand. Errors begin with the path.
 pub fn parse(path: &Path, bytes: &[u8], args: &ReadArgs) -> Result<OpenedFile> {
-    args.reader().open(path, bytes).with_context(|| path.display().to_string())
+    args.reader()
+        .open(path, bytes)
+        .with_context(|| path.display().to_string())
 }
 
 impl ReadArgs {
@@ -143,6 +163,11 @@ impl ReadArgs {
             Positions::Add => PositionChannels::Add,
         });
         let (skeleton, rate_hz) = (self.skeleton.clone(), self.file_rate);
-        FileReader { skeleton, rate_hz, positions, ..FileReader::default() }
+        FileReader {
+            skeleton,
+            rate_hz,
+            positions,
+            ..FileReader::default()
+        }
     }
 }

@@ -20,7 +20,12 @@ use clap::{Parser, Subcommand};
 
 /// Index a motion-capture database, recognise its motions live.
 #[derive(Parser)]
-#[command(name = "morec", version, propagate_version = true, max_term_width = 100)]
+#[command(
+    name = "morec",
+    version,
+    propagate_version = true,
+    max_term_width = 100
+)]
 struct Cli {
     #[command(subcommand)]
     command: Command,

@@ -83,8 +83,9 @@ pub enum Unlabelled {
 fn with_figures<P: Serialize + DeserializeOwned>(params: P, settings: &[String]) -> Result<P> {
     let mut tree = serde_json::to_value(&params)?;
     for setting in settings {
-        let (name, value) =
-            setting.split_once('=').context(format!("--param {setting}: expected NAME=VALUE"))?;
+        let (name, value) = setting
+            .split_once('=')
+            .context(format!("--param {setting}: expected NAME=VALUE"))?;
         let pointer = format!("/{}", name.replace('.', "/"));
         let Some(figure) = tree.pointer_mut(&pointer) else {
             let known = serde_json::to_string_pretty(&params)?;
@@ -159,8 +160,13 @@ impl MaterialArgs {
         match self.method {
             Method::Templates => Ok(self.template_options(unlabelled_is_background)?.into()),
             Method::Svrdm => {
-                let params = with_figures(reproduce::Setting::from(self.svrdm).params(), &self.params)?;
-                Ok(SvrdmOptions { params, unlabelled_is_background }.into())
+                let params =
+                    with_figures(reproduce::Setting::from(self.svrdm).params(), &self.params)?;
+                Ok(SvrdmOptions {
+                    params,
+                    unlabelled_is_background,
+                }
+                .into())
             }
         }
     }
@@ -171,7 +177,10 @@ impl MaterialArgs {
             reproduce::Setting::Faithful => setting.params(),
             reproduce::Setting::Tuned => with_figures(setting.params(), &self.params)?,
         };
-        Ok(SvrdmOptions { params, unlabelled_is_background: self.unlabelled == Unlabelled::Background })
+        Ok(SvrdmOptions {
+            params,
+            unlabelled_is_background: self.unlabelled == Unlabelled::Background,
+        })
     }
 
     fn template_options(&self, unlabelled_is_background: bool) -> Result<TrainOptions> {
@@ -181,12 +190,19 @@ impl MaterialArgs {
             EverydayArg::Never => Everyday::Never,
         };
         let params = with_figures(TrainParams::default(), &self.params)?;
-        Ok(TrainOptions { unlabelled_is_background, everyday, params })
+        Ok(TrainOptions {
+            unlabelled_is_background,
+            everyday,
+            params,
+        })
     }
 
     /// Where the labels are from.
     pub fn label_source(&self) -> String {
-        self.db.as_ref().or(self.labels.as_ref()).map_or_else(String::new, |path| path.display().to_string())
+        self.db
+            .as_ref()
+            .or(self.labels.as_ref())
+            .map_or_else(String::new, |path| path.display().to_string())
     }
 
     /// Loads everything; `unknown` are paths like those of `--background`. What is left out is said on standard
@@ -207,7 +223,13 @@ impl MaterialArgs {
         for loaded in &mut clips {
             loaded.clip.person = people.get(&loaded.clip.name).cloned();
         }
-        sort_out(clips, &labels, &self.classes, &set_of(&background), &set_of(&unknown))
+        sort_out(
+            clips,
+            &labels,
+            &self.classes,
+            &set_of(&background),
+            &set_of(&unknown),
+        )
     }
 
     /// The same from a database: its clips that hold samples, and those named as background or unknown. A clip's
@@ -235,7 +257,10 @@ impl MaterialArgs {
         names.extend(labels.rows.iter().map(|row| row.clip.clone()));
         let excluded = |name: &String| self.exclude.contains(name);
         let mut clips: Vec<LoadedClip> = Vec::new();
-        for info in infos.iter().filter(|info| names.contains(&info.name) && !excluded(&info.name)) {
+        for info in infos
+            .iter()
+            .filter(|info| names.contains(&info.name) && !excluded(&info.name))
+        {
             let stored = db.clip(info.id)?;
             let clip = TrainClip {
                 name: info.name.clone(),
@@ -246,7 +271,11 @@ impl MaterialArgs {
                 person: info.subject.clone(),
             };
             let file_bytes = std::fs::metadata(&info.path).map_or(0, |m| m.len());
-            clips.push(LoadedClip { clip, path: PathBuf::from(&info.name), file_bytes });
+            clips.push(LoadedClip {
+                clip,
+                path: PathBuf::from(&info.name),
+                file_bytes,
+            });
         }
         if !files.is_empty() {
             clips.extend(load_clips(&files, &self.read, &self.import_options()?)?);
@@ -266,13 +295,19 @@ impl MaterialArgs {
             labels.add_people(&people);
             by_clip = people.by_clip;
         }
-        let labelled = labels.rows.iter().filter_map(|r| Some((r.clip.clone(), r.person.clone()?)));
+        let labelled = labels
+            .rows
+            .iter()
+            .filter_map(|r| Some((r.clip.clone(), r.person.clone()?)));
         by_clip.extend(labelled);
         Ok((labels, by_clip))
     }
 
     fn import_options(&self) -> Result<ImportOptions> {
-        Ok(ImportOptions { mapping: mapping(self.roles.as_deref())?, ..ImportOptions::default() })
+        Ok(ImportOptions {
+            mapping: mapping(self.roles.as_deref())?,
+            ..ImportOptions::default()
+        })
     }
 
     /// Paths as they are; what is no path but the file stem of one of `taught` is that clip.
@@ -286,7 +321,10 @@ impl MaterialArgs {
             let stem = path.as_os_str();
             match taught.iter().find(|t| t.file_stem() == Some(stem)) {
                 Some(clip) => paths.push(clip.clone()),
-                None => bail!("{}: no such file or folder, and none of --clips is called so", path.display()),
+                None => bail!(
+                    "{}: no such file or folder, and none of --clips is called so",
+                    path.display()
+                ),
             }
         }
         Ok(paths)
@@ -295,16 +333,31 @@ impl MaterialArgs {
 
 /// The accepted samples of a database as a table of labels.
 fn database_labels(db: &MotionDb) -> Result<Labels> {
-    let filter = SampleFilter { state: Some(State::Accepted), ..SampleFilter::default() };
+    let filter = SampleFilter {
+        state: Some(State::Accepted),
+        ..SampleFilter::default()
+    };
     let label = |(s, line): (DbSample, u64)| Label {
-        extent: if s.whole_clip { Extent::WholeClip } else { Extent::Secs(s.start_secs, s.stop_secs) },
+        extent: if s.whole_clip {
+            Extent::WholeClip
+        } else {
+            Extent::Secs(s.start_secs, s.stop_secs)
+        },
         clip: s.clip_name,
         class: s.class,
         person: s.subject,
         line,
     };
-    let rows = db.samples(&filter)?.into_iter().zip(1..).map(label).collect();
-    Ok(Labels { rows, warnings: Vec::new() })
+    let rows = db
+        .samples(&filter)?
+        .into_iter()
+        .zip(1..)
+        .map(label)
+        .collect();
+    Ok(Labels {
+        rows,
+        warnings: Vec::new(),
+    })
 }
 
 /// A clip and the file it came from.
@@ -317,11 +370,17 @@ pub struct LoadedClip {
 
 /// Reads and imports files in parallel, each once. Files that cannot be read are named on standard error and left
 /// out; two clips of one name are an error, as labels could not tell them apart.
-pub fn load_clips(paths: &[PathBuf], args: &ReadArgs, options: &ImportOptions) -> Result<Vec<LoadedClip>> {
+pub fn load_clips(
+    paths: &[PathBuf],
+    args: &ReadArgs,
+    options: &ImportOptions,
+) -> Result<Vec<LoadedClip>> {
     let mut seen = BTreeSet::new();
     let distinct: Vec<&PathBuf> = paths.iter().filter(|p| seen.insert(canonical(p))).collect();
-    let loaded: Vec<Result<Vec<LoadedClip>>> =
-        distinct.par_iter().map(|p| load_file(p, args, options)).collect();
+    let loaded: Vec<Result<Vec<LoadedClip>>> = distinct
+        .par_iter()
+        .map(|p| load_file(p, args, options))
+        .collect();
     let mut clips: Vec<LoadedClip> = Vec::new();
     let mut failed = 0;
     for result in loaded {
@@ -340,7 +399,10 @@ pub fn load_clips(paths: &[PathBuf], args: &ReadArgs, options: &ImportOptions) -
     for clip in &clips {
         if let Some(other) = names.insert(&clip.clip.name, &clip.path) {
             let (a, b) = (other.display(), clip.path.display());
-            bail!("{a} and {b} are both called {}: labels could not tell them apart", clip.clip.name);
+            bail!(
+                "{a} and {b} are both called {}: labels could not tell them apart",
+                clip.clip.name
+            );
         }
     }
     Ok(clips)
@@ -359,7 +421,11 @@ fn load_file(path: &Path, args: &ReadArgs, options: &ImportOptions) -> Result<Ve
             source: Source::Labelled,
             person: None,
         };
-        Ok(LoadedClip { clip, path: canonical(path), file_bytes })
+        Ok(LoadedClip {
+            clip,
+            path: canonical(path),
+            file_bytes,
+        })
     };
     opened.clips.into_iter().map(import).collect()
 }
@@ -372,13 +438,25 @@ fn sort_out(
     background: &BTreeSet<PathBuf>,
     unknown: &BTreeSet<PathBuf>,
 ) -> Result<Material> {
-    let length = |c: &LoadedClip| ClipLength { frames: c.clip.clip.frames, rate_hz: c.clip.clip.rate_hz };
-    let lengths = clips.iter().map(|c| (c.clip.name.clone(), length(c))).collect();
+    let length = |c: &LoadedClip| ClipLength {
+        frames: c.clip.clip.frames,
+        rate_hz: c.clip.clip.rate_hz,
+    };
+    let lengths = clips
+        .iter()
+        .map(|c| (c.clip.name.clone(), length(c)))
+        .collect();
     let resolved = labels.resolve(&lengths);
-    resolved.warnings.iter().for_each(|w| eprintln!("morec: labels, {w}"));
+    resolved
+        .warnings
+        .iter()
+        .for_each(|w| eprintln!("morec: labels, {w}"));
     if !resolved.absent.is_empty() {
         let rows: usize = resolved.absent.values().sum();
-        eprintln!("morec: {rows} labels are of clips that are not there ({} clips)", resolved.absent.len());
+        eprintln!(
+            "morec: {rows} labels are of clips that are not there ({} clips)",
+            resolved.absent.len()
+        );
     }
     let aside: BTreeSet<&str> = clips
         .iter()
@@ -386,23 +464,39 @@ fn sort_out(
         .map(|c| c.clip.name.as_str())
         .collect();
     let wanted = |s: &Sample| classes.is_empty() || classes.contains(&s.class);
-    let samples: Vec<Sample> =
-        resolved.samples.into_iter().filter(|s| wanted(s) && !aside.contains(s.clip.as_str())).collect();
+    let samples: Vec<Sample> = resolved
+        .samples
+        .into_iter()
+        .filter(|s| wanted(s) && !aside.contains(s.clip.as_str()))
+        .collect();
     let present: BTreeSet<&str> = samples.iter().map(|s| s.class.as_str()).collect();
     if let Some(class) = classes.iter().find(|c| !present.contains(c.as_str())) {
         bail!("--classes names {class}, of which no clip holds a sample");
     }
     if samples.is_empty() {
-        bail!("no sample to learn from: no label names any of these clips (labels name clips by file stem)");
+        bail!(
+            "no sample to learn from: no label names any of these clips (labels name clips by file stem)"
+        );
     }
-    let names: Vec<String> =
-        if classes.is_empty() { present.iter().map(|c| (*c).to_owned()).collect() } else { classes.to_vec() };
+    let names: Vec<String> = if classes.is_empty() {
+        present.iter().map(|c| (*c).to_owned()).collect()
+    } else {
+        classes.to_vec()
+    };
     let with_samples: BTreeSet<String> = samples.iter().map(|s| s.clip.clone()).collect();
-    let mut material =
-        Material { clips: vec![], unknown: vec![], samples, classes: names, labelled_bytes: 0 };
+    let mut material = Material {
+        clips: vec![],
+        unknown: vec![],
+        samples,
+        classes: names,
+        labelled_bytes: 0,
+    };
     let mut idle = Vec::new();
     for mut loaded in clips {
-        let (is_background, is_unknown) = (background.contains(&loaded.path), unknown.contains(&loaded.path));
+        let (is_background, is_unknown) = (
+            background.contains(&loaded.path),
+            unknown.contains(&loaded.path),
+        );
         if is_unknown {
             material.unknown.push(loaded.clip.clone());
         }
@@ -439,5 +533,7 @@ fn shown(path: &Path) -> String {
 }
 
 fn warn(path: &Path, warnings: &[Warning]) {
-    warnings.iter().for_each(|warning| eprintln!("morec: {}: {warning}", path.display()));
+    warnings
+        .iter()
+        .for_each(|warning| eprintln!("morec: {}: {warning}", path.display()));
 }

@@ -56,9 +56,16 @@ impl PoseArgs {
             file => serde_json::from_slice(&files::read(Path::new(file)).context("--pivots")?)
                 .with_context(|| format!("--pivots {file}"))?,
         };
-        let options =
-            ImportOptions { mapping: files::mapping(self.roles.as_deref())?, ..ImportOptions::default() };
-        Ok(PoseReader { set, params: PoseParams::default(), options, read: &self.read })
+        let options = ImportOptions {
+            mapping: files::mapping(self.roles.as_deref())?,
+            ..ImportOptions::default()
+        };
+        Ok(PoseReader {
+            set,
+            params: PoseParams::default(),
+            options,
+            read: &self.read,
+        })
     }
 }
 
@@ -73,7 +80,11 @@ impl PoseReader<'_> {
     ///
     /// # Errors
     /// There is nothing to read, or no file could be; what `each` fails with.
-    pub fn each(&self, paths: &[PathBuf], mut each: impl FnMut(PosedClip) -> Result<()>) -> Result<()> {
+    pub fn each(
+        &self,
+        paths: &[PathBuf],
+        mut each: impl FnMut(PosedClip) -> Result<()>,
+    ) -> Result<()> {
         let paths = files::expand(paths)?;
         let mut progress = Progress::new(paths.len(), "reading clips");
         let mut failed = 0;
@@ -97,7 +108,8 @@ impl PoseReader<'_> {
         let opened = files::open(path, self.read)?;
         let mut posed = Vec::with_capacity(opened.clips.len());
         for clip in opened.clips {
-            let imported = prepare(clip, &self.options).with_context(|| path.display().to_string())?;
+            let imported =
+                prepare(clip, &self.options).with_context(|| path.display().to_string())?;
             let clip = &imported.clip;
             let map = PivotMap::resolve(&self.set, &clip.skeleton, &imported.roles)
                 .with_context(|| path.display().to_string())?;
@@ -106,9 +118,22 @@ impl PoseReader<'_> {
                 let what = "no joint plays these pivots, they turn with their parents";
                 progress.suspend(|| eprintln!("morec: {}: {what}: {missing}", path.display()));
             }
-            let rows = pose_rows_of_clip(clip, &self.set, &map, &imported.facts.rest_frames, &self.params);
-            let length = ClipLength { frames: clip.frames, rate_hz: clip.rate_hz };
-            posed.push(PosedClip { name: clip.name.clone(), length, rows });
+            let rows = pose_rows_of_clip(
+                clip,
+                &self.set,
+                &map,
+                &imported.facts.rest_frames,
+                &self.params,
+            );
+            let length = ClipLength {
+                frames: clip.frames,
+                rate_hz: clip.rate_hz,
+            };
+            posed.push(PosedClip {
+                name: clip.name.clone(),
+                length,
+                rows,
+            });
         }
         Ok(posed)
     }

@@ -24,7 +24,11 @@ impl Progress {
             bar.set_style(style);
         }
         bar.set_message(what);
-        Self { bar, begun: Instant::now(), shown: false }
+        Self {
+            bar,
+            begun: Instant::now(),
+            shown: false,
+        }
     }
 
     /// One step is done.
@@ -62,7 +66,11 @@ impl Bar {
         if let Ok(style) = ProgressStyle::with_template("{msg} [{bar:30}] {pos}/{len}") {
             bar.set_style(style);
         }
-        Self { bar, begun: Instant::now(), stop: Arc::default() }
+        Self {
+            bar,
+            begun: Instant::now(),
+            stop: Arc::default(),
+        }
     }
 
     /// A hidden bar under which Ctrl-C asks the job to stop as soon as it can leave things whole; a second one ends the

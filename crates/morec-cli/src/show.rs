@@ -62,7 +62,9 @@ pub fn event_line(said: &Said) -> String {
 
 /// `name` without the characters that would move the cursor.
 fn printable(name: &str) -> String {
-    name.chars().map(|c| if c.is_control() { '?' } else { c }).collect()
+    name.chars()
+        .map(|c| if c.is_control() { '?' } else { c })
+        .collect()
 }
 
 /// Writes the events, a line each: the show where nobody watches.
@@ -102,10 +104,21 @@ fn look() -> Look {
         Some((width, height)) => (usize::from(width.0), usize::from(height.0)),
         None => (80, 24),
     };
-    let set = |name| std::env::var(name).ok().filter(|value: &String| !value.is_empty());
-    let locale = set("LC_ALL").or_else(|| set("LC_CTYPE")).or_else(|| set("LANG"));
+    let set = |name| {
+        std::env::var(name)
+            .ok()
+            .filter(|value: &String| !value.is_empty())
+    };
+    let locale = set("LC_ALL")
+        .or_else(|| set("LC_CTYPE"))
+        .or_else(|| set("LANG"));
     let ascii = locale.is_some_and(|l| matches!(l.as_str(), "C" | "POSIX"));
-    Look { columns, rows, colour: set("NO_COLOR").is_none(), unicode: !ascii }
+    Look {
+        columns,
+        rows,
+        colour: set("NO_COLOR").is_none(),
+        unicode: !ascii,
+    }
 }
 
 /// The bytes that draw `picture` over the `before` lines of the last one, in one write.
@@ -138,7 +151,10 @@ mod tests {
             score: 0.934,
             reported_secs: 12.40,
         };
-        assert_eq!(event_line(&said), " 12.40 s  wave  0.93  (said 0.12 s after its end)");
+        assert_eq!(
+            event_line(&said),
+            " 12.40 s  wave  0.93  (said 0.12 s after its end)"
+        );
         said.stop_secs = 12.5;
         assert!(event_line(&said).ends_with("(said 0.10 s before its end)"));
         said.class = "a\x1b[2Jb\n".to_owned();
@@ -149,7 +165,12 @@ mod tests {
     fn without_a_terminal_there_are_just_the_events() {
         let take = frame::tests::take();
         let said = frame::tests::said(&take);
-        let scene = Scene { title: "ada", clip: &take.clip, truth: &[], said: &said };
+        let scene = Scene {
+            title: "ada",
+            clip: &take.clip,
+            truth: &[],
+            said: &said,
+        };
         let mut out = Vec::new();
         write_events(&scene, &mut out).unwrap();
         let text = String::from_utf8(out).unwrap();

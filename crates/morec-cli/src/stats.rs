@@ -46,15 +46,20 @@ impl Stats {
     fn template_stages(&mut self, model: &TemplateModel, imported: &Imported) -> Result<()> {
         let Imported { clip, roles, facts } = imported;
         let rest = &facts.rest_frames;
-        let rows =
-            timed(&mut self.features, || rows_of_clip(clip, roles, rest, model.bones, &model.features));
+        let rows = timed(&mut self.features, || {
+            rows_of_clip(clip, roles, rest, model.bones, &model.features)
+        });
         let mut engine = TemplateEngine::new(model)?;
         timed(&mut self.matching, || {
             rows.iter().for_each(|row| engine.push(row, &mut |_| {}));
             engine.finish(&mut |_| {});
         });
         let template_rows = model.samples.iter().map(|s| s.rows.len()).sum::<usize>()
-            + model.negatives.iter().map(morec::features::Rows::len).sum::<usize>();
+            + model
+                .negatives
+                .iter()
+                .map(morec::features::Rows::len)
+                .sum::<usize>();
         self.size = format!("{template_rows} template rows");
         Ok(())
     }
@@ -63,14 +68,19 @@ impl Stats {
         let Imported { clip, roles, facts } = imported;
         let map = PivotMap::resolve(&model.pivots, &clip.skeleton, roles)?;
         let rest = &facts.rest_frames;
-        let rows =
-            timed(&mut self.features, || pose_rows_of_clip(clip, &model.pivots, &map, rest, &model.pose));
+        let rows = timed(&mut self.features, || {
+            pose_rows_of_clip(clip, &model.pivots, &map, rest, &model.pose)
+        });
         let mut engine = SvrdmEngine::new(model)?;
         timed(&mut self.matching, || {
             rows.iter().for_each(|row| engine.push(row, &mut |_| {}));
             engine.finish(&mut |_| {});
         });
-        self.size = format!("{} classes, {} profiles", model.classes.len(), model.profiles.len());
+        self.size = format!(
+            "{} classes, {} profiles",
+            model.classes.len(),
+            model.profiles.len()
+        );
         Ok(())
     }
 }
@@ -84,7 +94,11 @@ fn timed<T>(total: &mut Duration, job: impl FnOnce() -> T) -> T {
 
 impl fmt::Display for Stats {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "frames a second on one core ({} frames, {})", self.frames, self.size)?;
+        writeln!(
+            f,
+            "frames a second on one core ({} frames, {})",
+            self.frames, self.size
+        )?;
         let stages = [
             ("whole path, poses to detections", self.whole),
             ("  poses to feature rows", self.features),
@@ -92,7 +106,11 @@ impl fmt::Display for Stats {
             ("reading the files", self.reading),
         ];
         for (name, time) in stages {
-            writeln!(f, "{name:32} {:>12.0}", self.frames as f64 / time.as_secs_f64().max(1e-9))?;
+            writeln!(
+                f,
+                "{name:32} {:>12.0}",
+                self.frames as f64 / time.as_secs_f64().max(1e-9)
+            )?;
         }
         Ok(())
     }

@@ -17,7 +17,10 @@ impl Table {
 
     /// A table whose column names are made at run time.
     pub fn with_header(header: Vec<String>) -> Self {
-        Self { rows: vec![header], least: Vec::new() }
+        Self {
+            rows: vec![header],
+            least: Vec::new(),
+        }
     }
 
     /// Columns that are left out where the terminal is too narrow, the least important first.
@@ -38,21 +41,34 @@ impl Table {
     }
 
     fn widths(&self) -> Vec<usize> {
-        let widest = |at: usize| self.rows.iter().filter_map(|r| r.get(at)).map(|c| columns_of(c)).max();
-        (0..self.columns()).map(|at| widest(at).unwrap_or(0)).collect()
+        let widest = |at: usize| {
+            self.rows
+                .iter()
+                .filter_map(|r| r.get(at))
+                .map(|c| columns_of(c))
+                .max()
+        };
+        (0..self.columns())
+            .map(|at| widest(at).unwrap_or(0))
+            .collect()
     }
 
     /// The table in at most `width` columns, as far as that can be: long texts lose their middle, then columns go, then
     /// texts lose more. Numbers are never cut.
     pub fn fitted(&self, width: usize) -> Table {
-        let mut table = Table { rows: self.rows.clone(), least: Vec::new() };
+        let mut table = Table {
+            rows: self.rows.clone(),
+            least: Vec::new(),
+        };
         let mut least = self.least.iter();
         loop {
             let widths = table.shrunk(width, SHORT_TEXT);
             if total(&widths) <= width {
                 return table.cut_to(&widths);
             }
-            let gone = least.by_ref().find_map(|name| table.rows[0].iter().position(|h| h == name));
+            let gone = least
+                .by_ref()
+                .find_map(|name| table.rows[0].iter().position(|h| h == name));
             let Some(at) = gone else { break };
             for row in table.rows.iter_mut().filter(|row| at < row.len()) {
                 row.remove(at);
@@ -67,7 +83,9 @@ impl Table {
         let mut widths = self.widths();
         while total(&widths) > width {
             let wide = (0..widths.len()).filter(|at| widths[*at] > shortest && self.is_text(*at));
-            let Some(widest) = wide.max_by_key(|at| widths[*at]) else { break };
+            let Some(widest) = wide.max_by_key(|at| widths[*at]) else {
+                break;
+            };
             widths[widest] -= 1;
         }
         widths
@@ -76,7 +94,9 @@ impl Table {
     /// Whether a column below its name holds anything but numbers.
     fn is_text(&self, at: usize) -> bool {
         let cells = self.rows.iter().skip(1).filter_map(|row| row.get(at));
-        cells.into_iter().any(|cell| !cell.is_empty() && cell.parse::<f64>().is_err())
+        cells
+            .into_iter()
+            .any(|cell| !cell.is_empty() && cell.parse::<f64>().is_err())
     }
 
     fn cut_to(mut self, widths: &[usize]) -> Table {
@@ -93,8 +113,9 @@ impl Table {
         let clean = |cell: &String| cell.replace(['\t', '\n', '\r'], " ");
         let columns = self.columns();
         let line = |row: &Vec<String>| {
-            let cells: Vec<String> =
-                (0..columns).map(|at| row.get(at).map_or_else(String::new, clean)).collect();
+            let cells: Vec<String> = (0..columns)
+                .map(|at| row.get(at).map_or_else(String::new, clean))
+                .collect();
             cells.join("\t") + "\n"
         };
         self.rows.iter().map(line).collect()
@@ -131,7 +152,10 @@ fn shortened(text: &str, width: usize) -> String {
     }
     let room = width.saturating_sub(1);
     let head = beginning(text.chars(), room.div_ceil(2));
-    let tail: String = beginning(text.chars().rev(), room / 2).chars().rev().collect();
+    let tail: String = beginning(text.chars().rev(), room / 2)
+        .chars()
+        .rev()
+        .collect();
     format!("{head}…{tail}")
 }
 
@@ -172,7 +196,10 @@ mod tests {
         let mut table = Table::new(["class", "n"]);
         table.row(["é".to_owned(), "100".to_owned()]);
         table.row(["walking".to_owned()]);
-        assert_eq!(table.to_string(), "  class      n\n  é        100\n  walking\n");
+        assert_eq!(
+            table.to_string(),
+            "  class      n\n  é        100\n  walking\n"
+        );
     }
 
     fn clips() -> Table {
@@ -191,7 +218,10 @@ mod tests {
     fn no_line_is_wider_than_the_terminal() {
         for width in [24, 30, 40, 60, 80, 200] {
             let text = clips().fitted(width).to_string();
-            assert!(text.lines().all(|line| columns_of(line) <= width), "{width}:\n{text}");
+            assert!(
+                text.lines().all(|line| columns_of(line) <= width),
+                "{width}:\n{text}"
+            );
         }
     }
 
@@ -199,12 +229,25 @@ mod tests {
     fn names_lose_their_middle_before_columns_go_and_numbers_stay_whole() {
         assert_eq!(clips().fitted(200).to_string(), clips().to_string());
         let medium = clips().fitted(44).to_string();
-        assert!(medium.contains("joints") && medium.contains("studio") && medium.contains("_01"), "{medium}");
-        assert!(medium.contains('…') && medium.contains("100.25"), "{medium}");
+        assert!(
+            medium.contains("joints") && medium.contains("studio") && medium.contains("_01"),
+            "{medium}"
+        );
+        assert!(
+            medium.contains('…') && medium.contains("100.25"),
+            "{medium}"
+        );
         let narrow = clips().fitted(26).to_string();
-        assert!(!narrow.contains("joints") && narrow.contains("anna"), "{narrow}");
+        assert!(
+            !narrow.contains("joints") && narrow.contains("anna"),
+            "{narrow}"
+        );
         assert_eq!(shortened("abcdefgh", 5), "ab…gh");
-        assert_eq!(columns_of(&shortened("動作の練習", 6)), 5, "a half of a wide sign is none");
+        assert_eq!(
+            columns_of(&shortened("動作の練習", 6)),
+            5,
+            "a half of a wide sign is none"
+        );
     }
 
     #[test]

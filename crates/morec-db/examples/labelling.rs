@@ -18,7 +18,8 @@ use std::time::Instant;
 
 use morec_db::labels::{NewSample, State};
 use morec_db::{
-    ClipFilter, ClipId, ClipUpdate, FileReader, ImportSettings, MotionDb, Proposal, ProposeOptions, questions,
+    ClipFilter, ClipId, ClipUpdate, FileReader, ImportSettings, MotionDb, Proposal, ProposeOptions,
+    questions,
 };
 
 /// The classes of the database figure: seven signals, walking and two dribbles.
@@ -56,7 +57,11 @@ fn table(path: &Path) -> Result<Vec<BTreeMap<String, String>>, Failure> {
     let mut lines = text.lines();
     let header: Vec<&str> = lines.next().unwrap_or_default().split('\t').collect();
     let row = |line: &str| {
-        header.iter().zip(line.split('\t')).map(|(k, v)| ((*k).to_owned(), v.to_owned())).collect()
+        header
+            .iter()
+            .zip(line.split('\t'))
+            .map(|(k, v)| ((*k).to_owned(), v.to_owned()))
+            .collect()
     };
     Ok(lines.map(row).collect())
 }
@@ -66,7 +71,10 @@ fn material(data: &Path, which: &str) -> Result<Material, Failure> {
     let folder = data.join(set);
     let of = |row: &BTreeMap<String, String>, column: &str| row.get(column).cloned();
     let people: BTreeMap<String, String> = match table(&folder.join("people.tsv")) {
-        Ok(rows) => rows.iter().filter_map(|r| Some((of(r, "clip")?, of(r, "person")?))).collect(),
+        Ok(rows) => rows
+            .iter()
+            .filter_map(|r| Some((of(r, "clip")?, of(r, "person")?)))
+            .collect(),
         Err(_) => BTreeMap::new(),
     };
     let rows = match set {
@@ -75,29 +83,58 @@ fn material(data: &Path, which: &str) -> Result<Material, Failure> {
     };
     let mut truth = Vec::new();
     for row in rows {
-        let (Some(clip), Some(class)) = (of(&row, "clip"), of(&row, "class")) else { continue };
+        let (Some(clip), Some(class)) = (of(&row, "clip"), of(&row, "class")) else {
+            continue;
+        };
         // The referee clips have 120 frames a second.
-        let secs = |column| of(&row, column).and_then(|frame| frame.parse::<f64>().ok()).map(|f| f / 120.0);
+        let secs = |column| {
+            of(&row, column)
+                .and_then(|frame| frame.parse::<f64>().ok())
+                .map(|f| f / 120.0)
+        };
         let wanted = which != "signals" || TEN.contains(&class.as_str());
         if wanted && class != "dontcare" {
             let person = of(&row, "person").or_else(|| people.get(&clip).cloned());
-            truth.push(Truth { secs: secs("start").zip(secs("stop")), clip, class, person });
+            truth.push(Truth {
+                secs: secs("start").zip(secs("stop")),
+                clip,
+                class,
+                person,
+            });
         }
     }
-    Ok(Material { folder: folder.join("clips"), truth })
+    Ok(Material {
+        folder: folder.join("clips"),
+        truth,
+    })
 }
 
 fn imported(material: &Material, path: &Path) -> Result<MotionDb, Failure> {
-    let mut paths: Vec<PathBuf> =
-        std::fs::read_dir(&material.folder)?.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    let mut paths: Vec<PathBuf> = std::fs::read_dir(&material.folder)?
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .collect();
     paths.sort();
     let mut db = MotionDb::create(path)?;
-    db.import(&paths, &FileReader::default(), &ImportSettings::default(), &())?;
-    let people: BTreeMap<&str, &str> =
-        material.truth.iter().filter_map(|t| Some((t.clip.as_str(), t.person.as_deref()?))).collect();
+    db.import(
+        &paths,
+        &FileReader::default(),
+        &ImportSettings::default(),
+        &(),
+    )?;
+    let people: BTreeMap<&str, &str> = material
+        .truth
+        .iter()
+        .filter_map(|t| Some((t.clip.as_str(), t.person.as_deref()?)))
+        .collect();
     for (clip, person) in people {
         let id = db.find_clip(clip)?.id;
-        db.update_clips(&[id], &ClipUpdate { subject: Some(person.to_owned()), ..ClipUpdate::default() })?;
+        db.update_clips(
+            &[id],
+            &ClipUpdate {
+                subject: Some(person.to_owned()),
+                ..ClipUpdate::default()
+            },
+        )?;
     }
     Ok(db)
 }
@@ -107,7 +144,10 @@ struct Dice(u64);
 
 impl Dice {
     fn below(&mut self, n: usize) -> usize {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 33) as usize % n.max(1)
     }
 }
@@ -139,8 +179,14 @@ impl User<'_> {
             let shared = (to.min(stop) - from.max(start)).max(0.0);
             shared / (to.max(stop) - from.min(start))
         };
-        let of_clip = self.truth.iter().enumerate().filter(|(_, t)| self.ids[&t.clip] == clip);
-        let best = of_clip.map(|(i, t)| (share(t), i)).max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let of_clip = self
+            .truth
+            .iter()
+            .enumerate()
+            .filter(|(_, t)| self.ids[&t.clip] == clip);
+        let best = of_clip
+            .map(|(i, t)| (share(t), i))
+            .max_by(|a, b| a.0.total_cmp(&b.0))?;
         (best.0 >= 0.5).then_some(best.1)
     }
 
@@ -148,7 +194,9 @@ impl User<'_> {
     fn answer(&self, p: &Proposal) -> NewSample {
         let mut answer = NewSample::from(p.clone());
         match self.under(p.clip, p.start_secs, p.stop_secs) {
-            Some(t) => (answer.state, answer.class) = (State::Accepted, self.truth[t].class.clone()),
+            Some(t) => {
+                (answer.state, answer.class) = (State::Accepted, self.truth[t].class.clone())
+            }
             None => answer.state = State::Rejected,
         }
         answer
@@ -205,7 +253,15 @@ fn play(
                 }
             }
         }
-        done.push(Round { answers, labelled: labelled.len(), right: right.len(), sure, wrong, surest, secs });
+        done.push(Round {
+            answers,
+            labelled: labelled.len(),
+            right: right.len(),
+            sure,
+            wrong,
+            surest,
+            secs,
+        });
         if right.len() == user.truth.len() && wrong == 0 {
             break;
         }
@@ -214,7 +270,10 @@ fn play(
             break;
         }
         answers += asked.len();
-        let given: Vec<NewSample> = asked.into_iter().map(|i| user.answer(&proposals[i])).collect();
+        let given: Vec<NewSample> = asked
+            .into_iter()
+            .map(|i| user.answer(&proposals[i]))
+            .collect();
         for answer in given.iter().filter(|a| a.state == State::Accepted) {
             labelled.extend(user.under(answer.clip, answer.start_secs, answer.stop_secs));
         }
@@ -225,16 +284,25 @@ fn play(
 
 fn number(args: &[String], name: &str, default: usize) -> usize {
     let at = args.iter().position(|a| a == name);
-    at.and_then(|at| args.get(at + 1)?.parse().ok()).unwrap_or(default)
+    at.and_then(|at| args.get(at + 1)?.parse().ok())
+        .unwrap_or(default)
 }
 
 fn main() -> Result<ExitCode, Failure> {
     let args: Vec<String> = std::env::args().skip(1).collect();
-    let which = args.first().filter(|a| !a.starts_with('-')).map_or("signals", String::as_str);
-    let data = std::env::var_os("MOREC_DATA")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"), PathBuf::from);
+    let which = args
+        .first()
+        .filter(|a| !a.starts_with('-'))
+        .map_or("signals", String::as_str);
+    let data = std::env::var_os("MOREC_DATA").map_or_else(
+        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
+        PathBuf::from,
+    );
     if !data.is_dir() {
-        eprintln!("skipped: no clips at {} (MOREC_DATA says where they are)", data.display());
+        eprintln!(
+            "skipped: no clips at {} (MOREC_DATA says where they are)",
+            data.display()
+        );
         return Ok(ExitCode::SUCCESS);
     }
     let (ask, seeds) = (number(&args, "--ask", 10), number(&args, "--seeds", 3));
@@ -246,14 +314,22 @@ fn main() -> Result<ExitCode, Failure> {
     let user = User {
         truth: &material.truth,
         ids: clips.iter().map(|c| (c.name.clone(), c.id)).collect(),
-        secs: clips.iter().map(|c| (c.name.clone(), c.duration_secs())).collect(),
+        secs: clips
+            .iter()
+            .map(|c| (c.name.clone(), c.duration_secs()))
+            .collect(),
     };
     let total = material.truth.len();
     let secs: f64 = clips.iter().map(|c| c.duration_secs()).sum();
-    println!("{which}: {} clips, {secs:.0} s, {total} samples", clips.len());
+    println!(
+        "{which}: {} clips, {secs:.0} s, {total} samples",
+        clips.len()
+    );
     for seed in 0..seeds as u64 {
         let done = play(&mut db, &user, seed, ask, rounds)?;
-        println!("seed {seed}\n  answers  labelled   right  share    sure  wrong  of 0.9  wrong    secs");
+        println!(
+            "seed {seed}\n  answers  labelled   right  share    sure  wrong  of 0.9  wrong    secs"
+        );
         for r in &done {
             let share = r.right as f64 / total as f64;
             println!(
@@ -264,7 +340,10 @@ fn main() -> Result<ExitCode, Failure> {
         let reached = done.iter().find(|r| r.right as f64 >= 0.95 * total as f64);
         match reached {
             Some(r) => {
-                println!("  95 % after {} answers, {} wrong among {} sure", r.answers, r.wrong, r.sure)
+                println!(
+                    "  95 % after {} answers, {} wrong among {} sure",
+                    r.answers, r.wrong, r.sure
+                )
             }
             None => println!("  95 % not reached"),
         }

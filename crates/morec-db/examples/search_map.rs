@@ -25,8 +25,12 @@ struct Shown {
 
 fn main() {
     let mut args = std::env::args().skip(1);
-    let folder = args.next().map_or_else(|| data().join("everyday"), PathBuf::from);
-    let share = args.next().map_or(SearchOptions::default().warp_share, |s| s.parse().unwrap());
+    let folder = args
+        .next()
+        .map_or_else(|| data().join("everyday"), PathBuf::from);
+    let share = args
+        .next()
+        .map_or(SearchOptions::default().warp_share, |s| s.parse().unwrap());
     let Ok(table) = std::fs::read_to_string(folder.join("clips.tsv")) else {
         println!(
             "skipped: {} is not there (MOREC_DATA says where the clips are)",
@@ -38,10 +42,17 @@ fn main() {
     let mut db = MotionDb::create(&temporary.path().join("search.mdb")).unwrap();
     let clips = imported(&mut db, &folder, &table);
     let index = SearchIndex::of_db(&mut db, &()).unwrap();
-    let options =
-        SearchOptions { limit: clips.len(), one_a_clip: true, warp_share: share, ..SearchOptions::default() };
+    let options = SearchOptions {
+        limit: clips.len(),
+        one_a_clip: true,
+        warp_share: share,
+        ..SearchOptions::default()
+    };
     let (all, other) = means(&index, &clips, &options, None);
-    println!("{} clips, no labels: all {all:.3}, other styles only {other:.3}", clips.len());
+    println!(
+        "{} clips, no labels: all {all:.3}, other styles only {other:.3}",
+        clips.len()
+    );
     learned(&mut db, &index, &clips, &options);
 }
 
@@ -59,15 +70,29 @@ fn imported(db: &mut MotionDb, folder: &Path, table: &str) -> Vec<Shown> {
             Some((cells.next()?, (cells.next()?, cells.next()?)))
         })
         .collect();
-    let mut paths: Vec<PathBuf> =
-        cells.keys().map(|name| folder.join(format!("clips/{name}.bvh"))).filter(|p| p.exists()).collect();
+    let mut paths: Vec<PathBuf> = cells
+        .keys()
+        .map(|name| folder.join(format!("clips/{name}.bvh")))
+        .filter(|p| p.exists())
+        .collect();
     paths.sort();
-    db.import(&paths, &FileReader::default(), &ImportSettings::default(), &()).unwrap();
+    db.import(
+        &paths,
+        &FileReader::default(),
+        &ImportSettings::default(),
+        &(),
+    )
+    .unwrap();
     let clips = db.clips(&ClipFilter::default()).unwrap();
     let shown = clips.into_iter().filter_map(|clip| {
         let (class, style) = cells.get(clip.name.as_str())?;
         let secs = clip.duration_secs();
-        Some(Shown { id: clip.id, secs, class: (*class).into(), style: (*style).into() })
+        Some(Shown {
+            id: clip.id,
+            secs,
+            class: (*class).into(),
+            style: (*style).into(),
+        })
     });
     shown.collect()
 }
@@ -79,46 +104,78 @@ fn means(
     options: &SearchOptions,
     metric: Option<(&LearnedMetric, &BTreeSet<&str>)>,
 ) -> (f64, f64) {
-    let asked = |clip: &&Shown| metric.is_none_or(|(_, known)| !known.contains(clip.style.as_str()));
+    let asked =
+        |clip: &&Shown| metric.is_none_or(|(_, known)| !known.contains(clip.style.as_str()));
     let by_id: BTreeMap<ClipId, &Shown> = clips.iter().filter(asked).map(|c| (c.id, c)).collect();
     let (mut all, mut other) = (Vec::new(), Vec::new());
     for clip in by_id.values() {
-        let Some(example) = index.example(clip.id, 0.0, clip.secs) else { continue };
+        let Some(example) = index.example(clip.id, 0.0, clip.secs) else {
+            continue;
+        };
         let hits = index.search_by(&example, options, metric.map(|(metric, _)| metric));
-        let found: Vec<&Shown> = hits.iter().filter_map(|hit| by_id.get(&hit.clip).copied()).collect();
+        let found: Vec<&Shown> = hits
+            .iter()
+            .filter_map(|hit| by_id.get(&hit.clip).copied())
+            .collect();
         let relevant = |c: &&Shown| c.class == clip.class && c.id != clip.id;
         let elsewhere = |c: &&Shown| c.style != clip.style;
         let count = by_id.values().copied().filter(|c| relevant(c)).count();
         all.extend(average_precision(found.iter().map(&relevant), count));
-        let count = by_id.values().copied().filter(|c| relevant(c) && elsewhere(c)).count();
-        other.extend(average_precision(found.iter().filter(|c| elsewhere(c)).map(relevant), count));
+        let count = by_id
+            .values()
+            .copied()
+            .filter(|c| relevant(c) && elsewhere(c))
+            .count();
+        other.extend(average_precision(
+            found.iter().filter(|c| elsewhere(c)).map(relevant),
+            count,
+        ));
     }
     (mean(&all), mean(&other))
 }
 
 fn learned(db: &mut MotionDb, index: &SearchIndex, clips: &[Shown], options: &SearchOptions) {
-    let styles: Vec<&str> =
-        clips.iter().map(|c| c.style.as_str()).collect::<BTreeSet<_>>().into_iter().collect();
+    let styles: Vec<&str> = clips
+        .iter()
+        .map(|c| c.style.as_str())
+        .collect::<BTreeSet<_>>()
+        .into_iter()
+        .collect();
     let (half, mut values) = (styles.len() / 2, Vec::new());
     for set in (0u32..1 << styles.len()).filter(|set| set.count_ones() as usize == half) {
-        let known: BTreeSet<&str> =
-            styles.iter().enumerate().filter(|(i, _)| set >> i & 1 == 1).map(|(_, s)| *s).collect();
-        let samples: Vec<NewSample> =
-            clips.iter().filter(|c| known.contains(c.style.as_str())).map(labelled).collect();
+        let known: BTreeSet<&str> = styles
+            .iter()
+            .enumerate()
+            .filter(|(i, _)| set >> i & 1 == 1)
+            .map(|(_, s)| *s)
+            .collect();
+        let samples: Vec<NewSample> = clips
+            .iter()
+            .filter(|c| known.contains(c.style.as_str()))
+            .map(labelled)
+            .collect();
         db.add_samples(&samples, "search_map").unwrap();
         let metric = index.learn(&db.samples(&SampleFilter::default()).unwrap());
         db.undo().unwrap();
         match metric {
             Ok(metric) => {
                 let (_, other) = means(index, clips, options, Some((&metric, &known)));
-                println!("learned from {}: other styles only {other:.3}", Vec::from_iter(known).join(", "));
+                println!(
+                    "learned from {}: other styles only {other:.3}",
+                    Vec::from_iter(known).join(", ")
+                );
                 values.push(other);
             }
             Err(error) => println!("{error}"),
         }
     }
-    let (least, most) = values.iter().fold((1.0f64, 0.0f64), |(a, b), v| (a.min(*v), b.max(*v)));
-    println!("learned: other styles only {:.3} ({least:.3} to {most:.3})", mean(&values));
+    let (least, most) = values
+        .iter()
+        .fold((1.0f64, 0.0f64), |(a, b), v| (a.min(*v), b.max(*v)));
+    println!(
+        "learned: other styles only {:.3} ({least:.3} to {most:.3})",
+        mean(&values)
+    );
 }
 
 fn labelled(clip: &Shown) -> NewSample {

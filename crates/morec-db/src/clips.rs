@@ -5,7 +5,9 @@ use rusqlite::{OptionalExtension, Row, params};
 use crate::{DbError, MotionDb};
 
 /// A clip's number in its database.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
+)]
 pub struct ClipId(pub i64);
 
 /// A clip without its motion.
@@ -87,7 +89,8 @@ const COLUMNS: &str = "c.id, c.name, c.frames, c.rate_hz, c.rest_frames, c.repai
     FROM clips c JOIN files f ON f.id = c.file JOIN skeletons k ON k.id = c.skeleton";
 
 fn info(row: &Row<'_>) -> rusqlite::Result<ClipInfo> {
-    let count = |column| -> rusqlite::Result<usize> { Ok(row.get::<_, i64>(column)?.max(0) as usize) };
+    let count =
+        |column| -> rusqlite::Result<usize> { Ok(row.get::<_, i64>(column)?.max(0) as usize) };
     let tags: Option<String> = row.get(14)?;
     Ok(ClipInfo {
         id: ClipId(row.get(0)?),
@@ -104,7 +107,9 @@ fn info(row: &Row<'_>) -> rusqlite::Result<ClipInfo> {
         source: row.get(11)?,
         licence: row.get(12)?,
         subject: row.get(13)?,
-        tags: tags.map_or_else(Vec::new, |tags| tags.split('\n').map(str::to_owned).collect()),
+        tags: tags.map_or_else(Vec::new, |tags| {
+            tags.split('\n').map(str::to_owned).collect()
+        }),
         samples: count(15)?,
     })
 }
@@ -120,7 +125,9 @@ impl MotionDb {
         );
         let mut statement = self.conn.prepare(&sql)?;
         let given = params![filter.name, filter.subject, filter.tag, filter.class];
-        let clips = statement.query_map(given, info)?.collect::<Result<_, _>>()?;
+        let clips = statement
+            .query_map(given, info)?
+            .collect::<Result<_, _>>()?;
         Ok(clips)
     }
 
@@ -136,7 +143,11 @@ impl MotionDb {
     }
 
     /// Changes what is known about clips, all or none. Gives how many there were.
-    pub fn update_clips(&mut self, clips: &[ClipId], update: &ClipUpdate) -> Result<usize, DbError> {
+    pub fn update_clips(
+        &mut self,
+        clips: &[ClipId],
+        update: &ClipUpdate,
+    ) -> Result<usize, DbError> {
         let tx = self.write()?;
         let mut changed = 0;
         for id in clips {
@@ -147,10 +158,16 @@ impl MotionDb {
                 params![id.0, update.source, update.licence, update.subject],
             )?;
             for tag in &update.add_tags {
-                tx.execute("INSERT OR IGNORE INTO tags (clip, tag) VALUES (?1, ?2)", params![id.0, tag])?;
+                tx.execute(
+                    "INSERT OR IGNORE INTO tags (clip, tag) VALUES (?1, ?2)",
+                    params![id.0, tag],
+                )?;
             }
             for tag in &update.remove_tags {
-                tx.execute("DELETE FROM tags WHERE clip = ?1 AND tag = ?2", params![id.0, tag])?;
+                tx.execute(
+                    "DELETE FROM tags WHERE clip = ?1 AND tag = ?2",
+                    params![id.0, tag],
+                )?;
             }
         }
         tx.commit()?;

@@ -66,7 +66,10 @@ impl MotionDb {
         }
         let mut conn = Connection::open(path)?;
         begin(&mut conn)?;
-        Ok(Self { conn, path: path.to_owned() })
+        Ok(Self {
+            conn,
+            path: path.to_owned(),
+        })
     }
 
     /// Opens a database for reading and writing, and brings an older schema to the present one.
@@ -85,7 +88,10 @@ impl MotionDb {
         if conn.is_readonly("main")? {
             return Err(DbError::ReadOnly);
         }
-        Ok(Self { conn, path: path.to_owned() })
+        Ok(Self {
+            conn,
+            path: path.to_owned(),
+        })
     }
 
     /// Opens a database for reading only, beside a writer if there is one.
@@ -101,11 +107,18 @@ impl MotionDb {
             other => other?,
         };
         if found < SCHEMA {
-            return Err(DbError::Older { path: path.to_owned(), found, known: SCHEMA });
+            return Err(DbError::Older {
+                path: path.to_owned(),
+                found,
+                known: SCHEMA,
+            });
         }
         configure(&conn)?;
         conn.pragma_update(None, "query_only", true)?;
-        Ok(Self { conn, path: path.to_owned() })
+        Ok(Self {
+            conn,
+            path: path.to_owned(),
+        })
     }
 
     fn open_immutable(path: &Path) -> Result<Self, DbError> {
@@ -119,16 +132,22 @@ impl MotionDb {
                 c => c.to_string(),
             })
             .collect();
-        let flags =
-            OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_URI | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+        let flags = OpenFlags::SQLITE_OPEN_READ_ONLY
+            | OpenFlags::SQLITE_OPEN_URI
+            | OpenFlags::SQLITE_OPEN_NO_MUTEX;
         let conn = Connection::open_with_flags(format!("file:{escaped}?immutable=1"), flags)?;
         schema::check(&conn, path)?;
-        Ok(Self { conn, path: path.to_owned() })
+        Ok(Self {
+            conn,
+            path: path.to_owned(),
+        })
     }
 
     /// Whether it was opened for reading only.
     pub(crate) fn is_read_only(&self) -> Result<bool, DbError> {
-        let query_only: bool = self.conn.pragma_query_value(None, "query_only", |row| row.get(0))?;
+        let query_only: bool = self
+            .conn
+            .pragma_query_value(None, "query_only", |row| row.get(0))?;
         Ok(query_only || self.conn.is_readonly("main")?)
     }
 
@@ -139,19 +158,27 @@ impl MotionDb {
 
     /// A transaction that has the writer's place from its beginning, so that it fails at once or not at all.
     pub(crate) fn write(&mut self) -> Result<Transaction<'_>, DbError> {
-        Ok(self.conn.transaction_with_behavior(TransactionBehavior::Immediate)?)
+        Ok(self
+            .conn
+            .transaction_with_behavior(TransactionBehavior::Immediate)?)
     }
 
     /// How much is in it.
     pub fn summary(&self) -> Result<Summary, DbError> {
         let count = |sql: &str| -> Result<u64, DbError> {
-            Ok(self.conn.query_row(sql, [], |row| row.get::<_, i64>(0))?.max(0) as u64)
+            Ok(self
+                .conn
+                .query_row(sql, [], |row| row.get::<_, i64>(0))?
+                .max(0) as u64)
         };
-        let real =
-            |sql: &str| -> Result<f64, DbError> { Ok(self.conn.query_row(sql, [], |row| row.get(0))?) };
+        let real = |sql: &str| -> Result<f64, DbError> {
+            Ok(self.conn.query_row(sql, [], |row| row.get(0))?)
+        };
         Ok(Summary {
             schema: SCHEMA,
-            file_bytes: count("SELECT page_count * page_size FROM pragma_page_count(), pragma_page_size()")?,
+            file_bytes: count(
+                "SELECT page_count * page_size FROM pragma_page_count(), pragma_page_size()",
+            )?,
             files: count("SELECT count(*) FROM files")?,
             source_bytes: count("SELECT coalesce(sum(bytes), 0) FROM files")?,
             motion_bytes: count("SELECT coalesce(sum(length(motion)), 0) FROM clips")?,
@@ -184,12 +211,17 @@ impl MotionDb {
                 faults.push(format!("clip {}: {error}", info.name));
             }
         }
-        Ok(Health { faults, clips: clips.len() })
+        Ok(Health {
+            faults,
+            clips: clips.len(),
+        })
     }
 
     fn lines(&self, sql: &str) -> Result<Vec<String>, DbError> {
         let mut statement = self.conn.prepare(sql)?;
-        let lines = statement.query_map([], |row| row.get(0))?.collect::<Result<_, _>>()?;
+        let lines = statement
+            .query_map([], |row| row.get(0))?
+            .collect::<Result<_, _>>()?;
         Ok(lines)
     }
 
@@ -198,7 +230,8 @@ impl MotionDb {
         if caches {
             self.conn.execute("DELETE FROM feature_rows", [])?;
         }
-        self.conn.execute_batch("VACUUM; PRAGMA wal_checkpoint(TRUNCATE);")?;
+        self.conn
+            .execute_batch("VACUUM; PRAGMA wal_checkpoint(TRUNCATE);")?;
         Ok(())
     }
 }

@@ -27,7 +27,9 @@ pub enum DbError {
         found: i32,
     },
     /// The file was written by a newer version.
-    #[error("{path}: schema {found} is newer than this program knows ({known}); a newer morec reads it")]
+    #[error(
+        "{path}: schema {found} is newer than this program knows ({known}); a newer morec reads it"
+    )]
     Newer {
         /// The file.
         path: PathBuf,
@@ -84,7 +86,9 @@ pub enum DbError {
 
 impl From<rusqlite::Error> for DbError {
     fn from(error: rusqlite::Error) -> Self {
-        let rusqlite::Error::SqliteFailure(code, message) = &error else { return Self::Sqlite(error) };
+        let rusqlite::Error::SqliteFailure(code, message) = &error else {
+            return Self::Sqlite(error);
+        };
         let text = || message.clone().unwrap_or_else(|| code.to_string());
         match code.code {
             ErrorCode::ReadOnly => Self::ReadOnly,
@@ -99,6 +103,10 @@ impl From<rusqlite::Error> for DbError {
 
 impl DbError {
     pub(crate) fn unknown(kind: &'static str, name: &str) -> Self {
-        Self::Unknown { kind, name: name.to_owned(), hint: String::new() }
+        Self::Unknown {
+            kind,
+            name: name.to_owned(),
+            hint: String::new(),
+        }
     }
 }

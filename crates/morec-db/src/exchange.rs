@@ -63,8 +63,15 @@ pub enum Form {
 
 impl Form {
     /// All of them.
-    pub const ALL: [Form; 7] =
-        [Form::Tsv, Form::Csv, Form::Json, Form::Eaf, Form::Audacity, Form::Babel, Form::LabelStudio];
+    pub const ALL: [Form; 7] = [
+        Form::Tsv,
+        Form::Csv,
+        Form::Json,
+        Form::Eaf,
+        Form::Audacity,
+        Form::Babel,
+        Form::LabelStudio,
+    ];
 
     /// Its name on the command line.
     pub fn name(self) -> &'static str {
@@ -146,8 +153,15 @@ pub fn read(
 /// # Errors
 /// Annotations of several clips in a form of one; a clip whose length is needed and not known.
 pub fn write(form: Form, annotations: &[Annotation], lengths: &Lengths) -> Result<String, String> {
-    if form.is_of_one_clip() && annotations.windows(2).any(|pair| pair[0].clip != pair[1].clip) {
-        return Err(format!("{} holds the labels of one clip: write a file for each", form.name()));
+    if form.is_of_one_clip()
+        && annotations
+            .windows(2)
+            .any(|pair| pair[0].clip != pair[1].clip)
+    {
+        return Err(format!(
+            "{} holds the labels of one clip: write a file for each",
+            form.name()
+        ));
     }
     match form {
         Form::Tsv => tsv::write(annotations, lengths),
@@ -163,7 +177,11 @@ pub fn write(form: Form, annotations: &[Annotation], lengths: &Lengths) -> Resul
 /// A time that rounding moved off its frame by less than a millisecond, put back.
 pub fn snap(secs: f64, rate_hz: f64) -> f64 {
     let frame = (secs * rate_hz).round() / rate_hz;
-    if (frame - secs).abs() < 1e-3 { frame } else { secs }
+    if (frame - secs).abs() < 1e-3 {
+        frame
+    } else {
+        secs
+    }
 }
 
 /// Start and stop as seconds.
@@ -175,7 +193,10 @@ fn secs(annotation: &Annotation, lengths: &Lengths) -> Result<(f64, f64), String
 }
 
 fn length(annotation: &Annotation, lengths: &Lengths) -> Result<ClipLength, String> {
-    lengths.get(&annotation.clip).copied().ok_or_else(|| format!("no clip is called {}", annotation.clip))
+    lengths
+        .get(&annotation.clip)
+        .copied()
+        .ok_or_else(|| format!("no clip is called {}", annotation.clip))
 }
 
 /// Start and stop as frames, if both lie on frames.
@@ -192,7 +213,11 @@ fn frames(annotation: &Annotation, lengths: &Lengths) -> Option<(u64, u64)> {
 fn text(bytes: &[u8]) -> Result<&str, ParseError> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     std::str::from_utf8(bytes).map_err(|error| {
-        ParseError::new(Place::Byte(error.valid_up_to() as u64), "text in UTF-8", "another byte")
+        ParseError::new(
+            Place::Byte(error.valid_up_to() as u64),
+            "text in UTF-8",
+            "another byte",
+        )
     })
 }
 
@@ -203,7 +228,11 @@ fn state(cell: &str, line: u64) -> Result<State, ParseError> {
         return Ok(State::Proposed);
     }
     State::from_name(&name).ok_or_else(|| {
-        ParseError::new(Place::Line(line), "state `accepted`, `rejected` or `proposed`", format!("`{cell}`"))
+        ParseError::new(
+            Place::Line(line),
+            "state `accepted`, `rejected` or `proposed`",
+            format!("`{cell}`"),
+        )
     })
 }
 
@@ -218,11 +247,18 @@ fn checked(start: f64, stop: f64) -> Result<(f64, f64), String> {
 
 /// A position of `serde_json` in a file.
 fn json_error(error: &serde_json::Error, expected: &str) -> ParseError {
-    ParseError::new(Place::Column(error.line() as u64, error.column() as u64), expected, error.to_string())
+    ParseError::new(
+        Place::Column(error.line() as u64, error.column() as u64),
+        expected,
+        error.to_string(),
+    )
 }
 
 /// The length of a clip, whose file ending may stand behind its name.
 fn length_of(clip: &str, lengths: &Lengths) -> Option<ClipLength> {
-    let stem = || clip.rsplit_once('.').and_then(|(stem, _)| lengths.get(stem));
+    let stem = || {
+        clip.rsplit_once('.')
+            .and_then(|(stem, _)| lengths.get(stem))
+    };
     lengths.get(clip).or_else(stem).copied()
 }

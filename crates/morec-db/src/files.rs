@@ -89,13 +89,23 @@ impl ClipReader for FileReader {
 impl FileReader {
     /// Reads `bytes`, which are the file at `path`; `-` is a stream without a place, and so without a skeleton near it.
     pub fn open(&self, path: &Path, bytes: &[u8]) -> Result<OpenedFile, FileError> {
-        let stem = if path == Path::new("-") { "stdin".to_owned() } else { stem(path) };
+        let stem = if path == Path::new("-") {
+            "stdin".to_owned()
+        } else {
+            stem(path)
+        };
         let format = probe(bytes, &path.to_string_lossy())?;
         let (loaded, skeleton) = match format {
             Format::Bvh => (bvh::read(bytes, &stem, &self.bvh(), &self.limits)?, None),
             Format::Asf => {
                 let (asf, warnings) = acclaim::read_asf(bytes, &self.limits)?;
-                (Loaded { clips: vec![without_frames(&asf, stem)], warnings }, None)
+                (
+                    Loaded {
+                        clips: vec![without_frames(&asf, stem)],
+                        warnings,
+                    },
+                    None,
+                )
             }
             Format::Amc => {
                 let (loaded, skeleton) = self.amc(path, bytes, &stem)?;
@@ -103,11 +113,20 @@ impl FileReader {
             }
             Format::Mclip => (self.mclip(bytes, &stem)?, None),
         };
-        Ok(OpenedFile { format, skeleton, clips: loaded.clips, warnings: loaded.warnings })
+        Ok(OpenedFile {
+            format,
+            skeleton,
+            clips: loaded.clips,
+            warnings: loaded.warnings,
+        })
     }
 
     fn bvh(&self) -> BvhOptions {
-        BvhOptions { positions: self.positions, rate_hz: self.rate_hz, ..BvhOptions::default() }
+        BvhOptions {
+            positions: self.positions,
+            rate_hz: self.rate_hz,
+            ..BvhOptions::default()
+        }
     }
 
     fn mclip(&self, bytes: &[u8], stem: &str) -> Result<Loaded, ParseError> {
@@ -129,7 +148,11 @@ impl FileReader {
         for skeleton in &candidates {
             match self.amc_with(bytes, stem, &skeleton.path) {
                 // Fewer warnings: a skeleton that lacks bones of the motion is not the right one.
-                Ok(loaded) if best.as_ref().is_none_or(|(b, _)| loaded.warnings.len() < b.warnings.len()) => {
+                Ok(loaded)
+                    if best
+                        .as_ref()
+                        .is_none_or(|(b, _)| loaded.warnings.len() < b.warnings.len()) =>
+                {
                     let clean = loaded.warnings.len() <= usize::from(self.rate_hz.is_none());
                     best = Some((loaded, skeleton));
                     if clean {
@@ -154,22 +177,32 @@ impl FileReader {
     fn amc_with(&self, bytes: &[u8], stem: &str, skeleton: &Path) -> Result<Loaded, FileError> {
         let path = || skeleton.to_owned();
         let asf = fs::read(skeleton).map_err(|why| FileError::Open { path: path(), why })?;
-        let (asf, mut warnings) =
-            acclaim::read_asf(&asf, &self.limits).map_err(|why| FileError::Skeleton { path: path(), why })?;
+        let (asf, mut warnings) = acclaim::read_asf(&asf, &self.limits)
+            .map_err(|why| FileError::Skeleton { path: path(), why })?;
         for warning in &mut warnings {
             warning.text = format!("{} {}: {}", skeleton.display(), warning.at, warning.text);
             warning.at = Place::File;
         }
-        let options = AmcOptions { rate_hz: self.rate_hz };
-        let mut loaded = acclaim::read_amc(bytes, stem, &asf, &options, &self.limits)
-            .map_err(|why| FileError::Motion { skeleton: path(), why })?;
+        let options = AmcOptions {
+            rate_hz: self.rate_hz,
+        };
+        let mut loaded =
+            acclaim::read_amc(bytes, stem, &asf, &options, &self.limits).map_err(|why| {
+                FileError::Motion {
+                    skeleton: path(),
+                    why,
+                }
+            })?;
         loaded.warnings.splice(0..0, warnings);
         Ok(loaded)
     }
 }
 
 fn stem(path: &Path) -> String {
-    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+    path.file_stem()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned()
 }
 
 fn without_frames(asf: &Asf, name: String) -> Clip {
@@ -214,7 +247,10 @@ fn skeletons_near(path: &Path, stem: &str) -> Vec<Skeleton> {
             .flatten()
             .filter_map(|entry| Some(entry.ok()?.path()))
             .filter(|path| format_of_name(&path.to_string_lossy()) == Some(Format::Asf))
-            .map(|path| Skeleton { kinship: kinship(&self::stem(&path), stem), path })
+            .map(|path| Skeleton {
+                kinship: kinship(&self::stem(&path), stem),
+                path,
+            })
             .collect();
         here.sort_by(|a, b| b.kinship.cmp(&a.kinship).then_with(|| a.path.cmp(&b.path)));
         here.truncate(MOST);
@@ -227,7 +263,9 @@ fn skeletons_near(path: &Path, stem: &str) -> Vec<Skeleton> {
 /// follows, else 0.
 fn kinship(skeleton: &str, motion: &str) -> usize {
     match motion.to_lowercase().strip_prefix(&skeleton.to_lowercase()) {
-        Some(rest) if rest.chars().next().is_none_or(|c| !c.is_alphanumeric()) => skeleton.len() + 1,
+        Some(rest) if rest.chars().next().is_none_or(|c| !c.is_alphanumeric()) => {
+            skeleton.len() + 1
+        }
         _ => 0,
     }
 }
@@ -254,13 +292,23 @@ mod tests {
         let motion = folder.path().join("takes/13_29.amc");
         std::fs::create_dir(folder.path().join("takes")).unwrap();
         let reader = FileReader::default();
-        assert!(matches!(reader.open(&motion, AMC), Err(FileError::NoSkeleton)));
+        assert!(matches!(
+            reader.open(&motion, AMC),
+            Err(FileError::NoSkeleton)
+        ));
         std::fs::write(folder.path().join("13.asf"), ASF).unwrap();
         let read = ClipReader::read(&reader, &motion, AMC).unwrap();
         assert_eq!((read.format.as_str(), read.clips.len()), ("amc", 1));
         assert_eq!(read.skeleton.unwrap(), folder.path().join("13.asf"));
         assert_eq!(read.clips[0].name, "13_29");
-        let named = FileReader { skeleton: Some("nowhere.asf".into()), ..FileReader::default() };
-        assert!(ClipReader::read(&named, &motion, AMC).unwrap_err().contains("nowhere.asf"));
+        let named = FileReader {
+            skeleton: Some("nowhere.asf".into()),
+            ..FileReader::default()
+        };
+        assert!(
+            ClipReader::read(&named, &motion, AMC)
+                .unwrap_err()
+                .contains("nowhere.asf")
+        );
     }
 }

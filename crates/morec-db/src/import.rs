@@ -155,16 +155,20 @@ impl MotionDb {
                         return None;
                     }
                     let made = make(path, reader, settings, &params, &known);
-                    progress.report("importing", done.fetch_add(1, Ordering::Relaxed) + 1, paths.len());
+                    progress.report(
+                        "importing",
+                        done.fetch_add(1, Ordering::Relaxed) + 1,
+                        paths.len(),
+                    );
                     Some(made)
                 })
                 .collect();
             let tx = self.write()?;
             for (path, made) in batch.iter().zip(made) {
                 match made {
-                    Some(made) => {
-                        report.files.push((path.clone(), store(&tx, path, made, settings, &recipe)?))
-                    }
+                    Some(made) => report
+                        .files
+                        .push((path.clone(), store(&tx, path, made, settings, &recipe)?)),
                     None => report.cancelled = true,
                 }
             }
@@ -209,10 +213,19 @@ fn make(
     if clips.is_empty() {
         return Made::Refused("there is no clip in it".to_owned());
     }
-    Made::New(Box::new(NewFile { hash, bytes: bytes.len(), read, clips }))
+    Made::New(Box::new(NewFile {
+        hash,
+        bytes: bytes.len(),
+        read,
+        clips,
+    }))
 }
 
-fn new_clip(clip: Clip, settings: &ImportSettings, params: &FeatureParams) -> Result<NewClip, String> {
+fn new_clip(
+    clip: Clip,
+    settings: &ImportSettings,
+    params: &FeatureParams,
+) -> Result<NewClip, String> {
     if clip.frames == 0 {
         return Err(format!("{}: expected frames, found none", clip.name));
     }
@@ -220,7 +233,12 @@ fn new_clip(clip: Clip, settings: &ImportSettings, params: &FeatureParams) -> Re
     let imported = prepare(clip, &settings.options).map_err(|error| error.to_string())?;
     let packed = pack(imported, &()).map_err(|reason| format!("{name}: {reason}"))?;
     let (bones, rows) = rows::rows_of(&packed.stored, params);
-    Ok(NewClip { name, bones, rows: rows.to_packed(&FeatureParams::default()), packed })
+    Ok(NewClip {
+        name,
+        bones,
+        rows: rows.to_packed(&FeatureParams::default()),
+        packed,
+    })
 }
 
 fn store(
@@ -233,7 +251,8 @@ fn store(
     let shown = path.to_string_lossy();
     match made {
         Made::Refused(reason) => {
-            let sql = "INSERT OR REPLACE INTO refused (path, reason, tried_secs) VALUES (?1, ?2, ?3)";
+            let sql =
+                "INSERT OR REPLACE INTO refused (path, reason, tried_secs) VALUES (?1, ?2, ?3)";
             conn.execute(sql, params![shown, reason, now_secs()])?;
             Ok(Outcome::Refused(Refused { reason }))
         }
@@ -242,7 +261,11 @@ fn store(
             conn.execute("DELETE FROM refused WHERE path = ?1", params![shown])?;
             // Two files of one batch may hold the same bytes.
             let twin = conn
-                .query_row("SELECT id FROM files WHERE hash = ?1", params![new.hash], |row| row.get(0))
+                .query_row(
+                    "SELECT id FROM files WHERE hash = ?1",
+                    params![new.hash],
+                    |row| row.get(0),
+                )
                 .optional()?;
             match twin {
                 Some(file) => known(conn, &shown, file),
@@ -253,12 +276,18 @@ fn store(
 }
 
 fn known(conn: &Connection, shown: &str, file: i64) -> Result<Outcome, DbError> {
-    let first: String =
-        conn.query_row("SELECT path FROM files WHERE id = ?1", params![file], |row| row.get(0))?;
+    let first: String = conn.query_row(
+        "SELECT path FROM files WHERE id = ?1",
+        params![file],
+        |row| row.get(0),
+    )?;
     if first == shown {
         return Ok(Outcome::Known);
     }
-    conn.execute("INSERT OR IGNORE INTO file_copies (file, path) VALUES (?1, ?2)", params![file, shown])?;
+    conn.execute(
+        "INSERT OR IGNORE INTO file_copies (file, path) VALUES (?1, ?2)",
+        params![file, shown],
+    )?;
     Ok(Outcome::Copy { of: first.into() })
 }
 
@@ -277,7 +306,10 @@ fn insert(
     .execute(params![
         new.hash,
         path.to_string_lossy(),
-        new.read.skeleton.as_ref().map(|p| p.to_string_lossy().into_owned()),
+        new.read
+            .skeleton
+            .as_ref()
+            .map(|p| p.to_string_lossy().into_owned()),
         new.read.format,
         new.bytes as i64,
         now_secs(),
@@ -291,13 +323,22 @@ fn insert(
         rows::keep(conn, id, recipe, clip.bones, &clip.rows)?;
         names.push(name);
     }
-    Ok(Outcome::Imported { clips: names, warnings })
+    Ok(Outcome::Imported {
+        clips: names,
+        warnings,
+    })
 }
 
 /// The clip's own name, else with its folder before it, else with a number behind it.
 fn free_name(conn: &Connection, path: &Path, name: &str) -> Result<String, DbError> {
-    let taken = |name: &str| conn.prepare("SELECT 1 FROM clips WHERE name = ?1")?.exists(params![name]);
-    let folder = path.parent().and_then(Path::file_name).map(|f| format!("{}/{name}", f.to_string_lossy()));
+    let taken = |name: &str| {
+        conn.prepare("SELECT 1 FROM clips WHERE name = ?1")?
+            .exists(params![name])
+    };
+    let folder = path
+        .parent()
+        .and_then(Path::file_name)
+        .map(|f| format!("{}/{name}", f.to_string_lossy()));
     let numbered = (2..).map(|number| format!("{name}~{number}"));
     for candidate in [name.to_owned()].into_iter().chain(folder).chain(numbered) {
         if !taken(&candidate)? {
@@ -317,7 +358,8 @@ fn insert_clip(
 ) -> Result<ClipId, DbError> {
     let packed = &clip.packed;
     let sql = "INSERT OR IGNORE INTO skeletons (hash, joints) VALUES (?1, ?2)";
-    conn.prepare(sql)?.execute(params![packed.skeleton_hash, packed.joints as i64])?;
+    conn.prepare(sql)?
+        .execute(params![packed.skeleton_hash, packed.joints as i64])?;
     let motion = &packed.stored.clip;
     let about = &settings.about;
     conn.prepare(
@@ -345,7 +387,10 @@ fn insert_clip(
     ])?;
     let id = ClipId(conn.last_insert_rowid());
     for tag in about.add_tags.iter().collect::<BTreeSet<_>>() {
-        conn.execute("INSERT INTO tags (clip, tag) VALUES (?1, ?2)", params![id.0, tag])?;
+        conn.execute(
+            "INSERT INTO tags (clip, tag) VALUES (?1, ?2)",
+            params![id.0, tag],
+        )?;
     }
     Ok(id)
 }

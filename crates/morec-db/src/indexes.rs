@@ -23,8 +23,10 @@ pub struct IndexInfo {
 impl MotionDb {
     /// What an index trained now would be taught: clip, class, start and stop of every accepted sample.
     fn taught(&self) -> Result<String, DbError> {
-        let filter =
-            crate::labels::SampleFilter { state: Some(crate::labels::State::Accepted), ..Default::default() };
+        let filter = crate::labels::SampleFilter {
+            state: Some(crate::labels::State::Accepted),
+            ..Default::default()
+        };
         let rows: Vec<(String, String, f64, f64)> = self
             .samples(&filter)?
             .into_iter()
@@ -48,7 +50,10 @@ impl MotionDb {
     /// The bytes of an index.
     pub fn index(&self, name: &str) -> Result<Vec<u8>, DbError> {
         let sql = "SELECT bytes FROM indexes WHERE name = ?1";
-        let found = self.conn.query_row(sql, params![name], |row| row.get(0)).optional()?;
+        let found = self
+            .conn
+            .query_row(sql, params![name], |row| row.get(0))
+            .optional()?;
         found.ok_or_else(|| DbError::unknown("index", name))
     }
 

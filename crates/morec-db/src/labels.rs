@@ -13,7 +13,9 @@ pub use samples::{Added, DbSample, NewSample, SampleFilter, SampleId};
 pub use undo::{EDITS_KEPT, Edit};
 
 /// What is thought of a sample.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
+)]
 #[serde(rename_all = "lowercase")]
 pub enum State {
     /// It shows its class.
@@ -36,7 +38,9 @@ impl State {
 
     /// The state of this name.
     pub fn from_name(name: &str) -> Option<Self> {
-        [Self::Accepted, Self::Proposed, Self::Rejected].into_iter().find(|s| s.name() == name)
+        [Self::Accepted, Self::Proposed, Self::Rejected]
+            .into_iter()
+            .find(|s| s.name() == name)
     }
 }
 

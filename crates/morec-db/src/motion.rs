@@ -50,7 +50,9 @@ pub(crate) fn pack(imported: Imported, progress: &dyn Progress) -> Result<Packed
         roles: roles_to_json(&roles),
         facts: facts_to_json(&facts),
         stored: StoredClip {
-            clip: compressed.sample(compressed.source_rate_hz()).map_err(|error| error.to_string())?,
+            clip: compressed
+                .sample(compressed.source_rate_hz())
+                .map_err(|error| error.to_string())?,
             roles,
             rest: facts.rest_frames,
         },
@@ -64,7 +66,10 @@ fn facts_to_json(facts: &Facts) -> String {
 
 /// The joint of each role, in the order of [`Role::ALL`].
 fn roles_to_json(roles: &RoleMap) -> String {
-    let joints: Vec<Option<usize>> = Role::ALL.into_iter().map(|role| roles.joint(role)).collect();
+    let joints: Vec<Option<usize>> = Role::ALL
+        .into_iter()
+        .map(|role| roles.joint(role))
+        .collect();
     serde_json::to_string(&joints).unwrap_or_default()
 }
 
@@ -100,7 +105,9 @@ impl MotionDb {
         let sql = "SELECT motion, roles, rest_frames, name FROM clips WHERE id = ?1";
         let row: Option<(Vec<u8>, String, i64, String)> = self
             .conn
-            .query_row(sql, params![id.0], |row| Ok((row.get(0)?, row.get(1)?, row.get(2)?, row.get(3)?)))
+            .query_row(sql, params![id.0], |row| {
+                Ok((row.get(0)?, row.get(1)?, row.get(2)?, row.get(3)?))
+            })
             .optional()?;
         let (bytes, roles, rest, name) =
             row.ok_or_else(|| DbError::unknown("clip", &format!("#{}", id.0)))?;
@@ -111,7 +118,11 @@ impl MotionDb {
     pub fn motion_bytes(&self, id: ClipId) -> Result<Vec<u8>, DbError> {
         let found = self
             .conn
-            .query_row("SELECT motion FROM clips WHERE id = ?1", params![id.0], |row| row.get(0))
+            .query_row(
+                "SELECT motion FROM clips WHERE id = ?1",
+                params![id.0],
+                |row| row.get(0),
+            )
             .optional()?;
         found.ok_or_else(|| DbError::unknown("clip", &format!("#{}", id.0)))
     }
@@ -120,9 +131,15 @@ impl MotionDb {
 fn unpack(bytes: &[u8], roles: &str, rest: i64, name: &str) -> Result<StoredClip, DbError> {
     let damaged = |what: String| DbError::Damaged(format!("clip {name}: {what}"));
     let compressed = CompressedClip::from_bytes(bytes).map_err(|e| damaged(e.to_string()))?;
-    let sampled = compressed.sample(compressed.source_rate_hz()).map_err(|e| damaged(e.to_string()))?;
-    let clip = Clip { name: name.to_owned(), ..sampled };
-    let roles = roles_from_json(roles, clip.skeleton.len()).ok_or_else(|| damaged("its roles".to_owned()))?;
+    let sampled = compressed
+        .sample(compressed.source_rate_hz())
+        .map_err(|e| damaged(e.to_string()))?;
+    let clip = Clip {
+        name: name.to_owned(),
+        ..sampled
+    };
+    let roles = roles_from_json(roles, clip.skeleton.len())
+        .ok_or_else(|| damaged("its roles".to_owned()))?;
     let rest = 0..(rest.max(0) as usize).min(clip.frames);
     Ok(StoredClip { clip, roles, rest })
 }

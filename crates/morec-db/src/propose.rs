@@ -50,7 +50,13 @@ pub struct ProposeOptions {
 
 impl Default for ProposeOptions {
     fn default() -> Self {
-        Self { classes: Vec::new(), templates_a_class: 16, negatives: 120, least: 0.05, always: 5 }
+        Self {
+            classes: Vec::new(),
+            templates_a_class: 16,
+            negatives: 120,
+            least: 0.05,
+            always: 5,
+        }
     }
 }
 
@@ -106,14 +112,19 @@ impl MotionDb {
         let clips = self.clips(&crate::ClipFilter::default())?;
         let material = Material::new(rows, &clips, &samples, params.tick_hz());
         if material.classes.is_empty() {
-            return Err(DbError::Invalid("no accepted sample to go by: label a few first".to_owned()));
+            return Err(DbError::Invalid(
+                "no accepted sample to go by: label a few first".to_owned(),
+            ));
         }
         let seen = look(&material, options, progress)?;
-        let judgements: Vec<Judgement> =
-            seen.iter().flat_map(|(clip, seen)| judged(&material, *clip, seen)).collect();
+        let judgements: Vec<Judgement> = seen
+            .iter()
+            .flat_map(|(clip, seen)| judged(&material, *clip, seen))
+            .collect();
         let confidence = Confidence::learn(material.classes.len(), &judgements);
-        let of_clip =
-            |(clip, seen): &(usize, Seen)| in_clip(&material, *clip, seen, &confidence, params.tick_hz());
+        let of_clip = |(clip, seen): &(usize, Seen)| {
+            in_clip(&material, *clip, seen, &confidence, params.tick_hz())
+        };
         let mut proposals: Vec<Proposal> = seen.par_iter().flat_map_iter(of_clip).collect();
         proposals.sort_by(|a, b| b.score.total_cmp(&a.score).then(a.clip.cmp(&b.clip)));
         Ok(enough(proposals, options))
@@ -159,7 +170,12 @@ fn judged(material: &Material, clip: usize, seen: &Seen) -> Vec<Judgement> {
                 whole: judged.whole,
             }));
         }
-        found.push(Judgement { class, evidence, right: judged.accepted, whole: judged.whole });
+        found.push(Judgement {
+            class,
+            evidence,
+            right: judged.accepted,
+            whole: judged.whole,
+        });
     }
     found
 }
@@ -178,14 +194,20 @@ fn in_clip(
     let mut candidates: Vec<(f64, Candidate)> = Vec::new();
     for class in 0..material.classes.len() {
         let whole = material.whole[class];
-        let found = if whole { seen.whole(class).into_iter().collect() } else { seen.peaks(class) };
+        let found = if whole {
+            seen.whole(class).into_iter().collect()
+        } else {
+            seen.peaks(class)
+        };
         for mut candidate in found {
             if whole {
                 candidate.ticks = everything.clone();
             }
             let answered = |j: &&Judged| match j.accepted {
                 true => j.whole || whole || overlap_share(&j.ticks, &candidate.ticks) > 0.5,
-                false => j.class == Some(class) && (j.whole || overlap(&j.ticks, &candidate.ticks) > 0.5),
+                false => {
+                    j.class == Some(class) && (j.whole || overlap(&j.ticks, &candidate.ticks) > 0.5)
+                }
             };
             if !known.iter().any(answered) {
                 candidates.push((confidence.of(class, &candidate.evidence), candidate));
@@ -195,7 +217,10 @@ fn in_clip(
     candidates.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut kept: Vec<(f64, Candidate)> = Vec::new();
     for candidate in candidates {
-        if !kept.iter().any(|k| overlap_share(&k.1.ticks, &candidate.1.ticks) > 0.3) {
+        if !kept
+            .iter()
+            .any(|k| overlap_share(&k.1.ticks, &candidate.1.ticks) > 0.3)
+        {
             kept.push(candidate);
         }
     }
@@ -211,7 +236,10 @@ fn in_clip(
         whole_clip: material.whole[c.class],
         score: score as f32,
     };
-    kept.into_iter().map(proposal).filter(|p| p.stop_secs > p.start_secs).collect()
+    kept.into_iter()
+        .map(proposal)
+        .filter(|p| p.stop_secs > p.start_secs)
+        .collect()
 }
 
 /// Of proposals by score, those of the classes asked for that are likely enough, and the best few of each class.

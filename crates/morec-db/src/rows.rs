@@ -14,7 +14,10 @@ use crate::{ClipId, DbError, MotionDb, StoredClip};
 pub(crate) fn recipe(params: &FeatureParams) -> String {
     // Counts up when the method changes while its figures do not.
     const METHOD: u32 = 3;
-    format!("{METHOD} {}", serde_json::to_string(params).unwrap_or_default())
+    format!(
+        "{METHOD} {}",
+        serde_json::to_string(params).unwrap_or_default()
+    )
 }
 
 /// A clip's rows and the bones they speak of.
@@ -31,7 +34,10 @@ pub struct ClipRows {
 /// The rows of a clip before they are rounded for keeping.
 pub(crate) fn rows_of(stored: &StoredClip, params: &FeatureParams) -> (BoneSet, Rows) {
     let bones = bones_of_clip(&stored.clip, &stored.roles, &stored.rest);
-    (bones, rows_of_clip(&stored.clip, &stored.roles, &stored.rest, bones, params))
+    (
+        bones,
+        rows_of_clip(&stored.clip, &stored.roles, &stored.rest, bones, params),
+    )
 }
 
 fn bits(bones: BoneSet) -> i64 {
@@ -39,7 +45,9 @@ fn bits(bones: BoneSet) -> i64 {
 }
 
 fn bones_of_bits(bits: i64) -> BoneSet {
-    (0..morec::features::BONES).filter(|b| bits >> b & 1 == 1).fold(BoneSet::NONE, BoneSet::with)
+    (0..morec::features::BONES)
+        .filter(|b| bits >> b & 1 == 1)
+        .fold(BoneSet::NONE, BoneSet::with)
 }
 
 impl MotionDb {
@@ -58,16 +66,21 @@ impl MotionDb {
         if stale.is_empty() {
             self.refresh_rows(params, progress)?;
         }
-        let mut statement = self
-            .conn
-            .prepare("SELECT clip, bones, bytes FROM feature_rows WHERE recipe = ?1 ORDER BY clip")?;
+        let mut statement = self.conn.prepare(
+            "SELECT clip, bones, bytes FROM feature_rows WHERE recipe = ?1 ORDER BY clip",
+        )?;
         let kept = statement.query_map(params![recipe(params)], |row| {
-            Ok((ClipId(row.get(0)?), row.get::<_, i64>(1)?, row.get::<_, Vec<u8>>(2)?))
+            Ok((
+                ClipId(row.get(0)?),
+                row.get::<_, i64>(1)?,
+                row.get::<_, Vec<u8>>(2)?,
+            ))
         })?;
         let kept = kept.collect::<Result<Vec<_>, _>>()?;
         let unpacked = kept.into_par_iter().filter_map(|(clip, bits, bytes)| {
             let bones = bones_of_bits(bits);
-            let rows = Rows::from_packed(&bytes, row_dim(bones), params).filter(|_| !bones.is_empty())?;
+            let rows =
+                Rows::from_packed(&bytes, row_dim(bones), params).filter(|_| !bones.is_empty())?;
             Some(ClipRows { clip, bones, rows })
         });
         let mut all: Vec<ClipRows> = unpacked.chain(stale).collect();
@@ -79,18 +92,30 @@ impl MotionDb {
     fn stale(&self, recipe: &str) -> Result<Vec<ClipId>, DbError> {
         let sql = "SELECT id FROM clips WHERE id NOT IN (SELECT clip FROM feature_rows WHERE recipe = ?1)";
         let mut statement = self.conn.prepare(sql)?;
-        Ok(statement.query_map(params![recipe], |row| Ok(ClipId(row.get(0)?)))?.collect::<Result<_, _>>()?)
+        Ok(statement
+            .query_map(params![recipe], |row| Ok(ClipId(row.get(0)?)))?
+            .collect::<Result<_, _>>()?)
     }
 
     /// Rows made now, as they would be read again.
-    fn make_rows(&self, params: &FeatureParams, clips: &[ClipId]) -> Result<Vec<ClipRows>, DbError> {
-        let stored: Vec<(ClipId, StoredClip)> =
-            clips.iter().map(|id| Ok((*id, self.clip(*id)?))).collect::<Result<_, DbError>>()?;
+    fn make_rows(
+        &self,
+        params: &FeatureParams,
+        clips: &[ClipId],
+    ) -> Result<Vec<ClipRows>, DbError> {
+        let stored: Vec<(ClipId, StoredClip)> = clips
+            .iter()
+            .map(|id| Ok((*id, self.clip(*id)?)))
+            .collect::<Result<_, DbError>>()?;
         let made = stored.par_iter().filter_map(|(clip, stored)| {
             let (bones, rows) = rows_of(stored, params);
             let rows = Rows::from_packed(&rows.to_packed(params), row_dim(bones), params)
                 .filter(|_| !bones.is_empty())?;
-            Some(ClipRows { clip: *clip, bones, rows })
+            Some(ClipRows {
+                clip: *clip,
+                bones,
+                rows,
+            })
         });
         Ok(made.collect())
     }
@@ -108,8 +133,10 @@ impl MotionDb {
                 return Err(DbError::Cancelled);
             }
             progress.report("feature rows", done * 64, stale.len());
-            let clips: Vec<(ClipId, StoredClip)> =
-                batch.iter().map(|id| Ok((*id, self.clip(*id)?))).collect::<Result<_, DbError>>()?;
+            let clips: Vec<(ClipId, StoredClip)> = batch
+                .iter()
+                .map(|id| Ok((*id, self.clip(*id)?)))
+                .collect::<Result<_, DbError>>()?;
             let made: Vec<(ClipId, BoneSet, Vec<u8>)> = clips
                 .par_iter()
                 .map(|(id, stored)| {
@@ -134,8 +161,10 @@ pub(crate) fn keep(
     bones: BoneSet,
     bytes: &[u8],
 ) -> Result<(), DbError> {
-    let sql = "INSERT OR REPLACE INTO feature_rows (clip, recipe, bones, bytes) VALUES (?1, ?2, ?3, ?4)";
-    conn.prepare(sql)?.execute(params![clip.0, recipe, bits(bones), bytes])?;
+    let sql =
+        "INSERT OR REPLACE INTO feature_rows (clip, recipe, bones, bytes) VALUES (?1, ?2, ?3, ?4)";
+    conn.prepare(sql)?
+        .execute(params![clip.0, recipe, bits(bones), bytes])?;
     Ok(())
 }
 

@@ -23,26 +23,40 @@ pub(crate) fn check(conn: &Connection, path: &Path) -> Result<i32, DbError> {
     let id: i32 = pragma(conn, path, "application_id")?;
     let version: i32 = pragma(conn, path, "user_version")?;
     // A program that was killed while it made the database leaves an empty one: that is ours to finish.
-    let empty = || conn.query_row("SELECT count(*) = 0 FROM sqlite_schema", [], |row| row.get::<_, bool>(0));
+    let empty = || {
+        conn.query_row("SELECT count(*) = 0 FROM sqlite_schema", [], |row| {
+            row.get::<_, bool>(0)
+        })
+    };
     if id == 0 && version == 0 && empty()? {
         return Ok(0);
     }
     if id != APPLICATION_ID {
-        return Err(DbError::Foreign { path: path.to_owned(), found: id });
+        return Err(DbError::Foreign {
+            path: path.to_owned(),
+            found: id,
+        });
     }
     if version > SCHEMA {
-        return Err(DbError::Newer { path: path.to_owned(), found: version, known: SCHEMA });
+        return Err(DbError::Newer {
+            path: path.to_owned(),
+            found: version,
+            known: SCHEMA,
+        });
     }
     Ok(version)
 }
 
 fn pragma(conn: &Connection, path: &Path, name: &str) -> Result<i32, DbError> {
-    conn.pragma_query_value(None, name, |row| row.get(0)).map_err(|error| match error {
-        rusqlite::Error::SqliteFailure(code, _) if code.code == rusqlite::ErrorCode::NotADatabase => {
-            DbError::NotADatabase(path.to_owned())
-        }
-        other => other.into(),
-    })
+    conn.pragma_query_value(None, name, |row| row.get(0))
+        .map_err(|error| match error {
+            rusqlite::Error::SqliteFailure(code, _)
+                if code.code == rusqlite::ErrorCode::NotADatabase =>
+            {
+                DbError::NotADatabase(path.to_owned())
+            }
+            other => other.into(),
+        })
 }
 
 /// Brings a file to the newest schema, all steps in one transaction.

@@ -58,7 +58,10 @@ impl Example {
     /// The same as a stretch cut from a longer clip.
     #[must_use]
     pub fn cut_out(self) -> Self {
-        Self { whole: false, ..self }
+        Self {
+            whole: false,
+            ..self
+        }
     }
 }
 
@@ -67,9 +70,20 @@ impl SearchIndex {
     pub fn new(rows: &[ClipRows], tick_hz: f64) -> Self {
         let index = |clip: &ClipRows| {
             let laid = lay_out(&clip.rows, clip.bones);
-            Indexed { clip: clip.clip, sums: Sums::of(&laid.rows), laid }
+            Indexed {
+                clip: clip.clip,
+                sums: Sums::of(&laid.rows),
+                laid,
+            }
         };
-        Self { clips: rows.iter().filter(|clip| !clip.rows.is_empty()).map(index).collect(), tick_hz }
+        Self {
+            clips: rows
+                .iter()
+                .filter(|clip| !clip.rows.is_empty())
+                .map(index)
+                .collect(),
+            tick_hz,
+        }
     }
 
     /// Of a database; rows that are not kept ready are made.
@@ -97,15 +111,29 @@ impl SearchIndex {
         if span.len() < 3 {
             return None;
         }
-        let laid = Laid { rows: rows.slice(span.clone()), bones: found.laid.bones };
+        let laid = Laid {
+            rows: rows.slice(span.clone()),
+            bones: found.laid.bones,
+        };
         // Frames and rows do not end at the same instant.
         let whole = span.len() + 2 >= rows.len();
-        Some(Example { laid, from: Some((clip, span)), whole })
+        Some(Example {
+            laid,
+            from: Some((clip, span)),
+            whole,
+        })
     }
 
     /// Rows of a whole clip from elsewhere as an example, of the usual features at the same rate; `None` for less than
     /// three.
-    pub fn example_of(rows: &morec::features::Rows, bones: morec::features::BoneSet) -> Option<Example> {
-        (rows.len() >= 3).then(|| Example { laid: lay_out(rows, bones), from: None, whole: true })
+    pub fn example_of(
+        rows: &morec::features::Rows,
+        bones: morec::features::BoneSet,
+    ) -> Option<Example> {
+        (rows.len() >= 3).then(|| Example {
+            laid: lay_out(rows, bones),
+            from: None,
+            whole: true,
+        })
     }
 }

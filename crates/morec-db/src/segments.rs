@@ -57,7 +57,13 @@ impl MotionDb {
             let sql = "INSERT INTO segments (clip, method, kind, start_secs, stop_secs) VALUES (?1, ?2, ?3, ?4, ?5)";
             let mut keep = tx.prepare(sql)?;
             for s in segments {
-                keep.execute(params![s.clip.0, method, s.kind.name(), s.start_secs, s.stop_secs])?;
+                keep.execute(params![
+                    s.clip.0,
+                    method,
+                    s.kind.name(),
+                    s.start_secs,
+                    s.stop_secs
+                ])?;
             }
         }
         tx.commit()?;
@@ -66,9 +72,9 @@ impl MotionDb {
 
     /// The segments of all clips, by clip and time.
     pub fn segments(&self) -> Result<Vec<Segment>, DbError> {
-        let mut statement = self
-            .conn
-            .prepare("SELECT clip, kind, start_secs, stop_secs FROM segments ORDER BY clip, start_secs")?;
+        let mut statement = self.conn.prepare(
+            "SELECT clip, kind, start_secs, stop_secs FROM segments ORDER BY clip, start_secs",
+        )?;
         let segments = statement.query_map([], |row| {
             let kind: String = row.get(1)?;
             Ok(Segment {

@@ -12,21 +12,54 @@ use crate::{ClipFilter, ClipUpdate, DbError, ImportSettings, MotionDb, Outcome};
 fn other_files_are_plain_errors() {
     let folder = TempDir::new().unwrap();
     let path = |name: &str| folder.path().join(name);
-    assert!(matches!(MotionDb::open(&path("none")), Err(DbError::Missing(_))));
-    assert!(matches!(MotionDb::open(folder.path()), Err(DbError::NotADatabase(_))));
+    assert!(matches!(
+        MotionDb::open(&path("none")),
+        Err(DbError::Missing(_))
+    ));
+    assert!(matches!(
+        MotionDb::open(folder.path()),
+        Err(DbError::NotADatabase(_))
+    ));
     std::fs::write(path("text"), "HIERARCHY\n".repeat(500)).unwrap();
-    assert!(matches!(MotionDb::open(&path("text")), Err(DbError::NotADatabase(_))));
+    assert!(matches!(
+        MotionDb::open(&path("text")),
+        Err(DbError::NotADatabase(_))
+    ));
     let other = rusqlite::Connection::open(path("other")).unwrap();
-    other.execute_batch("CREATE TABLE t (a); PRAGMA application_id = 7;").unwrap();
-    assert!(matches!(MotionDb::open(&path("other")), Err(DbError::Foreign { found: 7, .. })));
-    assert!(matches!(MotionDb::open_read_only(&path("other")), Err(DbError::Foreign { found: 7, .. })));
+    other
+        .execute_batch("CREATE TABLE t (a); PRAGMA application_id = 7;")
+        .unwrap();
+    assert!(matches!(
+        MotionDb::open(&path("other")),
+        Err(DbError::Foreign { found: 7, .. })
+    ));
+    assert!(matches!(
+        MotionDb::open_read_only(&path("other")),
+        Err(DbError::Foreign { found: 7, .. })
+    ));
     // What a program that was killed while it made a database left behind.
     std::fs::write(path("begun"), "").unwrap();
-    assert!(MotionDb::open(&path("begun")).unwrap().summary().unwrap().clips == 0);
+    assert!(
+        MotionDb::open(&path("begun"))
+            .unwrap()
+            .summary()
+            .unwrap()
+            .clips
+            == 0
+    );
     MotionDb::create(&path("newer")).unwrap();
-    rusqlite::Connection::open(path("newer")).unwrap().pragma_update(None, "user_version", 99).unwrap();
-    assert!(matches!(MotionDb::open(&path("newer")), Err(DbError::Newer { found: 99, .. })));
-    assert!(matches!(MotionDb::create(&path("newer")), Err(DbError::Exists(_))));
+    rusqlite::Connection::open(path("newer"))
+        .unwrap()
+        .pragma_update(None, "user_version", 99)
+        .unwrap();
+    assert!(matches!(
+        MotionDb::open(&path("newer")),
+        Err(DbError::Newer { found: 99, .. })
+    ));
+    assert!(matches!(
+        MotionDb::create(&path("newer")),
+        Err(DbError::Exists(_))
+    ));
 }
 
 #[test]
@@ -44,7 +77,10 @@ fn what_was_imported_is_there_within_its_error() {
         );
         assert!((stored.clip.rate_hz - take.clip.rate_hz).abs() < 1e-3);
         let summary = db.summary().unwrap();
-        assert!(summary.max_angle_rad <= 0.5f64.to_radians() + 1e-9, "{summary:?}");
+        assert!(
+            summary.max_angle_rad <= 0.5f64.to_radians() + 1e-9,
+            "{summary:?}"
+        );
         assert!(summary.max_position_metres <= 0.005 + 1e-9, "{summary:?}");
         for (a, b) in stored.clip.rotations.iter().zip(&take.clip.rotations) {
             // Half a degree, and what six decimals of BVH lose.
@@ -65,18 +101,23 @@ fn the_same_content_is_one_clip() {
     std::fs::write(&broken, "HIERARCHY\nROOT").unwrap();
     let paths = [first.clone(), copy.clone(), broken.clone()];
     let mut db = MotionDb::create(&folder.path().join("a.mdb")).unwrap();
-    let report = db.import(&paths, &BvhReader, &ImportSettings::default(), &()).unwrap();
+    let report = db
+        .import(&paths, &BvhReader, &ImportSettings::default(), &())
+        .unwrap();
     assert!(matches!(&report.files[0].1, Outcome::Imported { clips, .. } if clips == &["first"]));
     assert_eq!(report.files[1].1, Outcome::Copy { of: first });
     assert!(matches!(&report.files[2].1, Outcome::Refused(_)));
-    let again = db.import(&paths, &BvhReader, &ImportSettings::default(), &()).unwrap();
+    let again = db
+        .import(&paths, &BvhReader, &ImportSettings::default(), &())
+        .unwrap();
     assert_eq!(again.files[0].1, Outcome::Known);
     assert_eq!(again.counts(), [0, 0, 1, 1, 1]);
     let summary = db.summary().unwrap();
     assert_eq!((summary.clips, summary.files, summary.refused), (1, 1, 1));
     // Once it can be read it is refused no more.
     write_bvh(folder.path(), "broken", &waves(2)[1].clip);
-    db.import(&paths, &BvhReader, &ImportSettings::default(), &()).unwrap();
+    db.import(&paths, &BvhReader, &ImportSettings::default(), &())
+        .unwrap();
     let summary = db.summary().unwrap();
     assert_eq!((summary.clips, summary.refused), (2, 0));
 }
@@ -90,8 +131,14 @@ fn clips_of_one_name_are_told_apart() {
         paths.push(write_bvh(&folder.path().join(sub), "walk", &take.clip));
     }
     let mut db = MotionDb::create(&folder.path().join("a.mdb")).unwrap();
-    db.import(&paths, &BvhReader, &ImportSettings::default(), &()).unwrap();
-    let names: Vec<String> = db.clips(&ClipFilter::default()).unwrap().into_iter().map(|c| c.name).collect();
+    db.import(&paths, &BvhReader, &ImportSettings::default(), &())
+        .unwrap();
+    let names: Vec<String> = db
+        .clips(&ClipFilter::default())
+        .unwrap()
+        .into_iter()
+        .map(|c| c.name)
+        .collect();
     assert_eq!(names, ["b/walk", "walk", "walk~2"]);
 }
 
@@ -111,14 +158,20 @@ impl Progress for CancelAfter {
 #[test]
 fn a_cancelled_import_goes_on_where_it_stopped() {
     let folder = TempDir::new().unwrap();
-    let paths: Vec<PathBuf> =
-        waves(3).iter().map(|take| write_bvh(folder.path(), &take.clip.name, &take.clip)).collect();
+    let paths: Vec<PathBuf> = waves(3)
+        .iter()
+        .map(|take| write_bvh(folder.path(), &take.clip.name, &take.clip))
+        .collect();
     let mut db = MotionDb::create(&folder.path().join("a.mdb")).unwrap();
     let stop = CancelAfter(1, Default::default());
-    let report = db.import(&paths, &BvhReader, &ImportSettings::default(), &stop).unwrap();
+    let report = db
+        .import(&paths, &BvhReader, &ImportSettings::default(), &stop)
+        .unwrap();
     assert!(report.cancelled);
     assert_eq!(db.summary().unwrap().clips, report.files.len() as u64);
-    let report = db.import(&paths, &BvhReader, &ImportSettings::default(), &()).unwrap();
+    let report = db
+        .import(&paths, &BvhReader, &ImportSettings::default(), &())
+        .unwrap();
     assert!(!report.cancelled);
     assert_eq!(db.summary().unwrap().clips, 3);
 }
@@ -129,13 +182,25 @@ fn readers_see_what_was_committed_while_one_writes() {
     let path = folder.path().join("test.mdb");
     let reader = MotionDb::open_read_only(&path).unwrap();
     let writing = db.write().unwrap();
-    writing.execute("UPDATE clips SET subject = 'x'", []).unwrap();
-    assert_eq!(reader.clips(&ClipFilter::default()).unwrap()[0].subject, None);
+    writing
+        .execute("UPDATE clips SET subject = 'x'", [])
+        .unwrap();
+    assert_eq!(
+        reader.clips(&ClipFilter::default()).unwrap()[0].subject,
+        None
+    );
     writing.commit().unwrap();
-    assert_eq!(reader.clips(&ClipFilter::default()).unwrap()[0].subject.as_deref(), Some("x"));
+    assert_eq!(
+        reader.clips(&ClipFilter::default()).unwrap()[0]
+            .subject
+            .as_deref(),
+        Some("x")
+    );
     let mut reader = reader;
     let ids = [reader.clips(&ClipFilter::default()).unwrap()[0].id];
-    let error = reader.update_clips(&ids, &ClipUpdate::default()).unwrap_err();
+    let error = reader
+        .update_clips(&ids, &ClipUpdate::default())
+        .unwrap_err();
     assert!(matches!(error, DbError::ReadOnly), "{error}");
 }
 
@@ -143,9 +208,15 @@ fn readers_see_what_was_committed_while_one_writes() {
 fn two_writers_wait_and_then_say_so() {
     let (folder, mut db) = database_of_waves(1);
     let mut other = MotionDb::open(&folder.path().join("test.mdb")).unwrap();
-    other.conn.busy_timeout(std::time::Duration::from_millis(1)).unwrap();
+    other
+        .conn
+        .busy_timeout(std::time::Duration::from_millis(1))
+        .unwrap();
     let writing = db.write().unwrap();
-    assert!(matches!(other.update_clips(&[], &ClipUpdate::default()), Err(DbError::Busy)));
+    assert!(matches!(
+        other.update_clips(&[], &ClipUpdate::default()),
+        Err(DbError::Busy)
+    ));
     drop(writing);
     other.update_clips(&[], &ClipUpdate::default()).unwrap();
 }
@@ -154,11 +225,20 @@ fn two_writers_wait_and_then_say_so() {
 #[test]
 fn a_full_disk_keeps_what_was_there() {
     let (folder, mut db) = database_of_waves(1);
-    let pages: i64 = db.conn.pragma_query_value(None, "page_count", |row| row.get(0)).unwrap();
-    db.conn.pragma_update(None, "max_page_count", pages + 1).unwrap();
-    let paths: Vec<PathBuf> =
-        waves(3)[1..].iter().map(|take| write_bvh(folder.path(), &take.clip.name, &take.clip)).collect();
-    let error = db.import(&paths, &BvhReader, &ImportSettings::default(), &()).unwrap_err();
+    let pages: i64 = db
+        .conn
+        .pragma_query_value(None, "page_count", |row| row.get(0))
+        .unwrap();
+    db.conn
+        .pragma_update(None, "max_page_count", pages + 1)
+        .unwrap();
+    let paths: Vec<PathBuf> = waves(3)[1..]
+        .iter()
+        .map(|take| write_bvh(folder.path(), &take.clip.name, &take.clip))
+        .collect();
+    let error = db
+        .import(&paths, &BvhReader, &ImportSettings::default(), &())
+        .unwrap_err();
     assert!(matches!(error, DbError::Full), "{error}");
     assert_eq!(db.summary().unwrap().clips, 1);
     assert!(db.check().unwrap().faults.is_empty());
@@ -169,12 +249,23 @@ fn rows_are_made_again_when_the_recipe_changes() {
     use morec::features::FeatureParams;
     let (_folder, mut db) = database_of_waves(2);
     let usual = FeatureParams::default();
-    assert_eq!(db.refresh_rows(&usual, &()).unwrap(), 0, "import keeps them ready");
+    assert_eq!(
+        db.refresh_rows(&usual, &()).unwrap(),
+        0,
+        "import keeps them ready"
+    );
     let before = db.rows(&usual, &()).unwrap();
-    let other = FeatureParams { velocity_weight: 0.7, ..usual.clone() };
+    let other = FeatureParams {
+        velocity_weight: 0.7,
+        ..usual.clone()
+    };
     assert_eq!(db.refresh_rows(&other, &()).unwrap(), 2);
     assert_eq!(db.refresh_rows(&usual, &()).unwrap(), 2);
-    assert_eq!(db.rows(&usual, &()).unwrap(), before, "rows depend on the stored motion alone");
+    assert_eq!(
+        db.rows(&usual, &()).unwrap(),
+        before,
+        "rows depend on the stored motion alone"
+    );
     db.vacuum(true).unwrap();
     assert_eq!(db.rows(&usual, &()).unwrap(), before);
 }
@@ -186,7 +277,9 @@ fn damage_is_found() {
     let mut bytes = db.motion_bytes(id).unwrap();
     let middle = bytes.len() / 2;
     bytes[middle] ^= 1;
-    db.conn.execute("UPDATE clips SET motion = ?1", [bytes]).unwrap();
+    db.conn
+        .execute("UPDATE clips SET motion = ?1", [bytes])
+        .unwrap();
     let health = db.check().unwrap();
     assert_eq!(health.faults.len(), 1, "{health:?}");
 }

@@ -33,7 +33,9 @@ fn rows(seed: u64, count: usize) -> Rows {
 }
 
 fn templates(rows_in_all: usize) -> Vec<Rows> {
-    (0..rows_in_all / LENGTH).map(|n| rows(n as u64, LENGTH)).collect()
+    (0..rows_in_all / LENGTH)
+        .map(|n| rows(n as u64, LENGTH))
+        .collect()
 }
 
 mod bank {
@@ -44,10 +46,12 @@ mod bank {
     #[divan::bench(args = [600, 1800])]
     fn step(bencher: Bencher, template_rows: usize) {
         let (mut bank, stream) = (Bank::new(&templates(template_rows), DIM), rows(99, 64));
-        bencher.counter(ItemsCount::new(stream.len())).bench_local(|| {
-            stream.iter().for_each(|row| bank.step(row));
-            bank.matched(0).distance
-        });
+        bencher
+            .counter(ItemsCount::new(stream.len()))
+            .bench_local(|| {
+                stream.iter().for_each(|row| bank.step(row));
+                bank.matched(0).distance
+            });
     }
 
     /// The same, plainly.
@@ -55,12 +59,17 @@ mod bank {
     fn plain(bencher: Bencher, template_rows: usize) {
         let (templates, stream) = (templates(template_rows), rows(99, 64));
         let mut tables: Vec<Plain> = templates.iter().map(|_| Plain::new(LENGTH)).collect();
-        bencher.counter(ItemsCount::new(stream.len())).bench_local(|| {
-            for row in stream.iter() {
-                templates.iter().zip(&mut tables).for_each(|(template, table)| table.step(template, row));
-            }
-            tables[0].columns[0][LENGTH - 1]
-        });
+        bencher
+            .counter(ItemsCount::new(stream.len()))
+            .bench_local(|| {
+                for row in stream.iter() {
+                    templates
+                        .iter()
+                        .zip(&mut tables)
+                        .for_each(|(template, table)| table.step(template, row));
+                }
+                tables[0].columns[0][LENGTH - 1]
+            });
     }
 
     /// Reading as many values as the templates have.
@@ -72,7 +81,9 @@ mod bank {
             let mut sums = [0.0f32; 64];
             for _ in 0..ticks {
                 for chunk in divan::black_box(table.values()).as_chunks::<64>().0 {
-                    sums.iter_mut().zip(chunk).for_each(|(sum, value)| *sum += value);
+                    sums.iter_mut()
+                        .zip(chunk)
+                        .for_each(|(sum, value)| *sum += value);
                 }
             }
             sums
@@ -104,7 +115,11 @@ mod bank {
                     _ => {
                         let even = before[j - 1] + cost[j];
                         let slow = earlier[j - 1] + 0.5 * (last_cost[j] + cost[j]);
-                        let fast = if j > 1 { before[j - 2] + cost[j - 1] + cost[j] } else { 1e30 };
+                        let fast = if j > 1 {
+                            before[j - 2] + cost[j - 1] + cost[j]
+                        } else {
+                            1e30
+                        };
                         even.min(slow).min(fast)
                     }
                 };
@@ -115,9 +130,16 @@ mod bank {
 
 /// Ten seconds of gestures at 60 Hz.
 fn poses() -> (morec::features::BoneSet, Vec<made::Timed>) {
-    let person = Person { hand: Side::Right, ..Person::draw(3, 1) };
-    let script =
-        Script::new(3, person).rest(1.0).play("wave").play("look_around").play("clap").rest_until(10.0);
+    let person = Person {
+        hand: Side::Right,
+        ..Person::draw(3, 1)
+    };
+    let script = Script::new(3, person)
+        .rest(1.0)
+        .play("wave")
+        .play("look_around")
+        .play("clap")
+        .rest_until(10.0);
     made::poses(&script.film("bench", 60.0).expect("motions that there are"))
 }
 
@@ -126,14 +148,16 @@ fn poses() -> (morec::features::BoneSet, Vec<made::Timed>) {
 fn features(bencher: Bencher) {
     let (bones, poses) = poses();
     let mut stream = FeatureStream::new(bones, &FeatureParams::default());
-    bencher.counter(ItemsCount::new(poses.len())).bench_local(|| {
-        let mut sum = 0.0;
-        for (time_secs, pose) in &poses {
-            stream.push(*time_secs, pose, &mut |row| sum += row[0]);
-        }
-        stream.finish(&mut |row| sum += row[0]);
-        sum
-    });
+    bencher
+        .counter(ItemsCount::new(poses.len()))
+        .bench_local(|| {
+            let mut sum = 0.0;
+            for (time_secs, pose) in &poses {
+                stream.push(*time_secs, pose, &mut |row| sum += row[0]);
+            }
+            stream.finish(&mut |row| sum += row[0]);
+            sum
+        });
 }
 
 /// Poses to detections, with an index of 48 samples.
@@ -143,10 +167,12 @@ fn whole_path(bencher: Bencher) {
     let model = made::model();
     let mut recognizer = Recognizer::new(&model, bones).expect("a model of its own making");
     let mut found = Vec::with_capacity(64);
-    bencher.counter(ItemsCount::new(poses.len())).bench_local(|| {
-        found.clear();
-        recognizer.push_all(&poses, &mut found);
-        found.extend_from_slice(recognizer.finish());
-        found.len()
-    });
+    bencher
+        .counter(ItemsCount::new(poses.len()))
+        .bench_local(|| {
+            found.clear();
+            recognizer.push_all(&poses, &mut found);
+            found.extend_from_slice(recognizer.finish());
+            found.len()
+        });
 }

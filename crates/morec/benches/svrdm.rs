@@ -19,8 +19,9 @@ use morec::pca::{Keep, Moments, Pca};
 use morec::pivots::{Pivot, PivotSet, PoseParams};
 use morec::svrdm::edr::Edr;
 use morec::svrdm::{
-    Branch, Candidates, Cell, Centring, ChunkAssembly, Descent, Directions, Gram, Node, Normalisation, Parts,
-    Profiles, SegmentAssembly, SegmentTracking, SvrdmEngine, SvrdmModel, SvrdmParams, Tree,
+    Branch, Candidates, Cell, Centring, ChunkAssembly, Descent, Directions, Gram, Node,
+    Normalisation, Parts, Profiles, SegmentAssembly, SegmentTracking, SvrdmEngine, SvrdmModel,
+    SvrdmParams, Tree,
 };
 use morec::synth::Rng;
 
@@ -39,7 +40,8 @@ fn rows(seed: u64, count: usize, dim: usize) -> Vec<Vec<f32>> {
     let (mut place, mut speed) = (vec![0.0; dim], vec![0.0; dim]);
     let mut row = || {
         for i in 0..dim {
-            speed[i] = 0.98 * speed[i] + 0.004 * rng.normal() / (1.0 + i as f64 / 8.0) - 0.002 * place[i];
+            speed[i] =
+                0.98 * speed[i] + 0.004 * rng.normal() / (1.0 + i as f64 / 8.0) - 0.002 * place[i];
             place[i] += speed[i];
         }
         place.iter().map(|v| *v as f32).collect()
@@ -63,13 +65,23 @@ fn tree(dim: usize, rng: &mut Rng) -> Tree {
             points: (0..60).map(|_| [rng.unit(), rng.unit()]).collect(),
             weights: [vec![1.0 / 60.0; 60], vec![1.01 / 60.0; 60]],
             children: [at + 1, at + 2],
-            classes: [vec![ClassId(class as u16)], (class + 1..CLASSES).map(|c| ClassId(c as u16)).collect()],
+            classes: [
+                vec![ClassId(class as u16)],
+                (class + 1..CLASSES).map(|c| ClassId(c as u16)).collect(),
+            ],
         })));
         nodes.push(Node::Leaf(ClassId(class as u16)));
     }
     nodes.push(Node::Leaf(ClassId(CLASSES as u16 - 1)));
-    let vectors = (0..2 * exemplars * (CLASSES - 1) * dim).map(|_| rng.unit()).collect();
-    Tree::new(Parts { dim, vectors, nodes }).unwrap()
+    let vectors = (0..2 * exemplars * (CLASSES - 1) * dim)
+        .map(|_| rng.unit())
+        .collect();
+    Tree::new(Parts {
+        dim,
+        vectors,
+        nodes,
+    })
+    .unwrap()
 }
 
 fn model() -> Arc<SvrdmModel> {
@@ -85,16 +97,26 @@ fn model() -> Arc<SvrdmModel> {
         profiles.push(ClassId((sample / SAMPLES) as u16), &values);
     }
     let name = |index: usize| format!("pivot {index}");
-    let pivot =
-        |i: usize| Pivot { name: name(i), parent: i.checked_sub(1).map(name), joints: vec![], role: None };
+    let pivot = |i: usize| Pivot {
+        name: name(i),
+        parent: i.checked_sub(1).map(name),
+        joints: vec![],
+        role: None,
+    };
     Arc::new(SvrdmModel {
         classes: (0..CLASSES)
-            .map(|c| ClassInfo { name: c.to_string(), samples: SAMPLES, people: 0 })
+            .map(|c| ClassInfo {
+                name: c.to_string(),
+                samples: SAMPLES,
+                people: 0,
+            })
             .collect(),
         pivots: PivotSet::new((0..PIVOTS).map(pivot).collect()).unwrap(),
         pose: PoseParams::default(),
         pca,
-        signs: (0..params.feature_dim(REDUCED)).map(|_| rng.unit() - 0.5).collect(),
+        signs: (0..params.feature_dim(REDUCED))
+            .map(|_| rng.unit() - 0.5)
+            .collect(),
         tree: tree(params.feature_dim(REDUCED), &mut rng),
         mean_secs: vec![1.0; CLASSES],
         epsilon: profiles.epsilon(params.tolerance),
@@ -139,7 +161,9 @@ fn descent(bencher: Bencher) {
     let model = model();
     let (vector, mut found) = (vec![0.5; model.tree.dim()], Candidates::default());
     bencher.bench_local(|| {
-        model.tree.descend(&vector, 0.92, Descent::Larger, &mut found);
+        model
+            .tree
+            .descend(&vector, 0.92, Descent::Larger, &mut found);
         found.len()
     });
 }
@@ -159,26 +183,42 @@ fn edit_distance(bencher: Bencher, normalisation: Normalisation) {
 fn tracking(bencher: Bencher) {
     let params = SvrdmParams::default();
     let mut rng = Rng::new(7);
-    let mut column =
-        || -> Vec<Cell> { (0..17).map(|_| Cell { class: ClassId(0), confidence: rng.unit() }).collect() };
+    let mut column = || -> Vec<Cell> {
+        (0..17)
+            .map(|_| Cell {
+                class: ClassId(0),
+                confidence: rng.unit(),
+            })
+            .collect()
+    };
     let columns: Vec<Vec<Cell>> = (0..64).map(|_| column()).collect();
     let mut tracking = SegmentTracking::new(&params, vec![1.0; 17]);
-    bencher.counter(ItemsCount::new(columns.len())).bench_local(|| {
-        let mut found = 0;
-        columns.iter().for_each(|column| tracking.push(column, &mut |_| found += 1));
-        found
-    });
+    bencher
+        .counter(ItemsCount::new(columns.len()))
+        .bench_local(|| {
+            let mut found = 0;
+            columns
+                .iter()
+                .for_each(|column| tracking.push(column, &mut |_| found += 1));
+            found
+        });
 }
 
 /// Rows to detections where every segment is accepted.
 #[divan::bench]
 fn all_accepted(bencher: Bencher) {
-    let (rows, mut engine) = (rows(8, 640, 4 * PIVOTS), SvrdmEngine::new(&model()).unwrap());
-    bencher.counter(ItemsCount::new(rows.len() / 16)).bench_local(|| {
-        let mut found = 0;
-        rows.iter().for_each(|row| engine.push(row, &mut |_| found += 1));
-        found
-    });
+    let (rows, mut engine) = (
+        rows(8, 640, 4 * PIVOTS),
+        SvrdmEngine::new(&model()).unwrap(),
+    );
+    bencher
+        .counter(ItemsCount::new(rows.len() / 16))
+        .bench_local(|| {
+            let mut found = 0;
+            rows.iter()
+                .for_each(|row| engine.push(row, &mut |_| found += 1));
+            found
+        });
 }
 
 /// Rows to detections as the reference stream has them: five values after projection, a tenth accepted.
@@ -187,10 +227,13 @@ fn reference_stream(bencher: Bencher) {
     let reference = thesis::reference();
     let (rows, model) = (reference.rows(), reference.model(&reference.models[0]));
     let mut engine = SvrdmEngine::new(&model).unwrap();
-    bencher.counter(ItemsCount::new(rows.len() / 16)).bench_local(|| {
-        let mut found = 0;
-        rows.iter().for_each(|row| engine.push(row, &mut |_| found += 1));
-        engine.finish(&mut |_| found += 1);
-        found
-    });
+    bencher
+        .counter(ItemsCount::new(rows.len() / 16))
+        .bench_local(|| {
+            let mut found = 0;
+            rows.iter()
+                .for_each(|row| engine.push(row, &mut |_| found += 1));
+            engine.finish(&mut |_| found += 1);
+            found
+        });
 }

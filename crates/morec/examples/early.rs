@@ -20,34 +20,65 @@ use morec::templates::{EarlyParams, TemplateModel};
 use morec::train::{Everyday, Labelling, Source, TrainClip, TrainOptions, train_clips};
 
 const SIGNALS: [&str; 3] = ["signals_1", "signals_2", "signals_3"];
-const CLASSES: [&str; 7] =
-    ["traveling", "illegal_dribble", "visible_count", "no_score", "hands_up", "pushing", "stop_clock"];
+const CLASSES: [&str; 7] = [
+    "traveling",
+    "illegal_dribble",
+    "visible_count",
+    "no_score",
+    "hands_up",
+    "pushing",
+    "stop_clock",
+];
 
 fn main() {
     let Some(data) = kit::data() else { return };
     let mut params = EarlyParams::default();
-    std::env::args().skip(1).for_each(|arg| set(&mut params, &arg));
+    std::env::args()
+        .skip(1)
+        .for_each(|arg| set(&mut params, &arg));
     println!("{params:?}");
     let names: Vec<String> = std::fs::read_dir(data.join("referee/clips"))
         .unwrap()
-        .filter_map(|e| e.unwrap().path().file_stem().map(|s| s.to_string_lossy().into_owned()))
+        .filter_map(|e| {
+            e.unwrap()
+                .path()
+                .file_stem()
+                .map(|s| s.to_string_lossy().into_owned())
+        })
         .collect();
     let of = |prefixes: &[&str]| -> Vec<&String> {
-        let mut found: Vec<&String> =
-            names.iter().filter(|n| prefixes.iter().any(|p| n.starts_with(p))).collect();
+        let mut found: Vec<&String> = names
+            .iter()
+            .filter(|n| prefixes.iter().any(|p| n.starts_with(p)))
+            .collect();
         found.sort();
         found
     };
     let load = |names: Vec<&String>, source| -> Vec<TrainClip> {
-        names.into_iter().map(|n| kit::referee(&data, n, source)).collect()
+        names
+            .into_iter()
+            .map(|n| kit::referee(&data, n, source))
+            .collect()
     };
     let background = load(of(&["jumping_", "soccer_", "running_"]), Source::Background);
-    let unknown = load(of(&["walking_", "basketball_", "traffic_4"]), Source::Background);
-    let signals: Vec<TrainClip> = SIGNALS.iter().map(|n| kit::referee(&data, n, Source::Labelled)).collect();
-    let labels = Labels::read(&std::fs::read(data.join("referee/labels.tsv")).unwrap()).unwrap();
-    let lengths = signals
+    let unknown = load(
+        of(&["walking_", "basketball_", "traffic_4"]),
+        Source::Background,
+    );
+    let signals: Vec<TrainClip> = SIGNALS
         .iter()
-        .map(|c| (c.name.clone(), ClipLength { frames: c.clip.frames, rate_hz: c.clip.rate_hz }));
+        .map(|n| kit::referee(&data, n, Source::Labelled))
+        .collect();
+    let labels = Labels::read(&std::fs::read(data.join("referee/labels.tsv")).unwrap()).unwrap();
+    let lengths = signals.iter().map(|c| {
+        (
+            c.name.clone(),
+            ClipLength {
+                frames: c.clip.frames,
+                rate_hz: c.clip.rate_hz,
+            },
+        )
+    });
     let mut samples = labels.resolve(&lengths.collect()).samples;
     samples.retain(|s| CLASSES.contains(&s.class.as_str()));
 
@@ -55,18 +86,33 @@ fn main() {
         (0usize, 0usize, 0usize, 0usize, 0usize);
     for test in 0..signals.len() {
         let mut clips: Vec<TrainClip> = background.clone();
-        clips.extend(signals.iter().enumerate().filter(|(i, _)| *i != test).map(|(_, c)| c.clone()));
-        let taught: Vec<Sample> = samples.iter().filter(|s| s.clip != SIGNALS[test]).cloned().collect();
+        clips.extend(
+            signals
+                .iter()
+                .enumerate()
+                .filter(|(i, _)| *i != test)
+                .map(|(_, c)| c.clone()),
+        );
+        let taught: Vec<Sample> = samples
+            .iter()
+            .filter(|s| s.clip != SIGNALS[test])
+            .cloned()
+            .collect();
         let model = Arc::new(train(&clips, &taught));
         let name = |h: &Hunch| model.classes[h.class.index()].name.clone();
         let hunches = play(&model, &signals[test], params);
         for s in samples.iter().filter(|s| s.clip == SIGNALS[test]) {
             all += 1;
             let middle_secs = 0.5 * (s.start_secs + s.stop_secs);
-            let at = hunches.iter().rev().find(|(t, _)| *t <= middle_secs).and_then(|(_, h)| *h);
+            let at = hunches
+                .iter()
+                .rev()
+                .find(|(t, _)| *t <= middle_secs)
+                .and_then(|(_, h)| *h);
             // One that began well before the sample is another motion's, perhaps of the same class.
             let length_secs = s.stop_secs - s.start_secs;
-            let of_it = |h: Hunch| name(&h) == s.class && h.start_secs > s.start_secs - 0.25 * length_secs;
+            let of_it =
+                |h: Hunch| name(&h) == s.class && h.start_secs > s.start_secs - 0.25 * length_secs;
             known += usize::from(at.is_some_and(of_it));
         }
         for h in half_done(&hunches) {
@@ -80,13 +126,25 @@ fn main() {
             right += usize::from(samples.iter().any(|s| is(&s)));
         }
         if test == 0 {
-            false_unknown = unknown.iter().map(|c| half_done(&play(&model, c, params)).len()).sum();
+            false_unknown = unknown
+                .iter()
+                .map(|c| half_done(&play(&model, c, params)).len())
+                .sum();
         }
     }
-    println!("known at the middle of {all} samples: {known}, recall {:.2}", known as f64 / all as f64);
-    println!("told as half done or more: {told}, right {right}, precision {:.2}", right as f64 / told as f64);
+    println!(
+        "known at the middle of {all} samples: {known}, recall {:.2}",
+        known as f64 / all as f64
+    );
+    println!(
+        "told as half done or more: {told}, right {right}, precision {:.2}",
+        right as f64 / told as f64
+    );
     let secs: f64 = unknown.iter().map(|c| c.clip.duration_secs()).sum();
-    println!("in {:.1} min without the signals: {false_unknown} told", secs / 60.0);
+    println!(
+        "in {:.1} min without the signals: {false_unknown} told",
+        secs / 60.0
+    );
 }
 
 fn set(params: &mut EarlyParams, arg: &str) {
@@ -105,13 +163,25 @@ fn set(params: &mut EarlyParams, arg: &str) {
 
 fn train(clips: &[TrainClip], samples: &[Sample]) -> TemplateModel {
     let classes = CLASSES.map(str::to_owned);
-    let labelling = Labelling { samples, held_back: &[], classes: &classes, unlabelled_is_background: true };
-    let options = TrainOptions { everyday: Everyday::Auto, ..TrainOptions::default() };
+    let labelling = Labelling {
+        samples,
+        held_back: &[],
+        classes: &classes,
+        unlabelled_is_background: true,
+    };
+    let options = TrainOptions {
+        everyday: Everyday::Auto,
+        ..TrainOptions::default()
+    };
     train_clips(clips, &labelling, &options, &()).unwrap().0
 }
 
 /// What is told after every pose.
-fn play(model: &Arc<TemplateModel>, c: &TrainClip, params: EarlyParams) -> Vec<(f64, Option<Hunch>)> {
+fn play(
+    model: &Arc<TemplateModel>,
+    c: &TrainClip,
+    params: EarlyParams,
+) -> Vec<(f64, Option<Hunch>)> {
     let mut recognizer = Recognizer::new(model, bones_of_clip(&c.clip, &c.roles, &c.rest)).unwrap();
     recognizer.set_early(params);
     let mut told = Vec::new();
@@ -125,10 +195,20 @@ fn play(model: &Arc<TemplateModel>, c: &TrainClip, params: EarlyParams) -> Vec<(
 /// One hunch for every row of hunches of a class, at the moment it is half done.
 fn half_done(hunches: &[(f64, Option<Hunch>)]) -> Vec<Hunch> {
     let mut found: Vec<Hunch> = Vec::new();
-    for hunch in hunches.iter().filter_map(|(_, h)| *h).filter(|h| h.progress >= 0.5) {
-        let same = |last: &Hunch| last.class == hunch.class && hunch.seen_secs - last.seen_secs < 0.3;
+    for hunch in hunches
+        .iter()
+        .filter_map(|(_, h)| *h)
+        .filter(|h| h.progress >= 0.5)
+    {
+        let same =
+            |last: &Hunch| last.class == hunch.class && hunch.seen_secs - last.seen_secs < 0.3;
         match found.last_mut() {
-            Some(last) if same(last) => *last = Hunch { start_secs: last.start_secs, ..hunch },
+            Some(last) if same(last) => {
+                *last = Hunch {
+                    start_secs: last.start_secs,
+                    ..hunch
+                }
+            }
             _ => found.push(hunch),
         }
     }

@@ -26,7 +26,9 @@ pub struct Skeleton {
 
 /// A skeleton that breaks the rule that parents come first.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("joint {joint} ({name}) names joint {parent} as its parent; parents must come before their children")]
+#[error(
+    "joint {joint} ({name}) names joint {parent} as its parent; parents must come before their children"
+)]
 pub struct OrderError {
     /// The offending joint.
     pub joint: usize,
@@ -41,7 +43,11 @@ impl Skeleton {
     pub fn new(joints: Vec<Joint>) -> Result<Self, OrderError> {
         for (j, joint) in joints.iter().enumerate() {
             if let Some(parent) = joint.parent.filter(|&p| p >= j) {
-                return Err(OrderError { joint: j, name: joint.name.clone(), parent });
+                return Err(OrderError {
+                    joint: j,
+                    name: joint.name.clone(),
+                    parent,
+                });
             }
         }
         Ok(Self { joints })
@@ -71,7 +77,11 @@ impl Skeleton {
 
     /// Moves the ends of the chains.
     pub(crate) fn map_tips(&mut self, new: impl Fn(Vec3) -> Vec3) {
-        for tip in self.joints.iter_mut().filter_map(|joint| joint.tip.as_mut()) {
+        for tip in self
+            .joints
+            .iter_mut()
+            .filter_map(|joint| joint.tip.as_mut())
+        {
             *tip = new(*tip);
         }
     }

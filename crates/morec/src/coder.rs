@@ -47,7 +47,13 @@ pub(crate) struct Writer {
 
 impl Writer {
     pub fn new() -> Self {
-        Self { low: 0, range: u32::MAX, cache: 0, pending: 0, out: Vec::new() }
+        Self {
+            low: 0,
+            range: u32::MAX,
+            cache: 0,
+            pending: 0,
+            out: Vec::new(),
+        }
     }
 
     fn narrow(&mut self, bound: u32, bit: bool) {
@@ -118,7 +124,12 @@ pub(crate) struct Reader<'a> {
 
 impl<'a> Reader<'a> {
     pub fn new(bytes: &'a [u8]) -> Self {
-        let mut reader = Self { bytes, at: 0, code: 0, range: u32::MAX };
+        let mut reader = Self {
+            bytes,
+            at: 0,
+            code: 0,
+            range: u32::MAX,
+        };
         for _ in 0..4 {
             reader.next_byte();
         }
@@ -188,7 +199,10 @@ pub(crate) struct Whole {
 
 impl Default for Whole {
     fn default() -> Self {
-        Self { digits: [EVEN; 64], second: [EVEN; 64] }
+        Self {
+            digits: [EVEN; 64],
+            second: [EVEN; 64],
+        }
     }
 }
 
@@ -228,7 +242,11 @@ impl Whole {
     /// A number of either sign.
     pub fn signed(&mut self, coder: &mut impl Coder, value: i64) -> i64 {
         let size = self.natural(coder, value.unsigned_abs()) as i64;
-        if size != 0 && coder.even(value < 0) { -size } else { size }
+        if size != 0 && coder.even(value < 0) {
+            -size
+        } else {
+            size
+        }
     }
 }
 

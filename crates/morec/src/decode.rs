@@ -77,13 +77,21 @@ impl DecodeParams {
             ("hold_ticks", self.hold_ticks),
         ];
         if !(0.0..1.0).contains(&self.overlap_share) {
-            return Err(format!("overlap_share must be from 0 to below 1, found {}", self.overlap_share));
+            return Err(format!(
+                "overlap_share must be from 0 to below 1, found {}",
+                self.overlap_share
+            ));
         }
         if self.end_fall.is_nan() || self.end_fall < 0.0 {
-            return Err(format!("end_fall must be 0 or more, found {}", self.end_fall));
+            return Err(format!(
+                "end_fall must be 0 or more, found {}",
+                self.end_fall
+            ));
         }
         match ticks.iter().find(|(_, ticks)| *ticks > MOST_TICKS) {
-            Some((name, ticks)) => Err(format!("{name} must be at most {MOST_TICKS}, found {ticks}")),
+            Some((name, ticks)) => Err(format!(
+                "{name} must be at most {MOST_TICKS}, found {ticks}"
+            )),
             None => Ok(()),
         }
     }
@@ -221,14 +229,27 @@ impl Decoder {
     pub fn new(params: &DecodeParams, rule: Rule, classes: usize, longest: usize) -> Self {
         let ring_len = (2 * (params.gate_ticks + params.peak_ticks) + 2).next_power_of_two();
         // A match of n template rows spans at most 2 n ticks; twice that leaves room for the chain behind it.
-        let path_len =
-            (4 * longest + params.look_ahead_ticks(rule) + params.overlap_ticks + 8).next_power_of_two();
+        let path_len = (4 * longest + params.look_ahead_ticks(rule) + params.overlap_ticks + 8)
+            .next_power_of_two();
         Self {
             params: params.clone(),
             rule,
             classes,
-            thresholds: vec![if let Rule::Gate { threshold } = rule { threshold } else { FAR }; classes],
-            ring: vec![ClassDistance { distance: FAR, age: 0 }; ring_len * classes],
+            thresholds: vec![
+                if let Rule::Gate { threshold } = rule {
+                    threshold
+                } else {
+                    FAR
+                };
+                classes
+            ],
+            ring: vec![
+                ClassDistance {
+                    distance: FAR,
+                    age: 0
+                };
+                ring_len * classes
+            ],
             negatives: vec![FAR; ring_len],
             ring_len,
             paths: vec![PathCell::default(); path_len],
@@ -241,7 +262,10 @@ impl Decoder {
 
     /// A threshold for each class instead of the common one; fewer than there are classes change the first only.
     pub fn set_thresholds(&mut self, thresholds: &[f32]) {
-        self.thresholds.iter_mut().zip(thresholds).for_each(|(mine, given)| *mine = *given);
+        self.thresholds
+            .iter_mut()
+            .zip(thresholds)
+            .for_each(|(mine, given)| *mine = *given);
     }
 
     /// Forgets the stream so far.
@@ -271,7 +295,11 @@ impl Decoder {
     }
 
     /// Ends the stretch: decides the last ticks with what there is and reports all that is left.
-    pub fn finish(&mut self, judge: &mut impl FnMut(&Candidate) -> f64, out: &mut impl FnMut(TickDetection)) {
+    pub fn finish(
+        &mut self,
+        judge: &mut impl FnMut(&Candidate) -> f64,
+        out: &mut impl FnMut(TickDetection),
+    ) {
         while self.decided < self.ticks {
             self.decide(self.decided, judge);
         }
@@ -302,7 +330,12 @@ impl Decoder {
 
     /// The class's score at `tick` if it is a candidate there: near enough, and no larger than any distance that
     /// counts nearby.
-    fn score(&self, tick: i64, class: usize, judge: &mut impl FnMut(&Candidate) -> f64) -> Option<f64> {
+    fn score(
+        &self,
+        tick: i64,
+        class: usize,
+        judge: &mut impl FnMut(&Candidate) -> f64,
+    ) -> Option<f64> {
         let distance = self.near(tick, class).distance;
         match self.rule {
             Rule::Gate { .. } => {
@@ -338,7 +371,14 @@ impl Decoder {
                 other = other.min(self.near(t, rival).distance);
             }
         }
-        Some(Candidate { class: ClassId(class as u16), tick, age, distance, other, negative })
+        Some(Candidate {
+            class: ClassId(class as u16),
+            tick,
+            age,
+            distance,
+            other,
+            negative,
+        })
     }
 
     /// Whether the stream ends before the peak at `tick` could be told from a class still coming nearer.
@@ -346,12 +386,18 @@ impl Decoder {
         if tick + (self.params.peak_ticks as i64) < self.ticks || tick == 0 {
             return false;
         }
-        let (before, here) = (self.near(tick - 1, class).distance, self.near(tick, class).distance);
+        let (before, here) = (
+            self.near(tick - 1, class).distance,
+            self.near(tick, class).distance,
+        );
         before > here * (1.0 + self.params.end_fall)
     }
 
     fn decide(&mut self, tick: i64, judge: &mut impl FnMut(&Candidate) -> f64) {
-        let mut cell = PathCell { ends_here: None, ..*self.path(tick) };
+        let mut cell = PathCell {
+            ends_here: None,
+            ..*self.path(tick)
+        };
         for class in 0..self.classes {
             let age = self.near(tick, class).age;
             let (start, slack) = (tick - age as i64, self.slack(age));
@@ -361,13 +407,19 @@ impl Decoder {
             if self.cut_off(tick, class) {
                 continue;
             }
-            let Some(score) = self.score(tick, class, judge) else { continue };
+            let Some(score) = self.score(tick, class, judge) else {
+                continue;
+            };
             let start = start.max(self.reported);
             for begin in start..=(start + slack).min(tick) {
                 let total = self.path(begin).total + score;
                 if total > cell.total + 1e-12 {
                     let ends_here = Some((begin, ClassId(class as u16), score));
-                    cell = PathCell { total, ends_here, last_end: tick + 1 };
+                    cell = PathCell {
+                        total,
+                        ends_here,
+                        last_end: tick + 1,
+                    };
                 }
             }
         }
@@ -403,13 +455,26 @@ impl Decoder {
     fn report(&mut self, lag: i64, out: &mut impl FnMut(TickDetection)) {
         let mut chain = std::mem::take(&mut self.chain);
         chain.clear();
-        let oldest = self.reported.max(self.decided - self.paths.len() as i64 + 1);
+        let oldest = self
+            .reported
+            .max(self.decided - self.paths.len() as i64 + 1);
         let mut tick = self.path(self.decided).last_end;
         while tick > oldest {
-            let Some((start, class, score)) = self.path(tick).ends_here else { break };
-            chain.push(TickDetection { class, start, stop: tick, score });
+            let Some((start, class, score)) = self.path(tick).ends_here else {
+                break;
+            };
+            chain.push(TickDetection {
+                class,
+                start,
+                stop: tick,
+                score,
+            });
             // What begins before the oldest tick that is kept has nothing before it that could still be reported.
-            tick = if start > oldest { self.path(start).last_end } else { oldest };
+            tick = if start > oldest {
+                self.path(start).last_end
+            } else {
+                oldest
+            };
         }
         for detection in chain.iter().rev() {
             if self.waits(detection) {
@@ -417,7 +482,10 @@ impl Decoder {
             }
             if detection.start >= self.reported && self.decided - detection.stop >= lag {
                 self.reported = detection.stop;
-                out(TickDetection { score: detection.score.min(1.0), ..*detection });
+                out(TickDetection {
+                    score: detection.score.min(1.0),
+                    ..*detection
+                });
             }
         }
         self.chain = chain;
@@ -436,8 +504,13 @@ mod tests {
         let mut found = vec![];
         for (t, d) in distances.iter().enumerate() {
             let negative = negatives.get(t).copied().unwrap_or(FAR);
-            let near = [ClassDistance { distance: *d, age: t.min(3) }];
-            decoder.push(&near, negative, &mut judge, &mut |d| found.push((d.start, d.stop)));
+            let near = [ClassDistance {
+                distance: *d,
+                age: t.min(3),
+            }];
+            decoder.push(&near, negative, &mut judge, &mut |d| {
+                found.push((d.start, d.stop))
+            });
         }
         decoder.finish(&mut judge, &mut |d| found.push((d.start, d.stop)));
         found
@@ -490,11 +563,20 @@ mod tests {
         let mut judge = |_: &Candidate| 0.0;
         let mut found = vec![];
         for (t, near) in ticks.iter().enumerate() {
-            let near: Vec<_> =
-                near.iter().map(|&(distance, age)| ClassDistance { distance, age: age.min(t) }).collect();
-            decoder.push(&near, FAR, &mut judge, &mut |d| found.push((d.class.0, d.start, d.stop, t)));
+            let near: Vec<_> = near
+                .iter()
+                .map(|&(distance, age)| ClassDistance {
+                    distance,
+                    age: age.min(t),
+                })
+                .collect();
+            decoder.push(&near, FAR, &mut judge, &mut |d| {
+                found.push((d.class.0, d.start, d.stop, t))
+            });
         }
-        decoder.finish(&mut judge, &mut |d| found.push((d.class.0, d.start, d.stop, ticks.len())));
+        decoder.finish(&mut judge, &mut |d| {
+            found.push((d.class.0, d.start, d.stop, ticks.len()))
+        });
         found
     }
 
@@ -515,8 +597,14 @@ mod tests {
 
     #[test]
     fn a_short_motion_waits_for_the_longer_one_that_it_ends() {
-        let params = DecodeParams { hold_ticks: 2, ..DecodeParams::default() };
-        let once = DecodeParams { hold_ticks: 0, ..params.clone() };
+        let params = DecodeParams {
+            hold_ticks: 2,
+            ..DecodeParams::default()
+        };
+        let once = DecodeParams {
+            hold_ticks: 0,
+            ..params.clone()
+        };
         assert_eq!(reports(&short_inside_long(0.2), &params), [(1, 5, 22, 23)]);
         assert_eq!(reports(&short_inside_long(0.2), &once), [(0, 15, 21, 22)]);
         // The longer one is not near enough: nothing waits.
@@ -530,7 +618,10 @@ mod tests {
         for (t, near) in ticks.iter_mut().enumerate().skip(15) {
             near[1] = (1.95 - 0.01 * t as f32, t - 5);
         }
-        let params = DecodeParams { hold_ticks: 3, ..DecodeParams::default() };
+        let params = DecodeParams {
+            hold_ticks: 3,
+            ..DecodeParams::default()
+        };
         assert_eq!(reports(&ticks, &params)[0], (0, 15, 21, 25));
     }
 
@@ -551,27 +642,49 @@ mod tests {
             [(6, 16), (16, 31)],
             "it reaches five of its twenty ticks into the first"
         );
-        assert_eq!(spans(&DecodeParams { overlap_share: 0.2, ..default }), [(6, 16)]);
+        assert_eq!(
+            spans(&DecodeParams {
+                overlap_share: 0.2,
+                ..default
+            }),
+            [(6, 16)]
+        );
     }
 
     #[test]
     fn classes_may_have_thresholds_of_their_own() {
-        let mut decoder = Decoder::new(&DecodeParams::default(), Rule::Gate { threshold: 1.0 }, 2, 20);
+        let mut decoder = Decoder::new(
+            &DecodeParams::default(),
+            Rule::Gate { threshold: 1.0 },
+            2,
+            20,
+        );
         decoder.set_thresholds(&[1.0, 3.0]);
         let mut found = vec![];
         for d in [9.0, 9.0, 9.0, 9.0, 9.0, 2.5, 2.0, 2.5, 9.0, 9.0, 9.0] {
-            let near = [ClassDistance { distance: d, age: 4 }; 2];
-            decoder.push(&near, FAR, &mut |_| 0.0, &mut |d| found.push((d.class.0, d.stop, d.score)));
+            let near = [ClassDistance {
+                distance: d,
+                age: 4,
+            }; 2];
+            decoder.push(&near, FAR, &mut |_| 0.0, &mut |d| {
+                found.push((d.class.0, d.stop, d.score))
+            });
         }
         assert_eq!(found.len(), 1);
         assert_eq!((found[0].0, found[0].1), (1, 7));
-        assert!((found[0].2 - 1.0 / 3.0).abs() < 1e-6, "the score is a share of the class's own threshold");
+        assert!(
+            (found[0].2 - 1.0 / 3.0).abs() < 1e-6,
+            "the score is a share of the class's own threshold"
+        );
     }
 
     #[test]
     fn long_silence_neither_grows_memory_nor_loses_what_follows() {
         let mut stream = vec![9.0; 5000];
         stream.extend([1.0, 0.5, 1.0, 9.0, 9.0, 9.0, 9.0]);
-        assert_eq!(spans(&stream, &[], &DecodeParams::default()), [(4998, 5002)]);
+        assert_eq!(
+            spans(&stream, &[], &DecodeParams::default()),
+            [(4998, 5002)]
+        );
     }
 }

@@ -67,7 +67,11 @@ impl WorldPose {
 pub fn for_each_world_pose(clip: &Clip, rest: &Span, mut each: impl FnMut(f64, &WorldPose)) {
     let mut world = WorldPose::default();
     for frame in 0..clip.frames {
-        let shown = if rest.contains(&frame) { rest.end.min(clip.frames - 1) } else { frame };
+        let shown = if rest.contains(&frame) {
+            rest.end.min(clip.frames - 1)
+        } else {
+            frame
+        };
         world.set(clip, shown);
         each(frame as f64 / clip.rate_hz, &world);
     }

@@ -45,7 +45,11 @@ impl Axis {
 
 /// The sign of `q` (it and its negative are one rotation) that lies nearer to `previous`.
 pub fn same_hemisphere(previous: &Quat, q: Quat) -> Quat {
-    if previous.coords.dot(&q.coords) < 0.0 { Quat::new_unchecked(-q.into_inner()) } else { q }
+    if previous.coords.dot(&q.coords) < 0.0 {
+        Quat::new_unchecked(-q.into_inner())
+    } else {
+        q
+    }
 }
 
 /// Spherical interpolation along the shorter arc; exactly `a` at 0 and exactly `b` at 1.
@@ -59,7 +63,9 @@ pub fn slerp(a: &Quat, b: &Quat, t: f64) -> Quat {
     let b = same_hemisphere(a, *b);
     let cos = a.coords.dot(&b.coords).min(1.0);
     let (weight_a, weight_b) = slerp_weights(cos, t);
-    Quat::new_normalize(nalgebra::Quaternion::from(a.coords * weight_a + b.coords * weight_b))
+    Quat::new_normalize(nalgebra::Quaternion::from(
+        a.coords * weight_a + b.coords * weight_b,
+    ))
 }
 
 /// Interpolation of unit vectors along the great circle; exactly `a` at 0 and exactly `b` at 1.

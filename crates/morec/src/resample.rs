@@ -42,10 +42,17 @@ impl Clip {
         let mut rotations = Vec::with_capacity(instants.len() * joints);
         for &(frame, t) in instants {
             let before = self.frame_rotations(frame);
-            let after = if t > 0.0 { self.frame_rotations(frame + 1) } else { before };
+            let after = if t > 0.0 {
+                self.frame_rotations(frame + 1)
+            } else {
+                before
+            };
             for j in 0..joints {
                 let rotation = slerp(&before[j], &after[j], t);
-                let previous = rotations.len().checked_sub(joints).map_or(rotation, |p| rotations[p]);
+                let previous = rotations
+                    .len()
+                    .checked_sub(joints)
+                    .map_or(rotation, |p| rotations[p]);
                 rotations.push(same_hemisphere(&previous, rotation));
             }
         }
@@ -58,8 +65,15 @@ impl Clip {
 ///
 /// # Errors
 /// If one of the two rates is not finite or beyond all use.
-pub(crate) fn instants(frames: usize, from_hz: f64, to_hz: f64) -> Result<Vec<(usize, f64)>, RateError> {
-    if ![from_hz, to_hz].iter().all(|rate| (1e-3..=1e5).contains(rate)) {
+pub(crate) fn instants(
+    frames: usize,
+    from_hz: f64,
+    to_hz: f64,
+) -> Result<Vec<(usize, f64)>, RateError> {
+    if ![from_hz, to_hz]
+        .iter()
+        .all(|rate| (1e-3..=1e5).contains(rate))
+    {
         return Err(RateError { from_hz, to_hz });
     }
     let old_per_new = from_hz / to_hz;
@@ -68,7 +82,9 @@ pub(crate) fn instants(frames: usize, from_hz: f64, to_hz: f64) -> Result<Vec<(u
         0 => 0,
         _ => ((last + SAME_FRAME) / old_per_new).floor() as usize + 1,
     };
-    Ok((0..new_frames).map(|f| instant(f as f64 * old_per_new, last)).collect())
+    Ok((0..new_frames)
+        .map(|f| instant(f as f64 * old_per_new, last))
+        .collect())
 }
 
 /// Runs of new frames that a repaired old one has a part in.
@@ -103,7 +119,10 @@ fn track_at(track: &JointTrack, instants: &[(usize, f64)]) -> JointTrack {
         true => track.positions[frame].lerp(&track.positions[frame + 1], t),
         false => track.positions[frame],
     };
-    JointTrack { joint: track.joint, positions: instants.iter().map(position).collect() }
+    JointTrack {
+        joint: track.joint,
+        positions: instants.iter().map(position).collect(),
+    }
 }
 
 #[cfg(test)]
@@ -114,8 +133,18 @@ mod tests {
     use proptest::prelude::*;
 
     /// One joint that turns about Y and moves along X, given by functions of time.
-    fn clip(rate_hz: f64, frames: usize, angle: impl Fn(f64) -> f64, x: impl Fn(f64) -> f64) -> Clip {
-        let root = Joint { name: "Hips".into(), parent: None, offset: Vec3::zeros(), tip: None };
+    fn clip(
+        rate_hz: f64,
+        frames: usize,
+        angle: impl Fn(f64) -> f64,
+        x: impl Fn(f64) -> f64,
+    ) -> Clip {
+        let root = Joint {
+            name: "Hips".into(),
+            parent: None,
+            offset: Vec3::zeros(),
+            tip: None,
+        };
         let times: Vec<f64> = (0..frames).map(|f| f as f64 / rate_hz).collect();
         let mut rotations: Vec<Quat> = Vec::new();
         for &t in &times {
@@ -124,8 +153,19 @@ mod tests {
         }
         let positions = times.iter().map(|&t| Vec3::new(x(t), 0.0, 0.0)).collect();
         let skeleton = Skeleton::new(vec![root]).unwrap();
-        let tracks = vec![JointTrack { joint: 0, positions }];
-        Clip { name: "c".into(), skeleton, rate_hz, rotations, tracks, frames, repaired: Vec::new() }
+        let tracks = vec![JointTrack {
+            joint: 0,
+            positions,
+        }];
+        Clip {
+            name: "c".into(),
+            skeleton,
+            rate_hz,
+            rotations,
+            tracks,
+            frames,
+            repaired: Vec::new(),
+        }
     }
 
     proptest! {
@@ -155,7 +195,10 @@ mod tests {
         assert_eq!(new.frames, 31);
         for f in 0..31 {
             assert_eq!(new.tracks[0].positions[f], old.tracks[0].positions[4 * f]);
-            assert_eq!(new.rotations[f].coords.abs(), old.rotations[4 * f].coords.abs());
+            assert_eq!(
+                new.rotations[f].coords.abs(),
+                old.rotations[4 * f].coords.abs()
+            );
         }
         let up = new.resampled(90.0).unwrap();
         assert_eq!(up.frames, 91);
@@ -168,7 +211,13 @@ mod tests {
         for frames in [0, 1] {
             let old = clip(120.0, frames, |_| 1.0, |_| 2.0);
             let new = old.resampled(33.0).unwrap();
-            assert_eq!(new, Clip { rate_hz: 33.0, ..old });
+            assert_eq!(
+                new,
+                Clip {
+                    rate_hz: 33.0,
+                    ..old
+                }
+            );
         }
     }
 
@@ -177,7 +226,10 @@ mod tests {
         let mut old = clip(60.0, 61, |t| t, |t| t);
         old.repaired = vec![0..1, 11..13, 60..61];
         assert_eq!(old.resampled(30.0).unwrap().repaired, [0..1, 6..7, 30..31]);
-        assert_eq!(old.resampled(120.0).unwrap().repaired, [0..2, 21..26, 119..121]);
+        assert_eq!(
+            old.resampled(120.0).unwrap().repaired,
+            [0..2, 21..26, 119..121]
+        );
     }
 
     #[test]

@@ -28,7 +28,12 @@ fn skeleton() -> impl Strategy<Value = Skeleton> {
                 parent = parent.and_then(|p| joints[p].parent).or(parent);
             }
             let name = format!("{name}{k}");
-            joints.push(Joint { name, parent, offset, tip });
+            joints.push(Joint {
+                name,
+                parent,
+                offset,
+                tip,
+            });
         }
         Skeleton::new(joints).unwrap()
     })
@@ -44,7 +49,12 @@ fn quat() -> impl Strategy<Value = Quat> {
 }
 
 fn clip() -> impl Strategy<Value = Clip> {
-    let rate = prop_oneof![Just(30.0), Just(120.0), Just(120_000.0 / 1001.0), Just(47.3)];
+    let rate = prop_oneof![
+        Just(30.0),
+        Just(120.0),
+        Just(120_000.0 / 1001.0),
+        Just(47.3)
+    ];
     (skeleton(), 0usize..6, rate).prop_flat_map(|(skeleton, frames, rate_hz)| {
         let joints = skeleton.len();
         let rotations = prop::collection::vec(quat(), frames * joints);
@@ -56,10 +66,19 @@ fn clip() -> impl Strategy<Value = Clip> {
             for k in joints..rotations.len() {
                 rotations[k] = same_hemisphere(&rotations[k - joints], rotations[k]);
             }
-            let track =
-                |(joint, t): (usize, Option<Vec<Vec3>>)| t.map(|positions| JointTrack { joint, positions });
+            let track = |(joint, t): (usize, Option<Vec<Vec3>>)| {
+                t.map(|positions| JointTrack { joint, positions })
+            };
             let tracks = tracks.into_iter().enumerate().filter_map(track).collect();
-            Clip { name: "c".into(), skeleton, rate_hz, rotations, tracks, frames, repaired: Vec::new() }
+            Clip {
+                name: "c".into(),
+                skeleton,
+                rate_hz,
+                rotations,
+                tracks,
+                frames,
+                repaired: Vec::new(),
+            }
         })
     })
 }
@@ -71,7 +90,13 @@ fn written(clip: &Clip) -> Vec<u8> {
 }
 
 fn read_back(clip: &Clip) -> Clip {
-    let mut loaded = bvh::read(&written(clip), "c", &BvhOptions::default(), &Limits::default()).unwrap();
+    let mut loaded = bvh::read(
+        &written(clip),
+        "c",
+        &BvhOptions::default(),
+        &Limits::default(),
+    )
+    .unwrap();
     assert_eq!(loaded.clips.len(), 1);
     loaded.clips.remove(0)
 }
@@ -104,7 +129,12 @@ proptest! {
 }
 
 fn one_joint(name: &str) -> Clip {
-    let joint = Joint { name: name.into(), parent: None, offset: Vec3::zeros(), tip: None };
+    let joint = Joint {
+        name: name.into(),
+        parent: None,
+        offset: Vec3::zeros(),
+        tip: None,
+    };
     let skeleton = Skeleton::new(vec![joint]).unwrap();
     let rotations = vec![Quat::identity(); 2];
     Clip {
@@ -120,12 +150,29 @@ fn one_joint(name: &str) -> Clip {
 
 #[test]
 fn names_survive_or_are_made_to() {
-    for name in ["mixamorig:Hips", "Bip01 L Thigh", "TORSO#", "#1", "//", "finger2-1.l", "a}b", "左足", "End"]
-    {
+    for name in [
+        "mixamorig:Hips",
+        "Bip01 L Thigh",
+        "TORSO#",
+        "#1",
+        "//",
+        "finger2-1.l",
+        "a}b",
+        "左足",
+        "End",
+    ] {
         assert_eq!(read_back(&one_joint(name)).skeleton.joints()[0].name, name);
     }
-    for (name, survivor) in [(" a\tb\n", "a b"), ("a{b", "a(b"), ("", "joint0"), ("\n", "joint0")] {
-        assert_eq!(read_back(&one_joint(name)).skeleton.joints()[0].name, survivor);
+    for (name, survivor) in [
+        (" a\tb\n", "a b"),
+        ("a{b", "a(b"),
+        ("", "joint0"),
+        ("\n", "joint0"),
+    ] {
+        assert_eq!(
+            read_back(&one_joint(name)).skeleton.joints()[0].name,
+            survivor
+        );
     }
 }
 
@@ -133,7 +180,9 @@ fn names_survive_or_are_made_to() {
 fn turning_on_does_not_jump() {
     let mut clip = one_joint("Hips");
     clip.frames = 100;
-    clip.rotations = (0..100).map(|f| Axis::Y.rotation(0.2 * f64::from(f))).collect();
+    clip.rotations = (0..100)
+        .map(|f| Axis::Y.rotation(0.2 * f64::from(f)))
+        .collect();
     let text = String::from_utf8(written(&clip)).unwrap();
     let rows: Vec<Vec<f64>> = text
         .lines()
@@ -141,14 +190,21 @@ fn turning_on_does_not_jump() {
         .skip(1)
         .map(|l| l.split(' ').map(|t| t.parse().unwrap()).collect())
         .collect();
-    let largest = rows.windows(2).flat_map(|w| (3..6).map(|c| (w[1][c] - w[0][c]).abs()).collect::<Vec<_>>());
+    let largest = rows.windows(2).flat_map(|w| {
+        (3..6)
+            .map(|c| (w[1][c] - w[0][c]).abs())
+            .collect::<Vec<_>>()
+    });
     assert!(largest.fold(0.0, f64::max) < 13.0);
 }
 
 #[test]
 fn a_clip_without_a_rate_is_not_written() {
     for rate_hz in [0.0, f64::NAN, -1.0, f64::INFINITY] {
-        let clip = Clip { rate_hz, ..one_joint("Hips") };
+        let clip = Clip {
+            rate_hz,
+            ..one_joint("Hips")
+        };
         assert!(bvh::write(&clip, &mut Vec::new()).is_err());
     }
 }

@@ -34,10 +34,22 @@ fn allocations(job: impl FnOnce()) -> u32 {
 
 #[test]
 fn pushing_takes_no_memory() {
-    assert!(allocations(|| drop(std::hint::black_box(vec![1]))) > 0, "the counter must count");
+    assert!(
+        allocations(|| drop(std::hint::black_box(vec![1]))) > 0,
+        "the counter must count"
+    );
 
-    let person = Person { hand: Side::Right, ..Person::draw(89, 1) };
-    let script = Script::new(89, person).rest(0.5).play("push").rest(1.5).play("bow").rest(0.3).play("walk");
+    let person = Person {
+        hand: Side::Right,
+        ..Person::draw(89, 1)
+    };
+    let script = Script::new(89, person)
+        .rest(0.5)
+        .play("push")
+        .rest(1.5)
+        .play("bow")
+        .rest(0.3)
+        .play("walk");
     let (bones, mut poses) = made::poses(&script.film("quiet", 60.0).unwrap());
     poses.retain(|p| !(3.0..3.2 + MAX_GAP_SECS).contains(&p.0));
     // A late pose, one from nowhere, and a clock that is set back.
@@ -59,7 +71,10 @@ fn pushing_takes_no_memory() {
         }
     });
     assert_eq!(allocations, 0);
-    assert!(found >= 4, "too little happened to prove anything: {found} detections");
+    assert!(
+        found >= 4,
+        "too little happened to prove anything: {found} detections"
+    );
     events_take_no_memory(&model, &poses);
     packets_take_no_memory();
 }
@@ -80,19 +95,36 @@ fn events_take_no_memory(model: &Arc<morec::templates::TemplateModel>, poses: &[
     // A new skeleton's first frame makes the recogniser.
     play(&mut performer);
     assert_eq!(allocations(|| play(&mut performer)), 0);
-    assert!(events >= 8, "too little was said to prove anything: {events} events");
+    assert!(
+        events >= 8,
+        "too little was said to prove anything: {events} events"
+    );
 }
 
 /// From packets to frames.
 fn packets_take_no_memory() {
-    let person = Person { hand: Side::Right, ..Person::draw(89, 1) };
-    let take = Script::new(89, person).rest(0.5).play("push").film("packets", 60.0).unwrap();
+    let person = Person {
+        hand: Side::Right,
+        ..Person::draw(89, 1)
+    };
+    let take = Script::new(89, person)
+        .rest(0.5)
+        .play("push")
+        .film("packets", 60.0)
+        .unwrap();
     let roles = morec::roles::RoleMap::find(&take.clip.skeleton);
     let mut sender = VmcSender::new(Bundling::Bytes(700), true);
     let packets: Vec<(f64, Vec<u8>)> = (0..take.clip.frames)
         .flat_map(|frame| {
-            let (secs, pose) = (frame as f64 / 60.0, morec::kinematics::WorldPose::of(&take.clip, frame));
-            sender.frame(secs, &pose, &roles).iter().map(|p| (secs, p.clone())).collect::<Vec<_>>()
+            let (secs, pose) = (
+                frame as f64 / 60.0,
+                morec::kinematics::WorldPose::of(&take.clip, frame),
+            );
+            sender
+                .frame(secs, &pose, &roles)
+                .iter()
+                .map(|p| (secs, p.clone()))
+                .collect::<Vec<_>>()
         })
         .collect();
     let mut receiver = VmcReceiver::new(&VmcOptions::default());
@@ -114,12 +146,22 @@ fn packets_take_no_memory() {
 
 #[test]
 fn pose_rows_and_their_reduction_take_no_memory() {
-    let person = Person { hand: Side::Right, ..Person::draw(89, 1) };
-    let clip = Script::new(89, person).rest(0.5).play("bow").film("quiet", 60.0).unwrap().clip;
+    let person = Person {
+        hand: Side::Right,
+        ..Person::draw(89, 1)
+    };
+    let clip = Script::new(89, person)
+        .rest(0.5)
+        .play("bow")
+        .film("quiet", 60.0)
+        .unwrap()
+        .clip;
     let set = PivotSet::roles();
     let map = PivotMap::resolve(&set, &clip.skeleton, &RoleMap::find(&clip.skeleton)).unwrap();
     let mut poses = vec![];
-    for_each_pivot_pose(&clip, &map, &(0..0), |time_secs, pose| poses.push((time_secs, *pose)));
+    for_each_pivot_pose(&clip, &map, &(0..0), |time_secs, pose| {
+        poses.push((time_secs, *pose))
+    });
     poses.push((99.0, poses[0].1));
     let mut stream = PoseStream::new(&set, &PoseParams::default());
     let mut moments = Moments::new(stream.dim());
@@ -139,7 +181,11 @@ fn pose_rows_and_their_reduction_take_no_memory() {
         stream.finish(&mut |_| rows += 1);
     });
     assert_eq!(allocations, 0);
-    assert!(rows > 2 * clip.frames - 4, "{rows} rows of {} frames at half the rate", clip.frames);
+    assert!(
+        rows > 2 * clip.frames - 4,
+        "{rows} rows of {} frames at half the rate",
+        clip.frames
+    );
 }
 
 #[test]
@@ -159,21 +205,43 @@ fn the_thesiss_stages_take_no_memory() {
         }
     });
     assert_eq!(allocations, 0);
-    assert!(found >= 20, "too little happened to prove anything: {found} detections");
+    assert!(
+        found >= 20,
+        "too little happened to prove anything: {found} detections"
+    );
 }
 
 /// From frames to events by the method of 2009, by an index as it comes out of its file.
 #[test]
 fn the_thesiss_method_from_frames_to_events_takes_no_memory() {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/testdata/index/svrdm_v1.index");
-    let model = morec::index::MotionIndex::from_bytes(&std::fs::read(file).unwrap()).unwrap().model;
-    let person = Person { hand: Side::Right, ..Person::draw(90, 3) };
-    let script = Script::new(90, person).rest(1.0).play("wave").rest(0.8).play("bow").rest(1.0);
-    let clip = script.play("push").rest(1.5).film("quiet", 60.0).unwrap().clip;
-    let poses: Vec<_> =
-        (0..clip.frames).map(|frame| morec::kinematics::WorldPose::of(&clip, frame)).collect();
+    let model = morec::index::MotionIndex::from_bytes(&std::fs::read(file).unwrap())
+        .unwrap()
+        .model;
+    let person = Person {
+        hand: Side::Right,
+        ..Person::draw(90, 3)
+    };
+    let script = Script::new(90, person)
+        .rest(1.0)
+        .play("wave")
+        .rest(0.8)
+        .play("bow")
+        .rest(1.0);
+    let clip = script
+        .play("push")
+        .rest(1.5)
+        .film("quiet", 60.0)
+        .unwrap()
+        .clip;
+    let poses: Vec<_> = (0..clip.frames)
+        .map(|frame| morec::kinematics::WorldPose::of(&clip, frame))
+        .collect();
     let roles = RoleMap::find(&clip.skeleton);
-    let rig = Arc::new(Rig { skeleton: clip.skeleton.clone(), roles });
+    let rig = Arc::new(Rig {
+        skeleton: clip.skeleton.clone(),
+        roles,
+    });
     let mut performer = Performer::new(&model, Actor(0), &EventOptions::default());
     let (mut frame, mut events) = (Frame::default(), 0);
     let mut play = |performer: &mut Performer, lap: f64| {
@@ -193,5 +261,8 @@ fn the_thesiss_method_from_frames_to_events_takes_no_memory() {
     play(&mut performer, 0.0);
     let allocations = allocations(|| (1..5).for_each(|lap| play(&mut performer, f64::from(lap))));
     assert_eq!(allocations, 0);
-    assert!(events >= 5, "too little was said to prove anything: {events} events");
+    assert!(
+        events >= 5,
+        "too little was said to prove anything: {events} events"
+    );
 }

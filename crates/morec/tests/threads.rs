@@ -10,8 +10,8 @@ use std::time::Duration;
 
 use morec::index::MotionIndex;
 use morec::live::{
-    Actor, Event, EventReader, Frame, Layout, Model, Next, Overload, Pool, Rig, Session, SessionOptions,
-    Source,
+    Actor, Event, EventReader, Frame, Layout, Model, Next, Overload, Pool, Rig, Session,
+    SessionOptions, Source,
 };
 use morec::math::Axis;
 use morec::roles::Role;
@@ -21,7 +21,9 @@ const FRAMES: u32 = if cfg!(miri) { 16 * 5 + 3 } else { 1200 };
 
 fn model(name: &str) -> Model {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/testdata/index/").to_owned() + name;
-    MotionIndex::from_bytes(&std::fs::read(path).unwrap()).unwrap().model
+    MotionIndex::from_bytes(&std::fs::read(path).unwrap())
+        .unwrap()
+        .model
 }
 
 /// Joints that swing, each by itself.
@@ -66,7 +68,11 @@ fn all(mut reader: EventReader) -> Vec<Event> {
 fn a_session_in_stages_goes_through_all_its_rings() {
     let model = model("svrdm_v1.index");
     let run = |layout| {
-        let options = SessionOptions { layout, frame_capacity: 5, ..SessionOptions::default() };
+        let options = SessionOptions {
+            layout,
+            frame_capacity: 5,
+            ..SessionOptions::default()
+        };
         let (session, readers) = Session::start(&model, Box::new(Swinging(0)), &options).unwrap();
         let events: Vec<Event> = readers.into_iter().flat_map(all).collect();
         let status = session.join();
@@ -83,7 +89,11 @@ fn a_session_in_stages_goes_through_all_its_rings() {
 fn sessions_that_are_stopped_or_dropped_leave_no_thread_behind() {
     for layout in [Layout::Inline, Layout::Stages] {
         let model = model("svrdm_v1.index");
-        let options = SessionOptions { layout, overload: Overload::Drop, ..SessionOptions::default() };
+        let options = SessionOptions {
+            layout,
+            overload: Overload::Drop,
+            ..SessionOptions::default()
+        };
         let (session, mut feed, readers) = Session::open(&model, &options).unwrap();
         feed.set_rig(Actor(0), &Arc::new(Rig::of_roles()));
         let mut frame: Box<Frame> = Box::default();
@@ -101,7 +111,10 @@ fn sessions_that_are_stopped_or_dropped_leave_no_thread_behind() {
 #[test]
 fn a_pools_streams_end_with_their_feeds() {
     let pool = Pool::new(&model("v1.index"), 2).unwrap();
-    let options = SessionOptions { frame_capacity: 3, ..SessionOptions::default() };
+    let options = SessionOptions {
+        frame_capacity: 3,
+        ..SessionOptions::default()
+    };
     let mut open: Vec<_> = (0..3).map(|_| pool.open(&options)).collect();
     let mut frame: Box<Frame> = Box::default();
     for stream in &mut open {
@@ -114,5 +127,9 @@ fn a_pools_streams_end_with_their_feeds() {
     let handles: Vec<_> = open.iter().map(|stream| stream.status.clone()).collect();
     drop(open);
     pool.join();
-    assert!(handles.iter().all(|h| h.get().ended && h.get().frames == u64::from(FRAMES / 8)));
+    assert!(
+        handles
+            .iter()
+            .all(|h| h.get().ended && h.get().frames == u64::from(FRAMES / 8))
+    );
 }

@@ -22,7 +22,8 @@ pub(super) fn load(path: &Path, index: &MotionIndex) -> Result<Imported, Error> 
     let bytes = std::fs::read(path).map_err(|error| file_error(path, error))?;
     let clip = read(path, &bytes)?.filter(|clip| clip.frames > 0);
     let clip = clip.ok_or_else(|| file_error(path, "no frame of motion in it"))?;
-    let mut imported = prepare(clip, &ImportOptions::default()).map_err(|error| file_error(path, error))?;
+    let mut imported =
+        prepare(clip, &ImportOptions::default()).map_err(|error| file_error(path, error))?;
     index.complete_roles(&mut imported.roles, &imported.clip.skeleton);
     Ok(imported)
 }
@@ -33,27 +34,36 @@ fn read(path: &Path, bytes: &[u8]) -> Result<Option<Clip>, Error> {
     let limits = Limits::default();
     match probe(bytes, &path.to_string_lossy()).map_err(located)? {
         Format::Bvh => {
-            let loaded = bvh::read(bytes, &stem, &BvhOptions::default(), &limits).map_err(located)?;
+            let loaded =
+                bvh::read(bytes, &stem, &BvhOptions::default(), &limits).map_err(located)?;
             Ok(loaded.clips.into_iter().next())
         }
         Format::Amc => {
             let skeleton = skeleton_of(path, &stem)?;
             let text = std::fs::read(&skeleton).map_err(|error| file_error(&skeleton, error))?;
-            let (asf, _) = read_asf(&text, &limits).map_err(|error| file_error(&skeleton, error))?;
-            let loaded = read_amc(bytes, &stem, &asf, &AmcOptions::default(), &limits).map_err(located)?;
+            let (asf, _) =
+                read_asf(&text, &limits).map_err(|error| file_error(&skeleton, error))?;
+            let loaded =
+                read_amc(bytes, &stem, &asf, &AmcOptions::default(), &limits).map_err(located)?;
             Ok(loaded.clips.into_iter().next())
         }
         Format::Mclip => {
             let loaded = mclip::read(bytes, &stem, &limits).map_err(located)?;
             Ok(loaded.clips.into_iter().next())
         }
-        Format::Asf => Err(file_error(path, "a skeleton without motion; name the AMC file")),
+        Format::Asf => Err(file_error(
+            path,
+            "a skeleton without motion; name the AMC file",
+        )),
     }
 }
 
 /// The skeleton of a motion: of the same stem, or of the subject's (`13.asf` of `13_29.amc`), or the only one there.
 fn skeleton_of(motion: &Path, stem: &str) -> Result<PathBuf, Error> {
-    let folder = motion.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    let folder = motion
+        .parent()
+        .filter(|folder| *folder != Path::new(""))
+        .unwrap_or(Path::new("."));
     let entries = std::fs::read_dir(folder).map_err(|error| file_error(folder, error))?;
     let mut skeletons: Vec<PathBuf> = entries
         .filter_map(|entry| Some(entry.ok()?.path()))
@@ -61,11 +71,22 @@ fn skeleton_of(motion: &Path, stem: &str) -> Result<PathBuf, Error> {
         .collect();
     skeletons.sort();
     let subject = stem.split(['_', '-']).next().unwrap_or(stem);
-    let called = |name: &str| skeletons.iter().find(|path| path.file_stem().is_some_and(|stem| stem == name));
-    let only = if skeletons.len() == 1 { skeletons.first() } else { None };
+    let called = |name: &str| {
+        skeletons
+            .iter()
+            .find(|path| path.file_stem().is_some_and(|stem| stem == name))
+    };
+    let only = if skeletons.len() == 1 {
+        skeletons.first()
+    } else {
+        None
+    };
     let found = called(stem).or_else(|| called(subject)).or(only).cloned();
     found.ok_or_else(|| {
         let expected = format!("{stem}.asf or {subject}.asf");
-        file_error(motion, format!("an AMC motion needs its skeleton, and {expected} is not beside it"))
+        file_error(
+            motion,
+            format!("an AMC motion needs its skeleton, and {expected} is not beside it"),
+        )
     })
 }

@@ -147,11 +147,15 @@ pub extern "C" fn mrStop() -> bool {
 /// `pSegments` is null or has room for `*nSegments`; `nSegments` is null or may be read and written.
 #[unsafe(no_mangle)]
 #[allow(non_snake_case)]
-pub unsafe extern "C" fn mrQueryMotionSegments(pSegments: *mut MotionSeg, nSegments: *mut c_int) -> bool {
+pub unsafe extern "C" fn mrQueryMotionSegments(
+    pSegments: *mut MotionSeg,
+    nSegments: *mut c_int,
+) -> bool {
     done(|| {
         // SAFETY: as promised to this function.
         let room = unsafe { memory::get(nSegments, "nSegments") }?;
-        let room = usize::try_from(room).map_err(|_| Error::invalid(format!("nSegments is {room}")))?;
+        let room =
+            usize::try_from(room).map_err(|_| Error::invalid(format!("nSegments is {room}")))?;
         let mut state = state();
         let solution = state.solution()?;
         let mut count = solution.len();

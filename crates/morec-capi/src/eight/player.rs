@@ -48,7 +48,14 @@ pub(super) struct Player {
 impl Player {
     pub(super) fn new(imported: &Arc<Imported>, control: &Arc<Control>) -> Self {
         let (imported, control) = (imported.clone(), control.clone());
-        Self { imported, control, announced: false, frame: 0, anchor: None, since: 0 }
+        Self {
+            imported,
+            control,
+            announced: false,
+            frame: 0,
+            anchor: None,
+            since: 0,
+        }
     }
 
     /// How long it still is until the next frame is due.
@@ -79,7 +86,10 @@ impl Source for Player {
         let (clip, rest) = (&imported.clip, &imported.facts.rest_frames);
         if !self.announced {
             self.announced = true;
-            let rig = Rig { skeleton: clip.skeleton.clone(), roles: imported.roles.clone() };
+            let rig = Rig {
+                skeleton: clip.skeleton.clone(),
+                roles: imported.roles.clone(),
+            };
             return Next::Rig(Actor(0), Arc::new(rig));
         }
         if self.frame >= clip.frames || self.control.stop.load(Relaxed) {
@@ -91,7 +101,11 @@ impl Source for Player {
             return Next::Quiet;
         }
         // The rest pose that a conversion left shows the first pose after it, as everywhere.
-        let shown = if rest.contains(&self.frame) { rest.end.min(clip.frames - 1) } else { self.frame };
+        let shown = if rest.contains(&self.frame) {
+            rest.end.min(clip.frames - 1)
+        } else {
+            self.frame
+        };
         frame.pose.set(clip, shown);
         frame.actor = Actor(0);
         frame.time_secs = self.frame as f64 / clip.rate_hz;

@@ -10,7 +10,9 @@ use std::time::Duration;
 use morec::features::bones_of_clip;
 use morec::import::Imported;
 use morec::index::MotionIndex;
-use morec::live::{Event, EventOptions, EventReader, Overload, Phase, Recognizer, Session, SessionOptions};
+use morec::live::{
+    Event, EventOptions, EventReader, Overload, Phase, Recognizer, Session, SessionOptions,
+};
 
 use super::player::{Control, Player};
 use super::{MotionSeg, NAME_BYTES, clips};
@@ -51,12 +53,21 @@ fn out_of_order(text: &str) -> Error {
 
 impl State {
     pub(super) const fn new() -> Self {
-        Self { index: None, source: None, run: None, solution: VecDeque::new(), found: 0, speed: 1.0 }
+        Self {
+            index: None,
+            source: None,
+            run: None,
+            solution: VecDeque::new(),
+            found: 0,
+            speed: 1.0,
+        }
     }
 
     pub(super) fn init(&mut self, path: &Path) -> Result<(), Error> {
         if self.index.is_some() {
-            return Err(out_of_order("there is an index already: call mrTerminate first"));
+            return Err(out_of_order(
+                "there is an index already: call mrTerminate first",
+            ));
         }
         self.index = Some(index::load(path)?);
         Ok(())
@@ -68,21 +79,33 @@ impl State {
     }
 
     pub(super) fn set_source(&mut self, path: &Path) -> Result<(), Error> {
-        let index = self.index.as_ref().ok_or_else(|| out_of_order("call mrInit first"))?;
+        let index = self
+            .index
+            .as_ref()
+            .ok_or_else(|| out_of_order("call mrInit first"))?;
         if self.source.is_some() {
-            return Err(out_of_order("there is a data source already: call mrStopDataSource first"));
+            return Err(out_of_order(
+                "there is a data source already: call mrStopDataSource first",
+            ));
         }
         if self.run.is_some() {
-            return Err(out_of_order("recognition of another data source goes on: call mrStop first"));
+            return Err(out_of_order(
+                "recognition of another data source goes on: call mrStop first",
+            ));
         }
         let imported = Arc::new(clips::load(path, index)?);
-        self.source = Some(ClipSource { imported, control: Arc::new(Control::new(self.speed)) });
+        self.source = Some(ClipSource {
+            imported,
+            control: Arc::new(Control::new(self.speed)),
+        });
         Ok(())
     }
 
     pub(super) fn set_speed(&mut self, speed: f64) -> Result<(), Error> {
         if speed.is_nan() || speed <= 0.0 {
-            return Err(Error::invalid(format!("speed is {speed}, expected more than 0")));
+            return Err(Error::invalid(format!(
+                "speed is {speed}, expected more than 0"
+            )));
         }
         self.speed = speed;
         if let Some(source) = &self.source {
@@ -93,13 +116,19 @@ impl State {
 
     pub(super) fn stop_source(&mut self) -> Result<(), Error> {
         if self.source.take().is_none() {
-            return Err(out_of_order("there is no data source: call mrSetDataSource first"));
+            return Err(out_of_order(
+                "there is no data source: call mrSetDataSource first",
+            ));
         }
         if let Some(run) = &self.run {
             run.control.stop.store(true, Relaxed);
         }
         // A source that waits for recognition, which waits for its events to be read, would not hear of it.
-        while self.run.as_ref().is_some_and(|run| !run.control.depleted.load(Relaxed)) {
+        while self
+            .run
+            .as_ref()
+            .is_some_and(|run| !run.control.depleted.load(Relaxed))
+        {
             self.read();
             std::thread::sleep(Duration::from_millis(1));
         }
@@ -108,16 +137,25 @@ impl State {
 
     pub(super) fn is_depleted(&mut self) -> bool {
         self.read();
-        self.source.as_ref().is_none_or(|source| source.control.depleted.load(Relaxed))
+        self.source
+            .as_ref()
+            .is_none_or(|source| source.control.depleted.load(Relaxed))
     }
 
     pub(super) fn start(&mut self) -> Result<(), Error> {
-        let index = self.index.as_ref().ok_or_else(|| out_of_order("call mrInit first"))?;
+        let index = self
+            .index
+            .as_ref()
+            .ok_or_else(|| out_of_order("call mrInit first"))?;
         if self.run.is_some() {
-            return Err(out_of_order("recognition goes on already: call mrStop first"));
+            return Err(out_of_order(
+                "recognition goes on already: call mrStop first",
+            ));
         }
         let Some(source) = &mut self.source else {
-            return Err(out_of_order("there is no data source: call mrSetDataSource first"));
+            return Err(out_of_order(
+                "there is no data source: call mrSetDataSource first",
+            ));
         };
         let Imported { clip, roles, facts } = &*source.imported;
         Recognizer::new(&index.model, bones_of_clip(clip, roles, &facts.rest_frames))
@@ -125,7 +163,10 @@ impl State {
         let control = Arc::new(Control::new(self.speed));
         source.control = control.clone();
         let options = SessionOptions {
-            events: EventOptions { early: false, ..Default::default() },
+            events: EventOptions {
+                early: false,
+                ..Default::default()
+            },
             overload: Overload::Wait,
             ..Default::default()
         };
@@ -137,13 +178,20 @@ impl State {
             return Err(MorecStatus::Internal.into());
         };
         (self.solution, self.found) = (VecDeque::new(), 0);
-        self.run = Some(Run { session, events, rate_hz: source.imported.clip.rate_hz, control });
+        self.run = Some(Run {
+            session,
+            events,
+            rate_hz: source.imported.clip.rate_hz,
+            control,
+        });
         Ok(())
     }
 
     pub(super) fn stop(&mut self) -> Result<(), Error> {
         let Some(run) = &self.run else {
-            return Err(out_of_order("there is no recognition to stop: call mrStart first"));
+            return Err(out_of_order(
+                "there is no recognition to stop: call mrStart first",
+            ));
         };
         run.control.stop.store(true, Relaxed);
         while self.run.as_ref().is_some_and(|run| !run.events.is_ended()) {
@@ -167,7 +215,9 @@ impl State {
 
     /// Takes up what recognition has said meanwhile.
     fn read(&mut self) {
-        let (Some(run), Some(index)) = (&mut self.run, &self.index) else { return };
+        let (Some(run), Some(index)) = (&mut self.run, &self.index) else {
+            return;
+        };
         while let Some(event) = run.events.pop() {
             if event.phase != Phase::End {
                 continue;
@@ -176,15 +226,23 @@ impl State {
             if self.solution.len() == KEPT {
                 self.solution.pop_front();
             }
-            let name = index.model.classes().get(event.class.index()).map_or("", |class| &class.name);
-            self.solution.push_back(segment(self.found, &event, name, run.rate_hz));
+            let name = index
+                .model
+                .classes()
+                .get(event.class.index())
+                .map_or("", |class| &class.name);
+            self.solution
+                .push_back(segment(self.found, &event, name, run.rate_hz));
         }
     }
 }
 
 fn segment(number: u64, event: &Event, name: &str, rate_hz: f64) -> MotionSeg {
     let frame = |secs: f64| (secs * rate_hz).round() as u32;
-    let fits = (0..NAME_BYTES.min(name.len() + 1)).rev().find(|&end| name.is_char_boundary(end)).unwrap_or(0);
+    let fits = (0..NAME_BYTES.min(name.len() + 1))
+        .rev()
+        .find(|&end| name.is_char_boundary(end))
+        .unwrap_or(0);
     let mut class_name = [0; NAME_BYTES];
     for (to, from) in class_name.iter_mut().zip(&name.as_bytes()[..fits]) {
         *to = *from as c_char;

@@ -34,13 +34,18 @@ impl Given {
     /// A call with a handle that is none never succeeds.
     fn judge(alive: &[usize], number: usize, status: MorecStatus) -> Result<(), TestCaseError> {
         let is_alive = alive.contains(&number);
-        let blamed =
-            matches!(status, MorecStatus::BadHandle) || (number == 0 && status == MorecStatus::NullPointer);
+        let blamed = matches!(status, MorecStatus::BadHandle)
+            || (number == 0 && status == MorecStatus::NullPointer);
         if is_alive {
             prop_assert_ne!(status, MorecStatus::BadHandle);
         } else {
             // Other faults may be found first, but nothing may be done.
-            prop_assert!(blamed || status != MorecStatus::Ok, "{:?} with {:#x}", status, number);
+            prop_assert!(
+                blamed || status != MorecStatus::Ok,
+                "{:?} with {:#x}",
+                status,
+                number
+            );
         }
         prop_assert_ne!(status, MorecStatus::Internal);
         Ok(())
@@ -75,16 +80,31 @@ fn run(calls: &[Call], files: &Files) -> Result<(), TestCaseError> {
         secs: 0.0,
         skeleton: Bones::None,
     };
-    for call in [Call::Load { bytes: usize::MAX, out: true }, create, Call::Finish(none)].iter().chain(calls)
+    for call in [
+        Call::Load {
+            bytes: usize::MAX,
+            out: true,
+        },
+        create,
+        Call::Finish(none),
+    ]
+    .iter()
+    .chain(calls)
     {
         one(call, &bytes, &something, &mut given, files)?;
     }
     mrTerminate();
     for number in given.recognizers {
-        prop_assert_eq!(morec_recognizer_destroy(without_provenance_mut(number)), MorecStatus::Ok);
+        prop_assert_eq!(
+            morec_recognizer_destroy(without_provenance_mut(number)),
+            MorecStatus::Ok
+        );
     }
     for number in given.indexes {
-        prop_assert_eq!(morec_index_destroy(without_provenance_mut(number)), MorecStatus::Ok);
+        prop_assert_eq!(
+            morec_index_destroy(without_provenance_mut(number)),
+            MorecStatus::Ok
+        );
     }
     Ok(())
 }
@@ -117,7 +137,11 @@ fn one(
         Call::Facts(which, size, is_null) => {
             let number = number(which);
             let mut room = Room::of_struct(*size);
-            let facts = if *is_null { null_mut() } else { room.0.as_mut_ptr().cast() };
+            let facts = if *is_null {
+                null_mut()
+            } else {
+                room.0.as_mut_ptr().cast()
+            };
             let status = unsafe { morec_index_facts(without_provenance_mut(number), facts) };
             Given::judge(&given.indexes, number, status)?;
         }
@@ -125,12 +149,26 @@ fn one(
             let (number, mut buffer, mut needed) = (number(which), [1 as c_char; 48], 0);
             let buffer_at = buffer.as_mut_ptr();
             let status = unsafe {
-                morec_index_class_name(without_provenance_mut(number), *class, buffer_at, *size, &mut needed)
+                morec_index_class_name(
+                    without_provenance_mut(number),
+                    *class,
+                    buffer_at,
+                    *size,
+                    &mut needed,
+                )
             };
             Given::judge(&given.indexes, number, status)?;
             prop_assert!(buffer[*size..].iter().all(|c| *c == 1));
         }
-        Call::Create { index, options, size, words, capacity, secs, skeleton } => {
+        Call::Create {
+            index,
+            options,
+            size,
+            words,
+            capacity,
+            secs,
+            skeleton,
+        } => {
             let number = number(index);
             let c = MorecOptions {
                 struct_size: *size,
@@ -144,11 +182,21 @@ fn one(
             };
             let status = with_skeleton(skeleton, |skeleton| {
                 let mut room = Room::of_struct(*size);
-                unsafe { room.0.as_mut_ptr().cast::<MorecOptions>().write(MorecOptions { skeleton, ..c }) };
+                unsafe {
+                    room.0
+                        .as_mut_ptr()
+                        .cast::<MorecOptions>()
+                        .write(MorecOptions { skeleton, ..c })
+                };
                 let mut handle = null_mut();
-                let options = if *options { room.0.as_ptr().cast() } else { null() };
-                let status =
-                    unsafe { morec_recognizer_create(without_provenance_mut(number), options, &mut handle) };
+                let options = if *options {
+                    room.0.as_ptr().cast()
+                } else {
+                    null()
+                };
+                let status = unsafe {
+                    morec_recognizer_create(without_provenance_mut(number), options, &mut handle)
+                };
                 (status, handle.addr())
             });
             Given::judge(&given.indexes, number, status.0)?;
@@ -169,7 +217,12 @@ fn one(
             let status = push(number, frame);
             Given::judge(&given.recognizers, number, status)?;
         }
-        Call::Poll { on, capacity, size, count } => {
+        Call::Poll {
+            on,
+            capacity,
+            size,
+            count,
+        } => {
             let number = number(on);
             let mut room = Box::new(Room([0xEE; 5 * 1024]));
             let (mut taken, places) = (usize::MAX, room.0.as_mut_ptr().cast());
@@ -191,7 +244,11 @@ fn one(
         }
         Call::Reset(which) => {
             let number = number(which);
-            Given::judge(&given.recognizers, number, morec_recognizer_reset(without_provenance_mut(number)))?;
+            Given::judge(
+                &given.recognizers,
+                number,
+                morec_recognizer_reset(without_provenance_mut(number)),
+            )?;
         }
         Call::Stats(which, size) => {
             let number = number(which);
@@ -212,18 +269,35 @@ fn one(
 }
 
 fn with_skeleton<T>(bones: &Bones, then: impl FnOnce(*const MorecSkeleton) -> T) -> T {
-    let Bones::Chain { joints, parent_step, names, offsets, roles } = bones else { return then(null()) };
+    let Bones::Chain {
+        joints,
+        parent_step,
+        names,
+        offsets,
+        roles,
+    } = bones
+    else {
+        return then(null());
+    };
     let count = *joints;
-    let parents: Vec<i32> = (0..count as i32).map(|j| j - 1 + parent_step * i32::from(j == 9)).collect();
+    let parents: Vec<i32> = (0..count as i32)
+        .map(|j| j - 1 + parent_step * i32::from(j == 9))
+        .collect();
     let name = c"Left Arm".as_ptr();
     let (names_given, offsets_given) = (vec![name; count], vec![offsets.unwrap_or(0.0); 3 * count]);
-    let roles_given: Vec<i32> = (0..count as i32).map(|j| if j < 18 { j } else { -1 }).collect();
+    let roles_given: Vec<i32> = (0..count as i32)
+        .map(|j| if j < 18 { j } else { -1 })
+        .collect();
     let skeleton = MorecSkeleton {
         struct_size: size_of::<MorecSkeleton>(),
         joint_count: count,
         parents: parents.as_ptr(),
         names: if *names { names_given.as_ptr() } else { null() },
-        offsets: if offsets.is_some() { offsets_given.as_ptr() } else { null() },
+        offsets: if offsets.is_some() {
+            offsets_given.as_ptr()
+        } else {
+            null()
+        },
         roles: if *roles { roles_given.as_ptr() } else { null() },
     };
     then(&skeleton)
@@ -246,15 +320,23 @@ fn push(handle: usize, shown: &Shown) -> MorecStatus {
     };
     let mut room = Room::of_struct(shown.size);
     unsafe { room.0.as_mut_ptr().cast::<MorecFrame>().write(frame) };
-    let frame = if shown.is_null { null() } else { room.0.as_ptr().cast() };
+    let frame = if shown.is_null {
+        null()
+    } else {
+        room.0.as_ptr().cast()
+    };
     unsafe { morec_recognizer_push(without_provenance_mut(handle), frame) }
 }
 
 fn eight_call(call: Eight, files: &Files) -> Result<(), TestCaseError> {
     match call {
         Eight::Init(which) => {
-            let path =
-                [files.index.as_ptr(), files.index.as_ptr(), files.clip.as_ptr(), null()][which as usize];
+            let path = [
+                files.index.as_ptr(),
+                files.index.as_ptr(),
+                files.clip.as_ptr(),
+                null(),
+            ][which as usize];
             unsafe { mrInit(path) };
         }
         Eight::SetDataSource(which) => {
@@ -271,8 +353,13 @@ fn eight_call(call: Eight, files: &Files) -> Result<(), TestCaseError> {
             let mut places: [MotionSeg; 4] = unsafe { std::mem::zeroed() };
             // More than there is room for is the caller's lie, and not to be seen through.
             let mut n = if segments { n.min(4) } else { n };
-            let segments = if segments { places.as_mut_ptr() } else { null_mut() };
-            let done = unsafe { mrQueryMotionSegments(segments, if count { &mut n } else { null_mut() }) };
+            let segments = if segments {
+                places.as_mut_ptr()
+            } else {
+                null_mut()
+            };
+            let done =
+                unsafe { mrQueryMotionSegments(segments, if count { &mut n } else { null_mut() }) };
             prop_assert!(!done || n >= 0);
         }
         Eight::Terminate => mrTerminate(),

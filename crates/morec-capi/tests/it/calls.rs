@@ -52,7 +52,13 @@ pub enum Call {
 #[derive(Debug, Clone)]
 pub enum Bones {
     None,
-    Chain { joints: usize, parent_step: i32, names: bool, offsets: Option<f64>, roles: bool },
+    Chain {
+        joints: usize,
+        parent_step: i32,
+        names: bool,
+        offsets: Option<f64>,
+        roles: bool,
+    },
 }
 
 #[derive(Debug, Clone)]
@@ -106,31 +112,48 @@ fn size(right: usize) -> impl Strategy<Value = usize> {
 }
 
 fn bones() -> impl Strategy<Value = Bones> {
-    let chain = (0usize..25, -2..2i32, any::<bool>(), prop::option::of(number()), any::<bool>()).prop_map(
-        |(joints, parent_step, names, offsets, roles)| Bones::Chain {
-            joints,
-            parent_step,
-            names,
-            offsets,
-            roles,
-        },
-    );
+    let chain = (
+        0usize..25,
+        -2..2i32,
+        any::<bool>(),
+        prop::option::of(number()),
+        any::<bool>(),
+    )
+        .prop_map(
+            |(joints, parent_step, names, offsets, roles)| Bones::Chain {
+                joints,
+                parent_step,
+                names,
+                offsets,
+                roles,
+            },
+        );
     prop_oneof![2 => Just(Bones::None), 1 => chain]
 }
 
 fn shown() -> impl Strategy<Value = Shown> {
     let joints = prop_oneof![6 => Just(18usize), 1 => 0..30usize];
-    let parts = (size(size_of::<MorecFrame>()), number(), joints, prop::option::weighted(0.9, number()));
-    let more = (prop::option::of(number()), prop_oneof![6 => Just(1), 2 => Just(2), 1 => any::<i32>()]);
-    (any::<u8>(), parts, more).prop_map(|(rare, (size, time_secs, joints, value), (turned, space))| Shown {
-        is_null: rare == 0,
-        size,
-        time_secs,
+    let parts = (
+        size(size_of::<MorecFrame>()),
+        number(),
         joints,
-        value,
-        turned,
-        space,
-    })
+        prop::option::weighted(0.9, number()),
+    );
+    let more = (
+        prop::option::of(number()),
+        prop_oneof![6 => Just(1), 2 => Just(2), 1 => any::<i32>()],
+    );
+    (any::<u8>(), parts, more).prop_map(
+        |(rare, (size, time_secs, joints, value), (turned, space))| Shown {
+            is_null: rare == 0,
+            size,
+            time_secs,
+            joints,
+            value,
+            turned,
+            space,
+        },
+    )
 }
 
 fn eight() -> impl Strategy<Value = Eight> {
@@ -142,34 +165,55 @@ fn eight() -> impl Strategy<Value = Eight> {
         Just(Eight::IsDepleted),
         Just(Eight::Start),
         Just(Eight::Stop),
-        (prop_oneof![0..5i32, any::<i32>()], any::<bool>(), any::<bool>())
+        (
+            prop_oneof![0..5i32, any::<i32>()],
+            any::<bool>(),
+            any::<bool>()
+        )
             .prop_map(|(n, segments, count)| Eight::Query(n, segments, count)),
         Just(Eight::Terminate),
     ]
 }
 
 pub fn call() -> impl Strategy<Value = Call> {
-    let words = (prop_oneof![9 => 1..3i32, 1 => any::<i32>()], prop_oneof![9 => 0..2i32, 1 => any::<i32>()]);
-    let words =
-        (words, prop_oneof![4 => Just(0), 1 => any::<i32>()], prop_oneof![9 => 0..2i32, 1 => any::<i32>()])
-            .prop_map(|((handedness, up), roles, flags)| [handedness, up, roles, flags]);
+    let words = (
+        prop_oneof![9 => 1..3i32, 1 => any::<i32>()],
+        prop_oneof![9 => 0..2i32, 1 => any::<i32>()],
+    );
+    let words = (
+        words,
+        prop_oneof![4 => Just(0), 1 => any::<i32>()],
+        prop_oneof![9 => 0..2i32, 1 => any::<i32>()],
+    )
+        .prop_map(|((handedness, up), roles, flags)| [handedness, up, roles, flags]);
     let options = (
         words,
         prop_oneof![6 => Just(0usize), 1 => any::<usize>()],
         prop_oneof![5 => Just(0.0), 1 => number()],
     );
-    let create = (which(), any::<u8>(), size(size_of::<MorecOptions>()), options, bones()).prop_map(
-        |(index, rare, size, (words, capacity, secs), skeleton)| Call::Create {
-            index,
-            options: rare != 0,
-            size,
-            words,
-            // As much as can be asked for would be taken.
-            capacity: if capacity > 1 << 12 { capacity | 1 << 30 } else { capacity },
-            secs,
-            skeleton,
-        },
-    );
+    let create = (
+        which(),
+        any::<u8>(),
+        size(size_of::<MorecOptions>()),
+        options,
+        bones(),
+    )
+        .prop_map(
+            |(index, rare, size, (words, capacity, secs), skeleton)| Call::Create {
+                index,
+                options: rare != 0,
+                size,
+                words,
+                // As much as can be asked for would be taken.
+                capacity: if capacity > 1 << 12 {
+                    capacity | 1 << 30
+                } else {
+                    capacity
+                },
+                secs,
+                skeleton,
+            },
+        );
     prop_oneof![
         2 => (prop_oneof![4 => Just(usize::MAX), 1 => any::<usize>()], any::<u8>())
             .prop_map(|(bytes, rare)| Call::Load { bytes, out: rare != 0 }),

@@ -16,7 +16,12 @@ use crate::made;
 fn lines(found: &[Detection]) -> String {
     found.iter().fold(String::new(), |mut text, d| {
         let class = index().model.class_name(d.class);
-        writeln!(text, "{class} {:.4} {:.4} {:.4}", d.start_secs, d.stop_secs, d.score).unwrap();
+        writeln!(
+            text,
+            "{class} {:.4} {:.4} {:.4}",
+            d.start_secs, d.stop_secs, d.score
+        )
+        .unwrap();
         text
     })
 }
@@ -27,7 +32,9 @@ fn stream(path: &Path) -> String {
     let mut text = String::new();
     for (time_secs, pose) in &poses {
         write!(text, "{time_secs:?}").unwrap();
-        kit::positions(pose).iter().for_each(|c| write!(text, " {c:?}").unwrap());
+        kit::positions(pose)
+            .iter()
+            .for_each(|c| write!(text, " {c:?}").unwrap());
         text.push('\n');
     }
     std::fs::write(path, text).unwrap();
@@ -56,7 +63,10 @@ fn the_examples_build_and_run() {
     for compiler in &compilers {
         let sanitizes = compiler.sanitizes(&files.folder);
         if !sanitizes {
-            eprintln!("{}: skipped the sanitizers, which do not work here", compiler.command);
+            eprintln!(
+                "{}: skipped the sanitizers, which do not work here",
+                compiler.command
+            );
         }
         for link in [Link::Static, Link::Shared] {
             for sanitize in [false, true] {
@@ -65,7 +75,9 @@ fn the_examples_build_and_run() {
                 }
                 let run = |source: &str, arguments: &[&str], input: Option<&Path>| {
                     let program = files.path(&format!("{}-{link:?}-{sanitize}", compiler.command));
-                    compiler.build(&examples().join(source), &program, link, sanitize).unwrap();
+                    compiler
+                        .build(&examples().join(source), &program, link, sanitize)
+                        .unwrap();
                     let mut command = Command::new(&program);
                     command.args(arguments);
                     if let Some(input) = input {
@@ -75,12 +87,20 @@ fn the_examples_build_and_run() {
                 };
                 let (index, clip) = (files.index.to_str().unwrap(), files.clip.to_str().unwrap());
                 let about = format!("{compiler:?}, {link:?}, sanitized: {sanitize}");
-                assert_eq!(run("stream.c", &[index], Some(&poses)), of_stream, "{about}");
+                assert_eq!(
+                    run("stream.c", &[index], Some(&poses)),
+                    of_stream,
+                    "{about}"
+                );
                 let listing = match compiler.language {
                     Language::C => "listing_4_1.c",
                     Language::Cpp => "listing_4_1.cpp",
                 };
-                assert_eq!(run(listing, &[index, clip, "inf"], None), of_clip, "{about}");
+                assert_eq!(
+                    run(listing, &[index, clip, "inf"], None),
+                    of_clip,
+                    "{about}"
+                );
                 eprintln!("{about}: runs");
             }
         }
@@ -89,7 +109,10 @@ fn the_examples_build_and_run() {
 
 #[test]
 fn a_program_that_is_told_nonsense_says_so() {
-    let Some(compiler) = Compiler::all().into_iter().find(|c| c.language == Language::C) else {
+    let Some(compiler) = Compiler::all()
+        .into_iter()
+        .find(|c| c.language == Language::C)
+    else {
         eprintln!("skipped: no compiler of C here (cc, gcc, clang)");
         return;
     };
@@ -98,7 +121,14 @@ fn a_program_that_is_told_nonsense_says_so() {
     }
     let files = eight::files();
     let program = files.path("nonsense");
-    compiler.build(&examples().join("listing_4_1.c"), &program, Link::Static, false).unwrap();
+    compiler
+        .build(
+            &examples().join("listing_4_1.c"),
+            &program,
+            Link::Static,
+            false,
+        )
+        .unwrap();
     let (index, clip) = (files.index.to_str().unwrap(), files.clip.to_str().unwrap());
     for (arguments, word) in [
         ([clip, clip, "1"], "not a morec index"),
@@ -123,7 +153,9 @@ fn the_header_may_be_included_twice_and_after_others() {
     std::fs::write(&source, text).unwrap();
     for compiler in Compiler::all() {
         let program = folder.path(&format!("twice-{}", compiler.command));
-        compiler.build(&source, &program, Link::Nothing, false).unwrap();
+        compiler
+            .build(&source, &program, Link::Nothing, false)
+            .unwrap();
         succeed(&mut Command::new(&program)).unwrap();
     }
 }

@@ -25,21 +25,36 @@ impl Compiler {
         let mut seen = Vec::new();
         let mut found = Vec::new();
         for (command, language) in c.into_iter().chain(cpp) {
-            let Ok(output) = Command::new(command).arg("--version").output() else { continue };
+            let Ok(output) = Command::new(command).arg("--version").output() else {
+                continue;
+            };
             // `cc` is one of the others, by another name.
             let text = String::from_utf8_lossy(&output.stdout).replacen(command, "", 1);
             if output.status.success() && !seen.contains(&(text.clone(), language)) {
                 seen.push((text, language));
-                found.push(Compiler { command: command.to_owned(), language });
+                found.push(Compiler {
+                    command: command.to_owned(),
+                    language,
+                });
             }
         }
         found
     }
 
     /// Compiles `source` into `program`; the strictest warnings are errors.
-    pub fn build(&self, source: &Path, program: &Path, link: Link, sanitize: bool) -> Result<(), String> {
+    pub fn build(
+        &self,
+        source: &Path,
+        program: &Path,
+        link: Link,
+        sanitize: bool,
+    ) -> Result<(), String> {
         let mut command = Command::new(&self.command);
-        let standard = if self.language == Language::C { "-std=c99" } else { "-std=c++11" };
+        let standard = if self.language == Language::C {
+            "-std=c99"
+        } else {
+            "-std=c++11"
+        };
         command.args([standard, "-Wall", "-Wextra", "-pedantic", "-Werror", "-g"]);
         if sanitize {
             command.args(["-fsanitize=address,undefined", "-fno-sanitize-recover=all"]);
@@ -48,17 +63,24 @@ impl Compiler {
             command.args(["-x", "c++"]);
         }
         command.arg(source).args(["-x", "none"]);
-        command.arg("-I").arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("include"));
+        command
+            .arg("-I")
+            .arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("include"));
         link.add_to(&mut command);
         succeed(command.arg("-o").arg(program)).map(|_| ())
     }
 
     /// Whether programs with sanitizers can be built and run here.
     pub fn sanitizes(&self, folder: &Path) -> bool {
-        let (source, program) = (folder.join("empty.c"), folder.join(format!("empty-{}", self.command)));
+        let (source, program) = (
+            folder.join("empty.c"),
+            folder.join(format!("empty-{}", self.command)),
+        );
         std::fs::write(&source, "int main(void) { return 0; }\n").unwrap();
         let built = self.build(&source, &program, Link::Nothing, true);
-        built.and_then(|()| succeed(&mut Command::new(&program))).is_ok()
+        built
+            .and_then(|()| succeed(&mut Command::new(&program)))
+            .is_ok()
     }
 }
 
@@ -81,7 +103,15 @@ impl Link {
                 let system: &[&str] = if cfg!(target_os = "macos") {
                     &["-lSystem", "-lc", "-lm"]
                 } else {
-                    &["-lgcc_s", "-lutil", "-lrt", "-lpthread", "-lm", "-ldl", "-lc"]
+                    &[
+                        "-lgcc_s",
+                        "-lutil",
+                        "-lrt",
+                        "-lpthread",
+                        "-lm",
+                        "-ldl",
+                        "-lc",
+                    ]
                 };
                 command.args(system);
             }
@@ -95,12 +125,18 @@ impl Link {
 
 /// Where the library lies that was built with these tests: beside them.
 fn libraries() -> PathBuf {
-    std::env::current_exe().unwrap().parent().unwrap().to_owned()
+    std::env::current_exe()
+        .unwrap()
+        .parent()
+        .unwrap()
+        .to_owned()
 }
 
 /// Runs a command; its output, or what went wrong.
 pub fn succeed(command: &mut Command) -> Result<Output, String> {
-    let output = command.output().map_err(|error| format!("{command:?}: {error}"))?;
+    let output = command
+        .output()
+        .map_err(|error| format!("{command:?}: {error}"))?;
     if output.status.success() {
         return Ok(output);
     }

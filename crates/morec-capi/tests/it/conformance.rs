@@ -21,7 +21,10 @@ fn every_case_gives_what_the_recogniser_gives() {
             inline.push_all(&poses, &mut expected);
             expected.extend_from_slice(inline.finish());
             let shown = |role: &Role| poses.iter().any(|(_, pose)| pose.get(*role).is_some());
-            let roles = Role::ALL.into_iter().filter(shown).fold(0, |mask, role| mask | 1 << role.index());
+            let roles = Role::ALL
+                .into_iter()
+                .filter(shown)
+                .fold(0, |mask, role| mask | 1 << role.index());
             for flags in [0, MOREC_EARLY_EVENTS] {
                 let mut options = options();
                 (options.roles, options.flags) = (roles, flags);

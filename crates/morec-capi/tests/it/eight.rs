@@ -48,7 +48,11 @@ pub fn files() -> &'static Files {
         let mut bvh = Vec::new();
         bvh::write(&kit::take(60.0).clip, &mut bvh).unwrap();
         std::fs::write(folder.join("performance.bvh"), bvh).unwrap();
-        Files { folder, index, clip }
+        Files {
+            folder,
+            index,
+            clip,
+        }
     })
 }
 
@@ -65,7 +69,11 @@ pub fn expected() -> Vec<Detection> {
 fn query(most: usize) -> Vec<MotionSeg> {
     let mut segments: Vec<MotionSeg> = vec![unsafe { std::mem::zeroed() }; most];
     let mut count = most as i32;
-    assert!(unsafe { mrQueryMotionSegments(segments.as_mut_ptr(), &mut count) }, "{}", last_error());
+    assert!(
+        unsafe { mrQueryMotionSegments(segments.as_mut_ptr(), &mut count) },
+        "{}",
+        last_error()
+    );
     segments.truncate(count as usize);
     segments
 }
@@ -73,7 +81,11 @@ fn query(most: usize) -> Vec<MotionSeg> {
 fn begin(files: &Files, speed: f64) {
     assert!(unsafe { mrInit(files.index.as_ptr()) }, "{}", last_error());
     assert!(mrSetDataSourceSpeed(speed));
-    assert!(unsafe { mrSetDataSource(files.clip.as_ptr()) }, "{}", last_error());
+    assert!(
+        unsafe { mrSetDataSource(files.clip.as_ptr()) },
+        "{}",
+        last_error()
+    );
     assert!(mrStart(), "{}", last_error());
 }
 
@@ -90,10 +102,21 @@ fn the_solution_is_what_the_recogniser_finds() {
     let solution = query(8);
     assert_eq!(solution.len(), expected.len());
     for ((segment, expected), number) in solution.iter().zip(&expected).zip(1..) {
-        assert_eq!((segment.start_secs, segment.stop_secs), (expected.start_secs, expected.stop_secs));
-        assert_eq!((segment.confidence, segment.number), (expected.score, number));
-        assert_eq!(segment.stop_frame, (expected.stop_secs * 60.0).round() as u32);
-        let name = unsafe { CStr::from_ptr(segment.class_name.as_ptr()) }.to_str().unwrap();
+        assert_eq!(
+            (segment.start_secs, segment.stop_secs),
+            (expected.start_secs, expected.stop_secs)
+        );
+        assert_eq!(
+            (segment.confidence, segment.number),
+            (expected.score, number)
+        );
+        assert_eq!(
+            segment.stop_frame,
+            (expected.stop_secs * 60.0).round() as u32
+        );
+        let name = unsafe { CStr::from_ptr(segment.class_name.as_ptr()) }
+            .to_str()
+            .unwrap();
         assert_eq!(name, kit::index().model.class_name(expected.class));
         assert_eq!(name.len(), segment.class_name_bytes as usize);
     }
@@ -133,7 +156,10 @@ fn a_wrong_order_is_refused_and_harms_nothing() {
     assert!(mrStart() && !mrStart());
     while !mrIsDataSourceDepleted() {}
     assert!(mrStopDataSource() && !mrStopDataSource());
-    assert!(!unsafe { mrSetDataSource(clip) }, "recognition of the other goes on");
+    assert!(
+        !unsafe { mrSetDataSource(clip) },
+        "recognition of the other goes on"
+    );
     assert!(mrStop() && !mrStop());
     assert_eq!(query(9).len(), 2);
     // And once more, with the same index.
@@ -190,6 +216,10 @@ fn an_amc_finds_its_skeleton_and_a_source_without_a_body_is_refused() {
     assert!(source(&with, "wave.amc"), "{}", last_error());
     // One arm is nobody.
     assert!(!mrStart());
-    assert!(last_error().contains("none of the bones"), "{}", last_error());
+    assert!(
+        last_error().contains("none of the bones"),
+        "{}",
+        last_error()
+    );
     mrTerminate();
 }

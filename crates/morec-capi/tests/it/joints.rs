@@ -28,7 +28,11 @@ impl Caller {
     /// From our axes to the caller's: the world is turned first, then everything mirrored.
     fn turn(&self, in_world: bool) -> Quat {
         let turned = in_world && self.up_axis == MorecUpAxis::Z;
-        if turned { Axis::X.rotation(std::f64::consts::FRAC_PI_2) } else { Quat::identity() }
+        if turned {
+            Axis::X.rotation(std::f64::consts::FRAC_PI_2)
+        } else {
+            Quat::identity()
+        }
     }
 
     fn position(&self, p: Vec3, in_world: bool) -> [f64; 3] {
@@ -58,7 +62,9 @@ impl Caller {
 
     fn offsets(&self) -> Vec<f64> {
         let joints = self.clip.skeleton.joints().iter();
-        joints.flat_map(|joint| self.position(joint.offset, joint.parent.is_none())).collect()
+        joints
+            .flat_map(|joint| self.position(joint.offset, joint.parent.is_none()))
+            .collect()
     }
 }
 
@@ -73,28 +79,54 @@ enum Telling {
     World,
 }
 
-fn run(index: &Index, caller: &Caller, telling: Telling, roles: Option<&RoleMap>) -> Vec<Detection> {
+fn run(
+    index: &Index,
+    caller: &Caller,
+    telling: Telling,
+    roles: Option<&RoleMap>,
+) -> Vec<Detection> {
     let clip = &caller.clip;
     let count = clip.skeleton.len();
     let joints = clip.skeleton.joints();
-    let names: Vec<CString> = joints.iter().map(|j| CString::new(j.name.as_str()).unwrap()).collect();
+    let names: Vec<CString> = joints
+        .iter()
+        .map(|j| CString::new(j.name.as_str()).unwrap())
+        .collect();
     let names: Vec<_> = names.iter().map(|name| name.as_ptr()).collect();
-    let parents: Vec<i32> = joints.iter().map(|j| j.parent.map_or(-1, |p| p as i32)).collect();
+    let parents: Vec<i32> = joints
+        .iter()
+        .map(|j| j.parent.map_or(-1, |p| p as i32))
+        .collect();
     let offsets = caller.offsets();
-    let role = |j| Role::ALL.into_iter().find(|r| roles.is_some_and(|roles| roles.joint(*r) == Some(j)));
-    let roles_given: Vec<i32> = (0..count).map(|j| role(j).map_or(-1, |r| r.index() as i32)).collect();
+    let role = |j| {
+        Role::ALL
+            .into_iter()
+            .find(|r| roles.is_some_and(|roles| roles.joint(*r) == Some(j)))
+    };
+    let roles_given: Vec<i32> = (0..count)
+        .map(|j| role(j).map_or(-1, |r| r.index() as i32))
+        .collect();
     let skeleton = MorecSkeleton {
         struct_size: size_of::<MorecSkeleton>(),
         joint_count: count,
         parents: parents.as_ptr(),
         names: names.as_ptr(),
-        offsets: if telling == Telling::Locals { null() } else { offsets.as_ptr() },
-        roles: if roles.is_some() { roles_given.as_ptr() } else { null() },
+        offsets: if telling == Telling::Locals {
+            null()
+        } else {
+            offsets.as_ptr()
+        },
+        roles: if roles.is_some() {
+            roles_given.as_ptr()
+        } else {
+            null()
+        },
     };
     let mut options = kit::options();
     options.skeleton = &skeleton;
     (options.handedness, options.up_axis) = (caller.handedness as i32, caller.up_axis as i32);
-    let recognizer = Recognizer::new(index, &options).unwrap_or_else(|s| panic!("{s:?}: {}", last_error()));
+    let recognizer =
+        Recognizer::new(index, &options).unwrap_or_else(|s| panic!("{s:?}: {}", last_error()));
     let mut events = Vec::new();
     for f in 0..clip.frames {
         let (positions, rotations) = told(caller, telling, f);
@@ -104,7 +136,11 @@ fn run(index: &Index, caller: &Caller, telling: Telling, roles: Option<&RoleMap>
             joint_count: count,
             positions: positions.as_ptr(),
             rotations: rotations.as_ptr(),
-            space: if telling == Telling::World { MorecSpace::World } else { MorecSpace::Local } as i32,
+            space: if telling == Telling::World {
+                MorecSpace::World
+            } else {
+                MorecSpace::Local
+            } as i32,
             reserved: 0,
         };
         assert_eq!(recognizer.push(&frame), MorecStatus::Ok, "{}", last_error());
@@ -144,7 +180,11 @@ fn every_way_to_tell_a_skeleton_gives_the_motions_of_the_clip() {
     let index = Index::new(kit::index_bytes());
     for handedness in [MorecHandedness::Right, MorecHandedness::Left] {
         for up_axis in [MorecUpAxis::Y, MorecUpAxis::Z] {
-            let caller = Caller { clip: clip.clone(), handedness, up_axis };
+            let caller = Caller {
+                clip: clip.clone(),
+                handedness,
+                up_axis,
+            };
             for telling in [Telling::Roots, Telling::Locals, Telling::World] {
                 // Without offsets, names have to say what the tree cannot; here roles are given.
                 let found = run(&index, &caller, telling, Some(&roles));

@@ -21,7 +21,11 @@ pub fn index_bytes() -> &'static [u8] {
     static BYTES: OnceLock<Vec<u8>> = OnceLock::new();
     BYTES.get_or_init(|| {
         let provenance = Provenance::default();
-        let index = MotionIndex { model: made::model().into(), roles: BTreeMap::new(), provenance };
+        let index = MotionIndex {
+            model: made::model().into(),
+            roles: BTreeMap::new(),
+            provenance,
+        };
         index.to_bytes().unwrap()
     })
 }
@@ -49,14 +53,25 @@ fn committed(name: &str) -> Vec<u8> {
 
 /// A person who performs some gestures.
 pub fn take(rate_hz: f64) -> Take {
-    let person = Person { hand: Side::Right, ..Person::draw(90, 1) };
-    let script = Script::new(90, person).rest(0.5).play("push").rest(1.5).play("bow").rest(0.8);
+    let person = Person {
+        hand: Side::Right,
+        ..Person::draw(90, 1)
+    };
+    let script = Script::new(90, person)
+        .rest(0.5)
+        .play("push")
+        .rest(1.5)
+        .play("bow")
+        .rest(0.8);
     script.film("performance", rate_hz).unwrap()
 }
 
 /// The text of the last failure on this thread.
 pub fn last_error() -> String {
-    unsafe { CStr::from_ptr(morec_last_error()) }.to_str().unwrap().to_owned()
+    unsafe { CStr::from_ptr(morec_last_error()) }
+        .to_str()
+        .unwrap()
+        .to_owned()
 }
 
 /// An index handle that is given back when it goes out of sight.
@@ -127,7 +142,8 @@ impl Recognizer {
     pub fn poll(&self, most: usize) -> Vec<MorecEvent> {
         let mut events: Vec<MorecEvent> = vec![unsafe { zeroed() }; most];
         let (size, mut count) = (size_of::<MorecEvent>(), usize::MAX);
-        let status = unsafe { morec_recognizer_poll(self.0, events.as_mut_ptr(), size, most, &mut count) };
+        let status =
+            unsafe { morec_recognizer_poll(self.0, events.as_mut_ptr(), size, most, &mut count) };
         assert_eq!(status, MorecStatus::Ok, "{}", last_error());
         events.truncate(count);
         events
@@ -138,18 +154,30 @@ impl Recognizer {
         let mut events = Vec::new();
         for (time_secs, pose) in poses {
             let positions = positions(pose);
-            assert_eq!(self.push(&frame(*time_secs, &positions)), MorecStatus::Ok, "{}", last_error());
+            assert_eq!(
+                self.push(&frame(*time_secs, &positions)),
+                MorecStatus::Ok,
+                "{}",
+                last_error()
+            );
             events.extend(self.poll(4));
         }
         assert_eq!(morec_recognizer_finish(self.0), MorecStatus::Ok);
         events.extend(self.poll(64));
-        events.iter().filter(|e| e.phase == MorecPhase::End as i32).map(detection).collect()
+        events
+            .iter()
+            .filter(|e| e.phase == MorecPhase::End as i32)
+            .map(detection)
+            .collect()
     }
 
     pub fn stats(&self) -> MorecStats {
         let mut stats: MorecStats = unsafe { zeroed() };
         stats.struct_size = size_of::<MorecStats>();
-        assert_eq!(unsafe { morec_recognizer_stats(self.0, &mut stats) }, MorecStatus::Ok);
+        assert_eq!(
+            unsafe { morec_recognizer_stats(self.0, &mut stats) },
+            MorecStatus::Ok
+        );
         stats
     }
 }

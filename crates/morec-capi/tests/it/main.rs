@@ -2,7 +2,11 @@
 
 // What tests share lies outside of test functions, where the lints look for it. Pointers here are those of the tests'
 // own values.
-#![allow(clippy::unwrap_used, clippy::print_stderr, clippy::undocumented_unsafe_blocks)]
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stderr,
+    clippy::undocumented_unsafe_blocks
+)]
 
 mod any_calls;
 mod calls;

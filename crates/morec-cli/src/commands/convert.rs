@@ -42,9 +42,12 @@ pub fn run(args: Args) -> Result<ExitCode> {
     for warning in &opened.warnings {
         eprintln!("morec: {}: {warning}", args.clip.display());
     }
-    let mut clip = one_of(opened.clips, args.character).with_context(|| args.clip.display().to_string())?;
+    let mut clip =
+        one_of(opened.clips, args.character).with_context(|| args.clip.display().to_string())?;
     if let Some(rate_hz) = args.rate {
-        clip = clip.resampled(rate_hz).with_context(|| args.clip.display().to_string())?;
+        clip = clip
+            .resampled(rate_hz)
+            .with_context(|| args.clip.display().to_string())?;
     }
     if args.output == Path::new("-") {
         let mut out = std::io::stdout().lock();

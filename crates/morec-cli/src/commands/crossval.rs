@@ -85,8 +85,10 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     out.flush()?;
     if let Some(folder) = &args.report {
         let timelines = timelines(&outcome.streams, &outcome.truths, &outcome.founds)?;
-        let about =
-            [("labels".to_owned(), args.material.label_source()), ("left out".to_owned(), format!("{by:?}"))];
+        let about = [
+            ("labels".to_owned(), args.material.label_source()),
+            ("left out".to_owned(), format!("{by:?}")),
+        ];
         let training = trained_classes(&material.samples, &material.classes);
         let title = "Cross-validation";
         let report = Report {
@@ -124,7 +126,11 @@ pub fn trained_classes(samples: &[Sample], classes: &[String]) -> Vec<TrainedCla
     let counted = classes.iter().map(|class| {
         let of_class: Vec<&Sample> = samples.iter().filter(|s| s.class == *class).collect();
         let people: BTreeSet<&String> = of_class.iter().filter_map(|s| s.person.as_ref()).collect();
-        TrainedClass { class: class.clone(), samples: of_class.len(), people: known.then_some(people.len()) }
+        TrainedClass {
+            class: class.clone(),
+            samples: of_class.len(),
+            people: known.then_some(people.len()),
+        }
     });
     counted.collect()
 }

@@ -96,9 +96,12 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         if args.plot.is_some() && !found.is_empty() {
             bail!("--plot draws one clip; give one, or leave --plot out");
         }
-        let segmentation = segment(&clip.rows, reader.rate_hz(), &params).context(clip.name.clone())?;
+        let segmentation =
+            segment(&clip.rows, reader.rate_hz(), &params).context(clip.name.clone())?;
         if let Some(path) = &args.plot {
-            let svg = segmentation.chart(&format!("{}: misfit and cuts", clip.name), &[]).svg();
+            let svg = segmentation
+                .chart(&format!("{}: misfit and cuts", clip.name), &[])
+                .svg();
             files::write_whole(path, |out| out.write_all(svg.as_bytes()))
                 .with_context(|| path.display().to_string())?;
         }
@@ -121,7 +124,12 @@ fn params(args: &Args) -> Result<PpcaParams> {
         Direction::Backward => Directions::Backward,
         Direction::Both => Directions::Both,
     };
-    let params = PpcaParams { rise: args.rise, quality: args.quality, directions, ..PpcaParams::default() };
+    let params = PpcaParams {
+        rise: args.rise,
+        quality: args.quality,
+        directions,
+        ..PpcaParams::default()
+    };
     params.check().map_err(anyhow::Error::msg)?;
     Ok(params)
 }

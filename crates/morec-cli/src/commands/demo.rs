@@ -47,7 +47,11 @@ const SEED: u64 = 2009;
 
 /// Seven people, the last of whom is not trained on; every class twice a stream.
 fn spec() -> DatabaseSpec {
-    DatabaseSpec { people: 7, repetitions: 2, ..DatabaseSpec::default() }
+    DatabaseSpec {
+        people: 7,
+        repetitions: 2,
+        ..DatabaseSpec::default()
+    }
 }
 
 fn speed(text: &str) -> Result<f64, String> {
@@ -61,19 +65,38 @@ fn speed(text: &str) -> Result<f64, String> {
 pub fn run(args: &Args) -> Result<ExitCode> {
     let begun = Instant::now();
     let folder = DemoFolder::claim(&args.folder)?;
-    let mut takes = timed("1. Making people and filming them", || Ok(database(SEED, &spec())))?;
-    let Some(unseen) = takes.pop() else { bail!("nobody to show") };
+    let mut takes = timed("1. Making people and filming them", || {
+        Ok(database(SEED, &spec()))
+    })?;
+    let Some(unseen) = takes.pop() else {
+        bail!("nobody to show")
+    };
     folder.write(&takes, &unseen)?;
     println!("{}", folder.contents(&takes, &unseen));
 
     let codes = [
-        step("2. Training on all of them but one", &folder.train(), train::run)?,
-        step("3. Recognising the one never seen", &folder.recognize(), recognize::run)?,
+        step(
+            "2. Training on all of them but one",
+            &folder.train(),
+            train::run,
+        )?,
+        step(
+            "3. Recognising the one never seen",
+            &folder.recognize(),
+            recognize::run,
+        )?,
     ];
     show(&folder, &unseen, args)?;
     let measured = step("4. Measuring", &folder.evaluate(), evaluate::run)?;
-    println!("\n{}\nAll of it took {:.0} s.", folder.farewell(), begun.elapsed().as_secs_f64());
-    let failed = codes.into_iter().chain([measured]).find(|code| *code != ExitCode::SUCCESS);
+    println!(
+        "\n{}\nAll of it took {:.0} s.",
+        folder.farewell(),
+        begun.elapsed().as_secs_f64()
+    );
+    let failed = codes
+        .into_iter()
+        .chain([measured])
+        .find(|code| *code != ExitCode::SUCCESS);
     Ok(failed.unwrap_or(ExitCode::SUCCESS))
 }
 
@@ -114,7 +137,10 @@ fn show(folder: &DemoFolder, take: &Take, args: &Args) -> Result<()> {
         bail!("{}: holds no clip", path.display());
     };
     let clip = prepare(clip, &ImportOptions::default())?.clip;
-    let length = ClipLength { frames: clip.frames, rate_hz: clip.rate_hz };
+    let length = ClipLength {
+        frames: clip.frames,
+        rate_hz: clip.rate_hz,
+    };
     let said = said(&folder.found(), &take.clip.name, length)?;
     let truth = |l: &morec::synth::Label| Truth {
         class: l.class.to_owned(),
@@ -122,10 +148,21 @@ fn show(folder: &DemoFolder, take: &Take, args: &Args) -> Result<()> {
         stop_secs: l.stop_secs,
     };
     let truth: Vec<Truth> = take.labels.iter().map(truth).collect();
-    let title = format!("{}, never seen before, {} times as fast", take.person, args.speed);
-    let scene = Scene { title: &title, clip: &clip, truth: &truth, said: &said };
+    let title = format!(
+        "{}, never seen before, {} times as fast",
+        take.person, args.speed
+    );
+    let scene = Scene {
+        title: &title,
+        clip: &clip,
+        truth: &truth,
+        said: &said,
+    };
     let secs = clip.duration_secs();
-    println!("\nThe {secs:.0} s of {}'s stream, and what was said about it when:\n", take.person);
+    println!(
+        "\nThe {secs:.0} s of {}'s stream, and what was said about it when:\n",
+        take.person
+    );
     match args.quiet {
         true => show::write_events(&scene, &mut std::io::stdout().lock()),
         false => show::play(&scene, args.speed),

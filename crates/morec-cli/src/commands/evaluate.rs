@@ -60,8 +60,10 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let labels = Labels::read(&read(&args.truth)?).with_context(|| args.truth.display().to_string())?;
-    let table = read_found(&read(&args.found)?).with_context(|| args.found.display().to_string())?;
+    let labels =
+        Labels::read(&read(&args.truth)?).with_context(|| args.truth.display().to_string())?;
+    let table =
+        read_found(&read(&args.found)?).with_context(|| args.found.display().to_string())?;
     warn(&args.truth, &labels.warnings);
     warn(&args.found, &table.warnings);
     let mut clips = lengths(&args.clips, &args.read)?;
@@ -72,12 +74,18 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let resolved = labels.resolve(&clips);
     warn(&args.truth, &resolved.warnings);
     let cases = Cases::new(&clips, resolved, &unknown_names, &args.classes)?;
-    cases.notes.iter().for_each(|note| eprintln!("morec: {note}"));
+    cases
+        .notes
+        .iter()
+        .for_each(|note| eprintln!("morec: {note}"));
     // Left-out clips keep their detections out, too, without a word for each.
     let (founds, strangers) = table.resolve(&clips);
     warn(&args.found, &strangers);
     let streams: BTreeSet<&str> = cases.streams.iter().map(|s| s.clip.as_str()).collect();
-    let founds: Vec<_> = founds.into_iter().filter(|f| streams.contains(f.clip.as_str())).collect();
+    let founds: Vec<_> = founds
+        .into_iter()
+        .filter(|f| streams.contains(f.clip.as_str()))
+        .collect();
 
     let evaluation = Evaluation::of(&cases.streams, &cases.truths, &founds)?;
     let mut out = std::io::stdout().lock();
@@ -90,11 +98,18 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if let Some(folder) = &args.report {
         let timelines = timelines(&cases.streams, &cases.truths, &founds)?;
         let named = |path: &Path| path.display().to_string();
-        let about =
-            [("labels".to_owned(), named(&args.truth)), ("detections".to_owned(), named(&args.found))];
+        let about = [
+            ("labels".to_owned(), named(&args.truth)),
+            ("detections".to_owned(), named(&args.found)),
+        ];
         let title = "Detections against labels";
-        let report =
-            Report { title, about: &about, evaluation: &evaluation, timelines: &timelines, training: &[] };
+        let report = Report {
+            title,
+            about: &about,
+            evaluation: &evaluation,
+            timelines: &timelines,
+            training: &[],
+        };
         figures::write_report(folder, &report)?;
     }
     Ok(ExitCode::SUCCESS)
@@ -118,25 +133,34 @@ impl Cases {
         classes: &[String],
     ) -> anyhow::Result<Self> {
         let labelled: BTreeSet<String> = resolved.samples.iter().map(|s| s.clip.clone()).collect();
-        if let Some(class) = classes.iter().find(|c| !resolved.samples.iter().any(|s| s.class == **c)) {
+        if let Some(class) = classes
+            .iter()
+            .find(|c| !resolved.samples.iter().any(|s| s.class == **c))
+        {
             bail!("--classes names {class}, which no label of these clips has");
         }
         let mut notes = Vec::new();
         if !resolved.absent.is_empty() {
             let rows: usize = resolved.absent.values().sum();
             let names = some_of(resolved.absent.keys());
-            notes.push(format!("{rows} labels are of clips that --clips does not hold; left out: {names}"));
+            notes.push(format!(
+                "{rows} labels are of clips that --clips does not hold; left out: {names}"
+            ));
         }
         let counts = |class: &str| classes.is_empty() || classes.iter().any(|c| c == class);
         let counted = resolved.samples.into_iter().filter(|s| counts(&s.class));
         let (lost, kept): (Vec<_>, Vec<_>) = counted.partition(|s| unknown.contains(&s.clip));
         if !lost.is_empty() {
-            notes.push(format!("{} labels lie in clips that --unknown names; left out", lost.len()));
+            notes.push(format!(
+                "{} labels lie in clips that --unknown names; left out",
+                lost.len()
+            ));
         }
         let truths: Vec<Truth> = kept.into_iter().map(Truth::from).collect();
         let known: BTreeSet<&str> = truths.iter().map(|t| t.clip.as_str()).collect();
-        let (used, unlabelled): (Vec<_>, Vec<_>) =
-            clips.iter().partition(|(name, _)| labelled.contains(*name) || unknown.contains(*name));
+        let (used, unlabelled): (Vec<_>, Vec<_>) = clips
+            .iter()
+            .partition(|(name, _)| labelled.contains(*name) || unknown.contains(*name));
         if !unlabelled.is_empty() {
             let names = some_of(unlabelled.iter().map(|(name, _)| *name));
             let count = unlabelled.len();
@@ -151,16 +175,25 @@ impl Cases {
         });
         let streams: Vec<StreamInfo> = streams.filter(|s| s.duration_secs > 0.0).collect();
         if streams.is_empty() {
-            bail!("nothing to measure: no label names any of the clips, and none is given with --unknown");
+            bail!(
+                "nothing to measure: no label names any of the clips, and none is given with --unknown"
+            );
         }
-        Ok(Self { streams, truths, notes })
+        Ok(Self {
+            streams,
+            truths,
+            notes,
+        })
     }
 }
 
 fn read(path: &Path) -> anyhow::Result<Vec<u8>> {
     if path.as_os_str() == "-" {
         let mut bytes = Vec::new();
-        std::io::stdin().lock().read_to_end(&mut bytes).context("standard input")?;
+        std::io::stdin()
+            .lock()
+            .read_to_end(&mut bytes)
+            .context("standard input")?;
         return Ok(bytes);
     }
     files::read(path)
@@ -172,7 +205,11 @@ fn warn(path: &Path, warnings: &[Warning]) {
         eprintln!("morec: {}: {warning}", path.display());
     }
     if warnings.len() > SHOWN {
-        eprintln!("morec: {}: {} more warnings", path.display(), warnings.len() - SHOWN);
+        eprintln!(
+            "morec: {}: {} more warnings",
+            path.display(),
+            warnings.len() - SHOWN
+        );
     }
 }
 
@@ -181,16 +218,28 @@ mod tests {
     use super::*;
 
     fn cases(labels: &str, unknown: &[&str], classes: &[&str]) -> anyhow::Result<Cases> {
-        let length = ClipLength { frames: 300, rate_hz: 30.0 };
+        let length = ClipLength {
+            frames: 300,
+            rate_hz: 30.0,
+        };
         let clips: BTreeMap<String, ClipLength> =
             ["a", "b", "c"].map(|name| (name.to_owned(), length)).into();
         let resolved = Labels::read(labels.as_bytes()).unwrap().resolve(&clips);
         let owned = |names: &[&str]| names.iter().map(|n| (*n).to_owned()).collect::<Vec<_>>();
-        Cases::new(&clips, resolved, &owned(unknown).into_iter().collect(), &owned(classes))
+        Cases::new(
+            &clips,
+            resolved,
+            &owned(unknown).into_iter().collect(),
+            &owned(classes),
+        )
     }
 
     fn streams(cases: &Cases) -> Vec<(&str, bool)> {
-        cases.streams.iter().map(|s| (s.clip.as_str(), s.unknown)).collect()
+        cases
+            .streams
+            .iter()
+            .map(|s| (s.clip.as_str(), s.unknown))
+            .collect()
     }
 
     const LABELS: &str = "clip\tclass\tstart\tstop\na\tx\t0\t30\nb\ty\t0\t30\nz\ty\t0\t30\n";
@@ -199,12 +248,31 @@ mod tests {
     fn clips_without_labels_are_left_out_unless_named_unknown() {
         let plain = cases(LABELS, &[], &[]).unwrap();
         assert_eq!(streams(&plain), [("a", false), ("b", false)]);
-        assert!(plain.notes.iter().any(|n| n.ends_with("left out: z")), "{:?}", plain.notes);
-        assert!(plain.notes.iter().any(|n| n.starts_with("1 clips have no label")), "{:?}", plain.notes);
+        assert!(
+            plain.notes.iter().any(|n| n.ends_with("left out: z")),
+            "{:?}",
+            plain.notes
+        );
+        assert!(
+            plain
+                .notes
+                .iter()
+                .any(|n| n.starts_with("1 clips have no label")),
+            "{:?}",
+            plain.notes
+        );
         let with_unknown = cases(LABELS, &["c", "b"], &[]).unwrap();
-        assert_eq!(streams(&with_unknown), [("a", false), ("b", true), ("c", true)]);
+        assert_eq!(
+            streams(&with_unknown),
+            [("a", false), ("b", true), ("c", true)]
+        );
         assert_eq!(with_unknown.truths.len(), 1);
-        assert!(with_unknown.notes.iter().any(|n| n.starts_with("1 labels lie in clips that --unknown")));
+        assert!(
+            with_unknown
+                .notes
+                .iter()
+                .any(|n| n.starts_with("1 labels lie in clips that --unknown"))
+        );
     }
 
     #[test]
@@ -212,13 +280,21 @@ mod tests {
         let only_x = cases(LABELS, &[], &["x"]).unwrap();
         assert_eq!(streams(&only_x), [("a", false), ("b", true)]);
         assert_eq!(only_x.truths.len(), 1);
-        assert!(cases(LABELS, &[], &["walk"]).unwrap_err().to_string().contains("--classes names walk"));
+        assert!(
+            cases(LABELS, &[], &["walk"])
+                .unwrap_err()
+                .to_string()
+                .contains("--classes names walk")
+        );
     }
 
     #[test]
     fn nothing_to_measure_is_said() {
         assert!(
-            cases("clip\tclass\nz\tx\n", &[], &[]).unwrap_err().to_string().contains("nothing to measure")
+            cases("clip\tclass\nz\tx\n", &[], &[])
+                .unwrap_err()
+                .to_string()
+                .contains("nothing to measure")
         );
     }
 }

@@ -7,7 +7,9 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
 use clap::ValueEnum;
-use morec::cluster::{Clusters, KwasForm, KwasParams, Pairs, Spectrum, adjusted_rand_index, kwas_clusters};
+use morec::cluster::{
+    Clusters, KwasForm, KwasParams, Pairs, Spectrum, adjusted_rand_index, kwas_clusters,
+};
 use morec::features::Rows;
 use morec::labels::Labels;
 use morec::pca::{Keep, Moments, Pca};
@@ -39,7 +41,12 @@ pub struct Args {
     #[arg(long, value_name = "TSV")]
     labels: Option<PathBuf>,
     /// Group samples of these classes only, separated by commas [default: every class of the labels]
-    #[arg(long, value_delimiter = ',', value_name = "CLASSES", requires = "labels")]
+    #[arg(
+        long,
+        value_delimiter = ',',
+        value_name = "CLASSES",
+        requires = "labels"
+    )]
     classes: Vec<String>,
     /// How alike two samples must be to be one cluster, 0 to 1
     #[arg(long, value_name = "TAU", default_value_t = KwasParams::default().tau)]
@@ -122,12 +129,24 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     };
     let (samples, spectra) = spectra(samples, &clips, reader.rate_hz(), pca.as_ref())?;
     let clusters = kwas_clusters(&spectra, &kwas);
-    let agreement = args.labels.is_some().then(|| Agreement::of(&samples, &clusters));
+    let agreement = args
+        .labels
+        .is_some()
+        .then(|| Agreement::of(&samples, &clusters));
     let take = |members: Vec<usize>| members.into_iter().map(|i| samples[i].clone()).collect();
     let mut clusters: Vec<Vec<Sample>> = clusters.members().into_iter().map(take).collect();
     clusters.sort_by_key(|cluster| std::cmp::Reverse(cluster.len()));
-    let (dims, quality) = pca.map_or((reader.set.row_dim(), 1.0), |pca| (pca.dims(), pca.quality()));
-    let grouped = Grouped { kwas, centre: args.centre, dims, quality, clusters, agreement };
+    let (dims, quality) = pca.map_or((reader.set.row_dim(), 1.0), |pca| {
+        (pca.dims(), pca.quality())
+    });
+    let grouped = Grouped {
+        kwas,
+        centre: args.centre,
+        dims,
+        quality,
+        clusters,
+        agreement,
+    };
     let mut out = std::io::stdout().lock();
     if args.json {
         write_json(&mut out, &grouped)?;
@@ -146,8 +165,16 @@ impl Args {
         if self.k == 0 {
             bail!("--k 0: at least one direction must count");
         }
-        let form = if self.normalised { KwasForm::Normalised } else { KwasForm::Printed };
-        Ok(KwasParams { k: self.k, tau: self.tau, form })
+        let form = if self.normalised {
+            KwasForm::Normalised
+        } else {
+            KwasForm::Printed
+        };
+        Ok(KwasParams {
+            k: self.k,
+            tau: self.tau,
+            form,
+        })
     }
 }
 
@@ -165,14 +192,24 @@ fn read_clips(args: &Args, reader: &PoseReader<'_>) -> Result<BTreeMap<String, P
 
 /// The samples of the labels that lie in `clips`.
 fn labelled(args: &Args, clips: &BTreeMap<String, PosedClip>) -> Result<Vec<Sample>> {
-    let Some(path) = &args.labels else { return Ok(Vec::new()) };
+    let Some(path) = &args.labels else {
+        return Ok(Vec::new());
+    };
     let labels = Labels::read(&files::read(path)?).with_context(|| path.display().to_string())?;
-    let resolved = labels.resolve(&clips.iter().map(|(name, clip)| (name.clone(), clip.length)).collect());
+    let resolved = labels.resolve(
+        &clips
+            .iter()
+            .map(|(name, clip)| (name.clone(), clip.length))
+            .collect(),
+    );
     for warning in labels.warnings.iter().chain(&resolved.warnings) {
         eprintln!("morec: {}: {warning}", path.display());
     }
     if !resolved.absent.is_empty() {
-        let (rows, names) = (resolved.absent.values().sum::<usize>(), some_of(resolved.absent.keys()));
+        let (rows, names) = (
+            resolved.absent.values().sum::<usize>(),
+            some_of(resolved.absent.keys()),
+        );
         eprintln!("morec: {rows} labels are of clips that are not there: {names}");
     }
     let wanted = |class: &String| args.classes.is_empty() || args.classes.contains(class);
@@ -188,7 +225,9 @@ fn labelled(args: &Args, clips: &BTreeMap<String, PosedClip>) -> Result<Vec<Samp
         })
         .collect();
     if samples.is_empty() {
-        bail!("no sample to group: no label names any of these clips (labels name clips by file stem)");
+        bail!(
+            "no sample to group: no label names any of these clips (labels name clips by file stem)"
+        );
     }
     Ok(samples)
 }
@@ -197,11 +236,17 @@ fn labelled(args: &Args, clips: &BTreeMap<String, PosedClip>) -> Result<Vec<Samp
 fn cut(reader: &PoseReader<'_>, clips: &BTreeMap<String, PosedClip>) -> Result<Vec<Sample>> {
     let mut samples = Vec::new();
     for (name, clip) in clips {
-        let found = segment(&clip.rows, reader.rate_hz(), &PpcaParams::default()).context(name.clone())?;
+        let found =
+            segment(&clip.rows, reader.rate_hz(), &PpcaParams::default()).context(name.clone())?;
         let mut start_secs = 0.0;
         let end_secs = clip.length.duration_secs();
         for stop_secs in found.cuts.iter().map(|c| c.secs).chain([end_secs]) {
-            samples.push(Sample { clip: name.clone(), start_secs, stop_secs, class: None });
+            samples.push(Sample {
+                clip: name.clone(),
+                start_secs,
+                stop_secs,
+                class: None,
+            });
             start_secs = stop_secs;
         }
     }
@@ -210,7 +255,9 @@ fn cut(reader: &PoseReader<'_>, clips: &BTreeMap<String, PosedClip>) -> Result<V
 
 fn components(clips: &BTreeMap<String, PosedClip>, dim: usize, keep: Keep) -> Result<Pca> {
     let mut moments = Moments::new(dim);
-    clips.values().for_each(|clip| moments.push_rows(&clip.rows));
+    clips
+        .values()
+        .for_each(|clip| moments.push_rows(&clip.rows));
     Ok(Pca::fit(&moments, keep)?)
 }
 
@@ -227,11 +274,16 @@ fn spectra(
         let row = |secs: f64| ((secs * rate_hz).round() as usize).min(rows.len());
         let (start, stop) = (row(sample.start_secs), row(sample.stop_secs));
         if start >= stop {
-            eprintln!("morec: {}: a sample at {:.2} s holds no pose", sample.clip, sample.start_secs);
+            eprintln!(
+                "morec: {}: a sample at {:.2} s holds no pose",
+                sample.clip, sample.start_secs
+            );
             continue;
         }
         let rows = rows.slice(start..stop);
-        spectra.push(Spectrum::of_rows(&pca.map_or_else(|| rows.clone(), |pca| pca.project(&rows))));
+        spectra.push(Spectrum::of_rows(
+            &pca.map_or_else(|| rows.clone(), |pca| pca.project(&rows)),
+        ));
         kept.push(sample);
     }
     Ok((kept, spectra))
@@ -258,17 +310,37 @@ impl Grouped {
         let (clusters, dims, percent) = (self.clusters.len(), self.dims, 100.0 * self.quality);
         let plural = if clusters == 1 { "" } else { "s" };
         let kept = format!("{dims} dimensions, {percent:.1} % of all poses");
-        writeln!(out, "{samples} samples in {clusters} cluster{plural}; {kept}")?;
+        writeln!(
+            out,
+            "{samples} samples in {clusters} cluster{plural}; {kept}"
+        )?;
         for (number, cluster) in self.clusters.iter().enumerate() {
-            writeln!(out, "  cluster {}: {} samples: {}", number + 1, cluster.len(), contents(cluster))?;
+            writeln!(
+                out,
+                "  cluster {}: {} samples: {}",
+                number + 1,
+                cluster.len(),
+                contents(cluster)
+            )?;
         }
-        let Some(agreement) = &self.agreement else { return Ok(()) };
+        let Some(agreement) = &self.agreement else {
+            return Ok(());
+        };
         let pairs = &agreement.pairs;
         writeln!(out, "\nagainst {} classes, pair by pair", agreement.classes)?;
         let mut table = Table::new(["", "one class", "two classes"]);
-        let row = |name: &str, one: u64, two: u64| [name.to_owned(), one.to_string(), two.to_string()];
-        table.row(row("one cluster", pairs.true_positive, pairs.false_positive));
-        table.row(row("two clusters", pairs.false_negative, pairs.true_negative));
+        let row =
+            |name: &str, one: u64, two: u64| [name.to_owned(), one.to_string(), two.to_string()];
+        table.row(row(
+            "one cluster",
+            pairs.true_positive,
+            pairs.false_positive,
+        ));
+        table.row(row(
+            "two clusters",
+            pairs.false_negative,
+            pairs.true_negative,
+        ));
         write!(out, "{table}")?;
         let (rand, adjusted) = (agreement.rand_index, agreement.adjusted_rand_index);
         writeln!(out, "Rand index {rand:.3}, adjusted {adjusted:.3}")
@@ -282,9 +354,16 @@ fn contents(cluster: &[Sample]) -> String {
     for sample in cluster {
         match &sample.class {
             Some(class) => *classes.entry(class).or_default() += 1,
-            None => parts.push(format!("{} {:.2}-{:.2} s", sample.clip, sample.start_secs, sample.stop_secs)),
+            None => parts.push(format!(
+                "{} {:.2}-{:.2} s",
+                sample.clip, sample.start_secs, sample.stop_secs
+            )),
         }
     }
-    parts.extend(classes.iter().map(|(class, count)| format!("{class} {count}")));
+    parts.extend(
+        classes
+            .iter()
+            .map(|(class, count)| format!("{class} {count}")),
+    );
     parts.join(", ")
 }

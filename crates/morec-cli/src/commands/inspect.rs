@@ -80,7 +80,11 @@ pub fn run(args: Args) -> Result<ExitCode> {
         let mut out = std::io::stdout().lock();
         write_json(&mut out, &reports)?;
     }
-    Ok(if failed { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+    Ok(if failed {
+        ExitCode::FAILURE
+    } else {
+        ExitCode::SUCCESS
+    })
 }
 
 fn print(report: &FileReport, full: bool) -> Result<()> {
@@ -95,14 +99,26 @@ fn inspect(path: &std::path::Path, read: &ReadArgs, options: &ImportOptions) -> 
     let opened = files::open(path, read)?;
     let mut imported = Vec::with_capacity(opened.clips.len());
     for clip in opened.clips {
-        imported.push(prepare(clip, options).with_context(|| format!("{}: --roles", path.display()))?);
+        imported
+            .push(prepare(clip, options).with_context(|| format!("{}: --roles", path.display()))?);
     }
-    Ok(Report::new(path, opened.format, opened.skeleton, &imported, opened.warnings))
+    Ok(Report::new(
+        path,
+        opened.format,
+        opened.skeleton,
+        &imported,
+        opened.warnings,
+    ))
 }
 
 fn import_options(args: &Args) -> Result<ImportOptions> {
     let mapping = files::mapping(args.roles.as_deref())?;
-    Ok(ImportOptions { up: args.up, metres_per_unit: args.unit, rest_frames: None, mapping })
+    Ok(ImportOptions {
+        up: args.up,
+        metres_per_unit: args.unit,
+        rest_frames: None,
+        mapping,
+    })
 }
 
 fn metres(text: &str) -> Result<f64, String> {

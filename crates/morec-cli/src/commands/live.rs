@@ -11,7 +11,8 @@ use morec::index::MotionIndex;
 use morec::live::axis::AxisOptions;
 use morec::live::vmc::VmcOptions;
 use morec::live::{
-    EventOptions, EventReader, MAX_ACTORS, Overload, Session, SessionOptions, Source, Status, StatusHandle,
+    EventOptions, EventReader, MAX_ACTORS, Overload, Session, SessionOptions, Source, Status,
+    StatusHandle,
 };
 
 use super::recognize::open_index;
@@ -113,12 +114,20 @@ struct Listening {
 pub fn run(args: &Args) -> Result<ExitCode> {
     let index = open_index(&args.index)?;
     let mut outlets = match args.emit.as_slice() {
-        [] => vec![Outlet::open(&"terminal:-".parse().map_err(anyhow::Error::msg)?)?],
+        [] => vec![Outlet::open(
+            &"terminal:-".parse().map_err(anyhow::Error::msg)?,
+        )?],
         emit => emit.iter().map(Outlet::open).collect::<Result<_>>()?,
     };
-    let options = ImportOptions { mapping: mapping(args.roles.as_deref())?, ..ImportOptions::default() };
-    let mut listening: Vec<Listening> =
-        args.listen.iter().map(|address| listen(address, &index, &options, args)).collect::<Result<_>>()?;
+    let options = ImportOptions {
+        mapping: mapping(args.roles.as_deref())?,
+        ..ImportOptions::default()
+    };
+    let mut listening: Vec<Listening> = args
+        .listen
+        .iter()
+        .map(|address| listen(address, &index, &options, args))
+        .collect::<Result<_>>()?;
     let stop = stop_on_ctrl_c()?;
     let handles: Vec<StatusHandle> = listening.iter().map(|l| l.session.handle()).collect();
     let begun = Instant::now();
@@ -131,7 +140,11 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         for source in &mut listening {
             if let Some(event) = source.reader.wait(nap) {
                 let class = index.model.class_name(event.class);
-                let said = Said { event: &event, class, source: &source.name };
+                let said = Said {
+                    event: &event,
+                    class,
+                    source: &source.name,
+                };
                 tell(&said, &mut outlets, &mut line)?;
             }
             ended &= source.reader.is_ended();
@@ -148,11 +161,22 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         // What the last moments held.
         while let Some(event) = source.reader.pop() {
             let class = index.model.class_name(event.class);
-            tell(&Said { event: &event, class, source: &source.name }, &mut outlets, &mut line)?;
+            tell(
+                &Said {
+                    event: &event,
+                    class,
+                    source: &source.name,
+                },
+                &mut outlets,
+                &mut line,
+            )?;
         }
         eprintln!("morec: {}", summary(&source.name, &status));
     }
-    outlets.iter().filter_map(Outlet::farewell).for_each(|text| eprintln!("morec: {text}"));
+    outlets
+        .iter()
+        .filter_map(Outlet::farewell)
+        .for_each(|text| eprintln!("morec: {text}"));
     Ok(ExitCode::SUCCESS)
 }
 
@@ -169,8 +193,14 @@ fn tell(said: &Said, outlets: &mut [Outlet], line: &mut StatusLine) -> Result<()
     Ok(())
 }
 
-fn listen(address: &Address, index: &MotionIndex, options: &ImportOptions, args: &Args) -> Result<Listening> {
-    let (source, overload, name): (Box<dyn Source>, Overload, String) = match address.kind.as_str() {
+fn listen(
+    address: &Address,
+    index: &MotionIndex,
+    options: &ImportOptions,
+    args: &Args,
+) -> Result<Listening> {
+    let (source, overload, name): (Box<dyn Source>, Overload, String) = match address.kind.as_str()
+    {
         "vmc" => {
             address.allow(&[])?;
             let vmc = VmcOptions {
@@ -183,19 +213,35 @@ fn listen(address: &Address, index: &MotionIndex, options: &ImportOptions, args:
             (Box::new(source), Overload::Drop, name)
         }
         "axis" | "axis+udp" => {
-            let skeleton = args.skeleton.as_deref().map(axis::skeleton).transpose()?.unwrap_or_default();
-            let axis = AxisOptions { skeleton, actors: args.actors.into() };
+            let skeleton = args
+                .skeleton
+                .as_deref()
+                .map(axis::skeleton)
+                .transpose()?
+                .unwrap_or_default();
+            let axis = AxisOptions {
+                skeleton,
+                actors: args.actors.into(),
+            };
             let (source, name) = AxisSource::open(address, &axis)?;
             (Box::new(source), Overload::Drop, name)
         }
-        "json" => (Box::new(JsonSource::open(address)?), Overload::Wait, address.to_string()),
+        "json" => (
+            Box::new(JsonSource::open(address)?),
+            Overload::Wait,
+            address.to_string(),
+        ),
         "json+tcp" => {
             let (source, at) = JsonSource::listen(address)?;
             (Box::new(source), Overload::Wait, format!("json+tcp://{at}"))
         }
         "clip" => {
             let source = ClipSource::open(address, index, options)?;
-            let overload = if source.is_paced() { Overload::Drop } else { Overload::Wait };
+            let overload = if source.is_paced() {
+                Overload::Drop
+            } else {
+                Overload::Wait
+            };
             (Box::new(source), overload, address.to_string())
         }
         other => bail!(
@@ -203,9 +249,23 @@ fn listen(address: &Address, index: &MotionIndex, options: &ImportOptions, args:
         ),
     };
     eprintln!("morec: listening to {name}");
-    let events = EventOptions { early: !args.no_early, refractory_secs: args.refractory };
-    let session_options = SessionOptions { events, overload, ..args.layout.options() };
+    let events = EventOptions {
+        early: !args.no_early,
+        refractory_secs: args.refractory,
+    };
+    let session_options = SessionOptions {
+        events,
+        overload,
+        ..args.layout.options()
+    };
     let (session, readers) = Session::start(&index.model, source, &session_options)?;
-    let reader = readers.into_iter().next().context("a session has a reader")?;
-    Ok(Listening { name, session, reader })
+    let reader = readers
+        .into_iter()
+        .next()
+        .context("a session has a reader")?;
+    Ok(Listening {
+        name,
+        session,
+        reader,
+    })
 }

@@ -87,12 +87,15 @@ pub fn open_index(path: &Path) -> Result<MotionIndex> {
 pub fn run(args: &Args) -> Result<ExitCode> {
     let index = open_index(&args.index)?;
     let mapping = mapping(args.roles.as_deref())?;
-    let options = ImportOptions { mapping, ..ImportOptions::default() };
+    let options = ImportOptions {
+        mapping,
+        ..ImportOptions::default()
+    };
     let paths = expand(&args.clips)?;
     let mut out: Box<dyn Write> = match &args.output {
-        Some(path) => {
-            Box::new(BufWriter::new(File::create(path).with_context(|| path.display().to_string())?))
-        }
+        Some(path) => Box::new(BufWriter::new(
+            File::create(path).with_context(|| path.display().to_string())?,
+        )),
         None => Box::new(std::io::stdout().lock()),
     };
     if args.format == Format::Tsv {
@@ -103,7 +106,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let mut progress = Progress::new(paths.len(), "recognising");
     for path in &paths {
         match recognize_file(path, &index, &options, args, &mut stats) {
-            Ok(found) => found.iter().try_for_each(|f| write_found(&mut out, args.format, f, &index))?,
+            Ok(found) => found
+                .iter()
+                .try_for_each(|f| write_found(&mut out, args.format, f, &index))?,
             Err(error) => {
                 failed = true;
                 progress.suspend(|| eprintln!("morec: {error:#}"));
@@ -116,7 +121,11 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if args.stats {
         eprint!("{stats}");
     }
-    Ok(if failed { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+    Ok(if failed {
+        ExitCode::FAILURE
+    } else {
+        ExitCode::SUCCESS
+    })
 }
 
 /// A detection and what its line says of the clip.
@@ -158,17 +167,30 @@ fn recognize_file(
         if args.stats {
             stats.stages(&index.model, &imported)?;
         }
-        let in_clip = |detection| FoundInClip { clip: clip.name.clone(), rate_hz: clip.rate_hz, detection };
+        let in_clip = |detection| FoundInClip {
+            clip: clip.name.clone(),
+            rate_hz: clip.rate_hz,
+            detection,
+        };
         all.extend(found.into_iter().map(in_clip));
     }
     Ok(all)
 }
 
-fn over_vmc(imported: &Imported, rate_hz: f64, index: &MotionIndex, args: &Args) -> Result<Vec<Detection>> {
+fn over_vmc(
+    imported: &Imported,
+    rate_hz: f64,
+    index: &MotionIndex,
+    args: &Args,
+) -> Result<Vec<Detection>> {
     let loaded = Loaded::of(imported.clone(), Some(rate_hz))?;
     let (found, counts) = recognise_over_vmc(&index.model, &loaded, args.bundle, &args.conditions);
     if args.stats {
-        eprintln!("{}: {}", imported.clip.name, serde_json::to_string(&counts)?);
+        eprintln!(
+            "{}: {}",
+            imported.clip.name,
+            serde_json::to_string(&counts)?
+        );
     }
     Ok(found)
 }
@@ -186,7 +208,10 @@ fn adapt(imported: &mut Imported, index: &MotionIndex, path: &Path, complete: bo
         Model::Svrdm(_) => {
             // Without a root there is an error to come, which says more.
             let reader = PoseReader::new(&index.model, &imported.clip.skeleton, &imported.roles);
-            ("joints", reader.map_or_else(|_| vec![], |reader| reader.missing_pivots().to_vec()))
+            (
+                "joints",
+                reader.map_or_else(|_| vec![], |reader| reader.missing_pivots().to_vec()),
+            )
         }
     };
     if !missing.is_empty() {
@@ -204,9 +229,17 @@ fn missing_roles(imported: &Imported, used: BoneSet) -> Vec<String> {
     if shown.and(used) == used {
         return vec![];
     }
-    let missing: Vec<String> =
-        imported.roles.missing().filter(|r| needed(*r)).map(|r| r.name().to_owned()).collect();
-    if missing.is_empty() { vec!["bones of no length".to_owned()] } else { missing }
+    let missing: Vec<String> = imported
+        .roles
+        .missing()
+        .filter(|r| needed(*r))
+        .map(|r| r.name().to_owned())
+        .collect();
+    if missing.is_empty() {
+        vec!["bones of no length".to_owned()]
+    } else {
+        missing
+    }
 }
 
 fn needed(role: Role) -> bool {
@@ -219,7 +252,11 @@ fn write_found(
     in_clip: &FoundInClip,
     index: &MotionIndex,
 ) -> std::io::Result<()> {
-    let FoundInClip { clip, rate_hz, detection: found } = in_clip;
+    let FoundInClip {
+        clip,
+        rate_hz,
+        detection: found,
+    } = in_clip;
     let class = index.model.class_name(found.class);
     let line = FoundLine {
         clip,

@@ -96,9 +96,17 @@ impl Reduced<'_> {
     fn write(&self, out: &mut impl Write) -> std::io::Result<()> {
         let (clips, rows, values) = (self.clips, self.components.rows(), self.components.dim());
         let plural = if clips == 1 { "" } else { "s" };
-        writeln!(out, "{clips} clip{plural}, {rows} poses of {} pivots, {values} values each", self.pivots)?;
+        writeln!(
+            out,
+            "{clips} clip{plural}, {rows} poses of {} pivots, {values} values each",
+            self.pivots
+        )?;
         let (dims, percent) = (self.dims, 100.0 * self.quality);
-        writeln!(out, "{dims} dimensions keep {percent:.2} %, off by {:.4} a value", self.rms_error)?;
+        writeln!(
+            out,
+            "{dims} dimensions keep {percent:.2} %, off by {:.4} a value",
+            self.rms_error
+        )?;
         writeln!(out)?;
         let mut table = Table::new(["dimensions", "keep", "the last adds"]);
         let mut before = 0.0;
@@ -106,7 +114,11 @@ impl Reduced<'_> {
         for row in self.table.iter().take((self.dims + 4).max(20)) {
             let (keep, adds) = (100.0 * row.quality, 100.0 * (row.quality - before));
             before = row.quality;
-            table.row([row.dims.to_string(), format!("{keep:.2} %"), format!("{adds:.2} %")]);
+            table.row([
+                row.dims.to_string(),
+                format!("{keep:.2} %"),
+                format!("{adds:.2} %"),
+            ]);
         }
         write!(out, "{table}")
     }

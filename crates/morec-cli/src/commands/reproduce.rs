@@ -41,8 +41,10 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<ExitCode> {
     let material = args.material.load(&args.unknown)?;
     let settings = [Setting::Faithful, Setting::Tuned];
-    let settings: Result<Vec<_>> =
-        settings.into_iter().map(|s| Ok((s, args.material.svrdm_options(s)?))).collect();
+    let settings: Result<Vec<_>> = settings
+        .into_iter()
+        .map(|s| Ok((s, args.material.svrdm_options(s)?)))
+        .collect();
     let settings = settings?;
     let study = Study {
         clips: &material.clips,
@@ -85,7 +87,13 @@ fn write(folder: &Path, result: &Reproduction, about: &[(String, String)]) -> Re
     keep("reproduction.json", &serde_json::to_string_pretty(result)?)?;
     for picture in &result.pictures {
         // Names come from clips, which may be called anything.
-        let safe = |c: char| if c.is_alphanumeric() || "_-.".contains(c) { c } else { '_' };
+        let safe = |c: char| {
+            if c.is_alphanumeric() || "_-.".contains(c) {
+                c
+            } else {
+                '_'
+            }
+        };
         let name: String = picture.name.chars().map(safe).collect();
         keep(&format!("{name}.svg"), &picture.svg)?;
         if let Some(table) = &picture.table {
@@ -109,8 +117,18 @@ fn print(result: &Reproduction) {
     }
     print!("{table}");
     println!("\nCut-out samples (§5.3)");
-    let mut table =
-        Table::new(["", "seed", "T", "all P_C", "P_E", "unseen P_C", "P_E", "alike, all", "unseen", "index"]);
+    let mut table = Table::new([
+        "",
+        "seed",
+        "T",
+        "all P_C",
+        "P_E",
+        "unseen P_C",
+        "P_E",
+        "alike, all",
+        "unseen",
+        "index",
+    ]);
     for c in &result.classification {
         table.row([
             c.setting.name().to_owned(),
@@ -127,7 +145,14 @@ fn print(result: &Reproduction) {
     }
     print!("{table}");
     println!("\nStreams (§5.4)");
-    let mut table = Table::new(["", "seed", "accuracy", "F1", "false alarms a minute, unknown", "delay"]);
+    let mut table = Table::new([
+        "",
+        "seed",
+        "accuracy",
+        "F1",
+        "false alarms a minute, unknown",
+        "delay",
+    ]);
     let figure = |v: Option<f64>| v.map_or("–".to_owned(), |v| format!("{v:.3}"));
     for s in &result.streams {
         let e = &s.evaluation;

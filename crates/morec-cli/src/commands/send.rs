@@ -38,7 +38,11 @@ pub struct Args {
     #[arg(required = true, value_name = "CLIP")]
     clips: Vec<PathBuf>,
     /// Where to send them
-    #[arg(long, value_name = "vmc|axis://HOST:PORT", default_value = "vmc://127.0.0.1:39539")]
+    #[arg(
+        long,
+        value_name = "vmc|axis://HOST:PORT",
+        default_value = "vmc://127.0.0.1:39539"
+    )]
     to: Address,
     /// Frames a second
     #[arg(long, value_name = "HZ", default_value = "60", value_parser = rate)]
@@ -77,13 +81,19 @@ pub fn bundling(text: &str) -> Result<Bundling, String> {
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let options = ImportOptions { mapping: mapping(args.roles.as_deref())?, ..ImportOptions::default() };
+    let options = ImportOptions {
+        mapping: mapping(args.roles.as_deref())?,
+        ..ImportOptions::default()
+    };
     let clips = load(&args.clips, &args.read, &options, None, Some(args.rate))?;
     let stop = stop_on_ctrl_c()?;
     let mut to: Box<dyn Receiver> = match args.to.kind.as_str() {
         "vmc" => Box::new(ToVmc::open(args)?),
         "axis" | "axis+udp" => Box::new(ToAxis::open(args, &stop)?),
-        _ => bail!("{}: expected vmc://HOST:PORT, axis://HOST:PORT or axis+udp://HOST:PORT", args.to),
+        _ => bail!(
+            "{}: expected vmc://HOST:PORT, axis://HOST:PORT or axis+udp://HOST:PORT",
+            args.to
+        ),
     };
     eprintln!("morec: sending to {} at {} Hz", args.to, args.rate);
     let (mut time, mut pose, mut frames) = (Time::begin(args), WorldPose::default(), 0u64);
@@ -119,7 +129,11 @@ struct Time {
 
 impl Time {
     fn begin(args: &Args) -> Self {
-        Self { begun: Instant::now(), at_secs: 0.0, speed: args.speed }
+        Self {
+            begun: Instant::now(),
+            at_secs: 0.0,
+            speed: args.speed,
+        }
     }
 
     /// Waits until it is time to send the next frame, and `delay_secs` more.
@@ -158,7 +172,13 @@ impl ToVmc {
         let here = if to.is_ipv4() { "0.0.0.0:0" } else { "[::]:0" };
         let socket = UdpSocket::bind(here).context("UDP socket")?;
         let sender = VmcSender::new(args.bundle, args.every_bone);
-        Ok(Self { socket, to, sender, network: Network::new(&args.conditions), packets: 0 })
+        Ok(Self {
+            socket,
+            to,
+            sender,
+            network: Network::new(&args.conditions),
+            packets: 0,
+        })
     }
 }
 
@@ -183,8 +203,13 @@ impl Receiver for ToVmc {
     }
 
     fn summary(&self) -> String {
-        let Network { lost, overtaken, .. } = self.network;
-        format!(" in {} packets; lost {lost} and delayed {overtaken} of them on purpose", self.packets)
+        let Network {
+            lost, overtaken, ..
+        } = self.network;
+        format!(
+            " in {} packets; lost {lost} and delayed {overtaken} of them on purpose",
+            self.packets
+        )
     }
 }
 
@@ -207,17 +232,22 @@ impl ToAxis {
             std::thread::sleep(Duration::from_millis(20));
         }
         let sender = AxisSender::new(0, "morec", positions);
-        Ok(Self { to, sender, network: Network::new(&args.conditions) })
+        Ok(Self {
+            to,
+            sender,
+            network: Network::new(&args.conditions),
+        })
     }
 }
 
 impl Receiver for ToAxis {
     fn frame(&mut self, _: f64, pose: &WorldPose, roles: &RoleMap) -> std::io::Result<()> {
         let to = &mut self.to;
-        self.network.carry(self.sender.frame(pose, roles), &mut |bytes| {
-            to.send(bytes);
-            Ok(())
-        })
+        self.network
+            .carry(self.sender.frame(pose, roles), &mut |bytes| {
+                to.send(bytes);
+                Ok(())
+            })
     }
 
     fn delay_secs(&mut self) -> f64 {
@@ -225,7 +255,9 @@ impl Receiver for ToAxis {
     }
 
     fn summary(&self) -> String {
-        let Network { lost, overtaken, .. } = self.network;
+        let Network {
+            lost, overtaken, ..
+        } = self.network;
         format!("; lost {lost} and delayed {overtaken} of them on purpose")
     }
 }

@@ -98,10 +98,17 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         .par_iter()
         .map(|path| {
             let report = match smooth(path, args, &target) {
-                Ok(clips) => FileReport::Done { path: path.clone(), clips },
+                Ok(clips) => FileReport::Done {
+                    path: path.clone(),
+                    clips,
+                },
                 Err(error) => FileReport::failed(path, &error),
             };
-            bar.report("smoothing clips", done.fetch_add(1, Ordering::Relaxed) + 1, paths.len());
+            bar.report(
+                "smoothing clips",
+                done.fetch_add(1, Ordering::Relaxed) + 1,
+                paths.len(),
+            );
             report
         })
         .collect();
@@ -117,8 +124,14 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     } else {
         report::write(&mut out, &reports)?;
     }
-    let failed = reports.iter().any(|report| matches!(report, FileReport::Failed { .. }));
-    Ok(if failed { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+    let failed = reports
+        .iter()
+        .any(|report| matches!(report, FileReport::Failed { .. }));
+    Ok(if failed {
+        ExitCode::FAILURE
+    } else {
+        ExitCode::SUCCESS
+    })
 }
 
 /// One file, from reading to writing: a report for each character in it.
@@ -158,7 +171,11 @@ fn smooth(path: &Path, args: &Args, target: &Target) -> Result<Vec<Report>> {
 fn params(clip: &Clip, args: &Args) -> Result<SmoothParams> {
     let metres_per_unit = match args.unit {
         Some(unit) => unit,
-        None => prepare(clip.clone(), &ImportOptions::default())?.facts.metres_per_unit,
+        None => {
+            prepare(clip.clone(), &ImportOptions::default())?
+                .facts
+                .metres_per_unit
+        }
     };
     Ok(SmoothParams {
         angle_rad: args.max_angle.to_radians(),

@@ -94,9 +94,22 @@ enum Layouts {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let index = open_index(&args.index)?;
-    let options = ImportOptions { mapping: mapping(args.roles.as_deref())?, ..ImportOptions::default() };
-    let usual_hz = if args.wire { Some(60.0) } else { args.streams.map(|_| 120.0) };
-    let clips = load(&args.clips, &args.read, &options, Some(&index), args.rate.or(usual_hz))?;
+    let options = ImportOptions {
+        mapping: mapping(args.roles.as_deref())?,
+        ..ImportOptions::default()
+    };
+    let usual_hz = if args.wire {
+        Some(60.0)
+    } else {
+        args.streams.map(|_| 120.0)
+    };
+    let clips = load(
+        &args.clips,
+        &args.read,
+        &options,
+        Some(&index),
+        args.rate.or(usual_hz),
+    )?;
     let clips = Arc::new(clips);
     match args.streams {
         Some(streams) => many::run(&index.model, &clips, streams, args),
@@ -104,7 +117,11 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         None => match args.layout {
             Layouts::Inline => {
                 let most_secs = args.secs.map_or(10.0, |secs| secs / 4.0).min(10.0);
-                inline::tell(&index.model, &clips, Duration::from_secs_f64(most_secs.max(0.0)));
+                inline::tell(
+                    &index.model,
+                    &clips,
+                    Duration::from_secs_f64(most_secs.max(0.0)),
+                );
                 endless::run(&index.model, &clips, LayoutArg::Inline, args)
             }
             Layouts::Stages => endless::run(&index.model, &clips, LayoutArg::Stages, args),

@@ -48,13 +48,20 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         unlabelled_is_background: recipe.unlabelled_is_background(),
     };
     let (model, report) = train_model(&material.clips, &labelling, &recipe, &Bar::new())?;
-    let index =
-        MotionIndex { model, roles: role_names(&material.clips), provenance: provenance(&material, &report) };
+    let index = MotionIndex {
+        model,
+        roles: role_names(&material.clips),
+        provenance: provenance(&material, &report),
+    };
     let bytes = index.to_bytes()?;
     files::write_whole(&args.output, |out| out.write_all(&bytes))
         .with_context(|| args.output.display().to_string())?;
     if let Some(db) = &args.material.db {
-        let name = args.output.file_stem().unwrap_or_default().to_string_lossy();
+        let name = args
+            .output
+            .file_stem()
+            .unwrap_or_default()
+            .to_string_lossy();
         MotionDb::open(db)?.keep_index(&name, &bytes)?;
     }
     if args.json {
@@ -67,14 +74,19 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 
 /// Joint names by role, of the first labelled clip.
 fn role_names(clips: &[TrainClip]) -> BTreeMap<Role, String> {
-    let Some(clip) = clips.iter().find(|c| c.source == Source::Labelled) else { return BTreeMap::new() };
+    let Some(clip) = clips.iter().find(|c| c.source == Source::Labelled) else {
+        return BTreeMap::new();
+    };
     let joints = clip.clip.skeleton.joints();
     let name = |role: Role| Some((role, joints[clip.roles.joint(role)?].name.clone()));
     Role::ALL.into_iter().filter_map(name).collect()
 }
 
 fn provenance(material: &Material, report: &TrainingReport) -> Provenance {
-    let labelled = material.clips.iter().filter(|c| c.source == Source::Labelled);
+    let labelled = material
+        .clips
+        .iter()
+        .filter(|c| c.source == Source::Labelled);
     Provenance {
         created: dates::now(),
         morec_version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -87,13 +99,27 @@ fn provenance(material: &Material, report: &TrainingReport) -> Provenance {
 fn print_report(report: &TrainingReport, bytes: usize, material: &Material, output: &Path) {
     let mut table = Table::new(["class", "samples", "people"]);
     for class in &report.classes {
-        table.row([class.name.clone(), class.samples.to_string(), class.people.to_string()]);
+        table.row([
+            class.name.clone(),
+            class.samples.to_string(),
+            class.people.to_string(),
+        ]);
     }
     print!("{table}");
     println!("\nbones: {}", report.bones.join(", "));
-    let secs: Vec<String> =
-        report.background_secs.iter().map(|(source, secs)| format!("{source} {secs:.0} s")).collect();
-    println!("background: {}", if secs.is_empty() { "none".to_owned() } else { secs.join(", ") });
+    let secs: Vec<String> = report
+        .background_secs
+        .iter()
+        .map(|(source, secs)| format!("{source} {secs:.0} s"))
+        .collect();
+    println!(
+        "background: {}",
+        if secs.is_empty() {
+            "none".to_owned()
+        } else {
+            secs.join(", ")
+        }
+    );
     match &report.svrdm {
         None => print_templates(report),
         Some(svrdm) => print_svrdm(report, svrdm),
@@ -102,18 +128,35 @@ fn print_report(report: &TrainingReport, bytes: usize, material: &Material, outp
         println!("note: {note}");
     }
     let share = 100.0 * bytes as f64 / material.labelled_bytes.max(1) as f64;
-    println!("\n{}: {bytes} bytes, {share:.1} % of the labelled clips' files", output.display());
+    println!(
+        "\n{}: {bytes} bytes, {share:.1} % of the labelled clips' files",
+        output.display()
+    );
 }
 
 fn print_templates(report: &TrainingReport) {
-    println!("threshold: {:.3}, set by {}", report.threshold, report.threshold_from);
-    let negatives: Vec<String> = report.negatives.iter().map(|(source, n)| format!("{source} {n}")).collect();
+    println!(
+        "threshold: {:.3}, set by {}",
+        report.threshold, report.threshold_from
+    );
+    let negatives: Vec<String> = report
+        .negatives
+        .iter()
+        .map(|(source, n)| format!("{source} {n}"))
+        .collect();
     println!(
         "hard negatives: {}",
-        if negatives.is_empty() { "none".to_owned() } else { negatives.join(", ") }
+        if negatives.is_empty() {
+            "none".to_owned()
+        } else {
+            negatives.join(", ")
+        }
     );
-    let verified =
-        if report.verified { "yes" } else { "no (too little named as background to learn it from)" };
+    let verified = if report.verified {
+        "yes"
+    } else {
+        "no (too little named as background to learn it from)"
+    };
     println!("candidates verified: {verified}");
 }
 
@@ -123,9 +166,22 @@ fn print_svrdm(report: &TrainingReport, svrdm: &SvrdmReport) {
         svrdm.dims,
         100.0 * svrdm.quality
     );
-    let unsure: Vec<String> = svrdm.unsure_signs.iter().map(|s| format!("{:.0} %", 100.0 * s)).collect();
-    println!("samples whose sign is close to flipping, direction by direction: {}", unsure.join(", "));
-    let mut table = Table::new(["branch", "samples", "exemplars", "width", "width in the plane"]);
+    let unsure: Vec<String> = svrdm
+        .unsure_signs
+        .iter()
+        .map(|s| format!("{:.0} %", 100.0 * s))
+        .collect();
+    println!(
+        "samples whose sign is close to flipping, direction by direction: {}",
+        unsure.join(", ")
+    );
+    let mut table = Table::new([
+        "branch",
+        "samples",
+        "exemplars",
+        "width",
+        "width in the plane",
+    ]);
     for branch in &svrdm.branches {
         table.row([
             branch.node.to_string(),

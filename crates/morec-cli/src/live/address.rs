@@ -33,9 +33,18 @@ impl FromStr for Address {
             let (name, value) = text.split_once('=').unwrap_or((text, ""));
             (name.to_owned(), value.to_owned())
         };
-        let options = options.split('&').filter(|o| !o.is_empty()).map(option).collect();
+        let options = options
+            .split('&')
+            .filter(|o| !o.is_empty())
+            .map(option)
+            .collect();
         let typed = text.split('?').next().unwrap_or(text).to_owned();
-        Ok(Self { kind: kind.to_owned(), place: place.to_owned(), options, typed })
+        Ok(Self {
+            kind: kind.to_owned(),
+            place: place.to_owned(),
+            options,
+            typed,
+        })
     }
 }
 
@@ -52,12 +61,16 @@ impl Address {
             .place
             .to_socket_addrs()
             .with_context(|| format!("{self}: expected HOST:PORT, as 127.0.0.1:39539"))?;
-        found.next().with_context(|| format!("{self}: this name has no address"))
+        found
+            .next()
+            .with_context(|| format!("{self}: this name has no address"))
     }
 
     /// The value of an option, as a number if it has one; `None` if it was not given.
     pub fn number(&self, name: &str, bare: f64) -> Result<Option<f64>> {
-        let Some((_, value)) = self.options.iter().find(|(n, _)| n == name) else { return Ok(None) };
+        let Some((_, value)) = self.options.iter().find(|(n, _)| n == name) else {
+            return Ok(None);
+        };
         if value.is_empty() {
             return Ok(Some(bare));
         }
@@ -69,7 +82,11 @@ impl Address {
 
     /// Refuses options that nobody knows.
     pub fn allow(&self, known: &[&str]) -> Result<()> {
-        match self.options.iter().find(|(name, _)| !known.contains(&name.as_str())) {
+        match self
+            .options
+            .iter()
+            .find(|(name, _)| !known.contains(&name.as_str()))
+        {
             Some((name, _)) if known.is_empty() => bail!("{self}: takes no options, found {name}"),
             Some((name, _)) => bail!("{self}: no option {name}; there are {}", known.join(", ")),
             None => Ok(()),
@@ -84,7 +101,10 @@ mod tests {
     #[test]
     fn addresses_are_read_as_they_are_typed() {
         let address: Address = "clip:///tmp/a b.bvh?speed=2&loop".parse().unwrap();
-        assert_eq!((address.kind.as_str(), address.place.as_str()), ("clip", "/tmp/a b.bvh"));
+        assert_eq!(
+            (address.kind.as_str(), address.place.as_str()),
+            ("clip", "/tmp/a b.bvh")
+        );
         assert_eq!(address.number("speed", 1.0).unwrap(), Some(2.0));
         assert_eq!(address.number("loop", 7.0).unwrap(), Some(7.0));
         assert_eq!(address.number("loss", 1.0).unwrap(), None);
@@ -94,7 +114,19 @@ mod tests {
         assert!("vmc".parse::<Address>().is_err() && "vmc://".parse::<Address>().is_err());
         let socket: Address = "vmc://127.0.0.1:39539".parse().unwrap();
         assert_eq!(socket.socket().unwrap().port(), 39539);
-        assert!("vmc://127.0.0.1".parse::<Address>().unwrap().socket().is_err());
-        assert!("clip:a?speed=fast".parse::<Address>().unwrap().number("speed", 1.0).is_err());
+        assert!(
+            "vmc://127.0.0.1"
+                .parse::<Address>()
+                .unwrap()
+                .socket()
+                .is_err()
+        );
+        assert!(
+            "clip:a?speed=fast"
+                .parse::<Address>()
+                .unwrap()
+                .number("speed", 1.0)
+                .is_err()
+        );
     }
 }

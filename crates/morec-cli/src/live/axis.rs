@@ -68,18 +68,32 @@ impl AxisSource {
                 let (sender, came) = sync_channel(WAITING);
                 let closed = closed.clone();
                 let named = thread::Builder::new().name("axis".to_owned());
-                named.spawn(move || connect(at, &sender, &closed)).context("no thread for a connection")?;
+                named
+                    .spawn(move || connect(at, &sender, &closed))
+                    .context("no thread for a connection")?;
                 (From::Tcp(came), address.to_string())
             }
         };
         let receiver = AxisReceiver::new(options);
-        Ok((Self { from, receiver, closed, complained: false, name: name.clone() }, name))
+        Ok((
+            Self {
+                from,
+                receiver,
+                closed,
+                complained: false,
+                name: name.clone(),
+            },
+            name,
+        ))
     }
 
     fn complain(&mut self) {
         if let Some(error) = self.receiver.take_error().filter(|_| !self.complained) {
             self.complained = true;
-            eprintln!("morec: {}: {error}; going on with the next frame", self.name);
+            eprintln!(
+                "morec: {}: {error}; going on with the next frame",
+                self.name
+            );
         }
     }
 }
@@ -107,7 +121,8 @@ impl Source for AxisSource {
                     self.receiver.bytes(wall_now_secs(), &buffer[..length]);
                     self.receiver.cut();
                 }
-                Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
+                Err(error)
+                    if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
                 Err(_) => thread::sleep(WAIT),
             },
         }
@@ -142,7 +157,10 @@ fn pass_on(mut stream: TcpStream, to: &SyncSender<Came>, closed: &AtomicBool) ->
         match stream.read(&mut bytes) {
             Ok(0) => return true,
             Ok(length) => {
-                if to.send(Came::Bytes(bytes[..length].to_vec(), wall_now_secs())).is_err() {
+                if to
+                    .send(Came::Bytes(bytes[..length].to_vec(), wall_now_secs()))
+                    .is_err()
+                {
                     return false;
                 }
             }

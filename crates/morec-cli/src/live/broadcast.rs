@@ -27,10 +27,14 @@ impl Broadcast {
         let at = address.socket()?;
         if address.kind == "axis+udp" {
             let here = if at.is_ipv4() { "0.0.0.0:0" } else { "[::]:0" };
-            return Ok(Broadcast::Udp(UdpSocket::bind(here).context("UDP socket")?, at));
+            return Ok(Broadcast::Udp(
+                UdpSocket::bind(here).context("UDP socket")?,
+                at,
+            ));
         }
-        let listener = TcpListener::bind(at)
-            .with_context(|| format!("cannot listen at {at} (TCP): is another program listening there?"))?;
+        let listener = TcpListener::bind(at).with_context(|| {
+            format!("cannot listen at {at} (TCP): is another program listening there?")
+        })?;
         listener.set_nonblocking(true).context("TCP socket")?;
         Ok(Broadcast::Tcp(listener, Vec::new()))
     }
@@ -45,7 +49,9 @@ impl Broadcast {
 
     /// Takes in who has connected; says how many there are.
     pub fn accept(&mut self) -> usize {
-        let Broadcast::Tcp(listener, listeners) = self else { return 1 };
+        let Broadcast::Tcp(listener, listeners) = self else {
+            return 1;
+        };
         while let Ok((stream, _)) = listener.accept() {
             let ready = stream.set_nonblocking(false).is_ok()
                 && stream.set_write_timeout(Some(PATIENCE)).is_ok()
@@ -61,7 +67,9 @@ impl Broadcast {
     pub fn send(&mut self, bytes: &[u8]) {
         self.accept();
         match self {
-            Broadcast::Tcp(_, listeners) => listeners.retain_mut(|stream| stream.write_all(bytes).is_ok()),
+            Broadcast::Tcp(_, listeners) => {
+                listeners.retain_mut(|stream| stream.write_all(bytes).is_ok())
+            }
             // Nobody listens there yet; they may come.
             Broadcast::Udp(socket, to) => _ = socket.send_to(bytes, *to),
         }

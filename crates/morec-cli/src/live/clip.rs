@@ -114,11 +114,18 @@ impl Source for ClipSource {
         let Loaded { clip, roles, .. } = &self.clips[self.clip];
         if !self.announced {
             self.announced = true;
-            let rig = Rig { skeleton: clip.skeleton.clone(), roles: roles.clone() };
+            let rig = Rig {
+                skeleton: clip.skeleton.clone(),
+                roles: roles.clone(),
+            };
             return Next::Rig(Actor(0), Arc::new(rig));
         }
         if self.frame >= clip.frames {
-            return if self.advance() { Next::Gone(Actor(0)) } else { Next::Ended };
+            return if self.advance() {
+                Next::Gone(Actor(0))
+            } else {
+                Next::Ended
+            };
         }
         let time_secs = self.origin_secs + self.frame as f64 / clip.rate_hz;
         if self.is_paced() {
@@ -139,7 +146,11 @@ impl Source for ClipSource {
         frame.pose.set(clip, self.frame - 1);
         frame.actor = Actor(0);
         frame.wall_secs = wall_now_secs();
-        let jitter_secs = if self.jitter_secs > 0.0 { self.rng.range(0.0, self.jitter_secs) } else { 0.0 };
+        let jitter_secs = if self.jitter_secs > 0.0 {
+            self.rng.range(0.0, self.jitter_secs)
+        } else {
+            0.0
+        };
         frame.time_secs = time_secs + jitter_secs;
         Next::Frame
     }

@@ -69,7 +69,10 @@ impl Pose {
         } else {
             pose.turn(&line)?;
         }
-        let known = pose.positions.iter().any(|p| p.iter().all(|c| c.is_finite()));
+        let known = pose
+            .positions
+            .iter()
+            .any(|p| p.iter().all(|c| c.is_finite()));
         known.then_some(pose)
     }
 
@@ -86,7 +89,9 @@ impl Pose {
         let mut world = [(Vec3::zeros(), Quat::identity()); HUMANOID_BONES];
         self.rotations = vec![Quat::identity(); Role::COUNT];
         for (b, bone) in HUMANOID.iter().enumerate() {
-            let local = bone.role.map_or(Quat::identity(), |role| locals[role.index()]);
+            let local = bone
+                .role
+                .map_or(Quat::identity(), |role| locals[role.index()]);
             // The table faces −Z.
             let [x, y, z] = bone.offset;
             let offset = Vec3::new(-x, y, -z);
@@ -119,7 +124,9 @@ impl Pose {
 
     fn known(&self) -> u32 {
         let known = |p: &Vec3| p.iter().all(|c| c.is_finite());
-        (0..Role::COUNT).filter(|r| known(&self.positions[*r])).fold(0, |mask, r| mask | 1 << r)
+        (0..Role::COUNT)
+            .filter(|r| known(&self.positions[*r]))
+            .fold(0, |mask, r| mask | 1 << r)
     }
 }
 
@@ -180,7 +187,12 @@ impl JsonSource {
         if let Some(at) = self.performers.iter().position(is) {
             return Some(at);
         }
-        let new = Performer { connection, number, gone: false, known: 0 };
+        let new = Performer {
+            connection,
+            number,
+            gone: false,
+            known: 0,
+        };
         if let Some(at) = self.performers.iter().position(|p| p.gone) {
             self.counts.interruptions += 1;
             self.performers[at] = new;
@@ -263,7 +275,10 @@ impl Source for JsonSource {
 fn rig_of(known: u32) -> Rig {
     let mut rig = Rig::of_roles();
     let mut roles = RoleMap::default();
-    for role in Role::ALL.into_iter().filter(|r| known >> r.index() & 1 == 1) {
+    for role in Role::ALL
+        .into_iter()
+        .filter(|r| known >> r.index() & 1 == 1)
+    {
         roles.set(role, Some(role.index()));
     }
     rig.roles = roles;
@@ -276,10 +291,14 @@ mod tests {
 
     #[test]
     fn positions_are_taken_as_they_are() {
-        let pose =
-            Pose::of_line(r#"{"t": 2.5, "actor": 3, "positions": {"head": [0, 1.6, 0.1]}, "note": 1}"#)
-                .unwrap();
-        assert_eq!((pose.time_secs, pose.actor, pose.known()), (Some(2.5), 3, 1 << Role::Head.index()));
+        let pose = Pose::of_line(
+            r#"{"t": 2.5, "actor": 3, "positions": {"head": [0, 1.6, 0.1]}, "note": 1}"#,
+        )
+        .unwrap();
+        assert_eq!(
+            (pose.time_secs, pose.actor, pose.known()),
+            (Some(2.5), 3, 1 << Role::Head.index())
+        );
         assert_eq!(pose.positions[Role::Head.index()], Vec3::new(0.0, 1.6, 0.1));
     }
 

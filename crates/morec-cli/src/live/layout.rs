@@ -22,19 +22,31 @@ impl LayoutArg {
             LayoutArg::Stages => (Layout::Stages, None),
             LayoutArg::Pinned => (Layout::Stages, Some(pin)),
         };
-        SessionOptions { layout, on_thread, ..SessionOptions::default() }
+        SessionOptions {
+            layout,
+            on_thread,
+            ..SessionOptions::default()
+        }
     }
 }
 
 /// Threads in the order in which frames pass them: neighbours go to neighbouring cores.
-const STAGES: [&str; 7] =
-    ["source", "input", "segments", "extraction", "classification", "scoring", "tracking"];
+const STAGES: [&str; 7] = [
+    "source",
+    "input",
+    "segments",
+    "extraction",
+    "classification",
+    "scoring",
+    "tracking",
+];
 
 /// Ties this thread to its core. Where the system allows no such thing, the thread goes where it is sent.
 fn pin(what: &'static str) {
-    let (Some(stage), Some(cores)) =
-        (STAGES.iter().position(|stage| *stage == what), core_affinity::get_core_ids())
-    else {
+    let (Some(stage), Some(cores)) = (
+        STAGES.iter().position(|stage| *stage == what),
+        core_affinity::get_core_ids(),
+    ) else {
         return;
     };
     if let Some(core) = cores.get(stage % cores.len().max(1)) {

@@ -36,14 +36,16 @@ impl Lines {
     /// Standard input.
     pub fn stdin() -> Result<Self> {
         let (sender, came) = sync_channel(WAITING);
-        spawn("standard input", move || forward(0, std::io::stdin().lock(), &sender))?;
+        spawn("standard input", move || {
+            forward(0, std::io::stdin().lock(), &sender)
+        })?;
         Ok(Self { came })
     }
 
     /// Whoever connects to `address` over TCP. Returns where it listens, too.
     pub fn listen(address: SocketAddr) -> Result<(Self, SocketAddr)> {
-        let listener =
-            TcpListener::bind(address).with_context(|| format!("cannot listen at {address} (TCP)"))?;
+        let listener = TcpListener::bind(address)
+            .with_context(|| format!("cannot listen at {address} (TCP)"))?;
         let at = listener.local_addr()?;
         let (sender, came) = sync_channel(WAITING);
         spawn("connections", move || accept(&listener, &sender))?;
@@ -108,7 +110,13 @@ fn forward(number: u64, mut reader: impl BufRead, sender: &SyncSender<Came>) {
         if text.is_some_and(|text| text.trim().is_empty()) {
             continue;
         }
-        if sender.send(Came::Line(number, text.map(|text| text.trim_end().to_owned()))).is_err() {
+        if sender
+            .send(Came::Line(
+                number,
+                text.map(|text| text.trim_end().to_owned()),
+            ))
+            .is_err()
+        {
             return;
         }
     }

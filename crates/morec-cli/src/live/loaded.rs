@@ -71,6 +71,11 @@ impl Loaded {
         };
         // Between the rest pose and the first frame of motion nothing is motion, at any rate.
         let first = (rest_secs * clip.rate_hz - 1e-6).ceil().max(0.0) as usize;
-        Ok(Self { clip, roles: imported.roles, first, file_hz })
+        Ok(Self {
+            clip,
+            roles: imported.roles,
+            first,
+            file_hz,
+        })
     }
 }

@@ -51,7 +51,13 @@ impl Network {
     /// A network; the same conditions give the same accidents.
     pub fn new(conditions: &Conditions) -> Self {
         let rng = Rng::new(conditions.seed);
-        Self { conditions: *conditions, rng, held: None, lost: 0, overtaken: 0 }
+        Self {
+            conditions: *conditions,
+            rng,
+            held: None,
+            lost: 0,
+            overtaken: 0,
+        }
     }
 
     /// Carries `packet`: calls `arrive` for what comes out now.
@@ -78,6 +84,10 @@ impl Network {
 
     /// How long the next packet takes, seconds.
     pub fn delay_secs(&mut self) -> f64 {
-        if self.conditions.jitter > 0.0 { self.rng.range(0.0, self.conditions.jitter / 1000.0) } else { 0.0 }
+        if self.conditions.jitter > 0.0 {
+            self.rng.range(0.0, self.conditions.jitter / 1000.0)
+        } else {
+            0.0
+        }
     }
 }

@@ -28,7 +28,10 @@ impl OscSink {
         socket.connect(to).with_context(|| address.to_string())?;
         // An event that does not go at once must not hold up the others.
         socket.set_nonblocking(true).context("UDP socket")?;
-        Ok(Self { socket, packet: Vec::new() })
+        Ok(Self {
+            socket,
+            packet: Vec::new(),
+        })
     }
 
     fn send(&mut self, address: &str, args: &[Arg]) -> std::io::Result<()> {

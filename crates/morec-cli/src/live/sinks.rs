@@ -46,7 +46,11 @@ impl Sink for Terminal {
             said.class,
             e.score,
             e.reported_secs - e.stop_secs,
-            if e.actor.0 > 0 { format!("  (performer {})", e.actor.0) } else { String::new() },
+            if e.actor.0 > 0 {
+                format!("  (performer {})", e.actor.0)
+            } else {
+                String::new()
+            },
         )?;
         Ok(out.flush()?)
     }
@@ -73,13 +77,19 @@ pub struct Outlet {
 impl Outlet {
     /// Opens a sink.
     pub fn open(address: &Address) -> Result<Self> {
-        Ok(Self { address: address.clone(), sink: open(address)?, failures: 0 })
+        Ok(Self {
+            address: address.clone(),
+            sink: open(address)?,
+            failures: 0,
+        })
     }
 
     /// Tells an event; failures are counted, and the first is returned to be shown. A sink that fails does not end a
     /// session, unless it is standard output that nobody reads any more.
     pub fn tell(&mut self, said: &Said) -> Result<Option<String>> {
-        let Err(error) = self.sink.tell(said) else { return Ok(None) };
+        let Err(error) = self.sink.tell(said) else {
+            return Ok(None);
+        };
         let broken = |e: &std::io::Error| e.kind() == std::io::ErrorKind::BrokenPipe;
         if error.downcast_ref::<std::io::Error>().is_some_and(broken) {
             return Err(error);
@@ -90,6 +100,11 @@ impl Outlet {
 
     /// What to say of it at the end, if there is something.
     pub fn farewell(&self) -> Option<String> {
-        (self.failures > 0).then(|| format!("{}: {} events could not be told", self.address, self.failures))
+        (self.failures > 0).then(|| {
+            format!(
+                "{}: {} events could not be told",
+                self.address, self.failures
+            )
+        })
     }
 }

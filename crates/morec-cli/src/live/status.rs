@@ -39,7 +39,11 @@ impl StatusLine {
         let frames: u64 = statuses.iter().map(|s| s.frames).sum();
         let now_hz = (frames - self.frames) as f64 / passed.as_secs_f64();
         // Half new, half old: a rate that can be read.
-        self.rate_hz = if self.rate_hz > 0.0 { 0.5 * (self.rate_hz + now_hz) } else { now_hz };
+        self.rate_hz = if self.rate_hz > 0.0 {
+            0.5 * (self.rate_hz + now_hz)
+        } else {
+            now_hz
+        };
         (self.frames, self.last, self.drawn) = (frames, Instant::now(), true);
         let text = describe(statuses, classes, self.rate_hz);
         let width = terminal_size::terminal_size().map_or(100, |(width, _)| usize::from(width.0));
@@ -76,14 +80,19 @@ fn describe(statuses: &[Status], classes: &[ClassInfo], rate_hz: f64) -> String 
     );
     if actors.is_empty() {
         let heard = sum(|s| s.source.packets);
-        text += if heard == 0 { "  nobody yet" } else { "  no pose yet" };
+        text += if heard == 0 {
+            "  nobody yet"
+        } else {
+            "  no pose yet"
+        };
         if sum(|s| s.source.not_motion) > 0 {
             text += " (only a rest pose, or tracking is lost)";
         }
     }
     for actor in actors {
-        let name =
-            |class: morec::classes::ClassId| classes.get(class.index()).map_or("?", |c| c.name.as_str());
+        let name = |class: morec::classes::ClassId| {
+            classes.get(class.index()).map_or("?", |c| c.name.as_str())
+        };
         match (actor.hunch, actor.last) {
             (Some((class, progress)), _) => {
                 text += &format!("  | {} {:.0} % …", name(class), 100.0 * progress);
@@ -97,7 +106,10 @@ fn describe(statuses: &[Status], classes: &[ClassInfo], rate_hz: f64) -> String 
 
 /// What a session did, at its end.
 pub fn summary(source: &str, status: &Status) -> String {
-    let mut text = format!("{source}: {} frames, {} motions", status.frames, status.motions);
+    let mut text = format!(
+        "{source}: {} frames, {} motions",
+        status.frames, status.motions
+    );
     let counts = &status.source;
     let parts = [
         (counts.packets, "packets"),
@@ -105,7 +117,10 @@ pub fn summary(source: &str, status: &Status) -> String {
         (counts.late, "late packets"),
         (counts.refused, "packets of senders beyond --actors"),
         (counts.incomplete, "incomplete frames"),
-        (counts.not_motion, "frames of a rest pose or without tracking"),
+        (
+            counts.not_motion,
+            "frames of a rest pose or without tracking",
+        ),
         (counts.interruptions, "interruptions"),
         (status.dropped_frames, "frames dropped for want of time"),
         (status.unusable_frames, "frames without a bone of the index"),

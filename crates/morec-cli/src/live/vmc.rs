@@ -29,7 +29,11 @@ impl VmcSource {
             )
         })?;
         socket.set_read_timeout(Some(WAIT)).context("UDP socket")?;
-        Ok(Self { socket, receiver: VmcReceiver::new(options), buffer: vec![0; LARGEST] })
+        Ok(Self {
+            socket,
+            receiver: VmcReceiver::new(options),
+            buffer: vec![0; LARGEST],
+        })
     }
 
     /// Where it listens.
@@ -44,7 +48,10 @@ impl Source for VmcSource {
             return next;
         }
         match self.socket.recv_from(&mut self.buffer) {
-            Ok((length, peer)) => self.receiver.packet(peer, wall_now_secs(), &self.buffer[..length]),
+            Ok((length, peer)) => {
+                self.receiver
+                    .packet(peer, wall_now_secs(), &self.buffer[..length])
+            }
             Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
             // A sender's port that is closed may be told here; it concerns packets that were never sent by us.
             Err(_) => std::thread::sleep(WAIT),

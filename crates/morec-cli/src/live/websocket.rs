@@ -37,7 +37,8 @@ impl WebSocketSink {
     }
 
     fn listen(at: SocketAddr) -> Result<(Self, SocketAddr)> {
-        let listener = TcpListener::bind(at).with_context(|| format!("cannot listen at {at} (TCP)"))?;
+        let listener =
+            TcpListener::bind(at).with_context(|| format!("cannot listen at {at} (TCP)"))?;
         let at = listener.local_addr()?;
         let listeners = Listeners::default();
         let open = listeners.clone();
@@ -52,7 +53,10 @@ impl WebSocketSink {
 impl Sink for WebSocketSink {
     fn tell(&mut self, said: &Said) -> Result<()> {
         let text = said.json();
-        let mut listeners = self.listeners.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut listeners = self
+            .listeners
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
         listeners.retain(|listener| match listener.try_send(text.clone()) {
             Ok(()) => true,
             Err(TrySendError::Full(_) | TrySendError::Disconnected(_)) => false,
@@ -93,7 +97,10 @@ fn greet(stream: TcpStream) -> Option<WebSocket<TcpStream>> {
     stream.set_nodelay(true).ok()?;
     let socket = tungstenite::accept(stream).ok()?;
     // From here on reading is only for pings and goodbyes.
-    socket.get_ref().set_read_timeout(Some(Duration::from_millis(1))).ok()?;
+    socket
+        .get_ref()
+        .set_read_timeout(Some(Duration::from_millis(1)))
+        .ok()?;
     Some(socket)
 }
 
@@ -116,7 +123,8 @@ fn serve(mut socket: WebSocket<TcpStream>, events: &Receiver<String>) {
         }
         match socket.read() {
             Ok(_) => {}
-            Err(Error::Io(error)) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
+            Err(Error::Io(error))
+                if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
             Err(_) => return,
         }
     }
@@ -149,12 +157,20 @@ mod tests {
                 reported_secs: 2.1,
                 wall_secs: 1.0e9,
             };
-            sink.tell(&Said { event: &event, class: "wave", source: "test" }).unwrap();
+            sink.tell(&Said {
+                event: &event,
+                class: "wave",
+                source: "test",
+            })
+            .unwrap();
         }
         for sequence in 1..=3 {
             let text = socket.read().unwrap().into_text().unwrap();
             let told: serde_json::Value = serde_json::from_str(&text).unwrap();
-            assert_eq!((told["class"].as_str(), told["seq"].as_u64()), (Some("wave"), Some(sequence)));
+            assert_eq!(
+                (told["class"].as_str(), told["seq"].as_u64()),
+                (Some("wave"), Some(sequence))
+            );
         }
     }
 }

@@ -2,7 +2,9 @@
 
 use morec::kinematics::WorldPose;
 use morec::live::vmc::{Bundling, VmcOptions, VmcReceiver, VmcSender};
-use morec::live::{Detection, Event, EventOptions, Frame, Model, Next, Performer, Phase, SourceCounts};
+use morec::live::{
+    Detection, Event, EventOptions, Frame, Model, Next, Performer, Phase, SourceCounts,
+};
 
 use super::loaded::Loaded;
 use super::network::{Conditions, Network};
@@ -24,7 +26,10 @@ pub fn recognise_over_vmc(
         performer: Performer::new(
             model,
             Default::default(),
-            &EventOptions { early: false, refractory_secs: 0.0 },
+            &EventOptions {
+                early: false,
+                refractory_secs: 0.0,
+            },
         ),
         frame: Frame::default(),
         found: Vec::new(),
@@ -47,7 +52,12 @@ pub fn recognise_over_vmc(
         over.receiver.tick(now_secs + (0.9 / rate_hz).min(0.006));
         over.take();
     }
-    let Over { receiver, mut performer, mut found, .. } = over;
+    let Over {
+        receiver,
+        mut performer,
+        mut found,
+        ..
+    } = over;
     performer.finish(&mut |event| found.extend(detection(&event)));
     // From the receiver's clock to the clip's.
     let shift_secs = (loaded.first as f64 - before as f64) / rate_hz;

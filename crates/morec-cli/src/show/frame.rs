@@ -44,9 +44,21 @@ impl Stage {
                 (low, high) = (low.min(y), high.max(y));
             }
         }
-        let head = clip.skeleton.joints().iter().position(|j| j.name.to_lowercase().ends_with("head"));
-        let (ground, height) = if high > low { (low, high - low) } else { (0.0, 1.0) };
-        Self { ground, height, head }
+        let head = clip
+            .skeleton
+            .joints()
+            .iter()
+            .position(|j| j.name.to_lowercase().ends_with("head"));
+        let (ground, height) = if high > low {
+            (low, high - low)
+        } else {
+            (0.0, 1.0)
+        };
+        Self {
+            ground,
+            height,
+            head,
+        }
     }
 }
 
@@ -58,7 +70,10 @@ pub fn draw(scene: &Scene, stage: &Stage, now_secs: f64, look: &Look) -> String 
     let columns = look.columns.saturating_sub(1).max(1);
     let mut picture = Picture::new(columns, rows);
     let total = scene.clip.duration_secs();
-    let title = format!("{}  {now_secs:.1} s of {total:.1} s", printable(scene.title));
+    let title = format!(
+        "{}  {now_secs:.1} s of {total:.1} s",
+        printable(scene.title)
+    );
     picture.text(0, 0, columns, &title, PLAIN);
     let timeline_rows = if rows >= 8 { 4 } else { 0 };
     let middle = rows.saturating_sub(1 + timeline_rows);
@@ -66,12 +81,32 @@ pub fn draw(scene: &Scene, stage: &Stage, now_secs: f64, look: &Look) -> String 
     let mut events_from = 0;
     if columns >= FIGURE_FROM_COLUMNS && middle >= 6 {
         let width = (columns / 3).min(2 * middle);
-        figure(&mut picture, scene, stage, (now_secs, said_by_now), (width, middle), look.unicode);
+        figure(
+            &mut picture,
+            scene,
+            stage,
+            (now_secs, said_by_now),
+            (width, middle),
+            look.unicode,
+        );
         events_from = width + 1;
     }
-    events(&mut picture, scene, (now_secs, said_by_now), events_from, (columns, middle));
+    events(
+        &mut picture,
+        scene,
+        (now_secs, said_by_now),
+        events_from,
+        (columns, middle),
+    );
     if timeline_rows > 0 {
-        timelines(&mut picture, scene, said_by_now, now_secs, (columns, rows - timeline_rows), look);
+        timelines(
+            &mut picture,
+            scene,
+            said_by_now,
+            now_secs,
+            (columns, rows - timeline_rows),
+            look,
+        );
     }
     picture.render(look.colour)
 }
@@ -117,7 +152,10 @@ fn figure(
             dots.set(centre[0] + radius * cos, centre[1] + radius * sin);
         }
     }
-    let style = said.last().filter(|s| is_fresh(s, now_secs)).map_or(PLAIN, |s| style_of(scene, &s.class));
+    let style = said
+        .last()
+        .filter(|s| is_fresh(s, now_secs))
+        .map_or(PLAIN, |s| style_of(scene, &s.class));
     dots.draw(picture, (0, 1), unicode, style);
 }
 
@@ -131,11 +169,19 @@ fn events(
 ) {
     let shown = &said[said.len().saturating_sub(rows)..];
     for (row, event) in shown.iter().enumerate() {
-        let style = if is_fresh(event, now_secs) { style_of(scene, &event.class) } else { PLAIN };
+        let style = if is_fresh(event, now_secs) {
+            style_of(scene, &event.class)
+        } else {
+            PLAIN
+        };
         let line = event_line(event);
         // Where it is too narrow, what the delay is measured from goes first.
         let fits = x + line.chars().count() <= columns;
-        let line = if fits { line } else { line.replace(" its end)", ")") };
+        let line = if fits {
+            line
+        } else {
+            line.replace(" its end)", ")")
+        };
         picture.text(x, 1 + row, columns, &line, style);
     }
 }
@@ -154,7 +200,11 @@ fn timelines(
     look: &Look,
 ) {
     let from = 7.min(columns);
-    let ruler = Ruler { from, columns, now_secs };
+    let ruler = Ruler {
+        from,
+        columns,
+        now_secs,
+    };
     picture.text(0, y + 1, from, "truth", DIM);
     picture.text(0, y + 2, from, "said", DIM);
     for truth in scene.truth.iter().filter(|t| t.start_secs <= now_secs) {
@@ -212,11 +262,18 @@ fn bar(
     style: Style,
     look: &Look,
 ) {
-    let (start, stop) = (ruler.column(start_secs), ruler.column(stop_secs.min(ruler.now_secs)));
+    let (start, stop) = (
+        ruler.column(start_secs),
+        ruler.column(stop_secs.min(ruler.now_secs)),
+    );
     if stop <= start {
         return;
     }
-    let (open, fill, close) = if look.unicode { ("├", "─", "┤") } else { ("[", "-", "]") };
+    let (open, fill, close) = if look.unicode {
+        ("├", "─", "┤")
+    } else {
+        ("[", "-", "]")
+    };
     picture.text(start, y, stop, &fill.repeat(stop - start), style);
     // A stretch that began before the window, or that goes on, has no end to show there.
     if start > ruler.from {
@@ -230,8 +287,13 @@ fn bar(
 
 /// A class keeps its colour: that of its place among the names in alphabetical order.
 fn style_of(scene: &Scene, class: &str) -> Style {
-    let names = scene.truth.iter().map(|t| &t.class).chain(scene.said.iter().map(|s| &s.class));
-    let before: std::collections::BTreeSet<&String> = names.filter(|name| name.as_str() < class).collect();
+    let names = scene
+        .truth
+        .iter()
+        .map(|t| &t.class)
+        .chain(scene.said.iter().map(|s| &s.class));
+    let before: std::collections::BTreeSet<&String> =
+        names.filter(|name| name.as_str() < class).collect();
     class_style(before.len())
 }
 
@@ -242,7 +304,11 @@ pub(super) mod tests {
     use morec::synth::{Person, Script, Take};
 
     pub fn take() -> Take {
-        let script = Script::new(1, Person::draw(1, 0)).rest(1.0).play("raise_hands").rest(1.0).play("wave");
+        let script = Script::new(1, Person::draw(1, 0))
+            .rest(1.0)
+            .play("raise_hands")
+            .rest(1.0)
+            .play("wave");
         script.rest(0.5).film("two", 30.0).unwrap()
     }
 
@@ -267,24 +333,57 @@ pub(super) mod tests {
         take.labels.iter().map(truth).collect()
     }
 
-    const LOOK: Look = Look { columns: 80, rows: 24, colour: false, unicode: true };
+    const LOOK: Look = Look {
+        columns: 80,
+        rows: 24,
+        colour: false,
+        unicode: true,
+    };
 
     fn shown(now_secs: f64, look: Look) -> String {
         let take = take();
         let (truth, said) = (truth(&take), said(&take));
-        let scene = Scene { title: "ada", clip: &take.clip, truth: &truth, said: &said };
+        let scene = Scene {
+            title: "ada",
+            clip: &take.clip,
+            truth: &truth,
+            said: &said,
+        };
         draw(&scene, &Stage::of(&take.clip), now_secs, &look)
     }
 
     #[test]
     fn it_fits_every_terminal() {
-        for (columns, rows) in [(80, 24), (200, 60), (60, 20), (40, 12), (20, 8), (10, 4), (1, 1), (0, 0)] {
+        for (columns, rows) in [
+            (80, 24),
+            (200, 60),
+            (60, 20),
+            (40, 12),
+            (20, 8),
+            (10, 4),
+            (1, 1),
+            (0, 0),
+        ] {
             for now_secs in [0.0, 2.0, 3.9, 99.0] {
-                let picture = shown(now_secs, Look { columns, rows, ..LOOK });
+                let picture = shown(
+                    now_secs,
+                    Look {
+                        columns,
+                        rows,
+                        ..LOOK
+                    },
+                );
                 let lines = rows.saturating_sub(1).clamp(1, 40);
-                assert_eq!(picture.lines().count(), lines, "{columns}x{rows} at {now_secs}");
+                assert_eq!(
+                    picture.lines().count(),
+                    lines,
+                    "{columns}x{rows} at {now_secs}"
+                );
                 let widest = picture.lines().map(|l| l.chars().count()).max().unwrap();
-                assert!(widest <= columns.saturating_sub(1).max(1), "{columns}x{rows}: {widest}");
+                assert!(
+                    widest <= columns.saturating_sub(1).max(1),
+                    "{columns}x{rows}: {widest}"
+                );
             }
         }
     }
@@ -294,7 +393,10 @@ pub(super) mod tests {
         let at = said(&take())[0].reported_secs;
         assert!(!shown(at - 0.01, LOOK).contains("(said"));
         let after = shown(at + 0.01, LOOK);
-        assert!(after.contains("raise_hands  0.80  (said 0.20 s after)"), "{after}");
+        assert!(
+            after.contains("raise_hands  0.80  (said 0.20 s after)"),
+            "{after}"
+        );
         assert!(shown(99.0, LOOK).contains("wave  0.80  (said 0.20 s after its end)"));
         assert_eq!(shown(99.0, LOOK).matches("(said").count(), 2);
     }
@@ -305,7 +407,13 @@ pub(super) mod tests {
         let middle = (take.labels[0].start_secs + take.labels[0].stop_secs) / 2.0;
         let ink = |now_secs: f64| {
             let picture = shown(now_secs, LOOK);
-            picture.lines().skip(1).take(3).flat_map(str::chars).filter(|c| ('⠁'..='⣿').contains(c)).count()
+            picture
+                .lines()
+                .skip(1)
+                .take(3)
+                .flat_map(str::chars)
+                .filter(|c| ('⠁'..='⣿').contains(c))
+                .count()
         };
         assert_eq!(ink(0.0), 0, "nothing is above the head of somebody at rest");
         assert!(ink(middle) >= 4, "{}", shown(middle, LOOK));
@@ -314,17 +422,47 @@ pub(super) mod tests {
     #[test]
     fn truth_and_detections_stand_below_each_other() {
         let picture = shown(99.0f64.min(take().clip.duration_secs()), LOOK);
-        let line = |start: &str| picture.lines().find(|l| l.starts_with(start)).unwrap().to_owned();
-        assert!(line("truth").contains("├raise_") && line("truth").contains("├wave"), "{picture}");
-        assert!(line("said").contains("├raise_") && line("said").contains("├wave"), "{picture}");
+        let line = |start: &str| {
+            picture
+                .lines()
+                .find(|l| l.starts_with(start))
+                .unwrap()
+                .to_owned()
+        };
+        assert!(
+            line("truth").contains("├raise_") && line("truth").contains("├wave"),
+            "{picture}"
+        );
+        assert!(
+            line("said").contains("├raise_") && line("said").contains("├wave"),
+            "{picture}"
+        );
         assert!(!shown(0.5, LOOK).contains('├'));
     }
 
     #[test]
     fn colour_and_unicode_can_be_left_out() {
         assert!(!shown(3.0, LOOK).contains('\x1b'));
-        assert!(shown(3.9, Look { colour: true, ..LOOK }).contains("\x1b[0;1;"));
-        let plain = shown(3.9, Look { unicode: false, ..LOOK });
-        assert!(plain.is_ascii() && plain.contains('*') && plain.contains('['), "{plain}");
+        assert!(
+            shown(
+                3.9,
+                Look {
+                    colour: true,
+                    ..LOOK
+                }
+            )
+            .contains("\x1b[0;1;")
+        );
+        let plain = shown(
+            3.9,
+            Look {
+                unicode: false,
+                ..LOOK
+            },
+        );
+        assert!(
+            plain.is_ascii() && plain.contains('*') && plain.contains('['),
+            "{plain}"
+        );
     }
 }

@@ -26,7 +26,10 @@ pub struct Picture {
 impl Picture {
     /// An empty one.
     pub fn new(columns: usize, rows: usize) -> Self {
-        Self { columns, cells: vec![(' ', PLAIN); columns * rows] }
+        Self {
+            columns,
+            cells: vec![(' ', PLAIN); columns * rows],
+        }
     }
 
     /// Writes `text` from column `x` of row `y`, at most up to column `stop`.
@@ -42,7 +45,10 @@ impl Picture {
     pub fn render(&self, colour: bool) -> String {
         let mut out = String::with_capacity(self.cells.len() * 2);
         for row in self.cells.chunks(self.columns.max(1)) {
-            let used = row.iter().rposition(|cell| cell.0 != ' ').map_or(0, |last| last + 1);
+            let used = row
+                .iter()
+                .rposition(|cell| cell.0 != ' ')
+                .map_or(0, |last| last + 1);
             let mut style = PLAIN;
             for &(c, next) in &row[..used] {
                 if colour && next != style {
@@ -64,7 +70,10 @@ fn escape(style: Style) -> String {
     match style {
         PLAIN => "\x1b[0m".to_owned(),
         DIM => "\x1b[0;2m".to_owned(),
-        colour => format!("\x1b[0;1;{}m", COLOURS[usize::from(colour - 2) % COLOURS.len()]),
+        colour => format!(
+            "\x1b[0;1;{}m",
+            COLOURS[usize::from(colour - 2) % COLOURS.len()]
+        ),
     }
 }
 
@@ -79,7 +88,11 @@ pub struct Dots {
 impl Dots {
     /// None set, on `columns` by `rows` characters.
     pub fn new(columns: usize, rows: usize) -> Self {
-        Self { columns, rows, cells: vec![0; columns * rows] }
+        Self {
+            columns,
+            rows,
+            cells: vec![0; columns * rows],
+        }
     }
 
     /// Sets the dot at `x` to the right and `y` down, if it is on the grid.
@@ -98,7 +111,11 @@ impl Dots {
         let way = [to[0] - from[0], to[1] - from[1]];
         let far = way[0].abs().max(way[1].abs());
         // A line that leaves the grid by miles is nobody's arm.
-        let steps = if far.is_finite() { far.min(2000.0).ceil().max(1.0) } else { return };
+        let steps = if far.is_finite() {
+            far.min(2000.0).ceil().max(1.0)
+        } else {
+            return;
+        };
         for step in 0..=steps as usize {
             let u = step as f64 / steps;
             self.set(from[0] + u * way[0], from[1] + u * way[1]);
@@ -107,10 +124,25 @@ impl Dots {
 
     /// Copies the dots to `picture` as braille characters, or as asterisks without Unicode.
     pub fn draw(&self, picture: &mut Picture, (x, y): (usize, usize), unicode: bool, style: Style) {
-        for (at, &bits) in self.cells.iter().enumerate().filter(|(_, bits)| **bits != 0) {
-            let c = if unicode { char::from_u32(0x2800 + u32::from(bits)).unwrap_or('*') } else { '*' };
+        for (at, &bits) in self
+            .cells
+            .iter()
+            .enumerate()
+            .filter(|(_, bits)| **bits != 0)
+        {
+            let c = if unicode {
+                char::from_u32(0x2800 + u32::from(bits)).unwrap_or('*')
+            } else {
+                '*'
+            };
             let column = x + at % self.columns;
-            picture.text(column, y + at / self.columns, column + 1, c.encode_utf8(&mut [0; 4]), style);
+            picture.text(
+                column,
+                y + at / self.columns,
+                column + 1,
+                c.encode_utf8(&mut [0; 4]),
+                style,
+            );
         }
     }
 }

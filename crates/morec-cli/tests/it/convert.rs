@@ -8,7 +8,10 @@ fn a_motion_becomes_bvh_and_stays_the_same() {
     assert_eq!(ran.ok(), "");
     let again = folder.morec(&["convert", "out.bvh", "-o", "-"]).ok();
     let once = std::fs::read_to_string(folder.path().join("out.bvh")).unwrap();
-    assert_eq!(once.split_whitespace().count(), again.split_whitespace().count());
+    assert_eq!(
+        once.split_whitespace().count(),
+        again.split_whitespace().count()
+    );
     for (a, b) in once.split_whitespace().zip(again.split_whitespace()) {
         match (a.parse::<f64>(), b.parse::<f64>()) {
             (Ok(a), Ok(b)) => assert!((a - b).abs() < 1e-5, "{a} {b}"),
@@ -23,22 +26,42 @@ fn a_motion_becomes_bvh_and_stays_the_same() {
 #[test]
 fn a_rate_is_resampled_to() {
     let folder = Folder::with(&[("wave.bvh", WAVE_BVH)]);
-    let out = folder.morec(&["convert", "wave.bvh", "-o", "-", "--rate", "60"]).ok();
+    let out = folder
+        .morec(&["convert", "wave.bvh", "-o", "-", "--rate", "60"])
+        .ok();
     assert!(out.contains("Frames: 2"), "{out}");
 }
 
 #[test]
 fn several_characters_are_chosen_from() {
     let (hierarchy, _) = WAVE_BVH.split_once("MOTION").unwrap();
-    let second = hierarchy.replace("HIERARCHY\n", "").replace("ROOT root", "ROOT other");
-    let two = format!("{hierarchy}{second}MOTION\nFrames: 1\nFrame Time: 0.01\n{}\n", "0 ".repeat(2 * 15));
+    let second = hierarchy
+        .replace("HIERARCHY\n", "")
+        .replace("ROOT root", "ROOT other");
+    let two = format!(
+        "{hierarchy}{second}MOTION\nFrames: 1\nFrame Time: 0.01\n{}\n",
+        "0 ".repeat(2 * 15)
+    );
     let folder = Folder::with(&[("two.bvh", &two)]);
     let ran = folder.morec(&["convert", "two.bvh", "-o", "one.bvh"]);
     assert_eq!(ran.code, Some(1));
-    assert!(ran.err.contains("2 characters") && ran.err.contains("--character"), "{ran:?}");
-    let out = folder.morec(&["convert", "two.bvh", "-o", "-", "--character", "2"]).ok();
-    assert!(out.contains("ROOT other") && !out.contains("ROOT root"), "{out}");
-    assert_eq!(folder.morec(&["convert", "two.bvh", "-o", "-", "--character", "3"]).code, Some(1));
+    assert!(
+        ran.err.contains("2 characters") && ran.err.contains("--character"),
+        "{ran:?}"
+    );
+    let out = folder
+        .morec(&["convert", "two.bvh", "-o", "-", "--character", "2"])
+        .ok();
+    assert!(
+        out.contains("ROOT other") && !out.contains("ROOT root"),
+        "{out}"
+    );
+    assert_eq!(
+        folder
+            .morec(&["convert", "two.bvh", "-o", "-", "--character", "3"])
+            .code,
+        Some(1)
+    );
 }
 
 #[test]

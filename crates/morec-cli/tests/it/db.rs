@@ -10,7 +10,12 @@ use serde_json::Value;
 use crate::kit::Folder;
 
 fn takes(people: usize) -> Vec<Take> {
-    let spec = DatabaseSpec { people, repetitions: 2, classes: vec!["wave", "bow"], ..Default::default() };
+    let spec = DatabaseSpec {
+        people,
+        repetitions: 2,
+        classes: vec!["wave", "bow"],
+        ..Default::default()
+    };
     database(3, &spec)
 }
 
@@ -26,7 +31,10 @@ fn studio(people: usize) -> (Folder, Vec<Take>) {
         std::fs::write(folder.path().join(format!("clips/{name}.bvh")), bytes).unwrap();
         for label in &take.labels {
             let span = label.span(take.clip.rate_hz);
-            labels.push_str(&format!("{name}\t{}\t{}\t{}\n", span.start, span.end, label.class));
+            labels.push_str(&format!(
+                "{name}\t{}\t{}\t{}\n",
+                span.start, span.end, label.class
+            ));
         }
     }
     std::fs::write(folder.path().join("labels.tsv"), labels).unwrap();
@@ -43,7 +51,10 @@ fn json(folder: &Folder, args: &[&str]) -> Value {
 fn from_clips_to_labels_and_back() {
     let (folder, takes) = studio(3);
     let db = |args: &[&str]| {
-        let args: Vec<&str> = ["db", args[0], "m.mdb"].into_iter().chain(args[1..].iter().copied()).collect();
+        let args: Vec<&str> = ["db", args[0], "m.mdb"]
+            .into_iter()
+            .chain(args[1..].iter().copied())
+            .collect();
         json(&folder, &args)
     };
     db(&["init"]);
@@ -65,7 +76,10 @@ fn from_clips_to_labels_and_back() {
     db(&["export", "eaf", "--form", "eaf"]);
     for take in &takes {
         let file = format!("eaf/{}.eaf", take.clip.name);
-        assert_eq!(db(&["label", &file])["samples"]["unchanged"], take.labels.len());
+        assert_eq!(
+            db(&["label", &file])["samples"]["unchanged"],
+            take.labels.len()
+        );
     }
 
     let over = folder.morec(&[
@@ -81,7 +95,11 @@ fn from_clips_to_labels_and_back() {
         "--stop",
         "900",
     ]);
-    assert!(over.code == Some(0) && over.err.contains("cut there"), "{}", over.err);
+    assert!(
+        over.code == Some(0) && over.err.contains("cut there"),
+        "{}",
+        over.err
+    );
     let beyond = folder.morec(&[
         "db",
         "label",
@@ -95,7 +113,11 @@ fn from_clips_to_labels_and_back() {
         "--stop",
         "901",
     ]);
-    assert!(beyond.out.contains("0 samples added") && beyond.err.contains("left out"), "{}", beyond.err);
+    assert!(
+        beyond.out.contains("0 samples added") && beyond.err.contains("left out"),
+        "{}",
+        beyond.err
+    );
     db(&["label", "--undo"]);
     db(&["classes", "--rename", "bow", "nod"]);
     assert_eq!(db(&["classes"])[0]["name"], "nod");
@@ -110,31 +132,94 @@ fn from_clips_to_labels_and_back() {
     let name = &takes[0].clip.name;
     let label = &takes[0].labels[0];
     let (start, stop) = (label.start_secs.to_string(), label.stop_secs.to_string());
-    let hits =
-        db(&["search", name, "--start", &start, "--stop", &stop, "--limit", "3", "--report", "hits.html"]);
+    let hits = db(&[
+        "search",
+        name,
+        "--start",
+        &start,
+        "--stop",
+        &stop,
+        "--limit",
+        "3",
+        "--report",
+        "hits.html",
+    ]);
     assert_eq!(hits["hits"].as_array().unwrap().len(), 3);
     assert_eq!(strips("hits.html"), 4, "the example and its hits");
-    let outside =
-        db(&["search", &format!("clips/{name}.bvh"), "--start", &start, "--stop", &stop, "--limit", "1"]);
-    assert_eq!(outside["hits"][0]["name"], Value::from(name.as_str()), "a file finds itself");
+    let outside = db(&[
+        "search",
+        &format!("clips/{name}.bvh"),
+        "--start",
+        &start,
+        "--stop",
+        &stop,
+        "--limit",
+        "1",
+    ]);
+    assert_eq!(
+        outside["hits"][0]["name"],
+        Value::from(name.as_str()),
+        "a file finds itself"
+    );
 
-    let learned = db(&["search", name, "--start", &start, "--stop", &stop, "--limit", "3", "--learned"]);
-    assert_eq!((&learned["learned"]["classes"], &learned["learned"]["samples"]), (&2.into(), &all.into()));
+    let learned = db(&[
+        "search",
+        name,
+        "--start",
+        &start,
+        "--stop",
+        &stop,
+        "--limit",
+        "3",
+        "--learned",
+    ]);
+    assert_eq!(
+        (
+            &learned["learned"]["classes"],
+            &learned["learned"]["samples"]
+        ),
+        (&2.into(), &all.into())
+    );
     assert_eq!(learned["hits"].as_array().unwrap().len(), 3);
-    let few = folder.morec(&["db", "search", "m.mdb", name, "--learned", "--classes", "bow"]);
-    assert!(few.code == Some(1) && few.err.contains("at least 2 classes"), "{}", few.err);
+    let few = folder.morec(&[
+        "db",
+        "search",
+        "m.mdb",
+        name,
+        "--learned",
+        "--classes",
+        "bow",
+    ]);
+    assert!(
+        few.code == Some(1) && few.err.contains("at least 2 classes"),
+        "{}",
+        few.err
+    );
 
     assert_eq!(db(&["cut"]).as_array().unwrap().len(), 3);
     assert!(!db(&["cycles"]).as_array().unwrap().is_empty());
     let groups = db(&["group", "--of", "labels", "--report", "groups.html"]);
     assert!(groups["adjusted_rand_index"].as_f64().unwrap() > 0.3);
-    let members: usize =
-        groups["groups"].as_array().unwrap().iter().map(|g| g.as_array().unwrap().len()).sum();
+    let members: usize = groups["groups"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|g| g.as_array().unwrap().len())
+        .sum();
     assert_eq!(strips("groups.html"), members);
     assert!(db(&["check"])["faults"].as_array().unwrap().is_empty());
     db(&["vacuum", "--caches"]);
 
-    folder.morec(&["convert", &format!("clips/{name}.bvh"), "--rate", "50", "-o", "clips/again.bvh"]).ok();
+    folder
+        .morec(&[
+            "convert",
+            &format!("clips/{name}.bvh"),
+            "--rate",
+            "50",
+            "-o",
+            "clips/again.bvh",
+        ])
+        .ok();
     let copies = db(&["import", "clips/again.bvh"])["near_copies"].clone();
     assert_eq!(
         (copies.as_array().unwrap().len(), &copies[0]["copy"]),
@@ -142,13 +227,21 @@ fn from_clips_to_labels_and_back() {
         "{copies}"
     );
 
-    assert!(db(&["report", "-o", "page.html"])["strips"].as_u64().unwrap() > 3);
+    assert!(
+        db(&["report", "-o", "page.html"])["strips"]
+            .as_u64()
+            .unwrap()
+            > 3
+    );
     assert!(strips("page.html") > 3);
     let left: Vec<_> = std::fs::read_dir(folder.path())
         .unwrap()
         .filter_map(|f| f.ok()?.file_name().into_string().ok())
         .collect();
-    assert!(!left.iter().any(|f| f.contains("wal") || f.contains("shm")), "one file stays: {left:?}");
+    assert!(
+        !left.iter().any(|f| f.contains("wal") || f.contains("shm")),
+        "one file stays: {left:?}"
+    );
 }
 
 #[test]
@@ -156,7 +249,9 @@ fn a_database_trains_an_index_and_keeps_it() {
     let (folder, _) = studio(3);
     json(&folder, &["db", "import", "m.mdb", "clips"]);
     json(&folder, &["db", "label", "m.mdb", "labels.tsv"]);
-    folder.morec(&["train", "--db", "m.mdb", "-o", "moves.idx"]).ok();
+    folder
+        .morec(&["train", "--db", "m.mdb", "-o", "moves.idx"])
+        .ok();
     assert_eq!(json(&folder, &["db", "info", "m.mdb"])["indexes"], 1);
     let found = folder.morec(&["recognize", "moves.idx", "clips"]).ok();
     assert!(found.contains("wave"), "{found}");
@@ -173,26 +268,61 @@ fn proposals_are_judged_in_bulk() {
         .collect();
     std::fs::write(folder.path().join("few.tsv"), own.join("\n")).unwrap();
     json(&folder, &["db", "label", "m.mdb", "few.tsv"]);
-    let proposed = json(&folder, &["db", "propose", "m.mdb"]).as_array().unwrap().len();
+    let proposed = json(&folder, &["db", "propose", "m.mdb"])
+        .as_array()
+        .unwrap()
+        .len();
     assert!(proposed > 2, "{proposed}");
-    json(&folder, &["db", "export", "m.mdb", "ask.csv", "--state", "proposed"]);
+    json(
+        &folder,
+        &["db", "export", "m.mdb", "ask.csv", "--state", "proposed"],
+    );
     let ask = std::fs::read_to_string(folder.path().join("ask.csv")).unwrap();
-    std::fs::write(folder.path().join("answer.csv"), ask.replacen("proposed", "accepted", 1)).unwrap();
+    std::fs::write(
+        folder.path().join("answer.csv"),
+        ask.replacen("proposed", "accepted", 1),
+    )
+    .unwrap();
     let answered = json(&folder, &["db", "label", "m.mdb", "answer.csv"]);
     assert_eq!(answered["samples"]["changed"], 1, "{answered}");
-    std::fs::write(folder.path().join("answer.csv"), ask.replacen("proposed", "reject", 1)).unwrap();
-    assert_eq!(folder.morec(&["db", "label", "m.mdb", "answer.csv"]).code, Some(1), "no such state");
-    let judged = json(&folder, &["db", "propose", "m.mdb", "--accept", "0.5", "--reject", "0.5"]);
+    std::fs::write(
+        folder.path().join("answer.csv"),
+        ask.replacen("proposed", "reject", 1),
+    )
+    .unwrap();
+    assert_eq!(
+        folder.morec(&["db", "label", "m.mdb", "answer.csv"]).code,
+        Some(1),
+        "no such state"
+    );
+    let judged = json(
+        &folder,
+        &[
+            "db", "propose", "m.mdb", "--accept", "0.5", "--reject", "0.5",
+        ],
+    );
     assert_eq!(judged["left"], 0);
     assert_eq!(
         judged["accepted"].as_u64().unwrap() + judged["rejected"].as_u64().unwrap(),
         proposed as u64 - 1
     );
-    json(&folder, &["db", "group", "m.mdb", "--of", "clips", "--name-as", "like"]);
+    json(
+        &folder,
+        &["db", "group", "m.mdb", "--of", "clips", "--name-as", "like"],
+    );
     json(&folder, &["db", "propose", "m.mdb"]);
-    let likes = json(&folder, &["db", "classes", "m.mdb"]).as_array().unwrap().clone();
-    let likes = likes.iter().filter(|c| c["name"].as_str().unwrap().starts_with("like"));
-    assert_eq!(likes.map(|c| c["proposed"].as_u64().unwrap()).sum::<u64>(), 3, "others' proposals stay");
+    let likes = json(&folder, &["db", "classes", "m.mdb"])
+        .as_array()
+        .unwrap()
+        .clone();
+    let likes = likes
+        .iter()
+        .filter(|c| c["name"].as_str().unwrap().starts_with("like"));
+    assert_eq!(
+        likes.map(|c| c["proposed"].as_u64().unwrap()).sum::<u64>(),
+        3,
+        "others' proposals stay"
+    );
 }
 
 /// Ctrl-C ends an import with what is done kept, said, and to be gone on with.
@@ -216,7 +346,9 @@ fn an_interrupted_import_says_what_it_did() {
         std::thread::sleep(Duration::from_millis(5));
     }
     std::thread::sleep(Duration::from_millis(300));
-    let sent = Command::new("kill").args(["-INT", &import.id().to_string()]).status();
+    let sent = Command::new("kill")
+        .args(["-INT", &import.id().to_string()])
+        .status();
     let done = import.wait_with_output().unwrap();
     let said = String::from_utf8(done.stdout).unwrap();
     if !sent.is_ok_and(|status| status.success()) || done.status.code() == Some(0) {
@@ -224,9 +356,17 @@ fn an_interrupted_import_says_what_it_did() {
         return;
     }
     assert_eq!(done.status.code(), Some(130), "{said}");
-    assert!(said.contains("stopped: ") && said.contains("goes on where this one stopped"), "{said}");
-    let clips = json(&folder, &["db", "info", "m.mdb"])["clips"].as_u64().unwrap();
-    assert!(said.starts_with(&format!("{clips} files imported")) && clips < 151, "{clips} clips: {said}");
+    assert!(
+        said.contains("stopped: ") && said.contains("goes on where this one stopped"),
+        "{said}"
+    );
+    let clips = json(&folder, &["db", "info", "m.mdb"])["clips"]
+        .as_u64()
+        .unwrap();
+    assert!(
+        said.starts_with(&format!("{clips} files imported")) && clips < 151,
+        "{clips} clips: {said}"
+    );
     folder.morec(&["db", "import", "m.mdb", "clips"]).ok();
     assert_eq!(json(&folder, &["db", "info", "m.mdb"])["clips"], 151);
 }
@@ -236,13 +376,21 @@ fn clips_are_cut_by_either_method_and_one_at_a_time() {
     let (folder, _) = studio(1);
     json(&folder, &["db", "import", "m.mdb", "clips"]);
     let cuts = |method: &str| json(&folder, &["db", "cut", "m.mdb", "--method", method]);
-    let segments = || json(&folder, &["db", "info", "m.mdb"])["segments"].as_u64().unwrap();
+    let segments = || {
+        json(&folder, &["db", "info", "m.mdb"])["segments"]
+            .as_u64()
+            .unwrap()
+    };
     cuts("kernel");
     let kernel = segments();
     let ppca = cuts("ppca");
     assert!(ppca[0]["cuts_secs"].is_array() && segments() > 0);
     cuts("kernel");
-    assert_eq!(segments(), kernel, "earlier cuts are replaced, by whatever method they are");
+    assert_eq!(
+        segments(),
+        kernel,
+        "earlier cuts are replaced, by whatever method they are"
+    );
 }
 
 #[test]
@@ -250,10 +398,19 @@ fn tables_through_a_pipe_are_separated_by_tabs() {
     let (folder, takes) = studio(2);
     json(&folder, &["db", "import", "m.mdb", "clips"]);
     let listed = folder.morec(&["db", "clips", "m.mdb"]).ok();
-    let rows: Vec<Vec<&str>> = listed.lines().map(|line| line.split('\t').collect()).collect();
+    let rows: Vec<Vec<&str>> = listed
+        .lines()
+        .map(|line| line.split('\t').collect())
+        .collect();
     assert_eq!(rows[0][..2], ["clip", "secs"]);
-    assert!(rows.iter().all(|row| row.len() == rows[0].len()), "{listed}");
-    assert_eq!(rows[1..].iter().map(|row| row[0]).collect::<Vec<_>>(), names(&takes));
+    assert!(
+        rows.iter().all(|row| row.len() == rows[0].len()),
+        "{listed}"
+    );
+    assert_eq!(
+        rows[1..].iter().map(|row| row[0]).collect::<Vec<_>>(),
+        names(&takes)
+    );
 }
 
 fn names(takes: &[Take]) -> Vec<&str> {
@@ -270,7 +427,11 @@ fn copies(folder: &Folder, takes: &[Take], count: usize) {
     let text = String::from_utf8(bytes).unwrap();
     for number in 1..=count {
         let path = folder.path().join(format!("clips/c{number:03}.bvh"));
-        std::fs::write(path, text.replacen("0.000000", &format!("0.{number:06}"), 1)).unwrap();
+        std::fs::write(
+            path,
+            text.replacen("0.000000", &format!("0.{number:06}"), 1),
+        )
+        .unwrap();
     }
 }
 

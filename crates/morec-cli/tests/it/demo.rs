@@ -4,18 +4,30 @@ use crate::kit::Folder;
 
 /// The words of every command that the demo printed.
 fn printed_commands(out: &str) -> Vec<Vec<&str>> {
-    out.lines().filter_map(|l| l.strip_prefix("$ morec ")).map(|l| l.split(' ').collect()).collect()
+    out.lines()
+        .filter_map(|l| l.strip_prefix("$ morec "))
+        .map(|l| l.split(' ').collect())
+        .collect()
 }
 
 #[test]
 fn the_whole_job_and_then_again_by_hand() {
     let folder = Folder::with(&[]);
     let out = folder.morec(&["demo", "--quiet"]).ok();
-    for file in ["labels.tsv", "people.tsv", "truth.tsv", "found.tsv", "demo.index", "report/report.html"] {
+    for file in [
+        "labels.tsv",
+        "people.tsv",
+        "truth.tsv",
+        "found.tsv",
+        "demo.index",
+        "report/report.html",
+    ] {
         let path = folder.path().join("morec-demo").join(file);
         assert!(std::fs::metadata(&path).unwrap().len() > 0, "{file}");
     }
-    let clips = std::fs::read_dir(folder.path().join("morec-demo/clips")).unwrap().count();
+    let clips = std::fs::read_dir(folder.path().join("morec-demo/clips"))
+        .unwrap()
+        .count();
     assert!(clips >= 5, "{clips} people to train on");
     assert!(out.contains("say nothing about accuracy on real people"));
 
@@ -23,10 +35,15 @@ fn the_whole_job_and_then_again_by_hand() {
     let names: Vec<&str> = commands.iter().map(|c| c[0]).collect();
     assert_eq!(names, ["train", "recognize", "evaluate"]);
     let with = |n: usize, more: &[&str]| {
-        let words: Vec<&str> = commands[n].iter().copied().chain(more.iter().copied()).collect();
+        let words: Vec<&str> = commands[n]
+            .iter()
+            .copied()
+            .chain(more.iter().copied())
+            .collect();
         folder.morec(&words).ok()
     };
-    let read = |name: &str| std::fs::read_to_string(folder.path().join("morec-demo").join(name)).unwrap();
+    let read =
+        |name: &str| std::fs::read_to_string(folder.path().join("morec-demo").join(name)).unwrap();
     let found = read("found.tsv");
     std::fs::remove_file(folder.path().join("morec-demo/found.tsv")).unwrap();
     with(1, &[]);
@@ -35,17 +52,46 @@ fn the_whole_job_and_then_again_by_hand() {
     let figures: serde_json::Value = serde_json::from_str(&with(2, &["--json"])).unwrap();
     let rate = |name: &str| figures["overlap"][2][name].as_f64().unwrap();
     // Far below what it reaches, far above what anything broken would.
-    assert!(rate("recall") >= 0.6 && rate("precision") >= 0.6, "{}", figures["overlap"][2]);
+    assert!(
+        rate("recall") >= 0.6 && rate("precision") >= 0.6,
+        "{}",
+        figures["overlap"][2]
+    );
 
     // The same person live, as fast as it goes: the same motions.
-    let clip = std::fs::read_dir(folder.path().join("morec-demo/new")).unwrap().next().unwrap().unwrap();
-    let source = format!("clip://morec-demo/new/{}?speed=0", clip.file_name().to_string_lossy());
-    let told = folder.morec(&["live", "morec-demo/demo.index", "--listen", &source, "--emit", "json:-"]).ok();
-    let events: Vec<serde_json::Value> = told.lines().map(|l| serde_json::from_str(l).unwrap()).collect();
+    let clip = std::fs::read_dir(folder.path().join("morec-demo/new"))
+        .unwrap()
+        .next()
+        .unwrap()
+        .unwrap();
+    let source = format!(
+        "clip://morec-demo/new/{}?speed=0",
+        clip.file_name().to_string_lossy()
+    );
+    let told = folder
+        .morec(&[
+            "live",
+            "morec-demo/demo.index",
+            "--listen",
+            &source,
+            "--emit",
+            "json:-",
+        ])
+        .ok();
+    let events: Vec<serde_json::Value> = told
+        .lines()
+        .map(|l| serde_json::from_str(l).unwrap())
+        .collect();
     let ends: Vec<String> = events
         .iter()
         .filter(|e| e["phase"] == "end")
-        .map(|e| format!("{} {:.3}", e["class"].as_str().unwrap(), e["start_secs"].as_f64().unwrap()))
+        .map(|e| {
+            format!(
+                "{} {:.3}",
+                e["class"].as_str().unwrap(),
+                e["start_secs"].as_f64().unwrap()
+            )
+        })
         .collect();
     let recognised: Vec<String> = found
         .lines()
@@ -54,11 +100,17 @@ fn the_whole_job_and_then_again_by_hand() {
         .map(|cells| format!("{} {:.3}", cells[3], cells[6].parse::<f64>().unwrap()))
         .collect();
     assert_eq!(ends, recognised);
-    assert!(events.iter().any(|e| e["phase"] == "start"), "something must be told before its end");
+    assert!(
+        events.iter().any(|e| e["phase"] == "start"),
+        "something must be told before its end"
+    );
 
     // Training is the long step: two classes and no everyday motion show that the line works.
     let trained = with(0, &["--classes", "bow,clap", "--everyday", "never"]);
-    assert!(trained.contains("bow") && trained.contains("demo.index"), "{trained}");
+    assert!(
+        trained.contains("bow") && trained.contains("demo.index"),
+        "{trained}"
+    );
 }
 
 #[test]
@@ -69,6 +121,11 @@ fn other_peoples_folders_are_left_alone() {
         assert_eq!(ran.code, Some(1), "{ran:?}");
         assert!(ran.err.contains(said), "{}", ran.err);
     }
-    assert_eq!(std::fs::read_dir(folder.path().join("mine")).unwrap().count(), 1);
+    assert_eq!(
+        std::fs::read_dir(folder.path().join("mine"))
+            .unwrap()
+            .count(),
+        1
+    );
     assert_eq!(folder.morec(&["demo", "--speed", "0"]).code, Some(2));
 }

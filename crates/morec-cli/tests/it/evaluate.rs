@@ -6,15 +6,18 @@ use std::process::{Command, Output};
 
 use serde_json::Value;
 
-const LABELS: &str = "clip\tstart\tstop\tclass\na\t30\t60\twave\na\t90\t120\tbow\nelsewhere\t0\t9\twave\n";
-const FOUND: &str =
-    "clip\tstart\tstop\tclass\tscore\treported_at\na\t31\t60\twave\t0.9\t66\nrest\t0\t30\tbow\t0.2\t36\n";
+const LABELS: &str =
+    "clip\tstart\tstop\tclass\na\t30\t60\twave\na\t90\t120\tbow\nelsewhere\t0\t9\twave\n";
+const FOUND: &str = "clip\tstart\tstop\tclass\tscore\treported_at\na\t31\t60\twave\t0.9\t66\nrest\t0\t30\tbow\t0.2\t36\n";
 
 /// One joint that never moves, for `frames` frames at 30 Hz.
 fn bvh(frames: usize) -> String {
     let head = "HIERARCHY\nROOT hips\n{\n  OFFSET 0 0 0\n  CHANNELS 3 Zrotation Xrotation Yrotation\n  End Site\n  {\n    \
                 OFFSET 0 10 0\n  }\n}\nMOTION\n";
-    format!("{head}Frames: {frames}\nFrame Time: 0.0333333\n{}", "0 0 0\n".repeat(frames))
+    format!(
+        "{head}Frames: {frames}\nFrame Time: 0.0333333\n{}",
+        "0 0 0\n".repeat(frames)
+    )
 }
 
 fn folder() -> tempfile::TempDir {
@@ -29,8 +32,21 @@ fn folder() -> tempfile::TempDir {
 }
 
 fn evaluate(folder: &Path, more: &[&str]) -> Output {
-    let fixed = ["evaluate", "--truth", "labels.tsv", "--found", "found.tsv", "--clips", "clips"];
-    Command::new(env!("CARGO_BIN_EXE_morec")).current_dir(folder).args(fixed).args(more).output().unwrap()
+    let fixed = [
+        "evaluate",
+        "--truth",
+        "labels.tsv",
+        "--found",
+        "found.tsv",
+        "--clips",
+        "clips",
+    ];
+    Command::new(env!("CARGO_BIN_EXE_morec"))
+        .current_dir(folder)
+        .args(fixed)
+        .args(more)
+        .output()
+        .unwrap()
 }
 
 fn text(bytes: &[u8]) -> &str {
@@ -45,12 +61,21 @@ fn json_holds_every_measure() {
     let json: Value = serde_json::from_slice(&output.stdout).unwrap();
     // wave found, bow missed, three pauses of a second left alone.
     let thesis = &json["thesis"];
-    let counts =
-        ["true_positives", "false_positives", "false_negatives", "true_negatives"].map(|key| &thesis[key]);
+    let counts = [
+        "true_positives",
+        "false_positives",
+        "false_negatives",
+        "true_negatives",
+    ]
+    .map(|key| &thesis[key]);
     assert_eq!(counts, [1, 0, 1, 3]);
     assert_eq!(thesis["accuracy"], 0.8);
-    let f1: Vec<f64> =
-        json["overlap"].as_array().unwrap().iter().map(|o| o["f1"].as_f64().unwrap()).collect();
+    let f1: Vec<f64> = json["overlap"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|o| o["f1"].as_f64().unwrap())
+        .collect();
     assert_eq!(f1, [2.0 / 3.0; 4]);
     assert_eq!(json["false_alarms"]["per_minute"], 0.0);
     assert_eq!(json["unknown"]["unknown_accepted"], 1.0);
@@ -67,11 +92,23 @@ fn tables_report_and_what_was_left_out() {
     let output = evaluate(folder.path(), &["--report", "out/deep"]);
     let (printed, said) = (text(&output.stdout), text(&output.stderr));
     assert!(output.status.success(), "{said}");
-    for line in ["thesis accuracy", "TP 1  FP 0  FN 1  TN 3", "P_R  (rejected)", "confusion", "2 wave"] {
+    for line in [
+        "thesis accuracy",
+        "TP 1  FP 0  FN 1  TN 3",
+        "P_R  (rejected)",
+        "confusion",
+        "2 wave",
+    ] {
         assert!(printed.contains(line), "{line} not in\n{printed}");
     }
-    assert!(said.contains("1 labels are of clips that --clips does not hold; left out: elsewhere"), "{said}");
-    assert!(said.contains("line 3: 1 detections name the clip rest"), "{said}");
+    assert!(
+        said.contains("1 labels are of clips that --clips does not hold; left out: elsewhere"),
+        "{said}"
+    );
+    assert!(
+        said.contains("line 3: 1 detections name the clip rest"),
+        "{said}"
+    );
     let report = fs::read_to_string(folder.path().join("out/deep/report.html")).unwrap();
     assert!(report.contains("bow 3.00–4.00 s: missed"));
 }
@@ -79,7 +116,11 @@ fn tables_report_and_what_was_left_out() {
 #[test]
 fn a_bad_table_names_file_line_and_column() {
     let folder = folder();
-    fs::write(folder.path().join("labels.tsv"), "clip\tstart\tstop\tclass\na\t60\t30\twave\n").unwrap();
+    fs::write(
+        folder.path().join("labels.tsv"),
+        "clip\tstart\tstop\tclass\na\t60\t30\twave\n",
+    )
+    .unwrap();
     let output = evaluate(folder.path(), &[]);
     assert_eq!(output.status.code(), Some(1));
     let expected = "morec: labels.tsv: line 2, column 6: expected a stop after the start, 60 (stop is exclusive), found `30`\n";

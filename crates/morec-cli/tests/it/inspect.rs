@@ -10,17 +10,33 @@ fn json(text: &str) -> Value {
 fn one_clip_is_shown_joint_by_joint() {
     let folder = Folder::with(&[("wave.bvh", WAVE_BVH)]);
     let out = folder.morec(&["inspect", "wave.bvh"]).ok();
-    for expected in
-        ["wave.bvh\n", "format     BVH", "3 frames, 0.03 s at 120 Hz", "up         ", "lower", "missing: "]
-    {
+    for expected in [
+        "wave.bvh\n",
+        "format     BVH",
+        "3 frames, 0.03 s at 120 Hz",
+        "up         ",
+        "lower",
+        "missing: ",
+    ] {
         assert!(out.contains(expected), "{expected}: {out}");
     }
 }
 
 #[test]
 fn a_motion_finds_its_skeleton() {
-    for skeleton in ["wave.asf", "clips/13_29.asf", "13.asf", "clips/13.asf", "any.asf", "clips/any.asf"] {
-        let motion = if skeleton == "wave.asf" { "wave.amc" } else { "clips/13_29.amc" };
+    for skeleton in [
+        "wave.asf",
+        "clips/13_29.asf",
+        "13.asf",
+        "clips/13.asf",
+        "any.asf",
+        "clips/any.asf",
+    ] {
+        let motion = if skeleton == "wave.asf" {
+            "wave.amc"
+        } else {
+            "clips/13_29.amc"
+        };
         // A skeleton that does not fit stands in the way.
         let other = ARM_ASF.replace("upper", "wing");
         let folder = Folder::with(&[(skeleton, ARM_ASF), (motion, WAVE_AMC), ("aaa.asf", &other)]);
@@ -31,7 +47,11 @@ fn a_motion_finds_its_skeleton() {
 }
 
 fn skeleton_shown(skeleton: &str) -> String {
-    if skeleton.contains('/') { skeleton.to_owned() } else { format!("./{skeleton}") }
+    if skeleton.contains('/') {
+        skeleton.to_owned()
+    } else {
+        format!("./{skeleton}")
+    }
 }
 
 #[test]
@@ -39,13 +59,21 @@ fn a_motion_without_a_skeleton_asks_for_one() {
     let folder = Folder::with(&[("lone.amc", WAVE_AMC), ("far/away/arm.asf", ARM_ASF)]);
     let ran = folder.morec(&["inspect", "lone.amc"]);
     assert_eq!(ran.code, Some(1));
-    assert!(ran.err.contains("lone.amc") && ran.err.contains("--skeleton"), "{ran:?}");
-    folder.morec(&["inspect", "lone.amc", "--skeleton", "far/away/arm.asf"]).ok();
+    assert!(
+        ran.err.contains("lone.amc") && ran.err.contains("--skeleton"),
+        "{ran:?}"
+    );
+    folder
+        .morec(&["inspect", "lone.amc", "--skeleton", "far/away/arm.asf"])
+        .ok();
 }
 
 #[test]
 fn what_cannot_be_read_is_named_and_the_rest_is_shown() {
-    let folder = Folder::with(&[("a.bvh", "HIERARCHY\nROOT Hips\n{\n  OFFSET a b c\n"), ("b.bvh", WAVE_BVH)]);
+    let folder = Folder::with(&[
+        ("a.bvh", "HIERARCHY\nROOT Hips\n{\n  OFFSET a b c\n"),
+        ("b.bvh", WAVE_BVH),
+    ]);
     let ran = folder.morec(&["inspect", ".", "nowhere.bvh"]);
     assert_eq!(ran.code, Some(1));
     assert!(ran.out.contains("b.bvh"), "{ran:?}");
@@ -54,7 +82,10 @@ fn what_cannot_be_read_is_named_and_the_rest_is_shown() {
     let ran = folder.morec(&["inspect", ".", "--json"]);
     let out = json(&ran.out);
     assert_eq!((ran.code, out.as_array().unwrap().len()), (Some(1), 2));
-    assert!(out[0]["error"].as_str().unwrap().contains("line 4"), "{out}");
+    assert!(
+        out[0]["error"].as_str().unwrap().contains("line 4"),
+        "{out}"
+    );
 }
 
 #[test]
@@ -67,7 +98,12 @@ fn folders_are_searched_in_order() {
         ("empty/notes.txt", "no clip"),
     ]);
     let out = json(&folder.morec(&["inspect", "x", "--json"]).ok());
-    let paths: Vec<&str> = out.as_array().unwrap().iter().map(|f| f["path"].as_str().unwrap()).collect();
+    let paths: Vec<&str> = out
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|f| f["path"].as_str().unwrap())
+        .collect();
     assert_eq!(paths, ["x/1/a.bvh", "x/1/b.BVH", "x/2.bvh"]);
     let ran = folder.morec(&["inspect", "empty"]);
     assert_eq!(ran.code, Some(1));
@@ -77,8 +113,16 @@ fn folders_are_searched_in_order() {
 #[test]
 fn roles_can_be_given() {
     let roles = "left_arm\tupper\nleft_forearm\tlower\nhips\t-\n";
-    let folder = Folder::with(&[("wave.bvh", WAVE_BVH), ("mine.tsv", roles), ("bad.tsv", "head\tnose\n")]);
-    let out = json(&folder.morec(&["inspect", "wave.bvh", "--roles", "mine.tsv", "--json"]).ok());
+    let folder = Folder::with(&[
+        ("wave.bvh", WAVE_BVH),
+        ("mine.tsv", roles),
+        ("bad.tsv", "head\tnose\n"),
+    ]);
+    let out = json(
+        &folder
+            .morec(&["inspect", "wave.bvh", "--roles", "mine.tsv", "--json"])
+            .ok(),
+    );
     let clip = &out[0]["clips"][0];
     let role = |name: &str| {
         let joints = clip["joints"].as_array().unwrap();
@@ -86,16 +130,35 @@ fn roles_can_be_given() {
     };
     assert_eq!(role("upper"), serde_json::json!(["left_arm"]));
     assert_eq!(role("root"), serde_json::json!([]));
-    assert!(clip["missing_roles"].as_array().unwrap().contains(&"hips".into()));
+    assert!(
+        clip["missing_roles"]
+            .as_array()
+            .unwrap()
+            .contains(&"hips".into())
+    );
     let ran = folder.morec(&["inspect", "wave.bvh", "--roles", "bad.tsv"]);
     assert_eq!(ran.code, Some(1));
-    assert!(ran.err.contains("--roles: line 1: expected a joint of the skeleton, found `nose`"), "{ran:?}");
+    assert!(
+        ran.err
+            .contains("--roles: line 1: expected a joint of the skeleton, found `nose`"),
+        "{ran:?}"
+    );
 }
 
 #[test]
 fn what_is_inferred_can_be_overridden() {
     let folder = Folder::with(&[("wave.bvh", WAVE_BVH)]);
-    let args = ["inspect", "wave.bvh", "--up", "-z", "--unit", "0.01", "--file-rate", "60", "--json"];
+    let args = [
+        "inspect",
+        "wave.bvh",
+        "--up",
+        "-z",
+        "--unit",
+        "0.01",
+        "--file-rate",
+        "60",
+        "--json",
+    ];
     let out = json(&folder.morec(&args).ok());
     let clip = &out[0]["clips"][0];
     assert_eq!((&clip["up"], &clip["unit"]), (&"-z".into(), &"cm".into()));
@@ -118,11 +181,25 @@ fn real_referee_clips_have_all_roles_and_a_rest_pose() {
     let Some(data) = data() else { return };
     let clips = data.join("referee/clips");
     let folder = Folder::with(&[]);
-    let out = json(&folder.morec(&["inspect", &clips.to_string_lossy(), "--json"]).ok());
+    let out = json(
+        &folder
+            .morec(&["inspect", &clips.to_string_lossy(), "--json"])
+            .ok(),
+    );
     assert_eq!(out.as_array().unwrap().len(), 29);
     for file in out.as_array().unwrap() {
         let clip = &file["clips"][0];
-        assert_eq!(clip["missing_roles"], serde_json::json!([]), "{}", file["path"]);
-        assert_eq!(clip["rest_frames"], serde_json::json!({"start": 0, "end": 1}), "{}", file["path"]);
+        assert_eq!(
+            clip["missing_roles"],
+            serde_json::json!([]),
+            "{}",
+            file["path"]
+        );
+        assert_eq!(
+            clip["rest_frames"],
+            serde_json::json!({"start": 0, "end": 1}),
+            "{}",
+            file["path"]
+        );
     }
 }

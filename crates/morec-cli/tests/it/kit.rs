@@ -71,8 +71,10 @@ impl Ran {
 
 /// The folder of real clips, if it is there.
 pub fn data() -> Option<PathBuf> {
-    let folder = std::env::var_os("MOREC_DATA")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"), PathBuf::from);
+    let folder = std::env::var_os("MOREC_DATA").map_or_else(
+        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
+        PathBuf::from,
+    );
     if !folder.is_dir() {
         println!("skipped: no clips at {} (set MOREC_DATA)", folder.display());
         return None;

@@ -17,8 +17,12 @@ const INDEX: &[u8] = include_bytes!("../../../morec/testdata/index/v1.index");
 fn folder() -> Folder {
     let folder = Folder::with(&[]);
     std::fs::write(folder.path().join("v1.index"), INDEX).unwrap();
-    let take =
-        Script::new(5, Person::draw(5, 0)).rest(1.0).play("wave").rest(0.5).film("person", 60.0).unwrap();
+    let take = Script::new(5, Person::draw(5, 0))
+        .rest(1.0)
+        .play("wave")
+        .rest(0.5)
+        .film("person", 60.0)
+        .unwrap();
     let mut bytes = Vec::new();
     bvh::write(&take.clip, &mut bytes).unwrap();
     std::fs::write(folder.path().join("person.bvh"), bytes).unwrap();
@@ -48,7 +52,10 @@ impl Live {
         let mut line = String::new();
         while !line.contains("listening to") {
             line.clear();
-            assert!(err.read_line(&mut line).unwrap() > 0, "it ended before it listened");
+            assert!(
+                err.read_line(&mut line).unwrap() > 0,
+                "it ended before it listened"
+            );
         }
         let at = line.trim().rsplit("//").next().unwrap().to_owned();
         Self { child, err, at }
@@ -56,7 +63,10 @@ impl Live {
 
     /// Interrupts it as Ctrl-C would; returns what it said in the end.
     fn interrupt(mut self) -> String {
-        let done = Command::new("kill").args(["-INT", &self.child.id().to_string()]).status().unwrap();
+        let done = Command::new("kill")
+            .args(["-INT", &self.child.id().to_string()])
+            .status()
+            .unwrap();
         assert!(done.success());
         let mut said = String::new();
         self.err.read_to_string(&mut said).unwrap();
@@ -68,20 +78,43 @@ impl Live {
 /// The number before `what` in a summary.
 fn count(summary: &str, what: &str) -> u64 {
     let before = summary.split(what).next().unwrap().trim_end();
-    before.rsplit([' ', ',']).next().unwrap().parse().unwrap_or_else(|_| panic!("{what} in {summary}"))
+    before
+        .rsplit([' ', ','])
+        .next()
+        .unwrap()
+        .parse()
+        .unwrap_or_else(|_| panic!("{what} in {summary}"))
 }
 
 #[test]
 #[cfg(unix)]
 fn what_send_sends_live_hears_and_rubbish_does_not_end_it() {
     let folder = folder();
-    let live = Live::start(&folder, "vmc://127.0.0.1:0", &["--emit", "json:events.jsonl"]);
+    let live = Live::start(
+        &folder,
+        "vmc://127.0.0.1:0",
+        &["--emit", "json:events.jsonl"],
+    );
     let rubbish = UdpSocket::bind("127.0.0.1:0").unwrap();
-    for bytes in [&b""[..], b"#bundle\0", b"/VMC/Ext/Bone/Pos\0\0\0,s\0\0", &[0xff; 60_000]] {
+    for bytes in [
+        &b""[..],
+        b"#bundle\0",
+        b"/VMC/Ext/Bone/Pos\0\0\0,s\0\0",
+        &[0xff; 60_000],
+    ] {
         rubbish.send_to(bytes, &live.at).unwrap();
     }
     let to = format!("vmc://{}", live.at);
-    let sent = folder.morec(&["send", "person.bvh", "--to", &to, "--bundle", "300", "--loss", "0.02"]);
+    let sent = folder.morec(&[
+        "send",
+        "person.bvh",
+        "--to",
+        &to,
+        "--bundle",
+        "300",
+        "--loss",
+        "0.02",
+    ]);
     assert!(sent.err.contains("sent "), "{sent:?}");
     let summary = live.interrupt();
     // Most of some three seconds at 60 Hz; a loaded machine may lose some on the way.
@@ -109,7 +142,14 @@ fn lines_over_tcp_are_poses_and_connections_come_and_go() {
     // Until everything has arrived; if it never does, the counts below say so.
     std::thread::sleep(Duration::from_secs(3));
     let summary = live.interrupt();
-    assert_eq!((count(&summary, " frames,"), count(&summary, " malformed packets")), (100, 2), "{summary}");
+    assert_eq!(
+        (
+            count(&summary, " frames,"),
+            count(&summary, " malformed packets")
+        ),
+        (100, 2),
+        "{summary}"
+    );
 }
 
 #[test]
@@ -130,13 +170,18 @@ fn a_clip_ends_by_itself_and_what_cannot_be_opened_says_why() {
         assert!(ran.err.contains(said), "{}", ran.err);
     }
     assert_eq!(folder.morec(&["live", "v1.index"]).code, Some(2));
-    assert_eq!(folder.morec(&["live", "v1.index", "--listen", "vmc"]).code, Some(2));
+    assert_eq!(
+        folder.morec(&["live", "v1.index", "--listen", "vmc"]).code,
+        Some(2)
+    );
 }
 
 #[test]
 fn every_lap_of_a_soak_finds_the_same() {
     let folder = folder();
-    let out = folder.morec(&["soak", "v1.index", "person.bvh", "--hours", "0.02"]).ok();
+    let out = folder
+        .morec(&["soak", "v1.index", "person.bvh", "--hours", "0.02"])
+        .ok();
     assert!(out.contains("every lap found the same"), "{out}");
     assert!(out.contains("processing of one frame"), "{out}");
 }
@@ -144,7 +189,14 @@ fn every_lap_of_a_soak_finds_the_same() {
 /// `morec send` as a broadcast, waiting for somebody to listen; and where it is.
 fn broadcast(folder: &Folder, at: &str) -> (Child, String) {
     let mut child = Command::new(env!("CARGO_BIN_EXE_morec"))
-        .args(["send", "person.bvh", "--to", &format!("axis://{at}"), "--speed", "4"])
+        .args([
+            "send",
+            "person.bvh",
+            "--to",
+            &format!("axis://{at}"),
+            "--speed",
+            "4",
+        ])
         .current_dir(folder.path())
         .stdin(Stdio::null())
         .stderr(Stdio::piped())
@@ -154,7 +206,10 @@ fn broadcast(folder: &Folder, at: &str) -> (Child, String) {
     let mut line = String::new();
     while !line.contains("axis://") {
         line.clear();
-        assert!(err.read_line(&mut line).unwrap() > 0, "it ended before it listened");
+        assert!(
+            err.read_line(&mut line).unwrap() > 0,
+            "it ended before it listened"
+        );
     }
     let at = line.trim().rsplit("//").next().unwrap().to_owned();
     // Whatever else it says must not make it wait.
@@ -183,10 +238,21 @@ fn an_axis_broadcast_is_heard_and_waited_for_when_it_ends() {
 #[test]
 fn a_skeleton_that_is_not_the_broadcasts_is_refused() {
     let folder = folder();
-    let args = ["live", "v1.index", "--listen", "axis://127.0.0.1:7001", "--skeleton", "person.bvh"];
+    let args = [
+        "live",
+        "v1.index",
+        "--listen",
+        "axis://127.0.0.1:7001",
+        "--skeleton",
+        "person.bvh",
+    ];
     let ran = folder.morec(&args);
     assert_eq!(ran.code, Some(1), "{ran:?}");
-    assert!(ran.err.contains("person.bvh") && ran.err.contains("expected 59 joints"), "{}", ran.err);
+    assert!(
+        ran.err.contains("person.bvh") && ran.err.contains("expected 59 joints"),
+        "{}",
+        ran.err
+    );
 }
 
 #[test]
@@ -194,14 +260,46 @@ fn both_layouts_recognise_the_same_and_soak_in_stages() {
     let folder = folder();
     let svrdm = include_bytes!("../../../morec/testdata/index/svrdm_v1.index");
     std::fs::write(folder.path().join("svrdm.index"), svrdm).unwrap();
-    let inline = folder.morec(&["recognize", "svrdm.index", "person.bvh"]).ok();
-    let staged = folder.morec(&["recognize", "svrdm.index", "person.bvh", "--layout", "stages"]).ok();
+    let inline = folder
+        .morec(&["recognize", "svrdm.index", "person.bvh"])
+        .ok();
+    let staged = folder
+        .morec(&[
+            "recognize",
+            "svrdm.index",
+            "person.bvh",
+            "--layout",
+            "stages",
+        ])
+        .ok();
     assert_eq!(staged, inline);
-    let out =
-        folder.morec(&["soak", "svrdm.index", "person.bvh", "--hours", "0.01", "--layout", "stages"]).ok();
+    let out = folder
+        .morec(&[
+            "soak",
+            "svrdm.index",
+            "person.bvh",
+            "--hours",
+            "0.01",
+            "--layout",
+            "stages",
+        ])
+        .ok();
     assert!(out.contains("every lap found the same"), "{out}");
-    let out = folder.morec(&["soak", "svrdm.index", "person.bvh", "--layout", "both", "--for", "1"]).ok();
+    let out = folder
+        .morec(&[
+            "soak",
+            "svrdm.index",
+            "person.bvh",
+            "--layout",
+            "both",
+            "--for",
+            "1",
+        ])
+        .ok();
     assert!(out.contains("stages to inline"), "{out}");
     let ran = folder.morec(&["soak", "v1.index", "person.bvh", "--layout", "stages"]);
-    assert!(ran.code == Some(1) && ran.err.contains("expected an index of method svrdm"), "{ran:?}");
+    assert!(
+        ran.code == Some(1) && ran.err.contains("expected an index of method svrdm"),
+        "{ran:?}"
+    );
 }

@@ -8,20 +8,36 @@ use crate::kit::{Folder, WAVE_BVH};
 
 /// Two people who each wave, bow and wave, and labels of it.
 fn folder() -> Folder {
-    let mut files = vec![("bad.tsv".to_owned(), "clip\tclass\nnobody\twave\n".to_owned())];
+    let mut files = vec![(
+        "bad.tsv".to_owned(),
+        "clip\tclass\nnobody\twave\n".to_owned(),
+    )];
     let mut labels = "clip\tstart_secs\tstop_secs\tclass\n".to_owned();
     for (name, seed) in [("ann", 11), ("ben", 12)] {
-        let script = Script::new(seed, Person::draw(seed, 1)).rest(0.5).play("wave").play("bow").play("wave");
+        let script = Script::new(seed, Person::draw(seed, 1))
+            .rest(0.5)
+            .play("wave")
+            .play("bow")
+            .play("wave");
         let take = script.film(name, 60.0).unwrap();
         for label in &take.labels {
-            labels += &format!("{name}\t{}\t{}\t{}\n", label.start_secs, label.stop_secs, label.class);
+            labels += &format!(
+                "{name}\t{}\t{}\t{}\n",
+                label.start_secs, label.stop_secs, label.class
+            );
         }
         let mut text = Vec::new();
         bvh::write(&take.clip, &mut text).unwrap();
-        files.push((format!("clips/{name}.bvh"), String::from_utf8(text).unwrap()));
+        files.push((
+            format!("clips/{name}.bvh"),
+            String::from_utf8(text).unwrap(),
+        ));
     }
     files.push(("labels.tsv".to_owned(), labels));
-    let files: Vec<(&str, &str)> = files.iter().map(|(a, b)| (a.as_str(), b.as_str())).collect();
+    let files: Vec<(&str, &str)> = files
+        .iter()
+        .map(|(a, b)| (a.as_str(), b.as_str()))
+        .collect();
     Folder::with(&files)
 }
 
@@ -32,40 +48,98 @@ fn json(text: &str) -> Value {
 #[test]
 fn cuts_are_printed_and_drawn() {
     let folder = folder();
-    let found = json(&folder.morec(&["cut", "clips", "--json", "--pivots", "roles", "--rise", "2"]).ok());
+    let found = json(
+        &folder
+            .morec(&["cut", "clips", "--json", "--pivots", "roles", "--rise", "2"])
+            .ok(),
+    );
     let clips = found.as_array().unwrap();
     assert_eq!(clips.len(), 2);
     let cuts = |clip: &Value| clip["cuts"].as_array().unwrap().clone();
     for cut in clips.iter().flat_map(cuts) {
-        let (secs, frame) = (cut["secs"].as_f64().unwrap(), cut["frame"].as_f64().unwrap());
+        let (secs, frame) = (
+            cut["secs"].as_f64().unwrap(),
+            cut["frame"].as_f64().unwrap(),
+        );
         assert!((secs * 60.0 - frame).abs() <= 0.5, "{cut}");
     }
-    assert!(clips.iter().all(|clip| !clip["forward"].as_array().unwrap().is_empty()));
+    assert!(
+        clips
+            .iter()
+            .all(|clip| !clip["forward"].as_array().unwrap().is_empty())
+    );
     let ann = &clips[0];
-    let out = folder.morec(&["cut", "clips/ann.bvh", "--pivots", "roles", "--rise", "2", "--plot", "h.svg"]);
+    let out = folder.morec(&[
+        "cut",
+        "clips/ann.bvh",
+        "--pivots",
+        "roles",
+        "--rise",
+        "2",
+        "--plot",
+        "h.svg",
+    ]);
     let out = out.ok();
-    assert!(out.starts_with(&format!("ann: {} cut", cuts(ann).len())), "{out}");
+    assert!(
+        out.starts_with(&format!("ann: {} cut", cuts(ann).len())),
+        "{out}"
+    );
     assert_eq!(out.lines().count(), 1 + cuts(ann).len());
-    assert!(std::fs::read_to_string(folder.path().join("h.svg")).unwrap().starts_with("<svg"));
-    let few = json(&folder.morec(&["cut", "clips", "--json", "--pivots", "roles", "--rise", "1e9"]).ok());
-    assert!(few.as_array().unwrap().iter().all(|clip| cuts(clip).is_empty()));
+    assert!(
+        std::fs::read_to_string(folder.path().join("h.svg"))
+            .unwrap()
+            .starts_with("<svg")
+    );
+    let few = json(
+        &folder
+            .morec(&[
+                "cut", "clips", "--json", "--pivots", "roles", "--rise", "1e9",
+            ])
+            .ok(),
+    );
+    assert!(
+        few.as_array()
+            .unwrap()
+            .iter()
+            .all(|clip| cuts(clip).is_empty())
+    );
     let two = folder.morec(&["cut", "clips", "--plot", "h.svg", "--pivots", "roles"]);
-    assert!(two.code == Some(1) && two.err.contains("--plot draws one clip"), "{two:?}");
+    assert!(
+        two.code == Some(1) && two.err.contains("--plot draws one clip"),
+        "{two:?}"
+    );
 }
 
 #[test]
 fn samples_are_grouped_and_held_against_their_classes() {
     let folder = folder();
     let group = |more: &[&str]| {
-        let common = ["group", "--clips", "clips", "--pivots", "roles", "--json", "--labels", "labels.tsv"];
+        let common = [
+            "group",
+            "--clips",
+            "clips",
+            "--pivots",
+            "roles",
+            "--json",
+            "--labels",
+            "labels.tsv",
+        ];
         json(&folder.morec(&[&common, more].concat()).ok())
     };
     let samples = |found: &Value| {
-        found["clusters"].as_array().unwrap().iter().map(|c| c.as_array().unwrap().len()).sum()
+        found["clusters"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|c| c.as_array().unwrap().len())
+            .sum()
     };
     let all = group(&["--tau", "0"]);
     assert_eq!(all["clusters"].as_array().unwrap().len(), 1);
-    assert_eq!((samples(&all), all["agreement"]["classes"].as_u64()), (6usize, Some(2)));
+    assert_eq!(
+        (samples(&all), all["agreement"]["classes"].as_u64()),
+        (6usize, Some(2))
+    );
     // Of 15 pairs, 6 are of two waves and 1 of two bows.
     assert_eq!(all["agreement"]["pairs"]["true_positive"], 7);
     assert_eq!(all["agreement"]["rand_index"].as_f64(), Some(7.0 / 15.0));
@@ -74,17 +148,41 @@ fn samples_are_grouped_and_held_against_their_classes() {
     assert_eq!(none["agreement"]["adjusted_rand_index"].as_f64(), Some(0.0));
     // Uncentred, the mean pose makes everything alike.
     let uncentred = group(&["--centre", "none"]);
-    assert_eq!((uncentred["dims"].as_u64(), uncentred["quality"].as_f64()), (Some(48), Some(1.0)));
+    assert_eq!(
+        (uncentred["dims"].as_u64(), uncentred["quality"].as_f64()),
+        (Some(48), Some(1.0))
+    );
     let count = |found: &Value| found["clusters"].as_array().unwrap().len();
     assert!(count(&uncentred) < count(&group(&[])));
-    assert_eq!(samples(&group(&["--classes", "bow", "--normalised"])), 2usize);
+    assert_eq!(
+        samples(&group(&["--classes", "bow", "--normalised"])),
+        2usize
+    );
     let text = folder
-        .morec(&["group", "--clips", "clips", "--pivots", "roles", "--labels", "labels.tsv", "--tau", "0"])
+        .morec(&[
+            "group",
+            "--clips",
+            "clips",
+            "--pivots",
+            "roles",
+            "--labels",
+            "labels.tsv",
+            "--tau",
+            "0",
+        ])
         .ok();
-    assert!(text.contains("6 samples in 1 cluster;") && text.contains("bow 2, wave 4"), "{text}");
+    assert!(
+        text.contains("6 samples in 1 cluster;") && text.contains("bow 2, wave 4"),
+        "{text}"
+    );
     assert!(text.contains("Rand index 0.467, adjusted 0.000"), "{text}");
-    let segments = folder.morec(&["group", "--clips", "clips", "--pivots", "roles"]).ok();
-    assert!(segments.contains("ann 0.00-") && !segments.contains("Rand"), "{segments}");
+    let segments = folder
+        .morec(&["group", "--clips", "clips", "--pivots", "roles"])
+        .ok();
+    assert!(
+        segments.contains("ann 0.00-") && !segments.contains("Rand"),
+        "{segments}"
+    );
 }
 
 #[test]
@@ -92,12 +190,31 @@ fn dimensions_are_counted() {
     let folder = folder();
     let args = ["reduce", "clips", "--pivots", "roles", "--plot", "q.svg"];
     let found = json(&folder.morec(&[&args[..], &["--json"]].concat()).ok());
-    let (dims, quality) = (found["dims"].as_u64().unwrap(), found["quality"].as_f64().unwrap());
-    assert!(quality >= 0.99 && found["clips"] == 2 && found["table"].as_array().unwrap().len() == 48);
-    assert!(found["table"][dims as usize - 2]["quality"].as_f64().unwrap() < 0.99);
-    assert!(std::fs::read_to_string(folder.path().join("q.svg")).unwrap().contains("dimensions"));
-    let text = folder.morec(&["reduce", "clips", "--pivots", "roles", "--dims", "3"]).ok();
-    assert!(text.starts_with("2 clips, ") && text.contains("\n3 dimensions keep "), "{text}");
+    let (dims, quality) = (
+        found["dims"].as_u64().unwrap(),
+        found["quality"].as_f64().unwrap(),
+    );
+    assert!(
+        quality >= 0.99 && found["clips"] == 2 && found["table"].as_array().unwrap().len() == 48
+    );
+    assert!(
+        found["table"][dims as usize - 2]["quality"]
+            .as_f64()
+            .unwrap()
+            < 0.99
+    );
+    assert!(
+        std::fs::read_to_string(folder.path().join("q.svg"))
+            .unwrap()
+            .contains("dimensions")
+    );
+    let text = folder
+        .morec(&["reduce", "clips", "--pivots", "roles", "--dims", "3"])
+        .ok();
+    assert!(
+        text.starts_with("2 clips, ") && text.contains("\n3 dimensions keep "),
+        "{text}"
+    );
 }
 
 #[test]
@@ -108,16 +225,40 @@ fn what_cannot_be_done_is_said() {
     write("pivots.json", r#"[{"name":"a","parent":"b"}]"#);
     write("pelvis.json", r#"[{"name":"Pelvis","joints":["pelvis"]}]"#);
     let cases: [(&[&str], &str); 7] = [
-        (&["cut", "wave.bvh", "--pivots", "pivots.json"], "the first pivot is the root and has no parent"),
-        (&["cut", "wave.bvh", "--pivots", "none.json"], "--pivots: none.json"),
-        (&["cut", "clips", "--rise", "0"], "rise must be above 0, found 0"),
-        (&["reduce", "clips", "--quality", "2"], "quality must be above 0 and at most 1, found 2"),
-        (&["group", "--clips", "clips", "--tau", "2"], "--tau 2: expected 0 to 1"),
-        (&["group", "--clips", "clips", "--labels", "bad.tsv"], "no sample to group"),
-        (&["reduce", "wave.bvh", "--pivots", "pelvis.json"], "no joint plays the root pivot Pelvis"),
+        (
+            &["cut", "wave.bvh", "--pivots", "pivots.json"],
+            "the first pivot is the root and has no parent",
+        ),
+        (
+            &["cut", "wave.bvh", "--pivots", "none.json"],
+            "--pivots: none.json",
+        ),
+        (
+            &["cut", "clips", "--rise", "0"],
+            "rise must be above 0, found 0",
+        ),
+        (
+            &["reduce", "clips", "--quality", "2"],
+            "quality must be above 0 and at most 1, found 2",
+        ),
+        (
+            &["group", "--clips", "clips", "--tau", "2"],
+            "--tau 2: expected 0 to 1",
+        ),
+        (
+            &["group", "--clips", "clips", "--labels", "bad.tsv"],
+            "no sample to group",
+        ),
+        (
+            &["reduce", "wave.bvh", "--pivots", "pelvis.json"],
+            "no joint plays the root pivot Pelvis",
+        ),
     ];
     for (args, said) in cases {
         let ran = folder.morec(args);
-        assert!(ran.code == Some(1) && ran.err.contains(said), "{args:?}: {ran:?}");
+        assert!(
+            ran.code == Some(1) && ran.err.contains(said),
+            "{args:?}: {ran:?}"
+        );
     }
 }

@@ -5,7 +5,12 @@ use crate::kit::{Folder, WAVE_BVH, data};
 
 /// Two made people waving.
 fn folder() -> Folder {
-    let spec = DatabaseSpec { people: 2, repetitions: 1, classes: vec!["wave"], ..Default::default() };
+    let spec = DatabaseSpec {
+        people: 2,
+        repetitions: 1,
+        classes: vec!["wave"],
+        ..Default::default()
+    };
     let texts: Vec<(String, String)> = database(7, &spec)
         .iter()
         .enumerate()
@@ -15,13 +20,19 @@ fn folder() -> Folder {
             (format!("clips/{i}.bvh"), String::from_utf8(text).unwrap())
         })
         .collect();
-    let files: Vec<(&str, &str)> = texts.iter().map(|(path, text)| (path.as_str(), text.as_str())).collect();
+    let files: Vec<(&str, &str)> = texts
+        .iter()
+        .map(|(path, text)| (path.as_str(), text.as_str()))
+        .collect();
     Folder::with(&files)
 }
 
 fn clip(folder: &Folder, path: &str) -> morec::clip::Clip {
     let bytes = std::fs::read(folder.path().join(path)).unwrap();
-    bvh::read(&bytes, "clip", &Default::default(), &Limits::default()).unwrap().clips.remove(0)
+    bvh::read(&bytes, "clip", &Default::default(), &Limits::default())
+        .unwrap()
+        .clips
+        .remove(0)
 }
 
 fn json(text: &str) -> serde_json::Value {
@@ -31,15 +42,32 @@ fn json(text: &str) -> serde_json::Value {
 #[test]
 fn a_smoothed_clip_is_within_the_thresholds_that_are_printed() {
     let folder = folder();
-    let args = ["smooth", "clips/0.bvh", "-o", "out.bvh", "--max-angle", "1", "--max-joint", "10", "--json"];
+    let args = [
+        "smooth",
+        "clips/0.bvh",
+        "-o",
+        "out.bvh",
+        "--max-angle",
+        "1",
+        "--max-joint",
+        "10",
+        "--json",
+    ];
     let printed = json(&folder.morec(&args).ok());
     let errors = &printed[0]["clips"][0]["errors"];
     let (before, after) = (clip(&folder, "clips/0.bvh"), clip(&folder, "out.bvh"));
     assert_eq!(after.frames, before.frames);
-    let angles = before.rotations.iter().zip(&after.rotations).map(|(a, b)| a.angle_to(b));
+    let angles = before
+        .rotations
+        .iter()
+        .zip(&after.rotations)
+        .map(|(a, b)| a.angle_to(b));
     let most = angles.fold(0.0, f64::max);
     let stated = errors["max_angle_rad"].as_f64().unwrap();
-    assert!((most - stated).abs() < 1e-5 && stated <= 1f64.to_radians(), "{most} {stated}");
+    assert!(
+        (most - stated).abs() < 1e-5 && stated <= 1f64.to_radians(),
+        "{most} {stated}"
+    );
     assert!(errors["max_joint_position_metres"].as_f64().unwrap() <= 0.01);
     assert!(printed[0]["clips"][0]["byte_ratio"].as_f64().unwrap() > 10.0);
 }
@@ -47,23 +75,47 @@ fn a_smoothed_clip_is_within_the_thresholds_that_are_printed() {
 #[test]
 fn the_stored_form_is_read_like_any_clip() {
     let folder = folder();
-    let text = folder.morec(&["smooth", "clips/0.bvh", "-o", "0.mclip"]).ok();
-    for word in ["keyframes", "values", "bytes", "angle", "position", "in world", "0.mclip"] {
+    let text = folder
+        .morec(&["smooth", "clips/0.bvh", "-o", "0.mclip"])
+        .ok();
+    for word in [
+        "keyframes",
+        "values",
+        "bytes",
+        "angle",
+        "position",
+        "in world",
+        "0.mclip",
+    ] {
         assert!(text.contains(word), "{word}: {text}");
     }
     let inspected = folder.morec(&["inspect", "0.mclip"]).ok();
-    assert!(inspected.contains("MCLIP") && inspected.contains("roles"), "{inspected}");
-    folder.morec(&["convert", "0.mclip", "-o", "again.bvh", "--rate", "60"]).ok();
-    let (before, after) = (clip(&folder, "clips/0.bvh").resampled(60.0).unwrap(), clip(&folder, "again.bvh"));
+    assert!(
+        inspected.contains("MCLIP") && inspected.contains("roles"),
+        "{inspected}"
+    );
+    folder
+        .morec(&["convert", "0.mclip", "-o", "again.bvh", "--rate", "60"])
+        .ok();
+    let (before, after) = (
+        clip(&folder, "clips/0.bvh").resampled(60.0).unwrap(),
+        clip(&folder, "again.bvh"),
+    );
     assert_eq!(after.frames, before.frames);
-    let angles = before.rotations.iter().zip(&after.rotations).map(|(a, b)| a.angle_to(b));
+    let angles = before
+        .rotations
+        .iter()
+        .zip(&after.rotations)
+        .map(|(a, b)| a.angle_to(b));
     assert!(angles.fold(0.0, f64::max) < 0.6f64.to_radians());
 }
 
 #[test]
 fn several_clips_go_into_a_folder() {
     let folder = folder();
-    let text = folder.morec(&["smooth", "clips", "-o", "out", "--form", "mclip"]).ok();
+    let text = folder
+        .morec(&["smooth", "clips", "-o", "out", "--form", "mclip"])
+        .ok();
     assert!(text.contains("all 2") && text.contains("1:"), "{text}");
     let mut names: Vec<_> = std::fs::read_dir(folder.path().join("out"))
         .unwrap()
@@ -78,15 +130,30 @@ fn several_clips_go_into_a_folder() {
 #[test]
 fn a_channel_is_drawn() {
     let folder = folder();
-    let args = ["smooth", "clips/0.bvh", "--plot", "Hips", "a.svg", "--plot", "Hips.px", "b.svg"];
+    let args = [
+        "smooth",
+        "clips/0.bvh",
+        "--plot",
+        "Hips",
+        "a.svg",
+        "--plot",
+        "Hips.px",
+        "b.svg",
+    ];
     folder.morec(&args).ok();
     let svg = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
     assert!(svg("a.svg").contains("rotation of Hips"));
     assert!(svg("b.svg").contains("position of Hips") && svg("b.svg").contains("control points"));
     let ran = folder.morec(&["smooth", "clips/0.bvh", "--plot", "Nose", "a.svg"]);
-    assert!(ran.code == Some(1) && ran.err.contains("no such joint"), "{ran:?}");
+    assert!(
+        ran.code == Some(1) && ran.err.contains("no such joint"),
+        "{ran:?}"
+    );
     let ran = folder.morec(&["smooth", "clips/0.bvh", "--plot", "Hips.q", "a.svg"]);
-    assert!(ran.code == Some(1) && ran.err.contains("expected one of x, y"), "{ran:?}");
+    assert!(
+        ran.code == Some(1) && ran.err.contains("expected one of x, y"),
+        "{ran:?}"
+    );
 }
 
 #[test]
@@ -94,22 +161,42 @@ fn nothing_is_overwritten_or_half_done() {
     let folder = folder();
     let before = std::fs::read(folder.path().join("clips/0.bvh")).unwrap();
     let ran = folder.morec(&["smooth", "clips", "-o", "clips"]);
-    assert!(ran.code == Some(1) && ran.err.contains("overwritten"), "{ran:?}");
-    assert_eq!(std::fs::read(folder.path().join("clips/0.bvh")).unwrap(), before);
+    assert!(
+        ran.code == Some(1) && ran.err.contains("overwritten"),
+        "{ran:?}"
+    );
+    assert_eq!(
+        std::fs::read(folder.path().join("clips/0.bvh")).unwrap(),
+        before
+    );
     let ran = folder.morec(&["smooth", "clips/0.bvh", "-o", "out.txt"]);
     assert!(ran.code == Some(1) && ran.err.contains(".mclip"), "{ran:?}");
-    assert_eq!(folder.morec(&["smooth", "clips/0.bvh", "--max-angle", "0"]).code, Some(2));
+    assert_eq!(
+        folder
+            .morec(&["smooth", "clips/0.bvh", "--max-angle", "0"])
+            .code,
+        Some(2)
+    );
     std::fs::write(folder.path().join("clips/bad.mclip"), b"MCLIP\n\x01\0").unwrap();
     let ran = folder.morec(&["smooth", "clips", "-o", "out"]);
-    assert!(ran.code == Some(1) && ran.err.contains("bad.mclip: byte 6"), "{ran:?}");
-    assert!(folder.path().join("out/1.bvh").exists(), "the others are done all the same");
+    assert!(
+        ran.code == Some(1) && ran.err.contains("bad.mclip: byte 6"),
+        "{ran:?}"
+    );
+    assert!(
+        folder.path().join("out/1.bvh").exists(),
+        "the others are done all the same"
+    );
 }
 
 #[test]
 fn the_smallest_clips_can_be_smoothed() {
     let folder = Folder::with(&[("wave.bvh", WAVE_BVH)]);
     folder.morec(&["smooth", "wave.bvh", "-o", "out.bvh"]).ok();
-    assert_eq!(clip(&folder, "out.bvh").frames, clip(&folder, "wave.bvh").frames);
+    assert_eq!(
+        clip(&folder, "out.bvh").frames,
+        clip(&folder, "wave.bvh").frames
+    );
 }
 
 #[test]
@@ -117,7 +204,13 @@ fn real_clips_are_a_fifteenth_of_their_files() {
     let Some(data) = data() else { return };
     let clips = data.join("referee/clips/signals_2.bvh");
     let folder = Folder::with(&[]);
-    let args = ["smooth", clips.to_str().unwrap(), "--max-joint", "5", "--json"];
+    let args = [
+        "smooth",
+        clips.to_str().unwrap(),
+        "--max-joint",
+        "5",
+        "--json",
+    ];
     let printed = json(&folder.morec(&args).ok());
     let report = &printed[0]["clips"][0];
     assert!(report["byte_ratio"].as_f64().unwrap() > 15.0, "{report}");

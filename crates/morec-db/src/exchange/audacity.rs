@@ -7,7 +7,11 @@ use crate::labels::State;
 
 pub fn read(text: &str, clip: Option<&str>) -> Result<ReadLabels, ParseError> {
     let clip = clip.ok_or_else(|| {
-        ParseError::new(Place::File, "to be told the clip (a label track does not name it)", "no clip given")
+        ParseError::new(
+            Place::File,
+            "to be told the clip (a label track does not name it)",
+            "no clip given",
+        )
     })?;
     let mut read = ReadLabels::default();
     for (line, raw) in (1..).zip(text.lines()) {
@@ -15,10 +19,19 @@ pub fn read(text: &str, clip: Option<&str>) -> Result<ReadLabels, ParseError> {
         if raw.trim().is_empty() || raw.starts_with('\\') {
             continue;
         }
-        let error =
-            |found: &str| ParseError::new(Place::Line(line), "start<TAB>stop<TAB>name, in seconds", found);
+        let error = |found: &str| {
+            ParseError::new(
+                Place::Line(line),
+                "start<TAB>stop<TAB>name, in seconds",
+                found,
+            )
+        };
         let mut cells = raw.splitn(3, '\t');
-        let mut number = || cells.next().and_then(|cell| cell.trim().replace(',', ".").parse::<f64>().ok());
+        let mut number = || {
+            cells
+                .next()
+                .and_then(|cell| cell.trim().replace(',', ".").parse::<f64>().ok())
+        };
         let (start, stop) = number().zip(number()).ok_or_else(|| error(raw))?;
         let class = cells.next().unwrap_or("").trim();
         let extent = checked(start, stop).map_err(|found| error(&found))?;

@@ -13,8 +13,15 @@ pub fn read(bytes: &[u8]) -> Result<ReadLabels, ParseError> {
     let mut read = ReadLabels::default();
     for (key, sequence) in &file {
         let clip = sequence["feat_p"].as_str().map_or(key.as_str(), stem);
-        for (one, several, timed) in [("seq_ann", "seq_anns", false), ("frame_ann", "frame_anns", true)] {
-            let sets = sequence[several].as_array().into_iter().flatten().chain([&sequence[one]]);
+        for (one, several, timed) in [
+            ("seq_ann", "seq_anns", false),
+            ("frame_ann", "frame_anns", true),
+        ] {
+            let sets = sequence[several]
+                .as_array()
+                .into_iter()
+                .flatten()
+                .chain([&sequence[one]]);
             for label in sets.filter_map(|set| set["labels"].as_array()).flatten() {
                 read_label(clip, label, timed, &mut read).map_err(|found| {
                     ParseError::new(Place::File, format!("{key}: a label with times"), found)
@@ -27,7 +34,9 @@ pub fn read(bytes: &[u8]) -> Result<ReadLabels, ParseError> {
 
 /// The file's stem where `feat_p` is a path to poses; a name of ours may hold a slash, too.
 fn stem(path: &str) -> &str {
-    let Some(path) = path.strip_suffix(".npz") else { return path };
+    let Some(path) = path.strip_suffix(".npz") else {
+        return path;
+    };
     let name = path.rsplit(['/', '\\']).next().unwrap_or(path);
     name.strip_suffix("_poses").unwrap_or(name)
 }
@@ -38,10 +47,20 @@ fn read_label(clip: &str, label: &Value, timed: bool, read: &mut ReadLabels) -> 
         (true, Some(start), Some(stop)) => Some(checked(start, stop)?),
         (true, _, _) => return Err(label.to_string()),
     };
-    let categories: Vec<&str> =
-        label["act_cat"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
-    let named = ["proc_label", "raw_label"].into_iter().filter_map(|key| label[key].as_str());
-    let classes = if categories.is_empty() { named.take(1).collect() } else { categories };
+    let categories: Vec<&str> = label["act_cat"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .filter_map(Value::as_str)
+        .collect();
+    let named = ["proc_label", "raw_label"]
+        .into_iter()
+        .filter_map(|key| label[key].as_str());
+    let classes = if categories.is_empty() {
+        named.take(1).collect()
+    } else {
+        categories
+    };
     for class in classes {
         read.annotations.push(Annotation {
             clip: clip.to_owned(),
@@ -64,7 +83,8 @@ pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, St
             json!({ "babel_sid": sid, "feat_p": a.clip, "dur": dur,
                     "seq_ann": null, "frame_ann": null })
         });
-        let mut label = json!({ "raw_label": a.class, "proc_label": a.class, "act_cat": [a.class] });
+        let mut label =
+            json!({ "raw_label": a.class, "proc_label": a.class, "act_cat": [a.class] });
         let set = match a.extent {
             None => "seq_ann",
             Some(_) => {
@@ -81,5 +101,7 @@ pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, St
             labels.push(label);
         }
     }
-    serde_json::to_string_pretty(&file).map(|text| text + "\n").map_err(|error| error.to_string())
+    serde_json::to_string_pretty(&file)
+        .map(|text| text + "\n")
+        .map_err(|error| error.to_string())
 }

@@ -5,15 +5,23 @@ use morec::formats::{ParseError, Place, Warning};
 use super::{Annotation, Lengths, ReadLabels, checked, frames, secs};
 use crate::labels::State;
 
-const HEADER: &str = "file,label,start_s,end_s,start_frame,end_frame,whole_clip,score,actor,source,state";
+const HEADER: &str =
+    "file,label,start_s,end_s,start_frame,end_frame,whole_clip,score,actor,source,state";
 
 pub fn read(bytes: &[u8], lengths: &Lengths) -> Result<ReadLabels, ParseError> {
     let mut records = records(super::text(bytes)?)?.into_iter();
-    let (line, header) = records
-        .next()
-        .ok_or_else(|| ParseError::new(Place::File, "a header line with column names", "an empty file"))?;
-    let find =
-        |names: &[&str]| header.iter().position(|h| names.iter().any(|n| h.trim().eq_ignore_ascii_case(n)));
+    let (line, header) = records.next().ok_or_else(|| {
+        ParseError::new(
+            Place::File,
+            "a header line with column names",
+            "an empty file",
+        )
+    })?;
+    let find = |names: &[&str]| {
+        header
+            .iter()
+            .position(|h| names.iter().any(|n| h.trim().eq_ignore_ascii_case(n)))
+    };
     let need = |names: &[&str]| {
         find(names).ok_or_else(|| {
             ParseError::new(
@@ -26,14 +34,21 @@ pub fn read(bytes: &[u8], lengths: &Lengths) -> Result<ReadLabels, ParseError> {
     let (file, label) = (need(&["file", "clip"])?, need(&["label", "class"])?);
     let seconds = find(&["start_s", "start_secs"]).zip(find(&["end_s", "stop_secs"]));
     let framed = find(&["start_frame", "start"]).zip(find(&["end_frame", "stop"]));
-    let (whole, score, actor) = (find(&["whole_clip"]), find(&["score"]), find(&["actor", "person"]));
+    let (whole, score, actor) = (
+        find(&["whole_clip"]),
+        find(&["score"]),
+        find(&["actor", "person"]),
+    );
     let state = find(&["state"]);
     let mut read = ReadLabels::default();
     for (line, record) in records {
-        let cell = |column: Option<usize>| column.and_then(|c| record.get(c)).map_or("", |c| c.trim());
+        let cell =
+            |column: Option<usize>| column.and_then(|c| record.get(c)).map_or("", |c| c.trim());
         let number = |column: usize| -> Result<f64, ParseError> {
             let found = cell(Some(column));
-            found.parse().map_err(|_| ParseError::new(Place::Line(line), "a number", format!("`{found}`")))
+            found
+                .parse()
+                .map_err(|_| ParseError::new(Place::Line(line), "a number", format!("`{found}`")))
         };
         let filled = |pair: &(usize, usize)| !cell(Some(pair.0)).is_empty();
         let extent = if cell(whole) == "1" {
@@ -45,26 +60,43 @@ pub fn read(bytes: &[u8], lengths: &Lengths) -> Result<ReadLabels, ParseError> {
                 *read.absent.entry(cell(Some(file)).to_owned()).or_default() += 1;
                 continue;
             };
-            Some((number(start)? / length.rate_hz, number(stop)? / length.rate_hz))
+            Some((
+                number(start)? / length.rate_hz,
+                number(stop)? / length.rate_hz,
+            ))
         } else {
             None
         };
         if let Some((start, stop)) = extent {
             checked(start, stop).map_err(|found| {
-                ParseError::new(Place::Line(line), "a stop after a start of at least 0", found)
+                ParseError::new(
+                    Place::Line(line),
+                    "a stop after a start of at least 0",
+                    found,
+                )
             })?;
         }
-        let state = state.map_or(Ok(State::Accepted), |column| super::state(cell(Some(column)), line))?;
+        let state = state.map_or(Ok(State::Accepted), |column| {
+            super::state(cell(Some(column)), line)
+        })?;
         if cell(Some(label)).is_empty() {
-            read.warnings.push(Warning::new(Place::Line(line), "a row without a label; left out"));
+            read.warnings.push(Warning::new(
+                Place::Line(line),
+                "a row without a label; left out",
+            ));
             continue;
         }
         read.annotations.push(Annotation {
             clip: cell(Some(file)).to_owned(),
             class: cell(Some(label)).to_owned(),
             extent,
-            person: Some(cell(actor)).filter(|p| !p.is_empty()).map(str::to_owned),
-            score: cell(score).parse().ok().filter(|score: &f64| score.is_finite()),
+            person: Some(cell(actor))
+                .filter(|p| !p.is_empty())
+                .map(str::to_owned),
+            score: cell(score)
+                .parse()
+                .ok()
+                .filter(|score: &f64| score.is_finite()),
             state,
         });
     }
@@ -94,7 +126,11 @@ fn records(text: &str) -> Result<Vec<(u64, Vec<String>)>, ParseError> {
         }
     }
     if quoted {
-        return Err(ParseError::new(Place::Line(begun), "a closing quote", "the end of the file"));
+        return Err(ParseError::new(
+            Place::Line(begun),
+            "a closing quote",
+            "the end of the file",
+        ));
     }
     if !cell.is_empty() || !record.is_empty() {
         record.push(cell);
@@ -116,7 +152,13 @@ pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, St
     let mut out = format!("{HEADER}\n");
     for a in annotations {
         let (start, stop) = secs(a, lengths)?;
-        let framed = frames(&Annotation { extent: Some((start, stop)), ..a.clone() }, lengths);
+        let framed = frames(
+            &Annotation {
+                extent: Some((start, stop)),
+                ..a.clone()
+            },
+            lengths,
+        );
         let framed = framed.map_or_else(|| ",".to_owned(), |(from, to)| format!("{from},{to}"));
         let score = a.score.map_or_else(String::new, |score| score.to_string());
         out.push_str(&format!(

@@ -16,7 +16,10 @@ const CLIP: &str = "morec:clip";
 const MOST_NODES: u32 = 4_000_000;
 
 pub fn read(text: &str, clip: Option<&str>) -> Result<ReadLabels, ParseError> {
-    let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
+    let options = ParsingOptions {
+        nodes_limit: MOST_NODES,
+        ..ParsingOptions::default()
+    };
     let document = Document::parse_with_options(text, options).map_err(|error| {
         let at = error.pos();
         let place = Place::Column(at.row.into(), at.col.into());
@@ -44,25 +47,47 @@ pub fn read(text: &str, clip: Option<&str>) -> Result<ReadLabels, ParseError> {
     let elements = |name: &'static str| root.descendants().filter(move |n| n.has_tag_name(name));
     let slots: BTreeMap<&str, Option<f64>> = elements("TIME_SLOT")
         .filter_map(|slot| {
-            let millis = slot.attribute("TIME_VALUE").and_then(|v| v.parse::<i64>().ok());
-            Some((slot.attribute("TIME_SLOT_ID")?, millis.map(|m| m as f64 / 1000.0)))
+            let millis = slot
+                .attribute("TIME_VALUE")
+                .and_then(|v| v.parse::<i64>().ok());
+            Some((
+                slot.attribute("TIME_SLOT_ID")?,
+                millis.map(|m| m as f64 / 1000.0),
+            ))
         })
         .collect();
     let mut read = ReadLabels::default();
     for tier in elements("TIER") {
         let person = tier.attribute("PARTICIPANT").filter(|p| !p.is_empty());
-        for annotation in tier.descendants().filter(|n| n.has_tag_name("ALIGNABLE_ANNOTATION")) {
-            let slot = |name| annotation.attribute(name).and_then(|id| slots.get(id)).copied().flatten();
-            let value = annotation.descendants().find(|n| n.has_tag_name("ANNOTATION_VALUE"));
+        for annotation in tier
+            .descendants()
+            .filter(|n| n.has_tag_name("ALIGNABLE_ANNOTATION"))
+        {
+            let slot = |name| {
+                annotation
+                    .attribute(name)
+                    .and_then(|id| slots.get(id))
+                    .copied()
+                    .flatten()
+            };
+            let value = annotation
+                .descendants()
+                .find(|n| n.has_tag_name("ANNOTATION_VALUE"));
             let class = value.and_then(|v| v.text()).unwrap_or("").trim().to_owned();
             let extent = slot("TIME_SLOT_REF1").zip(slot("TIME_SLOT_REF2"));
-            let Some((start, stop)) = extent.filter(|(start, stop)| *start >= 0.0 && stop > start) else {
-                read.warnings.push(Warning::new(place(annotation), "an annotation without times; left out"));
+            let Some((start, stop)) = extent.filter(|(start, stop)| *start >= 0.0 && stop > start)
+            else {
+                read.warnings.push(Warning::new(
+                    place(annotation),
+                    "an annotation without times; left out",
+                ));
                 continue;
             };
             if class.is_empty() {
-                read.warnings
-                    .push(Warning::new(place(annotation), "an annotation without a value; left out"));
+                read.warnings.push(Warning::new(
+                    place(annotation),
+                    "an annotation without a value; left out",
+                ));
                 continue;
             }
             read.annotations.push(Annotation {
@@ -75,20 +100,31 @@ pub fn read(text: &str, clip: Option<&str>) -> Result<ReadLabels, ParseError> {
             });
         }
     }
-    read.annotations.sort_by(|a, b| a.extent.partial_cmp(&b.extent).unwrap_or(std::cmp::Ordering::Equal));
+    read.annotations.sort_by(|a, b| {
+        a.extent
+            .partial_cmp(&b.extent)
+            .unwrap_or(std::cmp::Ordering::Equal)
+    });
     Ok(read)
 }
 
 /// The property that morec writes, else the stem of the media file.
 fn clip_of(root: Node) -> Option<String> {
-    let property =
-        root.descendants().find(|n| n.has_tag_name("PROPERTY") && n.attribute("NAME") == Some(CLIP));
+    let property = root
+        .descendants()
+        .find(|n| n.has_tag_name("PROPERTY") && n.attribute("NAME") == Some(CLIP));
     if let Some(clip) = property.and_then(|p| p.text()) {
         return Some(clip.to_owned());
     }
-    let media = root.descendants().find(|n| n.has_tag_name("MEDIA_DESCRIPTOR"))?;
+    let media = root
+        .descendants()
+        .find(|n| n.has_tag_name("MEDIA_DESCRIPTOR"))?;
     let name = media.attribute("MEDIA_URL")?.rsplit('/').next()?;
-    Some(name.rsplit_once('.').map_or(name, |(stem, _)| stem).to_owned())
+    Some(
+        name.rsplit_once('.')
+            .map_or(name, |(stem, _)| stem)
+            .to_owned(),
+    )
 }
 
 fn escaped(text: &str) -> String {
@@ -112,11 +148,15 @@ pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, St
         let millis = |secs: f64| (secs * 1000.0).round() as i64;
         let (start, stop) = (millis(start), millis(stop).max(millis(start) + 1));
         let free = |tier: &Tier| {
-            tier.person == a.person.as_deref() && tier.rows.iter().all(|r| r.1 <= start || r.0 >= stop)
+            tier.person == a.person.as_deref()
+                && tier.rows.iter().all(|r| r.1 <= start || r.0 >= stop)
         };
         match tiers.iter_mut().find(|tier| free(tier)) {
             Some(tier) => tier.rows.push((start, stop, &a.class)),
-            None => tiers.push(Tier { person: a.person.as_deref(), rows: vec![(start, stop, &a.class)] }),
+            None => tiers.push(Tier {
+                person: a.person.as_deref(),
+                rows: vec![(start, stop, &a.class)],
+            }),
         }
     }
     let clip = annotations.first().map_or("", |a| a.clip.as_str());
@@ -133,9 +173,18 @@ fn document(clip: &str, tiers: &[Tier<'_>]) -> String {
     let (mut slots, mut body) = (String::new(), String::new());
     let mut number = 0;
     for (index, tier) in tiers.iter().enumerate() {
-        let id = if index == 0 { "motion".to_owned() } else { format!("motion {}", index + 1) };
-        let person = tier.person.map_or_else(String::new, |p| format!(" PARTICIPANT=\"{}\"", escaped(p)));
-        let _ = writeln!(body, "    <TIER LINGUISTIC_TYPE_REF=\"default-lt\"{person} TIER_ID=\"{id}\">");
+        let id = if index == 0 {
+            "motion".to_owned()
+        } else {
+            format!("motion {}", index + 1)
+        };
+        let person = tier
+            .person
+            .map_or_else(String::new, |p| format!(" PARTICIPANT=\"{}\"", escaped(p)));
+        let _ = writeln!(
+            body,
+            "    <TIER LINGUISTIC_TYPE_REF=\"default-lt\"{person} TIER_ID=\"{id}\">"
+        );
         for (start, stop, class) in &tier.rows {
             number += 1;
             let (a, b) = (2 * number - 1, 2 * number);

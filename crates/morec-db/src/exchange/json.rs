@@ -39,7 +39,9 @@ pub fn which(bytes: &[u8]) -> Form {
     match serde_json::from_slice(bytes) {
         Ok(Value::Array(_)) => Form::LabelStudio,
         Ok(Value::Object(map)) if map.contains_key("labels") => Form::Json,
-        Ok(Value::Object(map)) if map.contains_key("predictions") || map.contains_key("annotations") => {
+        Ok(Value::Object(map))
+            if map.contains_key("predictions") || map.contains_key("annotations") =>
+        {
             Form::LabelStudio
         }
         Ok(Value::Object(_)) => Form::Babel,
@@ -53,10 +55,16 @@ pub fn read(bytes: &[u8], lengths: &Lengths) -> Result<ReadLabels, ParseError> {
     let mut read = ReadLabels::default();
     for (index, row) in file.labels.into_iter().enumerate() {
         let rate = super::length_of(&row.clip, lengths).map(|length| length.rate_hz);
-        let extent = match (row.start_secs.zip(row.stop_secs), row.start.zip(row.stop), rate) {
+        let extent = match (
+            row.start_secs.zip(row.stop_secs),
+            row.start.zip(row.stop),
+            rate,
+        ) {
             _ if row.whole_clip => None,
             (Some(secs), _, _) => Some(secs),
-            (None, Some((start, stop)), Some(rate)) => Some((start as f64 / rate, stop as f64 / rate)),
+            (None, Some((start, stop)), Some(rate)) => {
+                Some((start as f64 / rate, stop as f64 / rate))
+            }
             (None, Some(_), None) => {
                 *read.absent.entry(row.clip.clone()).or_default() += 1;
                 continue;
@@ -84,7 +92,13 @@ pub fn read(bytes: &[u8], lengths: &Lengths) -> Result<ReadLabels, ParseError> {
 pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, String> {
     let row = |a: &Annotation| -> Result<Row, String> {
         let (start_secs, stop_secs) = secs(a, lengths)?;
-        let framed = frames(&Annotation { extent: Some((start_secs, stop_secs)), ..a.clone() }, lengths);
+        let framed = frames(
+            &Annotation {
+                extent: Some((start_secs, stop_secs)),
+                ..a.clone()
+            },
+            lengths,
+        );
         Ok(Row {
             clip: a.clip.clone(),
             class: a.class.clone(),
@@ -98,6 +112,10 @@ pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, St
             state: Some(a.state),
         })
     };
-    let file = File { labels: annotations.iter().map(row).collect::<Result<_, _>>()? };
-    serde_json::to_string_pretty(&file).map(|text| text + "\n").map_err(|error| error.to_string())
+    let file = File {
+        labels: annotations.iter().map(row).collect::<Result<_, _>>()?,
+    };
+    serde_json::to_string_pretty(&file)
+        .map(|text| text + "\n")
+        .map_err(|error| error.to_string())
 }

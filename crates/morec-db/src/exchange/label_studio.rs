@@ -8,7 +8,8 @@ use crate::labels::State;
 
 pub fn read(bytes: &[u8]) -> Result<ReadLabels, ParseError> {
     let expected = "Label Studio tasks: [{data, annotations, predictions}]";
-    let file: Value = serde_json::from_slice(bytes).map_err(|error| json_error(&error, expected))?;
+    let file: Value =
+        serde_json::from_slice(bytes).map_err(|error| json_error(&error, expected))?;
     let tasks = match &file {
         Value::Array(tasks) => tasks.as_slice(),
         one => std::slice::from_ref(one),
@@ -18,20 +19,36 @@ pub fn read(bytes: &[u8]) -> Result<ReadLabels, ParseError> {
         let error = |expected: &str, found: String| {
             ParseError::new(Place::File, format!("task {index}: {expected}"), found)
         };
-        let clip =
-            clip_of(task).ok_or_else(|| error("data with the clip's name", task["data"].to_string()))?;
+        let clip = clip_of(task)
+            .ok_or_else(|| error("data with the clip's name", task["data"].to_string()))?;
         let set = |key: &str| task[key].as_array().into_iter().flatten();
         let judged: Vec<&Value> = set("annotations").collect();
-        let state = if judged.is_empty() { State::Proposed } else { State::Accepted };
-        let sets = if judged.is_empty() { set("predictions").collect() } else { judged };
-        for result in sets.iter().filter_map(|set| set["result"].as_array()).flatten() {
+        let state = if judged.is_empty() {
+            State::Proposed
+        } else {
+            State::Accepted
+        };
+        let sets = if judged.is_empty() {
+            set("predictions").collect()
+        } else {
+            judged
+        };
+        for result in sets
+            .iter()
+            .filter_map(|set| set["result"].as_array())
+            .flatten()
+        {
             let value = &result["value"];
             let (Some(start), Some(stop)) = (value["start"].as_f64(), value["end"].as_f64()) else {
                 continue;
             };
-            let extent =
-                checked(start, stop).map_err(|found| error("a stop after a start of at least 0", found))?;
-            for class in value["timeserieslabels"].as_array().into_iter().flatten().filter_map(Value::as_str)
+            let extent = checked(start, stop)
+                .map_err(|found| error("a stop after a start of at least 0", found))?;
+            for class in value["timeserieslabels"]
+                .as_array()
+                .into_iter()
+                .flatten()
+                .filter_map(Value::as_str)
             {
                 read.annotations.push(Annotation {
                     clip: clip.clone(),
@@ -54,7 +71,11 @@ fn clip_of(task: &Value) -> Option<String> {
     }
     let text = task["data"].as_object()?.values().find_map(Value::as_str)?;
     let name = text.rsplit('/').next()?;
-    Some(name.rsplit_once('.').map_or(name, |(stem, _)| stem).to_owned())
+    Some(
+        name.rsplit_once('.')
+            .map_or(name, |(stem, _)| stem)
+            .to_owned(),
+    )
 }
 
 /// Accepted labels as annotations, others as predictions; a clip that has both is two tasks, as a task's annotations
@@ -63,8 +84,14 @@ pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, St
     let mut tasks: Vec<Value> = Vec::new();
     for (number, a) in annotations.iter().enumerate() {
         let (start, stop) = secs(a, lengths)?;
-        let set = if a.state == State::Accepted { "annotations" } else { "predictions" };
-        let there = |task: &Value| task["data"]["clip"].as_str() == Some(&a.clip) && task.get(set).is_some();
+        let set = if a.state == State::Accepted {
+            "annotations"
+        } else {
+            "predictions"
+        };
+        let there = |task: &Value| {
+            task["data"]["clip"].as_str() == Some(&a.clip) && task.get(set).is_some()
+        };
         let place = tasks.iter().position(there).unwrap_or_else(|| {
             let version = concat!("morec ", env!("CARGO_PKG_VERSION"));
             tasks.push(
@@ -83,5 +110,7 @@ pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, St
             results.push(result);
         }
     }
-    serde_json::to_string_pretty(&tasks).map(|text| text + "\n").map_err(|error| error.to_string())
+    serde_json::to_string_pretty(&tasks)
+        .map(|text| text + "\n")
+        .map_err(|error| error.to_string())
 }

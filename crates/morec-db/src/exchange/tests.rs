@@ -17,19 +17,47 @@ fn lengths() -> Lengths {
 
 fn annotation() -> impl Strategy<Value = Annotation> {
     let clip = prop::sample::select(lengths().into_iter().collect::<Vec<_>>());
-    let class = prop_oneof![Just("walk"), Just("a & <b> \"c\""), Just("größe, 2;x"), Just("wave in")];
-    let person = prop_oneof![Just(None), Just(Some("anna".to_owned())), Just(Some("o'b <1>".to_owned()))];
-    let state = prop_oneof![Just(State::Accepted), Just(State::Proposed), Just(State::Rejected)];
-    (clip, class, 0usize..400, 1usize..90, any::<bool>(), person, prop::option::of(0.0f64..1.0), state)
-        .prop_map(|((clip, length), class, start, frames, whole, person, score, state)| Annotation {
-            clip,
-            class: class.to_owned(),
-            extent: (!whole)
-                .then(|| (start as f64 / length.rate_hz, (start + frames) as f64 / length.rate_hz)),
-            person,
-            score,
-            state,
-        })
+    let class = prop_oneof![
+        Just("walk"),
+        Just("a & <b> \"c\""),
+        Just("größe, 2;x"),
+        Just("wave in")
+    ];
+    let person = prop_oneof![
+        Just(None),
+        Just(Some("anna".to_owned())),
+        Just(Some("o'b <1>".to_owned()))
+    ];
+    let state = prop_oneof![
+        Just(State::Accepted),
+        Just(State::Proposed),
+        Just(State::Rejected)
+    ];
+    (
+        clip,
+        class,
+        0usize..400,
+        1usize..90,
+        any::<bool>(),
+        person,
+        prop::option::of(0.0f64..1.0),
+        state,
+    )
+        .prop_map(
+            |((clip, length), class, start, frames, whole, person, score, state)| Annotation {
+                clip,
+                class: class.to_owned(),
+                extent: (!whole).then(|| {
+                    (
+                        start as f64 / length.rate_hz,
+                        (start + frames) as f64 / length.rate_hz,
+                    )
+                }),
+                person,
+                score,
+                state,
+            },
+        )
 }
 
 fn sorted(mut annotations: Vec<Annotation>) -> Vec<String> {
@@ -65,10 +93,15 @@ fn sayable(form: Form, all: &[Annotation]) -> Vec<Annotation> {
 
 /// Reads bytes: an error, or annotations whose times are times.
 fn can_be_said(form: Form, bytes: &[u8]) {
-    let Ok(labels) = read(form, bytes, Some("take_1"), &lengths()) else { return };
+    let Ok(labels) = read(form, bytes, Some("take_1"), &lengths()) else {
+        return;
+    };
     for a in labels.annotations {
         if let Some((start, stop)) = a.extent {
-            assert!(start.is_finite() && stop.is_finite() && start >= 0.0 && stop > start, "{form:?} {a:?}");
+            assert!(
+                start.is_finite() && stop.is_finite() && start >= 0.0 && stop > start,
+                "{form:?} {a:?}"
+            );
         }
         assert!(a.score.is_none_or(f64::is_finite), "{form:?} {a:?}");
     }
@@ -147,7 +180,10 @@ fn files_of_other_programs() {
     let labels = read(Form::Eaf, eaf.as_bytes(), None, &lengths()).unwrap();
     assert_eq!((labels.annotations.len(), labels.warnings.len()), (1, 1));
     let a = &labels.annotations[0];
-    assert_eq!((a.clip.as_str(), a.class.as_str(), a.extent), ("take_1", "nod", Some((0.5, 1.508))));
+    assert_eq!(
+        (a.clip.as_str(), a.class.as_str(), a.extent),
+        ("take_1", "nod", Some((0.5, 1.508)))
+    );
     // 1.508 s is what ELAN makes of frame 181 at 120 Hz.
     assert_eq!(snap(1.508, 120.0), 181.0 / 120.0);
 
@@ -155,23 +191,44 @@ fn files_of_other_programs() {
         "seq_ann": {"labels": [{"raw_label": "he walks", "proc_label": "walk", "act_cat": ["walk", "move"]}]},
         "frame_ann": null}}"#;
     let labels = read(Form::Babel, babel, None, &lengths()).unwrap();
-    let classes: Vec<&str> = labels.annotations.iter().map(|a| a.class.as_str()).collect();
-    assert_eq!((labels.annotations[0].clip.as_str(), classes), ("86_01", vec!["walk", "move"]));
+    let classes: Vec<&str> = labels
+        .annotations
+        .iter()
+        .map(|a| a.class.as_str())
+        .collect();
+    assert_eq!(
+        (labels.annotations[0].clip.as_str(), classes),
+        ("86_01", vec!["walk", "move"])
+    );
 
-    let track = read(Form::Audacity, b"0,5\t1,25\tnod\n\\\t100\t200\n", Some("a"), &lengths()).unwrap();
+    let track = read(
+        Form::Audacity,
+        b"0,5\t1,25\tnod\n\\\t100\t200\n",
+        Some("a"),
+        &lengths(),
+    )
+    .unwrap();
     assert_eq!(track.annotations[0].extent, Some((0.5, 1.25)));
 }
 
 #[test]
 fn mistakes_are_located() {
-    let fails =
-        |form, text: &str| read(form, text.as_bytes(), Some("a"), &lengths()).unwrap_err().to_string();
+    let fails = |form, text: &str| {
+        read(form, text.as_bytes(), Some("a"), &lengths())
+            .unwrap_err()
+            .to_string()
+    };
     assert!(fails(Form::Csv, "a,b\n1,2\n").starts_with("line 1: expected a column `file`"));
     assert!(
-        fails(Form::Csv, "file,label,start_s,end_s\na,b,3,2\n").starts_with("line 2: expected a stop after")
+        fails(Form::Csv, "file,label,start_s,end_s\na,b,3,2\n")
+            .starts_with("line 2: expected a stop after")
     );
-    assert!(fails(Form::Csv, "file,label\n\"a,b\n").starts_with("line 2: expected a closing quote"));
-    assert!(fails(Form::Audacity, "1\t2\ta\nx\t2\ta\n").starts_with("line 2: expected start<TAB>stop"));
+    assert!(
+        fails(Form::Csv, "file,label\n\"a,b\n").starts_with("line 2: expected a closing quote")
+    );
+    assert!(
+        fails(Form::Audacity, "1\t2\ta\nx\t2\ta\n").starts_with("line 2: expected start<TAB>stop")
+    );
     assert!(fails(Form::Eaf, "<a>").contains("line 1"));
     assert!(fails(Form::Json, "{\"labels\": [{\"clip\": 3}]}").starts_with("line 1"));
     let several = [("a", 1), ("b", 2)].map(|(clip, _)| Annotation {
@@ -182,7 +239,11 @@ fn mistakes_are_located() {
         score: None,
         state: State::Accepted,
     });
-    assert!(write(Form::Eaf, &several, &lengths()).unwrap_err().contains("one clip"));
+    assert!(
+        write(Form::Eaf, &several, &lengths())
+            .unwrap_err()
+            .contains("one clip")
+    );
 }
 
 #[test]
@@ -190,18 +251,35 @@ fn a_state_is_one_of_three_or_an_error_with_its_line() {
     for (form, between) in [(Form::Csv, ","), (Form::Tsv, "\t")] {
         let text = |state: &str| {
             let header = ["clip", "class", "start_secs", "stop_secs", "state"].join(between);
-            format!("{header}\n{}\n", ["take_1", "nod", "0.5", "1.5", state].join(between))
+            format!(
+                "{header}\n{}\n",
+                ["take_1", "nod", "0.5", "1.5", state].join(between)
+            )
         };
         let found = |state: &str| read(form, text(state).as_bytes(), None, &lengths());
-        assert_eq!(found("Rejected").unwrap().annotations[0].state, State::Rejected);
+        assert_eq!(
+            found("Rejected").unwrap().annotations[0].state,
+            State::Rejected
+        );
         if form == Form::Tsv {
             let by_cr = text("rejected").replace('\n', "\r");
             let labels = read(form, by_cr.as_bytes(), None, &lengths()).unwrap();
-            assert_eq!(labels.annotations[0].state, State::Rejected, "whatever ends the lines");
+            assert_eq!(
+                labels.annotations[0].state,
+                State::Rejected,
+                "whatever ends the lines"
+            );
         }
-        assert_eq!(found("").unwrap().annotations[0].state, State::Proposed, "nothing is no judgement");
+        assert_eq!(
+            found("").unwrap().annotations[0].state,
+            State::Proposed,
+            "nothing is no judgement"
+        );
         let error = found("reject").unwrap_err().to_string();
-        assert!(error.contains("line 2") && error.contains("`reject`"), "{error}");
+        assert!(
+            error.contains("line 2") && error.contains("`reject`"),
+            "{error}"
+        );
     }
 }
 

@@ -9,7 +9,10 @@ use crate::labels::State;
 pub fn read(bytes: &[u8], lengths: &Lengths) -> Result<ReadLabels, ParseError> {
     let (labels, states) = Labels::read_with(bytes, "state")?;
     // Rows with seconds need no clip to be understood; those with frames need its rate.
-    let mut read = ReadLabels { warnings: labels.warnings, ..ReadLabels::default() };
+    let mut read = ReadLabels {
+        warnings: labels.warnings,
+        ..ReadLabels::default()
+    };
     for (at, row) in labels.rows.into_iter().enumerate() {
         let extent = match (&row.extent, super::length_of(&row.clip, lengths)) {
             (Extent::Secs(start, stop), _) => Some((*start, *stop)),
@@ -26,7 +29,9 @@ pub fn read(bytes: &[u8], lengths: &Lengths) -> Result<ReadLabels, ParseError> {
             extent,
             person: row.person,
             score: None,
-            state: states.as_ref().map_or(Ok(State::Accepted), |cells| super::state(&cells[at], row.line))?,
+            state: states.as_ref().map_or(Ok(State::Accepted), |cells| {
+                super::state(&cells[at], row.line)
+            })?,
         });
     }
     Ok(read)
@@ -41,8 +46,10 @@ pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, St
         person.unwrap_or_default() + &state.unwrap_or_default()
     };
     let mut out = String::new();
-    let last =
-        [people.then_some("\tperson"), judged.then_some("\tstate")].into_iter().flatten().collect::<String>();
+    let last = [people.then_some("\tperson"), judged.then_some("\tstate")]
+        .into_iter()
+        .flatten()
+        .collect::<String>();
     if !annotations.is_empty() && annotations.iter().all(|a| a.extent.is_none()) {
         out.push_str(&format!("clip\tclass{last}\n"));
         for a in annotations {
@@ -53,10 +60,18 @@ pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, St
     // Whole clips among stretches: they say so, and when they begin and end for whoever does not know the column.
     let mixed = annotations.iter().any(|a| a.extent.is_none());
     let column = if mixed { "\twhole_clip" } else { "" };
-    out.push_str(&format!("clip\tstart\tstop\tstart_secs\tstop_secs{column}\tclass{last}\n"));
+    out.push_str(&format!(
+        "clip\tstart\tstop\tstart_secs\tstop_secs{column}\tclass{last}\n"
+    ));
     for a in annotations {
         let (start, stop) = secs(a, lengths)?;
-        let cells = match frames(&Annotation { extent: Some((start, stop)), ..a.clone() }, lengths) {
+        let cells = match frames(
+            &Annotation {
+                extent: Some((start, stop)),
+                ..a.clone()
+            },
+            lengths,
+        ) {
             Some((from, to)) => format!("{from}\t{to}"),
             None => "\t".to_owned(),
         };
@@ -65,7 +80,12 @@ pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, St
             (true, None) => "\t1",
             (true, Some(_)) => "\t0",
         };
-        out.push_str(&format!("{}\t{cells}\t{start}\t{stop}{whole}\t{}{}\n", a.clip, a.class, more(a)));
+        out.push_str(&format!(
+            "{}\t{cells}\t{start}\t{stop}{whole}\t{}{}\n",
+            a.clip,
+            a.class,
+            more(a)
+        ));
     }
     Ok(out)
 }

@@ -24,15 +24,21 @@ pub struct ClassInfo {
 pub(super) fn check_name(name: &str) -> Result<&str, DbError> {
     let trimmed = name.trim();
     if trimmed.is_empty() || trimmed.len() > 200 || trimmed.chars().any(char::is_control) {
-        let expected = "a class's name: 1 to 200 bytes without tabs, line ends or other control characters";
-        return Err(DbError::Invalid(format!("expected {expected}, found {name:?}")));
+        let expected =
+            "a class's name: 1 to 200 bytes without tabs, line ends or other control characters";
+        return Err(DbError::Invalid(format!(
+            "expected {expected}, found {name:?}"
+        )));
     }
     Ok(trimmed)
 }
 
 pub(super) fn find(conn: &Connection, name: &str) -> Result<Option<i64>, DbError> {
     let sql = "SELECT id FROM classes WHERE name = ?1";
-    Ok(conn.prepare(sql)?.query_row(params![name], |row| row.get(0)).optional()?)
+    Ok(conn
+        .prepare(sql)?
+        .query_row(params![name], |row| row.get(0))
+        .optional()?)
 }
 
 fn need(conn: &Connection, name: &str) -> Result<i64, DbError> {
@@ -40,9 +46,19 @@ fn need(conn: &Connection, name: &str) -> Result<i64, DbError> {
         return Ok(id);
     }
     let mut statement = conn.prepare("SELECT name FROM classes ORDER BY name LIMIT 20")?;
-    let names: Vec<String> = statement.query_map([], |row| row.get(0))?.collect::<Result<_, _>>()?;
-    let hint = if names.is_empty() { String::new() } else { format!("; there are {}", names.join(", ")) };
-    Err(DbError::Unknown { kind: "class", name: name.to_owned(), hint })
+    let names: Vec<String> = statement
+        .query_map([], |row| row.get(0))?
+        .collect::<Result<_, _>>()?;
+    let hint = if names.is_empty() {
+        String::new()
+    } else {
+        format!("; there are {}", names.join(", "))
+    };
+    Err(DbError::Unknown {
+        kind: "class",
+        name: name.to_owned(),
+        hint,
+    })
 }
 
 pub(super) fn find_or_make(conn: &Connection, name: &str) -> Result<i64, DbError> {
@@ -56,9 +72,14 @@ pub(super) fn find_or_make(conn: &Connection, name: &str) -> Result<i64, DbError
 
 /// Gives samples another class. One that is there already under that class is dropped instead of kept twice.
 fn move_samples(conn: &Connection, which: &str, of: i64, to: i64) -> Result<usize, DbError> {
-    let moved = conn
-        .execute(&format!("UPDATE OR IGNORE samples SET class = ?2 WHERE {which} = ?1"), params![of, to])?;
-    conn.execute(&format!("DELETE FROM samples WHERE {which} = ?1 AND class <> ?2"), params![of, to])?;
+    let moved = conn.execute(
+        &format!("UPDATE OR IGNORE samples SET class = ?2 WHERE {which} = ?1"),
+        params![of, to],
+    )?;
+    conn.execute(
+        &format!("DELETE FROM samples WHERE {which} = ?1 AND class <> ?2"),
+        params![of, to],
+    )?;
     Ok(moved)
 }
 
@@ -72,8 +93,9 @@ impl MotionDb {
              FROM classes n LEFT JOIN samples s ON s.class = n.id GROUP BY n.id ORDER BY n.name",
         )?;
         let classes = statement.query_map([], |row| {
-            let count =
-                |column| -> rusqlite::Result<usize> { Ok(row.get::<_, i64>(column)?.max(0) as usize) };
+            let count = |column| -> rusqlite::Result<usize> {
+                Ok(row.get::<_, i64>(column)?.max(0) as usize)
+            };
             Ok(ClassInfo {
                 name: row.get(0)?,
                 accepted: count(1)?,
@@ -94,9 +116,14 @@ impl MotionDb {
         self.edit(&format!("rename {from} to {to}"), |conn| {
             let id = need(conn, from)?;
             if find(conn, to)?.is_some_and(|other| other != id) {
-                return Err(DbError::Invalid(format!("there is a class {to} already: merge them instead")));
+                return Err(DbError::Invalid(format!(
+                    "there is a class {to} already: merge them instead"
+                )));
             }
-            conn.execute("UPDATE classes SET name = ?2 WHERE id = ?1", params![id, to])?;
+            conn.execute(
+                "UPDATE classes SET name = ?2 WHERE id = ?1",
+                params![id, to],
+            )?;
             Ok(())
         })
     }
@@ -105,7 +132,10 @@ impl MotionDb {
     /// many samples moved.
     pub fn merge_classes(&mut self, from: &[String], into: &str) -> Result<usize, DbError> {
         self.edit(&format!("merge {} into {into}", from.join(", ")), |conn| {
-            let olds = from.iter().map(|name| need(conn, name)).collect::<Result<Vec<_>, _>>()?;
+            let olds = from
+                .iter()
+                .map(|name| need(conn, name))
+                .collect::<Result<Vec<_>, _>>()?;
             let target = find_or_make(conn, into)?;
             let mut moved = 0;
             for old in olds.into_iter().filter(|old| *old != target) {
@@ -118,16 +148,21 @@ impl MotionDb {
 
     /// Moves samples, whatever their class, to `into`, which is made if it is new. Gives how many moved.
     pub fn split_class(&mut self, samples: &[SampleId], into: &str) -> Result<usize, DbError> {
-        self.edit(&format!("move {} samples to {into}", samples.len()), |conn| {
-            let mut known = conn.prepare("SELECT 1 FROM samples WHERE id = ?1")?;
-            for id in samples {
-                if !known.exists(params![id.0])? {
-                    return Err(DbError::unknown("sample", &format!("#{}", id.0)));
+        self.edit(
+            &format!("move {} samples to {into}", samples.len()),
+            |conn| {
+                let mut known = conn.prepare("SELECT 1 FROM samples WHERE id = ?1")?;
+                for id in samples {
+                    if !known.exists(params![id.0])? {
+                        return Err(DbError::unknown("sample", &format!("#{}", id.0)));
+                    }
                 }
-            }
-            let target = find_or_make(conn, into)?;
-            samples.iter().try_fold(0, |moved, id| Ok(moved + move_samples(conn, "id", id.0, target)?))
-        })
+                let target = find_or_make(conn, into)?;
+                samples.iter().try_fold(0, |moved, id| {
+                    Ok(moved + move_samples(conn, "id", id.0, target)?)
+                })
+            },
+        )
     }
 
     /// Forgets a class and its samples.

@@ -7,7 +7,9 @@ use crate::time::now_secs;
 use crate::{ClipId, DbError, MotionDb};
 
 /// A sample's number in its database.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
+)]
 pub struct SampleId(pub i64);
 
 /// A sample as it is kept.
@@ -119,8 +121,14 @@ impl MotionDb {
              WHERE (?1 IS NULL OR s.clip = ?1) AND (?2 IS NULL OR n.name = ?2) AND (?3 IS NULL OR s.state = ?3) \
              ORDER BY c.name, s.start_secs, s.stop_secs, n.name",
         )?;
-        let given = params![filter.clip.map(|c| c.0), filter.class, filter.state.map(State::name)];
-        let samples = statement.query_map(given, sample)?.collect::<Result<_, _>>()?;
+        let given = params![
+            filter.clip.map(|c| c.0),
+            filter.class,
+            filter.state.map(State::name)
+        ];
+        let samples = statement
+            .query_map(given, sample)?
+            .collect::<Result<_, _>>()?;
         Ok(samples)
     }
 
@@ -145,7 +153,12 @@ impl MotionDb {
     }
 
     /// Says what is thought of samples. Gives how many changed.
-    pub fn judge(&mut self, samples: &[SampleId], state: State, by: &str) -> Result<usize, DbError> {
+    pub fn judge(
+        &mut self,
+        samples: &[SampleId],
+        state: State,
+        by: &str,
+    ) -> Result<usize, DbError> {
         self.edit(&format!("{} {} samples", state.name(), samples.len()), |conn| {
             let sql =
                 "UPDATE samples SET state = ?2, set_by = ?3, set_secs = ?4 WHERE id = ?1 AND state <> ?2";
@@ -217,7 +230,12 @@ fn add(conn: &Connection, sample: &NewSample, by: &str) -> Result<Change, DbErro
 }
 
 /// Proposals of other classes for the very stretch that is now known to be of `class` were wrong.
-fn reject_instead(conn: &Connection, sample: &NewSample, class: i64, by: &str) -> Result<(), DbError> {
+fn reject_instead(
+    conn: &Connection,
+    sample: &NewSample,
+    class: i64,
+    by: &str,
+) -> Result<(), DbError> {
     conn.prepare(
         "UPDATE samples SET state = 'rejected', set_by = ?5, set_secs = ?6 \
          WHERE clip = ?1 AND start_secs = ?2 AND stop_secs = ?3 AND class <> ?4 AND state = 'proposed'",
@@ -230,7 +248,9 @@ fn check_extent(conn: &Connection, sample: &NewSample) -> Result<(), DbError> {
     let sql = "SELECT name, frames / rate_hz, rate_hz FROM clips WHERE id = ?1";
     let clip: Option<(String, f64, f64)> = conn
         .prepare(sql)?
-        .query_row(params![sample.clip.0], |row| Ok((row.get(0)?, row.get(1)?, row.get(2)?)))
+        .query_row(params![sample.clip.0], |row| {
+            Ok((row.get(0)?, row.get(1)?, row.get(2)?))
+        })
         .optional()?;
     let (name, secs, rate_hz) =
         clip.ok_or_else(|| DbError::unknown("clip", &format!("#{}", sample.clip.0)))?;

@@ -12,8 +12,10 @@ type Seen = (Vec<String>, Vec<(i64, String, String, State)>);
 fn seen(db: &MotionDb) -> Seen {
     let samples = db.samples(&SampleFilter::default()).unwrap();
     let classes = db.classes().unwrap().into_iter().map(|c| c.name).collect();
-    let mut rows: Vec<_> =
-        samples.into_iter().map(|s| (s.clip.0, s.class, format!("{}", s.start_secs), s.state)).collect();
+    let mut rows: Vec<_> = samples
+        .into_iter()
+        .map(|s| (s.clip.0, s.class, format!("{}", s.start_secs), s.state))
+        .collect();
     rows.sort();
     (classes, rows)
 }
@@ -44,7 +46,11 @@ enum Step {
 const NAMES: [&str; 4] = ["walk", "run", "it's; DROP", "größer"];
 
 fn step() -> impl Strategy<Value = Step> {
-    let state = prop_oneof![Just(State::Accepted), Just(State::Proposed), Just(State::Rejected)];
+    let state = prop_oneof![
+        Just(State::Accepted),
+        Just(State::Proposed),
+        Just(State::Rejected)
+    ];
     prop_oneof![
         4 => (0..4usize, 0..6u8, state.clone()).prop_map(|(c, s, state)| Step::Add(c, s, state)),
         1 => (0..6u8, state).prop_map(|(s, state)| Step::Judge(s, state)),
@@ -58,11 +64,23 @@ fn step() -> impl Strategy<Value = Step> {
 
 /// Does a step; steps that make no sense fail and must change nothing.
 fn take(db: &mut MotionDb, step: &Step) {
-    let ids: Vec<SampleId> = db.samples(&SampleFilter::default()).unwrap().iter().map(|s| s.id).collect();
-    let some = |n: u8| ids.iter().copied().skip(usize::from(n) / 2).take(2).collect::<Vec<_>>();
+    let ids: Vec<SampleId> = db
+        .samples(&SampleFilter::default())
+        .unwrap()
+        .iter()
+        .map(|s| s.id)
+        .collect();
+    let some = |n: u8| {
+        ids.iter()
+            .copied()
+            .skip(usize::from(n) / 2)
+            .take(2)
+            .collect::<Vec<_>>()
+    };
     match step {
         Step::Add(class, start, state) => {
-            db.add_samples(&[sample(NAMES[*class], *start, *state)], "test").unwrap();
+            db.add_samples(&[sample(NAMES[*class], *start, *state)], "test")
+                .unwrap();
         }
         Step::Judge(n, state) => _ = db.judge(&some(*n), *state, "test").unwrap(),
         Step::Rename(a, b) => _ = db.rename_class(NAMES[*a], NAMES[*b]),
@@ -101,10 +119,16 @@ proptest! {
 #[test]
 fn a_proposal_does_not_change_what_was_judged() {
     let (_folder, mut db) = database_of_waves(1);
-    db.add_samples(&[sample("walk", 0, State::Rejected)], "me").unwrap();
-    let added = db.add_samples(&[sample("walk", 0, State::Proposed)], "morec").unwrap();
+    db.add_samples(&[sample("walk", 0, State::Rejected)], "me")
+        .unwrap();
+    let added = db
+        .add_samples(&[sample("walk", 0, State::Proposed)], "morec")
+        .unwrap();
     assert_eq!((added.added, added.unchanged), (0, 1));
-    assert_eq!(db.samples(&SampleFilter::default()).unwrap()[0].state, State::Rejected);
+    assert_eq!(
+        db.samples(&SampleFilter::default()).unwrap()[0].state,
+        State::Rejected
+    );
 }
 
 #[test]
@@ -112,15 +136,39 @@ fn samples_outside_their_clip_and_wild_names_are_refused_whole() {
     let (_folder, mut db) = database_of_waves(1);
     let good = sample("walk", 0, State::Accepted);
     for bad in [
-        NewSample { stop_secs: 1e6, ..good.clone() },
-        NewSample { start_secs: -1.0, ..good.clone() },
-        NewSample { start_secs: f64::NAN, ..good.clone() },
-        NewSample { stop_secs: 0.0, ..good.clone() },
-        NewSample { class: "a\tb".into(), ..good.clone() },
-        NewSample { class: "  ".into(), ..good.clone() },
-        NewSample { clip: ClipId(99), ..good.clone() },
+        NewSample {
+            stop_secs: 1e6,
+            ..good.clone()
+        },
+        NewSample {
+            start_secs: -1.0,
+            ..good.clone()
+        },
+        NewSample {
+            start_secs: f64::NAN,
+            ..good.clone()
+        },
+        NewSample {
+            stop_secs: 0.0,
+            ..good.clone()
+        },
+        NewSample {
+            class: "a\tb".into(),
+            ..good.clone()
+        },
+        NewSample {
+            class: "  ".into(),
+            ..good.clone()
+        },
+        NewSample {
+            clip: ClipId(99),
+            ..good.clone()
+        },
     ] {
-        assert!(db.add_samples(&[good.clone(), bad.clone()], "me").is_err(), "{bad:?}");
+        assert!(
+            db.add_samples(&[good.clone(), bad.clone()], "me").is_err(),
+            "{bad:?}"
+        );
         assert!(db.samples(&SampleFilter::default()).unwrap().is_empty());
     }
 }
@@ -129,11 +177,21 @@ fn samples_outside_their_clip_and_wild_names_are_refused_whole() {
 #[test]
 fn another_class_for_a_proposed_stretch_rejects_the_proposal() {
     let (_folder, mut db) = database_of_waves(1);
-    db.add_samples(&[sample("walk", 3, State::Proposed), sample("walk", 9, State::Proposed)], "propose")
+    db.add_samples(
+        &[
+            sample("walk", 3, State::Proposed),
+            sample("walk", 9, State::Proposed),
+        ],
+        "propose",
+    )
+    .unwrap();
+    db.add_samples(&[sample("run", 3, State::Accepted)], "user")
         .unwrap();
-    db.add_samples(&[sample("run", 3, State::Accepted)], "user").unwrap();
-    let states: Vec<_> =
-        seen(&db).1.into_iter().map(|(_, class, start, state)| (class, start, state)).collect();
+    let states: Vec<_> = seen(&db)
+        .1
+        .into_iter()
+        .map(|(_, class, start, state)| (class, start, state))
+        .collect();
     let row = |class: &str, start: &str, state| (class.to_owned(), start.to_owned(), state);
     assert_eq!(
         states,

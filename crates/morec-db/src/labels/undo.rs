@@ -25,7 +25,10 @@ impl MotionDb {
         change: impl FnOnce(&Connection) -> Result<T, DbError>,
     ) -> Result<T, DbError> {
         let tx = self.write()?;
-        tx.execute("INSERT INTO edits (what, set_secs) VALUES (?1, ?2)", params![what, now_secs()])?;
+        tx.execute(
+            "INSERT INTO edits (what, set_secs) VALUES (?1, ?2)",
+            params![what, now_secs()],
+        )?;
         let edit = tx.last_insert_rowid();
         let done = change(&tx)?;
         tx.execute("UPDATE edits SET open = 0 WHERE id = ?1", params![edit])?;
@@ -35,8 +38,7 @@ impl MotionDb {
              AND NOT EXISTS (SELECT 1 FROM samples_before WHERE edit = ?1)",
             params![edit],
         )?;
-        let oldest =
-            "DELETE FROM edits WHERE id <= (SELECT id FROM edits ORDER BY id DESC LIMIT 1 OFFSET ?1)";
+        let oldest = "DELETE FROM edits WHERE id <= (SELECT id FROM edits ORDER BY id DESC LIMIT 1 OFFSET ?1)";
         tx.execute(oldest, params![EDITS_KEPT as i64])?;
         tx.commit()?;
         Ok(done)
@@ -44,8 +46,15 @@ impl MotionDb {
 
     /// The edits that can be taken back, the last one first.
     pub fn edits(&self) -> Result<Vec<Edit>, DbError> {
-        let mut statement = self.conn.prepare("SELECT what, set_secs FROM edits ORDER BY id DESC")?;
-        let edits = statement.query_map([], |row| Ok(Edit { what: row.get(0)?, set_secs: row.get(1)? }))?;
+        let mut statement = self
+            .conn
+            .prepare("SELECT what, set_secs FROM edits ORDER BY id DESC")?;
+        let edits = statement.query_map([], |row| {
+            Ok(Edit {
+                what: row.get(0)?,
+                set_secs: row.get(1)?,
+            })
+        })?;
         Ok(edits.collect::<Result<_, _>>()?)
     }
 
@@ -56,11 +65,23 @@ impl MotionDb {
         // Classes come back after their samples.
         tx.pragma_update(None, "defer_foreign_keys", true)?;
         let last = tx
-            .query_row("SELECT id, what, set_secs FROM edits ORDER BY id DESC LIMIT 1", [], |row| {
-                Ok((row.get::<_, i64>(0)?, Edit { what: row.get(1)?, set_secs: row.get(2)? }))
-            })
+            .query_row(
+                "SELECT id, what, set_secs FROM edits ORDER BY id DESC LIMIT 1",
+                [],
+                |row| {
+                    Ok((
+                        row.get::<_, i64>(0)?,
+                        Edit {
+                            what: row.get(1)?,
+                            set_secs: row.get(2)?,
+                        },
+                    ))
+                },
+            )
             .optional()?;
-        let Some((id, edit)) = last else { return Ok(None) };
+        let Some((id, edit)) = last else {
+            return Ok(None);
+        };
         restore_samples(&tx, id)?;
         restore_classes(&tx, id)?;
         tx.execute("DELETE FROM edits WHERE id = ?1", params![id])?;
@@ -70,9 +91,11 @@ impl MotionDb {
 }
 
 fn restore_classes(conn: &Connection, edit: i64) -> Result<(), DbError> {
-    let mut before = conn.prepare("SELECT id, name FROM classes_before WHERE edit = ?1 ORDER BY seq DESC")?;
-    let rows: Vec<(i64, Option<String>)> =
-        before.query_map(params![edit], |row| Ok((row.get(0)?, row.get(1)?)))?.collect::<Result<_, _>>()?;
+    let mut before =
+        conn.prepare("SELECT id, name FROM classes_before WHERE edit = ?1 ORDER BY seq DESC")?;
+    let rows: Vec<(i64, Option<String>)> = before
+        .query_map(params![edit], |row| Ok((row.get(0)?, row.get(1)?)))?
+        .collect::<Result<_, _>>()?;
     for (id, name) in rows {
         match name {
             None => conn.execute("DELETE FROM classes WHERE id = ?1", params![id])?,
@@ -104,7 +127,9 @@ fn restore_samples(conn: &Connection, edit: i64) -> Result<(), DbError> {
         "SELECT id, clip, class, start_secs, stop_secs, whole_clip, state, score, set_by, set_secs \
          FROM samples_before WHERE edit = ?1 ORDER BY seq DESC",
     )?;
-    let rows: Vec<Before> = statement.query_map(params![edit], before)?.collect::<Result<_, _>>()?;
+    let rows: Vec<Before> = statement
+        .query_map(params![edit], before)?
+        .collect::<Result<_, _>>()?;
     for (id, columns) in rows {
         let Some([clip, class, start, stop, whole, state, score, by, at]) = columns else {
             conn.execute("DELETE FROM samples WHERE id = ?1", params![id])?;

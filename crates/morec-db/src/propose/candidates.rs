@@ -20,7 +20,10 @@ const PEAK_TICKS: usize = 3;
 /// What a match costs that goes at another pace than its template: at half or double it counts as half as far again.
 const PACE: f32 = 1.0;
 
-const NOTHING: Match = Match { distance: FAR, age: 0 };
+const NOTHING: Match = Match {
+    distance: FAR,
+    age: 0,
+};
 
 /// The nearest template of each class, and behind them the nearest rejected stretch, at each tick of a clip.
 pub struct Seen {
@@ -46,12 +49,20 @@ impl Seen {
             bank.step(row);
             for (index, template) in templates.iter().enumerate() {
                 let judged = &material.judged[*template];
-                let column = if judged.accepted { judged.class } else { Some(columns - 1) };
-                let Some(best) = column.map(|column| &mut near[tick * columns + column]) else { continue };
+                let column = if judged.accepted {
+                    judged.class
+                } else {
+                    Some(columns - 1)
+                };
+                let Some(best) = column.map(|column| &mut near[tick * columns + column]) else {
+                    continue;
+                };
                 let found = bank.matched(index);
                 let pace = ((found.age + 1) as f32 / bank.template_len(index).max(1) as f32).ln();
-                let found =
-                    Match { distance: found.distance * view.factor * (1.0 + PACE * pace * pace), ..found };
+                let found = Match {
+                    distance: found.distance * view.factor * (1.0 + PACE * pace * pace),
+                    ..found
+                };
                 let own = || {
                     judged.clip == clip
                         && (judged.whole || overlap_share(&span(tick, found), &judged.ticks) > SELF)
@@ -90,7 +101,9 @@ impl Seen {
     /// How near a stretch comes to a class, to the others and to what was rejected.
     pub fn evidence(&self, class: usize, ticks: &Range<usize>, whole: bool) -> Evidence {
         let others = (0..self.columns - 1).filter(|c| *c != class);
-        let other = others.map(|c| self.nearest(c, ticks, whole)).fold(FAR, f32::min);
+        let other = others
+            .map(|c| self.nearest(c, ticks, whole))
+            .fold(FAR, f32::min);
         Evidence {
             distance: self.nearest(class, ticks, whole).into(),
             other: other.into(),
@@ -100,8 +113,11 @@ impl Seen {
 
     /// The best of the whole clip.
     pub fn whole(&self, class: usize) -> Option<Candidate> {
-        let nearest = (0..self.ticks())
-            .min_by(|a, b| self.at(*a, class).distance.total_cmp(&self.at(*b, class).distance))?;
+        let nearest = (0..self.ticks()).min_by(|a, b| {
+            self.at(*a, class)
+                .distance
+                .total_cmp(&self.at(*b, class).distance)
+        })?;
         let found = self.at(nearest, class);
         let ticks = span(nearest, found);
         (found.distance < FAR).then(|| Candidate {
@@ -116,13 +132,20 @@ impl Seen {
         let peak = |tick: &usize| {
             let here = self.at(*tick, class).distance;
             let around = tick.saturating_sub(PEAK_TICKS)..(tick + PEAK_TICKS + 1).min(self.ticks());
-            here < FAR && around.into_iter().all(|t| t == *tick || here < self.at(t, class).distance)
+            here < FAR
+                && around
+                    .into_iter()
+                    .all(|t| t == *tick || here < self.at(t, class).distance)
         };
         let candidate = |tick: usize| {
             let ticks = span(tick, self.at(tick, class));
             let mut evidence = self.evidence(class, &ticks, false);
             evidence.distance = self.at(tick, class).distance.into();
-            Candidate { class, ticks, evidence }
+            Candidate {
+                class,
+                ticks,
+                evidence,
+            }
         };
         (0..self.ticks()).filter(peak).map(candidate).collect()
     }

@@ -45,11 +45,19 @@ impl Confidence {
     /// O(judgements).
     pub fn learn(classes: usize, judgements: &[Judgement]) -> Self {
         let scales = scales(classes, judgements);
-        let mut confidence = Self { scales, weights: SVector::from(USUAL) };
+        let mut confidence = Self {
+            scales,
+            weights: SVector::from(USUAL),
+        };
         let examples: Vec<(SVector<f64, FEATURES>, f64)> = judgements
             .iter()
             .filter(|j| j.evidence.distance < NEAR_NOTHING)
-            .map(|j| (confidence.features(j.class, &j.evidence), if j.right { 1.0 } else { 0.0 }))
+            .map(|j| {
+                (
+                    confidence.features(j.class, &j.evidence),
+                    if j.right { 1.0 } else { 0.0 },
+                )
+            })
             .collect();
         confidence.weights = fit(&examples);
         confidence
@@ -64,8 +72,14 @@ impl Confidence {
         let distance = evidence.distance.max(1e-6);
         // What is nowhere near is as far as four times the usual.
         let far = 4.0 * self.scales[class];
-        let beside = |other: f64| (distance / other.clamp(1e-6, far)).ln().clamp(BOUNDS.0, BOUNDS.1);
-        let own = (distance / self.scales[class]).ln().clamp(BOUNDS.0, BOUNDS.1);
+        let beside = |other: f64| {
+            (distance / other.clamp(1e-6, far))
+                .ln()
+                .clamp(BOUNDS.0, BOUNDS.1)
+        };
+        let own = (distance / self.scales[class])
+            .ln()
+            .clamp(BOUNDS.0, BOUNDS.1);
         SVector::from([1.0, own, beside(evidence.other), beside(evidence.negative)])
     }
 }
@@ -92,16 +106,21 @@ fn scales(classes: usize, judgements: &[Judgement]) -> Vec<f64> {
     others.sort_by(f64::total_cmp);
     let from_others = others.get(others.len() / 2).map_or(0.5_f64.ln(), |d| *d);
     let taught = own.iter().filter(|(_, n)| *n > 0.0);
-    let (sum, n) = taught.fold((from_others, 1.0), |(sum, n), (of, count)| (sum + of / count, n + 1.0));
+    let (sum, n) = taught.fold((from_others, 1.0), |(sum, n), (of, count)| {
+        (sum + of / count, n + 1.0)
+    });
     let all = sum / n;
-    own.into_iter().map(|(sum, n)| ((sum + SHARED * all) / (n + SHARED)).exp()).collect()
+    own.into_iter()
+        .map(|(sum, n)| ((sum + SHARED * all) / (n + SHARED)).exp())
+        .collect()
 }
 
 /// The likeliest weights, by Newton's method; the prior keeps it convex and finite.
 fn fit(examples: &[(SVector<f64, FEATURES>, f64)]) -> SVector<f64, FEATURES> {
     let usual = SVector::from(USUAL);
-    let precision =
-        SMatrix::<f64, FEATURES, FEATURES>::from_diagonal(&SVector::from(STRAY.map(|s| 1.0 / (s * s))));
+    let precision = SMatrix::<f64, FEATURES, FEATURES>::from_diagonal(&SVector::from(
+        STRAY.map(|s| 1.0 / (s * s)),
+    ));
     let mut weights = usual;
     for _ in 0..30 {
         let mut gradient = precision * (usual - weights);
@@ -111,7 +130,9 @@ fn fit(examples: &[(SVector<f64, FEATURES>, f64)]) -> SVector<f64, FEATURES> {
             gradient += x * (target - p);
             curvature += x * x.transpose() * (p * (1.0 - p));
         }
-        let Some(step) = curvature.cholesky().map(|c| c.solve(&gradient)) else { break };
+        let Some(step) = curvature.cholesky().map(|c| c.solve(&gradient)) else {
+            break;
+        };
         // A long step may overshoot where the logistic is flat.
         let step = step * (1.0 / step.norm().max(1.0));
         weights += step;
@@ -127,21 +148,43 @@ mod tests {
     use super::*;
 
     fn judged(class: usize, distance: f64, negative: f64, right: bool) -> Judgement {
-        let evidence = Evidence { distance, other: 3.0, negative };
-        Judgement { class, evidence, right, whole: false }
+        let evidence = Evidence {
+            distance,
+            other: 3.0,
+            negative,
+        };
+        Judgement {
+            class,
+            evidence,
+            right,
+            whole: false,
+        }
     }
 
     fn at(distance: f64) -> Evidence {
-        Evidence { distance, other: 3.0, negative: 1e30 }
+        Evidence {
+            distance,
+            other: 3.0,
+            negative: 1e30,
+        }
     }
 
     #[test]
     fn nearer_is_likelier_and_what_is_like_a_rejected_stretch_is_not() {
-        let confidence = Confidence::learn(1, &[judged(0, 0.5, 1e30, true), judged(0, 0.6, 1e30, true)]);
-        let scores: Vec<f64> = [0.2, 0.5, 1.0, 2.0, 5.0].map(|d| confidence.of(0, &at(d))).to_vec();
-        assert!(scores.windows(2).all(|pair| pair[0] > pair[1]), "{scores:?}");
+        let confidence =
+            Confidence::learn(1, &[judged(0, 0.5, 1e30, true), judged(0, 0.6, 1e30, true)]);
+        let scores: Vec<f64> = [0.2, 0.5, 1.0, 2.0, 5.0]
+            .map(|d| confidence.of(0, &at(d)))
+            .to_vec();
+        assert!(
+            scores.windows(2).all(|pair| pair[0] > pair[1]),
+            "{scores:?}"
+        );
         assert!(scores[1] > 0.5 && scores[4] < 0.1, "{scores:?}");
-        let beside = Evidence { negative: 0.2, ..at(0.5) };
+        let beside = Evidence {
+            negative: 0.2,
+            ..at(0.5)
+        };
         assert!(confidence.of(0, &beside) < confidence.of(0, &at(0.5)));
     }
 
@@ -166,7 +209,10 @@ mod tests {
 
     #[test]
     fn with_no_answer_there_is_still_a_guess() {
-        let confidence = Confidence::learn(2, &[judged(0, 1e30, 1e30, true), judged(1, 1e30, 1e30, true)]);
+        let confidence = Confidence::learn(
+            2,
+            &[judged(0, 1e30, 1e30, true), judged(1, 1e30, 1e30, true)],
+        );
         assert!(confidence.of(0, &at(0.1)) > 0.5 && confidence.of(1, &at(9.0)) < 0.5);
     }
 }

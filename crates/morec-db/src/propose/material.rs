@@ -47,19 +47,30 @@ pub struct Material {
 }
 
 impl Material {
-    pub fn new(rows: Vec<ClipRows>, infos: &[ClipInfo], samples: &[DbSample], tick_hz: f64) -> Self {
+    pub fn new(
+        rows: Vec<ClipRows>,
+        infos: &[ClipInfo],
+        samples: &[DbSample],
+        tick_hz: f64,
+    ) -> Self {
         let infos: BTreeMap<ClipId, &ClipInfo> = infos.iter().map(|c| (c.id, c)).collect();
         let mut taught = BoneSet::ALL;
         let (mut moving, mut places) = (Vec::new(), BTreeMap::new());
         let mut clips = Vec::new();
         for of in rows {
-            let Some(info) = infos.get(&of.clip) else { continue };
+            let Some(info) = infos.get(&of.clip) else {
+                continue;
+            };
             let own: Vec<&DbSample> = samples.iter().filter(|s| s.clip == of.clip).collect();
             if own.iter().any(|s| s.state == State::Accepted) {
                 taught = taught.and(of.bones);
             }
             let whole = own.iter().any(|s| s.whole_clip);
-            moving.push(if whole { moving_part(&of.rows, of.bones) } else { 0..0 });
+            moving.push(if whole {
+                moving_part(&of.rows, of.bones)
+            } else {
+                0..0
+            });
             places.insert(of.clip, clips.len());
             clips.push(Clip {
                 id: of.clip,
@@ -70,9 +81,13 @@ impl Material {
         }
         let ticks = |s: &DbSample| {
             let clip = *places.get(&s.clip)?;
-            let tick = |secs: f64| ((secs * tick_hz).round() as usize).min(clips[clip].laid.rows.len());
-            let ticks =
-                if s.whole_clip { moving[clip].clone() } else { tick(s.start_secs)..tick(s.stop_secs) };
+            let tick =
+                |secs: f64| ((secs * tick_hz).round() as usize).min(clips[clip].laid.rows.len());
+            let ticks = if s.whole_clip {
+                moving[clip].clone()
+            } else {
+                tick(s.start_secs)..tick(s.stop_secs)
+            };
             (ticks.len() >= LEAST_TICKS).then_some((clip, ticks))
         };
         let usable: Vec<(&DbSample, (usize, Range<usize>))> = samples
@@ -86,7 +101,11 @@ impl Material {
         classes.dedup();
         let whole = classes
             .iter()
-            .map(|c| accepted().filter(|(s, _)| s.class == *c).all(|(s, _)| s.whole_clip))
+            .map(|c| {
+                accepted()
+                    .filter(|(s, _)| s.class == *c)
+                    .all(|(s, _)| s.whole_clip)
+            })
             .collect();
         let judged = usable
             .iter()
@@ -98,12 +117,21 @@ impl Material {
                 ticks: ticks.clone(),
             })
             .collect();
-        Self { classes, whole, clips, judged, bones: taught }
+        Self {
+            classes,
+            whole,
+            clips,
+            judged,
+            bones: taught,
+        }
     }
 
     /// Accepted samples of each class.
     pub fn accepted(&self, class: usize) -> impl Iterator<Item = (usize, &Judged)> {
-        self.judged.iter().enumerate().filter(move |(_, j)| j.accepted && j.class == Some(class))
+        self.judged
+            .iter()
+            .enumerate()
+            .filter(move |(_, j)| j.accepted && j.class == Some(class))
     }
 }
 

@@ -16,7 +16,8 @@ pub fn questions(proposals: &[Proposal], most: usize) -> Vec<usize> {
             let p = &proposals[at];
             doubt(p) / (1.0 + *asked.get(p.class.as_str()).unwrap_or(&0) as f64)
         };
-        let best = (0..left.len()).max_by(|a, b| worth(left[*a]).total_cmp(&worth(left[*b])).then(b.cmp(a)));
+        let best = (0..left.len())
+            .max_by(|a, b| worth(left[*a]).total_cmp(&worth(left[*b])).then(b.cmp(a)));
         let Some(best) = best else { break };
         let at = left.remove(best);
         *asked.entry(&proposals[at].class).or_default() += 1;
@@ -46,7 +47,11 @@ mod tests {
     fn the_least_certain_come_first_and_classes_take_turns() {
         let all = proposals(&[("a", 0.99), ("a", 0.52), ("a", 0.5), ("b", 0.7), ("a", 0.1)]);
         assert_eq!(questions(&all, 3), [2, 3, 1]);
-        assert_eq!(questions(&all, 99).len(), 5, "all of them, if so many are asked for");
+        assert_eq!(
+            questions(&all, 99).len(),
+            5,
+            "all of them, if so many are asked for"
+        );
         assert!(questions(&[], 3).is_empty());
     }
 

@@ -8,7 +8,10 @@ use crate::testing::{database_of_waves, waves};
 use morec::synth::Take;
 
 fn ids(db: &MotionDb, takes: &[Take]) -> Vec<ClipId> {
-    takes.iter().map(|t| db.find_clip(&t.clip.name).unwrap().id).collect()
+    takes
+        .iter()
+        .map(|t| db.find_clip(&t.clip.name).unwrap().id)
+        .collect()
 }
 
 fn sample(clip: ClipId, class: &str, start_secs: f64, stop_secs: f64) -> NewSample {
@@ -30,13 +33,20 @@ fn under(takes: &[Take], ids: &[ClipId], p: &Proposal) -> Option<(usize, usize)>
         let shared = (stop.min(p.stop_secs) - start.max(p.start_secs)).max(0.0);
         shared / (stop.max(p.stop_secs) - start.min(p.start_secs))
     };
-    let label = takes[take].labels.iter().position(|l| share(l.start_secs, l.stop_secs) >= 0.5)?;
+    let label = takes[take]
+        .labels
+        .iter()
+        .position(|l| share(l.start_secs, l.stop_secs) >= 0.5)?;
     Some((take, label))
 }
 
 /// Labels of the first person.
 fn first_labels(takes: &[Take], ids: &[ClipId]) -> Vec<NewSample> {
-    takes[0].labels.iter().map(|l| sample(ids[0], l.class, l.start_secs, l.stop_secs)).collect()
+    takes[0]
+        .labels
+        .iter()
+        .map(|l| sample(ids[0], l.class, l.start_secs, l.stop_secs))
+        .collect()
 }
 
 #[test]
@@ -47,15 +57,34 @@ fn a_few_labels_find_the_others() {
     let ids = ids(&db, &takes);
     db.add_samples(&first_labels(&takes, &ids), "test").unwrap();
     let proposals = db.propose(&ProposeOptions::default(), &()).unwrap();
-    assert!(proposals.windows(2).all(|pair| pair[0].score >= pair[1].score));
-    let right =
-        |p: &&Proposal| under(&takes, &ids, p).is_some_and(|(t, l)| takes[t].labels[l].class == p.class);
+    assert!(
+        proposals
+            .windows(2)
+            .all(|pair| pair[0].score >= pair[1].score)
+    );
+    let right = |p: &&Proposal| {
+        under(&takes, &ids, p).is_some_and(|(t, l)| takes[t].labels[l].class == p.class)
+    };
     // Four waves and four bows are left to be found: the surest of the proposals are these.
     assert!(proposals.len() >= 8, "{proposals:?}");
-    assert!(proposals.iter().take(8).filter(right).count() >= 7, "{proposals:?}");
-    assert!(proposals.iter().all(|p| p.clip != ids[0] || !right(&p)), "labelled stretches are not proposed");
-    let only = ProposeOptions { classes: vec!["bow".into()], ..ProposeOptions::default() };
-    assert!(db.propose(&only, &()).unwrap().iter().all(|p| p.class == "bow"));
+    assert!(
+        proposals.iter().take(8).filter(right).count() >= 7,
+        "{proposals:?}"
+    );
+    assert!(
+        proposals.iter().all(|p| p.clip != ids[0] || !right(&p)),
+        "labelled stretches are not proposed"
+    );
+    let only = ProposeOptions {
+        classes: vec!["bow".into()],
+        ..ProposeOptions::default()
+    };
+    assert!(
+        db.propose(&only, &())
+            .unwrap()
+            .iter()
+            .all(|p| p.class == "bow")
+    );
 }
 
 #[test]
@@ -67,7 +96,12 @@ fn what_was_judged_is_not_proposed_again() {
     let proposals = db.propose(&ProposeOptions::default(), &()).unwrap();
     let samples: Vec<NewSample> = proposals.into_iter().map(NewSample::from).collect();
     db.add_samples(&samples, "morec").unwrap();
-    let proposed: Vec<_> = db.samples(&SampleFilter::default()).unwrap().iter().map(|s| s.id).collect();
+    let proposed: Vec<_> = db
+        .samples(&SampleFilter::default())
+        .unwrap()
+        .iter()
+        .map(|s| s.id)
+        .collect();
     db.judge(&proposed, State::Rejected, "test").unwrap();
     db.judge(&proposed[..1], State::Accepted, "test").unwrap();
     let again = db.propose(&ProposeOptions::default(), &()).unwrap();
@@ -76,7 +110,8 @@ fn what_was_judged_is_not_proposed_again() {
             let shared = known.stop_secs.min(p.stop_secs) - known.start_secs.max(p.start_secs);
             p.clip == known.clip
                 && p.class == known.class
-                && shared > 0.6 * (known.stop_secs.max(p.stop_secs) - known.start_secs.min(p.start_secs))
+                && shared
+                    > 0.6 * (known.stop_secs.max(p.stop_secs) - known.start_secs.min(p.start_secs))
         };
         assert!(again.iter().find(same).is_none(), "{known:?} again");
     }
@@ -90,28 +125,52 @@ fn answers_lead_to_every_sample() {
     let ids = ids(&db, &takes);
     let mut found: BTreeSet<(usize, usize)> = BTreeSet::new();
     for class in ["wave", "bow"] {
-        let at = takes[0].labels.iter().position(|l| l.class == class).unwrap();
+        let at = takes[0]
+            .labels
+            .iter()
+            .position(|l| l.class == class)
+            .unwrap();
         let label = &takes[0].labels[at];
-        db.add_samples(&[sample(ids[0], class, label.start_secs, label.stop_secs)], "test").unwrap();
+        db.add_samples(
+            &[sample(ids[0], class, label.start_secs, label.stop_secs)],
+            "test",
+        )
+        .unwrap();
         found.insert((0, at));
     }
     let all: usize = takes.iter().map(|t| t.labels.len()).sum();
     let mut answers = 0;
     while found.len() < all {
-        assert!(answers < 3 * all, "{} of {all} found after {answers} answers", found.len());
+        assert!(
+            answers < 3 * all,
+            "{} of {all} found after {answers} answers",
+            found.len()
+        );
         let proposals = db.propose(&ProposeOptions::default(), &()).unwrap();
         let asked = questions(&proposals, 4);
-        assert!(!asked.is_empty(), "{} of {all} found and nothing is asked", found.len());
+        assert!(
+            !asked.is_empty(),
+            "{} of {all} found and nothing is asked",
+            found.len()
+        );
         answers += asked.len();
         let answer = |p: &Proposal| {
-            let mut answer = NewSample { state: State::Rejected, ..p.clone().into() };
+            let mut answer = NewSample {
+                state: State::Rejected,
+                ..p.clone().into()
+            };
             if let Some((t, l)) = under(&takes, &ids, p) {
-                (answer.class, answer.state) = (takes[t].labels[l].class.to_owned(), State::Accepted);
+                (answer.class, answer.state) =
+                    (takes[t].labels[l].class.to_owned(), State::Accepted);
             }
             answer
         };
         let given: Vec<NewSample> = asked.iter().map(|at| answer(&proposals[*at])).collect();
-        found.extend(asked.iter().filter_map(|at| under(&takes, &ids, &proposals[*at])));
+        found.extend(
+            asked
+                .iter()
+                .filter_map(|at| under(&takes, &ids, &proposals[*at])),
+        );
         db.add_samples(&given, "test").unwrap();
     }
 }
@@ -122,19 +181,37 @@ fn classes_of_whole_clips_propose_whole_clips() {
     let (_folder, mut db) = database_of_waves(3);
     let ids = ids(&db, &takes);
     let secs = |at: usize| takes[at].clip.duration_secs();
-    let whole = |at: usize| NewSample { whole_clip: true, ..sample(ids[at], "take", 0.0, secs(at)) };
+    let whole = |at: usize| NewSample {
+        whole_clip: true,
+        ..sample(ids[at], "take", 0.0, secs(at))
+    };
     db.add_samples(&[whole(0)], "test").unwrap();
     let proposals = db.propose(&ProposeOptions::default(), &()).unwrap();
     let clips: Vec<ClipId> = proposals.iter().map(|p| p.clip).collect();
     assert!(!clips.is_empty() && !clips.contains(&ids[0]), "{clips:?}");
-    assert_eq!(clips.iter().collect::<BTreeSet<_>>().len(), clips.len(), "a clip twice");
+    assert_eq!(
+        clips.iter().collect::<BTreeSet<_>>().len(),
+        clips.len(),
+        "a clip twice"
+    );
     for p in &proposals {
         let at = ids.iter().position(|id| *id == p.clip).unwrap();
-        assert!(p.whole_clip && p.start_secs == 0.0 && (p.stop_secs - secs(at)).abs() < 1e-9, "{p:?}");
+        assert!(
+            p.whole_clip && p.start_secs == 0.0 && (p.stop_secs - secs(at)).abs() < 1e-9,
+            "{p:?}"
+        );
     }
-    let rejected = NewSample { state: State::Rejected, ..whole(1) };
+    let rejected = NewSample {
+        state: State::Rejected,
+        ..whole(1)
+    };
     db.add_samples(&[rejected], "test").unwrap();
-    assert!(db.propose(&ProposeOptions::default(), &()).unwrap().iter().all(|p| p.clip != ids[1]));
+    assert!(
+        db.propose(&ProposeOptions::default(), &())
+            .unwrap()
+            .iter()
+            .all(|p| p.clip != ids[1])
+    );
 }
 
 #[test]
@@ -149,5 +226,8 @@ fn a_listener_that_says_stop_is_heard() {
     let (_folder, mut db) = database_of_waves(1);
     let ids = ids(&db, &takes);
     db.add_samples(&first_labels(&takes, &ids), "test").unwrap();
-    assert!(matches!(db.propose(&ProposeOptions::default(), &Stop), Err(DbError::Cancelled)));
+    assert!(matches!(
+        db.propose(&ProposeOptions::default(), &Stop),
+        Err(DbError::Cancelled)
+    ));
 }

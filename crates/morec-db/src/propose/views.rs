@@ -38,14 +38,23 @@ pub fn chosen(material: &Material, options: &ProposeOptions) -> Vec<usize> {
     for class in 0..material.classes.len() {
         let mut by_group: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
         for (at, sample) in material.accepted(class) {
-            by_group.entry(&material.clips[sample.clip].group).or_default().push(at);
+            by_group
+                .entry(&material.clips[sample.clip].group)
+                .or_default()
+                .push(at);
         }
         let longest = by_group.values().map(Vec::len).max().unwrap_or(0);
-        let turns = (0..longest).flat_map(|turn| by_group.values().filter_map(move |g| g.get(turn)));
+        let turns =
+            (0..longest).flat_map(|turn| by_group.values().filter_map(move |g| g.get(turn)));
         chosen.extend(turns.take(options.templates_a_class.max(1)));
     }
-    let rejected: Vec<usize> =
-        material.judged.iter().enumerate().filter(|(_, j)| !j.accepted).map(|(at, _)| at).collect();
+    let rejected: Vec<usize> = material
+        .judged
+        .iter()
+        .enumerate()
+        .filter(|(_, j)| !j.accepted)
+        .map(|(at, _)| at)
+        .collect();
     let stride = rejected.len().div_ceil(options.negatives.max(1)).max(1);
     chosen.extend(rejected.into_iter().step_by(stride));
     chosen
@@ -57,10 +66,16 @@ pub fn views(material: &Material, chosen: &[usize]) -> BTreeMap<BoneSet, View> {
     let Some((ridged, total)) = scatters(&train_set(material, &columns), &params()) else {
         return BTreeMap::new();
     };
-    let sets: BTreeSet<BoneSet> = material.clips.iter().map(|c| c.laid.bones.and(material.bones)).collect();
+    let sets: BTreeSet<BoneSet> = material
+        .clips
+        .iter()
+        .map(|c| c.laid.bones.and(material.bones))
+        .collect();
     let view = |bones: BoneSet| {
         let kept = shared_columns(bones);
-        let keep: Vec<usize> = (0..columns.len()).filter(|at| kept.contains(&columns[*at])).collect();
+        let keep: Vec<usize> = (0..columns.len())
+            .filter(|at| kept.contains(&columns[*at]))
+            .collect();
         let part = total.restricted(&keep);
         let factor = (trace(&total) / trace(&part).max(1e-12)) as f32;
         let metric = Metric::new(&ridged.restricted(&keep), &part);
@@ -71,10 +86,24 @@ pub fn views(material: &Material, chosen: &[usize]) -> BTreeMap<BoneSet, View> {
                 false => Rows::new(kept.len()),
             }
         };
-        let templates: Vec<Rows> = chosen.iter().map(|at| template(&material.judged[*at])).collect();
-        (bones, View { bank: Bank::new(&templates, kept.len()), columns: kept, metric, factor })
+        let templates: Vec<Rows> = chosen
+            .iter()
+            .map(|at| template(&material.judged[*at]))
+            .collect();
+        (
+            bones,
+            View {
+                bank: Bank::new(&templates, kept.len()),
+                columns: kept,
+                metric,
+                factor,
+            },
+        )
     };
-    sets.into_iter().filter(|bones| !bones.is_empty()).map(view).collect()
+    sets.into_iter()
+        .filter(|bones| !bones.is_empty())
+        .map(view)
+        .collect()
 }
 
 fn trace(matrix: &Symmetric) -> f64 {
@@ -82,7 +111,10 @@ fn trace(matrix: &Symmetric) -> f64 {
 }
 
 fn params() -> TrainParams {
-    TrainParams { max_pairs: PAIRS, ..TrainParams::default() }
+    TrainParams {
+        max_pairs: PAIRS,
+        ..TrainParams::default()
+    }
 }
 
 /// The clips that hold accepted samples.
@@ -92,8 +124,12 @@ fn train_set(material: &Material, columns: &[usize]) -> TrainSet {
         by_clip.entry(judged.clip).or_default().push(judged);
     }
     let stream = |(clip, judged): (usize, Vec<&Judged>)| {
-        let known =
-            |j: &&Judged| Some(Known { ticks: j.ticks.clone(), class: Some(ClassId(j.class? as u16)) });
+        let known = |j: &&Judged| {
+            Some(Known {
+                ticks: j.ticks.clone(),
+                class: Some(ClassId(j.class? as u16)),
+            })
+        };
         TrainStream {
             name: String::new(),
             group: material.clips[clip].group.clone(),
@@ -104,5 +140,8 @@ fn train_set(material: &Material, columns: &[usize]) -> TrainSet {
             known: judged.iter().filter_map(known).collect(),
         }
     };
-    TrainSet { classes: material.classes.clone(), streams: by_clip.into_iter().map(stream).collect() }
+    TrainSet {
+        classes: material.classes.clone(),
+        streams: by_clip.into_iter().map(stream).collect(),
+    }
 }

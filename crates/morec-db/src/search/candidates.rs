@@ -42,8 +42,16 @@ pub struct Look {
 }
 
 impl Look {
-    pub fn new(summary: Summary, rows: usize, bones: BoneSet, metric: Option<&LearnedMetric>) -> Self {
-        Self { place: metric.map(|m| m.place(&summary, rows, bones)), summary }
+    pub fn new(
+        summary: Summary,
+        rows: usize,
+        bones: BoneSet,
+        metric: Option<&LearnedMetric>,
+    ) -> Self {
+        Self {
+            place: metric.map(|m| m.place(&summary, rows, bones)),
+            summary,
+        }
     }
 
     /// By their summaries; with a learned metric half by it.
@@ -57,15 +65,30 @@ impl Look {
 }
 
 impl<'a> Probe<'a> {
-    pub fn new(example: &Example, metric: Option<&'a LearnedMetric>, mirrored: bool, whole: bool) -> Self {
+    pub fn new(
+        example: &Example,
+        metric: Option<&'a LearnedMetric>,
+        mirrored: bool,
+        whole: bool,
+    ) -> Self {
         let rows = example.laid.rows.len();
         let plain = super::Sums::of(&example.laid.rows).octaves(&(0..rows));
         let (summary, bones) = if mirrored {
-            (mirrored_summary(&plain), super::layout::opposite_bones(example.laid.bones))
+            (
+                mirrored_summary(&plain),
+                super::layout::opposite_bones(example.laid.bones),
+            )
         } else {
             (plain, example.laid.bones)
         };
-        Self { look: Look::new(summary, rows, bones, metric), bones, mirrored, metric, rows, whole }
+        Self {
+            look: Look::new(summary, rows, bones, metric),
+            bones,
+            mirrored,
+            metric,
+            rows,
+            whole,
+        }
     }
 
     /// How far a stretch of a clip is.
@@ -74,10 +97,22 @@ impl<'a> Probe<'a> {
         self.distance(clip, span, &clip.sums.octaves(span), &over)
     }
 
-    fn distance(&self, clip: &Indexed, span: &Range<usize>, summary: &Summary, over: &Comparison) -> f32 {
+    fn distance(
+        &self,
+        clip: &Indexed,
+        span: &Range<usize>,
+        summary: &Summary,
+        over: &Comparison,
+    ) -> f32 {
         let look = Look::new(*summary, span.len(), clip.laid.bones, self.metric);
-        let excess = if self.whole { length_cost(self.rows, clip.laid.rows.len(), 1.4) } else { 0.0 };
-        self.look.distance(&look, over) + length_cost(span.len(), self.rows, 1.0 / SCALES[0]) + excess
+        let excess = if self.whole {
+            length_cost(self.rows, clip.laid.rows.len(), 1.4)
+        } else {
+            0.0
+        };
+        self.look.distance(&look, over)
+            + length_cost(span.len(), self.rows, 1.0 / SCALES[0])
+            + excess
     }
 }
 
@@ -109,7 +144,12 @@ impl SearchIndex {
             }
             kept
         };
-        let mut all: Vec<Candidate> = self.clips.par_iter().enumerate().flat_map_iter(of_clip).collect();
+        let mut all: Vec<Candidate> = self
+            .clips
+            .par_iter()
+            .enumerate()
+            .flat_map_iter(of_clip)
+            .collect();
         all.sort_by(|a, b| a.distance.total_cmp(&b.distance).then(a.clip.cmp(&b.clip)));
         all
     }
@@ -117,16 +157,29 @@ impl SearchIndex {
 
 /// Windows of a clip at three lengths, a quarter apart, and, of wholes, the clip itself; a clip that is too short counts
 /// as one window.
-fn windows(number: usize, clip: &Indexed, example: &Example, probes: &[Probe<'_>]) -> Vec<Candidate> {
+fn windows(
+    number: usize,
+    clip: &Indexed,
+    example: &Example,
+    probes: &[Probe<'_>],
+) -> Vec<Candidate> {
     let (n, rows) = (example.laid.rows.len(), clip.laid.rows.len());
-    let over: Vec<Comparison> =
-        probes.iter().map(|probe| Comparison::over(probe.bones.and(clip.laid.bones))).collect();
-    if rows < 3 || probes.iter().any(|probe| probe.bones.and(clip.laid.bones).is_empty()) {
+    let over: Vec<Comparison> = probes
+        .iter()
+        .map(|probe| Comparison::over(probe.bones.and(clip.laid.bones)))
+        .collect();
+    if rows < 3
+        || probes
+            .iter()
+            .any(|probe| probe.bones.and(clip.laid.bones).is_empty())
+    {
         return Vec::new();
     }
     let spans = SCALES.iter().flat_map(|scale| {
         let length = ((n as f64 * scale).round() as usize).clamp(3, rows);
-        (0..=rows - length).step_by((length / 4).max(1)).map(move |start| start..start + length)
+        (0..=rows - length)
+            .step_by((length / 4).max(1))
+            .map(move |start| start..start + length)
     });
     let whole = probes.first().filter(|probe| probe.whole).map(|_| 0..rows);
     let mut spans: Vec<Range<usize>> = spans.chain(whole).collect();
@@ -135,11 +188,23 @@ fn windows(number: usize, clip: &Indexed, example: &Example, probes: &[Probe<'_>
     }
     let mut found = Vec::new();
     for span in spans {
-        let own = example.from.as_ref().is_some_and(|(id, own)| *id == clip.clip && overlaps(own, &span));
+        let own = example
+            .from
+            .as_ref()
+            .is_some_and(|(id, own)| *id == clip.clip && overlaps(own, &span));
         let summary = clip.sums.octaves(&span);
-        for (probe, over) in probes.iter().zip(&over).filter(|(probe, _)| probe.mirrored || !own) {
+        for (probe, over) in probes
+            .iter()
+            .zip(&over)
+            .filter(|(probe, _)| probe.mirrored || !own)
+        {
             let distance = probe.distance(clip, &span, &summary, over);
-            found.push(Candidate { clip: number, span: span.clone(), distance, mirrored: probe.mirrored });
+            found.push(Candidate {
+                clip: number,
+                span: span.clone(),
+                distance,
+                mirrored: probe.mirrored,
+            });
         }
     }
     found
@@ -154,12 +219,16 @@ fn nearest_by_moments(
     over: &[Comparison],
     spans: Vec<Range<usize>>,
 ) -> Vec<Range<usize>> {
-    let moments: Vec<Moments> = spans.iter().map(|span| clip.sums.moments_of(span)).collect();
+    let moments: Vec<Moments> = spans
+        .iter()
+        .map(|span| clip.sums.moments_of(span))
+        .collect();
     let mut kept: Vec<Range<usize>> = Vec::new();
     for (probe, over) in probes.iter().zip(over) {
         let wanted = moments_in(&probe.look.summary);
         let distance = |at: usize| {
-            over.by_moments(&wanted, &moments[at]) + length_cost(spans[at].len(), probe.rows, 1.0 / SCALES[0])
+            over.by_moments(&wanted, &moments[at])
+                + length_cost(spans[at].len(), probe.rows, 1.0 / SCALES[0])
         };
         let mut order: Vec<(f32, usize)> = (0..spans.len()).map(|at| (distance(at), at)).collect();
         order.sort_by(|a, b| a.0.total_cmp(&b.0));

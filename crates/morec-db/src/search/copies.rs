@@ -53,12 +53,12 @@ fn pairs(index: &SearchIndex, wanted: impl Fn(ClipId) -> bool) -> Vec<NearCopy> 
         .flat_map_iter(|a| {
             let (summaries, wanted) = (&summaries, &wanted);
             let others = (a + 1..index.clips.len()).filter(move |b| wanted[a] || wanted[*b]);
-            others.flat_map(move |b| [false, true].map(|mirror| (b, mirror))).filter_map(
-                move |(b, mirror)| {
+            others
+                .flat_map(move |b| [false, true].map(|mirror| (b, mirror)))
+                .filter_map(move |(b, mirror)| {
                     let near = (&summaries[a][0], &summaries[b][usize::from(mirror)]);
                     pair(index, a, b, mirror, near)
-                },
-            )
+                })
         })
         .collect();
     // A motion that is its own mirror image is found both ways; the plain one says enough.
@@ -94,7 +94,11 @@ fn pair(
         return None;
     }
     let (longer, shorter) = (&index.clips[long], &index.clips[short]);
-    let example = if mirror { mirrored(&shorter.laid) } else { shorter.laid.clone() };
+    let example = if mirror {
+        mirrored(&shorter.laid)
+    } else {
+        shorter.laid.clone()
+    };
     // Velocities depend on the rate that a copy went through; directions do not.
     let columns = directions(example.bones.and(longer.laid.bones));
     let (distance, at) = alongside(&example.rows, &longer.laid.rows, &columns)?;

@@ -39,15 +39,20 @@ pub fn spread(n: usize, distance: impl Fn(usize, usize) -> f32 + Sync) -> Vec<f3
         }
         std::mem::swap(&mut reached, &mut next);
     }
-    let most = reached[1..].iter().copied().fold(f32::MIN_POSITIVE, f32::max);
+    let most = reached[1..]
+        .iter()
+        .copied()
+        .fold(f32::MIN_POSITIVE, f32::max);
     reached[1..].iter().map(|r| r / most).collect()
 }
 
 impl Graph {
     fn of(n: usize, distance: impl Fn(usize, usize) -> f32 + Sync) -> Self {
         // Row by row: only distances of neighbours are kept.
-        let nearest: Vec<(f32, Vec<(usize, f32)>)> =
-            (0..n).into_par_iter().map(|i| nearest(n, i, &distance)).collect();
+        let nearest: Vec<(f32, Vec<(usize, f32)>)> = (0..n)
+            .into_par_iter()
+            .map(|i| nearest(n, i, &distance))
+            .collect();
         let mut edges: Vec<Vec<(usize, f32)>> = vec![Vec::new(); n];
         for (i, (scale, near)) in nearest.iter().enumerate() {
             for &(j, d) in near {
@@ -62,18 +67,29 @@ impl Graph {
             edges.sort_by_key(|a| a.0);
             edges.dedup_by_key(|a| a.0);
         }
-        let degrees: Vec<f32> =
-            edges.iter().map(|edges| edges.iter().map(|e| e.1).sum::<f32>().max(1e-12)).collect();
+        let degrees: Vec<f32> = edges
+            .iter()
+            .map(|edges| edges.iter().map(|e| e.1).sum::<f32>().max(1e-12))
+            .collect();
         for (i, edges) in edges.iter_mut().enumerate() {
-            edges.iter_mut().for_each(|(j, a)| *a /= (degrees[i] * degrees[*j]).sqrt());
+            edges
+                .iter_mut()
+                .for_each(|(j, a)| *a /= (degrees[i] * degrees[*j]).sqrt());
         }
         Self { edges }
     }
 }
 
 /// A node's scale, and its neighbours with their distances.
-fn nearest(n: usize, i: usize, distance: &impl Fn(usize, usize) -> f32) -> (f32, Vec<(usize, f32)>) {
-    let mut all: Vec<(usize, f32)> = (0..n).filter(|&j| j != i).map(|j| (j, distance(i, j))).collect();
+fn nearest(
+    n: usize,
+    i: usize,
+    distance: &impl Fn(usize, usize) -> f32,
+) -> (f32, Vec<(usize, f32)>) {
+    let mut all: Vec<(usize, f32)> = (0..n)
+        .filter(|&j| j != i)
+        .map(|j| (j, distance(i, j)))
+        .collect();
     let order = |a: &(usize, f32), b: &(usize, f32)| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0));
     if all.len() > NEIGHBOURS {
         all.select_nth_unstable_by(NEIGHBOURS - 1, order);
@@ -102,7 +118,11 @@ mod tests {
         let scale = |i: usize| d(i, near(i)[SCALE_NEIGHBOUR.min(near(i).len()) - 1]);
         let linked = |i: usize, j: usize| i != j && (near(i).contains(&j) || near(j).contains(&i));
         let a = DMatrix::from_fn(n, n, |i, j| {
-            if linked(i, j) { (-d(i, j).powi(2) / (scale(i) * scale(j)).max(1e-12)).exp() } else { 0.0 }
+            if linked(i, j) {
+                (-d(i, j).powi(2) / (scale(i) * scale(j)).max(1e-12)).exp()
+            } else {
+                0.0
+            }
         });
         let degrees: Vec<f64> = (0..n).map(|i| a.row(i).sum().max(1e-12)).collect();
         let alpha = f64::from(SPREAD);
@@ -131,7 +151,13 @@ mod tests {
     /// Two rows of points side by side: what lies on the example's own row comes before what is nearer across.
     #[test]
     fn what_is_linked_comes_before_what_is_near() {
-        let at = |i: usize| if i < 40 { (0.1 * i as f32, 0.0) } else { (0.1 * (i - 40) as f32, 2.0) };
+        let at = |i: usize| {
+            if i < 40 {
+                (0.1 * i as f32, 0.0)
+            } else {
+                (0.1 * (i - 40) as f32, 2.0)
+            }
+        };
         let distance = |i: usize, j: usize| (at(i).0 - at(j).0).hypot(at(i).1 - at(j).1);
         let reached = spread(80, distance);
         let along = reached[38]; // node 39, 3.9 away
@@ -139,6 +165,10 @@ mod tests {
         assert!(along > across, "{along} {across}");
         assert!(distance(0, 39) > distance(0, 40));
         assert!(spread(1, |_, _| 0.0).is_empty());
-        assert_eq!(spread(3, |_, _| 0.0), [1.0, 1.0], "copies all reached alike");
+        assert_eq!(
+            spread(3, |_, _| 0.0),
+            [1.0, 1.0],
+            "copies all reached alike"
+        );
     }
 }

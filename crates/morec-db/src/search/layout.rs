@@ -39,9 +39,15 @@ pub fn directions(bones: BoneSet) -> Vec<usize> {
 
 /// The columns of `bones` and the root: what two clips can be compared by.
 pub fn shared_columns(bones: BoneSet) -> Vec<usize> {
-    let of_block =
-        |block: usize| bones.indices().flat_map(move |b| (0..3).map(move |i| 3 * (block * BONES + b) + i));
-    of_block(0).chain(of_block(1)).chain(6 * BONES..DIM).collect()
+    let of_block = |block: usize| {
+        bones
+            .indices()
+            .flat_map(move |b| (0..3).map(move |i| 3 * (block * BONES + b) + i))
+    };
+    of_block(0)
+        .chain(of_block(1))
+        .chain(6 * BONES..DIM)
+        .collect()
 }
 
 /// The bone on the other side.
@@ -52,13 +58,24 @@ pub fn opposite(bone: usize) -> usize {
         Some(("right", rest)) => format!("left_{rest}"),
         _ => return bone,
     };
-    ALL_BONES.iter().position(|b| b.name == other).unwrap_or(bone)
+    ALL_BONES
+        .iter()
+        .position(|b| b.name == other)
+        .unwrap_or(bone)
 }
 
 /// The direction of `bone` in a mirror beside the performer, of that of its opposite.
 pub fn reflected(bone: usize, of_opposite: &[f32]) -> [f32; 3] {
-    let sign = if ALL_BONES[bone].name == "shoulder_line" { -1.0 } else { 1.0 };
-    [-sign * of_opposite[0], sign * of_opposite[1], sign * of_opposite[2]]
+    let sign = if ALL_BONES[bone].name == "shoulder_line" {
+        -1.0
+    } else {
+        1.0
+    };
+    [
+        -sign * of_opposite[0],
+        sign * of_opposite[1],
+        sign * of_opposite[2],
+    ]
 }
 
 /// What a mirror beside the performer shows: sides swapped, lateral parts and turning the other way.
@@ -71,7 +88,10 @@ pub fn mirrored(laid: &Laid) -> Laid {
     for row in laid.rows.iter() {
         for block in 0..2 {
             for bone in 0..BONES {
-                let (from, to) = (3 * (block * BONES + opposite(bone)), 3 * (block * BONES + bone));
+                let (from, to) = (
+                    3 * (block * BONES + opposite(bone)),
+                    3 * (block * BONES + bone),
+                );
                 image[to..to + 3].copy_from_slice(&reflected(bone, &row[from..from + 3]));
             }
         }
@@ -88,5 +108,8 @@ pub fn mirrored(laid: &Laid) -> Laid {
 
 /// What the mirror image of a skeleton with `bones` shows.
 pub fn opposite_bones(bones: BoneSet) -> BoneSet {
-    bones.indices().map(opposite).fold(BoneSet::NONE, BoneSet::with)
+    bones
+        .indices()
+        .map(opposite)
+        .fold(BoneSet::NONE, BoneSet::with)
 }

@@ -43,7 +43,12 @@ pub struct Place(Vec<f32>);
 impl Place {
     /// Euclidean.
     pub fn distance(&self, other: &Self) -> f32 {
-        self.0.iter().zip(&other.0).map(|(a, b)| (a - b) * (a - b)).sum::<f32>().sqrt()
+        self.0
+            .iter()
+            .zip(&other.0)
+            .map(|(a, b)| (a - b) * (a - b))
+            .sum::<f32>()
+            .sqrt()
     }
 }
 
@@ -63,10 +68,17 @@ impl SearchIndex {
     /// [`DbError::Invalid`] unless two classes at least have two samples at least: nothing else says what varies
     /// within a class, and what between classes.
     pub fn learn(&self, samples: &[DbSample]) -> Result<LearnedMetric, DbError> {
-        let clips: BTreeMap<ClipId, usize> =
-            self.clips.iter().enumerate().map(|(at, clip)| (clip.clip, at)).collect();
+        let clips: BTreeMap<ClipId, usize> = self
+            .clips
+            .iter()
+            .enumerate()
+            .map(|(at, clip)| (clip.clip, at))
+            .collect();
         let mut counts: BTreeMap<&str, Vec<&DbSample>> = BTreeMap::new();
-        for sample in samples.iter().filter(|s| s.state == State::Accepted && clips.contains_key(&s.clip)) {
+        for sample in samples
+            .iter()
+            .filter(|s| s.state == State::Accepted && clips.contains_key(&s.clip))
+        {
             counts.entry(&sample.class).or_default().push(sample);
         }
         counts.retain(|_, of_class| of_class.len() > 1);
@@ -85,16 +97,24 @@ impl SearchIndex {
             .filter_map(|(class, sample)| self.seen(class, sample, clips[&sample.clip]))
             .collect();
         LearnedMetric::of(&seen, classes).ok_or_else(|| {
-            DbError::Invalid("too little to learn from: the labelled samples do not differ".to_owned())
+            DbError::Invalid(
+                "too little to learn from: the labelled samples do not differ".to_owned(),
+            )
         })
     }
 
     fn seen(&self, class: usize, sample: &DbSample, clip: usize) -> Option<Seen> {
         let clip = &self.clips[clip];
-        let tick = |secs: f64| ((secs * self.tick_hz).round().max(0.0) as usize).min(clip.laid.rows.len());
+        let tick =
+            |secs: f64| ((secs * self.tick_hz).round().max(0.0) as usize).min(clip.laid.rows.len());
         let span = tick(sample.start_secs)..tick(sample.stop_secs);
         let bones = clip.laid.bones;
-        (span.len() >= 3).then(|| Seen { class, rows: span.len(), summary: clip.sums.octaves(&span), bones })
+        (span.len() >= 3).then(|| Seen {
+            class,
+            rows: span.len(),
+            summary: clip.sums.octaves(&span),
+            bones,
+        })
     }
 }
 
@@ -112,18 +132,30 @@ impl LearnedMetric {
     /// Where a stretch of so many rows lies. Bones that it does not show are taken to be as usual.
     pub fn place(&self, summary: &Summary, rows: usize, bones: BoneSet) -> Place {
         let input = input(summary, rows, bones, &self.mean);
-        Place((&self.projection * input).iter().map(|v| *v as f32).collect())
+        Place(
+            (&self.projection * input)
+                .iter()
+                .map(|v| *v as f32)
+                .collect(),
+        )
     }
 
     fn of(seen: &[Seen], classes: Vec<String>) -> Option<Self> {
         let mean = mean(seen);
-        let inputs: Vec<DVector<f64>> =
-            seen.iter().map(|s| input(&s.summary, s.rows, s.bones, &mean)).collect();
+        let inputs: Vec<DVector<f64>> = seen
+            .iter()
+            .map(|s| input(&s.summary, s.rows, s.bones, &mean))
+            .collect();
         let components = components(&inputs)?;
         let reduced: Vec<DVector<f64>> = inputs.iter().map(|x| components.tr_mul(x)).collect();
         let discriminants = discriminants(&reduced, seen, classes.len())?;
         let projection = discriminants.transpose() * components.transpose();
-        let mut metric = Self { classes, samples: seen.len(), mean, projection };
+        let mut metric = Self {
+            classes,
+            samples: seen.len(),
+            mean,
+            projection,
+        };
         metric.projection *= metric.length(seen)?;
         Some(metric)
     }
@@ -132,7 +164,10 @@ impl LearnedMetric {
     fn length(&self, seen: &[Seen]) -> Option<f64> {
         let stride = seen.len().div_ceil(SCALED_ON);
         let some: Vec<&Seen> = seen.iter().step_by(stride).collect();
-        let places: Vec<Place> = some.iter().map(|s| self.place(&s.summary, s.rows, s.bones)).collect();
+        let places: Vec<Place> = some
+            .iter()
+            .map(|s| self.place(&s.summary, s.rows, s.bones))
+            .collect();
         let (mut plain, mut learned) = (Vec::new(), Vec::new());
         for i in 0..some.len() {
             for j in 0..i {
@@ -150,7 +185,11 @@ impl LearnedMetric {
 fn mean(seen: &[Seen]) -> Vec<f64> {
     let shown = |s: &Seen, i: usize| bone_of(i).is_none_or(|bone| s.bones.contains(bone));
     let of = |i: usize| {
-        let values: Vec<f64> = seen.iter().filter(|s| shown(s, i)).map(|s| f64::from(s.summary[i])).collect();
+        let values: Vec<f64> = seen
+            .iter()
+            .filter(|s| shown(s, i))
+            .map(|s| f64::from(s.summary[i]))
+            .collect();
         values.iter().sum::<f64>() / values.len().max(1) as f64
     };
     let length = seen.iter().map(|s| (s.rows as f64).ln()).sum::<f64>() / seen.len().max(1) as f64;
@@ -191,7 +230,10 @@ fn discriminants(reduced: &[DVector<f64>], seen: &[Seen], classes: usize) -> Opt
         means[s.class] += x;
         counts[s.class] += 1.0;
     }
-    means.iter_mut().zip(&counts).for_each(|(mean, count)| *mean /= f64::max(*count, 1.0));
+    means
+        .iter_mut()
+        .zip(&counts)
+        .for_each(|(mean, count)| *mean /= f64::max(*count, 1.0));
     let mut within = DMatrix::zeros(p, p);
     for (x, s) in reduced.iter().zip(seen) {
         let off = x - &means[s.class];

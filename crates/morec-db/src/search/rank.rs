@@ -31,7 +31,12 @@ pub struct SearchOptions {
 
 impl Default for SearchOptions {
     fn default() -> Self {
-        Self { limit: 20, mirror: false, one_a_clip: false, warp_share: 0.0 }
+        Self {
+            limit: 20,
+            mirror: false,
+            one_a_clip: false,
+            warp_share: 0.0,
+        }
     }
 }
 
@@ -88,7 +93,10 @@ impl SearchIndex {
         let mut ranked = self.ranked(candidates, example, options, &probes, metric);
         // Places move a little and may come to overlap.
         ranked.truncate(4 * options.limit.max(8));
-        let image = options.mirror.then(|| Example { laid: mirrored(&example.laid), ..example.clone() });
+        let image = options.mirror.then(|| Example {
+            laid: mirrored(&example.laid),
+            ..example.clone()
+        });
         let place = |found: &Ranked| {
             let mirrored = found.candidate.mirrored;
             let shown = image.as_ref().filter(|_| mirrored).unwrap_or(example);
@@ -99,7 +107,8 @@ impl SearchIndex {
         hits.sort_by(|a, b| b.score.total_cmp(&a.score).then(a.clip.cmp(&b.clip)));
         let mut kept: Vec<Hit> = Vec::new();
         for hit in hits {
-            let same = |k: &Hit| k.clip == hit.clip && (options.one_a_clip || overlap(k, &hit) > 0.3);
+            let same =
+                |k: &Hit| k.clip == hit.clip && (options.one_a_clip || overlap(k, &hit) > 0.3);
             if kept.len() < options.limit && !kept.iter().any(same) {
                 kept.push(hit);
             }
@@ -122,15 +131,29 @@ impl SearchIndex {
         let linked = (8 * options.limit).clamp(*LINKED.start(), *LINKED.end());
         let nodes: Vec<&Candidate> = candidates.iter().filter(node).take(linked).collect();
         let reached = self.company(&nodes, example, probes, metric);
-        let of_node: BTreeMap<(usize, usize), f32> =
-            nodes.iter().zip(&reached).map(|(c, r)| (key(c, options), *r)).collect();
-        let scale = nodes.get(SCALE_NEIGHBOUR.min(nodes.len()).max(1) - 1).map_or(1.0, |c| c.distance);
+        let of_node: BTreeMap<(usize, usize), f32> = nodes
+            .iter()
+            .zip(&reached)
+            .map(|(c, r)| (key(c, options), *r))
+            .collect();
+        let scale = nodes
+            .get(SCALE_NEIGHBOUR.min(nodes.len()).max(1) - 1)
+            .map_or(1.0, |c| c.distance);
         let rank = |candidate: Candidate| {
-            let reached = of_node.get(&key(&candidate, options)).map_or(UNREACHED, |r| r.max(UNREACHED));
-            Ranked { candidate, reached, scale: scale.max(1e-6) }
+            let reached = of_node
+                .get(&key(&candidate, options))
+                .map_or(UNREACHED, |r| r.max(UNREACHED));
+            Ranked {
+                candidate,
+                reached,
+                scale: scale.max(1e-6),
+            }
         };
         let mut ranked: Vec<Ranked> = candidates.into_iter().map(rank).collect();
-        ranked.sort_by(|a, b| a.cost(a.candidate.distance).total_cmp(&b.cost(b.candidate.distance)));
+        ranked.sort_by(|a, b| {
+            a.cost(a.candidate.distance)
+                .total_cmp(&b.cost(b.candidate.distance))
+        });
         ranked
     }
 
@@ -151,7 +174,11 @@ impl SearchIndex {
             } else {
                 (summary, bones)
             };
-            Node { look: Look::new(summary, c.span.len(), bones, metric), bones, rows: clip.laid.rows.len() }
+            Node {
+                look: Look::new(summary, c.span.len(), bones, metric),
+                bones,
+                rows: clip.laid.rows.len(),
+            }
         };
         let nodes: Vec<Node> = candidates.par_iter().map(node).collect();
         spread(nodes.len() + 1, |i, j| {
@@ -161,21 +188,33 @@ impl SearchIndex {
             }
             let (a, b) = (&nodes[i - 1], &nodes[j - 1]);
             let over = Comparison::over(a.bones.and(b.bones).and(example.laid.bones));
-            let lengths = if whole { length_cost(a.rows.min(b.rows), a.rows.max(b.rows), 1.4) } else { 0.0 };
+            let lengths = if whole {
+                length_cost(a.rows.min(b.rows), a.rows.max(b.rows), 1.4)
+            } else {
+                0.0
+            };
             a.look.distance(&b.look, &over) + lengths
         })
     }
 
     /// Where within a candidate's surroundings the example lies exactly.
-    fn place(&self, ranked: &Ranked, example: &Example, probe: &Probe<'_>, options: &SearchOptions) -> Hit {
+    fn place(
+        &self,
+        ranked: &Ranked,
+        example: &Example,
+        probe: &Probe<'_>,
+        options: &SearchOptions,
+    ) -> Hit {
         let candidate = &ranked.candidate;
         let clip = &self.clips[candidate.clip];
         let n = example.laid.rows.len();
         let mut around = candidate.span.start.saturating_sub(n / 3)
             ..(candidate.span.end + n / 3).min(clip.laid.rows.len());
         // The example itself is no hit: beside it, paths, of half its length at least, stay out of all but a sixth of it.
-        if let Some((_, own)) =
-            example.from.as_ref().filter(|(id, _)| *id == clip.clip && !candidate.mirrored)
+        if let Some((_, own)) = example
+            .from
+            .as_ref()
+            .filter(|(id, _)| *id == clip.clip && !candidate.mirrored)
         {
             match candidate.span.start < own.start {
                 true => around.end = around.end.min(own.start + n / 6),
@@ -234,7 +273,10 @@ struct Node {
 
 fn overlap(a: &Hit, b: &Hit) -> f64 {
     let shared = (a.stop_secs.min(b.stop_secs) - a.start_secs.max(b.start_secs)).max(0.0);
-    shared / (a.stop_secs - a.start_secs).min(b.stop_secs - b.start_secs).max(1e-9)
+    shared
+        / (a.stop_secs - a.start_secs)
+            .min(b.stop_secs - b.start_secs)
+            .max(1e-9)
 }
 
 /// The best path of `example` through rows `within` of a clip, by these columns: mean squared distance, and where it lies.
@@ -252,7 +294,10 @@ pub fn warp(
         bank.step(row);
         let found = bank.matched(0);
         if found.distance < 1e20 && best.as_ref().is_none_or(|(d, _)| found.distance < *d) {
-            best = Some((found.distance, within.start + tick - found.age..within.start + tick + 1));
+            best = Some((
+                found.distance,
+                within.start + tick - found.age..within.start + tick + 1,
+            ));
         }
     }
     let (_, share) = shown(shared);

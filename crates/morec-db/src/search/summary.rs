@@ -30,7 +30,11 @@ pub type Summary = [f32; SUMMARY];
 
 /// What each part's distance counts: about one over its median among windows of everyday motion, except that the mean
 /// pose, which tells people and styles apart better than motions, counts a sixth of that.
-const WEIGHTS: Weights = Weights { motion: 0.9, pose: 0.1, travel: 1.6 };
+const WEIGHTS: Weights = Weights {
+    motion: 0.9,
+    pose: 0.1,
+    travel: 1.6,
+};
 
 struct Weights {
     motion: f32,
@@ -107,7 +111,10 @@ pub type Moments = [f32; 2 * X + 4];
 pub fn moments_in(summary: &Summary) -> Moments {
     let mut out = [0f32; 2 * X + 4];
     for i in 0..X {
-        out[i] = (0..OCTAVES).map(|octave| summary[octave * X + i].powi(2)).sum::<f32>().sqrt();
+        out[i] = (0..OCTAVES)
+            .map(|octave| summary[octave * X + i].powi(2))
+            .sum::<f32>()
+            .sqrt();
     }
     out[X..].copy_from_slice(&summary[MEAN..]);
     out
@@ -140,13 +147,19 @@ pub struct Comparison {
 impl Comparison {
     /// Over these bones.
     pub fn over(shared: BoneSet) -> Self {
-        Self { shared, scale: BONES as f32 / shared.len().max(1) as f32 }
+        Self {
+            shared,
+            scale: BONES as f32 / shared.len().max(1) as f32,
+        }
     }
 
     /// 0 for the same, around 3 for unlike motion.
     pub fn distance(&self, a: &Summary, b: &Summary) -> f32 {
         let (motion, pose) = if self.shared == BoneSet::ALL {
-            (squared(&a[..MEAN], &b[..MEAN]), squared(&a[MEAN..ROOT], &b[MEAN..ROOT]))
+            (
+                squared(&a[..MEAN], &b[..MEAN]),
+                squared(&a[MEAN..ROOT], &b[MEAN..ROOT]),
+            )
         } else {
             self.masked(a, b)
         };
@@ -192,7 +205,11 @@ fn squared(a: &[f32], b: &[f32]) -> f32 {
             *sum += (a - b) * (a - b);
         }
     }
-    let rest: f32 = a_rest.iter().zip(b_rest).map(|(a, b)| (a - b) * (a - b)).sum();
+    let rest: f32 = a_rest
+        .iter()
+        .zip(b_rest)
+        .map(|(a, b)| (a - b) * (a - b))
+        .sum();
     sums.iter().sum::<f32>() + rest
 }
 
@@ -205,7 +222,8 @@ pub fn mirrored_summary(of: &Summary) -> Summary {
             out[octave * X + to..octave * X + to + 3]
                 .copy_from_slice(&of[octave * X + from..octave * X + from + 3]);
         }
-        out[MEAN + to..MEAN + to + 3].copy_from_slice(&reflected(bone, &of[MEAN + from..MEAN + from + 3]));
+        out[MEAN + to..MEAN + to + 3]
+            .copy_from_slice(&reflected(bone, &of[MEAN + from..MEAN + from + 3]));
     }
     out[ROOT] = -of[ROOT];
     out[ROOT + 3] = -of[ROOT + 3];
@@ -238,9 +256,12 @@ mod tests {
             let mut coarser = 0.0;
             for octave in 0..OCTAVES - 1 {
                 let length = fine.len() >> (octave + 1);
-                let means: Vec<f64> =
-                    fine.chunks(length).map(|c| c.iter().sum::<f64>() / length as f64).collect();
-                let variance = means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / means.len() as f64;
+                let means: Vec<f64> = fine
+                    .chunks(length)
+                    .map(|c| c.iter().sum::<f64>() / length as f64)
+                    .collect();
+                let variance =
+                    means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / means.len() as f64;
                 out[octave * X + i] = (variance - coarser).max(0.0).sqrt();
                 left -= variance - coarser;
                 coarser = variance;

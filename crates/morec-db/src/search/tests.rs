@@ -12,7 +12,10 @@ use crate::{ClipFilter, ImportSettings};
 #[test]
 fn a_mirror_of_a_mirror_is_the_thing() {
     let values = (0..3 * DIM).map(|i| i as f32 - 50.0).collect();
-    let laid = lay_out(&Rows::from_values(DIM, values), morec::features::BoneSet::ALL);
+    let laid = lay_out(
+        &Rows::from_values(DIM, values),
+        morec::features::BoneSet::ALL,
+    );
     assert_eq!(mirrored(&mirrored(&laid)).rows, laid.rows);
     assert_ne!(mirrored(&laid).rows, laid.rows);
 }
@@ -25,11 +28,24 @@ fn a_stretch_finds_its_like_in_other_clips() {
     let index = SearchIndex::of_db(&mut db, &()).unwrap();
     let label = takes[0].labels.iter().find(|l| l.class == "wave").unwrap();
     let clip = db.find_clip(&takes[0].clip.name).unwrap().id;
-    let example = index.example(clip, label.start_secs, label.stop_secs).unwrap();
-    let hits = index.search(&example, &SearchOptions { limit: 4, ..Default::default() });
+    let example = index
+        .example(clip, label.start_secs, label.stop_secs)
+        .unwrap();
+    let hits = index.search(
+        &example,
+        &SearchOptions {
+            limit: 4,
+            ..Default::default()
+        },
+    );
     assert_eq!(hits.len(), 4);
     let right = hits.iter().filter(|hit| {
-        let info = db.clips(&ClipFilter::default()).unwrap().into_iter().find(|c| c.id == hit.clip).unwrap();
+        let info = db
+            .clips(&ClipFilter::default())
+            .unwrap()
+            .into_iter()
+            .find(|c| c.id == hit.clip)
+            .unwrap();
         let take = takes.iter().find(|t| t.clip.name == info.name).unwrap();
         take.labels.iter().any(|l| {
             let shared = l.stop_secs.min(hit.stop_secs) - l.start_secs.max(hit.start_secs);
@@ -46,19 +62,40 @@ fn an_exact_copy_comes_first() {
     let (_folder, db) = indexed(4);
     let rows = db.1;
     let mut again = rows.clone();
-    again.push(ClipRows { clip: ClipId(1000), ..rows[2].clone() });
+    again.push(ClipRows {
+        clip: ClipId(1000),
+        ..rows[2].clone()
+    });
     let bones = rows[2].bones;
     let image = mirrored(&lay_out(&rows[2].rows, bones)).rows;
-    again.push(ClipRows { clip: ClipId(1001), bones: morec::features::BoneSet::ALL, rows: image });
+    again.push(ClipRows {
+        clip: ClipId(1001),
+        bones: morec::features::BoneSet::ALL,
+        rows: image,
+    });
     let index = SearchIndex::new(&again, 30.0);
-    for (start, stop, one_a_clip) in
-        [(0.0, 1e9, true), (0.0, 1e9, false), (2.0, 3.5, false), (1.0, 4.0, true)]
-    {
+    for (start, stop, one_a_clip) in [
+        (0.0, 1e9, true),
+        (0.0, 1e9, false),
+        (2.0, 3.5, false),
+        (1.0, 4.0, true),
+    ] {
         let example = index.example(rows[2].clip, start, stop).unwrap();
-        let options = SearchOptions { one_a_clip, mirror: true, ..Default::default() };
+        let options = SearchOptions {
+            one_a_clip,
+            mirror: true,
+            ..Default::default()
+        };
         let hits = index.search(&example, &options);
-        assert_eq!((hits[0].clip, hits[0].mirrored), (ClipId(1000), false), "{hits:?}");
-        assert!(hits[0].score > 0.97 && hits[0].warp_distance < 0.02, "{hits:?}");
+        assert_eq!(
+            (hits[0].clip, hits[0].mirrored),
+            (ClipId(1000), false),
+            "{hits:?}"
+        );
+        assert!(
+            hits[0].score > 0.97 && hits[0].warp_distance < 0.02,
+            "{hits:?}"
+        );
         assert!((hits[0].start_secs - start).abs() < 0.05, "{hits:?}");
         let image = hits.iter().find(|hit| hit.mirrored).unwrap();
         assert_eq!(image.clip, ClipId(1001), "{hits:?}");
@@ -96,9 +133,18 @@ fn a_learned_metric_tells_classes_of_others_apart() {
     let (_folder, (mut db, rows)) = indexed(5);
     let index = SearchIndex::new(&rows, 30.0);
     let samples = |db: &crate::MotionDb| db.samples(&SampleFilter::default()).unwrap();
-    assert!(index.learn(&samples(&db)).unwrap_err().to_string().contains("2 classes"));
+    assert!(
+        index
+            .learn(&samples(&db))
+            .unwrap_err()
+            .to_string()
+            .contains("2 classes")
+    );
     label(&mut db, &takes[..3]);
-    let one: Vec<_> = samples(&db).into_iter().filter(|s| s.class == "wave").collect();
+    let one: Vec<_> = samples(&db)
+        .into_iter()
+        .filter(|s| s.class == "wave")
+        .collect();
     assert!(index.learn(&one).is_err());
     let metric = index.learn(&samples(&db)).unwrap();
     assert_eq!(metric.classes(), ["bow", "wave"]);
@@ -106,24 +152,42 @@ fn a_learned_metric_tells_classes_of_others_apart() {
     label(&mut db, &takes[3..]);
     let place = |take: usize, class: &str| {
         let clip = db.find_clip(&takes[take].clip.name).unwrap().id;
-        let of = samples(&db).into_iter().find(|s| s.clip == clip && s.class == class).unwrap();
+        let of = samples(&db)
+            .into_iter()
+            .find(|s| s.clip == clip && s.class == class)
+            .unwrap();
         let indexed = index.clips.iter().find(|c| c.clip == clip).unwrap();
         let span = (of.start_secs * 30.0) as usize..(of.stop_secs * 30.0) as usize;
         let summary = indexed.sums.octaves(&span);
-        (metric.place(&summary, span.len(), indexed.laid.bones), summary)
+        (
+            metric.place(&summary, span.len(), indexed.laid.bones),
+            summary,
+        )
     };
     let (wave, bow, other) = (place(3, "wave"), place(3, "bow"), place(4, "wave"));
     let plain = |a: &summary::Summary, b: &summary::Summary| {
         summary::Comparison::over(morec::features::BoneSet::ALL).distance(a, b)
     };
     let learned = wave.0.distance(&other.0) / wave.0.distance(&bow.0);
-    assert!(learned < plain(&wave.1, &other.1) / plain(&wave.1, &bow.1), "{learned}");
+    assert!(
+        learned < plain(&wave.1, &other.1) / plain(&wave.1, &bow.1),
+        "{learned}"
+    );
     assert!(learned < 0.5, "{learned}");
 
     let label = takes[3].labels.iter().find(|l| l.class == "wave").unwrap();
     let clip = db.find_clip(&takes[3].clip.name).unwrap().id;
-    let example = index.example(clip, label.start_secs, label.stop_secs).unwrap();
-    let hits = index.search_by(&example, &SearchOptions { limit: 6, ..Default::default() }, Some(&metric));
+    let example = index
+        .example(clip, label.start_secs, label.stop_secs)
+        .unwrap();
+    let hits = index.search_by(
+        &example,
+        &SearchOptions {
+            limit: 6,
+            ..Default::default()
+        },
+        Some(&metric),
+    );
     let right = hits.iter().filter(|hit| {
         let all = samples(&db);
         all.iter().any(|s| {
@@ -140,19 +204,38 @@ fn whole_clips_are_compared_with_whole_clips() {
     let (_folder, (_db, rows)) = indexed(2);
     let tick = |secs: f64| (secs * 30.0) as usize;
     let takes = waves(2);
-    let take = |n: usize| takes.iter().position(|t| t.clip.name == takes[n].clip.name).unwrap();
+    let take = |n: usize| {
+        takes
+            .iter()
+            .position(|t| t.clip.name == takes[n].clip.name)
+            .unwrap()
+    };
     let first = |n: usize| takes[take(n)].labels[0];
     let cut = |n: usize, id: i64, stop: f64| {
         let span = tick(first(n).start_secs)..tick(stop).min(rows[n].rows.len());
-        ClipRows { clip: ClipId(id), bones: rows[n].bones, rows: rows[n].rows.slice(span) }
+        ClipRows {
+            clip: ClipId(id),
+            bones: rows[n].bones,
+            rows: rows[n].rows.slice(span),
+        }
     };
-    let clips = [cut(0, 1, first(0).stop_secs), cut(0, 2, 1e9), cut(1, 3, first(1).stop_secs)];
+    let clips = [
+        cut(0, 1, first(0).stop_secs),
+        cut(0, 2, 1e9),
+        cut(1, 3, first(1).stop_secs),
+    ];
     let index = SearchIndex::new(&clips, 30.0);
-    let options = SearchOptions { one_a_clip: true, ..Default::default() };
+    let options = SearchOptions {
+        one_a_clip: true,
+        ..Default::default()
+    };
     let example = index.example(ClipId(1), 0.0, 1e9).unwrap();
     let of = |hits: &[Hit]| hits.iter().map(|h| h.clip.0).collect::<Vec<_>>();
     // As a stretch the beginning of the second clip is the very same.
-    assert_eq!(of(&index.search(&example.clone().cut_out(), &options))[0], 2);
+    assert_eq!(
+        of(&index.search(&example.clone().cut_out(), &options))[0],
+        2
+    );
     let whole = index.search(&example, &options);
     let stretch = index.search(&example.cut_out(), &options);
     let score = |hits: &[Hit], id: i64| hits.iter().find(|h| h.clip.0 == id).unwrap().score;
@@ -170,8 +253,11 @@ fn the_example_itself_is_no_hit() {
         let example = index.example(clip.id, start, stop).unwrap();
         for hit in index.search(&example, &SearchOptions::default()) {
             let shared = (hit.stop_secs.min(stop) - hit.start_secs.max(start)).max(0.0);
-            let own =
-                if hit.clip == clip.id { shared / (hit.stop_secs - hit.start_secs).min(1.5) } else { 0.0 };
+            let own = if hit.clip == clip.id {
+                shared / (hit.stop_secs - hit.start_secs).min(1.5)
+            } else {
+                0.0
+            };
             assert!(own < 0.5, "{start} to {stop} s: {hit:?}");
         }
     }
@@ -185,20 +271,31 @@ fn planted_copies_are_found_and_nothing_else() {
     let original = waves(1).remove(0).clip;
     let resampled = original.resampled(30.0).unwrap();
     let image = mirror_of(&original);
-    let paths =
-        [write_bvh(folder.path(), "resampled", &resampled), write_bvh(folder.path(), "image", &image)];
-    db.import(&paths, &BvhReader, &ImportSettings::default(), &()).unwrap();
+    let paths = [
+        write_bvh(folder.path(), "resampled", &resampled),
+        write_bvh(folder.path(), "image", &image),
+    ];
+    db.import(&paths, &BvhReader, &ImportSettings::default(), &())
+        .unwrap();
     let index = SearchIndex::of_db(&mut db, &()).unwrap();
     let id = |name: &str| db.find_clip(name).unwrap().id;
     let pairs = |found: Vec<NearCopy>| {
-        let mut pairs: Vec<_> =
-            found.into_iter().map(|c| ([c.of.min(c.copy), c.of.max(c.copy)], c.mirrored)).collect();
+        let mut pairs: Vec<_> = found
+            .into_iter()
+            .map(|c| ([c.of.min(c.copy), c.of.max(c.copy)], c.mirrored))
+            .collect();
         pairs.sort();
         pairs
     };
     let (a, b, c) = (id(&original.name), id("resampled"), id("image"));
-    assert_eq!(pairs(near_copies(&index)), [([a, b], false), ([a, c], true), ([b, c], true)]);
-    assert_eq!(pairs(near_copies_of(&index, &[b].into())), [([a, b], false), ([b, c], true)]);
+    assert_eq!(
+        pairs(near_copies(&index)),
+        [([a, b], false), ([a, c], true), ([b, c], true)]
+    );
+    assert_eq!(
+        pairs(near_copies_of(&index, &[b].into())),
+        [([a, b], false), ([b, c], true)]
+    );
 }
 
 /// Sides swapped and everything reflected in the plane x = 0.
@@ -206,10 +303,16 @@ fn mirror_of(clip: &morec::clip::Clip) -> morec::clip::Clip {
     use morec::math::{Quat, Vec3};
     let joints = clip.skeleton.joints();
     let other = |name: &str| {
-        if name.contains("Left") { name.replace("Left", "Right") } else { name.replace("Right", "Left") }
+        if name.contains("Left") {
+            name.replace("Left", "Right")
+        } else {
+            name.replace("Right", "Left")
+        }
     };
-    let opposite: Vec<usize> =
-        joints.iter().map(|j| clip.skeleton.find(&other(&j.name)).expect("both sides")).collect();
+    let opposite: Vec<usize> = joints
+        .iter()
+        .map(|j| clip.skeleton.find(&other(&j.name)).expect("both sides"))
+        .collect();
     let flip = |v: &Vec3| Vec3::new(-v.x, v.y, v.z);
     let mut image = clip.clone();
     image.name = "image".into();

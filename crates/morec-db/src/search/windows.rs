@@ -45,7 +45,10 @@ impl Sums {
         let share = at - at.floor();
         let below = &self.sums[row * width..row * width + X];
         // The end of the last row has none after it.
-        let above = self.sums.get((row + 1) * width..(row + 1) * width + X).unwrap_or(below);
+        let above = self
+            .sums
+            .get((row + 1) * width..(row + 1) * width + X)
+            .unwrap_or(below);
         for ((out, below), above) in out.iter_mut().zip(below).zip(above) {
             *out = below + share * (above - below);
         }

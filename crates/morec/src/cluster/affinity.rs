@@ -19,7 +19,12 @@ pub struct AffinityParams {
 impl Default for AffinityParams {
     /// The authors' median preference; damping a little above their 0.5, which may oscillate.
     fn default() -> Self {
-        Self { damping: 0.5, preference: 0.5, rounds: 400, settled: 15 }
+        Self {
+            damping: 0.5,
+            preference: 0.5,
+            rounds: 400,
+            settled: 15,
+        }
     }
 }
 
@@ -31,7 +36,10 @@ pub fn affinity_propagation(
     params: &AffinityParams,
 ) -> Clusters {
     if n < 2 {
-        return Clusters { of: vec![0; n], count: n };
+        return Clusters {
+            of: vec![0; n],
+            count: n,
+        };
     }
     let s = similarities(n, similarity, params.preference);
     let (mut r, mut a) = (vec![0.0; n * n], vec![0.0; n * n]);
@@ -40,7 +48,9 @@ pub fn affinity_propagation(
     for _ in 0..params.rounds {
         responsibilities(n, &s, &a, &mut r, params.damping);
         availabilities(n, &r, &mut a, params.damping);
-        let now: Vec<usize> = (0..n).filter(|&k| r[k * n + k] + a[k * n + k] > 0.0).collect();
+        let now: Vec<usize> = (0..n)
+            .filter(|&k| r[k * n + k] + a[k * n + k] > 0.0)
+            .collect();
         unchanged = if now == exemplars { unchanged + 1 } else { 0 };
         exemplars = now;
         if unchanged >= params.settled && !exemplars.is_empty() {
@@ -71,7 +81,9 @@ fn similarities(n: usize, similarity: impl Fn(usize, usize) -> f64, quantile: f6
         if index % (n + 1) == 0 {
             *value = others[at];
         }
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         *value += scale * (state >> 11) as f64 / (1u64 << 53) as f64;
     }
     s
@@ -102,13 +114,21 @@ fn availabilities(n: usize, r: &[f64], a: &mut [f64], damping: f64) {
     let mut support = vec![0.0; n];
     for i in 0..n {
         for k in 0..n {
-            support[k] += if i == k { r[i * n + k] } else { r[i * n + k].max(0.0) };
+            support[k] += if i == k {
+                r[i * n + k]
+            } else {
+                r[i * n + k].max(0.0)
+            };
         }
     }
     for i in 0..n {
         for k in 0..n {
             let own = r[i * n + k];
-            let fresh = if i == k { support[k] - own } else { (support[k] - own.max(0.0)).min(0.0) };
+            let fresh = if i == k {
+                support[k] - own
+            } else {
+                (support[k] - own.max(0.0)).min(0.0)
+            };
             a[i * n + k] = damping * a[i * n + k] + (1.0 - damping) * fresh;
         }
     }
@@ -117,12 +137,16 @@ fn availabilities(n: usize, r: &[f64], a: &mut [f64], damping: f64) {
 /// Every item to its most similar exemplar; exemplars to themselves. Clusters in order of their first items.
 fn assign(n: usize, s: &[f64], exemplars: &[usize]) -> Clusters {
     if exemplars.is_empty() {
-        return Clusters { of: vec![0; n], count: 1 };
+        return Clusters {
+            of: vec![0; n],
+            count: 1,
+        };
     }
     let nearest = |i: usize| {
         let own = exemplars.iter().position(|&k| k == i);
         own.or_else(|| {
-            (0..exemplars.len()).max_by(|&a, &b| s[i * n + exemplars[a]].total_cmp(&s[i * n + exemplars[b]]))
+            (0..exemplars.len())
+                .max_by(|&a, &b| s[i * n + exemplars[a]].total_cmp(&s[i * n + exemplars[b]]))
         })
         .unwrap_or(0)
     };
@@ -135,8 +159,10 @@ mod tests {
 
     #[test]
     fn heaps_on_a_line_are_groups() {
-        let points: Vec<f64> =
-            [0.0, 10.0, 25.0].iter().flat_map(|c| (0..7).map(move |i| c + 0.1 * f64::from(i))).collect();
+        let points: Vec<f64> = [0.0, 10.0, 25.0]
+            .iter()
+            .flat_map(|c| (0..7).map(move |i| c + 0.1 * f64::from(i)))
+            .collect();
         let near = |a: usize, b: usize| -(points[a] - points[b]).powi(2);
         let groups = affinity_propagation(points.len(), near, &AffinityParams::default());
         assert_eq!(groups.count, 3);
@@ -145,8 +171,14 @@ mod tests {
 
     #[test]
     fn none_one_and_equal_items() {
-        assert_eq!(affinity_propagation(0, |_, _| 0.0, &AffinityParams::default()).count, 0);
-        assert_eq!(affinity_propagation(1, |_, _| 0.0, &AffinityParams::default()).of, [0]);
+        assert_eq!(
+            affinity_propagation(0, |_, _| 0.0, &AffinityParams::default()).count,
+            0
+        );
+        assert_eq!(
+            affinity_propagation(1, |_, _| 0.0, &AffinityParams::default()).of,
+            [0]
+        );
         let same = affinity_propagation(5, |_, _| 0.0, &AffinityParams::default());
         assert!(same.count >= 1 && same.of.iter().all(|g| *g < same.count));
     }

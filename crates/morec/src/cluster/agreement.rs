@@ -50,7 +50,11 @@ pub fn adjusted_rand_index(classes: &[usize], clusters: &[usize]) -> f64 {
     let (class, cluster) = (counts.one_class() as f64, counts.one_cluster() as f64);
     let expected = class * cluster / pairs(counts.samples).max(1) as f64;
     let most = (class + cluster) / 2.0;
-    if most == expected { 1.0 } else { (counts.both() as f64 - expected) / (most - expected) }
+    if most == expected {
+        1.0
+    } else {
+        (counts.both() as f64 - expected) / (most - expected)
+    }
 }
 
 /// Pairs among `n` things.
@@ -68,8 +72,12 @@ struct Counts {
 
 impl Counts {
     fn of(classes: &[usize], clusters: &[usize]) -> Self {
-        let mut counts =
-            Self { classes: BTreeMap::new(), clusters: BTreeMap::new(), cells: BTreeMap::new(), samples: 0 };
+        let mut counts = Self {
+            classes: BTreeMap::new(),
+            clusters: BTreeMap::new(),
+            cells: BTreeMap::new(),
+            samples: 0,
+        };
         for (&class, &cluster) in classes.iter().zip(clusters) {
             *counts.classes.entry(class).or_default() += 1;
             *counts.clusters.entry(cluster).or_default() += 1;

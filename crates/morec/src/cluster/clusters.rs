@@ -15,7 +15,10 @@ impl Clusters {
     /// The items of each cluster.
     pub fn members(&self) -> Vec<Vec<usize>> {
         let mut members = vec![Vec::new(); self.count];
-        self.of.iter().enumerate().for_each(|(item, &cluster)| members[cluster].push(item));
+        self.of
+            .iter()
+            .enumerate()
+            .for_each(|(item, &cluster)| members[cluster].push(item));
         members
     }
 }
@@ -29,7 +32,10 @@ pub(super) fn numbered(numbers: impl Iterator<Item = usize>) -> Clusters {
             *known.entry(number).or_insert(next)
         })
         .collect();
-    Clusters { of, count: known.len() }
+    Clusters {
+        of,
+        count: known.len(),
+    }
 }
 
 /// Clusters of `items` items: whoever is linked, over however many others, is together. O(items² ) links asked for.
@@ -58,5 +64,7 @@ pub fn connected(items: usize, linked: impl Fn(usize, usize) -> bool) -> Cluster
 
 /// Clusters of samples (thesis §3.6): connected components of the pairs whose similarity is above τ. O(samples² k n).
 pub fn kwas_clusters(samples: &[Spectrum], params: &KwasParams) -> Clusters {
-    connected(samples.len(), |a, b| kwas(&samples[a], &samples[b], params.k, params.form) > params.tau)
+    connected(samples.len(), |a, b| {
+        kwas(&samples[a], &samples[b], params.k, params.form) > params.tau
+    })
 }

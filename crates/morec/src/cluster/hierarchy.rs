@@ -46,7 +46,11 @@ impl Hierarchy {
                 continue;
             }
             chain.truncate(chain.len() - 2);
-            merges.push(Merge { a: tip, b: nearest, height: d[tip * n + nearest] });
+            merges.push(Merge {
+                a: tip,
+                b: nearest,
+                height: d[tip * n + nearest],
+            });
             join(n, &mut d, &mut size, tip, nearest);
         }
         merges.sort_by(|a, b| a.height.total_cmp(&b.height));
@@ -65,7 +69,11 @@ impl Hierarchy {
 
     /// So many groups, or as many as there are items.
     pub fn into_clusters(&self, count: usize) -> Clusters {
-        self.after(self.items.saturating_sub(count.max(1)).min(self.merges.len()))
+        self.after(
+            self.items
+                .saturating_sub(count.max(1))
+                .min(self.merges.len()),
+        )
     }
 
     fn after(&self, merges: usize) -> Clusters {
@@ -107,7 +115,10 @@ mod tests {
     fn plain(points: &[f64], count: usize) -> Vec<Vec<usize>> {
         let mut groups: Vec<Vec<usize>> = (0..points.len()).map(|i| vec![i]).collect();
         let mean = |a: &[usize], b: &[usize]| {
-            let sum: f64 = a.iter().flat_map(|i| b.iter().map(|j| (points[*i] - points[*j]).abs())).sum();
+            let sum: f64 = a
+                .iter()
+                .flat_map(|i| b.iter().map(|j| (points[*i] - points[*j]).abs()))
+                .sum();
             sum / (a.len() * b.len()) as f64
         };
         while groups.len() > count {

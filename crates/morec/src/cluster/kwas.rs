@@ -30,7 +30,11 @@ pub struct KwasParams {
 impl Default for KwasParams {
     /// As printed: `k = 12`, `τ = 0.95` (thesis §4.4).
     fn default() -> Self {
-        Self { k: 12, tau: 0.95, form: KwasForm::Printed }
+        Self {
+            k: 12,
+            tau: 0.95,
+            form: KwasForm::Printed,
+        }
     }
 }
 
@@ -59,7 +63,10 @@ impl Spectrum {
         let eigen = Eigen::of(m);
         let sum: f64 = eigen.values.iter().sum();
         let share = |value: &f64| if sum > 0.0 { value / sum } else { 0.0 };
-        Self { shares: eigen.values.iter().map(share).collect(), vectors: eigen.vectors }
+        Self {
+            shares: eigen.values.iter().map(share).collect(),
+            vectors: eigen.vectors,
+        }
     }
 
     /// Share of the first `k` eigenvalues in all.
@@ -71,7 +78,9 @@ impl Spectrum {
 /// `½ Σᵢ≤ₖ (σᵢ/Σσ + λᵢ/Σλ) |uᵢ · vᵢ|`, Eq. 3.17: 0 to 1. Spectra must be of the same number of dimensions. O(k n).
 pub fn kwas(a: &Spectrum, b: &Spectrum, k: usize, form: KwasForm) -> f64 {
     let k = k.min(a.shares.len()).min(b.shares.len());
-    let pair = |i: usize| (a.shares[i] + b.shares[i]) * a.vectors.column(i).dot(&b.vectors.column(i)).abs();
+    let pair = |i: usize| {
+        (a.shares[i] + b.shares[i]) * a.vectors.column(i).dot(&b.vectors.column(i)).abs()
+    };
     let printed = (0..k).map(pair).sum::<f64>() / 2.0;
     let best = (a.held(k) + b.held(k)) / 2.0;
     match form {

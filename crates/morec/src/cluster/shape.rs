@@ -14,7 +14,12 @@ pub fn resampled(rows: &Rows, points: usize) -> Vec<f32> {
         let at = (rows.len() - 1) as f64 * point as f64 / points.saturating_sub(1).max(1) as f64;
         let (before, share) = (at as usize, at.fract() as f32);
         let after = (before + 1).min(rows.len() - 1);
-        out.extend(rows.row(before).iter().zip(rows.row(after)).map(|(a, b)| a + share * (b - a)));
+        out.extend(
+            rows.row(before)
+                .iter()
+                .zip(rows.row(after))
+                .map(|(a, b)| a + share * (b - a)),
+        );
     }
     out
 }

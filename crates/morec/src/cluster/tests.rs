@@ -9,7 +9,12 @@ fn sample(dim: usize) -> impl Strategy<Value = Rows> {
 }
 
 fn labels() -> impl Strategy<Value = (Vec<usize>, Vec<usize>)> {
-    (0usize..40).prop_flat_map(|n| (prop::collection::vec(0usize..5, n), prop::collection::vec(0usize..6, n)))
+    (0usize..40).prop_flat_map(|n| {
+        (
+            prop::collection::vec(0usize..5, n),
+            prop::collection::vec(0usize..6, n),
+        )
+    })
 }
 
 proptest! {
@@ -95,10 +100,18 @@ fn the_printed_rand_indices_follow_from_their_counts() {
         (588, 438, 120, 6235, 0.924, 0.92),
     ];
     for (true_positive, false_positive, false_negative, true_negative, index, printed) in tables {
-        let pairs = Pairs { true_positive, false_positive, false_negative, true_negative };
+        let pairs = Pairs {
+            true_positive,
+            false_positive,
+            false_negative,
+            true_negative,
+        };
         assert_eq!(pairs.total(), 122 * 121 / 2);
         assert!((pairs.rand_index() - index).abs() < 5e-4);
-        assert!((0.0..0.01).contains(&(pairs.rand_index() - printed)), "printed cut off, not rounded");
+        assert!(
+            (0.0..0.01).contains(&(pairs.rand_index() - printed)),
+            "printed cut off, not rounded"
+        );
     }
 }
 
@@ -111,10 +124,31 @@ fn samples_of_one_direction_are_grouped() {
         });
         Spectrum::of_rows(&Rows::from_values(3, rows.collect()))
     };
-    let samples = [along(1.0, 0.0), along(0.0, 1.0), along(2.0, 0.1), along(0.1, 1.0)];
+    let samples = [
+        along(1.0, 0.0),
+        along(0.0, 1.0),
+        along(2.0, 0.1),
+        along(0.1, 1.0),
+    ];
     let clusters = kwas_clusters(&samples, &KwasParams::default());
-    assert_eq!(clusters, Clusters { of: vec![0, 1, 0, 1], count: 2 });
-    assert_eq!(kwas_clusters(&samples, &KwasParams { tau: 1.0, ..KwasParams::default() }).count, 4);
+    assert_eq!(
+        clusters,
+        Clusters {
+            of: vec![0, 1, 0, 1],
+            count: 2
+        }
+    );
+    assert_eq!(
+        kwas_clusters(
+            &samples,
+            &KwasParams {
+                tau: 1.0,
+                ..KwasParams::default()
+            }
+        )
+        .count,
+        4
+    );
     let nothing = Spectrum::of_rows(&Rows::new(3));
     assert!(kwas(&nothing, &samples[0], 3, KwasForm::Normalised).is_finite());
 }

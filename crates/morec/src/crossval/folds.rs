@@ -39,9 +39,9 @@ pub fn folds(by: By, samples: &[Sample], people: &BTreeMap<String, String>) -> V
     match by {
         By::Half { seed } => vec![half(samples, seed)],
         By::Clip => leave_out(samples, people.keys(), |clip| clip.to_owned()),
-        By::Person => {
-            leave_out(samples, people.keys(), |clip| people.get(clip).map_or(clip, |p| p).to_owned())
-        }
+        By::Person => leave_out(samples, people.keys(), |clip| {
+            people.get(clip).map_or(clip, |p| p).to_owned()
+        }),
     }
 }
 
@@ -60,7 +60,13 @@ fn half(samples: &[Sample], seed: u64) -> Fold {
     taught.sort_unstable();
     held_back.sort_unstable();
     let tested = samples.iter().map(|s| s.clip.clone()).collect();
-    Fold { name: format!("half {seed}"), taught, held_back, left_out: BTreeSet::new(), tested }
+    Fold {
+        name: format!("half {seed}"),
+        taught,
+        held_back,
+        left_out: BTreeSet::new(),
+        tested,
+    }
 }
 
 fn leave_out<'p>(
@@ -69,15 +75,28 @@ fn leave_out<'p>(
     group_of: impl Fn(&str) -> String,
 ) -> Vec<Fold> {
     let groups: BTreeSet<String> = samples.iter().map(|s| group_of(&s.clip)).collect();
-    let clips: BTreeSet<&str> =
-        samples.iter().map(|s| s.clip.as_str()).chain(other_clips.map(String::as_str)).collect();
+    let clips: BTreeSet<&str> = samples
+        .iter()
+        .map(|s| s.clip.as_str())
+        .chain(other_clips.map(String::as_str))
+        .collect();
     let fold = |group: String| {
         let inside = |clip: &str| group_of(clip) == group;
         Fold {
-            taught: (0..samples.len()).filter(|&i| !inside(&samples[i].clip)).collect(),
+            taught: (0..samples.len())
+                .filter(|&i| !inside(&samples[i].clip))
+                .collect(),
             held_back: Vec::new(),
-            left_out: clips.iter().filter(|c| inside(c)).map(|c| (*c).to_owned()).collect(),
-            tested: samples.iter().filter(|s| inside(&s.clip)).map(|s| s.clip.clone()).collect(),
+            left_out: clips
+                .iter()
+                .filter(|c| inside(c))
+                .map(|c| (*c).to_owned())
+                .collect(),
+            tested: samples
+                .iter()
+                .filter(|s| inside(&s.clip))
+                .map(|s| s.clip.clone())
+                .collect(),
             name: group,
         }
     };
@@ -113,7 +132,9 @@ mod tests {
     }
 
     fn people() -> BTreeMap<String, String> {
-        [("1", "x"), ("2", "x"), ("3", "y"), ("4", "y")].map(|(c, p)| (c.to_owned(), p.to_owned())).into()
+        [("1", "x"), ("2", "x"), ("3", "y"), ("4", "y")]
+            .map(|(c, p)| (c.to_owned(), p.to_owned()))
+            .into()
     }
 
     #[test]
@@ -123,15 +144,30 @@ mod tests {
         assert!(fold.taught.contains(&1), "the only sample of b must teach");
         assert!(fold.taught.iter().all(|t| !fold.held_back.contains(t)));
         assert_eq!(fold.tested.len(), 3);
-        let taught = |seed| folds(By::Half { seed }, &samples(), &people())[0].taught.clone();
+        let taught = |seed| {
+            folds(By::Half { seed }, &samples(), &people())[0]
+                .taught
+                .clone()
+        };
         assert_eq!(taught(3), fold.taught);
-        assert!((0..20).any(|seed| taught(seed) != fold.taught), "the seed must matter");
+        assert!(
+            (0..20).any(|seed| taught(seed) != fold.taught),
+            "the seed must matter"
+        );
     }
     #[test]
     fn every_half_comes_up_with_some_seed() {
-        let taught = |seed| folds(By::Half { seed }, &samples(), &people()).remove(0).taught;
+        let taught = |seed| {
+            folds(By::Half { seed }, &samples(), &people())
+                .remove(0)
+                .taught
+        };
         let halves: BTreeSet<Vec<usize>> = (0..100).map(taught).collect();
-        assert_eq!(halves.len(), 10, "three of the five samples of a, in as many ways: {halves:?}");
+        assert_eq!(
+            halves.len(),
+            10,
+            "three of the five samples of a, in as many ways: {halves:?}"
+        );
     }
 
     #[test]
@@ -140,13 +176,19 @@ mod tests {
         assert_eq!(all.len(), 2);
         assert_eq!(all[1].name, "y");
         assert_eq!(all[1].taught, [0, 1, 2, 3]);
-        assert!(all[1].left_out.contains("4"), "their clip without samples must not train either");
+        assert!(
+            all[1].left_out.contains("4"),
+            "their clip without samples must not train either"
+        );
         assert_eq!(all[1].tested.iter().collect::<Vec<_>>(), ["3"]);
     }
 
     #[test]
     fn every_clip_with_samples_is_left_out_once() {
-        let names: Vec<String> = folds(By::Clip, &samples(), &people()).into_iter().map(|f| f.name).collect();
+        let names: Vec<String> = folds(By::Clip, &samples(), &people())
+            .into_iter()
+            .map(|f| f.name)
+            .collect();
         assert_eq!(names, ["1", "2", "3"]);
     }
 }

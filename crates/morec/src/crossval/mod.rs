@@ -95,7 +95,10 @@ pub fn crossval(
         progress.report("folds", done, folds.len());
         if progress.cancelled() {
             let source = TrainError::Cancelled;
-            return Err(CrossvalError::Train { fold: fold.name.clone(), source });
+            return Err(CrossvalError::Train {
+                fold: fold.name.clone(),
+                source,
+            });
         }
         run_fold(material, fold, folds.len() > 1, recipe, &mut outcome)?;
     }
@@ -105,7 +108,12 @@ pub fn crossval(
 
 fn people(material: &Material<'_>) -> BTreeMap<String, String> {
     let clips = material.clips.iter().chain(material.unknown);
-    let named = clips.map(|c| (c.name.clone(), c.person.clone().unwrap_or_else(|| c.name.clone())));
+    let named = clips.map(|c| {
+        (
+            c.name.clone(),
+            c.person.clone().unwrap_or_else(|| c.name.clone()),
+        )
+    });
     named.collect()
 }
 
@@ -116,8 +124,12 @@ fn run_fold(
     recipe: &Recipe,
     outcome: &mut Outcome,
 ) -> Result<(), CrossvalError> {
-    let pick =
-        |places: &[usize]| -> Vec<Sample> { places.iter().map(|&i| material.samples[i].clone()).collect() };
+    let pick = |places: &[usize]| -> Vec<Sample> {
+        places
+            .iter()
+            .map(|&i| material.samples[i].clone())
+            .collect()
+    };
     let (taught, held_back) = (pick(&fold.taught), pick(&fold.held_back));
     let teachers: BTreeSet<&str> = taught.iter().map(|s| s.clip.as_str()).collect();
     let trains = |c: &&TrainClip| {
@@ -132,24 +144,43 @@ fn run_fold(
         unlabelled_is_background: recipe.unlabelled_is_background(),
     };
     let trained = train_model(&training, &labelling, recipe, &());
-    let (model, report) =
-        trained.map_err(|source| CrossvalError::Train { fold: fold.name.clone(), source })?;
+    let (model, report) = trained.map_err(|source| CrossvalError::Train {
+        fold: fold.name.clone(),
+        source,
+    })?;
 
     let trained_on: BTreeSet<&str> = training.iter().map(|c| c.name.as_str()).collect();
-    let known = material.clips.iter().filter(|c| fold.tested.contains(&c.name)).map(|c| (c, false));
+    let known = material
+        .clips
+        .iter()
+        .filter(|c| fold.tested.contains(&c.name))
+        .map(|c| (c, false));
     // An unknown clip of a person is a test of that person's fold; of nobody known, of every fold.
     let of_fold = |c: &TrainClip| !several || c.person.is_none() || fold.left_out.contains(&c.name);
-    let unknown = material.unknown.iter().filter(|c| !trained_on.contains(c.name.as_str()) && of_fold(c));
+    let unknown = material
+        .unknown
+        .iter()
+        .filter(|c| !trained_on.contains(c.name.as_str()) && of_fold(c));
     let tested: Vec<_> = known.chain(unknown.map(|c| (c, true))).collect();
-    let tests: Result<Vec<_>, _> =
-        tested.par_iter().map(|(c, u)| test(&model, c, *u, fold, several)).collect();
+    let tests: Result<Vec<_>, _> = tested
+        .par_iter()
+        .map(|(c, u)| test(&model, c, *u, fold, several))
+        .collect();
     for (stream, founds) in tests? {
         outcome.founds.extend(founds);
         outcome.streams.push(stream);
     }
-    let truths = material.samples.iter().filter(|s| fold.tested.contains(&s.clip));
-    outcome.truths.extend(truths.map(|s| Truth::from(s.clone())));
-    outcome.folds.push(FoldReport { name: fold.name.clone(), training: report });
+    let truths = material
+        .samples
+        .iter()
+        .filter(|s| fold.tested.contains(&s.clip));
+    outcome
+        .truths
+        .extend(truths.map(|s| Truth::from(s.clone())));
+    outcome.folds.push(FoldReport {
+        name: fold.name.clone(),
+        training: report,
+    });
     outcome.models.push(model);
     Ok(())
 }
@@ -161,11 +192,18 @@ fn test(
     fold: &Fold,
     several: bool,
 ) -> Result<(StreamInfo, Vec<Found>), CrossvalError> {
-    let failed =
-        |source| CrossvalError::Recognize { fold: fold.name.clone(), clip: clip.name.clone(), source };
+    let failed = |source| CrossvalError::Recognize {
+        fold: fold.name.clone(),
+        clip: clip.name.clone(),
+        source,
+    };
     let found = recognize_clip(model, &clip.clip, &clip.roles, &clip.rest).map_err(failed)?;
     let again = unknown && several && clip.person.is_none();
-    let name = if again { format!("{} (without {})", clip.name, fold.name) } else { clip.name.clone() };
+    let name = if again {
+        format!("{} (without {})", clip.name, fold.name)
+    } else {
+        clip.name.clone()
+    };
     let founds = found.iter().map(|d| Found {
         clip: name.clone(),
         class: model.class_name(d.class).to_owned(),
@@ -175,5 +213,12 @@ fn test(
         reported_secs: Some(d.reported_secs),
     });
     let founds = founds.collect();
-    Ok((StreamInfo { clip: name, duration_secs: clip.clip.duration_secs(), unknown }, founds))
+    Ok((
+        StreamInfo {
+            clip: name,
+            duration_secs: clip.clip.duration_secs(),
+            unknown,
+        },
+        founds,
+    ))
 }

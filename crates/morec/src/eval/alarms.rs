@@ -40,7 +40,11 @@ pub struct UnknownFigures {
 /// Which detections of a stream are false alarms. O(samples × detections).
 pub(super) fn are_false_alarms(stream: &Stream<'_>) -> Vec<bool> {
     let labelled = union(stream.truths.iter().map(|t| t.interval()));
-    stream.founds.iter().map(|f| mostly_outside(f.interval(), &labelled)).collect()
+    stream
+        .founds
+        .iter()
+        .map(|f| mostly_outside(f.interval(), &labelled))
+        .collect()
 }
 
 fn per_minute(count: usize, minutes: f64) -> Option<f64> {
@@ -56,11 +60,17 @@ impl FalseAlarms {
     pub(super) fn count(known: &[Stream<'_>], class: Option<&str>) -> Self {
         let of_stream = |stream: &Stream<'_>| {
             let founds = stream.founds.iter().zip(are_false_alarms(stream));
-            founds.filter(|(found, alarm)| *alarm && class.is_none_or(|c| c == found.class)).count()
+            founds
+                .filter(|(found, alarm)| *alarm && class.is_none_or(|c| c == found.class))
+                .count()
         };
         let count = known.iter().map(of_stream).sum();
         let minutes = minutes(known);
-        Self { count, minutes, per_minute: per_minute(count, minutes) }
+        Self {
+            count,
+            minutes,
+            per_minute: per_minute(count, minutes),
+        }
     }
 }
 

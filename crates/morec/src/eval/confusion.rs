@@ -34,7 +34,11 @@ impl Confusion {
     pub(super) fn new(decisions: &[Decision<'_>], classes: &BTreeSet<&str>) -> Self {
         let labelled: BTreeSet<&str> = decisions.iter().filter_map(|d| d.truth).collect();
         let index = |names: &BTreeSet<&str>| -> BTreeMap<String, usize> {
-            names.iter().enumerate().map(|(i, name)| ((*name).to_owned(), i)).collect()
+            names
+                .iter()
+                .enumerate()
+                .map(|(i, name)| ((*name).to_owned(), i))
+                .collect()
         };
         let (rows, columns) = (index(&labelled), index(classes));
         let mut counts = vec![vec![0; columns.len() + 1]; rows.len() + 1];
@@ -43,15 +47,24 @@ impl Confusion {
             let column = decision.found.map_or(columns.len(), |class| columns[class]);
             counts[row][column] += 1;
         }
-        Self { rows: rows.into_keys().collect(), columns: columns.into_keys().collect(), counts }
+        Self {
+            rows: rows.into_keys().collect(),
+            columns: columns.into_keys().collect(),
+            counts,
+        }
     }
 
     /// What samples of `class` were taken for, most frequent first.
     pub fn mistakes(&self, class: &str) -> Vec<Mistake> {
-        let Some(row) = self.rows.iter().position(|c| c == class) else { return Vec::new() };
+        let Some(row) = self.rows.iter().position(|c| c == class) else {
+            return Vec::new();
+        };
         let mut mistakes: Vec<Mistake> = (self.columns.iter().zip(&self.counts[row]))
             .filter(|(name, count)| *name != class && **count > 0)
-            .map(|(name, count)| Mistake { class: name.clone(), count: *count })
+            .map(|(name, count)| Mistake {
+                class: name.clone(),
+                count: *count,
+            })
             .collect();
         mistakes.sort_by(|a, b| b.count.cmp(&a.count).then_with(|| a.class.cmp(&b.class)));
         mistakes
@@ -60,6 +73,8 @@ impl Confusion {
     /// How many samples of `class` no detection matched.
     pub fn missed(&self, class: &str) -> usize {
         let row = self.rows.iter().position(|c| c == class);
-        row.and_then(|row| self.counts[row].last()).copied().unwrap_or(0)
+        row.and_then(|row| self.counts[row].last())
+            .copied()
+            .unwrap_or(0)
     }
 }

@@ -63,20 +63,32 @@ pub(super) struct Decision<'a> {
 pub(super) fn decisions<'a>(stream: &Stream<'a>) -> Vec<Decision<'a>> {
     let labelled = union(stream.truths.iter().map(|t| t.interval()));
     let unlabelled = gaps(&labelled, stream.info.duration_secs, UNLABELLED_MIN_SECS);
-    let samples = stream.truths.iter().map(|t| (Some(t.class.as_str()), t.interval()));
+    let samples = stream
+        .truths
+        .iter()
+        .map(|t| (Some(t.class.as_str()), t.interval()));
     let rest = unlabelled.into_iter().map(|gap| (None, gap));
     samples
         .chain(rest)
-        .map(|(truth, at)| Decision { truth, found: best_match(at, stream).map(|f| f.class.as_str()) })
+        .map(|(truth, at)| Decision {
+            truth,
+            found: best_match(at, stream).map(|f| f.class.as_str()),
+        })
         .collect()
 }
 
 fn best_match<'a>(at: Interval, stream: &Stream<'a>) -> Option<&'a Found> {
-    best_by(at, stream, |found| (at.overlap(found.interval()), at.iou(found.interval())))
+    best_by(at, stream, |found| {
+        (at.overlap(found.interval()), at.iou(found.interval()))
+    })
 }
 
 /// The matching detection of the highest key; the earliest of equals.
-fn best_by<'a>(at: Interval, stream: &Stream<'a>, key: impl Fn(&Found) -> (f64, f64)) -> Option<&'a Found> {
+fn best_by<'a>(
+    at: Interval,
+    stream: &Stream<'a>,
+    key: impl Fn(&Found) -> (f64, f64),
+) -> Option<&'a Found> {
     let mut best: Option<(&Found, (f64, f64))> = None;
     for found in stream.founds.iter().filter(|f| at.matches(f.interval())) {
         let key = key(found);
@@ -92,15 +104,20 @@ impl ThesisAccuracy {
         let mut counts = Self::default();
         for decision in decisions {
             *match decision {
-                Decision { truth: None, found: None } => &mut counts.true_negatives,
+                Decision {
+                    truth: None,
+                    found: None,
+                } => &mut counts.true_negatives,
                 Decision { found: None, .. } => &mut counts.false_negatives,
                 Decision { truth, found } if truth == found => &mut counts.true_positives,
                 _ => &mut counts.false_positives,
             } += 1;
         }
         let right = counts.true_positives + counts.true_negatives;
-        counts.accuracy =
-            super::figures::share(right, right + counts.false_positives + counts.false_negatives);
+        counts.accuracy = super::figures::share(
+            right,
+            right + counts.false_positives + counts.false_negatives,
+        );
         counts
     }
 }
@@ -110,10 +127,16 @@ impl Classification {
     pub(super) fn count(streams: &[Stream<'_>], class: Option<&str>) -> Self {
         let mut counts = Self::default();
         for stream in streams {
-            for truth in stream.truths.iter().filter(|t| class.is_none_or(|c| c == t.class)) {
+            for truth in stream
+                .truths
+                .iter()
+                .filter(|t| class.is_none_or(|c| c == t.class))
+            {
                 let at = truth.interval();
                 let score = |found: &Found| found.score.unwrap_or(f64::NEG_INFINITY);
-                let best = best_by(at, stream, |found| (score(found), at.overlap(found.interval())));
+                let best = best_by(at, stream, |found| {
+                    (score(found), at.overlap(found.interval()))
+                });
                 *match best {
                     Some(found) if found.class == truth.class => &mut counts.right,
                     Some(_) => &mut counts.wrong,
@@ -121,9 +144,13 @@ impl Classification {
                 } += 1;
             }
         }
-        let share = |count| super::figures::share(count, counts.right + counts.wrong + counts.rejected);
-        (counts.p_c, counts.p_e, counts.p_r) =
-            (share(counts.right), share(counts.wrong), share(counts.rejected));
+        let share =
+            |count| super::figures::share(count, counts.right + counts.wrong + counts.rejected);
+        (counts.p_c, counts.p_e, counts.p_r) = (
+            share(counts.right),
+            share(counts.wrong),
+            share(counts.rejected),
+        );
         counts
     }
 }

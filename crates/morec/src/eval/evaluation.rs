@@ -87,7 +87,11 @@ impl Evaluation {
         let pairs = measured_pairs(&known);
         let paired = PairedClasses::new(&known);
         let per_class = |class: &&str| {
-            let pairs: Vec<_> = pairs.iter().copied().filter(|(t, _)| t.class == **class).collect();
+            let pairs: Vec<_> = pairs
+                .iter()
+                .copied()
+                .filter(|(t, _)| t.class == **class)
+                .collect();
             ClassFigures {
                 class: (*class).to_owned(),
                 samples: count_truths(&known, Some(class)),
@@ -118,7 +122,10 @@ impl Evaluation {
 
     /// F1 at one of [`OVERLAPS`].
     pub fn f1_at(&self, min_iou: f64) -> Option<f64> {
-        self.overlap.iter().find(|score| score.min_iou == min_iou)?.f1
+        self.overlap
+            .iter()
+            .find(|score| score.min_iou == min_iou)?
+            .f1
     }
 }
 
@@ -144,13 +151,21 @@ impl<'a> PairedClasses<'a> {
                 .map(|(t, _)| stream.truths[t].class.as_str())
                 .collect::<Vec<_>>()
         };
-        Self(OVERLAPS.map(|min| (min, known.iter().flat_map(|s| classes_of(s, min)).collect())).to_vec())
+        Self(
+            OVERLAPS
+                .map(|min| (min, known.iter().flat_map(|s| classes_of(s, min)).collect()))
+                .to_vec(),
+        )
     }
 
     fn scores(&self, known: &[Stream<'_>], class: Option<&str>) -> Vec<OverlapScore> {
         let (samples, detections) = (count_truths(known, class), count_founds(known, class));
-        let matched =
-            |classes: &[&str]| classes.iter().filter(|c| class.is_none_or(|class| class == **c)).count();
+        let matched = |classes: &[&str]| {
+            classes
+                .iter()
+                .filter(|c| class.is_none_or(|class| class == **c))
+                .count()
+        };
         self.0
             .iter()
             .map(|(min, classes)| OverlapScore::new(*min, matched(classes), samples, detections))
@@ -159,9 +174,17 @@ impl<'a> PairedClasses<'a> {
 }
 
 fn count_truths(streams: &[Stream<'_>], class: Option<&str>) -> usize {
-    streams.iter().flat_map(|s| &s.truths).filter(|t| class.is_none_or(|c| c == t.class)).count()
+    streams
+        .iter()
+        .flat_map(|s| &s.truths)
+        .filter(|t| class.is_none_or(|c| c == t.class))
+        .count()
 }
 
 fn count_founds(streams: &[Stream<'_>], class: Option<&str>) -> usize {
-    streams.iter().flat_map(|s| &s.founds).filter(|f| class.is_none_or(|c| c == f.class)).count()
+    streams
+        .iter()
+        .flat_map(|s| &s.founds)
+        .filter(|f| class.is_none_or(|c| c == f.class))
+        .count()
 }

@@ -24,7 +24,9 @@ impl Interval {
 
     /// By start, then by stop.
     pub fn order(self, other: Interval) -> Ordering {
-        self.start.total_cmp(&other.start).then(self.stop.total_cmp(&other.stop))
+        self.start
+            .total_cmp(&other.start)
+            .then(self.stop.total_cmp(&other.stop))
     }
 
     /// Length of what both share; 0 if nothing.
@@ -73,9 +75,15 @@ pub(super) fn gaps(disjoint: &[Interval], duration: f64, least: f64) -> Vec<Inte
     const ROUNDED_RATE_SECS: f64 = 1e-3;
     let mut gaps = Vec::new();
     let mut from = 0.0;
-    let end = Interval { start: duration, stop: duration };
+    let end = Interval {
+        start: duration,
+        stop: duration,
+    };
     for next in disjoint.iter().chain([&end]) {
-        let gap = Interval { start: from, stop: next.start.min(duration) };
+        let gap = Interval {
+            start: from,
+            stop: next.start.min(duration),
+        };
         if gap.secs() >= least - ROUNDED_RATE_SECS {
             gaps.push(gap);
         }

@@ -142,13 +142,19 @@ pub enum EvalError {
 
 impl Truth {
     fn interval(&self) -> Interval {
-        Interval { start: self.start_secs, stop: self.stop_secs }
+        Interval {
+            start: self.start_secs,
+            stop: self.stop_secs,
+        }
     }
 }
 
 impl Found {
     fn interval(&self) -> Interval {
-        Interval { start: self.start_secs, stop: self.stop_secs }
+        Interval {
+            start: self.start_secs,
+            stop: self.stop_secs,
+        }
     }
 }
 
@@ -170,33 +176,67 @@ fn streams<'a>(
     for info in infos {
         let (clip, duration_secs) = (info.clip.clone(), info.duration_secs);
         if !(duration_secs > 0.0 && duration_secs.is_finite()) {
-            return Err(EvalError::NoLength { clip, duration_secs });
+            return Err(EvalError::NoLength {
+                clip,
+                duration_secs,
+            });
         }
-        if by_clip.insert(&info.clip, Stream { info, truths: Vec::new(), founds: Vec::new() }).is_some() {
+        if by_clip
+            .insert(
+                &info.clip,
+                Stream {
+                    info,
+                    truths: Vec::new(),
+                    founds: Vec::new(),
+                },
+            )
+            .is_some()
+        {
             return Err(EvalError::TwoStreams { clip });
         }
     }
     for truth in truths {
-        let stream = stream_of(&mut by_clip, "a sample", &truth.clip, &truth.class, truth.interval())?;
+        let stream = stream_of(
+            &mut by_clip,
+            "a sample",
+            &truth.clip,
+            &truth.class,
+            truth.interval(),
+        )?;
         if stream.info.unknown {
-            return Err(EvalError::SampleInUnknown { clip: truth.clip.clone(), class: truth.class.clone() });
+            return Err(EvalError::SampleInUnknown {
+                clip: truth.clip.clone(),
+                class: truth.class.clone(),
+            });
         }
         stream.truths.push(truth);
     }
     for found in founds {
-        stream_of(&mut by_clip, "a detection", &found.clip, &found.class, found.interval())?
-            .founds
-            .push(found);
+        stream_of(
+            &mut by_clip,
+            "a detection",
+            &found.clip,
+            &found.class,
+            found.interval(),
+        )?
+        .founds
+        .push(found);
     }
     let mut streams: Vec<Stream<'a>> = by_clip.into_values().collect();
     for stream in &mut streams {
-        stream.truths.sort_by(|a, b| a.interval().order(b.interval()).then_with(|| a.class.cmp(&b.class)));
+        stream.truths.sort_by(|a, b| {
+            a.interval()
+                .order(b.interval())
+                .then_with(|| a.class.cmp(&b.class))
+        });
         stream.founds.sort_by(|a, b| {
             let score = |f: &Found| f.score.unwrap_or(f64::NEG_INFINITY);
             let reported = |f: &Found| f.reported_secs.unwrap_or(f64::NEG_INFINITY);
-            (a.interval().order(b.interval()).then_with(|| a.class.cmp(&b.class)))
-                .then_with(|| score(b).total_cmp(&score(a)))
-                .then_with(|| reported(a).total_cmp(&reported(b)))
+            (a.interval()
+                .order(b.interval())
+                .then_with(|| a.class.cmp(&b.class)))
+            .then_with(|| score(b).total_cmp(&score(a)))
+            .then_with(|| reported(a).total_cmp(&reported(b)))
         });
     }
     Ok(streams)
@@ -219,12 +259,20 @@ fn stream_of<'s, 'a>(
             stop_secs: at.stop,
         });
     }
-    by_clip.get_mut(clip).ok_or(EvalError::NoStream { what, class, clip: name })
+    by_clip.get_mut(clip).ok_or(EvalError::NoStream {
+        what,
+        class,
+        clip: name,
+    })
 }
 
 /// Every class that is labelled or found in any stream.
 fn all_classes<'a>(streams: &[Stream<'a>]) -> BTreeSet<&'a str> {
-    let truths = streams.iter().flat_map(|s| s.truths.iter().map(|t| t.class.as_str()));
-    let founds = streams.iter().flat_map(|s| s.founds.iter().map(|f| f.class.as_str()));
+    let truths = streams
+        .iter()
+        .flat_map(|s| s.truths.iter().map(|t| t.class.as_str()));
+    let founds = streams
+        .iter()
+        .flat_map(|s| s.founds.iter().map(|f| f.class.as_str()));
     truths.chain(founds).collect()
 }

@@ -68,7 +68,12 @@ pub(super) fn pair(stream: &Stream<'_>, min_iou: f64) -> Vec<(usize, usize)> {
     for t in 0..stream.truths.len() {
         pairing.augment_from(t);
     }
-    pairing.of_truth.iter().enumerate().filter_map(|(t, f)| Some((t, (*f)?))).collect()
+    pairing
+        .of_truth
+        .iter()
+        .enumerate()
+        .filter_map(|(t, f)| Some((t, (*f)?)))
+        .collect()
 }
 
 struct Pairing {

@@ -50,27 +50,42 @@ pub fn timelines(
     truths: &[Truth],
     founds: &[Found],
 ) -> Result<Vec<Timeline>, EvalError> {
-    Ok(streams(infos, truths, founds)?.iter().map(timeline).collect())
+    Ok(streams(infos, truths, founds)?
+        .iter()
+        .map(timeline)
+        .collect())
 }
 
 fn timeline(stream: &Stream<'_>) -> Timeline {
     // Decisions come in the order of the samples; those of unlabelled stretches follow and are cut off here.
-    let truths = stream.truths.iter().zip(decisions(stream)).map(|(truth, decision)| {
-        let verdict = match decision.found {
-            Some(class) if class == truth.class => TruthVerdict::Right,
-            Some(class) => TruthVerdict::Mistaken(class.to_owned()),
-            None => TruthVerdict::Missed,
-        };
-        ((*truth).clone(), verdict)
-    });
+    let truths = stream
+        .truths
+        .iter()
+        .zip(decisions(stream))
+        .map(|(truth, decision)| {
+            let verdict = match decision.found {
+                Some(class) if class == truth.class => TruthVerdict::Right,
+                Some(class) => TruthVerdict::Mistaken(class.to_owned()),
+                None => TruthVerdict::Missed,
+            };
+            ((*truth).clone(), verdict)
+        });
     let mut right = vec![false; stream.founds.len()];
-    pair(stream, MEASURED_OVERLAP).into_iter().for_each(|(_, f)| right[f] = true);
-    let founds =
-        stream.founds.iter().zip(right).zip(are_false_alarms(stream)).map(|((found, right), alarm)| {
+    pair(stream, MEASURED_OVERLAP)
+        .into_iter()
+        .for_each(|(_, f)| right[f] = true);
+    let founds = stream
+        .founds
+        .iter()
+        .zip(right)
+        .zip(are_false_alarms(stream))
+        .map(|((found, right), alarm)| {
             let mut samples = stream.truths.iter();
             let verdict = if right {
                 FoundVerdict::Right
-            } else if samples.any(|t| t.class == found.class && t.interval().matches(found.interval())) {
+            } else if samples
+                .any(|t| t.class == found.class && t.interval().matches(found.interval()))
+            {
                 FoundVerdict::Loose
             } else if alarm {
                 FoundVerdict::FalseAlarm
@@ -79,5 +94,9 @@ fn timeline(stream: &Stream<'_>) -> Timeline {
             };
             ((*found).clone(), verdict)
         });
-    Timeline { stream: stream.info.clone(), truths: truths.collect(), founds: founds.collect() }
+    Timeline {
+        stream: stream.info.clone(),
+        truths: truths.collect(),
+        founds: founds.collect(),
+    }
 }

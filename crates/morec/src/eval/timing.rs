@@ -39,15 +39,20 @@ pub struct Boundaries {
 pub(super) fn measured_pairs<'a>(streams: &[Stream<'a>]) -> Vec<(&'a Truth, &'a Found)> {
     let pairs_of = |stream: &Stream<'a>| {
         let pairs = pair(stream, MEASURED_OVERLAP);
-        pairs.into_iter().map(|(t, f)| (stream.truths[t], stream.founds[f])).collect::<Vec<_>>()
+        pairs
+            .into_iter()
+            .map(|(t, f)| (stream.truths[t], stream.founds[f]))
+            .collect::<Vec<_>>()
     };
     streams.iter().flat_map(pairs_of).collect()
 }
 
 impl Delay {
     pub(super) fn of(pairs: &[(&Truth, &Found)]) -> Self {
-        let mut delays: Vec<f64> =
-            pairs.iter().filter_map(|(truth, found)| Some(found.reported_secs? - truth.stop_secs)).collect();
+        let mut delays: Vec<f64> = pairs
+            .iter()
+            .filter_map(|(truth, found)| Some(found.reported_secs? - truth.stop_secs))
+            .collect();
         Self {
             count: delays.len(),
             median_secs: quantile(&mut delays, 0.5),
@@ -58,8 +63,14 @@ impl Delay {
 
 impl Boundaries {
     pub(super) fn of(pairs: &[(&Truth, &Found)]) -> Self {
-        let starts: Vec<f64> = pairs.iter().map(|(t, f)| f.start_secs - t.start_secs).collect();
-        let stops: Vec<f64> = pairs.iter().map(|(t, f)| f.stop_secs - t.stop_secs).collect();
+        let starts: Vec<f64> = pairs
+            .iter()
+            .map(|(t, f)| f.start_secs - t.start_secs)
+            .collect();
+        let stops: Vec<f64> = pairs
+            .iter()
+            .map(|(t, f)| f.stop_secs - t.stop_secs)
+            .collect();
         let median = |values: &[f64]| quantile(&mut values.to_vec(), 0.5);
         let median_abs =
             |values: &[f64]| quantile(&mut values.iter().map(|v| v.abs()).collect::<Vec<_>>(), 0.5);

@@ -22,7 +22,12 @@ pub struct Bone {
 pub const BONES: usize = 11;
 
 const fn bone(name: &'static str, from: Role, to: Role, weight: f64) -> Bone {
-    Bone { name, from, to, weight }
+    Bone {
+        name,
+        from,
+        to,
+        weight,
+    }
 }
 
 /// Every bone, in the order of feature columns. The weights were chosen on referee signals: arms tell gestures
@@ -42,7 +47,9 @@ pub const ALL_BONES: [Bone; BONES] = [
 ];
 
 /// A set of bones of [`ALL_BONES`]: what a skeleton offers, or what an index uses.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
+)]
 #[serde(try_from = "Vec<String>", into = "Vec<String>")]
 pub struct BoneSet(u16);
 
@@ -99,7 +106,9 @@ impl BoneSet {
     }
 
     fn where_(holds: impl Fn(&Bone) -> bool) -> Self {
-        (0..BONES).filter(|&b| holds(&ALL_BONES[b])).fold(Self::NONE, BoneSet::with)
+        (0..BONES)
+            .filter(|&b| holds(&ALL_BONES[b]))
+            .fold(Self::NONE, BoneSet::with)
     }
 }
 
@@ -109,7 +118,9 @@ fn has_length(bone: &Vec3) -> bool {
 
 impl From<BoneSet> for Vec<String> {
     fn from(set: BoneSet) -> Self {
-        set.indices().map(|b| ALL_BONES[b].name.to_owned()).collect()
+        set.indices()
+            .map(|b| ALL_BONES[b].name.to_owned())
+            .collect()
     }
 }
 
@@ -119,7 +130,9 @@ impl TryFrom<Vec<String>> for BoneSet {
     fn try_from(names: Vec<String>) -> Result<Self, String> {
         names.iter().try_fold(Self::NONE, |set, name| {
             let index = ALL_BONES.iter().position(|b| b.name == name);
-            index.map(|i| set.with(i)).ok_or_else(|| format!("no bone is called {name:?}"))
+            index
+                .map(|i| set.with(i))
+                .ok_or_else(|| format!("no bone is called {name:?}"))
         })
     }
 }

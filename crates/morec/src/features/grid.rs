@@ -17,7 +17,12 @@ pub(crate) struct Grid<S> {
 
 impl<S> Grid<S> {
     pub fn new(rate_hz: f64) -> Self {
-        Self { rate_hz, origin_secs: 0.0, frames: 0, last: None }
+        Self {
+            rate_hz,
+            origin_secs: 0.0,
+            frames: 0,
+            last: None,
+        }
     }
 
     /// Time of the first frame of the present stretch.
@@ -38,7 +43,11 @@ impl<S> Grid<S> {
 
     /// Whether a pose at `time_secs` comes too late to count, or at no time at all.
     pub fn ignores(&self, time_secs: f64) -> bool {
-        !time_secs.is_finite() || self.last.as_ref().is_some_and(|(last, _)| time_secs <= *last)
+        !time_secs.is_finite()
+            || self
+                .last
+                .as_ref()
+                .is_some_and(|(last, _)| time_secs <= *last)
     }
 
     /// Takes a pose that is not [ignored](Self::ignores) and calls `frame` for every grid frame in
@@ -60,7 +69,11 @@ impl<S> Grid<S> {
                         break;
                     }
                     let t = (grid_secs - last_secs) / (time_secs - last_secs);
-                    let t = if time_secs - grid_secs < tolerance_secs { 1.0 } else { t };
+                    let t = if time_secs - grid_secs < tolerance_secs {
+                        1.0
+                    } else {
+                        t
+                    };
                     frame(Some((last, t)), &now);
                     self.frames += 1;
                 }

@@ -15,7 +15,10 @@ pub struct KeyPose {
 
 impl Default for KeyPose {
     fn default() -> Self {
-        Self { positions: [Vec3::zeros(); Role::COUNT], present: 0 }
+        Self {
+            positions: [Vec3::zeros(); Role::COUNT],
+            present: 0,
+        }
     }
 }
 

@@ -56,7 +56,12 @@ pub struct Observer {
 impl Observer {
     /// For the bones an index uses.
     pub fn new(bones: BoneSet) -> Self {
-        Self { bones, last: None, leg_sum: 0.0, leg_count: 0.0 }
+        Self {
+            bones,
+            last: None,
+            leg_sum: 0.0,
+            leg_count: 0.0,
+        }
     }
 
     /// Forgets the stream so far.
@@ -69,7 +74,9 @@ impl Observer {
     pub fn observe(&mut self, pose: &KeyPose) -> Option<Observation> {
         let yaw_rad = self.yaw(pose)?;
         let (sin, cos) = yaw_rad.sin_cos();
-        let mut directions = self.last.map_or([Vec3::zeros(); BONES], |last| last.directions);
+        let mut directions = self
+            .last
+            .map_or([Vec3::zeros(); BONES], |last| last.directions);
         for index in self.bones.indices() {
             let bone = &ALL_BONES[index];
             if let (Some(from), Some(to)) = (pose.get(bone.from), pose.get(bone.to)) {
@@ -82,8 +89,17 @@ impl Observer {
         }
         let root = self.root(pose)?;
         self.measure_leg(pose);
-        let leg_length = if self.leg_count > 0.0 { self.leg_sum / self.leg_count } else { 1.0 };
-        let observation = Observation { directions, root, yaw_rad, leg_length };
+        let leg_length = if self.leg_count > 0.0 {
+            self.leg_sum / self.leg_count
+        } else {
+            1.0
+        };
+        let observation = Observation {
+            directions,
+            root,
+            yaw_rad,
+            leg_length,
+        };
         self.last = Some(observation);
         Some(observation)
     }
@@ -115,10 +131,14 @@ impl Observer {
     }
 
     fn measure_leg(&mut self, pose: &KeyPose) {
-        let (Some(hip), Some(knee)) = (pose.get(Role::LeftThigh), pose.get(Role::LeftShin)) else { return };
+        let (Some(hip), Some(knee)) = (pose.get(Role::LeftThigh), pose.get(Role::LeftShin)) else {
+            return;
+        };
         let thigh = (knee - hip).norm();
         // Without a foot the shin counts as long as the thigh: within 5 % in grown people.
-        let shin = pose.get(Role::LeftFoot).map_or(thigh, |ankle| (ankle - knee).norm());
+        let shin = pose
+            .get(Role::LeftFoot)
+            .map_or(thigh, |ankle| (ankle - knee).norm());
         if thigh + shin > 1e-9 {
             self.leg_sum += thigh + shin;
             self.leg_count += 1.0;
@@ -138,7 +158,8 @@ mod tests {
     fn standing(turned_rad: f64, scale: f64) -> KeyPose {
         let mut pose = KeyPose::default();
         let turn = crate::math::Axis::Y.rotation(turned_rad);
-        let mut put = |role, x: f64, y: f64, z: f64| pose.set(role, turn * Vec3::new(x, y, z) * scale);
+        let mut put =
+            |role, x: f64, y: f64, z: f64| pose.set(role, turn * Vec3::new(x, y, z) * scale);
         put(Role::Hips, 0.0, 1.0, 0.0);
         put(Role::LeftThigh, 0.1, 1.0, 0.0);
         put(Role::RightThigh, -0.1, 1.0, 0.0);
@@ -157,7 +178,9 @@ mod tests {
         // The left arm points forward: +Z in the heading frame.
         assert!((reference.directions[6] - Vec3::z()).norm() < 1e-12);
         for step in 0..12 {
-            let turned = Observer::new(bones).observe(&standing(f64::from(step), 3.0)).unwrap();
+            let turned = Observer::new(bones)
+                .observe(&standing(f64::from(step), 3.0))
+                .unwrap();
             for b in bones.indices() {
                 assert!((turned.directions[b] - reference.directions[b]).norm() < 1e-9);
             }
@@ -169,8 +192,14 @@ mod tests {
         let mut observer = Observer::new(BoneSet::ALL);
         let mut last = 0.0;
         for step in 0..200 {
-            let yaw = observer.observe(&standing(f64::from(step) * 0.2, 1.0)).unwrap().yaw_rad;
-            assert!((yaw - f64::from(step) * 0.2).abs() < 1e-9, "{yaw} after {last}");
+            let yaw = observer
+                .observe(&standing(f64::from(step) * 0.2, 1.0))
+                .unwrap()
+                .yaw_rad;
+            assert!(
+                (yaw - f64::from(step) * 0.2).abs() < 1e-9,
+                "{yaw} after {last}"
+            );
             last = yaw;
         }
     }
@@ -181,6 +210,9 @@ mod tests {
         let seen = observer.observe(&standing(0.0, 1.0)).unwrap();
         let mut hidden = standing(0.0, 1.0);
         hidden.set(Role::LeftForearm, Vec3::new(f64::NAN, 0.0, 0.0));
-        assert_eq!(observer.observe(&hidden).unwrap().directions[6], seen.directions[6]);
+        assert_eq!(
+            observer.observe(&hidden).unwrap().directions[6],
+            seen.directions[6]
+        );
     }
 }

@@ -7,8 +7,15 @@ use crate::roles::RoleMap;
 use super::{BoneSet, FeatureParams, FeatureStream, KeyPose, Rows};
 
 /// Calls `each` with the time and pose of every frame of `clip` in turn, as [`for_each_world_pose`] shows them.
-pub fn for_each_pose(clip: &Clip, roles: &RoleMap, rest: &Span, mut each: impl FnMut(f64, &KeyPose)) {
-    for_each_world_pose(clip, rest, |time_secs, world| each(time_secs, &KeyPose::of(world, roles)));
+pub fn for_each_pose(
+    clip: &Clip,
+    roles: &RoleMap,
+    rest: &Span,
+    mut each: impl FnMut(f64, &KeyPose),
+) {
+    for_each_world_pose(clip, rest, |time_secs, world| {
+        each(time_secs, &KeyPose::of(world, roles))
+    });
 }
 
 /// The bones that `clip` shows: both ends mapped, and of some length in its first frame of motion.

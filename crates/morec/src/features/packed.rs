@@ -51,7 +51,9 @@ impl Rows {
             if coder.is_beyond_end() {
                 return None;
             }
-            row.iter_mut().zip(&levels).for_each(|(value, level)| *value = (*level as f64 * STEP) as f32);
+            row.iter_mut()
+                .zip(&levels)
+                .for_each(|(value, level)| *value = (*level as f64 * STEP) as f32);
             rows.push(&row);
         }
         Some(rows)
@@ -118,13 +120,21 @@ impl Forecast {
         let (directions, rest) = levels.split_at_mut(3 * self.bones.len());
         let (velocities, root) = rest.split_at_mut(directions.len());
         let mut bones = std::mem::take(&mut self.bones);
-        let of_bones = directions.as_chunks_mut().0.iter_mut().zip(velocities.as_chunks_mut().0);
+        let of_bones = directions
+            .as_chunks_mut()
+            .0
+            .iter_mut()
+            .zip(velocities.as_chunks_mut().0);
         for (bone, (direction, velocity)) in bones.iter_mut().zip(of_bones) {
             self.velocity(coder, bone, velocity);
             self.direction(coder, bone, direction);
         }
         self.bones = bones;
-        for ((level, channel), misses) in root.iter_mut().zip(&mut self.root).zip(&mut self.root_misses) {
+        for ((level, channel), misses) in root
+            .iter_mut()
+            .zip(&mut self.root)
+            .zip(&mut self.root_misses)
+        {
             let expected = channel.goes_on();
             *level = misses.code(coder, channel, expected, *level, 0);
         }
@@ -135,7 +145,9 @@ impl Forecast {
             bone.direction[axis].last as f64 * STEP + bone.rate[axis] * self.tick_secs
         });
         // The largest coordinate of the direction comes last: dividing by it is safe.
-        let largest = (0..3).max_by(|a, b| expected[*a].abs().total_cmp(&expected[*b].abs())).unwrap_or(2);
+        let largest = (0..3)
+            .max_by(|a, b| expected[*a].abs().total_cmp(&expected[*b].abs()))
+            .unwrap_or(2);
         let [first, second] = [(largest + 1) % 3, (largest + 2) % 3];
         let mut around = 0;
         for (axis, misses) in [first, second].into_iter().zip(&mut self.velocity) {
@@ -145,10 +157,17 @@ impl Forecast {
             around += channel.missed;
         }
         let channel = &mut bone.velocity[largest];
-        let along = expected[first] * levels[first] as f64 + expected[second] * levels[second] as f64;
+        let along =
+            expected[first] * levels[first] as f64 + expected[second] * levels[second] as f64;
         let across = -along / expected[largest];
-        let forecast = if expected[largest].abs() > STEP { across } else { channel.goes_on() };
-        levels[largest] = self.across.code(coder, channel, forecast, levels[largest], around / 2);
+        let forecast = if expected[largest].abs() > STEP {
+            across
+        } else {
+            channel.goes_on()
+        };
+        levels[largest] = self
+            .across
+            .code(coder, channel, forecast, levels[largest], around / 2);
     }
 
     fn direction(&mut self, coder: &mut impl Coder, bone: &mut Bone, levels: &mut [i64; 3]) {
@@ -158,7 +177,9 @@ impl Forecast {
             let channel = &mut bone.direction[axis];
             let turned = (bone.rate[axis] + rate[axis]) / 2.0 * self.tick_secs;
             let forecast = channel.last as f64 + turned / STEP;
-            levels[axis] = self.direction.code(coder, channel, forecast, levels[axis], around);
+            levels[axis] = self
+                .direction
+                .code(coder, channel, forecast, levels[axis], around);
             around = channel.missed;
         }
         bone.rate = rate;
@@ -193,8 +214,14 @@ impl Misses {
         let expected = (expected.round() as i64).clamp(-LIMIT, LIMIT);
         let digits = u64::BITS - (2 * channel.missed + around).leading_zeros();
         let whole = &mut self.0[(digits as usize).min(11)];
-        let level = expected.saturating_add(whole.signed(coder, level - expected)).clamp(-LIMIT, LIMIT);
-        *channel = Channel { last: level, before: channel.last, missed: level.abs_diff(expected) };
+        let level = expected
+            .saturating_add(whole.signed(coder, level - expected))
+            .clamp(-LIMIT, LIMIT);
+        *channel = Channel {
+            last: level,
+            before: channel.last,
+            missed: level.abs_diff(expected),
+        };
         level
     }
 }

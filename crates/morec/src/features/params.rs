@@ -26,7 +26,11 @@ pub struct FeatureParams {
 impl Default for FeatureParams {
     /// As chosen on referee signals, with the root's smoothing cut to the delay of the directions'.
     fn default() -> Self {
-        Self { root_sigma_frames: 4.0, root_cut_frames: 6, ..Self::reference() }
+        Self {
+            root_sigma_frames: 4.0,
+            root_cut_frames: 6,
+            ..Self::reference()
+        }
     }
 }
 
@@ -68,20 +72,31 @@ impl FeatureParams {
         if let Some((name, value)) = positive.iter().find(|(_, v)| !(v.is_finite() && *v > 0.0)) {
             return Err(format!("{name} must be above 0, found {value}"));
         }
-        let weights = [("velocity_weight", self.velocity_weight), ("root_weight", self.root_weight)];
+        let weights = [
+            ("velocity_weight", self.velocity_weight),
+            ("root_weight", self.root_weight),
+        ];
         if let Some((name, value)) = weights.iter().find(|(_, v)| !(v.is_finite() && *v >= 0.0)) {
             return Err(format!("{name} must be 0 or more, found {value}"));
         }
         if !(1..=64).contains(&self.frames_per_tick) {
-            return Err(format!("frames_per_tick must be 1 to 64, found {}", self.frames_per_tick));
+            return Err(format!(
+                "frames_per_tick must be 1 to 64, found {}",
+                self.frames_per_tick
+            ));
         }
         let widest = self.smooth_cut_frames.max(self.root_cut_frames);
         if widest > 63 {
-            return Err(format!("filters must be at most 63 frames a side, found {widest}"));
+            return Err(format!(
+                "filters must be at most 63 frames a side, found {widest}"
+            ));
         }
         // A push makes every frame since the one before: a rate without bounds would be a push without end.
         if self.rate_hz > 1000.0 {
-            return Err(format!("rate_hz must be at most 1000, found {}", self.rate_hz));
+            return Err(format!(
+                "rate_hz must be at most 1000, found {}",
+                self.rate_hz
+            ));
         }
         Ok(())
     }

@@ -10,7 +10,10 @@ pub struct Rows {
 impl Rows {
     /// An empty table of rows of `dim` values.
     pub fn new(dim: usize) -> Self {
-        Self { dim, data: Vec::new() }
+        Self {
+            dim,
+            data: Vec::new(),
+        }
     }
 
     /// A table from its values, row after row; surplus values at the end are dropped.
@@ -57,12 +60,21 @@ impl Rows {
 
     /// A copy of some columns, in the order of `columns`, which must lie inside the table.
     pub fn columns(&self, columns: &[usize]) -> Rows {
-        let data = self.iter().flat_map(|row| columns.iter().map(|c| row[*c])).collect();
-        Rows { dim: columns.len(), data }
+        let data = self
+            .iter()
+            .flat_map(|row| columns.iter().map(|c| row[*c]))
+            .collect();
+        Rows {
+            dim: columns.len(),
+            data,
+        }
     }
 
     /// A copy of rows `span`, which must lie inside the table.
     pub fn slice(&self, span: std::ops::Range<usize>) -> Rows {
-        Rows { dim: self.dim, data: self.data[span.start * self.dim..span.end * self.dim].to_vec() }
+        Rows {
+            dim: self.dim,
+            data: self.data[span.start * self.dim..span.end * self.dim].to_vec(),
+        }
     }
 }

@@ -21,8 +21,19 @@ struct Seen {
 
 impl Seen {
     fn of(observation: &Observation) -> Self {
-        let Observation { directions, root, yaw_rad, leg_length } = *observation;
-        Self { directions, root, yaw_rad, sin_cos: yaw_rad.sin_cos(), leg_length }
+        let Observation {
+            directions,
+            root,
+            yaw_rad,
+            leg_length,
+        } = *observation;
+        Self {
+            directions,
+            root,
+            yaw_rad,
+            sin_cos: yaw_rad.sin_cos(),
+            leg_length,
+        }
     }
 }
 
@@ -44,7 +55,9 @@ pub struct Smoother {
 
 /// Weights of a sampled Gaussian from its centre outwards, `cut + 1` values, the whole normalised to 1.
 fn half_gaussian(sigma: f64, cut: usize) -> Vec<f64> {
-    let raw: Vec<f64> = (0..=cut).map(|i| (-0.5 * (i as f64 / sigma).powi(2)).exp()).collect();
+    let raw: Vec<f64> = (0..=cut)
+        .map(|i| (-0.5 * (i as f64 / sigma).powi(2)).exp())
+        .collect();
     let sum = raw[0] + 2.0 * raw[1..].iter().sum::<f64>();
     raw.iter().map(|w| w / sum).collect()
 }
@@ -100,7 +113,10 @@ impl Smoother {
         let bones = self.bones.len();
         let rate = self.params.rate_hz;
         // np.gradient's convention: central inside, one-sided at an edge.
-        let (before, after) = ((frame - 1).max(0), (frame + 1).min(self.pushed as isize - 1));
+        let (before, after) = (
+            (frame - 1).max(0),
+            (frame + 1).min(self.pushed as isize - 1),
+        );
         let per_secs = rate / ((after - before).max(1) as f64);
         let [then, here, soon] = [before, frame, after].map(|frame| self.directions(frame));
         for (slot, bone) in self.bones.indices().enumerate() {
@@ -110,7 +126,8 @@ impl Smoother {
             let saturated = velocity / (1.0 + velocity.norm() / self.params.velocity_saturation);
             for axis in 0..3 {
                 row[3 * slot + axis] = position[axis] as f32;
-                row[3 * (bones + slot) + axis] = (saturated[axis] * self.params.velocity_weight) as f32;
+                row[3 * (bones + slot) + axis] =
+                    (saturated[axis] * self.params.velocity_weight) as f32;
             }
         }
         for (slot, value) in self.root_motion(frame).iter().enumerate() {
@@ -136,7 +153,10 @@ impl Smoother {
 
     /// Smoothed directions of all bones.
     fn directions(&self, frame: isize) -> [Vec3; BONES] {
-        let mut sum = self.at(frame).directions.map(|direction| direction * self.kernel[0]);
+        let mut sum = self
+            .at(frame)
+            .directions
+            .map(|direction| direction * self.kernel[0]);
         for (k, weight) in self.kernel.iter().enumerate().skip(1) {
             let (a, b) = (self.at(frame - k as isize), self.at(frame + k as isize));
             for ((sum, a), b) in sum.iter_mut().zip(&a.directions).zip(&b.directions) {
@@ -156,11 +176,18 @@ impl Smoother {
     }
 
     fn raw_root_motion(&self, frame: isize) -> Vector4<f64> {
-        let (before, after) = ((frame - 1).max(0), (frame + 1).min(self.pushed as isize - 1));
+        let (before, after) = (
+            (frame - 1).max(0),
+            (frame + 1).min(self.pushed as isize - 1),
+        );
         let per_secs = self.params.rate_hz / ((after - before).max(1) as f64);
         let (a, b, here) = (self.at(before), self.at(after), self.at(frame));
         let (sin, cos) = here.sin_cos;
-        let velocity = heading_from_world(sin, cos, &((b.root - a.root) * (per_secs / here.leg_length)));
+        let velocity = heading_from_world(
+            sin,
+            cos,
+            &((b.root - a.root) * (per_secs / here.leg_length)),
+        );
         velocity.push((b.yaw_rad - a.yaw_rad) * per_secs)
     }
 }

@@ -80,13 +80,20 @@ impl FeatureStream {
         if self.grid.ignores(time_secs) {
             return Pushed::Ignored;
         }
-        let Some(observation) = self.observer.observe(pose) else { return Pushed::NoHips };
+        let Some(observation) = self.observer.observe(pose) else {
+            return Pushed::NoHips;
+        };
         let (smoother, bones) = (&mut self.smoother, self.bones);
-        self.grid.push(time_secs, observation, &mut |before, now| match before {
-            Some((last, t)) => smoother.push(&Observation::between(last, now, t, bones), out),
-            None => smoother.push(now, out),
-        });
-        if restarted { Pushed::Restarted } else { Pushed::Taken }
+        self.grid
+            .push(time_secs, observation, &mut |before, now| match before {
+                Some((last, t)) => smoother.push(&Observation::between(last, now, t, bones), out),
+                None => smoother.push(now, out),
+            });
+        if restarted {
+            Pushed::Restarted
+        } else {
+            Pushed::Taken
+        }
     }
 
     /// Ends the stretch: calls `out` with the rows that still waited for later frames, and forgets it.

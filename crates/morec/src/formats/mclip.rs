@@ -16,10 +16,16 @@ const ROTATIONS_A_BYTE: usize = 4096;
 pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseError> {
     let stored = CompressedClip::from_bytes_within(bytes, limits)?;
     let most = FREE_ROTATIONS.max(bytes.len().saturating_mul(ROTATIONS_A_BYTE));
-    let rotations = stored.source_frames().saturating_mul(stored.skeleton().len());
+    let rotations = stored
+        .source_frames()
+        .saturating_mul(stored.skeleton().len());
     if rotations > most {
         let expected = format!("at most {most} rotations in {} bytes", bytes.len());
-        return Err(ParseError::new(Place::File, expected, rotations.to_string()));
+        return Err(ParseError::new(
+            Place::File,
+            expected,
+            rotations.to_string(),
+        ));
     }
     let clip = stored
         .sample(stored.source_rate_hz())
@@ -28,8 +34,14 @@ pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseEr
     if clip.frames == 0 {
         warnings.push(Warning::new(Place::File, "the clip has no frames"));
     }
-    let clip = crate::clip::Clip { name: name.to_owned(), ..clip };
-    Ok(Loaded { clips: vec![clip], warnings })
+    let clip = crate::clip::Clip {
+        name: name.to_owned(),
+        ..clip
+    };
+    Ok(Loaded {
+        clips: vec![clip],
+        warnings,
+    })
 }
 
 #[cfg(test)]
@@ -40,12 +52,22 @@ mod tests {
 
     #[test]
     fn a_stored_clip_is_a_clip() {
-        let spec = DatabaseSpec { people: 1, repetitions: 1, classes: vec!["wave"], ..Default::default() };
+        let spec = DatabaseSpec {
+            people: 1,
+            repetitions: 1,
+            classes: vec!["wave"],
+            ..Default::default()
+        };
         let clip = database(1, &spec).remove(0).clip;
-        let bytes = compress(&clip, &SmoothParams::default(), &()).unwrap().to_bytes();
+        let bytes = compress(&clip, &SmoothParams::default(), &())
+            .unwrap()
+            .to_bytes();
         let loaded = read(&bytes, "again", &Limits::default()).unwrap();
         let again = &loaded.clips[0];
-        assert_eq!((again.name.as_str(), again.frames, again.rate_hz), ("again", clip.frames, clip.rate_hz));
+        assert_eq!(
+            (again.name.as_str(), again.frames, again.rate_hz),
+            ("again", clip.frames, clip.rate_hz)
+        );
         assert_eq!(again.skeleton, clip.skeleton);
         for (a, b) in again.rotations.iter().zip(&clip.rotations) {
             assert!(a.angle_to(b) <= 0.5f64.to_radians() + 1e-9);
@@ -57,7 +79,12 @@ mod tests {
     fn small_files_do_not_stand_for_endless_frames() {
         use crate::clip::{Clip, Joint, Skeleton};
         use crate::math::{Quat, Vec3};
-        let joint = Joint { name: "J".into(), parent: None, offset: Vec3::zeros(), tip: None };
+        let joint = Joint {
+            name: "J".into(),
+            parent: None,
+            offset: Vec3::zeros(),
+            tip: None,
+        };
         let (joints, frames) = (1000, 20);
         let clip = Clip {
             name: String::new(),
@@ -68,7 +95,9 @@ mod tests {
             frames,
             repaired: Vec::new(),
         };
-        let mut bytes = compress(&clip, &SmoothParams::default(), &()).unwrap().to_bytes();
+        let mut bytes = compress(&clip, &SmoothParams::default(), &())
+            .unwrap()
+            .to_bytes();
         // Frames stand behind the empty name; three more bytes make ten million of them.
         bytes.splice(21..22, [0x80, 0xAD, 0xE2, 0x04]);
         let (length, checksum) = (bytes.len() as u64 - 20, crc32fast::hash(&bytes[20..]));

@@ -52,7 +52,11 @@ pub struct ParseError {
 impl ParseError {
     /// An error at `at`.
     pub fn new(at: Place, expected: impl Into<String>, found: impl Into<String>) -> Self {
-        Self { at, expected: expected.into(), found: found.into() }
+        Self {
+            at,
+            expected: expected.into(),
+            found: found.into(),
+        }
     }
 }
 
@@ -68,7 +72,10 @@ pub struct Warning {
 impl Warning {
     /// A warning at `at`.
     pub fn new(at: Place, text: impl Into<String>) -> Self {
-        Self { at, text: text.into() }
+        Self {
+            at,
+            text: text.into(),
+        }
     }
 }
 
@@ -95,7 +102,12 @@ impl Default for Limits {
     fn default() -> Self {
         // The largest files seen in the wild have 173 joints and some ten thousand frames; a day at 120 Hz has
         // ten million.
-        Self { joints: 4096, depth: 256, line_bytes: 1 << 20, frames: 20_000_000 }
+        Self {
+            joints: 4096,
+            depth: 256,
+            line_bytes: 1 << 20,
+            frames: 20_000_000,
+        }
     }
 }
 

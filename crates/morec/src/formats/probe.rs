@@ -27,10 +27,26 @@ struct Readable {
 
 /// Every format that is read, in the order in which its content is asked for.
 const READ: [Readable; 4] = [
-    Readable { format: Format::Mclip, extension: "mclip", looks_so: |h| h.bytes.starts_with(MAGIC) },
-    Readable { format: Format::Bvh, extension: "bvh", looks_so: is_bvh },
-    Readable { format: Format::Asf, extension: "asf", looks_so: is_asf },
-    Readable { format: Format::Amc, extension: "amc", looks_so: is_amc },
+    Readable {
+        format: Format::Mclip,
+        extension: "mclip",
+        looks_so: |h| h.bytes.starts_with(MAGIC),
+    },
+    Readable {
+        format: Format::Bvh,
+        extension: "bvh",
+        looks_so: is_bvh,
+    },
+    Readable {
+        format: Format::Asf,
+        extension: "asf",
+        looks_so: is_asf,
+    },
+    Readable {
+        format: Format::Amc,
+        extension: "amc",
+        looks_so: is_amc,
+    },
 ];
 
 struct Unread {
@@ -40,16 +56,46 @@ struct Unread {
 
 /// Formats that are recognised only to say that they are not read.
 const UNREAD: [Unread; 10] = [
-    Unread { name: "FBX", looks_so: |h| h.starts("Kaydara FBX Binary") || h.starts("; FBX") },
-    Unread { name: "binary glTF", looks_so: |h| h.starts("glTF") },
-    Unread { name: "glTF", looks_so: |h| h.starts("{") && h.contains(b"\"asset\"") },
-    Unread { name: "C3D", looks_so: |h| matches!(h.bytes, [2..32, 0x50, ..]) },
-    Unread { name: "an npz or other zip archive", looks_so: |h| h.starts("PK\x03\x04") },
-    Unread { name: "a NumPy array", looks_so: |h| h.bytes.starts_with(b"\x93NUMPY") },
-    Unread { name: "MVNX", looks_so: |h| h.starts("<") && h.contains(b"<mvnx") },
-    Unread { name: "TRC", looks_so: |h| h.starts("PathFileType") },
-    Unread { name: "USD", looks_so: |h| h.starts("PXR-USDC") || h.starts("#usda") },
-    Unread { name: "HDF5", looks_so: |h| h.bytes.starts_with(b"\x89HDF") },
+    Unread {
+        name: "FBX",
+        looks_so: |h| h.starts("Kaydara FBX Binary") || h.starts("; FBX"),
+    },
+    Unread {
+        name: "binary glTF",
+        looks_so: |h| h.starts("glTF"),
+    },
+    Unread {
+        name: "glTF",
+        looks_so: |h| h.starts("{") && h.contains(b"\"asset\""),
+    },
+    Unread {
+        name: "C3D",
+        looks_so: |h| matches!(h.bytes, [2..32, 0x50, ..]),
+    },
+    Unread {
+        name: "an npz or other zip archive",
+        looks_so: |h| h.starts("PK\x03\x04"),
+    },
+    Unread {
+        name: "a NumPy array",
+        looks_so: |h| h.bytes.starts_with(b"\x93NUMPY"),
+    },
+    Unread {
+        name: "MVNX",
+        looks_so: |h| h.starts("<") && h.contains(b"<mvnx"),
+    },
+    Unread {
+        name: "TRC",
+        looks_so: |h| h.starts("PathFileType"),
+    },
+    Unread {
+        name: "USD",
+        looks_so: |h| h.starts("PXR-USDC") || h.starts("#usda"),
+    },
+    Unread {
+        name: "HDF5",
+        looks_so: |h| h.bytes.starts_with(b"\x89HDF"),
+    },
 ];
 
 /// Which format `bytes` have; `name` (a file's name or path) decides if they do not say.
@@ -83,7 +129,9 @@ pub fn probe(bytes: &[u8], name: &str) -> Result<Format, ParseError> {
 /// The format that a file's ending promises.
 pub fn format_of_name(name: &str) -> Option<Format> {
     let (_, extension) = name.rsplit_once('.')?;
-    READ.iter().find(|r| r.extension.eq_ignore_ascii_case(extension)).map(|r| r.format)
+    READ.iter()
+        .find(|r| r.extension.eq_ignore_ascii_case(extension))
+        .map(|r| r.format)
 }
 
 /// The beginning of a file.
@@ -96,7 +144,9 @@ impl<'a> Head<'a> {
 
     fn new(bytes: &'a [u8]) -> Self {
         let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
-        Self { bytes: &bytes[..bytes.len().min(Self::LONGEST)] }
+        Self {
+            bytes: &bytes[..bytes.len().min(Self::LONGEST)],
+        }
     }
 
     fn starts(&self, text: &str) -> bool {
@@ -104,7 +154,9 @@ impl<'a> Head<'a> {
     }
 
     fn contains(&self, text: &[u8]) -> bool {
-        self.bytes.windows(text.len()).any(|window| window.eq_ignore_ascii_case(text))
+        self.bytes
+            .windows(text.len())
+            .any(|window| window.eq_ignore_ascii_case(text))
     }
 
     fn is_binary(&self) -> bool {
@@ -113,22 +165,38 @@ impl<'a> Head<'a> {
 
     /// Lines that are no comment and not empty.
     fn lines(&self) -> impl Iterator<Item = &'a [u8]> {
-        let lines = self.bytes.split(|b| matches!(b, b'\n' | b'\r')).map(<[u8]>::trim_ascii);
+        let lines = self
+            .bytes
+            .split(|b| matches!(b, b'\n' | b'\r'))
+            .map(<[u8]>::trim_ascii);
         lines.filter(|line| !line.is_empty() && !line.starts_with(b"#"))
     }
 }
 
 /// `HIERARCHY` at the start of one of the first lines (junk before it is met), or `MOTION` alone.
 fn is_bvh(head: &Head) -> bool {
-    let begins =
-        |line: &[u8], word: &[u8]| line.len() >= word.len() && line[..word.len()].eq_ignore_ascii_case(word);
-    head.lines().take(100).any(|line| begins(line, b"HIERARCHY"))
-        || head.lines().next().is_some_and(|line| line.eq_ignore_ascii_case(b"MOTION"))
+    let begins = |line: &[u8], word: &[u8]| {
+        line.len() >= word.len() && line[..word.len()].eq_ignore_ascii_case(word)
+    };
+    head.lines()
+        .take(100)
+        .any(|line| begins(line, b"HIERARCHY"))
+        || head
+            .lines()
+            .next()
+            .is_some_and(|line| line.eq_ignore_ascii_case(b"MOTION"))
 }
 
 fn is_asf(head: &Head) -> bool {
     let first = head.lines().next().unwrap_or_default().to_ascii_lowercase();
-    let opens = [b":version".as_slice(), b":name", b":units", b":documentation", b":root", b":bonedata"];
+    let opens = [
+        b":version".as_slice(),
+        b":name",
+        b":units",
+        b":documentation",
+        b":root",
+        b":bonedata",
+    ];
     opens.iter().any(|keyword| first.starts_with(keyword))
 }
 
@@ -136,18 +204,29 @@ fn is_asf(head: &Head) -> bool {
 fn is_amc(head: &Head) -> bool {
     let opens = |line: &[u8]| {
         let line = line.to_ascii_lowercase();
-        [b":fully-specified".as_slice(), b":degrees", b":radians"].iter().any(|word| line.starts_with(word))
+        [b":fully-specified".as_slice(), b":degrees", b":radians"]
+            .iter()
+            .any(|word| line.starts_with(word))
     };
     let mut lines = head.lines();
-    let Some(first) = lines.next() else { return false };
+    let Some(first) = lines.next() else {
+        return false;
+    };
     if opens(first) {
         return true;
     }
-    let mut row = lines.next().unwrap_or_default().split(u8::is_ascii_whitespace);
-    let named = row.next().is_some_and(|name| name.first().is_some_and(u8::is_ascii_alphabetic));
+    let mut row = lines
+        .next()
+        .unwrap_or_default()
+        .split(u8::is_ascii_whitespace);
+    let named = row
+        .next()
+        .is_some_and(|name| name.first().is_some_and(u8::is_ascii_alphabetic));
     first.iter().all(u8::is_ascii_digit)
         && named
-        && row.next().is_some_and(|value| fast_float2::parse::<f64, _>(value).is_ok())
+        && row
+            .next()
+            .is_some_and(|value| fast_float2::parse::<f64, _>(value).is_ok())
 }
 
 #[cfg(test)]
@@ -161,7 +240,11 @@ mod tests {
             (b"\xEF\xBB\xBF# junk\n{\nhierarchy\r\n", "a", Format::Bvh),
             (b"MOTION\nFrames: 1\n", "a", Format::Bvh),
             (b"# AST/ASF file\n:version 1.10\n", "a.txt", Format::Asf),
-            (b"#!OML:ASF X:\\f\xFCr\n:FULLY-SPECIFIED\n1\n", "a", Format::Amc),
+            (
+                b"#!OML:ASF X:\\f\xFCr\n:FULLY-SPECIFIED\n1\n",
+                "a",
+                Format::Amc,
+            ),
             (b"1\nroot 0 1 0 0 0 0\n", "a.bvh", Format::Amc),
             (b"hello", "dir.x/a.AMC", Format::Amc),
             (b"MCLIP\n\x01\0", "a.bvh", Format::Mclip),

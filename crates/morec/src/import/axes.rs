@@ -18,7 +18,10 @@ pub struct SignedAxis {
 
 impl SignedAxis {
     /// Up in every imported clip.
-    pub const Y: SignedAxis = SignedAxis { axis: Axis::Y, negative: false };
+    pub const Y: SignedAxis = SignedAxis {
+        axis: Axis::Y,
+        negative: false,
+    };
 
     /// The unit vector.
     pub fn unit(self) -> Vec3 {
@@ -77,7 +80,10 @@ pub(super) fn infer_up(body: &Body, notes: &mut Vec<String>) -> SignedAxis {
         notes.push("the body hardly stands; Y is assumed to be up".to_owned());
         return SignedAxis::Y;
     }
-    SignedAxis { axis: Axis::ALL[biggest], negative: sum[biggest] < 0.0 }
+    SignedAxis {
+        axis: Axis::ALL[biggest],
+        negative: sum[biggest] < 0.0,
+    }
 }
 
 /// Turns the whole clip so that `up` becomes Y: only what is in the world's frame changes, that is, the roots.
@@ -87,7 +93,9 @@ pub(super) fn turn_up(clip: &mut Clip, up: SignedAxis) {
     }
     let turn = y_from(up);
     let joints = clip.skeleton.len();
-    let roots: Vec<usize> = (0..joints).filter(|&j| clip.skeleton.joints()[j].parent.is_none()).collect();
+    let roots: Vec<usize> = (0..joints)
+        .filter(|&j| clip.skeleton.joints()[j].parent.is_none())
+        .collect();
     for &root in &roots {
         let mut previous: Option<Quat> = None;
         for frame in 0..clip.frames {
@@ -97,12 +105,22 @@ pub(super) fn turn_up(clip: &mut Clip, up: SignedAxis) {
             previous = Some(*rotation);
         }
     }
-    for track in clip.tracks.iter_mut().filter(|track| roots.contains(&track.joint)) {
+    for track in clip
+        .tracks
+        .iter_mut()
+        .filter(|track| roots.contains(&track.joint))
+    {
         for position in &mut track.positions {
             *position = turn * *position;
         }
     }
-    clip.skeleton.map_offsets(|joint, offset| if joint.parent.is_none() { turn * offset } else { offset });
+    clip.skeleton.map_offsets(|joint, offset| {
+        if joint.parent.is_none() {
+            turn * offset
+        } else {
+            offset
+        }
+    });
 }
 
 /// A rotation by quarter turns that takes `up` to Y.

@@ -34,14 +34,25 @@ impl Body {
             legs.extend(leg);
             chains.extend(leg.and_then(|leg| Some(leg + trunk_length(map, &pose)?)));
         }
-        Self { feet_to_head, leg: median(legs), chain: median(chains) }
+        Self {
+            feet_to_head,
+            leg: median(legs),
+            chain: median(chains),
+        }
     }
 
     /// From the feet to the top of the head where the body stands straightest.
     pub(super) fn height(&self, up: SignedAxis) -> Option<f64> {
-        let mut heights: Vec<f64> = self.feet_to_head.iter().map(|v| v.dot(&up.unit())).collect();
+        let mut heights: Vec<f64> = self
+            .feet_to_head
+            .iter()
+            .map(|v| v.dot(&up.unit()))
+            .collect();
         heights.sort_by(f64::total_cmp);
-        let tall = heights.get(heights.len() * 9 / 10).or(heights.last()).copied();
+        let tall = heights
+            .get(heights.len() * 9 / 10)
+            .or(heights.last())
+            .copied();
         // Someone who never stands up is measured along the limbs.
         match (tall, self.chain) {
             (Some(tall), Some(chain)) => Some(tall.max(chain)),
@@ -58,7 +69,11 @@ fn extent(clip: &Clip, map: &RoleMap, pose: &WorldPose) -> Option<Vec3> {
         any(&[Role::LeftFoot, Role::LeftShin, Role::LeftThigh]),
         any(&[Role::RightFoot, Role::RightShin, Role::RightThigh]),
     ];
-    let feet: Vec<Vec3> = feet.into_iter().flatten().map(|foot| pose.positions[foot]).collect();
+    let feet: Vec<Vec3> = feet
+        .into_iter()
+        .flatten()
+        .map(|foot| pose.positions[foot])
+        .collect();
     let count = feet.len();
     (count > 0).then(|| pose.tip(clip, head) - feet.iter().sum::<Vec3>() / count as f64)
 }
@@ -76,7 +91,9 @@ fn leg_length(map: &RoleMap, pose: &WorldPose, left: bool) -> Option<f64> {
 }
 
 fn trunk_length(map: &RoleMap, pose: &WorldPose) -> Option<f64> {
-    Some(distance(map, pose, Role::Hips, Role::Neck)? + distance(map, pose, Role::Neck, Role::Head)?)
+    Some(
+        distance(map, pose, Role::Hips, Role::Neck)? + distance(map, pose, Role::Neck, Role::Head)?,
+    )
 }
 
 fn mean(values: [Option<f64>; 2]) -> Option<f64> {

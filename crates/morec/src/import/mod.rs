@@ -75,8 +75,12 @@ pub fn prepare(mut clip: Clip, options: &ImportOptions) -> Result<Imported, Pars
         mapping.apply(&clip.skeleton, &mut map)?;
     }
     let body = Body::measure(&clip, &map);
-    let up = options.up.unwrap_or_else(|| axes::infer_up(&body, &mut notes));
-    let metres_per_unit = options.metres_per_unit.unwrap_or_else(|| units::infer(&body, up, &mut notes));
+    let up = options
+        .up
+        .unwrap_or_else(|| axes::infer_up(&body, &mut notes));
+    let metres_per_unit = options
+        .metres_per_unit
+        .unwrap_or_else(|| units::infer(&body, up, &mut notes));
     axes::turn_up(&mut clip, up);
     units::scale(&mut clip, metres_per_unit);
     let rest = match options.rest_frames {
@@ -93,7 +97,11 @@ pub fn prepare(mut clip: Clip, options: &ImportOptions) -> Result<Imported, Pars
         rest_frames: rest,
         notes,
     };
-    Ok(Imported { clip, roles: map, facts })
+    Ok(Imported {
+        clip,
+        roles: map,
+        facts,
+    })
 }
 
 /// The roles, with the side of nameless limbs judged in a posed frame.

@@ -25,19 +25,31 @@ pub fn rest_frames(clip: &Clip, map: &RoleMap) -> Span {
         return 0..0;
     }
     let hips = map.joint(Role::Hips).unwrap_or(0);
-    let poses: Vec<Vec<Vec3>> = (0..clip.frames.min(LOOKED_AT)).map(|f| about_hips(clip, hips, f)).collect();
-    let steps: Vec<f64> = poses.windows(2).map(|pair| apart(&pair[0], &pair[1])).collect();
+    let poses: Vec<Vec<Vec3>> = (0..clip.frames.min(LOOKED_AT))
+        .map(|f| about_hips(clip, hips, f))
+        .collect();
+    let steps: Vec<f64> = poses
+        .windows(2)
+        .map(|pair| apart(&pair[0], &pair[1]))
+        .collect();
     let usual = median(steps[1..].to_vec()).unwrap_or(0.0);
     // Motion may jerk where it begins; a rest pose is still farther away.
     let most = steps[1..].iter().take(3).copied().fold(0.0, f64::max);
     let jumps = steps[0] > LEAST && steps[0] > JUMP * usual && steps[0] > most;
-    if jumps && (is_zero_pose(clip) || is_symmetric(&poses[0], map)) { 0..1 } else { 0..0 }
+    if jumps && (is_zero_pose(clip) || is_symmetric(&poses[0], map)) {
+        0..1
+    } else {
+        0..0
+    }
 }
 
 /// Joint positions from the hips.
 fn about_hips(clip: &Clip, hips: usize, frame: usize) -> Vec<Vec3> {
     let pose = WorldPose::of(clip, frame);
-    pose.positions.iter().map(|position| position - pose.positions[hips]).collect()
+    pose.positions
+        .iter()
+        .map(|position| position - pose.positions[hips])
+        .collect()
 }
 
 /// Mean distance between the joints of two poses.
@@ -47,7 +59,11 @@ fn apart(a: &[Vec3], b: &[Vec3]) -> f64 {
 
 /// Whether hardly any joint is turned in the first frame.
 fn is_zero_pose(clip: &Clip) -> bool {
-    let turned = clip.frame_rotations(0).iter().filter(|q| q.angle() > 1f64.to_radians()).count();
+    let turned = clip
+        .frame_rotations(0)
+        .iter()
+        .filter(|q| q.angle() > 1f64.to_radians())
+        .count();
     turned * 10 <= clip.skeleton.len()
 }
 
@@ -66,12 +82,20 @@ fn is_symmetric(pose: &[Vec3], map: &RoleMap) -> bool {
         .filter_map(|&(left, right)| Some((pose[map.joint(left)?], pose[map.joint(right)?])))
         .collect();
     let across: Vec3 = pairs.iter().map(|(left, right)| left - right).sum();
-    let Some(across) = across.try_normalize(1e-9) else { return false };
+    let Some(across) = across.try_normalize(1e-9) else {
+        return false;
+    };
     if pairs.len() < 4 {
         return false;
     }
     let mirrored = |v: &Vec3| v - across * (2.0 * v.dot(&across));
-    let error = pairs.iter().map(|(left, right)| (mirrored(left) - right).norm()).sum::<f64>();
-    let size = pairs.iter().map(|(left, right)| (left.norm() + right.norm()) / 2.0).sum::<f64>();
+    let error = pairs
+        .iter()
+        .map(|(left, right)| (mirrored(left) - right).norm())
+        .sum::<f64>();
+    let size = pairs
+        .iter()
+        .map(|(left, right)| (left.norm() + right.norm()) / 2.0)
+        .sum::<f64>();
     error < 0.1 * size
 }

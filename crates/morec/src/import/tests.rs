@@ -45,13 +45,18 @@ fn person(frames: usize, walks: f64) -> Clip {
         pose[1] = Axis::X.rotation(0.1);
         rotations.extend(pose);
     }
-    let positions = (0..frames).map(|f| Vec3::new(0.0, 0.95, walks * f as f64)).collect();
+    let positions = (0..frames)
+        .map(|f| Vec3::new(0.0, 0.95, walks * f as f64))
+        .collect();
     Clip {
         name: "person".to_owned(),
         skeleton,
         rate_hz: 60.0,
         rotations,
-        tracks: vec![JointTrack { joint: 0, positions }],
+        tracks: vec![JointTrack {
+            joint: 0,
+            positions,
+        }],
         frames,
         repaired: Vec::new(),
     }
@@ -85,7 +90,10 @@ fn a_plain_person_is_left_alone() {
     assert_eq!((facts.up, facts.unit), (SignedAxis::Y, Some("m")));
     assert_eq!((facts.travels, facts.rest_frames.clone()), (false, 0..0));
     assert!((facts.leg_length.unwrap() - 0.82).abs() < 1e-9);
-    assert!((facts.body_height.unwrap() - 1.67).abs() < 0.02, "{facts:?}");
+    assert!(
+        (facts.body_height.unwrap() - 1.67).abs() < 0.02,
+        "{facts:?}"
+    );
     assert!(facts.notes.is_empty(), "{facts:?}");
 }
 
@@ -127,11 +135,17 @@ fn what_a_person_says_counts() {
     };
     let imported = prepare(person(20, 0.0), &options).unwrap();
     assert_eq!(imported.facts.up, signed(Axis::Z, false));
-    assert_eq!((imported.facts.metres_per_unit, imported.facts.unit), (2.0, None));
+    assert_eq!(
+        (imported.facts.metres_per_unit, imported.facts.unit),
+        (2.0, None)
+    );
     assert_eq!(imported.facts.rest_frames, 0..7);
     assert_eq!(imported.roles.joint(Role::Neck), None);
     assert!((imported.clip.tracks[0].positions[0] - Vec3::new(0.0, 0.0, -1.9)).norm() < 1e-9);
-    let wrong = ImportOptions { mapping: Some(Mapping::read(b"neck\tN\n").unwrap()), ..Default::default() };
+    let wrong = ImportOptions {
+        mapping: Some(Mapping::read(b"neck\tN\n").unwrap()),
+        ..Default::default()
+    };
     assert!(prepare(person(20, 0.0), &wrong).is_err());
 }
 
@@ -140,8 +154,12 @@ fn clips_without_frames_or_bodies_are_answered() {
     let empty = ready(person(0, 0.0));
     assert_eq!(empty.clip.frames, 0);
     assert!(!empty.facts.notes.is_empty());
-    let nobody =
-        Clip { skeleton: Skeleton::default(), rotations: Vec::new(), tracks: Vec::new(), ..person(3, 0.0) };
+    let nobody = Clip {
+        skeleton: Skeleton::default(),
+        rotations: Vec::new(),
+        tracks: Vec::new(),
+        ..person(3, 0.0)
+    };
     assert_eq!(ready(nobody).roles.missing().count(), Role::COUNT);
 }
 
@@ -186,8 +204,10 @@ proptest! {
 
 /// The folder of real clips, if it is there.
 fn data() -> Option<PathBuf> {
-    let folder = std::env::var_os("MOREC_DATA")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"), PathBuf::from);
+    let folder = std::env::var_os("MOREC_DATA").map_or_else(
+        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
+        PathBuf::from,
+    );
     if !folder.is_dir() {
         println!("skipped: no clips at {} (set MOREC_DATA)", folder.display());
         return None;
@@ -196,7 +216,10 @@ fn data() -> Option<PathBuf> {
 }
 
 fn clips_in(folder: &Path) -> Vec<(String, Clip)> {
-    let mut files: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
+    let mut files: Vec<PathBuf> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|e| e.unwrap().path())
+        .collect();
     files.sort();
     let skeletons: Vec<PathBuf> = std::fs::read_dir(folder.join(".."))
         .unwrap()
@@ -210,8 +233,16 @@ fn clips_in(folder: &Path) -> Vec<(String, Clip)> {
         let loaded = match skeletons.first() {
             None => bvh::read(&bytes, &name, &bvh::BvhOptions::default(), &limits),
             Some(asf) => {
-                let asf = acclaim::read_asf(&std::fs::read(asf).unwrap(), &limits).unwrap().0;
-                acclaim::read_amc(&bytes, &name, &asf, &acclaim::AmcOptions::default(), &limits)
+                let asf = acclaim::read_asf(&std::fs::read(asf).unwrap(), &limits)
+                    .unwrap()
+                    .0;
+                acclaim::read_amc(
+                    &bytes,
+                    &name,
+                    &asf,
+                    &acclaim::AmcOptions::default(),
+                    &limits,
+                )
             }
         };
         (name, loaded.unwrap().clips.remove(0))

@@ -28,14 +28,19 @@ pub(super) fn infer(body: &Body, up: SignedAxis, notes: &mut Vec<String>) -> f64
     let (unit, metres) = UNITS.iter().min_by(nearest).copied().unwrap_or(("m", 1.0));
     let tall = height * metres;
     if !(1.0..=2.3).contains(&tall) {
-        notes.push(format!("in {unit}, the nearest known unit, the body is {tall:.2} m tall"));
+        notes.push(format!(
+            "in {unit}, the nearest known unit, the body is {tall:.2} m tall"
+        ));
     }
     metres
 }
 
 /// The name of a known unit.
 pub(super) fn name(metres_per_unit: f64) -> Option<&'static str> {
-    UNITS.iter().find(|(_, metres)| (metres / metres_per_unit - 1.0).abs() < 1e-6).map(|(name, _)| *name)
+    UNITS
+        .iter()
+        .find(|(_, metres)| (metres / metres_per_unit - 1.0).abs() < 1e-6)
+        .map(|(name, _)| *name)
 }
 
 /// Multiplies every length of the clip.

@@ -65,7 +65,9 @@ impl MotionIndex {
     pub fn complete_roles(&self, map: &mut RoleMap, skeleton: &crate::clip::Skeleton) -> Vec<Role> {
         let mut filled = Vec::new();
         for (&role, name) in &self.roles {
-            let Some(joint) = skeleton.find(name) else { continue };
+            let Some(joint) = skeleton.find(name) else {
+                continue;
+            };
             let taken = Role::ALL.into_iter().any(|r| map.joint(r) == Some(joint));
             if map.joint(role).is_none() && !taken {
                 map.set(role, Some(joint));

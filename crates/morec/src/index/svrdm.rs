@@ -45,11 +45,19 @@ pub(super) fn manifest(model: &SvrdmModel, index: &MotionIndex) -> SvrdmManifest
 /// it was.
 pub(super) fn tensors(model: &SvrdmModel) -> BTreeMap<String, Tensor> {
     let pca = &model.pca;
-    let axes: Vec<f64> = (0..pca.dims()).flat_map(|i| pca.axis(i).iter().copied()).collect();
+    let axes: Vec<f64> = (0..pca.dims())
+        .flat_map(|i| pca.axis(i).iter().copied())
+        .collect();
     let branches: Vec<&Branch> = model.tree.branches().map(|(_, branch)| branch).collect();
     let sides = || branches.iter().flat_map(|b| b.exemplars.iter());
-    let points: Vec<f64> = branches.iter().flat_map(|b| b.points.iter().flatten().copied()).collect();
-    let weights: Vec<f64> = branches.iter().flat_map(|b| b.weights.iter().flatten().copied()).collect();
+    let points: Vec<f64> = branches
+        .iter()
+        .flat_map(|b| b.points.iter().flatten().copied())
+        .collect();
+    let weights: Vec<f64> = branches
+        .iter()
+        .flat_map(|b| b.weights.iter().flatten().copied())
+        .collect();
     let profiles = &model.profiles;
     let step = profiles.step.as_deref();
     let rows = profiles.values.chunks_exact(profiles.width);
@@ -57,15 +65,36 @@ pub(super) fn tensors(model: &SvrdmModel) -> BTreeMap<String, Tensor> {
         ("pca.axes".to_owned(), single(&axes)),
         ("pca.eigenvalues".to_owned(), single(pca.eigenvalues())),
         ("pca.mean".to_owned(), single(pca.mean())),
-        ("profiles.classes".to_owned(), Tensor::of_u32(profiles.classes.iter().map(|c| u32::from(c.0)))),
-        ("profiles.lengths".to_owned(), Tensor::of_u32(profiles.lengths.iter().map(|n| *n as u32))),
-        ("profiles.values".to_owned(), Tensor::of_rows(rows, profiles.width, step)),
+        (
+            "profiles.classes".to_owned(),
+            Tensor::of_u32(profiles.classes.iter().map(|c| u32::from(c.0))),
+        ),
+        (
+            "profiles.lengths".to_owned(),
+            Tensor::of_u32(profiles.lengths.iter().map(|n| *n as u32)),
+        ),
+        (
+            "profiles.values".to_owned(),
+            Tensor::of_rows(rows, profiles.width, step),
+        ),
         ("signs".to_owned(), single(&model.signs)),
-        ("tree.exemplar_counts".to_owned(), Tensor::of_u32(sides().map(|s| s.len() as u32))),
-        ("tree.exemplars".to_owned(), Tensor::of_u32(sides().flatten().copied())),
-        ("tree.point_counts".to_owned(), Tensor::of_u32(branches.iter().map(|b| b.points.len() as u32))),
+        (
+            "tree.exemplar_counts".to_owned(),
+            Tensor::of_u32(sides().map(|s| s.len() as u32)),
+        ),
+        (
+            "tree.exemplars".to_owned(),
+            Tensor::of_u32(sides().flatten().copied()),
+        ),
+        (
+            "tree.point_counts".to_owned(),
+            Tensor::of_u32(branches.iter().map(|b| b.points.len() as u32)),
+        ),
         ("tree.points".to_owned(), single(&points)),
-        ("tree.vectors".to_owned(), single(&model.tree.parts().vectors)),
+        (
+            "tree.vectors".to_owned(),
+            single(&model.tree.parts().vectors),
+        ),
         ("tree.weights".to_owned(), single(&weights)),
     ]);
     if let Some(step) = step {
@@ -85,14 +114,22 @@ pub(super) fn read(manifest: &SvrdmManifest, tables: &Tables) -> Result<SvrdmMod
     let double = |name: &str| -> Result<Vec<f64>, IndexError> {
         Ok(tables.f32s(name)?.into_iter().map(f64::from).collect())
     };
-    let (mean, axes, eigenvalues) = (double("pca.mean")?, double("pca.axes")?, double("pca.eigenvalues")?);
-    let pca =
-        Pca::from_parts(mean, axes, eigenvalues, manifest.pca_rows).map_err(|e| content(e.to_string()))?;
+    let (mean, axes, eigenvalues) = (
+        double("pca.mean")?,
+        double("pca.axes")?,
+        double("pca.eigenvalues")?,
+    );
+    let pca = Pca::from_parts(mean, axes, eigenvalues, manifest.pca_rows)
+        .map_err(|e| content(e.to_string()))?;
     let width = manifest.params.comparison.width(pca.dims());
     let profiles = profiles(tables, width)?;
     let dim = manifest.params.eigenvectors.saturating_mul(pca.dims());
     let nodes = nodes(manifest, tables)?;
-    let parts = Parts { dim, vectors: double("tree.vectors")?, nodes };
+    let parts = Parts {
+        dim,
+        vectors: double("tree.vectors")?,
+        nodes,
+    };
     let model = SvrdmModel {
         classes: manifest.classes.clone(),
         pivots: manifest.pivots.clone(),
@@ -110,24 +147,41 @@ pub(super) fn read(manifest: &SvrdmManifest, tables: &Tables) -> Result<SvrdmMod
 }
 
 fn profiles(tables: &Tables, width: usize) -> Result<Profiles, IndexError> {
-    let step = if tables.has("profiles.step") { Some(tables.f32s("profiles.step")?) } else { None };
+    let step = if tables.has("profiles.step") {
+        Some(tables.f32s("profiles.step")?)
+    } else {
+        None
+    };
     if let Some(found) = step.as_ref().map(Vec::len).filter(|found| *found != width) {
         let message = format!("tensor \"profiles.step\": expected {width} values, found {found}");
         return Err(IndexError::Content(message));
     }
-    let classes: Result<Vec<ClassId>, _> =
-        tables.u32s("profiles.classes")?.into_iter().map(class_id).collect();
+    let classes: Result<Vec<ClassId>, _> = tables
+        .u32s("profiles.classes")?
+        .into_iter()
+        .map(class_id)
+        .collect();
     let lengths = tables.u32s("profiles.lengths")?;
     let rows = tables.pieces("profiles.values", width, &lengths, step.as_deref())?;
-    let values = rows.iter().flat_map(|rows| rows.values().iter().copied()).collect();
+    let values = rows
+        .iter()
+        .flat_map(|rows| rows.values().iter().copied())
+        .collect();
     let lengths = lengths.into_iter().map(|n| n as usize).collect();
-    Ok(Profiles { width, values, step, lengths, classes: classes? })
+    Ok(Profiles {
+        width,
+        values,
+        step,
+        lengths,
+        classes: classes?,
+    })
 }
 
 /// The tree's nodes: words and tables put together again.
 fn nodes(manifest: &SvrdmManifest, tables: &Tables) -> Result<Vec<Node>, IndexError> {
-    let short =
-        |name: &str| IndexError::Content(format!("tensor {name:?} is shorter than the tree asks for"));
+    let short = |name: &str| {
+        IndexError::Content(format!("tensor {name:?} is shorter than the tree asks for"))
+    };
     let mut exemplar_counts = tables.u32s("tree.exemplar_counts")?.into_iter();
     let exemplars = tables.u32s("tree.exemplars")?;
     let mut exemplars = &exemplars[..];
@@ -144,13 +198,25 @@ fn nodes(manifest: &SvrdmManifest, tables: &Tables) -> Result<Vec<Node>, IndexEr
             NodeWords::Branch(words) => words,
         };
         let mut side = || {
-            let count = exemplar_counts.next().ok_or_else(|| short("tree.exemplar_counts"))? as usize;
-            Ok(take(&mut exemplars, count).ok_or_else(|| short("tree.exemplars"))?.to_vec())
+            let count = exemplar_counts
+                .next()
+                .ok_or_else(|| short("tree.exemplar_counts"))? as usize;
+            Ok(take(&mut exemplars, count)
+                .ok_or_else(|| short("tree.exemplars"))?
+                .to_vec())
         };
         let exemplars = [side()?, side()?];
-        let count = point_counts.next().ok_or_else(|| short("tree.point_counts"))? as usize;
-        let places = take(&mut points, count.saturating_mul(2)).ok_or_else(|| short("tree.points"))?;
-        let places = places.as_chunks::<2>().0.iter().map(|p| p.map(f64::from)).collect();
+        let count = point_counts
+            .next()
+            .ok_or_else(|| short("tree.point_counts"))? as usize;
+        let places =
+            take(&mut points, count.saturating_mul(2)).ok_or_else(|| short("tree.points"))?;
+        let places = places
+            .as_chunks::<2>()
+            .0
+            .iter()
+            .map(|p| p.map(f64::from))
+            .collect();
         let mut of_machine = || {
             let weights = take(&mut weights, count).ok_or_else(|| short("tree.weights"))?;
             Ok(weights.iter().map(|w| f64::from(*w)).collect())

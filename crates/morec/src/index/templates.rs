@@ -41,11 +41,20 @@ pub(super) fn tensors(model: &TemplateModel) -> BTreeMap<String, Tensor> {
     let table = |tables: &[&Rows]| Tensor::of_rows(tables.iter().flat_map(|r| r.iter()), dim, step);
     let lengths = |tables: &[&Rows]| Tensor::of_u32(tables.iter().map(|r| r.len() as u32));
     let mut tensors = BTreeMap::from([
-        ("metric.ridged".to_owned(), Tensor::of_f32(model.ridged.packed())),
-        ("metric.total".to_owned(), Tensor::of_f32(model.total.packed())),
+        (
+            "metric.ridged".to_owned(),
+            Tensor::of_f32(model.ridged.packed()),
+        ),
+        (
+            "metric.total".to_owned(),
+            Tensor::of_f32(model.total.packed()),
+        ),
         ("negatives.lengths".to_owned(), lengths(&negatives)),
         ("negatives.rows".to_owned(), table(&negatives)),
-        ("templates.classes".to_owned(), Tensor::of_u32(model.samples.iter().map(|s| u32::from(s.class.0)))),
+        (
+            "templates.classes".to_owned(),
+            Tensor::of_u32(model.samples.iter().map(|s| u32::from(s.class.0))),
+        ),
         ("templates.lengths".to_owned(), lengths(&samples)),
         ("templates.rows".to_owned(), table(&samples)),
     ]);
@@ -60,23 +69,43 @@ pub(super) fn tensors(model: &TemplateModel) -> BTreeMap<String, Tensor> {
 
 /// All classes' exemplars, one class after the other.
 fn exemplars(classes: &[Exemplars], dim: usize, step: Option<&[f32]>) -> [(String, Tensor); 6] {
-    let flat =
-        |values: &dyn Fn(&Exemplars) -> Vec<f32>| -> Vec<f32> { classes.iter().flat_map(values).collect() };
+    let flat = |values: &dyn Fn(&Exemplars) -> Vec<f32>| -> Vec<f32> {
+        classes.iter().flat_map(values).collect()
+    };
     let shapes = Tensor::of_rows(classes.iter().flat_map(|c| c.shapes.iter()), dim, step);
     [
-        ("verifier.beside".to_owned(), Tensor::of_f32(&flat(&|c| c.beside.concat()))),
-        ("verifier.classes".to_owned(), Tensor::of_u32(classes.iter().map(|c| u32::from(c.class.0)))),
-        ("verifier.counts".to_owned(), Tensor::of_u32(classes.iter().map(|c| c.len() as u32))),
+        (
+            "verifier.beside".to_owned(),
+            Tensor::of_f32(&flat(&|c| c.beside.concat())),
+        ),
+        (
+            "verifier.classes".to_owned(),
+            Tensor::of_u32(classes.iter().map(|c| u32::from(c.class.0))),
+        ),
+        (
+            "verifier.counts".to_owned(),
+            Tensor::of_u32(classes.iter().map(|c| c.len() as u32)),
+        ),
         ("verifier.shapes".to_owned(), shapes),
-        ("verifier.sharpness".to_owned(), Tensor::of_f32(&flat(&|c| vec![c.sharpness]))),
-        ("verifier.weights".to_owned(), Tensor::of_f32(&flat(&|c| c.weights.clone()))),
+        (
+            "verifier.sharpness".to_owned(),
+            Tensor::of_f32(&flat(&|c| vec![c.sharpness])),
+        ),
+        (
+            "verifier.weights".to_owned(),
+            Tensor::of_f32(&flat(&|c| c.weights.clone())),
+        ),
     ]
 }
 
 /// The model of an opened file.
 pub(super) fn read(manifest: &Manifest, tables: &Tables) -> Result<TemplateModel, IndexError> {
     let dim = row_dim(manifest.bones);
-    let step = if tables.has("rows.step") { Some(tables.f32s("rows.step")?) } else { None };
+    let step = if tables.has("rows.step") {
+        Some(tables.f32s("rows.step")?)
+    } else {
+        None
+    };
     if let Some(found) = step.as_ref().map(Vec::len).filter(|found| *found != dim) {
         return Err(IndexError::Content(format!(
             "tensor \"rows.step\": expected {dim} values, found {found}"
@@ -89,8 +118,16 @@ pub(super) fn read(manifest: &Manifest, tables: &Tables) -> Result<TemplateModel
         return Err(IndexError::Content(message));
     }
     let rows = tables.pieces("templates.rows", dim, &lengths, step.as_deref())?;
-    let samples: Result<_, IndexError> =
-        rows.into_iter().zip(classes).map(|(rows, c)| Ok(Sample { class: class_id(c)?, rows })).collect();
+    let samples: Result<_, IndexError> = rows
+        .into_iter()
+        .zip(classes)
+        .map(|(rows, c)| {
+            Ok(Sample {
+                class: class_id(c)?,
+                rows,
+            })
+        })
+        .collect();
     let model = TemplateModel {
         features: manifest.features.clone(),
         bones: manifest.bones,
@@ -110,7 +147,9 @@ pub(super) fn read(manifest: &Manifest, tables: &Tables) -> Result<TemplateModel
         verifier: verifier(manifest, tables, dim, step.as_deref())?,
         step,
     };
-    model.check().map_err(|e| IndexError::Content(e.to_string()))?;
+    model
+        .check()
+        .map_err(|e| IndexError::Content(e.to_string()))?;
     Ok(model)
 }
 
@@ -120,29 +159,56 @@ fn verifier(
     dim: usize,
     step: Option<&[f32]>,
 ) -> Result<Option<Verifier>, IndexError> {
-    let Some(words) = &manifest.verifier else { return Ok(None) };
+    let Some(words) = &manifest.verifier else {
+        return Ok(None);
+    };
     let counts = tables.u32s("verifier.counts")?;
-    let rows: Option<Vec<u32>> = counts.iter().map(|n| n.checked_mul(SHAPE_ROWS as u32)).collect();
-    let rows = rows.ok_or_else(|| IndexError::Content("verifier.counts: too many exemplars".to_owned()))?;
+    let rows: Option<Vec<u32>> = counts
+        .iter()
+        .map(|n| n.checked_mul(SHAPE_ROWS as u32))
+        .collect();
+    let rows =
+        rows.ok_or_else(|| IndexError::Content("verifier.counts: too many exemplars".to_owned()))?;
     let shapes = tables.pieces("verifier.shapes", dim, &rows, step)?;
     let beside = tables.pieces("verifier.beside", 4, &counts, None)?;
     let weights = tables.pieces("verifier.weights", 1, &counts, None)?;
-    let (numbers, sharpness) = (tables.u32s("verifier.classes")?, tables.f32s("verifier.sharpness")?);
+    let (numbers, sharpness) = (
+        tables.u32s("verifier.classes")?,
+        tables.f32s("verifier.sharpness")?,
+    );
     if numbers.len() != counts.len() || sharpness.len() != counts.len() {
         return Err(IndexError::Content(
             "the verifier's tables differ in their number of classes".to_owned(),
         ));
     }
     let mut classes = Vec::with_capacity(counts.len());
-    for (((shapes, beside), weights), (number, sharpness)) in
-        shapes.into_iter().zip(beside).zip(weights).zip(numbers.into_iter().zip(sharpness))
+    for (((shapes, beside), weights), (number, sharpness)) in shapes
+        .into_iter()
+        .zip(beside)
+        .zip(weights)
+        .zip(numbers.into_iter().zip(sharpness))
     {
         let beside = beside.values().as_chunks::<4>().0.to_vec();
         let (class, weights) = (class_id(number)?, weights.values().to_vec());
-        classes.push(Exemplars { class, shapes, beside, weights, sharpness });
+        classes.push(Exemplars {
+            class,
+            shapes,
+            beside,
+            weights,
+            sharpness,
+        });
     }
-    let VerifierWords { reach, bar, generic } = words.clone();
-    Ok(Some(Verifier { reach, bar, generic, classes }))
+    let VerifierWords {
+        reach,
+        bar,
+        generic,
+    } = words.clone();
+    Ok(Some(Verifier {
+        reach,
+        bar,
+        generic,
+        classes,
+    }))
 }
 
 fn symmetric(tables: &Tables, name: &str, dim: usize) -> Result<Symmetric, IndexError> {

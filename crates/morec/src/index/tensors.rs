@@ -37,26 +37,55 @@ impl Tensor {
     /// Single-precision numbers in a line.
     pub fn of_f32(values: &[f32]) -> Self {
         let bytes = values.iter().flat_map(|v| v.to_le_bytes()).collect();
-        Self { dtype: Dtype::F32, shape: vec![values.len()], bytes }
+        Self {
+            dtype: Dtype::F32,
+            shape: vec![values.len()],
+            bytes,
+        }
     }
 
     /// Whole numbers in a line.
     pub fn of_u32(values: impl Iterator<Item = u32>) -> Self {
         let bytes: Vec<u8> = values.flat_map(u32::to_le_bytes).collect();
-        Self { dtype: Dtype::U32, shape: vec![bytes.len() / 4], bytes }
+        Self {
+            dtype: Dtype::U32,
+            shape: vec![bytes.len() / 4],
+            bytes,
+        }
     }
 
     /// A table of rows: as bytes, in steps of `step` column by column, if there is one; else in full.
-    pub fn of_rows<'r>(rows: impl Iterator<Item = &'r [f32]>, dim: usize, step: Option<&[f32]>) -> Self {
+    pub fn of_rows<'r>(
+        rows: impl Iterator<Item = &'r [f32]>,
+        dim: usize,
+        step: Option<&[f32]>,
+    ) -> Self {
         let (dtype, bytes): (_, Vec<u8>) = match step {
             Some(step) => {
-                let quantum = |(v, s): (&f32, &f32)| if *s > 0.0 { (v / s).round() as i8 as u8 } else { 0 };
-                (Dtype::I8, rows.flat_map(|r| r.iter().zip(step).map(quantum)).collect())
+                let quantum = |(v, s): (&f32, &f32)| {
+                    if *s > 0.0 {
+                        (v / s).round() as i8 as u8
+                    } else {
+                        0
+                    }
+                };
+                (
+                    Dtype::I8,
+                    rows.flat_map(|r| r.iter().zip(step).map(quantum)).collect(),
+                )
             }
-            None => (Dtype::F32, rows.flat_map(|r| r.iter().flat_map(|v| v.to_le_bytes())).collect()),
+            None => (
+                Dtype::F32,
+                rows.flat_map(|r| r.iter().flat_map(|v| v.to_le_bytes()))
+                    .collect(),
+            ),
         };
         let width = if step.is_some() { 1 } else { 4 };
-        Self { dtype, shape: vec![bytes.len() / (dim.max(1) * width), dim], bytes }
+        Self {
+            dtype,
+            shape: vec![bytes.len() / (dim.max(1) * width), dim],
+            bytes,
+        }
     }
 }
 
@@ -79,7 +108,14 @@ impl Tables {
     pub fn of(file: &SafeTensors<'_>) -> Self {
         let copy = |(name, view): (String, safetensors::tensor::TensorView<'_>)| {
             let (dtype, shape) = (view.dtype(), view.shape().to_vec());
-            (name, Tensor { dtype, shape, bytes: view.data().to_vec() })
+            (
+                name,
+                Tensor {
+                    dtype,
+                    shape,
+                    bytes: view.data().to_vec(),
+                },
+            )
         };
         Self(file.tensors().into_iter().map(copy).collect())
     }
@@ -90,11 +126,17 @@ impl Tables {
     }
 
     fn get(&self, name: &str, dtype: Dtype) -> Result<&Tensor, IndexError> {
-        let tensor = self.0.get(name).ok_or_else(|| IndexError::Content(format!("no tensor {name:?}")))?;
+        let tensor = self
+            .0
+            .get(name)
+            .ok_or_else(|| IndexError::Content(format!("no tensor {name:?}")))?;
         if tensor.dtype == dtype {
             return Ok(tensor);
         }
-        Err(IndexError::Content(format!("tensor {name:?}: expected {dtype:?}, found {:?}", tensor.dtype)))
+        Err(IndexError::Content(format!(
+            "tensor {name:?}: expected {dtype:?}, found {:?}",
+            tensor.dtype
+        )))
     }
 
     /// Finite single-precision numbers.
@@ -104,7 +146,9 @@ impl Tables {
         if values.iter().all(|v| v.is_finite()) {
             return Ok(values);
         }
-        Err(IndexError::Content(format!("tensor {name:?} holds a value that is not finite")))
+        Err(IndexError::Content(format!(
+            "tensor {name:?} holds a value that is not finite"
+        )))
     }
 
     /// Whole numbers.
@@ -138,8 +182,10 @@ impl Tables {
         };
         let rows: u64 = lengths.iter().map(|l| u64::from(*l)).sum();
         if rows * dim as u64 != values.len() as u64 {
-            let message =
-                format!("tensor {name:?}: expected {rows} rows of {dim}, found {} values", values.len());
+            let message = format!(
+                "tensor {name:?}: expected {rows} rows of {dim}, found {} values",
+                values.len()
+            );
             return Err(IndexError::Content(message));
         }
         let mut rest = values.as_slice();
@@ -154,5 +200,7 @@ impl Tables {
 
 /// A class's number as tables hold it.
 pub(super) fn class_id(number: u32) -> Result<ClassId, IndexError> {
-    u16::try_from(number).map(ClassId).map_err(|_| IndexError::Content(format!("class number {number}")))
+    u16::try_from(number)
+        .map(ClassId)
+        .map_err(|_| IndexError::Content(format!("class number {number}")))
 }

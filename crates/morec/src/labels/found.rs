@@ -11,7 +11,8 @@ use crate::eval::Found;
 use crate::formats::{ParseError, Place, Warning};
 
 /// The first line of a table of detections, without a line ending.
-pub const FOUND_HEADER: &str = "clip\tstart\tstop\tclass\tscore\treported_at\tstart_secs\tstop_secs";
+pub const FOUND_HEADER: &str =
+    "clip\tstart\tstop\tclass\tscore\treported_at\tstart_secs\tstop_secs";
 
 /// A detection to be written: its line, by [`Display`](fmt::Display), without a line ending.
 ///
@@ -163,7 +164,14 @@ impl FoundTable {
                 ReportedAt::Secs(secs) => secs,
             });
             let (clip, class) = (name.to_owned(), row.class.clone());
-            found.push(Found { clip, class, start_secs, stop_secs, score: row.score, reported_secs });
+            found.push(Found {
+                clip,
+                class,
+                start_secs,
+                stop_secs,
+                score: row.score,
+                reported_secs,
+            });
         }
         let warnings = absent.into_iter().map(|(clip, (line, rows))| {
             Warning::new(
@@ -186,8 +194,12 @@ mod tests {
         assert_eq!((table.rows[0].score, table.rows[0].reported), (None, None));
         let error = read_found(b"clip\tclass\na\twave\n").unwrap_err();
         assert!(error.to_string().contains("a column `start`"), "{error}");
-        let error = read_found(b"clip\tstart\tstop\tclass\tscore\na\t3\t9\twave\thigh\n").unwrap_err();
-        assert_eq!(error.to_string(), "line 2, column 12: expected a number or nothing, found `high`");
+        let error =
+            read_found(b"clip\tstart\tstop\tclass\tscore\na\t3\t9\twave\thigh\n").unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "line 2, column 12: expected a number or nothing, found `high`"
+        );
     }
 
     #[test]
@@ -195,10 +207,23 @@ mod tests {
         let table = read_found(
             b"clip\tstart\tstop\tclass\treported_at\na\t30\t60\tx\t90\nb\t0\t1\tx\t\nb\t1\t2\tx\t\n",
         );
-        let clips = BTreeMap::from([("a".to_owned(), ClipLength { frames: 100, rate_hz: 30.0 })]);
+        let clips = BTreeMap::from([(
+            "a".to_owned(),
+            ClipLength {
+                frames: 100,
+                rate_hz: 30.0,
+            },
+        )]);
         let (found, warnings) = table.unwrap().resolve(&clips);
         assert_eq!(found.len(), 1);
-        assert_eq!((found[0].start_secs, found[0].stop_secs, found[0].reported_secs), (1.0, 2.0, Some(3.0)));
+        assert_eq!(
+            (
+                found[0].start_secs,
+                found[0].stop_secs,
+                found[0].reported_secs
+            ),
+            (1.0, 2.0, Some(3.0))
+        );
         assert_eq!(
             warnings[0].to_string(),
             "line 3: 2 detections name the clip b, which is not there; left out"

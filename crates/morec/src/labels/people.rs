@@ -49,8 +49,13 @@ mod tests {
         let people = read_people(b"clip\tperson\na\tx\nb\ty\nb\tz\nc\t\n").unwrap();
         assert_eq!(people.by_clip["b"], "z");
         assert!(!people.by_clip.contains_key("c"));
-        assert!(people.warnings[0].to_string().starts_with("line 4, column 3: b was given to y"));
-        let mut labels = Labels::read(b"clip\tclass\tperson\na\twave\t\na\twave\tother\nd\twave\n").unwrap();
+        assert!(
+            people.warnings[0]
+                .to_string()
+                .starts_with("line 4, column 3: b was given to y")
+        );
+        let mut labels =
+            Labels::read(b"clip\tclass\tperson\na\twave\t\na\twave\tother\nd\twave\n").unwrap();
         labels.add_people(&people);
         let persons: Vec<_> = labels.rows.iter().map(|r| r.person.as_deref()).collect();
         assert_eq!(persons, [Some("x"), Some("other"), None]);

@@ -20,7 +20,10 @@ impl Labels {
     }
 
     /// The same, and the cells of one more column, one for each row; `None` if the table has no such column.
-    pub fn read_with(bytes: &[u8], column: &str) -> Result<(Self, Option<Vec<String>>), ParseError> {
+    pub fn read_with(
+        bytes: &[u8],
+        column: &str,
+    ) -> Result<(Self, Option<Vec<String>>), ParseError> {
         let table = Table::new(bytes)?;
         let (labels, rows) = Self::of_table(&table, &[column])?;
         let cells = |at: usize| rows.iter().map(|row| row.cell(at).to_owned()).collect();
@@ -32,7 +35,16 @@ impl Labels {
         let (clip, class) = (table.need("clip")?, table.need("class")?);
         let person = table.find("person");
         let extents = ExtentColumns::find(table)?;
-        let known = ["clip", "class", "person", "start", "stop", "start_secs", "stop_secs", "whole_clip"];
+        let known = [
+            "clip",
+            "class",
+            "person",
+            "start",
+            "stop",
+            "start_secs",
+            "stop_secs",
+            "whole_clip",
+        ];
         let whole = table.find("whole_clip");
         let mut warnings = table.unknown_columns(&[&known, more].concat());
         let (rows, too_long) = table.rows();
@@ -47,12 +59,21 @@ impl Labels {
                         Some("1") => Extent::WholeClip,
                         _ => extents.read(row)?,
                     },
-                    person: person.map(|p| row.cell(p)).filter(|p| !p.is_empty()).map(str::to_owned),
+                    person: person
+                        .map(|p| row.cell(p))
+                        .filter(|p| !p.is_empty())
+                        .map(str::to_owned),
                     line: row.line,
                 })
             })
             .collect::<Result<_, _>>()?;
-        Ok((Self { rows: labels, warnings }, rows))
+        Ok((
+            Self {
+                rows: labels,
+                warnings,
+            },
+            rows,
+        ))
     }
 }
 
@@ -70,8 +91,9 @@ impl ExtentColumns {
     }
 
     pub fn read(&self, row: &Row<'_>) -> Result<Extent, ParseError> {
-        let filled =
-            |(start, stop): (usize, usize)| !(row.cell(start).is_empty() && row.cell(stop).is_empty());
+        let filled = |(start, stop): (usize, usize)| {
+            !(row.cell(start).is_empty() && row.cell(stop).is_empty())
+        };
         match (self.frames, self.secs) {
             (None, None) => Ok(Extent::WholeClip),
             (Some(columns), None) => frames(row, columns),
@@ -84,7 +106,10 @@ impl ExtentColumns {
 fn frames(row: &Row<'_>, (start, stop): (usize, usize)) -> Result<Extent, ParseError> {
     let (from, to) = (row.frame(start)?, row.frame(stop)?);
     if to <= from {
-        return Err(row.error(stop, &format!("a stop after the start, {from} (stop is exclusive)")));
+        return Err(row.error(
+            stop,
+            &format!("a stop after the start, {from} (stop is exclusive)"),
+        ));
     }
     Ok(Extent::Frames(from..to))
 }
@@ -115,18 +140,32 @@ mod tests {
         let frames = read("clip\tstart\tstop\tclass\na\t3\t9\twalk\n");
         assert_eq!(frames.rows[0].extent, Extent::Frames(3..9));
         assert_eq!(frames.rows[0].line, 2);
-        let secs =
-            read("class\tclip\tstart_secs\tstop_secs\tperson\nwalk\ta\t0.5\t1.25\tp\nrun\ta\t2\t3\t\n");
+        let secs = read(
+            "class\tclip\tstart_secs\tstop_secs\tperson\nwalk\ta\t0.5\t1.25\tp\nrun\ta\t2\t3\t\n",
+        );
         assert_eq!(secs.rows[0].extent, Extent::Secs(0.5, 1.25));
         assert_eq!(secs.rows[0].person.as_deref(), Some("p"));
         assert_eq!(secs.rows[1].person, None);
-        let some = read("clip\tclass\tstart\tstop\twhole_clip\na\tw\t3\t9\t0\nb\tw\t0\t9\t1\nc\tw\t\t\t1\n");
+        let some = read(
+            "clip\tclass\tstart\tstop\twhole_clip\na\tw\t3\t9\t0\nb\tw\t0\t9\t1\nc\tw\t\t\t1\n",
+        );
         let extents: Vec<&Extent> = some.rows.iter().map(|row| &row.extent).collect();
-        assert_eq!(extents, [&Extent::Frames(3..9), &Extent::WholeClip, &Extent::WholeClip]);
+        assert_eq!(
+            extents,
+            [
+                &Extent::Frames(3..9),
+                &Extent::WholeClip,
+                &Extent::WholeClip
+            ]
+        );
         let whole = read("clip\tclass\tstyle\na\twave\tsoft\n");
         assert_eq!(whole.rows[0].extent, Extent::WholeClip);
         assert_eq!(whole.warnings.len(), 1);
-        assert!(whole.warnings[0].text.contains("`style`"), "{}", whole.warnings[0]);
+        assert!(
+            whole.warnings[0].text.contains("`style`"),
+            "{}",
+            whole.warnings[0]
+        );
     }
 
     #[test]
@@ -140,7 +179,11 @@ mod tests {
             let other = read(text);
             assert!(other.warnings.is_empty(), "{text:?}: {:?}", other.warnings);
             for (a, b) in plain.rows.iter().zip(&other.rows) {
-                assert_eq!((&a.clip, &a.class, &a.extent), (&b.clip, &b.class, &b.extent), "{text:?}");
+                assert_eq!(
+                    (&a.clip, &a.class, &a.extent),
+                    (&b.clip, &b.class, &b.extent),
+                    "{text:?}"
+                );
             }
             assert_eq!(other.rows.len(), 2);
         }
@@ -155,16 +198,40 @@ mod tests {
             ("clip\tstart\tclass\n", "line 1: expected a column `stop`"),
             ("clip\tstart\tstop\n", "line 1: expected a column `class`"),
             ("clip\tclass\tclip\n", "a second column `clip`"),
-            (&format!("{head}a\t9\t9\twalk"), "line 2, column 5: expected a stop after the start, 9"),
-            (&format!("{head}\na\tx\t9\twalk"), "line 3, column 3: expected a frame"),
+            (
+                &format!("{head}a\t9\t9\twalk"),
+                "line 2, column 5: expected a stop after the start, 9",
+            ),
+            (
+                &format!("{head}\na\tx\t9\twalk"),
+                "line 3, column 3: expected a frame",
+            ),
             (&format!("{head}a\t-3\t9\twalk"), "found `-3`"),
             (&format!("{head}a\t3.5\t9\twalk"), "found `3.5`"),
-            (&format!("{head}a\t3\t99999999999999999999999\twalk"), "line 2, column 5"),
-            (&format!("{head}a\t3"), "line 2, column 4: expected a class, found nothing"),
-            (&format!("{head}a\t3\t9\t \n"), "expected a class, found nothing"),
-            (&format!("{head}\t3\t9\twalk\n"), "line 2, column 1: expected a clip's name"),
-            ("clip\tclass\tstart_secs\tstop_secs\na\tb\t1\tNaN", "line 2, column 7: expected seconds"),
-            ("clip\tclass\tstart_secs\tstop_secs\na\tb\t1,5\t2", "with a decimal point, found `1,5`"),
+            (
+                &format!("{head}a\t3\t99999999999999999999999\twalk"),
+                "line 2, column 5",
+            ),
+            (
+                &format!("{head}a\t3"),
+                "line 2, column 4: expected a class, found nothing",
+            ),
+            (
+                &format!("{head}a\t3\t9\t \n"),
+                "expected a class, found nothing",
+            ),
+            (
+                &format!("{head}\t3\t9\twalk\n"),
+                "line 2, column 1: expected a clip's name",
+            ),
+            (
+                "clip\tclass\tstart_secs\tstop_secs\na\tb\t1\tNaN",
+                "line 2, column 7: expected seconds",
+            ),
+            (
+                "clip\tclass\tstart_secs\tstop_secs\na\tb\t1,5\t2",
+                "with a decimal point, found `1,5`",
+            ),
         ];
         for (text, message) in cases {
             assert!(fails(text).contains(message), "{text:?}: {}", fails(text));
@@ -175,7 +242,12 @@ mod tests {
     fn what_is_not_utf8_is_refused_with_its_line() {
         let error = Labels::read(b"clip\tclass\r\na\tb\r\na\t\xe9\n").unwrap_err();
         assert_eq!(error.at, Place::Line(3));
-        assert!(Labels::read(b"\xff\xfec\0").unwrap_err().found.contains("UTF-16"));
+        assert!(
+            Labels::read(b"\xff\xfec\0")
+                .unwrap_err()
+                .found
+                .contains("UTF-16")
+        );
     }
 
     #[test]

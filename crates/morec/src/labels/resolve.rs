@@ -47,8 +47,19 @@ pub struct Resolved {
 
 impl From<Sample> for Truth {
     fn from(sample: Sample) -> Self {
-        let Sample { clip, class, start_secs, stop_secs, .. } = sample;
-        Self { clip, class, start_secs, stop_secs }
+        let Sample {
+            clip,
+            class,
+            start_secs,
+            stop_secs,
+            ..
+        } = sample;
+        Self {
+            clip,
+            class,
+            start_secs,
+            stop_secs,
+        }
     }
 }
 
@@ -61,7 +72,10 @@ impl ClipLength {
     /// Start and stop of an extent in seconds, not yet held against the clip's length.
     pub fn secs(&self, extent: &Extent) -> (f64, f64) {
         match extent {
-            Extent::Frames(span) => (span.start as f64 / self.rate_hz, span.end as f64 / self.rate_hz),
+            Extent::Frames(span) => (
+                span.start as f64 / self.rate_hz,
+                span.end as f64 / self.rate_hz,
+            ),
             Extent::Secs(start, stop) => (*start, *stop),
             Extent::WholeClip => (0.0, self.duration_secs()),
         }
@@ -69,7 +83,10 @@ impl ClipLength {
 }
 
 /// The name under which `clips` knows a clip that a table calls `name`: itself, or without its file ending.
-pub(super) fn known_name<'a>(name: &'a str, clips: &BTreeMap<String, ClipLength>) -> Option<&'a str> {
+pub(super) fn known_name<'a>(
+    name: &'a str,
+    clips: &BTreeMap<String, ClipLength>,
+) -> Option<&'a str> {
     if clips.contains_key(name) {
         return Some(name);
     }
@@ -99,15 +116,25 @@ impl Resolved {
         let duration_secs = length.duration_secs();
         let half_frame = 0.5 / length.rate_hz;
         let (start_secs, mut stop_secs) = length.secs(&row.extent);
-        let mut warn = |text: String| self.warnings.push(Warning::new(Place::Line(row.line), text));
-        let end = format!("{clip} ends at {duration_secs:.3} s (frame {})", length.frames);
+        let mut warn = |text: String| {
+            self.warnings
+                .push(Warning::new(Place::Line(row.line), text))
+        };
+        let end = format!(
+            "{clip} ends at {duration_secs:.3} s (frame {})",
+            length.frames
+        );
         if length.frames == 0 || start_secs >= duration_secs {
-            return warn(format!("the label starts at {start_secs:.3} s but {end}; left out"));
+            return warn(format!(
+                "the label starts at {start_secs:.3} s but {end}; left out"
+            ));
         }
         if stop_secs > duration_secs {
             // Seconds in a table are rounded: less than half a frame is no mistake.
             if stop_secs > duration_secs + half_frame {
-                warn(format!("the label stops at {stop_secs:.3} s but {end}; cut there"));
+                warn(format!(
+                    "the label stops at {stop_secs:.3} s but {end}; cut there"
+                ));
             }
             stop_secs = duration_secs;
         }
@@ -125,15 +152,17 @@ impl Resolved {
     fn warn_of_overlaps(&mut self, clips: &BTreeMap<String, ClipLength>) {
         let mut order: Vec<&Sample> = self.samples.iter().collect();
         order.sort_by(|a, b| {
-            (a.clip.cmp(&b.clip)).then(a.start_secs.total_cmp(&b.start_secs)).then(a.line.cmp(&b.line))
+            (a.clip.cmp(&b.clip))
+                .then(a.start_secs.total_cmp(&b.start_secs))
+                .then(a.line.cmp(&b.line))
         });
         let mut warnings = Vec::new();
         // Whoever reaches furthest so far is the one that the next can overlap.
         let mut furthest: Option<&Sample> = None;
         for sample in order {
             let before = furthest.filter(|f| f.clip == sample.clip);
-            if let Some(before) =
-                before.filter(|b| b.stop_secs - sample.start_secs > 0.5 / clips[&sample.clip].rate_hz)
+            if let Some(before) = before
+                .filter(|b| b.stop_secs - sample.start_secs > 0.5 / clips[&sample.clip].rate_hz)
             {
                 let text = format!(
                     "{} at {:.3} s overlaps {} of line {}, which stops at {:.3} s",
@@ -159,7 +188,13 @@ mod tests {
     use super::*;
 
     fn clips() -> BTreeMap<String, ClipLength> {
-        BTreeMap::from([("a".to_owned(), ClipLength { frames: 300, rate_hz: 120.0 })])
+        BTreeMap::from([(
+            "a".to_owned(),
+            ClipLength {
+                frames: 300,
+                rate_hz: 120.0,
+            },
+        )])
     }
 
     fn resolve(text: &str) -> Resolved {
@@ -171,16 +206,25 @@ mod tests {
         let frames = resolve("clip\tclass\tstart\tstop\na\tx\t60\t240\n");
         let secs = resolve("clip\tclass\tstart_secs\tstop_secs\na.bvh\tx\t0.5\t2\n");
         let whole = resolve("clip\tclass\na\tx\n");
-        assert_eq!((frames.samples[0].start_secs, frames.samples[0].stop_secs), (0.5, 2.0));
+        assert_eq!(
+            (frames.samples[0].start_secs, frames.samples[0].stop_secs),
+            (0.5, 2.0)
+        );
         assert_eq!(secs.samples, frames.samples);
-        assert_eq!((whole.samples[0].stop_secs, whole.samples[0].whole_clip), (2.5, true));
-        assert!(frames.warnings.is_empty() && secs.warnings.is_empty() && whole.warnings.is_empty());
+        assert_eq!(
+            (whole.samples[0].stop_secs, whole.samples[0].whole_clip),
+            (2.5, true)
+        );
+        assert!(
+            frames.warnings.is_empty() && secs.warnings.is_empty() && whole.warnings.is_empty()
+        );
     }
 
     #[test]
     fn labels_beyond_the_end_are_cut_or_left_out() {
-        let resolved =
-            resolve("clip\tclass\tstart\tstop\na\tx\t200\t301\na\tx\t300\t310\nb\tx\t0\t1\nb\tx\t1\t2\n");
+        let resolved = resolve(
+            "clip\tclass\tstart\tstop\na\tx\t200\t301\na\tx\t300\t310\nb\tx\t0\t1\nb\tx\t1\t2\n",
+        );
         assert_eq!(resolved.samples.len(), 1);
         assert_eq!(resolved.samples[0].stop_secs, 2.5);
         let texts: Vec<String> = resolved.warnings.iter().map(|w| w.to_string()).collect();
@@ -189,7 +233,11 @@ mod tests {
             "{}",
             texts[0]
         );
-        assert!(texts[1].starts_with("line 3") && texts[1].ends_with("left out"), "{}", texts[1]);
+        assert!(
+            texts[1].starts_with("line 3") && texts[1].ends_with("left out"),
+            "{}",
+            texts[1]
+        );
         assert_eq!(resolved.absent, BTreeMap::from([("b".to_owned(), 2)]));
     }
 
@@ -198,7 +246,8 @@ mod tests {
         let touching = resolve("clip\tclass\tstart\tstop\na\tx\t0\t60\na\ty\t60\t90\n");
         assert!(touching.warnings.is_empty());
         // The long first label overlaps both later ones, which do not overlap each other.
-        let inside = resolve("clip\tclass\tstart\tstop\na\tx\t0\t200\na\ty\t10\t20\na\tz\t30\t40\n");
+        let inside =
+            resolve("clip\tclass\tstart\tstop\na\tx\t0\t200\na\ty\t10\t20\na\tz\t30\t40\n");
         let lines: Vec<Place> = inside.warnings.iter().map(|w| w.at).collect();
         assert_eq!(lines, [Place::Line(3), Place::Line(4)]);
         assert!(inside.warnings[1].text.contains("overlaps x of line 2"));

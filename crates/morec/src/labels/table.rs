@@ -21,37 +21,65 @@ impl<'a> Table<'a> {
     /// Reads the header: the first line that is not blank.
     pub fn new(bytes: &'a [u8]) -> Result<Self, ParseError> {
         let text = decode(bytes)?;
-        let (line, raw) = numbered_lines(text).find(|(_, raw)| !raw.trim().is_empty()).ok_or_else(|| {
-            ParseError::new(Place::File, "a header line with column names", "an empty file")
-        })?;
+        let (line, raw) = numbered_lines(text)
+            .find(|(_, raw)| !raw.trim().is_empty())
+            .ok_or_else(|| {
+                ParseError::new(
+                    Place::File,
+                    "a header line with column names",
+                    "an empty file",
+                )
+            })?;
         let mut header: Vec<&str> = raw.split('\t').map(str::trim).collect();
         while header.last().is_some_and(|name| name.is_empty()) {
             header.pop();
         }
         for (i, name) in header.iter().enumerate() {
-            if !name.is_empty() && header[..i].iter().any(|other| other.eq_ignore_ascii_case(name)) {
+            if !name.is_empty()
+                && header[..i]
+                    .iter()
+                    .any(|other| other.eq_ignore_ascii_case(name))
+            {
                 let found = format!("a second column `{name}`");
-                return Err(ParseError::new(Place::Line(line), "each column once", found));
+                return Err(ParseError::new(
+                    Place::Line(line),
+                    "each column once",
+                    found,
+                ));
             }
         }
-        Ok(Self { text, header, header_line: line })
+        Ok(Self {
+            text,
+            header,
+            header_line: line,
+        })
     }
 
     /// Index of the column of this name, upper and lower case alike.
     pub fn find(&self, name: &str) -> Option<usize> {
-        self.header.iter().position(|h| h.eq_ignore_ascii_case(name))
+        self.header
+            .iter()
+            .position(|h| h.eq_ignore_ascii_case(name))
     }
 
     /// Index of a column that must be there; the error names what the header holds instead.
     pub fn need(&self, name: &str) -> Result<usize, ParseError> {
         self.find(name).ok_or_else(|| {
             let expected = format!("a column `{name}` (tab-separated)");
-            ParseError::new(Place::Line(self.header_line), expected, self.describe_header())
+            ParseError::new(
+                Place::Line(self.header_line),
+                expected,
+                self.describe_header(),
+            )
         })
     }
 
     /// Both columns of a pair, or neither.
-    pub fn find_pair(&self, first: &str, second: &str) -> Result<Option<(usize, usize)>, ParseError> {
+    pub fn find_pair(
+        &self,
+        first: &str,
+        second: &str,
+    ) -> Result<Option<(usize, usize)>, ParseError> {
         match (self.find(first), self.find(second)) {
             (None, None) => Ok(None),
             _ => Ok(Some((self.need(first)?, self.need(second)?))),
@@ -64,7 +92,10 @@ impl<'a> Table<'a> {
             .iter()
             .filter(|name| !name.is_empty() && !known.iter().any(|k| k.eq_ignore_ascii_case(name)))
             .map(|name| {
-                Warning::new(Place::Line(self.header_line), format!("column `{name}` is not known; left out"))
+                Warning::new(
+                    Place::Line(self.header_line),
+                    format!("column `{name}` is not known; left out"),
+                )
             })
             .collect()
     }
@@ -78,10 +109,16 @@ impl<'a> Table<'a> {
                 continue;
             }
             let row = Row::new(line, raw);
-            if let Some((column, cell)) =
-                row.cells.iter().skip(self.header.len()).find(|(_, c)| !c.is_empty())
+            if let Some((column, cell)) = row
+                .cells
+                .iter()
+                .skip(self.header.len())
+                .find(|(_, c)| !c.is_empty())
             {
-                let text = format!("`{}` stands beyond the last column; left out", shorten(cell));
+                let text = format!(
+                    "`{}` stands beyond the last column; left out",
+                    shorten(cell)
+                );
                 warnings.push(Warning::new(Place::Column(line, *column), text));
             }
             rows.push(row);
@@ -106,7 +143,11 @@ impl<'a> Row<'a> {
             cells.push((column + indent as u64, cell.trim()));
             column += cell.len() as u64 + 1;
         }
-        Self { line, cells, end: column - 1 }
+        Self {
+            line,
+            cells,
+            end: column - 1,
+        }
     }
 
     /// The cell of a column; empty where the row is too short.
@@ -116,13 +157,20 @@ impl<'a> Row<'a> {
 
     /// Where the cell of a column stands.
     pub fn place(&self, column: usize) -> Place {
-        Place::Column(self.line, self.cells.get(column).map_or(self.end, |(at, _)| *at))
+        Place::Column(
+            self.line,
+            self.cells.get(column).map_or(self.end, |(at, _)| *at),
+        )
     }
 
     /// An error about the cell of a column.
     pub fn error(&self, column: usize, expected: &str) -> ParseError {
         let cell = self.cell(column);
-        let found = if cell.is_empty() { "nothing".to_owned() } else { format!("`{}`", shorten(cell)) };
+        let found = if cell.is_empty() {
+            "nothing".to_owned()
+        } else {
+            format!("`{}`", shorten(cell))
+        };
         ParseError::new(self.place(column), expected, found)
     }
 
@@ -141,7 +189,9 @@ impl<'a> Row<'a> {
             Some((whole, zeros)) if zeros.bytes().all(|b| b == b'0') => whole,
             _ => cell,
         };
-        digits.parse().map_err(|_| self.error(column, "a frame: a whole number, 0 or more"))
+        digits
+            .parse()
+            .map_err(|_| self.error(column, "a frame: a whole number, 0 or more"))
     }
 
     /// A cell that must hold a time.
@@ -166,14 +216,21 @@ impl<'a> Row<'a> {
 
 fn decode(bytes: &[u8]) -> Result<&str, ParseError> {
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
-        return Err(ParseError::new(Place::File, "text in UTF-8", "text in UTF-16"));
+        return Err(ParseError::new(
+            Place::File,
+            "text in UTF-8",
+            "text in UTF-16",
+        ));
     }
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     std::str::from_utf8(bytes).map_err(|error| {
         let before = &bytes[..error.valid_up_to()];
         // Counted as the lines are: CR, LF and CRLF each end one.
-        let line =
-            String::from_utf8_lossy(before).replace("\r\n", "\n").replace('\r', "\n").matches('\n').count();
+        let line = String::from_utf8_lossy(before)
+            .replace("\r\n", "\n")
+            .replace('\r', "\n")
+            .matches('\n')
+            .count();
         let found = format!("the byte 0x{:02x}", bytes[error.valid_up_to()]);
         ParseError::new(Place::Line(line as u64 + 1), "text in UTF-8", found)
     })
@@ -188,7 +245,11 @@ fn numbered_lines(text: &str) -> impl Iterator<Item = (u64, &str)> {
             rest = None;
             return Some(text);
         };
-        let ending = if text[end..].starts_with("\r\n") { 2 } else { 1 };
+        let ending = if text[end..].starts_with("\r\n") {
+            2
+        } else {
+            1
+        };
         rest = Some(&text[end + ending..]);
         Some(&text[..end])
     });

@@ -53,15 +53,23 @@ impl Early {
         now_secs: f64,
         say: &mut Say<impl FnMut(Event)>,
     ) {
-        match (hunch.filter(|h| middle_secs(h) > after_secs), &mut self.open) {
+        match (
+            hunch.filter(|h| middle_secs(h) > after_secs),
+            &mut self.open,
+        ) {
             (Some(hunch), None) => {
                 let motion = say.new_motion();
                 say.event(Phase::Start, motion, hunch, now_secs);
-                self.open = Some(Open { motion, told: hunch, heard_secs: now_secs });
+                self.open = Some(Open {
+                    motion,
+                    told: hunch,
+                    heard_secs: now_secs,
+                });
             }
             (Some(hunch), Some(open)) => {
                 open.heard_secs = now_secs;
-                let news = hunch.class != open.told.class || hunch.progress >= open.told.progress + STEP;
+                let news =
+                    hunch.class != open.told.class || hunch.progress >= open.told.progress + STEP;
                 if news {
                     open.told = hunch;
                     let motion = open.motion;
@@ -77,7 +85,9 @@ impl Early {
 
     /// The motion's number, if `detection` is the end of the one that is open.
     pub(super) fn take(&mut self, detection: &Detection) -> Option<u64> {
-        let open = self.open.filter(|open| open.told.start_secs < detection.stop_secs)?;
+        let open = self
+            .open
+            .filter(|open| open.told.start_secs < detection.stop_secs)?;
         self.open = None;
         Some(open.motion)
     }
@@ -85,7 +95,12 @@ impl Early {
     /// What was told came to nothing.
     pub(super) fn cancel(&mut self, now_secs: Option<f64>, say: &mut Say<impl FnMut(Event)>) {
         if let Some(open) = self.open.take() {
-            say.event(Phase::Cancel, open.motion, open.told, now_secs.unwrap_or(open.heard_secs));
+            say.event(
+                Phase::Cancel,
+                open.motion,
+                open.told,
+                now_secs.unwrap_or(open.heard_secs),
+            );
         }
     }
 }

@@ -72,10 +72,27 @@ pub(super) fn feed(
         // There is room for exactly as many.
         let _ = back.push(Box::default());
     }
-    let wakers = Arc::new(Wakers { receiver: receiver.clone(), sender: Waker::default() });
+    let wakers = Arc::new(Wakers {
+        receiver: receiver.clone(),
+        sender: Waker::default(),
+    });
     let (dropped, stop) = (dropped.clone(), stop.clone());
-    let sender = FeedSender { items, spare, overload, wakers: wakers.clone(), dropped, stop };
-    (sender, FeedReceiver { items: taken, spare: back, wakers })
+    let sender = FeedSender {
+        items,
+        spare,
+        overload,
+        wakers: wakers.clone(),
+        dropped,
+        stop,
+    };
+    (
+        sender,
+        FeedReceiver {
+            items: taken,
+            spare: back,
+            wakers,
+        },
+    )
 }
 
 impl FeedSender {

@@ -71,7 +71,11 @@ impl Frame {
     pub fn key_pose(&self, rig: &Rig) -> KeyPose {
         let mut key = KeyPose::default();
         for role in Role::ALL {
-            if let Some(position) = rig.roles.joint(role).and_then(|joint| self.pose.positions.get(joint)) {
+            if let Some(position) = rig
+                .roles
+                .joint(role)
+                .and_then(|joint| self.pose.positions.get(joint))
+            {
                 key.set(role, *position);
             }
         }
@@ -83,7 +87,9 @@ impl Frame {
         let unknown = Vec3::repeat(f64::NAN);
         self.pose.rotations.clear();
         self.pose.positions.clear();
-        self.pose.positions.extend(Role::ALL.map(|role| pose.get(role).unwrap_or(unknown)));
+        self.pose
+            .positions
+            .extend(Role::ALL.map(|role| pose.get(role).unwrap_or(unknown)));
     }
 
     /// Makes room for `joints` joints, all unknown and unturned.

@@ -21,7 +21,10 @@ pub(super) struct Stock {
 
 impl Stock {
     pub(super) fn new(model: Model) -> Self {
-        Self { model, made: Mutex::new(Vec::new()) }
+        Self {
+            model,
+            made: Mutex::new(Vec::new()),
+        }
     }
 
     /// A recogniser for `bones`; its templates are shared with all others of the same bones. `None` if the index and
@@ -137,7 +140,9 @@ impl Lane {
         match self.performers.get_mut(frame.actor.index()) {
             Some(performer) => {
                 let (stock, outlets) = (&self.stock, &mut self.outlets);
-                performer.push(frame, &mut |bones| stock.get(bones), &mut |event| outlets.keep(event));
+                performer.push(frame, &mut |bones| stock.get(bones), &mut |event| {
+                    outlets.keep(event)
+                });
             }
             None => self.beyond += 1,
         }
@@ -166,14 +171,20 @@ impl Lane {
 
     fn count(&self) {
         let sum = |of: fn(&Performer) -> u64| self.performers.iter().map(of).sum::<u64>();
-        self.cells.suppressed.store(sum(Performer::suppressed), Relaxed);
-        self.cells.unusable.store(sum(Performer::unusable) + self.beyond, Relaxed);
+        self.cells
+            .suppressed
+            .store(sum(Performer::suppressed), Relaxed);
+        self.cells
+            .unusable
+            .store(sum(Performer::unusable) + self.beyond, Relaxed);
     }
 }
 
 impl Drop for Lane {
     fn drop(&mut self) {
         self.count();
-        self.cells.ended.store(true, std::sync::atomic::Ordering::Release);
+        self.cells
+            .ended
+            .store(true, std::sync::atomic::Ordering::Release);
     }
 }

@@ -46,7 +46,9 @@ impl Model {
             Model::Templates(model) => (model.bones, &[][..]),
             Model::Svrdm(model) => (BoneSet::NONE, model.pivots.pivots()),
         };
-        let ends = bones.indices().flat_map(|bone| [ALL_BONES[bone].from, ALL_BONES[bone].to]);
+        let ends = bones
+            .indices()
+            .flat_map(|bone| [ALL_BONES[bone].from, ALL_BONES[bone].to]);
         ends.chain(pivots.iter().filter_map(|pivot| pivot.role))
     }
 

@@ -10,8 +10,8 @@ use crate::kinematics::for_each_world_pose;
 use crate::roles::RoleMap;
 
 use super::{
-    Actor, Detection, Event, EventReader, Frame, Model, Phase, PoseReader, Recognizer, Rig, Session,
-    SessionError, SessionOptions, StartError, wall_now_secs,
+    Actor, Detection, Event, EventReader, Frame, Model, Phase, PoseReader, Recognizer, Rig,
+    Session, SessionError, SessionOptions, StartError, wall_now_secs,
 };
 
 /// Everything that the recogniser reports of a clip, pose by pose as it would be live; times from the clip's
@@ -48,9 +48,16 @@ pub fn recognize_clip_in_session<M: Clone + Into<Model>>(
     let model = model.clone().into();
     // What keeps a clip from being recognised is said as it is without a session.
     PoseReader::new(&model, &clip.skeleton, roles)?;
-    let options = SessionOptions { overload: super::Overload::Wait, readers: 1, ..options.clone() };
+    let options = SessionOptions {
+        overload: super::Overload::Wait,
+        readers: 1,
+        ..options.clone()
+    };
     let (session, mut feed, readers) = Session::open(&model, &options)?;
-    let rig = Arc::new(Rig { skeleton: clip.skeleton.clone(), roles: roles.clone() });
+    let rig = Arc::new(Rig {
+        skeleton: clip.skeleton.clone(),
+        roles: roles.clone(),
+    });
     let found = thread::scope(|scope| {
         let found = scope.spawn(|| readers.into_iter().flat_map(ended).collect());
         feed.set_rig(Actor(0), &rig);
@@ -71,7 +78,9 @@ pub fn recognize_clip_in_session<M: Clone + Into<Model>>(
 fn ended(mut reader: EventReader) -> Vec<Detection> {
     let mut found = Vec::new();
     while !reader.is_ended() {
-        let event = reader.wait(Duration::from_millis(200)).filter(|event| event.phase == Phase::End);
+        let event = reader
+            .wait(Duration::from_millis(200))
+            .filter(|event| event.phase == Phase::End);
         found.extend(event.map(|event: Event| event.detection()));
     }
     found

@@ -56,7 +56,9 @@ impl<'a> Message<'a> {
     /// Its arguments, in order; they end early where the message does.
     pub fn args(&self) -> impl Iterator<Item = Arg<'a>> + 'a {
         let mut data = self.data;
-        self.tags.iter().map_while(move |tag| argument(*tag, &mut data))
+        self.tags
+            .iter()
+            .map_while(move |tag| argument(*tag, &mut data))
     }
 }
 
@@ -77,11 +79,16 @@ fn element<'a>(bytes: &'a [u8], depth: usize, each: &mut impl FnMut(Message<'a>)
         };
     }
     // Eight bytes of name, eight of a time that says "now" nearly always, and is not heeded.
-    let Some(mut rest) = bytes.get(16..).filter(|_| depth < MAX_DEPTH) else { return 1 };
+    let Some(mut rest) = bytes.get(16..).filter(|_| depth < MAX_DEPTH) else {
+        return 1;
+    };
     let mut malformed = 0;
     while !rest.is_empty() {
         let size = take::<4>(&mut rest).map_or(-1, i32::from_be_bytes);
-        match usize::try_from(size).ok().filter(|size| *size <= rest.len()) {
+        match usize::try_from(size)
+            .ok()
+            .filter(|size| *size <= rest.len())
+        {
             Some(size) => {
                 malformed += element(&rest[..size], depth + 1, each);
                 rest = &rest[size..];
@@ -98,10 +105,18 @@ fn message(bytes: &[u8]) -> Option<Message<'_>> {
     let address = text(&mut rest).filter(|address| address.starts_with('/'))?;
     // Senders of old leave the tags out where there is no argument.
     if rest.is_empty() {
-        return Some(Message { address, tags: &[], data: &[] });
+        return Some(Message {
+            address,
+            tags: &[],
+            data: &[],
+        });
     }
     let tags = text(&mut rest)?.strip_prefix(',')?.as_bytes();
-    Some(Message { address, tags, data: rest })
+    Some(Message {
+        address,
+        tags,
+        data: rest,
+    })
 }
 
 fn take<const N: usize>(bytes: &mut &[u8]) -> Option<[u8; N]> {
@@ -221,7 +236,13 @@ mod tests {
             .prop_map(|(addr, args)| OscPacket::Message(OscMessage { addr, args }));
         message.prop_recursive(3, 12, 4, |inner| {
             prop::collection::vec(inner, 0..4).prop_map(|content| {
-                OscPacket::Bundle(OscBundle { timetag: OscTime { seconds: 0, fractional: 1 }, content })
+                OscPacket::Bundle(OscBundle {
+                    timetag: OscTime {
+                        seconds: 0,
+                        fractional: 1,
+                    },
+                    content,
+                })
             })
         })
     }

@@ -32,11 +32,15 @@ impl EventReader {
             if let Some(event) = self.pop() {
                 return Some(event);
             }
-            let left = most.checked_sub(begun.elapsed()).filter(|left| !left.is_zero())?;
+            let left = most
+                .checked_sub(begun.elapsed())
+                .filter(|left| !left.is_zero())?;
             if self.is_ended() {
                 return self.pop();
             }
-            self.waker.sleep(left, || !self.events.is_empty() || self.events.is_abandoned());
+            self.waker.sleep(left, || {
+                !self.events.is_empty() || self.events.is_abandoned()
+            });
         }
     }
 
@@ -79,7 +83,16 @@ impl Outlets {
         let pair = || {
             let (events, taken) = rtrb::RingBuffer::new(options.capacity.max(PENDING));
             let waker = Arc::new(Waker::default());
-            (Outlet { events, waker: waker.clone() }, EventReader { events: taken, waker })
+            (
+                Outlet {
+                    events,
+                    waker: waker.clone(),
+                },
+                EventReader {
+                    events: taken,
+                    waker,
+                },
+            )
         };
         let (outlets, readers) = (0..options.readers.max(1)).map(|_| pair()).unzip();
         let outlets = Self {
@@ -113,7 +126,12 @@ impl Outlets {
         }
         self.outlets.retain(|outlet| !outlet.events.is_abandoned());
         let waits = self.overload == Overload::Wait && !self.stop.load(Relaxed);
-        if waits && self.outlets.iter().any(|outlet| outlet.events.slots() < self.pending.len()) {
+        if waits
+            && self
+                .outlets
+                .iter()
+                .any(|outlet| outlet.events.slots() < self.pending.len())
+        {
             return false;
         }
         for event in &mut self.pending {

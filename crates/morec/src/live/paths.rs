@@ -32,7 +32,8 @@ struct Seen {
 
 impl Seen {
     fn take(&mut self, ticks: usize, underway: Option<Underway>) {
-        let same = ticks > self.ticks && underway.map(|u| u.class) == self.underway.map(|u| u.class);
+        let same =
+            ticks > self.ticks && underway.map(|u| u.class) == self.underway.map(|u| u.class);
         self.streak = if same { self.streak + 1 } else { 1 };
         (self.ticks, self.underway) = (ticks, underway);
     }
@@ -47,7 +48,13 @@ impl TemplatePath {
         };
         let features = FeatureStream::new(model.bones, &model.features);
         let (early, seen) = (EarlyParams::default(), Seen::default());
-        Ok(Self { features, engine: TemplateEngine::new(&model)?, model, early, seen })
+        Ok(Self {
+            features,
+            engine: TemplateEngine::new(&model)?,
+            model,
+            early,
+            seen,
+        })
     }
 
     pub(super) fn latency_secs(&self) -> f64 {
@@ -65,7 +72,9 @@ impl TemplatePath {
         // The first pose of a stretch sets its origin and completes no row: the origin read here is right.
         let (steps, engine) = (self.steps(), &mut self.engine);
         self.features.push(time_secs, pose.key, &mut |row| {
-            engine.push(row, &mut |d| found.add(d.class, steps, d.start, d.stop, d.score));
+            engine.push(row, &mut |d| {
+                found.add(d.class, steps, d.start, d.stop, d.score)
+            });
         })
     }
 
@@ -78,7 +87,10 @@ impl TemplatePath {
 
     fn steps(&self) -> Steps {
         let step_secs = 1.0 / self.model.features.tick_hz();
-        Steps { origin_secs: self.features.origin_secs(), step_secs }
+        Steps {
+            origin_secs: self.features.origin_secs(),
+            step_secs,
+        }
     }
 
     pub(super) fn hunch(&mut self) -> Option<Hunch> {
@@ -87,12 +99,16 @@ impl TemplatePath {
             let underway = self.engine.underway(&self.early);
             self.seen.take(ticks, underway);
         }
-        let underway = self.seen.underway.filter(|_| self.seen.streak >= self.early.streak)?;
+        let underway = self
+            .seen
+            .underway
+            .filter(|_| self.seen.streak >= self.early.streak)?;
         let tick_secs = 1.0 / self.model.features.tick_hz();
         let seen_secs = self.features.origin_secs() + ticks as f64 * tick_secs;
         Some(Hunch {
             class: underway.class,
-            score: 1.0 - f64::from(underway.distance / (self.early.reach * self.engine.threshold())),
+            score: 1.0
+                - f64::from(underway.distance / (self.early.reach * self.engine.threshold())),
             progress: f64::from(underway.progress),
             start_secs: seen_secs - (underway.age + 1) as f64 * tick_secs,
             seen_secs,
@@ -114,7 +130,10 @@ pub(super) struct SvrdmPath {
 impl SvrdmPath {
     pub(super) fn new(model: &Arc<SvrdmModel>) -> Result<Self, StartError> {
         let engine = SvrdmEngine::new(model)?;
-        Ok(Self { rows: PoseStream::new(&model.pivots, &model.pose), engine })
+        Ok(Self {
+            rows: PoseStream::new(&model.pivots, &model.pose),
+            engine,
+        })
     }
 
     /// A segment is compared with those that end a chunk later, and a row waits for the frame after it.
@@ -137,7 +156,9 @@ impl SvrdmPath {
             }
         };
         self.rows.push(time_secs, pivots, &mut |row| {
-            engine.push(row, &mut |d| found.add(d.class, steps, d.start, d.stop, d.score));
+            engine.push(row, &mut |d| {
+                found.add(d.class, steps, d.start, d.stop, d.score)
+            });
         })
     }
 
@@ -150,6 +171,9 @@ impl SvrdmPath {
 
     fn steps(&self) -> Steps {
         let step_secs = 1.0 / self.engine.model().rate_hz();
-        Steps { origin_secs: self.rows.origin_secs(), step_secs }
+        Steps {
+            origin_secs: self.rows.origin_secs(),
+            step_secs,
+        }
     }
 }

@@ -21,7 +21,10 @@ pub struct EventOptions {
 
 impl Default for EventOptions {
     fn default() -> Self {
-        Self { early: true, refractory_secs: 0.0 }
+        Self {
+            early: true,
+            refractory_secs: 0.0,
+        }
     }
 }
 
@@ -91,24 +94,33 @@ impl Performer {
             return;
         };
         self.wall_secs = frame.wall_secs;
-        let pivots = self.reader.as_mut().and_then(|reader| reader.pivots(&frame.pose));
+        let pivots = self
+            .reader
+            .as_mut()
+            .and_then(|reader| reader.pivots(&frame.pose));
         for detection in recognizer.push(frame.time_secs, Pose { key: &pose, pivots }) {
-            self.teller.tell(detection, &mut self.early, self.wall_secs, out);
+            self.teller
+                .tell(detection, &mut self.early, self.wall_secs, out);
         }
         if self.tells_early {
             let after_secs = self.teller.last_stop_secs();
             let say = &mut self.teller.say(self.wall_secs, out);
-            self.early.look(recognizer.hunch(), after_secs, frame.time_secs, say);
+            self.early
+                .look(recognizer.hunch(), after_secs, frame.time_secs, say);
         }
     }
 
     /// The stream ends or breaks off: tells what its last moments hold. It may go on with another frame.
     pub fn finish(&mut self, out: &mut impl FnMut(Event)) {
-        let Some(recognizer) = &mut self.recognizer else { return };
+        let Some(recognizer) = &mut self.recognizer else {
+            return;
+        };
         for detection in recognizer.finish() {
-            self.teller.tell(detection, &mut self.early, self.wall_secs, out);
+            self.teller
+                .tell(detection, &mut self.early, self.wall_secs, out);
         }
-        self.early.cancel(None, &mut self.teller.say(self.wall_secs, out));
+        self.early
+            .cancel(None, &mut self.teller.say(self.wall_secs, out));
         self.teller.forget();
     }
 

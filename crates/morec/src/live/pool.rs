@@ -64,8 +64,16 @@ impl Pool {
             let thread = thread::Builder::new()
                 .name("morec pool".to_owned())
                 .spawn(job)
-                .map_err(|error| SessionError::Thread { what: "a pool", error })?;
-            pool.workers.push(Worker { lanes: Some(lanes), load, waker, thread: Some(thread) });
+                .map_err(|error| SessionError::Thread {
+                    what: "a pool",
+                    error,
+                })?;
+            pool.workers.push(Worker {
+                lanes: Some(lanes),
+                load,
+                waker,
+                thread: Some(thread),
+            });
         }
         Ok(pool)
     }
@@ -73,11 +81,19 @@ impl Pool {
     /// Opens a stream on the thread that has the fewest. May wait for it to take up streams opened before.
     pub fn open(&self, options: &SessionOptions) -> PoolStream {
         // There is at least one worker, and a tie goes to the first.
-        let least = self.workers.iter().min_by_key(|worker| worker.load.load(Relaxed));
+        let least = self
+            .workers
+            .iter()
+            .min_by_key(|worker| worker.load.load(Relaxed));
         let waker = least.map_or_else(Arc::default, |worker| worker.waker.clone());
         let cells = Arc::new(Cells::default());
-        let (feed, receiver) =
-            feed(options.frame_capacity, options.overload, &waker, &cells.dropped_frames, &self.stop);
+        let (feed, receiver) = feed(
+            options.frame_capacity,
+            options.overload,
+            &waker,
+            &cells.dropped_frames,
+            &self.stop,
+        );
         let lane_options = LaneOptions {
             events: options.events.clone(),
             overload: options.overload,
@@ -88,15 +104,25 @@ impl Pool {
         if let Some(worker) = least {
             worker.load.fetch_add(1, Relaxed);
             // A thread that has died gives the lane back, and dropping it ends the stream.
-            let _ = worker.lanes.as_ref().map(|lanes| lanes.send(Box::new(lane)));
+            let _ = worker
+                .lanes
+                .as_ref()
+                .map(|lanes| lanes.send(Box::new(lane)));
             worker.waker.wake();
         }
-        PoolStream { feed, readers, status: StatusHandle { cells } }
+        PoolStream {
+            feed,
+            readers,
+            status: StatusHandle { cells },
+        }
     }
 
     /// Streams that have not ended.
     pub fn streams(&self) -> usize {
-        self.workers.iter().map(|worker| worker.load.load(Relaxed)).sum()
+        self.workers
+            .iter()
+            .map(|worker| worker.load.load(Relaxed))
+            .sum()
     }
 
     /// Waits until every stream has ended: until every [`FeedSender`] is dropped, and read as its options demand.
@@ -105,7 +131,9 @@ impl Pool {
     }
 
     fn wait(&mut self) {
-        self.workers.iter_mut().for_each(|worker| worker.lanes = None);
+        self.workers
+            .iter_mut()
+            .for_each(|worker| worker.lanes = None);
         for worker in &mut self.workers {
             worker.waker.wake();
             if let Some(thread) = worker.thread.take() {

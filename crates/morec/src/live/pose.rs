@@ -42,7 +42,13 @@ impl PoseReader {
             Model::Svrdm(model) => Some(PivotMap::resolve(&model.pivots, skeleton, roles)?),
         };
         let (key, pivot) = (KeyPose::default(), PivotPose::default());
-        Ok(Self { roles: roles.clone(), pivots, joints: skeleton.len(), key, pivot })
+        Ok(Self {
+            roles: roles.clone(),
+            pivots,
+            joints: skeleton.len(),
+            key,
+            pivot,
+        })
     }
 
     /// Names of the pivots that the skeleton lacks.
@@ -52,7 +58,10 @@ impl PoseReader {
 
     /// How the pivots are turned in `world`; `None` if the model does not ask, or the source does not say.
     pub fn pivots(&mut self, world: &WorldPose) -> Option<&PivotPose> {
-        let pivots = self.pivots.as_ref().filter(|_| world.rotations.len() == self.joints)?;
+        let pivots = self
+            .pivots
+            .as_ref()
+            .filter(|_| world.rotations.len() == self.joints)?;
         self.pivot = pivots.pose(world);
         Some(&self.pivot)
     }
@@ -61,6 +70,9 @@ impl PoseReader {
     pub fn read(&mut self, world: &WorldPose) -> Pose<'_> {
         self.key = KeyPose::of(world, &self.roles);
         let turned = self.pivots(world).is_some();
-        Pose { key: &self.key, pivots: turned.then_some(&self.pivot) }
+        Pose {
+            key: &self.key,
+            pivots: turned.then_some(&self.pivot),
+        }
     }
 }

@@ -56,7 +56,10 @@ pub(super) struct Found {
 
 impl Found {
     fn new() -> Self {
-        Self { detections: Vec::with_capacity(MAX_DETECTIONS_PER_PUSH), reported_secs: 0.0 }
+        Self {
+            detections: Vec::with_capacity(MAX_DETECTIONS_PER_PUSH),
+            reported_secs: 0.0,
+        }
     }
 
     fn begin(&mut self, reported_secs: f64) {
@@ -82,7 +85,10 @@ impl Found {
 impl Clone for Found {
     /// By hand, because a copied vector has room only for what it holds.
     fn clone(&self) -> Self {
-        let mut copy = Self { reported_secs: self.reported_secs, ..Self::new() };
+        let mut copy = Self {
+            reported_secs: self.reported_secs,
+            ..Self::new()
+        };
         copy.detections.extend_from_slice(&self.detections);
         copy
     }
@@ -97,14 +103,22 @@ impl Recognizer {
         let (model, path) = match model {
             Model::Templates(model) => {
                 let path = TemplatePath::new(&model, bones)?;
-                (Model::Templates(path.model.clone()), Path::Templates(Box::new(path)))
+                (
+                    Model::Templates(path.model.clone()),
+                    Path::Templates(Box::new(path)),
+                )
             }
             Model::Svrdm(model) => {
                 let path = SvrdmPath::new(&model)?;
                 (Model::Svrdm(model), Path::Svrdm(Box::new(path)))
             }
         };
-        Ok(Self { model, path, found: Found::new(), now_secs: 0.0 })
+        Ok(Self {
+            model,
+            path,
+            found: Found::new(),
+            now_secs: 0.0,
+        })
     }
 
     /// The model in use, already without what the stream does not offer.

@@ -103,7 +103,10 @@ impl Session {
     ) -> Result<(Self, Vec<EventReader>), SessionError> {
         let (mut session, sender, readers) = Self::open(model, options)?;
         let (cells, stop) = (session.cells.clone(), session.stop.clone());
-        session.spawn("source", Box::new(move || carry(source, sender, &cells, &stop)))?;
+        session.spawn(
+            "source",
+            Box::new(move || carry(source, sender, &cells, &stop)),
+        )?;
         Ok((session, readers))
     }
 
@@ -112,9 +115,18 @@ impl Session {
         model: &M,
         options: &SessionOptions,
     ) -> Result<(Self, FeedSender, Vec<EventReader>), SessionError> {
-        let (cells, stop, waker) = (Arc::new(Cells::default()), Arc::default(), Arc::new(Waker::default()));
-        let (sender, receiver) =
-            feed(options.frame_capacity, options.overload, &waker, &cells.dropped_frames, &stop);
+        let (cells, stop, waker) = (
+            Arc::new(Cells::default()),
+            Arc::default(),
+            Arc::new(Waker::default()),
+        );
+        let (sender, receiver) = feed(
+            options.frame_capacity,
+            options.overload,
+            &waker,
+            &cells.dropped_frames,
+            &stop,
+        );
         let lane_options = LaneOptions {
             events: options.events.clone(),
             overload: options.overload,
@@ -122,8 +134,19 @@ impl Session {
             capacity: options.event_capacity,
         };
         let on_thread = options.on_thread;
-        let mut session = Self { cells, stop, waker, threads: Vec::with_capacity(7), on_thread };
-        let readers = session.recognise(model.clone().into(), receiver, options.layout, &lane_options)?;
+        let mut session = Self {
+            cells,
+            stop,
+            waker,
+            threads: Vec::with_capacity(7),
+            on_thread,
+        };
+        let readers = session.recognise(
+            model.clone().into(),
+            receiver,
+            options.layout,
+            &lane_options,
+        )?;
         Ok((session, sender, readers))
     }
 
@@ -137,19 +160,32 @@ impl Session {
         let (cells, stop, waker) = (self.cells.clone(), self.stop.clone(), self.waker.clone());
         match (layout, model) {
             (Layout::Inline, model) => {
-                let (lane, readers) = Lane::new(feed, &Arc::new(Stock::new(model)), options, &cells, &stop);
+                let (lane, readers) =
+                    Lane::new(feed, &Arc::new(Stock::new(model)), options, &cells, &stop);
                 self.spawn("recognition", Box::new(move || recognise(lane, &waker)))?;
                 Ok(readers)
             }
             (Layout::Stages, Model::Svrdm(model)) => {
-                let shared = stages::Shared { cells: &cells, stop: &stop, waker: &waker };
-                stages::start(&model, feed, options, &shared, &mut |what, job| self.spawn(what, job))
+                let shared = stages::Shared {
+                    cells: &cells,
+                    stop: &stop,
+                    waker: &waker,
+                };
+                stages::start(&model, feed, options, &shared, &mut |what, job| {
+                    self.spawn(what, job)
+                })
             }
-            (Layout::Stages, other) => Err(SessionError::NoStages { method: other.method() }),
+            (Layout::Stages, other) => Err(SessionError::NoStages {
+                method: other.method(),
+            }),
         }
     }
 
-    fn spawn(&mut self, what: &'static str, job: Box<dyn FnOnce() + Send>) -> Result<(), SessionError> {
+    fn spawn(
+        &mut self,
+        what: &'static str,
+        job: Box<dyn FnOnce() + Send>,
+    ) -> Result<(), SessionError> {
         let named = thread::Builder::new().name(format!("morec {what}"));
         let on_thread = self.on_thread;
         let job = move || {
@@ -158,7 +194,11 @@ impl Session {
             }
             job();
         };
-        self.threads.push(named.spawn(job).map_err(|error| SessionError::Thread { what, error })?);
+        self.threads.push(
+            named
+                .spawn(job)
+                .map_err(|error| SessionError::Thread { what, error })?,
+        );
         Ok(())
     }
 
@@ -169,7 +209,9 @@ impl Session {
 
     /// For reading the status from elsewhere.
     pub fn handle(&self) -> StatusHandle {
-        StatusHandle { cells: self.cells.clone() }
+        StatusHandle {
+            cells: self.cells.clone(),
+        }
     }
 
     /// Waits until the source has ended and everything is told. Under [`Overload::Wait`] somebody must go on reading.

@@ -124,7 +124,9 @@ impl Cells {
         // What is not negative is in the order of its bits.
         self.longest_wait.fetch_max(wait_secs.to_bits(), Relaxed);
         self.waits.add(wait_secs);
-        let Some(cells) = self.actors.get(actor.index()) else { return };
+        let Some(cells) = self.actors.get(actor.index()) else {
+            return;
+        };
         cells.frames.fetch_add(1, Relaxed);
         cells.time.store(time_secs.to_bits(), Relaxed);
         cells.wall.store(wall_secs.to_bits(), Relaxed);
@@ -137,9 +139,13 @@ impl Cells {
         if event.phase == Phase::End {
             self.motions.fetch_add(1, Relaxed);
         }
-        let Some(cells) = self.actors.get(event.actor.index()) else { return };
+        let Some(cells) = self.actors.get(event.actor.index()) else {
+            return;
+        };
         match event.phase {
-            Phase::Start | Phase::Update => cells.hunch.store(pack(event.class, event.progress), Relaxed),
+            Phase::Start | Phase::Update => cells
+                .hunch
+                .store(pack(event.class, event.progress), Relaxed),
             Phase::Cancel => cells.hunch.store(0, Relaxed),
             Phase::End => {
                 cells.hunch.store(0, Relaxed);
@@ -165,8 +171,16 @@ impl Cells {
     }
 
     fn read(&self) -> Status {
-        let [packets, malformed, ignored, not_motion, incomplete, late, refused, interruptions] =
-            array::from_fn(|i| self.source[i].load(Relaxed));
+        let [
+            packets,
+            malformed,
+            ignored,
+            not_motion,
+            incomplete,
+            late,
+            refused,
+            interruptions,
+        ] = array::from_fn(|i| self.source[i].load(Relaxed));
         let source = SourceCounts {
             packets,
             malformed,
@@ -199,7 +213,13 @@ impl Cells {
             longest_wait_secs: bits(&self.longest_wait),
             waits: self.waits.read(),
             ended: self.ended.load(std::sync::atomic::Ordering::Acquire),
-            actors: self.actors.iter().enumerate().map(actor).filter(|a| a.frames > 0).collect(),
+            actors: self
+                .actors
+                .iter()
+                .enumerate()
+                .map(actor)
+                .filter(|a| a.frames > 0)
+                .collect(),
         }
     }
 }

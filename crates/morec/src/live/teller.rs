@@ -18,7 +18,14 @@ pub(super) struct Teller {
 impl Teller {
     pub(super) fn new(actor: Actor, classes: usize, refractory_secs: f64) -> Self {
         let (any_secs, class_secs) = (f64::NEG_INFINITY, vec![f64::NEG_INFINITY; classes]);
-        Self { actor, refractory_secs, motions: 0, any_secs, class_secs, suppressed: 0 }
+        Self {
+            actor,
+            refractory_secs,
+            motions: 0,
+            any_secs,
+            class_secs,
+            suppressed: 0,
+        }
     }
 
     /// Tells the end of a motion, unless the refractory rule says otherwise.
@@ -55,8 +62,17 @@ impl Teller {
     }
 
     /// For saying something else than an end.
-    pub(super) fn say<'a, F: FnMut(Event)>(&'a mut self, wall_secs: f64, out: &'a mut F) -> Say<'a, F> {
-        Say { actor: self.actor, wall_secs, motions: &mut self.motions, out }
+    pub(super) fn say<'a, F: FnMut(Event)>(
+        &'a mut self,
+        wall_secs: f64,
+        out: &'a mut F,
+    ) -> Say<'a, F> {
+        Say {
+            actor: self.actor,
+            wall_secs,
+            motions: &mut self.motions,
+            out,
+        }
     }
 
     /// When the last motion ended that was told.

@@ -17,7 +17,9 @@ pub struct Waits {
 
 impl Default for Waits {
     fn default() -> Self {
-        Self { counts: [0; COUNTS] }
+        Self {
+            counts: [0; COUNTS],
+        }
     }
 }
 
@@ -30,7 +32,9 @@ impl Waits {
     /// The wait that this share of the frames did not exceed, 0 … 1, seconds, to a twelfth upwards; `None` before the
     /// first frame. Waits below a microsecond count as one.
     pub fn share_secs(&self, share: f64) -> Option<f64> {
-        let wanted = (self.frames() as f64 * share.clamp(0.0, 1.0)).ceil().max(1.0) as u64;
+        let wanted = (self.frames() as f64 * share.clamp(0.0, 1.0))
+            .ceil()
+            .max(1.0) as u64;
         let mut frames = 0;
         let at = self.counts.iter().position(|count| {
             frames += count;
@@ -42,7 +46,9 @@ impl Waits {
     /// The frames counted since `before` was read.
     #[must_use]
     pub fn since(&self, before: &Self) -> Self {
-        Self { counts: array::from_fn(|i| self.counts[i].saturating_sub(before.counts[i])) }
+        Self {
+            counts: array::from_fn(|i| self.counts[i].saturating_sub(before.counts[i])),
+        }
     }
 }
 
@@ -54,7 +60,9 @@ pub(super) struct WaitCells {
 
 impl Default for WaitCells {
     fn default() -> Self {
-        Self { counts: array::from_fn(|_| AtomicU64::new(0)) }
+        Self {
+            counts: array::from_fn(|_| AtomicU64::new(0)),
+        }
     }
 }
 
@@ -65,7 +73,9 @@ impl WaitCells {
     }
 
     pub(super) fn read(&self) -> Waits {
-        Waits { counts: array::from_fn(|i| self.counts[i].load(Relaxed)) }
+        Waits {
+            counts: array::from_fn(|i| self.counts[i].load(Relaxed)),
+        }
     }
 }
 
@@ -85,7 +95,10 @@ mod tests {
         for share in [0.001, 0.5, 0.9, 0.99, 1.0] {
             let exact = share * 0.1;
             let told = waits.share_secs(share).unwrap();
-            assert!(told >= exact * 0.999 && told <= exact * 1.1, "{share}: {told} for {exact}");
+            assert!(
+                told >= exact * 0.999 && told <= exact * 1.1,
+                "{share}: {told} for {exact}"
+            );
         }
         cells.add(0.0);
         cells.add(f64::NAN);

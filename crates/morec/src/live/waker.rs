@@ -34,7 +34,11 @@ impl Waker {
         let known = self.thread.get_or_init(|| me.clone()).id() == me.id();
         self.asleep.swap(true, Ordering::AcqRel);
         if !ready() {
-            park_timeout(if known { most.min(NAP) } else { most.min(Duration::from_millis(2)) });
+            park_timeout(if known {
+                most.min(NAP)
+            } else {
+                most.min(Duration::from_millis(2))
+            });
         }
         self.asleep.swap(false, Ordering::AcqRel);
     }

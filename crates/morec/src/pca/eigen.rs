@@ -19,12 +19,17 @@ impl Eigen {
         let found = SymmetricEigen::new(matrix);
         let mut order: Vec<usize> = (0..dim).collect();
         order.sort_by(|&a, &b| found.eigenvalues[b].total_cmp(&found.eigenvalues[a]));
-        let values = order.iter().map(|&i| found.eigenvalues[i].max(0.0)).collect();
+        let values = order
+            .iter()
+            .map(|&i| found.eigenvalues[i].max(0.0))
+            .collect();
         let signs: Vec<f64> = order
             .iter()
             .map(|&i| Self::canonical_sign(found.eigenvectors.column(i).iter().copied()))
             .collect();
-        let vectors = DMatrix::from_fn(dim, dim, |k, i| signs[i] * found.eigenvectors[(k, order[i])]);
+        let vectors = DMatrix::from_fn(dim, dim, |k, i| {
+            signs[i] * found.eigenvectors[(k, order[i])]
+        });
         Self { values, vectors }
     }
 
@@ -33,6 +38,10 @@ impl Eigen {
     pub fn canonical_sign(vector: impl Iterator<Item = f64> + Clone) -> f64 {
         let greatest = vector.clone().fold(0.0, |most: f64, v| most.max(v.abs()));
         let first = vector.clone().find(|v| v.abs() >= greatest * (1.0 - 1e-9));
-        if first.is_some_and(|v| v < 0.0) { -1.0 } else { 1.0 }
+        if first.is_some_and(|v| v < 0.0) {
+            -1.0
+        } else {
+            1.0
+        }
     }
 }

@@ -54,9 +54,16 @@ impl Pca {
         }
         let eigen = Eigen::of(moments.scatter());
         let dims = keep.dims(&eigen.values);
-        let axes = (0..dims).flat_map(|i| eigen.vectors.column(i).iter().copied().collect::<Vec<_>>());
+        let axes =
+            (0..dims).flat_map(|i| eigen.vectors.column(i).iter().copied().collect::<Vec<_>>());
         let axes = axes.collect();
-        Ok(Self { mean: moments.mean().to_vec(), axes, eigenvalues: eigen.values, dims, rows })
+        Ok(Self {
+            mean: moments.mean().to_vec(),
+            axes,
+            eigenvalues: eigen.values,
+            dims,
+            rows,
+        })
     }
 
     /// Values in a raw row, `D`.
@@ -107,7 +114,11 @@ impl Pca {
         let mut sum = 0.0;
         let line = |(index, &eigenvalue): (usize, &f64)| {
             sum += eigenvalue;
-            QualityRow { dims: index + 1, quality: (sum / all).min(1.0), eigenvalue }
+            QualityRow {
+                dims: index + 1,
+                quality: (sum / all).min(1.0),
+                eigenvalue,
+            }
         };
         self.eigenvalues.iter().enumerate().map(line).collect()
     }
@@ -115,7 +126,10 @@ impl Pca {
     /// A raw row (`D` values) reduced to `out` (`r` values): `(x − x̄) · [v₁ | … | vᵣ]`, Eq. 3.9. Takes no memory.
     pub fn project_into(&self, row: &[f32], out: &mut [f32]) {
         let dim = self.dim();
-        assert!(row.len() == dim && out.len() == self.dims, "a row of another width");
+        assert!(
+            row.len() == dim && out.len() == self.dims,
+            "a row of another width"
+        );
         for (value, axis) in out.iter_mut().zip(self.axes.chunks_exact(dim)) {
             let centred = row.iter().zip(&self.mean).map(|(x, m)| f64::from(*x) - m);
             *value = axis.iter().zip(centred).map(|(a, x)| a * x).sum::<f64>() as f32;
@@ -125,9 +139,15 @@ impl Pca {
     /// A reduced row (`r` values) back to `out` (`D` values), as well as its dimensions can: Eq. 3.10, with the mean
     /// added again. Takes no memory.
     pub fn reconstruct_into(&self, reduced: &[f32], out: &mut [f32]) {
-        assert!(out.len() == self.dim() && reduced.len() == self.dims, "a row of another width");
+        assert!(
+            out.len() == self.dim() && reduced.len() == self.dims,
+            "a row of another width"
+        );
         for (k, value) in out.iter_mut().enumerate() {
-            let part = reduced.iter().enumerate().map(|(i, z)| f64::from(*z) * self.axes[i * self.dim() + k]);
+            let part = reduced
+                .iter()
+                .enumerate()
+                .map(|(i, z)| f64::from(*z) * self.axes[i * self.dim() + k]);
             *value = (self.mean[k] + part.sum::<f64>()) as f32;
         }
     }
@@ -162,7 +182,12 @@ struct Parts {
 
 impl From<Pca> for Parts {
     fn from(pca: Pca) -> Self {
-        Self { mean: pca.mean, axes: pca.axes, eigenvalues: pca.eigenvalues, rows: pca.rows }
+        Self {
+            mean: pca.mean,
+            axes: pca.axes,
+            eigenvalues: pca.eigenvalues,
+            rows: pca.rows,
+        }
     }
 }
 
@@ -189,18 +214,37 @@ impl Pca {
         let dim = mean.len();
         let dims = axes.len().checked_div(dim).unwrap_or(0);
         if dims == 0 || dims > dim || axes.len() != dims * dim {
-            return Err(PcaError::Parts(format!("{} values of axes for rows of {dim}", axes.len())));
+            return Err(PcaError::Parts(format!(
+                "{} values of axes for rows of {dim}",
+                axes.len()
+            )));
         }
         if eigenvalues.len() != dim {
-            return Err(PcaError::Parts(format!("{} eigenvalues for rows of {dim}", eigenvalues.len())));
+            return Err(PcaError::Parts(format!(
+                "{} eigenvalues for rows of {dim}",
+                eigenvalues.len()
+            )));
         }
-        if mean.iter().chain(&axes).chain(&eigenvalues).any(|v| !v.is_finite()) {
+        if mean
+            .iter()
+            .chain(&axes)
+            .chain(&eigenvalues)
+            .any(|v| !v.is_finite())
+        {
             return Err(PcaError::Parts("a value is not finite".to_owned()));
         }
         let falling = eigenvalues.windows(2).all(|pair| pair[0] >= pair[1]);
         if !falling || eigenvalues[0] <= 0.0 || eigenvalues[dim - 1] < 0.0 {
-            return Err(PcaError::Parts("eigenvalues must fall from above 0 and not below it".to_owned()));
+            return Err(PcaError::Parts(
+                "eigenvalues must fall from above 0 and not below it".to_owned(),
+            ));
         }
-        Ok(Self { mean, axes, eigenvalues, dims, rows })
+        Ok(Self {
+            mean,
+            axes,
+            eigenvalues,
+            dims,
+            rows,
+        })
     }
 }

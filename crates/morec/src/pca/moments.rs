@@ -23,7 +23,11 @@ const BLOCK: usize = 64;
 impl Moments {
     /// Of no rows, `dim` values each.
     pub fn new(dim: usize) -> Self {
-        Self { count: 0, mean: vec![0.0; dim], scatter: vec![0.0; dim * dim] }
+        Self {
+            count: 0,
+            mean: vec![0.0; dim],
+            scatter: vec![0.0; dim * dim],
+        }
     }
 
     /// Values in a row, `D`.
@@ -67,7 +71,9 @@ impl Moments {
         let (dim, rows) = (self.dim(), block.len() / self.dim());
         let mut mean = vec![0.0; dim];
         for row in block.chunks_exact(dim) {
-            mean.iter_mut().zip(row).for_each(|(m, v)| *m += (*v).into() / rows as f64);
+            mean.iter_mut()
+                .zip(row)
+                .for_each(|(m, v)| *m += (*v).into() / rows as f64);
         }
         let mut centred = vec![0.0; dim];
         for row in block.chunks_exact(dim) {
@@ -80,7 +86,10 @@ impl Moments {
     /// Joins the rows that `other` has seen. O(D²).
     pub fn merge(&mut self, other: &Moments) {
         assert_eq!(other.dim(), self.dim(), "rows of another width");
-        self.scatter.iter_mut().zip(&other.scatter).for_each(|(a, b)| *a += b);
+        self.scatter
+            .iter_mut()
+            .zip(&other.scatter)
+            .for_each(|(a, b)| *a += b);
         self.shift(other.count, &other.mean);
     }
 
@@ -90,10 +99,21 @@ impl Moments {
             return;
         }
         let all = self.count + rows;
-        let apart: Vec<f64> = mean.iter().zip(&self.mean).map(|(new, old)| new - old).collect();
-        add_outer(&mut self.scatter, &apart, self.count as f64 * rows as f64 / all as f64);
+        let apart: Vec<f64> = mean
+            .iter()
+            .zip(&self.mean)
+            .map(|(new, old)| new - old)
+            .collect();
+        add_outer(
+            &mut self.scatter,
+            &apart,
+            self.count as f64 * rows as f64 / all as f64,
+        );
         let share = rows as f64 / all as f64;
-        self.mean.iter_mut().zip(&apart).for_each(|(m, d)| *m += share * d);
+        self.mean
+            .iter_mut()
+            .zip(&apart)
+            .for_each(|(m, d)| *m += share * d);
         self.count = all;
     }
 
@@ -115,6 +135,8 @@ fn add_outer(matrix: &mut [f64], v: &[f64], weight: f64) {
     for i in 0..dim {
         let scaled = weight * v[i];
         let row = &mut matrix[i * dim..i * dim + i + 1];
-        row.iter_mut().zip(v).for_each(|(m, value)| *m += scaled * value);
+        row.iter_mut()
+            .zip(v)
+            .for_each(|(m, value)| *m += scaled * value);
     }
 }

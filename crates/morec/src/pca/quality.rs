@@ -36,9 +36,9 @@ impl Keep {
     /// Says what is wrong with it, if anything is.
     pub fn check(self) -> Result<(), String> {
         match self {
-            Keep::Quality(share) if !(share > 0.0 && share <= 1.0) => {
-                Err(format!("quality must be above 0 and at most 1, found {share}"))
-            }
+            Keep::Quality(share) if !(share > 0.0 && share <= 1.0) => Err(format!(
+                "quality must be above 0 and at most 1, found {share}"
+            )),
             Keep::Dims(0) => Err("the number of dimensions must be 1 or more, found 0".to_owned()),
             _ => Ok(()),
         }

@@ -7,7 +7,8 @@ use crate::features::Rows;
 /// Rows about a mean that may be far from 0.
 fn rows() -> impl Strategy<Value = Rows> {
     (1usize..7, 8usize..90, -50f32..50.0).prop_flat_map(|(dim, len, far)| {
-        prop::collection::vec(far - 1.0..far + 1.0, dim * len).prop_map(move |v| Rows::from_values(dim, v))
+        prop::collection::vec(far - 1.0..far + 1.0, dim * len)
+            .prop_map(move |v| Rows::from_values(dim, v))
     })
 }
 
@@ -104,7 +105,20 @@ fn cross() -> Rows {
     let half = std::f32::consts::FRAC_1_SQRT_2 * 3.0;
     Rows::from_values(
         3,
-        vec![5.0 + half, 6.0 + half, 7.0, 5.0 - half, 6.0 - half, 7.0, 5.0, 6.0, 8.0, 5.0, 6.0, 6.0],
+        vec![
+            5.0 + half,
+            6.0 + half,
+            7.0,
+            5.0 - half,
+            6.0 - half,
+            7.0,
+            5.0,
+            6.0,
+            8.0,
+            5.0,
+            6.0,
+            6.0,
+        ],
     )
 }
 
@@ -114,7 +128,12 @@ fn known_axes_are_found() {
     assert_eq!((pca.dims(), pca.rows()), (1, 4));
     assert!((pca.quality() - 0.9).abs() < 1e-6);
     let half = std::f64::consts::FRAC_1_SQRT_2;
-    let apart: f64 = pca.axis(0).iter().zip([half, half, 0.0]).map(|(a, b)| (a - b).abs()).sum();
+    let apart: f64 = pca
+        .axis(0)
+        .iter()
+        .zip([half, half, 0.0])
+        .map(|(a, b)| (a - b).abs())
+        .sum();
     assert!(apart < 1e-6);
     let table = pca.quality_table();
     assert_eq!(table.len(), 3);
@@ -131,11 +150,25 @@ fn known_axes_are_found() {
 fn what_has_no_components_is_refused() {
     let fit = |rows: &Rows, keep| Pca::fit(&moments(rows), keep);
     let one = Rows::from_values(2, vec![1.0, 2.0]);
-    assert_eq!(fit(&one, Keep::Dims(1)), Err(PcaError::TooFewRows { found: 1 }));
+    assert_eq!(
+        fit(&one, Keep::Dims(1)),
+        Err(PcaError::TooFewRows { found: 1 })
+    );
     let alike = Rows::from_values(1, vec![0.25; 5]);
-    assert_eq!(fit(&alike, Keep::Dims(1)), Err(PcaError::NoVariance { rows: 5 }));
-    assert_eq!(fit(&Rows::from_values(1, vec![1.0, f32::NAN]), Keep::Dims(1)), Err(PcaError::NotFinite));
-    for keep in [Keep::Dims(0), Keep::Quality(0.0), Keep::Quality(1.5), Keep::Quality(f64::NAN)] {
+    assert_eq!(
+        fit(&alike, Keep::Dims(1)),
+        Err(PcaError::NoVariance { rows: 5 })
+    );
+    assert_eq!(
+        fit(&Rows::from_values(1, vec![1.0, f32::NAN]), Keep::Dims(1)),
+        Err(PcaError::NotFinite)
+    );
+    for keep in [
+        Keep::Dims(0),
+        Keep::Quality(0.0),
+        Keep::Quality(1.5),
+        Keep::Quality(f64::NAN),
+    ] {
         assert!(matches!(fit(&cross(), keep), Err(PcaError::Keep(_))));
     }
 }

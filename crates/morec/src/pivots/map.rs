@@ -37,20 +37,37 @@ impl PivotMap {
     ///
     /// # Errors
     /// Nothing plays the root. Other pivots may be [`missing`](PivotMap::missing).
-    pub fn resolve(set: &PivotSet, skeleton: &Skeleton, roles: &RoleMap) -> Result<Self, UnplayedRoot> {
+    pub fn resolve(
+        set: &PivotSet,
+        skeleton: &Skeleton,
+        roles: &RoleMap,
+    ) -> Result<Self, UnplayedRoot> {
         let mut joints: Vec<Option<usize>> = Vec::with_capacity(set.len());
         for pivot in set.pivots() {
-            let joint = player(pivot, skeleton, roles).filter(|&joint| !joints.contains(&Some(joint)));
+            let joint =
+                player(pivot, skeleton, roles).filter(|&joint| !joints.contains(&Some(joint)));
             joints.push(joint);
         }
         let root = &set.pivots()[0];
         if joints[0].is_none() {
             let (pivot, joints) = (root.name.clone(), root.joints.clone());
-            return Err(UnplayedRoot { pivot, joints, role: root.role });
+            return Err(UnplayedRoot {
+                pivot,
+                joints,
+                role: root.role,
+            });
         }
-        let unplayed = set.pivots().iter().zip(&joints).filter(|(_, joint)| joint.is_none());
+        let unplayed = set
+            .pivots()
+            .iter()
+            .zip(&joints)
+            .filter(|(_, joint)| joint.is_none());
         let missing = unplayed.map(|(pivot, _)| pivot.name.clone()).collect();
-        Ok(Self { parents: (0..set.len()).map(|p| set.parent(p)).collect(), joints, missing })
+        Ok(Self {
+            parents: (0..set.len()).map(|p| set.parent(p)).collect(),
+            joints,
+            missing,
+        })
     }
 
     /// The joint that plays pivot `index`.
@@ -82,8 +99,11 @@ impl PivotMap {
 
 fn player(pivot: &Pivot, skeleton: &Skeleton, roles: &RoleMap) -> Option<usize> {
     let by_role = pivot.role.and_then(|role| roles.joint(role));
-    let other_role =
-        |joint| Role::ALL.into_iter().any(|r| Some(r) != pivot.role && roles.joint(r) == Some(joint));
+    let other_role = |joint| {
+        Role::ALL
+            .into_iter()
+            .any(|r| Some(r) != pivot.role && roles.joint(r) == Some(joint))
+    };
     match named(pivot, skeleton) {
         Some(joint) if by_role.is_some() && other_role(joint) => by_role,
         Some(joint) => Some(joint),
@@ -93,10 +113,21 @@ fn player(pivot: &Pivot, skeleton: &Skeleton, roles: &RoleMap) -> Option<usize> 
 
 /// The joint of one of the pivot's names: spelt so, or so but for namespace and case.
 fn named(pivot: &Pivot, skeleton: &Skeleton) -> Option<usize> {
-    let bare = |name: &str| name.rsplit(':').next().unwrap_or(name).trim().to_lowercase();
+    let bare = |name: &str| {
+        name.rsplit(':')
+            .next()
+            .unwrap_or(name)
+            .trim()
+            .to_lowercase()
+    };
     let exact = pivot.joints.iter().find_map(|name| skeleton.find(name));
     exact.or_else(|| {
         let mut names = pivot.joints.iter().map(|name| bare(name));
-        names.find_map(|name| skeleton.joints().iter().position(|joint| bare(&joint.name) == name))
+        names.find_map(|name| {
+            skeleton
+                .joints()
+                .iter()
+                .position(|joint| bare(&joint.name) == name)
+        })
     })
 }

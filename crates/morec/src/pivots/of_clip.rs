@@ -9,8 +9,15 @@ use super::{PivotMap, PivotPose, PivotSet, PoseParams, PoseStream};
 /// Calls `each` with the time and pivots of every frame of `clip` in turn, frame `f` at `f / rate_hz`.
 ///
 /// Frames in `rest` show the first pose after them, as in [`for_each_pose`](crate::features::for_each_pose).
-pub fn for_each_pivot_pose(clip: &Clip, map: &PivotMap, rest: &Span, mut each: impl FnMut(f64, &PivotPose)) {
-    for_each_world_pose(clip, rest, |time_secs, world| each(time_secs, &map.pose(world)));
+pub fn for_each_pivot_pose(
+    clip: &Clip,
+    map: &PivotMap,
+    rest: &Span,
+    mut each: impl FnMut(f64, &PivotPose),
+) {
+    for_each_world_pose(clip, rest, |time_secs, world| {
+        each(time_secs, &map.pose(world))
+    });
 }
 
 /// The pose rows of a clip, `frames × 4 pivots` at the rate of `params`; row `i` is the pose at `i / rate_hz`

@@ -39,7 +39,11 @@ pub struct PoseParams {
 impl Default for PoseParams {
     /// As printed: thesis §4.2, 120 Hz.
     fn default() -> Self {
-        Self { rate_hz: 120.0, root: RootForm::World, signs: SignRule::Continuous }
+        Self {
+            rate_hz: 120.0,
+            root: RootForm::World,
+            signs: SignRule::Continuous,
+        }
     }
 }
 
@@ -49,7 +53,9 @@ impl PoseParams {
         // A push makes every frame since the one before: a rate without bounds would be a push without end.
         match self.rate_hz {
             rate if rate.is_finite() && rate > 0.0 && rate <= 1000.0 => Ok(()),
-            rate => Err(format!("rate_hz must be above 0 and at most 1000, found {rate}")),
+            rate => Err(format!(
+                "rate_hz must be above 0 and at most 1000, found {rate}"
+            )),
         }
     }
 }

@@ -15,7 +15,10 @@ pub struct PivotPose {
 
 impl Default for PivotPose {
     fn default() -> Self {
-        Self { rotations: [Quat::identity(); MAX_PIVOTS], present: 0 }
+        Self {
+            rotations: [Quat::identity(); MAX_PIVOTS],
+            present: 0,
+        }
     }
 }
 

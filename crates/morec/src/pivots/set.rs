@@ -51,13 +51,17 @@ impl PivotSet {
     /// No pivot or more than [`MAX_PIVOTS`], names that occur twice, parents that do not come before.
     pub fn new(pivots: Vec<Pivot>) -> Result<Self, PivotSetError> {
         if !(1..=MAX_PIVOTS).contains(&pivots.len()) {
-            return Err(PivotSetError::Count { found: pivots.len() });
+            return Err(PivotSetError::Count {
+                found: pivots.len(),
+            });
         }
         let mut parents = Vec::with_capacity(pivots.len());
         for (index, pivot) in pivots.iter().enumerate() {
             let before = &pivots[..index];
             if before.iter().any(|p| p.name == pivot.name) {
-                return Err(PivotSetError::Twice { name: pivot.name.clone() });
+                return Err(PivotSetError::Twice {
+                    name: pivot.name.clone(),
+                });
             }
             parents.push(parent_of(pivot, before)?);
         }
@@ -67,7 +71,10 @@ impl PivotSet {
     /// A set of which the tests say that it is one.
     pub(super) fn known_good(pivots: Vec<Pivot>) -> Self {
         let place = |name: &str| pivots.iter().position(|p| p.name == name).unwrap_or(0);
-        let parents = pivots.iter().map(|p| p.parent.as_deref().map_or(0, place)).collect();
+        let parents = pivots
+            .iter()
+            .map(|p| p.parent.as_deref().map_or(0, place))
+            .collect();
         Self { pivots, parents }
     }
 
@@ -103,11 +110,17 @@ fn parent_of(pivot: &Pivot, before: &[Pivot]) -> Result<usize, PivotSetError> {
     match (&pivot.parent, before) {
         (None, []) => Ok(0),
         (None, _) => Err(PivotSetError::SecondRoot { name }),
-        (Some(parent), []) => Err(PivotSetError::FirstIsNoRoot { name, parent: parent.clone() }),
+        (Some(parent), []) => Err(PivotSetError::FirstIsNoRoot {
+            name,
+            parent: parent.clone(),
+        }),
         (Some(parent), _) => before
             .iter()
             .position(|p| p.name == *parent)
-            .ok_or_else(|| PivotSetError::Parent { name, parent: parent.clone() }),
+            .ok_or_else(|| PivotSetError::Parent {
+                name,
+                parent: parent.clone(),
+            }),
     }
 }
 

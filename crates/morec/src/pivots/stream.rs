@@ -48,7 +48,11 @@ impl PoseStream {
             waiting: [Quat::identity(); MAX_PIVOTS],
             turn: Quat::identity(),
         };
-        Self { parents, grid: Grid::new(params.rate_hz), rows }
+        Self {
+            parents,
+            grid: Grid::new(params.rate_hz),
+            rows,
+        }
     }
 
     /// Values in a row, `4 pivots`: each as `w x y z`.
@@ -71,7 +75,12 @@ impl PoseStream {
     ///
     /// A pivot that `pose` does not show keeps its last rotation relative to its parent;
     /// [`Pushed::NoHips`] until the root has been seen once. At most `MAX_GAP_SECS` of rows come of one push.
-    pub fn push(&mut self, time_secs: f64, pose: &PivotPose, out: &mut impl FnMut(&[f32])) -> Pushed {
+    pub fn push(
+        &mut self,
+        time_secs: f64,
+        pose: &PivotPose,
+        out: &mut impl FnMut(&[f32]),
+    ) -> Pushed {
         if !time_secs.is_finite() {
             return Pushed::Ignored;
         }
@@ -82,13 +91,20 @@ impl PoseStream {
         if self.grid.ignores(time_secs) {
             return Pushed::Ignored;
         }
-        let Some(locals) = self.locals(pose) else { return Pushed::NoHips };
+        let Some(locals) = self.locals(pose) else {
+            return Pushed::NoHips;
+        };
         let rows = &mut self.rows;
-        self.grid.push(time_secs, locals, &mut |before, now| match before {
-            Some((last, t)) => rows.grid_frame(&rows.between(last, now, t), out),
-            None => rows.grid_frame(now, out),
-        });
-        if restarted { Pushed::Restarted } else { Pushed::Taken }
+        self.grid
+            .push(time_secs, locals, &mut |before, now| match before {
+                Some((last, t)) => rows.grid_frame(&rows.between(last, now, t), out),
+                None => rows.grid_frame(now, out),
+            });
+        if restarted {
+            Pushed::Restarted
+        } else {
+            Pushed::Taken
+        }
     }
 
     /// Ends the stretch: calls `out` with the row that still waited for the next frame, and forgets it.
@@ -156,7 +172,11 @@ impl RowMaker {
     fn emit(&self, out: &mut impl FnMut(&[f32])) {
         let mut row = [0f32; 4 * MAX_PIVOTS];
         for (pivot, values) in row.chunks_exact_mut(4).take(self.pivots).enumerate() {
-            let q = if pivot == 0 { &self.turn } else { &self.waiting[pivot] };
+            let q = if pivot == 0 {
+                &self.turn
+            } else {
+                &self.waiting[pivot]
+            };
             values.copy_from_slice(&[q.w as f32, q.i as f32, q.j as f32, q.k as f32]);
         }
         out(&row[..4 * self.pivots]);

@@ -16,12 +16,32 @@ const THESIS: [(&str, &str, &str, Option<Role>); 16] = [
     ("LowerBack", "Hips", "lowerback", None),
     ("Spine", "LowerBack", "upperback", Some(Role::Torso)),
     ("Spine1", "Spine", "thorax", None),
-    ("LeftShoulder", "Spine1", "lclavicle", Some(Role::LeftShoulder)),
+    (
+        "LeftShoulder",
+        "Spine1",
+        "lclavicle",
+        Some(Role::LeftShoulder),
+    ),
     ("LeftArm", "LeftShoulder", "lhumerus", Some(Role::LeftArm)),
     ("LeftForeArm", "LeftArm", "lradius", Some(Role::LeftForearm)),
-    ("RightShoulder", "Spine1", "rclavicle", Some(Role::RightShoulder)),
-    ("RightArm", "RightShoulder", "rhumerus", Some(Role::RightArm)),
-    ("RightForeArm", "RightArm", "rradius", Some(Role::RightForearm)),
+    (
+        "RightShoulder",
+        "Spine1",
+        "rclavicle",
+        Some(Role::RightShoulder),
+    ),
+    (
+        "RightArm",
+        "RightShoulder",
+        "rhumerus",
+        Some(Role::RightArm),
+    ),
+    (
+        "RightForeArm",
+        "RightArm",
+        "rradius",
+        Some(Role::RightForearm),
+    ),
 ];
 
 /// The roles that do what Table 4.2 does, and their parents: no hands, feet or head.

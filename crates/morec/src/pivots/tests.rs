@@ -8,21 +8,39 @@ use crate::roles::{Role, RoleMap};
 use crate::synth::{Person, Script};
 
 fn joint(name: &str, parent: Option<usize>) -> Joint {
-    Joint { name: name.into(), parent, offset: Vec3::y(), tip: None }
+    Joint {
+        name: name.into(),
+        parent,
+        offset: Vec3::y(),
+        tip: None,
+    }
 }
 
 fn pivot(name: &str, parent: Option<&str>, role: Option<Role>) -> Pivot {
-    Pivot { name: name.into(), parent: parent.map(Into::into), joints: vec![name.into()], role }
+    Pivot {
+        name: name.into(),
+        parent: parent.map(Into::into),
+        joints: vec![name.into()],
+        role,
+    }
 }
 
 /// Hips and, two joints on, an arm.
 fn two() -> PivotSet {
-    PivotSet::new(vec![pivot("Hips", None, None), pivot("Arm", Some("Hips"), None)]).unwrap()
+    PivotSet::new(vec![
+        pivot("Hips", None, None),
+        pivot("Arm", Some("Hips"), None),
+    ])
+    .unwrap()
 }
 
 /// Three joints in a row, turned by functions of the frame.
 fn clip(rate_hz: f64, frames: usize, turns: [impl Fn(f64) -> Quat; 3]) -> Clip {
-    let joints = vec![joint("Hips", None), joint("Chest", Some(0)), joint("Arm", Some(1))];
+    let joints = vec![
+        joint("Hips", None),
+        joint("Chest", Some(0)),
+        joint("Arm", Some(1)),
+    ];
     let rotations = (0..frames).flat_map(|f| {
         let secs = f as f64 / rate_hz;
         turns.iter().map(move |turn| turn(secs)).collect::<Vec<_>>()
@@ -45,11 +63,19 @@ fn rows(clip: &Clip, set: &PivotSet, params: &PoseParams) -> Rows {
 
 fn near(values: &[f32], q: Quat) -> bool {
     let expected = [q.w, q.i, q.j, q.k];
-    values.iter().zip(expected).all(|(v, e)| (f64::from(*v) - e).abs() < 1e-6)
+    values
+        .iter()
+        .zip(expected)
+        .all(|(v, e)| (f64::from(*v) - e).abs() < 1e-6)
 }
 
 fn person_clip(rate_hz: f64) -> Clip {
-    Script::new(3, Person::draw(3, 1)).rest(0.2).play("bow").film("bow", rate_hz).unwrap().clip
+    Script::new(3, Person::draw(3, 1))
+        .rest(0.2)
+        .play("bow")
+        .film("bow", rate_hz)
+        .unwrap()
+        .clip
 }
 
 #[test]
@@ -67,17 +93,30 @@ fn lists_that_are_no_set_are_refused() {
     let (hips, arm) = (pivot("Hips", None, None), pivot("Arm", Some("Hips"), None));
     let refused = |pivots: Vec<Pivot>| PivotSet::new(pivots).unwrap_err();
     assert_eq!(refused(vec![]), PivotSetError::Count { found: 0 });
-    assert!(matches!(refused(vec![arm.clone()]), PivotSetError::FirstIsNoRoot { .. }));
-    assert!(matches!(refused(vec![hips.clone(), hips.clone()]), PivotSetError::Twice { .. }));
+    assert!(matches!(
+        refused(vec![arm.clone()]),
+        PivotSetError::FirstIsNoRoot { .. }
+    ));
+    assert!(matches!(
+        refused(vec![hips.clone(), hips.clone()]),
+        PivotSetError::Twice { .. }
+    ));
     assert!(matches!(
         refused(vec![hips.clone(), pivot("Two", None, None)]),
         PivotSetError::SecondRoot { .. }
     ));
     let orphan = pivot("Hand", Some("Arm"), None);
-    assert!(matches!(refused(vec![hips.clone(), orphan, arm]), PivotSetError::Parent { .. }));
-    let many = (0..40).map(|i| pivot(&i.to_string(), (i > 0).then_some("0"), None)).collect();
+    assert!(matches!(
+        refused(vec![hips.clone(), orphan, arm]),
+        PivotSetError::Parent { .. }
+    ));
+    let many = (0..40)
+        .map(|i| pivot(&i.to_string(), (i > 0).then_some("0"), None))
+        .collect();
     assert_eq!(refused(many), PivotSetError::Count { found: 40 });
-    let error = serde_json::from_str::<PivotSet>("[]").unwrap_err().to_string();
+    let error = serde_json::from_str::<PivotSet>("[]")
+        .unwrap_err()
+        .to_string();
     assert!(error.contains("1 to 32 pivots"), "{error}");
 }
 
@@ -90,11 +129,21 @@ fn rotations_of_joints_in_between_are_composed_and_the_root_turns_to_the_next_fr
     ];
     let clip = clip(120.0, 30, turns);
     let world = rows(&clip, &two(), &PoseParams::default());
-    let body = rows(&clip, &two(), &PoseParams { root: RootForm::Body, ..PoseParams::default() });
+    let body = rows(
+        &clip,
+        &two(),
+        &PoseParams {
+            root: RootForm::Body,
+            ..PoseParams::default()
+        },
+    );
     assert_eq!((world.len(), world.dim()), (30, 8));
     for f in 0..30 {
         let secs = f as f64 / 120.0;
-        assert!(near(&world.row(f)[4..], Axis::X.rotation(0.5 * secs) * Axis::Z.rotation(0.3 + secs)));
+        assert!(near(
+            &world.row(f)[4..],
+            Axis::X.rotation(0.5 * secs) * Axis::Z.rotation(0.3 + secs)
+        ));
         assert!(near(&world.row(f)[..4], Axis::Y.rotation(1.0 / 120.0)));
         let turned = turns[0](secs).conjugate() * Axis::Y.rotation(1.0 / 120.0) * turns[0](secs);
         assert!(near(&body.row(f)[..4], turned));
@@ -103,19 +152,33 @@ fn rotations_of_joints_in_between_are_composed_and_the_root_turns_to_the_next_fr
 
 #[test]
 fn the_body_form_does_not_know_the_heading() {
-    let form = PoseParams { root: RootForm::Body, ..PoseParams::default() };
+    let form = PoseParams {
+        root: RootForm::Body,
+        ..PoseParams::default()
+    };
     let made = |heading: f64| {
         let hips = move |s: f64| Axis::Y.rotation(heading + s) * Axis::X.rotation((7.0 * s).sin());
         let still: fn(f64) -> Quat = |_| Quat::identity();
-        let turns: [Box<dyn Fn(f64) -> Quat>; 3] = [Box::new(hips), Box::new(still), Box::new(still)];
+        let turns: [Box<dyn Fn(f64) -> Quat>; 3] =
+            [Box::new(hips), Box::new(still), Box::new(still)];
         clip(120.0, 40, turns)
     };
     let differ = |params: &PoseParams| {
-        let (a, b) = (rows(&made(0.0), &two(), params), rows(&made(2.0), &two(), params));
-        a.values().iter().zip(b.values()).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+        let (a, b) = (
+            rows(&made(0.0), &two(), params),
+            rows(&made(2.0), &two(), params),
+        );
+        a.values()
+            .iter()
+            .zip(b.values())
+            .map(|(a, b)| (a - b).abs())
+            .fold(0.0, f32::max)
     };
     assert!(differ(&form) < 1e-6);
-    assert!(differ(&PoseParams::default()) > 1e-3, "the printed form does");
+    assert!(
+        differ(&PoseParams::default()) > 1e-3,
+        "the printed form does"
+    );
 }
 
 #[test]
@@ -127,11 +190,16 @@ fn signs_follow_the_frame_before_or_the_hemisphere() {
     let continuous = rows(&clip, &two(), &PoseParams::default());
     let jumps = |rows: &Rows| {
         let pairs = rows.iter().zip(rows.iter().skip(1));
-        pairs.filter(|(a, b)| a[4..].iter().zip(&b[4..]).map(|(a, b)| a * b).sum::<f32>() < 0.0).count()
+        pairs
+            .filter(|(a, b)| a[4..].iter().zip(&b[4..]).map(|(a, b)| a * b).sum::<f32>() < 0.0)
+            .count()
     };
     assert_eq!(jumps(&continuous), 0);
     assert!(continuous.row(0)[4] > 0.0 && continuous.row(119)[4] < -0.9);
-    let hemisphere = PoseParams { signs: SignRule::Hemisphere, ..PoseParams::default() };
+    let hemisphere = PoseParams {
+        signs: SignRule::Hemisphere,
+        ..PoseParams::default()
+    };
     let hemisphere = rows(&clip, &two(), &hemisphere);
     assert_eq!(jumps(&hemisphere), 1);
     assert!(hemisphere.iter().all(|row| row[4] >= 0.0));
@@ -180,7 +248,11 @@ fn a_missing_pivot_turns_with_its_parent() {
     let clip = clip(
         120.0,
         5,
-        [|s: f64| Axis::Y.rotation(s), |_: f64| Axis::X.rotation(0.5), |s: f64| Axis::Z.rotation(s)],
+        [
+            |s: f64| Axis::Y.rotation(s),
+            |_: f64| Axis::X.rotation(0.5),
+            |s: f64| Axis::Z.rotation(s),
+        ],
     );
     let with = rows(&clip, &set, &PoseParams::default());
     let without = rows(&clip, &two(), &PoseParams::default());
@@ -193,7 +265,13 @@ fn a_missing_pivot_turns_with_its_parent() {
 #[test]
 fn rest_frames_show_the_first_pose_after_them() {
     let still: fn(f64) -> Quat = |_| Quat::identity();
-    let jump: fn(f64) -> Quat = |s| if s > 0.0 { Axis::Y.rotation(1.0) } else { Quat::identity() };
+    let jump: fn(f64) -> Quat = |s| {
+        if s > 0.0 {
+            Axis::Y.rotation(1.0)
+        } else {
+            Quat::identity()
+        }
+    };
     let clip = clip(120.0, 10, [jump, still, jump]);
     let map = PivotMap::resolve(&two(), &clip.skeleton, &RoleMap::default()).unwrap();
     let rows = pose_rows_of_clip(&clip, &two(), &map, &(0..1), &PoseParams::default());
@@ -248,16 +326,32 @@ fn gaps_begin_anew_and_late_poses_are_ignored() {
     let mut stream = PoseStream::new(&set, &PoseParams::default());
     let (mut rows, mut said) = (0, vec![]);
     let gap_secs = poses[30].0 + MAX_GAP_SECS + 0.1;
-    let times = [poses[30].0, poses[29].0, f64::NAN, poses[30].0, gap_secs, gap_secs + 0.01, 0.0];
+    let times = [
+        poses[30].0,
+        poses[29].0,
+        f64::NAN,
+        poses[30].0,
+        gap_secs,
+        gap_secs + 0.01,
+        0.0,
+    ];
     for secs in times {
         said.push(stream.push(secs, &poses[30].1, &mut |_| rows += 1));
     }
     use Pushed::{Ignored, Restarted, Taken};
-    assert_eq!(said, [Taken, Ignored, Ignored, Ignored, Restarted, Taken, Restarted]);
+    assert_eq!(
+        said,
+        [
+            Taken, Ignored, Ignored, Ignored, Restarted, Taken, Restarted
+        ]
+    );
     assert_eq!(rows, 3, "one row of the first stretch, two of the second");
     assert_eq!(stream.origin_secs(), 0.0);
     let mut new = PoseStream::new(&set, &PoseParams::default());
-    assert_eq!(new.push(0.0, &PivotPose::default(), &mut |_| {}), Pushed::NoHips);
+    assert_eq!(
+        new.push(0.0, &PivotPose::default(), &mut |_| {}),
+        Pushed::NoHips
+    );
 }
 
 #[test]
@@ -269,7 +363,10 @@ fn a_lost_pivot_keeps_its_last_rotation() {
         let turned = *held.get(0).unwrap();
         *pose = held;
         pose.set(0, Axis::Y.rotation(0.3) * turned);
-        pose.set(1, Quat::new_unchecked(nalgebra::Quaternion::new(f64::NAN, 0.0, 0.0, 0.0)));
+        pose.set(
+            1,
+            Quat::new_unchecked(nalgebra::Quaternion::new(f64::NAN, 0.0, 0.0, 0.0)),
+        );
     }
     let rows = pushed(&set, &poses);
     let last = rows.len() - 1;

@@ -13,7 +13,9 @@ impl Axis {
     /// An axis over the finite ones of `values`; a little wider than a point if they are all the same.
     pub fn over(values: impl Iterator<Item = f64>, low: f64, high: f64) -> Self {
         let finite = values.filter(|v| v.is_finite());
-        let (from, to) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
+        let (from, to) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| {
+            (a.min(v), b.max(v))
+        });
         let (from, to) = match () {
             () if from > to => (0.0, 1.0),
             () if to - from <= from.abs().max(to.abs()) * 1e-9 => {
@@ -22,13 +24,22 @@ impl Axis {
             }
             () => (from, to),
         };
-        Self { from, to, low, high }
+        Self {
+            from,
+            to,
+            low,
+            high,
+        }
     }
 
     /// The axis with `share` of its length added at either end.
     pub fn widened(self, share: f64) -> Self {
         let more = share * (self.to - self.from);
-        Self { from: self.from - more, to: self.to + more, ..self }
+        Self {
+            from: self.from - more,
+            to: self.to + more,
+            ..self
+        }
     }
 
     /// Where `value` is on the paper.
@@ -43,7 +54,9 @@ impl Axis {
         let first = (self.from / step).ceil() as i64;
         let last = (self.to / step).floor() as i64;
         let value = |i: i64| i as f64 * step;
-        (first..=last).map(|i| (value(i), format!("{:.*}", decimals.min(12), value(i)))).collect()
+        (first..=last)
+            .map(|i| (value(i), format!("{:.*}", decimals.min(12), value(i))))
+            .collect()
     }
 }
 
@@ -51,7 +64,10 @@ impl Axis {
 fn round_step(step: f64) -> f64 {
     let power = 10f64.powf(step.log10().floor());
     let factor = step / power;
-    let round = [1.0, 2.0, 5.0].into_iter().find(|r| *r >= factor - 1e-9).unwrap_or(10.0);
+    let round = [1.0, 2.0, 5.0]
+        .into_iter()
+        .find(|r| *r >= factor - 1e-9)
+        .unwrap_or(10.0);
     round * power
 }
 
@@ -62,17 +78,37 @@ mod tests {
     #[test]
     fn ticks_are_round_and_within() {
         let labels = |from, to, most| {
-            let axis = Axis { from, to, low: 0.0, high: 1.0 };
-            axis.ticks(most).into_iter().map(|(_, label)| label).collect::<Vec<_>>()
+            let axis = Axis {
+                from,
+                to,
+                low: 0.0,
+                high: 1.0,
+            };
+            axis.ticks(most)
+                .into_iter()
+                .map(|(_, label)| label)
+                .collect::<Vec<_>>()
         };
-        assert_eq!(labels(0.0, 1.0, 5), ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
+        assert_eq!(
+            labels(0.0, 1.0, 5),
+            ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]
+        );
         assert_eq!(labels(-3.2, 41.0, 5), ["0", "10", "20", "30", "40"]);
-        assert_eq!(labels(0.001, 0.0042, 4), ["0.001", "0.002", "0.003", "0.004"]);
+        assert_eq!(
+            labels(0.001, 0.0042, 4),
+            ["0.001", "0.002", "0.003", "0.004"]
+        );
     }
 
     #[test]
     fn an_axis_over_nothing_or_one_value_has_length() {
-        for values in [vec![], vec![f64::NAN], vec![0.0], vec![7.0, 7.0], vec![-1e12]] {
+        for values in [
+            vec![],
+            vec![f64::NAN],
+            vec![0.0],
+            vec![7.0, 7.0],
+            vec![-1e12],
+        ] {
             let axis = Axis::over(values.iter().copied(), 0.0, 100.0);
             assert!(axis.to > axis.from, "{values:?}");
             assert!(!axis.ticks(5).is_empty(), "{values:?}");

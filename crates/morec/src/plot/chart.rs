@@ -57,7 +57,14 @@ impl Chart {
     /// An empty chart of this title.
     pub fn new(title: impl Into<String>) -> Self {
         let (x_label, y_label) = (String::new(), String::new());
-        Self { title: title.into(), x_label, y_label, size: (960.0, 360.0), series: vec![], regions: None }
+        Self {
+            title: title.into(),
+            x_label,
+            y_label,
+            size: (960.0, 360.0),
+            series: vec![],
+            regions: None,
+        }
     }
 
     /// Names the axes; units belong to the names.
@@ -107,7 +114,11 @@ impl Chart {
 
     fn add(mut self, name: &str, shape: Shape) -> Self {
         let colour = colour(self.series.len());
-        self.series.push(Series { name: name.to_owned(), colour, shape });
+        self.series.push(Series {
+            name: name.to_owned(),
+            colour,
+            shape,
+        });
         self
     }
 
@@ -179,7 +190,11 @@ impl Chart {
     fn legend(&self) -> Vec<Vec<(f64, &str, String)>> {
         let regions = self.regions.iter().flat_map(|r| r.names.iter().enumerate());
         let kinds = regions.map(|(i, name)| (name.as_str(), Regions::colour(i)));
-        let entries = kinds.chain(self.series.iter().map(|s| (s.name.as_str(), s.colour.clone())));
+        let entries = kinds.chain(
+            self.series
+                .iter()
+                .map(|s| (s.name.as_str(), s.colour.clone())),
+        );
         let (mut rows, mut at) = (vec![], f64::INFINITY);
         for (name, colour) in entries.filter(|(name, _)| !name.is_empty()) {
             let wide = 34.0 + 6.2 * name.chars().count() as f64;
@@ -263,10 +278,16 @@ impl Series {
 }
 
 fn push_line(out: &mut String, points: &[(f64, f64)], x: &Axis, y: &Axis, colour: &str) {
-    for part in points.split(|p| !p.0.is_finite() || !p.1.is_finite()).filter(|part| !part.is_empty()) {
+    for part in points
+        .split(|p| !p.0.is_finite() || !p.1.is_finite())
+        .filter(|part| !part.is_empty())
+    {
         let on_paper: Vec<(f64, f64)> = part.iter().map(|p| (x.at(p.0), y.at(p.1))).collect();
         let drawn = what_is_seen(&on_paper);
-        let places: Vec<String> = drawn.iter().map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
+        let places: Vec<String> = drawn
+            .iter()
+            .map(|(x, y)| format!("{x:.1},{y:.1}"))
+            .collect();
         out.push_str(&format!(
             "<polyline class=\"curve\" stroke=\"{colour}\" points=\"{}\"/>\n",
             places.join(" ")
@@ -283,7 +304,12 @@ fn what_is_seen(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
             continue;
         }
         let by_y = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);
-        let ends = [pixel.first(), pixel.iter().min_by(by_y), pixel.iter().max_by(by_y), pixel.last()];
+        let ends = [
+            pixel.first(),
+            pixel.iter().min_by(by_y),
+            pixel.iter().max_by(by_y),
+            pixel.last(),
+        ];
         seen.extend(ends.into_iter().flatten());
     }
     seen

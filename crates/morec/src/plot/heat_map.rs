@@ -30,7 +30,11 @@ pub struct HeatMap {
 impl HeatMap {
     /// A map of `values`, rows of `columns` values from the top. A value is drawn by its share of the largest; what
     /// is not positive is left blank.
-    pub fn new(title: impl Into<String>, columns: usize, values: impl IntoIterator<Item = f64>) -> Self {
+    pub fn new(
+        title: impl Into<String>,
+        columns: usize,
+        values: impl IntoIterator<Item = f64>,
+    ) -> Self {
         Self {
             title: title.into(),
             columns: columns.max(1),
@@ -86,13 +90,22 @@ impl HeatMap {
     /// The picture. O(cells); blank cells cost nothing.
     pub fn svg(&self) -> String {
         let rows = self.cells.len().div_ceil(self.columns).max(1);
-        let widest = |names: &[String]| names.iter().map(|n| n.chars().count()).max().unwrap_or(0) as f64;
+        let widest =
+            |names: &[String]| names.iter().map(|n| n.chars().count()).max().unwrap_or(0) as f64;
         let left = (16.0 + 6.2 * widest(&self.row_names)).max(40.0);
         let wide = (WIDTH - left - RIGHT) / self.columns as f64;
-        let wide = if self.column_names.is_empty() { wide } else { wide.min(64.0) };
+        let wide = if self.column_names.is_empty() {
+            wide
+        } else {
+            wide.min(64.0)
+        };
         let high = HIGHEST.min((480.0 / rows as f64).max(4.0));
         let bottom = TOP + rows as f64 * high;
-        let names = if self.column_names.is_empty() { 0.0 } else { 10.0 + 4.6 * widest(&self.column_names) };
+        let names = if self.column_names.is_empty() {
+            0.0
+        } else {
+            10.0 + 4.6 * widest(&self.column_names)
+        };
         let legend = self.legend_rows(left) * LEGEND;
         let mut out = String::new();
         open(&mut out, WIDTH, bottom + 44.0 + names + legend, &self.title);
@@ -111,13 +124,21 @@ impl HeatMap {
     }
 
     fn push_cells(&self, out: &mut String, left: f64, wide: f64, high: f64) {
-        let most = self.cells.iter().map(|c| c.0).filter(|v| v.is_finite()).fold(0.0, f64::max);
+        let most = self
+            .cells
+            .iter()
+            .map(|c| c.0)
+            .filter(|v| v.is_finite())
+            .fold(0.0, f64::max);
         for (i, (value, kind)) in self.cells.iter().enumerate() {
             let share = value / most;
             if share.is_nan() || share <= 0.002 {
                 continue;
             }
-            let (x, y) = (left + (i % self.columns) as f64 * wide, TOP + (i / self.columns) as f64 * high);
+            let (x, y) = (
+                left + (i % self.columns) as f64 * wide,
+                TOP + (i / self.columns) as f64 * high,
+            );
             out.push_str(&format!(
                 "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{wide:.1}\" height=\"{high:.1}\" fill=\"{}\" opacity=\"{:.2}\"/>",
                 colour(*kind),
@@ -155,10 +176,17 @@ impl HeatMap {
 
     fn push_labels(&self, out: &mut String, (left, right): (f64, f64), bottom: f64, names: f64) {
         if let Some((from, to)) = self.x_range.filter(|(from, to)| to > from) {
-            let axis = Axis { from, to, low: left, high: right };
+            let axis = Axis {
+                from,
+                to,
+                low: left,
+                high: right,
+            };
             for (value, label) in axis.ticks(10) {
                 let (x, y) = (axis.at(value), bottom + 15.0);
-                out.push_str(&format!("<text class=\"mid\" x=\"{x:.1}\" y=\"{y:.1}\">{label}</text>\n"));
+                out.push_str(&format!(
+                    "<text class=\"mid\" x=\"{x:.1}\" y=\"{y:.1}\">{label}</text>\n"
+                ));
             }
         }
         out.push_str(&format!(
@@ -193,7 +221,11 @@ impl HeatMap {
 
     /// Rows that the legend takes, at most.
     fn legend_rows(&self, left: f64) -> f64 {
-        let wide: f64 = self.kinds.iter().map(|name| 34.0 + 6.2 * name.chars().count() as f64).sum();
+        let wide: f64 = self
+            .kinds
+            .iter()
+            .map(|name| 34.0 + 6.2 * name.chars().count() as f64)
+            .sum();
         // A row may end with room for most of a name.
         (1.25 * wide / (WIDTH - left - RIGHT)).ceil()
     }

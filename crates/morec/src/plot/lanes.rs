@@ -33,19 +33,30 @@ pub struct Lanes {
 impl Lanes {
     /// No lanes yet; `kinds` name what bars may be, `secs` is how long the axis is.
     pub fn new(title: impl Into<String>, kinds: Vec<String>, secs: f64) -> Self {
-        Self { title: title.into(), kinds, secs: if secs > 0.0 { secs } else { 1.0 }, lanes: vec![] }
+        Self {
+            title: title.into(),
+            kinds,
+            secs: if secs > 0.0 { secs } else { 1.0 },
+            lanes: vec![],
+        }
     }
 
     /// Adds a lane below those there are.
     #[must_use]
     pub fn lane(mut self, name: &str, bars: impl IntoIterator<Item = Bar>) -> Self {
-        self.lanes.push((name.to_owned(), bars.into_iter().collect()));
+        self.lanes
+            .push((name.to_owned(), bars.into_iter().collect()));
         self
     }
 
     /// The picture. Kinds that no bar has are not in the legend.
     pub fn svg(&self) -> String {
-        let axis = Axis { from: 0.0, to: self.secs, low: LEFT, high: WIDTH - RIGHT };
+        let axis = Axis {
+            from: 0.0,
+            to: self.secs,
+            low: LEFT,
+            high: WIDTH - RIGHT,
+        };
         let bottom = TOP + self.lanes.len() as f64 * LANE;
         let mut out = String::new();
         let legend = self.legend(bottom + 36.0);
@@ -67,7 +78,8 @@ impl Lanes {
                 LEFT - 8.0,
                 Text(name)
             ));
-            bars.iter().for_each(|bar| self.push_bar(&mut out, bar, &axis, y));
+            bars.iter()
+                .for_each(|bar| self.push_bar(&mut out, bar, &axis, y));
         }
         for (x, y, kind) in legend {
             out.push_str(&format!(
@@ -87,7 +99,10 @@ impl Lanes {
         if !(bar.from_secs.is_finite() && bar.to_secs.is_finite()) {
             return;
         }
-        let (from, to) = (bar.from_secs.clamp(0.0, self.secs), bar.to_secs.clamp(0.0, self.secs));
+        let (from, to) = (
+            bar.from_secs.clamp(0.0, self.secs),
+            bar.to_secs.clamp(0.0, self.secs),
+        );
         let (x, wide) = (axis.at(from), (axis.at(to) - axis.at(from)).max(1.0));
         let name = self.kinds.get(bar.kind).map_or("", String::as_str);
         out.push_str(&format!(
@@ -102,7 +117,11 @@ impl Lanes {
     fn legend(&self, first_y: f64) -> Vec<(f64, f64, usize)> {
         let (mut at, mut places) = ((LEFT, first_y), vec![]);
         for (kind, name) in self.kinds.iter().enumerate() {
-            if !self.lanes.iter().any(|(_, bars)| bars.iter().any(|bar| bar.kind == kind)) {
+            if !self
+                .lanes
+                .iter()
+                .any(|(_, bars)| bars.iter().any(|bar| bar.kind == kind))
+            {
                 continue;
             }
             let wide = 34.0 + 6.2 * name.chars().count() as f64;

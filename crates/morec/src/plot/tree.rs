@@ -53,13 +53,20 @@ fn draw(out: &mut String, x: f64, y: f64, lines: &[String]) {
     let first = y + 0.5 * (height - LINE * lines.len() as f64) + LINE * 0.75;
     for (i, line) in lines.iter().enumerate() {
         let (x, y) = (x + 8.0, first + LINE * i as f64);
-        out.push_str(&format!("<text x=\"{x:.1}\" y=\"{y:.1}\">{}</text>", Text(line)));
+        out.push_str(&format!(
+            "<text x=\"{x:.1}\" y=\"{y:.1}\">{}</text>",
+            Text(line)
+        ));
     }
     out.push_str("</g>\n");
 }
 
 fn children(nodes: &[TreeBox], i: usize) -> impl Iterator<Item = usize> {
-    nodes[i].children.iter().copied().filter(move |&child| child > i && child < nodes.len())
+    nodes[i]
+        .children
+        .iter()
+        .copied()
+        .filter(move |&child| child > i && child < nodes.len())
 }
 
 fn depths(nodes: &[TreeBox]) -> Vec<f64> {
@@ -100,15 +107,27 @@ mod tests {
 
     #[test]
     fn parents_stand_between_their_children_and_leaves_below_one_another() {
-        let node = |children: &[usize]| TreeBox { lines: vec![], children: children.to_vec() };
-        let nodes = [node(&[1, 2]), node(&[3, 4]), node(&[]), node(&[]), node(&[])];
+        let node = |children: &[usize]| TreeBox {
+            lines: vec![],
+            children: children.to_vec(),
+        };
+        let nodes = [
+            node(&[1, 2]),
+            node(&[3, 4]),
+            node(&[]),
+            node(&[]),
+            node(&[]),
+        ];
         assert_eq!(rows(&nodes), [1.25, 0.5, 2.0, 0.0, 1.0]);
         assert_eq!(depths(&nodes), [0.0, 1.0, 1.0, 2.0, 2.0]);
     }
 
     #[test]
     fn children_that_make_no_tree_are_left_out() {
-        let nodes = [TreeBox { lines: vec!["a < b".into()], children: vec![0, 7] }];
+        let nodes = [TreeBox {
+            lines: vec!["a < b".into()],
+            children: vec![0, 7],
+        }];
         let drawn = tree_svg("One", &nodes);
         assert!(drawn.contains("a &lt; b") && !drawn.contains("<path"));
         assert!(tree_svg("None", &[]).contains("None"));

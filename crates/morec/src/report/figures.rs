@@ -12,7 +12,11 @@ pub(super) fn push(out: &mut String, e: &Evaluation) {
     );
     card(out, "Thesis accuracy", Figure(t.accuracy), &counts);
     if let Some(half) = e.overlap.iter().find(|o| o.min_iou == MEASURED_OVERLAP) {
-        let detail = format!("precision {}, recall {}", Figure(half.precision), Figure(half.recall));
+        let detail = format!(
+            "precision {}, recall {}",
+            Figure(half.precision),
+            Figure(half.recall)
+        );
         card(out, "F1 at half overlap", Figure(half.f1), &detail);
     }
     let alarms = &e.false_alarms;
@@ -20,16 +24,32 @@ pub(super) fn push(out: &mut String, e: &Evaluation) {
         out,
         "False alarms a minute",
         Figure(alarms.per_minute),
-        &format!("{} in {:.1} min of labelled clips", alarms.count, alarms.minutes),
+        &format!(
+            "{} in {:.1} min of labelled clips",
+            alarms.count, alarms.minutes
+        ),
     );
     if e.unknown.clips > 0 {
         push_unknown(out, e);
     }
     let delay = &e.delay;
-    let detail = format!("nine in ten within {}; {} measured", secs(delay.p90_secs, false), delay.count);
-    card(out, "Delay, median", secs(delay.median_secs, false), &detail);
+    let detail = format!(
+        "nine in ten within {}; {} measured",
+        secs(delay.p90_secs, false),
+        delay.count
+    );
+    card(
+        out,
+        "Delay, median",
+        secs(delay.median_secs, false),
+        &detail,
+    );
     let c = &e.classification;
-    let detail = format!("wrong (P_E) {}, rejected (P_R) {}", Figure(c.p_e), Figure(c.p_r));
+    let detail = format!(
+        "wrong (P_E) {}, rejected (P_R) {}",
+        Figure(c.p_e),
+        Figure(c.p_r)
+    );
     card(out, "Samples recognised (P_C)", Figure(c.p_c), &detail);
     out.push_str("</div>\n");
     push_overlap_table(out, e);
@@ -45,7 +65,12 @@ fn push_unknown(out: &mut String, e: &Evaluation) {
         u.minutes,
         Figure(u.per_minute)
     );
-    card(out, "Unknown motion accepted", Figure(u.unknown_accepted), &detail);
+    card(
+        out,
+        "Unknown motion accepted",
+        Figure(u.unknown_accepted),
+        &detail,
+    );
 }
 
 fn card(out: &mut String, name: &str, value: impl std::fmt::Display, detail: &str) {

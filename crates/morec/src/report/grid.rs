@@ -16,9 +16,14 @@ const PER_ROW: usize = 50;
 
 /// Short clips, if they are many, and the rest.
 pub(super) fn split(timelines: &[Timeline]) -> (Vec<&Timeline>, Vec<&Timeline>) {
-    let (short, long): (Vec<_>, Vec<_>) =
-        timelines.iter().partition(|t| t.stream.duration_secs <= SHORT_SECS && t.truths.len() <= 1);
-    if short.len() < MANY { (Vec::new(), timelines.iter().collect()) } else { (short, long) }
+    let (short, long): (Vec<_>, Vec<_>) = timelines
+        .iter()
+        .partition(|t| t.stream.duration_secs <= SHORT_SECS && t.truths.len() <= 1);
+    if short.len() < MANY {
+        (Vec::new(), timelines.iter().collect())
+    } else {
+        (short, long)
+    }
 }
 
 pub(super) fn push(out: &mut String, short: &[&Timeline], palette: &Palette) {
@@ -75,13 +80,26 @@ impl<'a> Square<'a> {
             Some((truth, TruthVerdict::Right)) => (Some(truth.class.as_str()), true, ""),
             Some((_, TruthVerdict::Mistaken(other))) => (Some(other.as_str()), false, "✗"),
             Some((_, TruthVerdict::Missed)) => (None, false, ""),
-            None => (first_found, first_found.is_none(), if first_found.is_some() { "!" } else { "" }),
+            None => (
+                first_found,
+                first_found.is_none(),
+                if first_found.is_some() { "!" } else { "" },
+            ),
         };
         let founds: Vec<String> = (timeline.founds.iter())
             .map(|(f, _)| format!("{} {:.2}–{:.2} s", f.class, f.start_secs, f.stop_secs))
             .collect();
-        let founds = if founds.is_empty() { "nothing found".to_owned() } else { founds.join(", ") };
-        Self { found, right, mark, title: format!("{}: {founds}", timeline.stream.clip) }
+        let founds = if founds.is_empty() {
+            "nothing found".to_owned()
+        } else {
+            founds.join(", ")
+        };
+        Self {
+            found,
+            right,
+            mark,
+            title: format!("{}: {founds}", timeline.stream.clip),
+        }
     }
 
     fn push(&self, out: &mut String, x: usize, y: usize, palette: &Palette) {
@@ -98,7 +116,10 @@ impl<'a> Square<'a> {
         ));
         if !self.mark.is_empty() {
             let (x, y) = (x + SIDE / 2, y + 14);
-            out.push_str(&format!("<text class=\"on\" x=\"{x}\" y=\"{y}\">{}</text>", self.mark));
+            out.push_str(&format!(
+                "<text class=\"on\" x=\"{x}\" y=\"{y}\">{}</text>",
+                self.mark
+            ));
         }
         out.push('\n');
     }

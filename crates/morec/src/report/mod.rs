@@ -79,7 +79,11 @@ impl Report<'_> {
         }
         out.push_str("<dl class=\"about\">\n");
         for (name, value) in self.about {
-            out.push_str(&format!("<div><dt>{}</dt><dd>{}</dd></div>\n", Text(name), Text(value)));
+            out.push_str(&format!(
+                "<div><dt>{}</dt><dd>{}</dd></div>\n",
+                Text(name),
+                Text(value)
+            ));
         }
         out.push_str("</dl>\n");
     }
@@ -90,7 +94,10 @@ impl Report<'_> {
         let (first, rest) = notes.split_at(notes.len().min(NOTES_SHOWN));
         push_list(out, first);
         if !rest.is_empty() {
-            out.push_str(&format!("<details><summary>{} more</summary>\n", rest.len()));
+            out.push_str(&format!(
+                "<details><summary>{} more</summary>\n",
+                rest.len()
+            ));
             push_list(out, rest);
             out.push_str("</details>\n");
         }
@@ -99,6 +106,8 @@ impl Report<'_> {
 
 fn push_list(out: &mut String, notes: &[String]) {
     out.push_str("<ul class=\"notes\">\n");
-    notes.iter().for_each(|note| out.push_str(&format!("<li>{}</li>\n", Text(note))));
+    notes
+        .iter()
+        .for_each(|note| out.push_str(&format!("<li>{}</li>\n", Text(note))));
     out.push_str("</ul>\n");
 }

@@ -21,12 +21,21 @@ pub fn learning_notes(evaluation: &Evaluation, training: &[TrainedClass]) -> Vec
             notes.extend(need_of(trained).map(|need| (trouble(class), need)));
         }
     }
-    let untested =
-        training.iter().filter(|t| !evaluation.classes.iter().any(|c| c.class == t.class && c.samples > 0));
-    notes.extend(
-        untested
-            .map(|t| (0, format!("{} is trained but has no sample here: nothing is known of it.", t.class))),
-    );
+    let untested = training.iter().filter(|t| {
+        !evaluation
+            .classes
+            .iter()
+            .any(|c| c.class == t.class && c.samples > 0)
+    });
+    notes.extend(untested.map(|t| {
+        (
+            0,
+            format!(
+                "{} is trained but has no sample here: nothing is known of it.",
+                t.class
+            ),
+        )
+    }));
     bias_notes(evaluation, &mut notes);
     // Stable: notes of equal weight stay in the order of the classes.
     notes.sort_by_key(|(weight, _)| std::cmp::Reverse(*weight));
@@ -54,13 +63,23 @@ fn notes_on_class(class: &ClassFigures, notes: &mut Vec<(usize, String)>) {
     if class.missed > 0 {
         notes.push((
             class.missed,
-            format!("{name}: {} of {} missed.", class.missed, count(class.samples, "sample")),
+            format!(
+                "{name}: {} of {} missed.",
+                class.missed,
+                count(class.samples, "sample")
+            ),
         ));
     }
     if !class.mistaken_for.is_empty() {
-        let mistakes = class.mistaken_for.iter().map(|m| format!("{} {}", m.class, times(m.count)));
+        let mistakes = class
+            .mistaken_for
+            .iter()
+            .map(|m| format!("{} {}", m.class, times(m.count)));
         let total = class.mistaken_for.iter().map(|m| m.count).sum();
-        notes.push((total, format!("{name} is mistaken for {}.", listed(mistakes.collect()))));
+        notes.push((
+            total,
+            format!("{name} is mistaken for {}.", listed(mistakes.collect())),
+        ));
     }
     if class.false_alarms.count > 0 {
         let alarms = class.false_alarms.count;
@@ -71,11 +90,17 @@ fn notes_on_class(class: &ClassFigures, notes: &mut Vec<(usize, String)>) {
         notes.push((alarms, text));
     }
     if class.unknown_detections > 0 {
-        let text = format!("{name} is seen in unknown motion {}.", times(class.unknown_detections));
+        let text = format!(
+            "{name} is seen in unknown motion {}.",
+            times(class.unknown_detections)
+        );
         notes.push((class.unknown_detections, text));
     }
     if class.samples == 0 && class.detections > 0 {
-        notes.push((class.detections, format!("{name} is found but labelled nowhere in these clips.")));
+        notes.push((
+            class.detections,
+            format!("{name} is found but labelled nowhere in these clips."),
+        ));
     }
 }
 
@@ -84,7 +109,10 @@ fn bias_notes(evaluation: &Evaluation, notes: &mut Vec<(usize, String)>) {
     let ends_of = |b: &Boundaries| [("start", b.start_median_secs), ("stop", b.stop_median_secs)];
     let mut note = |whose: &str, end: &str, bias: f64| {
         let late = if bias > 0.0 { "late" } else { "early" };
-        notes.push((1, format!("{whose} {end} {:.1} s {late} (median).", bias.abs())));
+        notes.push((
+            1,
+            format!("{whose} {end} {:.1} s {late} (median).", bias.abs()),
+        ));
     };
     let notable = |bias: f64| bias.abs() >= NOTABLE_BIAS_SECS;
     for (i, (end, bias)) in ends_of(&evaluation.boundaries).into_iter().enumerate() {
@@ -94,7 +122,9 @@ fn bias_notes(evaluation: &Evaluation, notes: &mut Vec<(usize, String)>) {
         }
         // A single detection has no tendency.
         for class in evaluation.classes.iter().filter(|c| c.boundaries.count > 1) {
-            if let Some(bias) = ends_of(&class.boundaries)[i].1.filter(|b| notable(*b) && notable(b - common))
+            if let Some(bias) = ends_of(&class.boundaries)[i]
+                .1
+                .filter(|b| notable(*b) && notable(b - common))
             {
                 note(&format!("Detections of {}", class.class), end, bias);
             }
@@ -105,12 +135,14 @@ fn bias_notes(evaluation: &Evaluation, notes: &mut Vec<(usize, String)>) {
 fn need_of(trained: &TrainedClass) -> Option<String> {
     let samples = count(trained.samples, "sample");
     match trained.people {
-        Some(people @ 0..=1) => {
-            Some(format!("{} needs more people: {samples} of {people} person.", trained.class))
-        }
-        Some(people) if trained.samples < FEW_SAMPLES => {
-            Some(format!("{} needs more samples: {samples} of {people} people.", trained.class))
-        }
+        Some(people @ 0..=1) => Some(format!(
+            "{} needs more people: {samples} of {people} person.",
+            trained.class
+        )),
+        Some(people) if trained.samples < FEW_SAMPLES => Some(format!(
+            "{} needs more samples: {samples} of {people} people.",
+            trained.class
+        )),
         None if trained.samples < FEW_SAMPLES => {
             Some(format!("{} needs more samples: {samples}.", trained.class))
         }

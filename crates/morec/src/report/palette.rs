@@ -16,7 +16,12 @@ impl Palette {
             format!("hsl({hue:.0} 60% {lightness}%)")
         };
         let names = evaluation.classes.iter().map(|c| c.class.clone());
-        Self(names.enumerate().map(|(i, name)| (name, colour(i))).collect())
+        Self(
+            names
+                .enumerate()
+                .map(|(i, name)| (name, colour(i)))
+                .collect(),
+        )
     }
 
     pub fn colour(&self, class: &str) -> &str {
@@ -25,6 +30,8 @@ impl Palette {
 
     /// Names and colours, by name.
     pub fn classes(&self) -> impl Iterator<Item = (&str, &str)> {
-        self.0.iter().map(|(name, colour)| (name.as_str(), colour.as_str()))
+        self.0
+            .iter()
+            .map(|(name, colour)| (name.as_str(), colour.as_str()))
     }
 }

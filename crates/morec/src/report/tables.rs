@@ -18,7 +18,10 @@ pub(super) fn push_confusion(out: &mut String, confusion: &Confusion) {
     );
     let nothing = ["nothing".to_owned()];
     for name in confusion.columns.iter().chain(&nothing) {
-        out.push_str(&format!("<th scope=\"col\"><span>{}</span></th>", Text(name)));
+        out.push_str(&format!(
+            "<th scope=\"col\"><span>{}</span></th>",
+            Text(name)
+        ));
     }
     out.push_str("</tr>\n");
     for (name, counts) in confusion.rows.iter().chain(&nothing).zip(&confusion.counts) {
@@ -39,16 +42,24 @@ pub(super) fn push_confusion(out: &mut String, confusion: &Confusion) {
 
 fn push_cell(out: &mut String, count: usize, total: usize, right: bool) {
     if count == 0 {
-        out.push_str(if right { "<td class=\"zero\">0</td>" } else { "<td class=\"zero\">·</td>" });
+        out.push_str(if right {
+            "<td class=\"zero\">0</td>"
+        } else {
+            "<td class=\"zero\">·</td>"
+        });
         return;
     }
     let share = STRONGEST * (0.25 + 0.75 * count as f64 / total as f64);
     let colour = if right { "46,160,90" } else { "220,60,50" };
-    out.push_str(&format!("<td style=\"background:rgba({colour},{share:.2})\">{count}</td>"));
+    out.push_str(&format!(
+        "<td style=\"background:rgba({colour},{share:.2})\">{count}</td>"
+    ));
 }
 
 pub(super) fn push_classes(out: &mut String, e: &Evaluation, training: &[TrainedClass]) {
-    out.push_str("<h2>Class by class</h2>\n<div class=\"wide\"><table>\n<tr><th scope=\"col\">class</th>");
+    out.push_str(
+        "<h2>Class by class</h2>\n<div class=\"wide\"><table>\n<tr><th scope=\"col\">class</th>",
+    );
     if !training.is_empty() {
         out.push_str("<th>trained by</th>");
     }
@@ -60,10 +71,16 @@ pub(super) fn push_classes(out: &mut String, e: &Evaluation, training: &[Trained
     out.push_str(if unknown { "<th>in unknown</th>" } else { "" });
     out.push_str("<th>delay</th><th>start</th><th>stop</th><th>mistaken for</th></tr>\n");
     for class in &e.classes {
-        out.push_str(&format!("<tr><th scope=\"row\">{}</th>", Text(&class.class)));
+        out.push_str(&format!(
+            "<tr><th scope=\"row\">{}</th>",
+            Text(&class.class)
+        ));
         if !training.is_empty() {
             let trained = training.iter().find(|t| t.class == class.class);
-            out.push_str(&format!("<td>{}</td>", trained.map_or("–".to_owned(), trained_by)));
+            out.push_str(&format!(
+                "<td>{}</td>",
+                trained.map_or("–".to_owned(), trained_by)
+            ));
         }
         push_class_figures(out, class, unknown);
         out.push_str("</tr>\n");
@@ -79,10 +96,14 @@ fn push_class_figures(out: &mut String, class: &crate::eval::ClassFigures, unkno
     cell(class.samples.to_string());
     cell(class.detections.to_string());
     if let Some(half) = class.overlap.iter().find(|o| o.min_iou == MEASURED_OVERLAP) {
-        [half.f1, half.precision, half.recall].into_iter().for_each(|v| cell(Figure(v).to_string()));
+        [half.f1, half.precision, half.recall]
+            .into_iter()
+            .for_each(|v| cell(Figure(v).to_string()));
     }
     let c = &class.classification;
-    [c.p_c, c.p_e, c.p_r].into_iter().for_each(|v| cell(Figure(v).to_string()));
+    [c.p_c, c.p_e, c.p_r]
+        .into_iter()
+        .for_each(|v| cell(Figure(v).to_string()));
     cell(class.missed.to_string());
     cell(class.false_alarms.count.to_string());
     if unknown {
@@ -91,9 +112,16 @@ fn push_class_figures(out: &mut String, class: &crate::eval::ClassFigures, unkno
     cell(secs(class.delay.median_secs, false));
     cell(secs(class.boundaries.start_median_secs, true));
     cell(secs(class.boundaries.stop_median_secs, true));
-    let mistakes: Vec<String> =
-        class.mistaken_for.iter().map(|m| format!("{}&nbsp;×{}", Text(&m.class), m.count)).collect();
-    cell(if mistakes.is_empty() { "–".to_owned() } else { mistakes.join(", ") });
+    let mistakes: Vec<String> = class
+        .mistaken_for
+        .iter()
+        .map(|m| format!("{}&nbsp;×{}", Text(&m.class), m.count))
+        .collect();
+    cell(if mistakes.is_empty() {
+        "–".to_owned()
+    } else {
+        mistakes.join(", ")
+    });
 }
 
 fn trained_by(trained: &TrainedClass) -> String {

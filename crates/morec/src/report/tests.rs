@@ -4,7 +4,12 @@ use super::*;
 use crate::eval::{Found, StreamInfo, Truth, timelines};
 
 fn truth(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> Truth {
-    Truth { clip: clip.into(), class: class.into(), start_secs, stop_secs }
+    Truth {
+        clip: clip.into(),
+        class: class.into(),
+        start_secs,
+        stop_secs,
+    }
 }
 
 fn found(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> Found {
@@ -19,24 +24,45 @@ fn found(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> Found {
 }
 
 fn stream(clip: &str, duration_secs: f64, unknown: bool) -> StreamInfo {
-    StreamInfo { clip: clip.into(), duration_secs, unknown }
+    StreamInfo {
+        clip: clip.into(),
+        duration_secs,
+        unknown,
+    }
 }
 
-fn report(infos: &[StreamInfo], truths: &[Truth], founds: &[Found], training: &[TrainedClass]) -> String {
+fn report(
+    infos: &[StreamInfo],
+    truths: &[Truth],
+    founds: &[Found],
+    training: &[TrainedClass],
+) -> String {
     let evaluation = Evaluation::of(infos, truths, founds).unwrap();
     let timelines = timelines(infos, truths, founds).unwrap();
     let about = [("command".to_owned(), "<morec>".to_owned())];
-    Report { title: "A & B", about: &about, evaluation: &evaluation, timelines: &timelines, training }.html()
+    Report {
+        title: "A & B",
+        about: &about,
+        evaluation: &evaluation,
+        timelines: &timelines,
+        training,
+    }
+    .html()
 }
 
 /// Every element that is opened is closed, in order; returns how many there are.
 fn check_nesting(html: &str) -> usize {
-    let body = html.split_once("<style>").unwrap().0.to_owned() + html.split_once("</style>").unwrap().1;
+    let body =
+        html.split_once("<style>").unwrap().0.to_owned() + html.split_once("</style>").unwrap().1;
     let mut open: Vec<&str> = Vec::new();
     let mut elements = 0;
     for tag in body.split('<').skip(1) {
         let tag = tag.split_once('>').expect("a tag that ends").0;
-        let name = tag.trim_start_matches('/').split([' ', '/']).next().unwrap();
+        let name = tag
+            .trim_start_matches('/')
+            .split([' ', '/'])
+            .next()
+            .unwrap();
         if tag.starts_with('/') {
             assert_eq!(open.pop(), Some(name));
         } else if !tag.ends_with('/') && !["meta", "!DOCTYPE"].contains(&name) {
@@ -53,14 +79,24 @@ const HOSTILE: &str = "</title><script>alert('1')</script>\"&\u{1}";
 #[test]
 fn hostile_names_stay_text() {
     let calm = [stream("c", 40.0, false)];
-    let plain = report(&calm, &[truth("c", "x", 1.0, 2.0)], &[found("c", "y", 1.0, 2.0)], &[]);
+    let plain = report(
+        &calm,
+        &[truth("c", "x", 1.0, 2.0)],
+        &[found("c", "y", 1.0, 2.0)],
+        &[],
+    );
     let infos = [stream(HOSTILE, 40.0, false)];
-    let (truths, founds) = ([truth(HOSTILE, HOSTILE, 1.0, 2.0)], [found(HOSTILE, "y", 1.0, 2.0)]);
+    let (truths, founds) = (
+        [truth(HOSTILE, HOSTILE, 1.0, 2.0)],
+        [found(HOSTILE, "y", 1.0, 2.0)],
+    );
     let html = report(&infos, &truths, &founds, &[]);
     assert!(!html.contains("<script") && !html.contains('\u{1}'));
     // Names are written where they fit, so a long one may be missing on its bar: never more elements.
     assert!(check_nesting(&html) <= check_nesting(&plain));
-    let many: Vec<StreamInfo> = (0..30).map(|i| stream(&format!("{i}{HOSTILE}"), 2.0, i % 2 == 0)).collect();
+    let many: Vec<StreamInfo> = (0..30)
+        .map(|i| stream(&format!("{i}{HOSTILE}"), 2.0, i % 2 == 0))
+        .collect();
     let html = report(
         &many,
         &[truth(&many[1].clip, HOSTILE, 0.0, 2.0)],
@@ -73,8 +109,15 @@ fn hostile_names_stay_text() {
 
 #[test]
 fn nothing_from_outside() {
-    let html = report(&[stream("c", 40.0, false)], &[truth("c", "x", 1.0, 2.0)], &[], &[]);
-    for outside in ["http:", "https:", "src=", "href=", "@import", "url(", "<script"] {
+    let html = report(
+        &[stream("c", 40.0, false)],
+        &[truth("c", "x", 1.0, 2.0)],
+        &[],
+        &[],
+    );
+    for outside in [
+        "http:", "https:", "src=", "href=", "@import", "url(", "<script",
+    ] {
         assert!(!html.contains(outside), "{outside}");
     }
     assert!(html.contains("prefers-color-scheme: dark") && html.contains("@media print"));
@@ -83,10 +126,16 @@ fn nothing_from_outside() {
 #[test]
 fn every_sample_and_detection_is_drawn_and_said() {
     let infos = [stream("long", 100.0, false), stream("rest", 20.0, true)];
-    let truths =
-        [truth("long", "x", 1.0, 2.0), truth("long", "x", 99.0, 100.0), truth("long", "z", 50.0, 51.0)];
-    let founds =
-        [found("long", "x", 1.0, 2.0), found("long", "y", 50.0, 51.0), found("long", "y", 70.0, 71.0)];
+    let truths = [
+        truth("long", "x", 1.0, 2.0),
+        truth("long", "x", 99.0, 100.0),
+        truth("long", "z", 50.0, 51.0),
+    ];
+    let founds = [
+        found("long", "x", 1.0, 2.0),
+        found("long", "y", 50.0, 51.0),
+        found("long", "y", 70.0, 71.0),
+    ];
     let html = report(&infos, &truths, &founds, &[]);
     check_nesting(&html);
     for title in [
@@ -107,12 +156,20 @@ fn every_sample_and_detection_is_drawn_and_said() {
 
 #[test]
 fn many_short_clips_become_squares() {
-    let infos: Vec<StreamInfo> =
-        (0..560).map(|i| stream(&format!("clip {i:03}"), 2.0, i % 10 == 9)).collect();
+    let infos: Vec<StreamInfo> = (0..560)
+        .map(|i| stream(&format!("clip {i:03}"), 2.0, i % 10 == 9))
+        .collect();
     let known = infos.iter().filter(|s| !s.unknown);
-    let truths: Vec<Truth> =
-        known.clone().enumerate().map(|(i, s)| truth(&s.clip, ["a", "b"][i % 2], 0.0, 2.0)).collect();
-    let founds: Vec<Found> = infos.iter().step_by(3).map(|s| found(&s.clip, "a", 0.1, 1.9)).collect();
+    let truths: Vec<Truth> = known
+        .clone()
+        .enumerate()
+        .map(|(i, s)| truth(&s.clip, ["a", "b"][i % 2], 0.0, 2.0))
+        .collect();
+    let founds: Vec<Found> = infos
+        .iter()
+        .step_by(3)
+        .map(|s| found(&s.clip, "a", 0.1, 1.9))
+        .collect();
     let html = report(&infos, &truths, &founds, &[]);
     check_nesting(&html);
     assert_eq!(html.matches("<svg").count(), 3);
@@ -123,13 +180,33 @@ fn many_short_clips_become_squares() {
 #[test]
 fn notes_name_what_to_teach() {
     let infos = [stream("c", 60.0, false), stream("u", 60.0, true)];
-    let mut truths: Vec<Truth> =
-        (0..4).map(|i| truth("c", "hands_up", f64::from(i) * 3.0, f64::from(i) * 3.0 + 1.0)).collect();
+    let mut truths: Vec<Truth> = (0..4)
+        .map(|i| {
+            truth(
+                "c",
+                "hands_up",
+                f64::from(i) * 3.0,
+                f64::from(i) * 3.0 + 1.0,
+            )
+        })
+        .collect();
     truths.push(truth("c", "kick", 30.0, 31.0));
-    let founds = [found("c", "wave", 0.0, 1.0), found("c", "kick", 30.0, 31.0), found("u", "kick", 1.0, 2.0)];
+    let founds = [
+        found("c", "wave", 0.0, 1.0),
+        found("c", "kick", 30.0, 31.0),
+        found("u", "kick", 1.0, 2.0),
+    ];
     let evaluation = Evaluation::of(&infos, &truths, &founds).unwrap();
-    let trained = |class: &str, samples, people| TrainedClass { class: class.into(), samples, people };
-    let training = [trained("hands_up", 2, Some(1)), trained("kick", 1, Some(1)), trained("bow", 9, None)];
+    let trained = |class: &str, samples, people| TrainedClass {
+        class: class.into(),
+        samples,
+        people,
+    };
+    let training = [
+        trained("hands_up", 2, Some(1)),
+        trained("kick", 1, Some(1)),
+        trained("bow", 9, None),
+    ];
     let notes = learning_notes(&evaluation, &training);
     assert_eq!(
         notes,
@@ -143,5 +220,8 @@ fn notes_name_what_to_teach() {
         ]
     );
     let perfect = Evaluation::of(&infos, &truths[4..], &founds[1..2]).unwrap();
-    assert_eq!(learning_notes(&perfect, &[]), ["Every sample was recognised, and nothing else was found."]);
+    assert_eq!(
+        learning_notes(&perfect, &[]),
+        ["Every sample was recognised, and nothing else was found."]
+    );
 }

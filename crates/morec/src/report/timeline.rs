@@ -23,10 +23,14 @@ pub(super) fn push(out: &mut String, timelines: &[Timeline], palette: &Palette) 
     out.push_str("<h2>Timelines</h2>\n");
     push_legend(out, palette);
     let (short, long) = grid::split(timelines);
-    let (empty, mut drawn): (Vec<&Timeline>, Vec<_>) =
-        long.into_iter().partition(|t| t.truths.is_empty() && t.founds.is_empty());
+    let (empty, mut drawn): (Vec<&Timeline>, Vec<_>) = long
+        .into_iter()
+        .partition(|t| t.truths.is_empty() && t.founds.is_empty());
     drawn.sort_by_key(|t| t.stream.unknown);
-    let row_secs = drawn.iter().map(|t| t.stream.duration_secs / rows_of(t) as f64).fold(1.0, f64::max);
+    let row_secs = drawn
+        .iter()
+        .map(|t| t.stream.duration_secs / rows_of(t) as f64)
+        .fold(1.0, f64::max);
     let scale = (WIDTH - LEFT - RIGHT) / row_secs;
     let mut rows = 0;
     for timeline in &drawn {
@@ -40,7 +44,10 @@ pub(super) fn push(out: &mut String, timelines: &[Timeline], palette: &Palette) 
     }
     grid::push(out, &short, palette);
     if !empty.is_empty() {
-        let names: Vec<String> = empty.iter().map(|t| Text(&t.stream.clip).to_string()).collect();
+        let names: Vec<String> = empty
+            .iter()
+            .map(|t| Text(&t.stream.clip).to_string())
+            .collect();
         out.push_str(&format!(
             "<p class=\"small\">Nothing labelled and nothing found in {}.</p>\n",
             names.join(", ")
@@ -51,7 +58,10 @@ pub(super) fn push(out: &mut String, timelines: &[Timeline], palette: &Palette) 
 fn push_legend(out: &mut String, palette: &Palette) {
     out.push_str("<p class=\"legend\">");
     for (name, colour) in palette.classes() {
-        out.push_str(&format!("<span><i style=\"background:{colour}\"></i>{}</span> ", Text(name)));
+        out.push_str(&format!(
+            "<span><i style=\"background:{colour}\"></i>{}</span> ",
+            Text(name)
+        ));
     }
     out.push_str(
         "</p>\n<p class=\"small\">Above: what is labelled (<b>○</b> missed, <b>✗</b> taken for another class). Below: what was \
@@ -75,11 +85,18 @@ fn push_clip(out: &mut String, timeline: &Timeline, scale: f64, palette: &Palett
     ));
     let rows = rows_of(timeline);
     let row_secs = stream.duration_secs / rows as f64;
-    let windows =
-        (0..rows).map(|r| Window { from: r as f64 * row_secs, to: (r + 1) as f64 * row_secs, scale });
-    let (shown, blank): (Vec<Window>, Vec<Window>) = windows.partition(|window| window.holds_any(timeline));
+    let windows = (0..rows).map(|r| Window {
+        from: r as f64 * row_secs,
+        to: (r + 1) as f64 * row_secs,
+        scale,
+    });
+    let (shown, blank): (Vec<Window>, Vec<Window>) =
+        windows.partition(|window| window.holds_any(timeline));
     if !blank.is_empty() {
-        out.push_str(&format!("; rows without anything are left out: {}", blank.len()));
+        out.push_str(&format!(
+            "; rows without anything are left out: {}",
+            blank.len()
+        ));
     }
     out.push_str("</figcaption>\n");
     for window in shown {
@@ -93,9 +110,20 @@ fn summary(timeline: &Timeline) -> String {
     if timeline.stream.unknown {
         return format!("unknown motion: {found} found");
     }
-    let lost = timeline.truths.iter().filter(|(_, v)| *v != TruthVerdict::Right).count();
-    let alarms = timeline.founds.iter().filter(|(_, v)| *v == FoundVerdict::FalseAlarm).count();
-    format!("{} labelled, {lost} not recognised, {found} found, {alarms} false", timeline.truths.len())
+    let lost = timeline
+        .truths
+        .iter()
+        .filter(|(_, v)| *v != TruthVerdict::Right)
+        .count();
+    let alarms = timeline
+        .founds
+        .iter()
+        .filter(|(_, v)| *v == FoundVerdict::FalseAlarm)
+        .count();
+    format!(
+        "{} labelled, {lost} not recognised, {found} found, {alarms} false",
+        timeline.truths.len()
+    )
 }
 
 /// The part of a clip that a row shows.
@@ -116,8 +144,14 @@ impl Window {
     }
 
     fn holds_any(self, timeline: &Timeline) -> bool {
-        timeline.truths.iter().any(|(t, _)| self.shows(t.start_secs, t.stop_secs))
-            || timeline.founds.iter().any(|(f, _)| self.shows(f.start_secs, f.stop_secs))
+        timeline
+            .truths
+            .iter()
+            .any(|(t, _)| self.shows(t.start_secs, t.stop_secs))
+            || timeline
+                .founds
+                .iter()
+                .any(|(f, _)| self.shows(f.start_secs, f.stop_secs))
     }
 }
 
@@ -135,17 +169,31 @@ fn push_row(out: &mut String, timeline: &Timeline, window: Window, palette: &Pal
         TRUTH_Y + 15.0,
         FOUND_Y + 15.0,
     ));
-    let truths = timeline.truths.iter().filter(|(t, _)| window.shows(t.start_secs, t.stop_secs));
-    let founds = timeline.founds.iter().filter(|(f, _)| window.shows(f.start_secs, f.stop_secs));
+    let truths = timeline
+        .truths
+        .iter()
+        .filter(|(t, _)| window.shows(t.start_secs, t.stop_secs));
+    let founds = timeline
+        .founds
+        .iter()
+        .filter(|(f, _)| window.shows(f.start_secs, f.stop_secs));
     let mut truth_names = Names::new(TRUTH_Y, right);
     for (truth, verdict) in truths {
         push_truth(out, truth, verdict, window, palette);
-        truth_names.add(&truth.class, window.x(truth.start_secs), window.x(truth.stop_secs));
+        truth_names.add(
+            &truth.class,
+            window.x(truth.start_secs),
+            window.x(truth.stop_secs),
+        );
     }
     let mut found_names = Names::new(FOUND_Y, right);
     for (found, verdict) in founds {
         push_found(out, found, *verdict, window, palette);
-        found_names.add(&found.class, window.x(found.start_secs), window.x(found.stop_secs));
+        found_names.add(
+            &found.class,
+            window.x(found.start_secs),
+            window.x(found.stop_secs),
+        );
     }
     truth_names.push(out);
     found_names.push(out);
@@ -153,26 +201,50 @@ fn push_row(out: &mut String, timeline: &Timeline, window: Window, palette: &Pal
     out.push_str("</svg>\n");
 }
 
-fn push_truth(out: &mut String, truth: &Truth, verdict: &TruthVerdict, window: Window, palette: &Palette) {
+fn push_truth(
+    out: &mut String,
+    truth: &Truth,
+    verdict: &TruthVerdict,
+    window: Window,
+    palette: &Palette,
+) {
     let (class, mark, text) = match verdict {
         TruthVerdict::Right => ("bar", "", "recognised".to_owned()),
         TruthVerdict::Mistaken(other) => ("bar mistaken", "✗", format!("taken for {other}")),
         TruthVerdict::Missed => ("bar missed", "○", "missed".to_owned()),
     };
-    let title = format!("{} {:.2}–{:.2} s: {text}", truth.class, truth.start_secs, truth.stop_secs);
+    let title = format!(
+        "{} {:.2}–{:.2} s: {text}",
+        truth.class, truth.start_secs, truth.stop_secs
+    );
     let (from, to) = (window.x(truth.start_secs), window.x(truth.stop_secs));
-    push_bar(out, class, (from, to, TRUTH_Y), palette.colour(&truth.class), &title);
+    push_bar(
+        out,
+        class,
+        (from, to, TRUTH_Y),
+        palette.colour(&truth.class),
+        &title,
+    );
     push_mark(out, mark, (from + to) / 2.0, TRUTH_Y - 3.0);
 }
 
-fn push_found(out: &mut String, found: &Found, verdict: FoundVerdict, window: Window, palette: &Palette) {
+fn push_found(
+    out: &mut String,
+    found: &Found,
+    verdict: FoundVerdict,
+    window: Window,
+    palette: &Palette,
+) {
     let (class, mark, text) = match verdict {
         FoundVerdict::Right => ("bar", "", "right"),
         FoundVerdict::Loose => ("bar loose", "~", "right class, but badly placed or twice"),
         FoundVerdict::WrongClass => ("bar wrong", "✗", "wrong class"),
         FoundVerdict::FalseAlarm => ("bar alarm", "!", "false alarm"),
     };
-    let mut title = format!("{} {:.2}–{:.2} s: {text}", found.class, found.start_secs, found.stop_secs);
+    let mut title = format!(
+        "{} {:.2}–{:.2} s: {text}",
+        found.class, found.start_secs, found.stop_secs
+    );
     if let Some(score) = found.score {
         title.push_str(&format!(", score {score:.3}"));
     }
@@ -181,15 +253,29 @@ fn push_found(out: &mut String, found: &Found, verdict: FoundVerdict, window: Wi
         if reported >= window.from && reported <= window.to {
             let x = window.x(reported);
             let (top, bottom) = (FOUND_Y + BAR, FOUND_Y + BAR + 5.0);
-            out.push_str(&format!("<path class=\"report\" d=\"M{x:.1} {top}V{bottom}\"/>"));
+            out.push_str(&format!(
+                "<path class=\"report\" d=\"M{x:.1} {top}V{bottom}\"/>"
+            ));
         }
     }
     let (from, to) = (window.x(found.start_secs), window.x(found.stop_secs));
-    push_bar(out, class, (from, to, FOUND_Y), palette.colour(&found.class), &title);
+    push_bar(
+        out,
+        class,
+        (from, to, FOUND_Y),
+        palette.colour(&found.class),
+        &title,
+    );
     push_mark(out, mark, (from + to) / 2.0, FOUND_Y + BAR + 13.0);
 }
 
-fn push_bar(out: &mut String, class: &str, (from, to, y): (f64, f64, f64), colour: &str, title: &str) {
+fn push_bar(
+    out: &mut String,
+    class: &str,
+    (from, to, y): (f64, f64, f64),
+    colour: &str,
+    title: &str,
+) {
     let width = (to - from).max(1.0);
     out.push_str(&format!(
         "<rect class=\"{class}\" x=\"{from:.1}\" y=\"{y}\" width=\"{width:.1}\" height=\"{BAR}\" fill=\"{colour}\">\
@@ -200,15 +286,22 @@ fn push_bar(out: &mut String, class: &str, (from, to, y): (f64, f64, f64), colou
 
 fn push_mark(out: &mut String, mark: &str, x: f64, y: f64) {
     if !mark.is_empty() {
-        out.push_str(&format!("<text class=\"mark\" x=\"{x:.1}\" y=\"{y}\">{mark}</text>"));
+        out.push_str(&format!(
+            "<text class=\"mark\" x=\"{x:.1}\" y=\"{y}\">{mark}</text>"
+        ));
     }
 }
 
 fn push_axis(out: &mut String, window: Window) {
     let right = window.x(window.to);
-    out.push_str(&format!("<path class=\"axis\" d=\"M{LEFT} {AXIS_Y}H{right:.1}\"/>"));
+    out.push_str(&format!(
+        "<path class=\"axis\" d=\"M{LEFT} {AXIS_Y}H{right:.1}\"/>"
+    ));
     let shown = window.to - window.from;
-    let step = [0.5, 1.0, 2.0, 5.0, 10.0].into_iter().find(|s| shown / s <= 16.0).unwrap_or(30.0);
+    let step = [0.5, 1.0, 2.0, 5.0, 10.0]
+        .into_iter()
+        .find(|s| shown / s <= 16.0)
+        .unwrap_or(30.0);
     let first = (window.from / step - 1e-9).ceil() as u64;
     let last = (window.to / step + 1e-9).floor() as u64;
     for tick in first..=last {
@@ -235,19 +328,28 @@ impl Names {
     const LETTER: f64 = 5.9;
 
     fn new(lane_y: f64, end: f64) -> Self {
-        Self { y: lane_y + 15.0, end, runs: Vec::new() }
+        Self {
+            y: lane_y + 15.0,
+            end,
+            runs: Vec::new(),
+        }
     }
 
     fn add(&mut self, class: &str, from: f64, to: f64) {
         match self.runs.last_mut() {
-            Some((name, _, end)) if name == class && from - *end <= Self::CLOSE => *end = to.max(*end),
+            Some((name, _, end)) if name == class && from - *end <= Self::CLOSE => {
+                *end = to.max(*end)
+            }
             _ => self.runs.push((class.to_owned(), from, to)),
         }
     }
 
     fn push(&self, out: &mut String) {
         for (i, (name, from, to)) in self.runs.iter().enumerate() {
-            let next = self.runs.get(i + 1).map_or(self.end, |(_, start, _)| *start);
+            let next = self
+                .runs
+                .get(i + 1)
+                .map_or(self.end, |(_, start, _)| *start);
             let width = name.chars().count() as f64 * Self::LETTER + 6.0;
             let (class, x) = if width <= to.min(next) - from {
                 ("name", from + 4.0)

@@ -65,9 +65,12 @@ pub(super) fn run(
     pictures: &mut Vec<Picture>,
 ) -> Result<Classification, ReproduceError> {
     let split = folds(By::Half { seed }, study.samples, &BTreeMap::new());
-    let fold = split.first().ok_or_else(|| ReproduceError::Other("there are no samples".to_owned()))?;
-    let pick =
-        |places: &[usize]| -> Vec<Sample> { places.iter().map(|&i| study.samples[i].clone()).collect() };
+    let fold = split
+        .first()
+        .ok_or_else(|| ReproduceError::Other("there are no samples".to_owned()))?;
+    let pick = |places: &[usize]| -> Vec<Sample> {
+        places.iter().map(|&i| study.samples[i].clone()).collect()
+    };
     let (taught, held_back) = (pick(&fold.taught), pick(&fold.held_back));
     let labelling = Labelling {
         samples: &taught,
@@ -77,7 +80,8 @@ pub(super) fn run(
     };
     let (model, report) = train_svrdm(study.clips, &labelling, options, &())?;
     let model = Arc::new(model);
-    let mut classifier = SampleClassifier::new(&model).map_err(|e| ReproduceError::Other(e.to_string()))?;
+    let mut classifier =
+        SampleClassifier::new(&model).map_err(|e| ReproduceError::Other(e.to_string()))?;
     let trained: BTreeSet<usize> = fold.taught.iter().copied().collect();
     let mut tally = Tally::new(study.classes.len());
     let mut features = vec![];
@@ -86,9 +90,18 @@ pub(super) fn run(
         let accepted = found.filter(|f| f.output >= model.params.accept);
         let alike = accepted.filter(|f| f.likeness >= model.params.min_confidence);
         let unseen = !trained.contains(&place);
-        tally.count(class, accepted.map(|f| f.class), alike.map(|f| f.class), unseen);
+        tally.count(
+            class,
+            accepted.map(|f| f.class),
+            alike.map(|f| f.class),
+            unseen,
+        );
         if let Some(vector) = classifier.feature(&rows).filter(|_| !unseen) {
-            features.push(FeatureSample { class, group: 0, vector });
+            features.push(FeatureSample {
+                class,
+                group: 0,
+                vector,
+            });
         }
     }
     draw(study, *setting, &model, &features, &tally, pictures);
@@ -114,14 +127,25 @@ pub(super) fn run(
 }
 
 /// Every sample's place, class and reduced rows.
-fn cut_out(study: &Study<'_>, model: &SvrdmModel) -> Result<Vec<(usize, ClassId, Rows)>, ReproduceError> {
+fn cut_out(
+    study: &Study<'_>,
+    model: &SvrdmModel,
+) -> Result<Vec<(usize, ClassId, Rows)>, ReproduceError> {
     let mut all = vec![];
     for clip in study.clips {
-        let of_clip = || study.samples.iter().enumerate().filter(|(_, s)| s.clip == clip.name);
+        let of_clip = || {
+            study
+                .samples
+                .iter()
+                .enumerate()
+                .filter(|(_, s)| s.clip == clip.name)
+        };
         if of_clip().next().is_none() {
             continue;
         }
-        let rows = model.pca.project(&rows_of(clip, &model.pivots, &model.pose)?);
+        let rows = model
+            .pca
+            .project(&rows_of(clip, &model.pivots, &model.pose)?);
         for (place, sample) in of_clip() {
             let class = study.classes.iter().position(|c| *c == sample.class);
             if let Some(class) = class {
@@ -141,22 +165,44 @@ struct Tally {
 
 impl Tally {
     fn new(classes: usize) -> Self {
-        Self { outcomes: vec![], confusion: vec![vec![0; classes]; classes + 1] }
+        Self {
+            outcomes: vec![],
+            confusion: vec![vec![0; classes]; classes + 1],
+        }
     }
 
-    fn count(&mut self, class: ClassId, tree: Option<ClassId>, alike: Option<ClassId>, unseen: bool) {
+    fn count(
+        &mut self,
+        class: ClassId,
+        tree: Option<ClassId>,
+        alike: Option<ClassId>,
+        unseen: bool,
+    ) {
         let row = tree.map_or(self.confusion.len() - 1, ClassId::index);
         self.confusion[row][class.index()] += 1;
-        self.outcomes.push((unseen, [tree, alike].map(|found| found.map(|found| found == class))));
+        self.outcomes.push((
+            unseen,
+            [tree, alike].map(|found| found.map(|found| found == class)),
+        ));
     }
 
     fn rates(&self, which: impl Fn(bool) -> bool, by: usize) -> Rates {
-        let chosen: Vec<Option<bool>> =
-            self.outcomes.iter().filter(|(unseen, _)| which(*unseen)).map(|(_, found)| found[by]).collect();
+        let chosen: Vec<Option<bool>> = self
+            .outcomes
+            .iter()
+            .filter(|(unseen, _)| which(*unseen))
+            .map(|(_, found)| found[by])
+            .collect();
         let share = |what: Option<bool>| {
-            chosen.iter().filter(|found| **found == what).count() as f64 / chosen.len().max(1) as f64
+            chosen.iter().filter(|found| **found == what).count() as f64
+                / chosen.len().max(1) as f64
         };
-        Rates { samples: chosen.len(), p_c: share(Some(true)), p_e: share(Some(false)), p_r: share(None) }
+        Rates {
+            samples: chosen.len(),
+            p_c: share(Some(true)),
+            p_e: share(Some(false)),
+            p_r: share(None),
+        }
     }
 }
 
@@ -178,14 +224,27 @@ fn draw(
     // The thesis draws where a machine says at least T and at least t of training.
     let levels = [0.4, 1.0];
     for (node, _) in model.tree.branches() {
-        let Some(svg) = branch_picture(&model.tree, node, features, study.classes, levels) else { continue };
-        let caption =
-            format!("{name}: decision boundaries of branch {node} with its samples (Figs. 5.3 to 5.12)");
-        pictures.push(Picture { name: format!("{name}_branch_{node}"), caption, svg, table: None });
+        let Some(svg) = branch_picture(&model.tree, node, features, study.classes, levels) else {
+            continue;
+        };
+        let caption = format!(
+            "{name}: decision boundaries of branch {node} with its samples (Figs. 5.3 to 5.12)"
+        );
+        pictures.push(Picture {
+            name: format!("{name}_branch_{node}"),
+            caption,
+            svg,
+            table: None,
+        });
     }
     let columns = study.classes.len();
     let values = tally.confusion.iter().flatten().map(|n| *n as f64);
-    let rows: Vec<String> = study.classes.iter().cloned().chain(["none".to_owned()]).collect();
+    let rows: Vec<String> = study
+        .classes
+        .iter()
+        .cloned()
+        .chain(["none".to_owned()])
+        .collect();
     let map = HeatMap::new(
         format!("{name}: what the tree says (rows) of what is labelled (columns)"),
         columns,

@@ -47,14 +47,28 @@ pub(super) fn run(study: &Study<'_>) -> Result<Vec<Clustering>, ReproduceError> 
             }
         }
     }
-    let pca = Pca::fit(&moments, Keep::Dims(16)).map_err(|e| ReproduceError::Other(e.to_string()))?;
+    let pca =
+        Pca::fit(&moments, Keep::Dims(16)).map_err(|e| ReproduceError::Other(e.to_string()))?;
     let classes: Vec<usize> = cut.iter().map(|(class, _)| *class).collect();
-    let centred: Vec<Spectrum> = cut.iter().map(|(_, rows)| Spectrum::of_rows(&pca.project(rows))).collect();
-    let as_they_are: Vec<Spectrum> = cut.iter().map(|(_, rows)| Spectrum::of_rows(rows)).collect();
+    let centred: Vec<Spectrum> = cut
+        .iter()
+        .map(|(_, rows)| Spectrum::of_rows(&pca.project(rows)))
+        .collect();
+    let as_they_are: Vec<Spectrum> = cut
+        .iter()
+        .map(|(_, rows)| Spectrum::of_rows(rows))
+        .collect();
     let mut found = vec![];
     for (is_centred, spectra) in [(true, &centred), (false, &as_they_are)] {
         for tau in TAUS {
-            let clusters = kwas_clusters(spectra, &KwasParams { k: 12, tau, form: KwasForm::Printed });
+            let clusters = kwas_clusters(
+                spectra,
+                &KwasParams {
+                    k: 12,
+                    tau,
+                    form: KwasForm::Printed,
+                },
+            );
             let pairs = Pairs::count(&classes, &clusters.of);
             found.push(Clustering {
                 tau,

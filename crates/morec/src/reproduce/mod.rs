@@ -128,8 +128,12 @@ pub enum ReproduceError {
 
 /// The pose rows of a clip.
 fn rows_of(clip: &TrainClip, set: &PivotSet, params: &PoseParams) -> Result<Rows, ReproduceError> {
-    let map = PivotMap::resolve(set, &clip.clip.skeleton, &clip.roles)
-        .map_err(|source| ReproduceError::Pivots { clip: clip.name.clone(), source })?;
+    let map = PivotMap::resolve(set, &clip.clip.skeleton, &clip.roles).map_err(|source| {
+        ReproduceError::Pivots {
+            clip: clip.name.clone(),
+            source,
+        }
+    })?;
     Ok(pose_rows_of_clip(&clip.clip, set, &map, &clip.rest, params))
 }
 
@@ -140,11 +144,18 @@ fn frames_of(sample: &Sample, rate_hz: f64, count: usize) -> Range<usize> {
 }
 
 /// Runs the whole evaluation. Trains twice for each setting and seed.
-pub fn reproduce(study: &Study<'_>, progress: &dyn Progress) -> Result<Reproduction, ReproduceError> {
+pub fn reproduce(
+    study: &Study<'_>,
+    progress: &dyn Progress,
+) -> Result<Reproduction, ReproduceError> {
     let steps = 2 + study.settings.len() * study.seeds.len();
     let at = |step: usize| {
         progress.report("evaluation", step, steps);
-        if progress.cancelled() { Err(ReproduceError::Cancelled) } else { Ok(()) }
+        if progress.cancelled() {
+            Err(ReproduceError::Cancelled)
+        } else {
+            Ok(())
+        }
     };
     let mut pictures = vec![];
     at(0)?;
@@ -165,5 +176,11 @@ pub fn reproduce(study: &Study<'_>, progress: &dyn Progress) -> Result<Reproduct
         }
     }
     at(steps)?;
-    Ok(Reproduction { segmentation, clustering, classification, streams, pictures })
+    Ok(Reproduction {
+        segmentation,
+        clustering,
+        classification,
+        streams,
+        pictures,
+    })
 }

@@ -16,7 +16,11 @@ pub fn page(result: &Reproduction, about: &[(String, String)]) -> String {
          <h1>The evaluation of 2009, and today's</h1>\n<dl class=\"about\">\n"
     );
     for (name, value) in about {
-        out.push_str(&format!("<div><dt>{}</dt><dd>{}</dd></div>\n", Text(name), Text(value)));
+        out.push_str(&format!(
+            "<div><dt>{}</dt><dd>{}</dd></div>\n",
+            Text(name),
+            Text(value)
+        ));
     }
     out.push_str(
         "</dl>\n<p>Bucur, <i>Efficient Motion Capture Database Indexing on the Cell Processor</i>, Trinity College Dublin \
@@ -73,9 +77,21 @@ fn push_clustering(out: &mut String, result: &Reproduction) {
         push_cells(
             out,
             if c.centred { "centred" } else { "as they are" },
-            &[format!("{}", c.tau), c.samples.to_string(), c.clusters.to_string()],
-            &[p.true_positive, p.false_positive, p.false_negative, p.true_negative],
-            &[format!("{:.3}", c.rand_index), format!("{:.3}", c.adjusted_rand_index)],
+            &[
+                format!("{}", c.tau),
+                c.samples.to_string(),
+                c.clusters.to_string(),
+            ],
+            &[
+                p.true_positive,
+                p.false_positive,
+                p.false_negative,
+                p.true_negative,
+            ],
+            &[
+                format!("{:.3}", c.rand_index),
+                format!("{:.3}", c.adjusted_rand_index),
+            ],
         );
     }
     out.push_str("</table></div>\n");
@@ -84,7 +100,12 @@ fn push_clustering(out: &mut String, result: &Reproduction) {
 fn push_cells(out: &mut String, name: &str, first: &[String], counts: &[u64], last: &[String]) {
     out.push_str(&format!("<tr><th scope=\"row\">{name}</th>"));
     let counts = counts.iter().map(u64::to_string);
-    for cell in first.iter().cloned().chain(counts).chain(last.iter().cloned()) {
+    for cell in first
+        .iter()
+        .cloned()
+        .chain(counts)
+        .chain(last.iter().cloned())
+    {
         out.push_str(&format!("<td>{cell}</td>"));
     }
     out.push_str("</tr>\n");
@@ -107,7 +128,12 @@ fn push_classification(out: &mut String, result: &Reproduction) {
             ["first", "second"][i]
         ));
     }
-    let rates = |r: &Rates| format!("<td>{:.3}</td><td>{:.3}</td><td>{:.3}</td>", r.p_c, r.p_e, r.p_r);
+    let rates = |r: &Rates| {
+        format!(
+            "<td>{:.3}</td><td>{:.3}</td><td>{:.3}</td>",
+            r.p_c, r.p_e, r.p_r
+        )
+    };
     for c in &result.classification {
         let [all, unseen] = &c.alike;
         out.push_str(&format!(
@@ -144,7 +170,8 @@ fn push_streams(out: &mut String, result: &Reproduction) {
         "<tr><th scope=\"row\">thesis</th><td>–</td><td>{tp}</td><td>{fp}</td><td>{fn_}</td><td>{tn}</td>\
          <td>{accuracy:.3}</td><td>–</td><td>–</td><td>–</td></tr>\n"
     ));
-    let figure = |v: Option<f64>, decimals: usize| v.map_or("–".to_owned(), |v| format!("{v:.decimals$}"));
+    let figure =
+        |v: Option<f64>, decimals: usize| v.map_or("–".to_owned(), |v| format!("{v:.decimals$}"));
     for s in &result.streams {
         let t = &s.evaluation.thesis;
         out.push_str(&format!(
@@ -168,11 +195,18 @@ fn push_streams(out: &mut String, result: &Reproduction) {
 }
 
 fn push_pictures(out: &mut String, result: &Reproduction, part: &str) {
-    let shown: Vec<&Picture> = result.pictures.iter().filter(|p| p.name.contains(part)).collect();
+    let shown: Vec<&Picture> = result
+        .pictures
+        .iter()
+        .filter(|p| p.name.contains(part))
+        .collect();
     if shown.is_empty() {
         return;
     }
-    out.push_str(&format!("<details open><summary>{} pictures</summary>\n", shown.len()));
+    out.push_str(&format!(
+        "<details open><summary>{} pictures</summary>\n",
+        shown.len()
+    ));
     for picture in shown {
         out.push_str(&format!(
             "<figure><figcaption>{}</figcaption>\n{}</figure>\n",

@@ -25,10 +25,16 @@ pub struct Segmented {
     pub alone: usize,
 }
 
-pub(super) fn run(study: &Study<'_>, pictures: &mut Vec<Picture>) -> Result<Vec<Segmented>, ReproduceError> {
+pub(super) fn run(
+    study: &Study<'_>,
+    pictures: &mut Vec<Picture>,
+) -> Result<Vec<Segmented>, ReproduceError> {
     let labelled = || study.clips.iter().filter(|c| c.source == Source::Labelled);
-    let results: Result<Vec<(Segmented, Picture)>, ReproduceError> =
-        labelled().collect::<Vec<_>>().into_par_iter().map(|clip| one(study, clip)).collect();
+    let results: Result<Vec<(Segmented, Picture)>, ReproduceError> = labelled()
+        .collect::<Vec<_>>()
+        .into_par_iter()
+        .map(|clip| one(study, clip))
+        .collect();
     let (segmented, drawn): (Vec<_>, Vec<_>) = results?.into_iter().unzip();
     pictures.extend(drawn);
     Ok(segmented)
@@ -37,11 +43,19 @@ pub(super) fn run(study: &Study<'_>, pictures: &mut Vec<Picture>) -> Result<Vec<
 fn one(study: &Study<'_>, clip: &TrainClip) -> Result<(Segmented, Picture), ReproduceError> {
     let params = PoseParams::default();
     let rows = rows_of(clip, &PivotSet::thesis(), &params)?;
-    let found = segment(&rows, params.rate_hz, &PpcaParams::default())
-        .map_err(|source| ReproduceError::Segment { clip: clip.name.clone(), source })?;
+    let found = segment(&rows, params.rate_hz, &PpcaParams::default()).map_err(|source| {
+        ReproduceError::Segment {
+            clip: clip.name.clone(),
+            source,
+        }
+    })?;
     let secs = clip.clip.duration_secs();
     let cuts_secs: Vec<f64> = found.cuts.iter().map(|cut| cut.secs).collect();
-    let borders: Vec<f64> = [0.0].into_iter().chain(cuts_secs.iter().copied()).chain([secs]).collect();
+    let borders: Vec<f64> = [0.0]
+        .into_iter()
+        .chain(cuts_secs.iter().copied())
+        .chain([secs])
+        .collect();
     let samples: Vec<(f64, f64, usize)> = study
         .samples
         .iter()
@@ -57,18 +71,50 @@ fn one(study: &Study<'_>, clip: &TrainClip) -> Result<(Segmented, Picture), Repr
             common > 0.5 * (stop - start).max(b[1] - b[0])
         })
     };
-    let bars = samples.iter().map(|(from, to, kind)| Bar { from_secs: *from, to_secs: *to, kind: *kind });
+    let bars = samples.iter().map(|(from, to, kind)| Bar {
+        from_secs: *from,
+        to_secs: *to,
+        kind: *kind,
+    });
     let segments = borders.windows(2).enumerate();
-    let segments =
-        segments.map(|(i, b)| Bar { from_secs: b[0], to_secs: b[1], kind: study.classes.len() + i % 2 });
-    let kinds = study.classes.iter().cloned().chain(["segment".to_owned(), "next segment".to_owned()]);
-    let svg = Lanes::new(format!("{}: labels and automatic segments", clip.name), kinds.collect(), secs)
-        .lane("labelled", bars)
-        .lane("cut", segments)
-        .svg();
+    let segments = segments.map(|(i, b)| Bar {
+        from_secs: b[0],
+        to_secs: b[1],
+        kind: study.classes.len() + i % 2,
+    });
+    let kinds = study
+        .classes
+        .iter()
+        .cloned()
+        .chain(["segment".to_owned(), "next segment".to_owned()]);
+    let svg = Lanes::new(
+        format!("{}: labels and automatic segments", clip.name),
+        kinds.collect(),
+        secs,
+    )
+    .lane("labelled", bars)
+    .lane("cut", segments)
+    .svg();
     let name = format!("segmentation_{}", clip.name);
-    let caption = format!("{}: what is labelled, and where it was cut (Fig. 5.1)", clip.name);
+    let caption = format!(
+        "{}: what is labelled, and where it was cut (Fig. 5.1)",
+        clip.name
+    );
     let alone = samples.iter().filter(has_its_own).count();
-    let segmented = Segmented { clip: clip.name.clone(), secs, samples: samples.len(), cuts_secs, alone };
-    Ok((segmented, Picture { name, caption, svg, table: None }))
+    let segmented = Segmented {
+        clip: clip.name.clone(),
+        secs,
+        samples: samples.len(),
+        cuts_secs,
+        alone,
+    };
+    Ok((
+        segmented,
+        Picture {
+            name,
+            caption,
+            svg,
+            table: None,
+        },
+    ))
 }

@@ -52,20 +52,49 @@ pub(super) fn run(
     if let (Some(Model::Svrdm(model)), Some(clip)) = (outcome.models.first(), longest) {
         pictures.extend(map_picture(study, *setting, model, &clip)?);
     }
-    Ok(Streamed { setting: *setting, seed, evaluation })
+    Ok(Streamed {
+        setting: *setting,
+        seed,
+        evaluation,
+    })
 }
 
 fn timeline_picture(study: &Study<'_>, setting: Setting, line: &Timeline) -> Picture {
-    let kind = |class: &str| study.classes.iter().position(|c| c == class).unwrap_or(study.classes.len());
-    let bar = |class: &str, from_secs, to_secs| Bar { from_secs, to_secs, kind: kind(class) };
+    let kind = |class: &str| {
+        study
+            .classes
+            .iter()
+            .position(|c| c == class)
+            .unwrap_or(study.classes.len())
+    };
+    let bar = |class: &str, from_secs, to_secs| Bar {
+        from_secs,
+        to_secs,
+        kind: kind(class),
+    };
     let (name, clip) = (setting.name(), &line.stream.clip);
     let title = format!("{clip}, {name}: what is labelled and what was recognised");
     let svg = Lanes::new(title, study.classes.to_vec(), line.stream.duration_secs)
-        .lane("labelled", line.truths.iter().map(|(t, _)| bar(&t.class, t.start_secs, t.stop_secs)))
-        .lane("recognised", line.founds.iter().map(|(f, _)| bar(&f.class, f.start_secs, f.stop_secs)))
+        .lane(
+            "labelled",
+            line.truths
+                .iter()
+                .map(|(t, _)| bar(&t.class, t.start_secs, t.stop_secs)),
+        )
+        .lane(
+            "recognised",
+            line.founds
+                .iter()
+                .map(|(f, _)| bar(&f.class, f.start_secs, f.stop_secs)),
+        )
         .svg();
     let caption = format!("{name}: {clip} as a stream (Figs. 5.13 and 5.14)");
-    Picture { name: format!("{name}_timeline_{clip}"), caption, svg, table: None }
+    Picture {
+        name: format!("{name}_timeline_{clip}"),
+        caption,
+        svg,
+        table: None,
+    }
 }
 
 /// The map of confidences of one clip (Fig. 4.3).
@@ -75,21 +104,31 @@ fn map_picture(
     model: &Arc<SvrdmModel>,
     name: &str,
 ) -> Result<Option<Picture>, ReproduceError> {
-    let Some(clip) = study.clips.iter().find(|c| c.name == name && c.source == Source::Labelled) else {
+    let Some(clip) = study
+        .clips
+        .iter()
+        .find(|c| c.name == name && c.source == Source::Labelled)
+    else {
         return Ok(None);
     };
     let rows = rows_of(clip, &model.pivots, &model.pose)?;
     let mut engine = SvrdmEngine::new(model).map_err(|e| ReproduceError::Other(e.to_string()))?;
     let mut cells = ConfidenceMap::new();
     rows.iter().for_each(|row| {
-        engine.push_watched(row, &mut |window, cell| cells.record(window, cell), &mut |_| ());
+        engine.push_watched(
+            row,
+            &mut |window, cell| cells.record(window, cell),
+            &mut |_| (),
+        );
     });
     let setting = setting.name();
     let title = format!("{name}, {setting}: confidence of every segment");
     Ok(Some(Picture {
         name: format!("{setting}_map_{name}"),
         caption: format!("{setting}: confidences of {name}'s segments (Fig. 4.3)"),
-        svg: cells.picture(&title, &model.classes, &model.params, model.rate_hz()).svg(),
+        svg: cells
+            .picture(&title, &model.classes, &model.params, model.rate_hz())
+            .svg(),
         table: Some(map_table(&cells, model)),
     }))
 }
@@ -99,9 +138,15 @@ fn map_table(map: &ConfidenceMap, model: &SvrdmModel) -> String {
     let chunk_secs = model.params.chunk_frames as f64 / model.rate_hz();
     let mut out = "start_secs\tstop_secs\tclass\tconfidence\n".to_owned();
     for (window, cell) in map.cells() {
-        let (start, stop) = (window.start as f64 * chunk_secs, window.stop as f64 * chunk_secs);
+        let (start, stop) = (
+            window.start as f64 * chunk_secs,
+            window.stop as f64 * chunk_secs,
+        );
         let class = &model.classes[cell.class.index()].name;
-        out.push_str(&format!("{start:.4}\t{stop:.4}\t{class}\t{:.6}\n", cell.confidence));
+        out.push_str(&format!(
+            "{start:.4}\t{stop:.4}\t{class}\t{:.6}\n",
+            cell.confidence
+        ));
     }
     out
 }

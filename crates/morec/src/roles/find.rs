@@ -69,7 +69,12 @@ fn legs_and_arms(tree: &Tree) -> (Option<Pair>, Option<Pair>) {
     let votes = |pair: &Pair| pair.members.iter().map(|&m| tree.leg_votes(m)).sum::<i64>();
     let mut legs = pairs.iter().copied().find(|pair| votes(pair) > 0);
     let mut arms = pairs.iter().copied().find(|pair| votes(pair) < 0);
-    let mut silent: Vec<Pair> = pairs.iter().copied().filter(|pair| votes(pair) == 0).take(2).collect();
+    let mut silent: Vec<Pair> = pairs
+        .iter()
+        .copied()
+        .filter(|pair| votes(pair) == 0)
+        .take(2)
+        .collect();
     if legs.is_none() && arms.is_none() && silent.len() == 2 {
         // The legs hang nearer to the root; on one joint, the longer limbs come first already.
         silent.sort_by_key(|pair| tree.upwards(pair.parent).count());
@@ -88,8 +93,16 @@ fn named(tree: &Tree, side: Side, belongs: impl Fn(Kind) -> bool) -> Vec<usize> 
 
 /// Hips, torso, neck and head.
 fn trunk(tree: &Tree, legs: Option<Pair>, arms: Option<Pair>, map: &mut RoleMap) {
-    let limbs: Vec<usize> = legs.iter().chain(&arms).flat_map(|pair| pair.members).collect();
-    let in_trunk = |j: usize| !limbs.iter().any(|&limb| limb == j || tree.is_above(limb, j));
+    let limbs: Vec<usize> = legs
+        .iter()
+        .chain(&arms)
+        .flat_map(|pair| pair.members)
+        .collect();
+    let in_trunk = |j: usize| {
+        !limbs
+            .iter()
+            .any(|&limb| limb == j || tree.is_above(limb, j))
+    };
     let by_name = |kind| {
         (0..tree.skeleton.len())
             .find(|&j| tree.kind(j) == kind && tree.readings[j].side.is_none() && in_trunk(j))
@@ -106,14 +119,21 @@ fn trunk(tree: &Tree, legs: Option<Pair>, arms: Option<Pair>, map: &mut RoleMap)
     map.set(Role::Neck, neck);
     map.set(Role::Head, head);
 
-    let top = arms.map(|pair| pair.parent).or(neck.and_then(|neck| tree.parent(neck)));
+    let top = arms
+        .map(|pair| pair.parent)
+        .or(neck.and_then(|neck| tree.parent(neck)));
     let torso = match top {
         Some(top) => {
             let mut spine: Vec<usize> = tree.upwards(top).take_while(|&j| j != hips).collect();
             spine.reverse();
             // Without the hips above it, this is no spine.
-            let hangs = spine.first().is_some_and(|&first| tree.is_above(hips, first));
-            spine.into_iter().filter(|_| hangs).find(|&j| !tree.coincide(j, hips))
+            let hangs = spine
+                .first()
+                .is_some_and(|&first| tree.is_above(hips, first));
+            spine
+                .into_iter()
+                .filter(|_| hangs)
+                .find(|&j| !tree.coincide(j, hips))
         }
         None => by_name(Kind::Spine).filter(|&j| j != hips),
     };
@@ -123,9 +143,14 @@ fn trunk(tree: &Tree, legs: Option<Pair>, arms: Option<Pair>, map: &mut RoleMap)
 /// Where legs and arms meet, or what is called hips next to it.
 fn hips(tree: &Tree, legs: Option<Pair>, arms: Option<Pair>) -> Option<usize> {
     let legs = legs?.parent;
-    let meeting = arms.and_then(|arms| tree.meeting(legs, arms.parent)).unwrap_or(legs);
+    let meeting = arms
+        .and_then(|arms| tree.meeting(legs, arms.parent))
+        .unwrap_or(legs);
     let is_hips = |j: &usize| tree.kind(*j) == Kind::Hips;
-    let called = tree.upwards(meeting).find(is_hips).or_else(|| Some(legs).filter(is_hips));
+    let called = tree
+        .upwards(meeting)
+        .find(is_hips)
+        .or_else(|| Some(legs).filter(is_hips));
     Some(called.unwrap_or(meeting))
 }
 
@@ -137,7 +162,8 @@ fn neck_chain(
     in_trunk: &impl Fn(usize) -> bool,
     hips: usize,
 ) -> Vec<usize> {
-    let leads_to_legs = |j: usize| legs.is_some_and(|legs| j == legs.parent || tree.is_above(j, legs.parent));
+    let leads_to_legs =
+        |j: usize| legs.is_some_and(|legs| j == legs.parent || tree.is_above(j, legs.parent));
     let span = |j: usize| tree.reach(j) + tree.distance(from, j);
     let start = tree
         .children(from)
@@ -145,29 +171,56 @@ fn neck_chain(
         .copied()
         .filter(|&j| in_trunk(j) && !leads_to_legs(j))
         .max_by(|&a, &b| span(a).total_cmp(&span(b)));
-    let chain = start.map(|start| tree.main_chain(start)).unwrap_or_default();
+    let chain = start
+        .map(|start| tree.main_chain(start))
+        .unwrap_or_default();
     // Dummies at the middle of the body are no neck.
-    chain.into_iter().skip_while(|&j| tree.coincide(j, hips)).collect()
+    chain
+        .into_iter()
+        .skip_while(|&j| tree.coincide(j, hips))
+        .collect()
 }
 
 /// The last joint of the chain that has a bone: one without a tip is itself only the end of a bone.
 fn head_of(tree: &Tree, chain: &[usize]) -> Option<usize> {
     let (&last, before) = chain.split_last()?;
     let is_end = tree.skeleton.joints()[last].tip.is_none();
-    before.last().copied().filter(|_| is_end && before.len() > 1).or(Some(last))
+    before
+        .last()
+        .copied()
+        .filter(|_| is_end && before.len() > 1)
+        .or(Some(last))
 }
 
 /// The direction to the left of the body, as far as the pose tells: up × forward.
 fn lateral(tree: &Tree, map: &RoleMap, legs: Option<[Limb; 2]>) -> Vec3 {
     let at = |joint: usize| tree.positions[joint];
     let low = map.joint(Role::Hips).map_or_else(Vec3::zeros, at);
-    let high = map.joint(Role::Head).or(map.joint(Role::Neck)).or(map.joint(Role::Torso));
-    let up = high.map_or_else(Vec3::zeros, |high| at(high) - low).try_normalize(1e-9).unwrap_or(Vec3::y());
-    let toes: Vec3 = legs.iter().flatten().filter_map(|leg| toes_from_heel(tree, leg.end?)).sum();
+    let high = map
+        .joint(Role::Head)
+        .or(map.joint(Role::Neck))
+        .or(map.joint(Role::Torso));
+    let up = high
+        .map_or_else(Vec3::zeros, |high| at(high) - low)
+        .try_normalize(1e-9)
+        .unwrap_or(Vec3::y());
+    let toes: Vec3 = legs
+        .iter()
+        .flatten()
+        .filter_map(|leg| toes_from_heel(tree, leg.end?))
+        .sum();
     let forward = toes - up * toes.dot(&up);
     // Without toes: facing +Z in a Y-up file, −Y in a Z-up one.
-    let usual = if up.z.abs() > up.y.abs() { -Vec3::y() } else { Vec3::z() };
-    let forward = if forward.norm() > 0.3 * toes.norm() && toes.norm() > 0.0 { forward } else { usual };
+    let usual = if up.z.abs() > up.y.abs() {
+        -Vec3::y()
+    } else {
+        Vec3::z()
+    };
+    let forward = if forward.norm() > 0.3 * toes.norm() && toes.norm() > 0.0 {
+        forward
+    } else {
+        usual
+    };
     up.cross(&forward)
 }
 
@@ -208,8 +261,18 @@ fn set_leg(map: &mut RoleMap, side: Side, limb: Limb) {
 
 fn set_arm(map: &mut RoleMap, side: Side, limb: Limb) {
     let [shoulder, arm, forearm, hand] = match side {
-        Side::Left => [Role::LeftShoulder, Role::LeftArm, Role::LeftForearm, Role::LeftHand],
-        Side::Right => [Role::RightShoulder, Role::RightArm, Role::RightForearm, Role::RightHand],
+        Side::Left => [
+            Role::LeftShoulder,
+            Role::LeftArm,
+            Role::LeftForearm,
+            Role::LeftHand,
+        ],
+        Side::Right => [
+            Role::RightShoulder,
+            Role::RightArm,
+            Role::RightForearm,
+            Role::RightHand,
+        ],
     };
     map.set(shoulder, limb.first);
     map.set(arm, limb.upper);

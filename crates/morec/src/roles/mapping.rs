@@ -30,7 +30,11 @@ impl Mapping {
     /// Text that is not UTF-8, a line without a tab, an unknown role, a role named twice, no joint's name.
     pub fn read(bytes: &[u8]) -> Result<Self, ParseError> {
         let text = std::str::from_utf8(bytes).map_err(|error| {
-            ParseError::new(Place::Byte(error.valid_up_to() as u64), "UTF-8", "other bytes")
+            ParseError::new(
+                Place::Byte(error.valid_up_to() as u64),
+                "UTF-8",
+                "other bytes",
+            )
         })?;
         let mut entries: Vec<Entry> = Vec::new();
         for (line, content) in (1..).zip(text.trim_start_matches('\u{feff}').lines()) {
@@ -57,7 +61,11 @@ impl Mapping {
             let joint = match joint {
                 None => None,
                 Some(name) => Some(skeleton.find(name).ok_or_else(|| {
-                    ParseError::new(Place::Line(*line), "a joint of the skeleton", format!("`{name}`"))
+                    ParseError::new(
+                        Place::Line(*line),
+                        "a joint of the skeleton",
+                        format!("`{name}`"),
+                    )
                 })?),
             };
             changed.set(*role, joint);
@@ -69,17 +77,37 @@ impl Mapping {
 
 fn entry(line: u64, content: &str) -> Result<Entry, ParseError> {
     let at = Place::Line(line);
-    let (role, joint) = content
-        .split_once('\t')
-        .ok_or_else(|| ParseError::new(at, "a role, a tab and a joint's name", format!("`{content}`")))?;
+    let (role, joint) = content.split_once('\t').ok_or_else(|| {
+        ParseError::new(
+            at,
+            "a role, a tab and a joint's name",
+            format!("`{content}`"),
+        )
+    })?;
     let role = Role::from_name(role.trim()).ok_or_else(|| {
         let known: Vec<_> = Role::ALL.iter().map(|r| r.name()).collect();
-        ParseError::new(at, format!("a role ({})", known.join(", ")), format!("`{}`", role.trim()))
+        ParseError::new(
+            at,
+            format!("a role ({})", known.join(", ")),
+            format!("`{}`", role.trim()),
+        )
     })?;
     match joint.trim() {
-        "" => Err(ParseError::new(at, format!("a joint's name or - for {role}"), "nothing")),
-        "-" => Ok(Entry { line, role, joint: None }),
-        name => Ok(Entry { line, role, joint: Some(name.to_owned()) }),
+        "" => Err(ParseError::new(
+            at,
+            format!("a joint's name or - for {role}"),
+            "nothing",
+        )),
+        "-" => Ok(Entry {
+            line,
+            role,
+            joint: None,
+        }),
+        name => Ok(Entry {
+            line,
+            role,
+            joint: Some(name.to_owned()),
+        }),
     }
 }
 
@@ -87,7 +115,9 @@ fn entry(line: u64, content: &str) -> Result<Entry, ParseError> {
 pub fn write(map: &RoleMap, skeleton: &Skeleton) -> String {
     let mut text = String::from("# role\tjoint (- for none)\n");
     for role in Role::ALL {
-        let name = map.joint(role).map_or("-", |joint| skeleton.joints()[joint].name.as_str());
+        let name = map
+            .joint(role)
+            .map_or("-", |joint| skeleton.joints()[joint].name.as_str());
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{role}\t{name}");
     }

@@ -14,7 +14,9 @@ use crate::clip::Skeleton;
 
 /// A body part that recognition knows; played by the joint at its near end (the thigh by the hip joint, the
 /// shin by the knee, the hand by the wrist).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
+)]
 #[serde(rename_all = "snake_case")]
 #[repr(u8)]
 #[allow(missing_docs)] // The names say it all.

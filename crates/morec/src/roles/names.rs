@@ -55,7 +55,10 @@ impl Kind {
     /// Whether the word belongs to the arm.
     pub(super) fn is_arm(self) -> bool {
         use Kind::*;
-        matches!(self, Collar | Shoulder | UpperArm | Arm | Forearm | Hand | Finger)
+        matches!(
+            self,
+            Collar | Shoulder | UpperArm | Arm | Forearm | Hand | Finger
+        )
     }
 }
 
@@ -71,7 +74,11 @@ pub(super) fn read(name: &str) -> Reading {
     let bare = name.rsplit(':').next().unwrap_or(name);
     let words = words(bare);
     let (mut side, letters) = spelt_side(&words);
-    let rest: Vec<&str> = words.iter().map(String::as_str).filter(|w| !is_side_word(w)).collect();
+    let rest: Vec<&str> = words
+        .iter()
+        .map(String::as_str)
+        .filter(|w| !is_side_word(w))
+        .collect();
     let mut kind = kind_of(&rest);
     if side.is_none() {
         // A letter is a side only beside a part of the body: `L5` is a vertebra.
@@ -110,7 +117,10 @@ fn words(name: &str) -> Vec<String> {
 }
 
 fn is_side_word(word: &str) -> bool {
-    matches!(word, "left" | "right" | "l" | "r" | "lft" | "rgt" | "lt" | "rt" | "lf")
+    matches!(
+        word,
+        "left" | "right" | "l" | "r" | "lft" | "rgt" | "lt" | "rt" | "lf"
+    )
 }
 
 /// The side that whole words say, and the one that single letters would say.
@@ -147,9 +157,9 @@ fn glued_side(words: &[&str]) -> Option<(Side, Kind)> {
 }
 
 const GLUED: [&str; 27] = [
-    "hip", "femur", "thigh", "tibia", "shin", "calf", "knee", "foot", "ankle", "toe", "clavicle", "collar",
-    "shoulder", "shldr", "humerus", "upperarm", "uparm", "arm", "radius", "forearm", "elbow", "wrist",
-    "hand", "finger", "thumb", "upleg", "leg",
+    "hip", "femur", "thigh", "tibia", "shin", "calf", "knee", "foot", "ankle", "toe", "clavicle",
+    "collar", "shoulder", "shldr", "humerus", "upperarm", "uparm", "arm", "radius", "forearm",
+    "elbow", "wrist", "hand", "finger", "thumb", "upleg", "leg",
 ];
 
 /// Words that say so only as whole words.
@@ -263,8 +273,13 @@ fn kind_of(words: &[&str]) -> Kind {
         return Kind::Unknown;
     }
     // The hand's middle finger; but a spine may have a middle, too.
-    let of_finger = words.iter().any(|w| matches!(*w, "middle" | "mid" | "ring" | "little"));
-    let part = PARTS.iter().find(|(part, _)| joined.contains(part)).map(|(_, kind)| *kind);
+    let of_finger = words
+        .iter()
+        .any(|w| matches!(*w, "middle" | "mid" | "ring" | "little"));
+    let part = PARTS
+        .iter()
+        .find(|(part, _)| joined.contains(part))
+        .map(|(_, kind)| *kind);
     match part {
         None if words.contains(&"ball") => Kind::Toe,
         None | Some(Kind::Hand) if of_finger => Kind::Finger,

@@ -27,7 +27,11 @@ fn cases() -> Vec<Case> {
     let mut open: Vec<usize> = Vec::new();
     for line in SKELETONS.lines().filter(|l| !l.starts_with('#')) {
         if let Some(title) = line.strip_prefix("== ") {
-            cases.push(Case { title: title.to_owned(), joints: Vec::new(), expected: RoleMap::default() });
+            cases.push(Case {
+                title: title.to_owned(),
+                joints: Vec::new(),
+                expected: RoleMap::default(),
+            });
             open.clear();
             continue;
         }
@@ -45,7 +49,8 @@ fn cases() -> Vec<Case> {
             tip: None,
         });
         if let Some(role) = fields.get(2) {
-            case.expected.set(Role::from_name(role).unwrap(), Some(joint));
+            case.expected
+                .set(Role::from_name(role).unwrap(), Some(joint));
         }
         open.push(joint);
     }
@@ -64,7 +69,13 @@ fn differences(case: &Case, found: &RoleMap) -> Vec<String> {
     Role::ALL
         .into_iter()
         .filter(|&role| found.joint(role) != case.expected.joint(role))
-        .map(|role| format!("{role}: {}, not {}", name(found.joint(role)), name(case.expected.joint(role))))
+        .map(|role| {
+            format!(
+                "{role}: {}, not {}",
+                name(found.joint(role)),
+                name(case.expected.joint(role))
+            )
+        })
         .collect()
 }
 
@@ -96,27 +107,53 @@ fn the_tree_alone_is_enough() {
     ];
     // Halved bones look like whole ones; a mirrored body cannot be seen; with no toes, a foot looks like any end.
     let blind = ["MakeHuman", "Mirrored: the names decide"];
-    for mut case in cases().into_iter().filter(|case| !blind.contains(&case.title.as_str())) {
-        case.joints.iter_mut().enumerate().for_each(|(j, joint)| joint.name = format!("joint_{j}"));
+    for mut case in cases()
+        .into_iter()
+        .filter(|case| !blind.contains(&case.title.as_str()))
+    {
+        case.joints
+            .iter_mut()
+            .enumerate()
+            .for_each(|(j, joint)| joint.name = format!("joint_{j}"));
         let found = find(&case.skeleton());
         for role in asked {
-            assert_eq!(found.map.joint(role), case.expected.joint(role), "{}: {role}", case.title);
+            assert_eq!(
+                found.map.joint(role),
+                case.expected.joint(role),
+                "{}: {role}",
+                case.title
+            );
         }
-        assert!(found.notes.iter().any(|n| n.contains("toes point")), "{}", case.title);
+        assert!(
+            found.notes.iter().any(|n| n.contains("toes point")),
+            "{}",
+            case.title
+        );
     }
 }
 
 #[test]
 fn what_is_not_there_is_missing_and_nothing_panics() {
-    let one = Joint { name: "root".to_owned(), parent: None, offset: Vec3::zeros(), tip: None };
+    let one = Joint {
+        name: "root".to_owned(),
+        parent: None,
+        offset: Vec3::zeros(),
+        tip: None,
+    };
     let alone = RoleMap::find(&Skeleton::new(vec![one]).unwrap());
     assert_eq!(alone.missing().count(), Role::COUNT - 1);
-    assert_eq!(RoleMap::find(&Skeleton::default()).missing().count(), Role::COUNT);
+    assert_eq!(
+        RoleMap::find(&Skeleton::default()).missing().count(),
+        Role::COUNT
+    );
 }
 
 #[test]
 fn one_armed_people_keep_their_other_limbs() {
-    let case = cases().into_iter().find(|c| c.title == "MotionBuilder").unwrap();
+    let case = cases()
+        .into_iter()
+        .find(|c| c.title == "MotionBuilder")
+        .unwrap();
     let right_arm = case.expected.joint(Role::RightShoulder).unwrap();
     let skeleton = case.skeleton();
     let gone = |mut j: usize| loop {
@@ -135,7 +172,15 @@ fn one_armed_people_keep_their_other_limbs() {
     let skeleton = Skeleton::new(joints.collect()).unwrap();
     let map = RoleMap::find(&skeleton);
     let missing: Vec<Role> = map.missing().collect();
-    assert_eq!(missing, [Role::RightShoulder, Role::RightArm, Role::RightForearm, Role::RightHand]);
+    assert_eq!(
+        missing,
+        [
+            Role::RightShoulder,
+            Role::RightArm,
+            Role::RightForearm,
+            Role::RightHand
+        ]
+    );
     assert_eq!(map.joint(Role::LeftForearm), skeleton.find("LeftForeArm"));
 }
 
@@ -145,14 +190,20 @@ fn mapping_files_override_and_come_back() {
     let skeleton = case.skeleton();
     let mut map = RoleMap::find(&skeleton);
     let text = "# mine\r\n\r\nhead\tNeck\r\nleft_shoulder\t-\r\n";
-    Mapping::read(text.as_bytes()).unwrap().apply(&skeleton, &mut map).unwrap();
+    Mapping::read(text.as_bytes())
+        .unwrap()
+        .apply(&skeleton, &mut map)
+        .unwrap();
     assert_eq!(map.joint(Role::Head), skeleton.find("Neck"));
     assert_eq!(map.joint(Role::LeftShoulder), None);
     assert_eq!(map.joint(Role::LeftArm), case.expected.joint(Role::LeftArm));
 
     let mut again = RoleMap::default();
     let written = mapping::write(&map, &skeleton);
-    Mapping::read(written.as_bytes()).unwrap().apply(&skeleton, &mut again).unwrap();
+    Mapping::read(written.as_bytes())
+        .unwrap()
+        .apply(&skeleton, &mut again)
+        .unwrap();
     assert_eq!(again, map);
 }
 

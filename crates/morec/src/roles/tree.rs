@@ -33,7 +33,10 @@ impl<'a> Tree<'a> {
         let joints = skeleton.joints();
         let readings: Vec<Reading> = joints.iter().map(|j| read(&j.name)).collect();
         let mut children = vec![Vec::new(); joints.len()];
-        let mut reach: Vec<f64> = joints.iter().map(|j| j.tip.map_or(0.0, |tip| tip.norm())).collect();
+        let mut reach: Vec<f64> = joints
+            .iter()
+            .map(|j| j.tip.map_or(0.0, |tip| tip.norm()))
+            .collect();
         let mut height = vec![1; joints.len()];
         // Parents come first, so that backwards every joint is finished before its parent needs it.
         for j in (0..joints.len()).rev() {
@@ -46,7 +49,14 @@ impl<'a> Tree<'a> {
             reach[p] = reach[p].max(reach[j] + (positions[j] - positions[p]).norm());
             height[p] = height[p].max(height[j] + 1);
         }
-        Self { skeleton, readings, positions, children, reach, height }
+        Self {
+            skeleton,
+            readings,
+            positions,
+            children,
+            reach,
+            height,
+        }
     }
 
     pub(super) fn parent(&self, joint: usize) -> Option<usize> {
@@ -104,8 +114,9 @@ impl<'a> Tree<'a> {
     pub(super) fn main_chain(&self, joint: usize) -> Vec<usize> {
         let mut chain = vec![joint];
         let mut at = joint;
-        while let Some(&next) =
-            self.children[at].iter().max_by(|&&a, &&b| self.span(at, a).total_cmp(&self.span(at, b)))
+        while let Some(&next) = self.children[at]
+            .iter()
+            .max_by(|&&a, &&b| self.span(at, a).total_cmp(&self.span(at, b)))
         {
             if self.kind(next) != Kind::Twist {
                 chain.push(next);
@@ -121,8 +132,12 @@ impl<'a> Tree<'a> {
 
     /// The side that the names in a subtree agree on.
     pub(super) fn side(&self, joint: usize) -> Option<Side> {
-        let count =
-            |side| self.subtree(joint).into_iter().filter(|&j| self.readings[j].side == Some(side)).count();
+        let count = |side| {
+            self.subtree(joint)
+                .into_iter()
+                .filter(|&j| self.readings[j].side == Some(side))
+                .count()
+        };
         let (left, right) = (count(Side::Left), count(Side::Right));
         match () {
             () if left > 2 * right => Some(Side::Left),
@@ -147,7 +162,10 @@ impl<'a> Tree<'a> {
             let rest = self.children[parent].iter().filter(|j| !free.contains(j));
             left.extend(rest);
             while let Some((a, b)) = self.best_pair(&free) {
-                pairs.push(Pair { parent, members: [a, b] });
+                pairs.push(Pair {
+                    parent,
+                    members: [a, b],
+                });
                 free.retain(|&j| j != a && j != b);
             }
             left.extend(free.into_iter().rev());
@@ -169,7 +187,9 @@ impl<'a> Tree<'a> {
         let mut best: Option<(f64, usize, usize)> = None;
         for (i, &a) in free.iter().enumerate() {
             for &b in &free[i + 1..] {
-                let Some(cost) = self.unlikeness(a, b) else { continue };
+                let Some(cost) = self.unlikeness(a, b) else {
+                    continue;
+                };
                 if best.is_none_or(|(least, ..)| cost < least) {
                     best = Some((cost, a, b));
                 }
@@ -201,7 +221,10 @@ impl<'a> Tree<'a> {
     /// Mean relative difference of the bones of two chains, 0 to 1.
     fn length_mismatch(&self, a: usize, b: usize) -> f64 {
         let lengths = |joint| -> Vec<f64> {
-            self.main_chain(joint).windows(2).map(|pair| self.distance(pair[0], pair[1])).collect()
+            self.main_chain(joint)
+                .windows(2)
+                .map(|pair| self.distance(pair[0], pair[1]))
+                .collect()
         };
         let (a, b) = (lengths(a), lengths(b));
         let at = |lengths: &[f64], i: usize| lengths.get(i).copied().unwrap_or(0.0);

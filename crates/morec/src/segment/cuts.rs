@@ -49,12 +49,19 @@ const NOTHING: f64 = 1e-10;
 ///
 /// # Errors
 /// Parameters or a rate that make no sense, rows that are not finite.
-pub fn segment(rows: &Rows, rate_hz: f64, params: &PpcaParams) -> Result<Segmentation, SegmentError> {
+pub fn segment(
+    rows: &Rows,
+    rate_hz: f64,
+    params: &PpcaParams,
+) -> Result<Segmentation, SegmentError> {
     params.check().map_err(SegmentError::Params)?;
     if !(rate_hz > 0.0 && rate_hz <= 1e5) {
         return Err(SegmentError::Rate(rate_hz));
     }
-    if let Some(row) = rows.iter().position(|row| row.iter().any(|v| !v.is_finite())) {
+    if let Some(row) = rows
+        .iter()
+        .position(|row| row.iter().any(|v| !v.is_finite()))
+    {
         return Err(SegmentError::NotFinite { row });
     }
     let values = varying(rows);
@@ -70,12 +77,19 @@ pub fn segment(rows: &Rows, rate_hz: f64, params: &PpcaParams) -> Result<Segment
         },
     );
     let points = |pass: &Pass| {
-        let point = |&(row, value): &(usize, f64)| HPoint { secs: row as f64 / rate_hz, value };
+        let point = |&(row, value): &(usize, f64)| HPoint {
+            secs: row as f64 / rate_hz,
+            value,
+        };
         pass.points.iter().map(point).collect()
     };
     let same = params.same_secs * rate_hz;
     let cuts = join(&forward.cuts, &backward.cuts, same, rate_hz);
-    Ok(Segmentation { cuts, forward: points(&forward), backward: points(&backward) })
+    Ok(Segmentation {
+        cuts,
+        forward: points(&forward),
+        backward: points(&backward),
+    })
 }
 
 /// The rows about their mean, in the directions in which they vary: a rotation, which leaves every distance as it is,
@@ -85,19 +99,44 @@ fn varying(rows: &Rows) -> Values {
     moments.push_rows(rows);
     let eigen = Eigen::of(moments.scatter());
     let most = eigen.values.first().copied().unwrap_or(0.0);
-    let dim = eigen.values.iter().take_while(|v| **v > NOTHING * most).count();
-    let centred =
-        DMatrix::from_fn(rows.dim(), rows.len(), |k, i| f64::from(rows.row(i)[k]) - moments.mean()[k]);
+    let dim = eigen
+        .values
+        .iter()
+        .take_while(|v| **v > NOTHING * most)
+        .count();
+    let centred = DMatrix::from_fn(rows.dim(), rows.len(), |k, i| {
+        f64::from(rows.row(i)[k]) - moments.mean()[k]
+    });
     let values = eigen.vectors.columns(0, dim).tr_mul(&centred);
-    Values { values: values.as_slice().to_vec(), dim, space: rows.dim() }
+    Values {
+        values: values.as_slice().to_vec(),
+        dim,
+        space: rows.dim(),
+    }
 }
 
 /// The pass over the rows turned round, its places turned back.
 fn backward(rows: &Values, lengths: Lengths, params: &PpcaParams) -> Pass {
-    let turned: Vec<f64> = rows.values.chunks_exact(rows.dim.max(1)).rev().flatten().copied().collect();
+    let turned: Vec<f64> = rows
+        .values
+        .chunks_exact(rows.dim.max(1))
+        .rev()
+        .flatten()
+        .copied()
+        .collect();
     let count = turned.len() / rows.dim.max(1);
-    let mut found = pass(&Values { values: turned, ..*rows }, lengths, params);
-    found.points.iter_mut().for_each(|(place, _)| *place = count - *place);
+    let mut found = pass(
+        &Values {
+            values: turned,
+            ..*rows
+        },
+        lengths,
+        params,
+    );
+    found
+        .points
+        .iter_mut()
+        .for_each(|(place, _)| *place = count - *place);
     found.cuts.iter_mut().for_each(|cut| *cut = count - *cut);
     found.points.reverse();
     found.cuts.reverse();
@@ -107,10 +146,21 @@ fn backward(rows: &Values, lengths: Lengths, params: &PpcaParams) -> Pass {
 /// Every forward cut, and the backward ones that lie farther than `same` rows from all of them.
 fn join(forward: &[usize], backward: &[usize], same: f64, rate_hz: f64) -> Vec<Cut> {
     let near = |a: usize, b: usize| a.abs_diff(b) as f64 <= same;
-    let cut = |row: usize, forward, backward| Cut { row, secs: row as f64 / rate_hz, forward, backward };
-    let of_forward = forward.iter().map(|&row| cut(row, true, backward.iter().any(|&b| near(row, b))));
-    let alone = backward.iter().filter(|&&row| !forward.iter().any(|&f| near(row, f)));
-    let mut cuts: Vec<Cut> = of_forward.chain(alone.map(|&row| cut(row, false, true))).collect();
+    let cut = |row: usize, forward, backward| Cut {
+        row,
+        secs: row as f64 / rate_hz,
+        forward,
+        backward,
+    };
+    let of_forward = forward
+        .iter()
+        .map(|&row| cut(row, true, backward.iter().any(|&b| near(row, b))));
+    let alone = backward
+        .iter()
+        .filter(|&&row| !forward.iter().any(|&f| near(row, f)));
+    let mut cuts: Vec<Cut> = of_forward
+        .chain(alone.map(|&row| cut(row, false, true)))
+        .collect();
     cuts.sort_by_key(|c| c.row);
     cuts
 }
@@ -120,7 +170,10 @@ impl Segmentation {
     /// powers of ten, so its logarithm is drawn.
     pub fn chart(&self, title: &str, known: &[f64]) -> Chart {
         let line = |points: &[HPoint]| -> Vec<(f64, f64)> {
-            points.iter().map(|p| (p.secs, p.value.max(1e-3).log10())).collect()
+            points
+                .iter()
+                .map(|p| (p.secs, p.value.max(1e-3).log10()))
+                .collect()
         };
         let mut chart = Chart::new(title).axes("time, s", "log10 H");
         for (name, points) in [("forward", &self.forward), ("backward", &self.backward)] {
@@ -129,6 +182,10 @@ impl Segmentation {
             }
         }
         chart = chart.marks("cuts", self.cuts.iter().map(|c| c.secs));
-        if known.is_empty() { chart } else { chart.marks("known", known.iter().copied()) }
+        if known.is_empty() {
+            chart
+        } else {
+            chart.marks("known", known.iter().copied())
+        }
     }
 }

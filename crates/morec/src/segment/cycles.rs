@@ -16,7 +16,11 @@ pub struct CycleParams {
 
 impl Default for CycleParams {
     fn default() -> Self {
-        Self { least_secs: 0.25, share: 0.7, least_correlation: 0.15 }
+        Self {
+            least_secs: 0.25,
+            share: 0.7,
+            least_correlation: 0.15,
+        }
     }
 }
 
@@ -53,16 +57,33 @@ pub fn cycles(rows: &Rows, rate_hz: f64, params: &CycleParams) -> Option<Cycles>
     let peaks: Vec<usize> = (first.max(1)..correlation.len().saturating_sub(1))
         .filter(|&l| correlation[l] >= correlation[l - 1] && correlation[l] > correlation[l + 1])
         .collect();
-    let highest = peaks.iter().map(|&l| correlation[l]).fold(f64::MIN, f64::max);
+    let highest = peaks
+        .iter()
+        .map(|&l| correlation[l])
+        .fold(f64::MIN, f64::max);
     if highest < params.least_correlation {
         return None;
     }
-    let peak = *peaks.iter().find(|&&l| correlation[l] >= params.share * highest)?;
-    let (before, at, after) = (correlation[peak - 1], correlation[peak], correlation[peak + 1]);
+    let peak = *peaks
+        .iter()
+        .find(|&&l| correlation[l] >= params.share * highest)?;
+    let (before, at, after) = (
+        correlation[peak - 1],
+        correlation[peak],
+        correlation[peak + 1],
+    );
     let bend = before - 2.0 * at + after;
-    let shift = if bend < 0.0 { 0.5 * (before - after) / bend } else { 0.0 };
+    let shift = if bend < 0.0 {
+        0.5 * (before - after) / bend
+    } else {
+        0.0
+    };
     let period = peak as f64 + shift.clamp(-0.5, 0.5);
-    Some(Cycles { period_secs: period / rate_hz, count: rows.len() as f64 / period, correlation: at })
+    Some(Cycles {
+        period_secs: period / rate_hz,
+        count: rows.len() as f64 / period,
+        correlation: at,
+    })
 }
 
 /// For each lag up to two thirds of the rows: the mean product of rows so far apart, about their mean, over the
@@ -71,10 +92,14 @@ fn autocorrelation(rows: &Rows) -> Option<Vec<f64>> {
     let (n, dim) = (rows.len(), rows.dim());
     let mut mean = vec![0f64; dim];
     for row in rows.iter() {
-        mean.iter_mut().zip(row).for_each(|(m, v)| *m += f64::from(*v) / n as f64);
+        mean.iter_mut()
+            .zip(row)
+            .for_each(|(m, v)| *m += f64::from(*v) / n as f64);
     }
-    let centred: Vec<f32> =
-        rows.iter().flat_map(|row| row.iter().zip(&mean).map(|(v, m)| v - *m as f32)).collect();
+    let centred: Vec<f32> = rows
+        .iter()
+        .flat_map(|row| row.iter().zip(&mean).map(|(v, m)| v - *m as f32))
+        .collect();
     let at = |lag: usize| {
         let (a, b) = (&centred[..(n - lag) * dim], &centred[lag * dim..]);
         a.iter().zip(b).map(|(a, b)| f64::from(a * b)).sum::<f64>() / (n - lag) as f64

@@ -26,7 +26,12 @@ pub struct KernelParams {
 impl Default for KernelParams {
     /// Chosen on 35 cuts of everyday motion and exercises: ten windows a second.
     fn default() -> Self {
-        Self { window_secs: 2.0, penalty: 4.0, least_secs: 2.0, hop: 3 }
+        Self {
+            window_secs: 2.0,
+            penalty: 4.0,
+            least_secs: 2.0,
+            hop: 3,
+        }
     }
 }
 
@@ -64,7 +69,10 @@ pub fn kernel_cuts(
     let windows = window_rows(rows, features, params.window_secs, params.hop);
     let least = (params.least_secs * windows.rate_hz).round() as usize;
     let cuts = change_points(&windows.rows, params.penalty, least);
-    Ok(cuts.into_iter().map(|row| row as f64 / windows.rate_hz).collect())
+    Ok(cuts
+        .into_iter()
+        .map(|row| row as f64 / windows.rate_hz)
+        .collect())
 }
 
 /// First rows of all segments but the first in the cheapest division of `rows`: the sum of the segments' costs and
@@ -120,7 +128,12 @@ impl Costs {
         let dim = rows.dim();
         let mut sums = vec![0.0; dim];
         for (t, row) in rows.iter().enumerate() {
-            let norm = row.iter().map(|v| f64::from(*v).powi(2)).sum::<f64>().sqrt().max(1e-12);
+            let norm = row
+                .iter()
+                .map(|v| f64::from(*v).powi(2))
+                .sum::<f64>()
+                .sqrt()
+                .max(1e-12);
             for (i, value) in row.iter().enumerate() {
                 sums.push(sums[t * dim + i] + f64::from(*value) / norm);
             }
@@ -130,7 +143,10 @@ impl Costs {
 
     fn cost(&self, start: usize, stop: usize) -> f64 {
         let n = (stop - start) as f64;
-        let (a, b) = (&self.sums[start * self.dim..], &self.sums[stop * self.dim..(stop + 1) * self.dim]);
+        let (a, b) = (
+            &self.sums[start * self.dim..],
+            &self.sums[stop * self.dim..(stop + 1) * self.dim],
+        );
         n - b.iter().zip(a).map(|(b, a)| (b - a).powi(2)).sum::<f64>() / n
     }
 }
@@ -191,7 +207,11 @@ mod tests {
     fn a_change_is_cut_where_it_is() {
         let mut rows = Rows::new(2);
         for t in 0..60 {
-            rows.push(if (20..45).contains(&t) { &[0.0, 1.0] } else { &[2.0, 0.1] });
+            rows.push(if (20..45).contains(&t) {
+                &[0.0, 1.0]
+            } else {
+                &[2.0, 0.1]
+            });
         }
         assert_eq!(change_points(&rows, 1.0, 5), [20, 45]);
         assert!(change_points(&rows, 100.0, 5).is_empty());

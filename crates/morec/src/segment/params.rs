@@ -81,13 +81,19 @@ impl PpcaParams {
             return Err(format!("{name} must be above 0, found {value}"));
         }
         if !(self.quality > 0.0 && self.quality <= 1.0) {
-            return Err(format!("quality must be above 0 and at most 1, found {}", self.quality));
+            return Err(format!(
+                "quality must be above 0 and at most 1, found {}",
+                self.quality
+            ));
         }
         if !(0.0..=1.0).contains(&self.fall) {
             return Err(format!("fall must be 0 to 1, found {}", self.fall));
         }
         if !(self.same_secs.is_finite() && self.same_secs >= 0.0) {
-            return Err(format!("same_secs must be 0 or more, found {}", self.same_secs));
+            return Err(format!(
+                "same_secs must be 0 or more, found {}",
+                self.same_secs
+            ));
         }
         Ok(())
     }

@@ -14,7 +14,12 @@ impl Peaks {
     /// A peak must rise by more than `rise`, and counts once the series has fallen from it by more than the share
     /// `fall` of its rise.
     pub(super) fn new(rise: f64, fall: f64) -> Self {
-        Self { rise, fall, valley: f64::INFINITY, peak: None }
+        Self {
+            rise,
+            fall,
+            valley: f64::INFINITY,
+            peak: None,
+        }
     }
 
     /// Takes the next value, at `place`; gives the place of a peak that counts from now on.
@@ -31,7 +36,9 @@ impl Peaks {
                 self.peak = Some((place, value));
                 None
             }
-            Some((at, height)) => (value < height - self.fall * (height - self.valley)).then_some(at),
+            Some((at, height)) => {
+                (value < height - self.fall * (height - self.valley)).then_some(at)
+            }
         }
     }
 }

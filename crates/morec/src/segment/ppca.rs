@@ -28,11 +28,15 @@ impl Ppca {
         let dims = keep.dims(&eigen.values).min(space.saturating_sub(1));
         let noise = eigen.values[dims..].iter().sum::<f64>() / (space - dims).max(1) as f64;
         let noise = noise.max(least);
-        let axes = (0..dims).flat_map(|i| eigen.vectors.column(i).iter().copied().collect::<Vec<_>>());
+        let axes =
+            (0..dims).flat_map(|i| eigen.vectors.column(i).iter().copied().collect::<Vec<_>>());
         Self {
             mean: moments.mean().to_vec(),
             axes: axes.collect(),
-            precisions: eigen.values[..dims].iter().map(|value| 1.0 / value.max(noise)).collect(),
+            precisions: eigen.values[..dims]
+                .iter()
+                .map(|value| 1.0 / value.max(noise))
+                .collect(),
             noise_precision: 1.0 / noise,
         }
     }
@@ -48,7 +52,11 @@ impl Ppca {
         let centred = || row.iter().zip(&self.mean).map(|(x, m)| x - m);
         let mut rest: f64 = centred().map(|d| d * d).sum();
         let mut sum = 0.0;
-        for (axis, precision) in self.axes.chunks_exact(self.mean.len().max(1)).zip(&self.precisions) {
+        for (axis, precision) in self
+            .axes
+            .chunks_exact(self.mean.len().max(1))
+            .zip(&self.precisions)
+        {
             let along: f64 = axis.iter().zip(centred()).map(|(a, d)| a * d).sum();
             sum += precision * along * along;
             rest -= along * along;
@@ -60,7 +68,10 @@ impl Ppca {
     pub fn mean_distance(&self, rows: &[f64]) -> f64 {
         let dim = self.mean.len().max(1);
         let count = (rows.len() / dim).max(1);
-        rows.chunks_exact(dim).map(|row| self.distance(row)).sum::<f64>() / count as f64
+        rows.chunks_exact(dim)
+            .map(|row| self.distance(row))
+            .sum::<f64>()
+            / count as f64
     }
 
     /// The covariance `C` itself, `q × q`.

@@ -27,7 +27,11 @@ pub struct StillParams {
 
 impl Default for StillParams {
     fn default() -> Self {
-        Self { speed_rad: 0.15, least_secs: 0.5, least_t_pose_secs: 0.1 }
+        Self {
+            speed_rad: 0.15,
+            least_secs: 0.5,
+            least_t_pose_secs: 0.1,
+        }
     }
 }
 
@@ -43,8 +47,8 @@ pub fn still_stretches(
         let (before, after) = (t.saturating_sub(1), (t + 1).min(rows.len() - 1));
         let secs = (after - before).max(1) as f64 / features.tick_hz();
         let squares = weights.iter().enumerate().map(|(b, weight)| {
-            let moved =
-                (3 * b..3 * b + 3).map(|i| f64::from(rows.row(after)[i] - rows.row(before)[i]).powi(2));
+            let moved = (3 * b..3 * b + 3)
+                .map(|i| f64::from(rows.row(after)[i] - rows.row(before)[i]).powi(2));
             moved.sum::<f64>() / (weight * secs).powi(2)
         });
         (squares.sum::<f64>() / weights.len().max(1) as f64).sqrt()
@@ -65,7 +69,9 @@ pub fn still_stretches(
             Some(StillKind::TPose) => params.least_t_pose_secs,
             _ => params.least_secs,
         };
-        if let Some(kind) = kinds[start].filter(|_| (t - start) as f64 >= least * features.tick_hz()) {
+        if let Some(kind) =
+            kinds[start].filter(|_| (t - start) as f64 >= least * features.tick_hz())
+        {
             found.push((start..t, kind));
         }
         start = t;
@@ -77,12 +83,16 @@ pub fn still_stretches(
 fn is_t_pose(row: &[f32], bones: BoneSet) -> bool {
     let near = 25f32.to_radians().cos();
     let direction = |name: &str| -> Option<[f32; 3]> {
-        let bone = ALL_BONES.iter().position(|b| b.name == name).filter(|b| bones.contains(*b))?;
+        let bone = ALL_BONES
+            .iter()
+            .position(|b| b.name == name)
+            .filter(|b| bones.contains(*b))?;
         let at = bones.indices().position(|b| b == bone)?;
         let weight = ALL_BONES[bone].weight as f32;
         Some([0, 1, 2].map(|i| row[3 * at + i] / weight))
     };
-    let along = |name: &str, axis: usize, sign: f32| direction(name).is_some_and(|d| sign * d[axis] > near);
+    let along =
+        |name: &str, axis: usize, sign: f32| direction(name).is_some_and(|d| sign * d[axis] > near);
     along("left_arm", 0, 1.0)
         && along("left_forearm", 0, 1.0)
         && along("right_arm", 0, -1.0)
@@ -98,9 +108,17 @@ mod tests {
     fn row(arms_out: bool, swing: f32) -> Vec<f32> {
         let mut row = vec![0f32; 6 * ALL_BONES.len() + 4];
         for (b, bone) in ALL_BONES.iter().enumerate() {
-            let side = if bone.name.starts_with("left") { 1.0 } else { -1.0 };
+            let side = if bone.name.starts_with("left") {
+                1.0
+            } else {
+                -1.0
+            };
             let arm = bone.name.ends_with("arm");
-            let direction = if arm && arms_out { [side, 0.0, 0.0] } else { [swing.sin(), -swing.cos(), 0.0] };
+            let direction = if arm && arms_out {
+                [side, 0.0, 0.0]
+            } else {
+                [swing.sin(), -swing.cos(), 0.0]
+            };
             for i in 0..3 {
                 row[3 * b + i] = bone.weight as f32 * direction[i];
             }
@@ -112,13 +130,21 @@ mod tests {
     fn held_poses_and_t_poses_are_told_apart() {
         let mut rows = Rows::new(6 * ALL_BONES.len() + 4);
         for t in 0..90 {
-            let swing = if (50..70).contains(&t) { (t as f32 * 0.8).sin() * 0.5 } else { 0.0 };
+            let swing = if (50..70).contains(&t) {
+                (t as f32 * 0.8).sin() * 0.5
+            } else {
+                0.0
+            };
             rows.push(&row(t < 10, swing));
         }
         let params = FeatureParams::default();
         let found = still_stretches(&rows, BoneSet::ALL, &params, &StillParams::default());
         let kinds: Vec<StillKind> = found.iter().map(|f| f.1).collect();
-        assert_eq!(kinds, [StillKind::TPose, StillKind::Still, StillKind::Still], "{found:?}");
+        assert_eq!(
+            kinds,
+            [StillKind::TPose, StillKind::Still, StillKind::Still],
+            "{found:?}"
+        );
         assert_eq!(found[0].0, 0..9);
         assert!(found[2].0.start >= 70);
     }

@@ -97,11 +97,16 @@ fn behaviours(secs: &[f64], rate_hz: f64) -> Rows {
             let phase = frame as f64 / rate_hz * std::f64::consts::TAU / period_secs;
             let row: Vec<f32> = (0..12)
                 .map(|k| {
-                    state =
-                        state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                    state = state
+                        .wrapping_mul(6_364_136_223_846_793_005)
+                        .wrapping_add(1_442_695_040_888_963_407);
                     let noise = (state >> 33) as f64 / f64::from(1u32 << 31) - 0.5;
                     let own = k / 4 == number % 3;
-                    let swing = if own { 0.4 * (phase + k as f64).sin() } else { 0.0 };
+                    let swing = if own {
+                        0.4 * (phase + k as f64).sin()
+                    } else {
+                        0.0
+                    };
                     (swing + 0.02 * noise) as f32
                 })
                 .collect();
@@ -115,11 +120,24 @@ fn behaviours(secs: &[f64], rate_hz: f64) -> Rows {
 #[test]
 fn behaviours_are_cut_apart_and_cycles_are_not() {
     for rate_hz in [120.0, 60.0] {
-        let found = segment(&behaviours(&[4.0, 5.0, 4.5], rate_hz), rate_hz, &PpcaParams::default()).unwrap();
+        let found = segment(
+            &behaviours(&[4.0, 5.0, 4.5], rate_hz),
+            rate_hz,
+            &PpcaParams::default(),
+        )
+        .unwrap();
         let times: Vec<f64> = found.cuts.iter().map(|c| c.secs).collect();
         assert_eq!(times.len(), 2, "{times:?}");
-        assert!((times[0] - 4.0).abs() < 0.2 && (times[1] - 9.0).abs() < 0.2, "{times:?}");
-        assert!(found.cuts.iter().all(|c| c.row as f64 / rate_hz == c.secs && c.forward));
+        assert!(
+            (times[0] - 4.0).abs() < 0.2 && (times[1] - 9.0).abs() < 0.2,
+            "{times:?}"
+        );
+        assert!(
+            found
+                .cuts
+                .iter()
+                .all(|c| c.row as f64 / rate_hz == c.secs && c.forward)
+        );
         assert!(!found.forward.is_empty() && !found.backward.is_empty());
     }
     let one = segment(&behaviours(&[12.0], 120.0), 120.0, &PpcaParams::default()).unwrap();
@@ -129,15 +147,28 @@ fn behaviours_are_cut_apart_and_cycles_are_not() {
 #[test]
 fn going_back_notices_what_ceases() {
     // All planes move, then one alone: nothing new to a model of the former.
-    let (all, one) = (behaviours(&[5.0, 5.0, 5.0], 120.0), behaviours(&[5.0], 120.0));
+    let (all, one) = (
+        behaviours(&[5.0, 5.0, 5.0], 120.0),
+        behaviours(&[5.0], 120.0),
+    );
     let mut rows = Rows::new(12);
     for i in 0..600 {
-        let sum: Vec<f32> = (0..12).map(|k| all.row(i)[k] + all.row(600 + i)[k]).collect();
+        let sum: Vec<f32> = (0..12)
+            .map(|k| all.row(i)[k] + all.row(600 + i)[k])
+            .collect();
         rows.push(&sum);
     }
     one.iter().for_each(|row| rows.push(row));
     let cut = |directions| {
-        let found = segment(&rows, 120.0, &PpcaParams { directions, ..PpcaParams::default() }).unwrap();
+        let found = segment(
+            &rows,
+            120.0,
+            &PpcaParams {
+                directions,
+                ..PpcaParams::default()
+            },
+        )
+        .unwrap();
         found.cuts.iter().map(|c| c.secs).collect::<Vec<_>>()
     };
     assert_eq!(cut(Directions::Forward), [] as [f64; 0]);
@@ -153,18 +184,30 @@ fn little_and_nothing_have_no_cut() {
         assert_eq!((found.cuts.len(), found.forward.len()), (0, 0));
     }
     let still = Rows::from_values(4, vec![0.5; 4 * 1000]);
-    assert_eq!(segment(&still, 120.0, &PpcaParams::default()).unwrap().cuts, []);
+    assert_eq!(
+        segment(&still, 120.0, &PpcaParams::default()).unwrap().cuts,
+        []
+    );
 }
 
 #[test]
 fn what_makes_no_sense_is_refused() {
     let rows = behaviours(&[3.0], 120.0);
     let with = |params: PpcaParams| segment(&rows, 120.0, &params).unwrap_err().to_string();
-    let error = with(PpcaParams { step_secs: 0.0, ..PpcaParams::default() });
+    let error = with(PpcaParams {
+        step_secs: 0.0,
+        ..PpcaParams::default()
+    });
     assert_eq!(error, "step_secs must be above 0, found 0");
-    let error = with(PpcaParams { quality: 1.5, ..PpcaParams::default() });
+    let error = with(PpcaParams {
+        quality: 1.5,
+        ..PpcaParams::default()
+    });
     assert_eq!(error, "quality must be above 0 and at most 1, found 1.5");
-    assert!(matches!(segment(&rows, f64::NAN, &PpcaParams::default()), Err(SegmentError::Rate(_))));
+    assert!(matches!(
+        segment(&rows, f64::NAN, &PpcaParams::default()),
+        Err(SegmentError::Rate(_))
+    ));
     let spoilt = Rows::from_values(1, vec![0.0, f32::NAN]);
     let error = segment(&spoilt, 120.0, &PpcaParams::default()).unwrap_err();
     assert_eq!(error, SegmentError::NotFinite { row: 1 });
@@ -172,7 +215,12 @@ fn what_makes_no_sense_is_refused() {
 
 #[test]
 fn the_chart_shows_h_and_both_kinds_of_cuts() {
-    let found = segment(&behaviours(&[4.0, 5.0], 120.0), 120.0, &PpcaParams::default()).unwrap();
+    let found = segment(
+        &behaviours(&[4.0, 5.0], 120.0),
+        120.0,
+        &PpcaParams::default(),
+    )
+    .unwrap();
     let svg = found.chart("two behaviours", &[4.0]).svg();
     for part in ["two behaviours", "forward", "backward", "cuts", "known"] {
         assert!(svg.contains(part), "{part}");

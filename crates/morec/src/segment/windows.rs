@@ -13,7 +13,12 @@ pub struct WindowRows {
 
 /// Statistics of windows of `window_secs` around every `hop`th tick of feature rows made with `params`. At the ends
 /// windows are cut short. O(rows · values), whatever the window.
-pub fn window_rows(rows: &Rows, params: &FeatureParams, window_secs: f64, hop: usize) -> WindowRows {
+pub fn window_rows(
+    rows: &Rows,
+    params: &FeatureParams,
+    window_secs: f64,
+    hop: usize,
+) -> WindowRows {
     let bones = rows.dim().saturating_sub(4) / 6;
     let (x, tick_hz, hop) = (3 * bones, params.tick_hz(), hop.max(1));
     let half = ((window_secs * tick_hz / 2.0).round() as usize).max(1);
@@ -37,7 +42,10 @@ pub fn window_rows(rows: &Rows, params: &FeatureParams, window_secs: f64, hop: u
         }
         out.push(&row);
     }
-    WindowRows { rows: out, rate_hz: tick_hz / hop as f64 }
+    WindowRows {
+        rows: out,
+        rate_hz: tick_hz / hop as f64,
+    }
 }
 
 /// Running sums of values, of their squares, and of squared velocities.
@@ -49,12 +57,17 @@ struct Sums {
 impl Sums {
     fn of(rows: &Rows, x: usize, params: &FeatureParams) -> Self {
         let width = x + 4;
-        let root = if params.root_weight > 0.0 { params.root_weight } else { 1.0 };
+        let root = if params.root_weight > 0.0 {
+            params.root_weight
+        } else {
+            1.0
+        };
         let value = |t: usize, i: usize| match i < x {
             true => f64::from(rows.row(t)[i]),
             false => f64::from(rows.row(t)[rows.dim() - 4 + i - x]) / root,
         };
-        let mut tables: [Vec<f64>; 3] = std::array::from_fn(|_| vec![0.0; width * (rows.len() + 1)]);
+        let mut tables: [Vec<f64>; 3] =
+            std::array::from_fn(|_| vec![0.0; width * (rows.len() + 1)]);
         for t in 0..rows.len() {
             let (before, after) = (t.saturating_sub(1), (t + 1).min(rows.len() - 1));
             let secs = (after - before).max(1) as f64 / params.tick_hz();

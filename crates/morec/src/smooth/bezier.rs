@@ -63,7 +63,10 @@ impl Kind {
     pub(super) fn local(self, origin: &Point, value: &Point) -> Point {
         match self {
             Kind::Position => value - origin,
-            Kind::Rotation => product(&Point::new(-origin.x, -origin.y, -origin.z, origin.w), value),
+            Kind::Rotation => product(
+                &Point::new(-origin.x, -origin.y, -origin.z, origin.w),
+                value,
+            ),
         }
     }
 

@@ -33,18 +33,25 @@ pub(super) struct Thresholds {
 
 impl Thresholds {
     pub fn new(clip: &Clip, params: &SmoothParams) -> Self {
-        let bound = params.joint_position_metres.map(|metres| metres / params.metres_per_unit);
+        let bound = params
+            .joint_position_metres
+            .map(|metres| metres / params.metres_per_unit);
         let position = params.position_metres / params.metres_per_unit;
         let position = bound.map_or(position, |bound| position.min(SHARE_OF_POSITION * bound));
-        Self { angle_rad: params.angle_rad, position, bound, reach: reach(clip) }
+        Self {
+            angle_rad: params.angle_rad,
+            position,
+            bound,
+            reach: reach(clip),
+        }
     }
 
     /// Of joint `j`'s rotation.
     pub fn angle_rad(&self, j: usize) -> f64 {
         match self.bound {
-            Some(bound) if self.reach[j] > 0.0 => {
-                self.angle_rad.min((SHARE_OF_JOINT * bound / self.reach[j]).max(1e-6))
-            }
+            Some(bound) if self.reach[j] > 0.0 => self
+                .angle_rad
+                .min((SHARE_OF_JOINT * bound / self.reach[j]).max(1e-6)),
             _ => self.angle_rad,
         }
     }
@@ -61,7 +68,11 @@ fn reach(clip: &Clip) -> Vec<f64> {
     let mut reach = vec![0.0f64; joints.len()];
     for j in (0..joints.len()).rev() {
         if let Some(parent) = joints[j].parent {
-            let bone = if clip.frames > 0 { clip.local_position(0, j) } else { joints[j].offset };
+            let bone = if clip.frames > 0 {
+                clip.local_position(0, j)
+            } else {
+                joints[j].offset
+            };
             reach[parent] = reach[parent].max(bone.norm() + reach[j]);
         }
     }
@@ -85,14 +96,21 @@ pub(super) fn tighten(
         if blamed.is_empty() {
             return Ok(());
         }
-        work.refit(blamed).map_err(|(channel, frame)| too_coarse_for_bound(clip, channel, frame, metres))?;
+        work.refit(blamed)
+            .map_err(|(channel, frame)| too_coarse_for_bound(clip, channel, frame, metres))?;
     }
     let reached_metres = work.worst * metres_per_unit;
-    Err(SmoothError::Bound { bound_metres: metres, reached_metres })
+    Err(SmoothError::Bound {
+        bound_metres: metres,
+        reached_metres,
+    })
 }
 
 fn too_coarse_for_bound(clip: &Clip, channel: usize, frame: usize, metres: f64) -> SmoothError {
-    let params = SmoothParams { position_metres: metres, ..SmoothParams::default() };
+    let params = SmoothParams {
+        position_metres: metres,
+        ..SmoothParams::default()
+    };
     too_coarse(clip, &params, channel, frame)
 }
 
@@ -128,7 +146,17 @@ impl<'a> Work<'a> {
         let (pose, fitted_pose) = (WorldPose::default(), WorldPose::default());
         let changed = vec![true; clip.frames];
         let fitted = clip.clone();
-        let mut work = Self { clip, channels, fitted, changed, tracks, bound, worst: 0.0, pose, fitted_pose };
+        let mut work = Self {
+            clip,
+            channels,
+            fitted,
+            changed,
+            tracks,
+            bound,
+            worst: 0.0,
+            pose,
+            fitted_pose,
+        };
         for channel in 0..work.channels.len() {
             work.play(channel, 0, clip.frames);
         }
@@ -140,15 +168,29 @@ impl<'a> Work<'a> {
         let joints = self.clip.skeleton.len();
         let c = &self.channels[channel];
         let (kind, start) = (c.lattice.kind, c.start());
-        let mut current = c.segments.partition_point(|s| (s.start as usize) < from).saturating_sub(1);
+        let mut current = c
+            .segments
+            .partition_point(|s| (s.start as usize) < from)
+            .saturating_sub(1);
         for frame in from..to {
-            while c.segments.get(current + 1).is_some_and(|next| next.start as usize <= frame) {
+            while c
+                .segments
+                .get(current + 1)
+                .is_some_and(|next| next.start as usize <= frame)
+            {
                 current += 1;
             }
-            let value = c.segments.get(current).map_or(start, |s| s.at(kind, frame as f64));
+            let value = c
+                .segments
+                .get(current)
+                .map_or(start, |s| s.at(kind, frame as f64));
             match kind {
-                Kind::Rotation => self.fitted.rotations[frame * joints + channel] = rotation(&value),
-                Kind::Position => self.fitted.tracks[channel - joints].positions[frame] = value.xyz(),
+                Kind::Rotation => {
+                    self.fitted.rotations[frame * joints + channel] = rotation(&value)
+                }
+                Kind::Position => {
+                    self.fitted.tracks[channel - joints].positions[frame] = value.xyz()
+                }
             }
             self.changed[frame] = true;
         }
@@ -165,9 +207,11 @@ impl<'a> Work<'a> {
             self.pose.set(self.clip, frame);
             self.fitted_pose.set(&self.fitted, frame);
             let off = |j: usize| (self.pose.positions[j] - self.fitted_pose.positions[j]).norm();
-            let furthest =
-                (0..self.clip.skeleton.len()).map(|j| (off(j), j)).max_by(|a, b| a.0.total_cmp(&b.0));
-            let Some((distance, joint)) = furthest.filter(|(distance, _)| *distance > self.bound) else {
+            let furthest = (0..self.clip.skeleton.len())
+                .map(|j| (off(j), j))
+                .max_by(|a, b| a.0.total_cmp(&b.0));
+            let Some((distance, joint)) = furthest.filter(|(distance, _)| *distance > self.bound)
+            else {
                 continue;
             };
             self.worst = self.worst.max(distance);
@@ -200,7 +244,11 @@ impl<'a> Work<'a> {
         for (part, channel, off) in parts {
             if part >= PART * most {
                 let share = (TIGHTER * off / self.channels[channel].tolerance).min(1.0) as f32;
-                blamed.push(Blame { channel, frame, share: share.max(f32::MIN_POSITIVE) });
+                blamed.push(Blame {
+                    channel,
+                    frame,
+                    share: share.max(f32::MIN_POSITIVE),
+                });
             }
         }
     }
@@ -211,13 +259,17 @@ impl<'a> Work<'a> {
         for group in blamed.chunk_by(|a, b| a.channel == b.channel) {
             let index = group[0].channel;
             let channel = &mut self.channels[index];
-            let shares = channel.shares.get_or_insert_with(|| vec![1.0; self.clip.frames]);
+            let shares = channel
+                .shares
+                .get_or_insert_with(|| vec![1.0; self.clip.frames]);
             for b in group {
                 shares[b.frame] = shares[b.frame].min(b.share);
             }
             let frames: Vec<usize> = group.iter().map(|b| b.frame).collect();
             match channel.refine(&frames) {
-                Ok(ranges) => ranges.into_iter().for_each(|range| self.play(index, range.start, range.end)),
+                Ok(ranges) => ranges
+                    .into_iter()
+                    .for_each(|range| self.play(index, range.start, range.end)),
                 Err(_) => {
                     channel.lattice = channel.lattice.finer();
                     channel.fit().map_err(|coarse| (index, coarse.frame))?;

@@ -42,14 +42,26 @@ pub fn compress(
             return Err(SmoothError::Cancelled);
         }
         progress.report("fitting curves", done, total);
-        channel.fit().map_err(|coarse| too_coarse(clip, params, done, coarse.frame))?;
+        channel
+            .fit()
+            .map_err(|coarse| too_coarse(clip, params, done, coarse.frame))?;
     }
     if let Some(metres) = params.joint_position_metres {
-        bound::tighten(clip, &mut channels, metres, params.metres_per_unit, progress)?;
+        bound::tighten(
+            clip,
+            &mut channels,
+            metres,
+            params.metres_per_unit,
+            progress,
+        )?;
     }
     progress.report("fitting curves", total, total);
     let mut curves = channels.into_iter().enumerate().map(|(c, channel)| {
-        let joint = if c < joints { c } else { clip.tracks[c - joints].joint };
+        let joint = if c < joints {
+            c
+        } else {
+            clip.tracks[c - joints].joint
+        };
         Curve::new(joint, channel.lattice, channel.first, channel.pieces)
     });
     let mut compressed = CompressedClip {
@@ -63,7 +75,8 @@ pub fn compress(
         rotations: curves.by_ref().take(joints).collect(),
         positions: curves.collect(),
     };
-    compressed.errors = Errors::between(clip, &compressed.at_source_frames(), params.metres_per_unit);
+    compressed.errors =
+        Errors::between(clip, &compressed.at_source_frames(), params.metres_per_unit);
     Ok(compressed)
 }
 
@@ -76,13 +89,23 @@ fn channels(clip: &Clip, params: &SmoothParams) -> Vec<Channel> {
         let mut samples: Vec<Point> = Vec::with_capacity(clip.frames);
         for frame in 0..clip.frames {
             let q = clip.rotations[frame * joints + j].coords;
-            let turned = samples.last().is_some_and(|previous| previous.dot(&q) < 0.0);
+            let turned = samples
+                .last()
+                .is_some_and(|previous| previous.dot(&q) < 0.0);
             samples.push(if turned { -q } else { q });
         }
-        channels.push(Channel::new(Kind::Rotation, samples, chord(thresholds.angle_rad(j))));
+        channels.push(Channel::new(
+            Kind::Rotation,
+            samples,
+            chord(thresholds.angle_rad(j)),
+        ));
     }
     for track in &clip.tracks {
-        let samples = track.positions.iter().map(|position| position.push(0.0)).collect();
+        let samples = track
+            .positions
+            .iter()
+            .map(|position| position.push(0.0))
+            .collect();
         channels.push(Channel::new(Kind::Position, samples, thresholds.position()));
     }
     channels
@@ -94,22 +117,43 @@ pub(super) fn chord(angle_rad: f64) -> f64 {
 }
 
 /// Values beyond what steps can reach.
-pub(super) fn too_coarse(clip: &Clip, params: &SmoothParams, channel: usize, frame: usize) -> SmoothError {
+pub(super) fn too_coarse(
+    clip: &Clip,
+    params: &SmoothParams,
+    channel: usize,
+    frame: usize,
+) -> SmoothError {
     let joints = clip.skeleton.len();
-    let joint = if channel < joints { channel } else { clip.tracks[channel - joints].joint };
+    let joint = if channel < joints {
+        channel
+    } else {
+        clip.tracks[channel - joints].joint
+    };
     let name = clip.skeleton.joints()[joint].name.clone();
     let most = params.position_metres / params.metres_per_unit * 1e12;
-    SmoothError::Value { joint, name, frame, most }
+    SmoothError::Value {
+        joint,
+        name,
+        frame,
+        most,
+    }
 }
 
 fn check(clip: &Clip) -> Result<(), SmoothError> {
     let joints = clip.skeleton.len();
     let fail = |text: String| Err(SmoothError::Clip(text));
     if !(1e-3..=1e5).contains(&clip.rate_hz) {
-        return fail(format!("{} frames a second; rates are 0.001 to 100000", clip.rate_hz));
+        return fail(format!(
+            "{} frames a second; rates are 0.001 to 100000",
+            clip.rate_hz
+        ));
     }
     if clip.frames > u32::MAX as usize / 2 {
-        return fail(format!("{} frames; at most {} are kept", clip.frames, u32::MAX / 2));
+        return fail(format!(
+            "{} frames; at most {} are kept",
+            clip.frames,
+            u32::MAX / 2
+        ));
     }
     if clip.rotations.len() != clip.frames * joints {
         return fail(format!(
@@ -120,22 +164,38 @@ fn check(clip: &Clip) -> Result<(), SmoothError> {
     }
     for (i, track) in clip.tracks.iter().enumerate() {
         if track.joint >= joints || i > 0 && clip.tracks[i - 1].joint >= track.joint {
-            return fail(format!("track {i} is of joint {}, of {joints} in increasing order", track.joint));
+            return fail(format!(
+                "track {i} is of joint {}, of {joints} in increasing order",
+                track.joint
+            ));
         }
         if track.positions.len() != clip.frames {
-            return fail(format!("{} positions for {} frames", track.positions.len(), clip.frames));
+            return fail(format!(
+                "{} positions for {} frames",
+                track.positions.len(),
+                clip.frames
+            ));
         }
     }
     let value = |joint: usize, frame: usize| {
         let name = clip.skeleton.joints()[joint].name.clone();
-        Err(SmoothError::Value { joint, name, frame, most: f64::MAX })
+        Err(SmoothError::Value {
+            joint,
+            name,
+            frame,
+            most: f64::MAX,
+        })
     };
     let unit = |q: &crate::math::Quat| (q.coords.norm() - 1.0).abs() < 1e-6;
     if let Some(i) = clip.rotations.iter().position(|q| !unit(q)) {
         return value(i % joints, i / joints);
     }
     for track in &clip.tracks {
-        if let Some(frame) = track.positions.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
+        if let Some(frame) = track
+            .positions
+            .iter()
+            .position(|p| !p.iter().all(|x| x.is_finite()))
+        {
             return value(track.joint, frame);
         }
     }

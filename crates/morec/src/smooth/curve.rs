@@ -39,7 +39,13 @@ impl Curve {
             start += piece.frames;
             segments.push(segment);
         }
-        Self { joint, lattice, first, pieces, segments }
+        Self {
+            joint,
+            lattice,
+            first,
+            pieces,
+            segments,
+        }
     }
 
     /// Whose channel it is.
@@ -68,24 +74,38 @@ impl Curve {
             Kind::Rotation => 4,
             Kind::Position => 3,
         };
-        let points: usize = self.pieces.iter().map(|piece| usize::from(piece.degree())).sum();
-        (1 + points) * per_point + if self.is_constant() { 0 } else { self.keyframes() }
+        let points: usize = self
+            .pieces
+            .iter()
+            .map(|piece| usize::from(piece.degree()))
+            .sum();
+        (1 + points) * per_point
+            + if self.is_constant() {
+                0
+            } else {
+                self.keyframes()
+            }
     }
 
     /// The curves, in order, where frames are `rate_hz` a second.
     pub(super) fn beziers(&self, rate_hz: f64) -> impl Iterator<Item = Bezier> + '_ {
-        self.pieces.iter().zip(&self.segments).map(move |(piece, segment)| Bezier {
-            start_secs: f64::from(segment.start) / rate_hz,
-            stop_secs: f64::from(segment.start + segment.frames) / rate_hz,
-            degree: piece.degree(),
-            points: segment.points.map(Into::into),
-        })
+        self.pieces
+            .iter()
+            .zip(&self.segments)
+            .map(move |(piece, segment)| Bezier {
+                start_secs: f64::from(segment.start) / rate_hz,
+                stop_secs: f64::from(segment.start + segment.frames) / rate_hz,
+                degree: piece.degree(),
+                points: segment.points.map(Into::into),
+            })
     }
 
     /// The value at `place`, in sample periods; before the first key and after the last it stands still.
     /// O(log keyframes).
     pub(super) fn at(&self, place: f64) -> Point {
-        let after = self.segments.partition_point(|s| f64::from(s.start) <= place);
+        let after = self
+            .segments
+            .partition_point(|s| f64::from(s.start) <= place);
         match self.segments.get(after.saturating_sub(1)) {
             Some(segment) => segment.at(self.kind(), place),
             None => self.lattice.key_point(&self.first, None),
@@ -97,10 +117,18 @@ impl Curve {
         let still = self.lattice.key_point(&self.first, None);
         let mut current = 0;
         for place in places {
-            while self.segments.get(current + 1).is_some_and(|next| f64::from(next.start) <= place) {
+            while self
+                .segments
+                .get(current + 1)
+                .is_some_and(|next| f64::from(next.start) <= place)
+            {
                 current += 1;
             }
-            take(self.segments.get(current).map_or(still, |segment| segment.at(self.kind(), place)));
+            take(
+                self.segments
+                    .get(current)
+                    .map_or(still, |segment| segment.at(self.kind(), place)),
+            );
         }
     }
 }

@@ -41,7 +41,12 @@ pub(super) struct Worst {
 impl<'a> Stretch<'a> {
     /// A stretch of at least two `samples`, which end near `end`.
     pub fn new(kind: Kind, samples: &'a [Point], end: Point) -> Self {
-        Self { kind, samples, end, end_tangents: kind.tangents(&end) }
+        Self {
+            kind,
+            samples,
+            end,
+            end_tangents: kind.tangents(&end),
+        }
     }
 
     /// The vector part of the last key.
@@ -56,7 +61,13 @@ impl<'a> Stretch<'a> {
     fn sums(&self) -> Sums {
         let start = self.kind.identity();
         let zero = Vector4::zeros();
-        let mut sums = Sums { b11: 0.0, b12: 0.0, b22: 0.0, b1d: zero, b2d: zero };
+        let mut sums = Sums {
+            b11: 0.0,
+            b12: 0.0,
+            b22: 0.0,
+            b1d: zero,
+            b2d: zero,
+        };
         for i in 1..self.samples.len() - 1 {
             let [b0, b1, b2, b3] = bernstein(self.parameter(i));
             let d = self.samples[i] - start * (b0 + b1) - self.end * (b2 + b3);
@@ -93,7 +104,8 @@ impl<'a> Stretch<'a> {
         let s = self.sums();
         let m = self.mixing();
         let shift = self.chord() * (2.0 / 3.0);
-        let right = s.b1d.xyz() + m * shift * s.b12 + self.end_tangents.transpose() * s.b2d + shift * s.b22;
+        let right =
+            s.b1d.xyz() + m * shift * s.b12 + self.end_tangents.transpose() * s.b2d + shift * s.b22;
         let left = Matrix3::identity() * (s.b11 + s.b22) + (m + m.transpose()) * s.b12;
         finite(left.try_inverse()? * right)
     }
@@ -108,7 +120,10 @@ impl<'a> Stretch<'a> {
     pub fn worst(&self, (a, b): (Tangent, Tangent), allowed: impl Fn(usize) -> f64) -> Worst {
         let p0 = self.kind.identity();
         let (p1, p2) = (p0 + a.push(0.0), self.end + self.end_tangents * b);
-        let mut worst = Worst { index: 0, ratio: 0.0 };
+        let mut worst = Worst {
+            index: 0,
+            ratio: 0.0,
+        };
         let last = self.samples.len() - 1;
         for (i, sample) in self.samples.iter().enumerate() {
             let [b0, b1, b2, b3] = bernstein(self.parameter(i));
@@ -145,7 +160,12 @@ mod tests {
     /// Sum of squared distances of the raw curve, which is what is minimised.
     fn cost(stretch: &Stretch, (a, b): (Tangent, Tangent)) -> f64 {
         let p0 = stretch.kind.identity();
-        let points = [p0, p0 + a.push(0.0), stretch.end + stretch.end_tangents * b, stretch.end];
+        let points = [
+            p0,
+            p0 + a.push(0.0),
+            stretch.end + stretch.end_tangents * b,
+            stretch.end,
+        ];
         let last = stretch.samples.len() - 1;
         let square = |i: usize| {
             let weights = bernstein(i as f64 / last as f64);

@@ -21,7 +21,11 @@ impl Step {
     pub fn at_most(most: f64) -> Self {
         let power = (2.0 * most.log2()).floor().clamp(-126.0, 126.0) as i8;
         // The logarithm is rounded: the power beside it may be the one.
-        if Self(power).size() > most { Self(power - 1) } else { Self(power) }
+        if Self(power).size() > most {
+            Self(power - 1)
+        } else {
+            Self(power)
+        }
     }
 
     /// Half of it; the smallest there is stays.
@@ -32,7 +36,11 @@ impl Step {
     /// Its size, the same to the bit on every machine.
     pub fn size(self) -> f64 {
         let whole = i32::from(self.0).div_euclid(2);
-        let root = if self.0.rem_euclid(2) == 1 { std::f64::consts::SQRT_2 } else { 1.0 };
+        let root = if self.0.rem_euclid(2) == 1 {
+            std::f64::consts::SQRT_2
+        } else {
+            1.0
+        };
         f64::powi(2.0, whole) * root
     }
 }
@@ -65,12 +73,20 @@ impl Lattice {
             Kind::Position => (3f64.sqrt() / 2.0, TANGENT_POSITION),
         };
         let key = KEY_SHARE * tolerance / spread;
-        Self { kind, key: Step::at_most(key), tangent: Step::at_most(key * ratio) }
+        Self {
+            kind,
+            key: Step::at_most(key),
+            tangent: Step::at_most(key * ratio),
+        }
     }
 
     /// Half the steps.
     pub fn finer(self) -> Self {
-        Self { key: self.key.halved(), tangent: self.tangent.halved(), ..self }
+        Self {
+            key: self.key.halved(),
+            tangent: self.tangent.halved(),
+            ..self
+        }
     }
 
     /// The key nearest to `value`.
@@ -91,7 +107,11 @@ impl Lattice {
             Kind::Rotation => {
                 let square = parameters.norm_squared();
                 let q = (2.0 / (1.0 + square) * parameters).push((1.0 - square) / (1.0 + square));
-                if previous.is_some_and(|p| p.dot(&q) < 0.0) { -q } else { q }
+                if previous.is_some_and(|p| p.dot(&q) < 0.0) {
+                    -q
+                } else {
+                    q
+                }
             }
         }
     }
@@ -110,7 +130,11 @@ impl Lattice {
 fn rounded(v: &Tangent, step: Step) -> Code {
     let size = step.size();
     // `as` keeps within i64 and makes 0 of what is no number.
-    [(v.x / size).round() as i64, (v.y / size).round() as i64, (v.z / size).round() as i64]
+    [
+        (v.x / size).round() as i64,
+        (v.y / size).round() as i64,
+        (v.z / size).round() as i64,
+    ]
 }
 
 fn vector(code: &Code, step: Step) -> Tangent {
@@ -161,7 +185,11 @@ impl Piece {
         let (a, b) = self.tangents.resolve(lattice, &kind.local(&p0, &p3).xyz());
         let p1 = p0 + kind.tangents(&p0) * a;
         let p2 = p3 + kind.tangents(&p3) * b;
-        Segment { start, frames: self.frames, points: [p0, p1, p2, p3] }
+        Segment {
+            start,
+            frames: self.frames,
+            points: [p0, p1, p2, p3],
+        }
     }
 }
 

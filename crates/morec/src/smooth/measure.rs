@@ -81,7 +81,8 @@ impl Errors {
 
     /// The distances between two clips of the same skeleton and frames. O(frames × joints).
     pub(super) fn between(a: &Clip, b: &Clip, metres_per_unit: f64) -> Self {
-        let (mut angle, mut position, mut world) = (Spread::default(), Spread::default(), Spread::default());
+        let (mut angle, mut position, mut world) =
+            (Spread::default(), Spread::default(), Spread::default());
         for (x, y) in a.rotations.iter().zip(&b.rotations) {
             angle.add(angle_between(x, y));
         }
@@ -116,7 +117,11 @@ impl CompressedClip {
         let same = clip.frames == self.frames
             && clip.skeleton == self.skeleton
             && clip.rotations.len() == clip.frames * clip.skeleton.len()
-            && clip.tracks.iter().map(|t| t.joint).eq(self.positions.iter().map(|c| c.joint))
+            && clip
+                .tracks
+                .iter()
+                .map(|t| t.joint)
+                .eq(self.positions.iter().map(|c| c.joint))
             && clip.tracks.iter().all(|t| t.positions.len() == clip.frames);
         same.then(|| Errors::between(clip, &self.at_source_frames(), self.params.metres_per_unit))
     }

@@ -33,7 +33,10 @@ impl SmoothParams {
     /// What a database keeps: every angle within half a degree and every joint within five millimetres of where it
     /// was in the world.
     pub fn database() -> Self {
-        Self { joint_position_metres: Some(0.005), ..Self::default() }
+        Self {
+            joint_position_metres: Some(0.005),
+            ..Self::default()
+        }
     }
 
     /// Whether every figure is within its range.
@@ -41,12 +44,22 @@ impl SmoothParams {
         let figures = [
             ("angle_rad", Some(self.angle_rad), 1e-6, 1.0),
             ("position_metres", Some(self.position_metres), 1e-7, 10.0),
-            ("joint_position_metres", self.joint_position_metres, 1e-6, 10.0),
+            (
+                "joint_position_metres",
+                self.joint_position_metres,
+                1e-6,
+                10.0,
+            ),
             ("metres_per_unit", Some(self.metres_per_unit), 1e-9, 1e9),
         ];
         for (name, value, least, most) in figures {
             if let Some(found) = value.filter(|value| !(least..=most).contains(value)) {
-                return Err(SmoothError::Param { name, least, most, found });
+                return Err(SmoothError::Param {
+                    name,
+                    least,
+                    most,
+                    found,
+                });
             }
         }
         Ok(())
@@ -72,7 +85,9 @@ pub enum SmoothError {
     #[error("not a whole clip: {0}")]
     Clip(String),
     /// A value that is no number, or one too large for the thresholds.
-    #[error("joint {joint} ({name}), frame {frame}: expected finite values below {most:e}, found others")]
+    #[error(
+        "joint {joint} ({name}), frame {frame}: expected finite values below {most:e}, found others"
+    )]
     Value {
         /// The joint.
         joint: usize,
@@ -84,7 +99,9 @@ pub enum SmoothError {
         most: f64,
     },
     /// The bound on world positions was not reached, however small the errors of single joints were made.
-    #[error("joints within {bound_metres} m of where they were: {reached_metres} m is as near as it came")]
+    #[error(
+        "joints within {bound_metres} m of where they were: {reached_metres} m is as near as it came"
+    )]
     Bound {
         /// The bound.
         bound_metres: f64,

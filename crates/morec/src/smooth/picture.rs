@@ -13,7 +13,13 @@ impl CompressedClip {
     /// A chart of a joint's rotation (as a quaternion) or position over time: samples of `source` (the clip that
     /// was compressed), curves, keyframes. With `axis` (0 to 3 for x, y, z, w) only that component, and the curves'
     /// control points with it. `None` if there is no such channel. O(frames).
-    pub fn chart(&self, source: &Clip, joint: usize, kind: Kind, axis: Option<usize>) -> Option<Chart> {
+    pub fn chart(
+        &self,
+        source: &Clip,
+        joint: usize,
+        kind: Kind,
+        axis: Option<usize>,
+    ) -> Option<Chart> {
         let curve = self.curve(joint, kind)?;
         let components = match kind {
             Kind::Rotation => 0..4,
@@ -29,15 +35,29 @@ impl CompressedClip {
             Kind::Position => "position",
         };
         let name = &self.skeleton.joints()[joint].name;
-        let title = format!("{}: {what} of {name}, {} keyframes", self.name, curve.keyframes());
-        let unit = if kind == Kind::Rotation { "quaternion" } else { "units of the clip" };
+        let title = format!(
+            "{}: {what} of {name}, {} keyframes",
+            self.name,
+            curve.keyframes()
+        );
+        let unit = if kind == Kind::Rotation {
+            "quaternion"
+        } else {
+            "units of the clip"
+        };
         let mut chart = Chart::new(title).axes("seconds", unit);
         let samples = samples(source, curve);
         let drawn = self.drawn(curve);
         for c in components {
             let at = |i: usize| i as f64 / self.rate_hz;
-            chart = chart.line(NAMES[c], samples.iter().enumerate().map(|(i, p)| (at(i), p[c])));
-            chart = chart.line(&format!("{} curves", NAMES[c]), drawn.iter().map(|(t, p)| (*t, p[c])));
+            chart = chart.line(
+                NAMES[c],
+                samples.iter().enumerate().map(|(i, p)| (at(i), p[c])),
+            );
+            chart = chart.line(
+                &format!("{} curves", NAMES[c]),
+                drawn.iter().map(|(t, p)| (*t, p[c])),
+            );
             if axis.is_some() {
                 chart = chart.points("control points", self.control_points(curve, c));
             }
@@ -52,7 +72,9 @@ impl CompressedClip {
         let last = self.frames.saturating_sub(1) as f64;
         let places = (0..=(last * POINTS_A_FRAME) as usize).map(|i| i as f64 / POINTS_A_FRAME);
         let mut drawn = Vec::new();
-        curve.along(places, |point| drawn.push((drawn.len() as f64 / POINTS_A_FRAME / self.rate_hz, point)));
+        curve.along(places, |point| {
+            drawn.push((drawn.len() as f64 / POINTS_A_FRAME / self.rate_hz, point))
+        });
         drawn
     }
 
@@ -60,7 +82,12 @@ impl CompressedClip {
     fn control_points(&self, curve: &Curve, component: usize) -> Vec<(f64, f64)> {
         let inner = |bezier: super::Bezier| {
             let third = (bezier.stop_secs - bezier.start_secs) / 3.0;
-            [1, 2].map(|i| (bezier.start_secs + i as f64 * third, bezier.points[i][component]))
+            [1, 2].map(|i| {
+                (
+                    bezier.start_secs + i as f64 * third,
+                    bezier.points[i][component],
+                )
+            })
         };
         self.beziers(curve).flat_map(inner).collect()
     }
@@ -69,14 +96,22 @@ impl CompressedClip {
 /// The channel's samples, with the signs that its curves have.
 fn samples(source: &Clip, curve: &Curve) -> Vec<Point> {
     if curve.kind() == Kind::Position {
-        return source
-            .track(curve.joint())
-            .map_or_else(Vec::new, |track| track.positions.iter().map(|p| p.push(0.0)).collect());
+        return source.track(curve.joint()).map_or_else(Vec::new, |track| {
+            track.positions.iter().map(|p| p.push(0.0)).collect()
+        });
     }
     let mut last = curve.at(0.0);
-    let of_joint = source.rotations.iter().skip(curve.joint()).step_by(source.skeleton.len());
+    let of_joint = source
+        .rotations
+        .iter()
+        .skip(curve.joint())
+        .step_by(source.skeleton.len());
     let signed = |q: &crate::math::Quat| {
-        last = if last.dot(&q.coords) < 0.0 { -q.coords } else { q.coords };
+        last = if last.dot(&q.coords) < 0.0 {
+            -q.coords
+        } else {
+            q.coords
+        };
         last
     };
     of_joint.map(signed).collect()
@@ -90,13 +125,28 @@ mod tests {
 
     #[test]
     fn every_channel_can_be_drawn() {
-        let clip = one_joint(60.0, 121, |t| Axis::Y.rotation(4.0 * t), |t| Vec3::new(t.sin(), t, 0.0));
+        let clip = one_joint(
+            60.0,
+            121,
+            |t| Axis::Y.rotation(4.0 * t),
+            |t| Vec3::new(t.sin(), t, 0.0),
+        );
         let compressed = compress(&clip, &SmoothParams::default(), &()).unwrap();
-        let svg = |kind, axis| compressed.chart(&clip, 0, kind, axis).map(|chart| chart.svg());
+        let svg = |kind, axis| {
+            compressed
+                .chart(&clip, 0, kind, axis)
+                .map(|chart| chart.svg())
+        };
         let all = svg(Kind::Rotation, None).unwrap();
-        assert!(all.contains("rotation of Hips") && all.contains("w curves") && all.contains("keyframes"));
+        assert!(
+            all.contains("rotation of Hips")
+                && all.contains("w curves")
+                && all.contains("keyframes")
+        );
         let one = svg(Kind::Position, Some(0)).unwrap();
-        assert!(one.contains("x curves") && !one.contains("y curves") && one.contains("control points"));
+        assert!(
+            one.contains("x curves") && !one.contains("y curves") && one.contains("control points")
+        );
         assert!(svg(Kind::Position, Some(3)).is_none() && svg(Kind::Rotation, Some(4)).is_none());
         assert!(compressed.chart(&clip, 1, Kind::Rotation, None).is_none());
     }

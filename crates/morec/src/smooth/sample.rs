@@ -12,7 +12,9 @@ impl CompressedClip {
     /// The `parent_from_joint` rotation of `joint` at a time; outside the clip it stands still. `None` if there is
     /// no such joint. O(log keyframes).
     pub fn rotation_at(&self, joint: usize, time_secs: f64) -> Option<Quat> {
-        Some(rotation(&self.rotations.get(joint)?.at(self.place(time_secs))))
+        Some(rotation(
+            &self.rotations.get(joint)?.at(self.place(time_secs)),
+        ))
     }
 
     /// The position of `joint` in its parent's frame at a time: its curve's, or the skeleton's offset. `None` if
@@ -54,7 +56,10 @@ impl CompressedClip {
         let track = |curve: &Curve| {
             let mut positions = Vec::with_capacity(instants.len());
             curve.along(places(), |point| positions.push(point.xyz()));
-            JointTrack { joint: curve.joint, positions }
+            JointTrack {
+                joint: curve.joint,
+                positions,
+            }
         };
         Clip {
             name: self.name.clone(),
@@ -79,7 +84,11 @@ fn fill_rotations(
     let mut at = j;
     curve.along(places, |point| {
         let q = rotation(&point);
-        table[at] = if at >= joints { same_hemisphere(&table[at - joints], q) } else { q };
+        table[at] = if at >= joints {
+            same_hemisphere(&table[at - joints], q)
+        } else {
+            q
+        };
         at += joints;
     });
 }

@@ -36,7 +36,16 @@ impl Channel {
     pub fn new(kind: Kind, samples: Vec<Point>, tolerance: f64) -> Self {
         let lattice = Lattice::new(kind, tolerance);
         let (pieces, segments) = (Vec::new(), Vec::new());
-        Self { lattice, samples, tolerance, shares: None, first: [0; 3], pieces, segments, local: Vec::new() }
+        Self {
+            lattice,
+            samples,
+            tolerance,
+            shares: None,
+            first: [0; 3],
+            pieces,
+            segments,
+            local: Vec::new(),
+        }
     }
 
     /// The first key's point.
@@ -46,7 +55,10 @@ impl Channel {
 
     /// Squared distance that the curve may have from the sample of `frame`.
     pub fn allowed(&self, frame: usize) -> f64 {
-        let share = self.shares.as_ref().map_or(1.0, |shares| f64::from(shares[frame]));
+        let share = self
+            .shares
+            .as_ref()
+            .map_or(1.0, |shares| f64::from(shares[frame]));
         (self.tolerance * share).powi(2)
     }
 
@@ -57,11 +69,17 @@ impl Channel {
     pub fn fit(&mut self) -> Result<(), TooCoarse> {
         loop {
             let reachable = MOST_STEPS as f64 * self.lattice.key.size();
-            if let Some(frame) = self.samples.iter().position(|sample| sample.amax() > reachable) {
+            if let Some(frame) = self
+                .samples
+                .iter()
+                .position(|sample| sample.amax() > reachable)
+            {
                 return Err(TooCoarse { frame });
             }
             match self.fit_with_steps() {
-                Err(_) if self.lattice != self.lattice.finer() => self.lattice = self.lattice.finer(),
+                Err(_) if self.lattice != self.lattice.finer() => {
+                    self.lattice = self.lattice.finer()
+                }
                 outcome => return outcome,
             }
         }
@@ -75,7 +93,13 @@ impl Channel {
         }
         self.first = self.lattice.key_code(&self.samples[0]);
         let (mut pieces, mut segments) = (Vec::new(), Vec::new());
-        self.simplify(0, self.samples.len() - 1, self.start(), &mut pieces, &mut segments)?;
+        self.simplify(
+            0,
+            self.samples.len() - 1,
+            self.start(),
+            &mut pieces,
+            &mut segments,
+        )?;
         (self.pieces, self.segments) = (pieces, segments);
         Ok(())
     }
@@ -83,12 +107,16 @@ impl Channel {
     /// One key for all frames, if it is near enough to each.
     fn fit_constant(&mut self) -> bool {
         let middle = self.samples.iter().sum::<Point>() / self.samples.len() as f64;
-        let Some(middle) = self.lattice.kind.finish(middle) else { return false };
+        let Some(middle) = self.lattice.kind.finish(middle) else {
+            return false;
+        };
         self.first = self.lattice.key_code(&middle);
         let key = self.start();
         let near = |sample: &Point| match self.lattice.kind {
             Kind::Position => (sample - key).norm_squared(),
-            Kind::Rotation => (sample - key).norm_squared().min((sample + key).norm_squared()),
+            Kind::Rotation => (sample - key)
+                .norm_squared()
+                .min((sample + key).norm_squared()),
         };
         (0..self.samples.len()).all(|f| near(&self.samples[f]) <= self.allowed(f))
     }
@@ -107,10 +135,15 @@ impl Channel {
         let mut frames = frames;
         for i in 0..self.pieces.len() {
             let segment = self.segments[i];
-            let (from, to) = (segment.start as usize, (segment.start + segment.frames) as usize);
+            let (from, to) = (
+                segment.start as usize,
+                (segment.start + segment.frames) as usize,
+            );
             frames = &frames[frames.partition_point(|&frame| frame < from)..];
             if frames.first().is_some_and(|&frame| frame <= to) {
-                let start: Point = segments.last().map_or_else(|| self.start(), |s: &Segment| s.points[3]);
+                let start: Point = segments
+                    .last()
+                    .map_or_else(|| self.start(), |s: &Segment| s.points[3]);
                 self.simplify(from, to, start, &mut pieces, &mut segments)?;
                 ranges.push(from..to + 1);
             } else {
@@ -147,7 +180,9 @@ impl Channel {
                 }
                 Err(worst) => {
                     if to - from == 1 {
-                        return Err(TooCoarse { frame: from + worst.index });
+                        return Err(TooCoarse {
+                            frame: from + worst.index,
+                        });
                     }
                     let at_an_end = worst.index == 0 || worst.index == to - from;
                     let middle = match at_an_end || depth > depth_of_halving {
@@ -163,29 +198,59 @@ impl Channel {
     }
 
     /// The curve of the lowest degree that is near enough, if a cubic is; else where that is furthest.
-    fn one_curve(&mut self, from: usize, to: usize, start: Point) -> Result<(Piece, Segment), Worst> {
+    fn one_curve(
+        &mut self,
+        from: usize,
+        to: usize,
+        start: Point,
+    ) -> Result<(Piece, Segment), Worst> {
         let (lattice, kind) = (self.lattice, self.lattice.kind);
-        let sign = if kind == Kind::Rotation && start.dot(&self.samples[from]) < 0.0 { -1.0 } else { 1.0 };
+        let sign = if kind == Kind::Rotation && start.dot(&self.samples[from]) < 0.0 {
+            -1.0
+        } else {
+            1.0
+        };
         let mut local = std::mem::take(&mut self.local);
         local.clear();
-        local.extend(self.samples[from..=to].iter().map(|sample| kind.local(&start, &(sample * sign))));
+        local.extend(
+            self.samples[from..=to]
+                .iter()
+                .map(|sample| kind.local(&start, &(sample * sign))),
+        );
         let key = lattice.key_code(&self.samples[to]);
         let end = lattice.key_point(&key, Some(&start));
         let stretch = Stretch::new(kind, &local, kind.local(&start, &end));
         let try_on = |tangents: Tangents| {
             let resolved = tangents.resolve(&lattice, &stretch.chord());
-            (tangents, stretch.worst(resolved, |i| self.allowed(from + i)))
+            (
+                tangents,
+                stretch.worst(resolved, |i| self.allowed(from + i)),
+            )
         };
         let line = || try_on(Tangents::Line);
-        let parabola = || stretch.parabola().map(|a| try_on(Tangents::Parabola(lattice.tangent_code(&a))));
-        let cubic = stretch
-            .cubic()
-            .map(|(a, b)| try_on(Tangents::Cubic(lattice.tangent_code(&a), lattice.tangent_code(&b))));
+        let parabola = || {
+            stretch
+                .parabola()
+                .map(|a| try_on(Tangents::Parabola(lattice.tangent_code(&a))))
+        };
+        let cubic = stretch.cubic().map(|(a, b)| {
+            try_on(Tangents::Cubic(
+                lattice.tangent_code(&a),
+                lattice.tangent_code(&b),
+            ))
+        });
         let highest = cubic.or_else(parabola).unwrap_or_else(line);
         let outcome = if highest.1.ratio <= 1.0 {
             let near = |tried: &(Tangents, Worst)| tried.1.ratio <= 1.0;
-            let lowest = Some(line()).filter(near).or_else(|| parabola().filter(near)).unwrap_or(highest);
-            let piece = Piece { frames: (to - from) as u32, key, tangents: lowest.0 };
+            let lowest = Some(line())
+                .filter(near)
+                .or_else(|| parabola().filter(near))
+                .unwrap_or(highest);
+            let piece = Piece {
+                frames: (to - from) as u32,
+                key,
+                tangents: lowest.0,
+            };
             Ok((piece, piece.segment(&lattice, from as u32, start)))
         } else {
             Err(highest.1)

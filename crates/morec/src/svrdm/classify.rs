@@ -51,12 +51,22 @@ impl SampleClassifier {
     pub fn classify(&mut self, rows: &Rows) -> Option<Classified> {
         let gram = Gram::of_rows(rows.values(), rows.dim(), self.model.params.chunk_frames);
         let feature = self.extraction.feature(&gram)?;
-        self.model.tree.descend(feature, f64::NEG_INFINITY, Descent::Larger, &mut self.candidates);
+        self.model.tree.descend(
+            feature,
+            f64::NEG_INFINITY,
+            Descent::Larger,
+            &mut self.candidates,
+        );
         let found = *self.candidates.first()?;
         let profile = self.extraction.profile(&gram, rows.iter());
         let edr = self.scoring.distance(found.class, profile);
         let likeness = self.scoring.likeness(edr);
         let confidence = self.scoring.confidence(found.class, edr, gram.frames());
-        Some(Classified { class: found.class, output: found.output, likeness, confidence })
+        Some(Classified {
+            class: found.class,
+            output: found.output,
+            likeness,
+            confidence,
+        })
     }
 }

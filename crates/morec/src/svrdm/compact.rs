@@ -11,14 +11,20 @@ impl SvrdmModel {
     /// training is then what recognises later.
     pub fn compact(&self) -> Result<Self, ModelError> {
         let invalid = |e: &dyn std::fmt::Display| ModelError::Value(e.to_string());
-        let axes = (0..self.pca.dims()).flat_map(|i| single(self.pca.axis(i))).collect();
+        let axes = (0..self.pca.dims())
+            .flat_map(|i| single(self.pca.axis(i)))
+            .collect();
         let (mean, eigenvalues) = (single(self.pca.mean()), single(self.pca.eigenvalues()));
-        let pca = Pca::from_parts(mean, axes, eigenvalues, self.pca.rows()).map_err(|e| invalid(&e))?;
+        let pca =
+            Pca::from_parts(mean, axes, eigenvalues, self.pca.rows()).map_err(|e| invalid(&e))?;
         let mut parts = self.tree.parts().clone();
         parts.vectors = single(&parts.vectors);
         for node in &mut parts.nodes {
             if let Node::Branch(branch) = node {
-                branch.points.iter_mut().for_each(|p| *p = p.map(|v| f64::from(v as f32)));
+                branch
+                    .points
+                    .iter_mut()
+                    .for_each(|p| *p = p.map(|v| f64::from(v as f32)));
                 branch.weights.iter_mut().for_each(|w| *w = single(w));
             }
         }
@@ -27,7 +33,13 @@ impl SvrdmModel {
             Comparison::Profiles => self.profiles.clone(),
             Comparison::Rows { .. } => self.profiles.in_steps(),
         };
-        Ok(Self { pca, tree, signs: single(&self.signs), profiles, ..self.clone() })
+        Ok(Self {
+            pca,
+            tree,
+            signs: single(&self.signs),
+            profiles,
+            ..self.clone()
+        })
     }
 }
 

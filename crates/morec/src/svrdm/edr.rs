@@ -62,7 +62,10 @@ impl Edr {
     /// For sequences of at most `longest` values (itself at most [`MAX_PROFILE_FRAMES`]), which match within
     /// `epsilon`.
     pub fn new(epsilon: f32, longest: usize) -> Self {
-        assert!(longest <= MAX_PROFILE_FRAMES, "sequences of {longest} values");
+        assert!(
+            longest <= MAX_PROFILE_FRAMES,
+            "sequences of {longest} values"
+        );
         let none = Path { cost: 0, steps: 0 };
         Self {
             epsilon,
@@ -103,7 +106,10 @@ impl Edr {
         if m.abs_diff(n) > most {
             return None;
         }
-        self.reversed[..s.len()].iter_mut().zip(s.iter().rev()).for_each(|(to, from)| *to = *from);
+        self.reversed[..s.len()]
+            .iter_mut()
+            .zip(s.iter().rev())
+            .for_each(|(to, from)| *to = *from);
         // A path through the cell (i, j) leaves out |i − j| values before it and |(i − j) − (m − n)| after it.
         let spare = (most as isize - (m - n).abs()) / 2;
         let (low, high) = ((m - n).min(0) - spare, (m - n).max(0) + spare);
@@ -116,7 +122,10 @@ impl Edr {
             let last = d.min(m).min((high + d).div_euclid(2));
             let (inner_first, inner_last) = (first.max(1), last.min(d - 1));
             if inner_first <= inner_last {
-                let (i, count) = (inner_first as usize, (inner_last - inner_first + 1) as usize);
+                let (i, count) = (
+                    inner_first as usize,
+                    (inner_last - inner_first + 1) as usize,
+                );
                 let r = &r[i - 1..][..count];
                 let s = &self.reversed[(n - d + inner_first) as usize..][..count];
                 // The cell i stands at i + 1.
@@ -155,8 +164,9 @@ impl Edr {
 
     /// The path of least `cost − tilt · steps`.
     fn tilted(&mut self, r: &[f32], s: &[f32], tilt: f64) -> Path {
-        let (epsilon, value) =
-            (self.epsilon, |path: Path| f64::from(path.cost) - tilt * f64::from(path.steps));
+        let (epsilon, value) = (self.epsilon, |path: Path| {
+            f64::from(path.cost) - tilt * f64::from(path.steps)
+        });
         let [above, here] = &mut self.paths;
         let [above_value, here_value] = &mut self.values;
         for i in 0..=r.len() {
@@ -165,7 +175,13 @@ impl Edr {
                 let mut offer = |from: f64, path: Path, cost: u32| {
                     let offered = from + f64::from(cost) - tilt;
                     if offered < best.0 {
-                        best = (offered, Path { cost: path.cost + cost, steps: path.steps + 1 });
+                        best = (
+                            offered,
+                            Path {
+                                cost: path.cost + cost,
+                                steps: path.steps + 1,
+                            },
+                        );
                     }
                 };
                 if i > 0 && j > 0 {
@@ -179,7 +195,11 @@ impl Edr {
                     offer(here_value[j - 1], here[j - 1], 1);
                 }
                 // The sum is taken anew, lest it drift over a thousand steps.
-                (here_value[j], here[j]) = if i + j == 0 { (0.0, best.1) } else { (value(best.1), best.1) };
+                (here_value[j], here[j]) = if i + j == 0 {
+                    (0.0, best.1)
+                } else {
+                    (value(best.1), best.1)
+                };
             }
             std::mem::swap(above, here);
             std::mem::swap(above_value, here_value);
@@ -189,13 +209,32 @@ impl Edr {
 }
 
 /// One diagonal: pairing comes from two diagonals before, leaving out from the one before.
-fn advance(r: &[f32], s: &[f32], epsilon: f32, left: &[f32], up: &[f32], both: &[f32], now: &mut [f32]) {
+fn advance(
+    r: &[f32],
+    s: &[f32],
+    epsilon: f32,
+    left: &[f32],
+    up: &[f32],
+    both: &[f32],
+    now: &mut [f32],
+) {
     let count = now.len();
-    let (r, s, left, up, both) = (&r[..count], &s[..count], &left[..count], &up[..count], &both[..count]);
+    let (r, s, left, up, both) = (
+        &r[..count],
+        &s[..count],
+        &left[..count],
+        &up[..count],
+        &both[..count],
+    );
     for k in 0..count {
         // Written as comparisons: `f32::min` minds values that are no numbers, which takes twice as long.
         let out = (if left[k] < up[k] { left[k] } else { up[k] }) + PAID;
-        let pair = both[k] + if (r[k] - s[k]).abs() <= epsilon { FREE } else { PAID };
+        let pair = both[k]
+            + if (r[k] - s[k]).abs() <= epsilon {
+                FREE
+            } else {
+                PAID
+            };
         now[k] = if pair < out { pair } else { out };
     }
 }
@@ -207,7 +246,10 @@ fn path_of(cell: f32) -> Option<Path> {
     }
     // cell = cost · UNIT − steps with 0 ≤ steps < UNIT.
     let cost = (cell / UNIT).ceil();
-    Some(Path { cost: cost as u32, steps: (cost * UNIT - cell) as u32 })
+    Some(Path {
+        cost: cost as u32,
+        steps: (cost * UNIT - cell) as u32,
+    })
 }
 
 #[cfg(test)]
@@ -223,7 +265,10 @@ mod tests {
         let mut found = vec![];
         let mut go = |r: &[f32], s: &[f32], cost: u32| {
             let rest = all_paths(r, s, epsilon).into_iter();
-            found.extend(rest.map(|p| Path { cost: p.cost + cost, steps: p.steps + 1 }));
+            found.extend(rest.map(|p| Path {
+                cost: p.cost + cost,
+                steps: p.steps + 1,
+            }));
         };
         if !r.is_empty() && !s.is_empty() {
             go(&r[1..], &s[1..], u32::from((r[0] - s[0]).abs() > epsilon));
@@ -247,7 +292,10 @@ mod tests {
                     options.push((cost + paid, less_steps - 1));
                 };
                 if i > 0 && j > 0 {
-                    offer(table[i - 1][j - 1], i64::from((r[i - 1] - s[j - 1]).abs() > epsilon));
+                    offer(
+                        table[i - 1][j - 1],
+                        i64::from((r[i - 1] - s[j - 1]).abs() > epsilon),
+                    );
                 }
                 if i > 0 {
                     offer(table[i - 1][j], 1);
@@ -259,7 +307,10 @@ mod tests {
             }
         }
         let (cost, less_steps) = table[r.len()][s.len()];
-        Path { cost: cost as u32, steps: -less_steps as u32 }
+        Path {
+            cost: cost as u32,
+            steps: -less_steps as u32,
+        }
     }
 
     /// Sequences of few values, so that many match.
@@ -306,8 +357,17 @@ mod tests {
         let (r, s) = (vec![0.0; MAX_PROFILE_FRAMES], vec![9.0; MAX_PROFILE_FRAMES]);
         let mut edr = Edr::new(0.5, MAX_PROFILE_FRAMES);
         let n = MAX_PROFILE_FRAMES as u32;
-        assert_eq!(edr.cheapest(&r, &s, 2 * r.len()), Some(Path { cost: n, steps: n }));
-        assert_eq!(edr.cheapest(&r, &r, 2 * r.len()), Some(Path { cost: 0, steps: n }));
-        assert_eq!(edr.cheapest(&r, &[], 2 * r.len()), Some(Path { cost: n, steps: n }));
+        assert_eq!(
+            edr.cheapest(&r, &s, 2 * r.len()),
+            Some(Path { cost: n, steps: n })
+        );
+        assert_eq!(
+            edr.cheapest(&r, &r, 2 * r.len()),
+            Some(Path { cost: 0, steps: n })
+        );
+        assert_eq!(
+            edr.cheapest(&r, &[], 2 * r.len()),
+            Some(Path { cost: n, steps: n })
+        );
     }
 }

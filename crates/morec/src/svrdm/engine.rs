@@ -5,8 +5,8 @@ use std::sync::Arc;
 use crate::classes::ClassId;
 
 use super::{
-    Candidates, Cell, ChunkAssembly, FeatureExtraction, Gram, ModelError, SegmentAssembly, SegmentScoring,
-    SegmentTracking, SvrdmModel, SvrdmParams, Window,
+    Candidates, Cell, ChunkAssembly, FeatureExtraction, Gram, ModelError, SegmentAssembly,
+    SegmentScoring, SegmentTracking, SvrdmModel, SvrdmParams, Window,
 };
 
 /// A motion recognised, in frames of the present stretch at the model's rate.
@@ -116,13 +116,15 @@ impl SvrdmEngine {
             watch(window, cell);
         });
         let frames = self.model.params.chunk_frames as i64;
-        self.tracking.push(&self.column, &mut |found| out(found.in_frames(frames)));
+        self.tracking
+            .push(&self.column, &mut |found| out(found.in_frames(frames)));
     }
 
     /// Ends the stretch: calls `out` with what is left. Rows that make no whole chunk are left out.
     pub fn finish(&mut self, out: &mut impl FnMut(FrameDetection)) {
         let frames = self.model.params.chunk_frames as i64;
-        self.tracking.finish(&mut |found| out(found.in_frames(frames)));
+        self.tracking
+            .finish(&mut |found| out(found.in_frames(frames)));
         self.reset();
     }
 }
@@ -130,13 +132,22 @@ impl SvrdmEngine {
 impl SegmentRecogniser {
     /// The class that the segment, whose rows are the last of `chunks`, most certainly is.
     fn recognise(&mut self, segment: &Gram, chunks: &ChunkAssembly) -> Cell {
-        let Some(feature) = self.extraction.feature(segment) else { return Cell::NOTHING };
-        let SvrdmParams { accept, descent, .. } = self.model.params;
-        self.model.tree.descend(feature, accept, descent, &mut self.candidates);
+        let Some(feature) = self.extraction.feature(segment) else {
+            return Cell::NOTHING;
+        };
+        let SvrdmParams {
+            accept, descent, ..
+        } = self.model.params;
+        self.model
+            .tree
+            .descend(feature, accept, descent, &mut self.candidates);
         if self.candidates.is_empty() {
             return Cell::NOTHING;
         }
-        let profile = self.extraction.profile(segment, chunks.last_rows(segment.frames()));
-        self.scoring.best(&self.candidates, profile, segment.frames())
+        let profile = self
+            .extraction
+            .profile(segment, chunks.last_rows(segment.frames()));
+        self.scoring
+            .best(&self.candidates, profile, segment.frames())
     }
 }

@@ -19,7 +19,11 @@ pub struct FeatureExtraction {
 impl FeatureExtraction {
     /// For rows of `dim` values, `r`, and `signs` as of [`SvrdmModel::signs`](super::SvrdmModel::signs): `k × r`.
     pub fn new(params: &SvrdmParams, dim: usize, signs: &[f64]) -> Self {
-        assert_eq!(signs.len(), params.feature_dim(dim), "sign vectors of another size");
+        assert_eq!(
+            signs.len(),
+            params.feature_dim(dim),
+            "sign vectors of another size"
+        );
         Self {
             scaling: params.scaling,
             centring: params.centring,
@@ -27,7 +31,10 @@ impl FeatureExtraction {
             signs: signs.to_vec(),
             directions: Directions::new(params.eigenvectors, dim),
             feature: vec![0.0; signs.len()],
-            profile: vec![0.0; params.comparison.rows(params.max_frames()) * params.comparison.width(dim)],
+            profile: vec![
+                0.0;
+                params.comparison.rows(params.max_frames()) * params.comparison.width(dim)
+            ],
         }
     }
 

@@ -13,7 +13,11 @@ pub struct Gram {
 impl Gram {
     /// Of no rows of `dim` values.
     pub fn new(dim: usize) -> Self {
-        Self { products: vec![0.0; dim * (dim + 1) / 2], sums: vec![0.0; dim], frames: 0 }
+        Self {
+            products: vec![0.0; dim * (dim + 1) / 2],
+            sums: vec![0.0; dim],
+            frames: 0,
+        }
     }
 
     /// Of `rows`, laid end to end, `dim` values each: in chunks of `chunk_frames` from the first row on, added from
@@ -23,7 +27,9 @@ impl Gram {
         let mut whole = Self::new(dim);
         for chunk in rows.chunks(dim.max(1) * chunk_frames.max(1)).rev() {
             let mut part = Self::new(dim);
-            chunk.chunks_exact(dim.max(1)).for_each(|row| part.add_row(row));
+            chunk
+                .chunks_exact(dim.max(1))
+                .for_each(|row| part.add_row(row));
             whole.add(&part);
         }
         whole
@@ -52,10 +58,15 @@ impl Gram {
         let mut rest = &mut self.products[..];
         for (i, a) in row.iter().enumerate() {
             let (line, after) = rest.split_at_mut(i + 1);
-            line.iter_mut().zip(row).for_each(|(product, b)| *product += f64::from(*a) * f64::from(*b));
+            line.iter_mut()
+                .zip(row)
+                .for_each(|(product, b)| *product += f64::from(*a) * f64::from(*b));
             rest = after;
         }
-        self.sums.iter_mut().zip(row).for_each(|(sum, a)| *sum += f64::from(*a));
+        self.sums
+            .iter_mut()
+            .zip(row)
+            .for_each(|(sum, a)| *sum += f64::from(*a));
         self.frames += 1;
     }
 
@@ -69,8 +80,14 @@ impl Gram {
     /// Adds the rows of another. O(r²).
     pub fn add(&mut self, other: &Gram) {
         assert_eq!(other.dim(), self.dim(), "rows of another width");
-        self.products.iter_mut().zip(&other.products).for_each(|(a, b)| *a += b);
-        self.sums.iter_mut().zip(&other.sums).for_each(|(a, b)| *a += b);
+        self.products
+            .iter_mut()
+            .zip(&other.products)
+            .for_each(|(a, b)| *a += b);
+        self.sums
+            .iter_mut()
+            .zip(&other.sums)
+            .for_each(|(a, b)| *a += b);
         self.frames += other.frames;
     }
 

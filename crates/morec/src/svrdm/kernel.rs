@@ -15,7 +15,9 @@ pub struct Gaussian {
 impl Gaussian {
     /// The kernel of width `sigma > 0`.
     pub fn new(sigma: f64) -> Self {
-        Self { exponent: -0.5 / (sigma * sigma) }
+        Self {
+            exponent: -0.5 / (sigma * sigma),
+        }
     }
 
     /// The kernel of two vectors this squared distance apart: 1 at 0, down to 0.

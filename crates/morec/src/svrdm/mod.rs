@@ -42,5 +42,7 @@ pub use params::{Centring, Comparison, MAX_PROFILE_FRAMES, Normalisation, Scalin
 pub use scoring::{SegmentScoring, confidence};
 pub use segments::{ChunkAssembly, RowRing, SegmentAssembly, Window};
 pub use tracking::{Cell, ChunkDetection, SegmentTracking};
-pub use tree::{Branch, Candidate, Candidates, Descent, MAX_CANDIDATES, Node, Parts, Tree, TreeError};
+pub use tree::{
+    Branch, Candidate, Candidates, Descent, MAX_CANDIDATES, Node, Parts, Tree, TreeError,
+};
 pub use vectors::{Directions, MAX_DIM};

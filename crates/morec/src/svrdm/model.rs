@@ -59,7 +59,13 @@ fn one() -> usize {
 impl Profiles {
     /// None so far, of rows of `width` values.
     pub fn new(width: usize) -> Self {
-        Self { width: width.max(1), values: vec![], step: None, lengths: vec![], classes: vec![] }
+        Self {
+            width: width.max(1),
+            values: vec![],
+            step: None,
+            lengths: vec![],
+            classes: vec![],
+        }
     }
 
     /// Adds a sample's.
@@ -75,12 +81,27 @@ impl Profiles {
     pub fn in_steps(&self) -> Self {
         let mut most = vec![0.0f32; self.width];
         for row in self.values.chunks_exact(self.width) {
-            most.iter_mut().zip(row).for_each(|(most, v)| *most = most.max(v.abs()));
+            most.iter_mut()
+                .zip(row)
+                .for_each(|(most, v)| *most = most.max(v.abs()));
         }
         let step: Vec<f32> = most.into_iter().map(|most| most / 127.0).collect();
-        let round = |(v, step): (&f32, &f32)| if *step > 0.0 { (v / step).round() * step } else { 0.0 };
-        let values = self.values.chunks_exact(self.width).flat_map(|row| row.iter().zip(&step).map(round));
-        Self { values: values.collect(), step: Some(step), ..self.clone() }
+        let round = |(v, step): (&f32, &f32)| {
+            if *step > 0.0 {
+                (v / step).round() * step
+            } else {
+                0.0
+            }
+        };
+        let values = self
+            .values
+            .chunks_exact(self.width)
+            .flat_map(|row| row.iter().zip(&step).map(round));
+        Self {
+            values: values.collect(),
+            step: Some(step),
+            ..self.clone()
+        }
     }
 
     /// How many.
@@ -96,11 +117,14 @@ impl Profiles {
     /// Each with its class, in order.
     pub fn iter(&self) -> impl Iterator<Item = (ClassId, &[f32])> {
         let mut rest = &self.values[..];
-        self.lengths.iter().zip(&self.classes).map(move |(length, class)| {
-            let (profile, after) = rest.split_at((length * self.width).min(rest.len()));
-            rest = after;
-            (*class, profile)
-        })
+        self.lengths
+            .iter()
+            .zip(&self.classes)
+            .map(move |(length, class)| {
+                let (profile, after) = rest.split_at((length * self.width).min(rest.len()));
+                rest = after;
+                (*class, profile)
+            })
     }
 
     /// ε: `tolerance` times the root mean square distance of all rows from their mean; the standard deviation where
@@ -109,10 +133,15 @@ impl Profiles {
         let rows = (self.values.len() / self.width).max(1) as f64;
         let mut mean = vec![0.0; self.width];
         for row in self.values.chunks_exact(self.width) {
-            mean.iter_mut().zip(row).for_each(|(mean, v)| *mean += f64::from(*v) / rows);
+            mean.iter_mut()
+                .zip(row)
+                .for_each(|(mean, v)| *mean += f64::from(*v) / rows);
         }
         let deviation = |row: &[f32]| -> f64 {
-            row.iter().zip(&mean).map(|(v, mean)| (f64::from(*v) - mean).powi(2)).sum()
+            row.iter()
+                .zip(&mean)
+                .map(|(v, mean)| (f64::from(*v) - mean).powi(2))
+                .sum()
         };
         let squares: f64 = self.values.chunks_exact(self.width).map(deviation).sum();
         (tolerance * (squares / rows).sqrt()) as f32
@@ -150,10 +179,17 @@ impl SvrdmModel {
         let (dim, reduced) = (self.pivots.row_dim(), self.pca.dims());
         if reduced < self.params.eigenvectors || reduced > MAX_DIM {
             let (low, high) = (self.params.eigenvectors, MAX_DIM);
-            return Err(value(format!("reduced rows must have {low} to {high} values, found {reduced}")));
+            return Err(value(format!(
+                "reduced rows must have {low} to {high} values, found {reduced}"
+            )));
         }
         // First of all the lengths, which are summed up below.
-        if let Some(length) = self.profiles.lengths.iter().find(|l| !(1..=MAX_PROFILE_FRAMES).contains(*l)) {
+        if let Some(length) = self
+            .profiles
+            .lengths
+            .iter()
+            .find(|l| !(1..=MAX_PROFILE_FRAMES).contains(*l))
+        {
             return Err(value(format!(
                 "a profile must have 1 to {MAX_PROFILE_FRAMES} frames, found {length}"
             )));
@@ -163,11 +199,31 @@ impl SvrdmModel {
         let sizes = [
             ("values in a row that is projected", dim, self.pca.dim()),
             ("values in the sign vectors", feature_dim, self.signs.len()),
-            ("values in a feature vector of the tree", feature_dim, self.tree.dim()),
-            ("mean lengths of classes", self.classes.len(), self.mean_secs.len()),
-            ("steps of profiles", profiles.width, profiles.step.as_ref().map_or(profiles.width, Vec::len)),
-            ("classes of profiles", profiles.len(), profiles.classes.len()),
-            ("values in a profile's row", self.params.comparison.width(reduced), profiles.width),
+            (
+                "values in a feature vector of the tree",
+                feature_dim,
+                self.tree.dim(),
+            ),
+            (
+                "mean lengths of classes",
+                self.classes.len(),
+                self.mean_secs.len(),
+            ),
+            (
+                "steps of profiles",
+                profiles.width,
+                profiles.step.as_ref().map_or(profiles.width, Vec::len),
+            ),
+            (
+                "classes of profiles",
+                profiles.len(),
+                profiles.classes.len(),
+            ),
+            (
+                "values in a profile's row",
+                self.params.comparison.width(reduced),
+                profiles.width,
+            ),
             (
                 "values of profiles",
                 profiles.lengths.iter().sum::<usize>() * profiles.width,
@@ -175,26 +231,48 @@ impl SvrdmModel {
             ),
         ];
         if let Some((what, expected, found)) = sizes.into_iter().find(|(_, e, f)| e != f) {
-            return Err(ModelError::Size { what, expected, found });
+            return Err(ModelError::Size {
+                what,
+                expected,
+                found,
+            });
         }
         self.check_values()?;
         self.check_classes()
     }
 
     fn check_values(&self) -> Result<(), ModelError> {
-        if let Some(length) = self.profiles.lengths.iter().find(|l| !(1..=MAX_PROFILE_FRAMES).contains(*l)) {
+        if let Some(length) = self
+            .profiles
+            .lengths
+            .iter()
+            .find(|l| !(1..=MAX_PROFILE_FRAMES).contains(*l))
+        {
             return Err(value(format!(
                 "a profile must have 1 to {MAX_PROFILE_FRAMES} frames, found {length}"
             )));
         }
-        if self.signs.iter().any(|v| !v.is_finite()) || self.profiles.values.iter().any(|v| !v.is_finite()) {
-            return Err(value("a sign vector or profile holds a value that is not finite".to_owned()));
+        if self.signs.iter().any(|v| !v.is_finite())
+            || self.profiles.values.iter().any(|v| !v.is_finite())
+        {
+            return Err(value(
+                "a sign vector or profile holds a value that is not finite".to_owned(),
+            ));
         }
         if !(self.epsilon.is_finite() && self.epsilon >= 0.0) {
-            return Err(value(format!("epsilon must be 0 or more, found {}", self.epsilon)));
+            return Err(value(format!(
+                "epsilon must be 0 or more, found {}",
+                self.epsilon
+            )));
         }
-        match self.mean_secs.iter().find(|mean| !(mean.is_finite() && **mean > 0.0)) {
-            Some(mean) => Err(value(format!("a class's mean length must be above 0 s, found {mean}"))),
+        match self
+            .mean_secs
+            .iter()
+            .find(|mean| !(mean.is_finite() && **mean > 0.0))
+        {
+            Some(mean) => Err(value(format!(
+                "a class's mean length must be above 0 s, found {mean}"
+            ))),
             None => Ok(()),
         }
     }
@@ -207,10 +285,22 @@ impl SvrdmModel {
         });
         let named = leaves.chain(self.profiles.classes.iter().copied());
         if let Some(class) = named.into_iter().find(|class| class.index() >= count) {
-            return Err(value(format!("the tree or a profile is of class {}, of {count}", class.0)));
+            return Err(value(format!(
+                "the tree or a profile is of class {}, of {count}",
+                class.0
+            )));
         }
-        match (0..count).find(|index| !self.profiles.classes.iter().any(|class| class.index() == *index)) {
-            Some(index) => Err(value(format!("class {} has no profile", self.classes[index].name))),
+        match (0..count).find(|index| {
+            !self
+                .profiles
+                .classes
+                .iter()
+                .any(|class| class.index() == *index)
+        }) {
+            Some(index) => Err(value(format!(
+                "class {} has no profile",
+                self.classes[index].name
+            ))),
             None => Ok(()),
         }
     }

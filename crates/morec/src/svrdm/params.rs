@@ -175,23 +175,38 @@ impl SvrdmParams {
             ("max_chunks", self.max_chunks, self.min_chunks, MAX_CHUNKS),
             ("eigenvectors", self.eigenvectors, 1, MAX_DIM),
             ("wait_chunks", self.wait_chunks, 1, MAX_WAIT_CHUNKS),
-            ("comparison.rows.every", self.comparison.every(), 1, MAX_PROFILE_FRAMES),
+            (
+                "comparison.rows.every",
+                self.comparison.every(),
+                1,
+                MAX_PROFILE_FRAMES,
+            ),
         ];
-        if let Some((name, value, low, high)) = counts.iter().find(|(_, v, low, high)| v < low || v > high) {
+        if let Some((name, value, low, high)) =
+            counts.iter().find(|(_, v, low, high)| v < low || v > high)
+        {
             return Err(format!("{name} must be {low} to {high}, found {value}"));
         }
         if self.max_frames() > MAX_PROFILE_FRAMES {
             let frames = self.max_frames();
-            return Err(format!("segments must be at most {MAX_PROFILE_FRAMES} frames, found {frames}"));
+            return Err(format!(
+                "segments must be at most {MAX_PROFILE_FRAMES} frames, found {frames}"
+            ));
         }
         let positive = [("accept", self.accept), ("prior_spread", self.prior_spread)];
         if let Some((name, value)) = positive.iter().find(|(_, v)| !(v.is_finite() && *v > 0.0)) {
             return Err(format!("{name} must be above 0, found {value}"));
         }
         if !(self.tolerance.is_finite() && self.tolerance >= 0.0) {
-            return Err(format!("tolerance must be 0 or more, found {}", self.tolerance));
+            return Err(format!(
+                "tolerance must be 0 or more, found {}",
+                self.tolerance
+            ));
         }
-        let shares = [("overlap", self.overlap), ("min_confidence", self.min_confidence)];
+        let shares = [
+            ("overlap", self.overlap),
+            ("min_confidence", self.min_confidence),
+        ];
         match shares.iter().find(|(_, v)| !(0.0..1.0).contains(v)) {
             Some((name, value)) => Err(format!("{name} must be from 0 to below 1, found {value}")),
             None => Ok(()),

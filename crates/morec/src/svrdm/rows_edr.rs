@@ -24,7 +24,12 @@ impl RowsEdr {
         let row = || std::array::from_fn(|_| vec![0.0; longest + 1]);
         // Rows that may not differ at all: a difference costs what it can cost.
         let per_square = (1.0 / (epsilon * epsilon)).min(f32::MAX);
-        Self { width: width.max(1), per_square, costs: row(), steps: row() }
+        Self {
+            width: width.max(1),
+            per_square,
+            costs: row(),
+            steps: row(),
+        }
     }
 
     /// Cost a step of the cheapest path from `r` to `s`, 0 … 1; `None` if it is not below `bound`.
@@ -45,10 +50,14 @@ impl RowsEdr {
             let mut least = next_costs[0];
             for (j, b) in s.chunks_exact(self.width).enumerate() {
                 let square: f32 = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum();
-                let mut best = (costs[j] + (square * self.per_square).min(1.0), steps[j] + 1.0);
-                for left_out in
-                    [(costs[j + 1] + 1.0, steps[j + 1] + 1.0), (next_costs[j] + 1.0, next_steps[j] + 1.0)]
-                {
+                let mut best = (
+                    costs[j] + (square * self.per_square).min(1.0),
+                    steps[j] + 1.0,
+                );
+                for left_out in [
+                    (costs[j + 1] + 1.0, steps[j + 1] + 1.0),
+                    (next_costs[j] + 1.0, next_steps[j] + 1.0),
+                ] {
                     if left_out.0 < best.0 {
                         best = left_out;
                     }
@@ -75,11 +84,15 @@ mod tests {
 
     /// The definition: least cost over all paths, by recursion.
     fn slow(r: &[[f32; 2]], s: &[[f32; 2]], epsilon: f32) -> f64 {
-        let (Some(a), Some(b)) = (r.last(), s.last()) else { return (r.len() + s.len()) as f64 };
+        let (Some(a), Some(b)) = (r.last(), s.last()) else {
+            return (r.len() + s.len()) as f64;
+        };
         let (before_r, before_s) = (&r[..r.len() - 1], &s[..s.len() - 1]);
         let square = (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2);
-        let pair = slow(before_r, before_s, epsilon) + f64::from((square / (epsilon * epsilon)).min(1.0));
-        pair.min(slow(before_r, s, epsilon) + 1.0).min(slow(r, before_s, epsilon) + 1.0)
+        let pair =
+            slow(before_r, before_s, epsilon) + f64::from((square / (epsilon * epsilon)).min(1.0));
+        pair.min(slow(before_r, s, epsilon) + 1.0)
+            .min(slow(r, before_s, epsilon) + 1.0)
     }
 
     fn run() -> impl Strategy<Value = Vec<[f32; 2]>> {
@@ -108,7 +121,10 @@ mod tests {
     #[test]
     fn alike_is_nothing_and_a_difference_grows_to_one() {
         let mut edr = RowsEdr::new(1, 2.0, 8);
-        assert_eq!(edr.normalised(&[1.0, 2.0, 3.0], &[1.0, 2.0, 3.0], 1.0), Some(0.0));
+        assert_eq!(
+            edr.normalised(&[1.0, 2.0, 3.0], &[1.0, 2.0, 3.0], 1.0),
+            Some(0.0)
+        );
         // A quarter of the way in squares, one of two steps.
         assert_eq!(edr.normalised(&[1.0, 2.0], &[1.0, 3.0], 1.0), Some(0.125));
         assert_eq!(edr.normalised(&[1.0], &[9.0], 2.0), Some(1.0));

@@ -4,7 +4,9 @@ use crate::classes::ClassId;
 
 use super::edr::{Edr, least_ratio};
 use super::rows_edr::RowsEdr;
-use super::{Candidates, Cell, Comparison, MAX_PROFILE_FRAMES, ModelError, Normalisation, SvrdmModel};
+use super::{
+    Candidates, Cell, Comparison, MAX_PROFILE_FRAMES, ModelError, Normalisation, SvrdmModel,
+};
 
 /// Eq. 4.5: `(1 − 0.9 / (1 + e^(−30 EDR + 15))) · e^(−(len − mean)² / (2 (spread · mean)²))`, lengths in seconds.
 pub fn confidence(edr: f64, length_secs: f64, mean_secs: f64, spread: f64) -> f64 {
@@ -60,7 +62,11 @@ impl SegmentScoring {
         let mut classes: Vec<OfClass> = model
             .mean_secs
             .iter()
-            .map(|mean| OfClass { profiles: vec![], mean_secs: *mean, nearest: 0 })
+            .map(|mean| OfClass {
+                profiles: vec![],
+                mean_secs: *mean,
+                nearest: 0,
+            })
             .collect();
         let mut at = 0;
         for (length, class) in model.profiles.lengths.iter().zip(&model.profiles.classes) {
@@ -74,12 +80,15 @@ impl SegmentScoring {
             width: model.profiles.width,
             comparison: model.params.comparison,
             edr: match model.params.comparison {
-                Comparison::Profiles => {
-                    Measure::Values(Edr::new(model.epsilon, MAX_PROFILE_FRAMES), model.params.normalisation)
-                }
-                Comparison::Rows { .. } => {
-                    Measure::Rows(RowsEdr::new(model.profiles.width, model.epsilon, MAX_PROFILE_FRAMES))
-                }
+                Comparison::Profiles => Measure::Values(
+                    Edr::new(model.epsilon, MAX_PROFILE_FRAMES),
+                    model.params.normalisation,
+                ),
+                Comparison::Rows { .. } => Measure::Rows(RowsEdr::new(
+                    model.profiles.width,
+                    model.epsilon,
+                    MAX_PROFILE_FRAMES,
+                )),
             },
             spread: model.params.prior_spread,
             min_confidence: model.params.min_confidence,
@@ -95,7 +104,11 @@ impl SegmentScoring {
         }
         let edr = self.distance(class, profile);
         let found = self.confidence(class, edr, frames);
-        if found < self.min_confidence { 0.0 } else { found }
+        if found < self.min_confidence {
+            0.0
+        } else {
+            found
+        }
     }
 
     /// The most certain of `candidates` for a segment of `frames` frames with this profile; of equals the first.
@@ -104,7 +117,10 @@ impl SegmentScoring {
         for candidate in candidates.iter() {
             let confidence = self.score(candidate.class, profile, frames);
             if confidence > best.confidence {
-                best = Cell { class: candidate.class, confidence };
+                best = Cell {
+                    class: candidate.class,
+                    confidence,
+                };
             }
         }
         best
@@ -123,13 +139,18 @@ impl SegmentScoring {
     pub fn most(&self, class: ClassId, frames: usize) -> f64 {
         let rows = self.comparison.rows(frames);
         let lengths = self.classes[class.index()].profiles.iter();
-        let edr = lengths.map(|p| least_ratio(p.len() / self.width, rows)).fold(1.0, f64::min);
+        let edr = lengths
+            .map(|p| least_ratio(p.len() / self.width, rows))
+            .fold(1.0, f64::min);
         self.confidence(class, edr, frames)
     }
 
     /// Eq. 4.5 for a segment of `frames` frames at distance `edr` from the class's samples.
     pub fn confidence(&self, class: ClassId, edr: f64, frames: usize) -> f64 {
-        let (secs, mean_secs) = (frames as f64 / self.rate_hz, self.classes[class.index()].mean_secs);
+        let (secs, mean_secs) = (
+            frames as f64 / self.rate_hz,
+            self.classes[class.index()].mean_secs,
+        );
         self.likeness(edr) * length_prior(secs, mean_secs, self.spread)
     }
 
@@ -146,7 +167,9 @@ impl SegmentScoring {
             };
             let known = &self.values[of.profiles[index].clone()];
             let edr = match &mut self.edr {
-                Measure::Values(edr, normalisation) => edr.normalised(profile, known, *normalisation, least),
+                Measure::Values(edr, normalisation) => {
+                    edr.normalised(profile, known, *normalisation, least)
+                }
                 Measure::Rows(edr) => edr.normalised(profile, known, least),
             };
             if let Some(edr) = edr {

@@ -32,7 +32,12 @@ impl RowRing {
     /// For rows of `dim` values: as many as the longest segment has.
     pub fn new(params: &SvrdmParams, dim: usize) -> Self {
         let capacity = params.max_frames();
-        Self { rows: vec![0.0; capacity * dim], dim, capacity, frames: 0 }
+        Self {
+            rows: vec![0.0; capacity * dim],
+            dim,
+            capacity,
+            frames: 0,
+        }
     }
 
     /// Forgets the stream so far.
@@ -45,7 +50,11 @@ impl RowRing {
         let slot = self.frames % self.capacity;
         self.rows[slot * self.dim..][..self.dim].copy_from_slice(row);
         // Whole turns of the ring may be left out: only the place in it and the kept rows matter.
-        self.frames = if self.frames + 1 == 2 * self.capacity { self.capacity } else { self.frames + 1 };
+        self.frames = if self.frames + 1 == 2 * self.capacity {
+            self.capacity
+        } else {
+            self.frames + 1
+        };
     }
 
     /// The last `frames` rows, oldest first; as many as there are, if fewer are kept.
@@ -70,7 +79,11 @@ pub struct ChunkAssembly {
 impl ChunkAssembly {
     /// For rows of `dim` values.
     pub fn new(params: &SvrdmParams, dim: usize) -> Self {
-        Self { chunk_frames: params.chunk_frames, rows: RowRing::new(params, dim), gram: Gram::new(dim) }
+        Self {
+            chunk_frames: params.chunk_frames,
+            rows: RowRing::new(params, dim),
+            gram: Gram::new(dim),
+        }
     }
 
     /// Forgets the stream so far.
@@ -141,7 +154,13 @@ impl SegmentAssembly {
             let start = self.chunks - count as i64;
             self.sum.add(&self.ring[slot(start)]);
             if count >= self.min_chunks {
-                out(Window { start, stop: self.chunks }, &self.sum);
+                out(
+                    Window {
+                        start,
+                        stop: self.chunks,
+                    },
+                    &self.sum,
+                );
             }
         }
     }
@@ -153,7 +172,12 @@ mod tests {
     use proptest::prelude::*;
 
     fn params(chunk_frames: usize, min_chunks: usize, max_chunks: usize) -> SvrdmParams {
-        SvrdmParams { chunk_frames, min_chunks, max_chunks, ..SvrdmParams::default() }
+        SvrdmParams {
+            chunk_frames,
+            min_chunks,
+            max_chunks,
+            ..SvrdmParams::default()
+        }
     }
 
     proptest! {
@@ -193,14 +217,19 @@ mod tests {
     #[test]
     fn a_row_that_is_no_number_is_forgotten() {
         let params = params(2, 1, 3);
-        let (mut chunks, mut segments) = (ChunkAssembly::new(&params, 1), SegmentAssembly::new(&params, 1));
+        let (mut chunks, mut segments) = (
+            ChunkAssembly::new(&params, 1),
+            SegmentAssembly::new(&params, 1),
+        );
         let mut finite = vec![];
         for n in 0..12 {
             let row = [if n == 4 { f32::NAN } else { 1.0 }];
             if !chunks.push(&row) {
                 continue;
             }
-            segments.push(chunks.chunk(), &mut |_, sum| finite.push(sum.product(0, 0).is_finite()));
+            segments.push(chunks.chunk(), &mut |_, sum| {
+                finite.push(sum.product(0, 0).is_finite())
+            });
         }
         assert_eq!(finite.iter().filter(|f| !**f).count(), 3 + 2 + 1);
         assert!(finite[finite.len() - 3..].iter().all(|f| *f));

@@ -18,7 +18,10 @@ pub struct Cell {
 
 impl Cell {
     /// A segment that is no class, or that is not there.
-    pub const NOTHING: Cell = Cell { class: ClassId(0), confidence: 0.0 };
+    pub const NOTHING: Cell = Cell {
+        class: ClassId(0),
+        confidence: 0.0,
+    };
 }
 
 /// A motion recognised, in chunks of the present stretch.
@@ -38,7 +41,12 @@ impl ChunkDetection {
     /// The same in frames, of which a chunk has `chunk_frames`.
     pub fn in_frames(&self, chunk_frames: i64) -> FrameDetection {
         let (start, stop) = (self.start * chunk_frames, self.stop * chunk_frames);
-        FrameDetection { class: self.class, start, stop, score: self.score }
+        FrameDetection {
+            class: self.class,
+            start,
+            stop,
+            score: self.score,
+        }
     }
 
     fn chunks(&self) -> i64 {
@@ -54,7 +62,10 @@ impl ChunkDetection {
     /// Whether this one wins where both overlap: the more certain, then the one that ended first, then the shorter.
     fn beats(&self, other: &ChunkDetection) -> bool {
         let order = other.score.total_cmp(&self.score);
-        order.then(self.stop.cmp(&other.stop)).then(self.chunks().cmp(&other.chunks())).is_lt()
+        order
+            .then(self.stop.cmp(&other.stop))
+            .then(self.chunks().cmp(&other.chunks()))
+            .is_lt()
     }
 }
 
@@ -114,7 +125,12 @@ impl Clone for SegmentTracking {
         // A derived copy of a vector has room for what it holds only, and pushing must not allocate.
         let mut tracked = Vec::with_capacity(self.tracked.capacity());
         tracked.extend_from_slice(&self.tracked);
-        Self { most: self.most.clone(), columns: self.columns.clone(), tracked, ..*self }
+        Self {
+            most: self.most.clone(),
+            columns: self.columns.clone(),
+            tracked,
+            ..*self
+        }
     }
 }
 
@@ -145,8 +161,8 @@ impl SegmentTracking {
         let most = (params.min_chunks..=params.max_chunks).map(|chunks| {
             let classes = (0..model.classes.len()).map(|class| ClassId(class as u16));
             // A hair more, lest the exponential's rounding makes a bound of what is none.
-            let bounds =
-                classes.map(|class| scoring.most(class, chunks * params.chunk_frames) * (1.0 + 1e-9));
+            let bounds = classes
+                .map(|class| scoring.most(class, chunks * params.chunk_frames) * (1.0 + 1e-9));
             bounds.fold(0.0, f64::max)
         });
         Self::new(params, most.collect())
@@ -154,7 +170,9 @@ impl SegmentTracking {
 
     /// Forgets the stream so far.
     pub fn reset(&mut self) {
-        self.columns.iter_mut().for_each(|column| column.fill(Cell::NOTHING));
+        self.columns
+            .iter_mut()
+            .for_each(|column| column.fill(Cell::NOTHING));
         self.chunks = 0;
         self.tracked.clear();
     }
@@ -198,11 +216,22 @@ impl SegmentTracking {
             }
             let Cell { class, confidence } = self.columns[1][length];
             let start = stop - (self.min_chunks + length) as i64;
-            let found = ChunkDetection { class, start, stop, score: confidence };
+            let found = ChunkDetection {
+                class,
+                start,
+                stop,
+                score: confidence,
+            };
             let at = self.tracked.partition_point(|t| t.found.beats(&found));
             // There is room: see `new`. Were there none, a push must still not allocate.
             if self.tracked.len() < self.tracked.capacity() {
-                self.tracked.insert(at, Tracked { found, state: State::Trails });
+                self.tracked.insert(
+                    at,
+                    Tracked {
+                        found,
+                        state: State::Trails,
+                    },
+                );
             }
         }
     }
@@ -213,14 +242,20 @@ impl SegmentTracking {
         let cell = self.columns[1][length].confidence;
         let at = |column: usize, offset: isize| {
             let length = length.checked_add_signed(offset);
-            length.and_then(|l| self.columns[column].get(l)).map_or(0.0, |c| c.confidence)
+            length
+                .and_then(|l| self.columns[column].get(l))
+                .map_or(0.0, |c| c.confidence)
         };
         // A chunk earlier or later at the same end is a length more or less; at the end moved by one, the start moves
         // the length by one to either side of that.
         let same = [-1, 1].map(|offset| at(1, offset));
         let before = [-2, -1, 0].map(|offset| at(0, offset));
         let after = [0, 1, 2].map(|offset| at(2, offset));
-        let highest = same.into_iter().chain(before).chain(after).fold(0.0, f64::max);
+        let highest = same
+            .into_iter()
+            .chain(before)
+            .chain(after)
+            .fold(0.0, f64::max);
         cell > highest
     }
 
@@ -255,7 +290,8 @@ impl SegmentTracking {
     /// Settles the best that wins over `found`, unless that is reported already.
     fn settle_winner(&mut self, found: &ChunkDetection) {
         let overlap = self.overlap;
-        let winner = |t: &&mut Tracked| t.state != State::Trails && t.found.overlaps(found, overlap);
+        let winner =
+            |t: &&mut Tracked| t.state != State::Trails && t.found.overlaps(found, overlap);
         if let Some(winner) = self.tracked.iter_mut().find(winner)
             && winner.state == State::Leads
         {
@@ -266,7 +302,10 @@ impl SegmentTracking {
     /// What else overlaps a maximum and wins over it; one that is reported stands, be it the lesser.
     fn rivals(&self, at: usize) -> Rivals {
         let found = &self.tracked[at].found;
-        let mut rivals = Rivals { led: false, open: false };
+        let mut rivals = Rivals {
+            led: false,
+            open: false,
+        };
         for (index, other) in self.tracked.iter().enumerate() {
             let counts = index < at || (index > at && !other.state.is_open());
             if counts && found.overlaps(&other.found, self.overlap) {
@@ -280,7 +319,12 @@ impl SegmentTracking {
     /// Gives out what is settled, the earliest first.
     fn report(&mut self, out: &mut impl FnMut(ChunkDetection)) {
         let settled = |t: &&mut Tracked| t.state == State::Settled;
-        while let Some(next) = self.tracked.iter_mut().filter(settled).min_by_key(|t| t.found.start) {
+        while let Some(next) = self
+            .tracked
+            .iter_mut()
+            .filter(settled)
+            .min_by_key(|t| t.found.start)
+        {
             next.state = State::Reported;
             out(next.found);
         }
@@ -291,7 +335,12 @@ impl SegmentTracking {
         (0..self.most.len()).any(|length| {
             let chunks = (self.min_chunks + length) as i64;
             let rival = |stop: i64, score: f64| {
-                let rival = ChunkDetection { class: found.class, start: stop - chunks, stop, score };
+                let rival = ChunkDetection {
+                    class: found.class,
+                    start: stop - chunks,
+                    stop,
+                    score,
+                };
                 rival.score > found.score && rival.overlaps(found, self.overlap)
             };
             // Of those still to come the next overlaps most.
@@ -303,7 +352,9 @@ impl SegmentTracking {
     /// Drops maxima that lost for good, and reported ones that nothing can overlap any more.
     fn drop_decided(&mut self, wait: i64) {
         let open = self.tracked.iter().filter(|t| t.state.is_open());
-        let first = open.map(|t| t.found.start).fold(self.chunks - self.max_chunks as i64, i64::min);
+        let first = open
+            .map(|t| t.found.start)
+            .fold(self.chunks - self.max_chunks as i64, i64::min);
         let mut at = 0;
         while at < self.tracked.len() {
             let Tracked { found, state } = self.tracked[at];
@@ -322,7 +373,10 @@ impl SegmentTracking {
     /// Whether one that overlaps it has been reported.
     fn lost(&self, found: &ChunkDetection) -> bool {
         let reported = |t: &&Tracked| t.state == State::Reported;
-        self.tracked.iter().filter(reported).any(|t| found.overlaps(&t.found, self.overlap))
+        self.tracked
+            .iter()
+            .filter(reported)
+            .any(|t| found.overlaps(&t.found, self.overlap))
     }
 }
 

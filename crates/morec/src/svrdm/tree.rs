@@ -98,17 +98,21 @@ impl Tree {
 
     /// The branches with their places among the nodes, the root first.
     pub fn branches(&self) -> impl Iterator<Item = (usize, &Branch)> {
-        self.nodes().iter().enumerate().filter_map(|(at, node)| match node {
-            Node::Branch(branch) => Some((at, &**branch)),
-            Node::Leaf(_) => None,
-        })
+        self.nodes()
+            .iter()
+            .enumerate()
+            .filter_map(|(at, node)| match node {
+                Node::Branch(branch) => Some((at, &**branch)),
+                Node::Leaf(_) => None,
+            })
     }
 
     /// `vector` (`n` values) in the plane of `branch`, one of this tree's (Eq. 3.40). O(exemplars · n), no
     /// allocation.
     pub fn reduce(&self, branch: &Branch, vector: &[f64]) -> [f64; 2] {
         debug_assert_eq!(vector.len(), self.dim());
-        let exemplars = [0, 1].map(|side| branch.exemplars[side].iter().map(|&row| self.exemplar(row)));
+        let exemplars =
+            [0, 1].map(|side| branch.exemplars[side].iter().map(|&row| self.exemplar(row)));
         reduce(exemplars, branch.factor, branch.sigma_full, vector)
     }
 
@@ -133,7 +137,12 @@ impl Branch {
 
 /// What two machines of these points and weights say at a place in the plane: `f_j = Σᵢ w_ji K(zᵢ, place)`. O(points),
 /// no allocation.
-pub fn outputs_at(points: &[[f64; 2]], weights: &[Vec<f64>; 2], sigma: f64, place: [f64; 2]) -> [f64; 2] {
+pub fn outputs_at(
+    points: &[[f64; 2]],
+    weights: &[Vec<f64>; 2],
+    sigma: f64,
+    place: [f64; 2],
+) -> [f64; 2] {
     let kernel = Gaussian::new(sigma);
     let mut outputs = [0.0; 2];
     for (i, point) in points.iter().enumerate() {
@@ -154,7 +163,9 @@ pub fn reduce<'a>(
 ) -> [f64; 2] {
     let kernel = Gaussian::new(sigma);
     let [first, second] = exemplars.map(|side| {
-        let (sum, count) = side.fold((0.0, 0), |(sum, count), x| (sum + kernel.of(x, vector), count + 1));
+        let (sum, count) = side.fold((0.0, 0), |(sum, count), x| {
+            (sum + kernel.of(x, vector), count + 1)
+        });
         sum / f64::from(count)
     });
     let [l11, l21, l22] = factor;

@@ -26,8 +26,15 @@ impl Directions {
     /// # Panics
     /// Unless `count ≤ dim ≤` [`MAX_DIM`]: a model's check holds both.
     pub fn new(count: usize, dim: usize) -> Self {
-        assert!(count <= dim && dim <= MAX_DIM, "{count} directions of {dim} values");
-        Self { dim, vectors: vec![0.0; count * dim], shares: vec![0.0; count] }
+        assert!(
+            count <= dim && dim <= MAX_DIM,
+            "{count} directions of {dim} values"
+        );
+        Self {
+            dim,
+            vectors: vec![0.0; count * dim],
+            shares: vec![0.0; count],
+        }
     }
 
     /// Number of directions, `k`.
@@ -69,7 +76,11 @@ impl Directions {
     /// Turns every vector to the side of its sign vector: `signs` are `k` vectors of `r` values, as Algorithm 5 finds
     /// them from the training samples.
     pub fn fix_signs(&mut self, signs: &[f64]) {
-        for (vector, sign) in self.vectors.chunks_exact_mut(self.dim).zip(signs.chunks_exact(self.dim)) {
+        for (vector, sign) in self
+            .vectors
+            .chunks_exact_mut(self.dim)
+            .zip(signs.chunks_exact(self.dim))
+        {
             let side: f64 = vector.iter().zip(sign).map(|(v, w)| v * w).sum();
             if side < 0.0 {
                 vector.iter_mut().for_each(|v| *v = -*v);
@@ -79,7 +90,11 @@ impl Directions {
 
     /// Writes the feature vector, `k · r` values (Eq. 3.37, or §5.3).
     pub fn feature(&self, scaling: Scaling, out: &mut [f64]) {
-        assert_eq!(out.len(), self.vectors.len(), "room for another feature vector");
+        assert_eq!(
+            out.len(),
+            self.vectors.len(),
+            "room for another feature vector"
+        );
         for (j, share) in self.shares.iter().enumerate() {
             let out = &mut out[j * self.dim..][..self.dim];
             for (value, v) in out.iter_mut().zip(self.vector(j)) {
@@ -103,10 +118,18 @@ impl Directions {
         let direction = self.vector(0);
         let level: f64 = match centring {
             Centring::Database => 0.0,
-            Centring::Segment => direction.iter().enumerate().map(|(i, v)| v * gram.mean(i)).sum(),
+            Centring::Segment => direction
+                .iter()
+                .enumerate()
+                .map(|(i, v)| v * gram.mean(i))
+                .sum(),
         };
         for (value, row) in out.iter_mut().zip(rows) {
-            let along: f64 = row.iter().zip(direction).map(|(a, v)| f64::from(*a) * v).sum();
+            let along: f64 = row
+                .iter()
+                .zip(direction)
+                .map(|(a, v)| f64::from(*a) * v)
+                .sum();
             *value = (along - level) as f32;
         }
     }
@@ -160,8 +183,12 @@ macro_rules! find_in {
             for i in dim..$size {
                 matrix[(i, i)] = -trace;
             }
-            let Some(found) = SymmetricEigen::try_new(matrix, f64::EPSILON, MAX_ROUNDS) else { return false };
-            directions.keep(found.eigenvalues.as_slice(), |j, i| found.eigenvectors[(i, j)])
+            let Some(found) = SymmetricEigen::try_new(matrix, f64::EPSILON, MAX_ROUNDS) else {
+                return false;
+            };
+            directions.keep(found.eigenvalues.as_slice(), |j, i| {
+                found.eigenvectors[(i, j)]
+            })
         }
     };
 }
@@ -180,10 +207,16 @@ mod tests {
 
     /// Rows that go mostly along the first coordinates, less along each after it.
     fn rows(dim: usize) -> impl Strategy<Value = Vec<f32>> {
-        prop::collection::vec(prop::collection::vec(-1.0f32..1.0, dim), dim + 2..dim + 30).prop_map(|rows| {
-            let scaled = |row: Vec<f32>| row.into_iter().enumerate().map(|(i, v)| v / (1.0 + 2.0 * i as f32));
-            rows.into_iter().flat_map(scaled).collect()
-        })
+        prop::collection::vec(prop::collection::vec(-1.0f32..1.0, dim), dim + 2..dim + 30).prop_map(
+            |rows| {
+                let scaled = |row: Vec<f32>| {
+                    row.into_iter()
+                        .enumerate()
+                        .map(|(i, v)| v / (1.0 + 2.0 * i as f32))
+                };
+                rows.into_iter().flat_map(scaled).collect()
+            },
+        )
     }
 
     fn any_rows() -> impl Strategy<Value = (usize, Vec<f32>)> {
@@ -248,9 +281,19 @@ mod tests {
         assert_eq!(out, [1.0, 0.5, 0.5, 0.0]);
         let rows = [[3.0f32, 0.0], [0.0, 1.0]];
         let mut profile = [0.0; 2];
-        directions.profile(rows.iter().map(|r| &r[..]), &gram, Centring::Database, &mut profile);
+        directions.profile(
+            rows.iter().map(|r| &r[..]),
+            &gram,
+            Centring::Database,
+            &mut profile,
+        );
         assert_eq!(profile, [3.0, 0.0]);
-        directions.profile(rows.iter().map(|r| &r[..]), &gram, Centring::Segment, &mut profile);
+        directions.profile(
+            rows.iter().map(|r| &r[..]),
+            &gram,
+            Centring::Segment,
+            &mut profile,
+        );
         assert_eq!(profile, [1.5, -1.5]);
     }
 

@@ -3,7 +3,9 @@
 use super::body::Body;
 use super::person::Person;
 use super::rng::Rng;
-use super::timeline::{CHANNELS, Controls, FOOT, HAND, HEAD, HIPS, HIPS_TURN, SPINE, Side, Timeline};
+use super::timeline::{
+    CHANNELS, Controls, FOOT, HAND, HEAD, HIPS, HIPS_TURN, SPINE, Side, Timeline,
+};
 
 /// A person on stage. Motions are scheduled from [`Actor::now_secs`] on and move it forward.
 #[derive(Debug, Clone)]
@@ -41,7 +43,8 @@ impl Actor {
         first[SPINE + 2] = person.lean_rad;
         first[HEAD + 2] = -person.lean_rad;
         for side in Side::BOTH {
-            first[HAND[side.index()]..HAND[side.index()] + 3].copy_from_slice(&rest_hands[side.index()]);
+            first[HAND[side.index()]..HAND[side.index()] + 3]
+                .copy_from_slice(&rest_hands[side.index()]);
         }
         let mut actor = Self {
             person: person.clone(),
@@ -98,7 +101,9 @@ impl Actor {
         let rest = self.rest_hands[side.index()];
         let mut to = [0.0; 3];
         for k in 0..3 {
-            to[k] = rest[k] + (target[k] - rest[k]) * (0.35 + 0.65 * self.size()) + 0.02 * self.rng.normal();
+            to[k] = rest[k]
+                + (target[k] - rest[k]) * (0.35 + 0.65 * self.size())
+                + 0.02 * self.rng.normal();
         }
         self.hand_exact(side, start_secs, secs, to);
     }
@@ -129,7 +134,12 @@ impl Actor {
     pub fn spine(&mut self, start_secs: f64, secs: f64, target: [f64; 3]) {
         let habit = [0.0, 0.0, self.person.lean_rad];
         for k in 0..3 {
-            self.timeline.to(SPINE + k, start_secs, secs, habit[k] + target[k] * self.size());
+            self.timeline.to(
+                SPINE + k,
+                start_secs,
+                secs,
+                habit[k] + target[k] * self.size(),
+            );
         }
     }
 
@@ -137,13 +147,15 @@ impl Actor {
     pub fn head(&mut self, start_secs: f64, secs: f64, target: [f64; 3]) {
         let habit = [0.0, 0.0, -self.person.lean_rad];
         for k in 0..3 {
-            self.timeline.to(HEAD + k, start_secs, secs, habit[k] + target[k]);
+            self.timeline
+                .to(HEAD + k, start_secs, secs, habit[k] + target[k]);
         }
     }
 
     /// Pitches the hips by `pitch_rad`.
     pub fn hips_pitch(&mut self, start_secs: f64, secs: f64, pitch_rad: f64) {
-        self.timeline.to(HIPS_TURN, start_secs, secs, pitch_rad * self.size());
+        self.timeline
+            .to(HIPS_TURN, start_secs, secs, pitch_rad * self.size());
     }
 
     /// Moves the hips to `left`, `up`, `forward` of where they are at rest, in leg lengths.
@@ -155,7 +167,14 @@ impl Actor {
     }
 
     /// Moves a foot to `out`, `up`, `forward` of where it stands at rest, in leg lengths, toes down by `pitch_rad`.
-    pub fn foot(&mut self, side: Side, start_secs: f64, secs: f64, target: [f64; 3], pitch_rad: f64) {
+    pub fn foot(
+        &mut self,
+        side: Side,
+        start_secs: f64,
+        secs: f64,
+        target: [f64; 3],
+        pitch_rad: f64,
+    ) {
         let leg = self.body.leg_m();
         let at = FOOT[side.index()];
         let base = self.stance_m() * side.sign();
@@ -185,7 +204,10 @@ impl Actor {
     /// The point `left` and `forward` metres from the place of rest, x and z in the world.
     pub fn point(&self, left: f64, forward: f64) -> [f64; 2] {
         let (sin, cos) = super::smooth::sin_cos(self.heading_rad);
-        [self.place[0] + left * cos + forward * sin, self.place[1] - left * sin + forward * cos]
+        [
+            self.place[0] + left * cos + forward * sin,
+            self.place[1] - left * sin + forward * cos,
+        ]
     }
 
     fn stance_m(&self) -> f64 {

@@ -86,24 +86,44 @@ impl Body {
     fn pose_trunk(&self, controls: &Controls, locals: &mut [Quat]) {
         let spine = &controls[SPINE..SPINE + 3];
         let head = &controls[HEAD..HEAD + 3];
-        locals[SPINE_JOINT] =
-            turned(&[0.45 * spine[0] + 0.3 * self.stoop_rad, 0.5 * spine[1], 0.5 * spine[2]]);
-        locals[CHEST] = turned(&[0.55 * spine[0] + 0.7 * self.stoop_rad, 0.5 * spine[1], 0.5 * spine[2]]);
+        locals[SPINE_JOINT] = turned(&[
+            0.45 * spine[0] + 0.3 * self.stoop_rad,
+            0.5 * spine[1],
+            0.5 * spine[2],
+        ]);
+        locals[CHEST] = turned(&[
+            0.55 * spine[0] + 0.7 * self.stoop_rad,
+            0.5 * spine[1],
+            0.5 * spine[2],
+        ]);
         // Whoever stoops still looks ahead.
         locals[NECK] = turned(&[0.4 * head[0], 0.5 * head[1], 0.5 * head[2]]);
-        locals[HEAD_JOINT] = turned(&[0.6 * head[0] - 0.9 * self.stoop_rad, 0.5 * head[1], 0.5 * head[2]]);
+        locals[HEAD_JOINT] = turned(&[
+            0.6 * head[0] - 0.9 * self.stoop_rad,
+            0.5 * head[1],
+            0.5 * head[2],
+        ]);
     }
 
     /// In coordinates with x outward, so that both arms are left arms; mirrored at the end.
     fn pose_arm(&self, controls: &Controls, side: Side, locals: &mut [Quat]) {
         let i = side.index();
-        let wanted = Vec3::new(controls[HAND[i]], controls[HAND[i] + 1], controls[HAND[i] + 2]);
+        let wanted = Vec3::new(
+            controls[HAND[i]],
+            controls[HAND[i] + 1],
+            controls[HAND[i] + 2],
+        );
         // The shoulder goes up with the hand: 0 hanging, about 0.4 rad overhead.
         let lift_rad = 0.1 * (1.0 + wanted.y.clamp(-1.0, 1.2)) * (1.0 + wanted.y.clamp(-1.0, 1.2));
         let (sin, cos) = sin_cos(lift_rad);
         let collar = self.offset(ARM[0]);
         let bone = self.offset(ARM[0] + 1);
-        let shoulder = collar + Vec3::new(bone.x * cos - bone.y * sin, bone.x * sin + bone.y * cos, bone.z);
+        let shoulder = collar
+            + Vec3::new(
+                bone.x * cos - bone.y * sin,
+                bone.x * sin + bone.y * cos,
+                bone.z,
+            );
         let length = self.arm[0] + self.arm[1];
         let target = self.outside_trunk(shoulder + wanted * length) - shoulder;
         let pole = elbow_side(&target, self.elbow_rad + controls[SWIVEL[i]]);
@@ -122,8 +142,8 @@ impl Body {
         locals[ARM[i]] = chest_from_collar;
         locals[ARM[i] + 1] = chest_from_collar.inverse() * chest_from_arm;
         locals[ARM[i] + 2] = chest_from_arm.inverse() * chest_from_forearm;
-        locals[ARM[i] + 3] =
-            turn(Axis::X, controls[WRIST[i] + 1]) * turn(Axis::Y, -side.sign() * controls[WRIST[i]]);
+        locals[ARM[i] + 3] = turn(Axis::X, controls[WRIST[i] + 1])
+            * turn(Axis::Y, -side.sign() * controls[WRIST[i]]);
     }
 
     /// `point` of the chest's frame, pushed out of an upright elliptic cylinder around the trunk.
@@ -151,7 +171,9 @@ impl Body {
             let ankle = feet[side.index()].ankle;
             let (dx, dz) = (hips.x + joint.x - ankle.x, hips.z + joint.z - ankle.z);
             let reach = 0.99 * length;
-            let rise = (reach * reach - dx * dx - dz * dz).max(0.04 * length * length).sqrt();
+            let rise = (reach * reach - dx * dx - dz * dz)
+                .max(0.04 * length * length)
+                .sqrt();
             hips.y = soft_min(hips.y, ankle.y + rise - joint.y, 0.025);
         }
         hips
@@ -165,14 +187,27 @@ impl Body {
         let ball = self.offset(LEG[side.index()] + 3);
         let ankle_flat = Vec3::new(c[0], self.ankle_height + c[1], c[2]);
         let ankle = ankle_flat + yaw * (ball - turn(Axis::X, heel_up_rad) * ball);
-        Foot { ankle, world_from_foot: yaw * turn(Axis::X, pitch), heel_up_rad, yaw }
+        Foot {
+            ankle,
+            world_from_foot: yaw * turn(Axis::X, pitch),
+            heel_up_rad,
+            yaw,
+        }
     }
 
-    fn pose_leg(&self, hips: &Vec3, world_from_hips: &Quat, foot: &Foot, side: Side, locals: &mut [Quat]) {
+    fn pose_leg(
+        &self,
+        hips: &Vec3,
+        world_from_hips: &Quat,
+        foot: &Foot,
+        side: Side,
+        locals: &mut [Quat],
+    ) {
         let first = LEG[side.index()];
         let target = foot.ankle - (hips + world_from_hips * self.offset(first));
         // Knees go where the feet point, a little outward; upward when the leg is raised in front.
-        let ahead = foot.yaw * Vec3::new(0.15 * side.sign(), 0.0, 1.0) + world_from_hips * Vec3::z();
+        let ahead =
+            foot.yaw * Vec3::new(0.15 * side.sign(), 0.0, 1.0) + world_from_hips * Vec3::z();
         let bend = limb::reach(self.leg, target, ahead + Vec3::y() * 0.6);
         let (rest, hinge) = (-Vec3::y(), Vec3::x());
         let world_from_thigh = limb::carry(&rest, &hinge, &bend.upper, &bend.hinge);
@@ -193,7 +228,9 @@ struct Foot {
 
 /// Yaw about Y, then pitch about X, then roll about Z.
 fn turned(pitch_yaw_roll: &[f64]) -> Quat {
-    turn(Axis::Y, pitch_yaw_roll[1]) * turn(Axis::X, pitch_yaw_roll[0]) * turn(Axis::Z, pitch_yaw_roll[2])
+    turn(Axis::Y, pitch_yaw_roll[1])
+        * turn(Axis::X, pitch_yaw_roll[0])
+        * turn(Axis::Z, pitch_yaw_roll[2])
 }
 
 /// Where an elbow points when the hand is at `target` from the shoulder (x outward): backward when the arm hangs,
@@ -201,7 +238,11 @@ fn turned(pitch_yaw_roll: &[f64]) -> Quat {
 fn elbow_side(target: &Vec3, swivel_rad: f64) -> Vec3 {
     let along = target / target.norm().max(1e-9);
     let down = (1.0 - along.y) / 2.0;
-    let pole = Vec3::new(0.45 + 0.25 * (1.0 - down), -(0.1 + 3.2 * down * (1.0 - down)), -(1.3 * down - 0.3));
+    let pole = Vec3::new(
+        0.45 + 0.25 * (1.0 - down),
+        -(0.1 + 3.2 * down * (1.0 - down)),
+        -(1.3 * down - 0.3),
+    );
     let side = limb::perpendicular(&pole, &along);
     let (sin, cos) = sin_cos(swivel_rad);
     side * cos + along.cross(&side) * sin
@@ -215,10 +256,18 @@ fn skeleton(person: &Person, arm: [f64; 2], leg: [f64; 2]) -> Skeleton {
         joint("Spine", Some(0), Vec3::new(0.0, 0.055 * h, 0.0)),
         joint("Chest", Some(SPINE_JOINT), Vec3::new(0.0, 0.115 * h, 0.0)),
         joint("Neck", Some(CHEST), Vec3::new(0.0, 0.135 * h, 0.0)),
-        end("Head", NECK, Vec3::new(0.0, 0.05 * h, 0.01 * h), Vec3::new(0.0, 0.11 * h, 0.02 * h)),
+        end(
+            "Head",
+            NECK,
+            Vec3::new(0.0, 0.05 * h, 0.01 * h),
+            Vec3::new(0.0, 0.11 * h, 0.02 * h),
+        ),
     ];
     for side in Side::BOTH {
-        let (s, name) = (side.sign(), if side == Side::Left { "Left" } else { "Right" });
+        let (s, name) = (
+            side.sign(),
+            if side == Side::Left { "Left" } else { "Right" },
+        );
         let at = ARM[side.index()];
         let hand = Vec3::new(s * arm[1], 0.0, 0.0);
         joints.push(joint(
@@ -226,26 +275,69 @@ fn skeleton(person: &Person, arm: [f64; 2], leg: [f64; 2]) -> Skeleton {
             Some(CHEST),
             Vec3::new(s * 0.018 * wide, 0.105 * h, 0.0),
         ));
-        joints.push(joint(&format!("{name}Arm"), Some(at), Vec3::new(s * 0.1 * wide, -0.005 * h, 0.0)));
-        joints.push(joint(&format!("{name}ForeArm"), Some(at + 1), Vec3::new(s * arm[0], 0.0, 0.0)));
-        joints.push(end(&format!("{name}Hand"), at + 2, hand, Vec3::new(s * 0.1 * h, 0.0, 0.0)));
+        joints.push(joint(
+            &format!("{name}Arm"),
+            Some(at),
+            Vec3::new(s * 0.1 * wide, -0.005 * h, 0.0),
+        ));
+        joints.push(joint(
+            &format!("{name}ForeArm"),
+            Some(at + 1),
+            Vec3::new(s * arm[0], 0.0, 0.0),
+        ));
+        joints.push(end(
+            &format!("{name}Hand"),
+            at + 2,
+            hand,
+            Vec3::new(s * 0.1 * h, 0.0, 0.0),
+        ));
     }
     for side in Side::BOTH {
-        let (s, name) = (side.sign(), if side == Side::Left { "Left" } else { "Right" });
+        let (s, name) = (
+            side.sign(),
+            if side == Side::Left { "Left" } else { "Right" },
+        );
         let at = LEG[side.index()];
         let toes = Vec3::new(0.0, -0.03 * h, 0.09 * h);
-        joints.push(joint(&format!("{name}UpLeg"), Some(0), Vec3::new(s * 0.052 * wide, 0.0, 0.0)));
-        joints.push(joint(&format!("{name}Leg"), Some(at), Vec3::new(0.0, -leg[0], 0.0)));
-        joints.push(joint(&format!("{name}Foot"), Some(at + 1), Vec3::new(0.0, -leg[1], 0.0)));
-        joints.push(end(&format!("{name}ToeBase"), at + 2, toes, Vec3::new(0.0, 0.0, 0.045 * h)));
+        joints.push(joint(
+            &format!("{name}UpLeg"),
+            Some(0),
+            Vec3::new(s * 0.052 * wide, 0.0, 0.0),
+        ));
+        joints.push(joint(
+            &format!("{name}Leg"),
+            Some(at),
+            Vec3::new(0.0, -leg[0], 0.0),
+        ));
+        joints.push(joint(
+            &format!("{name}Foot"),
+            Some(at + 1),
+            Vec3::new(0.0, -leg[1], 0.0),
+        ));
+        joints.push(end(
+            &format!("{name}ToeBase"),
+            at + 2,
+            toes,
+            Vec3::new(0.0, 0.0, 0.045 * h),
+        ));
     }
     Skeleton::new(joints).expect("parents are listed before their children")
 }
 
 fn joint(name: &str, parent: Option<usize>, offset: Vec3) -> Joint {
-    Joint { name: name.to_owned(), parent, offset, tip: None }
+    Joint {
+        name: name.to_owned(),
+        parent,
+        offset,
+        tip: None,
+    }
 }
 
 fn end(name: &str, parent: usize, offset: Vec3, tip: Vec3) -> Joint {
-    Joint { name: name.to_owned(), parent: Some(parent), offset, tip: Some(tip) }
+    Joint {
+        name: name.to_owned(),
+        parent: Some(parent),
+        offset,
+        tip: Some(tip),
+    }
 }

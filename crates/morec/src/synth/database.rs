@@ -68,13 +68,21 @@ fn take(person: &Person, mut rng: Rng, name: &str, spec: &DatabaseSpec) -> Take 
     for motion in plan {
         let (start_secs, stop_secs) = motion.perform(&mut actor);
         if motion.kind() == Kind::Gesture {
-            labels.push(Label { class: motion.name(), start_secs, stop_secs });
+            labels.push(Label {
+                class: motion.name(),
+                start_secs,
+                stop_secs,
+            });
         }
         let pause = actor.rng.range(0.5, 1.6);
         actor.wait(pause);
     }
     actor.wait(0.5);
-    Take { clip: film(actor, name, spec.rate_hz), labels, person: person.name.clone() }
+    Take {
+        clip: film(actor, name, spec.rate_hz),
+        labels,
+        person: person.name.clone(),
+    }
 }
 
 /// The gestures and the unknown motions of one stream in random order.

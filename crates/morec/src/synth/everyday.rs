@@ -53,14 +53,22 @@ pub fn everyday(seed: u64) -> Vec<Clip> {
             let rng = Rng::for_part(seed, (number * CONTENTS.len() + at) as u64);
             let mut actor = Actor::new(&person, rng);
             actor.wait(0.4);
-            let secs = if ["talk", "flail"].contains(content) { ARMS_SECS } else { CLIP_SECS };
+            let secs = if ["talk", "flail"].contains(content) {
+                ARMS_SECS
+            } else {
+                CLIP_SECS
+            };
             while actor.now_secs < secs {
                 actor.vary();
                 perform(&mut actor);
                 let pause = actor.rng.range(0.1, 0.8);
                 actor.wait(pause);
             }
-            clips.push(film(actor, &format!("everyday_{content}_{}", person.name), RATE_HZ));
+            clips.push(film(
+                actor,
+                &format!("everyday_{content}_{}", person.name),
+                RATE_HZ,
+            ));
         }
     }
     clips
@@ -80,7 +88,11 @@ pub fn stand(a: &mut Actor) {
 fn fold_hands(a: &mut Actor) {
     let (up, stay, down) = (a.secs(0.8), a.secs(1.5), a.secs(0.8));
     let (t, behind) = (a.now_secs, a.rng.chance(0.4));
-    let hold = if behind { [-0.2, -0.8, -0.3] } else { [-0.3, -0.72, 0.36] };
+    let hold = if behind {
+        [-0.2, -0.8, -0.3]
+    } else {
+        [-0.3, -0.72, 0.36]
+    };
     for side in Side::BOTH {
         a.hand(side, t, up, hold);
         a.rest_hand(side, t + up + stay, down);
@@ -107,7 +119,11 @@ pub fn walk(a: &mut Actor) {
 pub fn run(a: &mut Actor) {
     let count = 6 + a.rng.below(6);
     let curve = a.rng.range(-0.15, 0.15);
-    let gait = Gait { forward: a.rng.range(0.8, 1.3), arms: a.rng.range(0.2, 0.4), ..Gait::RUN };
+    let gait = Gait {
+        forward: a.rng.range(0.8, 1.3),
+        arms: a.rng.range(0.2, 0.4),
+        ..Gait::RUN
+    };
     let t = a.now_secs;
     a.spine(t, 0.6, [0.18, 0.0, 0.0]);
     gait::steps(a, gait, &vec![curve; count]);
@@ -141,18 +157,37 @@ pub fn reach(a: &mut Actor) {
     let target = direction(a, 0.6, 0.9);
     let outward = side.sign() * target[0];
     a.hand(side, t + 0.1, out, target);
-    let near = [a.rng.range(-0.2, 0.3), a.rng.range(-0.6, -0.3), a.rng.range(0.2, 0.5)];
+    let near = [
+        a.rng.range(-0.2, 0.3),
+        a.rng.range(-0.6, -0.3),
+        a.rng.range(0.2, 0.5),
+    ];
     a.hand(side.other(), t, out, near);
     let (ahead, low) = (a.rng.range(0.12, 0.4), (-target[1]).max(0.0));
-    a.foot(side, t, 0.7 * out, [0.2 * target[0].max(0.0), 0.0, ahead], 0.0);
+    a.foot(
+        side,
+        t,
+        0.7 * out,
+        [0.2 * target[0].max(0.0), 0.0, ahead],
+        0.0,
+    );
     let foot = FOOT[side.index()];
     a.timeline.pulse(foot + 1, t, 0.7 * out, 0.06);
     a.hips(t, out, [0.15 * outward, -0.04 - 0.25 * low, 0.5 * ahead]);
-    a.spine(t, out, [0.15 + 0.5 * low, -0.3 * side.sign() + 0.4 * outward, -0.2 * outward]);
+    a.spine(
+        t,
+        out,
+        [
+            0.15 + 0.5 * low,
+            -0.3 * side.sign() + 0.4 * outward,
+            -0.2 * outward,
+        ],
+    );
     a.head(t, 0.6 * out, [-0.4 * target[1], 0.5 * outward, 0.0]);
     let leave = t + out + hold;
     a.foot(side, leave + 0.2 * back, 0.7 * back, [0.0; 3], 0.0);
-    a.timeline.pulse(foot + 1, leave + 0.2 * back, 0.7 * back, 0.06);
+    a.timeline
+        .pulse(foot + 1, leave + 0.2 * back, 0.7 * back, 0.06);
     a.hips(leave, back, [0.0; 3]);
     for hand in Side::BOTH {
         a.rest_hand(hand, leave, back);
@@ -203,8 +238,10 @@ pub fn exercise(a: &mut Actor) {
         _ => {
             let (at, phase) = (HAND[side.index()], a.rng.range(0.0, 6.0));
             a.timeline.wave(at + 1, on, secs, (hz * 2.0, phase), 0.55);
-            a.timeline.wave(at + 2, on, secs, (hz * 2.0, phase + 1.57), 0.4);
-            a.timeline.wave(SPINE + 1, on, secs, (hz * 2.0, phase), 0.15);
+            a.timeline
+                .wave(at + 2, on, secs, (hz * 2.0, phase + 1.57), 0.4);
+            a.timeline
+                .wave(SPINE + 1, on, secs, (hz * 2.0, phase), 0.15);
         }
     }
     for hand in Side::BOTH {
@@ -216,14 +253,25 @@ pub fn exercise(a: &mut Actor) {
 /// Jumps up or forward.
 pub fn jump(a: &mut Actor) {
     let (height, arms) = (a.rng.range(0.12, 0.4), a.rng.range(0.0, 1.2));
-    let forward = if a.rng.chance(0.4) { a.rng.range(0.3, 0.9) } else { 0.0 };
+    let forward = if a.rng.chance(0.4) {
+        a.rng.range(0.3, 0.9)
+    } else {
+        0.0
+    };
     gait::jump(a, height, forward, arms);
 }
 
 /// Runs up to a ball and strikes it low with either foot, running on.
 pub fn football(a: &mut Actor) {
     let side = any_side(a);
-    gait::steps(a, Gait { forward: 0.8, ..Gait::RUN }, &[0.0, 0.0, 0.0]);
+    gait::steps(
+        a,
+        Gait {
+            forward: 0.8,
+            ..Gait::RUN
+        },
+        &[0.0, 0.0, 0.0],
+    );
     let (swing, through) = (a.secs(0.3), a.secs(0.28));
     let t = a.now_secs;
     let (aside, high) = (a.rng.range(-0.15, 0.1), a.rng.range(0.08, 0.2));
@@ -269,7 +317,13 @@ pub fn throw(a: &mut Actor) {
 pub fn turn_round(a: &mut Actor) {
     let count = 2 + a.rng.below(4);
     let each = any_side(a).sign() * a.rng.range(0.35, 0.8);
-    let gait = Gait { forward: 0.05, lift: 0.07, arms: 0.06, period_secs: 0.5, ..Gait::WALK };
+    let gait = Gait {
+        forward: 0.05,
+        lift: 0.07,
+        arms: 0.06,
+        period_secs: 0.5,
+        ..Gait::WALK
+    };
     gait::steps(a, gait, &vec![each; count]);
 }
 
@@ -278,10 +332,17 @@ pub fn turn_round(a: &mut Actor) {
 pub fn talk(a: &mut Actor) {
     let stop = a.now_secs + a.rng.range(3.0, 6.0);
     let (size, side) = (a.rng.range(0.4, 1.0), any_side(a));
-    let (joins, aside) = (a.rng.range(0.0, 0.35), a.rng.range(0.0, 0.08) * any_side(a).sign());
+    let (joins, aside) = (
+        a.rng.range(0.0, 0.35),
+        a.rng.range(0.0, 0.08) * any_side(a).sign(),
+    );
     a.hips(a.now_secs, 0.8, [aside, -0.01, 0.0]);
     if a.rng.chance(0.6) {
-        let hold = if a.rng.chance(0.5) { [0.12, -0.66, 0.1] } else { [-0.3, -0.6, 0.36] };
+        let hold = if a.rng.chance(0.5) {
+            [0.12, -0.66, 0.1]
+        } else {
+            [-0.3, -0.6, 0.36]
+        };
         a.hand(side.other(), a.now_secs, 0.9, hold);
     }
     while a.now_secs < stop {
@@ -291,7 +352,12 @@ pub fn talk(a: &mut Actor) {
                 let (mut to, late) = (direction(a, 0.4, 0.85), a.rng.range(0.0, 0.3));
                 to[1] = to[1].min(0.1);
                 let centre = [0.1, -0.4, 0.5];
-                a.hand(hand, t + late, secs, [0, 1, 2].map(|k| centre[k] + size * (to[k] - centre[k])));
+                a.hand(
+                    hand,
+                    t + late,
+                    secs,
+                    [0, 1, 2].map(|k| centre[k] + size * (to[k] - centre[k])),
+                );
                 let bend = a.rng.range(-0.5, 0.5);
                 a.timeline.to(WRIST[hand.index()], t, secs, bend);
             }
@@ -335,11 +401,18 @@ pub fn flail(a: &mut Actor) {
 /// Lifts one foot anywhere near and puts it down again, while the hips go over the other.
 fn lift_foot(a: &mut Actor, t: f64, secs: f64) {
     let side = any_side(a);
-    let at = [a.rng.range(-0.05, 0.35), a.rng.range(0.06, 0.35), a.rng.range(-0.4, 0.5)];
+    let at = [
+        a.rng.range(-0.05, 0.35),
+        a.rng.range(0.06, 0.35),
+        a.rng.range(-0.4, 0.5),
+    ];
     let half = secs.max(0.5) / 2.0;
     a.hips(t, half, [-0.09 * side.sign(), -0.03, 0.0]);
     let leg = a.body.leg_m();
-    let (from, to) = (a.stance(side), a.point((at[0] * leg) * side.sign(), at[2] * leg));
+    let (from, to) = (
+        a.stance(side),
+        a.point((at[0] * leg) * side.sign(), at[2] * leg),
+    );
     let foot = FOOT[side.index()];
     // Up and back by the same way: the foot stands where it stood.
     a.timeline.pulse(foot, t, 2.0 * half, to[0] - from[0]);
@@ -354,12 +427,29 @@ pub fn swing_arms(a: &mut Actor) {
     let (reach, across) = (a.rng.range(0.3, 0.8), a.rng.chance(0.35));
     let opposed = a.rng.chance(0.5);
     for side in Side::BOTH {
-        let phase = if opposed && side == Side::Left { std::f64::consts::PI } else { 0.0 };
+        let phase = if opposed && side == Side::Left {
+            std::f64::consts::PI
+        } else {
+            0.0
+        };
         let axis = if across { 0 } else { 2 };
-        a.timeline.wave(HAND[side.index()] + axis, t, secs, (hz, phase), reach * a.size());
-        a.timeline.wave(HAND[side.index()] + 1, t, secs, (2.0 * hz, 1.57), 0.08);
+        a.timeline.wave(
+            HAND[side.index()] + axis,
+            t,
+            secs,
+            (hz, phase),
+            reach * a.size(),
+        );
+        a.timeline
+            .wave(HAND[side.index()] + 1, t, secs, (2.0 * hz, 1.57), 0.08);
     }
-    a.timeline.wave(SPINE + 1, t, secs, (hz, 0.0), if opposed { 0.2 } else { 0.02 });
+    a.timeline.wave(
+        SPINE + 1,
+        t,
+        secs,
+        (hz, 0.0),
+        if opposed { 0.2 } else { 0.02 },
+    );
     a.timeline.wave(HIPS_TURN, t, secs, (hz, 0.6), 0.05);
     a.now_secs = t + secs;
 }
@@ -371,7 +461,8 @@ pub fn applaud(a: &mut Actor) {
     let on = t + 0.8 * up;
     a.hand(side.other(), t, up, [-0.3, high, 0.34]);
     a.hand(side, t + 0.1, up, [-0.25, high + 0.2, 0.46]);
-    a.timeline.wave(HAND[side.index()], on, secs, (hz, 0.0), 0.05);
+    a.timeline
+        .wave(HAND[side.index()], on, secs, (hz, 0.0), 0.05);
     a.timeline.wave(HEAD, t, secs, (0.5 * hz, 0.0), 0.03);
     for hand in Side::BOTH {
         a.rest_hand(hand, on + secs, 0.7);
@@ -396,7 +487,11 @@ fn finish(a: &mut Actor) {
 /// A point a hand can reach: a direction evenly drawn from all but straight behind, `near` to `far` away.
 fn direction(a: &mut Actor, near: f64, far: f64) -> [f64; 3] {
     loop {
-        let v = [a.rng.range(-1.0, 1.0), a.rng.range(-1.0, 1.0), a.rng.range(-1.0, 1.0)];
+        let v = [
+            a.rng.range(-1.0, 1.0),
+            a.rng.range(-1.0, 1.0),
+            a.rng.range(-1.0, 1.0),
+        ];
         let norm = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
         let unit = v.map(|x| x / norm.max(1e-6));
         // Hands cross the body's middle only in front, and go behind it only so far.

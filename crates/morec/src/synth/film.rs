@@ -36,7 +36,10 @@ pub fn film(mut actor: Actor, name: &str, rate_hz: f64) -> Clip {
         skeleton: actor.body.skeleton().clone(),
         rate_hz,
         rotations,
-        tracks: vec![JointTrack { joint: 0, positions }],
+        tracks: vec![JointTrack {
+            joint: 0,
+            positions,
+        }],
         frames,
         repaired: Vec::new(),
     }
@@ -73,15 +76,25 @@ fn sway(actor: &mut Actor) {
             let hz = octave * actor.rng.range(0.7, 1.4);
             let phase = actor.rng.range(0.0, std::f64::consts::TAU);
             let share = size * amplitude * actor.rng.range(0.3, 0.9);
-            actor.timeline.wave(channel, -1.0, secs + 2.0, (hz, phase), share);
+            actor
+                .timeline
+                .wave(channel, -1.0, secs + 2.0, (hz, phase), share);
         }
     }
     let breath = actor.rng.range(0.2, 0.32);
-    actor.timeline.wave(SPINE, -1.0, secs + 2.0, (breath, 0.0), 0.008);
+    actor
+        .timeline
+        .wave(SPINE, -1.0, secs + 2.0, (breath, 0.0), 0.008);
     for side in Side::BOTH {
         for k in 0..3 {
             let hz = actor.rng.range(6.0, 10.0);
-            actor.timeline.wave(HAND[side.index()] + k, -1.0, secs + 2.0, (hz, 0.0), 0.0008 * size);
+            actor.timeline.wave(
+                HAND[side.index()] + k,
+                -1.0,
+                secs + 2.0,
+                (hz, 0.0),
+                0.0008 * size,
+            );
         }
     }
 }
@@ -97,8 +110,15 @@ struct Noise {
 impl Noise {
     fn new(joints: usize, deviation_rad: f64, rate_hz: f64, mut rng: Rng) -> Self {
         let keep = NOISE_SECS / (NOISE_SECS + 1.0 / rate_hz);
-        let state = (0..joints).map(|_| [0; 3].map(|_| deviation_rad * rng.normal())).collect();
-        Self { keep, add: deviation_rad * (1.0 - keep * keep).sqrt(), state, rng }
+        let state = (0..joints)
+            .map(|_| [0; 3].map(|_| deviation_rad * rng.normal()))
+            .collect();
+        Self {
+            keep,
+            add: deviation_rad * (1.0 - keep * keep).sqrt(),
+            state,
+            rng,
+        }
     }
 
     fn step(&mut self) -> impl Iterator<Item = Quat> + '_ {
@@ -108,7 +128,12 @@ impl Noise {
                 return Quat::identity();
             }
             *error = error.map(|e| keep * e + add * rng.normal());
-            Quat::new_normalize(Quaternion::new(1.0, error[0] / 2.0, error[1] / 2.0, error[2] / 2.0))
+            Quat::new_normalize(Quaternion::new(
+                1.0,
+                error[0] / 2.0,
+                error[1] / 2.0,
+                error[2] / 2.0,
+            ))
         })
     }
 }

@@ -24,16 +24,33 @@ pub struct Gait {
 
 impl Gait {
     /// Walking at an average pace.
-    pub const WALK: Gait =
-        Gait { period_secs: 0.52, forward: 0.75, left: 0.0, swing: 0.82, lift: 0.1, arms: 0.26, bounce: 0.0 };
+    pub const WALK: Gait = Gait {
+        period_secs: 0.52,
+        forward: 0.75,
+        left: 0.0,
+        swing: 0.82,
+        lift: 0.1,
+        arms: 0.26,
+        bounce: 0.0,
+    };
     /// Running at an average pace.
-    pub const RUN: Gait =
-        Gait { period_secs: 0.36, forward: 1.1, left: 0.0, swing: 1.4, lift: 0.34, arms: 0.32, bounce: 0.06 };
+    pub const RUN: Gait = Gait {
+        period_secs: 0.36,
+        forward: 1.1,
+        left: 0.0,
+        swing: 1.4,
+        lift: 0.34,
+        arms: 0.32,
+        bounce: 0.06,
+    };
 }
 
 /// Takes one step for each entry of `turns_rad` (turning by it), then closes the feet.
 pub fn steps(a: &mut Actor, gait: Gait, turns_rad: &[f64]) {
-    let gait = Gait { period_secs: a.secs(gait.period_secs), ..gait };
+    let gait = Gait {
+        period_secs: a.secs(gait.period_secs),
+        ..gait
+    };
     // Sideways, the leading foot steps first; otherwise it is chance.
     let first = match gait.left {
         l if l > 0.0 => Side::Left,
@@ -69,7 +86,8 @@ fn step(a: &mut Actor, gait: &Gait, side: Side, turn_rad: f64, share: f64) {
     a.timeline.to(HIPS + 2, t, 2.0 * period, z);
     a.timeline.to(HIPS_TURN + 1, t, 2.0 * period, heading);
     if gait.bounce > 0.0 {
-        a.timeline.pulse(HIPS + 1, t - 0.2 * period, 0.9 * period, gait.bounce);
+        a.timeline
+            .pulse(HIPS + 1, t - 0.2 * period, 0.9 * period, gait.bounce);
     }
     swing_foot(a, gait, side, share);
     swing_arms(a, gait, side, share);
@@ -81,18 +99,32 @@ fn swing_foot(a: &mut Actor, gait: &Gait, side: Side, share: f64) {
     let (secs, at) = (gait.swing * period, FOOT[side.index()]);
     let leg = a.body.leg_m();
     let lead = (gait.swing / 2.0 - 0.5) * gait.forward * share * leg;
-    let base = a.body.hip_m() * a.person.stance * (1.0 - 0.3 * gait.forward.min(1.0) * share) * side.sign();
+    let base = a.body.hip_m()
+        * a.person.stance
+        * (1.0 - 0.3 * gait.forward.min(1.0) * share)
+        * side.sign();
     let [x, z] = a.point(base, lead);
     a.timeline.to(at, t, secs, x);
     a.timeline.to(at + 2, t, secs, z);
-    a.timeline.to(at + 3, t, secs, a.heading_rad() + 0.1 * side.sign());
+    a.timeline
+        .to(at + 3, t, secs, a.heading_rad() + 0.1 * side.sign());
     let lift = (gait.lift * leg * (0.4 + 0.6 * share)).max(0.02);
     // The heel comes up first, the toes last.
     a.timeline.to(at + 1, t, 0.5 * secs, lift);
     a.timeline.to(at + 1, t + 0.4 * secs, 0.6 * secs, 0.0);
     let push_rad = (0.35 + 0.4 * gait.lift) * (0.3 + 0.7 * share);
-    a.timeline.to(at + 4, t - 0.35 * period, 0.35 * period + 0.35 * secs, push_rad);
-    a.timeline.to(at + 4, t + 0.3 * secs, 0.6 * secs, -0.18 * share * gait.forward.min(1.0));
+    a.timeline.to(
+        at + 4,
+        t - 0.35 * period,
+        0.35 * period + 0.35 * secs,
+        push_rad,
+    );
+    a.timeline.to(
+        at + 4,
+        t + 0.3 * secs,
+        0.6 * secs,
+        -0.18 * share * gait.forward.min(1.0),
+    );
     a.timeline.to(at + 4, t + 0.9 * secs, 0.3 * period, 0.0);
 }
 
@@ -103,16 +135,29 @@ fn swing_arms(a: &mut Actor, gait: &Gait, side: Side, share: f64) {
     let bent = gait.swing > 1.0;
     for arm in Side::BOTH {
         let swing = if arm == side { -reach } else { reach };
-        let [out, up, ahead] = if bent { [0.1, -0.42, 0.2] } else { a.person.rest_hand };
+        let [out, up, ahead] = if bent {
+            [0.1, -0.42, 0.2]
+        } else {
+            a.person.rest_hand
+        };
         let at = HAND[arm.index()];
-        let up = up + if bent { 0.3 * swing.max(0.0) } else { 0.12 * reach };
-        for (k, value) in [out - 0.1 * swing.max(0.0), up, ahead + swing].into_iter().enumerate() {
+        let up = up
+            + if bent {
+                0.3 * swing.max(0.0)
+            } else {
+                0.12 * reach
+            };
+        for (k, value) in [out - 0.1 * swing.max(0.0), up, ahead + swing]
+            .into_iter()
+            .enumerate()
+        {
             a.timeline.to(at + k, t, 1.3 * period, value);
         }
     }
     let twist = 0.12 * share * gait.forward.min(1.0) * side.sign();
     a.timeline.to(SPINE + 1, t, 1.3 * period, twist * 1.4);
-    a.timeline.to(HIPS_TURN + 2, t, 1.2 * period, -0.03 * share * side.sign());
+    a.timeline
+        .to(HIPS_TURN + 2, t, 1.2 * period, -0.03 * share * side.sign());
 }
 
 /// Jumps on the spot or forward, `height` in leg lengths, hands thrown up by `arms`.
@@ -131,7 +176,13 @@ pub fn jump(a: &mut Actor, height: f64, forward: f64, arms: f64) {
     a.spine(up, flight * 0.7, [-0.05, 0.0, 0.0]);
     for side in Side::BOTH {
         a.hand(side, up, flight, [0.25, -0.5 + arms, 0.6 - 0.3 * arms]);
-        a.foot(side, up + 0.25 * flight, flight * 0.5, [0.0, height, 0.0], 0.55);
+        a.foot(
+            side,
+            up + 0.25 * flight,
+            flight * 0.5,
+            [0.0, height, 0.0],
+            0.55,
+        );
         a.foot(side, up + 0.75 * flight, flight * 0.5, [0.0, 0.0, 0.0], 0.0);
         a.rest_hand(side, up + flight, land + 0.2);
     }

@@ -15,8 +15,10 @@ pub fn wave(a: &mut Actor) {
     let (on, secs) = (t + 0.75 * raise, cycles / hz);
     let at = HAND[side.index()];
     a.timeline.wave(at, on, secs, (hz, 0.0), 0.24 * a.size());
-    a.timeline.wave(at + 1, on, secs, (2.0 * hz, 1.6), 0.05 * a.size());
-    a.timeline.wave(WRIST[side.index()], on, secs, (hz, 2.6), 0.35 * a.size());
+    a.timeline
+        .wave(at + 1, on, secs, (2.0 * hz, 1.6), 0.05 * a.size());
+    a.timeline
+        .wave(WRIST[side.index()], on, secs, (hz, 2.6), 0.35 * a.size());
     let back = on + secs - 0.1;
     a.rest_hand(side, back, lower);
     a.head(back, lower, [0.0; 3]);

@@ -24,11 +24,19 @@ pub fn reach(lengths: [f64; 2], target: Vec3, pole: Vec3) -> Bend {
     let distance = target.norm().max(1e-9);
     let along = target / distance;
     let side = perpendicular(&pole, &along);
-    let d = soft_max(soft_min(distance, 0.992 * whole, 0.015 * whole), 0.22 * whole, 0.04 * whole);
+    let d = soft_max(
+        soft_min(distance, 0.992 * whole, 0.015 * whole),
+        0.22 * whole,
+        0.04 * whole,
+    );
     let cos = ((a * a + d * d - b * b) / (2.0 * a * d)).clamp(-1.0, 1.0);
     let upper = along * cos + side * (1.0 - cos * cos).sqrt();
     let lower = (along * d - upper * a) / b;
-    Bend { upper, lower: lower / lower.norm(), hinge: side.cross(&along) }
+    Bend {
+        upper,
+        lower: lower / lower.norm(),
+        hinge: side.cross(&along),
+    }
 }
 
 /// The unit vector nearest to `v` at right angles to `along`; some such vector when there is no nearest.
@@ -38,7 +46,11 @@ pub fn perpendicular(v: &Vec3, along: &Vec3) -> Vec3 {
     if length > 1e-9 {
         return rest / length;
     }
-    let other = if along.x.abs() < 0.7 { Vec3::x() } else { Vec3::y() };
+    let other = if along.x.abs() < 0.7 {
+        Vec3::x()
+    } else {
+        Vec3::y()
+    };
     perpendicular(&other, along)
 }
 

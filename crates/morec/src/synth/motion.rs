@@ -52,7 +52,13 @@ const UNKNOWN: [(&str, Perform); 10] = [
 /// All motions: gestures, unknown ones, everyday ones.
 pub fn all() -> impl Iterator<Item = Motion> {
     let everyday = everyday::CONTENTS;
-    let of = |kind| move |(name, perform)| Motion { name, kind, perform };
+    let of = |kind| {
+        move |(name, perform)| Motion {
+            name,
+            kind,
+            perform,
+        }
+    };
     (GESTURES.into_iter().map(of(Kind::Gesture)))
         .chain(UNKNOWN.into_iter().map(of(Kind::Unknown)))
         .chain(everyday.into_iter().map(of(Kind::Everyday)))

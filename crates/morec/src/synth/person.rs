@@ -38,8 +38,9 @@ pub struct Person {
     pub noise_rad: f64,
 }
 
-const NAMES: [&str; 12] =
-    ["ada", "ben", "cleo", "dan", "eva", "finn", "gus", "hana", "ivo", "jo", "kim", "lea"];
+const NAMES: [&str; 12] = [
+    "ada", "ben", "cleo", "dan", "eva", "finn", "gus", "hana", "ivo", "jo", "kim", "lea",
+];
 
 impl Person {
     /// Of average build and habits, without sway or noise.
@@ -69,19 +70,31 @@ impl Person {
         let round = number / NAMES.len();
         let name = NAMES[number % NAMES.len()];
         Self {
-            name: if round == 0 { name.to_owned() } else { format!("{name}{}", round + 1) },
+            name: if round == 0 {
+                name.to_owned()
+            } else {
+                format!("{name}{}", round + 1)
+            },
             height_m: (1.70 + 0.10 * rng.normal()).clamp(1.45, 1.95),
             leg_ratio: 1.0 + 0.025 * rng.normal(),
             arm_ratio: 1.0 + 0.03 * rng.normal(),
             width_ratio: 1.0 + 0.06 * rng.normal(),
             stoop_rad: rng.range(0.0, 0.22),
             lean_rad: 0.02 * rng.normal(),
-            rest_hand: [rng.range(0.06, 0.24), rng.range(-0.975, -0.925), rng.range(0.02, 0.17)],
+            rest_hand: [
+                rng.range(0.06, 0.24),
+                rng.range(-0.975, -0.925),
+                rng.range(0.02, 0.17),
+            ],
             elbow_rad: rng.range(-0.3, 0.2),
             stance: rng.range(0.9, 1.6),
             tempo: rng.range(0.8, 1.22),
             amplitude: rng.range(0.86, 1.08),
-            hand: if rng.chance(0.125) { Side::Left } else { Side::Right },
+            hand: if rng.chance(0.125) {
+                Side::Left
+            } else {
+                Side::Right
+            },
             sway: rng.range(0.5, 1.6),
             noise_rad: rng.range(0.001, 0.006),
         }
@@ -89,7 +102,11 @@ impl Person {
 
     /// The same person recorded without sway or noise: every channel is then an exactly smooth curve.
     pub fn noiseless(self) -> Self {
-        Self { sway: 0.0, noise_rad: 0.0, ..self }
+        Self {
+            sway: 0.0,
+            noise_rad: 0.0,
+            ..self
+        }
     }
 }
 
@@ -103,7 +120,11 @@ mod tests {
         for (n, person) in people.iter().enumerate() {
             assert_eq!(*person, Person::draw(5, n));
             assert!((1.45..=1.95).contains(&person.height_m));
-            assert!(people[..n].iter().all(|p| p.name != person.name && p.height_m != person.height_m));
+            assert!(
+                people[..n]
+                    .iter()
+                    .all(|p| p.name != person.name && p.height_m != person.height_m)
+            );
         }
         assert_ne!(Person::draw(5, 0), Person::draw(6, 0));
     }

@@ -44,7 +44,11 @@ enum Line {
 impl Script {
     /// An empty script for `person`; `seed` decides how the motions vary.
     pub fn new(seed: u64, person: Person) -> Self {
-        Self { seed, person, lines: Vec::new() }
+        Self {
+            seed,
+            person,
+            lines: Vec::new(),
+        }
     }
 
     /// Stands for `secs`.
@@ -87,24 +91,37 @@ impl Script {
                     actor.person.tempo = usual * speed.clamp(0.2, 5.0);
                     let (start_secs, stop_secs) = motion.perform(&mut actor);
                     actor.person.tempo = usual;
-                    labels.push(Label { class: motion.name(), start_secs, stop_secs });
+                    labels.push(Label {
+                        class: motion.name(),
+                        start_secs,
+                        stop_secs,
+                    });
                 }
             }
         }
         let person = std::mem::take(&mut person.name);
-        Ok(Take { clip: film(actor, name, rate_hz), labels, person })
+        Ok(Take {
+            clip: film(actor, name, rate_hz),
+            labels,
+            person,
+        })
     }
 }
 
 fn unknown(at: usize, found: &str) -> UnknownMotion {
     let expected: Vec<&str> = all().map(|m| m.name()).collect();
-    UnknownMotion { line: at + 1, expected: expected.join(", "), found: found.to_owned() }
+    UnknownMotion {
+        line: at + 1,
+        expected: expected.join(", "),
+        found: found.to_owned(),
+    }
 }
 
 impl Take {
     /// The take with only the labels of `kind`: what a recogniser trained on those classes should find.
     pub fn keep(mut self, kind: Kind) -> Take {
-        self.labels.retain(|l| Motion::named(l.class).is_some_and(|m| m.kind() == kind));
+        self.labels
+            .retain(|l| Motion::named(l.class).is_some_and(|m| m.kind() == kind));
         self
     }
 }

@@ -88,7 +88,10 @@ mod tests {
 
     #[test]
     fn a_reach_starts_and_ends_at_rest() {
-        assert_eq!((min_jerk(-1.0), min_jerk(0.0), min_jerk(1.0), min_jerk(2.0)), (0.0, 0.0, 1.0, 1.0));
+        assert_eq!(
+            (min_jerk(-1.0), min_jerk(0.0), min_jerk(1.0), min_jerk(2.0)),
+            (0.0, 0.0, 1.0, 1.0)
+        );
         assert!(min_jerk(1e-3) < 1e-8 && min_jerk(1.0 - 1e-3) > 1.0 - 1e-7);
     }
 }

@@ -10,11 +10,19 @@ use crate::math::Vec3;
 fn every_motion(people: usize, rate_hz: f64) -> Vec<Take> {
     let film = |n: usize, m: Motion| {
         let person = Person::draw(11, n);
-        let script =
-            Script::new(n as u64, person).rest(0.3).play(m.name()).rest(0.5).play(m.name()).rest(0.3);
-        script.film(m.name(), rate_hz).expect("a motion of its own list")
+        let script = Script::new(n as u64, person)
+            .rest(0.3)
+            .play(m.name())
+            .rest(0.5)
+            .play(m.name())
+            .rest(0.3);
+        script
+            .film(m.name(), rate_hz)
+            .expect("a motion of its own list")
     };
-    (0..people).flat_map(|n| motions().map(move |m| film(n, m))).collect()
+    (0..people)
+        .flat_map(|n| motions().map(move |m| film(n, m)))
+        .collect()
 }
 
 /// FNV-1a over the bits of all rotations and positions.
@@ -22,7 +30,11 @@ fn hash<'a>(clips: impl Iterator<Item = &'a Clip>) -> u64 {
     let mut hash = 0xcbf2_9ce4_8422_2325u64;
     for clip in clips {
         let rotations = clip.rotations.iter().flat_map(|q| q.coords.iter().copied());
-        let positions = clip.tracks.iter().flat_map(|t| t.positions.iter()).flat_map(|p| p.iter().copied());
+        let positions = clip
+            .tracks
+            .iter()
+            .flat_map(|t| t.positions.iter())
+            .flat_map(|p| p.iter().copied());
         for value in rotations.chain(positions) {
             hash = (hash ^ value.to_bits()).wrapping_mul(0x0000_0100_0000_01b3);
         }
@@ -31,15 +43,25 @@ fn hash<'a>(clips: impl Iterator<Item = &'a Clip>) -> u64 {
 }
 
 fn joint(clip: &Clip, name: &str) -> usize {
-    clip.skeleton.find(name).expect("a joint of the synthetic skeleton")
+    clip.skeleton
+        .find(name)
+        .expect("a joint of the synthetic skeleton")
 }
 
 #[test]
 fn a_seed_gives_the_same_clips_on_every_platform() {
-    let spec = DatabaseSpec { people: 2, repetitions: 1, rate_hz: 30.0, ..DatabaseSpec::default() };
+    let spec = DatabaseSpec {
+        people: 2,
+        repetitions: 1,
+        rate_hz: 30.0,
+        ..DatabaseSpec::default()
+    };
     let takes = |seed| database(seed, &spec);
     assert_eq!(takes(1), takes(1));
-    assert_ne!(hash(takes(1).iter().map(|t| &t.clip)), hash(takes(2).iter().map(|t| &t.clip)));
+    assert_ne!(
+        hash(takes(1).iter().map(|t| &t.clip)),
+        hash(takes(2).iter().map(|t| &t.clip))
+    );
     // Changes when a motion is changed on purpose; never from one machine to the next.
     assert_eq!(hash(takes(1).iter().map(|t| &t.clip)), DATABASE_1);
 }
@@ -55,7 +77,11 @@ fn joints_turn_no_faster_than_bodies_can() {
             for (at, q) in clip.rotations.iter().enumerate().skip(n) {
                 let speed = q.angle_to(&clip.rotations[at - n]) * rate_hz;
                 let (frame, name) = (at / n, &clip.skeleton.joints()[at % n].name);
-                assert!(speed < 25.0, "{}: {name} turns at {speed:.1} rad/s in frame {frame}", clip.name);
+                assert!(
+                    speed < 25.0,
+                    "{}: {name} turns at {speed:.1} rad/s in frame {frame}",
+                    clip.name
+                );
             }
         }
     }
@@ -66,7 +92,11 @@ fn without_noise_every_curve_is_smooth() {
     let rate_hz = 480.0;
     for m in motions() {
         let person = Person::draw(3, 1).noiseless();
-        let take = Script::new(9, person).rest(0.2).play(m.name()).film(m.name(), rate_hz).expect("known");
+        let take = Script::new(9, person)
+            .rest(0.2)
+            .play(m.name())
+            .film(m.name(), rate_hz)
+            .expect("known");
         let clip = &take.clip;
         let hands = [joint(clip, "LeftHand"), joint(clip, "RightHand"), 0];
         let poses: Vec<WorldPose> = (0..clip.frames).map(|f| WorldPose::of(clip, f)).collect();
@@ -75,7 +105,11 @@ fn without_noise_every_curve_is_smooth() {
                 let [p, q, r] = [0, 1, 2].map(|k| three[k].positions[j]);
                 let acceleration = (p - q * 2.0 + r).norm() * rate_hz * rate_hz;
                 // Noise of a thousandth of a radian would give 300 m/s² here, a step of velocity thousands.
-                assert!(acceleration < 160.0, "{}: joint {j}, frame {f}: {acceleration:.0} m/s²", clip.name);
+                assert!(
+                    acceleration < 160.0,
+                    "{}: joint {j}, frame {f}: {acceleration:.0} m/s²",
+                    clip.name
+                );
             }
         }
     }
@@ -84,8 +118,14 @@ fn without_noise_every_curve_is_smooth() {
 #[test]
 fn noise_is_there_unless_it_is_turned_off() {
     let still = |person: Person| {
-        let clip = Script::new(1, person).rest(1.0).film("rest", 60.0).expect("no motion to miss").clip;
-        clip.rotations.chunks(clip.skeleton.len()).all(|row| row == clip.frame_rotations(0))
+        let clip = Script::new(1, person)
+            .rest(1.0)
+            .film("rest", 60.0)
+            .expect("no motion to miss")
+            .clip;
+        clip.rotations
+            .chunks(clip.skeleton.len())
+            .all(|row| row == clip.frame_rotations(0))
     };
     assert!(!still(Person::draw(1, 0)));
     assert!(still(Person::draw(1, 0).noiseless()));
@@ -96,7 +136,11 @@ fn bones_keep_their_lengths_and_feet_keep_to_the_ground() {
     for take in every_motion(2, 30.0) {
         let clip = &take.clip;
         let bone = |name: &str| clip.skeleton.joints()[joint(clip, name)].offset.norm();
-        let pairs = [("LeftArm", "LeftForeArm"), ("LeftForeArm", "LeftHand"), ("RightUpLeg", "RightLeg")];
+        let pairs = [
+            ("LeftArm", "LeftForeArm"),
+            ("LeftForeArm", "LeftHand"),
+            ("RightUpLeg", "RightLeg"),
+        ];
         for f in 0..clip.frames {
             let pose = WorldPose::of(clip, f);
             let at = |name: &str| pose.positions[joint(clip, name)];
@@ -104,9 +148,18 @@ fn bones_keep_their_lengths_and_feet_keep_to_the_ground() {
                 assert!(((at(b) - at(a)).norm() - bone(b)).abs() < 1e-9);
             }
             let lowest = at("LeftToeBase").y.min(at("RightToeBase").y);
-            let jumps = ["jump", "run", "jog_on_the_spot", "football"].contains(&clip.name.as_str());
-            assert!(lowest > -0.04, "{}: a foot is {lowest:.3} m under the ground, frame {f}", clip.name);
-            assert!(lowest < 0.07 || jumps, "{}: both feet {lowest:.3} m up in frame {f}", clip.name);
+            let jumps =
+                ["jump", "run", "jog_on_the_spot", "football"].contains(&clip.name.as_str());
+            assert!(
+                lowest > -0.04,
+                "{}: a foot is {lowest:.3} m under the ground, frame {f}",
+                clip.name
+            );
+            assert!(
+                lowest < 0.07 || jumps,
+                "{}: both feet {lowest:.3} m up in frame {f}",
+                clip.name
+            );
         }
     }
 }
@@ -115,14 +168,20 @@ fn bones_keep_their_lengths_and_feet_keep_to_the_ground() {
 fn a_planted_foot_stays_where_it_is() {
     // While standing and gesticulating, no ankle moves by more than noise and sway let it.
     for name in ["talk", "wave", "bow", "circle", "phone"] {
-        let script = Script::new(4, Person::draw(8, 2)).rest(0.3).play(name).rest(0.3);
+        let script = Script::new(4, Person::draw(8, 2))
+            .rest(0.3)
+            .play(name)
+            .rest(0.3);
         let clip = script.film(name, 60.0).expect("known").clip;
         for foot in ["LeftFoot", "RightFoot"] {
             let j = joint(&clip, foot);
             let first = WorldPose::of(&clip, 0).positions[j];
             for f in 0..clip.frames {
                 let moved = (WorldPose::of(&clip, f).positions[j] - first).norm();
-                assert!(moved < 0.05, "{name}: {foot} slid {moved:.3} m by frame {f}");
+                assert!(
+                    moved < 0.05,
+                    "{name}: {foot} slid {moved:.3} m by frame {f}"
+                );
             }
         }
     }
@@ -135,11 +194,18 @@ fn knees_and_elbows_bend_their_own_way() {
         for f in 0..clip.frames {
             let pose = WorldPose::of(clip, f);
             let bends = [("LeftLeg", Vec3::x(), 1.0), ("RightLeg", Vec3::x(), 1.0)];
-            let elbows = [("LeftForeArm", Vec3::y(), -1.0), ("RightForeArm", Vec3::y(), 1.0)];
+            let elbows = [
+                ("LeftForeArm", Vec3::y(), -1.0),
+                ("RightForeArm", Vec3::y(), 1.0),
+            ];
             for (name, hinge, sign) in bends.into_iter().chain(elbows) {
                 let local = clip.frame_rotations(f)[joint(clip, name)];
                 let bend = local.scaled_axis().dot(&hinge) * sign;
-                assert!(bend > -0.03, "{}: {name} is bent by {bend:.2} rad in frame {f}", clip.name);
+                assert!(
+                    bend > -0.03,
+                    "{}: {name} is bent by {bend:.2} rad in frame {f}",
+                    clip.name
+                );
             }
             assert!(pose.positions[joint(clip, "Head")].y > 0.3);
         }
@@ -151,41 +217,79 @@ fn walkers_walk_ahead() {
     for name in ["walk", "run"] {
         let script = Script::new(5, Person::draw(2, 3)).rest(0.2).play(name);
         let clip = script.film(name, 60.0).expect("known").clip;
-        let hips: Vec<Vec3> = (0..clip.frames).map(|f| WorldPose::of(&clip, f).positions[0]).collect();
+        let hips: Vec<Vec3> = (0..clip.frames)
+            .map(|f| WorldPose::of(&clip, f).positions[0])
+            .collect();
         let ahead: f64 = (1..clip.frames)
-            .map(|f| (hips[f] - hips[f - 1]).dot(&(WorldPose::of(&clip, f).rotations[0] * Vec3::z())))
+            .map(|f| {
+                (hips[f] - hips[f - 1]).dot(&(WorldPose::of(&clip, f).rotations[0] * Vec3::z()))
+            })
             .sum();
         let way: f64 = hips.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
-        assert!(ahead > 2.0 && ahead > 0.85 * way, "{name}: {ahead:.2} m ahead of {way:.2} m");
+        assert!(
+            ahead > 2.0 && ahead > 0.85 * way,
+            "{name}: {ahead:.2} m ahead of {way:.2} m"
+        );
     }
 }
 
 #[test]
 fn labels_are_in_range_in_order_and_each_class_comes_as_often_as_asked() {
-    let spec = DatabaseSpec { people: 3, streams: 2, repetitions: 2, rate_hz: 30.0, ..Default::default() };
+    let spec = DatabaseSpec {
+        people: 3,
+        streams: 2,
+        repetitions: 2,
+        rate_hz: 30.0,
+        ..Default::default()
+    };
     let takes = database(4, &spec);
     assert_eq!(takes.len(), 6);
     for take in &takes {
         let spans: Vec<Span> = take.labels.iter().map(|l| l.span(spec.rate_hz)).collect();
-        assert!(spans.iter().all(|s| s.start < s.end && s.end <= take.clip.frames));
+        assert!(
+            spans
+                .iter()
+                .all(|s| s.start < s.end && s.end <= take.clip.frames)
+        );
         assert!(spans.windows(2).all(|w| w[0].end <= w[1].start));
         for class in &spec.classes {
-            assert_eq!(take.labels.iter().filter(|l| l.class == *class).count(), 2, "{class}");
+            assert_eq!(
+                take.labels.iter().filter(|l| l.class == *class).count(),
+                2,
+                "{class}"
+            );
         }
     }
     let everything: f64 = takes.iter().map(|t| t.clip.duration_secs()).sum();
-    let labelled: f64 = takes.iter().flat_map(|t| &t.labels).map(|l| l.stop_secs - l.start_secs).sum();
-    assert!((0.2..0.7).contains(&(labelled / everything)), "labelled share {}", labelled / everything);
+    let labelled: f64 = takes
+        .iter()
+        .flat_map(|t| &t.labels)
+        .map(|l| l.stop_secs - l.start_secs)
+        .sum();
+    assert!(
+        (0.2..0.7).contains(&(labelled / everything)),
+        "labelled share {}",
+        labelled / everything
+    );
 }
 
 #[test]
 fn the_frame_rate_changes_the_sampling_only() {
-    let script = Script::new(2, Person::draw(1, 4).noiseless()).rest(0.5).play("wave").rest(0.5);
+    let script = Script::new(2, Person::draw(1, 4).noiseless())
+        .rest(0.5)
+        .play("wave")
+        .rest(0.5);
     let [slow, fast] = [30.0, 120.0].map(|rate| script.film("wave", rate).expect("known"));
     assert_eq!(slow.labels, fast.labels);
     for f in 0..slow.clip.frames {
-        let (a, b) = (slow.clip.frame_rotations(f), fast.clip.frame_rotations(4 * f));
-        assert!(a.iter().zip(b).all(|(a, b)| a.angle_to(b) < 1e-6), "frame {f}");
+        let (a, b) = (
+            slow.clip.frame_rotations(f),
+            fast.clip.frame_rotations(4 * f),
+        );
+        assert!(
+            a.iter().zip(b).all(|(a, b)| a.angle_to(b) < 1e-6),
+            "frame {f}"
+        );
     }
 }
 
@@ -199,12 +303,22 @@ fn a_script_names_what_it_does_not_know() {
 
 #[test]
 fn scripts_keep_their_times() {
-    let script = Script::new(1, Person::draw(1, 0)).rest_until(2.0).play("bow").rest_until(8.0).play("walk");
+    let script = Script::new(1, Person::draw(1, 0))
+        .rest_until(2.0)
+        .play("bow")
+        .rest_until(8.0)
+        .play("walk");
     let take = script.film("times", 60.0).expect("known");
     let starts: Vec<f64> = take.labels.iter().map(|l| l.start_secs).collect();
-    assert!((starts[0] - 2.0).abs() < 0.1 && (starts[1] - 8.0).abs() < 0.1, "{starts:?}");
+    assert!(
+        (starts[0] - 2.0).abs() < 0.1 && (starts[1] - 8.0).abs() < 0.1,
+        "{starts:?}"
+    );
     let kept = take.keep(Kind::Gesture);
-    assert_eq!(kept.labels.iter().map(|l| l.class).collect::<Vec<_>>(), ["bow"]);
+    assert_eq!(
+        kept.labels.iter().map(|l| l.class).collect::<Vec<_>>(),
+        ["bow"]
+    );
 }
 
 #[test]
@@ -213,11 +327,18 @@ fn everyday_motion_goes_everywhere_but_shows_no_class() {
     let secs: f64 = clips.iter().map(Clip::duration_secs).sum();
     assert!((300.0..1500.0).contains(&secs), "{secs:.0} s");
     for class in motions_of(Kind::Gesture) {
-        assert!(clips.iter().all(|c| !c.name.contains(class.name())), "{}", class.name());
+        assert!(
+            clips.iter().all(|c| !c.name.contains(class.name())),
+            "{}",
+            class.name()
+        );
     }
     for (side, sign) in [("Left", 1.0), ("Right", -1.0)] {
         let share = occupied_directions(&clips, side, sign);
-        println!("{side} upper arm: {:.0} % of the reachable directions visited", 100.0 * share);
+        println!(
+            "{side} upper arm: {:.0} % of the reachable directions visited",
+            100.0 * share
+        );
         assert!(share > 0.85, "{side}: {share:.2}");
     }
 }
@@ -239,7 +360,11 @@ fn occupied_directions(clips: &[Clip], side: &str, sign: f64) -> f64 {
         let v = Vec3::new(cos * (1.0 - y * y).sqrt(), y, sin * (1.0 - y * y).sqrt());
         *whole.entry(cell(&v)).or_insert(true) &= reachable(&v);
     }
-    let mut cells: BTreeMap<_, _> = whole.into_iter().filter(|c| c.1).map(|c| (c.0, false)).collect();
+    let mut cells: BTreeMap<_, _> = whole
+        .into_iter()
+        .filter(|c| c.1)
+        .map(|c| (c.0, false))
+        .collect();
     for clip in clips {
         let (chest, arm, elbow) = (
             joint(clip, "Chest"),
@@ -248,8 +373,8 @@ fn occupied_directions(clips: &[Clip], side: &str, sign: f64) -> f64 {
         );
         for f in (0..clip.frames).step_by(3) {
             let pose = WorldPose::of(clip, f);
-            let v =
-                pose.rotations[chest].inverse() * (pose.positions[elbow] - pose.positions[arm]).normalize();
+            let v = pose.rotations[chest].inverse()
+                * (pose.positions[elbow] - pose.positions[arm]).normalize();
             if let Some(seen) = cells.get_mut(&cell(&Vec3::new(v.x * sign, v.y, v.z))) {
                 *seen = true;
             }

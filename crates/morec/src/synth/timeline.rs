@@ -97,7 +97,14 @@ pub struct Timeline {
 impl Timeline {
     /// Every channel holds its value in `first` until it is moved.
     pub fn new(first: &Controls) -> Self {
-        let tracks = first.iter().map(|&v| Track { first: v, goal: v, ..Track::default() }).collect();
+        let tracks = first
+            .iter()
+            .map(|&v| Track {
+                first: v,
+                goal: v,
+                ..Track::default()
+            })
+            .collect();
         Self { tracks }
     }
 
@@ -111,15 +118,27 @@ impl Timeline {
         let track = &mut self.tracks[channel];
         let delta = target - track.goal;
         track.goal = target;
-        track.moves.push(Move { start_secs, secs: secs.max(1e-3), delta });
+        track.moves.push(Move {
+            start_secs,
+            secs: secs.max(1e-3),
+            delta,
+        });
     }
 
     /// Moves `channel` by `height` and back, the peak in the middle.
     pub fn pulse(&mut self, channel: usize, start_secs: f64, secs: f64, height: f64) {
         let half = (secs / 2.0).max(1e-3);
         let moves = &mut self.tracks[channel].moves;
-        moves.push(Move { start_secs, secs: half, delta: height });
-        moves.push(Move { start_secs: start_secs + half, secs: half, delta: -height });
+        moves.push(Move {
+            start_secs,
+            secs: half,
+            delta: height,
+        });
+        moves.push(Move {
+            start_secs: start_secs + half,
+            secs: half,
+            delta: -height,
+        });
     }
 
     /// Adds `size * sin(2 pi hz t + phase)`, faded in and out.
@@ -132,7 +151,14 @@ impl Timeline {
         size: f64,
     ) {
         let fade_secs = (secs / 3.0).min(0.25);
-        self.tracks[channel].waves.push(Wave { start_secs, secs, hz, phase_rad, size, fade_secs });
+        self.tracks[channel].waves.push(Wave {
+            start_secs,
+            secs,
+            hz,
+            phase_rad,
+            size,
+            fade_secs,
+        });
     }
 
     /// The channels at `frames` moments, `rate_hz` a second. O(frames x channels + lengths of all movements).
@@ -210,9 +236,15 @@ mod tests {
         timeline.to(0, 0.351, 0.4, 0.0);
         timeline.wave(0, 0.2, 0.6, (3.0, 0.0), 0.1);
         let rate_hz = 2000.0;
-        let x: Vec<f64> = timeline.render(3000, rate_hz).iter().map(|row| row[0]).collect();
-        let worst =
-            x.windows(3).map(|w| (w[2] - 2.0 * w[1] + w[0]).abs() * rate_hz * rate_hz).fold(0.0, f64::max);
+        let x: Vec<f64> = timeline
+            .render(3000, rate_hz)
+            .iter()
+            .map(|row| row[0])
+            .collect();
+        let worst = x
+            .windows(3)
+            .map(|w| (w[2] - 2.0 * w[1] + w[0]).abs() * rate_hz * rate_hz)
+            .fold(0.0, f64::max);
         // The sum of the three courses' largest accelerations; a step of velocity would show as thousands.
         assert!(worst < 120.0, "acceleration {worst}");
     }

@@ -11,8 +11,10 @@ pub fn scratch_head(a: &mut Actor) {
     a.hand(side, t, up, [-0.05, 0.48, 0.1]);
     a.head(t, up, [0.1, 0.0, 0.12 * side.sign()]);
     let hz = a.hz(3.2);
-    a.timeline.wave(HAND[side.index()] + 1, t + up, stay, (hz, 0.0), 0.03);
-    a.timeline.wave(HAND[side.index()] + 2, t + up, stay, (hz, 1.0), 0.03);
+    a.timeline
+        .wave(HAND[side.index()] + 1, t + up, stay, (hz, 0.0), 0.03);
+    a.timeline
+        .wave(HAND[side.index()] + 2, t + up, stay, (hz, 1.0), 0.03);
     a.rest_hand(side, t + up + stay, down);
     a.head(t + up + stay, down, [0.0; 3]);
     a.now_secs = t + up + stay + down;
@@ -54,9 +56,11 @@ pub fn stretch(a: &mut Actor) {
         a.hand(side, t, up, [0.15, 0.02, 0.28]);
         a.timeline.to(SWIVEL[side.index()], t, up, 0.9);
         a.rest_hand(side, t + up + stay, down);
-        a.timeline.to(SWIVEL[side.index()], t + up + stay, down, 0.0);
+        a.timeline
+            .to(SWIVEL[side.index()], t + up + stay, down, 0.0);
         let hz = a.hz(1.1);
-        a.timeline.wave(HAND[side.index()], t + up, stay, (hz, 0.0), 0.06);
+        a.timeline
+            .wave(HAND[side.index()], t + up, stay, (hz, 0.0), 0.06);
     }
     a.spine(t, up, [-0.15, 0.0, 0.0]);
     a.spine(t + up + stay, down, [0.0; 3]);
@@ -66,7 +70,14 @@ pub fn stretch(a: &mut Actor) {
 /// Steps aside and closes the feet.
 pub fn step_aside(a: &mut Actor) {
     let left = 0.4 * any_side(a).sign();
-    let gait = Gait { forward: 0.0, left, period_secs: 0.6, lift: 0.06, arms: 0.05, ..Gait::WALK };
+    let gait = Gait {
+        forward: 0.0,
+        left,
+        period_secs: 0.6,
+        lift: 0.06,
+        arms: 0.05,
+        ..Gait::WALK
+    };
     gait::steps(a, gait, &[0.0]);
 }
 
@@ -82,7 +93,8 @@ pub fn phone(a: &mut Actor) {
         a.timeline.wave(SPINE + k, t + up, stay, (hz, 0.0), 0.05);
     }
     a.rest_hand(side, t + up + stay, down);
-    a.timeline.to(SWIVEL[side.index()], t + up + stay, down, 0.0);
+    a.timeline
+        .to(SWIVEL[side.index()], t + up + stay, down, 0.0);
     a.head(t + up + stay, down, [0.0; 3]);
     a.now_secs = t + up + stay + down;
 }
@@ -119,7 +131,8 @@ pub fn hands_on_hips(a: &mut Actor) {
         a.hand(side, t, up, [0.12, -0.66, 0.1]);
         a.timeline.to(SWIVEL[side.index()], t, up, 0.9);
         a.rest_hand(side, t + up + stay, down);
-        a.timeline.to(SWIVEL[side.index()], t + up + stay, down, 0.0);
+        a.timeline
+            .to(SWIVEL[side.index()], t + up + stay, down, 0.0);
     }
     a.now_secs = t + up + stay + down;
 }

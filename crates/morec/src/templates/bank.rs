@@ -63,7 +63,10 @@ impl Bank {
         let cell_rows = || {
             let pairs = templates.iter().zip(&extents);
             pairs.flat_map(|(template, (first, _))| {
-                template.iter().enumerate().map(move |(j, r)| (first + j, r))
+                template
+                    .iter()
+                    .enumerate()
+                    .map(move |(j, r)| (first + j, r))
             })
         };
         let rows = interleaved(cells, dim, cell_rows());
@@ -100,7 +103,10 @@ impl Bank {
 
     /// Rows of the longest template.
     pub fn longest(&self) -> usize {
-        (0..self.len()).map(|i| self.template_len(i)).max().unwrap_or(0)
+        (0..self.len())
+            .map(|i| self.template_len(i))
+            .max()
+            .unwrap_or(0)
     }
 
     /// Forgets the stream so far.
@@ -111,7 +117,11 @@ impl Bank {
 
     /// Advances by one tick with the stream's row `z`, of `dim` values.
     pub fn step(&mut self, z: &[f32]) {
-        assert_eq!(z.len(), self.dim, "a stream row of another width than the templates'");
+        assert_eq!(
+            z.len(),
+            self.dim,
+            "a stream row of another width than the templates'"
+        );
         let now = self.tick % 2;
         kernel::step(&self.rows, &self.norms, z, now, &mut self.cells);
         for &(first, last) in self.extents.iter() {
@@ -131,14 +141,23 @@ impl Bank {
     pub fn matched(&self, index: usize) -> Match {
         let length = self.template_len(index);
         if length == 0 || self.tick == 0 {
-            return Match { distance: FAR, age: 0 };
+            return Match {
+                distance: FAR,
+                age: 0,
+            };
         }
         let (total, age) = self.at(self.extents[index].1);
         // A path that came out of a guard cell is no path.
         if total >= FAR / 2.0 {
-            return Match { distance: FAR, age: 0 };
+            return Match {
+                distance: FAR,
+                age: 0,
+            };
         }
-        Match { distance: total / length as f32, age: age as usize }
+        Match {
+            distance: total / length as f32,
+            age: age as usize,
+        }
     }
 
     /// Total and age of a cell at the last tick.
@@ -170,7 +189,11 @@ impl Bank {
         let (total, age) = self.at(best.0);
         // A path that came out of a guard cell is no path.
         let real = total < FAR / 2.0;
-        real.then(|| PartialMatch { distance: best.1, age: age as usize, rows: best.0 - first + 1 })
+        real.then(|| PartialMatch {
+            distance: best.1,
+            age: age as usize,
+            rows: best.0 - first + 1,
+        })
     }
 }
 
@@ -195,7 +218,9 @@ mod tests {
     fn plain(template: &Rows, stream: &Rows) -> Vec<(f64, usize)> {
         let cost = |j: usize, t: usize| -> f64 {
             let pairs = template.row(j).iter().zip(stream.row(t));
-            pairs.map(|(a, b)| (f64::from(*a) - f64::from(*b)).powi(2)).sum()
+            pairs
+                .map(|(a, b)| (f64::from(*a) - f64::from(*b)).powi(2))
+                .sum()
         };
         let n = template.len();
         let mut table = vec![vec![(1e30, 0usize); n]; stream.len()];
@@ -217,12 +242,18 @@ mod tests {
                     let c = cost(j - 1, t) + cost(j, t);
                     options.push((table[t - 1][j - 2].0 + c, table[t - 1][j - 2].1));
                 }
-                if let Some(best) = options.into_iter().reduce(|a, b| if b.0 < a.0 { b } else { a }) {
+                if let Some(best) = options
+                    .into_iter()
+                    .reduce(|a, b| if b.0 < a.0 { b } else { a })
+                {
                     table[t][j] = best;
                 }
             }
         }
-        table.into_iter().map(|row| (row[n - 1].0 / n as f64, row[n - 1].1)).collect()
+        table
+            .into_iter()
+            .map(|row| (row[n - 1].0 / n as f64, row[n - 1].1))
+            .collect()
     }
 
     /// Small whole numbers: single and double precision then agree to the last bit, ties included.

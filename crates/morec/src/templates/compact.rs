@@ -12,21 +12,44 @@ impl TemplateModel {
     /// over 127. Recognition then sees what the file holds, bit for bit.
     #[must_use]
     pub fn compacted(mut self) -> Self {
-        let shapes = self.verifier.iter().flat_map(|v| v.classes.iter().map(|c| &c.shapes));
-        let all = self.samples.iter().map(|s| &s.rows).chain(&self.negatives).chain(shapes);
+        let shapes = self
+            .verifier
+            .iter()
+            .flat_map(|v| v.classes.iter().map(|c| &c.shapes));
+        let all = self
+            .samples
+            .iter()
+            .map(|s| &s.rows)
+            .chain(&self.negatives)
+            .chain(shapes);
         let mut step = vec![0.0f32; self.ridged.dim()];
         for row in all.flat_map(Rows::iter) {
-            step.iter_mut().zip(row).for_each(|(s, v)| *s = s.max(v.abs() / STEPS));
+            step.iter_mut()
+                .zip(row)
+                .for_each(|(s, v)| *s = s.max(v.abs() / STEPS));
         }
         let snap = |rows: &Rows| {
             let snapped = |(v, s): (&f32, &f32)| if *s > 0.0 { (v / s).round() * s } else { 0.0 };
-            let values = rows.iter().flat_map(|row| row.iter().zip(&step).map(snapped)).collect();
+            let values = rows
+                .iter()
+                .flat_map(|row| row.iter().zip(&step).map(snapped))
+                .collect();
             Rows::from_values(rows.dim(), values)
         };
-        self.samples = self.samples.iter().map(|s| Sample { class: s.class, rows: snap(&s.rows) }).collect();
+        self.samples = self
+            .samples
+            .iter()
+            .map(|s| Sample {
+                class: s.class,
+                rows: snap(&s.rows),
+            })
+            .collect();
         self.negatives = self.negatives.iter().map(snap).collect();
         if let Some(verifier) = &mut self.verifier {
-            verifier.classes.iter_mut().for_each(|c| c.shapes = snap(&c.shapes));
+            verifier
+                .classes
+                .iter_mut()
+                .for_each(|c| c.shapes = snap(&c.shapes));
         }
         self.step = Some(step);
         self

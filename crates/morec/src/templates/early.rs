@@ -24,7 +24,14 @@ impl Default for EarlyParams {
     /// told as half done an eighth is wrong. With a reach of 1.2 and gates of 1 (0.84 known, 0.04 wrong) other motion
     /// is hardly ever taken for the beginning of a class.
     fn default() -> Self {
-        Self { least_progress: 0.2, least_ticks: 2, reach: 1.8, gate: 1.1, rival: 1.1, streak: 1 }
+        Self {
+            least_progress: 0.2,
+            least_ticks: 2,
+            reach: 1.8,
+            gate: 1.1,
+            rival: 1.1,
+            streak: 1,
+        }
     }
 }
 

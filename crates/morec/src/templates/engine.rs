@@ -37,7 +37,12 @@ struct RecentRows {
 impl RecentRows {
     fn new(dim: usize, capacity: usize) -> Self {
         let capacity = capacity.next_power_of_two();
-        Self { rows: vec![0.0; dim * capacity], dim, mask: capacity - 1, pushed: 0 }
+        Self {
+            rows: vec![0.0; dim * capacity],
+            dim,
+            mask: capacity - 1,
+            pushed: 0,
+        }
     }
 
     fn push(&mut self, row: &[f32]) {
@@ -68,13 +73,22 @@ impl TemplateEngine {
             bank: Bank::new(&templates, dim),
             negatives: Bank::new(&negatives, dim),
             template_classes: model.samples.iter().map(|s| s.class).collect(),
-            judge: model.verifier.as_ref().map(|v| Judge::new(v, &metric, model.threshold)),
+            judge: model
+                .verifier
+                .as_ref()
+                .map(|v| Judge::new(v, &metric, model.threshold)),
             decoder,
             // A match of n rows spans at most 2 n ticks and is judged when its window has passed.
             recent: RecentRows::new(dim, 2 * model.longest() + window + 2),
             mapped: vec![0.0; dim],
             threshold: model.threshold,
-            near: vec![ClassDistance { distance: FAR, age: 0 }; model.classes.len()],
+            near: vec![
+                ClassDistance {
+                    distance: FAR,
+                    age: 0
+                };
+                model.classes.len()
+            ],
             metric,
         })
     }
@@ -96,7 +110,12 @@ impl TemplateEngine {
         nearest_by_class(&self.bank, &self.template_classes, &mut self.near);
         let negative = nearest(&self.negatives);
         let (judge, recent, metric) = (&mut self.judge, &self.recent, &self.metric);
-        self.decoder.push(&self.near, negative, &mut |c| score(judge, recent, metric, c), out);
+        self.decoder.push(
+            &self.near,
+            negative,
+            &mut |c| score(judge, recent, metric, c),
+            out,
+        );
     }
 
     /// Ticks taken since the stretch began.
@@ -110,9 +129,16 @@ impl TemplateEngine {
         let (mut best, mut other) = (None::<Underway>, FAR);
         for (template, class) in self.template_classes.iter().enumerate() {
             let length = self.bank.template_len(template);
-            let Some(found) = self.bank.partial(template, params.least_rows(length)) else { continue };
+            let Some(found) = self.bank.partial(template, params.least_rows(length)) else {
+                continue;
+            };
             let progress = found.rows as f32 / length as f32;
-            let new = Underway { class: *class, distance: found.distance, age: found.age, progress };
+            let new = Underway {
+                class: *class,
+                distance: found.distance,
+                age: found.age,
+                progress,
+            };
             match best {
                 Some(old) if found.distance >= old.distance => {
                     if old.class != *class {
@@ -127,8 +153,10 @@ impl TemplateEngine {
                 }
             }
         }
-        let negatives = (0..self.negatives.len())
-            .filter_map(|i| self.negatives.partial(i, params.least_rows(self.negatives.template_len(i))));
+        let negatives = (0..self.negatives.len()).filter_map(|i| {
+            self.negatives
+                .partial(i, params.least_rows(self.negatives.template_len(i)))
+        });
         let negative = negatives.map(|n| n.distance).fold(FAR, f32::min);
         best.filter(|b| {
             b.distance < params.reach * self.threshold
@@ -146,31 +174,49 @@ impl TemplateEngine {
     /// Ends the stretch: calls `out` with what the last ticks still hold.
     pub fn finish(&mut self, out: &mut impl FnMut(TickDetection)) {
         let (judge, recent, metric) = (&mut self.judge, &self.recent, &self.metric);
-        self.decoder.finish(&mut |c| score(judge, recent, metric, c), out);
+        self.decoder
+            .finish(&mut |c| score(judge, recent, metric, c), out);
         self.reset();
     }
 }
 
 /// The nearest template of each class, as the bank stands.
 fn nearest_by_class(bank: &Bank, classes: &[ClassId], near: &mut [ClassDistance]) {
-    near.fill(ClassDistance { distance: FAR, age: 0 });
+    near.fill(ClassDistance {
+        distance: FAR,
+        age: 0,
+    });
     for (template, class) in classes.iter().enumerate() {
         let found = bank.matched(template);
         let best = &mut near[class.index()];
         if found.distance < best.distance {
-            *best = ClassDistance { distance: found.distance, age: found.age };
+            *best = ClassDistance {
+                distance: found.distance,
+                age: found.age,
+            };
         }
     }
 }
 
 fn nearest(bank: &Bank) -> f32 {
-    (0..bank.len()).map(|i| bank.matched(i).distance).fold(FAR, f32::min)
+    (0..bank.len())
+        .map(|i| bank.matched(i).distance)
+        .fold(FAR, f32::min)
 }
 
-fn score(judge: &mut Option<Judge>, recent: &RecentRows, metric: &Metric, candidate: &Candidate) -> f64 {
+fn score(
+    judge: &mut Option<Judge>,
+    recent: &RecentRows,
+    metric: &Metric,
+    candidate: &Candidate,
+) -> f64 {
     let Some(judge) = judge else { return 0.0 };
     let first = candidate.tick as usize - candidate.age;
-    judge.score(candidate.class, &Evidence::of(candidate), metric, candidate.age + 1, |i| {
-        recent.row(first + i)
-    })
+    judge.score(
+        candidate.class,
+        &Evidence::of(candidate),
+        metric,
+        candidate.age + 1,
+        |i| recent.row(first + i),
+    )
 }

@@ -17,7 +17,11 @@ pub type Lanes = [f32; LANES];
 
 /// Rows laid out so that equal coordinates of [`LANES`] of them lie together: block by block, in a block coordinate by
 /// coordinate. What is left of the last block is zero.
-pub fn interleaved<'r>(len: usize, dim: usize, rows: impl Iterator<Item = (usize, &'r [f32])>) -> Vec<Lanes> {
+pub fn interleaved<'r>(
+    len: usize,
+    dim: usize,
+    rows: impl Iterator<Item = (usize, &'r [f32])>,
+) -> Vec<Lanes> {
     let mut blocks = vec![[0.0; LANES]; len.div_ceil(LANES) * dim];
     for (place, row) in rows {
         for (k, value) in row.iter().enumerate() {
@@ -42,7 +46,11 @@ pub struct Cells {
 
 impl Cells {
     /// Before the first tick.
-    pub const EMPTY: Self = Self { local: [0.0; LANES], total: [[FAR; LANES]; 2], age: [[0; LANES]; 2] };
+    pub const EMPTY: Self = Self {
+        local: [0.0; LANES],
+        total: [[FAR; LANES]; 2],
+        age: [[0; LANES]; 2],
+    };
 }
 
 /// The last of a block's cells, which the first of the next look back to.
@@ -58,7 +66,11 @@ struct Behind {
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 pub fn step(rows: &[Lanes], norms: &[Lanes], z: &[f32], now: usize, cells: &mut [Cells]) {
     let z_norm: f32 = z.iter().map(|v| v * v).sum();
-    let mut behind = Behind { local: 0.0, before: [(FAR, 0); 2], earlier: (FAR, 0) };
+    let mut behind = Behind {
+        local: 0.0,
+        before: [(FAR, 0); 2],
+        earlier: (FAR, 0),
+    };
     for ((block, norm), cells) in rows.chunks_exact(z.len()).zip(norms).zip(cells) {
         // Columns with the cells behind them in front: a step back along the template is a step back in these.
         let [mut before, mut earlier] = [[0.0; LANES + 2], [0.0; LANES + 2]];
@@ -83,15 +95,26 @@ pub fn step(rows: &[Lanes], norms: &[Lanes], z: &[f32], now: usize, cells: &mut 
             let two_stream = earlier[lane + 1] + 0.5 * (local_before[lane] + local[lane + 1]);
             let better = two_stream < best;
             best = if better { two_stream } else { best };
-            best_age = if better { earlier_age[lane + 1] + 2 } else { best_age };
+            best_age = if better {
+                earlier_age[lane + 1] + 2
+            } else {
+                best_age
+            };
             let two_template = before[lane] + local[lane] + local[lane + 1];
             let better = two_template < best;
             total[lane] = if better { two_template } else { best };
-            age[lane] = if better { before_age[lane] + 1 } else { best_age };
+            age[lane] = if better {
+                before_age[lane] + 1
+            } else {
+                best_age
+            };
         }
         behind = Behind {
             local: local[LANES],
-            before: [(before[LANES], before_age[LANES]), (before[LANES + 1], before_age[LANES + 1])],
+            before: [
+                (before[LANES], before_age[LANES]),
+                (before[LANES + 1], before_age[LANES + 1]),
+            ],
             earlier: (earlier[LANES + 1], earlier_age[LANES + 1]),
         };
     }
@@ -159,7 +182,9 @@ pub fn least_mean(total: &[f32], rows: usize) -> (usize, f32) {
     while from < total.len() {
         // The last chunk overlaps the one before it: looking twice changes nothing.
         let start = from.min(total.len() - WIDE);
-        let Some(chunk) = total[start..].first_chunk::<WIDE>() else { break };
+        let Some(chunk) = total[start..].first_chunk::<WIDE>() else {
+            break;
+        };
         for lane in 0..WIDE {
             let at = (start + lane) as i32;
             let mean = chunk[lane] / (rows as i32 + at) as f32;
@@ -193,7 +218,8 @@ mod tests {
     }
 
     fn table() -> impl Strategy<Value = (usize, Vec<f32>, Vec<f32>)> {
-        (1usize..9, 0usize..150).prop_flat_map(|(dim, rows)| (Just(dim), values(dim * rows), values(dim)))
+        (1usize..9, 0usize..150)
+            .prop_flat_map(|(dim, rows)| (Just(dim), values(dim * rows), values(dim)))
     }
 
     fn bits<'a>(values: impl IntoIterator<Item = &'a f32>) -> Vec<u32> {

@@ -20,7 +20,10 @@ impl Symmetric {
     pub fn pack(matrix: &DMatrix<f64>) -> Self {
         let dim = matrix.nrows();
         let lower = (0..dim).flat_map(|i| (0..=i).map(move |j| (i, j)));
-        Self { dim, packed: lower.map(|(i, j)| matrix[(i, j)] as f32).collect() }
+        Self {
+            dim,
+            packed: lower.map(|(i, j)| matrix[(i, j)] as f32).collect(),
+        }
     }
 
     /// From packed values; `None` unless there are `dim (dim + 1) / 2` finite ones.
@@ -51,7 +54,9 @@ impl Symmetric {
     #[must_use]
     pub fn restricted(&self, keep: &[usize]) -> Self {
         let full = self.unpack();
-        Self::pack(&DMatrix::from_fn(keep.len(), keep.len(), |i, j| full[(keep[i], keep[j])]))
+        Self::pack(&DMatrix::from_fn(keep.len(), keep.len(), |i, j| {
+            full[(keep[i], keep[j])]
+        }))
     }
 }
 
@@ -80,8 +85,19 @@ impl Metric {
         let map = &scaled * eigen.eigenvectors.transpose();
         let total = total.unpack();
         let after = (&map * &total * map.transpose()).trace();
-        let scale = if after > 0.0 { (total.trace() / after).sqrt() } else { 1.0 };
-        Self { dim, map: (map * scale).transpose().iter().map(|v| *v as f32).collect() }
+        let scale = if after > 0.0 {
+            (total.trace() / after).sqrt()
+        } else {
+            1.0
+        };
+        Self {
+            dim,
+            map: (map * scale)
+                .transpose()
+                .iter()
+                .map(|v| *v as f32)
+                .collect(),
+        }
     }
 
     /// Values in a row.
@@ -116,8 +132,11 @@ mod tests {
         let within = DMatrix::from_row_slice(2, 2, &[4.0, 1.0, 1.0, 2.0]);
         let total = DMatrix::from_row_slice(2, 2, &[9.0, 0.5, 0.5, 3.0]);
         let metric = Metric::new(&Symmetric::pack(&within), &Symmetric::pack(&total));
-        let map =
-            DMatrix::from_row_slice(2, 2, &metric.map.iter().map(|v| f64::from(*v)).collect::<Vec<_>>());
+        let map = DMatrix::from_row_slice(
+            2,
+            2,
+            &metric.map.iter().map(|v| f64::from(*v)).collect::<Vec<_>>(),
+        );
         let round = &map * &within * map.transpose();
         assert!((round[(0, 0)] - round[(1, 1)]).abs() < 1e-5 && round[(0, 1)].abs() < 1e-5);
         assert!(((&map * &total * map.transpose()).trace() - total.trace()).abs() < 1e-4);

@@ -73,35 +73,58 @@ impl TemplateModel {
         let expected = row_dim(self.bones);
         let tables = self.samples.iter().map(|s| ("a template", s.rows.dim()));
         let tables = tables.chain(self.negatives.iter().map(|r| ("a negative", r.dim())));
-        let matrices =
-            [("the within-class covariance", self.ridged.dim()), ("the covariance", self.total.dim())];
+        let matrices = [
+            ("the within-class covariance", self.ridged.dim()),
+            ("the covariance", self.total.dim()),
+        ];
         if let Some((what, found)) = tables.chain(matrices).find(|(_, found)| *found != expected) {
-            return Err(TemplateModelError::Width { what, expected, found });
+            return Err(TemplateModelError::Width {
+                what,
+                expected,
+                found,
+            });
         }
         if self.bones.is_empty() {
             return Err(TemplateModelError::NoBones);
         }
-        if let Some(sample) = self.samples.iter().find(|s| s.class.index() >= self.classes.len()) {
-            let message = format!("a template of class {}, of {}", sample.class.0, self.classes.len());
+        if let Some(sample) = self
+            .samples
+            .iter()
+            .find(|s| s.class.index() >= self.classes.len())
+        {
+            let message = format!(
+                "a template of class {}, of {}",
+                sample.class.0,
+                self.classes.len()
+            );
             return Err(TemplateModelError::Value(message));
         }
         if let Some(verifier) = &self.verifier {
-            verifier.check(self.classes.len()).map_err(TemplateModelError::Value)?;
+            verifier
+                .check(self.classes.len())
+                .map_err(TemplateModelError::Value)?;
         }
         if !(self.threshold.is_finite() && self.threshold > 0.0) {
             let message = format!("the threshold must be above 0, found {}", self.threshold);
             return Err(TemplateModelError::Value(message));
         }
-        self.check_class_thresholds().map_err(TemplateModelError::Value)
+        self.check_class_thresholds()
+            .map_err(TemplateModelError::Value)
     }
 
     fn check_class_thresholds(&self) -> Result<(), String> {
         let given = &self.class_thresholds;
         if !given.is_empty() && given.len() != self.classes.len() {
-            return Err(format!("thresholds for {} classes, of {}", given.len(), self.classes.len()));
+            return Err(format!(
+                "thresholds for {} classes, of {}",
+                given.len(),
+                self.classes.len()
+            ));
         }
         match given.iter().find(|t| !(t.is_finite() && **t > 0.0)) {
-            Some(found) => Err(format!("the threshold of a class must be above 0, found {found}")),
+            Some(found) => Err(format!(
+                "the threshold of a class must be above 0, found {found}"
+            )),
             None => Ok(()),
         }
     }
@@ -109,8 +132,12 @@ impl TemplateModel {
     /// What makes a candidate of a distance.
     pub fn rule(&self) -> Rule {
         match &self.verifier {
-            Some(verifier) => Rule::Verify { reach: verifier.reach },
-            None => Rule::Gate { threshold: self.threshold },
+            Some(verifier) => Rule::Verify {
+                reach: verifier.reach,
+            },
+            None => Rule::Gate {
+                threshold: self.threshold,
+            },
         }
     }
 
@@ -133,19 +160,39 @@ impl TemplateModel {
         let total = self.total.restricted(&keep);
         let share = total.unpack().trace() / self.total.unpack().trace();
         let pick = |rows: &Rows| {
-            let values = rows.iter().flat_map(|row| keep.iter().map(|&k| row[k])).collect();
+            let values = rows
+                .iter()
+                .flat_map(|row| keep.iter().map(|&k| row[k]))
+                .collect();
             Rows::from_values(keep.len(), values)
         };
         Ok(Self {
             bones,
-            samples: self.samples.iter().map(|s| Sample { class: s.class, rows: pick(&s.rows) }).collect(),
+            samples: self
+                .samples
+                .iter()
+                .map(|s| Sample {
+                    class: s.class,
+                    rows: pick(&s.rows),
+                })
+                .collect(),
             negatives: self.negatives.iter().map(pick).collect(),
             ridged: self.ridged.restricted(&keep),
             threshold: self.threshold * share as f32,
-            class_thresholds: self.class_thresholds.iter().map(|t| t * share as f32).collect(),
-            verifier: self.verifier.as_ref().map(|v| restricted_verifier(v, share as f32, pick)),
+            class_thresholds: self
+                .class_thresholds
+                .iter()
+                .map(|t| t * share as f32)
+                .collect(),
+            verifier: self
+                .verifier
+                .as_ref()
+                .map(|v| restricted_verifier(v, share as f32, pick)),
             total,
-            step: self.step.as_ref().map(|step| keep.iter().map(|&k| step[k]).collect()),
+            step: self
+                .step
+                .as_ref()
+                .map(|step| keep.iter().map(|&k| step[k]).collect()),
             features: self.features.clone(),
             decode: self.decode.clone(),
             classes: self.classes.clone(),
@@ -169,10 +216,20 @@ fn restricted_verifier(verifier: &Verifier, share: f32, pick: impl Fn(&Rows) -> 
 
 /// Columns of a row over `all` that a row over `kept` has too.
 fn kept_columns(all: BoneSet, kept: BoneSet) -> Vec<usize> {
-    let slots: Vec<usize> =
-        all.indices().enumerate().filter(|(_, b)| kept.contains(*b)).map(|(s, _)| s).collect();
-    let coordinates =
-        |base: usize| slots.iter().flat_map(move |s| (0..3).map(move |axis| base + 3 * s + axis));
+    let slots: Vec<usize> = all
+        .indices()
+        .enumerate()
+        .filter(|(_, b)| kept.contains(*b))
+        .map(|(s, _)| s)
+        .collect();
+    let coordinates = |base: usize| {
+        slots
+            .iter()
+            .flat_map(move |s| (0..3).map(move |axis| base + 3 * s + axis))
+    };
     let root = 6 * all.len();
-    coordinates(0).chain(coordinates(3 * all.len())).chain(root..root + 4).collect()
+    coordinates(0)
+        .chain(coordinates(3 * all.len()))
+        .chain(root..root + 4)
+        .collect()
 }

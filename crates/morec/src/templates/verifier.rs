@@ -38,15 +38,26 @@ pub struct Evidence {
 impl Evidence {
     /// That of a candidate.
     pub fn of(candidate: &Candidate) -> Self {
-        let Candidate { distance, other, negative, .. } = *candidate;
-        Self { distance: distance.into(), other: other.into(), negative: negative.into() }
+        let Candidate {
+            distance,
+            other,
+            negative,
+            ..
+        } = *candidate;
+        Self {
+            distance: distance.into(),
+            other: other.into(),
+            negative: negative.into(),
+        }
     }
 
     /// Three logarithmic ratios, each bounded: to the threshold, to other classes, to negatives.
     pub fn ratios(&self, threshold: f64) -> [f64; 3] {
         let bounded = |ratio: f64| ratio.max(1e-3).ln().clamp(NEAR_ENOUGH.ln(), 2.0);
-        let (other, negative) =
-            (self.other.clamp(1e-3, NOTHING_NEAR), self.negative.clamp(1e-3, NOTHING_NEAR));
+        let (other, negative) = (
+            self.other.clamp(1e-3, NOTHING_NEAR),
+            self.negative.clamp(1e-3, NOTHING_NEAR),
+        );
         [
             bounded(self.distance / threshold),
             bounded(self.distance / other),
@@ -56,7 +67,10 @@ impl Evidence {
 
     /// Four values beside the shape in the class kernels.
     pub fn beside_shape(&self, threshold: f64) -> [f64; 4] {
-        let (other, negative) = (self.other.clamp(0.1, NOTHING_NEAR), self.negative.min(NOTHING_NEAR));
+        let (other, negative) = (
+            self.other.clamp(0.1, NOTHING_NEAR),
+            self.negative.min(NOTHING_NEAR),
+        );
         [
             self.distance.max(NEAR_ENOUGH * threshold).min(CUT),
             (self.distance / other).clamp(NEAR_ENOUGH, CUT),
@@ -73,7 +87,11 @@ pub fn shape_of<'r>(len: usize, row: impl Fn(usize) -> &'r [f32], out: &mut [f32
     for (step, out) in out.chunks_exact_mut(dim).enumerate() {
         let at = step as f32 * (len - 1) as f32 / (SHAPE_ROWS - 1) as f32;
         let before = (at as usize).min(len.saturating_sub(2));
-        let (a, b, t) = (row(before), row((before + 1).min(len - 1)), at - before as f32);
+        let (a, b, t) = (
+            row(before),
+            row((before + 1).min(len - 1)),
+            at - before as f32,
+        );
         for ((o, a), b) in out.iter_mut().zip(a).zip(b) {
             *o = a * (1.0 - t) + b * t;
         }
@@ -148,7 +166,10 @@ impl Verifier {
         for exemplars in &self.classes {
             let n = exemplars.len();
             if exemplars.class.index() >= classes {
-                return Err(format!("exemplars of class {}, of {classes}", exemplars.class.0));
+                return Err(format!(
+                    "exemplars of class {}, of {classes}",
+                    exemplars.class.0
+                ));
             }
             if exemplars.shapes.len() != n * SHAPE_ROWS || exemplars.beside.len() != n {
                 return Err(format!(
@@ -163,9 +184,14 @@ impl Verifier {
                 ));
             }
         }
-        let sane =
-            self.reach > 0.0 && self.bar.abs() < 1.0 && self.generic.deviation.iter().all(|d| *d > 0.0);
-        if sane { Ok(()) } else { Err(format!("verifier: reach {}, bar {}", self.reach, self.bar)) }
+        let sane = self.reach > 0.0
+            && self.bar.abs() < 1.0
+            && self.generic.deviation.iter().all(|d| *d > 0.0);
+        if sane {
+            Ok(())
+        } else {
+            Err(format!("verifier: reach {}, bar {}", self.reach, self.bar))
+        }
     }
 }
 
@@ -188,9 +214,18 @@ impl Judge {
         let len = SHAPE_ROWS * metric.dim();
         let mapped = |exemplars: &Exemplars| {
             let rows = metric.apply_all(&exemplars.shapes);
-            interleaved(exemplars.len(), len, rows.values().chunks_exact(len).enumerate())
+            interleaved(
+                exemplars.len(),
+                len,
+                rows.values().chunks_exact(len).enumerate(),
+            )
         };
-        let most = verifier.classes.iter().map(Exemplars::len).max().unwrap_or(0);
+        let most = verifier
+            .classes
+            .iter()
+            .map(Exemplars::len)
+            .max()
+            .unwrap_or(0);
         Self {
             shapes: verifier.classes.iter().map(mapped).collect(),
             apart: vec![[0.0; LANES]; most.div_ceil(LANES)],
@@ -211,16 +246,27 @@ impl Judge {
         len: usize,
         row: impl Fn(usize) -> &'r [f32],
     ) -> f64 {
-        let mut score = self.verifier.generic.score(&evidence.ratios(self.threshold));
+        let mut score = self
+            .verifier
+            .generic
+            .score(&evidence.ratios(self.threshold));
         if let Some(place) = self.verifier.classes.iter().position(|c| c.class == class) {
             shape_of(len, row, &mut self.shape);
             let dim = metric.dim();
-            for (raw, mapped) in self.shape.chunks_exact(dim).zip(self.mapped.chunks_exact_mut(dim)) {
+            for (raw, mapped) in self
+                .shape
+                .chunks_exact(dim)
+                .zip(self.mapped.chunks_exact_mut(dim))
+            {
                 metric.apply(raw, mapped);
             }
             let beside = evidence.beside_shape(self.threshold).map(|v| v as f32);
             kernel::squared_distances(&self.shapes[place], &self.mapped, &mut self.apart);
-            score += kernel_sum(&self.verifier.classes[place], self.apart.as_flattened(), &beside);
+            score += kernel_sum(
+                &self.verifier.classes[place],
+                self.apart.as_flattened(),
+                &beside,
+            );
         }
         (score - self.verifier.bar) / (1.0 - self.verifier.bar)
     }

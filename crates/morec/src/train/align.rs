@@ -31,15 +31,24 @@ pub fn align(a: &Rows, b: &Rows) -> Vec<(usize, usize)> {
 
 /// The cheapest cell before `(i, j)`; the diagonal wins ties. `None` at the first cell.
 fn predecessor(total: &[f64], m: usize, i: usize, j: usize) -> Option<(usize, usize, f64)> {
-    let options =
-        [(i > 0 && j > 0).then(|| (i - 1, j - 1)), (i > 0).then(|| (i - 1, j)), (j > 0).then(|| (i, j - 1))];
-    let costed = options.into_iter().flatten().map(|(pi, pj)| (pi, pj, total[pi * m + pj]));
+    let options = [
+        (i > 0 && j > 0).then(|| (i - 1, j - 1)),
+        (i > 0).then(|| (i - 1, j)),
+        (j > 0).then(|| (i, j - 1)),
+    ];
+    let costed = options
+        .into_iter()
+        .flatten()
+        .map(|(pi, pj)| (pi, pj, total[pi * m + pj]));
     costed.reduce(|best, next| if next.2 < best.2 { next } else { best })
 }
 
 /// |a − b|² in double precision.
 pub fn squared_distance(a: &[f32], b: &[f32]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| (f64::from(*x) - f64::from(*y)).powi(2)).sum()
+    a.iter()
+        .zip(b)
+        .map(|(x, y)| (f64::from(*x) - f64::from(*y)).powi(2))
+        .sum()
 }
 
 #[cfg(test)]

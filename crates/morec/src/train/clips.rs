@@ -35,7 +35,9 @@ pub fn train_clips(
 fn adds_everyday(clips: &[TrainClip], everyday: Everyday) -> bool {
     let background = clips.iter().filter(|c| c.source == Source::Background);
     match everyday {
-        Everyday::Auto => background.map(|c| c.clip.duration_secs()).sum::<f64>() < ENOUGH_BACKGROUND_SECS,
+        Everyday::Auto => {
+            background.map(|c| c.clip.duration_secs()).sum::<f64>() < ENOUGH_BACKGROUND_SECS
+        }
         Everyday::Always => true,
         Everyday::Never => false,
     }

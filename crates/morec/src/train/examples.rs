@@ -35,7 +35,14 @@ pub struct Example {
 impl Example {
     /// The piece of stream it ends in.
     pub fn piece(&self, whole: bool) -> (usize, usize) {
-        (self.stream, if whole { 0 } else { self.ticks.end / PIECE_TICKS })
+        (
+            self.stream,
+            if whole {
+                0
+            } else {
+                self.ticks.end / PIECE_TICKS
+            },
+        )
     }
 }
 
@@ -60,9 +67,13 @@ impl Seen<'_> {
     pub fn examples(&self, stream: usize, negatives: &Distances) -> Vec<Example> {
         let ticks = self.distances[stream].len();
         let classes = self.set.classes.len();
-        let near: Vec<Match> = (0..ticks).flat_map(|t| self.nearest_by_class(stream, t)).collect();
+        let near: Vec<Match> = (0..ticks)
+            .flat_map(|t| self.nearest_by_class(stream, t))
+            .collect();
         let at = |t: usize, class: usize| near[t * classes + class];
-        let negative: Vec<f32> = (0..ticks).map(|t| self.nearest_negative(stream, negatives, t)).collect();
+        let negative: Vec<f32> = (0..ticks)
+            .map(|t| self.nearest_negative(stream, negatives, t))
+            .collect();
         let mut found = Vec::new();
         for t in 0..ticks {
             let around = t.saturating_sub(1)..=(t + 1).min(ticks - 1);
@@ -73,8 +84,9 @@ impl Seen<'_> {
                     continue;
                 }
                 let rivals = (0..classes).filter(|c| *c != class);
-                let other =
-                    rivals.flat_map(|c| around.clone().map(move |n| at(n, c).distance)).fold(FAR, f32::min);
+                let other = rivals
+                    .flat_map(|c| around.clone().map(move |n| at(n, c).distance))
+                    .fold(FAR, f32::min);
                 let nearest_negative = around.clone().map(|n| negative[n]).fold(FAR, f32::min);
                 let evidence = Evidence {
                     distance: distance.into(),
@@ -88,7 +100,13 @@ impl Seen<'_> {
     }
 
     fn nearest_by_class(&self, stream: usize, tick: usize) -> Vec<Match> {
-        let mut near = vec![Match { distance: FAR, age: 0 }; self.set.classes.len()];
+        let mut near = vec![
+            Match {
+                distance: FAR,
+                age: 0
+            };
+            self.set.classes.len()
+        ];
         for (found, sample) in self.distances[stream].at(tick).iter().zip(self.samples) {
             let best = &mut near[sample.class.index()];
             if found.distance < best.distance && self.counts(stream, tick, found, sample) {
@@ -113,7 +131,13 @@ impl Seen<'_> {
     }
 
     /// The candidate with what the labels say of it; `None` if they say too little.
-    fn judged(&self, index: usize, class: usize, ticks: Range<usize>, evidence: Evidence) -> Option<Example> {
+    fn judged(
+        &self,
+        index: usize,
+        class: usize,
+        ticks: Range<usize>,
+        evidence: Evidence,
+    ) -> Option<Example> {
         let stream = &self.set.streams[index];
         let mut label = None;
         let mut touches = false;
@@ -128,10 +152,19 @@ impl Seen<'_> {
                 None => touches |= share > TOUCHES,
             }
         }
-        if label.is_none() && (touches || !self.is_background(stream, &ticks, evidence.distance as f32)) {
+        if label.is_none()
+            && (touches || !self.is_background(stream, &ticks, evidence.distance as f32))
+        {
             return None;
         }
-        Some(Example { positive: label.is_some(), class, stream: index, ticks, evidence, label })
+        Some(Example {
+            positive: label.is_some(),
+            class,
+            stream: index,
+            ticks,
+            evidence,
+            label,
+        })
     }
 
     /// Whether a stretch that is none of the class's samples may be held against the class.
@@ -148,7 +181,9 @@ pub fn reach(examples: &[Example], threshold: f32, params: &TrainParams) -> f32 
     let mut best: BTreeMap<(usize, usize, usize), f64> = BTreeMap::new();
     for example in examples {
         if let Some(label) = example.label {
-            let nearest = best.entry((example.class, example.stream, label)).or_insert(f64::INFINITY);
+            let nearest = best
+                .entry((example.class, example.stream, label))
+                .or_insert(f64::INFINITY);
             *nearest = nearest.min(example.evidence.distance);
         }
     }
@@ -159,11 +194,18 @@ pub fn reach(examples: &[Example], threshold: f32, params: &TrainParams) -> f32 
 }
 
 /// The examples worth learning from: of each class and sign the nearest, few from any one piece.
-pub fn select(examples: Vec<Example>, set: &TrainSet, reach: f32, params: &TrainParams) -> Vec<Example> {
+pub fn select(
+    examples: Vec<Example>,
+    set: &TrainSet,
+    reach: f32,
+    params: &TrainParams,
+) -> Vec<Example> {
     let mut chosen = Vec::new();
     for class in 0..set.classes.len() {
         for positive in [true, false] {
-            let of = examples.iter().filter(|e| e.class == class && e.positive == positive);
+            let of = examples
+                .iter()
+                .filter(|e| e.class == class && e.positive == positive);
             let mut of: Vec<&Example> = of.collect();
             of.sort_by(|a, b| a.evidence.distance.total_cmp(&b.evidence.distance));
             let spread = few_from_each_piece(of, set, params);
@@ -171,12 +213,23 @@ pub fn select(examples: Vec<Example>, set: &TrainSet, reach: f32, params: &Train
                 chosen.extend(spread.into_iter().cloned());
                 continue;
             }
-            let near = spread.iter().filter(|e| e.evidence.distance <= f64::from(reach)).count();
-            let spread = spread.into_iter().take(near.max(params.min_negative_examples));
+            let near = spread
+                .iter()
+                .filter(|e| e.evidence.distance <= f64::from(reach))
+                .count();
+            let spread = spread
+                .into_iter()
+                .take(near.max(params.min_negative_examples));
             let (background, others): (Vec<_>, Vec<_>) =
                 spread.partition(|e| set.streams[e.stream].rest_is_background);
             let most = params.max_negative_examples;
-            chosen.extend(background.into_iter().take(most).chain(others.into_iter().take(most)).cloned());
+            chosen.extend(
+                background
+                    .into_iter()
+                    .take(most)
+                    .chain(others.into_iter().take(most))
+                    .cloned(),
+            );
         }
     }
     chosen

@@ -57,11 +57,21 @@ pub struct Prepared {
 /// Cuts clips into what training needs. Rows are made in parallel, in the order of `clips`.
 pub fn prepare(clips: &[TrainClip], labelling: &Labelling<'_>, params: &FeatureParams) -> Prepared {
     let by_clip = by_clip(labelling.samples);
-    let shown: Vec<BoneSet> = clips.par_iter().map(|c| bones_of_clip(&c.clip, &c.roles, &c.rest)).collect();
-    let taught = clips.iter().zip(&shown).filter(|(c, _)| by_clip.contains_key(c.name.as_str()));
-    let bones = taught.map(|(_, b)| *b).reduce(BoneSet::and).unwrap_or(BoneSet::NONE);
+    let shown: Vec<BoneSet> = clips
+        .par_iter()
+        .map(|c| bones_of_clip(&c.clip, &c.roles, &c.rest))
+        .collect();
+    let taught = clips
+        .iter()
+        .zip(&shown)
+        .filter(|(c, _)| by_clip.contains_key(c.name.as_str()));
+    let bones = taught
+        .map(|(_, b)| *b)
+        .reduce(BoneSet::and)
+        .unwrap_or(BoneSet::NONE);
     let serves = |shown: &BoneSet| shown.and(bones) == bones && !bones.is_empty();
-    let (usable, left_out): (Vec<_>, Vec<_>) = clips.iter().zip(&shown).partition(|(_, b)| serves(b));
+    let (usable, left_out): (Vec<_>, Vec<_>) =
+        clips.iter().zip(&shown).partition(|(_, b)| serves(b));
     let held_back = self::by_clip(labelling.held_back);
     let mut streams: Vec<TrainStream> = usable
         .par_iter()
@@ -69,7 +79,10 @@ pub fn prepare(clips: &[TrainClip], labelling: &Labelling<'_>, params: &FeatureP
         .collect();
     clips_are_people_if_one_is_named(&mut streams);
     Prepared {
-        set: TrainSet { classes: labelling.classes.to_vec(), streams },
+        set: TrainSet {
+            classes: labelling.classes.to_vec(),
+            streams,
+        },
         bones,
         lacking: left_out.into_iter().map(|(c, _)| c.name.clone()).collect(),
     }
@@ -77,7 +90,11 @@ pub fn prepare(clips: &[TrainClip], labelling: &Labelling<'_>, params: &FeatureP
 
 /// Leaving out a person needs a second one: where a single person shows all samples, clips count as people.
 fn clips_are_people_if_one_is_named(streams: &mut [TrainStream]) {
-    let teaching = || streams.iter().filter(|s| s.known.iter().any(|k| k.class.is_some()));
+    let teaching = || {
+        streams
+            .iter()
+            .filter(|s| s.known.iter().any(|k| k.class.is_some()))
+    };
     let people: BTreeSet<&str> = teaching().map(|s| s.group.as_str()).collect();
     if people.len() < 2 {
         streams.iter_mut().for_each(|s| s.group.clone_from(&s.name));
@@ -111,12 +128,29 @@ fn stream(
             return moving_part(&rows, bones);
         }
         // Half a frame's tolerance: a label given in seconds must not gain a tick by rounding.
-        let (first, last) = (sample.start_secs * params.tick_hz(), sample.stop_secs * params.tick_hz());
+        let (first, last) = (
+            sample.start_secs * params.tick_hz(),
+            sample.stop_secs * params.tick_hz(),
+        );
         (first + 0.05).floor().max(0.0) as usize..(last - 0.05).ceil().max(0.0) as usize
     };
-    let class = |s: &Sample| labelling.classes.iter().position(|c| *c == s.class).map(|c| ClassId(c as u16));
-    let wanted = samples.iter().filter_map(|s| Some(Known { ticks: ticks(s), class: Some(class(s)?) }));
-    let spared = held.iter().map(|s| Known { ticks: ticks(s), class: None });
+    let class = |s: &Sample| {
+        labelling
+            .classes
+            .iter()
+            .position(|c| *c == s.class)
+            .map(|c| ClassId(c as u16))
+    };
+    let wanted = samples.iter().filter_map(|s| {
+        Some(Known {
+            ticks: ticks(s),
+            class: Some(class(s)?),
+        })
+    });
+    let spared = held.iter().map(|s| Known {
+        ticks: ticks(s),
+        class: None,
+    });
     let mut known: Vec<Known> = wanted.chain(spared).collect();
     known.sort_by_key(|k| (k.ticks.start, k.ticks.end));
     let whole = samples.iter().chain(held).any(|s| s.whole_clip);

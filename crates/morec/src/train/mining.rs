@@ -45,12 +45,22 @@ impl Distances {
 
     /// The nearest of the templates that `counts` admits, at `tick`.
     pub fn nearest(&self, tick: usize, counts: impl Fn(usize) -> bool) -> Match {
-        let admitted = self.at(tick).iter().enumerate().filter(|(i, _)| counts(*i)).map(|(_, m)| *m);
-        admitted.reduce(|best, m| if m.distance < best.distance { m } else { best }).unwrap_or(NO_MATCH)
+        let admitted = self
+            .at(tick)
+            .iter()
+            .enumerate()
+            .filter(|(i, _)| counts(*i))
+            .map(|(_, m)| *m);
+        admitted
+            .reduce(|best, m| if m.distance < best.distance { m } else { best })
+            .unwrap_or(NO_MATCH)
     }
 }
 
-const NO_MATCH: Match = Match { distance: FAR, age: 0 };
+const NO_MATCH: Match = Match {
+    distance: FAR,
+    age: 0,
+};
 
 /// A stretch of a stream that comes near to some template.
 #[derive(Debug, Clone, PartialEq)]
@@ -76,20 +86,30 @@ pub fn near_misses(
     params: &TrainParams,
 ) -> Vec<NearMiss> {
     let labelled = stream.source == Source::Labelled;
-    let floor = if labelled { params.suspicious_below as f32 * threshold } else { 0.0 };
+    let floor = if labelled {
+        params.suspicious_below as f32 * threshold
+    } else {
+        0.0
+    };
     let mut found = Vec::new();
     let all = |_: usize| true;
     let others = |template: usize| samples[template].group != stream.group;
     let views: [&dyn Fn(usize) -> bool; 2] = [&all, &others];
     for counts in &views[..if labelled { 2 } else { 1 }] {
-        let nearest: Vec<Match> = (0..distances.len()).map(|t| distances.nearest(t, counts)).collect();
+        let nearest: Vec<Match> = (0..distances.len())
+            .map(|t| distances.nearest(t, counts))
+            .collect();
         for t in 1..nearest.len().saturating_sub(1) {
             let Match { distance, age } = nearest[t];
             let dip = distance <= nearest[t - 1].distance && distance < nearest[t + 1].distance;
             let ticks = t - age.min(t)..t + 1;
             let near = floor <= distance && distance < params.negative_below as f32;
             if near && dip && !stream.overlaps_known(&ticks, 0.3) {
-                found.push(NearMiss { distance, stream: index, ticks });
+                found.push(NearMiss {
+                    distance,
+                    stream: index,
+                    ticks,
+                });
             }
         }
     }
@@ -101,7 +121,10 @@ fn keep_apart(mut found: Vec<NearMiss>) -> Vec<NearMiss> {
     found.sort_by(|a, b| a.distance.total_cmp(&b.distance));
     let mut kept: Vec<NearMiss> = Vec::new();
     for miss in found {
-        if kept.iter().all(|k| overlap_share(&k.ticks, &miss.ticks) <= 0.5) {
+        if kept
+            .iter()
+            .all(|k| overlap_share(&k.ticks, &miss.ticks) <= 0.5)
+        {
             kept.push(miss);
         }
     }

@@ -27,7 +27,11 @@ pub struct TrainOptions {
 
 impl Default for TrainOptions {
     fn default() -> Self {
-        Self { params: TrainParams::default(), unlabelled_is_background: true, everyday: Everyday::Auto }
+        Self {
+            params: TrainParams::default(),
+            unlabelled_is_background: true,
+            everyday: Everyday::Auto,
+        }
     }
 }
 

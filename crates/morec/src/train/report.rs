@@ -41,11 +41,15 @@ impl TrainingReport {
         for stream in streams.iter().filter(|s| s.rest_is_background) {
             let known: usize = stream.known.iter().map(|k| k.ticks.len()).sum();
             let secs = stream.rows.len().saturating_sub(known) as f64 / tick_hz;
-            *background_secs.entry(source_name(stream.source).to_owned()).or_insert(0.0) += secs;
+            *background_secs
+                .entry(source_name(stream.source).to_owned())
+                .or_insert(0.0) += secs;
         }
         let mut negatives = BTreeMap::new();
         for miss in &trained.negatives {
-            *negatives.entry(source_name(streams[miss.stream].source).to_owned()).or_insert(0) += 1;
+            *negatives
+                .entry(source_name(streams[miss.stream].source).to_owned())
+                .or_insert(0) += 1;
         }
         let classes = trained.model.classes.clone();
         let mut notes = class_notes(&classes);
@@ -79,8 +83,14 @@ impl TrainingReport {
 /// What to say of classes with few samples.
 pub(super) fn class_notes(classes: &[ClassInfo]) -> Vec<String> {
     let note = |class: &ClassInfo| match class.samples {
-        0 => Some(format!("{}: no sample, it will never be recognised", class.name)),
-        1 => Some(format!("{}: a single sample; give more, by several people", class.name)),
+        0 => Some(format!(
+            "{}: no sample, it will never be recognised",
+            class.name
+        )),
+        1 => Some(format!(
+            "{}: a single sample; give more, by several people",
+            class.name
+        )),
         _ => None,
     };
     classes.iter().filter_map(note).collect()

@@ -9,7 +9,13 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 pub fn balanced(targets: &[f64], most: f64) -> Vec<f64> {
     let n = targets.len() as f64;
     let positive = targets.iter().filter(|t| **t > 0.0).count() as f64;
-    let weight = |t: &f64| if *t > 0.0 { 0.5 * n / positive } else { 0.5 * n / (n - positive) };
+    let weight = |t: &f64| {
+        if *t > 0.0 {
+            0.5 * n / positive
+        } else {
+            0.5 * n / (n - positive)
+        }
+    };
     targets.iter().map(|t| weight(t).min(most)).collect()
 }
 
@@ -26,7 +32,8 @@ pub fn linear<const N: usize>(
     let mut right = DVector::zeros(N + 1);
     let total: f64 = weights.iter().sum();
     for ((row, target), weight) in rows.iter().zip(targets).zip(weights) {
-        let extended = DVector::from_iterator(N + 1, std::iter::once(1.0).chain(row.iter().copied()));
+        let extended =
+            DVector::from_iterator(N + 1, std::iter::once(1.0).chain(row.iter().copied()));
         normal += &extended * extended.transpose() * (weight / total);
         right += extended * (target * weight / total);
     }
@@ -61,14 +68,19 @@ pub fn kernel(
     let mut left_out = targets.to_vec();
     for group in groups.iter().collect::<BTreeSet<_>>() {
         let members: Vec<usize> = (0..groups.len()).filter(|i| groups[*i] == *group).collect();
-        let block = DMatrix::from_fn(members.len(), members.len(), |i, j| inverse[(members[i], members[j])]);
+        let block = DMatrix::from_fn(members.len(), members.len(), |i, j| {
+            inverse[(members[i], members[j])]
+        });
         let part = DVector::from_iterator(members.len(), members.iter().map(|&i| alpha[i]));
         let correction = Cholesky::new(block)?.solve(&part);
         for (k, &i) in members.iter().enumerate() {
             left_out[i] -= correction[k];
         }
     }
-    Some(KernelFit { weights: alpha.as_slice().to_vec(), left_out })
+    Some(KernelFit {
+        weights: alpha.as_slice().to_vec(),
+        left_out,
+    })
 }
 
 #[cfg(test)]
@@ -82,17 +94,31 @@ mod tests {
         let weights = [1.0, 2.0, 1.0, 0.5, 1.0, 1.0, 3.0];
         let groups = [0, 0, 1, 1, 2, 2, 2];
         let k = |a: f64, b: f64| (-(a - b).powi(2)).exp();
-        let matrix = |of: &[usize]| DMatrix::from_fn(of.len(), of.len(), |i, j| k(xs[of[i]], xs[of[j]]));
+        let matrix =
+            |of: &[usize]| DMatrix::from_fn(of.len(), of.len(), |i, j| k(xs[of[i]], xs[of[j]]));
         let all: Vec<usize> = (0..xs.len()).collect();
         let fit = kernel(matrix(&all), &targets, &weights, 0.1, &groups).unwrap();
         for group in 0..3 {
-            let rest: Vec<usize> = all.iter().copied().filter(|i| groups[*i] != group).collect();
+            let rest: Vec<usize> = all
+                .iter()
+                .copied()
+                .filter(|i| groups[*i] != group)
+                .collect();
             let pick = |v: &[f64]| rest.iter().map(|&i| v[i]).collect::<Vec<_>>();
-            let without =
-                kernel(matrix(&rest), &pick(&targets), &pick(&weights), 0.1, &vec![0; rest.len()]).unwrap();
+            let without = kernel(
+                matrix(&rest),
+                &pick(&targets),
+                &pick(&weights),
+                0.1,
+                &vec![0; rest.len()],
+            )
+            .unwrap();
             for i in all.iter().filter(|i| groups[**i] == group) {
-                let direct: f64 =
-                    rest.iter().zip(&without.weights).map(|(&j, alpha)| alpha * k(xs[*i], xs[j])).sum();
+                let direct: f64 = rest
+                    .iter()
+                    .zip(&without.weights)
+                    .map(|(&j, alpha)| alpha * k(xs[*i], xs[j]))
+                    .sum();
                 assert!((fit.left_out[*i] - direct).abs() < 1e-9);
             }
         }

@@ -13,7 +13,12 @@ use super::set::TrainSample;
 ///
 /// If `apart` finds no pair in any class, all pairs of a class count. Zero if no class has two samples.
 /// O(pairs · len² · d + pairs · len · d²).
-pub fn within_class(samples: &[TrainSample], classes: usize, dim: usize, max_pairs: usize) -> DMatrix<f64> {
+pub fn within_class(
+    samples: &[TrainSample],
+    classes: usize,
+    dim: usize,
+    max_pairs: usize,
+) -> DMatrix<f64> {
     let apart = sum_over_classes(samples, classes, dim, max_pairs, |a, b| a.group != b.group);
     if apart.1 > 0 {
         return apart.0 / apart.1 as f64;
@@ -32,7 +37,10 @@ fn sum_over_classes(
     let mut sum = DMatrix::zeros(dim, dim);
     let mut used = 0;
     for class in 0..classes {
-        let of_class: Vec<&TrainSample> = samples.iter().filter(|s| s.class.index() == class).collect();
+        let of_class: Vec<&TrainSample> = samples
+            .iter()
+            .filter(|s| s.class.index() == class)
+            .collect();
         let pairs: Vec<_> = (0..of_class.len())
             .flat_map(|i| (0..i).map(move |j| (i, j)))
             .filter(|&(i, j)| counts(of_class[i], of_class[j]))
@@ -67,7 +75,9 @@ pub fn covariance<'r>(tables: impl Iterator<Item = &'r Rows> + Clone, dim: usize
     let count = rows().count();
     let mut mean = DVector::<f64>::zeros(dim);
     for row in rows() {
-        mean.iter_mut().zip(row).for_each(|(m, v)| *m += f64::from(*v));
+        mean.iter_mut()
+            .zip(row)
+            .for_each(|(m, v)| *m += f64::from(*v));
     }
     mean /= count.max(1) as f64;
     let mut sum = DMatrix::<f64>::zeros(dim, dim);

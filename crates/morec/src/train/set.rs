@@ -48,7 +48,9 @@ pub struct TrainStream {
 impl TrainStream {
     /// Whether `ticks` shares more than `share` of the shorter of the two with any known stretch.
     pub fn overlaps_known(&self, ticks: &Range<usize>, share: f64) -> bool {
-        self.known.iter().any(|k| overlap_share(ticks, &k.ticks) > share)
+        self.known
+            .iter()
+            .any(|k| overlap_share(ticks, &k.ticks) > share)
     }
 }
 
@@ -86,7 +88,11 @@ impl TrainSet {
         for (index, stream) in self.streams.iter().enumerate() {
             for known in &stream.known {
                 let Some(class) = known.class else { continue };
-                let stop = known.ticks.end.max(known.ticks.start + MIN_SAMPLE_TICKS).min(stream.rows.len());
+                let stop = known
+                    .ticks
+                    .end
+                    .max(known.ticks.start + MIN_SAMPLE_TICKS)
+                    .min(stream.rows.len());
                 if known.ticks.start + MIN_SAMPLE_TICKS <= stop {
                     let ticks = known.ticks.start..stop;
                     let rows = stream.rows.slice(ticks.clone());
@@ -112,5 +118,9 @@ pub fn overlap(a: &Range<usize>, b: &Range<usize>) -> usize {
 /// Overlap as a share of the shorter range; 0 if either is empty.
 pub fn overlap_share(a: &Range<usize>, b: &Range<usize>) -> f64 {
     let shorter = a.len().min(b.len());
-    if shorter == 0 { 0.0 } else { overlap(a, b) as f64 / shorter as f64 }
+    if shorter == 0 {
+        0.0
+    } else {
+        overlap(a, b) as f64 / shorter as f64
+    }
 }

@@ -8,7 +8,9 @@ use rayon::prelude::*;
 use crate::classes::ClassInfo;
 use crate::features::{BoneSet, Rows};
 use crate::progress::Progress;
-use crate::templates::{Bank, Metric, Sample, Symmetric, TemplateModel, TemplateModelError, Verifier};
+use crate::templates::{
+    Bank, Metric, Sample, Symmetric, TemplateModel, TemplateModelError, Verifier,
+};
 
 use super::examples::{self, Example, Seen};
 use super::mining::{Distances, NearMiss, near_misses};
@@ -29,7 +31,9 @@ pub enum TrainError {
     #[error("{0} classes; an index holds at most 65535")]
     TooManyClasses(usize),
     /// A class that an index must know well enough to show is not shown.
-    #[error("class {class}: no sample of it can be described; each needs some motion inside its clip")]
+    #[error(
+        "class {class}: no sample of it can be described; each needs some motion inside its clip"
+    )]
     NoSample {
         /// Which.
         class: String,
@@ -95,7 +99,11 @@ pub fn train(
     let (threshold, threshold_from) = thresholds::common(set, &distances, params);
     let negatives = negatives_of(set, bones, (&samples, &distances), threshold, params);
     let verifier = if params.verify {
-        let found = (samples.as_slice(), distances.as_slice(), negatives.as_slice());
+        let found = (
+            samples.as_slice(),
+            distances.as_slice(),
+            negatives.as_slice(),
+        );
         verifier_of(set, found, &metric, threshold, params, progress)?
     } else {
         None
@@ -111,7 +119,13 @@ pub fn train(
         bones,
         decode: params.decode.clone(),
         classes,
-        samples: samples.into_iter().map(|s| Sample { class: s.class, rows: s.rows }).collect(),
+        samples: samples
+            .into_iter()
+            .map(|s| Sample {
+                class: s.class,
+                rows: s.rows,
+            })
+            .collect(),
         negatives: negatives.iter().map(|n| negative_rows(set, n)).collect(),
         ridged,
         total,
@@ -120,9 +134,17 @@ pub fn train(
         verifier,
         step: None,
     };
-    let model = if params.compact { model.compacted() } else { model };
+    let model = if params.compact {
+        model.compacted()
+    } else {
+        model
+    };
     model.check()?;
-    Ok(Trained { model, negatives, threshold_from })
+    Ok(Trained {
+        model,
+        negatives,
+        threshold_from,
+    })
 }
 
 /// At most `most` samples of each class, from its groups in turn, in the order of the set.
@@ -130,14 +152,24 @@ fn templates_of(samples: Vec<TrainSample>, classes: usize, most: usize) -> Vec<T
     let mut kept = BTreeSet::new();
     for class in 0..classes {
         let mut by_group: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
-        for (i, sample) in samples.iter().enumerate().filter(|(_, s)| s.class.index() == class) {
+        for (i, sample) in samples
+            .iter()
+            .enumerate()
+            .filter(|(_, s)| s.class.index() == class)
+        {
             by_group.entry(&sample.group).or_default().push(i);
         }
         let longest = by_group.values().map(Vec::len).max().unwrap_or(0);
-        let turns = (0..longest).flat_map(|turn| by_group.values().filter_map(move |g| g.get(turn)));
+        let turns =
+            (0..longest).flat_map(|turn| by_group.values().filter_map(move |g| g.get(turn)));
         kept.extend(turns.take(most).copied());
     }
-    samples.into_iter().enumerate().filter(|(i, _)| kept.contains(i)).map(|(_, s)| s).collect()
+    samples
+        .into_iter()
+        .enumerate()
+        .filter(|(i, _)| kept.contains(i))
+        .map(|(_, s)| s)
+        .collect()
 }
 
 fn bank_of(mapped: impl Iterator<Item = Rows>, metric: &Metric) -> Bank {
@@ -154,18 +186,40 @@ fn verifier_of(
     progress: &dyn Progress,
 ) -> Result<Option<Verifier>, TrainError> {
     let groups = |class: usize| -> BTreeSet<&str> {
-        samples.iter().filter(|s| s.class.index() == class).map(|s| s.group.as_str()).collect()
+        samples
+            .iter()
+            .filter(|s| s.class.index() == class)
+            .map(|s| s.group.as_str())
+            .collect()
     };
-    let single: Vec<bool> = (0..set.classes.len()).map(|class| groups(class).len() < 2).collect();
-    let bank = bank_of(negatives.iter().map(|n| metric.apply_all(&negative_rows(set, n))), metric);
+    let single: Vec<bool> = (0..set.classes.len())
+        .map(|class| groups(class).len() < 2)
+        .collect();
+    let bank = bank_of(
+        negatives
+            .iter()
+            .map(|n| metric.apply_all(&negative_rows(set, n))),
+        metric,
+    );
     let strange = all_distances(set, &bank, metric, "comparing with near misses", progress)?;
     let suspicious = params.suspicious_below as f32 * threshold;
-    let seen = Seen { set, samples, single: &single, distances, negatives, suspicious };
-    let examples: Vec<Example> =
-        (0..set.streams.len()).into_par_iter().flat_map_iter(|i| seen.examples(i, &strange[i])).collect();
+    let seen = Seen {
+        set,
+        samples,
+        single: &single,
+        distances,
+        negatives,
+        suspicious,
+    };
+    let examples: Vec<Example> = (0..set.streams.len())
+        .into_par_iter()
+        .flat_map_iter(|i| seen.examples(i, &strange[i]))
+        .collect();
     let reach = examples::reach(&examples, threshold, params);
     let chosen = examples::select(examples, set, reach, params);
-    Ok(verifier::learn(&chosen, set, metric, threshold, reach, params))
+    Ok(verifier::learn(
+        &chosen, set, metric, threshold, reach, params,
+    ))
 }
 
 /// What [`Metric::new`] takes, of the samples of a set: `S_w + ρ tr(S_t)/d · I` and `S_t`. With no two samples of any class
@@ -175,9 +229,16 @@ pub fn scatters(set: &TrainSet, params: &TrainParams) -> Option<(Symmetric, Symm
     (!samples.is_empty()).then(|| metric_of(set, &samples, params))
 }
 
-fn metric_of(set: &TrainSet, samples: &[TrainSample], params: &TrainParams) -> (Symmetric, Symmetric) {
+fn metric_of(
+    set: &TrainSet,
+    samples: &[TrainSample],
+    params: &TrainParams,
+) -> (Symmetric, Symmetric) {
     let dim = samples[0].rows.dim();
-    let labelled = set.streams.iter().filter(|s| s.known.iter().any(|k| k.class.is_some()));
+    let labelled = set
+        .streams
+        .iter()
+        .filter(|s| s.known.iter().any(|k| k.class.is_some()));
     let total = covariance(labelled.map(|s| &s.rows), dim);
     let within = within_class(samples, set.classes.len(), dim, params.max_pairs);
     (ridged(&within, &total, params.rho), Symmetric::pack(&total))
@@ -200,7 +261,10 @@ fn all_distances(
         progress.report(stage, done.fetch_add(1, Ordering::Relaxed) + 1, total);
         Ok(distances)
     };
-    set.streams.par_iter().map_init(|| bank.clone(), compare).collect()
+    set.streams
+        .par_iter()
+        .map_init(|| bank.clone(), compare)
+        .collect()
 }
 
 /// Short background clips as a whole, and the nearest misses in everything else that is background.
@@ -218,8 +282,12 @@ fn negatives_of(
     let short = |s: &TrainStream| {
         s.source == Source::Background && s.rows.len() as f64 <= params.whole_background * longest
     };
-    let (whole, long): (Vec<_>, Vec<_>) =
-        set.streams.iter().enumerate().filter(|(_, s)| s.rest_is_background).partition(|(_, s)| short(s));
+    let (whole, long): (Vec<_>, Vec<_>) = set
+        .streams
+        .iter()
+        .enumerate()
+        .filter(|(_, s)| s.rest_is_background)
+        .partition(|(_, s)| short(s));
     let mut found: Vec<NearMiss> = long
         .into_iter()
         .flat_map(|(i, s)| near_misses(&distances[i], samples, (i, s), threshold, params))

@@ -15,19 +15,34 @@ const TOUCHES: f64 = 0.3;
 /// may happen to be one of the classes, and what comes that near becomes a hard negative.
 pub fn common(set: &TrainSet, distances: &[Distances], params: &TrainParams) -> (f32, String) {
     let of = |source: Source, share: f64| {
-        let streams = set.streams.iter().zip(distances).filter(|(s, _)| s.source == source);
-        let mut nearest: Vec<(f32, &str)> = streams.map(|(s, d)| (d.smallest(), s.name.as_str())).collect();
+        let streams = set
+            .streams
+            .iter()
+            .zip(distances)
+            .filter(|(s, _)| s.source == source);
+        let mut nearest: Vec<(f32, &str)> = streams
+            .map(|(s, d)| (d.smallest(), s.name.as_str()))
+            .collect();
         nearest.sort_by(|a, b| a.0.total_cmp(&b.0));
-        nearest.get((share * nearest.len() as f64) as usize).copied()
+        nearest
+            .get((share * nearest.len() as f64) as usize)
+            .copied()
     };
     let clips = of(Source::Background, 0.0);
     let everyday = of(Source::Everyday, params.everyday_may_pass);
-    let nearest = clips.into_iter().chain(everyday).min_by(|a, b| a.0.total_cmp(&b.0));
+    let nearest = clips
+        .into_iter()
+        .chain(everyday)
+        .min_by(|a, b| a.0.total_cmp(&b.0));
     match nearest {
-        Some((distance, name)) if distance < FAR / 2.0 => {
-            (params.background_share as f32 * distance, format!("background clip {name}"))
-        }
-        _ => (params.fallback_threshold as f32, "no background: a general value".to_owned()),
+        Some((distance, name)) if distance < FAR / 2.0 => (
+            params.background_share as f32 * distance,
+            format!("background clip {name}"),
+        ),
+        _ => (
+            params.fallback_threshold as f32,
+            "no background: a general value".to_owned(),
+        ),
     }
 }
 
@@ -56,20 +71,31 @@ pub fn of_classes(
             let of = streams().filter(|(s, _)| s.source == source);
             let mut nearest: Vec<f32> = of.map(|(_, d)| nearest_anywhere(d, &counts)).collect();
             nearest.sort_by(f32::total_cmp);
-            nearest.get((share * nearest.len() as f64) as usize).copied().unwrap_or(FAR)
+            nearest
+                .get((share * nearest.len() as f64) as usize)
+                .copied()
+                .unwrap_or(FAR)
         };
         let others = streams().filter(|(s, _)| s.source == Source::Labelled);
-        let others = others.map(|(s, d)| nearest_on_others(s, d, class, &counts)).fold(FAR, f32::min);
+        let others = others
+            .map(|(s, d)| nearest_on_others(s, d, class, &counts))
+            .fold(FAR, f32::min);
         let everyday = background(Source::Everyday, params.everyday_may_pass);
-        let nearest = background(Source::Background, 0.0).min(everyday).min(others);
+        let nearest = background(Source::Background, 0.0)
+            .min(everyday)
+            .min(others);
         let most = params.class_range as f32 * threshold;
-        (params.class_share as f32 * nearest).min(most).max(threshold)
+        (params.class_share as f32 * nearest)
+            .min(most)
+            .max(threshold)
     };
     (0..set.classes.len()).map(of_class).collect()
 }
 
 fn nearest_anywhere(distances: &Distances, counts: &impl Fn(usize) -> bool) -> f32 {
-    (0..distances.len()).map(|t| distances.nearest(t, counts).distance).fold(FAR, f32::min)
+    (0..distances.len())
+        .map(|t| distances.nearest(t, counts).distance)
+        .fold(FAR, f32::min)
 }
 
 /// The smallest distance of a match that lies on a sample of another class, and on none of this or of unknown class.
@@ -86,10 +112,13 @@ fn nearest_on_others(
             continue;
         }
         let ticks = t - found.age.min(t)..t + 1;
-        let mut touched =
-            stream.known.iter().filter(|k| overlap_share(&ticks, &k.ticks) > TOUCHES).peekable();
-        let on_others =
-            touched.peek().is_some() && touched.all(|k| k.class.is_some_and(|c| c.index() != class));
+        let mut touched = stream
+            .known
+            .iter()
+            .filter(|k| overlap_share(&ticks, &k.ticks) > TOUCHES)
+            .peekable();
+        let on_others = touched.peek().is_some()
+            && touched.all(|k| k.class.is_some_and(|c| c.index() != class));
         if on_others {
             nearest = found.distance;
         }
@@ -108,26 +137,59 @@ mod tests {
     fn stream(name: &str, source: Source, values: Vec<f32>, known: Vec<Known>) -> TrainStream {
         let rows = Rows::from_values(1, values);
         let (group, rest_is_background) = (name.to_owned(), true);
-        TrainStream { name: name.into(), group, person: None, source, rest_is_background, rows, known }
+        TrainStream {
+            name: name.into(),
+            group,
+            person: None,
+            source,
+            rest_is_background,
+            rows,
+            known,
+        }
     }
 
     /// Classes at 0, 10 and 12 for four ticks each, too far apart for a match to lie on two of them, and background that
     /// stays at `background`.
     fn trained(background: Option<f32>) -> Vec<f32> {
         let samples = [0.0, 10.0, 12.0];
-        let values = samples.iter().flat_map(|v| [vec![5.0; 8], vec![*v; 4]].concat()).collect();
+        let values = samples
+            .iter()
+            .flat_map(|v| [vec![5.0; 8], vec![*v; 4]].concat())
+            .collect();
         let known = (0..3).map(|c| {
             let start = 8 + 12 * usize::from(c);
-            Known { ticks: start..start + 4, class: Some(ClassId(c)) }
+            Known {
+                ticks: start..start + 4,
+                class: Some(ClassId(c)),
+            }
         });
-        let mut set = TrainSet { classes: vec!["a".into(), "b".into(), "c".into()], ..TrainSet::default() };
-        set.streams.push(stream("labelled", Source::Labelled, values, known.collect()));
+        let mut set = TrainSet {
+            classes: vec!["a".into(), "b".into(), "c".into()],
+            ..TrainSet::default()
+        };
+        set.streams.push(stream(
+            "labelled",
+            Source::Labelled,
+            values,
+            known.collect(),
+        ));
         let background = background.map(|v| stream("b", Source::Background, vec![v; 8], vec![]));
         set.streams.extend(background);
         let samples = set.samples();
-        let mut bank = Bank::new(&samples.iter().map(|s| s.rows.clone()).collect::<Vec<_>>(), 1);
-        let distances: Vec<_> = set.streams.iter().map(|s| Distances::of(&mut bank, &s.rows)).collect();
-        let params = TrainParams { class_share: 0.5, class_range: 3.0, ..TrainParams::default() };
+        let mut bank = Bank::new(
+            &samples.iter().map(|s| s.rows.clone()).collect::<Vec<_>>(),
+            1,
+        );
+        let distances: Vec<_> = set
+            .streams
+            .iter()
+            .map(|s| Distances::of(&mut bank, &s.rows))
+            .collect();
+        let params = TrainParams {
+            class_share: 0.5,
+            class_range: 3.0,
+            ..TrainParams::default()
+        };
         of_classes(&set, &samples, &distances, 1.0, &params)
     }
 
@@ -136,7 +198,11 @@ mod tests {
         // Background is 2² from a; b and c are 2² from each other; neither falls below the common threshold.
         assert_eq!(trained(Some(-2.0)), [2.0, 2.0, 2.0]);
         assert_eq!(trained(Some(-1.0)), [1.0, 2.0, 2.0]);
-        assert_eq!(trained(Some(-30.0)), [3.0, 2.0, 2.0], "never above its range");
+        assert_eq!(
+            trained(Some(-30.0)),
+            [3.0, 2.0, 2.0],
+            "never above its range"
+        );
     }
 
     #[test]

@@ -26,25 +26,40 @@ pub fn moving_part(rows: &Rows, bones: BoneSet) -> Range<usize> {
     let columns = 3 * bones.len();
     let averaged: Vec<Vec<f32>> = (0..n).map(|t| average(rows, t, columns)).collect();
     let movement: Vec<f64> = (0..n)
-        .map(|t| distance(&averaged[t.saturating_sub(REACH_TICKS)], &averaged[(t + REACH_TICKS).min(n - 1)]))
+        .map(|t| {
+            distance(
+                &averaged[t.saturating_sub(REACH_TICKS)],
+                &averaged[(t + REACH_TICKS).min(n - 1)],
+            )
+        })
         .collect();
     let mut sorted = movement.clone();
     sorted.sort_by(f64::total_cmp);
     let still = sorted[n / 10];
     let bar = still + MOVING_SHARE * (sorted[n - 1] - still);
     let moves = |t: &usize| movement[*t] > bar;
-    let (Some(first), Some(last)) = ((0..n).find(moves), (0..n).rev().find(moves)) else { return 0..n };
+    let (Some(first), Some(last)) = ((0..n).find(moves), (0..n).rev().find(moves)) else {
+        return 0..n;
+    };
     // Movement measured over a reach begins that much before the motion and ends that much after it.
     let start = (first + REACH_TICKS).saturating_sub(PAD_TICKS);
     let stop = (last + 1 + PAD_TICKS).saturating_sub(REACH_TICKS).min(n);
-    if start < stop { start..stop } else { first..last + 1 }
+    if start < stop {
+        start..stop
+    } else {
+        first..last + 1
+    }
 }
 
 fn average(rows: &Rows, tick: usize, columns: usize) -> Vec<f32> {
-    let near =
-        || (0..=2 * AVERAGE_TICKS).map(|k| (tick + k).saturating_sub(AVERAGE_TICKS).min(rows.len() - 1));
+    let near = || {
+        (0..=2 * AVERAGE_TICKS)
+            .map(|k| (tick + k).saturating_sub(AVERAGE_TICKS).min(rows.len() - 1))
+    };
     let count = near().count() as f32;
-    (0..columns).map(|c| near().map(|t| rows.row(t)[c]).sum::<f32>() / count).collect()
+    (0..columns)
+        .map(|c| near().map(|t| rows.row(t)[c]).sum::<f32>() / count)
+        .collect()
 }
 
 fn distance(a: &[f32], b: &[f32]) -> f64 {
@@ -68,7 +83,10 @@ mod tests {
             rows.push(&row);
         }
         let part = moving_part(&rows, bones);
-        assert!((26..=32).contains(&part.start) && (58..=64).contains(&part.end), "{part:?}");
+        assert!(
+            (26..=32).contains(&part.start) && (58..=64).contains(&part.end),
+            "{part:?}"
+        );
     }
 
     #[test]

@@ -36,16 +36,28 @@ pub fn learn(
     reach: f32,
     params: &TrainParams,
 ) -> Option<Verifier> {
-    let targets: Vec<f64> = examples.iter().map(|e| if e.positive { 1.0 } else { -1.0 }).collect();
+    let targets: Vec<f64> = examples
+        .iter()
+        .map(|e| if e.positive { 1.0 } else { -1.0 })
+        .collect();
     let positives = targets.iter().filter(|t| **t > 0.0).count();
     let given = |e: &&Example| !e.positive && set.streams[e.stream].source == Source::Background;
-    if positives < params.min_positives || examples.iter().filter(given).count() < params.min_negatives {
+    if positives < params.min_positives
+        || examples.iter().filter(given).count() < params.min_negatives
+    {
         return None;
     }
     let groups = group_numbers(examples, |e| set.streams[e.stream].group.clone());
-    let ratios: Vec<[f64; 3]> = examples.iter().map(|e| e.evidence.ratios(f64::from(threshold))).collect();
+    let ratios: Vec<[f64; 3]> = examples
+        .iter()
+        .map(|e| e.evidence.ratios(f64::from(threshold)))
+        .collect();
     let (generic, cross_fitted) = fit_generic(&ratios, &targets, &groups)?;
-    let residuals: Vec<f64> = targets.iter().zip(&cross_fitted).map(|(t, g)| t - g).collect();
+    let residuals: Vec<f64> = targets
+        .iter()
+        .zip(&cross_fitted)
+        .map(|(t, g)| t - g)
+        .collect();
     let problem = ClassProblem {
         examples,
         set,
@@ -56,25 +68,45 @@ pub fn learn(
         groups: &groups,
     };
     let members = |class: usize| -> Vec<usize> {
-        (0..examples.len()).filter(|&i| examples[i].class == class).collect()
+        (0..examples.len())
+            .filter(|&i| examples[i].class == class)
+            .collect()
     };
     let fit = |class: usize| {
         let members = members(class);
-        problem.fit(class, &members, params).map(|(exemplars, corrections)| (exemplars, members, corrections))
+        problem
+            .fit(class, &members, params)
+            .map(|(exemplars, corrections)| (exemplars, members, corrections))
     };
-    let fits: Vec<_> = (0..set.classes.len()).into_par_iter().filter_map(fit).collect();
+    let fits: Vec<_> = (0..set.classes.len())
+        .into_par_iter()
+        .filter_map(fit)
+        .collect();
     let mut scores = cross_fitted;
     let mut classes = Vec::with_capacity(fits.len());
     for (exemplars, members, corrections) in fits {
-        members.iter().zip(corrections).for_each(|(&i, c)| scores[i] += c);
+        members
+            .iter()
+            .zip(corrections)
+            .for_each(|(&i, c)| scores[i] += c);
         classes.push(exemplars);
     }
     let of = |keep: &dyn Fn(&Example) -> bool| -> Vec<f64> {
-        examples.iter().zip(&scores).filter(|(e, _)| keep(e)).map(|(_, s)| *s).collect()
+        examples
+            .iter()
+            .zip(&scores)
+            .filter(|(e, _)| keep(e))
+            .map(|(_, s)| *s)
+            .collect()
     };
     let background = |e: &Example| !e.positive && set.streams[e.stream].rest_is_background;
     let bar = bar(&of(&|e| e.positive), &of(&background), params);
-    Some(Verifier { reach, bar, generic, classes })
+    Some(Verifier {
+        reach,
+        bar,
+        generic,
+        classes,
+    })
 }
 
 fn group_numbers(examples: &[Example], name: impl Fn(&Example) -> String) -> Vec<usize> {
@@ -87,22 +119,32 @@ fn group_numbers(examples: &[Example], name: impl Fn(&Example) -> String) -> Vec
 }
 
 /// The linear score, and for each example its score from a fit without its group.
-fn fit_generic(ratios: &[[f64; 3]], targets: &[f64], groups: &[usize]) -> Option<(Generic, Vec<f64>)> {
+fn fit_generic(
+    ratios: &[[f64; 3]],
+    targets: &[f64],
+    groups: &[usize],
+) -> Option<(Generic, Vec<f64>)> {
     let n = ratios.len() as f64;
     let mean: [f64; 3] = std::array::from_fn(|k| ratios.iter().map(|r| r[k]).sum::<f64>() / n);
     let deviation: [f64; 3] = std::array::from_fn(|k| {
         (ratios.iter().map(|r| (r[k] - mean[k]).powi(2)).sum::<f64>() / n).sqrt() + 1e-9
     });
     let weights = balanced(targets, f64::INFINITY);
-    let standard: Vec<[f64; 3]> =
-        ratios.iter().map(|r| std::array::from_fn(|k| (r[k] - mean[k]) / deviation[k])).collect();
+    let standard: Vec<[f64; 3]> = ratios
+        .iter()
+        .map(|r| std::array::from_fn(|k| (r[k] - mean[k]) / deviation[k]))
+        .collect();
     let fit = |keep: &dyn Fn(usize) -> bool| -> Option<Generic> {
         let kept: Vec<usize> = (0..targets.len()).filter(|&i| keep(i)).collect();
         let both = kept.iter().any(|&i| targets[i] > 0.0) && kept.iter().any(|&i| targets[i] < 0.0);
         let pick = |v: &[f64]| kept.iter().map(|&i| v[i]).collect::<Vec<f64>>();
         let rows: Vec<[f64; 3]> = kept.iter().map(|&i| standard[i]).collect();
         let found = linear(&rows, &pick(targets), &pick(&weights), 0.01).filter(|_| both)?;
-        Some(Generic { mean, deviation, weights: [found[0], found[1], found[2], found[3]] })
+        Some(Generic {
+            mean,
+            deviation,
+            weights: [found[0], found[1], found[2], found[3]],
+        })
     };
     let whole = fit(&|_| true)?;
     let mut scores: Vec<f64> = ratios.iter().map(|r| whole.score(r)).collect();
@@ -128,7 +170,12 @@ struct ClassProblem<'a> {
 
 impl ClassProblem<'_> {
     /// The class's exemplars and each member's cross-fitted correction.
-    fn fit(&self, class: usize, members: &[usize], params: &TrainParams) -> Option<(Exemplars, Vec<f64>)> {
+    fn fit(
+        &self,
+        class: usize,
+        members: &[usize],
+        params: &TrainParams,
+    ) -> Option<(Exemplars, Vec<f64>)> {
         let targets: Vec<f64> = members.iter().map(|&i| self.targets[i]).collect();
         let positives = targets.iter().filter(|t| **t > 0.0).count();
         if positives < params.min_positives || positives == targets.len() {
@@ -138,14 +185,25 @@ impl ClassProblem<'_> {
         let mapped = self.metric.apply_all(&shapes);
         let beside: Vec<[f32; 4]> = members
             .iter()
-            .map(|&i| self.examples[i].evidence.beside_shape(f64::from(self.threshold)).map(|v| v as f32))
+            .map(|&i| {
+                self.examples[i]
+                    .evidence
+                    .beside_shape(f64::from(self.threshold))
+                    .map(|v| v as f32)
+            })
             .collect();
         let distances = pairwise(&mapped, &beside);
         let sharpness = 1.0 / (2.0 * spread(&distances));
         let matrix = distances.map(|d| (-sharpness * d).exp());
         let residuals: Vec<f64> = members.iter().map(|&i| self.residuals[i]).collect();
         let weights = balanced(&targets, MOST_WEIGHT);
-        let fit = kernel(matrix, &residuals, &weights, params.verifier_ridge, &self.groups_of(members))?;
+        let fit = kernel(
+            matrix,
+            &residuals,
+            &weights,
+            params.verifier_ridge,
+            &self.groups_of(members),
+        )?;
         let exemplars = Exemplars {
             class: ClassId(class as u16),
             shapes,
@@ -158,7 +216,10 @@ impl ClassProblem<'_> {
 
     /// Groups to leave out: people or clips; pieces of streams where all samples are one group's.
     fn groups_of(&self, members: &[usize]) -> Vec<usize> {
-        let of_positives = members.iter().filter(|&&i| self.targets[i] > 0.0).map(|&i| self.groups[i]);
+        let of_positives = members
+            .iter()
+            .filter(|&&i| self.targets[i] > 0.0)
+            .map(|&i| self.groups[i]);
         let groups: std::collections::BTreeSet<usize> = of_positives.collect();
         if groups.len() > 1 {
             return members.iter().map(|&i| self.groups[i]).collect();
@@ -170,10 +231,17 @@ impl ClassProblem<'_> {
     fn shapes(&self, members: &[usize]) -> Rows {
         let dim = self.metric.dim();
         let mut values = vec![0.0; members.len() * SHAPE_ROWS * dim];
-        for (&i, out) in members.iter().zip(values.chunks_exact_mut(SHAPE_ROWS * dim)) {
+        for (&i, out) in members
+            .iter()
+            .zip(values.chunks_exact_mut(SHAPE_ROWS * dim))
+        {
             let example = &self.examples[i];
             let rows = &self.set.streams[example.stream].rows;
-            shape_of(example.ticks.len(), |k| rows.row(example.ticks.start + k), out);
+            shape_of(
+                example.ticks.len(),
+                |k| rows.row(example.ticks.start + k),
+                out,
+            );
         }
         Rows::from_values(dim, values)
     }
@@ -181,11 +249,15 @@ impl ClassProblem<'_> {
 
 /// Squared distances between all exemplars, shape and what stands beside it together.
 fn pairwise(mapped: &Rows, beside: &[[f32; 4]]) -> DMatrix<f64> {
-    let shapes: Vec<&[f32]> = mapped.values().chunks_exact(SHAPE_ROWS * mapped.dim()).collect();
+    let shapes: Vec<&[f32]> = mapped
+        .values()
+        .chunks_exact(SHAPE_ROWS * mapped.dim())
+        .collect();
     let mut distances = DMatrix::zeros(beside.len(), beside.len());
     for i in 0..beside.len() {
         for j in 0..i {
-            let distance = shape_distance(shapes[i], shapes[j]) + squared_distance(&beside[i], &beside[j]);
+            let distance =
+                shape_distance(shapes[i], shapes[j]) + squared_distance(&beside[i], &beside[j]);
             distances[(i, j)] = f64::from(distance);
             distances[(j, i)] = f64::from(distance);
         }

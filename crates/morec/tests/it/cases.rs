@@ -87,7 +87,10 @@ impl Case {
             Line::Play(motion) => script.play(motion),
             Line::PlayAtSpeed(motion, speed) => script.play_at_speed(motion, *speed),
         };
-        let script = self.script.iter().fold(Script::new(self.seed, person), perform);
+        let script = self
+            .script
+            .iter()
+            .fold(Script::new(self.seed, person), perform);
         script.film("case", rate_hz).unwrap()
     }
 }
@@ -98,12 +101,17 @@ impl Stream {
         let mut rng = Rng::new(5);
         let mut arrived: Vec<Timed> = Vec::new();
         for (nth, (time_secs, pose)) in poses.iter().enumerate() {
-            let in_gap = self.gap_secs.is_some_and(|(from, to)| (from..to).contains(time_secs));
+            let in_gap = self
+                .gap_secs
+                .is_some_and(|(from, to)| (from..to).contains(time_secs));
             if in_gap || rng.chance(self.lost_share) {
                 continue;
             }
             arrived.push((time_secs + self.clock_secs, self.place(pose)));
-            if self.echo_every.is_some_and(|every| nth % every == every - 1) {
+            if self
+                .echo_every
+                .is_some_and(|every| nth % every == every - 1)
+            {
                 let old = &poses[nth.saturating_sub(3)];
                 for (time_secs, pose) in [&poses[nth], old] {
                     arrived.push((time_secs + self.clock_secs, lying(&self.place(pose))));
@@ -115,7 +123,9 @@ impl Stream {
 
     fn place(&self, pose: &KeyPose) -> KeyPose {
         let turn = Quat::from_axis_angle(&Vec3::y_axis(), self.turned_deg.to_radians());
-        map(pose, |p| turn * p * self.scaled.unwrap_or(1.0) + Vec3::from(self.moved))
+        map(pose, |p| {
+            turn * p * self.scaled.unwrap_or(1.0) + Vec3::from(self.moved)
+        })
     }
 }
 
@@ -136,8 +146,19 @@ fn map(pose: &KeyPose, new: impl Fn(Vec3) -> Vec3) -> KeyPose {
 /// All cases with their names.
 pub fn cases() -> Vec<(String, Case)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../morec/testdata/recognition");
-    let mut paths: Vec<_> = fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
+    let mut paths: Vec<_> = fs::read_dir(folder)
+        .unwrap()
+        .map(|e| e.unwrap().path())
+        .collect();
     paths.sort();
     paths.retain(|p| p.extension().is_some_and(|e| e == "json"));
-    paths.iter().map(|p| (p.file_stem().unwrap().to_string_lossy().into_owned(), Case::read(p))).collect()
+    paths
+        .iter()
+        .map(|p| {
+            (
+                p.file_stem().unwrap().to_string_lossy().into_owned(),
+                Case::read(p),
+            )
+        })
+        .collect()
 }

@@ -14,8 +14,16 @@ use crate::made::{self, Timed};
 fn stream() -> &'static (BoneSet, Vec<Timed>, Vec<Detection>) {
     static STREAM: OnceLock<(BoneSet, Vec<Timed>, Vec<Detection>)> = OnceLock::new();
     STREAM.get_or_init(|| {
-        let person = Person { hand: Side::Right, ..Person::draw(88, 1) };
-        let script = Script::new(88, person).rest(0.5).play("push").rest(1.5).play("bow").rest(0.5);
+        let person = Person {
+            hand: Side::Right,
+            ..Person::draw(88, 1)
+        };
+        let script = Script::new(88, person)
+            .rest(0.5)
+            .play("push")
+            .rest(1.5)
+            .play("bow")
+            .rest(0.5);
         let (bones, mut poses) = made::poses(&script.film("cut", 50.0).unwrap());
         poses.retain(|p| !(3.0..3.2 + MAX_GAP_SECS).contains(&p.0));
         let found = inline(&made::model(), bones, &poses);

@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use morec::features::BoneSet;
 use morec::live::{
-    Actor, Detection, EventReader, Frame, Next, Overload, Phase, Pool, PoolStream, Recognizer, Rig, Session,
-    SessionOptions, Source,
+    Actor, Detection, EventReader, Frame, Next, Overload, Phase, Pool, PoolStream, Recognizer, Rig,
+    Session, SessionOptions, Source,
 };
 use morec::templates::TemplateModel;
 
@@ -22,10 +22,22 @@ pub struct Engine {
 
 /// All of them.
 pub const ENGINES: [Engine; 4] = [
-    Engine { name: "inline", run: inline },
-    Engine { name: "inline, in batches", run: batches },
-    Engine { name: "session", run: session },
-    Engine { name: "pool of two threads and three streams", run: pool },
+    Engine {
+        name: "inline",
+        run: inline,
+    },
+    Engine {
+        name: "inline, in batches",
+        run: batches,
+    },
+    Engine {
+        name: "session",
+        run: session,
+    },
+    Engine {
+        name: "pool of two threads and three streams",
+        run: pool,
+    },
 ];
 
 pub fn inline(model: &Arc<TemplateModel>, bones: BoneSet, poses: &[Timed]) -> Vec<Detection> {
@@ -57,7 +69,11 @@ pub struct Played {
 
 impl Played {
     pub fn new(poses: &[Timed]) -> Self {
-        Self { poses: poses.to_vec(), played: 0, rig: Some(Arc::new(Rig::of_roles())) }
+        Self {
+            poses: poses.to_vec(),
+            played: 0,
+            rig: Some(Arc::new(Rig::of_roles())),
+        }
     }
 }
 
@@ -66,7 +82,9 @@ impl Source for Played {
         if let Some(rig) = self.rig.take() {
             return Next::Rig(Actor(0), rig);
         }
-        let Some((time_secs, pose)) = self.poses.get(self.played) else { return Next::Ended };
+        let Some((time_secs, pose)) = self.poses.get(self.played) else {
+            return Next::Ended;
+        };
         self.played += 1;
         fill(frame, *time_secs, pose);
         Next::Frame
@@ -85,14 +103,21 @@ pub fn ended(mut reader: EventReader) -> Vec<Detection> {
     let mut found = Vec::new();
     while !reader.is_ended() {
         found.extend(
-            reader.wait(Duration::from_secs(60)).filter(|e| e.phase == Phase::End).map(|e| e.detection()),
+            reader
+                .wait(Duration::from_secs(60))
+                .filter(|e| e.phase == Phase::End)
+                .map(|e| e.detection()),
         );
     }
     found
 }
 
 fn session(model: &Arc<TemplateModel>, _: BoneSet, poses: &[Timed]) -> Vec<Detection> {
-    let options = SessionOptions { overload: Overload::Wait, frame_capacity: 7, ..Default::default() };
+    let options = SessionOptions {
+        overload: Overload::Wait,
+        frame_capacity: 7,
+        ..Default::default()
+    };
     let (session, readers) = Session::start(model, Box::new(Played::new(poses)), &options).unwrap();
     let found = readers.into_iter().map(ended).next().unwrap();
     let status = session.join();
@@ -103,14 +128,24 @@ fn session(model: &Arc<TemplateModel>, _: BoneSet, poses: &[Timed]) -> Vec<Detec
 /// The same stream three times at once, so that one thread has two of them.
 fn pool(model: &Arc<TemplateModel>, _: BoneSet, poses: &[Timed]) -> Vec<Detection> {
     let pool = Pool::new(model, 2).unwrap();
-    let options = SessionOptions { frame_capacity: 9, ..Default::default() };
+    let options = SessionOptions {
+        frame_capacity: 9,
+        ..Default::default()
+    };
     let (mut feeds, mut readers) = (Vec::new(), Vec::new());
-    for PoolStream { feed, readers: of_stream, .. } in (0..3).map(|_| pool.open(&options)) {
+    for PoolStream {
+        feed,
+        readers: of_stream,
+        ..
+    } in (0..3).map(|_| pool.open(&options))
+    {
         feeds.push((feed, Box::<Frame>::default()));
         readers.extend(of_stream);
     }
     let rig = Arc::new(Rig::of_roles());
-    feeds.iter_mut().for_each(|(feed, _)| feed.set_rig(Actor(0), &rig));
+    feeds
+        .iter_mut()
+        .for_each(|(feed, _)| feed.set_rig(Actor(0), &rig));
     for (time_secs, pose) in poses {
         for (feed, frame) in &mut feeds {
             fill(frame, *time_secs, pose);

@@ -15,7 +15,9 @@ use morec::train::thesis::SvrdmTrainParams;
 use crate::thesis_method::{index_of, trained};
 
 fn committed(name: &str) -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("testdata").join(name)
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+        .join("testdata")
+        .join(name)
 }
 
 fn read(name: &str) -> Vec<u8> {
@@ -24,9 +26,23 @@ fn read(name: &str) -> Vec<u8> {
 
 /// Somebody never seen, who performs two of the classes and something else.
 fn stream() -> Take {
-    let person = Person { hand: Side::Right, ..Person::draw(90, 3) };
-    let script = Script::new(90, person).rest(1.0).play("wave").rest(0.8).play("phone").rest(0.5).play("bow");
-    script.rest(1.0).play("push").rest(1.5).film("compatibility", 60.0).unwrap()
+    let person = Person {
+        hand: Side::Right,
+        ..Person::draw(90, 3)
+    };
+    let script = Script::new(90, person)
+        .rest(1.0)
+        .play("wave")
+        .rest(0.8)
+        .play("phone")
+        .rest(0.5)
+        .play("bow");
+    script
+        .rest(1.0)
+        .play("push")
+        .rest(1.5)
+        .film("compatibility", 60.0)
+        .unwrap()
 }
 
 /// Class, start, stop, score.
@@ -37,7 +53,10 @@ fn recognised(index: &MotionIndex) -> Found {
     let roles = RoleMap::find(&clip.skeleton);
     let found = recognize_clip(&index.model, &clip, &roles, &(0..0)).unwrap();
     let name = |class| index.model.class_name(class).to_owned();
-    found.iter().map(|d| (name(d.class), d.start_secs, d.stop_secs, d.score)).collect()
+    found
+        .iter()
+        .map(|d| (name(d.class), d.start_secs, d.stop_secs, d.score))
+        .collect()
 }
 
 #[test]
@@ -46,7 +65,10 @@ fn an_svrdm_index_of_version_1_opens_for_ever_and_recognises_what_it_did() {
     assert_eq!(index.model.method(), "svrdm");
     let expected: Found = serde_json::from_slice(&read("index/svrdm_v1.json")).unwrap();
     let found = recognised(&index);
-    assert!(found.len() == expected.len() && found.len() >= 2, "{found:?}");
+    assert!(
+        found.len() == expected.len() && found.len() >= 2,
+        "{found:?}"
+    );
     for (f, e) in found.iter().zip(&expected) {
         assert_eq!((&f.0, f.1, f.2), (&e.0, e.1, e.2));
         assert!((f.3 - e.3).abs() < 1e-6, "{f:?}, {e:?}");
@@ -57,7 +79,11 @@ fn an_svrdm_index_of_version_1_opens_for_ever_and_recognises_what_it_did() {
 type Places = Vec<[f64; 3]>;
 
 fn places(clip: &Clip, frame: usize) -> Places {
-    WorldPose::of(clip, frame).positions.iter().map(|p| [p.x, p.y, p.z]).collect()
+    WorldPose::of(clip, frame)
+        .positions
+        .iter()
+        .map(|p| [p.x, p.y, p.z])
+        .collect()
 }
 
 /// Frames that are compared.
@@ -72,12 +98,22 @@ fn a_stored_clip_of_version_1_opens_for_ever_and_shows_what_it_did() {
     assert!(loaded.warnings.is_empty());
     let expected: (usize, f64, Vec<String>, Vec<Places>) =
         serde_json::from_slice(&read("mclip/v1.json")).unwrap();
-    let names: Vec<String> = clip.skeleton.joints().iter().map(|joint| joint.name.clone()).collect();
-    assert_eq!((clip.frames, clip.rate_hz, names), (expected.0, expected.1, expected.2));
+    let names: Vec<String> = clip
+        .skeleton
+        .joints()
+        .iter()
+        .map(|joint| joint.name.clone())
+        .collect();
+    assert_eq!(
+        (clip.frames, clip.rate_hz, names),
+        (expected.0, expected.1, expected.2)
+    );
     assert!(expected.3.len() >= 4);
     for (frame, expected) in some(clip).zip(&expected.3) {
         for (found, expected) in places(clip, frame).iter().zip(expected) {
-            let off = (0..3).map(|i| (found[i] - expected[i]).abs()).fold(0.0, f64::max);
+            let off = (0..3)
+                .map(|i| (found[i] - expected[i]).abs())
+                .fold(0.0, f64::max);
             assert!(off < 1e-6, "frame {frame}: {off} m off");
         }
     }
@@ -89,17 +125,36 @@ fn a_stored_clip_of_version_1_opens_for_ever_and_shows_what_it_did() {
 fn write_files_of_this_version() {
     let write = |name: String, bytes: &[u8]| std::fs::write(committed(&name), bytes).unwrap();
     let index = index_of(trained(SvrdmTrainParams::tuned()).0);
-    write(format!("index/svrdm_v{INDEX_VERSION}.index"), &index.to_bytes().unwrap());
+    write(
+        format!("index/svrdm_v{INDEX_VERSION}.index"),
+        &index.to_bytes().unwrap(),
+    );
     let found = serde_json::to_string_pretty(&recognised(&index)).unwrap() + "\n";
-    write(format!("index/svrdm_v{INDEX_VERSION}.json"), found.as_bytes());
+    write(
+        format!("index/svrdm_v{INDEX_VERSION}.json"),
+        found.as_bytes(),
+    );
 
     let person = Person::draw(90, 4);
-    let take = Script::new(90, person).rest(0.2).play("push").film("compatibility", 30.0).unwrap();
-    let bytes = compress(&take.clip, &SmoothParams::default(), &()).unwrap().to_bytes();
+    let take = Script::new(90, person)
+        .rest(0.2)
+        .play("push")
+        .film("compatibility", 30.0)
+        .unwrap();
+    let bytes = compress(&take.clip, &SmoothParams::default(), &())
+        .unwrap()
+        .to_bytes();
     std::fs::create_dir_all(committed("mclip")).unwrap();
     write(format!("mclip/v{VERSION}.mclip"), &bytes);
-    let clip = &mclip::read(&bytes, "new", &Limits::default()).unwrap().clips[0];
-    let names: Vec<&String> = clip.skeleton.joints().iter().map(|joint| &joint.name).collect();
+    let clip = &mclip::read(&bytes, "new", &Limits::default())
+        .unwrap()
+        .clips[0];
+    let names: Vec<&String> = clip
+        .skeleton
+        .joints()
+        .iter()
+        .map(|joint| &joint.name)
+        .collect();
     let places: Vec<Places> = some(clip).map(|frame| places(clip, frame)).collect();
     let facts = serde_json::to_string(&(clip.frames, clip.rate_hz, names, places)).unwrap() + "\n";
     write(format!("mclip/v{VERSION}.json"), facts.as_bytes());

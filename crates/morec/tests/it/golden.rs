@@ -11,9 +11,23 @@ use morec::train::{Labelling, Source, TrainClip, TrainParams, prepare, train};
 use crate::kit;
 
 const SIGNALS: [&str; 3] = ["signals_1", "signals_2", "signals_3"];
-const BACKGROUND: [&str; 6] = ["jumping_1", "jumping_3", "soccer_1", "soccer_2", "running_1", "running_2"];
-const CLASSES: [&str; 7] =
-    ["hands_up", "illegal_dribble", "no_score", "pushing", "stop_clock", "traveling", "visible_count"];
+const BACKGROUND: [&str; 6] = [
+    "jumping_1",
+    "jumping_3",
+    "soccer_1",
+    "soccer_2",
+    "running_1",
+    "running_2",
+];
+const CLASSES: [&str; 7] = [
+    "hands_up",
+    "illegal_dribble",
+    "no_score",
+    "pushing",
+    "stop_clock",
+    "traveling",
+    "visible_count",
+];
 
 #[derive(serde::Deserialize)]
 struct Golden {
@@ -33,20 +47,38 @@ fn golden() -> Golden {
 }
 
 fn clips(data: &Path) -> Vec<TrainClip> {
-    let signals = SIGNALS.iter().map(|n| kit::referee(data, n, Source::Labelled));
-    let background = BACKGROUND.iter().map(|n| kit::referee(data, n, Source::Background));
+    let signals = SIGNALS
+        .iter()
+        .map(|n| kit::referee(data, n, Source::Labelled));
+    let background = BACKGROUND
+        .iter()
+        .map(|n| kit::referee(data, n, Source::Background));
     let exercises = ["13_29", "13_30", "13_31"].iter();
-    let exercises = exercises.map(|n| kit::acclaim(data, "exercises", "skeleton.asf", n, Source::Background));
+    let exercises =
+        exercises.map(|n| kit::acclaim(data, "exercises", "skeleton.asf", n, Source::Background));
     let mixed = kit::acclaim(data, "segmentation", "86.asf", "86_01", Source::Background);
-    signals.chain(background).chain(exercises).chain([mixed]).collect()
+    signals
+        .chain(background)
+        .chain(exercises)
+        .chain([mixed])
+        .collect()
 }
 
 fn samples(data: &Path, clips: &[TrainClip]) -> Vec<Sample> {
     let labels = Labels::read(&std::fs::read(data.join("referee/labels.tsv")).unwrap()).unwrap();
-    let length = |c: &TrainClip| ClipLength { frames: c.clip.frames, rate_hz: c.clip.rate_hz };
+    let length = |c: &TrainClip| ClipLength {
+        frames: c.clip.frames,
+        rate_hz: c.clip.rate_hz,
+    };
     let lengths = clips.iter().map(|c| (c.name.clone(), length(c))).collect();
-    let signal = |s: &Sample| SIGNALS.contains(&s.clip.as_str()) && CLASSES.contains(&s.class.as_str());
-    labels.resolve(&lengths).samples.into_iter().filter(signal).collect()
+    let signal =
+        |s: &Sample| SIGNALS.contains(&s.clip.as_str()) && CLASSES.contains(&s.class.as_str());
+    labels
+        .resolve(&lengths)
+        .samples
+        .into_iter()
+        .filter(signal)
+        .collect()
 }
 
 #[test]
@@ -58,7 +90,9 @@ fn feature_rows_are_the_prototypes() {
         let bones = morec::features::BoneSet::ALL;
         let rows = rows_of_clip(&clip.clip, &clip.roles, &clip.rest, bones, &params);
         for (index, expected) in expected.iter().enumerate() {
-            for (column, (found, expected)) in rows.row(100 + index).iter().zip(expected).enumerate() {
+            for (column, (found, expected)) in
+                rows.row(100 + index).iter().zip(expected).enumerate()
+            {
                 assert!(
                     (found - expected).abs() < 2e-5,
                     "{name}, row {}, column {column}: {found} for {expected}",
@@ -77,19 +111,43 @@ fn thresholds_and_detections_are_the_prototypes() {
     let params = TrainParams::reference();
     let classes: Vec<String> = CLASSES.iter().map(|c| (*c).to_owned()).collect();
     for (left_out, expected) in golden().folds {
-        let others: Vec<TrainClip> = clips.iter().filter(|c| c.name != left_out).cloned().collect();
-        let taught: Vec<Sample> = samples.iter().filter(|s| s.clip != left_out).cloned().collect();
-        let labelling =
-            Labelling { samples: &taught, held_back: &[], classes: &classes, unlabelled_is_background: true };
+        let others: Vec<TrainClip> = clips
+            .iter()
+            .filter(|c| c.name != left_out)
+            .cloned()
+            .collect();
+        let taught: Vec<Sample> = samples
+            .iter()
+            .filter(|s| s.clip != left_out)
+            .cloned()
+            .collect();
+        let labelling = Labelling {
+            samples: &taught,
+            held_back: &[],
+            classes: &classes,
+            unlabelled_is_background: true,
+        };
         let prepared = prepare(&others, &labelling, &params.features);
-        let model = train(&prepared.set, prepared.bones, &params, &()).unwrap().model;
+        let model = train(&prepared.set, prepared.bones, &params, &())
+            .unwrap()
+            .model;
         assert_eq!(model.samples.len(), expected.templates);
         // Single precision and a metric packed to it: four digits are left.
         let theta = f64::from(model.threshold);
-        assert!((theta - expected.theta).abs() < 2e-4 * expected.theta, "{theta} for {}", expected.theta);
+        assert!(
+            (theta - expected.theta).abs() < 2e-4 * expected.theta,
+            "{theta} for {}",
+            expected.theta
+        );
 
         let clip = clips.iter().find(|c| c.name == left_out).unwrap();
-        let rows = rows_of_clip(&clip.clip, &clip.roles, &clip.rest, prepared.bones, &params.features);
+        let rows = rows_of_clip(
+            &clip.clip,
+            &clip.roles,
+            &clip.rest,
+            prepared.bones,
+            &params.features,
+        );
         let mut engine = TemplateEngine::new(&model).unwrap();
         let mut found = vec![];
         for (tick, row) in rows.iter().enumerate() {
@@ -99,8 +157,17 @@ fn thresholds_and_detections_are_the_prototypes() {
         assert_eq!(found.len(), expected.detections.len(), "{left_out}");
         for ((d, reported), e) in found.iter().zip(&expected.detections) {
             let class = &classes[d.class.index()];
-            assert_eq!((4 * d.start, 4 * d.stop, class, *reported), (e.0, e.1, &e.2, e.4), "{left_out}");
-            assert!((d.score - e.3).abs() < 1e-3, "{left_out}: score {} for {}", d.score, e.3);
+            assert_eq!(
+                (4 * d.start, 4 * d.stop, class, *reported),
+                (e.0, e.1, &e.2, e.4),
+                "{left_out}"
+            );
+            assert!(
+                (d.score - e.3).abs() < 1e-3,
+                "{left_out}: score {} for {}",
+                d.score,
+                e.3
+            );
         }
     }
 }

@@ -18,9 +18,20 @@ fn index() -> &'static MotionIndex {
     static INDEX: OnceLock<MotionIndex> = OnceLock::new();
     INDEX.get_or_init(|| {
         let classes = vec!["push", "bow"];
-        let spec =
-            DatabaseSpec { people: 2, repetitions: 1, rate_hz: 30.0, classes, ..DatabaseSpec::default() };
-        let model = made::train(&spec, TrainParams { max_negatives: 6, ..TrainParams::default() });
+        let spec = DatabaseSpec {
+            people: 2,
+            repetitions: 1,
+            rate_hz: 30.0,
+            classes,
+            ..DatabaseSpec::default()
+        };
+        let model = made::train(
+            &spec,
+            TrainParams {
+                max_negatives: 6,
+                ..TrainParams::default()
+            },
+        );
         MotionIndex {
             model: model.into(),
             roles: BTreeMap::from([
@@ -54,8 +65,13 @@ fn what_was_written_comes_back_and_is_written_the_same_again() {
 fn a_file_cut_short_anywhere_is_an_error() {
     let bytes = bytes();
     let header = 8 + u64::from_le_bytes(bytes[..8].try_into().unwrap()) as usize;
-    for length in (0..header + 64).chain((header..bytes.len()).step_by(97)).chain([bytes.len() - 1]) {
-        let error = MotionIndex::from_bytes(&bytes[..length]).map(|_| ()).expect_err("cut short");
+    for length in (0..header + 64)
+        .chain((header..bytes.len()).step_by(97))
+        .chain([bytes.len() - 1])
+    {
+        let error = MotionIndex::from_bytes(&bytes[..length])
+            .map(|_| ())
+            .expect_err("cut short");
         assert!(!error.to_string().is_empty());
     }
     let longer: Vec<u8> = bytes.iter().copied().chain([0]).collect();
@@ -67,7 +83,10 @@ fn an_altered_byte_is_an_error_or_changes_nothing() {
     let header = 8 + u64::from_le_bytes(bytes()[..8].try_into().unwrap()) as usize;
     let mut altered = bytes().to_vec();
     let mut refused = 0;
-    for at in (0..header).step_by(3).chain((header..altered.len()).step_by(1009)) {
+    for at in (0..header)
+        .step_by(3)
+        .chain((header..altered.len()).step_by(1009))
+    {
         for flip in [0x01, 0x10, 0x80] {
             altered[at] ^= flip;
             match MotionIndex::from_bytes(&altered) {
@@ -97,21 +116,32 @@ fn foreign_files_are_called_foreign() {
     for foreign in [&[][..], b"PK\x03\x04", &[0xff; 64], bvh, &plain] {
         let error = MotionIndex::from_bytes(foreign).unwrap_err();
         assert!(matches!(error, IndexError::Foreign(_)), "{error}");
-        assert!(error.to_string().starts_with("not a morec index"), "{error}");
+        assert!(
+            error.to_string().starts_with("not a morec index"),
+            "{error}"
+        );
     }
 }
 
 #[test]
 fn a_newer_version_asks_for_a_newer_morec() {
     let replaced = |from: String, to: String| {
-        let at = bytes().windows(from.len()).position(|w| w == from.as_bytes()).expect("the manifest's text");
+        let at = bytes()
+            .windows(from.len())
+            .position(|w| w == from.as_bytes())
+            .expect("the manifest's text");
         let mut changed = bytes().to_vec();
         changed[at..at + from.len()].copy_from_slice(to.as_bytes());
         MotionIndex::from_bytes(&changed).unwrap_err()
     };
     let version = |v: u32| format!("\\\"version\\\":{v}");
     let error = replaced(version(INDEX_VERSION), version(INDEX_VERSION + 1));
-    assert_eq!(error, IndexError::Newer { found: INDEX_VERSION + 1 });
+    assert_eq!(
+        error,
+        IndexError::Newer {
+            found: INDEX_VERSION + 1
+        }
+    );
     assert!(error.to_string().contains("use a newer morec"));
     let error = replaced("templates\\\"".to_owned(), "telepathy\\\"".to_owned());
     assert_eq!(error, IndexError::Method("telepathy".to_owned()));
@@ -119,7 +149,10 @@ fn a_newer_version_asks_for_a_newer_morec() {
 
 /// The stream of the compatibility test: both classes and something else, by somebody never seen.
 fn stream() -> Take {
-    let person = Person { hand: Side::Right, ..Person::draw(90, 3) };
+    let person = Person {
+        hand: Side::Right,
+        ..Person::draw(90, 3)
+    };
     let script = Script::new(90, person)
         .rest(1.0)
         .play("push")
@@ -134,14 +167,21 @@ fn stream() -> Take {
 /// What `index` recognises in it: class, start, stop, score; times in hundredths of a second.
 fn recognised(index: &MotionIndex) -> Vec<(String, f64, f64, f64)> {
     let (bones, poses) = made::poses(&stream());
-    let Model::Templates(model) = &index.model else { panic!("another method") };
+    let Model::Templates(model) = &index.model else {
+        panic!("another method")
+    };
     let found = inline(model, bones, &poses);
     let name = |d: &morec::live::Detection| index.model.class_name(d.class).to_owned();
-    found.iter().map(|d| (name(d), d.start_secs, d.stop_secs, d.score)).collect()
+    found
+        .iter()
+        .map(|d| (name(d), d.start_secs, d.stop_secs, d.score))
+        .collect()
 }
 
 fn committed(name: &str) -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("testdata/index").join(name)
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+        .join("testdata/index")
+        .join(name)
 }
 
 #[test]
@@ -176,7 +216,9 @@ fn write_index_of_this_version() {
 fn figures_no_training_gives_are_refused() {
     let refused = |change: &dyn Fn(&mut morec::templates::TemplateModel)| {
         let mut index = index().clone();
-        let Model::Templates(model) = &mut index.model else { panic!("another method") };
+        let Model::Templates(model) = &mut index.model else {
+            panic!("another method")
+        };
         change(Arc::make_mut(model));
         match MotionIndex::from_bytes(&index.to_bytes().unwrap()) {
             Err(IndexError::Content(message)) => assert!(!message.is_empty()),

@@ -15,7 +15,10 @@ pub fn data() -> Option<PathBuf> {
     if folder.join("referee").is_dir() {
         return Some(folder);
     }
-    eprintln!("skipped: no motion data at {} (set MOREC_DATA)", folder.display());
+    eprintln!(
+        "skipped: no motion data at {} (set MOREC_DATA)",
+        folder.display()
+    );
     None
 }
 
@@ -48,17 +51,44 @@ fn roles(clip: &Clip) -> RoleMap {
 /// A referee clip; frame 0 is a T-pose that the conversion left there.
 pub fn referee(data: &std::path::Path, name: &str, source: Source) -> TrainClip {
     let bytes = std::fs::read(data.join("referee/clips").join(format!("{name}.bvh"))).unwrap();
-    let loaded = bvh::read(&bytes, name, &bvh::BvhOptions::default(), &Limits::default()).unwrap();
+    let loaded = bvh::read(
+        &bytes,
+        name,
+        &bvh::BvhOptions::default(),
+        &Limits::default(),
+    )
+    .unwrap();
     let clip = loaded.clips.into_iter().next().unwrap();
-    TrainClip { name: name.into(), roles: roles(&clip), rest: 0..1, clip, source, person: None }
+    TrainClip {
+        name: name.into(),
+        roles: roles(&clip),
+        rest: 0..1,
+        clip,
+        source,
+        person: None,
+    }
 }
 
 /// An ASF/AMC clip.
-pub fn acclaim(data: &std::path::Path, folder: &str, asf: &str, name: &str, source: Source) -> TrainClip {
+pub fn acclaim(
+    data: &std::path::Path,
+    folder: &str,
+    asf: &str,
+    name: &str,
+    source: Source,
+) -> TrainClip {
     let skeleton = std::fs::read(data.join(folder).join(asf)).unwrap();
     let (asf, _) = acclaim::read_asf(&skeleton, &Limits::default()).unwrap();
     let bytes = std::fs::read(data.join(folder).join("clips").join(format!("{name}.amc"))).unwrap();
-    let loaded = acclaim::read_amc(&bytes, name, &asf, &Default::default(), &Limits::default()).unwrap();
+    let loaded =
+        acclaim::read_amc(&bytes, name, &asf, &Default::default(), &Limits::default()).unwrap();
     let clip = loaded.clips.into_iter().next().unwrap();
-    TrainClip { name: name.into(), roles: roles(&clip), rest: 0..0, clip, source, person: None }
+    TrainClip {
+        name: name.into(),
+        roles: roles(&clip),
+        rest: 0..0,
+        clip,
+        source,
+        person: None,
+    }
 }

@@ -4,11 +4,20 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// What live recognition must do without.
-const OFFLINE: [&str; 9] =
-    ["train", "crossval", "formats", "labels", "eval", "report", "synth", "index", "smooth"];
+const OFFLINE: [&str; 9] = [
+    "train", "crossval", "formats", "labels", "eval", "report", "synth", "index", "smooth",
+];
 
 /// Modules of the live path.
-const LIVE: [&str; 7] = ["live", "decode", "features", "templates", "pivots", "pca", "svrdm"];
+const LIVE: [&str; 7] = [
+    "live",
+    "decode",
+    "features",
+    "templates",
+    "pivots",
+    "pca",
+    "svrdm",
+];
 
 struct Source {
     /// Module at the top: `live` for `live/recognizer.rs`.
@@ -53,7 +62,10 @@ fn sources() -> Vec<Source> {
 
 /// `text` without line comments and without what follows `#[cfg(test)] mod … {`, which this project puts last.
 fn code(text: &str) -> String {
-    let lines: Vec<&str> = text.lines().filter(|l| !l.trim_start().starts_with("//")).collect();
+    let lines: Vec<&str> = text
+        .lines()
+        .filter(|l| !l.trim_start().starts_with("//"))
+        .collect();
     let code = lines.join("\n");
     match code
         .match_indices("#[cfg(test)]")
@@ -70,8 +82,8 @@ fn imports(code: &str, depth: usize) -> Vec<String> {
     let mut found = vec![];
     for start in ["crate::", &up] {
         for (at, _) in code.match_indices(start) {
-            let preceded =
-                code[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == ':' || c == '$');
+            let preceded = code[..at]
+                .ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == ':' || c == '$');
             if !preceded {
                 found.extend(heads(&code[at + start.len()..]));
             }
@@ -83,9 +95,14 @@ fn imports(code: &str, depth: usize) -> Vec<String> {
 /// First names of a path or of a group of paths: `a` of `a::b`, `a` and `c` of `{a::{b, x}, c}`.
 fn heads(path: &str) -> Vec<String> {
     let name = |text: &str| {
-        text.trim_start().chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>()
+        text.trim_start()
+            .chars()
+            .take_while(|c| c.is_alphanumeric() || *c == '_')
+            .collect::<String>()
     };
-    let Some(group) = path.strip_prefix('{') else { return vec![name(path)] };
+    let Some(group) = path.strip_prefix('{') else {
+        return vec![name(path)];
+    };
     let (mut depth, mut found) = (0, vec![name(group)]);
     for (at, c) in group.char_indices() {
         match c {
@@ -112,26 +129,48 @@ fn imports_are_read_in_every_form() {
 #[test]
 fn the_live_path_stands_alone() {
     let sources = sources();
-    let live: Vec<&Source> = sources.iter().filter(|s| LIVE.contains(&s.module.as_str())).collect();
-    assert!(LIVE.iter().all(|m| live.iter().any(|s| s.module == *m)), "a module of the live path is gone");
+    let live: Vec<&Source> = sources
+        .iter()
+        .filter(|s| LIVE.contains(&s.module.as_str()))
+        .collect();
+    assert!(
+        LIVE.iter().all(|m| live.iter().any(|s| s.module == *m)),
+        "a module of the live path is gone"
+    );
     let read: usize = live.iter().map(|s| imports(&s.code, s.depth).len()).sum();
     assert!(read > 10, "only {read} imports were read");
     for source in live {
         for module in imports(&source.code, source.depth) {
-            assert!(!OFFLINE.contains(&module.as_str()), "{} imports {module}", source.path.display());
+            assert!(
+                !OFFLINE.contains(&module.as_str()),
+                "{} imports {module}",
+                source.path.display()
+            );
         }
     }
 }
 
 #[test]
 fn the_library_touches_no_file_and_prints_nothing() {
-    let forbidden =
-        ["std::fs", "std::net", "std::process", "std::env", "println!", "print!", "dbg!", "File::open"];
+    let forbidden = [
+        "std::fs",
+        "std::net",
+        "std::process",
+        "std::env",
+        "println!",
+        "print!",
+        "dbg!",
+        "File::open",
+    ];
     let sources = sources();
     assert!(sources.len() > 50);
     for source in &sources {
         for word in forbidden {
-            assert!(!source.code.contains(word), "{} says {word}", source.path.display());
+            assert!(
+                !source.code.contains(word),
+                "{} says {word}",
+                source.path.display()
+            );
         }
     }
 }

@@ -8,7 +8,9 @@ use morec::labels::Sample;
 use morec::roles::RoleMap;
 use morec::synth::{DatabaseSpec, Take, database, everyday};
 use morec::templates::TemplateModel;
-use morec::train::{EVERYDAY_SEED, Labelling, Source, TrainClip, TrainOptions, TrainParams, train_clips};
+use morec::train::{
+    EVERYDAY_SEED, Labelling, Source, TrainClip, TrainOptions, TrainParams, train_clips,
+};
 
 /// A pose and its time on the stream's clock.
 pub type Timed = (f64, KeyPose);
@@ -17,7 +19,9 @@ pub type Timed = (f64, KeyPose);
 pub fn poses(take: &Take) -> (BoneSet, Vec<Timed>) {
     let roles = RoleMap::find(&take.clip.skeleton);
     let mut poses = Vec::with_capacity(take.clip.frames);
-    for_each_pose(&take.clip, &roles, &(0..0), |time_secs, pose| poses.push((time_secs, *pose)));
+    for_each_pose(&take.clip, &roles, &(0..0), |time_secs, pose| {
+        poses.push((time_secs, *pose))
+    });
     (bones_of_clip(&take.clip, &roles, &(0..0)), poses)
 }
 
@@ -26,7 +30,12 @@ pub fn model() -> Arc<TemplateModel> {
     static MODEL: OnceLock<Arc<TemplateModel>> = OnceLock::new();
     MODEL
         .get_or_init(|| {
-            let spec = DatabaseSpec { people: 6, repetitions: 1, rate_hz: 30.0, ..Default::default() };
+            let spec = DatabaseSpec {
+                people: 6,
+                repetitions: 1,
+                rate_hz: 30.0,
+                ..Default::default()
+            };
             Arc::new(train(&spec, TrainParams::default()))
         })
         .clone()
@@ -36,15 +45,27 @@ pub fn model() -> Arc<TemplateModel> {
 pub fn train(spec: &DatabaseSpec, params: TrainParams) -> TemplateModel {
     let takes = database(71, spec);
     let samples: Vec<Sample> = takes.iter().flat_map(samples_of).collect();
-    let mut clips: Vec<TrainClip> =
-        takes.into_iter().map(|t| train_clip(t.clip, Some(t.person), Source::Labelled)).collect();
+    let mut clips: Vec<TrainClip> = takes
+        .into_iter()
+        .map(|t| train_clip(t.clip, Some(t.person), Source::Labelled))
+        .collect();
     // Talking hands come nearest to gestures; with all of it, training would take several times as long.
-    let talking = everyday(EVERYDAY_SEED).into_iter().filter(|c| c.name.contains("talk"));
+    let talking = everyday(EVERYDAY_SEED)
+        .into_iter()
+        .filter(|c| c.name.contains("talk"));
     clips.extend(talking.map(|c| train_clip(c, None, Source::Background)));
     let classes: Vec<String> = spec.classes.iter().map(|c| (*c).to_owned()).collect();
-    let labelling =
-        Labelling { samples: &samples, held_back: &[], classes: &classes, unlabelled_is_background: true };
-    let options = TrainOptions { params, everyday: morec::train::Everyday::Never, ..TrainOptions::default() };
+    let labelling = Labelling {
+        samples: &samples,
+        held_back: &[],
+        classes: &classes,
+        unlabelled_is_background: true,
+    };
+    let options = TrainOptions {
+        params,
+        everyday: morec::train::Everyday::Never,
+        ..TrainOptions::default()
+    };
     train_clips(&clips, &labelling, &options, &()).unwrap().0
 }
 
@@ -63,5 +84,12 @@ fn samples_of(take: &Take) -> Vec<Sample> {
 
 fn train_clip(clip: Clip, person: Option<String>, source: Source) -> TrainClip {
     let (name, roles) = (clip.name.clone(), RoleMap::find(&clip.skeleton));
-    TrainClip { name, roles, rest: 0..0, source, person, clip }
+    TrainClip {
+        name,
+        roles,
+        rest: 0..0,
+        source,
+        person,
+        clip,
+    }
 }

@@ -57,17 +57,27 @@ fn components(rows: &BTreeMap<String, Rows>, keep: Keep) -> Pca {
 fn pose_rows_and_components_and_similarities_are_the_scripts() {
     let Some(data) = kit::data() else { return };
     let golden = golden();
-    let rows: BTreeMap<String, Rows> = golden.clips.iter().map(|n| (n.clone(), rows(&data, n))).collect();
+    let rows: BTreeMap<String, Rows> = golden
+        .clips
+        .iter()
+        .map(|n| (n.clone(), rows(&data, n)))
+        .collect();
     for (name, expected) in &golden.pose_rows {
         let found = (100..).flat_map(|i| rows[name].row(i).to_vec());
         for (found, expected) in found.zip(expected.iter().flatten()) {
-            assert!((f64::from(found) - expected).abs() < 1e-6, "{name}: {found} for {expected}");
+            assert!(
+                (f64::from(found) - expected).abs() < 1e-6,
+                "{name}: {found} for {expected}"
+            );
         }
     }
     let pca = components(&rows, Keep::Dims(16));
     assert_eq!(pca.rows(), golden.pca.rows);
     for (found, expected) in pca.eigenvalues().iter().zip(&golden.pca.eigenvalues) {
-        assert!((found / expected - 1.0).abs() < 1e-5, "{found} for {expected}");
+        assert!(
+            (found / expected - 1.0).abs() < 1e-5,
+            "{found} for {expected}"
+        );
     }
     for (quality, dims) in &golden.pca.dims {
         let keep = Keep::Quality(quality.parse().unwrap());
@@ -80,7 +90,10 @@ fn pose_rows_and_components_and_similarities_are_the_scripts() {
     assert!(golden.kwas.len() > 50);
     for (a, b, expected) in &golden.kwas {
         let found = kwas(&spectra[*a], &spectra[*b], 12, KwasForm::Printed);
-        assert!((found - expected).abs() < 1e-4, "{a} and {b}: {found} for {expected}");
+        assert!(
+            (found - expected).abs() < 1e-4,
+            "{a} and {b}: {found} for {expected}"
+        );
     }
 }
 
@@ -89,12 +102,20 @@ fn distances_ahead_are_those_of_the_whole_inverse() {
     let Some(data) = kit::data() else { return };
     for (name, expected) in golden().ppca {
         // A rise that nothing reaches: one segment from the start, as in the script.
-        let params = PpcaParams { rise: 1e12, directions: Directions::Forward, ..PpcaParams::default() };
+        let params = PpcaParams {
+            rise: 1e12,
+            directions: Directions::Forward,
+            ..PpcaParams::default()
+        };
         let found = segment(&rows(&data, &name), 120.0, &params).unwrap();
         assert_eq!(found.forward.len(), expected.h.len(), "{name}");
         for (point, (row, h)) in found.forward.iter().zip(&expected.h) {
             assert!((point.secs * 120.0 - *row as f64).abs() < 1e-6);
-            assert!((point.value / h - 1.0).abs() < 1e-3, "{name} at {row}: {} for {h}", point.value);
+            assert!(
+                (point.value / h - 1.0).abs() < 1e-3,
+                "{name} at {row}: {} for {h}",
+                point.value
+            );
         }
     }
 }

@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use morec::features::{BoneSet, KeyPose};
 use morec::live::{
-    Actor, Event, EventOptions, EventReader, Frame, Next, Overload, Phase, Rig, Session, SessionOptions,
-    Source,
+    Actor, Event, EventOptions, EventReader, Frame, Next, Overload, Phase, Rig, Session,
+    SessionOptions, Source,
 };
 use morec::math::Vec3;
 use morec::roles::Role;
@@ -16,8 +16,16 @@ use crate::engines::{Played, ended, inline};
 use crate::made::{self, Timed};
 
 fn stream() -> Vec<Timed> {
-    let person = Person { hand: Side::Right, ..Person::draw(90, 1) };
-    let script = Script::new(90, person).rest(0.5).play("push").rest(1.5).play("bow").rest(0.8);
+    let person = Person {
+        hand: Side::Right,
+        ..Person::draw(90, 1)
+    };
+    let script = Script::new(90, person)
+        .rest(0.5)
+        .play("push")
+        .rest(1.5)
+        .play("bow")
+        .rest(0.8);
     made::poses(&script.film("session", 60.0).unwrap()).1
 }
 
@@ -65,7 +73,8 @@ impl Source for Scripted {
 
 fn run(steps: Vec<Step>) -> (Vec<Event>, morec::live::Status) {
     let source = Box::new(Scripted(steps.into_iter()));
-    let (session, readers) = Session::start(&made::model(), source, &SessionOptions::default()).unwrap();
+    let (session, readers) =
+        Session::start(&made::model(), source, &SessionOptions::default()).unwrap();
     let events = readers.into_iter().map(all).next().unwrap();
     (events, session.join())
 }
@@ -113,14 +122,19 @@ fn performers_do_not_disturb_each_other() {
     }
     let (events, status) = run(steps);
     for actor in [0, 3] {
-        let of_actor: Vec<&Event> =
-            events.iter().filter(|e| e.actor == Actor(actor) && e.phase == Phase::End).collect();
+        let of_actor: Vec<&Event> = events
+            .iter()
+            .filter(|e| e.actor == Actor(actor) && e.phase == Phase::End)
+            .collect();
         assert_eq!(of_actor.len(), alone.len());
         for (event, expected) in of_actor.iter().zip(&alone) {
             assert_eq!((event.class, event.score), (expected.class, expected.score));
         }
     }
-    assert_eq!(status.actors.iter().map(|a| a.actor.0).collect::<Vec<_>>(), [0, 3]);
+    assert_eq!(
+        status.actors.iter().map(|a| a.actor.0).collect::<Vec<_>>(),
+        [0, 3]
+    );
 }
 
 #[test]
@@ -135,22 +149,42 @@ fn every_motion_ends_once_every_start_ends_or_is_cancelled_and_numbers_have_no_g
     assert_eq!(numbers, (1..=events.len() as u64).collect::<Vec<_>>());
     let last = events.iter().map(|e| e.motion).max().unwrap();
     for motion in 1..=last {
-        let phases: Vec<Phase> = events.iter().filter(|e| e.motion == motion).map(|e| e.phase).collect();
+        let phases: Vec<Phase> = events
+            .iter()
+            .filter(|e| e.motion == motion)
+            .map(|e| e.phase)
+            .collect();
         let (last, before) = phases.split_last().unwrap();
-        assert!(matches!(last, Phase::End | Phase::Cancel), "motion {motion}: {phases:?}");
+        assert!(
+            matches!(last, Phase::End | Phase::Cancel),
+            "motion {motion}: {phases:?}"
+        );
         let begun = before.first().is_none_or(|p| *p == Phase::Start);
-        assert!(begun && before.iter().skip(1).all(|p| *p == Phase::Update), "motion {motion}: {phases:?}");
+        assert!(
+            begun && before.iter().skip(1).all(|p| *p == Phase::Update),
+            "motion {motion}: {phases:?}"
+        );
     }
 }
 
 #[test]
 fn a_refractory_time_tells_the_first_of_a_row_and_counts_the_others() {
     let poses = stream();
-    let events = EventOptions { refractory_secs: 1000.0, ..Default::default() };
-    let options = SessionOptions { events, ..Default::default() };
-    let twice: Vec<Timed> =
-        poses.iter().copied().chain(poses.iter().map(|(t, pose)| (t + 20.0, *pose))).collect();
-    let (session, readers) = Session::start(&made::model(), Box::new(Played::new(&twice)), &options).unwrap();
+    let events = EventOptions {
+        refractory_secs: 1000.0,
+        ..Default::default()
+    };
+    let options = SessionOptions {
+        events,
+        ..Default::default()
+    };
+    let twice: Vec<Timed> = poses
+        .iter()
+        .copied()
+        .chain(poses.iter().map(|(t, pose)| (t + 20.0, *pose)))
+        .collect();
+    let (session, readers) =
+        Session::start(&made::model(), Box::new(Played::new(&twice)), &options).unwrap();
     let found = readers.into_iter().map(ended).next().unwrap();
     assert_eq!(found.len(), 2, "{found:?}");
     assert_eq!(session.join().suppressed, 2);
@@ -160,15 +194,27 @@ fn a_refractory_time_tells_the_first_of_a_row_and_counts_the_others() {
 fn a_source_that_may_not_wait_loses_frames_and_they_are_counted() {
     let poses = stream();
     let many: Vec<Timed> = (0..200)
-        .flat_map(|lap| poses.iter().map(move |(t, pose)| (t + 60.0 * f64::from(lap), *pose)))
+        .flat_map(|lap| {
+            poses
+                .iter()
+                .map(move |(t, pose)| (t + 60.0 * f64::from(lap), *pose))
+        })
         .collect();
-    let options = SessionOptions { overload: Overload::Drop, frame_capacity: 1, ..Default::default() };
+    let options = SessionOptions {
+        overload: Overload::Drop,
+        frame_capacity: 1,
+        ..Default::default()
+    };
     let source = Box::new(Played::new(&many));
     let (session, mut readers) = Session::start(&made::model(), source, &options).unwrap();
     let reader = readers.pop().unwrap();
     // Nobody reads: what does not fit is dropped, and the session ends all the same.
     let status = session.join();
-    assert_eq!(status.frames + status.dropped_frames, many.len() as u64, "{status:?}");
+    assert_eq!(
+        status.frames + status.dropped_frames,
+        many.len() as u64,
+        "{status:?}"
+    );
     assert!(status.dropped_frames > 0, "{status:?}");
     let told = all(reader).len() as u64;
     assert_eq!(told + status.dropped_events, status.events);
@@ -176,7 +222,10 @@ fn a_source_that_may_not_wait_loses_frames_and_they_are_counted() {
 
 #[test]
 fn several_readers_each_get_everything_and_one_that_left_holds_nobody_up() {
-    let options = SessionOptions { readers: 3, ..Default::default() };
+    let options = SessionOptions {
+        readers: 3,
+        ..Default::default()
+    };
     let source = Box::new(Played::new(&stream()));
     let (session, mut readers) = Session::start(&made::model(), source, &options).unwrap();
     drop(readers.remove(1));
@@ -205,7 +254,8 @@ fn a_session_that_is_stopped_ends_though_nobody_reads_and_the_source_goes_on_for
         }
     }
     let source = Box::new(Endless(0, stream(), false));
-    let (session, readers) = Session::start(&made::model(), source, &SessionOptions::default()).unwrap();
+    let (session, readers) =
+        Session::start(&made::model(), source, &SessionOptions::default()).unwrap();
     while session.status().frames == 0 {
         std::thread::sleep(Duration::from_millis(5));
     }

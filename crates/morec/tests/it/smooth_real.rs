@@ -27,22 +27,36 @@ fn clips(data: &Path) -> Vec<PathBuf> {
 /// In metres, as a database would have it.
 fn load(path: &Path, bytes: &[u8]) -> Clip {
     let loaded = if path.extension().is_some_and(|e| e == "amc") {
-        let skeleton = std::fs::read(path.parent().unwrap().parent().unwrap().join("86.asf")).unwrap();
+        let skeleton =
+            std::fs::read(path.parent().unwrap().parent().unwrap().join("86.asf")).unwrap();
         let (asf, _) = acclaim::read_asf(&skeleton, &Limits::default()).unwrap();
         acclaim::read_amc(bytes, "clip", &asf, &Default::default(), &Limits::default()).unwrap()
     } else {
         bvh::read(bytes, "clip", &Default::default(), &Limits::default()).unwrap()
     };
-    prepare(loaded.clips.into_iter().next().unwrap(), &ImportOptions::default()).unwrap().clip
+    prepare(
+        loaded.clips.into_iter().next().unwrap(),
+        &ImportOptions::default(),
+    )
+    .unwrap()
+    .clip
 }
 
 /// Largest angle, and largest distance between joints in the world.
 fn distances(a: &Clip, b: &Clip) -> (f64, f64) {
-    let angles = a.rotations.iter().zip(&b.rotations).map(|(a, b)| a.angle_to(b));
+    let angles = a
+        .rotations
+        .iter()
+        .zip(&b.rotations)
+        .map(|(a, b)| a.angle_to(b));
     let mut world = 0.0f64;
     for frame in 0..a.frames {
         let (a, b) = (WorldPose::of(a, frame), WorldPose::of(b, frame));
-        let off = a.positions.iter().zip(&b.positions).map(|(a, b)| (a - b).norm());
+        let off = a
+            .positions
+            .iter()
+            .zip(&b.positions)
+            .map(|(a, b)| (a - b).norm());
         world = off.fold(world, f64::max);
     }
     (angles.fold(0.0, f64::max), world)
@@ -57,13 +71,28 @@ fn real_clips_keep_to_half_a_degree_and_five_millimetres_in_a_fifteenth() {
         let clip = load(&path, &bytes);
         let compressed = compress(&clip, &SmoothParams::database(), &()).unwrap();
         let stored = compressed.to_bytes();
-        assert_eq!(CompressedClip::from_bytes(&stored).as_ref(), Ok(&compressed), "{}", path.display());
-        let again = mclip::read(&stored, "clip", &Limits::default()).unwrap().clips.remove(0);
+        assert_eq!(
+            CompressedClip::from_bytes(&stored).as_ref(),
+            Ok(&compressed),
+            "{}",
+            path.display()
+        );
+        let again = mclip::read(&stored, "clip", &Limits::default())
+            .unwrap()
+            .clips
+            .remove(0);
         let (angle, world) = distances(&clip, &again);
-        assert!(angle <= 0.5f64.to_radians() + 1e-9, "{}: {angle} rad", path.display());
+        assert!(
+            angle <= 0.5f64.to_radians() + 1e-9,
+            "{}: {angle} rad",
+            path.display()
+        );
         assert!(world <= 0.005 + 1e-9, "{}: {world} m", path.display());
         file_bytes += bytes.len();
         stored_bytes += stored.len();
     }
-    assert!(15 * stored_bytes < file_bytes, "{stored_bytes} of {file_bytes}");
+    assert!(
+        15 * stored_bytes < file_bytes,
+        "{stored_bytes} of {file_bytes}"
+    );
 }

@@ -6,8 +6,8 @@ use std::time::Duration;
 use morec::features::MAX_GAP_SECS;
 use morec::kinematics::WorldPose;
 use morec::live::{
-    Actor, Event, EventOptions, Frame, Layout, Model, Next, Overload, Phase, Rig, Session, SessionError,
-    SessionOptions, Source, Status, recognize_clip, recognize_clip_in_session,
+    Actor, Event, EventOptions, Frame, Layout, Model, Next, Overload, Phase, Rig, Session,
+    SessionError, SessionOptions, Source, Status, recognize_clip, recognize_clip_in_session,
 };
 use morec::roles::RoleMap;
 use morec::synth::Take;
@@ -45,7 +45,9 @@ impl Source for Scripted {
 
 fn tuned() -> Model {
     static MODEL: OnceLock<Model> = OnceLock::new();
-    MODEL.get_or_init(|| trained(SvrdmTrainParams::tuned()).0).clone()
+    MODEL
+        .get_or_init(|| trained(SvrdmTrainParams::tuned()).0)
+        .clone()
 }
 
 fn rig_of(take: &Take) -> Arc<Rig> {
@@ -59,15 +61,30 @@ fn frames(take: &Take, actor: u16, origin_secs: f64, speed: f64) -> Vec<Step> {
     let frame = |number: usize| {
         let time_secs = origin_secs + number as f64 / take.clip.rate_hz / speed;
         let pose = WorldPose::of(&take.clip, number);
-        Step::Frame(Box::new(Frame { time_secs, wall_secs: 1e9 + time_secs, actor: Actor(actor), pose }))
+        Step::Frame(Box::new(Frame {
+            time_secs,
+            wall_secs: 1e9 + time_secs,
+            actor: Actor(actor),
+            pose,
+        }))
     };
     (0..take.clip.frames).map(frame).collect()
 }
 
-fn run(model: &Model, layout: Layout, steps: &[Step], events: EventOptions) -> (Vec<Event>, Status) {
+fn run(
+    model: &Model,
+    layout: Layout,
+    steps: &[Step],
+    events: EventOptions,
+) -> (Vec<Event>, Status) {
     let played: Vec<Step> = steps.into();
     let source = Box::new(Scripted(played.into_iter()));
-    let options = SessionOptions { layout, events, frame_capacity: 9, ..Default::default() };
+    let options = SessionOptions {
+        layout,
+        events,
+        frame_capacity: 9,
+        ..Default::default()
+    };
     let (session, mut readers) = Session::start(model, source, &options).unwrap();
     let (mut reader, mut found) = (readers.pop().unwrap(), vec![]);
     while !reader.is_ended() {
@@ -85,7 +102,10 @@ fn eventful() -> Vec<Step> {
     steps.extend_from_slice(&frames(a, 0, 0.0, 1.0)[..40]);
     steps.push(Step::Rig(0, rig_of(a)));
     let (mut of_a, of_b) = (frames(a, 0, 3.0, 1.0), frames(b, 5, 100.0, 0.93));
-    let gap = (of_a.len() / 2, (a.clip.rate_hz * MAX_GAP_SECS * 1.5) as usize);
+    let gap = (
+        of_a.len() / 2,
+        (a.clip.rate_hz * MAX_GAP_SECS * 1.5) as usize,
+    );
     of_a.drain(gap.0..gap.0 + gap.1);
     of_a.drain(50..53);
     of_a.swap(70, 75);
@@ -103,20 +123,41 @@ fn eventful() -> Vec<Step> {
 #[test]
 fn events_are_those_of_the_inline_layout_to_the_bit() {
     let steps = eventful();
-    let given = steps.iter().filter(|step| matches!(step, Step::Frame(_))).count() as u64;
+    let given = steps
+        .iter()
+        .filter(|step| matches!(step, Step::Frame(_)))
+        .count() as u64;
     for model in [trained(SvrdmTrainParams::faithful()).0, tuned()] {
         for refractory_secs in [0.0, 5.0] {
-            let events = EventOptions { early: true, refractory_secs };
+            let events = EventOptions {
+                early: true,
+                refractory_secs,
+            };
             let (inline, by_one) = run(&model, Layout::Inline, &steps, events.clone());
             let (staged, by_many) = run(&model, Layout::Stages, &steps, events);
             assert_eq!(staged, inline);
-            assert!(inline.len() >= 6 && inline.iter().all(|e| e.phase == Phase::End), "{}", inline.len());
+            assert!(
+                inline.len() >= 6 && inline.iter().all(|e| e.phase == Phase::End),
+                "{}",
+                inline.len()
+            );
             for status in [&by_one, &by_many] {
                 assert!(status.ended && status.frames == given && status.waits.frames() == given);
             }
-            let counts = |s: &Status| (s.unusable_frames, s.events, s.motions, s.suppressed, s.actors.len());
+            let counts = |s: &Status| {
+                (
+                    s.unusable_frames,
+                    s.events,
+                    s.motions,
+                    s.suppressed,
+                    s.actors.len(),
+                )
+            };
             assert_eq!(counts(&by_many), counts(&by_one));
-            assert!(refractory_secs > 0.0 || by_many.suppressed == 0, "{by_many:?}");
+            assert!(
+                refractory_secs > 0.0 || by_many.suppressed == 0,
+                "{by_many:?}"
+            );
         }
     }
 }
@@ -128,8 +169,12 @@ fn a_clip_recognised_in_stages_has_the_detections_it_has_inline() {
         let roles = RoleMap::find(&take.clip.skeleton);
         let inline = recognize_clip(&model, &take.clip, &roles, &(0..0)).unwrap();
         for layout in [Layout::Inline, Layout::Stages] {
-            let options = SessionOptions { layout, ..Default::default() };
-            let found = recognize_clip_in_session(&model, &take.clip, &roles, &(0..0), &options).unwrap();
+            let options = SessionOptions {
+                layout,
+                ..Default::default()
+            };
+            let found =
+                recognize_clip_in_session(&model, &take.clip, &roles, &(0..0), &options).unwrap();
             assert_eq!(found, inline, "{layout:?}");
         }
     }
@@ -143,23 +188,50 @@ fn every_thread_says_what_it_is_for() {
         let thread = std::thread::current().name().unwrap_or_default().to_owned();
         HEARD.lock().unwrap().push((thread, what));
     }
-    let options = SessionOptions { layout: Layout::Stages, on_thread: Some(hear), ..Default::default() };
+    let options = SessionOptions {
+        layout: Layout::Stages,
+        on_thread: Some(hear),
+        ..Default::default()
+    };
     let source = Box::new(Scripted(vec![].into_iter()));
     let (session, readers) = Session::start(&tuned(), source, &options).unwrap();
     drop(readers);
     session.join();
     let mut heard = HEARD.lock().unwrap().clone();
     heard.sort();
-    let stages = ["classification", "extraction", "input", "scoring", "segments", "source", "tracking"];
+    let stages = [
+        "classification",
+        "extraction",
+        "input",
+        "scoring",
+        "segments",
+        "source",
+        "tracking",
+    ];
     assert_eq!(heard, stages.map(|what| (format!("morec {what}"), what)));
 }
 
 #[test]
 fn a_method_without_stages_is_refused() {
-    let options = SessionOptions { layout: Layout::Stages, ..Default::default() };
-    let started = Session::start(&made::model(), Box::new(Scripted(vec![].into_iter())), &options);
+    let options = SessionOptions {
+        layout: Layout::Stages,
+        ..Default::default()
+    };
+    let started = Session::start(
+        &made::model(),
+        Box::new(Scripted(vec![].into_iter())),
+        &options,
+    );
     let error = started.map(|_| ()).unwrap_err();
-    assert!(matches!(error, SessionError::NoStages { method: "templates" }), "{error}");
+    assert!(
+        matches!(
+            error,
+            SessionError::NoStages {
+                method: "templates"
+            }
+        ),
+        "{error}"
+    );
 }
 
 #[test]
@@ -183,7 +255,11 @@ fn stages_that_are_stopped_end_though_nobody_reads_and_the_source_goes_on_for_ev
     let mut steps = vec![Step::Rig(0, rig_of(&takes()[0]))];
     steps.extend(frames(&takes()[0], 0, 0.0, 1.0));
     for overload in [Overload::Wait, Overload::Drop] {
-        let options = SessionOptions { layout: Layout::Stages, overload, ..Default::default() };
+        let options = SessionOptions {
+            layout: Layout::Stages,
+            overload,
+            ..Default::default()
+        };
         let source = Box::new(Endless(steps.clone(), 0));
         let (session, readers) = Session::start(&model, source, &options).unwrap();
         while session.status().motions == 0 {

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use morec::svrdm::{
-    ConfidenceMap, FeatureExtraction, FrameDetection, Gram, ModelError, SegmentScoring, SvrdmEngine,
-    SvrdmModel,
+    ConfidenceMap, FeatureExtraction, FrameDetection, Gram, ModelError, SegmentScoring,
+    SvrdmEngine, SvrdmModel,
 };
 use proptest::prelude::*;
 
@@ -13,16 +13,21 @@ use crate::thesis::reference;
 
 fn recognised(engine: &mut SvrdmEngine, rows: &[Vec<f32>]) -> Vec<FrameDetection> {
     let mut found = vec![];
-    rows.iter().for_each(|row| engine.push(row, &mut |d| found.push(d)));
+    rows.iter()
+        .for_each(|row| engine.push(row, &mut |d| found.push(d)));
     engine.finish(&mut |d| found.push(d));
     found
 }
 
 /// The rows of some chunks after projection, end to end.
 fn reduced(model: &SvrdmModel, rows: &[Vec<f32>], start: i64, stop: i64) -> Vec<f32> {
-    let frames = start as usize * model.params.chunk_frames..stop as usize * model.params.chunk_frames;
+    let frames =
+        start as usize * model.params.chunk_frames..stop as usize * model.params.chunk_frames;
     let mut out = vec![0.0; frames.len() * model.pca.dims()];
-    for (row, out) in rows[frames].iter().zip(out.chunks_exact_mut(model.pca.dims())) {
+    for (row, out) in rows[frames]
+        .iter()
+        .zip(out.chunks_exact_mut(model.pca.dims()))
+    {
         model.pca.project_into(row, out);
     }
     out
@@ -41,7 +46,10 @@ fn feature_vectors_are_the_prototypes() {
             let segment = Gram::of_rows(&rows, model.pca.dims(), model.params.chunk_frames);
             let found = extraction.feature(&segment).unwrap();
             for (found, expected) in found.iter().zip(expected) {
-                assert!((found - expected).abs() < 1e-6, "{start}..{stop}: {found} for {expected}");
+                assert!(
+                    (found - expected).abs() < 1e-6,
+                    "{start}..{stop}: {found} for {expected}"
+                );
             }
         }
     }
@@ -61,8 +69,13 @@ fn the_map_and_its_detections_are_the_prototypes() {
         }
         engine.finish(&mut |d| found.push(d));
         assert_eq!(map.cells().len(), figures.cells.len());
-        for ((window, cell), (start, stop, class, confidence)) in map.cells().iter().zip(&figures.cells) {
-            assert_eq!((window.start, window.stop, cell.class.0), (*start, *stop, *class));
+        for ((window, cell), (start, stop, class, confidence)) in
+            map.cells().iter().zip(&figures.cells)
+        {
+            assert_eq!(
+                (window.start, window.stop, cell.class.0),
+                (*start, *stop, *class)
+            );
             assert!(
                 (cell.confidence - confidence).abs() < 1e-9,
                 "{window:?}: {} for {confidence}",
@@ -75,7 +88,9 @@ fn the_map_and_its_detections_are_the_prototypes() {
             assert_eq!((d.start, d.stop, d.class.0), (*start, *stop, *class));
             assert!((d.score - score).abs() < 1e-9);
         }
-        let picture = map.picture("confidence", &model.classes, &model.params, model.rate_hz()).svg();
+        let picture = map
+            .picture("confidence", &model.classes, &model.params, model.rate_hz())
+            .svg();
         assert!(picture.contains("class 4") && picture.contains("2.67 s"));
     }
 }
@@ -85,7 +100,10 @@ fn what_counts_for_little_can_be_left_out_beforehand() {
     let reference = reference();
     let rows = reference.rows();
     for figures in &reference.models {
-        let all = recognised(&mut SvrdmEngine::new(&reference.model(figures)).unwrap(), &rows);
+        let all = recognised(
+            &mut SvrdmEngine::new(&reference.model(figures)).unwrap(),
+            &rows,
+        );
         let mut model = SvrdmModel::clone(&reference.model(figures));
         model.params.min_confidence = 0.85;
         let mut few = recognised(&mut SvrdmEngine::new(&Arc::new(model)).unwrap(), &rows);
@@ -124,8 +142,12 @@ fn a_stream_without_end_keeps_its_precision() {
     let (rows, model) = (reference.rows(), reference.model(&reference.models[0]));
     let mut model = SvrdmModel::clone(&model);
     // Long chunks and few lengths: with the thesis's, the test would take twenty times as long.
-    model.params =
-        morec::svrdm::SvrdmParams { chunk_frames: 64, min_chunks: 2, max_chunks: 4, ..model.params };
+    model.params = morec::svrdm::SvrdmParams {
+        chunk_frames: 64,
+        min_chunks: 2,
+        max_chunks: 4,
+        ..model.params
+    };
     let mut engine = SvrdmEngine::new(&Arc::new(model)).unwrap();
     let period = rows.len() / 64 * 64;
     let mut by_round: BTreeMap<i64, Vec<(i64, i64, u16, f64)>> = BTreeMap::new();
@@ -133,7 +155,12 @@ fn a_stream_without_end_keeps_its_precision() {
         engine.push(row, &mut |d| {
             let round = d.start / period as i64;
             let shift = round * period as i64;
-            by_round.entry(round).or_default().push((d.start - shift, d.stop - shift, d.class.0, d.score));
+            by_round.entry(round).or_default().push((
+                d.start - shift,
+                d.stop - shift,
+                d.class.0,
+                d.score,
+            ));
         });
     }
     assert!(by_round[&1].len() > 3);
@@ -162,18 +189,36 @@ fn parts_that_do_not_fit_are_refused() {
         assert!(SegmentScoring::new(&model).is_err());
         SvrdmEngine::new(&Arc::new(model)).map(|_| ()).unwrap_err()
     };
-    let size = |what, expected, found| ModelError::Size { what, expected, found };
-    assert_eq!(wrong(|m| m.signs.truncate(9)), size("values in the sign vectors", 10, 9));
-    assert_eq!(wrong(|m| m.mean_secs.truncate(4)), size("mean lengths of classes", 5, 4));
-    assert_eq!(wrong(|m| m.profiles.classes.truncate(3)), size("classes of profiles", 25, 3));
-    assert!(wrong(|m| m.params.eigenvectors = 3).to_string().starts_with("values in the sign vectors"));
+    let size = |what, expected, found| ModelError::Size {
+        what,
+        expected,
+        found,
+    };
+    assert_eq!(
+        wrong(|m| m.signs.truncate(9)),
+        size("values in the sign vectors", 10, 9)
+    );
+    assert_eq!(
+        wrong(|m| m.mean_secs.truncate(4)),
+        size("mean lengths of classes", 5, 4)
+    );
+    assert_eq!(
+        wrong(|m| m.profiles.classes.truncate(3)),
+        size("classes of profiles", 25, 3)
+    );
+    assert!(
+        wrong(|m| m.params.eigenvectors = 3)
+            .to_string()
+            .starts_with("values in the sign vectors")
+    );
     let message = |change| wrong(change).to_string();
     assert!(message(|m| m.profiles.lengths[0] -= 1).contains("values of profiles"));
     assert!(message(|m| m.profiles.lengths[0] = 0).contains("1 to 2047 frames, found 0"));
     assert!(message(|m| m.profiles.lengths.fill(usize::MAX)).contains("1 to 2047 frames"));
     assert!(message(|m| m.profiles.values[7] = f32::NAN).contains("not finite"));
     assert!(
-        message(|m| m.profiles.classes.fill(morec::classes::ClassId(1))).contains("class 0 has no profile")
+        message(|m| m.profiles.classes.fill(morec::classes::ClassId(1)))
+            .contains("class 0 has no profile")
     );
     assert!(message(|m| m.profiles.classes[0].0 = 9).contains("class 9, of 5"));
     assert!(message(|m| m.epsilon = -1.0).contains("epsilon"));

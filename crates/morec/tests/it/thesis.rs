@@ -44,8 +44,15 @@ pub fn reference() -> Reference {
 impl Reference {
     /// Pose rows.
     pub fn rows(&self) -> Vec<Vec<f32>> {
-        let values: Vec<f32> = self.stream.iter().map(|v| (f64::from(*v) / 1000.0) as f32).collect();
-        values.chunks_exact(4 * self.pivots).map(<[f32]>::to_vec).collect()
+        let values: Vec<f32> = self
+            .stream
+            .iter()
+            .map(|v| (f64::from(*v) / 1000.0) as f32)
+            .collect();
+        values
+            .chunks_exact(4 * self.pivots)
+            .map(<[f32]>::to_vec)
+            .collect()
     }
 
     /// The prototype's model; it decides knowing the whole stream.
@@ -57,11 +64,18 @@ impl Reference {
             joints: vec![],
             role: None,
         };
-        let class = |index: usize| ClassInfo { name: format!("class {index}"), samples: 5, people: 0 };
+        let class = |index: usize| ClassInfo {
+            name: format!("class {index}"),
+            samples: 5,
+            people: 0,
+        };
         Arc::new(SvrdmModel {
             classes: (0..figures.mean_secs.len()).map(class).collect(),
             pivots: PivotSet::new((0..self.pivots).map(pivot).collect()).unwrap(),
-            pose: PoseParams { rate_hz: self.rate_hz, ..PoseParams::default() },
+            pose: PoseParams {
+                rate_hz: self.rate_hz,
+                ..PoseParams::default()
+            },
             pca: figures.pca.clone(),
             params: SvrdmParams {
                 chunk_frames: self.chunk_frames,

@@ -19,7 +19,16 @@ pub fn takes() -> &'static Vec<Take> {
     static TAKES: OnceLock<Vec<Take>> = OnceLock::new();
     TAKES.get_or_init(|| {
         let classes = CLASSES.to_vec();
-        database(5, &DatabaseSpec { people: 3, repetitions: 2, rate_hz: 60.0, classes, ..Default::default() })
+        database(
+            5,
+            &DatabaseSpec {
+                people: 3,
+                repetitions: 2,
+                rate_hz: 60.0,
+                classes,
+                ..Default::default()
+            },
+        )
     })
 }
 
@@ -59,13 +68,20 @@ pub fn trained(params: SvrdmTrainParams) -> (Model, TrainingReport) {
         unlabelled_is_background: true,
         ..Default::default()
     };
-    let options = SvrdmOptions { params, unlabelled_is_background: true };
+    let options = SvrdmOptions {
+        params,
+        unlabelled_is_background: true,
+    };
     let (model, report) = train_svrdm(&clips, &labelling, &options, &()).unwrap();
     (model.into(), report)
 }
 
 pub fn index_of(model: Model) -> MotionIndex {
-    MotionIndex { model, roles: BTreeMap::new(), provenance: Provenance::default() }
+    MotionIndex {
+        model,
+        roles: BTreeMap::new(),
+        provenance: Provenance::default(),
+    }
 }
 
 #[test]
@@ -89,28 +105,45 @@ fn both_settings_come_back_from_their_file_and_recognise_what_they_learned() {
                 .iter()
                 .filter(|label| {
                     found.iter().any(|d| {
-                        let common = d.stop_secs.min(label.stop_secs) - d.start_secs.max(label.start_secs);
-                        let shorter = (d.stop_secs - d.start_secs).min(label.stop_secs - label.start_secs);
+                        let common =
+                            d.stop_secs.min(label.stop_secs) - d.start_secs.max(label.start_secs);
+                        let shorter =
+                            (d.stop_secs - d.start_secs).min(label.stop_secs - label.start_secs);
                         read.model.class_name(d.class) == label.class && common > 0.5 * shorter
                     })
                 })
                 .count();
-            assert!(found.iter().all(|d| d.reported_secs >= d.stop_secs && d.stop_secs > d.start_secs));
+            assert!(
+                found
+                    .iter()
+                    .all(|d| d.reported_secs >= d.stop_secs && d.stop_secs > d.start_secs)
+            );
         }
-        assert!(2 * right >= samples, "{right} of {samples} samples that it was trained on");
+        assert!(
+            2 * right >= samples,
+            "{right} of {samples} samples that it was trained on"
+        );
     }
 }
 
 #[test]
 fn damaged_files_are_errors() {
-    let bytes = index_of(trained(SvrdmTrainParams::tuned()).0).to_bytes().unwrap();
+    let bytes = index_of(trained(SvrdmTrainParams::tuned()).0)
+        .to_bytes()
+        .unwrap();
     for cut in (0..bytes.len()).step_by(bytes.len() / 97 + 1) {
-        assert!(MotionIndex::from_bytes(&bytes[..cut]).is_err(), "cut at {cut}");
+        assert!(
+            MotionIndex::from_bytes(&bytes[..cut]).is_err(),
+            "cut at {cut}"
+        );
     }
     for at in (8..bytes.len()).step_by(bytes.len() / 211 + 1) {
         let mut altered = bytes.clone();
         altered[at] ^= 0x10;
-        assert!(MotionIndex::from_bytes(&altered).is_err(), "altered at {at}");
+        assert!(
+            MotionIndex::from_bytes(&altered).is_err(),
+            "altered at {at}"
+        );
     }
 }
 
@@ -121,7 +154,9 @@ fn places_of_joints_alone_say_nothing_to_it() {
     let take = &takes()[0];
     let roles = RoleMap::find(&take.clip.skeleton);
     let mut recognizer = Recognizer::new(&model, BoneSet::NONE).unwrap();
-    for_each_pose(&take.clip, &roles, &(0..0), |secs, pose| assert!(recognizer.push(secs, pose).is_empty()));
+    for_each_pose(&take.clip, &roles, &(0..0), |secs, pose| {
+        assert!(recognizer.push(secs, pose).is_empty())
+    });
     assert!(recognizer.finish().is_empty());
 }
 
@@ -129,10 +164,15 @@ fn places_of_joints_alone_say_nothing_to_it() {
 fn thresholds_come_from_left_out_samples_and_background() {
     let (model, report) = trained(SvrdmTrainParams::tuned());
     let estimated = report.svrdm.unwrap().estimated.expect("tuned estimates");
-    let Model::Svrdm(model) = model else { panic!("another method") };
+    let Model::Svrdm(model) = model else {
+        panic!("another method")
+    };
     assert_eq!(model.params.accept, estimated.accept);
     assert_eq!(model.params.min_confidence, estimated.min_confidence);
-    assert_eq!(estimated.samples, takes().iter().map(|t| t.labels.len()).sum::<usize>());
+    assert_eq!(
+        estimated.samples,
+        takes().iter().map(|t| t.labels.len()).sum::<usize>()
+    );
     assert!(estimated.background_minutes > 0.0);
     assert!((0.5..=0.92).contains(&estimated.accept), "{estimated:?}");
     assert!(estimated.wrong <= 0.1, "{estimated:?}");
@@ -142,7 +182,12 @@ fn thresholds_come_from_left_out_samples_and_background() {
 fn one_class_or_none_is_refused() {
     let (clips, samples) = clips(takes());
     let train = |classes: &[String], samples: &[Sample]| {
-        let labelling = Labelling { samples, classes, unlabelled_is_background: true, ..Default::default() };
+        let labelling = Labelling {
+            samples,
+            classes,
+            unlabelled_is_background: true,
+            ..Default::default()
+        };
         train_svrdm(&clips, &labelling, &SvrdmOptions::default(), &()).map(|_| ())
     };
     assert_eq!(train(&classes(), &[]), Err(TrainError::NoSamples));
@@ -150,7 +195,12 @@ fn one_class_or_none_is_refused() {
     let error = train(&one, &samples).unwrap_err();
     assert!(error.to_string().contains("at least 2 classes"), "{error}");
     let more = [classes(), vec!["fly".to_owned()]].concat();
-    assert_eq!(train(&more, &samples), Err(TrainError::NoSample { class: "fly".to_owned() }));
+    assert_eq!(
+        train(&more, &samples),
+        Err(TrainError::NoSample {
+            class: "fly".to_owned()
+        })
+    );
 }
 
 #[test]
@@ -158,7 +208,13 @@ fn the_evaluation_counts_every_sample_and_draws_every_branch() {
     let (clips, samples) = clips(takes());
     let classes = classes();
     let settings = [
-        (Setting::Faithful, SvrdmOptions { params: SvrdmTrainParams::faithful(), ..Default::default() }),
+        (
+            Setting::Faithful,
+            SvrdmOptions {
+                params: SvrdmTrainParams::faithful(),
+                ..Default::default()
+            },
+        ),
         (Setting::Tuned, SvrdmOptions::default()),
     ];
     let study = Study {
@@ -173,7 +229,10 @@ fn the_evaluation_counts_every_sample_and_draws_every_branch() {
     assert_eq!(result.segmentation.len(), clips.len());
     for c in &result.clustering {
         assert_eq!(c.samples, samples.len());
-        assert_eq!(c.pairs.total(), (samples.len() * (samples.len() - 1) / 2) as u64);
+        assert_eq!(
+            c.pairs.total(),
+            (samples.len() * (samples.len() - 1) / 2) as u64
+        );
     }
     for c in &result.classification {
         assert_eq!(c.all.samples, samples.len());
@@ -182,8 +241,10 @@ fn the_evaluation_counts_every_sample_and_draws_every_branch() {
         for rates in [c.all, c.unseen, c.alike[0], c.alike[1]] {
             assert!((rates.p_c + rates.p_e + rates.p_r - 1.0).abs() < 1e-12);
         }
-        let drawn =
-            result.pictures.iter().filter(|p| p.name.starts_with(&format!("{}_branch", c.setting.name())));
+        let drawn = result
+            .pictures
+            .iter()
+            .filter(|p| p.name.starts_with(&format!("{}_branch", c.setting.name())));
         assert_eq!(drawn.count(), CLASSES.len() - 1);
     }
     assert_eq!(result.streams.len(), 2);

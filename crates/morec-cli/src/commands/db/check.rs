@@ -37,10 +37,18 @@ struct Checked {
 pub fn run(args: &Args) -> Result<ExitCode> {
     let health = MotionDb::open_read_only(&args.db)?.check()?;
     let copies = match args.copies {
-        true => Some(copies::find(&mut MotionDb::open_read_only(&args.db)?, None, &Bar::stoppable()?)?),
+        true => Some(copies::find(
+            &mut MotionDb::open_read_only(&args.db)?,
+            None,
+            &Bar::stoppable()?,
+        )?),
         false => None,
     };
-    let code = if health.faults.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE };
+    let code = if health.faults.is_empty() {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    };
     if args.json {
         super::print_json(&Checked { health, copies })?;
         return Ok(code);

@@ -49,8 +49,12 @@ pub struct Args {
 
 /// Changes, then lists.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let changes =
-        [!args.rename.is_empty(), !args.merge.is_empty(), !args.split.is_empty(), args.forget.is_some()];
+    let changes = [
+        !args.rename.is_empty(),
+        !args.merge.is_empty(),
+        !args.split.is_empty(),
+        args.forget.is_some(),
+    ];
     let db = match changes.iter().filter(|c| **c).count() {
         0 => MotionDb::open_read_only(&args.db)?,
         1 => changed(args)?,
@@ -102,14 +106,19 @@ fn changed(args: &Args) -> Result<MotionDb> {
 }
 
 fn samples(db: &MotionDb, class: &str, json: bool) -> Result<ExitCode> {
-    let filter = morec_db::labels::SampleFilter { class: Some(class.to_owned()), ..Default::default() };
+    let filter = morec_db::labels::SampleFilter {
+        class: Some(class.to_owned()),
+        ..Default::default()
+    };
     let samples = db.samples(&filter)?;
     if json {
         super::print_json(&samples)?;
         return Ok(ExitCode::SUCCESS);
     }
-    let mut table = Table::new(["clip", "number", "start", "stop", "frames", "state", "score", "by"])
-        .least(["by", "frames", "score"]);
+    let mut table = Table::new([
+        "clip", "number", "start", "stop", "frames", "state", "score", "by",
+    ])
+    .least(["by", "frames", "score"]);
     for s in &samples {
         let frames = s.frames();
         table.row([
@@ -119,7 +128,8 @@ fn samples(db: &MotionDb, class: &str, json: bool) -> Result<ExitCode> {
             format!("{:.2}", s.stop_secs),
             format!("{}-{}", frames.start, frames.end),
             s.state.name().to_owned(),
-            s.score.map_or_else(String::new, |score| format!("{score:.2}")),
+            s.score
+                .map_or_else(String::new, |score| format!("{score:.2}")),
             s.set_by.clone(),
         ]);
     }

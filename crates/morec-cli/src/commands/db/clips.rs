@@ -73,7 +73,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         let ids: Vec<ClipId> = db.clips(&filter)?.iter().map(|clip| clip.id).collect();
         db.update_clips(&ids, &update)?;
         let all = db.clips(&ClipFilter::default())?;
-        all.into_iter().filter(|clip| ids.contains(&clip.id)).collect()
+        all.into_iter()
+            .filter(|clip| ids.contains(&clip.id))
+            .collect()
     };
     clips.sort_by(|a, b| a.name.cmp(&b.name));
     if args.json {
@@ -85,8 +87,10 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 }
 
 fn print(clips: &[ClipInfo]) -> Result<()> {
-    let mut table = Table::new(["clip", "secs", "Hz", "joints", "samples", "kB", "who", "tags"])
-        .least(["kB", "joints", "Hz", "tags", "who", "secs"]);
+    let mut table = Table::new([
+        "clip", "secs", "Hz", "joints", "samples", "kB", "who", "tags",
+    ])
+    .least(["kB", "joints", "Hz", "tags", "who", "secs"]);
     for clip in clips {
         table.row([
             clip.name.clone(),

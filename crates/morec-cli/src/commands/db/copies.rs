@@ -23,22 +23,34 @@ pub struct Copy {
 
 impl fmt::Display for Copy {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let kind = if self.mirrored { "the mirror image of" } else { "a near copy of" };
+        let kind = if self.mirrored {
+            "the mirror image of"
+        } else {
+            "a near copy of"
+        };
         let (start, stop) = (self.start_secs, self.stop_secs);
         let (copy, of, distance) = (&self.copy, &self.of, self.distance);
-        write!(out, "{copy} is {kind} {of}, {start:.2} to {stop:.2} s (distance {distance:.4})")
+        write!(
+            out,
+            "{copy} is {kind} {of}, {start:.2} to {stop:.2} s (distance {distance:.4})"
+        )
     }
 }
 
 /// Every pair of near copies, or those with at least one of the clips `among` these names.
 pub fn find(db: &mut MotionDb, among: Option<&BTreeSet<&str>>, bar: &Bar) -> Result<Vec<Copy>> {
     let index = SearchIndex::of_db(db, bar)?;
-    let names: BTreeMap<ClipId, String> =
-        db.clips(&ClipFilter::default())?.into_iter().map(|c| (c.id, c.name)).collect();
+    let names: BTreeMap<ClipId, String> = db
+        .clips(&ClipFilter::default())?
+        .into_iter()
+        .map(|c| (c.id, c.name))
+        .collect();
     let found = match among {
         None => near_copies(&index),
         Some(wanted) => {
-            let of_names = names.iter().filter(|(_, name)| wanted.contains(name.as_str()));
+            let of_names = names
+                .iter()
+                .filter(|(_, name)| wanted.contains(name.as_str()));
             near_copies_of(&index, &of_names.map(|(id, _)| *id).collect())
         }
     };

@@ -102,8 +102,14 @@ impl Cutter {
             least_secs: args.least,
             ..KernelParams::default()
         };
-        let ppca = PpcaParams { rise: args.rise, ..PpcaParams::default() };
-        kernel.check().and_then(|()| ppca.check()).map_err(anyhow::Error::msg)?;
+        let ppca = PpcaParams {
+            rise: args.rise,
+            ..PpcaParams::default()
+        };
+        kernel
+            .check()
+            .and_then(|()| ppca.check())
+            .map_err(anyhow::Error::msg)?;
         Ok(match args.method {
             Method::Kernel => Self::Kernel(kernel),
             Method::Ppca => Self::Ppca(ppca),
@@ -115,11 +121,18 @@ impl Cutter {
         match self {
             Self::Kernel(params) => Ok(kernel_cuts(&rows.rows, &FeatureParams::default(), params)?),
             Self::Ppca(params) => {
-                let stored = db.lock().unwrap_or_else(PoisonError::into_inner).clip(clip.id)?;
+                let stored = db
+                    .lock()
+                    .unwrap_or_else(PoisonError::into_inner)
+                    .clip(clip.id)?;
                 let (set, poses) = (PivotSet::thesis(), PoseParams::default());
                 let map = PivotMap::resolve(&set, &stored.clip.skeleton, &stored.roles)?;
                 let rows = pose_rows_of_clip(&stored.clip, &set, &map, &stored.rest, &poses);
-                Ok(segment(&rows, poses.rate_hz, params)?.cuts.iter().map(|cut| cut.secs).collect())
+                Ok(segment(&rows, poses.rate_hz, params)?
+                    .cuts
+                    .iter()
+                    .map(|cut| cut.secs)
+                    .collect())
             }
         }
     }
@@ -131,7 +144,10 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let mut db = MotionDb::open(&args.db)?;
     let bar = Bar::stoppable()?;
     let rows = db.rows(&FeatureParams::default(), &bar)?;
-    let clips = db.clips(&ClipFilter { name: args.name.clone(), ..ClipFilter::default() })?;
+    let clips = db.clips(&ClipFilter {
+        name: args.name.clone(),
+        ..ClipFilter::default()
+    })?;
     let (db, done) = (Mutex::new(db), AtomicUsize::new(0));
     let one = |clip: &ClipInfo| -> Result<Option<Done>> {
         if bar.cancelled() {
@@ -171,26 +187,52 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 type Done = (ClipId, Cut, Vec<Segment>);
 
 fn nothing(clip: &ClipInfo) -> Cut {
-    Cut { clip: clip.name.clone(), secs: clip.duration_secs(), cuts_secs: Vec::new(), still: Vec::new() }
+    Cut {
+        clip: clip.name.clone(),
+        secs: clip.duration_secs(),
+        cuts_secs: Vec::new(),
+        still: Vec::new(),
+    }
 }
 
 /// What is kept and told of a clip cut at `cuts`.
 fn cut(clip: &ClipInfo, rows: &ClipRows, cuts: Vec<f64>) -> Done {
     let features = FeatureParams::default();
     let still = still_stretches(&rows.rows, rows.bones, &features, &StillParams::default());
-    let stretch = |kind, start_secs, stop_secs| Segment { clip: clip.id, kind, start_secs, stop_secs };
+    let stretch = |kind, start_secs, stop_secs| Segment {
+        clip: clip.id,
+        kind,
+        start_secs,
+        stop_secs,
+    };
     let (tick, end) = (1.0 / features.tick_hz(), clip.duration_secs());
     let mut segments = Vec::new();
     if clip.rest_frames > 0 {
-        segments.push(stretch(SegmentKind::Rest, 0.0, clip.rest_frames as f64 / clip.rate_hz));
+        segments.push(stretch(
+            SegmentKind::Rest,
+            0.0,
+            clip.rest_frames as f64 / clip.rate_hz,
+        ));
     }
     for (ticks, kind) in still {
-        let kind = if kind == StillKind::TPose { SegmentKind::Rest } else { SegmentKind::Still };
-        segments.push(stretch(kind, ticks.start as f64 * tick, (ticks.end as f64 * tick).min(end)));
+        let kind = if kind == StillKind::TPose {
+            SegmentKind::Rest
+        } else {
+            SegmentKind::Still
+        };
+        segments.push(stretch(
+            kind,
+            ticks.start as f64 * tick,
+            (ticks.end as f64 * tick).min(end),
+        ));
     }
     let still = segments
         .iter()
-        .map(|s| Still { kind: s.kind, start_secs: s.start_secs, stop_secs: s.stop_secs })
+        .map(|s| Still {
+            kind: s.kind,
+            start_secs: s.start_secs,
+            stop_secs: s.stop_secs,
+        })
         .collect();
     let mut start = 0.0;
     for stop in cuts.iter().copied().chain([end]) {
@@ -200,7 +242,15 @@ fn cut(clip: &ClipInfo, rows: &ClipRows, cuts: Vec<f64>) -> Done {
         start = stop;
     }
     segments.retain(|s| s.stop_secs > s.start_secs);
-    (clip.id, Cut { cuts_secs: cuts, still, ..nothing(clip) }, segments)
+    (
+        clip.id,
+        Cut {
+            cuts_secs: cuts,
+            still,
+            ..nothing(clip)
+        },
+        segments,
+    )
 }
 
 fn print(cuts: &[Cut]) -> Result<()> {
@@ -209,9 +259,17 @@ fn print(cuts: &[Cut]) -> Result<()> {
         Table::new(["clip", "secs", "still", "T-pose", "cuts"]).least(["T-pose", "still", "secs"]);
     for cut in cuts {
         let of = |kind| -> f64 {
-            cut.still.iter().filter(|s| s.kind == kind).fold(0.0, |sum, s| sum + s.stop_secs - s.start_secs)
+            cut.still
+                .iter()
+                .filter(|s| s.kind == kind)
+                .fold(0.0, |sum, s| sum + s.stop_secs - s.start_secs)
         };
-        let mut at: Vec<String> = cut.cuts_secs.iter().take(SHOWN).map(|secs| format!("{secs:.1}")).collect();
+        let mut at: Vec<String> = cut
+            .cuts_secs
+            .iter()
+            .take(SHOWN)
+            .map(|secs| format!("{secs:.1}"))
+            .collect();
         if cut.cuts_secs.len() > SHOWN {
             at.push(format!("and {} more", cut.cuts_secs.len() - SHOWN));
         }
@@ -224,5 +282,8 @@ fn print(cuts: &[Cut]) -> Result<()> {
         ]);
     }
     let segments: usize = cuts.iter().map(|c| c.cuts_secs.len() + 1).sum();
-    super::print_table(&table, &format!("{segments} segments of {} clips\n", cuts.len()))
+    super::print_table(
+        &table,
+        &format!("{segments} segments of {} clips\n", cuts.len()),
+    )
 }

@@ -69,13 +69,22 @@ struct Counted {
 
 /// Counts and prints; splits if asked to.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let mut db = if args.split { MotionDb::open(&args.db)? } else { MotionDb::open_read_only(&args.db)? };
+    let mut db = if args.split {
+        MotionDb::open(&args.db)?
+    } else {
+        MotionDb::open_read_only(&args.db)?
+    };
     let params = FeatureParams::default();
-    let rows: BTreeMap<ClipId, _> =
-        db.rows(&params, &Bar::stoppable()?)?.into_iter().map(|r| (r.clip, r.rows)).collect();
+    let rows: BTreeMap<ClipId, _> = db
+        .rows(&params, &Bar::stoppable()?)?
+        .into_iter()
+        .map(|r| (r.clip, r.rows))
+        .collect();
     let mut found = stretches(&db, args)?;
     for stretch in &mut found {
-        let Some(rows) = rows.get(&stretch.id) else { continue };
+        let Some(rows) = rows.get(&stretch.id) else {
+            continue;
+        };
         let tick = |secs: f64| ((secs * params.tick_hz()).round() as usize).min(rows.len());
         let span = tick(stretch.start_secs)..tick(stretch.stop_secs);
         if !span.is_empty() {
@@ -94,7 +103,10 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 }
 
 fn stretches(db: &MotionDb, args: &Args) -> Result<Vec<Counted>> {
-    let clips = db.clips(&ClipFilter { name: args.name.clone(), ..ClipFilter::default() })?;
+    let clips = db.clips(&ClipFilter {
+        name: args.name.clone(),
+        ..ClipFilter::default()
+    })?;
     let names: BTreeMap<ClipId, &str> = clips.iter().map(|c| (c.id, c.name.as_str())).collect();
     let stretch = |id: ClipId, start_secs, stop_secs| {
         Some(Counted {
@@ -109,11 +121,18 @@ fn stretches(db: &MotionDb, args: &Args) -> Result<Vec<Counted>> {
         })
     };
     Ok(match args.of {
-        Of::Clips => clips.iter().filter_map(|c| stretch(c.id, 0.0, c.duration_secs())).collect(),
+        Of::Clips => clips
+            .iter()
+            .filter_map(|c| stretch(c.id, 0.0, c.duration_secs()))
+            .collect(),
         Of::Cuts => {
             let segments = db.segments()?;
-            let moving = segments.iter().filter(|s| s.kind == morec_db::SegmentKind::Motion);
-            moving.filter_map(|s| stretch(s.clip, s.start_secs, s.stop_secs)).collect()
+            let moving = segments
+                .iter()
+                .filter(|s| s.kind == morec_db::SegmentKind::Motion);
+            moving
+                .filter_map(|s| stretch(s.clip, s.start_secs, s.stop_secs))
+                .collect()
         }
         Of::Labels => {
             let filter = SampleFilter {
@@ -133,7 +152,9 @@ fn stretches(db: &MotionDb, args: &Args) -> Result<Vec<Counted>> {
                     last.stop_secs = sample.stop_secs;
                     last.labels += 1;
                     last.samples.push(sample.id);
-                } else if let Some(mut new) = stretch(sample.clip, sample.start_secs, sample.stop_secs) {
+                } else if let Some(mut new) =
+                    stretch(sample.clip, sample.start_secs, sample.stop_secs)
+                {
                     (new.class, new.labels, new.samples) = (Some(sample.class), 1, vec![sample.id]);
                     found.push(new);
                 }
@@ -147,12 +168,17 @@ fn stretches(db: &MotionDb, args: &Args) -> Result<Vec<Counted>> {
 fn split(db: &mut MotionDb, found: &[Counted]) -> Result<()> {
     let (mut new, mut old) = (Vec::new(), Vec::new());
     for stretch in found {
-        let (Some(cycles), Some(class)) = (&stretch.cycles, &stretch.class) else { continue };
+        let (Some(cycles), Some(class)) = (&stretch.cycles, &stretch.class) else {
+            continue;
+        };
         if cycles.whole() < 2 {
             continue;
         }
         old.extend(&stretch.samples);
-        for pair in cycles.bounds(stretch.stop_secs - stretch.start_secs).windows(2) {
+        for pair in cycles
+            .bounds(stretch.stop_secs - stretch.start_secs)
+            .windows(2)
+        {
             new.push(NewSample {
                 clip: stretch.id,
                 class: class.clone(),
@@ -170,24 +196,34 @@ fn split(db: &mut MotionDb, found: &[Counted]) -> Result<()> {
 }
 
 fn print(found: &[Counted]) -> Result<()> {
-    let mut table = Table::new(["clip", "class", "start", "stop", "labels", "cycles", "period", "alike"])
-        .least(["alike", "labels", "class"]);
+    let mut table = Table::new([
+        "clip", "class", "start", "stop", "labels", "cycles", "period", "alike",
+    ])
+    .least(["alike", "labels", "class"]);
     for c in found {
-        let figure =
-            |value: Option<f64>, decimals| value.map_or_else(String::new, |v| format!("{v:.decimals$}"));
+        let figure = |value: Option<f64>, decimals| {
+            value.map_or_else(String::new, |v| format!("{v:.decimals$}"))
+        };
         table.row([
             c.clip.clone(),
             c.class.clone().unwrap_or_default(),
             format!("{:.2}", c.start_secs),
             format!("{:.2}", c.stop_secs),
-            if c.labels > 0 { c.labels.to_string() } else { String::new() },
+            if c.labels > 0 {
+                c.labels.to_string()
+            } else {
+                String::new()
+            },
             figure(c.cycles.map(|c| c.count), 1),
             figure(c.cycles.map(|c| c.period_secs), 2),
             figure(c.cycles.map(|c| c.correlation), 2),
         ]);
     }
     let repeated: Vec<&Counted> = found.iter().filter(|c| c.labels > 1).collect();
-    let right = repeated.iter().filter(|c| c.cycles.is_some_and(|k| k.whole() == c.labels)).count();
+    let right = repeated
+        .iter()
+        .filter(|c| c.cycles.is_some_and(|k| k.whole() == c.labels))
+        .count();
     let last = match repeated.len() {
         0 => String::new(),
         all => format!("{right} of {all} stretches of several labels counted right\n"),

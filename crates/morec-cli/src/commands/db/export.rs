@@ -56,8 +56,17 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             .with_context(|| args.output.display().to_string())?;
         return said(args, 1, stored.clip.frames, "frames");
     }
-    let clip = args.clip.as_deref().map(|name| db.find_clip(name)).transpose()?.map(|info| info.id);
-    let filter = SampleFilter { clip, class: args.class.clone(), state: Some(args.state.into()) };
+    let clip = args
+        .clip
+        .as_deref()
+        .map(|name| db.find_clip(name))
+        .transpose()?
+        .map(|info| info.id);
+    let filter = SampleFilter {
+        clip,
+        class: args.class.clone(),
+        state: Some(args.state.into()),
+    };
     let annotations: Vec<Annotation> = db
         .samples(&filter)?
         .into_iter()
@@ -78,7 +87,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     };
     if annotations.iter().any(|a| !form.keeps(a.state)) {
         let (form, state) = (form.name(), State::from(args.state).name());
-        eprintln!("morec: {form} does not say that these are {state}; read back, give --state {state} again");
+        eprintln!(
+            "morec: {form} does not say that these are {state}; read back, give --state {state} again"
+        );
     }
     let lengths = super::lengths(&db)?;
     let mut files = 1;
@@ -99,7 +110,10 @@ fn said(args: &Args, files: usize, count: usize, what: &str) -> Result<ExitCode>
     if args.json {
         super::print_json(&serde_json::json!({ "files": files, what: count }))?;
     } else if args.output != Path::new("-") {
-        super::print(format_args!("{}: {count} {what} in {files} files\n", args.output.display()))?;
+        super::print(format_args!(
+            "{}: {count} {what} in {files} files\n",
+            args.output.display()
+        ))?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -111,14 +125,21 @@ fn a_file_a_clip(
     lengths: &exchange::Lengths,
 ) -> Result<usize> {
     if folder.is_file() {
-        bail!("{}: {} holds one clip: give a folder, or --clip", folder.display(), form.name());
+        bail!(
+            "{}: {} holds one clip: give a folder, or --clip",
+            folder.display(),
+            form.name()
+        );
     }
     std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
     let ending = if form == Form::Eaf { "eaf" } else { "txt" };
     let mut files = 0;
     for of_clip in annotations.chunk_by(|a, b| a.clip == b.clip) {
         let text = exchange::write(form, of_clip, lengths).map_err(anyhow::Error::msg)?;
-        let path = folder.join(format!("{}.{ending}", of_clip[0].clip.replace(['/', '\\'], "_")));
+        let path = folder.join(format!(
+            "{}.{ending}",
+            of_clip[0].clip.replace(['/', '\\'], "_")
+        ));
         files::write_whole(&path, |out| out.write_all(text.as_bytes()))
             .with_context(|| path.display().to_string())?;
         files += 1;

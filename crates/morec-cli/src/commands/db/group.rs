@@ -113,23 +113,38 @@ const POINTS: usize = 16;
 
 /// Clusters, prints, and proposes if asked to.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let mut db =
-        if args.name_as.is_some() { MotionDb::open(&args.db)? } else { MotionDb::open_read_only(&args.db)? };
+    let mut db = if args.name_as.is_some() {
+        MotionDb::open(&args.db)?
+    } else {
+        MotionDb::open_read_only(&args.db)?
+    };
     let items = items(&mut db, args)?;
     if items.is_empty() {
         bail!("nothing to group (morec db cut finds segments, morec db label sets samples)");
     }
     let groups = groups(&items, args);
-    let mut grouped = Grouped { groups: Vec::new(), rand_index: None, adjusted_rand_index: None };
+    let mut grouped = Grouped {
+        groups: Vec::new(),
+        rand_index: None,
+        adjusted_rand_index: None,
+    };
     if args.of == Of::Labels {
         let names: BTreeSet<Option<&str>> = items.iter().map(|i| i.class.as_deref()).collect();
-        let classes: Vec<usize> = items.iter().map(|i| names.range(..i.class.as_deref()).count()).collect();
+        let classes: Vec<usize> = items
+            .iter()
+            .map(|i| names.range(..i.class.as_deref()).count())
+            .collect();
         grouped.rand_index = Some(Pairs::count(&classes, &groups.of).rand_index());
         grouped.adjusted_rand_index = Some(adjusted_rand_index(&classes, &groups.of));
     }
-    grouped.groups =
-        groups.members().into_iter().map(|m| m.into_iter().map(|i| items[i].clone()).collect()).collect();
-    grouped.groups.sort_by_key(|group: &Vec<Item>| std::cmp::Reverse(group.len()));
+    grouped.groups = groups
+        .members()
+        .into_iter()
+        .map(|m| m.into_iter().map(|i| items[i].clone()).collect())
+        .collect();
+    grouped
+        .groups
+        .sort_by_key(|group: &Vec<Item>| std::cmp::Reverse(group.len()));
     if let Some(name) = &args.name_as {
         propose(&mut db, &grouped.groups, name)?;
     }
@@ -150,28 +165,53 @@ fn items(db: &mut MotionDb, args: &Args) -> Result<Vec<Item>> {
     let clips = db.clips(&ClipFilter::default())?;
     let names: BTreeMap<ClipId, &str> = clips.iter().map(|c| (c.id, c.name.as_str())).collect();
     let spans: Vec<(ClipId, f64, f64, Option<String>)> = match args.of {
-        Of::Clips => clips.iter().map(|c| (c.id, 0.0, c.duration_secs(), None)).collect(),
+        Of::Clips => clips
+            .iter()
+            .map(|c| (c.id, 0.0, c.duration_secs(), None))
+            .collect(),
         Of::Cuts => {
-            let moving = db.segments()?.into_iter().filter(|s| s.kind == SegmentKind::Motion);
-            moving.map(|s| (s.clip, s.start_secs, s.stop_secs, None)).collect()
+            let moving = db
+                .segments()?
+                .into_iter()
+                .filter(|s| s.kind == SegmentKind::Motion);
+            moving
+                .map(|s| (s.clip, s.start_secs, s.stop_secs, None))
+                .collect()
         }
         Of::Labels => {
-            let samples = db.samples(&SampleFilter { state: Some(State::Accepted), ..Default::default() })?;
-            let wanted =
-                samples.into_iter().filter(|s| args.classes.is_empty() || args.classes.contains(&s.class));
-            wanted.map(|s| (s.clip, s.start_secs, s.stop_secs, Some(s.class))).collect()
+            let samples = db.samples(&SampleFilter {
+                state: Some(State::Accepted),
+                ..Default::default()
+            })?;
+            let wanted = samples
+                .into_iter()
+                .filter(|s| args.classes.is_empty() || args.classes.contains(&s.class));
+            wanted
+                .map(|s| (s.clip, s.start_secs, s.stop_secs, Some(s.class)))
+                .collect()
         }
     };
     let rows: BTreeMap<ClipId, _> = rows.into_iter().map(|r| (r.clip, r)).collect();
     // Only bones that every one of them shows.
-    let bones = spans.iter().filter_map(|s| rows.get(&s.0)).map(|r| r.bones).reduce(BoneSet::and);
+    let bones = spans
+        .iter()
+        .filter_map(|s| rows.get(&s.0))
+        .map(|r| r.bones)
+        .reduce(BoneSet::and);
     let bones = bones.unwrap_or(BoneSet::NONE);
     let item = |(id, start_secs, stop_secs, class): (ClipId, f64, f64, Option<String>)| {
         let of = rows.get(&id)?;
         let tick = |secs: f64| ((secs * params.tick_hz()).round() as usize).min(of.rows.len());
         let span = tick(start_secs)..tick(stop_secs);
         let rows = (!span.is_empty()).then(|| only(&of.rows.slice(span), of.bones, bones))?;
-        Some(Item { clip: (*names.get(&id)?).to_owned(), start_secs, stop_secs, class, id, rows })
+        Some(Item {
+            clip: (*names.get(&id)?).to_owned(),
+            start_secs,
+            stop_secs,
+            class,
+            id,
+            rows,
+        })
     };
     Ok(spans.into_iter().filter_map(item).collect())
 }
@@ -179,19 +219,36 @@ fn items(db: &mut MotionDb, args: &Args) -> Result<Vec<Item>> {
 /// The columns of some of the bones, and of the root.
 fn only(rows: &Rows, of: BoneSet, wanted: BoneSet) -> Rows {
     let b = of.len();
-    let places: Vec<usize> =
-        of.indices().enumerate().filter(|(_, bone)| wanted.contains(*bone)).map(|(at, _)| at).collect();
-    let block = |start: usize| places.iter().flat_map(move |at| (0..3).map(move |i| start + 3 * at + i));
-    let columns: Vec<usize> = block(0).chain(block(3 * b)).chain(6 * b..6 * b + 4).collect();
+    let places: Vec<usize> = of
+        .indices()
+        .enumerate()
+        .filter(|(_, bone)| wanted.contains(*bone))
+        .map(|(at, _)| at)
+        .collect();
+    let block = |start: usize| {
+        places
+            .iter()
+            .flat_map(move |at| (0..3).map(move |i| start + 3 * at + i))
+    };
+    let columns: Vec<usize> = block(0)
+        .chain(block(3 * b))
+        .chain(6 * b..6 * b + 4)
+        .collect();
     rows.columns(&columns)
 }
 
 fn groups(items: &[Item], args: &Args) -> Clusters {
-    let points: Vec<Vec<f32>> = items.iter().map(|item| resampled(&item.rows, POINTS)).collect();
+    let points: Vec<Vec<f32>> = items
+        .iter()
+        .map(|item| resampled(&item.rows, POINTS))
+        .collect();
     let apart = |a: usize, b: usize| squared_distance(&points[a], &points[b], POINTS);
     match args.method {
         Method::Affinity => {
-            let params = AffinityParams { preference: args.preference, ..AffinityParams::default() };
+            let params = AffinityParams {
+                preference: args.preference,
+                ..AffinityParams::default()
+            };
             affinity_propagation(items.len(), |a, b| -apart(a, b), &params)
         }
         Method::Hierarchy => {
@@ -203,8 +260,17 @@ fn groups(items: &[Item], args: &Args) -> Clusters {
             }
         }
         Method::Kwas => {
-            let spectra: Vec<Spectrum> = items.iter().map(|item| Spectrum::of_rows(&item.rows)).collect();
-            kwas_clusters(&spectra, &KwasParams { tau: args.tau, ..KwasParams::default() })
+            let spectra: Vec<Spectrum> = items
+                .iter()
+                .map(|item| Spectrum::of_rows(&item.rows))
+                .collect();
+            kwas_clusters(
+                &spectra,
+                &KwasParams {
+                    tau: args.tau,
+                    ..KwasParams::default()
+                },
+            )
         }
     }
 }
@@ -233,8 +299,14 @@ fn report(path: &Path, db: &MotionDb, args: &Args, grouped: &Grouped) -> Result<
     for (number, group) in grouped.groups.iter().enumerate() {
         page.heading(&format!("Group {}: {} members", number + 1, group.len()));
         for item in group.iter().take(SHOWN) {
-            let class = item.class.as_ref().map_or_else(String::new, |class| format!(", {class}"));
-            let caption = format!("{} {:.2}–{:.2} s{class}", item.clip, item.start_secs, item.stop_secs);
+            let class = item
+                .class
+                .as_ref()
+                .map_or_else(String::new, |class| format!(", {class}"));
+            let caption = format!(
+                "{} {:.2}–{:.2} s{class}",
+                item.clip, item.start_secs, item.stop_secs
+            );
             page.figure(db, item.id, item.start_secs, item.stop_secs, &caption)?;
         }
         if group.len() > SHOWN {
@@ -258,17 +330,29 @@ fn print(grouped: &Grouped) -> Result<()> {
         for item in group {
             match &item.class {
                 Some(class) => *classes.entry(class).or_default() += 1,
-                None if what.len() < SHOWN => what.push(format!("{} {:.1}", item.clip, item.start_secs)),
+                None if what.len() < SHOWN => {
+                    what.push(format!("{} {:.1}", item.clip, item.start_secs))
+                }
                 None => {}
             }
         }
-        what.extend(classes.iter().map(|(class, count)| format!("{class} {count}")));
-        table.row([(number + 1).to_string(), group.len().to_string(), what.join(", ")]);
+        what.extend(
+            classes
+                .iter()
+                .map(|(class, count)| format!("{class} {count}")),
+        );
+        table.row([
+            (number + 1).to_string(),
+            group.len().to_string(),
+            what.join(", "),
+        ]);
     }
     let members: usize = grouped.groups.iter().map(Vec::len).sum();
     let mut last = format!("{members} in {} groups\n", grouped.groups.len());
     if let (Some(rand), Some(adjusted)) = (grouped.rand_index, grouped.adjusted_rand_index) {
-        last.push_str(&format!("against the classes: Rand index {rand:.3}, adjusted {adjusted:.3}\n"));
+        last.push_str(&format!(
+            "against the classes: Rand index {rand:.3}, adjusted {adjusted:.3}\n"
+        ));
     }
     super::print_table(&table, &last)
 }

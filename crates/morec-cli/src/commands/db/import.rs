@@ -60,7 +60,10 @@ pub struct Args {
 /// Imports and reports.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let begun = Instant::now();
-    let paths: Vec<PathBuf> = files::expand(&args.clips)?.into_iter().map(absolute).collect();
+    let paths: Vec<PathBuf> = files::expand(&args.clips)?
+        .into_iter()
+        .map(absolute)
+        .collect();
     let mut db = match args.db.exists() {
         true => MotionDb::open(&args.db)?,
         false => MotionDb::create(&args.db)?,
@@ -82,7 +85,10 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let report = db.import(&paths, &args.read.reader(), &settings, &bar)?;
     let near_copies = near_copies(&mut db, &report, &bar)?;
     if args.json {
-        super::print_json(&Reported { report: &report, near_copies: &near_copies })?;
+        super::print_json(&Reported {
+            report: &report,
+            near_copies: &near_copies,
+        })?;
     } else {
         super::print(text(&report, paths.len(), begun.elapsed().as_secs_f64()))?;
         for copy in &near_copies {
@@ -93,7 +99,11 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         return Ok(super::STOPPED.into());
     }
     let refused = report.counts()[4];
-    Ok(if refused > 0 { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+    Ok(if refused > 0 {
+        ExitCode::FAILURE
+    } else {
+        ExitCode::SUCCESS
+    })
 }
 
 #[derive(Serialize)]
@@ -110,7 +120,11 @@ fn near_copies(db: &mut MotionDb, report: &ImportReport, bar: &Bar) -> Result<Ve
         _ => &[],
     });
     let names: BTreeSet<&str> = names.map(String::as_str).collect();
-    if names.is_empty() || report.cancelled { Ok(Vec::new()) } else { copies::find(db, Some(&names), bar) }
+    if names.is_empty() || report.cancelled {
+        Ok(Vec::new())
+    } else {
+        copies::find(db, Some(&names), bar)
+    }
 }
 
 /// The same file is the same path, wherever the command is run.
@@ -137,10 +151,14 @@ fn text(report: &ImportReport, files: usize, secs: f64) -> String {
     for (path, outcome) in &report.files {
         let shown = path.display();
         match outcome {
-            Outcome::Refused(refused) => lines.push(format!("  refused {shown}: {}", refused.reason)),
-            Outcome::Copy { of } => {
-                notes.push((String::new(), format!("  {shown} is a copy of {}", of.display()), 1))
+            Outcome::Refused(refused) => {
+                lines.push(format!("  refused {shown}: {}", refused.reason))
             }
+            Outcome::Copy { of } => notes.push((
+                String::new(),
+                format!("  {shown} is a copy of {}", of.display()),
+                1,
+            )),
             Outcome::Imported { warnings, .. } => {
                 for warning in warnings {
                     let kind: String = warning.chars().filter(|c| !c.is_ascii_digit()).collect();
@@ -155,11 +173,13 @@ fn text(report: &ImportReport, files: usize, secs: f64) -> String {
     }
     let notes: Vec<String> = notes
         .into_iter()
-        .map(
-            |(_, text, count)| {
-                if count > 1 { format!("{text} (and {} more like it)", count - 1) } else { text }
-            },
-        )
+        .map(|(_, text, count)| {
+            if count > 1 {
+                format!("{text} (and {} more like it)", count - 1)
+            } else {
+                text
+            }
+        })
         .collect();
     let more = notes.len().saturating_sub(SHOWN);
     lines.extend(notes.into_iter().take(SHOWN));

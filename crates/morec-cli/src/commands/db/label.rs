@@ -41,7 +41,12 @@ pub struct Args {
     #[arg(long, value_name = "CLIP")]
     clip: Option<String>,
     /// Set one sample of this class
-    #[arg(long, value_name = "CLASS", requires = "clip", conflicts_with = "labels")]
+    #[arg(
+        long,
+        value_name = "CLASS",
+        requires = "clip",
+        conflicts_with = "labels"
+    )]
     class: Option<String>,
     /// Where it starts, seconds [default: the clip's beginning]
     #[arg(long, value_name = "SECS", requires = "class")]
@@ -119,7 +124,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let mut absent = BTreeMap::new();
     let annotations = match &args.class {
         Some(class) => vec![by_hand(args, class, &lengths)?],
-        None if args.labels.is_empty() => bail!("nothing to label: give a file, or --clip and --class"),
+        None if args.labels.is_empty() => {
+            bail!("nothing to label: give a file, or --clip and --class")
+        }
         None => read(args, &lengths, &mut absent)?,
     };
     let samples = resolve(&db, args, annotations, &lengths, &mut absent)?;
@@ -162,7 +169,9 @@ fn by_hand(args: &Args, class: &str, lengths: &Lengths) -> Result<Annotation> {
     let extent = match (args.start, args.stop) {
         (None, None) => None,
         (start, stop) => {
-            let end = stop.or(secs).with_context(|| format!("no clip is called {clip:?}"))?;
+            let end = stop
+                .or(secs)
+                .with_context(|| format!("no clip is called {clip:?}"))?;
             Some((start.unwrap_or(0.0), end))
         }
     };
@@ -183,11 +192,12 @@ fn read(args: &Args, lengths: &Lengths, absent: &mut Absent) -> Result<Vec<Annot
         let bytes = files::read(path)?;
         let form = match args.form {
             Some(form) => form.into(),
-            None => Form::of_file(&shown, &bytes)
-                .with_context(|| format!("{shown}: its ending says no form of labels; give --form"))?,
+            None => Form::of_file(&shown, &bytes).with_context(|| {
+                format!("{shown}: its ending says no form of labels; give --form")
+            })?,
         };
-        let read =
-            exchange::read(form, &bytes, args.clip.as_deref(), lengths).with_context(|| shown.clone())?;
+        let read = exchange::read(form, &bytes, args.clip.as_deref(), lengths)
+            .with_context(|| shown.clone())?;
         for warning in &read.warnings {
             eprintln!("morec: {shown}: {warning}");
         }
@@ -213,12 +223,21 @@ fn resolve(
     lengths: &Lengths,
     absent: &mut Absent,
 ) -> Result<Vec<NewSample>> {
-    let ids: BTreeMap<String, _> =
-        db.clips(&ClipFilter::default())?.into_iter().map(|c| (c.name, c.id)).collect();
+    let ids: BTreeMap<String, _> = db
+        .clips(&ClipFilter::default())?
+        .into_iter()
+        .map(|c| (c.name, c.id))
+        .collect();
     let mut samples = Vec::new();
     for a in annotations {
-        let stem = a.clip.rsplit_once('.').map_or(a.clip.as_str(), |(stem, _)| stem);
-        let Some(name) = [a.clip.as_str(), stem].into_iter().find(|name| ids.contains_key(*name)) else {
+        let stem = a
+            .clip
+            .rsplit_once('.')
+            .map_or(a.clip.as_str(), |(stem, _)| stem);
+        let Some(name) = [a.clip.as_str(), stem]
+            .into_iter()
+            .find(|name| ids.contains_key(*name))
+        else {
             *absent.entry(a.clip).or_default() += 1;
             continue;
         };

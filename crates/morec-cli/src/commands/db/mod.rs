@@ -102,8 +102,20 @@ fn of(args: Args) -> Result<ExitCode> {
 
 /// The lengths of all clips by name.
 fn lengths(db: &MotionDb) -> Result<Lengths> {
-    let length = |c: ClipInfo| (c.name, ClipLength { frames: c.frames, rate_hz: c.rate_hz });
-    Ok(db.clips(&ClipFilter::default())?.into_iter().map(length).collect())
+    let length = |c: ClipInfo| {
+        (
+            c.name,
+            ClipLength {
+                frames: c.frames,
+                rate_hz: c.rate_hz,
+            },
+        )
+    };
+    Ok(db
+        .clips(&ClipFilter::default())?
+        .into_iter()
+        .map(length)
+        .collect())
 }
 
 /// One value as JSON on standard output.
@@ -148,6 +160,12 @@ fn megabytes(bytes: u64) -> String {
 
 /// A share on the command line.
 fn share(text: &str) -> std::result::Result<f64, String> {
-    let value: f64 = text.parse().map_err(|_| "expected a number from 0 to 1".to_owned())?;
-    if (0.0..=1.0).contains(&value) { Ok(value) } else { Err("expected a number from 0 to 1".to_owned()) }
+    let value: f64 = text
+        .parse()
+        .map_err(|_| "expected a number from 0 to 1".to_owned())?;
+    if (0.0..=1.0).contains(&value) {
+        Ok(value)
+    } else {
+        Err("expected a number from 0 to 1".to_owned())
+    }
 }

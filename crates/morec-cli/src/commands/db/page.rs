@@ -62,9 +62,18 @@ impl Page {
     }
 
     /// A stretch of any clip.
-    pub fn figure_of(&mut self, stored: &StoredClip, start_secs: f64, stop_secs: f64, caption: &str) {
+    pub fn figure_of(
+        &mut self,
+        stored: &StoredClip,
+        start_secs: f64,
+        stop_secs: f64,
+        caption: &str,
+    ) {
         let svg = strip(stored, start_secs, stop_secs, POSES);
-        self.html.push_str(&format!("<figure>{svg}<figcaption>{}</figcaption></figure>\n", escaped(caption)));
+        self.html.push_str(&format!(
+            "<figure>{svg}<figcaption>{}</figcaption></figure>\n",
+            escaped(caption)
+        ));
         self.strips += 1;
     }
 
@@ -82,5 +91,8 @@ impl Page {
 }
 
 fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+        .replace('"', "&quot;")
 }

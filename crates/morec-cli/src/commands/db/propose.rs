@@ -65,9 +65,16 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         return list(args, &MotionDb::open_read_only(&args.db)?);
     }
     let mut db = MotionDb::open(&args.db)?;
-    let options = ProposeOptions { classes: args.classes.clone(), ..ProposeOptions::default() };
+    let options = ProposeOptions {
+        classes: args.classes.clone(),
+        ..ProposeOptions::default()
+    };
     let proposals = db.propose(&options, &Bar::stoppable()?)?;
-    let old: Vec<SampleId> = proposed(&db)?.into_iter().filter(|s| s.set_by == BY).map(|s| s.id).collect();
+    let old: Vec<SampleId> = proposed(&db)?
+        .into_iter()
+        .filter(|s| s.set_by == BY)
+        .map(|s| s.id)
+        .collect();
     db.remove_samples(&old)?;
     let samples: Vec<NewSample> = proposals.iter().cloned().map(NewSample::from).collect();
     db.add_samples(&samples, BY)?;
@@ -75,18 +82,29 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 }
 
 fn proposed(db: &MotionDb) -> Result<Vec<morec_db::labels::DbSample>> {
-    Ok(db.samples(&SampleFilter { state: Some(State::Proposed), ..SampleFilter::default() })?)
+    Ok(db.samples(&SampleFilter {
+        state: Some(State::Proposed),
+        ..SampleFilter::default()
+    })?)
 }
 
 fn judge(args: &Args) -> Result<ExitCode> {
     let mut db = MotionDb::open(&args.db)?;
     let all = proposed(&db)?;
-    let wanted = |s: &&morec_db::labels::DbSample| args.classes.is_empty() || args.classes.contains(&s.class);
+    let wanted = |s: &&morec_db::labels::DbSample| {
+        args.classes.is_empty() || args.classes.contains(&s.class)
+    };
     let score = |s: &morec_db::labels::DbSample| s.score.unwrap_or(0.0);
     let pick = |holds: &dyn Fn(f64) -> bool| -> Vec<SampleId> {
-        all.iter().filter(wanted).filter(|s| holds(score(s))).map(|s| s.id).collect()
+        all.iter()
+            .filter(wanted)
+            .filter(|s| holds(score(s)))
+            .map(|s| s.id)
+            .collect()
     };
-    let accepted = args.accept.map_or_else(Vec::new, |least| pick(&|score| score >= least));
+    let accepted = args
+        .accept
+        .map_or_else(Vec::new, |least| pick(&|score| score >= least));
     let rejected = args.reject.map_or_else(Vec::new, |least| {
         pick(&|score| score < least && args.accept.is_none_or(|accept| score < accept))
     });
@@ -95,9 +113,13 @@ fn judge(args: &Args) -> Result<ExitCode> {
     let (accepted, rejected) = (accepted.len(), rejected.len());
     let left = all.len() - accepted - rejected;
     if args.json {
-        super::print_json(&serde_json::json!({ "accepted": accepted, "rejected": rejected, "left": left }))?;
+        super::print_json(
+            &serde_json::json!({ "accepted": accepted, "rejected": rejected, "left": left }),
+        )?;
     } else {
-        super::print(format_args!("{accepted} accepted, {rejected} rejected, {left} left to look at\n"))?;
+        super::print(format_args!(
+            "{accepted} accepted, {rejected} rejected, {left} left to look at\n"
+        ))?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -131,9 +153,15 @@ fn show(args: &Args, db: &MotionDb, mut proposals: Vec<Proposal>) -> Result<Exit
         let order = questions(&proposals, proposals.len());
         proposals = order.into_iter().map(|at| proposals[at].clone()).collect();
     }
-    let names: BTreeMap<ClipId, String> =
-        db.clips(&ClipFilter::default())?.into_iter().map(|c| (c.id, c.name)).collect();
-    let named = |p: Proposal| Named { name: names.get(&p.clip).cloned().unwrap_or_default(), proposal: p };
+    let names: BTreeMap<ClipId, String> = db
+        .clips(&ClipFilter::default())?
+        .into_iter()
+        .map(|c| (c.id, c.name))
+        .collect();
+    let named = |p: Proposal| Named {
+        name: names.get(&p.clip).cloned().unwrap_or_default(),
+        proposal: p,
+    };
     let all: Vec<Named> = proposals.into_iter().map(named).collect();
     if args.json {
         super::print_json(&all)?;
@@ -151,8 +179,15 @@ fn show(args: &Args, db: &MotionDb, mut proposals: Vec<Proposal>) -> Result<Exit
         ]);
     }
     let more = all.len().saturating_sub(args.limit);
-    let more = if more > 0 { format!("; {more} not shown") } else { String::new() };
-    let last = format!("{} proposed, {sure} of them likelier right than wrong{more}\n", all.len());
+    let more = if more > 0 {
+        format!("; {more} not shown")
+    } else {
+        String::new()
+    };
+    let last = format!(
+        "{} proposed, {sure} of them likelier right than wrong{more}\n",
+        all.len()
+    );
     super::print_table(&table, &last)?;
     Ok(ExitCode::SUCCESS)
 }

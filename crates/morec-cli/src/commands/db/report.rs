@@ -39,7 +39,12 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let mut page = Page::default();
     classes(&mut page, &db, args.limit)?;
     clips(&mut page, &db, args)?;
-    let title = args.db.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let title = args
+        .db
+        .file_name()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
     let s = db.summary()?;
     let head = format!(
         "{} clips, {:.1} min, {} skeletons; {} for {} of clip files; {} samples of {} classes, {} proposed",
@@ -56,7 +61,11 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if args.json {
         super::print_json(&serde_json::json!({ "path": args.output, "strips": page.strips() }))?;
     } else {
-        super::print(format_args!("{}: {} strips of poses\n", args.output.display(), page.strips()))?;
+        super::print(format_args!(
+            "{}: {} strips of poses\n",
+            args.output.display(),
+            page.strips()
+        ))?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -67,12 +76,24 @@ fn classes(page: &mut Page, db: &MotionDb, limit: usize) -> Result<()> {
         let (name, accepted, proposed) = (&class.name, class.accepted, class.proposed);
         page.heading(&format!("{name}: {accepted} samples, {proposed} proposed"));
         for state in [State::Accepted, State::Proposed] {
-            let filter = SampleFilter { class: Some(class.name.clone()), state: Some(state), clip: None };
+            let filter = SampleFilter {
+                class: Some(class.name.clone()),
+                state: Some(state),
+                clip: None,
+            };
             for s in db.samples(&filter)?.into_iter().take(limit) {
-                let score = s.score.map_or_else(String::new, |score| format!(", score {score:.2}"));
-                let state =
-                    if state == State::Proposed { format!(" proposed{score}") } else { String::new() };
-                let caption = format!("{} {:.2}–{:.2} s{state}", s.clip_name, s.start_secs, s.stop_secs);
+                let score = s
+                    .score
+                    .map_or_else(String::new, |score| format!(", score {score:.2}"));
+                let state = if state == State::Proposed {
+                    format!(" proposed{score}")
+                } else {
+                    String::new()
+                };
+                let caption = format!(
+                    "{} {:.2}–{:.2} s{state}",
+                    s.clip_name, s.start_secs, s.stop_secs
+                );
                 page.figure(db, s.clip, s.start_secs, s.stop_secs, &caption)?;
             }
         }
@@ -83,16 +104,32 @@ fn classes(page: &mut Page, db: &MotionDb, limit: usize) -> Result<()> {
 /// Clips as a whole, and their cuts.
 fn clips(page: &mut Page, db: &MotionDb, args: &Args) -> Result<()> {
     let segments = db.segments()?;
-    let clips = db.clips(&ClipFilter { name: args.name.clone(), ..ClipFilter::default() })?;
+    let clips = db.clips(&ClipFilter {
+        name: args.name.clone(),
+        ..ClipFilter::default()
+    })?;
     page.heading("Clips");
     for clip in clips.iter().take(args.limit) {
         let secs = clip.duration_secs();
-        page.figure(db, clip.id, 0.0, secs, &format!("{} {secs:.1} s", clip.name))?;
-        let of_clip: Vec<_> =
-            segments.iter().filter(|s| s.clip == clip.id && s.kind == SegmentKind::Motion).collect();
+        page.figure(
+            db,
+            clip.id,
+            0.0,
+            secs,
+            &format!("{} {secs:.1} s", clip.name),
+        )?;
+        let of_clip: Vec<_> = segments
+            .iter()
+            .filter(|s| s.clip == clip.id && s.kind == SegmentKind::Motion)
+            .collect();
         if of_clip.len() > 1 {
             for (number, s) in of_clip.iter().enumerate() {
-                let caption = format!("segment {}: {:.1}–{:.1} s", number + 1, s.start_secs, s.stop_secs);
+                let caption = format!(
+                    "segment {}: {:.1}–{:.1} s",
+                    number + 1,
+                    s.start_secs,
+                    s.stop_secs
+                );
                 page.figure(db, clip.id, s.start_secs, s.stop_secs, &caption)?;
             }
             page.new_line();

@@ -56,7 +56,12 @@ pub struct Args {
     #[arg(long)]
     learned: bool,
     /// Learn from these classes only
-    #[arg(long, value_name = "A,B,…", value_delimiter = ',', requires = "learned")]
+    #[arg(
+        long,
+        value_name = "A,B,…",
+        value_delimiter = ',',
+        requires = "learned"
+    )]
     classes: Vec<String>,
     /// How much the exact path counts against the summary of poses and pace, 0 to 1
     #[arg(long, value_name = "SHARE", default_value_t = SearchOptions::default().warp_share)]
@@ -101,9 +106,16 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let mut db = MotionDb::open_read_only(&args.db)?;
     let index = SearchIndex::of_db(&mut db, &Bar::stoppable()?)?;
     let (example, shown) = example(&db, &index, args)?;
-    let metric = if args.learned { Some(learn(&db, &index, args)?) } else { None };
-    let names: BTreeMap<ClipId, String> =
-        db.clips(&ClipFilter::default())?.into_iter().map(|c| (c.id, c.name)).collect();
+    let metric = if args.learned {
+        Some(learn(&db, &index, args)?)
+    } else {
+        None
+    };
+    let names: BTreeMap<ClipId, String> = db
+        .clips(&ClipFilter::default())?
+        .into_iter()
+        .map(|c| (c.id, c.name))
+        .collect();
     let load_secs = begun.elapsed().as_secs_f64();
     let begun = Instant::now();
     let options = SearchOptions {
@@ -114,10 +126,22 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     };
     let hits = index.search_by(&example, &options, metric.as_ref());
     let search_secs = begun.elapsed().as_secs_f64();
-    let named = |hit: Hit| Named { name: names.get(&hit.clip).cloned().unwrap_or_default(), hit };
+    let named = |hit: Hit| Named {
+        name: names.get(&hit.clip).cloned().unwrap_or_default(),
+        hit,
+    };
     let hits: Vec<Named> = hits.into_iter().map(named).collect();
-    let learned = metric.map(|m| Learned { classes: m.classes().len(), samples: m.samples() });
-    let found = Found { ticks: index.ticks(), load_secs, search_secs, learned, hits };
+    let learned = metric.map(|m| Learned {
+        classes: m.classes().len(),
+        samples: m.samples(),
+    });
+    let found = Found {
+        ticks: index.ticks(),
+        load_secs,
+        search_secs,
+        learned,
+        hits,
+    };
     if let Some(path) = &args.report {
         report(path, &db, &shown, args, &found)?;
     }
@@ -130,9 +154,14 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 }
 
 fn learn(db: &MotionDb, index: &SearchIndex, args: &Args) -> Result<LearnedMetric> {
-    let mut samples = db.samples(&SampleFilter { state: Some(State::Accepted), ..Default::default() })?;
+    let mut samples = db.samples(&SampleFilter {
+        state: Some(State::Accepted),
+        ..Default::default()
+    })?;
     samples.retain(|s| args.classes.is_empty() || args.classes.contains(&s.class));
-    index.learn(&samples).context("--learned: label some clips first (morec db label), or search without it")
+    index
+        .learn(&samples)
+        .context("--learned: label some clips first (morec db label), or search without it")
 }
 
 /// What the example is a stretch of.
@@ -143,20 +172,38 @@ enum Shown {
 
 /// The example's rows, and the clip they are of.
 fn example(db: &MotionDb, index: &SearchIndex, args: &Args) -> Result<(Example, Shown)> {
-    let short = || format!("{}: the example must hold at least 0.1 s of motion", args.example);
+    let short = || {
+        format!(
+            "{}: the example must hold at least 0.1 s of motion",
+            args.example
+        )
+    };
     if let Ok(clip) = db.find_clip(&args.example) {
         let stop = args.stop.unwrap_or(clip.duration_secs());
-        let example = index.example(clip.id, args.start, stop).with_context(short)?;
+        let example = index
+            .example(clip.id, args.start, stop)
+            .with_context(short)?;
         return Ok((example, Shown::Kept(clip)));
     }
     let path = Path::new(&args.example);
     if !path.exists() && path != Path::new("-") {
-        bail!("{}: neither a clip of the database nor a file", args.example);
+        bail!(
+            "{}: neither a clip of the database nor a file",
+            args.example
+        );
     }
     let opened = files::open(path, &args.read)?;
-    let clip = opened.clips.into_iter().next().with_context(|| format!("{}: no clip in it", args.example))?;
+    let clip = opened
+        .clips
+        .into_iter()
+        .next()
+        .with_context(|| format!("{}: no clip in it", args.example))?;
     let Imported { clip, roles, facts } = prepare(clip, &ImportOptions::default())?;
-    let stored = StoredClip { clip, roles, rest: facts.rest_frames };
+    let stored = StoredClip {
+        clip,
+        roles,
+        rest: facts.rest_frames,
+    };
     let params = FeatureParams::default();
     let bones = bones_of_clip(&stored.clip, &stored.roles, &stored.rest);
     let rows = rows_of_clip(&stored.clip, &stored.roles, &stored.rest, bones, &params);
@@ -165,7 +212,10 @@ fn example(db: &MotionDb, index: &SearchIndex, args: &Args) -> Result<(Example, 
     let span = rows.slice(start..stop.max(start));
     let all = span.len() == rows.len();
     let example = SearchIndex::example_of(&span, bones).with_context(short)?;
-    Ok((if all { example } else { example.cut_out() }, Shown::File(stored)))
+    Ok((
+        if all { example } else { example.cut_out() },
+        Shown::File(stored),
+    ))
 }
 
 fn report(path: &Path, db: &MotionDb, example: &Shown, args: &Args, found: &Found) -> Result<()> {
@@ -202,11 +252,18 @@ fn print(found: &Found, tick_hz: f64) -> Result<()> {
             format!("{:.2}", hit.stop_secs),
             format!("{:.3}", hit.score),
             format!("{:.2}", hit.warp_distance),
-            if hit.mirrored { "mirrored".to_owned() } else { String::new() },
+            if hit.mirrored {
+                "mirrored".to_owned()
+            } else {
+                String::new()
+            },
         ]);
     }
     let minutes = found.ticks as f64 / tick_hz / 60.0;
-    let mut text = format!("{minutes:.1} min searched in {:.1} ms\n", 1e3 * found.search_secs);
+    let mut text = format!(
+        "{minutes:.1} min searched in {:.1} ms\n",
+        1e3 * found.search_secs
+    );
     if let Some(learned) = &found.learned {
         text.push_str(&format!(
             "by a metric learned from {} samples of {} classes\n",

@@ -17,10 +17,13 @@ const WIDTH: f64 = 52.0;
 /// two colours.
 pub fn strip(stored: &StoredClip, start_secs: f64, stop_secs: f64, poses: usize) -> String {
     let clip = &stored.clip;
-    let frame =
-        |secs: f64| ((secs * clip.rate_hz).round().max(0.0) as usize).min(clip.frames.saturating_sub(1));
-    let (first, last) =
-        (frame(start_secs).max(stored.rest.end.min(clip.frames.saturating_sub(1))), frame(stop_secs));
+    let frame = |secs: f64| {
+        ((secs * clip.rate_hz).round().max(0.0) as usize).min(clip.frames.saturating_sub(1))
+    };
+    let (first, last) = (
+        frame(start_secs).max(stored.rest.end.min(clip.frames.saturating_sub(1))),
+        frame(stop_secs),
+    );
     let mut svg = format!(
         "<svg width=\"{0}\" height=\"{HEIGHT}\" viewBox=\"0 0 {0} {HEIGHT}\" role=\"img\">",
         WIDTH * poses as f64
@@ -28,7 +31,13 @@ pub fn strip(stored: &StoredClip, start_secs: f64, stop_secs: f64, poses: usize)
     let height = body_height(clip, first);
     for pose in 0..poses {
         let at = first + (last.max(first) - first) * pose / (poses - 1).max(1);
-        figure(&mut svg, stored, at, WIDTH * (pose as f64 + 0.5), 0.75 * HEIGHT / height);
+        figure(
+            &mut svg,
+            stored,
+            at,
+            WIDTH * (pose as f64 + 0.5),
+            0.75 * HEIGHT / height,
+        );
     }
     svg.push_str("</svg>");
     svg
@@ -47,7 +56,12 @@ fn figure(svg: &mut String, stored: &StoredClip, frame: usize, x: f64, scale: f6
     let low = pose.positions.iter().map(|p| p.y).fold(f64::MAX, f64::min);
     // A jump is seen: the floor is where the feet are, but not above the world's.
     let floor = low.min(hips.y - 0.5 / scale);
-    let at = |p: &Vec3| (x + (p - hips).dot(&right) * scale, 0.93 * HEIGHT - (p.y - floor) * scale);
+    let at = |p: &Vec3| {
+        (
+            x + (p - hips).dot(&right) * scale,
+            0.93 * HEIGHT - (p.y - floor) * scale,
+        )
+    };
     let (mut left, mut others, mut rights) = (String::new(), String::new(), String::new());
     for (j, joint) in stored.clip.skeleton.joints().iter().enumerate() {
         let Some(parent) = joint.parent else { continue };
@@ -70,15 +84,24 @@ fn figure(svg: &mut String, stored: &StoredClip, frame: usize, x: f64, scale: f6
 /// The direction that points right in the picture, and where the hips are.
 fn view(pose: &WorldPose, roles: &RoleMap) -> (Vec3, Vec3) {
     let of = |role| roles.joint(role).map(|j: usize| pose.positions[j]);
-    let hips = of(Role::Hips).or(pose.positions.first().copied()).unwrap_or_else(Vec3::zeros);
+    let hips = of(Role::Hips)
+        .or(pose.positions.first().copied())
+        .unwrap_or_else(Vec3::zeros);
     let lateral = match (of(Role::LeftThigh), of(Role::RightThigh)) {
         (Some(left), Some(right)) => left - right,
         _ => Vec3::x(),
     };
     let flat = Vec3::new(lateral.x, 0.0, lateral.z);
-    let flat = if flat.norm() > 1e-9 { flat.normalize() } else { Vec3::x() };
+    let flat = if flat.norm() > 1e-9 {
+        flat.normalize()
+    } else {
+        Vec3::x()
+    };
     // Turned by 35° from the front, so that arms stretched forward are seen too.
-    (morec::math::Axis::Y.rotation(35f64.to_radians()) * flat, hips)
+    (
+        morec::math::Axis::Y.rotation(35f64.to_radians()) * flat,
+        hips,
+    )
 }
 
 /// Whether a joint belongs to a left limb, a right one, or neither.

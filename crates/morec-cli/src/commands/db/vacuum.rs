@@ -31,7 +31,11 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if args.json {
         super::print_json(&serde_json::json!({ "bytes_before": before, "bytes_after": after }))?;
     } else {
-        super::print(format_args!("{} before, {} now\n", megabytes(before), megabytes(after)))?;
+        super::print(format_args!(
+            "{} before, {} now\n",
+            megabytes(before),
+            megabytes(after)
+        ))?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -12,8 +12,7 @@ use crate::commands::convert::write_clip;
 
 /// Says that a folder is a demo's, so that a second demo may write over it.
 const MARKER: &str = ".morec-demo";
-const MARKER_TEXT: &str =
-    "Made by `morec demo`, which writes over the files here when it is run again. Safe to delete.\n";
+const MARKER_TEXT: &str = "Made by `morec demo`, which writes over the files here when it is run again. Safe to delete.\n";
 
 /// A folder that is the demo's own.
 pub struct DemoFolder(PathBuf);
@@ -28,9 +27,15 @@ impl DemoFolder {
         }
         if folder.is_dir()
             && !marker.is_file()
-            && std::fs::read_dir(folder).with_context(shown)?.next().is_some()
+            && std::fs::read_dir(folder)
+                .with_context(shown)?
+                .next()
+                .is_some()
         {
-            bail!("{}: holds files that are no demo's, nothing was written; give another --folder", shown());
+            bail!(
+                "{}: holds files that are no demo's, nothing was written; give another --folder",
+                shown()
+            );
         }
         for part in ["clips", "new"] {
             std::fs::create_dir_all(folder.join(part)).with_context(shown)?;
@@ -41,15 +46,24 @@ impl DemoFolder {
 
     /// Writes clips, labels and people of those to train on, and clip and truth of the one to recognise.
     pub fn write(&self, taught: &[Take], unseen: &Take) -> Result<()> {
-        let all: Vec<(&Take, bool)> = taught.iter().map(|t| (t, false)).chain([(unseen, true)]).collect();
+        let all: Vec<(&Take, bool)> = taught
+            .iter()
+            .map(|t| (t, false))
+            .chain([(unseen, true)])
+            .collect();
         all.par_iter().try_for_each(|(take, unseen)| {
             let path = self.clip(take, *unseen);
             write_clip(&take.clip, &path).with_context(|| path.display().to_string())
         })?;
         self.write_text("labels.tsv", &labels(taught))?;
         self.write_text("truth.tsv", &labels(std::slice::from_ref(unseen)))?;
-        let people = taught.iter().map(|t| format!("{}\t{}\n", t.clip.name, t.person));
-        self.write_text("people.tsv", &people.fold("clip\tperson\n".to_owned(), |text, row| text + &row))
+        let people = taught
+            .iter()
+            .map(|t| format!("{}\t{}\n", t.clip.name, t.person));
+        self.write_text(
+            "people.tsv",
+            &people.fold("clip\tperson\n".to_owned(), |text, row| text + &row),
+        )
     }
 
     fn write_text(&self, name: &str, text: &str) -> Result<()> {
@@ -63,7 +77,8 @@ impl DemoFolder {
 
     /// Where a take's clip lies.
     pub fn clip(&self, take: &Take, unseen: bool) -> PathBuf {
-        self.path(if unseen { "new" } else { "clips" }).join(format!("{}.bvh", take.clip.name))
+        self.path(if unseen { "new" } else { "clips" })
+            .join(format!("{}.bvh", take.clip.name))
     }
 
     /// Where the detections lie.
@@ -77,8 +92,14 @@ impl DemoFolder {
         let samples: usize = taught.iter().map(|t| t.labels.len()).sum();
         let mut text = format!("\nWritten to {}:\n", self.0.display());
         let mut line = |name: &str, about: String| _ = writeln!(text, "  {name:<11} {about}");
-        line("clips/", format!("{} people, a BVH file each, {minutes:.1} min", taught.len()));
-        line("labels.tsv", format!("which gesture is where in them: {samples} samples"));
+        line(
+            "clips/",
+            format!("{} people, a BVH file each, {minutes:.1} min", taught.len()),
+        );
+        line(
+            "labels.tsv",
+            format!("which gesture is where in them: {samples} samples"),
+        );
         line("people.tsv", "who is seen in which clip".to_owned());
         line(
             "new/",
@@ -88,7 +109,10 @@ impl DemoFolder {
                 unseen.clip.duration_secs() / 60.0
             ),
         );
-        line("truth.tsv", format!("what {} does when, for measuring only", unseen.person));
+        line(
+            "truth.tsv",
+            format!("what {} does when, for measuring only", unseen.person),
+        );
         text.pop();
         text
     }
@@ -108,14 +132,22 @@ impl DemoFolder {
 
     /// The command that recognises.
     pub fn recognize(&self) -> Vec<OsString> {
-        self.command("recognize", &[("", "demo.index"), ("", "new"), ("-o", "found.tsv")])
+        self.command(
+            "recognize",
+            &[("", "demo.index"), ("", "new"), ("-o", "found.tsv")],
+        )
     }
 
     /// The command that measures.
     pub fn evaluate(&self) -> Vec<OsString> {
         self.command(
             "evaluate",
-            &[("--truth", "truth.tsv"), ("--found", "found.tsv"), ("--clips", "new"), ("--report", "report")],
+            &[
+                ("--truth", "truth.tsv"),
+                ("--found", "found.tsv"),
+                ("--clips", "new"),
+                ("--report", "report"),
+            ],
         )
     }
 
@@ -147,7 +179,11 @@ fn labels(takes: &[Take]) -> String {
     for take in takes {
         for label in &take.labels {
             let span = label.span(take.clip.rate_hz);
-            _ = writeln!(text, "{}\t{}\t{}\t{}", take.clip.name, label.class, span.start, span.end);
+            _ = writeln!(
+                text,
+                "{}\t{}\t{}\t{}",
+                take.clip.name, label.class, span.start, span.end
+            );
         }
     }
     text
@@ -173,10 +209,17 @@ mod tests {
 
     #[test]
     fn lines_can_be_pasted_into_a_shell() {
-        let line = |words: &[&str]| shell_line(&words.iter().map(OsString::from).collect::<Vec<_>>());
-        assert_eq!(line(&["train", "-o", "a/b.index"]), "morec train -o a/b.index");
+        let line =
+            |words: &[&str]| shell_line(&words.iter().map(OsString::from).collect::<Vec<_>>());
+        assert_eq!(
+            line(&["train", "-o", "a/b.index"]),
+            "morec train -o a/b.index"
+        );
         if cfg!(unix) {
-            assert_eq!(line(&["inspect", "my clips/$a'b"]), r"morec inspect 'my clips/$a'\''b'");
+            assert_eq!(
+                line(&["inspect", "my clips/$a'b"]),
+                r"morec inspect 'my clips/$a'\''b'"
+            );
         }
     }
 }

@@ -28,7 +28,10 @@ pub enum FileReport {
 impl FileReport {
     /// A file that could not be read.
     pub fn failed(path: &Path, error: &anyhow::Error) -> Self {
-        Self::Failed { path: path.to_owned(), error: format!("{error:#}") }
+        Self::Failed {
+            path: path.to_owned(),
+            error: format!("{error:#}"),
+        }
     }
 }
 
@@ -75,7 +78,13 @@ impl Report {
         warnings: Vec<Warning>,
     ) -> Self {
         let clips = imported.iter().map(ClipReport::new).collect();
-        Self { path: path.to_owned(), format, skeleton, clips, warnings }
+        Self {
+            path: path.to_owned(),
+            format,
+            skeleton,
+            clips,
+            warnings,
+        }
     }
 
     /// Writes it for people: joint by joint if `full`.
@@ -105,7 +114,11 @@ impl Report {
     fn write_clip(&self, out: &mut dyn Write, clip: &ClipReport) -> io::Result<()> {
         let format = format_name(self.format);
         match &self.skeleton {
-            Some(skeleton) => writeln!(out, "  format     {format}, skeleton {}", skeleton.display())?,
+            Some(skeleton) => writeln!(
+                out,
+                "  format     {format}, skeleton {}",
+                skeleton.display()
+            )?,
             None => writeln!(out, "  format     {format}")?,
         }
         if self.clips.len() > 1 {
@@ -134,7 +147,12 @@ impl ClipReport {
         let facts = &self.facts;
         writeln!(out, "  length     {}", self.length())?;
         writeln!(out, "  up         {}", facts.up)?;
-        writeln!(out, "  unit       {} ({} m)", self.unit(), significant(facts.metres_per_unit))?;
+        writeln!(
+            out,
+            "  unit       {} ({} m)",
+            self.unit(),
+            significant(facts.metres_per_unit)
+        )?;
         if let Some(height) = facts.body_height {
             write!(out, "  body       {height:.2} m from feet to head")?;
             match facts.leg_length {
@@ -142,14 +160,31 @@ impl ClipReport {
                 None => writeln!(out)?,
             }
         }
-        writeln!(out, "  place      {}", if facts.travels { "travels" } else { "stays in place" })?;
+        writeln!(
+            out,
+            "  place      {}",
+            if facts.travels {
+                "travels"
+            } else {
+                "stays in place"
+            }
+        )?;
         writeln!(out, "  rest pose  {}", self.rest())?;
         if !self.repaired.is_empty() {
             let total: usize = self.repaired.iter().map(Span::len).sum();
-            writeln!(out, "  repaired   {total} frames: {}", spans(&self.repaired))?;
+            writeln!(
+                out,
+                "  repaired   {total} frames: {}",
+                spans(&self.repaired)
+            )?;
         }
         let found = Role::COUNT - self.missing_roles.len();
-        writeln!(out, "  roles      {found} of {}{}", Role::COUNT, self.missing())?;
+        writeln!(
+            out,
+            "  roles      {found} of {}{}",
+            Role::COUNT,
+            self.missing()
+        )?;
         writeln!(out, "  joints     {}", self.joints.len())?;
         self.write_joints(out)?;
         for note in &facts.notes {
@@ -160,8 +195,16 @@ impl ClipReport {
 
     fn write_joints(&self, out: &mut dyn Write) -> io::Result<()> {
         let indented = |joint: &JointReport| format!("{}{}", "  ".repeat(joint.depth), joint.name);
-        let width = self.joints.iter().map(|j| indented(j).chars().count()).max().unwrap_or(0);
-        for joint in depth_first(&self.joints).into_iter().map(|j| &self.joints[j]) {
+        let width = self
+            .joints
+            .iter()
+            .map(|j| indented(j).chars().count())
+            .max()
+            .unwrap_or(0);
+        for joint in depth_first(&self.joints)
+            .into_iter()
+            .map(|j| &self.joints[j])
+        {
             let roles: Vec<&str> = joint.roles.iter().map(|role| role.name()).collect();
             let line = format!("    {:width$}  {}", indented(joint), roles.join(", "));
             writeln!(out, "{}", line.trim_end())?;
@@ -191,7 +234,10 @@ impl ClipReport {
 
     fn length(&self) -> String {
         let rate = significant(self.rate_hz);
-        format!("{} frames, {:.2} s at {rate} Hz", self.frames, self.duration_secs)
+        format!(
+            "{} frames, {:.2} s at {rate} Hz",
+            self.frames, self.duration_secs
+        )
     }
 
     fn unit(&self) -> &'static str {
@@ -201,22 +247,37 @@ impl ClipReport {
     fn rest(&self) -> String {
         match self.facts.rest_frames.len() {
             0 => "none".to_owned(),
-            _ => format!("frames {}", spans(std::slice::from_ref(&self.facts.rest_frames))),
+            _ => format!(
+                "frames {}",
+                spans(std::slice::from_ref(&self.facts.rest_frames))
+            ),
         }
     }
 
     fn missing(&self) -> String {
         let names: Vec<&str> = self.missing_roles.iter().map(|role| role.name()).collect();
-        if names.is_empty() { String::new() } else { format!("; missing: {}", names.join(", ")) }
+        if names.is_empty() {
+            String::new()
+        } else {
+            format!("; missing: {}", names.join(", "))
+        }
     }
 }
 
 fn joints(clip: &Clip, map: &RoleMap) -> Vec<JointReport> {
     let mut joints: Vec<JointReport> = Vec::with_capacity(clip.skeleton.len());
     for (j, joint) in clip.skeleton.joints().iter().enumerate() {
-        let roles = Role::ALL.into_iter().filter(|&role| map.joint(role) == Some(j)).collect();
+        let roles = Role::ALL
+            .into_iter()
+            .filter(|&role| map.joint(role) == Some(j))
+            .collect();
         let depth = joint.parent.map_or(0, |parent| joints[parent].depth + 1);
-        joints.push(JointReport { name: joint.name.clone(), parent: joint.parent, roles, depth });
+        joints.push(JointReport {
+            name: joint.name.clone(),
+            parent: joint.parent,
+            roles,
+            depth,
+        });
     }
     joints
 }
@@ -251,7 +312,11 @@ fn format_name(format: Format) -> &'static str {
 /// Half-open, as spans are everywhere; the first ten.
 fn spans(spans: &[Span]) -> String {
     const SHOWN: usize = 10;
-    let shown: Vec<String> = spans.iter().take(SHOWN).map(|s| format!("{}..{}", s.start, s.end)).collect();
+    let shown: Vec<String> = spans
+        .iter()
+        .take(SHOWN)
+        .map(|s| format!("{}..{}", s.start, s.end))
+        .collect();
     let more = if spans.len() > SHOWN { ", …" } else { "" };
     format!("{}{more}", shown.join(", "))
 }
@@ -260,5 +325,9 @@ fn spans(spans: &[Span]) -> String {
 fn significant(value: f64) -> String {
     let digits = (4 - value.abs().max(1e-300).log10().floor() as i32).clamp(0, 12) as usize;
     let text = format!("{value:.digits$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
 }

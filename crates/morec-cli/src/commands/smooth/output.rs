@@ -29,7 +29,9 @@ impl Form {
 
     fn of(path: &Path) -> Option<Self> {
         let extension = path.extension()?.to_str()?;
-        [Form::Bvh, Form::Mclip].into_iter().find(|form| form.extension().eq_ignore_ascii_case(extension))
+        [Form::Bvh, Form::Mclip]
+            .into_iter()
+            .find(|form| form.extension().eq_ignore_ascii_case(extension))
     }
 }
 
@@ -48,29 +50,51 @@ impl Target {
         given: &[PathBuf],
         clips: &[PathBuf],
     ) -> Result<Self> {
-        let Some(output) = output else { return Ok(Self::Nowhere) };
+        let Some(output) = output else {
+            return Ok(Self::Nowhere);
+        };
         let one = clips.len() == 1 && given.iter().all(|path| !path.is_dir());
         if one && !output.is_dir() {
             let form = match (form, Form::of(output)) {
                 (Some(form), Some(ending)) if form != ending => {
-                    bail!("{}: --form {} asks for another ending", output.display(), form.extension())
+                    bail!(
+                        "{}: --form {} asks for another ending",
+                        output.display(),
+                        form.extension()
+                    )
                 }
                 (form, ending) => form.or(ending),
             };
             let Some(form) = form else {
-                bail!("{}: expected a file that ends in .bvh or .mclip, or a folder", output.display());
+                bail!(
+                    "{}: expected a file that ends in .bvh or .mclip, or a folder",
+                    output.display()
+                );
             };
             return Ok(Self::File(output.to_owned(), form));
         }
         let target = Self::Folder(output.to_owned(), form.unwrap_or(Form::Bvh));
         let mut names: HashMap<PathBuf, &Path> = HashMap::new();
         for clip in clips {
-            let Some(name) = target.path(clip, None) else { continue };
+            let Some(name) = target.path(clip, None) else {
+                continue;
+            };
             if let Some(other) = names.insert(name.clone(), clip) {
-                bail!("{} and {} would both become {}", other.display(), clip.display(), name.display());
+                bail!(
+                    "{} and {} would both become {}",
+                    other.display(),
+                    clip.display(),
+                    name.display()
+                );
             }
-            if name.canonicalize().is_ok_and(|name| clip.canonicalize().is_ok_and(|clip| clip == name)) {
-                bail!("{} would be overwritten; choose another folder", clip.display());
+            if name
+                .canonicalize()
+                .is_ok_and(|name| clip.canonicalize().is_ok_and(|clip| clip == name))
+            {
+                bail!(
+                    "{} would be overwritten; choose another folder",
+                    clip.display()
+                );
             }
         }
         std::fs::create_dir_all(output).with_context(|| output.display().to_string())?;
@@ -87,16 +111,26 @@ impl Target {
         match self {
             Self::Nowhere => None,
             Self::File(path, _) if character.is_none() => Some(path.clone()),
-            Self::File(path, form) => Some(beside(path.parent().unwrap_or(Path::new("")), path, *form)),
+            Self::File(path, form) => {
+                Some(beside(path.parent().unwrap_or(Path::new("")), path, *form))
+            }
             Self::Folder(folder, form) => Some(beside(folder, clip, *form)),
         }
     }
 
     /// Writes a clip, whole or not at all.
-    pub fn write(&self, path: &Path, clip: &CompressedClip, stored: &[u8], rate_hz: f64) -> Result<()> {
+    pub fn write(
+        &self,
+        path: &Path,
+        clip: &CompressedClip,
+        stored: &[u8],
+        rate_hz: f64,
+    ) -> Result<()> {
         match self {
             Self::Nowhere => Ok(()),
-            Self::File(_, Form::Bvh) | Self::Folder(_, Form::Bvh) => write_clip(&clip.sample(rate_hz)?, path),
+            Self::File(_, Form::Bvh) | Self::Folder(_, Form::Bvh) => {
+                write_clip(&clip.sample(rate_hz)?, path)
+            }
             Self::File(..) | Self::Folder(..) => write_whole(path, |out| out.write_all(stored)),
         }
     }

@@ -27,7 +27,8 @@ pub fn write(clip: &Clip, compressed: &CompressedClip, channel: &str, path: &Pat
     let chart = compressed
         .chart(clip, joint, kind, axis)
         .ok_or_else(|| anyhow!("--plot {channel}: {name} does not move in its parent's frame"))?;
-    write_whole(path, |out| out.write_all(chart.svg().as_bytes())).with_context(|| path.display().to_string())
+    write_whole(path, |out| out.write_all(chart.svg().as_bytes()))
+        .with_context(|| path.display().to_string())
 }
 
 /// A joint's name alone comes first: it may have points in it.
@@ -41,10 +42,20 @@ fn find(skeleton: &Skeleton, channel: &str) -> Result<(usize, Kind, Option<usize
         let found = CHANNELS.iter().find(|(known, ..)| *known == ending);
         let names: Vec<&str> = CHANNELS.iter().map(|channel| channel.0).collect();
         let (_, kind, axis) = found.ok_or_else(|| {
-            anyhow!("--plot {channel}: expected one of {}, found {ending}", names.join(", "))
+            anyhow!(
+                "--plot {channel}: expected one of {}, found {ending}",
+                names.join(", ")
+            )
         })?;
         return Ok((joint, *kind, *axis));
     }
-    let names: Vec<String> = skeleton.joints().iter().map(|joint| joint.name.clone()).collect();
-    bail!("--plot {channel}: no such joint; there are {}", some_of(names.iter()))
+    let names: Vec<String> = skeleton
+        .joints()
+        .iter()
+        .map(|joint| joint.name.clone())
+        .collect();
+    bail!(
+        "--plot {channel}: no such joint; there are {}",
+        some_of(names.iter())
+    )
 }

@@ -18,7 +18,10 @@ pub enum FileReport {
 
 impl FileReport {
     pub fn failed(path: &Path, error: &anyhow::Error) -> Self {
-        Self::Failed { path: path.to_owned(), error: format!("{error:#}") }
+        Self::Failed {
+            path: path.to_owned(),
+            error: format!("{error:#}"),
+        }
     }
 }
 
@@ -80,27 +83,48 @@ impl Report {
         }
         let (frames, secs) = (self.frames, self.duration_secs);
         let rate = (self.rate_hz * 1e3).round() / 1e3;
-        writeln!(out, "  length     {frames} frames, {secs:.2} s at {rate} Hz")?;
+        writeln!(
+            out,
+            "  length     {frames} frames, {secs:.2} s at {rate} Hz"
+        )?;
         writeln!(
             out,
             "  keyframes  {} in {} channels, {} of which stand still",
             self.keyframes, self.channels, self.still_channels
         )?;
         let (raw, kept) = (self.raw_values, self.control_values);
-        writeln!(out, "  values     {kept} for {raw}, 1:{:.1}", self.value_ratio)?;
+        writeln!(
+            out,
+            "  values     {kept} for {raw}, 1:{:.1}",
+            self.value_ratio
+        )?;
         let stored = self.stored_bytes;
         match (self.file_bytes, self.byte_ratio) {
-            (Some(file), Some(ratio)) => writeln!(out, "  bytes      {stored} for {file}, 1:{ratio:.1}")?,
+            (Some(file), Some(ratio)) => {
+                writeln!(out, "  bytes      {stored} for {file}, 1:{ratio:.1}")?
+            }
             _ => writeln!(out, "  bytes      {stored}")?,
         }
         let e = &self.errors;
         let (most, mean) = (e.max_angle_rad.to_degrees(), e.mean_angle_rad.to_degrees());
-        writeln!(out, "  angle      at most {most:.3}°, {mean:.3}° in the mean")?;
+        writeln!(
+            out,
+            "  angle      at most {most:.3}°, {mean:.3}° in the mean"
+        )?;
         let mut lengths = |what: &str, most: f64, mean: f64| {
-            writeln!(out, "  {what:9}  at most {:.2} mm, {:.2} mm in the mean", most * 1e3, mean * 1e3)
+            writeln!(
+                out,
+                "  {what:9}  at most {:.2} mm, {:.2} mm in the mean",
+                most * 1e3,
+                mean * 1e3
+            )
         };
         lengths("position", e.max_position_metres, e.mean_position_metres)?;
-        lengths("in world", e.max_joint_position_metres, e.mean_joint_position_metres)
+        lengths(
+            "in world",
+            e.max_joint_position_metres,
+            e.mean_joint_position_metres,
+        )
     }
 }
 
@@ -122,10 +146,26 @@ pub fn write(out: &mut dyn Write, reports: &[FileReport]) -> io::Result<()> {
 }
 
 fn table(clips: &[&Report]) -> Table {
-    let header =
-        ["clip", "keys", "values", "bytes", "", "max °", "mean °", "max mm", "world max", "world mean"];
+    let header = [
+        "clip",
+        "keys",
+        "values",
+        "bytes",
+        "",
+        "max °",
+        "mean °",
+        "max mm",
+        "world max",
+        "world mean",
+    ];
     let mut table = Table::new(header);
-    let ratio = |a: f64, b: f64| if a > 0.0 { format!("1:{:.1}", a / b) } else { String::new() };
+    let ratio = |a: f64, b: f64| {
+        if a > 0.0 {
+            format!("1:{:.1}", a / b)
+        } else {
+            String::new()
+        }
+    };
     for clip in clips {
         let e = &clip.errors;
         let file = clip.file_bytes.unwrap_or(0) as f64;
@@ -152,7 +192,11 @@ fn total(clips: &[&Report]) -> [String; 10] {
     let most = |of: fn(&Report) -> f64| clips.iter().map(|clip| of(clip)).fold(0.0, f64::max);
     let values = sum(|c| c.raw_values as f64);
     let mean = |of: fn(&Report) -> f64| {
-        clips.iter().map(|clip| of(clip) * clip.raw_values as f64).sum::<f64>() / values.max(1.0)
+        clips
+            .iter()
+            .map(|clip| of(clip) * clip.raw_values as f64)
+            .sum::<f64>()
+            / values.max(1.0)
     };
     let known = clips.iter().all(|clip| clip.file_bytes.is_some());
     let stored = sum(|c| c.stored_bytes as f64);
@@ -162,7 +206,11 @@ fn total(clips: &[&Report]) -> [String; 10] {
         format!("{:.0}", sum(|c| c.keyframes as f64)),
         format!("1:{:.1}", values / sum(|c| c.control_values as f64)),
         format!("{stored:.0}"),
-        if known { format!("1:{:.1}", bytes / stored) } else { String::new() },
+        if known {
+            format!("1:{:.1}", bytes / stored)
+        } else {
+            String::new()
+        },
         format!("{:.3}", most(|c| c.errors.max_angle_rad.to_degrees())),
         format!("{:.3}", mean(|c| c.errors.mean_angle_rad.to_degrees())),
         format!("{:.2}", most(|c| c.errors.max_position_metres * 1e3)),

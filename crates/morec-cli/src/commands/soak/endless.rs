@@ -25,24 +25,50 @@ const GROWTH: f64 = 0.05;
 /// unnoticed.
 type Lap = Vec<(u16, i64, i64, i64)>;
 
-pub fn run(model: &Model, clips: &Arc<Vec<Loaded>>, layout: LayoutArg, args: &Args) -> Result<ExitCode> {
-    let lap_secs: f64 = clips.iter().map(|c| c.clip.duration_secs() + PAUSE_SECS).sum();
+pub fn run(
+    model: &Model,
+    clips: &Arc<Vec<Loaded>>,
+    layout: LayoutArg,
+    args: &Args,
+) -> Result<ExitCode> {
+    let lap_secs: f64 = clips
+        .iter()
+        .map(|c| c.clip.duration_secs() + PAUSE_SECS)
+        .sum();
     let laps = ((args.hours * 3600.0 / lap_secs).ceil() as u64).max(2);
     let source = ClipSource::new(clips.clone()).laps(laps);
     let options = SessionOptions {
         overload: Overload::Wait,
-        events: EventOptions { early: true, refractory_secs: 0.0 },
+        events: EventOptions {
+            early: true,
+            refractory_secs: 0.0,
+        },
         ..layout.options()
     };
-    println!("{laps} laps of {lap_secs:.1} s: {:.1} hours of stream", laps as f64 * lap_secs / 3600.0);
+    println!(
+        "{laps} laps of {lap_secs:.1} s: {:.1} hours of stream",
+        laps as f64 * lap_secs / 3600.0
+    );
     let stop = stop_on_ctrl_c()?;
     let begun = Instant::now();
     let (session, readers) = Session::start(model, Box::new(source), &options)?;
-    let mut reader = readers.into_iter().next().context("a session has a reader")?;
-    let mut laps = Laps { lap_secs, first: None, now: Lap::new(), number: 0, different: 0 };
+    let mut reader = readers
+        .into_iter()
+        .next()
+        .context("a session has a reader")?;
+    let mut laps = Laps {
+        lap_secs,
+        first: None,
+        now: Lap::new(),
+        number: 0,
+        different: 0,
+    };
     let (mut said, mut settled, mut most) = (Instant::now(), None, 0);
     while !reader.is_ended() && !stop.load(Ordering::Relaxed) {
-        if args.secs.is_some_and(|secs| begun.elapsed().as_secs_f64() >= secs) {
+        if args
+            .secs
+            .is_some_and(|secs| begun.elapsed().as_secs_f64() >= secs)
+        {
             break;
         }
         if let Some(event) = reader.wait(Duration::from_millis(200)) {
@@ -51,7 +77,11 @@ pub fn run(model: &Model, clips: &Arc<Vec<Loaded>>, layout: LayoutArg, args: &Ar
         if laps.number >= 2 && settled.is_none() {
             settled = resident_bytes();
         }
-        most = most.max(resident_bytes().filter(|_| said.elapsed() >= EVERY).unwrap_or(0));
+        most = most.max(
+            resident_bytes()
+                .filter(|_| said.elapsed() >= EVERY)
+                .unwrap_or(0),
+        );
         if said.elapsed() >= EVERY {
             said = Instant::now();
             let frames = session.status().frames;
@@ -71,8 +101,19 @@ pub fn run(model: &Model, clips: &Arc<Vec<Loaded>>, layout: LayoutArg, args: &Ar
         println!("memory grew from {} to {}", mib(settled), mib(Some(most)));
     }
     let sound = laps.different == 0 && !grown && lost == 0;
-    println!("{}", if sound { "every lap found the same; memory stayed flat" } else { "something gave way" });
-    Ok(if sound { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    println!(
+        "{}",
+        if sound {
+            "every lap found the same; memory stayed flat"
+        } else {
+            "something gave way"
+        }
+    );
+    Ok(if sound {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    })
 }
 
 /// What every lap found, held against the first.
@@ -95,8 +136,12 @@ impl Laps {
         }
         let from = lap as f64 * self.lap_secs;
         let step = |value: f64| (value * 1000.0).round() as i64;
-        let found =
-            (event.class.0, step(event.start_secs - from), step(event.stop_secs - from), step(event.score));
+        let found = (
+            event.class.0,
+            step(event.start_secs - from),
+            step(event.stop_secs - from),
+            step(event.score),
+        );
         self.now.push(found);
     }
 
@@ -109,10 +154,9 @@ impl Laps {
             Some(first) => {
                 let near = |a: i64, b: i64| (a - b).abs() <= 1;
                 let same = first.len() == found.len()
-                    && first
-                        .iter()
-                        .zip(&found)
-                        .all(|(a, b)| a.0 == b.0 && near(a.1, b.1) && near(a.2, b.2) && near(a.3, b.3));
+                    && first.iter().zip(&found).all(|(a, b)| {
+                        a.0 == b.0 && near(a.1, b.1) && near(a.2, b.2) && near(a.3, b.3)
+                    });
                 self.different += u64::from(!same);
             }
         }
@@ -134,5 +178,8 @@ impl Laps {
 }
 
 fn mib(bytes: Option<u64>) -> String {
-    bytes.map_or_else(|| "unknown".to_owned(), |bytes| format!("{:.1} MiB", bytes as f64 / 1048576.0))
+    bytes.map_or_else(
+        || "unknown".to_owned(),
+        |bytes| format!("{:.1} MiB", bytes as f64 / 1048576.0),
+    )
 }

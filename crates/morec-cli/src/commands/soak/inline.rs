@@ -41,7 +41,10 @@ pub fn tell(model: &Model, clips: &Arc<Vec<Loaded>>, most: Duration) {
         of.sort_by(f64::total_cmp);
         of[of.len() / 2]
     };
-    println!("the same, of each frame the median: {}", shares((0..frames).map(median).collect()));
+    println!(
+        "the same, of each frame the median: {}",
+        shares((0..frames).map(median).collect())
+    );
 }
 
 /// Percentiles of `secs` in words.
@@ -68,7 +71,11 @@ struct Player {
 impl Player {
     fn new(model: &Model) -> Self {
         let performer = Performer::new(model, Actor(0), &EventOptions::default());
-        Self { model: model.clone(), performer, ready: Vec::new() }
+        Self {
+            model: model.clone(),
+            performer,
+            ready: Vec::new(),
+        }
     }
 
     /// Seconds of each frame of one lap.

@@ -12,8 +12,11 @@ use crate::live::clip::ClipSource;
 use crate::live::layout::LayoutArg;
 use crate::live::loaded::Loaded;
 
-const LAYOUTS: [(&str, LayoutArg); 3] =
-    [("inline", LayoutArg::Inline), ("stages", LayoutArg::Stages), ("pinned", LayoutArg::Pinned)];
+const LAYOUTS: [(&str, LayoutArg); 3] = [
+    ("inline", LayoutArg::Inline),
+    ("stages", LayoutArg::Stages),
+    ("pinned", LayoutArg::Pinned),
+];
 /// Turns of each; whatever else the machine does should meet both alike.
 const TURNS: usize = 3;
 /// The beginning of a turn does not count: buffers go round for the first time.
@@ -79,7 +82,10 @@ impl Measured {
 
     /// Mean over the turns.
     fn wait_ms(&self, share: f64) -> f64 {
-        let waits = self.waits.iter().filter_map(|waits| waits.share_secs(share));
+        let waits = self
+            .waits
+            .iter()
+            .filter_map(|waits| waits.share_secs(share));
         1e3 * waits.sum::<f64>() / self.waits.len() as f64
     }
 }
@@ -93,11 +99,25 @@ fn play(
     turn: Duration,
 ) -> Result<(u64, f64, Waits)> {
     let source = ClipSource::new(clips.clone()).laps(0).speed(speed);
-    let overload = if speed.is_finite() { Overload::Drop } else { Overload::Wait };
-    let events = EventOptions { early: false, refractory_secs: 0.0 };
-    let options = SessionOptions { overload, events, ..layout.options() };
+    let overload = if speed.is_finite() {
+        Overload::Drop
+    } else {
+        Overload::Wait
+    };
+    let events = EventOptions {
+        early: false,
+        refractory_secs: 0.0,
+    };
+    let options = SessionOptions {
+        overload,
+        events,
+        ..layout.options()
+    };
     let (session, readers) = Session::start(model, Box::new(source), &options)?;
-    let mut reader = readers.into_iter().next().context("a session has a reader")?;
+    let mut reader = readers
+        .into_iter()
+        .next()
+        .context("a session has a reader")?;
     std::thread::sleep(WARM_UP);
     let (before, begun) = (session.status(), Instant::now());
     while begun.elapsed() < turn {
@@ -105,5 +125,9 @@ fn play(
     }
     let (after, secs) = (session.status(), begun.elapsed().as_secs_f64());
     session.stop();
-    Ok((after.frames - before.frames, secs, after.waits.since(&before.waits)))
+    Ok((
+        after.frames - before.frames,
+        secs,
+        after.waits.since(&before.waits),
+    ))
 }

@@ -26,17 +26,29 @@ const LOOKS: usize = 10;
 /// Within so many frames every stream has begun.
 const BEGIN_FRAMES: usize = 64;
 
-pub fn run(model: &Model, clips: &Arc<Vec<Loaded>>, streams: usize, args: &Args) -> Result<ExitCode> {
+pub fn run(
+    model: &Model,
+    clips: &Arc<Vec<Loaded>>,
+    streams: usize,
+    args: &Args,
+) -> Result<ExitCode> {
     let rate_hz = clips[0].clip.rate_hz;
     // Poses are made beforehand: what is to be measured is recognition.
     let poses: Vec<Vec<Vec3>> = clips.iter().flat_map(poses_of).collect();
     let pool = Pool::new(model, args.threads)?;
-    let options =
-        SessionOptions { overload: Overload::Drop, frame_capacity: 24, ..SessionOptions::default() };
+    let options = SessionOptions {
+        overload: Overload::Drop,
+        frame_capacity: 24,
+        ..SessionOptions::default()
+    };
     let rig = Arc::new(Rig::of_roles());
     let mut open: Vec<Stream> = (0..streams)
         .map(|number| {
-            let mut stream = Stream { of_pool: pool.open(&options), frame: Box::default(), number };
+            let mut stream = Stream {
+                of_pool: pool.open(&options),
+                frame: Box::default(),
+                number,
+            };
             stream.of_pool.feed.set_rig(Actor(0), &rig);
             stream
         })
@@ -67,13 +79,20 @@ pub fn run(model: &Model, clips: &Arc<Vec<Loaded>>, streams: usize, args: &Args)
         }
     }
     let passed_secs = begun.elapsed().as_secs_f64();
-    let dropped: u64 = open.iter().map(|s| s.of_pool.status.get().dropped_frames).sum();
+    let dropped: u64 = open
+        .iter()
+        .map(|s| s.of_pool.status.get().dropped_frames)
+        .sum();
     let memory = resident_bytes().map_or(0.0, |b| b as f64 / 1048576.0);
     drop(open);
     drop(pool);
     waits.sort_by(f64::total_cmp);
-    let at =
-        |share: f64| waits.get(((waits.len() as f64 - 1.0) * share) as usize).copied().unwrap_or(f64::NAN);
+    let at = |share: f64| {
+        waits
+            .get(((waits.len() as f64 - 1.0) * share) as usize)
+            .copied()
+            .unwrap_or(f64::NAN)
+    };
     println!(
         "{streams} streams at {rate_hz} Hz on {} threads for {passed_secs:.1} s: {sent} frames, {dropped} dropped, memory {memory:.0} MiB",
         args.threads
@@ -88,8 +107,19 @@ pub fn run(model: &Model, clips: &Arc<Vec<Loaded>>, streams: usize, args: &Args)
         1e3 * behind_secs,
     );
     let sound = dropped == 0 && at(0.999) <= ON_TIME_SECS && behind_secs <= 0.25;
-    println!("{}", if sound { "every stream was on time" } else { "not every stream was on time" });
-    Ok(if sound { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    println!(
+        "{}",
+        if sound {
+            "every stream was on time"
+        } else {
+            "not every stream was on time"
+        }
+    );
+    Ok(if sound {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    })
 }
 
 /// Positions of the roles, frame by frame.
@@ -100,7 +130,9 @@ fn poses_of(loaded: &Loaded) -> Vec<Vec<Vec3>> {
         frame.set_key_pose(&KeyPose::of(&world, &loaded.roles));
         frame.pose.positions.clone()
     };
-    (loaded.first..loaded.clip.frames).map(&mut positions).collect()
+    (loaded.first..loaded.clip.frames)
+        .map(&mut positions)
+        .collect()
 }
 
 struct Stream {

@@ -42,49 +42,91 @@ pub fn run(model: &Model, clips: &Arc<Vec<Loaded>>, args: &Args) -> Result<ExitC
     let here: SocketAddr = ([127, 0, 0, 1], 0).into();
     let source = VmcSource::bind(here, &VmcOptions::default())?;
     let to = source.address()?;
-    let options = SessionOptions { overload: Overload::Drop, ..SessionOptions::default() };
+    let options = SessionOptions {
+        overload: Overload::Drop,
+        ..SessionOptions::default()
+    };
     let (session, readers) = Session::start(model, Box::new(source), &options)?;
-    let mut reader = readers.into_iter().next().context("a session has a reader")?;
+    let mut reader = readers
+        .into_iter()
+        .next()
+        .context("a session has a reader")?;
     // Events leave as OSC for somebody who does not listen: what counts is that they have left.
     let ears = UdpSocket::bind(here)?;
-    let mut sink =
-        OscSink::open(&format!("osc://{}", ears.local_addr()?).parse().map_err(anyhow::Error::msg)?)?;
+    let mut sink = OscSink::open(
+        &format!("osc://{}", ears.local_addr()?)
+            .parse()
+            .map_err(anyhow::Error::msg)?,
+    )?;
     let stop = stop_on_ctrl_c()?;
     let sender = {
         let (clips, stop, args) = (clips.clone(), stop.clone(), (args.bundle, args.conditions));
         let job = move || perform(&clips, to, args, &stop);
-        thread::Builder::new().name("sender".to_owned()).spawn(job).context("no thread for the sender")?
+        thread::Builder::new()
+            .name("sender".to_owned())
+            .spawn(job)
+            .context("no thread for the sender")?
     };
-    let secs: f64 = clips.iter().map(|c| c.clip.duration_secs() + PAUSE_SECS + BEFORE_SECS).sum();
-    println!("playing {secs:.0} s at {} Hz to vmc://{to}", clips[0].clip.rate_hz);
+    let secs: f64 = clips
+        .iter()
+        .map(|c| c.clip.duration_secs() + PAUSE_SECS + BEFORE_SECS)
+        .sum();
+    println!(
+        "playing {secs:.0} s at {} Hz to vmc://{to}",
+        clips[0].clip.rate_hz
+    );
     let mut told = Vec::new();
     while !sender.is_finished() {
-        let Some(event) = reader.wait(Duration::from_millis(50)) else { continue };
+        let Some(event) = reader.wait(Duration::from_millis(50)) else {
+            continue;
+        };
         let class = model.class_name(event.class);
-        sink.tell(&Said { event: &event, class, source: "wire" })?;
+        sink.tell(&Said {
+            event: &event,
+            class,
+            source: "wire",
+        })?;
         let left_wall_secs = wall_now_secs();
         if event.phase == Phase::End {
             let ended_wall_secs = event.wall_at_secs(event.stop_secs);
-            told.push(Told { class: class.to_owned(), ended_wall_secs, left_wall_secs });
+            told.push(Told {
+                class: class.to_owned(),
+                ended_wall_secs,
+                left_wall_secs,
+            });
         }
     }
-    let begins = sender.join().map_err(|_| anyhow!("the sender's thread panicked"))??;
+    let begins = sender
+        .join()
+        .map_err(|_| anyhow!("the sender's thread panicked"))??;
     println!("{}", summary("wire", &session.stop()));
     let delays = told.iter().map(|t| t.left_wall_secs - t.ended_wall_secs);
-    show("from the last packet of the motion as recognised to the event", delays.collect(), told.len());
+    show(
+        "from the last packet of the motion as recognised to the event",
+        delays.collect(),
+        told.len(),
+    );
     if let Some(path) = &args.labels {
         let samples = samples(path, clips, model)?;
         let wanted = samples.len();
         let delays = samples.iter().filter_map(|sample| {
             let at = clips.iter().position(|c| c.clip.name == sample.clip)?;
             let end_secs = begins.get(at)? + sample.stop_secs;
-            let near =
-                |t: &&Told| t.class == sample.class && (t.ended_wall_secs - end_secs).abs() < NEAR_SECS;
+            let near = |t: &&Told| {
+                t.class == sample.class && (t.ended_wall_secs - end_secs).abs() < NEAR_SECS
+            };
             let off = |t: &&Told| (t.ended_wall_secs - end_secs).abs();
-            let told = told.iter().filter(near).min_by(|a, b| off(a).total_cmp(&off(b)))?;
+            let told = told
+                .iter()
+                .filter(near)
+                .min_by(|a, b| off(a).total_cmp(&off(b)))?;
             Some(told.left_wall_secs - end_secs)
         });
-        show("from the last packet of the motion as labelled to the event", delays.collect(), wanted);
+        show(
+            "from the last packet of the motion as labelled to the event",
+            delays.collect(),
+            wanted,
+        );
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -92,7 +134,9 @@ pub fn run(model: &Model, clips: &Arc<Vec<Loaded>>, args: &Args) -> Result<ExitC
 fn show(what: &str, mut delays: Vec<f64>, of: usize) {
     delays.sort_by(f64::total_cmp);
     let at = |share: f64| {
-        delays.get(((delays.len() as f64 - 1.0) * share).round() as usize).map_or(f64::NAN, |d| 1e3 * d)
+        delays
+            .get(((delays.len() as f64 - 1.0) * share).round() as usize)
+            .map_or(f64::NAN, |d| 1e3 * d)
     };
     println!(
         "{what}: p50 {:.0} ms, p90 {:.0} ms, p99 {:.0} ms, most {:.0} ms ({} of {of} motions)",
@@ -106,11 +150,35 @@ fn show(what: &str, mut delays: Vec<f64>, of: usize) {
 
 fn samples(path: &std::path::Path, clips: &[Loaded], model: &Model) -> Result<Vec<Sample>> {
     let labels = Labels::read(&read(path)?).with_context(|| path.display().to_string())?;
-    let length = |c: &Loaded| ClipLength { frames: c.clip.frames, rate_hz: c.clip.rate_hz };
+    let length = |c: &Loaded| ClipLength {
+        frames: c.clip.frames,
+        rate_hz: c.clip.rate_hz,
+    };
     // Labels may count in frames of the file, which these are no longer: seconds are what they have in common.
-    let lengths = clips.iter().map(|c| (c.clip.name.clone(), ClipLength { rate_hz: c.file_hz, ..length(c) }));
-    let mut samples =
-        labels.resolve(&lengths.map(|(n, l)| (n, ClipLength { frames: usize::MAX, ..l })).collect()).samples;
+    let lengths = clips.iter().map(|c| {
+        (
+            c.clip.name.clone(),
+            ClipLength {
+                rate_hz: c.file_hz,
+                ..length(c)
+            },
+        )
+    });
+    let mut samples = labels
+        .resolve(
+            &lengths
+                .map(|(n, l)| {
+                    (
+                        n,
+                        ClipLength {
+                            frames: usize::MAX,
+                            ..l
+                        },
+                    )
+                })
+                .collect(),
+        )
+        .samples;
     samples.retain(|s| model.classes().iter().any(|c| c.name == s.class));
     Ok(samples)
 }
@@ -135,7 +203,8 @@ fn perform(
             if stop.load(Ordering::Relaxed) {
                 return Ok(begins);
             }
-            let time_secs = begun_secs + (step as f64 - before as f64) / rate_hz + network.delay_secs();
+            let time_secs =
+                begun_secs + (step as f64 - before as f64) / rate_hz + network.delay_secs();
             let early_secs = time_secs - wall_now_secs();
             thread::sleep(Duration::from_secs_f64(early_secs.max(0.0)));
             pose.set(&loaded.clip, loaded.first + step.saturating_sub(before));

@@ -7,17 +7,36 @@ mod reference;
 use super::*;
 
 fn truth(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> Truth {
-    Truth { clip: clip.into(), class: class.into(), start_secs, stop_secs }
+    Truth {
+        clip: clip.into(),
+        class: class.into(),
+        start_secs,
+        stop_secs,
+    }
 }
 
 fn found(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> Found {
-    Found { clip: clip.into(), class: class.into(), start_secs, stop_secs, score: None, reported_secs: None }
+    Found {
+        clip: clip.into(),
+        class: class.into(),
+        start_secs,
+        stop_secs,
+        score: None,
+        reported_secs: None,
+    }
 }
 
 fn stream(clip: &str, duration_secs: f64) -> StreamInfo {
-    StreamInfo { clip: clip.into(), duration_secs, unknown: false }
+    StreamInfo {
+        clip: clip.into(),
+        duration_secs,
+        unknown: false,
+    }
 }
 
 fn unknown(clip: &str, duration_secs: f64) -> StreamInfo {
-    StreamInfo { unknown: true, ..stream(clip, duration_secs) }
+    StreamInfo {
+        unknown: true,
+        ..stream(clip, duration_secs)
+    }
 }

@@ -16,8 +16,8 @@ fn stretches(most: usize) -> impl Strategy<Value = Vec<(usize, f64, f64)>> {
 
 /// Stretches of one class that crowd each other: pairing them by falling overlap alone often misses pairs.
 fn crowded(most: usize) -> impl Strategy<Value = Vec<(usize, f64, f64)>> {
-    let one =
-        (0u32..30, 5u32..25).prop_map(|(at, len)| (0, f64::from(at) / 20.0, f64::from(at + len) / 20.0));
+    let one = (0u32..30, 5u32..25)
+        .prop_map(|(at, len)| (0, f64::from(at) / 20.0, f64::from(at + len) / 20.0));
     prop::collection::vec(one, 0..most)
 }
 
@@ -28,7 +28,12 @@ fn sequence() -> impl Strategy<Value = Vec<Truth>> {
         let mut next = |(class, pause, length): (usize, u32, u32)| {
             let start = at + pause;
             at = start + length;
-            truth("a", CLASSES[class], f64::from(start) / 20.0, f64::from(at) / 20.0)
+            truth(
+                "a",
+                CLASSES[class],
+                f64::from(start) / 20.0,
+                f64::from(at) / 20.0,
+            )
         };
         steps.into_iter().map(&mut next).collect()
     })
@@ -37,7 +42,10 @@ fn sequence() -> impl Strategy<Value = Vec<Truth>> {
 const CLASSES: [&str; 3] = ["x", "y", "z"];
 
 fn truths_of(stretches: &[(usize, f64, f64)]) -> Vec<Truth> {
-    stretches.iter().map(|(c, start, stop)| truth("a", CLASSES[*c], *start, *stop)).collect()
+    stretches
+        .iter()
+        .map(|(c, start, stop)| truth("a", CLASSES[*c], *start, *stop))
+        .collect()
 }
 
 fn founds_of(stretches: &[(usize, f64, f64)]) -> Vec<Found> {
@@ -57,7 +65,9 @@ fn evaluate(truths: &[Truth], founds: &[Found]) -> Evaluation {
 
 /// The largest one-to-one pairing, by trying every partner for each sample.
 fn most_pairs(truths: &[Truth], founds: &[Found], min_iou: f64, used: &mut Vec<bool>) -> usize {
-    let Some((first, rest)) = truths.split_first() else { return 0 };
+    let Some((first, rest)) = truths.split_first() else {
+        return 0;
+    };
     let mut best = most_pairs(rest, founds, min_iou, used);
     for f in 0..founds.len() {
         let (a, b) = (first.interval(), founds[f].interval());

@@ -20,16 +20,27 @@ fn referee() -> PathBuf {
 
 /// Frames and rate as the clip's own header has them.
 fn length(bvh: &str) -> ClipLength {
-    let after = |key: &str| bvh.lines().find_map(|line| line.trim().strip_prefix(key)).unwrap().trim();
+    let after = |key: &str| {
+        bvh.lines()
+            .find_map(|line| line.trim().strip_prefix(key))
+            .unwrap()
+            .trim()
+    };
     let frame_secs: f64 = after("Frame Time:").parse().unwrap();
-    ClipLength { frames: after("Frames:").parse().unwrap(), rate_hz: 1.0 / frame_secs }
+    ClipLength {
+        frames: after("Frames:").parse().unwrap(),
+        rate_hz: 1.0 / frame_secs,
+    }
 }
 
 #[test]
 fn the_published_figures_come_out() {
     let folder = referee();
     let Ok(labels) = std::fs::read(folder.join("labels.tsv")) else {
-        eprintln!("skipped: no labels in {} (set MOREC_DATA)", folder.display());
+        eprintln!(
+            "skipped: no labels in {} (set MOREC_DATA)",
+            folder.display()
+        );
         return;
     };
     let clips: BTreeMap<String, ClipLength> = ["signals_1", "signals_2", "signals_3"]
@@ -41,18 +52,34 @@ fn the_published_figures_come_out() {
     let resolved = Labels::read(&labels).unwrap().resolve(&clips);
     assert!(resolved.warnings.is_empty(), "{:?}", resolved.warnings);
     let truths: Vec<Truth> = resolved.samples.into_iter().map(Truth::from).collect();
-    let (founds, warnings) = read_found(include_bytes!("reference_found.tsv")).unwrap().resolve(&clips);
+    let (founds, warnings) = read_found(include_bytes!("reference_found.tsv"))
+        .unwrap()
+        .resolve(&clips);
     assert!(warnings.is_empty());
-    let infos: Vec<StreamInfo> =
-        clips.iter().map(|(name, length)| stream(name, length.duration_secs())).collect();
+    let infos: Vec<StreamInfo> = clips
+        .iter()
+        .map(|(name, length)| stream(name, length.duration_secs()))
+        .collect();
     let e = Evaluation::of(&infos, &truths, &founds).unwrap();
     let t = &e.thesis;
-    let counts = [t.true_positives, t.false_positives, t.false_negatives, t.true_negatives];
+    let counts = [
+        t.true_positives,
+        t.false_positives,
+        t.false_negatives,
+        t.true_negatives,
+    ];
     assert_eq!(counts, [45, 5, 2, 20]);
     assert_eq!(format!("{:.3}", t.accuracy.unwrap()), "0.903");
     assert_eq!((e.totals.samples, e.totals.detections), (49, 50));
-    assert_eq!(e.overlap.iter().map(|o| o.matched).collect::<Vec<_>>(), [45, 45, 45, 39]);
+    assert_eq!(
+        e.overlap.iter().map(|o| o.matched).collect::<Vec<_>>(),
+        [45, 45, 45, 39]
+    );
     assert_eq!(format!("{:.3}", e.f1_at(0.5).unwrap()), "0.909");
     // Reported a lag of 32 frames after the detection's own stop.
-    assert!((e.delay.median_secs.unwrap() - 0.27).abs() < 0.05, "{:?}", e.delay);
+    assert!(
+        (e.delay.median_secs.unwrap() - 0.27).abs() < 0.05,
+        "{:?}",
+        e.delay
+    );
 }

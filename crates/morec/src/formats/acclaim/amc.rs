@@ -52,12 +52,23 @@ pub fn read_amc(
     warnings.append(&mut found);
     let cells = rows.frames.saturating_mul(skeleton.bones.len() + 1);
     if cells > CELLS_PER_BYTE * bytes.len() {
-        let found =
-            format!("{} frames of {} joints in {} bytes", rows.frames, skeleton.bones.len() + 1, bytes.len());
-        return Err(ParseError::new(Place::File, "rows of most of the skeleton's bones", found));
+        let found = format!(
+            "{} frames of {} joints in {} bytes",
+            rows.frames,
+            skeleton.bones.len() + 1,
+            bytes.len()
+        );
+        return Err(ParseError::new(
+            Place::File,
+            "rows of most of the skeleton's bones",
+            found,
+        ));
     }
     let clip = assemble(name, skeleton, rows, rate_hz, &mut warnings)?;
-    Ok(Loaded { clips: vec![clip], warnings })
+    Ok(Loaded {
+        clips: vec![clip],
+        warnings,
+    })
 }
 
 struct Reader<'a> {
@@ -82,8 +93,12 @@ struct Reader<'a> {
 
 impl<'a> Reader<'a> {
     fn new(skeleton: &'a Asf, limits: &'a Limits) -> Self {
-        let names = std::iter::once(Asf::ROOT).chain(skeleton.bones.iter().map(|b| b.name.as_str()));
-        let slots = names.enumerate().map(|(slot, name)| (name.to_lowercase(), slot)).collect();
+        let names =
+            std::iter::once(Asf::ROOT).chain(skeleton.bones.iter().map(|b| b.name.as_str()));
+        let slots = names
+            .enumerate()
+            .map(|(slot, name)| (name.to_lowercase(), slot))
+            .collect();
         Self {
             skeleton,
             limits,
@@ -119,7 +134,11 @@ impl<'a> Reader<'a> {
         }
         if self.frames == 0 {
             let expected = "a frame number on a line of its own, before any bone";
-            return Err(ParseError::new(Place::Line(line), expected, quoted(content)));
+            return Err(ParseError::new(
+                Place::Line(line),
+                expected,
+                quoted(content),
+            ));
         }
         self.row(line, first, second.into_iter().chain(words));
         Ok(())
@@ -138,11 +157,16 @@ impl<'a> Reader<'a> {
             None => 0,
         };
         if skipped > LONGEST_HOLE {
-            self.warn(line, format!("{skipped} frames are missing before frame {number}; the gap is closed"));
+            self.warn(
+                line,
+                format!("{skipped} frames are missing before frame {number}; the gap is closed"),
+            );
         } else if skipped > 0 {
             self.warn(
                 line,
-                format!("{skipped} frames are missing before frame {number}; they are interpolated"),
+                format!(
+                    "{skipped} frames are missing before frame {number}; they are interpolated"
+                ),
             );
             self.frames += skipped;
         }
@@ -151,7 +175,11 @@ impl<'a> Reader<'a> {
         self.frame_line = line;
         if self.frames > self.limits.frames as u64 {
             let expected = format!("at most {} frames", self.limits.frames);
-            return Err(ParseError::new(Place::Line(line), expected, format!("frame {number}")));
+            return Err(ParseError::new(
+                Place::Line(line),
+                expected,
+                format!("frame {number}"),
+            ));
         }
         Ok(())
     }
@@ -160,7 +188,9 @@ impl<'a> Reader<'a> {
         let name = text(name);
         let Some(&slot) = self.slots.get(&name.to_lowercase()) else {
             self.unknown += 1;
-            if self.unknown_names.len() < SHOWN && self.unknown_names.insert(name.clone().into_owned()) {
+            if self.unknown_names.len() < SHOWN
+                && self.unknown_names.insert(name.clone().into_owned())
+            {
                 let note = format!("the skeleton has no bone `{name}`; its rows are left out");
                 self.warnings.push(Warning::new(Place::Line(line), note));
             }
@@ -177,7 +207,10 @@ impl<'a> Reader<'a> {
                 Some(_) => {}
                 None => {
                     let expected = format!("{expected} numbers for bone {name}");
-                    return self.spoil(start, ParseError::new(Place::Line(line), expected, quoted(token)));
+                    return self.spoil(
+                        start,
+                        ParseError::new(Place::Line(line), expected, quoted(token)),
+                    );
                 }
             }
         }
@@ -189,7 +222,10 @@ impl<'a> Reader<'a> {
         // `begin_frame` has counted at least one frame before any row comes here.
         let frame = (self.frames - 1) as usize;
         if self.rows.add(slot, Row { frame, start }) {
-            self.warn(line, format!("a second row of bone {name} in one frame; the last one counts"));
+            self.warn(
+                line,
+                format!("a second row of bone {name} in one frame; the last one counts"),
+            );
         }
     }
 
@@ -197,7 +233,10 @@ impl<'a> Reader<'a> {
         self.rows.values.truncate(start);
         self.spoiled += 1;
         if self.spoiled <= SHOWN {
-            let note = format!("expected {}, found {}; interpolated", problem.expected, problem.found);
+            let note = format!(
+                "expected {}, found {}; interpolated",
+                problem.expected, problem.found
+            );
             self.warnings.push(Warning::new(problem.at, note));
         }
         self.first_spoiled.get_or_insert(problem);
@@ -214,21 +253,36 @@ impl<'a> Reader<'a> {
         let at = Place::Line(last_line.max(1));
         if self.frames == 0 {
             let expected = "frames: a number on a line of its own, then a line for each bone";
-            return Err(ParseError::new(at, expected, "none up to the end of the file"));
+            return Err(ParseError::new(
+                at,
+                expected,
+                "none up to the end of the file",
+            ));
         }
         if self.unknown > self.known || self.known == 0 {
             let unknown: Vec<_> = self.unknown_names.iter().take(3).cloned().collect();
             let found = match unknown.as_slice() {
                 [] => "no row of any bone".to_owned(),
-                names => format!("rows of {} and the like; is this the right skeleton?", names.join(", ")),
+                names => format!(
+                    "rows of {} and the like; is this the right skeleton?",
+                    names.join(", ")
+                ),
             };
-            return Err(ParseError::new(Place::File, "rows of the skeleton's bones", found));
+            return Err(ParseError::new(
+                Place::File,
+                "rows of the skeleton's bones",
+                found,
+            ));
         }
         self.rows.frames = self.frames as usize;
         self.rows.degrees = self.degrees;
         if self.rows.drop_unfinished_frame() {
-            let note = format!("the last frame, from line {}, is cut off and is left out", self.frame_line);
-            self.warnings.push(Warning::new(Place::Line(self.frame_line), note));
+            let note = format!(
+                "the last frame, from line {}, is cut off and is left out",
+                self.frame_line
+            );
+            self.warnings
+                .push(Warning::new(Place::Line(self.frame_line), note));
         }
         match self.first_spoiled {
             Some(problem) if self.spoiled > self.known / 2 => return Err(problem),
@@ -278,7 +332,10 @@ fn rate_in_name(name: &str) -> Option<f64> {
         None if lower.starts_with("hdm_") => last,
         None => return None,
     };
-    digits.parse().ok().filter(|rate| (5.0..=1000.0).contains(rate))
+    digits
+        .parse()
+        .ok()
+        .filter(|rate| (5.0..=1000.0).contains(rate))
 }
 
 #[cfg(test)]

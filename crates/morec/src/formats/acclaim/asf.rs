@@ -22,7 +22,13 @@ pub fn read_asf(bytes: &[u8], limits: &Limits) -> Result<(Asf, Vec<Warning>), Pa
         }
         match section.as_slice() {
             b":units" => reader.unit(line, content)?,
-            b":name" => reader.name = tokens(content).skip(1).map(text).collect::<Vec<_>>().join(" "),
+            b":name" => {
+                reader.name = tokens(content)
+                    .skip(1)
+                    .map(text)
+                    .collect::<Vec<_>>()
+                    .join(" ")
+            }
             b":root" => reader.root_line(line, content)?,
             b":bonedata" if first.eq_ignore_ascii_case(b"begin") => reader.bone(line)?,
             b":hierarchy" => reader.hierarchy_line(line, content)?,
@@ -73,8 +79,11 @@ struct RawBone {
 impl<'a> Reader<'a> {
     fn new(bytes: &'a [u8], limits: &'a Limits) -> Self {
         use Axis::{X, Y, Z};
-        let root_channels =
-            [X, Y, Z].map(Channel::Translation).into_iter().chain([X, Y, Z].map(Channel::Rotation)).collect();
+        let root_channels = [X, Y, Z]
+            .map(Channel::Translation)
+            .into_iter()
+            .chain([X, Y, Z].map(Channel::Rotation))
+            .collect();
         Self {
             lines: Lines::new(bytes, limits),
             limits,
@@ -99,7 +108,12 @@ impl<'a> Reader<'a> {
 
     fn unit(&mut self, line: u64, content: &[u8]) -> Result<(), ParseError> {
         let mut words = tokens(content);
-        match words.next().unwrap_or_default().to_ascii_lowercase().as_slice() {
+        match words
+            .next()
+            .unwrap_or_default()
+            .to_ascii_lowercase()
+            .as_slice()
+        {
             b"length" => {
                 let length = one_number(line, words.next(), "the unit of length")?;
                 if length > 0.0 {
@@ -114,7 +128,13 @@ impl<'a> Reader<'a> {
                 self.degrees = match unit.to_ascii_lowercase().as_slice() {
                     unit if unit.starts_with(b"deg") => true,
                     unit if unit.starts_with(b"rad") => false,
-                    _ => return Err(ParseError::new(Place::Line(line), "`deg` or `rad`", quoted(unit))),
+                    _ => {
+                        return Err(ParseError::new(
+                            Place::Line(line),
+                            "`deg` or `rad`",
+                            quoted(unit),
+                        ));
+                    }
                 };
             }
             _ => {}
@@ -124,10 +144,17 @@ impl<'a> Reader<'a> {
 
     fn root_line(&mut self, line: u64, content: &[u8]) -> Result<(), ParseError> {
         let mut words = tokens(content);
-        match words.next().unwrap_or_default().to_ascii_lowercase().as_slice() {
+        match words
+            .next()
+            .unwrap_or_default()
+            .to_ascii_lowercase()
+            .as_slice()
+        {
             b"order" => self.root_channels = channels(line, words)?,
             b"axis" => self.root_axes = axis_order(line, words.next())?,
-            b"position" => self.root_position = three_numbers(line, &mut words, "the root's position")?,
+            b"position" => {
+                self.root_position = three_numbers(line, &mut words, "the root's position")?
+            }
             b"orientation" => {
                 self.root_orientation = three_numbers(line, &mut words, "the root's orientation")?
             }
@@ -149,18 +176,33 @@ impl<'a> Reader<'a> {
                 ));
             };
             let mut words = tokens(content);
-            match words.next().unwrap_or_default().to_ascii_lowercase().as_slice() {
+            match words
+                .next()
+                .unwrap_or_default()
+                .to_ascii_lowercase()
+                .as_slice()
+            {
                 b"end" => break,
                 b"begin" => {
                     let expected = format!("`end` of the bone begun on line {begin}");
-                    return Err(ParseError::new(Place::Line(line), expected, "another `begin`"));
+                    return Err(ParseError::new(
+                        Place::Line(line),
+                        expected,
+                        "another `begin`",
+                    ));
                 }
                 [b':', ..] => {
                     let expected = format!("`end` of the bone begun on line {begin}");
-                    return Err(ParseError::new(Place::Line(line), expected, quoted(content)));
+                    return Err(ParseError::new(
+                        Place::Line(line),
+                        expected,
+                        quoted(content),
+                    ));
                 }
                 b"name" => bone.name = words.next().map(|name| text(name).into_owned()),
-                b"direction" => bone.direction = Some(three_numbers(line, &mut words, "a direction")?),
+                b"direction" => {
+                    bone.direction = Some(three_numbers(line, &mut words, "a direction")?)
+                }
                 b"length" => bone.length = Some(one_number(line, words.next(), "a length")?),
                 b"axis" => {
                     bone.axis_angles = three_numbers(line, &mut words, "three axis angles")?;
@@ -180,10 +222,18 @@ impl<'a> Reader<'a> {
             return Err(ParseError::new(at, "a `name` in the bone's block", "none"));
         };
         let Some(direction) = &mut bone.direction else {
-            return Err(ParseError::new(at, format!("a `direction` of bone {name}"), "none"));
+            return Err(ParseError::new(
+                at,
+                format!("a `direction` of bone {name}"),
+                "none",
+            ));
         };
         if bone.length.is_none() {
-            return Err(ParseError::new(at, format!("a `length` of bone {name}"), "none"));
+            return Err(ParseError::new(
+                at,
+                format!("a `length` of bone {name}"),
+                "none",
+            ));
         }
         let norm = direction.norm();
         if norm > 0.0 && (norm - 1.0).abs() > 0.01 {
@@ -193,10 +243,18 @@ impl<'a> Reader<'a> {
         }
         let key = name.to_lowercase();
         if key == Asf::ROOT || self.index.contains_key(&key) {
-            return Err(ParseError::new(at, "a name for each bone", format!("{name} a second time")));
+            return Err(ParseError::new(
+                at,
+                "a name for each bone",
+                format!("{name} a second time"),
+            ));
         }
         if self.bones.len() + 1 >= self.limits.joints {
-            return Err(ParseError::new(at, format!("at most {} joints", self.limits.joints), "more"));
+            return Err(ParseError::new(
+                at,
+                format!("at most {} joints", self.limits.joints),
+                "more",
+            ));
         }
         self.index.insert(key, self.bones.len());
         self.bones.push(bone);
@@ -213,12 +271,20 @@ impl<'a> Reader<'a> {
         {
             return Ok(());
         }
-        let parent = if first.eq_ignore_ascii_case(b"root") { ROOT } else { self.known(line, first)? };
+        let parent = if first.eq_ignore_ascii_case(b"root") {
+            ROOT
+        } else {
+            self.known(line, first)?
+        };
         for word in words {
             let child = self.known(line, word)?;
             if let Some(before) = self.placed[child] {
                 let found = format!("{} here and on line {before}", quoted(word));
-                return Err(ParseError::new(Place::Line(line), "one parent for each bone", found));
+                return Err(ParseError::new(
+                    Place::Line(line),
+                    "one parent for each bone",
+                    found,
+                ));
             }
             self.placed[child] = Some(line);
             self.edges.push((parent, child));
@@ -230,16 +296,26 @@ impl<'a> Reader<'a> {
         self.index
             .get(&text(name).to_lowercase())
             .copied()
-            .ok_or_else(|| ParseError::new(Place::Line(line), "a bone of `:bonedata`", quoted(name)))
+            .ok_or_else(|| {
+                ParseError::new(Place::Line(line), "a bone of `:bonedata`", quoted(name))
+            })
     }
 
     fn finish(mut self) -> Result<(Asf, Vec<Warning>), ParseError> {
         let at = Place::Line(self.lines.number().max(1));
         if self.bones.is_empty() {
-            return Err(ParseError::new(at, "`:bonedata` with bones", "none up to the end of the file"));
+            return Err(ParseError::new(
+                at,
+                "`:bonedata` with bones",
+                "none up to the end of the file",
+            ));
         }
         if self.edges.is_empty() {
-            return Err(ParseError::new(at, "`:hierarchy` with bones", "none up to the end of the file"));
+            return Err(ParseError::new(
+                at,
+                "`:hierarchy` with bones",
+                "none up to the end of the file",
+            ));
         }
         let order = self.parents_first()?;
         let mut position_of = vec![None; self.bones.len()];
@@ -247,7 +323,11 @@ impl<'a> Reader<'a> {
         let mut parents = Vec::with_capacity(order.len());
         for (new, &(parent, old)) in order.iter().enumerate() {
             position_of[old] = Some(new);
-            parents.push(if parent == ROOT { None } else { position_of[parent] });
+            parents.push(if parent == ROOT {
+                None
+            } else {
+                position_of[parent]
+            });
             bones.push(self.finished(old));
         }
         let orientation = self.rotation(&self.root_axes, self.root_orientation);
@@ -255,9 +335,23 @@ impl<'a> Reader<'a> {
             let note = "the root has a pre-set position or orientation; every frame is moved by it";
             self.warnings.push(Warning::new(Place::File, note));
         }
-        let root = Root { channels: self.root_channels, position: self.root_position, orientation };
+        let root = Root {
+            channels: self.root_channels,
+            position: self.root_position,
+            orientation,
+        };
         let (name, length_unit, degrees) = (self.name, self.length_unit, self.degrees);
-        Ok((Asf { name, length_unit, degrees, root, bones, parents }, self.warnings))
+        Ok((
+            Asf {
+                name,
+                length_unit,
+                degrees,
+                root,
+                bones,
+                parents,
+            },
+            self.warnings,
+        ))
     }
 
     /// The edges in an order in which every parent has been placed before, as near the file's as can be.
@@ -268,7 +362,11 @@ impl<'a> Reader<'a> {
         while !left.is_empty() {
             let before = left.len();
             left.retain(|&(parent, child)| {
-                let parent_depth = if parent == ROOT { Some(1) } else { depth[parent] };
+                let parent_depth = if parent == ROOT {
+                    Some(1)
+                } else {
+                    depth[parent]
+                };
                 depth[child] = parent_depth.map(|d: usize| d + 1);
                 if parent_depth.is_some() {
                     order.push((parent, child));
@@ -285,7 +383,10 @@ impl<'a> Reader<'a> {
                 ));
             }
         }
-        if let Some(deep) = depth.iter().position(|d| d.is_some_and(|d| d > self.limits.depth)) {
+        if let Some(deep) = depth
+            .iter()
+            .position(|d| d.is_some_and(|d| d > self.limits.depth))
+        {
             let at = Place::Line(self.placed[deep].unwrap_or(1));
             return Err(ParseError::new(
                 at,
@@ -293,7 +394,12 @@ impl<'a> Reader<'a> {
                 "more",
             ));
         }
-        for (b, _) in self.placed.iter().enumerate().filter(|(_, line)| line.is_none()) {
+        for (b, _) in self
+            .placed
+            .iter()
+            .enumerate()
+            .filter(|(_, line)| line.is_none())
+        {
             let name = self.bones[b].name.as_deref().unwrap_or_default();
             let note = format!("bone {name} has no place in the hierarchy and is left out");
             self.warnings.push(Warning::new(Place::File, note));
@@ -313,7 +419,11 @@ impl<'a> Reader<'a> {
 
     /// The three angles belong to X, Y and Z, whatever the order in which they are applied.
     fn rotation(&self, order: &[Axis], angles: Vec3) -> Quat {
-        let angles = if self.degrees { angles.map(f64::to_radians) } else { angles };
+        let angles = if self.degrees {
+            angles.map(f64::to_radians)
+        } else {
+            angles
+        };
         composed(order.iter().map(|&axis| (axis, angles[axis.index()])))
     }
 }
@@ -321,7 +431,11 @@ impl<'a> Reader<'a> {
 fn one_number(line: u64, token: Option<&[u8]>, what: &str) -> Result<f64, ParseError> {
     let token = token.unwrap_or_default();
     number(token).ok_or_else(|| {
-        let found = if token.is_empty() { "nothing".to_owned() } else { quoted(token) };
+        let found = if token.is_empty() {
+            "nothing".to_owned()
+        } else {
+            quoted(token)
+        };
         ParseError::new(Place::Line(line), format!("{what}, a number"), found)
     })
 }
@@ -337,17 +451,35 @@ fn three_numbers<'t>(
 
 /// `XYZ` and the like, in any case; XYZ if nothing is said.
 fn axis_order(line: u64, token: Option<&[u8]>) -> Result<Vec<Axis>, ParseError> {
-    let Some(token) = token else { return Ok(Axis::ALL.to_vec()) };
-    let axes: Option<Vec<Axis>> = token.iter().map(|&letter| axis_from_letter(letter)).collect();
-    axes.filter(|axes| axes.len() == 3)
-        .ok_or_else(|| ParseError::new(Place::Line(line), "an order of three axes, like XYZ", quoted(token)))
+    let Some(token) = token else {
+        return Ok(Axis::ALL.to_vec());
+    };
+    let axes: Option<Vec<Axis>> = token
+        .iter()
+        .map(|&letter| axis_from_letter(letter))
+        .collect();
+    axes.filter(|axes| axes.len() == 3).ok_or_else(|| {
+        ParseError::new(
+            Place::Line(line),
+            "an order of three axes, like XYZ",
+            quoted(token),
+        )
+    })
 }
 
-fn channels<'t>(line: u64, words: impl Iterator<Item = &'t [u8]>) -> Result<Vec<Channel>, ParseError> {
+fn channels<'t>(
+    line: u64,
+    words: impl Iterator<Item = &'t [u8]>,
+) -> Result<Vec<Channel>, ParseError> {
     let mut channels = Vec::new();
     for word in words {
-        let channel = Channel::from_token(word)
-            .ok_or_else(|| ParseError::new(Place::Line(line), "tx, ty, tz, rx, ry, rz or l", quoted(word)))?;
+        let channel = Channel::from_token(word).ok_or_else(|| {
+            ParseError::new(
+                Place::Line(line),
+                "tx, ty, tz, rx, ry, rz or l",
+                quoted(word),
+            )
+        })?;
         if channels.contains(&channel) {
             return Err(ParseError::new(
                 Place::Line(line),

@@ -24,7 +24,12 @@ pub(super) struct Rows {
 impl Rows {
     pub(super) fn new(skeleton: &Asf) -> Self {
         let of_slot = vec![Vec::new(); skeleton.bones.len() + 1];
-        Self { frames: 0, values: Vec::new(), of_slot, degrees: true }
+        Self {
+            frames: 0,
+            values: Vec::new(),
+            of_slot,
+            degrees: true,
+        }
     }
 
     /// Adds a row of the latest frame; true if that frame already had one of this slot, which it replaces.
@@ -48,8 +53,12 @@ impl Rows {
             return false;
         }
         let last = self.frames - 1;
-        let in_frame = |rows: &[Row], frame| rows.iter().rev().take(2).any(|row| row.frame == frame);
-        let unfinished = self.of_slot.iter().any(|rows| in_frame(rows, last - 1) && !in_frame(rows, last));
+        let in_frame =
+            |rows: &[Row], frame| rows.iter().rev().take(2).any(|row| row.frame == frame);
+        let unfinished = self
+            .of_slot
+            .iter()
+            .any(|rows| in_frame(rows, last - 1) && !in_frame(rows, last));
         if unfinished {
             for rows in &mut self.of_slot {
                 rows.pop_if(|row| row.frame == last);
@@ -95,7 +104,11 @@ pub(super) fn assemble(
 }
 
 /// Which frames lack a row that the file otherwise has; an error if that is most of them.
-fn missing_frames(asf: &Asf, rows: &Rows, warnings: &mut Vec<Warning>) -> Result<Vec<bool>, ParseError> {
+fn missing_frames(
+    asf: &Asf,
+    rows: &Rows,
+    warnings: &mut Vec<Warning>,
+) -> Result<Vec<bool>, ParseError> {
     let mut spoiled = vec![false; rows.frames];
     let (mut missing, mut expected) = (0usize, 0usize);
     for (slot, present) in rows.of_slot.iter().enumerate() {
@@ -103,8 +116,13 @@ fn missing_frames(asf: &Asf, rows: &Rows, warnings: &mut Vec<Warning>) -> Result
             continue;
         }
         if present.is_empty() {
-            let name = slot.checked_sub(1).map_or(Asf::ROOT, |bone| asf.bones[bone].name.as_str());
-            warnings.push(Warning::new(Place::File, format!("no row of bone {name}; it stays at rest")));
+            let name = slot
+                .checked_sub(1)
+                .map_or(Asf::ROOT, |bone| asf.bones[bone].name.as_str());
+            warnings.push(Warning::new(
+                Place::File,
+                format!("no row of bone {name}; it stays at rest"),
+            ));
             continue;
         }
         expected += rows.frames;
@@ -117,11 +135,16 @@ fn missing_frames(asf: &Asf, rows: &Rows, warnings: &mut Vec<Warning>) -> Result
     // This also bounds the memory that a small file can ask for.
     if missing > expected / 2 {
         let found = format!("{missing} of {expected} missing or unreadable");
-        return Err(ParseError::new(Place::File, "a row of each bone in each frame", found));
+        return Err(ParseError::new(
+            Place::File,
+            "a row of each bone in each frame",
+            found,
+        ));
     }
     if missing > 0 {
         let frames = spoiled.iter().filter(|&&s| s).count();
-        let note = format!("{missing} of {expected} rows, in {frames} frames, are missing; interpolated");
+        let note =
+            format!("{missing} of {expected} rows, in {frames} frames, are missing; interpolated");
         warnings.push(Warning::new(Place::File, note));
     }
     Ok(spoiled)
@@ -155,18 +178,27 @@ fn place_slot(clip: &mut Clip, asf: &Asf, rows: &Rows, slot: usize) {
     for frame in 0..clip.frames {
         let here = match next.next_if(|row| row.frame == frame) {
             Some(row) => {
-                let motion = Motion { frame, ..motion(asf, rows, slot, *row) };
+                let motion = Motion {
+                    frame,
+                    ..motion(asf, rows, slot, *row)
+                };
                 before = Some(motion);
                 motion
             }
             None => {
-                let after =
-                    next.peek().map(|row| Motion { frame: row.frame, ..motion(asf, rows, slot, **row) });
+                let after = next.peek().map(|row| Motion {
+                    frame: row.frame,
+                    ..motion(asf, rows, slot, **row)
+                });
                 between(before, after, frame)
             }
         };
         let at = frame * joints + slot;
-        let previous = if frame == 0 { Quat::identity() } else { clip.rotations[at - joints] };
+        let previous = if frame == 0 {
+            Quat::identity()
+        } else {
+            clip.rotations[at - joints]
+        };
         clip.rotations[at] = same_hemisphere(&previous, here.rotation);
         if let Some(positions) = &mut positions {
             positions.push(clip.skeleton.joints()[slot].offset + here.translation);
@@ -204,18 +236,35 @@ fn motion(asf: &Asf, rows: &Rows, slot: usize, row: Row) -> Motion {
             Channel::Rotation(_) => {}
         }
     }
-    let turn = composed(channels.iter().zip(values).filter_map(|(channel, &value)| match channel {
-        Channel::Rotation(axis) => Some((*axis, if rows.degrees { value.to_radians() } else { value })),
-        _ => None,
-    }));
+    let turn = composed(channels.iter().zip(values).filter_map(
+        |(channel, &value)| match channel {
+            Channel::Rotation(axis) => Some((
+                *axis,
+                if rows.degrees {
+                    value.to_radians()
+                } else {
+                    value
+                },
+            )),
+            _ => None,
+        },
+    ));
     let (rotation, translation) = match slot {
-        0 => (asf.root.orientation * turn, asf.root.position + asf.root.orientation * translation),
+        0 => (
+            asf.root.orientation * turn,
+            asf.root.position + asf.root.orientation * translation,
+        ),
         slot => {
             let axes = asf.bones[slot - 1].axes;
             (axes * turn * axes.inverse(), axes * translation)
         }
     };
-    Motion { frame: row.frame, rotation, translation, length }
+    Motion {
+        frame: row.frame,
+        rotation,
+        translation,
+        length,
+    }
 }
 
 /// The motion at `frame`, which has no row, from its neighbours with one. At least one of them is there.
@@ -231,7 +280,12 @@ fn between(before: Option<Motion>, after: Option<Motion>, frame: usize) -> Motio
             }
         }
         (Some(only), None) | (None, Some(only)) => only,
-        (None, None) => Motion { frame, rotation: Quat::identity(), translation: Vec3::zeros(), length: 0.0 },
+        (None, None) => Motion {
+            frame,
+            rotation: Quat::identity(),
+            translation: Vec3::zeros(),
+            length: 0.0,
+        },
     }
 }
 
@@ -241,7 +295,10 @@ fn stretch(clip: &mut Clip, asf: &Asf, slot: usize, lengths: &[f64]) {
     let direction = vector.try_normalize(0.0).unwrap_or_else(Vec3::zeros);
     let children: Vec<usize> = clip.skeleton.children(slot).collect();
     for child in children {
-        let positions: Vec<Vec3> = lengths.iter().map(|added| vector + direction * *added).collect();
+        let positions: Vec<Vec3> = lengths
+            .iter()
+            .map(|added| vector + direction * *added)
+            .collect();
         add_to_track(clip, child, &positions);
     }
 }
@@ -256,6 +313,9 @@ fn add_to_track(clip: &mut Clip, joint: usize, positions: &[Vec3]) {
                 *sum += position - offset;
             }
         }
-        None => clip.tracks.push(JointTrack { joint, positions: positions.to_vec() }),
+        None => clip.tracks.push(JointTrack {
+            joint,
+            positions: positions.to_vec(),
+        }),
     }
 }

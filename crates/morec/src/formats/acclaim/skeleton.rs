@@ -38,7 +38,11 @@ pub(super) fn axis_from_letter(letter: u8) -> Option<Axis> {
 
 /// Rotations applied one after the other about fixed axes: the last in the list is the outermost factor.
 pub(super) fn composed(rotations: impl IntoIterator<Item = (Axis, f64)>) -> Quat {
-    rotations.into_iter().fold(Quat::identity(), |done, (axis, angle_rad)| axis.rotation(angle_rad) * done)
+    rotations
+        .into_iter()
+        .fold(Quat::identity(), |done, (axis, angle_rad)| {
+            axis.rotation(angle_rad) * done
+        })
 }
 
 /// What `:root` says.
@@ -94,8 +98,12 @@ impl Asf {
 
     /// Joint 0 is the root, joint `b + 1` the near end of bone `b`.
     pub fn skeleton(&self) -> Skeleton {
-        let mut joints =
-            vec![Joint { name: Self::ROOT.to_owned(), parent: None, offset: Vec3::zeros(), tip: None }];
+        let mut joints = vec![Joint {
+            name: Self::ROOT.to_owned(),
+            parent: None,
+            offset: Vec3::zeros(),
+            tip: None,
+        }];
         for (b, bone) in self.bones.iter().enumerate() {
             let parent = self.parents[b];
             joints.push(Joint {

@@ -16,7 +16,13 @@ fn asf(bytes: &[u8]) -> Asf {
 }
 
 fn amc(skeleton: &Asf, bytes: &[u8]) -> Result<Loaded, ParseError> {
-    read_amc(bytes, "clip", skeleton, &AmcOptions::default(), &Limits::default())
+    read_amc(
+        bytes,
+        "clip",
+        skeleton,
+        &AmcOptions::default(),
+        &Limits::default(),
+    )
 }
 
 fn clip(skeleton: &Asf, bytes: &[u8]) -> Clip {
@@ -50,16 +56,24 @@ fn joints_sit_at_the_far_end_of_their_parent_bone() {
 fn bvh_and_acclaim_give_the_same_poses() {
     const WAVE_BVH: &[u8] = include_bytes!("../../../testdata/acclaim/wave.bvh");
     let options = crate::formats::bvh::BvhOptions::default();
-    let bvh =
-        crate::formats::bvh::read(WAVE_BVH, "wave", &options, &Limits::default()).unwrap().clips.remove(0);
+    let bvh = crate::formats::bvh::read(WAVE_BVH, "wave", &options, &Limits::default())
+        .unwrap()
+        .clips
+        .remove(0);
     let acclaim = clip(&asf(ARM), WAVE);
     assert_eq!((bvh.frames, bvh.rate_hz), (acclaim.frames, acclaim.rate_hz));
     assert_eq!(bvh.skeleton, acclaim.skeleton);
     for frame in 0..bvh.frames {
         let (a, b) = (WorldPose::of(&bvh, frame), WorldPose::of(&acclaim, frame));
         for joint in 0..bvh.skeleton.len() {
-            assert!((a.positions[joint] - b.positions[joint]).norm() < 1e-9, "frame {frame}, joint {joint}");
-            assert!(a.rotations[joint].angle_to(&b.rotations[joint]) < 1e-7, "frame {frame}, joint {joint}");
+            assert!(
+                (a.positions[joint] - b.positions[joint]).norm() < 1e-9,
+                "frame {frame}, joint {joint}"
+            );
+            assert!(
+                a.rotations[joint].angle_to(&b.rotations[joint]) < 1e-7,
+                "frame {frame}, joint {joint}"
+            );
         }
         assert!((a.tip(&bvh, 4) - b.tip(&acclaim, 4)).norm() < 1e-9);
     }
@@ -148,19 +162,30 @@ fn holes_are_filled_and_said() {
     let clip = &loaded.clips[0];
     assert_eq!((clip.frames, clip.repaired.clone()), (5, vec![1..2, 3..4]));
     assert_eq!(clip.tracks[0].positions[1], Vec3::new(1.0, 0.0, 0.0));
-    let turns: Vec<f64> = (0..5).map(|f| clip.frame_rotations(f)[1].angle().to_degrees().round()).collect();
+    let turns: Vec<f64> = (0..5)
+        .map(|f| clip.frame_rotations(f)[1].angle().to_degrees().round())
+        .collect();
     assert_eq!(turns, [0.0, 10.0, 20.0, 30.0, 40.0]);
     assert!(
-        loaded.warnings.iter().any(|w| w.at == Place::Line(4) && w.text.contains("missing before frame 7"))
+        loaded
+            .warnings
+            .iter()
+            .any(|w| w.at == Place::Line(4) && w.text.contains("missing before frame 7"))
     );
 }
 
 #[test]
 fn unreadable_rows_are_interpolated_and_located() {
     let skeleton = two_bones("0 0 0 XYZ", "dof rx");
-    let text = "1\nroot 0 0 0 0 0 0\na 0\n2\nroot 0 0 0 0 0 0\na nan\n3\nroot 0 0 0 0 0 0\na 2e+001\n";
+    let text =
+        "1\nroot 0 0 0 0 0 0\na 0\n2\nroot 0 0 0 0 0 0\na nan\n3\nroot 0 0 0 0 0 0\na 2e+001\n";
     let loaded = amc(&skeleton, text.as_bytes()).unwrap();
-    assert!(loaded.warnings.iter().any(|w| w.at == Place::Line(6) && w.text.contains("`nan`")));
+    assert!(
+        loaded
+            .warnings
+            .iter()
+            .any(|w| w.at == Place::Line(6) && w.text.contains("`nan`"))
+    );
     assert!((loaded.clips[0].frame_rotations(1)[1].angle().to_degrees() - 10.0).abs() < 1e-6);
 }
 
@@ -172,7 +197,10 @@ fn a_frame_that_is_cut_off_is_left_out() {
     let cut = amc(&arm, &WAVE[..end]).unwrap();
     assert_eq!(cut.clips[0].frames, whole.frames - 1);
     assert!(cut.warnings.iter().any(|w| w.text.contains("cut off")));
-    assert_eq!(cut.clips[0].rotations[..], whole.rotations[..cut.clips[0].rotations.len()]);
+    assert_eq!(
+        cut.clips[0].rotations[..],
+        whole.rotations[..cut.clips[0].rotations.len()]
+    );
 }
 
 #[test]
@@ -212,11 +240,30 @@ fn what_is_no_skeleton_is_refused_where_it_goes_wrong() {
 
 #[test]
 fn limits_hold() {
-    let few = Limits { joints: 3, ..Limits::default() };
-    assert!(read_asf(ARM, &few).unwrap_err().expected.contains("3 joints"));
-    let shallow = Limits { depth: 3, ..Limits::default() };
-    assert!(read_asf(ARM, &shallow).unwrap_err().expected.contains("3 joints"));
-    let short = Limits { frames: 1, ..Limits::default() };
+    let few = Limits {
+        joints: 3,
+        ..Limits::default()
+    };
+    assert!(
+        read_asf(ARM, &few)
+            .unwrap_err()
+            .expected
+            .contains("3 joints")
+    );
+    let shallow = Limits {
+        depth: 3,
+        ..Limits::default()
+    };
+    assert!(
+        read_asf(ARM, &shallow)
+            .unwrap_err()
+            .expected
+            .contains("3 joints")
+    );
+    let short = Limits {
+        frames: 1,
+        ..Limits::default()
+    };
     let error = read_amc(WAVE, "w", &asf(ARM), &AmcOptions::default(), &short).unwrap_err();
     assert!(error.expected.contains("1 frames"));
 }
@@ -226,8 +273,15 @@ fn the_rate_is_assumed_aloud_or_given() {
     let arm = asf(ARM);
     let assumed = amc(&arm, WAVE).unwrap();
     assert_eq!(assumed.clips[0].rate_hz, 120.0);
-    assert!(assumed.warnings.iter().any(|w| w.text.contains("120 Hz is assumed")));
-    let options = AmcOptions { rate_hz: Some(60.0) };
+    assert!(
+        assumed
+            .warnings
+            .iter()
+            .any(|w| w.text.contains("120 Hz is assumed"))
+    );
+    let options = AmcOptions {
+        rate_hz: Some(60.0),
+    };
     let given = read_amc(WAVE, "w", &arm, &options, &Limits::default()).unwrap();
     assert_eq!(given.clips[0].rate_hz, 60.0);
     assert!(given.warnings.is_empty(), "{:?}", given.warnings);
@@ -319,12 +373,48 @@ fn a_presetting_of_the_root_moves_everything() {
 
 /// World positions by an independent reader (numpy, C·R·C⁻¹ as quaternions), in the files' own unit.
 const REAL: [(&str, &str, usize, &str, [f64; 3]); 10] = [
-    ("exercises/skeleton.asf", "exercises/clips/13_29.amc", 0, "lwrist", [7.664488, 15.629520, 4.326834]),
-    ("exercises/skeleton.asf", "exercises/clips/13_29.amc", 0, "rtoes", [-3.024529, 0.941005, 4.216080]),
-    ("exercises/skeleton.asf", "exercises/clips/13_29.amc", 1000, "lwrist", [2.530879, 22.577220, -4.658270]),
-    ("exercises/skeleton.asf", "exercises/clips/13_29.amc", 4591, "head", [-4.281199, 27.786891, 5.072620]),
-    ("exercises/skeleton.asf", "exercises/clips/13_29.amc", 4591, "rtoes", [-6.113474, 1.400627, 4.775795]),
-    ("segmentation/86.asf", "segmentation/clips/86_01.amc", 0, "head", [16.495963, 27.278906, -0.123190]),
+    (
+        "exercises/skeleton.asf",
+        "exercises/clips/13_29.amc",
+        0,
+        "lwrist",
+        [7.664488, 15.629520, 4.326834],
+    ),
+    (
+        "exercises/skeleton.asf",
+        "exercises/clips/13_29.amc",
+        0,
+        "rtoes",
+        [-3.024529, 0.941005, 4.216080],
+    ),
+    (
+        "exercises/skeleton.asf",
+        "exercises/clips/13_29.amc",
+        1000,
+        "lwrist",
+        [2.530879, 22.577220, -4.658270],
+    ),
+    (
+        "exercises/skeleton.asf",
+        "exercises/clips/13_29.amc",
+        4591,
+        "head",
+        [-4.281199, 27.786891, 5.072620],
+    ),
+    (
+        "exercises/skeleton.asf",
+        "exercises/clips/13_29.amc",
+        4591,
+        "rtoes",
+        [-6.113474, 1.400627, 4.775795],
+    ),
+    (
+        "segmentation/86.asf",
+        "segmentation/clips/86_01.amc",
+        0,
+        "head",
+        [16.495963, 27.278906, -0.123190],
+    ),
     (
         "segmentation/86.asf",
         "segmentation/clips/86_01.amc",
@@ -332,8 +422,20 @@ const REAL: [(&str, &str, usize, &str, [f64; 3]); 10] = [
         "lwrist",
         [27.262833, 24.541776, -6.076791],
     ),
-    ("segmentation/86.asf", "segmentation/clips/86_01.amc", 1000, "rtoes", [20.858093, 5.637588, -0.297873]),
-    ("segmentation/86.asf", "segmentation/clips/86_01.amc", 4578, "root", [27.662600, 18.041800, -6.123110]),
+    (
+        "segmentation/86.asf",
+        "segmentation/clips/86_01.amc",
+        1000,
+        "rtoes",
+        [20.858093, 5.637588, -0.297873],
+    ),
+    (
+        "segmentation/86.asf",
+        "segmentation/clips/86_01.amc",
+        4578,
+        "root",
+        [27.662600, 18.041800, -6.123110],
+    ),
     (
         "segmentation/86.asf",
         "segmentation/clips/86_01.amc",
@@ -358,11 +460,19 @@ fn real_motions_pose_as_an_independent_reader_poses_them() {
         let clip = read.entry(motion).or_insert_with(|| {
             let skeleton = asf(&std::fs::read(data.join(skeleton)).unwrap());
             let loaded = amc(&skeleton, &std::fs::read(data.join(motion)).unwrap()).unwrap();
-            assert_eq!(loaded.warnings.len(), 1, "only the rate: {:?}", loaded.warnings);
+            assert_eq!(
+                loaded.warnings.len(),
+                1,
+                "only the rate: {:?}",
+                loaded.warnings
+            );
             loaded.clips.into_iter().next().unwrap()
         });
         let pose = WorldPose::of(clip, frame);
         let at = pose.positions[clip.skeleton.find(joint).unwrap()];
-        assert!((at - Vec3::from(expected)).norm() < 2e-6, "{motion} frame {frame} {joint}: {at}");
+        assert!(
+            (at - Vec3::from(expected)).norm() < 2e-6,
+            "{motion} frame {frame} {joint}: {at}"
+        );
     }
 }

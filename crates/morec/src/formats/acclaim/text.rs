@@ -14,13 +14,21 @@ pub(super) struct Lines<'a> {
 impl<'a> Lines<'a> {
     pub(super) fn new(bytes: &'a [u8], limits: &Limits) -> Self {
         let rest = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
-        Self { rest, number: 0, limit: limits.line_bytes }
+        Self {
+            rest,
+            number: 0,
+            limit: limits.line_bytes,
+        }
     }
 
     /// The next line with anything on it, and its number.
     pub(super) fn next(&mut self) -> Result<Option<(u64, &'a [u8])>, ParseError> {
         while !self.rest.is_empty() {
-            let end = self.rest.iter().position(|b| matches!(b, b'\n' | b'\r')).unwrap_or(self.rest.len());
+            let end = self
+                .rest
+                .iter()
+                .position(|b| matches!(b, b'\n' | b'\r'))
+                .unwrap_or(self.rest.len());
             let (line, after) = self.rest.split_at(end);
             self.rest = match after {
                 [b'\r', b'\n', rest @ ..] | [_, rest @ ..] => rest,
@@ -35,7 +43,10 @@ impl<'a> Lines<'a> {
                     found,
                 ));
             }
-            let code = line.iter().position(|&b| b == b'#').map_or(line, |comment| &line[..comment]);
+            let code = line
+                .iter()
+                .position(|&b| b == b'#')
+                .map_or(line, |comment| &line[..comment]);
             if tokens(code).next().is_some() {
                 return Ok(Some((self.number, code)));
             }
@@ -76,7 +87,9 @@ pub(super) fn quoted(token: &[u8]) -> String {
 /// A number that a length or an angle can be: sums and products of such stay finite.
 pub(super) fn number(token: &[u8]) -> Option<f64> {
     const LARGEST: f64 = 1e12;
-    fast_float2::parse::<f64, _>(token).ok().filter(|value| value.abs() <= LARGEST)
+    fast_float2::parse::<f64, _>(token)
+        .ok()
+        .filter(|value| value.abs() <= LARGEST)
 }
 
 #[cfg(test)]
@@ -95,19 +108,26 @@ mod tests {
 
     #[test]
     fn every_line_end_counts_once() {
-        let expected: Vec<_> =
-            [(1, "a"), (2, "b"), (4, "c"), (5, "d")].map(|(n, s)| (n, s.to_owned())).into();
+        let expected: Vec<_> = [(1, "a"), (2, "b"), (4, "c"), (5, "d")]
+            .map(|(n, s)| (n, s.to_owned()))
+            .into();
         assert_eq!(lines(b"a\nb\r\n\rc\nd"), expected);
     }
 
     #[test]
     fn comments_and_latin_1_do_no_harm() {
-        assert_eq!(lines(b"# X:\\f\xFCr Bonn\nB\xFCro 1 # two\n"), [(2, "Büro 1 ".to_owned())]);
+        assert_eq!(
+            lines(b"# X:\\f\xFCr Bonn\nB\xFCro 1 # two\n"),
+            [(2, "Büro 1 ".to_owned())]
+        );
     }
 
     #[test]
     fn long_lines_are_refused_with_their_number() {
-        let limits = Limits { line_bytes: 4, ..Limits::default() };
+        let limits = Limits {
+            line_bytes: 4,
+            ..Limits::default()
+        };
         let mut lines = Lines::new(b"ab\nabcdef", &limits);
         assert!(lines.next().unwrap().is_some());
         assert_eq!(lines.next().unwrap_err().at, Place::Line(2));

@@ -63,7 +63,12 @@ impl Character {
         }
         self.turns.push(turns);
         if places.iter().any(Option::is_some) {
-            let positions = Positions { joint, columns: places, values: Vec::new(), gaps: Gaps::default() };
+            let positions = Positions {
+                joint,
+                columns: places,
+                values: Vec::new(),
+                gaps: Gaps::default(),
+            };
             self.positions.push(positions);
         }
     }
@@ -147,9 +152,24 @@ fn rotation(turns: &[(usize, Axis)], row: &[f64]) -> Quat {
         let [w, x, y, z] = [product.w, product.i, product.j, product.k];
         // The product with (cos, sin·axis), written out: three quarters of a general one would be zeros.
         let [w, x, y, z] = match axis {
-            Axis::X => [w * cos - x * sin, x * cos + w * sin, y * cos + z * sin, z * cos - y * sin],
-            Axis::Y => [w * cos - y * sin, x * cos - z * sin, y * cos + w * sin, z * cos + x * sin],
-            Axis::Z => [w * cos - z * sin, x * cos + y * sin, y * cos - x * sin, z * cos + w * sin],
+            Axis::X => [
+                w * cos - x * sin,
+                x * cos + w * sin,
+                y * cos + z * sin,
+                z * cos - y * sin,
+            ],
+            Axis::Y => [
+                w * cos - y * sin,
+                x * cos - z * sin,
+                y * cos + w * sin,
+                z * cos + x * sin,
+            ],
+            Axis::Z => [
+                w * cos - z * sin,
+                x * cos + y * sin,
+                y * cos - x * sin,
+                z * cos + w * sin,
+            ],
         };
         product = nalgebra::Quaternion::new(w, x, y, z);
     }

@@ -24,7 +24,11 @@ pub(super) fn zyx_near(rotation: &Quat, previous: [f64; 3]) -> [f64; 3] {
     let x = m[(2, 1)].atan2(m[(2, 2)]);
     let first = nearest([z, y, x], previous);
     let second = nearest([z + PI, PI - y, x + PI], previous);
-    if distance(&second, &previous) < distance(&first, &previous) { second } else { first }
+    if distance(&second, &previous) < distance(&first, &previous) {
+        second
+    } else {
+        first
+    }
 }
 
 fn nearest(angles: [f64; 3], previous: [f64; 3]) -> [f64; 3] {

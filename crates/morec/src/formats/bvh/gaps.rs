@@ -12,7 +12,9 @@ pub(super) struct Gaps {
 impl Gaps {
     /// The gaps at these increasing frames.
     pub fn from_frames(frames: &[usize]) -> Self {
-        Self { frames: frames.to_vec() }
+        Self {
+            frames: frames.to_vec(),
+        }
     }
 
     /// Adds `frame`, which is larger than all before it.
@@ -92,7 +94,9 @@ pub(super) fn spread<T: Copy>(rows: &mut Vec<T>, width: usize, lost: &[usize]) {
 pub(super) fn fill_rotations(rotations: &mut [Quat], stride: usize, frames: usize, span: Span) {
     let before = span.start.checked_sub(1).map(|f| rotations[f * stride]);
     let after = (span.end < frames).then(|| rotations[span.end * stride]);
-    let (Some(from), Some(to)) = (before.or(after), after.or(before)) else { return };
+    let (Some(from), Some(to)) = (before.or(after), after.or(before)) else {
+        return;
+    };
     for (frame, t) in steps(&span) {
         rotations[frame * stride] = slerp(&from, &to, t);
     }
@@ -102,7 +106,9 @@ pub(super) fn fill_rotations(rotations: &mut [Quat], stride: usize, frames: usiz
 pub(super) fn fill_positions(positions: &mut [Vec3], span: Span) {
     let before = span.start.checked_sub(1).map(|f| positions[f]);
     let after = positions.get(span.end).copied();
-    let (Some(from), Some(to)) = (before.or(after), after.or(before)) else { return };
+    let (Some(from), Some(to)) = (before.or(after), after.or(before)) else {
+        return;
+    };
     for (frame, t) in steps(&span) {
         positions[frame] = from.lerp(&to, t);
     }
@@ -111,7 +117,8 @@ pub(super) fn fill_positions(positions: &mut [Vec3], span: Span) {
 /// The frames of `span` and how far each lies between the frames on either side of it, 0 to 1 exclusive.
 fn steps(span: &Span) -> impl Iterator<Item = (usize, f64)> + use<> {
     let (start, whole) = (span.start, (span.len() + 1) as f64);
-    span.clone().map(move |frame| (frame, (frame - start + 1) as f64 / whole))
+    span.clone()
+        .map(move |frame| (frame, (frame - start + 1) as f64 / whole))
 }
 
 #[cfg(test)]
@@ -154,7 +161,10 @@ mod tests {
 
     #[test]
     fn a_gap_is_crossed_evenly() {
-        let mut rotations: Vec<Quat> = [0.0, 9.0, 9.0, 0.9].iter().map(|a| Axis::Y.rotation(*a)).collect();
+        let mut rotations: Vec<Quat> = [0.0, 9.0, 9.0, 0.9]
+            .iter()
+            .map(|a| Axis::Y.rotation(*a))
+            .collect();
         fill_rotations(&mut rotations, 1, 4, 1..3);
         for (f, q) in rotations.iter().enumerate() {
             assert!(q.angle_to(&Axis::Y.rotation(0.3 * f as f64)) < 1e-12);

@@ -48,8 +48,14 @@ pub(super) fn parse(
     limits: &Limits,
     notes: &mut Notes,
 ) -> Result<Hierarchy, ParseError> {
-    let mut parser =
-        Parser { cursor, encoding, limits, notes, found: Hierarchy::default(), open: Vec::new() };
+    let mut parser = Parser {
+        cursor,
+        encoding,
+        limits,
+        notes,
+        found: Hierarchy::default(),
+        open: Vec::new(),
+    };
     while let Some(token) = parser.keyword()? {
         if parser.open.is_empty() {
             if token.eq_ignore_ascii_case(b"MOTION") {
@@ -90,7 +96,8 @@ impl<'t> Parser<'_, 't> {
             if !self.cursor.at_comment() {
                 return self.cursor.token();
             }
-            self.notes.count("comment", self.cursor.line, || "comment skipped".into());
+            self.notes
+                .count("comment", self.cursor.line, || "comment skipped".into());
             self.cursor.rest_of_line();
         }
     }
@@ -103,7 +110,9 @@ impl<'t> Parser<'_, 't> {
         match token {
             b"{" | b"}" => {
                 let line = self.cursor.line;
-                self.notes.count("stray brace", line, || format!("stray {} skipped", show(Some(token))));
+                self.notes.count("stray brace", line, || {
+                    format!("stray {} skipped", show(Some(token)))
+                });
                 Ok(())
             }
             _ if token.eq_ignore_ascii_case(b"ROOT") => {
@@ -134,7 +143,9 @@ impl<'t> Parser<'_, 't> {
         let joint = self.found.joints.len();
         if name.is_empty() {
             name = format!("joint{joint}");
-            self.notes.count("no name", line, || format!("a joint without a name, called {name}"));
+            self.notes.count("no name", line, || {
+                format!("a joint without a name, called {name}")
+            });
         }
         if joint >= self.limits.joints {
             let expected = format!("at most {} joints", self.limits.joints);
@@ -147,7 +158,12 @@ impl<'t> Parser<'_, 't> {
         let columns = self.found.channels.len();
         self.found.columns.push(columns..columns);
         self.found.lines.push(line);
-        self.found.joints.push(Joint { name, parent, offset: Vec3::zeros(), tip: None });
+        self.found.joints.push(Joint {
+            name,
+            parent,
+            offset: Vec3::zeros(),
+            tip: None,
+        });
         self.open_brace(joint, false)
     }
 
@@ -160,7 +176,12 @@ impl<'t> Parser<'_, 't> {
         let line = self.cursor.line;
         match self.keyword()? {
             Some(b"{") => {
-                self.open.push(Open { joint, is_end, line, offset: None });
+                self.open.push(Open {
+                    joint,
+                    is_end,
+                    line,
+                    offset: None,
+                });
                 Ok(())
             }
             other => {
@@ -176,11 +197,15 @@ impl<'t> Parser<'_, 't> {
     }
 
     fn close(&mut self) -> Result<(), ParseError> {
-        let Some(open) = self.open.pop() else { return Ok(()) };
+        let Some(open) = self.open.pop() else {
+            return Ok(());
+        };
         let line = self.cursor.line;
         if open.offset.is_none() {
             let name = self.found.joints[open.joint].name.clone();
-            self.notes.count("no offset", open.line, || format!("{name} has no OFFSET, taken as 0 0 0"));
+            self.notes.count("no offset", open.line, || {
+                format!("{name} has no OFFSET, taken as 0 0 0")
+            });
         }
         let offset = open.offset.unwrap_or_else(Vec3::zeros);
         let joint = &mut self.found.joints[open.joint];
@@ -190,8 +215,9 @@ impl<'t> Parser<'_, 't> {
             joint.tip = Some(offset);
         } else {
             let name = joint.name.clone();
-            self.notes
-                .count("second end", line, || format!("{name} has several End Sites, the first is used"));
+            self.notes.count("second end", line, || {
+                format!("{name} has several End Sites, the first is used")
+            });
         }
         Ok(())
     }
@@ -211,13 +237,18 @@ impl<'t> Parser<'_, 't> {
         }
         let line = self.cursor.line;
         if values.iter().any(|v| v.is_nan()) {
-            self.notes.count("offset nan", line, || "OFFSET is not a number, taken as 0".into());
+            self.notes.count("offset nan", line, || {
+                "OFFSET is not a number, taken as 0".into()
+            });
         }
         let offset = Vec3::from_iterator(values.iter().map(|v| if v.is_nan() { 0.0 } else { *v }));
-        let Some(open) = self.open.last_mut() else { return Ok(()) };
+        let Some(open) = self.open.last_mut() else {
+            return Ok(());
+        };
         if open.offset.replace(offset).is_some() {
-            self.notes
-                .count("second offset", line, || "a second OFFSET in one joint, the last is used".into());
+            self.notes.count("second offset", line, || {
+                "a second OFFSET in one joint, the last is used".into()
+            });
         }
         Ok(())
     }
@@ -229,11 +260,14 @@ impl<'t> Parser<'_, 't> {
         if let Some(value) = number::parse(text) {
             values.push(value);
         } else if let Some(value) = number::parse_with_comma(text) {
-            self.notes.count("comma", line, || format!("decimal comma in {}", show(token)));
+            self.notes.count("comma", line, || {
+                format!("decimal comma in {}", show(token))
+            });
             values.push(value);
         } else if number::parse_glued(text, values).is_some() {
-            self.notes
-                .count("glued", line, || format!("numbers without a blank between them, {}", show(token)));
+            self.notes.count("glued", line, || {
+                format!("numbers without a blank between them, {}", show(token))
+            });
         } else {
             return Err(self.error("a number after OFFSET", token));
         }
@@ -243,12 +277,20 @@ impl<'t> Parser<'_, 't> {
     /// `CHANNELS n name…`: the names count, whatever `n` says.
     fn channels(&mut self, joint: usize, is_end: bool) -> Result<(), ParseError> {
         let token = self.cursor.token()?;
-        let declared = token.and_then(|t| std::str::from_utf8(t).ok()).and_then(|t| t.parse::<usize>().ok());
-        let Some(declared) = declared else { return Err(self.error("a count after CHANNELS", token)) };
+        let declared = token
+            .and_then(|t| std::str::from_utf8(t).ok())
+            .and_then(|t| t.parse::<usize>().ok());
+        let Some(declared) = declared else {
+            return Err(self.error("a count after CHANNELS", token));
+        };
         let line = self.cursor.line;
         if self.found.columns[joint].end != self.found.channels.len() {
             let expected = "CHANNELS before the joint's children";
-            return Err(ParseError::new(Place::Line(line), expected, "CHANNELS after them"));
+            return Err(ParseError::new(
+                Place::Line(line),
+                expected,
+                "CHANNELS after them",
+            ));
         }
         let before = self.found.channels.len();
         let unknown = self.channel_names()?;
@@ -261,10 +303,15 @@ impl<'t> Parser<'_, 't> {
             ));
         }
         if let Some(token) = unknown.filter(|_| named < declared) {
-            return Err(ParseError::new(Place::Line(line), "a channel such as Xrotation", show(Some(token))));
+            return Err(ParseError::new(
+                Place::Line(line),
+                "a channel such as Xrotation",
+                show(Some(token)),
+            ));
         }
         if named != declared {
-            let text = || format!("CHANNELS declares {declared} but names {named}, the names count");
+            let text =
+                || format!("CHANNELS declares {declared} but names {named}, the names count");
             self.notes.count("channel count", line, text);
         }
         self.found.columns[joint].end = self.found.channels.len();
@@ -276,7 +323,9 @@ impl<'t> Parser<'_, 't> {
         loop {
             let mut ahead = self.cursor.clone();
             let line = ahead.line;
-            let Some(token) = ahead.token()? else { return Ok(None) };
+            let Some(token) = ahead.token()? else {
+                return Ok(None);
+            };
             match channel(token) {
                 Some(channel) => self.found.channels.push(channel),
                 None => return Ok((ahead.line == line && !is_keyword(token)).then_some(token)),
@@ -288,14 +337,21 @@ impl<'t> Parser<'_, 't> {
     fn finish(mut self) -> Result<Hierarchy, ParseError> {
         if let Some(open) = self.open.last() {
             let what = self.describe(open.joint, open.is_end);
-            return Err(self.error(format!("`}}` closing {what} (opened on line {})", open.line), None));
+            return Err(self.error(
+                format!("`}}` closing {what} (opened on line {})", open.line),
+                None,
+            ));
         }
         if self.found.roots.is_empty() {
             return Err(self.error("ROOT", self.found.motion_follows.then_some(b"MOTION")));
         }
         for k in 0..self.found.roots.len() {
             let range = self.found.character(k);
-            make_names_unique(&mut self.found.joints[range.clone()], &self.found.lines[range], self.notes);
+            make_names_unique(
+                &mut self.found.joints[range.clone()],
+                &self.found.lines[range],
+                self.notes,
+            );
         }
         Ok(self.found)
     }
@@ -303,8 +359,10 @@ impl<'t> Parser<'_, 't> {
 
 fn is_keyword(token: &[u8]) -> bool {
     let lower = token.to_ascii_lowercase();
-    matches!(lower.as_slice(), b"{" | b"}" | b"offset" | b"channels" | b"joint" | b"root" | b"motion")
-        || lower.starts_with(b"end")
+    matches!(
+        lower.as_slice(),
+        b"{" | b"}" | b"offset" | b"channels" | b"joint" | b"root" | b"motion"
+    ) || lower.starts_with(b"end")
         || lower.starts_with(b"#")
         || lower.starts_with(b"//")
 }
@@ -320,7 +378,8 @@ fn channel(token: &[u8]) -> Option<Channel> {
     if rest.eq_ignore_ascii_case(b"position") {
         Some(Channel::Position(axis))
     } else {
-        rest.eq_ignore_ascii_case(b"rotation").then_some(Channel::Rotation(axis))
+        rest.eq_ignore_ascii_case(b"rotation")
+            .then_some(Channel::Rotation(axis))
     }
 }
 
@@ -338,7 +397,12 @@ fn make_names_unique(joints: &mut [Joint], lines: &[u64], notes: &mut Notes) {
             joint.name = format!("{old}.{number:03}");
             *number += 1;
         }
-        let text = || format!("another joint is called {old} too, this one is now {}", joint.name);
+        let text = || {
+            format!(
+                "another joint is called {old} too, this one is now {}",
+                joint.name
+            )
+        };
         notes.count("same name", line, text);
     }
 }

@@ -41,7 +41,11 @@ pub struct BvhOptions {
 
 impl Default for BvhOptions {
     fn default() -> Self {
-        Self { positions: None, rate_hz: None, bad_line_share: 0.01 }
+        Self {
+            positions: None,
+            rate_hz: None,
+            bad_line_share: 0.01,
+        }
     }
 }
 
@@ -57,39 +61,69 @@ const LONG_GAP_SECS: f64 = 0.5;
 /// # Errors
 /// Where and what: no HIERARCHY, a broken one, more than `limits` allow, or too many broken lines in the motion
 /// table. O(bytes); beside the result, the memory of one line.
-pub fn read(bytes: &[u8], name: &str, options: &BvhOptions, limits: &Limits) -> Result<Loaded, ParseError> {
+pub fn read(
+    bytes: &[u8],
+    name: &str,
+    options: &BvhOptions,
+    limits: &Limits,
+) -> Result<Loaded, ParseError> {
     let mut notes = Notes::default();
     let text = without_bom(bytes)?;
     let mut cursor = find_hierarchy(text, limits, &mut notes)?;
     let encoding = Encoding::of(hierarchy_bytes(&text[cursor.pos..]));
     if encoding != Encoding::Utf8 {
-        notes.add(cursor.place(), format!("names are not UTF-8, read as {}", encoding.name()));
+        notes.add(
+            cursor.place(),
+            format!("names are not UTF-8, read as {}", encoding.name()),
+        );
     }
     let hierarchy = hierarchy::parse(&mut cursor, encoding, limits, &mut notes)?;
-    let mut characters: Vec<_> = (0..hierarchy.roots.len()).map(|k| Character::new(&hierarchy, k)).collect();
-    let (stated_hz, lost) = read_motion(cursor, &hierarchy, &mut characters, options, limits, &mut notes)?;
+    let mut characters: Vec<_> = (0..hierarchy.roots.len())
+        .map(|k| Character::new(&hierarchy, k))
+        .collect();
+    let (stated_hz, lost) = read_motion(
+        cursor,
+        &hierarchy,
+        &mut characters,
+        options,
+        limits,
+        &mut notes,
+    )?;
     let rate_hz = match options.rate_hz {
         Some(rate) if rate.is_finite() && rate > 0.0 => rate,
         Some(rate) => {
-            return Err(ParseError::new(Place::File, "a positive rate in the options", rate.to_string()));
+            return Err(ParseError::new(
+                Place::File,
+                "a positive rate in the options",
+                rate.to_string(),
+            ));
         }
         None => stated_hz,
     };
     let clips = finish(characters, name, rate_hz, &lost, options, &mut notes)?;
-    Ok(Loaded { clips, warnings: notes.into_warnings() })
+    Ok(Loaded {
+        clips,
+        warnings: notes.into_warnings(),
+    })
 }
 
 /// Strips a UTF-8 byte order mark; refuses UTF-16, of which every other byte is 0.
 fn without_bom(bytes: &[u8]) -> Result<&[u8], ParseError> {
     match bytes {
         [0xef, 0xbb, 0xbf, rest @ ..] => Ok(rest),
-        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => Err(ParseError::new(Place::File, "UTF-8 text", "UTF-16 text")),
+        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => {
+            Err(ParseError::new(Place::File, "UTF-8 text", "UTF-16 text"))
+        }
         _ => Ok(bytes),
     }
 }
 
 /// The place after the word HIERARCHY, or at the first ROOT if that word is missing.
-fn find_hierarchy<'a>(text: &'a [u8], limits: &Limits, notes: &mut Notes) -> Result<Cursor<'a>, ParseError> {
+fn find_hierarchy<'a>(
+    text: &'a [u8],
+    limits: &Limits,
+    notes: &mut Notes,
+) -> Result<Cursor<'a>, ParseError> {
     let mut cursor = Cursor::new(text, limits.line_bytes);
     let mut root = None;
     let mut first = None;
@@ -99,7 +133,10 @@ fn find_hierarchy<'a>(text: &'a [u8], limits: &Limits, notes: &mut Notes) -> Res
         let Some(token) = cursor.token()? else { break };
         if token.eq_ignore_ascii_case(b"HIERARCHY") {
             if let Some((at, junk)) = first {
-                notes.add(at, format!("skipped what stands before HIERARCHY, {}", show(Some(junk))));
+                notes.add(
+                    at,
+                    format!("skipped what stands before HIERARCHY, {}", show(Some(junk))),
+                );
             }
             return Ok(cursor);
         }
@@ -116,7 +153,11 @@ fn find_hierarchy<'a>(text: &'a [u8], limits: &Limits, notes: &mut Notes) -> Res
         (0, _) => format!("none; the file begins with {}", show(first.map(|f| f.1))),
         (lines, width) => format!("no HIERARCHY; {lines}×{width} numbers found"),
     };
-    Err(ParseError::new(Place::File, "HIERARCHY and the skeleton of a BVH file", found))
+    Err(ParseError::new(
+        Place::File,
+        "HIERARCHY and the skeleton of a BVH file",
+        found,
+    ))
 }
 
 /// The bytes before the line that begins with MOTION: the table tells nothing about encodings.
@@ -124,7 +165,10 @@ fn hierarchy_bytes(text: &[u8]) -> &[u8] {
     let mut start = 0;
     for line in text.split_inclusive(|&b| number::is_newline(b)) {
         let word = line.trim_ascii_start();
-        if word.get(..6).is_some_and(|w| w.eq_ignore_ascii_case(b"MOTION")) {
+        if word
+            .get(..6)
+            .is_some_and(|w| w.eq_ignore_ascii_case(b"MOTION"))
+        {
             break;
         }
         start += line.len();
@@ -142,7 +186,10 @@ fn read_motion(
     notes: &mut Notes,
 ) -> Result<(f64, Vec<usize>), ParseError> {
     if !hierarchy.motion_follows {
-        notes.add(cursor.place(), "no MOTION section: a skeleton without frames");
+        notes.add(
+            cursor.place(),
+            "no MOTION section: a skeleton without frames",
+        );
         return Ok((rate::ASSUMED_HZ, Vec::new()));
     }
     let header = motion::header(&mut cursor, notes)?;
@@ -152,10 +199,17 @@ fn read_motion(
     };
     let width = hierarchy.channels.len();
     if width == 0 {
-        notes.add(header.at, "no joint has a channel: a skeleton without frames");
+        notes.add(
+            header.at,
+            "no joint has a channel: a skeleton without frames",
+        );
         return Ok((rate_hz, Vec::new()));
     }
-    let request = motion::Request { declared: header.frames, bad_line_share: options.bad_line_share, limits };
+    let request = motion::Request {
+        declared: header.frames,
+        bad_line_share: options.bad_line_share,
+        limits,
+    };
     let lost = motion::table(cursor, width, characters, &request, notes)?;
     motion::compare_counts(&header, characters[0].frames + lost.len(), notes);
     Ok((rate_hz, lost))
@@ -174,24 +228,53 @@ fn finish(
     let meaning = position_channels(&characters, options, notes);
     let several = characters.len() > 1;
     if several {
-        let roots: Vec<_> = characters.iter().map(|c| c.joints[0].name.as_str()).collect();
-        notes.add(Place::File, format!("{} roots, a clip for each: {}", roots.len(), roots.join(", ")));
+        let roots: Vec<_> = characters
+            .iter()
+            .map(|c| c.joints[0].name.as_str())
+            .collect();
+        notes.add(
+            Place::File,
+            format!(
+                "{} roots, a clip for each: {}",
+                roots.len(),
+                roots.join(", ")
+            ),
+        );
     }
     let mut clips = Vec::with_capacity(characters.len());
     for (k, (mut character, repaired)) in characters.into_iter().zip(repaired).enumerate() {
         note_repairs(&repaired, rate_hz, notes);
         let tracks = character.take_tracks(meaning);
-        let skeleton = Skeleton::new(character.joints)
-            .map_err(|e| ParseError::new(Place::File, "parents before their children", e.to_string()))?;
-        let name = if several { format!("{name}.{}", k + 1) } else { name.to_owned() };
-        let Character { rotations, frames, .. } = character;
-        clips.push(Clip { name, skeleton, rate_hz, rotations, tracks, frames, repaired });
+        let skeleton = Skeleton::new(character.joints).map_err(|e| {
+            ParseError::new(Place::File, "parents before their children", e.to_string())
+        })?;
+        let name = if several {
+            format!("{name}.{}", k + 1)
+        } else {
+            name.to_owned()
+        };
+        let Character {
+            rotations, frames, ..
+        } = character;
+        clips.push(Clip {
+            name,
+            skeleton,
+            rate_hz,
+            rotations,
+            tracks,
+            frames,
+            repaired,
+        });
     }
     Ok(clips)
 }
 
 /// What the position channels below the roots mean, said in a warning if there are any.
-fn position_channels(characters: &[Character], options: &BvhOptions, notes: &mut Notes) -> PositionChannels {
+fn position_channels(
+    characters: &[Character],
+    options: &BvhOptions,
+    notes: &mut Notes,
+) -> PositionChannels {
     let votes = Votes::of(characters);
     let meaning = options.positions.unwrap_or_else(|| votes.decide());
     if options.positions.is_none() && votes != Votes::default() {
@@ -217,6 +300,9 @@ fn note_repairs(repaired: &[Span], rate_hz: f64, notes: &mut Notes) {
     };
     notes.add(
         Place::File,
-        format!("{frames} frames filled by interpolation in {} places{doubt}", repaired.len()),
+        format!(
+            "{frames} frames filled by interpolation in {} places{doubt}",
+            repaired.len()
+        ),
     );
 }

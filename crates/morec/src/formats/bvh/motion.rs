@@ -20,7 +20,11 @@ pub(super) struct Header {
 
 /// Reads `Frames` and `Frame Time`, in any order, as far as they are there.
 pub(super) fn header(cursor: &mut Cursor<'_>, notes: &mut Notes) -> Result<Header, ParseError> {
-    let mut header = Header { frames: None, frame_time_secs: None, at: cursor.place() };
+    let mut header = Header {
+        frames: None,
+        frame_time_secs: None,
+        at: cursor.place(),
+    };
     loop {
         cursor.skip_space()?;
         let mut ahead = cursor.clone();
@@ -28,7 +32,9 @@ pub(super) fn header(cursor: &mut Cursor<'_>, notes: &mut Notes) -> Result<Heade
         let value = match key.as_slice() {
             b"frames:" | b"frames" => {
                 let value = value(&mut ahead);
-                header.frames = value.filter(|v| *v >= 0.0 && v.fract() == 0.0).map(|v| v as u64);
+                header.frames = value
+                    .filter(|v| *v >= 0.0 && v.fract() == 0.0)
+                    .map(|v| v as u64);
                 value
             }
             b"frame time:" | b"frame time" | b"frametime:" => {
@@ -46,7 +52,13 @@ pub(super) fn header(cursor: &mut Cursor<'_>, notes: &mut Notes) -> Result<Heade
         };
         if value.is_none() {
             let skipped = ahead.rest_of_line();
-            let text = || format!("{}{} skipped", String::from_utf8_lossy(&key), show(Some(skipped)));
+            let text = || {
+                format!(
+                    "{}{} skipped",
+                    String::from_utf8_lossy(&key),
+                    show(Some(skipped))
+                )
+            };
             notes.count("header line", cursor.line, text);
         }
         *cursor = ahead;
@@ -97,17 +109,32 @@ pub(super) fn table(
     request: &Request<'_>,
     notes: &mut Notes,
 ) -> Result<Vec<usize>, ParseError> {
-    let joints = characters.iter().map(|c| c.joints.len()).sum::<usize>().max(1);
+    let joints = characters
+        .iter()
+        .map(|c| c.joints.len())
+        .sum::<usize>()
+        .max(1);
     let by_size = ((1 << 20) + cursor.text.len().saturating_mul(SAMPLES_PER_BYTE)) / joints;
     let max_frames = request.limits.frames.min(by_size);
-    let table = Table { width, max_frames, characters, tally: Tally::default() };
-    let Table { characters, tally, .. } = table.by_line(Rows::new(cursor.clone(), notes), notes)?;
+    let table = Table {
+        width,
+        max_frames,
+        characters,
+        tally: Tally::default(),
+    };
+    let Table {
+        characters, tally, ..
+    } = table.by_line(Rows::new(cursor.clone(), notes), notes)?;
     if tally.flows(width, request.declared) {
         characters.iter_mut().for_each(Character::clear);
-        let text =
-            "the frames are not one to a line; the numbers are read as one stream, as their count fits";
+        let text = "the frames are not one to a line; the numbers are read as one stream, as their count fits";
         notes.add(Place::Line(tally.first_line), text);
-        let table = Table { width, max_frames, characters, tally: Tally::default() };
+        let table = Table {
+            width,
+            max_frames,
+            characters,
+            tally: Tally::default(),
+        };
         table.by_stream(Rows::new(cursor, &mut Notes::default()), notes)?;
         return Ok(Vec::new());
     }
@@ -132,7 +159,11 @@ struct Table<'a> {
 
 impl Table<'_> {
     fn push(&mut self, row: &[f64], line: u64) -> Result<(), ParseError> {
-        if self.characters.first().is_some_and(|c| c.frames >= self.max_frames) {
+        if self
+            .characters
+            .first()
+            .is_some_and(|c| c.frames >= self.max_frames)
+        {
             let expected = format!("at most {} frames", self.max_frames);
             return Err(ParseError::new(Place::Line(line), expected, "more"));
         }
@@ -151,9 +182,9 @@ impl Table<'_> {
                     self.tally.good(line);
                     note_missing(&values, line, notes);
                 }
-                Row::Numbers => {
-                    self.tally.bad(line, values.len() < self.width, || format!("{} values", values.len()))
-                }
+                Row::Numbers => self.tally.bad(line, values.len() < self.width, || {
+                    format!("{} values", values.len())
+                }),
                 Row::Spoilt(token) => {
                     self.tally.spoilt += 1;
                     self.tally.bad(line, true, || token);
@@ -181,7 +212,12 @@ impl Table<'_> {
 
 fn note_missing(values: &[f64], line: u64, notes: &mut Notes) {
     if let Some(column) = values.iter().position(|v| v.is_nan()) {
-        let text = || format!("value {} is no usable number; such samples are interpolated", column + 1);
+        let text = || {
+            format!(
+                "value {} is no usable number; such samples are interpolated",
+                column + 1
+            )
+        };
         notes.count("nan", line, text);
     }
 }
@@ -222,8 +258,8 @@ impl Tally {
     /// Whether the numbers are meant as one stream: their count is what the header declares, that of the lines
     /// is not.
     fn flows(&self, width: usize, declared: Option<u64>) -> bool {
-        let fits =
-            declared.is_some_and(|d| d != self.lines && d.checked_mul(width as u64) == Some(self.numbers));
+        let fits = declared
+            .is_some_and(|d| d != self.lines && d.checked_mul(width as u64) == Some(self.numbers));
         fits && !self.bad.is_empty() && self.spoilt == 0
     }
 
@@ -239,9 +275,10 @@ impl Tally {
         let trailing: Vec<_> = self.bad.iter().copied().filter(|b| b.0 >= keep).collect();
         let excused = match trailing.as_slice() {
             [(_, _, true)] => 1,
-            _ => {
-                trailing.iter().filter(|b| request.declared.is_some_and(|d| b.0 as u64 >= d && d > 0)).count()
-            }
+            _ => trailing
+                .iter()
+                .filter(|b| request.declared.is_some_and(|d| b.0 as u64 >= d && d > 0))
+                .count(),
         };
         self.refuse_if_bad(self.bad.len() - excused, width, request)?;
         for (k, &(_, line, is_short)) in trailing.iter().enumerate() {
@@ -250,7 +287,9 @@ impl Tally {
             } else {
                 "a broken line after the last frame"
             };
-            notes.count("trailing", line, || format!("{what} is dropped: expected {width} values"));
+            notes.count("trailing", line, || {
+                format!("{what} is dropped: expected {width} values")
+            });
         }
         self.bad.truncate(self.bad.len() - trailing.len());
         for &(_, line, _) in &self.bad {
@@ -261,22 +300,39 @@ impl Tally {
         Ok(self.bad.iter().map(|b| b.0).collect())
     }
 
-    fn refuse_if_bad(&self, bad: usize, width: usize, request: &Request<'_>) -> Result<(), ParseError> {
+    fn refuse_if_bad(
+        &self,
+        bad: usize,
+        width: usize,
+        request: &Request<'_>,
+    ) -> Result<(), ParseError> {
         if bad as f64 <= request.bad_line_share * self.lines as f64 {
             return Ok(());
         }
-        let Some((line, found)) = &self.first_bad else { return Ok(()) };
+        let Some((line, found)) = &self.first_bad else {
+            return Ok(());
+        };
         let found = format!("{found}; {bad} of {} lines are bad", self.lines);
-        Err(ParseError::new(Place::Line(*line), format!("{width} values on each line"), found))
+        Err(ParseError::new(
+            Place::Line(*line),
+            format!("{width} values on each line"),
+            found,
+        ))
     }
 }
 
 /// Says what is wrong with a header whose counts do not match the `frames` that were found.
 pub(super) fn compare_counts(header: &Header, frames: usize, notes: &mut Notes) {
     match header.frames {
-        None => notes.add(header.at, format!("no frame count declared, {frames} found")),
+        None => notes.add(
+            header.at,
+            format!("no frame count declared, {frames} found"),
+        ),
         Some(declared) if declared != frames as u64 => {
-            notes.add(header.at, format!("{declared} frames declared, {frames} found; all found are read"));
+            notes.add(
+                header.at,
+                format!("{declared} frames declared, {frames} found; all found are read"),
+            );
         }
         Some(_) => {}
     }

@@ -19,7 +19,12 @@ struct Entry {
 impl Notes {
     /// Adds a warning that stands alone.
     pub fn add(&mut self, at: Place, text: impl Into<String>) {
-        self.entries.push(Entry { kind: "", first: Warning::new(at, text), count: 1, last: at });
+        self.entries.push(Entry {
+            kind: "",
+            first: Warning::new(at, text),
+            count: 1,
+            last: at,
+        });
     }
 
     /// Adds one of possibly many of `kind`: the first is kept word for word, the others are counted.
@@ -31,7 +36,12 @@ impl Notes {
                 entry.last = at;
             }
             None => {
-                self.entries.push(Entry { kind, first: Warning::new(at, text()), count: 1, last: at });
+                self.entries.push(Entry {
+                    kind,
+                    first: Warning::new(at, text()),
+                    count: 1,
+                    last: at,
+                });
             }
         }
     }
@@ -47,9 +57,13 @@ impl Entry {
         let Warning { at, text } = self.first;
         match self.count - 1 {
             0 => Warning { at, text },
-            more => {
-                Warning { at, text: format!("{text} (and {more} more like it, the last on {})", self.last) }
-            }
+            more => Warning {
+                at,
+                text: format!(
+                    "{text} (and {more} more like it, the last on {})",
+                    self.last
+                ),
+            },
         }
     }
 }

@@ -2,8 +2,8 @@
 
 /// Exact powers of ten: every one up to 10^22 is a double.
 const POWERS: [f64; 23] = [
-    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18,
-    1e19, 1e20, 1e21, 1e22,
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
+    1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
 ];
 
 /// No length or angle is larger: what is, is damage, and would overflow further on.
@@ -50,7 +50,11 @@ pub(super) fn fixed(text: &[u8], pos: &mut usize) -> Option<f64> {
 #[inline]
 fn digits(text: &[u8], p: &mut usize, mantissa: &mut u64) -> usize {
     let start = *p;
-    while let Some(digit) = text.get(*p).map(|b| b.wrapping_sub(b'0')).filter(|&d| d < 10) {
+    while let Some(digit) = text
+        .get(*p)
+        .map(|b| b.wrapping_sub(b'0'))
+        .filter(|&d| d < 10)
+    {
         *mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(digit));
         *p += 1;
     }
@@ -68,13 +72,20 @@ pub(super) fn parse(token: &[u8]) -> Option<f64> {
 
 /// `value`, or NaN if it has no use.
 fn usable(value: f64) -> f64 {
-    if value.abs() <= LARGEST { value } else { f64::NAN }
+    if value.abs() <= LARGEST {
+        value
+    } else {
+        f64::NAN
+    }
 }
 
 /// Whether C runtimes spell a NaN or an infinity like this.
 fn is_not_a_number(token: &[u8]) -> bool {
     let lower = token.to_ascii_lowercase();
-    let bare = lower.strip_prefix(b"-").or(lower.strip_prefix(b"+")).unwrap_or(&lower);
+    let bare = lower
+        .strip_prefix(b"-")
+        .or(lower.strip_prefix(b"+"))
+        .unwrap_or(&lower);
     let tail = |prefix: &[u8]| bare.strip_prefix(prefix).map(<[u8]>::to_vec);
     let parenthesised = |rest: &[u8]| rest.first() == Some(&b'(') && rest.last() == Some(&b')');
     if let Some(rest) = tail(b"nan") {
@@ -82,7 +93,9 @@ fn is_not_a_number(token: &[u8]) -> bool {
     }
     // Microsoft's: 1.#IND00, 1.#QNAN, 1.#SNAN, 1.#INF.
     bare.first().is_some_and(u8::is_ascii_digit)
-        && [&b".#ind"[..], b".#qnan", b".#snan", b".#inf"].iter().any(|mark| bare[1..].starts_with(mark))
+        && [&b".#ind"[..], b".#qnan", b".#snan", b".#inf"]
+            .iter()
+            .any(|mark| bare[1..].starts_with(mark))
 }
 
 /// The value of a token with a decimal comma (`-1,25`).
@@ -106,7 +119,8 @@ pub(super) fn parse_glued(token: &[u8], out: &mut Vec<f64>) -> Option<()> {
     let mut start = 0;
     for p in 1..=token.len() {
         let splits = p == token.len()
-            || (matches!(token[p], b'-' | b'+') && (token[p - 1].is_ascii_digit() || token[p - 1] == b'.'));
+            || (matches!(token[p], b'-' | b'+')
+                && (token[p - 1].is_ascii_digit() || token[p - 1] == b'.'));
         if splits {
             let Some(value) = parse(&token[start..p]) else {
                 out.truncate(before);
@@ -185,7 +199,9 @@ mod tests {
         ] {
             assert!(parse(text.as_bytes()).is_some_and(f64::is_nan), "{text}");
         }
-        for text in ["", "-", ".", "x", "1.2x", "0x10", "nana", "1,5", "1.#", "e5"] {
+        for text in [
+            "", "-", ".", "x", "1.2x", "0x10", "nana", "1,5", "1.#", "e5",
+        ] {
             assert_eq!(parse(text.as_bytes()), None, "{text}");
         }
     }

@@ -45,7 +45,11 @@ impl Votes {
 
     /// What most joints say; replacing, if they are divided.
     pub fn decide(self) -> PositionChannels {
-        if self.add > self.replace { PositionChannels::Add } else { PositionChannels::Replace }
+        if self.add > self.replace {
+            PositionChannels::Add
+        } else {
+            PositionChannels::Replace
+        }
     }
 }
 
@@ -64,7 +68,11 @@ pub(super) fn vote(offset: &Vec3, median: &Vec3) -> Option<PositionChannels> {
         return None;
     }
     let replaces = (median - offset).norm_squared() < median.norm_squared();
-    Some(if replaces { PositionChannels::Replace } else { PositionChannels::Add })
+    Some(if replaces {
+        PositionChannels::Replace
+    } else {
+        PositionChannels::Add
+    })
 }
 
 /// The median of each coordinate; 0 of nothing. O(positions).
@@ -81,7 +89,10 @@ pub(super) fn median(positions: &[Vec3]) -> Vec3 {
 
 impl Character {
     fn positions_below_root(&self) -> impl Iterator<Item = (&Joint, &Positions)> {
-        self.positions.iter().map(|p| (&self.joints[p.joint], p)).filter(|(joint, _)| joint.parent.is_some())
+        self.positions
+            .iter()
+            .map(|p| (&self.joints[p.joint], p))
+            .filter(|(joint, _)| joint.parent.is_some())
     }
 
     /// The joints' positions over time. A joint below the root that stays at its OFFSET, but for printed digits,
@@ -100,7 +111,10 @@ impl Character {
             };
             positions.place(&joint.offset, adds);
             if is_root || !positions.stays_at(&joint.offset) {
-                tracks.push(JointTrack { joint: positions.joint, positions: positions.values });
+                tracks.push(JointTrack {
+                    joint: positions.joint,
+                    positions: positions.values,
+                });
             }
         }
         tracks

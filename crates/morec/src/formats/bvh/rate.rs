@@ -48,16 +48,25 @@ pub(super) fn rate_hz(frame_time_secs: Option<f64>, at: Place, notes: &mut Notes
     };
     // Also refuses NaN, and what has no finite reciprocal.
     if !(1e-9..=1e9).contains(&secs) {
-        notes.add(at, format!("Frame Time {secs} is no frame time, {ASSUMED_HZ} Hz assumed"));
+        notes.add(
+            at,
+            format!("Frame Time {secs} is no frame time, {ASSUMED_HZ} Hz assumed"),
+        );
         return ASSUMED_HZ;
     }
     let stated = 1.0 / secs;
     let rate = snap(stated);
     if (rate / stated - 1.0).abs() > 2e-4 {
-        notes.add(at, format!("Frame Time {secs} is {stated:.3} Hz, read as {rate:.3} Hz"));
+        notes.add(
+            at,
+            format!("Frame Time {secs} is {stated:.3} Hz, read as {rate:.3} Hz"),
+        );
     }
     if !(5.0..=1000.0).contains(&rate) {
-        notes.add(at, format!("Frame Time {secs} means {rate:.3} Hz, which is hardly right"));
+        notes.add(
+            at,
+            format!("Frame Time {secs} means {rate:.3} Hz, which is hardly right"),
+        );
     }
     rate
 }
@@ -65,11 +74,16 @@ pub(super) fn rate_hz(frame_time_secs: Option<f64>, at: Place, notes: &mut Notes
 /// The nominal rate within 0.5 % of `stated`, or the whole number that `stated` is but for printed digits.
 fn snap(stated: f64) -> f64 {
     let distance = |rate: &f64| (rate / stated - 1.0).abs();
-    let nearest = NOMINAL_HZ.iter().copied().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    let nearest = NOMINAL_HZ
+        .iter()
+        .copied()
+        .min_by(|a, b| distance(a).total_cmp(&distance(b)));
     if let Some(rate) = nearest.filter(|r| distance(r) <= 0.005) {
         return rate;
     }
-    Some(stated.round()).filter(|r| *r >= 1.0 && distance(r) <= 1e-4).unwrap_or(stated)
+    Some(stated.round())
+        .filter(|r| *r >= 1.0 && distance(r) <= 1e-4)
+        .unwrap_or(stated)
 }
 
 #[cfg(test)]

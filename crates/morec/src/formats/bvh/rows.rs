@@ -24,13 +24,25 @@ impl<'t> Rows<'t> {
     /// Starts at `cursor`. Commas are decimal points if the first line with numbers has them and no points.
     pub fn new(cursor: Cursor<'t>, notes: &mut Notes) -> Self {
         let mut first = cursor.clone();
-        let line = if first.skip_space().is_ok() { first.rest_of_line() } else { &[] };
+        let line = if first.skip_space().is_ok() {
+            first.rest_of_line()
+        } else {
+            &[]
+        };
         let decimal_comma = has_decimal_commas(line);
         if decimal_comma {
-            let text = || format!("decimal commas read as points, as in {}", show(first_token(line)));
+            let text = || {
+                format!(
+                    "decimal commas read as points, as in {}",
+                    show(first_token(line))
+                )
+            };
             notes.count("decimal commas", first.line, text);
         }
-        Self { cursor, decimal_comma }
+        Self {
+            cursor,
+            decimal_comma,
+        }
     }
 
     /// The next line with numbers on it and its line number; `values` becomes its numbers.
@@ -99,14 +111,24 @@ impl<'t> Rows<'t> {
             return Some(());
         }
         number::parse_glued(token, values)?;
-        let text =
-            || format!("numbers without a blank between them split at the sign, {}", show(Some(token)));
+        let text = || {
+            format!(
+                "numbers without a blank between them split at the sign, {}",
+                show(Some(token))
+            )
+        };
         notes.count("glued", self.cursor.line, text);
         Some(())
     }
 
     /// A line with a token that is no number: spoilt if it has numbers as well, else foreign and skipped.
-    fn not_a_number(&mut self, start: usize, token: &[u8], values: &[f64], notes: &mut Notes) -> Option<Row> {
+    fn not_a_number(
+        &mut self,
+        start: usize,
+        token: &[u8],
+        values: &[f64],
+        notes: &mut Notes,
+    ) -> Option<Row> {
         let rest = self.cursor.rest_of_line();
         let mut others = rest.split(|&b| b <= b' ');
         if !values.is_empty() || others.any(|t| number::parse(t).is_some()) {
@@ -121,9 +143,13 @@ impl<'t> Rows<'t> {
 
 fn has_decimal_commas(line: &[u8]) -> bool {
     line.contains(&b',')
-        && line.split(|&b| b <= b' ').filter(|t| !t.is_empty()).all(|t| {
-            number::parse_with_comma(t).is_some() || t.iter().all(|&b| b.is_ascii_digit() || b == b'-')
-        })
+        && line
+            .split(|&b| b <= b' ')
+            .filter(|t| !t.is_empty())
+            .all(|t| {
+                number::parse_with_comma(t).is_some()
+                    || t.iter().all(|&b| b.is_ascii_digit() || b == b'-')
+            })
 }
 
 fn first_token(line: &[u8]) -> Option<&[u8]> {
@@ -134,7 +160,10 @@ fn first_token(line: &[u8]) -> Option<&[u8]> {
 pub(super) fn count_numbers(text: &[u8]) -> (usize, usize) {
     let (mut lines, mut width) = (0, 0);
     for line in text.split(|&b| is_newline(b)) {
-        let mut tokens = line.split(|&b| b <= b' ').filter(|t| !t.is_empty()).peekable();
+        let mut tokens = line
+            .split(|&b| b <= b' ')
+            .filter(|t| !t.is_empty())
+            .peekable();
         if tokens.peek().is_none() {
             continue;
         }

@@ -20,8 +20,13 @@ impl Encoding {
             return Self::Utf8;
         }
         let leads = bytes.iter().any(|b| (0x81..=0x9f).contains(b));
-        let decoded = encoding_rs::SHIFT_JIS.decode_without_bom_handling_and_without_replacement(bytes);
-        if leads && decoded.is_some() { Self::ShiftJis } else { Self::Latin1 }
+        let decoded =
+            encoding_rs::SHIFT_JIS.decode_without_bom_handling_and_without_replacement(bytes);
+        if leads && decoded.is_some() {
+            Self::ShiftJis
+        } else {
+            Self::Latin1
+        }
     }
 
     /// Its usual name.
@@ -43,7 +48,10 @@ impl Encoding {
     fn decode(self, bytes: &[u8]) -> String {
         match self {
             Self::Utf8 => String::from_utf8_lossy(bytes).into_owned(),
-            Self::ShiftJis => encoding_rs::SHIFT_JIS.decode_without_bom_handling(bytes).0.into_owned(),
+            Self::ShiftJis => encoding_rs::SHIFT_JIS
+                .decode_without_bom_handling(bytes)
+                .0
+                .into_owned(),
             Self::Latin1 => bytes.iter().map(|&b| char::from(b)).collect(),
         }
     }
@@ -62,7 +70,13 @@ pub(super) struct Cursor<'a> {
 
 impl<'a> Cursor<'a> {
     pub fn new(text: &'a [u8], line_limit: usize) -> Self {
-        Self { text, pos: 0, line: 1, line_start: 0, line_limit }
+        Self {
+            text,
+            pos: 0,
+            line: 1,
+            line_start: 0,
+            line_limit,
+        }
     }
 
     pub fn place(&self) -> Place {
@@ -91,7 +105,11 @@ impl<'a> Cursor<'a> {
     pub fn newline(&mut self) -> Result<(), ParseError> {
         if self.pos - self.line_start > self.line_limit {
             let expected = format!("at most {} bytes in a line", self.line_limit);
-            return Err(ParseError::new(self.place(), expected, format!("{}", self.pos - self.line_start)));
+            return Err(ParseError::new(
+                self.place(),
+                expected,
+                format!("{}", self.pos - self.line_start),
+            ));
         }
         let length = match self.text[self.pos..] {
             [b'\r', b'\n', ..] => 2,
@@ -168,13 +186,18 @@ impl<'a> Cursor<'a> {
 
 fn trim(bytes: &[u8]) -> &[u8] {
     let start = bytes.iter().position(|&b| b > b' ').unwrap_or(bytes.len());
-    let stop = bytes.iter().rposition(|&b| b > b' ').map_or(start, |p| p + 1);
+    let stop = bytes
+        .iter()
+        .rposition(|&b| b > b' ')
+        .map_or(start, |p| p + 1);
     &bytes[start..stop]
 }
 
 /// A token as an error shows it: quoted, decoded as far as it goes, not too long.
 pub(super) fn show(token: Option<&[u8]>) -> String {
-    let Some(token) = token else { return "the end of the file".into() };
+    let Some(token) = token else {
+        return "the end of the file".into();
+    };
     let text = String::from_utf8_lossy(token);
     if text.chars().count() <= 40 {
         return format!("`{text}`");
@@ -206,7 +229,10 @@ mod tests {
         // 左足, then ボーン, whose first character ends in the byte of a brace.
         let sjis = b"\x8d\xb6\x91\xab \x83\x7b\x81\x5b\x83\x93 {";
         assert_eq!(Encoding::of(sjis), Encoding::ShiftJis);
-        assert_eq!(Cursor::new(sjis, 100).name(Encoding::ShiftJis).unwrap(), "左足 ボーン");
+        assert_eq!(
+            Cursor::new(sjis, 100).name(Encoding::ShiftJis).unwrap(),
+            "左足 ボーン"
+        );
     }
 
     #[test]

@@ -21,13 +21,19 @@ use crate::math::Vec3;
 pub fn write(clip: &Clip, out: &mut dyn Write) -> io::Result<()> {
     let frame_time_secs = 1.0 / clip.rate_hz;
     if !(frame_time_secs.is_finite() && frame_time_secs > 0.0) {
-        let text = format!("a clip with {} frames a second cannot be written", clip.rate_hz);
+        let text = format!(
+            "a clip with {} frames a second cannot be written",
+            clip.rate_hz
+        );
         return Err(io::Error::new(io::ErrorKind::InvalidInput, text));
     }
     let plan = Plan::new(clip);
     let mut text = String::from("HIERARCHY\n");
     plan.hierarchy(&mut text);
-    text.push_str(&format!("MOTION\nFrames: {}\nFrame Time: {frame_time_secs}\n", clip.frames));
+    text.push_str(&format!(
+        "MOTION\nFrames: {}\nFrame Time: {frame_time_secs}\n",
+        clip.frames
+    ));
     out.write_all(text.as_bytes())?;
     plan.table(out)
 }
@@ -55,7 +61,12 @@ impl<'a> Plan<'a> {
         for track in &clip.tracks {
             tracks[track.joint] = Some(track);
         }
-        Self { clip, children, roots, tracks }
+        Self {
+            clip,
+            children,
+            roots,
+            tracks,
+        }
     }
 
     /// The joints in file order. Without recursion: a skeleton may be deep.
@@ -91,15 +102,24 @@ impl<'a> Plan<'a> {
     fn joint(&self, text: &mut String, j: usize, depth: usize) {
         let joint = &self.clip.skeleton.joints()[j];
         let tabs = "\t".repeat(depth);
-        let keyword = if joint.parent.is_none() { "ROOT" } else { "JOINT" };
-        text.push_str(&format!("{tabs}{keyword} {}\n{tabs}{{\n", written_name(&joint.name, j)));
+        let keyword = if joint.parent.is_none() {
+            "ROOT"
+        } else {
+            "JOINT"
+        };
+        text.push_str(&format!(
+            "{tabs}{keyword} {}\n{tabs}{{\n",
+            written_name(&joint.name, j)
+        ));
         text.push_str(&format!("{tabs}\tOFFSET {}\n", numbers(&self.offset(j))));
         let channels = match self.has_positions(j) {
             true => "6 Xposition Yposition Zposition Zrotation Yrotation Xrotation",
             false => "3 Zrotation Yrotation Xrotation",
         };
         text.push_str(&format!("{tabs}\tCHANNELS {channels}\n"));
-        let tip = joint.tip.or_else(|| self.children[j].is_empty().then(Vec3::zeros));
+        let tip = joint
+            .tip
+            .or_else(|| self.children[j].is_empty().then(Vec3::zeros));
         if let Some(tip) = tip {
             text.push_str(&format!(
                 "{tabs}\tEnd Site\n{tabs}\t{{\n{tabs}\t\tOFFSET {}\n{tabs}\t}}\n",
@@ -116,7 +136,8 @@ impl<'a> Plan<'a> {
             _ if joint.parent.is_none() => Vec3::zeros(),
             Some(track) if !track.positions.is_empty() => {
                 let median = positions::median(&track.positions);
-                let kept = positions::vote(&joint.offset, &median) == Some(PositionChannels::Replace);
+                let kept =
+                    positions::vote(&joint.offset, &median) == Some(PositionChannels::Replace);
                 if kept { joint.offset } else { median }
             }
             _ => joint.offset,

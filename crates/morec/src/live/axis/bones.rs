@@ -20,8 +20,20 @@ pub struct AxisBone {
     pub offset_cm: [f64; 3],
 }
 
-const fn bone(name: &'static str, parent: usize, role: Option<Role>, x: f64, y: f64, z: f64) -> AxisBone {
-    AxisBone { name, parent: Some(parent), role, offset_cm: [x, y, z] }
+const fn bone(
+    name: &'static str,
+    parent: usize,
+    role: Option<Role>,
+    x: f64,
+    y: f64,
+    z: f64,
+) -> AxisBone {
+    AxisBone {
+        name,
+        parent: Some(parent),
+        role,
+        offset_cm: [x, y, z],
+    }
 }
 
 /// A bone that plays no role.
@@ -31,7 +43,12 @@ const fn plain(name: &'static str, parent: usize, x: f64, y: f64, z: f64) -> Axi
 
 /// All bones, parents first. Lengths are those of a person of 1.7 m, after Drillis and Contini (1966).
 pub const AXIS_BONES: [AxisBone; AXIS_BONE_COUNT] = [
-    AxisBone { name: "Hips", parent: None, role: Some(Role::Hips), offset_cm: [0.0, 92.0, 0.0] },
+    AxisBone {
+        name: "Hips",
+        parent: None,
+        role: Some(Role::Hips),
+        offset_cm: [0.0, 92.0, 0.0],
+    },
     bone("RightUpLeg", 0, Some(Role::RightThigh), -9.0, -2.0, 0.0),
     bone("RightLeg", 1, Some(Role::RightShin), 0.0, -41.0, 0.0),
     bone("RightFoot", 2, Some(Role::RightFoot), 0.0, -42.0, 0.0),
@@ -44,9 +61,23 @@ pub const AXIS_BONES: [AxisBone; AXIS_BONE_COUNT] = [
     plain("Spine3", 9, 0.0, 8.0, 0.0),
     bone("Neck", 10, Some(Role::Neck), 0.0, 15.0, 0.0),
     bone("Head", 11, Some(Role::Head), 0.0, 9.0, 0.0),
-    bone("RightShoulder", 10, Some(Role::RightShoulder), -3.0, 11.0, 0.0),
+    bone(
+        "RightShoulder",
+        10,
+        Some(Role::RightShoulder),
+        -3.0,
+        11.0,
+        0.0,
+    ),
     bone("RightArm", 13, Some(Role::RightArm), -13.0, 0.0, 0.0),
-    bone("RightForeArm", 14, Some(Role::RightForearm), -30.0, 0.0, 0.0),
+    bone(
+        "RightForeArm",
+        14,
+        Some(Role::RightForearm),
+        -30.0,
+        0.0,
+        0.0,
+    ),
     bone("RightHand", 15, Some(Role::RightHand), -25.0, 0.0, 0.0),
     plain("RightHandThumb1", 16, -3.0, 0.0, 3.0),
     plain("RightHandThumb2", 17, -4.0, 0.0, 0.0),
@@ -101,7 +132,9 @@ pub struct AxisSkeleton {
 
 /// A skeleton that cannot be the broadcast's.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("expected {AXIS_BONE_COUNT} joints in the broadcast's order, beginning with the hips, found {found}")]
+#[error(
+    "expected {AXIS_BONE_COUNT} joints in the broadcast's order, beginning with the hips, found {found}"
+)]
 pub struct AxisSkeletonError {
     /// How many joints there are.
     pub found: usize,
@@ -133,9 +166,14 @@ impl AxisSkeleton {
     /// whatever they are called.
     pub fn of_clip(skeleton: &Skeleton, roles: &RoleMap) -> Result<Self, AxisSkeletonError> {
         if skeleton.len() != AXIS_BONE_COUNT {
-            return Err(AxisSkeletonError { found: skeleton.len() });
+            return Err(AxisSkeletonError {
+                found: skeleton.len(),
+            });
         }
-        Ok(Self { skeleton: skeleton.clone(), roles: roles.clone() })
+        Ok(Self {
+            skeleton: skeleton.clone(),
+            roles: roles.clone(),
+        })
     }
 }
 
@@ -153,20 +191,33 @@ mod tests {
             };
             let other = AXIS_BONES.iter().find(|b| b.name == other).unwrap();
             let [x, y, z] = other.offset_cm;
-            assert_eq!(bone.offset_cm, [if x == 0.0 { 0.0 } else { -x }, y, z], "{}", bone.name);
+            assert_eq!(
+                bone.offset_cm,
+                [if x == 0.0 { 0.0 } else { -x }, y, z],
+                "{}",
+                bone.name
+            );
             let parents = (bone.parent, other.parent);
-            let depth = |p: Option<usize>| std::iter::successors(p, |&p| AXIS_BONES[p].parent).count();
+            let depth =
+                |p: Option<usize>| std::iter::successors(p, |&p| AXIS_BONES[p].parent).count();
             assert_eq!(depth(parents.0), depth(parents.1), "{}", bone.name);
         }
         for role in Role::ALL {
-            assert_eq!(AXIS_BONES.iter().filter(|b| b.role == Some(role)).count(), 1, "{role}");
+            assert_eq!(
+                AXIS_BONES.iter().filter(|b| b.role == Some(role)).count(),
+                1,
+                "{role}"
+            );
         }
     }
 
     #[test]
     fn only_a_skeleton_of_as_many_joints_will_do() {
         let own = AxisSkeleton::default();
-        assert_eq!(AxisSkeleton::of_clip(&own.skeleton, &own.roles), Ok(own.clone()));
+        assert_eq!(
+            AxisSkeleton::of_clip(&own.skeleton, &own.roles),
+            Ok(own.clone())
+        );
         let found = AxisSkeleton::of_clip(&Skeleton::default(), &own.roles);
         assert_eq!(found, Err(AxisSkeletonError { found: 0 }));
     }

@@ -21,7 +21,10 @@ pub struct FrameClock {
 
 impl Default for FrameClock {
     fn default() -> Self {
-        Self { period_secs: 1.0 / 60.0, last: None }
+        Self {
+            period_secs: 1.0 / 60.0,
+            last: None,
+        }
     }
 }
 
@@ -32,7 +35,11 @@ impl FrameClock {
             None => arrival_secs,
             Some((before, last_secs)) => {
                 let steps = number.wrapping_sub(before);
-                let steps = if (1..=MOST_STEPS).contains(&steps) { f64::from(steps) } else { 1.0 };
+                let steps = if (1..=MOST_STEPS).contains(&steps) {
+                    f64::from(steps)
+                } else {
+                    1.0
+                };
                 self.next(steps, last_secs, arrival_secs)
             }
         };
@@ -60,7 +67,10 @@ mod tests {
     fn unevenness(rate_hz: f64, arrival: impl Fn(u32) -> f64) -> f64 {
         let mut clock = FrameClock::default();
         let times: Vec<f64> = (0..600).map(|n| clock.stamp(n, arrival(n))).collect();
-        let steps = times.windows(2).skip(2 * rate_hz as usize).map(|w| w[1] - w[0] - 1.0 / rate_hz);
+        let steps = times
+            .windows(2)
+            .skip(2 * rate_hz as usize)
+            .map(|w| w[1] - w[0] - 1.0 / rate_hz);
         steps.map(f64::abs).fold(0.0, f64::max)
     }
 
@@ -78,11 +88,22 @@ mod tests {
     fn time_goes_forward_whatever_comes_and_follows_pauses_and_new_beginnings() {
         let mut clock = FrameClock::default();
         let mut last = f64::NEG_INFINITY;
-        let arrivals =
-            [(5, 0.0), (6, 0.0), (7, 0.0), (100, 3.0), (1, 3.1), (2, 3.1), (0, 2.0), (u32::MAX, 9.0)];
+        let arrivals = [
+            (5, 0.0),
+            (6, 0.0),
+            (7, 0.0),
+            (100, 3.0),
+            (1, 3.1),
+            (2, 3.1),
+            (0, 2.0),
+            (u32::MAX, 9.0),
+        ];
         for (number, arrival_secs) in arrivals {
             let time_secs = clock.stamp(number, arrival_secs);
-            assert!(time_secs > last, "{number} at {arrival_secs}: {time_secs} after {last}");
+            assert!(
+                time_secs > last,
+                "{number} at {arrival_secs}: {time_secs} after {last}"
+            );
             last = time_secs;
         }
         assert!((last - 9.0).abs() < 0.1, "{last}");

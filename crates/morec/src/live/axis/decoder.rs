@@ -94,7 +94,11 @@ impl AxisDecoder {
 
     /// Takes the next bytes of the stream; calls `out` with every frame that is now whole and every error. Takes memory
     /// only until the first frame is through.
-    pub fn push(&mut self, mut bytes: &[u8], out: &mut impl FnMut(Result<AxisFrame<'_>, AxisError>)) {
+    pub fn push(
+        &mut self,
+        mut bytes: &[u8],
+        out: &mut impl FnMut(Result<AxisFrame<'_>, AxisError>),
+    ) {
         while !bytes.is_empty() {
             // Little at a time, so that the buffer stays small whatever comes.
             let (piece, rest) = bytes.split_at(bytes.len().min(4096));
@@ -132,16 +136,24 @@ impl AxisDecoder {
 
     fn end_rubbish(&mut self, used: usize, out: &mut impl FnMut(Result<AxisFrame<'_>, AxisError>)) {
         if let Some(at) = self.rubbish_at.take() {
-            out(Err(AxisError::Rubbish { at, skipped: self.at + used as u64 - at }));
+            out(Err(AxisError::Rubbish {
+                at,
+                skipped: self.at + used as u64 - at,
+            }));
         }
     }
 
     fn u16(&self, at: usize) -> Option<u16> {
-        Some(u16::from_le_bytes(self.buffer.get(at..at + 2)?.try_into().ok()?))
+        Some(u16::from_le_bytes(
+            self.buffer.get(at..at + 2)?.try_into().ok()?,
+        ))
     }
 
     fn u32(&self, at: usize) -> u32 {
-        let bytes = self.buffer.get(at..at + 4).and_then(|bytes| bytes.try_into().ok());
+        let bytes = self
+            .buffer
+            .get(at..at + 4)
+            .and_then(|bytes| bytes.try_into().ok());
         u32::from_le_bytes(bytes.unwrap_or_default())
     }
 
@@ -152,7 +164,9 @@ impl AxisDecoder {
         if !there.iter().zip(&begin).all(|(a, b)| a == b) {
             return Head::None;
         }
-        let Some(end) = self.u16(used + HEADER - 2) else { return Head::Short };
+        let Some(end) = self.u16(used + HEADER - 2) else {
+            return Head::Short;
+        };
         if end != END {
             return Head::None;
         }
@@ -165,11 +179,19 @@ impl AxisDecoder {
                 (true, false) => "354 to 2048",
                 (true, true) => "360 to 2048",
             };
-            out(Err(AxisError::Count { at: self.at + used as u64, expected, found: count }));
+            out(Err(AxisError::Count {
+                at: self.at + used as u64,
+                expected,
+                found: count,
+            }));
             return Head::None;
         }
         let length = HEADER + 4 * count;
-        if there.len() < length { Head::Short } else { Head::Frame(length) }
+        if there.len() < length {
+            Head::Short
+        } else {
+            Head::Frame(length)
+        }
     }
 
     /// How far it is from the byte before `from` to where a frame may begin next.
@@ -179,26 +201,41 @@ impl AxisDecoder {
         1 + found.unwrap_or(self.buffer.len() - from)
     }
 
-    fn frame(&mut self, used: usize, length: usize, out: &mut impl FnMut(Result<AxisFrame<'_>, AxisError>)) {
+    fn frame(
+        &mut self,
+        used: usize,
+        length: usize,
+        out: &mut impl FnMut(Result<AxisFrame<'_>, AxisError>),
+    ) {
         let header = &self.buffer[used..used + HEADER];
         let (positions, reference) = (header[8] != 0, header[9] != 0);
         let first = HEADER + if reference { REFERENCE * 4 } else { 0 };
         let values = &self.buffer[used + first..used + length];
         self.values.clear();
         // Sizes were checked: there are at least as many.
-        let wanted = if positions { WITH_POSITIONS } else { WITHOUT_POSITIONS };
+        let wanted = if positions {
+            WITH_POSITIONS
+        } else {
+            WITHOUT_POSITIONS
+        };
         for (n, bytes) in values.chunks_exact(4).take(wanted).enumerate() {
             let value = f32::from_le_bytes(bytes.try_into().unwrap_or_default());
             // Kilometres away, or turned round a thousand times, is no pose either.
             if !(value.is_finite() && value.abs() < 1e6) {
                 let at = self.at + (used + first + 4 * n) as u64;
-                out(Err(AxisError::Value { at, found: value.to_string() }));
+                out(Err(AxisError::Value {
+                    at,
+                    found: value.to_string(),
+                }));
                 return;
             }
             self.values.push(value);
         }
         let name = &header[14..46];
-        let name = &name[..name.iter().position(|byte| *byte == 0).unwrap_or(name.len())];
+        let name = &name[..name
+            .iter()
+            .position(|byte| *byte == 0)
+            .unwrap_or(name.len())];
         out(Ok(AxisFrame {
             avatar: self.u32(used + 10),
             name: std::str::from_utf8(name).unwrap_or_default(),
@@ -211,6 +248,10 @@ impl AxisDecoder {
 
 /// Values that a frame must have.
 pub(super) fn values_of(positions: bool, reference: bool) -> usize {
-    let bones = if positions { WITH_POSITIONS } else { WITHOUT_POSITIONS };
+    let bones = if positions {
+        WITH_POSITIONS
+    } else {
+        WITHOUT_POSITIONS
+    };
     bones + if reference { REFERENCE } else { 0 }
 }

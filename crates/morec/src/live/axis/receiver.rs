@@ -27,7 +27,10 @@ pub struct AxisOptions {
 
 impl Default for AxisOptions {
     fn default() -> Self {
-        Self { skeleton: AxisSkeleton::default(), actors: 4 }
+        Self {
+            skeleton: AxisSkeleton::default(),
+            actors: 4,
+        }
     }
 }
 
@@ -83,7 +86,11 @@ impl AxisReceiver {
             counts: SourceCounts::default(),
             begun_secs: None,
         };
-        Self { decoder: AxisDecoder::new(), followed, last_error: None }
+        Self {
+            decoder: AxisDecoder::new(),
+            followed,
+            last_error: None,
+        }
     }
 
     /// What it has seen so far; packets are frames.
@@ -98,7 +105,11 @@ impl AxisReceiver {
 
     /// Takes bytes that came at `now_secs`. Any bytes will do.
     pub fn bytes(&mut self, now_secs: f64, bytes: &[u8]) {
-        let Self { decoder, followed, last_error } = self;
+        let Self {
+            decoder,
+            followed,
+            last_error,
+        } = self;
         decoder.push(bytes, &mut |found| match found {
             Ok(frame) => followed.frame(now_secs, &frame),
             Err(error) => {
@@ -110,7 +121,11 @@ impl AxisReceiver {
 
     /// The connection has ended, or a datagram has: what comes next begins with a frame.
     pub fn cut(&mut self) {
-        let Self { decoder, followed, last_error } = self;
+        let Self {
+            decoder,
+            followed,
+            last_error,
+        } = self;
         decoder.finish(&mut |found| {
             if let Err(error) = found {
                 followed.counts.malformed += 1;
@@ -123,7 +138,11 @@ impl AxisReceiver {
     pub fn lost(&mut self) {
         self.cut();
         let Followed { avatars, items, .. } = &mut self.followed;
-        for (at, avatar) in avatars.iter_mut().enumerate().filter(|(_, avatar)| !avatar.gone) {
+        for (at, avatar) in avatars
+            .iter_mut()
+            .enumerate()
+            .filter(|(_, avatar)| !avatar.gone)
+        {
             avatar.gone = true;
             items.push_back(Item::Gone(Actor(at as u16)));
         }
@@ -167,7 +186,9 @@ impl Followed {
         if std::mem::take(&mut avatar.gone) {
             avatar.clock = FrameClock::default();
             self.counts.interruptions += 1;
-        } else if avatar.frame.is_some_and(|last| (1..LATE_FRAMES).contains(&last.wrapping_sub(frame.number)))
+        } else if avatar
+            .frame
+            .is_some_and(|last| (1..LATE_FRAMES).contains(&last.wrapping_sub(frame.number)))
         {
             self.counts.late += 1;
             return;
@@ -183,10 +204,20 @@ impl Followed {
 
     /// The place of avatar `number`, a new one if there is room; one that has gone makes room.
     fn avatar(&mut self, number: u32) -> Option<usize> {
-        if let Some(at) = self.avatars.iter().position(|avatar| avatar.number == number) {
+        if let Some(at) = self
+            .avatars
+            .iter()
+            .position(|avatar| avatar.number == number)
+        {
             return Some(at);
         }
-        let new = Avatar { number, frame: None, clock: FrameClock::default(), heard_secs: 0.0, gone: true };
+        let new = Avatar {
+            number,
+            frame: None,
+            clock: FrameClock::default(),
+            heard_secs: 0.0,
+            gone: true,
+        };
         let place = if self.avatars.len() < self.actors {
             self.avatars.push(Avatar { gone: false, ..new });
             self.avatars.len() - 1
@@ -204,8 +235,16 @@ impl Followed {
 fn pose(rig: &Rig, frame: &AxisFrame<'_>, full: &mut Frame) {
     full.pose.positions.clear();
     full.pose.rotations.clear();
-    let values = |at: usize| std::array::from_fn(|i| frame.values.get(at + i).map_or(0.0, |v| f64::from(*v)));
-    for (b, joint) in rig.skeleton.joints().iter().take(AXIS_BONE_COUNT).enumerate() {
+    let values = |at: usize| {
+        std::array::from_fn(|i| frame.values.get(at + i).map_or(0.0, |v| f64::from(*v)))
+    };
+    for (b, joint) in rig
+        .skeleton
+        .joints()
+        .iter()
+        .take(AXIS_BONE_COUNT)
+        .enumerate()
+    {
         let (place, turn): ([f64; 3], [f64; 3]) = match (frame.positions, b) {
             (true, _) => (values(6 * b), values(6 * b + 3)),
             (false, 0) => (values(0), values(3)),

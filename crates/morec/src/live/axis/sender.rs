@@ -23,27 +23,41 @@ pub struct AxisSender {
 impl AxisSender {
     /// A sender of one avatar, whose name is cut at 31 bytes.
     pub fn new(avatar: u32, name: &str, positions: bool) -> Self {
-        Self { positions, avatar, name: name.to_owned(), number: 0, bytes: Vec::new() }
+        Self {
+            positions,
+            avatar,
+            name: name.to_owned(),
+            number: 0,
+            bytes: Vec::new(),
+        }
     }
 
     /// The bytes of the next frame: a pose in metres, Y-up, whose joints play `roles`. Bones that nothing plays are
     /// unmoved.
     pub fn frame(&mut self, pose: &WorldPose, roles: &RoleMap) -> &[u8] {
         self.header();
-        let mut world: [(Vec3, Quat); AXIS_BONE_COUNT] = [(Vec3::zeros(), Quat::identity()); AXIS_BONE_COUNT];
+        let mut world: [(Vec3, Quat); AXIS_BONE_COUNT] =
+            [(Vec3::zeros(), Quat::identity()); AXIS_BONE_COUNT];
         for (b, bone) in AXIS_BONES.iter().enumerate() {
             let offset = Vec3::from(bone.offset_cm) / 100.0;
-            let above = bone.parent.map_or((Vec3::zeros(), Quat::identity()), |parent| world[parent]);
+            let above = bone
+                .parent
+                .map_or((Vec3::zeros(), Quat::identity()), |parent| world[parent]);
             let joint = bone.role.and_then(|role| roles.joint(role));
-            let played =
-                joint.and_then(|j| pose.positions.get(j).copied().zip(pose.rotations.get(j).copied()));
+            let played = joint.and_then(|j| {
+                pose.positions
+                    .get(j)
+                    .copied()
+                    .zip(pose.rotations.get(j).copied())
+            });
             world[b] = played.unwrap_or_else(|| (above.0 + above.1 * offset, above.1));
             let place = above.1.inverse_transform_vector(&(world[b].0 - above.0)) * 100.0;
             let turn = angles(&(above.1.inverse() * world[b].1));
             if self.positions || b == 0 {
                 place.iter().for_each(|value| self.value(*value));
             }
-            turn.into_iter().for_each(|rad| self.value(rad.to_degrees()));
+            turn.into_iter()
+                .for_each(|rad| self.value(rad.to_degrees()));
         }
         self.number = self.number.wrapping_add(1);
         &self.bytes
@@ -62,7 +76,10 @@ impl AxisSender {
         bytes.extend_from_slice(&[u8::from(self.positions), 0]);
         bytes.extend_from_slice(&self.avatar.to_le_bytes());
         let mut name = [0u8; 32];
-        name.iter_mut().take(31).zip(self.name.bytes()).for_each(|(to, byte)| *to = byte);
+        name.iter_mut()
+            .take(31)
+            .zip(self.name.bytes())
+            .for_each(|(to, byte)| *to = byte);
         bytes.extend_from_slice(&name);
         bytes.extend_from_slice(&self.number.to_le_bytes());
         bytes.resize(HEADER - 2, 0);

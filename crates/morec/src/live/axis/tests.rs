@@ -14,18 +14,24 @@ use crate::synth::{Person, Script};
 
 /// A frame with these numbers.
 fn raw(avatar: u32, number: u32, flags: [u8; 2], values: &[f32]) -> Vec<u8> {
-    let mut bytes =
-        AxisSender::new(avatar, "Char00", true).frame(&WorldPose::default(), &RoleMap::default()).to_vec();
+    let mut bytes = AxisSender::new(avatar, "Char00", true)
+        .frame(&WorldPose::default(), &RoleMap::default())
+        .to_vec();
     bytes.truncate(HEADER);
     bytes[6..8].copy_from_slice(&(values.len() as u16).to_le_bytes());
     bytes[8..10].copy_from_slice(&flags);
     bytes[46..50].copy_from_slice(&number.to_le_bytes());
-    values.iter().for_each(|v| bytes.extend_from_slice(&v.to_le_bytes()));
+    values
+        .iter()
+        .for_each(|v| bytes.extend_from_slice(&v.to_le_bytes()));
     bytes
 }
 
 fn bone(name: &str) -> usize {
-    AXIS_BONES.iter().position(|bone| bone.name == name).unwrap()
+    AXIS_BONES
+        .iter()
+        .position(|bone| bone.name == name)
+        .unwrap()
 }
 
 /// Angles only, with some bones turned: `[y, x, z]` in degrees.
@@ -57,7 +63,10 @@ fn posed(values: &[f32], flags: [u8; 2]) -> Frame {
     let mut receiver = AxisReceiver::new(&AxisOptions::default());
     receiver.bytes(100.0, &raw(0, 1, flags, values));
     let (frames, rigs, _) = drain(&mut receiver);
-    assert_eq!((frames.len(), rigs.len(), receiver.take_error()), (1, 1, None));
+    assert_eq!(
+        (frames.len(), rigs.len(), receiver.take_error()),
+        (1, 1, None)
+    );
     frames.into_iter().next().unwrap()
 }
 
@@ -74,7 +83,13 @@ fn known_poses_are_where_they_must_be() {
     near(along(&t, "LeftUpLeg", "LeftFoot"), -Vec3::y());
     assert!(at(&t, "Head").y > 1.5 && at(&t, "LeftHandThumb1").z > at(&t, "LeftHandPinky1").z);
     // The left arm raised, the right hanging down, the left forearm to the front.
-    let up = posed(&turned(&[("LeftArm", [0.0, 0.0, 90.0]), ("RightArm", [0.0, 0.0, 90.0])]), [0, 0]);
+    let up = posed(
+        &turned(&[
+            ("LeftArm", [0.0, 0.0, 90.0]),
+            ("RightArm", [0.0, 0.0, 90.0]),
+        ]),
+        [0, 0],
+    );
     near(along(&up, "LeftArm", "LeftHand"), Vec3::y());
     near(along(&up, "RightArm", "RightHand"), -Vec3::y());
     let front = posed(&turned(&[("LeftForeArm", [-90.0, 0.0, 0.0])]), [0, 0]);
@@ -82,7 +97,13 @@ fn known_poses_are_where_they_must_be() {
     // A kick forwards, and a turn to the left: +Z becomes +X.
     let kick = posed(&turned(&[("RightUpLeg", [0.0, -90.0, 0.0])]), [0, 0]);
     near(along(&kick, "RightUpLeg", "RightFoot"), Vec3::z());
-    let left = posed(&turned(&[("Hips", [90.0, 0.0, 0.0]), ("RightUpLeg", [0.0, -90.0, 0.0])]), [0, 0]);
+    let left = posed(
+        &turned(&[
+            ("Hips", [90.0, 0.0, 0.0]),
+            ("RightUpLeg", [0.0, -90.0, 0.0]),
+        ]),
+        [0, 0],
+    );
     near(along(&left, "RightUpLeg", "RightFoot"), Vec3::x());
     // Y before X before Z.
     let all = posed(&turned(&[("LeftArm", [90.0, 90.0, 0.0])]), [0, 0]);
@@ -93,11 +114,17 @@ fn known_poses_are_where_they_must_be() {
 #[test]
 fn poses_are_those_of_a_bvh_file_with_the_same_numbers() {
     fn joint(b: usize, depth: usize, text: &mut String) {
-        let AXIS { name, offset_cm: [x, y, z], .. } = AXIS_BONES[b];
+        let AXIS {
+            name,
+            offset_cm: [x, y, z],
+            ..
+        } = AXIS_BONES[b];
         let kind = if b == 0 { "ROOT" } else { "JOINT" };
         let at = format!("{:1$}", "", depth);
         *text += &format!("{at}{kind} {name}\n{at}{{\n{at}OFFSET {x} {y} {z}\n");
-        *text += &format!("{at}CHANNELS 6 Xposition Yposition Zposition Yrotation Xrotation Zrotation\n");
+        *text += &format!(
+            "{at}CHANNELS 6 Xposition Yposition Zposition Yrotation Xrotation Zrotation\n"
+        );
         (0..AXIS_BONE_COUNT)
             .filter(|c| AXIS_BONES[*c].parent == Some(b))
             .for_each(|c| joint(c, depth + 1, text));
@@ -119,10 +146,20 @@ fn poses_are_those_of_a_bvh_file_with_the_same_numbers() {
     }
     text += &format!("MOTION\nFrames: {}\nFrame Time: 0.01\n", frames.len());
     for values in &frames {
-        text += &values.iter().map(f32::to_string).collect::<Vec<_>>().join(" ");
+        text += &values
+            .iter()
+            .map(f32::to_string)
+            .collect::<Vec<_>>()
+            .join(" ");
         text += "\n";
     }
-    let read = bvh::read(text.as_bytes(), "axis", &bvh::BvhOptions::default(), &Limits::default()).unwrap();
+    let read = bvh::read(
+        text.as_bytes(),
+        "axis",
+        &bvh::BvhOptions::default(),
+        &Limits::default(),
+    )
+    .unwrap();
     let clip = &read.clips[0];
     for (n, values) in frames.iter().enumerate() {
         let expected = WorldPose::of(clip, n);
@@ -141,8 +178,12 @@ fn poses_are_those_of_a_bvh_file_with_the_same_numbers() {
 
 #[test]
 fn what_is_sent_with_positions_arrives_where_it_was_whatever_the_skeleton() {
-    let take =
-        Script::new(7, Person::draw(7, 1)).rest(0.3).play("push").play("walk").film("axis", 60.0).unwrap();
+    let take = Script::new(7, Person::draw(7, 1))
+        .rest(0.3)
+        .play("push")
+        .play("walk")
+        .film("axis", 60.0)
+        .unwrap();
     let roles = RoleMap::find(&take.clip.skeleton);
     let mut sender = AxisSender::new(3, "somebody with a name that is too long to be sent", true);
     let mut receiver = AxisReceiver::new(&AxisOptions::default());
@@ -151,10 +192,16 @@ fn what_is_sent_with_positions_arrives_where_it_was_whatever_the_skeleton() {
         receiver.bytes(n as f64 / 60.0, sender.frame(&pose, &roles));
         let frame = drain(&mut receiver).0.pop().unwrap();
         for (b, bone) in AXIS_BONES.iter().enumerate() {
-            let Some(joint) = bone.role.and_then(|role| roles.joint(role)) else { continue };
+            let Some(joint) = bone.role.and_then(|role| roles.joint(role)) else {
+                continue;
+            };
             let off = (frame.pose.positions[b] - pose.positions[joint]).norm();
             assert!(off < 1e-4, "{} of frame {n}: {off} m off", bone.name);
-            assert!(frame.pose.rotations[b].angle_to(&pose.rotations[joint]) < 1e-4, "{}", bone.name);
+            assert!(
+                frame.pose.rotations[b].angle_to(&pose.rotations[joint]) < 1e-4,
+                "{}",
+                bone.name
+            );
         }
     }
     assert_eq!(receiver.counts().packets, take.clip.frames as u64);
@@ -164,13 +211,22 @@ fn what_is_sent_with_positions_arrives_where_it_was_whatever_the_skeleton() {
 fn frames_without_positions_are_of_the_skeleton_that_was_given() {
     let own = AxisSkeleton::default();
     let longer = own.skeleton.joints().iter().cloned();
-    let longer = longer.map(|joint| crate::clip::Joint { offset: joint.offset * 1.5, ..joint }).collect();
+    let longer = longer
+        .map(|joint| crate::clip::Joint {
+            offset: joint.offset * 1.5,
+            ..joint
+        })
+        .collect();
     let skeleton = crate::clip::Skeleton::new(longer).unwrap();
-    let options = AxisOptions { skeleton: AxisSkeleton::of_clip(&skeleton, &own.roles).unwrap(), actors: 1 };
+    let options = AxisOptions {
+        skeleton: AxisSkeleton::of_clip(&skeleton, &own.roles).unwrap(),
+        actors: 1,
+    };
     let mut receiver = AxisReceiver::new(&options);
     receiver.bytes(0.0, &raw(0, 0, [0, 0], &turned(&[])));
     let frame = drain(&mut receiver).0.pop().unwrap();
-    let length = (frame.pose.positions[bone("LeftForeArm")] - frame.pose.positions[bone("LeftArm")]).norm();
+    let length =
+        (frame.pose.positions[bone("LeftForeArm")] - frame.pose.positions[bone("LeftArm")]).norm();
     assert!((length - 0.45).abs() < 1e-9, "{length}");
 }
 
@@ -186,7 +242,11 @@ fn decoded(bytes: &[u8], cuts: &[usize]) -> (Vec<Decoded>, Vec<AxisError>) {
         Err(error) => errors.push(error),
     };
     let mut at = 0;
-    for cut in cuts.iter().map(|cut| cut % (bytes.len() + 1)).chain([bytes.len()]) {
+    for cut in cuts
+        .iter()
+        .map(|cut| cut % (bytes.len() + 1))
+        .chain([bytes.len()])
+    {
         if cut > at {
             decoder.push(&bytes[at..cut], &mut out);
             at = cut;
@@ -203,15 +263,54 @@ fn what_is_no_frame_is_said_with_its_place_and_the_next_frame_is_found() {
     few[6..8].copy_from_slice(&180u16.to_le_bytes());
     let mut nan = raw(1, 7, [0, 0], &turned(&[]));
     nan[HEADER + 40..HEADER + 44].copy_from_slice(&f32::NAN.to_le_bytes());
-    let bytes = [b"hello", &good[..], &few, &good, &nan, &good, &good[..700], &good, &good[..9]].concat();
+    let bytes = [
+        b"hello",
+        &good[..],
+        &few,
+        &good,
+        &nan,
+        &good,
+        &good[..700],
+        &good,
+        &good[..9],
+    ]
+    .concat();
     let (frames, errors) = decoded(&bytes, &[]);
-    assert_eq!(frames.iter().filter(|f| **f == (1, 5, turned(&[]))).count(), 3, "{}", frames.len());
+    assert_eq!(
+        frames.iter().filter(|f| **f == (1, 5, turned(&[]))).count(),
+        3,
+        "{}",
+        frames.len()
+    );
     let said: Vec<String> = errors.iter().map(AxisError::to_string).collect();
-    let places = [5, 5 + good.len(), 5 + 2 * good.len() + few.len() + HEADER + 40];
-    assert_eq!(said[0], "byte 0: expected a frame (FF DD …), found 5 bytes of something else");
-    assert_eq!(said[1], format!("byte {}: expected 354 to 2048 numbers in a frame, found 180", places[1]));
-    assert!(said[2].starts_with(&format!("byte {}: expected a frame", places[1])), "{}", said[2]);
-    assert_eq!(said[3], format!("byte {}: expected a position or an angle, found NaN", places[2]));
+    let places = [
+        5,
+        5 + good.len(),
+        5 + 2 * good.len() + few.len() + HEADER + 40,
+    ];
+    assert_eq!(
+        said[0],
+        "byte 0: expected a frame (FF DD …), found 5 bytes of something else"
+    );
+    assert_eq!(
+        said[1],
+        format!(
+            "byte {}: expected 354 to 2048 numbers in a frame, found 180",
+            places[1]
+        )
+    );
+    assert!(
+        said[2].starts_with(&format!("byte {}: expected a frame", places[1])),
+        "{}",
+        said[2]
+    );
+    assert_eq!(
+        said[3],
+        format!(
+            "byte {}: expected a position or an angle, found NaN",
+            places[2]
+        )
+    );
 }
 
 proptest! {
@@ -272,7 +371,10 @@ proptest! {
 
 #[test]
 fn avatars_are_followed_apart_leave_and_come_back() {
-    let mut receiver = AxisReceiver::new(&AxisOptions { actors: 2, ..Default::default() });
+    let mut receiver = AxisReceiver::new(&AxisOptions {
+        actors: 2,
+        ..Default::default()
+    });
     let values = turned(&[]);
     let send = |receiver: &mut AxisReceiver, avatar, number, secs: f64| {
         receiver.bytes(secs, &raw(avatar, number, [0, 0], &values));
@@ -299,12 +401,17 @@ fn avatars_are_followed_apart_leave_and_come_back() {
     assert_eq!((frames.len(), rigs.len()), (1, 0));
     assert!((frames[0].time_secs - 5.0).abs() < 1e-9 && frames[0].actor == Actor(1));
     let counts = receiver.counts();
-    assert_eq!((counts.malformed, counts.interruptions), (0, 2), "{counts:?}");
+    assert_eq!(
+        (counts.malformed, counts.interruptions),
+        (0, 2),
+        "{counts:?}"
+    );
 }
 
 #[test]
 fn sizes_are_the_broadcasts() {
-    let sizes = [(false, false), (false, true), (true, false), (true, true)].map(|(p, r)| values_of(p, r));
+    let sizes =
+        [(false, false), (false, true), (true, false), (true, true)].map(|(p, r)| values_of(p, r));
     assert_eq!(sizes, [180, 186, 354, 360]);
     assert!(AXIS_BONES[bone("Neck")].role == Some(Role::Neck) && AXIS_BONES.len() == 59);
 }

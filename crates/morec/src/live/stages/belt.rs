@@ -23,7 +23,16 @@ pub(super) struct In<T> {
 /// that of the thread that takes them.
 pub(super) fn belt<T>(boxes: usize, waker: &Arc<Waker>) -> (Out<T>, In<T>) {
     let (ring, taken) = rtrb::RingBuffer::new(boxes);
-    (Out { ring: Some(ring), waker: waker.clone() }, In { ring: taken, waker: waker.clone() })
+    (
+        Out {
+            ring: Some(ring),
+            waker: waker.clone(),
+        },
+        In {
+            ring: taken,
+            waker: waker.clone(),
+        },
+    )
 }
 
 impl<T> Out<T> {
@@ -56,7 +65,8 @@ impl<T> In<T> {
                 // What was sent before the end is seen after it.
                 return self.ring.pop().ok();
             }
-            self.waker.sleep(NAP, || !self.ring.is_empty() || self.ring.is_abandoned());
+            self.waker
+                .sleep(NAP, || !self.ring.is_empty() || self.ring.is_abandoned());
         }
     }
 }

@@ -3,7 +3,8 @@
 
 use crate::live::MAX_ACTORS;
 use crate::svrdm::{
-    Cell, FeatureExtraction, Gram, RowRing, SegmentAssembly, SegmentScoring, SvrdmModel, SvrdmParams,
+    Cell, FeatureExtraction, Gram, RowRing, SegmentAssembly, SegmentScoring, SvrdmModel,
+    SvrdmParams,
 };
 
 use super::belt::{In, Out};
@@ -29,15 +30,20 @@ impl Segments {
 
     /// Chunks in, segments out.
     pub(super) fn run(mut self, model: &SvrdmModel) {
-        let mut assemblies: Vec<_> =
-            (0..MAX_ACTORS).map(|_| SegmentAssembly::new(&model.params, model.pca.dims())).collect();
+        let mut assemblies: Vec<_> = (0..MAX_ACTORS)
+            .map(|_| SegmentAssembly::new(&model.params, model.pca.dims()))
+            .collect();
         while let Some(mut chunk) = self.chunks.next() {
             let (mark, assembly) = (chunk.mark, &mut assemblies[chunk.mark.actor]);
             match chunk.of {
                 Of::Chunk => {
-                    self.send(mark, What::Rows, |parcel| std::mem::swap(&mut parcel.rows, &mut chunk.rows));
+                    self.send(mark, What::Rows, |parcel| {
+                        std::mem::swap(&mut parcel.rows, &mut chunk.rows)
+                    });
                     assembly.push(&chunk.gram, &mut |window, gram: &Gram| {
-                        self.send(mark, What::Segment(window), |parcel| parcel.gram.copy_from(gram));
+                        self.send(mark, What::Segment(window), |parcel| {
+                            parcel.gram.copy_from(gram)
+                        });
                     });
                     self.send(mark, What::Column, |_| ());
                 }
@@ -56,15 +62,26 @@ impl Segments {
 pub(super) fn extract(model: &SvrdmModel, mut from: In<Parcel>, mut to: Out<Parcel>) {
     let dim = model.pca.dims();
     let mut extraction = FeatureExtraction::new(&model.params, dim, &model.signs);
-    let mut rings: Vec<_> = (0..MAX_ACTORS).map(|_| RowRing::new(&model.params, dim)).collect();
+    let mut rings: Vec<_> = (0..MAX_ACTORS)
+        .map(|_| RowRing::new(&model.params, dim))
+        .collect();
     while let Some(mut parcel) = from.next() {
         let ring = &mut rings[parcel.mark.actor];
         match parcel.what {
             What::Rows => parcel.rows.chunks_exact(dim).for_each(|row| ring.push(row)),
             What::End(_) => ring.reset(),
             What::Segment(_) => {
-                let Parcel { gram, has_feature, feature, profile, profile_len, .. } = &mut *parcel;
-                let found = extraction.feature(gram).map(|found| feature.copy_from_slice(found));
+                let Parcel {
+                    gram,
+                    has_feature,
+                    feature,
+                    profile,
+                    profile_len,
+                    ..
+                } = &mut *parcel;
+                let found = extraction
+                    .feature(gram)
+                    .map(|found| feature.copy_from_slice(found));
                 *has_feature = found.is_some();
                 if *has_feature {
                     let found = extraction.profile(gram, ring.last(gram.frames()));
@@ -80,10 +97,17 @@ pub(super) fn extract(model: &SvrdmModel, mut from: In<Parcel>, mut to: Out<Parc
 
 /// Classification: segments get the classes that they may be.
 pub(super) fn classify(model: &SvrdmModel, mut from: In<Parcel>, mut to: Out<Parcel>) {
-    let SvrdmParams { accept, descent, .. } = model.params;
+    let SvrdmParams {
+        accept, descent, ..
+    } = model.params;
     while let Some(mut parcel) = from.next() {
         if let What::Segment(_) = parcel.what {
-            let Parcel { has_feature, feature, candidates, .. } = &mut *parcel;
+            let Parcel {
+                has_feature,
+                feature,
+                candidates,
+                ..
+            } = &mut *parcel;
             candidates.clear();
             if *has_feature {
                 model.tree.descend(feature, accept, descent, candidates);
@@ -97,7 +121,14 @@ pub(super) fn classify(model: &SvrdmModel, mut from: In<Parcel>, mut to: Out<Par
 pub(super) fn score(mut scoring: SegmentScoring, mut from: In<Parcel>, mut to: Out<Parcel>) {
     while let Some(mut parcel) = from.next() {
         if let What::Segment(_) = parcel.what {
-            let Parcel { candidates, profile, profile_len, gram, cell, .. } = &mut *parcel;
+            let Parcel {
+                candidates,
+                profile,
+                profile_len,
+                gram,
+                cell,
+                ..
+            } = &mut *parcel;
             *cell = match candidates.is_empty() {
                 true => Cell::NOTHING,
                 false => scoring.best(candidates, &profile[..*profile_len], gram.frames()),

@@ -95,34 +95,68 @@ impl Input {
         if self.rows.breaks_at(frame.time_secs) {
             self.end(End::Gap, to);
         }
-        let pivots: PivotPose =
-            self.reader.as_mut().and_then(|reader| reader.pivots(&frame.pose)).copied().unwrap_or_default();
+        let pivots: PivotPose = self
+            .reader
+            .as_mut()
+            .and_then(|reader| reader.pivots(&frame.pose))
+            .copied()
+            .unwrap_or_default();
         // The first pose of a stretch sets its origin and completes no row: the origin read here is right.
         let mark = self.mark(frame.time_secs);
         let (model, reduced, chunks) = (&self.model, &mut self.reduced, &mut self.chunks);
-        let mut row = RowSink { model, reduced, chunks, mark, to, sent: false };
-        let pushed = self.rows.push(frame.time_secs, &pivots, &mut |values| row.push(values));
+        let mut row = RowSink {
+            model,
+            reduced,
+            chunks,
+            mark,
+            to,
+            sent: false,
+        };
+        let pushed = self
+            .rows
+            .push(frame.time_secs, &pivots, &mut |values| row.push(values));
         if matches!(pushed, Pushed::Taken | Pushed::Restarted) {
             self.now_secs = frame.time_secs;
         }
         if !row.sent {
             return Fate::Through;
         }
-        to.send(mark, Of::Frame { time_secs: frame.time_secs }, |_| ());
+        to.send(
+            mark,
+            Of::Frame {
+                time_secs: frame.time_secs,
+            },
+            |_| (),
+        );
         Fate::Sent
     }
 
     fn mark(&self, reported_secs: f64) -> Mark {
         let step_secs = 1.0 / self.model.rate_hz();
-        let steps = Steps { origin_secs: self.rows.origin_secs(), step_secs };
-        Mark { actor: self.actor, reported_secs, wall_secs: self.wall_secs, steps }
+        let steps = Steps {
+            origin_secs: self.rows.origin_secs(),
+            step_secs,
+        };
+        Mark {
+            actor: self.actor,
+            reported_secs,
+            wall_secs: self.wall_secs,
+            steps,
+        }
     }
 
     /// Ends the stretch with the row that still waits.
     fn end(&mut self, end: End, to: &mut Chunks) {
         let mark = self.mark(self.now_secs);
         let (model, reduced, chunks) = (&self.model, &mut self.reduced, &mut self.chunks);
-        let mut row = RowSink { model, reduced, chunks, mark, to, sent: false };
+        let mut row = RowSink {
+            model,
+            reduced,
+            chunks,
+            mark,
+            to,
+            sent: false,
+        };
         self.rows.finish(&mut |values| row.push(values));
         self.chunks.reset();
         to.send(mark, Of::End(end), |_| ());
@@ -151,7 +185,11 @@ impl RowSink<'_> {
         self.to.send(self.mark, Of::Chunk, |chunk| {
             chunk.gram.copy_from(chunks.chunk());
             let dim = chunk.gram.dim();
-            for (kept, row) in chunk.rows.chunks_exact_mut(dim).zip(chunks.last_rows(frames)) {
+            for (kept, row) in chunk
+                .rows
+                .chunks_exact_mut(dim)
+                .zip(chunks.last_rows(frames))
+            {
                 kept.copy_from_slice(row);
             }
         });

@@ -58,7 +58,8 @@ pub(super) fn start(
     let scoring = SegmentScoring::new(model).map_err(|error| SessionError::Start(error.into()))?;
     let (outlets, readers) = Outlets::new(options, shared.cells, shared.stop);
     let tracking = Tracking::new(model, &scoring, options, outlets, shared.cells);
-    let [segments, features, classes, scores, last] = std::array::from_fn(|_| Arc::new(Waker::default()));
+    let [segments, features, classes, scores, last] =
+        std::array::from_fn(|_| Arc::new(Waker::default()));
     let (chunks_out, chunks_in) = belt(CHUNKS, &segments);
     let (mut chunks_used, chunks_spare) = belt(CHUNKS, shared.waker);
     (0..CHUNKS).for_each(|_| chunks_used.send(Box::new(Chunk::new(model))));
@@ -70,21 +71,43 @@ pub(super) fn start(
     (0..PARCELS).for_each(|_| home.send(Box::new(Parcel::new(model))));
 
     let of = || model.clone();
-    let assembly = Segments { chunks: chunks_in, used: chunks_used, out: to_features, spare };
+    let assembly = Segments {
+        chunks: chunks_in,
+        used: chunks_used,
+        out: to_features,
+        spare,
+    };
     let input = InputStage {
         feed,
-        performers: (0..MAX_ACTORS).map(|actor| Input::new(model, actor)).collect(),
-        chunks: Chunks { out: chunks_out, spare: chunks_spare },
+        performers: (0..MAX_ACTORS)
+            .map(|actor| Input::new(model, actor))
+            .collect(),
+        chunks: Chunks {
+            out: chunks_out,
+            spare: chunks_spare,
+        },
         cells: shared.cells.clone(),
         stop: shared.stop.clone(),
         waker: shared.waker.clone(),
     };
-    spawn("tracking", Box::new(move || tracking.run(from_scores, home)))?;
-    spawn("scoring", Box::new(move || score(scoring, from_classes, to_tracking)))?;
+    spawn(
+        "tracking",
+        Box::new(move || tracking.run(from_scores, home)),
+    )?;
+    spawn(
+        "scoring",
+        Box::new(move || score(scoring, from_classes, to_tracking)),
+    )?;
     let model = of();
-    spawn("classification", Box::new(move || classify(&model, from_features, to_scores)))?;
+    spawn(
+        "classification",
+        Box::new(move || classify(&model, from_features, to_scores)),
+    )?;
     let model = of();
-    spawn("extraction", Box::new(move || extract(&model, from_segments, to_classes)))?;
+    spawn(
+        "extraction",
+        Box::new(move || extract(&model, from_segments, to_classes)),
+    )?;
     let model = of();
     spawn("segments", Box::new(move || assembly.run(&model)))?;
     spawn("input", Box::new(move || input.run()))?;
@@ -118,7 +141,9 @@ impl InputStage {
                 None if self.feed.is_ended() || self.stop.load(Relaxed) => break,
                 None => {
                     let feed = &self.feed;
-                    self.waker.sleep(Duration::from_millis(20), || feed.has_more() || feed.is_ended());
+                    self.waker.sleep(Duration::from_millis(20), || {
+                        feed.has_more() || feed.is_ended()
+                    });
                 }
             }
         }
@@ -127,7 +152,9 @@ impl InputStage {
 
     fn frame(&mut self, frame: &Frame) {
         let performer = self.performers.get_mut(frame.actor.index());
-        let fate = performer.map_or(Fate::Unusable, |performer| performer.push(frame, &mut self.chunks));
+        let fate = performer.map_or(Fate::Unusable, |performer| {
+            performer.push(frame, &mut self.chunks)
+        });
         if fate == Fate::Unusable {
             self.cells.unusable.fetch_add(1, Relaxed);
         }

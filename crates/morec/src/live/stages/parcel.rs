@@ -16,8 +16,16 @@ pub(super) struct Mark {
 
 impl Mark {
     fn nobody() -> Self {
-        let steps = Steps { origin_secs: 0.0, step_secs: 0.0 };
-        Self { actor: 0, reported_secs: 0.0, wall_secs: 0.0, steps }
+        let steps = Steps {
+            origin_secs: 0.0,
+            step_secs: 0.0,
+        };
+        Self {
+            actor: 0,
+            reported_secs: 0.0,
+            wall_secs: 0.0,
+            steps,
+        }
     }
 }
 
@@ -55,7 +63,12 @@ impl Chunk {
     pub(super) fn new(model: &SvrdmModel) -> Self {
         let dim = model.pca.dims();
         let rows = vec![0.0; dim * model.params.chunk_frames];
-        Self { mark: Mark::nobody(), of: Of::Chunk, gram: Gram::new(dim), rows }
+        Self {
+            mark: Mark::nobody(),
+            of: Of::Chunk,
+            gram: Gram::new(dim),
+            rows,
+        }
     }
 }
 

@@ -44,7 +44,11 @@ impl Tracking {
         let performer = |actor| Performer {
             tracking: SegmentTracking::of_model(model, scoring),
             column: vec![Cell::NOTHING; model.params.lengths()],
-            teller: Teller::new(Actor(actor as u16), model.classes.len(), options.events.refractory_secs),
+            teller: Teller::new(
+                Actor(actor as u16),
+                model.classes.len(),
+                options.events.refractory_secs,
+            ),
             early: Early::default(),
         };
         Self {
@@ -69,16 +73,27 @@ impl Tracking {
     }
 
     fn take(&mut self, parcel: &Parcel) {
-        let Mark { actor, wall_secs, .. } = parcel.mark;
+        let Mark {
+            actor, wall_secs, ..
+        } = parcel.mark;
         let performer = &mut self.performers[actor];
         match parcel.what {
-            What::Segment(window) => performer.column[window.chunks() - self.min_chunks] = parcel.cell,
+            What::Segment(window) => {
+                performer.column[window.chunks() - self.min_chunks] = parcel.cell
+            }
             What::Column | What::End(_) => {
-                let Performer { tracking, column, teller, early } = performer;
+                let Performer {
+                    tracking,
+                    column,
+                    teller,
+                    early,
+                } = performer;
                 let (frames, outlets) = (self.chunk_frames, &mut self.outlets);
                 let mut tell = |found: ChunkDetection| {
                     let detection = detection(&found, &parcel.mark, frames);
-                    teller.tell(&detection, early, wall_secs, &mut |event| outlets.keep(event));
+                    teller.tell(&detection, early, wall_secs, &mut |event| {
+                        outlets.keep(event)
+                    });
                 };
                 match parcel.what {
                     What::Column => tracking.push(column, &mut tell),
@@ -92,7 +107,8 @@ impl Tracking {
                 self.cells.suppressed.store(suppressed, Relaxed);
             }
             What::Frame { time_secs } => {
-                self.cells.frame_of(Actor(actor as u16), time_secs, wall_secs, wall_now_secs());
+                self.cells
+                    .frame_of(Actor(actor as u16), time_secs, wall_secs, wall_now_secs());
             }
             What::Rows => {}
         }

@@ -34,7 +34,9 @@ impl SenderClock {
 
     fn next(&mut self, last_secs: f64, sent_secs: Option<f64>, arrival_secs: f64) -> f64 {
         let believed = sent_secs.filter(|_| self.jumps < PATIENCE);
-        let by_sender = believed.zip(self.anchor).map(|(sent, (anchor, at))| at + (sent - anchor));
+        let by_sender = believed
+            .zip(self.anchor)
+            .map(|(sent, (anchor, at))| at + (sent - anchor));
         let by_arrival = last_secs + (arrival_secs - self.last_arrival_secs);
         let predicted = by_sender.filter(|t| *t > last_secs).unwrap_or(by_arrival);
         let late_secs = arrival_secs - predicted;
@@ -70,7 +72,11 @@ mod tests {
     }
 
     fn jitter_secs(times: &[f64]) -> f64 {
-        times.windows(2).skip(100).map(|w| (w[1] - w[0] - 1.0 / 60.0).abs()).fold(0.0, f64::max)
+        times
+            .windows(2)
+            .skip(100)
+            .map(|w| (w[1] - w[0] - 1.0 / 60.0).abs())
+            .fold(0.0, f64::max)
     }
 
     #[test]
@@ -82,8 +88,12 @@ mod tests {
 
     #[test]
     fn clocks_that_stand_run_wrong_or_backwards_do_no_harm() {
-        let clocks: [fn(f64) -> Option<f64>; 4] =
-            [|_| Some(5.0), |t| Some(t * 1000.0), |t| Some(-t), |t| Some(t * 0.5)];
+        let clocks: [fn(f64) -> Option<f64>; 4] = [
+            |_| Some(5.0),
+            |t| Some(t * 1000.0),
+            |t| Some(-t),
+            |t| Some(t * 0.5),
+        ];
         for sent in clocks {
             let times = times(|_| 0.001, sent);
             assert!(times.windows(2).all(|w| w[1] > w[0]));

@@ -27,8 +27,20 @@ impl HumanoidBone {
     }
 }
 
-const fn bone(name: &'static str, parent: usize, role: Option<Role>, x: f64, y: f64, z: f64) -> HumanoidBone {
-    HumanoidBone { name, parent: Some(parent), role, offset: [x, y, z] }
+const fn bone(
+    name: &'static str,
+    parent: usize,
+    role: Option<Role>,
+    x: f64,
+    y: f64,
+    z: f64,
+) -> HumanoidBone {
+    HumanoidBone {
+        name,
+        parent: Some(parent),
+        role,
+        offset: [x, y, z],
+    }
 }
 
 /// A finger's bone; fingers play no role.
@@ -38,7 +50,12 @@ const fn finger(name: &'static str, parent: usize, x: f64) -> HumanoidBone {
 
 /// All bones, parents first. Lengths are those of a person of 1.7 m, after Drillis and Contini (1966).
 pub const HUMANOID: [HumanoidBone; HUMANOID_BONES] = [
-    HumanoidBone { name: "Hips", parent: None, role: Some(Role::Hips), offset: [0.0, 0.92, 0.0] },
+    HumanoidBone {
+        name: "Hips",
+        parent: None,
+        role: Some(Role::Hips),
+        offset: [0.0, 0.92, 0.0],
+    },
     bone("LeftUpperLeg", 0, Some(Role::LeftThigh), -0.09, -0.02, 0.0),
     bone("RightUpperLeg", 0, Some(Role::RightThigh), 0.09, -0.02, 0.0),
     bone("LeftLowerLeg", 1, Some(Role::LeftShin), 0.0, -0.41, 0.0),
@@ -50,12 +67,33 @@ pub const HUMANOID: [HumanoidBone; HUMANOID_BONES] = [
     bone("UpperChest", 8, None, 0.0, 0.13, 0.0),
     bone("Neck", 9, Some(Role::Neck), 0.0, 0.15, 0.0),
     bone("Head", 10, Some(Role::Head), 0.0, 0.09, 0.0),
-    bone("LeftShoulder", 9, Some(Role::LeftShoulder), -0.03, 0.11, 0.0),
-    bone("RightShoulder", 9, Some(Role::RightShoulder), 0.03, 0.11, 0.0),
+    bone(
+        "LeftShoulder",
+        9,
+        Some(Role::LeftShoulder),
+        -0.03,
+        0.11,
+        0.0,
+    ),
+    bone(
+        "RightShoulder",
+        9,
+        Some(Role::RightShoulder),
+        0.03,
+        0.11,
+        0.0,
+    ),
     bone("LeftUpperArm", 12, Some(Role::LeftArm), -0.13, 0.0, 0.0),
     bone("RightUpperArm", 13, Some(Role::RightArm), 0.13, 0.0, 0.0),
     bone("LeftLowerArm", 14, Some(Role::LeftForearm), -0.30, 0.0, 0.0),
-    bone("RightLowerArm", 15, Some(Role::RightForearm), 0.30, 0.0, 0.0),
+    bone(
+        "RightLowerArm",
+        15,
+        Some(Role::RightForearm),
+        0.30,
+        0.0,
+        0.0,
+    ),
     bone("LeftHand", 16, Some(Role::LeftHand), -0.25, 0.0, 0.0),
     bone("RightHand", 17, Some(Role::RightHand), 0.25, 0.0, 0.0),
     bone("LeftToes", 5, None, 0.0, -0.06, -0.14),
@@ -105,9 +143,13 @@ pub fn mirrored(bone: usize) -> usize {
     let name = HUMANOID[bone].name;
     let of = |side: &str, other: &str| {
         let rest = name.strip_prefix(side)?;
-        HUMANOID.iter().position(|b| b.name.strip_prefix(other) == Some(rest))
+        HUMANOID
+            .iter()
+            .position(|b| b.name.strip_prefix(other) == Some(rest))
     };
-    of("Left", "Right").or_else(|| of("Right", "Left")).unwrap_or(bone)
+    of("Left", "Right")
+        .or_else(|| of("Right", "Left"))
+        .unwrap_or(bone)
 }
 
 /// Bones as a set: bit `b` is bone `b`.
@@ -115,13 +157,17 @@ pub type BoneMask = u64;
 
 /// The nearest bone above `bone` that is in `sent`.
 pub fn parent_among(bone: usize, sent: BoneMask) -> Option<usize> {
-    std::iter::successors(HUMANOID[bone].parent, |&b| HUMANOID[b].parent).find(|b| sent >> b & 1 == 1)
+    std::iter::successors(HUMANOID[bone].parent, |&b| HUMANOID[b].parent)
+        .find(|b| sent >> b & 1 == 1)
 }
 
 /// Where `bone` is in a T-pose seen from `above`, some bone above it, or from the floor.
 pub fn standard_offset(bone: usize, above: Option<usize>) -> Vec3 {
     let chain = std::iter::successors(Some(bone), |&b| HUMANOID[b].parent);
-    chain.take_while(|b| Some(*b) != above).map(|b| HUMANOID[b].offset()).sum()
+    chain
+        .take_while(|b| Some(*b) != above)
+        .map(|b| HUMANOID[b].offset())
+        .sum()
 }
 
 #[cfg(test)]
@@ -134,12 +180,24 @@ mod tests {
             assert!(bone.parent.is_none_or(|p| p < b), "{}", bone.name);
             let other = mirrored(b);
             assert_eq!(mirrored(other), b, "{}", bone.name);
-            assert_eq!(other == b, !bone.name.contains("Left") && !bone.name.contains("Right"));
+            assert_eq!(
+                other == b,
+                !bone.name.contains("Left") && !bone.name.contains("Right")
+            );
             let [x, y, z] = HUMANOID[other].offset;
-            assert_eq!(bone.offset, [if x == 0.0 { 0.0 } else { -x }, y, z], "{}", bone.name);
+            assert_eq!(
+                bone.offset,
+                [if x == 0.0 { 0.0 } else { -x }, y, z],
+                "{}",
+                bone.name
+            );
         }
         for role in Role::ALL {
-            assert_eq!(HUMANOID.iter().filter(|b| b.role == Some(role)).count(), 1, "{role}");
+            assert_eq!(
+                HUMANOID.iter().filter(|b| b.role == Some(role)).count(),
+                1,
+                "{role}"
+            );
         }
     }
 }

@@ -31,7 +31,9 @@ pub fn understand(message: &Message) -> Option<Said> {
             let name = args.next()?;
             let (position, rotation) = pose(&mut args)?;
             let Arg::Text(name) = name else { return None };
-            Some(bone_of_name(name).map_or(Said::Other, |bone| Said::Bone(bone, position, rotation)))
+            Some(
+                bone_of_name(name).map_or(Said::Other, |bone| Said::Bone(bone, position, rotation)),
+            )
         }
         "/VMC/Ext/Root/Pos" => {
             args.next()?;
@@ -46,7 +48,9 @@ pub fn understand(message: &Message) -> Option<Said> {
             let loaded = args.next()?.number()?;
             // Calibration and mode say nothing about the pose; the fourth, since V2.7, whether tracking is good.
             let tracking = args.nth(2).and_then(|arg| arg.number()).unwrap_or(1.0);
-            Some(Said::State { good: loaded != 0.0 && tracking != 0.0 })
+            Some(Said::State {
+                good: loaded != 0.0 && tracking != 0.0,
+            })
         }
         _ => Some(Said::Other),
     }
@@ -59,7 +63,10 @@ fn pose<'a>(args: &mut impl Iterator<Item = Arg<'a>>) -> Option<(Vec3, Quat)> {
         *value = args.next()?.number()?;
     }
     let [x, y, z, qx, qy, qz, qw] = values;
-    Some((position_of_unity(Vec3::new(x, y, z))?, rotation_of_unity([qx, qy, qz, qw])?))
+    Some((
+        position_of_unity(Vec3::new(x, y, z))?,
+        rotation_of_unity([qx, qy, qz, qw])?,
+    ))
 }
 
 /// From Unity's left-handed axes (Y up, Z forward) to right-handed ones: Z turns round. The way back is the same.
@@ -108,7 +115,10 @@ mod tests {
         let turn = rotation_of_unity([0.0, half, 0.0, half]).unwrap();
         let arm = position_of_unity(Vec3::new(-0.3, 0.0, 0.0)).unwrap();
         let forward = position_of_unity(Vec3::new(0.0, 0.0, 1.0)).unwrap();
-        let (up, left) = (Vec3::y(), position_of_unity(Vec3::new(-1.0, 0.0, 0.0)).unwrap());
+        let (up, left) = (
+            Vec3::y(),
+            position_of_unity(Vec3::new(-1.0, 0.0, 0.0)).unwrap(),
+        );
         assert!((turn * arm - forward * 0.3).norm() < 1e-12);
         // In right-handed axes left is up × forward: so left has stayed left.
         assert!((up.cross(&forward) - left).norm() < 1e-12);
@@ -174,7 +184,9 @@ mod tests {
         assert!(position_of_unity(Vec3::new(f64::INFINITY, 0.0, 0.0)).is_none());
         let quarter = Axis::Y.rotation(1.0);
         assert!(
-            rotation_of_unity(rotation_to_unity(&quarter).map(|c| c * 3.0)).unwrap().angle_to(&quarter)
+            rotation_of_unity(rotation_to_unity(&quarter).map(|c| c * 3.0))
+                .unwrap()
+                .angle_to(&quarter)
                 < 1e-9
         );
     }

@@ -15,7 +15,9 @@ mod skeleton;
 mod tests;
 
 pub use humanoid::{HUMANOID, HUMANOID_BONES, HumanoidBone, bone_of_name};
-pub use message::{Said, mirror, position_of_unity, rotation_of_unity, rotation_to_unity, understand};
+pub use message::{
+    Said, mirror, position_of_unity, rotation_of_unity, rotation_to_unity, understand,
+};
 pub use peers::Peer;
 pub use receiver::{VmcOptions, VmcReceiver};
 pub use rest::is_t_pose;

@@ -50,7 +50,13 @@ pub(super) struct Ports<P> {
 
 impl<P: Peer> Ports<P> {
     pub(super) fn new(now: P, now_secs: f64) -> Self {
-        Self { now, since_secs: now_secs, heard_secs: now_secs, earlier: [None; EARLIER], next: 0 }
+        Self {
+            now,
+            since_secs: now_secs,
+            heard_secs: now_secs,
+            earlier: [None; EARLIER],
+            next: 0,
+        }
     }
 
     /// Whether the sender is at `peer`.
@@ -76,7 +82,10 @@ impl<P: Peer> Ports<P> {
 
     /// Forgets `peer`, if it was here earlier: it is another sender. Says whether it was.
     pub(super) fn part_with(&mut self, peer: P) -> bool {
-        let earlier = self.earlier.iter_mut().find(|earlier| **earlier == Some(peer));
+        let earlier = self
+            .earlier
+            .iter_mut()
+            .find(|earlier| **earlier == Some(peer));
         earlier.is_some_and(|earlier| earlier.take().is_some())
     }
 }

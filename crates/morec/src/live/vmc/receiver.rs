@@ -49,7 +49,11 @@ pub struct VmcOptions {
 
 impl Default for VmcOptions {
     fn default() -> Self {
-        Self { mirrored: false, actors: 4, skip_t_pose: true }
+        Self {
+            mirrored: false,
+            actors: 4,
+            skip_t_pose: true,
+        }
     }
 }
 
@@ -165,7 +169,15 @@ impl<P: Peer> VmcReceiver<P> {
             let gone = !sender.gone && now_secs - sender.heard_secs > GONE_SECS;
             let (ready, counts, options) = (&mut self.ready, &mut self.counts, &self.options);
             if quiet {
-                Taking { sender, ready, counts, options, now_secs, begun_secs }.close();
+                Taking {
+                    sender,
+                    ready,
+                    counts,
+                    options,
+                    now_secs,
+                    begun_secs,
+                }
+                .close();
             }
             if gone {
                 sender.gone = true;
@@ -189,11 +201,18 @@ impl<P: Peer> VmcReceiver<P> {
 
     /// The sender at `peer`, a new one if need be and there is room. A sender that has gone makes room.
     fn sender(&mut self, peer: P, now_secs: f64) -> Option<usize> {
-        if let Some(at) = self.senders.iter().position(|sender| sender.ports.is_at(peer)) {
+        if let Some(at) = self
+            .senders
+            .iter()
+            .position(|sender| sender.ports.is_at(peer))
+        {
             return Some(at);
         }
         // One that has been here before and was taken for a sender that changes its port is one of its own.
-        let parted = self.senders.iter_mut().any(|sender| sender.ports.part_with(peer));
+        let parted = self
+            .senders
+            .iter_mut()
+            .any(|sender| sender.ports.part_with(peer));
         let roams = |sender: &mut Sender<P>| !sender.gone && sender.ports.follow(peer, now_secs);
         if !parted && let Some(at) = self.senders.iter_mut().position(roams) {
             return Some(at);
@@ -207,7 +226,11 @@ impl<P: Peer> VmcReceiver<P> {
                 Some(at)
             }
             None if self.senders.len() < most => {
-                self.senders.push(Sender::new(peer, Actor(self.senders.len() as u16), now_secs));
+                self.senders.push(Sender::new(
+                    peer,
+                    Actor(self.senders.len() as u16),
+                    now_secs,
+                ));
                 Some(self.senders.len() - 1)
             }
             None => None,
@@ -217,7 +240,11 @@ impl<P: Peer> VmcReceiver<P> {
 
 impl<P: Peer> Sender<P> {
     fn new(peer: P, actor: Actor, now_secs: f64) -> Self {
-        let bone = Bone { position: Vec3::zeros(), rotation: Quat::identity(), seen_secs: f64::NEG_INFINITY };
+        let bone = Bone {
+            position: Vec3::zeros(),
+            rotation: Quat::identity(),
+            seen_secs: f64::NEG_INFINITY,
+        };
         Self {
             ports: Ports::new(peer, now_secs),
             actor,
@@ -238,13 +265,18 @@ impl<P: Peer> Sender<P> {
     /// Bones that came lately.
     fn alive(&self, now_secs: f64) -> BoneMask {
         let is = |b: &usize| now_secs - self.bones[*b].seen_secs < STALE_SECS;
-        (0..HUMANOID_BONES).filter(is).fold(0, |mask, b| mask | 1 << b)
+        (0..HUMANOID_BONES)
+            .filter(is)
+            .fold(0, |mask, b| mask | 1 << b)
     }
 
     /// Whether the open frame holds all there usually is.
     fn is_complete(&self, now_secs: f64) -> bool {
         // As long as it is not known what usually comes, the other rules must do.
-        let expected = self.rig.as_ref().map_or(0, |(mask, _)| mask & self.alive(now_secs));
+        let expected = self
+            .rig
+            .as_ref()
+            .map_or(0, |(mask, _)| mask & self.alive(now_secs));
         expected != 0 && self.fresh & expected == expected
     }
 }
@@ -288,7 +320,9 @@ impl<P: Peer> Taking<'_, P> {
             }
         });
         let newest = self.sender.sent_secs.or(self.sender.clock.sent_secs());
-        stamp.zip(newest).is_some_and(|(sent, newest)| sent < newest && newest - sent < LATE_SECS)
+        stamp
+            .zip(newest)
+            .is_some_and(|(sent, newest)| sent < newest && newest - sent < LATE_SECS)
     }
 
     /// Takes a message; `bones` counts those of its datagram.
@@ -311,7 +345,11 @@ impl<P: Peer> Taking<'_, P> {
             }
             Said::Root(position, rotation) => {
                 let mirrored = self.options.mirrored;
-                self.sender.root = if mirrored { mirror(position, rotation) } else { (position, rotation) };
+                self.sender.root = if mirrored {
+                    mirror(position, rotation)
+                } else {
+                    (position, rotation)
+                };
             }
             Said::Bone(bone, position, rotation) => {
                 *bones += 1;
@@ -330,7 +368,11 @@ impl<P: Peer> Taking<'_, P> {
         if self.sender.fresh >> bone & 1 == 1 {
             self.close();
         }
-        self.sender.bones[bone] = Bone { position, rotation, seen_secs: self.now_secs };
+        self.sender.bones[bone] = Bone {
+            position,
+            rotation,
+            seen_secs: self.now_secs,
+        };
         self.sender.fresh |= 1 << bone;
         self.sender.last_bone_secs = self.now_secs;
     }
@@ -345,7 +387,10 @@ impl<P: Peer> Taking<'_, P> {
             return;
         }
         let arrival_secs = self.sender.last_bone_secs;
-        let time_secs = self.sender.clock.stamp(sent_secs, arrival_secs - self.begun_secs);
+        let time_secs = self
+            .sender
+            .clock
+            .stamp(sent_secs, arrival_secs - self.begun_secs);
         if self.sender.bad {
             self.counts.not_motion += 1;
             return;
@@ -378,10 +423,16 @@ impl<P: Peer> Taking<'_, P> {
             return;
         }
         let since_secs = *self.sender.changed_secs.get_or_insert(self.now_secs);
-        let patience_secs = if alive & !known != 0 { LEARN_SECS } else { FORGET_SECS };
+        let patience_secs = if alive & !known != 0 {
+            LEARN_SECS
+        } else {
+            FORGET_SECS
+        };
         if self.now_secs - since_secs >= patience_secs {
             let rig = Arc::new(rig_of(alive, |bone| self.sender.bones[bone].position));
-            self.ready.items.push_back(Item::Rig(self.sender.actor, rig.clone()));
+            self.ready
+                .items
+                .push_back(Item::Rig(self.sender.actor, rig.clone()));
             self.sender.rig = Some((alive, rig));
             self.sender.changed_secs = None;
         }
@@ -394,7 +445,9 @@ impl<P: Peer> Taking<'_, P> {
         let neck = assumed_neck(mask);
         frame.clear(mask.count_ones() as usize + usize::from(neck.is_some()));
         for (joint, bone) in bones_of(mask).enumerate() {
-            let Bone { position, rotation, .. } = self.sender.bones[bone];
+            let Bone {
+                position, rotation, ..
+            } = self.sender.bones[bone];
             let parent = parent_among(bone, mask);
             let (world, turned, known) = match parent {
                 Some(parent) => {
@@ -407,7 +460,11 @@ impl<P: Peer> Taking<'_, P> {
             let local = local_position(bone, parent, position);
             let unknown = Vec3::repeat(f64::NAN);
             // Not a number spreads to everything that hangs on it.
-            frame.pose.positions[joint] = if known { world + turned * local } else { unknown };
+            frame.pose.positions[joint] = if known {
+                world + turned * local
+            } else {
+                unknown
+            };
             frame.pose.rotations[joint] = turned * rotation;
         }
         if let Some((head, AssumedNeck { parent, share })) = neck {

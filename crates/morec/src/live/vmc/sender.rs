@@ -34,7 +34,12 @@ pub struct VmcSender {
 impl VmcSender {
     /// A sender; `every_bone` adds the bones that play no role, unmoved, as avatars have them.
     pub fn new(bundling: Bundling, every_bone: bool) -> Self {
-        Self { bundling, every_bone, packets: Vec::new(), used: 0 }
+        Self {
+            bundling,
+            every_bone,
+            packets: Vec::new(),
+            used: 0,
+        }
     }
 
     /// The packets of one frame: its bones, those of [`HUMANOID`] that `roles` knows, then state and time.
@@ -42,7 +47,11 @@ impl VmcSender {
     pub fn frame(&mut self, time_secs: f64, pose: &WorldPose, roles: &RoleMap) -> &[Vec<u8>] {
         self.used = 0;
         let mut world: [Option<(Vec3, Quat)>; HUMANOID_BONES] = [None; HUMANOID_BONES];
-        self.message("/VMC/Ext/Root/Pos", &[Arg::Text("root")], Some((Vec3::zeros(), Quat::identity())));
+        self.message(
+            "/VMC/Ext/Root/Pos",
+            &[Arg::Text("root")],
+            Some((Vec3::zeros(), Quat::identity())),
+        );
         for bone in 0..HUMANOID_BONES {
             let parent = std::iter::successors(HUMANOID[bone].parent, |&b| HUMANOID[b].parent)
                 .find(|&b| world[b].is_some());
@@ -50,20 +59,28 @@ impl VmcSender {
             let joint = HUMANOID[bone].role.and_then(|role| roles.joint(role));
             let here = match (joint, above) {
                 (Some(joint), _) => Some((pose.positions[joint], pose.rotations[joint])),
-                (None, Some((position, rotation))) if self.every_bone => {
-                    Some((position + rotation * standard_offset(bone, parent), rotation))
-                }
+                (None, Some((position, rotation))) if self.every_bone => Some((
+                    position + rotation * standard_offset(bone, parent),
+                    rotation,
+                )),
                 _ => None,
             };
             world[bone] = here;
-            let Some((position, rotation)) = here else { continue };
+            let Some((position, rotation)) = here else {
+                continue;
+            };
             let local = match above {
-                Some((above, turned)) => {
-                    (turned.inverse_transform_vector(&(position - above)), turned.inverse() * rotation)
-                }
+                Some((above, turned)) => (
+                    turned.inverse_transform_vector(&(position - above)),
+                    turned.inverse() * rotation,
+                ),
                 None => (position, rotation),
             };
-            self.message("/VMC/Ext/Bone/Pos", &[Arg::Text(HUMANOID[bone].name)], Some(local));
+            self.message(
+                "/VMC/Ext/Bone/Pos",
+                &[Arg::Text(HUMANOID[bone].name)],
+                Some(local),
+            );
         }
         self.message("/VMC/Ext/OK", &[Arg::Int(1)], None);
         self.message("/VMC/Ext/T", &[Arg::Float(time_secs as f32)], None);
@@ -91,7 +108,10 @@ impl VmcSender {
             Bundling::Bytes(most) => most.saturating_sub(LONGEST),
             Bundling::Single => 0,
         };
-        if self.used == 0 || self.packets[self.used - 1].len() > room || self.bundling == Bundling::Single {
+        if self.used == 0
+            || self.packets[self.used - 1].len() > room
+            || self.bundling == Bundling::Single
+        {
             self.new_packet();
         }
         let packet = &mut self.packets[self.used - 1];

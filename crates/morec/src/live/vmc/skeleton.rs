@@ -1,6 +1,8 @@
 //! The skeleton that a set of bones makes, and what stands in for bones that are not sent.
 
-use super::humanoid::{BoneMask, HUMANOID, HUMANOID_BONES, bone_of_name, parent_among, standard_offset};
+use super::humanoid::{
+    BoneMask, HUMANOID, HUMANOID_BONES, bone_of_name, parent_among, standard_offset,
+};
 use crate::clip::{Joint, Skeleton};
 use crate::live::Rig;
 use crate::math::Vec3;
@@ -27,7 +29,8 @@ pub(super) fn assumed_neck(mask: BoneMask) -> Option<(usize, AssumedNeck)> {
         return None;
     }
     let parent = parent_among(head, mask)?;
-    let share = standard_offset(neck, Some(parent)).norm() / standard_offset(head, Some(parent)).norm();
+    let share =
+        standard_offset(neck, Some(parent)).norm() / standard_offset(head, Some(parent)).norm();
     Some((head, AssumedNeck { parent, share }))
 }
 
@@ -36,7 +39,11 @@ const TRUNK: [&str; 3] = ["Spine", "Chest", "UpperChest"];
 
 /// Senders without lengths send zeros; a body has none of these.
 pub(super) fn local_position(bone: usize, parent: Option<usize>, sent: Vec3) -> Vec3 {
-    if parent.is_some() && sent.norm() < 1e-6 { standard_offset(bone, parent) } else { sent }
+    if parent.is_some() && sent.norm() < 1e-6 {
+        standard_offset(bone, parent)
+    } else {
+        sent
+    }
 }
 
 pub(super) fn bones_of(mask: BoneMask) -> impl Iterator<Item = usize> {
@@ -55,7 +62,12 @@ pub(super) fn rig_of(mask: BoneMask, positions: impl Fn(usize) -> Vec3) -> Rig {
         let parent = parent_among(bone, mask);
         let offset = local_position(bone, parent, positions(bone));
         let parent = parent.map(|parent| place(mask, parent));
-        Joint { name: HUMANOID[bone].name.to_owned(), parent, offset, tip: None }
+        Joint {
+            name: HUMANOID[bone].name.to_owned(),
+            parent,
+            offset,
+            tip: None,
+        }
     };
     let mut joints: Vec<Joint> = bones_of(mask).map(joint).collect();
     for (place, joint) in joints.iter().enumerate() {
@@ -64,15 +76,25 @@ pub(super) fn rig_of(mask: BoneMask, positions: impl Fn(usize) -> Vec3) -> Rig {
         }
     }
     if roles.joint(Role::Torso).is_none() {
-        let trunk = TRUNK.iter().find_map(|name| joints.iter().position(|joint| joint.name == *name));
+        let trunk = TRUNK
+            .iter()
+            .find_map(|name| joints.iter().position(|joint| joint.name == *name));
         roles.set(Role::Torso, trunk);
     }
     if let Some((head, AssumedNeck { parent, share })) = assumed_neck(mask) {
         roles.set(Role::Neck, Some(joints.len()));
         let offset = local_position(head, Some(parent), positions(head)) * share;
         let parent = Some(place(mask, parent));
-        joints.push(Joint { name: NECK.to_owned(), parent, offset, tip: None });
+        joints.push(Joint {
+            name: NECK.to_owned(),
+            parent,
+            offset,
+            tip: None,
+        });
     }
     // Parents come first in the table, so this cannot fail.
-    Rig { skeleton: Skeleton::new(joints).unwrap_or_default(), roles }
+    Rig {
+        skeleton: Skeleton::new(joints).unwrap_or_default(),
+        roles,
+    }
 }

@@ -49,7 +49,12 @@ struct Heard {
 
 impl Heard {
     fn new(options: &VmcOptions) -> Self {
-        Self { receiver: VmcReceiver::new(options), rigs: vec![], frames: vec![], gone: vec![] }
+        Self {
+            receiver: VmcReceiver::new(options),
+            rigs: vec![],
+            frames: vec![],
+            gone: vec![],
+        }
     }
 
     fn packet(&mut self, peer: u8, now_secs: f64, bytes: &[u8]) {
@@ -67,8 +72,14 @@ impl Heard {
         while let Some(next) = self.receiver.next(&mut frame) {
             match next {
                 Next::Frame => {
-                    let rig = self.rigs.iter().rev().find(|(actor, _)| *actor == frame.actor).unwrap();
-                    self.frames.push((frame.actor, frame.time_secs, frame.key_pose(&rig.1)));
+                    let rig = self
+                        .rigs
+                        .iter()
+                        .rev()
+                        .find(|(actor, _)| *actor == frame.actor)
+                        .unwrap();
+                    self.frames
+                        .push((frame.actor, frame.time_secs, frame.key_pose(&rig.1)));
                 }
                 Next::Rig(actor, rig) => self.rigs.push((actor, (*rig).clone())),
                 Next::Gone(actor) => self.gone.push(actor),
@@ -101,26 +112,51 @@ impl Heard {
 }
 
 fn far(a: &KeyPose, b: &WorldPose) -> f64 {
-    Role::ALL.iter().map(|r| (a.get(*r).unwrap() - b.positions[r.index()]).norm()).fold(0.0, f64::max)
+    Role::ALL
+        .iter()
+        .map(|r| (a.get(*r).unwrap() - b.positions[r.index()]).norm())
+        .fold(0.0, f64::max)
 }
 
-const WAYS: [Bundling; 4] = [Bundling::Whole, Bundling::Bytes(1500), Bundling::Bytes(300), Bundling::Single];
+const WAYS: [Bundling; 4] = [
+    Bundling::Whole,
+    Bundling::Bytes(1500),
+    Bundling::Bytes(300),
+    Bundling::Single,
+];
 
 #[test]
 fn any_bundling_at_any_rate_gives_the_poses_that_were_sent() {
     for bundling in WAYS {
         for (rate_hz, every_bone) in [(15.0, false), (60.0, true), (200.0, false)] {
             let mut heard = Heard::new(&VmcOptions::default());
-            heard.play(&mut VmcSender::new(bundling, every_bone), 5.0, 2.0, rate_hz, |_| false);
+            heard.play(
+                &mut VmcSender::new(bundling, every_bone),
+                5.0,
+                2.0,
+                rate_hz,
+                |_| false,
+            );
             let what = format!("{bundling:?} at {rate_hz} Hz");
             assert_eq!(heard.rigs.len(), 1, "{what}");
-            assert!(heard.frames.len() as f64 > 1.6 * rate_hz, "{what}: {}", heard.frames.len());
+            assert!(
+                heard.frames.len() as f64 > 1.6 * rate_hz,
+                "{what}: {}",
+                heard.frames.len()
+            );
             let counts = heard.receiver.counts();
-            assert_eq!((counts.malformed, counts.late, counts.not_motion), (0, 0, 0), "{what}");
+            assert_eq!(
+                (counts.malformed, counts.late, counts.not_motion),
+                (0, 0, 0),
+                "{what}"
+            );
             let (_, first_secs, _) = heard.frames[0];
             for (i, (_, time_secs, pose)) in heard.frames.iter().enumerate() {
                 let expected_secs = first_secs + i as f64 / rate_hz;
-                assert!((time_secs - expected_secs).abs() < 1e-3, "{what}: {time_secs} for {expected_secs}");
+                assert!(
+                    (time_secs - expected_secs).abs() < 1e-3,
+                    "{what}: {time_secs} for {expected_secs}"
+                );
                 // The receiver's clock begins with the first packet, the performance at 5 s.
                 let off = far(pose, &swinging(5.0 + expected_secs));
                 assert!(off < 0.02, "{what}: {off} m off at {time_secs}");
@@ -133,11 +169,25 @@ fn any_bundling_at_any_rate_gives_the_poses_that_were_sent() {
 fn lost_packets_cost_frames_and_never_the_stream() {
     for bundling in WAYS {
         let mut heard = Heard::new(&VmcOptions::default());
-        heard.play(&mut VmcSender::new(bundling, false), 0.0, 4.0, 60.0, |nth| nth % 17 == 3);
+        heard.play(
+            &mut VmcSender::new(bundling, false),
+            0.0,
+            4.0,
+            60.0,
+            |nth| nth % 17 == 3,
+        );
         assert_eq!(heard.rigs.len(), 1, "{bundling:?}");
-        assert!(heard.frames.len() > 180, "{bundling:?}: {}", heard.frames.len());
+        assert!(
+            heard.frames.len() > 180,
+            "{bundling:?}: {}",
+            heard.frames.len()
+        );
         assert!(heard.frames.windows(2).all(|w| w[1].1 > w[0].1));
-        let off = heard.frames.iter().map(|(_, t, pose)| far(pose, &swinging(*t))).fold(0.0, f64::max);
+        let off = heard
+            .frames
+            .iter()
+            .map(|(_, t, pose)| far(pose, &swinging(*t)))
+            .fold(0.0, f64::max);
         assert!(off < 0.1, "{bundling:?}: {off}");
     }
 }
@@ -175,13 +225,22 @@ fn rotations_only(arm: [f32; 4]) -> Vec<u8> {
     let mut packet = vec![];
     begin_bundle(&mut packet);
     for b in &HUMANOID[..20] {
-        let rotation = if b.name == "LeftUpperArm" { arm } else { [0.0, 0.0, 0.0, 1.0] };
+        let rotation = if b.name == "LeftUpperArm" {
+            arm
+        } else {
+            [0.0, 0.0, 0.0, 1.0]
+        };
         write_element(&mut packet, |out| bone(out, b.name, [0.0; 3], rotation));
     }
     packet
 }
 
-const AHEAD: [f32; 4] = [0.0, std::f32::consts::FRAC_1_SQRT_2, 0.0, std::f32::consts::FRAC_1_SQRT_2];
+const AHEAD: [f32; 4] = [
+    0.0,
+    std::f32::consts::FRAC_1_SQRT_2,
+    0.0,
+    std::f32::consts::FRAC_1_SQRT_2,
+];
 
 #[test]
 fn senders_without_positions_get_a_standard_skeleton_and_left_stays_left() {
@@ -191,10 +250,16 @@ fn senders_without_positions_get_a_standard_skeleton_and_left_stays_left() {
     }
     let (_, _, pose) = heard.frames.last().unwrap();
     let at = |role| pose.get(role).unwrap();
-    let (left, up) = (at(Role::LeftThigh) - at(Role::RightThigh), at(Role::Neck) - at(Role::Hips));
+    let (left, up) = (
+        at(Role::LeftThigh) - at(Role::RightThigh),
+        at(Role::Neck) - at(Role::Hips),
+    );
     let forward = left.cross(&up).normalize();
     let arm = (at(Role::LeftForearm) - at(Role::LeftArm)).normalize();
-    assert!((arm - forward).norm() < 1e-6, "left × up is forward, and so is the arm: {arm}");
+    assert!(
+        (arm - forward).norm() < 1e-6,
+        "left × up is forward, and so is the arm: {arm}"
+    );
     let other = (at(Role::RightForearm) - at(Role::RightArm)).normalize();
     assert!((other + left.normalize()).norm() < 1e-6);
     assert!((at(Role::LeftShin) - at(Role::LeftThigh)).norm() > 0.3);
@@ -202,28 +267,49 @@ fn senders_without_positions_get_a_standard_skeleton_and_left_stays_left() {
 
 #[test]
 fn a_mirrored_sender_is_turned_back() {
-    let mut heard = Heard::new(&VmcOptions { mirrored: true, ..Default::default() });
+    let mut heard = Heard::new(&VmcOptions {
+        mirrored: true,
+        ..Default::default()
+    });
     for i in 0..60 {
         heard.packet(1, f64::from(i) / 60.0, &rotations_only(AHEAD));
     }
     let (_, _, pose) = heard.frames.last().unwrap();
     let at = |role| pose.get(role).unwrap();
-    let forward =
-        (at(Role::LeftThigh) - at(Role::RightThigh)).cross(&(at(Role::Neck) - at(Role::Hips))).normalize();
+    let forward = (at(Role::LeftThigh) - at(Role::RightThigh))
+        .cross(&(at(Role::Neck) - at(Role::Hips)))
+        .normalize();
     let right = (at(Role::RightForearm) - at(Role::RightArm)).normalize();
-    assert!((right - forward).norm() < 1e-6, "now the right arm reaches forward");
-    assert!((at(Role::LeftForearm) - at(Role::LeftArm)).normalize().dot(&forward).abs() < 1e-6);
+    assert!(
+        (right - forward).norm() < 1e-6,
+        "now the right arm reaches forward"
+    );
+    assert!(
+        (at(Role::LeftForearm) - at(Role::LeftArm))
+            .normalize()
+            .dot(&forward)
+            .abs()
+            < 1e-6
+    );
 }
 
 #[test]
 fn a_t_pose_and_a_sender_that_says_so_are_no_motion() {
     let mut heard = Heard::new(&VmcOptions::default());
     for i in 0..60 {
-        heard.packet(1, f64::from(i) / 60.0, &rotations_only([0.0, 0.0, 0.0, 1.0]));
+        heard.packet(
+            1,
+            f64::from(i) / 60.0,
+            &rotations_only([0.0, 0.0, 0.0, 1.0]),
+        );
     }
     assert!(heard.frames.is_empty() && heard.receiver.counts().not_motion > 30);
     let mut state = vec![];
-    write_message(&mut state, "/VMC/Ext/OK", &[Arg::Int(1), Arg::Int(3), Arg::Int(0), Arg::Int(0)]);
+    write_message(
+        &mut state,
+        "/VMC/Ext/OK",
+        &[Arg::Int(1), Arg::Int(3), Arg::Int(0), Arg::Int(0)],
+    );
     heard.packet(1, 1.0, &state);
     for i in 60..90 {
         heard.packet(1, f64::from(i) / 60.0, &rotations_only(AHEAD));
@@ -270,21 +356,33 @@ fn a_bone_that_stays_away_leaves_the_skeleton_and_a_new_one_joins_it() {
             heard.tick(secs + 0.01);
         }
     }
-    let heads: Vec<bool> = heard.rigs.iter().map(|(_, rig)| rig.roles.joint(Role::Head).is_some()).collect();
+    let heads: Vec<bool> = heard
+        .rigs
+        .iter()
+        .map(|(_, rig)| rig.roles.joint(Role::Head).is_some())
+        .collect();
     assert_eq!(heads, [true, false, true]);
 }
 
 #[test]
 fn senders_are_told_apart_bounded_and_replaced_when_they_have_gone() {
-    let mut heard = Heard::new(&VmcOptions { actors: 2, ..Default::default() });
+    let mut heard = Heard::new(&VmcOptions {
+        actors: 2,
+        ..Default::default()
+    });
     for i in 0..60 {
         for peer in [1, 2, 3] {
             heard.packet(peer, f64::from(i) / 60.0, &rotations_only(AHEAD));
         }
     }
     assert_eq!(heard.receiver.counts().refused, 60);
-    let actors =
-        |heard: &Heard| heard.frames.iter().map(|f| f.0.0).collect::<std::collections::BTreeSet<_>>();
+    let actors = |heard: &Heard| {
+        heard
+            .frames
+            .iter()
+            .map(|f| f.0.0)
+            .collect::<std::collections::BTreeSet<_>>()
+    };
     assert_eq!(actors(&heard).into_iter().collect::<Vec<_>>(), [0, 1]);
     heard.tick(2.5);
     assert_eq!(heard.gone.len(), 2);
@@ -292,7 +390,11 @@ fn senders_are_told_apart_bounded_and_replaced_when_they_have_gone() {
     for i in 0..60 {
         heard.packet(3, 3.0 + f64::from(i) / 60.0, &rotations_only(AHEAD));
     }
-    assert_eq!(actors(&heard).into_iter().collect::<Vec<_>>(), [0], "in the place of one that has gone");
+    assert_eq!(
+        actors(&heard).into_iter().collect::<Vec<_>>(),
+        [0],
+        "in the place of one that has gone"
+    );
 }
 
 proptest! {
@@ -325,7 +427,11 @@ fn without(names: &[&str]) -> Vec<u8> {
     let mut packet = vec![];
     begin_bundle(&mut packet);
     for b in HUMANOID[..20].iter().filter(|b| !names.contains(&b.name)) {
-        let turned = if b.name == "Hips" { [0.2, 0.0, 0.0, 0.98] } else { [0.0, 0.0, 0.0, 1.0] };
+        let turned = if b.name == "Hips" {
+            [0.2, 0.0, 0.0, 0.98]
+        } else {
+            [0.0, 0.0, 0.0, 1.0]
+        };
         write_element(&mut packet, |out| bone(out, b.name, [0.0; 3], turned));
     }
     packet
@@ -333,25 +439,42 @@ fn without(names: &[&str]) -> Vec<u8> {
 
 #[test]
 fn a_sender_without_a_neck_or_a_spine_has_trunk_and_head_all_the_same() {
-    let options = VmcOptions { skip_t_pose: false, ..VmcOptions::default() };
+    let options = VmcOptions {
+        skip_t_pose: false,
+        ..VmcOptions::default()
+    };
     let posed = |packet: &[u8]| {
         let mut heard = Heard::new(&options);
         (0..60).for_each(|i| heard.packet(1, f64::from(i) / 60.0, packet));
-        assert_eq!((heard.rigs.len(), heard.receiver.counts().malformed), (1, 0));
+        assert_eq!(
+            (heard.rigs.len(), heard.receiver.counts().malformed),
+            (1, 0)
+        );
         let rig = heard.rigs.pop().unwrap().1;
         (heard.frames.pop().unwrap().2, rig)
     };
     let (whole, _) = posed(&without(&[]));
-    let lacks =
-        [&["Neck"][..], &["Neck", "UpperChest"], &["Neck", "UpperChest", "Chest", "Spine"], &["Spine"]];
+    let lacks = [
+        &["Neck"][..],
+        &["Neck", "UpperChest"],
+        &["Neck", "UpperChest", "Chest", "Spine"],
+        &["Spine"],
+    ];
     for missing in lacks {
         let (pose, rig) = posed(&without(missing));
         for role in [Role::Neck, Role::Head] {
             let off = (pose.get(role).unwrap() - whole.get(role).unwrap()).norm();
             assert!(off < 1e-9, "without {missing:?}: {role} is {off} m off");
         }
-        assert_eq!(pose.get(Role::Torso).is_some(), missing.len() < 4, "without {missing:?}");
-        assert!(rig.bones(&pose).indices().count() >= 11, "without {missing:?}");
+        assert_eq!(
+            pose.get(Role::Torso).is_some(),
+            missing.len() < 4,
+            "without {missing:?}"
+        );
+        assert!(
+            rig.bones(&pose).indices().count() >= 11,
+            "without {missing:?}"
+        );
         // The neck moves with the trunk.
         let neck = rig.roles.joint(Role::Neck).unwrap();
         assert!(rig.skeleton.joints()[neck].parent.is_some());
@@ -373,9 +496,11 @@ impl Peer for At {
 
 #[test]
 fn a_sender_that_opens_a_new_port_for_every_packet_or_frame_is_one_performer() {
-    for (bundling, packets_a_port) in
-        [(Bundling::Whole, 1), (Bundling::Bytes(300), 1), (Bundling::Single, 19)]
-    {
+    for (bundling, packets_a_port) in [
+        (Bundling::Whole, 1),
+        (Bundling::Bytes(300), 1),
+        (Bundling::Single, 19),
+    ] {
         let mut receiver = VmcReceiver::new(&VmcOptions::default());
         let mut sender = VmcSender::new(bundling, false);
         let (mut frame, mut frames, mut sent) = (Frame::default(), 0, 0);
@@ -395,7 +520,10 @@ fn a_sender_that_opens_a_new_port_for_every_packet_or_frame_is_one_performer() {
             }
         }
         assert!(frames > 200, "{bundling:?}: {frames}");
-        assert_eq!((receiver.counts().refused, receiver.counts().interruptions), (0, 0));
+        assert_eq!(
+            (receiver.counts().refused, receiver.counts().interruptions),
+            (0, 0)
+        );
     }
 }
 

@@ -79,7 +79,11 @@ impl CompressedClip {
     fn motion(&self) -> Vec<u8> {
         let (mut writer, mut motion) = (Writer::new(), Motion::default());
         for curve in self.curves() {
-            let stored = Stored { lattice: curve.lattice, first: curve.first, pieces: curve.pieces.clone() };
+            let stored = Stored {
+                lattice: curve.lattice,
+                first: curve.first,
+                pieces: curve.pieces.clone(),
+            };
             // Writing cannot fail: what is given is what is found.
             let _ = motion.channel(&mut writer, curve.kind(), &stored, self.frames, usize::MAX);
         }
@@ -116,11 +120,22 @@ impl CompressedClip {
         };
         let (mut reader, mut motion) = (Reader::new(fields.rest()), Motion::default());
         let mut most = fields.rest().len() * CURVES_A_BYTE;
-        let nothing = Stored { lattice: NO_STEPS, first: [0; 3], pieces: Vec::new() };
+        let nothing = Stored {
+            lattice: NO_STEPS,
+            first: [0; 3],
+            pieces: Vec::new(),
+        };
         let mut channel = |kind: Kind, joint: usize| -> Result<Curve, ParseError> {
-            let stored = motion.channel(&mut reader, kind, &nothing, clip.frames, most).map_err(fault)?;
+            let stored = motion
+                .channel(&mut reader, kind, &nothing, clip.frames, most)
+                .map_err(fault)?;
             most -= stored.pieces.len();
-            Ok(Curve::new(joint, stored.lattice, stored.first, stored.pieces))
+            Ok(Curve::new(
+                joint,
+                stored.lattice,
+                stored.first,
+                stored.pieces,
+            ))
         };
         for joint in 0..clip.skeleton.len() {
             clip.rotations.push(channel(Kind::Rotation, joint)?);
@@ -136,16 +151,29 @@ impl CompressedClip {
 }
 
 /// What a reader gives where a writer gives a channel.
-const NO_STEPS: Lattice = Lattice { kind: Kind::Rotation, key: Step(0), tangent: Step(0) };
+const NO_STEPS: Lattice = Lattice {
+    kind: Kind::Rotation,
+    key: Step(0),
+    tangent: Step(0),
+};
 
 fn check_header(bytes: &[u8]) -> Result<(), ParseError> {
-    let wrong =
-        |at: u64, expected: String, found: String| Err(ParseError::new(Place::Byte(at), expected, found));
+    let wrong = |at: u64, expected: String, found: String| {
+        Err(ParseError::new(Place::Byte(at), expected, found))
+    };
     if !bytes.starts_with(MAGIC) {
-        return wrong(0, "a stored clip, which begins with MCLIP".into(), "something else".into());
+        return wrong(
+            0,
+            "a stored clip, which begins with MCLIP".into(),
+            "something else".into(),
+        );
     }
     let Some((header, body)) = bytes.split_at_checked(HEADER) else {
-        return wrong(6, format!("a header of {HEADER} bytes"), format!("{} bytes", bytes.len()));
+        return wrong(
+            6,
+            format!("a header of {HEADER} bytes"),
+            format!("{} bytes", bytes.len()),
+        );
     };
     let version = u16::from_le_bytes([header[6], header[7]]);
     if version == 0 || version > VERSION {
@@ -155,11 +183,19 @@ fn check_header(bytes: &[u8]) -> Result<(), ParseError> {
     let mut fields = Fields::new(header, 8);
     let (length, checksum) = (fields.word::<8>()?, fields.word::<4>()?);
     if length != body.len() as u64 {
-        return wrong(8, format!("{length} bytes after the header"), body.len().to_string());
+        return wrong(
+            8,
+            format!("{length} bytes after the header"),
+            body.len().to_string(),
+        );
     }
     let found = u64::from(crc32fast::hash(body));
     if found != checksum {
-        return wrong(16, format!("bytes with the checksum {checksum:08x}"), format!("{found:08x}: damaged"));
+        return wrong(
+            16,
+            format!("bytes with the checksum {checksum:08x}"),
+            format!("{found:08x}: damaged"),
+        );
     }
     Ok(())
 }
@@ -177,8 +213,15 @@ fn read_facts(fields: &mut Fields, limits: &Limits) -> Result<CompressedClip, Pa
     let angle_rad = number("the threshold of angles")?;
     let position_metres = number("the threshold of positions")?;
     let joint_position_metres = Some(number("the bound on joints")?).filter(|&bound| bound != 0.0);
-    let params = SmoothParams { angle_rad, position_metres, joint_position_metres, metres_per_unit };
-    params.check().map_err(|error| fields.wrong("thresholds within their ranges", error.to_string()))?;
+    let params = SmoothParams {
+        angle_rad,
+        position_metres,
+        joint_position_metres,
+        metres_per_unit,
+    };
+    params
+        .check()
+        .map_err(|error| fields.wrong("thresholds within their ranges", error.to_string()))?;
     let mut errors = [0.0; 6];
     for error in &mut errors {
         *error = fields.number("a measured error")?;
@@ -186,7 +229,17 @@ fn read_facts(fields: &mut Fields, limits: &Limits) -> Result<CompressedClip, Pa
     let repaired = read_spans(fields, frames)?;
     let errors = Errors::from_array(errors);
     let (skeleton, rotations, positions) = (Skeleton::default(), Vec::new(), Vec::new());
-    Ok(CompressedClip { name, skeleton, rate_hz, frames, repaired, params, errors, rotations, positions })
+    Ok(CompressedClip {
+        name,
+        skeleton,
+        rate_hz,
+        frames,
+        repaired,
+        params,
+        errors,
+        rotations,
+        positions,
+    })
 }
 
 fn read_spans(fields: &mut Fields, frames: usize) -> Result<Vec<Span>, ParseError> {
@@ -197,9 +250,10 @@ fn read_spans(fields: &mut Fields, frames: usize) -> Result<Vec<Span>, ParseErro
         let end = fields.up_to(frames, "the end of a repaired span")?;
         let after = spans.last().map_or(0, |span| span.end);
         if start < after || end <= start {
-            return Err(
-                fields.wrong("repaired spans in order", format!("{start}..{end} after frame {after}"))
-            );
+            return Err(fields.wrong(
+                "repaired spans in order",
+                format!("{start}..{end} after frame {after}"),
+            ));
         }
         spans.push(start..end);
     }
@@ -228,22 +282,42 @@ fn read_skeleton(fields: &mut Fields, limits: &Limits) -> Result<Skeleton, Parse
         let back = link >> 1;
         let parent = j.checked_sub(back).filter(|_| back > 0);
         if back > j {
-            return Err(fields.wrong("a parent before its child", format!("{back} joints before joint {j}")));
+            return Err(fields.wrong(
+                "a parent before its child",
+                format!("{back} joints before joint {j}"),
+            ));
         }
         let depth = parent.map_or(1, |parent| depths[parent] + 1);
         if depth > limits.depth {
-            return Err(fields.wrong(format!("chains of up to {} joints", limits.depth), "a longer one"));
+            return Err(fields.wrong(
+                format!("chains of up to {} joints", limits.depth),
+                "a longer one",
+            ));
         }
         depths.push(depth);
         let offset = read_vector(fields, "a joint's offset")?;
-        let tip = if link & 1 == 1 { Some(read_vector(fields, "a bone's end")?) } else { None };
-        joints.push(Joint { name, parent, offset, tip });
+        let tip = if link & 1 == 1 {
+            Some(read_vector(fields, "a bone's end")?)
+        } else {
+            None
+        };
+        joints.push(Joint {
+            name,
+            parent,
+            offset,
+            tip,
+        });
     }
-    Skeleton::new(joints).map_err(|error| fields.wrong("parents before children", error.to_string()))
+    Skeleton::new(joints)
+        .map_err(|error| fields.wrong("parents before children", error.to_string()))
 }
 
 fn read_vector(fields: &mut Fields, what: &str) -> Result<Vec3, ParseError> {
-    Ok(Vec3::new(fields.number(what)?, fields.number(what)?, fields.number(what)?))
+    Ok(Vec3::new(
+        fields.number(what)?,
+        fields.number(what)?,
+        fields.number(what)?,
+    ))
 }
 
 /// The joints that move in their parent's frame.

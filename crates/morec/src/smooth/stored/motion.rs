@@ -77,10 +77,17 @@ impl Motion {
         let first = code(coder, &mut model.first, channel.first, [0; 3])?;
         let mut pieces = Vec::new();
         if model.constant.code(coder, channel.pieces.is_empty()) {
-            return Ok(Stored { lattice, first, pieces });
+            return Ok(Stored {
+                lattice,
+                first,
+                pieces,
+            });
         }
-        let mut state =
-            State { key: first, point: lattice.key_point(&first, None), arrival: Tangent::zeros() };
+        let mut state = State {
+            key: first,
+            point: lattice.key_point(&first, None),
+            arrival: Tangent::zeros(),
+        };
         let mut left = frames.saturating_sub(1);
         while left > 0 {
             if coder.is_beyond_end() {
@@ -91,10 +98,16 @@ impl Motion {
             }
             let given = channel.pieces.get(pieces.len()).copied();
             let piece = model.piece(coder, &lattice, given, &mut state)?;
-            left = left.checked_sub(piece.frames as usize).ok_or(Fault::Number)?;
+            left = left
+                .checked_sub(piece.frames as usize)
+                .ok_or(Fault::Number)?;
             pieces.push(piece);
         }
-        Ok(Stored { lattice, first, pieces })
+        Ok(Stored {
+            lattice,
+            first,
+            pieces,
+        })
     }
 }
 
@@ -113,7 +126,9 @@ impl Model {
             return Ok(last);
         }
         let mut step = |given: Step, model: &mut Whole| {
-            i8::try_from(model.signed(coder, i64::from(given.0))).map(Step).map_err(|_| Fault::Number)
+            i8::try_from(model.signed(coder, i64::from(given.0)))
+                .map(Step)
+                .map_err(|_| Fault::Number)
         };
         let key = step(given.key, &mut self.steps[0])?;
         let tangent = step(given.tangent, &mut self.steps[1])?;
@@ -127,12 +142,23 @@ impl Model {
         given: Option<Piece>,
         state: &mut State,
     ) -> Result<Piece, Fault> {
-        let given =
-            given.unwrap_or(Piece { frames: 1, key: state.key, tangents: Tangents::Cubic([0; 3], [0; 3]) });
+        let given = given.unwrap_or(Piece {
+            frames: 1,
+            key: state.key,
+            tangents: Tangents::Cubic([0; 3], [0; 3]),
+        });
         let frames = self.frames.natural(coder, u64::from(given.frames - 1));
-        let frames = u32::try_from(frames).ok().and_then(|f| f.checked_add(1)).ok_or(Fault::Number)?;
-        let line = self.line.code(coder, matches!(given.tangents, Tangents::Line));
-        let parabola = !line && self.parabola.code(coder, matches!(given.tangents, Tangents::Parabola(_)));
+        let frames = u32::try_from(frames)
+            .ok()
+            .and_then(|f| f.checked_add(1))
+            .ok_or(Fault::Number)?;
+        let line = self
+            .line
+            .code(coder, matches!(given.tangents, Tangents::Line));
+        let parabola = !line
+            && self
+                .parabola
+                .code(coder, matches!(given.tangents, Tangents::Parabola(_)));
         let leaving_as_arrived = state.arrival * f64::from(frames);
         let (given_leaving, given_arriving) = match given.tangents {
             Tangents::Line => ([0; 3], [0; 3]),
@@ -142,7 +168,12 @@ impl Model {
         let mut leaving = leaving_as_arrived;
         let mut a = [0; 3];
         if !line {
-            a = code(coder, &mut self.leaving, given_leaving, lattice.tangent_code(&leaving))?;
+            a = code(
+                coder,
+                &mut self.leaving,
+                given_leaving,
+                lattice.tangent_code(&leaving),
+            )?;
             leaving = lattice.tangent(&a);
         }
         let promised = self.promised_key(lattice, state, &leaving);
@@ -155,18 +186,30 @@ impl Model {
             Tangents::Parabola(a)
         } else {
             let as_parabola = lattice.tangent_code(&(leaving - chord * (2.0 / 3.0)));
-            Tangents::Cubic(a, code(coder, &mut self.arriving, given_arriving, as_parabola)?)
+            Tangents::Cubic(
+                a,
+                code(coder, &mut self.arriving, given_arriving, as_parabola)?,
+            )
         };
         let (_, b) = tangents.resolve(lattice, &chord);
-        *state = State { key, point: end, arrival: -b / f64::from(frames) };
-        Ok(Piece { frames, key, tangents })
+        *state = State {
+            key,
+            point: end,
+            arrival: -b / f64::from(frames),
+        };
+        Ok(Piece {
+            frames,
+            key,
+            tangents,
+        })
     }
 
     /// The key that the tangent points to.
     fn promised_key(&self, lattice: &Lattice, state: &State, leaving: &Tangent) -> Code {
         let kind = lattice.kind;
         let ahead = state.point + kind.tangents(&state.point) * (leaving * REACH_OF_TANGENT);
-        kind.finish(ahead).map_or(state.key, |ahead| lattice.key_code(&ahead))
+        kind.finish(ahead)
+            .map_or(state.key, |ahead| lattice.key_code(&ahead))
     }
 }
 
@@ -174,11 +217,17 @@ impl Model {
 const MOST_CODE: u64 = 1 << 60;
 
 /// Three numbers as differences from those promised.
-fn code<C: Coder>(coder: &mut C, model: &mut Whole, given: Code, promised: Code) -> Result<Code, Fault> {
+fn code<C: Coder>(
+    coder: &mut C,
+    model: &mut Whole,
+    given: Code,
+    promised: Code,
+) -> Result<Code, Fault> {
     let mut found = [0; 3];
     for axis in 0..3 {
         let promised = promised[axis].clamp(-MOST_STEPS, MOST_STEPS);
-        found[axis] = promised.saturating_add(model.signed(coder, given[axis].saturating_sub(promised)));
+        found[axis] =
+            promised.saturating_add(model.signed(coder, given[axis].saturating_sub(promised)));
         if found[axis].unsigned_abs() > MOST_CODE {
             return Err(Fault::Number);
         }

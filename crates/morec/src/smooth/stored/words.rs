@@ -133,7 +133,11 @@ impl<'a> Fields<'a> {
             EIGHT_BYTES => f64::from_bits(self.word::<8>()?),
             other => return Err(self.wrong(what, format!("a number of kind {other}"))),
         };
-        if value.is_finite() { Ok(value) } else { Err(self.wrong(what, value.to_string())) }
+        if value.is_finite() {
+            Ok(value)
+        } else {
+            Err(self.wrong(what, value.to_string()))
+        }
     }
 }
 

@@ -47,14 +47,20 @@ fn brute_force(a: &Clip, b: &Clip, metres_per_unit: f64) -> Errors {
 
 fn params() -> impl Strategy<Value = SmoothParams> {
     let bound = prop::option::of(prop_oneof![Just(0.005), 1e-3f64..0.5]);
-    (1e-4f64..0.2, 1e-4f64..0.5, bound, prop_oneof![Just(1.0), Just(0.01)]).prop_map(
-        |(angle_rad, position_metres, joint_position_metres, metres_per_unit)| SmoothParams {
-            angle_rad,
-            position_metres,
-            joint_position_metres,
-            metres_per_unit,
-        },
+    (
+        1e-4f64..0.2,
+        1e-4f64..0.5,
+        bound,
+        prop_oneof![Just(1.0), Just(0.01)],
     )
+        .prop_map(
+            |(angle_rad, position_metres, joint_position_metres, metres_per_unit)| SmoothParams {
+                angle_rad,
+                position_metres,
+                joint_position_metres,
+                metres_per_unit,
+            },
+        )
 }
 
 /// Rounding of the comparison itself.

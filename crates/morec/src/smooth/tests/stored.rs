@@ -6,8 +6,15 @@ use crate::math::{Axis, Vec3};
 use crate::smooth::{CompressedClip, SmoothParams, VERSION, compress};
 
 fn small() -> Vec<u8> {
-    let clip = one_joint(30.0, 40, |t| Axis::Y.rotation(2.0 * t.sin()), |t| Vec3::new(t, t * t, 1.0));
-    compress(&clip, &SmoothParams::default(), &()).unwrap().to_bytes()
+    let clip = one_joint(
+        30.0,
+        40,
+        |t| Axis::Y.rotation(2.0 * t.sin()),
+        |t| Vec3::new(t, t * t, 1.0),
+    );
+    compress(&clip, &SmoothParams::default(), &())
+        .unwrap()
+        .to_bytes()
 }
 
 /// Puts right what the header says of the bytes after it.
@@ -23,13 +30,19 @@ fn with_right_header(mut bytes: Vec<u8>) -> Vec<u8> {
 fn any_cut_and_any_altered_byte_is_an_error() {
     let bytes = small();
     for length in 0..bytes.len() {
-        assert!(CompressedClip::from_bytes(&bytes[..length]).is_err(), "cut to {length}");
+        assert!(
+            CompressedClip::from_bytes(&bytes[..length]).is_err(),
+            "cut to {length}"
+        );
     }
     for at in 0..bytes.len() {
         for change in [1, 0x80, 0xFF] {
             let mut altered = bytes.clone();
             altered[at] ^= change;
-            assert!(CompressedClip::from_bytes(&altered).is_err(), "byte {at} ^ {change}");
+            assert!(
+                CompressedClip::from_bytes(&altered).is_err(),
+                "byte {at} ^ {change}"
+            );
         }
     }
     let mut longer = bytes;
@@ -41,12 +54,17 @@ fn any_cut_and_any_altered_byte_is_an_error() {
 #[test]
 fn altered_bytes_with_a_right_checksum_do_no_harm() {
     let bytes = small();
-    let limits = Limits { frames: 2000, ..Limits::default() };
+    let limits = Limits {
+        frames: 2000,
+        ..Limits::default()
+    };
     for at in 20..bytes.len() {
         for change in 1..=255 {
             let mut altered = bytes.clone();
             altered[at] ^= change;
-            if let Ok(clip) = CompressedClip::from_bytes_within(&with_right_header(altered), &limits) {
+            if let Ok(clip) =
+                CompressedClip::from_bytes_within(&with_right_header(altered), &limits)
+            {
                 clip.sample(clip.source_rate_hz()).unwrap();
             }
         }
@@ -79,10 +97,25 @@ proptest! {
 #[test]
 fn limits_hold() {
     let bytes = small();
-    let error = CompressedClip::from_bytes_within(&bytes, &Limits { frames: 39, ..Limits::default() });
+    let error = CompressedClip::from_bytes_within(
+        &bytes,
+        &Limits {
+            frames: 39,
+            ..Limits::default()
+        },
+    );
     let error = error.unwrap_err();
-    assert!(error.expected.contains("39") && error.found == "40", "{error}");
-    let error = CompressedClip::from_bytes_within(&bytes, &Limits { joints: 0, ..Limits::default() });
+    assert!(
+        error.expected.contains("39") && error.found == "40",
+        "{error}"
+    );
+    let error = CompressedClip::from_bytes_within(
+        &bytes,
+        &Limits {
+            joints: 0,
+            ..Limits::default()
+        },
+    );
     assert!(error.unwrap_err().expected.contains("joints"));
 }
 

@@ -7,7 +7,12 @@ const MIN: usize = 2;
 const MAX: usize = 6;
 
 fn params(wait_chunks: usize) -> SvrdmParams {
-    SvrdmParams { min_chunks: MIN, max_chunks: MAX, wait_chunks, ..SvrdmParams::default() }
+    SvrdmParams {
+        min_chunks: MIN,
+        max_chunks: MAX,
+        wait_chunks,
+        ..SvrdmParams::default()
+    }
 }
 
 /// Columns of a map, many of their cells empty; few values, so that ties are common.
@@ -41,9 +46,16 @@ fn maxima(map: &[Vec<Cell>]) -> Vec<ChunkDetection> {
     for stop in 1..=map.len() as i64 {
         for start in (stop - MAX as i64..=stop - MIN as i64).rev() {
             let cell = at(start, stop);
-            let mut around = (-1..=1).flat_map(|a| (-1..=1).map(move |b| (a, b))).filter(|o| *o != (0, 0));
+            let mut around = (-1..=1)
+                .flat_map(|a| (-1..=1).map(move |b| (a, b)))
+                .filter(|o| *o != (0, 0));
             if around.all(|(a, b)| cell.confidence > at(start + a, stop + b).confidence) {
-                maxima.push(ChunkDetection { class: cell.class, start, stop, score: cell.confidence });
+                maxima.push(ChunkDetection {
+                    class: cell.class,
+                    start,
+                    stop,
+                    score: cell.confidence,
+                });
             }
         }
     }
@@ -64,7 +76,11 @@ fn at_once(map: &[Vec<Cell>], overlap: f64) -> Vec<ChunkDetection> {
 }
 
 /// What is reported, with the number of columns seen by then.
-fn streamed(map: &[Vec<Cell>], params: &SvrdmParams, most: Vec<f64>) -> Vec<(ChunkDetection, usize)> {
+fn streamed(
+    map: &[Vec<Cell>],
+    params: &SvrdmParams,
+    most: Vec<f64>,
+) -> Vec<(ChunkDetection, usize)> {
     let mut tracking = SegmentTracking::new(params, most);
     let room = tracking.room();
     let mut found = vec![];
@@ -77,7 +93,11 @@ fn streamed(map: &[Vec<Cell>], params: &SvrdmParams, most: Vec<f64>) -> Vec<(Chu
 }
 
 fn bounds(map: &[Vec<Cell>]) -> Vec<f64> {
-    let most = |length: usize| map.iter().map(|column| column[length].confidence).fold(0.0, f64::max);
+    let most = |length: usize| {
+        map.iter()
+            .map(|column| column[length].confidence)
+            .fold(0.0, f64::max)
+    };
     (0..=MAX - MIN).map(most).collect()
 }
 
@@ -111,11 +131,19 @@ proptest! {
 
 #[test]
 fn a_maximum_is_reported_once_nothing_can_beat_it() {
-    let cell = |confidence| Cell { class: ClassId(0), confidence };
+    let cell = |confidence| Cell {
+        class: ClassId(0),
+        confidence,
+    };
     let mut map = vec![vec![Cell::NOTHING; MAX - MIN + 1]; 20];
     (map[8][2], map[8][1], map[9][2]) = (cell(0.9), cell(0.5), cell(0.7));
     let first = |most: f64| streamed(&map, &params(256), vec![most; MAX - MIN + 1])[0];
-    let found = ChunkDetection { class: ClassId(0), start: 5, stop: 9, score: 0.9 };
+    let found = ChunkDetection {
+        class: ClassId(0),
+        start: 5,
+        stop: 9,
+        score: 0.9,
+    };
     // The column after it makes it a maximum; if none can be better, that is all.
     assert_eq!(first(0.9), (found, 10));
     // Else until a longest segment cannot share three tenths of its four chunks: one chunk at most.
@@ -127,10 +155,16 @@ fn rising_chains_end_with_the_wait() {
     // Every maximum overlaps the next, which is better.
     let mut map = vec![vec![Cell::NOTHING; MAX - MIN + 1]; 240];
     for (n, column) in map.iter_mut().enumerate().skip(10).step_by(2) {
-        column[2] = Cell { class: ClassId(0), confidence: 0.2 + n as f64 / 400.0 };
+        column[2] = Cell {
+            class: ClassId(0),
+            confidence: 0.2 + n as f64 / 400.0,
+        };
     }
     let found = streamed(&map, &params(12), vec![1.0; MAX - MIN + 1]);
-    assert!(found.iter().all(|(d, seen)| seen - d.stop as usize <= 12), "{found:?}");
+    assert!(
+        found.iter().all(|(d, seen)| seen - d.stop as usize <= 12),
+        "{found:?}"
+    );
     let kept = |m: &ChunkDetection| found.iter().any(|(d, _)| d == m || d.overlaps(m, 0.3));
     assert!(maxima(&map).iter().all(kept));
 }

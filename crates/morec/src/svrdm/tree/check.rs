@@ -46,9 +46,16 @@ pub(super) fn check(parts: &Parts) -> Result<(), TreeError> {
     }
     let found = parts.vectors.len();
     if !found.is_multiple_of(parts.dim) || parts.vectors.iter().any(|v| !v.is_finite()) {
-        return Err(TreeError::Ragged { dim: parts.dim, found });
+        return Err(TreeError::Ragged {
+            dim: parts.dim,
+            found,
+        });
     }
-    let leaves = parts.nodes.iter().filter(|n| matches!(n, Node::Leaf(_))).count();
+    let leaves = parts
+        .nodes
+        .iter()
+        .filter(|n| matches!(n, Node::Leaf(_)))
+        .count();
     if !(2..=MAX_CLASSES).contains(&leaves) {
         return Err(TreeError::Classes { found: leaves });
     }
@@ -58,12 +65,17 @@ pub(super) fn check(parts: &Parts) -> Result<(), TreeError> {
     for (at, node) in parts.nodes.iter().enumerate().rev() {
         let classes = match node {
             Node::Leaf(class) => Ok(BTreeSet::from([*class])),
-            Node::Branch(branch) => figures(branch, rows).and_then(|()| join(branch, at, &mut below)),
+            Node::Branch(branch) => {
+                figures(branch, rows).and_then(|()| join(branch, at, &mut below))
+            }
         };
         below[at] = Some(classes.map_err(|what| TreeError::Node { node: at, what })?);
     }
     match below.iter().skip(1).position(Option::is_some) {
-        Some(stray) => Err(TreeError::Node { node: stray + 1, what: "hangs on no branch" }),
+        Some(stray) => Err(TreeError::Node {
+            node: stray + 1,
+            what: "hangs on no branch",
+        }),
         None => Ok(()),
     }
 }
@@ -80,7 +92,10 @@ fn join(
         if child <= at {
             return Err("a child does not come after its parent");
         }
-        let classes = below.get_mut(child).and_then(Option::take).ok_or("a child is missing or shared")?;
+        let classes = below
+            .get_mut(child)
+            .and_then(Option::take)
+            .ok_or("a child is missing or shared")?;
         if !classes.iter().eq(listed) {
             return Err("the listed classes are not those below");
         }
@@ -102,14 +117,23 @@ fn figures(branch: &Branch, rows: usize) -> Result<(), &'static str> {
     if branch.exemplars.iter().any(Vec::is_empty) {
         return Err("a side has no exemplars");
     }
-    if branch.exemplars.iter().flatten().any(|&row| row as usize >= rows) {
+    if branch
+        .exemplars
+        .iter()
+        .flatten()
+        .any(|&row| row as usize >= rows)
+    {
         return Err("an exemplar is not among the vectors");
     }
     let [l11, _, l22] = branch.factor;
     if !finite(&branch.factor) || l11 <= 0.0 || l22 <= 0.0 {
         return Err("the factor's diagonal is not above 0");
     }
-    if branch.weights.iter().any(|w| w.len() != branch.points.len() || !finite(w)) {
+    if branch
+        .weights
+        .iter()
+        .any(|w| w.len() != branch.points.len() || !finite(w))
+    {
         return Err("the weights do not fit the points");
     }
     if !branch.points.iter().all(|p| finite(p)) {

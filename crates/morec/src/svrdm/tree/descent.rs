@@ -36,7 +36,13 @@ pub struct Candidates {
 
 impl Default for Candidates {
     fn default() -> Self {
-        Self { kept: [Candidate { class: ClassId(0), output: 0.0 }; MAX_CANDIDATES], count: 0 }
+        Self {
+            kept: [Candidate {
+                class: ClassId(0),
+                output: 0.0,
+            }; MAX_CANDIDATES],
+            count: 0,
+        }
     }
 }
 
@@ -57,7 +63,10 @@ impl Candidates {
     /// Puts one in its place; where all places are taken, that with the least output goes. Of equal outputs the
     /// earlier stays in front.
     pub(super) fn insert(&mut self, candidate: Candidate) {
-        let at = self.iter().position(|c| c.output < candidate.output).unwrap_or(self.count);
+        let at = self
+            .iter()
+            .position(|c| c.output < candidate.output)
+            .unwrap_or(self.count);
         if at == MAX_CANDIDATES {
             return;
         }
@@ -73,13 +82,27 @@ impl Tree {
     /// the branches on the way).
     pub fn descend(&self, vector: &[f64], accept: f64, descent: Descent, out: &mut Candidates) {
         out.clear();
-        self.visit(&self.nodes()[0], f64::INFINITY, &Question { vector, accept, descent }, out);
+        self.visit(
+            &self.nodes()[0],
+            f64::INFINITY,
+            &Question {
+                vector,
+                accept,
+                descent,
+            },
+            out,
+        );
     }
 
     /// Goes on below `node`, to which the least output so far was `least`.
     fn visit(&self, node: &Node, least: f64, question: &Question, out: &mut Candidates) {
         let branch = match node {
-            Node::Leaf(class) => return out.insert(Candidate { class: *class, output: least }),
+            Node::Leaf(class) => {
+                return out.insert(Candidate {
+                    class: *class,
+                    output: least,
+                });
+            }
             Node::Branch(branch) => branch,
         };
         let outputs = self.outputs(branch, question.vector);

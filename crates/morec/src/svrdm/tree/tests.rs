@@ -39,10 +39,14 @@ fn descended(tree: &Tree, vector: &[f64], accept: f64, descent: Descent) -> Cand
 #[test]
 fn reduction_is_the_inverse_of_the_factor_on_means_of_the_kernel() {
     let tree = Tree::new(parts()).unwrap();
-    let Node::Branch(root) = &tree.nodes()[0] else { panic!("the root is a branch") };
+    let Node::Branch(root) = &tree.nodes()[0] else {
+        panic!("the root is a branch")
+    };
     let x = [0.7, 0.2];
     let k = |row: usize| {
-        (-((x[0] - parts().vectors[2 * row]).powi(2) + (x[1] - parts().vectors[2 * row + 1]).powi(2)) / 0.5)
+        (-((x[0] - parts().vectors[2 * row]).powi(2)
+            + (x[1] - parts().vectors[2 * row + 1]).powi(2))
+            / 0.5)
             .exp()
     };
     let reduced = tree.reduce(root, &x);
@@ -60,7 +64,10 @@ fn far_away_nothing_is_accepted() {
 fn a_leaf_is_named_with_the_least_output_on_the_way() {
     let tree = Tree::new(parts()).unwrap();
     let found = descended(&tree, &[2.0, 0.0], 0.2, Descent::Larger);
-    let outputs: Vec<[f64; 2]> = tree.branches().map(|(_, b)| tree.outputs(b, &[2.0, 0.0])).collect();
+    let outputs: Vec<[f64; 2]> = tree
+        .branches()
+        .map(|(_, b)| tree.outputs(b, &[2.0, 0.0]))
+        .collect();
     assert_eq!(found.len(), 1);
     assert_eq!(found[0].class, ClassId(1));
     assert_eq!(found[0].output, outputs[0][1].min(outputs[1][0]));
@@ -70,7 +77,10 @@ fn a_leaf_is_named_with_the_least_output_on_the_way() {
 fn the_best_four_are_kept_in_order() {
     let mut all = Candidates::default();
     for (class, output) in [0.3, 0.9, 0.5, 0.9, 0.1, 0.7].into_iter().enumerate() {
-        all.insert(Candidate { class: ClassId(class as u16), output });
+        all.insert(Candidate {
+            class: ClassId(class as u16),
+            output,
+        });
     }
     let kept: Vec<(u16, f64)> = all.iter().map(|c| (c.class.0, c.output)).collect();
     assert_eq!(kept, [(1, 0.9), (3, 0.9), (5, 0.7), (2, 0.5)]);
@@ -83,7 +93,10 @@ fn parts_come_back_from_json() {
     assert_eq!(serde_json::from_str::<Tree>(&text).unwrap(), tree);
     let broken = text.replacen("\"sigma_full\":0.5", "\"sigma_full\":-1", 1);
     assert!(
-        serde_json::from_str::<Tree>(&broken).unwrap_err().to_string().contains("node 0: a kernel's width")
+        serde_json::from_str::<Tree>(&broken)
+            .unwrap_err()
+            .to_string()
+            .contains("node 0: a kernel's width")
     );
 }
 
@@ -101,7 +114,10 @@ fn parts_that_do_not_fit_are_refused() {
         (|p| p.dim = 0, "at least one value"),
         (|p| p.dim = 4, "no whole rows"),
         (|p| p.vectors[0] = f64::NAN, "no whole rows"),
-        (|p| p.nodes = vec![Node::Leaf(ClassId(0))], "2 to 1024 classes"),
+        (
+            |p| p.nodes = vec![Node::Leaf(ClassId(0))],
+            "2 to 1024 classes",
+        ),
         (|p| root(p).exemplars[0] = vec![3], "not among the vectors"),
         (|p| root(p).exemplars[1] = vec![], "no exemplars"),
         (|p| root(p).factor[2] = 0.0, "diagonal"),
@@ -109,7 +125,10 @@ fn parts_that_do_not_fit_are_refused() {
         (|p| root(p).children = [1, 1], "missing or shared"),
         (|p| root(p).children = [0, 2], "after its parent"),
         (|p| root(p).classes[0] = vec![ClassId(1)], "listed classes"),
-        (|p| p.nodes.push(Node::Leaf(ClassId(7))), "hangs on no branch"),
+        (
+            |p| p.nodes.push(Node::Leaf(ClassId(7))),
+            "hangs on no branch",
+        ),
     ];
     for (damage, said) in cases {
         let mut parts = parts();

@@ -36,8 +36,17 @@ impl Plane {
     /// The plane of two sides under a kernel of this width. O(m²) and more for the spheres.
     pub fn new(sides: [&[&[f64]]; 2], sigma: f64) -> Self {
         let exemplars = sides.map(|side| enclosing(&Distances::new(side).kernel(sigma)).holders());
-        let [a, b] = [0, 1].map(|k| exemplars[k].iter().map(|&i| sides[k][i]).collect::<Vec<_>>());
-        Self { sigma, factor: centroid_factor([&a, &b], sigma), exemplars }
+        let [a, b] = [0, 1].map(|k| {
+            exemplars[k]
+                .iter()
+                .map(|&i| sides[k][i])
+                .collect::<Vec<_>>()
+        });
+        Self {
+            sigma,
+            factor: centroid_factor([&a, &b], sigma),
+            exemplars,
+        }
     }
 
     /// `vector` in this plane of these sides, by the function that recognises (Eq. 3.40).
@@ -69,10 +78,14 @@ impl Machines {
     /// Trains both on samples in the plane.
     pub fn new(sides: [&[[f64; 2]]; 2], sigma: f64, params: &MachineParams) -> Self {
         let points = sides.concat();
-        let side_of: Vec<usize> = (0..points.len()).map(|i| usize::from(i >= sides[0].len())).collect();
+        let side_of: Vec<usize> = (0..points.len())
+            .map(|i| usize::from(i >= sides[0].len()))
+            .collect();
         let pair = svrdm(&Distances::new(&points).kernel(sigma), &side_of, params);
         let [first, second] = &pair.weights;
-        let used: Vec<usize> = (0..points.len()).filter(|&i| first[i] != 0.0 || second[i] != 0.0).collect();
+        let used: Vec<usize> = (0..points.len())
+            .filter(|&i| first[i] != 0.0 || second[i] != 0.0)
+            .collect();
         Self {
             sigma,
             points: used.iter().map(|&i| points[i]).collect(),
@@ -105,7 +118,8 @@ pub fn train(sides: &Sides, params: &TreeParams) -> Trained {
         return with_widths(sides, full, |_| reduced, params, Some(outcome));
     }
     let full = of_sides(sides.vectors, |side| one_width(side, params, Space::Full));
-    let reduced = |planar: [&[[f64; 2]]; 2]| of_sides(planar, |side| one_width(side, params, Space::Reduced));
+    let reduced =
+        |planar: [&[[f64; 2]]; 2]| of_sides(planar, |side| one_width(side, params, Space::Reduced));
     with_widths(sides, full, reduced, params, None)
 }
 
@@ -117,9 +131,15 @@ fn with_widths(
     cross: Option<cross::Outcome>,
 ) -> Trained {
     let plane = Plane::new(sides.vectors, full);
-    let [a, b] = sides.vectors.map(|side| plane.reduce_all(sides.vectors, side));
+    let [a, b] = sides
+        .vectors
+        .map(|side| plane.reduce_all(sides.vectors, side));
     let machines = Machines::new([&a, &b], reduced([&a, &b]), &params.machine);
-    Trained { plane, machines, cross }
+    Trained {
+        plane,
+        machines,
+        cross,
+    }
 }
 
 /// Which of the two widths is asked for.
@@ -139,7 +159,9 @@ pub fn one_width<V: AsRef<[f64]>>(samples: &[V], params: &TreeParams, space: Spa
     let at = |q| quantile(&Distances::new(samples).sorted(), q);
     match params.sigma {
         SigmaRule::Algorithm4 => estimate(&params.algorithm4),
-        SigmaRule::Scaled { full, reduced } => Some(estimate(&params.algorithm4)? * pick(full, reduced)),
+        SigmaRule::Scaled { full, reduced } => {
+            Some(estimate(&params.algorithm4)? * pick(full, reduced))
+        }
         SigmaRule::Quantile { full, reduced } => at(pick(full, reduced)),
         SigmaRule::Fixed { full, reduced } => Some(pick(full, reduced)),
         SigmaRule::CrossValidated(_) => at(0.5),

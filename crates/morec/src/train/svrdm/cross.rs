@@ -31,8 +31,16 @@ impl Default for CrossParams {
         Self {
             accept: 0.92,
             folds: 8,
-            full: Multiples { low: 0.25, high: 2.0, count: 5 },
-            reduced: Multiples { low: 0.1, high: 3.0, count: 9 },
+            full: Multiples {
+                low: 0.25,
+                high: 2.0,
+                count: 5,
+            },
+            reduced: Multiples {
+                low: 0.1,
+                high: 3.0,
+                count: 9,
+            },
             background_cost: 3.0,
             other_cost: 2.0,
         }
@@ -53,7 +61,8 @@ pub struct Multiples {
 impl Multiples {
     fn of(self, unit: f64) -> impl Iterator<Item = f64> {
         let last = self.count.saturating_sub(1).max(1) as f64;
-        (0..self.count.max(1)).map(move |i| unit * self.low * (self.high / self.low).powf(i as f64 / last))
+        (0..self.count.max(1))
+            .map(move |i| unit * self.low * (self.high / self.low).powf(i as f64 / last))
     }
 }
 
@@ -81,17 +90,23 @@ impl Outcome {
 /// are then accepted by some width.
 pub fn choose(sides: &Sides, params: &CrossParams, machine: &MachineParams) -> (f64, f64, Outcome) {
     let folds = folds(sides, params.folds);
-    let unit = of_sides(sides.vectors, |side| quantile(&Distances::new(side).sorted(), 0.5));
+    let unit = of_sides(sides.vectors, |side| {
+        quantile(&Distances::new(side).sorted(), 0.5)
+    });
     let mut best: Option<(f64, f64, Outcome)> = None;
     for full in params.full.of(unit) {
         let whole = View::new(sides, full, |_| true);
-        let parts: Vec<View> =
-            folds.iter().map(|fold| View::new(sides, full, |g| !fold.contains(&g))).collect();
+        let parts: Vec<View> = folds
+            .iter()
+            .map(|fold| View::new(sides, full, |g| !fold.contains(&g)))
+            .collect();
         let [a, b] = &whole.planar;
         let unit = of_sides([a, b], |side| quantile(&Distances::new(side).sorted(), 0.5));
         for reduced in params.reduced.of(unit) {
             let outcome = judge(&whole, &parts, reduced, params.accept, machine);
-            let better = best.as_ref().is_none_or(|b| outcome.worth(params) >= b.2.worth(params));
+            let better = best
+                .as_ref()
+                .is_none_or(|b| outcome.worth(params) >= b.2.worth(params));
             if better {
                 best = Some((full, reduced, outcome));
             }
@@ -111,7 +126,9 @@ impl View {
     fn new(sides: &Sides, sigma: f64, keep: impl Fn(usize) -> bool) -> Self {
         let pick = |side: usize, kept: bool| -> Vec<&[f64]> {
             let all = sides.vectors[side].iter().zip(sides.groups[side]);
-            all.filter(|(_, g)| keep(**g) == kept).map(|(v, _)| *v).collect()
+            all.filter(|(_, g)| keep(**g) == kept)
+                .map(|(v, _)| *v)
+                .collect()
         };
         let kept = [pick(0, true), pick(1, true)];
         let kept = [&kept[0][..], &kept[1][..]];
@@ -130,11 +147,17 @@ impl View {
 
 fn judge(whole: &View, parts: &[View], sigma: f64, accept: f64, params: &MachineParams) -> Outcome {
     let all = whole.machines(sigma, params);
-    let background = share(whole.background.iter().map(|p| all.outputs(p).iter().any(|o| *o >= accept)));
+    let background = share(
+        whole
+            .background
+            .iter()
+            .map(|p| all.outputs(p).iter().any(|o| *o >= accept)),
+    );
     let outputs: Vec<(usize, [f64; 2])> = if parts.is_empty() {
         judged(&all, &whole.planar).collect()
     } else {
-        let of_part = |part: &View| judged(&part.machines(sigma, params), &part.left_out).collect::<Vec<_>>();
+        let of_part =
+            |part: &View| judged(&part.machines(sigma, params), &part.left_out).collect::<Vec<_>>();
         parts.iter().flat_map(of_part).collect()
     };
     Outcome {
@@ -148,17 +171,27 @@ fn judged<'a>(
     machines: &'a Machines,
     planar: &'a [Vec<[f64; 2]>; 2],
 ) -> impl Iterator<Item = (usize, [f64; 2])> + 'a {
-    (0..2).flat_map(move |side| planar[side].iter().map(move |p| (side, machines.outputs(p))))
+    (0..2).flat_map(move |side| {
+        planar[side]
+            .iter()
+            .map(move |p| (side, machines.outputs(p)))
+    })
 }
 
 fn share(all: impl Iterator<Item = bool>) -> f64 {
-    let (hits, count) = all.fold((0, 0), |(hits, count), hit| (hits + usize::from(hit), count + 1));
+    let (hits, count) = all.fold((0, 0), |(hits, count), hit| {
+        (hits + usize::from(hit), count + 1)
+    });
     f64::from(hits as u32) / f64::from(count.max(1))
 }
 
 /// Groups dealt into at most `most` parts, without those parts that would leave a side empty.
 fn folds(sides: &Sides, most: usize) -> Vec<BTreeSet<usize>> {
-    let groups: BTreeSet<usize> = sides.groups.iter().flat_map(|g| g.iter().copied()).collect();
+    let groups: BTreeSet<usize> = sides
+        .groups
+        .iter()
+        .flat_map(|g| g.iter().copied())
+        .collect();
     let mut folds = vec![BTreeSet::new(); groups.len().min(most)];
     let count = folds.len().max(1);
     for (i, group) in groups.into_iter().enumerate() {
@@ -166,6 +199,11 @@ fn folds(sides: &Sides, most: usize) -> Vec<BTreeSet<usize>> {
             fold.insert(group);
         }
     }
-    folds.retain(|fold| sides.groups.iter().all(|side| side.iter().any(|g| !fold.contains(g))));
+    folds.retain(|fold| {
+        sides
+            .groups
+            .iter()
+            .all(|side| side.iter().any(|g| !fold.contains(g)))
+    });
     folds
 }

@@ -42,7 +42,9 @@ impl Distances {
     #[must_use]
     pub fn among(&self, members: &[usize]) -> Self {
         let m = members.len();
-        Self(DMatrix::from_fn(m, m, |i, j| self.0[(members[i], members[j])]))
+        Self(DMatrix::from_fn(m, m, |i, j| {
+            self.0[(members[i], members[j])]
+        }))
     }
 
     /// The kernel's matrix `K` at this width. O(m²).
@@ -55,7 +57,10 @@ impl Distances {
     /// rounding count as equal.
     pub fn sorted(&self) -> Vec<f64> {
         let pairs = (0..self.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
-        let mut all: Vec<f64> = pairs.map(|(i, j)| self.between(i, j)).filter(|d| *d > SAME).collect();
+        let mut all: Vec<f64> = pairs
+            .map(|(i, j)| self.between(i, j))
+            .filter(|d| *d > SAME)
+            .collect();
         all.sort_unstable_by(f64::total_cmp);
         all
     }
@@ -66,8 +71,12 @@ impl Distances {
         if m < 2 {
             return 0.0;
         }
-        let nearest =
-            |i: usize| (0..m).filter(|j| *j != i).map(|j| self.between(i, j)).fold(f64::INFINITY, f64::min);
+        let nearest = |i: usize| {
+            (0..m)
+                .filter(|j| *j != i)
+                .map(|j| self.between(i, j))
+                .fold(f64::INFINITY, f64::min)
+        };
         (0..m).map(nearest).sum::<f64>() / m as f64
     }
 }

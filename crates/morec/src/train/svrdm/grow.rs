@@ -103,14 +103,30 @@ pub fn grow(
     params: &TreeParams,
 ) -> Result<Grown, GrowError> {
     let dim = checked(samples, background)?;
-    let mut grower = Grower { samples, params, nodes: vec![], used: BTreeSet::new(), reports: vec![] };
-    let classes: Vec<ClassId> =
-        samples.iter().map(|s| s.class).collect::<BTreeSet<_>>().into_iter().collect();
+    let mut grower = Grower {
+        samples,
+        params,
+        nodes: vec![],
+        used: BTreeSet::new(),
+        reports: vec![],
+    };
+    let classes: Vec<ClassId> = samples
+        .iter()
+        .map(|s| s.class)
+        .collect::<BTreeSet<_>>()
+        .into_iter()
+        .collect();
     if classes.len() < 2 {
-        return Err(GrowError::TooFewClasses { found: classes.len() });
+        return Err(GrowError::TooFewClasses {
+            found: classes.len(),
+        });
     }
     grower.nodes.push(Node::Leaf(classes[0])); // its place; the branch comes below
-    let mut queue = VecDeque::from([(0, classes, background.iter().map(Vec::as_slice).collect::<Vec<_>>())]);
+    let mut queue = VecDeque::from([(
+        0,
+        classes,
+        background.iter().map(Vec::as_slice).collect::<Vec<_>>(),
+    )]);
     while let Some((at, classes, background)) = queue.pop_front() {
         queue.extend(grower.branch(at, &classes, &background));
     }
@@ -119,11 +135,24 @@ pub fn grow(
 
 fn checked(samples: &[FeatureSample], background: &[Vec<f64>]) -> Result<usize, GrowError> {
     let expected = samples.first().map_or(0, |s| s.vector.len());
-    let named = samples.iter().map(|s| &s.vector).enumerate().map(|(i, v)| ("sample", i, v));
-    for (what, index, vector) in named.chain(background.iter().enumerate().map(|(i, v)| ("background", i, v)))
-    {
+    let named = samples
+        .iter()
+        .map(|s| &s.vector)
+        .enumerate()
+        .map(|(i, v)| ("sample", i, v));
+    for (what, index, vector) in named.chain(
+        background
+            .iter()
+            .enumerate()
+            .map(|(i, v)| ("background", i, v)),
+    ) {
         if vector.len() != expected {
-            return Err(GrowError::Dimension { what, index, expected, found: vector.len() });
+            return Err(GrowError::Dimension {
+                what,
+                index,
+                expected,
+                found: vector.len(),
+            });
         }
         if vector.iter().any(|v| !v.is_finite()) {
             return Err(GrowError::NotFinite { what, index });
@@ -146,14 +175,22 @@ type Task<'a> = (usize, Vec<ClassId>, Vec<&'a [f64]>);
 
 impl<'a> Grower<'a> {
     /// Grows the branch at node `at`; gives its sides that have more than one class.
-    fn branch(&mut self, at: usize, classes: &[ClassId], background: &[&'a [f64]]) -> Vec<Task<'a>> {
+    fn branch(
+        &mut self,
+        at: usize,
+        classes: &[ClassId],
+        background: &[&'a [f64]],
+    ) -> Vec<Task<'a>> {
         let (sigma_partition, parted) = self.part(classes);
         let members = [0, 1].map(|k| self.members(&parted[k]));
         let of_side = |k: usize| members[k].iter().map(|&i| &self.samples[i as usize]);
         let vectors = [0, 1].map(|k| of_side(k).map(|s| &s.vector[..]).collect::<Vec<_>>());
         let groups = [0, 1].map(|k| of_side(k).map(|s| s.group).collect::<Vec<_>>());
-        let sides =
-            Sides { vectors: [&vectors[0], &vectors[1]], groups: [&groups[0], &groups[1]], background };
+        let sides = Sides {
+            vectors: [&vectors[0], &vectors[1]],
+            groups: [&groups[0], &groups[1]],
+            background,
+        };
         let trained = train(&sides, self.params);
         let passed = passing(&trained, sides.vectors, background, self.accept());
         self.reports.push(BranchReport {
@@ -170,26 +207,41 @@ impl<'a> Grower<'a> {
         });
         let children = self.place(at, trained, &members, &parted);
         let tasks = children.into_iter().zip(parted).zip(passed);
-        tasks.filter(|((_, classes), _)| classes.len() > 1).map(|((at, c), b)| (at, c, b)).collect()
+        tasks
+            .filter(|((_, classes), _)| classes.len() > 1)
+            .map(|((at, c), b)| (at, c, b))
+            .collect()
     }
 
     /// The classes in two (Alg. 6), and the width they were parted under.
     fn part(&self, classes: &[ClassId]) -> (f64, [Vec<ClassId>; 2]) {
         let vectors = |class: &ClassId| -> Vec<&[f64]> {
-            self.samples.iter().filter(|s| s.class == *class).map(|s| &s.vector[..]).collect()
+            self.samples
+                .iter()
+                .filter(|s| s.class == *class)
+                .map(|s| &s.vector[..])
+                .collect()
         };
         let by_class: Vec<Vec<&[f64]>> = classes.iter().map(vectors).collect();
         let sigma = one_width(&by_class.concat(), self.params, Space::Full).unwrap_or(1.0);
         let products = function_products(&by_class, sigma, &self.params.machine);
         let split = partition(&products, &self.params.partition);
-        let side =
-            |k: usize| (0..classes.len()).filter(|&i| split.sides[i] == k).map(|i| classes[i]).collect();
+        let side = |k: usize| {
+            (0..classes.len())
+                .filter(|&i| split.sides[i] == k)
+                .map(|i| classes[i])
+                .collect()
+        };
         (sigma, [side(0), side(1)])
     }
 
     /// Samples of these classes, by number.
     fn members(&self, classes: &[ClassId]) -> Vec<u32> {
-        (0..).zip(self.samples).filter(|(_, s)| classes.contains(&s.class)).map(|(i, _)| i).collect()
+        (0..)
+            .zip(self.samples)
+            .filter(|(_, s)| classes.contains(&s.class))
+            .map(|(i, _)| i)
+            .collect()
     }
 
     /// From which output on background passes.
@@ -208,10 +260,17 @@ impl<'a> Grower<'a> {
         members: &[Vec<u32>; 2],
         parted: &[Vec<ClassId>; 2],
     ) -> [usize; 2] {
-        let exemplars = [0, 1].map(|k| trained.plane.exemplars[k].iter().map(|&i| members[k][i]).collect());
-        self.used.extend(exemplars.iter().flat_map(|e: &Vec<u32>| e.iter().copied()));
+        let exemplars = [0, 1].map(|k| {
+            trained.plane.exemplars[k]
+                .iter()
+                .map(|&i| members[k][i])
+                .collect()
+        });
+        self.used
+            .extend(exemplars.iter().flat_map(|e: &Vec<u32>| e.iter().copied()));
         let first = self.nodes.len();
-        self.nodes.extend(parted.iter().map(|classes| Node::Leaf(classes[0])));
+        self.nodes
+            .extend(parted.iter().map(|classes| Node::Leaf(classes[0])));
         self.nodes[at] = Node::Branch(Box::new(Branch {
             sigma_full: trained.plane.sigma,
             exemplars,
@@ -227,16 +286,35 @@ impl<'a> Grower<'a> {
 
     /// The tree, its exemplars kept once.
     fn grown(self, dim: usize) -> Result<Grown, GrowError> {
-        let rows: BTreeMap<u32, u32> =
-            self.used.iter().zip(0..).map(|(&sample, row)| (sample, row)).collect();
-        let vectors = self.used.iter().flat_map(|&i| self.samples[i as usize].vector.clone()).collect();
+        let rows: BTreeMap<u32, u32> = self
+            .used
+            .iter()
+            .zip(0..)
+            .map(|(&sample, row)| (sample, row))
+            .collect();
+        let vectors = self
+            .used
+            .iter()
+            .flat_map(|&i| self.samples[i as usize].vector.clone())
+            .collect();
         let mut nodes = self.nodes;
         for node in &mut nodes {
             if let Node::Branch(branch) = node {
-                branch.exemplars.iter_mut().flatten().for_each(|row| *row = rows[row]);
+                branch
+                    .exemplars
+                    .iter_mut()
+                    .flatten()
+                    .for_each(|row| *row = rows[row]);
             }
         }
-        Ok(Grown { tree: Tree::new(Parts { dim, vectors, nodes })?, branches: self.reports })
+        Ok(Grown {
+            tree: Tree::new(Parts {
+                dim,
+                vectors,
+                nodes,
+            })?,
+            branches: self.reports,
+        })
     }
 }
 
@@ -249,7 +327,9 @@ fn passing<'a>(
 ) -> [Vec<&'a [f64]>; 2] {
     let mut passed = [vec![], vec![]];
     for &vector in background {
-        let outputs = trained.machines.outputs(&trained.plane.reduce(sides, vector));
+        let outputs = trained
+            .machines
+            .outputs(&trained.plane.reduce(sides, vector));
         for side in 0..2 {
             if outputs[side] >= accept {
                 passed[side].push(vector);

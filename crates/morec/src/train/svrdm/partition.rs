@@ -25,7 +25,12 @@ pub struct PartitionParams {
 
 impl Default for PartitionParams {
     fn default() -> Self {
-        Self { exact_up_to: 12, restarts: 20, seed: 1, unit_length: false }
+        Self {
+            exact_up_to: 12,
+            restarts: 20,
+            seed: 1,
+            unit_length: false,
+        }
     }
 }
 
@@ -45,14 +50,18 @@ pub fn function_products<V: AsRef<[f64]>>(
     machine: &MachineParams,
 ) -> DMatrix<f64> {
     let kernel = Gaussian::new(sigma);
-    let alphas: Vec<DVector<f64>> =
-        classes.iter().map(|class| svrm(Distances::new(class).kernel(sigma), machine).alpha).collect();
+    let alphas: Vec<DVector<f64>> = classes
+        .iter()
+        .map(|class| svrm(Distances::new(class).kernel(sigma), machine).alpha)
+        .collect();
     let product = |i: usize, j: usize| -> f64 {
         let pairs = classes[i]
             .iter()
             .zip(&alphas[i])
             .flat_map(|x| classes[j].iter().zip(&alphas[j]).map(move |y| (x, y)));
-        pairs.map(|((x, a), (y, b))| a * b * kernel.of(x.as_ref(), y.as_ref())).sum()
+        pairs
+            .map(|((x, a), (y, b))| a * b * kernel.of(x.as_ref(), y.as_ref()))
+            .sum()
     };
     let n = classes.len();
     let mut products = DMatrix::zeros(n, n);
@@ -68,19 +77,37 @@ pub fn function_products<V: AsRef<[f64]>>(
 /// The split of at least two classes with the least scatter: of all for few classes, else of those that clustering
 /// reaches (Alg. 6) from seeded random splits. `products` are those of [`function_products`].
 pub fn partition(products: &DMatrix<f64>, params: &PartitionParams) -> Split {
-    let products = if params.unit_length { to_unit_length(products) } else { products.clone() };
+    let products = if params.unit_length {
+        to_unit_length(products)
+    } else {
+        products.clone()
+    };
     let n = products.nrows();
     let splits: Vec<Vec<usize>> = if n <= params.exact_up_to.clamp(2, 20) {
         // Class 0 stays on side 0: the mirrored splits say the same.
-        (1..1usize << (n - 1)).map(|bits| (0..n).map(|i| (bits << 1) >> i & 1).collect()).collect()
+        (1..1usize << (n - 1))
+            .map(|bits| (0..n).map(|i| (bits << 1) >> i & 1).collect())
+            .collect()
     } else {
         let restart = |r| cluster(&products, &mut Rng::for_part(params.seed, r as u64));
         (0..params.restarts.max(1)).map(restart).collect()
     };
-    let rated = splits.into_iter().map(|sides| Split { scatter: scatter(&products, &sides), sides });
+    let rated = splits.into_iter().map(|sides| Split {
+        scatter: scatter(&products, &sides),
+        sides,
+    });
     // Strictly better by more than rounding: of equals the first, on every platform.
-    let best = rated.reduce(|best, next| if next.scatter < best.scatter - 1e-12 { next } else { best });
-    mirrored(best.unwrap_or_else(|| Split { sides: vec![0; n], scatter: 0.0 }))
+    let best = rated.reduce(|best, next| {
+        if next.scatter < best.scatter - 1e-12 {
+            next
+        } else {
+            best
+        }
+    });
+    mirrored(best.unwrap_or_else(|| Split {
+        sides: vec![0; n],
+        scatter: 0.0,
+    }))
 }
 
 fn mirrored(mut split: Split) -> Split {
@@ -110,7 +137,9 @@ fn members(sides: &[usize], side: usize) -> Vec<usize> {
 }
 
 fn mutual(products: &DMatrix<f64>, a: &[usize], b: &[usize]) -> f64 {
-    a.iter().flat_map(|&i| b.iter().map(move |&j| products[(i, j)])).sum()
+    a.iter()
+        .flat_map(|&i| b.iter().map(move |&j| products[(i, j)]))
+        .sum()
 }
 
 /// Algorithm 6 from one random split: classes go to the nearer centroid (Eq. 3.43) in turn until none moves. The last
@@ -123,7 +152,9 @@ fn cluster(products: &DMatrix<f64>, rng: &mut Rng) -> Vec<usize> {
     for _ in 0..50 {
         let mut moved = false;
         for j in 0..n {
-            let nearer = usize::from(squared_to(products, &sides, j, 1) < squared_to(products, &sides, j, 0));
+            let nearer = usize::from(
+                squared_to(products, &sides, j, 1) < squared_to(products, &sides, j, 0),
+            );
             let alone = members(&sides, sides[j]).len() == 1;
             if nearer != sides[j] && !alone {
                 sides[j] = nearer;

@@ -28,7 +28,10 @@ pub struct Stop {
 impl Default for Stop {
     /// Outputs of a machine are about 1: eight digits of them.
     fn default() -> Self {
-        Self { residual: 1e-8, passes: 1000 }
+        Self {
+            residual: 1e-8,
+            passes: 1000,
+        }
     }
 }
 
@@ -61,7 +64,11 @@ impl BoxQp {
     }
 
     fn worst(&self, alpha: &DVector<f64>, gradient: &DVector<f64>) -> f64 {
-        alpha.iter().zip(gradient).map(|(a, g)| self.missed(*a, *g)).fold(0.0, f64::max)
+        alpha
+            .iter()
+            .zip(gradient)
+            .map(|(a, g)| self.missed(*a, *g))
+            .fold(0.0, f64::max)
     }
 
     fn missed(&self, alpha: f64, gradient: f64) -> f64 {
@@ -101,7 +108,11 @@ impl BoxQp {
             }
             passes += 1;
         }
-        Solution { residual: self.residual(&alpha), alpha, passes }
+        Solution {
+            residual: self.residual(&alpha),
+            alpha,
+            passes,
+        }
     }
 
     /// The same solution sooner: `m` times the coordinate that gains most, then the active set method (Nocedal and
@@ -113,7 +124,9 @@ impl BoxQp {
         let mut alpha = DVector::zeros(m);
         let mut gradient = -self.linear.clone();
         for _ in 0..m {
-            let Some((i, step)) = self.best_step(&alpha, &gradient) else { break };
+            let Some((i, step)) = self.best_step(&alpha, &gradient) else {
+                break;
+            };
             self.take(i, step, &mut alpha, &mut gradient);
         }
         let mut steps = 0;
@@ -125,12 +138,18 @@ impl BoxQp {
             }
             if self.settle(&mut alpha, &gradient) {
                 gradient = self.gradient(&alpha);
-                let Some((i, step)) = self.best_step(&alpha, &gradient) else { break };
+                let Some((i, step)) = self.best_step(&alpha, &gradient) else {
+                    break;
+                };
                 self.take(i, step, &mut alpha, &mut gradient);
             }
             steps += 1;
         }
-        Solution { residual: self.residual(&alpha), alpha, passes: 1 + steps }
+        Solution {
+            residual: self.residual(&alpha),
+            alpha,
+            passes: 1 + steps,
+        }
     }
 
     /// The coordinate step that lowers the objective most; `None` where none does.
@@ -149,10 +168,13 @@ impl BoxQp {
     /// Takes the coordinates inside the box to their joint optimum, or as far on the way as the box allows; says
     /// whether they got there.
     fn settle(&self, alpha: &mut DVector<f64>, gradient: &DVector<f64>) -> bool {
-        let inside: Vec<usize> =
-            (0..alpha.len()).filter(|&i| alpha[i] > 0.0 && alpha[i] < self.upper).collect();
+        let inside: Vec<usize> = (0..alpha.len())
+            .filter(|&i| alpha[i] > 0.0 && alpha[i] < self.upper)
+            .collect();
         let right = DVector::from_iterator(inside.len(), inside.iter().map(|&i| -gradient[i]));
-        let Some(factor) = self.factor(&inside) else { return true };
+        let Some(factor) = self.factor(&inside) else {
+            return true;
+        };
         let direction = factor.solve(&right);
         if direction.iter().any(|d| !d.is_finite()) {
             return true;
@@ -162,19 +184,29 @@ impl BoxQp {
             d if d > 0.0 => (self.upper - alpha[i]) / d,
             d => alpha[i] / -d,
         };
-        let rooms: Vec<f64> = inside.iter().zip(&direction).map(|(&i, d)| room(i, *d)).collect();
+        let rooms: Vec<f64> = inside
+            .iter()
+            .zip(&direction)
+            .map(|(&i, d)| room(i, *d))
+            .collect();
         let share = rooms.iter().copied().fold(1.0, f64::min);
         for ((&i, d), room) in inside.iter().zip(&direction).zip(rooms) {
             let bound = if *d > 0.0 { self.upper } else { 0.0 };
             // Who reaches a bound is there exactly, whatever rounding says.
-            alpha[i] = if room <= share { bound } else { (alpha[i] + share * d).clamp(0.0, self.upper) };
+            alpha[i] = if room <= share {
+                bound
+            } else {
+                (alpha[i] + share * d).clamp(0.0, self.upper)
+            };
         }
         share >= 1.0
     }
 
     /// Wide kernels are singular to rounding: as much is added to the diagonal as makes the factor exist.
     fn factor(&self, free: &[usize]) -> Option<Cholesky<f64, nalgebra::Dyn>> {
-        let part = DMatrix::from_fn(free.len(), free.len(), |i, j| self.matrix[(free[i], free[j])]);
+        let part = DMatrix::from_fn(free.len(), free.len(), |i, j| {
+            self.matrix[(free[i], free[j])]
+        });
         [0.0, 1e-13, 1e-11, 1e-9].into_iter().find_map(|ridge| {
             let mut ridged = part.clone();
             for i in 0..free.len() {

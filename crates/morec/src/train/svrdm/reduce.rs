@@ -8,7 +8,10 @@ use crate::svrdm::kernel::Gaussian;
 pub fn centroid_factor<V: AsRef<[f64]>>(exemplars: [&[V]; 2], sigma: f64) -> [f64; 3] {
     let kernel = Gaussian::new(sigma);
     let mean = |a: &[V], b: &[V]| {
-        let sum: f64 = a.iter().flat_map(|x| b.iter().map(move |y| kernel.of(x.as_ref(), y.as_ref()))).sum();
+        let sum: f64 = a
+            .iter()
+            .flat_map(|x| b.iter().map(move |y| kernel.of(x.as_ref(), y.as_ref())))
+            .sum();
         sum / (a.len() * b.len()) as f64
     };
     let [a, b] = exemplars;

@@ -54,7 +54,12 @@ pub struct Algorithm4 {
 
 impl Default for Algorithm4 {
     fn default() -> Self {
-        Self { radius_factor: 2.2, radius_step: 0.1, lone_is_boundary: true, sweep: Sweep::default() }
+        Self {
+            radius_factor: 2.2,
+            radius_step: 0.1,
+            lone_is_boundary: true,
+            sweep: Sweep::default(),
+        }
     }
 }
 
@@ -84,23 +89,31 @@ pub enum Sweep {
 
 impl Default for Sweep {
     fn default() -> Self {
-        Self::Geometric { low: 0.1, high: 3.0, count: 60 }
+        Self::Geometric {
+            low: 0.1,
+            high: 3.0,
+            count: 60,
+        }
     }
 }
 
 impl Sweep {
     /// The widths for samples whose distances are these, ascending.
     fn widths(self, distances: &[f64]) -> Vec<f64> {
-        let (Some(least), Some(most)) = (distances.first(), distances.last()) else { return vec![] };
+        let (Some(least), Some(most)) = (distances.first(), distances.last()) else {
+            return vec![];
+        };
         let even = |i: usize, count: usize| i as f64 / count.saturating_sub(1).max(1) as f64;
         match self {
             Sweep::Geometric { low, high, count } => {
                 let (from, ratio) = (low * least, high * most / (low * least));
-                (0..count).map(|i| from * ratio.powf(even(i, count))).collect()
+                (0..count)
+                    .map(|i| from * ratio.powf(even(i, count)))
+                    .collect()
             }
-            Sweep::Linear { low, high, count } => {
-                (0..count).map(|i| most * (low + (high - low) * even(i, count))).collect()
-            }
+            Sweep::Linear { low, high, count } => (0..count)
+                .map(|i| most * (low + (high - low) * even(i, count)))
+                .collect(),
         }
     }
 }
@@ -129,19 +142,32 @@ pub fn algorithm4<V: AsRef<[f64]>>(
     let sorted = distances.sorted();
     let nearest = distances.mean_nearest();
     // Where every sample has a twin the nearest neighbours say nothing: the smallest distance there is, then.
-    let nearest = if nearest > SAME { nearest } else { *sorted.first()? };
+    let nearest = if nearest > SAME {
+        nearest
+    } else {
+        *sorted.first()?
+    };
     let (radius_factor, boundary) = shrunk_boundary(samples, &distances, nearest, params, machine);
     let widths = params.sweep.widths(&sorted);
     let mut best = (*widths.first()?, 0);
     for sigma in widths {
         let solution = svrm(distances.kernel(sigma), machine);
         let found = on_boundary(&solution.alpha, machine);
-        let score = found.iter().zip(&boundary).filter(|(a, b)| **a && **b).count();
+        let score = found
+            .iter()
+            .zip(&boundary)
+            .filter(|(a, b)| **a && **b)
+            .count();
         if score >= best.1 {
             best = (sigma, score);
         }
     }
-    Some(Estimate { sigma: best.0, radius_factor, boundary, score: best.1 })
+    Some(Estimate {
+        sigma: best.0,
+        radius_factor,
+        boundary,
+        score: best.1,
+    })
 }
 
 /// The estimated boundary, and the factor at which it is not empty.
@@ -157,8 +183,9 @@ fn shrunk_boundary<V: AsRef<[f64]>>(
     loop {
         let boundary: Vec<bool> = (0..samples.len())
             .map(|i| {
-                let ball: Vec<usize> =
-                    (0..samples.len()).filter(|&j| distances.between(i, j) < factor * nearest).collect();
+                let ball: Vec<usize> = (0..samples.len())
+                    .filter(|&j| distances.between(i, j) < factor * nearest)
+                    .collect();
                 on_ball_boundary(samples, distances, &ball, i, params, machine)
             })
             .collect();
@@ -194,11 +221,16 @@ fn on_ball_boundary<V: AsRef<[f64]>>(
 
 /// Mean distance of vectors from their centroid; 0 if there are none.
 fn mean_radius(vectors: &[&[f64]]) -> f64 {
-    let Some(first) = vectors.first() else { return 0.0 };
+    let Some(first) = vectors.first() else {
+        return 0.0;
+    };
     let count = vectors.len() as f64;
     let mut centroid = vec![0.0; first.len()];
     for vector in vectors {
-        centroid.iter_mut().zip(*vector).for_each(|(c, v)| *c += v / count);
+        centroid
+            .iter_mut()
+            .zip(*vector)
+            .for_each(|(c, v)| *c += v / count);
     }
     let far = |v: &&[f64]| crate::svrdm::kernel::squared_distance(v, &centroid).sqrt();
     vectors.iter().map(far).sum::<f64>() / count
@@ -218,8 +250,14 @@ pub fn of_sides<V: AsRef<[f64]>>(sides: [&[V]; 2], of: impl Fn(&[V]) -> Option<f
         (Some(a), Some(b)) => 0.5 * (a + b),
         (Some(one), None) | (None, Some(one)) => one,
         (None, None) => {
-            let both: Vec<&[f64]> = sides.iter().flat_map(|s| s.iter().map(AsRef::as_ref)).collect();
-            Distances::new(&both).sorted().first().map_or(1.0, |d| 0.5 * d)
+            let both: Vec<&[f64]> = sides
+                .iter()
+                .flat_map(|s| s.iter().map(AsRef::as_ref))
+                .collect();
+            Distances::new(&both)
+                .sorted()
+                .first()
+                .map_or(1.0, |d| 0.5 * d)
         }
     }
 }

@@ -43,12 +43,18 @@ pub fn sign_vector(eigenvectors: &[&[f64]], rule: SignRule) -> Option<SignVector
         rows.row_iter_mut().for_each(|mut row| row -= &mean);
     }
     let eigen = SymmetricEigen::new(rows.tr_mul(&rows));
-    let mut direction: DVector<f64> = eigen.eigenvectors.column(eigen.eigenvalues.imax()).into_owned();
+    let mut direction: DVector<f64> = eigen
+        .eigenvectors
+        .column(eigen.eigenvalues.imax())
+        .into_owned();
     // An eigenvector comes with either sign; the same data shall give the same vector.
     if direction[direction.iamax()] < 0.0 {
         direction.neg_mut();
     }
     let product = |v: &&[f64]| v.iter().zip(&direction).map(|(v, w)| v * w).sum();
     let products = eigenvectors.iter().map(product).collect();
-    Some(SignVector { direction: direction.as_slice().to_vec(), products })
+    Some(SignVector {
+        direction: direction.as_slice().to_vec(),
+        products,
+    })
 }

@@ -19,7 +19,9 @@ const HOLDS: f64 = 1e-6;
 impl Sphere {
     /// The samples it rests on: those with a weight.
     pub fn holders(&self) -> Vec<usize> {
-        (0..self.alpha.len()).filter(|&i| self.alpha[i] > HOLDS).collect()
+        (0..self.alpha.len())
+            .filter(|&i| self.alpha[i] > HOLDS)
+            .collect()
     }
 }
 
@@ -35,12 +37,15 @@ pub fn enclosing(kernel: &DMatrix<f64>) -> Sphere {
     let mut product = kernel * &alpha;
     let mut gap = 0.0;
     for _ in 0..1000 * m {
-        let Some((to, from, open)) = pair(kernel, &alpha, &product) else { break };
+        let Some((to, from, open)) = pair(kernel, &alpha, &product) else {
+            break;
+        };
         gap = open;
         if gap < 1e-10 {
             break;
         }
-        let curvature = (kernel[(to, to)] + kernel[(from, from)] - 2.0 * kernel[(to, from)]).max(1e-12);
+        let curvature =
+            (kernel[(to, to)] + kernel[(from, from)] - 2.0 * kernel[(to, from)]).max(1e-12);
         let step = alpha[from].min((product[from] - product[to]) / curvature);
         alpha[to] += step;
         alpha[from] -= step;
@@ -48,11 +53,19 @@ pub fn enclosing(kernel: &DMatrix<f64>) -> Sphere {
         product.axpy(-step, &kernel.column(from), 1.0);
     }
     let radius = (1.0 - alpha.dot(&(kernel * &alpha))).max(0.0).sqrt();
-    Sphere { alpha, radius, gap: 2.0 * gap }
+    Sphere {
+        alpha,
+        radius,
+        gap: 2.0 * gap,
+    }
 }
 
 /// Where weight should go, where it should come from, and how far the two are from balance.
-fn pair(kernel: &DMatrix<f64>, alpha: &DVector<f64>, product: &DVector<f64>) -> Option<(usize, usize, f64)> {
+fn pair(
+    kernel: &DMatrix<f64>,
+    alpha: &DVector<f64>,
+    product: &DVector<f64>,
+) -> Option<(usize, usize, f64)> {
     let to = product.argmin().0;
     let holding = || (0..alpha.len()).filter(|&i| alpha[i] > 0.0 && i != to);
     let gain = |from: usize| {
@@ -60,6 +73,8 @@ fn pair(kernel: &DMatrix<f64>, alpha: &DVector<f64>, product: &DVector<f64>) -> 
         (product[from] - product[to]).powi(2) / curvature.max(1e-12)
     };
     let from = holding().max_by(|&a, &b| gain(a).total_cmp(&gain(b)))?;
-    let open = holding().map(|i| product[i] - product[to]).fold(0.0, f64::max);
+    let open = holding()
+        .map(|i| product[i] - product[to])
+        .fold(0.0, f64::max);
     Some((to, from, open))
 }

@@ -19,7 +19,12 @@ pub struct MachineParams {
 
 impl Default for MachineParams {
     fn default() -> Self {
-        Self { own: 1.0, other: 0.4, penalty: 10.0, stop: Stop::default() }
+        Self {
+            own: 1.0,
+            other: 0.4,
+            penalty: 10.0,
+            stop: Stop::default(),
+        }
     }
 }
 
@@ -29,12 +34,20 @@ const AT_BOUND: f64 = 1e-6;
 /// The machine that represents one class, `f(x) = Σ αᵢ K(xᵢ, x)` (Eq. 3.36, as corrected), from its samples' kernel.
 pub fn svrm(kernel: DMatrix<f64>, params: &MachineParams) -> Solution {
     let linear = DVector::from_element(kernel.nrows(), params.own);
-    BoxQp { matrix: kernel, linear, upper: params.penalty }.solve(params.stop)
+    BoxQp {
+        matrix: kernel,
+        linear,
+        upper: params.penalty,
+    }
+    .solve(params.stop)
 }
 
 /// The samples on a machine's bounding boundary: `0 < αᵢ < C`, where `f(xᵢ) = T` (§3.7.3).
 pub fn on_boundary(alpha: &DVector<f64>, params: &MachineParams) -> Vec<bool> {
-    alpha.iter().map(|a| *a > AT_BOUND && *a < params.penalty - AT_BOUND).collect()
+    alpha
+        .iter()
+        .map(|a| *a > AT_BOUND && *a < params.penalty - AT_BOUND)
+        .collect()
 }
 
 /// The two machines of a pair.
@@ -53,25 +66,36 @@ pub fn svrdm(kernel: &DMatrix<f64>, sides: &[usize], params: &MachineParams) -> 
     let solutions = [0, 1].map(|side| {
         let qp = problem(kernel, sides, side, params);
         let solution = qp.solve(params.stop);
-        let signed = solution.alpha.map_with_location(|i, _, a| if sides[i] == side { a } else { -a });
+        let signed = solution
+            .alpha
+            .map_with_location(|i, _, a| if sides[i] == side { a } else { -a });
         (signed, solution.residual)
     });
     let residual = solutions[0].1.max(solutions[1].1);
-    Pair { weights: solutions.map(|(weights, _)| weights), residual }
+    Pair {
+        weights: solutions.map(|(weights, _)| weights),
+        residual,
+    }
 }
 
 /// The quadratic program of the machine for `side` (Eq. 3.31): labels are +1 on that side, `τ` is `T` there and `−t`
 /// on the other.
-pub fn problem(kernel: &DMatrix<f64>, sides: &[usize], side: usize, params: &MachineParams) -> BoxQp {
+pub fn problem(
+    kernel: &DMatrix<f64>,
+    sides: &[usize],
+    side: usize,
+    params: &MachineParams,
+) -> BoxQp {
     let label = |i: usize| if sides[i] == side { 1.0 } else { -1.0 };
     BoxQp {
         matrix: kernel.map_with_location(|i, j, k| label(i) * label(j) * k),
-        linear: DVector::from_fn(
-            sides.len(),
-            |i, _| {
-                if sides[i] == side { params.own } else { -params.other }
-            },
-        ),
+        linear: DVector::from_fn(sides.len(), |i, _| {
+            if sides[i] == side {
+                params.own
+            } else {
+                -params.other
+            }
+        }),
         upper: params.penalty,
     }
 }

@@ -35,17 +35,25 @@ pub fn fit(
             stages.eigenvectors
         )));
     }
-    let described: Vec<(&ThesisSample, Gram, Directions)> =
-        samples.iter().filter_map(|s| described(s, dim, params)).collect();
+    let described: Vec<(&ThesisSample, Gram, Directions)> = samples
+        .iter()
+        .filter_map(|s| described(s, dim, params))
+        .collect();
     let signs: Vec<SignVector> = (0..stages.eigenvectors)
         .filter_map(|j| {
             let vectors: Vec<&[f64]> = described.iter().map(|(_, _, d)| d.vector(j)).collect();
             sign_vector(&vectors, params.sign)
         })
         .collect();
-    let directions: Vec<f64> = signs.iter().flat_map(|s| s.direction.iter().copied()).collect();
+    let directions: Vec<f64> = signs
+        .iter()
+        .flat_map(|s| s.direction.iter().copied())
+        .collect();
     // As the file keeps them, since features depend on their sides.
-    let directions: Vec<f64> = directions.into_iter().map(|v| f64::from(v as f32)).collect();
+    let directions: Vec<f64> = directions
+        .into_iter()
+        .map(|v| f64::from(v as f32))
+        .collect();
     if directions.len() != stages.feature_dim(dim) {
         return Err(TrainError::NoSamples);
     }
@@ -53,17 +61,28 @@ pub fn fit(
     let mut profiles = Profiles::new(stages.comparison.width(dim));
     let (mut features, mut frames) = (vec![], vec![(0, 0usize); classes.len()]);
     for (sample, gram, _) in &described {
-        let Some(feature) = extraction.feature(gram) else { continue };
-        features.push(FeatureSample { class: sample.class, group: sample.group, vector: feature.to_vec() });
+        let Some(feature) = extraction.feature(gram) else {
+            continue;
+        };
+        features.push(FeatureSample {
+            class: sample.class,
+            group: sample.group,
+            vector: feature.to_vec(),
+        });
         profiles.push(sample.class, extraction.profile(gram, sample.rows.iter()));
         let (sum, count) = &mut frames[sample.class.index()];
         (*sum, *count) = (*sum + sample.rows.len(), *count + 1);
     }
     if let Some(class) = frames.iter().position(|(_, count)| *count == 0) {
-        return Err(TrainError::NoSample { class: classes[class].name.clone() });
+        return Err(TrainError::NoSample {
+            class: classes[class].name.clone(),
+        });
     }
-    let grown = grow(&features, &[], &params.tree).map_err(|e| TrainError::Params(e.to_string()))?;
-    let mean_secs = frames.iter().map(|(sum, count)| *sum as f64 / *count as f64 / params.pose.rate_hz);
+    let grown =
+        grow(&features, &[], &params.tree).map_err(|e| TrainError::Params(e.to_string()))?;
+    let mean_secs = frames
+        .iter()
+        .map(|(sum, count)| *sum as f64 / *count as f64 / params.pose.rate_hz);
     let model = SvrdmModel {
         classes: classes.to_vec(),
         pivots: params.pivots.set(),
@@ -78,7 +97,11 @@ pub fn fit(
     };
     model.check().map_err(TrainError::Svrdm)?;
     let model = model.compact().map_err(TrainError::Svrdm)?;
-    Ok(Fitted { model, branches: grown.branches, signs })
+    Ok(Fitted {
+        model,
+        branches: grown.branches,
+        signs,
+    })
 }
 
 /// A sample with its `AᵀA` and directions; `None` if it does not move at all.
@@ -89,5 +112,7 @@ fn described<'s>(
 ) -> Option<(&'s ThesisSample, Gram, Directions)> {
     let gram = Gram::of_rows(sample.rows.values(), dim, params.stages.chunk_frames);
     let mut directions = Directions::new(params.stages.eigenvectors, dim);
-    directions.find(&gram, params.stages.centring).then_some((sample, gram, directions))
+    directions
+        .find(&gram, params.stages.centring)
+        .then_some((sample, gram, directions))
 }

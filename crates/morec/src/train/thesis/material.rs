@@ -63,11 +63,17 @@ pub fn of_clips(
     let made: Result<Vec<(Rows, Vec<String>)>, TrainError> = clips
         .par_iter()
         .map(|clip| {
-            let map = PivotMap::resolve(&pivots, &clip.clip.skeleton, &clip.roles)
-                .map_err(|e| TrainError::Clip { clip: clip.name.clone(), problem: e.to_string() })?;
+            let map =
+                PivotMap::resolve(&pivots, &clip.clip.skeleton, &clip.roles).map_err(|e| {
+                    TrainError::Clip {
+                        clip: clip.name.clone(),
+                        problem: e.to_string(),
+                    }
+                })?;
             let rows = pose_rows_of_clip(&clip.clip, &pivots, &map, &clip.rest, &params.pose);
             let missing = map.missing();
-            let note = (!missing.is_empty()).then(|| format!("{} lacks {}", clip.name, missing.join(", ")));
+            let note = (!missing.is_empty())
+                .then(|| format!("{} lacks {}", clip.name, missing.join(", ")));
             Ok((rows, note.into_iter().collect()))
         })
         .collect();
@@ -112,11 +118,17 @@ impl Material {
             let span = frames(sample, rate_hz, rows.len());
             whole |= sample.whole_clip;
             known.push(span.clone());
-            let Some(class) = labelling.classes.iter().position(|c| *c == sample.class) else { continue };
+            let Some(class) = labelling.classes.iter().position(|c| *c == sample.class) else {
+                continue;
+            };
             // Shorter than its directions are many, a sample has no feature vector.
             if span.len() > options.params.stages.eigenvectors {
                 let rows = self.pca.project(&rows.slice(span));
-                self.samples.push(ThesisSample { class: ClassId(class as u16), group, rows });
+                self.samples.push(ThesisSample {
+                    class: ClassId(class as u16),
+                    group,
+                    rows,
+                });
             }
         }
         for sample in labelling.held_back.iter().filter(of_clip) {
@@ -132,7 +144,11 @@ impl Material {
             Source::Everyday => false,
         };
         if serves {
-            self.background.push(Background { rows, known, unlabelled });
+            self.background.push(Background {
+                rows,
+                known,
+                unlabelled,
+            });
         }
     }
 }
@@ -153,14 +169,25 @@ fn groups(clips: &[TrainClip]) -> Vec<usize> {
         let next = numbers.len();
         *numbers.entry(name.to_owned()).or_insert(next)
     };
-    clips.iter().map(|c| number(c.person.as_deref().unwrap_or(&c.name))).collect()
+    clips
+        .iter()
+        .map(|c| number(c.person.as_deref().unwrap_or(&c.name)))
+        .collect()
 }
 
 fn classes(labelling: &Labelling<'_>) -> Vec<ClassInfo> {
     let info = |name: &String| {
-        let of_class: Vec<&Sample> = labelling.samples.iter().filter(|s| s.class == *name).collect();
+        let of_class: Vec<&Sample> = labelling
+            .samples
+            .iter()
+            .filter(|s| s.class == *name)
+            .collect();
         let people: BTreeSet<&String> = of_class.iter().filter_map(|s| s.person.as_ref()).collect();
-        ClassInfo { name: name.clone(), samples: of_class.len(), people: people.len() }
+        ClassInfo {
+            name: name.clone(),
+            samples: of_class.len(),
+            people: people.len(),
+        }
     };
     labelling.classes.iter().map(info).collect()
 }

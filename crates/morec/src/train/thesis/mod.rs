@@ -38,7 +38,8 @@ pub fn train_svrdm(
     let (model, estimated) = match params.thresholds {
         ThresholdRule::Fixed => (fitted.model.clone(), None),
         ThresholdRule::Estimated { folds } => {
-            let estimated = thresholds::estimate(&material, &fitted.model, params, folds, progress)?;
+            let estimated =
+                thresholds::estimate(&material, &fitted.model, params, folds, progress)?;
             (estimated.applied_to(&fitted.model), Some(estimated))
         }
     };

@@ -84,7 +84,13 @@ impl SvrdmTrainParams {
                 ..faithful.stages
             },
             sign: SignRule::Common,
-            tree: TreeParams { sigma: SigmaRule::Quantile { full: 0.8, reduced: 0.9 }, ..faithful.tree },
+            tree: TreeParams {
+                sigma: SigmaRule::Quantile {
+                    full: 0.8,
+                    reduced: 0.9,
+                },
+                ..faithful.tree
+            },
             thresholds: ThresholdRule::Estimated { folds: 4 },
             ..faithful
         }
@@ -108,6 +114,9 @@ pub struct SvrdmOptions {
 
 impl Default for SvrdmOptions {
     fn default() -> Self {
-        Self { params: SvrdmTrainParams::default(), unlabelled_is_background: true }
+        Self {
+            params: SvrdmTrainParams::default(),
+            unlabelled_is_background: true,
+        }
     }
 }

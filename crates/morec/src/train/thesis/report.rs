@@ -48,7 +48,11 @@ pub(super) fn of(
     for background in &material.background {
         let known: usize = background.known.iter().map(ExactSizeIterator::len).sum();
         let secs = background.rows.len().saturating_sub(known) as f64 / model.rate_hz();
-        let source = if background.unlabelled { "unlabelled" } else { "clips" };
+        let source = if background.unlabelled {
+            "unlabelled"
+        } else {
+            "clips"
+        };
         *background_secs.entry(source.to_owned()).or_insert(0.0) += secs;
     }
     let mut notes = class_notes(&model.classes);
@@ -58,10 +62,18 @@ pub(super) fn of(
             material.missing.join("; ")
         ));
     }
-    let shortest = model.params.min_chunks as f64 * model.params.chunk_frames as f64 / model.rate_hz();
-    let short = model.classes.iter().zip(&model.mean_secs).filter(|(_, mean)| **mean < shortest);
+    let shortest =
+        model.params.min_chunks as f64 * model.params.chunk_frames as f64 / model.rate_hz();
+    let short = model
+        .classes
+        .iter()
+        .zip(&model.mean_secs)
+        .filter(|(_, mean)| **mean < shortest);
     notes.extend(short.map(|(class, mean)| {
-        format!("{}: {mean:.2} s on average, the shortest segment looked at is {shortest:.2} s", class.name)
+        format!(
+            "{}: {mean:.2} s on average, the shortest segment looked at is {shortest:.2} s",
+            class.name
+        )
     }));
     let threshold_from = match &estimated {
         Some(e) => format!(
@@ -74,7 +86,11 @@ pub(super) fn of(
         dims: model.pca.dims(),
         quality: model.pca.quality(),
         quality_table: model.pca.quality_table(),
-        unsure_signs: fitted.signs.iter().map(|s| s.unsure(CLOSE_TO_FLIPPING)).collect(),
+        unsure_signs: fitted
+            .signs
+            .iter()
+            .map(|s| s.unsure(CLOSE_TO_FLIPPING))
+            .collect(),
         branches: fitted.branches.clone(),
         accept: model.params.accept,
         min_confidence: model.params.min_confidence,
@@ -82,7 +98,12 @@ pub(super) fn of(
     };
     TrainingReport {
         classes: model.classes.clone(),
-        bones: material.pivots.pivots().iter().map(|p| p.name.clone()).collect(),
+        bones: material
+            .pivots
+            .pivots()
+            .iter()
+            .map(|p| p.name.clone())
+            .collect(),
         background_secs,
         threshold: model.params.min_confidence as f32,
         threshold_from,

@@ -105,34 +105,58 @@ pub(super) fn estimate(
         }
         judged.extend(judge_fold(material, params, &places, fold)?);
     }
-    let mut mistaken: Vec<f64> = judged.iter().filter(|j| !j.right).map(|j| j.output).collect();
+    let mut mistaken: Vec<f64> = judged
+        .iter()
+        .filter(|j| !j.right)
+        .map(|j| j.output)
+        .collect();
     mistaken.sort_by(|a, b| b.total_cmp(a));
     let spared = (MAY_MISTAKE * judged.len() as f64) as usize;
-    let accept = mistaken.get(spared).map_or(LEAST_ACCEPT, |output| output + MARGIN);
+    let accept = mistaken
+        .get(spared)
+        .map_or(LEAST_ACCEPT, |output| output + MARGIN);
     let accept = accept.clamp(LEAST_ACCEPT, MOST_ACCEPT);
 
     let mut listening = model.clone();
     (listening.params.accept, listening.params.min_confidence) = (accept, 0.2);
     let listening = Arc::new(listening);
-    let scores: Result<Vec<Vec<f64>>, TrainError> =
-        material.background.par_iter().map(|b| heard(&listening, b)).collect();
+    let scores: Result<Vec<Vec<f64>>, TrainError> = material
+        .background
+        .par_iter()
+        .map(|b| heard(&listening, b))
+        .collect();
     let scores = scores?.concat();
     let background_confidence = scores.iter().copied().fold(0.0, f64::max);
 
     let passing = || judged.iter().filter(|j| j.right && j.output >= accept);
     let mut confidences: Vec<f64> = passing().map(|j| j.confidence).collect();
-    let most = low_quantile(&mut confidences, MAY_SILENCE).unwrap_or(1.0).max(LEAST_CONFIDENCE);
+    let most = low_quantile(&mut confidences, MAY_SILENCE)
+        .unwrap_or(1.0)
+        .max(LEAST_CONFIDENCE);
     let min_confidence = (background_confidence + MARGIN).clamp(LEAST_CONFIDENCE, most);
     let share = |count: usize, of: usize| count as f64 / of.max(1) as f64;
     let right = passing().count();
-    let frames: usize = material.background.iter().map(|b| b.rows.len() - known_frames(b)).sum();
+    let frames: usize = material
+        .background
+        .iter()
+        .map(|b| b.rows.len() - known_frames(b))
+        .sum();
     Ok(Estimated {
         accept,
         min_confidence: min_confidence.min(0.99),
         samples: judged.len(),
         right: share(right, judged.len()),
-        wrong: share(judged.iter().filter(|j| !j.right && j.output >= accept).count(), judged.len()),
-        confident: share(passing().filter(|j| j.confidence >= min_confidence).count(), right),
+        wrong: share(
+            judged
+                .iter()
+                .filter(|j| !j.right && j.output >= accept)
+                .count(),
+            judged.len(),
+        ),
+        confident: share(
+            passing().filter(|j| j.confidence >= min_confidence).count(),
+            right,
+        ),
         background_minutes: frames as f64 / params.pose.rate_hz / 60.0,
         background_detections: scores.len(),
         background_confidence,
@@ -142,7 +166,12 @@ pub(super) fn estimate(
 /// For each sample the fold that leaves it out; `None` for the only one of its class.
 fn dealt(samples: &[ThesisSample], folds: usize) -> Vec<Option<usize>> {
     let mut met = std::collections::BTreeMap::new();
-    let count = |s: &ThesisSample| samples.iter().filter(|other| other.class == s.class).count();
+    let count = |s: &ThesisSample| {
+        samples
+            .iter()
+            .filter(|other| other.class == s.class)
+            .count()
+    };
     samples
         .iter()
         .map(|s| {
@@ -162,7 +191,11 @@ fn judge_fold(
 ) -> Result<Vec<Judged>, TrainError> {
     let (mut out, mut taught) = (vec![], vec![]);
     for (sample, place) in material.samples.iter().zip(places) {
-        if *place == Some(fold) { out.push(sample) } else { taught.push(sample.clone()) }
+        if *place == Some(fold) {
+            out.push(sample)
+        } else {
+            taught.push(sample.clone())
+        }
     }
     if out.is_empty() {
         return Ok(vec![]);
@@ -186,21 +219,35 @@ fn heard(model: &Arc<SvrdmModel>, background: &Background) -> Result<Vec<f64>, T
     let mut scores = vec![];
     let mut hear = |d: FrameDetection| {
         let span = d.start.max(0) as usize..d.stop.max(0) as usize;
-        if background.known.iter().all(|known| overlap_share(&span, known) <= MAX_OVERLAP) {
+        if background
+            .known
+            .iter()
+            .all(|known| overlap_share(&span, known) <= MAX_OVERLAP)
+        {
             scores.push(d.score);
         }
     };
-    background.rows.iter().for_each(|row| engine.push(row, &mut hear));
+    background
+        .rows
+        .iter()
+        .for_each(|row| engine.push(row, &mut hear));
     engine.finish(&mut hear);
     Ok(scores)
 }
 
 fn known_frames(background: &Background) -> usize {
-    background.known.iter().map(ExactSizeIterator::len).sum::<usize>().min(background.rows.len())
+    background
+        .known
+        .iter()
+        .map(ExactSizeIterator::len)
+        .sum::<usize>()
+        .min(background.rows.len())
 }
 
 /// The value below which at most the share `below` of `values` lies.
 fn low_quantile(values: &mut [f64], below: f64) -> Option<f64> {
     values.sort_by(f64::total_cmp);
-    values.get((below * values.len() as f64).floor() as usize).copied()
+    values
+        .get((below * values.len() as f64).floor() as usize)
+        .copied()
 }

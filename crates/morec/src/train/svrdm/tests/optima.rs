@@ -11,12 +11,21 @@ fn random_problem(seed: u64, m: usize, width: f64) -> BoxQp {
     let mut samples = cloud(&mut rng, m.div_ceil(2), &[0.0, 0.0, 0.0], 1.0);
     samples.extend(cloud(&mut rng, m / 2, &[1.0, 0.5, 0.0], 1.0));
     let sides: Vec<usize> = (0..m).map(|i| usize::from(i >= m.div_ceil(2))).collect();
-    problem(&Distances::new(&samples).kernel(width), &sides, (seed % 2) as usize, &MachineParams::default())
+    problem(
+        &Distances::new(&samples).kernel(width),
+        &sides,
+        (seed % 2) as usize,
+        &MachineParams::default(),
+    )
 }
 
 /// The obvious slow way: steps against the gradient, cut off at the box.
 fn projected_gradient(qp: &BoxQp) -> DVector<f64> {
-    let step = 1.0 / qp.matrix.row_sum().amax().max(qp.matrix.map(f64::abs).row_sum().amax());
+    let step = 1.0
+        / qp.matrix
+            .row_sum()
+            .amax()
+            .max(qp.matrix.map(f64::abs).row_sum().amax());
     let mut alpha = DVector::zeros(qp.linear.len());
     for _ in 0..200_000 {
         alpha = (&alpha - qp.gradient(&alpha) * step).map(|a| a.clamp(0.0, qp.upper));
@@ -74,9 +83,21 @@ proptest! {
 fn wide_kernels_are_solved_though_coordinates_alone_crawl() {
     let qp = random_problem(5, 60, 8.0);
     let quick = qp.solve(Stop::default());
-    let printed = qp.sor(Stop { residual: 1e-8, passes: 300 });
-    assert!(quick.residual <= 1e-8, "{} after {}", quick.residual, quick.passes);
-    assert!(printed.residual > 1e-5, "the printed way was quick: {}", printed.residual);
+    let printed = qp.sor(Stop {
+        residual: 1e-8,
+        passes: 300,
+    });
+    assert!(
+        quick.residual <= 1e-8,
+        "{} after {}",
+        quick.residual,
+        quick.passes
+    );
+    assert!(
+        printed.residual > 1e-5,
+        "the printed way was quick: {}",
+        printed.residual
+    );
     assert!(qp.objective(&quick.alpha) < qp.objective(&printed.alpha));
 }
 
@@ -84,7 +105,10 @@ fn wide_kernels_are_solved_though_coordinates_alone_crawl() {
 fn one_sample_alone_is_represented_exactly() {
     let solution = svrm(DMatrix::from_element(1, 1, 1.0), &MachineParams::default());
     assert!((solution.alpha[0] - 1.0).abs() < 1e-12);
-    assert_eq!(on_boundary(&solution.alpha, &MachineParams::default()), [true]);
+    assert_eq!(
+        on_boundary(&solution.alpha, &MachineParams::default()),
+        [true]
+    );
 }
 
 #[test]
@@ -98,7 +122,11 @@ fn each_machine_of_a_pair_speaks_for_its_own_side() {
     for side in 0..2 {
         let outputs = &kernel * &pair.weights[side];
         for (i, output) in outputs.iter().enumerate() {
-            let kept = if sides[i] == side { *output >= 1.0 - 1e-6 } else { *output <= 0.4 + 1e-6 };
+            let kept = if sides[i] == side {
+                *output >= 1.0 - 1e-6
+            } else {
+                *output <= 0.4 + 1e-6
+            };
             assert!(kept, "machine {side} says {output} of sample {i}");
         }
     }
@@ -109,12 +137,26 @@ fn samples_in_one_place_have_a_finite_machine() {
     for place in [[0.0, 0.0], [1.0, -2.0]] {
         let (mut samples, mut sides) = (vec![place.to_vec(); 6], vec![0, 0, 0, 1, 1, 1]);
         for width in [0.01, 1.0, 100.0] {
-            let pair = svrdm(&Distances::new(&samples).kernel(width), &sides, &MachineParams::default());
-            assert!(pair.weights.iter().flatten().all(|w| w.is_finite()), "{pair:?}");
+            let pair = svrdm(
+                &Distances::new(&samples).kernel(width),
+                &sides,
+                &MachineParams::default(),
+            );
+            assert!(
+                pair.weights.iter().flatten().all(|w| w.is_finite()),
+                "{pair:?}"
+            );
         }
         samples.push(vec![5.0, 5.0]);
         sides.push(1);
-        let pair = svrdm(&Distances::new(&samples).kernel(1e4), &sides, &MachineParams::default());
-        assert!(pair.weights.iter().flatten().all(|w| w.is_finite()), "{pair:?}");
+        let pair = svrdm(
+            &Distances::new(&samples).kernel(1e4),
+            &sides,
+            &MachineParams::default(),
+        );
+        assert!(
+            pair.weights.iter().flatten().all(|w| w.is_finite()),
+            "{pair:?}"
+        );
     }
 }
