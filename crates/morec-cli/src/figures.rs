@@ -61,6 +61,13 @@ fn write_figures(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
         figure(e.f1_at(MEASURED_OVERLAP)),
         String::new(),
     )?;
+    let events = &e.events;
+    let detail = format!(
+        "precision {}  recall {}, middles within a sample",
+        figure(events.precision),
+        figure(events.recall)
+    );
+    line("F1 of events", figure(events.f1), detail)?;
     let alarms = &e.false_alarms;
     let detail = format!("{} in {:.2} min", alarms.count, alarms.minutes);
     line("false alarms a minute", figure(alarms.per_minute), detail)?;
@@ -225,11 +232,13 @@ fn write_confusion(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
     }
 }
 
-fn figure(value: Option<f64>) -> String {
+/// A share to three places, or a dash.
+pub fn figure(value: Option<f64>) -> String {
     value.map_or("–".to_owned(), |v| format!("{v:.3}"))
 }
 
-fn secs(value: Option<f64>) -> String {
+/// Seconds to two places, or a dash.
+pub fn secs(value: Option<f64>) -> String {
     value.map_or("–".to_owned(), |v| format!("{:.2} s", no_minus_zero(v)))
 }
 

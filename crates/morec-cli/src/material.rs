@@ -232,6 +232,28 @@ impl MaterialArgs {
         )
     }
 
+    /// Clips that are only tested, with the labels that lie in them, of `classes`.
+    pub fn load_tests(
+        &self,
+        paths: &[PathBuf],
+        labels: &Path,
+        classes: &[String],
+    ) -> Result<Material> {
+        let text = Labels::read(&read(labels)?).with_context(|| shown(labels))?;
+        warn(labels, &text.warnings);
+        let people: BTreeMap<String, String> = text
+            .rows
+            .iter()
+            .filter_map(|r| Some((r.clip.clone(), r.person.clone()?)))
+            .collect();
+        let mut clips = load_clips(&expand(paths)?, &self.read, &self.import_options()?)?;
+        for loaded in &mut clips {
+            loaded.clip.person = people.get(&loaded.clip.name).cloned();
+        }
+        let none = BTreeSet::new();
+        sort_out(clips, &text, classes, &none, &none)
+    }
+
     /// The same from a database: its clips that hold samples, and those named as background or unknown. A clip's
     /// path is its name here.
     fn load_db(&self, path: &Path, unknown: &[PathBuf]) -> Result<Material> {

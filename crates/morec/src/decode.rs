@@ -28,6 +28,17 @@ pub struct DecodeParams {
     /// [`Rule::Verify`] nothing waits.
     #[serde(default)]
     pub hold_ticks: usize,
+    /// A match counts only if it is nearer than this share of the distance of a body that stands still in the mean
+    /// pose of the matched stretch (see [`Matcher`](crate::templates::Matcher)). 0 admits everything.
+    #[serde(default)]
+    pub rest_gate: f32,
+    /// The same under [`Rule::Verify`], where motion is evidence besides.
+    #[serde(default)]
+    pub rest_gate_verified: f32,
+    /// A candidate may reach only [`overlap_ticks`](Self::overlap_ticks) into the last detection of its own class, so
+    /// that the way out and the way out and back are not two detections.
+    #[serde(default)]
+    pub once: bool,
     /// A motion may end with the very last ticks of a stream only if its distance fell by less than this share over
     /// the last tick: a walk cut off in mid-step is nearest to a step at the cut, but still coming nearer.
     pub end_fall: f32,
@@ -44,6 +55,9 @@ impl Default for DecodeParams {
             overlap_ticks: 2,
             overlap_share: 0.5,
             hold_ticks: 2,
+            rest_gate: 0.8,
+            rest_gate_verified: 0.9,
+            once: true,
             end_fall: 0.1,
         }
     }
@@ -60,6 +74,9 @@ impl DecodeParams {
             overlap_ticks: 2,
             overlap_share: 0.0,
             hold_ticks: 0,
+            rest_gate: 0.0,
+            rest_gate_verified: 0.0,
+            once: false,
             end_fall: f32::MAX,
         }
     }
@@ -82,6 +99,13 @@ impl DecodeParams {
                 self.overlap_share
             ));
         }
+        let gates = [
+            ("rest_gate", self.rest_gate),
+            ("rest_gate_verified", self.rest_gate_verified),
+        ];
+        if let Some((name, value)) = gates.iter().find(|(_, v)| !(0.0..=2.0).contains(v)) {
+            return Err(format!("{name} must be 0 to 2, found {value}"));
+        }
         if self.end_fall.is_nan() || self.end_fall < 0.0 {
             return Err(format!(
                 "end_fall must be 0 or more, found {}",
@@ -99,6 +123,14 @@ impl DecodeParams {
     /// Ticks that must follow a motion's last tick before it can be reported.
     pub fn look_ahead_ticks(&self, rule: Rule) -> usize {
         self.window_ticks(rule) + self.lag_ticks
+    }
+
+    /// Matches count below this share of a motionless body's distance.
+    pub fn rest_share(&self, rule: Rule) -> f32 {
+        match rule {
+            Rule::Gate { .. } => self.rest_gate,
+            Rule::Verify { .. } => self.rest_gate_verified,
+        }
     }
 
     /// Ticks that must follow a tick before it is known whether it is a candidate.
@@ -204,6 +236,8 @@ pub struct Decoder {
     decided: i64,
     /// Everything up to here has been reported.
     reported: i64,
+    /// Where the last detection of each class ended.
+    ended: Vec<i64>,
     chain: Vec<TickDetection>,
 }
 
@@ -218,6 +252,7 @@ impl Clone for Decoder {
             ring: self.ring.clone(),
             negatives: self.negatives.clone(),
             paths: self.paths.clone(),
+            ended: self.ended.clone(),
             chain,
             ..*self
         }
@@ -256,6 +291,7 @@ impl Decoder {
             ticks: 0,
             decided: 0,
             reported: 0,
+            ended: vec![0; classes],
             chain: Vec::with_capacity(path_len),
         }
     }
@@ -271,6 +307,7 @@ impl Decoder {
     /// Forgets the stream so far.
     pub fn reset(&mut self) {
         self.paths.fill(PathCell::default());
+        self.ended.fill(0);
         (self.ticks, self.decided, self.reported) = (0, 0, 0);
     }
 
@@ -401,7 +438,7 @@ impl Decoder {
         for class in 0..self.classes {
             let age = self.near(tick, class).age;
             let (start, slack) = (tick - age as i64, self.slack(age));
-            if start < self.reported - slack {
+            if start < self.reported - slack || self.repeats(class, start) {
                 continue;
             }
             if self.cut_off(tick, class) {
@@ -426,6 +463,11 @@ impl Decoder {
         let index = (tick + 1) as usize & (self.paths.len() - 1);
         self.paths[index] = cell;
         self.decided = tick + 1;
+    }
+
+    /// Whether a candidate that starts here is the last detection of its class over again, longer.
+    fn repeats(&self, class: usize, start: i64) -> bool {
+        self.params.once && start < self.ended[class] - self.params.overlap_ticks as i64
     }
 
     /// Ticks that a candidate of this age may reach into the detection before it.
@@ -482,6 +524,7 @@ impl Decoder {
             }
             if detection.start >= self.reported && self.decided - detection.stop >= lag {
                 self.reported = detection.stop;
+                self.ended[detection.class.index()] = detection.stop;
                 out(TickDetection {
                     score: detection.score.min(1.0),
                     ..*detection
@@ -552,6 +595,7 @@ mod tests {
             overlap_share: 0.0,
             hold_ticks: 0,
             end_fall: 1.0,
+            ..DecodeParams::reference()
         };
         let twice = [5.0, 5.0, 5.0, 1.5, 1.2, 0.2, 5.0, 5.0, 5.0, 5.0, 5.0];
         assert_eq!(spans(&twice, &[], &params), [(2, 6)]);

@@ -136,6 +136,7 @@ pub mod labels;
 pub mod live;
 pub mod math;
 pub mod pca;
+pub mod perturb;
 pub mod pivots;
 pub mod plot;
 pub mod progress;

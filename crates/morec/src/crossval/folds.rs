@@ -17,6 +17,9 @@ pub enum By {
     Clip,
     /// One person after the other; a clip of nobody known counts as a person.
     Person,
+    /// Nothing is left out: each person teaches alone and is tested in other clips, see
+    /// [`Material::tests`](super::Material::tests).
+    Own,
 }
 
 /// One round of training and testing.
@@ -42,7 +45,67 @@ pub fn folds(by: By, samples: &[Sample], people: &BTreeMap<String, String>) -> V
         By::Person => leave_out(samples, people.keys(), |clip| {
             people.get(clip).map_or(clip, |p| p).to_owned()
         }),
+        By::Own => own(samples, people),
     }
+}
+
+/// Each person's own samples, without the clips of all others.
+fn own(samples: &[Sample], people: &BTreeMap<String, String>) -> Vec<Fold> {
+    let person_of = |clip: &str| people.get(clip).map_or(clip, |p| p).to_owned();
+    let persons: BTreeSet<String> = samples.iter().map(|s| person_of(&s.clip)).collect();
+    let fold = |person: String| {
+        let of_person = |clip: &str| person_of(clip) == person;
+        let taught = (0..samples.len()).filter(|&i| of_person(&samples[i].clip));
+        // A clip of nobody known is background for everybody.
+        let others = people
+            .iter()
+            .filter(|(clip, of)| **of != person && clip != of);
+        let others = others.map(|(clip, _)| clip.clone());
+        Fold {
+            taught: taught.collect(),
+            held_back: Vec::new(),
+            left_out: others.collect(),
+            tested: samples
+                .iter()
+                .filter(|s| of_person(&s.clip))
+                .map(|s| s.clip.clone())
+                .collect(),
+            name: person.clone(),
+        }
+    };
+    persons.into_iter().map(fold).collect()
+}
+
+/// At most `most` of the taught samples of each class, from the groups of `group_of` in turn.
+pub fn thin(
+    taught: &[usize],
+    samples: &[Sample],
+    most: usize,
+    group_of: impl Fn(&Sample) -> String,
+) -> Vec<usize> {
+    let mut turns: BTreeMap<(&str, String), usize> = BTreeMap::new();
+    let mut order: Vec<(&str, usize, usize)> = taught
+        .iter()
+        .map(|&i| {
+            let class = samples[i].class.as_str();
+            let turn = turns.entry((class, group_of(&samples[i]))).or_insert(0);
+            *turn += 1;
+            (class, *turn, i)
+        })
+        .collect();
+    order.sort_unstable();
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut kept: Vec<usize> = order
+        .into_iter()
+        .filter(|(class, _, _)| {
+            let count = counts.entry(class).or_insert(0);
+            *count += 1;
+            *count <= most
+        })
+        .map(|(_, _, i)| i)
+        .collect();
+    kept.sort_unstable();
+    kept
 }
 
 fn half(samples: &[Sample], seed: u64) -> Fold {
@@ -181,6 +244,24 @@ mod tests {
             "their clip without samples must not train either"
         );
         assert_eq!(all[1].tested.iter().collect::<Vec<_>>(), ["3"]);
+    }
+
+    #[test]
+    fn alone_means_without_the_clips_of_others() {
+        let all = folds(By::Own, &samples(), &people());
+        assert_eq!(all.len(), 2);
+        assert_eq!((all[0].name.as_str(), all[0].taught.len()), ("x", 4));
+        assert!(all[0].left_out.contains("3") && all[0].left_out.contains("4"));
+        assert_eq!(all[1].taught, [4, 5]);
+    }
+
+    #[test]
+    fn thinning_takes_from_people_in_turn() {
+        let all: Vec<usize> = (0..6).collect();
+        let person = |s: &Sample| people()[&s.clip].clone();
+        assert_eq!(thin(&all, &samples(), 1, person), [0, 1]);
+        assert_eq!(thin(&all, &samples(), 2, person), [0, 1, 4]);
+        assert_eq!(thin(&all, &samples(), 9, person), all);
     }
 
     #[test]

@@ -7,11 +7,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use rayon::prelude::*;
 
 use crate::eval::{Found, StreamInfo, Truth};
+use crate::features::for_each_pose;
 use crate::labels::Sample;
-use crate::live::{Model, StartError, recognize_clip};
+use crate::live::{Model, StartError, recognize_clip, recognize_poses};
+use crate::perturb::{Perturbation, Perturbed, perturb};
 use crate::progress::Progress;
 use crate::train::{Labelling, Recipe, Source, TrainClip, TrainError, TrainingReport, train_model};
 
+use folds::thin;
 pub use folds::{By, Fold, folds};
 
 /// What to cross-validate on.
@@ -26,17 +29,58 @@ pub struct Material<'a> {
     /// Clips that hold none of the classes: what is recognised in them is a false alarm. A clip may be background
     /// too; it is then tested only in folds that leave it out of training.
     pub unknown: &'a [TrainClip],
+    /// Other clips to test on, in place of those that teach: each in the fold of its person.
+    pub tests: Option<Tests<'a>>,
 }
 
-/// Everything that was recognised, and what was there.
+/// Clips that are only tested.
+#[derive(Debug, Clone, Copy)]
+pub struct Tests<'a> {
+    /// The clips.
+    pub clips: &'a [TrainClip],
+    /// Their samples.
+    pub samples: &'a [Sample],
+}
+
+/// How to cross-validate.
+#[derive(Debug, Clone)]
+pub struct CrossvalOptions {
+    /// What is left out in turn.
+    pub by: By,
+    /// Samples of a class that teach in a fold at most, from its people in turn.
+    pub samples_per_class: Option<usize>,
+    /// Copies of the tested clips that are tested too, each worse in one way.
+    pub perturbations: Vec<Perturbation>,
+}
+
+impl From<By> for CrossvalOptions {
+    fn from(by: By) -> Self {
+        Self {
+            by,
+            samples_per_class: None,
+            perturbations: Vec::new(),
+        }
+    }
+}
+
+/// What was recognised in tested streams, and what was there.
 #[derive(Debug, Clone, Default)]
-pub struct Outcome {
-    /// Every stream tested. A clip tested in several folds is several streams, with the fold in the name.
+pub struct Tested {
+    /// Every stream. A clip tested in several folds is several streams, with the fold in the name.
     pub streams: Vec<StreamInfo>,
     /// The samples of those streams.
     pub truths: Vec<Truth>,
     /// What was recognised.
     pub founds: Vec<Found>,
+}
+
+/// Everything that was recognised, and what was there.
+#[derive(Debug, Clone, Default)]
+pub struct Outcome {
+    /// The clips as they are.
+    pub tested: Tested,
+    /// Their copies, for each of [`CrossvalOptions::perturbations`].
+    pub perturbed: Vec<(Perturbation, Tested)>,
     /// How each fold's training went.
     pub folds: Vec<FoldReport>,
     /// What each fold trained.
@@ -80,17 +124,34 @@ pub enum CrossvalError {
 
 /// Trains and tests every fold. Folds run one after the other, the clips of a fold in parallel; the outcome does
 /// not depend on the number of threads.
+///
+/// # Errors
+/// No sample, a fold that cannot be trained, or a clip that cannot be recognised.
 pub fn crossval(
     material: &Material<'_>,
-    by: By,
+    options: &CrossvalOptions,
     recipe: &Recipe,
     progress: &dyn Progress,
 ) -> Result<Outcome, CrossvalError> {
-    let folds = folds(by, material.samples, &people(material));
+    let people = people(material);
+    let mut folds = folds(options.by, material.samples, &people);
     if folds.is_empty() {
         return Err(CrossvalError::NoFolds);
     }
+    let group = |s: &Sample| people.get(&s.clip).unwrap_or(&s.clip).clone();
+    for fold in &mut folds {
+        if let Some(most) = options.samples_per_class {
+            fold.taught = thin(&fold.taught, material.samples, most, group);
+        }
+        if let Some(tests) = &material.tests {
+            let of_fold = |c: &&TrainClip| c.person.as_ref() == Some(&fold.name);
+            let of_fold = tests.clips.iter().filter(of_fold);
+            fold.tested = of_fold.map(|c| c.name.clone()).collect();
+        }
+    }
     let mut outcome = Outcome::default();
+    let perturbations = options.perturbations.iter();
+    outcome.perturbed = perturbations.map(|p| (*p, Tested::default())).collect();
     for (done, fold) in folds.iter().enumerate() {
         progress.report("folds", done, folds.len());
         if progress.cancelled() {
@@ -124,59 +185,23 @@ fn run_fold(
     recipe: &Recipe,
     outcome: &mut Outcome,
 ) -> Result<(), CrossvalError> {
-    let pick = |places: &[usize]| -> Vec<Sample> {
-        places
-            .iter()
-            .map(|&i| material.samples[i].clone())
-            .collect()
-    };
-    let (taught, held_back) = (pick(&fold.taught), pick(&fold.held_back));
-    let teachers: BTreeSet<&str> = taught.iter().map(|s| s.clip.as_str()).collect();
-    let trains = |c: &&TrainClip| {
-        !fold.left_out.contains(&c.name)
-            && (c.source != Source::Labelled || teachers.contains(c.name.as_str()))
-    };
-    let training: Vec<TrainClip> = material.clips.iter().filter(trains).cloned().collect();
-    let labelling = Labelling {
-        samples: &taught,
-        held_back: &held_back,
-        classes: material.classes,
-        unlabelled_is_background: recipe.unlabelled_is_background(),
-    };
-    let trained = train_model(&training, &labelling, recipe, &());
-    let (model, report) = trained.map_err(|source| CrossvalError::Train {
-        fold: fold.name.clone(),
-        source,
-    })?;
-
-    let trained_on: BTreeSet<&str> = training.iter().map(|c| c.name.as_str()).collect();
-    let known = material
-        .clips
+    let training = training_clips(material, fold);
+    let (model, report) = train_fold(material, fold, &training, recipe)?;
+    let tested = tested_clips(material, fold, &training, several);
+    let samples = material.tests.map_or(material.samples, |t| t.samples);
+    let truths: Vec<&Sample> = samples
         .iter()
-        .filter(|c| fold.tested.contains(&c.name))
-        .map(|c| (c, false));
-    // An unknown clip of a person is a test of that person's fold; of nobody known, of every fold.
-    let of_fold = |c: &TrainClip| !several || c.person.is_none() || fold.left_out.contains(&c.name);
-    let unknown = material
-        .unknown
-        .iter()
-        .filter(|c| !trained_on.contains(c.name.as_str()) && of_fold(c));
-    let tested: Vec<_> = known.chain(unknown.map(|c| (c, true))).collect();
-    let tests: Result<Vec<_>, _> = tested
-        .par_iter()
-        .map(|(c, u)| test(&model, c, *u, fold, several))
+        .filter(|s| fold.tested.contains(&s.clip))
         .collect();
-    for (stream, founds) in tests? {
-        outcome.founds.extend(founds);
-        outcome.streams.push(stream);
+    let test = FoldTest {
+        model: &model,
+        fold,
+        truths: &truths,
+    };
+    test.run(&tested, None, &mut outcome.tested)?;
+    for (perturbation, result) in &mut outcome.perturbed {
+        test.run(&tested, Some(*perturbation), result)?;
     }
-    let truths = material
-        .samples
-        .iter()
-        .filter(|s| fold.tested.contains(&s.clip));
-    outcome
-        .truths
-        .extend(truths.map(|s| Truth::from(s.clone())));
     outcome.folds.push(FoldReport {
         name: fold.name.clone(),
         training: report,
@@ -185,40 +210,170 @@ fn run_fold(
     Ok(())
 }
 
-fn test(
-    model: &Model,
-    clip: &TrainClip,
-    unknown: bool,
+/// The clips that a fold trains on.
+fn training_clips(material: &Material<'_>, fold: &Fold) -> Vec<TrainClip> {
+    let taught = fold.taught.iter().map(|&i| &material.samples[i]);
+    let teachers: BTreeSet<&str> = taught.map(|s| s.clip.as_str()).collect();
+    let trains = |c: &&TrainClip| {
+        !fold.left_out.contains(&c.name)
+            && (c.source != Source::Labelled || teachers.contains(c.name.as_str()))
+    };
+    material.clips.iter().filter(trains).cloned().collect()
+}
+
+fn train_fold(
+    material: &Material<'_>,
     fold: &Fold,
-    several: bool,
-) -> Result<(StreamInfo, Vec<Found>), CrossvalError> {
-    let failed = |source| CrossvalError::Recognize {
+    training: &[TrainClip],
+    recipe: &Recipe,
+) -> Result<(Model, TrainingReport), CrossvalError> {
+    let pick = |places: &[usize]| -> Vec<Sample> {
+        let chosen = places.iter().map(|&i| material.samples[i].clone());
+        chosen.collect()
+    };
+    let (taught, held_back) = (pick(&fold.taught), pick(&fold.held_back));
+    let labelling = Labelling {
+        samples: &taught,
+        held_back: &held_back,
+        classes: material.classes,
+        unlabelled_is_background: recipe.unlabelled_is_background(),
+    };
+    let trained = train_model(training, &labelling, recipe, &());
+    trained.map_err(|source| CrossvalError::Train {
         fold: fold.name.clone(),
-        clip: clip.name.clone(),
         source,
-    };
-    let found = recognize_clip(model, &clip.clip, &clip.roles, &clip.rest).map_err(failed)?;
-    let again = unknown && several && clip.person.is_none();
-    let name = if again {
-        format!("{} (without {})", clip.name, fold.name)
-    } else {
-        clip.name.clone()
-    };
-    let founds = found.iter().map(|d| Found {
-        clip: name.clone(),
-        class: model.class_name(d.class).to_owned(),
-        start_secs: d.start_secs,
-        stop_secs: d.stop_secs,
-        score: Some(d.score),
-        reported_secs: Some(d.reported_secs),
+    })
+}
+
+/// A clip to test.
+struct TestClip<'a> {
+    clip: &'a TrainClip,
+    /// Whether it holds none of the classes.
+    unknown: bool,
+    /// Name of its stream.
+    name: String,
+}
+
+fn tested_clips<'a>(
+    material: &Material<'a>,
+    fold: &Fold,
+    training: &[TrainClip],
+    several: bool,
+) -> Vec<TestClip<'a>> {
+    let clips = material.tests.map_or(material.clips, |t| t.clips);
+    let known = clips.iter().filter(|c| fold.tested.contains(&c.name));
+    let known = known.map(|clip| TestClip {
+        clip,
+        unknown: false,
+        name: clip.name.clone(),
     });
-    let founds = founds.collect();
-    Ok((
-        StreamInfo {
-            clip: name,
-            duration_secs: clip.clip.duration_secs(),
-            unknown,
+    let trained_on: BTreeSet<&str> = training.iter().map(|c| c.name.as_str()).collect();
+    // An unknown clip of a person is a test of that person's fold; of nobody known, of every fold.
+    let of_fold = |c: &&TrainClip| {
+        let of_person = c.person.is_none() || fold.left_out.contains(&c.name);
+        !trained_on.contains(c.name.as_str()) && (!several || of_person)
+    };
+    let unknown = material.unknown.iter().filter(of_fold);
+    let unknown = unknown.map(|clip| TestClip {
+        clip,
+        unknown: true,
+        name: if several && clip.person.is_none() {
+            format!("{} (without {})", clip.name, fold.name)
+        } else {
+            clip.name.clone()
         },
-        founds,
-    ))
+    });
+    known.chain(unknown).collect()
+}
+
+/// A fold's model and the samples of its tested clips.
+struct FoldTest<'a> {
+    model: &'a Model,
+    fold: &'a Fold,
+    truths: &'a [&'a Sample],
+}
+
+impl FoldTest<'_> {
+    /// Recognises `clips`, or copies of them, in parallel and adds the results to `out`.
+    fn run(
+        &self,
+        clips: &[TestClip<'_>],
+        perturbation: Option<Perturbation>,
+        out: &mut Tested,
+    ) -> Result<(), CrossvalError> {
+        let tests: Result<Vec<Tested>, _> = clips
+            .par_iter()
+            .map(|clip| self.test(clip, perturbation))
+            .collect();
+        for tested in tests? {
+            out.streams.extend(tested.streams);
+            out.truths.extend(tested.truths);
+            out.founds.extend(tested.founds);
+        }
+        Ok(())
+    }
+
+    fn test(
+        &self,
+        test: &TestClip<'_>,
+        perturbation: Option<Perturbation>,
+    ) -> Result<Tested, CrossvalError> {
+        let clip = test.clip;
+        let copy = match perturbation {
+            Some(perturbation) => Some(perturbed(clip, perturbation)),
+            None => None,
+        };
+        let found = match &copy {
+            Some(copy) => recognize_poses(self.model, &copy.poses),
+            None => recognize_clip(self.model, &clip.clip, &clip.roles, &clip.rest),
+        };
+        let found = found.map_err(|source| CrossvalError::Recognize {
+            fold: self.fold.name.clone(),
+            clip: clip.name.clone(),
+            source,
+        })?;
+        let in_copy = |secs: f64| copy.as_ref().map_or(secs, |c| c.secs_in_copy(secs));
+        let truths = self.truths.iter().filter(|s| s.clip == clip.name);
+        Ok(Tested {
+            truths: truths
+                .map(|s| Truth {
+                    clip: test.name.clone(),
+                    class: s.class.clone(),
+                    start_secs: in_copy(s.start_secs),
+                    stop_secs: in_copy(s.stop_secs),
+                })
+                .collect(),
+            founds: found
+                .iter()
+                .map(|d| Found {
+                    clip: test.name.clone(),
+                    class: self.model.class_name(d.class).to_owned(),
+                    start_secs: d.start_secs,
+                    stop_secs: d.stop_secs,
+                    score: Some(d.score),
+                    reported_secs: Some(d.reported_secs),
+                })
+                .collect(),
+            streams: vec![StreamInfo {
+                clip: test.name.clone(),
+                duration_secs: in_copy(clip.clip.duration_secs()),
+                unknown: test.unknown,
+            }],
+        })
+    }
+}
+
+/// A copy of `clip`, reproducible: the seed comes of its name.
+fn perturbed(clip: &TrainClip, perturbation: Perturbation) -> Perturbed {
+    let mut poses = Vec::with_capacity(clip.clip.frames);
+    for_each_pose(&clip.clip, &clip.roles, &clip.rest, |secs, pose| {
+        poses.push((secs, *pose));
+    });
+    let seed = clip
+        .name
+        .bytes()
+        .fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+        });
+    perturb(poses, &[perturbation], seed)
 }

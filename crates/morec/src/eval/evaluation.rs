@@ -6,8 +6,9 @@ use super::decisions::{Decision, decisions};
 use super::pairs::pair;
 use super::timing::measured_pairs;
 use super::{
-    Boundaries, Classification, Confusion, Delay, EvalError, FalseAlarms, Found, Mistake, OVERLAPS,
-    OverlapScore, Stream, StreamInfo, ThesisAccuracy, Truth, UnknownFigures, all_classes, streams,
+    Boundaries, Classification, Confusion, Delay, EvalError, EventScore, FalseAlarms, Found,
+    Mistake, OVERLAPS, OverlapScore, Stream, StreamInfo, ThesisAccuracy, Truth, UnknownFigures,
+    all_classes, streams,
 };
 
 /// Every measure, over all streams together and class by class. Serialises to the JSON that `morec evaluate
@@ -20,6 +21,8 @@ pub struct Evaluation {
     pub thesis: ThesisAccuracy,
     /// F1 over known streams, one for each of [`OVERLAPS`].
     pub overlap: Vec<OverlapScore>,
+    /// F1 of events over known streams.
+    pub events: EventScore,
     /// False alarms in known streams.
     pub false_alarms: FalseAlarms,
     /// Detections in unknown streams.
@@ -110,6 +113,7 @@ impl Evaluation {
             totals: Totals::count(&known),
             thesis: ThesisAccuracy::count(&decided),
             overlap: paired.scores(&known, None),
+            events: EventScore::count(&known),
             false_alarms: FalseAlarms::count(&known, None),
             unknown: UnknownFigures::count(&unknown),
             delay: Delay::of(&pairs),

@@ -5,7 +5,7 @@ use std::thread;
 use std::time::Duration;
 
 use crate::clip::{Clip, Span};
-use crate::features::bones_of_clip;
+use crate::features::{BoneSet, KeyPose, bones_of_clip};
 use crate::kinematics::for_each_world_pose;
 use crate::roles::RoleMap;
 
@@ -32,6 +32,25 @@ pub fn recognize_clip<M: Clone + Into<Model>>(
     for_each_world_pose(clip, rest, |time_secs, world| {
         found.extend_from_slice(recognizer.push(time_secs, reader.read(world)));
     });
+    found.extend_from_slice(recognizer.finish());
+    Ok(found)
+}
+
+/// Everything that the recogniser reports of `poses` with their times in seconds. The bones are those of the first
+/// pose.
+///
+/// # Errors
+/// A model that needs joint rotations, or no bone in common with it.
+pub fn recognize_poses<M: Clone + Into<Model>>(
+    model: &M,
+    poses: &[(f64, KeyPose)],
+) -> Result<Vec<Detection>, StartError> {
+    let bones = poses
+        .first()
+        .map_or(BoneSet::NONE, |p| BoneSet::of_pose(&p.1));
+    let mut recognizer = Recognizer::new(model, bones)?;
+    let mut found = Vec::new();
+    recognizer.push_all(poses, &mut found);
     found.extend_from_slice(recognizer.finish());
     Ok(found)
 }

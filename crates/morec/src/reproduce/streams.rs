@@ -40,10 +40,17 @@ pub(super) fn run(
         samples: study.samples,
         classes: study.classes,
         unknown: study.unknown,
+        tests: None,
     };
-    let outcome = crossval(&material, By::Half { seed }, &options.clone().into(), &())?;
-    let evaluation = Evaluation::of(&outcome.streams, &outcome.truths, &outcome.founds)?;
-    let mut lines = timelines(&outcome.streams, &outcome.truths, &outcome.founds)?;
+    let outcome = crossval(
+        &material,
+        &By::Half { seed }.into(),
+        &options.clone().into(),
+        &(),
+    )?;
+    let tested = &outcome.tested;
+    let evaluation = Evaluation::of(&tested.streams, &tested.truths, &tested.founds)?;
+    let mut lines = timelines(&tested.streams, &tested.truths, &tested.founds)?;
     lines.sort_by_key(|line| std::cmp::Reverse(line.truths.len()));
     for line in lines.iter().take(DRAWN) {
         pictures.push(timeline_picture(study, *setting, line));

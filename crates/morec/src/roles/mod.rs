@@ -72,6 +72,27 @@ impl Role {
         self as usize
     }
 
+    /// The same part on the other side of the body; itself in the middle.
+    pub fn opposite(self) -> Self {
+        match self {
+            Role::Hips | Role::Torso | Role::Neck | Role::Head => self,
+            Role::LeftThigh => Role::RightThigh,
+            Role::LeftShin => Role::RightShin,
+            Role::LeftFoot => Role::RightFoot,
+            Role::RightThigh => Role::LeftThigh,
+            Role::RightShin => Role::LeftShin,
+            Role::RightFoot => Role::LeftFoot,
+            Role::LeftShoulder => Role::RightShoulder,
+            Role::LeftArm => Role::RightArm,
+            Role::LeftForearm => Role::RightForearm,
+            Role::LeftHand => Role::RightHand,
+            Role::RightShoulder => Role::LeftShoulder,
+            Role::RightArm => Role::LeftArm,
+            Role::RightForearm => Role::LeftForearm,
+            Role::RightHand => Role::LeftHand,
+        }
+    }
+
     /// Its name in mapping files and reports, `left_forearm`.
     pub fn name(self) -> &'static str {
         match self {

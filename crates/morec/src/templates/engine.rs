@@ -8,13 +8,15 @@ use crate::features::Rows;
 
 use super::early::{EarlyParams, Underway};
 use super::verifier::{Evidence, Judge};
-use super::{Bank, Metric, TemplateModel, TemplateModelError};
+use super::{Bank, Matcher, Metric, TemplateModel, TemplateModelError};
 
 /// The part of recognition that knows no clock: metric, templates, verifier, decoding.
 #[derive(Debug, Clone)]
 pub struct TemplateEngine {
     metric: Metric,
-    bank: Bank,
+    matcher: Matcher,
+    /// Matches count below this share of a motionless body's distance.
+    rest_share: f32,
     negatives: Bank,
     template_classes: Arc<[ClassId]>,
     judge: Option<Judge>,
@@ -70,7 +72,8 @@ impl TemplateEngine {
         let mut decoder = Decoder::new(&model.decode, rule, model.classes.len(), model.longest());
         decoder.set_thresholds(&model.class_thresholds);
         Ok(Self {
-            bank: Bank::new(&templates, dim),
+            matcher: Matcher::new(&templates, dim),
+            rest_share: model.decode.rest_share(rule),
             negatives: Bank::new(&negatives, dim),
             template_classes: model.samples.iter().map(|s| s.class).collect(),
             judge: model
@@ -95,7 +98,7 @@ impl TemplateEngine {
 
     /// Forgets the stream so far.
     pub fn reset(&mut self) {
-        self.bank.reset();
+        self.matcher.reset();
         self.negatives.reset();
         self.decoder.reset();
         self.recent.pushed = 0;
@@ -105,9 +108,9 @@ impl TemplateEngine {
     pub fn push(&mut self, row: &[f32], out: &mut impl FnMut(TickDetection)) {
         self.recent.push(row);
         self.metric.apply(row, &mut self.mapped);
-        self.bank.step(&self.mapped);
+        self.matcher.step(&self.mapped);
         self.negatives.step(&self.mapped);
-        nearest_by_class(&self.bank, &self.template_classes, &mut self.near);
+        self.nearest_by_class();
         let negative = nearest(&self.negatives);
         let (judge, recent, metric) = (&mut self.judge, &self.recent, &self.metric);
         self.decoder.push(
@@ -116,6 +119,28 @@ impl TemplateEngine {
             &mut |c| score(judge, recent, metric, c),
             out,
         );
+    }
+
+    /// The nearest match of each class that is no body at rest.
+    fn nearest_by_class(&mut self) {
+        self.near.fill(ClassDistance {
+            distance: FAR,
+            age: 0,
+        });
+        for (template, class) in self.template_classes.iter().enumerate() {
+            let best = &mut self.near[class.index()];
+            let plain = self.matcher.bank().matched(template);
+            if plain.distance >= best.distance {
+                continue;
+            }
+            let found = self.matcher.matched(template, self.rest_share);
+            if found.distance < best.distance {
+                *best = ClassDistance {
+                    distance: found.distance,
+                    age: found.age,
+                };
+            }
+        }
     }
 
     /// Ticks taken since the stretch began.
@@ -128,8 +153,9 @@ impl TemplateEngine {
     pub fn underway(&self, params: &EarlyParams) -> Option<Underway> {
         let (mut best, mut other) = (None::<Underway>, FAR);
         for (template, class) in self.template_classes.iter().enumerate() {
-            let length = self.bank.template_len(template);
-            let Some(found) = self.bank.partial(template, params.least_rows(length)) else {
+            let bank = self.matcher.bank();
+            let length = bank.template_len(template);
+            let Some(found) = bank.partial(template, params.least_rows(length)) else {
                 continue;
             };
             let progress = found.rows as f32 / length as f32;
@@ -177,24 +203,6 @@ impl TemplateEngine {
         self.decoder
             .finish(&mut |c| score(judge, recent, metric, c), out);
         self.reset();
-    }
-}
-
-/// The nearest template of each class, as the bank stands.
-fn nearest_by_class(bank: &Bank, classes: &[ClassId], near: &mut [ClassDistance]) {
-    near.fill(ClassDistance {
-        distance: FAR,
-        age: 0,
-    });
-    for (template, class) in classes.iter().enumerate() {
-        let found = bank.matched(template);
-        let best = &mut near[class.index()];
-        if found.distance < best.distance {
-            *best = ClassDistance {
-                distance: found.distance,
-                age: found.age,
-            };
-        }
     }
 }
 

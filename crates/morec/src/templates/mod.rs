@@ -5,6 +5,7 @@ mod compact;
 mod early;
 mod engine;
 mod kernel;
+mod matcher;
 mod metric;
 mod model;
 mod verifier;
@@ -12,6 +13,7 @@ mod verifier;
 pub use bank::{Bank, Match, PartialMatch};
 pub use early::{EarlyParams, Underway};
 pub use engine::TemplateEngine;
+pub use matcher::{Matcher, mean_and_spread};
 pub use metric::{Metric, Symmetric};
 pub use model::{Sample, TemplateModel, TemplateModelError};
 pub use verifier::{

@@ -107,10 +107,10 @@ impl Seen<'_> {
             };
             self.set.classes.len()
         ];
-        for (found, sample) in self.distances[stream].at(tick).iter().zip(self.samples) {
+        for (found, sample) in self.distances[stream].at(tick).zip(self.samples) {
             let best = &mut near[sample.class.index()];
-            if found.distance < best.distance && self.counts(stream, tick, found, sample) {
-                *best = *found;
+            if found.distance < best.distance && self.counts(stream, tick, &found, sample) {
+                *best = found;
             }
         }
         near

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::decode::FAR;
 use crate::features::Rows;
-use crate::templates::{Bank, Match};
+use crate::templates::{Match, Matcher};
 
 use super::params::TrainParams;
 use super::set::{Source, TrainSample, TrainStream, overlap_share};
@@ -12,20 +12,51 @@ use super::set::{Source, TrainSample, TrainStream, overlap_share};
 /// Every template's match at every tick of one stream: `ticks` × `templates`.
 pub struct Distances {
     templates: usize,
-    matches: Vec<Match>,
+    matches: Vec<Compared>,
+    /// Matches count below this share of a motionless body's distance; 0 admits all.
+    rest_share: f32,
+}
+
+/// A match with what a motionless body would give.
+#[derive(Debug, Clone, Copy)]
+struct Compared {
+    distance: f32,
+    age: u32,
+    at_rest: f32,
 }
 
 impl Distances {
-    /// Runs `bank` over rows that are already in its metric. O(ticks · template rows · d).
-    pub fn of(bank: &mut Bank, rows: &Rows) -> Self {
-        bank.reset();
-        let templates = bank.len();
+    /// Runs `matcher` over rows that are already in its metric. O(ticks · template rows · d).
+    pub fn of(matcher: &mut Matcher, rows: &Rows) -> Self {
+        matcher.reset();
+        let templates = matcher.bank().len();
         let mut matches = Vec::with_capacity(rows.len() * templates);
         for row in rows.iter() {
-            bank.step(row);
-            matches.extend((0..templates).map(|i| bank.matched(i)));
+            matcher.step(row);
+            for template in 0..templates {
+                let Match { distance, age } = matcher.matched(template, 0.0);
+                let near = distance < FAR;
+                matches.push(Compared {
+                    distance,
+                    age: age as u32,
+                    at_rest: if near {
+                        matcher.at_rest(template, age)
+                    } else {
+                        FAR
+                    },
+                });
+            }
         }
-        Self { templates, matches }
+        Self {
+            templates,
+            matches,
+            rest_share: 0.0,
+        }
+    }
+
+    /// Lets matches count below this share of a motionless body's distance only.
+    pub fn set_rest_share(&mut self, share: f32) {
+        self.rest_share = share;
     }
 
     /// Number of ticks.
@@ -34,23 +65,32 @@ impl Distances {
     }
 
     /// Matches of all templates at `tick`.
-    pub fn at(&self, tick: usize) -> &[Match] {
-        &self.matches[tick * self.templates..(tick + 1) * self.templates]
+    pub fn at(&self, tick: usize) -> impl Iterator<Item = Match> + '_ {
+        let here = &self.matches[tick * self.templates..(tick + 1) * self.templates];
+        here.iter().map(|m| self.counted(m))
+    }
+
+    fn counted(&self, found: &Compared) -> Match {
+        let moves = self.rest_share <= 0.0 || found.distance < self.rest_share * found.at_rest;
+        Match {
+            distance: if moves { found.distance } else { FAR },
+            age: found.age as usize,
+        }
     }
 
     /// The smallest distance anywhere.
     pub fn smallest(&self) -> f32 {
-        self.matches.iter().map(|m| m.distance).fold(FAR, f32::min)
+        let counted = self.matches.iter().map(|m| self.counted(m).distance);
+        counted.fold(FAR, f32::min)
     }
 
     /// The nearest of the templates that `counts` admits, at `tick`.
     pub fn nearest(&self, tick: usize, counts: impl Fn(usize) -> bool) -> Match {
         let admitted = self
             .at(tick)
-            .iter()
             .enumerate()
             .filter(|(i, _)| counts(*i))
-            .map(|(_, m)| *m);
+            .map(|(_, m)| m);
         admitted
             .reduce(|best, m| if m.distance < best.distance { m } else { best })
             .unwrap_or(NO_MATCH)

@@ -5,6 +5,7 @@ mod clips;
 mod examples;
 mod from_clips;
 mod mining;
+mod operating;
 mod options;
 mod params;
 mod recipe;

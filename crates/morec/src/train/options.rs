@@ -30,7 +30,7 @@ impl Default for TrainOptions {
         Self {
             params: TrainParams::default(),
             unlabelled_is_background: true,
-            everyday: Everyday::Auto,
+            everyday: Everyday::Always,
         }
     }
 }

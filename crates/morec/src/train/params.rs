@@ -22,6 +22,11 @@ pub struct TrainParams {
     pub class_range: f64,
     /// Share of everyday clips that may come nearer than what sets the threshold.
     pub everyday_may_pass: f64,
+    /// The threshold lies where background motion would be reported this often a minute; 0: by
+    /// [`background_share`](Self::background_share) instead.
+    pub alarms_per_minute: f64,
+    /// The threshold is at most this.
+    pub max_threshold: f64,
     /// The threshold where there is no background at all.
     pub fallback_threshold: f64,
     /// Stretches nearer than this to a template may become negatives.
@@ -65,7 +70,9 @@ impl Default for TrainParams {
         Self {
             features: FeatureParams::default(),
             decode: DecodeParams::default(),
-            class_share: 0.5,
+            class_share: 0.0,
+            alarms_per_minute: 0.3,
+            max_threshold: 2.8,
             max_templates: 24,
             whole_background: 1.5,
             verify: true,
@@ -87,6 +94,8 @@ impl TrainParams {
             class_share: 0.0,
             class_range: 1.5,
             everyday_may_pass: 0.1,
+            alarms_per_minute: 0.0,
+            max_threshold: f64::MAX,
             fallback_threshold: 2.0,
             negative_below: 2.6,
             suspicious_below: 0.7,

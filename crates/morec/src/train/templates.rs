@@ -6,14 +6,16 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use crate::classes::ClassInfo;
+use crate::decode::Rule;
 use crate::features::{BoneSet, Rows};
 use crate::progress::Progress;
 use crate::templates::{
-    Bank, Metric, Sample, Symmetric, TemplateModel, TemplateModelError, Verifier,
+    Matcher, Metric, Sample, Symmetric, TemplateModel, TemplateModelError, Verifier,
 };
 
 use super::examples::{self, Example, Seen};
 use super::mining::{Distances, NearMiss, near_misses};
+use super::operating::AlarmCurve;
 use super::params::TrainParams;
 use super::scatter::{covariance, ridged, within_class};
 use super::set::{Source, TrainSample, TrainSet, TrainStream};
@@ -95,9 +97,16 @@ pub fn train(
     let classes = class_infos(set, &samples);
     let samples = templates_of(samples, set.classes.len(), params.max_templates);
     let bank = bank_of(samples.iter().map(|s| metric.apply_all(&s.rows)), &metric);
-    let distances = all_distances(set, &bank, &metric, "comparing clips", progress)?;
-    let (threshold, threshold_from) = thresholds::common(set, &distances, params);
+    let mut distances = all_distances(set, &bank, &metric, "comparing clips", progress)?;
+    let plain = Rule::Gate { threshold: 0.0 };
+    rest_share(&mut distances, params.decode.rest_share(plain));
+    let (threshold, threshold_from) = if params.alarms_per_minute > 0.0 {
+        by_alarms(set, &distances, params)
+    } else {
+        thresholds::common(set, &distances, params)
+    };
     let negatives = negatives_of(set, bones, (&samples, &distances), threshold, params);
+    rest_share(&mut distances, params.decode.rest_gate_verified);
     let verifier = if params.verify {
         let found = (
             samples.as_slice(),
@@ -108,6 +117,7 @@ pub fn train(
     } else {
         None
     };
+    rest_share(&mut distances, params.decode.rest_share(plain));
     let class_thresholds = match verifier {
         None if params.class_share > 0.0 => {
             thresholds::of_classes(set, &samples, &distances, threshold, params)
@@ -147,6 +157,22 @@ pub fn train(
     })
 }
 
+fn rest_share(distances: &mut [Distances], share: f32) {
+    distances.iter_mut().for_each(|d| d.set_rest_share(share));
+}
+
+fn by_alarms(set: &TrainSet, distances: &[Distances], params: &TrainParams) -> (f32, String) {
+    let curve = AlarmCurve::of(set, distances, params.features.tick_hz());
+    let most = params.max_threshold as f32;
+    match curve.distance_at(params.alarms_per_minute) {
+        Some((distance, stream)) if distance < most => (
+            distance,
+            format!("background clip {}", set.streams[stream].name),
+        ),
+        _ => (most, "no background comes near: the largest".to_owned()),
+    }
+}
+
 /// At most `most` samples of each class, from its groups in turn, in the order of the set.
 fn templates_of(samples: Vec<TrainSample>, classes: usize, most: usize) -> Vec<TrainSample> {
     let mut kept = BTreeSet::new();
@@ -172,8 +198,8 @@ fn templates_of(samples: Vec<TrainSample>, classes: usize, most: usize) -> Vec<T
         .collect()
 }
 
-fn bank_of(mapped: impl Iterator<Item = Rows>, metric: &Metric) -> Bank {
-    Bank::new(&mapped.collect::<Vec<_>>(), metric.dim())
+fn bank_of(mapped: impl Iterator<Item = Rows>, metric: &Metric) -> Matcher {
+    Matcher::new(&mapped.collect::<Vec<_>>(), metric.dim())
 }
 
 /// Candidates of all streams, each seen without its own person, and what a verifier learns from them.
@@ -247,13 +273,13 @@ fn metric_of(
 /// Every stream against every template, in parallel, in the order of the set.
 fn all_distances(
     set: &TrainSet,
-    bank: &Bank,
+    bank: &Matcher,
     metric: &Metric,
     stage: &str,
     progress: &dyn Progress,
 ) -> Result<Vec<Distances>, TrainError> {
     let (done, total) = (AtomicUsize::new(0), set.streams.len());
-    let compare = |bank: &mut Bank, stream: &TrainStream| {
+    let compare = |bank: &mut Matcher, stream: &TrainStream| {
         if progress.cancelled() {
             return Err(TrainError::Cancelled);
         }

@@ -131,7 +131,7 @@ mod tests {
     use super::*;
     use crate::classes::ClassId;
     use crate::features::Rows;
-    use crate::templates::Bank;
+    use crate::templates::Matcher;
     use crate::train::Known;
 
     fn stream(name: &str, source: Source, values: Vec<f32>, known: Vec<Known>) -> TrainStream {
@@ -176,7 +176,7 @@ mod tests {
         let background = background.map(|v| stream("b", Source::Background, vec![v; 8], vec![]));
         set.streams.extend(background);
         let samples = set.samples();
-        let mut bank = Bank::new(
+        let mut bank = Matcher::new(
             &samples.iter().map(|s| s.rows.clone()).collect::<Vec<_>>(),
             1,
         );

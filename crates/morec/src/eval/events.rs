@@ -1,0 +1,73 @@
+//! Detections as events: right if one happens about where the sample is.
+
+use serde::Serialize;
+
+use super::Stream;
+use super::figures::share;
+
+/// How far outside a sample the middle of its detection may lie, in seconds: eight frames at 30 Hz.
+pub const EVENT_TOLERANCE_SECS: f64 = 8.0 / 30.0;
+
+/// Precision, recall and F1 of events. A detection is right if its middle lies within a sample of its class,
+/// [`EVENT_TOLERANCE_SECS`] more on each side; each sample counts once, further detections are false.
+///
+/// For samples whose labels are loose at the ends, as those of whole clips are; a measure of overlap would then
+/// judge the labels.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct EventScore {
+    /// Samples with a right detection: true positives.
+    pub matched: usize,
+    /// Samples without one.
+    pub missed: usize,
+    /// Detections that are not right, or one too many.
+    pub spurious: usize,
+    /// Share of the detections that are right.
+    pub precision: Option<f64>,
+    /// Share of the samples found.
+    pub recall: Option<f64>,
+    /// 2·matched / (samples + detections).
+    pub f1: Option<f64>,
+}
+
+impl EventScore {
+    /// Counts over `streams`. O(samples × detections) within each stream.
+    pub(super) fn count(streams: &[Stream<'_>]) -> Self {
+        let (mut matched, mut samples, mut detections) = (0, 0, 0);
+        for stream in streams {
+            matched += matched_in(stream);
+            samples += stream.truths.len();
+            detections += stream.founds.len();
+        }
+        Self {
+            matched,
+            missed: samples - matched,
+            spurious: detections - matched,
+            precision: share(matched, detections),
+            recall: share(matched, samples),
+            f1: share(2 * matched, samples + detections),
+        }
+    }
+}
+
+/// Samples in order of their stops each take the earliest detection that is left: for intervals that is the
+/// largest pairing there is.
+fn matched_in(stream: &Stream<'_>) -> usize {
+    let mut truths: Vec<_> = stream.truths.iter().collect();
+    truths.sort_by(|a, b| a.stop_secs.total_cmp(&b.stop_secs));
+    let middle = |f: usize| (stream.founds[f].start_secs + stream.founds[f].stop_secs) / 2.0;
+    let mut order: Vec<usize> = (0..stream.founds.len()).collect();
+    order.sort_by(|a, b| middle(*a).total_cmp(&middle(*b)));
+    let mut taken = vec![false; stream.founds.len()];
+    let mut matched = 0;
+    for truth in truths {
+        let near = truth.start_secs - EVENT_TOLERANCE_SECS..=truth.stop_secs + EVENT_TOLERANCE_SECS;
+        let free = order.iter().copied().find(|&f| {
+            !taken[f] && stream.founds[f].class == truth.class && near.contains(&middle(f))
+        });
+        if let Some(f) = free {
+            taken[f] = true;
+            matched += 1;
+        }
+    }
+    matched
+}

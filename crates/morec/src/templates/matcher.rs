@@ -1,0 +1,227 @@
+//! Templates matched against a stream, each match held against a body at rest.
+
+use std::sync::Arc;
+
+use crate::decode::FAR;
+use crate::features::Rows;
+
+use super::bank::{Bank, Match};
+
+/// A [`Bank`] that also knows how far from each template a motionless body would be.
+///
+/// For template rows `T` with mean `m_T` and spread `V_T = mean |T_j − m_T|²`, and a matched stretch of the stream
+/// with mean `m_S`, a performer frozen in the stretch's mean pose is at the distance `V_T + |m_T − m_S|²`. A match
+/// that is hardly nearer than that says nothing of motion: standing still is near every template of small spread.
+///
+/// Means of stretches come from running sums: O(d) for each match that is asked for, nothing is allocated after
+/// construction.
+#[derive(Debug, Clone)]
+pub struct Matcher {
+    bank: Bank,
+    spreads: Arc<[f32]>,
+    /// `m_T` of each template.
+    means: Arc<Rows>,
+    sums: RunningSums,
+}
+
+/// Sums of the rows so far, at each of the last ticks.
+#[derive(Debug, Clone)]
+struct RunningSums {
+    dim: usize,
+    mask: usize,
+    /// Of rows `0..tick`, at slot `tick & mask`; one more value for the sum of squared lengths.
+    sums: Vec<f64>,
+    ticks: usize,
+}
+
+impl RunningSums {
+    fn new(dim: usize, longest_match: usize) -> Self {
+        let capacity = (longest_match + 2).next_power_of_two();
+        Self {
+            dim: dim + 1,
+            mask: capacity - 1,
+            sums: vec![0.0; (dim + 1) * capacity],
+            ticks: 0,
+        }
+    }
+
+    fn at(&self, tick: usize) -> &[f64] {
+        &self.sums[(tick & self.mask) * self.dim..][..self.dim]
+    }
+
+    fn push(&mut self, row: &[f32]) {
+        let from = (self.ticks & self.mask) * self.dim;
+        self.ticks += 1;
+        let to = (self.ticks & self.mask) * self.dim;
+        let mut square = 0.0;
+        for (i, value) in row.iter().enumerate() {
+            let value = f64::from(*value);
+            self.sums[to + i] = self.sums[from + i] + value;
+            square += value * value;
+        }
+        let last = self.dim - 1;
+        self.sums[to + last] = self.sums[from + last] + square;
+    }
+
+    fn reset(&mut self) {
+        self.ticks = 0;
+        self.sums[..self.dim].fill(0.0);
+    }
+}
+
+impl Matcher {
+    /// Lays out `templates`, all of rows of `dim` values.
+    pub fn new(templates: &[Rows], dim: usize) -> Self {
+        let mut means = Rows::new(dim);
+        let mut spreads = Vec::with_capacity(templates.len());
+        for template in templates {
+            let (mean, spread) = mean_and_spread(template, dim);
+            means.push(&mean);
+            spreads.push(spread);
+        }
+        let bank = Bank::new(templates, dim);
+        Self {
+            // A match of n rows spans at most 2 n ticks.
+            sums: RunningSums::new(dim, 2 * bank.longest()),
+            bank,
+            spreads: spreads.into(),
+            means: Arc::new(means),
+        }
+    }
+
+    /// The templates' dynamic program.
+    pub fn bank(&self) -> &Bank {
+        &self.bank
+    }
+
+    /// Spread of template `index` about its mean.
+    pub fn spread(&self, index: usize) -> f32 {
+        self.spreads[index]
+    }
+
+    /// Forgets the stream so far.
+    pub fn reset(&mut self) {
+        self.bank.reset();
+        self.sums.reset();
+    }
+
+    /// Advances by one tick with the stream's row, of `dim` values. O(template rows · d).
+    pub fn step(&mut self, row: &[f32]) {
+        self.bank.step(row);
+        self.sums.push(row);
+    }
+
+    /// How template `index` matches a stretch that ends with the last tick, if the match is nearer than `share` of
+    /// a motionless body's distance; [`FAR`] if it is not. A share of 0 or less admits every match. O(d).
+    pub fn matched(&self, index: usize, share: f32) -> Match {
+        let found = self.bank.matched(index);
+        if share <= 0.0 || found.distance >= FAR {
+            return found;
+        }
+        if found.distance < share * self.at_rest(index, found.age) {
+            found
+        } else {
+            Match {
+                distance: FAR,
+                ..found
+            }
+        }
+    }
+
+    /// Distance from template `index` of a body that stands still in the mean pose of the last `age + 1` ticks:
+    /// `V_T + |m_T − m_S|²`. O(d).
+    pub fn at_rest(&self, index: usize, age: usize) -> f32 {
+        let length = (age + 1).min(self.sums.ticks) as f64;
+        let (end, start) = self.stretch(age);
+        let mean = self.means.row(index);
+        let offset: f64 = mean
+            .iter()
+            .zip(end.iter().zip(start))
+            .map(|(mean, (end, start))| ((end - start) / length - f64::from(*mean)).powi(2))
+            .sum();
+        self.spreads[index] + offset as f32
+    }
+
+    /// Spread of the last `age + 1` ticks about their mean. O(d).
+    pub fn stretch_spread(&self, age: usize) -> f32 {
+        let length = (age + 1).min(self.sums.ticks) as f64;
+        let (end, start) = self.stretch(age);
+        let last = self.sums.dim - 1;
+        let square = (end[last] - start[last]) / length;
+        let mean: f64 = end[..last]
+            .iter()
+            .zip(start)
+            .map(|(end, start)| ((end - start) / length).powi(2))
+            .sum();
+        (square - mean).max(0.0) as f32
+    }
+
+    /// Running sums at the end and before the start of the last `age + 1` ticks.
+    fn stretch(&self, age: usize) -> (&[f64], &[f64]) {
+        let end = self.sums.ticks;
+        let start = end.saturating_sub(age + 1);
+        (self.sums.at(end), self.sums.at(start))
+    }
+}
+
+/// Mean row, and mean squared distance from it.
+pub fn mean_and_spread(rows: &Rows, dim: usize) -> (Vec<f32>, f32) {
+    let count = rows.len().max(1) as f64;
+    let mut mean = vec![0.0f64; dim];
+    let mut square = 0.0;
+    for row in rows.iter() {
+        for (sum, value) in mean.iter_mut().zip(row) {
+            *sum += f64::from(*value);
+            square += f64::from(*value).powi(2);
+        }
+    }
+    mean.iter_mut().for_each(|sum| *sum /= count);
+    let spread = square / count - mean.iter().map(|m| m * m).sum::<f64>();
+    (
+        mean.into_iter().map(|m| m as f32).collect(),
+        spread.max(0.0) as f32,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn rows(len: std::ops::Range<usize>) -> impl Strategy<Value = Rows> {
+        len.prop_flat_map(|n| prop::collection::vec(-3.0f32..3.0, 3 * n))
+            .prop_map(|v| Rows::from_values(3, v))
+    }
+
+    proptest! {
+        #[test]
+        fn running_sums_agree_with_the_stretch_itself(template in rows(2..9), stream in rows(1..60)) {
+            let mut matcher = Matcher::new(std::slice::from_ref(&template), 3);
+            let (mean_t, spread_t) = mean_and_spread(&template, 3);
+            for (t, row) in stream.iter().enumerate() {
+                matcher.step(row);
+                let found = matcher.bank().matched(0);
+                if found.distance >= FAR {
+                    continue;
+                }
+                let stretch = stream.slice(t - found.age..t + 1);
+                let (mean_s, spread_s) = mean_and_spread(&stretch, 3);
+                let offset: f32 = mean_t.iter().zip(&mean_s).map(|(a, b)| (a - b) * (a - b)).sum();
+                prop_assert!((matcher.at_rest(0, found.age) - (spread_t + offset)).abs() < 1e-3);
+                prop_assert!((matcher.stretch_spread(found.age) - spread_s).abs() < 1e-3);
+            }
+        }
+
+        #[test]
+        fn a_body_that_stands_still_never_matches(
+            template in rows(4..12),
+            pose in prop::collection::vec(-3.0f32..3.0, 3),
+        ) {
+            let mut matcher = Matcher::new(std::slice::from_ref(&template), 3);
+            for _ in 0..40 {
+                matcher.step(&pose);
+                prop_assert!(matcher.matched(0, 0.99).distance >= FAR);
+            }
+        }
+    }
+}
