@@ -9,6 +9,8 @@ pub enum Check {
     Options,
     /// Its commands need the real clips.
     RealClips,
+    /// Its commands run; on the real clips they print what the block shows.
+    Output,
     /// Nothing.
     None,
 }
@@ -20,8 +22,9 @@ pub struct Block {
     pub line: usize,
     /// Its commands, as a shell script.
     pub commands: String,
-    /// Whether it shows what the commands print (`console`).
-    pub shows_output: bool,
+    /// What the commands print, line by line, if the block shows it (`console`): without omissions, and without sizes of
+    /// files, which depend on the names of folders.
+    pub output: Vec<String>,
     /// What is to be done with it.
     pub check: Check,
 }
@@ -48,13 +51,13 @@ pub fn blocks(text: &str) -> Vec<Block> {
             .map(|(_, line)| line)
             .take_while(|line| line.trim() != "```")
             .collect();
-        let shows_output = kind == "```console";
-        let commands = commands(&body, shows_output);
+        let console = kind == "```console";
+        let commands = commands(&body, console);
         if commands.contains("morec") || commands.contains("cargo") {
             found.push(Block {
                 line: at + 1,
                 commands,
-                shows_output,
+                output: output(&body, console),
                 check: check(before, at + 1),
             });
         }
@@ -71,17 +74,18 @@ fn check(before: &str, line: usize) -> Check {
     match marker.trim_end_matches("-->").trim() {
         "options" => Check::Options,
         "real clips" => Check::RealClips,
+        "output" => Check::Output,
         "none" => Check::None,
         other => panic!("line {line}: no check is called {other:?}"),
     }
 }
 
 /// The lines that this test runs: commands of morec, with the loops and variables around them.
-fn commands(body: &[&str], shows_output: bool) -> String {
+fn commands(body: &[&str], console: bool) -> String {
     let mut script = String::new();
     let mut lines = body.iter();
     while let Some(line) = lines.next() {
-        let first = match shows_output {
+        let first = match console {
             true => line.strip_prefix("$ "),
             false => Some(line.trim_start()),
         };
@@ -99,6 +103,15 @@ fn commands(body: &[&str], shows_output: bool) -> String {
     script
 }
 
+/// The lines that a block shows as printed.
+fn output(body: &[&str], console: bool) -> Vec<String> {
+    body.iter()
+        .filter(|line| console && !line.starts_with("$ "))
+        .map(|line| line.trim().to_owned())
+        .filter(|line| !line.is_empty() && line != "…" && !line.contains(" bytes"))
+        .collect()
+}
+
 fn is_run(command: &str) -> bool {
     let word = command.split_whitespace().next().unwrap_or("");
     let assigns = word
@@ -114,7 +127,7 @@ fn is_run(command: &str) -> bool {
 fn blocks_are_found_with_their_markers() {
     let text = "text\n```sh\ncargo test\n```\n\
         ```sh\nX=1 Y=2\nfor i in 1 2; do\n    morec a \\\n        -b $i   # c\ndone\ngit clone x\ncat a | morec d -\n```\n\
-        <!-- check: options -->\n```console\n$ morec e\noutput\n```\n\
+        <!-- check: options -->\n```console\n$ morec e\n out put\n…\nx: 9 bytes\n```\n\
         ```c\n```\n\
         <!-- check: none -->\n```sh\nmorec f\n```\n\
         <!-- check: real clips -->\n```sh\nmorec g\n```\n";
@@ -129,7 +142,8 @@ fn blocks_are_found_with_their_markers() {
         )
     );
     assert_eq!(of(1), ("morec e\n", Check::Options));
-    assert!(found[1].shows_output && !found[0].shows_output);
+    assert_eq!(found[1].output, ["out put"]);
+    assert!(found[0].output.is_empty());
     assert_eq!(of(2).1, Check::None);
     assert_eq!(of(3).1, Check::RealClips);
 }

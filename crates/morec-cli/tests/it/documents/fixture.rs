@@ -57,7 +57,7 @@ impl Fixture {
         fixture
     }
 
-    /// The same files of real people: two clips of one person, one of another, and other motion.
+    /// The same files of real people: two clips of one person, one of another, and other motion; `recordings/` has all.
     #[cfg(unix)]
     pub fn real(data: &Path) -> Self {
         let fixture = Self::empty();
@@ -69,19 +69,30 @@ impl Fixture {
         };
         for entry in std::fs::read_dir(data.join("referee/clips")).unwrap() {
             let name = entry.unwrap().file_name().into_string().unwrap();
+            let from = format!("referee/clips/{name}");
+            link(&from, &format!("recordings/{name}"));
             let folder = match name.split('_').next() {
                 Some("signals") if name.contains('3') => "new",
                 Some("signals") => "clips",
                 Some("jumping" | "soccer" | "running") => "background",
                 _ => continue,
             };
-            link(
-                &format!("referee/clips/{name}"),
-                &format!("{folder}/{name}"),
-            );
+            link(&from, &format!("{folder}/{name}"));
         }
-        link("exercises", "background/exercises");
-        link("segmentation", "background/segmentation");
+        // Files, not folders: a folder that is a link is not searched.
+        for (folder, skeleton) in [("exercises", "skeleton.asf"), ("segmentation", "86.asf")] {
+            link(
+                &format!("{folder}/{skeleton}"),
+                &format!("background/{folder}/{skeleton}"),
+            );
+            for entry in std::fs::read_dir(data.join(folder).join("clips")).unwrap() {
+                let name = entry.unwrap().file_name().into_string().unwrap();
+                link(
+                    &format!("{folder}/clips/{name}"),
+                    &format!("background/{folder}/{name}"),
+                );
+            }
+        }
         link("referee/labels.tsv", "labels.tsv");
         link("referee/people.tsv", "people.tsv");
         fixture.train(&[]);

@@ -1,9 +1,12 @@
 //! The documents stay true: their commands run, their options exist, their links lead somewhere.
 //!
-//! README and every chapter of `docs/guide/` run on synthetic clips that carry the names of the text ([`fixture`]); blocks
-//! of the kind `console`, whose output is from real clips, run on these as well where they are. Commands of all other
-//! documents are checked for their options only. A comment on the line above a block changes that:
-//! `<!-- check: options -->`, `<!-- check: real clips -->` or `<!-- check: none -->`.
+//! README and every chapter of `docs/guide/` run on synthetic clips that carry the names of the text ([`fixture`]); commands
+//! of all other documents are checked for their options only. A comment on the line above a block changes that:
+//!
+//! - `<!-- check: options -->`: nothing runs, options are checked;
+//! - `<!-- check: real clips -->`: it runs only where the real clips are;
+//! - `<!-- check: output -->`: it also runs on the real clips, where they are, and prints the lines that it shows;
+//! - `<!-- check: none -->`: nothing is checked.
 
 mod blocks;
 mod fixture;
@@ -56,6 +59,8 @@ fn others() -> Vec<PathBuf> {
 enum Mode {
     /// All but those that wait for the network or do not end.
     Run,
+    /// The same, and what they print is compared with what the block shows.
+    Compare,
     /// With `--help` behind them: an option or value that does not exist is an error before that.
     Options,
 }
@@ -63,7 +68,7 @@ enum Mode {
 /// The shell's functions in place of the commands that a block names.
 fn prelude(mode: Mode) -> &'static str {
     match mode {
-        Mode::Run => {
+        Mode::Run | Mode::Compare => {
             r#"
 set -e
 morec() {
@@ -84,8 +89,8 @@ cargo() { :; }
     }
 }
 
-/// Runs the commands of a block in `folder`; the error says which failed and how.
-fn run(block: &Block, mode: Mode, folder: &Path) -> Result<(), String> {
+/// Runs the commands of a block in `folder` and returns what they print; the error says which failed and how.
+fn run(block: &Block, mode: Mode, folder: &Path) -> Result<String, String> {
     let script = format!("set -u\n{}\nset -x\n{}\n:", prelude(mode), block.commands);
     let output = Command::new("sh")
         .args(["-c", &script])
@@ -94,14 +99,29 @@ fn run(block: &Block, mode: Mode, folder: &Path) -> Result<(), String> {
         .stdin(Stdio::null())
         .output()
         .unwrap();
+    let printed = [&output.stdout[..], &output.stderr[..]].concat();
+    let printed = String::from_utf8_lossy(&printed).into_owned();
     match output.status.success() {
-        true => Ok(()),
+        true => Ok(printed),
         false => Err(format!(
-            "line {}, {}:\n{}\n{}",
-            block.line,
-            output.status,
-            block.commands,
-            String::from_utf8_lossy(&output.stderr)
+            "line {}, {}:\n{}\n{printed}",
+            block.line, output.status, block.commands
+        )),
+    }
+}
+
+/// Fails if `printed` lacks a line that the block shows.
+fn compare(block: &Block, printed: &str) -> Result<(), String> {
+    let lines: Vec<&str> = printed.lines().map(str::trim).collect();
+    let missing = block
+        .output
+        .iter()
+        .find(|line| !lines.contains(&line.as_str()));
+    match missing {
+        None => Ok(()),
+        Some(line) => Err(format!(
+            "line {}: this is not printed any more:\n{line}\nbut this is:\n{printed}",
+            block.line
         )),
     }
 }
@@ -121,9 +141,14 @@ fn run_document(
         return None;
     }
     let folder = fixture.copy();
-    let failed = chosen
-        .iter()
-        .find_map(|(block, mode)| run(block, *mode, folder.path()).err());
+    let failed = chosen.iter().find_map(|(block, mode)| {
+        let printed = run(block, *mode, folder.path());
+        let compared = printed.and_then(|printed| match mode {
+            Mode::Compare => compare(block, &printed),
+            _ => Ok(()),
+        });
+        compared.err()
+    });
     failed.map(|why| format!("{}, {why}", path.display()))
 }
 
@@ -154,18 +179,18 @@ fn run_documents(
 #[test]
 fn commands_of_readme_and_guide_run() {
     run_documents(&guide(), &Fixture::synthetic(), |block| match block.check {
-        Check::Run => Some(Mode::Run),
+        Check::Run | Check::Output => Some(Mode::Run),
         Check::Options => Some(Mode::Options),
         Check::RealClips | Check::None => None,
     });
 }
 
 #[test]
-fn commands_with_output_of_real_clips_run_on_them() {
+fn commands_on_real_clips_run_and_print_what_is_shown() {
     let Some(data) = kit::data() else { return };
     run_documents(&guide(), &Fixture::real(&data), |block| match block.check {
         Check::RealClips => Some(Mode::Run),
-        Check::Run if block.shows_output => Some(Mode::Run),
+        Check::Output => Some(Mode::Compare),
         _ => None,
     });
 }
@@ -192,4 +217,7 @@ fn a_command_that_does_not_work_is_noticed() {
     ));
     assert!(fails("morec live x.index --no-such-option", Mode::Run));
     assert!(fails("morec no-such-command", Mode::Options));
+    let shown = &blocks("```console\n$ morec --version\nmorec 1\n…\nend\n```\n")[0];
+    assert!(compare(shown, "begin\n morec 1\nmore\nend\n").is_ok());
+    assert!(compare(shown, "begin\nmorec 2\nend\n").is_err());
 }
