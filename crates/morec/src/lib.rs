@@ -150,5 +150,6 @@ pub mod svrdm;
 pub mod synth;
 pub mod templates;
 #[cfg(test)]
+#[path = "../tests/testing/mod.rs"]
 mod testing;
 pub mod train;

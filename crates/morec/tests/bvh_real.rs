@@ -8,7 +8,6 @@ use morec::formats::bvh::{self, BvhOptions};
 use morec::formats::{Limits, Warning};
 use morec::kinematics::WorldPose;
 
-#[path = "../src/testing.rs"]
 mod testing;
 
 use testing::data;

@@ -25,5 +25,5 @@ mod kit;
 #[path = "../../../morec/tests/it/made.rs"]
 mod made;
 #[allow(dead_code)]
-#[path = "../../../morec/src/testing.rs"]
+#[path = "../../../morec/tests/testing/mod.rs"]
 mod testing;

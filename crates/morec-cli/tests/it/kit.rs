@@ -9,7 +9,7 @@ pub const WAVE_BVH: &str = include_str!("../../../morec/testdata/acclaim/wave.bv
 pub const ARM_ASF: &str = include_str!("../../../morec/testdata/acclaim/arm.asf");
 pub const WAVE_AMC: &str = include_str!("../../../morec/testdata/acclaim/wave.amc");
 
-#[path = "../../../morec/src/testing.rs"]
+#[path = "../../../morec/tests/testing/mod.rs"]
 mod testing;
 
 pub use testing::{data, skipped};

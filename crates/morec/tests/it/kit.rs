@@ -5,7 +5,7 @@ use morec::formats::{Limits, acclaim, bvh};
 use morec::roles::{Role, RoleMap};
 use morec::train::{Source, TrainClip};
 
-#[path = "../../src/testing.rs"]
+#[path = "../testing/mod.rs"]
 mod testing;
 
 pub use testing::data;
