@@ -105,10 +105,8 @@ mod tests {
             assert_eq!(role(number), Some(known));
             assert_eq!(NAMES[known.index()].to_str(), Ok(known.name()));
             // SAFETY: a text that ends with a zero.
-            assert_eq!(
-                unsafe { morec_role_from_name(NAMES[known.index()].as_ptr()) },
-                number
-            );
+            let named = unsafe { morec_role_from_name(NAMES[known.index()].as_ptr()) };
+            assert_eq!(named, number);
         }
         assert_eq!((role(-1), role(18), role(i32::MIN)), (None, None, None));
     }

@@ -118,7 +118,8 @@
 //! | `n(t)` | the same of the negative templates |
 //! | `θ`, `κ` | the threshold of distances, and the gate against negatives |
 //!
-//! The method with its sources, the invariants and the reasons for every dependency are in `ARCHITECTURE.md`.
+//! The method with its sources is in `docs/method.md`, the invariants in `ARCHITECTURE.md`, the reasons for every
+//! dependency in `docs/decisions.md`.
 
 pub mod classes;
 pub mod clip;
@@ -149,4 +150,7 @@ pub mod smooth;
 pub mod svrdm;
 pub mod synth;
 pub mod templates;
+#[cfg(test)]
+#[path = "../tests/testing/mod.rs"]
+mod testing;
 pub mod train;

@@ -1,22 +1,16 @@
 //! Reads every BVH file of the motion data that lies beside the project, if it is there.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use morec::clip::Clip;
 use morec::formats::bvh::{self, BvhOptions};
 use morec::formats::{Limits, Warning};
 use morec::kinematics::WorldPose;
 
-fn data() -> Option<PathBuf> {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    let data = std::env::var_os("MOREC_DATA").map_or(beside, PathBuf::from);
-    if data.is_dir() {
-        return Some(data);
-    }
-    println!("skipped: no motion data at {}", data.display());
-    None
-}
+mod testing;
+
+use testing::data;
 
 /// The clips of one folder with the number of lines in each table, counted the plain way.
 fn clips(folder: &str) -> Vec<(Clip, Vec<Warning>, usize)> {

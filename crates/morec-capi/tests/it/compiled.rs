@@ -11,6 +11,7 @@ use crate::compilers::{Compiler, Language, Link, succeed};
 use crate::eight;
 use crate::kit::{self, index};
 use crate::made;
+use crate::testing::skipped;
 
 /// Lines as the examples print them.
 fn lines(found: &[Detection]) -> String {
@@ -54,7 +55,7 @@ fn examples() -> PathBuf {
 fn the_examples_build_and_run() {
     let compilers = Compiler::all();
     if cfg!(windows) || compilers.is_empty() {
-        eprintln!("skipped: no compiler of C or C++ here (cc, gcc, clang, c++, g++, clang++)");
+        skipped("no compiler of C or C++ (cc, gcc, clang, c++, g++, clang++)");
         return;
     }
     let files = eight::files();
@@ -63,10 +64,7 @@ fn the_examples_build_and_run() {
     for compiler in &compilers {
         let sanitizes = compiler.sanitizes(&files.folder);
         if !sanitizes {
-            eprintln!(
-                "{}: skipped the sanitizers, which do not work here",
-                compiler.command
-            );
+            skipped(&format!("{}: sanitizers do not work", compiler.command));
         }
         for link in [Link::Static, Link::Shared] {
             for sanitize in [false, true] {
@@ -113,7 +111,7 @@ fn a_program_that_is_told_nonsense_says_so() {
         .into_iter()
         .find(|c| c.language == Language::C)
     else {
-        eprintln!("skipped: no compiler of C here (cc, gcc, clang)");
+        skipped("no compiler of C (cc, gcc, clang)");
         return;
     };
     if cfg!(windows) {

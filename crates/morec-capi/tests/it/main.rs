@@ -24,3 +24,6 @@ mod kit;
 #[allow(dead_code)]
 #[path = "../../../morec/tests/it/made.rs"]
 mod made;
+#[allow(dead_code)]
+#[path = "../../../morec/tests/testing/mod.rs"]
+mod testing;

@@ -352,7 +352,7 @@ fn an_interrupted_import_says_what_it_did() {
     let done = import.wait_with_output().unwrap();
     let said = String::from_utf8(done.stdout).unwrap();
     if !sent.is_ok_and(|status| status.success()) || done.status.code() == Some(0) {
-        eprintln!("skipped: no `kill` here, or the import was done before it came");
+        crate::kit::skipped("no `kill` here, or the import was done before it came");
         return;
     }
     assert_eq!(done.status.code(), Some(130), "{said}");

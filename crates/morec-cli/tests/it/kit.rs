@@ -1,6 +1,6 @@
 //! What the tests share: a folder with small clips, and the command run in it.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Stdio};
 
 use tempfile::TempDir;
@@ -8,6 +8,11 @@ use tempfile::TempDir;
 pub const WAVE_BVH: &str = include_str!("../../../morec/testdata/acclaim/wave.bvh");
 pub const ARM_ASF: &str = include_str!("../../../morec/testdata/acclaim/arm.asf");
 pub const WAVE_AMC: &str = include_str!("../../../morec/testdata/acclaim/wave.amc");
+
+#[path = "../../../morec/tests/testing/mod.rs"]
+mod testing;
+
+pub use testing::{data, skipped};
 
 /// A folder that lives as long as the test.
 pub struct Folder(TempDir);
@@ -67,17 +72,4 @@ impl Ran {
         assert_eq!(self.code, Some(0), "{self:?}");
         self.out
     }
-}
-
-/// The folder of real clips, if it is there.
-pub fn data() -> Option<PathBuf> {
-    let folder = std::env::var_os("MOREC_DATA").map_or_else(
-        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
-        PathBuf::from,
-    );
-    if !folder.is_dir() {
-        println!("skipped: no clips at {} (set MOREC_DATA)", folder.display());
-        return None;
-    }
-    Some(folder)
 }

@@ -3,6 +3,8 @@
 mod convert;
 mod db;
 mod demo;
+#[cfg(unix)]
+mod documents;
 mod evaluate;
 mod inspect;
 mod kit;

@@ -45,7 +45,7 @@ pub const OVERLAPS: [f64; 4] = [0.1, 0.25, 0.5, 0.75];
 /// [`timelines`].
 pub const MEASURED_OVERLAP: f64 = 0.5;
 
-/// Unlabelled stretches shorter than this take part in no decision (`ARCHITECTURE.md`, Measures).
+/// Unlabelled stretches shorter than this take part in no decision (`docs/guide/measure.md`).
 pub const UNLABELLED_MIN_SECS: f64 = 0.4;
 
 /// A labelled sample.

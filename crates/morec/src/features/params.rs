@@ -5,7 +5,7 @@
 pub struct FeatureParams {
     /// Every source is resampled to this many frames a second before anything else.
     pub rate_hz: f64,
-    /// A feature row is made of every so-manieth frame: 4 at 120 Hz gives 30 ticks a second.
+    /// A feature row is made of every n-th frame: 4 at 120 Hz gives 30 ticks a second.
     pub frames_per_tick: usize,
     /// Standard deviation of the Gaussian over bone directions, in frames.
     pub smooth_sigma_frames: f64,

@@ -202,19 +202,6 @@ proptest! {
     }
 }
 
-/// The folder of real clips, if it is there.
-fn data() -> Option<PathBuf> {
-    let folder = std::env::var_os("MOREC_DATA").map_or_else(
-        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
-        PathBuf::from,
-    );
-    if !folder.is_dir() {
-        println!("skipped: no clips at {} (set MOREC_DATA)", folder.display());
-        return None;
-    }
-    Some(folder)
-}
-
 fn clips_in(folder: &Path) -> Vec<(String, Clip)> {
     let mut files: Vec<PathBuf> = std::fs::read_dir(folder)
         .unwrap()
@@ -252,7 +239,9 @@ fn clips_in(folder: &Path) -> Vec<(String, Clip)> {
 
 #[test]
 fn real_clips_are_understood() {
-    let Some(data) = data() else { return };
+    let Some(data) = crate::testing::data() else {
+        return;
+    };
     use Role::*;
     let collars = [LeftShoulder, RightShoulder];
     for (folder, missing, unit, rest) in [

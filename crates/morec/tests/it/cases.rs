@@ -57,7 +57,7 @@ pub struct Stream {
     gap_secs: Option<(f64, f64)>,
     /// This share of the poses is lost, one by one, at random.
     lost_share: f64,
-    /// After every so-manieth pose it arrives once more, and an older one late; both of somebody lying down.
+    /// After every n-th pose it arrives once more, and an older one late; both of somebody lying down.
     echo_every: Option<usize>,
 }
 

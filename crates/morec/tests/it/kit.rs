@@ -1,26 +1,14 @@
 //! What the tests share: finding and loading real clips.
 
-use std::path::PathBuf;
-
 use morec::clip::Clip;
 use morec::formats::{Limits, acclaim, bvh};
 use morec::roles::{Role, RoleMap};
 use morec::train::{Source, TrainClip};
 
-/// The folder of real clips, or `None` (said aloud) where there is none.
-pub fn data() -> Option<PathBuf> {
-    let given = std::env::var_os("MOREC_DATA").map(PathBuf::from);
-    let beside = || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    let folder = given.unwrap_or_else(beside);
-    if folder.join("referee").is_dir() {
-        return Some(folder);
-    }
-    eprintln!(
-        "skipped: no motion data at {} (set MOREC_DATA)",
-        folder.display()
-    );
-    None
-}
+#[path = "../testing/mod.rs"]
+mod testing;
+
+pub use testing::data;
 
 const PARTS: [(Role, [&str; 2]); 15] = [
     (Role::Hips, ["Hips", "root"]),

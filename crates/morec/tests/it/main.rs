@@ -13,6 +13,7 @@ mod index_file;
 mod kit;
 mod layers;
 mod made;
+mod parameters;
 mod pose_golden;
 mod session;
 mod smooth_real;

@@ -5,18 +5,9 @@
 //! accuracy of 0.903 and an F1 at half overlap of 0.909. The labels lie beside the project.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 
 use super::*;
 use crate::labels::{ClipLength, Labels, read_found};
-
-fn referee() -> PathBuf {
-    let data = std::env::var_os("MOREC_DATA").map_or_else(
-        || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
-        PathBuf::from,
-    );
-    data.join("referee")
-}
 
 /// Frames and rate as the clip's own header has them.
 fn length(bvh: &str) -> ClipLength {
@@ -35,14 +26,11 @@ fn length(bvh: &str) -> ClipLength {
 
 #[test]
 fn the_published_figures_come_out() {
-    let folder = referee();
-    let Ok(labels) = std::fs::read(folder.join("labels.tsv")) else {
-        eprintln!(
-            "skipped: no labels in {} (set MOREC_DATA)",
-            folder.display()
-        );
+    let Some(data) = crate::testing::data() else {
         return;
     };
+    let folder = data.join("referee");
+    let labels = std::fs::read(folder.join("labels.tsv")).unwrap();
     let clips: BTreeMap<String, ClipLength> = ["signals_1", "signals_2", "signals_3"]
         .map(|name| {
             let text = std::fs::read_to_string(folder.join(format!("clips/{name}.bvh"))).unwrap();

@@ -447,14 +447,9 @@ const REAL: [(&str, &str, usize, &str, [f64; 3]); 10] = [
 
 #[test]
 fn real_motions_pose_as_an_independent_reader_poses_them() {
-    let data = std::env::var_os("MOREC_DATA").map_or_else(
-        || std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
-        std::path::PathBuf::from,
-    );
-    if !data.is_dir() {
-        println!("skipped: no clips at {} (set MOREC_DATA)", data.display());
+    let Some(data) = crate::testing::data() else {
         return;
-    }
+    };
     let mut read = std::collections::HashMap::new();
     for (skeleton, motion, frame, joint, expected) in REAL {
         let clip = read.entry(motion).or_insert_with(|| {

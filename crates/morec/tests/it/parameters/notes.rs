@@ -1,0 +1,205 @@
+//! Why each parameter has the value it has.
+
+/// Path of a parameter, and the reason.
+pub const NOTES: &[(&str, &str)] = &[
+    (
+        "features.rate_hz",
+        "with `frames_per_tick`: 30 ticks a second",
+    ),
+    ("features.smooth_sigma_frames", "25 ms"),
+    ("features.smooth_cut_frames", "50 ms of delay"),
+    (
+        "features.root_sigma_frames",
+        "cut to the delay of the directions",
+    ),
+    (
+        "features.root_cut_frames",
+        "cut to the delay of the directions",
+    ),
+    (
+        "decode.gate",
+        "motion nearer to a negative than to the class is not the class; the prototype's 1.2 gave 59 false positives and 82 misses over 12 half splits, 1.0 gave 35 and 95",
+    ),
+    (
+        "decode.gate_ticks",
+        "the prototype's short windows: as accurate as the long ones (3, 2, 3) and a fifth of a second earlier",
+    ),
+    ("decode.peak_ticks", "as `decode.gate_ticks`"),
+    ("decode.lag_ticks", "as `decode.gate_ticks`"),
+    (
+        "decode.overlap_share",
+        "a candidate reported a few ticks too long swallowed the motion that followed: a quarter of the misses in half splits; 0 in older indexes",
+    ),
+    (
+        "decode.hold_ticks",
+        "a wait of up to 67 ms, only where a short motion may be the end of a longer one, and only without a verifier; 3 gives the same; 0 in older indexes",
+    ),
+    (
+        "decode.end_fall",
+        "at the end of a stream only: a walk cut off in mid-step is nearest to a step at the cut while its distance still falls; the prototype accepts the cut",
+    ),
+    ("rho", "0.15 to 0.5 are alike"),
+    (
+        "max_pairs",
+        "more pairs of samples give the same result; bounds time",
+    ),
+    (
+        "class_share",
+        "without a verifier, a class's own threshold is half its distance to background and to samples of other classes: kicks are five times as far from everything else as steps are. 0 (the prototype) is one threshold for all",
+    ),
+    ("class_range", "2 accepts motion of exercises"),
+    (
+        "everyday_may_pass",
+        "synthetic motion may happen to be one of the classes",
+    ),
+    (
+        "fallback_threshold",
+        "used where there is no background at all",
+    ),
+    (
+        "compact",
+        "rows in signed bytes, one step for each column: a quarter of the size. Recognition uses the rows that the file holds",
+    ),
+    (
+        "max_templates",
+        "for each class; bounds time and file size; samples are taken from people in turn",
+    ),
+    (
+        "whole_background",
+        "short background clips count as a whole: their beginning and end are part of the example",
+    ),
+    (
+        "reach",
+        "candidates up to twice the distance that nine in ten samples need",
+    ),
+    (
+        "examples_per_piece",
+        "neighbouring examples say the same; bounds time",
+    ),
+    ("max_negative_examples", "bounds time"),
+    ("min_negative_examples", "bounds time"),
+    ("min_positives", "fewer give no reliable fit"),
+    ("min_negatives", "fewer give no reliable fit"),
+    ("verifier_ridge", "0.03 to 0.3 are alike"),
+    ("bar_range", "bounds what the examples may decide"),
+    (
+        "EarlyParams.least_progress",
+        "from a fifth of a template on",
+    ),
+    ("EarlyParams.reach", "within 1.8 times the threshold"),
+    ("keep", "thesis, §4.2"),
+    (
+        "sign",
+        "the printed rule depends on the signs that eigenvectors come with",
+    ),
+    (
+        "thresholds",
+        "tuned: `accept` and `min_confidence` from left-out samples and background (`train/thesis/thresholds.rs`)",
+    ),
+    ("pose.rate_hz", "thesis, §4.2"),
+    (
+        "stages.chunk_frames",
+        "thesis, §4.6.2; segments of 0.53 to 2.67 s. `k` is the number of chunks, as the text has it, not the sum's `k + 1`",
+    ),
+    ("stages.min_chunks", "thesis, §4.6.3"),
+    ("stages.max_chunks", "thesis, §4.6.3"),
+    (
+        "stages.eigenvectors",
+        "thesis, §4.5; tuned: the first direction about the database's mean is mostly the mean pose",
+    ),
+    (
+        "stages.scaling",
+        "thesis, §5.3: `(v + 1) / 2`; `singular_share` is Eq. 3.37",
+    ),
+    (
+        "stages.centring",
+        "thesis, §4.6.2; tuned: each segment's own mean is subtracted; in streams this decides",
+    ),
+    (
+        "stages.accept",
+        "thesis, §4.6.5; an argument of `Tree::descend`",
+    ),
+    (
+        "stages.descent",
+        "`larger`: §4.6.5; `both` gives up to four classes to scoring (§4.7.2)",
+    ),
+    (
+        "stages.comparison",
+        "thesis, §3.8; tuned: one value a frame matches too much: of unknown motion with wide kernels, 8 to 27 false alarms a minute were left; none with whole rows",
+    ),
+    (
+        "stages.tolerance",
+        "thesis, §3.8: of the standard deviation of all profile values",
+    ),
+    (
+        "stages.normalisation",
+        "thesis, §4.6.5; of equally cheap paths the longest. `least_ratio` is Marzal and Vidal's, many times slower",
+    ),
+    ("stages.prior_spread", "thesis, §4.6.5"),
+    ("stages.overlap", "thesis, §4.6.5"),
+    (
+        "stages.min_confidence",
+        "the thesis names none; segments that cannot reach it are not scored",
+    ),
+    (
+        "stages.wait_chunks",
+        "not in the thesis: bounds memory and delay; smaller reports sooner, on less knowledge. Tuned: reports 0.5 s after the end instead of 0.9 s, at the same accuracy",
+    ),
+    (
+        "tree.sigma",
+        "thesis, §4.5. Algorithm 4 settles on narrow kernels: it asks that samples lie on the boundary, which they do when each is alone, and new samples then fall outside. `scaled`, `quantile`, `fixed` and `cross_validated` are the alternatives",
+    ),
+    ("tree.machine.own", "thesis, §4.5: `T`"),
+    ("tree.machine.other", "thesis, §4.5: `t`"),
+    ("tree.machine.penalty", "thesis, §4.5: `C`"),
+    (
+        "tree.machine.stop",
+        "outputs are about 1: eight digits; the thesis stops when weights hardly move, which says little where the kernel is wide",
+    ),
+    ("tree.algorithm4.radius_factor", "thesis, §3.7.3 and §5.3"),
+    ("tree.algorithm4.radius_step", "thesis, §3.7.3 and §5.3"),
+    (
+        "tree.algorithm4.lone_is_boundary",
+        "a sample alone in its ball has no machine to ask",
+    ),
+    (
+        "tree.algorithm4.sweep",
+        "60 widths in even ratios, from 0.1 of the smallest to 3 times the largest distance. The thesis names none; the prototype has 75 in even steps, 0.02 to 1.5 of the largest. A side of fewer than two different samples takes the other side's width: Algorithm 4 does not cover it",
+    ),
+    (
+        "tree.partition.exact_up_to",
+        "every split is tried for few classes; with narrow kernels nearly every split stops Algorithm 6",
+    ),
+    (
+        "tree.partition.unit_length",
+        "as printed; without it a class of many samples tends to stand alone",
+    ),
+    (
+        "PpcaParams.first_secs",
+        "thesis, §4.3: 150 frames at 120 Hz",
+    ),
+    (
+        "PpcaParams.ahead_secs",
+        "thesis, §4.3: 150 frames at 120 Hz",
+    ),
+    ("PpcaParams.step_secs", "thesis, §4.3: 10 frames at 120 Hz"),
+    (
+        "PpcaParams.quality",
+        "thesis, §3.4.1; the dimensions are chosen by a segment's first model and stay",
+    ),
+    (
+        "PpcaParams.rise",
+        "chosen on the cuts of `segmentation/` and `exercises/`",
+    ),
+    (
+        "PpcaParams.fall",
+        "a peak counts once half its rise is lost; chosen likewise",
+    ),
+    ("PpcaParams.same_secs", "half of `ahead_secs`"),
+    ("PpcaParams.least_variance", "far below any sensor's noise"),
+    ("KwasParams.k", "thesis, §4.4"),
+    (
+        "KwasParams.tau",
+        "thesis, §4.4, of rows centred on the database. Its Tables 5.2–5.4 come nearer to uncentred rows (`morec group --centre none`), where 0.995 is best on referee samples",
+    ),
+];

@@ -1,0 +1,30 @@
+//! The folder of real clips, for tests of every crate (by `#[path]`), and how a test says that it is skipped.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// The folder of real clips: `MOREC_DATA`, or `../shared/data` beside the repository. Where it is missing, says that the
+/// calling test is skipped.
+pub fn data() -> Option<PathBuf> {
+    let folder = std::env::var_os("MOREC_DATA").map_or_else(
+        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
+        PathBuf::from,
+    );
+    if folder.join("referee").is_dir() {
+        return Some(folder);
+    }
+    skipped(&format!(
+        "no motion data at {} (set MOREC_DATA)",
+        folder.display()
+    ));
+    None
+}
+
+/// Says that the calling test is skipped, and why. Written to standard error directly: what `println!` and `eprintln!`
+/// write is shown for failing tests only, unless `--nocapture` is given.
+pub fn skipped(why: &str) {
+    let test = std::thread::current();
+    let name = test.name().unwrap_or("a test");
+    // One call, so that lines of tests that run at the same time do not mix; a closed stream loses the message only.
+    _ = std::io::stderr().write_all(format!("skipped: {name}: {why}\n").as_bytes());
+}
