@@ -8,7 +8,7 @@ use crate::features::Rows;
 
 use super::early::{EarlyParams, Underway};
 use super::verifier::{Evidence, Judge};
-use super::{Bank, Matcher, Metric, TemplateModel, TemplateModelError};
+use super::{Matcher, Metric, TemplateModel, TemplateModelError};
 
 /// The part of recognition that knows no clock: metric, templates, verifier, decoding.
 #[derive(Debug, Clone)]
@@ -17,7 +17,7 @@ pub struct TemplateEngine {
     matcher: Matcher,
     /// Matches count below this share of a motionless body's distance.
     rest_share: f32,
-    negatives: Bank,
+    negatives: Matcher,
     template_classes: Arc<[ClassId]>,
     judge: Option<Judge>,
     decoder: Decoder,
@@ -72,9 +72,9 @@ impl TemplateEngine {
         let mut decoder = Decoder::new(&model.decode, rule, model.classes.len(), model.longest());
         decoder.set_thresholds(&model.class_thresholds);
         Ok(Self {
-            matcher: Matcher::new(&templates, dim),
+            matcher: Matcher::new(&templates, dim, model.decode.spread_exponent),
             rest_share: model.decode.rest_share(rule),
-            negatives: Bank::new(&negatives, dim),
+            negatives: Matcher::new(&negatives, dim, model.decode.spread_exponent),
             template_classes: model.samples.iter().map(|s| s.class).collect(),
             judge: model
                 .verifier
@@ -86,10 +86,7 @@ impl TemplateEngine {
             mapped: vec![0.0; dim],
             threshold: model.threshold,
             near: vec![
-                ClassDistance {
-                    distance: FAR,
-                    age: 0
-                };
+                ClassDistance::NONE;
                 model.classes.len()
             ],
             metric,
@@ -123,21 +120,15 @@ impl TemplateEngine {
 
     /// The nearest match of each class that is no body at rest.
     fn nearest_by_class(&mut self) {
-        self.near.fill(ClassDistance {
-            distance: FAR,
-            age: 0,
-        });
+        self.near.fill(ClassDistance::NONE);
         for (template, class) in self.template_classes.iter().enumerate() {
+            let found = self.matcher.compare(template);
             let best = &mut self.near[class.index()];
-            let plain = self.matcher.bank().matched(template);
-            if plain.distance >= best.distance {
-                continue;
-            }
-            let found = self.matcher.matched(template, self.rest_share);
-            if found.distance < best.distance {
+            if found.distance < best.distance && found.moves(self.rest_share) {
                 *best = ClassDistance {
                     distance: found.distance,
                     age: found.age,
+                    spread: found.spread,
                 };
             }
         }
@@ -153,9 +144,8 @@ impl TemplateEngine {
     pub fn underway(&self, params: &EarlyParams) -> Option<Underway> {
         let (mut best, mut other) = (None::<Underway>, FAR);
         for (template, class) in self.template_classes.iter().enumerate() {
-            let bank = self.matcher.bank();
-            let length = bank.template_len(template);
-            let Some(found) = bank.partial(template, params.least_rows(length)) else {
+            let length = self.matcher.bank().template_len(template);
+            let Some(found) = self.matcher.partial(template, params.least_rows(length)) else {
                 continue;
             };
             let progress = found.rows as f32 / length as f32;
@@ -179,9 +169,10 @@ impl TemplateEngine {
                 }
             }
         }
-        let negatives = (0..self.negatives.len()).filter_map(|i| {
-            self.negatives
-                .partial(i, params.least_rows(self.negatives.template_len(i)))
+        let bank = self.negatives.bank();
+        let negatives = (0..bank.len()).filter_map(|i| {
+            let least = params.least_rows(bank.template_len(i));
+            self.negatives.partial(i, least)
         });
         let negative = negatives.map(|n| n.distance).fold(FAR, f32::min);
         best.filter(|b| {
@@ -206,9 +197,9 @@ impl TemplateEngine {
     }
 }
 
-fn nearest(bank: &Bank) -> f32 {
-    (0..bank.len())
-        .map(|i| bank.matched(i).distance)
+fn nearest(matcher: &Matcher) -> f32 {
+    (0..matcher.bank().len())
+        .map(|i| matcher.compare(i).distance)
         .fold(FAR, f32::min)
 }
 

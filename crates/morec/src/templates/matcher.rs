@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::decode::FAR;
 use crate::features::Rows;
 
-use super::bank::{Bank, Match};
+use super::bank::{Bank, Match, PartialMatch};
 
 /// A [`Bank`] that also knows how far from each template a motionless body would be.
 ///
@@ -13,15 +13,43 @@ use super::bank::{Bank, Match};
 /// with mean `m_S`, a performer frozen in the stretch's mean pose is at the distance `V_T + |m_T − m_S|²`. A match
 /// that is hardly nearer than that says nothing of motion: standing still is near every template of small spread.
 ///
+/// Distances `D` are normalised to `D / ((V_T + V_S) / 2 V_0)^b` with the stretch's spread `V_S`, an exponent `b` from 0
+/// (plain) to 1 (a share of the motion that is not explained) and `V_0` = [`TYPICAL_SPREAD`], which keeps their
+/// scale: a small gesture must be met more exactly than a large one.
+///
 /// Means of stretches come from running sums: O(d) for each match that is asked for, nothing is allocated after
 /// construction.
 #[derive(Debug, Clone)]
 pub struct Matcher {
     bank: Bank,
+    exponent: f32,
     spreads: Arc<[f32]>,
     /// `m_T` of each template.
     means: Arc<Rows>,
     sums: RunningSums,
+}
+
+/// Spread of a usual template under a trained metric, the median over referee signals and Kinect gestures.
+pub const TYPICAL_SPREAD: f32 = 1.7;
+
+/// A template's match, held against a body at rest and normalised.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Comparison {
+    /// Normalised distance; [`FAR`] if nothing matches.
+    pub distance: f32,
+    /// Ticks since the match began.
+    pub age: usize,
+    /// Distance as a share of a motionless body's: below 1 the motion counts.
+    pub rest_share: f32,
+    /// Spread of the matched stretch.
+    pub spread: f32,
+}
+
+impl Comparison {
+    /// Whether the match is nearer than `share` of a motionless body's distance; 0 admits all.
+    pub fn moves(&self, share: f32) -> bool {
+        share <= 0.0 || self.rest_share < share
+    }
 }
 
 /// Sums of the rows so far, at each of the last ticks.
@@ -70,8 +98,8 @@ impl RunningSums {
 }
 
 impl Matcher {
-    /// Lays out `templates`, all of rows of `dim` values.
-    pub fn new(templates: &[Rows], dim: usize) -> Self {
+    /// Lays out `templates`, all of rows of `dim` values; `exponent` normalises distances, 0 leaves them as they are.
+    pub fn new(templates: &[Rows], dim: usize, exponent: f32) -> Self {
         let mut means = Rows::new(dim);
         let mut spreads = Vec::with_capacity(templates.len());
         for template in templates {
@@ -84,6 +112,7 @@ impl Matcher {
             // A match of n rows spans at most 2 n ticks.
             sums: RunningSums::new(dim, 2 * bank.longest()),
             bank,
+            exponent,
             spreads: spreads.into(),
             means: Arc::new(means),
         }
@@ -92,11 +121,6 @@ impl Matcher {
     /// The templates' dynamic program.
     pub fn bank(&self) -> &Bank {
         &self.bank
-    }
-
-    /// Spread of template `index` about its mean.
-    pub fn spread(&self, index: usize) -> f32 {
-        self.spreads[index]
     }
 
     /// Forgets the stream so far.
@@ -111,21 +135,43 @@ impl Matcher {
         self.sums.push(row);
     }
 
-    /// How template `index` matches a stretch that ends with the last tick, if the match is nearer than `share` of
-    /// a motionless body's distance; [`FAR`] if it is not. A share of 0 or less admits every match. O(d).
-    pub fn matched(&self, index: usize, share: f32) -> Match {
-        let found = self.bank.matched(index);
-        if share <= 0.0 || found.distance >= FAR {
-            return found;
-        }
-        if found.distance < share * self.at_rest(index, found.age) {
-            found
-        } else {
-            Match {
+    /// How template `index` matches a stretch that ends with the last tick. O(d).
+    pub fn compare(&self, index: usize) -> Comparison {
+        let Match { distance, age } = self.bank.matched(index);
+        if distance >= FAR {
+            return Comparison {
                 distance: FAR,
-                ..found
-            }
+                age,
+                rest_share: f32::MAX,
+                spread: 0.0,
+            };
         }
+        let spread = self.stretch_spread(age);
+        Comparison {
+            distance: distance / self.norm((self.spreads[index] + spread) / 2.0),
+            age,
+            rest_share: distance / self.at_rest(index, age).max(f32::MIN_POSITIVE),
+            spread,
+        }
+    }
+
+    /// What a distance is divided by where the mean spread is `spread`.
+    fn norm(&self, spread: f32) -> f32 {
+        if self.exponent == 0.0 {
+            1.0
+        } else {
+            (spread / TYPICAL_SPREAD).max(1e-3).powf(self.exponent)
+        }
+    }
+
+    /// How the first rows of template `index`, at least `least` of them, match, as [`Bank::partial`] has it, with the
+    /// distance normalised by the template's spread. O(rows).
+    pub fn partial(&self, index: usize, least: usize) -> Option<PartialMatch> {
+        let found = self.bank.partial(index, least)?;
+        Some(PartialMatch {
+            distance: found.distance / self.norm(self.spreads[index]),
+            ..found
+        })
     }
 
     /// Distance from template `index` of a body that stands still in the mean pose of the last `age + 1` ticks:
@@ -196,7 +242,7 @@ mod tests {
     proptest! {
         #[test]
         fn running_sums_agree_with_the_stretch_itself(template in rows(2..9), stream in rows(1..60)) {
-            let mut matcher = Matcher::new(std::slice::from_ref(&template), 3);
+            let mut matcher = Matcher::new(std::slice::from_ref(&template), 3, 0.5);
             let (mean_t, spread_t) = mean_and_spread(&template, 3);
             for (t, row) in stream.iter().enumerate() {
                 matcher.step(row);
@@ -217,10 +263,10 @@ mod tests {
             template in rows(4..12),
             pose in prop::collection::vec(-3.0f32..3.0, 3),
         ) {
-            let mut matcher = Matcher::new(std::slice::from_ref(&template), 3);
+            let mut matcher = Matcher::new(std::slice::from_ref(&template), 3, 0.5);
             for _ in 0..40 {
                 matcher.step(&pose);
-                prop_assert!(matcher.matched(0, 0.99).distance >= FAR);
+                prop_assert!(matcher.compare(0).rest_share > 0.99);
             }
         }
     }

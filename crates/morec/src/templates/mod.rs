@@ -13,7 +13,7 @@ mod verifier;
 pub use bank::{Bank, Match, PartialMatch};
 pub use early::{EarlyParams, Underway};
 pub use engine::TemplateEngine;
-pub use matcher::{Matcher, mean_and_spread};
+pub use matcher::{Comparison, Matcher, TYPICAL_SPREAD, mean_and_spread};
 pub use metric::{Metric, Symmetric};
 pub use model::{Sample, TemplateModel, TemplateModelError};
 pub use verifier::{

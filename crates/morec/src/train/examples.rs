@@ -1,6 +1,6 @@
 //! Stretches that came near a class in training, and whether they were it: what the verifier learns from.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use crate::decode::{FAR, MIN_AGE_TICKS};
@@ -46,41 +46,80 @@ impl Example {
     }
 }
 
-/// What candidates are found with: as a new person's stream would be seen, without the stream's own person.
+/// What is known of every stream when it is seen as a new person's would be, without the stream's own person.
 pub struct Seen<'a> {
     /// All streams.
     pub set: &'a TrainSet,
     /// The templates.
     pub samples: &'a [TrainSample],
-    /// For each class, whether a single group shows it: then only the very sample is left out.
-    pub single: &'a [bool],
-    /// Each stream against every template.
-    pub distances: &'a [Distances],
     /// The negatives.
     pub negatives: &'a [NearMiss],
-    /// Largest distance under which an unlabelled stretch of a labelled clip is probably an unlabelled sample.
-    pub suspicious: f32,
+    /// Each stream against every negative.
+    pub near_negatives: &'a [Distances],
 }
 
 impl Seen<'_> {
-    /// Every candidate of one stream, with `negatives` matched against its rows. O(ticks · templates).
-    pub fn examples(&self, stream: usize, negatives: &Distances) -> Vec<Example> {
+    /// Distance of the nearest negative that is not of the stream's own group.
+    pub fn nearest_negative(&self, stream: usize, tick: usize) -> f32 {
+        let streams = &self.set.streams;
+        let strange = |n: usize| streams[self.negatives[n].stream].group != streams[stream].group;
+        self.near_negatives[stream].nearest(tick, strange).distance
+    }
+}
+
+/// Finds the stretches of all streams that come near a class.
+pub struct Candidates<'a> {
+    seen: &'a Seen<'a>,
+    /// Each stream against every template.
+    distances: &'a [Distances],
+    /// For each class, whether a single group shows it: then only the very sample is left out.
+    single: Vec<bool>,
+    /// Largest distance under which an unlabelled stretch of a labelled clip is probably an unlabelled sample.
+    suspicious: f32,
+    /// As the decoder has it.
+    peak_ticks: usize,
+}
+
+impl<'a> Candidates<'a> {
+    /// Candidates among `distances`, where `threshold` is near enough.
+    pub fn new(
+        seen: &'a Seen<'a>,
+        distances: &'a [Distances],
+        threshold: f32,
+        params: &TrainParams,
+    ) -> Self {
+        let groups = |class: usize| -> BTreeSet<&str> {
+            let of_class = seen.samples.iter().filter(|s| s.class.index() == class);
+            of_class.map(|s| s.group.as_str()).collect()
+        };
+        let classes = 0..seen.set.classes.len();
+        Self {
+            seen,
+            distances,
+            single: classes.map(|class| groups(class).len() < 2).collect(),
+            suspicious: params.suspicious_below as f32 * threshold,
+            peak_ticks: params.decode.peak_ticks,
+        }
+    }
+
+    /// Every candidate of one stream. O(ticks · templates).
+    pub fn examples(&self, stream: usize) -> Vec<Example> {
         let ticks = self.distances[stream].len();
-        let classes = self.set.classes.len();
+        let classes = self.seen.set.classes.len();
         let near: Vec<Match> = (0..ticks)
             .flat_map(|t| self.nearest_by_class(stream, t))
             .collect();
         let at = |t: usize, class: usize| near[t * classes + class];
         let negative: Vec<f32> = (0..ticks)
-            .map(|t| self.nearest_negative(stream, negatives, t))
+            .map(|t| self.seen.nearest_negative(stream, t))
             .collect();
         let mut found = Vec::new();
         for t in 0..ticks {
-            let around = t.saturating_sub(1)..=(t + 1).min(ticks - 1);
+            let around = t.saturating_sub(self.peak_ticks)..=(t + self.peak_ticks).min(ticks - 1);
             for class in 0..classes {
                 let Match { distance, age } = at(t, class);
                 let beaten = around.clone().any(|n| at(n, class).distance < distance);
-                if distance >= FAR / 2.0 || age < MIN_AGE_TICKS || beaten {
+                if distance >= FAR || age < MIN_AGE_TICKS || beaten {
                     continue;
                 }
                 let rivals = (0..classes).filter(|c| *c != class);
@@ -105,9 +144,9 @@ impl Seen<'_> {
                 distance: FAR,
                 age: 0
             };
-            self.set.classes.len()
+            self.seen.set.classes.len()
         ];
-        for (found, sample) in self.distances[stream].at(tick).zip(self.samples) {
+        for (found, sample) in self.distances[stream].at(tick).zip(self.seen.samples) {
             let best = &mut near[sample.class.index()];
             if found.distance < best.distance && self.counts(stream, tick, &found, sample) {
                 *best = found;
@@ -118,16 +157,10 @@ impl Seen<'_> {
 
     fn counts(&self, stream: usize, tick: usize, found: &Match, sample: &TrainSample) -> bool {
         if !self.single[sample.class.index()] {
-            return sample.group != self.set.streams[stream].group;
+            return sample.group != self.seen.set.streams[stream].group;
         }
         let ticks = tick - found.age.min(tick)..tick + 1;
         sample.stream != stream || overlap_share(&ticks, &sample.ticks) <= TOUCHES
-    }
-
-    fn nearest_negative(&self, stream: usize, distances: &Distances, tick: usize) -> f32 {
-        let streams = &self.set.streams;
-        let strange = |n: usize| streams[self.negatives[n].stream].group != streams[stream].group;
-        distances.nearest(tick, strange).distance
     }
 
     /// The candidate with what the labels say of it; `None` if they say too little.
@@ -138,7 +171,7 @@ impl Seen<'_> {
         ticks: Range<usize>,
         evidence: Evidence,
     ) -> Option<Example> {
-        let stream = &self.set.streams[index];
+        let stream = &self.seen.set.streams[index];
         let mut label = None;
         let mut touches = false;
         for known in &stream.known {

@@ -17,12 +17,12 @@ pub struct Distances {
     rest_share: f32,
 }
 
-/// A match with what a motionless body would give.
+/// A match, in little space: there is one for each template and tick.
 #[derive(Debug, Clone, Copy)]
 struct Compared {
     distance: f32,
     age: u32,
-    at_rest: f32,
+    rest_share: f32,
 }
 
 impl Distances {
@@ -33,19 +33,14 @@ impl Distances {
         let mut matches = Vec::with_capacity(rows.len() * templates);
         for row in rows.iter() {
             matcher.step(row);
-            for template in 0..templates {
-                let Match { distance, age } = matcher.matched(template, 0.0);
-                let near = distance < FAR;
-                matches.push(Compared {
-                    distance,
-                    age: age as u32,
-                    at_rest: if near {
-                        matcher.at_rest(template, age)
-                    } else {
-                        FAR
-                    },
-                });
-            }
+            matches.extend((0..templates).map(|template| {
+                let found = matcher.compare(template);
+                Compared {
+                    distance: found.distance,
+                    age: found.age as u32,
+                    rest_share: found.rest_share,
+                }
+            }));
         }
         Self {
             templates,
@@ -71,7 +66,7 @@ impl Distances {
     }
 
     fn counted(&self, found: &Compared) -> Match {
-        let moves = self.rest_share <= 0.0 || found.distance < self.rest_share * found.at_rest;
+        let moves = self.rest_share <= 0.0 || found.rest_share < self.rest_share;
         Match {
             distance: if moves { found.distance } else { FAR },
             age: found.age as usize,

@@ -1,9 +1,13 @@
 //! The operating point: how near is near enough, from a wanted rate of false alarms.
 
+use std::ops::Range;
+
 use crate::decode::FAR;
 use crate::templates::Match;
 
+use super::examples::Seen;
 use super::mining::Distances;
+use super::params::TrainParams;
 use super::set::{Source, TrainSet, overlap_share};
 
 /// How often motion that is none of the classes comes how near: the nearest events in background motion.
@@ -16,17 +20,30 @@ pub struct AlarmCurve {
 }
 
 impl AlarmCurve {
-    /// Events of all background and everyday streams of `set`: local minima of the nearest template's distance, none
-    /// overlapping a nearer one by more than half. Unlabelled parts of labelled clips do not count: what comes near
-    /// there may be a sample that nobody labelled. O(ticks · templates + events²).
-    pub fn of(set: &TrainSet, distances: &[Distances], tick_hz: f64) -> Self {
+    /// Events of all background and everyday streams: local minima of the nearest template's distance, none
+    /// overlapping a nearer one by more than half, where no negative of another person or clip is nearer. Unlabelled
+    /// parts of labelled clips do not count: what comes near there may be a sample that nobody labelled.
+    /// O(ticks · templates + events²).
+    pub fn of(
+        set: &TrainSet,
+        distances: &[Distances],
+        seen: Option<&Seen<'_>>,
+        params: &TrainParams,
+    ) -> Self {
         let mut curve = Self::default();
-        for (index, stream) in set.streams.iter().enumerate() {
-            if stream.source == Source::Labelled {
+        let minute_ticks = 60.0 * params.features.tick_hz();
+        for (stream, of) in set.streams.iter().enumerate() {
+            if of.source == Source::Labelled {
                 continue;
             }
-            curve.minutes += stream.rows.len() as f64 / tick_hz / 60.0;
-            curve.events.extend(events(&distances[index]).map(|d| (d, index)));
+            curve.minutes += of.rows.len() as f64 / minute_ticks;
+            let gate = |tick: usize| {
+                seen.map_or(FAR, |seen| {
+                    params.decode.gate * seen.nearest_negative(stream, tick)
+                })
+            };
+            let found = events(&distances[stream], gate);
+            curve.events.extend(found.map(|d| (d, stream)));
         }
         curve.events.sort_by(|a, b| a.0.total_cmp(&b.0));
         curve
@@ -35,18 +52,22 @@ impl AlarmCurve {
     /// The distance below which background motion comes `per_minute` times a minute, and the stream that sets it;
     /// `None` if there is no background, or not so many events.
     pub fn distance_at(&self, per_minute: f64) -> Option<(f32, usize)> {
-        self.events.get((per_minute * self.minutes) as usize).copied()
+        let allowed = (per_minute * self.minutes) as usize;
+        self.events.get(allowed).copied()
     }
 }
 
-/// Distances of the separate approaches in one stream.
-fn events(distances: &Distances) -> impl Iterator<Item = f32> {
-    let nearest: Vec<Match> = (0..distances.len())
-        .map(|t| distances.nearest(t, |_| true))
-        .collect();
-    let mut dips: Vec<(f32, std::ops::Range<usize>)> = Vec::new();
-    for t in 0..nearest.len() {
-        let Match { distance, age } = nearest[t];
+/// Distances of the separate approaches in one stream that are nearer than `gate` says at their tick.
+fn events(distances: &Distances, gate: impl Fn(usize) -> f32) -> impl Iterator<Item = f32> {
+    let counted = |tick: usize| {
+        let found = distances.nearest(tick, |_| true);
+        let admitted = found.distance < FAR && found.distance < gate(tick);
+        let distance = if admitted { found.distance } else { FAR };
+        Match { distance, ..found }
+    };
+    let nearest: Vec<Match> = (0..distances.len()).map(counted).collect();
+    let mut dips: Vec<(f32, Range<usize>)> = Vec::new();
+    for (t, Match { distance, age }) in nearest.iter().copied().enumerate() {
         let beaten = (t > 0 && nearest[t - 1].distance < distance)
             || nearest.get(t + 1).is_some_and(|n| n.distance <= distance);
         if distance < FAR && !beaten {
@@ -54,7 +75,7 @@ fn events(distances: &Distances) -> impl Iterator<Item = f32> {
         }
     }
     dips.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut kept: Vec<(f32, std::ops::Range<usize>)> = Vec::new();
+    let mut kept: Vec<(f32, Range<usize>)> = Vec::new();
     for dip in dips {
         if kept.iter().all(|k| overlap_share(&k.1, &dip.1) <= 0.5) {
             kept.push(dip);

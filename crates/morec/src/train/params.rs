@@ -43,6 +43,8 @@ pub struct TrainParams {
     /// Background clips up to this times the longest template are negatives as a whole: they are examples of what
     /// a class is not, and what comes before and after is part of it.
     pub whole_background: f64,
+    /// Samples whose spread is below this share of what is usual for their class do not teach: they hardly move.
+    pub quiet_share: f64,
     /// Whether candidates are verified.
     pub verify: bool,
     /// Candidates are looked at up to this times the distance that nine in ten samples of new people need.
@@ -75,6 +77,7 @@ impl Default for TrainParams {
             max_threshold: 2.8,
             max_templates: 24,
             whole_background: 1.5,
+            quiet_share: 0.35,
             verify: true,
             compact: true,
             ..Self::reference()
@@ -103,6 +106,7 @@ impl TrainParams {
             mine_negatives: true,
             max_templates: usize::MAX,
             whole_background: 0.0,
+            quiet_share: 0.0,
             verify: false,
             reach: 2.0,
             examples_per_piece: 3,

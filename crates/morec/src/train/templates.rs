@@ -6,14 +6,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use crate::classes::ClassInfo;
-use crate::decode::Rule;
 use crate::features::{BoneSet, Rows};
 use crate::progress::Progress;
 use crate::templates::{
-    Matcher, Metric, Sample, Symmetric, TemplateModel, TemplateModelError, Verifier,
+    Matcher, Metric, Sample, Symmetric, TemplateModel, TemplateModelError, Verifier, mean_and_spread,
 };
 
-use super::examples::{self, Example, Seen};
+use super::examples::{self, Candidates, Example, Seen};
 use super::mining::{Distances, NearMiss, near_misses};
 use super::operating::AlarmCurve;
 use super::params::TrainParams;
@@ -71,6 +70,8 @@ pub struct Trained {
     pub negatives: Vec<NearMiss>,
     /// What set the threshold, in words.
     pub threshold_from: String,
+    /// Samples that hardly move, and so are no templates.
+    pub quiet: Vec<TrainSample>,
 }
 
 /// Trains templates for `set`, whose rows hold `bones`.
@@ -95,29 +96,38 @@ pub fn train(
     let (ridged, total) = metric_of(set, &samples, params);
     let metric = Metric::new(&ridged, &total);
     let classes = class_infos(set, &samples);
+    let (samples, quiet) = moving(samples, &metric, params);
     let samples = templates_of(samples, set.classes.len(), params.max_templates);
-    let bank = bank_of(samples.iter().map(|s| metric.apply_all(&s.rows)), &metric);
-    let mut distances = all_distances(set, &bank, &metric, "comparing clips", progress)?;
-    let plain = Rule::Gate { threshold: 0.0 };
-    rest_share(&mut distances, params.decode.rest_share(plain));
-    let (threshold, threshold_from) = if params.alarms_per_minute > 0.0 {
-        by_alarms(set, &distances, params)
-    } else {
-        thresholds::common(set, &distances, params)
+    let step = Step {
+        set,
+        metric: &metric,
+        params,
+        progress,
     };
-    let negatives = negatives_of(set, bones, (&samples, &distances), threshold, params);
-    rest_share(&mut distances, params.decode.rest_gate_verified);
+    let matcher = step.matcher(samples.iter().map(|s| &s.rows));
+    let mut distances = step.distances(&matcher, "comparing clips")?;
+    let plain = params.decode.rest_gate;
+    set_rest_share(&mut distances, plain);
+    let near_enough = step.operating(&distances, None);
+    let negatives = negatives_of(set, bones, (&samples, &distances), near_enough.threshold, params);
+    let rows: Vec<Rows> = negatives.iter().map(|n| negative_rows(set, n)).collect();
+    let matcher = step.matcher(rows.iter());
+    let near_negatives = step.distances(&matcher, "comparing with near misses")?;
+    let seen = Seen {
+        set,
+        samples: &samples,
+        negatives: &negatives,
+        near_negatives: &near_negatives,
+    };
+    let operating = step.operating(&distances, Some(&seen));
+    let threshold = operating.threshold;
+    set_rest_share(&mut distances, params.decode.rest_gate_verified);
     let verifier = if params.verify {
-        let found = (
-            samples.as_slice(),
-            distances.as_slice(),
-            negatives.as_slice(),
-        );
-        verifier_of(set, found, &metric, threshold, params, progress)?
+        step.verifier(&seen, &distances, threshold)
     } else {
         None
     };
-    rest_share(&mut distances, params.decode.rest_share(plain));
+    set_rest_share(&mut distances, plain);
     let class_thresholds = match verifier {
         None if params.class_share > 0.0 => {
             thresholds::of_classes(set, &samples, &distances, threshold, params)
@@ -136,7 +146,7 @@ pub fn train(
                 rows: s.rows,
             })
             .collect(),
-        negatives: negatives.iter().map(|n| negative_rows(set, n)).collect(),
+        negatives: rows,
         ridged,
         total,
         threshold,
@@ -153,24 +163,115 @@ pub fn train(
     Ok(Trained {
         model,
         negatives,
-        threshold_from,
+        threshold_from: operating.from,
+        quiet,
     })
 }
 
-fn rest_share(distances: &mut [Distances], share: f32) {
+fn set_rest_share(distances: &mut [Distances], share: f32) {
     distances.iter_mut().for_each(|d| d.set_rest_share(share));
 }
 
-fn by_alarms(set: &TrainSet, distances: &[Distances], params: &TrainParams) -> (f32, String) {
-    let curve = AlarmCurve::of(set, distances, params.features.tick_hz());
-    let most = params.max_threshold as f32;
-    match curve.distance_at(params.alarms_per_minute) {
-        Some((distance, stream)) if distance < most => (
-            distance,
-            format!("background clip {}", set.streams[stream].name),
-        ),
-        _ => (most, "no background comes near: the largest".to_owned()),
+/// Where the threshold lies and why.
+struct Operating {
+    threshold: f32,
+    from: String,
+}
+
+/// What the steps of a training have in common.
+struct Step<'a> {
+    set: &'a TrainSet,
+    metric: &'a Metric,
+    params: &'a TrainParams,
+    progress: &'a dyn Progress,
+}
+
+impl Step<'_> {
+    /// Lays out templates that are not mapped yet.
+    fn matcher<'r>(&self, rows: impl Iterator<Item = &'r Rows>) -> Matcher {
+        let mapped: Vec<Rows> = rows.map(|r| self.metric.apply_all(r)).collect();
+        let exponent = self.params.decode.spread_exponent;
+        Matcher::new(&mapped, self.metric.dim(), exponent)
     }
+
+    /// Every stream against every template, in parallel, in the order of the set.
+    fn distances(&self, matcher: &Matcher, stage: &str) -> Result<Vec<Distances>, TrainError> {
+        let (done, total) = (AtomicUsize::new(0), self.set.streams.len());
+        let compare = |matcher: &mut Matcher, stream: &TrainStream| {
+            if self.progress.cancelled() {
+                return Err(TrainError::Cancelled);
+            }
+            let distances = Distances::of(matcher, &self.metric.apply_all(&stream.rows));
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            self.progress.report(stage, done, total);
+            Ok(distances)
+        };
+        let streams = self.set.streams.par_iter();
+        streams.map_init(|| matcher.clone(), compare).collect()
+    }
+
+    /// The threshold; `seen` adds what negatives of other people and clips keep out.
+    fn operating(&self, distances: &[Distances], seen: Option<&Seen<'_>>) -> Operating {
+        let params = self.params;
+        if params.alarms_per_minute <= 0.0 {
+            let (threshold, from) = thresholds::common(self.set, distances, params);
+            return Operating { threshold, from };
+        }
+        let curve = AlarmCurve::of(self.set, distances, seen, params);
+        let most = params.max_threshold as f32;
+        match curve.distance_at(params.alarms_per_minute) {
+            Some((threshold, stream)) if threshold < most => Operating {
+                threshold,
+                from: format!("background clip {}", self.set.streams[stream].name),
+            },
+            _ => Operating {
+                threshold: most,
+                from: "no background comes near: the largest".to_owned(),
+            },
+        }
+    }
+
+    /// Candidates of all streams, each seen without its own person, and what a verifier learns from them.
+    fn verifier(&self, seen: &Seen<'_>, distances: &[Distances], threshold: f32) -> Option<Verifier> {
+        let (set, params) = (self.set, self.params);
+        let candidates = Candidates::new(seen, distances, threshold, params);
+        let examples: Vec<Example> = (0..set.streams.len())
+            .into_par_iter()
+            .flat_map_iter(|stream| candidates.examples(stream))
+            .collect();
+        let reach = examples::reach(&examples, threshold, params);
+        let chosen = examples::select(examples, set, reach, params);
+        verifier::learn(&chosen, set, self.metric, threshold, reach, params)
+    }
+}
+
+/// Parts the samples into those that teach and those that hardly move: of spread below
+/// [`TrainParams::quiet_share`] of the median of their class, or of all samples where a class has fewer than three.
+/// A sample that hardly moves is near everything, whatever it is called.
+fn moving(
+    samples: Vec<TrainSample>,
+    metric: &Metric,
+    params: &TrainParams,
+) -> (Vec<TrainSample>, Vec<TrainSample>) {
+    let spread = |s: &TrainSample| mean_and_spread(&metric.apply_all(&s.rows), metric.dim()).1;
+    let spreads: Vec<f32> = samples.iter().map(spread).collect();
+    let median = |of: &dyn Fn(usize) -> bool| {
+        let mut some: Vec<f32> = (0..spreads.len()).filter(|i| of(*i)).map(|i| spreads[i]).collect();
+        some.sort_by(f32::total_cmp);
+        (some[some.len() / 2], some.len())
+    };
+    let all = median(&|_| true).0;
+    let is_quiet = |i: usize| {
+        let (of_class, count) = median(&|j| samples[j].class == samples[i].class);
+        let usual = if count < 3 { all.min(of_class) } else { of_class };
+        f64::from(spreads[i]) < params.quiet_share * f64::from(usual)
+    };
+    let quiet: Vec<bool> = (0..samples.len()).map(is_quiet).collect();
+    let (mut teach, mut aside) = (Vec::new(), Vec::new());
+    for (sample, quiet) in samples.into_iter().zip(quiet) {
+        if quiet { &mut aside } else { &mut teach }.push(sample);
+    }
+    (teach, aside)
 }
 
 /// At most `most` samples of each class, from its groups in turn, in the order of the set.
@@ -198,56 +299,6 @@ fn templates_of(samples: Vec<TrainSample>, classes: usize, most: usize) -> Vec<T
         .collect()
 }
 
-fn bank_of(mapped: impl Iterator<Item = Rows>, metric: &Metric) -> Matcher {
-    Matcher::new(&mapped.collect::<Vec<_>>(), metric.dim())
-}
-
-/// Candidates of all streams, each seen without its own person, and what a verifier learns from them.
-fn verifier_of(
-    set: &TrainSet,
-    (samples, distances, negatives): (&[TrainSample], &[Distances], &[NearMiss]),
-    metric: &Metric,
-    threshold: f32,
-    params: &TrainParams,
-    progress: &dyn Progress,
-) -> Result<Option<Verifier>, TrainError> {
-    let groups = |class: usize| -> BTreeSet<&str> {
-        samples
-            .iter()
-            .filter(|s| s.class.index() == class)
-            .map(|s| s.group.as_str())
-            .collect()
-    };
-    let single: Vec<bool> = (0..set.classes.len())
-        .map(|class| groups(class).len() < 2)
-        .collect();
-    let bank = bank_of(
-        negatives
-            .iter()
-            .map(|n| metric.apply_all(&negative_rows(set, n))),
-        metric,
-    );
-    let strange = all_distances(set, &bank, metric, "comparing with near misses", progress)?;
-    let suspicious = params.suspicious_below as f32 * threshold;
-    let seen = Seen {
-        set,
-        samples,
-        single: &single,
-        distances,
-        negatives,
-        suspicious,
-    };
-    let examples: Vec<Example> = (0..set.streams.len())
-        .into_par_iter()
-        .flat_map_iter(|i| seen.examples(i, &strange[i]))
-        .collect();
-    let reach = examples::reach(&examples, threshold, params);
-    let chosen = examples::select(examples, set, reach, params);
-    Ok(verifier::learn(
-        &chosen, set, metric, threshold, reach, params,
-    ))
-}
-
 /// What [`Metric::new`] takes, of the samples of a set: `S_w + ρ tr(S_t)/d · I` and `S_t`. With no two samples of any class
 /// the metric is the identity. `None` if there is no sample.
 pub fn scatters(set: &TrainSet, params: &TrainParams) -> Option<(Symmetric, Symmetric)> {
@@ -268,29 +319,6 @@ fn metric_of(
     let total = covariance(labelled.map(|s| &s.rows), dim);
     let within = within_class(samples, set.classes.len(), dim, params.max_pairs);
     (ridged(&within, &total, params.rho), Symmetric::pack(&total))
-}
-
-/// Every stream against every template, in parallel, in the order of the set.
-fn all_distances(
-    set: &TrainSet,
-    bank: &Matcher,
-    metric: &Metric,
-    stage: &str,
-    progress: &dyn Progress,
-) -> Result<Vec<Distances>, TrainError> {
-    let (done, total) = (AtomicUsize::new(0), set.streams.len());
-    let compare = |bank: &mut Matcher, stream: &TrainStream| {
-        if progress.cancelled() {
-            return Err(TrainError::Cancelled);
-        }
-        let distances = Distances::of(bank, &metric.apply_all(&stream.rows));
-        progress.report(stage, done.fetch_add(1, Ordering::Relaxed) + 1, total);
-        Ok(distances)
-    };
-    set.streams
-        .par_iter()
-        .map_init(|| bank.clone(), compare)
-        .collect()
 }
 
 /// Short background clips as a whole, and the nearest misses in everything else that is background.

@@ -179,6 +179,7 @@ mod tests {
         let mut bank = Matcher::new(
             &samples.iter().map(|s| s.rows.clone()).collect::<Vec<_>>(),
             1,
+            0.0,
         );
         let distances: Vec<_> = set
             .streams

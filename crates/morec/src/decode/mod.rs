@@ -1,0 +1,68 @@
+//! From distances at every tick to one detection for each motion, with nothing taken back.
+
+mod decoder;
+mod params;
+
+#[cfg(test)]
+mod tests;
+
+use crate::classes::ClassId;
+
+pub use decoder::Decoder;
+pub use params::{DecodeParams, Rule};
+
+/// Distance of a class that nothing has matched yet.
+pub const FAR: f32 = 1e30;
+
+/// How near one class is at one tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClassDistance {
+    /// Smallest distance to any of the class's templates; [`FAR`] if none has matched.
+    pub distance: f32,
+    /// Ticks since that template's match began.
+    pub age: usize,
+    /// Spread of the matched stretch about its mean.
+    pub spread: f32,
+}
+
+impl ClassDistance {
+    /// No match.
+    pub const NONE: Self = Self {
+        distance: FAR,
+        age: 0,
+        spread: 0.0,
+    };
+}
+
+/// A stretch that may be a motion, for a judge to look at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Candidate {
+    /// What it may be.
+    pub class: ClassId,
+    /// Its last tick.
+    pub tick: i64,
+    /// Ticks from its first to its last.
+    pub age: usize,
+    /// The class's distance there.
+    pub distance: f32,
+    /// Smallest distance of another class within [`DecodeParams::peak_ticks`]; [`FAR`] if there is none.
+    pub other: f32,
+    /// Smallest negative distance within the same ticks.
+    pub negative: f32,
+}
+
+/// A motion recognised, in ticks of the present stretch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TickDetection {
+    /// What it is.
+    pub class: ClassId,
+    /// First tick.
+    pub start: i64,
+    /// One past the last tick.
+    pub stop: i64,
+    /// 0 just accepted … 1 certain.
+    pub score: f64,
+}
+
+/// A stretch of fewer ticks than this after its first is no motion.
+pub const MIN_AGE_TICKS: usize = 3;

@@ -1,0 +1,200 @@
+//! The parameters of decoding.
+
+/// How distances become detections. An index keeps the values it was trained with; fields that older indexes lack
+/// take values that change nothing.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct DecodeParams {
+    /// A class's distance counts only while it is below this times the smallest distance to any negative
+    /// template nearby.
+    pub gate: f32,
+    /// How many ticks before and after count as nearby.
+    pub gate_ticks: usize,
+    /// A candidate's distance must be the smallest of this many ticks before and after.
+    pub peak_ticks: usize,
+    /// A detection is held back until it ended this many ticks ago, in case a better one takes its place.
+    pub lag_ticks: usize,
+    /// A candidate may reach this many ticks into the detection before it; the overlap is cut off.
+    pub overlap_ticks: usize,
+    /// It may also reach this share of its own length into a detection of another class, if that is more: what was
+    /// reported a little too long must not swallow the motion that follows.
+    #[serde(default)]
+    pub overlap_share: f32,
+    /// A detection waits up to this many ticks while another class's match that encloses it is near enough and still
+    /// coming nearer: a short motion may only be the end of a longer one. Under [`Rule::Verify`] nothing waits.
+    #[serde(default)]
+    pub hold_ticks: usize,
+    /// Exponent by which distances are normalised with the spread of template and matched stretch, 0 … 1: see
+    /// [`Matcher`](crate::templates::Matcher).
+    #[serde(default)]
+    pub spread_exponent: f32,
+    /// A match counts only if it is nearer than this share of the distance of a body that stands still in the mean
+    /// pose of the matched stretch (see [`Matcher`](crate::templates::Matcher)). 0 admits everything.
+    #[serde(default)]
+    pub rest_gate: f32,
+    /// The same under [`Rule::Verify`], where motion is evidence besides.
+    #[serde(default)]
+    pub rest_gate_verified: f32,
+    /// Whether a candidate may reach only [`overlap_ticks`](Self::overlap_ticks) into the last detection of its own
+    /// class, so that a motion out and the same motion out and back are not two detections.
+    #[serde(default)]
+    pub once: bool,
+    /// Under [`Rule::Gate`], a candidate is refused if another class has a match around its end that is nearer than
+    /// this share of the candidate's distance; 0: never.
+    #[serde(default)]
+    pub rival_share: f32,
+    /// Ticks around a candidate's end in which such a match may end.
+    #[serde(default)]
+    pub rival_ticks: usize,
+    /// The match of the other class must cover this share of the candidate.
+    #[serde(default)]
+    pub rival_overlap: f32,
+    /// A candidate that starts within [`tail_ticks`](Self::tail_ticks) of the end of a detection of its class is the
+    /// end of the last repetition, not another one, if its spread is below this share of the largest spread among
+    /// those of the last second; 0: all are repetitions.
+    #[serde(default)]
+    pub tail_spread: f32,
+    /// See [`tail_spread`](Self::tail_spread).
+    #[serde(default)]
+    pub tail_ticks: usize,
+    /// A motion may end with the very last ticks of a stream only if its distance fell by less than this share over
+    /// the last tick: a walk cut off in mid-step is nearest to a step at the cut, but still coming nearer.
+    pub end_fall: f32,
+}
+
+impl Default for DecodeParams {
+    /// Chosen on referee signals and on sessions before a Kinect; `docs/parameters.md` has the reasons.
+    fn default() -> Self {
+        Self {
+            gate: 1.0,
+            gate_ticks: 0,
+            peak_ticks: 1,
+            lag_ticks: 0,
+            overlap_ticks: 2,
+            overlap_share: 0.5,
+            hold_ticks: 2,
+            spread_exponent: 0.75,
+            rest_gate: 0.8,
+            rest_gate_verified: 1.0,
+            once: true,
+            rival_share: 0.9,
+            rival_ticks: 3,
+            rival_overlap: 0.3,
+            tail_spread: 0.7,
+            tail_ticks: 6,
+            end_fall: 0.1,
+        }
+    }
+}
+
+impl DecodeParams {
+    /// The values of the reference prototype.
+    pub fn reference() -> Self {
+        Self {
+            gate: 1.2,
+            gate_ticks: 3,
+            peak_ticks: 2,
+            lag_ticks: 3,
+            overlap_ticks: 2,
+            overlap_share: 0.0,
+            hold_ticks: 0,
+            spread_exponent: 0.0,
+            rest_gate: 0.0,
+            rest_gate_verified: 0.0,
+            once: false,
+            rival_share: 0.0,
+            rival_ticks: 0,
+            rival_overlap: 0.0,
+            tail_spread: 0.0,
+            tail_ticks: 0,
+            end_fall: f32::MAX,
+        }
+    }
+
+    /// Says what is wrong with these values, if anything is.
+    pub fn check(&self) -> Result<(), String> {
+        if !(self.gate.is_finite() && self.gate > 0.0) {
+            return Err(format!("gate must be above 0, found {}", self.gate));
+        }
+        if self.end_fall.is_nan() || self.end_fall < 0.0 {
+            return Err(format!(
+                "end_fall must be 0 or more, found {}",
+                self.end_fall
+            ));
+        }
+        self.check_shares()?;
+        let ticks = [
+            ("gate_ticks", self.gate_ticks),
+            ("peak_ticks", self.peak_ticks),
+            ("lag_ticks", self.lag_ticks),
+            ("overlap_ticks", self.overlap_ticks),
+            ("hold_ticks", self.hold_ticks),
+            ("rival_ticks", self.rival_ticks),
+            ("tail_ticks", self.tail_ticks),
+        ];
+        match ticks.iter().find(|(_, ticks)| *ticks > MOST_TICKS) {
+            Some((name, ticks)) => Err(format!(
+                "{name} must be at most {MOST_TICKS}, found {ticks}"
+            )),
+            None => Ok(()),
+        }
+    }
+
+    fn check_shares(&self) -> Result<(), String> {
+        let shares = [
+            ("overlap_share", self.overlap_share, 0.999),
+            ("spread_exponent", self.spread_exponent, 1.0),
+            ("rest_gate", self.rest_gate, 2.0),
+            ("rest_gate_verified", self.rest_gate_verified, 2.0),
+            ("rival_share", self.rival_share, 2.0),
+            ("rival_overlap", self.rival_overlap, 1.0),
+            ("tail_spread", self.tail_spread, 1.0),
+        ];
+        match shares.iter().find(|(_, v, most)| !(0.0..=*most).contains(v)) {
+            Some((name, found, most)) => {
+                Err(format!("{name} must be 0 to {most}, found {found}"))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Ticks that must follow a motion's last tick before it can be reported.
+    pub fn look_ahead_ticks(&self, rule: Rule) -> usize {
+        self.window_ticks(rule) + self.lag_ticks
+    }
+
+    /// Matches count below this share of a motionless body's distance.
+    pub fn rest_share(&self, rule: Rule) -> f32 {
+        match rule {
+            Rule::Gate { .. } => self.rest_gate,
+            Rule::Verify { .. } => self.rest_gate_verified,
+        }
+    }
+
+    /// Ticks that must follow a tick before it is known whether it is a candidate.
+    pub(super) fn window_ticks(&self, rule: Rule) -> usize {
+        match rule {
+            Rule::Gate { .. } => self.gate_ticks + self.peak_ticks,
+            Rule::Verify { .. } => self.peak_ticks,
+        }
+    }
+}
+
+/// What makes a candidate of a distance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Rule {
+    /// Distances below the class's threshold and below [`DecodeParams::gate`] times the smallest negative distance
+    /// nearby; the score is 1 − distance / threshold.
+    Gate {
+        /// Distances at or above this are never reported, unless
+        /// [`Decoder::set_thresholds`](super::Decoder::set_thresholds) says otherwise.
+        threshold: f32,
+    },
+    /// Distances up to `reach`; a judge gives the score, and above 0 is accepted.
+    Verify {
+        /// Farther ones are not looked at.
+        reach: f32,
+    },
+}
+
+/// No window is wider than this: ten seconds of waiting are no live recognition.
+const MOST_TICKS: usize = 300;
