@@ -13,9 +13,11 @@ mod key_pose;
 mod observe;
 mod of_clip;
 mod packed;
+mod noise;
 mod params;
 mod rows;
 mod smooth;
+mod spikes;
 mod stream;
 
 pub use bones::{ALL_BONES, BONES, Bone, BoneSet};

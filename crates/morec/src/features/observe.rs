@@ -69,6 +69,11 @@ impl Observer {
         *self = Self::new(self.bones);
     }
 
+    /// Length of a leg in the source's unit, the mean over the stream so far.
+    pub fn leg_length(&self) -> Option<f64> {
+        (self.leg_count > 0.0).then(|| self.leg_sum / self.leg_count)
+    }
+
     /// The observation of one pose. A bone or heading that `pose` does not show keeps its last direction;
     /// `None` until the hip joints have been seen once.
     pub fn observe(&mut self, pose: &KeyPose) -> Option<Observation> {

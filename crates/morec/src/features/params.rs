@@ -21,6 +21,14 @@ pub struct FeatureParams {
     pub velocity_weight: f64,
     /// How much root motion counts against directions.
     pub root_weight: f64,
+    /// Whether the filters follow the noise of the stream: as given while it is clean, longer as they must be.
+    #[serde(default = "follows_noise")]
+    pub follow_noise: bool,
+}
+
+/// Indexes that say nothing of it gain by it: on clean streams nothing changes.
+fn follows_noise() -> bool {
+    true
 }
 
 impl Default for FeatureParams {
@@ -29,6 +37,7 @@ impl Default for FeatureParams {
         Self {
             root_sigma_frames: 4.0,
             root_cut_frames: 6,
+            follow_noise: true,
             ..Self::reference()
         }
     }
@@ -47,6 +56,7 @@ impl FeatureParams {
             velocity_saturation: 2.0,
             velocity_weight: 0.5,
             root_weight: 0.3,
+            follow_noise: false,
         }
     }
 

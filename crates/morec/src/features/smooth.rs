@@ -5,6 +5,7 @@ use nalgebra::Vector4;
 use crate::math::Vec3;
 
 use super::bones::{ALL_BONES, BONES, BoneSet};
+use super::noise::{Filter, NoiseMeter, PROBE, WIDEST_FRAMES, filters};
 use super::observe::{Observation, heading_from_world};
 use super::params::FeatureParams;
 
@@ -45,12 +46,48 @@ impl Seen {
 pub struct Smoother {
     bones: BoneSet,
     params: FeatureParams,
-    kernel: Vec<f64>,
-    root_kernel: Vec<f64>,
+    /// For each step of the noise meter.
+    kernels: Vec<Kernels>,
+    /// What noise is measured with.
+    probe: Vec<f64>,
+    noise: NoiseMeter,
     ring: Vec<Seen>,
     pushed: usize,
     next_row_frame: usize,
     row: Vec<f32>,
+}
+
+/// The filters of directions and of root motion, from their centres outwards.
+#[derive(Debug, Clone)]
+struct Kernels {
+    directions: Vec<f64>,
+    root: Vec<f64>,
+    /// Frames that must follow a frame: the half width and one more for the central difference.
+    look_ahead: usize,
+}
+
+impl Kernels {
+    fn new(directions: Filter, root: Filter) -> Self {
+        Self {
+            directions: half_gaussian(directions.sigma_frames, directions.cut_frames),
+            root: half_gaussian(root.sigma_frames, root.cut_frames),
+            look_ahead: directions.cut_frames.max(root.cut_frames) + 1,
+        }
+    }
+
+    /// One pair for each step of the noise meter.
+    fn all(params: &FeatureParams) -> Vec<Self> {
+        let directions = filters(Filter {
+            sigma_frames: params.smooth_sigma_frames,
+            cut_frames: params.smooth_cut_frames,
+        });
+        let root = filters(Filter {
+            sigma_frames: params.root_sigma_frames,
+            cut_frames: params.root_cut_frames,
+        });
+        let pairs = directions.into_iter().zip(root);
+        pairs.map(|(d, r)| Self::new(d, r)).collect()
+    }
 }
 
 /// Weights of a sampled Gaussian from its centre outwards, `cut + 1` values, the whole normalised to 1.
@@ -65,7 +102,8 @@ fn half_gaussian(sigma: f64, cut: usize) -> Vec<f64> {
 impl Smoother {
     /// Allocates everything that will be needed.
     pub fn new(bones: BoneSet, params: &FeatureParams) -> Self {
-        let reach = 2 * (params.look_ahead_frames() + 1) + params.frames_per_tick;
+        let widest = params.look_ahead_frames().max(WIDEST_FRAMES + 1);
+        let reach = 2 * (widest + 1) + params.frames_per_tick;
         let empty = Observation {
             directions: [Vec3::zeros(); BONES],
             root: Vec3::zeros(),
@@ -74,8 +112,9 @@ impl Smoother {
         };
         Self {
             bones,
-            kernel: half_gaussian(params.smooth_sigma_frames, params.smooth_cut_frames),
-            root_kernel: half_gaussian(params.root_sigma_frames, params.root_cut_frames),
+            kernels: Kernels::all(params),
+            probe: half_gaussian(PROBE.sigma_frames, PROBE.cut_frames),
+            noise: NoiseMeter::default(),
             ring: vec![Seen::of(&empty); reach.next_power_of_two()],
             pushed: 0,
             next_row_frame: params.frames_per_tick - 1,
@@ -87,17 +126,40 @@ impl Smoother {
     /// Forgets the stream so far.
     pub fn reset(&mut self) {
         self.pushed = 0;
+        self.noise.reset();
         self.next_row_frame = self.params.frames_per_tick - 1;
     }
 
-    /// Takes the next frame; calls `out` with each row that is now complete (at most one).
+    /// Noise of the last second or so: see [`FeatureStream::noise`](super::FeatureStream::noise).
+    pub fn noise(&self) -> Option<f64> {
+        self.noise.level()
+    }
+
+    /// Takes the next frame; calls `out` with each row that is now complete: one, or a few where a stream has become
+    /// less noisy and its filter shorter.
     pub fn push(&mut self, observation: &Observation, out: &mut impl FnMut(&[f32])) {
         let mask = self.ring.len() - 1;
         self.ring[self.pushed & mask] = Seen::of(observation);
         self.pushed += 1;
-        if self.next_row_frame + self.params.look_ahead_frames() < self.pushed {
+        if self.params.follow_noise && self.pushed.is_multiple_of(self.params.frames_per_tick) {
+            self.measure_noise();
+        }
+        while self.next_row_frame + self.kernels[self.noise.step()].look_ahead < self.pushed {
             self.emit(out);
         }
+    }
+
+    /// What the probe's filter takes away at the last frame whose neighbours are known.
+    fn measure_noise(&mut self) {
+        if self.pushed <= 2 * PROBE.cut_frames {
+            return;
+        }
+        let frame = (self.pushed - 1 - PROBE.cut_frames) as isize;
+        let smooth = self.directions(frame, &self.probe);
+        let here = self.at(frame).directions;
+        let residual = |bone: usize| (here[bone] - smooth[bone]).norm_squared();
+        let sum: f64 = self.bones.indices().map(residual).sum();
+        self.noise.take(sum / self.bones.len().max(1) as f64);
     }
 
     /// Calls `out` with the rows that were still waiting for frames that will not come.
@@ -118,7 +180,9 @@ impl Smoother {
             (frame + 1).min(self.pushed as isize - 1),
         );
         let per_secs = rate / ((after - before).max(1) as f64);
-        let [then, here, soon] = [before, frame, after].map(|frame| self.directions(frame));
+        let kernels = &self.kernels[self.noise.step()];
+        let [then, here, soon] =
+            [before, frame, after].map(|frame| self.directions(frame, &kernels.directions));
         for (slot, bone) in self.bones.indices().enumerate() {
             let weight = ALL_BONES[bone].weight;
             let position = here[bone] * weight;
@@ -130,7 +194,7 @@ impl Smoother {
                     (saturated[axis] * self.params.velocity_weight) as f32;
             }
         }
-        for (slot, value) in self.root_motion(frame).iter().enumerate() {
+        for (slot, value) in self.root_motion(frame, &kernels.root).iter().enumerate() {
             row[6 * bones + slot] = (value * self.params.root_weight) as f32;
         }
         out(&row);
@@ -151,13 +215,13 @@ impl Smoother {
         &self.ring[self.mirrored(index) as usize & (self.ring.len() - 1)]
     }
 
-    /// Smoothed directions of all bones.
-    fn directions(&self, frame: isize) -> [Vec3; BONES] {
+    /// Directions of all bones, smoothed with `kernel`.
+    fn directions(&self, frame: isize, kernel: &[f64]) -> [Vec3; BONES] {
         let mut sum = self
             .at(frame)
             .directions
-            .map(|direction| direction * self.kernel[0]);
-        for (k, weight) in self.kernel.iter().enumerate().skip(1) {
+            .map(|direction| direction * kernel[0]);
+        for (k, weight) in kernel.iter().enumerate().skip(1) {
             let (a, b) = (self.at(frame - k as isize), self.at(frame + k as isize));
             for ((sum, a), b) in sum.iter_mut().zip(&a.directions).zip(&b.directions) {
                 *sum += (a + b) * *weight;
@@ -167,10 +231,10 @@ impl Smoother {
     }
 
     /// Velocity in the heading frame in leg lengths a second (lateral, up, forward) and yaw rate, smoothed.
-    fn root_motion(&self, frame: isize) -> Vector4<f64> {
+    fn root_motion(&self, frame: isize, kernel: &[f64]) -> Vector4<f64> {
         let raw = |k: isize| self.raw_root_motion(self.mirrored(frame + k));
-        let outwards = self.root_kernel.iter().enumerate().skip(1);
-        outwards.fold(raw(0) * self.root_kernel[0], |sum, (k, weight)| {
+        let outwards = kernel.iter().enumerate().skip(1);
+        outwards.fold(raw(0) * kernel[0], |sum, (k, weight)| {
             sum + (raw(-(k as isize)) + raw(k as isize)) * *weight
         })
     }

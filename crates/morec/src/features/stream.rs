@@ -5,6 +5,7 @@ use super::grid::Grid;
 use super::observe::{Observation, Observer};
 use super::params::FeatureParams;
 use super::smooth::Smoother;
+use super::spikes::SpikeFilter;
 use super::{KeyPose, row_dim};
 
 /// A pause longer than this ends one stretch of stream and begins another: what lies between is unknown, and
@@ -30,6 +31,7 @@ pub enum Pushed {
 /// Rows depend on the poses alone, not on how they were cut into pushes. Nothing is allocated after `new`.
 #[derive(Debug, Clone)]
 pub struct FeatureStream {
+    spikes: SpikeFilter,
     observer: Observer,
     smoother: Smoother,
     grid: Grid<Observation>,
@@ -41,6 +43,7 @@ impl FeatureStream {
     /// A stream whose rows hold `bones`.
     pub fn new(bones: BoneSet, params: &FeatureParams) -> Self {
         Self {
+            spikes: SpikeFilter::new(),
             observer: Observer::new(bones),
             smoother: Smoother::new(bones, params),
             grid: Grid::new(params.rate_hz),
@@ -58,6 +61,14 @@ impl FeatureStream {
     /// `origin_secs() + (i + 1) * frames_per_tick / rate_hz`.
     pub fn origin_secs(&self) -> f64 {
         self.grid.origin_secs()
+    }
+
+    /// Noise of the last second or so: the root mean square of what a short filter takes away from the bones' unit
+    /// vectors. 0.002 to 0.009 on clean optical clips, about 0.075 with 1 cm of white noise on every joint at 120 Hz.
+    /// `None` in the first moments, and where the filters do not
+    /// [follow it](FeatureParams::follow_noise).
+    pub fn noise(&self) -> Option<f64> {
+        self.smoother.noise()
     }
 
     /// Whether a pose at `time_secs` would begin a new stretch, so that the caller can
@@ -80,7 +91,8 @@ impl FeatureStream {
         if self.grid.ignores(time_secs) {
             return Pushed::Ignored;
         }
-        let Some(observation) = self.observer.observe(pose) else {
+        let pose = self.spikes.clean(time_secs, pose, self.observer.leg_length());
+        let Some(observation) = self.observer.observe(&pose) else {
             return Pushed::NoHips;
         };
         let (smoother, bones) = (&mut self.smoother, self.bones);
@@ -101,6 +113,7 @@ impl FeatureStream {
         self.smoother.finish(out);
         self.smoother.reset();
         self.observer.reset();
+        self.spikes.reset();
         self.grid.end();
     }
 }
