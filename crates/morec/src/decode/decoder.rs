@@ -101,10 +101,7 @@ impl Decoder {
                 };
                 classes
             ],
-            ring: vec![
-                ClassDistance::NONE;
-                ring_len * classes
-            ],
+            ring: vec![ClassDistance::NONE; ring_len * classes],
             negatives: vec![FAR; ring_len],
             ring_len,
             paths: vec![PathCell::default(); path_len],

@@ -149,10 +149,11 @@ impl DecodeParams {
             ("rival_overlap", self.rival_overlap, 1.0),
             ("tail_spread", self.tail_spread, 1.0),
         ];
-        match shares.iter().find(|(_, v, most)| !(0.0..=*most).contains(v)) {
-            Some((name, found, most)) => {
-                Err(format!("{name} must be 0 to {most}, found {found}"))
-            }
+        match shares
+            .iter()
+            .find(|(_, v, most)| !(0.0..=*most).contains(v))
+        {
+            Some((name, found, most)) => Err(format!("{name} must be 0 to {most}, found {found}")),
             None => Ok(()),
         }
     }

@@ -11,6 +11,7 @@ fn spans(distances: &[f32], negatives: &[f32], params: &DecodeParams) -> Vec<(i6
         let near = [ClassDistance {
             distance: *d,
             age: t.min(3),
+            spread: 1.0,
         }];
         decoder.push(&near, negative, &mut judge, &mut |d| {
             found.push((d.start, d.stop))

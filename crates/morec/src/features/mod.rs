@@ -10,10 +10,10 @@
 mod bones;
 pub(crate) mod grid;
 mod key_pose;
+mod noise;
 mod observe;
 mod of_clip;
 mod packed;
-mod noise;
 mod params;
 mod rows;
 mod smooth;

@@ -91,7 +91,9 @@ impl FeatureStream {
         if self.grid.ignores(time_secs) {
             return Pushed::Ignored;
         }
-        let pose = self.spikes.clean(time_secs, pose, self.observer.leg_length());
+        let pose = self
+            .spikes
+            .clean(time_secs, pose, self.observer.leg_length());
         let Some(observation) = self.observer.observe(&pose) else {
             return Pushed::NoHips;
         };

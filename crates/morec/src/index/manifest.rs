@@ -8,7 +8,7 @@ use crate::features::{BoneSet, FeatureParams};
 use crate::pivots::{PivotSet, PoseParams};
 use crate::roles::Role;
 use crate::svrdm::SvrdmParams;
-use crate::templates::Generic;
+use crate::templates::{Calibration, Generic, OperatingPoint};
 
 use super::Provenance;
 
@@ -40,6 +40,12 @@ pub struct Manifest {
     /// The same for each class, if they differ.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub class_thresholds: Vec<f32>,
+    /// Thresholds for other rates of false alarms.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub operating: Vec<OperatingPoint>,
+    /// What margins mean.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub calibration: Option<Calibration>,
     /// What the verifier is beside its tables, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub verifier: Option<VerifierWords>,

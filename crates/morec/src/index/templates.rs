@@ -22,6 +22,8 @@ pub(super) fn manifest(model: &TemplateModel, index: &MotionIndex) -> Manifest {
         decode: model.decode.clone(),
         threshold: model.threshold,
         class_thresholds: model.class_thresholds.clone(),
+        operating: model.operating.clone(),
+        calibration: model.calibration,
         verifier: model.verifier.as_ref().map(|v| VerifierWords {
             reach: v.reach,
             bar: v.bar,
@@ -144,6 +146,8 @@ pub(super) fn read(manifest: &Manifest, tables: &Tables) -> Result<TemplateModel
         total: symmetric(tables, "metric.total", dim)?,
         threshold: manifest.threshold,
         class_thresholds: manifest.class_thresholds.clone(),
+        operating: manifest.operating.clone(),
+        calibration: manifest.calibration,
         verifier: verifier(manifest, tables, dim, step.as_deref())?,
         step,
     };

@@ -8,7 +8,7 @@ use crate::features::Rows;
 
 use super::early::{EarlyParams, Underway};
 use super::verifier::{Evidence, Judge};
-use super::{Matcher, Metric, TemplateModel, TemplateModelError};
+use super::{Calibration, Matcher, Metric, TemplateModel, TemplateModelError};
 
 /// The part of recognition that knows no clock: metric, templates, verifier, decoding.
 #[derive(Debug, Clone)]
@@ -25,6 +25,7 @@ pub struct TemplateEngine {
     mapped: Vec<f32>,
     near: Vec<ClassDistance>,
     threshold: f32,
+    calibration: Option<Calibration>,
 }
 
 /// The last rows of the stream, as many as a match can span.
@@ -85,10 +86,8 @@ impl TemplateEngine {
             recent: RecentRows::new(dim, 2 * model.longest() + window + 2),
             mapped: vec![0.0; dim],
             threshold: model.threshold,
-            near: vec![
-                ClassDistance::NONE;
-                model.classes.len()
-            ],
+            calibration: model.calibration.filter(|_| model.verifier.is_none()),
+            near: vec![ClassDistance::NONE; model.classes.len()],
             metric,
         })
     }
@@ -114,7 +113,7 @@ impl TemplateEngine {
             &self.near,
             negative,
             &mut |c| score(judge, recent, metric, c),
-            out,
+            &mut |found| out(calibrated(self.calibration, found)),
         );
     }
 
@@ -191,9 +190,23 @@ impl TemplateEngine {
     /// Ends the stretch: calls `out` with what the last ticks still hold.
     pub fn finish(&mut self, out: &mut impl FnMut(TickDetection)) {
         let (judge, recent, metric) = (&mut self.judge, &self.recent, &self.metric);
+        let calibration = self.calibration;
         self.decoder
-            .finish(&mut |c| score(judge, recent, metric, c), out);
+            .finish(&mut |c| score(judge, recent, metric, c), &mut |found| {
+                out(calibrated(calibration, found));
+            });
         self.reset();
+    }
+}
+
+/// `found` with the probability that it is right as its score.
+fn calibrated(calibration: Option<Calibration>, found: TickDetection) -> TickDetection {
+    match calibration {
+        Some(calibration) => TickDetection {
+            score: calibration.probability(found.score),
+            ..found
+        },
+        None => found,
     }
 }
 

@@ -8,6 +8,7 @@ mod kernel;
 mod matcher;
 mod metric;
 mod model;
+mod operating;
 mod verifier;
 
 pub use bank::{Bank, Match, PartialMatch};
@@ -16,6 +17,7 @@ pub use engine::TemplateEngine;
 pub use matcher::{Comparison, Matcher, TYPICAL_SPREAD, mean_and_spread};
 pub use metric::{Metric, Symmetric};
 pub use model::{Sample, TemplateModel, TemplateModelError};
+pub use operating::{ALARM_RATES, Calibration, OperatingPoint, threshold_at};
 pub use verifier::{
     Evidence, Exemplars, Generic, SHAPE_ROWS, Verifier, shape_distance, shape_of, squared_distance,
 };

@@ -4,7 +4,7 @@ use crate::classes::{ClassId, ClassInfo};
 use crate::decode::{DecodeParams, Rule};
 use crate::features::{BoneSet, FeatureParams, Rows, row_dim};
 
-use super::{Exemplars, Symmetric, Verifier};
+use super::{Calibration, Exemplars, OperatingPoint, Symmetric, Verifier, threshold_at};
 
 /// One labelled sample's rows, before the metric.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,6 +38,10 @@ pub struct TemplateModel {
     pub threshold: f32,
     /// The same for each class by itself, where there is no verifier; empty if the one holds for all.
     pub class_thresholds: Vec<f32>,
+    /// Thresholds for other rates of false alarms, ascending; empty in older indexes.
+    pub operating: Vec<OperatingPoint>,
+    /// What margins mean where there is no verifier; older indexes report margins.
+    pub calibration: Option<Calibration>,
     /// The second look at candidates, if there was enough to learn it from.
     pub verifier: Option<Verifier>,
     /// If template rows are whole multiples of a step, column by column: the steps. Files then hold bytes.
@@ -141,6 +145,22 @@ impl TemplateModel {
         }
     }
 
+    /// The model with the threshold for this rate of false alarms a minute, as background motion raised them in
+    /// training. With a verifier, or in an index that notes no rates, nothing changes: `None`.
+    pub fn with_sensitivity(&self, alarms_per_minute: f64) -> Option<Self> {
+        if self.verifier.is_some() || !(alarms_per_minute > 0.0) {
+            return None;
+        }
+        let threshold = threshold_at(&self.operating, alarms_per_minute)?;
+        let scale = threshold / self.threshold;
+        let class_thresholds = self.class_thresholds.iter().map(|t| t * scale);
+        Some(Self {
+            threshold,
+            class_thresholds: class_thresholds.collect(),
+            ..self.clone()
+        })
+    }
+
     /// Rows of the longest template.
     pub fn longest(&self) -> usize {
         self.samples.iter().map(|s| s.rows.len()).max().unwrap_or(0)
@@ -158,7 +178,9 @@ impl TemplateModel {
         }
         let keep = kept_columns(self.bones, bones);
         let total = self.total.restricted(&keep);
-        let share = total.unpack().trace() / self.total.unpack().trace();
+        let left = total.unpack().trace() / self.total.unpack().trace();
+        // A normalised distance has lost that share of its scale already.
+        let share = left.powf(1.0 - f64::from(self.decode.spread_exponent));
         let pick = |rows: &Rows| {
             let values = rows
                 .iter()
@@ -184,6 +206,15 @@ impl TemplateModel {
                 .iter()
                 .map(|t| t * share as f32)
                 .collect(),
+            operating: self
+                .operating
+                .iter()
+                .map(|p| OperatingPoint {
+                    threshold: p.threshold * share as f32,
+                    ..*p
+                })
+                .collect(),
+            calibration: self.calibration,
             verifier: self
                 .verifier
                 .as_ref()

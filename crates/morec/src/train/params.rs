@@ -45,8 +45,14 @@ pub struct TrainParams {
     pub whole_background: f64,
     /// Samples whose spread is below this share of what is usual for their class do not teach: they hardly move.
     pub quiet_share: f64,
+    /// Whether scores are probabilities instead of margins.
+    pub calibrate: bool,
     /// Whether candidates are verified.
     pub verify: bool,
+    /// Samples that the median class must have before candidates are verified: with few, the plain rule is better.
+    pub verify_samples: usize,
+    /// People that must teach before candidates are verified.
+    pub verify_people: usize,
     /// Candidates are looked at up to this times the distance that nine in ten samples of new people need.
     pub reach: f64,
     /// Examples of a class and sign from one clip, or from two seconds of a long stream, at most.
@@ -78,6 +84,7 @@ impl Default for TrainParams {
             max_templates: 24,
             whole_background: 1.5,
             quiet_share: 0.35,
+            calibrate: true,
             verify: true,
             compact: true,
             ..Self::reference()
@@ -107,7 +114,10 @@ impl TrainParams {
             max_templates: usize::MAX,
             whole_background: 0.0,
             quiet_share: 0.0,
+            calibrate: false,
             verify: false,
+            verify_samples: 25,
+            verify_people: 3,
             reach: 2.0,
             examples_per_piece: 3,
             max_negative_examples: 400,

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::classes::ClassInfo;
 
 use super::from_clips::Prepared;
-use super::set::Source;
+use super::set::{Source, TrainSample};
 use super::templates::Trained;
 use super::thesis::SvrdmReport;
 
@@ -59,6 +59,12 @@ impl TrainingReport {
                 prepared.lacking.join(", ")
             ));
         }
+        notes.extend(
+            trained
+                .quiet
+                .iter()
+                .map(|s| quiet_note(s, prepared, tick_hz)),
+        );
         if streams.iter().all(|s| s.source == Source::Labelled) {
             notes.push(
                 "no background clips and no everyday motion: the threshold is a general value; name clips that \
@@ -78,6 +84,17 @@ impl TrainingReport {
             svrdm: None,
         }
     }
+}
+
+/// What to say of a sample that hardly moves.
+fn quiet_note(sample: &TrainSample, prepared: &Prepared, tick_hz: f64) -> String {
+    format!(
+        "{}: the sample in {} from {:.2} to {:.2} s hardly moves and does not teach; check its label",
+        prepared.set.classes[sample.class.index()],
+        prepared.set.streams[sample.stream].name,
+        sample.ticks.start as f64 / tick_hz,
+        sample.ticks.end as f64 / tick_hz,
+    )
 }
 
 /// What to say of classes with few samples.

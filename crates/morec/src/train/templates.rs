@@ -9,7 +9,8 @@ use crate::classes::ClassInfo;
 use crate::features::{BoneSet, Rows};
 use crate::progress::Progress;
 use crate::templates::{
-    Matcher, Metric, Sample, Symmetric, TemplateModel, TemplateModelError, Verifier, mean_and_spread,
+    ALARM_RATES, Calibration, Matcher, Metric, OperatingPoint, Sample, Symmetric, TemplateModel,
+    TemplateModelError, Verifier, mean_and_spread,
 };
 
 use super::examples::{self, Candidates, Example, Seen};
@@ -109,7 +110,13 @@ pub fn train(
     let plain = params.decode.rest_gate;
     set_rest_share(&mut distances, plain);
     let near_enough = step.operating(&distances, None);
-    let negatives = negatives_of(set, bones, (&samples, &distances), near_enough.threshold, params);
+    let negatives = negatives_of(
+        set,
+        bones,
+        (&samples, &distances),
+        near_enough.threshold,
+        params,
+    );
     let rows: Vec<Rows> = negatives.iter().map(|n| negative_rows(set, n)).collect();
     let matcher = step.matcher(rows.iter());
     let near_negatives = step.distances(&matcher, "comparing with near misses")?;
@@ -122,7 +129,7 @@ pub fn train(
     let operating = step.operating(&distances, Some(&seen));
     let threshold = operating.threshold;
     set_rest_share(&mut distances, params.decode.rest_gate_verified);
-    let verifier = if params.verify {
+    let verifier = if params.verify && enough_to_verify(&classes, &samples, params) {
         step.verifier(&seen, &distances, threshold)
     } else {
         None
@@ -151,6 +158,8 @@ pub fn train(
         total,
         threshold,
         class_thresholds,
+        operating: operating.points,
+        calibration: params.calibrate.then_some(Calibration::MEASURED),
         verifier,
         step: None,
     };
@@ -172,10 +181,16 @@ fn set_rest_share(distances: &mut [Distances], share: f32) {
     distances.iter_mut().for_each(|d| d.set_rest_share(share));
 }
 
+/// Exponent by which the bound of the threshold follows the rate of false alarms: 2.4 at a third of the usual rate and
+/// 3.3 at three times, for 2.8.
+const CAP_EXPONENT: f64 = 0.15;
+
 /// Where the threshold lies and why.
 struct Operating {
     threshold: f32,
     from: String,
+    /// For other rates of false alarms.
+    points: Vec<OperatingPoint>,
 }
 
 /// What the steps of a training have in common.
@@ -215,24 +230,46 @@ impl Step<'_> {
         let params = self.params;
         if params.alarms_per_minute <= 0.0 {
             let (threshold, from) = thresholds::common(self.set, distances, params);
-            return Operating { threshold, from };
+            let points = Vec::new();
+            return Operating {
+                threshold,
+                from,
+                points,
+            };
         }
         let curve = AlarmCurve::of(self.set, distances, seen, params);
-        let most = params.max_threshold as f32;
-        match curve.distance_at(params.alarms_per_minute) {
-            Some((threshold, stream)) if threshold < most => Operating {
-                threshold,
-                from: format!("background clip {}", self.set.streams[stream].name),
-            },
-            _ => Operating {
-                threshold: most,
-                from: "no background comes near: the largest".to_owned(),
-            },
+        let at = |rate: f64| {
+            // The bound moves with the rate, or it would be all there is where no background comes near.
+            let most = params.max_threshold * (rate / params.alarms_per_minute).powf(CAP_EXPONENT);
+            let set_by = curve.distance_at(rate);
+            set_by
+                .filter(|(distance, _)| f64::from(*distance) < most)
+                .map_or((most as f32, None), |(distance, stream)| {
+                    (distance, Some(stream))
+                })
+        };
+        let (threshold, stream) = at(params.alarms_per_minute);
+        let point = |alarms_per_minute: f64| OperatingPoint {
+            alarms_per_minute,
+            threshold: at(alarms_per_minute).0,
+        };
+        Operating {
+            threshold,
+            from: stream.map_or_else(
+                || "no background comes near: the largest".to_owned(),
+                |stream| format!("background clip {}", self.set.streams[stream].name),
+            ),
+            points: ALARM_RATES.map(point).to_vec(),
         }
     }
 
     /// Candidates of all streams, each seen without its own person, and what a verifier learns from them.
-    fn verifier(&self, seen: &Seen<'_>, distances: &[Distances], threshold: f32) -> Option<Verifier> {
+    fn verifier(
+        &self,
+        seen: &Seen<'_>,
+        distances: &[Distances],
+        threshold: f32,
+    ) -> Option<Verifier> {
         let (set, params) = (self.set, self.params);
         let candidates = Candidates::new(seen, distances, threshold, params);
         let examples: Vec<Example> = (0..set.streams.len())
@@ -256,14 +293,21 @@ fn moving(
     let spread = |s: &TrainSample| mean_and_spread(&metric.apply_all(&s.rows), metric.dim()).1;
     let spreads: Vec<f32> = samples.iter().map(spread).collect();
     let median = |of: &dyn Fn(usize) -> bool| {
-        let mut some: Vec<f32> = (0..spreads.len()).filter(|i| of(*i)).map(|i| spreads[i]).collect();
+        let mut some: Vec<f32> = (0..spreads.len())
+            .filter(|i| of(*i))
+            .map(|i| spreads[i])
+            .collect();
         some.sort_by(f32::total_cmp);
         (some[some.len() / 2], some.len())
     };
     let all = median(&|_| true).0;
     let is_quiet = |i: usize| {
         let (of_class, count) = median(&|j| samples[j].class == samples[i].class);
-        let usual = if count < 3 { all.min(of_class) } else { of_class };
+        let usual = if count < 3 {
+            all.min(of_class)
+        } else {
+            of_class
+        };
         f64::from(spreads[i]) < params.quiet_share * f64::from(usual)
     };
     let quiet: Vec<bool> = (0..samples.len()).map(is_quiet).collect();
@@ -272,6 +316,15 @@ fn moving(
         if quiet { &mut aside } else { &mut teach }.push(sample);
     }
     (teach, aside)
+}
+
+/// Whether so many people showed so many samples that a verifier is better than the plain rule.
+fn enough_to_verify(classes: &[ClassInfo], samples: &[TrainSample], params: &TrainParams) -> bool {
+    let mut counts: Vec<usize> = classes.iter().map(|c| c.samples).collect();
+    counts.sort_unstable();
+    let people: BTreeSet<&str> = samples.iter().map(|s| s.group.as_str()).collect();
+    let median = counts.get(counts.len() / 2).copied().unwrap_or(0);
+    median >= params.verify_samples && people.len() >= params.verify_people
 }
 
 /// At most `most` samples of each class, from its groups in turn, in the order of the set.

@@ -45,7 +45,7 @@ fn templates() -> Vec<Group> {
         },
         Group {
             intro: "### Decoding (`DecodeParams`)",
-            source: include_str!("../../../src/decode.rs"),
+            source: include_str!("../../../src/decode/params.rs"),
             name: "DecodeParams",
             prefix: "decode.",
             values: vec![

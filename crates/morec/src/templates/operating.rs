@@ -1,0 +1,81 @@
+//! The operating point of a trained model: how often it may raise a false alarm, and what a score means.
+
+/// Where the threshold must lie for a rate of false alarms.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct OperatingPoint {
+    /// False alarms a minute of background motion in training.
+    pub alarms_per_minute: f64,
+    /// The distance below which background motion came that often, within the bounds of training.
+    pub threshold: f32,
+}
+
+/// The rates at which training notes thresholds, false alarms a minute.
+pub const ALARM_RATES: [f64; 7] = [0.03, 0.1, 0.2, 0.3, 0.5, 1.0, 2.0];
+
+/// The threshold at `alarms_per_minute`, between the noted points linearly in the logarithm of the rate; beyond them that
+/// of the last. `None` if nothing is noted.
+pub fn threshold_at(points: &[OperatingPoint], alarms_per_minute: f64) -> Option<f32> {
+    let (first, last) = (points.first()?, points.last()?);
+    let after = points.partition_point(|p| p.alarms_per_minute < alarms_per_minute);
+    if after == 0 {
+        return Some(first.threshold);
+    }
+    let Some(b) = points.get(after) else {
+        return Some(last.threshold);
+    };
+    let a = points[after - 1];
+    let share = (alarms_per_minute / a.alarms_per_minute).ln()
+        / (b.alarms_per_minute / a.alarms_per_minute).ln();
+    Some(a.threshold + (b.threshold - a.threshold) * share as f32)
+}
+
+/// Turns the margin of a detection into the probability that it is right: `σ(slope · logit(margin) + offset)`
+/// (Platt 1999, on the logit of the margin).
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Calibration {
+    /// Weight of the margin's logit.
+    pub slope: f64,
+    /// Logit of the probability at a margin of one half.
+    pub offset: f64,
+}
+
+impl Calibration {
+    /// Fitted on detections of referee signals by clip and by person and of Kinect sessions by the same person and by
+    /// others, each set with the same weight; `docs/figures.md` says how well it holds on each.
+    pub const MEASURED: Self = Self {
+        slope: 0.33,
+        offset: 1.9,
+    };
+
+    /// The probability for a margin from 0 (just accepted) to 1 (identical).
+    pub fn probability(&self, margin: f64) -> f64 {
+        let margin = margin.clamp(1e-3, 1.0 - 1e-3);
+        let logit = (margin / (1.0 - margin)).ln();
+        1.0 / (1.0 + (-(self.slope * logit + self.offset)).exp())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thresholds_lie_between_their_points() {
+        let point = |alarms_per_minute, threshold| OperatingPoint {
+            alarms_per_minute,
+            threshold,
+        };
+        let points = [point(0.1, 1.0), point(0.4, 2.0)];
+        assert_eq!(threshold_at(&points, 0.1), Some(1.0));
+        assert_eq!(threshold_at(&points, 0.2), Some(1.5));
+        assert_eq!(threshold_at(&points, 0.01), Some(1.0));
+        assert_eq!(threshold_at(&points, 9.0), Some(2.0));
+        assert_eq!(threshold_at(&[], 1.0), None);
+    }
+
+    #[test]
+    fn probability_grows_with_the_margin_and_stays_inside_0_and_1() {
+        let p = |margin| Calibration::MEASURED.probability(margin);
+        assert!(0.0 < p(0.0) && p(0.0) < p(0.5) && p(0.5) < p(1.0) && p(1.0) < 1.0);
+    }
+}
