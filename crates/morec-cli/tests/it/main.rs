@@ -3,9 +3,11 @@
 mod convert;
 mod db;
 mod demo;
+mod devices;
 mod evaluate;
 mod inspect;
 mod kit;
 mod live;
 mod poses;
+mod record;
 mod smooth;
