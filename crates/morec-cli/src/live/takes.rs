@@ -149,10 +149,11 @@ impl Stage {
                 eprintln!("morec: {what} in {said} …");
             }
             let actor = self.actor;
-            if let (Next::Frame, frame) = self.next() {
-                if frame.actor == actor && first_secs.is_none() {
-                    first_secs = Some(frame.time_secs);
-                }
+            if let (Next::Frame, frame) = self.next()
+                && frame.actor == actor
+                && first_secs.is_none()
+            {
+                first_secs = Some(frame.time_secs);
             }
         }
     }
@@ -193,10 +194,11 @@ impl Stage {
                         return (recording, Ended::Gone);
                     }
                 }
-                (Next::Gone(of), _) if of == actor => {
-                    if recording.as_ref().is_some_and(|r| !r.frames().is_empty()) {
-                        return (recording, Ended::Gone);
-                    }
+                (Next::Gone(of), _)
+                    if of == actor
+                        && recording.as_ref().is_some_and(|r| !r.frames().is_empty()) =>
+                {
+                    return (recording, Ended::Gone);
                 }
                 (Next::Ended, _) => return (recording, Ended::Source),
                 _ => {}
