@@ -3,6 +3,8 @@
 //! One line for each clip with a finding, then how many clips had which. The clips of the project's data folder are
 //! recordings of people by calibrated devices: a warning or an error there is a false one.
 
+#![allow(clippy::print_stdout)]
+
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::{Path, PathBuf};

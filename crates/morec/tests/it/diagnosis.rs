@@ -65,7 +65,7 @@ fn real_clips_give_no_false_finding() {
             });
         }
     }
-    println!(
+    eprintln!(
         "{clips_seen} clips, {moments} moments of streams, {} false findings; the mirror images of {mirrored} clips are told",
         false_ones.len()
     );
