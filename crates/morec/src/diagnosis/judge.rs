@@ -55,7 +55,7 @@ impl Findings {
 
 /// A finding with its words.
 #[derive(Serialize)]
-struct Told<'a> {
+struct Worded<'a> {
     severity: Severity,
     text: String,
     #[serde(flatten)]
@@ -67,7 +67,7 @@ impl Serialize for Findings {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut list = serializer.serialize_seq(Some(self.count))?;
         for finding in self.iter() {
-            list.serialize_element(&Told {
+            list.serialize_element(&Worded {
                 severity: finding.severity(),
                 text: finding.to_string(),
                 finding,

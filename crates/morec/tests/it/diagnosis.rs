@@ -42,7 +42,7 @@ fn real_clips_give_no_false_finding() {
             let Imported { clip, roles, facts } = &imported;
             let whole = diagnose_clip(clip, roles, &facts.rest_frames);
             clips_seen += 1;
-            // The mirror image of a clip has the opposite of its evidence, and is told by it.
+            // The mirror image of a clip has the opposite of its evidence, and is reported by it.
             mirrored += usize::from(whole.sides.sum().is_some_and(|sum| sum > 0.08));
             for finding in whole.findings().iter().filter(matters) {
                 false_ones.push(format!("{set}/{}: {finding}", clip.name));
@@ -66,7 +66,7 @@ fn real_clips_give_no_false_finding() {
         }
     }
     eprintln!(
-        "{clips_seen} clips, {moments} moments of streams, {} false findings; the mirror images of {mirrored} clips are told",
+        "{clips_seen} clips, {moments} moments of streams, {} false findings; the mirror images of {mirrored} clips are reported",
         false_ones.len()
     );
     assert!(clips_seen >= 795, "{clips_seen} clips");

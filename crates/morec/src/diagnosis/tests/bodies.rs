@@ -81,7 +81,7 @@ fn turned_worlds_are_told_with_what_to_send() {
 }
 
 #[test]
-fn exchanged_sides_and_the_wrong_hand_are_told() {
+fn exchanged_sides_and_the_wrong_hand_are_reported() {
     for number in 0..6 {
         let poses = performance(number, 60.0);
         assert_eq!(
@@ -125,7 +125,7 @@ fn tilted_worlds_are_told_by_how_much() {
 }
 
 #[test]
-fn noise_is_measured_and_told() {
+fn noise_is_measured_and_reported() {
     for rate_hz in [30.0, 60.0, 120.0] {
         for (sigma_m, expected) in [(0.002, ""), (0.01, "noisy"), (0.02, "noisy")] {
             let mut rng = Rng::new(5);
@@ -152,7 +152,7 @@ fn noise_is_measured_and_told() {
 }
 
 #[test]
-fn spikes_are_told() {
+fn spikes_are_reported() {
     for rate_hz in [30.0, 120.0] {
         let mut rng = Rng::new(9);
         let mut poses = performance(3, rate_hz);

@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn times_that_are_no_seconds_are_told() {
+fn times_that_are_no_seconds_are_reported() {
     let poses = performance(0, 60.0);
     let at = |time: fn(f64) -> f64| -> Vec<Timed> {
         poses
@@ -37,7 +37,7 @@ fn times_that_are_no_seconds_are_told() {
 }
 
 #[test]
-fn bodies_that_do_not_move_and_nobody_are_told() {
+fn bodies_that_do_not_move_and_nobody_are_reported() {
     let poses = performance(0, 60.0);
     let still: Vec<Timed> = poses.iter().map(|(secs, _)| (*secs, poses[0].1)).collect();
     assert_eq!(found(&still), ["nothing moves"]);
@@ -54,7 +54,7 @@ fn bodies_that_do_not_move_and_nobody_are_told() {
 }
 
 #[test]
-fn floors_that_move_and_hips_that_do_not_are_told() {
+fn floors_that_move_and_hips_that_do_not_are_reported() {
     for number in 0..4 {
         let glide = |(secs, pose): &Timed| {
             moved(&[(*secs, *pose)], |_, p| {
@@ -73,7 +73,7 @@ fn floors_that_move_and_hips_that_do_not_are_told() {
 }
 
 #[test]
-fn joints_that_are_missing_or_flicker_are_told() {
+fn joints_that_are_missing_or_flicker_are_reported() {
     let poses = performance(0, 60.0);
     let without = |gone: &dyn Fn(usize, Role) -> bool| -> Vec<Timed> {
         let mut poses = poses.clone();
@@ -101,7 +101,7 @@ fn joints_that_are_missing_or_flicker_are_told() {
 }
 
 #[test]
-fn frames_that_are_few_lost_repeated_or_uneven_are_told() {
+fn frames_that_are_few_lost_repeated_or_uneven_are_reported() {
     let poses = performance(0, 60.0);
     let few: Vec<Timed> = poses.iter().step_by(8).copied().collect();
     assert_eq!(found(&few), ["few frames"]);
