@@ -289,6 +289,80 @@ typedef struct MorecIndex MorecIndex;
 typedef struct MorecRecognizer MorecRecognizer;
 
 /**
+ * What is known of a stream. A figure that is not known is NaN. Lengths are metres by a guess of the stream's unit.
+ */
+typedef struct MorecDiagnosis {
+    /**
+     * Set to `sizeof(MorecDiagnosis)` before the call.
+     */
+    size_t struct_size;
+    /**
+     * Frames looked at.
+     */
+    uint64_t frames;
+    /**
+     * `MorecFinding` bits; 0 until there is about a second of stream.
+     */
+    uint32_t findings;
+    /**
+     * A `MorecSeverity`: of the gravest finding.
+     */
+    int32_t severity;
+    /**
+     * Bit `r` for each `MorecRole` `r` that is never seen.
+     */
+    uint32_t missing_roles;
+    /**
+     * Bit `r` for each `MorecRole` `r` that is seen only at times.
+     */
+    uint32_t flickering_roles;
+    /**
+     * From the first frame to the last.
+     */
+    double secs;
+    /**
+     * Frames a second.
+     */
+    double rate_hz;
+    /**
+     * Half the range of nine tenths of the intervals at which frames arrived.
+     */
+    double jitter_secs;
+    /**
+     * Share of the frames that were due and did not come.
+     */
+    double lost_share;
+    /**
+     * Share of the frames that repeat the one before.
+     */
+    double repeated_share;
+    /**
+     * Share of the frames that show no body.
+     */
+    double empty_share;
+    /**
+     * From the ankles to the head joint along the bones.
+     */
+    double height_m;
+    /**
+     * Thigh and shin.
+     */
+    double leg_m;
+    /**
+     * Angle of a standing body, or of the trunk, with the vertical, radians.
+     */
+    double tilt_rad;
+    /**
+     * Standard deviation of fast noise on each coordinate.
+     */
+    double noise_m;
+    /**
+     * Share of the frames in which a joint is thrown aside.
+     */
+    double spike_share;
+} MorecDiagnosis;
+
+/**
  * A motion that was recognised: a segment of the stream, and what it shows.
  */
 typedef struct MotionSeg {
@@ -555,6 +629,27 @@ typedef struct MorecStats {
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
+
+/**
+ * Fills in `*diagnosis`, whose `struct_size` must be set, with what is known of the stream so far. Takes no memory.
+ *
+ * # Safety
+ * `diagnosis` is null or points to a struct of the size it says.
+ */
+MorecStatus morec_recognizer_diagnosis(const struct MorecRecognizer *recognizer, struct MorecDiagnosis *diagnosis);
+
+/**
+ * Puts what is wrong with the stream into the `size` bytes at `buffer`, a sentence with what to do on each line, the
+ * gravest first, with a zero at the end; an empty text if nothing is. If `needed` is not null, the bytes that takes are
+ * put there. With too little room the text is cut and the status `MOREC_STATUS_BUFFER_TOO_SMALL`.
+ *
+ * # Safety
+ * `buffer` is null or may be written to for `size` bytes; `needed` is null or may be written to.
+ */
+MorecStatus morec_recognizer_diagnosis_text(const struct MorecRecognizer *recognizer,
+                                            char *buffer,
+                                            size_t size,
+                                            size_t *needed);
 
 /**
  * Initialises the library with an index file, which `morec train` wrote; `szClassifierFile` is UTF-8.

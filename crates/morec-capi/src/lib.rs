@@ -18,6 +18,7 @@
 #![deny(unsafe_op_in_unsafe_fn)]
 
 mod axes;
+mod diagnosis;
 mod eight;
 mod event;
 mod frame;
@@ -31,6 +32,10 @@ mod stream;
 mod words;
 
 pub use axes::{MorecHandedness, MorecUpAxis};
+pub use diagnosis::{
+    MorecDiagnosis, MorecFinding, MorecSeverity, morec_recognizer_diagnosis,
+    morec_recognizer_diagnosis_text,
+};
 pub use eight::{
     MotionSeg, mrInit, mrIsDataSourceDepleted, mrQueryMotionSegments, mrSetDataSource,
     mrSetDataSourceSpeed, mrStart, mrStop, mrStopDataSource, mrTerminate,

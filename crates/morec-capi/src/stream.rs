@@ -3,6 +3,7 @@
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 
+use morec::diagnosis::{Diagnoser, Diagnosis};
 use morec::index::MotionIndex;
 use morec::live::{Actor, Event, EventOptions, Frame, Performer, Recognizer, Rig};
 
@@ -229,6 +230,12 @@ impl Stream {
             suppressed: counts.suppressed.load(Relaxed),
             latency_secs: self.latency_secs,
         }
+    }
+
+    /// What is known of the stream; refused while another thread pushes.
+    pub(crate) fn diagnosis(&self) -> Result<Diagnosis, Error> {
+        let known = turn(&self.input)?.performer.diagnosis();
+        Ok(known.unwrap_or_else(|| Diagnoser::live().diagnosis()))
     }
 
     fn make_room(&self, input: &Input) -> Result<(), Error> {

@@ -90,6 +90,7 @@
 //! | learning | [`labels`], [`train`] | a [`TemplateModel`](templates::TemplateModel) and a report |
 //! | keeping | [`index`] | one file, with a checksum and where it came from |
 //! | recognising | [`templates`] or [`svrdm`], [`decode`], [`live`] | [`Detection`](live::Detection)s, nothing taken back |
+//! | looking at a stream | [`diagnosis`] | what is wrong with it, in sentences that say what to do |
 //! | without labels | [`pivots`], [`pca`], [`segment`], [`cluster`] | pose rows, fewer dimensions, cuts, samples that are alike |
 //! | measuring | [`eval`], [`crossval`], [`report`], [`plot`] | figures, timelines, charts, one page of HTML |
 //!
@@ -127,6 +128,7 @@ pub mod cluster;
 mod coder;
 pub mod crossval;
 pub mod decode;
+pub mod diagnosis;
 pub mod eval;
 pub mod features;
 pub mod formats;

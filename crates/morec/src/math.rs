@@ -43,6 +43,13 @@ impl Axis {
     }
 }
 
+/// The rotation of a quaternion `[x, y, z, w]` of any length but 0; `None` if it has no length or is not finite.
+pub fn rotation_of_xyzw([x, y, z, w]: [f64; 4]) -> Option<Quat> {
+    let q = nalgebra::Quaternion::new(w, x, y, z);
+    let length = q.norm();
+    (length.is_finite() && length > 1e-6).then(|| Quat::new_normalize(q))
+}
+
 /// The sign of `q` (it and its negative are one rotation) that lies nearer to `previous`.
 pub fn same_hemisphere(previous: &Quat, q: Quat) -> Quat {
     if previous.coords.dot(&q.coords) < 0.0 {
@@ -117,6 +124,24 @@ mod tests {
             let flipped = Quat::new_unchecked(-b.into_inner());
             prop_assert!(slerp(&a, &b, t).angle_to(&slerp(&a, &flipped, t)) < 1e-6);
         }
+    }
+
+    proptest! {
+        #[test]
+        fn a_quaternion_of_any_length_is_its_rotation(q in quat(), scale in 1e-3f64..1e3) {
+            let [x, y, z, w] = [q.i, q.j, q.k, q.w].map(|c| c * scale);
+            let found = rotation_of_xyzw([x, y, z, w]);
+            prop_assert!(found.is_some_and(|found| found.angle_to(&q) < 1e-6));
+        }
+    }
+
+    #[test]
+    fn a_quaternion_without_a_length_is_no_rotation() {
+        for none in [[0.0; 4], [f64::NAN, 0.0, 0.0, 1.0], [f64::INFINITY; 4]] {
+            assert_eq!(rotation_of_xyzw(none), None);
+        }
+        let quarter = rotation_of_xyzw([0.0, 1.0, 0.0, 1.0]).unwrap();
+        assert!((quarter * Vec3::z() - Vec3::x()).norm() < 1e-12);
     }
 
     #[test]

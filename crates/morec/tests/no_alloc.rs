@@ -88,6 +88,7 @@ fn events_take_no_memory(model: &Arc<morec::templates::TemplateModel>, poses: &[
             frame.time_secs = *time_secs;
             frame.set_key_pose(pose);
             performer.push_own(&frame, &mut |_| events += 1);
+            std::hint::black_box(performer.diagnosis().map(|known| known.findings()));
         }
         performer.finish(&mut |_| events += 1);
     };

@@ -16,6 +16,7 @@ mod cases;
 mod compiled;
 mod compilers;
 mod conformance;
+mod diagnosis;
 mod eight;
 mod faults;
 mod header;

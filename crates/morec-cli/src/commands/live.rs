@@ -5,28 +5,21 @@ use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
-use anyhow::{Context, Result, bail};
-use morec::import::ImportOptions;
+use anyhow::{Context, Result};
 use morec::index::MotionIndex;
-use morec::live::axis::AxisOptions;
-use morec::live::vmc::VmcOptions;
-use morec::live::{
-    EventOptions, EventReader, MAX_ACTORS, Overload, Session, SessionOptions, Source, Status,
-    StatusHandle,
-};
+use morec::live::{EventOptions, EventReader, Session, SessionOptions, Status, StatusHandle};
 
 use super::recognize::open_index;
-use crate::files::mapping;
 use crate::interrupt::stop_on_ctrl_c;
 use crate::live::Said;
 use crate::live::address::Address;
-use crate::live::axis::{self, AxisSource};
-use crate::live::clip::ClipSource;
-use crate::live::json::JsonSource;
+use crate::live::advice::{self, Advice};
+use crate::live::complaints::Complaints;
 use crate::live::layout::LayoutArg;
+use crate::live::open::TrackerArgs;
 use crate::live::sinks::Outlet;
 use crate::live::status::{StatusLine, summary};
-use crate::live::vmc::VmcSource;
+use crate::live::takes::secs;
 
 /// Recognise motions live, from a tracker to an event.
 ///
@@ -36,6 +29,12 @@ use crate::live::vmc::VmcSource;
 ///   json:-                  poses as lines of JSON on standard input
 ///   json+tcp://0.0.0.0:9000 the same from whoever connects
 ///   clip://FILE             a clip, in real time; ?speed=4 (0: as fast as it goes), ?loop, ?loss=0.05, ?jitter=20
+///
+/// A line of JSON is a pose: {"t": 1.25, "positions": {"hips": [0, 0.92, 0], "left_hand": [0.7, 1.4, 0.1]}}, t in
+/// seconds, right-handed axes, Y up, any unit of length. Parts of the body are hips, torso, neck, head, and left_ and
+/// right_ thigh, shin, foot, shoulder, arm, forearm, hand, each placed at its near end: the thigh at the hip joint,
+/// the shin at the knee, the foot at the ankle, the arm at the shoulder joint, the forearm at the elbow, the hand at
+/// the wrist.
 ///
 /// Events go (--emit) to:
 ///   terminal:-              a line for each motion (the default)
@@ -63,19 +62,8 @@ pub struct Args {
     /// Where events go [default: terminal:-]
     #[arg(long, value_name = "SINK")]
     emit: Vec<Address>,
-    /// Exchange left and right, for VMC senders that show their performer as a mirror would
-    #[arg(long)]
-    mirror: bool,
-    /// Performers that one VMC port, or one broadcast, follows at once
-    #[arg(long, value_name = "N", default_value = "4", value_parser = clap::value_parser!(u16).range(1..=MAX_ACTORS as i64))]
-    actors: u16,
-    /// A BVH file of the program at axis://, for how bones hang together and how long they are [default: a person of
-    /// 1.7 m]
-    #[arg(long, value_name = "BVH")]
-    skeleton: Option<PathBuf>,
-    /// Recognise T-poses that are too exact to be a person's, too: else they are a sender's that lost its tracker
-    #[arg(long)]
-    keep_t_pose: bool,
+    #[command(flatten)]
+    tracker: TrackerArgs,
     /// Do not tell a motion that ends within so many seconds of the last of its class
     #[arg(long, value_name = "SECS", default_value = "0", value_parser = secs)]
     refractory: f64,
@@ -91,16 +79,6 @@ pub struct Args {
     /// No status line
     #[arg(long)]
     quiet: bool,
-    /// Roles of joints of clips, where inference fails: lines of `role<TAB>joint name`
-    #[arg(long, value_name = "FILE")]
-    roles: Option<PathBuf>,
-}
-
-fn secs(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(secs) if (0.0..=1e9).contains(&secs) => Ok(secs),
-        _ => Err("expected seconds, 0 or more".to_owned()),
-    }
 }
 
 /// A session, its source's name and its events.
@@ -108,6 +86,7 @@ struct Listening {
     name: String,
     session: Session,
     reader: EventReader,
+    complaints: Complaints,
 }
 
 /// Runs the command.
@@ -119,19 +98,16 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         )?],
         emit => emit.iter().map(Outlet::open).collect::<Result<_>>()?,
     };
-    let options = ImportOptions {
-        mapping: mapping(args.roles.as_deref())?,
-        ..ImportOptions::default()
-    };
     let mut listening: Vec<Listening> = args
         .listen
         .iter()
-        .map(|address| listen(address, &index, &options, args))
+        .map(|address| listen(address, &index, args))
         .collect::<Result<_>>()?;
     let stop = stop_on_ctrl_c()?;
     let handles: Vec<StatusHandle> = listening.iter().map(|l| l.session.handle()).collect();
     let begun = Instant::now();
     let mut line = StatusLine::new(args.quiet);
+    let mut advice = Advice::new(listening.iter().map(|l| l.name.clone()));
     let over = |secs: f64| begun.elapsed().as_secs_f64() >= secs;
     // One source can wait for its events; several are looked at in turn.
     let nap = Duration::from_millis(if listening.len() == 1 { 50 } else { 2 });
@@ -148,11 +124,18 @@ pub fn run(args: &Args) -> Result<ExitCode> {
                 tell(&said, &mut outlets, &mut line)?;
             }
             ended &= source.reader.is_ended();
+            complain(&source.name, &source.complaints, &mut line);
         }
         if ended {
             break;
         }
         let statuses: Vec<Status> = handles.iter().map(StatusHandle::get).collect();
+        if !args.quiet {
+            for text in advice.look(&statuses) {
+                line.clear();
+                eprintln!("morec: {text}");
+            }
+        }
         line.draw(&statuses, index.model.classes());
     }
     line.clear();
@@ -171,7 +154,11 @@ pub fn run(args: &Args) -> Result<ExitCode> {
                 &mut line,
             )?;
         }
+        complain(&source.name, &source.complaints, &mut line);
         eprintln!("morec: {}", summary(&source.name, &status));
+        advice::of_status(&status)
+            .iter()
+            .for_each(|text| eprintln!("morec:   {text}"));
     }
     outlets
         .iter()
@@ -193,79 +180,34 @@ fn tell(said: &Said, outlets: &mut [Outlet], line: &mut StatusLine) -> Result<()
     Ok(())
 }
 
-fn listen(
-    address: &Address,
-    index: &MotionIndex,
-    options: &ImportOptions,
-    args: &Args,
-) -> Result<Listening> {
-    let (source, overload, name): (Box<dyn Source>, Overload, String) = match address.kind.as_str()
-    {
-        "vmc" => {
-            address.allow(&[])?;
-            let vmc = VmcOptions {
-                mirrored: args.mirror,
-                actors: args.actors.into(),
-                skip_t_pose: !args.keep_t_pose,
-            };
-            let source = VmcSource::bind(address.socket()?, &vmc)?;
-            let name = format!("vmc://{}", source.address()?);
-            (Box::new(source), Overload::Drop, name)
-        }
-        "axis" | "axis+udp" => {
-            let skeleton = args
-                .skeleton
-                .as_deref()
-                .map(axis::skeleton)
-                .transpose()?
-                .unwrap_or_default();
-            let axis = AxisOptions {
-                skeleton,
-                actors: args.actors.into(),
-            };
-            let (source, name) = AxisSource::open(address, &axis)?;
-            (Box::new(source), Overload::Drop, name)
-        }
-        "json" => (
-            Box::new(JsonSource::open(address)?),
-            Overload::Wait,
-            address.to_string(),
-        ),
-        "json+tcp" => {
-            let (source, at) = JsonSource::listen(address)?;
-            (Box::new(source), Overload::Wait, format!("json+tcp://{at}"))
-        }
-        "clip" => {
-            let source = ClipSource::open(address, index, options)?;
-            let overload = if source.is_paced() {
-                Overload::Drop
-            } else {
-                Overload::Wait
-            };
-            (Box::new(source), overload, address.to_string())
-        }
-        other => bail!(
-            "{address}: no source is called {other}; there are vmc://HOST:PORT, axis://HOST:PORT, axis+udp://HOST:PORT, json:-, json+tcp://HOST:PORT, clip://FILE"
-        ),
-    };
-    eprintln!("morec: listening to {name}");
+/// Says what the source has found wrong with what it was sent.
+fn complain(source: &str, complaints: &Complaints, line: &mut StatusLine) {
+    for text in complaints.take() {
+        line.clear();
+        eprintln!("morec: {source}: {text}");
+    }
+}
+
+fn listen(address: &Address, index: &MotionIndex, args: &Args) -> Result<Listening> {
+    let opened = args.tracker.open(address, Some(index))?;
     let events = EventOptions {
         early: !args.no_early,
         refractory_secs: args.refractory,
     };
     let session_options = SessionOptions {
         events,
-        overload,
+        overload: opened.overload,
         ..args.layout.options()
     };
-    let (session, readers) = Session::start(&index.model, source, &session_options)?;
+    let (session, readers) = Session::start(&index.model, opened.source, &session_options)?;
     let reader = readers
         .into_iter()
         .next()
         .context("a session has a reader")?;
     Ok(Listening {
-        name,
+        name: opened.name,
         session,
         reader,
+        complaints: opened.complaints,
     })
 }

@@ -37,10 +37,10 @@ pub struct Args {
     json: bool,
 }
 
-/// Runs the command.
-pub fn run(args: &Args) -> Result<ExitCode> {
-    let material = args.material.load(&[])?;
-    let recipe = args.material.recipe()?;
+/// Trains as `material` says; returns what was learned, how, and from what.
+pub fn trained(args: &MaterialArgs) -> Result<(MotionIndex, TrainingReport, Material)> {
+    let material = args.load(&[])?;
+    let recipe = args.recipe()?;
     let labelling = Labelling {
         samples: &material.samples,
         held_back: &[],
@@ -53,6 +53,12 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         roles: role_names(&material.clips),
         provenance: provenance(&material, &report),
     };
+    Ok((index, report, material))
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<ExitCode> {
+    let (index, report, material) = trained(&args.material)?;
     let bytes = index.to_bytes()?;
     files::write_whole(&args.output, |out| out.write_all(&bytes))
         .with_context(|| args.output.display().to_string())?;

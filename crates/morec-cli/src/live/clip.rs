@@ -73,10 +73,14 @@ impl ClipSource {
 
     /// Opens `clip://FILE` with the options speed (0: as fast as it goes), loop (so many laps), loss (a share),
     /// jitter (milliseconds).
-    pub fn open(address: &Address, index: &MotionIndex, options: &ImportOptions) -> Result<Self> {
+    pub fn open(
+        address: &Address,
+        index: Option<&MotionIndex>,
+        options: &ImportOptions,
+    ) -> Result<Self> {
         address.allow(&["speed", "loop", "loss", "jitter"])?;
         let path = PathBuf::from(&address.place);
-        let clips = load(&[path], &ReadArgs::default(), options, Some(index), None)?;
+        let clips = load(&[path], &ReadArgs::default(), options, index, None)?;
         let speed = address.number("speed", 1.0)?.unwrap_or(1.0);
         let mut source = Self::new(Arc::new(clips));
         source.speed = if speed > 0.0 { speed } else { f64::INFINITY };

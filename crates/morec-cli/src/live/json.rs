@@ -1,134 +1,20 @@
 //! Poses as lines of JSON, from standard input or over TCP: for trackers that speak nothing else.
 //!
-//! One object a line, right-handed axes, Y up:
-//!
-//! ```json
-//! {"t": 1.25, "actor": 0, "positions": {"hips": [0, 0.92, 0], "left_thigh": [0.09, 0.9, 0]}}
-//! {"t": 1.27, "root": [0, 0.92, 0], "rotations": {"hips": [0, 0, 0, 1], "left_arm": [0, 0, 0.38, 0.92]}}
-//! ```
-//!
-//! - `t`: seconds on the sender's clock; without it the time of arrival counts.
-//! - `actor`: whom it shows, 0 if nothing is said.
-//! - `positions`: where joints are in the world, by role, in any one unit of length; or
-//! - `rotations`: how joints are turned in their parents' frames, `[x, y, z, w]`, by role. Turned by nothing, a
-//!   person stands in a T-pose, facing +Z, the left side at +X. Lengths are those of a standard body; `root` is where
-//!   its hips are.
-//!
-//! Roles are those of mapping files: hips, torso, neck, head, and left_ and right_ thigh, shin, foot, shoulder, arm,
-//! forearm, hand. What a line leaves out is unknown at that time. Other fields are ignored.
+//! What a line says is in [`json_line`](super::json_line).
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
 
 use anyhow::{Result, bail};
-use morec::live::vmc::{HUMANOID, HUMANOID_BONES, rotation_of_unity};
 use morec::live::{Actor, Frame, MAX_ACTORS, Next, Rig, Source, SourceCounts, wall_now_secs};
-use morec::math::{Quat, Vec3};
 use morec::roles::{Role, RoleMap};
 
 use super::address::Address;
+use super::complaints::Complaints;
+use super::json_line::Pose;
 use super::lines::{Came, Lines};
 
 const WAIT: Duration = Duration::from_millis(20);
-
-/// A pose as a line gives it.
-#[derive(Debug, Default, serde::Deserialize)]
-#[serde(default)]
-struct Line {
-    t: Option<f64>,
-    actor: u16,
-    root: Option<[f64; 3]>,
-    positions: BTreeMap<String, [f64; 3]>,
-    rotations: BTreeMap<String, [f64; 4]>,
-}
-
-/// A pose in the order of roles; what is unknown is not a number.
-#[derive(Debug, Clone, PartialEq)]
-struct Pose {
-    time_secs: Option<f64>,
-    actor: u16,
-    positions: [Vec3; Role::COUNT],
-    /// Empty if the line gave positions.
-    rotations: Vec<Quat>,
-}
-
-impl Pose {
-    fn of_line(text: &str) -> Option<Self> {
-        let line: Line = serde_json::from_str(text).ok()?;
-        let mut pose = Self {
-            time_secs: line.t.filter(|t| t.is_finite()),
-            actor: line.actor,
-            positions: [Vec3::repeat(f64::NAN); Role::COUNT],
-            rotations: Vec::new(),
-        };
-        if line.rotations.is_empty() {
-            for (name, position) in &line.positions {
-                pose.positions[Role::from_name(name)?.index()] = Vec3::from(*position);
-            }
-        } else {
-            pose.turn(&line)?;
-        }
-        let known = pose
-            .positions
-            .iter()
-            .any(|p| p.iter().all(|c| c.is_finite()));
-        known.then_some(pose)
-    }
-
-    /// A standard body with its joints turned; what is not named is not turned.
-    fn turn(&mut self, line: &Line) -> Option<()> {
-        let mut locals = [Quat::identity(); Role::COUNT];
-        let mut named = [false; Role::COUNT];
-        for (name, [x, y, z, w]) in &line.rotations {
-            let role = Role::from_name(name)?;
-            // The conversion turns Z and w round: twice round is as it was.
-            let rotation = rotation_of_unity([*x, *y, -z, -w])?;
-            (locals[role.index()], named[role.index()]) = (rotation, true);
-        }
-        let mut world = [(Vec3::zeros(), Quat::identity()); HUMANOID_BONES];
-        self.rotations = vec![Quat::identity(); Role::COUNT];
-        for (b, bone) in HUMANOID.iter().enumerate() {
-            let local = bone
-                .role
-                .map_or(Quat::identity(), |role| locals[role.index()]);
-            // The table faces −Z.
-            let [x, y, z] = bone.offset;
-            let offset = Vec3::new(-x, y, -z);
-            world[b] = match bone.parent {
-                Some(p) => (world[p].0 + world[p].1 * offset, world[p].1 * local),
-                None => (line.root.map_or(offset, Vec3::from), local),
-            };
-            let Some(role) = bone.role else { continue };
-            self.rotations[role.index()] = world[b].1;
-            // A joint is known where the one that carries it is; shoulders and spine are seldom sent.
-            use Role::*;
-            let carried = matches!(
-                role,
-                LeftShin
-                    | LeftFoot
-                    | RightShin
-                    | RightFoot
-                    | LeftForearm
-                    | LeftHand
-                    | RightForearm
-                    | RightHand
-            );
-            let by = bone.parent.and_then(|p| HUMANOID[p].role);
-            if !carried || by.is_some_and(|role| named[role.index()]) {
-                self.positions[role.index()] = world[b].0;
-            }
-        }
-        Some(())
-    }
-
-    fn known(&self) -> u32 {
-        let known = |p: &Vec3| p.iter().all(|c| c.is_finite());
-        (0..Role::COUNT)
-            .filter(|r| known(&self.positions[*r]))
-            .fold(0, |mask, r| mask | 1 << r)
-    }
-}
 
 /// A performer of some connection.
 struct Performer {
@@ -150,6 +36,7 @@ pub struct JsonSource {
     leaving: Vec<Actor>,
     begun_secs: f64,
     counts: SourceCounts,
+    complaints: Complaints,
 }
 
 impl JsonSource {
@@ -178,7 +65,13 @@ impl JsonSource {
             leaving: Vec::new(),
             begun_secs: wall_now_secs(),
             counts: SourceCounts::default(),
+            complaints: Complaints::default(),
         }
+    }
+
+    /// Where it says which lines are no poses, and why.
+    pub fn complaints(&self) -> Complaints {
+        self.complaints.clone()
     }
 
     /// The performer `number` of `connection`, a new one if there is room.
@@ -204,11 +97,24 @@ impl JsonSource {
         })
     }
 
-    fn line(&mut self, connection: u64, text: Option<&str>, frame: &mut Frame) -> Next {
+    fn line(
+        &mut self,
+        connection: u64,
+        number: u64,
+        text: Option<&str>,
+        frame: &mut Frame,
+    ) -> Next {
         self.counts.packets += 1;
-        let Some(pose) = text.and_then(Pose::of_line) else {
-            self.counts.malformed += 1;
-            return Next::Quiet;
+        let pose = text
+            .ok_or_else(|| "no text, or longer than 65536 bytes".to_owned())
+            .and_then(Pose::of_line);
+        let pose = match pose {
+            Ok(pose) => pose,
+            Err(error) => {
+                self.counts.malformed += 1;
+                self.complaints.add(|| format!("line {number}"), error);
+                return Next::Quiet;
+            }
         };
         let Some(at) = self.performer(connection, pose.actor) else {
             self.counts.refused += 1;
@@ -247,7 +153,11 @@ impl Source for JsonSource {
             return Next::Gone(actor);
         }
         match self.lines.next(WAIT) {
-            Came::Line(connection, text) => self.line(connection, text.as_deref(), frame),
+            Came::Line {
+                connection,
+                number,
+                text,
+            } => self.line(connection, number, text.as_deref(), frame),
             Came::Closed(connection) => {
                 for (at, performer) in self.performers.iter_mut().enumerate() {
                     if performer.connection == connection && !performer.gone {
@@ -283,51 +193,4 @@ fn rig_of(known: u32) -> Rig {
     }
     rig.roles = roles;
     rig
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn positions_are_taken_as_they_are() {
-        let pose = Pose::of_line(
-            r#"{"t": 2.5, "actor": 3, "positions": {"head": [0, 1.6, 0.1]}, "note": 1}"#,
-        )
-        .unwrap();
-        assert_eq!(
-            (pose.time_secs, pose.actor, pose.known()),
-            (Some(2.5), 3, 1 << Role::Head.index())
-        );
-        assert_eq!(pose.positions[Role::Head.index()], Vec3::new(0.0, 1.6, 0.1));
-    }
-
-    #[test]
-    fn an_arm_turned_about_the_vertical_reaches_forward() {
-        // The left arm lies along +X; −90° about Y takes it to +Z, where the person looks.
-        let line = r#"{"rotations": {"hips": [0,0,0,1], "left_arm": [0,-0.7071068,0,0.7071068]}}"#;
-        let pose = Pose::of_line(line).unwrap();
-        let at = |role: Role| pose.positions[role.index()];
-        let arm = (at(Role::LeftForearm) - at(Role::LeftArm)).normalize();
-        assert!((arm - Vec3::z()).norm() < 1e-6, "{arm}");
-        assert!(at(Role::LeftThigh).x > 0.0 && at(Role::Neck).y > at(Role::Hips).y);
-        // Nothing was said of the forearm, so nothing is known of the hand.
-        assert!(at(Role::LeftHand).x.is_nan());
-    }
-
-    #[test]
-    fn rubbish_is_no_pose() {
-        for line in [
-            "",
-            "hello",
-            "{}",
-            "[1,2]",
-            r#"{"positions": {"tail": [0,0,0]}}"#,
-            r#"{"positions": {"head": [0,0]}}"#,
-            r#"{"rotations": {"head": [0,0,0,0]}}"#,
-            r#"{"t": "soon", "positions": {"head": [0,0,0]}}"#,
-        ] {
-            assert_eq!(Pose::of_line(line), None, "{line}");
-        }
-    }
 }

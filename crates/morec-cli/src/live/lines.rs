@@ -17,8 +17,15 @@ const CONNECTIONS: usize = 16;
 
 /// Something that came.
 pub enum Came {
-    /// A line of this connection, without its end; `None` if it was too long or no text.
-    Line(u64, Option<String>),
+    /// A line.
+    Line {
+        /// Whose it is.
+        connection: u64,
+        /// Which of the connection's lines, from 1.
+        number: u64,
+        /// It without its end; `None` if it was too long or no text.
+        text: Option<String>,
+    },
     /// This connection has ended.
     Closed(u64),
     /// Nothing came in a while.
@@ -96,7 +103,7 @@ fn accept(listener: &TcpListener, sender: &SyncSender<Came>) {
 
 /// Sends every line until the end of `reader`, or until nobody takes them.
 fn forward(number: u64, mut reader: impl BufRead, sender: &SyncSender<Came>) {
-    let mut bytes = Vec::new();
+    let (mut bytes, mut lines) = (Vec::new(), 0);
     loop {
         bytes.clear();
         match reader.by_ref().take(LONGEST).read_until(b'\n', &mut bytes) {
@@ -105,18 +112,21 @@ fn forward(number: u64, mut reader: impl BufRead, sender: &SyncSender<Came>) {
             Err(error) if error.kind() == ErrorKind::Interrupted => continue,
             Err(_) => break,
         }
-        let whole = bytes.ends_with(b"\n") || (bytes.len() as u64) < LONGEST;
+        // What follows a part of a line that is too long still belongs to it.
+        let ended = bytes.ends_with(b"\n");
+        let line = lines + 1;
+        lines += u64::from(ended);
+        let whole = ended || (bytes.len() as u64) < LONGEST;
         let text = std::str::from_utf8(&bytes).ok().filter(|_| whole);
         if text.is_some_and(|text| text.trim().is_empty()) {
             continue;
         }
-        if sender
-            .send(Came::Line(
-                number,
-                text.map(|text| text.trim_end().to_owned()),
-            ))
-            .is_err()
-        {
+        let came = Came::Line {
+            connection: number,
+            number: line,
+            text: text.map(|text| text.trim_end().to_owned()),
+        };
+        if sender.send(came).is_err() {
             return;
         }
     }

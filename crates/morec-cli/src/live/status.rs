@@ -4,6 +4,7 @@ use std::io::{IsTerminal, Write};
 use std::time::{Duration, Instant};
 
 use morec::classes::ClassInfo;
+use morec::diagnosis::{Diagnosis, Severity};
 use morec::live::Status;
 
 /// How often the line is renewed.
@@ -100,8 +101,28 @@ fn describe(statuses: &[Status], classes: &[ClassInfo], rate_hz: f64) -> String 
             (None, Some((class, score))) => text += &format!("  | last {} {score:.2}", name(class)),
             (None, None) => text += "  | –",
         }
+        if let Some(diagnosis) = actor.diagnosis {
+            text += &found(&diagnosis);
+        }
     }
     text
+}
+
+/// What is wrong with a stream in a few words, or how big and how noisy its body is.
+fn found(diagnosis: &Diagnosis) -> String {
+    let findings = diagnosis.findings();
+    let labels: Vec<&str> = findings
+        .iter()
+        .filter(|finding| finding.severity() >= Severity::Warning)
+        .map(|finding| finding.label())
+        .collect();
+    if !labels.is_empty() {
+        return format!("  ! {}", labels.join(", "));
+    }
+    match (diagnosis.height_m, diagnosis.noise_m) {
+        (Some(height), Some(noise)) => format!("  {height:.2} m ± {:.1} cm", 100.0 * noise),
+        _ => String::new(),
+    }
 }
 
 /// What a session did, at its end.

@@ -5,9 +5,11 @@ mod db;
 mod demo;
 #[cfg(unix)]
 mod documents;
+mod devices;
 mod evaluate;
 mod inspect;
 mod kit;
 mod live;
 mod poses;
+mod record;
 mod smooth;

@@ -12,6 +12,9 @@ use super::performer::{EventOptions, Performer};
 use super::status::Cells;
 use super::{Actor, Frame, MAX_ACTORS, Model, Overload, Recognizer, Rig, wall_now_secs};
 
+/// Frames of a performer after which its diagnosis is renewed: a quarter of a second at 60 Hz.
+const DIAGNOSE_EVERY: u64 = 16;
+
 /// Recognisers ready to be copied, one for each set of bones that has come up.
 #[derive(Debug)]
 pub(super) struct Stock {
@@ -66,6 +69,8 @@ pub(super) struct LaneOptions {
 pub(super) struct Lane {
     feed: FeedReceiver,
     performers: Vec<Performer>,
+    /// Frames that each performer has had.
+    frames: [u64; MAX_ACTORS],
     stock: Arc<Stock>,
     outlets: Outlets,
     cells: Arc<Cells>,
@@ -90,6 +95,7 @@ impl Lane {
         let lane = Self {
             feed,
             performers: (0..MAX_ACTORS).map(performer).collect(),
+            frames: [0; MAX_ACTORS],
             stock: stock.clone(),
             outlets,
             cells: cells.clone(),
@@ -143,6 +149,11 @@ impl Lane {
                 performer.push(frame, &mut |bones| stock.get(bones), &mut |event| {
                     outlets.keep(event)
                 });
+                let frames = &mut self.frames[frame.actor.index()];
+                *frames += 1;
+                if frames.is_multiple_of(DIAGNOSE_EVERY) {
+                    self.cells.diagnosis(frame.actor, performer.diagnosis());
+                }
             }
             None => self.beyond += 1,
         }
@@ -158,6 +169,7 @@ impl Lane {
     fn gone(&mut self, actor: Actor) {
         if let Some(performer) = self.performers.get_mut(actor.index()) {
             performer.finish(&mut |event| self.outlets.keep(event));
+            self.cells.diagnosis(actor, performer.diagnosis());
         }
     }
 

@@ -111,6 +111,8 @@ impl Outlets {
         // A frame settles a few motions at most; the buffer never grows.
         if self.pending.len() < self.pending.capacity() {
             self.pending.push(event);
+        } else {
+            self.cells.dropped_events.fetch_add(1, Relaxed);
         }
     }
 
@@ -147,5 +149,42 @@ impl Outlets {
         self.pending.clear();
         self.outlets.iter().for_each(|outlet| outlet.waker.wake());
         true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::classes::ClassId;
+    use crate::live::{Actor, EventOptions, Phase};
+
+    #[test]
+    fn what_there_is_no_room_for_is_counted() {
+        let options = LaneOptions {
+            events: EventOptions::default(),
+            overload: Overload::Wait,
+            readers: 1,
+            capacity: PENDING,
+        };
+        let (cells, stop) = (Arc::new(Cells::default()), Arc::default());
+        let (mut outlets, mut readers) = Outlets::new(&options, &cells, &stop);
+        let event = Event {
+            phase: Phase::End,
+            motion: 1,
+            sequence: 0,
+            actor: Actor(0),
+            class: ClassId(0),
+            score: 1.0,
+            progress: 1.0,
+            start_secs: 0.0,
+            stop_secs: 1.0,
+            reported_secs: 1.0,
+            wall_secs: 0.0,
+        };
+        (0..PENDING + 3).for_each(|_| outlets.keep(event));
+        assert!(outlets.deliver());
+        let taken = std::iter::from_fn(|| readers[0].pop()).count();
+        let dropped = cells.dropped_events.load(Relaxed);
+        assert_eq!((taken, dropped), (PENDING, 3));
     }
 }

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::diagnosis::{Diagnoser, Diagnosis};
 use crate::features::BoneSet;
 
 use super::early::{Early, Hunch};
@@ -44,6 +45,8 @@ pub struct Performer {
     teller: Teller,
     wall_secs: f64,
     unusable: u64,
+    /// Made with the first skeleton: a performer that never comes needs none.
+    diagnoser: Option<Box<Diagnoser>>,
 }
 
 impl Performer {
@@ -60,6 +63,7 @@ impl Performer {
             early: Early::default(),
             wall_secs: 0.0,
             unusable: 0,
+            diagnoser: None,
         }
     }
 
@@ -68,6 +72,7 @@ impl Performer {
         self.finish(out);
         self.rig = Some(rig.clone());
         self.recognizer = None;
+        self.diagnoser = Some(Box::new(Diagnoser::live()));
         self.reader = PoseReader::new(&self.model, &rig.skeleton, &rig.roles).ok();
     }
 
@@ -86,6 +91,9 @@ impl Performer {
             return;
         };
         let pose = frame.key_pose(rig);
+        if let Some(diagnoser) = &mut self.diagnoser {
+            diagnoser.push(frame.time_secs, frame.wall_secs, &pose);
+        }
         if self.recognizer.is_none() {
             self.recognizer = make(rig.bones(&pose));
         }
@@ -138,6 +146,13 @@ impl Performer {
     /// Motions that were not told because of [`EventOptions::refractory_secs`].
     pub fn suppressed(&self) -> u64 {
         self.teller.suppressed()
+    }
+
+    /// What is known of the stream since its present skeleton was set; `None` before there is one.
+    pub fn diagnosis(&self) -> Option<Diagnosis> {
+        self.diagnoser
+            .as_ref()
+            .map(|diagnoser| diagnoser.diagnosis())
     }
 
     /// What seems to be under way.

@@ -1,10 +1,11 @@
 //! How a session stands, readable at any time by anybody without holding anything up.
 
 use std::array;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
+use std::sync::{Arc, Mutex, PoisonError, TryLockError};
 
 use crate::classes::ClassId;
+use crate::diagnosis::Diagnosis;
 
 use super::waits::{WaitCells, Waits};
 use super::{Actor, Event, Frame, Phase, SourceCounts};
@@ -59,6 +60,8 @@ pub struct ActorStatus {
     pub hunch: Option<(ClassId, f64)>,
     /// The last motion that ended, and its score.
     pub last: Option<(ClassId, f64)>,
+    /// What is known of the stream, renewed every 16 frames.
+    pub diagnosis: Option<Diagnosis>,
 }
 
 /// A handle on a session's status; copies are cheap and may outlive the session.
@@ -99,6 +102,8 @@ struct ActorCells {
     wait: AtomicU64,
     hunch: AtomicU64,
     last: AtomicU64,
+    /// Written with `try_lock` only: recognition never waits for a reader.
+    diagnosis: Mutex<Option<Diagnosis>>,
 }
 
 /// A class and a share of 1 in one word, so that they cannot come apart; 0 is nothing.
@@ -131,6 +136,18 @@ impl Cells {
         cells.time.store(time_secs.to_bits(), Relaxed);
         cells.wall.store(wall_secs.to_bits(), Relaxed);
         cells.wait.store(wait_secs.to_bits(), Relaxed);
+    }
+
+    /// What is known of the stream of `actor`; left out while somebody reads what was known before.
+    pub(super) fn diagnosis(&self, actor: Actor, diagnosis: Option<Diagnosis>) {
+        let Some(cells) = self.actors.get(actor.index()) else {
+            return;
+        };
+        match cells.diagnosis.try_lock() {
+            Ok(mut kept) => *kept = diagnosis,
+            Err(TryLockError::Poisoned(kept)) => *kept.into_inner() = diagnosis,
+            Err(TryLockError::WouldBlock) => {}
+        }
     }
 
     /// An event was said.
@@ -200,6 +217,10 @@ impl Cells {
             wait_secs: bits(&cells.wait),
             hunch: unpack(cells.hunch.load(Relaxed)),
             last: unpack(cells.last.load(Relaxed)),
+            diagnosis: *cells
+                .diagnosis
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner),
         };
         Status {
             frames: self.frames.load(Relaxed),

@@ -9,9 +9,10 @@ const OFFLINE: [&str; 9] = [
 ];
 
 /// Modules of the live path.
-const LIVE: [&str; 7] = [
+const LIVE: [&str; 8] = [
     "live",
     "decode",
+    "diagnosis",
     "features",
     "templates",
     "pivots",

@@ -6,6 +6,7 @@
 mod cases;
 mod conformance;
 mod cuts;
+mod diagnosis;
 mod engines;
 mod for_ever;
 mod golden;

@@ -4,6 +4,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use morec::clip::{Clip, Span};
+use morec::diagnosis::{Diagnosis, Findings, diagnose_clip};
 use morec::formats::Warning;
 use morec::formats::probe::Format;
 use morec::import::{Facts, Imported};
@@ -57,6 +58,15 @@ struct ClipReport {
     #[serde(flatten)]
     facts: Facts,
     repaired: Vec<Span>,
+    diagnosis: Diagnosed,
+}
+
+/// What the clip would be as a stream.
+#[derive(Serialize)]
+struct Diagnosed {
+    #[serde(flatten)]
+    figures: Diagnosis,
+    findings: Findings,
 }
 
 #[derive(Serialize)]
@@ -131,6 +141,7 @@ impl Report {
 impl ClipReport {
     fn new(imported: &Imported) -> Self {
         let Imported { clip, roles, facts } = imported;
+        let figures = diagnose_clip(clip, roles, &facts.rest_frames);
         Self {
             name: clip.name.clone(),
             frames: clip.frames,
@@ -140,6 +151,10 @@ impl ClipReport {
             missing_roles: roles.missing().collect(),
             facts: facts.clone(),
             repaired: clip.repaired.clone(),
+            diagnosis: Diagnosed {
+                figures,
+                findings: figures.findings(),
+            },
         }
     }
 
@@ -169,6 +184,9 @@ impl ClipReport {
                 "stays in place"
             }
         )?;
+        if let Some(noise_m) = self.diagnosis.figures.noise_m {
+            writeln!(out, "  noise      {:.2} cm", 100.0 * noise_m)?;
+        }
         writeln!(out, "  rest pose  {}", self.rest())?;
         if !self.repaired.is_empty() {
             let total: usize = self.repaired.iter().map(Span::len).sum();
@@ -189,6 +207,9 @@ impl ClipReport {
         self.write_joints(out)?;
         for note in &facts.notes {
             writeln!(out, "  note       {note}")?;
+        }
+        for finding in self.diagnosis.findings.iter() {
+            writeln!(out, "  {:<10} {finding}", finding.severity().to_string())?;
         }
         Ok(())
     }
@@ -228,6 +249,9 @@ impl ClipReport {
         )?;
         for note in &self.facts.notes {
             writeln!(out, "  note: {note}")?;
+        }
+        for finding in self.diagnosis.findings.iter() {
+            writeln!(out, "  {}: {finding}", finding.severity())?;
         }
         Ok(())
     }

@@ -2,7 +2,7 @@
 
 use super::humanoid::{bone_of_name, mirrored};
 use crate::live::osc::{Arg, Message};
-use crate::math::{Quat, Vec3};
+use crate::math::{Quat, Vec3, rotation_of_xyzw};
 
 /// A message that concerns recognition.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,9 +78,7 @@ pub fn position_of_unity(p: Vec3) -> Option<Vec3> {
 
 /// A rotation `x y z w` from Unity's axes: the axis' Z turns round, and so does the sense of turning.
 pub fn rotation_of_unity([x, y, z, w]: [f64; 4]) -> Option<Quat> {
-    let q = nalgebra::Quaternion::new(-w, x, y, -z);
-    let length = q.norm();
-    (length.is_finite() && length > 1e-6).then(|| Quat::new_normalize(q))
+    rotation_of_xyzw([x, y, -z, -w])
 }
 
 /// A rotation to Unity's axes, `x y z w`.

@@ -1,0 +1,199 @@
+//! What is known of a recogniser's stream: figures, and what is wrong with it in words.
+
+use std::ffi::c_char;
+
+use morec::diagnosis::{Diagnosis, Finding, Severity};
+
+use crate::handles::{self, MorecRecognizer};
+use crate::memory::{self, Versioned};
+use crate::status::{Error, MorecStatus, guard};
+
+/// Something that is wrong with a stream, or worth knowing of it: one bit each, the same in every release.
+#[repr(u32)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MorecFinding {
+    /// Frames show no body.
+    Nobody = 1 << 0,
+    /// Times are not seconds.
+    TimeUnit = 1 << 1,
+    /// Times do not go on.
+    TimeStands = 1 << 2,
+    /// The hip joints are never seen.
+    NoHeading = 1 << 3,
+    /// Y points down.
+    UpsideDown = 1 << 4,
+    /// Another axis than Y is up.
+    UpIsNotY = 1 << 5,
+    /// A standing body is not upright.
+    Tilted = 1 << 6,
+    /// Left and right are exchanged, or the coordinates are of the other hand.
+    SidesExchanged = 1 << 7,
+    /// Nothing moves at all.
+    Frozen = 1 << 8,
+    /// Parts of the body are never seen.
+    JointsMissing = 1 << 9,
+    /// Parts of the body come and go.
+    JointsFlicker = 1 << 10,
+    /// The size of the body is none in any common unit.
+    UnknownUnit = 1 << 11,
+    /// Positions jitter.
+    Noisy = 1 << 12,
+    /// Joints are thrown aside in single frames.
+    Spikes = 1 << 13,
+    /// Few frames a second.
+    SlowRate = 1 << 14,
+    /// Frames are missing.
+    FramesLost = 1 << 15,
+    /// Frames repeat the one before.
+    FramesRepeated = 1 << 16,
+    /// Frames come unevenly.
+    UnevenArrival = 1 << 17,
+    /// The feet never stand: the body glides.
+    MovingFloor = 1 << 18,
+    /// The hips do not move while the hands do.
+    HipsFixed = 1 << 19,
+}
+
+/// How much the gravest finding matters.
+#[repr(i32)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MorecSeverity {
+    /// Nothing was found.
+    None = 0,
+    /// Good to know; recognition works.
+    Info = 1,
+    /// Recognition works less well.
+    Warning = 2,
+    /// Nothing can be recognised in this stream.
+    Error = 3,
+}
+
+/// What is known of a stream. A figure that is not known is NaN. Lengths are metres by a guess of the stream's unit.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MorecDiagnosis {
+    /// Set to `sizeof(MorecDiagnosis)` before the call.
+    pub struct_size: usize,
+    /// Frames looked at.
+    pub frames: u64,
+    /// `MorecFinding` bits; 0 until there is about a second of stream.
+    pub findings: u32,
+    /// A `MorecSeverity`: of the gravest finding.
+    pub severity: i32,
+    /// Bit `r` for each `MorecRole` `r` that is never seen.
+    pub missing_roles: u32,
+    /// Bit `r` for each `MorecRole` `r` that is seen only at times.
+    pub flickering_roles: u32,
+    /// From the first frame to the last.
+    pub secs: f64,
+    /// Frames a second.
+    pub rate_hz: f64,
+    /// Half the range of nine tenths of the intervals at which frames arrived.
+    pub jitter_secs: f64,
+    /// Share of the frames that were due and did not come.
+    pub lost_share: f64,
+    /// Share of the frames that repeat the one before.
+    pub repeated_share: f64,
+    /// Share of the frames that show no body.
+    pub empty_share: f64,
+    /// From the ankles to the head joint along the bones.
+    pub height_m: f64,
+    /// Thigh and shin.
+    pub leg_m: f64,
+    /// Angle of a standing body, or of the trunk, with the vertical, radians.
+    pub tilt_rad: f64,
+    /// Standard deviation of fast noise on each coordinate.
+    pub noise_m: f64,
+    /// Share of the frames in which a joint is thrown aside.
+    pub spike_share: f64,
+}
+
+// SAFETY: repr(C), begins with its size, numbers only.
+unsafe impl Versioned for MorecDiagnosis {
+    const NAME: &'static str = "MorecDiagnosis";
+    const FIRST_SIZE: usize = size_of::<Self>();
+}
+
+impl From<&Diagnosis> for MorecDiagnosis {
+    fn from(d: &Diagnosis) -> Self {
+        let findings = d.findings();
+        let severity = match findings.worst().map(Finding::severity) {
+            None => MorecSeverity::None,
+            Some(Severity::Info) => MorecSeverity::Info,
+            Some(Severity::Warning) => MorecSeverity::Warning,
+            Some(Severity::Error) => MorecSeverity::Error,
+        };
+        Self {
+            struct_size: 0,
+            frames: d.frames,
+            findings: findings.bits(),
+            severity: severity as i32,
+            missing_roles: d.missing.bits(),
+            flickering_roles: d.flickering.bits(),
+            secs: d.secs,
+            rate_hz: d.rate_hz.unwrap_or(f64::NAN),
+            jitter_secs: d.jitter_secs.unwrap_or(f64::NAN),
+            lost_share: d.lost_share,
+            repeated_share: d.repeated_share,
+            empty_share: d.empty_share,
+            height_m: d.height_m.unwrap_or(f64::NAN),
+            leg_m: d.leg_m.unwrap_or(f64::NAN),
+            tilt_rad: d.tilt_rad.unwrap_or(f64::NAN),
+            noise_m: d.noise_m.unwrap_or(f64::NAN),
+            spike_share: d.spike_share,
+        }
+    }
+}
+
+/// Fills in `*diagnosis`, whose `struct_size` must be set, with what is known of the stream so far. Takes no memory.
+///
+/// # Safety
+/// `diagnosis` is null or points to a struct of the size it says.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn morec_recognizer_diagnosis(
+    recognizer: *const MorecRecognizer,
+    diagnosis: *mut MorecDiagnosis,
+) -> MorecStatus {
+    guard(|| {
+        let known = handles::find(recognizer)?.diagnosis()?;
+        // SAFETY: as promised to this function.
+        unsafe { memory::write_struct(diagnosis, &MorecDiagnosis::from(&known)) }
+    })
+}
+
+/// Puts what is wrong with the stream into the `size` bytes at `buffer`, a sentence with what to do on each line, the
+/// gravest first, with a zero at the end; an empty text if nothing is. If `needed` is not null, the bytes that takes are
+/// put there. With too little room the text is cut and the status `MOREC_STATUS_BUFFER_TOO_SMALL`.
+///
+/// # Safety
+/// `buffer` is null or may be written to for `size` bytes; `needed` is null or may be written to.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn morec_recognizer_diagnosis_text(
+    recognizer: *const MorecRecognizer,
+    buffer: *mut c_char,
+    size: usize,
+    needed: *mut usize,
+) -> MorecStatus {
+    guard(|| {
+        let known = handles::find(recognizer)?.diagnosis()?;
+        let lines: Vec<String> = known
+            .findings()
+            .iter()
+            .map(|finding| format!("{}: {finding}", finding.severity()))
+            .collect();
+        let text = lines.join("\n");
+        if !needed.is_null() {
+            // SAFETY: as promised to this function.
+            unsafe { memory::put(needed, text.len() + 1, "needed") }?;
+        }
+        // SAFETY: as promised to this function.
+        if unsafe { memory::write_text(buffer, size, &text) }? {
+            return Ok(());
+        }
+        let text = format!(
+            "the text takes {} bytes, the buffer has {size}",
+            text.len() + 1
+        );
+        Err(Error::new(MorecStatus::BufferTooSmall, text))
+    })
+}

@@ -1,0 +1,115 @@
+//! `morec record`: what a tracker shows, as clips.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::{Result, bail};
+use morec::diagnosis::{Diagnoser, Severity};
+use morec::live::Recording;
+
+use crate::interrupt::stop_on_ctrl_c;
+use crate::live::address::Address;
+use crate::live::keep::Store;
+use crate::live::open::TrackerArgs;
+use crate::live::takes::{Ended, Stage, TakeArgs, secs};
+
+/// Record takes from a tracker, for `morec train --clips` and everything else that reads clips.
+///
+/// Each take begins after a countdown and a bell, and ends with a bell: after --secs of stream, with Enter, when the
+/// performer goes or the source ends, or with Ctrl-C. What was recorded until then is kept.
+///
+/// Sources (--listen) are those of `morec live`.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Exit codes: 0 every take that was recorded is kept; 1 nothing was recorded, or something cannot be opened or \
+    written; 2 wrong command line.\n\n\
+    Examples:\n  \
+    morec record --listen vmc://0.0.0.0:39539 -o take.bvh\n  \
+    morec record --listen vmc://0.0.0.0:39539 -o wave.bvh --takes 3 --secs 4    # wave_1.bvh …\n  \
+    morec record --listen json:- -o take.jsonl --count-down 0 < poses.jsonl"
+)]
+pub struct Args {
+    /// Where poses come from
+    #[arg(long, value_name = "SOURCE")]
+    listen: Address,
+    /// Where takes go, by the ending: .bvh, .jsonl (lines of JSON as `morec live` reads them), or .mdb, a database (the
+    /// takes are kept beside it, too). Several takes are numbered
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    /// Record so many takes, one after the other
+    #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u32).range(1..=9999))]
+    takes: u32,
+    /// End a take after so many seconds of stream
+    #[arg(long, value_name = "SECS", value_parser = secs)]
+    secs: Option<f64>,
+    /// Write over files that are there
+    #[arg(long)]
+    overwrite: bool,
+    #[command(flatten)]
+    take: TakeArgs,
+    #[command(flatten)]
+    tracker: TrackerArgs,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<ExitCode> {
+    let store = Store::of(&args.output)?;
+    let files: Vec<PathBuf> = (1..=args.takes)
+        .map(|n| store.file(n, args.takes))
+        .collect();
+    if let Some(there) = files.iter().find(|file| file.exists() && !args.overwrite) {
+        bail!(
+            "{}: is there already (--overwrite writes over it)",
+            there.display()
+        );
+    }
+    let opened = args.tracker.open(&args.listen, None)?;
+    let mut stage = Stage::new(opened, &args.take, stop_on_ctrl_c()?);
+    stage.check_end(args.secs)?;
+    let mut kept = 0;
+    for number in 1..=args.takes {
+        let what = format!("take {number} of {}", args.takes);
+        let (recording, ended) = stage.take(&what, args.secs);
+        match recording {
+            Some(recording) => {
+                // By now others may have been kept.
+                let file = store.file(number, args.takes);
+                store.keep(&recording, &file)?;
+                kept += 1;
+                eprintln!(
+                    "morec: {}: {:.1} s, {} frames",
+                    file.display(),
+                    recording.secs(),
+                    recording.frames().len()
+                );
+                warn(&recording);
+            }
+            None => eprintln!("morec: {what}: nothing was recorded"),
+        }
+        if matches!(ended, Ended::Source | Ended::Stopped) {
+            break;
+        }
+    }
+    Ok(if kept > 0 {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    })
+}
+
+/// Says what is wrong with a take.
+pub fn warn(recording: &Recording) {
+    let mut diagnoser = Diagnoser::whole();
+    for frame in recording.frames() {
+        diagnoser.push(
+            frame.time_secs,
+            frame.wall_secs,
+            &frame.key_pose(recording.rig()),
+        );
+    }
+    let findings = diagnoser.diagnosis().findings();
+    findings
+        .iter()
+        .filter(|finding| finding.severity() >= Severity::Warning)
+        .for_each(|finding| eprintln!("morec:   {}: {finding}", finding.severity()));
+}

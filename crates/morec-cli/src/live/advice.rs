@@ -1,0 +1,186 @@
+//! What is wrong with streams, said once each as soon as it is known.
+
+use std::time::{Duration, Instant};
+
+use morec::diagnosis::{Finding, Severity};
+use morec::live::{MAX_ACTORS, Status};
+
+/// Nothing has come in so long: say so.
+const SILENCE: Duration = Duration::from_secs(2);
+/// Between two looks.
+const EVERY: Duration = Duration::from_millis(200);
+
+/// What one source has been found to be.
+struct Source {
+    name: String,
+    /// Bits of the findings of each performer that were there at the last look, and of those that were said.
+    seen: [u32; MAX_ACTORS],
+    said: [u32; MAX_ACTORS],
+    silence_said: bool,
+}
+
+/// Says findings of sources, each once.
+pub struct Advice {
+    sources: Vec<Source>,
+    begun: Instant,
+    looked: Instant,
+}
+
+impl Advice {
+    /// For sources of these names.
+    pub fn new(names: impl IntoIterator<Item = String>) -> Self {
+        let source = |name| Source {
+            name,
+            seen: [0; MAX_ACTORS],
+            said: [0; MAX_ACTORS],
+            silence_said: false,
+        };
+        let now = Instant::now();
+        Self {
+            sources: names.into_iter().map(source).collect(),
+            begun: now,
+            looked: now,
+        }
+    }
+
+    /// What is new in the sources' statuses, in their order. What only one look has shown waits for the next.
+    pub fn look(&mut self, statuses: &[Status]) -> Vec<String> {
+        let mut lines = Vec::new();
+        if self.looked.elapsed() < EVERY {
+            return lines;
+        }
+        self.looked = Instant::now();
+        let silent = self.begun.elapsed() >= SILENCE;
+        for (source, status) in self.sources.iter_mut().zip(statuses) {
+            if silent && status.frames == 0 && !source.silence_said && !status.ended {
+                source.silence_said = true;
+                lines.push(format!("{}: {}", source.name, silence(status)));
+            }
+            source.look(status, &mut lines);
+        }
+        lines
+    }
+}
+
+impl Source {
+    fn look(&mut self, status: &Status, lines: &mut Vec<String>) {
+        for actor in &status.actors {
+            let Some(diagnosis) = actor.diagnosis else {
+                continue;
+            };
+            let at = actor.actor.index();
+            let findings = diagnosis.findings();
+            for finding in findings.iter().filter(|finding| matters(finding)) {
+                let bit = finding.bit();
+                if self.seen[at] & bit != 0 && self.said[at] & bit == 0 {
+                    self.said[at] |= bit;
+                    lines.push(format!("{}: {}", who(&self.name, at), sentence(finding)));
+                }
+            }
+            self.seen[at] = findings.bits();
+        }
+    }
+}
+
+fn matters(finding: &Finding) -> bool {
+    finding.severity() >= Severity::Warning
+}
+
+fn sentence(finding: &Finding) -> String {
+    format!("{}: {finding}", finding.severity())
+}
+
+fn who(source: &str, actor: usize) -> String {
+    match actor {
+        0 => source.to_owned(),
+        actor => format!("{source}, performer {actor}"),
+    }
+}
+
+/// Why nobody is seen at a source that has given no frame.
+fn silence(status: &Status) -> String {
+    let counts = &status.source;
+    if counts.packets == 0 {
+        "nothing has arrived yet: is the tracker sending, and to this address and port? (a firewall may be in the way)".to_owned()
+    } else if counts.not_motion > 0 {
+        "only a rest pose arrives: the tracker has started but does not see anybody (--keep-t-pose if somebody stands like that)".to_owned()
+    } else if counts.malformed * 2 > counts.packets {
+        "what arrives cannot be understood: is this the right protocol for this sender?".to_owned()
+    } else {
+        "something arrives, but no pose: switch on the sending of bones in the tracker".to_owned()
+    }
+}
+
+/// Everything found of a source, a sentence each, for the end of a session.
+pub fn of_status(status: &Status) -> Vec<String> {
+    let mut lines = Vec::new();
+    if status.frames == 0 {
+        lines.push(silence(status));
+    }
+    for actor in &status.actors {
+        let Some(diagnosis) = actor.diagnosis else {
+            continue;
+        };
+        let name = match actor.actor.index() {
+            0 if status.actors.len() == 1 => "stream".to_owned(),
+            actor => format!("performer {actor}"),
+        };
+        lines.push(format!("{name}: {diagnosis}"));
+        lines.extend(diagnosis.findings().iter().map(sentence));
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use morec::diagnosis::Diagnoser;
+    use morec::features::KeyPose;
+    use morec::live::{Actor, ActorStatus};
+
+    #[test]
+    fn a_finding_is_said_once_when_it_has_lasted_for_two_looks() {
+        let mut diagnoser = Diagnoser::live();
+        for frame in 0..60 {
+            let secs = f64::from(frame) / 30.0;
+            diagnoser.push(secs, secs, &KeyPose::default());
+        }
+        let actor = ActorStatus {
+            actor: Actor(1),
+            frames: 60,
+            time_secs: 2.0,
+            wall_secs: 2.0,
+            wait_secs: 0.0,
+            hunch: None,
+            last: None,
+            diagnosis: Some(diagnoser.diagnosis()),
+        };
+        let status = Status {
+            frames: 60,
+            actors: vec![actor],
+            ..Status::default()
+        };
+        let mut source = Advice::new(["vmc://here".to_owned()]).sources.remove(0);
+        let mut said = Vec::new();
+        source.look(&status, &mut said);
+        assert_eq!(said, [""; 0]);
+        (0..3).for_each(|_| source.look(&status, &mut said));
+        assert_eq!(said.len(), 1, "{said:?}");
+        assert!(
+            said[0].starts_with("vmc://here, performer 1: error: 100 % of the frames show no body")
+        );
+        assert!(of_status(&status)[1].contains("no body"));
+    }
+
+    #[test]
+    fn silence_has_its_reasons() {
+        let mut status = Status::default();
+        assert!(of_status(&status)[0].contains("nothing has arrived"));
+        status.source.packets = 9;
+        assert!(of_status(&status)[0].contains("no pose"));
+        status.source.malformed = 8;
+        assert!(of_status(&status)[0].contains("cannot be understood"));
+        status.source.not_motion = 3;
+        assert!(of_status(&status)[0].contains("rest pose"));
+    }
+}

@@ -1,0 +1,151 @@
+//! Recordings into files: BVH, lines of JSON, or clips of a database.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use morec::formats::bvh;
+use morec::live::Recording;
+use morec::roles::Role;
+use morec_db::{ImportSettings, MotionDb, Outcome};
+use serde_json::{Map, Value, json};
+
+use crate::files::{ReadArgs, write_whole};
+
+/// Where takes go.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Store {
+    /// A BVH file.
+    Bvh(PathBuf),
+    /// Lines of JSON, as live recognition reads them.
+    JsonLines(PathBuf),
+    /// A database; the takes lie in a folder beside it, too.
+    Database(PathBuf),
+}
+
+impl Store {
+    /// By the ending of `path`.
+    pub fn of(path: &Path) -> Result<Self> {
+        let ending = path
+            .extension()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .to_lowercase();
+        Ok(match ending.as_str() {
+            "bvh" => Self::Bvh(path.to_owned()),
+            "jsonl" | "ndjson" => Self::JsonLines(path.to_owned()),
+            "mdb" | "db" | "sqlite" => Self::Database(path.to_owned()),
+            _ => bail!(
+                "{}: expected a file that ends in .bvh, .jsonl or .mdb (a database)",
+                path.display()
+            ),
+        })
+    }
+
+    /// The file of take `number` of `of`, both from 1; the only one has the path as it was given.
+    pub fn file(&self, number: u32, of: u32) -> PathBuf {
+        let numbered = |path: &Path| match of {
+            1 => path.to_owned(),
+            _ => {
+                let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+                let ending = path.extension().unwrap_or_default().to_string_lossy();
+                path.with_file_name(format!("{stem}_{number}.{ending}"))
+            }
+        };
+        match self {
+            Self::Bvh(path) | Self::JsonLines(path) => numbered(path),
+            Self::Database(path) => {
+                let folder = path.with_extension("takes");
+                // Others lie there already.
+                (1..)
+                    .map(|n| folder.join(format!("take_{n:03}.bvh")))
+                    .find(|path| !path.exists())
+                    .unwrap_or_default()
+            }
+        }
+    }
+
+    /// Writes a take into `file`; into the database as well, if it is one.
+    pub fn keep(&self, recording: &Recording, file: &Path) -> Result<()> {
+        match self {
+            Self::JsonLines(_) => write_lines(recording, file),
+            Self::Bvh(_) => write_bvh(recording, file),
+            Self::Database(path) => {
+                if let Some(folder) = file.parent() {
+                    std::fs::create_dir_all(folder)
+                        .with_context(|| folder.display().to_string())?;
+                }
+                write_bvh(recording, file)?;
+                import(path, file)
+            }
+        }
+    }
+}
+
+/// Writes a recording as BVH, whole or not at all.
+pub fn write_bvh(recording: &Recording, file: &Path) -> Result<()> {
+    let name = file.file_stem().unwrap_or_default().to_string_lossy();
+    let clip = recording
+        .to_clip(&name)
+        .with_context(|| file.display().to_string())?;
+    write_whole(file, |out| bvh::write(&clip, out)).with_context(|| file.display().to_string())
+}
+
+fn write_lines(recording: &Recording, file: &Path) -> Result<()> {
+    write_whole(file, |out| lines(recording, out)).with_context(|| file.display().to_string())
+}
+
+/// A line for each frame, its time from the first.
+fn lines(recording: &Recording, out: &mut dyn Write) -> std::io::Result<()> {
+    let rig = recording.rig();
+    let begun_secs = recording
+        .frames()
+        .first()
+        .map_or(0.0, |frame| frame.time_secs);
+    for frame in recording.frames() {
+        let pose = frame.key_pose(rig);
+        let mut positions = Map::new();
+        for role in Role::ALL {
+            if let Some(place) = pose.get(role) {
+                let place = [place.x, place.y, place.z].map(|c| rounded(c, 1e6));
+                positions.insert(role.name().to_owned(), json!(place));
+            }
+        }
+        if positions.is_empty() {
+            continue;
+        }
+        let secs = rounded(frame.time_secs - begun_secs, 1e6);
+        let (actor, positions) = (frame.actor.0, Value::Object(positions));
+        writeln!(
+            out,
+            r#"{{"t": {secs}, "actor": {actor}, "positions": {positions}}}"#
+        )?;
+    }
+    Ok(())
+}
+
+fn rounded(value: f64, steps: f64) -> f64 {
+    (value * steps).round() / steps
+}
+
+fn import(database: &Path, file: &Path) -> Result<()> {
+    let mut db = if database.exists() {
+        MotionDb::open(database)?
+    } else {
+        MotionDb::create(database)?
+    };
+    let (reader, settings) = (ReadArgs::default(), ImportSettings::default());
+    let report = db.import(&[file.to_owned()], &reader.reader(), &settings, &())?;
+    for (_, outcome) in &report.files {
+        match outcome {
+            Outcome::Refused(refused) => bail!("{}: {}", file.display(), refused.reason),
+            Outcome::Copy { of } => eprintln!(
+                "morec: {}: has the same take already, from {}",
+                database.display(),
+                of.display()
+            ),
+            Outcome::Imported { .. } | Outcome::Known => {}
+        }
+    }
+    Ok(())
+}

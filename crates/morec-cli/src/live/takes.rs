@@ -1,0 +1,250 @@
+//! Takes: countdown, bell, what a performer does until a time is over, bell.
+
+use std::io::{BufRead, IsTerminal, Write};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::time::Instant;
+
+use anyhow::{Result, bail};
+use morec::live::{Actor, Frame, MAX_ACTORS, Next, Recording, Rig};
+
+use super::open::Opened;
+
+/// A take that is shorter than this is none, seconds.
+pub const SHORTEST_SECS: f64 = 0.3;
+
+/// What can be said of takes.
+#[derive(clap::Args, Debug)]
+pub struct TakeArgs {
+    /// Count down so many seconds before each take
+    #[arg(long, value_name = "SECS", default_value = "3", value_parser = secs)]
+    pub count_down: f64,
+    /// Which performer of the source, from 0
+    #[arg(long, value_name = "N", default_value = "0", value_parser = clap::value_parser!(u16).range(..MAX_ACTORS as i64))]
+    pub performer: u16,
+    /// No bell at the beginning and the end of a take
+    #[arg(long)]
+    pub no_bell: bool,
+}
+
+/// Seconds as they are typed, 0 or more.
+pub fn secs(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(secs) if (0.0..=1e9).contains(&secs) => Ok(secs),
+        _ => Err("expected seconds, 0 or more".to_owned()),
+    }
+}
+
+/// Why a take ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ended {
+    /// Its time was over.
+    Time,
+    /// Somebody pressed Enter.
+    Key,
+    /// The performer has gone, or another skeleton has come.
+    Gone,
+    /// The source has ended.
+    Source,
+    /// Ctrl-C.
+    Stopped,
+}
+
+/// A source before which somebody performs.
+pub struct Stage {
+    opened: Opened,
+    actor: Actor,
+    bell: bool,
+    count_down_secs: f64,
+    stop: Arc<AtomicBool>,
+    rig: Option<Arc<Rig>>,
+    frame: Frame,
+    ended: bool,
+    keys: Option<Receiver<String>>,
+}
+
+impl Stage {
+    /// Before `opened`. `stop` is set when somebody wants it all to end.
+    pub fn new(opened: Opened, args: &TakeArgs, stop: Arc<AtomicBool>) -> Self {
+        // Poses on standard input leave no room for anybody's words.
+        let keys = (!opened.name.starts_with("json:")).then(typed);
+        Self {
+            opened,
+            actor: Actor(args.performer),
+            bell: !args.no_bell,
+            count_down_secs: args.count_down,
+            stop,
+            rig: None,
+            frame: Frame::default(),
+            ended: false,
+            keys,
+        }
+    }
+
+    /// Whether nothing more will come, or is wanted.
+    pub fn is_over(&self) -> bool {
+        self.ended || self.stop.load(Ordering::Relaxed)
+    }
+
+    /// Whether somebody can type something.
+    pub fn has_keys(&self) -> bool {
+        self.keys.is_some()
+    }
+
+    /// The line that was typed last, if one was. `None` for ever once input has ended.
+    pub fn typed(&mut self) -> Option<String> {
+        match self.keys.as_ref()?.try_recv() {
+            Ok(line) => Some(line),
+            Err(TryRecvError::Empty) => None,
+            Err(TryRecvError::Disconnected) => {
+                self.keys = None;
+                None
+            }
+        }
+    }
+
+    /// The next thing that the source has, of whichever performer, and the frame if it is one.
+    pub fn next(&mut self) -> (Next, &Frame) {
+        let next = self.opened.source.next(&mut self.frame);
+        match &next {
+            Next::Rig(actor, rig) if *actor == self.actor => self.rig = Some(rig.clone()),
+            Next::Ended => self.ended = true,
+            _ => {}
+        }
+        for text in self.opened.complaints.take() {
+            eprintln!("morec: {}: {text}", self.opened.name);
+        }
+        (next, &self.frame)
+    }
+
+    /// The skeleton of the performer who is watched.
+    pub fn rig(&self) -> Option<&Arc<Rig>> {
+        self.rig.as_ref()
+    }
+
+    /// Who is watched.
+    pub fn actor(&self) -> Actor {
+        self.actor
+    }
+
+    /// What the source is called.
+    pub fn name(&self) -> &str {
+        &self.opened.name
+    }
+
+    /// Counts down. Time passes as fast as the clock on the wall or as the stream, whichever is faster: a file has no
+    /// need to wait.
+    fn count_down(&mut self, what: &str) {
+        let (begun, mut first_secs) = (Instant::now(), None);
+        let mut said = f64::INFINITY;
+        while !self.is_over() {
+            let streamed = first_secs.map_or(0.0, |first: f64| self.frame.time_secs - first);
+            let left = self.count_down_secs - streamed.max(begun.elapsed().as_secs_f64());
+            if left <= 0.0 {
+                return;
+            }
+            if left.ceil() < said {
+                said = left.ceil();
+                eprintln!("morec: {what} in {said} …");
+            }
+            let actor = self.actor;
+            if let (Next::Frame, frame) = self.next()
+                && frame.actor == actor
+                && first_secs.is_none()
+            {
+                first_secs = Some(frame.time_secs);
+            }
+        }
+    }
+
+    /// Counts down and records until `secs` of stream have passed, if that is said, or one of the other ends of a take.
+    /// `None` if there was nothing to record before the end.
+    pub fn take(&mut self, what: &str, secs: Option<f64>) -> (Option<Recording>, Ended) {
+        self.count_down(what);
+        // What was typed before does not end it.
+        while self.typed().is_some() {}
+        self.ring();
+        eprintln!("morec: {what}: go!");
+        let (recording, ended) = self.record(secs);
+        self.ring();
+        let recording = recording.filter(|recording| recording.secs() >= SHORTEST_SECS);
+        (recording, ended)
+    }
+
+    fn record(&mut self, secs: Option<f64>) -> (Option<Recording>, Ended) {
+        let actor = self.actor;
+        let mut recording = self.rig.as_ref().map(Recording::new);
+        loop {
+            if self.stop.load(Ordering::Relaxed) {
+                return (recording, Ended::Stopped);
+            }
+            if self.typed().is_some() {
+                return (recording, Ended::Key);
+            }
+            match self.next() {
+                (Next::Frame, frame) if frame.actor == actor => {
+                    if let Some(recording) = &mut recording {
+                        recording.push(frame);
+                    }
+                }
+                (Next::Rig(of, rig), _) if of == actor => {
+                    let known = recording.get_or_insert_with(|| Recording::new(&rig));
+                    if !known.set_rig(&rig) {
+                        return (recording, Ended::Gone);
+                    }
+                }
+                (Next::Gone(of), _)
+                    if of == actor
+                        && recording.as_ref().is_some_and(|r| !r.frames().is_empty()) =>
+                {
+                    return (recording, Ended::Gone);
+                }
+                (Next::Ended, _) => return (recording, Ended::Source),
+                _ => {}
+            }
+            let passed = recording.as_ref().map_or(0.0, Recording::secs);
+            if secs.is_some_and(|secs| passed >= secs) {
+                return (recording, Ended::Time);
+            }
+        }
+    }
+
+    fn ring(&self) {
+        if self.bell {
+            eprint!("\x07");
+            // If nobody hears it, nothing is lost.
+            let _ = std::io::stderr().flush();
+        }
+    }
+
+    /// Fails if there is no way to say when a take is over.
+    pub fn check_end(&self, secs: Option<f64>) -> Result<()> {
+        if secs.is_none() && self.has_keys() && !std::io::stdin().is_terminal() {
+            // Takes end with the source or with Ctrl-C.
+            return Ok(());
+        }
+        if secs == Some(0.0) {
+            bail!("--secs 0: expected more");
+        }
+        Ok(())
+    }
+}
+
+/// Lines of standard input, as they are typed.
+fn typed() -> Receiver<String> {
+    let (sender, lines) = channel();
+    let job = move || {
+        for line in std::io::stdin().lock().lines() {
+            let Ok(line) = line else { return };
+            if sender.send(line).is_err() {
+                return;
+            }
+        }
+    };
+    // Out of threads: nobody can type anything, and --secs or Ctrl-C end a take.
+    let _ = std::thread::Builder::new()
+        .name("what is typed".to_owned())
+        .spawn(job);
+    lines
+}

@@ -1,0 +1,78 @@
+//! Real clips of people before calibrated devices: a warning or an error in one is a false one.
+
+use std::path::Path;
+
+use morec::diagnosis::{Diagnoser, Finding, Severity, diagnose_clip};
+use morec::features::for_each_pose;
+use morec::formats::{Limits, bvh};
+use morec::import::{ImportOptions, Imported, prepare};
+
+use crate::kit::data;
+
+fn clips(folder: &Path) -> Vec<Imported> {
+    let mut paths: Vec<_> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|ext| ext == "bvh"))
+        .collect();
+    paths.sort();
+    let read = |path: &std::path::PathBuf| {
+        let name = path.file_stem().unwrap().to_string_lossy();
+        let bytes = std::fs::read(path).unwrap();
+        let loaded = bvh::read(&bytes, &name, &Default::default(), &Limits::default()).unwrap();
+        prepare(
+            loaded.clips.into_iter().next().unwrap(),
+            &ImportOptions::default(),
+        )
+        .unwrap()
+    };
+    paths.iter().map(read).collect()
+}
+
+fn matters(finding: &&Finding) -> bool {
+    finding.severity() >= Severity::Warning
+}
+
+#[test]
+fn real_clips_give_no_false_finding() {
+    let Some(data) = data() else { return };
+    let (mut clips_seen, mut moments, mut mirrored, mut false_ones) = (0, 0, 0, Vec::new());
+    for set in ["referee", "gestures", "sessions", "everyday"] {
+        for imported in clips(&data.join(set).join("clips")) {
+            let Imported { clip, roles, facts } = &imported;
+            let whole = diagnose_clip(clip, roles, &facts.rest_frames);
+            clips_seen += 1;
+            // The mirror image of a clip has the opposite of its evidence, and is reported by it.
+            mirrored += usize::from(whole.sides.sum().is_some_and(|sum| sum > 0.08));
+            for finding in whole.findings().iter().filter(matters) {
+                false_ones.push(format!("{set}/{}: {finding}", clip.name));
+            }
+            // And at every moment of it as a live stream.
+            let (mut diagnoser, mut said) = (Diagnoser::live(), 0);
+            for_each_pose(clip, roles, &facts.rest_frames, |secs, pose| {
+                diagnoser.push(secs, secs, pose);
+                if !diagnoser.frames().is_multiple_of(16) {
+                    return;
+                }
+                moments += 1;
+                let findings = diagnoser.diagnosis().findings();
+                for finding in findings.iter().filter(matters) {
+                    if said & finding.bit() == 0 {
+                        false_ones.push(format!("{set}/{} at {secs:.2} s: {finding}", clip.name));
+                    }
+                    said |= finding.bit();
+                }
+            });
+        }
+    }
+    eprintln!(
+        "{clips_seen} clips, {moments} moments of streams, {} false findings; the mirror images of {mirrored} clips are reported",
+        false_ones.len()
+    );
+    assert!(clips_seen >= 795, "{clips_seen} clips");
+    assert!(
+        mirrored * 100 >= clips_seen * 95,
+        "{mirrored} of {clips_seen}"
+    );
+    assert!(false_ones.is_empty(), "{false_ones:#?}");
+}
