@@ -4,9 +4,15 @@
 //! cannot is refused with a [`ParseError`] that says where, what was expected and what was found.
 
 pub mod acclaim;
+mod builder;
 pub mod bvh;
+mod keys;
+#[cfg(test)]
+mod mangle;
 pub mod mclip;
+pub mod mvnx;
 pub mod probe;
+mod scene;
 
 use std::fmt;
 
