@@ -32,11 +32,6 @@ impl ClipBuilder {
         }
     }
 
-    /// Number of frames so far.
-    pub(super) fn frames(&self) -> usize {
-        self.frames
-    }
-
     /// Adds a frame of rotations and positions in the world. O(joints).
     pub(super) fn push_world(&mut self, rotations: &[Quat], positions: &[Vec3]) {
         for (j, joint) in self.joints.iter().enumerate() {

@@ -9,6 +9,7 @@ pub mod bvh;
 mod keys;
 #[cfg(test)]
 mod mangle;
+pub mod gltf;
 pub mod mclip;
 pub mod mvnx;
 pub mod probe;

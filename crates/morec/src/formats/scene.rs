@@ -41,6 +41,8 @@ pub(super) struct Rig {
     joints: Vec<(usize, Option<usize>)>,
     /// The joints' nodes and all nodes above them, parents first.
     needed: Vec<usize>,
+    /// The same in order of their numbers.
+    sorted: Vec<usize>,
 }
 
 impl Rig {
@@ -54,9 +56,9 @@ impl Rig {
         self.joints.len()
     }
 
-    /// Nodes that move the joints: they themselves and all above them.
-    pub(super) fn moved_by(&self) -> &[usize] {
-        &self.needed
+    /// Whether a node moves the joints: is one of them or above one. O(log nodes).
+    pub(super) fn moved_by(&self, node: usize) -> bool {
+        self.sorted.binary_search(&node).is_ok()
     }
 
     /// The root's node.
@@ -130,6 +132,7 @@ pub(super) fn rigs(nodes: &[Node], order: &[usize]) -> Vec<Rig> {
                 rigs.push(Rig {
                     joints: Vec::new(),
                     needed: Vec::new(),
+                    sorted: Vec::new(),
                 });
                 (rigs.len() - 1, None)
             }
@@ -137,16 +140,23 @@ pub(super) fn rigs(nodes: &[Node], order: &[usize]) -> Vec<Rig> {
         nearest[n] = Some((rig, rigs[rig].joints.len()));
         rigs[rig].joints.push((n, parent));
     }
-    for rig in &mut rigs {
-        let mut needed = vec![false; nodes.len()];
+    let mut place = vec![0; nodes.len()];
+    for (at, &n) in order.iter().enumerate() {
+        place[n] = at;
+    }
+    let mut seen_for = vec![usize::MAX; nodes.len()];
+    for (number, rig) in rigs.iter_mut().enumerate() {
         for &(node, _) in &rig.joints {
             let mut at = Some(node);
-            while let Some(n) = at.filter(|&n| !needed[n]) {
-                needed[n] = true;
+            while let Some(n) = at.filter(|&n| seen_for[n] != number) {
+                seen_for[n] = number;
+                rig.needed.push(n);
                 at = nodes[n].parent;
             }
         }
-        rig.needed = order.iter().copied().filter(|&n| needed[n]).collect();
+        rig.sorted = rig.needed.clone();
+        rig.sorted.sort_unstable();
+        rig.needed.sort_unstable_by_key(|&n| place[n]);
     }
     rigs
 }
