@@ -9,6 +9,8 @@ pub mod bvh;
 mod keys;
 #[cfg(test)]
 mod mangle;
+#[cfg(feature = "fbx")]
+pub mod fbx;
 pub mod gltf;
 pub mod mclip;
 pub mod mvnx;

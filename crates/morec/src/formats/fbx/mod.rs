@@ -88,17 +88,32 @@ fn load(bytes: &[u8], limits: &Limits) -> Result<ufbx::SceneRoot, ParseError> {
     options.temp_allocator.memory_limit = memory;
     options.result_allocator.memory_limit = memory;
     ufbx::load_memory(bytes, options).map_err(|error| {
-        let info = error.info().trim();
+        // Not its `info`, which may be no UTF-8 and then panics.
         let what: &str = &error.description;
-        let found = match (error.type_, info) {
-            (ufbx::ErrorType::UnsupportedVersion, _) => {
-                format!("FBX of version {info}, older than can be read; save it as FBX 2014 or newer")
+        let found = match (error.type_, version(bytes)) {
+            (ufbx::ErrorType::UnsupportedVersion, Some(version)) => {
+                format!("FBX {version}, which cannot be read; save it as FBX 2014 or newer")
             }
-            (_, "") => format!("FBX that cannot be read: {what}"),
-            _ => format!("FBX that cannot be read: {what} ({info})"),
+            _ => format!("FBX that cannot be read: {what}"),
         };
         ParseError::new(Place::File, "FBX of version 3.0 to 7.7", found)
     })
+}
+
+/// The version that a file states, as `7.4`.
+fn version(bytes: &[u8]) -> Option<String> {
+    let number = match bytes.strip_prefix(b"Kaydara FBX Binary  \0\x1a\0") {
+        Some(rest) => u32::from_le_bytes(rest.get(..4)?.try_into().ok()?),
+        None => {
+            let head = String::from_utf8_lossy(&bytes[..bytes.len().min(4096)]);
+            let digits = head.split_once("FBXVersion:")?.1.trim_start();
+            let end = digits
+                .find(|c: char| !c.is_ascii_digit())
+                .unwrap_or(digits.len());
+            digits[..end].parse().ok()?
+        }
+    };
+    Some(format!("{}.{}", number / 1000, number % 1000 / 100))
 }
 
 /// The nodes; a node's number is its place in `fbx.nodes`.

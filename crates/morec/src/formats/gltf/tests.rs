@@ -232,7 +232,7 @@ fn real_vrm_animations_are_people() {
     assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
     let clip = loaded.clips.into_iter().next().unwrap();
     let imported = prepare(clip, &ImportOptions::default()).unwrap();
-    assert_eq!(imported.facts.unit, Some("cm"));
+    assert_eq!(imported.facts.unit, Some("m"));
     assert_eq!(imported.facts.up.to_string(), "y");
     assert_eq!(imported.roles.missing().count(), 0);
     assert_eq!((imported.clip.frames, imported.clip.rate_hz.round()), (250, 24.0));
