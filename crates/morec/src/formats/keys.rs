@@ -74,6 +74,15 @@ pub(super) fn grid(mut times: Vec<f64>, preferred_hz: Option<f64>) -> Option<Key
     })
 }
 
+/// A usual rate within two hundredths of `hz`.
+pub(super) fn usual_near(hz: f64) -> Option<f64> {
+    let off = |usual: &f64| (usual / hz - 1.0).abs();
+    USUAL_HZ
+        .into_iter()
+        .min_by(|a, b| off(a).total_cmp(&off(b)))
+        .filter(|usual| off(usual) < 0.02)
+}
+
 /// The rate of keys that follow each other evenly but for a few.
 fn even_rate(times: &[f64]) -> Option<f64> {
     let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();

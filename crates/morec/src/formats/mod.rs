@@ -6,6 +6,7 @@
 pub mod acclaim;
 mod builder;
 pub mod bvh;
+pub mod container;
 mod keys;
 #[cfg(test)]
 mod mangle;
@@ -13,9 +14,11 @@ mod mangle;
 pub mod fbx;
 pub mod gltf;
 pub mod mclip;
+pub mod mocopi;
 pub mod mvnx;
 pub mod probe;
 mod scene;
+pub mod smpl;
 
 use std::fmt;
 
