@@ -5,8 +5,15 @@
 
 pub mod acclaim;
 pub mod bvh;
+pub mod c3d;
+mod cells;
+pub mod jsonl;
 pub mod mclip;
+mod points;
 pub mod probe;
+pub mod table;
+mod timing;
+pub mod trc;
 
 use std::fmt;
 
