@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 use morec::formats::bvh::PositionChannels;
-use morec::formats::probe::{Format, format_of_name};
+use morec::formats::probe::{Format, format_of_name, probe};
 use morec::roles::mapping::Mapping;
 use morec_db::{FileReader, OpenedFile};
 
@@ -104,7 +104,7 @@ pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>> {
         clips[before..].sort();
         if clips.len() == before {
             bail!(
-                "{}: no clip (.bvh, .amc, .mclip) in this folder or below",
+                "{}: no clip (.bvh, .amc, .c3d, .trc, .mclip, tables of positions) in this folder or below",
                 path.display()
             );
         }
@@ -127,10 +127,20 @@ fn collect(folder: &Path, clips: &mut Vec<PathBuf>) -> Result<()> {
 }
 
 fn is_clip(path: &Path) -> bool {
-    matches!(
-        format_of_name(&path.to_string_lossy()),
-        Some(Format::Bvh | Format::Amc | Format::Mclip)
-    )
+    match format_of_name(&path.to_string_lossy()) {
+        // Tables and JSON hold labels, too: what is in them decides.
+        Some(Format::Table | Format::Jsonl) => holds_poses(path),
+        Some(Format::Asf) | None => false,
+        Some(_) => true,
+    }
+}
+
+/// Whether the beginning of a file is that of a table or of lines of positions.
+fn holds_poses(path: &Path) -> bool {
+    const HEAD: u64 = 64 * 1024;
+    let mut head = Vec::new();
+    let read = fs::File::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut head));
+    read.is_ok() && matches!(probe(&head, ""), Ok(Format::Table | Format::Jsonl))
 }
 
 /// Reads a clip; `-` is standard input. Errors begin with the path.

@@ -8,6 +8,7 @@ use morec::formats::acclaim::{self, AmcOptions, Asf};
 use morec::formats::bvh::{self, BvhOptions, PositionChannels};
 use morec::formats::probe::{Format, format_of_name, probe};
 use morec::formats::{Limits, Loaded, ParseError, Place, Warning, mclip};
+use morec::formats::{c3d, jsonl, table, trc};
 
 use crate::{ClipReader, ReadFile};
 
@@ -112,6 +113,10 @@ impl FileReader {
                 (loaded, Some(skeleton))
             }
             Format::Mclip => (self.mclip(bytes, &stem)?, None),
+            Format::C3d => (c3d::read(bytes, &stem, self.rate_hz, &self.limits)?, None),
+            Format::Trc => (trc::read(bytes, &stem, self.rate_hz, &self.limits)?, None),
+            Format::Table => (table::read(bytes, &stem, self.rate_hz, &self.limits)?, None),
+            Format::Jsonl => (jsonl::read(bytes, &stem, self.rate_hz, &self.limits)?, None),
         };
         Ok(OpenedFile {
             format,
@@ -214,6 +219,7 @@ fn without_frames(asf: &Asf, name: String) -> Clip {
         tracks: Vec::new(),
         frames: 0,
         repaired: Vec::new(),
+        points: None,
     }
 }
 

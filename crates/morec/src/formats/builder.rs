@@ -94,6 +94,7 @@ impl ClipBuilder {
             tracks,
             frames: self.frames,
             repaired,
+            points: None,
         })
     }
 

@@ -6,19 +6,26 @@
 pub mod acclaim;
 mod builder;
 pub mod bvh;
+pub mod c3d;
+mod cells;
 pub mod container;
-mod keys;
-#[cfg(test)]
-mod mangle;
 #[cfg(feature = "fbx")]
 pub mod fbx;
 pub mod gltf;
+pub mod jsonl;
+mod keys;
+#[cfg(test)]
+mod mangle;
 pub mod mclip;
 pub mod mocopi;
 pub mod mvnx;
+mod points;
 pub mod probe;
 mod scene;
 pub mod smpl;
+pub mod table;
+mod timing;
+pub mod trc;
 
 use std::fmt;
 

@@ -2,7 +2,7 @@
 //!
 //! A new format is registered in `READ`; one that is only recognised, to be refused by its name, in `UNREAD`.
 
-use super::{ParseError, Place};
+use super::{ParseError, Place, table};
 use crate::smooth::MAGIC;
 
 /// A format that can be read.
@@ -17,6 +17,14 @@ pub enum Format {
     Amc,
     /// The stored form of a compressed clip ([`smooth`](crate::smooth)).
     Mclip,
+    /// Points of biomechanics, binary.
+    C3d,
+    /// Points as tab-separated text.
+    Trc,
+    /// Lines of JSON, a pose in each.
+    Jsonl,
+    /// A table of positions, CSV or TSV.
+    Table,
 }
 
 struct Readable {
@@ -26,7 +34,7 @@ struct Readable {
 }
 
 /// Every format that is read, in the order in which its content is asked for.
-const READ: [Readable; 4] = [
+const READ: [Readable; 11] = [
     Readable {
         format: Format::Mclip,
         extension: "mclip",
@@ -47,6 +55,43 @@ const READ: [Readable; 4] = [
         extension: "amc",
         looks_so: is_amc,
     },
+    Readable {
+        format: Format::Trc,
+        extension: "trc",
+        looks_so: is_trc,
+    },
+    Readable {
+        format: Format::C3d,
+        extension: "c3d",
+        looks_so: |h| {
+            h.bytes.len() >= 512 && matches!(h.bytes, [1..128, 0x50, ..]) && h.is_binary()
+        },
+    },
+    Readable {
+        format: Format::Jsonl,
+        extension: "jsonl",
+        looks_so: is_jsonl,
+    },
+    Readable {
+        format: Format::Jsonl,
+        extension: "ndjson",
+        looks_so: |_| false,
+    },
+    Readable {
+        format: Format::Table,
+        extension: "csv",
+        looks_so: |h| !h.is_binary() && table::looks_so(h.bytes),
+    },
+    Readable {
+        format: Format::Table,
+        extension: "tsv",
+        looks_so: |_| false,
+    },
+    Readable {
+        format: Format::Table,
+        extension: "tab",
+        looks_so: |_| false,
+    },
 ];
 
 struct Unread {
@@ -55,7 +100,7 @@ struct Unread {
 }
 
 /// Formats that are recognised only to say that they are not read.
-const UNREAD: [Unread; 10] = [
+const UNREAD: [Unread; 8] = [
     Unread {
         name: "FBX",
         looks_so: |h| h.starts("Kaydara FBX Binary") || h.starts("; FBX"),
@@ -69,10 +114,6 @@ const UNREAD: [Unread; 10] = [
         looks_so: |h| h.starts("{") && h.contains(b"\"asset\""),
     },
     Unread {
-        name: "C3D",
-        looks_so: |h| matches!(h.bytes, [2..32, 0x50, ..]),
-    },
-    Unread {
         name: "an npz or other zip archive",
         looks_so: |h| h.starts("PK\x03\x04"),
     },
@@ -83,10 +124,6 @@ const UNREAD: [Unread; 10] = [
     Unread {
         name: "MVNX",
         looks_so: |h| h.starts("<") && h.contains(b"<mvnx"),
-    },
-    Unread {
-        name: "TRC",
-        looks_so: |h| h.starts("PathFileType"),
     },
     Unread {
         name: "USD",
@@ -107,7 +144,7 @@ pub fn probe(bytes: &[u8], name: &str) -> Result<Format, ParseError> {
     if let Some(found) = READ.iter().find(|readable| (readable.looks_so)(&head)) {
         return Ok(found.format);
     }
-    let expected = "BVH, ASF, AMC or MCLIP";
+    let expected = "BVH, ASF, AMC, MCLIP, C3D, TRC, JSON lines or a table of positions";
     if let Some(unread) = UNREAD.iter().find(|unread| (unread.looks_so)(&head)) {
         return Err(ParseError::new(
             Place::File,
@@ -115,7 +152,9 @@ pub fn probe(bytes: &[u8], name: &str) -> Result<Format, ParseError> {
             format!("what looks like {}, not read yet", unread.name),
         ));
     }
-    if let Some(format) = format_of_name(name).filter(|_| !head.is_binary()) {
+    // A broken C3D file is told what is wrong with it by its reader.
+    let by_name = |format: &Format| !head.is_binary() || *format == Format::C3d;
+    if let Some(format) = format_of_name(name).filter(by_name) {
         return Ok(format);
     }
     let found = match bytes {
@@ -187,6 +226,26 @@ fn is_bvh(head: &Head) -> bool {
             .is_some_and(|line| line.eq_ignore_ascii_case(b"MOTION"))
 }
 
+/// `PathFileType`, or a row that begins with `Frame#` and names points after a row of TRC's header.
+fn is_trc(head: &Head) -> bool {
+    let begins = |line: &[u8], word: &[u8]| {
+        let line = line.strip_prefix(b"\"").unwrap_or(line);
+        line.len() >= word.len() && line[..word.len()].eq_ignore_ascii_case(word)
+    };
+    let opens = |line: &[u8]| begins(line, b"PathFileType") || begins(line, b"DataRate");
+    !head.is_binary() && head.lines().take(3).any(opens)
+}
+
+/// An object with poses on the first line.
+fn is_jsonl(head: &Head) -> bool {
+    let mut lines = head.lines();
+    let first = lines.next().unwrap_or_default();
+    let holds = |word: &[u8]| first.windows(word.len()).any(|window| window == word);
+    first.starts_with(b"{")
+        && (holds(b"\"positions\"") || holds(b"\"rotations\""))
+        && !holds(b"\"asset\"")
+}
+
 fn is_asf(head: &Head) -> bool {
     let first = head.lines().next().unwrap_or_default().to_ascii_lowercase();
     let opens = [
@@ -235,6 +294,8 @@ mod tests {
 
     #[test]
     fn content_comes_before_the_name() {
+        let mut c3d = vec![2u8, 0x50];
+        c3d.resize(512, 0);
         for (bytes, name, format) in [
             (b"HIERARCHY\nROOT Hips".as_slice(), "a.amc", Format::Bvh),
             (b"\xEF\xBB\xBF# junk\n{\nhierarchy\r\n", "a", Format::Bvh),
@@ -249,6 +310,16 @@ mod tests {
             (b"hello", "dir.x/a.AMC", Format::Amc),
             (b"MCLIP\n\x01\0", "a.bvh", Format::Mclip),
             (b"", "a.bvh", Format::Bvh),
+            (&c3d, "a.bvh", Format::C3d),
+            (b"\x02\x50\0", "a.c3d", Format::C3d),
+            (b"PathFileType\t4\t(X/Y/Z)\ta.trc\n", "a", Format::Trc),
+            (b"{\"t\": 0, \"positions\": {}}\n", "a", Format::Jsonl),
+            (
+                b"frame,a_x,a_y,a_z,b_x,b_y,b_z\n1,2,3,4,5,6,7\n",
+                "a",
+                Format::Table,
+            ),
+            (b"clip\tclass\nx\ty\n", "a.tsv", Format::Table),
         ] {
             assert_eq!(probe(bytes, name), Ok(format), "{name}");
         }
@@ -256,14 +327,11 @@ mod tests {
 
     #[test]
     fn what_is_not_read_is_named() {
-        let mut c3d = vec![2u8, 0x50];
-        c3d.resize(512, 0);
         for (bytes, found) in [
             (b"Kaydara FBX Binary  \0".as_slice(), "FBX"),
             (b"; FBX 7.3.0 project file", "FBX"),
             (b"glTF\x02\0\0\0", "binary glTF"),
             (b"{ \"asset\": {} }", "glTF"),
-            (&c3d, "C3D"),
             (b"PK\x03\x04....", "npz"),
             (b"<?xml?><mvnx version=\"4\">", "MVNX"),
             (b"", "an empty file"),
