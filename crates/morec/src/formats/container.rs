@@ -125,9 +125,8 @@ fn unzip_within(
 /// # Errors
 /// Bytes that are no zip archive.
 pub fn zip_paths(bytes: &[u8]) -> Result<Vec<String>, ParseError> {
-    let archive = zip::ZipArchive::new(Cursor::new(bytes)).map_err(|error| {
-        ParseError::new(Place::File, "a whole zip archive", error.to_string())
-    })?;
+    let archive = zip::ZipArchive::new(Cursor::new(bytes))
+        .map_err(|error| ParseError::new(Place::File, "a whole zip archive", error.to_string()))?;
     Ok(archive.file_names().map(str::to_owned).collect())
 }
 
@@ -184,7 +183,10 @@ mod tests {
         assert!(is_zip(&zip));
         let members = unzip(&zip, &|path| path.ends_with(".bvh")).unwrap();
         assert_eq!(members.len(), 1);
-        assert_eq!((members[0].path.as_str(), &members[0].bytes), ("a/b.bvh", &text));
+        assert_eq!(
+            (members[0].path.as_str(), &members[0].bytes),
+            ("a/b.bvh", &text)
+        );
         assert_eq!(zip_paths(&zip).unwrap().len(), 2);
     }
 
@@ -196,7 +198,9 @@ mod tests {
         assert!(error.expected.contains("at most 2 MiB"), "{error}");
         let zip = zip_of(&[("a", &zeros[..1 << 20]), ("b", &zeros)]);
         assert!(unzip_within(&zip, &|_| true, 4 << 20).is_ok());
-        let error = unzip_within(&zip, &|_| true, 3 << 20).map(drop).unwrap_err();
+        let error = unzip_within(&zip, &|_| true, 3 << 20)
+            .map(drop)
+            .unwrap_err();
         assert!(error.expected.contains("at most 3 MiB"), "{error}");
         assert_eq!(budget(1 << 30), MOST_BYTES);
     }
@@ -215,7 +219,12 @@ mod tests {
         let text = "HIERARCHY\r\nROOT Hüfte";
         let little: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
         let big: Vec<u8> = text.encode_utf16().flat_map(u16::to_be_bytes).collect();
-        for (mark, bytes) in [(vec![0xff, 0xfe], &little), (vec![0xfe, 0xff], &big), (vec![], &little), (vec![], &big)] {
+        for (mark, bytes) in [
+            (vec![0xff, 0xfe], &little),
+            (vec![0xfe, 0xff], &big),
+            (vec![], &little),
+            (vec![], &big),
+        ] {
             let marked = [mark, bytes.clone()].concat();
             assert_eq!(utf8(&marked).as_ref(), text.as_bytes());
         }

@@ -142,10 +142,7 @@ mod tests {
         // Reduced keys, keys set by hand, one key.
         let reduced = every(60.0, 300).into_iter().enumerate();
         let reduced = reduced.filter(|(k, _)| k % 7 == 0 || k % 5 == 0 || *k == 299);
-        assert_eq!(
-            rate(reduced.map(|(_, t)| t).collect()),
-            (60.0, 300, true)
-        );
+        assert_eq!(rate(reduced.map(|(_, t)| t).collect()), (60.0, 300, true));
         assert_eq!(rate(vec![0.0, 1.0, 3.0]), (30.0, 91, true));
         assert_eq!(rate(vec![2.5]), (30.0, 1, true));
         assert!(grid(vec![f64::NAN], None).is_none());
@@ -154,7 +151,10 @@ mod tests {
     #[test]
     fn keys_that_start_late_or_lie_anywhere() {
         let late = grid(vec![1.0, 1.5, 2.0], Some(24.0)).unwrap();
-        assert_eq!((late.start_secs, late.rate_hz, late.frames), (1.0, 24.0, 25));
+        assert_eq!(
+            (late.start_secs, late.rate_hz, late.frames),
+            (1.0, 24.0, 25)
+        );
         let odd = vec![0.0, 0.0171, 0.0533, 0.1378, 0.1517, 0.2];
         assert_eq!(rate(odd), (60.0, 13, false));
     }

@@ -368,9 +368,16 @@ mod tests {
         assert!(error.found.contains("without frames"), "{error}");
         let alone = read(&frame, "f", &Limits::default()).unwrap();
         let both = read(&[skeleton, frame].concat(), "f", &Limits::default()).unwrap();
-        assert_eq!(alone.clips[0].skeleton, both.clips[0].skeleton, "the usual skeleton is the real one");
+        assert_eq!(
+            alone.clips[0].skeleton, both.clips[0].skeleton,
+            "the usual skeleton is the real one"
+        );
         assert_eq!(alone.warnings.len(), 2);
-        let imported = prepare(both.clips.into_iter().next().unwrap(), &ImportOptions::default()).unwrap();
+        let imported = prepare(
+            both.clips.into_iter().next().unwrap(),
+            &ImportOptions::default(),
+        )
+        .unwrap();
         assert_eq!(imported.roles.missing().count(), 0);
         assert_eq!(imported.facts.unit, Some("m"));
     }

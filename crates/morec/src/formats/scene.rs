@@ -215,12 +215,7 @@ fn nearest_rotation(linear: &Matrix3<f64>) -> Option<Quat> {
 }
 
 /// Worlds of the nodes that a rig needs.
-fn pose(
-    nodes: &[Node],
-    rig: &Rig,
-    worlds: &mut [World],
-    mut local: impl FnMut(usize) -> Local,
-) {
+fn pose(nodes: &[Node], rig: &Rig, worlds: &mut [World], mut local: impl FnMut(usize) -> Local) {
     for &n in &rig.needed {
         let above = nodes[n].parent.map_or(World::ORIGIN, |p| worlds[p]);
         worlds[n] = above.child(&local(n));

@@ -318,6 +318,11 @@ fn format_name(format: Format) -> &'static str {
         Format::Trc => "TRC",
         Format::Jsonl => "JSON lines",
         Format::Table => "table of positions",
+        Format::Mvnx => "MVNX",
+        Format::Gltf => "glTF",
+        Format::Fbx => "FBX",
+        Format::Smpl => "SMPL poses (npz)",
+        Format::Mocopi => "mocopi packets",
     }
 }
 

@@ -68,7 +68,15 @@ pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseEr
         .collect();
     let mut clips = Vec::with_capacity(takes.len());
     for (take, clip_name) in takes.iter().zip(clip_names(name, &titles)) {
-        clips.push(clip(&fbx, take, &nodes, clip_name, bytes.len(), limits, &mut warnings)?);
+        clips.push(clip(
+            &fbx,
+            take,
+            &nodes,
+            clip_name,
+            bytes.len(),
+            limits,
+            &mut warnings,
+        )?);
     }
     Ok(Loaded { clips, warnings })
 }
@@ -235,7 +243,10 @@ fn takes<'a>(fbx: &'a Fbx, rigs: &'a [Rig], warnings: &mut Vec<Warning>) -> Vec<
             }
         }
         if takes.len() == before {
-            let text = format!("take `{}` moves no joint and is left out", &*stack.element.name);
+            let text = format!(
+                "take `{}` moves no joint and is left out",
+                &*stack.element.name
+            );
             warnings.push(Warning::new(Place::File, text));
         }
     }
@@ -273,7 +284,9 @@ fn grid(fbx: &Fbx, take: &Take<'_>, clip_name: &str, warnings: &mut Vec<Warning>
     if trimmed && begin < last && end > first {
         times = shown;
         times.extend([begin.max(first), end.min(last)]);
-        let text = format!("{clip_name}: keys outside of the take's {begin:.3} s to {end:.3} s are left out");
+        let text = format!(
+            "{clip_name}: keys outside of the take's {begin:.3} s to {end:.3} s are left out"
+        );
         warnings.push(Warning::new(Place::File, text));
     }
     let grid = keys::grid(times, Some(stated)).unwrap_or(KeyGrid {

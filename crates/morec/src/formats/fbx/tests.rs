@@ -15,24 +15,44 @@ fn open(bytes: &[u8]) -> Result<Loaded, ParseError> {
 fn rotations_follow_the_pre_rotation() {
     let loaded = open(KNEE.as_bytes()).unwrap();
     let clip = &loaded.clips[0];
-    let names: Vec<&str> = clip.skeleton.joints().iter().map(|j| j.name.as_str()).collect();
+    let names: Vec<&str> = clip
+        .skeleton
+        .joints()
+        .iter()
+        .map(|j| j.name.as_str())
+        .collect();
     assert_eq!(names, ["Hips", "Knee", "Foot"]);
-    assert_eq!((clip.frames, clip.rate_hz), (25, 24.0), "{:?}", loaded.warnings);
+    assert_eq!(
+        (clip.frames, clip.rate_hz),
+        (25, 24.0),
+        "{:?}",
+        loaded.warnings
+    );
     for (frame, degrees) in [(0, 0.0), (12, 45.0), (24, 90.0)] {
-        let turn = Axis::X.rotation(90f64.to_radians()) * Axis::Z.rotation(f64::to_radians(degrees));
+        let turn =
+            Axis::X.rotation(90f64.to_radians()) * Axis::Z.rotation(f64::to_radians(degrees));
         let pose = WorldPose::of(clip, frame);
         assert!(pose.rotations[1].angle_to(&turn) < 1e-6);
         let knee = Vec3::new(1.0, 100.0, 2.0) + Vec3::new(0.0, -40.0, 0.0);
         assert!((pose.positions[1] - knee).norm() < 1e-6);
         let foot = knee + turn * Vec3::new(0.0, 0.0, 40.0);
-        assert!((pose.positions[2] - foot).norm() < 1e-6, "{}", pose.positions[2]);
+        assert!(
+            (pose.positions[2] - foot).norm() < 1e-6,
+            "{}",
+            pose.positions[2]
+        );
     }
 }
 
 #[test]
 fn what_cannot_be_read_is_said_plainly() {
     let still = KNEE.replace("AnimationCurve:", "AnimationNothing:");
-    assert!(open(still.as_bytes()).unwrap_err().found.contains("skeleton of 3 joints, without animation"));
+    assert!(
+        open(still.as_bytes())
+            .unwrap_err()
+            .found
+            .contains("skeleton of 3 joints, without animation")
+    );
     let error = open(b"Kaydara FBX Binary  \0\x1a\0\xd0\x07\0\0\0\0\0\0\0\0\0\0\0").unwrap_err();
     assert!(error.found.contains("FBX"), "{error}");
     assert!(open(&KNEE.as_bytes()[..700]).is_err());
@@ -73,9 +93,17 @@ fn real_files_are_read() {
                     let clip = &imported.clip;
                     println!(
                         "{} frames {} rate {} joints {:?} tracks {} {:?} missing {:?}",
-                        clip.name, clip.frames, clip.rate_hz,
-                        clip.skeleton.joints().iter().map(|j| j.name.as_str()).collect::<Vec<_>>(),
-                        clip.tracks.len(), imported.facts, imported.roles.missing().collect::<Vec<_>>()
+                        clip.name,
+                        clip.frames,
+                        clip.rate_hz,
+                        clip.skeleton
+                            .joints()
+                            .iter()
+                            .map(|j| j.name.as_str())
+                            .collect::<Vec<_>>(),
+                        clip.tracks.len(),
+                        imported.facts,
+                        imported.roles.missing().collect::<Vec<_>>()
                     );
                 }
             }

@@ -74,7 +74,14 @@ impl<'a> Buffers<'a> {
             None if count.saturating_mul(width) <= MOST_ZEROS => vec![0.0; count * width],
             None => return Err(fail(number, "a bufferView", "none")),
         };
-        self.replace(number, &accessor["sparse"], &mut values, width, kind, normalize)?;
+        self.replace(
+            number,
+            &accessor["sparse"],
+            &mut values,
+            width,
+            kind,
+            normalize,
+        )?;
         Ok(Numbers { values, width })
     }
 
@@ -127,7 +134,8 @@ impl<'a> Buffers<'a> {
         let view = document.list("bufferViews").get(view);
         let view = view.ok_or_else(|| fail(number, "a bufferView", "none"))?;
         if view["extensions"]["EXT_meshopt_compression"].is_object() {
-            let found = "one compressed by EXT_meshopt_compression; unpack it, as with `gltf-transform`";
+            let found =
+                "one compressed by EXT_meshopt_compression; unpack it, as with `gltf-transform`";
             return Err(fail(number, "a plain bufferView", found));
         }
         let buffer = index(&view["buffer"]).ok_or_else(|| fail(number, "a buffer", "none"))?;
@@ -195,7 +203,10 @@ impl<'a> Buffers<'a> {
                 .map_err(|error| wrong(error.to_string()));
         }
         let file = percent_decoded(uri);
-        (self.beside)(&file)
+        // Files elsewhere are none of the scene's business.
+        let outside = file.starts_with(['/', '\\']) || file.contains(':') || file.contains("..");
+        let bytes = if outside { None } else { (self.beside)(&file) };
+        bytes
             .map(Cow::Owned)
             .ok_or_else(|| wrong(format!("no file {file} beside it")))
     }

@@ -43,7 +43,11 @@ pub fn read(
     if animations.is_empty() {
         return Err(without_animation(&document, &stage, ""));
     }
-    if animations.iter().all(|animation| animation.channels.is_empty()) && stage.is_character() {
+    if animations
+        .iter()
+        .all(|animation| animation.channels.is_empty())
+        && stage.is_character()
+    {
         let note = "the animation has no keys; one frame of the rest pose stands for it";
         warnings.push(Warning::new(Place::File, note));
         animations.truncate(1);
@@ -61,7 +65,14 @@ pub fn read(
         let what = ", only with others (of shapes, of cameras)";
         return Err(without_animation(&document, &stage, what));
     }
-    let clips = clips(&animations, &stage, name, bytes.len(), limits, &mut warnings)?;
+    let clips = clips(
+        &animations,
+        &stage,
+        name,
+        bytes.len(),
+        limits,
+        &mut warnings,
+    )?;
     Ok(Loaded { clips, warnings })
 }
 
@@ -107,7 +118,9 @@ fn clips(
         .collect();
     let mut clips = Vec::with_capacity(pairs.len());
     for ((animation, rig), clip_name) in pairs.into_iter().zip(clip_names(name, &titles)) {
-        clips.push(clip(animation, rig, stage, clip_name, bytes, limits, warnings)?);
+        clips.push(clip(
+            animation, rig, stage, clip_name, bytes, limits, warnings,
+        )?);
     }
     Ok(clips)
 }

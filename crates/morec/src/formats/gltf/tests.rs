@@ -14,8 +14,10 @@ struct Keys {
 
 impl Keys {
     fn add(&mut self, kind: &str, width: usize, values: &[f32]) -> usize {
-        self.views.push(json!({"buffer": 0, "byteOffset": self.bytes.len()}));
-        self.bytes.extend(values.iter().flat_map(|v| v.to_le_bytes()));
+        self.views
+            .push(json!({"buffer": 0, "byteOffset": self.bytes.len()}));
+        self.bytes
+            .extend(values.iter().flat_map(|v| v.to_le_bytes()));
         self.accessors.push(json!({
             "bufferView": self.views.len() - 1, "componentType": 5126,
             "count": values.len() / width, "type": kind,
@@ -117,11 +119,19 @@ fn animations_and_skeletons_are_clips() {
     let mut second = json["animations"][0].clone();
     second["name"] = "again".into();
     json["animations"].as_array_mut().unwrap().push(second);
-    json["animations"].as_array_mut().unwrap().push(json!({"name": "still"}));
+    json["animations"]
+        .as_array_mut()
+        .unwrap()
+        .push(json!({"name": "still"}));
     let loaded = open(&keys.file(json)).unwrap();
     let names: Vec<&str> = loaded.clips.iter().map(|c| c.name.as_str()).collect();
     assert_eq!(names, ["f#bend", "f#again"]);
-    assert!(loaded.warnings.iter().any(|w| w.text.contains("`still` moves no joint")));
+    assert!(
+        loaded
+            .warnings
+            .iter()
+            .any(|w| w.text.contains("`still` moves no joint"))
+    );
 }
 
 #[test]
@@ -155,7 +165,12 @@ fn humanoids_have_their_bone_names() {
         let mut json = bent("LINEAR", &mut keys);
         json["extensions"] = extension;
         let clip = open(&keys.file(json)).unwrap().clips.remove(0);
-        let names: Vec<&str> = clip.skeleton.joints().iter().map(|j| j.name.as_str()).collect();
+        let names: Vec<&str> = clip
+            .skeleton
+            .joints()
+            .iter()
+            .map(|j| j.name.as_str())
+            .collect();
         assert_eq!(names, ["hips", "spine", "c"]);
     }
 }
@@ -164,19 +179,40 @@ fn humanoids_have_their_bone_names() {
 fn what_cannot_be_read_is_said_plainly() {
     let error = |json: Value| open(json.to_string().as_bytes()).unwrap_err().to_string();
     let model = json!({"asset": {}, "nodes": [{}], "extensions": {"VRM": {"humanoid": {"humanBones": [{"bone": "hips", "node": 0}]}}}});
-    assert!(error(model).contains("VRM 0.x, a model with a skeleton of 1 joints, without animation"));
+    assert!(
+        error(model).contains("VRM 0.x, a model with a skeleton of 1 joints, without animation")
+    );
     assert!(error(json!({"asset": {}, "meshes": []})).contains("glTF 2.0, a model without"));
     assert!(error(json!({"asset": {}, "nodes": {}})).contains("glTF 1.0"));
-    assert!(open(b"glTF\x01\0\0\0").unwrap_err().found.contains("binary glTF 1"));
+    assert!(
+        open(b"glTF\x01\0\0\0")
+            .unwrap_err()
+            .found
+            .contains("binary glTF 1")
+    );
     let mut keys = Keys::default();
     let mut json = bent("LINEAR", &mut keys);
     json["animations"][0]["samplers"][0]["output"] = 9.into();
-    assert!(open(&keys.file(json)).unwrap_err().expected.contains("accessor 9"));
-    let mut file = serde_json::from_slice::<Value>(&keys.file(bent("LINEAR", &mut Keys::default()))).unwrap();
+    assert!(
+        open(&keys.file(json))
+            .unwrap_err()
+            .expected
+            .contains("accessor 9")
+    );
+    let mut file =
+        serde_json::from_slice::<Value>(&keys.file(bent("LINEAR", &mut Keys::default()))).unwrap();
     file["buffers"][0]["uri"] = "far%20away.bin".into();
     assert!(error(file.clone()).contains("no file far away.bin"));
     let beside = |name: &str| (name == "far away.bin").then(|| keys.bytes.clone());
-    assert!(read(file.to_string().as_bytes(), "f", &beside, &Limits::default()).is_ok());
+    assert!(
+        read(
+            file.to_string().as_bytes(),
+            "f",
+            &beside,
+            &Limits::default()
+        )
+        .is_ok()
+    );
 }
 
 #[test]
@@ -235,10 +271,16 @@ fn real_vrm_animations_are_people() {
     assert_eq!(imported.facts.unit, Some("m"));
     assert_eq!(imported.facts.up.to_string(), "y");
     assert_eq!(imported.roles.missing().count(), 0);
-    assert_eq!((imported.clip.frames, imported.clip.rate_hz.round()), (250, 24.0));
+    assert_eq!(
+        (imported.clip.frames, imported.clip.rate_hz.round()),
+        (250, 24.0)
+    );
     let bytes = crate::formats::mangle::real("three_vrm_test.vrma").unwrap();
     let clip = open(&bytes).unwrap().clips.remove(0);
     assert_eq!(clip.skeleton.len(), 51);
     let imported = prepare(clip, &ImportOptions::default()).unwrap();
-    assert_eq!((imported.facts.unit, imported.roles.missing().count()), (Some("m"), 0));
+    assert_eq!(
+        (imported.facts.unit, imported.roles.missing().count()),
+        (Some("m"), 0)
+    );
 }

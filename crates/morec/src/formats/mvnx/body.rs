@@ -79,7 +79,11 @@ pub(super) fn segments(
     }
     if nodes.len() > limits.joints {
         let expected = format!("at most {} segments", limits.joints);
-        return Err(ParseError::new(place(list), expected, nodes.len().to_string()));
+        return Err(ParseError::new(
+            place(list),
+            expected,
+            nodes.len().to_string(),
+        ));
     }
     let labels: Vec<&str> = nodes
         .iter()
@@ -205,4 +209,3 @@ fn parents_first(parents: &[Option<usize>]) -> Vec<usize> {
     }
     order
 }
-

@@ -137,9 +137,8 @@ fn read_subject(
     }
     let first = first.map(Flaw::into_error);
     if broken == frames.len() {
-        return Err(first.unwrap_or_else(|| {
-            ParseError::new(place(subject), "frames of type normal", "none")
-        }));
+        return Err(first
+            .unwrap_or_else(|| ParseError::new(place(subject), "frames of type normal", "none")));
     }
     if let Some(first) = first {
         let text = format!(
@@ -246,10 +245,7 @@ fn rate(subject: Node<'_, '_>, frames: &[Node<'_, '_>], warnings: &mut Vec<Warni
         .and_then(|rate| rate.trim().parse::<f64>().ok())
         .filter(|rate| rate.is_finite() && *rate > 0.0 && *rate <= 100_000.0);
     let time = |frame: &Node| frame.attribute("time")?.trim().parse::<f64>().ok();
-    let timed = match (
-        frames.first().and_then(time),
-        frames.last().and_then(time),
-    ) {
+    let timed = match (frames.first().and_then(time), frames.last().and_then(time)) {
         (Some(first), Some(last)) if last > first && frames.len() > 2 => {
             Some((frames.len() - 1) as f64 / (last - first) * 1000.0)
         }

@@ -72,7 +72,11 @@ fn what_is_not_there_is_said() {
     let error = |text: &str| read(text.as_bytes(), "f", &Limits::default()).unwrap_err();
     assert!(error("<mvnx/>").expected.contains("<subject>"));
     assert!(error("<a/>").expected.contains("<mvnx>"));
-    assert!(error("<mvnx><subject/></mvnx>").expected.contains("<segments>"));
+    assert!(
+        error("<mvnx><subject/></mvnx>")
+            .expected
+            .contains("<segments>")
+    );
     let none = file(4, 3).replace("position>", "acceleration>");
     assert!(error(&none).expected.contains("<position>"));
     let few = Limits {
@@ -99,7 +103,10 @@ fn a_real_recording_is_a_person_in_metres() {
     let loaded = read(&bytes, "meri", &Limits::default()).unwrap();
     assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
     let clip = loaded.clips.into_iter().next().unwrap();
-    assert_eq!((clip.frames, clip.rate_hz, clip.skeleton.len()), (4, 240.0, 23));
+    assert_eq!(
+        (clip.frames, clip.rate_hz, clip.skeleton.len()),
+        (4, 240.0, 23)
+    );
     let imported = prepare(clip, &ImportOptions::default()).unwrap();
     assert_eq!(imported.facts.unit, Some("m"));
     assert_eq!(imported.facts.up.to_string(), "z");

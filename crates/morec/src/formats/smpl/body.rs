@@ -81,8 +81,16 @@ mod tests {
         }
         let top = places[15] + joints[15].tip.unwrap();
         assert!((top.y - HEIGHT).abs() < 1e-9, "{top}");
-        assert!((places[7].y - 0.039 * HEIGHT).abs() < 1e-9, "ankle {}", places[7]);
-        assert!((places[16].y - 0.818 * HEIGHT).abs() < 0.01, "shoulder {}", places[16]);
+        assert!(
+            (places[7].y - 0.039 * HEIGHT).abs() < 1e-9,
+            "ankle {}",
+            places[7]
+        );
+        assert!(
+            (places[16].y - 0.818 * HEIGHT).abs() < 0.01,
+            "shoulder {}",
+            places[16]
+        );
         let found = find(&Skeleton::new(joints).unwrap());
         assert!(found.notes.is_empty(), "{:?}", found.notes);
         for (role, joint) in [

@@ -20,8 +20,21 @@ const ASSUMED_HZ: f64 = 120.0;
 const POSES: [&str; 5] = ["poses", "pose", "fullpose", "full_pose", "smpl_poses"];
 const ROOT: [&str; 3] = ["root_orient", "global_orient", "global_orient_aa"];
 const BODY: [&str; 2] = ["pose_body", "body_pose"];
-const PLACE: [&str; 6] = ["trans", "transl", "translation", "root_trans", "smpl_trans", "root_translation"];
-const RATE: [&str; 5] = ["mocap_framerate", "mocap_frame_rate", "framerate", "frame_rate", "fps"];
+const PLACE: [&str; 6] = [
+    "trans",
+    "transl",
+    "translation",
+    "root_trans",
+    "smpl_trans",
+    "root_translation",
+];
+const RATE: [&str; 5] = [
+    "mocap_framerate",
+    "mocap_frame_rate",
+    "framerate",
+    "frame_rate",
+    "fps",
+];
 
 /// Reads an archive of one motion, called `name`.
 ///
@@ -77,8 +90,9 @@ fn clip(frames: &Frames<'_>, places: &[Vec3]) -> ClipBuilder {
     let offsets: Vec<Vec3> = joints.iter().map(|joint| joint.offset).collect();
     let mut builder = ClipBuilder::new(joints);
     for (frame, place) in places.iter().enumerate() {
-        let rotations: Option<Vec<Quat>> =
-            (0..body::JOINTS).map(|j| frames.rotation(frame, j)).collect();
+        let rotations: Option<Vec<Quat>> = (0..body::JOINTS)
+            .map(|j| frames.rotation(frame, j))
+            .collect();
         match rotations.filter(|_| place.iter().all(|v| v.is_finite())) {
             Some(rotations) => {
                 let positions = std::iter::once(*place).chain(offsets[1..].iter().copied());
@@ -148,11 +162,24 @@ impl<'a> Frames<'a> {
     fn of_whole(poses: &'a Array) -> Result<Self, ParseError> {
         // (frames, joints, 3): the same numbers in the same order.
         let layout = Layout::of(poses, "poses")?;
-        Self::checked(poses.shape[0], (poses, layout), (poses, Layout { joints: 0, ..layout }))
+        Self::checked(
+            poses.shape[0],
+            (poses, layout),
+            (
+                poses,
+                Layout {
+                    joints: 0,
+                    ..layout
+                },
+            ),
+        )
     }
 
     fn of_parts(root: &'a Array, body: &'a Array) -> Result<Self, ParseError> {
-        let (first, second) = (Layout::of(root, "root_orient")?, Layout::of(body, "pose_body")?);
+        let (first, second) = (
+            Layout::of(root, "root_orient")?,
+            Layout::of(body, "pose_body")?,
+        );
         if root.shape[0] != body.shape[0] {
             let found = format!("{} and {}", root.shape[0], body.shape[0]);
             let expected = "as many frames in root_orient as in pose_body";

@@ -33,7 +33,9 @@ pub(super) fn header(bytes: &[u8]) -> Result<Header, ParseError> {
         _ => return Err(wrong("another version")),
     };
     let end = begin + length;
-    let text = bytes.get(begin..end).ok_or_else(|| wrong("its beginning"))?;
+    let text = bytes
+        .get(begin..end)
+        .ok_or_else(|| wrong("its beginning"))?;
     let text = String::from_utf8_lossy(text);
     let value = |key: &str| {
         let (_, after) = text.split_once(&format!("'{key}':"))?;
@@ -74,15 +76,22 @@ pub(super) fn read(bytes: &[u8]) -> Result<Array, ParseError> {
     let wrong = |expected: String, found: String| {
         ParseError::new(Place::Byte(header.begin as u64), expected, found)
     };
-    let kind = Kind::of(&header.descr)
-        .ok_or_else(|| wrong("an array of numbers".into(), format!("type {}", header.descr)))?;
+    let kind = Kind::of(&header.descr).ok_or_else(|| {
+        wrong(
+            "an array of numbers".into(),
+            format!("type {}", header.descr),
+        )
+    })?;
     let count = header
         .shape
         .iter()
         .try_fold(1usize, |product, &n| product.checked_mul(n))
         .and_then(|count| Some((count, count.checked_mul(kind.size)?)));
     let Some((count, length)) = count else {
-        return Err(wrong("a shape that can be".into(), format!("{:?}", header.shape)));
+        return Err(wrong(
+            "a shape that can be".into(),
+            format!("{:?}", header.shape),
+        ));
     };
     let data = &bytes[header.begin..];
     if data.len() < length {
@@ -186,7 +195,8 @@ mod tests {
 
     pub(crate) fn npy(descr: &str, fortran: bool, shape: &str, data: &[u8]) -> Vec<u8> {
         let order = if fortran { "True" } else { "False" };
-        let text = format!("{{'descr': '{descr}', 'fortran_order': {order}, 'shape': {shape}, }}\n");
+        let text =
+            format!("{{'descr': '{descr}', 'fortran_order': {order}, 'shape': {shape}, }}\n");
         let mut bytes = b"\x93NUMPY\x01\0".to_vec();
         bytes.extend((text.len() as u16).to_le_bytes());
         bytes.extend(text.bytes());
@@ -197,11 +207,26 @@ mod tests {
     #[test]
     fn types_orders_and_shapes() {
         let read = |bytes: Vec<u8>| read(&bytes).unwrap();
-        let doubles: Vec<u8> = [1.5f64, -2.0].iter().flat_map(|v| v.to_le_bytes()).collect();
-        assert_eq!(read(npy("<f8", false, "(2,)", &doubles)).values, [1.5, -2.0]);
-        assert_eq!(read(npy(">i2", false, "(1, 2)", &[255, 254, 0, 3])).values, [-2.0, 3.0]);
-        assert_eq!(read(npy("<f2", false, "(2,)", &[0, 0x3c, 0, 0xc0])).values, [1.0, -2.0]);
-        assert_eq!(read(npy("|u1", true, "(2, 3)", &[1, 4, 2, 5, 3, 6])).values, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+        let doubles: Vec<u8> = [1.5f64, -2.0]
+            .iter()
+            .flat_map(|v| v.to_le_bytes())
+            .collect();
+        assert_eq!(
+            read(npy("<f8", false, "(2,)", &doubles)).values,
+            [1.5, -2.0]
+        );
+        assert_eq!(
+            read(npy(">i2", false, "(1, 2)", &[255, 254, 0, 3])).values,
+            [-2.0, 3.0]
+        );
+        assert_eq!(
+            read(npy("<f2", false, "(2,)", &[0, 0x3c, 0, 0xc0])).values,
+            [1.0, -2.0]
+        );
+        assert_eq!(
+            read(npy("|u1", true, "(2, 3)", &[1, 4, 2, 5, 3, 6])).values,
+            [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
+        );
         let one = read(npy("<i8", false, "()", &120i64.to_le_bytes()));
         assert_eq!((one.shape.len(), one.values), (0, vec![120.0]));
     }
@@ -210,9 +235,17 @@ mod tests {
     fn what_is_no_array_of_numbers_is_said() {
         let error = |bytes: Vec<u8>| read(&bytes).unwrap_err();
         assert!(error(npy("|O", false, "()", &[])).found.contains("|O"));
-        assert!(error(npy("<f8", false, "(3,)", &[0; 8])).expected.contains("24 bytes"));
+        assert!(
+            error(npy("<f8", false, "(3,)", &[0; 8]))
+                .expected
+                .contains("24 bytes")
+        );
         let huge = format!("({0}, {0}, {0})", u64::MAX / 2);
-        assert!(error(npy("<f8", false, &huge, &[])).expected.contains("shape"));
+        assert!(
+            error(npy("<f8", false, &huge, &[]))
+                .expected
+                .contains("shape")
+        );
         assert!(error(b"\x93NUMPY\x09\0".to_vec()).found.contains("version"));
     }
 }

@@ -65,7 +65,10 @@ fn every_model_of_the_family_is_the_same_body() {
     clips.push(open(&bytes).unwrap().clips.remove(0));
     assert!(clips.windows(2).all(|pair| pair[0] == pair[1]));
     let clip = clips.remove(0);
-    assert_eq!((clip.frames, clip.rate_hz, clip.tracks.len()), (50, 60.0, 1));
+    assert_eq!(
+        (clip.frames, clip.rate_hz, clip.tracks.len()),
+        (50, 60.0, 1)
+    );
     // The forearm points to +X in the zero pose and turns about the body's Y, the world's Z, to the front, world −Y.
     let pose = WorldPose::of(&clip, 49);
     let forearm = (pose.positions[20] - pose.positions[18]).normalize();
@@ -73,17 +76,32 @@ fn every_model_of_the_family_is_the_same_body() {
     assert!((forearm - expected).norm() < 1e-9, "{forearm}");
     let imported = prepare(clip, &ImportOptions::default()).unwrap();
     assert_eq!(imported.facts.up.to_string(), "z");
-    assert_eq!((imported.facts.unit, imported.roles.missing().count()), (Some("m"), 0));
+    assert_eq!(
+        (imported.facts.unit, imported.roles.missing().count()),
+        (Some("m"), 0)
+    );
 }
 
 #[test]
 fn what_is_no_motion_is_said() {
-    let error = open(&npz(&[("betas", "(2,)", &[0.0; 2]), ("gender", "()", &[0.0])])).unwrap_err();
+    let error = open(&npz(&[
+        ("betas", "(2,)", &[0.0; 2]),
+        ("gender", "()", &[0.0]),
+    ]))
+    .unwrap_err();
     assert!(error.found.contains("betas, gender"), "{error}");
     let few = open(&npz(&[("poses", "(2, 9)", &[0.0; 18])])).unwrap_err();
     assert!(few.expected.contains("at least 22 joints"), "{few}");
-    let short = open(&npz(&[("poses", "(1, 66)", &[0.0; 66]), ("trans", "(2, 3)", &[0.0; 6])]));
-    assert!(short.unwrap_err().expected.contains("`trans` for each of 1 frames"));
+    let short = open(&npz(&[
+        ("poses", "(1, 66)", &[0.0; 66]),
+        ("trans", "(2, 3)", &[0.0; 6]),
+    ]));
+    assert!(
+        short
+            .unwrap_err()
+            .expected
+            .contains("`trans` for each of 1 frames")
+    );
 }
 
 #[test]
@@ -92,7 +110,12 @@ fn spoiled_frames_are_filled() {
     poses[2 * 66] = f64::NAN;
     let loaded = open(&npz(&[("poses", "(5, 66)", &poses)])).unwrap();
     assert_eq!(loaded.clips[0].repaired, [2..3]);
-    assert!(loaded.warnings.iter().any(|w| w.text.contains("120 Hz assumed")));
+    assert!(
+        loaded
+            .warnings
+            .iter()
+            .any(|w| w.text.contains("120 Hz assumed"))
+    );
 }
 
 #[test]
