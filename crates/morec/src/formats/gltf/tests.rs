@@ -284,3 +284,23 @@ fn real_vrm_animations_are_people() {
         (Some("m"), 0)
     );
 }
+
+#[test]
+fn joints_are_where_an_independent_reader_has_them() {
+    let Some(bytes) = crate::formats::mangle::real("idle_loop.vrma") else {
+        return;
+    };
+    let golden: Value =
+        serde_json::from_str(include_str!("../../../testdata/reference/gltf.json")).unwrap();
+    let clip = open(&bytes).unwrap().clips.remove(0);
+    for (k, frame) in golden["frames"].as_array().unwrap().iter().enumerate() {
+        let pose = WorldPose::of(&clip, frame.as_u64().unwrap() as usize);
+        for (bone, places) in golden["positions"].as_object().unwrap() {
+            let joint = clip.skeleton.find(bone).unwrap();
+            let place = document::numbers::<3>(&places[k]).map(Vec3::from).unwrap();
+            // 10⁻⁴ of a body of 1.4 m.
+            let off = (pose.positions[joint] - place).norm();
+            assert!(off < 1.4e-4, "{bone} {off}");
+        }
+    }
+}
