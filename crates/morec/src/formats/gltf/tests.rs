@@ -304,3 +304,26 @@ fn joints_are_where_an_independent_reader_has_them() {
         }
     }
 }
+
+#[test]
+fn clips_survive_the_way_through_bvh() {
+    use crate::formats::bvh;
+    for interpolation in ["LINEAR", "STEP", "CUBICSPLINE"] {
+        let mut keys = Keys::default();
+        let json = bent(interpolation, &mut keys);
+        let clip = open(&keys.file(json)).unwrap().clips.remove(0);
+        let mut text = Vec::new();
+        bvh::write(&clip, &mut text).unwrap();
+        let options = bvh::BvhOptions::default();
+        let again = bvh::read(&text, "f", &options, &Limits::default()).unwrap();
+        for frame in [0, 11, 30] {
+            let (a, b) = (
+                WorldPose::of(&clip, frame),
+                WorldPose::of(&again.clips[0], frame),
+            );
+            for (a, b) in a.positions.iter().zip(&b.positions) {
+                assert!((a - b).norm() < 1e-5, "{a} {b}");
+            }
+        }
+    }
+}
