@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 use morec::formats::bvh::PositionChannels;
-use morec::formats::probe::{Format, format_of_name};
+use morec::formats::probe::{Format, format_of_name, probe};
 use morec::roles::mapping::Mapping;
 use morec_db::{FileReader, OpenedFile};
 
@@ -46,7 +46,8 @@ pub fn rate(text: &str) -> Result<f64, String> {
 
 /// A file's bytes; errors begin with the path.
 pub fn read(path: &Path) -> Result<Vec<u8>> {
-    fs::read(path).with_context(|| path.display().to_string())
+    let (file, _) = morec_db::split_choice(path);
+    fs::read(file).with_context(|| path.display().to_string())
 }
 
 /// Writes beside the target and renames: a failure leaves no half file under its name, and whoever reads meanwhile
@@ -91,46 +92,134 @@ pub fn some_of<'a>(names: impl ExactSizeIterator<Item = &'a String>) -> String {
     }
 }
 
+/// The clips that paths stand for, and what folders hold besides.
+#[derive(Debug, Default)]
+pub struct Expanded {
+    /// In the order of the paths; those of a folder in the order of theirs.
+    pub clips: Vec<PathBuf>,
+    /// Motion in folders that cannot be read, with the reason.
+    pub left_out: Vec<(PathBuf, String)>,
+    /// How many files in folders are no motion at all.
+    pub others: usize,
+}
+
+impl Expanded {
+    /// Says on standard error what folders hold besides clips; whether motion is among it.
+    pub fn say_left_out(&self) -> bool {
+        for (path, reason) in &self.left_out {
+            eprintln!("morec: {}: left out: {reason}", path.display());
+        }
+        if self.others > 0 {
+            eprintln!("morec: {} other files are no motion", self.others);
+        }
+        !self.left_out.is_empty()
+    }
+}
+
 /// Folders become the clips in them, however deep, in the order of their paths; files stay where they are named.
 pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>> {
-    let mut clips = Vec::new();
+    Ok(expand_all(paths)?.clips)
+}
+
+/// [`expand`] with what is left out.
+pub fn expand_all(paths: &[PathBuf]) -> Result<Expanded> {
+    let mut all = Expanded::default();
     for path in paths {
         if !path.is_dir() {
-            clips.push(path.clone());
+            all.clips.push(path.clone());
             continue;
         }
-        let before = clips.len();
-        collect(path, &mut clips)?;
-        clips[before..].sort();
-        if clips.len() == before {
+        let before = all.clips.len();
+        collect(path, &mut all)?;
+        all.clips[before..].sort();
+        if all.clips.len() == before {
+            let reasons: Vec<String> = all
+                .left_out
+                .iter()
+                .take(5)
+                .map(|(path, reason)| format!("\n{}: {reason}", path.display()))
+                .collect();
             bail!(
-                "{}: no clip (.bvh, .amc, .mclip) in this folder or below",
-                path.display()
+                "{}: no clip that can be read in this folder or below{}",
+                path.display(),
+                reasons.concat()
             );
         }
     }
-    Ok(clips)
+    all.left_out.sort();
+    Ok(all)
 }
 
-fn collect(folder: &Path, clips: &mut Vec<PathBuf>) -> Result<()> {
+fn collect(folder: &Path, all: &mut Expanded) -> Result<()> {
     for entry in fs::read_dir(folder).with_context(|| folder.display().to_string())? {
         let entry = entry.with_context(|| folder.display().to_string())?;
         let path = entry.path();
         // A link to a folder could lead back here; links to files cannot.
         if entry.file_type().is_ok_and(|kind| kind.is_dir()) {
-            collect(&path, clips)?;
-        } else if is_clip(&path) && path.is_file() {
-            clips.push(path);
+            collect(&path, all)?;
+        } else if path.is_file() {
+            match look_at(&path) {
+                Found::Clip => all.clips.push(path),
+                Found::LeftOut(reason) => all.left_out.push((path, reason)),
+                Found::Other => all.others += 1,
+                Found::Needed => {}
+            }
         }
     }
     Ok(())
 }
 
-fn is_clip(path: &Path) -> bool {
-    matches!(
-        format_of_name(&path.to_string_lossy()),
-        Some(Format::Bvh | Format::Amc | Format::Mclip)
-    )
+/// What a file in a folder is.
+enum Found {
+    Clip,
+    /// Motion, but in a format that is not read.
+    LeftOut(String),
+    /// Skeletons of motions, hidden files.
+    Needed,
+    Other,
+}
+
+fn look_at(path: &Path) -> Found {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    if name.starts_with('.') {
+        return Found::Needed;
+    }
+    let packed = ["zip", "gz"].iter();
+    let ending = path.extension().unwrap_or_default();
+    if packed
+        .into_iter()
+        .any(|known| ending.eq_ignore_ascii_case(known))
+    {
+        return Found::Clip;
+    }
+    match format_of_name(&name) {
+        Some(Format::Asf) => Found::Needed,
+        // Tables and JSON hold labels, too: what is in them decides.
+        Some(Format::Table | Format::Jsonl) | None => by_content(path),
+        Some(_) => Found::Clip,
+    }
+}
+
+fn by_content(path: &Path) -> Found {
+    const HEAD: u64 = 64 * 1024;
+    let mut head = Vec::new();
+    let read = fs::File::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut head));
+    if let Err(error) = read {
+        return Found::LeftOut(error.to_string());
+    }
+    match probe(&head, "") {
+        Ok(Format::Asf) => Found::Needed,
+        Ok(_) => Found::Clip,
+        Err(error) if error.found.starts_with("what looks like") && !is_media(&error.found) => {
+            Found::LeftOut(error.found)
+        }
+        Err(_) => Found::Other,
+    }
+}
+
+/// Pictures and videos lie beside motion without being any.
+fn is_media(found: &str) -> bool {
+    found.contains("video,") || found.contains("a picture,")
 }
 
 /// Reads a clip; `-` is standard input. Errors begin with the path.

@@ -6,9 +6,12 @@ use std::path::{Path, PathBuf};
 use morec::clip::Clip;
 use morec::formats::acclaim::{self, AmcOptions, Asf};
 use morec::formats::bvh::{self, BvhOptions, PositionChannels};
+use morec::formats::container::Member;
 use morec::formats::probe::{Format, format_of_name, probe};
 use morec::formats::{Limits, Loaded, ParseError, Place, Warning, mclip};
+use morec::formats::{c3d, jsonl, read_scene, table, trc};
 
+use crate::archives::Around;
 use crate::{ClipReader, ReadFile};
 
 /// Reads every format that morec knows; an AMC motion finds its ASF skeleton beside it or a folder above.
@@ -87,8 +90,13 @@ impl ClipReader for FileReader {
 }
 
 impl FileReader {
-    /// Reads `bytes`, which are the file at `path`; `-` is a stream without a place, and so without a skeleton near it.
-    pub fn open(&self, path: &Path, bytes: &[u8]) -> Result<OpenedFile, FileError> {
+    /// Reads `bytes`, which are the file at `path` and neither packed nor UTF-16.
+    pub(crate) fn open_bare(
+        &self,
+        path: &Path,
+        bytes: &[u8],
+        around: Around<'_>,
+    ) -> Result<OpenedFile, FileError> {
         let stem = if path == Path::new("-") {
             "stdin".to_owned()
         } else {
@@ -108,10 +116,21 @@ impl FileReader {
                 )
             }
             Format::Amc => {
-                let (loaded, skeleton) = self.amc(path, bytes, &stem)?;
+                let (loaded, skeleton) = self.amc(path, bytes, &stem, around)?;
                 (loaded, Some(skeleton))
             }
             Format::Mclip => (self.mclip(bytes, &stem)?, None),
+            Format::C3d => (c3d::read(bytes, &stem, self.rate_hz, &self.limits)?, None),
+            Format::Trc => (trc::read(bytes, &stem, self.rate_hz, &self.limits)?, None),
+            Format::Table => (table::read(bytes, &stem, self.rate_hz, &self.limits)?, None),
+            Format::Jsonl => (jsonl::read(bytes, &stem, self.rate_hz, &self.limits)?, None),
+            scene => {
+                let beside = |name: &str| around.file(path, name);
+                let (rate_hz, limits) = (self.rate_hz, &self.limits);
+                let loaded = read_scene(scene, bytes, &stem, rate_hz, &beside, limits);
+                let none = || ParseError::new(Place::File, "a format that is read", "another");
+                (loaded.ok_or_else(none)??, None)
+            }
         };
         Ok(OpenedFile {
             format,
@@ -138,15 +157,25 @@ impl FileReader {
     }
 
     /// A motion with the skeleton given, or with the first one near it that it fits.
-    fn amc(&self, path: &Path, bytes: &[u8], stem: &str) -> Result<(Loaded, PathBuf), FileError> {
+    fn amc(
+        &self,
+        path: &Path,
+        bytes: &[u8],
+        stem: &str,
+        around: Around<'_>,
+    ) -> Result<(Loaded, PathBuf), FileError> {
         if let Some(skeleton) = &self.skeleton {
-            return Ok((self.amc_with(bytes, stem, skeleton)?, skeleton.clone()));
+            let loaded = self.amc_with(bytes, stem, skeleton, Around::Folder)?;
+            return Ok((loaded, skeleton.clone()));
         }
-        let candidates = skeletons_near(path, stem);
+        let candidates = match around {
+            Around::Folder => skeletons_near(path, stem),
+            Around::Archive(members) => skeletons_among(members, stem),
+        };
         let mut best: Option<(Loaded, &Skeleton)> = None;
         let mut first_error = None;
         for skeleton in &candidates {
-            match self.amc_with(bytes, stem, &skeleton.path) {
+            match self.amc_with(bytes, stem, &skeleton.path, around) {
                 // Fewer warnings: a skeleton that lacks bones of the motion is not the right one.
                 Ok(loaded)
                     if best
@@ -174,9 +203,17 @@ impl FileReader {
         Ok((loaded, skeleton.path.clone()))
     }
 
-    fn amc_with(&self, bytes: &[u8], stem: &str, skeleton: &Path) -> Result<Loaded, FileError> {
+    fn amc_with(
+        &self,
+        bytes: &[u8],
+        stem: &str,
+        skeleton: &Path,
+        around: Around<'_>,
+    ) -> Result<Loaded, FileError> {
         let path = || skeleton.to_owned();
-        let asf = fs::read(skeleton).map_err(|why| FileError::Open { path: path(), why })?;
+        let asf = around
+            .read(skeleton)
+            .map_err(|why| FileError::Open { path: path(), why })?;
         let (asf, mut warnings) = acclaim::read_asf(&asf, &self.limits)
             .map_err(|why| FileError::Skeleton { path: path(), why })?;
         for warning in &mut warnings {
@@ -214,6 +251,7 @@ fn without_frames(asf: &Asf, name: String) -> Clip {
         tracks: Vec::new(),
         frames: 0,
         repaired: Vec::new(),
+        points: None,
     }
 }
 
@@ -242,20 +280,31 @@ fn skeletons_near(path: &Path, stem: &str) -> Vec<Skeleton> {
     };
     let mut found = Vec::new();
     for folder in [beside, above] {
-        let mut here: Vec<Skeleton> = fs::read_dir(&folder)
+        let paths = fs::read_dir(&folder)
             .into_iter()
             .flatten()
-            .filter_map(|entry| Some(entry.ok()?.path()))
-            .filter(|path| format_of_name(&path.to_string_lossy()) == Some(Format::Asf))
-            .map(|path| Skeleton {
-                kinship: kinship(&self::stem(&path), stem),
-                path,
-            })
-            .collect();
-        here.sort_by(|a, b| b.kinship.cmp(&a.kinship).then_with(|| a.path.cmp(&b.path)));
+            .filter_map(|entry| Some(entry.ok()?.path()));
+        let mut here = likeliest_first(paths, stem);
         here.truncate(MOST);
         found.append(&mut here);
     }
+    found
+}
+
+/// Skeletons in the archive that a motion is in.
+fn skeletons_among(members: &[Member], stem: &str) -> Vec<Skeleton> {
+    likeliest_first(members.iter().map(|m| PathBuf::from(&m.path)), stem)
+}
+
+fn likeliest_first(paths: impl Iterator<Item = PathBuf>, stem: &str) -> Vec<Skeleton> {
+    let mut found: Vec<Skeleton> = paths
+        .filter(|path| format_of_name(&path.to_string_lossy()) == Some(Format::Asf))
+        .map(|path| Skeleton {
+            kinship: kinship(&self::stem(&path), stem),
+            path,
+        })
+        .collect();
+    found.sort_by(|a, b| b.kinship.cmp(&a.kinship).then_with(|| a.path.cmp(&b.path)));
     found
 }
 

@@ -14,7 +14,7 @@ use rusqlite::{Connection, OptionalExtension, params};
 
 use crate::motion::{Packed, pack};
 use crate::time::now_secs;
-use crate::{ClipId, ClipUpdate, DbError, MotionDb, rows};
+use crate::{ClipId, ClipUpdate, DbError, MotionDb, rows, split_choice};
 
 /// Files in one transaction: a crash loses the work of so many at most, and nothing that was committed.
 const BATCH: usize = 32;
@@ -191,11 +191,16 @@ fn make(
     params: &FeatureParams,
     known: &std::collections::HashMap<[u8; 32], i64>,
 ) -> Made {
-    let bytes = match std::fs::read(path) {
+    let (file, choice) = split_choice(path);
+    let bytes = match std::fs::read(file) {
         Ok(bytes) => bytes,
         Err(error) => return Made::Refused(error.to_string()),
     };
-    let hash = *blake3::hash(&bytes).as_bytes();
+    // One clip of a file is another content than the whole.
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(&bytes);
+    hasher.update(choice.unwrap_or_default().as_bytes());
+    let hash = *hasher.finalize().as_bytes();
     if let Some(file) = known.get(&hash) {
         return Made::Known(*file);
     }

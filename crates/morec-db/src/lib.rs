@@ -17,6 +17,7 @@
 //! | rows, search by example, near copies | [`rows`], [`search`] |
 //! | the other samples of classes that a few are labelled of | [`MotionDb::propose`], [`questions`] |
 
+mod archives;
 mod clips;
 mod db;
 mod error;
@@ -37,6 +38,7 @@ mod testing;
 mod tests;
 mod time;
 
+pub use archives::split_choice;
 pub use clips::{ClipFilter, ClipId, ClipInfo, ClipUpdate};
 pub use db::{Health, MotionDb, Summary};
 pub use error::DbError;

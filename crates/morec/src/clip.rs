@@ -107,6 +107,28 @@ pub struct JointTrack {
     pub positions: Vec<Vec3>,
 }
 
+/// A stretch of frames in which a point was not seen.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Gap {
+    /// The joint that stands for the point.
+    pub joint: usize,
+    /// The frames.
+    pub frames: Span,
+}
+
+/// What is known of a clip of points: markers, landmarks or joint positions without rotations.
+///
+/// Its skeleton is flat: each point is a root joint with a [`JointTrack`] and no rotation. Every position is finite:
+/// where a point was not seen, it lies on the line between where it was seen before and after.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Points {
+    /// Stretches too long for interpolation to be trusted, by joint and then by time. Positions there are
+    /// placeholders; features leave the point out.
+    pub gaps: Vec<Gap>,
+    /// Metres in the clip's unit of length, if the file states one.
+    pub metres_per_unit: Option<f64>,
+}
+
 /// A skeleton and frames at a fixed rate. Lengths and axes are the file's own until
 /// [`import`](crate::import) has made them metres and Y-up.
 #[derive(Debug, Clone, PartialEq)]
@@ -126,9 +148,78 @@ pub struct Clip {
     pub frames: usize,
     /// Frames that the file lacked or spoiled and that were filled by interpolation.
     pub repaired: Vec<Span>,
+    /// Set for a clip of points: rotations are then unknown and stored as identities.
+    pub points: Option<Points>,
 }
 
 impl Clip {
+    /// A clip of points: for each a name and its positions, one for each frame.
+    ///
+    /// # Panics
+    /// If the points have different numbers of positions.
+    pub fn of_points(
+        name: String,
+        rate_hz: f64,
+        points: impl IntoIterator<Item = (String, Vec<Vec3>)>,
+        known: Points,
+    ) -> Self {
+        let (mut joints, mut tracks) = (Vec::new(), Vec::new());
+        for (joint, (name, positions)) in points.into_iter().enumerate() {
+            joints.push(Joint {
+                name,
+                parent: None,
+                offset: positions.first().copied().unwrap_or_else(Vec3::zeros),
+                tip: None,
+            });
+            tracks.push(JointTrack { joint, positions });
+        }
+        let frames = tracks.first().map_or(0, |t| t.positions.len());
+        assert!(tracks.iter().all(|t| t.positions.len() == frames));
+        Self {
+            name,
+            rotations: vec![Quat::identity(); frames * joints.len()],
+            skeleton: Skeleton { joints },
+            rate_hz,
+            tracks,
+            frames,
+            repaired: Vec::new(),
+            points: Some(known),
+        }
+    }
+
+    /// Adds joints that move in the world, each with a position for every frame. O(frames × joints).
+    ///
+    /// # Panics
+    /// If there are not as many positions as frames.
+    pub(crate) fn add_roots(&mut self, roots: Vec<(String, Vec<Vec3>)>) {
+        let (before, added) = (self.skeleton.len(), roots.len());
+        if added == 0 {
+            return;
+        }
+        for (name, positions) in roots {
+            assert_eq!(positions.len(), self.frames, "a position for each frame");
+            let joint = self.skeleton.len();
+            self.skeleton.joints.push(Joint {
+                name,
+                parent: None,
+                offset: positions.first().copied().unwrap_or_else(Vec3::zeros),
+                tip: None,
+            });
+            self.tracks.push(JointTrack { joint, positions });
+        }
+        let mut rotations = Vec::with_capacity(self.frames * (before + added));
+        for frame in 0..self.frames {
+            rotations.extend_from_slice(&self.rotations[frame * before..(frame + 1) * before]);
+            rotations.resize(rotations.len() + added, Quat::identity());
+        }
+        self.rotations = rotations;
+    }
+
+    /// Whether joints are known to turn; a clip of points has positions alone.
+    pub fn has_rotations(&self) -> bool {
+        self.points.is_none()
+    }
+
     /// Length in seconds: frames over rate, so a frame counts for its whole period.
     pub fn duration_secs(&self) -> f64 {
         self.frames as f64 / self.rate_hz

@@ -1,6 +1,6 @@
 //! Forward kinematics: from joint rotations to joint positions in the world.
 
-use crate::clip::{Clip, Span};
+use crate::clip::{Clip, Points, Span};
 use crate::math::{Quat, Vec3};
 
 /// World positions and orientations of every joint at one frame; buffers are reused from frame to frame.
@@ -57,6 +57,34 @@ impl WorldPose {
             Some(tip) => self.positions[joint] + self.rotations[joint] * tip,
             None => self.positions[joint],
         }
+    }
+}
+
+impl Clip {
+    /// Where the joints are in the world, as a clip of points; `metres_per_unit` becomes what is known of its unit. A
+    /// clip of points stays what it is. O(joints × frames).
+    pub fn to_points(&self, metres_per_unit: Option<f64>) -> Clip {
+        if !self.has_rotations() {
+            return self.clone();
+        }
+        let mut positions = vec![Vec::with_capacity(self.frames); self.skeleton.len()];
+        let mut pose = WorldPose::default();
+        for frame in 0..self.frames {
+            pose.set(self, frame);
+            for (joint, position) in positions.iter_mut().zip(&pose.positions) {
+                joint.push(*position);
+            }
+        }
+        let joints = self.skeleton.joints().iter();
+        let names = joints.map(|joint| joint.name.clone());
+        let known = Points {
+            metres_per_unit,
+            ..Points::default()
+        };
+        let name = self.name.clone();
+        let mut clip = Clip::of_points(name, self.rate_hz, names.zip(positions), known);
+        clip.repaired.clone_from(&self.repaired);
+        clip
     }
 }
 

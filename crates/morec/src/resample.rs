@@ -1,6 +1,6 @@
 //! The same motion at another rate.
 
-use crate::clip::{Clip, JointTrack, Span};
+use crate::clip::{Clip, Gap, JointTrack, Points, Span};
 use crate::math::{same_hemisphere, slerp};
 
 /// A rate that no clip can be brought to, or that a clip cannot have.
@@ -34,6 +34,7 @@ impl Clip {
             tracks: self.tracks.iter().map(|t| track_at(t, &instants)).collect(),
             frames: instants.len(),
             repaired: repaired_at(&self.repaired, &instants),
+            points: self.points.as_ref().map(|p| points_at(p, &instants)),
         })
     }
 
@@ -105,6 +106,18 @@ pub(crate) fn repaired_at(repaired: &[Span], instants: &[(usize, f64)]) -> Vec<S
     spans
 }
 
+/// The same for a clip of points: a gap is every new frame that a missing old one has a part in.
+pub(crate) fn points_at(points: &Points, instants: &[(usize, f64)]) -> Points {
+    let mut gaps = Vec::new();
+    for of_joint in points.gaps.chunk_by(|a, b| a.joint == b.joint) {
+        let spans: Vec<Span> = of_joint.iter().map(|gap| gap.frames.clone()).collect();
+        let joint = of_joint[0].joint;
+        let at = repaired_at(&spans, instants).into_iter();
+        gaps.extend(at.map(|frames| Gap { joint, frames }));
+    }
+    Points { gaps, ..*points }
+}
+
 /// The frame at or before the place `at` (in frames), and how far it lies towards the next, 0 to 1 exclusive.
 fn instant(at: f64, last: f64) -> (usize, f64) {
     let nearest = at.round();
@@ -165,6 +178,7 @@ mod tests {
             tracks,
             frames,
             repaired: Vec::new(),
+            points: None,
         }
     }
 
@@ -230,6 +244,20 @@ mod tests {
             old.resampled(120.0).unwrap().repaired,
             [0..2, 21..26, 119..121]
         );
+    }
+
+    #[test]
+    fn gaps_of_points_follow() {
+        let mut old = clip(60.0, 61, |t| t, |t| t);
+        let gap = |joint, frames| Gap { joint, frames };
+        let gaps = vec![gap(0, 11..13), gap(0, 60..61), gap(3, 0..1)];
+        old.points = Some(Points {
+            gaps,
+            metres_per_unit: Some(0.001),
+        });
+        let new = old.resampled(30.0).unwrap().points.unwrap();
+        assert_eq!(new.gaps, [gap(0, 6..7), gap(0, 30..31), gap(3, 0..1)]);
+        assert_eq!(new.metres_per_unit, Some(0.001));
     }
 
     #[test]

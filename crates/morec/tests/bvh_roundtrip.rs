@@ -1,7 +1,7 @@
 //! What is written as BVH is read back the same.
 #![allow(clippy::unwrap_used)]
 
-use morec::clip::{Clip, Joint, JointTrack, Skeleton};
+use morec::clip::{Clip, Joint, JointTrack, Points, Skeleton};
 use morec::formats::Limits;
 use morec::formats::bvh::{self, BvhOptions};
 use morec::kinematics::WorldPose;
@@ -78,6 +78,7 @@ fn clip() -> impl Strategy<Value = Clip> {
                 tracks,
                 frames,
                 repaired: Vec::new(),
+                points: None,
             }
         })
     })
@@ -145,6 +146,7 @@ fn one_joint(name: &str) -> Clip {
         tracks: Vec::new(),
         frames: 2,
         repaired: Vec::new(),
+        points: None,
     }
 }
 
@@ -206,5 +208,26 @@ fn a_clip_without_a_rate_is_not_written() {
             ..one_joint("Hips")
         };
         assert!(bvh::write(&clip, &mut Vec::new()).is_err());
+    }
+}
+
+proptest! {
+    #[test]
+    fn points_come_back(tracks in prop::collection::vec(prop::collection::vec(vec3(80.0), 5), 1..12), still in any::<bool>()) {
+        let mut tracks = tracks;
+        if still {
+            let first = tracks[0][0];
+            tracks[0].fill(first);
+        }
+        let points = tracks.iter().enumerate().map(|(p, track)| (format!("M{p}"), track.clone()));
+        let clip = Clip::of_points("c".into(), 100.0, points, Points::default());
+        let back = read_back(&clip);
+        prop_assert!(!back.has_rotations());
+        prop_assert_eq!(back.skeleton.len(), tracks.len());
+        for (track, expected) in back.tracks.iter().zip(&tracks) {
+            for (at, expected) in track.positions.iter().zip(expected) {
+                prop_assert!((at - expected).amax() < 1e-6, "{} {}", at, expected);
+            }
+        }
     }
 }

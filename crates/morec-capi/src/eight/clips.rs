@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use morec::clip::Clip;
-use morec::formats::Limits;
 use morec::formats::acclaim::{AmcOptions, read_amc, read_asf};
 use morec::formats::bvh::{self, BvhOptions};
 use morec::formats::mclip;
 use morec::formats::probe::{Format, format_of_name, probe};
+use morec::formats::{Limits, read_scene};
 use morec::import::{ImportOptions, Imported, prepare};
 use morec::index::MotionIndex;
 
@@ -55,6 +55,13 @@ fn read(path: &Path, bytes: &[u8]) -> Result<Option<Clip>, Error> {
             path,
             "a skeleton without motion; name the AMC file",
         )),
+        other => {
+            let beside = |name: &str| std::fs::read(path.with_file_name(name)).ok();
+            match read_scene(other, bytes, &stem, None, &beside, &limits) {
+                Some(loaded) => Ok(loaded.map_err(located)?.clips.into_iter().next()),
+                None => Err(file_error(path, "a format that is not read here")),
+            }
+        }
     }
 }
 

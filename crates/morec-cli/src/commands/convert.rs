@@ -1,4 +1,4 @@
-//! `morec convert`: any clip becomes BVH.
+//! `morec convert`: any clip becomes BVH, or points over time.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -6,25 +6,29 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
 use morec::clip::Clip;
-use morec::formats::bvh;
+use morec::formats::{bvh, c3d, jsonl, trc};
+use morec::import::{ImportOptions, prepare};
 
 use crate::files::{self, ReadArgs};
 
-/// Write a clip as BVH
+/// Write a clip as BVH, or its points as C3D, TRC or lines of JSON
 ///
-/// Lengths and axes stay as the clip has them: nothing is scaled or turned. Joints, their names and their
-/// movements are kept. What was repaired in reading is said on standard error.
+/// The ending of the output chooses: .c3d, .trc and .jsonl get where joints and points are, without rotations;
+/// everything else is BVH. Lengths and axes stay as the clip has them: nothing is scaled (but lengths without a named unit
+/// in C3D and TRC, which become millimetres) or turned. Joints, their names and their movements are kept; points in BVH
+/// have no rotations. What was repaired in reading is said on standard error.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   morec convert 13_29.amc -o 13_29.bvh
   morec convert walk.bvh -o walk30.bvh --rate 30
+  morec convert gait.c3d -o gait.trc
   morec convert 13_29.amc --skeleton 13.asf -o - | head")]
 pub struct Args {
-    /// The clip: BVH, AMC with its ASF, or MCLIP; - is standard input
+    /// The clip, in any format that is read; - is standard input
     clip: PathBuf,
-    /// The BVH file to write; - is standard output
-    #[arg(short, long, value_name = "BVH")]
+    /// The file to write; - is BVH on standard output
+    #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Resample to this rate; without it, every frame is kept as it is
     #[arg(long, value_name = "HZ", value_parser = files::rate)]
@@ -59,6 +63,16 @@ pub fn run(args: Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// What writes a clip in some format.
+type Writer = fn(&Clip, &mut dyn Write) -> std::io::Result<()>;
+
+/// Formats of points, by the ending of their files; everything else is written as BVH.
+const POINTS: [(&str, Writer); 3] = [
+    ("trc", trc::write),
+    ("c3d", c3d::write),
+    ("jsonl", jsonl::write),
+];
+
 fn one_of(mut clips: Vec<Clip>, character: Option<usize>) -> Result<Clip> {
     let count = clips.len();
     match character {
@@ -69,7 +83,26 @@ fn one_of(mut clips: Vec<Clip>, character: Option<usize>) -> Result<Clip> {
     }
 }
 
-/// Writes a clip as BVH, whole or not at all.
+/// Writes a clip in the format that the ending of `path` names, else as BVH; whole or not at all.
 pub fn write_clip(clip: &Clip, path: &Path) -> Result<()> {
-    files::write_whole(path, |out| bvh::write(clip, out))
+    let ending = path.extension().unwrap_or_default();
+    match POINTS
+        .iter()
+        .find(|(known, _)| ending.eq_ignore_ascii_case(known))
+    {
+        Some((_, write)) => {
+            let points = points_of(clip)?;
+            files::write_whole(path, |out| write(&points, out))
+        }
+        None => files::write_whole(path, |out| bvh::write(clip, out)),
+    }
+}
+
+/// Where the joints are; formats of points name their unit, so one is inferred where the clip says none.
+fn points_of(clip: &Clip) -> Result<Clip> {
+    if !clip.has_rotations() || clip.frames == 0 {
+        return Ok(clip.clone());
+    }
+    let facts = prepare(clip.clone(), &ImportOptions::default())?.facts;
+    Ok(clip.to_points(Some(facts.metres_per_unit)))
 }

@@ -17,7 +17,8 @@ use report::{FileReport, Report};
 ///
 /// One clip is shown joint by joint, several in a few lines each; a folder stands for all clips in it and below.
 /// Unit, up axis and rest pose are inferred from the motion; how they were taken is how every other command
-/// takes them. Exit code 1 if a file could not be read (the others are shown).
+/// takes them. Exit code 1 if a file could not be read (the others are shown), or a folder holds motion in a format that is
+/// not read (it is named).
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -30,7 +31,8 @@ A roles file has one role a line, a tab, and the joint's name (or - for none):
   hips<TAB>Pelvis
   left_shoulder<TAB>-")]
 pub struct Args {
-    /// Clips (BVH, AMC, MCLIP), skeletons (ASF) or folders of clips; - is standard input
+    /// Clips in any format that is read, skeletons (ASF) or folders of clips; FILE#2 and FILE#name are one clip of a file;
+    /// - is standard input
     #[arg(required = true, value_name = "CLIP")]
     clips: Vec<PathBuf>,
     /// Print one JSON array, with an object for each file
@@ -55,10 +57,12 @@ pub struct Args {
 /// Reads and shows every clip.
 pub fn run(args: Args) -> Result<ExitCode> {
     let options = import_options(&args)?;
-    let paths = files::expand(&args.clips)?;
+    let expanded = files::expand_all(&args.clips)?;
+    let left_out = expanded.say_left_out();
+    let paths = expanded.clips;
     let full = args.full || paths.len() == 1;
     let mut progress = Progress::new(paths.len(), "reading clips");
-    let mut failed = false;
+    let mut failed = left_out;
     let mut reports: Vec<FileReport> = Vec::new();
     for path in paths {
         let report = match inspect(&path, &args.read, &options) {

@@ -94,6 +94,7 @@ mod tests {
             tracks: Vec::new(),
             frames,
             repaired: Vec::new(),
+            points: None,
         };
         let mut bytes = compress(&clip, &SmoothParams::default(), &())
             .unwrap()

@@ -4,9 +4,28 @@
 //! cannot is refused with a [`ParseError`] that says where, what was expected and what was found.
 
 pub mod acclaim;
+mod builder;
 pub mod bvh;
+pub mod c3d;
+mod cells;
+pub mod container;
+#[cfg(feature = "fbx")]
+pub mod fbx;
+pub mod gltf;
+pub mod jsonl;
+mod keys;
+#[cfg(test)]
+mod mangle;
 pub mod mclip;
+pub mod mocopi;
+pub mod mvnx;
+mod points;
 pub mod probe;
+mod scene;
+pub mod smpl;
+pub mod table;
+mod timing;
+pub mod trc;
 
 use std::fmt;
 
@@ -118,4 +137,52 @@ pub struct Loaded {
     pub clips: Vec<Clip>,
     /// What was repaired or looks wrong.
     pub warnings: Vec<Warning>,
+}
+
+/// Reads the formats of whole scenes and suits: [MVNX](mvnx), [glTF](gltf), [FBX](fbx), [SMPL](smpl) and
+/// [mocopi](mocopi). `rate_hz` replaces the rate where the file holds frames; keys in seconds keep theirs. `None` for
+/// other formats.
+pub fn read_scene(
+    format: probe::Format,
+    bytes: &[u8],
+    name: &str,
+    rate_hz: Option<f64>,
+    beside: gltf::Beside<'_>,
+    limits: &Limits,
+) -> Option<Result<Loaded, ParseError>> {
+    use probe::Format;
+    let loaded = match format {
+        Format::Mvnx => mvnx::read(bytes, name, limits),
+        Format::Smpl => smpl::read(bytes, name, limits),
+        Format::Mocopi => mocopi::read(bytes, name, limits),
+        Format::Gltf => gltf::read(bytes, name, beside, limits),
+        Format::Fbx => read_fbx(bytes, name, limits),
+        _ => return None,
+    };
+    let timed = matches!(format, Format::Gltf | Format::Fbx);
+    Some(loaded.map(|mut loaded| {
+        match rate_hz {
+            Some(_) if timed => {
+                let text = "its keys stand at times, not frames; the rate given is not used";
+                loaded.warnings.push(Warning::new(Place::File, text));
+            }
+            Some(rate_hz) => loaded.clips.iter_mut().for_each(|c| c.rate_hz = rate_hz),
+            None => {}
+        }
+        loaded
+    }))
+}
+
+#[cfg(feature = "fbx")]
+fn read_fbx(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseError> {
+    fbx::read(bytes, name, limits)
+}
+
+#[cfg(not(feature = "fbx"))]
+fn read_fbx(_: &[u8], _: &str, _: &Limits) -> Result<Loaded, ParseError> {
+    Err(ParseError::new(
+        Place::File,
+        "a format that this build reads",
+        "FBX, which needs the feature `fbx`",
+    ))
 }

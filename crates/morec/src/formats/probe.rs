@@ -2,7 +2,7 @@
 //!
 //! A new format is registered in `READ`; one that is only recognised, to be refused by its name, in `UNREAD`.
 
-use super::{ParseError, Place};
+use super::{ParseError, Place, mocopi, table};
 use crate::smooth::MAGIC;
 
 /// A format that can be read.
@@ -17,6 +17,24 @@ pub enum Format {
     Amc,
     /// The stored form of a compressed clip ([`smooth`](crate::smooth)).
     Mclip,
+    /// Points of biomechanics, binary.
+    C3d,
+    /// Points as tab-separated text.
+    Trc,
+    /// Lines of JSON, a pose in each.
+    Jsonl,
+    /// A table of positions, CSV or TSV.
+    Table,
+    /// Xsens suits, XML.
+    Mvnx,
+    /// glTF 2.0, binary or text, VRM and VRMA among it.
+    Gltf,
+    /// Autodesk's exchange of scenes, binary or text.
+    Fbx,
+    /// A NumPy archive of SMPL poses, as AMASS has them.
+    Smpl,
+    /// Recorded packets of mocopi.
+    Mocopi,
 }
 
 struct Readable {
@@ -26,7 +44,7 @@ struct Readable {
 }
 
 /// Every format that is read, in the order in which its content is asked for.
-const READ: [Readable; 4] = [
+const READ: [Readable; 19] = [
     Readable {
         format: Format::Mclip,
         extension: "mclip",
@@ -47,56 +65,212 @@ const READ: [Readable; 4] = [
         extension: "amc",
         looks_so: is_amc,
     },
+    Readable {
+        format: Format::Fbx,
+        extension: "fbx",
+        looks_so: |h| {
+            h.starts("Kaydara FBX Binary") || h.starts("; FBX") || h.starts("FBXHeaderExtension")
+        },
+    },
+    Readable {
+        format: Format::Gltf,
+        extension: "gltf",
+        looks_so: is_gltf,
+    },
+    Readable {
+        format: Format::Gltf,
+        extension: "glb",
+        looks_so: |h| h.bytes.starts_with(b"glTF"),
+    },
+    Readable {
+        format: Format::Gltf,
+        extension: "vrm",
+        looks_so: |_| false,
+    },
+    Readable {
+        format: Format::Gltf,
+        extension: "vrma",
+        looks_so: |_| false,
+    },
+    Readable {
+        format: Format::Mvnx,
+        extension: "mvnx",
+        looks_so: |h| h.starts("<") && h.contains(b"<mvnx"),
+    },
+    Readable {
+        format: Format::Smpl,
+        extension: "npz",
+        looks_so: is_numpy_archive,
+    },
+    Readable {
+        format: Format::Mocopi,
+        extension: "mocopi",
+        looks_so: |h| mocopi::looks_so(h.bytes),
+    },
+    Readable {
+        format: Format::Trc,
+        extension: "trc",
+        looks_so: is_trc,
+    },
+    Readable {
+        format: Format::C3d,
+        extension: "c3d",
+        looks_so: |h| {
+            h.bytes.len() >= 512 && matches!(h.bytes, [1..128, 0x50, ..]) && h.is_binary()
+        },
+    },
+    Readable {
+        format: Format::Jsonl,
+        extension: "jsonl",
+        looks_so: is_jsonl,
+    },
+    Readable {
+        format: Format::Jsonl,
+        extension: "ndjson",
+        looks_so: |_| false,
+    },
+    Readable {
+        format: Format::Table,
+        extension: "csv",
+        looks_so: |h| !h.is_binary() && table::looks_so(h.bytes),
+    },
+    Readable {
+        format: Format::Table,
+        extension: "tsv",
+        looks_so: |_| false,
+    },
+    Readable {
+        format: Format::Table,
+        extension: "tab",
+        looks_so: |_| false,
+    },
 ];
 
 struct Unread {
     name: &'static str,
+    /// How to get what can be read; a sentence without its first letter's case.
+    help: &'static str,
     looks_so: fn(&Head) -> bool,
 }
 
+const fn unread(name: &'static str, help: &'static str, looks_so: fn(&Head) -> bool) -> Unread {
+    Unread {
+        name,
+        help,
+        looks_so,
+    }
+}
+
+const BLENDER: &str = "open it in Blender and export BVH, FBX or glTF";
+const UNPACK: &str = "unpack it";
+const SCENE: &str = "export FBX, BVH or glTF from the program that made it";
+const NUMPY: &str = "save poses as AMASS does, in an .npz, or positions as a table";
+const VIDEO: &str = "it holds pictures; a tracker of poses makes positions of them";
+
 /// Formats that are recognised only to say that they are not read.
-const UNREAD: [Unread; 10] = [
-    Unread {
-        name: "FBX",
-        looks_so: |h| h.starts("Kaydara FBX Binary") || h.starts("; FBX"),
-    },
-    Unread {
-        name: "binary glTF",
-        looks_so: |h| h.starts("glTF"),
-    },
-    Unread {
-        name: "glTF",
-        looks_so: |h| h.starts("{") && h.contains(b"\"asset\""),
-    },
-    Unread {
-        name: "C3D",
-        looks_so: |h| matches!(h.bytes, [2..32, 0x50, ..]),
-    },
-    Unread {
-        name: "an npz or other zip archive",
-        looks_so: |h| h.starts("PK\x03\x04"),
-    },
-    Unread {
-        name: "a NumPy array",
-        looks_so: |h| h.bytes.starts_with(b"\x93NUMPY"),
-    },
-    Unread {
-        name: "MVNX",
-        looks_so: |h| h.starts("<") && h.contains(b"<mvnx"),
-    },
-    Unread {
-        name: "TRC",
-        looks_so: |h| h.starts("PathFileType"),
-    },
-    Unread {
-        name: "USD",
-        looks_so: |h| h.starts("PXR-USDC") || h.starts("#usda"),
-    },
-    Unread {
-        name: "HDF5",
-        looks_so: |h| h.bytes.starts_with(b"\x89HDF"),
-    },
+const UNREAD: [Unread; 36] = [
+    unread("a zip archive", UNPACK, |h| {
+        h.bytes.starts_with(b"PK\x03\x04") || h.bytes.starts_with(b"PK\x05\x06")
+    }),
+    unread("a gzip file", UNPACK, |h| {
+        h.bytes.starts_with(b"\x1f\x8b\x08")
+    }),
+    unread("a NumPy array", NUMPY, |h| {
+        h.bytes.starts_with(b"\x93NUMPY")
+    }),
+    unread("an OpenSim motion (MOT, STO)", OPENSIM, is_opensim_table),
+    unread("an OpenSim model", OPENSIM, |h| {
+        h.starts("<") && h.contains(b"<OpenSimDocument")
+    }),
+    unread("USD", BLENDER, |h| {
+        h.starts("PXR-USDC") || h.starts("#usda")
+    }),
+    unread("a Blender file", BLENDER, |h| h.starts("BLENDER")),
+    unread("Alembic", BLENDER, |h| h.starts("Ogawa")),
+    unread("COLLADA", BLENDER, |h| {
+        h.starts("<") && h.contains(b"<COLLADA")
+    }),
+    unread("X3D", BLENDER, |h| h.starts("<") && h.contains(b"<X3D")),
+    unread("Maya ASCII", SCENE, |h| h.starts("//Maya ASCII")),
+    unread("Maya binary", SCENE, |h| {
+        (h.starts("FOR4") || h.starts("FOR8")) && h.contains(b"Maya")
+    }),
+    unread(
+        "a 3ds Max biped motion (BIP)",
+        "load it on a Biped in 3ds Max and save BVH or FBX",
+        |h| h.starts("BIPF"),
+    ),
+    unread("a 3ds Max or other OLE file", SCENE, |h| {
+        h.bytes.starts_with(b"\xD0\xCF\x11\xE0")
+    }),
+    unread(
+        "a MikuMikuDance motion (VMD)",
+        "load it on its model in Blender (mmd_tools) and export BVH or FBX",
+        |h| h.starts("Vocaloid Motion Data"),
+    ),
+    unread(
+        "a MikuMikuDance model (PMX, PMD)",
+        "it holds no motion",
+        |h| h.starts("PMX ") || h.bytes.starts_with(b"Pmd"),
+    ),
+    unread(
+        "a Unity asset",
+        "play it in Unity and record it with its FBX exporter, or as VRMA",
+        |h| h.starts("%YAML") && h.contains(b"unity3d.com"),
+    ),
+    unread("HDF5", NUMPY, |h| h.bytes.starts_with(b"\x89HDF")),
+    unread("MATLAB's MAT", NUMPY, |h| h.starts("MATLAB 5.0")),
+    unread(
+        "a pickle of Python",
+        "it can run programs when it is opened; save poses as AMASS does, in an .npz",
+        |h| matches!(h.bytes, [0x80, 2..=5, ..]),
+    ),
+    unread("a PyTorch or old Python archive", NUMPY, |h| {
+        h.bytes.starts_with(b"(dp") || h.bytes.starts_with(b"(lp")
+    }),
+    unread("HTR of Motion Analysis", SCENE, |h| {
+        h.contains(b"FileType htr") || h.contains(b"[SegmentNames&Hierarchy]")
+    }),
+    unread("a Vicon or Nexus XML file", "export C3D", |h| {
+        h.starts("<") && (h.contains(b"<KinematicModel") || h.contains(b"<ViconModel"))
+    }),
+    unread("Theia or QTM XML", "export C3D, FBX or TRC", |h| {
+        h.starts("<") && h.contains(b"<QTM")
+    }),
+    unread(
+        "a recording of Rokoko (JSON)",
+        "export BVH or FBX from Rokoko Studio",
+        |h| h.starts("{") && h.contains(b"\"actors\"") && h.contains(b"\"scene\""),
+    ),
+    unread("Biovision's BVA", "save BVH", |h| {
+        h.starts("Segment:") && h.contains(b"Frames:")
+    }),
+    unread("a tar archive", UNPACK, |h| {
+        h.bytes.get(257..262) == Some(b"ustar")
+    }),
+    unread("a bzip2 file", UNPACK, |h| h.bytes.starts_with(b"BZh")),
+    unread("an xz file", UNPACK, |h| h.bytes.starts_with(b"\xFD7zXZ")),
+    unread("a 7z archive", UNPACK, |h| {
+        h.bytes.starts_with(b"7z\xBC\xAF")
+    }),
+    unread("a rar archive", UNPACK, |h| h.bytes.starts_with(b"Rar!")),
+    unread("a Zstandard file", UNPACK, |h| {
+        h.bytes.starts_with(b"\x28\xB5\x2F\xFD")
+    }),
+    unread("an MP4 video", VIDEO, |h| {
+        h.bytes.get(4..8) == Some(b"ftyp")
+    }),
+    unread("an AVI video", VIDEO, |h| h.starts("RIFF")),
+    unread("a Matroska video", VIDEO, |h| {
+        h.bytes.starts_with(b"\x1A\x45\xDF\xA3")
+    }),
+    unread("a picture", VIDEO, |h| {
+        h.bytes.starts_with(b"\x89PNG") || h.bytes.starts_with(b"\xFF\xD8\xFF")
+    }),
 ];
+
+const OPENSIM: &str = "joint angles mean something only with the model they were made for; run OpenSim's BodyKinematics \
+    or PointKinematics with it and give the positions as a table or TRC";
 
 /// Which format `bytes` have; `name` (a file's name or path) decides if they do not say.
 ///
@@ -107,15 +281,17 @@ pub fn probe(bytes: &[u8], name: &str) -> Result<Format, ParseError> {
     if let Some(found) = READ.iter().find(|readable| (readable.looks_so)(&head)) {
         return Ok(found.format);
     }
-    let expected = "BVH, ASF, AMC or MCLIP";
     if let Some(unread) = UNREAD.iter().find(|unread| (unread.looks_so)(&head)) {
+        let Unread { name, help, .. } = unread;
         return Err(ParseError::new(
             Place::File,
-            expected,
-            format!("what looks like {}, not read yet", unread.name),
+            "a motion format that is read",
+            format!("what looks like {name}, which is not read: {help}"),
         ));
     }
-    if let Some(format) = format_of_name(name).filter(|_| !head.is_binary()) {
+    // A broken C3D file is told what is wrong with it by its reader.
+    let by_name = |format: &Format| !head.is_binary() || *format == Format::C3d;
+    if let Some(format) = format_of_name(name).filter(by_name) {
         return Ok(format);
     }
     let found = match bytes {
@@ -123,8 +299,16 @@ pub fn probe(bytes: &[u8], name: &str) -> Result<Format, ParseError> {
         _ if head.is_binary() => "unknown binary content",
         _ => "unknown text",
     };
+    let expected = match format_of_name(name) {
+        // What it is called and is not.
+        Some(format) => format!("{format:?}, as its name says"),
+        None => EXPECTED.to_owned(),
+    };
     Err(ParseError::new(Place::File, expected, found))
 }
+
+const EXPECTED: &str =
+    "BVH, AMC, FBX, glTF, VRM, MVNX, AMASS, C3D, TRC, MCLIP, JSON lines or a table of positions";
 
 /// The format that a file's ending promises.
 pub fn format_of_name(name: &str) -> Option<Format> {
@@ -187,6 +371,47 @@ fn is_bvh(head: &Head) -> bool {
             .is_some_and(|line| line.eq_ignore_ascii_case(b"MOTION"))
 }
 
+/// `PathFileType`, or a row that begins with `Frame#` and names points after a row of TRC's header.
+fn is_trc(head: &Head) -> bool {
+    let begins = |line: &[u8], word: &[u8]| {
+        let line = line.strip_prefix(b"\"").unwrap_or(line);
+        line.len() >= word.len() && line[..word.len()].eq_ignore_ascii_case(word)
+    };
+    let opens = |line: &[u8]| begins(line, b"PathFileType") || begins(line, b"DataRate");
+    !head.is_binary() && head.lines().take(3).any(opens)
+}
+
+/// An object with poses on the first line.
+fn is_jsonl(head: &Head) -> bool {
+    let mut lines = head.lines();
+    let first = lines.next().unwrap_or_default();
+    let holds = |word: &[u8]| first.windows(word.len()).any(|window| window == word);
+    first.starts_with(b"{")
+        && (holds(b"\"positions\"") || holds(b"\"rotations\""))
+        && !holds(b"\"asset\"")
+}
+
+/// An object with glTF's words.
+fn is_gltf(head: &Head) -> bool {
+    let lists = || head.contains(b"\"nodes\"") && head.contains(b"\"scenes\"");
+    head.starts("{") && (head.contains(b"\"asset\"") || lists())
+}
+
+/// A zip archive whose first file is an array.
+fn is_numpy_archive(head: &Head) -> bool {
+    let name = || {
+        let length = u16::from_le_bytes([*head.bytes.get(26)?, *head.bytes.get(27)?]);
+        head.bytes.get(30..30 + usize::from(length))
+    };
+    head.bytes.starts_with(b"PK\x03\x04") && name().is_some_and(|name| name.ends_with(b".npy"))
+}
+
+/// A header that ends in `endheader`.
+fn is_opensim_table(head: &Head) -> bool {
+    let mut lines = head.lines().take(200);
+    !head.is_binary() && lines.any(|line| line.eq_ignore_ascii_case(b"endheader"))
+}
+
 fn is_asf(head: &Head) -> bool {
     let first = head.lines().next().unwrap_or_default().to_ascii_lowercase();
     let opens = [
@@ -235,6 +460,8 @@ mod tests {
 
     #[test]
     fn content_comes_before_the_name() {
+        let mut c3d = vec![2u8, 0x50];
+        c3d.resize(512, 0);
         for (bytes, name, format) in [
             (b"HIERARCHY\nROOT Hips".as_slice(), "a.amc", Format::Bvh),
             (b"\xEF\xBB\xBF# junk\n{\nhierarchy\r\n", "a", Format::Bvh),
@@ -249,6 +476,28 @@ mod tests {
             (b"hello", "dir.x/a.AMC", Format::Amc),
             (b"MCLIP\n\x01\0", "a.bvh", Format::Mclip),
             (b"", "a.bvh", Format::Bvh),
+            (&c3d, "a.bvh", Format::C3d),
+            (b"\x02\x50\0", "a.c3d", Format::C3d),
+            (b"PathFileType\t4\t(X/Y/Z)\ta.trc\n", "a", Format::Trc),
+            (b"{\"t\": 0, \"positions\": {}}\n", "a", Format::Jsonl),
+            (
+                b"frame,a_x,a_y,a_z,b_x,b_y,b_z\n1,2,3,4,5,6,7\n",
+                "a",
+                Format::Table,
+            ),
+            (b"clip\tclass\nx\ty\n", "a.tsv", Format::Table),
+            (b"Kaydara FBX Binary  \0", "a.bvh", Format::Fbx),
+            (b"; FBX 7.3.0 project file", "a", Format::Fbx),
+            (b"glTF\x02\0\0\0", "a", Format::Gltf),
+            (b"{ \"asset\": {} }", "a", Format::Gltf),
+            (b"{ }", "a.vrma", Format::Gltf),
+            (b"<?xml?><mvnx version=\"4\">", "a", Format::Mvnx),
+            (
+                b"PK\x03\x04......................\x05\0\0\0a.npy",
+                "a",
+                Format::Smpl,
+            ),
+            (b"\x23\0\0\0head\x12\0\0\0ftyp", "a", Format::Mocopi),
         ] {
             assert_eq!(probe(bytes, name), Ok(format), "{name}");
         }
@@ -256,16 +505,16 @@ mod tests {
 
     #[test]
     fn what_is_not_read_is_named() {
-        let mut c3d = vec![2u8, 0x50];
-        c3d.resize(512, 0);
         for (bytes, found) in [
-            (b"Kaydara FBX Binary  \0".as_slice(), "FBX"),
-            (b"; FBX 7.3.0 project file", "FBX"),
-            (b"glTF\x02\0\0\0", "binary glTF"),
-            (b"{ \"asset\": {} }", "glTF"),
-            (&c3d, "C3D"),
-            (b"PK\x03\x04....", "npz"),
-            (b"<?xml?><mvnx version=\"4\">", "MVNX"),
+            (b"PK\x03\x04....".as_slice(), "zip"),
+            (b"\x93NUMPY\x01\0", "NumPy array"),
+            (
+                b"Coordinates\nversion=1\nendheader\ntime\tpelvis_tilt\n",
+                "OpenSim",
+            ),
+            (b"#usda 1.0\n", "USD"),
+            (b"Vocaloid Motion Data 0002\0", "VMD"),
+            (b"\x80\x04\x95", "pickle"),
             (b"", "an empty file"),
             (b"a,b,c\n1,2,3\n", "unknown text"),
             (b"\x7FELF\0\0", "unknown binary"),
@@ -273,6 +522,11 @@ mod tests {
             let error = probe(bytes, "file.dat").unwrap_err();
             assert!(error.found.contains(found), "{error}");
         }
+        let called = probe(b"\x7FELF\0\0", "a.glb").unwrap_err();
+        assert!(
+            called.expected.contains("Gltf, as its name says"),
+            "{called}"
+        );
         assert!(probe(b"\x7FELF\0\0", "a.bvh").is_err());
     }
 }

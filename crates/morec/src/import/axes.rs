@@ -68,7 +68,7 @@ impl serde::Serialize for SignedAxis {
 
 /// The axis along which the head is above the feet, over the whole clip.
 pub(super) fn infer_up(body: &Body, notes: &mut Vec<String>) -> SignedAxis {
-    let sum: Vec3 = body.feet_to_head.iter().sum();
+    let sum: Vec3 = body.upwards.iter().sum();
     let biggest = sum.iamax();
     if sum[biggest] == 0.0 {
         notes.push("no head above feet to tell which way is up; Y is assumed".to_owned());
@@ -96,7 +96,9 @@ pub(super) fn turn_up(clip: &mut Clip, up: SignedAxis) {
     let roots: Vec<usize> = (0..joints)
         .filter(|&j| clip.skeleton.joints()[j].parent.is_none())
         .collect();
-    for &root in &roots {
+    // Points do not turn.
+    let turned: &[usize] = if clip.has_rotations() { &roots } else { &[] };
+    for &root in turned {
         let mut previous: Option<Quat> = None;
         for frame in 0..clip.frames {
             let rotation = &mut clip.rotations[frame * joints + root];

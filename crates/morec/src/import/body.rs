@@ -13,6 +13,8 @@ const FRAMES: usize = 200;
 pub(super) struct Body {
     /// From the lower end to the upper end of the body, frame by frame.
     pub(super) feet_to_head: Vec<Vec3>,
+    /// The same, with the highest part that is known where head and neck are not: it says which way is up.
+    pub(super) upwards: Vec<Vec3>,
     /// Thigh and shin together.
     pub(super) leg: Option<f64>,
     /// Leg, hips to neck, neck to head: the height of someone who stands straight, up to the head's joint.
@@ -25,17 +27,20 @@ impl Body {
         let step = clip.frames.div_ceil(FRAMES).max(1);
         // The first frame is left out if there are others: it may be a rest pose of another size.
         let frames = || (usize::from(clip.frames > 1)..clip.frames).step_by(step);
-        let mut feet_to_head = Vec::new();
+        let (mut feet_to_head, mut upwards) = (Vec::new(), Vec::new());
         let (mut legs, mut chains) = (Vec::new(), Vec::new());
         for frame in frames() {
             pose.set(clip, frame);
-            feet_to_head.extend(extent(clip, map, &pose));
+            let head = extent(clip, map, &pose, &[Role::Head, Role::Neck]);
+            feet_to_head.extend(head);
+            upwards.extend(head.or_else(|| extent(clip, map, &pose, &[Role::Torso, Role::Hips])));
             let leg = mean([leg_length(map, &pose, true), leg_length(map, &pose, false)]);
             legs.extend(leg);
             chains.extend(leg.and_then(|leg| Some(leg + trunk_length(map, &pose)?)));
         }
         Self {
             feet_to_head,
+            upwards,
             leg: median(legs),
             chain: median(chains),
         }
@@ -61,10 +66,10 @@ impl Body {
     }
 }
 
-/// From the mean of the feet (or the lowest ends of the legs that are known) to the head (or neck).
-fn extent(clip: &Clip, map: &RoleMap, pose: &WorldPose) -> Option<Vec3> {
+/// From the mean of the feet (or the lowest ends of the legs that are known) to the first of `tops` that is known.
+fn extent(clip: &Clip, map: &RoleMap, pose: &WorldPose, tops: &[Role]) -> Option<Vec3> {
     let any = |roles: &[Role]| roles.iter().find_map(|&role| map.joint(role));
-    let head = any(&[Role::Head, Role::Neck])?;
+    let head = any(tops)?;
     let feet = [
         any(&[Role::LeftFoot, Role::LeftShin, Role::LeftThigh]),
         any(&[Role::RightFoot, Role::RightShin, Role::RightThigh]),

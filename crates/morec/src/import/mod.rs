@@ -5,6 +5,7 @@
 
 mod axes;
 mod body;
+mod points;
 mod rest;
 mod travel;
 mod units;
@@ -49,6 +50,11 @@ pub struct Facts {
     pub leg_length: Option<f64>,
     /// Whether the hips travel along the floor; without it, root motion says nothing.
     pub travels: bool,
+    /// Whether joints are known to turn; a clip of points has positions alone.
+    pub has_rotations: bool,
+    /// The published set of points, of a clip of points that was recognised.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub point_set: Option<&'static str>,
     /// Guesses worth doubting, each in a sentence.
     pub notes: Vec<String>,
 }
@@ -64,23 +70,28 @@ pub struct Imported {
     pub facts: Facts,
 }
 
-/// Infers what `clip` is and makes it Y-up in metres. O(frames · joints).
+/// Infers what `clip` is and makes it Y-up in metres. Where a role is played by a place between joints (in a clip of
+/// points, or by a mapping), the clip gets a joint there. O(frames · joints).
 ///
 /// # Errors
 /// A mapping in `options` that names a joint which `clip` does not have.
 pub fn prepare(mut clip: Clip, options: &ImportOptions) -> Result<Imported, ParseError> {
     let mut notes = Vec::new();
-    let mut map = find_roles(&clip, &mut notes);
-    if let Some(mapping) = &options.mapping {
-        mapping.apply(&clip.skeleton, &mut map)?;
-    }
+    let (map, point_set) = match clip.has_rotations() {
+        true => (find_roles(&clip, &mut notes), None),
+        false => points::find_roles(&mut clip, options.mapping.is_none(), &mut notes),
+    };
+    let map = match &options.mapping {
+        Some(mapping) => points::apply(mapping, &mut clip, map)?,
+        None => map,
+    };
     let body = Body::measure(&clip, &map);
     let up = options
         .up
         .unwrap_or_else(|| axes::infer_up(&body, &mut notes));
     let metres_per_unit = options
         .metres_per_unit
-        .unwrap_or_else(|| units::infer(&body, up, &mut notes));
+        .unwrap_or_else(|| units::choose(&clip, &body, up, &mut notes));
     axes::turn_up(&mut clip, up);
     units::scale(&mut clip, metres_per_unit);
     let rest = match options.rest_frames {
@@ -95,6 +106,8 @@ pub fn prepare(mut clip: Clip, options: &ImportOptions) -> Result<Imported, Pars
         leg_length: body.leg.map(|leg| leg * metres_per_unit),
         travels: travel::travels(&clip, &map, &rest),
         rest_frames: rest,
+        has_rotations: clip.has_rotations(),
+        point_set,
         notes,
     };
     Ok(Imported {

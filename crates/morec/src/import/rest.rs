@@ -59,6 +59,9 @@ fn apart(a: &[Vec3], b: &[Vec3]) -> f64 {
 
 /// Whether hardly any joint is turned in the first frame.
 fn is_zero_pose(clip: &Clip) -> bool {
+    if !clip.has_rotations() {
+        return false;
+    }
     let turned = clip
         .frame_rotations(0)
         .iter()

@@ -59,6 +59,7 @@ fn person(frames: usize, walks: f64) -> Clip {
         }],
         frames,
         repaired: Vec::new(),
+        points: None,
     }
 }
 

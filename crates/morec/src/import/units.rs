@@ -17,9 +17,41 @@ const UNITS: [(&str, f64); 6] = [
 /// What the height of most people comes to, measured from the ankles to the top of the head.
 const HEIGHT: f64 = 1.65;
 
+/// The unit that the file of a clip of points states, if a body can be so large; else the one the body tells.
+pub(super) fn choose(clip: &Clip, body: &Body, up: SignedAxis, notes: &mut Vec<String>) -> f64 {
+    let stated = clip
+        .points
+        .as_ref()
+        .and_then(|points| points.metres_per_unit);
+    let Some(stated) = stated else {
+        return infer(body, up, notes);
+    };
+    let Some(height) = height(body, up) else {
+        return stated;
+    };
+    if (0.5..=2.6).contains(&(height * stated)) {
+        return stated;
+    }
+    let inferred = infer(body, up, notes);
+    notes.push(format!(
+        "the file's unit is {}, but in it the body is {:.3} m tall; {} is taken",
+        name(stated).unwrap_or("stated"),
+        height * stated,
+        name(inferred).unwrap_or("another")
+    ));
+    inferred
+}
+
+/// The height of a body, or what its legs make of it.
+fn height(body: &Body, up: SignedAxis) -> Option<f64> {
+    // Legs from hip to ankle are half of what is above the ankles.
+    let by_leg = body.leg.map(|leg| 2.0 * leg);
+    body.height(up).or(by_leg).filter(|&height| height > 0.0)
+}
+
 /// The known unit in which the body comes nearest to a person's height.
 pub(super) fn infer(body: &Body, up: SignedAxis, notes: &mut Vec<String>) -> f64 {
-    let Some(height) = body.height(up).filter(|&height| height > 0.0) else {
+    let Some(height) = height(body, up) else {
         notes.push("no body to measure; lengths are taken as metres".to_owned());
         return 1.0;
     };

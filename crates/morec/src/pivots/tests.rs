@@ -53,6 +53,7 @@ fn clip(rate_hz: f64, frames: usize, turns: [impl Fn(f64) -> Quat; 3]) -> Clip {
         tracks: Vec::new(),
         frames,
         repaired: Vec::new(),
+        points: None,
     }
 }
 

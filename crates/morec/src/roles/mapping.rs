@@ -3,12 +3,17 @@
 //! Text, one role a line: the role's name, a tab, the joint's name as the clip spells it, blanks and all (the
 //! first of that name). `-` gives the role to nobody. Roles that are not named keep what was found. Empty lines
 //! and lines that begin with `#` are skipped.
+//!
+//! Names between `+` stand for the middle of these joints or markers: `left_knee<TAB>LKNE+LKNM`. Names that differ in
+//! subject, marks and case alone are taken, too. Some roles have a second name: `left_hip`, `left_knee`, `left_ankle`,
+//! `left_elbow` and `left_wrist` are the thigh, shin, foot, forearm and hand, `pelvis` the hips.
 
 use std::fmt::Write;
 
+use super::points::{Place, said};
 use super::{Role, RoleMap};
 use crate::clip::Skeleton;
-use crate::formats::{ParseError, Place};
+use crate::formats::{self, ParseError};
 
 /// The lines of a mapping file: each role at most once.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -31,7 +36,7 @@ impl Mapping {
     pub fn read(bytes: &[u8]) -> Result<Self, ParseError> {
         let text = std::str::from_utf8(bytes).map_err(|error| {
             ParseError::new(
-                Place::Byte(error.valid_up_to() as u64),
+                formats::Place::Byte(error.valid_up_to() as u64),
                 "UTF-8",
                 "other bytes",
             )
@@ -44,14 +49,37 @@ impl Mapping {
             let entry = entry(line, content)?;
             if let Some(before) = entries.iter().find(|e| e.role == entry.role) {
                 let found = format!("{} here and on line {}", entry.role, before.line);
-                return Err(ParseError::new(Place::Line(line), "each role once", found));
+                return Err(ParseError::new(
+                    formats::Place::Line(line),
+                    "each role once",
+                    found,
+                ));
             }
             entries.push(entry);
         }
         Ok(Self { entries })
     }
 
-    /// Overrides what was found.
+    /// For each role that is named, the place that plays it among joints of these names, or `None` for nobody.
+    ///
+    /// # Errors
+    /// A joint that is not there, with its line in the mapping file.
+    pub fn places(&self, names: &[&str]) -> Result<Vec<(Role, Option<Place>)>, ParseError> {
+        let mut places = Vec::with_capacity(self.entries.len());
+        for Entry { line, role, joint } in &self.entries {
+            let place = match joint {
+                None => None,
+                Some(text) => Some(said(text, names).map_err(|name| {
+                    let at = formats::Place::Line(*line);
+                    ParseError::new(at, "a joint of the skeleton", format!("`{name}`"))
+                })?),
+            };
+            places.push((*role, place));
+        }
+        Ok(places)
+    }
+
+    /// Overrides what was found, by single joints.
     ///
     /// # Errors
     /// A joint that `skeleton` does not have, with its line in the mapping file; `map` is then unchanged.
@@ -62,7 +90,7 @@ impl Mapping {
                 None => None,
                 Some(name) => Some(skeleton.find(name).ok_or_else(|| {
                     ParseError::new(
-                        Place::Line(*line),
+                        formats::Place::Line(*line),
                         "a joint of the skeleton",
                         format!("`{name}`"),
                     )
@@ -76,7 +104,7 @@ impl Mapping {
 }
 
 fn entry(line: u64, content: &str) -> Result<Entry, ParseError> {
-    let at = Place::Line(line);
+    let at = formats::Place::Line(line);
     let (role, joint) = content.split_once('\t').ok_or_else(|| {
         ParseError::new(
             at,
@@ -84,7 +112,7 @@ fn entry(line: u64, content: &str) -> Result<Entry, ParseError> {
             format!("`{content}`"),
         )
     })?;
-    let role = Role::from_name(role.trim()).ok_or_else(|| {
+    let role = role_of(role.trim()).ok_or_else(|| {
         let known: Vec<_> = Role::ALL.iter().map(|r| r.name()).collect();
         ParseError::new(
             at,
@@ -109,6 +137,25 @@ fn entry(line: u64, content: &str) -> Result<Entry, ParseError> {
             joint: Some(name.to_owned()),
         }),
     }
+}
+
+/// The role of a name in a mapping file.
+fn role_of(name: &str) -> Option<Role> {
+    const SECOND: [(&str, &str); 5] = [
+        ("hip", "thigh"),
+        ("knee", "shin"),
+        ("ankle", "foot"),
+        ("elbow", "forearm"),
+        ("wrist", "hand"),
+    ];
+    let second = || match name.split_once('_') {
+        None => (name == "pelvis").then_some(Role::Hips),
+        Some((side, joint)) => {
+            let (_, role) = SECOND.iter().find(|(second, _)| *second == joint)?;
+            Role::from_name(&format!("{side}_{role}"))
+        }
+    };
+    Role::from_name(name).or_else(second)
 }
 
 /// Writes `map` as a mapping file that names every role.

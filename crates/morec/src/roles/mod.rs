@@ -4,6 +4,7 @@ mod find;
 mod limbs;
 pub mod mapping;
 mod names;
+pub mod points;
 mod tree;
 
 pub use find::{Found, find, find_posed};

@@ -70,6 +70,7 @@ pub fn compress(
         rate_hz: clip.rate_hz,
         frames: clip.frames,
         repaired: clip.repaired.clone(),
+        points: clip.points.clone(),
         params: *params,
         errors: Errors::default(),
         rotations: curves.by_ref().take(joints).collect(),

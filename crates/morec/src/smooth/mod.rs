@@ -44,7 +44,7 @@ pub use measure::Errors;
 pub use params::{SmoothError, SmoothParams};
 pub use stored::{MAGIC, VERSION};
 
-use crate::clip::{Skeleton, Span};
+use crate::clip::{Points, Skeleton, Span};
 
 /// A clip as curves: the same motion at every rate, within stated errors.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,6 +54,7 @@ pub struct CompressedClip {
     rate_hz: f64,
     frames: usize,
     repaired: Vec<Span>,
+    points: Option<Points>,
     params: SmoothParams,
     errors: Errors,
     /// One for each joint.

@@ -69,6 +69,10 @@ impl CompressedClip {
             tracks: self.positions.iter().map(track).collect(),
             frames: instants.len(),
             repaired: resample::repaired_at(&self.repaired, instants),
+            points: self
+                .points
+                .as_ref()
+                .map(|p| resample::points_at(p, instants)),
         }
     }
 }

@@ -42,6 +42,7 @@ pub fn film(mut actor: Actor, name: &str, rate_hz: f64) -> Clip {
         }],
         frames,
         repaired: Vec::new(),
+        points: None,
     }
 }
 

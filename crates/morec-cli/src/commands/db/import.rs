@@ -27,12 +27,12 @@ Examples:
 
 Ctrl-C finishes what is being written and says what was imported; the same command then goes on where it stopped.
 
-Exit code 1 if a file was refused, 130 if it was stopped.")]
+Exit code 1 if a file was refused or a folder holds motion in a format that is not read, 130 if it was stopped.")]
 pub struct Args {
     /// The database; it is made if there is none
     #[arg(value_name = "DB")]
     db: PathBuf,
-    /// Clips (BVH, AMC, MCLIP) or folders of clips
+    /// Clips in any format that is read, or folders of clips; FILE#2 and FILE#name are one clip of a file
     #[arg(required = true, value_name = "DIR|CLIP")]
     clips: Vec<PathBuf>,
     /// Where the material is from
@@ -60,10 +60,9 @@ pub struct Args {
 /// Imports and reports.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let begun = Instant::now();
-    let paths: Vec<PathBuf> = files::expand(&args.clips)?
-        .into_iter()
-        .map(absolute)
-        .collect();
+    let expanded = files::expand_all(&args.clips)?;
+    let left_out = expanded.say_left_out();
+    let paths: Vec<PathBuf> = expanded.clips.into_iter().map(absolute).collect();
     let mut db = match args.db.exists() {
         true => MotionDb::open(&args.db)?,
         false => MotionDb::create(&args.db)?,
@@ -99,7 +98,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         return Ok(super::STOPPED.into());
     }
     let refused = report.counts()[4];
-    Ok(if refused > 0 {
+    Ok(if refused > 0 || left_out {
         ExitCode::FAILURE
     } else {
         ExitCode::SUCCESS
@@ -129,7 +128,12 @@ fn near_copies(db: &mut MotionDb, report: &ImportReport, bar: &Bar) -> Result<Ve
 
 /// The same file is the same path, wherever the command is run.
 fn absolute(path: PathBuf) -> PathBuf {
-    path.canonicalize().unwrap_or(path)
+    let (file, choice) = morec_db::split_choice(&path);
+    match (file.canonicalize(), choice) {
+        (Ok(file), Some(choice)) => format!("{}#{choice}", file.display()).into(),
+        (Ok(file), None) => file,
+        (Err(_), _) => path,
+    }
 }
 
 fn text(report: &ImportReport, files: usize, secs: f64) -> String {

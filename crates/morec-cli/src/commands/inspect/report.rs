@@ -196,6 +196,10 @@ impl ClipReport {
                 spans(&self.repaired)
             )?;
         }
+        if !facts.has_rotations {
+            let set = facts.point_set.unwrap_or("no known set");
+            writeln!(out, "  points     {set}; rotations are not known")?;
+        }
         let found = Role::COUNT - self.missing_roles.len();
         writeln!(
             out,
@@ -247,6 +251,10 @@ impl ClipReport {
             Role::COUNT,
             self.missing(),
         )?;
+        if !self.facts.has_rotations {
+            let set = self.facts.point_set.unwrap_or("no known set of points");
+            writeln!(out, "  {set}; rotations are not known")?;
+        }
         for note in &self.facts.notes {
             writeln!(out, "  note: {note}")?;
         }
@@ -330,6 +338,15 @@ fn format_name(format: Format) -> &'static str {
         Format::Asf => "ASF (skeleton only)",
         Format::Amc => "AMC",
         Format::Mclip => "MCLIP (curves)",
+        Format::C3d => "C3D",
+        Format::Trc => "TRC",
+        Format::Jsonl => "JSON lines",
+        Format::Table => "table of positions",
+        Format::Mvnx => "MVNX",
+        Format::Gltf => "glTF",
+        Format::Fbx => "FBX",
+        Format::Smpl => "SMPL poses (npz)",
+        Format::Mocopi => "mocopi packets",
     }
 }
 

@@ -95,6 +95,7 @@ pub(super) fn assemble(
         tracks: Vec::new(),
         frames: rows.frames,
         repaired: spans(&spoiled),
+        points: None,
     };
     for slot in 0..clip.skeleton.len() {
         place_slot(&mut clip, asf, &rows, slot);

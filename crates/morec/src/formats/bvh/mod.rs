@@ -10,6 +10,7 @@ mod hierarchy;
 mod motion;
 mod notes;
 mod number;
+mod points;
 mod positions;
 mod rate;
 mod rows;
@@ -256,7 +257,7 @@ fn finish(
         let Character {
             rotations, frames, ..
         } = character;
-        clips.push(Clip {
+        clips.push(points::from_under_root(Clip {
             name,
             skeleton,
             rate_hz,
@@ -264,7 +265,8 @@ fn finish(
             tracks,
             frames,
             repaired,
-        });
+            points: None,
+        }));
     }
     Ok(clips)
 }

@@ -2,8 +2,8 @@
 
 use std::io::{self, Write};
 
-use super::euler;
 use super::positions::{self, PositionChannels};
+use super::{euler, points};
 use crate::clip::{Clip, JointTrack};
 use crate::math::Vec3;
 
@@ -14,7 +14,9 @@ use crate::math::Vec3;
 /// [`read`](super::read) gives the same rotations within 1e-6 rad and the same positions within 1e-6 units, with
 /// these exceptions that programs in use ask for: a leaf without a tip gets one of length 0; a root's OFFSET is 0, as
 /// some add it to the position channels; names lose line ends, control characters and outer blanks, and a `{`
-/// becomes a `(`. A skeleton with several roots is written with several ROOTs and read as several clips.
+/// becomes a `(`. A skeleton with several roots is written with several ROOTs and read as several clips; a clip of
+/// points is written under one ROOT, with position channels and rotations of 0, and read as points again, but for its gaps
+/// and its unit.
 ///
 /// # Errors
 /// Those of `out`, and [`io::ErrorKind::InvalidInput`] if the clip's rate is not positive. O(frames × joints).
@@ -27,6 +29,13 @@ pub fn write(clip: &Clip, out: &mut dyn Write) -> io::Result<()> {
         );
         return Err(io::Error::new(io::ErrorKind::InvalidInput, text));
     }
+    let under_root;
+    let clip = if clip.has_rotations() {
+        clip
+    } else {
+        under_root = points::under_one_root(clip);
+        &under_root
+    };
     let plan = Plan::new(clip);
     let mut text = String::from("HIERARCHY\n");
     plan.hierarchy(&mut text);

@@ -8,6 +8,9 @@
 //! | 16 to 19 | CRC-32 of these |
 //! | 20 on | name, frames, rate, thresholds, measured errors, repaired spans, skeleton; then the curves |
 //!
+//! Version 2 is for clips of points: gaps and the stated unit stand behind the repaired spans. Clips with rotations
+//! are written as version 1.
+//!
 //! Whole numbers are little-endian. Control points are whole steps of a size given for each channel, so what is read
 //! is to the bit what was written, on every machine.
 
@@ -16,7 +19,7 @@ mod words;
 
 use super::lattice::{Lattice, Step};
 use super::{CompressedClip, Curve, Errors, Kind, SmoothParams};
-use crate::clip::{Joint, Skeleton, Span};
+use crate::clip::{Gap, Joint, Points, Skeleton, Span};
 use crate::coder::{Coder, Reader, Writer};
 use crate::formats::{Limits, ParseError, Place};
 use crate::math::Vec3;
@@ -25,8 +28,10 @@ use words::{Fields, Words};
 
 /// What every file begins with.
 pub const MAGIC: &[u8; 6] = b"MCLIP\n";
-/// Version that is written, and the newest that is read.
-pub const VERSION: u16 = 1;
+/// The newest version that is read: that of clips of points.
+pub const VERSION: u16 = 2;
+/// The version of clips with rotations.
+const ROTATIONS: u16 = 1;
 
 const HEADER: usize = 20;
 /// No writer makes more curves than eight for a byte: what takes less than a bit is made up.
@@ -49,7 +54,12 @@ impl CompressedClip {
         body.append(&mut motion);
         let mut bytes = Vec::with_capacity(HEADER + body.len());
         bytes.extend_from_slice(MAGIC);
-        bytes.extend_from_slice(&VERSION.to_le_bytes());
+        let version = if self.points.is_some() {
+            VERSION
+        } else {
+            ROTATIONS
+        };
+        bytes.extend_from_slice(&version.to_le_bytes());
         bytes.extend_from_slice(&(body.len() as u64).to_le_bytes());
         bytes.extend_from_slice(&crc32fast::hash(&body).to_le_bytes());
         bytes.append(&mut body);
@@ -73,6 +83,16 @@ impl CompressedClip {
         for span in &self.repaired {
             words.natural(span.start as u64);
             words.natural(span.end as u64);
+        }
+        if let Some(points) = &self.points {
+            // 0 is no stated unit.
+            words.number(points.metres_per_unit.unwrap_or(0.0));
+            words.natural(points.gaps.len() as u64);
+            for gap in &points.gaps {
+                words.natural(gap.joint as u64);
+                words.natural(gap.frames.start as u64);
+                words.natural(gap.frames.end as u64);
+            }
         }
     }
 
@@ -104,9 +124,12 @@ impl CompressedClip {
     /// # Errors
     /// As [`from_bytes`](Self::from_bytes).
     pub fn from_bytes_within(bytes: &[u8], limits: &Limits) -> Result<Self, ParseError> {
-        check_header(bytes)?;
+        let version = check_header(bytes)?;
         let mut fields = Fields::new(bytes, HEADER);
         let mut clip = read_facts(&mut fields, limits)?;
+        if version > ROTATIONS {
+            clip.points = Some(read_points(&mut fields, clip.frames, limits)?);
+        }
         clip.skeleton = read_skeleton(&mut fields, limits)?;
         let tracks = read_tracks(&mut fields, clip.skeleton.len())?;
         let at = fields.at();
@@ -157,7 +180,8 @@ const NO_STEPS: Lattice = Lattice {
     tangent: Step(0),
 };
 
-fn check_header(bytes: &[u8]) -> Result<(), ParseError> {
+/// The version, of bytes that are whole.
+fn check_header(bytes: &[u8]) -> Result<u16, ParseError> {
     let wrong = |at: u64, expected: String, found: String| {
         Err(ParseError::new(Place::Byte(at), expected, found))
     };
@@ -197,7 +221,7 @@ fn check_header(bytes: &[u8]) -> Result<(), ParseError> {
             format!("{found:08x}: damaged"),
         );
     }
-    Ok(())
+    Ok(version)
 }
 
 /// Everything but skeleton and curves.
@@ -235,10 +259,38 @@ fn read_facts(fields: &mut Fields, limits: &Limits) -> Result<CompressedClip, Pa
         rate_hz,
         frames,
         repaired,
+        points: None,
         params,
         errors,
         rotations,
         positions,
+    })
+}
+
+/// What is known of a clip of points. Joints are looked at where they are used.
+fn read_points(fields: &mut Fields, frames: usize, limits: &Limits) -> Result<Points, ParseError> {
+    let metres = fields.number("metres in the stated unit")?;
+    if metres < 0.0 {
+        return Err(fields.wrong("metres in the stated unit", metres.to_string()));
+    }
+    let count = fields.up_to(frames.saturating_mul(limits.joints), "gaps")?;
+    let mut gaps: Vec<Gap> = Vec::new();
+    for _ in 0..count {
+        let joint = fields.up_to(limits.joints, "the joint of a gap")?;
+        let start = fields.up_to(frames, "the first frame of a gap")?;
+        let end = fields.up_to(frames, "the end of a gap")?;
+        let after = gaps
+            .last()
+            .map_or((0, 0), |gap| (gap.joint, gap.frames.end));
+        if end <= start || (joint, start) < after {
+            return Err(fields.wrong("gaps in order", format!("{start}..{end} of joint {joint}")));
+        }
+        let frames = start..end;
+        gaps.push(Gap { joint, frames });
+    }
+    Ok(Points {
+        gaps,
+        metres_per_unit: Some(metres).filter(|&metres| metres > 0.0),
     })
 }
 

@@ -40,6 +40,7 @@ pub(super) fn one_joint(
         tracks,
         frames,
         repaired: Vec::new(),
+        points: None,
     }
 }
 
@@ -120,6 +121,7 @@ fn clips() -> impl Strategy<Value = Clip> {
                 tracks,
                 frames,
                 repaired,
+                points: None,
             }
         })
     })

@@ -98,6 +98,7 @@ fn what_stands_still_costs_next_to_nothing() {
         }],
         frames,
         repaired: Vec::new(),
+        points: None,
     };
     let compressed = compress(&clip, &SmoothParams::database(), &()).unwrap();
     assert_eq!(compressed.keyframes(), joints + 1);

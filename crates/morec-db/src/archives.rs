@@ -1,0 +1,235 @@
+//! Files that are packed, in UTF-16, or hold several clips of which one is meant.
+
+use std::borrow::Cow;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use morec::clip::Clip;
+use morec::formats::container::{self, Member};
+use morec::formats::probe::{Format, format_of_name, probe};
+use morec::formats::{ParseError, Place, Warning, mocopi};
+
+use crate::files::{FileError, FileReader, OpenedFile};
+
+/// Archives in archives are opened so deep.
+const DEEPEST: usize = 3;
+
+/// Where the files lie that another one needs.
+#[derive(Clone, Copy)]
+pub(crate) enum Around<'a> {
+    /// On disk.
+    Folder,
+    /// In the same archive.
+    Archive(&'a [Member]),
+}
+
+impl Around<'_> {
+    /// A file by its path.
+    pub(crate) fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        match self {
+            Around::Folder => fs::read(path),
+            Around::Archive(members) => members
+                .iter()
+                .find(|member| Path::new(&member.path) == path)
+                .map(|member| member.bytes.clone())
+                .ok_or_else(|| io::Error::from(io::ErrorKind::NotFound)),
+        }
+    }
+
+    /// A file beside another.
+    pub(crate) fn file(&self, path: &Path, name: &str) -> Option<Vec<u8>> {
+        match (self, path == Path::new("-")) {
+            (Around::Folder, true) => None,
+            _ => self.read(&path.with_file_name(name)).ok(),
+        }
+    }
+}
+
+/// The file that `path` names and which of its clips: `FILE#2` is the second, `FILE#name` the one of that name. A file whose
+/// own name has a `#` is that file.
+pub fn split_choice(path: &Path) -> (PathBuf, Option<String>) {
+    let text = path.to_string_lossy();
+    if path.exists() {
+        return (path.to_owned(), None);
+    }
+    for (at, _) in text
+        .match_indices('#')
+        .collect::<Vec<_>>()
+        .into_iter()
+        .rev()
+    {
+        let file = Path::new(&text[..at]);
+        if file.is_file() || text[..at] == *"-" {
+            return (file.to_owned(), Some(text[at + 1..].to_owned()));
+        }
+    }
+    (path.to_owned(), None)
+}
+
+impl FileReader {
+    /// Reads `bytes`, which are the file at `path` (`FILE#2` and `FILE#name` choose one of its clips); `-` is a stream without
+    /// a place, and so without a skeleton near it. Zip archives and gzip files are unpacked, UTF-16 text is understood.
+    ///
+    /// # Errors
+    /// Those of the format, of an archive in which nothing can be read, and of a choice that is not there.
+    pub fn open(&self, path: &Path, bytes: &[u8]) -> Result<OpenedFile, FileError> {
+        let (file, choice) = split_choice(path);
+        let mut opened = self.open_packed(&file, bytes, Around::Folder, 0)?;
+        if let Some(choice) = choice {
+            opened.clips = chosen(opened.clips, &choice)?;
+        }
+        Ok(opened)
+    }
+
+    fn open_packed(
+        &self,
+        path: &Path,
+        bytes: &[u8],
+        around: Around<'_>,
+        depth: usize,
+    ) -> Result<OpenedFile, FileError> {
+        if depth < DEEPEST && container::is_gzip(bytes) {
+            let unpacked = container::gunzip(bytes)?;
+            let inner = match path.extension() {
+                Some(ending) if ending.eq_ignore_ascii_case("gz") => path.with_extension(""),
+                _ => path.to_owned(),
+            };
+            return self.open_packed(&inner, &unpacked, around, depth + 1);
+        }
+        let is_archive = container::is_zip(bytes) && probe(bytes, "") != Ok(Format::Smpl);
+        if depth < DEEPEST && is_archive {
+            return self.open_archive(path, bytes, depth);
+        }
+        let text: Cow<'_, [u8]> = container::utf8(bytes);
+        let mut opened = self.open_bare(path, &text, around)?;
+        if let Cow::Owned(_) = text {
+            let note = "UTF-16 text";
+            opened.warnings.push(Warning::new(Place::File, note));
+        }
+        Ok(opened)
+    }
+
+    /// The clips of all files in a zip archive that can be read; the others are named in warnings.
+    fn open_archive(
+        &self,
+        path: &Path,
+        bytes: &[u8],
+        depth: usize,
+    ) -> Result<OpenedFile, FileError> {
+        let members = container::unzip(bytes, &may_be_needed)?;
+        let mut all: Option<OpenedFile> = None;
+        let mut first_error = None;
+        let mut refused = Vec::new();
+        for member in members.iter().filter(|member| is_motion(member)) {
+            let inner = Path::new(&member.path);
+            match self.open_packed(inner, &member.bytes, Around::Archive(&members), depth + 1) {
+                Ok(opened) => gather(&mut all, opened, &member.path),
+                Err(error) => {
+                    refused.push(format!("{}: {error}", member.path));
+                    first_error.get_or_insert(error);
+                }
+            }
+        }
+        let mut opened = match (all, first_error) {
+            (Some(opened), _) => opened,
+            (None, Some(error)) if refused.len() == 1 => return Err(error),
+            (None, _) => return Err(nothing_in(bytes, &refused).into()),
+        };
+        for text in refused {
+            let text = format!("left out: {text}");
+            opened.warnings.push(Warning::new(Place::File, text));
+        }
+        if opened.clips.len() > 1 {
+            let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+            for clip in &mut opened.clips {
+                clip.name = format!("{stem}#{}", clip.name);
+            }
+        }
+        Ok(opened)
+    }
+}
+
+/// Files of an archive worth unpacking: motions, skeletons, what scenes keep in files of their own.
+fn may_be_needed(path: &str) -> bool {
+    let name = path.rsplit('/').next().unwrap_or(path);
+    let hidden = name.starts_with('.') || path.starts_with("__MACOSX/");
+    let ending = name.rsplit('.').next().unwrap_or_default();
+    let packed = ["bin", "gz", "zip", "txt", "json"].iter();
+    !hidden
+        && (format_of_name(name).is_some()
+            || packed
+                .into_iter()
+                .any(|known| ending.eq_ignore_ascii_case(known)))
+}
+
+/// Whether a file of an archive is read for itself: by its name, or if its content says so.
+fn is_motion(member: &Member) -> bool {
+    match format_of_name(&member.path) {
+        Some(Format::Asf) => false,
+        // Tables and JSON hold labels and lists, too: what is in them decides.
+        Some(Format::Table | Format::Jsonl) => probe(&member.bytes, "").is_ok(),
+        Some(_) => true,
+        None => {
+            let bytes = &member.bytes;
+            let packed = container::is_gzip(bytes) || container::is_zip(bytes);
+            packed || mocopi::looks_so(bytes) || probe(bytes, "").is_ok_and(|f| f != Format::Asf)
+        }
+    }
+}
+
+fn gather(all: &mut Option<OpenedFile>, mut opened: OpenedFile, path: &str) {
+    for warning in &mut opened.warnings {
+        warning.text = format!("{path} {}: {}", warning.at, warning.text);
+        warning.at = Place::File;
+    }
+    match all {
+        Some(all) => {
+            all.clips.append(&mut opened.clips);
+            all.warnings.append(&mut opened.warnings);
+        }
+        None => *all = Some(opened),
+    }
+}
+
+fn nothing_in(bytes: &[u8], refused: &[String]) -> ParseError {
+    let found = if refused.is_empty() {
+        let mut paths = container::zip_paths(bytes).unwrap_or_default();
+        let more = paths.len().saturating_sub(5);
+        paths.truncate(5);
+        match paths.is_empty() {
+            true => "an empty one".to_owned(),
+            false => format!("{} and {more} more", paths.join(", ")),
+        }
+    } else {
+        let shown: Vec<&str> = refused.iter().take(5).map(String::as_str).collect();
+        format!(
+            "{} that cannot be read: {}",
+            refused.len(),
+            shown.join("; ")
+        )
+    };
+    ParseError::new(Place::File, "a zip archive with motions", found)
+}
+
+/// The clip of number `choice`, from 1, or of that name (all of it or what follows the file's).
+fn chosen(clips: Vec<Clip>, choice: &str) -> Result<Vec<Clip>, ParseError> {
+    let named = |clip: &Clip| {
+        let rest = clip.name.split_once('#').map(|(_, rest)| rest);
+        let last = clip.name.rsplit('#').next();
+        clip.name == choice || rest == Some(choice) || last == Some(choice)
+    };
+    let numbered = choice.parse::<usize>().ok();
+    let numbered = numbered.filter(|n| (1..=clips.len()).contains(n));
+    let place = clips.iter().position(named).or(numbered.map(|n| n - 1));
+    let names: Vec<&str> = clips.iter().take(20).map(|c| c.name.as_str()).collect();
+    let Some(place) = place else {
+        let found = format!("{} clips: {}", clips.len(), names.join(", "));
+        let expected = format!("a clip `{choice}` in the file");
+        return Err(ParseError::new(Place::File, expected, found));
+    };
+    Ok(clips.into_iter().skip(place).take(1).collect())
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,149 @@
+//! Rows and cells of tables of text, and the numbers in them.
+
+use super::{Limits, ParseError, Place};
+
+/// What stands between whole and fraction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Decimal {
+    Point,
+    Comma,
+    Either,
+}
+
+impl Decimal {
+    /// A comma, if numbers among the first `cells` have commas and none has a point.
+    pub(super) fn of<'a>(cells: impl Iterator<Item = &'a str>) -> Self {
+        const LOOKED_AT: usize = 10_000;
+        let mut comma = false;
+        for cell in cells.take(LOOKED_AT) {
+            if number(cell, Decimal::Point).is_some() {
+                if cell.contains('.') {
+                    return Self::Point;
+                }
+            } else if number(cell, Decimal::Comma).is_some() {
+                comma = true;
+            }
+        }
+        if comma { Self::Comma } else { Self::Point }
+    }
+}
+
+/// The number in a cell; `None` for blanks, words and what is not finite.
+pub(super) fn number(cell: &str, decimal: Decimal) -> Option<f64> {
+    let cell = cell.trim();
+    let has_comma = cell.contains(',');
+    if has_comma && decimal == Decimal::Point {
+        return None;
+    }
+    let value = if has_comma {
+        fast_float2::parse::<f64, _>(cell.replacen(',', ".", 1)).ok()
+    } else {
+        fast_float2::parse::<f64, _>(cell).ok()
+    };
+    value.filter(|value| value.is_finite())
+}
+
+/// Rows that are not blank, with their line numbers from 1. The text is UTF-8 but for single bytes in names, with or
+/// without a byte order mark.
+///
+/// # Errors
+/// UTF-16, zero bytes, or a line longer than `limits` allow.
+pub(super) fn lines<'a>(
+    bytes: &'a [u8],
+    limits: &Limits,
+) -> Result<Vec<(u64, &'a str)>, ParseError> {
+    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+    if bytes.starts_with(b"\xFF\xFE") || bytes.starts_with(b"\xFE\xFF") {
+        return Err(ParseError::new(Place::File, "UTF-8 text", "UTF-16 text"));
+    }
+    if let Some(zero) = bytes.iter().position(|&b| b == 0) {
+        return Err(ParseError::new(
+            Place::Byte(zero as u64),
+            "text",
+            "a zero byte",
+        ));
+    }
+    let mut rows = Vec::new();
+    let mut line = 0;
+    for row in bytes.split(|&b| b == b'\n').flat_map(mac_lines) {
+        line += 1;
+        if row.len() > limits.line_bytes {
+            let expected = format!("a line of at most {} bytes", limits.line_bytes);
+            return Err(ParseError::new(
+                Place::Line(line),
+                expected,
+                row.len().to_string(),
+            ));
+        }
+        // A name in another encoding spoils its row only from there on: numbers are below it.
+        let text = match std::str::from_utf8(row) {
+            Ok(text) => text,
+            Err(error) => std::str::from_utf8(&row[..error.valid_up_to()]).unwrap_or_default(),
+        };
+        if !text
+            .trim_matches([' ', '\t', ',', ';', '\r', '"'])
+            .is_empty()
+        {
+            rows.push((line, text.trim_end_matches('\r')));
+        }
+    }
+    Ok(rows)
+}
+
+/// The lines of old Macintosh files, which end in a carriage return alone.
+fn mac_lines(row: &[u8]) -> impl Iterator<Item = &[u8]> {
+    let row = row.strip_suffix(b"\r").unwrap_or(row);
+    row.split(|&b| b == b'\r')
+}
+
+/// The cells of a row, without blanks and quotes around them; without a separator, at blanks.
+pub(super) fn split(row: &str, separator: Option<char>) -> Vec<&str> {
+    let Some(separator) = separator else {
+        return row.split_whitespace().collect();
+    };
+    let mut cells = Vec::new();
+    let (mut start, mut quoted) = (0, false);
+    for (at, c) in row.char_indices() {
+        if c == '"' {
+            quoted = !quoted;
+        } else if c == separator && !quoted {
+            cells.push(bare(&row[start..at]));
+            start = at + c.len_utf8();
+        }
+    }
+    cells.push(bare(&row[start..]));
+    cells
+}
+
+fn bare(cell: &str) -> &str {
+    let cell = cell.trim();
+    let inner = cell
+        .strip_prefix('"')
+        .and_then(|cell| cell.strip_suffix('"'));
+    inner.unwrap_or(cell).trim()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_of_every_kind() {
+        assert_eq!(split("a,\"b, c\", d ,", Some(',')), ["a", "b, c", "d", ""]);
+        assert_eq!(split(" 1  2\t3", None), ["1", "2", "3"]);
+        let comma = Decimal::of(["1", "2,5", "x"].into_iter());
+        assert_eq!(number("2,5", comma), Some(2.5));
+        assert_eq!(number("-1e3", comma), Some(-1000.0));
+        assert_eq!(Decimal::of(["2,5", "0.5"].into_iter()), Decimal::Point);
+        for none in ["", "nan", "inf", "x", "1 2"] {
+            assert_eq!(number(none, Decimal::Either), None, "{none}");
+        }
+    }
+
+    #[test]
+    fn lines_keep_their_numbers() {
+        let rows = lines(b"\xEF\xBB\xBFa\r\n\r\n ,,\nb\rc", &Limits::default()).unwrap();
+        assert_eq!(rows, [(1, "a"), (4, "b"), (5, "c")]);
+        assert!(lines(b"a\0b", &Limits::default()).is_err());
+    }
+}

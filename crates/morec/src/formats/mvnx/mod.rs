@@ -1,0 +1,291 @@
+//! MVNX: recordings of Xsens suits, in XML, versions 2 to 4.
+//!
+//! Every frame gives each segment's orientation and position in the world (quaternions with their real part first,
+//! metres, Z up; *MVN User Manual*, "MVNX"), so that nothing has to be known of the zero pose. Poses of calibration
+//! (`identity`, `tpose`, `npose`) stand before the motion and are left out.
+
+mod body;
+
+use roxmltree::{Document, Node, ParsingOptions};
+
+use self::body::Segment;
+use super::builder::{ClipBuilder, check_size, clip_names};
+use super::{Limits, Loaded, ParseError, Place, Warning};
+use crate::clip::{Clip, Joint};
+use crate::math::{Quat, Vec3};
+
+/// When a file does not say its rate.
+const ASSUMED_HZ: f64 = 60.0;
+
+/// Reads an MVNX file: one clip for each subject, called `name` (`name#subject` for several).
+///
+/// # Errors
+/// Where and what: no well-formed XML, no segments, no frame with orientations and positions, more than `limits` allow.
+/// A file that breaks off is read as far as it goes. O(bytes) time and memory.
+pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseError> {
+    let text = text_of(bytes)?;
+    let mut warnings = Vec::new();
+    match parse(&text, limits) {
+        Ok(document) => read_document(&document, name, bytes.len(), limits, &mut warnings),
+        Err(error) => {
+            let Some(whole) = whole_frames(&text) else {
+                return Err(error);
+            };
+            let document = parse(&whole, limits).map_err(|_| error.clone())?;
+            let note = format!(
+                "{}; the file is read up to its last whole frame",
+                error.found
+            );
+            warnings.push(Warning::new(error.at, note));
+            read_document(&document, name, bytes.len(), limits, &mut warnings)
+        }
+    }
+    .map(|clips| Loaded { clips, warnings })
+}
+
+/// UTF-8; producers of other encodings keep them to names and comments.
+fn text_of(bytes: &[u8]) -> Result<std::borrow::Cow<'_, str>, ParseError> {
+    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+    if bytes.contains(&0) {
+        return Err(ParseError::new(Place::File, "XML text", "binary content"));
+    }
+    Ok(match std::str::from_utf8(bytes) {
+        Ok(text) => text.into(),
+        Err(_) => encoding_rs::WINDOWS_1252.decode(bytes).0,
+    })
+}
+
+fn parse<'a>(text: &'a str, limits: &Limits) -> Result<Document<'a>, ParseError> {
+    let options = ParsingOptions {
+        allow_dtd: true,
+        // A frame has some dozen elements.
+        nodes_limit: u32::try_from(limits.frames.saturating_mul(64)).unwrap_or(u32::MAX),
+        ..ParsingOptions::default()
+    };
+    Document::parse_with_options(text, options).map_err(|error| {
+        let at = error.pos();
+        ParseError::new(
+            Place::Column(at.row.into(), at.col.into()),
+            "well-formed XML",
+            error.to_string(),
+        )
+    })
+}
+
+/// A file that breaks off, closed behind its last whole frame.
+fn whole_frames(text: &str) -> Option<String> {
+    const END: &str = "</frame>";
+    let end = text.rfind(END)? + END.len();
+    Some(format!("{}</frames></subject></mvnx>", &text[..end]))
+}
+
+fn read_document(
+    document: &Document<'_>,
+    name: &str,
+    bytes: usize,
+    limits: &Limits,
+    warnings: &mut Vec<Warning>,
+) -> Result<Vec<Clip>, ParseError> {
+    let root = document.root_element();
+    if !is(root, "mvnx") {
+        let found = format!("<{}>", root.tag_name().name());
+        return Err(ParseError::new(place(root), "<mvnx>", found));
+    }
+    let subjects: Vec<Node> = root.children().filter(|n| is(*n, "subject")).collect();
+    let labels: Vec<String> = subjects
+        .iter()
+        .map(|s| s.attribute("label").unwrap_or_default().to_owned())
+        .collect();
+    if subjects.is_empty() {
+        return Err(ParseError::new(place(root), "<subject>", "none"));
+    }
+    let names = clip_names(name, &labels);
+    let mut clips = Vec::with_capacity(subjects.len());
+    for (subject, name) in subjects.into_iter().zip(names) {
+        clips.push(read_subject(subject, name, bytes, limits, warnings)?);
+    }
+    Ok(clips)
+}
+
+fn read_subject(
+    subject: Node<'_, '_>,
+    name: String,
+    bytes: usize,
+    limits: &Limits,
+    warnings: &mut Vec<Warning>,
+) -> Result<Clip, ParseError> {
+    let segments = body::segments(subject, limits, warnings)?;
+    let frames = child(subject, "frames")
+        .ok_or_else(|| ParseError::new(place(subject), "<frames>", "none"))?;
+    let frames: Vec<Node> = frames
+        .children()
+        .filter(|n| is(*n, "frame") && is_motion(*n))
+        .collect();
+    check_size(frames.len(), segments.len(), bytes, limits)?;
+    let mut builder = ClipBuilder::new(joints(&segments));
+    let mut broken = 0;
+    let mut first = None;
+    for frame in &frames {
+        match read_frame(*frame, &segments) {
+            Ok((rotations, positions)) => builder.push_world(&rotations, &positions),
+            Err(flaw) => {
+                builder.push_missing();
+                broken += 1;
+                first.get_or_insert(flaw);
+            }
+        }
+    }
+    let first = first.map(Flaw::into_error);
+    if broken == frames.len() {
+        return Err(first
+            .unwrap_or_else(|| ParseError::new(place(subject), "frames of type normal", "none")));
+    }
+    if let Some(first) = first {
+        let text = format!(
+            "{broken} of {} frames lack numbers and are filled by interpolation; the first: expected {}, found {}",
+            frames.len(),
+            first.expected,
+            first.found
+        );
+        warnings.push(Warning::new(first.at, text));
+    }
+    let rate_hz = rate(subject, &frames, warnings);
+    builder.finish(name, rate_hz)
+}
+
+fn joints(segments: &[Segment]) -> Vec<Joint> {
+    segments
+        .iter()
+        .map(|segment| Joint {
+            name: segment.label.clone(),
+            parent: segment.parent,
+            offset: segment.offset,
+            tip: segment.tip,
+        })
+        .collect()
+}
+
+/// Frames without a type are motion.
+fn is_motion(frame: Node<'_, '_>) -> bool {
+    frame
+        .attribute("type")
+        .is_none_or(|kind| kind.eq_ignore_ascii_case("normal"))
+}
+
+/// What is wrong with a frame; its line is looked up only if it is shown.
+struct Flaw<'a, 'input> {
+    node: Node<'a, 'input>,
+    expected: String,
+    found: String,
+}
+
+impl Flaw<'_, '_> {
+    fn into_error(self) -> ParseError {
+        ParseError::new(place(self.node), self.expected, self.found)
+    }
+}
+
+/// Orientations and positions in the world, in the order of `segments`.
+fn read_frame<'a, 'input>(
+    frame: Node<'a, 'input>,
+    segments: &[Segment],
+) -> Result<(Vec<Quat>, Vec<Vec3>), Flaw<'a, 'input>> {
+    let turns = row(frame, "orientation", 4 * segments.len())?;
+    let places = row(frame, "position", 3 * segments.len())?;
+    let mut rotations = Vec::with_capacity(segments.len());
+    let mut positions = Vec::with_capacity(segments.len());
+    for segment in segments {
+        let [w, x, y, z] = [0, 1, 2, 3].map(|i| turns[4 * segment.column + i]);
+        let quaternion = nalgebra::Quaternion::new(w, x, y, z);
+        let norm = quaternion.norm();
+        if !(0.5..=2.0).contains(&norm) {
+            return Err(Flaw {
+                node: frame,
+                expected: "quaternions of length 1".to_owned(),
+                found: format!("{} turned by one of length {norm:.3}", segment.label),
+            });
+        }
+        rotations.push(Quat::new_normalize(quaternion));
+        let column = 3 * segment.column;
+        positions.push(Vec3::from_column_slice(&places[column..column + 3]));
+    }
+    Ok((rotations, positions))
+}
+
+/// The numbers of one element of a frame; more than `width` belong to props that the file does not list.
+fn row<'a, 'input>(
+    frame: Node<'a, 'input>,
+    tag: &str,
+    width: usize,
+) -> Result<Vec<f64>, Flaw<'a, 'input>> {
+    let flaw = |node, expected: String, found: String| Flaw {
+        node,
+        expected,
+        found,
+    };
+    let node = child(frame, tag).ok_or_else(|| {
+        let expected = format!("<{tag}> of every segment in the frame");
+        flaw(frame, expected, "none".to_owned())
+    })?;
+    let numbers = body::numbers(node.text().unwrap_or_default()).ok_or_else(|| {
+        let expected = format!("numbers in <{tag}>");
+        flaw(node, expected, "something else".to_owned())
+    })?;
+    if numbers.len() < width {
+        let expected = format!("{width} numbers in <{tag}>");
+        return Err(flaw(node, expected, numbers.len().to_string()));
+    }
+    Ok(numbers)
+}
+
+/// The rate that the file states, unless its frames' own times (milliseconds) say clearly otherwise.
+fn rate(subject: Node<'_, '_>, frames: &[Node<'_, '_>], warnings: &mut Vec<Warning>) -> f64 {
+    let stated = subject
+        .attribute("frameRate")
+        .and_then(|rate| rate.trim().parse::<f64>().ok())
+        .filter(|rate| rate.is_finite() && *rate > 0.0 && *rate <= 100_000.0);
+    let time = |frame: &Node| frame.attribute("time")?.trim().parse::<f64>().ok();
+    let timed = match (frames.first().and_then(time), frames.last().and_then(time)) {
+        (Some(first), Some(last)) if last > first && frames.len() > 2 => {
+            Some((frames.len() - 1) as f64 / (last - first) * 1000.0)
+        }
+        _ => None,
+    };
+    let at = place(subject);
+    match (stated, timed) {
+        (Some(stated), Some(timed)) if frames.len() > 20 && (timed / stated - 1.0).abs() > 0.1 => {
+            let text = format!(
+                "frameRate says {stated} Hz, the times of the frames {timed:.2} Hz; the file's rate is kept, --file-rate overrides it"
+            );
+            warnings.push(Warning::new(at, text));
+            stated
+        }
+        (Some(stated), _) => stated,
+        (None, Some(timed)) => {
+            let text = format!("no frameRate; the times of the frames say {timed:.2} Hz");
+            warnings.push(Warning::new(at, text));
+            timed
+        }
+        (None, None) => {
+            let text = format!("no frameRate; {ASSUMED_HZ} Hz assumed");
+            warnings.push(Warning::new(at, text));
+            ASSUMED_HZ
+        }
+    }
+}
+
+fn is(node: Node<'_, '_>, tag: &str) -> bool {
+    node.is_element() && node.tag_name().name().eq_ignore_ascii_case(tag)
+}
+
+fn child<'a, 'input>(node: Node<'a, 'input>, tag: &str) -> Option<Node<'a, 'input>> {
+    node.children().find(|n| is(*n, tag))
+}
+
+fn place(node: Node<'_, '_>) -> Place {
+    let at = node.document().text_pos_at(node.range().start);
+    Place::Line(at.row.into())
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,343 @@
+//! From a table of points to clips: what C3D, TRC and tables of positions have in common.
+
+use super::{Limits, Loaded, ParseError, Place, Warning};
+use crate::clip::{Clip, Gap, Points, Span};
+use crate::math::Vec3;
+use crate::roles::points::{recognise, subject_of};
+
+/// Gaps of up to this are filled and trusted: markers hardly leave a straight line in so little time.
+pub(super) const SHORT_GAP_SECS: f64 = 0.25;
+/// Names shown in a warning.
+const SHOWN: usize = 6;
+
+/// One point over time; a position that is not finite was not seen.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Point {
+    pub(super) name: String,
+    pub(super) positions: Vec<Vec3>,
+}
+
+/// What a file of points holds.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct PointTable {
+    pub(super) points: Vec<Point>,
+    pub(super) rate_hz: f64,
+    pub(super) metres_per_unit: Option<f64>,
+    /// Whether a point at the origin was not seen.
+    pub(super) zero_is_missing: bool,
+}
+
+/// A position that was not seen.
+pub(super) const UNSEEN: Vec3 = Vec3::new(f64::NAN, f64::NAN, f64::NAN);
+
+fn is_seen(position: &Vec3) -> bool {
+    position.iter().all(|c| c.is_finite())
+}
+
+impl PointTable {
+    /// Clips of the table: one, or one for each subject (`Anna:LFHD`) whose points make a body. Points that were never
+    /// seen are left out. O(points × frames).
+    ///
+    /// # Errors
+    /// No point was ever seen, or there are more points than `limits` allow.
+    pub(super) fn into_loaded(
+        mut self,
+        name: &str,
+        mut warnings: Vec<Warning>,
+        limits: &Limits,
+    ) -> Result<Loaded, ParseError> {
+        if self.points.len() > limits.joints {
+            let expected = format!("at most {} points", limits.joints);
+            let found = self.points.len().to_string();
+            return Err(ParseError::new(Place::File, expected, found));
+        }
+        self.mark_unseen();
+        self.leave_out(&mut warnings);
+        if self.points.is_empty() {
+            return Err(ParseError::new(
+                Place::File,
+                "at least one point that was seen",
+                "none; the file holds no motion",
+            ));
+        }
+        let clips = self
+            .subjects(name, &mut warnings)
+            .into_iter()
+            .map(|(name, points)| self.clip(name, points, &mut warnings))
+            .collect();
+        Ok(Loaded { clips, warnings })
+    }
+
+    /// Positions with a coordinate that is not finite, and those at the origin where that means so, become unseen.
+    fn mark_unseen(&mut self) {
+        let zero_is_missing = self.zero_is_missing;
+        for point in &mut self.points {
+            // The middle of the hips may be the origin of every frame.
+            let rests = |p: &Vec3| *p == Vec3::zeros();
+            let is_origin = is_root_name(&point.name) && point.positions.iter().all(rests);
+            for position in &mut point.positions {
+                if !is_seen(position) || zero_is_missing && !is_origin && rests(position) {
+                    *position = UNSEEN;
+                }
+            }
+        }
+    }
+
+    /// Leaves out what was never seen, and what a tracker could not name where other points have names.
+    fn leave_out(&mut self, warnings: &mut Vec<Warning>) {
+        let (seen, never): (Vec<_>, Vec<_>) = std::mem::take(&mut self.points)
+            .into_iter()
+            .partition(|point| point.positions.iter().any(is_seen));
+        let (named, unnamed): (Vec<_>, Vec<_>) =
+            seen.into_iter().partition(|p| !is_unlabelled(&p.name));
+        note_left_out(&never, "never seen", warnings);
+        if named.is_empty() {
+            self.points = unnamed;
+        } else {
+            note_left_out(&unnamed, "without a label", warnings);
+            self.points = named;
+        }
+    }
+
+    /// Points by subject, if at least two subjects have a body of their own.
+    fn subjects(&mut self, name: &str, warnings: &mut Vec<Warning>) -> Vec<(String, Vec<Point>)> {
+        let points = std::mem::take(&mut self.points);
+        let mut groups: Vec<(&str, Vec<&str>)> = Vec::new();
+        for point in &points {
+            let subject = subject_of(&point.name);
+            match groups.iter_mut().find(|(known, _)| *known == subject) {
+                Some((_, names)) => names.push(&point.name),
+                None => groups.push((subject, vec![&point.name])),
+            }
+        }
+        let bodies: Vec<String> = groups
+            .iter()
+            .filter(|(subject, names)| !subject.is_empty() && recognise(names).is_some())
+            .map(|(subject, _)| (*subject).to_owned())
+            .collect();
+        if bodies.len() < 2 {
+            return vec![(name.to_owned(), points)];
+        }
+        let text = format!(
+            "{} subjects, a clip for each: {}",
+            bodies.len(),
+            bodies.join(", ")
+        );
+        warnings.push(Warning::new(Place::File, text));
+        let mut clips: Vec<(String, Vec<Point>)> = (1..=bodies.len())
+            .map(|number| (format!("{name}.{number}"), Vec::new()))
+            .collect();
+        let mut others = Vec::new();
+        for point in points {
+            match bodies.iter().position(|b| b == subject_of(&point.name)) {
+                Some(body) => clips[body].1.push(point),
+                None => others.push(point),
+            }
+        }
+        note_left_out(&others, "of no subject with a body", warnings);
+        clips
+    }
+
+    fn clip(&self, name: String, mut points: Vec<Point>, warnings: &mut Vec<Warning>) -> Clip {
+        let most = (SHORT_GAP_SECS * self.rate_hz).round().max(1.0) as usize;
+        let mut filled = Filled::default();
+        for (joint, point) in points.iter_mut().enumerate() {
+            filled.fill(joint, &mut point.positions, most);
+        }
+        filled.note(&points, self.rate_hz, warnings);
+        let known = Points {
+            gaps: filled.long,
+            metres_per_unit: self.metres_per_unit,
+        };
+        let points = points.into_iter().map(|p| (p.name, p.positions));
+        let mut clip = Clip::of_points(name, self.rate_hz, points, known);
+        clip.repaired = union(filled.short);
+        clip
+    }
+}
+
+/// Gaps found and filled.
+#[derive(Default)]
+struct Filled {
+    /// Short ones, of any point.
+    short: Vec<Span>,
+    long: Vec<Gap>,
+}
+
+impl Filled {
+    /// Puts positions on the line between those around a gap; what comes before the first or after the last stays
+    /// where that was.
+    fn fill(&mut self, joint: usize, positions: &mut [Vec3], most: usize) {
+        for span in gaps(positions) {
+            let before = span.start.checked_sub(1).map(|f| positions[f]);
+            let after = positions.get(span.end).copied();
+            let inside = before.is_some() && after.is_some();
+            let (Some(from), Some(to)) = (before.or(after), after.or(before)) else {
+                continue;
+            };
+            let steps = span.len() as f64 + 1.0;
+            for frame in span.clone() {
+                let t = (frame - span.start + 1) as f64 / steps;
+                positions[frame] = from.lerp(&to, t);
+            }
+            if inside && span.len() <= most {
+                self.short.push(span);
+            } else {
+                self.long.push(Gap {
+                    joint,
+                    frames: span,
+                });
+            }
+        }
+    }
+
+    fn note(&self, points: &[Point], rate_hz: f64, warnings: &mut Vec<Warning>) {
+        if !self.short.is_empty() {
+            let text = format!(
+                "{} gaps of up to {SHORT_GAP_SECS} s filled by interpolation",
+                self.short.len()
+            );
+            warnings.push(Warning::new(Place::File, text));
+        }
+        if self.long.is_empty() {
+            return;
+        }
+        let mut longest: Vec<&Gap> = self.long.iter().collect();
+        longest.sort_by_key(|gap| std::cmp::Reverse(gap.frames.len()));
+        let shown: Vec<String> = longest
+            .iter()
+            .take(SHOWN)
+            .map(|gap| {
+                let secs = |frame: usize| frame as f64 / rate_hz;
+                let Span { start, end } = gap.frames;
+                let name = &points[gap.joint].name;
+                format!("{name} from {:.2} to {:.2} s", secs(start), secs(end))
+            })
+            .collect();
+        let more = if longest.len() > SHOWN { ", …" } else { "" };
+        let text = format!(
+            "{} gaps too long to fill, or at an end of the clip: {}{more}",
+            longest.len(),
+            shown.join(", ")
+        );
+        warnings.push(Warning::new(Place::File, text));
+    }
+}
+
+/// Runs of frames in which a point was not seen.
+fn gaps(positions: &[Vec3]) -> Vec<Span> {
+    let mut gaps: Vec<Span> = Vec::new();
+    for (frame, position) in positions.iter().enumerate() {
+        if is_seen(position) {
+            continue;
+        }
+        match gaps.last_mut().filter(|gap| gap.end == frame) {
+            Some(gap) => gap.end += 1,
+            None => gaps.push(frame..frame + 1),
+        }
+    }
+    gaps
+}
+
+/// Overlapping and touching spans made one, in order.
+fn union(mut spans: Vec<Span>) -> Vec<Span> {
+    spans.sort_by_key(|span| span.start);
+    let mut union: Vec<Span> = Vec::new();
+    for span in spans {
+        match union.last_mut().filter(|last| last.end >= span.start) {
+            Some(last) => last.end = last.end.max(span.end),
+            None => union.push(span),
+        }
+    }
+    union
+}
+
+fn note_left_out(points: &[Point], why: &str, warnings: &mut Vec<Warning>) {
+    if points.is_empty() {
+        return;
+    }
+    let shown: Vec<&str> = points.iter().take(SHOWN).map(|p| p.name.as_str()).collect();
+    let more = if points.len() > SHOWN { ", …" } else { "" };
+    let text = format!(
+        "{} points {why} left out: {}{more}",
+        points.len(),
+        shown.join(", ")
+    );
+    warnings.push(Warning::new(Place::File, text));
+}
+
+/// Names that trackers give to what they could not label: `*12`, `U_3`, `Unlabeled 1203`, `uname1`.
+fn is_unlabelled(name: &str) -> bool {
+    let bare = name.rsplit(':').next().unwrap_or(name).trim();
+    let lower = bare.to_ascii_lowercase();
+    let number = |rest: &str| {
+        let rest = rest.trim_start_matches(['_', ' ', '-', '*']);
+        !rest.is_empty() && rest.bytes().all(|b| b.is_ascii_digit())
+    };
+    ["*", "u_", "unlabeled", "unlabelled", "uname", "unknown"]
+        .iter()
+        .any(|start| lower.strip_prefix(start).is_some_and(number))
+}
+
+fn is_root_name(name: &str) -> bool {
+    let lower = name.to_ascii_lowercase();
+    lower == "0"
+        || ["hip", "pelvis", "root"]
+            .iter()
+            .any(|root| lower.contains(root))
+}
+
+/// Positions that a file of `bytes` bytes is believed to hold: one takes three cells, unless rows are cut short.
+///
+/// # Errors
+/// More positions than that.
+pub(super) fn check_size(points: usize, frames: usize, bytes: usize) -> Result<(), ParseError> {
+    let most = bytes.saturating_mul(4).max(1 << 20);
+    let positions = points.saturating_mul(frames);
+    if positions <= most {
+        return Ok(());
+    }
+    let expected = format!("at most {most} positions in {bytes} bytes");
+    let found = format!("{points} points in {frames} frames");
+    Err(ParseError::new(Place::File, expected, found))
+}
+
+/// Whether the point `joint` was not seen at `frame`. O(gaps).
+pub(super) fn is_gap_at(clip: &Clip, joint: usize, frame: usize) -> bool {
+    let gaps = clip.points.iter().flat_map(|points| &points.gaps);
+    gaps.into_iter()
+        .any(|gap| gap.joint == joint && gap.frames.contains(&frame))
+}
+
+/// The name of a clip's unit in files of points, and the factor from the clip's unit to it: 1, unless only millimetres
+/// have a name. No name for an unknown unit.
+pub(super) fn named_unit(clip: &Clip) -> (&'static str, f64) {
+    const NAMES: [(&str, f64); 3] = [("m", 1.0), ("cm", 0.01), ("mm", 0.001)];
+    let Some(metres) = clip.points.as_ref().and_then(|p| p.metres_per_unit) else {
+        return ("", 1.0);
+    };
+    match NAMES.iter().find(|(_, m)| (m / metres - 1.0).abs() < 1e-9) {
+        Some((name, _)) => (name, 1.0),
+        None => ("mm", 1000.0 * metres),
+    }
+}
+
+/// What a unit of length is called in files, in metres.
+pub(super) fn metres_of(unit: &str) -> Option<f64> {
+    match unit
+        .trim_matches(['\0', ' ', '\t'])
+        .to_ascii_lowercase()
+        .as_str()
+    {
+        "m" | "meter" | "meters" | "metre" | "metres" => Some(1.0),
+        "dm" => Some(0.1),
+        "cm" | "centimeter" | "centimeters" | "centimetre" | "centimetres" => Some(0.01),
+        "mm" | "millimeter" | "millimeters" | "millimetre" | "millimetres" => Some(0.001),
+        "in" | "inch" | "inches" => Some(0.0254),
+        "ft" | "feet" | "foot" => Some(0.3048),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests;

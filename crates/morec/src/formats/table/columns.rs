@@ -1,0 +1,282 @@
+//! Which columns are a point's x, y and z, by the rows above them.
+
+use super::{Layout, Row};
+use crate::formats::cells::{Decimal, number};
+use crate::formats::points::metres_of;
+
+/// The layout of a table whose header names its columns, in one row or several.
+pub(super) fn layout(rows: &[Row]) -> Option<Layout> {
+    let header_rows = header_rows(rows)?;
+    let labels = labels(&rows[..header_rows]);
+    let mut found = Layout {
+        header_rows,
+        ..Layout::default()
+    };
+    let mut open: Vec<(String, [Option<usize>; 3])> = Vec::new();
+    for (column, label) in labels.iter().enumerate() {
+        if let Some((name, axis)) = axis_of(label) {
+            match open.iter_mut().find(|(known, _)| *known == name) {
+                Some((_, columns)) => columns[axis] = columns[axis].or(Some(column)),
+                None => {
+                    let mut columns = [None; 3];
+                    columns[axis] = Some(column);
+                    open.push((name, columns));
+                }
+            }
+            found.metres_per_unit = found.metres_per_unit.or(unit_of(label));
+        } else if found.time.is_none() && is_time(label) {
+            found.time = Some((column, seconds_of(label)));
+        } else if found.frame.is_none() && is_frame(label, column) {
+            found.frame = Some(column);
+        }
+    }
+    for (name, columns) in open {
+        match columns {
+            [Some(x), Some(y), Some(z)] => found.points.push((name, [x, y, z])),
+            _ => found
+                .notes
+                .push(format!("`{name}` has not all of x, y and z; left out")),
+        }
+    }
+    (!found.points.is_empty()).then_some(found)
+}
+
+/// Whether the columns have x and y, and z nowhere.
+pub(super) fn is_flat(rows: &[Row]) -> bool {
+    let Some(header_rows) = header_rows(rows) else {
+        return false;
+    };
+    let axes: Vec<usize> = labels(&rows[..header_rows])
+        .iter()
+        .filter_map(|label| Some(axis_of(label)?.1))
+        .collect();
+    axes.contains(&0) && axes.contains(&1) && !axes.contains(&2)
+}
+
+/// Rows before the first of numbers; `None` if there is none, or no row of numbers.
+fn header_rows(rows: &[Row]) -> Option<usize> {
+    let is_frame = |(_, cells): &Row| {
+        let filled = cells.iter().filter(|cell| !cell.is_empty());
+        let numbers = filled
+            .clone()
+            .filter(|c| number(c, Decimal::Either).is_some() || is_nan(c));
+        let first = filled.clone().next();
+        let (filled, numbers) = (filled.count(), numbers.count());
+        filled > 0
+            && first.is_some_and(|c| number(c, Decimal::Either).is_some() || is_nan(c))
+            && numbers * 5 >= filled * 4
+    };
+    let first = rows.iter().position(is_frame).unwrap_or(rows.len());
+    (first > 0).then_some(first)
+}
+
+fn is_nan(cell: &str) -> bool {
+    cell.eq_ignore_ascii_case("nan")
+}
+
+/// The words above each column. In a row with blanks, a word holds for the columns up to the next; a last row of axes
+/// gets the name that changes above it.
+fn labels(header: &[Row]) -> Vec<String> {
+    let width = header
+        .iter()
+        .map(|(_, cells)| cells.len())
+        .max()
+        .unwrap_or(0);
+    let Some((last, above)) = header.split_last() else {
+        return Vec::new();
+    };
+    let is_axis = |cell: &&str| matches!(cell.to_ascii_lowercase().as_str(), "x" | "y" | "z");
+    let axes = last.1.iter().filter(|cell| is_axis(cell)).count();
+    if axes < 3 || above.is_empty() {
+        let cell = |column: usize| {
+            last.1
+                .get(column)
+                .map_or(String::new(), |c| (*c).to_owned())
+        };
+        return (0..width).map(cell).collect();
+    }
+    // The row that names points has the most different words; scorers and kinds have few.
+    let filled: Vec<Vec<&str>> = above
+        .iter()
+        .map(|(_, cells)| carried(cells, width))
+        .collect();
+    let different = |cells: &&Vec<&str>| {
+        let mut words: Vec<&str> = cells.to_vec();
+        words.sort_unstable();
+        words.dedup();
+        words.len()
+    };
+    let names = filled
+        .iter()
+        .max_by_key(different)
+        .cloned()
+        .unwrap_or_default();
+    let label = |column: usize| {
+        let axis = last.1.get(column).copied().unwrap_or_default();
+        let name = names.get(column).copied().unwrap_or_default();
+        match axis {
+            "" => name.to_owned(),
+            axis if is_axis(&axis) && !name.is_empty() => format!("{name}_{axis}"),
+            axis => axis.to_owned(),
+        }
+    };
+    (0..width).map(label).collect()
+}
+
+/// A row with blanks filled from the left.
+fn carried<'a>(cells: &[&'a str], width: usize) -> Vec<&'a str> {
+    let mut last = "";
+    (0..width)
+        .map(|column| {
+            let cell = cells.get(column).copied().unwrap_or_default();
+            if !cell.is_empty() {
+                last = cell;
+            }
+            last
+        })
+        .collect()
+}
+
+/// Words behind a name that say that its position is meant.
+const POSITION: [&str; 9] = [
+    "position",
+    "pos",
+    "translation",
+    "translate",
+    "trans",
+    "location",
+    "loc",
+    "coord",
+    "t",
+];
+/// Words that say that something else is meant.
+const NO_POSITION: [&str; 17] = [
+    "rotation",
+    "rot",
+    "r",
+    "q",
+    "quat",
+    "quaternion",
+    "euler",
+    "angle",
+    "vel",
+    "velocity",
+    "acc",
+    "acceleration",
+    "force",
+    "moment",
+    "orientation",
+    "error",
+    "gyro",
+];
+
+/// The point and the axis (0 to 2) that a column's label names.
+pub(super) fn axis_of(label: &str) -> Option<(String, usize)> {
+    let label = without_unit(label).trim();
+    let (name, axis) = suffix(label).or_else(|| prefix(label))?;
+    let mut name = name.trim_end_matches(is_mark);
+    let last = |name: &str| {
+        let start = name.rfind(is_mark).map_or(0, |at| at + 1);
+        (start, name[start..].to_ascii_lowercase())
+    };
+    let (start, word) = last(name);
+    if NO_POSITION.contains(&word.as_str()) && start > 0 {
+        return None;
+    }
+    if POSITION.contains(&word.as_str()) && start > 0 {
+        name = name[..start].trim_end_matches(is_mark);
+    }
+    // A point has a name; `rotation x` alone has none.
+    let lower = name.to_ascii_lowercase();
+    let is_name = !name.is_empty() && !NO_POSITION.contains(&lower.as_str());
+    is_name.then(|| (name.to_owned(), axis))
+}
+
+fn is_mark(c: char) -> bool {
+    matches!(c, '_' | '.' | ' ' | '-' | ':' | '/' | '|')
+}
+
+fn axis_number(c: char) -> Option<usize> {
+    match c.to_ascii_lowercase() {
+        'x' => Some(0),
+        'y' => Some(1),
+        'z' => Some(2),
+        _ => None,
+    }
+}
+
+/// `hips_x`, `Hips.X`, `Hips Tx`, `HipsX`, `12x`.
+fn suffix(label: &str) -> Option<(&str, usize)> {
+    let last = label.chars().next_back()?;
+    let axis = axis_number(last)?;
+    let rest = &label[..label.len() - 1];
+    let before = rest.chars().next_back()?;
+    if is_mark(before) {
+        return Some((rest, axis));
+    }
+    // A letter for the kind of channel: T for translation; `Rx` and `Qx` are none of ours.
+    if let Some(name) = rest.strip_suffix(['T', 't', 'P', 'p']) {
+        if name.chars().next_back().is_some_and(is_mark) {
+            return Some((name, axis));
+        }
+    }
+    let joined = last.is_uppercase() && before.is_lowercase() || before.is_ascii_digit();
+    joined.then_some((rest, axis))
+}
+
+/// `x_hips`, `X hips`, `x12`.
+fn prefix(label: &str) -> Option<(&str, usize)> {
+    let axis = axis_number(label.chars().next()?)?;
+    let rest = &label[1..];
+    let next = rest.chars().next()?;
+    (is_mark(next) || next.is_ascii_digit()).then(|| (rest.trim_start_matches(is_mark), axis))
+}
+
+/// A label without a unit in brackets behind it.
+fn without_unit(label: &str) -> &str {
+    match label.find(['(', '[']) {
+        Some(at) if label.ends_with([')', ']']) => label[..at].trim_end(),
+        _ => label,
+    }
+}
+
+fn unit_of(label: &str) -> Option<f64> {
+    let start = label.find(['(', '['])?;
+    metres_of(label[start..].trim_matches(['(', ')', '[', ']']))
+}
+
+pub(super) fn is_time(label: &str) -> bool {
+    let lower = without_unit(label).to_ascii_lowercase();
+    matches!(lower.as_str(), "t" | "secs" | "seconds" | "sec" | "ms") || lower.contains("time")
+}
+
+/// Seconds in the unit that a label of times names.
+pub(super) fn seconds_of(label: &str) -> Option<f64> {
+    let lower = label.to_ascii_lowercase();
+    let says = |words: &[&str]| {
+        let mut parts = lower.split(|c: char| !c.is_alphanumeric());
+        parts.any(|part| words.contains(&part))
+    };
+    match () {
+        () if says(&["ns", "nanoseconds"]) => Some(1e-9),
+        () if says(&["us", "microseconds"]) => Some(1e-6),
+        () if says(&["ms", "milliseconds", "msec"]) => Some(1e-3),
+        () if says(&["s", "sec", "secs", "seconds"]) => Some(1.0),
+        () => None,
+    }
+}
+
+pub(super) fn is_frame(label: &str, column: usize) -> bool {
+    let lower = label.to_ascii_lowercase();
+    let words = [
+        "frame",
+        "frame#",
+        "frames",
+        "fnum",
+        "index",
+        "frame_number",
+        "framenumber",
+        "coords",
+    ];
+    words.contains(&lower.as_str()) || lower.starts_with("frame") || column == 0 && lower.is_empty()
+}

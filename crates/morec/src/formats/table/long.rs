@@ -1,0 +1,132 @@
+//! The long form: a row for each joint of each frame.
+
+use super::columns::{is_frame, is_time, seconds_of};
+use super::{Frames, Layout, Row, to_seconds};
+use crate::formats::cells::{Decimal, number};
+use crate::formats::points::{Point, UNSEEN, check_size};
+use crate::formats::{Limits, ParseError, Place};
+use crate::math::Vec3;
+
+/// Columns of the long form.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Columns {
+    /// The row that names them.
+    header: usize,
+    name: usize,
+    axes: [usize; 3],
+    time: Option<(usize, Option<f64>)>,
+    frame: Option<usize>,
+}
+
+/// What the column of joints' names is called.
+const NAMES: [&str; 12] = [
+    "joint",
+    "keypoint",
+    "landmark",
+    "marker",
+    "bodypart",
+    "body_part",
+    "point",
+    "name",
+    "label",
+    "joint_name",
+    "landmark_name",
+    "node",
+];
+
+/// The columns, if `row` is the header of a long table.
+pub(super) fn columns(header: usize, (_, cells): &Row) -> Option<Columns> {
+    let lower: Vec<String> = cells.iter().map(|cell| cell.to_ascii_lowercase()).collect();
+    let find = |is: &dyn Fn(&str) -> bool| lower.iter().position(|cell| is(cell));
+    let axis = |axis: &str| {
+        find(&|cell| {
+            let cell = cell.split(['(', '[']).next().unwrap_or_default().trim();
+            cell == axis
+                || ["_m", "_mm", "_cm", " pos", "_pos"]
+                    .iter()
+                    .any(|end| cell.strip_suffix(end) == Some(axis))
+        })
+    };
+    let axes = [axis("x")?, axis("y")?, axis("z")?];
+    // A landmark's number serves where it has no name.
+    let name = NAMES.iter().find_map(|known| find(&|cell| cell == *known));
+    let name = name.or_else(|| find(&|cell| cell.ends_with("_id") || cell == "id"))?;
+    let time = find(&|cell| is_time(cell)).map(|column| (column, seconds_of(&lower[column])));
+    let frame = find(&|cell| !cell.is_empty() && is_frame(cell, 1));
+    (time.is_some() || frame.is_some()).then_some(Columns {
+        header,
+        name,
+        axes,
+        time,
+        frame,
+    })
+}
+
+/// Frames in the order in which they appear.
+pub(super) fn frames(
+    columns: &Columns,
+    rows: &[Row],
+    limits: &Limits,
+) -> Result<Frames, ParseError> {
+    let body = &rows[columns.header + 1..];
+    let decimal = Decimal::of(body.iter().flat_map(|(_, cells)| cells).copied());
+    let mut points: Vec<Point> = Vec::new();
+    let mut times: Vec<Option<f64>> = Vec::new();
+    let mut of_name = std::collections::HashMap::new();
+    let mut of_frame = std::collections::HashMap::new();
+    for (line, cells) in body {
+        let cell = |column: usize| cells.get(column).copied().unwrap_or_default();
+        let value = |column: usize| number(cell(column), decimal);
+        let time = columns.time.and_then(|(column, _)| value(column));
+        let key = columns.frame.or(columns.time.map(|t| t.0)).map_or("", cell);
+        let name = cell(columns.name);
+        if key.is_empty() || name.is_empty() {
+            continue;
+        }
+        let next = times.len();
+        let frame = *of_frame.entry(key).or_insert(next);
+        if frame == next {
+            if next == limits.frames {
+                let expected = format!("at most {} frames", limits.frames);
+                return Err(ParseError::new(Place::Line(*line), expected, "more"));
+            }
+            times.push(time);
+        }
+        let next = points.len();
+        let point = *of_name.entry(name).or_insert(next);
+        if point == next {
+            if next == limits.joints {
+                let expected = format!("at most {} points", limits.joints);
+                return Err(ParseError::new(Place::Line(*line), expected, "more"));
+            }
+            points.push(Point {
+                name: name.to_owned(),
+                positions: Vec::new(),
+            });
+        }
+        if let [Some(x), Some(y), Some(z)] = columns.axes.map(value) {
+            let positions = &mut points[point].positions;
+            positions.resize(positions.len().max(frame + 1), UNSEEN);
+            positions[frame] = Vec3::new(x, y, z);
+        }
+    }
+    if times.is_empty() {
+        let line = rows.last().map_or(1, |row| row.0);
+        return Err(ParseError::new(
+            Place::Line(line),
+            "rows below the header",
+            "none",
+        ));
+    }
+    let bytes = body
+        .iter()
+        .map(|(_, cells)| cells.iter().map(|c| c.len() + 1).sum::<usize>());
+    check_size(points.len(), times.len(), bytes.sum())?;
+    for point in &mut points {
+        point.positions.resize(times.len(), UNSEEN);
+    }
+    if let Some((_, secs)) = columns.time {
+        to_seconds(&mut times, secs);
+    }
+    Ok((points, times, Layout::default()))
+}

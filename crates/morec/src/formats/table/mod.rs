@@ -1,0 +1,294 @@
+//! Tables of positions as text: CSV, TSV and their kin.
+//!
+//! - One joint in three columns, named in one row (`hips_x`, `Hips.X`, `Hips Tx`) or in several (DeepLabCut's `bodyparts`
+//!   and `coords`), with a column of times or frames or none.
+//! - OptiTrack Motive's export, with its rows of types, names and properties.
+//! - The long form: a row for each joint of each frame.
+//! - Numbers alone, if there are as many columns as a known set of landmarks needs.
+
+mod columns;
+mod long;
+mod motive;
+mod plain;
+
+use super::cells::{Decimal, lines, number, split};
+use super::points::{Point, PointTable, UNSEEN, check_size};
+use super::timing::{self, Clock};
+use super::{Limits, Loaded, ParseError, Place, Warning};
+use crate::math::Vec3;
+
+/// Frames a second of a table without times.
+const ASSUMED_HZ: f64 = 30.0;
+
+/// A row: its line and its cells.
+type Row<'a> = (u64, Vec<&'a str>);
+
+/// What the header of a table says.
+#[derive(Debug, Clone, PartialEq, Default)]
+struct Layout {
+    /// Points and the columns of x, y and z.
+    points: Vec<(String, [usize; 3])>,
+    /// The column of times, and seconds in its unit.
+    time: Option<(usize, Option<f64>)>,
+    /// The column of frame numbers.
+    frame: Option<usize>,
+    rate_hz: Option<f64>,
+    metres_per_unit: Option<f64>,
+    /// Rows before the first frame.
+    header_rows: usize,
+    /// What was left out or guessed.
+    notes: Vec<String>,
+}
+
+/// Reads a table of positions: a clip of points called `name`, one for each subject if several have a body. Blank cells
+/// are points that were not seen. `rate_hz` replaces the rate in the file. O(bytes).
+///
+/// # Errors
+/// Where and what: no columns of positions, only two dimensions, no frames, more of either than `limits` allow.
+pub fn read(
+    bytes: &[u8],
+    name: &str,
+    rate_hz: Option<f64>,
+    limits: &Limits,
+) -> Result<Loaded, ParseError> {
+    let rows = lines(bytes, limits)?;
+    let separator = separator(&rows);
+    let mut cells: Vec<Row> = Vec::with_capacity(rows.len());
+    for (line, row) in &rows {
+        cells.push((*line, split(row, separator)));
+    }
+    let head = &cells[..cells.len().min(HEAD_ROWS)];
+    let mut warnings = Vec::new();
+    let (mut points, times, layout) = match header(head) {
+        Some(Header::Long(columns)) => long::frames(&columns, &cells, limits)?,
+        Some(Header::Wide(layout)) => {
+            check_size(layout.points.len(), cells.len(), bytes.len())?;
+            wide(layout, &cells, limits, &mut warnings)?
+        }
+        None => match plain::layout(&cells) {
+            Some(layout) => wide(layout, &cells, limits, &mut warnings)?,
+            None => return Err(no_columns(&cells)),
+        },
+    };
+    check_size(points.len(), times.len(), bytes.len())?;
+    for note in layout.notes {
+        warnings.push(Warning::new(Place::File, note));
+    }
+    let clock = Clock {
+        given_hz: rate_hz,
+        stated_hz: layout.rate_hz,
+        assumed_hz: ASSUMED_HZ,
+    };
+    let rate_hz = timing::regular(&times, &clock, &mut points, &mut warnings);
+    let table = PointTable {
+        points,
+        rate_hz,
+        metres_per_unit: layout.metres_per_unit,
+        zero_is_missing: true,
+    };
+    table.into_loaded(name, warnings, limits)
+}
+
+/// Rows among which a header is looked for.
+const HEAD_ROWS: usize = 40;
+
+/// Whether text begins as a table of positions does: its header names x, y and z of something.
+pub(super) fn looks_so(head: &[u8]) -> bool {
+    let limits = Limits {
+        line_bytes: usize::MAX,
+        ..Limits::default()
+    };
+    let Ok(rows) = lines(head, &limits) else {
+        return false;
+    };
+    let separator = separator(&rows);
+    let rows = rows.iter().take(HEAD_ROWS);
+    let cells: Vec<Row> = rows
+        .map(|(line, row)| (*line, split(row, separator)))
+        .collect();
+    match header(&cells) {
+        Some(Header::Long(_)) => true,
+        Some(Header::Wide(layout)) => layout.points.len() >= 2,
+        None => false,
+    }
+}
+
+enum Header {
+    Wide(Layout),
+    Long(long::Columns),
+}
+
+fn header(rows: &[Row]) -> Option<Header> {
+    if let Some(layout) = motive::layout(rows) {
+        return Some(Header::Wide(layout));
+    }
+    if let Some(columns) = rows
+        .iter()
+        .enumerate()
+        .find_map(|(r, row)| long::columns(r, row))
+    {
+        return Some(Header::Long(columns));
+    }
+    columns::layout(rows).map(Header::Wide)
+}
+
+/// What separates cells: of tab, semicolon and comma the one that most rows have; none if no row has any.
+fn separator(rows: &[(u64, &str)]) -> Option<char> {
+    let looked_at = || {
+        rows.iter()
+            .rev()
+            .take(HEAD_ROWS)
+            .chain(rows.iter().take(HEAD_ROWS))
+    };
+    // A comma may stand in numbers where a semicolon or tab separates them.
+    ['\t', ';', ',']
+        .into_iter()
+        .map(|c| (looked_at().filter(|(_, row)| row.contains(c)).count(), c))
+        .filter(|&(count, _)| 2 * count > looked_at().count())
+        .map(|(_, c)| c)
+        .next()
+}
+
+fn no_columns(rows: &[Row]) -> ParseError {
+    const SHOWN: usize = 6;
+    let expected = "columns of x, y and z for each point, as in `hips_x`, `hips_y`, `hips_z`";
+    let Some((line, first)) = rows.first() else {
+        return ParseError::new(Place::Line(1), expected, "an empty file");
+    };
+    if columns::is_flat(rows) {
+        let found = "x and y alone: two dimensions are not enough";
+        return ParseError::new(Place::Line(*line), expected, found);
+    }
+    let named: Vec<&str> = first
+        .iter()
+        .copied()
+        .filter(|cell| !cell.is_empty())
+        .collect();
+    let shown = named[..named.len().min(SHOWN)].join(", ");
+    let more = if named.len() > SHOWN { ", …" } else { "" };
+    ParseError::new(Place::Line(*line), expected, format!("`{shown}{more}`"))
+}
+
+/// What frames hold: points, times, and the layout they were read by.
+type Frames = (Vec<Point>, Vec<Option<f64>>, Layout);
+
+/// The frames of a table with three columns for each point.
+fn wide(
+    layout: Layout,
+    rows: &[Row],
+    limits: &Limits,
+    warnings: &mut Vec<Warning>,
+) -> Result<Frames, ParseError> {
+    let body = &rows[layout.header_rows.min(rows.len())..];
+    let decimal = Decimal::of(body.iter().flat_map(|(_, cells)| cells).copied());
+    let mut points: Vec<Point> = layout
+        .points
+        .iter()
+        .map(|(name, _)| Point {
+            name: name.clone(),
+            positions: Vec::with_capacity(body.len()),
+        })
+        .collect();
+    let (mut times, mut numbers) = (Vec::new(), Vec::new());
+    for (line, cells) in body {
+        let value = |column: usize| cells.get(column).and_then(|cell| number(cell, decimal));
+        let is_frame = layout
+            .points
+            .iter()
+            .flat_map(|(_, c)| c)
+            .any(|&c| value(c).is_some());
+        let has_number = layout
+            .frame
+            .or(layout.time.map(|t| t.0))
+            .and_then(value)
+            .is_some();
+        if !is_frame && !has_number {
+            let text = format!(
+                "a row that begins with `{}` is no frame and left out",
+                cells[0]
+            );
+            warnings.push(Warning::new(Place::Line(*line), text));
+            continue;
+        }
+        if times.len() == limits.frames {
+            let expected = format!("at most {} frames", limits.frames);
+            return Err(ParseError::new(Place::Line(*line), expected, "more"));
+        }
+        times.push(layout.time.and_then(|(column, _)| value(column)));
+        numbers.push(layout.frame.and_then(value));
+        for ((_, [x, y, z]), point) in layout.points.iter().zip(&mut points) {
+            point
+                .positions
+                .push(match [value(*x), value(*y), value(*z)] {
+                    [Some(x), Some(y), Some(z)] => Vec3::new(x, y, z),
+                    _ => UNSEEN,
+                });
+        }
+    }
+    if times.is_empty() {
+        let line = rows.last().map_or(1, |row| row.0);
+        return Err(ParseError::new(
+            Place::Line(line),
+            "frames below the header",
+            "none",
+        ));
+    }
+    if let Some((_, secs)) = layout.time {
+        to_seconds(&mut times, secs);
+    } else {
+        insert_missing(&numbers, &mut points, &mut times, limits);
+    }
+    Ok((points, times, layout))
+}
+
+/// Times in their unit to seconds; an unknown unit is told by the usual step.
+fn to_seconds(times: &mut [Option<f64>], secs: Option<f64>) {
+    let known: Vec<f64> = times.iter().copied().flatten().collect();
+    let mut steps: Vec<f64> = known.windows(2).map(|w| w[1] - w[0]).collect();
+    steps.sort_by(f64::total_cmp);
+    let usual = steps.get(steps.len() / 2).copied().unwrap_or(0.0);
+    let secs = secs.unwrap_or(match usual {
+        step if step >= 1e6 => 1e-9,
+        step if step >= 1e3 => 1e-6,
+        step if step >= 2.0 => 1e-3,
+        _ => 1.0,
+    });
+    let first = known.first().copied().unwrap_or(0.0);
+    for time in times.iter_mut().flatten() {
+        // Times since 1970 leave few digits for the fraction.
+        *time = (*time - first) * secs;
+    }
+}
+
+/// Puts frames in which nothing was seen where numbers of frames are left out.
+fn insert_missing(
+    numbers: &[Option<f64>],
+    points: &mut [Point],
+    times: &mut Vec<Option<f64>>,
+    limits: &Limits,
+) {
+    let whole: Option<Vec<f64>> = numbers.iter().copied().collect();
+    let Some(numbers) = whole.filter(|n| n.iter().all(|v| v.fract() == 0.0)) else {
+        return;
+    };
+    let (Some(&first), Some(&last)) = (numbers.first(), numbers.last()) else {
+        return;
+    };
+    let count = last - first + 1.0;
+    let increasing = numbers.windows(2).all(|w| w[1] > w[0]);
+    let most = (10 * numbers.len()).min(limits.frames) as f64;
+    if !increasing || count > most || count as usize == numbers.len() {
+        return;
+    }
+    for point in points {
+        let mut positions = vec![UNSEEN; count as usize];
+        for (number, position) in numbers.iter().zip(&point.positions) {
+            positions[(number - first) as usize] = *position;
+        }
+        point.positions = positions;
+    }
+    times.resize(count as usize, None);
+}
+
+#[cfg(test)]
+mod tests;

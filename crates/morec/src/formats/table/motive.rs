@@ -1,0 +1,59 @@
+//! OptiTrack Motive's CSV export, after its documentation ("Data Export: CSV"): a row of keys and values, then a row each
+//! of types, names, numbers and properties above the columns.
+
+use super::{Layout, Row};
+use crate::formats::cells::{Decimal, number};
+use crate::formats::points::metres_of;
+
+/// The layout, if this is such an export. Bones are taken if there are any, else rigid bodies and markers.
+pub(super) fn layout(rows: &[Row]) -> Option<Layout> {
+    let keys = &rows.first()?.1;
+    let is_motive = keys
+        .iter()
+        .any(|cell| matches!(*cell, "Format Version" | "Take Name"));
+    let frame_row = rows.iter().position(|(_, cells)| cells[0] == "Frame")?;
+    let named = |name: &str| {
+        let is = |(_, cells): &&Row| cells.iter().take(2).any(|cell| *cell == name);
+        rows[..frame_row].iter().find(is).map(|(_, cells)| cells)
+    };
+    let (types, names) = (named("Type")?, named("Name")?);
+    let properties = rows[..frame_row].iter().rev().map(|(_, cells)| cells);
+    let properties = properties
+        .into_iter()
+        .find(|cells| cells.contains(&"Position"))?;
+    if !is_motive && properties.len() < 5 {
+        return None;
+    }
+    let value = |key: &str| {
+        let at = keys.iter().position(|cell| *cell == key)?;
+        keys.get(at + 1).copied()
+    };
+    let rate = |key| value(key).and_then(|text| number(text, Decimal::Either));
+    let mut found = Layout {
+        header_rows: frame_row + 1,
+        frame: Some(0),
+        time: Some((1, Some(1.0))),
+        rate_hz: rate("Export Frame Rate").or(rate("Capture Frame Rate")),
+        metres_per_unit: value("Length Units").and_then(metres_of),
+        ..Layout::default()
+    };
+    let axes = &rows[frame_row].1;
+    let is_x = |c: &usize| properties[*c] == "Position" && axes.get(*c) == Some(&"X");
+    let mut columns: Vec<(usize, &str)> = (2..properties.len())
+        .filter(is_x)
+        .filter_map(|c| Some((c, types.get(c).copied()?)))
+        .collect();
+    if columns.iter().any(|(_, kind)| *kind == "Bone") {
+        let all = columns.len();
+        columns.retain(|(_, kind)| *kind == "Bone");
+        if columns.len() < all {
+            let text = format!("{} markers beside the bones left out", all - columns.len());
+            found.notes.push(text);
+        }
+    }
+    for (x, _) in columns {
+        let name = names.get(x).copied().unwrap_or_default();
+        found.points.push((name.to_owned(), [x, x + 1, x + 2]));
+    }
+    Some(found)
+}

@@ -1,0 +1,233 @@
+//! TRC: points over time as tab-separated text (Motion Analysis, OpenSim).
+//!
+//! A header of two rows of names and values (rate, counts, unit), a row with a name above every three columns, a row of
+//! `X1 Y1 Z1 …`, then frames. Producers leave rows out, separate by commas, or name one point a cell; all of it is read.
+
+mod write;
+
+pub use write::write;
+
+use super::cells::{Decimal, lines, number, split};
+use super::points::{Point, PointTable, UNSEEN, check_size, metres_of};
+use super::timing::{self, Clock};
+use super::{Limits, Loaded, ParseError, Place, Warning};
+use crate::math::Vec3;
+
+/// The header's rows before the names of points.
+struct Heading {
+    rate_hz: Option<f64>,
+    unit: Option<String>,
+    frames: Option<f64>,
+    points: Option<f64>,
+}
+
+/// Reads a TRC file: a clip of points called `name`, one for each subject if several have a body. Blank cells are points
+/// that were not seen. `rate_hz` replaces the rate in the file. O(bytes).
+///
+/// # Errors
+/// Where and what: no row that begins with `Frame#`, no points, no frames, more of either than `limits` allow.
+pub fn read(
+    bytes: &[u8],
+    name: &str,
+    rate_hz: Option<f64>,
+    limits: &Limits,
+) -> Result<Loaded, ParseError> {
+    let mut warnings = Vec::new();
+    let rows = lines(bytes, limits)?;
+    let Some((at, separator)) = names_row(&rows) else {
+        let found = match rows.len() {
+            0 => "an empty file".to_owned(),
+            n => format!("none in {n} rows"),
+        };
+        return Err(ParseError::new(
+            Place::Line(rows.last().map_or(1, |row| row.0)),
+            "a row of a TRC file that begins with Frame# and names the points",
+            found,
+        ));
+    };
+    let heading = Heading::read(&rows[..at], separator);
+    let columns = columns(&split(rows[at].1, separator));
+    if columns.is_empty() {
+        return Err(ParseError::new(
+            Place::Line(rows[at].0),
+            "names of points in the TRC file",
+            "none: it holds no points",
+        ));
+    }
+    if let Some(stated) = heading.points.filter(|&n| n != columns.len() as f64) {
+        let text = format!(
+            "{} points are named, the header says {stated}",
+            columns.len()
+        );
+        warnings.push(Warning::new(Place::Line(rows[at].0), text));
+    }
+    let body: Vec<(u64, Vec<&str>)> = rows[at + 1..]
+        .iter()
+        .map(|&(line, text)| (line, split(text, separator)))
+        .filter(|(_, cells)| !is_axes_row(cells))
+        .collect();
+    check_size(columns.len(), body.len(), bytes.len())?;
+    let mut table = frames(&columns, &body, limits, &mut warnings)?;
+    if let Some(stated) = heading.frames.filter(|&n| n != table.times.len() as f64) {
+        let text = format!(
+            "{} frames are there, the header says {stated}",
+            table.times.len()
+        );
+        warnings.push(Warning::new(Place::File, text));
+    }
+    let clock = Clock {
+        given_hz: rate_hz,
+        stated_hz: heading.rate_hz,
+        assumed_hz: 60.0,
+    };
+    let rate_hz = timing::regular(&table.times, &clock, &mut table.points, &mut warnings);
+    let unit = heading.unit.as_deref().and_then(metres_of);
+    if unit.is_none() {
+        let text = "no known unit of length in the header; the body's height tells it";
+        warnings.push(Warning::new(Place::File, text));
+    }
+    let table = PointTable {
+        points: table.points,
+        rate_hz,
+        metres_per_unit: unit,
+        zero_is_missing: true,
+    };
+    table.into_loaded(name, warnings, limits)
+}
+
+/// The row that names the points, and what separates its cells.
+fn names_row(rows: &[(u64, &str)]) -> Option<(usize, Option<char>)> {
+    // More rows before it are no header.
+    const MOST: usize = 30;
+    rows.iter()
+        .take(MOST)
+        .enumerate()
+        .find_map(|(i, (_, row))| {
+            let lower = row
+                .trim_start()
+                .trim_start_matches('"')
+                .to_ascii_lowercase();
+            let separator = ['\t', ',', ';'].into_iter().find(|&c| row.contains(c));
+            lower.starts_with("frame").then_some((i, separator))
+        })
+}
+
+impl Heading {
+    /// Values below their names, in any order.
+    fn read(rows: &[(u64, &str)], separator: Option<char>) -> Self {
+        let mut heading = Self {
+            rate_hz: None,
+            unit: None,
+            frames: None,
+            points: None,
+        };
+        let cells: Vec<Vec<&str>> = rows.iter().map(|(_, row)| split(row, separator)).collect();
+        for pair in cells.windows(2) {
+            for (name, value) in pair[0].iter().zip(&pair[1]) {
+                let number = number(value, Decimal::Either);
+                match name.to_ascii_lowercase().as_str() {
+                    "datarate" => heading.rate_hz = number,
+                    "camerarate" => heading.rate_hz = heading.rate_hz.or(number),
+                    "numframes" => heading.frames = number,
+                    "nummarkers" => heading.points = number,
+                    "units" => heading.unit = Some((*value).to_owned()),
+                    _ => {}
+                }
+            }
+        }
+        heading
+    }
+}
+
+/// A name and the column of its x.
+type Column = (String, usize);
+
+/// Points stand above every third column, or in neighbouring cells. Before them are the frame's number and its time.
+fn columns(names: &[&str]) -> Vec<Column> {
+    let first = match names.get(1) {
+        Some(second) if second.to_ascii_lowercase().starts_with("time") => 2,
+        _ => 1,
+    };
+    let named: Vec<(usize, &str)> = names
+        .iter()
+        .copied()
+        .enumerate()
+        .skip(first)
+        .filter(|(_, name)| !name.is_empty())
+        .collect();
+    let above = named.iter().all(|(column, _)| (column - first) % 3 == 0);
+    let place = |(k, &(column, name)): (usize, &(usize, &str))| {
+        let column = if above && named.len() > 1 {
+            column
+        } else {
+            first + 3 * k
+        };
+        (name.to_owned(), column)
+    };
+    named.iter().enumerate().map(place).collect()
+}
+
+/// `X1 Y1 Z1` below the names.
+fn is_axes_row(cells: &[&str]) -> bool {
+    let first = cells.iter().find(|cell| !cell.is_empty());
+    first.is_none_or(|cell| cell.starts_with(['X', 'x']))
+}
+
+/// Points and times of all frames.
+pub(super) struct Frames {
+    points: Vec<Point>,
+    times: Vec<Option<f64>>,
+}
+
+fn frames(
+    columns: &[Column],
+    body: &[(u64, Vec<&str>)],
+    limits: &Limits,
+    warnings: &mut Vec<Warning>,
+) -> Result<Frames, ParseError> {
+    let decimal = Decimal::of(body.iter().flat_map(|(_, cells)| cells).copied());
+    let first = columns[0].1;
+    let mut points: Vec<Point> = columns
+        .iter()
+        .map(|(name, _)| Point {
+            name: name.clone(),
+            positions: Vec::with_capacity(body.len()),
+        })
+        .collect();
+    let mut times = Vec::with_capacity(body.len());
+    for (line, cells) in body {
+        if number(cells[0], decimal).is_none() {
+            let text = format!(
+                "a row that begins with `{}` and no frame's number is left out",
+                cells[0]
+            );
+            warnings.push(Warning::new(Place::Line(*line), text));
+            continue;
+        }
+        if times.len() == limits.frames {
+            let expected = format!("at most {} frames", limits.frames);
+            return Err(ParseError::new(Place::Line(*line), expected, "more"));
+        }
+        let value = |column: usize| cells.get(column).and_then(|cell| number(cell, decimal));
+        times.push(if first > 1 { value(1) } else { None });
+        for ((_, column), point) in columns.iter().zip(&mut points) {
+            let at = [value(*column), value(column + 1), value(column + 2)];
+            point.positions.push(match at {
+                [Some(x), Some(y), Some(z)] => Vec3::new(x, y, z),
+                _ => UNSEEN,
+            });
+        }
+    }
+    if times.is_empty() {
+        let line = body.last().map_or(1, |row| row.0);
+        return Err(ParseError::new(
+            Place::Line(line),
+            "frames below the names of points",
+            "none",
+        ));
+    }
+    Ok(Frames { points, times })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,127 @@
+//! Roles of points, and joints where a role is played by a place between points.
+
+use crate::clip::{Clip, Gap, Span};
+use crate::formats::ParseError;
+use crate::kinematics::WorldPose;
+use crate::math::Vec3;
+use crate::roles::mapping::Mapping;
+use crate::roles::points::{Place, recognise_posed};
+use crate::roles::{Role, RoleMap};
+
+/// Frames that settle what names leave open.
+const LOOKED_AT: usize = 8;
+
+/// The roles of a clip of points by tables of known sets, and the set's name. `doubt` says that nothing else will name
+/// them, so that a set that is not known is worth a note.
+pub(super) fn find_roles(
+    clip: &mut Clip,
+    doubt: bool,
+    notes: &mut Vec<String>,
+) -> (RoleMap, Option<&'static str>) {
+    let names: Vec<&str> = clip
+        .skeleton
+        .joints()
+        .iter()
+        .map(|j| j.name.as_str())
+        .collect();
+    let step = clip.frames.div_ceil(LOOKED_AT).max(1);
+    let poses: Vec<Vec<Vec3>> = (0..clip.frames)
+        .step_by(step)
+        .map(|frame| WorldPose::of(clip, frame).positions)
+        .collect();
+    let Some(found) = recognise_posed(&names, &poses) else {
+        if doubt {
+            notes.push(
+                "no known set of points: say with --roles which of them are joints, as in \
+                 `left_knee<TAB>LKNE+LKNM` for the middle of two"
+                    .to_owned(),
+            );
+        }
+        return (RoleMap::default(), None);
+    };
+    let places = found
+        .roles
+        .into_iter()
+        .map(|(role, place)| (role, Some(place)));
+    let map = play(clip, RoleMap::default(), places.collect());
+    (map, Some(found.set))
+}
+
+/// Overrides roles as a mapping file says.
+///
+/// # Errors
+/// A joint that the clip does not have, with its line in the mapping file.
+pub(super) fn apply(
+    mapping: &Mapping,
+    clip: &mut Clip,
+    map: RoleMap,
+) -> Result<RoleMap, ParseError> {
+    let names: Vec<&str> = clip
+        .skeleton
+        .joints()
+        .iter()
+        .map(|j| j.name.as_str())
+        .collect();
+    let places = mapping.places(&names)?;
+    Ok(play(clip, map, places))
+}
+
+/// Gives each role to the joint in its place; `clip` gets new joints for places between joints.
+fn play(clip: &mut Clip, mut map: RoleMap, places: Vec<(Role, Option<Place>)>) -> RoleMap {
+    let mut between: Vec<(Role, Place)> = Vec::new();
+    for (role, place) in places {
+        map.set(role, place.as_ref().and_then(Place::single));
+        between.extend(
+            place
+                .filter(|p| p.single().is_none())
+                .map(|place| (role, place)),
+        );
+    }
+    let mut tracks: Vec<Vec<Vec3>> = vec![Vec::with_capacity(clip.frames); between.len()];
+    let mut pose = WorldPose::default();
+    for frame in 0..clip.frames {
+        pose.set(clip, frame);
+        for ((_, place), track) in between.iter().zip(&mut tracks) {
+            let at = place.at(|joint| pose.positions[joint]);
+            // A pelvis without a direction for a moment leaves the joint where it was.
+            track.push(at.or(track.last().copied()).unwrap_or_else(Vec3::zeros));
+        }
+    }
+    let mut roots = Vec::with_capacity(between.len());
+    for ((role, place), track) in between.iter().zip(tracks) {
+        let joint = clip.skeleton.len() + roots.len();
+        map.set(*role, Some(joint));
+        add_gaps(clip, joint, place);
+        roots.push((free_name(clip, role.name()), track));
+    }
+    clip.add_roots(roots);
+    map
+}
+
+/// A place is unknown wherever one of its points is.
+fn add_gaps(clip: &mut Clip, joint: usize, place: &Place) {
+    let Some(points) = &mut clip.points else {
+        return;
+    };
+    let of = place.points();
+    let gaps = points.gaps.iter().filter(|gap| of.contains(&gap.joint));
+    let mut spans: Vec<Span> = gaps.map(|gap| gap.frames.clone()).collect();
+    spans.sort_by_key(|span| span.start);
+    for frames in spans {
+        match points.gaps.last_mut() {
+            Some(last) if last.joint == joint && last.frames.end >= frames.start => {
+                last.frames.end = last.frames.end.max(frames.end);
+            }
+            _ => points.gaps.push(Gap { joint, frames }),
+        }
+    }
+}
+
+/// A name that no joint has.
+fn free_name(clip: &Clip, name: &str) -> String {
+    let mut free = name.to_owned();
+    while clip.skeleton.find(&free).is_some() {
+        free.push('*');
+    }
+    free
+}

@@ -1,0 +1,188 @@
+//! Published marker sets, and joints between their markers.
+//!
+//! Where a joint has markers on both sides, it is their middle; where it has one, the marker stands for it: directions of
+//! bones are then a few degrees off, always alike. Hip joints come from the pelvis ([`Place`](super::Place)).
+
+use super::PointSet;
+
+const fn markers(
+    name: &'static str,
+    points: &'static str,
+    roles: &'static [(&'static str, &'static str)],
+) -> PointSet {
+    PointSet {
+        name,
+        points,
+        numbered: false,
+        roles,
+        joints_too: false,
+    }
+}
+
+pub(super) const SETS: [PointSet; 8] = [
+    // Vicon, "Plug-in Gait Reference Guide": full body, with joint centres where the model's outputs are in the file
+    // (FEP, FEO, TIO, HUP, HUO, RAO). Medial markers as labs add them.
+    markers(
+        "Plug-in Gait",
+        "?fhd ?bhd c7 t10 clav strn rbak ?sho ?upa ?elb ?fra ?wra ?wrb ?fin ?asi ?psi ?thi ?kne ?tib ?ank ?hee ?toe",
+        PLUG_IN_GAIT,
+    ),
+    // The same guide, lower body; after Kadaba et al. (1990) and Davis et al. (1991).
+    markers(
+        "Plug-in Gait, lower body",
+        "?asi ?psi ?thi ?kne ?tib ?ank ?hee ?toe",
+        PLUG_IN_GAIT,
+    ),
+    markers(
+        "Helen Hayes (Vicon labels)",
+        "?asi sacr ?thi ?kne ?tib ?ank ?hee ?toe",
+        PLUG_IN_GAIT,
+    ),
+    // Kadaba, Ramakrishnan and Wootten (1990), labelled as Motion Analysis and OpenSim's gait models do.
+    markers(
+        "Helen Hayes",
+        "tophead fronthead rearhead ?shoulder roffset ?elbow ?wrist ?asis vsacral ?thigh ?knee ?shank ?ankle ?heel \
+         ?toe",
+        HELEN_HAYES,
+    ),
+    // OpenSim's Gait2392 and the sets after it: clusters on thighs and shanks.
+    markers(
+        "OpenSim gait",
+        "?asis vsacral ?thighupper ?thighfront ?thighrear ?shankupper ?shankfront ?shankrear ?heel ?midfootsup \
+         ?midfootlat ?toetip sternum ?acromium ?bicep ?elbow ?wristmed ?wristlat ?toelat ?toemed ?temple tophead",
+        HELEN_HAYES,
+    ),
+    // mocap.cs.cmu.edu, "Marker Placement Guide": 41 markers, the pelvis by four at the waist.
+    markers(
+        "CMU (41)",
+        "?fhd ?bhd c7 t10 clav strn rbac ?sho ?upa ?elb ?frm ?wra ?wrb ?fin ?thm ?fwt ?bwt ?thi ?kne ?shn ?ank ?hee \
+         ?toe ?mt5",
+        CMU,
+    ),
+    // Leardini et al., "A new anatomically based protocol for gait analysis" (2007): the Rizzoli gait set, in
+    // the abbreviations of van Sint Jan (2007) that Qualisys uses.
+    markers(
+        "Rizzoli (IOR)",
+        "?ias ?ips ?ftc ?fle ?fme ?fax ?ttc ?fal ?tam ?fcc ?fm1 ?fm2 ?fm5 ?sae cv7 tv2 tv7 sjn sxs ?hle ?hme ?rsp \
+         ?usp",
+        RIZZOLI,
+    ),
+    // OptiTrack, Motive documentation: Baseline marker sets of 37 to 41 markers.
+    markers(
+        "OptiTrack Baseline",
+        "headtop headfront headside backtop backleft backright chest ?waistfront ?waistback \
+         ?shouldertop ?shoulderback ?uarmhigh ?elbowout ?wristout ?wristin ?handout ?thigh ?kneeout ?shin ?ankleout \
+         ?toeout ?toein ?toetip ?heel",
+        OPTITRACK,
+    ),
+];
+
+type Roles = &'static [(&'static str, &'static str)];
+
+const PLUG_IN_GAIT: Roles = &[
+    (
+        "?_thigh",
+        "?fep|?hjc|hip(?;lasi;rasi;lpsi+rpsi)|hip(?;lasi;rasi;sacr)|hip(?;lasi;rasi;sacrum)",
+    ),
+    (
+        "?_shin",
+        "?feo|?kjc|?kne+?knm|?kne+?mkne|?kne+?knem|?kne+?kneemed|?kne",
+    ),
+    (
+        "?_foot",
+        "?tio|?ajc|?ank+?anm|?ank+?mank|?ank+?ankm|?ank+?mma|?ank+?med|?ank",
+    ),
+    ("?_arm", "?hup|?clo|?sjc|?sho"),
+    (
+        "?_forearm",
+        "?huo|?ejc|?elb+?elm|?elb+?melb|?elb+?elbm|?elb",
+    ),
+    ("?_hand", "?rao|?wjc|?wra+?wrb|?wra|?wrb|?wri"),
+    (
+        "hips",
+        "lasi+rasi+lpsi+rpsi|lasi+rasi+sacr|lasi+rasi+sacrum|lasi+rasi",
+    ),
+    ("neck", "c7+clav|c7|clav|lsho+rsho"),
+    ("torso", "t10+strn|t10|strn"),
+    ("head", "lfhd+rfhd+lbhd+rbhd|lfhd+rfhd|lbhd+rbhd|head"),
+];
+
+const HELEN_HAYES: Roles = &[
+    (
+        "?_thigh",
+        "?hjc|hip(?;lasis;rasis;vsacral)|hip(?;lasis;rasis;sacral)|hip(?;lasis;rasis;sacrum)\
+         |hip(?;lasis;rasis;lpsis+rpsis)",
+    ),
+    (
+        "?_shin",
+        "?kjc|?knee+?kneemedial|?knee+?kneemed|?knee+?mknee|?kneelat+?kneemed|?knee|?kneelat",
+    ),
+    (
+        "?_foot",
+        "?ajc|?ankle+?anklemedial|?ankle+?anklemed|?ankle+?mankle|?anklelat+?anklemed|?ankle|?anklelat",
+    ),
+    ("?_arm", "?sjc|?shoulder|?acromium|?acromion"),
+    (
+        "?_forearm",
+        "?ejc|?lelbow+?melbow|?elbow+?elbowmedial|?elbow+?elbowmed|?elbowlat+?elbowmed|?elbow",
+    ),
+    ("?_hand", "?wjc|?lwrist+?mwrist|?wristmed+?wristlat|?wrist"),
+    (
+        "hips",
+        "lasis+rasis+lpsis+rpsis|lasis+rasis+vsacral|lasis+rasis+sacral|lasis+rasis+sacrum|lasis+rasis",
+    ),
+    ("neck", "c7+clav|c7+sternum|c7|@left_arm+@right_arm"),
+    ("torso", "sternum"),
+    ("head", "ltemple+rtemple|fronthead+rearhead|tophead"),
+];
+
+const CMU: Roles = &[
+    ("?_thigh", "hip(?;lfwt;rfwt;lbwt+rbwt)"),
+    ("?_shin", "?kne"),
+    ("?_foot", "?ank"),
+    ("?_arm", "?sho"),
+    ("?_forearm", "?elb"),
+    ("?_hand", "?wra+?wrb|?wra|?wrb"),
+    ("hips", "lfwt+rfwt+lbwt+rbwt|lfwt+rfwt"),
+    ("neck", "c7+clav|c7"),
+    ("torso", "t10+strn|t10|strn"),
+    ("head", "lfhd+rfhd+lbhd+rbhd|lfhd+rfhd"),
+];
+
+const RIZZOLI: Roles = &[
+    (
+        "?_thigh",
+        "hip(?;lias;rias;lips+rips)|hip(?;lasis;rasis;lpsis+rpsis)|?ftc",
+    ),
+    ("?_shin", "?fle+?fme|?le+?me|?fle"),
+    ("?_foot", "?fal+?tam|?lm+?mm|?fal"),
+    ("?_arm", "?sae|?sho|?a"),
+    ("?_forearm", "?hle+?hme|?hle|?elb"),
+    ("?_hand", "?rsp+?usp|?rsp|?wri"),
+    (
+        "hips",
+        "lias+rias+lips+rips|lasis+rasis+lpsis+rpsis|lias+rias",
+    ),
+    ("neck", "cv7+sjn|cv7|c7+ij|c7|@left_arm+@right_arm"),
+    ("torso", "tv7+sxs|tv2|tv7|mai|sxs"),
+    ("head", "lhead+rhead+sgl|lhead+rhead|sgl|head"),
+];
+
+const OPTITRACK: Roles = &[
+    (
+        "?_thigh",
+        "hip(?;lwaistfront;rwaistfront;lwaistback+rwaistback)",
+    ),
+    ("?_shin", "?kneeout+?kneein|?kneeout"),
+    ("?_foot", "?ankleout+?anklein|?ankleout"),
+    ("?_arm", "?shouldertop+?shoulderback|?shouldertop"),
+    ("?_forearm", "?elbowout+?elbowin|?elbowout"),
+    ("?_hand", "?wristout+?wristin|?wristout"),
+    (
+        "hips",
+        "lwaistfront+rwaistfront+lwaistback+rwaistback|lwaistfront+rwaistfront",
+    ),
+    ("neck", "backtop+chest|backtop|@left_arm+@right_arm"),
+    ("torso", "backleft+backright|chest"),
+    ("head", "headtop+headfront|headtop"),
+];

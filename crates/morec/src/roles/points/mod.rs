@@ -1,0 +1,182 @@
+//! Which points of a clip without rotations play which parts of the body: by names and count, from tables.
+//!
+//! A flat set of points has no tree to look at, but its names come from few sources: landmark models and published
+//! marker sets. A role is played by one point or by something between several: the hips by the middle
+//! of the hip joints, a knee by the middle of two markers, a hip joint by a regression from the pelvis.
+
+mod landmarks;
+mod markers;
+mod names;
+mod place;
+
+pub use place::Place;
+pub(in crate::roles) use place::said;
+
+use super::Role;
+use crate::math::Vec3;
+use names::{normalised, numbers};
+use place::Expression;
+
+/// A set of points that somebody published.
+pub(super) struct PointSet {
+    /// What it is called in reports.
+    name: &'static str,
+    /// Its points, blanks between them; `?` stands for `l` and `r`. In the order of their numbers, where points without
+    /// names are numbered.
+    points: &'static str,
+    /// Whether points may come as numbers alone.
+    numbered: bool,
+    /// Who plays what: [`Expression`]s.
+    roles: &'static [(&'static str, &'static str)],
+    /// Whether roles that `roles` leaves open are looked for among usual joint names.
+    joints_too: bool,
+}
+
+/// What was recognised.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recognised {
+    /// The set's name.
+    pub set: &'static str,
+    /// Who plays what, in the order of [`Role::ALL`].
+    pub roles: Vec<(Role, Place)>,
+}
+
+/// Roles that make a body; fewer are chance.
+const LEAST_ROLES: usize = 5;
+
+/// Numbers whose left and right limbs differ more than this are no landmarks: markers are numbered, too.
+const UNLIKE: f64 = 0.25;
+
+/// The part of a point's name that says whose it is: `Anna` of `Anna:LFHD`, else nothing.
+pub fn subject_of(name: &str) -> &str {
+    name.rsplit_once(':').map_or("", |(subject, _)| subject)
+}
+
+/// The set that points of these names belong to, and who plays what. `None` if too few parts of a body are known.
+/// O(sets × points).
+pub fn recognise(names: &[&str]) -> Option<Recognised> {
+    recognise_posed(names, &[])
+}
+
+/// [`recognise`] with the points in some frames, which settle what numbers alone do not: 17 points may be COCO's or
+/// those of Human3.6M. The set in which left and right limbs are equally long is taken.
+pub fn recognise_posed(names: &[&str], poses: &[Vec<Vec3>]) -> Option<Recognised> {
+    let sets = || landmarks::SETS.iter().chain(&markers::SETS);
+    if let Some(order) = numbers(names) {
+        let fitting = sets().filter(|set| set.numbered && set.len() == names.len());
+        let candidates = fitting.filter_map(|set| {
+            let own: Vec<&str> = set.points.split_whitespace().collect();
+            let named: Vec<String> = order.iter().map(|&number| own[number].to_owned()).collect();
+            set.assign(&named)
+        });
+        return candidates
+            .map(|found| (asymmetry(&found, poses), found))
+            .filter(|(unlike, _)| *unlike < UNLIKE)
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(_, found)| found);
+    }
+    let names = normalised(names);
+    let mut fitting: Vec<(f64, &PointSet)> =
+        sets().map(|set| (set.likeness(&names), set)).collect();
+    fitting.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let best = fitting
+        .iter()
+        .take_while(|(likeness, _)| *likeness > 0.3)
+        .find_map(|(_, set)| set.assign(&names));
+    best.or_else(|| landmarks::JOINTS.assign(&names))
+}
+
+impl PointSet {
+    fn names(&self) -> impl Iterator<Item = String> + '_ {
+        self.points.split_whitespace().flat_map(|name| {
+            let sides: &[&str] = if name.contains('?') {
+                &["l", "r"]
+            } else {
+                &[""]
+            };
+            sides.iter().map(move |side| name.replace('?', side))
+        })
+    }
+
+    fn len(&self) -> usize {
+        self.names().count()
+    }
+
+    /// Twice the points in common over all points of both, 0 to 1.
+    fn likeness(&self, names: &[String]) -> f64 {
+        let (mut own, mut common) = (0, 0);
+        for name in self.names() {
+            own += 1;
+            common += usize::from(names.contains(&name));
+        }
+        2.0 * common as f64 / (own + names.len()) as f64
+    }
+
+    /// Who plays what among points of these normalised names, if that makes a body.
+    fn assign(&self, names: &[String]) -> Option<Recognised> {
+        let mut roles: Vec<(Role, Place)> = Vec::new();
+        let tables: &[&[(&str, &str)]] = match self.joints_too {
+            true => &[self.roles, landmarks::JOINTS.roles],
+            false => &[self.roles],
+        };
+        for table in tables {
+            for (role, expression) in table.iter().flat_map(|entry| sided(entry)) {
+                let known = |r: Role| roles.iter().any(|(known, _)| *known == r);
+                let Some(role) = Role::from_name(&role).filter(|&r| !known(r)) else {
+                    continue;
+                };
+                let place = Expression::new(&expression).place(names, &roles);
+                // A shoulder that plays the upper arm is no collar.
+                if let Some(place) = place.filter(|p| !roles.iter().any(|(_, q)| q == p)) {
+                    roles.push((role, place));
+                }
+            }
+        }
+        roles.sort_by_key(|(role, _)| role.index());
+        (roles.len() >= LEAST_ROLES).then_some(Recognised {
+            set: self.name,
+            roles,
+        })
+    }
+}
+
+/// An entry of a table for each side it speaks of.
+fn sided((role, expression): &(&str, &str)) -> Vec<(String, String)> {
+    if !role.starts_with("?_") {
+        return vec![((*role).to_owned(), (*expression).to_owned())];
+    }
+    [("left_", "l"), ("right_", "r")]
+        .iter()
+        .map(|(side, letter)| (role.replace("?_", side), expression.replace('?', letter)))
+        .collect()
+}
+
+/// How unlike left and right limbs are, 0 to 1; 1 without poses.
+fn asymmetry(found: &Recognised, poses: &[Vec<Vec3>]) -> f64 {
+    use Role::*;
+    const LIMBS: [[Role; 4]; 4] = [
+        [LeftThigh, LeftShin, RightThigh, RightShin],
+        [LeftShin, LeftFoot, RightShin, RightFoot],
+        [LeftArm, LeftForearm, RightArm, RightForearm],
+        [LeftForearm, LeftHand, RightForearm, RightHand],
+    ];
+    let (mut apart, mut sum) = (0.0, 0.0);
+    for pose in poses {
+        let at = |role: Role| {
+            let place = found.roles.iter().find(|(known, _)| *known == role);
+            place.and_then(|(_, place)| place.at(|p| pose[p]))
+        };
+        for limb in LIMBS {
+            let [Some(a), Some(b), Some(c), Some(d)] = limb.map(at) else {
+                continue;
+            };
+            let (left, right) = ((a - b).norm(), (c - d).norm());
+            apart += (left - right).abs();
+            sum += left + right;
+        }
+    }
+    if sum > 0.0 { apart / sum } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,132 @@
+//! Names of points in one spelling.
+
+/// Names without subject and marks, in lower case, a side in front: `lshoulder` for `LEFT_SHOULDER`, `ShoulderLeft`,
+/// `L.Shoulder`, `Anna:LShoulder`. A first word that all names share is dropped.
+pub(super) fn normalised(names: &[&str]) -> Vec<String> {
+    let mut words: Vec<Vec<String>> = names.iter().map(|name| words(name)).collect();
+    let shared = words.first().and_then(|w| w.first()).cloned();
+    let is_shared = |w: &Vec<String>| w.len() > 1 && w.first() == shared.as_ref();
+    if words.len() > 3 && words.iter().all(is_shared) {
+        for name in &mut words {
+            name.remove(0);
+        }
+    }
+    words.into_iter().map(joined).collect()
+}
+
+/// One name in that spelling.
+pub(super) fn normalised_one(name: &str) -> String {
+    joined(words(name))
+}
+
+/// Lower-case words, cut at marks and where the case changes; digits stay with the word before them.
+fn words(name: &str) -> Vec<String> {
+    let bare = name.rsplit(':').next().unwrap_or(name);
+    let letters: Vec<char> = bare.chars().collect();
+    let mut words = Vec::new();
+    let mut word = String::new();
+    for (i, &c) in letters.iter().enumerate() {
+        let next_is_lower = letters.get(i + 1).is_some_and(|n| n.is_lowercase());
+        let before_is_lower = i > 0 && letters[i - 1].is_lowercase();
+        let begins = c.is_uppercase() && (before_is_lower || next_is_lower);
+        if (begins || !c.is_alphanumeric()) && !word.is_empty() {
+            words.push(std::mem::take(&mut word));
+        }
+        if c.is_alphanumeric() {
+            word.extend(c.to_lowercase());
+        }
+    }
+    if !word.is_empty() {
+        words.push(word);
+    }
+    words
+}
+
+/// The side first, then the rest.
+fn joined(mut words: Vec<String>) -> String {
+    // OpenCap marks its study's markers.
+    words.retain(|word| word != "study");
+    let is_side = |word: &str| match word {
+        "left" | "l" => Some("l"),
+        "right" | "r" => Some("r"),
+        _ => None,
+    };
+    let spelt = words.iter().position(|word| is_side(word).is_some());
+    if let Some(at) = spelt.filter(|_| words.len() > 1) {
+        let side = is_side(&words.remove(at)).unwrap_or_default();
+        return format!("{side}{}", words.concat());
+    }
+    let whole = words.concat();
+    for (start, side) in [("left", "l"), ("right", "r")] {
+        if let Some(rest) = whole.strip_prefix(start).filter(|rest| !rest.is_empty()) {
+            return format!("{side}{rest}");
+        }
+        if let Some(rest) = whole.strip_suffix(start).filter(|rest| !rest.is_empty()) {
+            return format!("{side}{rest}");
+        }
+    }
+    whole
+}
+
+/// The number of each point, from 0, if names are numbers behind one word at most, each once.
+pub(super) fn numbers(names: &[&str]) -> Option<Vec<usize>> {
+    let split = |name: &&str| {
+        let bare = name.rsplit(':').next().unwrap_or(name);
+        let digits = bare.len() - bare.trim_end_matches(|c: char| c.is_ascii_digit()).len();
+        let (word, number) = bare.split_at(bare.len() - digits);
+        Some((word.to_owned(), number.parse::<usize>().ok()?))
+    };
+    let split: Vec<(String, usize)> = names.iter().map(split).collect::<Option<_>>()?;
+    let first = split.first()?;
+    let least = split.iter().map(|(_, number)| *number).min()?;
+    let mut order: Vec<usize> = split.iter().map(|(_, number)| number - least).collect();
+    let result = order.clone();
+    order.sort_unstable();
+    let each_once = order.iter().enumerate().all(|(i, &number)| i == number);
+    (least <= 1 && each_once && split.iter().all(|(word, _)| *word == first.0)).then_some(result)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_spelling() {
+        for (name, expected) in [
+            ("LEFT_SHOULDER", "lshoulder"),
+            ("ShoulderLeft", "lshoulder"),
+            ("shoulder_l", "lshoulder"),
+            ("L.Shoulder", "lshoulder"),
+            ("leftshoulder", "lshoulder"),
+            ("Anna:LShoulder", "lshoulder"),
+            ("Reed:LFHD", "lfhd"),
+            ("R.ASIS", "rasis"),
+            ("LUArm", "luarm"),
+            ("RBigToe", "rbigtoe"),
+            ("LeftUpLeg", "lupleg"),
+            ("C7", "c7"),
+            ("r_lelbow_study", "rlelbow"),
+            ("Spine1", "spine1"),
+            ("Right", "right"),
+        ] {
+            assert_eq!(normalised_one(name), expected, "{name}");
+        }
+        let shared = ["Bip01 L Thigh", "Bip01 R Thigh", "Bip01 Head", "Bip01 Neck"];
+        assert_eq!(normalised(&shared), ["lthigh", "rthigh", "head", "neck"]);
+    }
+
+    #[test]
+    fn numbers_from_0_or_1() {
+        assert_eq!(numbers(&["2", "0", "1"]), Some(vec![2, 0, 1]));
+        assert_eq!(numbers(&["kp_1", "kp_2"]), Some(vec![0, 1]));
+        for none in [
+            vec!["0", "2"],
+            vec!["a1", "b2"],
+            vec!["LFHD", "C7"],
+            vec![],
+            vec!["7", "8"],
+        ] {
+            assert_eq!(numbers(&none), None, "{none:?}");
+        }
+    }
+}
