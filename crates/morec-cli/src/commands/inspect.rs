@@ -28,9 +28,11 @@ Examples:
 
 A roles file has one role a line, a tab, and the joint's name (or - for none):
   hips<TAB>Pelvis
-  left_shoulder<TAB>-")]
+  left_shoulder<TAB>-
+Names between + stand for the middle of these joints or markers:
+  left_knee<TAB>LKNE+LKNM")]
 pub struct Args {
-    /// Clips (BVH, AMC, MCLIP), skeletons (ASF) or folders of clips; - is standard input
+    /// Clips of any format that is read, skeletons (ASF) or folders of clips; - is standard input
     #[arg(required = true, value_name = "CLIP")]
     clips: Vec<PathBuf>,
     /// Print one JSON array, with an object for each file

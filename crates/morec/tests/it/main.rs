@@ -14,6 +14,7 @@ mod kit;
 mod layers;
 mod made;
 mod pose_golden;
+mod positions;
 mod session;
 mod smooth_real;
 mod stages;

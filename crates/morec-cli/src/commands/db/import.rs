@@ -32,7 +32,7 @@ pub struct Args {
     /// The database; it is made if there is none
     #[arg(value_name = "DB")]
     db: PathBuf,
-    /// Clips (BVH, AMC, MCLIP) or folders of clips
+    /// Clips of any format that is read, or folders of clips
     #[arg(required = true, value_name = "DIR|CLIP")]
     clips: Vec<PathBuf>,
     /// Where the material is from

@@ -64,7 +64,7 @@ pub fn of_clips(
         .par_iter()
         .map(|clip| {
             let map =
-                PivotMap::resolve(&pivots, &clip.clip.skeleton, &clip.roles).map_err(|e| {
+                PivotMap::of_clip(&pivots, &clip.clip, &clip.roles).map_err(|e| {
                     TrainError::Clip {
                         clip: clip.name.clone(),
                         problem: e.to_string(),
