@@ -96,9 +96,13 @@ fn positions_go_through_every_format_of_points() {
 
 #[test]
 fn tables_in_folders_are_clips_if_they_hold_positions() {
-    let positions = "time,hips_x,hips_y,hips_z,head_x,head_y,head_z\n0,0,1,0,0,1.6,0\n0.1,0,1,0,0,1.6,0\n";
+    let positions =
+        "time,hips_x,hips_y,hips_z,head_x,head_y,head_z\n0,0,1,0,0,1.6,0\n0.1,0,1,0,0,1.6,0\n";
     let labels = "clip\tclass\tstart\tstop\nwave\twave\t0\t3\n";
     let folder = Folder::with(&[("clips/take.csv", positions), ("clips/labels.tsv", labels)]);
     let shown = folder.morec(&["inspect", "clips"]).ok();
-    assert!(shown.contains("take.csv") && !shown.contains("labels"), "{shown}");
+    assert!(
+        shown.contains("take.csv") && !shown.contains("labels"),
+        "{shown}"
+    );
 }

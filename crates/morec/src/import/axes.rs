@@ -100,7 +100,10 @@ fn floor(clip: &Clip) -> Option<SignedAxis> {
     let positions = || clip.tracks.iter().flat_map(|track| &track.positions);
     let mut above = [Axis::Y, Axis::Z].into_iter().filter(|axis| {
         let values = || positions().map(|p| p[axis.index()]);
-        let (low, high) = (values().fold(f64::MAX, f64::min), values().fold(f64::MIN, f64::max));
+        let (low, high) = (
+            values().fold(f64::MAX, f64::min),
+            values().fold(f64::MIN, f64::max),
+        );
         // Markers on soles sink a little.
         high > 0.0 && low > -0.02 * high
     });

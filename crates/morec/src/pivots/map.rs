@@ -57,11 +57,7 @@ impl PivotMap {
     ///
     /// # Errors
     /// Nothing plays the root. Other pivots may be [`missing`](PivotMap::missing).
-    pub fn resolve(
-        set: &PivotSet,
-        skeleton: &Skeleton,
-        roles: &RoleMap,
-    ) -> Result<Self, NoPivots> {
+    pub fn resolve(set: &PivotSet, skeleton: &Skeleton, roles: &RoleMap) -> Result<Self, NoPivots> {
         let mut joints: Vec<Option<usize>> = Vec::with_capacity(set.len());
         for pivot in set.pivots() {
             let joint =

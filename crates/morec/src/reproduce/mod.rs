@@ -18,7 +18,7 @@ use crate::eval::EvalError;
 use crate::features::Rows;
 use crate::index::IndexError;
 use crate::labels::Sample;
-use crate::pivots::{PivotMap, NoPivots, PivotSet, PoseParams, pose_rows_of_clip};
+use crate::pivots::{NoPivots, PivotMap, PivotSet, PoseParams, pose_rows_of_clip};
 use crate::progress::Progress;
 use crate::segment::SegmentError;
 use crate::train::thesis::{SvrdmOptions, SvrdmTrainParams};

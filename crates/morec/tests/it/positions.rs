@@ -4,7 +4,7 @@ use std::io;
 
 use morec::clip::Clip;
 use morec::formats::{Limits, Loaded, ParseError, c3d, jsonl, table, trc};
-use morec::import::{Imported, ImportOptions, prepare};
+use morec::import::{ImportOptions, Imported, prepare};
 use morec::live::{Detection, recognize_clip};
 use morec::synth::{DatabaseSpec, database};
 
@@ -74,8 +74,14 @@ fn the_same_motion_as_points_is_recognised_alike() {
         assert_eq!(found.len(), expected.len(), "{name}");
         for (found, expected) in found.iter().zip(&expected) {
             assert_eq!(found.class, expected.class, "{name}");
-            assert!((found.start_secs - expected.start_secs).abs() < 0.05, "{name}");
-            assert!((found.stop_secs - expected.stop_secs).abs() < 0.05, "{name}");
+            assert!(
+                (found.start_secs - expected.start_secs).abs() < 0.05,
+                "{name}"
+            );
+            assert!(
+                (found.stop_secs - expected.stop_secs).abs() < 0.05,
+                "{name}"
+            );
         }
     }
 }
@@ -106,8 +112,17 @@ fn one_recording_in_two_formats_agrees() {
     let (c3d, trc) = (ready(c3d.clips[0].clone()), ready(trc.clips[0].clone()));
     assert_eq!(c3d.clip.frames, trc.clip.frames);
     assert_eq!(c3d.facts.point_set, trc.facts.point_set);
-    assert_eq!((c3d.facts.up, c3d.clip.rate_hz), (trc.facts.up, trc.clip.rate_hz));
-    for joint in c3d.clip.skeleton.joints().iter().filter(|joint| joint.parent.is_none()) {
+    assert_eq!(
+        (c3d.facts.up, c3d.clip.rate_hz),
+        (trc.facts.up, trc.clip.rate_hz)
+    );
+    for joint in c3d
+        .clip
+        .skeleton
+        .joints()
+        .iter()
+        .filter(|joint| joint.parent.is_none())
+    {
         let track = |imported: &Imported| {
             let joint = imported.clip.skeleton.find(&joint.name)?;
             imported.clip.track(joint).cloned()
@@ -130,16 +145,63 @@ fn real_files_are_what_they_are() {
     let cases = [
         ("probing_acromion.c3d", 41, 140, 69.5, "y", "m", 0, None),
         ("walking_optitrack.c3d", 12, 3361, 160.0, "z", "mm", 0, None),
-        ("wrist_shot_dec_int.c3d", 51, 727, 240.0, "z", "mm", 16, Some("Plug-in Gait")),
-        ("mstudio.c3d", 27, 137, 120.0, "y", "mm", 15, Some("OpenPose BODY_25")),
-        ("mstudio.trc", 29, 137, 120.0, "y", "m", 15, Some("OpenPose BODY_25")),
-        ("subject01_walk1.trc", 41, 151, 60.0, "y", "mm", 14, Some("OpenSim gait")),
+        (
+            "wrist_shot_dec_int.c3d",
+            51,
+            727,
+            240.0,
+            "z",
+            "mm",
+            16,
+            Some("Plug-in Gait"),
+        ),
+        (
+            "mstudio.c3d",
+            27,
+            137,
+            120.0,
+            "y",
+            "mm",
+            15,
+            Some("OpenPose BODY_25"),
+        ),
+        (
+            "mstudio.trc",
+            29,
+            137,
+            120.0,
+            "y",
+            "m",
+            15,
+            Some("OpenPose BODY_25"),
+        ),
+        (
+            "subject01_walk1.trc",
+            41,
+            151,
+            60.0,
+            "y",
+            "mm",
+            14,
+            Some("OpenSim gait"),
+        ),
     ];
     for (file, points, frames, rate, up, unit, roles, set) in cases {
         let bytes = std::fs::read(folder.join(file)).unwrap();
-        let read: Reader = if file.ends_with("trc") { trc::read } else { c3d::read };
-        let clip = read(&bytes, file, None, &Limits::default()).unwrap().clips.remove(0);
-        assert_eq!((clip.skeleton.len(), clip.frames), (points, frames), "{file}");
+        let read: Reader = if file.ends_with("trc") {
+            trc::read
+        } else {
+            c3d::read
+        };
+        let clip = read(&bytes, file, None, &Limits::default())
+            .unwrap()
+            .clips
+            .remove(0);
+        assert_eq!(
+            (clip.skeleton.len(), clip.frames),
+            (points, frames),
+            "{file}"
+        );
         assert!((clip.rate_hz - rate).abs() < 1e-3, "{file}");
         let imported = ready(clip);
         assert_eq!(imported.facts.up.to_string(), up, "{file}");

@@ -87,7 +87,7 @@ fn labels(header: &[Row]) -> Vec<String> {
     };
     let is_axis = |cell: &&str| matches!(cell.to_ascii_lowercase().as_str(), "x" | "y" | "z");
     let axes = last.1.iter().filter(|cell| is_axis(cell)).count();
-    if axes < 3 || above.is_empty() {
+    if axes < 2 || above.is_empty() {
         let cell = |column: usize| {
             last.1
                 .get(column)

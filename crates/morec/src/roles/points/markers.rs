@@ -70,7 +70,7 @@ pub(super) const SETS: [PointSet; 9] = [
     // the abbreviations of van Sint Jan (2007) that Qualisys uses.
     markers(
         "Rizzoli (IOR)",
-        "?ias ?ips ?ftc ?fle ?fme ?fax ?ttc ?fal ?tam ?fcc ?fm1 ?fm2 ?fm5 ?sae cv7 tv2 tv7 sjn sxs ?hle ?hme ?rsp \
+        "?ias ?ips ?ftc ?fle ?fme ?fax ?ttc ?fal ?tam ?fcc ?fm1 ?fm2 ?fm5 ?head sgl ?sae cv7 tv2 tv7 sjn sxs ?hle ?hme ?rsp \
          ?usp",
         RIZZOLI,
     ),

@@ -46,7 +46,8 @@ fn words(name: &str) -> Vec<String> {
 fn joined(mut words: Vec<String>) -> String {
     // OpenCap marks its study's markers.
     words.retain(|word| word != "study");
-    let says_nothing = ["body", "pose", "skeleton"].contains(&words.first().map_or("", String::as_str));
+    let says_nothing =
+        ["body", "pose", "skeleton"].contains(&words.first().map_or("", String::as_str));
     if says_nothing && words.len() > 1 {
         words.remove(0);
     }
