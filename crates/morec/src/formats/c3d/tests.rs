@@ -4,6 +4,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::clip::{Clip, Gap, Points};
+use crate::math::Vec3;
 
 /// A C3D file to be.
 struct Made {
@@ -251,7 +252,7 @@ fn more_labels_and_frames_than_a_word_or_byte_counts() {
         .collect();
     made.frames = vec![frame; 4];
     let more: Vec<u8> = (255..300)
-        .flat_map(|p| format!("{:8}", format!("M{p}")).into_bytes())
+        .flat_map(|p| format!("M{p}    ").into_bytes())
         .collect();
     made.more.push(("LABELS2", vec![8, 45], more, -1));
     let (clip, said) = one(&made);

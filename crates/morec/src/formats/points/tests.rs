@@ -1,4 +1,5 @@
 use super::*;
+use crate::clip::Gap;
 
 fn table(points: &[(&str, &[f64])]) -> PointTable {
     let point = |(name, xs): &(&str, &[f64])| Point {

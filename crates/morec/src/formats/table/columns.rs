@@ -215,10 +215,9 @@ fn suffix(label: &str) -> Option<(&str, usize)> {
         return Some((rest, axis));
     }
     // A letter for the kind of channel: T for translation; `Rx` and `Qx` are none of ours.
-    if let Some(name) = rest.strip_suffix(['T', 't', 'P', 'p']) {
-        if name.chars().next_back().is_some_and(is_mark) {
-            return Some((name, axis));
-        }
+    let channel = rest.strip_suffix(['T', 't', 'P', 'p']);
+    if let Some(name) = channel.filter(|name| name.ends_with(is_mark)) {
+        return Some((name, axis));
     }
     let joined = last.is_uppercase() && before.is_lowercase() || before.is_ascii_digit();
     joined.then_some((rest, axis))
