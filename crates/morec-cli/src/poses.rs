@@ -111,7 +111,7 @@ impl PoseReader<'_> {
             let imported =
                 prepare(clip, &self.options).with_context(|| path.display().to_string())?;
             let clip = &imported.clip;
-            let map = PivotMap::resolve(&self.set, &clip.skeleton, &imported.roles)
+            let map = PivotMap::of_clip(&self.set, clip, &imported.roles)
                 .with_context(|| path.display().to_string())?;
             if !map.missing().is_empty() {
                 let missing = map.missing().join(", ");

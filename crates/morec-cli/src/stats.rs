@@ -66,7 +66,7 @@ impl Stats {
 
     fn svrdm_stages(&mut self, model: &Arc<SvrdmModel>, imported: &Imported) -> Result<()> {
         let Imported { clip, roles, facts } = imported;
-        let map = PivotMap::resolve(&model.pivots, &clip.skeleton, roles)?;
+        let map = PivotMap::of_clip(&model.pivots, clip, roles)?;
         let rest = &facts.rest_frames;
         let rows = timed(&mut self.features, || {
             pose_rows_of_clip(clip, &model.pivots, &map, rest, &model.pose)

@@ -91,7 +91,8 @@ impl Clip {
 /// Calls `each` with the time and pose of every frame of `clip` in turn, frame `f` at `f / rate_hz`.
 ///
 /// Frames in `rest` (the T-pose that a conversion left at the start) show the first pose after them instead:
-/// times stay those of the file, and the jump out of the T-pose is not taken for motion.
+/// times stay those of the file, and the jump out of the T-pose is not taken for motion. In its gaps a point of a clip of
+/// points is nowhere (its position is not a number), but for gaps at the clip's start: streams begin with its first frame.
 pub fn for_each_world_pose(clip: &Clip, rest: &Span, mut each: impl FnMut(f64, &WorldPose)) {
     let mut world = WorldPose::default();
     for frame in 0..clip.frames {
@@ -101,6 +102,12 @@ pub fn for_each_world_pose(clip: &Clip, rest: &Span, mut each: impl FnMut(f64, &
             frame
         };
         world.set(clip, shown);
+        let gaps = clip.points.iter().flat_map(|points| &points.gaps);
+        for gap in gaps.filter(|gap| gap.frames.start > 0 && gap.frames.contains(&shown)) {
+            if let Some(position) = world.positions.get_mut(gap.joint) {
+                *position = Vec3::repeat(f64::NAN);
+            }
+        }
         each(frame as f64 / clip.rate_hz, &world);
     }
 }

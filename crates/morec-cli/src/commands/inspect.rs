@@ -29,7 +29,9 @@ Examples:
 
 A roles file has one role a line, a tab, and the joint's name (or - for none):
   hips<TAB>Pelvis
-  left_shoulder<TAB>-")]
+  left_shoulder<TAB>-
+Names between + stand for the middle of these joints or markers:
+  left_knee<TAB>LKNE+LKNM")]
 pub struct Args {
     /// Clips in any format that is read, skeletons (ASF) or folders of clips; FILE#2 and FILE#name are one clip of a file;
     /// - is standard input

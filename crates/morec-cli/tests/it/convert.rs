@@ -76,3 +76,33 @@ fn failures_name_the_place_and_leave_no_file() {
     assert!(ran.err.contains("no/such/folder/out.bvh"), "{ran:?}");
     assert_eq!(folder.morec(&["convert", "wave.bvh"]).code, Some(2));
 }
+
+#[test]
+fn positions_go_through_every_format_of_points() {
+    let folder = Folder::with(&[("wave.bvh", WAVE_BVH)]);
+    let mut from = "wave.bvh".to_owned();
+    for ending in ["trc", "c3d", "jsonl", "bvh"] {
+        let to = format!("points.{ending}");
+        folder.morec(&["convert", &from, "-o", &to]).ok();
+        let shown = folder.morec(&["inspect", &to]).ok();
+        for said in ["3 frames, 0.03 s at 120 Hz", "rotations are not known"] {
+            assert!(shown.contains(said), "{to}: {shown}");
+        }
+        from = to;
+    }
+    let refused = folder.morec(&["cut", "points.c3d"]);
+    assert!(refused.err.contains("positions alone"), "{refused:?}");
+}
+
+#[test]
+fn tables_in_folders_are_clips_if_they_hold_positions() {
+    let positions =
+        "time,hips_x,hips_y,hips_z,head_x,head_y,head_z\n0,0,1,0,0,1.6,0\n0.1,0,1,0,0,1.6,0\n";
+    let labels = "clip\tclass\tstart\tstop\nwave\twave\t0\t3\n";
+    let folder = Folder::with(&[("clips/take.csv", positions), ("clips/labels.tsv", labels)]);
+    let shown = folder.morec(&["inspect", "clips"]).ok();
+    assert!(
+        shown.contains("take.csv") && !shown.contains("labels"),
+        "{shown}"
+    );
+}

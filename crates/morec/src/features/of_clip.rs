@@ -2,41 +2,20 @@
 
 use crate::clip::{Clip, Span};
 use crate::kinematics::{WorldPose, for_each_world_pose};
-use crate::math::Vec3;
-use crate::roles::{Role, RoleMap};
+use crate::roles::RoleMap;
 
 use super::{BoneSet, FeatureParams, FeatureStream, KeyPose, Rows};
 
-/// Calls `each` with the time and pose of every frame of `clip` in turn, as [`for_each_world_pose`] shows them. In its
-/// gaps a point is unknown, but for those at the clip's start: a stream begins with its first frame.
+/// Calls `each` with the time and pose of every frame of `clip` in turn, as [`for_each_world_pose`] shows them.
 pub fn for_each_pose(
     clip: &Clip,
     roles: &RoleMap,
     rest: &Span,
     mut each: impl FnMut(f64, &KeyPose),
 ) {
-    let gaps = gaps(clip, roles);
-    let mut frame = 0;
     for_each_world_pose(clip, rest, |time_secs, world| {
-        let mut pose = KeyPose::of(world, roles);
-        for (role, _) in gaps.iter().filter(|(_, span)| span.contains(&frame)) {
-            pose.set(*role, Vec3::repeat(f64::NAN));
-        }
-        frame += 1;
-        each(time_secs, &pose)
+        each(time_secs, &KeyPose::of(world, roles))
     });
-}
-
-/// Frames in which roles of a clip of points are unknown.
-fn gaps(clip: &Clip, roles: &RoleMap) -> Vec<(Role, Span)> {
-    let gaps = clip.points.iter().flat_map(|points| &points.gaps);
-    gaps.filter(|gap| gap.frames.start > 0)
-        .flat_map(|gap| {
-            let plays = |role: &Role| roles.joint(*role) == Some(gap.joint);
-            let roles = Role::ALL.into_iter().filter(plays);
-            roles.map(|role| (role, gap.frames.clone()))
-        })
-        .collect()
 }
 
 /// The bones that `clip` shows: both ends mapped, and of some length in its first frame of motion.

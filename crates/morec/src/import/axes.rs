@@ -67,10 +67,16 @@ impl serde::Serialize for SignedAxis {
 }
 
 /// The axis along which the head is above the feet, over the whole clip.
-pub(super) fn infer_up(body: &Body, notes: &mut Vec<String>) -> SignedAxis {
+pub(super) fn infer_up(clip: &Clip, body: &Body, notes: &mut Vec<String>) -> SignedAxis {
     let sum: Vec3 = body.upwards.iter().sum();
     let biggest = sum.iamax();
     if sum[biggest] == 0.0 {
+        if let Some(up) = floor(clip) {
+            notes.push(format!(
+                "no head above feet to tell which way is up; along {up} alone everything lies above 0, so it is taken"
+            ));
+            return up;
+        }
         notes.push("no head above feet to tell which way is up; Y is assumed".to_owned());
         return SignedAxis::Y;
     }
@@ -84,6 +90,28 @@ pub(super) fn infer_up(body: &Body, notes: &mut Vec<String>) -> SignedAxis {
         axis: Axis::ALL[biggest],
         negative: sum[biggest] < 0.0,
     }
+}
+
+/// The one axis, Y or Z, along which no point of a clip of points is ever below the floor of the room.
+fn floor(clip: &Clip) -> Option<SignedAxis> {
+    if clip.has_rotations() {
+        return None;
+    }
+    let positions = || clip.tracks.iter().flat_map(|track| &track.positions);
+    let mut above = [Axis::Y, Axis::Z].into_iter().filter(|axis| {
+        let values = || positions().map(|p| p[axis.index()]);
+        let (low, high) = (
+            values().fold(f64::MAX, f64::min),
+            values().fold(f64::MIN, f64::max),
+        );
+        // Markers on soles sink a little.
+        high > 0.0 && low > -0.02 * high
+    });
+    let axis = above.next().filter(|_| above.next().is_none())?;
+    Some(SignedAxis {
+        axis,
+        negative: false,
+    })
 }
 
 /// Turns the whole clip so that `up` becomes Y: only what is in the world's frame changes, that is, the roots.

@@ -88,7 +88,7 @@ pub fn prepare(mut clip: Clip, options: &ImportOptions) -> Result<Imported, Pars
     let body = Body::measure(&clip, &map);
     let up = options
         .up
-        .unwrap_or_else(|| axes::infer_up(&body, &mut notes));
+        .unwrap_or_else(|| axes::infer_up(&clip, &body, &mut notes));
     let metres_per_unit = options
         .metres_per_unit
         .unwrap_or_else(|| units::choose(&clip, &body, up, &mut notes));

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::classes::{ClassId, ClassInfo};
 use crate::features::{ALL_BONES, BoneSet};
-use crate::pivots::UnplayedRoot;
+use crate::pivots::NoPivots;
 use crate::roles::Role;
 use crate::svrdm::SvrdmModel;
 use crate::templates::{TemplateModel, TemplateModelError};
@@ -99,7 +99,7 @@ pub enum StartError {
     /// The model's parts do not fit together.
     #[error(transparent)]
     Svrdm(#[from] crate::svrdm::ModelError),
-    /// The skeleton lacks the pivot that all others hang from.
+    /// The skeleton lacks the pivot that all others hang from, or its rotations are not known.
     #[error(transparent)]
-    Root(#[from] UnplayedRoot),
+    Pivots(#[from] NoPivots),
 }

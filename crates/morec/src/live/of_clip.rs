@@ -7,6 +7,7 @@ use std::time::Duration;
 use crate::clip::{Clip, Span};
 use crate::features::{BoneSet, KeyPose, bones_of_clip};
 use crate::kinematics::for_each_world_pose;
+use crate::pivots::NoPivots;
 use crate::roles::RoleMap;
 
 use super::{
@@ -28,7 +29,7 @@ pub fn recognize_clip<M: Clone + Into<Model>>(
     if clip.frames == 0 {
         return Ok(found);
     }
-    let mut reader = PoseReader::new(&model, &clip.skeleton, roles)?;
+    let mut reader = reader(&model, clip, roles)?;
     for_each_world_pose(clip, rest, |time_secs, world| {
         found.extend_from_slice(recognizer.push(time_secs, reader.read(world)));
     });
@@ -55,6 +56,14 @@ pub fn recognize_poses<M: Clone + Into<Model>>(
     Ok(found)
 }
 
+/// What reads poses of `clip` for `model`, unless that asks for rotations and the clip has none.
+fn reader(model: &Model, clip: &Clip, roles: &RoleMap) -> Result<PoseReader, StartError> {
+    if matches!(model, Model::Svrdm(_)) && !clip.has_rotations() {
+        return Err(NoPivots::Rotations.into());
+    }
+    PoseReader::new(model, &clip.skeleton, roles)
+}
+
 /// The same through a [`Session`], and on as many threads as its layout has. The session waits for room, whatever
 /// `options` say of that.
 pub fn recognize_clip_in_session<M: Clone + Into<Model>>(
@@ -66,7 +75,7 @@ pub fn recognize_clip_in_session<M: Clone + Into<Model>>(
 ) -> Result<Vec<Detection>, SessionError> {
     let model = model.clone().into();
     // What keeps a clip from being recognised is said as it is without a session.
-    PoseReader::new(&model, &clip.skeleton, roles)?;
+    reader(&model, clip, roles)?;
     let options = SessionOptions {
         overload: super::Overload::Wait,
         readers: 1,

@@ -1,21 +1,30 @@
 //! Which joints of a skeleton play which pivots.
 
-use crate::clip::Skeleton;
+use crate::clip::{Clip, Skeleton};
 use crate::kinematics::WorldPose;
 use crate::roles::{Role, RoleMap};
 
 use super::{Pivot, PivotPose, PivotSet};
 
-/// A skeleton on which no joint plays the root pivot: nothing can be said of its poses.
+/// Why nothing can be said of the poses of a skeleton.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("no joint plays the root pivot {pivot}: expected one of the joints [{}]{}", .joints.join(", "), role_hint(.role))]
-pub struct UnplayedRoot {
-    /// The root pivot's name.
-    pub pivot: String,
-    /// Joint names that would have played it.
-    pub joints: Vec<String>,
-    /// The role that would have.
-    pub role: Option<Role>,
+pub enum NoPivots {
+    /// No joint plays the root pivot.
+    #[error("no joint plays the root pivot {pivot}: expected one of the joints [{}]{}", .joints.join(", "), role_hint(.role))]
+    Root {
+        /// The root pivot's name.
+        pivot: String,
+        /// Joint names that would have played it.
+        joints: Vec<String>,
+        /// The role that would have.
+        role: Option<Role>,
+    },
+    /// The clip is one of points.
+    #[error(
+        "the method of 2009 looks at how joints are turned, and this clip has positions alone: \
+         use the templates, which look at positions"
+    )]
+    Rotations,
 }
 
 fn role_hint(role: &Option<Role>) -> String {
@@ -31,17 +40,24 @@ pub struct PivotMap {
 }
 
 impl PivotMap {
+    /// [`resolve`](Self::resolve) on the skeleton of a clip.
+    ///
+    /// # Errors
+    /// As there, or the clip is one of points, which have no rotations.
+    pub fn of_clip(set: &PivotSet, clip: &Clip, roles: &RoleMap) -> Result<Self, NoPivots> {
+        if !clip.has_rotations() {
+            return Err(NoPivots::Rotations);
+        }
+        Self::resolve(set, &clip.skeleton, roles)
+    }
+
     /// Finds the pivots of `set` on `skeleton`: by joint name, and by role where no joint has one of the names or
     /// the joint of that name plays another role (`LeftShoulder` is a collar here and an upper arm there). A joint
     /// plays one pivot at most. O(pivots · joints).
     ///
     /// # Errors
     /// Nothing plays the root. Other pivots may be [`missing`](PivotMap::missing).
-    pub fn resolve(
-        set: &PivotSet,
-        skeleton: &Skeleton,
-        roles: &RoleMap,
-    ) -> Result<Self, UnplayedRoot> {
+    pub fn resolve(set: &PivotSet, skeleton: &Skeleton, roles: &RoleMap) -> Result<Self, NoPivots> {
         let mut joints: Vec<Option<usize>> = Vec::with_capacity(set.len());
         for pivot in set.pivots() {
             let joint =
@@ -51,7 +67,7 @@ impl PivotMap {
         let root = &set.pivots()[0];
         if joints[0].is_none() {
             let (pivot, joints) = (root.name.clone(), root.joints.clone());
-            return Err(UnplayedRoot {
+            return Err(NoPivots::Root {
                 pivot,
                 joints,
                 role: root.role,

@@ -17,7 +17,7 @@ mod set;
 mod stream;
 mod tables;
 
-pub use map::{PivotMap, UnplayedRoot};
+pub use map::{NoPivots, PivotMap};
 pub use of_clip::{for_each_pivot_pose, pose_rows_of_clip};
 pub use params::{PoseParams, RootForm, SignRule};
 pub use pose::{MAX_PIVOTS, PivotPose};

@@ -18,7 +18,7 @@ use crate::eval::EvalError;
 use crate::features::Rows;
 use crate::index::IndexError;
 use crate::labels::Sample;
-use crate::pivots::{PivotMap, PivotSet, PoseParams, UnplayedRoot, pose_rows_of_clip};
+use crate::pivots::{NoPivots, PivotMap, PivotSet, PoseParams, pose_rows_of_clip};
 use crate::progress::Progress;
 use crate::segment::SegmentError;
 use crate::train::thesis::{SvrdmOptions, SvrdmTrainParams};
@@ -111,7 +111,7 @@ pub enum ReproduceError {
     #[error("cancelled")]
     Cancelled,
     #[error("clip {clip}: {source}")]
-    Pivots { clip: String, source: UnplayedRoot },
+    Pivots { clip: String, source: NoPivots },
     #[error("clip {clip}: {source}")]
     Segment { clip: String, source: SegmentError },
     #[error(transparent)]
@@ -128,7 +128,7 @@ pub enum ReproduceError {
 
 /// The pose rows of a clip.
 fn rows_of(clip: &TrainClip, set: &PivotSet, params: &PoseParams) -> Result<Rows, ReproduceError> {
-    let map = PivotMap::resolve(set, &clip.clip.skeleton, &clip.roles).map_err(|source| {
+    let map = PivotMap::of_clip(set, &clip.clip, &clip.roles).map_err(|source| {
         ReproduceError::Pivots {
             clip: clip.name.clone(),
             source,

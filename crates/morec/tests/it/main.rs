@@ -16,6 +16,7 @@ mod layers;
 mod made;
 mod parameters;
 mod pose_golden;
+mod positions;
 mod session;
 mod smooth_real;
 mod stages;

@@ -126,7 +126,7 @@ impl Cutter {
                     .unwrap_or_else(PoisonError::into_inner)
                     .clip(clip.id)?;
                 let (set, poses) = (PivotSet::thesis(), PoseParams::default());
-                let map = PivotMap::resolve(&set, &stored.clip.skeleton, &stored.roles)?;
+                let map = PivotMap::of_clip(&set, &stored.clip, &stored.roles)?;
                 let rows = pose_rows_of_clip(&stored.clip, &set, &map, &stored.rest, &poses);
                 Ok(segment(&rows, poses.rate_hz, params)?
                     .cuts

@@ -50,6 +50,34 @@ fn body_height(clip: &Clip, frame: usize) -> f64 {
     (heights().fold(f64::MIN, f64::max) - heights().fold(f64::MAX, f64::min)).max(0.3)
 }
 
+/// Where the bone begins that ends in `joint`: at its parent; in a clip of points at the role before its own.
+fn bone_start(clip: &Clip, roles: &RoleMap, joint: usize) -> Option<usize> {
+    use Role::*;
+    const BONES: [(Role, Role); 15] = [
+        (Hips, LeftThigh),
+        (LeftThigh, LeftShin),
+        (LeftShin, LeftFoot),
+        (Hips, RightThigh),
+        (RightThigh, RightShin),
+        (RightShin, RightFoot),
+        (Hips, Neck),
+        (Neck, Head),
+        (Neck, LeftArm),
+        (LeftArm, LeftForearm),
+        (LeftForearm, LeftHand),
+        (Neck, RightArm),
+        (RightArm, RightForearm),
+        (RightForearm, RightHand),
+        (Hips, Torso),
+    ];
+    if clip.has_rotations() {
+        return clip.skeleton.joints()[joint].parent;
+    }
+    let ends_here = |(_, end): &&(Role, Role)| roles.joint(*end) == Some(joint);
+    let (start, _) = BONES.iter().find(ends_here)?;
+    roles.joint(*start)
+}
+
 fn figure(svg: &mut String, stored: &StoredClip, frame: usize, x: f64, scale: f64) {
     let pose = WorldPose::of(&stored.clip, frame);
     let (right, hips) = view(&pose, &stored.roles);
@@ -63,8 +91,10 @@ fn figure(svg: &mut String, stored: &StoredClip, frame: usize, x: f64, scale: f6
         )
     };
     let (mut left, mut others, mut rights) = (String::new(), String::new(), String::new());
-    for (j, joint) in stored.clip.skeleton.joints().iter().enumerate() {
-        let Some(parent) = joint.parent else { continue };
+    for j in 0..stored.clip.skeleton.len() {
+        let Some(parent) = bone_start(&stored.clip, &stored.roles, j) else {
+            continue;
+        };
         // Props and worlds: a root's children far away are no bones.
         let (from, to) = (at(&pose.positions[parent]), at(&pose.positions[j]));
         let path = match side(&stored.clip, &stored.roles, j) {
@@ -117,7 +147,7 @@ fn side(clip: &Clip, roles: &RoleMap, joint: usize) -> Option<bool> {
         if plays(&RIGHT) {
             return Some(false);
         }
-        at = clip.skeleton.joints()[j].parent;
+        at = bone_start(clip, roles, j);
     }
     None
 }

@@ -104,11 +104,14 @@ fn candidates(header: &Header, parameters: &Parameters, length: usize) -> Vec<La
     let floats = distinct([stated < 0.0, header.scale < 0.0]);
     let start_of = |block: usize| block.saturating_sub(1).saturating_mul(BLOCK);
     let stated = count(parameters.number("POINT", "DATA_START"));
-    let starts: Vec<usize> = distinct([header.data_block, stated])
+    let mut starts: Vec<usize> = distinct([header.data_block, stated])
         .into_iter()
         .filter(|&block| block > 1 && start_of(block) < length)
         .map(start_of)
         .collect();
+    if starts.is_empty() {
+        starts.push(parameters.end);
+    }
     let mut all = Vec::new();
     for &start in &starts {
         for &points in &points {

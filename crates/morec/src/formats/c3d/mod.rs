@@ -2,8 +2,10 @@
 //!
 //! After the format's public description, *The C3D File Format: A Technical User Guide* (Motion Lab Systems): blocks of
 //! 512 bytes; a header, parameters, frames. Three processors' numbers, integers and floats. Where header and parameters
-//! disagree, the length of the file decides ([`layout`]).
+//! disagree, the length of the file decides.
 
+mod events;
+mod frames;
 mod header;
 mod layout;
 mod number;
@@ -16,9 +18,8 @@ use self::header::Header;
 use self::layout::Layout;
 use self::number::Processor;
 use self::params::{BLOCK, Parameters};
-use super::points::{Point, PointTable, UNSEEN, metres_of};
+use super::points::{PointTable, metres_of};
 use super::{Limits, Loaded, ParseError, Place, Warning};
-use crate::math::Vec3;
 
 /// Frames a second of a file that does not say.
 const ASSUMED_HZ: f64 = 100.0;
@@ -63,7 +64,7 @@ pub fn read(
     }
     let rate_hz = rate_hz.unwrap_or_else(|| rate(&header, &parameters, &mut warnings));
     let scale = scale(&header, &parameters, layout.floats, &mut warnings);
-    note_events(&header, &parameters, rate_hz, &mut warnings);
+    events::note(&header, &parameters, rate_hz, &mut warnings);
     let names = names(&parameters, layout.points, &mut warnings);
     let wanted = wanted(&names, &parameters, &mut warnings);
     let unit = parameters.texts("POINT", "UNITS");
@@ -76,7 +77,7 @@ pub fn read(
         warnings.push(Warning::new(Place::File, text));
     }
     let table = PointTable {
-        points: points(bytes, &layout, processor, scale, &names, &wanted),
+        points: frames::points(bytes, &layout, processor, scale, &names, &wanted),
         rate_hz,
         metres_per_unit,
         zero_is_missing: true,
@@ -137,13 +138,13 @@ fn rate(header: &Header, parameters: &Parameters, warnings: &mut Vec<Warning>) -
     let usable = |rate: &f64| (0.01..=100_000.0).contains(rate);
     let stated = parameters.number("POINT", "RATE").filter(usable);
     let in_header = Some(header.rate_hz).filter(usable);
-    if let (Some(stated), Some(in_header)) = (stated, in_header) {
-        if (stated / in_header - 1.0).abs() > 1e-3 {
-            let text = format!(
-                "POINT:RATE is {stated} Hz, in the header it is {in_header} Hz; the first is taken"
-            );
-            warnings.push(Warning::new(Place::Byte(20), text));
-        }
+    if let (Some(stated), Some(in_header)) = (stated, in_header)
+        && (stated / in_header - 1.0).abs() > 1e-3
+    {
+        let text = format!(
+            "POINT:RATE is {stated} Hz, in the header it is {in_header} Hz; the first is taken"
+        );
+        warnings.push(Warning::new(Place::Byte(20), text));
     }
     stated.or(in_header).unwrap_or_else(|| {
         let text = format!("no frame rate; {ASSUMED_HZ} Hz is assumed");
@@ -168,13 +169,12 @@ fn scale(
         .map(f64::abs)
         .filter(usable);
     let in_header = Some(header.scale.abs()).filter(usable);
-    if let (Some(stated), Some(in_header)) = (stated, in_header) {
-        if (stated / in_header - 1.0).abs() > 1e-3 {
-            let text = format!(
-                "POINT:SCALE is {stated}, in the header it is {in_header}; the first is taken"
-            );
-            warnings.push(Warning::new(Place::Byte(12), text));
-        }
+    if let (Some(stated), Some(in_header)) = (stated, in_header)
+        && (stated / in_header - 1.0).abs() > 1e-3
+    {
+        let text =
+            format!("POINT:SCALE is {stated}, in the header it is {in_header}; the first is taken");
+        warnings.push(Warning::new(Place::Byte(12), text));
     }
     stated.or(in_header).unwrap_or_else(|| {
         let text = format!("no scale for integer points; {ASSUMED_SCALE} is assumed");
@@ -240,99 +240,6 @@ fn wanted(names: &[String], parameters: &Parameters, warnings: &mut Vec<Warning>
         warnings.push(Warning::new(Place::File, text));
     }
     wanted
-}
-
-/// The positions of the points in `wanted`, frame by frame.
-fn points(
-    bytes: &[u8],
-    layout: &Layout,
-    processor: Processor,
-    scale: f64,
-    names: &[String],
-    wanted: &[usize],
-) -> Vec<Point> {
-    let data = bytes.get(layout.start..).unwrap_or_default();
-    let point_bytes = if layout.floats { 16 } else { 8 };
-    let mut points: Vec<Point> = wanted
-        .iter()
-        .map(|&p| Point {
-            name: names[p].clone(),
-            positions: Vec::with_capacity(layout.frames),
-        })
-        .collect();
-    for frame in data.chunks_exact(layout.frame_bytes()).take(layout.frames) {
-        for (&p, point) in wanted.iter().zip(&mut points) {
-            let value = &frame[p * point_bytes..(p + 1) * point_bytes];
-            let position = match layout.floats {
-                true => float_point(value, processor),
-                false => integer_point(value, processor).map(|p| p * scale),
-            };
-            point.positions.push(position.unwrap_or(UNSEEN));
-        }
-    }
-    points
-}
-
-/// A position and its residual, which is negative if the point was not seen.
-fn float_point(value: &[u8], processor: Processor) -> Option<Vec3> {
-    let at = |i: usize| {
-        processor.f32([
-            value[4 * i],
-            value[4 * i + 1],
-            value[4 * i + 2],
-            value[4 * i + 3],
-        ])
-    };
-    (at(3) >= 0.0 || at(3).is_nan()).then(|| Vec3::new(at(0), at(1), at(2)))
-}
-
-fn integer_point(value: &[u8], processor: Processor) -> Option<Vec3> {
-    let at = |i: usize| processor.i16([value[2 * i], value[2 * i + 1]]);
-    (at(3) >= 0).then(|| Vec3::new(at(0).into(), at(1).into(), at(2).into()))
-}
-
-/// Events of the EVENT group, else of the header, in one warning: labels are not among what a clip holds.
-fn note_events(
-    header: &Header,
-    parameters: &Parameters,
-    rate_hz: f64,
-    warnings: &mut Vec<Warning>,
-) {
-    const SHOWN: usize = 12;
-    let labels = parameters.all_texts("EVENT", "LABELS");
-    let contexts = parameters.all_texts("EVENT", "CONTEXTS");
-    // Minutes and seconds of each.
-    let times = parameters.numbers("EVENT", "TIMES");
-    let mut events: Vec<(f64, String)> = labels
-        .iter()
-        .zip(times.chunks_exact(2))
-        .enumerate()
-        .map(|(e, (label, time))| {
-            let context = contexts.get(e).map_or("", String::as_str);
-            (
-                60.0 * time[0] + time[1],
-                format!("{context} {label}").trim().to_owned(),
-            )
-        })
-        .collect();
-    if events.is_empty() {
-        events.clone_from(&header.events);
-    }
-    events.retain(|(time, name)| time.is_finite() && !name.is_empty());
-    if events.is_empty() {
-        return;
-    }
-    // Times count from the recording's frame 1; a clip begins with the first frame of the file.
-    let first = f64::from(header.first_frame.max(1) - 1) / rate_hz;
-    events.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let shown: Vec<String> = events
-        .iter()
-        .take(SHOWN)
-        .map(|(time, name)| format!("{name} at {:.3} s", time - first))
-        .collect();
-    let more = if events.len() > SHOWN { ", …" } else { "" };
-    let text = format!("{} events: {}{more}", events.len(), shown.join(", "));
-    warnings.push(Warning::new(Place::File, text));
 }
 
 #[cfg(test)]

@@ -23,6 +23,8 @@ struct Parameter {
 pub(super) struct Parameters<'a> {
     bytes: &'a [u8],
     pub(super) processor: Processor,
+    /// Byte behind the section, by the blocks it says it has.
+    pub(super) end: usize,
     groups: Vec<(u8, String)>,
     parameters: Vec<Parameter>,
 }
@@ -38,6 +40,7 @@ impl<'a> Parameters<'a> {
         let mut section = Self {
             bytes,
             processor,
+            end: start + BLOCK * usize::from(bytes.get(start + 2).copied().unwrap_or(1).max(1)),
             groups: Vec::new(),
             parameters: Vec::new(),
         };

@@ -4,6 +4,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::clip::{Clip, Gap, Points};
+use crate::math::Vec3;
 
 /// A C3D file to be.
 struct Made {
@@ -192,7 +193,7 @@ fn what_was_not_seen_is_a_gap() {
         let (clip, said) = one(&made);
         let repaired = if floats { vec![4..6, 7..8] } else { vec![4..6] };
         assert_eq!(clip.repaired, repaired, "{said}");
-        assert_eq!(clip.tracks[1].positions[4].x, 5.0);
+        assert!((clip.tracks[1].positions[4].x - 5.0).abs() < 1e-9);
     }
 }
 
@@ -251,7 +252,7 @@ fn more_labels_and_frames_than_a_word_or_byte_counts() {
         .collect();
     made.frames = vec![frame; 4];
     let more: Vec<u8> = (255..300)
-        .flat_map(|p| format!("{:8}", format!("M{p}")).into_bytes())
+        .flat_map(|p| format!("M{p}    ").into_bytes())
         .collect();
     made.more.push(("LABELS2", vec![8, 45], more, -1));
     let (clip, said) = one(&made);
@@ -271,7 +272,7 @@ fn more_labels_and_frames_than_a_word_or_byte_counts() {
 fn analog_values_and_angles_are_left_out() {
     let mut made = Made::new(Processor::Dec, false);
     made.analog = 12;
-    made.labels[1] = "LKneeAngles".to_owned();
+    made.labels[1] = "KAngles".to_owned();
     let (clip, said) = one(&made);
     assert_eq!(clip.skeleton.len(), 2);
     assert_eq!(clip.tracks[1].positions[3], made.frames[3][2].0);

@@ -87,7 +87,7 @@ fn labels(header: &[Row]) -> Vec<String> {
     };
     let is_axis = |cell: &&str| matches!(cell.to_ascii_lowercase().as_str(), "x" | "y" | "z");
     let axes = last.1.iter().filter(|cell| is_axis(cell)).count();
-    if axes < 3 || above.is_empty() {
+    if axes < 2 || above.is_empty() {
         let cell = |column: usize| {
             last.1
                 .get(column)
@@ -215,10 +215,9 @@ fn suffix(label: &str) -> Option<(&str, usize)> {
         return Some((rest, axis));
     }
     // A letter for the kind of channel: T for translation; `Rx` and `Qx` are none of ours.
-    if let Some(name) = rest.strip_suffix(['T', 't', 'P', 'p']) {
-        if name.chars().next_back().is_some_and(is_mark) {
-            return Some((name, axis));
-        }
+    let channel = rest.strip_suffix(['T', 't', 'P', 'p']);
+    if let Some(name) = channel.filter(|name| name.ends_with(is_mark)) {
+        return Some((name, axis));
     }
     let joined = last.is_uppercase() && before.is_lowercase() || before.is_ascii_digit();
     joined.then_some((rest, axis))

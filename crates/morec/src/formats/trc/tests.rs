@@ -58,7 +58,6 @@ fn headers_of_every_habit() {
         ("60.00\t60.00", "60\t120"),
         ("PathFileType\t4\t(X/Y/Z)\tx.trc\r\n", ""),
         ("\t\tX1\tY1\tZ1\tX2\tY2\tZ2\r\n", ""),
-        ("1.5\t", "1,5\t"),
         ("\t", ","),
         ("\t", ";"),
         ("\tmm\t", "\tMillimeters\t"),

@@ -19,7 +19,7 @@ const fn markers(
     }
 }
 
-pub(super) const SETS: [PointSet; 8] = [
+pub(super) const SETS: [PointSet; 9] = [
     // Vicon, "Plug-in Gait Reference Guide": full body, with joint centres where the model's outputs are in the file
     // (FEP, FEO, TIO, HUP, HUO, RAO). Medial markers as labs add them.
     markers(
@@ -59,11 +59,18 @@ pub(super) const SETS: [PointSet; 8] = [
          ?toe ?mt5",
         CMU,
     ),
+    // The later set of the same database, also of HDM05: elbows, wrists and knees on both sides.
+    markers(
+        "CMU (both sides)",
+        "ariel ?fhd ?bhd c7 t10 clav strn ?fsh ?bsh ?upa ?elb ?iel ?frm ?iwr ?owr ?ihand ?ohand ?fwt ?mwt ?bwt ?thi \
+         ?kne ?kni ?shn ?ank ?hee ?mt1 ?mt5 ?toe",
+        CMU,
+    ),
     // Leardini et al., "A new anatomically based protocol for gait analysis" (2007): the Rizzoli gait set, in
     // the abbreviations of van Sint Jan (2007) that Qualisys uses.
     markers(
         "Rizzoli (IOR)",
-        "?ias ?ips ?ftc ?fle ?fme ?fax ?ttc ?fal ?tam ?fcc ?fm1 ?fm2 ?fm5 ?sae cv7 tv2 tv7 sjn sxs ?hle ?hme ?rsp \
+        "?ias ?ips ?ftc ?fle ?fme ?fax ?ttc ?fal ?tam ?fcc ?fm1 ?fm2 ?fm5 ?head sgl ?sae cv7 tv2 tv7 sjn sxs ?hle ?hme ?rsp \
          ?usp",
         RIZZOLI,
     ),
@@ -119,7 +126,8 @@ const HELEN_HAYES: Roles = &[
     ),
     (
         "?_foot",
-        "?ajc|?ankle+?anklemedial|?ankle+?anklemed|?ankle+?mankle|?anklelat+?anklemed|?ankle|?anklelat",
+        "?ajc|?ankle+?anklemedial|?ankle+?anklemed|?ankle+?mankle|?anklelat+?anklemed|?ankle|?anklelat\
+         |?heel+?midfootsup",
     ),
     ("?_arm", "?sjc|?shoulder|?acromium|?acromion"),
     (
@@ -138,11 +146,11 @@ const HELEN_HAYES: Roles = &[
 
 const CMU: Roles = &[
     ("?_thigh", "hip(?;lfwt;rfwt;lbwt+rbwt)"),
-    ("?_shin", "?kne"),
+    ("?_shin", "?kne+?kni|?kne"),
     ("?_foot", "?ank"),
-    ("?_arm", "?sho"),
-    ("?_forearm", "?elb"),
-    ("?_hand", "?wra+?wrb|?wra|?wrb"),
+    ("?_arm", "?fsh+?bsh|?sho"),
+    ("?_forearm", "?elb+?iel|?elb"),
+    ("?_hand", "?iwr+?owr|?wra+?wrb|?wra|?wrb"),
     ("hips", "lfwt+rfwt+lbwt+rbwt|lfwt+rfwt"),
     ("neck", "c7+clav|c7"),
     ("torso", "t10+strn|t10|strn"),

@@ -47,6 +47,9 @@ const LEAST_ROLES: usize = 5;
 /// Numbers whose left and right limbs differ more than this are no landmarks: markers are numbered, too.
 const UNLIKE: f64 = 0.25;
 
+/// So much of a set must be there; points beside it do not matter.
+const LEAST_COVERAGE: f64 = 0.5;
+
 /// The part of a point's name that says whose it is: `Anna` of `Anna:LFHD`, else nothing.
 pub fn subject_of(name: &str) -> &str {
     name.rsplit_once(':').map_or("", |(subject, _)| subject)
@@ -81,7 +84,7 @@ pub fn recognise_posed(names: &[&str], poses: &[Vec<Vec3>]) -> Option<Recognised
     fitting.sort_by(|a, b| b.0.total_cmp(&a.0));
     let best = fitting
         .iter()
-        .take_while(|(likeness, _)| *likeness > 0.3)
+        .filter(|(_, set)| set.coverage(&names) >= LEAST_COVERAGE)
         .find_map(|(_, set)| set.assign(&names));
     best.or_else(|| landmarks::JOINTS.assign(&names))
 }
@@ -100,6 +103,12 @@ impl PointSet {
 
     fn len(&self) -> usize {
         self.names().count()
+    }
+
+    /// The share of the set's points that are there, 0 to 1.
+    fn coverage(&self, names: &[String]) -> f64 {
+        let common = self.names().filter(|name| names.contains(name)).count();
+        common as f64 / self.len() as f64
     }
 
     /// Twice the points in common over all points of both, 0 to 1.

@@ -46,6 +46,11 @@ fn words(name: &str) -> Vec<String> {
 fn joined(mut words: Vec<String>) -> String {
     // OpenCap marks its study's markers.
     words.retain(|word| word != "study");
+    let says_nothing =
+        ["body", "pose", "skeleton"].contains(&words.first().map_or("", String::as_str));
+    if says_nothing && words.len() > 1 {
+        words.remove(0);
+    }
     let is_side = |word: &str| match word {
         "left" | "l" => Some("l"),
         "right" | "r" => Some("r"),
@@ -106,6 +111,7 @@ mod tests {
             ("LeftUpLeg", "lupleg"),
             ("C7", "c7"),
             ("r_lelbow_study", "rlelbow"),
+            ("body_left_hip", "lhip"),
             ("Spine1", "spine1"),
             ("Right", "right"),
         ] {

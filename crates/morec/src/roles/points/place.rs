@@ -130,7 +130,8 @@ pub(in crate::roles) fn said(text: &str, names: &[&str]) -> Result<Place, String
         };
         exact.or_else(nearly).ok_or_else(|| name.to_owned())
     };
-    if let Ok(point) = find(text) {
+    // A name may have a plus in it.
+    if let Some(point) = names.iter().position(|known| *known == text) {
         return Ok(Place::Point(point));
     }
     let mut parts = text

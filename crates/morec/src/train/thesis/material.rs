@@ -63,13 +63,12 @@ pub fn of_clips(
     let made: Result<Vec<(Rows, Vec<String>)>, TrainError> = clips
         .par_iter()
         .map(|clip| {
-            let map =
-                PivotMap::resolve(&pivots, &clip.clip.skeleton, &clip.roles).map_err(|e| {
-                    TrainError::Clip {
-                        clip: clip.name.clone(),
-                        problem: e.to_string(),
-                    }
-                })?;
+            let map = PivotMap::of_clip(&pivots, &clip.clip, &clip.roles).map_err(|e| {
+                TrainError::Clip {
+                    clip: clip.name.clone(),
+                    problem: e.to_string(),
+                }
+            })?;
             let rows = pose_rows_of_clip(&clip.clip, &pivots, &map, &clip.rest, &params.pose);
             let missing = map.missing();
             let note = (!missing.is_empty())
