@@ -3,9 +3,9 @@
 mod convert;
 mod db;
 mod demo;
+mod devices;
 #[cfg(unix)]
 mod documents;
-mod devices;
 mod evaluate;
 mod inspect;
 mod kit;
