@@ -5,11 +5,13 @@ use std::path::{Path, PathBuf};
 use morec::clip::Clip;
 use morec::formats::acclaim::{AmcOptions, read_amc, read_asf};
 use morec::formats::bvh::{self, BvhOptions};
-use morec::formats::mclip;
 use morec::formats::probe::{Format, format_of_name, probe};
-use morec::formats::{Limits, read_scene};
+use morec::formats::{Limits, Loaded, ParseError, read_scene};
+use morec::formats::{c3d, jsonl, mclip, table, trc};
 use morec::import::{ImportOptions, Imported, prepare};
 use morec::index::MotionIndex;
+use morec::live::Model;
+use morec::pivots::NoPivots;
 
 use crate::status::{Error, MorecStatus};
 
@@ -22,6 +24,9 @@ pub(super) fn load(path: &Path, index: &MotionIndex) -> Result<Imported, Error> 
     let bytes = std::fs::read(path).map_err(|error| file_error(path, error))?;
     let clip = read(path, &bytes)?.filter(|clip| clip.frames > 0);
     let clip = clip.ok_or_else(|| file_error(path, "no frame of motion in it"))?;
+    if matches!(index.model, Model::Svrdm(_)) && !clip.has_rotations() {
+        return Err(file_error(path, NoPivots::Rotations));
+    }
     let mut imported =
         prepare(clip, &ImportOptions::default()).map_err(|error| file_error(path, error))?;
     index.complete_roles(&mut imported.roles, &imported.clip.skeleton);
@@ -51,6 +56,10 @@ fn read(path: &Path, bytes: &[u8]) -> Result<Option<Clip>, Error> {
             let loaded = mclip::read(bytes, &stem, &limits).map_err(located)?;
             Ok(loaded.clips.into_iter().next())
         }
+        Format::C3d => first(c3d::read(bytes, &stem, None, &limits)).map_err(located),
+        Format::Trc => first(trc::read(bytes, &stem, None, &limits)).map_err(located),
+        Format::Table => first(table::read(bytes, &stem, None, &limits)).map_err(located),
+        Format::Jsonl => first(jsonl::read(bytes, &stem, None, &limits)).map_err(located),
         Format::Asf => Err(file_error(
             path,
             "a skeleton without motion; name the AMC file",
@@ -63,6 +72,10 @@ fn read(path: &Path, bytes: &[u8]) -> Result<Option<Clip>, Error> {
             }
         }
     }
+}
+
+fn first(loaded: Result<Loaded, ParseError>) -> Result<Option<Clip>, ParseError> {
+    Ok(loaded?.clips.into_iter().next())
 }
 
 /// The skeleton of a motion: of the same stem, or of the subject's (`13.asf` of `13_29.amc`), or the only one there.

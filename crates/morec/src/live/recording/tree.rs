@@ -123,6 +123,7 @@ impl Tree {
             tracks,
             frames: count,
             repaired: Vec::new(),
+            points: None,
         }
     }
 }

@@ -1,0 +1,49 @@
+//! Events of a recording.
+
+use super::header::Header;
+use super::params::Parameters;
+use crate::formats::{Place, Warning};
+
+/// Events of the EVENT group, else of the header, in one warning: labels are not among what a clip holds.
+pub(super) fn note(
+    header: &Header,
+    parameters: &Parameters,
+    rate_hz: f64,
+    warnings: &mut Vec<Warning>,
+) {
+    const SHOWN: usize = 12;
+    let labels = parameters.all_texts("EVENT", "LABELS");
+    let contexts = parameters.all_texts("EVENT", "CONTEXTS");
+    // Minutes and seconds of each.
+    let times = parameters.numbers("EVENT", "TIMES");
+    let mut events: Vec<(f64, String)> = labels
+        .iter()
+        .zip(times.chunks_exact(2))
+        .enumerate()
+        .map(|(e, (label, time))| {
+            let context = contexts.get(e).map_or("", String::as_str);
+            (
+                60.0 * time[0] + time[1],
+                format!("{context} {label}").trim().to_owned(),
+            )
+        })
+        .collect();
+    if events.is_empty() {
+        events.clone_from(&header.events);
+    }
+    events.retain(|(time, name)| time.is_finite() && !name.is_empty());
+    if events.is_empty() {
+        return;
+    }
+    // Times count from the recording's frame 1; a clip begins with the first frame of the file.
+    let first = f64::from(header.first_frame.max(1) - 1) / rate_hz;
+    events.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let shown: Vec<String> = events
+        .iter()
+        .take(SHOWN)
+        .map(|(time, name)| format!("{name} at {:.3} s", time - first))
+        .collect();
+    let more = if events.len() > SHOWN { ", …" } else { "" };
+    let text = format!("{} events: {}{more}", events.len(), shown.join(", "));
+    warnings.push(Warning::new(Place::File, text));
+}
