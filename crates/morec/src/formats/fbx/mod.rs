@@ -177,7 +177,7 @@ fn mark_joints(fbx: &Fbx, order: &[usize], nodes: &mut [Node]) {
                 | ElementType::CameraSwitcher
         );
         let below = nodes[n].parent.is_some_and(|p| nodes[p].joint);
-        if animated[n] && !node.is_root && ((any && below && !other) || (!any && !other)) {
+        if animated[n] && !node.is_root && !other && (below || !any) {
             nodes[n].joint = true;
         }
     }
