@@ -1,5 +1,8 @@
 //! Recognisers: made of an index, fed with frames, asked for events.
 
+use std::sync::Arc;
+
+use morec::index::MotionIndex;
 use morec::live::EventOptions;
 use morec::roles::Role;
 
@@ -37,12 +40,15 @@ pub struct MorecOptions {
     /// A motion of the same class that ends less than this after the one before it is not told, but counted. 0: every
     /// motion is told once.
     pub refractory_secs: f64,
+    /// Sensitivity: false alarms a minute that background motion may raise, as in training, 0.1 strict … 1 generous.
+    /// 0: as trained. (Not in the first version of this struct.)
+    pub alarms_per_minute: f64,
 }
 
 // SAFETY: repr(C), begins with its size, numbers and pointers only.
 unsafe impl Versioned for MorecOptions {
     const NAME: &'static str = "MorecOptions";
-    const FIRST_SIZE: usize = size_of::<Self>();
+    const FIRST_SIZE: usize = std::mem::offset_of!(Self, alarms_per_minute);
 }
 
 /// What a recogniser has done since it was made or reset.
@@ -103,10 +109,24 @@ pub unsafe extern "C" fn morec_recognizer_create(
                 "roles is for streams of roles; a skeleton says its own",
             ));
         };
+        let index = with_sensitivity(index, c.alarms_per_minute)?;
         let stream = Stream::new(&index, declared, &options)?;
         // SAFETY: as promised to this function.
         unsafe { memory::put(recognizer, handles::give(stream)?, "recognizer") }
     })
+}
+
+/// The index with the sensitivity that was asked for.
+fn with_sensitivity(index: Arc<MotionIndex>, per_minute: f64) -> Result<Arc<MotionIndex>, Error> {
+    if per_minute == 0.0 {
+        return Ok(index);
+    }
+    let model = index.model.with_sensitivity(per_minute);
+    let model = model.map_err(|error| Error::invalid(format!("alarms_per_minute: {error}")))?;
+    Ok(Arc::new(MotionIndex {
+        model,
+        ..(*index).clone()
+    }))
 }
 
 fn stream_options(c: &MorecOptions) -> Result<StreamOptions, Error> {

@@ -9,7 +9,7 @@ use anyhow::{Context, Result};
 use morec::index::MotionIndex;
 use morec::live::{EventOptions, EventReader, Session, SessionOptions, Status, StatusHandle};
 
-use super::recognize::open_index;
+use super::recognize::{SensitivityArgs, open_index};
 use crate::interrupt::stop_on_ctrl_c;
 use crate::live::Said;
 use crate::live::address::Address;
@@ -56,6 +56,8 @@ use crate::live::takes::secs;
 pub struct Args {
     /// The index, as `morec train` writes it
     index: PathBuf,
+    #[command(flatten)]
+    sensitivity: SensitivityArgs,
     /// Where poses come from
     #[arg(long, required = true, value_name = "SOURCE")]
     listen: Vec<Address>,
@@ -91,7 +93,8 @@ struct Listening {
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let index = open_index(&args.index)?;
+    let mut index = open_index(&args.index)?;
+    args.sensitivity.apply(&mut index)?;
     let mut outlets = match args.emit.as_slice() {
         [] => vec![Outlet::open(
             &"terminal:-".parse().map_err(anyhow::Error::msg)?,

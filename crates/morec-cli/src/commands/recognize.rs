@@ -50,6 +50,8 @@ pub struct Args {
     /// Say on standard error how many frames a second one core recognises, as a whole and by stage
     #[arg(long)]
     stats: bool,
+    #[command(flatten)]
+    sensitivity: SensitivityArgs,
     /// Roles of joints, where inference fails: lines of `role<TAB>joint name`
     #[arg(long, value_name = "FILE")]
     roles: Option<PathBuf>,
@@ -77,6 +79,26 @@ enum Format {
     Jsonl,
 }
 
+/// How readily motions are reported.
+#[derive(clap::Args, Debug, Clone, Copy)]
+pub struct SensitivityArgs {
+    /// False alarms a minute that background motion may raise, as in training: 0.1 is strict, 1 is generous [default:
+    /// as trained, usually 0.3]
+    #[arg(long, value_name = "ALARMS")]
+    sensitivity: Option<f64>,
+}
+
+impl SensitivityArgs {
+    /// Sets the index's sensitivity, if one was given.
+    pub fn apply(&self, index: &mut MotionIndex) -> Result<()> {
+        if let Some(alarms_per_minute) = self.sensitivity {
+            let changed = index.model.with_sensitivity(alarms_per_minute);
+            index.model = changed.context("--sensitivity")?;
+        }
+        Ok(())
+    }
+}
+
 /// Opens an index file; errors begin with its path.
 pub fn open_index(path: &Path) -> Result<MotionIndex> {
     let bytes = read(path)?;
@@ -85,7 +107,8 @@ pub fn open_index(path: &Path) -> Result<MotionIndex> {
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let index = open_index(&args.index)?;
+    let mut index = open_index(&args.index)?;
+    args.sensitivity.apply(&mut index)?;
     let mapping = mapping(args.roles.as_deref())?;
     let options = ImportOptions {
         mapping,

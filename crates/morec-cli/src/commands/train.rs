@@ -145,6 +145,14 @@ fn print_templates(report: &TrainingReport) {
         "threshold: {:.3}, set by {}",
         report.threshold, report.threshold_from
     );
+    let points: Vec<String> = report
+        .operating
+        .iter()
+        .map(|p| format!("{} → {:.2}", p.alarms_per_minute, p.threshold))
+        .collect();
+    if !report.verified && !points.is_empty() {
+        println!("sensitivity, alarms a minute → threshold: {}", points.join(", "));
+    }
     let negatives: Vec<String> = report
         .negatives
         .iter()
@@ -161,7 +169,7 @@ fn print_templates(report: &TrainingReport) {
     let verified = if report.verified {
         "yes"
     } else {
-        "no (too little named as background to learn it from)"
+        "no (that takes 25 samples of a class by three people, and named background)"
     };
     println!("candidates verified: {verified}");
 }

@@ -44,7 +44,7 @@ pub use early::Hunch;
 pub use event::{Event, Phase};
 pub use feed::{FeedSender, Overload};
 pub use frame::{Actor, Frame, Rig};
-pub use model::{Model, StartError};
+pub use model::{Model, SensitivityError, StartError};
 pub use of_clip::{recognize_clip, recognize_clip_in_session, recognize_poses};
 pub use outlets::EventReader;
 pub use performer::{EventOptions, Performer};

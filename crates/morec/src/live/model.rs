@@ -60,6 +60,23 @@ impl Model {
         }
     }
 
+    /// The model for another rate of false alarms, as background motion raised them in training, a minute. More
+    /// alarms also mean fewer motions missed.
+    ///
+    /// # Errors
+    /// A rate that is not above 0, or a model that was trained without noting rates: the method of the thesis, an
+    /// index of an older version, one that verifies candidates.
+    pub fn with_sensitivity(&self, alarms_per_minute: f64) -> Result<Self, SensitivityError> {
+        if !(alarms_per_minute.is_finite() && alarms_per_minute > 0.0) {
+            return Err(SensitivityError::Rate(alarms_per_minute));
+        }
+        let Model::Templates(model) = self else {
+            return Err(SensitivityError::Fixed);
+        };
+        let changed = model.with_sensitivity(alarms_per_minute);
+        changed.map(Into::into).ok_or(SensitivityError::Fixed)
+    }
+
     /// Whether poses must say how joints are turned; where they are is enough otherwise.
     pub fn needs_rotations(&self) -> bool {
         matches!(self, Model::Svrdm(_))
@@ -88,6 +105,17 @@ impl From<SvrdmModel> for Model {
     fn from(model: SvrdmModel) -> Self {
         Model::Svrdm(Arc::new(model))
     }
+}
+
+/// Why the sensitivity of a model cannot be changed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SensitivityError {
+    /// The rate makes no sense.
+    #[error("the sensitivity is a number of false alarms a minute above 0, found {0}")]
+    Rate(f64),
+    /// The model does not note rates.
+    #[error("this index has one sensitivity only: train it again with templates and without a verifier to choose")]
+    Fixed,
 }
 
 /// Why a stream cannot be recognised with a model.

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::classes::ClassInfo;
+use crate::templates::OperatingPoint;
 
 use super::from_clips::Prepared;
 use super::set::{Source, TrainSample};
@@ -22,6 +23,9 @@ pub struct TrainingReport {
     pub threshold: f32,
     /// What set the threshold.
     pub threshold_from: String,
+    /// Thresholds for other rates of false alarms.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub operating: Vec<OperatingPoint>,
     /// Hard negatives found, by the same sources.
     pub negatives: BTreeMap<String, usize>,
     /// Whether candidates are verified; it takes clips named as background to learn that.
@@ -78,6 +82,7 @@ impl TrainingReport {
             background_secs,
             threshold: trained.model.threshold,
             threshold_from: trained.threshold_from.clone(),
+            operating: trained.model.operating.clone(),
             negatives,
             verified: trained.model.verifier.is_some(),
             notes,

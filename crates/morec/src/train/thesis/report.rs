@@ -97,6 +97,7 @@ pub(super) fn of(
         estimated,
     };
     TrainingReport {
+        operating: Vec::new(),
         classes: model.classes.clone(),
         bones: material
             .pivots
