@@ -1,7 +1,7 @@
 //! Clips on disk: from what was typed to bytes, and from bytes to clips.
 
 use std::fs;
-use std::io::{self, BufWriter, Read, Write};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
@@ -10,6 +10,8 @@ use morec::formats::bvh::PositionChannels;
 use morec::formats::probe::{Format, format_of_name};
 use morec::roles::mapping::Mapping;
 use morec_db::{FileReader, OpenedFile};
+
+use crate::output;
 
 /// What files do not say about themselves.
 #[derive(Args, Clone, Debug, Default)]
@@ -44,31 +46,10 @@ pub fn rate(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A file's bytes; errors begin with the path.
+/// A file's bytes; errors begin with the path. No output of this run may take its place.
 pub fn read(path: &Path) -> Result<Vec<u8>> {
+    output::mark_read(path);
     fs::read(path).with_context(|| path.display().to_string())
-}
-
-/// Writes beside the target and renames: a failure leaves no half file under its name, and whoever reads meanwhile
-/// sees the old file or the new one.
-pub fn write_whole(
-    path: &Path,
-    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-) -> Result<()> {
-    let mut partial = path.as_os_str().to_owned();
-    partial.push(".partial");
-    let partial = PathBuf::from(partial);
-    let written = fs::File::create(&partial).and_then(|file| {
-        let mut out = BufWriter::new(file);
-        write(&mut out)?;
-        out.flush()?;
-        fs::rename(&partial, path)
-    });
-    if written.is_err() {
-        // Best effort: the first error is the one to tell.
-        let _ = fs::remove_file(&partial);
-    }
-    Ok(written?)
 }
 
 /// The mapping file of roles, if one is given; errors begin with its path.
@@ -91,7 +72,8 @@ pub fn some_of<'a>(names: impl ExactSizeIterator<Item = &'a String>) -> String {
     }
 }
 
-/// Folders become the clips in them, however deep, in the order of their paths; files stay where they are named.
+/// Folders become the clips in them, however deep, in the order of their paths; files stay where they are named. No
+/// output of this run may take the place of any of them.
 pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>> {
     let mut clips = Vec::new();
     for path in paths {
@@ -109,6 +91,7 @@ pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>> {
             );
         }
     }
+    clips.iter().for_each(|clip| output::mark_read(clip));
     Ok(clips)
 }
 
@@ -150,9 +133,14 @@ pub fn open(path: &Path, args: &ReadArgs) -> Result<OpenedFile> {
 
 /// Reads a clip whose bytes are at hand. Errors begin with the path.
 pub fn parse(path: &Path, bytes: &[u8], args: &ReadArgs) -> Result<OpenedFile> {
-    args.reader()
+    let opened = args
+        .reader()
         .open(path, bytes)
-        .with_context(|| path.display().to_string())
+        .with_context(|| path.display().to_string())?;
+    if let Some(skeleton) = &opened.skeleton {
+        output::mark_read(skeleton);
+    }
+    Ok(opened)
 }
 
 impl ReadArgs {

@@ -9,6 +9,7 @@ use morec::clip::Clip;
 use morec::formats::bvh;
 
 use crate::files::{self, ReadArgs};
+use crate::output;
 
 /// Write a clip as BVH
 ///
@@ -71,5 +72,5 @@ fn one_of(mut clips: Vec<Clip>, character: Option<usize>) -> Result<Clip> {
 
 /// Writes a clip as BVH, whole or not at all.
 pub fn write_clip(clip: &Clip, path: &Path) -> Result<()> {
-    files::write_whole(path, |out| bvh::write(clip, out))
+    output::write_whole(path, |out| bvh::write(clip, out))
 }

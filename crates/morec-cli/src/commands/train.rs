@@ -10,12 +10,12 @@ use morec::roles::Role;
 use morec::train::thesis::SvrdmReport;
 use morec::train::{Labelling, Source, TrainClip, TrainingReport, train_model};
 
+use crate::database;
 use crate::dates;
-use crate::files;
 use crate::material::{Material, MaterialArgs};
+use crate::output;
 use crate::progress::Bar;
 use crate::table::Table;
-use morec_db::MotionDb;
 
 /// Train an index from labelled clips.
 ///
@@ -40,6 +40,8 @@ pub struct Args {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let material = args.material.load(&[])?;
+    // Before the work, not after it.
+    output::check(&args.output).with_context(|| args.output.display().to_string())?;
     let recipe = args.material.recipe()?;
     let labelling = Labelling {
         samples: &material.samples,
@@ -54,7 +56,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         provenance: provenance(&material, &report),
     };
     let bytes = index.to_bytes()?;
-    files::write_whole(&args.output, |out| out.write_all(&bytes))
+    output::write_whole(&args.output, |out| out.write_all(&bytes))
         .with_context(|| args.output.display().to_string())?;
     if let Some(db) = &args.material.db {
         let name = args
@@ -62,7 +64,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             .file_stem()
             .unwrap_or_default()
             .to_string_lossy();
-        MotionDb::open(db)?.keep_index(&name, &bytes)?;
+        database::open(db)?.keep_index(&name, &bytes)?;
     }
     if args.json {
         println!("{}", serde_json::to_string_pretty(&report)?);

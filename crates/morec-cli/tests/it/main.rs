@@ -7,5 +7,6 @@ mod evaluate;
 mod inspect;
 mod kit;
 mod live;
+mod outputs;
 mod poses;
 mod smooth;

@@ -4,10 +4,11 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
-use morec_db::{Health, MotionDb};
+use morec_db::Health;
 use serde::Serialize;
 
 use super::copies::{self, Copy};
+use crate::database;
 use crate::progress::Bar;
 
 /// Read everything in a database and say what is wrong
@@ -35,10 +36,10 @@ struct Checked {
 
 /// Checks and prints.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let health = MotionDb::open_read_only(&args.db)?.check()?;
+    let health = database::open_read_only(&args.db)?.check()?;
     let copies = match args.copies {
         true => Some(copies::find(
-            &mut MotionDb::open_read_only(&args.db)?,
+            &mut database::open_read_only(&args.db)?,
             None,
             &Bar::stoppable()?,
         )?),

@@ -7,6 +7,7 @@ use anyhow::{Result, bail};
 use morec_db::MotionDb;
 use morec_db::labels::SampleId;
 
+use crate::database;
 use crate::table::Table;
 
 /// List the classes, or rename, merge, split and forget them
@@ -56,7 +57,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         args.forget.is_some(),
     ];
     let db = match changes.iter().filter(|c| **c).count() {
-        0 => MotionDb::open_read_only(&args.db)?,
+        0 => database::open_read_only(&args.db)?,
         1 => changed(args)?,
         _ => bail!("one change at a time: each can then be taken back"),
     };
@@ -84,7 +85,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 }
 
 fn changed(args: &Args) -> Result<MotionDb> {
-    let mut db = MotionDb::open(&args.db)?;
+    let mut db = database::open(&args.db)?;
     let into = args.into.as_deref().unwrap_or_default();
     if let [old, new] = args.rename.as_slice() {
         db.rename_class(old, new)?;

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
-use morec_db::{ClipFilter, ClipId, ClipInfo, ClipUpdate, MotionDb};
+use morec_db::{ClipFilter, ClipId, ClipInfo, ClipUpdate};
 
+use crate::database;
 use crate::table::Table;
 
 /// List the clips of a database, or change what is known about them
@@ -67,9 +68,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         remove_tags: args.remove_tag.clone(),
     };
     let mut clips = if update == ClipUpdate::default() {
-        MotionDb::open_read_only(&args.db)?.clips(&filter)?
+        database::open_read_only(&args.db)?.clips(&filter)?
     } else {
-        let mut db = MotionDb::open(&args.db)?;
+        let mut db = database::open(&args.db)?;
         let ids: Vec<ClipId> = db.clips(&filter)?.iter().map(|clip| clip.id).collect();
         db.update_clips(&ids, &update)?;
         let all = db.clips(&ClipFilter::default())?;

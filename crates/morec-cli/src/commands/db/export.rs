@@ -5,12 +5,12 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
 use morec::formats::bvh;
-use morec_db::MotionDb;
 use morec_db::exchange::{self, Annotation, Form};
 use morec_db::labels::{SampleFilter, State};
 
 use super::label::{FormArg, StateArg};
-use crate::files;
+use crate::database;
+use crate::output;
 
 /// Write labels for other programs, or a clip as BVH
 #[derive(clap::Args)]
@@ -49,10 +49,10 @@ pub struct Args {
 
 /// Writes what was asked for.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let db = MotionDb::open_read_only(&args.db)?;
+    let db = database::open_read_only(&args.db)?;
     if let Some(name) = &args.motion {
         let stored = db.clip(db.find_clip(name)?.id)?;
-        files::write_whole(&args.output, |out| bvh::write(&stored.clip, out))
+        output::write_whole(&args.output, |out| bvh::write(&stored.clip, out))
             .with_context(|| args.output.display().to_string())?;
         return said(args, 1, stored.clip.frames, "frames");
     }
@@ -100,7 +100,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         if args.output == Path::new("-") {
             return super::print(text).map(|()| ExitCode::SUCCESS);
         }
-        files::write_whole(&args.output, |out| out.write_all(text.as_bytes()))
+        output::write_whole(&args.output, |out| out.write_all(text.as_bytes()))
             .with_context(|| args.output.display().to_string())?;
     }
     said(args, files, annotations.len(), "labels")
@@ -140,7 +140,7 @@ fn a_file_a_clip(
             "{}.{ending}",
             of_clip[0].clip.replace(['/', '\\'], "_")
         ));
-        files::write_whole(&path, |out| out.write_all(text.as_bytes()))
+        output::write_whole(&path, |out| out.write_all(text.as_bytes()))
             .with_context(|| path.display().to_string())?;
         files += 1;
     }

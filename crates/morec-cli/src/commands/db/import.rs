@@ -11,6 +11,7 @@ use morec_db::{ClipUpdate, ImportReport, ImportSettings, MotionDb, Outcome};
 use serde::Serialize;
 
 use super::copies::{self, Copy};
+use crate::database;
 use crate::files::{self, ReadArgs};
 use crate::progress::Bar;
 
@@ -65,7 +66,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         .map(absolute)
         .collect();
     let mut db = match args.db.exists() {
-        true => MotionDb::open(&args.db)?,
+        true => database::open(&args.db)?,
         false => MotionDb::create(&args.db)?,
     };
     let settings = ImportSettings {

@@ -4,9 +4,10 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
-use morec_db::{MotionDb, Summary};
+use morec_db::Summary;
 
 use super::megabytes;
+use crate::database;
 
 /// Say how much is in a database
 #[derive(clap::Args)]
@@ -21,7 +22,7 @@ pub struct Args {
 
 /// Counts and prints.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let summary = MotionDb::open_read_only(&args.db)?.summary()?;
+    let summary = database::open_read_only(&args.db)?.summary()?;
     if args.json {
         super::print_json(&summary)?;
     } else {

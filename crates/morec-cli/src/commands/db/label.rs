@@ -10,6 +10,7 @@ use morec_db::exchange::{self, Annotation, Form, Lengths};
 use morec_db::labels::{NewSample, State};
 use morec_db::{ClipFilter, MotionDb};
 
+use crate::database;
 use crate::files::{self, some_of};
 
 /// Read labels from a file, set one by hand, or accept and reject what is there
@@ -116,7 +117,7 @@ impl From<StateArg> for State {
 
 /// Reads, sets or takes back.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let mut db = MotionDb::open(&args.db)?;
+    let mut db = database::open(&args.db)?;
     if args.undo {
         return undo(&mut db, args.json);
     }

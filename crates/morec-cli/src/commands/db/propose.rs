@@ -9,6 +9,7 @@ use morec_db::labels::{NewSample, SampleFilter, SampleId, State};
 use morec_db::{ClipFilter, ClipId, MotionDb, Proposal, ProposeOptions, questions};
 use serde::Serialize;
 
+use crate::database;
 use crate::progress::Bar;
 use crate::table::Table;
 
@@ -62,9 +63,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         return judge(args);
     }
     if args.list {
-        return list(args, &MotionDb::open_read_only(&args.db)?);
+        return list(args, &database::open_read_only(&args.db)?);
     }
-    let mut db = MotionDb::open(&args.db)?;
+    let mut db = database::open(&args.db)?;
     let options = ProposeOptions {
         classes: args.classes.clone(),
         ..ProposeOptions::default()
@@ -89,7 +90,7 @@ fn proposed(db: &MotionDb) -> Result<Vec<morec_db::labels::DbSample>> {
 }
 
 fn judge(args: &Args) -> Result<ExitCode> {
-    let mut db = MotionDb::open(&args.db)?;
+    let mut db = database::open(&args.db)?;
     let all = proposed(&db)?;
     let wanted = |s: &&morec_db::labels::DbSample| {
         args.classes.is_empty() || args.classes.contains(&s.class)

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
-use morec_db::MotionDb;
 
 use super::megabytes;
+use crate::database;
 
 /// Give room that is no longer used back to the disk
 #[derive(clap::Args)]
@@ -24,7 +24,7 @@ pub struct Args {
 
 /// Shrinks it.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let mut db = MotionDb::open(&args.db)?;
+    let mut db = database::open(&args.db)?;
     let before = db.summary()?.file_bytes;
     db.vacuum(args.caches)?;
     let after = db.summary()?.file_bytes;
