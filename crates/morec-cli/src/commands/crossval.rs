@@ -75,14 +75,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     };
     let outcome = crossval(&of, by, &args.material.recipe()?, &Bar::new())?;
     let evaluation = Evaluation::of(&outcome.streams, &outcome.truths, &outcome.founds)?;
-    let mut out = std::io::stdout().lock();
-    if args.json {
-        figures::write_json(&mut out, &evaluation)?;
-    } else {
-        figures::write_tables(&mut out, &evaluation)?;
-        write_folds(&mut out, &outcome)?;
-    }
-    out.flush()?;
+    // Before anything is printed: whoever stops reading still gets the report.
     if let Some(folder) = &args.report {
         let timelines = timelines(&outcome.streams, &outcome.truths, &outcome.founds)?;
         let about = [
@@ -100,6 +93,14 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         };
         figures::write_report(folder, &report)?;
     }
+    let mut out = std::io::stdout().lock();
+    if args.json {
+        figures::write_json(&mut out, &evaluation)?;
+    } else {
+        figures::write_tables(&mut out, &evaluation)?;
+        write_folds(&mut out, &outcome)?;
+    }
+    out.flush()?;
     Ok(ExitCode::SUCCESS)
 }
 
