@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use morec::features::FeatureParams;
 use morec_db::{DbError, MotionDb};
 
 use crate::output::mark_database;
@@ -18,7 +19,8 @@ pub fn open_read_only(path: &Path) -> Result<MotionDb, DbError> {
     mark_database(path);
     match MotionDb::open_read_only(path) {
         Err(DbError::Older { .. }) => {
-            drop(MotionDb::open(path)?);
+            // What is only kept ready is made now, once, as readers cannot keep it.
+            MotionDb::open(path)?.refresh_rows(&FeatureParams::default(), &())?;
             MotionDb::open_read_only(path)
         }
         other => other,

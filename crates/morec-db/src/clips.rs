@@ -1,6 +1,6 @@
 //! What is known about clips, without their motion.
 
-use rusqlite::{OptionalExtension, Row, params};
+use rusqlite::{Connection, OptionalExtension, Row, params};
 
 use crate::{DbError, MotionDb};
 
@@ -148,29 +148,41 @@ impl MotionDb {
         clips: &[ClipId],
         update: &ClipUpdate,
     ) -> Result<usize, DbError> {
-        let tx = self.write()?;
-        let mut changed = 0;
-        for id in clips {
-            changed += tx.execute(
-                "UPDATE clips SET source = CASE WHEN ?2 IS NULL THEN source ELSE nullif(?2, '') END, \
-                 licence = CASE WHEN ?3 IS NULL THEN licence ELSE nullif(?3, '') END, \
-                 subject = CASE WHEN ?4 IS NULL THEN subject ELSE nullif(?4, '') END WHERE id = ?1",
-                params![id.0, update.source, update.licence, update.subject],
-            )?;
-            for tag in &update.add_tags {
-                tx.execute(
-                    "INSERT OR IGNORE INTO tags (clip, tag) VALUES (?1, ?2)",
-                    params![id.0, tag],
-                )?;
-            }
-            for tag in &update.remove_tags {
-                tx.execute(
-                    "DELETE FROM tags WHERE clip = ?1 AND tag = ?2",
-                    params![id.0, tag],
-                )?;
-            }
-        }
-        tx.commit()?;
-        Ok(changed)
+        let what = format!("describe {} clips", clips.len());
+        self.edit(&what, |conn| {
+            clips
+                .iter()
+                .try_fold(0, |changed, id| Ok(changed + describe(conn, *id, update)?))
+        })
     }
+}
+
+/// Changes what is known about a clip; says whether there is such a clip.
+fn describe(conn: &Connection, id: ClipId, update: &ClipUpdate) -> Result<usize, DbError> {
+    let sql = "SELECT 1 FROM clips WHERE id = ?1";
+    if !conn.prepare(sql)?.exists(params![id.0])? {
+        return Ok(0);
+    }
+    let columns = [
+        ("source", &update.source),
+        ("licence", &update.licence),
+        ("subject", &update.subject),
+    ];
+    for (column, value) in columns {
+        if let Some(value) = value {
+            let sql = format!(
+                "UPDATE clips SET {column} = nullif(?2, '') WHERE id = ?1 AND {column} IS NOT nullif(?2, '')"
+            );
+            conn.prepare(&sql)?.execute(params![id.0, value])?;
+        }
+    }
+    for tag in &update.add_tags {
+        let sql = "INSERT OR IGNORE INTO tags (clip, tag) VALUES (?1, ?2)";
+        conn.prepare(sql)?.execute(params![id.0, tag])?;
+    }
+    for tag in &update.remove_tags {
+        let sql = "DELETE FROM tags WHERE clip = ?1 AND tag = ?2";
+        conn.prepare(sql)?.execute(params![id.0, tag])?;
+    }
+    Ok(1)
 }

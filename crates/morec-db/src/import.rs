@@ -14,7 +14,7 @@ use rusqlite::{Connection, OptionalExtension, params};
 
 use crate::motion::{Packed, pack};
 use crate::time::now_secs;
-use crate::{ClipId, ClipUpdate, DbError, MotionDb, rows};
+use crate::{ClipId, ClipUpdate, DbError, MotionDb, history, rows};
 
 /// Files in one transaction: a crash loses the work of so many at most, and nothing that was committed.
 const BATCH: usize = 32;
@@ -86,6 +86,15 @@ pub struct ImportReport {
 }
 
 impl ImportReport {
+    /// What it did, for the history.
+    fn said(&self) -> String {
+        let [imported, _, _, _, refused] = self.counts();
+        match refused {
+            0 => format!("import {imported} files"),
+            _ => format!("import {imported} files, {refused} refused"),
+        }
+    }
+
     /// How many files were imported, of these with warnings, known, copies, refused.
     pub fn counts(&self) -> [usize; 5] {
         let mut counts = [0; 5];
@@ -142,6 +151,8 @@ impl MotionDb {
         let done = AtomicUsize::new(0);
         let params = FeatureParams::default();
         let recipe = rows::recipe(&params);
+        // All batches are one step of the history, as the person sees one import.
+        let mut step = None;
         for batch in paths.chunks(BATCH) {
             if progress.cancelled() {
                 report.cancelled = true;
@@ -164,6 +175,7 @@ impl MotionDb {
                 })
                 .collect();
             let tx = self.write()?;
+            let recording = history::record(&tx, "import", step)?;
             for (path, made) in batch.iter().zip(made) {
                 match made {
                     Some(made) => report
@@ -172,6 +184,7 @@ impl MotionDb {
                     None => report.cancelled = true,
                 }
             }
+            step = history::recorded(&tx, &report.said(), &recording)?;
             tx.commit()?;
         }
         Ok(report)
@@ -251,8 +264,10 @@ fn store(
     let shown = path.to_string_lossy();
     match made {
         Made::Refused(reason) => {
-            let sql =
-                "INSERT OR REPLACE INTO refused (path, reason, tried_secs) VALUES (?1, ?2, ?3)";
+            // Refused for the same reason again, it is no change.
+            let sql = "INSERT INTO refused (path, reason, tried_secs) VALUES (?1, ?2, ?3) \
+                ON CONFLICT (path) DO UPDATE SET reason = excluded.reason, tried_secs = excluded.tried_secs \
+                WHERE reason <> excluded.reason";
             conn.execute(sql, params![shown, reason, now_secs()])?;
             Ok(Outcome::Refused(Refused { reason }))
         }

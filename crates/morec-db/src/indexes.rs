@@ -38,13 +38,15 @@ impl MotionDb {
     /// Keeps an index that the accepted samples of now have taught, in place of one of the same name.
     pub fn keep_index(&mut self, name: &str, bytes: &[u8]) -> Result<(), DbError> {
         let taught = self.taught()?;
-        self.conn.execute(
-            "INSERT INTO indexes (name, trained_secs, samples, bytes) VALUES (?1, ?2, ?3, ?4) \
-             ON CONFLICT (name) DO UPDATE SET trained_secs = excluded.trained_secs, samples = excluded.samples, \
-             bytes = excluded.bytes",
-            params![name, now_secs(), taught, bytes],
-        )?;
-        Ok(())
+        self.edit(&format!("keep the index {name}"), |conn| {
+            conn.execute(
+                "INSERT INTO indexes (name, trained_secs, samples, bytes) VALUES (?1, ?2, ?3, ?4) \
+                 ON CONFLICT (name) DO UPDATE SET trained_secs = excluded.trained_secs, \
+                 samples = excluded.samples, bytes = excluded.bytes",
+                params![name, now_secs(), taught, bytes],
+            )?;
+            Ok(())
+        })
     }
 
     /// The bytes of an index.

@@ -96,22 +96,28 @@ proptest! {
     #[test]
     fn undo_goes_back_through_every_state(steps in prop::collection::vec(step(), 1..25)) {
         let (_folder, mut db) = database_of_waves(1);
-        let mut history = vec![(db.edits().unwrap().len(), seen(&db))];
+        let mut history = vec![(db.history().unwrap().len(), seen(&db))];
         for step in &steps {
             take(&mut db, step);
-            let edits = db.edits().unwrap().len();
+            let edits = db.history().unwrap().len();
             if edits > history.last().unwrap().0 {
                 history.push((edits, seen(&db)));
             } else {
                 prop_assert_eq!(&seen(&db), &history.last().unwrap().1, "changed without an edit: {:?}", step);
             }
         }
-        while history.len() > 1 {
-            history.pop();
-            prop_assert!(db.undo().unwrap().is_some());
-            prop_assert_eq!(&seen(&db), &history.last().unwrap().1);
+        for at in (0..history.len() - 1).rev() {
+            prop_assert!(db.undo(None).unwrap().is_some());
+            prop_assert_eq!(&seen(&db), &history[at].1);
+            prop_assert!(db.check().unwrap().faults.is_empty());
         }
-        prop_assert!(db.undo().unwrap().is_none());
+        prop_assert_eq!(db.undo(None).unwrap().map(|t| t.step.id), Some(1), "the import is left");
+        prop_assert_eq!(db.redo(None).unwrap().map(|t| t.step.id), Some(1));
+        for (_, state) in &history[1..] {
+            prop_assert!(db.redo(None).unwrap().is_some());
+            prop_assert_eq!(&seen(&db), state);
+        }
+        prop_assert!(db.redo(None).unwrap().is_none());
         prop_assert!(db.check().unwrap().faults.is_empty());
     }
 }

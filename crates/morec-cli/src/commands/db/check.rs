@@ -21,6 +21,9 @@ pub struct Args {
     /// Look for clips that are nearly others, mirror images among them
     #[arg(long)]
     copies: bool,
+    /// Make again what can be made again (feature rows), take the tables as they are for right, and check after that
+    #[arg(long)]
+    repair: bool,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -36,6 +39,10 @@ struct Checked {
 
 /// Checks and prints.
 pub fn run(args: &Args) -> Result<ExitCode> {
+    if args.repair {
+        let made = database::open(&args.db)?.repair(&Bar::new())?;
+        eprintln!("morec: feature rows of {made} clips made again");
+    }
     let health = database::open_read_only(&args.db)?.check()?;
     let copies = match args.copies {
         true => Some(copies::find(
@@ -55,7 +62,10 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         return Ok(code);
     }
     match health.faults.as_slice() {
-        [] => super::print(format_args!("whole: {} clips decoded\n", health.clips))?,
+        [] => super::print(format_args!(
+            "whole: {} clips decoded, {} with feature rows, {} indexes\n",
+            health.clips, health.rows, health.indexes
+        ))?,
         faults => super::print(faults.join("\n") + "\n")?,
     }
     for copy in copies.iter().flatten() {

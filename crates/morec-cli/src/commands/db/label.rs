@@ -10,6 +10,7 @@ use morec_db::exchange::{self, Annotation, Form, Lengths};
 use morec_db::labels::{NewSample, State};
 use morec_db::{ClipFilter, MotionDb};
 
+use super::history;
 use crate::database;
 use crate::files::{self, some_of};
 
@@ -152,14 +153,29 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 }
 
 fn undo(db: &mut MotionDb, json: bool) -> Result<ExitCode> {
-    let undone = db.undo()?;
+    // The history holds changes of every kind: whoever asks here means labels.
+    if let Some(last) = db.history()?.into_iter().find(|step| !step.undone) {
+        let kinds = ["samples", "classes"];
+        if last
+            .rows
+            .keys()
+            .any(|table| !kinds.contains(&table.as_str()))
+        {
+            bail!(
+                "the last change is no change of labels: step {}, {}; morec db undo takes it back",
+                last.id,
+                last.what
+            );
+        }
+    }
+    let undone = db.undo(None)?;
     if json {
         super::print_json(&undone)?;
     } else {
-        match undone {
-            Some(edit) => super::print(format_args!("taken back: {}\n", edit.what))?,
-            None => super::print("there is nothing to take back\n")?,
-        }
+        super::print(match &undone {
+            Some(turned) => history::text(turned, "taken back"),
+            None => "there is nothing to take back\n".to_owned(),
+        })?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -8,6 +8,7 @@ mod cut;
 mod cycles;
 mod export;
 mod group;
+mod history;
 mod import;
 mod info;
 mod init;
@@ -60,6 +61,11 @@ enum Command {
     Label(label::Args),
     Search(search::Args),
     Propose(propose::Args),
+    History(history::Args),
+    /// Take a change back: the last one, or a named step
+    Undo(history::TurnArgs),
+    /// Do again what was taken back
+    Redo(history::TurnArgs),
     Export(export::Args),
     Report(report::Args),
     Check(check::Args),
@@ -94,6 +100,9 @@ fn of(args: Args) -> Result<ExitCode> {
         Command::Search(args) => search::run(&args),
         Command::Propose(args) => propose::run(&args),
         Command::Report(args) => report::run(&args),
+        Command::History(args) => history::run(&args),
+        Command::Undo(args) => history::undo(&args),
+        Command::Redo(args) => history::redo(&args),
         Command::Export(args) => export::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Vacuum(args) => vacuum::run(&args),

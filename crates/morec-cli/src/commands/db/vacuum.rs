@@ -17,6 +17,9 @@ pub struct Args {
     /// Drop feature rows too; they are made again when they are needed
     #[arg(long)]
     caches: bool,
+    /// Forget the history too: what was done so far can then not be taken back
+    #[arg(long)]
+    history: bool,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -26,6 +29,9 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<ExitCode> {
     let mut db = database::open(&args.db)?;
     let before = db.summary()?.file_bytes;
+    if args.history {
+        db.forget_history()?;
+    }
     db.vacuum(args.caches)?;
     let after = db.summary()?.file_bytes;
     if args.json {
