@@ -1,7 +1,6 @@
 //! Clips on disk: from what was typed to bytes, and from bytes to clips.
 
 use std::fs;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
@@ -9,7 +8,7 @@ use clap::{Args, ValueEnum};
 use morec::formats::bvh::PositionChannels;
 use morec::formats::probe::{Format, format_of_name};
 use morec::roles::mapping::Mapping;
-use morec_db::{FileReader, OpenedFile};
+use morec_db::{FileReader, OpenedFile, read_file, read_stream};
 
 use crate::output;
 
@@ -49,7 +48,7 @@ pub fn rate(text: &str) -> Result<f64, String> {
 /// A file's bytes; errors begin with the path. No output of this run may take its place.
 pub fn read(path: &Path) -> Result<Vec<u8>> {
     output::mark_read(path);
-    fs::read(path).with_context(|| path.display().to_string())
+    read_file(path).with_context(|| path.display().to_string())
 }
 
 /// The mapping file of roles, if one is given; errors begin with its path.
@@ -101,7 +100,10 @@ fn collect(folder: &Path, clips: &mut Vec<PathBuf>) -> Result<()> {
         let path = entry.path();
         // A link to a folder could lead back here; links to files cannot.
         if entry.file_type().is_ok_and(|kind| kind.is_dir()) {
-            collect(&path, clips)?;
+            // A folder that cannot be read refuses itself only.
+            if let Err(error) = collect(&path, clips) {
+                eprintln!("morec: left out: {error:#}");
+            }
         } else if is_clip(&path) && path.is_file() {
             clips.push(path);
         }
@@ -119,12 +121,7 @@ fn is_clip(path: &Path) -> bool {
 /// Reads a clip; `-` is standard input. Errors begin with the path.
 pub fn open(path: &Path, args: &ReadArgs) -> Result<OpenedFile> {
     let bytes = if path == Path::new("-") {
-        let mut bytes = Vec::new();
-        std::io::stdin()
-            .lock()
-            .read_to_end(&mut bytes)
-            .context("standard input")?;
-        bytes
+        read_stream(std::io::stdin().lock()).context("standard input")?
     } else {
         read(path)?
     };

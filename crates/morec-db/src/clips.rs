@@ -2,7 +2,7 @@
 
 use rusqlite::{Connection, OptionalExtension, Row, params};
 
-use crate::{DbError, MotionDb};
+use crate::{DbError, MotionDb, names};
 
 /// A clip's number in its database.
 #[derive(
@@ -139,7 +139,51 @@ impl MotionDb {
             return Ok(found);
         }
         let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
-        find(stem)?.ok_or_else(|| DbError::unknown("clip", name))
+        find(stem)?.ok_or_else(|| names::unknown(&self.conn, "clip", name))
+    }
+
+    /// Gives a clip another name; its labels, cuts and tags stay with it.
+    ///
+    /// # Errors
+    /// There is no such clip, another one has the new name, or the name is empty or holds control characters.
+    pub fn rename_clip(&mut self, from: &str, to: &str) -> Result<(), DbError> {
+        if to.trim() != to || to.is_empty() || to.chars().any(char::is_control) {
+            let expected = "a clip's name, without blanks around it, tabs, line ends or other control characters";
+            return Err(DbError::Invalid(format!(
+                "expected {expected}, found {to:?}"
+            )));
+        }
+        let clip = self.find_clip(from)?;
+        self.edit(&format!("rename clip {} to {to}", clip.name), |conn| {
+            let sql = "SELECT 1 FROM clips WHERE name = ?1 AND id <> ?2";
+            if conn.prepare(sql)?.exists(params![to, clip.id.0])? {
+                return Err(DbError::Invalid(format!("there is a clip {to} already")));
+            }
+            let sql = "UPDATE clips SET name = ?2 WHERE id = ?1";
+            conn.execute(sql, params![clip.id.0, to])?;
+            Ok(())
+        })
+    }
+
+    /// Removes clips with their cuts and samples, and what is known of files that hold no other clip, as one step. Gives
+    /// how many samples went with them.
+    ///
+    /// # Errors
+    /// The database cannot be written.
+    pub fn remove_clips(&mut self, clips: &[ClipId]) -> Result<usize, DbError> {
+        self.edit(&format!("remove {} clips", clips.len()), |conn| {
+            let mut samples = 0;
+            for id in clips {
+                let sql = "SELECT count(*) FROM samples WHERE clip = ?1";
+                samples += conn.query_row(sql, params![id.0], |row| row.get::<_, i64>(0))?;
+                conn.execute("DELETE FROM clips WHERE id = ?1", params![id.0])?;
+            }
+            conn.execute(
+                "DELETE FROM files WHERE NOT EXISTS (SELECT 1 FROM clips c WHERE c.file = files.id)",
+                [],
+            )?;
+            Ok(samples.max(0) as usize)
+        })
     }
 
     /// Changes what is known about clips, all or none. Gives how many there were.
@@ -148,6 +192,13 @@ impl MotionDb {
         clips: &[ClipId],
         update: &ClipUpdate,
     ) -> Result<usize, DbError> {
+        let texts = [&update.source, &update.licence, &update.subject];
+        let mut texts = texts.into_iter().flatten().chain(&update.add_tags);
+        if let Some(text) = texts.find(|text| text.chars().any(char::is_control)) {
+            return Err(DbError::Invalid(format!(
+                "expected a text without tabs, line ends or other control characters, found {text:?}"
+            )));
+        }
         let what = format!("describe {} clips", clips.len());
         self.edit(&what, |conn| {
             clips

@@ -148,6 +148,15 @@ impl MotionDb {
         Ok(done)
     }
 
+    /// Runs `change` and leaves everything as it was.
+    pub(crate) fn rehearse<T>(
+        &mut self,
+        change: impl FnOnce(&Connection) -> Result<T, DbError>,
+    ) -> Result<T, DbError> {
+        let tx = self.write()?;
+        change(&tx)
+    }
+
     /// All steps that are remembered, the last one first.
     pub fn history(&self) -> Result<Vec<Step>, DbError> {
         let sql = "SELECT id, what, set_secs, undone FROM edits ORDER BY id DESC";

@@ -14,7 +14,7 @@ use rusqlite::{Connection, OptionalExtension, params};
 
 use crate::motion::{Packed, pack};
 use crate::time::now_secs;
-use crate::{ClipId, ClipUpdate, DbError, MotionDb, history, rows};
+use crate::{ClipId, ClipUpdate, DbError, MotionDb, bounded, history, rows};
 
 /// Files in one transaction: a crash loses the work of so many at most, and nothing that was committed.
 const BATCH: usize = 32;
@@ -190,6 +190,16 @@ impl MotionDb {
         Ok(report)
     }
 
+    /// Forgets which files were refused. Gives how many there were.
+    ///
+    /// # Errors
+    /// The database cannot be written.
+    pub fn forget_refused(&mut self) -> Result<usize, DbError> {
+        self.edit("forget refused files", |conn| {
+            Ok(conn.execute("DELETE FROM refused", [])?)
+        })
+    }
+
     fn known_hashes(&self) -> Result<std::collections::HashMap<[u8; 32], i64>, DbError> {
         let mut statement = self.conn.prepare("SELECT hash, id FROM files")?;
         let pairs = statement.query_map([], |row| Ok((row.get(0)?, row.get(1)?)))?;
@@ -204,7 +214,7 @@ fn make(
     params: &FeatureParams,
     known: &std::collections::HashMap<[u8; 32], i64>,
 ) -> Made {
-    let bytes = match std::fs::read(path) {
+    let bytes = match bounded::read_file(path) {
         Ok(bytes) => bytes,
         Err(error) => return Made::Refused(error.to_string()),
     };
@@ -344,8 +354,21 @@ fn insert(
     })
 }
 
+/// A name that tables and terminals can hold: control characters are blanks, and it neither begins nor ends with one.
+fn speakable(name: &str) -> String {
+    let plain: String = name
+        .chars()
+        .map(|sign| if sign.is_control() { ' ' } else { sign })
+        .collect();
+    match plain.trim() {
+        "" => "clip".to_owned(),
+        trimmed => trimmed.to_owned(),
+    }
+}
+
 /// The clip's own name, else with its folder before it, else with a number behind it.
 fn free_name(conn: &Connection, path: &Path, name: &str) -> Result<String, DbError> {
+    let name = &speakable(name);
     let taken = |name: &str| {
         conn.prepare("SELECT 1 FROM clips WHERE name = ?1")?
             .exists(params![name])
@@ -353,7 +376,7 @@ fn free_name(conn: &Connection, path: &Path, name: &str) -> Result<String, DbErr
     let folder = path
         .parent()
         .and_then(Path::file_name)
-        .map(|f| format!("{}/{name}", f.to_string_lossy()));
+        .map(|f| format!("{}/{name}", speakable(&f.to_string_lossy())));
     let numbered = (2..).map(|number| format!("{name}~{number}"));
     for candidate in [name.to_owned()].into_iter().chain(folder).chain(numbered) {
         if !taken(&candidate)? {

@@ -3,7 +3,7 @@
 use rusqlite::{OptionalExtension, params};
 
 use crate::time::now_secs;
-use crate::{DbError, MotionDb};
+use crate::{DbError, MotionDb, names};
 
 /// An index without its bytes.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -56,7 +56,21 @@ impl MotionDb {
             .conn
             .query_row(sql, params![name], |row| row.get(0))
             .optional()?;
-        found.ok_or_else(|| DbError::unknown("index", name))
+        found.ok_or_else(|| names::unknown(&self.conn, "index", name))
+    }
+
+    /// Forgets an index.
+    ///
+    /// # Errors
+    /// There is none of this name.
+    pub fn remove_index(&mut self, name: &str) -> Result<(), DbError> {
+        self.edit(&format!("remove the index {name}"), |conn| {
+            let sql = "DELETE FROM indexes WHERE name = ?1";
+            match conn.execute(sql, params![name])? {
+                0 => Err(names::unknown(conn, "index", name)),
+                _ => Ok(()),
+            }
+        })
     }
 
     /// All indexes, by name.

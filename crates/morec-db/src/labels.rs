@@ -5,10 +5,15 @@
 //! all; [`MotionDb::undo`](crate::MotionDb::undo) takes it back.
 
 mod classes;
+mod plan;
 mod samples;
 
 pub use classes::ClassInfo;
+pub use plan::{ChangedLabel, LabelChange, LabelOptions, Labelled};
 pub use samples::{Added, DbSample, NewSample, SampleFilter, SampleId};
+
+/// Who says what `morec db group` proposes: that stretches are alike, under a name of its own making.
+pub const GROUPED_BY: &str = "group";
 
 /// What is thought of a sample.
 #[derive(

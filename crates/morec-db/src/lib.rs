@@ -18,6 +18,7 @@
 //! | rows, search by example, near copies | [`rows`], [`search`] |
 //! | the other samples of classes that a few are labelled of | [`MotionDb::propose`], [`questions`] |
 
+mod bounded;
 mod clips;
 mod db;
 mod error;
@@ -28,6 +29,7 @@ mod import;
 mod indexes;
 pub mod labels;
 mod motion;
+mod names;
 mod propose;
 pub mod rows;
 mod schema;
@@ -39,6 +41,7 @@ mod testing;
 mod tests;
 mod time;
 
+pub use bounded::{LARGEST_FILE, LARGEST_STREAM, read_file, read_stream};
 pub use clips::{ClipFilter, ClipId, ClipInfo, ClipUpdate};
 pub use db::{Health, MotionDb, Summary};
 pub use error::DbError;

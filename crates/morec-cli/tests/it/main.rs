@@ -6,6 +6,7 @@ mod demo;
 mod evaluate;
 mod inspect;
 mod kit;
+mod labels;
 mod live;
 mod outputs;
 mod poses;

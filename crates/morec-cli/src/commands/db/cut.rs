@@ -145,7 +145,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let mut db = database::open(&args.db)?;
     let bar = Bar::stoppable()?;
     let rows = db.rows(&FeatureParams::default(), &bar)?;
-    let clips = db.clips(&ClipFilter {
+    let clips = db.find_clips(&ClipFilter {
         name: args.name.clone(),
         ..ClipFilter::default()
     })?;

@@ -104,7 +104,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 }
 
 fn stretches(db: &MotionDb, args: &Args) -> Result<Vec<Counted>> {
-    let clips = db.clips(&ClipFilter {
+    let clips = db.find_clips(&ClipFilter {
         name: args.name.clone(),
         ..ClipFilter::default()
     })?;

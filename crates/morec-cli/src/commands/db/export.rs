@@ -62,6 +62,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         .map(|name| db.find_clip(name))
         .transpose()?
         .map(|info| info.id);
+    if let Some(class) = &args.class {
+        db.need_class(class)?;
+    }
     let filter = SampleFilter {
         clip,
         class: args.class.clone(),
@@ -134,12 +137,11 @@ fn a_file_a_clip(
     std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
     let ending = if form == Form::Eaf { "eaf" } else { "txt" };
     let mut files = 0;
-    for of_clip in annotations.chunk_by(|a, b| a.clip == b.clip) {
+    let of_clips: Vec<&[Annotation]> = annotations.chunk_by(|a, b| a.clip == b.clip).collect();
+    let names = exchange::file_names(of_clips.iter().map(|of_clip| of_clip[0].clip.as_str()));
+    for (of_clip, name) in of_clips.iter().zip(&names) {
         let text = exchange::write(form, of_clip, lengths).map_err(anyhow::Error::msg)?;
-        let path = folder.join(format!(
-            "{}.{ending}",
-            of_clip[0].clip.replace(['/', '\\'], "_")
-        ));
+        let path = folder.join(format!("{name}.{ending}"));
         output::write_whole(&path, |out| out.write_all(text.as_bytes()))
             .with_context(|| path.display().to_string())?;
         files += 1;

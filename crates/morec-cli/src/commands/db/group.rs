@@ -10,7 +10,7 @@ use morec::cluster::{
     affinity_propagation, kwas_clusters, resampled, squared_distance,
 };
 use morec::features::{BoneSet, FeatureParams, Rows};
-use morec_db::labels::{NewSample, SampleFilter, State};
+use morec_db::labels::{GROUPED_BY, NewSample, SampleFilter, State};
 use morec_db::{ClipFilter, ClipId, MotionDb, SegmentKind};
 use serde::Serialize;
 
@@ -122,6 +122,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if let Some(path) = &args.report {
         page::check(path)?;
     }
+    args.classes
+        .iter()
+        .try_for_each(|class| db.need_class(class))?;
     let items = items(&mut db, args)?;
     if items.is_empty() {
         bail!("nothing to group (morec db cut finds segments, morec db label sets samples)");
@@ -292,7 +295,7 @@ fn propose(db: &mut MotionDb, groups: &[Vec<Item>], name: &str) -> Result<()> {
             score: None,
         }));
     }
-    db.add_samples(&samples, "group")?;
+    db.add_samples(&samples, GROUPED_BY)?;
     Ok(())
 }
 

@@ -15,6 +15,9 @@ pub struct Args {
     /// The database
     #[arg(value_name = "DB")]
     db: PathBuf,
+    /// Forget the files that could not be read
+    #[arg(long)]
+    forget_refused: bool,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -22,6 +25,9 @@ pub struct Args {
 
 /// Counts and prints.
 pub fn run(args: &Args) -> Result<ExitCode> {
+    if args.forget_refused {
+        database::open(&args.db)?.forget_refused()?;
+    }
     let summary = database::open_read_only(&args.db)?.summary()?;
     if args.json {
         super::print_json(&summary)?;

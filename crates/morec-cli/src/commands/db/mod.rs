@@ -10,12 +10,14 @@ mod export;
 mod group;
 mod history;
 mod import;
+mod indexes;
 mod info;
 mod init;
 mod label;
 mod page;
 mod propose;
 mod report;
+mod samples;
 mod search;
 mod strip;
 mod vacuum;
@@ -59,8 +61,10 @@ enum Command {
     Group(group::Args),
     Classes(classes::Args),
     Label(label::Args),
+    Samples(samples::Args),
     Search(search::Args),
     Propose(propose::Args),
+    Indexes(indexes::Args),
     History(history::Args),
     /// Take a change back: the last one, or a named step
     Undo(history::TurnArgs),
@@ -97,9 +101,11 @@ fn of(args: Args) -> Result<ExitCode> {
         Command::Group(args) => group::run(&args),
         Command::Classes(args) => classes::run(&args),
         Command::Label(args) => label::run(&args),
+        Command::Samples(args) => samples::run(&args),
         Command::Search(args) => search::run(&args),
         Command::Propose(args) => propose::run(&args),
         Command::Report(args) => report::run(&args),
+        Command::Indexes(args) => indexes::run(&args),
         Command::History(args) => history::run(&args),
         Command::Undo(args) => history::undo(&args),
         Command::Redo(args) => history::redo(&args),

@@ -106,7 +106,7 @@ fn classes(page: &mut Page, db: &MotionDb, limit: usize) -> Result<()> {
 /// Clips as a whole, and their cuts.
 fn clips(page: &mut Page, db: &MotionDb, args: &Args) -> Result<()> {
     let segments = db.segments()?;
-    let clips = db.clips(&ClipFilter {
+    let clips = db.find_clips(&ClipFilter {
         name: args.name.clone(),
         ..ClipFilter::default()
     })?;

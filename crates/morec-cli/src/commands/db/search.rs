@@ -108,6 +108,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if let Some(path) = &args.report {
         page::check(path)?;
     }
+    args.classes
+        .iter()
+        .try_for_each(|class| db.need_class(class))?;
     let index = SearchIndex::of_db(&mut db, &Bar::stoppable()?)?;
     let (example, shown) = example(&db, &index, args)?;
     let metric = if args.learned {
@@ -192,8 +195,9 @@ fn example(db: &MotionDb, index: &SearchIndex, args: &Args) -> Result<(Example, 
     let path = Path::new(&args.example);
     if !path.exists() && path != Path::new("-") {
         bail!(
-            "{}: neither a clip of the database nor a file",
-            args.example
+            "{}: neither a clip of the database nor a file{}",
+            args.example,
+            db.hint_of_clip(&args.example)
         );
     }
     let opened = files::open(path, &args.read)?;
