@@ -16,7 +16,8 @@ pub fn with_millis(secs: f64) -> String {
     format!("{}.{:03}Z", to_the_second(millis / 1000), millis % 1000)
 }
 
-fn to_the_second(secs: i64) -> String {
+/// Seconds since 1970, `2026-11-21T04:46:50`.
+pub fn to_the_second(secs: i64) -> String {
     let (days, time) = (secs.div_euclid(86_400), secs.rem_euclid(86_400));
     let (year, month, day) = civil(days);
     format!(

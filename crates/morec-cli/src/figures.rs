@@ -8,6 +8,7 @@ use morec::eval::{ClassFigures, Evaluation, MEASURED_OVERLAP};
 use morec::report::Report;
 use serde::Serialize;
 
+use crate::output;
 use crate::table::Table;
 
 /// Writes a value as JSON, indented, with a line ending. A reader that has gone is an [`io::Error`] that says so.
@@ -20,7 +21,8 @@ pub fn write_json(out: &mut impl Write, value: &impl Serialize) -> io::Result<()
 pub fn write_report(folder: &Path, report: &Report<'_>) -> anyhow::Result<PathBuf> {
     std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
     let path = folder.join("report.html");
-    std::fs::write(&path, report.html()).with_context(|| path.display().to_string())?;
+    output::write_whole(&path, |out| out.write_all(report.html().as_bytes()))
+        .with_context(|| path.display().to_string())?;
     eprintln!("morec: report: {}", path.display());
     Ok(path)
 }

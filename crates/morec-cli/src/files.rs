@@ -1,7 +1,7 @@
 //! Clips on disk: from what was typed to bytes, and from bytes to clips.
 
 use std::fs;
-use std::io::{self, BufWriter, Read, Write};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
@@ -9,7 +9,9 @@ use clap::{Args, ValueEnum};
 use morec::formats::bvh::PositionChannels;
 use morec::formats::probe::{Format, format_of_name, probe};
 use morec::roles::mapping::Mapping;
-use morec_db::{FileReader, OpenedFile};
+use morec_db::{FileReader, OpenedFile, read_file, read_stream};
+
+use crate::output;
 
 /// What files do not say about themselves.
 #[derive(Args, Clone, Debug, Default)]
@@ -44,32 +46,12 @@ pub fn rate(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A file's bytes; errors begin with the path.
+/// A file's bytes; errors begin with the path. No output of this run may take its place.
 pub fn read(path: &Path) -> Result<Vec<u8>> {
+    output::mark_read(path);
     let (file, _) = morec_db::split_choice(path);
-    fs::read(file).with_context(|| path.display().to_string())
-}
-
-/// Writes beside the target and renames: a failure leaves no half file under its name, and whoever reads meanwhile
-/// sees the old file or the new one.
-pub fn write_whole(
-    path: &Path,
-    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-) -> Result<()> {
-    let mut partial = path.as_os_str().to_owned();
-    partial.push(".partial");
-    let partial = PathBuf::from(partial);
-    let written = fs::File::create(&partial).and_then(|file| {
-        let mut out = BufWriter::new(file);
-        write(&mut out)?;
-        out.flush()?;
-        fs::rename(&partial, path)
-    });
-    if written.is_err() {
-        // Best effort: the first error is the one to tell.
-        let _ = fs::remove_file(&partial);
-    }
-    Ok(written?)
+    output::mark_read(&file);
+    read_file(&file).with_context(|| path.display().to_string())
 }
 
 /// The mapping file of roles, if one is given; errors begin with its path.
@@ -116,7 +98,8 @@ impl Expanded {
     }
 }
 
-/// Folders become the clips in them, however deep, in the order of their paths; files stay where they are named.
+/// Folders become the clips in them, however deep, in the order of their paths; files stay where they are named. No
+/// output of this run may take the place of any of them.
 pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>> {
     Ok(expand_all(paths)?.clips)
 }
@@ -147,6 +130,7 @@ pub fn expand_all(paths: &[PathBuf]) -> Result<Expanded> {
         }
     }
     all.left_out.sort();
+    all.clips.iter().for_each(|clip| output::mark_read(clip));
     Ok(all)
 }
 
@@ -156,7 +140,10 @@ fn collect(folder: &Path, all: &mut Expanded) -> Result<()> {
         let path = entry.path();
         // A link to a folder could lead back here; links to files cannot.
         if entry.file_type().is_ok_and(|kind| kind.is_dir()) {
-            collect(&path, all)?;
+            // A folder that cannot be read refuses itself only.
+            if let Err(error) = collect(&path, all) {
+                all.left_out.push((path, format!("{error:#}")));
+            }
         } else if path.is_file() {
             match look_at(&path) {
                 Found::Clip => all.clips.push(path),
@@ -225,12 +212,7 @@ fn is_media(found: &str) -> bool {
 /// Reads a clip; `-` is standard input. Errors begin with the path.
 pub fn open(path: &Path, args: &ReadArgs) -> Result<OpenedFile> {
     let bytes = if path == Path::new("-") {
-        let mut bytes = Vec::new();
-        std::io::stdin()
-            .lock()
-            .read_to_end(&mut bytes)
-            .context("standard input")?;
-        bytes
+        read_stream(std::io::stdin().lock()).context("standard input")?
     } else {
         read(path)?
     };
@@ -239,9 +221,14 @@ pub fn open(path: &Path, args: &ReadArgs) -> Result<OpenedFile> {
 
 /// Reads a clip whose bytes are at hand. Errors begin with the path.
 pub fn parse(path: &Path, bytes: &[u8], args: &ReadArgs) -> Result<OpenedFile> {
-    args.reader()
+    let opened = args
+        .reader()
         .open(path, bytes)
-        .with_context(|| path.display().to_string())
+        .with_context(|| path.display().to_string())?;
+    if let Some(skeleton) = &opened.skeleton {
+        output::mark_read(skeleton);
+    }
+    Ok(opened)
 }
 
 impl ReadArgs {

@@ -1,6 +1,7 @@
 //! The command `morec`: what was typed becomes arguments, each command's file does the rest.
 
 mod commands;
+mod database;
 mod dates;
 mod figures;
 mod files;
@@ -8,6 +9,7 @@ mod interrupt;
 mod lengths;
 mod live;
 mod material;
+mod output;
 mod poses;
 mod progress;
 mod show;

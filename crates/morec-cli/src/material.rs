@@ -17,6 +17,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+use crate::database;
 use crate::files::{ReadArgs, expand, mapping, open, read, some_of};
 
 /// Which clips teach what.
@@ -257,7 +258,7 @@ impl MaterialArgs {
     /// The same from a database: its clips that hold samples, and those named as background or unknown. A clip's
     /// path is its name here.
     fn load_db(&self, path: &Path, unknown: &[PathBuf]) -> Result<Material> {
-        let db = MotionDb::open_read_only(path)?;
+        let db = database::open_read_only(path)?;
         let infos = db.clips(&ClipFilter::default())?;
         let (mut files, mut names) = (Vec::new(), BTreeSet::new());
         let mut aside = |given: &[PathBuf]| -> Result<BTreeSet<PathBuf>> {

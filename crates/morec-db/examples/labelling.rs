@@ -221,7 +221,9 @@ fn play(
     ask: usize,
     rounds: usize,
 ) -> Result<Vec<Round>, Failure> {
-    while db.undo()?.is_some() {}
+    for class in db.classes()? {
+        db.remove_class(&class.name)?;
+    }
     let mut dice = Dice(seed.wrapping_mul(7919) + 1);
     let mut by_class: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for (i, truth) in user.truth.iter().enumerate() {

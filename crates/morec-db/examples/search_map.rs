@@ -156,7 +156,7 @@ fn learned(db: &mut MotionDb, index: &SearchIndex, clips: &[Shown], options: &Se
             .collect();
         db.add_samples(&samples, "search_map").unwrap();
         let metric = index.learn(&db.samples(&SampleFilter::default()).unwrap());
-        db.undo().unwrap();
+        db.undo(None).unwrap();
         match metric {
             Ok(metric) => {
                 let (_, other) = means(index, clips, options, Some((&metric, &known)));

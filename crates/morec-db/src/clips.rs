@@ -1,8 +1,8 @@
 //! What is known about clips, without their motion.
 
-use rusqlite::{OptionalExtension, Row, params};
+use rusqlite::{Connection, OptionalExtension, Row, params};
 
-use crate::{DbError, MotionDb};
+use crate::{DbError, MotionDb, names};
 
 /// A clip's number in its database.
 #[derive(
@@ -139,7 +139,51 @@ impl MotionDb {
             return Ok(found);
         }
         let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
-        find(stem)?.ok_or_else(|| DbError::unknown("clip", name))
+        find(stem)?.ok_or_else(|| names::unknown(&self.conn, "clip", name))
+    }
+
+    /// Gives a clip another name; its labels, cuts and tags stay with it.
+    ///
+    /// # Errors
+    /// There is no such clip, another one has the new name, or the name is empty or holds control characters.
+    pub fn rename_clip(&mut self, from: &str, to: &str) -> Result<(), DbError> {
+        if to.trim() != to || to.is_empty() || to.chars().any(char::is_control) {
+            let expected = "a clip's name, without blanks around it, tabs, line ends or other control characters";
+            return Err(DbError::Invalid(format!(
+                "expected {expected}, found {to:?}"
+            )));
+        }
+        let clip = self.find_clip(from)?;
+        self.edit(&format!("rename clip {} to {to}", clip.name), |conn| {
+            let sql = "SELECT 1 FROM clips WHERE name = ?1 AND id <> ?2";
+            if conn.prepare(sql)?.exists(params![to, clip.id.0])? {
+                return Err(DbError::Invalid(format!("there is a clip {to} already")));
+            }
+            let sql = "UPDATE clips SET name = ?2 WHERE id = ?1";
+            conn.execute(sql, params![clip.id.0, to])?;
+            Ok(())
+        })
+    }
+
+    /// Removes clips with their cuts and samples, and what is known of files that hold no other clip, as one step. Gives
+    /// how many samples went with them.
+    ///
+    /// # Errors
+    /// The database cannot be written.
+    pub fn remove_clips(&mut self, clips: &[ClipId]) -> Result<usize, DbError> {
+        self.edit(&format!("remove {} clips", clips.len()), |conn| {
+            let mut samples = 0;
+            for id in clips {
+                let sql = "SELECT count(*) FROM samples WHERE clip = ?1";
+                samples += conn.query_row(sql, params![id.0], |row| row.get::<_, i64>(0))?;
+                conn.execute("DELETE FROM clips WHERE id = ?1", params![id.0])?;
+            }
+            conn.execute(
+                "DELETE FROM files WHERE NOT EXISTS (SELECT 1 FROM clips c WHERE c.file = files.id)",
+                [],
+            )?;
+            Ok(samples.max(0) as usize)
+        })
     }
 
     /// Changes what is known about clips, all or none. Gives how many there were.
@@ -148,29 +192,48 @@ impl MotionDb {
         clips: &[ClipId],
         update: &ClipUpdate,
     ) -> Result<usize, DbError> {
-        let tx = self.write()?;
-        let mut changed = 0;
-        for id in clips {
-            changed += tx.execute(
-                "UPDATE clips SET source = CASE WHEN ?2 IS NULL THEN source ELSE nullif(?2, '') END, \
-                 licence = CASE WHEN ?3 IS NULL THEN licence ELSE nullif(?3, '') END, \
-                 subject = CASE WHEN ?4 IS NULL THEN subject ELSE nullif(?4, '') END WHERE id = ?1",
-                params![id.0, update.source, update.licence, update.subject],
-            )?;
-            for tag in &update.add_tags {
-                tx.execute(
-                    "INSERT OR IGNORE INTO tags (clip, tag) VALUES (?1, ?2)",
-                    params![id.0, tag],
-                )?;
-            }
-            for tag in &update.remove_tags {
-                tx.execute(
-                    "DELETE FROM tags WHERE clip = ?1 AND tag = ?2",
-                    params![id.0, tag],
-                )?;
-            }
+        let texts = [&update.source, &update.licence, &update.subject];
+        let mut texts = texts.into_iter().flatten().chain(&update.add_tags);
+        if let Some(text) = texts.find(|text| text.chars().any(char::is_control)) {
+            return Err(DbError::Invalid(format!(
+                "expected a text without tabs, line ends or other control characters, found {text:?}"
+            )));
         }
-        tx.commit()?;
-        Ok(changed)
+        let what = format!("describe {} clips", clips.len());
+        self.edit(&what, |conn| {
+            clips
+                .iter()
+                .try_fold(0, |changed, id| Ok(changed + describe(conn, *id, update)?))
+        })
     }
+}
+
+/// Changes what is known about a clip; says whether there is such a clip.
+fn describe(conn: &Connection, id: ClipId, update: &ClipUpdate) -> Result<usize, DbError> {
+    let sql = "SELECT 1 FROM clips WHERE id = ?1";
+    if !conn.prepare(sql)?.exists(params![id.0])? {
+        return Ok(0);
+    }
+    let columns = [
+        ("source", &update.source),
+        ("licence", &update.licence),
+        ("subject", &update.subject),
+    ];
+    for (column, value) in columns {
+        if let Some(value) = value {
+            let sql = format!(
+                "UPDATE clips SET {column} = nullif(?2, '') WHERE id = ?1 AND {column} IS NOT nullif(?2, '')"
+            );
+            conn.prepare(&sql)?.execute(params![id.0, value])?;
+        }
+    }
+    for tag in &update.add_tags {
+        let sql = "INSERT OR IGNORE INTO tags (clip, tag) VALUES (?1, ?2)";
+        conn.prepare(sql)?.execute(params![id.0, tag])?;
+    }
+    for tag in &update.remove_tags {
+        let sql = "DELETE FROM tags WHERE clip = ?1 AND tag = ?2";
+        conn.prepare(sql)?.execute(params![id.0, tag])?;
+    }
+    Ok(1)
 }

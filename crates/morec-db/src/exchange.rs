@@ -9,20 +9,23 @@
 //! | TSV ([`morec::labels`]) | frames, or seconds where they lie on no frame | clip, class, person, whole clips, state |
 //! | CSV | seconds and frames | all but who set it |
 //! | JSON | seconds and frames | all but who set it |
-//! | ELAN | milliseconds, so frames of up to 500 Hz | clip, class, person |
-//! | Audacity | seconds | class |
-//! | BABEL | seconds | clip, class, whole clips |
+//! | ELAN | milliseconds, so frames of up to 500 Hz | clip, class, person; state by tier |
+//! | Audacity | seconds | class; the clip by the file's name ([`file_name`]) |
+//! | BABEL | seconds | clip, class, whole clips, state (a key of ours) |
 //! | Label Studio | seconds | clip, class, score; accepted ones as annotations, others as predictions |
 
 mod audacity;
 mod babel;
 mod csv;
 mod eaf;
+mod file_names;
 mod json;
 mod label_studio;
 #[cfg(test)]
 mod tests;
 mod tsv;
+
+pub use file_names::{clip_of_file_name, file_name, file_names};
 
 use std::collections::BTreeMap;
 
@@ -101,9 +104,8 @@ impl Form {
     /// Whether a label of this state is read again in the same state.
     pub fn keeps(self, state: State) -> bool {
         match self {
-            Form::Tsv | Form::Csv | Form::Json => true,
-            Form::LabelStudio => state != State::Rejected,
-            Form::Eaf | Form::Audacity | Form::Babel => state == State::Accepted,
+            Form::Audacity => state == State::Accepted,
+            _ => true,
         }
     }
 

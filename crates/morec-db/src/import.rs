@@ -14,7 +14,7 @@ use rusqlite::{Connection, OptionalExtension, params};
 
 use crate::motion::{Packed, pack};
 use crate::time::now_secs;
-use crate::{ClipId, ClipUpdate, DbError, MotionDb, rows, split_choice};
+use crate::{ClipId, ClipUpdate, DbError, MotionDb, bounded, history, rows, split_choice};
 
 /// Files in one transaction: a crash loses the work of so many at most, and nothing that was committed.
 const BATCH: usize = 32;
@@ -86,6 +86,15 @@ pub struct ImportReport {
 }
 
 impl ImportReport {
+    /// What it did, for the history.
+    fn said(&self) -> String {
+        let [imported, _, _, _, refused] = self.counts();
+        match refused {
+            0 => format!("import {imported} files"),
+            _ => format!("import {imported} files, {refused} refused"),
+        }
+    }
+
     /// How many files were imported, of these with warnings, known, copies, refused.
     pub fn counts(&self) -> [usize; 5] {
         let mut counts = [0; 5];
@@ -142,6 +151,8 @@ impl MotionDb {
         let done = AtomicUsize::new(0);
         let params = FeatureParams::default();
         let recipe = rows::recipe(&params);
+        // All batches are one step of the history, as the person sees one import.
+        let mut step = None;
         for batch in paths.chunks(BATCH) {
             if progress.cancelled() {
                 report.cancelled = true;
@@ -164,6 +175,7 @@ impl MotionDb {
                 })
                 .collect();
             let tx = self.write()?;
+            let recording = history::record(&tx, "import", step)?;
             for (path, made) in batch.iter().zip(made) {
                 match made {
                     Some(made) => report
@@ -172,9 +184,20 @@ impl MotionDb {
                     None => report.cancelled = true,
                 }
             }
+            step = history::recorded(&tx, &report.said(), &recording)?;
             tx.commit()?;
         }
         Ok(report)
+    }
+
+    /// Forgets which files were refused. Gives how many there were.
+    ///
+    /// # Errors
+    /// The database cannot be written.
+    pub fn forget_refused(&mut self) -> Result<usize, DbError> {
+        self.edit("forget refused files", |conn| {
+            Ok(conn.execute("DELETE FROM refused", [])?)
+        })
     }
 
     fn known_hashes(&self) -> Result<std::collections::HashMap<[u8; 32], i64>, DbError> {
@@ -192,7 +215,7 @@ fn make(
     known: &std::collections::HashMap<[u8; 32], i64>,
 ) -> Made {
     let (file, choice) = split_choice(path);
-    let bytes = match std::fs::read(file) {
+    let bytes = match bounded::read_file(&file) {
         Ok(bytes) => bytes,
         Err(error) => return Made::Refused(error.to_string()),
     };
@@ -256,8 +279,10 @@ fn store(
     let shown = path.to_string_lossy();
     match made {
         Made::Refused(reason) => {
-            let sql =
-                "INSERT OR REPLACE INTO refused (path, reason, tried_secs) VALUES (?1, ?2, ?3)";
+            // Refused for the same reason again, it is no change.
+            let sql = "INSERT INTO refused (path, reason, tried_secs) VALUES (?1, ?2, ?3) \
+                ON CONFLICT (path) DO UPDATE SET reason = excluded.reason, tried_secs = excluded.tried_secs \
+                WHERE reason <> excluded.reason";
             conn.execute(sql, params![shown, reason, now_secs()])?;
             Ok(Outcome::Refused(Refused { reason }))
         }
@@ -334,8 +359,21 @@ fn insert(
     })
 }
 
+/// A name that tables and terminals can hold: control characters are blanks, and it neither begins nor ends with one.
+fn speakable(name: &str) -> String {
+    let plain: String = name
+        .chars()
+        .map(|sign| if sign.is_control() { ' ' } else { sign })
+        .collect();
+    match plain.trim() {
+        "" => "clip".to_owned(),
+        trimmed => trimmed.to_owned(),
+    }
+}
+
 /// The clip's own name, else with its folder before it, else with a number behind it.
 fn free_name(conn: &Connection, path: &Path, name: &str) -> Result<String, DbError> {
+    let name = &speakable(name);
     let taken = |name: &str| {
         conn.prepare("SELECT 1 FROM clips WHERE name = ?1")?
             .exists(params![name])
@@ -343,7 +381,7 @@ fn free_name(conn: &Connection, path: &Path, name: &str) -> Result<String, DbErr
     let folder = path
         .parent()
         .and_then(Path::file_name)
-        .map(|f| format!("{}/{name}", f.to_string_lossy()));
+        .map(|f| format!("{}/{name}", speakable(&f.to_string_lossy())));
     let numbered = (2..).map(|number| format!("{name}~{number}"));
     for candidate in [name.to_owned()].into_iter().chain(folder).chain(numbered) {
         if !taken(&candidate)? {

@@ -3,7 +3,7 @@
 use rusqlite::{OptionalExtension, params};
 
 use crate::time::now_secs;
-use crate::{DbError, MotionDb};
+use crate::{DbError, MotionDb, names};
 
 /// An index without its bytes.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -38,13 +38,15 @@ impl MotionDb {
     /// Keeps an index that the accepted samples of now have taught, in place of one of the same name.
     pub fn keep_index(&mut self, name: &str, bytes: &[u8]) -> Result<(), DbError> {
         let taught = self.taught()?;
-        self.conn.execute(
-            "INSERT INTO indexes (name, trained_secs, samples, bytes) VALUES (?1, ?2, ?3, ?4) \
-             ON CONFLICT (name) DO UPDATE SET trained_secs = excluded.trained_secs, samples = excluded.samples, \
-             bytes = excluded.bytes",
-            params![name, now_secs(), taught, bytes],
-        )?;
-        Ok(())
+        self.edit(&format!("keep the index {name}"), |conn| {
+            conn.execute(
+                "INSERT INTO indexes (name, trained_secs, samples, bytes) VALUES (?1, ?2, ?3, ?4) \
+                 ON CONFLICT (name) DO UPDATE SET trained_secs = excluded.trained_secs, \
+                 samples = excluded.samples, bytes = excluded.bytes",
+                params![name, now_secs(), taught, bytes],
+            )?;
+            Ok(())
+        })
     }
 
     /// The bytes of an index.
@@ -54,7 +56,21 @@ impl MotionDb {
             .conn
             .query_row(sql, params![name], |row| row.get(0))
             .optional()?;
-        found.ok_or_else(|| DbError::unknown("index", name))
+        found.ok_or_else(|| names::unknown(&self.conn, "index", name))
+    }
+
+    /// Forgets an index.
+    ///
+    /// # Errors
+    /// There is none of this name.
+    pub fn remove_index(&mut self, name: &str) -> Result<(), DbError> {
+        self.edit(&format!("remove the index {name}"), |conn| {
+            let sql = "DELETE FROM indexes WHERE name = ?1";
+            match conn.execute(sql, params![name])? {
+                0 => Err(names::unknown(conn, "index", name)),
+                _ => Ok(()),
+            }
+        })
     }
 
     /// All indexes, by name.

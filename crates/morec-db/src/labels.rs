@@ -1,16 +1,19 @@
 //! Classes and samples, and every change of them with a way back.
 //!
 //! A sample is a stretch of a clip said to show a class: accepted, proposed (by a program, to be looked at) or rejected
-//! (looked at, and not it). Each call that changes something is one edit, done wholly or not at all; [`MotionDb::undo`](crate::MotionDb::undo)
-//! takes back the last one, again and again, for the last [`EDITS_KEPT`] edits.
+//! (looked at, and not it). Each call that changes something is one step of the database's history, done wholly or not at
+//! all; [`MotionDb::undo`](crate::MotionDb::undo) takes it back.
 
 mod classes;
+mod plan;
 mod samples;
-mod undo;
 
 pub use classes::ClassInfo;
+pub use plan::{ChangedLabel, LabelChange, LabelOptions, Labelled};
 pub use samples::{Added, DbSample, NewSample, SampleFilter, SampleId};
-pub use undo::{EDITS_KEPT, Edit};
+
+/// Who says what `morec db group` proposes: that stretches are alike, under a name of its own making.
+pub const GROUPED_BY: &str = "group";
 
 /// What is thought of a sample.
 #[derive(

@@ -13,20 +13,24 @@
 //! | open, make, check, shrink | [`MotionDb`] |
 //! | clips in | [`MotionDb::import`] |
 //! | classes and samples | [`labels`] |
+//! | what was changed, taking it back | [`MotionDb::history`], [`MotionDb::undo`] |
 //! | labels in other programs' forms | [`exchange`] |
 //! | rows, search by example, near copies | [`rows`], [`search`] |
 //! | the other samples of classes that a few are labelled of | [`MotionDb::propose`], [`questions`] |
 
 mod archives;
+mod bounded;
 mod clips;
 mod db;
 mod error;
 pub mod exchange;
 mod files;
+mod history;
 mod import;
 mod indexes;
 pub mod labels;
 mod motion;
+mod names;
 mod propose;
 pub mod rows;
 mod schema;
@@ -39,10 +43,12 @@ mod tests;
 mod time;
 
 pub use archives::split_choice;
+pub use bounded::{LARGEST_FILE, LARGEST_STREAM, read_file, read_stream};
 pub use clips::{ClipFilter, ClipId, ClipInfo, ClipUpdate};
 pub use db::{Health, MotionDb, Summary};
 pub use error::DbError;
 pub use files::{FileError, FileReader, OpenedFile};
+pub use history::{Effect, STEPS_KEPT, Step, Turned};
 pub use import::{ClipReader, ImportReport, ImportSettings, Outcome, ReadFile, Refused};
 pub use indexes::IndexInfo;
 pub use motion::StoredClip;

@@ -50,42 +50,72 @@ fn bones_of_bits(bits: i64) -> BoneSet {
         .fold(BoneSet::NONE, BoneSet::with)
 }
 
+/// A checksum of kept rows and of all that says how to read them.
+fn sum(recipe: &str, bits: i64, bytes: &[u8]) -> [u8; 32] {
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(&(recipe.len() as u64).to_le_bytes());
+    hasher.update(recipe.as_bytes());
+    hasher.update(&bits.to_le_bytes());
+    hasher.update(bytes);
+    *hasher.finalize().as_bytes()
+}
+
+/// Rows as they lie in the file.
+struct Kept {
+    clip: ClipId,
+    recipe: String,
+    bits: i64,
+    bytes: Vec<u8>,
+    sum: Option<Vec<u8>>,
+}
+
+impl Kept {
+    fn is_whole(&self) -> bool {
+        let sum = sum(&self.recipe, self.bits, &self.bytes);
+        self.sum.as_deref() == Some(sum.as_slice())
+    }
+}
+
 impl MotionDb {
-    /// The rows of every clip that shows any bone, in the order of clip numbers. What is not kept ready, or by another
-    /// recipe, is made in parallel and, if the database may be written, kept.
+    /// The rows of every clip that shows any bone, in the order of clip numbers. What is not kept ready, is damaged, or is
+    /// of another recipe is made in parallel and, if the database may be written, kept.
     pub fn rows(
         &mut self,
         params: &FeatureParams,
         progress: &dyn Progress,
     ) -> Result<Vec<ClipRows>, DbError> {
-        let stale = if self.is_read_only()? {
-            self.make_rows(params, &self.stale(&recipe(params))?)?
-        } else {
-            Vec::new()
+        let recipe = recipe(params);
+        let mut missing = self.stale(&recipe)?;
+        let kept = self.kept(&recipe)?;
+        let (whole, damaged): (Vec<Kept>, Vec<Kept>) =
+            kept.into_par_iter().partition(Kept::is_whole);
+        missing.extend(damaged.iter().map(|kept| kept.clip));
+        let made = match self.is_read_only()? {
+            true => self.make_rows(params, &missing)?,
+            false => self.keep_rows(params, &missing, progress)?,
         };
-        if stale.is_empty() {
-            self.refresh_rows(params, progress)?;
-        }
-        let mut statement = self.conn.prepare(
-            "SELECT clip, bones, bytes FROM feature_rows WHERE recipe = ?1 ORDER BY clip",
-        )?;
-        let kept = statement.query_map(params![recipe(params)], |row| {
-            Ok((
-                ClipId(row.get(0)?),
-                row.get::<_, i64>(1)?,
-                row.get::<_, Vec<u8>>(2)?,
-            ))
-        })?;
-        let kept = kept.collect::<Result<Vec<_>, _>>()?;
-        let unpacked = kept.into_par_iter().filter_map(|(clip, bits, bytes)| {
-            let bones = bones_of_bits(bits);
-            let rows =
-                Rows::from_packed(&bytes, row_dim(bones), params).filter(|_| !bones.is_empty())?;
-            Some(ClipRows { clip, bones, rows })
-        });
-        let mut all: Vec<ClipRows> = unpacked.chain(stale).collect();
+        let unpacked = whole
+            .into_par_iter()
+            .filter_map(|kept| unpacked(kept.clip, kept.bits, &kept.bytes, params));
+        let mut all: Vec<ClipRows> = unpacked.chain(made).collect();
         all.sort_by_key(|rows| rows.clip);
         Ok(all)
+    }
+
+    fn kept(&self, recipe: &str) -> Result<Vec<Kept>, DbError> {
+        let mut statement = self.conn.prepare(
+            "SELECT clip, recipe, bones, bytes, sum FROM feature_rows WHERE recipe = ?1",
+        )?;
+        let kept = statement.query_map(params![recipe], |row| {
+            Ok(Kept {
+                clip: ClipId(row.get(0)?),
+                recipe: row.get(1)?,
+                bits: row.get(2)?,
+                bytes: row.get(3)?,
+                sum: row.get(4)?,
+            })
+        })?;
+        Ok(kept.collect::<Result<_, _>>()?)
     }
 
     /// Clips whose rows are missing or of another recipe.
@@ -95,6 +125,24 @@ impl MotionDb {
         Ok(statement
             .query_map(params![recipe], |row| Ok(ClipId(row.get(0)?)))?
             .collect::<Result<_, _>>()?)
+    }
+
+    /// Clips whose kept rows, of whatever recipe, are damaged; and how many rows there are.
+    pub(crate) fn damaged_rows(&self) -> Result<(Vec<ClipId>, usize), DbError> {
+        let mut recipes = self
+            .conn
+            .prepare("SELECT DISTINCT recipe FROM feature_rows")?;
+        let recipes: Vec<String> = recipes
+            .query_map([], |row| row.get(0))?
+            .collect::<Result<_, _>>()?;
+        let (mut damaged, mut count) = (Vec::new(), 0);
+        for recipe in &recipes {
+            let kept = self.kept(recipe)?;
+            count += kept.len();
+            let broken = kept.par_iter().filter(|kept| !kept.is_whole());
+            damaged.extend(broken.map(|kept| kept.clip).collect::<Vec<_>>());
+        }
+        Ok((damaged, count))
     }
 
     /// Rows made now, as they would be read again.
@@ -109,35 +157,44 @@ impl MotionDb {
             .collect::<Result<_, DbError>>()?;
         let made = stored.par_iter().filter_map(|(clip, stored)| {
             let (bones, rows) = rows_of(stored, params);
-            let rows = Rows::from_packed(&rows.to_packed(params), row_dim(bones), params)
-                .filter(|_| !bones.is_empty())?;
-            Some(ClipRows {
-                clip: *clip,
-                bones,
-                rows,
-            })
+            unpacked(*clip, bits(bones), &rows.to_packed(params), params)
         });
         Ok(made.collect())
     }
 
-    /// Makes the rows that are missing or of another recipe; gives how many.
+    /// Makes the rows that are missing, damaged or of another recipe; gives how many.
     pub fn refresh_rows(
         &mut self,
         params: &FeatureParams,
         progress: &dyn Progress,
     ) -> Result<usize, DbError> {
+        let mut missing = self.stale(&recipe(params))?;
+        missing.extend(self.damaged_rows()?.0);
+        missing.sort();
+        missing.dedup();
+        self.keep_rows(params, &missing, progress)?;
+        Ok(missing.len())
+    }
+
+    /// Makes rows of clips and keeps them, as caches: no step of the history.
+    fn keep_rows(
+        &mut self,
+        params: &FeatureParams,
+        clips: &[ClipId],
+        progress: &dyn Progress,
+    ) -> Result<Vec<ClipRows>, DbError> {
         let recipe = recipe(params);
-        let stale = self.stale(&recipe)?;
-        for (done, batch) in stale.chunks(64).enumerate() {
+        let mut all = Vec::with_capacity(clips.len());
+        for (done, batch) in clips.chunks(64).enumerate() {
             if progress.cancelled() {
                 return Err(DbError::Cancelled);
             }
-            progress.report("feature rows", done * 64, stale.len());
-            let clips: Vec<(ClipId, StoredClip)> = batch
+            progress.report("feature rows", done * 64, clips.len());
+            let stored: Vec<(ClipId, StoredClip)> = batch
                 .iter()
                 .map(|id| Ok((*id, self.clip(*id)?)))
                 .collect::<Result<_, DbError>>()?;
-            let made: Vec<(ClipId, BoneSet, Vec<u8>)> = clips
+            let made: Vec<(ClipId, BoneSet, Vec<u8>)> = stored
                 .par_iter()
                 .map(|(id, stored)| {
                     let (bones, rows) = rows_of(stored, params);
@@ -147,11 +204,19 @@ impl MotionDb {
             let tx = self.write()?;
             for (id, bones, bytes) in &made {
                 keep(&tx, *id, &recipe, *bones, bytes)?;
+                all.extend(unpacked(*id, bits(*bones), bytes, params));
             }
             tx.commit()?;
         }
-        Ok(stale.len())
+        Ok(all)
     }
+}
+
+/// Rows as they are read; none of a clip that shows no bone.
+fn unpacked(clip: ClipId, bits: i64, bytes: &[u8], params: &FeatureParams) -> Option<ClipRows> {
+    let bones = bones_of_bits(bits);
+    let rows = Rows::from_packed(bytes, row_dim(bones), params).filter(|_| !bones.is_empty())?;
+    Some(ClipRows { clip, bones, rows })
 }
 
 pub(crate) fn keep(
@@ -161,10 +226,10 @@ pub(crate) fn keep(
     bones: BoneSet,
     bytes: &[u8],
 ) -> Result<(), DbError> {
-    let sql =
-        "INSERT OR REPLACE INTO feature_rows (clip, recipe, bones, bytes) VALUES (?1, ?2, ?3, ?4)";
+    let sql = "INSERT OR REPLACE INTO feature_rows (clip, recipe, bones, bytes, sum) VALUES (?1, ?2, ?3, ?4, ?5)";
+    let sum = sum(recipe, bits(bones), bytes);
     conn.prepare(sql)?
-        .execute(params![clip.0, recipe, bits(bones), bytes])?;
+        .execute(params![clip.0, recipe, bits(bones), bytes, sum])?;
     Ok(())
 }
 

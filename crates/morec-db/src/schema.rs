@@ -5,12 +5,16 @@ use std::path::Path;
 use rusqlite::{Connection, TransactionBehavior};
 
 use crate::DbError;
+use crate::history::digest;
 
 /// Marks an SQLite file as a motion database: "mrec".
 pub const APPLICATION_ID: i32 = 0x6d72_6563;
 
 /// Step `i` brings schema `i` to schema `i + 1`. Steps are only ever added.
-const MIGRATIONS: [&str; 1] = [include_str!("migrations/0001.sql")];
+const MIGRATIONS: [&str; 2] = [
+    include_str!("migrations/0001.sql"),
+    include_str!("migrations/0002.sql"),
+];
 
 /// The newest schema that this version knows.
 pub const SCHEMA: i32 = MIGRATIONS.len() as i32;
@@ -66,6 +70,9 @@ pub(crate) fn migrate(conn: &mut Connection) -> Result<(), DbError> {
     let from: i32 = tx.pragma_query_value(None, "user_version", |row| row.get(0))?;
     for step in MIGRATIONS.iter().skip(from.max(0) as usize) {
         tx.execute_batch(step)?;
+    }
+    if from < SCHEMA {
+        digest::take_all(&tx)?;
     }
     tx.pragma_update(None, "application_id", APPLICATION_ID)?;
     tx.pragma_update(None, "user_version", SCHEMA)?;

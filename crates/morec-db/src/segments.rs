@@ -48,14 +48,14 @@ impl MotionDb {
         clips: &[ClipId],
         segments: &[Segment],
     ) -> Result<(), DbError> {
-        let tx = self.write()?;
-        {
-            let mut forget = tx.prepare("DELETE FROM segments WHERE clip = ?1")?;
+        let what = format!("cut {} clips by {method}", clips.len());
+        self.edit(&what, |conn| {
+            let mut forget = conn.prepare("DELETE FROM segments WHERE clip = ?1")?;
             for clip in clips {
                 forget.execute(params![clip.0])?;
             }
             let sql = "INSERT INTO segments (clip, method, kind, start_secs, stop_secs) VALUES (?1, ?2, ?3, ?4, ?5)";
-            let mut keep = tx.prepare(sql)?;
+            let mut keep = conn.prepare(sql)?;
             for s in segments {
                 keep.execute(params![
                     s.clip.0,
@@ -65,9 +65,8 @@ impl MotionDb {
                     s.stop_secs
                 ])?;
             }
-        }
-        tx.commit()?;
-        Ok(())
+            Ok(())
+        })
     }
 
     /// The segments of all clips, by clip and time.

@@ -283,3 +283,68 @@ fn damage_is_found() {
     let health = db.check().unwrap();
     assert_eq!(health.faults.len(), 1, "{health:?}");
 }
+
+#[test]
+fn clips_are_renamed_and_removed_with_what_belongs_to_them() {
+    use crate::labels::{NewSample, SampleFilter, State};
+    let (_folder, mut db) = database_of_waves(2);
+    let names: Vec<String> = db
+        .clips(&ClipFilter::default())
+        .unwrap()
+        .into_iter()
+        .map(|c| c.name)
+        .collect();
+    let sample = NewSample {
+        clip: db.find_clip(&names[0]).unwrap().id,
+        class: "wave".into(),
+        start_secs: 0.0,
+        stop_secs: 1.0,
+        whole_clip: false,
+        state: State::Accepted,
+        score: None,
+    };
+    db.add_samples(&[sample], "me").unwrap();
+    assert!(db.rename_clip(&names[0], &names[1]).is_err());
+    assert!(db.rename_clip(&names[0], "a\tb").is_err());
+    db.rename_clip(&names[0], "first").unwrap();
+    assert_eq!(
+        db.samples(&SampleFilter::default()).unwrap()[0].clip_name,
+        "first"
+    );
+    let id = db.find_clip("first").unwrap().id;
+    assert_eq!(db.remove_clips(&[id]).unwrap(), 1);
+    let summary = db.summary().unwrap();
+    assert_eq!((summary.clips, summary.files, summary.accepted), (1, 1, 0));
+    db.undo(None).unwrap();
+    assert_eq!(db.samples(&SampleFilter::default()).unwrap().len(), 1);
+    assert!(db.clip(id).is_ok() && db.check().unwrap().faults.is_empty());
+}
+
+#[test]
+fn names_that_are_not_there_are_errors_with_the_nearest_ones() {
+    let (_folder, db) = database_of_waves(1);
+    let name = db.clips(&ClipFilter::default()).unwrap()[0].name.clone();
+    let typo = format!("{name}x");
+    for found in [
+        db.find_clip(&typo).map(drop),
+        db.find_clips(&ClipFilter {
+            name: Some(typo.clone()),
+            ..Default::default()
+        })
+        .map(drop),
+    ] {
+        let error = found.unwrap_err().to_string();
+        assert!(error.contains(&format!("did you mean `{name}`")), "{error}");
+    }
+    let nobody = ClipFilter {
+        subject: Some("anna".into()),
+        ..Default::default()
+    };
+    assert!(
+        db.find_clips(&nobody)
+            .unwrap_err()
+            .to_string()
+            .contains("no person")
+    );
+    assert!(db.need_class("walk").is_err() && db.index("i").is_err());
+}

@@ -10,6 +10,7 @@ use morec::formats::{bvh, c3d, jsonl, trc};
 use morec::import::{ImportOptions, prepare};
 
 use crate::files::{self, ReadArgs};
+use crate::output;
 
 /// Write a clip as BVH, or its points as C3D, TRC or lines of JSON
 ///
@@ -92,9 +93,9 @@ pub fn write_clip(clip: &Clip, path: &Path) -> Result<()> {
     {
         Some((_, write)) => {
             let points = points_of(clip)?;
-            files::write_whole(path, |out| write(&points, out))
+            output::write_whole(path, |out| write(&points, out))
         }
-        None => files::write_whole(path, |out| bvh::write(clip, out)),
+        None => output::write_whole(path, |out| bvh::write(clip, out)),
     }
 }
 

@@ -106,6 +106,10 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let tested = &outcome.tested;
     let evaluation = Evaluation::of(&tested.streams, &tested.truths, &tested.founds)?;
     let perturbed = perturbed_figures(&outcome)?;
+    // Before anything is printed: whoever stops reading still gets the report.
+    if let Some(folder) = &args.report {
+        args.write_report(folder, &material, tested, &evaluation)?;
+    }
     let mut out = std::io::stdout().lock();
     if args.json {
         let all = Measured {
@@ -119,9 +123,6 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         write_folds(&mut out, &outcome)?;
     }
     out.flush()?;
-    if let Some(folder) = &args.report {
-        args.write_report(folder, &material, tested, &evaluation)?;
-    }
     Ok(ExitCode::SUCCESS)
 }
 

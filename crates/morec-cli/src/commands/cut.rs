@@ -10,7 +10,7 @@ use morec::segment::{Directions, PpcaParams, Segmentation, segment};
 use serde::Serialize;
 
 use crate::figures::write_json;
-use crate::files;
+use crate::output;
 use crate::poses::{PoseArgs, PosedClip};
 
 /// Cut clips where their behaviour changes
@@ -102,7 +102,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             let svg = segmentation
                 .chart(&format!("{}: misfit and cuts", clip.name), &[])
                 .svg();
-            files::write_whole(path, |out| out.write_all(svg.as_bytes()))
+            output::write_whole(path, |out| out.write_all(svg.as_bytes()))
                 .with_context(|| path.display().to_string())?;
         }
         found.push(Found::new(&clip, segmentation));

@@ -88,13 +88,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         .collect();
 
     let evaluation = Evaluation::of(&cases.streams, &cases.truths, &founds)?;
-    let mut out = std::io::stdout().lock();
-    if args.json {
-        figures::write_json(&mut out, &evaluation)?;
-    } else {
-        figures::write_tables(&mut out, &evaluation)?;
-    }
-    out.flush()?;
+    // Before anything is printed: whoever stops reading still gets the report.
     if let Some(folder) = &args.report {
         let timelines = timelines(&cases.streams, &cases.truths, &founds)?;
         let named = |path: &Path| path.display().to_string();
@@ -112,6 +106,13 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         };
         figures::write_report(folder, &report)?;
     }
+    let mut out = std::io::stdout().lock();
+    if args.json {
+        figures::write_json(&mut out, &evaluation)?;
+    } else {
+        figures::write_tables(&mut out, &evaluation)?;
+    }
+    out.flush()?;
     Ok(ExitCode::SUCCESS)
 }
 

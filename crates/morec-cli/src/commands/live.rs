@@ -24,10 +24,10 @@ use crate::live::takes::secs;
 /// Recognise motions live, from a tracker to an event.
 ///
 /// Sources (--listen, several if you like):
-///   vmc://0.0.0.0:39539     VMC senders on this UDP port, any number of performers
+///   vmc://127.0.0.1:39539   VMC senders on this UDP port, any number of performers
 ///   axis://127.0.0.1:7001   the BVH broadcast of Axis Neuron or Axis Studio at this address; axis+udp:// listens
 ///   json:-                  poses as lines of JSON on standard input
-///   json+tcp://0.0.0.0:9000 the same from whoever connects
+///   json+tcp://127.0.0.1:9000 the same from whoever connects
 ///   clip://FILE             a clip, in real time; ?speed=4 (0: as fast as it goes), ?loop, ?loss=0.05, ?jitter=20
 ///
 /// A line of JSON is a pose: {"t": 1.25, "positions": {"hips": [0, 0.92, 0], "left_hand": [0.7, 1.4, 0.1]}}, t in

@@ -1,7 +1,6 @@
 //! `morec recognize`: clips played through an index as a live stream would be.
 
-use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -21,6 +20,7 @@ use crate::live::layout::LayoutArg;
 use crate::live::loaded::Loaded;
 use crate::live::network::Conditions;
 use crate::live::wire::recognise_over_vmc;
+use crate::output::Output;
 use crate::progress::Progress;
 use crate::stats::Stats;
 
@@ -115,23 +115,48 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         ..ImportOptions::default()
     };
     let paths = expand(&args.clips)?;
-    let mut out: Box<dyn Write> = match &args.output {
-        Some(path) => Box::new(BufWriter::new(
-            File::create(path).with_context(|| path.display().to_string())?,
-        )),
-        None => Box::new(std::io::stdout().lock()),
+    let failed = match &args.output {
+        None => recognize_all(
+            &mut std::io::stdout().lock(),
+            &paths,
+            &index,
+            &options,
+            args,
+        )?,
+        Some(path) => {
+            let shown = || path.display().to_string();
+            let mut out = Output::create(path).with_context(shown)?;
+            let failed = recognize_all(&mut out, &paths, &index, &options, args)?;
+            out.finish().with_context(shown)?;
+            failed
+        }
     };
+    Ok(if failed {
+        ExitCode::FAILURE
+    } else {
+        ExitCode::SUCCESS
+    })
+}
+
+/// Writes what is found in every clip; gives whether one of them could not be read.
+fn recognize_all(
+    out: &mut dyn Write,
+    paths: &[PathBuf],
+    index: &MotionIndex,
+    options: &ImportOptions,
+    args: &Args,
+) -> Result<bool> {
     if args.format == Format::Tsv {
         writeln!(out, "{FOUND_HEADER}")?;
     }
     let mut stats = Stats::default();
     let mut failed = false;
     let mut progress = Progress::new(paths.len(), "recognising");
-    for path in &paths {
-        match recognize_file(path, &index, &options, args, &mut stats) {
+    for path in paths {
+        match recognize_file(path, index, options, args, &mut stats) {
             Ok(found) => found
                 .iter()
-                .try_for_each(|f| write_found(&mut out, args.format, f, &index))?,
+                .try_for_each(|f| write_found(out, args.format, f, index))?,
             Err(error) => {
                 failed = true;
                 progress.suspend(|| eprintln!("morec: {error:#}"));
@@ -144,11 +169,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if args.stats {
         eprint!("{stats}");
     }
-    Ok(if failed {
-        ExitCode::FAILURE
-    } else {
-        ExitCode::SUCCESS
-    })
+    Ok(failed)
 }
 
 /// A detection and what its line says of the clip.

@@ -9,7 +9,7 @@ use morec::pca::{Keep, Moments, Pca, QualityRow, quality_chart};
 use serde::Serialize;
 
 use crate::figures::write_json;
-use crate::files;
+use crate::output;
 use crate::poses::PoseArgs;
 use crate::table::Table;
 
@@ -70,7 +70,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let table = pca.quality_table();
     if let Some(path) = &args.plot {
         let svg = quality_chart(&table, pca.dims(), "Dimensions and what they keep").svg();
-        files::write_whole(path, |out| out.write_all(svg.as_bytes()))
+        output::write_whole(path, |out| out.write_all(svg.as_bytes()))
             .with_context(|| path.display().to_string())?;
     }
     let reduced = Reduced {

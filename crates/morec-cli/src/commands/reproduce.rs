@@ -6,8 +6,8 @@ use std::process::ExitCode;
 use anyhow::{Context, Result};
 use morec::reproduce::{Reproduction, Setting, Study, page, reproduce};
 
-use crate::files;
 use crate::material::MaterialArgs;
+use crate::output;
 use crate::progress::Bar;
 use crate::table::Table;
 
@@ -55,8 +55,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         settings: &settings,
     };
     let result = reproduce(&study, &Bar::new())?;
-    print(&result);
+    // Whoever stops reading what is printed still gets the page.
     write(&args.output, &result, &about(args, &study))?;
+    print(&result);
     println!(
         "\n{}: the page, its figures as JSON, {} pictures",
         args.output.display(),
@@ -80,7 +81,7 @@ fn write(folder: &Path, result: &Reproduction, about: &[(String, String)]) -> Re
     std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
     let keep = |name: &str, text: &str| {
         let path = folder.join(name);
-        files::write_whole(&path, |out| out.write_all(text.as_bytes()))
+        output::write_whole(&path, |out| out.write_all(text.as_bytes()))
             .with_context(|| path.display().to_string())
     };
     keep("reproduction.html", &page(result, about))?;

@@ -10,12 +10,12 @@ use morec::roles::Role;
 use morec::train::thesis::SvrdmReport;
 use morec::train::{Labelling, Source, TrainClip, TrainingReport, train_model};
 
+use crate::database;
 use crate::dates;
-use crate::files;
 use crate::material::{Material, MaterialArgs};
+use crate::output;
 use crate::progress::Bar;
 use crate::table::Table;
-use morec_db::MotionDb;
 
 /// Train an index from labelled clips.
 ///
@@ -37,9 +37,14 @@ pub struct Args {
     json: bool,
 }
 
-/// Trains as `material` says; returns what was learned, how, and from what.
-pub fn trained(args: &MaterialArgs) -> Result<(MotionIndex, TrainingReport, Material)> {
+/// Trains as `args` say, for an index that is to be written to `output`; returns what was learned, how, and from what.
+pub fn trained(
+    args: &MaterialArgs,
+    output: &Path,
+) -> Result<(MotionIndex, TrainingReport, Material)> {
     let material = args.load(&[])?;
+    // Before the work, not after it.
+    output::check(output).with_context(|| output.display().to_string())?;
     let recipe = args.recipe()?;
     let labelling = Labelling {
         samples: &material.samples,
@@ -58,9 +63,9 @@ pub fn trained(args: &MaterialArgs) -> Result<(MotionIndex, TrainingReport, Mate
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let (index, report, material) = trained(&args.material)?;
+    let (index, report, material) = trained(&args.material, &args.output)?;
     let bytes = index.to_bytes()?;
-    files::write_whole(&args.output, |out| out.write_all(&bytes))
+    output::write_whole(&args.output, |out| out.write_all(&bytes))
         .with_context(|| args.output.display().to_string())?;
     if let Some(db) = &args.material.db {
         let name = args
@@ -68,7 +73,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             .file_stem()
             .unwrap_or_default()
             .to_string_lossy();
-        MotionDb::open(db)?.keep_index(&name, &bytes)?;
+        database::open(db)?.keep_index(&name, &bytes)?;
     }
     if args.json {
         println!("{}", serde_json::to_string_pretty(&report)?);
@@ -151,7 +156,10 @@ fn print_templates(report: &TrainingReport) {
         .map(|p| format!("{} → {:.2}", p.alarms_per_minute, p.threshold))
         .collect();
     if !report.verified && !points.is_empty() {
-        println!("sensitivity, alarms a minute → threshold: {}", points.join(", "));
+        println!(
+            "sensitivity, alarms a minute → threshold: {}",
+            points.join(", ")
+        );
     }
     let negatives: Vec<String> = report
         .negatives

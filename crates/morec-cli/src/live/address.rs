@@ -21,7 +21,7 @@ impl FromStr for Address {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || format!("expected KIND://PLACE, as vmc://0.0.0.0:39539, found {text}");
+        let wrong = || format!("expected KIND://PLACE, as vmc://127.0.0.1:39539, found {text}");
         // json:- and json:FILE are no URLs, and neither are these all.
         let (kind, rest) = text.split_once(':').ok_or_else(wrong)?;
         let rest = rest.strip_prefix("//").unwrap_or(rest);
@@ -66,6 +66,14 @@ impl Address {
             .with_context(|| format!("{self}: this name has no address"))
     }
 
+    /// The value of an option as it was typed.
+    pub fn text(&self, name: &str) -> Option<&str> {
+        let mut options = self.options.iter();
+        options
+            .find(|(n, _)| n == name)
+            .map(|(_, value)| value.as_str())
+    }
+
     /// The value of an option, as a number if it has one; `None` if it was not given.
     pub fn number(&self, name: &str, bare: f64) -> Result<Option<f64>> {
         let Some((_, value)) = self.options.iter().find(|(n, _)| n == name) else {
@@ -91,6 +99,16 @@ impl Address {
             Some((name, _)) => bail!("{self}: no option {name}; there are {}", known.join(", ")),
             None => Ok(()),
         }
+    }
+}
+
+/// Says that a socket listens to everybody, which is a choice.
+pub fn note_if_open(at: SocketAddr) {
+    if at.ip().is_unspecified() {
+        eprintln!(
+            "morec: {at} listens to every machine that can reach this one; 127.0.0.1:{} listens to this one only",
+            at.port()
+        );
     }
 }
 

@@ -14,6 +14,11 @@ use super::complaints::Complaints;
 use super::json_line::Pose;
 use super::lines::{Came, Lines};
 
+/// Performers of one connection over TCP; others shall find places, too.
+const NAMES: usize = 8;
+/// A performer over TCP of whom nothing has come for so long has gone.
+const GONE_SECS: f64 = 5.0;
+
 const WAIT: Duration = Duration::from_millis(20);
 
 /// A performer of some connection.
@@ -21,6 +26,7 @@ struct Performer {
     connection: u64,
     number: u16,
     gone: bool,
+    heard_secs: f64,
     /// Roles that were seen.
     known: u32,
 }
@@ -78,12 +84,24 @@ impl JsonSource {
     fn performer(&mut self, connection: u64, number: u16) -> Option<usize> {
         let is = |p: &Performer| p.connection == connection && p.number == number;
         if let Some(at) = self.performers.iter().position(is) {
+            let performer = &mut self.performers[at];
+            performer.heard_secs = wall_now_secs();
+            if std::mem::take(&mut performer.gone) {
+                self.counts.interruptions += 1;
+                // Its skeleton is announced anew.
+                performer.known = 0;
+            }
             return Some(at);
+        }
+        let of_connection = |p: &&Performer| p.connection == connection && !p.gone;
+        if !self.ends && self.performers.iter().filter(of_connection).count() >= NAMES {
+            return None;
         }
         let new = Performer {
             connection,
             number,
             gone: false,
+            heard_secs: wall_now_secs(),
             known: 0,
         };
         if let Some(at) = self.performers.iter().position(|p| p.gone) {
@@ -95,6 +113,20 @@ impl JsonSource {
             self.performers.push(new);
             self.performers.len() - 1
         })
+    }
+
+    /// Performers of whom nothing comes any more make room; a file on standard input may take its time.
+    fn forget_silent(&mut self) {
+        if self.ends {
+            return;
+        }
+        let now_secs = wall_now_secs();
+        for (at, performer) in self.performers.iter_mut().enumerate() {
+            if !performer.gone && now_secs - performer.heard_secs > GONE_SECS {
+                performer.gone = true;
+                self.leaving.push(Actor(at as u16));
+            }
+        }
     }
 
     fn line(
@@ -149,6 +181,7 @@ impl Source for JsonSource {
         if let Some((actor, pose)) = self.waiting.take() {
             return self.fill(actor, &pose, frame);
         }
+        self.forget_silent();
         if let Some(actor) = self.leaving.pop() {
             return Next::Gone(actor);
         }
@@ -193,4 +226,27 @@ fn rig_of(known: u32) -> Rig {
     }
     rig.roles = roles;
     rig
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One connection cannot take every place, and a place of whom nothing comes is free again.
+    #[test]
+    fn one_connection_does_not_take_all_places() {
+        let lines = Lines::listen("127.0.0.1:0".parse().unwrap()).unwrap().0;
+        let mut source = JsonSource::new(lines, false);
+        let taken = (0..40)
+            .filter_map(|number| source.performer(1, number))
+            .count();
+        assert_eq!(taken, NAMES);
+        assert!(source.performer(2, 0).is_some());
+        for performer in &mut source.performers {
+            performer.heard_secs -= 2.0 * GONE_SECS;
+        }
+        source.forget_silent();
+        assert_eq!(source.leaving.len(), NAMES + 1);
+        assert!(source.performer(1, 39).is_some() && source.performer(1, 0).is_some());
+    }
 }

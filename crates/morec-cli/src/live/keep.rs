@@ -10,7 +10,8 @@ use morec::roles::Role;
 use morec_db::{ImportSettings, MotionDb, Outcome};
 use serde_json::{Map, Value, json};
 
-use crate::files::{ReadArgs, write_whole};
+use crate::files::ReadArgs;
+use crate::output::write_whole;
 
 /// Where takes go.
 #[derive(Debug, Clone, PartialEq, Eq)]

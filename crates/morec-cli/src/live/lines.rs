@@ -1,12 +1,14 @@
 //! Lines of text from standard input or from whoever connects, each on a thread of its own.
 
 use std::io::{BufRead, BufReader, ErrorKind, Read};
-use std::net::{SocketAddr, TcpListener};
+use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
+
+use super::address::note_if_open;
 
 /// A longer line is no pose.
 pub const LONGEST: u64 = 1 << 16;
@@ -14,6 +16,8 @@ pub const LONGEST: u64 = 1 << 16;
 const WAITING: usize = 1024;
 /// Connections at once.
 const CONNECTIONS: usize = 16;
+/// A connection over which no whole line has come for so long is closed.
+const SILENCE: Duration = Duration::from_secs(30);
 
 /// Something that came.
 pub enum Came {
@@ -54,6 +58,7 @@ impl Lines {
         let listener = TcpListener::bind(address)
             .with_context(|| format!("cannot listen at {address} (TCP)"))?;
         let at = listener.local_addr()?;
+        note_if_open(at);
         let (sender, came) = sync_channel(WAITING);
         spawn("connections", move || accept(&listener, &sender))?;
         Ok((Self { came }, at))
@@ -92,12 +97,46 @@ fn accept(listener: &TcpListener, sender: &SyncSender<Came>) {
         }
         let (sender, count) = (sender.clone(), open.clone());
         let job = move || {
-            forward(number, BufReader::new(stream), &sender);
+            let patient = Patient::new(stream);
+            forward(number, BufReader::new(patient), &sender);
             count.fetch_sub(1, SeqCst);
         };
         if spawn("a connection", job).is_err() {
             open.fetch_sub(1, SeqCst);
         }
+    }
+}
+
+/// A connection that must bring a whole line in time: one that sends nothing, or a byte now and then, holds no place.
+struct Patient {
+    stream: TcpStream,
+    /// When the line under way began to be waited for.
+    since: Instant,
+    silence: Duration,
+}
+
+impl Patient {
+    fn new(stream: TcpStream) -> Self {
+        Self {
+            stream,
+            since: Instant::now(),
+            silence: SILENCE,
+        }
+    }
+}
+
+impl Read for Patient {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        let left = self.silence.saturating_sub(self.since.elapsed());
+        if left.is_zero() {
+            return Err(ErrorKind::TimedOut.into());
+        }
+        self.stream.set_read_timeout(Some(left))?;
+        let count = self.stream.read(buffer)?;
+        if buffer[..count].contains(&b'\n') {
+            self.since = Instant::now();
+        }
+        Ok(count)
     }
 }
 
@@ -132,4 +171,34 @@ fn forward(number: u64, mut reader: impl BufRead, sender: &SyncSender<Came>) {
     }
     // If nobody takes it, nobody needs to know.
     let _ = sender.send(Came::Closed(number));
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+
+    use super::*;
+
+    /// A connection that sends bytes but no line is closed; a line buys time for the next.
+    #[test]
+    fn a_connection_without_lines_is_closed() {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let mut client = TcpStream::connect(listener.local_addr().unwrap()).unwrap();
+        let mut patient = Patient::new(listener.accept().unwrap().0);
+        let hour = Duration::from_secs(3600);
+        let mut byte = [0; 16];
+        for (text, buys) in [("x", false), ("y\n", true)] {
+            patient.silence = 2 * hour;
+            let Some(before) = Instant::now().checked_sub(hour) else {
+                // The machine has been up for less than an hour, and its clock began then.
+                return;
+            };
+            patient.since = before;
+            client.write_all(text.as_bytes()).unwrap();
+            assert_eq!(patient.read(&mut byte).unwrap(), text.len());
+            assert_eq!(patient.since > before, buys, "{text:?}");
+        }
+        patient.silence = Duration::from_millis(1);
+        assert!(patient.read(&mut byte).is_err(), "nothing came in time");
+    }
 }

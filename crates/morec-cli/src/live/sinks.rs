@@ -1,7 +1,7 @@
 //! Where events go.
 
-use std::fs::File;
 use std::io::{BufWriter, Write};
+use std::path::Path;
 
 use anyhow::{Context, Result, bail};
 use morec::live::Phase;
@@ -10,6 +10,7 @@ use super::address::Address;
 use super::osc::OscSink;
 use super::websocket::WebSocketSink;
 use super::{Said, Sink};
+use crate::output;
 
 /// Opens a sink as it was typed; says where it is, if that was left open.
 pub fn open(address: &Address) -> Result<Box<dyn Sink>> {
@@ -17,7 +18,8 @@ pub fn open(address: &Address) -> Result<Box<dyn Sink>> {
         "terminal" => Box::new(Terminal),
         "json" if address.place == "-" => Box::new(JsonLines(Box::new(std::io::stdout()))),
         "json" => {
-            let file = File::create(&address.place).with_context(|| address.to_string())?;
+            let file =
+                output::growing(Path::new(&address.place)).with_context(|| address.to_string())?;
             Box::new(JsonLines(Box::new(BufWriter::new(file))))
         }
         "osc" => Box::new(OscSink::open(address)?),

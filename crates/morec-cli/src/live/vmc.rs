@@ -8,6 +8,8 @@ use anyhow::{Context, Result};
 use morec::live::vmc::{VmcOptions, VmcReceiver};
 use morec::live::{Frame, Next, Source, SourceCounts, wall_now_secs};
 
+use super::address::note_if_open;
+
 /// The socket is asked this long at a time: the quiet that closes a frame.
 const WAIT: Duration = Duration::from_millis(5);
 /// The largest datagram there is.
@@ -18,7 +20,13 @@ pub struct VmcSource {
     socket: UdpSocket,
     receiver: VmcReceiver<SocketAddr>,
     buffer: Vec<u8>,
+    /// Senders without a place that have been named.
+    named: Vec<SocketAddr>,
+    places: usize,
 }
+
+/// So many senders without a place are named.
+const NAMED: usize = 8;
 
 impl VmcSource {
     /// Listens at `address`; port 0 takes any that is free.
@@ -29,11 +37,28 @@ impl VmcSource {
             )
         })?;
         socket.set_read_timeout(Some(WAIT)).context("UDP socket")?;
+        note_if_open(address);
         Ok(Self {
             socket,
             receiver: VmcReceiver::new(options),
             buffer: vec![0; LARGEST],
+            named: Vec::new(),
+            places: options.actors,
         })
+    }
+
+    /// Says once of each sender that it shows a performer for whom there is no place.
+    fn name_refused(&mut self) {
+        let Some(peer) = self.receiver.take_refused() else {
+            return;
+        };
+        if self.named.len() < NAMED && !self.named.contains(&peer) {
+            self.named.push(peer);
+            eprintln!(
+                "morec: {peer} shows a performer too, and all {} places are taken (--actors)",
+                self.places
+            );
+        }
     }
 
     /// Where it listens.
@@ -50,7 +75,8 @@ impl Source for VmcSource {
         match self.socket.recv_from(&mut self.buffer) {
             Ok((length, peer)) => {
                 self.receiver
-                    .packet(peer, wall_now_secs(), &self.buffer[..length])
+                    .packet(peer, wall_now_secs(), &self.buffer[..length]);
+                self.name_refused();
             }
             Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
             // A sender's port that is closed may be told here; it concerns packets that were never sent by us.

@@ -1,111 +1,169 @@
 //! Events for whoever connects with a WebSocket: browsers, engines, scripts.
+//!
+//! Limits are there for those who mean no good, or hang: so many listeners, so many that say hello at once and so long
+//! for it, messages of a few kilobytes, slow listeners let go. A page in a browser is served only if it comes from this
+//! machine, or from the origin that `?origin=` names: any page that somebody looks at could listen otherwise.
+
+mod greet;
+#[cfg(test)]
+mod tests;
 
 use std::io::ErrorKind;
 use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync_channel};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
-use tungstenite::{Error, Message, WebSocket};
+use tungstenite::{Error, Message};
 
-use super::address::Address;
+use self::greet::{Socket, greet};
+use super::address::{Address, note_if_open};
 use super::{Said, Sink};
 
 /// Events that may wait for one listener; one that is slower than this is let go.
 const WAITING: usize = 256;
 /// Listeners at once.
 const LISTENERS: usize = 32;
-/// How long a listener may take to say hello, or to take a packet.
-const PATIENCE: Duration = Duration::from_secs(2);
+/// Connections at once that have not said hello.
+const GREETING: usize = 16;
+/// How long saying goodbye to all listeners may take.
+const GOODBYE: Duration = Duration::from_millis(500);
 
-type Listeners = Arc<Mutex<Vec<SyncSender<String>>>>;
+/// A listener by number.
+type Listener = (u64, SyncSender<String>);
+
+/// Who is there.
+#[derive(Default)]
+struct Hall {
+    listeners: Vec<Listener>,
+    /// Connections that have not said hello.
+    greeting: usize,
+    /// Threads that serve a listener.
+    serving: usize,
+    /// The sink has gone: nobody is let in.
+    closed: bool,
+}
+
+#[derive(Clone, Default)]
+struct Shared(Arc<Mutex<Hall>>);
+
+impl Shared {
+    fn lock(&self) -> MutexGuard<'_, Hall> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
 
 /// Serves events as JSON, one text message each, to every listener.
 pub struct WebSocketSink {
-    listeners: Listeners,
+    hall: Shared,
 }
 
 impl WebSocketSink {
     /// Opens `ws://HOST:PORT`: listens there.
     pub fn open(address: &Address) -> Result<Self> {
-        address.allow(&[])?;
-        let (sink, at) = Self::listen(address.socket()?)?;
+        address.allow(&["origin"])?;
+        let origin = address.text("origin").map(str::to_owned);
+        let (sink, at) = Self::listen(address.socket()?, origin)?;
         eprintln!("morec: events at ws://{at}");
         Ok(sink)
     }
 
-    fn listen(at: SocketAddr) -> Result<(Self, SocketAddr)> {
+    fn listen(at: SocketAddr, origin: Option<String>) -> Result<(Self, SocketAddr)> {
         let listener =
             TcpListener::bind(at).with_context(|| format!("cannot listen at {at} (TCP)"))?;
         let at = listener.local_addr()?;
-        let listeners = Listeners::default();
-        let open = listeners.clone();
+        note_if_open(at);
+        let hall = Shared::default();
+        let open = hall.clone();
         thread::Builder::new()
             .name("listeners".to_owned())
-            .spawn(move || accept(&listener, &open))
+            .spawn(move || accept(&listener, &open, origin.as_deref()))
             .context("no thread for listeners")?;
-        Ok((Self { listeners }, at))
+        Ok((Self { hall }, at))
     }
 }
 
 impl Sink for WebSocketSink {
     fn tell(&mut self, said: &Said) -> Result<()> {
         let text = said.json();
-        let mut listeners = self
-            .listeners
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
-        listeners.retain(|listener| match listener.try_send(text.clone()) {
-            Ok(()) => true,
-            Err(TrySendError::Full(_) | TrySendError::Disconnected(_)) => false,
-        });
+        let mut hall = self.hall.lock();
+        hall.listeners
+            .retain(|(_, listener)| match listener.try_send(text.clone()) {
+                Ok(()) => true,
+                Err(TrySendError::Full(_) | TrySendError::Disconnected(_)) => false,
+            });
         Ok(())
     }
 }
 
-fn accept(listener: &TcpListener, listeners: &Listeners) {
-    for stream in listener.incoming() {
+impl Drop for WebSocketSink {
+    /// Every listener gets a close frame, if it takes one in time.
+    fn drop(&mut self) {
+        let begun = Instant::now();
+        {
+            let mut hall = self.hall.lock();
+            hall.closed = true;
+            hall.listeners.clear();
+        }
+        while self.hall.lock().serving > 0 && begun.elapsed() < GOODBYE {
+            thread::sleep(Duration::from_millis(5));
+        }
+    }
+}
+
+fn accept(listener: &TcpListener, hall: &Shared, origin: Option<&str>) {
+    for (number, stream) in (0..).zip(listener.incoming()) {
         let Ok(stream) = stream else {
             thread::sleep(Duration::from_millis(100));
             continue;
         };
-        let (sender, events) = sync_channel(WAITING);
-        let named = thread::Builder::new().name("a listener".to_owned());
-        let known = listeners.clone();
-        // Saying hello takes as long as the other side likes: not here.
-        let job = move || {
-            let Some(socket) = greet(stream) else { return };
-            {
-                let mut known = known.lock().unwrap_or_else(PoisonError::into_inner);
-                if known.len() >= LISTENERS {
-                    return;
-                }
-                known.push(sender);
+        {
+            let mut hall = hall.lock();
+            if hall.closed {
+                return;
             }
-            serve(socket, &events);
-        };
-        // Out of threads: this one goes without.
-        let _ = named.spawn(job);
+            if hall.greeting >= GREETING || hall.listeners.len() >= LISTENERS {
+                continue;
+            }
+            hall.greeting += 1;
+        }
+        let (known, origin) = (hall.clone(), origin.map(str::to_owned));
+        let named = thread::Builder::new().name("a listener".to_owned());
+        // Saying hello takes as long as the other side likes: not here.
+        let job = move || attend(number, stream, &known, origin.as_deref());
+        if named.spawn(job).is_err() {
+            // Out of threads: this one goes without.
+            hall.lock().greeting -= 1;
+        }
     }
 }
 
-fn greet(stream: TcpStream) -> Option<WebSocket<TcpStream>> {
-    stream.set_read_timeout(Some(PATIENCE)).ok()?;
-    stream.set_write_timeout(Some(PATIENCE)).ok()?;
-    stream.set_nodelay(true).ok()?;
-    let socket = tungstenite::accept(stream).ok()?;
-    // From here on reading is only for pings and goodbyes.
-    socket
-        .get_ref()
-        .set_read_timeout(Some(Duration::from_millis(1)))
-        .ok()?;
-    Some(socket)
+/// A listener from its hello to its end.
+fn attend(number: u64, stream: TcpStream, hall: &Shared, origin: Option<&str>) {
+    let socket = greet(stream, origin);
+    let (sender, events) = sync_channel(WAITING);
+    {
+        let mut hall = hall.lock();
+        hall.greeting -= 1;
+        if socket.is_none() || hall.closed || hall.listeners.len() >= LISTENERS {
+            return;
+        }
+        hall.listeners.push((number, sender));
+        hall.serving += 1;
+    }
+    if let Some(socket) = socket {
+        serve(socket, &events);
+    }
+    // The place of whoever leaves is free at once, not at the next event.
+    let mut hall = hall.lock();
+    hall.listeners.retain(|(other, _)| *other != number);
+    hall.serving -= 1;
 }
 
 /// Sends events until the listener leaves or the sink is gone.
-fn serve(mut socket: WebSocket<TcpStream>, events: &Receiver<String>) {
+fn serve(mut socket: Socket, events: &Receiver<String>) {
     loop {
         match events.recv_timeout(Duration::from_millis(200)) {
             Ok(text) => {
@@ -126,51 +184,6 @@ fn serve(mut socket: WebSocket<TcpStream>, events: &Receiver<String>) {
             Err(Error::Io(error))
                 if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
             Err(_) => return,
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use morec::classes::ClassId;
-    use morec::live::{Actor, Event, Phase};
-
-    #[test]
-    fn a_listener_hears_every_event() {
-        let (mut sink, at) = WebSocketSink::listen("127.0.0.1:0".parse().unwrap()).unwrap();
-        let (mut socket, _) = tungstenite::connect(format!("ws://{at}")).unwrap();
-        while sink.listeners.lock().unwrap().is_empty() {
-            thread::sleep(Duration::from_millis(5));
-        }
-        for sequence in 1..=3 {
-            let event = Event {
-                phase: Phase::End,
-                motion: sequence,
-                sequence,
-                actor: Actor(0),
-                class: ClassId(0),
-                score: 0.5,
-                progress: 1.0,
-                start_secs: 1.0,
-                stop_secs: 2.0,
-                reported_secs: 2.1,
-                wall_secs: 1.0e9,
-            };
-            sink.tell(&Said {
-                event: &event,
-                class: "wave",
-                source: "test",
-            })
-            .unwrap();
-        }
-        for sequence in 1..=3 {
-            let text = socket.read().unwrap().into_text().unwrap();
-            let told: serde_json::Value = serde_json::from_str(&text).unwrap();
-            assert_eq!(
-                (told["class"].as_str(), told["seq"].as_u64()),
-                (Some("wave"), Some(sequence))
-            );
         }
     }
 }

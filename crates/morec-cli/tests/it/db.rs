@@ -20,7 +20,7 @@ fn takes(people: usize) -> Vec<Take> {
 }
 
 /// A folder with `clips/` and `labels.tsv` of made people.
-fn studio(people: usize) -> (Folder, Vec<Take>) {
+pub fn studio(people: usize) -> (Folder, Vec<Take>) {
     let folder = Folder::with(&[("clips/readme.txt", "not a clip")]);
     let takes = takes(people);
     let mut labels = String::from("clip\tstart\tstop\tclass\n");

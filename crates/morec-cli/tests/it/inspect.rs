@@ -203,3 +203,27 @@ fn real_referee_clips_have_all_roles_and_a_rest_pose() {
         );
     }
 }
+
+/// A name as long as a page does not fit a column, and must not be tried to.
+#[test]
+fn a_name_of_any_length_is_printed() {
+    let name = "x".repeat(65_536);
+    let folder = Folder::with(&[(
+        "long.bvh",
+        &WAVE_BVH.replacen("ROOT ", &format!("ROOT {name}"), 1),
+    )]);
+    let out = folder.morec(&["inspect", "long.bvh"]).ok();
+    assert!(out.contains(&name));
+}
+
+/// What does not end is refused, whoever names it.
+#[cfg(unix)]
+#[test]
+fn a_device_without_an_end_is_refused() {
+    let folder = Folder::with(&[]);
+    let ran = folder.morec(&["inspect", "/dev/zero"]);
+    assert!(
+        ran.code == Some(1) && ran.err.contains("at most 512 MB"),
+        "{ran:?}"
+    );
+}

@@ -12,7 +12,11 @@ pub fn read(bytes: &[u8]) -> Result<ReadLabels, ParseError> {
         serde_json::from_slice(bytes).map_err(|error| json_error(&error, expected))?;
     let mut read = ReadLabels::default();
     for (key, sequence) in &file {
-        let clip = sequence["feat_p"].as_str().map_or(key.as_str(), stem);
+        // Files of ours name the clip in both places, whatever it is called.
+        let path = sequence["feat_p"]
+            .as_str()
+            .filter(|path| *path != key.as_str());
+        let clip = path.map_or(key.as_str(), stem);
         for (one, several, timed) in [
             ("seq_ann", "seq_anns", false),
             ("frame_ann", "frame_anns", true),
@@ -47,6 +51,8 @@ fn read_label(clip: &str, label: &Value, timed: bool, read: &mut ReadLabels) -> 
         (true, Some(start), Some(stop)) => Some(checked(start, stop)?),
         (true, _, _) => return Err(label.to_string()),
     };
+    // Not of BABEL: what morec writes of labels that are no accepted ones.
+    let state = label["state"].as_str().and_then(State::from_name);
     let categories: Vec<&str> = label["act_cat"]
         .as_array()
         .into_iter()
@@ -68,7 +74,7 @@ fn read_label(clip: &str, label: &Value, timed: bool, read: &mut ReadLabels) -> 
             extent,
             person: None,
             score: None,
-            state: State::Accepted,
+            state: state.unwrap_or(State::Accepted),
         });
     }
     Ok(())
@@ -85,6 +91,9 @@ pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, St
         });
         let mut label =
             json!({ "raw_label": a.class, "proc_label": a.class, "act_cat": [a.class] });
+        if a.state != State::Accepted {
+            label["state"] = a.state.name().into();
+        }
         let set = match a.extent {
             None => "seq_ann",
             Some(_) => {

@@ -12,6 +12,9 @@ use crate::labels::State;
 /// Under this name a header property keeps the clip.
 const CLIP: &str = "morec:clip";
 
+/// Under this name a header property keeps the clip's frames a second: times count from its first frame.
+const RATE: &str = "morec:rate_hz";
+
 /// So many elements are read of one file.
 const MOST_NODES: u32 = 4_000_000;
 
@@ -57,7 +60,12 @@ pub fn read(text: &str, clip: Option<&str>) -> Result<ReadLabels, ParseError> {
         })
         .collect();
     let mut read = ReadLabels::default();
+    let ours = own_property(root, CLIP).is_some();
     for tier in elements("TIER") {
+        let state = match tier.attribute("TIER_ID").filter(|_| ours) {
+            Some(id) => state_of_tier(id),
+            None => State::Accepted,
+        };
         let person = tier.attribute("PARTICIPANT").filter(|p| !p.is_empty());
         for annotation in tier
             .descendants()
@@ -96,7 +104,7 @@ pub fn read(text: &str, clip: Option<&str>) -> Result<ReadLabels, ParseError> {
                 extent: Some((start, stop)),
                 person: person.map(str::to_owned),
                 score: None,
-                state: State::Accepted,
+                state,
             });
         }
     }
@@ -108,12 +116,29 @@ pub fn read(text: &str, clip: Option<&str>) -> Result<ReadLabels, ParseError> {
     Ok(read)
 }
 
+fn own_property<'a>(root: Node<'a, '_>, name: &str) -> Option<&'a str> {
+    let mut properties = root.descendants().filter(|n| n.has_tag_name("PROPERTY"));
+    properties
+        .find(|n| n.attribute("NAME") == Some(name))
+        .and_then(|property| property.text())
+}
+
+/// The first word of a tier's name says what is thought of its annotations.
+fn state_of_tier(id: &str) -> State {
+    let word = id.split(' ').next().unwrap_or_default();
+    State::from_name(word).unwrap_or(State::Accepted)
+}
+
+fn tier_name(state: State) -> &'static str {
+    match state {
+        State::Accepted => "motion",
+        other => other.name(),
+    }
+}
+
 /// The property that morec writes, else the stem of the media file.
 fn clip_of(root: Node) -> Option<String> {
-    let property = root
-        .descendants()
-        .find(|n| n.has_tag_name("PROPERTY") && n.attribute("NAME") == Some(CLIP));
-    if let Some(clip) = property.and_then(|p| p.text()) {
+    if let Some(clip) = own_property(root, CLIP) {
         return Some(clip.to_owned());
     }
     let media = root
@@ -148,35 +173,42 @@ pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, St
         let millis = |secs: f64| (secs * 1000.0).round() as i64;
         let (start, stop) = (millis(start), millis(stop).max(millis(start) + 1));
         let free = |tier: &Tier| {
-            tier.person == a.person.as_deref()
+            (tier.person, tier.state) == (a.person.as_deref(), a.state)
                 && tier.rows.iter().all(|r| r.1 <= start || r.0 >= stop)
         };
         match tiers.iter_mut().find(|tier| free(tier)) {
             Some(tier) => tier.rows.push((start, stop, &a.class)),
             None => tiers.push(Tier {
                 person: a.person.as_deref(),
+                state: a.state,
                 rows: vec![(start, stop, &a.class)],
             }),
         }
     }
     let clip = annotations.first().map_or("", |a| a.clip.as_str());
-    Ok(document(clip, &tiers))
+    let rate_hz = lengths.get(clip).map(|length| length.rate_hz);
+    Ok(document(clip, rate_hz, &tiers))
 }
 
-/// Annotations of one person that do not overlap: ELAN allows no others in a tier.
+/// Annotations of one person and state that do not overlap: ELAN allows no others in a tier.
 struct Tier<'a> {
     person: Option<&'a str>,
+    state: State,
     rows: Vec<(i64, i64, &'a str)>,
 }
 
-fn document(clip: &str, tiers: &[Tier<'_>]) -> String {
+fn document(clip: &str, rate_hz: Option<f64>, tiers: &[Tier<'_>]) -> String {
     let (mut slots, mut body) = (String::new(), String::new());
     let mut number = 0;
     for (index, tier) in tiers.iter().enumerate() {
-        let id = if index == 0 {
-            "motion".to_owned()
-        } else {
-            format!("motion {}", index + 1)
+        let name = tier_name(tier.state);
+        let id = match tiers[..index]
+            .iter()
+            .filter(|t| t.state == tier.state)
+            .count()
+        {
+            0 => name.to_owned(),
+            before => format!("{name} {}", before + 1),
         };
         let person = tier
             .person
@@ -202,11 +234,17 @@ fn document(clip: &str, tiers: &[Tier<'_>]) -> String {
         }
         body.push_str("    </TIER>\n");
     }
+    let rate = rate_hz.map_or_else(String::new, |rate| {
+        format!("        <PROPERTY NAME=\"{RATE}\">{rate}</PROPERTY>\n")
+    });
     format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
-         <ANNOTATION_DOCUMENT AUTHOR=\"morec\" DATE=\"1970-01-01T00:00:00Z\" FORMAT=\"3.0\" VERSION=\"3.0\">\n    \
+         <ANNOTATION_DOCUMENT AUTHOR=\"morec\" DATE=\"1970-01-01T00:00:00+00:00\" FORMAT=\"3.0\" VERSION=\"3.0\" \
+         xmlns:xsi=\"http://www.w3.org/2001/XMLSchema-instance\" \
+         xsi:noNamespaceSchemaLocation=\"http://www.mpi.nl/tools/elan/EAFv3.0.xsd\">\n    \
          <HEADER MEDIA_FILE=\"\" TIME_UNITS=\"milliseconds\">\n        \
-         <PROPERTY NAME=\"{CLIP}\">{}</PROPERTY>\n    </HEADER>\n    \
+         <PROPERTY NAME=\"{CLIP}\">{}</PROPERTY>\n{rate}        \
+         <PROPERTY NAME=\"lastUsedAnnotationId\">{number}</PROPERTY>\n    </HEADER>\n    \
          <TIME_ORDER>\n{slots}    </TIME_ORDER>\n{body}    \
          <LINGUISTIC_TYPE GRAPHIC_REFERENCES=\"false\" LINGUISTIC_TYPE_ID=\"default-lt\" TIME_ALIGNABLE=\"true\"/>\n\
          </ANNOTATION_DOCUMENT>\n",

@@ -23,21 +23,21 @@ pub fn read(bytes: &[u8]) -> Result<ReadLabels, ParseError> {
             .ok_or_else(|| error("data with the clip's name", task["data"].to_string()))?;
         let set = |key: &str| task[key].as_array().into_iter().flatten();
         let judged: Vec<&Value> = set("annotations").collect();
-        let state = if judged.is_empty() {
-            State::Proposed
-        } else {
-            State::Accepted
-        };
-        let sets = if judged.is_empty() {
-            set("predictions").collect()
-        } else {
+        let accepted = !judged.is_empty();
+        let sets = if accepted {
             judged
+        } else {
+            set("predictions").collect()
         };
-        for result in sets
-            .iter()
-            .filter_map(|set| set["result"].as_array())
-            .flatten()
-        {
+        let results = sets.iter().flat_map(|set| {
+            let state = match accepted {
+                true => State::Accepted,
+                false => state_of(set),
+            };
+            let results = set["result"].as_array().into_iter().flatten();
+            results.map(move |result| (result, state))
+        });
+        for (result, state) in results {
             let value = &result["value"];
             let (Some(start), Some(stop)) = (value["start"].as_f64(), value["end"].as_f64()) else {
                 continue;
@@ -64,6 +64,19 @@ pub fn read(bytes: &[u8]) -> Result<ReadLabels, ParseError> {
     Ok(read)
 }
 
+/// What morec rejected is a prediction of a model that says so; all other predictions are proposals.
+fn state_of(prediction: &Value) -> State {
+    match prediction["model_version"].as_str() {
+        Some(REJECTED) => State::Rejected,
+        _ => State::Proposed,
+    }
+}
+
+const VERSION: &str = concat!("morec ", env!("CARGO_PKG_VERSION"));
+
+/// The model that predictions are of which somebody looked at and rejected.
+const REJECTED: &str = "morec: rejected";
+
 /// `data.clip`, or the stem of the first text in `data`.
 fn clip_of(task: &Value) -> Option<String> {
     if let Some(clip) = task["data"]["clip"].as_str() {
@@ -84,16 +97,16 @@ pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, St
     let mut tasks: Vec<Value> = Vec::new();
     for (number, a) in annotations.iter().enumerate() {
         let (start, stop) = secs(a, lengths)?;
-        let set = if a.state == State::Accepted {
-            "annotations"
-        } else {
-            "predictions"
+        let (set, version) = match a.state {
+            State::Accepted => ("annotations", VERSION),
+            State::Proposed => ("predictions", VERSION),
+            State::Rejected => ("predictions", REJECTED),
         };
         let there = |task: &Value| {
-            task["data"]["clip"].as_str() == Some(&a.clip) && task.get(set).is_some()
+            let of_clip = task["data"]["clip"].as_str() == Some(&a.clip);
+            of_clip && task[set][0]["model_version"].as_str() == Some(version)
         };
         let place = tasks.iter().position(there).unwrap_or_else(|| {
-            let version = concat!("morec ", env!("CARGO_PKG_VERSION"));
             tasks.push(
                 json!({ "data": { "clip": a.clip }, set: [{ "model_version": version, "result": [] }] }),
             );

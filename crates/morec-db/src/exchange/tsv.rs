@@ -37,6 +37,11 @@ pub fn read(bytes: &[u8], lengths: &Lengths) -> Result<ReadLabels, ParseError> {
     Ok(read)
 }
 
+/// Whether a name is read again as it is written: cells are cut at tabs and line ends, and trimmed.
+fn fits_a_cell(name: &str) -> bool {
+    name.trim() == name && !name.contains(['\t', '\n', '\r'])
+}
+
 pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, String> {
     let people = annotations.iter().any(|a| a.person.is_some());
     let judged = annotations.iter().any(|a| a.state != State::Accepted);
@@ -45,6 +50,14 @@ pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, St
         let state = judged.then(|| format!("\t{}", a.state.name()));
         person.unwrap_or_default() + &state.unwrap_or_default()
     };
+    let names = annotations
+        .iter()
+        .flat_map(|a| [&a.clip, &a.class].into_iter().chain(&a.person));
+    if let Some(name) = names.into_iter().find(|name| !fits_a_cell(name)) {
+        return Err(format!(
+            "{name:?}: a table separated by tabs cannot hold this name; rename it, or write JSON or CSV"
+        ));
+    }
     let mut out = String::new();
     let last = [people.then_some("\tperson"), judged.then_some("\tstate")]
         .into_iter()

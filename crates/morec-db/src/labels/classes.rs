@@ -3,7 +3,7 @@
 use rusqlite::{Connection, OptionalExtension, params};
 
 use super::SampleId;
-use crate::{DbError, MotionDb};
+use crate::{DbError, MotionDb, names};
 
 /// A class and how many samples it has.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -45,20 +45,7 @@ fn need(conn: &Connection, name: &str) -> Result<i64, DbError> {
     if let Some(id) = find(conn, name)? {
         return Ok(id);
     }
-    let mut statement = conn.prepare("SELECT name FROM classes ORDER BY name LIMIT 20")?;
-    let names: Vec<String> = statement
-        .query_map([], |row| row.get(0))?
-        .collect::<Result<_, _>>()?;
-    let hint = if names.is_empty() {
-        String::new()
-    } else {
-        format!("; there are {}", names.join(", "))
-    };
-    Err(DbError::Unknown {
-        kind: "class",
-        name: name.to_owned(),
-        hint,
-    })
+    Err(names::unknown(conn, "class", name))
 }
 
 pub(super) fn find_or_make(conn: &Connection, name: &str) -> Result<i64, DbError> {
@@ -166,11 +153,34 @@ impl MotionDb {
     }
 
     /// Forgets a class and its samples.
+    ///
+    /// # Errors
+    /// There is no such class.
     pub fn remove_class(&mut self, name: &str) -> Result<(), DbError> {
         self.edit(&format!("remove {name}"), |conn| {
             let id = need(conn, name)?;
             conn.execute("DELETE FROM classes WHERE id = ?1", params![id])?;
             Ok(())
+        })
+    }
+
+    /// Forgets every class whose name matches a pattern (`*` any text, `?` one character), and their samples, as one
+    /// step. Gives how many classes and samples there were.
+    ///
+    /// # Errors
+    /// No class's name matches.
+    pub fn remove_classes(&mut self, pattern: &str) -> Result<(usize, usize), DbError> {
+        self.edit(&format!("remove {pattern}"), |conn| {
+            let samples: i64 = conn.query_row(
+                "SELECT count(*) FROM samples s JOIN classes n ON n.id = s.class WHERE n.name GLOB ?1 OR n.name = ?1",
+                params![pattern],
+                |row| row.get(0),
+            )?;
+            let sql = "DELETE FROM classes WHERE name GLOB ?1 OR name = ?1";
+            match conn.execute(sql, params![pattern])? {
+                0 => Err(names::unknown(conn, "class", pattern)),
+                classes => Ok((classes, samples.max(0) as usize)),
+            }
         })
     }
 }

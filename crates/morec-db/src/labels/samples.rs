@@ -2,7 +2,7 @@
 
 use rusqlite::{Connection, OptionalExtension, Row, params};
 
-use super::{State, classes};
+use super::{GROUPED_BY, LabelOptions, State, classes};
 use crate::time::now_secs;
 use crate::{ClipId, DbError, MotionDb};
 
@@ -79,6 +79,16 @@ pub struct Added {
     pub changed: usize,
     /// They were there just so; or a proposal of what had been judged.
     pub unchanged: usize,
+    /// Samples that start or stop elsewhere now.
+    pub moved: usize,
+    /// Samples that have another class now.
+    pub renamed: usize,
+    /// Samples that were removed, as no label says them.
+    pub gone: usize,
+    /// Proposals of other classes for the same stretch that are rejected now.
+    pub rejected: usize,
+    /// Proposals of groups for the same stretch that are there no more.
+    pub withdrawn: usize,
 }
 
 /// Which samples; all conditions must hold.
@@ -132,23 +142,34 @@ impl MotionDb {
         Ok(samples)
     }
 
-    /// Adds samples, all or none, as one edit. A sample that is there already (clip, class and extent) is judged anew;
-    /// but a proposal changes nothing that was accepted or rejected. A new accepted sample rejects what other classes were
-    /// proposed for just that stretch.
+    /// Adds samples, all or none, as one step: [`MotionDb::label`] without replacing.
     ///
     /// # Errors
     /// A sample that stops before it starts or lies outside its clip, a class name that cannot be, no such clip.
     pub fn add_samples(&mut self, samples: &[NewSample], by: &str) -> Result<Added, DbError> {
-        self.edit(&format!("add {} samples", samples.len()), |conn| {
-            let mut added = Added::default();
-            for sample in samples {
-                match add(conn, sample, by)? {
-                    Change::New => added.added += 1,
-                    Change::Judged => added.changed += 1,
-                    Change::None => added.unchanged += 1,
-                }
+        let options = LabelOptions {
+            by: by.to_owned(),
+            ..LabelOptions::default()
+        };
+        Ok(self.label(samples, &options)?.counts)
+    }
+
+    /// Puts proposals in place of others, as one step.
+    ///
+    /// # Errors
+    /// As [`MotionDb::label`].
+    pub fn replace_proposals(
+        &mut self,
+        old: &[SampleId],
+        new: &[NewSample],
+        by: &str,
+    ) -> Result<(), DbError> {
+        self.edit(&format!("propose {} samples", new.len()), |conn| {
+            for id in old {
+                conn.execute("DELETE FROM samples WHERE id = ?1", params![id.0])?;
             }
-            Ok(added)
+            new.iter()
+                .try_for_each(|sample| add(conn, sample, by).map(drop))
         })
     }
 
@@ -159,15 +180,68 @@ impl MotionDb {
         state: State,
         by: &str,
     ) -> Result<usize, DbError> {
-        self.edit(&format!("{} {} samples", state.name(), samples.len()), |conn| {
-            let sql =
-                "UPDATE samples SET state = ?2, set_by = ?3, set_secs = ?4 WHERE id = ?1 AND state <> ?2";
-            let mut statement = conn.prepare(sql)?;
-            let mut changed = 0;
-            for id in samples {
-                changed += statement.execute(params![id.0, state.name(), by, now_secs()])?;
-            }
-            Ok(changed)
+        let what = format!("{} {} samples", state.name(), samples.len());
+        self.edit(&what, |conn| judge(conn, samples, state, by))
+    }
+
+    /// Accepts samples and rejects others, as one step.
+    ///
+    /// # Errors
+    /// The database cannot be written.
+    pub fn judge_both(
+        &mut self,
+        accepted: &[SampleId],
+        rejected: &[SampleId],
+        by: &str,
+    ) -> Result<(), DbError> {
+        let what = format!(
+            "accept {} and reject {} samples",
+            accepted.len(),
+            rejected.len()
+        );
+        self.edit(&what, |conn| {
+            judge(conn, accepted, State::Accepted, by)?;
+            judge(conn, rejected, State::Rejected, by)?;
+            Ok(())
+        })
+    }
+
+    /// Gives a sample another extent, in seconds. Its number, class and state stay.
+    ///
+    /// # Errors
+    /// There is no such sample; it would lie outside its clip, or where its class has a sample already.
+    pub fn move_sample(
+        &mut self,
+        id: SampleId,
+        start_secs: f64,
+        stop_secs: f64,
+        by: &str,
+    ) -> Result<(), DbError> {
+        let unknown = || DbError::unknown("sample", &format!("#{}", id.0));
+        let all = self.samples(&SampleFilter::default())?;
+        let old = all.iter().find(|s| s.id == id).ok_or_else(unknown)?;
+        let there = all.iter().find(|s| {
+            s.id != id
+                && (s.clip, &s.class) == (old.clip, &old.class)
+                && (s.start_secs, s.stop_secs) == (start_secs, stop_secs)
+        });
+        if let Some(other) = there {
+            return Err(DbError::Invalid(format!(
+                "sample {} of {} is there already: number {}",
+                old.class, old.clip_name, other.id.0
+            )));
+        }
+        let moved = NewSample {
+            clip: old.clip,
+            class: old.class.clone(),
+            start_secs,
+            stop_secs,
+            whole_clip: false,
+            state: old.state,
+            score: old.score,
+        };
+        self.edit(&format!("move sample {}", id.0), |conn| {
+            super::plan::alter(conn, id, &moved, by)
         })
     }
 
@@ -184,13 +258,40 @@ impl MotionDb {
     }
 }
 
-enum Change {
+fn judge(
+    conn: &Connection,
+    samples: &[SampleId],
+    state: State,
+    by: &str,
+) -> Result<usize, DbError> {
+    let sql =
+        "UPDATE samples SET state = ?2, set_by = ?3, set_secs = ?4 WHERE id = ?1 AND state <> ?2";
+    let mut statement = conn.prepare(sql)?;
+    let mut changed = 0;
+    for id in samples {
+        changed += statement.execute(params![id.0, state.name(), by, now_secs()])?;
+    }
+    Ok(changed)
+}
+
+pub(super) enum Change {
     New,
     Judged,
     None,
 }
 
-fn add(conn: &Connection, sample: &NewSample, by: &str) -> Result<Change, DbError> {
+/// What an accepted sample does to proposals of other classes.
+#[derive(Default)]
+pub(super) struct Others {
+    pub rejected: usize,
+    pub withdrawn: usize,
+}
+
+pub(super) fn add(
+    conn: &Connection,
+    sample: &NewSample,
+    by: &str,
+) -> Result<(Change, Others), DbError> {
     check_extent(conn, sample)?;
     let class = classes::find_or_make(conn, &sample.class)?;
     let extent = params![sample.clip.0, class, sample.start_secs, sample.stop_secs];
@@ -216,35 +317,68 @@ fn add(conn: &Connection, sample: &NewSample, by: &str) -> Result<Change, DbErro
             by,
             now_secs()
         ])?;
-        if sample.state == State::Accepted {
-            reject_instead(conn, sample, class, by)?;
-        }
-        return Ok(Change::New);
+        let others = match sample.state {
+            State::Accepted => reject_instead(conn, sample, class, by)?,
+            _ => Others::default(),
+        };
+        return Ok((Change::New, others));
     };
     if state == sample.state.name() || sample.state == State::Proposed {
-        return Ok(Change::None);
+        return Ok((Change::None, Others::default()));
     }
     conn.prepare("UPDATE samples SET state = ?2, set_by = ?3, set_secs = ?4 WHERE id = ?1")?
         .execute(params![id, sample.state.name(), by, now_secs()])?;
-    Ok(Change::Judged)
+    Ok((Change::Judged, Others::default()))
 }
 
-/// Proposals of other classes for the very stretch that is now known to be of `class` were wrong.
+/// Proposals of other classes for the very stretch that is now known to be of `class` were wrong. Those of groups say
+/// that stretches are alike, not what they are: they are withdrawn, and with the last of them the group's class.
 fn reject_instead(
     conn: &Connection,
     sample: &NewSample,
     class: i64,
     by: &str,
-) -> Result<(), DbError> {
-    conn.prepare(
-        "UPDATE samples SET state = 'rejected', set_by = ?5, set_secs = ?6 \
-         WHERE clip = ?1 AND start_secs = ?2 AND stop_secs = ?3 AND class <> ?4 AND state = 'proposed'",
-    )?
-    .execute(params![sample.clip.0, sample.start_secs, sample.stop_secs, class, by, now_secs()])?;
-    Ok(())
+) -> Result<Others, DbError> {
+    let stretch =
+        "clip = ?1 AND start_secs = ?2 AND stop_secs = ?3 AND class <> ?4 AND state = 'proposed'";
+    let given = params![
+        sample.clip.0,
+        sample.start_secs,
+        sample.stop_secs,
+        class,
+        GROUPED_BY
+    ];
+    let sql = format!("SELECT class FROM samples WHERE {stretch} AND set_by = ?5");
+    let groups: Vec<i64> = conn
+        .prepare(&sql)?
+        .query_map(given, |row| row.get(0))?
+        .collect::<Result<_, _>>()?;
+    let sql = format!("DELETE FROM samples WHERE {stretch} AND set_by = ?5");
+    let withdrawn = conn.execute(&sql, given)?;
+    for group in groups {
+        conn.execute(
+            "DELETE FROM classes WHERE id = ?1 AND NOT EXISTS (SELECT 1 FROM samples WHERE class = ?1)",
+            params![group],
+        )?;
+    }
+    let sql = format!(
+        "UPDATE samples SET state = 'rejected', set_by = ?5, set_secs = ?6 WHERE {stretch}"
+    );
+    let rejected = conn.prepare(&sql)?.execute(params![
+        sample.clip.0,
+        sample.start_secs,
+        sample.stop_secs,
+        class,
+        by,
+        now_secs()
+    ])?;
+    Ok(Others {
+        rejected,
+        withdrawn,
+    })
 }
 
-fn check_extent(conn: &Connection, sample: &NewSample) -> Result<(), DbError> {
+pub(super) fn check_extent(conn: &Connection, sample: &NewSample) -> Result<(), DbError> {
     let sql = "SELECT name, frames / rate_hz, rate_hz FROM clips WHERE id = ?1";
     let clip: Option<(String, f64, f64)> = conn
         .prepare(sql)?

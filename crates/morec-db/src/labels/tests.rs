@@ -96,22 +96,28 @@ proptest! {
     #[test]
     fn undo_goes_back_through_every_state(steps in prop::collection::vec(step(), 1..25)) {
         let (_folder, mut db) = database_of_waves(1);
-        let mut history = vec![(db.edits().unwrap().len(), seen(&db))];
+        let mut history = vec![(db.history().unwrap().len(), seen(&db))];
         for step in &steps {
             take(&mut db, step);
-            let edits = db.edits().unwrap().len();
+            let edits = db.history().unwrap().len();
             if edits > history.last().unwrap().0 {
                 history.push((edits, seen(&db)));
             } else {
                 prop_assert_eq!(&seen(&db), &history.last().unwrap().1, "changed without an edit: {:?}", step);
             }
         }
-        while history.len() > 1 {
-            history.pop();
-            prop_assert!(db.undo().unwrap().is_some());
-            prop_assert_eq!(&seen(&db), &history.last().unwrap().1);
+        for at in (0..history.len() - 1).rev() {
+            prop_assert!(db.undo(None).unwrap().is_some());
+            prop_assert_eq!(&seen(&db), &history[at].1);
+            prop_assert!(db.check().unwrap().faults.is_empty());
         }
-        prop_assert!(db.undo().unwrap().is_none());
+        prop_assert_eq!(db.undo(None).unwrap().map(|t| t.step.id), Some(1), "the import is left");
+        prop_assert_eq!(db.redo(None).unwrap().map(|t| t.step.id), Some(1));
+        for (_, state) in &history[1..] {
+            prop_assert!(db.redo(None).unwrap().is_some());
+            prop_assert_eq!(&seen(&db), state);
+        }
+        prop_assert!(db.redo(None).unwrap().is_none());
         prop_assert!(db.check().unwrap().faults.is_empty());
     }
 }
@@ -204,4 +210,149 @@ fn another_class_for_a_proposed_stretch_rejects_the_proposal() {
     let before = seen(&db);
     assert!(db.split_class(&[SampleId(99_999)], "new").is_err());
     assert_eq!(seen(&db), before, "what fails changes nothing");
+}
+
+fn replace(dry_run: bool) -> LabelOptions {
+    LabelOptions {
+        by: "me".into(),
+        replace: true,
+        dry_run,
+    }
+}
+
+/// A corrected table takes the place of what was there for the clips it names, and numbers stay where it can be said
+/// which sample is meant.
+#[test]
+fn labels_take_the_place_of_what_was_there() {
+    let (_folder, mut db) = database_of_waves(2);
+    let other_clip = NewSample {
+        clip: ClipId(2),
+        ..sample("walk", 9, State::Accepted)
+    };
+    let old = [
+        sample("walk", 0, State::Accepted),
+        sample("walk", 10, State::Accepted),
+        sample("run", 20, State::Accepted),
+        sample("hop", 30, State::Accepted),
+        sample("hop", 40, State::Proposed),
+        other_clip,
+    ];
+    db.add_samples(&old, "me").unwrap();
+    let number = |db: &MotionDb, class: &str, start: f64| {
+        let all = db.samples(&SampleFilter::default()).unwrap();
+        all.iter()
+            .find(|s| s.class == class && s.start_secs == start)
+            .map(|s| s.id)
+    };
+    let (moved, renamed) = (number(&db, "walk", 1.0), number(&db, "run", 2.0));
+    let before = seen(&db);
+    let new = [
+        sample("walk", 0, State::Accepted),
+        sample("walk", 12, State::Accepted),
+        sample("jog", 20, State::Accepted),
+        sample("jog", 25, State::Accepted),
+    ];
+    let plan = db.label(&new, &replace(true)).unwrap();
+    assert_eq!(seen(&db), before, "a rehearsal changes nothing");
+    let done = db.label(&new, &replace(false)).unwrap();
+    assert_eq!(plan, done);
+    let counts = done.counts;
+    assert_eq!(
+        (
+            counts.unchanged,
+            counts.moved,
+            counts.renamed,
+            counts.added,
+            counts.gone
+        ),
+        (1, 1, 1, 1, 1)
+    );
+    assert_eq!(number(&db, "walk", 1.2), moved);
+    assert_eq!(number(&db, "jog", 2.0), renamed);
+    let row =
+        |clip, class: &str, start: &str, state| (clip, class.to_owned(), start.to_owned(), state);
+    assert_eq!(
+        seen(&db).1,
+        [
+            row(1, "hop", "4", State::Proposed),
+            row(1, "jog", "2", State::Accepted),
+            row(1, "jog", "2.5", State::Accepted),
+            row(1, "walk", "0", State::Accepted),
+            row(1, "walk", "1.2", State::Accepted),
+            row(2, "walk", "0.9", State::Accepted),
+        ]
+    );
+    let again = db.label(&new, &replace(false)).unwrap();
+    assert!(again.changes.is_empty() && again.counts.unchanged == new.len());
+    db.undo(None).unwrap();
+    assert_eq!(seen(&db), before);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+    /// Whatever was there, afterwards a clip's accepted samples are those of the table.
+    #[test]
+    fn after_replacing_the_table_is_what_is_there(
+        old in prop::collection::vec((0..4usize, 0..12u8), 0..8),
+        new in prop::collection::btree_set((0..4usize, 0..12u8), 1..8),
+    ) {
+        let (_folder, mut db) = database_of_waves(1);
+        let of = |(class, start): (usize, u8)| sample(NAMES[class], start, State::Accepted);
+        let old: Vec<NewSample> = old.into_iter().map(of).collect();
+        db.add_samples(&old, "me").unwrap();
+        let before = seen(&db);
+        let new: Vec<NewSample> = new.into_iter().map(of).collect();
+        db.label(&new, &replace(false)).unwrap();
+        let mut wanted: Vec<_> = new
+            .iter()
+            .map(|s| (1, s.class.clone(), format!("{}", s.start_secs), State::Accepted))
+            .collect();
+        wanted.sort();
+        prop_assert_eq!(seen(&db).1, wanted.clone());
+        db.undo(None).unwrap();
+        let after_undo = seen(&db);
+        prop_assert!(after_undo == before || before.1 == wanted);
+        prop_assert!(db.check().unwrap().faults.is_empty());
+    }
+}
+
+/// A group says that stretches are alike, not what they are.
+#[test]
+fn a_label_withdraws_the_groups_proposal_and_its_empty_class() {
+    let (_folder, mut db) = database_of_waves(1);
+    let grouped = [
+        sample("group_1", 0, State::Proposed),
+        sample("group_2", 10, State::Proposed),
+        sample("group_2", 20, State::Proposed),
+    ];
+    db.add_samples(&grouped, GROUPED_BY).unwrap();
+    let labels = [
+        sample("walk", 0, State::Accepted),
+        sample("walk", 10, State::Accepted),
+    ];
+    let added = db.add_samples(&labels, "me").unwrap();
+    assert_eq!((added.added, added.rejected, added.withdrawn), (2, 0, 2));
+    assert_eq!(seen(&db).0, ["group_2", "walk"]);
+    assert_eq!(db.remove_classes("group_*").unwrap(), (1, 1));
+    assert_eq!(seen(&db).0, ["walk"]);
+    assert!(db.remove_classes("group_*").is_err());
+}
+
+#[test]
+fn samples_are_moved_by_number() {
+    let (_folder, mut db) = database_of_waves(1);
+    let two = [
+        sample("walk", 0, State::Accepted),
+        sample("walk", 10, State::Accepted),
+    ];
+    db.add_samples(&two, "me").unwrap();
+    db.move_sample(SampleId(2), 1.5, 1.75, "me").unwrap();
+    assert!(
+        db.move_sample(SampleId(2), 0.0, 0.5, "me").is_err(),
+        "there is one"
+    );
+    assert!(db.move_sample(SampleId(2), 5.0, 1.0, "me").is_err());
+    assert!(db.move_sample(SampleId(9), 0.0, 1.0, "me").is_err());
+    let starts: Vec<String> = seen(&db).1.into_iter().map(|row| row.2).collect();
+    assert_eq!(starts, ["0", "1.5"]);
 }

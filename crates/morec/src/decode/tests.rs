@@ -106,16 +106,17 @@ fn short_inside_long(distance: f32) -> Vec<Vec<(f32, usize)>> {
 fn a_short_motion_waits_for_the_longer_one_that_it_ends() {
     let params = DecodeParams {
         hold_ticks: 2,
+        rival_share: 0.0,
         ..DecodeParams::default()
     };
     let once = DecodeParams {
         hold_ticks: 0,
         ..params.clone()
     };
-    assert_eq!(reports(&short_inside_long(0.2), &params), [(1, 5, 22, 23)]);
-    assert_eq!(reports(&short_inside_long(0.2), &once), [(0, 15, 21, 22)]);
+    assert_eq!(reports(&short_inside_long(0.2), &params), [(1, 5, 22, 22)]);
+    assert_eq!(reports(&short_inside_long(0.2), &once), [(0, 15, 21, 21)]);
     // The longer one is not near enough: nothing waits.
-    assert_eq!(reports(&short_inside_long(3.0), &params), [(0, 15, 21, 22)]);
+    assert_eq!(reports(&short_inside_long(3.0), &params), [(0, 15, 21, 21)]);
 }
 
 #[test]
@@ -129,17 +130,82 @@ fn what_waits_in_vain_is_reported_after_its_hold() {
         hold_ticks: 3,
         ..DecodeParams::default()
     };
-    assert_eq!(reports(&ticks, &params)[0], (0, 15, 21, 25));
+    assert_eq!(reports(&ticks, &params)[0], (0, 15, 21, 24));
+}
+
+/// A motion of ten ticks of class `first` that ends with tick 15, and one of twenty of class `second` that ends with
+/// tick 30 and so began inside it.
+fn one_after_the_other(first: usize, second: usize) -> Vec<Vec<(f32, usize)>> {
+    let mut ticks = vec![vec![AWAY; 2]; 40];
+    for (class, end, age) in [(first, 15, 9), (second, 30, 19)] {
+        for (t, d) in [(end - 1, 1.0), (end, 0.5), (end + 1, 1.0)] {
+            ticks[t][class] = (d, age);
+        }
+    }
+    ticks
+}
+
+#[test]
+fn a_longer_match_of_the_same_class_is_no_second_motion() {
+    let ticks = one_after_the_other(0, 0);
+    let params = DecodeParams::default();
+    assert_eq!(reports(&ticks, &params), [(0, 6, 16, 16)]);
+    let twice = DecodeParams {
+        once: false,
+        ..params
+    };
+    assert_eq!(reports(&ticks, &twice).len(), 2);
+}
+
+#[test]
+fn a_nearer_match_of_another_class_refuses_a_candidate() {
+    let mut ticks = vec![vec![AWAY; 2]; 30];
+    for (t, d) in [(14, 1.5), (15, 1.0), (16, 1.5)] {
+        ticks[t][0] = (d, 9);
+    }
+    // It comes nearer and ends a tick later, too late to be a candidate before the first is decided.
+    for (t, d) in [(14, 0.9), (15, 0.8), (16, 0.5), (17, 0.9)] {
+        ticks[t][1] = (d, 9);
+    }
+    let params = DecodeParams::default();
+    let classes: Vec<u16> = reports(&ticks, &params).iter().map(|r| r.0).collect();
+    assert_eq!(classes, [1]);
+    let alone = DecodeParams {
+        rival_share: 0.0,
+        hold_ticks: 0,
+        ..params
+    };
+    assert_eq!(reports(&ticks, &alone)[0].0, 0);
+}
+
+#[test]
+fn the_last_partial_repetition_is_not_one_more() {
+    let run = |last_spread: f32| {
+        let params = DecodeParams::default();
+        let mut decoder = Decoder::new(&params, Rule::Gate { threshold: 2.0 }, 1, 20);
+        let mut found = 0;
+        for t in 0..60i64 {
+            let mut near = ClassDistance::NONE;
+            for (end, spread) in [(15, 1.0), (27, 1.1), (39, last_spread)] {
+                if (t - end as i64).abs() <= 1 {
+                    near = ClassDistance {
+                        distance: 0.5 + (t - end as i64).abs() as f32,
+                        age: 10,
+                        spread,
+                    };
+                }
+            }
+            decoder.push(&[near], FAR, &mut |_| 0.0, &mut |_| found += 1);
+        }
+        found
+    };
+    assert_eq!(run(1.0), 3);
+    assert_eq!(run(0.5), 2);
 }
 
 #[test]
 fn a_motion_that_overlaps_the_one_before_is_cut_not_lost() {
-    let mut ticks = vec![vec![AWAY]; 40];
-    for (end, age) in [(15, 9), (30, 19)] {
-        for (t, d) in [(end - 1, 1.0), (end, 0.5), (end + 1, 1.0)] {
-            ticks[t][0] = (d, age);
-        }
-    }
+    let ticks = one_after_the_other(0, 1);
     let spans = |params: &DecodeParams| -> Vec<_> {
         reports(&ticks, params).iter().map(|r| (r.1, r.2)).collect()
     };

@@ -114,7 +114,9 @@ pub enum SensitivityError {
     #[error("the sensitivity is a number of false alarms a minute above 0, found {0}")]
     Rate(f64),
     /// The model does not note rates.
-    #[error("this index has one sensitivity only: train it again with templates and without a verifier to choose")]
+    #[error(
+        "this index has one sensitivity only: train it again with templates and without a verifier to choose"
+    )]
     Fixed,
 }
 

@@ -4,10 +4,11 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
-use morec_db::{Health, MotionDb};
+use morec_db::Health;
 use serde::Serialize;
 
 use super::copies::{self, Copy};
+use crate::database;
 use crate::progress::Bar;
 
 /// Read everything in a database and say what is wrong
@@ -20,6 +21,9 @@ pub struct Args {
     /// Look for clips that are nearly others, mirror images among them
     #[arg(long)]
     copies: bool,
+    /// Make again what can be made again (feature rows), take the tables as they are for right, and check after that
+    #[arg(long)]
+    repair: bool,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -35,10 +39,14 @@ struct Checked {
 
 /// Checks and prints.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let health = MotionDb::open_read_only(&args.db)?.check()?;
+    if args.repair {
+        let made = database::open(&args.db)?.repair(&Bar::new())?;
+        eprintln!("morec: feature rows of {made} clips made again");
+    }
+    let health = database::open_read_only(&args.db)?.check()?;
     let copies = match args.copies {
         true => Some(copies::find(
-            &mut MotionDb::open_read_only(&args.db)?,
+            &mut database::open_read_only(&args.db)?,
             None,
             &Bar::stoppable()?,
         )?),
@@ -54,7 +62,10 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         return Ok(code);
     }
     match health.faults.as_slice() {
-        [] => super::print(format_args!("whole: {} clips decoded\n", health.clips))?,
+        [] => super::print(format_args!(
+            "whole: {} clips decoded, {} with feature rows, {} indexes\n",
+            health.clips, health.rows, health.indexes
+        ))?,
         faults => super::print(faults.join("\n") + "\n")?,
     }
     for copy in copies.iter().flatten() {

@@ -7,11 +7,13 @@ use anyhow::{Result, bail};
 use morec_db::MotionDb;
 use morec_db::labels::SampleId;
 
+use super::samples;
+use crate::database;
 use crate::table::Table;
 
 /// List the classes, or rename, merge, split and forget them
 ///
-/// Every change can be taken back: morec db label DB --undo.
+/// Every change can be taken back: morec db undo DB.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
@@ -19,7 +21,7 @@ Examples:
   morec db classes moves.mdb --rename hopp hop
   morec db classes moves.mdb --merge hop,leap --into jump
   morec db classes moves.mdb --split 12,15,19 --into skip     # sample numbers, see --samples
-  morec db classes moves.mdb --forget test")]
+  morec db classes moves.mdb --forget 'group_*'")]
 pub struct Args {
     /// The database
     #[arg(value_name = "DB")]
@@ -36,8 +38,8 @@ pub struct Args {
     /// Where --merge and --split move samples; a new class or one that is there
     #[arg(long, value_name = "CLASS")]
     into: Option<String>,
-    /// Forget a class and its samples
-    #[arg(long, value_name = "CLASS")]
+    /// Forget a class and its samples, or all whose names match (`*` any text, `?` one character)
+    #[arg(long, value_name = "CLASS|PATTERN")]
     forget: Option<String>,
     /// List the samples of this class with their numbers
     #[arg(long, value_name = "CLASS")]
@@ -56,12 +58,16 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         args.forget.is_some(),
     ];
     let db = match changes.iter().filter(|c| **c).count() {
-        0 => MotionDb::open_read_only(&args.db)?,
+        0 => database::open_read_only(&args.db)?,
         1 => changed(args)?,
         _ => bail!("one change at a time: each can then be taken back"),
     };
+    if args.forget.is_some() && !args.json {
+        return Ok(ExitCode::SUCCESS);
+    }
     if let Some(class) = &args.samples {
-        return samples(&db, class, args.json);
+        db.need_class(class)?;
+        return samples_of(&db, class, args.json);
     }
     let classes = db.classes()?;
     if args.json {
@@ -84,14 +90,19 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 }
 
 fn changed(args: &Args) -> Result<MotionDb> {
-    let mut db = MotionDb::open(&args.db)?;
+    let mut db = database::open(&args.db)?;
     let into = args.into.as_deref().unwrap_or_default();
     if let [old, new] = args.rename.as_slice() {
         db.rename_class(old, new)?;
     } else if !args.merge.is_empty() {
         db.merge_classes(&args.merge, into)?;
-    } else if let Some(class) = &args.forget {
-        db.remove_class(class)?;
+    } else if let Some(pattern) = &args.forget {
+        let (classes, samples) = db.remove_classes(pattern)?;
+        if !args.json {
+            super::print(format_args!(
+                "forgotten: {classes} classes with {samples} samples\n"
+            ))?;
+        }
     } else {
         let ids: Vec<SampleId> = args.split.iter().copied().map(SampleId).collect();
         let moved = db.split_class(&ids, into)?;
@@ -105,34 +116,12 @@ fn changed(args: &Args) -> Result<MotionDb> {
     Ok(db)
 }
 
-fn samples(db: &MotionDb, class: &str, json: bool) -> Result<ExitCode> {
+fn samples_of(db: &MotionDb, class: &str, json: bool) -> Result<ExitCode> {
     let filter = morec_db::labels::SampleFilter {
         class: Some(class.to_owned()),
         ..Default::default()
     };
     let samples = db.samples(&filter)?;
-    if json {
-        super::print_json(&samples)?;
-        return Ok(ExitCode::SUCCESS);
-    }
-    let mut table = Table::new([
-        "clip", "number", "start", "stop", "frames", "state", "score", "by",
-    ])
-    .least(["by", "frames", "score"]);
-    for s in &samples {
-        let frames = s.frames();
-        table.row([
-            s.clip_name.clone(),
-            s.id.0.to_string(),
-            format!("{:.2}", s.start_secs),
-            format!("{:.2}", s.stop_secs),
-            format!("{}-{}", frames.start, frames.end),
-            s.state.name().to_owned(),
-            s.score
-                .map_or_else(String::new, |score| format!("{score:.2}")),
-            s.set_by.clone(),
-        ]);
-    }
-    super::print_table(&table, "")?;
+    samples::print(&samples, json)?;
     Ok(ExitCode::SUCCESS)
 }

@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::Result;
-use morec_db::{ClipFilter, ClipId, ClipInfo, ClipUpdate, MotionDb};
+use anyhow::{Result, bail};
+use morec_db::{ClipFilter, ClipId, ClipInfo, ClipUpdate};
 
+use crate::database;
 use crate::table::Table;
 
 /// List the clips of a database, or change what is known about them
@@ -14,7 +15,9 @@ use crate::table::Table;
 Examples:
   morec db clips moves.mdb --name 'walk*'
   morec db clips moves.mdb --class wave --subject anna
-  morec db clips moves.mdb --name 'ah_*' --set-subject ah --add-tag gesture")]
+  morec db clips moves.mdb --name 'ah_*' --set-subject ah --add-tag gesture
+  morec db clips moves.mdb --name 'test_*' --remove
+  morec db clips moves.mdb --rename take_1 walk_01")]
 pub struct Args {
     /// The database
     #[arg(value_name = "DB")]
@@ -40,6 +43,12 @@ pub struct Args {
     /// Say under which terms they may be used
     #[arg(long, value_name = "TEXT")]
     set_licence: Option<String>,
+    /// Give a clip another name; labels, cuts and tags stay with it
+    #[arg(long, num_args = 2, value_names = ["OLD", "NEW"])]
+    rename: Vec<String>,
+    /// Remove the clips that --name, --subject, --tag and --class choose, with their cuts and labels
+    #[arg(long, conflicts_with = "rename")]
+    remove: bool,
     /// Attach a tag
     #[arg(long, value_name = "WORD")]
     add_tag: Vec<String>,
@@ -66,11 +75,21 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         add_tags: args.add_tag.clone(),
         remove_tags: args.remove_tag.clone(),
     };
+    if args.remove {
+        return remove(args, &filter);
+    }
+    if let [old, new] = args.rename.as_slice() {
+        database::open(&args.db)?.rename_clip(old, new)?;
+        if !args.json {
+            super::print(format_args!("{old} is called {new} now\n"))?;
+            return Ok(ExitCode::SUCCESS);
+        }
+    }
     let mut clips = if update == ClipUpdate::default() {
-        MotionDb::open_read_only(&args.db)?.clips(&filter)?
+        database::open_read_only(&args.db)?.find_clips(&filter)?
     } else {
-        let mut db = MotionDb::open(&args.db)?;
-        let ids: Vec<ClipId> = db.clips(&filter)?.iter().map(|clip| clip.id).collect();
+        let mut db = database::open(&args.db)?;
+        let ids: Vec<ClipId> = db.find_clips(&filter)?.iter().map(|clip| clip.id).collect();
         db.update_clips(&ids, &update)?;
         let all = db.clips(&ClipFilter::default())?;
         all.into_iter()
@@ -82,6 +101,27 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         super::print_json(&clips)?;
     } else {
         print(&clips)?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Removes what a filter chooses; all clips of a database only by `--name '*'`.
+fn remove(args: &Args, filter: &ClipFilter) -> Result<ExitCode> {
+    if *filter == ClipFilter::default() {
+        bail!("--remove: which clips? say with --name, --subject, --tag or --class");
+    }
+    let mut db = database::open(&args.db)?;
+    let clips = db.find_clips(filter)?;
+    let ids: Vec<ClipId> = clips.iter().map(|clip| clip.id).collect();
+    let samples = db.remove_clips(&ids)?;
+    if args.json {
+        let names: Vec<&String> = clips.iter().map(|clip| &clip.name).collect();
+        super::print_json(&serde_json::json!({ "removed": names, "samples": samples }))?;
+    } else {
+        super::print(format_args!(
+            "{} clips removed, and {samples} samples with them; morec db undo brings them back\n",
+            clips.len()
+        ))?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -17,6 +17,7 @@ use morec_db::{ClipFilter, ClipId, ClipInfo, DbError, MotionDb, Segment, Segment
 use rayon::prelude::*;
 use serde::Serialize;
 
+use crate::database;
 use crate::progress::Bar;
 use crate::table::Table;
 
@@ -141,10 +142,10 @@ impl Cutter {
 /// Cuts, keeps and prints.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let cutter = Cutter::new(args)?;
-    let mut db = MotionDb::open(&args.db)?;
+    let mut db = database::open(&args.db)?;
     let bar = Bar::stoppable()?;
     let rows = db.rows(&FeatureParams::default(), &bar)?;
-    let clips = db.clips(&ClipFilter {
+    let clips = db.find_clips(&ClipFilter {
         name: args.name.clone(),
         ..ClipFilter::default()
     })?;

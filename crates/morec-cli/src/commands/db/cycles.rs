@@ -11,6 +11,7 @@ use morec_db::labels::{NewSample, SampleFilter, SampleId, State};
 use morec_db::{ClipFilter, ClipId, MotionDb};
 use serde::Serialize;
 
+use crate::database;
 use crate::progress::Bar;
 use crate::table::Table;
 
@@ -70,9 +71,9 @@ struct Counted {
 /// Counts and prints; splits if asked to.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let mut db = if args.split {
-        MotionDb::open(&args.db)?
+        database::open(&args.db)?
     } else {
-        MotionDb::open_read_only(&args.db)?
+        database::open_read_only(&args.db)?
     };
     let params = FeatureParams::default();
     let rows: BTreeMap<ClipId, _> = db
@@ -103,7 +104,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 }
 
 fn stretches(db: &MotionDb, args: &Args) -> Result<Vec<Counted>> {
-    let clips = db.clips(&ClipFilter {
+    let clips = db.find_clips(&ClipFilter {
         name: args.name.clone(),
         ..ClipFilter::default()
     })?;

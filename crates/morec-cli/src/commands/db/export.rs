@@ -5,12 +5,12 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
 use morec::formats::bvh;
-use morec_db::MotionDb;
 use morec_db::exchange::{self, Annotation, Form};
 use morec_db::labels::{SampleFilter, State};
 
 use super::label::{FormArg, StateArg};
-use crate::files;
+use crate::database;
+use crate::output;
 
 /// Write labels for other programs, or a clip as BVH
 #[derive(clap::Args)]
@@ -49,10 +49,10 @@ pub struct Args {
 
 /// Writes what was asked for.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let db = MotionDb::open_read_only(&args.db)?;
+    let db = database::open_read_only(&args.db)?;
     if let Some(name) = &args.motion {
         let stored = db.clip(db.find_clip(name)?.id)?;
-        files::write_whole(&args.output, |out| bvh::write(&stored.clip, out))
+        output::write_whole(&args.output, |out| bvh::write(&stored.clip, out))
             .with_context(|| args.output.display().to_string())?;
         return said(args, 1, stored.clip.frames, "frames");
     }
@@ -62,6 +62,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         .map(|name| db.find_clip(name))
         .transpose()?
         .map(|info| info.id);
+    if let Some(class) = &args.class {
+        db.need_class(class)?;
+    }
     let filter = SampleFilter {
         clip,
         class: args.class.clone(),
@@ -100,7 +103,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         if args.output == Path::new("-") {
             return super::print(text).map(|()| ExitCode::SUCCESS);
         }
-        files::write_whole(&args.output, |out| out.write_all(text.as_bytes()))
+        output::write_whole(&args.output, |out| out.write_all(text.as_bytes()))
             .with_context(|| args.output.display().to_string())?;
     }
     said(args, files, annotations.len(), "labels")
@@ -134,13 +137,12 @@ fn a_file_a_clip(
     std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
     let ending = if form == Form::Eaf { "eaf" } else { "txt" };
     let mut files = 0;
-    for of_clip in annotations.chunk_by(|a, b| a.clip == b.clip) {
+    let of_clips: Vec<&[Annotation]> = annotations.chunk_by(|a, b| a.clip == b.clip).collect();
+    let names = exchange::file_names(of_clips.iter().map(|of_clip| of_clip[0].clip.as_str()));
+    for (of_clip, name) in of_clips.iter().zip(&names) {
         let text = exchange::write(form, of_clip, lengths).map_err(anyhow::Error::msg)?;
-        let path = folder.join(format!(
-            "{}.{ending}",
-            of_clip[0].clip.replace(['/', '\\'], "_")
-        ));
-        files::write_whole(&path, |out| out.write_all(text.as_bytes()))
+        let path = folder.join(format!("{name}.{ending}"));
+        output::write_whole(&path, |out| out.write_all(text.as_bytes()))
             .with_context(|| path.display().to_string())?;
         files += 1;
     }

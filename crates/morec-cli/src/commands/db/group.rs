@@ -10,11 +10,12 @@ use morec::cluster::{
     affinity_propagation, kwas_clusters, resampled, squared_distance,
 };
 use morec::features::{BoneSet, FeatureParams, Rows};
-use morec_db::labels::{NewSample, SampleFilter, State};
+use morec_db::labels::{GROUPED_BY, NewSample, SampleFilter, State};
 use morec_db::{ClipFilter, ClipId, MotionDb, SegmentKind};
 use serde::Serialize;
 
-use super::page::Page;
+use super::page::{self, Page};
+use crate::database;
 use crate::progress::Bar;
 use crate::table::Table;
 
@@ -114,10 +115,16 @@ const POINTS: usize = 16;
 /// Clusters, prints, and proposes if asked to.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let mut db = if args.name_as.is_some() {
-        MotionDb::open(&args.db)?
+        database::open(&args.db)?
     } else {
-        MotionDb::open_read_only(&args.db)?
+        database::open_read_only(&args.db)?
     };
+    if let Some(path) = &args.report {
+        page::check(path)?;
+    }
+    args.classes
+        .iter()
+        .try_for_each(|class| db.need_class(class))?;
     let items = items(&mut db, args)?;
     if items.is_empty() {
         bail!("nothing to group (morec db cut finds segments, morec db label sets samples)");
@@ -288,7 +295,7 @@ fn propose(db: &mut MotionDb, groups: &[Vec<Item>], name: &str) -> Result<()> {
             score: None,
         }));
     }
-    db.add_samples(&samples, "group")?;
+    db.add_samples(&samples, GROUPED_BY)?;
     Ok(())
 }
 

@@ -11,6 +11,7 @@ use morec_db::{ClipUpdate, ImportReport, ImportSettings, MotionDb, Outcome};
 use serde::Serialize;
 
 use super::copies::{self, Copy};
+use crate::database;
 use crate::files::{self, ReadArgs};
 use crate::progress::Bar;
 
@@ -64,7 +65,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let left_out = expanded.say_left_out();
     let paths: Vec<PathBuf> = expanded.clips.into_iter().map(absolute).collect();
     let mut db = match args.db.exists() {
-        true => MotionDb::open(&args.db)?,
+        true => database::open(&args.db)?,
         false => MotionDb::create(&args.db)?,
     };
     let settings = ImportSettings {

@@ -4,9 +4,10 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
-use morec_db::{MotionDb, Summary};
+use morec_db::Summary;
 
 use super::megabytes;
+use crate::database;
 
 /// Say how much is in a database
 #[derive(clap::Args)]
@@ -14,6 +15,9 @@ pub struct Args {
     /// The database
     #[arg(value_name = "DB")]
     db: PathBuf,
+    /// Forget the files that could not be read
+    #[arg(long)]
+    forget_refused: bool,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -21,7 +25,10 @@ pub struct Args {
 
 /// Counts and prints.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let summary = MotionDb::open_read_only(&args.db)?.summary()?;
+    if args.forget_refused {
+        database::open(&args.db)?.forget_refused()?;
+    }
+    let summary = database::open_read_only(&args.db)?.summary()?;
     if args.json {
         super::print_json(&summary)?;
     } else {

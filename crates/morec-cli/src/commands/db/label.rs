@@ -1,16 +1,19 @@
 //! `morec db label`: labels in, and judging them.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
 use clap::ValueEnum;
 use morec_db::exchange::{self, Annotation, Form, Lengths};
-use morec_db::labels::{NewSample, State};
+use morec_db::labels::{Added, LabelChange, LabelOptions, Labelled, NewSample, State};
 use morec_db::{ClipFilter, MotionDb};
 
+use super::history;
+use crate::database;
 use crate::files::{self, some_of};
+use crate::table::Table;
 
 /// Read labels from a file, set one by hand, or accept and reject what is there
 ///
@@ -23,6 +26,7 @@ Examples:
   morec db label moves.mdb take_1.eaf --clip take_1
   morec db label moves.mdb --clip take_1 --class wave --start 1.2 --stop 2.4
   morec db label moves.mdb reviewed.tsv --state rejected
+  morec db label moves.mdb corrected.tsv --replace --dry-run
   morec db label moves.mdb --undo
 
 A file of proposals that was looked at (morec db export --state proposed --form csv) is read back as it is: `accepted`,
@@ -31,8 +35,8 @@ pub struct Args {
     /// The database
     #[arg(value_name = "DB")]
     db: PathBuf,
-    /// Files of labels: TSV, CSV, JSON (morec's, BABEL's, Label Studio's), ELAN (.eaf), Audacity (.txt)
-    #[arg(value_name = "FILE")]
+    /// Files of labels, or folders of them: TSV, CSV, JSON (morec's, BABEL's, Label Studio's), ELAN (.eaf), Audacity (.txt)
+    #[arg(value_name = "FILE|DIR")]
     labels: Vec<PathBuf>,
     /// What form the files are in [default: by their endings and content]
     #[arg(long, value_enum)]
@@ -60,6 +64,13 @@ pub struct Args {
     /// Who says so
     #[arg(long, value_name = "NAME", default_value = "user")]
     by: String,
+    /// The files are all there is to say about the clips they name: accepted samples that they do not say are moved or
+    /// renamed if one of theirs stands for them, and removed otherwise
+    #[arg(long, conflicts_with_all = ["class", "undo"])]
+    replace: bool,
+    /// Only say what would change, sample by sample
+    #[arg(long, conflicts_with = "undo")]
+    dry_run: bool,
     /// Take the last change of labels or classes back
     #[arg(long, conflicts_with_all = ["labels", "class"])]
     undo: bool,
@@ -116,9 +127,12 @@ impl From<StateArg> for State {
 
 /// Reads, sets or takes back.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let mut db = MotionDb::open(&args.db)?;
+    let mut db = database::open(&args.db)?;
     if args.undo {
         return undo(&mut db, args.json);
+    }
+    if let Some(clip) = &args.clip {
+        db.find_clip(clip)?;
     }
     let lengths = super::lengths(&db)?;
     let mut absent = BTreeMap::new();
@@ -130,35 +144,134 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         None => read(args, &lengths, &mut absent)?,
     };
     let samples = resolve(&db, args, annotations, &lengths, &mut absent)?;
-    let added = db.add_samples(&samples, &args.by)?;
+    let options = LabelOptions {
+        by: args.by.clone(),
+        replace: args.replace,
+        dry_run: args.dry_run,
+    };
+    let done = db.label(&samples, &options)?;
     if args.json {
-        super::print_json(&serde_json::json!({ "samples": added, "absent_clips": absent }))?;
-        return Ok(ExitCode::SUCCESS);
+        let changes = args.dry_run.then_some(&done.changes);
+        super::print_json(&serde_json::json!({
+            "samples": done.counts, "absent_clips": absent, "changes": changes,
+        }))?;
+        return Ok(code(&samples, &absent));
     }
-    if !absent.is_empty() {
-        eprintln!(
-            "morec: {} labels of {} clips that are not there were left out: {}",
-            absent.values().sum::<usize>(),
-            absent.len(),
-            some_of(absent.keys())
-        );
+    say_absent(&db, &absent);
+    if args.dry_run {
+        super::print_table(&changes(&db, &done)?, "")?;
     }
-    super::print(format_args!(
-        "{} samples added, {} judged anew, {} as before\n",
-        added.added, added.changed, added.unchanged
-    ))?;
-    Ok(ExitCode::SUCCESS)
+    super::print(said(&done.counts, args))?;
+    Ok(code(&samples, &absent))
+}
+
+/// Labels of which none found its clip are a mistake, not a part of a larger file.
+fn code(samples: &[NewSample], absent: &Absent) -> ExitCode {
+    match samples.is_empty() && !absent.is_empty() {
+        true => ExitCode::FAILURE,
+        false => ExitCode::SUCCESS,
+    }
+}
+
+fn say_absent(db: &MotionDb, absent: &Absent) {
+    /// Of so many it is said which names are near.
+    const HINTED: usize = 5;
+    if absent.is_empty() {
+        return;
+    }
+    eprintln!(
+        "morec: {} labels of {} clips that are not there were left out: {}",
+        absent.values().sum::<usize>(),
+        absent.len(),
+        some_of(absent.keys())
+    );
+    for clip in absent.keys().take(HINTED) {
+        eprintln!("morec: no clip is called {clip:?}{}", db.hint_of_clip(clip));
+    }
+}
+
+fn said(counts: &Added, args: &Args) -> String {
+    let mut parts = vec![
+        format!("{} samples added", counts.added),
+        format!("{} judged anew", counts.changed),
+    ];
+    if args.replace {
+        parts.push(format!("{} moved", counts.moved));
+        parts.push(format!("{} renamed", counts.renamed));
+        parts.push(format!("{} gone", counts.gone));
+    }
+    parts.push(format!("{} as before", counts.unchanged));
+    if counts.rejected > 0 {
+        parts.push(format!("{} proposals rejected by them", counts.rejected));
+    }
+    if counts.withdrawn > 0 {
+        parts.push(format!(
+            "{} proposals of groups withdrawn",
+            counts.withdrawn
+        ));
+    }
+    let would = if args.dry_run {
+        "nothing was changed; it would be: "
+    } else {
+        ""
+    };
+    format!("{would}{}\n", parts.join(", "))
+}
+
+fn changes(db: &MotionDb, done: &Labelled) -> Result<Table> {
+    let clips = db.clips(&ClipFilter::default())?;
+    let names: BTreeMap<_, _> = clips.into_iter().map(|c| (c.id, c.name)).collect();
+    let mut table = Table::new(["clip", "change", "class", "start", "stop", "was"]);
+    for changed in &done.changes {
+        let change = match changed.change {
+            LabelChange::Added => "added",
+            LabelChange::Judged => "judged",
+            LabelChange::Moved => "moved",
+            LabelChange::Renamed => "renamed",
+            LabelChange::Gone => "gone",
+        };
+        let was = changed
+            .was
+            .as_ref()
+            .map_or_else(String::new, |(class, start, stop)| {
+                format!("{class} {start:.2} to {stop:.2} s")
+            });
+        table.row([
+            names.get(&changed.clip).cloned().unwrap_or_default(),
+            change.to_owned(),
+            changed.class.clone(),
+            format!("{:.2}", changed.start_secs),
+            format!("{:.2}", changed.stop_secs),
+            was,
+        ]);
+    }
+    Ok(table)
 }
 
 fn undo(db: &mut MotionDb, json: bool) -> Result<ExitCode> {
-    let undone = db.undo()?;
+    // The history holds changes of every kind: whoever asks here means labels.
+    if let Some(last) = db.history()?.into_iter().find(|step| !step.undone) {
+        let kinds = ["samples", "classes"];
+        if last
+            .rows
+            .keys()
+            .any(|table| !kinds.contains(&table.as_str()))
+        {
+            bail!(
+                "the last change is no change of labels: step {}, {}; morec db undo takes it back",
+                last.id,
+                last.what
+            );
+        }
+    }
+    let undone = db.undo(None)?;
     if json {
         super::print_json(&undone)?;
     } else {
-        match undone {
-            Some(edit) => super::print(format_args!("taken back: {}\n", edit.what))?,
-            None => super::print("there is nothing to take back\n")?,
-        }
+        super::print(match &undone {
+            Some(turned) => history::text(turned, "taken back"),
+            None => "there is nothing to take back\n".to_owned(),
+        })?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -187,7 +300,7 @@ fn by_hand(args: &Args, class: &str, lengths: &Lengths) -> Result<Annotation> {
 
 fn read(args: &Args, lengths: &Lengths, absent: &mut Absent) -> Result<Vec<Annotation>> {
     let mut all = Vec::new();
-    for path in &args.labels {
+    for path in &label_files(&args.labels)? {
         let shown = path.display().to_string();
         let bytes = files::read(path)?;
         let form = match args.form {
@@ -196,7 +309,13 @@ fn read(args: &Args, lengths: &Lengths, absent: &mut Absent) -> Result<Vec<Annot
                 format!("{shown}: its ending says no form of labels; give --form")
             })?,
         };
-        let read = exchange::read(form, &bytes, args.clip.as_deref(), lengths)
+        // A label track does not name its clip; its file does, if morec wrote it.
+        let named = match (&args.clip, form) {
+            (Some(clip), _) => Some(clip.clone()),
+            (None, Form::Audacity) => named_by_file(path, lengths),
+            (None, _) => None,
+        };
+        let read = exchange::read(form, &bytes, named.as_deref(), lengths)
             .with_context(|| shown.clone())?;
         for warning in &read.warnings {
             eprintln!("morec: {shown}: {warning}");
@@ -207,6 +326,36 @@ fn read(args: &Args, lengths: &Lengths, absent: &mut Absent) -> Result<Vec<Annot
         }
     }
     Ok(all)
+}
+
+/// The clip that a file is called after, if there is such a clip.
+fn named_by_file(path: &Path, lengths: &Lengths) -> Option<String> {
+    let clip = exchange::clip_of_file_name(&path.file_stem()?.to_string_lossy());
+    lengths.contains_key(&clip).then_some(clip)
+}
+
+/// A folder stands for the files in it, by name.
+fn label_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>> {
+    let mut files = Vec::new();
+    for path in paths {
+        if !path.is_dir() {
+            files.push(path.clone());
+            continue;
+        }
+        let shown = || path.display().to_string();
+        let mut inside = Vec::new();
+        for entry in std::fs::read_dir(path).with_context(shown)? {
+            inside.push(entry.with_context(shown)?.path());
+        }
+        inside
+            .retain(|file| file.is_file() && Form::of_file(&file.to_string_lossy(), b"").is_some());
+        if inside.is_empty() {
+            bail!("{}: no file of labels in this folder", path.display());
+        }
+        inside.sort();
+        files.append(&mut inside);
+    }
+    Ok(files)
 }
 
 /// Labels drawn by hand run over a clip's end by so much without a word.

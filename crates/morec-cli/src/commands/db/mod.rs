@@ -8,13 +8,16 @@ mod cut;
 mod cycles;
 mod export;
 mod group;
+mod history;
 mod import;
+mod indexes;
 mod info;
 mod init;
 mod label;
 mod page;
 mod propose;
 mod report;
+mod samples;
 mod search;
 mod strip;
 mod vacuum;
@@ -58,8 +61,15 @@ enum Command {
     Group(group::Args),
     Classes(classes::Args),
     Label(label::Args),
+    Samples(samples::Args),
     Search(search::Args),
     Propose(propose::Args),
+    Indexes(indexes::Args),
+    History(history::Args),
+    /// Take a change back: the last one, or a named step
+    Undo(history::TurnArgs),
+    /// Do again what was taken back
+    Redo(history::TurnArgs),
     Export(export::Args),
     Report(report::Args),
     Check(check::Args),
@@ -91,9 +101,14 @@ fn of(args: Args) -> Result<ExitCode> {
         Command::Group(args) => group::run(&args),
         Command::Classes(args) => classes::run(&args),
         Command::Label(args) => label::run(&args),
+        Command::Samples(args) => samples::run(&args),
         Command::Search(args) => search::run(&args),
         Command::Propose(args) => propose::run(&args),
         Command::Report(args) => report::run(&args),
+        Command::Indexes(args) => indexes::run(&args),
+        Command::History(args) => history::run(&args),
+        Command::Undo(args) => history::undo(&args),
+        Command::Redo(args) => history::redo(&args),
         Command::Export(args) => export::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Vacuum(args) => vacuum::run(&args),

@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 use morec_db::{ClipId, MotionDb, StoredClip};
 
 use super::strip::strip;
-use crate::files;
+use crate::output;
 
 /// Poses in a strip.
 const POSES: usize = 8;
@@ -15,6 +15,11 @@ const STYLE: &str = "body{font:15px/1.4 system-ui,sans-serif;margin:2em auto;max
 color:#222;background:#fff}h2{margin-top:1.6em}figure{display:inline-block;margin:.3em 1em .6em 0}\
 figcaption{font-size:13px}svg{background:#f4f4f4;border-radius:4px}path{fill:none;stroke-width:1.3;stroke-linecap:round}\
 @media(prefers-color-scheme:dark){body{color:#ddd;background:#181818}svg{background:#262626}}";
+
+/// Whether a page can be written there: asked before the work.
+pub fn check(path: &Path) -> Result<()> {
+    output::check(path).with_context(|| path.display().to_string())
+}
 
 /// A page in the making.
 #[derive(Default)]
@@ -85,7 +90,7 @@ impl Page {
              <style>{STYLE}</style></head>\n<body>\n<h1>{title}</h1>\n<p>{head}</p>\n{}</body></html>\n",
             self.html
         );
-        files::write_whole(path, |out| out.write_all(html.as_bytes()))
+        output::write_whole(path, |out| out.write_all(html.as_bytes()))
             .with_context(|| path.display().to_string())
     }
 }

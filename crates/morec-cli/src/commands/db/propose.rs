@@ -9,6 +9,7 @@ use morec_db::labels::{NewSample, SampleFilter, SampleId, State};
 use morec_db::{ClipFilter, ClipId, MotionDb, Proposal, ProposeOptions, questions};
 use serde::Serialize;
 
+use crate::database;
 use crate::progress::Bar;
 use crate::table::Table;
 
@@ -58,13 +59,19 @@ const BY: &str = "propose";
 
 /// Judges, or proposes anew; then lists.
 pub fn run(args: &Args) -> Result<ExitCode> {
+    if !args.classes.is_empty() {
+        let db = database::open_read_only(&args.db)?;
+        args.classes
+            .iter()
+            .try_for_each(|class| db.need_class(class))?;
+    }
     if args.accept.is_some() || args.reject.is_some() {
         return judge(args);
     }
     if args.list {
-        return list(args, &MotionDb::open_read_only(&args.db)?);
+        return list(args, &database::open_read_only(&args.db)?);
     }
-    let mut db = MotionDb::open(&args.db)?;
+    let mut db = database::open(&args.db)?;
     let options = ProposeOptions {
         classes: args.classes.clone(),
         ..ProposeOptions::default()
@@ -75,9 +82,8 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         .filter(|s| s.set_by == BY)
         .map(|s| s.id)
         .collect();
-    db.remove_samples(&old)?;
     let samples: Vec<NewSample> = proposals.iter().cloned().map(NewSample::from).collect();
-    db.add_samples(&samples, BY)?;
+    db.replace_proposals(&old, &samples, BY)?;
     show(args, &db, proposals)
 }
 
@@ -89,7 +95,7 @@ fn proposed(db: &MotionDb) -> Result<Vec<morec_db::labels::DbSample>> {
 }
 
 fn judge(args: &Args) -> Result<ExitCode> {
-    let mut db = MotionDb::open(&args.db)?;
+    let mut db = database::open(&args.db)?;
     let all = proposed(&db)?;
     let wanted = |s: &&morec_db::labels::DbSample| {
         args.classes.is_empty() || args.classes.contains(&s.class)
@@ -108,8 +114,7 @@ fn judge(args: &Args) -> Result<ExitCode> {
     let rejected = args.reject.map_or_else(Vec::new, |least| {
         pick(&|score| score < least && args.accept.is_none_or(|accept| score < accept))
     });
-    db.judge(&accepted, State::Accepted, "user")?;
-    db.judge(&rejected, State::Rejected, "user")?;
+    db.judge_both(&accepted, &rejected, "user")?;
     let (accepted, rejected) = (accepted.len(), rejected.len());
     let left = all.len() - accepted - rejected;
     if args.json {
@@ -164,7 +169,9 @@ fn show(args: &Args, db: &MotionDb, mut proposals: Vec<Proposal>) -> Result<Exit
     };
     let all: Vec<Named> = proposals.into_iter().map(named).collect();
     if args.json {
-        super::print_json(&all)?;
+        // A new round is printed as a whole; a list is as long as asked for.
+        let shown = if args.list { args.limit } else { all.len() };
+        super::print_json(&&all[..shown.min(all.len())])?;
         return Ok(ExitCode::SUCCESS);
     }
     let mut table = Table::new(["clip", "class", "start", "stop", "score"]).least(["stop"]);

@@ -8,7 +8,8 @@ use morec_db::labels::{SampleFilter, State};
 use morec_db::{ClipFilter, MotionDb, SegmentKind};
 
 use super::megabytes;
-use super::page::Page;
+use super::page::{self, Page};
+use crate::database;
 
 /// Write a page of HTML with a strip of poses for clips, cuts and samples
 ///
@@ -35,7 +36,8 @@ pub struct Args {
 
 /// Draws and writes.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let db = MotionDb::open_read_only(&args.db)?;
+    let db = database::open_read_only(&args.db)?;
+    page::check(&args.output)?;
     let mut page = Page::default();
     classes(&mut page, &db, args.limit)?;
     clips(&mut page, &db, args)?;
@@ -104,7 +106,7 @@ fn classes(page: &mut Page, db: &MotionDb, limit: usize) -> Result<()> {
 /// Clips as a whole, and their cuts.
 fn clips(page: &mut Page, db: &MotionDb, args: &Args) -> Result<()> {
     let segments = db.segments()?;
-    let clips = db.clips(&ClipFilter {
+    let clips = db.find_clips(&ClipFilter {
         name: args.name.clone(),
         ..ClipFilter::default()
     })?;

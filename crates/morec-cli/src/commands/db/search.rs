@@ -13,7 +13,8 @@ use morec_db::search::{Example, Hit, LearnedMetric, SearchIndex, SearchOptions};
 use morec_db::{ClipFilter, ClipId, ClipInfo, MotionDb, StoredClip};
 use serde::Serialize;
 
-use super::page::Page;
+use super::page::{self, Page};
+use crate::database;
 use crate::files::{self, ReadArgs};
 use crate::progress::Bar;
 use crate::table::Table;
@@ -103,7 +104,13 @@ struct Named {
 /// Searches and prints.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let begun = Instant::now();
-    let mut db = MotionDb::open_read_only(&args.db)?;
+    let mut db = database::open_read_only(&args.db)?;
+    if let Some(path) = &args.report {
+        page::check(path)?;
+    }
+    args.classes
+        .iter()
+        .try_for_each(|class| db.need_class(class))?;
     let index = SearchIndex::of_db(&mut db, &Bar::stoppable()?)?;
     let (example, shown) = example(&db, &index, args)?;
     let metric = if args.learned {
@@ -188,8 +195,9 @@ fn example(db: &MotionDb, index: &SearchIndex, args: &Args) -> Result<(Example, 
     let path = Path::new(&args.example);
     if !path.exists() && path != Path::new("-") {
         bail!(
-            "{}: neither a clip of the database nor a file",
-            args.example
+            "{}: neither a clip of the database nor a file{}",
+            args.example,
+            db.hint_of_clip(&args.example)
         );
     }
     let opened = files::open(path, &args.read)?;

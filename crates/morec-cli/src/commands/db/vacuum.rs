@@ -4,9 +4,9 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
-use morec_db::MotionDb;
 
 use super::megabytes;
+use crate::database;
 
 /// Give room that is no longer used back to the disk
 #[derive(clap::Args)]
@@ -17,6 +17,9 @@ pub struct Args {
     /// Drop feature rows too; they are made again when they are needed
     #[arg(long)]
     caches: bool,
+    /// Forget the history too: what was done so far can then not be taken back
+    #[arg(long)]
+    history: bool,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -24,8 +27,11 @@ pub struct Args {
 
 /// Shrinks it.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let mut db = MotionDb::open(&args.db)?;
+    let mut db = database::open(&args.db)?;
     let before = db.summary()?.file_bytes;
+    if args.history {
+        db.forget_history()?;
+    }
     db.vacuum(args.caches)?;
     let after = db.summary()?.file_bytes;
     if args.json {

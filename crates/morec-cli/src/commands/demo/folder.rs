@@ -9,6 +9,7 @@ use morec::synth::Take;
 use rayon::prelude::*;
 
 use crate::commands::convert::write_clip;
+use crate::output;
 
 /// Says that a folder is a demo's, so that a second demo may write over it.
 const MARKER: &str = ".morec-demo";
@@ -40,7 +41,8 @@ impl DemoFolder {
         for part in ["clips", "new"] {
             std::fs::create_dir_all(folder.join(part)).with_context(shown)?;
         }
-        std::fs::write(&marker, MARKER_TEXT).with_context(shown)?;
+        output::write_whole(&marker, |out| out.write_all(MARKER_TEXT.as_bytes()))
+            .with_context(shown)?;
         Ok(Self(folder.to_owned()))
     }
 
@@ -68,7 +70,8 @@ impl DemoFolder {
 
     fn write_text(&self, name: &str, text: &str) -> Result<()> {
         let path = self.path(name);
-        std::fs::write(&path, text).with_context(|| path.display().to_string())
+        output::write_whole(&path, |out| out.write_all(text.as_bytes()))
+            .with_context(|| path.display().to_string())
     }
 
     fn path(&self, name: &str) -> PathBuf {

@@ -219,13 +219,14 @@ impl ClipReport {
     }
 
     fn write_joints(&self, out: &mut dyn Write) -> io::Result<()> {
-        let indented = |joint: &JointReport| format!("{}{}", "  ".repeat(joint.depth), joint.name);
-        let width = self
-            .joints
-            .iter()
-            .map(|j| indented(j).chars().count())
-            .max()
-            .unwrap_or(0);
+        // A file may hold names and chains of any length; roles beside them are read up to a page's width.
+        const WIDEST: usize = 60;
+        let indented = |joint: &JointReport| {
+            let depth = joint.depth.min(WIDEST / 2);
+            format!("{}{}", "  ".repeat(depth), joint.name)
+        };
+        let widths = self.joints.iter().map(|j| indented(j).chars().count());
+        let width = widths.max().unwrap_or(0).min(WIDEST);
         for joint in depth_first(&self.joints)
             .into_iter()
             .map(|j| &self.joints[j])

@@ -8,7 +8,7 @@ use clap::ValueEnum;
 use morec::smooth::CompressedClip;
 
 use crate::commands::convert::write_clip;
-use crate::files::write_whole;
+use crate::output::write_whole;
 
 /// What is written.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]

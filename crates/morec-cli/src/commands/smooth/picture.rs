@@ -6,7 +6,8 @@ use anyhow::{Context, Result, anyhow, bail};
 use morec::clip::{Clip, Skeleton};
 use morec::smooth::{CompressedClip, Kind};
 
-use crate::files::{some_of, write_whole};
+use crate::files::some_of;
+use crate::output::write_whole;
 
 /// What can follow a joint's name.
 const CHANNELS: [(&str, Kind, Option<usize>); 8] = [

@@ -11,9 +11,9 @@ use morec::live::Recording;
 
 use crate::commands::recognize::open_index;
 use crate::commands::train::trained;
-use crate::files::write_whole;
 use crate::live::keep::write_bvh;
 use crate::material::MaterialArgs;
+use crate::output::write_whole;
 
 /// Takes, labels, and the index of them.
 pub struct Lessons {
@@ -98,7 +98,7 @@ impl Lessons {
             "--labels".as_ref(),
             labels.as_os_str(),
         ];
-        let (index, report, _) = trained(&Training::try_parse_from(args)?.material)?;
+        let (index, report, _) = trained(&Training::try_parse_from(args)?.material, &self.path)?;
         let bytes = index.to_bytes()?;
         write_whole(&self.path, |out| out.write_all(&bytes))
             .with_context(|| self.path.display().to_string())?;

@@ -155,6 +155,17 @@ pub fn mirrored(bone: usize) -> usize {
 /// Bones as a set: bit `b` is bone `b`.
 pub type BoneMask = u64;
 
+/// A body shows its hips, and so many other joints that play a role.
+const BODY_JOINTS: u32 = 5;
+
+/// Whether bones make a body that can be recognised, and not only some message in the form of one.
+pub fn is_body(mask: BoneMask) -> bool {
+    let plays = |bone: &usize| mask >> bone & 1 == 1 && HUMANOID[*bone].role.is_some();
+    let hips = HUMANOID.iter().position(|bone| bone.parent.is_none());
+    let joints = (0..HUMANOID_BONES).filter(plays).count() as u32;
+    hips.is_some_and(|hips| mask >> hips & 1 == 1) && joints > BODY_JOINTS
+}
+
 /// The nearest bone above `bone` that is in `sent`.
 pub fn parent_among(bone: usize, sent: BoneMask) -> Option<usize> {
     std::iter::successors(HUMANOID[bone].parent, |&b| HUMANOID[b].parent)

@@ -80,12 +80,22 @@ impl<P: Peer> Ports<P> {
         true
     }
 
-    /// Forgets `peer`, if it was here earlier: it is another sender. Says whether it was.
+    /// Where the sender is now.
+    pub(super) fn now(&self) -> P {
+        self.now
+    }
+
+    /// Forgets `peer`, if it was here earlier: it is another sender, and this one stays where it is. Says whether it was.
     pub(super) fn part_with(&mut self, peer: P) -> bool {
         let earlier = self
             .earlier
             .iter_mut()
             .find(|earlier| **earlier == Some(peer));
-        earlier.is_some_and(|earlier| earlier.take().is_some())
+        let parted = earlier.is_some_and(|earlier| earlier.take().is_some());
+        if parted {
+            // Two that send from one machine must not be taken for one that roams, back and forth without end.
+            self.since_secs = f64::NEG_INFINITY;
+        }
+        parted
     }
 }

@@ -14,7 +14,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use super::clock::SenderClock;
-use super::humanoid::{BoneMask, HUMANOID_BONES, parent_among};
+use super::humanoid::{BoneMask, HUMANOID_BONES, is_body, parent_among};
 use super::message::{Said, mirror, seen_in_mirror, understand};
 use super::peers::{Peer, Ports};
 use super::rest::is_t_pose;
@@ -33,6 +33,8 @@ const LEARN_SECS: f64 = 0.25;
 const FORGET_SECS: f64 = 2.0;
 /// A sender that has been silent for so long has stopped, for now.
 const GONE_SECS: f64 = 1.0;
+/// Senders that are watched until they show a body; a place is theirs only then.
+const NEWCOMERS: usize = 16;
 /// A time stamp that lies back by less than this is a packet that was overtaken; by more, a sender begun anew.
 const LATE_SECS: f64 = 1.0;
 
@@ -61,6 +63,9 @@ impl Default for VmcOptions {
 ///
 /// Times are seconds on one clock of the caller's that never goes back; frames are stamped on the same clock, steadied by
 /// the sender's where it sends one. Takes no memory once every sender has been seen for a while.
+///
+/// A performer's place is given to a sender that has shown a body (its hips and limbs) for a quarter of a second, and is
+/// free again a second after the last body: packets of another kind neither take nor keep one.
 #[derive(Debug)]
 pub struct VmcReceiver<P> {
     options: VmcOptions,
@@ -68,6 +73,7 @@ pub struct VmcReceiver<P> {
     ready: Ready,
     counts: SourceCounts,
     begun_secs: Option<f64>,
+    refused: Option<P>,
 }
 
 /// What is complete and waits to be taken.
@@ -94,7 +100,8 @@ struct Bone {
 #[derive(Debug)]
 struct Sender<P> {
     ports: Ports<P>,
-    actor: Actor,
+    /// Its place; none before it has shown a body.
+    actor: Option<Actor>,
     bones: [Bone; HUMANOID_BONES],
     root: (Vec3, Quat),
     /// Bones that the open frame holds.
@@ -104,6 +111,8 @@ struct Sender<P> {
     sent_secs: Option<f64>,
     clock: SenderClock,
     heard_secs: f64,
+    /// When it last showed a body.
+    shown_secs: f64,
     /// No performer to be seen, it says.
     bad: bool,
     gone: bool,
@@ -121,7 +130,13 @@ impl<P: Peer> VmcReceiver<P> {
             ready: Ready::default(),
             counts: SourceCounts::default(),
             begun_secs: None,
+            refused: None,
         }
+    }
+
+    /// A sender that showed a body lately and has no place, as all are taken.
+    pub fn take_refused(&mut self) -> Option<P> {
+        self.refused.take()
     }
 
     /// What it has seen so far.
@@ -137,53 +152,87 @@ impl<P: Peer> VmcReceiver<P> {
     /// Takes a datagram that came from `peer` at `now_secs`. Any bytes will do.
     pub fn packet(&mut self, peer: P, now_secs: f64, bytes: &[u8]) {
         self.counts.packets += 1;
-        let begun_secs = *self.begun_secs.get_or_insert(now_secs);
+        self.begun_secs.get_or_insert(now_secs);
         let Some(at) = self.sender(peer, now_secs) else {
             self.counts.refused += 1;
             return;
         };
         let sender = &mut self.senders[at];
-        if sender.gone {
-            sender.gone = false;
-            sender.clock = SenderClock::default();
-            self.counts.interruptions += 1;
-        }
         sender.heard_secs = now_secs;
         sender.ports.hear(now_secs);
+        self.with(at, now_secs, |taking| taking.datagram(bytes));
+    }
+
+    /// Lets a sender take what came; it may get a place by that.
+    fn with(&mut self, at: usize, now_secs: f64, take: impl FnOnce(&mut Taking<'_, P>)) {
+        let place = self.free_place(at);
+        let sender = &mut self.senders[at];
+        let newcomer = sender.actor.is_none();
         let mut taking = Taking {
             sender,
             ready: &mut self.ready,
             counts: &mut self.counts,
             options: &self.options,
             now_secs,
-            begun_secs,
+            begun_secs: self.begun_secs.unwrap_or(now_secs),
+            place,
+            crowded: false,
         };
-        taking.datagram(bytes);
+        take(&mut taking);
+        if taking.crowded {
+            self.counts.refused += 1;
+            self.refused = Some(self.senders[at].ports.now());
+        }
+        let Some(actor) = self.senders[at].actor.filter(|_| newcomer) else {
+            return;
+        };
+        // Whoever had the place before has gone.
+        let (before, mut index) = (self.senders.len(), 0);
+        self.senders.retain(|sender| {
+            let keep = index == at || sender.actor != Some(actor);
+            index += 1;
+            keep
+        });
+        self.counts.interruptions += u64::from(self.senders.len() < before);
+    }
+
+    /// A place for a sender that has none: one that nobody had, else one of somebody who has gone.
+    fn free_place(&self, at: usize) -> Option<Actor> {
+        if self.senders[at].actor.is_some() {
+            return None;
+        }
+        let most = self.options.actors.clamp(1, MAX_ACTORS) as u16;
+        let taken = |actor: &Actor, here: bool| {
+            let mut senders = self.senders.iter();
+            senders.any(|s| s.actor == Some(*actor) && (here || !s.gone))
+        };
+        let mut places = (0..most).map(Actor);
+        let unused = places.clone().find(|actor| !taken(actor, true));
+        unused.or_else(|| places.find(|actor| !taken(actor, false)))
     }
 
     /// Time passes: closes frames after a silence, and says who has gone.
     pub fn tick(&mut self, now_secs: f64) {
-        let begun_secs = self.begun_secs.unwrap_or(now_secs);
-        for sender in &mut self.senders {
-            let quiet = sender.fresh != 0 && now_secs - sender.last_bone_secs >= QUIET_SECS;
-            let gone = !sender.gone && now_secs - sender.heard_secs > GONE_SECS;
-            let (ready, counts, options) = (&mut self.ready, &mut self.counts, &self.options);
-            if quiet {
-                Taking {
-                    sender,
-                    ready,
-                    counts,
-                    options,
-                    now_secs,
-                    begun_secs,
-                }
-                .close();
+        let mut at = 0;
+        while at < self.senders.len() {
+            let sender = &self.senders[at];
+            if sender.fresh != 0 && now_secs - sender.last_bone_secs >= QUIET_SECS {
+                self.with(at, now_secs, |taking| taking.close());
             }
-            if gone {
+            at += 1;
+        }
+        for sender in &mut self.senders {
+            if let Some(actor) = sender.actor
+                && !sender.gone
+                && now_secs - sender.shown_secs > GONE_SECS
+            {
                 sender.gone = true;
-                self.ready.items.push_back(Item::Gone(sender.actor));
+                self.ready.items.push_back(Item::Gone(actor));
             }
         }
+        let silent = |sender: &Sender<P>| now_secs - sender.heard_secs > GONE_SECS;
+        self.senders
+            .retain(|sender| sender.actor.is_some() || !silent(sender));
     }
 
     /// What is complete, oldest first; fills `frame` for [`Next::Frame`].
@@ -199,7 +248,7 @@ impl<P: Peer> VmcReceiver<P> {
         })
     }
 
-    /// The sender at `peer`, a new one if need be and there is room. A sender that has gone makes room.
+    /// The sender at `peer`, a new one without a place if need be.
     fn sender(&mut self, peer: P, now_secs: f64) -> Option<usize> {
         if let Some(at) = self
             .senders
@@ -217,29 +266,27 @@ impl<P: Peer> VmcReceiver<P> {
         if !parted && let Some(at) = self.senders.iter_mut().position(roams) {
             return Some(at);
         }
-        let gone = self.senders.iter().position(|sender| sender.gone);
-        let most = self.options.actors.clamp(1, MAX_ACTORS);
-        match gone {
-            Some(at) => {
-                self.senders[at] = Sender::new(peer, self.senders[at].actor, now_secs);
-                self.counts.interruptions += 1;
-                Some(at)
-            }
-            None if self.senders.len() < most => {
-                self.senders.push(Sender::new(
-                    peer,
-                    Actor(self.senders.len() as u16),
-                    now_secs,
-                ));
-                Some(self.senders.len() - 1)
-            }
-            None => None,
+        let newcomers = || {
+            let all = self.senders.iter().enumerate();
+            all.filter(|(_, sender)| sender.actor.is_none())
+        };
+        if newcomers().count() < NEWCOMERS {
+            self.senders.push(Sender::new(peer, now_secs));
+            return Some(self.senders.len() - 1);
         }
+        // Whoever shows least makes room; those who are about to show a body do not.
+        let bones = |sender: &Sender<P>| sender.alive(now_secs).count_ones();
+        let (least, sender) = newcomers().min_by_key(|(_, sender)| bones(sender))?;
+        if is_body(sender.alive(now_secs)) {
+            return None;
+        }
+        self.senders[least] = Sender::new(peer, now_secs);
+        Some(least)
     }
 }
 
 impl<P: Peer> Sender<P> {
-    fn new(peer: P, actor: Actor, now_secs: f64) -> Self {
+    fn new(peer: P, now_secs: f64) -> Self {
         let bone = Bone {
             position: Vec3::zeros(),
             rotation: Quat::identity(),
@@ -247,7 +294,7 @@ impl<P: Peer> Sender<P> {
         };
         Self {
             ports: Ports::new(peer, now_secs),
-            actor,
+            actor: None,
             bones: [bone; HUMANOID_BONES],
             root: (Vec3::zeros(), Quat::identity()),
             fresh: 0,
@@ -255,6 +302,7 @@ impl<P: Peer> Sender<P> {
             sent_secs: None,
             clock: SenderClock::default(),
             heard_secs: now_secs,
+            shown_secs: now_secs,
             bad: false,
             gone: false,
             rig: None,
@@ -289,6 +337,10 @@ struct Taking<'a, P> {
     options: &'a VmcOptions,
     now_secs: f64,
     begun_secs: f64,
+    /// A place, if it has none and shows a body.
+    place: Option<Actor>,
+    /// It shows a body, and there is no place.
+    crowded: bool,
 }
 
 impl<P: Peer> Taking<'_, P> {
@@ -311,6 +363,10 @@ impl<P: Peer> Taking<'_, P> {
 
     /// Whether the sender stamped this packet earlier than one before it.
     fn was_overtaken(&self, bytes: &[u8]) -> bool {
+        if self.sender.gone {
+            // Whoever comes back may have begun its clock anew.
+            return false;
+        }
         let mut stamp = None;
         osc::read(bytes, &mut |message: Message| {
             if message.address == "/VMC/Ext/T"
@@ -386,6 +442,11 @@ impl<P: Peer> Taking<'_, P> {
             self.sender.sent_secs = sent_secs;
             return;
         }
+        self.show();
+        if self.sender.gone {
+            self.counts.incomplete += 1;
+            return;
+        }
         let arrival_secs = self.sender.last_bone_secs;
         let time_secs = self
             .sender
@@ -396,7 +457,7 @@ impl<P: Peer> Taking<'_, P> {
             return;
         }
         self.learn();
-        let Some((mask, rig)) = self.sender.rig.clone() else {
+        let (Some((mask, rig)), Some(actor)) = (self.sender.rig.clone(), self.sender.actor) else {
             self.counts.incomplete += 1;
             return;
         };
@@ -405,12 +466,24 @@ impl<P: Peer> Taking<'_, P> {
         self.pose(mask, &mut frame);
         frame.time_secs = time_secs;
         frame.wall_secs = arrival_secs;
-        frame.actor = self.sender.actor;
+        frame.actor = actor;
         if self.options.skip_t_pose && is_t_pose(&frame.key_pose(&rig)) {
             self.counts.not_motion += 1;
             self.ready.spare.push(frame);
         } else {
             self.ready.items.push_back(Item::Frame(frame));
+        }
+    }
+
+    /// Notes that a body is seen, if one is; who was gone is back by that.
+    fn show(&mut self) {
+        if !is_body(self.sender.alive(self.now_secs)) {
+            return;
+        }
+        self.sender.shown_secs = self.now_secs;
+        if std::mem::take(&mut self.sender.gone) {
+            self.sender.clock = SenderClock::default();
+            self.counts.interruptions += 1;
         }
     }
 
@@ -429,10 +502,15 @@ impl<P: Peer> Taking<'_, P> {
             FORGET_SECS
         };
         if self.now_secs - since_secs >= patience_secs {
+            let place = self.sender.actor.or(self.place);
+            let Some(actor) = place.filter(|_| self.sender.actor.is_some() || is_body(alive))
+            else {
+                self.crowded = is_body(alive);
+                return;
+            };
+            self.sender.actor = Some(actor);
             let rig = Arc::new(rig_of(alive, |bone| self.sender.bones[bone].position));
-            self.ready
-                .items
-                .push_back(Item::Rig(self.sender.actor, rig.clone()));
+            self.ready.items.push_back(Item::Rig(actor, rig.clone()));
             self.sender.rig = Some((alive, rig));
             self.sender.changed_secs = None;
         }

@@ -375,7 +375,9 @@ fn senders_are_told_apart_bounded_and_replaced_when_they_have_gone() {
             heard.packet(peer, f64::from(i) / 60.0, &rotations_only(AHEAD));
         }
     }
-    assert_eq!(heard.receiver.counts().refused, 60);
+    // The third shows a body after a quarter of a second, and is refused from then on.
+    assert!((40..60).contains(&heard.receiver.counts().refused));
+    assert_eq!(heard.receiver.take_refused(), Some(3));
     let actors = |heard: &Heard| {
         heard
             .frames
@@ -557,4 +559,129 @@ fn two_senders_on_one_machine_are_two_performers_though_they_begin_together() {
         }
     }
     assert!(frames.iter().all(|n| *n > 180), "{frames:?}");
+}
+
+/// What arrived at which place, and how many frames each place had.
+fn frames_of(receiver: &mut VmcReceiver<At>, frames: &mut std::collections::BTreeMap<u16, usize>) {
+    let mut frame = Frame::default();
+    while let Some(next) = receiver.next(&mut frame) {
+        if let Next::Frame = next {
+            *frames.entry(frame.actor.0).or_default() += 1;
+        }
+    }
+}
+
+/// One byte, or a bone that is no body, twice a second: neither takes a place nor keeps one.
+#[test]
+fn rubbish_takes_no_performers_place() {
+    let mut stray = vec![];
+    bone(&mut stray, "Head", [0.0; 3], [0.0, 0.0, 0.0, 1.0]);
+    for rubbish in [&b"x"[..], &stray] {
+        for host in [1, 2] {
+            let options = VmcOptions {
+                actors: 1,
+                ..Default::default()
+            };
+            let mut receiver = VmcReceiver::new(&options);
+            let mut sender = VmcSender::new(Bundling::Whole, false);
+            let mut frames = std::collections::BTreeMap::new();
+            for i in 0..600 {
+                let secs = f64::from(i) / 60.0;
+                if i % 30 == 0 {
+                    receiver.packet(At(host, 9), secs, rubbish);
+                }
+                // The performer comes after three seconds, and leaves for a while after five.
+                let here = (180..300).contains(&i) || i >= 480;
+                for packet in sender.frame(secs, &swinging(secs), &roles()) {
+                    if here {
+                        receiver.packet(At(1, 50_000), secs, packet);
+                    }
+                }
+                receiver.tick(secs + 0.006);
+                frames_of(&mut receiver, &mut frames);
+            }
+            let frames = Vec::from_iter(frames);
+            assert!(frames.len() == 1 && frames[0].1 > 170, "{host}: {frames:?}");
+        }
+    }
+}
+
+/// A port that showed a body and goes on with rubbish loses its place to the next who shows one.
+#[test]
+fn rubbish_keeps_no_place() {
+    let options = VmcOptions {
+        actors: 1,
+        ..Default::default()
+    };
+    let mut receiver = VmcReceiver::new(&options);
+    let mut sender = VmcSender::new(Bundling::Whole, false);
+    let mut late = std::collections::BTreeMap::new();
+    for i in 0..400 {
+        let secs = f64::from(i) / 60.0;
+        for packet in sender.frame(secs, &swinging(secs), &roles()) {
+            if i < 60 {
+                receiver.packet(At(1, 1), secs, packet);
+            } else {
+                receiver.packet(At(1, 1), secs, b"x");
+                receiver.packet(At(2, 1), secs, packet);
+            }
+        }
+        receiver.tick(secs + 0.006);
+        let mut frames = std::collections::BTreeMap::new();
+        frames_of(&mut receiver, &mut frames);
+        if i >= 60 {
+            late.extend(frames.into_iter().map(|(actor, count)| (i, (actor, count))));
+        }
+    }
+    assert!(late.len() > 200, "{}", late.len());
+    assert!(
+        receiver.counts().refused > 0,
+        "refused until the place was free"
+    );
+}
+
+/// With one place, two that begin together on one machine: the first is recognised, the second refused and named.
+#[test]
+fn of_two_that_begin_together_one_is_recognised_where_there_is_one_place() {
+    let options = VmcOptions {
+        actors: 1,
+        ..Default::default()
+    };
+    let mut receiver = VmcReceiver::new(&options);
+    let mut senders = [0, 1].map(|_| VmcSender::new(Bundling::Bytes(1500), false));
+    let mut frames = std::collections::BTreeMap::new();
+    let mut refused = std::collections::BTreeSet::new();
+    for i in 0..240 {
+        let secs = f64::from(i) / 60.0;
+        for (s, sender) in senders.iter_mut().enumerate() {
+            for packet in sender.frame(secs, &swinging(secs + s as f64), &roles()) {
+                receiver.packet(At(1, 50_000 + s as u32), secs, packet);
+            }
+            receiver.tick(secs);
+        }
+        frames_of(&mut receiver, &mut frames);
+        refused.extend(receiver.take_refused().map(|At(_, port)| port));
+    }
+    assert!(frames.len() == 1 && frames[&0] > 180, "{frames:?}");
+    assert_eq!(refused.len(), 1, "always the same one: {refused:?}");
+}
+
+/// A flood from ever new ports leaves room for a performer.
+#[test]
+fn a_flood_from_many_ports_leaves_room() {
+    let mut receiver = VmcReceiver::new(&VmcOptions::default());
+    let mut sender = VmcSender::new(Bundling::Whole, false);
+    let mut frames = std::collections::BTreeMap::new();
+    for i in 0..240u32 {
+        let secs = f64::from(i) / 60.0;
+        for port in 0..100 {
+            receiver.packet(At(2, 100 * i + port), secs, b"/VMC/Ext/OK");
+        }
+        for packet in sender.frame(secs, &swinging(secs), &roles()) {
+            receiver.packet(At(1, 7), secs, packet);
+        }
+        receiver.tick(secs + 0.006);
+        frames_of(&mut receiver, &mut frames);
+    }
+    assert!(frames.values().sum::<usize>() > 200, "{frames:?}");
 }

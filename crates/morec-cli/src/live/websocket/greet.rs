@@ -1,0 +1,126 @@
+//! The handshake: in time, small, and from whom it may come.
+
+use std::io::{self, ErrorKind, Read, Write};
+use std::net::TcpStream;
+use std::time::{Duration, Instant};
+
+use tungstenite::handshake::server::{ErrorResponse, Request, Response};
+use tungstenite::http::StatusCode;
+use tungstenite::protocol::WebSocketConfig;
+use tungstenite::{WebSocket, accept_hdr_with_config};
+
+/// How long a listener may take to say hello, all of it; or to take a packet.
+const PATIENCE: Duration = Duration::from_secs(2);
+/// A listener says pings and goodbyes; nothing that it sends is read.
+const LARGEST_MESSAGE: usize = 4096;
+
+pub type Socket = WebSocket<Timed>;
+
+/// A stream whose reading must be done by a moment, however slowly bytes come.
+pub struct Timed {
+    stream: TcpStream,
+    until: Option<Instant>,
+}
+
+impl Read for Timed {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        if let Some(until) = self.until {
+            let left = until.saturating_duration_since(Instant::now());
+            if left.is_zero() {
+                return Err(ErrorKind::ConnectionAborted.into());
+            }
+            self.stream.set_read_timeout(Some(left))?;
+        }
+        self.stream.read(buffer)
+    }
+}
+
+impl Write for Timed {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.stream.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.stream.flush()
+    }
+}
+
+/// Says hello; `None` if the other side does not, in time, or may not listen.
+pub fn greet(stream: TcpStream, origin: Option<&str>) -> Option<Socket> {
+    stream.set_write_timeout(Some(PATIENCE)).ok()?;
+    stream.set_nodelay(true).ok()?;
+    let timed = Timed {
+        stream,
+        until: Some(Instant::now() + PATIENCE),
+    };
+    let config = WebSocketConfig::default()
+        .max_message_size(Some(LARGEST_MESSAGE))
+        .max_frame_size(Some(LARGEST_MESSAGE));
+    #[allow(clippy::result_large_err)] // The handshake's own type.
+    let check = |request: &Request, response: Response| match may_listen(request, origin) {
+        true => Ok(response),
+        false => {
+            let why = "this page may not listen: start morec with ?origin=… of the page";
+            let mut refusal = ErrorResponse::new(Some(why.to_owned()));
+            *refusal.status_mut() = StatusCode::FORBIDDEN;
+            Err(refusal)
+        }
+    };
+    let mut socket = accept_hdr_with_config(timed, check, Some(config)).ok()?;
+    // From here on reading is only for pings and goodbyes.
+    let timed = socket.get_mut();
+    timed.until = None;
+    timed
+        .stream
+        .set_read_timeout(Some(Duration::from_millis(1)))
+        .ok()?;
+    Some(socket)
+}
+
+/// Browsers name the page's origin, other programs none.
+fn may_listen(request: &Request, allowed: Option<&str>) -> bool {
+    let Some(origin) = request.headers().get("Origin") else {
+        return true;
+    };
+    let Ok(origin) = origin.to_str() else {
+        return false;
+    };
+    allowed == Some(origin) || is_of_this_machine(origin)
+}
+
+fn is_of_this_machine(origin: &str) -> bool {
+    let Some((_, host)) = origin.split_once("://") else {
+        return false;
+    };
+    let host = match host.strip_prefix("[::1]") {
+        Some(port) if port.is_empty() || port.starts_with(':') => return true,
+        _ => host.split(':').next().unwrap_or_default(),
+    };
+    host.eq_ignore_ascii_case("localhost") || host == "127.0.0.1"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_of_this_machine;
+
+    #[test]
+    fn origins_of_this_machine_are_told_from_others() {
+        for origin in [
+            "http://localhost",
+            "http://127.0.0.1:8000",
+            "https://[::1]:3",
+            "http://LOCALHOST:1",
+        ] {
+            assert!(is_of_this_machine(origin), "{origin}");
+        }
+        for origin in [
+            "null",
+            "https://example.org",
+            "http://localhost.example.org",
+            "http://[::1].org",
+            "",
+        ] {
+            assert!(!is_of_this_machine(origin), "{origin}");
+        }
+    }
+}

@@ -1,0 +1,227 @@
+//! Labels in a database: corrected, rehearsed, misspelt, taken back.
+
+use serde_json::Value;
+
+use crate::db::studio;
+use crate::kit::Folder;
+
+fn json(folder: &Folder, args: &[&str]) -> Value {
+    let args = [args, &["--json"]].concat();
+    serde_json::from_str(&folder.morec(&args).ok()).unwrap()
+}
+
+fn labelled() -> (Folder, String) {
+    let (folder, takes) = studio(2);
+    folder.morec(&["db", "import", "m.mdb", "clips"]).ok();
+    folder.morec(&["db", "label", "m.mdb", "labels.tsv"]).ok();
+    (folder, takes[0].clip.name.clone())
+}
+
+#[test]
+fn a_corrected_table_replaces_what_was_there() {
+    let (folder, _) = labelled();
+    let text = std::fs::read_to_string(folder.path().join("labels.tsv")).unwrap();
+    let corrected = text.replace("bow", "nod");
+    std::fs::write(folder.path().join("corrected.tsv"), corrected).unwrap();
+    let label = ["db", "label", "m.mdb", "corrected.tsv", "--replace"];
+    let plan = json(&folder, &[&label[..], &["--dry-run"]].concat());
+    let renamed = plan["samples"]["renamed"].as_u64().unwrap();
+    assert!(renamed > 0 && plan["samples"]["gone"] == 0, "{plan}");
+    assert_eq!(plan["changes"].as_array().unwrap().len() as u64, renamed);
+    let class = |at: usize| json(&folder, &["db", "classes", "m.mdb"])[at].clone();
+    assert_eq!(class(0)["name"], "bow");
+    assert_eq!(json(&folder, &label)["samples"]["renamed"], renamed);
+    let classes = json(&folder, &["db", "classes", "m.mdb"]);
+    let nod = classes
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|c| c["name"] == "nod")
+        .unwrap();
+    assert_eq!(nod["accepted"], renamed);
+    let bow = classes
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|c| c["name"] == "bow");
+    assert!(bow.is_none_or(|bow| bow["accepted"] == 0), "{classes}");
+}
+
+#[test]
+fn misspelt_names_are_errors_that_name_the_nearest() {
+    let (folder, clip) = labelled();
+    let typo = format!("{clip}s");
+    let one = ["db", "label", "m.mdb", "--class", "bow", "--clip", &typo];
+    let wrong: [&[&str]; 9] = [
+        &one,
+        &["db", "clips", "m.mdb", "--name", &typo],
+        &["db", "clips", "m.mdb", "--class", "bows"],
+        &["db", "cut", "m.mdb", "--name", &typo],
+        &[
+            "db",
+            "group",
+            "m.mdb",
+            "--of",
+            "labels",
+            "--classes",
+            "bows",
+        ],
+        &["db", "propose", "m.mdb", "--classes", "bows"],
+        &["db", "export", "m.mdb", "out.tsv", "--class", "bows"],
+        &["db", "report", "m.mdb", "-o", "out.html", "--name", &typo],
+        &["db", "classes", "m.mdb", "--samples", "bows"],
+    ];
+    for args in wrong {
+        let ran = folder.morec(args);
+        assert_eq!(ran.code, Some(1), "{args:?}: {ran:?}");
+        assert!(ran.err.contains("did you mean"), "{args:?}: {}", ran.err);
+    }
+    let text = "clip\tstart_secs\tstop_secs\tclass\n".to_owned() + &typo + "\t0\t1\tbow\n";
+    std::fs::write(folder.path().join("typo.tsv"), text).unwrap();
+    let ran = folder.morec(&["db", "label", "m.mdb", "typo.tsv"]);
+    assert!(
+        ran.code == Some(1) && ran.err.contains("did you mean"),
+        "{ran:?}"
+    );
+}
+
+#[test]
+fn changes_of_every_kind_are_taken_back_by_number() {
+    let (folder, clip) = labelled();
+    let classes = json(&folder, &["db", "classes", "m.mdb"]);
+    folder.morec(&["db", "cut", "m.mdb"]).ok();
+    let refused = folder.morec(&["db", "label", "m.mdb", "--undo"]);
+    assert!(
+        refused.code == Some(1) && refused.err.contains("cut 2 clips"),
+        "{refused:?}"
+    );
+    assert_eq!(json(&folder, &["db", "classes", "m.mdb"]), classes);
+    folder
+        .morec(&["db", "clips", "m.mdb", "--name", &clip, "--remove"])
+        .ok();
+    assert!(folder.morec(&["db", "clips", "m.mdb", "--remove"]).code == Some(1));
+    let history = json(&folder, &["db", "history", "m.mdb"]);
+    let steps: Vec<&str> = history
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|step| step["what"].as_str().unwrap())
+        .collect();
+    let labels = json(&folder, &["db", "info", "m.mdb"])["accepted"]
+        .as_u64()
+        .unwrap();
+    assert!(labels > 0);
+    assert_eq!(steps[0], "remove 1 clips");
+    assert_eq!(steps[1], "cut 2 clips by kernel");
+    assert_eq!(steps[3], "import 2 files");
+    let number = history[1]["id"].to_string();
+    let needed = folder.morec(&["db", "undo", "m.mdb", &number]);
+    assert!(
+        needed.code == Some(1) && needed.err.contains("remove 1 clips"),
+        "{needed:?}"
+    );
+    let would = folder.morec(&["db", "undo", "m.mdb", "--dry-run"]).ok();
+    assert!(
+        would.contains("would be taken back") && would.contains("samples: "),
+        "{would}"
+    );
+    folder.morec(&["db", "undo", "m.mdb"]).ok();
+    folder.morec(&["db", "undo", "m.mdb", &number]).ok();
+    let info = json(&folder, &["db", "info", "m.mdb"]);
+    assert_eq!((&info["segments"], &info["clips"]), (&0.into(), &2.into()));
+    assert_eq!(json(&folder, &["db", "classes", "m.mdb"]), classes);
+    folder.morec(&["db", "redo", "m.mdb", &number]).ok();
+    assert!(
+        folder
+            .morec(&["db", "check", "m.mdb"])
+            .ok()
+            .contains("whole")
+    );
+}
+
+#[test]
+fn groups_leave_nothing_behind() {
+    let (folder, _) = labelled();
+    folder
+        .morec(&[
+            "db",
+            "group",
+            "m.mdb",
+            "--of",
+            "labels",
+            "--name-as",
+            "group",
+        ])
+        .ok();
+    let forgotten = folder
+        .morec(&["db", "classes", "m.mdb", "--forget", "group_*"])
+        .ok();
+    assert_eq!(forgotten.lines().count(), 1, "{forgotten}");
+    let classes = json(&folder, &["db", "classes", "m.mdb"]);
+    assert_eq!(classes.as_array().unwrap().len(), 2);
+}
+
+#[test]
+fn samples_and_indexes_by_name_and_number() {
+    let (folder, clip) = labelled();
+    let samples = json(&folder, &["db", "samples", "m.mdb", "--clip", &clip]);
+    let count = samples.as_array().unwrap().len();
+    let number = samples[0]["id"].to_string();
+    let moved = json(
+        &folder,
+        &[
+            "db", "samples", "m.mdb", "--move", &number, "--start", "0.5", "--stop", "0.75",
+        ],
+    );
+    assert_eq!(
+        (&moved[0]["start_secs"], &moved[0]["stop_secs"]),
+        (&0.5.into(), &0.75.into())
+    );
+    folder
+        .morec(&["db", "samples", "m.mdb", "--remove", &number])
+        .ok();
+    assert_eq!(
+        folder
+            .morec(&["db", "samples", "m.mdb", "--remove", &number])
+            .code,
+        Some(1)
+    );
+    let left = json(&folder, &["db", "samples", "m.mdb", "--clip", &clip]);
+    assert_eq!(left.as_array().unwrap().len(), count - 1);
+    folder.morec(&["db", "undo", "m.mdb"]).ok();
+    folder.morec(&["db", "undo", "m.mdb"]).ok();
+    folder
+        .morec(&["train", "--db", "m.mdb", "-o", "a.index"])
+        .ok();
+    let indexes = json(&folder, &["db", "indexes", "m.mdb"]);
+    assert_eq!(
+        (&indexes[0]["name"], &indexes[0]["stale"]),
+        (&"a".into(), &false.into())
+    );
+    folder
+        .morec(&["db", "indexes", "m.mdb", "--write", "a", "-o", "b.index"])
+        .ok();
+    let read = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
+    assert_eq!(read("a.index"), read("b.index"));
+    let wrong = folder.morec(&["db", "indexes", "m.mdb", "--remove", "b"]);
+    assert!(wrong.err.contains("did you mean `a`"), "{wrong:?}");
+    let none = json(&folder, &["db", "indexes", "m.mdb", "--remove", "a"]);
+    assert_eq!(none, Value::Array(vec![]));
+}
+
+#[test]
+fn folders_of_label_tracks_come_back() {
+    let (folder, clip) = labelled();
+    folder
+        .morec(&["db", "clips", "m.mdb", "--rename", &clip, "x/y"])
+        .ok();
+    let all = json(&folder, &["db", "info", "m.mdb"])["accepted"].clone();
+    for form in ["audacity", "eaf"] {
+        folder
+            .morec(&["db", "export", "m.mdb", form, "--form", form])
+            .ok();
+        assert!(folder.path().join(form).read_dir().unwrap().count() == 2);
+        let again = json(&folder, &["db", "label", "m.mdb", form]);
+        assert_eq!(again["samples"]["unchanged"], all, "{form}: {again}");
+    }
+}

@@ -1,0 +1,155 @@
+//! What the command writes, and what it must never write over.
+
+use crate::db::studio;
+use crate::kit::{ARM_ASF, Folder, WAVE_AMC, WAVE_BVH};
+
+fn bytes(folder: &Folder, name: &str) -> Vec<u8> {
+    std::fs::read(folder.path().join(name)).unwrap()
+}
+
+/// Runs a command that names an input as its output: it fails, and the input is as it was.
+fn spares(folder: &Folder, input: &str, args: &[&str]) {
+    let before = bytes(folder, input);
+    let ran = folder.morec(args);
+    assert_eq!(ran.code, Some(1), "{args:?}: {ran:?}");
+    assert!(ran.err.contains(input), "{args:?}: {}", ran.err);
+    assert_eq!(bytes(folder, input), before, "{args:?}");
+}
+
+#[test]
+fn inputs_are_no_outputs() {
+    let (folder, takes) = studio(3);
+    folder.morec(&["db", "import", "m.mdb", "clips"]).ok();
+    folder.morec(&["db", "label", "m.mdb", "labels.tsv"]).ok();
+    let clip = format!("clips/{}.bvh", takes[0].clip.name);
+    let of_clip = takes[0].clip.name.as_str();
+    spares(&folder, "m.mdb", &["db", "report", "m.mdb", "-o", "m.mdb"]);
+    spares(
+        &folder,
+        "m.mdb",
+        &["db", "export", "m.mdb", "m.mdb", "--form", "tsv"],
+    );
+    let motion = ["db", "export", "m.mdb", "m.mdb", "--motion", of_clip];
+    spares(&folder, "m.mdb", &motion);
+    let search = ["db", "search", "m.mdb", of_clip, "--report", "m.mdb"];
+    spares(&folder, "m.mdb", &search);
+    spares(&folder, "m.mdb", &["train", "--db", "m.mdb", "-o", "m.mdb"]);
+    let train = ["train", "--clips", "clips", "--labels", "labels.tsv", "-o"];
+    spares(
+        &folder,
+        "labels.tsv",
+        &[&train[..], &["labels.tsv"]].concat(),
+    );
+    spares(&folder, &clip, &[&train[..], &[&clip]].concat());
+    spares(&folder, &clip, &["convert", &clip, "-o", &clip]);
+    spares(&folder, &clip, &["cut", &clip, "--plot", &clip]);
+    spares(&folder, &clip, &["smooth", &clip, "-o", &clip]);
+
+    folder.morec(&[&train[..], &["i.index"]].concat()).ok();
+    spares(
+        &folder,
+        &clip,
+        &["recognize", "i.index", &clip, "-o", &clip],
+    );
+    let index = ["recognize", "i.index", "clips", "-o", "i.index"];
+    spares(&folder, "i.index", &index);
+    // By another name of the same file, too.
+    std::fs::hard_link(folder.path().join("m.mdb"), folder.path().join("link")).unwrap();
+    spares(&folder, "m.mdb", &["db", "report", "m.mdb", "-o", "link"]);
+    assert!(
+        folder
+            .morec(&["db", "check", "m.mdb"])
+            .ok()
+            .contains("whole")
+    );
+}
+
+#[test]
+fn a_skeleton_is_an_input() {
+    let folder = Folder::with(&[("wave.amc", WAVE_AMC), ("arm.asf", ARM_ASF)]);
+    spares(
+        &folder,
+        "arm.asf",
+        &["convert", "wave.amc", "-o", "arm.asf"],
+    );
+}
+
+#[test]
+fn another_kind_of_file_is_not_lost() {
+    let folder = Folder::with(&[
+        ("a.bvh", WAVE_BVH),
+        ("labels.tsv", "clip\tclass\na\twave\n"),
+    ]);
+    let ran = folder.morec(&["convert", "a.bvh", "-o", "labels.tsv"]);
+    assert!(ran.err.contains("labels.tsv.old"), "{ran:?}");
+    assert_eq!(bytes(&folder, "labels.tsv.old"), b"clip\tclass\na\twave\n");
+}
+
+#[test]
+fn a_folder_is_no_file() {
+    let folder = Folder::with(&[("a.bvh", WAVE_BVH), ("out/readme", "")]);
+    let ran = folder.morec(&["convert", "a.bvh", "-o", "out"]);
+    assert!(
+        ran.code == Some(1) && ran.err.contains("found a folder"),
+        "{ran:?}"
+    );
+}
+
+/// A limit on the size of files stands in for a full disk: a write fails in its middle.
+#[cfg(unix)]
+#[test]
+fn a_full_disk_leaves_what_was_there() {
+    use std::process::Command;
+    let folder = Folder::with(&[("a.bvh", WAVE_BVH)]);
+    folder
+        .morec(&["convert", "a.bvh", "-o", "big.bvh", "--rate", "5000"])
+        .ok();
+    std::fs::write(folder.path().join("old.bvh"), WAVE_BVH).unwrap();
+    for target in ["new.bvh", "old.bvh"] {
+        let script = format!(
+            "trap '' XFSZ; ulimit -f 2; exec {} convert big.bvh -o {target}",
+            env!("CARGO_BIN_EXE_morec")
+        );
+        let ran = Command::new("sh")
+            .args(["-c", &script])
+            .current_dir(folder.path())
+            .output()
+            .unwrap();
+        assert_eq!(ran.status.code(), Some(1), "{ran:?}");
+    }
+    assert_eq!(bytes(&folder, "old.bvh"), WAVE_BVH.as_bytes());
+    let mut left: Vec<_> = std::fs::read_dir(folder.path())
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    left.sort();
+    assert_eq!(left, ["a.bvh", "big.bvh", "old.bvh"]);
+}
+
+/// A reader that goes away must not cost the report.
+#[cfg(unix)]
+#[test]
+fn a_closed_pipe_does_not_lose_the_report() {
+    use std::process::{Command, Stdio};
+    let (folder, _) = studio(3);
+    let found = "clip\tstart\tstop\tclass\n".to_owned();
+    std::fs::write(folder.path().join("found.tsv"), found).unwrap();
+    for command in [
+        "evaluate --truth labels.tsv --found found.tsv --clips clips --report report",
+        "crossval --clips clips --labels labels.tsv --by half --report report",
+    ] {
+        let mut running = Command::new(env!("CARGO_BIN_EXE_morec"))
+            .args(command.split(' '))
+            .current_dir(folder.path())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        // Nobody reads.
+        drop(running.stdout.take());
+        running.wait().unwrap();
+        let report = folder.path().join("report/report.html");
+        assert!(report.is_file(), "{command}");
+        std::fs::remove_file(report).unwrap();
+    }
+}

@@ -1,0 +1,74 @@
+//! Whole files in memory, up to a limit.
+
+use std::fs::File;
+use std::io::{self, ErrorKind, Read};
+use std::path::Path;
+
+/// The largest file that is read, bytes. The largest clips in use are a few hundred megabytes.
+pub const LARGEST_FILE: u64 = 2 << 30;
+
+/// The most that is read of something without a length: a pipe, a device, standard input.
+pub const LARGEST_STREAM: u64 = 512 << 20;
+
+/// A file's bytes.
+///
+/// # Errors
+/// The file cannot be read, or is larger than [`LARGEST_FILE`] or [`LARGEST_STREAM`]; nothing of a file that is too large
+/// is read.
+pub fn read_file(path: &Path) -> io::Result<Vec<u8>> {
+    let file = File::open(path)?;
+    let about = file.metadata()?;
+    if about.is_file() {
+        return read_up_to(file, about.len(), LARGEST_FILE);
+    }
+    read_stream(file)
+}
+
+/// All of a stream.
+///
+/// # Errors
+/// It cannot be read, or does not end within [`LARGEST_STREAM`].
+pub fn read_stream(stream: impl Read) -> io::Result<Vec<u8>> {
+    read_up_to(stream, 0, LARGEST_STREAM)
+}
+
+fn read_up_to(from: impl Read, length: u64, most: u64) -> io::Result<Vec<u8>> {
+    let too_large = || {
+        let text = format!("expected at most {} MB, found more", most >> 20);
+        io::Error::new(ErrorKind::FileTooLarge, text)
+    };
+    if length > most {
+        return Err(too_large());
+    }
+    let mut bytes = Vec::with_capacity(length as usize);
+    from.take(most + 1).read_to_end(&mut bytes)?;
+    match bytes.len() as u64 > most {
+        true => Err(too_large()),
+        false => Ok(bytes),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_does_not_end_is_refused() {
+        assert_eq!(read_up_to(&b"four"[..], 4, 4).unwrap(), b"four");
+        assert!(read_up_to(&b"fives"[..], 0, 4).is_err());
+        assert!(read_up_to(io::repeat(0), 0, 1 << 16).is_err());
+    }
+
+    /// A file with a hole in place of three gigabytes: its length alone is enough to refuse it.
+    #[test]
+    fn a_file_too_large_is_refused_unread() {
+        let folder = tempfile::TempDir::new().unwrap();
+        let path = folder.path().join("large.bvh");
+        let file = File::create(&path).unwrap();
+        if file.set_len(3 << 30).is_err() {
+            return;
+        }
+        let error = read_file(&path).unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::FileTooLarge);
+    }
+}

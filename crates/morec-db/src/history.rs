@@ -1,0 +1,196 @@
+//! One history for changes of every kind: each is a step that is done as a whole, taken back as a whole, and done again.
+//!
+//! Triggers of the schema write down each row as it was before a step touched it. Taking a step back puts these rows in
+//! place, in the reverse order, while the same triggers write down what was there: afterwards the step holds what doing
+//! it again needs. A removed clip therefore lies in the history once, and an imported one not at all.
+//!
+//! A step that is not the last can be taken back as long as no later one touched the same rows or depends on them. A new
+//! change forgets the steps that were taken back, as editors do.
+
+pub(crate) mod digest;
+#[cfg(test)]
+mod tests;
+mod tracked;
+mod turn;
+
+use std::collections::BTreeMap;
+
+use rusqlite::{Connection, OptionalExtension, Row, params};
+
+pub use turn::{Effect, Turned};
+
+use crate::time::now_secs;
+use crate::{DbError, MotionDb};
+
+/// So many steps can be taken back.
+pub const STEPS_KEPT: usize = 1000;
+
+/// So many bytes of motion and indexes are kept for taking back, the last step's aside.
+const BYTES_KEPT: i64 = 256 << 20;
+
+/// A change that was done, and can be taken back; or was taken back, and can be done again.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+pub struct Step {
+    /// Its number; later steps have greater ones.
+    pub id: i64,
+    /// What it did.
+    pub what: String,
+    /// When, seconds since 1970.
+    pub set_secs: i64,
+    /// Whether it has been taken back.
+    pub undone: bool,
+    /// How many rows of each table it touched.
+    pub rows: BTreeMap<String, usize>,
+}
+
+/// A step while its changes are written down.
+pub(crate) struct Recording {
+    pub(crate) step: i64,
+    /// Rows written down before it have a number up to this.
+    after: i64,
+}
+
+/// Begins a step, or goes on with one that spans several transactions.
+pub(crate) fn record(
+    conn: &Connection,
+    what: &str,
+    step: Option<i64>,
+) -> Result<Recording, DbError> {
+    let after = conn.query_row("SELECT coalesce(max(seq), 0) FROM was", [], |row| {
+        row.get(0)
+    })?;
+    let step = match step {
+        Some(step) => {
+            conn.execute("UPDATE edits SET open = 1 WHERE id = ?1", params![step])?;
+            step
+        }
+        None => {
+            let sql = "INSERT INTO edits (what, set_secs) VALUES (?1, ?2)";
+            conn.execute(sql, params![what, now_secs()])?;
+            conn.last_insert_rowid()
+        }
+    };
+    Ok(Recording { step, after })
+}
+
+/// Ends a step's transaction. A step that touched nothing is forgotten: there is nothing to take back.
+pub(crate) fn recorded(
+    conn: &Connection,
+    what: &str,
+    recording: &Recording,
+) -> Result<Option<i64>, DbError> {
+    let step = recording.step;
+    digest::follow(conn, step, recording.after)?;
+    let sql = "SELECT 1 FROM was WHERE edit = ?1 LIMIT 1";
+    if !conn.prepare(sql)?.exists(params![step])? {
+        conn.execute("DELETE FROM edits WHERE id = ?1", params![step])?;
+        return Ok(None);
+    }
+    conn.execute(
+        "UPDATE edits SET open = 0, what = ?2 WHERE id = ?1",
+        params![step, what],
+    )?;
+    weigh(conn, step)?;
+    conn.execute(
+        "DELETE FROM edits WHERE undone = 1 AND id <> ?1",
+        params![step],
+    )?;
+    prune(conn)?;
+    Ok(Some(step))
+}
+
+/// Notes how much motion a step keeps.
+fn weigh(conn: &Connection, step: i64) -> Result<(), DbError> {
+    conn.execute(
+        "UPDATE edits SET bytes = (SELECT coalesce(sum(coalesce(length(CASE tab WHEN 'clips' THEN c16 \
+         WHEN 'indexes' THEN c4 END), 0)), 0) FROM was WHERE edit = ?1) WHERE id = ?1",
+        params![step],
+    )?;
+    Ok(())
+}
+
+/// Forgets the oldest steps: there is no end to them.
+fn prune(conn: &Connection) -> Result<(), DbError> {
+    conn.execute(
+        "DELETE FROM edits WHERE id <= (SELECT id FROM edits ORDER BY id DESC LIMIT 1 OFFSET ?1)",
+        params![STEPS_KEPT as i64],
+    )?;
+    conn.execute(
+        "DELETE FROM edits WHERE id <= (SELECT max(id) FROM (SELECT id, sum(bytes) OVER (ORDER BY id DESC) AS total \
+         FROM edits) WHERE total > ?1) AND id < (SELECT max(id) FROM edits)",
+        params![BYTES_KEPT],
+    )?;
+    Ok(())
+}
+
+fn step(row: &Row<'_>) -> rusqlite::Result<Step> {
+    Ok(Step {
+        id: row.get(0)?,
+        what: row.get(1)?,
+        set_secs: row.get(2)?,
+        undone: row.get(3)?,
+        rows: BTreeMap::new(),
+    })
+}
+
+impl MotionDb {
+    /// Runs `change` as one step called `what`: all of it or nothing.
+    pub(crate) fn edit<T>(
+        &mut self,
+        what: &str,
+        change: impl FnOnce(&Connection) -> Result<T, DbError>,
+    ) -> Result<T, DbError> {
+        let tx = self.write()?;
+        let recording = record(&tx, what, None)?;
+        let done = change(&tx)?;
+        recorded(&tx, what, &recording)?;
+        tx.commit()?;
+        Ok(done)
+    }
+
+    /// Runs `change` and leaves everything as it was.
+    pub(crate) fn rehearse<T>(
+        &mut self,
+        change: impl FnOnce(&Connection) -> Result<T, DbError>,
+    ) -> Result<T, DbError> {
+        let tx = self.write()?;
+        change(&tx)
+    }
+
+    /// All steps that are remembered, the last one first.
+    pub fn history(&self) -> Result<Vec<Step>, DbError> {
+        let sql = "SELECT id, what, set_secs, undone FROM edits ORDER BY id DESC";
+        let mut statement = self.conn.prepare(sql)?;
+        let mut steps: Vec<Step> = statement
+            .query_map([], step)?
+            .collect::<Result<_, rusqlite::Error>>()?;
+        let mut counts: BTreeMap<i64, BTreeMap<String, usize>> = BTreeMap::new();
+        let sql = "SELECT edit, tab, count(*) FROM (SELECT DISTINCT edit, tab, c0, \
+             CASE WHEN tab IN ('tags', 'file_copies') THEN c1 END FROM was) GROUP BY edit, tab";
+        let mut statement = self.conn.prepare(sql)?;
+        let mut rows = statement.query([])?;
+        while let Some(row) = rows.next()? {
+            let count: i64 = row.get(2)?;
+            let of = counts.entry(row.get(0)?).or_default();
+            of.insert(row.get(1)?, count.max(0) as usize);
+        }
+        for step in &mut steps {
+            step.rows = counts.remove(&step.id).unwrap_or_default();
+        }
+        Ok(steps)
+    }
+
+    /// The last step that was not taken back, without its rows.
+    pub fn last_step(&self) -> Result<Option<Step>, DbError> {
+        let sql = "SELECT id, what, set_secs, undone FROM edits WHERE undone = 0 ORDER BY id DESC LIMIT 1";
+        Ok(self.conn.query_row(sql, [], step).optional()?)
+    }
+
+    /// Forgets the history: nothing done so far can be taken back. Gives how many steps there were.
+    pub fn forget_history(&mut self) -> Result<usize, DbError> {
+        let tx = self.write()?;
+        let steps = tx.execute("DELETE FROM edits", [])?;
+        tx.commit()?;
+        Ok(steps)
+    }
+}

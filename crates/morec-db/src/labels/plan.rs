@@ -1,0 +1,253 @@
+//! Labels as a whole: added to what is there, or in place of it.
+
+use std::collections::BTreeSet;
+
+use rusqlite::{Connection, params};
+
+use super::samples::{Change, add};
+use super::{Added, DbSample, NewSample, SampleFilter, SampleId, State, classes};
+use crate::time::now_secs;
+use crate::{DbError, MotionDb};
+
+/// How labels come in.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct LabelOptions {
+    /// Who says so.
+    pub by: String,
+    /// The labels are all there are for the clips they name: accepted samples that are not among them are removed.
+    pub replace: bool,
+    /// Only say what would change.
+    pub dry_run: bool,
+}
+
+/// What happens to a sample.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum LabelChange {
+    /// It is new.
+    Added,
+    /// It was there and is judged anew.
+    Judged,
+    /// It starts or stops elsewhere.
+    Moved,
+    /// It has another class.
+    Renamed,
+    /// It is removed.
+    Gone,
+}
+
+/// A change of a sample, as it is afterwards; one that goes, as it was.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct ChangedLabel {
+    /// What happens.
+    pub change: LabelChange,
+    /// Its clip.
+    pub clip: crate::ClipId,
+    /// Its class.
+    pub class: String,
+    /// Its start, seconds.
+    pub start_secs: f64,
+    /// Its stop, seconds.
+    pub stop_secs: f64,
+    /// What it was before, if it is moved or renamed: class, start and stop.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub was: Option<(String, f64, f64)>,
+}
+
+impl ChangedLabel {
+    fn of(change: LabelChange, sample: &NewSample) -> Self {
+        Self {
+            change,
+            clip: sample.clip,
+            class: sample.class.clone(),
+            start_secs: sample.start_secs,
+            stop_secs: sample.stop_secs,
+            was: None,
+        }
+    }
+}
+
+/// What came of labels.
+#[derive(Debug, Clone, PartialEq, Default, serde::Serialize)]
+pub struct Labelled {
+    /// How many.
+    #[serde(flatten)]
+    pub counts: Added,
+    /// Every change, in the order of the labels; what goes is last.
+    pub changes: Vec<ChangedLabel>,
+}
+
+impl MotionDb {
+    /// Takes labels in, all or none, as one step. A label that is there already (clip, class and extent) is judged anew;
+    /// but a proposal changes nothing that was accepted or rejected. A new accepted label rejects what other classes were
+    /// proposed for just that stretch; proposals of groups, which claim no class, are withdrawn instead.
+    ///
+    /// With [`LabelOptions::replace`], accepted samples of the clips named that no label says are moved or renamed where a
+    /// label stands for them (the same class overlapping, or the same stretch), and removed otherwise.
+    ///
+    /// # Errors
+    /// A label that stops before it starts or lies outside its clip, a class name that cannot be, no such clip.
+    pub fn label(
+        &mut self,
+        labels: &[NewSample],
+        options: &LabelOptions,
+    ) -> Result<Labelled, DbError> {
+        let there = match options.replace {
+            true => self.accepted_in(labels)?,
+            false => Vec::new(),
+        };
+        let what = match options.replace {
+            true => format!("replace labels by {}", labels.len()),
+            false => format!("add {} samples", labels.len()),
+        };
+        let change = |conn: &Connection| {
+            let mut done = Labelled::default();
+            let mut left = unsaid(there, labels);
+            for label in labels {
+                take_in(conn, label, &mut left, options, &mut done)?;
+            }
+            for sample in left {
+                conn.execute("DELETE FROM samples WHERE id = ?1", params![sample.id.0])?;
+                done.counts.gone += 1;
+                done.changes.push(ChangedLabel {
+                    change: LabelChange::Gone,
+                    clip: sample.clip,
+                    class: sample.class,
+                    start_secs: sample.start_secs,
+                    stop_secs: sample.stop_secs,
+                    was: None,
+                });
+            }
+            Ok(done)
+        };
+        match options.dry_run {
+            true => self.rehearse(change),
+            false => self.edit(&what, change),
+        }
+    }
+
+    /// The accepted samples of the clips that labels name.
+    fn accepted_in(&self, labels: &[NewSample]) -> Result<Vec<DbSample>, DbError> {
+        let clips: BTreeSet<_> = labels.iter().map(|label| label.clip).collect();
+        let mut samples = self.samples(&SampleFilter {
+            state: Some(State::Accepted),
+            ..SampleFilter::default()
+        })?;
+        samples.retain(|sample| clips.contains(&sample.clip));
+        Ok(samples)
+    }
+}
+
+fn says(label: &NewSample, sample: &DbSample) -> bool {
+    label.clip == sample.clip
+        && label.class == sample.class
+        && (label.start_secs, label.stop_secs) == (sample.start_secs, sample.stop_secs)
+}
+
+/// Samples that no label says just so.
+fn unsaid(there: Vec<DbSample>, labels: &[NewSample]) -> Vec<DbSample> {
+    there
+        .into_iter()
+        .filter(|sample| !labels.iter().any(|label| says(label, sample)))
+        .collect()
+}
+
+fn take_in(
+    conn: &Connection,
+    label: &NewSample,
+    left: &mut Vec<DbSample>,
+    options: &LabelOptions,
+    done: &mut Labelled,
+) -> Result<(), DbError> {
+    let stands_for = match label.state {
+        State::Accepted if !is_there(conn, label)? => counterpart(label, left),
+        _ => None,
+    };
+    let Some(at) = stands_for else {
+        let (change, others) = add(conn, label, &options.by)?;
+        done.counts.rejected += others.rejected;
+        done.counts.withdrawn += others.withdrawn;
+        match change {
+            Change::None => done.counts.unchanged += 1,
+            Change::New => {
+                done.counts.added += 1;
+                done.changes
+                    .push(ChangedLabel::of(LabelChange::Added, label));
+            }
+            Change::Judged => {
+                done.counts.changed += 1;
+                done.changes
+                    .push(ChangedLabel::of(LabelChange::Judged, label));
+            }
+        }
+        return Ok(());
+    };
+    let old = left.swap_remove(at);
+    alter(conn, old.id, label, &options.by)?;
+    let change = match old.class == label.class {
+        true => LabelChange::Moved,
+        false => LabelChange::Renamed,
+    };
+    match change {
+        LabelChange::Moved => done.counts.moved += 1,
+        _ => done.counts.renamed += 1,
+    }
+    let mut changed = ChangedLabel::of(change, label);
+    changed.was = Some((old.class, old.start_secs, old.stop_secs));
+    done.changes.push(changed);
+    Ok(())
+}
+
+fn is_there(conn: &Connection, label: &NewSample) -> Result<bool, DbError> {
+    let sql = "SELECT 1 FROM samples s JOIN classes n ON n.id = s.class WHERE s.clip = ?1 AND n.name = ?2 \
+        AND s.start_secs = ?3 AND s.stop_secs = ?4";
+    let given = params![
+        label.clip.0,
+        label.class.trim(),
+        label.start_secs,
+        label.stop_secs
+    ];
+    Ok(conn.prepare(sql)?.exists(given)?)
+}
+
+/// The sample that a label stands for: of the same stretch, or the one of its class that overlaps it most.
+fn counterpart(label: &NewSample, left: &[DbSample]) -> Option<usize> {
+    let of_clip = || {
+        let all = left.iter().enumerate();
+        all.filter(|(_, sample)| sample.clip == label.clip)
+    };
+    let same = of_clip().find(|(_, sample)| {
+        (sample.start_secs, sample.stop_secs) == (label.start_secs, label.stop_secs)
+    });
+    let overlap = |sample: &DbSample| {
+        sample.stop_secs.min(label.stop_secs) - sample.start_secs.max(label.start_secs)
+    };
+    let overlapping = of_clip().filter(|(_, s)| s.class == label.class && overlap(s) > 0.0);
+    let most = overlapping.max_by(|(_, a), (_, b)| overlap(a).total_cmp(&overlap(b)));
+    same.or(most).map(|(at, _)| at)
+}
+
+/// Gives a sample the class and extent of a label; its number stays.
+pub(super) fn alter(
+    conn: &Connection,
+    id: SampleId,
+    label: &NewSample,
+    by: &str,
+) -> Result<(), DbError> {
+    super::samples::check_extent(conn, label)?;
+    let class = classes::find_or_make(conn, &label.class)?;
+    conn.execute(
+        "UPDATE samples SET class = ?2, start_secs = ?3, stop_secs = ?4, whole_clip = ?5, set_by = ?6, set_secs = ?7 \
+         WHERE id = ?1",
+        params![
+            id.0,
+            class,
+            label.start_secs,
+            label.stop_secs,
+            label.whole_clip,
+            by,
+            now_secs()
+        ],
+    )?;
+    Ok(())
+}
