@@ -56,9 +56,9 @@ pub struct MaterialArgs {
     /// What the unlabelled parts of labelled clips are: motion that is none of the classes, or nothing to go by
     #[arg(long, value_enum, default_value = "background")]
     pub unlabelled: Unlabelled,
-    /// Whether made everyday motion is background too (templates only); auto: if --background holds less than a
+    /// Whether synthetic everyday motion is background too (templates only); auto: if --background holds less than a
     /// minute
-    #[arg(long, value_enum, default_value = "auto")]
+    #[arg(long, value_enum, default_value = "always")]
     pub everyday: EverydayArg,
     /// Roles of joints, where inference fails: lines of `role<TAB>joint name`
     #[arg(long, value_name = "FILE")]

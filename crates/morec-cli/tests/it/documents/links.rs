@@ -6,16 +6,6 @@ use std::path::{Path, PathBuf};
 use super::{guide, others, root};
 use crate::kit::Folder;
 
-/// Chapters that a later change brings.
-const PENDING: [&str; 6] = [
-    "docs/guide/live.md",
-    "docs/guide/devices.md",
-    "docs/guide/database.md",
-    "docs/guide/limits.md",
-    "docs/formats/positions.md",
-    "docs/formats/rotations.md",
-];
-
 /// Options of other programs.
 const FOREIGN: [&str; 11] = [
     "--release",
@@ -84,10 +74,7 @@ fn fault(from: &Path, target: &str) -> Option<String> {
         path => from.parent().unwrap().join(path),
     };
     if !file.exists() {
-        let pending = PENDING
-            .iter()
-            .any(|p| file.ends_with(Path::new(p).file_name().unwrap()));
-        return (!pending).then(|| "no such file".to_owned());
+        return Some("no such file".to_owned());
     }
     if wanted.is_empty() {
         return None;
