@@ -46,16 +46,4 @@ pub(super) fn check(loaded: &Loaded) {
     }
 }
 
-/// A file of the folder of real files, if there is one.
-pub(super) fn real(name: &str) -> Option<Vec<u8>> {
-    let folder = std::env::var_os("MOREC_DATA").map_or_else(
-        || std::path::PathBuf::from("../../../shared/data"),
-        std::path::PathBuf::from,
-    );
-    let path = folder.join("formats").join(name);
-    let bytes = std::fs::read(&path).ok();
-    if bytes.is_none() {
-        eprintln!("skipped: no {}", path.display());
-    }
-    bytes
-}
+pub(super) use crate::testing::real_file as real;

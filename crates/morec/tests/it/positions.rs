@@ -131,8 +131,8 @@ fn one_recording_in_two_formats_agrees() {
             continue;
         };
         for (a, b) in a.positions.iter().zip(&b.positions) {
-            // Whole millimetres against seven decimals.
-            assert!((a - b).norm() < 1e-3, "{}: {a} {b}", joint.name);
+            // The C3D is cut to whole millimetres on each axis: off by up to √3 mm.
+            assert!((a - b).norm() < 1.8e-3, "{}: {a} {b}", joint.name);
         }
     }
     assert_eq!(recognised(&c3d).len(), recognised(&trc).len());

@@ -28,3 +28,17 @@ pub fn skipped(why: &str) {
     // One call, so that lines of tests that run at the same time do not mix; a closed stream loses the message only.
     _ = std::io::stderr().write_all(format!("skipped: {name}: {why}\n").as_bytes());
 }
+
+/// A real file of the folder's `formats`; where it is missing, says that the calling test is skipped.
+#[allow(
+    dead_code,
+    reason = "not every crate that includes this module reads formats"
+)]
+pub fn real_file(name: &str) -> Option<Vec<u8>> {
+    let path = data()?.join("formats").join(name);
+    let bytes = std::fs::read(&path).ok();
+    if bytes.is_none() {
+        skipped(&format!("no {}", path.display()));
+    }
+    bytes
+}
