@@ -84,6 +84,7 @@ impl Default for TrainParams {
             max_templates: 24,
             whole_background: 1.5,
             quiet_share: 0.35,
+            max_negatives: 120,
             calibrate: true,
             verify: true,
             compact: true,

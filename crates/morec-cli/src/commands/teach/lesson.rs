@@ -9,7 +9,6 @@ use clap::Parser;
 use morec::index::MotionIndex;
 use morec::live::Recording;
 
-use crate::commands::recognize::open_index;
 use crate::commands::train::trained;
 use crate::live::keep::write_bvh;
 use crate::material::MaterialArgs;
@@ -45,7 +44,7 @@ impl Lessons {
                 folder.display()
             );
         }
-        let index = path.exists().then(|| open_index(path)).transpose()?;
+        let index = path.exists().then(|| own_index(path)).transpose()?;
         Ok(Self {
             path: path.to_owned(),
             folder,
@@ -129,4 +128,10 @@ impl Lessons {
             ),
         }
     }
+}
+
+/// The index that teaching made and will replace: unlike other inputs of a run, it may be written again.
+fn own_index(path: &Path) -> Result<MotionIndex> {
+    let bytes = fs::read(path).with_context(|| path.display().to_string())?;
+    MotionIndex::from_bytes(&bytes).with_context(|| path.display().to_string())
 }
