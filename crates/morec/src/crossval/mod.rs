@@ -319,10 +319,7 @@ impl FoldTest<'_> {
         perturbation: Option<Perturbation>,
     ) -> Result<Tested, CrossvalError> {
         let clip = test.clip;
-        let copy = match perturbation {
-            Some(perturbation) => Some(perturbed(clip, perturbation)),
-            None => None,
-        };
+        let copy = perturbation.map(|perturbation| perturbed(clip, perturbation));
         let found = match &copy {
             Some(copy) => recognize_poses(self.model, &copy.poses),
             None => recognize_clip(self.model, &clip.clip, &clip.roles, &clip.rest),

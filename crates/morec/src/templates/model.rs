@@ -148,7 +148,7 @@ impl TemplateModel {
     /// The model with the threshold for this rate of false alarms a minute, as background motion raised them in
     /// training. With a verifier, or in an index that notes no rates, nothing changes: `None`.
     pub fn with_sensitivity(&self, alarms_per_minute: f64) -> Option<Self> {
-        if self.verifier.is_some() || !(alarms_per_minute > 0.0) {
+        if self.verifier.is_some() || alarms_per_minute.is_nan() || alarms_per_minute <= 0.0 {
             return None;
         }
         let threshold = threshold_at(&self.operating, alarms_per_minute)?;

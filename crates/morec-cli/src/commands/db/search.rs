@@ -174,7 +174,7 @@ fn learn(db: &MotionDb, index: &SearchIndex, args: &Args) -> Result<LearnedMetri
 /// What the example is a stretch of.
 enum Shown {
     Kept(ClipInfo),
-    File(StoredClip),
+    File(Box<StoredClip>),
 }
 
 /// The example's rows, and the clip they are of.
@@ -222,7 +222,7 @@ fn example(db: &MotionDb, index: &SearchIndex, args: &Args) -> Result<(Example, 
     let example = SearchIndex::example_of(&span, bones).with_context(short)?;
     Ok((
         if all { example } else { example.cut_out() },
-        Shown::File(stored),
+        Shown::File(Box::new(stored)),
     ))
 }
 

@@ -12,9 +12,9 @@ pub(super) fn layout(rows: &[Row]) -> Option<Layout> {
     let (_, first) = rows.first()?;
     let is_number = |cell: &&str| number(cell, Decimal::Either).is_some();
     // A header that says nothing may stand before the numbers.
-    let header_rows = usize::from(!first.iter().all(|cell| is_number(&cell)));
+    let header_rows = usize::from(!first.iter().all(is_number));
     let (_, cells) = rows.get(header_rows)?;
-    if !cells.iter().all(|cell| is_number(&cell)) {
+    if !cells.iter().all(is_number) {
         return None;
     }
     let fits = |before: usize| {

@@ -129,7 +129,7 @@ impl PointSet {
             false => &[self.roles],
         };
         for table in tables {
-            for (role, expression) in table.iter().flat_map(|entry| sided(entry)) {
+            for (role, expression) in table.iter().flat_map(sided) {
                 let known = |r: Role| roles.iter().any(|(known, _)| *known == r);
                 let Some(role) = Role::from_name(&role).filter(|&r| !known(r)) else {
                     continue;
