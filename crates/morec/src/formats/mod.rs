@@ -140,7 +140,7 @@ pub struct Loaded {
 }
 
 /// Reads the formats of whole scenes and suits: [MVNX](mvnx), [glTF](gltf), [FBX](fbx), [SMPL](smpl) and
-/// [mocopi](mocopi). `rate_hz` replaces the rate where the file holds frames; keys in seconds keep theirs. `None` for
+/// [mocopi]. `rate_hz` replaces the rate where the file holds frames; keys in seconds keep theirs. `None` for
 /// other formats.
 pub fn read_scene(
     format: probe::Format,

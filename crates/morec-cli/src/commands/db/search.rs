@@ -173,7 +173,7 @@ fn learn(db: &MotionDb, index: &SearchIndex, args: &Args) -> Result<LearnedMetri
 
 /// What the example is a stretch of.
 enum Shown {
-    Kept(ClipInfo),
+    Kept(Box<ClipInfo>),
     File(Box<StoredClip>),
 }
 
@@ -190,7 +190,7 @@ fn example(db: &MotionDb, index: &SearchIndex, args: &Args) -> Result<(Example, 
         let example = index
             .example(clip.id, args.start, stop)
             .with_context(short)?;
-        return Ok((example, Shown::Kept(clip)));
+        return Ok((example, Shown::Kept(Box::new(clip))));
     }
     let path = Path::new(&args.example);
     if !path.exists() && path != Path::new("-") {
