@@ -506,6 +506,11 @@ typedef struct MorecOptions {
      * motion is told once.
      */
     double refractory_secs;
+    /**
+     * Sensitivity: false alarms a minute that background motion may raise, as in training, 0.1 strict … 1 generous.
+     * 0: as trained. (Not in the first version of this struct.)
+     */
+    double alarms_per_minute;
 } MorecOptions;
 
 /**

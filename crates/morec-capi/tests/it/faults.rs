@@ -305,7 +305,13 @@ fn options_that_cannot_be_are_refused() {
         status(&|o| o.refractory_secs = f64::NAN),
         MorecStatus::InvalidValue
     );
-    assert_eq!(status(&|o| o.struct_size -= 1), MorecStatus::StructSize);
+    // Smaller than the first version of the struct, which ended before `alarms_per_minute`; that one is still taken.
+    assert_eq!(status(&|o| o.struct_size = 47), MorecStatus::StructSize);
+    assert_eq!(status(&|o| o.struct_size = 48), MorecStatus::Ok);
+    assert_eq!(
+        status(&|o| o.alarms_per_minute = -1.0),
+        MorecStatus::InvalidValue
+    );
     let skeleton = |joint_count, parents: &[i32]| {
         let skeleton = MorecSkeleton {
             struct_size: size_of::<MorecSkeleton>(),

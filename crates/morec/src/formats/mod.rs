@@ -139,7 +139,7 @@ pub struct Loaded {
     pub warnings: Vec<Warning>,
 }
 
-/// Reads the formats of whole scenes and suits: [MVNX](mvnx), [glTF](gltf), [FBX](fbx), [SMPL](smpl) and
+/// Reads the formats of whole scenes and suits: [MVNX](mvnx), [glTF](gltf), FBX (feature `fbx`), [SMPL](smpl) and
 /// [mocopi]. `rate_hz` replaces the rate where the file holds frames; keys in seconds keep theirs. `None` for
 /// other formats.
 pub fn read_scene(
