@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 use morec::formats::Warning;
-use morec::import::{ImportOptions, prepare};
-use morec::labels::{ClipLength, Extent, Label, Labels, Sample, read_people};
+use morec::import::{ImportOptions, Take};
+use morec::labels::{Extent, Label, Labels, read_people};
 use morec::reproduce;
 use morec::train::thesis::SvrdmOptions;
-use morec::train::{Everyday, Recipe, Source, TrainClip, TrainOptions, TrainParams};
+use morec::train::{Everyday, Recipe, Source, TrainClip, TrainOptions, TrainParams, TrainingData};
 use morec_db::labels::{DbSample, SampleFilter, State};
 use morec_db::{ClipFilter, MotionDb};
 use rayon::prelude::*;
@@ -18,7 +18,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::database;
-use crate::files::{ReadArgs, expand, mapping, open, read, some_of};
+use crate::files::{ReadArgs, expand, mapping, read, some_of, takes};
 
 /// Which clips teach what.
 #[derive(Args, Debug)]
@@ -142,14 +142,10 @@ pub enum EverydayArg {
 
 /// Everything loaded.
 pub struct Material {
-    /// Labelled and background clips.
-    pub clips: Vec<TrainClip>,
+    /// Labelled and background clips, and the samples in them.
+    pub data: TrainingData,
     /// Clips that hold none of the classes, for testing.
     pub unknown: Vec<TrainClip>,
-    /// Samples of the classes, in clips that are there.
-    pub samples: Vec<Sample>,
-    /// The classes, in order.
-    pub classes: Vec<String>,
     /// Bytes that the labelled clips would take as BVH.
     pub labelled_bytes: u64,
 }
@@ -432,115 +428,64 @@ pub fn load_clips(
 }
 
 fn load_file(path: &Path, args: &ReadArgs, options: &ImportOptions) -> Result<Vec<LoadedClip>> {
-    let opened = open(path, args)?;
     let file_bytes = std::fs::metadata(path).map_or(0, |m| m.len());
-    let import = |clip| {
-        let imported = prepare(clip, options).with_context(|| shown(path))?;
-        let clip = TrainClip {
-            name: imported.clip.name.clone(),
-            rest: imported.facts.rest_frames,
-            roles: imported.roles,
-            clip: imported.clip,
-            source: Source::Labelled,
-            person: None,
-        };
-        Ok(LoadedClip {
-            clip,
-            path: canonical(path),
-            file_bytes,
-        })
+    let loaded = |take: Take| LoadedClip {
+        clip: take.into(),
+        path: canonical(path),
+        file_bytes,
     };
-    opened.clips.into_iter().map(import).collect()
+    Ok(takes(path, args, options)?
+        .into_iter()
+        .map(loaded)
+        .collect())
 }
 
 /// Gives every clip its part.
 fn sort_out(
-    clips: Vec<LoadedClip>,
+    mut clips: Vec<LoadedClip>,
     labels: &Labels,
     classes: &[String],
     background: &BTreeSet<PathBuf>,
     unknown: &BTreeSet<PathBuf>,
 ) -> Result<Material> {
-    let length = |c: &LoadedClip| ClipLength {
-        frames: c.clip.clip.frames,
-        rate_hz: c.clip.clip.rate_hz,
-    };
-    let lengths = clips
-        .iter()
-        .map(|c| (c.clip.name.clone(), length(c)))
-        .collect();
-    let resolved = labels.resolve(&lengths);
-    resolved
-        .warnings
-        .iter()
-        .for_each(|w| eprintln!("morec: labels, {w}"));
-    if !resolved.absent.is_empty() {
-        let rows: usize = resolved.absent.values().sum();
-        eprintln!(
-            "morec: {rows} labels are of clips that are not there ({} clips)",
-            resolved.absent.len()
-        );
-    }
-    let aside: BTreeSet<&str> = clips
-        .iter()
-        .filter(|c| background.contains(&c.path) || unknown.contains(&c.path))
-        .map(|c| c.clip.name.as_str())
-        .collect();
-    let wanted = |s: &Sample| classes.is_empty() || classes.contains(&s.class);
-    let samples: Vec<Sample> = resolved
-        .samples
-        .into_iter()
-        .filter(|s| wanted(s) && !aside.contains(s.clip.as_str()))
-        .collect();
-    let present: BTreeSet<&str> = samples.iter().map(|s| s.class.as_str()).collect();
-    if let Some(class) = classes.iter().find(|c| !present.contains(c.as_str())) {
-        bail!("--classes names {class}, of which no clip holds a sample");
-    }
-    if samples.is_empty() {
-        bail!(
-            "no sample to learn from: no label names any of these clips (labels name clips by file stem)"
-        );
-    }
-    let names: Vec<String> = if classes.is_empty() {
-        present.iter().map(|c| (*c).to_owned()).collect()
-    } else {
-        classes.to_vec()
-    };
-    let with_samples: BTreeSet<String> = samples.iter().map(|s| s.clip.clone()).collect();
-    let mut material = Material {
-        clips: vec![],
-        unknown: vec![],
-        samples,
-        classes: names,
-        labelled_bytes: 0,
-    };
-    let mut idle = Vec::new();
-    for mut loaded in clips {
-        let (is_background, is_unknown) = (
-            background.contains(&loaded.path),
-            unknown.contains(&loaded.path),
-        );
+    let mut unknown_clips = Vec::new();
+    let mut tested_only = BTreeSet::new();
+    for LoadedClip { clip, path, .. } in &mut clips {
+        let (is_background, is_unknown) = (background.contains(path), unknown.contains(path));
         if is_unknown {
-            material.unknown.push(loaded.clip.clone());
+            unknown_clips.push(clip.clone());
         }
-        if is_background {
-            loaded.clip.source = Source::Background;
-            material.clips.push(loaded.clip);
-        } else if with_samples.contains(&loaded.clip.name) {
-            material.labelled_bytes += loaded.file_bytes;
-            material.clips.push(loaded.clip);
-        } else if !is_unknown {
-            idle.push(loaded.clip.name);
+        if is_unknown && !is_background {
+            tested_only.insert(clip.name.clone());
+        }
+        // Labels in clips that are said to hold no class do not count.
+        if is_background || is_unknown {
+            clip.source = Source::Background;
         }
     }
-    if !idle.is_empty() {
+    let bytes: BTreeMap<String, u64> = clips
+        .iter()
+        .map(|c| (c.clip.name.clone(), c.file_bytes))
+        .collect();
+    let clips = clips.into_iter().map(|loaded| loaded.clip).collect();
+    let mut data = TrainingData::new(clips, labels, classes)?;
+    data.clips.retain(|clip| !tested_only.contains(&clip.name));
+    data.notes
+        .iter()
+        .for_each(|note| eprintln!("morec: {note}"));
+    if !data.unused.is_empty() {
         eprintln!(
             "morec: {} clips hold no sample of the classes and are not used (--background if they hold none): {}",
-            idle.len(),
-            some_of(idle.iter())
+            data.unused.len(),
+            some_of(data.unused.iter())
         );
     }
-    Ok(material)
+    let labelled_bytes = data.labelled().map(|clip| bytes[&clip.name]).sum();
+    Ok(Material {
+        data,
+        unknown: unknown_clips,
+        labelled_bytes,
+    })
 }
 
 fn set_of(paths: &[PathBuf]) -> BTreeSet<PathBuf> {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use morec::features::Rows;
-use morec::import::{ImportOptions, prepare};
+use morec::import::ImportOptions;
 use morec::labels::ClipLength;
 use morec::pivots::{PivotMap, PivotSet, PoseParams, pose_rows_of_clip};
 
@@ -105,26 +105,18 @@ impl PoseReader<'_> {
     }
 
     fn open(&self, path: &Path, progress: &Progress) -> Result<Vec<PosedClip>> {
-        let opened = files::open(path, self.read)?;
-        let mut posed = Vec::with_capacity(opened.clips.len());
-        for clip in opened.clips {
-            let imported =
-                prepare(clip, &self.options).with_context(|| path.display().to_string())?;
-            let clip = &imported.clip;
-            let map = PivotMap::of_clip(&self.set, clip, &imported.roles)
+        let takes = files::takes(path, self.read, &self.options)?;
+        let mut posed = Vec::with_capacity(takes.len());
+        for take in takes {
+            let clip = &take.clip;
+            let map = PivotMap::of_clip(&self.set, clip, &take.roles)
                 .with_context(|| path.display().to_string())?;
             if !map.missing().is_empty() {
                 let missing = map.missing().join(", ");
                 let what = "no joint plays these pivots, they turn with their parents";
                 progress.suspend(|| eprintln!("morec: {}: {what}: {missing}", path.display()));
             }
-            let rows = pose_rows_of_clip(
-                clip,
-                &self.set,
-                &map,
-                &imported.facts.rest_frames,
-                &self.params,
-            );
+            let rows = pose_rows_of_clip(clip, &self.set, &map, take.rest(), &self.params);
             let length = ClipLength {
                 frames: clip.frames,
                 rate_hz: clip.rate_hz,

@@ -36,16 +36,15 @@ impl Stats {
     }
 
     /// Runs the stages once more, one after the other, and times each.
-    pub fn stages(&mut self, model: &Model, imported: &Imported) -> Result<()> {
+    pub fn stages(&mut self, model: &Model, imported: &Take) -> Result<()> {
         match model {
             Model::Templates(model) => self.template_stages(model, imported),
             Model::Svrdm(model) => self.svrdm_stages(model, imported),
         }
     }
 
-    fn template_stages(&mut self, model: &TemplateModel, imported: &Imported) -> Result<()> {
-        let Imported { clip, roles, facts } = imported;
-        let rest = &facts.rest_frames;
+    fn template_stages(&mut self, model: &TemplateModel, imported: &Take) -> Result<()> {
+        let (clip, roles, rest) = (&imported.clip, &imported.roles, imported.rest());
         let rows = timed(&mut self.features, || {
             rows_of_clip(clip, roles, rest, model.bones, &model.features)
         });
@@ -64,8 +63,13 @@ impl Stats {
         Ok(())
     }
 
-    fn svrdm_stages(&mut self, model: &Arc<SvrdmModel>, imported: &Imported) -> Result<()> {
-        let Imported { clip, roles, facts } = imported;
+    fn svrdm_stages(&mut self, model: &Arc<SvrdmModel>, imported: &Take) -> Result<()> {
+        let Take {
+            clip,
+            roles,
+            report: facts,
+            ..
+        } = imported;
         let map = PivotMap::of_clip(&model.pivots, clip, roles)?;
         let rest = &facts.rest_frames;
         let rows = timed(&mut self.features, || {

@@ -17,10 +17,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use morec_db::labels::{NewSample, State};
-use morec_db::{
-    ClipFilter, ClipId, ClipUpdate, FileReader, ImportSettings, MotionDb, Proposal, ProposeOptions,
-    questions,
-};
+use morec_db::{ClipFilter, ClipId, ClipUpdate, MotionDb, Proposal, ProposeOptions, questions};
 
 /// The classes of the database figure: seven signals, walking and two dribbles.
 const TEN: [&str; 10] = [
@@ -117,8 +114,8 @@ fn imported(material: &Material, path: &Path) -> Result<MotionDb, Failure> {
     let mut db = MotionDb::create(path)?;
     db.import(
         &paths,
-        &FileReader::default(),
-        &ImportSettings::default(),
+        &morec::files::FileReader::default(),
+        &ClipUpdate::default(),
         &(),
     )?;
     let people: BTreeMap<&str, &str> = material

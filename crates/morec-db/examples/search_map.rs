@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 
 use morec_db::labels::{NewSample, SampleFilter, State};
 use morec_db::search::{LearnedMetric, SearchIndex, SearchOptions};
-use morec_db::{ClipFilter, ClipId, FileReader, ImportSettings, MotionDb};
+use morec_db::{ClipFilter, ClipId, ClipUpdate, MotionDb};
 
 /// A clip with what it shows and how.
 struct Shown {
@@ -78,8 +78,8 @@ fn imported(db: &mut MotionDb, folder: &Path, table: &str) -> Vec<Shown> {
     paths.sort();
     db.import(
         &paths,
-        &FileReader::default(),
-        &ImportSettings::default(),
+        &morec::files::FileReader::default(),
+        &ClipUpdate::default(),
         &(),
     )
     .unwrap();

@@ -6,51 +6,23 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use morec::clip::Clip;
 use morec::features::{BoneSet, FeatureParams};
-use morec::formats::Warning;
-use morec::import::{ImportOptions, prepare};
+use morec::files::{ClipFile, FileReader, read_file, split_choice};
+use morec::import::{ImportOptions, normalize};
 use morec::progress::Progress;
 use rayon::prelude::*;
 use rusqlite::{Connection, OptionalExtension, params};
 
 use crate::motion::{Packed, pack};
 use crate::time::now_secs;
-use crate::{ClipId, ClipUpdate, DbError, MotionDb, bounded, history, rows, split_choice};
+use crate::{ClipId, ClipUpdate, DbError, MotionDb, history, rows};
 
 /// Files in one transaction: a crash loses the work of so many at most, and nothing that was committed.
 const BATCH: usize = 32;
 
-/// Reads clips of a file; where skeletons of AMC motions lie is its business.
-pub trait ClipReader: Sync {
-    /// Clips in `bytes`, which are the file at `path`; the error says why there are none.
-    fn read(&self, path: &Path, bytes: &[u8]) -> Result<ReadFile, String>;
-}
-
-/// What a [`ClipReader`] gives.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ReadFile {
-    /// The format's name.
-    pub format: String,
-    /// The skeleton file that an AMC motion was read with.
-    pub skeleton: Option<PathBuf>,
-    /// One clip for each character.
-    pub clips: Vec<Clip>,
-    /// What was repaired or looks wrong.
-    pub warnings: Vec<Warning>,
-}
-
-/// How to import.
-#[derive(Debug, Clone, Default)]
-pub struct ImportSettings {
-    /// What a person knows better than inference.
-    pub options: ImportOptions,
-    /// Source, licence, subject and tags of every new clip.
-    pub about: ClipUpdate,
-}
-
 /// What became of one file.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[serde(rename_all = "snake_case", tag = "outcome")]
-pub enum Outcome {
+pub enum ImportOutcome {
     /// Its clips are in the database now.
     Imported {
         /// Their names.
@@ -78,39 +50,54 @@ pub struct Refused {
 
 /// What became of every file, in their order.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize)]
-pub struct ImportReport {
+pub struct ImportLog {
     /// Path and outcome.
-    pub files: Vec<(PathBuf, Outcome)>,
+    pub files: Vec<(PathBuf, ImportOutcome)>,
     /// Whether it was cancelled: files that are not named were not looked at.
     pub cancelled: bool,
 }
 
-impl ImportReport {
+impl ImportLog {
     /// What it did, for the history.
     fn said(&self) -> String {
-        let [imported, _, _, _, refused] = self.counts();
-        match refused {
-            0 => format!("import {imported} files"),
-            _ => format!("import {imported} files, {refused} refused"),
+        let counts = self.counts();
+        match counts.refused {
+            0 => format!("import {} files", counts.imported),
+            refused => format!("import {} files, {refused} refused", counts.imported),
         }
     }
 
-    /// How many files were imported, of these with warnings, known, copies, refused.
-    pub fn counts(&self) -> [usize; 5] {
-        let mut counts = [0; 5];
+    /// How many files came to what.
+    pub fn counts(&self) -> ImportCounts {
+        let mut counts = ImportCounts::default();
         for (_, outcome) in &self.files {
             match outcome {
-                Outcome::Imported { warnings, .. } => {
-                    counts[0] += 1;
-                    counts[1] += usize::from(!warnings.is_empty());
+                ImportOutcome::Imported { warnings, .. } => {
+                    counts.imported += 1;
+                    counts.with_warnings += usize::from(!warnings.is_empty());
                 }
-                Outcome::Known => counts[2] += 1,
-                Outcome::Copy { .. } => counts[3] += 1,
-                Outcome::Refused(_) => counts[4] += 1,
+                ImportOutcome::Known => counts.known += 1,
+                ImportOutcome::Copy { .. } => counts.copies += 1,
+                ImportOutcome::Refused(_) => counts.refused += 1,
             }
         }
         counts
     }
+}
+
+/// How many files of an import came to what.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct ImportCounts {
+    /// Imported.
+    pub imported: usize,
+    /// Imported, with something that was repaired or looks wrong.
+    pub with_warnings: usize,
+    /// There already, from the same path.
+    pub known: usize,
+    /// There already, from another path.
+    pub copies: usize,
+    /// Not usable.
+    pub refused: usize,
 }
 
 /// A file after the parallel part.
@@ -123,7 +110,7 @@ enum Made {
 struct NewFile {
     hash: [u8; 32],
     bytes: usize,
-    read: ReadFile,
+    file: ClipFile,
     clips: Vec<NewClip>,
 }
 
@@ -143,11 +130,11 @@ impl MotionDb {
     pub fn import(
         &mut self,
         paths: &[PathBuf],
-        reader: &dyn ClipReader,
-        settings: &ImportSettings,
+        reader: &FileReader,
+        about: &ClipUpdate,
         progress: &dyn Progress,
-    ) -> Result<ImportReport, DbError> {
-        let mut report = ImportReport::default();
+    ) -> Result<ImportLog, DbError> {
+        let mut report = ImportLog::default();
         let done = AtomicUsize::new(0);
         let params = FeatureParams::default();
         let recipe = rows::recipe(&params);
@@ -165,7 +152,7 @@ impl MotionDb {
                     if progress.cancelled() {
                         return None;
                     }
-                    let made = make(path, reader, settings, &params, &known);
+                    let made = make(path, reader, &params, &known);
                     progress.report(
                         "importing",
                         done.fetch_add(1, Ordering::Relaxed) + 1,
@@ -180,7 +167,7 @@ impl MotionDb {
                 match made {
                     Some(made) => report
                         .files
-                        .push((path.clone(), store(&tx, path, made, settings, &recipe)?)),
+                        .push((path.clone(), store(&tx, path, made, about, &recipe)?)),
                     None => report.cancelled = true,
                 }
             }
@@ -209,13 +196,12 @@ impl MotionDb {
 
 fn make(
     path: &Path,
-    reader: &dyn ClipReader,
-    settings: &ImportSettings,
+    reader: &FileReader,
     params: &FeatureParams,
     known: &std::collections::HashMap<[u8; 32], i64>,
 ) -> Made {
     let (file, choice) = split_choice(path);
-    let bytes = match bounded::read_file(&file) {
+    let bytes = match read_file(&file) {
         Ok(bytes) => bytes,
         Err(error) => return Made::Refused(error.to_string()),
     };
@@ -227,13 +213,13 @@ fn make(
     if let Some(file) = known.get(&hash) {
         return Made::Known(*file);
     }
-    let mut read = match reader.read(path, &bytes) {
+    let mut read = match reader.parse(path, &bytes) {
         Ok(read) => read,
-        Err(reason) => return Made::Refused(reason),
+        Err(error) => return Made::Refused(error.kind.to_string()),
     };
     let mut clips = Vec::new();
     for clip in std::mem::take(&mut read.clips) {
-        match new_clip(clip, settings, params) {
+        match new_clip(clip, &reader.import, params) {
             Ok(clip) => clips.push(clip),
             Err(reason) => return Made::Refused(reason),
         }
@@ -244,27 +230,27 @@ fn make(
     Made::New(Box::new(NewFile {
         hash,
         bytes: bytes.len(),
-        read,
+        file: read,
         clips,
     }))
 }
 
 fn new_clip(
     clip: Clip,
-    settings: &ImportSettings,
+    options: &ImportOptions,
     params: &FeatureParams,
 ) -> Result<NewClip, String> {
     if clip.frames == 0 {
         return Err(format!("{}: expected frames, found none", clip.name));
     }
     let name = clip.name.clone();
-    let imported = prepare(clip, &settings.options).map_err(|error| error.to_string())?;
+    let imported = normalize(clip, options).map_err(|error| error.to_string())?;
     let packed = pack(imported, &()).map_err(|reason| format!("{name}: {reason}"))?;
     let (bones, rows) = rows::rows_of(&packed.stored, params);
     Ok(NewClip {
         name,
         bones,
-        rows: rows.to_packed(&FeatureParams::default()),
+        rows: rows.to_packed(params),
         packed,
     })
 }
@@ -273,9 +259,9 @@ fn store(
     conn: &Connection,
     path: &Path,
     made: Made,
-    settings: &ImportSettings,
+    about: &ClipUpdate,
     recipe: &str,
-) -> Result<Outcome, DbError> {
+) -> Result<ImportOutcome, DbError> {
     let shown = path.to_string_lossy();
     match made {
         Made::Refused(reason) => {
@@ -284,7 +270,7 @@ fn store(
                 ON CONFLICT (path) DO UPDATE SET reason = excluded.reason, tried_secs = excluded.tried_secs \
                 WHERE reason <> excluded.reason";
             conn.execute(sql, params![shown, reason, now_secs()])?;
-            Ok(Outcome::Refused(Refused { reason }))
+            Ok(ImportOutcome::Refused(Refused { reason }))
         }
         Made::Known(file) => known(conn, &shown, file),
         Made::New(new) => {
@@ -299,36 +285,36 @@ fn store(
                 .optional()?;
             match twin {
                 Some(file) => known(conn, &shown, file),
-                None => insert(conn, path, *new, settings, recipe),
+                None => insert(conn, path, *new, about, recipe),
             }
         }
     }
 }
 
-fn known(conn: &Connection, shown: &str, file: i64) -> Result<Outcome, DbError> {
+fn known(conn: &Connection, shown: &str, file: i64) -> Result<ImportOutcome, DbError> {
     let first: String = conn.query_row(
         "SELECT path FROM files WHERE id = ?1",
         params![file],
         |row| row.get(0),
     )?;
     if first == shown {
-        return Ok(Outcome::Known);
+        return Ok(ImportOutcome::Known);
     }
     conn.execute(
         "INSERT OR IGNORE INTO file_copies (file, path) VALUES (?1, ?2)",
         params![file, shown],
     )?;
-    Ok(Outcome::Copy { of: first.into() })
+    Ok(ImportOutcome::Copy { of: first.into() })
 }
 
 fn insert(
     conn: &Connection,
     path: &Path,
     new: NewFile,
-    settings: &ImportSettings,
+    about: &ClipUpdate,
     recipe: &str,
-) -> Result<Outcome, DbError> {
-    let warnings: Vec<String> = new.read.warnings.iter().map(ToString::to_string).collect();
+) -> Result<ImportOutcome, DbError> {
+    let warnings: Vec<String> = new.file.warnings.iter().map(ToString::to_string).collect();
     conn.prepare(
         "INSERT INTO files (hash, path, skeleton_path, format, bytes, imported_secs, warnings) \
          VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)",
@@ -336,11 +322,11 @@ fn insert(
     .execute(params![
         new.hash,
         path.to_string_lossy(),
-        new.read
+        new.file
             .skeleton
             .as_ref()
             .map(|p| p.to_string_lossy().into_owned()),
-        new.read.format,
+        new.file.format.name(),
         new.bytes as i64,
         now_secs(),
         serde_json::to_string(&warnings).unwrap_or_default(),
@@ -349,11 +335,11 @@ fn insert(
     let mut names = Vec::new();
     for (character, clip) in new.clips.into_iter().enumerate() {
         let name = free_name(conn, path, &clip.name)?;
-        let id = insert_clip(conn, file, character, &name, &clip, settings)?;
+        let id = insert_clip(conn, file, character, &name, &clip, about)?;
         rows::keep(conn, id, recipe, clip.bones, &clip.rows)?;
         names.push(name);
     }
-    Ok(Outcome::Imported {
+    Ok(ImportOutcome::Imported {
         clips: names,
         warnings,
     })
@@ -397,14 +383,13 @@ fn insert_clip(
     character: usize,
     name: &str,
     clip: &NewClip,
-    settings: &ImportSettings,
+    about: &ClipUpdate,
 ) -> Result<ClipId, DbError> {
     let packed = &clip.packed;
     let sql = "INSERT OR IGNORE INTO skeletons (hash, joints) VALUES (?1, ?2)";
     conn.prepare(sql)?
         .execute(params![packed.skeleton_hash, packed.joints as i64])?;
     let motion = &packed.stored.clip;
-    let about = &settings.about;
     conn.prepare(
         "INSERT INTO clips (name, file, character, skeleton, frames, rate_hz, rest_frames, repaired_frames, roles, \
          facts, max_angle_rad, max_position_metres, motion, source, licence, subject) VALUES (?1, ?2, ?3, \

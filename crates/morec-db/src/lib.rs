@@ -5,8 +5,7 @@
 //! Y up; where the original lies is remembered by path and hash. Feature rows are kept ready for searching and made again
 //! when the recipe changes.
 //!
-//! The library prints nothing and knows no terminal; files are read through a [`ClipReader`] that the caller gives, mostly
-//! [`FileReader`], which knows BVH, AMC with its ASF skeleton and stored clips.
+//! The library prints nothing and knows no terminal; files are read by a [`FileReader`](morec::files::FileReader).
 //!
 //! | job | begins at |
 //! |---|---|
@@ -18,13 +17,10 @@
 //! | rows, search by example, near copies | [`rows`], [`search`] |
 //! | the other samples of classes that a few are labelled of | [`MotionDb::propose`], [`questions`] |
 
-mod archives;
-mod bounded;
 mod clips;
 mod db;
 mod error;
 pub mod exchange;
-mod files;
 mod history;
 mod import;
 mod indexes;
@@ -42,14 +38,11 @@ mod testing;
 mod tests;
 mod time;
 
-pub use archives::split_choice;
-pub use bounded::{LARGEST_FILE, LARGEST_STREAM, read_file, read_stream};
 pub use clips::{ClipFilter, ClipId, ClipInfo, ClipUpdate};
 pub use db::{Health, MotionDb, Summary};
 pub use error::DbError;
-pub use files::{FileError, FileReader, OpenedFile};
 pub use history::{Effect, STEPS_KEPT, Step, Turned};
-pub use import::{ClipReader, ImportReport, ImportSettings, Outcome, ReadFile, Refused};
+pub use import::{ImportCounts, ImportLog, ImportOutcome, Refused};
 pub use indexes::IndexInfo;
 pub use motion::StoredClip;
 pub use propose::{Proposal, ProposeOptions, questions};

@@ -1,7 +1,7 @@
 //! The stored form of a clip's motion, and back. Nothing else knows what the bytes are.
 
 use morec::clip::{Clip, Span};
-use morec::import::{Facts, Imported};
+use morec::import::{ImportReport, Take};
 use morec::progress::Progress;
 use morec::roles::{Role, RoleMap};
 use morec::smooth::{CompressedClip, SmoothError, SmoothParams, compress};
@@ -34,8 +34,13 @@ pub(crate) struct Packed {
 
 /// Compresses a clip. Motion so wild that joints cannot be kept within the bound is kept channel by channel, and
 /// says how far it is off.
-pub(crate) fn pack(imported: Imported, progress: &dyn Progress) -> Result<Packed, String> {
-    let Imported { clip, roles, facts } = imported;
+pub(crate) fn pack(take: Take, progress: &dyn Progress) -> Result<Packed, String> {
+    let Take {
+        clip,
+        roles,
+        report,
+        ..
+    } = take;
     let bounded = match compress(&clip, &SmoothParams::database(), progress) {
         Err(SmoothError::Bound { .. }) => compress(&clip, &SmoothParams::default(), progress),
         other => other,
@@ -48,20 +53,20 @@ pub(crate) fn pack(imported: Imported, progress: &dyn Progress) -> Result<Packed
         skeleton_hash: skeleton_hash(&clip),
         joints: clip.skeleton.len(),
         roles: roles_to_json(&roles),
-        facts: facts_to_json(&facts),
+        facts: report_to_json(&report),
         stored: StoredClip {
             clip: compressed
                 .sample(compressed.source_rate_hz())
                 .map_err(|error| error.to_string())?,
             roles,
-            rest: facts.rest_frames,
+            rest: report.rest_frames,
         },
         motion: compressed.to_bytes(),
     })
 }
 
-fn facts_to_json(facts: &Facts) -> String {
-    serde_json::to_string(facts).unwrap_or_default()
+fn report_to_json(report: &ImportReport) -> String {
+    serde_json::to_string(report).unwrap_or_default()
 }
 
 /// The joint of each role, in the order of [`Role::ALL`].

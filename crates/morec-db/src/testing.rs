@@ -3,36 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use morec::clip::Clip;
-use morec::formats::Limits;
-use morec::formats::bvh::{self, BvhOptions};
-use morec::synth::{DatabaseSpec, Take, database};
+use morec::files::FileReader;
+use morec::formats::bvh;
+use morec::synth::{DatabaseSpec, SyntheticTake, database};
 use tempfile::TempDir;
 
-use crate::{ClipReader, ImportSettings, MotionDb, ReadFile};
-
-/// Reads BVH only.
-pub struct BvhReader;
-
-impl ClipReader for BvhReader {
-    fn read(&self, path: &Path, bytes: &[u8]) -> Result<ReadFile, String> {
-        let name = path
-            .file_stem()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .into_owned();
-        let loaded = bvh::read(bytes, &name, &BvhOptions::default(), &Limits::default())
-            .map_err(|e| e.to_string())?;
-        Ok(ReadFile {
-            format: "bvh".into(),
-            skeleton: None,
-            clips: loaded.clips,
-            warnings: loaded.warnings,
-        })
-    }
-}
+use crate::{ClipUpdate, MotionDb};
 
 /// Takes of so many people, each waving twice.
-pub fn waves(people: usize) -> Vec<Take> {
+pub fn waves(people: usize) -> Vec<SyntheticTake> {
     let spec = DatabaseSpec {
         people,
         repetitions: 2,
@@ -58,7 +37,7 @@ pub fn database_of_waves(people: usize) -> (TempDir, MotionDb) {
         .map(|take| write_bvh(folder.path(), &take.clip.name, &take.clip))
         .collect();
     let mut db = MotionDb::create(&folder.path().join("test.mdb")).unwrap();
-    db.import(&paths, &BvhReader, &ImportSettings::default(), &())
+    db.import(&paths, &FileReader::default(), &ClipUpdate::default(), &())
         .unwrap();
     (folder, db)
 }

@@ -5,8 +5,10 @@ use std::path::PathBuf;
 use morec::progress::Progress;
 use tempfile::TempDir;
 
-use crate::testing::{BvhReader, database_of_waves, waves, write_bvh};
-use crate::{ClipFilter, ClipUpdate, DbError, ImportSettings, MotionDb, Outcome};
+use morec::files::FileReader;
+
+use crate::testing::{database_of_waves, waves, write_bvh};
+use crate::{ClipFilter, ClipUpdate, DbError, ImportOutcome, MotionDb};
 
 #[test]
 fn other_files_are_plain_errors() {
@@ -102,21 +104,27 @@ fn the_same_content_is_one_clip() {
     let paths = [first.clone(), copy.clone(), broken.clone()];
     let mut db = MotionDb::create(&folder.path().join("a.mdb")).unwrap();
     let report = db
-        .import(&paths, &BvhReader, &ImportSettings::default(), &())
+        .import(&paths, &FileReader::default(), &ClipUpdate::default(), &())
         .unwrap();
-    assert!(matches!(&report.files[0].1, Outcome::Imported { clips, .. } if clips == &["first"]));
-    assert_eq!(report.files[1].1, Outcome::Copy { of: first });
-    assert!(matches!(&report.files[2].1, Outcome::Refused(_)));
+    assert!(
+        matches!(&report.files[0].1, ImportOutcome::Imported { clips, .. } if clips == &["first"])
+    );
+    assert_eq!(report.files[1].1, ImportOutcome::Copy { of: first });
+    assert!(matches!(&report.files[2].1, ImportOutcome::Refused(_)));
     let again = db
-        .import(&paths, &BvhReader, &ImportSettings::default(), &())
+        .import(&paths, &FileReader::default(), &ClipUpdate::default(), &())
         .unwrap();
-    assert_eq!(again.files[0].1, Outcome::Known);
-    assert_eq!(again.counts(), [0, 0, 1, 1, 1]);
+    assert_eq!(again.files[0].1, ImportOutcome::Known);
+    let counts = again.counts();
+    assert_eq!(
+        (counts.imported, counts.known, counts.copies, counts.refused),
+        (0, 1, 1, 1)
+    );
     let summary = db.summary().unwrap();
     assert_eq!((summary.clips, summary.files, summary.refused), (1, 1, 1));
     // Once it can be read it is refused no more.
     write_bvh(folder.path(), "broken", &waves(2)[1].clip);
-    db.import(&paths, &BvhReader, &ImportSettings::default(), &())
+    db.import(&paths, &FileReader::default(), &ClipUpdate::default(), &())
         .unwrap();
     let summary = db.summary().unwrap();
     assert_eq!((summary.clips, summary.refused), (2, 0));
@@ -131,7 +139,7 @@ fn clips_of_one_name_are_told_apart() {
         paths.push(write_bvh(&folder.path().join(sub), "walk", &take.clip));
     }
     let mut db = MotionDb::create(&folder.path().join("a.mdb")).unwrap();
-    db.import(&paths, &BvhReader, &ImportSettings::default(), &())
+    db.import(&paths, &FileReader::default(), &ClipUpdate::default(), &())
         .unwrap();
     let names: Vec<String> = db
         .clips(&ClipFilter::default())
@@ -165,12 +173,17 @@ fn a_cancelled_import_goes_on_where_it_stopped() {
     let mut db = MotionDb::create(&folder.path().join("a.mdb")).unwrap();
     let stop = CancelAfter(1, Default::default());
     let report = db
-        .import(&paths, &BvhReader, &ImportSettings::default(), &stop)
+        .import(
+            &paths,
+            &FileReader::default(),
+            &ClipUpdate::default(),
+            &stop,
+        )
         .unwrap();
     assert!(report.cancelled);
     assert_eq!(db.summary().unwrap().clips, report.files.len() as u64);
     let report = db
-        .import(&paths, &BvhReader, &ImportSettings::default(), &())
+        .import(&paths, &FileReader::default(), &ClipUpdate::default(), &())
         .unwrap();
     assert!(!report.cancelled);
     assert_eq!(db.summary().unwrap().clips, 3);
@@ -237,7 +250,7 @@ fn a_full_disk_keeps_what_was_there() {
         .map(|take| write_bvh(folder.path(), &take.clip.name, &take.clip))
         .collect();
     let error = db
-        .import(&paths, &BvhReader, &ImportSettings::default(), &())
+        .import(&paths, &FileReader::default(), &ClipUpdate::default(), &())
         .unwrap_err();
     assert!(matches!(error, DbError::Full), "{error}");
     assert_eq!(db.summary().unwrap().clips, 1);

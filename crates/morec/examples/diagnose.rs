@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use morec::diagnosis::{Diagnosis, Severity, diagnose_clip};
 use morec::formats::Limits;
 use morec::formats::bvh::{self, BvhOptions};
-use morec::import::{ImportOptions, prepare};
+use morec::import::{ImportOptions, normalize};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let folders: Vec<PathBuf> = std::env::args_os().skip(1).map(PathBuf::from).collect();
@@ -28,8 +28,8 @@ fn main() -> Result<(), Box<dyn Error>> {
                 &Limits::default(),
             )?;
             for clip in parsed.clips {
-                let imported = prepare(clip, &ImportOptions::default())?;
-                let rest = &imported.facts.rest_frames;
+                let imported = normalize(clip, &ImportOptions::default())?;
+                let rest = &imported.report.rest_frames;
                 let diagnosis = diagnose_clip(&imported.clip, &imported.roles, rest);
                 clips += 1;
                 for finding in diagnosis.findings().iter() {

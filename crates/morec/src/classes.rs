@@ -1,5 +1,7 @@
 //! The classes an index tells apart.
 
+use std::fmt;
+
 /// Number of a class in one index.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
@@ -11,6 +13,13 @@ impl ClassId {
     /// Its place in a list of classes.
     pub fn index(self) -> usize {
         usize::from(self.0)
+    }
+}
+
+impl fmt::Display for ClassId {
+    /// `class 3`; its name is the index's.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "class {}", self.0)
     }
 }
 

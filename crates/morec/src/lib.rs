@@ -4,77 +4,55 @@
 //! [`Recognizer`](live::Recognizer) made from it takes a performer's poses one by one and says which motions
 //! happened, from when to when, a tenth of a second or two after each has ended.
 //!
-//! The library takes bytes and values and gives bytes and values: it opens no file, prints nothing, starts no
-//! runtime. The command `morec` puts files and a terminal around it.
+//! The library prints nothing and starts no runtime; it takes bytes and values, and opens files only in [`files`] and
+//! where a path is given. The command `morec` puts a terminal around it.
 //!
 //! # Example
 //!
-//! Three made people teach two gestures; a fourth, whom the index has never seen, performs them.
+//! ```no_run
+//! # fn main() -> Result<(), morec::Error> {
+//! let takes = morec::files::open_all("clips/")?;                // or morec::Take::from_bvh(&bytes)?
+//! let idle = morec::files::open_all("background/")?;            // motion that is none of the classes
+//! let labels = morec::Labels::from_path("labels.tsv")?;
+//! let index = morec::Trainer::new().labels(&labels).background(&idle).train(&takes)?;
+//! index.save("signs.index")?;
+//!
+//! let [take] = &morec::files::open("new.bvh")?[..] else { return Ok(()) };
+//! for detection in index.recognize(take)? {
+//!     println!("{detection}");                                  // wave from 1.23 s to 2.50 s, score 0.87
+//! }
+//!
+//! let mut live = index.recognizer(take.bones())?;               // allocates; says why it cannot
+//! for (secs, pose) in take.poses() {                            // world positions of the body's joints, any rate
+//!     for detection in live.push(secs, &pose) {                 // allocates nothing, cannot fail
+//!         println!("{}", detection.named(live.model()));
+//!     }
+//! }
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! The same on synthetic people, so that it runs anywhere: three teach two gestures, a fourth performs them.
 //!
 //! ```
-//! use std::sync::Arc;
-//!
-//! use morec::features::{bones_of_clip, for_each_pose};
-//! use morec::import::{ImportOptions, prepare};
-//! use morec::labels::Sample;
-//! use morec::live::Recognizer;
 //! use morec::synth::{DatabaseSpec, database};
-//! use morec::train::{Labelling, Source, TrainClip, TrainOptions, train_clips};
+//! use morec::{Labels, Take, Trainer};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! // Clips from files come from formats::bvh::read or formats::acclaim; these are made.
-//! let classes = ["wave", "bow"];
-//! let spec = DatabaseSpec { people: 4, repetitions: 2, classes: classes.to_vec(), ..Default::default() };
-//! let mut takes = database(1, &spec);
-//! let new = takes.pop().ok_or("nobody")?;
-//!
-//! let (mut clips, mut samples) = (Vec::new(), Vec::new());
-//! for take in &takes {
-//!     // Metres, Y up, and which joint is which part of the body.
-//!     let imported = prepare(take.clip.clone(), &ImportOptions::default())?;
-//!     clips.push(TrainClip {
-//!         name: take.clip.name.clone(),
-//!         clip: imported.clip,
-//!         roles: imported.roles,
-//!         rest: imported.facts.rest_frames,
-//!         source: Source::Labelled,
-//!         person: Some(take.person.clone()),
-//!     });
-//!     samples.extend(take.labels.iter().map(|label| Sample {
-//!         clip: take.clip.name.clone(),
-//!         class: label.class.to_owned(),
-//!         start_secs: label.start_secs,
-//!         stop_secs: label.stop_secs,
-//!         whole_clip: false,
-//!         person: Some(take.person.clone()),
-//!         line: 0,
-//!     }));
+//! let spec = DatabaseSpec { people: 4, repetitions: 2, classes: vec!["wave", "bow"], ..Default::default() };
+//! let mut people = database(1, &spec);
+//! let new = people.pop().ok_or("nobody")?;
+//! let mut labels = Labels::default();
+//! for person in &people {
+//!     for label in &person.labels {
+//!         labels.add(&person.clip.name, label.class, label.start_secs..label.stop_secs);
+//!     }
 //! }
-//! let labelling = Labelling {
-//!     samples: &samples,
-//!     classes: &classes.map(str::to_owned),
-//!     unlabelled_is_background: true,
-//!     ..Default::default()
-//! };
-//! // The last argument hears of progress and may cancel; () does neither.
-//! let (model, report) = train_clips(&clips, &labelling, &TrainOptions::default(), &())?;
-//! assert_eq!(report.classes.len(), 2);
+//! let takes = people.into_iter().map(|person| Take::new(person.clip)).collect::<Result<Vec<_>, _>>()?;
 //!
-//! // The live side: poses come with a time, at any rate, even or uneven.
-//! let model = Arc::new(model);
-//! let performer = prepare(new.clip, &ImportOptions::default())?;
-//! let (clip, roles, rest) = (&performer.clip, &performer.roles, &performer.facts.rest_frames);
-//! let mut recognizer = Recognizer::new(&model, bones_of_clip(clip, roles, rest))?;
-//! let mut found = Vec::new();
-//! for_each_pose(clip, roles, rest, |time_secs, pose| {
-//!     found.extend_from_slice(recognizer.push(time_secs, pose)); // no allocation, no failure
-//! });
-//! found.extend_from_slice(recognizer.finish());
-//! for d in &found {
-//!     let class = &model.classes[d.class.index()].name;
-//!     println!("{class} from {:.2} s to {:.2} s, said at {:.2} s", d.start_secs, d.stop_secs, d.reported_secs);
-//! }
-//! assert!(found.len() >= 2);
+//! let index = Trainer::new().labels(&labels).train(&takes)?;
+//! let found = index.recognize(&Take::new(new.clip)?)?;
+//! assert!(found.len() >= 2 && found.iter().all(|d| ["wave", "bow"].contains(&d.class)));
 //! # Ok(())
 //! # }
 //! ```
@@ -129,8 +107,11 @@ mod coder;
 pub mod crossval;
 pub mod decode;
 pub mod diagnosis;
+mod error;
 pub mod eval;
 pub mod features;
+#[cfg(feature = "files")]
+pub mod files;
 pub mod formats;
 pub mod import;
 pub mod index;
@@ -156,3 +137,13 @@ pub mod templates;
 #[path = "../tests/testing/mod.rs"]
 mod testing;
 pub mod train;
+
+pub use classes::{ClassId, ClassInfo};
+pub use clip::{Clip, Skeleton};
+pub use error::Error;
+pub use features::{BoneSet, KeyPose};
+pub use import::{ImportOptions, Take};
+pub use index::MotionIndex;
+pub use labels::Labels;
+pub use live::{Detection, Event, Recognizer, Session};
+pub use train::{Trainer, TrainingReport};

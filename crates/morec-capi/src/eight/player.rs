@@ -36,7 +36,7 @@ impl Control {
 
 /// Plays a clip once.
 pub(super) struct Player {
-    imported: Arc<Imported>,
+    take: Arc<Take>,
     control: Arc<Control>,
     announced: bool,
     frame: usize,
@@ -46,10 +46,10 @@ pub(super) struct Player {
 }
 
 impl Player {
-    pub(super) fn new(imported: &Arc<Imported>, control: &Arc<Control>) -> Self {
-        let (imported, control) = (imported.clone(), control.clone());
+    pub(super) fn new(take: &Arc<Take>, control: &Arc<Control>) -> Self {
+        let (take, control) = (take.clone(), control.clone());
         Self {
-            imported,
+            take,
             control,
             announced: false,
             frame: 0,
@@ -73,7 +73,7 @@ impl Player {
                 now
             }
         };
-        let due_secs = (self.frame - self.since) as f64 / self.imported.clip.rate_hz / speed;
+        let due_secs = (self.frame - self.since) as f64 / self.take.clip.rate_hz / speed;
         // A speed can be so low that a frame is due after the end of time.
         let due = Duration::try_from_secs_f64(due_secs).unwrap_or(Duration::MAX);
         due.saturating_sub(begun.elapsed())
@@ -82,13 +82,13 @@ impl Player {
 
 impl Source for Player {
     fn next(&mut self, frame: &mut Frame) -> Next {
-        let imported = self.imported.clone();
-        let (clip, rest) = (&imported.clip, &imported.facts.rest_frames);
+        let take = self.take.clone();
+        let (clip, rest) = (&take.clip, take.rest());
         if !self.announced {
             self.announced = true;
             let rig = Rig {
                 skeleton: clip.skeleton.clone(),
-                roles: imported.roles.clone(),
+                roles: take.roles.clone(),
             };
             return Next::Rig(Actor(0), Arc::new(rig));
         }

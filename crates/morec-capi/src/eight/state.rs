@@ -34,7 +34,7 @@ pub(super) struct State {
 }
 
 struct ClipSource {
-    imported: Arc<Imported>,
+    take: Arc<Take>,
     control: Arc<Control>,
 }
 
@@ -93,9 +93,9 @@ impl State {
                 "recognition of another data source goes on: call mrStop first",
             ));
         }
-        let imported = Arc::new(clips::load(path, index)?);
+        let take = Arc::new(clips::load(path, index)?);
         self.source = Some(ClipSource {
-            imported,
+            take,
             control: Arc::new(Control::new(self.speed)),
         });
         Ok(())
@@ -157,8 +157,7 @@ impl State {
                 "there is no data source: call mrSetDataSource first",
             ));
         };
-        let Imported { clip, roles, facts } = &*source.imported;
-        Recognizer::new(&index.model, bones_of_clip(clip, roles, &facts.rest_frames))
+        Recognizer::new(&index.model, source.take.bones())
             .map_err(|error| Error::new(MorecStatus::NothingInCommon, error.to_string()))?;
         let control = Arc::new(Control::new(self.speed));
         source.control = control.clone();
@@ -170,7 +169,7 @@ impl State {
             overload: Overload::Wait,
             ..Default::default()
         };
-        let player = Box::new(Player::new(&source.imported, &control));
+        let player = Box::new(Player::new(&source.take, &control));
         let started = Session::start(&index.model, player, &options);
         let (session, readers) =
             started.map_err(|error| Error::new(MorecStatus::Internal, error.to_string()))?;
@@ -181,7 +180,7 @@ impl State {
         self.run = Some(Run {
             session,
             events,
-            rate_hz: source.imported.clip.rate_hz,
+            rate_hz: source.take.clip.rate_hz,
             control,
         });
         Ok(())

@@ -7,7 +7,7 @@ use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
 use morec::formats::Limits;
 use morec::formats::bvh::{self, BvhOptions};
-use morec::import::{ImportOptions, prepare};
+use morec::import::{ImportOptions, normalize};
 use morec::live::{Detection, recognize_clip};
 use morec_capi::*;
 
@@ -61,8 +61,8 @@ pub fn expected() -> Vec<Detection> {
     let bytes = std::fs::read(Path::new(files().clip.to_str().unwrap())).unwrap();
     let loaded = bvh::read(&bytes, "clip", &BvhOptions::default(), &Limits::default()).unwrap();
     let clip = loaded.clips.into_iter().next().unwrap();
-    let imported = prepare(clip, &ImportOptions::default()).unwrap();
-    let rest = &imported.facts.rest_frames;
+    let imported = normalize(clip, &ImportOptions::default()).unwrap();
+    let rest = &imported.report.rest_frames;
     recognize_clip(&kit::index().model, &imported.clip, &imported.roles, rest).unwrap()
 }
 

@@ -11,7 +11,7 @@ use morec::features::KeyPose;
 use morec::index::{MotionIndex, Provenance};
 use morec::live::Detection;
 use morec::roles::Role;
-use morec::synth::{Person, Script, Side, Take};
+use morec::synth::{Person, Script, Side, SyntheticTake};
 use morec_capi::*;
 
 use crate::made::{self, Timed};
@@ -52,7 +52,7 @@ fn committed(name: &str) -> Vec<u8> {
 }
 
 /// A person who performs some gestures.
-pub fn take(rate_hz: f64) -> Take {
+pub fn take(rate_hz: f64) -> SyntheticTake {
     let person = Person {
         hand: Side::Right,
         ..Person::draw(90, 1)

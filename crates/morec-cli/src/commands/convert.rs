@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use anyhow::{Context, Result, bail};
 use morec::clip::Clip;
 use morec::formats::{bvh, c3d, jsonl, trc};
-use morec::import::{ImportOptions, prepare};
+use morec::import::{ImportOptions, normalize};
 
 use crate::files::{self, ReadArgs};
 use crate::output;
@@ -104,6 +104,6 @@ fn points_of(clip: &Clip) -> Result<Clip> {
     if !clip.has_rotations() || clip.frames == 0 {
         return Ok(clip.clone());
     }
-    let facts = prepare(clip.clone(), &ImportOptions::default())?.facts;
+    let facts = normalize(clip.clone(), &ImportOptions::default())?.report;
     Ok(clip.to_points(Some(facts.metres_per_unit)))
 }

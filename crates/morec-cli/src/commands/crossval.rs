@@ -86,16 +86,17 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     }
     let material = args.material.load(&args.unknown)?;
     let tests = match &args.test_labels {
-        Some(labels) => Some(
-            args.material
-                .load_tests(&args.test, labels, &material.classes)?,
-        ),
+        Some(labels) => Some(args.material.load_tests(
+            &args.test,
+            labels,
+            &material.data.classes,
+        )?),
         None => None,
     };
     let of = Material {
-        clips: &material.clips,
-        samples: &material.samples,
-        classes: &material.classes,
+        clips: &material.data.clips,
+        samples: &material.data.samples,
+        classes: &material.data.classes,
         unknown: &material.unknown,
         tests: tests.as_ref().map(|tests| Tests {
             clips: &tests.clips,
@@ -153,7 +154,7 @@ impl Args {
             ("labels".to_owned(), self.material.label_source()),
             ("left out".to_owned(), format!("{:?}", self.options().by)),
         ];
-        let training = trained_classes(&material.samples, &material.classes);
+        let training = trained_classes(&material.data.samples, &material.data.classes);
         let report = Report {
             title: "Cross-validation",
             about: &about,

@@ -9,9 +9,9 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 use clap::Parser;
-use morec::import::{ImportOptions, prepare};
+use morec::import::{ImportOptions, normalize};
 use morec::labels::{ClipLength, read_found};
-use morec::synth::{DatabaseSpec, Take, database};
+use morec::synth::{DatabaseSpec, SyntheticTake, database};
 
 use super::{evaluate, recognize, train};
 use crate::files::{ReadArgs, open};
@@ -131,12 +131,12 @@ fn timed<T>(title: &str, job: impl FnOnce() -> Result<T>) -> Result<T> {
 }
 
 /// Plays the unseen person's clip with what was found in it, both read back from their files.
-fn show(folder: &DemoFolder, take: &Take, args: &Args) -> Result<()> {
+fn show(folder: &DemoFolder, take: &SyntheticTake, args: &Args) -> Result<()> {
     let path = folder.clip(take, true);
     let Some(clip) = open(&path, &ReadArgs::default())?.clips.pop() else {
         bail!("{}: holds no clip", path.display());
     };
-    let clip = prepare(clip, &ImportOptions::default())?.clip;
+    let clip = normalize(clip, &ImportOptions::default())?.clip;
     let length = ClipLength {
         frames: clip.frames,
         rate_hz: clip.rate_hz,

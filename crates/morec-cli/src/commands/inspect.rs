@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Context, Result};
-use morec::import::{ImportOptions, SignedAxis, prepare};
+use morec::import::{ImportOptions, SignedAxis};
 
 use crate::figures::write_json;
 use crate::files::{self, ReadArgs};
@@ -60,7 +60,7 @@ pub struct Args {
 pub fn run(args: Args) -> Result<ExitCode> {
     let options = import_options(&args)?;
     let expanded = files::expand_all(&args.clips)?;
-    let left_out = expanded.say_left_out();
+    let left_out = files::say_left_out(&expanded);
     let paths = expanded.clips;
     let full = args.full || paths.len() == 1;
     let mut progress = Progress::new(paths.len(), "reading clips");
@@ -103,18 +103,14 @@ fn print(report: &FileReport, full: bool) -> Result<()> {
 
 fn inspect(path: &std::path::Path, read: &ReadArgs, options: &ImportOptions) -> Result<Report> {
     let opened = files::open(path, read)?;
-    let mut imported = Vec::with_capacity(opened.clips.len());
-    for clip in opened.clips {
-        imported
-            .push(prepare(clip, options).with_context(|| format!("{}: --roles", path.display()))?);
-    }
-    Ok(Report::new(
-        path,
+    let (format, skeleton, warnings) = (
         opened.format,
-        opened.skeleton,
-        &imported,
-        opened.warnings,
-    ))
+        opened.skeleton.clone(),
+        opened.warnings.clone(),
+    );
+    let takes = opened.into_takes(options);
+    let takes = takes.with_context(|| format!("{}: --roles", path.display()))?;
+    Ok(Report::new(path, format, skeleton, &takes, warnings))
 }
 
 fn import_options(args: &Args) -> Result<ImportOptions> {

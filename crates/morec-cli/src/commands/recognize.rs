@@ -6,8 +6,8 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result};
 use clap::ValueEnum;
-use morec::features::{BoneSet, bones_of_clip};
-use morec::import::{ImportOptions, Imported, prepare};
+use morec::features::BoneSet;
+use morec::import::{ImportOptions, Take};
 use morec::index::MotionIndex;
 use morec::labels::{FOUND_HEADER, FoundLine};
 use morec::live::vmc::Bundling;
@@ -189,14 +189,12 @@ fn recognize_file(
     let shown = || path.display().to_string();
     let opened = stats.reading(|| open(path, &args.read))?;
     let mut all = Vec::new();
-    for clip in opened.clips {
-        let mut imported = prepare(clip, options).with_context(shown)?;
+    for mut imported in opened.into_takes(options).with_context(shown)? {
         adapt(&mut imported, index, path, options.mapping.is_none());
         let found = match args.over_vmc {
             Some(rate_hz) => over_vmc(&imported, rate_hz, index, args)?,
             None => {
-                let Imported { clip, roles, facts } = &imported;
-                let rest = &facts.rest_frames;
+                let (clip, roles, rest) = (&imported.clip, &imported.roles, imported.rest());
                 let found = stats.recognising(clip.frames, || match args.layout {
                     LayoutArg::Inline => Ok(recognize_clip(&index.model, clip, roles, rest)?),
                     layout => {
@@ -222,7 +220,7 @@ fn recognize_file(
 }
 
 fn over_vmc(
-    imported: &Imported,
+    imported: &Take,
     rate_hz: f64,
     index: &MotionIndex,
     args: &Args,
@@ -240,7 +238,7 @@ fn over_vmc(
 }
 
 /// Fills roles from the index's training clips, unless a mapping file has had its say, and says what stays missing.
-fn adapt(imported: &mut Imported, index: &MotionIndex, path: &Path, complete: bool) {
+fn adapt(imported: &mut Take, index: &MotionIndex, path: &Path, complete: bool) {
     if complete {
         index.complete_roles(&mut imported.roles, &imported.clip.skeleton);
     }
@@ -268,9 +266,8 @@ fn adapt(imported: &mut Imported, index: &MotionIndex, path: &Path, complete: bo
 }
 
 /// What a clip lacks of the bones `used`.
-fn missing_roles(imported: &Imported, used: BoneSet) -> Vec<String> {
-    let shown = bones_of_clip(&imported.clip, &imported.roles, &imported.facts.rest_frames);
-    if shown.and(used) == used {
+fn missing_roles(imported: &Take, used: BoneSet) -> Vec<String> {
+    if imported.bones().and(used) == used {
         return vec![];
     }
     let missing: Vec<String> = imported

@@ -47,9 +47,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         .collect();
     let settings = settings?;
     let study = Study {
-        clips: &material.clips,
-        samples: &material.samples,
-        classes: &material.classes,
+        clips: &material.data.clips,
+        samples: &material.data.samples,
+        classes: &material.data.classes,
         unknown: &material.unknown,
         seeds: &args.seed,
         settings: &settings,

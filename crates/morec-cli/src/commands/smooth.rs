@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use anyhow::{Context, Result, bail};
 use morec::clip::Clip;
-use morec::import::{ImportOptions, prepare};
+use morec::import::{ImportOptions, normalize};
 use morec::progress::Progress as _;
 use morec::smooth::{SmoothParams, compress};
 use rayon::prelude::*;
@@ -172,8 +172,8 @@ fn params(clip: &Clip, args: &Args) -> Result<SmoothParams> {
     let metres_per_unit = match args.unit {
         Some(unit) => unit,
         None => {
-            prepare(clip.clone(), &ImportOptions::default())?
-                .facts
+            normalize(clip.clone(), &ImportOptions::default())?
+                .report
                 .metres_per_unit
         }
     };

@@ -1,17 +1,14 @@
 //! `morec train`: labelled clips in, one index file out.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result};
-use morec::index::{MotionIndex, Provenance};
-use morec::roles::Role;
+use morec::index::MotionIndex;
 use morec::train::thesis::SvrdmReport;
-use morec::train::{Labelling, Source, TrainClip, TrainingReport, train_model};
+use morec::train::{TrainingReport, train_index};
 
 use crate::database;
-use crate::dates;
 use crate::material::{Material, MaterialArgs};
 use crate::output;
 use crate::progress::Bar;
@@ -45,19 +42,7 @@ pub fn trained(
     let material = args.load(&[])?;
     // Before the work, not after it.
     output::check(output).with_context(|| output.display().to_string())?;
-    let recipe = args.recipe()?;
-    let labelling = Labelling {
-        samples: &material.samples,
-        held_back: &[],
-        classes: &material.classes,
-        unlabelled_is_background: recipe.unlabelled_is_background(),
-    };
-    let (model, report) = train_model(&material.clips, &labelling, &recipe, &Bar::new())?;
-    let index = MotionIndex {
-        model,
-        roles: role_names(&material.clips),
-        provenance: provenance(&material, &report),
-    };
+    let (index, report) = train_index(&material.data, &args.recipe()?, &Bar::new())?;
     Ok((index, report, material))
 }
 
@@ -81,30 +66,6 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         print_report(&report, bytes.len(), &material, &args.output);
     }
     Ok(ExitCode::SUCCESS)
-}
-
-/// Joint names by role, of the first labelled clip.
-fn role_names(clips: &[TrainClip]) -> BTreeMap<Role, String> {
-    let Some(clip) = clips.iter().find(|c| c.source == Source::Labelled) else {
-        return BTreeMap::new();
-    };
-    let joints = clip.clip.skeleton.joints();
-    let name = |role: Role| Some((role, joints[clip.roles.joint(role)?].name.clone()));
-    Role::ALL.into_iter().filter_map(name).collect()
-}
-
-fn provenance(material: &Material, report: &TrainingReport) -> Provenance {
-    let labelled = material
-        .clips
-        .iter()
-        .filter(|c| c.source == Source::Labelled);
-    Provenance {
-        created: dates::now(),
-        morec_version: env!("CARGO_PKG_VERSION").to_owned(),
-        clips: labelled.map(|c| c.name.clone()).collect(),
-        samples: material.samples.len(),
-        background_secs: report.background_secs.clone(),
-    }
 }
 
 fn print_report(report: &TrainingReport, bytes: usize, material: &Material, output: &Path) {

@@ -10,12 +10,12 @@ use std::thread;
 use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
-use morec::import::{ImportOptions, prepare};
+use morec::import::ImportOptions;
 use morec::live::axis::{AxisOptions, AxisReceiver, AxisSkeleton};
 use morec::live::{Frame, Next, Source, SourceCounts, wall_now_secs};
 
 use super::address::Address;
-use crate::files::{ReadArgs, open};
+use crate::files::{ReadArgs, takes};
 
 /// A source must not wait longer than this.
 const WAIT: Duration = Duration::from_millis(10);
@@ -178,9 +178,9 @@ fn pass_on(mut stream: TcpStream, to: &SyncSender<Came>, closed: &AtomicBool) ->
 /// The skeleton of a BVH file that the broadcasting program wrote.
 pub fn skeleton(path: &Path) -> Result<AxisSkeleton> {
     let shown = || path.display().to_string();
-    let Some(clip) = open(path, &ReadArgs::default())?.clips.into_iter().next() else {
-        bail!("{}: no skeleton in it", shown());
-    };
-    let imported = prepare(clip, &ImportOptions::default()).with_context(shown)?;
-    AxisSkeleton::of_clip(&imported.clip.skeleton, &imported.roles).with_context(shown)
+    let takes = takes(path, &ReadArgs::default(), &ImportOptions::default())?;
+    let take = takes
+        .first()
+        .with_context(|| format!("{}: no skeleton in it", shown()))?;
+    AxisSkeleton::of_clip(&take.clip.skeleton, &take.roles).with_context(shown)
 }

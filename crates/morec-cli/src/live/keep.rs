@@ -4,13 +4,13 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
+use morec::files::FileReader;
 use morec::formats::bvh;
 use morec::live::Recording;
 use morec::roles::Role;
-use morec_db::{ImportSettings, MotionDb, Outcome};
+use morec_db::{ClipUpdate, ImportOutcome, MotionDb};
 use serde_json::{Map, Value, json};
 
-use crate::files::ReadArgs;
 use crate::output::write_whole;
 
 /// Where takes go.
@@ -135,17 +135,17 @@ fn import(database: &Path, file: &Path) -> Result<()> {
     } else {
         MotionDb::create(database)?
     };
-    let (reader, settings) = (ReadArgs::default(), ImportSettings::default());
-    let report = db.import(&[file.to_owned()], &reader.reader(), &settings, &())?;
+    let (reader, about) = (FileReader::default(), ClipUpdate::default());
+    let report = db.import(&[file.to_owned()], &reader, &about, &())?;
     for (_, outcome) in &report.files {
         match outcome {
-            Outcome::Refused(refused) => bail!("{}: {}", file.display(), refused.reason),
-            Outcome::Copy { of } => eprintln!(
+            ImportOutcome::Refused(refused) => bail!("{}: {}", file.display(), refused.reason),
+            ImportOutcome::Copy { of } => eprintln!(
                 "morec: {}: has the same take already, from {}",
                 database.display(),
                 of.display()
             ),
-            Outcome::Imported { .. } | Outcome::Known => {}
+            ImportOutcome::Imported { .. } | ImportOutcome::Known => {}
         }
     }
     Ok(())

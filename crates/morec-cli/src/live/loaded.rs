@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use morec::clip::Clip;
-use morec::import::{ImportOptions, Imported, prepare};
+use morec::import::{ImportOptions, Take};
 use morec::index::MotionIndex;
 use morec::roles::RoleMap;
 
-use crate::files::{ReadArgs, expand, open};
+use crate::files::{ReadArgs, expand, takes};
 
 /// A clip that can be played.
 #[derive(Debug, Clone)]
@@ -49,22 +49,20 @@ fn load_file(
     index: Option<&MotionIndex>,
     rate_hz: Option<f64>,
 ) -> Result<Vec<Loaded>> {
-    let ready = |clip| -> Result<Loaded> {
-        let mut imported = prepare(clip, options)?;
+    let ready = |mut take: Take| {
         if let Some(index) = index.filter(|_| options.mapping.is_none()) {
-            index.complete_roles(&mut imported.roles, &imported.clip.skeleton);
+            index.complete_roles(&mut take.roles, &take.clip.skeleton);
         }
-        Loaded::of(imported, rate_hz)
+        Loaded::of(take, rate_hz).with_context(|| path.display().to_string())
     };
-    let ready = |clip| ready(clip).with_context(|| path.display().to_string());
-    open(path, read)?.clips.into_iter().map(ready).collect()
+    takes(path, read, options)?.into_iter().map(ready).collect()
 }
 
 impl Loaded {
     /// An imported clip, at `rate_hz` if one is given.
-    pub fn of(imported: Imported, rate_hz: Option<f64>) -> Result<Self> {
+    pub fn of(imported: Take, rate_hz: Option<f64>) -> Result<Self> {
         let file_hz = imported.clip.rate_hz;
-        let rest_secs = imported.facts.rest_frames.end as f64 / file_hz;
+        let rest_secs = imported.report.rest_frames.end as f64 / file_hz;
         let clip = match rate_hz {
             Some(rate_hz) => imported.clip.resampled(rate_hz)?,
             None => imported.clip,

@@ -301,9 +301,9 @@ fn style_of(scene: &Scene, class: &str) -> Style {
 pub(super) mod tests {
     use super::super::Truth;
     use super::*;
-    use morec::synth::{Person, Script, Take};
+    use morec::synth::{Person, Script, SyntheticTake};
 
-    pub fn take() -> Take {
+    pub fn take() -> SyntheticTake {
         let script = Script::new(1, Person::draw(1, 0))
             .rest(1.0)
             .play("raise_hands")
@@ -313,7 +313,7 @@ pub(super) mod tests {
     }
 
     /// Every label, found with an end 0.1 s early and said 0.2 s later.
-    pub fn said(take: &Take) -> Vec<Said> {
+    pub fn said(take: &SyntheticTake) -> Vec<Said> {
         let said = |l: &morec::synth::Label| Said {
             class: l.class.to_owned(),
             start_secs: l.start_secs,
@@ -324,7 +324,7 @@ pub(super) mod tests {
         take.labels.iter().map(said).collect()
     }
 
-    fn truth(take: &Take) -> Vec<Truth> {
+    fn truth(take: &SyntheticTake) -> Vec<Truth> {
         let truth = |l: &morec::synth::Label| Truth {
             class: l.class.to_owned(),
             start_secs: l.start_secs,

@@ -4,12 +4,12 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use morec::formats::bvh;
-use morec::synth::{DatabaseSpec, Take, database};
+use morec::synth::{DatabaseSpec, SyntheticTake, database};
 use serde_json::Value;
 
 use crate::kit::Folder;
 
-fn takes(people: usize) -> Vec<Take> {
+fn takes(people: usize) -> Vec<SyntheticTake> {
     let spec = DatabaseSpec {
         people,
         repetitions: 2,
@@ -20,7 +20,7 @@ fn takes(people: usize) -> Vec<Take> {
 }
 
 /// A folder with `clips/` and `labels.tsv` of made people.
-pub fn studio(people: usize) -> (Folder, Vec<Take>) {
+pub fn studio(people: usize) -> (Folder, Vec<SyntheticTake>) {
     let folder = Folder::with(&[("clips/readme.txt", "not a clip")]);
     let takes = takes(people);
     let mut labels = String::from("clip\tstart\tstop\tclass\n");
@@ -413,7 +413,7 @@ fn tables_through_a_pipe_are_separated_by_tabs() {
     );
 }
 
-fn names(takes: &[Take]) -> Vec<&str> {
+fn names(takes: &[SyntheticTake]) -> Vec<&str> {
     let mut names: Vec<&str> = takes.iter().map(|take| take.clip.name.as_str()).collect();
     names.sort_unstable();
     names
@@ -421,7 +421,7 @@ fn names(takes: &[Take]) -> Vec<&str> {
 
 /// Files of different content: a comment's worth of difference in one offset is enough.
 #[cfg(unix)]
-fn copies(folder: &Folder, takes: &[Take], count: usize) {
+fn copies(folder: &Folder, takes: &[SyntheticTake], count: usize) {
     let mut bytes = Vec::new();
     bvh::write(&takes[0].clip, &mut bytes).unwrap();
     let text = String::from_utf8(bytes).unwrap();

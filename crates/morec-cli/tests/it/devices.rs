@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use morec::features::for_each_pose;
-use morec::import::{ImportOptions, prepare};
+use morec::import::{ImportOptions, normalize};
 use morec::math::Vec3;
 use morec::roles::Role;
 use morec::synth::{Person, Script};
@@ -33,7 +33,7 @@ fn performance() -> Vec<(f64, BTreeMap<Role, Vec3>)> {
         .rest(1.0)
         .play("wave")
         .rest(0.8);
-    let made = prepare(
+    let made = normalize(
         script.film("made", 30.0).unwrap().clip,
         &ImportOptions::default(),
     )
@@ -42,7 +42,7 @@ fn performance() -> Vec<(f64, BTreeMap<Role, Vec3>)> {
     for_each_pose(
         &made.clip,
         &made.roles,
-        &made.facts.rest_frames,
+        &made.report.rest_frames,
         |secs, pose| {
             let places = Role::ALL
                 .into_iter()

@@ -5,8 +5,7 @@ use rusqlite::Connection;
 use crate::labels::{NewSample, SampleFilter, State};
 use crate::testing::{database_of_waves, waves, write_bvh};
 use crate::{
-    APPLICATION_ID, ClipFilter, ClipId, ClipUpdate, DbError, ImportSettings, MotionDb, SCHEMA,
-    Segment, SegmentKind,
+    APPLICATION_ID, ClipFilter, ClipId, ClipUpdate, DbError, MotionDb, SCHEMA, Segment, SegmentKind,
 };
 
 /// Everything in the tables whose changes are steps, as text.
@@ -171,8 +170,8 @@ fn an_import_can_be_taken_back_and_its_motion_is_kept_once() {
     let path = write_bvh(folder.path(), "other", &waves(3)[2].clip);
     db.import(
         &[path],
-        &crate::testing::BvhReader,
-        &ImportSettings::default(),
+        &morec::files::FileReader::default(),
+        &ClipUpdate::default(),
         &(),
     )
     .unwrap();

@@ -5,9 +5,9 @@ use std::collections::BTreeSet;
 use super::*;
 use crate::labels::SampleFilter;
 use crate::testing::{database_of_waves, waves};
-use morec::synth::Take;
+use morec::synth::SyntheticTake;
 
-fn ids(db: &MotionDb, takes: &[Take]) -> Vec<ClipId> {
+fn ids(db: &MotionDb, takes: &[SyntheticTake]) -> Vec<ClipId> {
     takes
         .iter()
         .map(|t| db.find_clip(&t.clip.name).unwrap().id)
@@ -27,7 +27,7 @@ fn sample(clip: ClipId, class: &str, start_secs: f64, stop_secs: f64) -> NewSamp
 }
 
 /// The label at half overlap with a proposal, as its take and place there.
-fn under(takes: &[Take], ids: &[ClipId], p: &Proposal) -> Option<(usize, usize)> {
+fn under(takes: &[SyntheticTake], ids: &[ClipId], p: &Proposal) -> Option<(usize, usize)> {
     let take = ids.iter().position(|id| *id == p.clip)?;
     let share = |start: f64, stop: f64| {
         let shared = (stop.min(p.stop_secs) - start.max(p.start_secs)).max(0.0);
@@ -41,7 +41,7 @@ fn under(takes: &[Take], ids: &[ClipId], p: &Proposal) -> Option<(usize, usize)>
 }
 
 /// Labels of the first person.
-fn first_labels(takes: &[Take], ids: &[ClipId]) -> Vec<NewSample> {
+fn first_labels(takes: &[SyntheticTake], ids: &[ClipId]) -> Vec<NewSample> {
     takes[0]
         .labels
         .iter()

@@ -6,8 +6,10 @@ use super::layout::{DIM, lay_out, mirrored};
 use super::*;
 use crate::labels::{NewSample, SampleFilter, State};
 use crate::rows::ClipRows;
-use crate::testing::{BvhReader, database_of_waves, waves, write_bvh};
-use crate::{ClipFilter, ImportSettings};
+use morec::files::FileReader;
+
+use crate::testing::{database_of_waves, waves, write_bvh};
+use crate::{ClipFilter, ClipUpdate};
 
 #[test]
 fn a_mirror_of_a_mirror_is_the_thing() {
@@ -109,7 +111,7 @@ fn indexed(people: usize) -> (tempfile::TempDir, (crate::MotionDb, Vec<ClipRows>
 }
 
 /// All labels of these takes, as accepted samples.
-fn label(db: &mut crate::MotionDb, takes: &[morec::synth::Take]) {
+fn label(db: &mut crate::MotionDb, takes: &[morec::synth::SyntheticTake]) {
     let mut samples = Vec::new();
     for take in takes {
         let clip = db.find_clip(&take.clip.name).unwrap().id;
@@ -275,7 +277,7 @@ fn planted_copies_are_found_and_nothing_else() {
         write_bvh(folder.path(), "resampled", &resampled),
         write_bvh(folder.path(), "image", &image),
     ];
-    db.import(&paths, &BvhReader, &ImportSettings::default(), &())
+    db.import(&paths, &FileReader::default(), &ClipUpdate::default(), &())
         .unwrap();
     let index = SearchIndex::of_db(&mut db, &()).unwrap();
     let id = |name: &str| db.find_clip(name).unwrap().id;

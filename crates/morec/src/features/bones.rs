@@ -116,6 +116,12 @@ fn has_length(bone: &Vec3) -> bool {
     bone.norm().is_finite() && bone.norm() > 1e-6
 }
 
+impl From<&BoneSet> for BoneSet {
+    fn from(set: &BoneSet) -> Self {
+        *set
+    }
+}
+
 impl From<BoneSet> for Vec<String> {
     fn from(set: BoneSet) -> Self {
         set.indices()

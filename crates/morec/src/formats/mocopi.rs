@@ -315,7 +315,7 @@ impl<'a> Iterator for Boxes<'a> {
 mod tests {
     use super::*;
     use crate::formats::mangle;
-    use crate::import::{ImportOptions, prepare};
+    use crate::import::{ImportOptions, normalize};
 
     fn boxed(name: &[u8; 4], value: &[u8]) -> Vec<u8> {
         [&(value.len() as u32).to_le_bytes(), &name[..], value].concat()
@@ -373,12 +373,12 @@ mod tests {
             "the usual skeleton is the real one"
         );
         assert_eq!(alone.warnings.len(), 2);
-        let imported = prepare(
+        let imported = normalize(
             both.clips.into_iter().next().unwrap(),
             &ImportOptions::default(),
         )
         .unwrap();
         assert_eq!(imported.roles.missing().count(), 0);
-        assert_eq!(imported.facts.unit, Some("m"));
+        assert_eq!(imported.report.unit, Some("m"));
     }
 }

@@ -37,6 +37,27 @@ pub enum Format {
     Mocopi,
 }
 
+impl Format {
+    /// Its name in tables and databases; never changes.
+    pub fn name(self) -> &'static str {
+        match self {
+            Format::Bvh => "bvh",
+            Format::Asf => "asf",
+            Format::Amc => "amc",
+            Format::Mclip => "mclip",
+            Format::C3d => "c3d",
+            Format::Trc => "trc",
+            Format::Jsonl => "jsonl",
+            Format::Table => "table",
+            Format::Mvnx => "mvnx",
+            Format::Gltf => "gltf",
+            Format::Fbx => "fbx",
+            Format::Smpl => "smpl",
+            Format::Mocopi => "mocopi",
+        }
+    }
+}
+
 struct Readable {
     format: Format,
     extension: &'static str,
@@ -301,7 +322,7 @@ pub fn probe(bytes: &[u8], name: &str) -> Result<Format, ParseError> {
     };
     let expected = match format_of_name(name) {
         // What it is called and is not.
-        Some(format) => format!("{format:?}, as its name says"),
+        Some(format) => format!("{}, as its name says", format.name()),
         None => EXPECTED.to_owned(),
     };
     Err(ParseError::new(Place::File, expected, found))
@@ -524,7 +545,7 @@ mod tests {
         }
         let called = probe(b"\x7FELF\0\0", "a.glb").unwrap_err();
         assert!(
-            called.expected.contains("Gltf, as its name says"),
+            called.expected.contains("gltf, as its name says"),
             "{called}"
         );
         assert!(probe(b"\x7FELF\0\0", "a.bvh").is_err());

@@ -7,11 +7,13 @@ mod axes;
 mod body;
 mod points;
 mod rest;
+mod take;
 mod travel;
 mod units;
 
 pub use axes::SignedAxis;
 pub use rest::rest_frames;
+pub use take::Take;
 
 use crate::clip::{Clip, Span};
 use crate::formats::ParseError;
@@ -35,7 +37,7 @@ pub struct ImportOptions {
 
 /// What was inferred about a clip, or given in the options.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct Facts {
+pub struct ImportReport {
     /// Which way was up in the file; it is Y in the imported clip.
     pub up: SignedAxis,
     /// Metres in one of the file's units.
@@ -59,23 +61,12 @@ pub struct Facts {
     pub notes: Vec<String>,
 }
 
-/// A clip made ready for everything that follows.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Imported {
-    /// The motion, in metres and Y-up. No frame is taken away.
-    pub clip: Clip,
-    /// Who plays what.
-    pub roles: RoleMap,
-    /// What was inferred.
-    pub facts: Facts,
-}
-
 /// Infers what `clip` is and makes it Y-up in metres. Where a role is played by a place between joints (in a clip of
 /// points, or by a mapping), the clip gets a joint there. O(frames · joints).
 ///
 /// # Errors
 /// A mapping in `options` that names a joint which `clip` does not have.
-pub fn prepare(mut clip: Clip, options: &ImportOptions) -> Result<Imported, ParseError> {
+pub fn normalize(mut clip: Clip, options: &ImportOptions) -> Result<Take, ParseError> {
     let mut notes = Vec::new();
     let (map, point_set) = match clip.has_rotations() {
         true => (find_roles(&clip, &mut notes), None),
@@ -98,7 +89,7 @@ pub fn prepare(mut clip: Clip, options: &ImportOptions) -> Result<Imported, Pars
         Some(frames) => 0..frames.min(clip.frames),
         None => rest_frames(&clip, &map),
     };
-    let facts = Facts {
+    let report = ImportReport {
         up,
         metres_per_unit,
         unit: units::name(metres_per_unit),
@@ -110,10 +101,11 @@ pub fn prepare(mut clip: Clip, options: &ImportOptions) -> Result<Imported, Pars
         point_set,
         notes,
     };
-    Ok(Imported {
+    Ok(Take {
         clip,
         roles: map,
-        facts,
+        report,
+        warnings: Vec::new(),
     })
 }
 

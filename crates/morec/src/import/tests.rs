@@ -63,8 +63,8 @@ fn person(frames: usize, walks: f64) -> Clip {
     }
 }
 
-fn ready(clip: Clip) -> Imported {
-    prepare(clip, &ImportOptions::default()).unwrap()
+fn ready(clip: Clip) -> Take {
+    normalize(clip, &ImportOptions::default()).unwrap()
 }
 
 /// Puts a T-pose (all rotations zero) before the motion.
@@ -87,7 +87,7 @@ fn a_plain_person_is_left_alone() {
     let clip = person(50, 0.0);
     let imported = ready(clip.clone());
     assert_eq!(imported.clip, clip);
-    let facts = &imported.facts;
+    let facts = &imported.report;
     assert_eq!((facts.up, facts.unit), (SignedAxis::Y, Some("m")));
     assert_eq!((facts.travels, facts.rest_frames.clone()), (false, 0..0));
     assert!((facts.leg_length.unwrap() - 0.82).abs() < 1e-9);
@@ -100,30 +100,30 @@ fn a_plain_person_is_left_alone() {
 
 #[test]
 fn whoever_walks_travels() {
-    assert!(ready(person(50, 0.02)).facts.travels);
-    assert!(!ready(person(50, 0.001)).facts.travels);
+    assert!(ready(person(50, 0.02)).report.travels);
+    assert!(!ready(person(50, 0.001)).report.travels);
 }
 
 #[test]
 fn a_t_pose_before_the_motion_is_seen_and_kept() {
     let imported = ready(with_t_pose(person(50, 0.01)));
-    assert_eq!(imported.facts.rest_frames, 0..1);
+    assert_eq!(imported.report.rest_frames, 0..1);
     assert_eq!(imported.clip.frames, 51);
 }
 
 #[test]
 fn clips_that_begin_in_motion_have_no_rest_pose() {
     let mut clip = person(50, 0.0);
-    assert_eq!(ready(clip.clone()).facts.rest_frames, 0..0);
+    assert_eq!(ready(clip.clone()).report.rest_frames, 0..0);
     // A jerk after the first frame of an unsymmetric pose.
     let joints = clip.skeleton.len();
     clip.rotations[12] = Axis::X.rotation(-2.5) * Axis::Z.rotation(1.3);
     clip.rotations[1] = Axis::X.rotation(-1.0);
-    assert_eq!(ready(clip.clone()).facts.rest_frames, 0..0);
+    assert_eq!(ready(clip.clone()).report.rest_frames, 0..0);
     // Stillness: nothing jumps.
     let still = clip.rotations[..joints].to_vec();
     clip.rotations = still.iter().cycle().take(joints * 50).copied().collect();
-    assert_eq!(ready(clip).facts.rest_frames, 0..0);
+    assert_eq!(ready(clip).report.rest_frames, 0..0);
 }
 
 #[test]
@@ -134,27 +134,27 @@ fn what_a_person_says_counts() {
         rest_frames: Some(7),
         mapping: Some(Mapping::read(b"neck\t-\n").unwrap()),
     };
-    let imported = prepare(person(20, 0.0), &options).unwrap();
-    assert_eq!(imported.facts.up, signed(Axis::Z, false));
+    let imported = normalize(person(20, 0.0), &options).unwrap();
+    assert_eq!(imported.report.up, signed(Axis::Z, false));
     assert_eq!(
-        (imported.facts.metres_per_unit, imported.facts.unit),
+        (imported.report.metres_per_unit, imported.report.unit),
         (2.0, None)
     );
-    assert_eq!(imported.facts.rest_frames, 0..7);
+    assert_eq!(imported.report.rest_frames, 0..7);
     assert_eq!(imported.roles.joint(Role::Neck), None);
     assert!((imported.clip.tracks[0].positions[0] - Vec3::new(0.0, 0.0, -1.9)).norm() < 1e-9);
     let wrong = ImportOptions {
         mapping: Some(Mapping::read(b"neck\tN\n").unwrap()),
         ..Default::default()
     };
-    assert!(prepare(person(20, 0.0), &wrong).is_err());
+    assert!(normalize(person(20, 0.0), &wrong).is_err());
 }
 
 #[test]
 fn clips_without_frames_or_bodies_are_answered() {
     let empty = ready(person(0, 0.0));
     assert_eq!(empty.clip.frames, 0);
-    assert!(!empty.facts.notes.is_empty());
+    assert!(!empty.report.notes.is_empty());
     let nobody = Clip {
         skeleton: Skeleton::default(),
         rotations: Vec::new(),
@@ -190,8 +190,8 @@ proptest! {
         file.skeleton.map_tips(|tip| tip / metres);
 
         let imported = ready(file);
-        prop_assert_eq!(imported.facts.up, up);
-        prop_assert_eq!(imported.facts.unit, Some(name));
+        prop_assert_eq!(imported.report.up, up);
+        prop_assert_eq!(imported.report.unit, Some(name));
         for frame in [0, 29] {
             let (a, b) = (WorldPose::of(&expected, frame), WorldPose::of(&imported.clip, frame));
             // Up and lengths are as they were; which way the body faces is not said by "up".
@@ -255,7 +255,7 @@ fn real_clips_are_understood() {
         let mut wrong = Vec::new();
         for (name, clip) in clips_in(&data.join(folder).join("clips")) {
             let imported = ready(clip);
-            let facts = &imported.facts;
+            let facts = &imported.report;
             let lacks: Vec<Role> = imported.roles.missing().collect();
             let right = lacks == missing
                 && facts.unit == Some(unit)

@@ -26,6 +26,8 @@ mod tensors;
 mod write;
 
 use std::collections::BTreeMap;
+#[cfg(feature = "files")]
+use std::path::Path;
 
 use crate::live::Model;
 use crate::roles::{Role, RoleMap};
@@ -60,6 +62,29 @@ pub struct MotionIndex {
 }
 
 impl MotionIndex {
+    /// Reads the index at `path`; see [`from_bytes`](Self::from_bytes).
+    ///
+    /// # Errors
+    /// A file that cannot be read, or is no index that this release knows.
+    #[cfg(feature = "files")]
+    pub fn load(path: impl AsRef<Path>) -> Result<Self, crate::Error> {
+        let path = path.as_ref();
+        let bytes = crate::files::read_file(path);
+        let bytes = bytes.map_err(|error| crate::files::FileErrorKind::Io(error).at(path))?;
+        Ok(Self::from_bytes(&bytes)?)
+    }
+
+    /// Writes the index to `path`, whole or not at all; see [`to_bytes`](Self::to_bytes).
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    #[cfg(feature = "files")]
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<(), crate::Error> {
+        let path = path.as_ref();
+        let written = crate::files::write_whole(path, &self.to_bytes()?);
+        Ok(written.map_err(|error| crate::files::FileErrorKind::Io(error).at(path))?)
+    }
+
     /// Fills roles that `map` left empty with the joints that played them in training, where `skeleton` has
     /// joints of those names that play nothing else. Returns the roles that were filled.
     pub fn complete_roles(&self, map: &mut RoleMap, skeleton: &crate::clip::Skeleton) -> Vec<Role> {

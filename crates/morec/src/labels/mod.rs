@@ -60,6 +60,29 @@ pub struct Labels {
 }
 
 impl Labels {
+    /// Reads the table at `path`; see [`read`](Self::read).
+    ///
+    /// # Errors
+    /// A file that cannot be read, or is no table of labels.
+    #[cfg(feature = "files")]
+    pub fn from_path(path: impl AsRef<std::path::Path>) -> Result<Self, crate::files::FileError> {
+        let path = path.as_ref();
+        let bytes = crate::files::read_file(path).map_err(crate::files::FileErrorKind::from);
+        let labels = bytes.and_then(|bytes| Ok(Self::read(&bytes)?));
+        labels.map_err(|kind| kind.at(path))
+    }
+
+    /// Adds a label: in the clip of that name, `class` happens from start to stop, in seconds.
+    pub fn add(&mut self, clip: &str, class: &str, secs: std::ops::Range<f64>) {
+        self.rows.push(Label {
+            clip: clip.to_owned(),
+            class: class.to_owned(),
+            extent: Extent::Secs(secs.start, secs.end),
+            person: None,
+            line: self.rows.len() as u64 + 1,
+        });
+    }
+
     /// How many rows each class has, by class name.
     pub fn class_counts(&self) -> BTreeMap<&str, usize> {
         let mut counts = BTreeMap::new();

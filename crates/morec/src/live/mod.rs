@@ -21,6 +21,7 @@ mod frame;
 mod lane;
 mod model;
 mod of_clip;
+mod of_index;
 pub mod osc;
 mod outlets;
 mod paths;

@@ -1,5 +1,7 @@
 //! The recogniser on a live stream, whatever the method.
 
+use std::fmt;
+
 use crate::classes::ClassId;
 use crate::features::{BoneSet, KeyPose, Pushed};
 use crate::templates::EarlyParams;
@@ -10,11 +12,11 @@ use super::{Hunch, Model, Pose, StartError};
 /// Detections that one push can complete at most; more than a motion a tick is not a motion.
 const MAX_DETECTIONS_PER_PUSH: usize = 64;
 
-/// A motion recognised in a stream.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Detection {
-    /// What it is: an index into the model's classes.
-    pub class: ClassId,
+/// A motion recognised in a stream. Its class is a number of the index's, or a name ([`named`](Detection::named)).
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct Detection<C = ClassId> {
+    /// What it is.
+    pub class: C,
     /// When it began, on the stream's clock.
     pub start_secs: f64,
     /// When it ended.
@@ -23,6 +25,30 @@ pub struct Detection {
     pub score: f64,
     /// The stream's clock when it was reported: the time of the pose that settled it.
     pub reported_secs: f64,
+}
+
+impl Detection {
+    /// The same with the name of its class in `model`.
+    pub fn named(self, model: &Model) -> Detection<&str> {
+        Detection {
+            class: model.class_name(self.class),
+            start_secs: self.start_secs,
+            stop_secs: self.stop_secs,
+            score: self.score,
+            reported_secs: self.reported_secs,
+        }
+    }
+}
+
+impl<C: fmt::Display> fmt::Display for Detection<C> {
+    /// `wave from 1.23 s to 2.50 s, score 0.87`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{} from {:.2} s to {:.2} s, score {:.2}",
+            self.class, self.start_secs, self.stop_secs, self.score
+        )
+    }
 }
 
 /// Recognises motions in one performer's stream of poses.

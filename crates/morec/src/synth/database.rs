@@ -6,7 +6,7 @@ use super::motion::{self, Kind, Motion};
 use super::person::Person;
 use super::rng::Rng;
 use super::timeline::Side;
-use super::{Label, Take};
+use super::{Label, SyntheticTake};
 
 /// What [`database`] makes.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,7 +44,7 @@ impl Default for DatabaseSpec {
 
 /// One take for each stream of each person, named `<person>_<stream from 1>`. Classes that are not the name of a
 /// gesture are passed over. The same seed and spec give the same takes on every platform.
-pub fn database(seed: u64, spec: &DatabaseSpec) -> Vec<Take> {
+pub fn database(seed: u64, spec: &DatabaseSpec) -> Vec<SyntheticTake> {
     let mut takes = Vec::with_capacity(spec.people * spec.streams);
     for number in 0..spec.people {
         let mut person = Person::draw(seed, number);
@@ -60,7 +60,7 @@ pub fn database(seed: u64, spec: &DatabaseSpec) -> Vec<Take> {
     takes
 }
 
-fn take(person: &Person, mut rng: Rng, name: &str, spec: &DatabaseSpec) -> Take {
+fn take(person: &Person, mut rng: Rng, name: &str, spec: &DatabaseSpec) -> SyntheticTake {
     let plan = plan(&mut rng, spec);
     let mut actor = Actor::new(person, rng);
     actor.wait(1.0);
@@ -78,7 +78,7 @@ fn take(person: &Person, mut rng: Rng, name: &str, spec: &DatabaseSpec) -> Take 
         actor.wait(pause);
     }
     actor.wait(0.5);
-    Take {
+    SyntheticTake {
         clip: film(actor, name, spec.rate_hz),
         labels,
         person: person.name.clone(),

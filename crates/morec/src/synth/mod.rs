@@ -57,7 +57,7 @@ impl Label {
 
 /// A clip with what was performed in it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Take {
+pub struct SyntheticTake {
     /// The clip.
     pub clip: Clip,
     /// What was performed when, in order, without overlap.

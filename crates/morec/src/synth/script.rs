@@ -5,7 +5,7 @@ use super::film::film;
 use super::motion::{Kind, Motion, all};
 use super::person::Person;
 use super::rng::Rng;
-use super::{Label, Take};
+use super::{Label, SyntheticTake};
 
 /// A line of a script that cannot be performed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -77,7 +77,7 @@ impl Script {
     }
 
     /// Films the script. Every motion is labelled, of whatever kind; see [`Take::keep`].
-    pub fn film(&self, name: &str, rate_hz: f64) -> Result<Take, UnknownMotion> {
+    pub fn film(&self, name: &str, rate_hz: f64) -> Result<SyntheticTake, UnknownMotion> {
         let mut person = self.person.clone();
         let mut labels = Vec::new();
         let mut actor = Actor::new(&person, Rng::for_part(self.seed, 0x5c));
@@ -100,7 +100,7 @@ impl Script {
             }
         }
         let person = std::mem::take(&mut person.name);
-        Ok(Take {
+        Ok(SyntheticTake {
             clip: film(actor, name, rate_hz),
             labels,
             person,
@@ -117,9 +117,9 @@ fn unknown(at: usize, found: &str) -> UnknownMotion {
     }
 }
 
-impl Take {
+impl SyntheticTake {
     /// The take with only the labels of `kind`: what a recogniser trained on those classes should find.
-    pub fn keep(mut self, kind: Kind) -> Take {
+    pub fn keep(mut self, kind: Kind) -> SyntheticTake {
         self.labels
             .retain(|l| Motion::named(l.class).is_some_and(|m| m.kind() == kind));
         self

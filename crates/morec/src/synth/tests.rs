@@ -7,7 +7,7 @@ use crate::kinematics::WorldPose;
 use crate::math::Vec3;
 
 /// Every motion there is by somebody, `people` times over.
-fn every_motion(people: usize, rate_hz: f64) -> Vec<Take> {
+fn every_motion(people: usize, rate_hz: f64) -> Vec<SyntheticTake> {
     let film = |n: usize, m: Motion| {
         let person = Person::draw(11, n);
         let script = Script::new(n as u64, person)

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use crate::classes::ClassId;
 use crate::clip::{Clip, Span};
 use crate::features::{BoneSet, FeatureParams, bones_of_clip, rows_of_clip};
+use crate::import::Take;
 use crate::labels::Sample;
 use crate::roles::RoleMap;
 
@@ -28,6 +29,20 @@ pub struct TrainClip {
     pub source: Source,
     /// Who moves, if known.
     pub person: Option<String>,
+}
+
+impl From<Take> for TrainClip {
+    /// A labelled clip of nobody known.
+    fn from(take: Take) -> Self {
+        Self {
+            name: take.clip.name.clone(),
+            clip: take.clip,
+            roles: take.roles,
+            rest: take.report.rest_frames,
+            source: Source::Labelled,
+            person: None,
+        }
+    }
 }
 
 /// What labels say about clips, and what is to be made of the rest.

@@ -2,6 +2,7 @@
 
 mod align;
 mod clips;
+mod data;
 mod examples;
 mod from_clips;
 mod mining;
@@ -17,11 +18,13 @@ pub mod svrdm;
 mod templates;
 pub mod thesis;
 mod thresholds;
+mod trainer;
 mod trim;
 mod verifier;
 
 pub use align::align;
 pub use clips::train_clips;
+pub use data::{DataError, TrainingData};
 pub use from_clips::{Labelling, Prepared, TrainClip, prepare};
 pub use options::{ENOUGH_BACKGROUND_SECS, EVERYDAY_SEED, Everyday, TrainOptions};
 pub use params::TrainParams;
@@ -29,4 +32,5 @@ pub use recipe::{Recipe, train_model};
 pub use report::TrainingReport;
 pub use set::{Known, Source, TrainSample, TrainSet, TrainStream, overlap_share};
 pub use templates::{TrainError, Trained, scatters, train};
+pub use trainer::{Trainer, train_index};
 pub use trim::moving_part;

@@ -7,7 +7,7 @@ use std::path::Path;
 use morec::features::KeyPose;
 use morec::math::{Quat, Vec3};
 use morec::roles::Role;
-use morec::synth::{Person, Rng, Script, Side, Take};
+use morec::synth::{Person, Rng, Script, Side, SyntheticTake};
 
 use crate::made::Timed;
 
@@ -76,7 +76,7 @@ impl Case {
     }
 
     /// What its person performs.
-    pub fn take(&self, rate_hz: f64) -> Take {
+    pub fn take(&self, rate_hz: f64) -> SyntheticTake {
         let mut person = Person::draw(self.seed, self.person);
         // The people of the model are right-handed, as in every synthetic database unless told otherwise.
         person.hand = Side::Right;

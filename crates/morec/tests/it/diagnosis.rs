@@ -5,11 +5,11 @@ use std::path::Path;
 use morec::diagnosis::{Diagnoser, Finding, Severity, diagnose_clip};
 use morec::features::for_each_pose;
 use morec::formats::{Limits, bvh};
-use morec::import::{ImportOptions, Imported, prepare};
+use morec::import::{ImportOptions, Take, normalize};
 
 use crate::kit::data;
 
-fn clips(folder: &Path) -> Vec<Imported> {
+fn clips(folder: &Path) -> Vec<Take> {
     let mut paths: Vec<_> = std::fs::read_dir(folder)
         .unwrap()
         .map(|entry| entry.unwrap().path())
@@ -20,7 +20,7 @@ fn clips(folder: &Path) -> Vec<Imported> {
         let name = path.file_stem().unwrap().to_string_lossy();
         let bytes = std::fs::read(path).unwrap();
         let loaded = bvh::read(&bytes, &name, &Default::default(), &Limits::default()).unwrap();
-        prepare(
+        normalize(
             loaded.clips.into_iter().next().unwrap(),
             &ImportOptions::default(),
         )
@@ -39,7 +39,7 @@ fn real_clips_give_no_false_finding() {
     let (mut clips_seen, mut moments, mut mirrored, mut false_ones) = (0, 0, 0, Vec::new());
     for set in ["referee", "gestures", "sessions", "everyday"] {
         for imported in clips(&data.join(set).join("clips")) {
-            let Imported { clip, roles, facts } = &imported;
+            let (clip, roles, facts) = (&imported.clip, &imported.roles, &imported.report);
             let whole = diagnose_clip(clip, roles, &facts.rest_frames);
             clips_seen += 1;
             // The mirror image of a clip has the opposite of its evidence, and is reported by it.

@@ -7,7 +7,7 @@ use std::sync::{Arc, OnceLock};
 use morec::index::{INDEX_VERSION, IndexError, MotionIndex, Provenance};
 use morec::live::Model;
 use morec::roles::Role;
-use morec::synth::{DatabaseSpec, Person, Script, Side, Take};
+use morec::synth::{DatabaseSpec, Person, Script, Side, SyntheticTake};
 use morec::train::TrainParams;
 
 use crate::engines::inline;
@@ -148,7 +148,7 @@ fn a_newer_version_asks_for_a_newer_morec() {
 }
 
 /// The stream of the compatibility test: both classes and something else, by somebody never seen.
-fn stream() -> Take {
+fn stream() -> SyntheticTake {
     let person = Person {
         hand: Side::Right,
         ..Person::draw(90, 3)

@@ -6,7 +6,7 @@ use morec::clip::Clip;
 use morec::features::{BoneSet, KeyPose, bones_of_clip, for_each_pose};
 use morec::labels::Sample;
 use morec::roles::RoleMap;
-use morec::synth::{DatabaseSpec, Take, database, everyday};
+use morec::synth::{DatabaseSpec, SyntheticTake, database, everyday};
 use morec::templates::TemplateModel;
 use morec::train::{
     EVERYDAY_SEED, Labelling, Source, TrainClip, TrainOptions, TrainParams, train_clips,
@@ -16,7 +16,7 @@ use morec::train::{
 pub type Timed = (f64, KeyPose);
 
 /// Every frame of a take as a live source would send it, and the bones it shows.
-pub fn poses(take: &Take) -> (BoneSet, Vec<Timed>) {
+pub fn poses(take: &SyntheticTake) -> (BoneSet, Vec<Timed>) {
     let roles = RoleMap::find(&take.clip.skeleton);
     let mut poses = Vec::with_capacity(take.clip.frames);
     for_each_pose(&take.clip, &roles, &(0..0), |time_secs, pose| {
@@ -69,7 +69,7 @@ pub fn train(spec: &DatabaseSpec, params: TrainParams) -> TemplateModel {
     train_clips(&clips, &labelling, &options, &()).unwrap().0
 }
 
-fn samples_of(take: &Take) -> Vec<Sample> {
+fn samples_of(take: &SyntheticTake) -> Vec<Sample> {
     let sample = |l: &morec::synth::Label| Sample {
         clip: take.clip.name.clone(),
         class: l.class.to_owned(),

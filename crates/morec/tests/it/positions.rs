@@ -4,20 +4,20 @@ use std::io;
 
 use morec::clip::Clip;
 use morec::formats::{Limits, Loaded, ParseError, c3d, jsonl, table, trc};
-use morec::import::{ImportOptions, Imported, prepare};
+use morec::import::{ImportOptions, Take, normalize};
 use morec::live::{Detection, recognize_clip};
 use morec::synth::{DatabaseSpec, database};
 
 use crate::{kit, made};
 
-fn recognised(imported: &Imported) -> Vec<Detection> {
+fn recognised(imported: &Take) -> Vec<Detection> {
     let model = made::model();
-    let rest = &imported.facts.rest_frames;
+    let rest = &imported.report.rest_frames;
     recognize_clip(&model, &imported.clip, &imported.roles, rest).unwrap()
 }
 
-fn ready(clip: Clip) -> Imported {
-    prepare(clip, &ImportOptions::default()).unwrap()
+fn ready(clip: Clip) -> Take {
+    normalize(clip, &ImportOptions::default()).unwrap()
 }
 
 type Writer = fn(&Clip, &mut dyn io::Write) -> io::Result<()>;
@@ -67,9 +67,9 @@ fn the_same_motion_as_points_is_recognised_alike() {
         write(&points, &mut bytes).unwrap();
         let loaded = read(&bytes, "take", None, &Limits::default()).unwrap();
         let imported = ready(loaded.clips[0].clone());
-        assert_eq!(imported.facts.up.to_string(), "z", "{name}");
-        assert_eq!(imported.facts.unit, Some("mm"), "{name}");
-        assert_eq!(imported.facts.point_set, Some("joint names"), "{name}");
+        assert_eq!(imported.report.up.to_string(), "z", "{name}");
+        assert_eq!(imported.report.unit, Some("mm"), "{name}");
+        assert_eq!(imported.report.point_set, Some("joint names"), "{name}");
         let found = recognised(&imported);
         assert_eq!(found.len(), expected.len(), "{name}");
         for (found, expected) in found.iter().zip(&expected) {
@@ -111,10 +111,10 @@ fn one_recording_in_two_formats_agrees() {
     let trc = trc::read(&bytes("mstudio.trc"), "m", None, &limits).unwrap();
     let (c3d, trc) = (ready(c3d.clips[0].clone()), ready(trc.clips[0].clone()));
     assert_eq!(c3d.clip.frames, trc.clip.frames);
-    assert_eq!(c3d.facts.point_set, trc.facts.point_set);
+    assert_eq!(c3d.report.point_set, trc.report.point_set);
     assert_eq!(
-        (c3d.facts.up, c3d.clip.rate_hz),
-        (trc.facts.up, trc.clip.rate_hz)
+        (c3d.report.up, c3d.clip.rate_hz),
+        (trc.report.up, trc.clip.rate_hz)
     );
     for joint in c3d
         .clip
@@ -123,7 +123,7 @@ fn one_recording_in_two_formats_agrees() {
         .iter()
         .filter(|joint| joint.parent.is_none())
     {
-        let track = |imported: &Imported| {
+        let track = |imported: &Take| {
             let joint = imported.clip.skeleton.find(&joint.name)?;
             imported.clip.track(joint).cloned()
         };
@@ -204,9 +204,9 @@ fn real_files_are_what_they_are() {
         );
         assert!((clip.rate_hz - rate).abs() < 1e-3, "{file}");
         let imported = ready(clip);
-        assert_eq!(imported.facts.up.to_string(), up, "{file}");
-        assert_eq!(imported.facts.unit, Some(unit), "{file}");
+        assert_eq!(imported.report.up.to_string(), up, "{file}");
+        assert_eq!(imported.report.unit, Some(unit), "{file}");
         assert_eq!(18 - imported.roles.missing().count(), roles, "{file}");
-        assert_eq!(imported.facts.point_set, set, "{file}");
+        assert_eq!(imported.report.point_set, set, "{file}");
     }
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use morec::clip::Clip;
 use morec::formats::{Limits, acclaim, bvh, mclip};
-use morec::import::{ImportOptions, prepare};
+use morec::import::{ImportOptions, normalize};
 use morec::kinematics::WorldPose;
 use morec::smooth::{CompressedClip, SmoothParams, compress};
 
@@ -34,7 +34,7 @@ fn load(path: &Path, bytes: &[u8]) -> Clip {
     } else {
         bvh::read(bytes, "clip", &Default::default(), &Limits::default()).unwrap()
     };
-    prepare(
+    normalize(
         loaded.clips.into_iter().next().unwrap(),
         &ImportOptions::default(),
     )

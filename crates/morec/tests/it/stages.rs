@@ -10,7 +10,7 @@ use morec::live::{
     SessionError, SessionOptions, Source, Status, recognize_clip, recognize_clip_in_session,
 };
 use morec::roles::RoleMap;
-use morec::synth::Take;
+use morec::synth::SyntheticTake;
 use morec::train::thesis::SvrdmTrainParams;
 use proptest::prelude::*;
 
@@ -50,14 +50,14 @@ fn tuned() -> Model {
         .clone()
 }
 
-fn rig_of(take: &Take) -> Arc<Rig> {
+fn rig_of(take: &SyntheticTake) -> Arc<Rig> {
     let skeleton = take.clip.skeleton.clone();
     let roles = RoleMap::find(&skeleton);
     Arc::new(Rig { skeleton, roles })
 }
 
 /// A take performed by `actor`, from `origin_secs` on, at `speed`.
-fn frames(take: &Take, actor: u16, origin_secs: f64, speed: f64) -> Vec<Step> {
+fn frames(take: &SyntheticTake, actor: u16, origin_secs: f64, speed: f64) -> Vec<Step> {
     let frame = |number: usize| {
         let time_secs = origin_secs + number as f64 / take.clip.rate_hz / speed;
         let pose = WorldPose::of(&take.clip, number);

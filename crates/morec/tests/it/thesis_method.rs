@@ -9,14 +9,14 @@ use morec::labels::Sample;
 use morec::live::{Model, Recognizer, recognize_clip};
 use morec::reproduce::{Setting, Study, page, reproduce};
 use morec::roles::RoleMap;
-use morec::synth::{DatabaseSpec, Take, database};
+use morec::synth::{DatabaseSpec, SyntheticTake, database};
 use morec::train::thesis::{SvrdmOptions, SvrdmTrainParams, train_svrdm};
 use morec::train::{Labelling, Source, TrainClip, TrainError, TrainingReport};
 
 const CLASSES: [&str; 3] = ["wave", "bow", "push"];
 
-pub fn takes() -> &'static Vec<Take> {
-    static TAKES: OnceLock<Vec<Take>> = OnceLock::new();
+pub fn takes() -> &'static Vec<SyntheticTake> {
+    static TAKES: OnceLock<Vec<SyntheticTake>> = OnceLock::new();
     TAKES.get_or_init(|| {
         let classes = CLASSES.to_vec();
         database(
@@ -32,8 +32,8 @@ pub fn takes() -> &'static Vec<Take> {
     })
 }
 
-fn clips(takes: &[Take]) -> (Vec<TrainClip>, Vec<Sample>) {
-    let clip = |take: &Take| TrainClip {
+fn clips(takes: &[SyntheticTake]) -> (Vec<TrainClip>, Vec<Sample>) {
+    let clip = |take: &SyntheticTake| TrainClip {
         name: take.clip.name.clone(),
         roles: RoleMap::find(&take.clip.skeleton),
         clip: take.clip.clone(),

@@ -6,8 +6,9 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::Result;
+use morec::files::{FileReader, split_choice};
 use morec::import::ImportOptions;
-use morec_db::{ClipUpdate, ImportReport, ImportSettings, MotionDb, Outcome};
+use morec_db::{ClipUpdate, ImportCounts, ImportLog, ImportOutcome, MotionDb};
 use serde::Serialize;
 
 use super::copies::{self, Copy};
@@ -62,27 +63,28 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<ExitCode> {
     let begun = Instant::now();
     let expanded = files::expand_all(&args.clips)?;
-    let left_out = expanded.say_left_out();
+    let left_out = files::say_left_out(&expanded);
     let paths: Vec<PathBuf> = expanded.clips.into_iter().map(absolute).collect();
     let mut db = match args.db.exists() {
         true => database::open(&args.db)?,
         false => MotionDb::create(&args.db)?,
     };
-    let settings = ImportSettings {
-        options: ImportOptions {
+    let reader = FileReader {
+        import: ImportOptions {
             mapping: files::mapping(args.roles.as_deref())?,
             ..ImportOptions::default()
         },
-        about: ClipUpdate {
-            source: args.source.clone(),
-            licence: args.licence.clone(),
-            subject: args.subject.clone(),
-            add_tags: args.tags.clone(),
-            remove_tags: Vec::new(),
-        },
+        ..args.read.reader()
+    };
+    let about = ClipUpdate {
+        source: args.source.clone(),
+        licence: args.licence.clone(),
+        subject: args.subject.clone(),
+        add_tags: args.tags.clone(),
+        remove_tags: Vec::new(),
     };
     let bar = Bar::stoppable()?;
-    let report = db.import(&paths, &args.read.reader(), &settings, &bar)?;
+    let report = db.import(&paths, &reader, &about, &bar)?;
     let near_copies = near_copies(&mut db, &report, &bar)?;
     if args.json {
         super::print_json(&Reported {
@@ -98,7 +100,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if report.cancelled {
         return Ok(super::STOPPED.into());
     }
-    let refused = report.counts()[4];
+    let refused = report.counts().refused;
     Ok(if refused > 0 || left_out {
         ExitCode::FAILURE
     } else {
@@ -109,14 +111,14 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 #[derive(Serialize)]
 struct Reported<'a> {
     #[serde(flatten)]
-    report: &'a ImportReport,
+    report: &'a ImportLog,
     near_copies: &'a [Copy],
 }
 
 /// Which of the clips that have just come are nearly others.
-fn near_copies(db: &mut MotionDb, report: &ImportReport, bar: &Bar) -> Result<Vec<Copy>> {
+fn near_copies(db: &mut MotionDb, report: &ImportLog, bar: &Bar) -> Result<Vec<Copy>> {
     let names = report.files.iter().flat_map(|(_, outcome)| match outcome {
-        Outcome::Imported { clips, .. } => clips.as_slice(),
+        ImportOutcome::Imported { clips, .. } => clips.as_slice(),
         _ => &[],
     });
     let names: BTreeSet<&str> = names.map(String::as_str).collect();
@@ -129,7 +131,7 @@ fn near_copies(db: &mut MotionDb, report: &ImportReport, bar: &Bar) -> Result<Ve
 
 /// The same file is the same path, wherever the command is run.
 fn absolute(path: PathBuf) -> PathBuf {
-    let (file, choice) = morec_db::split_choice(&path);
+    let (file, choice) = split_choice(&path);
     match (file.canonicalize(), choice) {
         (Ok(file), Some(choice)) => format!("{}#{choice}", file.display()).into(),
         (Ok(file), None) => file,
@@ -137,34 +139,40 @@ fn absolute(path: PathBuf) -> PathBuf {
     }
 }
 
-fn text(report: &ImportReport, files: usize, secs: f64) -> String {
+fn text(report: &ImportLog, files: usize, secs: f64) -> String {
     const SHOWN: usize = 20;
-    let [imported, warned, known, copies, refused] = report.counts();
+    let ImportCounts {
+        imported,
+        with_warnings,
+        known,
+        copies,
+        refused,
+    } = report.counts();
     let clips: usize = report
         .files
         .iter()
         .map(|(_, outcome)| match outcome {
-            Outcome::Imported { clips, .. } => clips.len(),
+            ImportOutcome::Imported { clips, .. } => clips.len(),
             _ => 0,
         })
         .sum();
     let mut lines = vec![format!(
-        "{imported} files imported ({clips} clips, {warned} files with notes), {known} known, {copies} copies, {refused} refused; {secs:.1} s"
+        "{imported} files imported ({clips} clips, {with_warnings} files with notes), {known} known, {copies} copies, {refused} refused; {secs:.1} s"
     )];
     // The same note of a hundred files is one line: what differs is figures.
     let mut notes: Vec<(String, String, usize)> = Vec::new();
     for (path, outcome) in &report.files {
         let shown = path.display();
         match outcome {
-            Outcome::Refused(refused) => {
+            ImportOutcome::Refused(refused) => {
                 lines.push(format!("  refused {shown}: {}", refused.reason))
             }
-            Outcome::Copy { of } => notes.push((
+            ImportOutcome::Copy { of } => notes.push((
                 String::new(),
                 format!("  {shown} is a copy of {}", of.display()),
                 1,
             )),
-            Outcome::Imported { warnings, .. } => {
+            ImportOutcome::Imported { warnings, .. } => {
                 for warning in warnings {
                     let kind: String = warning.chars().filter(|c| !c.is_ascii_digit()).collect();
                     match notes.iter_mut().find(|(known, ..)| *known == kind) {
@@ -173,7 +181,7 @@ fn text(report: &ImportReport, files: usize, secs: f64) -> String {
                     }
                 }
             }
-            Outcome::Known => {}
+            ImportOutcome::Known => {}
         }
     }
     let notes: Vec<String> = notes

@@ -6,8 +6,8 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
-use morec::features::{FeatureParams, bones_of_clip, rows_of_clip};
-use morec::import::{ImportOptions, Imported, prepare};
+use morec::features::{FeatureParams, rows_of_clip};
+use morec::import::ImportOptions;
 use morec_db::labels::{SampleFilter, State};
 use morec_db::search::{Example, Hit, LearnedMetric, SearchIndex, SearchOptions};
 use morec_db::{ClipFilter, ClipId, ClipInfo, MotionDb, StoredClip};
@@ -200,21 +200,18 @@ fn example(db: &MotionDb, index: &SearchIndex, args: &Args) -> Result<(Example, 
             db.hint_of_clip(&args.example)
         );
     }
-    let opened = files::open(path, &args.read)?;
-    let clip = opened
-        .clips
+    let takes = files::takes(path, &args.read, &ImportOptions::default())?;
+    let take = takes
         .into_iter()
         .next()
         .with_context(|| format!("{}: no clip in it", args.example))?;
-    let Imported { clip, roles, facts } = prepare(clip, &ImportOptions::default())?;
+    let (params, bones) = (FeatureParams::default(), take.bones());
+    let rows = rows_of_clip(&take.clip, &take.roles, take.rest(), bones, &params);
     let stored = StoredClip {
-        clip,
-        roles,
-        rest: facts.rest_frames,
+        clip: take.clip,
+        roles: take.roles,
+        rest: take.report.rest_frames,
     };
-    let params = FeatureParams::default();
-    let bones = bones_of_clip(&stored.clip, &stored.roles, &stored.rest);
-    let rows = rows_of_clip(&stored.clip, &stored.roles, &stored.rest, bones, &params);
     let tick = |secs: f64| ((secs * params.tick_hz()).round().max(0.0) as usize).min(rows.len());
     let (start, stop) = (tick(args.start), args.stop.map_or(rows.len(), tick));
     let span = rows.slice(start..stop.max(start));

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
-use morec::synth::Take;
+use morec::synth::SyntheticTake;
 use rayon::prelude::*;
 
 use crate::commands::convert::write_clip;
@@ -47,8 +47,8 @@ impl DemoFolder {
     }
 
     /// Writes clips, labels and people of those to train on, and clip and truth of the one to recognise.
-    pub fn write(&self, taught: &[Take], unseen: &Take) -> Result<()> {
-        let all: Vec<(&Take, bool)> = taught
+    pub fn write(&self, taught: &[SyntheticTake], unseen: &SyntheticTake) -> Result<()> {
+        let all: Vec<(&SyntheticTake, bool)> = taught
             .iter()
             .map(|t| (t, false))
             .chain([(unseen, true)])
@@ -79,7 +79,7 @@ impl DemoFolder {
     }
 
     /// Where a take's clip lies.
-    pub fn clip(&self, take: &Take, unseen: bool) -> PathBuf {
+    pub fn clip(&self, take: &SyntheticTake, unseen: bool) -> PathBuf {
         self.path(if unseen { "new" } else { "clips" })
             .join(format!("{}.bvh", take.clip.name))
     }
@@ -90,7 +90,7 @@ impl DemoFolder {
     }
 
     /// What was written, for people to read.
-    pub fn contents(&self, taught: &[Take], unseen: &Take) -> String {
+    pub fn contents(&self, taught: &[SyntheticTake], unseen: &SyntheticTake) -> String {
         let minutes: f64 = taught.iter().map(|t| t.clip.duration_secs()).sum::<f64>() / 60.0;
         let samples: usize = taught.iter().map(|t| t.labels.len()).sum();
         let mut text = format!("\nWritten to {}:\n", self.0.display());
@@ -177,7 +177,7 @@ impl DemoFolder {
 }
 
 /// A table of labels in frames.
-fn labels(takes: &[Take]) -> String {
+fn labels(takes: &[SyntheticTake]) -> String {
     let mut text = "clip\tclass\tstart\tstop\n".to_owned();
     for take in takes {
         for label in &take.labels {

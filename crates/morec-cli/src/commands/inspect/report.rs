@@ -7,7 +7,7 @@ use morec::clip::{Clip, Span};
 use morec::diagnosis::{Diagnosis, Findings, diagnose_clip};
 use morec::formats::Warning;
 use morec::formats::probe::Format;
-use morec::import::{Facts, Imported};
+use morec::import::{ImportReport, Take};
 use morec::roles::{Role, RoleMap};
 use serde::Serialize;
 
@@ -56,7 +56,7 @@ struct ClipReport {
     joints: Vec<JointReport>,
     missing_roles: Vec<Role>,
     #[serde(flatten)]
-    facts: Facts,
+    facts: ImportReport,
     repaired: Vec<Span>,
     diagnosis: Diagnosed,
 }
@@ -84,7 +84,7 @@ impl Report {
         path: &Path,
         format: Format,
         skeleton: Option<PathBuf>,
-        imported: &[Imported],
+        imported: &[Take],
         warnings: Vec<Warning>,
     ) -> Self {
         let clips = imported.iter().map(ClipReport::new).collect();
@@ -139,8 +139,8 @@ impl Report {
 }
 
 impl ClipReport {
-    fn new(imported: &Imported) -> Self {
-        let Imported { clip, roles, facts } = imported;
+    fn new(imported: &Take) -> Self {
+        let (clip, roles, facts) = (&imported.clip, &imported.roles, &imported.report);
         let figures = diagnose_clip(clip, roles, &facts.rest_frames);
         Self {
             name: clip.name.clone(),

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use morec::formats::bvh;
-use morec::synth::{DatabaseSpec, Person, Script, Take, database};
+use morec::synth::{DatabaseSpec, Person, Script, SyntheticTake, database};
 
 use crate::kit::Folder;
 
@@ -112,7 +112,7 @@ impl Fixture {
         std::fs::write(path, bytes).unwrap();
     }
 
-    fn write_clip(&self, path: &str, take: &Take) {
+    fn write_clip(&self, path: &str, take: &SyntheticTake) {
         let mut bytes = Vec::new();
         bvh::write(&take.clip, &mut bytes).unwrap();
         self.write(path, &bytes);
@@ -131,7 +131,7 @@ impl Fixture {
 }
 
 /// Half a minute of motion that is none of the classes: two such clips are enough background for training to add none.
-fn other_motion(seed: u64) -> Take {
+fn other_motion(seed: u64) -> SyntheticTake {
     let script = Script::new(seed, Person::draw(seed, 9));
     script
         .play("walk")
@@ -143,7 +143,7 @@ fn other_motion(seed: u64) -> Take {
 }
 
 /// A take's labels, under the names of the documents.
-fn rows(name: &str, take: &Take) -> String {
+fn rows(name: &str, take: &SyntheticTake) -> String {
     let class = |gesture: &str| CLASSES.iter().find(|(g, _)| *g == gesture).unwrap().1;
     take.labels
         .iter()

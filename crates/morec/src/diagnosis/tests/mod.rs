@@ -4,7 +4,7 @@ mod bodies;
 mod streams;
 
 use super::*;
-use crate::import::{ImportOptions, prepare};
+use crate::import::{ImportOptions, normalize};
 use crate::synth::{DatabaseSpec, Person, Rng, Script, database};
 
 type Timed = (f64, KeyPose);
@@ -20,9 +20,9 @@ fn performance(number: usize, rate_hz: f64) -> Vec<Timed> {
         .play("bow")
         .rest(0.8);
     let take = script.film("performance", rate_hz).unwrap();
-    let imported = prepare(take.clip, &ImportOptions::default()).unwrap();
+    let imported = normalize(take.clip, &ImportOptions::default()).unwrap();
     let mut poses = Vec::new();
-    let rest = &imported.facts.rest_frames;
+    let rest = &imported.report.rest_frames;
     for_each_pose(&imported.clip, &imported.roles, rest, |secs, pose| {
         poses.push((secs, *pose))
     });
@@ -107,8 +107,8 @@ fn takes_of_the_synthetic_database_give_no_finding() {
             ..DatabaseSpec::default()
         },
     ) {
-        let imported = prepare(take.clip, &ImportOptions::default()).unwrap();
-        let rest = &imported.facts.rest_frames;
+        let imported = normalize(take.clip, &ImportOptions::default()).unwrap();
+        let rest = &imported.report.rest_frames;
         let diagnosis = diagnose_clip(&imported.clip, &imported.roles, rest);
         assert!(
             diagnosis.findings().is_empty(),
@@ -130,7 +130,7 @@ fn figures_are_those_of_the_body() {
         .rest(1.0)
         .film("figures", 60.0)
         .unwrap();
-    let imported = prepare(take.clip, &ImportOptions::default()).unwrap();
+    let imported = normalize(take.clip, &ImportOptions::default()).unwrap();
     let known = diagnose_clip(&imported.clip, &imported.roles, &(0..0));
     assert!(
         (known.leg_m.unwrap() - 0.491 * 1.72).abs() < 0.01,

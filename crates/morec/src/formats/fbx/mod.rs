@@ -218,7 +218,7 @@ fn moved_node(prop: &ufbx::AnimProp, nodes: usize) -> Option<usize> {
 }
 
 /// An animation of one skeleton.
-struct Take<'a> {
+struct AnimationStack<'a> {
     name: String,
     stack: &'a ufbx::AnimStack,
     rig: &'a Rig,
@@ -227,14 +227,18 @@ struct Take<'a> {
 }
 
 /// The takes that move a skeleton. A take whose keys are one pose is left out where others move.
-fn takes<'a>(fbx: &'a Fbx, rigs: &'a [Rig], warnings: &mut Vec<Warning>) -> Vec<Take<'a>> {
+fn takes<'a>(
+    fbx: &'a Fbx,
+    rigs: &'a [Rig],
+    warnings: &mut Vec<Warning>,
+) -> Vec<AnimationStack<'a>> {
     let mut takes = Vec::new();
     for stack in &fbx.anim_stacks {
         let before = takes.len();
         for rig in rigs {
             let keys = key_times(stack, rig, fbx.nodes.len());
             if !keys.is_empty() {
-                takes.push(Take {
+                takes.push(AnimationStack {
                     name: stack.element.name.to_string(),
                     stack,
                     rig,
@@ -268,7 +272,12 @@ fn key_times(stack: &ufbx::AnimStack, rig: &Rig, nodes: usize) -> Vec<f64> {
 }
 
 /// The frames of a take: where its keys are, but not outside of what the take says it shows.
-fn grid(fbx: &Fbx, take: &Take<'_>, clip_name: &str, warnings: &mut Vec<Warning>) -> KeyGrid {
+fn grid(
+    fbx: &Fbx,
+    take: &AnimationStack<'_>,
+    clip_name: &str,
+    warnings: &mut Vec<Warning>,
+) -> KeyGrid {
     let stated = fbx.settings.frames_per_second;
     let (begin, end) = (take.stack.time_begin, take.stack.time_end);
     let shown: Vec<f64> = take
@@ -307,7 +316,7 @@ fn grid(fbx: &Fbx, take: &Take<'_>, clip_name: &str, warnings: &mut Vec<Warning>
 
 fn clip(
     fbx: &Fbx,
-    take: &Take<'_>,
+    take: &AnimationStack<'_>,
     nodes: &[Node],
     clip_name: String,
     bytes: usize,

@@ -1,5 +1,5 @@
 use super::*;
-use crate::import::{ImportOptions, prepare};
+use crate::import::{ImportOptions, normalize};
 use crate::kinematics::WorldPose;
 use crate::math::Axis;
 
@@ -94,9 +94,9 @@ fn real_files_are_read() {
         (clip.frames, clip.rate_hz, clip.skeleton.len()),
         (251, 60.0, 24)
     );
-    let imported = prepare(clip, &ImportOptions::default()).unwrap();
-    assert_eq!(imported.facts.unit, Some("cm"));
-    assert_eq!(imported.facts.up.to_string(), "y");
+    let imported = normalize(clip, &ImportOptions::default()).unwrap();
+    assert_eq!(imported.report.unit, Some("cm"));
+    assert_eq!(imported.report.up.to_string(), "y");
     assert_eq!(imported.roles.missing().count(), 0);
     let clips = open(&bones).unwrap().clips;
     let names: Vec<&str> = clips.iter().map(|c| c.name.as_str()).collect();

@@ -1,5 +1,5 @@
 use super::*;
-use crate::import::{ImportOptions, prepare};
+use crate::import::{ImportOptions, normalize};
 use crate::kinematics::WorldPose;
 use crate::math::{Axis, Quat, Vec3};
 use serde_json::{Value, json};
@@ -267,9 +267,9 @@ fn real_vrm_animations_are_people() {
     let loaded = open(&bytes).unwrap();
     assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
     let clip = loaded.clips.into_iter().next().unwrap();
-    let imported = prepare(clip, &ImportOptions::default()).unwrap();
-    assert_eq!(imported.facts.unit, Some("m"));
-    assert_eq!(imported.facts.up.to_string(), "y");
+    let imported = normalize(clip, &ImportOptions::default()).unwrap();
+    assert_eq!(imported.report.unit, Some("m"));
+    assert_eq!(imported.report.up.to_string(), "y");
     assert_eq!(imported.roles.missing().count(), 0);
     assert_eq!(
         (imported.clip.frames, imported.clip.rate_hz.round()),
@@ -278,9 +278,9 @@ fn real_vrm_animations_are_people() {
     let bytes = crate::formats::mangle::real("three_vrm_test.vrma").unwrap();
     let clip = open(&bytes).unwrap().clips.remove(0);
     assert_eq!(clip.skeleton.len(), 51);
-    let imported = prepare(clip, &ImportOptions::default()).unwrap();
+    let imported = normalize(clip, &ImportOptions::default()).unwrap();
     assert_eq!(
-        (imported.facts.unit, imported.roles.missing().count()),
+        (imported.report.unit, imported.roles.missing().count()),
         (Some("m"), 0)
     );
 }

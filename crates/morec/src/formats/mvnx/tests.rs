@@ -1,5 +1,5 @@
 use super::*;
-use crate::import::{ImportOptions, SignedAxis, prepare};
+use crate::import::{ImportOptions, SignedAxis, normalize};
 use crate::kinematics::WorldPose;
 use crate::math::Axis;
 
@@ -107,9 +107,9 @@ fn a_real_recording_is_a_person_in_metres() {
         (clip.frames, clip.rate_hz, clip.skeleton.len()),
         (4, 240.0, 23)
     );
-    let imported = prepare(clip, &ImportOptions::default()).unwrap();
-    assert_eq!(imported.facts.unit, Some("m"));
-    assert_eq!(imported.facts.up.to_string(), "z");
-    assert_ne!(imported.facts.up, SignedAxis::Y);
+    let imported = normalize(clip, &ImportOptions::default()).unwrap();
+    assert_eq!(imported.report.unit, Some("m"));
+    assert_eq!(imported.report.up.to_string(), "z");
+    assert_ne!(imported.report.up, SignedAxis::Y);
     assert_eq!(imported.roles.missing().count(), 0);
 }

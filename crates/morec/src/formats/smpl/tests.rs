@@ -1,5 +1,5 @@
 use super::*;
-use crate::import::{ImportOptions, prepare};
+use crate::import::{ImportOptions, normalize};
 use crate::kinematics::WorldPose;
 use crate::math::Axis;
 use std::io::{Cursor, Write};
@@ -74,10 +74,10 @@ fn every_model_of_the_family_is_the_same_body() {
     let forearm = (pose.positions[20] - pose.positions[18]).normalize();
     let expected = Axis::Z.rotation(-0.49) * Vec3::x();
     assert!((forearm - expected).norm() < 1e-9, "{forearm}");
-    let imported = prepare(clip, &ImportOptions::default()).unwrap();
-    assert_eq!(imported.facts.up.to_string(), "z");
+    let imported = normalize(clip, &ImportOptions::default()).unwrap();
+    assert_eq!(imported.report.up.to_string(), "z");
     assert_eq!(
-        (imported.facts.unit, imported.roles.missing().count()),
+        (imported.report.unit, imported.roles.missing().count()),
         (Some("m"), 0)
     );
 }

@@ -1,18 +1,18 @@
 use super::*;
 use crate::features::{KeyPose, for_each_pose};
 use crate::formats::{Limits, bvh};
-use crate::import::{ImportOptions, Imported, prepare};
+use crate::import::{ImportOptions, Take, normalize};
 use crate::kinematics::{WorldPose, for_each_world_pose};
 use crate::math::Vec3;
 use crate::roles::Role;
 use crate::synth::{Person, Script};
 
-fn performance() -> Imported {
+fn performance() -> Take {
     let script = Script::new(6, Person::draw(6, 1))
         .rest(0.4)
         .play("wave")
         .play("walk");
-    prepare(
+    normalize(
         script.film("made", 60.0).unwrap().clip,
         &ImportOptions::default(),
     )
@@ -20,19 +20,19 @@ fn performance() -> Imported {
 }
 
 /// The recording written as BVH and read again.
-fn written(recording: &Recording) -> Imported {
+fn written(recording: &Recording) -> Take {
     let clip = recording.to_clip("take").unwrap();
     let mut bytes = Vec::new();
     bvh::write(&clip, &mut bytes).unwrap();
     let read = bvh::read(&bytes, "take", &Default::default(), &Limits::default()).unwrap();
-    prepare(
+    normalize(
         read.clips.into_iter().next().unwrap(),
         &ImportOptions::default(),
     )
     .unwrap()
 }
 
-fn poses(imported: &Imported) -> Vec<KeyPose> {
+fn poses(imported: &Take) -> Vec<KeyPose> {
     let mut poses = Vec::new();
     for_each_pose(&imported.clip, &imported.roles, &(0..0), |_, pose| {
         poses.push(*pose)

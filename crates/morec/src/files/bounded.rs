@@ -1,7 +1,7 @@
-//! Whole files in memory, up to a limit.
+//! Whole files: into memory up to a limit, and out of it at once.
 
-use std::fs::File;
-use std::io::{self, ErrorKind, Read};
+use std::fs::{self, File};
+use std::io::{self, ErrorKind, Read, Write};
 use std::path::Path;
 
 /// The largest file that is read, bytes. The largest clips in use are a few hundred megabytes.
@@ -30,6 +30,31 @@ pub fn read_file(path: &Path) -> io::Result<Vec<u8>> {
 /// It cannot be read, or does not end within [`LARGEST_STREAM`].
 pub fn read_stream(stream: impl Read) -> io::Result<Vec<u8>> {
     read_up_to(stream, 0, LARGEST_STREAM)
+}
+
+/// Writes a file beside its target and renames it: the target is whole or as it was.
+///
+/// # Errors
+/// The file cannot be written.
+pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(format!(".{}.partial", std::process::id()));
+    let partial = path.with_file_name(name);
+    let write = || {
+        let mut file = File::create_new(&partial)?;
+        file.write_all(bytes)?;
+        file.sync_all()?;
+        fs::rename(&partial, path)
+    };
+    let written = write();
+    if written
+        .as_ref()
+        .is_err_and(|error| error.kind() != ErrorKind::AlreadyExists)
+    {
+        // What is half written is of no use; that it cannot be removed is the lesser error.
+        let _ = fs::remove_file(&partial);
+    }
+    written
 }
 
 fn read_up_to(from: impl Read, length: u64, most: u64) -> io::Result<Vec<u8>> {

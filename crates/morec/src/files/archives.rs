@@ -5,19 +5,19 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use morec::clip::Clip;
-use morec::formats::container::{self, Member};
-use morec::formats::probe::{Format, format_of_name, probe};
-use morec::formats::{ParseError, Place, Warning, mocopi};
+use crate::clip::Clip;
+use crate::formats::container::{self, Member};
+use crate::formats::probe::{Format, format_of_name, probe};
+use crate::formats::{ParseError, Place, Warning, mocopi};
 
-use crate::files::{FileError, FileReader, OpenedFile};
+use super::{ClipFile, FileError, FileErrorKind, FileReader};
 
 /// Archives in archives are opened so deep.
 const DEEPEST: usize = 3;
 
 /// Where the files lie that another one needs.
 #[derive(Clone, Copy)]
-pub(crate) enum Around<'a> {
+pub(super) enum Around<'a> {
     /// On disk.
     Folder,
     /// In the same archive.
@@ -26,7 +26,7 @@ pub(crate) enum Around<'a> {
 
 impl Around<'_> {
     /// A file by its path.
-    pub(crate) fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+    pub(super) fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         match self {
             Around::Folder => fs::read(path),
             Around::Archive(members) => members
@@ -38,7 +38,7 @@ impl Around<'_> {
     }
 
     /// A file beside another.
-    pub(crate) fn file(&self, path: &Path, name: &str) -> Option<Vec<u8>> {
+    pub(super) fn file(&self, path: &Path, name: &str) -> Option<Vec<u8>> {
         match (self, path == Path::new("-")) {
             (Around::Folder, true) => None,
             _ => self.read(&path.with_file_name(name)).ok(),
@@ -73,36 +73,39 @@ impl FileReader {
     ///
     /// # Errors
     /// Those of the format, of an archive in which nothing can be read, and of a choice that is not there.
-    pub fn open(&self, path: &Path, bytes: &[u8]) -> Result<OpenedFile, FileError> {
+    pub fn parse(&self, path: &Path, bytes: &[u8]) -> Result<ClipFile, FileError> {
         let (file, choice) = split_choice(path);
-        let mut opened = self.open_packed(&file, bytes, Around::Folder, 0)?;
-        if let Some(choice) = choice {
-            opened.clips = chosen(opened.clips, &choice)?;
-        }
-        Ok(opened)
+        let parsed = self.parse_packed(&file, bytes, Around::Folder, 0);
+        let chosen = parsed.and_then(|mut parsed| {
+            if let Some(choice) = choice {
+                parsed.clips = chosen(parsed.clips, &choice)?;
+            }
+            Ok(parsed)
+        });
+        chosen.map_err(|kind| kind.at(path))
     }
 
-    fn open_packed(
+    fn parse_packed(
         &self,
         path: &Path,
         bytes: &[u8],
         around: Around<'_>,
         depth: usize,
-    ) -> Result<OpenedFile, FileError> {
+    ) -> Result<ClipFile, FileErrorKind> {
         if depth < DEEPEST && container::is_gzip(bytes) {
             let unpacked = container::gunzip(bytes)?;
             let inner = match path.extension() {
                 Some(ending) if ending.eq_ignore_ascii_case("gz") => path.with_extension(""),
                 _ => path.to_owned(),
             };
-            return self.open_packed(&inner, &unpacked, around, depth + 1);
+            return self.parse_packed(&inner, &unpacked, around, depth + 1);
         }
         let is_archive = container::is_zip(bytes) && probe(bytes, "") != Ok(Format::Smpl);
         if depth < DEEPEST && is_archive {
-            return self.open_archive(path, bytes, depth);
+            return self.parse_archive(path, bytes, depth);
         }
         let text: Cow<'_, [u8]> = container::utf8(bytes);
-        let mut opened = self.open_bare(path, &text, around)?;
+        let mut opened = self.parse_bare(path, &text, around)?;
         if let Cow::Owned(_) = text {
             let note = "UTF-16 text";
             opened.warnings.push(Warning::new(Place::File, note));
@@ -111,19 +114,19 @@ impl FileReader {
     }
 
     /// The clips of all files in a zip archive that can be read; the others are named in warnings.
-    fn open_archive(
+    fn parse_archive(
         &self,
         path: &Path,
         bytes: &[u8],
         depth: usize,
-    ) -> Result<OpenedFile, FileError> {
+    ) -> Result<ClipFile, FileErrorKind> {
         let members = container::unzip(bytes, &may_be_needed)?;
-        let mut all: Option<OpenedFile> = None;
+        let mut all: Option<ClipFile> = None;
         let mut first_error = None;
         let mut refused = Vec::new();
         for member in members.iter().filter(|member| is_motion(member)) {
             let inner = Path::new(&member.path);
-            match self.open_packed(inner, &member.bytes, Around::Archive(&members), depth + 1) {
+            match self.parse_packed(inner, &member.bytes, Around::Archive(&members), depth + 1) {
                 Ok(opened) => gather(&mut all, opened, &member.path),
                 Err(error) => {
                     refused.push(format!("{}: {error}", member.path));
@@ -178,7 +181,7 @@ fn is_motion(member: &Member) -> bool {
     }
 }
 
-fn gather(all: &mut Option<OpenedFile>, mut opened: OpenedFile, path: &str) {
+fn gather(all: &mut Option<ClipFile>, mut opened: ClipFile, path: &str) {
     for warning in &mut opened.warnings {
         warning.text = format!("{path} {}: {}", warning.at, warning.text);
         warning.at = Place::File;

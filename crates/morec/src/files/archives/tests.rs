@@ -2,8 +2,8 @@ use super::*;
 use std::io::Write;
 
 const BVH: &str = "HIERARCHY\nROOT A\n{\nOFFSET 0 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\nMOTION\nFrames: 2\nFrame Time: 0.02\n1 2 3\n4 5 6\n";
-const ASF: &[u8] = include_bytes!("../../../morec/testdata/acclaim/arm.asf");
-const AMC: &[u8] = include_bytes!("../../../morec/testdata/acclaim/wave.amc");
+const ASF: &[u8] = include_bytes!("../../../testdata/acclaim/arm.asf");
+const AMC: &[u8] = include_bytes!("../../../testdata/acclaim/wave.amc");
 
 fn gz(bytes: &[u8]) -> Vec<u8> {
     let mut out = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::default());
@@ -21,8 +21,8 @@ fn zip_of(files: &[(&str, &[u8])]) -> Vec<u8> {
     out.finish().unwrap().into_inner()
 }
 
-fn open(path: &str, bytes: &[u8]) -> Result<OpenedFile, FileError> {
-    FileReader::default().open(Path::new(path), bytes)
+fn open(path: &str, bytes: &[u8]) -> Result<ClipFile, FileError> {
+    FileReader::default().parse(Path::new(path), bytes)
 }
 
 #[test]
@@ -83,7 +83,7 @@ fn a_clip_is_chosen_by_number_or_name() {
     std::fs::write(&path, &bytes).unwrap();
     let open = |choice: &str| {
         let path = format!("{}#{choice}", path.display());
-        FileReader::default().open(Path::new(&path), &bytes)
+        FileReader::default().parse(Path::new(&path), &bytes)
     };
     for choice in ["2", "b", "all#b"] {
         let opened = open(choice).unwrap();

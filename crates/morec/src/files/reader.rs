@@ -1,21 +1,23 @@
-//! Clip files as clips: BVH, AMC with the ASF skeleton it needs, stored clips.
+//! What reads clip files: from bytes and their path to clips, and on to takes.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
-use morec::clip::Clip;
-use morec::formats::acclaim::{self, AmcOptions, Asf};
-use morec::formats::bvh::{self, BvhOptions, PositionChannels};
-use morec::formats::container::Member;
-use morec::formats::probe::{Format, format_of_name, probe};
-use morec::formats::{Limits, Loaded, ParseError, Place, Warning, mclip};
-use morec::formats::{c3d, jsonl, read_scene, table, trc};
+use rayon::prelude::*;
 
-use crate::archives::Around;
-use crate::{ClipReader, ReadFile};
+use crate::clip::Clip;
+use crate::formats::acclaim::{self, AmcOptions, Asf};
+use crate::formats::bvh::{self, BvhOptions, PositionChannels};
+use crate::formats::probe::{Format, probe};
+use crate::formats::{Limits, Loaded, ParseError, Place, Warning, mclip};
+use crate::formats::{c3d, jsonl, read_scene, table, trc};
+use crate::import::{ImportOptions, Take, normalize};
 
-/// Reads every format that morec knows; an AMC motion finds its ASF skeleton beside it or a folder above.
-#[derive(Debug, Clone, PartialEq, Default)]
+use super::archives::Around;
+use super::skeletons::{Skeleton, skeletons_among, skeletons_near};
+use super::{FileError, FileErrorKind, Takes, list, read_file, read_stream, split_choice};
+
+/// Reads every format that morec knows, as its fields say; the default decides everything from the files.
+#[derive(Debug, Clone, Default)]
 pub struct FileReader {
     /// The skeleton of AMC motions, in place of looking for one.
     pub skeleton: Option<PathBuf>,
@@ -25,11 +27,13 @@ pub struct FileReader {
     pub positions: Option<PositionChannels>,
     /// What a file may declare.
     pub limits: Limits,
+    /// How clips become takes.
+    pub import: ImportOptions,
 }
 
-/// Clips of a file.
-#[derive(Debug, Clone)]
-pub struct OpenedFile {
+/// Clips of a file as it holds them: in its units and axes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ClipFile {
     /// What it is.
     pub format: Format,
     /// The skeleton file that an AMC motion was read with.
@@ -40,68 +44,93 @@ pub struct OpenedFile {
     pub warnings: Vec<Warning>,
 }
 
-/// Why a file cannot be read; of the file itself unless another is named.
-#[derive(Debug, thiserror::Error)]
-pub enum FileError {
-    /// It is not what it should be.
-    #[error(transparent)]
-    Parse(#[from] ParseError),
-    /// A skeleton file cannot be opened.
-    #[error("skeleton {path}: {why}")]
-    Open {
-        /// The skeleton file.
-        path: PathBuf,
-        /// Why.
-        why: std::io::Error,
-    },
-    /// A skeleton file is not what it should be.
-    #[error("skeleton {path}: {why}")]
-    Skeleton {
-        /// The skeleton file.
-        path: PathBuf,
-        /// Where and why.
-        why: ParseError,
-    },
-    /// The motion is not what it should be, or not of this skeleton.
-    #[error("with skeleton {skeleton}: {why}")]
-    Motion {
-        /// The skeleton file.
-        skeleton: PathBuf,
-        /// Where and why.
-        why: ParseError,
-    },
-    /// There is no skeleton near an AMC motion.
-    #[error(
-        "an AMC motion needs its ASF skeleton, and none lies beside it or a folder above; give --skeleton"
-    )]
-    NoSkeleton,
-}
-
-impl ClipReader for FileReader {
-    fn read(&self, path: &Path, bytes: &[u8]) -> Result<ReadFile, String> {
-        let opened = self.open(path, bytes).map_err(|error| error.to_string())?;
-        Ok(ReadFile {
-            format: format!("{:?}", opened.format).to_lowercase(),
-            skeleton: opened.skeleton,
-            clips: opened.clips,
-            warnings: opened.warnings,
-        })
+impl ClipFile {
+    /// The clips made ready, each with the warnings of the file.
+    ///
+    /// # Errors
+    /// A mapping in `options` that names a joint which a clip does not have.
+    pub fn into_takes(self, options: &ImportOptions) -> Result<Vec<Take>, ParseError> {
+        let warnings = self.warnings;
+        let ready = |clip| {
+            let take = normalize(clip, options)?;
+            Ok(Take {
+                warnings: warnings.clone(),
+                ..take
+            })
+        };
+        self.clips.into_iter().map(ready).collect()
     }
 }
 
 impl FileReader {
+    /// The takes in the file at `path`: one for each character of each clip in it. `FILE#2` and `FILE#name` choose one of
+    /// its clips; `-` is standard input.
+    ///
+    /// # Errors
+    /// The file cannot be read, is in no format that is read, or is damaged; [`FileErrorKind`] says which.
+    pub fn open(&self, path: &Path) -> Result<Vec<Take>, FileError> {
+        self.takes(path, self.read(path)?)
+    }
+
+    /// The takes in files and folders (and the folders below), read in parallel.
+    ///
+    /// # Errors
+    /// A folder that cannot be read; no clip that can be. Files that cannot be used are listed in
+    /// [`Takes::refused`] otherwise.
+    pub fn open_all(&self, paths: &[PathBuf]) -> Result<Takes, FileError> {
+        let listing = list(paths)?;
+        let opened: Vec<_> = listing
+            .clips
+            .par_iter()
+            .map(|path| self.open(path))
+            .collect();
+        let mut all = Takes {
+            refused: listing.left_out,
+            others: listing.others,
+            ..Takes::default()
+        };
+        for (path, result) in listing.clips.iter().zip(opened) {
+            match result {
+                Ok(takes) if takes.iter().all(|take| take.clip.frames == 0) => {
+                    let none = ParseError::new(Place::File, "frames of motion", "none");
+                    all.refused.push(FileErrorKind::Parse(none).at(path));
+                }
+                Ok(takes) => all.takes.extend(takes),
+                Err(error) => all.refused.push(error),
+            }
+        }
+        match (all.takes.is_empty(), all.refused.is_empty()) {
+            (true, false) => Err(all.refused.swap_remove(0)),
+            _ => Ok(all),
+        }
+    }
+
+    /// The clips in the file at `path`, in the file's units and axes; as [`open`](Self::open) otherwise.
+    ///
+    /// # Errors
+    /// Those of [`open`](Self::open), but for the mapping of roles.
+    pub fn read(&self, path: &Path) -> Result<ClipFile, FileError> {
+        let bytes = match path == Path::new("-") {
+            true => read_stream(std::io::stdin().lock()),
+            false => read_file(&split_choice(path).0),
+        };
+        let bytes = bytes.map_err(|error| FileErrorKind::Io(error).at(path))?;
+        self.parse(path, &bytes)
+    }
+
+    fn takes(&self, path: &Path, file: ClipFile) -> Result<Vec<Take>, FileError> {
+        let takes = file.into_takes(&self.import);
+        takes.map_err(|error| FileErrorKind::Parse(error).at(path))
+    }
+
     /// Reads `bytes`, which are the file at `path` and neither packed nor UTF-16.
-    pub(crate) fn open_bare(
+    pub(super) fn parse_bare(
         &self,
         path: &Path,
         bytes: &[u8],
         around: Around<'_>,
-    ) -> Result<OpenedFile, FileError> {
-        let stem = if path == Path::new("-") {
-            "stdin".to_owned()
-        } else {
-            stem(path)
-        };
+    ) -> Result<ClipFile, FileErrorKind> {
+        let stem = stem(path);
         let format = probe(bytes, &path.to_string_lossy())?;
         let (loaded, skeleton) = match format {
             Format::Bvh => (bvh::read(bytes, &stem, &self.bvh(), &self.limits)?, None),
@@ -132,7 +161,7 @@ impl FileReader {
                 (loaded.ok_or_else(none)??, None)
             }
         };
-        Ok(OpenedFile {
+        Ok(ClipFile {
             format,
             skeleton,
             clips: loaded.clips,
@@ -163,7 +192,7 @@ impl FileReader {
         bytes: &[u8],
         stem: &str,
         around: Around<'_>,
-    ) -> Result<(Loaded, PathBuf), FileError> {
+    ) -> Result<(Loaded, PathBuf), FileErrorKind> {
         if let Some(skeleton) = &self.skeleton {
             let loaded = self.amc_with(bytes, stem, skeleton, Around::Folder)?;
             return Ok((loaded, skeleton.clone()));
@@ -193,7 +222,7 @@ impl FileReader {
             }
         }
         let Some((mut loaded, skeleton)) = best else {
-            return Err(first_error.unwrap_or(FileError::NoSkeleton));
+            return Err(first_error.unwrap_or(FileErrorKind::NoSkeleton));
         };
         if skeleton.kinship == 0 && candidates.len() > 1 {
             let shown = skeleton.path.display();
@@ -209,13 +238,13 @@ impl FileReader {
         stem: &str,
         skeleton: &Path,
         around: Around<'_>,
-    ) -> Result<Loaded, FileError> {
+    ) -> Result<Loaded, FileErrorKind> {
         let path = || skeleton.to_owned();
         let asf = around
             .read(skeleton)
-            .map_err(|why| FileError::Open { path: path(), why })?;
+            .map_err(|why| FileErrorKind::OpenSkeleton { path: path(), why })?;
         let (asf, mut warnings) = acclaim::read_asf(&asf, &self.limits)
-            .map_err(|why| FileError::Skeleton { path: path(), why })?;
+            .map_err(|why| FileErrorKind::Skeleton { path: path(), why })?;
         for warning in &mut warnings {
             warning.text = format!("{} {}: {}", skeleton.display(), warning.at, warning.text);
             warning.at = Place::File;
@@ -225,7 +254,7 @@ impl FileReader {
         };
         let mut loaded =
             acclaim::read_amc(bytes, stem, &asf, &options, &self.limits).map_err(|why| {
-                FileError::Motion {
+                FileErrorKind::Motion {
                     skeleton: path(),
                     why,
                 }
@@ -235,7 +264,11 @@ impl FileReader {
     }
 }
 
+/// What a clip is called after its file.
 fn stem(path: &Path) -> String {
+    if path == Path::new("-") {
+        return "stdin".to_owned();
+    }
     path.file_stem()
         .unwrap_or_default()
         .to_string_lossy()
@@ -255,85 +288,12 @@ fn without_frames(asf: &Asf, name: String) -> Clip {
     }
 }
 
-/// A skeleton file that may be a motion's.
-struct Skeleton {
-    kinship: usize,
-    path: PathBuf,
-}
-
-/// Skeletons beside a motion and then those a folder above, in each the likeliest first: of the same stem, of
-/// the longest part of it (`13` for `13_29`), the others.
-fn skeletons_near(path: &Path, stem: &str) -> Vec<Skeleton> {
-    // So many skeletons in one folder are a library's, and trying them all no way to find the right one.
-    const MOST: usize = 64;
-    if path == Path::new("-") {
-        return Vec::new();
-    }
-    let beside = match path.parent() {
-        Some(folder) if folder != Path::new("") => folder.to_owned(),
-        _ => PathBuf::from("."),
-    };
-    let above = match (beside.file_name(), beside.parent()) {
-        (Some(_), Some(above)) if above != Path::new("") => above.to_owned(),
-        (Some(_), _) => PathBuf::from("."),
-        (None, _) => beside.join(".."),
-    };
-    let mut found = Vec::new();
-    for folder in [beside, above] {
-        let paths = fs::read_dir(&folder)
-            .into_iter()
-            .flatten()
-            .filter_map(|entry| Some(entry.ok()?.path()));
-        let mut here = likeliest_first(paths, stem);
-        here.truncate(MOST);
-        found.append(&mut here);
-    }
-    found
-}
-
-/// Skeletons in the archive that a motion is in.
-fn skeletons_among(members: &[Member], stem: &str) -> Vec<Skeleton> {
-    likeliest_first(members.iter().map(|m| PathBuf::from(&m.path)), stem)
-}
-
-fn likeliest_first(paths: impl Iterator<Item = PathBuf>, stem: &str) -> Vec<Skeleton> {
-    let mut found: Vec<Skeleton> = paths
-        .filter(|path| format_of_name(&path.to_string_lossy()) == Some(Format::Asf))
-        .map(|path| Skeleton {
-            kinship: kinship(&self::stem(&path), stem),
-            path,
-        })
-        .collect();
-    found.sort_by(|a, b| b.kinship.cmp(&a.kinship).then_with(|| a.path.cmp(&b.path)));
-    found
-}
-
-/// How much of a motion's stem a skeleton's stem says: its length if the motion's begins with it and a mark
-/// follows, else 0.
-fn kinship(skeleton: &str, motion: &str) -> usize {
-    match motion.to_lowercase().strip_prefix(&skeleton.to_lowercase()) {
-        Some(rest) if rest.chars().next().is_none_or(|c| !c.is_alphanumeric()) => {
-            skeleton.len() + 1
-        }
-        _ => 0,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn subjects_own_their_trials() {
-        assert!(kinship("13_29", "13_29") > kinship("13", "13_29"));
-        assert!(kinship("13", "13_29") > 0);
-        assert_eq!(kinship("1", "13_29"), 0);
-        assert_eq!(kinship("skeleton", "13_29"), 0);
-        assert!(kinship("HDM_dg", "hdm_dg_06-03_120") > 0);
-    }
-
-    const ASF: &[u8] = include_bytes!("../../morec/testdata/acclaim/arm.asf");
-    const AMC: &[u8] = include_bytes!("../../morec/testdata/acclaim/wave.amc");
+    const ASF: &[u8] = include_bytes!("../../testdata/acclaim/arm.asf");
+    const AMC: &[u8] = include_bytes!("../../testdata/acclaim/wave.amc");
 
     #[test]
     fn a_motion_finds_its_skeleton_and_says_when_there_is_none() {
@@ -341,23 +301,40 @@ mod tests {
         let motion = folder.path().join("takes/13_29.amc");
         std::fs::create_dir(folder.path().join("takes")).unwrap();
         let reader = FileReader::default();
-        assert!(matches!(
-            reader.open(&motion, AMC),
-            Err(FileError::NoSkeleton)
-        ));
+        let error = reader.parse(&motion, AMC).unwrap_err();
+        assert!(matches!(error.kind, FileErrorKind::NoSkeleton));
         std::fs::write(folder.path().join("13.asf"), ASF).unwrap();
-        let read = ClipReader::read(&reader, &motion, AMC).unwrap();
-        assert_eq!((read.format.as_str(), read.clips.len()), ("amc", 1));
+        let read = reader.parse(&motion, AMC).unwrap();
+        assert_eq!((read.format.name(), read.clips.len()), ("amc", 1));
         assert_eq!(read.skeleton.unwrap(), folder.path().join("13.asf"));
         assert_eq!(read.clips[0].name, "13_29");
         let named = FileReader {
             skeleton: Some("nowhere.asf".into()),
             ..FileReader::default()
         };
-        assert!(
-            ClipReader::read(&named, &motion, AMC)
-                .unwrap_err()
-                .contains("nowhere.asf")
-        );
+        let error = named.parse(&motion, AMC).unwrap_err().to_string();
+        assert!(error.contains("nowhere.asf"), "{error}");
+    }
+
+    #[test]
+    fn a_folder_gives_its_takes_and_names_what_it_cannot_read() {
+        let folder = tempfile::TempDir::new().unwrap();
+        let motion = folder.path().join("13_29.amc");
+        std::fs::write(folder.path().join("13.asf"), ASF).unwrap();
+        std::fs::write(&motion, AMC).unwrap();
+        std::fs::write(folder.path().join("broken.bvh"), "nothing").unwrap();
+        std::fs::write(folder.path().join("notes.md"), "nothing").unwrap();
+        let takes = super::super::open_all(folder.path()).unwrap();
+        let names: Vec<&str> = takes.iter().map(Take::name).collect();
+        assert_eq!((names, takes.others), (vec!["13_29"], 1));
+        assert_eq!(takes.refused.len(), 1);
+        assert!(takes.refused[0].to_string().contains("broken.bvh: "));
+        let [one] = &super::super::open(&motion).unwrap()[..] else {
+            panic!("one take");
+        };
+        assert_eq!(one, &takes[0]);
+        std::fs::remove_file(&motion).unwrap();
+        let error = super::super::open_all(folder.path()).unwrap_err();
+        assert!(error.to_string().contains("broken.bvh"), "{error}");
     }
 }

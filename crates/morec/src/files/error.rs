@@ -1,0 +1,74 @@
+//! Why a file cannot be used.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use crate::formats::ParseError;
+
+/// A file that cannot be used, and why.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {kind}", path.display())]
+pub struct FileError {
+    /// The file, as it was named.
+    pub path: PathBuf,
+    /// Why.
+    #[source]
+    pub kind: FileErrorKind,
+}
+
+/// Why a file cannot be used; the fault is of the file itself unless another is named.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FileErrorKind {
+    /// It cannot be read from disk.
+    #[error(transparent)]
+    Io(#[from] io::Error),
+    /// It is not what it should be.
+    #[error(transparent)]
+    Parse(#[from] ParseError),
+    /// A skeleton file cannot be opened.
+    #[error("skeleton {}: {why}", path.display())]
+    OpenSkeleton {
+        /// The skeleton file.
+        path: PathBuf,
+        /// Why.
+        why: io::Error,
+    },
+    /// A skeleton file is not what it should be.
+    #[error("skeleton {}: {why}", path.display())]
+    Skeleton {
+        /// The skeleton file.
+        path: PathBuf,
+        /// Where and why.
+        why: ParseError,
+    },
+    /// The motion is not what it should be, or not of this skeleton.
+    #[error("with skeleton {}: {why}", skeleton.display())]
+    Motion {
+        /// The skeleton file.
+        skeleton: PathBuf,
+        /// Where and why.
+        why: ParseError,
+    },
+    /// There is no skeleton near an AMC motion.
+    #[error(
+        "an AMC motion needs its ASF skeleton, and none lies beside it or a folder above; give --skeleton"
+    )]
+    NoSkeleton,
+    /// A file in a folder that holds motion in a format that is not read: its format and what to do.
+    #[error("{0}")]
+    NotRead(String),
+    /// A folder in which no clip can be read, with the first reasons.
+    #[error("no clip that can be read in this folder or below{0}")]
+    NoClip(String),
+}
+
+impl FileErrorKind {
+    /// The error of the file at `path`.
+    pub fn at(self, path: &Path) -> FileError {
+        FileError {
+            path: path.to_owned(),
+            kind: self,
+        }
+    }
+}

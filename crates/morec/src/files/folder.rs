@@ -1,0 +1,124 @@
+//! Which files of a folder are clips.
+
+use std::fs::{self, File};
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use crate::formats::probe::{Format, format_of_name, probe};
+
+use super::{FileError, FileErrorKind};
+
+/// So much of a file is looked at to tell its format.
+const HEAD_BYTES: u64 = 64 * 1024;
+
+/// So many reasons are given when a folder has no clip.
+const REASONS: usize = 5;
+
+/// The clip files that paths stand for, and what folders hold besides.
+#[derive(Debug, Default)]
+pub struct Listing {
+    /// In the order of the paths; those of a folder in the order of theirs.
+    pub clips: Vec<PathBuf>,
+    /// Motion in folders that cannot be read, with the reason, by path.
+    pub left_out: Vec<FileError>,
+    /// How many files in folders are no motion at all.
+    pub others: usize,
+}
+
+/// Files stay as they are named; folders become the clip files in them and the folders below, by path.
+///
+/// # Errors
+/// A folder that cannot be read, or in which there is no clip.
+pub fn list(paths: &[PathBuf]) -> Result<Listing, FileError> {
+    let mut all = Listing::default();
+    for path in paths {
+        if !path.is_dir() {
+            all.clips.push(path.clone());
+            continue;
+        }
+        let (before, left_out) = (all.clips.len(), all.left_out.len());
+        collect(path, &mut all)?;
+        all.clips[before..].sort();
+        if all.clips.len() == before {
+            let reasons = all.left_out[left_out..].iter().take(REASONS);
+            let reasons: Vec<String> = reasons.map(|error| format!("\n{error}")).collect();
+            return Err(FileErrorKind::NoClip(reasons.concat()).at(path));
+        }
+    }
+    all.left_out.sort_by(|a, b| a.path.cmp(&b.path));
+    Ok(all)
+}
+
+fn collect(folder: &Path, all: &mut Listing) -> Result<(), FileError> {
+    let failed = |error| FileErrorKind::Io(error).at(folder);
+    for entry in fs::read_dir(folder).map_err(failed)? {
+        let entry = entry.map_err(failed)?;
+        let path = entry.path();
+        // A link to a folder could lead back here; links to files cannot.
+        if entry.file_type().is_ok_and(|kind| kind.is_dir()) {
+            // A folder that cannot be read is left out alone.
+            if let Err(error) = collect(&path, all) {
+                all.left_out.push(error);
+            }
+        } else if path.is_file() {
+            match kind_of(&path) {
+                FileKind::Clip => all.clips.push(path),
+                FileKind::NotRead(why) => all.left_out.push(why.at(&path)),
+                FileKind::Other => all.others += 1,
+                FileKind::Needed => {}
+            }
+        }
+    }
+    Ok(())
+}
+
+/// What a file in a folder is.
+enum FileKind {
+    Clip,
+    /// Motion, but in a format that is not read, or a file that cannot be opened.
+    NotRead(FileErrorKind),
+    /// Skeletons of motions, hidden files.
+    Needed,
+    Other,
+}
+
+fn kind_of(path: &Path) -> FileKind {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    if name.starts_with('.') {
+        return FileKind::Needed;
+    }
+    let ending = path.extension().unwrap_or_default();
+    if ["zip", "gz"]
+        .iter()
+        .any(|known| ending.eq_ignore_ascii_case(known))
+    {
+        return FileKind::Clip;
+    }
+    match format_of_name(&name) {
+        Some(Format::Asf) => FileKind::Needed,
+        // Tables and JSON hold labels, too: what is in them decides.
+        Some(Format::Table | Format::Jsonl) | None => by_content(path),
+        Some(_) => FileKind::Clip,
+    }
+}
+
+fn by_content(path: &Path) -> FileKind {
+    let mut head = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(HEAD_BYTES).read_to_end(&mut head));
+    if let Err(error) = read {
+        return FileKind::NotRead(error.into());
+    }
+    match probe(&head, "") {
+        Ok(Format::Asf) => FileKind::Needed,
+        Ok(_) => FileKind::Clip,
+        Err(error) if error.found.starts_with("what looks like") && !is_media(&error.found) => {
+            FileKind::NotRead(FileErrorKind::NotRead(error.found))
+        }
+        Err(_) => FileKind::Other,
+    }
+}
+
+/// Pictures and videos lie beside motion without being any.
+fn is_media(found: &str) -> bool {
+    found.contains("video,") || found.contains("a picture,")
+}
