@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::Result;
 use morec::features::rows_of_clip;
-use morec::import::Imported;
+use morec::import::Take;
 use morec::live::Model;
 use morec::pivots::{PivotMap, pose_rows_of_clip};
 use morec::svrdm::{SvrdmEngine, SvrdmModel};

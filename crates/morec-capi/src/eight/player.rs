@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 
-use morec::import::Imported;
+use morec::import::Take;
 use morec::live::{Actor, Frame, Next, Rig, Source, wall_now_secs};
 
 /// A source must not sleep longer than this.

@@ -7,8 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 use std::time::Duration;
 
-use morec::features::bones_of_clip;
-use morec::import::Imported;
+use morec::import::Take;
 use morec::index::MotionIndex;
 use morec::live::{
     Event, EventOptions, EventReader, Overload, Phase, Recognizer, Session, SessionOptions,

@@ -99,8 +99,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         classes: &material.data.classes,
         unknown: &material.unknown,
         tests: tests.as_ref().map(|tests| Tests {
-            clips: &tests.clips,
-            samples: &tests.samples,
+            clips: &tests.data.clips,
+            samples: &tests.data.samples,
         }),
     };
     let outcome = crossval(&of, &args.options(), &args.material.recipe()?, &Bar::new())?;

@@ -9,7 +9,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread;
 use std::time::Duration;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use morec::import::ImportOptions;
 use morec::live::axis::{AxisOptions, AxisReceiver, AxisSkeleton};
 use morec::live::{Frame, Next, Source, SourceCounts, wall_now_secs};

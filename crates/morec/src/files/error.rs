@@ -13,7 +13,7 @@ pub struct FileError {
     pub path: PathBuf,
     /// Why.
     #[source]
-    pub kind: FileErrorKind,
+    pub kind: Box<FileErrorKind>,
 }
 
 /// Why a file cannot be used; the fault is of the file itself unless another is named.
@@ -68,7 +68,7 @@ impl FileErrorKind {
     pub fn at(self, path: &Path) -> FileError {
         FileError {
             path: path.to_owned(),
-            kind: self,
+            kind: Box::new(self),
         }
     }
 }

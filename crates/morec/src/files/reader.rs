@@ -302,7 +302,7 @@ mod tests {
         std::fs::create_dir(folder.path().join("takes")).unwrap();
         let reader = FileReader::default();
         let error = reader.parse(&motion, AMC).unwrap_err();
-        assert!(matches!(error.kind, FileErrorKind::NoSkeleton));
+        assert!(matches!(*error.kind, FileErrorKind::NoSkeleton));
         std::fs::write(folder.path().join("13.asf"), ASF).unwrap();
         let read = reader.parse(&motion, AMC).unwrap();
         assert_eq!((read.format.name(), read.clips.len()), ("amc", 1));

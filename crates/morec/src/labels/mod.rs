@@ -67,9 +67,8 @@ impl Labels {
     #[cfg(feature = "files")]
     pub fn from_path(path: impl AsRef<std::path::Path>) -> Result<Self, crate::files::FileError> {
         let path = path.as_ref();
-        let bytes = crate::files::read_file(path).map_err(crate::files::FileErrorKind::from);
-        let labels = bytes.and_then(|bytes| Ok(Self::read(&bytes)?));
-        labels.map_err(|kind| kind.at(path))
+        let read = || Ok(Self::read(&crate::files::read_file(path)?)?);
+        read().map_err(|kind: crate::files::FileErrorKind| kind.at(path))
     }
 
     /// Adds a label: in the clip of that name, `class` happens from start to stop, in seconds.

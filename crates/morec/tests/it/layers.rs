@@ -165,7 +165,8 @@ fn the_library_touches_no_file_and_prints_nothing() {
     ];
     let sources = sources();
     assert!(sources.len() > 50);
-    for source in &sources {
+    // What opens files is the module of that name, and paths given to it.
+    for source in sources.iter().filter(|s| s.module != "files") {
         for word in forbidden {
             assert!(
                 !source.code.contains(word),
