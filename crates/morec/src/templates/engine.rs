@@ -8,7 +8,7 @@ use crate::features::Rows;
 
 use super::early::{EarlyParams, Underway};
 use super::verifier::{Evidence, Judge};
-use super::{Calibration, Matcher, Metric, TemplateModel, TemplateModelError};
+use super::{Calibration, Matcher, Metric, Stretches, TemplateModel, TemplateModelError};
 
 /// The part of recognition that knows no clock: metric, templates, verifier, decoding.
 #[derive(Debug, Clone)]
@@ -18,6 +18,8 @@ pub struct TemplateEngine {
     /// Matches count below this share of a motionless body's distance.
     rest_share: f32,
     negatives: Matcher,
+    /// Of the mapped rows.
+    stretches: Stretches,
     template_classes: Arc<[ClassId]>,
     judge: Option<Judge>,
     decoder: Decoder,
@@ -72,10 +74,14 @@ impl TemplateEngine {
         let window = model.decode.look_ahead_ticks(rule);
         let mut decoder = Decoder::new(&model.decode, rule, model.classes.len(), model.longest());
         decoder.set_thresholds(&model.class_thresholds);
+        let matcher = Matcher::new(&templates, dim, model.decode.spread_exponent);
+        let negatives = Matcher::new(&negatives, dim, model.decode.spread_exponent);
+        let longest_match = matcher.longest_match().max(negatives.longest_match());
         Ok(Self {
-            matcher: Matcher::new(&templates, dim, model.decode.spread_exponent),
+            stretches: Stretches::new(dim, longest_match),
+            matcher,
             rest_share: model.decode.rest_share(rule),
-            negatives: Matcher::new(&negatives, dim, model.decode.spread_exponent),
+            negatives,
             template_classes: model.samples.iter().map(|s| s.class).collect(),
             judge: model
                 .verifier
@@ -96,6 +102,7 @@ impl TemplateEngine {
     pub fn reset(&mut self) {
         self.matcher.reset();
         self.negatives.reset();
+        self.stretches.reset();
         self.decoder.reset();
         self.recent.pushed = 0;
     }
@@ -106,8 +113,9 @@ impl TemplateEngine {
         self.metric.apply(row, &mut self.mapped);
         self.matcher.step(&self.mapped);
         self.negatives.step(&self.mapped);
+        self.stretches.push(&self.mapped);
         self.nearest_by_class();
-        let negative = nearest(&self.negatives);
+        let negative = nearest(&self.negatives, &mut self.stretches);
         let (judge, recent, metric) = (&mut self.judge, &self.recent, &self.metric);
         self.decoder.push(
             &self.near,
@@ -121,9 +129,14 @@ impl TemplateEngine {
     fn nearest_by_class(&mut self) {
         self.near.fill(ClassDistance::NONE);
         for (template, class) in self.template_classes.iter().enumerate() {
-            let found = self.matcher.compare(template);
             let best = &mut self.near[class.index()];
-            if found.distance < best.distance && found.moves(self.rest_share) {
+            let nearer = self.matcher.nearer(
+                template,
+                best.distance,
+                self.rest_share,
+                &mut self.stretches,
+            );
+            if let Some(found) = nearer {
                 *best = ClassDistance {
                     distance: found.distance,
                     age: found.age,
@@ -210,10 +223,14 @@ fn calibrated(calibration: Option<Calibration>, found: TickDetection) -> TickDet
     }
 }
 
-fn nearest(matcher: &Matcher) -> f32 {
-    (0..matcher.bank().len())
-        .map(|i| matcher.compare(i).distance)
-        .fold(FAR, f32::min)
+fn nearest(matcher: &Matcher, stretches: &mut Stretches) -> f32 {
+    let mut nearest = FAR;
+    for i in 0..matcher.bank().len() {
+        if let Some(found) = matcher.nearer(i, nearest, 0.0, stretches) {
+            nearest = found.distance;
+        }
+    }
+    nearest
 }
 
 fn score(

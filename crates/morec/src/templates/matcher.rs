@@ -6,6 +6,7 @@ use crate::decode::FAR;
 use crate::features::Rows;
 
 use super::bank::{Bank, Match, PartialMatch};
+use super::stretches::Stretches;
 
 /// A [`Bank`] that also knows how far from each template a motionless body would be.
 ///
@@ -17,8 +18,7 @@ use super::bank::{Bank, Match, PartialMatch};
 /// (plain) to 1 (a share of the motion that is not explained) and `V_0` = [`TYPICAL_SPREAD`], which keeps their
 /// scale: a small gesture must be met more exactly than a large one.
 ///
-/// Means of stretches come from running sums: O(d) for each match that is asked for, nothing is allocated after
-/// construction.
+/// Means and spreads of stretches come from [`Stretches`].
 #[derive(Debug, Clone)]
 pub struct Matcher {
     bank: Bank,
@@ -26,7 +26,6 @@ pub struct Matcher {
     spreads: Arc<[f32]>,
     /// `m_T` of each template.
     means: Arc<Rows>,
-    sums: RunningSums,
 }
 
 /// Spread of a usual template under a trained metric, the median over referee signals and Kinect gestures.
@@ -52,51 +51,6 @@ impl Comparison {
     }
 }
 
-/// Sums of the rows so far, at each of the last ticks.
-#[derive(Debug, Clone)]
-struct RunningSums {
-    dim: usize,
-    mask: usize,
-    /// Of rows `0..tick`, at slot `tick & mask`; one more value for the sum of squared lengths.
-    sums: Vec<f64>,
-    ticks: usize,
-}
-
-impl RunningSums {
-    fn new(dim: usize, longest_match: usize) -> Self {
-        let capacity = (longest_match + 2).next_power_of_two();
-        Self {
-            dim: dim + 1,
-            mask: capacity - 1,
-            sums: vec![0.0; (dim + 1) * capacity],
-            ticks: 0,
-        }
-    }
-
-    fn at(&self, tick: usize) -> &[f64] {
-        &self.sums[(tick & self.mask) * self.dim..][..self.dim]
-    }
-
-    fn push(&mut self, row: &[f32]) {
-        let from = (self.ticks & self.mask) * self.dim;
-        self.ticks += 1;
-        let to = (self.ticks & self.mask) * self.dim;
-        let mut square = 0.0;
-        for (i, value) in row.iter().enumerate() {
-            let value = f64::from(*value);
-            self.sums[to + i] = self.sums[from + i] + value;
-            square += value * value;
-        }
-        let last = self.dim - 1;
-        self.sums[to + last] = self.sums[from + last] + square;
-    }
-
-    fn reset(&mut self) {
-        self.ticks = 0;
-        self.sums[..self.dim].fill(0.0);
-    }
-}
-
 impl Matcher {
     /// Lays out `templates`, all of rows of `dim` values; `exponent` normalises distances, 0 leaves them as they are.
     pub fn new(templates: &[Rows], dim: usize, exponent: f32) -> Self {
@@ -107,11 +61,8 @@ impl Matcher {
             means.push(&mean);
             spreads.push(spread);
         }
-        let bank = Bank::new(templates, dim);
         Self {
-            // A match of n rows spans at most 2 n ticks.
-            sums: RunningSums::new(dim, 2 * bank.longest()),
-            bank,
+            bank: Bank::new(templates, dim),
             exponent,
             spreads: spreads.into(),
             means: Arc::new(means),
@@ -123,36 +74,73 @@ impl Matcher {
         &self.bank
     }
 
+    /// Ticks that a match spans at most: a template of n rows matches at most 2 n.
+    pub fn longest_match(&self) -> usize {
+        2 * self.bank.longest()
+    }
+
     /// Forgets the stream so far.
     pub fn reset(&mut self) {
         self.bank.reset();
-        self.sums.reset();
     }
 
     /// Advances by one tick with the stream's row, of `dim` values. O(template rows · d).
     pub fn step(&mut self, row: &[f32]) {
         self.bank.step(row);
-        self.sums.push(row);
     }
 
-    /// How template `index` matches a stretch that ends with the last tick. O(d).
-    pub fn compare(&self, index: usize) -> Comparison {
-        let Match { distance, age } = self.bank.matched(index);
-        if distance >= FAR {
-            return Comparison {
-                distance: FAR,
-                age,
-                rest_share: f32::MAX,
-                spread: 0.0,
-            };
-        }
-        let spread = self.stretch_spread(age);
+    /// How template `index` matches a stretch that ends with the last tick; `stretches` has taken the same rows. O(d).
+    pub fn compare(&self, index: usize, stretches: &mut Stretches) -> Comparison {
+        let near = self.nearness(index, stretches);
         Comparison {
-            distance: distance / self.norm((self.spreads[index] + spread) / 2.0),
-            age,
-            rest_share: distance / self.at_rest(index, age).max(f32::MIN_POSITIVE),
-            spread,
+            rest_share: self.rest_share(index, near.age, stretches),
+            ..near
         }
+    }
+
+    /// The match of template `index` if it is nearer than `distance` and moves, see [`Comparison::moves`]. O(1) for most
+    /// templates that are not nearer.
+    pub fn nearer(
+        &self,
+        index: usize,
+        distance: f32,
+        share: f32,
+        stretches: &mut Stretches,
+    ) -> Option<Comparison> {
+        let near = self.nearness(index, stretches);
+        if near.distance >= distance {
+            return None;
+        }
+        let found = Comparison {
+            rest_share: self.rest_share(index, near.age, stretches),
+            ..near
+        };
+        found.moves(share).then_some(found)
+    }
+
+    /// A match that is not compared with a body at rest.
+    fn nearness(&self, index: usize, stretches: &mut Stretches) -> Comparison {
+        let Match { distance, age } = self.bank.matched(index);
+        let mut found = Comparison {
+            distance: FAR,
+            age,
+            rest_share: f32::MAX,
+            spread: 0.0,
+        };
+        if distance < FAR {
+            found.spread = stretches.spread(age);
+            found.distance = distance / self.norm((self.spreads[index] + found.spread) / 2.0);
+        }
+        found
+    }
+
+    /// The distance of template `index` as a share of a motionless body's.
+    fn rest_share(&self, index: usize, age: usize, stretches: &Stretches) -> f32 {
+        let distance = self.bank.matched(index).distance;
+        if distance >= FAR {
+            return f32::MAX;
+        }
+        distance / self.at_rest(index, age, stretches).max(f32::MIN_POSITIVE)
     }
 
     /// What a distance is divided by where the mean spread is `spread`.
@@ -176,37 +164,8 @@ impl Matcher {
 
     /// Distance from template `index` of a body that stands still in the mean pose of the last `age + 1` ticks:
     /// `V_T + |m_T − m_S|²`. O(d).
-    pub fn at_rest(&self, index: usize, age: usize) -> f32 {
-        let length = (age + 1).min(self.sums.ticks) as f64;
-        let (end, start) = self.stretch(age);
-        let mean = self.means.row(index);
-        let offset: f64 = mean
-            .iter()
-            .zip(end.iter().zip(start))
-            .map(|(mean, (end, start))| ((end - start) / length - f64::from(*mean)).powi(2))
-            .sum();
-        self.spreads[index] + offset as f32
-    }
-
-    /// Spread of the last `age + 1` ticks about their mean. O(d).
-    pub fn stretch_spread(&self, age: usize) -> f32 {
-        let length = (age + 1).min(self.sums.ticks) as f64;
-        let (end, start) = self.stretch(age);
-        let last = self.sums.dim - 1;
-        let square = (end[last] - start[last]) / length;
-        let mean: f64 = end[..last]
-            .iter()
-            .zip(start)
-            .map(|(end, start)| ((end - start) / length).powi(2))
-            .sum();
-        (square - mean).max(0.0) as f32
-    }
-
-    /// Running sums at the end and before the start of the last `age + 1` ticks.
-    fn stretch(&self, age: usize) -> (&[f64], &[f64]) {
-        let end = self.sums.ticks;
-        let start = end.saturating_sub(age + 1);
-        (self.sums.at(end), self.sums.at(start))
+    fn at_rest(&self, index: usize, age: usize, stretches: &Stretches) -> f32 {
+        self.spreads[index] + stretches.mean_offset(age, self.means.row(index))
     }
 }
 
@@ -243,9 +202,11 @@ mod tests {
         #[test]
         fn running_sums_agree_with_the_stretch_itself(template in rows(2..9), stream in rows(1..60)) {
             let mut matcher = Matcher::new(std::slice::from_ref(&template), 3, 0.5);
+            let mut stretches = Stretches::new(3, matcher.longest_match());
             let (mean_t, spread_t) = mean_and_spread(&template, 3);
             for (t, row) in stream.iter().enumerate() {
                 matcher.step(row);
+                stretches.push(row);
                 let found = matcher.bank().matched(0);
                 if found.distance >= FAR {
                     continue;
@@ -253,8 +214,11 @@ mod tests {
                 let stretch = stream.slice(t - found.age..t + 1);
                 let (mean_s, spread_s) = mean_and_spread(&stretch, 3);
                 let offset: f32 = mean_t.iter().zip(&mean_s).map(|(a, b)| (a - b) * (a - b)).sum();
-                prop_assert!((matcher.at_rest(0, found.age) - (spread_t + offset)).abs() < 1e-3);
-                prop_assert!((matcher.stretch_spread(found.age) - spread_s).abs() < 1e-3);
+                prop_assert!((matcher.at_rest(0, found.age, &stretches) - (spread_t + offset)).abs() < 1e-3);
+                prop_assert!((stretches.spread(found.age) - spread_s).abs() < 1e-3);
+                let compared = matcher.compare(0, &mut stretches);
+                prop_assert!(matcher.nearer(0, FAR, 0.0, &mut stretches) == Some(compared));
+                prop_assert!(matcher.nearer(0, compared.distance, 0.0, &mut stretches).is_none());
             }
         }
 
@@ -264,9 +228,11 @@ mod tests {
             pose in prop::collection::vec(-3.0f32..3.0, 3),
         ) {
             let mut matcher = Matcher::new(std::slice::from_ref(&template), 3, 0.5);
+            let mut stretches = Stretches::new(3, matcher.longest_match());
             for _ in 0..40 {
                 matcher.step(&pose);
-                prop_assert!(matcher.compare(0).rest_share > 0.99);
+                stretches.push(&pose);
+                prop_assert!(matcher.compare(0, &mut stretches).rest_share > 0.99);
             }
         }
     }

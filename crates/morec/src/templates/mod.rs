@@ -9,6 +9,7 @@ mod matcher;
 mod metric;
 mod model;
 mod operating;
+mod stretches;
 mod verifier;
 
 pub use bank::{Bank, Match, PartialMatch};
@@ -17,6 +18,7 @@ pub use engine::TemplateEngine;
 pub use matcher::{Comparison, Matcher, TYPICAL_SPREAD, mean_and_spread};
 pub use metric::{Metric, Symmetric};
 pub use model::{Sample, TemplateModel, TemplateModelError};
+pub use stretches::Stretches;
 pub use operating::{ALARM_RATES, Calibration, OperatingPoint, threshold_at};
 pub use verifier::{
     Evidence, Exemplars, Generic, SHAPE_ROWS, Verifier, shape_distance, shape_of, squared_distance,

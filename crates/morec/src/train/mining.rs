@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::decode::FAR;
 use crate::features::Rows;
-use crate::templates::{Match, Matcher};
+use crate::templates::{Match, Matcher, Stretches};
 
 use super::params::TrainParams;
 use super::set::{Source, TrainSample, TrainStream, overlap_share};
@@ -29,12 +29,14 @@ impl Distances {
     /// Runs `matcher` over rows that are already in its metric. O(ticks · template rows · d).
     pub fn of(matcher: &mut Matcher, rows: &Rows) -> Self {
         matcher.reset();
+        let mut stretches = Stretches::new(rows.dim(), matcher.longest_match());
         let templates = matcher.bank().len();
         let mut matches = Vec::with_capacity(rows.len() * templates);
         for row in rows.iter() {
             matcher.step(row);
+            stretches.push(row);
             matches.extend((0..templates).map(|template| {
-                let found = matcher.compare(template);
+                let found = matcher.compare(template, &mut stretches);
                 Compared {
                     distance: found.distance,
                     age: found.age as u32,
