@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use morec::eval::{ClassFigures, Evaluation, MEASURED_OVERLAP};
+use morec::explain::Miss;
 use morec::report::Report;
 use serde::Serialize;
 
@@ -33,6 +34,28 @@ pub fn write_tables(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
     write_overlaps(out, e)?;
     write_classes(out, e)?;
     write_confusion(out, e)
+}
+
+/// Writes the samples that were missed and the reasons; nothing if there are none.
+pub fn write_misses(out: &mut impl Write, misses: &[Miss]) -> io::Result<()> {
+    if misses.is_empty() {
+        return Ok(());
+    }
+    writeln!(
+        out,
+        "\nmissed samples (no detection has its middle in them), and why"
+    )?;
+    for miss in misses {
+        let at = miss.sensitivity.map_or(String::new(), |rate| {
+            format!("; near enough at --sensitivity {rate}")
+        });
+        writeln!(
+            out,
+            "  {} {} {:.2}-{:.2} s: {}{at}",
+            miss.clip, miss.class, miss.start_secs, miss.stop_secs, miss.reason
+        )?;
+    }
+    Ok(())
 }
 
 fn write_figures(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
@@ -70,6 +93,8 @@ fn write_figures(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
         figure(events.recall)
     );
     line("F1 of events", figure(events.f1), detail)?;
+    let detail = "mean difference of score and share of right detections".to_owned();
+    line("calibration error", figure(e.reliability.error), detail)?;
     let alarms = &e.false_alarms;
     let detail = format!("{} in {:.2} min", alarms.count, alarms.minutes);
     line("false alarms a minute", figure(alarms.per_minute), detail)?;

@@ -70,7 +70,7 @@
 //! | recognising | [`templates`] or [`svrdm`], [`decode`], [`live`] | [`Detection`](live::Detection)s, nothing taken back |
 //! | looking at a stream | [`diagnosis`] | what is wrong with it, in sentences that say what to do |
 //! | without labels | [`pivots`], [`pca`], [`segment`], [`cluster`] | pose rows, fewer dimensions, cuts, samples that are alike |
-//! | measuring | [`eval`], [`crossval`], [`report`], [`plot`] | figures, timelines, charts, one page of HTML |
+//! | measuring | [`eval`], [`crossval`], [`explain`], [`report`], [`plot`] | figures, timelines, charts, one page of HTML |
 //!
 //! [`smooth`] turns clips into keyframes and curves, a small form to keep them in. [`synth`] makes people, clips and
 //! labels where there are none; [`resample`], [`math`], [`classes`] and [`progress`] are shared by several of these.
@@ -109,6 +109,7 @@ pub mod decode;
 pub mod diagnosis;
 mod error;
 pub mod eval;
+pub mod explain;
 pub mod features;
 #[cfg(feature = "files")]
 pub mod files;

@@ -2,19 +2,21 @@
 
 use std::collections::BTreeSet;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::ValueEnum;
 use morec::crossval::Tested;
 use morec::crossval::{By, CrossvalOptions, Material, Outcome, Tests, crossval};
 use morec::eval::{Evaluation, MEASURED_OVERLAP, timelines};
+use morec::explain::Miss;
 use morec::labels::Sample;
 use morec::perturb::Perturbation;
 use morec::report::{Report, TrainedClass};
+use morec::templates::ALARM_RATES;
 
 use crate::figures;
-use crate::material::{self, MaterialArgs};
+use crate::material::MaterialArgs;
 use crate::progress::Bar;
 use crate::table::Table;
 
@@ -46,9 +48,14 @@ pub struct Args {
     #[arg(long, value_name = "N")]
     samples: Option<usize>,
     /// Also test copies that are worse in one way each, separated by commas: white:METRES, slow:METRES, const:METRES,
-    /// tilt:DEGREES, speed:FACTOR (of durations), drop:SHARE, repeat:SHARE, spikes:SHARE, cam:FACTOR, rate:HZ, mirror
+    /// tilt:DEGREES, speed:FACTOR (of durations), drop:SHARE, repeat:SHARE, spikes:SHARE, occlude:SHARE, cam:FACTOR,
+    /// rate:HZ, mirror
     #[arg(long, value_delimiter = ',', value_name = "KIND:SIZE")]
     perturb: Vec<Perturbation>,
+    /// Also test at these rates of false alarms a minute (see `morec recognize --sensitivity`), separated by commas
+    /// [default with --report: 0.03 to 2]
+    #[arg(long, value_delimiter = ',', value_name = "RATE")]
+    sensitivities: Vec<f64>,
     /// Seed of the shuffle that halves the samples
     #[arg(long, default_value_t = 1, value_name = "N")]
     seed: u64,
@@ -106,20 +113,48 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let outcome = crossval(&of, &args.options(), &args.material.recipe()?, &Bar::new())?;
     let tested = &outcome.tested;
     let evaluation = Evaluation::of(&tested.streams, &tested.truths, &tested.founds)?;
-    let perturbed = perturbed_figures(&outcome)?;
+    let perturbed = measured(&outcome.perturbed)?;
+    let sensitivities = measured(&outcome.sensitivities)?;
     // Before anything is printed: whoever stops reading still gets the report.
     if let Some(folder) = &args.report {
-        args.write_report(folder, &material, tested, &evaluation)?;
+        let timelines = timelines(&tested.streams, &tested.truths, &tested.founds)?;
+        let about = [
+            ("labels".to_owned(), args.material.label_source()),
+            ("left out".to_owned(), format!("{:?}", args.options().by)),
+        ];
+        let report = Report {
+            title: "Cross-validation",
+            about: &about,
+            evaluation: &evaluation,
+            timelines: &timelines,
+            training: &trained_classes(&material.data.samples, &material.data.classes),
+            misses: &tested.misses,
+            sensitivities: &sensitivities,
+            perturbed: &perturbed,
+        };
+        figures::write_report(folder, &report)?;
     }
     let mut out = std::io::stdout().lock();
     if args.json {
+        let named = |p: &(Perturbation, Evaluation)| PerturbedFigures {
+            perturbation: p.0.to_string(),
+            evaluation: p.1.clone(),
+        };
+        let at_rate = |s: &(f64, Evaluation)| SensitivityFigures {
+            alarms_per_minute: s.0,
+            evaluation: s.1.clone(),
+        };
         let all = Measured {
             evaluation: &evaluation,
-            perturbed: &perturbed,
+            missed: &tested.misses,
+            perturbed: perturbed.iter().map(named).collect(),
+            sensitivities: sensitivities.iter().map(at_rate).collect(),
         };
         figures::write_json(&mut out, &all)?;
     } else {
         figures::write_tables(&mut out, &evaluation)?;
+        figures::write_misses(&mut out, &tested.misses)?;
+        write_sensitivities(&mut out, &sensitivities)?;
         write_perturbed(&mut out, &evaluation, &perturbed)?;
         write_folds(&mut out, &outcome)?;
     }
@@ -139,31 +174,12 @@ impl Args {
             by,
             samples_per_class: self.samples,
             perturbations: self.perturb.clone(),
+            sensitivities: if self.sensitivities.is_empty() && self.report.is_some() {
+                ALARM_RATES.to_vec()
+            } else {
+                self.sensitivities.clone()
+            },
         }
-    }
-
-    fn write_report(
-        &self,
-        folder: &Path,
-        material: &material::Material,
-        tested: &Tested,
-        evaluation: &Evaluation,
-    ) -> anyhow::Result<()> {
-        let timelines = timelines(&tested.streams, &tested.truths, &tested.founds)?;
-        let about = [
-            ("labels".to_owned(), self.material.label_source()),
-            ("left out".to_owned(), format!("{:?}", self.options().by)),
-        ];
-        let training = trained_classes(&material.data.samples, &material.data.classes);
-        let report = Report {
-            title: "Cross-validation",
-            about: &about,
-            evaluation,
-            timelines: &timelines,
-            training: &training,
-        };
-        figures::write_report(folder, &report)?;
-        Ok(())
     }
 }
 
@@ -172,8 +188,18 @@ impl Args {
 struct Measured<'a> {
     #[serde(flatten)]
     evaluation: &'a Evaluation,
-    #[serde(skip_serializing_if = "<[_]>::is_empty")]
-    perturbed: &'a [PerturbedFigures],
+    missed: &'a [Miss],
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    sensitivities: Vec<SensitivityFigures>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    perturbed: Vec<PerturbedFigures>,
+}
+
+/// The measures at another rate of false alarms.
+#[derive(serde::Serialize)]
+struct SensitivityFigures {
+    alarms_per_minute: f64,
+    evaluation: Evaluation,
 }
 
 /// The measures of copies that are worse in one way.
@@ -183,21 +209,50 @@ struct PerturbedFigures {
     evaluation: Evaluation,
 }
 
-fn perturbed_figures(outcome: &Outcome) -> anyhow::Result<Vec<PerturbedFigures>> {
-    let measured = outcome.perturbed.iter().map(|(perturbation, tested)| {
+fn measured<K: Copy>(results: &[(K, Tested)]) -> anyhow::Result<Vec<(K, Evaluation)>> {
+    let of = results.iter().map(|(key, tested)| {
         let evaluation = Evaluation::of(&tested.streams, &tested.truths, &tested.founds)?;
-        Ok(PerturbedFigures {
-            perturbation: perturbation.to_string(),
-            evaluation,
-        })
+        Ok((*key, evaluation))
     });
-    measured.collect()
+    of.collect()
+}
+
+fn write_sensitivities(
+    out: &mut impl Write,
+    sensitivities: &[(f64, Evaluation)],
+) -> std::io::Result<()> {
+    if sensitivities.is_empty() {
+        return Ok(());
+    }
+    let mut table = Table::new([
+        "sensitivity",
+        "precision",
+        "recall",
+        "event F1",
+        "alarms/min",
+        "in unknown",
+    ]);
+    for (rate, e) in sensitivities {
+        table.row(vec![
+            rate.to_string(),
+            figures::figure(e.events.precision),
+            figures::figure(e.events.recall),
+            figures::figure(e.events.f1),
+            figures::figure(e.false_alarms.per_minute),
+            figures::figure(e.unknown.per_minute),
+        ]);
+    }
+    writeln!(
+        out,
+        "\nat other sensitivities (false alarms a minute in the background of training)"
+    )?;
+    write!(out, "{table}")
 }
 
 fn write_perturbed(
     out: &mut impl Write,
     clean: &Evaluation,
-    perturbed: &[PerturbedFigures],
+    perturbed: &[(Perturbation, Evaluation)],
 ) -> std::io::Result<()> {
     if perturbed.is_empty() {
         return Ok(());
@@ -211,12 +266,10 @@ fn write_perturbed(
         "alarms/min",
         "delay",
     ]);
-    let copies = perturbed
-        .iter()
-        .map(|p| (p.perturbation.as_str(), &p.evaluation));
-    for (name, e) in std::iter::once(("as it is", clean)).chain(copies) {
+    let copies = perturbed.iter().map(|(p, e)| (p.to_string(), e));
+    for (name, e) in std::iter::once(("as it is".to_owned(), clean)).chain(copies) {
         table.row(vec![
-            name.to_owned(),
+            name,
             figures::figure(e.thesis.accuracy),
             figures::figure(e.f1_at(MEASURED_OVERLAP)),
             figures::figure(e.events.f1),

@@ -6,14 +6,21 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, bail};
-use morec::eval::{Evaluation, StreamInfo, Truth, timelines};
+use morec::classes::ClassId;
+use morec::eval::{Evaluation, Found, StreamInfo, Truth, is_event_of, timelines};
+use morec::explain::{Miss, Sought, explain};
 use morec::formats::Warning;
+use morec::import::ImportOptions;
 use morec::labels::{ClipLength, Labels, Resolved, read_found};
+use morec::live::{Detection, Model};
 use morec::report::Report;
+use rayon::prelude::*;
 
+use super::recognize::open_index;
 use crate::figures;
 use crate::files::{self, ReadArgs, some_of};
 use crate::lengths::lengths;
+use crate::material::{LoadedClip, load_clips};
 
 /// Measure detections against labels.
 ///
@@ -48,6 +55,9 @@ pub struct Args {
     /// of others only as unknown [default: every class of the labels]
     #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
     classes: Vec<String>,
+    /// The index that recognised: says of each missed sample what kept it from being reported
+    #[arg(long, value_name = "INDEX")]
+    index: Option<PathBuf>,
     /// Print one JSON object instead of tables
     #[arg(long)]
     json: bool,
@@ -88,6 +98,10 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         .collect();
 
     let evaluation = Evaluation::of(&cases.streams, &cases.truths, &founds)?;
+    let misses = match &args.index {
+        Some(index) => args.misses(index, &cases, &founds)?,
+        None => Vec::new(),
+    };
     // Before anything is printed: whoever stops reading still gets the report.
     if let Some(folder) = &args.report {
         let timelines = timelines(&cases.streams, &cases.truths, &founds)?;
@@ -103,17 +117,72 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             evaluation: &evaluation,
             timelines: &timelines,
             training: &[],
+            misses: &misses,
+            sensitivities: &[],
+            perturbed: &[],
         };
         figures::write_report(folder, &report)?;
     }
     let mut out = std::io::stdout().lock();
     if args.json {
-        figures::write_json(&mut out, &evaluation)?;
+        let missed = args.index.is_some().then_some(misses.as_slice());
+        let evaluation = &evaluation;
+        figures::write_json(&mut out, &Measured { evaluation, missed })?;
     } else {
         figures::write_tables(&mut out, &evaluation)?;
+        figures::write_misses(&mut out, &misses)?;
     }
     out.flush()?;
     Ok(ExitCode::SUCCESS)
+}
+
+impl Args {
+    /// Why samples that no detection has its middle in were missed. The clips are read once more, with their motion.
+    fn misses(&self, index: &Path, cases: &Cases, founds: &[Found]) -> anyhow::Result<Vec<Miss>> {
+        let model = open_index(index)?.model;
+        let paths = files::expand(&self.clips)?;
+        let clips = load_clips(&paths, &self.read, &ImportOptions::default())?;
+        let misses_in = |loaded: &LoadedClip| {
+            let clip = &loaded.clip;
+            let here: Vec<&Found> = founds.iter().filter(|f| f.clip == clip.name).collect();
+            let missed = cases.truths.iter().filter(|truth| {
+                truth.clip == clip.name && !here.iter().any(|found| is_event_of(truth, found))
+            });
+            let sought: Vec<Sought<'_>> = missed
+                .map(|truth| Sought {
+                    class: &truth.class,
+                    start_secs: truth.start_secs,
+                    stop_secs: truth.stop_secs,
+                })
+                .collect();
+            let detected: Vec<Detection> =
+                here.iter().filter_map(|f| detection(&model, f)).collect();
+            let played = (&clip.clip, &clip.roles, &clip.rest);
+            explain(&model, played, &sought, &detected)
+        };
+        Ok(clips.par_iter().flat_map_iter(misses_in).collect())
+    }
+}
+
+/// A row of a table of detections, where the index knows its class.
+fn detection(model: &Model, found: &Found) -> Option<Detection> {
+    let class = model.classes().iter().position(|c| c.name == found.class)?;
+    Some(Detection {
+        class: ClassId(class as u16),
+        start_secs: found.start_secs,
+        stop_secs: found.stop_secs,
+        score: found.score.unwrap_or_default(),
+        reported_secs: found.reported_secs.unwrap_or(found.stop_secs),
+    })
+}
+
+/// Everything measured, for JSON.
+#[derive(serde::Serialize)]
+struct Measured<'a> {
+    #[serde(flatten)]
+    evaluation: &'a Evaluation,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    missed: Option<&'a [Miss]>,
 }
 
 /// What is evaluated: the streams and their samples.

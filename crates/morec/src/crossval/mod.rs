@@ -6,10 +6,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
-use crate::eval::{Found, StreamInfo, Truth};
+use crate::eval::{Found, StreamInfo, Truth, is_event_of};
+use crate::explain::{Miss, Sought, explain};
 use crate::features::for_each_pose;
 use crate::labels::Sample;
-use crate::live::{Model, StartError, recognize_clip, recognize_poses};
+use crate::live::{Detection, Model, StartError, recognize_clip, recognize_poses};
 use crate::perturb::{Perturbation, Perturbed, perturb};
 use crate::progress::Progress;
 use crate::train::{Labelling, Recipe, Source, TrainClip, TrainError, TrainingReport, train_model};
@@ -51,6 +52,8 @@ pub struct CrossvalOptions {
     pub samples_per_class: Option<usize>,
     /// Copies of the tested clips that are tested too, each worse in one way.
     pub perturbations: Vec<Perturbation>,
+    /// Rates of false alarms a minute at which the clips are tested too. A model of one sensitivity is left out.
+    pub sensitivities: Vec<f64>,
 }
 
 impl From<By> for CrossvalOptions {
@@ -59,6 +62,7 @@ impl From<By> for CrossvalOptions {
             by,
             samples_per_class: None,
             perturbations: Vec::new(),
+            sensitivities: Vec::new(),
         }
     }
 }
@@ -72,6 +76,8 @@ pub struct Tested {
     pub truths: Vec<Truth>,
     /// What was recognised.
     pub founds: Vec<Found>,
+    /// Samples of which no detection has its middle in them ([`is_event_of`]), and why; not looked for in copies.
+    pub misses: Vec<Miss>,
 }
 
 /// Everything that was recognised, and what was there.
@@ -81,6 +87,8 @@ pub struct Outcome {
     pub tested: Tested,
     /// Their copies, for each of [`CrossvalOptions::perturbations`].
     pub perturbed: Vec<(Perturbation, Tested)>,
+    /// The clips at each of [`CrossvalOptions::sensitivities`], where every fold's model has more than one.
+    pub sensitivities: Vec<(f64, Tested)>,
     /// How each fold's training went.
     pub folds: Vec<FoldReport>,
     /// What each fold trained.
@@ -152,6 +160,8 @@ pub fn crossval(
     let mut outcome = Outcome::default();
     let perturbations = options.perturbations.iter();
     outcome.perturbed = perturbations.map(|p| (*p, Tested::default())).collect();
+    let rates = options.sensitivities.iter();
+    outcome.sensitivities = rates.map(|r| (*r, Tested::default())).collect();
     for (done, fold) in folds.iter().enumerate() {
         progress.report("folds", done, folds.len());
         if progress.cancelled() {
@@ -197,16 +207,43 @@ fn run_fold(
         model: &model,
         fold,
         truths: &truths,
+        explains: true,
     };
     test.run(&tested, None, &mut outcome.tested)?;
+    let plain = FoldTest {
+        explains: false,
+        ..test
+    };
     for (perturbation, result) in &mut outcome.perturbed {
-        test.run(&tested, Some(*perturbation), result)?;
+        plain.run(&tested, Some(*perturbation), result)?;
     }
+    run_sensitivities(&plain, &tested, &mut outcome.sensitivities)?;
     outcome.folds.push(FoldReport {
         name: fold.name.clone(),
         training: report,
     });
     outcome.models.push(model);
+    Ok(())
+}
+
+/// Tests a fold's clips at each rate of false alarms; leaves none where the model has one sensitivity only.
+fn run_sensitivities(
+    test: &FoldTest<'_>,
+    clips: &[TestClip<'_>],
+    results: &mut Vec<(f64, Tested)>,
+) -> Result<(), CrossvalError> {
+    for i in 0..results.len() {
+        let (rate, result) = &mut results[i];
+        let Ok(model) = test.model.with_sensitivity(*rate) else {
+            results.clear();
+            break;
+        };
+        let test = FoldTest {
+            model: &model,
+            ..*test
+        };
+        test.run(clips, None, result)?;
+    }
     Ok(())
 }
 
@@ -287,10 +324,13 @@ fn tested_clips<'a>(
 }
 
 /// A fold's model and the samples of its tested clips.
+#[derive(Clone, Copy)]
 struct FoldTest<'a> {
     model: &'a Model,
     fold: &'a Fold,
     truths: &'a [&'a Sample],
+    /// Whether to look for the reasons of misses.
+    explains: bool,
 }
 
 impl FoldTest<'_> {
@@ -309,6 +349,7 @@ impl FoldTest<'_> {
             out.streams.extend(tested.streams);
             out.truths.extend(tested.truths);
             out.founds.extend(tested.founds);
+            out.misses.extend(tested.misses);
         }
         Ok(())
     }
@@ -331,26 +372,33 @@ impl FoldTest<'_> {
         })?;
         let in_copy = |secs: f64| copy.as_ref().map_or(secs, |c| c.secs_in_copy(secs));
         let truths = self.truths.iter().filter(|s| s.clip == clip.name);
+        let truths: Vec<Truth> = truths
+            .map(|s| Truth {
+                clip: test.name.clone(),
+                class: s.class.clone(),
+                start_secs: in_copy(s.start_secs),
+                stop_secs: in_copy(s.stop_secs),
+            })
+            .collect();
+        let named = |d: &Detection| Found {
+            clip: test.name.clone(),
+            class: self.model.class_name(d.class).to_owned(),
+            start_secs: d.start_secs,
+            stop_secs: d.stop_secs,
+            score: Some(d.score),
+            reported_secs: Some(d.reported_secs),
+        };
+        let founds: Vec<Found> = found.iter().map(named).collect();
+        let misses = if self.explains {
+            let played = (&clip.clip, &clip.roles, &clip.rest);
+            explain(self.model, played, &missed(&truths, &founds), &found)
+        } else {
+            Vec::new()
+        };
         Ok(Tested {
-            truths: truths
-                .map(|s| Truth {
-                    clip: test.name.clone(),
-                    class: s.class.clone(),
-                    start_secs: in_copy(s.start_secs),
-                    stop_secs: in_copy(s.stop_secs),
-                })
-                .collect(),
-            founds: found
-                .iter()
-                .map(|d| Found {
-                    clip: test.name.clone(),
-                    class: self.model.class_name(d.class).to_owned(),
-                    start_secs: d.start_secs,
-                    stop_secs: d.stop_secs,
-                    score: Some(d.score),
-                    reported_secs: Some(d.reported_secs),
-                })
-                .collect(),
+            truths,
+            founds,
+            misses,
             streams: vec![StreamInfo {
                 clip: test.name.clone(),
                 duration_secs: in_copy(clip.clip.duration_secs()),
@@ -358,6 +406,17 @@ impl FoldTest<'_> {
             }],
         })
     }
+}
+
+/// The samples that no detection has its middle in.
+fn missed<'t>(truths: &'t [Truth], founds: &[Found]) -> Vec<Sought<'t>> {
+    let is_missed = |truth: &&Truth| !founds.iter().any(|found| is_event_of(truth, found));
+    let sought = |truth: &'t Truth| Sought {
+        class: &truth.class,
+        start_secs: truth.start_secs,
+        stop_secs: truth.stop_secs,
+    };
+    truths.iter().filter(is_missed).map(sought).collect()
 }
 
 /// A copy of `clip`, reproducible: the seed comes of its name.

@@ -7,8 +7,8 @@ use super::pairs::pair;
 use super::timing::measured_pairs;
 use super::{
     Boundaries, Classification, Confusion, Delay, EvalError, EventScore, FalseAlarms, Found,
-    Mistake, OVERLAPS, OverlapScore, Stream, StreamInfo, ThesisAccuracy, Truth, UnknownFigures,
-    all_classes, streams,
+    Mistake, OVERLAPS, OverlapScore, Reliability, Stream, StreamInfo, ThesisAccuracy, Truth,
+    UnknownFigures, all_classes, streams,
 };
 
 /// Every measure, over all streams together and class by class. Serialises to the JSON that `morec evaluate
@@ -23,6 +23,8 @@ pub struct Evaluation {
     pub overlap: Vec<OverlapScore>,
     /// F1 of events over known streams.
     pub events: EventScore,
+    /// Scores against the share of right detections, over all streams.
+    pub reliability: Reliability,
     /// False alarms in known streams.
     pub false_alarms: FalseAlarms,
     /// Detections in unknown streams.
@@ -114,6 +116,7 @@ impl Evaluation {
             thesis: ThesisAccuracy::count(&decided),
             overlap: paired.scores(&known, None),
             events: EventScore::count(&known),
+            reliability: Reliability::count(known.iter().chain(&unknown)),
             false_alarms: FalseAlarms::count(&known, None),
             unknown: UnknownFigures::count(&unknown),
             delay: Delay::of(&pairs),

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::Stream;
 use super::figures::share;
+use super::{Found, Stream, Truth};
 
 /// How far outside a sample the middle of its detection may lie, in seconds: eight frames at 30 Hz.
 pub const EVENT_TOLERANCE_SECS: f64 = 8.0 / 30.0;
@@ -34,7 +34,7 @@ impl EventScore {
     pub(super) fn count(streams: &[Stream<'_>]) -> Self {
         let (mut matched, mut samples, mut detections) = (0, 0, 0);
         for stream in streams {
-            matched += matched_in(stream);
+            matched += right_in(stream).into_iter().filter(|right| *right).count();
             samples += stream.truths.len();
             detections += stream.founds.len();
         }
@@ -49,25 +49,30 @@ impl EventScore {
     }
 }
 
-/// Samples in order of their stops each take the earliest detection that is left: for intervals that is the
-/// largest pairing there is.
-fn matched_in(stream: &Stream<'_>) -> usize {
+/// Which detections of a stream are right. Samples in order of their stops each take the earliest detection that is
+/// left: for intervals that is the largest pairing there is.
+pub(super) fn right_in(stream: &Stream<'_>) -> Vec<bool> {
     let mut truths: Vec<_> = stream.truths.iter().collect();
     truths.sort_by(|a, b| a.stop_secs.total_cmp(&b.stop_secs));
     let middle = |f: usize| (stream.founds[f].start_secs + stream.founds[f].stop_secs) / 2.0;
     let mut order: Vec<usize> = (0..stream.founds.len()).collect();
     order.sort_by(|a, b| middle(*a).total_cmp(&middle(*b)));
     let mut taken = vec![false; stream.founds.len()];
-    let mut matched = 0;
     for truth in truths {
-        let near = truth.start_secs - EVENT_TOLERANCE_SECS..=truth.stop_secs + EVENT_TOLERANCE_SECS;
-        let free = order.iter().copied().find(|&f| {
-            !taken[f] && stream.founds[f].class == truth.class && near.contains(&middle(f))
-        });
+        let free = order
+            .iter()
+            .copied()
+            .find(|&f| !taken[f] && is_event_of(truth, stream.founds[f]));
         if let Some(f) = free {
             taken[f] = true;
-            matched += 1;
         }
     }
-    matched
+    taken
+}
+
+/// Whether a detection is of the sample's class and its middle lies within the sample, [`EVENT_TOLERANCE_SECS`] more on
+/// each side.
+pub fn is_event_of(truth: &Truth, found: &Found) -> bool {
+    let near = truth.start_secs - EVENT_TOLERANCE_SECS..=truth.stop_secs + EVENT_TOLERANCE_SECS;
+    found.class == truth.class && near.contains(&((found.start_secs + found.stop_secs) / 2.0))
 }

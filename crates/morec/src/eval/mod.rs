@@ -19,6 +19,7 @@ mod events;
 mod figures;
 mod interval;
 mod pairs;
+mod reliability;
 mod timeline;
 mod timing;
 
@@ -33,8 +34,9 @@ pub use alarms::{FalseAlarms, UnknownFigures};
 pub use confusion::{Confusion, Mistake};
 pub use decisions::{Classification, ThesisAccuracy};
 pub use evaluation::{ClassFigures, Evaluation, Totals};
-pub use events::{EVENT_TOLERANCE_SECS, EventScore};
+pub use events::{EVENT_TOLERANCE_SECS, EventScore, is_event_of};
 pub use pairs::OverlapScore;
+pub use reliability::{Reliability, SCORE_BINS, ScoreBin};
 pub use timeline::{FoundVerdict, Timeline, TruthVerdict, timelines};
 pub use timing::{Boundaries, Delay};
 

@@ -6,7 +6,7 @@ use crate::roles::Role;
 use crate::synth::Rng;
 
 use super::noise::{normal3, slow};
-use super::{Perturbation, REFERENCE_LEG_METRES, SLOW_SIGMA_SECS, SPIKE_METRES};
+use super::{OCCLUSION_SECS, Perturbation, REFERENCE_LEG_METRES, SLOW_SIGMA_SECS, SPIKE_METRES};
 
 /// A perturbed sequence and where its time came from.
 #[derive(Debug, Clone, PartialEq)]
@@ -96,6 +96,7 @@ fn apply(copy: &mut Perturbed, perturbation: Perturbation, rng: &mut Rng) {
                 }
             }
         }
+        Perturbation::Occlude(share) => occlude(copy, share, rng),
         Perturbation::Mirror => {
             for (_, pose) in &mut copy.poses {
                 *pose = mirrored(pose);
@@ -169,6 +170,33 @@ fn add_slow(copy: &mut Perturbed, metres: f64, rng: &mut Rng) {
     each_joint(copy, |frame, role, p| {
         *p += noise[role.index()][frame] * metres;
     });
+}
+
+/// The joints of a limb below its first, which vanish together.
+const LIMBS: [[Role; 2]; 4] = [
+    [Role::LeftForearm, Role::LeftHand],
+    [Role::RightForearm, Role::RightHand],
+    [Role::LeftShin, Role::LeftFoot],
+    [Role::RightShin, Role::RightFoot],
+];
+
+/// Hides limbs for [`OCCLUSION_SECS`] at a time, each for `share` of the time.
+fn occlude(copy: &mut Perturbed, share: f64, rng: &mut Rng) {
+    let (Some(first), Some(last)) = (copy.poses.first(), copy.poses.last()) else {
+        return;
+    };
+    let windows = ((last.0 - first.0) / OCCLUSION_SECS) as usize + 1;
+    let start = first.0;
+    for limb in LIMBS {
+        let hidden: Vec<bool> = (0..windows).map(|_| rng.chance(share)).collect();
+        for (t, pose) in &mut copy.poses {
+            let window = ((*t - start) / OCCLUSION_SECS) as usize;
+            if hidden[window.min(windows - 1)] {
+                limb.iter()
+                    .for_each(|role| pose.set(*role, Vec3::from_element(f64::NAN)));
+            }
+        }
+    }
 }
 
 /// Takes frames away; those that stay follow each other at the even pace of the original.

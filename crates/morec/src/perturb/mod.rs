@@ -5,10 +5,12 @@
 //! and seed give the same copy on every platform.
 
 mod apply;
+mod device;
 mod noise;
 mod parse;
 
 pub use apply::{Perturbed, mirrored, perturb};
+pub use device::Device;
 pub use parse::UnknownPerturbation;
 
 /// One way in which a capture can be worse than the clip. Lengths are metres for a leg of
@@ -31,6 +33,8 @@ pub enum Perturbation {
     Repeat(f64),
     /// In this share of the frames one joint lies [`SPIKE_METRES`] off.
     Spikes(f64),
+    /// In this share of the time the joints of one limb are not seen, for [`OCCLUSION_SECS`] at a time.
+    Occlude(f64),
     /// Left and right exchanged, as in a mirror.
     Mirror,
     /// A webcam: white 1 cm, slow 2 cm and constant 1.5 cm, times this factor.
@@ -43,6 +47,8 @@ pub enum Perturbation {
 pub const REFERENCE_LEG_METRES: f64 = 0.85;
 /// Standard deviation of the Gaussian that makes slow noise smooth.
 pub const SLOW_SIGMA_SECS: f64 = 0.35;
+/// How long a limb stays hidden.
+pub const OCCLUSION_SECS: f64 = 0.4;
 /// How far off a spike lies.
 pub const SPIKE_METRES: f64 = 1.0;
 

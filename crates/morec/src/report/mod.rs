@@ -4,9 +4,11 @@
 //! The file has no scripts and no outside links; its pictures are inline SVG, whose titles say in words what
 //! they show. It follows the reader's light or dark theme and prints in the light one.
 
+mod curves;
 mod figures;
 mod grid;
 mod html;
+mod misses;
 mod notes;
 mod palette;
 mod tables;
@@ -16,6 +18,8 @@ mod timeline;
 mod tests;
 
 use crate::eval::{Evaluation, Timeline};
+use crate::explain::Miss;
+use crate::perturb::Perturbation;
 use html::Text;
 use palette::Palette;
 
@@ -45,6 +49,12 @@ pub struct Report<'a> {
     pub timelines: &'a [Timeline],
     /// What trained the classes; empty if unknown.
     pub training: &'a [TrainedClass],
+    /// Samples that were missed, and why; empty if nobody looked.
+    pub misses: &'a [Miss],
+    /// The measures at other rates of false alarms a minute, ascending; may be empty.
+    pub sensitivities: &'a [(f64, Evaluation)],
+    /// The measures of copies that are worse in one way; may be empty.
+    pub perturbed: &'a [(Perturbation, Evaluation)],
 }
 
 /// Notes that are shown at once; the others unfold.
@@ -66,6 +76,10 @@ impl Report<'_> {
         self.push_about(&mut out);
         figures::push(&mut out, self.evaluation);
         self.push_notes(&mut out);
+        misses::push(&mut out, self.misses);
+        curves::push_sensitivity(&mut out, self.sensitivities);
+        curves::push_reliability(&mut out, &self.evaluation.reliability);
+        curves::push_perturbed(&mut out, self.evaluation, self.perturbed);
         timeline::push(&mut out, self.timelines, &palette);
         tables::push_confusion(&mut out, &self.evaluation.confusion);
         tables::push_classes(&mut out, self.evaluation, self.training);

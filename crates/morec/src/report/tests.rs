@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::eval::{Found, StreamInfo, Truth, timelines};
+use crate::explain::Reason;
 
 fn truth(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> Truth {
     Truth {
@@ -46,6 +47,9 @@ fn report(
         evaluation: &evaluation,
         timelines: &timelines,
         training,
+        misses: &[],
+        sensitivities: &[],
+        perturbed: &[],
     }
     .html()
 }
@@ -149,8 +153,8 @@ fn every_sample_and_detection_is_drawn_and_said() {
     ] {
         assert!(html.contains(title), "{title}");
     }
-    // 100 s make four rows, of which the second, from 25 s to 50 s, is blank.
-    assert_eq!(html.matches("<svg").count(), 3);
+    // 100 s make four rows, of which the second, from 25 s to 50 s, is blank; one more is the reliability diagram.
+    assert_eq!(html.matches("<svg").count(), 4);
     assert!(html.contains("; rows without anything are left out: 1"));
 }
 
@@ -172,9 +176,49 @@ fn many_short_clips_become_squares() {
         .collect();
     let html = report(&infos, &truths, &founds, &[]);
     check_nesting(&html);
-    assert_eq!(html.matches("<svg").count(), 3);
+    assert_eq!(html.matches("<svg").count(), 4);
     assert_eq!(html.matches("class=\"square").count(), 560);
     assert!(html.len() < 300_000, "{} bytes", html.len());
+}
+
+#[test]
+fn curves_and_reasons_are_shown_where_they_are_known() {
+    let infos = [stream("c", 60.0, false)];
+    let truths = [truth("c", "x", 1.0, 2.0), truth("c", "x", 9.0, 10.0)];
+    let founds = [found("c", "x", 1.0, 2.0)];
+    let evaluation = Evaluation::of(&infos, &truths, &founds).unwrap();
+    let none = Evaluation::of(&infos, &truths, &[]).unwrap();
+    let misses = [Miss {
+        clip: "c".into(),
+        class: "x".into(),
+        start_secs: 9.0,
+        stop_secs: 10.0,
+        reason: Reason::OtherClass {
+            class: "<y>".into(),
+            distance: 2.0,
+            other: 1.0,
+        },
+        sensitivity: Some(0.5),
+    }];
+    let html = Report {
+        title: "curves",
+        about: &[],
+        evaluation: &evaluation,
+        timelines: &[],
+        training: &[],
+        misses: &misses,
+        sensitivities: &[(0.1, none.clone()), (1.0, evaluation.clone())],
+        perturbed: &[
+            (Perturbation::White(0.01), evaluation.clone()),
+            (Perturbation::White(0.02), none),
+        ],
+    }
+    .html();
+    check_nesting(&html);
+    assert!(html.contains("&lt;y&gt; is nearer: 1.00 against 2.00"));
+    // Sensitivity, reliability, white noise.
+    assert_eq!(html.matches("<svg").count(), 3);
+    assert!(html.contains("white:0.02"));
 }
 
 #[test]

@@ -17,6 +17,7 @@ mod film;
 mod gait;
 mod gestures;
 mod limb;
+mod living_room;
 mod motion;
 mod person;
 mod rng;
@@ -29,6 +30,7 @@ mod unknown;
 
 pub use database::{DatabaseSpec, database};
 pub use everyday::everyday;
+pub use living_room::{LivingRoom, living_room};
 pub use motion::{Kind, Motion, all as motions, of_kind as motions_of};
 pub use person::Person;
 pub use rng::Rng;

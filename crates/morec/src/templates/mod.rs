@@ -10,6 +10,7 @@ mod metric;
 mod model;
 mod operating;
 mod stretches;
+mod trace;
 mod verifier;
 
 pub use bank::{Bank, Match, PartialMatch};
@@ -18,8 +19,9 @@ pub use engine::TemplateEngine;
 pub use matcher::{Comparison, Matcher, TYPICAL_SPREAD, mean_and_spread};
 pub use metric::{Metric, Symmetric};
 pub use model::{Sample, TemplateModel, TemplateModelError};
-pub use stretches::Stretches;
 pub use operating::{ALARM_RATES, Calibration, OperatingPoint, threshold_at};
+pub use stretches::Stretches;
+pub use trace::{Nearest, Trace};
 pub use verifier::{
     Evidence, Exemplars, Generic, SHAPE_ROWS, Verifier, shape_distance, shape_of, squared_distance,
 };

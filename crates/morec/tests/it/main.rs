@@ -13,6 +13,7 @@ mod golden;
 mod index_file;
 mod kit;
 mod layers;
+mod living_room;
 mod made;
 mod parameters;
 mod pose_golden;

@@ -1,0 +1,260 @@
+//! Why a sample was missed: what kept a labelled motion from being reported.
+//!
+//! The stream is compared with the index once more, and the nearest match of the sample's class within the sample is
+//! followed through the conditions of [`decode`](crate::decode) in their order. The first that fails is the reason.
+
+mod bones;
+mod reason;
+
+#[cfg(test)]
+mod tests;
+
+use std::ops::Range;
+
+use crate::classes::ClassId;
+use crate::clip::{Clip, Span};
+use crate::decode::FAR;
+use crate::features::{Rows, bones_of_clip, rows_of_clip};
+use crate::live::{Detection, Model};
+use crate::roles::RoleMap;
+use crate::templates::{Nearest, OperatingPoint, TemplateModel, Trace};
+use crate::train::overlap_share;
+
+pub use reason::{BoneOff, Reason};
+
+/// A sample that was not reported.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Miss {
+    /// The clip's name.
+    pub clip: String,
+    /// Its class.
+    pub class: String,
+    /// Start of the sample.
+    pub start_secs: f64,
+    /// Its end.
+    pub stop_secs: f64,
+    /// What kept it from being reported.
+    pub reason: Reason,
+    /// The least rate of false alarms a minute at which it would have been near enough, if the threshold was the
+    /// reason and a higher rate would have helped.
+    pub sensitivity: Option<f64>,
+}
+
+/// A labelled stretch of a stream that was missed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sought<'a> {
+    /// Its class.
+    pub class: &'a str,
+    /// Start.
+    pub start_secs: f64,
+    /// End.
+    pub stop_secs: f64,
+}
+
+/// A match belongs to a sample if it shares more than this part of the shorter of the two with it.
+const BELONGS: f64 = 0.5;
+
+/// Says of each of `sought` in `clip` why it was missed; `found` is what was recognised. Empty for the method of 2009,
+/// whose decisions are in its own report. `rest` are the frames that a conversion left at the start.
+/// O(frames · template rows · d).
+pub fn explain(
+    model: &Model,
+    clip: (&Clip, &RoleMap, &Span),
+    sought: &[Sought<'_>],
+    found: &[Detection],
+) -> Vec<Miss> {
+    let Model::Templates(model) = model else {
+        return Vec::new();
+    };
+    let (clip, roles, rest) = clip;
+    if sought.is_empty() {
+        return Vec::new();
+    }
+    let miss = |sought: &Sought<'_>, (reason, sensitivity)| Miss {
+        clip: clip.name.clone(),
+        class: sought.class.to_owned(),
+        start_secs: sought.start_secs,
+        stop_secs: sought.stop_secs,
+        reason,
+        sensitivity,
+    };
+    let bones = bones_of_clip(clip, roles, rest);
+    let Ok(model) = model.restricted(bones) else {
+        let unseen = |s| miss(s, (Reason::Unseen, None));
+        return sought.iter().map(unseen).collect();
+    };
+    let rows = rows_of_clip(clip, roles, rest, model.bones, &model.features);
+    let Ok(trace) = Trace::of(&model, &rows) else {
+        return Vec::new();
+    };
+    let mut stream = Stream {
+        model: &model,
+        rows: &rows,
+        trace,
+        found,
+    };
+    let reasons = sought.iter().map(|s| miss(s, stream.reason(s)));
+    reasons.collect()
+}
+
+/// A stream that was compared with a model.
+struct Stream<'a> {
+    model: &'a TemplateModel,
+    rows: &'a Rows,
+    trace: Trace<'a>,
+    found: &'a [Detection],
+}
+
+impl Stream<'_> {
+    fn reason(&mut self, sought: &Sought<'_>) -> (Reason, Option<f64>) {
+        let named = |c: &crate::classes::ClassInfo| c.name == sought.class;
+        let Some(class) = self.model.classes.iter().position(named) else {
+            return (Reason::NoSuchClass, None);
+        };
+        let class = ClassId(class as u16);
+        let ticks = self.ticks_of(sought);
+        let Some((_, any)) = self.best(&ticks, |t| self.trace.nearest(t, class)) else {
+            return (Reason::NoMatch, None);
+        };
+        let threshold = match &self.model.verifier {
+            Some(verifier) => verifier.reach,
+            None => self.threshold(class),
+        };
+        let moving = self.best(&ticks, |t| self.trace.moving(t, class));
+        let Some((tick, near)) = moving.filter(|(_, n)| n.comparison.distance < threshold) else {
+            return self.not_near(&ticks, class, any, threshold);
+        };
+        let reason = match self.trace.verify(tick, class) {
+            Some((score, evidence)) if score <= 0.0 => Reason::Refused {
+                score,
+                other: evidence.other / evidence.distance,
+                background: evidence.negative / evidence.distance,
+            },
+            Some(_) => self.neighbour(sought, class),
+            None => self
+                .nearer_elsewhere(tick, class, near)
+                .unwrap_or_else(|| self.neighbour(sought, class)),
+        };
+        (reason, None)
+    }
+
+    /// The ticks of a sample that lie in the stream.
+    fn ticks_of(&self, sought: &Sought<'_>) -> Range<usize> {
+        let hz = self.model.features.tick_hz();
+        let tick = |secs: f64| ((secs * hz).round().max(0.0) as usize).min(self.rows.len());
+        tick(sought.start_secs)..tick(sought.stop_secs)
+    }
+
+    fn threshold(&self, class: ClassId) -> f32 {
+        let own = self.model.class_thresholds.get(class.index());
+        own.copied().unwrap_or(self.model.threshold)
+    }
+
+    /// The nearest match that belongs to `ticks`, and the tick at which it ends.
+    fn best(
+        &self,
+        ticks: &Range<usize>,
+        near: impl Fn(usize) -> Nearest,
+    ) -> Option<(usize, Nearest)> {
+        let last = (ticks.end + ticks.len()).min(self.trace.ticks());
+        let belongs = |(t, n): &(usize, Nearest)| {
+            let stretch = t - n.comparison.age.min(*t)..t + 1;
+            n.comparison.distance < FAR && overlap_share(&stretch, ticks) > BELONGS
+        };
+        (ticks.start..last)
+            .map(|t| (t, near(t)))
+            .filter(belongs)
+            .min_by(|a, b| a.1.comparison.distance.total_cmp(&b.1.comparison.distance))
+    }
+
+    /// No match that moves is near enough: it stands still, or it is too far.
+    fn not_near(
+        &self,
+        ticks: &Range<usize>,
+        class: ClassId,
+        any: Nearest,
+        threshold: f32,
+    ) -> (Reason, Option<f64>) {
+        let gate = self.model.decode.rest_share(self.model.rule());
+        if any.comparison.distance < threshold && !any.comparison.moves(gate) {
+            let reason = Reason::Still {
+                share: any.comparison.rest_share,
+                most: gate,
+            };
+            return (reason, None);
+        }
+        let moving = self.best(ticks, |t| self.trace.moving(t, class));
+        let near_any = |t| self.trace.nearest(t, class);
+        let Some((tick, near)) = moving.or_else(|| self.best(ticks, near_any)) else {
+            return (Reason::NoMatch, None);
+        };
+        let distance = near.comparison.distance;
+        let first = tick - near.comparison.age.min(tick);
+        let template = &self.model.samples[near.template].rows;
+        let reason = Reason::Far {
+            distance,
+            threshold,
+            bones: bones::farthest(
+                template,
+                &self.rows.slice(first..tick + 1),
+                self.model.bones,
+            ),
+        };
+        (reason, least_rate(&self.model.operating, distance))
+    }
+
+    /// Background motion, or another class, that is nearer at the end of the match.
+    fn nearer_elsewhere(&self, tick: usize, class: ClassId, near: Nearest) -> Option<Reason> {
+        let decode = &self.model.decode;
+        let distance = near.comparison.distance;
+        let negative = self.trace.negative(tick);
+        if distance >= decode.gate * negative {
+            return Some(Reason::Background { distance, negative });
+        }
+        let around = tick.saturating_sub(decode.rival_ticks)
+            ..=(tick + decode.rival_ticks).min(self.trace.ticks() - 1);
+        let others = (0..self.model.classes.len()).filter(|c| *c != class.index());
+        let rivals = others.flat_map(|c| {
+            let of = ClassId(c as u16);
+            around
+                .clone()
+                .map(move |t| (c, self.trace.moving(t, of).comparison.distance))
+        });
+        let (rival, rival_distance) = rivals.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        (rival_distance < decode.rival_share * distance).then(|| Reason::OtherClass {
+            class: self.model.classes[rival].name.clone(),
+            distance,
+            other: rival_distance,
+        })
+    }
+
+    /// A detection that took the sample's place.
+    fn neighbour(&self, sought: &Sought<'_>, class: ClassId) -> Reason {
+        let slack = self.model.decode.tail_ticks as f64 / self.model.features.tick_hz();
+        let touches = |d: &&Detection| {
+            d.start_secs < sought.stop_secs && d.stop_secs + slack > sought.start_secs
+        };
+        let shared =
+            |d: &Detection| d.stop_secs.min(sought.stop_secs) - d.start_secs.max(sought.start_secs);
+        let nearest = self
+            .found
+            .iter()
+            .filter(touches)
+            .max_by(|a, b| shared(a).total_cmp(&shared(b)));
+        match nearest {
+            Some(d) => Reason::Neighbour {
+                same: d.class == class,
+                class: self.model.classes[d.class.index()].name.clone(),
+                start_secs: d.start_secs,
+                stop_secs: d.stop_secs,
+            },
+            None => Reason::Elsewhere,
+        }
+    }
+}
+
+/// The least noted rate whose threshold lies above `distance`.
+fn least_rate(points: &[OperatingPoint], distance: f32) -> Option<f64> {
+    let enough = points.iter().filter(|p| distance < p.threshold);
+    enough.map(|p| p.alarms_per_minute).min_by(f64::total_cmp)
+}

@@ -1,0 +1,155 @@
+//! The reasons, and their sentences.
+
+use std::fmt;
+
+/// What kept a sample from being reported.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Reason {
+    /// The index does not know the class.
+    NoSuchClass,
+    /// The clip shows none of the index's bones.
+    Unseen,
+    /// No template matches any stretch of it: it is performed at less than half or more than twice the speed of every
+    /// sample.
+    NoMatch,
+    /// The nearest template is too far.
+    Far {
+        /// Normalised distance of the nearest template.
+        distance: f32,
+        /// Distances at or above this are not reported.
+        threshold: f32,
+        /// The bones that differ most from the nearest template.
+        bones: Vec<BoneOff>,
+    },
+    /// It moves too little to be told from a body that stands still.
+    Still {
+        /// Its distance as a share of that of a motionless body.
+        share: f32,
+        /// Shares at or above this are not reported.
+        most: f32,
+    },
+    /// Background motion is nearer.
+    Background {
+        /// Distance of the class.
+        distance: f32,
+        /// Distance of the nearest negative template.
+        negative: f32,
+    },
+    /// Another class is nearer.
+    OtherClass {
+        /// Which.
+        class: String,
+        /// Distance of the sample's class.
+        distance: f32,
+        /// Distance of the other class.
+        other: f32,
+    },
+    /// The verifier refused it.
+    Refused {
+        /// Its score; above 0 is accepted.
+        score: f64,
+        /// Distance of the nearest other class, as a multiple of the class's.
+        other: f64,
+        /// Distance of the nearest negative template, likewise.
+        background: f64,
+    },
+    /// A detection took its place.
+    Neighbour {
+        /// Whether the detection is of the same class.
+        same: bool,
+        /// Class of the detection.
+        class: String,
+        /// Its start.
+        start_secs: f64,
+        /// Its end.
+        stop_secs: f64,
+    },
+    /// It was near enough; its best match ends outside the sample.
+    Elsewhere,
+}
+
+/// A bone that points elsewhere than that of the nearest template.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct BoneOff {
+    /// Its name.
+    pub bone: &'static str,
+    /// Mean angle between the two along the warping path, in degrees.
+    pub degrees: f64,
+}
+
+impl Reason {
+    /// A few words that count reasons of one kind together.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::NoSuchClass => "class not in the index",
+            Self::Unseen => "no bone in common",
+            Self::NoMatch => "no match",
+            Self::Far { .. } => "not near enough",
+            Self::Still { .. } => "hardly moves",
+            Self::Background { .. } => "background is nearer",
+            Self::OtherClass { .. } => "another class is nearer",
+            Self::Refused { .. } => "refused by the verifier",
+            Self::Neighbour { .. } => "taken by a neighbour",
+            Self::Elsewhere => "ends elsewhere",
+        }
+    }
+}
+
+impl fmt::Display for Reason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoSuchClass => f.write_str("the index does not know the class"),
+            Self::Unseen => f.write_str("the clip shows none of the bones that the index uses"),
+            Self::NoMatch => f.write_str(
+                "no template matches it: slower than half or faster than twice the speed of every sample",
+            ),
+            Self::Far {
+                distance,
+                threshold,
+                bones,
+            } => {
+                write!(f, "not near enough: distance {distance:.2}, threshold {threshold:.2}")?;
+                for (i, off) in bones.iter().enumerate() {
+                    let before = if i == 0 { "; differs in" } else { "," };
+                    let bone = off.bone.replace('_', " ");
+                    write!(f, "{before} {bone} by {:.0}°", off.degrees)?;
+                }
+                Ok(())
+            }
+            Self::Still { share, most } => write!(
+                f,
+                "hardly moves: {share:.2} of the distance of a body that stands still, below {most:.2} counts"
+            ),
+            Self::Background { distance, negative } => write!(
+                f,
+                "background motion is nearer: {negative:.2} against {distance:.2}"
+            ),
+            Self::OtherClass {
+                class,
+                distance,
+                other,
+            } => write!(f, "{class} is nearer: {other:.2} against {distance:.2}"),
+            Self::Refused {
+                score,
+                other,
+                background,
+            } => write!(
+                f,
+                "refused by the verifier (score {score:.2}): other classes at {other:.1} times, background at \
+                 {background:.1} times its distance"
+            ),
+            Self::Neighbour {
+                same,
+                class,
+                start_secs,
+                stop_secs,
+            } => {
+                let what = if *same { "part of the same motion" } else { class };
+                write!(f, "taken as {what}, reported from {start_secs:.2} s to {stop_secs:.2} s")
+            }
+            Self::Elsewhere => f.write_str("near enough, but its best match ends outside the sample"),
+        }
+    }
+}

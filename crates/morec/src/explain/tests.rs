@@ -1,0 +1,187 @@
+//! Each reason brought about on purpose, on synthetic people.
+
+use crate::clip::{Clip, Span};
+use crate::import::{ImportOptions, prepare};
+use crate::labels::Sample;
+use crate::live::{Model, recognize_clip};
+use crate::roles::RoleMap;
+use crate::synth::{DatabaseSpec, Take, database};
+use crate::train::{Labelling, Source, TrainClip, TrainOptions, train_clips};
+
+use super::*;
+
+const CLASSES: [&str; 2] = ["wave", "bow"];
+
+fn takes() -> Vec<Take> {
+    let spec = DatabaseSpec {
+        people: 3,
+        repetitions: 2,
+        classes: CLASSES.to_vec(),
+        ..Default::default()
+    };
+    database(5, &spec)
+}
+
+struct Played {
+    clip: Clip,
+    roles: RoleMap,
+    rest: Span,
+}
+
+fn played(clip: Clip) -> Played {
+    let imported = prepare(clip, &ImportOptions::default()).unwrap();
+    Played {
+        clip: imported.clip,
+        roles: imported.roles,
+        rest: imported.facts.rest_frames,
+    }
+}
+
+/// An index of all takes but the last.
+fn trained(takes: &[Take], change: impl Fn(&mut TrainOptions)) -> Model {
+    let (mut clips, mut samples) = (Vec::new(), Vec::new());
+    for take in takes {
+        let Played { clip, roles, rest } = played(take.clip.clone());
+        clips.push(TrainClip {
+            name: take.clip.name.clone(),
+            clip,
+            roles,
+            rest,
+            source: Source::Labelled,
+            person: Some(take.person.clone()),
+        });
+        samples.extend(take.labels.iter().map(|label| Sample {
+            clip: take.clip.name.clone(),
+            class: label.class.to_owned(),
+            start_secs: label.start_secs,
+            stop_secs: label.stop_secs,
+            whole_clip: false,
+            person: Some(take.person.clone()),
+            line: 0,
+        }));
+    }
+    let labelling = Labelling {
+        samples: &samples,
+        classes: &CLASSES.map(str::to_owned),
+        unlabelled_is_background: true,
+        ..Default::default()
+    };
+    let mut options = TrainOptions::default();
+    change(&mut options);
+    train_clips(&clips, &labelling, &options, &())
+        .unwrap()
+        .0
+        .into()
+}
+
+/// The reason given for the first label of `take`.
+fn reason(model: &Model, take: &Take, class: Option<&str>) -> Miss {
+    let played = played(take.clip.clone());
+    let found = recognize_clip(model, &played.clip, &played.roles, &played.rest).unwrap();
+    let label = &take.labels[0];
+    let sought = Sought {
+        class: class.unwrap_or(label.class),
+        start_secs: label.start_secs,
+        stop_secs: label.stop_secs,
+    };
+    let parts = (&played.clip, &played.roles, &played.rest);
+    explain(model, parts, &[sought], &found).remove(0)
+}
+
+#[test]
+fn a_class_the_index_does_not_know_is_named_as_such() {
+    let takes = takes();
+    let model = trained(&takes[1..], |_| {});
+    let miss = reason(&model, &takes[0], Some("kick"));
+    assert_eq!(miss.reason, Reason::NoSuchClass);
+}
+
+#[test]
+fn far_is_said_with_the_distance_and_the_bones() {
+    let takes = takes();
+    let model = trained(&takes[1..], |options| options.params.max_threshold = 1e-3);
+    let miss = reason(&model, &takes[0], None);
+    let Reason::Far {
+        distance,
+        threshold,
+        ..
+    } = miss.reason
+    else {
+        panic!("{:?}", miss.reason)
+    };
+    assert!(distance > threshold && threshold < 0.01);
+}
+
+#[test]
+fn another_class_is_far_in_the_bones_that_move() {
+    let takes = takes();
+    let model = trained(&takes[1..], |_| {});
+    // A wave looked for where somebody bows, or the other way round.
+    let other = if takes[0].labels[0].class == "wave" {
+        "bow"
+    } else {
+        "wave"
+    };
+    let miss = reason(&model, &takes[0], Some(other));
+    match &miss.reason {
+        Reason::Far { bones, .. } => assert!(!bones.is_empty(), "{miss:?}"),
+        Reason::NoMatch | Reason::OtherClass { .. } | Reason::Still { .. } => {}
+        found => panic!("{found:?}"),
+    }
+}
+
+#[test]
+fn a_motion_that_hardly_moves_is_gated() {
+    let takes = takes();
+    let model = trained(&takes[1..], |options| {
+        options.params.decode.rest_gate = 1e-4
+    });
+    let miss = reason(&model, &takes[0], None);
+    assert!(matches!(miss.reason, Reason::Still { .. }), "{miss:?}");
+}
+
+#[test]
+fn a_detection_that_took_the_place_is_named() {
+    let takes = takes();
+    let model = trained(&takes[1..], |_| {});
+    let played = played(takes[0].clip.clone());
+    let label = &takes[0].labels[0];
+    let found = recognize_clip(&model, &played.clip, &played.roles, &played.rest).unwrap();
+    let sought = Sought {
+        class: label.class,
+        start_secs: label.start_secs,
+        stop_secs: label.stop_secs,
+    };
+    let parts = (&played.clip, &played.roles, &played.rest);
+    let miss = explain(&model, parts, &[sought], &found).remove(0);
+    assert!(
+        matches!(&miss.reason, Reason::Neighbour { same: true, class, .. } if class == label.class),
+        "what was reported is its own neighbour: {miss:?}"
+    );
+}
+
+#[test]
+fn a_larger_sensitivity_is_named_where_it_would_help() {
+    let takes = takes();
+    let Model::Templates(model) = trained(&takes[1..], |_| {}) else {
+        unreachable!("templates were trained")
+    };
+    let mut strict = (*model).clone();
+    strict.threshold = 1e-3;
+    strict.operating = vec![
+        OperatingPoint {
+            alarms_per_minute: 0.1,
+            threshold: 1e-3,
+        },
+        OperatingPoint {
+            alarms_per_minute: 0.5,
+            threshold: 90.0,
+        },
+        OperatingPoint {
+            alarms_per_minute: 1.0,
+            threshold: 99.0,
+        },
+    ];
+    let miss = reason(&strict.into(), &takes[0], None);
+    assert_eq!(miss.sensitivity, Some(0.5));
+}

@@ -1,0 +1,165 @@
+//! A living room before four kinds of device, with golden figures: two samples of each gesture by two people teach,
+//! others perform between standing, walking about and sitting down.
+//!
+//! The people are synthetic: the figures say whether recognition got worse, not how good it is on real people.
+
+use std::collections::BTreeMap;
+
+use morec::eval::{Evaluation, Found, StreamInfo, Truth};
+use morec::features::for_each_pose;
+use morec::import::{ImportOptions, prepare};
+use morec::labels::Sample;
+use morec::live::{Model, recognize_poses};
+use morec::perturb::{Device, perturb};
+use morec::synth::{DatabaseSpec, Label, database, living_room};
+use morec::train::{Labelling, Source, TrainClip, TrainOptions, train_clips};
+
+const CLASSES: [&str; 5] = ["wave", "raise_hands", "point_side", "push", "bow"];
+const PEOPLE: std::ops::Range<usize> = 20..24;
+
+/// Figures of one device.
+#[derive(Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+struct Figures {
+    /// Samples there are and samples found.
+    samples: usize,
+    found: usize,
+    /// Detections with no sample.
+    wrong: usize,
+    /// Detections that lie in what is done between gestures.
+    alarms: usize,
+    /// Minutes of that.
+    idle_minutes: f64,
+}
+
+/// Two people show each gesture once or twice, nothing else is given.
+fn trained() -> Model {
+    let spec = DatabaseSpec {
+        people: 2,
+        repetitions: 1,
+        classes: CLASSES.to_vec(),
+        unknown_share: 0.0,
+        ..Default::default()
+    };
+    let (mut clips, mut samples) = (Vec::new(), Vec::new());
+    for take in database(3, &spec) {
+        let imported = prepare(take.clip.clone(), &ImportOptions::default()).unwrap();
+        samples.extend(take.labels.iter().map(|label| Sample {
+            clip: take.clip.name.clone(),
+            class: label.class.to_owned(),
+            start_secs: label.start_secs,
+            stop_secs: label.stop_secs,
+            whole_clip: false,
+            person: Some(take.person.clone()),
+            line: 0,
+        }));
+        clips.push(TrainClip {
+            name: take.clip.name.clone(),
+            clip: imported.clip,
+            roles: imported.roles,
+            rest: imported.facts.rest_frames,
+            source: Source::Labelled,
+            person: Some(take.person),
+        });
+    }
+    let labelling = Labelling {
+        samples: &samples,
+        classes: &CLASSES.map(str::to_owned),
+        unlabelled_is_background: true,
+        ..Default::default()
+    };
+    let (model, _) = train_clips(&clips, &labelling, &TrainOptions::default(), &()).unwrap();
+    model.into()
+}
+
+/// Whether the middle of a detection lies in one of `idle`.
+fn is_idle(found: &Found, idle: &[Label]) -> bool {
+    let middle = (found.start_secs + found.stop_secs) / 2.0;
+    idle.iter()
+        .any(|i| (i.start_secs..i.stop_secs).contains(&middle))
+}
+
+fn measured(model: &Model, device: Device) -> Figures {
+    let (mut infos, mut truths, mut founds) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut alarms, mut idle_secs) = (0, 0.0);
+    for number in PEOPLE {
+        let room = living_room(9, number, &CLASSES, 2, 60.0);
+        let imported = prepare(room.take.clip, &ImportOptions::default()).unwrap();
+        let clip = imported.clip;
+        let mut poses = Vec::new();
+        for_each_pose(
+            &clip,
+            &imported.roles,
+            &imported.facts.rest_frames,
+            |t, pose| {
+                poses.push((t, *pose));
+            },
+        );
+        let seen = perturb(poses, &device.perturbations(), number as u64);
+        let found = recognize_poses(model, &seen.poses).unwrap();
+        let found: Vec<Found> = found
+            .iter()
+            .map(|d| Found {
+                clip: clip.name.clone(),
+                class: model.class_name(d.class).to_owned(),
+                start_secs: d.start_secs,
+                stop_secs: d.stop_secs,
+                score: Some(d.score),
+                reported_secs: Some(d.reported_secs),
+            })
+            .collect();
+        alarms += found.iter().filter(|f| is_idle(f, &room.idle)).count();
+        idle_secs += room
+            .idle
+            .iter()
+            .map(|i| i.stop_secs - i.start_secs)
+            .sum::<f64>();
+        founds.extend(found);
+        truths.extend(room.take.labels.iter().map(|label| Truth {
+            clip: clip.name.clone(),
+            class: label.class.to_owned(),
+            start_secs: label.start_secs,
+            stop_secs: label.stop_secs,
+        }));
+        infos.push(StreamInfo {
+            clip: clip.name.clone(),
+            duration_secs: clip.duration_secs(),
+            unknown: false,
+        });
+    }
+    let events = Evaluation::of(&infos, &truths, &founds).unwrap().events;
+    Figures {
+        samples: truths.len(),
+        found: events.matched,
+        wrong: events.spurious,
+        alarms,
+        idle_minutes: (idle_secs / 6.0).round() / 10.0,
+    }
+}
+
+const GOLDEN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/testdata/living_room.json");
+
+/// `MOREC_WRITE_GOLDEN=1` writes the figures as they are now.
+#[test]
+fn recognition_in_a_living_room_is_no_worse_than_it_was() {
+    let model = trained();
+    let now: BTreeMap<&str, Figures> = Device::ALL
+        .iter()
+        .map(|device| (device.name(), measured(&model, *device)))
+        .collect();
+    if std::env::var_os("MOREC_WRITE_GOLDEN").is_some() {
+        std::fs::write(GOLDEN, serde_json::to_string_pretty(&now).unwrap() + "\n").unwrap();
+    }
+    let golden: BTreeMap<String, Figures> =
+        serde_json::from_str(&std::fs::read_to_string(GOLDEN).unwrap()).unwrap();
+    for (device, was) in &golden {
+        let is = &now[device.as_str()];
+        assert_eq!(
+            (is.samples, is.idle_minutes),
+            (was.samples, was.idle_minutes)
+        );
+        // One sample more or less may fall to the rounding of another processor.
+        assert!(is.found + 1 >= was.found, "{device}: {is:?}, was {was:?}");
+        assert!(is.wrong <= was.wrong + 1, "{device}: {is:?}, was {was:?}");
+        assert!(is.alarms <= was.alarms, "{device}: {is:?}, was {was:?}");
+    }
+}
