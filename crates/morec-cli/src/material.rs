@@ -5,12 +5,15 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
+use morec::features::BoneSet;
 use morec::formats::Warning;
 use morec::import::{ImportOptions, Take};
 use morec::labels::{Extent, Label, Labels, read_people};
 use morec::reproduce;
 use morec::train::thesis::SvrdmOptions;
-use morec::train::{Everyday, Recipe, Source, TrainClip, TrainOptions, TrainParams, TrainingData};
+use morec::train::{
+    Everyday, Mirror, Recipe, Source, TrainClip, TrainOptions, TrainParams, TrainingData,
+};
 use morec_db::labels::{DbSample, SampleFilter, State};
 use morec_db::{ClipFilter, MotionDb};
 use rayon::prelude::*;
@@ -60,6 +63,18 @@ pub struct MaterialArgs {
     /// minute
     #[arg(long, value_enum, default_value = "always")]
     pub everyday: EverydayArg,
+    /// Whether mirrored copies of samples teach too (templates only). yes: every class is the same on both sides; auto:
+    /// only classes named as two sides of one motion, as wave_left and wave_right, teach each other
+    #[arg(long, value_enum, default_value = "auto")]
+    pub mirror: MirrorArg,
+    /// With --mirror yes: classes whose mirror image is another motion, separated by commas; it then teaches what the
+    /// class is not
+    #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
+    pub one_sided: Vec<String>,
+    /// Which parts of the body count (templates only): all, upper (nothing below the hips: for seated performers), arms,
+    /// or names of bones, separated by commas, as the report of training lists them
+    #[arg(long, value_name = "PARTS", default_value = "all")]
+    pub bones: BoneSet,
     /// Roles of joints, where inference fails: lines of `role<TAB>joint name`
     #[arg(long, value_name = "FILE")]
     pub roles: Option<PathBuf>,
@@ -140,6 +155,27 @@ pub enum EverydayArg {
     Never,
 }
 
+/// Whether mirrored copies teach.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MirrorArg {
+    /// Between classes that are named as two sides of one motion.
+    Auto,
+    /// Every class is the same on both sides, but for those of --one-sided.
+    Yes,
+    /// Not at all.
+    No,
+}
+
+impl From<MirrorArg> for Mirror {
+    fn from(mirror: MirrorArg) -> Self {
+        match mirror {
+            MirrorArg::Auto => Mirror::Auto,
+            MirrorArg::Yes => Mirror::Yes,
+            MirrorArg::No => Mirror::No,
+        }
+    }
+}
+
 /// Everything loaded.
 pub struct Material {
     /// Labelled and background clips, and the samples in them.
@@ -190,6 +226,9 @@ impl MaterialArgs {
         Ok(TrainOptions {
             unlabelled_is_background,
             everyday,
+            mirror: self.mirror.into(),
+            one_sided: self.one_sided.clone(),
+            bones: self.bones,
             params,
         })
     }

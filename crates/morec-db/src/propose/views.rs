@@ -136,6 +136,7 @@ fn train_set(material: &Material, columns: &[usize]) -> TrainSet {
             person: None,
             source: Source::Labelled,
             rest_is_background: false,
+            is_copy: false,
             rows: material.clips[clip].laid.rows.columns(columns),
             known: judged.iter().filter_map(known).collect(),
         }

@@ -1,6 +1,6 @@
 //! One layout for rows of any set of bones, and its mirror image.
 
-use morec::features::{ALL_BONES, BONES, BoneSet, Rows};
+use morec::features::{BONES, BoneSet, Rows, mirrored_rows, opposite_bone};
 
 /// Values in a laid-out row: directions and velocities of every bone, then the root.
 pub const DIM: usize = 6 * BONES + 4;
@@ -50,59 +50,11 @@ pub fn shared_columns(bones: BoneSet) -> Vec<usize> {
         .collect()
 }
 
-/// The bone on the other side.
-pub fn opposite(bone: usize) -> usize {
-    let name = ALL_BONES[bone].name;
-    let other = match name.split_once('_') {
-        Some(("left", rest)) => format!("right_{rest}"),
-        Some(("right", rest)) => format!("left_{rest}"),
-        _ => return bone,
-    };
-    ALL_BONES
-        .iter()
-        .position(|b| b.name == other)
-        .unwrap_or(bone)
-}
-
-/// The direction of `bone` in a mirror beside the performer, of that of its opposite.
-pub fn reflected(bone: usize, of_opposite: &[f32]) -> [f32; 3] {
-    let sign = if ALL_BONES[bone].name == "shoulder_line" {
-        -1.0
-    } else {
-        1.0
-    };
-    [
-        -sign * of_opposite[0],
-        sign * of_opposite[1],
-        sign * of_opposite[2],
-    ]
-}
-
-/// What a mirror beside the performer shows: sides swapped, lateral parts and turning the other way.
-///
-/// The line of the shoulders goes from left to right: its image runs the other way, so its lateral part stays and
-/// the others turn.
+/// What a mirror beside the performer shows.
 pub fn mirrored(laid: &Laid) -> Laid {
-    let mut rows = Rows::new(DIM);
-    let mut image = [0f32; DIM];
-    for row in laid.rows.iter() {
-        for block in 0..2 {
-            for bone in 0..BONES {
-                let (from, to) = (
-                    3 * (block * BONES + opposite(bone)),
-                    3 * (block * BONES + bone),
-                );
-                image[to..to + 3].copy_from_slice(&reflected(bone, &row[from..from + 3]));
-            }
-        }
-        let root = 6 * BONES;
-        image[root] = -row[root];
-        image[root + 1] = row[root + 1];
-        image[root + 2] = row[root + 2];
-        image[root + 3] = -row[root + 3];
-        rows.push(&image);
-    }
     let bones = opposite_bones(laid.bones);
+    // Every bone has its opposite among all.
+    let rows = mirrored_rows(&laid.rows, BoneSet::ALL).unwrap_or_else(|| Rows::new(DIM));
     Laid { rows, bones }
 }
 
@@ -110,6 +62,6 @@ pub fn mirrored(laid: &Laid) -> Laid {
 pub fn opposite_bones(bones: BoneSet) -> BoneSet {
     bones
         .indices()
-        .map(opposite)
+        .map(opposite_bone)
         .fold(BoneSet::NONE, BoneSet::with)
 }

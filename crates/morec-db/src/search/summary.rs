@@ -7,9 +7,8 @@
 
 use std::ops::Range;
 
-use morec::features::{BONES, BoneSet};
+use morec::features::{BONES, BoneSet, opposite_bone, reflected_direction};
 
-use super::layout::{opposite, reflected};
 use super::windows::Sums;
 
 /// Coordinates of directions.
@@ -217,13 +216,15 @@ fn squared(a: &[f32], b: &[f32]) -> f32 {
 pub fn mirrored_summary(of: &Summary) -> Summary {
     let mut out = *of;
     for bone in 0..BONES {
-        let (to, from) = (3 * bone, 3 * opposite(bone));
+        let (to, from) = (3 * bone, 3 * opposite_bone(bone));
         for octave in 0..OCTAVES {
             out[octave * X + to..octave * X + to + 3]
                 .copy_from_slice(&of[octave * X + from..octave * X + from + 3]);
         }
-        out[MEAN + to..MEAN + to + 3]
-            .copy_from_slice(&reflected(bone, &of[MEAN + from..MEAN + from + 3]));
+        out[MEAN + to..MEAN + to + 3].copy_from_slice(&reflected_direction(
+            bone,
+            &of[MEAN + from..MEAN + from + 3],
+        ));
     }
     out[ROOT] = -of[ROOT];
     out[ROOT + 3] = -of[ROOT + 3];

@@ -58,6 +58,10 @@ impl BoneSet {
     pub const ALL: BoneSet = BoneSet((1 << BONES) - 1);
     /// No bone.
     pub const NONE: BoneSet = BoneSet(0);
+    /// The trunk, the arms and the head.
+    pub const UPPER: BoneSet = BoneSet(0b111_1111_0000);
+    /// The line of the shoulders and the arms.
+    pub const ARMS: BoneSet = BoneSet(0b011_1110_0000);
 
     /// Whether bone `index` of [`ALL_BONES`] is in the set.
     pub fn contains(self, index: usize) -> bool {
@@ -109,6 +113,26 @@ impl BoneSet {
         (0..BONES)
             .filter(|&b| holds(&ALL_BONES[b]))
             .fold(Self::NONE, BoneSet::with)
+    }
+}
+
+impl std::str::FromStr for BoneSet {
+    type Err = String;
+
+    /// `all`, `upper`, `arms`, or names of bones, separated by commas.
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.trim() {
+            "all" => Ok(Self::ALL),
+            "upper" => Ok(Self::UPPER),
+            "arms" => Ok(Self::ARMS),
+            names => {
+                let names: Vec<String> = names.split(',').map(|n| n.trim().to_owned()).collect();
+                Self::try_from(names).map_err(|error| {
+                    let known = Vec::from(Self::ALL).join(", ");
+                    format!("{error}; there are all, upper, arms, {known}")
+                })
+            }
+        }
     }
 }
 

@@ -10,6 +10,7 @@
 mod bones;
 pub(crate) mod grid;
 mod key_pose;
+mod mirror;
 mod noise;
 mod observe;
 mod of_clip;
@@ -22,6 +23,7 @@ mod stream;
 
 pub use bones::{ALL_BONES, BONES, Bone, BoneSet};
 pub use key_pose::KeyPose;
+pub use mirror::{mirrored_rows, opposite_bone, reflected_direction};
 pub use observe::{Observation, Observer};
 pub use of_clip::{bones_of_clip, for_each_pose, rows_of_clip};
 pub use params::FeatureParams;

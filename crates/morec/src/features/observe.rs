@@ -9,7 +9,8 @@ use super::bones::{ALL_BONES, BONES, BoneSet};
 /// One frame's bone directions in the heading frame and where the root stands.
 ///
 /// The heading frame turns about the vertical with the hips: lateral axis from the right to the left hip joint
-/// without its vertical part, up is +Y, forward is lateral × up. Coordinates are (lateral, up, forward).
+/// without its vertical part, up is +Y, forward is lateral × up. Coordinates are (lateral, up, forward). A stream that
+/// shows no hip joints, as of a performer behind a table, has the shoulders in their place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Observation {
     /// Unit vectors, `heading_from_world` applied; zero for bones outside the set.
@@ -51,6 +52,8 @@ pub struct Observer {
     last: Option<Observation>,
     leg_sum: f64,
     leg_count: f64,
+    /// Whether the hip joints have been seen: the heading then stays theirs.
+    hips_seen: bool,
 }
 
 impl Observer {
@@ -61,6 +64,7 @@ impl Observer {
             last: None,
             leg_sum: 0.0,
             leg_count: 0.0,
+            hips_seen: false,
         }
     }
 
@@ -75,8 +79,9 @@ impl Observer {
     }
 
     /// The observation of one pose. A bone or heading that `pose` does not show keeps its last direction;
-    /// `None` until the hip joints have been seen once.
+    /// `None` until the hip joints or the shoulders have been seen once.
     pub fn observe(&mut self, pose: &KeyPose) -> Option<Observation> {
+        self.hips_seen |= pair(pose, Role::LeftThigh, Role::RightThigh).is_some();
         let yaw_rad = self.yaw(pose)?;
         let (sin, cos) = yaw_rad.sin_cos();
         let mut directions = self
@@ -111,10 +116,15 @@ impl Observer {
 
     fn yaw(&self, pose: &KeyPose) -> Option<f64> {
         let last = self.last.map(|o| o.yaw_rad);
-        let lateral = match (pose.get(Role::LeftThigh), pose.get(Role::RightThigh)) {
-            (Some(left), Some(right)) => left - right,
-            _ => return last,
+        let lateral = if self.hips_seen {
+            pair(pose, Role::LeftThigh, Role::RightThigh)
+        } else {
+            pair(pose, Role::LeftArm, Role::RightArm)
         };
+        let Some((left, right)) = lateral else {
+            return last;
+        };
+        let lateral = left - right;
         // Hips seen straight from the side of the vertical have no heading.
         if lateral.x.hypot(lateral.z) < 1e-9 {
             return last;
@@ -130,25 +140,51 @@ impl Observer {
     }
 
     fn root(&self, pose: &KeyPose) -> Option<Vec3> {
-        pose.get(Role::Hips)
-            .or_else(|| Some((pose.get(Role::LeftThigh)? + pose.get(Role::RightThigh)?) / 2.0))
-            .or(self.last.map(|o| o.root))
+        let middle = |(left, right): (Vec3, Vec3)| (left + right) / 2.0;
+        let hips = pose
+            .get(Role::Hips)
+            .or_else(|| pair(pose, Role::LeftThigh, Role::RightThigh).map(middle));
+        // Without hips the root is where the shoulders are: only its velocity counts.
+        let shoulders = || pair(pose, Role::LeftArm, Role::RightArm).map(middle);
+        let seen = if self.hips_seen {
+            hips
+        } else {
+            hips.or_else(shoulders)
+        };
+        seen.or(self.last.map(|o| o.root))
     }
 
     fn measure_leg(&mut self, pose: &KeyPose) {
-        let (Some(hip), Some(knee)) = (pose.get(Role::LeftThigh), pose.get(Role::LeftShin)) else {
-            return;
+        let leg = if self.hips_seen {
+            limb(pose, [Role::LeftThigh, Role::LeftShin, Role::LeftFoot])
+        } else {
+            let arm = limb(pose, [Role::LeftArm, Role::LeftForearm, Role::LeftHand]);
+            arm.map(|length| length * LEG_OF_ARM)
         };
-        let thigh = (knee - hip).norm();
-        // Without a foot the shin counts as long as the thigh: within 5 % in grown people.
-        let shin = pose
-            .get(Role::LeftFoot)
-            .map_or(thigh, |ankle| (ankle - knee).norm());
-        if thigh + shin > 1e-9 {
-            self.leg_sum += thigh + shin;
+        if let Some(length) = leg.filter(|length| *length > 1e-9) {
+            self.leg_sum += length;
             self.leg_count += 1.0;
         }
     }
+}
+
+/// Length of a leg without the foot in lengths of an arm without the hand, from shares of body height: (.245 + .246) /
+/// (.186 + .146) (Winter, *Biomechanics and Motor Control of Human Movement*, 2009, Fig. 4.1).
+const LEG_OF_ARM: f64 = 1.48;
+
+/// Where two joints are, if both are seen.
+fn pair(pose: &KeyPose, left: Role, right: Role) -> Option<(Vec3, Vec3)> {
+    Some((pose.get(left)?, pose.get(right)?))
+}
+
+/// Length of a limb over its three joints. Without the last, the second part counts as long as the first: within 5 % for
+/// the legs of grown people.
+fn limb(pose: &KeyPose, joints: [Role; 3]) -> Option<f64> {
+    let [first, second, third] = joints;
+    let (a, b) = pair(pose, first, second)?;
+    let upper = (b - a).norm();
+    let lower = pose.get(third).map_or(upper, |c| (c - b).norm());
+    Some(upper + lower)
 }
 
 /// Turns a world direction into the heading frame of the yaw with this sine and cosine.
@@ -207,6 +243,42 @@ mod tests {
             );
             last = yaw;
         }
+    }
+
+    #[test]
+    fn shoulders_stand_in_for_hips_that_are_never_seen() {
+        let upper = |turned| {
+            let mut pose = standing(turned, 1.0);
+            pose.set(
+                Role::RightArm,
+                crate::math::Axis::Y.rotation(turned) * Vec3::new(-0.2, 1.4, 0.0),
+            );
+            for role in [
+                Role::Hips,
+                Role::LeftThigh,
+                Role::RightThigh,
+                Role::LeftShin,
+                Role::LeftFoot,
+            ] {
+                pose.set(role, Vec3::from_element(f64::NAN));
+            }
+            pose
+        };
+        let seen = Observer::new(BoneSet::ALL).observe(&upper(0.0)).unwrap();
+        assert!((seen.directions[6] - Vec3::z()).norm() < 1e-12);
+        let turned = Observer::new(BoneSet::ALL).observe(&upper(2.0)).unwrap();
+        assert!((turned.directions[6] - seen.directions[6]).norm() < 1e-9);
+        // The upper arm is 0.3 long, and so counts the forearm, which ends nowhere.
+        assert!((seen.leg_length - 0.6 * LEG_OF_ARM).abs() < 1e-9);
+    }
+
+    #[test]
+    fn hips_that_were_seen_once_keep_the_heading() {
+        let mut observer = Observer::new(BoneSet::ALL);
+        let seen = observer.observe(&standing(1.0, 1.0)).unwrap();
+        let mut hidden = standing(2.0, 1.0);
+        hidden.set(Role::LeftThigh, Vec3::from_element(f64::NAN));
+        assert_eq!(observer.observe(&hidden).unwrap().yaw_rad, seen.yaw_rad);
     }
 
     #[test]

@@ -7,6 +7,7 @@ use crate::synth;
 use crate::templates::TemplateModel;
 
 use super::from_clips::{Labelling, TrainClip, prepare};
+use super::mirror::add_mirrored;
 use super::options::{ENOUGH_BACKGROUND_SECS, EVERYDAY_SEED, Everyday, TrainOptions};
 use super::report::TrainingReport;
 use super::set::Source;
@@ -23,10 +24,20 @@ pub fn train_clips(
     if adds_everyday(clips, options.everyday) {
         all.extend(everyday_clips(EVERYDAY_SEED));
     }
-    let prepared = prepare(&all, labelling, &options.params.features);
+    let mut prepared = prepare(&all, labelling, options.bones, &options.params.features);
     if prepared.bones == BoneSet::NONE {
-        return Err(TrainError::NoSamples);
+        return Err(if options.bones == BoneSet::ALL {
+            TrainError::NoSamples
+        } else {
+            let wanted: Vec<String> = options.bones.into();
+            TrainError::Params(format!(
+                "no bone to learn from: not every labelled clip shows one of {}",
+                wanted.join(", ")
+            ))
+        });
     }
+    let (mirror, bones) = (options.mirror, prepared.bones);
+    add_mirrored(&mut prepared.set, bones, mirror, &options.one_sided);
     let trained = train(&prepared.set, prepared.bones, &options.params, progress)?;
     let report = TrainingReport::of(&prepared, &trained, options.params.features.tick_hz());
     Ok((trained.model, report))

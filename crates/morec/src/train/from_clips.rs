@@ -70,7 +70,14 @@ pub struct Prepared {
 }
 
 /// Cuts clips into what training needs. Rows are made in parallel, in the order of `clips`.
-pub fn prepare(clips: &[TrainClip], labelling: &Labelling<'_>, params: &FeatureParams) -> Prepared {
+///
+/// `wanted` are the bones that count, of those that every labelled clip shows.
+pub fn prepare(
+    clips: &[TrainClip],
+    labelling: &Labelling<'_>,
+    wanted: BoneSet,
+    params: &FeatureParams,
+) -> Prepared {
     let by_clip = by_clip(labelling.samples);
     let shown: Vec<BoneSet> = clips
         .par_iter()
@@ -83,7 +90,8 @@ pub fn prepare(clips: &[TrainClip], labelling: &Labelling<'_>, params: &FeatureP
     let bones = taught
         .map(|(_, b)| *b)
         .reduce(BoneSet::and)
-        .unwrap_or(BoneSet::NONE);
+        .unwrap_or(BoneSet::NONE)
+        .and(wanted);
     let serves = |shown: &BoneSet| shown.and(bones) == bones && !bones.is_empty();
     let (usable, left_out): (Vec<_>, Vec<_>) =
         clips.iter().zip(&shown).partition(|(_, b)| serves(b));
@@ -178,6 +186,7 @@ fn stream(
         person,
         source: clip.source,
         rest_is_background: !labelled || (labelling.unlabelled_is_background && !whole),
+        is_copy: false,
         rows,
         known,
     }

@@ -1,5 +1,8 @@
 //! What a training run is asked to do beyond the figures of the method.
 
+use crate::features::BoneSet;
+
+use super::mirror::Mirror;
 use super::params::TrainParams;
 
 /// When made everyday motion is background too.
@@ -23,6 +26,12 @@ pub struct TrainOptions {
     pub unlabelled_is_background: bool,
     /// Whether made everyday motion is background.
     pub everyday: Everyday,
+    /// Whether mirrored copies of samples teach too.
+    pub mirror: Mirror,
+    /// Classes whose mirror image is another motion, with [`Mirror::Yes`].
+    pub one_sided: Vec<String>,
+    /// The bones that count, of those that every labelled clip shows.
+    pub bones: BoneSet,
 }
 
 impl Default for TrainOptions {
@@ -31,6 +40,9 @@ impl Default for TrainOptions {
             params: TrainParams::default(),
             unlabelled_is_background: true,
             everyday: Everyday::Always,
+            mirror: Mirror::default(),
+            one_sided: Vec::new(),
+            bones: BoneSet::ALL,
         }
     }
 }

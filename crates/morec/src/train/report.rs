@@ -42,7 +42,10 @@ impl TrainingReport {
     pub fn of(prepared: &Prepared, trained: &Trained, tick_hz: f64) -> Self {
         let streams = &prepared.set.streams;
         let mut background_secs = BTreeMap::new();
-        for stream in streams.iter().filter(|s| s.rest_is_background) {
+        for stream in streams
+            .iter()
+            .filter(|s| s.rest_is_background && !s.is_copy)
+        {
             let known: usize = stream.known.iter().map(|k| k.ticks.len()).sum();
             let secs = stream.rows.len().saturating_sub(known) as f64 / tick_hz;
             *background_secs
@@ -57,6 +60,10 @@ impl TrainingReport {
         }
         let classes = trained.model.classes.clone();
         let mut notes = class_notes(&classes);
+        let copies = streams.iter().filter(|s| s.is_copy).count();
+        if copies > 0 {
+            notes.push(format!("mirrored copies of {copies} samples teach too"));
+        }
         if !prepared.lacking.is_empty() {
             notes.push(format!(
                 "left out because they lack bones that the labelled clips have: {}",

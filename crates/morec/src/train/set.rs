@@ -39,6 +39,8 @@ pub struct TrainStream {
     pub source: Source,
     /// Whether what is not in `known` holds none of the classes.
     pub rest_is_background: bool,
+    /// Whether it was made from another stream: it teaches, but it is no sample that somebody showed.
+    pub is_copy: bool,
     /// One row for each tick.
     pub rows: Rows,
     /// Labelled stretches, in order of their starts.

@@ -368,9 +368,15 @@ fn metric_of(
     let labelled = set
         .streams
         .iter()
-        .filter(|s| s.known.iter().any(|k| k.class.is_some()));
+        .filter(|s| !s.is_copy && s.known.iter().any(|k| k.class.is_some()));
     let total = covariance(labelled.map(|s| &s.rows), dim);
-    let within = within_class(samples, set.classes.len(), dim, params.max_pairs);
+    // How a sample differs from a mirrored one is not how people differ.
+    let shown: Vec<TrainSample> = samples
+        .iter()
+        .filter(|s| !set.streams[s.stream].is_copy)
+        .cloned()
+        .collect();
+    let within = within_class(&shown, set.classes.len(), dim, params.max_pairs);
     (ridged(&within, &total, params.rho), Symmetric::pack(&total))
 }
 
@@ -416,7 +422,11 @@ fn negative_rows(set: &TrainSet, miss: &NearMiss) -> Rows {
 }
 
 fn class_infos(set: &TrainSet, samples: &[TrainSample]) -> Vec<ClassInfo> {
-    let of = |class: usize| samples.iter().filter(move |s| s.class.index() == class);
+    let shown = |s: &&TrainSample| !set.streams[s.stream].is_copy;
+    let of = |class: usize| {
+        let shown = samples.iter().filter(shown);
+        shown.filter(move |s| s.class.index() == class)
+    };
     let named = set.classes.iter().enumerate();
     named
         .map(|(class, name)| ClassInfo {

@@ -143,6 +143,7 @@ mod tests {
             person: None,
             source,
             rest_is_background,
+            is_copy: false,
             rows,
             known,
         }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use morec::features::rows_of_clip;
+use morec::features::{BoneSet, rows_of_clip};
 use morec::labels::{ClipLength, Labels, Sample};
 use morec::templates::TemplateEngine;
 use morec::train::{Labelling, Source, TrainClip, TrainParams, prepare, train};
@@ -127,7 +127,7 @@ fn thresholds_and_detections_are_the_prototypes() {
             classes: &classes,
             unlabelled_is_background: true,
         };
-        let prepared = prepare(&others, &labelling, &params.features);
+        let prepared = prepare(&others, &labelling, BoneSet::ALL, &params.features);
         let model = train(&prepared.set, prepared.bones, &params, &())
             .unwrap()
             .model;
