@@ -58,6 +58,29 @@ fn the_whole_job_and_then_again_by_hand() {
         figures["overlap"][2]
     );
 
+    // With no detection at all, every sample is missed and explained.
+    let none = found.lines().next().unwrap().to_owned() + "\n";
+    std::fs::write(folder.path().join("none.tsv"), none).unwrap();
+    let explained = folder
+        .morec(&[
+            "evaluate",
+            "--truth",
+            "morec-demo/truth.tsv",
+            "--found",
+            "none.tsv",
+            "--clips",
+            "morec-demo/new",
+            "--index",
+            "morec-demo/demo.index",
+            "--json",
+        ])
+        .ok();
+    let explained: serde_json::Value = serde_json::from_str(&explained).unwrap();
+    let missed = explained["missed"].as_array().unwrap();
+    let samples = explained["totals"]["samples"].as_u64().unwrap() as usize;
+    assert_eq!(missed.len(), samples, "every sample has a reason");
+    assert!(missed.iter().all(|m| m["reason"]["kind"].is_string()));
+
     // The same person live, as fast as it goes: the same motions.
     let clip = std::fs::read_dir(folder.path().join("morec-demo/new"))
         .unwrap()

@@ -1,18 +1,18 @@
 //! Each reason brought about on purpose, on synthetic people.
 
 use crate::clip::{Clip, Span};
-use crate::import::{ImportOptions, prepare};
+use crate::import::Take;
 use crate::labels::Sample;
 use crate::live::{Model, recognize_clip};
 use crate::roles::RoleMap;
-use crate::synth::{DatabaseSpec, Take, database};
+use crate::synth::{DatabaseSpec, SyntheticTake, database};
 use crate::train::{Labelling, Source, TrainClip, TrainOptions, train_clips};
 
 use super::*;
 
 const CLASSES: [&str; 2] = ["wave", "bow"];
 
-fn takes() -> Vec<Take> {
+fn takes() -> Vec<SyntheticTake> {
     let spec = DatabaseSpec {
         people: 3,
         repetitions: 2,
@@ -29,16 +29,16 @@ struct Played {
 }
 
 fn played(clip: Clip) -> Played {
-    let imported = prepare(clip, &ImportOptions::default()).unwrap();
+    let take = Take::new(clip).unwrap();
     Played {
-        clip: imported.clip,
-        roles: imported.roles,
-        rest: imported.facts.rest_frames,
+        rest: take.rest().clone(),
+        clip: take.clip,
+        roles: take.roles,
     }
 }
 
 /// An index of all takes but the last.
-fn trained(takes: &[Take], change: impl Fn(&mut TrainOptions)) -> Model {
+fn trained(takes: &[SyntheticTake], change: impl Fn(&mut TrainOptions)) -> Model {
     let (mut clips, mut samples) = (Vec::new(), Vec::new());
     for take in takes {
         let Played { clip, roles, rest } = played(take.clip.clone());
@@ -75,7 +75,7 @@ fn trained(takes: &[Take], change: impl Fn(&mut TrainOptions)) -> Model {
 }
 
 /// The reason given for the first label of `take`.
-fn reason(model: &Model, take: &Take, class: Option<&str>) -> Miss {
+fn reason(model: &Model, take: &SyntheticTake, class: Option<&str>) -> Miss {
     let played = played(take.clip.clone());
     let found = recognize_clip(model, &played.clip, &played.roles, &played.rest).unwrap();
     let label = &take.labels[0];

@@ -5,7 +5,7 @@ use super::film::film;
 use super::motion::{Kind, Motion, Perform};
 use super::person::Person;
 use super::rng::Rng;
-use super::{Label, Take, everyday, unknown};
+use super::{Label, SyntheticTake, everyday, unknown};
 
 /// What is done between gestures, in turn.
 const IDLE: [(&str, Perform); 6] = [
@@ -24,7 +24,7 @@ const IDLE_SECS: f64 = 4.0;
 #[derive(Debug, Clone, PartialEq)]
 pub struct LivingRoom {
     /// The clip and its gestures.
-    pub take: Take,
+    pub take: SyntheticTake,
     /// What was done between them.
     pub idle: Vec<Label>,
 }
@@ -75,7 +75,7 @@ pub fn living_room(
     let clip = film(actor, &format!("living_room_{}", person.name), rate_hz);
     let person = person.name;
     LivingRoom {
-        take: Take {
+        take: SyntheticTake {
             clip,
             labels,
             person,

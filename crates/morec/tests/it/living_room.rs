@@ -6,8 +6,7 @@
 use std::collections::BTreeMap;
 
 use morec::eval::{Evaluation, Found, StreamInfo, Truth};
-use morec::features::for_each_pose;
-use morec::import::{ImportOptions, prepare};
+use morec::import::Take;
 use morec::labels::Sample;
 use morec::live::{Model, recognize_poses};
 use morec::perturb::{Device, perturb};
@@ -42,7 +41,7 @@ fn trained() -> Model {
     };
     let (mut clips, mut samples) = (Vec::new(), Vec::new());
     for take in database(3, &spec) {
-        let imported = prepare(take.clip.clone(), &ImportOptions::default()).unwrap();
+        let imported = Take::new(take.clip.clone()).unwrap();
         samples.extend(take.labels.iter().map(|label| Sample {
             clip: take.clip.name.clone(),
             class: label.class.to_owned(),
@@ -54,9 +53,9 @@ fn trained() -> Model {
         }));
         clips.push(TrainClip {
             name: take.clip.name.clone(),
+            rest: imported.rest().clone(),
             clip: imported.clip,
             roles: imported.roles,
-            rest: imported.facts.rest_frames,
             source: Source::Labelled,
             person: Some(take.person),
         });
@@ -83,18 +82,9 @@ fn measured(model: &Model, device: Device) -> Figures {
     let (mut alarms, mut idle_secs) = (0, 0.0);
     for number in PEOPLE {
         let room = living_room(9, number, &CLASSES, 2, 60.0);
-        let imported = prepare(room.take.clip, &ImportOptions::default()).unwrap();
-        let clip = imported.clip;
-        let mut poses = Vec::new();
-        for_each_pose(
-            &clip,
-            &imported.roles,
-            &imported.facts.rest_frames,
-            |t, pose| {
-                poses.push((t, *pose));
-            },
-        );
-        let seen = perturb(poses, &device.perturbations(), number as u64);
+        let take = Take::new(room.take.clip).unwrap();
+        let clip = &take.clip;
+        let seen = perturb(take.poses(), &device.perturbations(), number as u64);
         let found = recognize_poses(model, &seen.poses).unwrap();
         let found: Vec<Found> = found
             .iter()
