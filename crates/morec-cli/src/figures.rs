@@ -41,10 +41,7 @@ pub fn write_misses(out: &mut impl Write, misses: &[Miss]) -> io::Result<()> {
     if misses.is_empty() {
         return Ok(());
     }
-    writeln!(
-        out,
-        "\nmissed samples (no detection has its middle in them), and why"
-    )?;
+    writeln!(out, "\nsamples without a detection of their own, and why")?;
     for miss in misses {
         let at = miss.sensitivity.map_or(String::new(), |rate| {
             format!("; near enough at --sensitivity {rate}")

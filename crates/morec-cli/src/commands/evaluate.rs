@@ -7,7 +7,7 @@ use std::process::ExitCode;
 
 use anyhow::{Context, bail};
 use morec::classes::ClassId;
-use morec::eval::{Evaluation, Found, StreamInfo, Truth, is_event_of, timelines};
+use morec::eval::{Evaluation, Found, StreamInfo, Truth, event_pairs, timelines};
 use morec::explain::{Miss, Sought, explain};
 use morec::formats::Warning;
 use morec::import::ImportOptions;
@@ -137,7 +137,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 }
 
 impl Args {
-    /// Why samples that no detection has its middle in were missed. The clips are read once more, with their motion.
+    /// Why samples without an event were missed. The clips are read once more, with their motion.
     fn misses(&self, index: &Path, cases: &Cases, founds: &[Found]) -> anyhow::Result<Vec<Miss>> {
         let model = open_index(index)?.model;
         let paths = files::expand(&self.clips)?;
@@ -145,11 +145,15 @@ impl Args {
         let misses_in = |loaded: &LoadedClip| {
             let clip = &loaded.clip;
             let here: Vec<&Found> = founds.iter().filter(|f| f.clip == clip.name).collect();
-            let missed = cases.truths.iter().filter(|truth| {
-                truth.clip == clip.name && !here.iter().any(|found| is_event_of(truth, found))
-            });
+            let labelled: Vec<&Truth> = cases
+                .truths
+                .iter()
+                .filter(|t| t.clip == clip.name)
+                .collect();
+            let pairs = event_pairs(&labelled, &here);
+            let missed = labelled.iter().zip(pairs).filter(|(_, p)| p.is_none());
             let sought: Vec<Sought<'_>> = missed
-                .map(|truth| Sought {
+                .map(|(truth, _)| Sought {
                     class: &truth.class,
                     start_secs: truth.start_secs,
                     stop_secs: truth.stop_secs,

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
-use crate::eval::{Found, StreamInfo, Truth, is_event_of};
+use crate::eval::{Found, StreamInfo, Truth, event_pairs};
 use crate::explain::{Miss, Sought, explain};
 use crate::features::for_each_pose;
 use crate::labels::Sample;
@@ -76,7 +76,7 @@ pub struct Tested {
     pub truths: Vec<Truth>,
     /// What was recognised.
     pub founds: Vec<Found>,
-    /// Samples of which no detection has its middle in them ([`is_event_of`]), and why; not looked for in copies.
+    /// Samples without an event ([`event_pairs`]), and why; not looked for in copies.
     pub misses: Vec<Miss>,
 }
 
@@ -408,15 +408,21 @@ impl FoldTest<'_> {
     }
 }
 
-/// The samples that no detection has its middle in.
+/// The samples without an event.
 fn missed<'t>(truths: &'t [Truth], founds: &[Found]) -> Vec<Sought<'t>> {
-    let is_missed = |truth: &&Truth| !founds.iter().any(|found| is_event_of(truth, found));
-    let sought = |truth: &'t Truth| Sought {
-        class: &truth.class,
-        start_secs: truth.start_secs,
-        stop_secs: truth.stop_secs,
-    };
-    truths.iter().filter(is_missed).map(sought).collect()
+    let all: Vec<&Truth> = truths.iter().collect();
+    let pairs = event_pairs(&all, &founds.iter().collect::<Vec<_>>());
+    let missed = all
+        .into_iter()
+        .zip(pairs)
+        .filter(|(_, pair)| pair.is_none());
+    missed
+        .map(|(truth, _)| Sought {
+            class: &truth.class,
+            start_secs: truth.start_secs,
+            stop_secs: truth.stop_secs,
+        })
+        .collect()
 }
 
 /// A copy of `clip`, reproducible: the seed comes of its name.

@@ -49,30 +49,45 @@ impl EventScore {
     }
 }
 
-/// Which detections of a stream are right. Samples in order of their stops each take the earliest detection that is
-/// left: for intervals that is the largest pairing there is.
+/// Which detections of a stream are right.
 pub(super) fn right_in(stream: &Stream<'_>) -> Vec<bool> {
-    let mut truths: Vec<_> = stream.truths.iter().collect();
-    truths.sort_by(|a, b| a.stop_secs.total_cmp(&b.stop_secs));
-    let middle = |f: usize| (stream.founds[f].start_secs + stream.founds[f].stop_secs) / 2.0;
-    let mut order: Vec<usize> = (0..stream.founds.len()).collect();
-    order.sort_by(|a, b| middle(*a).total_cmp(&middle(*b)));
-    let mut taken = vec![false; stream.founds.len()];
-    for truth in truths {
-        let free = order
+    let mut right = vec![false; stream.founds.len()];
+    for found in event_pairs(&stream.truths, &stream.founds)
+        .into_iter()
+        .flatten()
+    {
+        right[found] = true;
+    }
+    right
+}
+
+/// For each sample of one stream the detection that is its event, as a place in `founds`, if there is one. Samples in
+/// order of their stops each take the earliest detection that is left: for intervals that is the largest pairing there
+/// is. O(samples × detections).
+pub fn event_pairs(truths: &[&Truth], founds: &[&Found]) -> Vec<Option<usize>> {
+    let mut in_order: Vec<usize> = (0..truths.len()).collect();
+    in_order.sort_by(|a, b| truths[*a].stop_secs.total_cmp(&truths[*b].stop_secs));
+    let middle = |f: usize| (founds[f].start_secs + founds[f].stop_secs) / 2.0;
+    let mut earliest: Vec<usize> = (0..founds.len()).collect();
+    earliest.sort_by(|a, b| middle(*a).total_cmp(&middle(*b)));
+    let mut taken = vec![false; founds.len()];
+    let mut pairs = vec![None; truths.len()];
+    for truth in in_order {
+        let free = earliest
             .iter()
             .copied()
-            .find(|&f| !taken[f] && is_event_of(truth, stream.founds[f]));
+            .find(|&f| !taken[f] && is_event_of(truths[truth], founds[f]));
         if let Some(f) = free {
             taken[f] = true;
+            pairs[truth] = Some(f);
         }
     }
-    taken
+    pairs
 }
 
 /// Whether a detection is of the sample's class and its middle lies within the sample, [`EVENT_TOLERANCE_SECS`] more on
 /// each side.
-pub fn is_event_of(truth: &Truth, found: &Found) -> bool {
+fn is_event_of(truth: &Truth, found: &Found) -> bool {
     let near = truth.start_secs - EVENT_TOLERANCE_SECS..=truth.stop_secs + EVENT_TOLERANCE_SECS;
     found.class == truth.class && near.contains(&((found.start_secs + found.stop_secs) / 2.0))
 }

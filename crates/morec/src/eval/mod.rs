@@ -34,7 +34,7 @@ pub use alarms::{FalseAlarms, UnknownFigures};
 pub use confusion::{Confusion, Mistake};
 pub use decisions::{Classification, ThesisAccuracy};
 pub use evaluation::{ClassFigures, Evaluation, Totals};
-pub use events::{EVENT_TOLERANCE_SECS, EventScore, is_event_of};
+pub use events::{EVENT_TOLERANCE_SECS, EventScore, event_pairs};
 pub use pairs::OverlapScore;
 pub use reliability::{Reliability, SCORE_BINS, ScoreBin};
 pub use timeline::{FoundVerdict, Timeline, TruthVerdict, timelines};
