@@ -138,7 +138,7 @@ fn print_templates(report: &TrainingReport) {
     let verified = if report.verified {
         "yes"
     } else {
-        "no (that takes 25 samples of a class by three people, and named background)"
+        "no (that takes 5 samples of a class by three people, and named background)"
     };
     println!("candidates verified: {verified}");
 }

@@ -92,7 +92,7 @@ impl TemplateEngine {
             recent: RecentRows::new(dim, 2 * model.longest() + window + 2),
             mapped: vec![0.0; dim],
             threshold: model.threshold,
-            calibration: model.calibration.filter(|_| model.verifier.is_none()),
+            calibration: model.calibration_in_use(),
             near: vec![ClassDistance::NONE; model.classes.len()],
             metric,
         })

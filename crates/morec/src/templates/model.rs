@@ -40,7 +40,7 @@ pub struct TemplateModel {
     pub class_thresholds: Vec<f32>,
     /// Thresholds for other rates of false alarms, ascending; empty in older indexes.
     pub operating: Vec<OperatingPoint>,
-    /// What margins mean where there is no verifier; older indexes report margins.
+    /// What scores mean; older indexes report margins.
     pub calibration: Option<Calibration>,
     /// The second look at candidates, if there was enough to learn it from.
     pub verifier: Option<Verifier>,
@@ -159,6 +159,13 @@ impl TemplateModel {
             class_thresholds: class_thresholds.collect(),
             ..self.clone()
         })
+    }
+
+    /// What scores mean. Indexes from before verified scores were calibrated hold the map of plain margins beside a
+    /// verifier, where it never held: they report the verifier's scores.
+    pub(super) fn calibration_in_use(&self) -> Option<Calibration> {
+        let stale = self.verifier.is_some() && self.calibration == Some(Calibration::MEASURED);
+        self.calibration.filter(|_| !stale)
     }
 
     /// Rows of the longest template.

@@ -51,6 +51,11 @@ pub struct TrainParams {
     pub verify: bool,
     /// Samples that the median class must have before candidates are verified: with few, the plain rule is better.
     pub verify_samples: usize,
+    /// With fewer samples of the median class than this, the gate against a body at rest is
+    /// [`rest_gate_few`](Self::rest_gate_few) under a verifier.
+    pub many_samples: usize,
+    /// See [`many_samples`](Self::many_samples).
+    pub rest_gate_few: f32,
     /// People that must teach before candidates are verified.
     pub verify_people: usize,
     /// Candidates are looked at up to this times the distance that nine in ten samples of new people need.
@@ -117,7 +122,9 @@ impl TrainParams {
             quiet_share: 0.0,
             calibrate: false,
             verify: false,
-            verify_samples: 25,
+            verify_samples: 5,
+            many_samples: 25,
+            rest_gate_few: 0.83,
             verify_people: 3,
             reach: 2.0,
             examples_per_piece: 3,

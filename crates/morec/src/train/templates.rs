@@ -128,11 +128,14 @@ pub fn train(
     };
     let operating = step.operating(&distances, Some(&seen));
     let threshold = operating.threshold;
-    set_rest_share(&mut distances, params.decode.rest_gate_verified);
-    let verifier = if params.verify && enough_to_verify(&classes, &samples, params) {
-        step.verifier(&seen, &distances, threshold)
-    } else {
-        None
+    let mut decode = params.decode.clone();
+    let verifier = match verified_gate(&classes, &samples, params) {
+        Some(gate) if params.verify => {
+            decode.rest_gate_verified = gate;
+            set_rest_share(&mut distances, gate);
+            step.verifier(&seen, &distances, threshold)
+        }
+        _ => None,
     };
     set_rest_share(&mut distances, plain);
     let class_thresholds = match verifier {
@@ -141,10 +144,14 @@ pub fn train(
         }
         _ => Vec::new(),
     };
+    let calibration = match verifier {
+        Some(_) => Calibration::VERIFIED,
+        None => Calibration::MEASURED,
+    };
     let model = TemplateModel {
         features: params.features.clone(),
         bones,
-        decode: params.decode.clone(),
+        decode,
         classes,
         samples: samples
             .into_iter()
@@ -159,7 +166,7 @@ pub fn train(
         threshold,
         class_thresholds,
         operating: operating.points,
-        calibration: params.calibrate.then_some(Calibration::MEASURED),
+        calibration: params.calibrate.then_some(calibration),
         verifier,
         step: None,
     };
@@ -318,13 +325,23 @@ fn moving(
     (teach, aside)
 }
 
-/// Whether so many people showed so many samples that a verifier is better than the plain rule.
-fn enough_to_verify(classes: &[ClassInfo], samples: &[TrainSample], params: &TrainParams) -> bool {
+/// The gate against a body at rest under a verifier, if so many people showed so many samples that a verifier is better
+/// than the plain rule. With few samples the gate has to do what the verifier could not learn.
+fn verified_gate(
+    classes: &[ClassInfo],
+    samples: &[TrainSample],
+    params: &TrainParams,
+) -> Option<f32> {
     let mut counts: Vec<usize> = classes.iter().map(|c| c.samples).collect();
     counts.sort_unstable();
     let people: BTreeSet<&str> = samples.iter().map(|s| s.group.as_str()).collect();
     let median = counts.get(counts.len() / 2).copied().unwrap_or(0);
-    median >= params.verify_samples && people.len() >= params.verify_people
+    let enough = median >= params.verify_samples && people.len() >= params.verify_people;
+    enough.then_some(if median >= params.many_samples {
+        params.decode.rest_gate_verified
+    } else {
+        params.rest_gate_few
+    })
 }
 
 /// At most `most` samples of each class, from its groups in turn, in the order of the set.
