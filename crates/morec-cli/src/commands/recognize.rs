@@ -17,12 +17,12 @@ use morec::roles::Role;
 use super::send::bundling;
 use crate::files::{ReadArgs, expand, mapping, open, rate, read};
 use crate::live::layout::LayoutArg;
-use crate::live::loaded::Loaded;
-use crate::live::network::Conditions;
+use crate::live::network::NetworkArgs;
 use crate::live::wire::recognise_over_vmc;
 use crate::output::Output;
 use crate::progress::Progress;
 use crate::stats::Stats;
+use morec_live::PlayableClip;
 
 /// Recognise motions in clips, frame by frame as in a live stream.
 ///
@@ -43,7 +43,7 @@ pub struct Args {
     clips: Vec<PathBuf>,
     /// How to write detections
     #[arg(long, value_enum, default_value = "tsv")]
-    format: Format,
+    format: OutputFormat,
     /// Where to write them [default: standard output]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -65,14 +65,14 @@ pub struct Args {
     #[arg(long, value_name = "whole|single|BYTES", default_value = "1500", value_parser = bundling)]
     bundle: Bundling,
     #[command(flatten)]
-    conditions: Conditions,
+    conditions: NetworkArgs,
     #[command(flatten)]
     read: ReadArgs,
 }
 
 /// Forms of output.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-enum Format {
+enum OutputFormat {
     /// Tab-separated text with a header
     Tsv,
     /// One JSON object a line
@@ -146,7 +146,7 @@ fn recognize_all(
     options: &ImportOptions,
     args: &Args,
 ) -> Result<bool> {
-    if args.format == Format::Tsv {
+    if args.format == OutputFormat::Tsv {
         writeln!(out, "{FOUND_HEADER}")?;
     }
     let mut stats = Stats::default();
@@ -225,8 +225,13 @@ fn over_vmc(
     index: &MotionIndex,
     args: &Args,
 ) -> Result<Vec<Detection>> {
-    let loaded = Loaded::of(imported.clone(), Some(rate_hz))?;
-    let (found, counts) = recognise_over_vmc(&index.model, &loaded, args.bundle, &args.conditions);
+    let loaded = PlayableClip::of(imported.clone(), Some(rate_hz))?;
+    let (found, counts) = recognise_over_vmc(
+        &index.model,
+        &loaded,
+        args.bundle,
+        &args.conditions.accidents(),
+    );
     if args.stats {
         eprintln!(
             "{}: {}",
@@ -289,7 +294,7 @@ fn needed(role: Role) -> bool {
 
 fn write_found(
     out: &mut dyn Write,
-    format: Format,
+    format: OutputFormat,
     in_clip: &FoundInClip,
     index: &MotionIndex,
 ) -> std::io::Result<()> {
@@ -309,8 +314,8 @@ fn write_found(
         rate_hz: *rate_hz,
     };
     match format {
-        Format::Tsv => writeln!(out, "{line}"),
-        Format::Jsonl => {
+        OutputFormat::Tsv => writeln!(out, "{line}"),
+        OutputFormat::Jsonl => {
             let frame = |secs: f64| (secs * rate_hz).round() as u64;
             let object = serde_json::json!({
                 "clip": clip, "start": frame(found.start_secs), "stop": frame(found.stop_secs), "class": class,

@@ -11,8 +11,8 @@ use super::points::{Point, PointTable, UNSEEN, check_size};
 use super::timing::{Clock, Schedule};
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::clip::{Clip, Joint, JointTrack, Skeleton};
-use crate::live::vmc::{HUMANOID, rotation_of_unity};
-use crate::math::{Quat, Vec3, same_hemisphere, slerp};
+use crate::humanoid::{HUMANOID, HumanoidBone};
+use crate::math::{Quat, Vec3, rotation_of_xyzw, same_hemisphere, slerp};
 use crate::roles::Role;
 
 /// Frames a second of lines without times.
@@ -21,7 +21,7 @@ const ASSUMED_HZ: f64 = 30.0;
 /// A line; fields that are not named here are ignored.
 #[derive(Debug, Default, serde::Deserialize)]
 #[serde(default)]
-struct Line {
+struct PoseRecord {
     t: Option<f64>,
     actor: u16,
     root: Option<[f64; 3]>,
@@ -31,9 +31,9 @@ struct Line {
 
 /// What one performer did.
 #[derive(Default)]
-struct Performer {
+struct RecordedPerformer {
     times: Vec<Option<f64>>,
-    lines: Vec<Line>,
+    lines: Vec<PoseRecord>,
 }
 
 /// Reads lines of JSON: for each performer a clip called `name` (`name.1`, `name.2` … of several), of points if lines hold
@@ -48,7 +48,7 @@ pub fn read(
     limits: &Limits,
 ) -> Result<Loaded, ParseError> {
     let mut warnings = Vec::new();
-    let mut performers: BTreeMap<u16, Performer> = BTreeMap::new();
+    let mut performers: BTreeMap<u16, RecordedPerformer> = BTreeMap::new();
     let rows = lines(bytes, limits)?;
     if rows.len() > limits.frames {
         let expected = format!("at most {} lines", limits.frames);
@@ -60,7 +60,7 @@ pub fn read(
     }
     let mut broken: Vec<(u64, String)> = Vec::new();
     for (number, text) in &rows {
-        match serde_json::from_str::<Line>(text) {
+        match serde_json::from_str::<PoseRecord>(text) {
             Ok(line) if line.positions.is_empty() && line.rotations.is_empty() => {
                 broken.push((*number, "neither positions nor rotations".to_owned()));
             }
@@ -118,7 +118,7 @@ pub fn read(
 
 /// A clip of points.
 fn positions(
-    lines: &[Line],
+    lines: &[PoseRecord],
     name: &str,
     schedule: &Schedule,
     limits: &Limits,
@@ -168,7 +168,7 @@ fn bone_of(role: Role) -> Option<usize> {
 
 /// The standard body that live sources of rotations are shown on, its joints by the names of their roles.
 fn skeleton() -> Result<Skeleton, ParseError> {
-    let joint = |bone: &crate::live::vmc::HumanoidBone| {
+    let joint = |bone: &HumanoidBone| {
         // The table faces −Z.
         let [x, y, z] = bone.offset;
         Joint {
@@ -184,7 +184,7 @@ fn skeleton() -> Result<Skeleton, ParseError> {
 
 /// A clip with rotations; joints that a line leaves out stay as they were.
 fn turned(
-    lines: &[Line],
+    lines: &[PoseRecord],
     name: String,
     schedule: &Schedule,
     warnings: &mut Vec<Warning>,
@@ -200,8 +200,7 @@ fn turned(
             .cloned()
             .unwrap_or_else(|| vec![Quat::identity(); joints]);
         for (name, value) in &line.rotations {
-            // The conversion turns Z and w round: twice round is as it was.
-            let rotation = value.and_then(|[x, y, z, w]| rotation_of_unity([x, y, -z, -w]));
+            let rotation = value.and_then(rotation_of_xyzw);
             match (Role::from_name(name).and_then(bone_of), rotation) {
                 (Some(joint), Some(q)) => pose[joint] = same_hemisphere(&pose[joint], q),
                 _ => ignored += 1,

@@ -2,7 +2,7 @@
 
 use crate::classes::ClassId;
 
-use super::teller::Say;
+use super::event_tracker::Say;
 use super::{Detection, Event, Phase};
 
 /// A motion that seems to be under way.
@@ -28,18 +28,18 @@ const FORGET_SECS: f64 = 0.5;
 
 /// Makes starts, updates and cancellations of hunches, a few for each motion.
 #[derive(Debug, Default)]
-pub(super) struct Early {
-    open: Option<Open>,
+pub(super) struct EarlyTracker {
+    open: Option<OpenMotion>,
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Open {
+struct OpenMotion {
     motion: u64,
     told: Hunch,
     heard_secs: f64,
 }
 
-impl Early {
+impl EarlyTracker {
     /// What was told last of a motion that is still under way.
     pub(super) fn told(&self) -> Option<Hunch> {
         self.open.map(|open| open.told)
@@ -60,7 +60,7 @@ impl Early {
             (Some(hunch), None) => {
                 let motion = say.new_motion();
                 say.event(Phase::Start, motion, hunch, now_secs);
-                self.open = Some(Open {
+                self.open = Some(OpenMotion {
                     motion,
                     told: hunch,
                     heard_secs: now_secs,

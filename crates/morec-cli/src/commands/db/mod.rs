@@ -4,17 +4,15 @@ mod check;
 mod classes;
 mod clips;
 mod copies;
-mod cut;
 mod cycles;
 mod export;
-mod group;
 mod history;
 mod import;
 mod indexes;
 mod info;
 mod init;
 mod label;
-mod page;
+pub mod page;
 mod propose;
 mod report;
 mod samples;
@@ -47,18 +45,20 @@ Examples:
   morec db search moves.mdb walk_01 --start 1 --stop 2")]
 pub struct Args {
     #[command(subcommand)]
-    command: Command,
+    command: DbCommand,
 }
 
 #[derive(Subcommand)]
-enum Command {
+enum DbCommand {
     Init(init::Args),
     Import(import::Args),
     Info(info::Args),
     Clips(clips::Args),
-    Cut(cut::Args),
+    #[command(hide = true)]
+    Cut(crate::commands::cut::Args),
     Cycles(cycles::Args),
-    Group(group::Args),
+    #[command(hide = true)]
+    Group(crate::commands::group::Args),
     Classes(classes::Args),
     Label(label::Args),
     Samples(samples::Args),
@@ -92,26 +92,26 @@ pub fn run(args: Args) -> Result<ExitCode> {
 
 fn of(args: Args) -> Result<ExitCode> {
     match args.command {
-        Command::Init(args) => init::run(&args),
-        Command::Import(args) => import::run(&args),
-        Command::Info(args) => info::run(&args),
-        Command::Clips(args) => clips::run(&args),
-        Command::Cut(args) => cut::run(&args),
-        Command::Cycles(args) => cycles::run(&args),
-        Command::Group(args) => group::run(&args),
-        Command::Classes(args) => classes::run(&args),
-        Command::Label(args) => label::run(&args),
-        Command::Samples(args) => samples::run(&args),
-        Command::Search(args) => search::run(&args),
-        Command::Propose(args) => propose::run(&args),
-        Command::Report(args) => report::run(&args),
-        Command::Indexes(args) => indexes::run(&args),
-        Command::History(args) => history::run(&args),
-        Command::Undo(args) => history::undo(&args),
-        Command::Redo(args) => history::redo(&args),
-        Command::Export(args) => export::run(&args),
-        Command::Check(args) => check::run(&args),
-        Command::Vacuum(args) => vacuum::run(&args),
+        DbCommand::Init(args) => init::run(&args),
+        DbCommand::Import(args) => import::run(&args),
+        DbCommand::Info(args) => info::run(&args),
+        DbCommand::Clips(args) => clips::run(&args),
+        DbCommand::Cut(args) => crate::commands::cut::run_stored(&args),
+        DbCommand::Cycles(args) => cycles::run(&args),
+        DbCommand::Group(args) => crate::commands::group::run_stored(&args),
+        DbCommand::Classes(args) => classes::run(&args),
+        DbCommand::Label(args) => label::run(&args),
+        DbCommand::Samples(args) => samples::run(&args),
+        DbCommand::Search(args) => search::run(&args),
+        DbCommand::Propose(args) => propose::run(&args),
+        DbCommand::Report(args) => report::run(&args),
+        DbCommand::Indexes(args) => indexes::run(&args),
+        DbCommand::History(args) => history::run(&args),
+        DbCommand::Undo(args) => history::undo(&args),
+        DbCommand::Redo(args) => history::redo(&args),
+        DbCommand::Export(args) => export::run(&args),
+        DbCommand::Check(args) => check::run(&args),
+        DbCommand::Vacuum(args) => vacuum::run(&args),
     }
 }
 
@@ -134,7 +134,7 @@ fn lengths(db: &MotionDb) -> Result<Lengths> {
 }
 
 /// One value as JSON on standard output.
-fn print_json(value: &impl Serialize) -> Result<()> {
+pub fn print_json(value: &impl Serialize) -> Result<()> {
     let mut out = std::io::stdout().lock();
     write_json(&mut out, value)?;
     out.flush()?;
@@ -151,7 +151,7 @@ fn print(text: impl std::fmt::Display) -> Result<()> {
 
 /// A table that fits the terminal, and a last line below it. Whoever reads it through a pipe gets all of it, separated by
 /// tabs, and the last line on standard error.
-fn print_table(table: &Table, last: &str) -> Result<()> {
+pub fn print_table(table: &Table, last: &str) -> Result<()> {
     let mut out = std::io::stdout().lock();
     if std::io::stdout().is_terminal() {
         let width = terminal_size::terminal_size().map_or(80, |(width, _)| usize::from(width.0));
@@ -174,7 +174,7 @@ fn megabytes(bytes: u64) -> String {
 }
 
 /// A share on the command line.
-fn share(text: &str) -> std::result::Result<f64, String> {
+pub fn share(text: &str) -> std::result::Result<f64, String> {
     let value: f64 = text
         .parse()
         .map_err(|_| "expected a number from 0 to 1".to_owned())?;

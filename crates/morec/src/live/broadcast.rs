@@ -1,0 +1,190 @@
+//! Where a session's events leave it: a ring for each reader.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::time::Duration;
+
+use super::worker::WorkerOptions;
+use super::status::Cells;
+use super::waker::Waker;
+use super::{Event, Overload};
+
+/// Events that one frame can give at most, with room to spare: what is kept while readers are full.
+const PENDING: usize = 256;
+
+/// The end of a session that events come out of.
+#[derive(Debug)]
+pub struct EventReader {
+    events: rtrb::Consumer<Event>,
+    waker: Arc<Waker>,
+}
+
+impl EventReader {
+    /// The next event, if there is one. Never waits.
+    pub fn pop(&mut self) -> Option<Event> {
+        self.events.pop().ok()
+    }
+
+    /// The next event; waits for it for at most `most`. `None` also once the stream has [ended](Self::is_ended).
+    pub fn wait(&mut self, most: Duration) -> Option<Event> {
+        let begun = std::time::Instant::now();
+        loop {
+            if let Some(event) = self.pop() {
+                return Some(event);
+            }
+            let left = most
+                .checked_sub(begun.elapsed())
+                .filter(|left| !left.is_zero())?;
+            if self.is_ended() {
+                return self.pop();
+            }
+            self.waker.sleep(left, || {
+                !self.events.is_empty() || self.events.is_abandoned()
+            });
+        }
+    }
+
+    /// Whether the stream has ended and every event has been taken.
+    pub fn is_ended(&self) -> bool {
+        self.events.is_abandoned() && self.events.is_empty()
+    }
+}
+
+#[derive(Debug)]
+struct EventSender {
+    events: rtrb::Producer<Event>,
+    waker: Arc<Waker>,
+}
+
+impl Drop for EventSender {
+    fn drop(&mut self) {
+        self.waker.wake();
+    }
+}
+
+/// The readers of a stream, and what waits to be handed to them.
+#[derive(Debug)]
+pub(super) struct EventBroadcast {
+    broadcast: Vec<EventSender>,
+    pending: Vec<Event>,
+    cells: Arc<Cells>,
+    stop: Arc<AtomicBool>,
+    overload: Overload,
+    sequence: u64,
+}
+
+impl EventBroadcast {
+    /// Outlets and their readers.
+    pub(super) fn new(
+        options: &WorkerOptions,
+        cells: &Arc<Cells>,
+        stop: &Arc<AtomicBool>,
+    ) -> (Self, Vec<EventReader>) {
+        let pair = || {
+            let (events, taken) = rtrb::RingBuffer::new(options.capacity.max(PENDING));
+            let waker = Arc::new(Waker::default());
+            (
+                EventSender {
+                    events,
+                    waker: waker.clone(),
+                },
+                EventReader {
+                    events: taken,
+                    waker,
+                },
+            )
+        };
+        let (broadcast, readers) = (0..options.readers.max(1)).map(|_| pair()).unzip();
+        let broadcast = Self {
+            broadcast,
+            pending: Vec::with_capacity(PENDING),
+            cells: cells.clone(),
+            stop: stop.clone(),
+            overload: options.overload,
+            sequence: 0,
+        };
+        (broadcast, readers)
+    }
+
+    /// Puts an event where the next delivery takes it from.
+    pub(super) fn keep(&mut self, event: Event) {
+        // A frame settles a few motions at most; the buffer never grows.
+        if self.pending.len() < self.pending.capacity() {
+            self.pending.push(event);
+        } else {
+            self.cells.dropped_events.fetch_add(1, Relaxed);
+        }
+    }
+
+    pub(super) fn has_pending(&self) -> bool {
+        !self.pending.is_empty()
+    }
+
+    /// Hands out what is pending; says whether nothing is left. Something is only if [`Overload::Wait`] holds, a
+    /// reader has no room and the session goes on.
+    pub(super) fn deliver(&mut self) -> bool {
+        if self.pending.is_empty() {
+            return true;
+        }
+        self.broadcast.retain(|outlet| !outlet.events.is_abandoned());
+        let waits = self.overload == Overload::Wait && !self.stop.load(Relaxed);
+        if waits
+            && self
+                .broadcast
+                .iter()
+                .any(|outlet| outlet.events.slots() < self.pending.len())
+        {
+            return false;
+        }
+        for event in &mut self.pending {
+            self.sequence += 1;
+            event.sequence = self.sequence;
+            self.cells.event(event);
+            for outlet in &mut self.broadcast {
+                if outlet.events.push(*event).is_err() {
+                    self.cells.dropped_events.fetch_add(1, Relaxed);
+                }
+            }
+        }
+        self.pending.clear();
+        self.broadcast.iter().for_each(|outlet| outlet.waker.wake());
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::classes::ClassId;
+    use crate::live::{Actor, EventOptions, Phase};
+
+    #[test]
+    fn what_there_is_no_room_for_is_counted() {
+        let options = WorkerOptions {
+            events: EventOptions::default(),
+            overload: Overload::Wait,
+            readers: 1,
+            capacity: PENDING,
+        };
+        let (cells, stop) = (Arc::new(Cells::default()), Arc::default());
+        let (mut broadcast, mut readers) = EventBroadcast::new(&options, &cells, &stop);
+        let event = Event {
+            phase: Phase::End,
+            motion: 1,
+            sequence: 0,
+            actor: Actor(0),
+            class: ClassId(0),
+            score: 1.0,
+            progress: 1.0,
+            start_secs: 0.0,
+            stop_secs: 1.0,
+            reported_secs: 1.0,
+            wall_secs: 0.0,
+        };
+        (0..PENDING + 3).for_each(|_| broadcast.keep(event));
+        assert!(broadcast.deliver());
+        let taken = std::iter::from_fn(|| readers[0].pop()).count();
+        let dropped = cells.dropped_events.load(Relaxed);
+        assert_eq!((taken, dropped), (PENDING, 3));
+    }
+}

@@ -1,0 +1,125 @@
+//! Detections to events: numbers for motions, the refractory rule.
+
+use super::early::{EarlyTracker, Hunch};
+use super::{Actor, Detection, Event, Phase};
+
+/// Tells one performer's motions.
+#[derive(Debug)]
+pub(super) struct EventTracker {
+    actor: Actor,
+    refractory_secs: f64,
+    motions: u64,
+    /// When the last motion ended that was told: of all classes, and of each.
+    any_secs: f64,
+    class_secs: Vec<f64>,
+    suppressed: u64,
+}
+
+impl EventTracker {
+    pub(super) fn new(actor: Actor, classes: usize, refractory_secs: f64) -> Self {
+        let (any_secs, class_secs) = (f64::NEG_INFINITY, vec![f64::NEG_INFINITY; classes]);
+        Self {
+            actor,
+            refractory_secs,
+            motions: 0,
+            any_secs,
+            class_secs,
+            suppressed: 0,
+        }
+    }
+
+    /// Tells the end of a motion, unless the refractory rule says otherwise.
+    pub(super) fn emit(
+        &mut self,
+        d: &Detection,
+        early: &mut EarlyTracker,
+        wall_secs: f64,
+        out: &mut impl FnMut(Event),
+    ) {
+        let before_secs = &mut self.class_secs[d.class.index()];
+        // A method that lets rivals wait may report what ended first after what ended later.
+        if (d.stop_secs - *before_secs).abs() < self.refractory_secs {
+            self.suppressed += 1;
+            early.cancel(Some(d.reported_secs), &mut self.say(wall_secs, out));
+            return;
+        }
+        *before_secs = before_secs.max(d.stop_secs);
+        self.any_secs = self.any_secs.max(d.stop_secs);
+        let mut say = self.say(wall_secs, out);
+        let motion = early.take(d).unwrap_or_else(|| say.new_motion());
+        say.event(
+            Phase::End,
+            motion,
+            Hunch {
+                class: d.class,
+                score: d.score,
+                progress: 1.0,
+                start_secs: d.start_secs,
+                seen_secs: d.stop_secs,
+            },
+            d.reported_secs,
+        );
+    }
+
+    /// For saying something else than an end.
+    pub(super) fn say<'a, F: FnMut(Event)>(
+        &'a mut self,
+        wall_secs: f64,
+        out: &'a mut F,
+    ) -> Say<'a, F> {
+        Say {
+            actor: self.actor,
+            wall_secs,
+            motions: &mut self.motions,
+            out,
+        }
+    }
+
+    /// When the last motion ended that was told.
+    pub(super) fn last_stop_secs(&self) -> f64 {
+        self.any_secs
+    }
+
+    /// A clock that begins anew must not find its motions refused for the old one's.
+    pub(super) fn forget(&mut self) {
+        self.any_secs = f64::NEG_INFINITY;
+        self.class_secs.fill(f64::NEG_INFINITY);
+    }
+
+    /// Motions that were not told because of the refractory rule.
+    pub(super) fn suppressed(&self) -> u64 {
+        self.suppressed
+    }
+}
+
+/// Numbers motions and gives events their common parts.
+pub(super) struct Say<'a, F: FnMut(Event)> {
+    actor: Actor,
+    wall_secs: f64,
+    motions: &'a mut u64,
+    out: &'a mut F,
+}
+
+impl<F: FnMut(Event)> Say<'_, F> {
+    pub(super) fn new_motion(&mut self) -> u64 {
+        *self.motions += 1;
+        *self.motions
+    }
+
+    pub(super) fn event(&mut self, phase: Phase, motion: u64, what: Hunch, reported_secs: f64) {
+        (self.out)(Event {
+            phase,
+            motion,
+            // Whoever carries events out numbers them.
+            sequence: 0,
+            actor: self.actor,
+            class: what.class,
+            score: what.score,
+            progress: what.progress,
+            start_secs: what.start_secs,
+            stop_secs: what.seen_secs,
+            reported_secs,
+            wall_secs: self.wall_secs,
+        });
+    }
+}

@@ -1,0 +1,205 @@
+//! One stream's recognition: what a session's thread, or a thread of a pool, does with one feed.
+
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use crate::features::BoneSet;
+
+use super::feed::{FeedReceiver, Item};
+pub use super::broadcast::EventReader;
+use super::broadcast::EventBroadcast;
+use super::performer::{EventOptions, Performer};
+use super::status::Cells;
+use super::{Actor, Frame, MAX_ACTORS, Model, Overload, Recognizer, Rig, wall_now_secs};
+
+/// Frames of a performer after which its diagnosis is renewed: a quarter of a second at 60 Hz.
+const DIAGNOSE_EVERY: u64 = 16;
+
+/// Recognisers ready to be copied, one for each set of bones that has come up.
+#[derive(Debug)]
+pub(super) struct RecognizerCache {
+    model: Model,
+    made: Mutex<Vec<(BoneSet, Option<Recognizer>)>>,
+}
+
+impl RecognizerCache {
+    pub(super) fn new(model: Model) -> Self {
+        Self {
+            model,
+            made: Mutex::new(Vec::new()),
+        }
+    }
+
+    /// A recogniser for `bones`; its templates are shared with all others of the same bones. `None` if the index and
+    /// the stream have no bone in common. Takes the lock, at a new skeleton only.
+    fn get(&self, bones: BoneSet) -> Option<Recognizer> {
+        let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, known)) = made.iter().find(|(of, _)| *of == bones) {
+            return known.clone();
+        }
+        let new = Recognizer::new(&self.model, bones).ok();
+        made.push((bones, new.clone()));
+        new
+    }
+}
+
+/// What became of a worker's turn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum TurnOutcome {
+    /// There was something to do, and there may be more.
+    Some,
+    /// There was nothing.
+    Idle,
+    /// Readers must make room first.
+    Blocked,
+    /// The stream has ended, and everything is told.
+    Ended,
+}
+
+/// How a worker is run.
+#[derive(Debug, Clone)]
+pub(super) struct WorkerOptions {
+    pub(super) events: EventOptions,
+    pub(super) overload: Overload,
+    pub(super) readers: usize,
+    pub(super) capacity: usize,
+}
+
+#[derive(Debug)]
+pub(super) struct StreamWorker {
+    feed: FeedReceiver,
+    performers: Vec<Performer>,
+    /// Frames that each performer has had.
+    frames: [u64; MAX_ACTORS],
+    cache: Arc<RecognizerCache>,
+    broadcast: EventBroadcast,
+    cells: Arc<Cells>,
+    stop: Arc<AtomicBool>,
+    /// Frames of performers beyond those that can be followed.
+    beyond: u64,
+    /// The feed has ended, and the performers have said their last.
+    finished: bool,
+}
+
+impl StreamWorker {
+    /// A worker and its readers.
+    pub(super) fn new(
+        feed: FeedReceiver,
+        cache: &Arc<RecognizerCache>,
+        options: &WorkerOptions,
+        cells: &Arc<Cells>,
+        stop: &Arc<AtomicBool>,
+    ) -> (Self, Vec<EventReader>) {
+        let (broadcast, readers) = EventBroadcast::new(options, cells, stop);
+        let performer = |i| Performer::new(&cache.model, Actor(i as u16), &options.events);
+        let worker = Self {
+            feed,
+            performers: (0..MAX_ACTORS).map(performer).collect(),
+            frames: [0; MAX_ACTORS],
+            cache: cache.clone(),
+            broadcast,
+            cells: cells.clone(),
+            stop: stop.clone(),
+            beyond: 0,
+            finished: false,
+        };
+        (worker, readers)
+    }
+
+    /// Whether there is something to do.
+    pub(super) fn is_ready(&self) -> bool {
+        self.feed.has_more() || self.feed.is_ended()
+    }
+
+    /// Takes up to `most` things from the feed.
+    pub(super) fn work(&mut self, most: usize) -> TurnOutcome {
+        let mut done = 0;
+        loop {
+            if !self.deliver() {
+                return TurnOutcome::Blocked;
+            }
+            if self.finished {
+                return TurnOutcome::Ended;
+            }
+            if done >= most {
+                return TurnOutcome::Some;
+            }
+            match self.feed.next() {
+                Some(Item::Frame(frame)) => {
+                    self.frame(&frame);
+                    self.feed.give_back(frame);
+                }
+                Some(Item::Rig(actor, rig)) => self.set_rig(actor, &rig),
+                Some(Item::Gone(actor)) => self.gone(actor),
+                None if self.feed.is_ended() || self.stop.load(Relaxed) => {
+                    (0..self.performers.len()).for_each(|i| self.gone(Actor(i as u16)));
+                    self.finished = true;
+                }
+                None if done == 0 => return TurnOutcome::Idle,
+                None => return TurnOutcome::Some,
+            }
+            done += 1;
+        }
+    }
+
+    fn frame(&mut self, frame: &Frame) {
+        match self.performers.get_mut(frame.actor.index()) {
+            Some(performer) => {
+                let (cache, broadcast) = (&self.cache, &mut self.broadcast);
+                performer.push(frame, &mut |bones| cache.get(bones), &mut |event| {
+                    broadcast.keep(event)
+                });
+                let frames = &mut self.frames[frame.actor.index()];
+                *frames += 1;
+                if frames.is_multiple_of(DIAGNOSE_EVERY) {
+                    self.cells.diagnosis(frame.actor, performer.diagnosis());
+                }
+            }
+            None => self.beyond += 1,
+        }
+        self.cells.frame(frame, wall_now_secs());
+    }
+
+    fn set_rig(&mut self, actor: Actor, rig: &Arc<Rig>) {
+        if let Some(performer) = self.performers.get_mut(actor.index()) {
+            performer.set_rig(rig, &mut |event| self.broadcast.keep(event));
+        }
+    }
+
+    fn gone(&mut self, actor: Actor) {
+        if let Some(performer) = self.performers.get_mut(actor.index()) {
+            performer.finish(&mut |event| self.broadcast.keep(event));
+            self.cells.diagnosis(actor, performer.diagnosis());
+        }
+    }
+
+    /// Hands out what is pending; says whether nothing is left.
+    fn deliver(&mut self) -> bool {
+        if self.broadcast.has_pending() {
+            self.count();
+        }
+        self.broadcast.deliver()
+    }
+
+    fn count(&self) {
+        let sum = |of: fn(&Performer) -> u64| self.performers.iter().map(of).sum::<u64>();
+        self.cells
+            .suppressed
+            .store(sum(Performer::suppressed), Relaxed);
+        self.cells
+            .dropped_detections
+            .store(sum(Performer::dropped), Relaxed);
+        self.cells
+            .unusable
+            .store(sum(Performer::unusable) + self.beyond, Relaxed);
+    }
+}
+
+impl Drop for StreamWorker {
+    fn drop(&mut self) {
+        self.count();
+        self.cells
+            .ended
+            .store(true, std::sync::atomic::Ordering::Release);
+    }
+}
