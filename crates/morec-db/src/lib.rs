@@ -14,10 +14,12 @@
 //! | classes and samples | [`labels`] |
 //! | what was changed, taking it back | [`MotionDb::history`], [`MotionDb::undo`] |
 //! | labels in other programs' forms | [`exchange`] |
+//! | cuts where behaviour changes | [`MotionDb::cut`] |
 //! | rows, search by example, near copies | [`rows`], [`search`] |
 //! | the other samples of classes that a few are labelled of | [`MotionDb::propose`], [`questions`] |
 
 mod clips;
+mod cut;
 mod db;
 mod error;
 pub mod exchange;
@@ -39,6 +41,7 @@ mod tests;
 mod time;
 
 pub use clips::{ClipFilter, ClipId, ClipInfo, ClipUpdate};
+pub use cut::{ClipCuts, CutReport, Cutter, Still};
 pub use db::{Health, MotionDb, Summary};
 pub use error::DbError;
 pub use history::{Effect, STEPS_KEPT, Step, Turned};
