@@ -1,22 +1,23 @@
 //! `morec.Clip`: a clip in metres and Y up, as Python sees it.
 
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use morec::clip::{Clip, Gap, JointTrack, Points};
-use morec::formats::{Limits, from_positions as clip_of_positions};
+use morec::formats::{Limits, bvh, c3d, from_positions as clip_of_positions, jsonl, trc};
 use morec::import::{ImportOptions, Imported, prepare};
 use morec::kinematics::WorldPose;
 use morec::math::Vec3;
 use morec::roles::{Role, RoleMap};
+use morec::smooth::{SmoothParams, compress};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PySlice};
 
 use crate::arrays::{motion, owned, shared, wrong_shape};
-use crate::errors::{morec_error, value_error};
+use crate::errors::{MorecError, io_error, morec_error, value_error};
 use crate::open::import_options;
 use crate::tables::plain;
 
@@ -240,6 +241,14 @@ impl PyClip {
         take.into()
     }
 
+    /// Writes the clip in the format that the ending names: .bvh, .mclip, or its points as .trc, .c3d, .jsonl.
+    fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        let data = self.data.clone();
+        let written = py.detach(|| written(&data, &path));
+        let bytes = written.map_err(|e| MorecError::new_err(format!("{}: {e}", path.display())))?;
+        std::fs::write(&path, bytes).map_err(|error| io_error(&path, &error))
+    }
+
     fn __len__(&self) -> usize {
         self.data.clip.frames
     }
@@ -295,6 +304,26 @@ impl PyClip {
         let restore = py.import("morec._morec")?.getattr("from_state")?;
         Ok((restore, (crate::state::state(py, &self.data)?,)))
     }
+}
+
+/// The bytes of a clip's file.
+fn written(data: &ClipData, path: &Path) -> Result<Vec<u8>, String> {
+    let mut bytes = Vec::new();
+    let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    // Files of points name their unit.
+    let points = || data.clip.to_points(Some(1.0));
+    let done = match ending.as_str() {
+        "bvh" => bvh::write(&data.clip, &mut bytes),
+        "trc" => trc::write(&points(), &mut bytes),
+        "c3d" => c3d::write(&points(), &mut bytes),
+        "jsonl" => jsonl::write(&points(), &mut bytes),
+        "mclip" => {
+            let stored = compress(&data.clip, &SmoothParams::database(), &());
+            return stored.map(|s| s.to_bytes()).map_err(|error| error.to_string());
+        }
+        _ => return Err("expected a file .bvh, .mclip, .trc, .c3d or .jsonl".to_owned()),
+    };
+    done.map(|()| bytes).map_err(|error| error.to_string())
 }
 
 /// World positions of all joints, frame by frame. Points in long gaps are nowhere: NaN.
@@ -359,9 +388,7 @@ fn stretch(take: &ClipData, span: Range<usize>) -> ClipData {
 }
 
 /// A clip of points from an array of shape (frames, joints, 3).
-#[pyfunction]
-#[pyo3(signature = (positions, names, rate_hz, name="clip", unit=None, up=None, roles=None))]
-pub fn from_positions(
+fn from_positions(
     positions: &Bound<'_, PyAny>,
     names: Vec<String>,
     rate_hz: f64,

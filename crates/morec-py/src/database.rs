@@ -1,10 +1,11 @@
 //! `morec.Database`: clips, labels and search in one file.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use morec::features::{FeatureParams, bones_of_clip, rows_of_clip};
-use morec::pivots::PivotSet;
+use morec::labels::{ClipLength, Sample};
 use morec::segment::{KernelParams, PpcaParams};
 use morec_db::labels::{NewSample, SampleFilter, SampleId, State};
 use morec_db::search::{Example, SearchIndex, SearchOptions};
@@ -105,9 +106,6 @@ fn state(name: &str) -> PyResult<State> {
         ))
     })
 }
-
-/// A label as Python gives it: clip, class, start and stop in seconds (or the whole clip).
-type Row = (String, String, Option<(f64, f64)>);
 
 #[pymethods]
 impl PyDatabase {
@@ -293,33 +291,46 @@ impl PyDatabase {
         table(py, &columns, rows)
     }
 
-    /// Adds labels; all or none. The Python side has made rows of whatever was given.
-    #[pyo3(name = "_label", signature = (rows, state, by))]
+    /// Adds labels; all or none.
+    #[pyo3(signature = (labels, *, state="accepted", by="user"))]
     fn label<'py>(
         &self,
         py: Python<'py>,
-        rows: Vec<Row>,
+        labels: &Bound<'py, PyAny>,
         state: &str,
         by: &str,
     ) -> PyResult<Bound<'py, PyAny>> {
         let state = self::state(state)?;
-        let added = self.with(py, |db| {
-            let mut samples = Vec::with_capacity(rows.len());
-            for (clip, class, extent) in rows {
-                let info = db.find_clip(&clip)?;
-                let (start_secs, stop_secs) = extent.unwrap_or((0.0, info.duration_secs()));
-                samples.push(NewSample {
-                    clip: info.id,
-                    class,
-                    start_secs,
-                    stop_secs,
-                    whole_clip: extent.is_none(),
+        let rows = py.import("morec._labels")?.call_method1("label_rows", (labels,))?;
+        let labels = crate::material::labels(&rows)?;
+        let (added, warnings) = self.with(py, |db| {
+            let clips = db.clips(&ClipFilter::default())?;
+            let length = |info: &ClipInfo| ClipLength {
+                frames: info.frames,
+                rate_hz: info.rate_hz,
+            };
+            let lengths = clips.iter().map(|c| (c.name.clone(), length(c))).collect();
+            let resolved = labels.resolve(&lengths);
+            if let Some(clip) = resolved.absent.keys().next() {
+                // Says which names come near.
+                db.find_clip(clip)?;
+            }
+            let ids: BTreeMap<String, ClipId> = clips.into_iter().map(|c| (c.name, c.id)).collect();
+            let sample = |s: Sample| {
+                Some(NewSample {
+                    clip: *ids.get(&s.clip)?,
+                    class: s.class,
+                    start_secs: s.start_secs,
+                    stop_secs: s.stop_secs,
+                    whole_clip: s.whole_clip,
                     state,
                     score: None,
-                });
-            }
-            db.add_samples(&samples, by)
+                })
+            };
+            let samples: Vec<NewSample> = resolved.samples.into_iter().filter_map(sample).collect();
+            Ok((db.add_samples(&samples, by)?, resolved.warnings))
         })?;
+        warn(py, warnings.iter().map(|w| format!("labels: {w}")))?;
         plain(py, &added)
     }
 
@@ -405,13 +416,10 @@ impl PyDatabase {
                 least_secs: least.unwrap_or(kernel.least_secs),
                 ..kernel
             }),
-            "ppca" => Cutter::Ppca(
-                PpcaParams {
-                    rise: rise.unwrap_or(ppca.rise),
-                    ..ppca
-                },
-                PivotSet::thesis(),
-            ),
+            "ppca" => Cutter::Ppca(PpcaParams {
+                rise: rise.unwrap_or(ppca.rise),
+                ..ppca
+            }),
             other => {
                 return Err(value_error(format!(
                     "method: expected \"kernel\" or \"ppca\", found {other:?}"
@@ -518,7 +526,7 @@ impl PyDatabase {
 }
 
 /// Names of the clips.
-fn names(db: &MotionDb) -> Result<std::collections::BTreeMap<ClipId, String>, DbError> {
+fn names(db: &MotionDb) -> Result<BTreeMap<ClipId, String>, DbError> {
     let clips = db.clips(&ClipFilter::default())?;
     Ok(clips.into_iter().map(|c| (c.id, c.name)).collect())
 }

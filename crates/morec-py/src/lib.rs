@@ -33,7 +33,6 @@ fn _morec(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(open::read_path, module)?)?;
     module.add_function(wrap_pyfunction!(open::read_bytes, module)?)?;
     module.add_function(wrap_pyfunction!(open::read_folder, module)?)?;
-    module.add_function(wrap_pyfunction!(clip::from_positions, module)?)?;
     module.add_function(wrap_pyfunction!(state::from_state, module)?)?;
     module.add_function(wrap_pyfunction!(features::features, module)?)?;
     module.add_function(wrap_pyfunction!(features::key_positions, module)?)?;

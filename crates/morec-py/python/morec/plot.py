@@ -102,10 +102,9 @@ def confusion(evaluation: Crossval | Mapping[str, Any], *, ax: Axes | None = Non
     """
     figures = evaluation.evaluation if isinstance(evaluation, Crossval) else evaluation
     table = figures["confusion"]
-    classes: list[str] = table["classes"]
     counts = np.asarray(table["counts"], dtype=float)
-    rows = [*classes, "nothing"][: counts.shape[0]]
-    columns = [*classes, "nothing"][: counts.shape[1]]
+    rows = [*table["rows"], "nothing"]
+    columns = [*table["columns"], "nothing"]
     ax = _axes(ax, figsize=(0.5 * len(columns) + 2, 0.5 * len(rows) + 1.5), layout="constrained")
     ax.imshow(counts, cmap="Blues")
     for row in range(counts.shape[0]):
