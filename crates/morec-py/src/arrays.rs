@@ -76,9 +76,10 @@ fn copy<T: Element + Copy>(
         // In pieces: transposed, or every other joint of a larger array.
         Err(_) => {
             let view = array.as_array();
-            out.extend((0..joints).map(|j| {
-                Vec3::new(wide(view[[j, 0]]), wide(view[[j, 1]]), wide(view[[j, 2]]))
-            }));
+            out.extend(
+                (0..joints)
+                    .map(|j| Vec3::new(wide(view[[j, 0]]), wide(view[[j, 1]]), wide(view[[j, 2]]))),
+            );
         }
     }
     Ok(())

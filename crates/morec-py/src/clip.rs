@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use morec::clip::{Clip, Gap, JointTrack, Points};
 use morec::formats::{Limits, bvh, c3d, from_positions as clip_of_positions, jsonl, trc};
-use morec::import::{ImportOptions, Imported, prepare};
+use morec::import::{Take, normalize};
 use morec::kinematics::WorldPose;
 use morec::math::Vec3;
 use morec::roles::{Role, RoleMap};
@@ -40,22 +40,17 @@ pub struct ClipData {
     pub format: String,
 }
 
-impl ClipData {
-    /// Infers what `clip` is.
-    ///
-    /// # Errors
-    /// A mapping of roles that names joints which are not there.
-    pub fn of(clip: Clip, options: &ImportOptions) -> Result<Self, morec::formats::ParseError> {
-        let Imported { clip, roles, facts } = prepare(clip, options)?;
-        Ok(Self {
-            clip,
-            roles,
-            facts: serde_json::to_string(&facts).unwrap_or_default(),
-            rest: facts.rest_frames,
-            warnings: Vec::new(),
+impl From<Take> for ClipData {
+    fn from(take: Take) -> Self {
+        Self {
+            facts: serde_json::to_string(&take.report).unwrap_or_default(),
+            rest: take.report.rest_frames,
+            warnings: take.warnings.iter().map(ToString::to_string).collect(),
+            clip: take.clip,
+            roles: take.roles,
             path: None,
             format: String::new(),
-        })
+        }
     }
 }
 
@@ -255,10 +250,14 @@ impl PyClip {
 
     fn __getitem__(&self, key: &Bound<'_, PyAny>) -> PyResult<Self> {
         let slice = key.cast::<PySlice>().map_err(|_| {
-            PyTypeError::new_err("clips are sliced by seconds, as clip[1.0:2.5]; frames are clip.positions[3]")
+            PyTypeError::new_err(
+                "clips are sliced by seconds, as clip[1.0:2.5]; frames are clip.positions[3]",
+            )
         })?;
         if !slice.getattr("step")?.is_none() {
-            return Err(value_error("a slice of a clip has no step; see Clip.resampled"));
+            return Err(value_error(
+                "a slice of a clip has no step; see Clip.resampled",
+            ));
         }
         let clip = &self.data.clip;
         let frame = |name: &str, default: usize| -> PyResult<usize> {
@@ -309,7 +308,11 @@ impl PyClip {
 /// The bytes of a clip's file.
 fn written(data: &ClipData, path: &Path) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
-    let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    let ending = path
+        .extension()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .to_lowercase();
     // Files of points name their unit.
     let points = || data.clip.to_points(Some(1.0));
     let done = match ending.as_str() {
@@ -319,7 +322,9 @@ fn written(data: &ClipData, path: &Path) -> Result<Vec<u8>, String> {
         "jsonl" => jsonl::write(&points(), &mut bytes),
         "mclip" => {
             let stored = compress(&data.clip, &SmoothParams::database(), &());
-            return stored.map(|s| s.to_bytes()).map_err(|error| error.to_string());
+            return stored
+                .map(|s| s.to_bytes())
+                .map_err(|error| error.to_string());
         }
         _ => return Err("expected a file .bvh, .mclip, .trc, .c3d or .jsonl".to_owned()),
     };
@@ -399,7 +404,11 @@ fn from_positions(
 ) -> PyResult<PyClip> {
     let (values, frames, joints) = motion(positions)?;
     if joints != names.len() {
-        let expected = format!("(frames, {}, 3), as there are {} names", names.len(), names.len());
+        let expected = format!(
+            "(frames, {}, 3), as there are {} names",
+            names.len(),
+            names.len()
+        );
         return Err(wrong_shape(&expected, &[frames, joints, 3]));
     }
     if !(rate_hz.is_finite() && rate_hz > 0.0) {
@@ -408,16 +417,15 @@ fn from_positions(
         )));
     }
     let options = import_options(up, unit, roles)?;
-    let point = |joint: usize| -> Vec<Vec3> {
-        (0..frames).map(|f| values[f * joints + joint]).collect()
-    };
+    let point =
+        |joint: usize| -> Vec<Vec3> { (0..frames).map(|f| values[f * joints + joint]).collect() };
     let points = names.into_iter().enumerate();
     let points = points.map(|(joint, name)| (name, point(joint))).collect();
-    let loaded = clip_of_positions(name, rate_hz, points, unit, &Limits::default())
-        .map_err(morec_error)?;
+    let loaded =
+        clip_of_positions(name, rate_hz, points, unit, &Limits::default()).map_err(morec_error)?;
     let clip = loaded.clips.into_iter().next();
     let clip = clip.ok_or_else(|| morec_error("no performer in these positions"))?;
-    let mut take = ClipData::of(clip, &options).map_err(morec_error)?;
-    take.warnings = loaded.warnings.iter().map(|w| w.text.clone()).collect();
-    Ok(take.into())
+    let mut data = ClipData::from(normalize(clip, &options).map_err(morec_error)?);
+    data.warnings = loaded.warnings.iter().map(|w| w.text.clone()).collect();
+    Ok(data.into())
 }

@@ -232,5 +232,8 @@ pub fn evaluate<'py>(
     let streams: Vec<_> = streams.into_iter().map(stream).collect();
     let truth: Vec<_> = truth.into_iter().map(label).collect();
     let found: Vec<_> = found.into_iter().map(hit).collect();
-    plain(py, &Evaluation::of(&streams, &truth, &found).map_err(value_error)?)
+    plain(
+        py,
+        &Evaluation::of(&streams, &truth, &found).map_err(value_error)?,
+    )
 }

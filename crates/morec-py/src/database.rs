@@ -5,22 +5,22 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use morec::features::{FeatureParams, bones_of_clip, rows_of_clip};
+use morec::files::{FileReader, list};
 use morec::labels::{ClipLength, Sample};
 use morec::segment::{KernelParams, PpcaParams};
 use morec_db::labels::{NewSample, SampleFilter, SampleId, State};
 use morec_db::search::{Example, SearchIndex, SearchOptions};
 use morec_db::{
-    ClipFilter, ClipId, ClipInfo, ClipUpdate, Cutter, DbError, FileReader, ImportSettings,
-    MotionDb, Outcome, ProposeOptions,
+    ClipFilter, ClipId, ClipInfo, ClipUpdate, Cutter, DbError, ImportOutcome, MotionDb,
+    ProposeOptions,
 };
 use pyo3::exceptions::{PyFileExistsError, PyFileNotFoundError, PyKeyError, PyPermissionError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::clip::{ClipData, PyClip};
-use crate::errors::{MorecError, value_error, warn};
+use crate::errors::{MorecError, file_error, value_error, warn};
 use crate::job;
-use crate::open::list;
 use crate::tables::{plain, table};
 
 /// A motion database: clips, cuts, classes and labels in one SQLite file, as `morec db` keeps it.
@@ -68,18 +68,8 @@ impl PyDatabase {
 }
 
 const CLIP: [&str; 12] = [
-    "clip",
-    "subject",
-    "secs",
-    "frames",
-    "rate_hz",
-    "joints",
-    "format",
-    "path",
-    "source",
-    "licence",
-    "tags",
-    "samples",
+    "clip", "subject", "secs", "frames", "rate_hz", "joints", "format", "path", "source",
+    "licence", "tags", "samples",
 ];
 
 fn clip_row<'py>(py: Python<'py>, info: &ClipInfo) -> PyResult<Bound<'py, PyDict>> {
@@ -167,22 +157,26 @@ impl PyDatabase {
             Ok(path) => vec![path],
             Err(_) => paths.extract()?,
         };
-        let (files, left_out) = list(&given)?;
-        warn(py, left_out)?;
-        let settings = ImportSettings {
-            about: ClipUpdate {
-                source,
-                licence,
-                subject,
-                add_tags: tags,
-                remove_tags: Vec::new(),
-            },
-            ..ImportSettings::default()
+        let listing = list(&given).map_err(|error| file_error(&error))?;
+        warn(
+            py,
+            listing
+                .left_out
+                .iter()
+                .map(|error| format!("left out: {error}")),
+        )?;
+        let (files, reader) = (listing.clips, FileReader::default());
+        let about = ClipUpdate {
+            source,
+            licence,
+            subject,
+            add_tags: tags,
+            remove_tags: Vec::new(),
         };
         self.changed();
         let report = job::run(py, progress, |progress| match held(&self.db).as_mut() {
             Some(db) => db
-                .import(&files, &FileReader::default(), &settings, progress)
+                .import(&files, &reader, &about, progress)
                 .map_err(db_error),
             None => Err(value_error("the database is closed")),
         })??;
@@ -190,12 +184,14 @@ impl PyDatabase {
         for (path, outcome) in &report.files {
             let row = PyDict::new(py);
             let (what, clips, notes) = match outcome {
-                Outcome::Imported { clips, warnings } => {
+                ImportOutcome::Imported { clips, warnings } => {
                     ("imported", clips.clone(), warnings.clone())
                 }
-                Outcome::Known => ("known", vec![], vec![]),
-                Outcome::Copy { of } => ("copy", vec![], vec![of.display().to_string()]),
-                Outcome::Refused(refused) => ("refused", vec![], vec![refused.reason.clone()]),
+                ImportOutcome::Known => ("known", vec![], vec![]),
+                ImportOutcome::Copy { of } => ("copy", vec![], vec![of.display().to_string()]),
+                ImportOutcome::Refused(refused) => {
+                    ("refused", vec![], vec![refused.reason.clone()])
+                }
             };
             row.set_item("path", path.to_string_lossy())?;
             row.set_item("outcome", what)?;
@@ -301,7 +297,9 @@ impl PyDatabase {
         by: &str,
     ) -> PyResult<Bound<'py, PyAny>> {
         let state = self::state(state)?;
-        let rows = py.import("morec._labels")?.call_method1("label_rows", (labels,))?;
+        let rows = py
+            .import("morec._labels")?
+            .call_method1("label_rows", (labels,))?;
         let labels = crate::material::labels(&rows)?;
         let (added, warnings) = self.with(py, |db| {
             let clips = db.clips(&ClipFilter::default())?;
@@ -375,7 +373,8 @@ impl PyDatabase {
                 (None, Some(data)) => example_of(data, start, stop),
                 (None, None) => None,
             };
-            let short = || DbError::Invalid("the example must hold at least 0.1 s of motion".into());
+            let short =
+                || DbError::Invalid("the example must hold at least 0.1 s of motion".into());
             let hits = index.search(&example.ok_or_else(short)?, &options);
             Ok((hits, names(db)?))
         })?;
@@ -390,7 +389,14 @@ impl PyDatabase {
             row.set_item("mirrored", hit.mirrored)?;
             rows.push(row);
         }
-        let columns = ["clip", "start_secs", "stop_secs", "score", "warp_distance", "mirrored"];
+        let columns = [
+            "clip",
+            "start_secs",
+            "stop_secs",
+            "score",
+            "warp_distance",
+            "mirrored",
+        ];
         table(py, &columns, rows)
     }
 
@@ -437,7 +443,13 @@ impl PyDatabase {
                 .map_err(db_error),
             None => Err(value_error("the database is closed")),
         })??;
-        warn(py, report.left.iter().map(|(clip, why)| format!("left as it is: {clip}: {why}")))?;
+        warn(
+            py,
+            report
+                .left
+                .iter()
+                .map(|(clip, why)| format!("left as it is: {clip}: {why}")),
+        )?;
         let mut rows = Vec::new();
         for cut in &report.cuts {
             rows.push(plain(py, cut)?.cast_into::<PyDict>()?);
@@ -480,7 +492,11 @@ impl PyDatabase {
             row.set_item("score", p.score)?;
             rows.push(row);
         }
-        table(py, &["clip", "class", "start_secs", "stop_secs", "score"], rows)
+        table(
+            py,
+            &["clip", "class", "start_secs", "stop_secs", "score"],
+            rows,
+        )
     }
 
     /// Accepts the proposals of at least one score, rejects those below another; how many of each.
@@ -498,7 +514,10 @@ impl PyDatabase {
                 ..SampleFilter::default()
             })?;
             let (mut accepted, mut rejected): (Vec<SampleId>, Vec<SampleId>) = Default::default();
-            for s in all.iter().filter(|s| classes.is_empty() || classes.contains(&s.class)) {
+            for s in all
+                .iter()
+                .filter(|s| classes.is_empty() || classes.contains(&s.class))
+            {
                 let score = s.score.unwrap_or(0.0);
                 if accept.is_some_and(|least| score >= least) {
                     accepted.push(s.id);

@@ -4,6 +4,7 @@ use std::fmt::Display;
 use std::io::ErrorKind;
 use std::path::Path;
 
+use morec::files::{FileError, FileErrorKind};
 use pyo3::create_exception;
 use pyo3::exceptions::{
     PyException, PyFileExistsError, PyFileNotFoundError, PyOSError, PyPermissionError,
@@ -48,6 +49,23 @@ pub fn io_error(path: &Path, error: &std::io::Error) -> PyErr {
         ErrorKind::PermissionDenied => PyPermissionError::new_err(text),
         ErrorKind::AlreadyExists => PyFileExistsError::new_err(text),
         _ => PyOSError::new_err(text),
+    }
+}
+
+/// Why a file cannot be used: what the system said as Python's own exception, all else as a `MorecError`.
+pub fn file_error(error: &FileError) -> PyErr {
+    match &*error.kind {
+        FileErrorKind::Io(why) => io_error(&error.path, why),
+        _ => morec_error(error),
+    }
+}
+
+/// Any error of the library.
+pub fn library_error(error: morec::Error) -> PyErr {
+    match error {
+        morec::Error::File(error) => file_error(&error),
+        morec::Error::Sensitivity(error) => value_error(format!("sensitivity: {error}")),
+        error => morec_error(error),
     }
 }
 

@@ -8,15 +8,15 @@ use morec::features::{bones_of_clip, rows_of_clip};
 use morec::import::SignedAxis;
 use morec::index::MotionIndex;
 use morec::live::{Detection, Model, StartError, recognize_clip};
-use morec::templates::{Matcher, Metric};
 use morec::roles::Role;
+use morec::templates::{Matcher, Metric};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use rayon::prelude::*;
 
 use crate::arrays::owned;
 use crate::clip::{ClipData, PyClip};
-use crate::errors::{MorecError, io_error, morec_error, value_error, warn};
+use crate::errors::{library_error, morec_error, value_error, warn};
 use crate::job;
 use crate::recognizer::{Layout, PyRecognizer};
 use crate::tables::{detections, plain};
@@ -41,10 +41,11 @@ impl From<MotionIndex> for PyIndex {
 /// Opens an index file.
 #[pyfunction]
 pub fn load(path: PathBuf) -> PyResult<PyIndex> {
-    let bytes = std::fs::read(&path).map_err(|error| io_error(&path, &error))?;
-    let index = MotionIndex::from_bytes(&bytes);
-    let named = |error| MorecError::new_err(format!("{}: {error}", path.display()));
-    Ok(index.map_err(named)?.into())
+    match MotionIndex::load(&path) {
+        Ok(index) => Ok(index.into()),
+        Err(morec::Error::Index(error)) => Err(morec_error(format!("{}: {error}", path.display()))),
+        Err(error) => Err(library_error(error)),
+    }
 }
 
 /// An index from the bytes of its file.
@@ -114,21 +115,15 @@ impl PyIndex {
 
     /// The bytes of the index file.
     fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        Ok(PyBytes::new(py, &self.index.to_bytes().map_err(morec_error)?))
+        Ok(PyBytes::new(
+            py,
+            &self.index.to_bytes().map_err(morec_error)?,
+        ))
     }
 
     /// Writes the index file, whole or not at all.
     fn save(&self, path: PathBuf) -> PyResult<()> {
-        let bytes = self.index.to_bytes().map_err(morec_error)?;
-        let mut beside = path.clone().into_os_string();
-        beside.push(format!(".{}.partial", std::process::id()));
-        let beside = PathBuf::from(beside);
-        let written = std::fs::write(&beside, bytes).and_then(|()| std::fs::rename(&beside, &path));
-        written.map_err(|error| {
-            // What was begun is of no use.
-            let _ = std::fs::remove_file(&beside);
-            io_error(&path, &error)
-        })
+        self.index.save(&path).map_err(library_error)
     }
 
     /// Everything that is recognised in clips, frame by frame as in a live stream.
@@ -141,8 +136,10 @@ impl PyIndex {
         progress: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let index = self.with_sensitivity(sensitivity)?;
-        let clips: Vec<Arc<ClipData>> =
-            clips_of(clips)?.iter().map(|clip| clip.get().data.clone()).collect();
+        let clips: Vec<Arc<ClipData>> = clips_of(clips)?
+            .iter()
+            .map(|clip| clip.get().data.clone())
+            .collect();
         let all = job::run(py, progress, |progress| {
             let done = AtomicUsize::new(0);
             let one = |data: &Arc<ClipData>| -> Option<Recognized> {
@@ -201,8 +198,10 @@ impl PyIndex {
         let Model::Templates(model) = &self.index.model else {
             return Err(value_error("distances are those of the method templates"));
         };
-        let clips: Vec<Arc<ClipData>> =
-            clips_of(clips)?.iter().map(|clip| clip.get().data.clone()).collect();
+        let clips: Vec<Arc<ClipData>> = clips_of(clips)?
+            .iter()
+            .map(|clip| clip.get().data.clone())
+            .collect();
         let index = &self.index;
         let found = py.detach(|| {
             let one = |data: &Arc<ClipData>| class_distances(index, data);
@@ -210,7 +209,10 @@ impl PyIndex {
         });
         let found = found.map_err(morec_error)?;
         let shape = [found.len(), model.classes.len()];
-        Ok((owned(py, found.concat(), &shape)?.into_any(), model.threshold))
+        Ok((
+            owned(py, found.concat(), &shape)?.into_any(),
+            model.threshold,
+        ))
     }
 
     /// The classes: name, samples and people that taught them.
@@ -241,7 +243,10 @@ impl PyIndex {
     /// What training reported; `None` for an index that was loaded.
     #[getter]
     fn report<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
-        self.report.as_ref().map(|report| plain(py, report)).transpose()
+        self.report
+            .as_ref()
+            .map(|report| plain(py, report))
+            .transpose()
     }
 
     fn __reduce__<'py>(
@@ -258,7 +263,12 @@ impl PyIndex {
 
     fn __repr__(&self) -> String {
         let classes = self.class_names();
-        let shown = classes.iter().take(8).copied().collect::<Vec<_>>().join(", ");
+        let shown = classes
+            .iter()
+            .take(8)
+            .copied()
+            .collect::<Vec<_>>()
+            .join(", ");
         let more = if classes.len() > 8 { ", …" } else { "" };
         format!(
             "<morec.Index: {} classes ({shown}{more}), {} samples, method {}>",
@@ -283,7 +293,11 @@ fn class_distances(index: &MotionIndex, data: &Arc<ClipData>) -> Result<Vec<f32>
     let (bones, features) = (model.bones, &model.features);
     let rows = rows_of_clip(&data.clip, &data.roles, &data.rest, bones, features);
     let metric = Metric::new(&model.ridged, &model.total);
-    let templates: Vec<_> = model.samples.iter().map(|s| metric.apply_all(&s.rows)).collect();
+    let templates: Vec<_> = model
+        .samples
+        .iter()
+        .map(|s| metric.apply_all(&s.rows))
+        .collect();
     let mut matcher = Matcher::new(&templates, metric.dim(), model.decode.spread_exponent);
     let rest_share = model.decode.rest_share(model.rule());
     let mut least = vec![f32::INFINITY; model.classes.len()];

@@ -2,20 +2,20 @@
 
 mod arrays;
 mod clip;
-// mod crossval;
+mod crossval;
 mod database;
 mod errors;
 mod features;
 mod index;
 mod job;
-// mod material;
+mod material;
 mod open;
 mod recognizer;
 mod segment;
 mod state;
 mod synth;
 mod tables;
-// mod train;
+mod train;
 
 use pyo3::prelude::*;
 
@@ -28,7 +28,7 @@ fn _morec(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<clip::PyClip>()?;
     module.add_class::<index::PyIndex>()?;
     module.add_class::<recognizer::PyRecognizer>()?;
-    // module.add_class::<crossval::PyCrossval>()?;
+    module.add_class::<crossval::PyCrossval>()?;
     module.add_class::<database::PyDatabase>()?;
     module.add_function(wrap_pyfunction!(open::read_path, module)?)?;
     module.add_function(wrap_pyfunction!(open::read_bytes, module)?)?;
@@ -38,10 +38,10 @@ fn _morec(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(features::key_positions, module)?)?;
     module.add_function(wrap_pyfunction!(index::load, module)?)?;
     module.add_function(wrap_pyfunction!(index::index_from_bytes, module)?)?;
-    // module.add_function(wrap_pyfunction!(train::train, module)?)?;
-    // module.add_function(wrap_pyfunction!(train::default_params, module)?)?;
-    // module.add_function(wrap_pyfunction!(crossval::crossval, module)?)?;
-    // module.add_function(wrap_pyfunction!(crossval::evaluate, module)?)?;
+    module.add_function(wrap_pyfunction!(train::train, module)?)?;
+    module.add_function(wrap_pyfunction!(material::resolve_labels, module)?)?;
+    module.add_function(wrap_pyfunction!(crossval::crossval, module)?)?;
+    module.add_function(wrap_pyfunction!(crossval::evaluate, module)?)?;
     module.add_function(wrap_pyfunction!(segment::cut, module)?)?;
     module.add_function(wrap_pyfunction!(synth::synth_database, module)?)?;
     module.add_function(wrap_pyfunction!(synth::synth_everyday, module)?)?;

@@ -5,9 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use morec::labels::{ClipLength, Extent, Label, Labels, People, read_people};
 use morec::reproduce::Setting;
 use morec::train::thesis::SvrdmOptions;
-use morec::train::{
-    Everyday, Recipe, Source, TrainClip, TrainOptions, TrainParams, TrainingData,
-};
+use morec::train::{Everyday, Recipe, Source, TrainClip, TrainOptions, TrainParams, TrainingData};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use serde::Serialize;
@@ -127,7 +125,9 @@ impl Given {
             }
         }
         let there: BTreeSet<String> = taught.iter().map(name).collect();
-        let others = background.iter().filter(|clip| !there.contains(&name(clip)));
+        let others = background
+            .iter()
+            .filter(|clip| !there.contains(&name(clip)));
         all.extend(others.map(of(Source::Background)));
         let unknown = unknown.iter().map(of(Source::Labelled)).collect();
         let data = TrainingData::new(all, &labels, classes).map_err(morec_error)?;
@@ -150,12 +150,17 @@ impl Given {
 /// A word that is none of them, a figure that there is not.
 pub fn recipe(given: &Bound<'_, PyDict>) -> PyResult<Recipe> {
     let word = |name: &str| -> PyResult<String> {
-        let value = given.get_item(name)?.ok_or_else(|| value_error(format!("{name}: which?")))?;
+        let value = given
+            .get_item(name)?
+            .ok_or_else(|| value_error(format!("{name}: which?")))?;
         value.extract()
     };
     let wrong = |name: &str, known: &[&str], found: &str| {
         let known: Vec<String> = known.iter().map(|word| format!("{word:?}")).collect();
-        value_error(format!("{name}: expected {}, found {found:?}", known.join(" or ")))
+        value_error(format!(
+            "{name}: expected {}, found {found:?}",
+            known.join(" or ")
+        ))
     };
     let unlabelled_is_background = match word("unlabelled")?.as_str() {
         "background" => true,
@@ -201,7 +206,8 @@ fn with_figures<P: Serialize + DeserializeOwned>(
     let mut tree = serde_json::to_value(&params).map_err(value_error)?;
     for (name, value) in settings {
         let figure = tree.pointer_mut(&format!("/{}", name.replace('.', "/")));
-        let figure = figure.ok_or_else(|| value_error(format!("params: no figure is called {name}")))?;
+        let figure =
+            figure.ok_or_else(|| value_error(format!("params: no figure is called {name}")))?;
         *figure = serde_json::from_str(value).map_err(value_error)?;
     }
     serde_json::from_value(tree).map_err(|error| value_error(format!("params: {error}")))
@@ -221,5 +227,7 @@ pub fn resolve_labels(
     let lengths = BTreeMap::from([(clip.name.clone(), length)]);
     let resolved = self::labels(labels)?.resolve(&lengths);
     let samples = resolved.samples.into_iter();
-    Ok(samples.map(|s| (s.class, s.start_secs, s.stop_secs)).collect())
+    Ok(samples
+        .map(|s| (s.class, s.start_secs, s.stop_secs))
+        .collect())
 }

@@ -3,106 +3,60 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use morec::files::{ClipFile, FileError, FileErrorKind, FileReader, list};
 use morec::formats::bvh::PositionChannels;
-use morec::formats::probe::format_of_name;
 use morec::import::ImportOptions;
 use morec::roles::mapping::Mapping;
-use morec_db::{FileReader, read_file, split_choice};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::prelude::*;
 
 use crate::clip::{ClipData, PyClip};
-use crate::errors::{MorecError, io_error, morec_error, value_error};
+use crate::errors::{file_error, value_error};
 use crate::job;
 
-/// Why a file gives no clip.
-pub enum OpenError {
-    /// The system does not give its bytes.
-    Io(PathBuf, std::io::Error),
-    /// Its bytes are not what they should be; the text names it.
-    Content(String),
-}
-
-impl From<OpenError> for PyErr {
-    fn from(error: OpenError) -> Self {
-        match error {
-            OpenError::Io(path, error) => io_error(&path, &error),
-            OpenError::Content(text) => MorecError::new_err(text),
-        }
-    }
-}
-
-impl std::fmt::Display for OpenError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Io(path, error) => write!(f, "{}: {error}", path.display()),
-            Self::Content(text) => f.write_str(text),
-        }
-    }
-}
-
 /// How to read, as the keyword arguments of `morec.read` say.
-pub struct Reading {
-    reader: FileReader,
-    import: ImportOptions,
+///
+/// # Errors
+/// A value that says nothing: another word for `positions`, an axis that is none, roles that are none.
+fn reader(options: &Bound<'_, PyDict>) -> PyResult<FileReader> {
+    let mut reader = FileReader::default();
+    let (mut up, mut unit, mut roles) = (None::<String>, None, None);
+    for (key, value) in options.iter() {
+        match key.extract::<String>()?.as_str() {
+            "skeleton" => reader.skeleton = Some(value.extract()?),
+            "file_rate" => reader.rate_hz = Some(rate("file_rate", value.extract()?)?),
+            "positions" => reader.positions = Some(channels(&value.extract::<String>()?)?),
+            "up" => up = Some(value.extract()?),
+            "unit" => unit = Some(value.extract()?),
+            "roles" => roles = Some(value),
+            other => return Err(value_error(format!("no option is called {other}"))),
+        }
+    }
+    reader.import = import_options(up.as_deref(), unit, roles.as_ref())?;
+    Ok(reader)
 }
 
-impl Reading {
-    /// # Errors
-    /// A value that says nothing: another word for `positions`, an axis that is none, roles that are none.
-    pub fn new(options: &Bound<'_, PyDict>) -> PyResult<Self> {
-        let (mut reader, mut up, mut unit, mut roles) =
-            (FileReader::default(), None::<String>, None, None);
-        for (key, value) in options.iter() {
-            if value.is_none() {
-                continue;
-            }
-            match key.extract::<String>()?.as_str() {
-                "skeleton" => reader.skeleton = Some(value.extract()?),
-                "file_rate" => reader.rate_hz = Some(rate("file_rate", value.extract()?)?),
-                "positions" => reader.positions = Some(channels(&value.extract::<String>()?)?),
-                "up" => up = Some(value.extract()?),
-                "unit" => unit = Some(value.extract()?),
-                "roles" => roles = Some(value),
-                other => return Err(value_error(format!("no option is called {other}"))),
-            }
-        }
-        Ok(Self {
-            reader,
-            import: import_options(up.as_deref(), unit, roles.as_ref())?,
-        })
-    }
+/// The clips of a file that was parsed, `path` being where it lies if it lies anywhere.
+fn clips(
+    reader: &FileReader,
+    path: &Path,
+    parsed: ClipFile,
+    is_file: bool,
+) -> Result<Vec<ClipData>, FileError> {
+    let format = parsed.format.name();
+    let takes = parsed.into_takes(&reader.import);
+    let takes = takes.map_err(|error| FileErrorKind::Parse(error).at(path))?;
+    let ready = |take| ClipData {
+        path: is_file.then(|| path.to_owned()),
+        format: format.to_owned(),
+        ..ClipData::from(take)
+    };
+    Ok(takes.into_iter().map(ready).collect())
+}
 
-    /// The clips in the file at `path`.
-    pub fn path(&self, path: &Path) -> Result<Vec<ClipData>, OpenError> {
-        let (file, _) = split_choice(path);
-        let bytes = read_file(&file).map_err(|error| OpenError::Io(file, error))?;
-        self.bytes(path, &bytes, true)
-    }
-
-    /// The clips in `bytes`, which are a file's called `path`; `is_file` if it lies there.
-    pub fn bytes(
-        &self,
-        path: &Path,
-        bytes: &[u8],
-        is_file: bool,
-    ) -> Result<Vec<ClipData>, OpenError> {
-        let wrong = |error: String| OpenError::Content(format!("{}: {error}", path.display()));
-        let opened = self.reader.open(path, bytes).map_err(|e| wrong(e.to_string()))?;
-        let warnings: Vec<String> = opened.warnings.iter().map(ToString::to_string).collect();
-        let format = format!("{:?}", opened.format).to_lowercase();
-        let ready = |clip| {
-            let data = ClipData::of(clip, &self.import).map_err(|e| wrong(e.to_string()))?;
-            Ok(ClipData {
-                warnings: warnings.clone(),
-                path: is_file.then(|| path.to_owned()),
-                format: format.clone(),
-                ..data
-            })
-        };
-        opened.clips.into_iter().map(ready).collect()
-    }
+fn open(reader: &FileReader, path: &Path) -> Result<Vec<ClipData>, FileError> {
+    clips(reader, path, reader.read(path)?, true)
 }
 
 fn rate(name: &str, rate_hz: f64) -> PyResult<f64> {
@@ -173,8 +127,9 @@ pub fn read_path(
     path: PathBuf,
     options: &Bound<'_, PyDict>,
 ) -> PyResult<Vec<PyClip>> {
-    let reading = Reading::new(options)?;
-    let clips = py.detach(|| reading.path(&path))?;
+    let reader = reader(options)?;
+    let clips = py.detach(|| open(&reader, &path));
+    let clips = clips.map_err(|error| file_error(&error))?;
     Ok(clips.into_iter().map(PyClip::from).collect())
 }
 
@@ -186,8 +141,9 @@ pub fn read_bytes(
     name: PathBuf,
     options: &Bound<'_, PyDict>,
 ) -> PyResult<Vec<PyClip>> {
-    let reading = Reading::new(options)?;
-    let clips = py.detach(|| reading.bytes(&name, bytes, false))?;
+    let reader = reader(options)?;
+    let read = || clips(&reader, &name, reader.parse(&name, bytes)?, false);
+    let clips = py.detach(read).map_err(|error| file_error(&error))?;
     Ok(clips.into_iter().map(PyClip::from).collect())
 }
 
@@ -200,51 +156,36 @@ pub fn read_folder(
     options: &Bound<'_, PyDict>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(Vec<PyClip>, Vec<String>)> {
-    let reading = Reading::new(options)?;
-    let (files, mut left_out) = list(&paths)?;
+    let reader = reader(options)?;
+    let listing = list(&paths).map_err(|error| file_error(&error))?;
+    let files = &listing.clips;
     let read = job::run(py, progress, |progress| {
         let done = AtomicUsize::new(0);
         let one = |path: &PathBuf| {
             if progress.cancelled() {
                 return Ok(Vec::new());
             }
-            let read = reading.path(path);
+            let read = open(&reader, path);
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
             progress.report("reading clips", done, files.len());
             read
         };
-        let read: Vec<_> = files.par_iter().map(one).collect();
-        read
+        files.par_iter().map(one).collect::<Vec<_>>()
     })?;
     let mut clips = Vec::new();
+    let mut left_out: Vec<String> = listing.left_out.iter().map(ToString::to_string).collect();
+    let mut first = None;
     for result in read {
         match result {
             Ok(of_file) => clips.extend(of_file.into_iter().map(PyClip::from)),
-            Err(error) => left_out.push(error.to_string()),
+            Err(error) => {
+                left_out.push(error.to_string());
+                first.get_or_insert(error);
+            }
         }
     }
-    if clips.is_empty() {
-        let first = left_out.first().map_or("", String::as_str);
-        return Err(morec_error(format!("no clip that can be read: {first}")));
+    match first.filter(|_| clips.is_empty()) {
+        Some(error) => Err(file_error(&error)),
+        None => Ok((clips, left_out)),
     }
-    Ok((clips, left_out))
-}
-
-/// The clip files that paths stand for.
-pub fn list(paths: &[PathBuf]) -> PyResult<(Vec<PathBuf>, Vec<String>)> {
-    let mut files = Vec::new();
-    for path in paths {
-        if !path.is_dir() {
-            files.push(path.clone());
-            continue;
-        }
-        let mut inside: Vec<PathBuf> = std::fs::read_dir(path)
-            .map_err(|error| io_error(path, &error))?
-            .filter_map(|entry| Some(entry.ok()?.path()))
-            .filter(|path| format_of_name(&path.to_string_lossy()).is_some())
-            .collect();
-        inside.sort();
-        files.extend(inside);
-    }
-    Ok((files, Vec::new()))
 }

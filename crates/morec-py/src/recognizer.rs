@@ -111,7 +111,9 @@ impl PyRecognizer {
         let classes = model.classes().iter();
         Ok(Self {
             latency_secs: recognizer.latency_secs(),
-            classes: classes.map(|c| PyString::new(py, &c.name).unbind()).collect(),
+            classes: classes
+                .map(|c| PyString::new(py, &c.name).unbind())
+                .collect(),
             state: Mutex::new(State {
                 recognizer,
                 places: layout.places,
@@ -181,7 +183,11 @@ impl PyRecognizer {
         times_secs: &Bound<'py, PyAny>,
         positions: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyList>> {
-        let times = doubles(times_secs)?.as_array().iter().copied().collect::<Vec<f64>>();
+        let times = doubles(times_secs)?
+            .as_array()
+            .iter()
+            .copied()
+            .collect::<Vec<f64>>();
         let (values, frames, joints) = motion(positions)?;
         if joints != self.joints.len() || frames != times.len() {
             let expected = format!("({}, {}, 3)", times.len(), self.joints.len());

@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{doubles, owned};
-use crate::clip::{PyClip, ClipData};
+use crate::clip::{ClipData, PyClip};
 use crate::errors::value_error;
 
 type JointState = (String, Option<usize>, [f64; 3], Option<[f64; 3]>);
@@ -60,7 +60,10 @@ pub fn state<'py>(py: Python<'py>, take: &ClipData) -> PyResult<Bound<'py, PyDic
     dict.set_item("rest", (take.rest.start, take.rest.end))?;
     dict.set_item("facts", &take.facts)?;
     dict.set_item("warnings", &take.warnings)?;
-    dict.set_item("path", take.path.as_ref().map(|p| p.to_string_lossy().into_owned()))?;
+    dict.set_item(
+        "path",
+        take.path.as_ref().map(|p| p.to_string_lossy().into_owned()),
+    )?;
     dict.set_item("format", &take.format)?;
     Ok(dict)
 }
@@ -101,7 +104,9 @@ pub fn from_state(state: &Bound<'_, PyDict>) -> PyResult<PyClip> {
     };
     let inside = moved.iter().all(|joint| *joint < skeleton.len());
     if rotations.len() != count || tracks.len() != moved.len() * frames * 3 || !inside {
-        return Err(value_error("a pickled clip whose arrays do not fit together"));
+        return Err(value_error(
+            "a pickled clip whose arrays do not fit together",
+        ));
     }
     let track = |(number, joint): (usize, usize)| JointTrack {
         joint,

@@ -1,7 +1,7 @@
 //! Synthetic people performing labelled gestures: for tests, examples and first tries.
 
-use morec::import::ImportOptions;
-use morec::synth::{DatabaseSpec, Kind, Take, database, everyday, motions_of};
+use morec::import::Take;
+use morec::synth::{self, DatabaseSpec, Kind, database, everyday, motions_of};
 use pyo3::prelude::*;
 
 use crate::clip::{ClipData, PyClip};
@@ -10,8 +10,8 @@ use crate::errors::{morec_error, value_error};
 type Label = (&'static str, f64, f64);
 
 fn ready(clip: morec::clip::Clip) -> PyResult<PyClip> {
-    let data = ClipData::of(clip, &ImportOptions::default()).map_err(morec_error)?;
-    Ok(data.into())
+    let take = Take::new(clip).map_err(morec_error)?;
+    Ok(ClipData::from(take).into())
 }
 
 /// For each clip the labels (class, start and stop in seconds) and the person.
@@ -40,17 +40,25 @@ pub fn synth_database(
     };
     if let Some(names) = classes {
         let gesture = |name: &String| {
-            let known = motions_of(Kind::Gesture).map(|m| m.name()).find(|n| n == name);
+            let known = motions_of(Kind::Gesture)
+                .map(|m| m.name())
+                .find(|n| n == name);
             known.ok_or_else(|| {
                 let known: Vec<_> = motions_of(Kind::Gesture).map(|m| m.name()).collect();
-                value_error(format!("no gesture is called {name:?}; there are {}", known.join(", ")))
+                value_error(format!(
+                    "no gesture is called {name:?}; there are {}",
+                    known.join(", ")
+                ))
             })
         };
         spec.classes = names.iter().map(gesture).collect::<PyResult<_>>()?;
     }
     let takes = py.detach(|| database(seed, &spec));
-    let told = |take: Take| {
-        let labels = take.labels.iter().map(|l| (l.class, l.start_secs, l.stop_secs));
+    let told = |take: synth::SyntheticTake| {
+        let labels = take
+            .labels
+            .iter()
+            .map(|l| (l.class, l.start_secs, l.stop_secs));
         Ok((ready(take.clip)?, labels.collect(), take.person))
     };
     takes.into_iter().map(told).collect()
@@ -66,5 +74,7 @@ pub fn synth_everyday(py: Python<'_>, seed: u64, clips: usize) -> PyResult<Vec<P
 /// Names of the gestures.
 #[pyfunction]
 pub fn synth_motions() -> Vec<&'static str> {
-    motions_of(Kind::Gesture).map(|motion| motion.name()).collect()
+    motions_of(Kind::Gesture)
+        .map(|motion| motion.name())
+        .collect()
 }
