@@ -8,6 +8,7 @@ mod errors;
 mod features;
 mod index;
 mod job;
+mod live;
 mod material;
 mod open;
 mod recognizer;
@@ -27,6 +28,7 @@ fn _morec(module: &Bound<'_, PyModule>) -> PyResult<()> {
     errors::register(module)?;
     module.add_class::<clip::PyClip>()?;
     module.add_class::<index::PyIndex>()?;
+    module.add_class::<live::LiveSession>()?;
     module.add_class::<recognizer::PyRecognizer>()?;
     module.add_class::<crossval::PyCrossval>()?;
     module.add_class::<database::PyDatabase>()?;

@@ -10,6 +10,8 @@ Times are seconds, lengths metres, Y is up; ranges are half-open.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from . import plot, synth
 from ._files import read, read_all, read_folder
 from ._figure import animation
@@ -29,6 +31,9 @@ from ._morec import (
 )
 from ._rows import Features, Windows, cut, features, normalize, windows
 from ._tables import Table
+
+if TYPE_CHECKING:
+    from .sklearn import MotionClassifier
 
 __all__ = [
     "ROLES",

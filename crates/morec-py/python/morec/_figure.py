@@ -87,7 +87,7 @@ def _pixels(positions: npt.NDArray[np.float64], size: int) -> npt.NDArray[np.flo
     flat = positions[..., :2] * np.array([1.0, -1.0])
     low, high = np.nanmin(flat, axis=(0, 1)), np.nanmax(flat, axis=(0, 1))
     scale = 0.9 * size / max(float((high - low).max()), 1e-9)
-    return (flat - (low + high) / 2) * scale + size / 2
+    return np.asarray((flat - (low + high) / 2) * scale + size / 2, dtype=np.float64)
 
 
 def _values(numbers: npt.NDArray[np.float64]) -> str:

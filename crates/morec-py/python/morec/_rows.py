@@ -52,7 +52,7 @@ class Features:
     @property
     def times_secs(self) -> npt.NDArray[np.float64]:
         """Where each row ends, seconds from the clip's beginning; shape (ticks,)."""
-        return (np.arange(len(self.values)) + 1.0) / self.rate_hz
+        return np.asarray((np.arange(len(self.values)) + 1.0) / self.rate_hz, dtype=np.float64)
 
     def __len__(self) -> int:
         return len(self.values)

@@ -27,7 +27,7 @@ def _axes(ax: Axes | None, **options: Any) -> Axes:
         return ax
     import matplotlib.pyplot as plt
 
-    _, made = plt.subplots(**options)
+    made: Axes = plt.subplots(**options)[1]
     return made
 
 

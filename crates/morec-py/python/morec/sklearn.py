@@ -120,7 +120,7 @@ class MotionClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
     def predict(self, X: Any) -> npt.NDArray[Any]:
         """The nearest class of each sample; with ``reject``, `rejected` for what is like none."""
         near = self.decision_function(X)
-        found = self.classes_[near.argmax(axis=1)]
+        found: npt.NDArray[Any] = self.classes_[near.argmax(axis=1)]
         if self.reject:
             found = np.where(-near.max(axis=1) < self.threshold_, found.astype(object), self.rejected)
         return found
