@@ -33,7 +33,7 @@ pub struct PyDatabase {
 }
 
 /// What a database says, as the exception that Python people expect.
-fn db_error(error: DbError) -> PyErr {
+pub fn db_error(error: DbError) -> PyErr {
     let text = error.to_string();
     match error {
         DbError::Missing(_) => PyFileNotFoundError::new_err(text),
@@ -551,7 +551,7 @@ fn names(db: &MotionDb) -> Result<BTreeMap<ClipId, String>, DbError> {
 }
 
 /// A stretch of a clip from elsewhere as an example.
-fn example_of(data: &ClipData, start_secs: f64, stop_secs: Option<f64>) -> Option<Example> {
+pub fn example_of(data: &ClipData, start_secs: f64, stop_secs: Option<f64>) -> Option<Example> {
     let params = FeatureParams::default();
     let bones = bones_of_clip(&data.clip, &data.roles, &data.rest);
     let rows = rows_of_clip(&data.clip, &data.roles, &data.rest, bones, &params);

@@ -1,5 +1,6 @@
 //! The native part of the Python package `morec`. What is easier said in Python lies in `python/morec`.
 
+mod archive;
 mod arrays;
 mod clip;
 mod crossval;
@@ -42,6 +43,8 @@ fn _morec(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(index::index_from_bytes, module)?)?;
     module.add_function(wrap_pyfunction!(train::train, module)?)?;
     module.add_function(wrap_pyfunction!(material::resolve_labels, module)?)?;
+    module.add_function(wrap_pyfunction!(material::rows_of_table, module)?)?;
+    archive::register(module)?;
     module.add_function(wrap_pyfunction!(crossval::crossval, module)?)?;
     module.add_function(wrap_pyfunction!(crossval::evaluate, module)?)?;
     module.add_function(wrap_pyfunction!(segment::cut, module)?)?;

@@ -68,10 +68,13 @@ fn held<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 
 fn bind(address: &str, options: &VmcOptions) -> PyResult<(VmcSource, String)> {
     let place = address.strip_prefix("vmc://").ok_or_else(|| {
-        value_error(format!("address: expected vmc://HOST:PORT, as vmc://127.0.0.1:39539, found {address}"))
+        value_error(format!(
+            "address: expected vmc://HOST:PORT, as vmc://127.0.0.1:39539, found {address}"
+        ))
     })?;
     let found = place.to_socket_addrs().ok().and_then(|mut all| all.next());
-    let at = found.ok_or_else(|| value_error(format!("address: expected HOST:PORT, found {place}")))?;
+    let at =
+        found.ok_or_else(|| value_error(format!("address: expected HOST:PORT, found {place}")))?;
     let refused = |error: std::io::Error| {
         PyOSError::new_err(format!(
             "cannot listen at {at} (UDP): {error}; is another program listening there?"

@@ -213,6 +213,20 @@ fn with_figures<P: Serialize + DeserializeOwned>(
     serde_json::from_value(tree).map_err(|error| value_error(format!("params: {error}")))
 }
 
+/// The rows of a table of labels.
+#[pyfunction]
+pub fn rows_of_table(bytes: &Bound<'_, PyBytes>) -> PyResult<Vec<Row>> {
+    let row = |label: Label| {
+        let (frames, secs) = match label.extent {
+            Extent::Frames(span) => (Some((span.start, span.end)), None),
+            Extent::Secs(start, stop) => (None, Some((start, stop))),
+            Extent::WholeClip => (None, None),
+        };
+        (label.clip, label.class, frames, secs, label.person)
+    };
+    Ok(labels(bytes)?.rows.into_iter().map(row).collect())
+}
+
 /// The labels of one clip: class, start and stop in seconds.
 #[pyfunction]
 pub fn resolve_labels(

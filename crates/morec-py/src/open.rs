@@ -19,7 +19,7 @@ use crate::job;
 ///
 /// # Errors
 /// A value that says nothing: another word for `positions`, an axis that is none, roles that are none.
-fn reader(options: &Bound<'_, PyDict>) -> PyResult<FileReader> {
+pub fn reader(options: &Bound<'_, PyDict>) -> PyResult<FileReader> {
     let mut reader = FileReader::default();
     let (mut up, mut unit, mut roles) = (None::<String>, None, None);
     for (key, value) in options.iter() {
