@@ -116,7 +116,10 @@ def _add_files(archive: Archive, pattern: str, about: dict[str, Any], s3: dict[s
                 "part": [task.part(__version__) for task in made],
                 "files": [task.files for task in made],
             }
-        ).into_partitions(len(made))
+        )
+        if daft.get_or_infer_runner_type() == "ray":
+            # A task for each part, wherever there is room.
+            frame = frame.into_partitions(len(made))
         importer = Importer(archive.store, raw, about)
         frame.select(importer.run(frame["part"], frame["files"]).alias("done")).collect()
     archive.drop_copies()
