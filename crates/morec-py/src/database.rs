@@ -7,6 +7,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use morec::features::{FeatureParams, bones_of_clip, rows_of_clip};
 use morec::files::{FileReader, list};
 use morec::labels::{ClipLength, Sample};
+use morec::pivots::PivotSet;
 use morec::segment::{KernelParams, PpcaParams};
 use morec_db::labels::{NewSample, SampleFilter, SampleId, State};
 use morec_db::search::{Example, SearchIndex, SearchOptions};
@@ -422,10 +423,13 @@ impl PyDatabase {
                 least_secs: least.unwrap_or(kernel.least_secs),
                 ..kernel
             }),
-            "ppca" => Cutter::Ppca(PpcaParams {
-                rise: rise.unwrap_or(ppca.rise),
-                ..ppca
-            }),
+            "ppca" => Cutter::Ppca(
+                PpcaParams {
+                    rise: rise.unwrap_or(ppca.rise),
+                    ..ppca
+                },
+                PivotSet::thesis(),
+            ),
             other => {
                 return Err(value_error(format!(
                     "method: expected \"kernel\" or \"ppca\", found {other:?}"

@@ -47,7 +47,8 @@ fn _morec(module: &Bound<'_, PyModule>) -> PyResult<()> {
     archive::register(module)?;
     module.add_function(wrap_pyfunction!(crossval::crossval, module)?)?;
     module.add_function(wrap_pyfunction!(crossval::evaluate, module)?)?;
-    module.add_function(wrap_pyfunction!(segment::cut, module)?)?;
+    module.add_function(wrap_pyfunction!(segment::cut_kernel, module)?)?;
+    module.add_function(wrap_pyfunction!(segment::cut_ppca, module)?)?;
     module.add_function(wrap_pyfunction!(synth::synth_database, module)?)?;
     module.add_function(wrap_pyfunction!(synth::synth_everyday, module)?)?;
     module.add_function(wrap_pyfunction!(synth::synth_motions, module)?)?;

@@ -1,56 +1,16 @@
 //! A session on a live source, event by event.
 
-use std::io::ErrorKind;
-use std::net::{SocketAddr, ToSocketAddrs, UdpSocket};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use morec::live::vmc::{VmcOptions, VmcReceiver};
-use morec::live::{
-    Event, EventOptions, EventReader, Frame, MAX_ACTORS, Model, Next, Overload, Session,
-    SessionOptions, Source, SourceCounts, wall_now_secs,
-};
+use morec::live::{Event, EventOptions, EventReader, MAX_ACTORS, Model, Session, SessionOptions};
+use morec_live::{Address, LiveError, Notices, SourceOptions, open_source};
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::errors::{morec_error, value_error};
+use crate::errors::{file_error, morec_error, value_error};
 use crate::index::PyIndex;
-
-/// The socket is asked this long at a time: the quiet that closes a frame.
-const WAIT: Duration = Duration::from_millis(5);
-/// The largest datagram there is.
-const LARGEST: usize = 65_536;
-
-/// VMC senders on a UDP port.
-struct VmcSource {
-    socket: UdpSocket,
-    receiver: VmcReceiver<SocketAddr>,
-    buffer: Vec<u8>,
-}
-
-impl Source for VmcSource {
-    fn next(&mut self, frame: &mut Frame) -> Next {
-        if let Some(next) = self.receiver.next(frame) {
-            return next;
-        }
-        match self.socket.recv_from(&mut self.buffer) {
-            Ok((length, peer)) => {
-                let packet = &self.buffer[..length];
-                self.receiver.packet(peer, wall_now_secs(), packet);
-            }
-            Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
-            // A sender's port that is closed may be told here; it concerns nothing that we sent.
-            Err(_) => std::thread::sleep(WAIT),
-        }
-        self.receiver.tick(wall_now_secs());
-        self.receiver.next(frame).unwrap_or(Next::Quiet)
-    }
-
-    fn counts(&self) -> SourceCounts {
-        self.receiver.counts()
-    }
-}
 
 /// A session that listens; `morec.listen` is made of it.
 #[pyclass(frozen, module = "morec")]
@@ -60,35 +20,21 @@ pub struct LiveSession {
     reader: Mutex<EventReader>,
     model: Model,
     address: String,
+    notices: Notices,
 }
 
 fn held<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn bind(address: &str, options: &VmcOptions) -> PyResult<(VmcSource, String)> {
-    let place = address.strip_prefix("vmc://").ok_or_else(|| {
-        value_error(format!(
-            "address: expected vmc://HOST:PORT, as vmc://127.0.0.1:39539, found {address}"
-        ))
-    })?;
-    let found = place.to_socket_addrs().ok().and_then(|mut all| all.next());
-    let at =
-        found.ok_or_else(|| value_error(format!("address: expected HOST:PORT, found {place}")))?;
-    let refused = |error: std::io::Error| {
-        PyOSError::new_err(format!(
-            "cannot listen at {at} (UDP): {error}; is another program listening there?"
-        ))
-    };
-    let socket = UdpSocket::bind(at).map_err(refused)?;
-    socket.set_read_timeout(Some(WAIT))?;
-    let shown = format!("vmc://{}", socket.local_addr()?);
-    let source = VmcSource {
-        socket,
-        receiver: VmcReceiver::new(options),
-        buffer: vec![0; LARGEST],
-    };
-    Ok((source, shown))
+/// Why a source cannot be opened, as Python's own exceptions where it has one.
+fn live_error(error: LiveError) -> PyErr {
+    match error {
+        LiveError::Address(text) => value_error(format!("address: {text}")),
+        LiveError::Io { what, why } => PyOSError::new_err(format!("{what}: {why}")),
+        LiveError::File(error) => file_error(&error),
+        other => morec_error(other),
+    }
 }
 
 #[pymethods]
@@ -106,14 +52,18 @@ impl LiveSession {
                 "actors: expected 1 to {MAX_ACTORS}, found {actors}"
             )));
         }
-        let vmc = VmcOptions {
+        let how = SourceOptions {
             mirrored: mirror,
             actors,
-            ..VmcOptions::default()
+            index: Some(&index.index),
+            ..SourceOptions::default()
         };
-        let (source, address) = bind(address, &vmc)?;
+        let parsed: Address = address
+            .parse()
+            .map_err(|e| value_error(format!("address: {e}")))?;
+        let opened = open_source(&parsed, &how).map_err(live_error)?;
         let options = SessionOptions {
-            overload: Overload::Drop,
+            overload: opened.overload,
             events: EventOptions {
                 early: tentative,
                 ..EventOptions::default()
@@ -122,13 +72,14 @@ impl LiveSession {
         };
         let model = index.index.model.clone();
         let (session, readers) =
-            Session::start(&model, Box::new(source), &options).map_err(morec_error)?;
+            Session::start(&model, opened.source, &options).map_err(morec_error)?;
         let reader = readers.into_iter().next();
         Ok(Self {
             open: Mutex::new(Some(session)),
             reader: Mutex::new(reader.ok_or_else(|| morec_error("no reader of events"))?),
             model,
-            address,
+            address: opened.name,
+            notices: opened.notices,
         })
     }
 
@@ -142,6 +93,11 @@ impl LiveSession {
         let most = Duration::from_secs_f64(secs.clamp(0.0, 3600.0));
         let event = py.detach(|| held(&self.reader).wait(most));
         event.map(|event| self.row(py, &event)).transpose()
+    }
+
+    /// What the source has noticed of what it is sent since it was last asked, a sentence each.
+    fn notices(&self) -> Vec<String> {
+        self.notices.take()
     }
 
     /// Whether nothing more can come.

@@ -5,7 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use morec::labels::{ClipLength, Extent, Label, Labels, People, read_people};
 use morec::reproduce::Setting;
 use morec::train::thesis::SvrdmOptions;
-use morec::train::{Everyday, Recipe, Source, TrainClip, TrainOptions, TrainParams, TrainingData};
+use morec::train::{
+    Everyday, Mirror, Recipe, Source, TrainClip, TrainOptions, TrainParams, TrainingData,
+};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use serde::Serialize;
@@ -182,10 +184,24 @@ pub fn recipe(given: &Bound<'_, PyDict>) -> PyResult<Recipe> {
         "never" => Everyday::Never,
         other => return Err(wrong("everyday", &["auto", "always", "never"], other)),
     };
+    let mirror = match word("mirror")?.as_str() {
+        "auto" => Mirror::Auto,
+        "yes" => Mirror::Yes,
+        "no" => Mirror::No,
+        other => return Err(wrong("mirror", &["auto", "yes", "no"], other)),
+    };
     match word("method")?.as_str() {
         "templates" => Ok(TrainOptions {
             unlabelled_is_background,
             everyday,
+            mirror,
+            one_sided: match given.get_item("one_sided")? {
+                Some(classes) => classes.extract()?,
+                None => Vec::new(),
+            },
+            bones: word("bones")?
+                .parse()
+                .map_err(|error| value_error(format!("bones: {error}")))?,
             params: with_figures(TrainParams::default(), &params)?,
         }
         .into()),

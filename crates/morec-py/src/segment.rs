@@ -1,7 +1,8 @@
 //! Cuts where behaviour changes, without labels.
 
+use morec::features::{FeatureParams, bones_of_clip, rows_of_clip};
 use morec::pivots::{PivotMap, PivotSet, PoseParams, pose_rows_of_clip};
-use morec::segment::{Directions, HPoint, PpcaParams, segment};
+use morec::segment::{Directions, HPoint, KernelParams, PpcaParams, kernel_cuts, segment};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -12,7 +13,7 @@ use crate::errors::{morec_error, value_error};
 /// Where a clip's behaviour changes, and the misfit over time.
 #[pyfunction]
 #[pyo3(signature = (clip, rise=None, quality=None, direction="both"))]
-pub fn cut<'py>(
+pub fn cut_ppca<'py>(
     py: Python<'py>,
     clip: &PyClip,
     rise: Option<f64>,
@@ -55,4 +56,34 @@ pub fn cut<'py>(
     dict.set_item("forward", curve(&found.forward)?)?;
     dict.set_item("backward", curve(&found.backward)?)?;
     Ok(dict)
+}
+
+/// Seconds at which a clip is cut by kernel change points.
+#[pyfunction]
+#[pyo3(signature = (clip, window=None, penalty=None, least=None))]
+pub fn cut_kernel(
+    py: Python<'_>,
+    clip: &PyClip,
+    window: Option<f64>,
+    penalty: Option<f64>,
+    least: Option<f64>,
+) -> PyResult<Py<PyAny>> {
+    let default = KernelParams::default();
+    let params = KernelParams {
+        window_secs: window.unwrap_or(default.window_secs),
+        penalty: penalty.unwrap_or(default.penalty),
+        least_secs: least.unwrap_or(default.least_secs),
+        ..default
+    };
+    params.check().map_err(value_error)?;
+    let data = clip.data.clone();
+    let cuts = py.detach(|| {
+        let features = FeatureParams::default();
+        let bones = bones_of_clip(&data.clip, &data.roles, &data.rest);
+        let rows = rows_of_clip(&data.clip, &data.roles, &data.rest, bones, &features);
+        kernel_cuts(&rows, &features, &params).map_err(|e| e.to_string())
+    });
+    let cuts = cuts.map_err(|error| morec_error(format!("{}: {error}", data.clip.name)))?;
+    let shape = [cuts.len()];
+    Ok(owned(py, cuts, &shape)?.into_any().unbind())
 }

@@ -47,13 +47,23 @@ def _material(
 
 
 def _recipe(
-    method: str, svrdm: str, unlabelled: str, everyday: str, params: Mapping[str, Any] | None
+    method: str,
+    svrdm: str,
+    unlabelled: str,
+    everyday: str,
+    mirror: str,
+    one_sided: Sequence[str],
+    bones: str | Sequence[str],
+    params: Mapping[str, Any] | None,
 ) -> dict[str, Any]:
     return {
         "method": method,
         "svrdm": svrdm,
         "unlabelled": unlabelled,
         "everyday": everyday,
+        "mirror": mirror,
+        "one_sided": list(one_sided),
+        "bones": bones if isinstance(bones, str) else ",".join(bones),
         "params": [(name, json.dumps(value)) for name, value in (params or {}).items()],
     }
 
@@ -70,6 +80,9 @@ def train(
     svrdm: str = "tuned",
     unlabelled: str = "background",
     everyday: str = "always",
+    mirror: str = "auto",
+    one_sided: Sequence[str] = (),
+    bones: str | Sequence[str] = "all",
     params: Mapping[str, Any] | None = None,
     progress: Progress = None,
 ) -> Index:
@@ -99,6 +112,13 @@ def train(
     everyday : {"auto", "always", "never"}
         Whether synthetic everyday motion is background too (templates only); auto: if background holds less than a
         minute.
+    mirror : {"auto", "yes", "no"}
+        Whether mirrored copies of samples teach too (templates only). yes: every class is the same on both sides; auto: only
+        classes named as two sides of one motion, as wave_left and wave_right, teach each other.
+    one_sided : sequence of str
+        With mirror yes: classes whose mirror image is another motion; it then teaches what the class is not.
+    bones : str or sequence of str
+        Which parts of the body count (templates only): all, upper, arms, or names of bones.
     params : dict, optional
         Figures of the method by their path, as ``{"rho": 0.4, "decode.lag_ticks": 2}``.
     progress : bool or callable, optional
@@ -121,7 +141,7 @@ def train(
         For labels that were cut or left out, and clips that are not used.
     """
     material = _material(clips, labels, people, background, exclude)
-    recipe = _recipe(method, svrdm, unlabelled, everyday, params)
+    recipe = _recipe(method, svrdm, unlabelled, everyday, mirror, one_sided, bones, params)
     return _morec.train(material, list(classes), recipe, listener(progress))
 
 
@@ -142,6 +162,9 @@ def crossval(
     svrdm: str = "tuned",
     unlabelled: str = "background",
     everyday: str = "always",
+    mirror: str = "auto",
+    one_sided: Sequence[str] = (),
+    bones: str | Sequence[str] = "all",
     params: Mapping[str, Any] | None = None,
     progress: Progress = None,
 ) -> Crossval:
@@ -168,7 +191,7 @@ def crossval(
     """
     material = _material(clips, labels, people, background, exclude)
     material["unknown"] = _aside(unknown, material["clips"])
-    recipe = _recipe(method, svrdm, unlabelled, everyday, params)
+    recipe = _recipe(method, svrdm, unlabelled, everyday, mirror, one_sided, bones, params)
     how = {"by": by, "samples": samples, "perturb": list(perturb), "seed": seed}
     return _morec.crossval(material, list(classes), recipe, how, listener(progress))
 

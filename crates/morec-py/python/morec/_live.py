@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator
 from typing import Any
 
 from . import _morec
-from ._morec import Index
+from ._morec import Index, MorecWarning
 
 __all__ = ["listen"]
 
@@ -23,7 +24,9 @@ class listen:
     Parameters
     ----------
     address : str
-        ``vmc://HOST:PORT``: VMC senders on a UDP port, 39539 by convention.
+        As of ``morec live --listen``: ``vmc://HOST:PORT`` (VMC senders on a UDP port, 39539 by convention),
+        ``axis://HOST:PORT`` and ``axis+udp://HOST:PORT`` (broadcasts of Axis programs), ``json:-`` and ``json+tcp://HOST:PORT``
+        (lines of JSON), ``clip://FILE`` (a clip as if somebody performed it).
     index : Index
     actors : int
         Performers that are followed at once.
@@ -82,6 +85,8 @@ class listen:
         while True:
             # Python looks for Ctrl-C between two calls.
             event = self._session.wait(LOOK_SECS)
+            for notice in self._session.notices():
+                warnings.warn(notice, MorecWarning, stacklevel=2)
             if event is not None:
                 return event
             if self._session.is_ended():

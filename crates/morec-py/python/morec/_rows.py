@@ -249,27 +249,37 @@ def _class_of(spans: list[tuple[str, float, float]], start: float, stop: float) 
 def cut(
     clip: Clip,
     *,
+    method: str = "kernel",
+    window: float | None = None,
+    penalty: float | None = None,
+    least: float | None = None,
     rise: float | None = None,
     quality: float | None = None,
     direction: str = "both",
 ) -> dict[str, npt.NDArray[np.float64]]:
-    """Where a clip's behaviour changes, without labels.
-
-    The poses so far are modelled; a cut lies where the poses ahead stop fitting. ``morec cut`` does the same.
+    """Where a clip's behaviour changes, without labels; what ``morec cut`` finds.
 
     Parameters
     ----------
     clip : Clip
-        With rotations.
-    rise : float, optional
-        How far the misfit must rise before a cut, in multiples of what fitting poses have.
-    quality : float, optional
-        Share of the variance that the model of a segment keeps.
+    method : {"kernel", "ppca"}
+        Kernel change points over feature rows; or the thesis's method over joint rotations: the poses so far are modelled, and
+        a cut lies where the poses ahead stop fitting.
+    window, penalty, least : float, optional
+        kernel: length of the windows whose statistics are compared, seconds; what a cut costs; no segment is shorter, seconds.
+    rise, quality : float, optional
+        ppca: how far the misfit must rise before a cut, in multiples of what fitting poses have; share of the variance that
+        the model of a segment keeps.
     direction : {"forward", "backward", "both"}
+        ppca: which way to go through the clip.
 
     Returns
     -------
     dict
-        ``cuts_secs``, shape (cuts,); ``forward`` and ``backward``, shape (points, 2): seconds and misfit.
+        ``cuts_secs``, shape (cuts,); of ppca also ``forward`` and ``backward``, shape (points, 2): seconds and misfit.
     """
-    return _morec.cut(clip, rise, quality, direction)
+    if method == "kernel":
+        return {"cuts_secs": _morec.cut_kernel(clip, window, penalty, least)}
+    if method == "ppca":
+        return _morec.cut_ppca(clip, rise, quality, direction)
+    raise ValueError(f'method: expected "kernel" or "ppca", found {method!r}')

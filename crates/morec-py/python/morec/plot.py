@@ -122,15 +122,15 @@ def confusion(evaluation: Crossval | Mapping[str, Any], *, ax: Axes | None = Non
 
 
 def misfit(clip: Clip, *, ax: Axes | None = None, **options: Any) -> Axes:
-    """How badly the poses ahead fit the poses so far, with the cuts of `morec.cut`.
+    """How badly the poses ahead fit the poses so far, with the cuts of `morec.cut` by the method ppca.
 
     Parameters
     ----------
     options
-        Those of `morec.cut`.
+        Those of `morec.cut` with this method.
     """
     ax = _axes(ax, figsize=(10, 2.5), layout="constrained")
-    found = cut(clip, **options)
+    found = cut(clip, method="ppca", **options)
     for name in ("forward", "backward"):
         curve = found[name]
         if len(curve):
