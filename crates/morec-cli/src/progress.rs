@@ -80,11 +80,6 @@ impl Bar {
         bar.stop = stop_on_ctrl_c()?;
         Ok(bar)
     }
-
-    /// Runs `print` with the bar out of the way.
-    pub fn suspend<T>(&self, print: impl FnOnce() -> T) -> T {
-        self.bar.suspend(print)
-    }
 }
 
 impl morec::progress::Progress for Bar {

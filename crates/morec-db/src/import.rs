@@ -4,15 +4,12 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use morec::clip::Clip;
-use morec::features::{BoneSet, FeatureParams};
-use morec::files::{ClipFile, FileReader, read_file, split_choice};
-use morec::import::{ImportOptions, normalize};
+use morec::files::{FileReader, read_file, split_choice};
 use morec::progress::Progress;
 use rayon::prelude::*;
-use rusqlite::{Connection, OptionalExtension, params};
+use rusqlite::{Connection, OptionalExtension, Row, params};
 
-use crate::motion::{Packed, pack};
+use crate::kept::{KeptClip, KeptFile, content_hash, packed_rows, rows_recipe};
 use crate::time::now_secs;
 use crate::{ClipId, ClipUpdate, DbError, MotionDb, history, rows};
 
@@ -104,21 +101,7 @@ pub struct ImportCounts {
 enum PreparedFile {
     Known(i64),
     Refused(String),
-    New(Box<NewFile>),
-}
-
-struct NewFile {
-    hash: [u8; 32],
-    bytes: usize,
-    file: ClipFile,
-    clips: Vec<NewClip>,
-}
-
-struct NewClip {
-    name: String,
-    packed: Packed,
-    bones: BoneSet,
-    rows: Vec<u8>,
+    New(Vec<KeptClip>),
 }
 
 impl MotionDb {
@@ -136,8 +119,6 @@ impl MotionDb {
     ) -> Result<ImportLog, DbError> {
         let mut report = ImportLog::default();
         let done = AtomicUsize::new(0);
-        let params = FeatureParams::default();
-        let recipe = rows::recipe(&params);
         // All batches are one step of the history, as the person sees one import.
         let mut step = None;
         for batch in paths.chunks(BATCH) {
@@ -152,7 +133,7 @@ impl MotionDb {
                     if progress.cancelled() {
                         return None;
                     }
-                    let made = make(path, reader, &params, &known);
+                    let made = make(path, reader, about, &known);
                     progress.report(
                         "importing",
                         done.fetch_add(1, Ordering::Relaxed) + 1,
@@ -165,9 +146,7 @@ impl MotionDb {
             let recording = history::record(&tx, "import", step)?;
             for (path, made) in batch.iter().zip(made) {
                 match made {
-                    Some(made) => report
-                        .files
-                        .push((path.clone(), store(&tx, path, made, about, &recipe)?)),
+                    Some(made) => report.files.push((path.clone(), store(&tx, path, made)?)),
                     None => report.cancelled = true,
                 }
             }
@@ -175,6 +154,113 @@ impl MotionDb {
             tx.commit()?;
         }
         Ok(report)
+    }
+
+    /// Adds clips that a database or an archive kept, as they are; those of one file lie together. What is there already by
+    /// the content of its file is left out. Gives what became of each file.
+    ///
+    /// # Errors
+    /// The database cannot be written.
+    pub fn add_kept(&mut self, clips: &[KeptClip]) -> Result<ImportLog, DbError> {
+        let files: Vec<&[KeptClip]> = clips.chunk_by(|a, b| a.file.hash == b.file.hash).collect();
+        let what = format!("add {} kept files", files.len());
+        let added = self.edit(&what, |conn| {
+            let add = |clips: &&[KeptClip]| {
+                let path = PathBuf::from(&clips[0].file.path);
+                let outcome = add_file(conn, &path, clips)?;
+                Ok((path, outcome))
+            };
+            files.iter().map(add).collect::<Result<Vec<_>, DbError>>()
+        })?;
+        Ok(ImportLog {
+            files: added,
+            cancelled: false,
+        })
+    }
+
+    /// The content of every clip, which is the same in all databases and archives, and its name here: hash of the file, which
+    /// of the file's clips it is, name.
+    ///
+    /// # Errors
+    /// The database cannot be read.
+    pub fn contents(&self) -> Result<Vec<([u8; 32], usize, String)>, DbError> {
+        let sql = "SELECT f.hash, c.character, c.name FROM clips c JOIN files f ON f.id = c.file ORDER BY c.id";
+        let mut statement = self.conn.prepare(sql)?;
+        let rows = statement.query_map([], |row| {
+            Ok((
+                row.get(0)?,
+                row.get::<_, i64>(1)?.max(0) as usize,
+                row.get(2)?,
+            ))
+        })?;
+        Ok(rows.collect::<Result<_, _>>()?)
+    }
+
+    /// Every clip as it is kept, by number; feature rows that are not ready are made.
+    ///
+    /// # Errors
+    /// The database cannot be read, or a clip's motion is damaged.
+    pub fn kept_clips(&self) -> Result<Vec<KeptClip>, DbError> {
+        let sql = "SELECT c.id, c.name, c.character, c.subject, c.source, c.licence, c.frames, c.rate_hz, c.rest_frames, \
+             c.repaired_frames, k.joints, k.hash, c.roles, c.facts, c.max_angle_rad, c.max_position_metres, c.motion, \
+             f.hash, f.path, f.format, f.bytes, f.skeleton_path, f.warnings, \
+             (SELECT group_concat(tag, char(10)) FROM tags t WHERE t.clip = c.id), r.bones, r.bytes \
+             FROM clips c JOIN files f ON f.id = c.file JOIN skeletons k ON k.id = c.skeleton \
+             LEFT JOIN feature_rows r ON r.clip = c.id AND r.recipe = ?1 ORDER BY c.id";
+        let recipe = rows_recipe();
+        let mut statement = self.conn.prepare(sql)?;
+        let count = |row: &Row<'_>, at| -> rusqlite::Result<usize> {
+            Ok(row.get::<_, i64>(at)?.max(0) as usize)
+        };
+        let kept = statement.query_map(params![recipe], |row| {
+            let warnings: String = row.get(22)?;
+            let tags: Option<String> = row.get(23)?;
+            let rows: (Option<i64>, Option<Vec<u8>>) = (row.get(24)?, row.get(25)?);
+            let clip = KeptClip {
+                name: row.get(1)?,
+                file: KeptFile {
+                    hash: row.get(17)?,
+                    path: row.get(18)?,
+                    format: row.get(19)?,
+                    bytes: row.get::<_, i64>(20)?.max(0) as u64,
+                    skeleton: row.get(21)?,
+                    warnings: serde_json::from_str(&warnings).unwrap_or_default(),
+                },
+                character: count(row, 2)?,
+                subject: row.get(3)?,
+                source: row.get(4)?,
+                licence: row.get(5)?,
+                tags: tags.map_or_else(Vec::new, |t| t.lines().map(str::to_owned).collect()),
+                frames: count(row, 6)?,
+                rate_hz: row.get(7)?,
+                rest_frames: count(row, 8)?,
+                repaired_frames: count(row, 9)?,
+                joints: count(row, 10)?,
+                skeleton_hash: row.get(11)?,
+                roles: row.get(12)?,
+                facts: row.get(13)?,
+                max_angle_rad: row.get(14)?,
+                max_position_metres: row.get(15)?,
+                motion: row.get(16)?,
+                recipe: recipe.clone(),
+                bones: rows.0.unwrap_or(0),
+                rows: rows.1.clone().unwrap_or_default(),
+            };
+            Ok((clip, rows.1.is_some()))
+        })?;
+        let kept: Vec<(KeptClip, bool)> = kept.collect::<Result<_, _>>()?;
+        let complete = |(clip, ready): (KeptClip, bool)| match ready {
+            true => Ok(clip),
+            false => {
+                let (bones, rows) = packed_rows(&clip.stored()?);
+                Ok(KeptClip {
+                    bones,
+                    rows,
+                    ..clip
+                })
+            }
+        };
+        kept.into_par_iter().map(complete).collect()
     }
 
     /// Forgets which files were refused. Gives how many there were.
@@ -197,71 +283,32 @@ impl MotionDb {
 fn make(
     path: &Path,
     reader: &FileReader,
-    params: &FeatureParams,
+    about: &ClipUpdate,
     known: &std::collections::HashMap<[u8; 32], i64>,
 ) -> PreparedFile {
-    let (file, choice) = split_choice(path);
-    let bytes = match read_file(&file) {
+    let bytes = match read_file(&split_choice(path).0) {
         Ok(bytes) => bytes,
         Err(error) => return PreparedFile::Refused(error.to_string()),
     };
-    // One clip of a file is another content than the whole.
-    let mut hasher = blake3::Hasher::new();
-    hasher.update(&bytes);
-    hasher.update(choice.unwrap_or_default().as_bytes());
-    let hash = *hasher.finalize().as_bytes();
-    if let Some(file) = known.get(&hash) {
+    if let Some(file) = known.get(&content_hash(path, &bytes)) {
         return PreparedFile::Known(*file);
     }
-    let mut read = match reader.parse(path, &bytes) {
-        Ok(read) => read,
-        Err(error) => return PreparedFile::Refused(error.kind.to_string()),
-    };
-    let mut clips = Vec::new();
-    for clip in std::mem::take(&mut read.clips) {
-        match new_clip(clip, &reader.import, params) {
-            Ok(clip) => clips.push(clip),
-            Err(reason) => return PreparedFile::Refused(reason),
+    match KeptClip::of_file(path, &bytes, reader) {
+        Err(reason) => PreparedFile::Refused(reason),
+        Ok(clips) => {
+            let told = |clip| KeptClip {
+                source: about.source.clone(),
+                licence: about.licence.clone(),
+                subject: about.subject.clone(),
+                tags: about.add_tags.clone(),
+                ..clip
+            };
+            PreparedFile::New(clips.into_iter().map(told).collect())
         }
     }
-    if clips.is_empty() {
-        return PreparedFile::Refused("there is no clip in it".to_owned());
-    }
-    PreparedFile::New(Box::new(NewFile {
-        hash,
-        bytes: bytes.len(),
-        file: read,
-        clips,
-    }))
 }
 
-fn new_clip(
-    clip: Clip,
-    options: &ImportOptions,
-    params: &FeatureParams,
-) -> Result<NewClip, String> {
-    if clip.frames == 0 {
-        return Err(format!("{}: expected frames, found none", clip.name));
-    }
-    let name = clip.name.clone();
-    let imported = normalize(clip, options).map_err(|error| error.to_string())?;
-    let packed = pack(imported, &()).map_err(|reason| format!("{name}: {reason}"))?;
-    let (bones, rows) = rows::rows_of(&packed.stored, params);
-    Ok(NewClip {
-        name,
-        bones,
-        rows: rows.to_packed(params),
-        packed,
-    })
-}
-
-fn store(
-    conn: &Connection,
-    path: &Path,
-    made: PreparedFile,
-    about: &ClipUpdate,
-    recipe: &str,
-) -> Result<ImportOutcome, DbError> {
+fn store(conn: &Connection, path: &Path, made: PreparedFile) -> Result<ImportOutcome, DbError> {
     let shown = path.to_string_lossy();
     match made {
         PreparedFile::Refused(reason) => {
@@ -273,21 +320,29 @@ fn store(
             Ok(ImportOutcome::Refused(Refused { reason }))
         }
         PreparedFile::Known(file) => known(conn, &shown, file),
-        PreparedFile::New(new) => {
-            conn.execute("DELETE FROM refused WHERE path = ?1", params![shown])?;
-            // Two files of one batch may hold the same bytes.
-            let twin = conn
-                .query_row(
-                    "SELECT id FROM files WHERE hash = ?1",
-                    params![new.hash],
-                    |row| row.get(0),
-                )
-                .optional()?;
-            match twin {
-                Some(file) => known(conn, &shown, file),
-                None => insert(conn, path, *new, about, recipe),
-            }
-        }
+        PreparedFile::New(clips) => add_file(conn, path, &clips),
+    }
+}
+
+/// Adds the clips of one file, unless the file's content is there.
+fn add_file(conn: &Connection, path: &Path, clips: &[KeptClip]) -> Result<ImportOutcome, DbError> {
+    let Some(first) = clips.first() else {
+        let reason = "there is no clip in it".to_owned();
+        return Ok(ImportOutcome::Refused(Refused { reason }));
+    };
+    let shown = path.to_string_lossy();
+    conn.execute("DELETE FROM refused WHERE path = ?1", params![shown])?;
+    // Two files of one batch may hold the same bytes.
+    let twin = conn
+        .query_row(
+            "SELECT id FROM files WHERE hash = ?1",
+            params![first.file.hash],
+            |row| row.get(0),
+        )
+        .optional()?;
+    match twin {
+        Some(file) => known(conn, &shown, file),
+        None => insert(conn, path, &first.file, clips),
     }
 }
 
@@ -310,38 +365,33 @@ fn known(conn: &Connection, shown: &str, file: i64) -> Result<ImportOutcome, DbE
 fn insert(
     conn: &Connection,
     path: &Path,
-    new: NewFile,
-    about: &ClipUpdate,
-    recipe: &str,
+    file: &KeptFile,
+    clips: &[KeptClip],
 ) -> Result<ImportOutcome, DbError> {
-    let warnings: Vec<String> = new.file.warnings.iter().map(ToString::to_string).collect();
     conn.prepare_cached(
         "INSERT INTO files (hash, path, skeleton_path, format, bytes, imported_secs, warnings) \
          VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)",
     )?
     .execute(params![
-        new.hash,
+        file.hash,
         path.to_string_lossy(),
-        new.file
-            .skeleton
-            .as_ref()
-            .map(|p| p.to_string_lossy().into_owned()),
-        new.file.format.name(),
-        new.bytes as i64,
+        file.skeleton,
+        file.format,
+        file.bytes as i64,
         now_secs(),
-        serde_json::to_string(&warnings).unwrap_or_default(),
+        serde_json::to_string(&file.warnings).unwrap_or_default(),
     ])?;
-    let file = conn.last_insert_rowid();
+    let number = conn.last_insert_rowid();
     let mut names = Vec::new();
-    for (character, clip) in new.clips.into_iter().enumerate() {
+    for clip in clips {
         let name = free_name(conn, path, &clip.name)?;
-        let id = insert_clip(conn, file, character, &name, &clip, about)?;
-        rows::keep(conn, id, recipe, clip.bones, &clip.rows)?;
+        let id = insert_clip(conn, number, &name, clip)?;
+        rows::keep(conn, id, &clip.recipe, clip.bones, &clip.rows)?;
         names.push(name);
     }
     Ok(ImportOutcome::Imported {
         clips: names,
-        warnings,
+        warnings: file.warnings.clone(),
     })
 }
 
@@ -380,16 +430,12 @@ fn free_name(conn: &Connection, path: &Path, name: &str) -> Result<String, DbErr
 fn insert_clip(
     conn: &Connection,
     file: i64,
-    character: usize,
     name: &str,
-    clip: &NewClip,
-    about: &ClipUpdate,
+    clip: &KeptClip,
 ) -> Result<ClipId, DbError> {
-    let packed = &clip.packed;
     let sql = "INSERT OR IGNORE INTO skeletons (hash, joints) VALUES (?1, ?2)";
     conn.prepare_cached(sql)?
-        .execute(params![packed.skeleton_hash, packed.joints as i64])?;
-    let motion = &packed.stored.clip;
+        .execute(params![clip.skeleton_hash, clip.joints as i64])?;
     conn.prepare_cached(
         "INSERT INTO clips (name, file, character, skeleton, frames, rate_hz, rest_frames, repaired_frames, roles, \
          facts, max_angle_rad, max_position_metres, motion, source, licence, subject) VALUES (?1, ?2, ?3, \
@@ -398,23 +444,23 @@ fn insert_clip(
     .execute(params![
         name,
         file,
-        character as i64,
-        packed.skeleton_hash,
-        motion.frames as i64,
-        motion.rate_hz,
-        packed.stored.rest.len() as i64,
-        motion.repaired.iter().map(|span| span.len() as i64).sum::<i64>(),
-        packed.roles,
-        packed.facts,
-        packed.max_angle_rad,
-        packed.max_position_metres,
-        packed.motion,
-        about.source,
-        about.licence,
-        about.subject,
+        clip.character as i64,
+        clip.skeleton_hash,
+        clip.frames as i64,
+        clip.rate_hz,
+        clip.rest_frames as i64,
+        clip.repaired_frames as i64,
+        clip.roles,
+        clip.facts,
+        clip.max_angle_rad,
+        clip.max_position_metres,
+        clip.motion,
+        clip.source,
+        clip.licence,
+        clip.subject,
     ])?;
     let id = ClipId(conn.last_insert_rowid());
-    for tag in about.add_tags.iter().collect::<BTreeSet<_>>() {
+    for tag in clip.tags.iter().collect::<BTreeSet<_>>() {
         conn.execute(
             "INSERT INTO tags (clip, tag) VALUES (?1, ?2)",
             params![id.0, tag],

@@ -14,16 +14,19 @@
 //! | classes and samples | [`labels`] |
 //! | what was changed, taking it back | [`MotionDb::history`], [`MotionDb::undo`] |
 //! | labels in other programs' forms | [`exchange`] |
+//! | cuts where behaviour changes | [`MotionDb::cut`] |
 //! | rows, search by example, near copies | [`rows`], [`search`] |
 //! | the other samples of classes that a few are labelled of | [`MotionDb::propose`], [`questions`] |
 
 mod clips;
+mod cut;
 mod db;
 mod error;
 pub mod exchange;
 mod history;
 mod import;
 mod indexes;
+mod kept;
 pub mod labels;
 mod motion;
 mod names;
@@ -39,11 +42,13 @@ mod tests;
 mod time;
 
 pub use clips::{ClipFilter, ClipId, ClipInfo, ClipUpdate};
+pub use cut::{ClipCuts, CutReport, Cutter, Still};
 pub use db::{Health, MotionDb, Summary};
 pub use error::DbError;
 pub use history::{Effect, STEPS_KEPT, Step, Turned};
 pub use import::{ImportCounts, ImportLog, ImportOutcome, Refused};
 pub use indexes::IndexInfo;
+pub use kept::{KeptClip, KeptFile, clip_rows, packed_rows, rows_recipe, stored_clip};
 pub use motion::StoredClip;
 pub use propose::{Proposal, ProposeOptions, questions};
 pub use schema::{APPLICATION_ID, SCHEMA};

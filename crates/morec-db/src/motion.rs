@@ -133,7 +133,12 @@ impl MotionDb {
     }
 }
 
-fn unpack(bytes: &[u8], roles: &str, rest: i64, name: &str) -> Result<StoredClip, DbError> {
+pub(crate) fn unpack(
+    bytes: &[u8],
+    roles: &str,
+    rest: i64,
+    name: &str,
+) -> Result<StoredClip, DbError> {
     let damaged = |what: String| DbError::Damaged(format!("clip {name}: {what}"));
     let compressed = CompressedClip::from_bytes(bytes).map_err(|e| damaged(e.to_string()))?;
     let sampled = compressed

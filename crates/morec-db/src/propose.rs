@@ -17,7 +17,7 @@ use morec::progress::Progress;
 use morec::train::overlap_share;
 use rayon::prelude::*;
 
-use crate::labels::{NewSample, SampleFilter, State};
+use crate::labels::{NewSample, SampleFilter, SampleId, State};
 use crate::{ClipId, DbError, MotionDb};
 
 mod candidates;
@@ -98,7 +98,32 @@ impl From<Proposal> for NewSample {
     }
 }
 
+/// Who says what [`MotionDb::propose_and_keep`] proposes.
+const PROPOSED_BY: &str = "propose";
+
 impl MotionDb {
+    /// [`propose`](Self::propose), and what is proposed is kept in place of the proposals of an earlier round that nobody
+    /// judged.
+    ///
+    /// # Errors
+    /// As `propose`; the database cannot be written.
+    pub fn propose_and_keep(
+        &mut self,
+        options: &ProposeOptions,
+        progress: &dyn Progress,
+    ) -> Result<Vec<Proposal>, DbError> {
+        let proposals = self.propose(options, progress)?;
+        let proposed = self.samples(&SampleFilter {
+            state: Some(State::Proposed),
+            ..SampleFilter::default()
+        })?;
+        let old = proposed.into_iter().filter(|s| s.set_by == PROPOSED_BY);
+        let old: Vec<SampleId> = old.map(|s| s.id).collect();
+        let new: Vec<NewSample> = proposals.iter().cloned().map(NewSample::from).collect();
+        self.replace_proposals(&old, &new, PROPOSED_BY)?;
+        Ok(proposals)
+    }
+
     /// Stretches of all clips that may show the classes of accepted samples, the surest first. Nothing is written.
     /// O(rows · rows of the templates).
     pub fn propose(

@@ -40,7 +40,7 @@ pub(crate) fn rows_of(stored: &StoredClip, params: &FeatureParams) -> (BoneSet, 
     )
 }
 
-fn bits(bones: BoneSet) -> i64 {
+pub(crate) fn bits(bones: BoneSet) -> i64 {
     bones.indices().fold(0, |bits, bone| bits | 1 << bone)
 }
 
@@ -203,7 +203,7 @@ impl MotionDb {
                 .collect();
             let tx = self.write()?;
             for (id, bones, bytes) in &made {
-                keep(&tx, *id, &recipe, *bones, bytes)?;
+                keep(&tx, *id, &recipe, bits(*bones), bytes)?;
                 all.extend(unpacked(*id, bits(*bones), bytes, params));
             }
             tx.commit()?;
@@ -213,7 +213,12 @@ impl MotionDb {
 }
 
 /// Rows as they are read; none of a clip that shows no bone.
-fn unpacked(clip: ClipId, bits: i64, bytes: &[u8], params: &FeatureParams) -> Option<ClipRows> {
+pub(crate) fn unpacked(
+    clip: ClipId,
+    bits: i64,
+    bytes: &[u8],
+    params: &FeatureParams,
+) -> Option<ClipRows> {
     let bones = bones_of_bits(bits);
     let rows = Rows::from_packed(bytes, row_dim(bones), params).filter(|_| !bones.is_empty())?;
     Some(ClipRows { clip, bones, rows })
@@ -223,13 +228,13 @@ pub(crate) fn keep(
     conn: &rusqlite::Connection,
     clip: ClipId,
     recipe: &str,
-    bones: BoneSet,
+    bones: i64,
     bytes: &[u8],
 ) -> Result<(), DbError> {
     let sql = "INSERT OR REPLACE INTO feature_rows (clip, recipe, bones, bytes, sum) VALUES (?1, ?2, ?3, ?4, ?5)";
-    let sum = sum(recipe, bits(bones), bytes);
+    let sum = sum(recipe, bones, bytes);
     conn.prepare(sql)?
-        .execute(params![clip.0, recipe, bits(bones), bytes, sum])?;
+        .execute(params![clip.0, recipe, bones, bytes, sum])?;
     Ok(())
 }
 

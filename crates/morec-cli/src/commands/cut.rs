@@ -76,16 +76,6 @@ enum CutMethod {
     Ppca,
 }
 
-impl CutMethod {
-    /// Its name in the database.
-    fn name(self) -> &'static str {
-        match self {
-            CutMethod::Kernel => "kernel",
-            CutMethod::Ppca => "ppca",
-        }
-    }
-}
-
 #[derive(ValueEnum, Clone, Copy, Debug)]
 enum Direction {
     /// From start to end
@@ -134,7 +124,7 @@ impl Cutter {
 /// Cuts clips, or the clips of a database.
 pub fn run(args: &Args) -> Result<ExitCode> {
     match database::only(&args.inputs)? {
-        Some(db) => stored::run(db, &Cutter::new(args)?, args),
+        Some(db) => stored::run(db, Cutter::new(args)?, args),
         None if args.name.is_some() => bail!("--name chooses clips of a database"),
         None => files::run(&Cutter::new(args)?, args),
     }
@@ -144,7 +134,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 pub fn run_stored(args: &Args) -> Result<ExitCode> {
     eprintln!("morec: `morec db cut` is `morec cut` now");
     match args.inputs.as_slice() {
-        [db] => stored::run(db, &Cutter::new(args)?, args),
+        [db] => stored::run(db, Cutter::new(args)?, args),
         _ => bail!("expected one database"),
     }
 }

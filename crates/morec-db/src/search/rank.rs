@@ -83,16 +83,11 @@ impl SearchIndex {
         options: &SearchOptions,
         metric: Option<&LearnedMetric>,
     ) -> Vec<Hit> {
-        // Whoever shows a clip and asks for clips compares wholes.
-        let whole = example.whole && options.one_a_clip;
-        let mut probes = vec![Probe::new(example, metric, false, whole)];
-        if options.mirror {
-            probes.push(Probe::new(example, metric, true, whole));
-        }
+        let probes = probes(example, options, metric);
         let candidates = self.candidates(example, &probes, options.one_a_clip);
         let mut ranked = self.ranked(candidates, example, options, &probes, metric);
         // Places move a little and may come to overlap.
-        ranked.truncate(4 * options.limit.max(8));
+        ranked.truncate(placed(options));
         let image = options.mirror.then(|| Example {
             laid: mirrored(&example.laid),
             ..example.clone()
@@ -116,6 +111,27 @@ impl SearchIndex {
         kept
     }
 
+    /// The clips in which the nearest windows lie, nearest first, and how near these are: so many that a search among them
+    /// alone gives what a search among all clips gives. For searching in parts: the nearest clips of the nearest clips of
+    /// each part are those of the whole.
+    pub fn nearest_clips(&self, example: &Example, options: &SearchOptions) -> Vec<(ClipId, f32)> {
+        let probes = probes(example, options, None);
+        let candidates = self.candidates(example, &probes, options.one_a_clip);
+        // What the graph links, and beyond it what is ranked by distance alone.
+        let wanted = linked(options) + placed(options);
+        let mut seen = BTreeSet::new();
+        let mut nearest = Vec::new();
+        for candidate in candidates {
+            if nearest.len() == wanted {
+                break;
+            }
+            if seen.insert(candidate.clip) {
+                nearest.push((self.clips[candidate.clip].clip, candidate.distance));
+            }
+        }
+        nearest
+    }
+
     /// Candidates with the company they keep, cheapest first.
     fn ranked(
         &self,
@@ -128,8 +144,8 @@ impl SearchIndex {
         // Where clips are asked for, a clip is one node, at its nearest window.
         let mut seen = BTreeSet::new();
         let node = |c: &&Candidate| !options.one_a_clip || seen.insert(c.clip);
-        let linked = (8 * options.limit).clamp(*LINKED.start(), *LINKED.end());
-        let nodes: Vec<&Candidate> = candidates.iter().filter(node).take(linked).collect();
+        let linked = candidates.iter().filter(node).take(linked(options));
+        let nodes: Vec<&Candidate> = linked.collect();
         let reached = self.company(&nodes, example, probes, metric);
         let of_node: BTreeMap<(usize, usize), f32> = nodes
             .iter()
@@ -238,6 +254,31 @@ impl SearchIndex {
             mirrored: candidate.mirrored,
         }
     }
+}
+
+/// What compares the example, and its image if that is looked for.
+fn probes<'a>(
+    example: &Example,
+    options: &SearchOptions,
+    metric: Option<&'a LearnedMetric>,
+) -> Vec<Probe<'a>> {
+    // Whoever shows a clip and asks for clips compares wholes.
+    let whole = example.whole && options.one_a_clip;
+    let mut probes = vec![Probe::new(example, metric, false, whole)];
+    if options.mirror {
+        probes.push(Probe::new(example, metric, true, whole));
+    }
+    probes
+}
+
+/// Candidates that the graph links.
+fn linked(options: &SearchOptions) -> usize {
+    (8 * options.limit).clamp(*LINKED.start(), *LINKED.end())
+}
+
+/// Candidates that are placed exactly.
+fn placed(options: &SearchOptions) -> usize {
+    4 * options.limit.max(8)
 }
 
 /// A candidate and the company it keeps.

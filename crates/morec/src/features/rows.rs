@@ -52,6 +52,11 @@ impl Rows {
         &self.data
     }
 
+    /// All values, row after row, without a copy.
+    pub fn into_values(self) -> Vec<f32> {
+        self.data
+    }
+
     /// Adds a row; it must have `dim` values.
     pub fn push(&mut self, row: &[f32]) {
         assert_eq!(row.len(), self.dim, "a row of another width");

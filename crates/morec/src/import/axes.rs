@@ -28,6 +28,11 @@ impl SignedAxis {
         let unit = self.axis.unit().into_inner();
         if self.negative { -unit } else { unit }
     }
+
+    /// A rotation by quarter turns that takes this axis to Y.
+    pub fn to_y(self) -> Quat {
+        y_from(self)
+    }
 }
 
 impl fmt::Display for SignedAxis {

@@ -171,7 +171,11 @@ pub fn train_index(
     Ok((index, report))
 }
 
-/// The present time in UTC to the second, `2026-11-21T04:46:50Z`.
+/// The present time in UTC to the second, `2026-11-21T04:46:50Z`; the one that `SOURCE_DATE_EPOCH` sets (seconds since
+/// 1970), so that training again gives the same bytes.
 fn now() -> String {
-    jiff::Timestamp::now().strftime("%FT%TZ").to_string()
+    let fixed = std::env::var("SOURCE_DATE_EPOCH").ok();
+    let fixed = fixed.and_then(|secs| jiff::Timestamp::from_second(secs.parse().ok()?).ok());
+    let now = fixed.unwrap_or_else(jiff::Timestamp::now);
+    now.strftime("%FT%TZ").to_string()
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
-use morec_db::labels::{NewSample, SampleFilter, SampleId, State};
+use morec_db::labels::{SampleFilter, SampleId, State};
 use morec_db::{ClipFilter, ClipId, MotionDb, Proposal, ProposeOptions, questions};
 use serde::Serialize;
 
@@ -54,9 +54,6 @@ pub struct Args {
     json: bool,
 }
 
-/// Who says what this command proposes.
-const BY: &str = "propose";
-
 /// Judges, or proposes anew; then lists.
 pub fn run(args: &Args) -> Result<ExitCode> {
     if !args.classes.is_empty() {
@@ -76,14 +73,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         classes: args.classes.clone(),
         ..ProposeOptions::default()
     };
-    let proposals = db.propose(&options, &Bar::stoppable()?)?;
-    let old: Vec<SampleId> = proposed(&db)?
-        .into_iter()
-        .filter(|s| s.set_by == BY)
-        .map(|s| s.id)
-        .collect();
-    let samples: Vec<NewSample> = proposals.iter().cloned().map(NewSample::from).collect();
-    db.replace_proposals(&old, &samples, BY)?;
+    let proposals = db.propose_and_keep(&options, &Bar::stoppable()?)?;
     show(args, &db, proposals)
 }
 

@@ -1,0 +1,214 @@
+//! Cutting the clips of a database where their behaviour changes.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+use morec::features::FeatureParams;
+use morec::pivots::{PivotMap, PivotSet, PoseParams, pose_rows_of_clip};
+use morec::progress::Progress;
+use morec::segment::{
+    KernelParams, PpcaParams, StillKind, StillParams, kernel_cuts, segment, still_stretches,
+};
+use rayon::prelude::*;
+
+use crate::rows::ClipRows;
+use crate::{ClipId, ClipInfo, DbError, MotionDb, Segment, SegmentKind, StoredClip};
+
+/// A method of cutting with its figures.
+#[derive(Debug, Clone)]
+pub enum Cutter {
+    /// Kernel change points over feature rows.
+    Kernel(KernelParams),
+    /// Probabilistic principal components over the rotations of these pivots, as in the thesis of 2009 with its distance
+    /// corrected.
+    Ppca(PpcaParams, PivotSet),
+}
+
+/// Where a clip is cut, and where nobody moves.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct ClipCuts {
+    /// The clip's name.
+    pub clip: String,
+    /// Its length.
+    pub secs: f64,
+    /// The cuts, in seconds from its beginning.
+    pub cuts_secs: Vec<f64>,
+    /// Stretches of stillness and of rest poses.
+    pub still: Vec<Still>,
+}
+
+/// A stretch in which nobody moves.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[allow(missing_docs)] // The names say it.
+pub struct Still {
+    pub kind: SegmentKind,
+    pub start_secs: f64,
+    pub stop_secs: f64,
+}
+
+/// What [`MotionDb::cut`] did.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct CutReport {
+    /// The clips that were cut, in the order in which they were given.
+    pub cuts: Vec<ClipCuts>,
+    /// Clips that were left as they are, with the reason.
+    pub left: Vec<(String, String)>,
+}
+
+impl Cutter {
+    /// Its name in the database.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Kernel(_) => "kernel",
+            Self::Ppca(..) => "ppca",
+        }
+    }
+
+    /// Seconds at which a clip with these rows is cut; `stored` gives its motion, if that is needed.
+    ///
+    /// # Errors
+    /// Why it cannot be cut: figures that make no sense, a skeleton without the joints that the method looks at.
+    pub fn cuts(
+        &self,
+        rows: &ClipRows,
+        stored: impl FnOnce() -> Result<StoredClip, DbError>,
+    ) -> Result<Vec<f64>, DbError> {
+        let invalid = |error: &dyn std::fmt::Display| DbError::Invalid(error.to_string());
+        match self {
+            Self::Kernel(params) => {
+                kernel_cuts(&rows.rows, &FeatureParams::default(), params).map_err(|e| invalid(&e))
+            }
+            Self::Ppca(params, set) => {
+                let stored = stored()?;
+                let poses = PoseParams::default();
+                let map = PivotMap::of_clip(set, &stored.clip, &stored.roles);
+                let map = map.map_err(|e| invalid(&e))?;
+                let rows = pose_rows_of_clip(&stored.clip, set, &map, &stored.rest, &poses);
+                let found = segment(&rows, poses.rate_hz, params).map_err(|e| invalid(&e))?;
+                Ok(found.cuts.iter().map(|cut| cut.secs).collect())
+            }
+        }
+    }
+
+    fn check(&self) -> Result<(), DbError> {
+        match self {
+            Self::Kernel(params) => params.check(),
+            Self::Ppca(params, _) => params.check(),
+        }
+        .map_err(DbError::Invalid)
+    }
+}
+
+impl MotionDb {
+    /// Cuts `clips` in parallel and keeps what is found in place of earlier cuts, by whatever method.
+    ///
+    /// # Errors
+    /// Figures that make no sense; the database cannot be read or written; the listener cancelled. A clip that cannot be
+    /// cut is no error but part of the report.
+    pub fn cut(
+        &mut self,
+        clips: &[ClipInfo],
+        cutter: &Cutter,
+        progress: &dyn Progress,
+    ) -> Result<CutReport, DbError> {
+        cutter.check()?;
+        let rows = self.rows(&FeatureParams::default(), progress)?;
+        let mut report = CutReport::default();
+        let (mut ids, mut segments) = (Vec::new(), Vec::new());
+        for (clip, cuts) in clips.iter().zip(self.look(clips, &rows, cutter, progress)?) {
+            match cuts {
+                Ok((cuts, of_clip)) => {
+                    ids.push(clip.id);
+                    report.cuts.push(cuts);
+                    segments.extend(of_clip);
+                }
+                Err(error) => report.left.push((clip.name.clone(), error.to_string())),
+            }
+        }
+        self.set_segments(cutter.name(), &ids, &segments)?;
+        Ok(report)
+    }
+
+    /// What each clip is cut into, or why it cannot be.
+    fn look(
+        &mut self,
+        clips: &[ClipInfo],
+        rows: &[ClipRows],
+        cutter: &Cutter,
+        progress: &dyn Progress,
+    ) -> Result<Vec<Result<Done, DbError>>, DbError> {
+        // A connection serves one thread at a time.
+        let (db, done) = (Mutex::new(self), AtomicUsize::new(0));
+        let stored = |clip: ClipId| db.lock().unwrap_or_else(PoisonError::into_inner).clip(clip);
+        let one = |clip: &ClipInfo| {
+            if progress.cancelled() {
+                return Err(DbError::Cancelled);
+            }
+            progress.report("cutting", done.fetch_add(1, Ordering::Relaxed), clips.len());
+            let Some(rows) = rows.iter().find(|r| r.clip == clip.id) else {
+                return Ok(Ok((nothing(clip), Vec::new())));
+            };
+            let cuts = cutter.cuts(rows, || stored(clip.id));
+            Ok(cuts.map(|cuts| stretches(clip, rows, cuts)))
+        };
+        clips.par_iter().map(one).collect()
+    }
+}
+
+/// A clip that was cut: what is told of it and what is kept.
+type Done = (ClipCuts, Vec<Segment>);
+
+fn nothing(clip: &ClipInfo) -> ClipCuts {
+    ClipCuts {
+        clip: clip.name.clone(),
+        secs: clip.duration_secs(),
+        cuts_secs: Vec::new(),
+        still: Vec::new(),
+    }
+}
+
+/// What is kept and told of a clip cut at `cuts`.
+fn stretches(clip: &ClipInfo, rows: &ClipRows, cuts: Vec<f64>) -> Done {
+    let features = FeatureParams::default();
+    let still = still_stretches(&rows.rows, rows.bones, &features, &StillParams::default());
+    let stretch = |kind, start_secs, stop_secs| Segment {
+        clip: clip.id,
+        kind,
+        start_secs,
+        stop_secs,
+    };
+    let (tick, end) = (1.0 / features.tick_hz(), clip.duration_secs());
+    let mut segments = Vec::new();
+    if clip.rest_frames > 0 {
+        let stop_secs = clip.rest_frames as f64 / clip.rate_hz;
+        segments.push(stretch(SegmentKind::Rest, 0.0, stop_secs));
+    }
+    for (ticks, kind) in still {
+        let kind = match kind {
+            StillKind::TPose => SegmentKind::Rest,
+            _ => SegmentKind::Still,
+        };
+        let (start, stop) = (ticks.start as f64 * tick, ticks.end as f64 * tick);
+        segments.push(stretch(kind, start, stop.min(end)));
+    }
+    let told = |s: &Segment| Still {
+        kind: s.kind,
+        start_secs: s.start_secs,
+        stop_secs: s.stop_secs,
+    };
+    let still = segments.iter().map(told).collect();
+    let mut start = 0.0;
+    for stop in cuts.iter().copied().chain([end]) {
+        if stop > start {
+            segments.push(stretch(SegmentKind::Motion, start, stop));
+        }
+        start = stop;
+    }
+    segments.retain(|s| s.stop_secs > s.start_secs);
+    let cuts = ClipCuts {
+        cuts_secs: cuts,
+        still,
+        ..nothing(clip)
+    };
+    (cuts, segments)
+}

@@ -1,0 +1,200 @@
+//! A clip as it is kept: compressed motion, feature rows, and what is known of it and of its file. What databases and
+//! archives have in common, so that clips go from one to the other without loss.
+
+use std::path::{Path, PathBuf};
+
+use morec::clip::Clip;
+use morec::features::{FeatureParams, Rows};
+use morec::files::{FileReader, split_choice};
+use morec::import::{ImportOptions, normalize};
+
+use crate::motion::{Packed, pack, unpack};
+use crate::rows::{self, ClipRows, rows_of};
+use crate::{ClipId, DbError, StoredClip};
+
+/// A clip of a file, kept.
+#[derive(Debug, Clone, PartialEq)]
+pub struct KeptClip {
+    /// What it is called.
+    pub name: String,
+    /// Its file.
+    pub file: KeptFile,
+    /// Which of the file's clips it is, from 0.
+    pub character: usize,
+    /// Who is seen.
+    pub subject: Option<String>,
+    /// Where it is from.
+    pub source: Option<String>,
+    /// Under which terms.
+    pub licence: Option<String>,
+    /// Words for finding it.
+    pub tags: Vec<String>,
+    /// Number of frames.
+    pub frames: usize,
+    /// Frames a second.
+    pub rate_hz: f64,
+    /// Frames at the start that show a rest pose.
+    pub rest_frames: usize,
+    /// Frames that were filled by interpolation.
+    pub repaired_frames: usize,
+    /// Number of joints.
+    pub joints: usize,
+    /// What makes two clips' skeletons one: names, parents and offsets to a tenth of a millimetre.
+    pub skeleton_hash: [u8; 32],
+    /// The joint of each role, in the order of [`Role::ALL`](morec::roles::Role::ALL), as JSON.
+    pub roles: String,
+    /// What was inferred, as JSON.
+    pub facts: String,
+    /// The furthest that any stored joint rotation is from its file's, radians.
+    pub max_angle_rad: f64,
+    /// The furthest that any stored joint is from where its file has it, metres.
+    pub max_position_metres: f64,
+    /// The bytes of an `.mclip` file.
+    pub motion: Vec<u8>,
+    /// How the rows are made.
+    pub recipe: String,
+    /// The bones that rows speak of, a bit each.
+    pub bones: i64,
+    /// Feature rows, [packed](Rows::to_packed).
+    pub rows: Vec<u8>,
+}
+
+/// The file that a clip is from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct KeptFile {
+    /// Hash of its content (and of which of its clips was chosen).
+    pub hash: [u8; 32],
+    /// Where it was.
+    pub path: String,
+    /// Its format.
+    pub format: String,
+    /// Its size.
+    pub bytes: u64,
+    /// The skeleton file that an AMC motion was read with.
+    pub skeleton: Option<String>,
+    /// What was repaired in reading or looks wrong.
+    pub warnings: Vec<String>,
+}
+
+/// The hash of a file's content. One clip of a file (`FILE#2`) is another content than the whole.
+pub(crate) fn content_hash(path: &Path, bytes: &[u8]) -> [u8; 32] {
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(bytes);
+    hasher.update(split_choice(path).1.unwrap_or_default().as_bytes());
+    *hasher.finalize().as_bytes()
+}
+
+impl KeptClip {
+    /// The clips in `bytes`, which are the file at `path`, made ready and compressed. The same bytes give the same.
+    ///
+    /// # Errors
+    /// Why there are none, in a sentence.
+    pub fn of_file(path: &Path, bytes: &[u8], reader: &FileReader) -> Result<Vec<Self>, String> {
+        let parsed = reader.parse(path, bytes);
+        let parsed = parsed.map_err(|error| error.kind.to_string())?;
+        let shown = |path: &PathBuf| path.to_string_lossy().into_owned();
+        let file = KeptFile {
+            hash: content_hash(path, bytes),
+            path: path.to_string_lossy().into_owned(),
+            format: parsed.format.name().to_owned(),
+            bytes: bytes.len() as u64,
+            skeleton: parsed.skeleton.as_ref().map(shown),
+            warnings: parsed.warnings.iter().map(ToString::to_string).collect(),
+        };
+        let clips = parsed.clips.into_iter().enumerate();
+        let kept = clips.map(|(character, clip)| Self::new(clip, character, &file, &reader.import));
+        let kept: Vec<Self> = kept.collect::<Result<_, _>>()?;
+        match kept.is_empty() {
+            true => Err("there is no clip in it".to_owned()),
+            false => Ok(kept),
+        }
+    }
+
+    fn new(
+        clip: Clip,
+        character: usize,
+        file: &KeptFile,
+        options: &ImportOptions,
+    ) -> Result<Self, String> {
+        if clip.frames == 0 {
+            return Err(format!("{}: expected frames, found none", clip.name));
+        }
+        let name = clip.name.clone();
+        let take = normalize(clip, options).map_err(|error| error.to_string())?;
+        let packed = pack(take, &()).map_err(|reason| format!("{name}: {reason}"))?;
+        let params = FeatureParams::default();
+        let (bones, rows) = rows_of(&packed.stored, &params);
+        let Packed {
+            motion,
+            max_angle_rad,
+            max_position_metres,
+            skeleton_hash,
+            joints,
+            roles,
+            facts,
+            stored,
+        } = packed;
+        Ok(Self {
+            name,
+            file: file.clone(),
+            character,
+            subject: None,
+            source: None,
+            licence: None,
+            tags: Vec::new(),
+            frames: stored.clip.frames,
+            rate_hz: stored.clip.rate_hz,
+            rest_frames: stored.rest.len(),
+            repaired_frames: stored.clip.repaired.iter().map(|span| span.len()).sum(),
+            joints,
+            skeleton_hash,
+            roles,
+            facts,
+            max_angle_rad,
+            max_position_metres,
+            motion,
+            recipe: rows::recipe(&params),
+            bones: rows::bits(bones),
+            rows: rows.to_packed(&params),
+        })
+    }
+
+    /// The motion, decoded. O(frames · joints).
+    ///
+    /// # Errors
+    /// Damaged bytes.
+    pub fn stored(&self) -> Result<StoredClip, DbError> {
+        stored_clip(&self.name, &self.motion, &self.roles, self.rest_frames)
+    }
+}
+
+/// A clip's motion from what is kept of it. O(frames · joints).
+///
+/// # Errors
+/// Damaged bytes.
+pub fn stored_clip(
+    name: &str,
+    motion: &[u8],
+    roles: &str,
+    rest_frames: usize,
+) -> Result<StoredClip, DbError> {
+    unpack(motion, roles, rest_frames as i64, name)
+}
+
+/// Feature rows from what is kept of them, under the number `clip`; `None` of a clip that shows no bone, or of bytes that
+/// are none.
+pub fn clip_rows(clip: ClipId, bones: i64, rows: &[u8]) -> Option<ClipRows> {
+    rows::unpacked(clip, bones, rows, &FeatureParams::default())
+}
+
+/// How feature rows are made at present: rows of another recipe have to be made again.
+pub fn rows_recipe() -> String {
+    rows::recipe(&FeatureParams::default())
+}
+
+/// Feature rows of a stored clip, packed, and their bones.
+pub fn packed_rows(stored: &StoredClip) -> (i64, Vec<u8>) {
+    let params = FeatureParams::default();
+    let (bones, rows): (_, Rows) = rows_of(stored, &params);
+    (rows::bits(bones), rows.to_packed(&params))
+}

@@ -1,0 +1,54 @@
+"""Reading a folder of BVH files: morec beside the packages bvh, bvhio and pybvh, in one run.
+
+    pip install bvh bvhio pybvh
+    python reading.py FOLDER [FILES]
+
+What each gives differs: `bvh` leaves numbers as text, `bvhio.readAsBvh` and `pybvh` give channels; morec gives rotations, roles, units,
+and with `positions` the joints in the world.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import morec
+
+
+def measured(name: str, read: Callable[[Path], object], files: list[Path], bytes_: int) -> None:
+    failed = 0
+    begun = time.perf_counter()
+    for path in files:
+        try:
+            read(path)
+        except Exception:
+            failed += 1
+    secs = time.perf_counter() - begun
+    print(f"{name}\t{secs:.2f} s\t{bytes_ / 1e6 / secs:.1f} MB/s\t{failed} of {len(files)} refused", flush=True)
+
+
+def main() -> None:
+    files = sorted(Path(sys.argv[1]).rglob("*.bvh"))[: int(sys.argv[2]) if len(sys.argv) > 2 else None]
+    bytes_ = sum(path.stat().st_size for path in files)
+    print(f"{len(files)} files, {bytes_ / 1e6:.1f} MB")
+    for path in files:
+        path.read_bytes()
+    begun = time.perf_counter()
+    clips = morec.read_folder(files, progress=False)
+    secs = time.perf_counter() - begun
+    print(f"morec.read_folder\t{secs:.2f} s\t{bytes_ / 1e6 / secs:.1f} MB/s\t{len(clips)} clips", flush=True)
+    measured("morec.read", morec.read, files, bytes_)
+    measured("morec.read and positions", lambda path: morec.read(path).positions, files, bytes_)
+    import bvh
+    import bvhio
+    import pybvh
+
+    measured("pybvh.read_bvh_file", lambda path: pybvh.read_bvh_file(str(path)), files, bytes_)
+    measured("bvh.Bvh", lambda path: bvh.Bvh(path.read_text()), files, bytes_)
+    measured("bvhio.readAsBvh", lambda path: bvhio.readAsBvh(str(path)), files, bytes_)
+
+
+if __name__ == "__main__":
+    main()

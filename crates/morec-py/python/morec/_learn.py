@@ -1,0 +1,231 @@
+"""Training and measuring."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, Union
+
+from . import _morec
+from ._files import Clips, as_clips
+from ._labels import Labels, People, label_rows, people_rows
+from ._morec import Clip, Crossval, Index
+from ._progress import Progress, listener
+
+#: Clips that hold none of the classes: clips, paths, or names of clips that are given anyway.
+Background = Union[Clips, Iterable[str], None]
+
+
+def _aside(given: Background, clips: list[Clip]) -> list[Clip]:
+    """Clips named by name, path or as they are."""
+    if given is None:
+        return []
+    by_name = {clip.name: clip for clip in clips}
+    items: Iterable[Any] = [given] if isinstance(given, (Clip, str, os.PathLike)) else given
+    found: list[Clip] = []
+    for item in items:
+        if isinstance(item, str) and not os.path.exists(item):
+            if item not in by_name:
+                raise FileNotFoundError(f"{item}: no such file or folder, and none of the clips is called so")
+            found.append(by_name[item])
+        else:
+            found.extend(as_clips(item))
+    return found
+
+
+def _material(
+    clips: Clips, labels: Labels, people: People, background: Background, exclude: Sequence[str]
+) -> dict[str, Any]:
+    of_clips = [clip for clip in as_clips(clips) if clip.name not in exclude]
+    return {
+        "clips": of_clips,
+        "labels": label_rows(labels),
+        "people": people_rows(people),
+        "background": [clip for clip in _aside(background, of_clips) if clip.name not in exclude],
+    }
+
+
+def _recipe(
+    method: str,
+    svrdm: str,
+    unlabelled: str,
+    everyday: str,
+    mirror: str,
+    one_sided: Sequence[str],
+    bones: str | Sequence[str],
+    params: Mapping[str, Any] | None,
+) -> dict[str, Any]:
+    return {
+        "method": method,
+        "svrdm": svrdm,
+        "unlabelled": unlabelled,
+        "everyday": everyday,
+        "mirror": mirror,
+        "one_sided": list(one_sided),
+        "bones": bones if isinstance(bones, str) else ",".join(bones),
+        "params": [(name, json.dumps(value)) for name, value in (params or {}).items()],
+    }
+
+
+def train(
+    clips: Clips,
+    labels: Labels,
+    *,
+    people: People = None,
+    background: Background = None,
+    classes: Sequence[str] = (),
+    exclude: Sequence[str] = (),
+    method: str = "templates",
+    svrdm: str = "tuned",
+    unlabelled: str = "background",
+    everyday: str = "always",
+    mirror: str = "auto",
+    one_sided: Sequence[str] = (),
+    bones: str | Sequence[str] = "all",
+    params: Mapping[str, Any] | None = None,
+    progress: Progress = None,
+) -> Index:
+    """Train an index from labelled clips; what ``morec train`` does, with the same words and defaults.
+
+    Parameters
+    ----------
+    clips : clips or paths
+        Clips that the labels speak of, by name.
+    labels : DataFrame, path, Table or list of spans
+        Columns clip, class and start, stop (frames, stop exclusive) or start_secs, stop_secs, or neither: then the whole
+        clip is one sample, its still ends trimmed. Perhaps person. Spans are (clip, class, start_secs, stop_secs).
+    people : dict, DataFrame or path, optional
+        Who is seen in which clip.
+    background : clips, paths or names of clips, optional
+        Clips that hold none of the classes: what comes near the classes in them sets how near is near enough.
+    classes : sequence of str
+        Learn only these, in this order.
+    exclude : sequence of str
+        Leave these clips out, by name.
+    method : {"templates", "svrdm"}
+        Gestures and cycles matched elastically, or the method of the thesis of 2009.
+    svrdm : {"tuned", "faithful"}
+        The figures of the method svrdm.
+    unlabelled : {"background", "ignore"}
+        What the unlabelled parts of labelled clips are: motion that is none of the classes, or nothing to go by.
+    everyday : {"auto", "always", "never"}
+        Whether synthetic everyday motion is background too (templates only); auto: if background holds less than a
+        minute.
+    mirror : {"auto", "yes", "no"}
+        Whether mirrored copies of samples teach too (templates only). yes: every class is the same on both sides; auto: only
+        classes named as two sides of one motion, as wave_left and wave_right, teach each other.
+    one_sided : sequence of str
+        With mirror yes: classes whose mirror image is another motion; it then teaches what the class is not.
+    bones : str or sequence of str
+        Which parts of the body count (templates only): all, upper, arms, or names of bones.
+    params : dict, optional
+        Figures of the method by their path, as ``{"rho": 0.4, "decode.lag_ticks": 2}``.
+    progress : bool or callable, optional
+
+    Returns
+    -------
+    Index
+        `Index.report` says what was learned.
+
+    Raises
+    ------
+    MorecError
+        Clips and labels that do not fit together, too little to learn from.
+    ValueError
+        Labels or options that make no sense.
+
+    Warns
+    -----
+    MorecWarning
+        For labels that were cut or left out, and clips that are not used.
+    """
+    material = _material(clips, labels, people, background, exclude)
+    recipe = _recipe(method, svrdm, unlabelled, everyday, mirror, one_sided, bones, params)
+    return _morec.train(material, list(classes), recipe, listener(progress))
+
+
+def crossval(
+    clips: Clips,
+    labels: Labels,
+    *,
+    by: str = "person",
+    people: People = None,
+    background: Background = None,
+    unknown: Background = None,
+    classes: Sequence[str] = (),
+    exclude: Sequence[str] = (),
+    samples: int | None = None,
+    perturb: Sequence[str] = (),
+    seed: int = 1,
+    method: str = "templates",
+    svrdm: str = "tuned",
+    unlabelled: str = "background",
+    everyday: str = "always",
+    mirror: str = "auto",
+    one_sided: Sequence[str] = (),
+    bones: str | Sequence[str] = "all",
+    params: Mapping[str, Any] | None = None,
+    progress: Progress = None,
+) -> Crossval:
+    """Train without a part of the labels, recognise that part, and measure; what ``morec crossval`` does.
+
+    Parameters
+    ----------
+    by : {"person", "clip", "half"}
+        What is left out in turn; half: half of each class's samples.
+    unknown : clips, paths or names of clips, optional
+        Clips that hold none of the classes: what is recognised in them is a false alarm.
+    samples : int, optional
+        Let at most so many samples of each class teach, from its people in turn.
+    perturb : sequence of str
+        Also test copies that are worse in one way each, as ``"cam:1"``, ``"rate:30"``.
+    seed : int
+        Of the shuffle that halves the samples.
+
+    The others are those of `train`.
+
+    Returns
+    -------
+    Crossval
+    """
+    material = _material(clips, labels, people, background, exclude)
+    material["unknown"] = _aside(unknown, material["clips"])
+    recipe = _recipe(method, svrdm, unlabelled, everyday, mirror, one_sided, bones, params)
+    how = {"by": by, "samples": samples, "perturb": list(perturb), "seed": seed}
+    return _morec.crossval(material, list(classes), recipe, how, listener(progress))
+
+
+def evaluate(
+    truth: Iterable[Mapping[str, Any]], found: Iterable[Mapping[str, Any]], clips: Mapping[str, float] | Iterable[Clip]
+) -> dict[str, Any]:
+    """Hold detections against labels; what ``morec evaluate --json`` prints.
+
+    Parameters
+    ----------
+    truth, found : tables
+        Rows with clip, class, start_secs, stop_secs; found perhaps with score and reported_secs.
+    clips : dict of name to seconds, or clips
+        The streams that were searched.
+
+    Returns
+    -------
+    dict
+    """
+    if isinstance(clips, Mapping):
+        lengths = [(str(name), float(secs)) for name, secs in clips.items()]
+    else:
+        lengths = [(clip.name, clip.duration_secs) for clip in clips]
+    spans = [(str(t["clip"]), str(t["class"]), float(t["start_secs"]), float(t["stop_secs"])) for t in truth]
+    hits = [
+        (
+            str(f["clip"]),
+            str(f["class"]),
+            float(f["start_secs"]),
+            float(f["stop_secs"]),
+            f.get("score"),
+            f.get("reported_secs"),
+        )
+        for f in found
+    ]
+    return _morec.evaluate(lengths, spans, hits)

@@ -1,0 +1,107 @@
+"""Live sources."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from typing import Any
+
+from . import _morec
+from ._morec import Index, MorecWarning
+
+__all__ = ["listen"]
+
+#: How long the native part waits before Ctrl-C is looked for.
+LOOK_SECS = 0.1
+
+
+class listen:
+    """Recognise what a live source sends, until it ends or you stop.
+
+    A context manager and an iterator of events. Ctrl-C raises KeyboardInterrupt and leaves the port free; so does leaving
+    the loop, once the object is closed or forgotten.
+
+    Parameters
+    ----------
+    address : str
+        As of ``morec live --listen``: ``vmc://HOST:PORT`` (VMC senders on a UDP port, 39539 by convention),
+        ``axis://HOST:PORT`` and ``axis+udp://HOST:PORT`` (broadcasts of Axis programs), ``json:-`` and ``json+tcp://HOST:PORT``
+        (lines of JSON), ``clip://FILE`` (a clip as if somebody performed it).
+    index : Index
+    actors : int
+        Performers that are followed at once.
+    mirror : bool
+        Exchange left and right, for senders that show their performer as a mirror would.
+    tentative : bool
+        Also what seems to be under way: events of the phases start, update and cancel.
+    timeout : float, optional
+        End after so many seconds without an event.
+
+    Yields
+    ------
+    dict
+        phase ("end", or a tentative one), class, start_secs, stop_secs, score, progress, reported_secs, actor, motion,
+        sequence, wall_secs (seconds since 1970 at the arrival of the frame that settled it).
+
+    Examples
+    --------
+    >>> with morec.listen("vmc://127.0.0.1:39539", index) as events:
+    ...     for event in events:
+    ...         print(event["class"])
+    """
+
+    def __init__(
+        self,
+        address: str,
+        index: Index,
+        *,
+        actors: int = 4,
+        mirror: bool = False,
+        tentative: bool = False,
+        timeout: float | None = None,
+    ) -> None:
+        self._session = _morec.LiveSession(address, index, actors, mirror, tentative)
+        self._timeout = timeout
+
+    @property
+    def address(self) -> str:
+        """Where it listens, with the port that was free if the address asked for port 0."""
+        return self._session.address
+
+    @property
+    def status(self) -> dict[str, Any]:
+        """Counts of frames, losses and events so far."""
+        return self._session.status()
+
+    def close(self) -> None:
+        """Stop listening."""
+        self._session.close()
+
+    def __iter__(self) -> Iterator[dict[str, Any]]:
+        return self
+
+    def __next__(self) -> dict[str, Any]:
+        waited = 0.0
+        while True:
+            # Python looks for Ctrl-C between two calls.
+            event = self._session.wait(LOOK_SECS)
+            for notice in self._session.notices():
+                warnings.warn(notice, MorecWarning, stacklevel=2)
+            if event is not None:
+                return event
+            if self._session.is_ended():
+                raise StopIteration
+            waited += LOOK_SECS
+            if self._timeout is not None and waited >= self._timeout:
+                raise StopIteration
+
+    def __enter__(self) -> listen:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __del__(self) -> None:
+        session = getattr(self, "_session", None)
+        if session is not None:
+            session.close()

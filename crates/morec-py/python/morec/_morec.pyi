@@ -1,0 +1,505 @@
+"""The native part of the package."""
+
+import os
+from collections.abc import Callable, Sequence
+from types import TracebackType
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ._files import Clips
+from ._tables import Table
+
+__version__: str
+ROLES: list[str]
+"""Parts of the body, in the order in which arrays have them."""
+
+_Path = str | os.PathLike[str]
+_Progress = Callable[[str, int, int], None] | None
+_Roles = dict[str, str | None] | str | None
+_Array = npt.NDArray[np.float64]
+
+class MorecError(Exception):
+    """What a file, a label or a motion has that morec cannot use, with its place."""
+
+class MorecWarning(UserWarning):
+    """Something was repaired, left out or looks wrong; the result is there all the same."""
+
+class Clip:
+    """A motion-capture clip in metres, Y up: a skeleton, its frames, and which joint is which part of the body.
+
+    ``len(clip)`` is the number of frames; ``clip[1.0:2.5]`` is the stretch from second 1 to second 2.5. Clips do not
+    change; threads may share them, and they can be pickled.
+
+    Examples
+    --------
+    >>> clip = morec.read("walk.bvh")
+    >>> clip.positions[:, clip.roles["left_hand"]]      # metres, shape (frames, 3)
+    """
+
+    @staticmethod
+    def from_positions(
+        positions: npt.ArrayLike,
+        names: Sequence[str],
+        rate_hz: float,
+        *,
+        name: str = "clip",
+        unit: float | None = None,
+        up: str | None = None,
+        roles: _Roles = None,
+    ) -> Clip:
+        """A clip of points: where the joints or landmarks of one performer are, frame by frame.
+
+        Parameters
+        ----------
+        positions : array, shape (frames, joints, 3)
+            NaN where a point was not seen: short gaps are filled, long ones stay unknown.
+        names : sequence of str
+            What the points are called. The names of published sets (MediaPipe, COCO, Kinect, marker sets) and usual joint
+            names tell which is which part of the body.
+        rate_hz : float
+            Frames a second.
+        name : str
+            What the clip is called, by which labels speak of it.
+        unit : float, optional
+            Metres in the unit of `positions`; inferred by default.
+        up : {"x", "y", "z", "-x", "-y", "-z"}, optional
+            Which way is up in `positions`; inferred by default.
+        roles : dict, optional
+            ``{"left_hand": "LWrist", "hips": "LHip+RHip"}``, where names do not tell.
+
+        Raises
+        ------
+        ValueError
+            An array of another shape, a rate that is not above 0.
+        MorecError
+            No point was ever seen.
+        """
+    @property
+    def name(self) -> str:
+        """What the clip is called: its file's stem, by default."""
+    @property
+    def path(self) -> os.PathLike[str] | None:
+        """The file it was read from, or None."""
+    @property
+    def format(self) -> str:
+        """The file's format, ``"bvh"``; empty for clips that come from no file."""
+    @property
+    def rate_hz(self) -> float:
+        """Frames a second."""
+    @property
+    def frames(self) -> int:
+        """Number of frames."""
+    @property
+    def duration_secs(self) -> float:
+        """Length in seconds: frames over rate."""
+    @property
+    def names(self) -> list[str]:
+        """Names of the joints, parents first."""
+    @property
+    def parents(self) -> npt.NDArray[np.int64]:
+        """Index of each joint's parent, -1 for a root; shape (joints,)."""
+    @property
+    def offsets(self) -> _Array:
+        """Where each joint is in its parent's frame when nothing moves it, metres; shape (joints, 3)."""
+    @property
+    def roles(self) -> dict[str, int]:
+        """For each part of the body that was found, the index of the joint that plays it."""
+    @property
+    def warnings(self) -> list[str]:
+        """What was repaired in reading or looks wrong, a sentence each, with the place in the file."""
+    @property
+    def facts(self) -> dict[str, Any]:
+        """What was inferred: up axis and unit of the file, body height, rest pose, doubts (``notes``)."""
+    @property
+    def rest_frames(self) -> int:
+        """Frames at the start that show a rest pose and not the motion."""
+    @property
+    def has_rotations(self) -> bool:
+        """Whether joints are known to turn; a clip of points has positions alone."""
+    @property
+    def positions(self) -> _Array:
+        """Where each joint is in the world, metres, Y up; shape (frames, joints, 3), read-only. Made once."""
+    @property
+    def rotations(self) -> _Array | None:
+        """How each joint is turned in its parent's frame, quaternions x, y, z, w; shape (frames, joints, 4), read-only.
+
+        None for a clip of points.
+        """
+    def resampled(self, rate_hz: float) -> Clip:
+        """The same motion at another rate."""
+    def renamed(self, name: str) -> Clip:
+        """The same clip under another name, which is what labels call it."""
+    def save(self, path: _Path) -> None:
+        """Write the clip, in the format that the ending names: .bvh, .mclip, or points as .trc, .c3d, .jsonl."""
+    def __len__(self) -> int: ...
+    def __getitem__(self, secs: slice, /) -> Clip: ...
+
+class Index:
+    """A trained index: what recognition needs, in one immutable file.
+
+    Made by `morec.train` and `morec.load`. Threads may share it, and it can be pickled.
+    """
+
+    @staticmethod
+    def from_bytes(bytes: bytes) -> Index:
+        """An index from the bytes of its file."""
+    def to_bytes(self) -> bytes:
+        """The bytes of the index file."""
+    def save(self, path: _Path) -> None:
+        """Write the index file, whole or not at all."""
+    def recognize(
+        self, clips: Clips, *, sensitivity: float | None = None, progress: _Progress = None
+    ) -> Table:
+        """Everything that is recognised in clips, frame by frame as in a live stream.
+
+        Parameters
+        ----------
+        clips : clip, path, or several
+            Several are recognised in parallel.
+        sensitivity : float, optional
+            False alarms a minute that background motion may raise, as in training: 0.1 is strict, 1 is generous.
+        progress : callable, optional
+
+        Returns
+        -------
+        Table
+            Columns clip, class, start_secs, stop_secs, score (0 just accepted … 1 identical to a sample), reported_secs.
+
+        Warns
+        -----
+        MorecWarning
+            For clips that lack bones which the index uses; they are recognised without.
+        """
+    def recognizer(
+        self,
+        joints: Clip | Sequence[str],
+        *,
+        roles: _Roles = None,
+        up: str | None = None,
+        sensitivity: float | None = None,
+    ) -> Recognizer:
+        """A recogniser for a live stream of joint positions.
+
+        Parameters
+        ----------
+        joints : sequence of str, or Clip
+            What the rows of a pose are: names of a published set of points, of usual joints or of `morec.ROLES`; or a clip
+            whose joints they are.
+        roles : dict, optional
+            ``{"left_hand": "LWrist", "hips": "LHip+RHip"}``, where names do not tell.
+        up : {"x", "y", "z", "-x", "-y", "-z"}, optional
+            Which way is up in the stream; Y by default. The unit of length does not matter.
+        sensitivity : float, optional
+            As in `recognize`.
+
+        Raises
+        ------
+        ValueError
+            Names of which no part of the body is known.
+        MorecError
+            An index that looks at joint rotations, or has no bone in common with the joints.
+        """
+    def distances(self, clips: Clips) -> tuple[npt.NDArray[np.float32], float]:
+        """How far each clip is from each class, and the distance from which on nothing is reported.
+
+        Returns
+        -------
+        distances : ndarray of float32, shape (clips, classes)
+            The least anywhere in the clip; infinite where nothing moves.
+        threshold : float
+        """
+    @property
+    def classes(self) -> list[dict[str, Any]]:
+        """The classes: name, samples and people that taught them."""
+    @property
+    def class_names(self) -> list[str]:
+        """Names of the classes, in order."""
+    @property
+    def method(self) -> str:
+        """``"templates"`` or ``"svrdm"``."""
+    @property
+    def provenance(self) -> dict[str, Any]:
+        """Where the index came from: date, version, clips, samples, background."""
+    @property
+    def report(self) -> dict[str, Any] | None:
+        """What training reported; None for an index that was loaded."""
+
+class Recognizer:
+    """Recognises motions in one performer's stream of joint positions. Made by `Index.recognizer`.
+
+    Any thread may push; two at once wait for each other.
+    """
+
+    @property
+    def joints(self) -> list[str]:
+        """Names of the points of a pose, in the order of its rows."""
+    @property
+    def latency_secs(self) -> float:
+        """Seconds from the end of a motion to its report at the earliest."""
+    def push(self, time_secs: float, positions: npt.ArrayLike) -> list[dict[str, Any]]:
+        """Take the pose at a time on the stream's clock.
+
+        Parameters
+        ----------
+        time_secs : float
+            Poses may come at any rate, also unevenly; late and duplicate ones are ignored. After a gap of more than half a
+            second the stream begins anew.
+        positions : array, shape (joints, 3)
+            NaN where a joint is unknown. float64 and float32 are read in place.
+
+        Returns
+        -------
+        list of dict
+            The detections that this pose settled, mostly none: class, start_secs, stop_secs, score, reported_secs.
+        """
+    def push_all(self, times_secs: npt.ArrayLike, positions: npt.ArrayLike) -> list[dict[str, Any]]:
+        """Take many poses, other Python threads running meanwhile; the same detections as of pushing one by one.
+
+        Parameters
+        ----------
+        times_secs : array, shape (frames,)
+        positions : array, shape (frames, joints, 3)
+        """
+    def finish(self) -> list[dict[str, Any]]:
+        """End the stream: the detections that its last moments still hold. The next push begins a new stream."""
+    def hunch(self) -> dict[str, Any] | None:
+        """What seems to be under way after the last push, or None. Tentative.
+
+        Keys class, score, progress (0 to 1), start_secs, seen_secs.
+        """
+    def __enter__(self) -> Recognizer: ...
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None, /
+    ) -> None: ...
+
+class LiveSession:
+    def __init__(self, address: str, index: Index, actors: int, mirror: bool, tentative: bool, /) -> None: ...
+    @property
+    def address(self) -> str: ...
+    def wait(self, secs: float, /) -> dict[str, Any] | None: ...
+    def notices(self) -> list[str]: ...
+    def is_ended(self) -> bool: ...
+    def status(self) -> dict[str, Any]: ...
+    def close(self) -> None: ...
+
+class Crossval:
+    """What a cross-validation measured. Made by `morec.crossval`."""
+
+    @property
+    def evaluation(self) -> dict[str, Any]:
+        """Every measure, as ``morec crossval --json`` prints them."""
+    @property
+    def accuracy(self) -> float | None:
+        """Thesis accuracy; None if there is nothing to decide."""
+    @property
+    def f1(self) -> float | None:
+        """F1 at half overlap."""
+    @property
+    def perturbed(self) -> dict[str, dict[str, Any]]:
+        """For each perturbation its measures."""
+    @property
+    def folds(self) -> list[dict[str, Any]]:
+        """What was left out in each fold, and how its training went."""
+    @property
+    def found(self) -> Table:
+        """What was recognised: clip, class, start_secs, stop_secs, score, reported_secs."""
+    @property
+    def truth(self) -> Table:
+        """What was there: clip, class, start_secs, stop_secs."""
+    def report(self, path: _Path, *, title: str = "Cross-validation") -> None:
+        """Write the report, one HTML file without outside links."""
+
+class Database:
+    """A motion database: clips, cuts, classes and labels in one SQLite file, as ``morec db`` keeps it.
+
+    One program writes, any number read. Use it as a context manager, or `close` it.
+
+    Parameters
+    ----------
+    path : path
+    create : bool
+        Make the file if there is none.
+    """
+
+    def __init__(self, path: _Path, *, create: bool = False) -> None: ...
+    @property
+    def path(self) -> os.PathLike[str]: ...
+    def close(self) -> None:
+        """Close the file; every other method then raises ValueError."""
+    def summary(self) -> dict[str, Any]:
+        """How much is in it."""
+    def import_files(
+        self,
+        paths: _Path | Sequence[_Path],
+        *,
+        source: str | None = None,
+        licence: str | None = None,
+        subject: str | None = None,
+        tags: Sequence[str] = (),
+        progress: _Progress = None,
+    ) -> Table:
+        """Add the clips of files and folders, in parallel; what is there already is known by its content.
+
+        Returns
+        -------
+        Table
+            Columns path, outcome (imported, known, copy, refused), clips, notes.
+        """
+    def clips(
+        self,
+        name: str | None = None,
+        *,
+        subject: str | None = None,
+        tag: str | None = None,
+        class_name: str | None = None,
+    ) -> Table:
+        """The clips: by name (``*`` any text, ``?`` one character), subject, tag, or class of their labels."""
+    def clip(self, name: str) -> Clip:
+        """A clip as it is kept: within half a degree and five millimetres of its file, unless `summary` says more."""
+    def labels(
+        self, *, state: str | None = "accepted", clip: str | None = None, class_name: str | None = None
+    ) -> Table:
+        """The labels of a state ("accepted", "proposed", "rejected"; None for all).
+
+        Returns
+        -------
+        Table
+            Columns clip, class, start_secs, stop_secs, person, whole_clip, state, score, set_by. `morec.train` takes it.
+        """
+    def label(self, labels: Any, *, state: str = "accepted", by: str = "user") -> dict[str, int]:
+        """Add labels, all or none; labels as in `morec.train`. How many were added, changed, unchanged."""
+    def search(
+        self,
+        example: Clip | _Path,
+        start: float = 0.0,
+        stop: float | None = None,
+        *,
+        mirror: bool = False,
+        limit: int = 20,
+        one_a_clip: bool = False,
+    ) -> Table:
+        """Stretches that are like an example, the likest first.
+
+        Parameters
+        ----------
+        example : Clip, name of a clip in the database, or os.PathLike
+        start, stop : float
+            The stretch of it, seconds.
+        mirror : bool
+            Find what the example's mirror image is like, too.
+        limit : int
+        one_a_clip : bool
+            Only the best of each clip.
+
+        Returns
+        -------
+        Table
+            Columns clip, start_secs, stop_secs, score, warp_distance, mirrored.
+        """
+    def cut(
+        self,
+        name: str | None = None,
+        *,
+        method: str = "kernel",
+        window: float | None = None,
+        penalty: float | None = None,
+        least: float | None = None,
+        rise: float | None = None,
+        progress: _Progress = None,
+    ) -> Table:
+        """Cut clips where their behaviour changes, and keep the cuts; what ``morec db cut`` does.
+
+        Returns
+        -------
+        Table
+            Columns clip, secs, cuts_secs, still.
+        """
+    def propose(self, *, classes: Sequence[str] = (), progress: _Progress = None) -> Table:
+        """Other samples of the classes that are labelled, the surest first; they are kept as proposed.
+
+        Returns
+        -------
+        Table
+            Columns clip, class, start_secs, stop_secs, score.
+        """
+    def judge(
+        self, *, accept: float | None = None, reject: float | None = None, classes: Sequence[str] = ()
+    ) -> tuple[int, int]:
+        """Accept the proposals of at least one score, reject those below another; how many of each."""
+    def __enter__(self) -> Database: ...
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None, /
+    ) -> None: ...
+
+def load(path: _Path) -> Index:
+    """Open an index file.
+
+    Raises
+    ------
+    FileNotFoundError
+        There is no such file.
+    MorecError
+        It is no index, damaged, or written by a later release.
+    """
+
+def read_path(path: str, options: dict[str, Any], /) -> list[Clip]: ...
+def read_bytes(bytes: bytes, name: str, options: dict[str, Any], /) -> list[Clip]: ...
+def read_folder(
+    paths: list[str], options: dict[str, Any], progress: _Progress = None, /
+) -> tuple[list[Clip], list[str]]: ...
+def features(clip: Clip, bones: list[str] | None = None, /) -> tuple[npt.NDArray[np.float32], list[str], list[str], float]: ...
+def key_positions(clip: Clip, /) -> _Array: ...
+def resolve_labels(clip: Clip, labels: Any, /) -> list[tuple[str, float, float]]: ...
+def train(material: dict[str, Any], classes: list[str], how: dict[str, Any], progress: _Progress, /) -> Index: ...
+def crossval(
+    material: dict[str, Any], classes: list[str], recipe: dict[str, Any], how: dict[str, Any], progress: _Progress, /
+) -> Crossval: ...
+def evaluate(
+    streams: list[tuple[str, float]], truth: list[tuple[str, str, float, float]], found: list[Any], /
+) -> dict[str, Any]: ...
+def cut_kernel(clip: Clip, window: float | None, penalty: float | None, least: float | None, /) -> _Array: ...
+def cut_ppca(clip: Clip, rise: float | None, quality: float | None, direction: str, /) -> dict[str, _Array]: ...
+def synth_database(
+    seed: int,
+    people: int,
+    streams: int,
+    repetitions: int,
+    classes: list[str] | None,
+    unknown_share: float,
+    left_handed: bool,
+    rate_hz: float,
+    /,
+) -> list[tuple[Clip, list[tuple[str, float, float]], str]]: ...
+def synth_everyday(seed: int, clips: int, /) -> list[Clip]: ...
+def synth_motions() -> list[str]: ...
+def rows_of_table(bytes: bytes, /) -> list[Any]: ...
+
+class SearchExample: ...
+
+class SearchPart:
+    def __init__(self, clips: list[tuple[int, int, bytes]], /) -> None: ...
+    def example(self, clip: int, start: float, stop: float, /) -> SearchExample: ...
+    def nearest(
+        self, example: SearchExample, limit: int, mirror: bool, one_a_clip: bool, /
+    ) -> list[tuple[int, float]]: ...
+    def search(
+        self, example: SearchExample, limit: int, mirror: bool, one_a_clip: bool, /
+    ) -> list[tuple[int, float, float, float, float, bool]]: ...
+    @property
+    def ticks(self) -> int: ...
+
+def search_example(clip: Clip, start: float, stop: float | None = None, /) -> SearchExample: ...
+def keep_file(path: str, bytes: bytes, options: dict[str, Any], /) -> list[dict[str, Any]]: ...
+def kept_of_database(path: str, /) -> list[dict[str, Any]]: ...
+def kept_to_database(path: str, rows: list[dict[str, Any]], /) -> int: ...
+def names_in_database(path: str, /) -> list[tuple[bytes, int, str]]: ...
+def kept_clip(name: str, motion: bytes, roles: str, rest_frames: int, facts: str, /) -> Clip: ...
+def recognize_kept(index: Index, clips: list[tuple[bytes | None, str | None, int | None]], /) -> list[Any]: ...
+def index_from_bytes(bytes: bytes, /) -> Index: ...
+def cut_kept(
+    bones: int, rows: bytes, window: float | None = None, penalty: float | None = None, least: float | None = None, /
+) -> list[float]: ...
+def rows_kept(bones: int, rows: bytes, /) -> npt.NDArray[np.float32]: ...
+def present_recipe() -> str: ...

@@ -1,0 +1,155 @@
+"""Archives: a bucket of clips, on one machine and on many (``pip install morec[archive]``).
+
+An archive is a folder of Parquet tables, local or in an S3-compatible store. Daft does the work: on this machine by
+default, on a Ray cluster after `use_ray`.
+
+>>> import morec.archive as ma
+>>> a = ma.create("archive/", from_files="raw/**/*.bvh")
+>>> events = a.recognize(index)                       # a Daft DataFrame
+>>> hits = a.search("example.bvh", 10.0, 11.5, limit=50)
+"""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+import daft
+from daft import Expression
+
+from .. import __version__
+from .._learn import Index
+from .._morec import load
+from . import _layout as layout
+from ._archive import Archive
+from ._create import Importer, tasks
+from ._store import Store, matches, split_glob
+from ._tasks import events_of
+
+__all__ = ["Archive", "create", "open", "recognize", "use_ray"]
+
+
+def use_ray(address: str | None = None) -> None:
+    """Run on a Ray cluster: that at ``address``, or one that is started on this machine.
+
+    Call it before anything else; Daft chooses once how it runs.
+    """
+    daft.set_runner_ray(address=address, noop_if_initialized=True)
+
+
+def create(
+    archive: str | os.PathLike[str],
+    *,
+    from_files: str | os.PathLike[str] | None = None,
+    from_database: str | os.PathLike[str] | None = None,
+    subject: str | None = None,
+    source: str | None = None,
+    licence: str | None = None,
+    s3: dict[str, str] | None = None,
+    raw_s3: dict[str, str] | None = None,
+) -> Archive:
+    """Make an archive, or add to it what is new.
+
+    Files are parsed, compressed and turned into feature rows where the workers are; a task's result appears whole, so the
+    import may be stopped anywhere and begun again. A file that cannot be read is a row with an error.
+
+    Parameters
+    ----------
+    archive : path or s3://bucket/prefix
+    from_files : path, URL or pattern, optional
+        ``raw/**/*.bvh``; a folder stands for all files in it and below. Files of the same path and size are known.
+    from_database : path, optional
+        A database of ``morec db``: its clips as they are, and its labels.
+    subject, source, licence : str, optional
+        Of every new clip.
+    s3, raw_s3 : dict, optional
+        ``endpoint_url``, ``key_id``, ``access_key``, ``session_token``, ``region_name`` of the archive's store, and of the raw
+        files' if it is another; the environment's by default.
+
+    Returns
+    -------
+    Archive
+    """
+    store = Store(os.fspath(archive), s3 or {})
+    try:
+        layout.check(store.read(layout.ABOUT), store.uri)
+    except FileNotFoundError:
+        store.write(layout.ABOUT, layout.about(__version__))
+    made = Archive(store)
+    about = {"subject": subject, "source": source, "licence": licence}
+    if from_files is not None:
+        _add_files(made, os.fspath(from_files), about, raw_s3 if raw_s3 is not None else s3 or {})
+    if from_database is not None:
+        made.add_database(from_database)
+    return made
+
+
+def open(archive: str | os.PathLike[str], *, s3: dict[str, str] | None = None) -> Archive:
+    """Open an archive.
+
+    Raises
+    ------
+    FileNotFoundError
+        There is none.
+    ValueError
+        It is of a later release.
+    """
+    store = Store(os.fspath(archive), s3 or {})
+    layout.check(store.read(layout.ABOUT), store.uri)
+    return Archive(store)
+
+
+def _add_files(archive: Archive, pattern: str, about: dict[str, Any], s3: dict[str, str]) -> None:
+    folder, below = split_glob(pattern)
+    raw = Store(folder, s3)
+    files = [(name, size) for name, size in raw.list() if matches(name, below)]
+    if not files:
+        raise FileNotFoundError(f"{pattern}: no such files")
+    known = archive.known_files()
+    new = [(name, size) for name, size in files if (raw.url(name), size) not in known]
+    # Skeletons are read with their motions.
+    new = [(name, size) for name, size in new if not name.lower().endswith(".asf")]
+    made = tasks(new)
+    if made:
+        frame = daft.from_pydict(
+            {
+                "part": [task.part(__version__) for task in made],
+                "files": [task.files for task in made],
+            }
+        )
+        if daft.get_or_infer_runner_type() == "ray":
+            # A task for each part, wherever there is room.
+            frame = frame.into_partitions(len(made))
+        importer = Importer(archive.store, raw, about)
+        frame.select(importer.run(frame["part"], frame["files"]).alias("done")).collect()
+    archive.drop_copies()
+
+
+def recognize(
+    motion: Expression,
+    index: Index | str | os.PathLike[str],
+    *,
+    roles: Expression | None = None,
+    rest_frames: Expression | None = None,
+) -> Expression:
+    """What an index recognises in a column of motion, as a list of events: an ordinary Daft expression.
+
+    Parameters
+    ----------
+    motion : Expression
+        Binary: the bytes of ``.mclip`` files, as the column ``motion`` of an archive.
+    index : Index or path
+    roles, rest_frames : Expression, optional
+        The columns of an archive of these names; inferred from the motion by default.
+
+    Returns
+    -------
+    Expression
+        A list of structs: class, start_secs, stop_secs, score, reported_secs; empty where there is nothing to recognise.
+
+    Examples
+    --------
+    >>> frame.with_column("events", ma.recognize(daft.col("motion"), "signs.index"))
+    """
+    model = index if isinstance(index, Index) else load(index)
+    return events_of(motion, model, roles, rest_frames).get("events")

@@ -1,0 +1,161 @@
+"""A classifier for scikit-learn (needs scikit-learn)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from sklearn.base import BaseEstimator, ClassifierMixin
+from sklearn.utils.validation import check_is_fitted
+
+from ._files import as_clips
+from ._learn import train
+from ._morec import Clip, Index
+
+__all__ = ["MotionClassifier"]
+
+
+class MotionClassifier(ClassifierMixin, BaseEstimator):  # type: ignore[misc]
+    """Which class a clip, or a stretch cut from one, shows: morec's templates behind scikit-learn's interface.
+
+    Parameters
+    ----------
+    joints : sequence of str, optional
+        Names of the points, if samples are arrays; see `Clip.from_positions`. ``morec.ROLES`` by default.
+    rate_hz : float
+        Frames a second of arrays.
+    up : str, optional
+        Which way is up in arrays; inferred by default.
+    everyday : {"never", "auto", "always"}
+        Whether training hears of everyday motion; it is what rejection is learned from.
+    reject : bool
+        Predict ``rejected`` for what is further from every class than the trained threshold.
+    rejected : str
+        What is predicted then.
+    params : dict, optional
+        Figures of the method, as in `morec.train`.
+
+    Attributes
+    ----------
+    classes_ : ndarray
+    index_ : Index
+
+    Examples
+    --------
+    >>> model = morec.MotionClassifier().fit(clips, names)
+    >>> model.predict_proba(others)
+    """
+
+    def __init__(
+        self,
+        joints: Sequence[str] | None = None,
+        rate_hz: float = 30.0,
+        up: str | None = None,
+        everyday: str = "never",
+        reject: bool = False,
+        rejected: str = "",
+        params: dict[str, Any] | None = None,
+    ) -> None:
+        self.joints = joints
+        self.rate_hz = rate_hz
+        self.up = up
+        self.everyday = everyday
+        self.reject = reject
+        self.rejected = rejected
+        self.params = params
+
+    def fit(self, X: Any, y: Iterable[Any], groups: Iterable[Any] | None = None) -> MotionClassifier:
+        """Learn from samples.
+
+        Parameters
+        ----------
+        X : sequence of Clip, paths, or array of shape (samples, frames, joints, 3) or (samples, frames, joints × 3)
+            Each is one sample; still ends are trimmed.
+        y : sequence, one class for each sample
+        groups : sequence, optional
+            Who performed each sample.
+        """
+        clips = self._clips(X)
+        names = np.asarray(list(y))
+        if len(names) != len(clips):
+            raise ValueError(f"expected a class for each sample, found {len(clips)} samples and {len(names)} classes")
+        self.classes_, codes = np.unique(names, return_inverse=True)
+        if len(self.classes_) < 2:
+            raise ValueError(f"expected at least two classes, found {len(self.classes_)}")
+        # Labels speak of clips by name: every sample gets its own.
+        clips = [clip.renamed(f"{number}") for number, clip in enumerate(clips)]
+        people = None if groups is None else {f"{number}": str(group) for number, group in enumerate(groups)}
+        labels = [(clip.name, f"{code:05d}") for clip, code in zip(clips, codes)]
+        order = [f"{code:05d}" for code in range(len(self.classes_))]
+        self.index_: Index = train(
+            clips,
+            labels,
+            people=people,
+            classes=order,
+            unlabelled="ignore",
+            everyday=self.everyday,
+            params=self.params,
+            progress=False,
+        )
+        return self
+
+    def decision_function(self, X: Any) -> npt.NDArray[np.float64]:
+        """How near each sample is to each class: distances with the sign turned; shape (samples, classes)."""
+        check_is_fitted(self)
+        distances, self.threshold_ = self.index_.distances(self._clips(X))
+        # What does not move is like nothing.
+        return -np.minimum(distances.astype(np.float64), 1e6)
+
+    def predict_proba(self, X: Any) -> npt.NDArray[np.float64]:
+        """A share for each class, from the ratios of distances; shape (samples, classes), rows sum to 1.
+
+        They order classes and are no calibrated probabilities.
+        """
+        near = self.decision_function(X) / max(self.threshold_ / 4, 1e-9)
+        weights = np.exp(near - near.max(axis=1, keepdims=True))
+        return np.asarray(weights / weights.sum(axis=1, keepdims=True))
+
+    def predict(self, X: Any) -> npt.NDArray[Any]:
+        """The nearest class of each sample; with ``reject``, `rejected` for what is like none."""
+        near = self.decision_function(X)
+        found: npt.NDArray[Any] = self.classes_[near.argmax(axis=1)]
+        if self.reject:
+            found = np.where(-near.max(axis=1) < self.threshold_, found.astype(object), self.rejected)
+        return found
+
+    def _clips(self, X: Any) -> list[Clip]:
+        if isinstance(X, Clip):
+            raise ValueError("expected several samples, found one clip; give [clip]")
+        if isinstance(X, np.ndarray) and X.dtype != object:
+            return self._of_arrays(X)
+        given = list(X)
+        if given and not isinstance(given[0], Clip) and np.ndim(given[0]) >= 2:
+            return [clip for array in given for clip in self._of_arrays(np.asarray(array)[np.newaxis])]
+        return as_clips(given)
+
+    def _of_arrays(self, X: npt.NDArray[Any]) -> list[Clip]:
+        from ._morec import ROLES
+
+        names = list(ROLES if self.joints is None else self.joints)
+        if X.ndim == 3 and X.shape[2] == 3 * len(names):
+            X = X.reshape(*X.shape[:2], len(names), 3)
+        if X.ndim != 4 or X.shape[2:] != (len(names), 3):
+            shape = ", ".join(map(str, X.shape))
+            raise ValueError(
+                f"expected an array of shape (samples, frames, {len(names)}, 3) or (samples, frames, {3 * len(names)}), "
+                f"found ({shape})"
+            )
+        return [
+            Clip.from_positions(sample, names, self.rate_hz, up=self.up, name=f"{number}")
+            for number, sample in enumerate(X)
+        ]
+
+    def __sklearn_tags__(self) -> Any:
+        tags = super().__sklearn_tags__()
+        tags.input_tags.two_d_array = False
+        tags.input_tags.three_d_array = True
+        tags.input_tags.allow_nan = True
+        tags.no_validation = True
+        return tags

@@ -1,0 +1,568 @@
+//! `morec.Database`: clips, labels and search in one file.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use morec::features::{FeatureParams, bones_of_clip, rows_of_clip};
+use morec::files::{FileReader, list};
+use morec::labels::{ClipLength, Sample};
+use morec::pivots::PivotSet;
+use morec::segment::{KernelParams, PpcaParams};
+use morec_db::labels::{NewSample, SampleFilter, SampleId, State};
+use morec_db::search::{Example, SearchIndex, SearchOptions};
+use morec_db::{
+    ClipFilter, ClipId, ClipInfo, ClipUpdate, Cutter, DbError, ImportOutcome, MotionDb,
+    ProposeOptions,
+};
+use pyo3::exceptions::{PyFileExistsError, PyFileNotFoundError, PyKeyError, PyPermissionError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::clip::{ClipData, PyClip};
+use crate::errors::{MorecError, file_error, value_error, warn};
+use crate::job;
+use crate::tables::{plain, table};
+
+/// A motion database: clips, cuts, classes and labels in one SQLite file, as `morec db` keeps it.
+#[pyclass(frozen, name = "Database", module = "morec")]
+pub struct PyDatabase {
+    path: PathBuf,
+    db: Mutex<Option<MotionDb>>,
+    /// Rows of all clips, laid out for searching; made by the first search and dropped by every change.
+    search: Mutex<Option<SearchIndex>>,
+}
+
+/// What a database says, as the exception that Python people expect.
+pub fn db_error(error: DbError) -> PyErr {
+    let text = error.to_string();
+    match error {
+        DbError::Missing(_) => PyFileNotFoundError::new_err(text),
+        DbError::Exists(_) => PyFileExistsError::new_err(text),
+        DbError::ReadOnly => PyPermissionError::new_err(text),
+        DbError::Unknown { .. } => PyKeyError::new_err(text),
+        DbError::Invalid(_) => value_error(text),
+        _ => MorecError::new_err(text),
+    }
+}
+
+fn held<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl PyDatabase {
+    /// Does `work` with the open database, other Python threads running meanwhile.
+    fn with<T: Send>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&mut MotionDb) -> Result<T, DbError> + Send,
+    ) -> PyResult<T> {
+        py.detach(|| match held(&self.db).as_mut() {
+            Some(db) => work(db).map_err(db_error),
+            None => Err(value_error(format!("{}: closed", self.path.display()))),
+        })
+    }
+
+    fn changed(&self) {
+        *held(&self.search) = None;
+    }
+}
+
+const CLIP: [&str; 12] = [
+    "clip", "subject", "secs", "frames", "rate_hz", "joints", "format", "path", "source",
+    "licence", "tags", "samples",
+];
+
+fn clip_row<'py>(py: Python<'py>, info: &ClipInfo) -> PyResult<Bound<'py, PyDict>> {
+    let row = PyDict::new(py);
+    row.set_item("clip", &info.name)?;
+    row.set_item("subject", &info.subject)?;
+    row.set_item("secs", info.duration_secs())?;
+    row.set_item("frames", info.frames)?;
+    row.set_item("rate_hz", info.rate_hz)?;
+    row.set_item("joints", info.joints)?;
+    row.set_item("format", &info.format)?;
+    row.set_item("path", &info.path)?;
+    row.set_item("source", &info.source)?;
+    row.set_item("licence", &info.licence)?;
+    row.set_item("tags", &info.tags)?;
+    row.set_item("samples", info.samples)?;
+    Ok(row)
+}
+
+fn state(name: &str) -> PyResult<State> {
+    State::from_name(name).ok_or_else(|| {
+        value_error(format!(
+            "state: expected \"accepted\", \"proposed\" or \"rejected\", found {name:?}"
+        ))
+    })
+}
+
+#[pymethods]
+impl PyDatabase {
+    #[new]
+    #[pyo3(signature = (path, *, create=false))]
+    fn new(py: Python<'_>, path: PathBuf, create: bool) -> PyResult<Self> {
+        let db = py.detach(|| match create && !path.exists() {
+            true => MotionDb::create(&path),
+            false => MotionDb::open(&path),
+        });
+        Ok(Self {
+            db: Mutex::new(Some(db.map_err(db_error)?)),
+            path,
+            search: Mutex::default(),
+        })
+    }
+
+    /// Where the file lies.
+    #[getter]
+    fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Closes the file; every other method then raises.
+    fn close(&self) {
+        *held(&self.db) = None;
+        self.changed();
+    }
+
+    fn __enter__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    #[pyo3(signature = (*_args))]
+    fn __exit__(&self, _args: &Bound<'_, PyAny>) {
+        self.close();
+    }
+
+    /// How much is in it.
+    fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let summary = self.with(py, |db| db.summary())?;
+        plain(py, &summary)
+    }
+
+    /// Adds the clips of files and folders; what is there already is known by its content.
+    #[pyo3(signature = (paths, *, source=None, licence=None, subject=None, tags=vec![], progress=None))]
+    #[allow(clippy::too_many_arguments)] // Keyword arguments of one Python method.
+    fn import_files<'py>(
+        &self,
+        py: Python<'py>,
+        paths: &Bound<'py, PyAny>,
+        source: Option<String>,
+        licence: Option<String>,
+        subject: Option<String>,
+        tags: Vec<String>,
+        progress: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let given = match paths.extract::<PathBuf>() {
+            Ok(path) => vec![path],
+            Err(_) => paths.extract()?,
+        };
+        let listing = list(&given).map_err(|error| file_error(&error))?;
+        warn(
+            py,
+            listing
+                .left_out
+                .iter()
+                .map(|error| format!("left out: {error}")),
+        )?;
+        let (files, reader) = (listing.clips, FileReader::default());
+        let about = ClipUpdate {
+            source,
+            licence,
+            subject,
+            add_tags: tags,
+            remove_tags: Vec::new(),
+        };
+        self.changed();
+        let report = job::run(py, progress, |progress| match held(&self.db).as_mut() {
+            Some(db) => db
+                .import(&files, &reader, &about, progress)
+                .map_err(db_error),
+            None => Err(value_error("the database is closed")),
+        })??;
+        let mut rows = Vec::new();
+        for (path, outcome) in &report.files {
+            let row = PyDict::new(py);
+            let (what, clips, notes) = match outcome {
+                ImportOutcome::Imported { clips, warnings } => {
+                    ("imported", clips.clone(), warnings.clone())
+                }
+                ImportOutcome::Known => ("known", vec![], vec![]),
+                ImportOutcome::Copy { of } => ("copy", vec![], vec![of.display().to_string()]),
+                ImportOutcome::Refused(refused) => {
+                    ("refused", vec![], vec![refused.reason.clone()])
+                }
+            };
+            row.set_item("path", path.to_string_lossy())?;
+            row.set_item("outcome", what)?;
+            row.set_item("clips", clips)?;
+            row.set_item("notes", notes)?;
+            rows.push(row);
+        }
+        table(py, &["path", "outcome", "clips", "notes"], rows)
+    }
+
+    /// The clips, by name: `*` stands for any text, `?` for one character.
+    #[pyo3(signature = (name=None, *, subject=None, tag=None, class_name=None))]
+    fn clips<'py>(
+        &self,
+        py: Python<'py>,
+        name: Option<String>,
+        subject: Option<String>,
+        tag: Option<String>,
+        class_name: Option<String>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let filter = ClipFilter {
+            name,
+            subject,
+            tag,
+            class: class_name,
+        };
+        let infos = self.with(py, |db| db.clips(&filter))?;
+        let rows: PyResult<Vec<_>> = infos.iter().map(|info| clip_row(py, info)).collect();
+        table(py, &CLIP, rows?)
+    }
+
+    /// A clip as it is kept: within half a degree and five millimetres of its file, unless the summary says more.
+    fn clip(&self, py: Python<'_>, name: &str) -> PyResult<PyClip> {
+        let (stored, info) = self.with(py, |db| {
+            let info = db.find_clip(name)?;
+            Ok((db.clip(info.id)?, info))
+        })?;
+        Ok(ClipData {
+            clip: stored.clip,
+            roles: stored.roles,
+            rest: stored.rest,
+            facts: "{}".to_owned(),
+            warnings: Vec::new(),
+            path: Some(PathBuf::from(info.path)),
+            format: info.format,
+        }
+        .into())
+    }
+
+    /// The labels: accepted ones, or those of another state; all with `state=None`.
+    #[pyo3(signature = (*, state=Some("accepted"), clip=None, class_name=None))]
+    fn labels<'py>(
+        &self,
+        py: Python<'py>,
+        state: Option<&str>,
+        clip: Option<&str>,
+        class_name: Option<String>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let state = state.map(self::state).transpose()?;
+        let samples = self.with(py, |db| {
+            let clip = clip.map(|name| db.find_clip(name)).transpose()?;
+            db.samples(&SampleFilter {
+                clip: clip.map(|info| info.id),
+                class: class_name,
+                state,
+            })
+        })?;
+        let columns = [
+            "clip",
+            "class",
+            "start_secs",
+            "stop_secs",
+            "person",
+            "whole_clip",
+            "state",
+            "score",
+            "set_by",
+        ];
+        let mut rows = Vec::new();
+        for s in &samples {
+            let row = PyDict::new(py);
+            row.set_item("clip", &s.clip_name)?;
+            row.set_item("class", &s.class)?;
+            row.set_item("start_secs", s.start_secs)?;
+            row.set_item("stop_secs", s.stop_secs)?;
+            row.set_item("person", &s.subject)?;
+            row.set_item("whole_clip", s.whole_clip)?;
+            row.set_item("state", s.state.name())?;
+            row.set_item("score", s.score)?;
+            row.set_item("set_by", &s.set_by)?;
+            rows.push(row);
+        }
+        table(py, &columns, rows)
+    }
+
+    /// Adds labels; all or none.
+    #[pyo3(signature = (labels, *, state="accepted", by="user"))]
+    fn label<'py>(
+        &self,
+        py: Python<'py>,
+        labels: &Bound<'py, PyAny>,
+        state: &str,
+        by: &str,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let state = self::state(state)?;
+        let rows = py
+            .import("morec._labels")?
+            .call_method1("label_rows", (labels,))?;
+        let labels = crate::material::labels(&rows)?;
+        let (added, warnings) = self.with(py, |db| {
+            let clips = db.clips(&ClipFilter::default())?;
+            let length = |info: &ClipInfo| ClipLength {
+                frames: info.frames,
+                rate_hz: info.rate_hz,
+            };
+            let lengths = clips.iter().map(|c| (c.name.clone(), length(c))).collect();
+            let resolved = labels.resolve(&lengths);
+            if let Some(clip) = resolved.absent.keys().next() {
+                // Says which names come near.
+                db.find_clip(clip)?;
+            }
+            let ids: BTreeMap<String, ClipId> = clips.into_iter().map(|c| (c.name, c.id)).collect();
+            let sample = |s: Sample| {
+                Some(NewSample {
+                    clip: *ids.get(&s.clip)?,
+                    class: s.class,
+                    start_secs: s.start_secs,
+                    stop_secs: s.stop_secs,
+                    whole_clip: s.whole_clip,
+                    state,
+                    score: None,
+                })
+            };
+            let samples: Vec<NewSample> = resolved.samples.into_iter().filter_map(sample).collect();
+            Ok((db.add_samples(&samples, by)?, resolved.warnings))
+        })?;
+        warn(py, warnings.iter().map(|w| format!("labels: {w}")))?;
+        plain(py, &added)
+    }
+
+    /// Stretches that are like an example, the likest first.
+    #[pyo3(signature = (example, start=0.0, stop=None, *, mirror=false, limit=20, one_a_clip=false))]
+    #[allow(clippy::too_many_arguments)] // Keyword arguments of one Python method.
+    fn search<'py>(
+        &self,
+        py: Python<'py>,
+        example: &Bound<'py, PyAny>,
+        start: f64,
+        stop: Option<f64>,
+        mirror: bool,
+        limit: usize,
+        one_a_clip: bool,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let name = example.extract::<String>().ok();
+        let clip = match &name {
+            Some(_) => None,
+            None => crate::index::clips_of(example)?.into_iter().next(),
+        };
+        let data = clip.map(|clip| clip.get().data.clone());
+        let options = SearchOptions {
+            limit,
+            mirror,
+            one_a_clip,
+            ..SearchOptions::default()
+        };
+        let (hits, names) = self.with(py, |db| {
+            let mut search = held(&self.search);
+            if search.is_none() {
+                *search = Some(SearchIndex::of_db(db, &())?);
+            }
+            let Some(index) = search.as_ref() else {
+                return Err(DbError::Cancelled);
+            };
+            let example = match (&name, &data) {
+                (Some(name), _) => {
+                    let info = db.find_clip(name)?;
+                    index.example(info.id, start, stop.unwrap_or(info.duration_secs()))
+                }
+                (None, Some(data)) => example_of(data, start, stop),
+                (None, None) => None,
+            };
+            let short =
+                || DbError::Invalid("the example must hold at least 0.1 s of motion".into());
+            let hits = index.search(&example.ok_or_else(short)?, &options);
+            Ok((hits, names(db)?))
+        })?;
+        let mut rows = Vec::new();
+        for hit in hits {
+            let row = PyDict::new(py);
+            row.set_item("clip", names.get(&hit.clip))?;
+            row.set_item("start_secs", hit.start_secs)?;
+            row.set_item("stop_secs", hit.stop_secs)?;
+            row.set_item("score", hit.score)?;
+            row.set_item("warp_distance", hit.warp_distance)?;
+            row.set_item("mirrored", hit.mirrored)?;
+            rows.push(row);
+        }
+        let columns = [
+            "clip",
+            "start_secs",
+            "stop_secs",
+            "score",
+            "warp_distance",
+            "mirrored",
+        ];
+        table(py, &columns, rows)
+    }
+
+    /// Cuts clips where their behaviour changes, and keeps the cuts; a row for each clip.
+    #[pyo3(signature = (name=None, *, method="kernel", window=None, penalty=None, least=None, rise=None, progress=None))]
+    #[allow(clippy::too_many_arguments)] // Keyword arguments of one Python method.
+    fn cut<'py>(
+        &self,
+        py: Python<'py>,
+        name: Option<String>,
+        method: &str,
+        window: Option<f64>,
+        penalty: Option<f64>,
+        least: Option<f64>,
+        rise: Option<f64>,
+        progress: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let (kernel, ppca) = (KernelParams::default(), PpcaParams::default());
+        let cutter = match method {
+            "kernel" => Cutter::Kernel(KernelParams {
+                window_secs: window.unwrap_or(kernel.window_secs),
+                penalty: penalty.unwrap_or(kernel.penalty),
+                least_secs: least.unwrap_or(kernel.least_secs),
+                ..kernel
+            }),
+            "ppca" => Cutter::Ppca(
+                PpcaParams {
+                    rise: rise.unwrap_or(ppca.rise),
+                    ..ppca
+                },
+                PivotSet::thesis(),
+            ),
+            other => {
+                return Err(value_error(format!(
+                    "method: expected \"kernel\" or \"ppca\", found {other:?}"
+                )));
+            }
+        };
+        let filter = ClipFilter {
+            name,
+            ..ClipFilter::default()
+        };
+        let report = job::run(py, progress, |progress| match held(&self.db).as_mut() {
+            Some(db) => db
+                .find_clips(&filter)
+                .and_then(|clips| db.cut(&clips, &cutter, progress))
+                .map_err(db_error),
+            None => Err(value_error("the database is closed")),
+        })??;
+        warn(
+            py,
+            report
+                .left
+                .iter()
+                .map(|(clip, why)| format!("left as it is: {clip}: {why}")),
+        )?;
+        let mut rows = Vec::new();
+        for cut in &report.cuts {
+            rows.push(plain(py, cut)?.cast_into::<PyDict>()?);
+        }
+        table(py, &["clip", "secs", "cuts_secs", "still"], rows)
+    }
+
+    /// Other samples of the classes that are labelled, the surest first; they are kept as proposed.
+    #[pyo3(signature = (*, classes=vec![], progress=None))]
+    fn propose<'py>(
+        &self,
+        py: Python<'py>,
+        classes: Vec<String>,
+        progress: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let options = ProposeOptions {
+            classes,
+            ..ProposeOptions::default()
+        };
+        let (proposals, names) = job::run(py, progress, |progress| {
+            let mut db = held(&self.db);
+            let Some(db) = db.as_mut() else {
+                return Err(value_error("the database is closed"));
+            };
+            options
+                .classes
+                .iter()
+                .try_for_each(|class| db.need_class(class))
+                .and_then(|()| db.propose_and_keep(&options, progress))
+                .and_then(|proposals| Ok((proposals, names(db)?)))
+                .map_err(db_error)
+        })??;
+        let mut rows = Vec::new();
+        for p in &proposals {
+            let row = PyDict::new(py);
+            row.set_item("clip", names.get(&p.clip))?;
+            row.set_item("class", &p.class)?;
+            row.set_item("start_secs", p.start_secs)?;
+            row.set_item("stop_secs", p.stop_secs)?;
+            row.set_item("score", p.score)?;
+            rows.push(row);
+        }
+        table(
+            py,
+            &["clip", "class", "start_secs", "stop_secs", "score"],
+            rows,
+        )
+    }
+
+    /// Accepts the proposals of at least one score, rejects those below another; how many of each.
+    #[pyo3(signature = (*, accept=None, reject=None, classes=vec![]))]
+    fn judge(
+        &self,
+        py: Python<'_>,
+        accept: Option<f64>,
+        reject: Option<f64>,
+        classes: Vec<String>,
+    ) -> PyResult<(usize, usize)> {
+        self.with(py, |db| {
+            let all = db.samples(&SampleFilter {
+                state: Some(State::Proposed),
+                ..SampleFilter::default()
+            })?;
+            let (mut accepted, mut rejected): (Vec<SampleId>, Vec<SampleId>) = Default::default();
+            for s in all
+                .iter()
+                .filter(|s| classes.is_empty() || classes.contains(&s.class))
+            {
+                let score = s.score.unwrap_or(0.0);
+                if accept.is_some_and(|least| score >= least) {
+                    accepted.push(s.id);
+                } else if reject.is_some_and(|least| score < least) {
+                    rejected.push(s.id);
+                }
+            }
+            db.judge_both(&accepted, &rejected, "user")?;
+            Ok((accepted.len(), rejected.len()))
+        })
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> String {
+        let path = self.path.display();
+        match self.with(py, |db| db.summary()) {
+            Ok(s) => format!(
+                "<morec.Database {path}: {} clips, {:.1} min, {} labels>",
+                s.clips,
+                s.secs / 60.0,
+                s.accepted
+            ),
+            Err(_) => format!("<morec.Database {path}: closed>"),
+        }
+    }
+}
+
+/// Names of the clips.
+fn names(db: &MotionDb) -> Result<BTreeMap<ClipId, String>, DbError> {
+    let clips = db.clips(&ClipFilter::default())?;
+    Ok(clips.into_iter().map(|c| (c.id, c.name)).collect())
+}
+
+/// A stretch of a clip from elsewhere as an example.
+pub fn example_of(data: &ClipData, start_secs: f64, stop_secs: Option<f64>) -> Option<Example> {
+    let params = FeatureParams::default();
+    let bones = bones_of_clip(&data.clip, &data.roles, &data.rest);
+    let rows = rows_of_clip(&data.clip, &data.roles, &data.rest, bones, &params);
+    let tick = |secs: f64| ((secs * params.tick_hz()).round().max(0.0) as usize).min(rows.len());
+    let (start, stop) = (tick(start_secs), stop_secs.map_or(rows.len(), tick));
+    let span = rows.slice(start..stop.max(start));
+    let all = span.len() == rows.len();
+    let example = SearchIndex::example_of(&span, bones)?;
+    Some(if all { example } else { example.cut_out() })
+}

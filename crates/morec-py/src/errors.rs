@@ -1,0 +1,80 @@
+//! Errors as Python people expect them.
+
+use std::fmt::Display;
+use std::io::ErrorKind;
+use std::path::Path;
+
+use morec::files::{FileError, FileErrorKind};
+use pyo3::create_exception;
+use pyo3::exceptions::{
+    PyException, PyFileExistsError, PyFileNotFoundError, PyOSError, PyPermissionError,
+    PyUserWarning, PyValueError,
+};
+use pyo3::prelude::*;
+
+create_exception!(
+    morec,
+    MorecError,
+    PyException,
+    "What a file, a label or a motion has that morec cannot use, with its place."
+);
+create_exception!(
+    morec,
+    MorecWarning,
+    PyUserWarning,
+    "Something was repaired, left out or looks wrong; the result is there all the same."
+);
+
+/// Adds the types to the module.
+pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("MorecError", module.py().get_type::<MorecError>())?;
+    module.add("MorecWarning", module.py().get_type::<MorecWarning>())
+}
+
+/// A `MorecError` with this text.
+pub fn morec_error(error: impl Display) -> PyErr {
+    MorecError::new_err(error.to_string())
+}
+
+/// A `ValueError` with this text.
+pub fn value_error(error: impl Display) -> PyErr {
+    PyValueError::new_err(error.to_string())
+}
+
+/// What the system said of a file, as the exception that Python itself would raise.
+pub fn io_error(path: &Path, error: &std::io::Error) -> PyErr {
+    let text = format!("{}: {error}", path.display());
+    match error.kind() {
+        ErrorKind::NotFound => PyFileNotFoundError::new_err(text),
+        ErrorKind::PermissionDenied => PyPermissionError::new_err(text),
+        ErrorKind::AlreadyExists => PyFileExistsError::new_err(text),
+        _ => PyOSError::new_err(text),
+    }
+}
+
+/// Why a file cannot be used: what the system said as Python's own exception, all else as a `MorecError`.
+pub fn file_error(error: &FileError) -> PyErr {
+    match &*error.kind {
+        FileErrorKind::Io(why) => io_error(&error.path, why),
+        _ => morec_error(error),
+    }
+}
+
+/// Any error of the library.
+pub fn library_error(error: morec::Error) -> PyErr {
+    match error {
+        morec::Error::File(error) => file_error(&error),
+        morec::Error::Sensitivity(error) => value_error(format!("sensitivity: {error}")),
+        error => morec_error(error),
+    }
+}
+
+/// Warns once for each of `texts`, at the place in the user's program that called the package.
+pub fn warn<T: Display>(py: Python<'_>, texts: impl IntoIterator<Item = T>) -> PyResult<()> {
+    let category = py.get_type::<MorecWarning>();
+    for text in texts {
+        let text = std::ffi::CString::new(text.to_string().replace('\0', " "))?;
+        PyErr::warn(py, category.as_any(), &text, 1)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,315 @@
+//! `morec.Index`: a trained index.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use morec::features::{bones_of_clip, rows_of_clip};
+use morec::import::SignedAxis;
+use morec::index::MotionIndex;
+use morec::live::{Detection, Model, StartError, recognize_clip};
+use morec::roles::Role;
+use morec::templates::{Matcher, Metric};
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+use rayon::prelude::*;
+
+use crate::arrays::owned;
+use crate::clip::{ClipData, PyClip};
+use crate::errors::{library_error, morec_error, value_error, warn};
+use crate::job;
+use crate::recognizer::{Layout, PyRecognizer};
+use crate::tables::{detections, plain};
+
+/// A trained index: what recognition needs, in one immutable file.
+#[pyclass(frozen, name = "Index", module = "morec")]
+pub struct PyIndex {
+    pub index: Arc<MotionIndex>,
+    /// What training reported, if it was trained here.
+    pub report: Option<serde_json::Value>,
+}
+
+impl From<MotionIndex> for PyIndex {
+    fn from(index: MotionIndex) -> Self {
+        Self {
+            index: Arc::new(index),
+            report: None,
+        }
+    }
+}
+
+/// Opens an index file.
+#[pyfunction]
+pub fn load(path: PathBuf) -> PyResult<PyIndex> {
+    match MotionIndex::load(&path) {
+        Ok(index) => Ok(index.into()),
+        Err(morec::Error::Index(error)) => Err(morec_error(format!("{}: {error}", path.display()))),
+        Err(error) => Err(library_error(error)),
+    }
+}
+
+/// An index from the bytes of its file.
+#[pyfunction]
+pub fn index_from_bytes(bytes: &[u8]) -> PyResult<PyIndex> {
+    Ok(MotionIndex::from_bytes(bytes).map_err(morec_error)?.into())
+}
+
+/// What the index uses and a clip does not show, in a sentence.
+fn lacks(index: &MotionIndex, data: &ClipData) -> Option<String> {
+    let Model::Templates(model) = &index.model else {
+        return None;
+    };
+    let shown = bones_of_clip(&data.clip, &data.roles, &data.rest);
+    if data.clip.frames == 0 || shown.and(model.bones) == model.bones {
+        return None;
+    }
+    let optional = [Role::Torso, Role::LeftShoulder, Role::RightShoulder];
+    let missing = data.roles.missing().filter(|role| !optional.contains(role));
+    let names: Vec<&str> = missing.map(Role::name).collect();
+    let names = match names.is_empty() {
+        true => "bones of no length".to_owned(),
+        false => names.join(", "),
+    };
+    Some(format!(
+        "{}: the index uses bones that this clip does not show (missing: {names}); recognising without them",
+        data.clip.name
+    ))
+}
+
+/// A clip with the roles that the index knows from its training clips.
+fn completed(index: &MotionIndex, data: &Arc<ClipData>) -> ClipData {
+    let mut data = (**data).clone();
+    index.complete_roles(&mut data.roles, &data.clip.skeleton);
+    data
+}
+
+impl PyIndex {
+    fn with_sensitivity(&self, sensitivity: Option<f64>) -> PyResult<Arc<MotionIndex>> {
+        let Some(alarms) = sensitivity else {
+            return Ok(self.index.clone());
+        };
+        let model = self.index.model.with_sensitivity(alarms);
+        Ok(Arc::new(MotionIndex {
+            model: model.map_err(|e| value_error(format!("sensitivity: {e}")))?,
+            ..(*self.index).clone()
+        }))
+    }
+}
+
+/// Clips from what was given: a clip, a path, or several.
+pub fn clips_of<'py>(given: &Bound<'py, PyAny>) -> PyResult<Vec<Bound<'py, PyClip>>> {
+    if let Ok(clip) = given.cast::<PyClip>() {
+        return Ok(vec![clip.clone()]);
+    }
+    let files = given.py().import("morec._files")?;
+    files.call_method1("as_clips", (given,))?.extract()
+}
+
+#[pymethods]
+impl PyIndex {
+    /// An index from the bytes of its file.
+    #[staticmethod]
+    fn from_bytes(bytes: &[u8]) -> PyResult<Self> {
+        index_from_bytes(bytes)
+    }
+
+    /// The bytes of the index file.
+    fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        Ok(PyBytes::new(
+            py,
+            &self.index.to_bytes().map_err(morec_error)?,
+        ))
+    }
+
+    /// Writes the index file, whole or not at all.
+    fn save(&self, path: PathBuf) -> PyResult<()> {
+        self.index.save(&path).map_err(library_error)
+    }
+
+    /// Everything that is recognised in clips, frame by frame as in a live stream.
+    #[pyo3(signature = (clips, *, sensitivity=None, progress=None))]
+    fn recognize<'py>(
+        &self,
+        py: Python<'py>,
+        clips: &Bound<'py, PyAny>,
+        sensitivity: Option<f64>,
+        progress: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let index = self.with_sensitivity(sensitivity)?;
+        let clips: Vec<Arc<ClipData>> = clips_of(clips)?
+            .iter()
+            .map(|clip| clip.get().data.clone())
+            .collect();
+        let all = job::run(py, progress, |progress| {
+            let done = AtomicUsize::new(0);
+            let one = |data: &Arc<ClipData>| -> Option<Recognized> {
+                if progress.cancelled() {
+                    return None;
+                }
+                let data = completed(&index, data);
+                let found = recognize_clip(&index.model, &data.clip, &data.roles, &data.rest);
+                let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+                progress.report("recognising", done, clips.len());
+                Some((data.clip.name.clone(), lacks(&index, &data), found))
+            };
+            clips.par_iter().map(one).collect::<Vec<_>>()
+        })?;
+        let mut found = Vec::new();
+        for (clip, lacking, result) in all.into_iter().flatten() {
+            warn(py, lacking)?;
+            let result = result.map_err(|error| morec_error(format!("{clip}: {error}")))?;
+            found.push((clip, result));
+        }
+        detections(py, &index.model, &found)
+    }
+
+    /// A recogniser for a live stream of joint positions.
+    #[pyo3(signature = (joints, *, roles=None, up=None, sensitivity=None))]
+    fn recognizer(
+        &self,
+        py: Python<'_>,
+        joints: &Bound<'_, PyAny>,
+        roles: Option<&Bound<'_, PyAny>>,
+        up: Option<&str>,
+        sensitivity: Option<f64>,
+    ) -> PyResult<PyRecognizer> {
+        let index = self.with_sensitivity(sensitivity)?;
+        let up: SignedAxis = up
+            .unwrap_or("y")
+            .parse()
+            .map_err(|error| value_error(format!("up: {error}")))?;
+        let layout = match joints.cast::<PyClip>() {
+            Ok(clip) => {
+                let data = completed(&index, &clip.get().data);
+                Layout::of_clip(&data.into())
+            }
+            Err(_) => Layout::of_names(joints.extract()?, roles)?,
+        };
+        PyRecognizer::new(py, &index.model, layout, up)
+    }
+
+    /// How far each clip is from each class: float32 of shape (clips, classes), and the distance from which on nothing is
+    /// reported. Of the method `templates` only.
+    fn distances<'py>(
+        &self,
+        py: Python<'py>,
+        clips: &Bound<'py, PyAny>,
+    ) -> PyResult<(Bound<'py, PyAny>, f32)> {
+        let Model::Templates(model) = &self.index.model else {
+            return Err(value_error("distances are those of the method templates"));
+        };
+        let clips: Vec<Arc<ClipData>> = clips_of(clips)?
+            .iter()
+            .map(|clip| clip.get().data.clone())
+            .collect();
+        let index = &self.index;
+        let found = py.detach(|| {
+            let one = |data: &Arc<ClipData>| class_distances(index, data);
+            clips.par_iter().map(one).collect::<Result<Vec<_>, _>>()
+        });
+        let found = found.map_err(morec_error)?;
+        let shape = [found.len(), model.classes.len()];
+        Ok((
+            owned(py, found.concat(), &shape)?.into_any(),
+            model.threshold,
+        ))
+    }
+
+    /// The classes: name, samples and people that taught them.
+    #[getter]
+    fn classes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        plain(py, &self.index.model.classes())
+    }
+
+    /// Names of the classes, in order.
+    #[getter]
+    fn class_names(&self) -> Vec<&str> {
+        let classes = self.index.model.classes().iter();
+        classes.map(|class| class.name.as_str()).collect()
+    }
+
+    /// The method of recognition: `"templates"` or `"svrdm"`.
+    #[getter]
+    fn method(&self) -> &'static str {
+        self.index.model.method()
+    }
+
+    /// Where the index came from: date, version, clips, samples, background.
+    #[getter]
+    fn provenance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        plain(py, &self.index.provenance)
+    }
+
+    /// What training reported; `None` for an index that was loaded.
+    #[getter]
+    fn report<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.report
+            .as_ref()
+            .map(|report| plain(py, report))
+            .transpose()
+    }
+
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
+        let restore = py.import("morec._morec")?.getattr("index_from_bytes")?;
+        Ok((restore, (self.to_bytes(py)?,)))
+    }
+
+    fn __eq__(&self, other: &Self) -> bool {
+        self.index == other.index
+    }
+
+    fn __repr__(&self) -> String {
+        let classes = self.class_names();
+        let shown = classes
+            .iter()
+            .take(8)
+            .copied()
+            .collect::<Vec<_>>()
+            .join(", ");
+        let more = if classes.len() > 8 { ", …" } else { "" };
+        format!(
+            "<morec.Index: {} classes ({shown}{more}), {} samples, method {}>",
+            classes.len(),
+            self.index.provenance.samples,
+            self.method()
+        )
+    }
+}
+
+type Recognized = (String, Option<String>, Result<Vec<Detection>, StartError>);
+
+/// The least distance of each class anywhere in a clip, as recognition compares; infinite if it is like none.
+fn class_distances(index: &MotionIndex, data: &Arc<ClipData>) -> Result<Vec<f32>, String> {
+    let Model::Templates(model) = &index.model else {
+        return Err("distances are those of the method templates".to_owned());
+    };
+    let data = completed(index, data);
+    let named = |error: String| format!("{}: {error}", data.clip.name);
+    let shown = bones_of_clip(&data.clip, &data.roles, &data.rest).and(model.bones);
+    let model = model.restricted(shown).map_err(|e| named(e.to_string()))?;
+    let (bones, features) = (model.bones, &model.features);
+    let rows = rows_of_clip(&data.clip, &data.roles, &data.rest, bones, features);
+    let metric = Metric::new(&model.ridged, &model.total);
+    let templates: Vec<_> = model
+        .samples
+        .iter()
+        .map(|s| metric.apply_all(&s.rows))
+        .collect();
+    let mut matcher = Matcher::new(&templates, metric.dim(), model.decode.spread_exponent);
+    let rest_share = model.decode.rest_share(model.rule());
+    let mut least = vec![f32::INFINITY; model.classes.len()];
+    for row in metric.apply_all(&rows).iter() {
+        matcher.step(row);
+        for (number, sample) in model.samples.iter().enumerate() {
+            let found = matcher.compare(number);
+            let best = &mut least[sample.class.index()];
+            if found.distance < *best && found.moves(rest_share) {
+                *best = found.distance;
+            }
+        }
+    }
+    Ok(least)
+}

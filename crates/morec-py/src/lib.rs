@@ -1,0 +1,56 @@
+//! The native part of the Python package `morec`. What is easier said in Python lies in `python/morec`.
+
+mod archive;
+mod arrays;
+mod clip;
+mod crossval;
+mod database;
+mod errors;
+mod features;
+mod index;
+mod job;
+mod live;
+mod material;
+mod open;
+mod recognizer;
+mod segment;
+mod state;
+mod synth;
+mod tables;
+mod train;
+
+use pyo3::prelude::*;
+
+/// The native part of the package `morec`.
+#[pymodule]
+fn _morec(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add("ROLES", features::role_names())?;
+    errors::register(module)?;
+    module.add_class::<clip::PyClip>()?;
+    module.add_class::<index::PyIndex>()?;
+    module.add_class::<live::LiveSession>()?;
+    module.add_class::<recognizer::PyRecognizer>()?;
+    module.add_class::<crossval::PyCrossval>()?;
+    module.add_class::<database::PyDatabase>()?;
+    module.add_function(wrap_pyfunction!(open::read_path, module)?)?;
+    module.add_function(wrap_pyfunction!(open::read_bytes, module)?)?;
+    module.add_function(wrap_pyfunction!(open::read_folder, module)?)?;
+    module.add_function(wrap_pyfunction!(state::from_state, module)?)?;
+    module.add_function(wrap_pyfunction!(features::features, module)?)?;
+    module.add_function(wrap_pyfunction!(features::key_positions, module)?)?;
+    module.add_function(wrap_pyfunction!(index::load, module)?)?;
+    module.add_function(wrap_pyfunction!(index::index_from_bytes, module)?)?;
+    module.add_function(wrap_pyfunction!(train::train, module)?)?;
+    module.add_function(wrap_pyfunction!(material::resolve_labels, module)?)?;
+    module.add_function(wrap_pyfunction!(material::rows_of_table, module)?)?;
+    archive::register(module)?;
+    module.add_function(wrap_pyfunction!(crossval::crossval, module)?)?;
+    module.add_function(wrap_pyfunction!(crossval::evaluate, module)?)?;
+    module.add_function(wrap_pyfunction!(segment::cut_kernel, module)?)?;
+    module.add_function(wrap_pyfunction!(segment::cut_ppca, module)?)?;
+    module.add_function(wrap_pyfunction!(synth::synth_database, module)?)?;
+    module.add_function(wrap_pyfunction!(synth::synth_everyday, module)?)?;
+    module.add_function(wrap_pyfunction!(synth::synth_motions, module)?)?;
+    Ok(())
+}

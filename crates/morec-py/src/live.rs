@@ -1,0 +1,147 @@
+//! A session on a live source, event by event.
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use morec::live::{Event, EventOptions, EventReader, MAX_ACTORS, Model, Session, SessionOptions};
+use morec_live::{Address, LiveError, Notices, SourceOptions, open_source};
+use pyo3::exceptions::PyOSError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::errors::{file_error, morec_error, value_error};
+use crate::index::PyIndex;
+
+/// A session that listens; `morec.listen` is made of it.
+#[pyclass(frozen, module = "morec")]
+pub struct LiveSession {
+    /// Ended by being dropped.
+    open: Mutex<Option<Session>>,
+    reader: Mutex<EventReader>,
+    model: Model,
+    address: String,
+    notices: Notices,
+}
+
+fn held<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Why a source cannot be opened, as Python's own exceptions where it has one.
+fn live_error(error: LiveError) -> PyErr {
+    match error {
+        LiveError::Address(text) => value_error(format!("address: {text}")),
+        LiveError::Io { what, why } => PyOSError::new_err(format!("{what}: {why}")),
+        LiveError::File(error) => file_error(&error),
+        other => morec_error(other),
+    }
+}
+
+#[pymethods]
+impl LiveSession {
+    #[new]
+    fn new(
+        address: &str,
+        index: &PyIndex,
+        actors: usize,
+        mirror: bool,
+        tentative: bool,
+    ) -> PyResult<Self> {
+        if !(1..=MAX_ACTORS).contains(&actors) {
+            return Err(value_error(format!(
+                "actors: expected 1 to {MAX_ACTORS}, found {actors}"
+            )));
+        }
+        let how = SourceOptions {
+            mirrored: mirror,
+            actors,
+            index: Some(&index.index),
+            ..SourceOptions::default()
+        };
+        let parsed: Address = address
+            .parse()
+            .map_err(|e| value_error(format!("address: {e}")))?;
+        let opened = open_source(&parsed, &how).map_err(live_error)?;
+        let options = SessionOptions {
+            overload: opened.overload,
+            events: EventOptions {
+                early: tentative,
+                ..EventOptions::default()
+            },
+            ..SessionOptions::default()
+        };
+        let model = index.index.model.clone();
+        let (session, readers) =
+            Session::start(&model, opened.source, &options).map_err(morec_error)?;
+        let reader = readers.into_iter().next();
+        Ok(Self {
+            open: Mutex::new(Some(session)),
+            reader: Mutex::new(reader.ok_or_else(|| morec_error("no reader of events"))?),
+            model,
+            address: opened.name,
+            notices: opened.notices,
+        })
+    }
+
+    #[getter]
+    fn address(&self) -> &str {
+        &self.address
+    }
+
+    /// The next event within so many seconds.
+    fn wait<'py>(&self, py: Python<'py>, secs: f64) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let most = Duration::from_secs_f64(secs.clamp(0.0, 3600.0));
+        let event = py.detach(|| held(&self.reader).wait(most));
+        event.map(|event| self.row(py, &event)).transpose()
+    }
+
+    /// What the source has noticed of what it is sent since it was last asked, a sentence each.
+    fn notices(&self) -> Vec<String> {
+        self.notices.take()
+    }
+
+    /// Whether nothing more can come.
+    fn is_ended(&self, py: Python<'_>) -> bool {
+        py.detach(|| held(&self.open).is_none() || held(&self.reader).is_ended())
+    }
+
+    /// Counts so far.
+    fn status<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let status = py.detach(|| held(&self.open).as_ref().map(Session::status));
+        let dict = PyDict::new(py);
+        if let Some(status) = status {
+            dict.set_item("frames", status.frames)?;
+            dict.set_item("dropped_frames", status.dropped_frames)?;
+            dict.set_item("unusable_frames", status.unusable_frames)?;
+            dict.set_item("events", status.events)?;
+            dict.set_item("dropped_events", status.dropped_events)?;
+            dict.set_item("motions", status.motions)?;
+            dict.set_item("actors", status.actors.len())?;
+        }
+        Ok(dict)
+    }
+
+    /// Stops listening and frees the port.
+    fn close(&self, py: Python<'_>) {
+        let session = held(&self.open).take();
+        py.detach(|| drop(session));
+    }
+}
+
+impl LiveSession {
+    fn row<'py>(&self, py: Python<'py>, event: &Event) -> PyResult<Bound<'py, PyDict>> {
+        let row = PyDict::new(py);
+        row.set_item("phase", event.phase.name())?;
+        row.set_item("class", self.model.class_name(event.class))?;
+        row.set_item("start_secs", event.start_secs)?;
+        row.set_item("stop_secs", event.stop_secs)?;
+        row.set_item("score", event.score)?;
+        row.set_item("progress", event.progress)?;
+        row.set_item("reported_secs", event.reported_secs)?;
+        row.set_item("actor", event.actor.0)?;
+        row.set_item("motion", event.motion)?;
+        row.set_item("sequence", event.sequence)?;
+        row.set_item("wall_secs", event.wall_secs)?;
+        Ok(row)
+    }
+}

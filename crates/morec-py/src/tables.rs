@@ -1,0 +1,77 @@
+//! Rows of results: dictionaries in a `morec.Table`.
+
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{PyDict, PyList, PyString};
+
+use morec::live::{Detection, Model};
+use serde::Serialize;
+
+use crate::errors::morec_error;
+
+/// A value of Python from one that serialises: dictionaries, lists, numbers, text, `None`.
+///
+/// # Errors
+/// A value that JSON cannot say.
+pub fn plain<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
+    static LOADS: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+    let text = serde_json::to_string(value).map_err(morec_error)?;
+    LOADS
+        .import(py, "json", "loads")?
+        .call1((PyString::new(py, &text),))
+}
+
+/// Rows as a `morec.Table` with these columns, which it has even if there is no row.
+pub fn table<'py>(
+    py: Python<'py>,
+    columns: &[&str],
+    rows: Vec<Bound<'py, PyDict>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    static TABLE: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+    let rows = PyList::new(py, rows)?;
+    TABLE
+        .import(py, "morec._tables", "Table")?
+        .call1((rows, columns.to_vec()))
+}
+
+/// Columns of tables of detections.
+pub const DETECTION: [&str; 6] = [
+    "clip",
+    "class",
+    "start_secs",
+    "stop_secs",
+    "score",
+    "reported_secs",
+];
+
+/// A detection in the clip or stream `clip`, with the columns of [`DETECTION`].
+pub fn detection<'py>(
+    py: Python<'py>,
+    clip: &str,
+    class: &str,
+    found: &Detection,
+) -> PyResult<Bound<'py, PyDict>> {
+    let row = PyDict::new(py);
+    row.set_item("clip", clip)?;
+    row.set_item("class", class)?;
+    row.set_item("start_secs", found.start_secs)?;
+    row.set_item("stop_secs", found.stop_secs)?;
+    row.set_item("score", found.score)?;
+    row.set_item("reported_secs", found.reported_secs)?;
+    Ok(row)
+}
+
+/// The detections of several clips, one after the other.
+pub fn detections<'py>(
+    py: Python<'py>,
+    model: &Model,
+    of_clips: &[(String, Vec<Detection>)],
+) -> PyResult<Bound<'py, PyAny>> {
+    let mut rows = Vec::new();
+    for (clip, founds) in of_clips {
+        for found in founds {
+            rows.push(detection(py, clip, model.class_name(found.class), found)?);
+        }
+    }
+    table(py, &DETECTION, rows)
+}

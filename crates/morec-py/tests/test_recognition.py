@@ -1,0 +1,253 @@
+"""Training, recognition, streams and measures."""
+
+from __future__ import annotations
+
+import pickle
+import threading
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import morec
+
+
+def spans(rows: Any) -> list[tuple[str, float, float]]:
+    return [(row["class"], row["start_secs"], row["stop_secs"]) for row in rows]
+
+
+def test_a_newcomer_is_recognised(index: morec.Index, newcomer: morec.Clip) -> None:
+    found = index.recognize(newcomer)
+    assert found.columns == ["clip", "class", "start_secs", "stop_secs", "score", "reported_secs"]
+    assert len(found) >= 3 and {row["clip"] for row in found} == {newcomer.name}
+    for row in found:
+        assert row["class"] in index.class_names and 0 <= row["score"] <= 1
+        assert row["start_secs"] < row["stop_secs"] <= row["reported_secs"]
+
+
+def test_several_clips_and_paths(index: morec.Index, clips: list[morec.Clip], folder: Path) -> None:
+    each = [row for clip in clips for row in index.recognize(clip)]
+    assert index.recognize(clips) == each
+    # Text rounds what files hold.
+    from_files = index.recognize(folder)
+    assert [row["class"] for row in from_files] == [row["class"] for row in sorted(each, key=lambda row: row["clip"])]
+    with pytest.raises(TypeError, match="expected clips or paths"):
+        index.recognize([3])  # type: ignore[list-item]
+
+
+def test_an_index_is_saved_loaded_and_pickled(index: morec.Index, tmp_path: Path) -> None:
+    path = tmp_path / "signs.index"
+    index.save(path)
+    assert path.read_bytes() == index.to_bytes() and [p.name for p in tmp_path.iterdir()] == ["signs.index"]
+    for again in (morec.load(path), pickle.loads(pickle.dumps(index)), morec.Index.from_bytes(index.to_bytes())):
+        assert again == index and again.to_bytes() == index.to_bytes() and again.report is None
+    assert index.report is not None and index.report["classes"] == index.classes
+    assert index.method == "templates" and index.provenance["samples"] == 18
+    assert "bow" in repr(index)
+    with pytest.raises(FileNotFoundError):
+        morec.load(tmp_path / "nowhere.index")
+    (tmp_path / "broken.index").write_bytes(path.read_bytes()[:-7])
+    with pytest.raises(morec.MorecError, match="broken.index"):
+        morec.load(tmp_path / "broken.index")
+    with pytest.raises(FileNotFoundError):
+        index.save(tmp_path / "nowhere" / "signs.index")
+
+
+def test_labels_come_in_any_form(clips: list[morec.Clip], labels: morec.Table, labels_tsv: Path, index: morec.Index) -> None:
+    people = {row["clip"]: row["person"] for row in labels}
+    tuples = [(row["clip"], row["class"], row["start_secs"], row["stop_secs"]) for row in labels]
+    forms: list[dict[str, Any]] = [
+        {"labels": labels.to_pandas()},
+        {"labels": tuples, "people": people},
+        {"labels": labels_tsv},
+        {"labels": [{key: row[key] for key in row if key != "person"} for row in labels], "people": people},
+    ]
+    for form in forms:
+        again = morec.train(clips, everyday="never", **form)
+        assert again.classes == index.classes
+        assert spans(again.recognize(clips[0])) == spans(index.recognize(clips[0]))
+
+
+def test_labels_that_make_no_sense_are_plain_errors(clips: list[morec.Clip], tmp_path: Path) -> None:
+    name = clips[0].name
+    for labels, text in [
+        ([(name, "wave", 2.0, 1.0)], "row 0: expected a stop after the start, found 2.0 to 1.0"),
+        ([(name, "wave", 2.0)], "expected .clip, class"),
+        ([{"clip": name}], "expected the columns clip and class"),
+        ([{"clip": name, "class": "wave", "start": 1.5, "stop": 3}], "seconds are start_secs"),
+        ([(name, "wave", "early", "late")], "expected a start and a stop"),
+        (None, "expected a DataFrame"),
+    ]:
+        with pytest.raises(ValueError, match=text):
+            morec.train(clips, labels)
+    with pytest.raises(FileNotFoundError):
+        morec.train(clips, tmp_path / "labels.tsv")
+    (tmp_path / "labels.tsv").write_text("clip\tclass\tstart\tstop\nA\twave\tx\t3\n")
+    with pytest.raises(morec.MorecError, match="labels: line 2"):
+        morec.train(clips, tmp_path / "labels.tsv")
+    with pytest.raises(morec.MorecError, match="no sample to learn from"):
+        morec.train(clips, [("nobody", "wave", 1.0, 2.0)])
+    with pytest.raises(FileNotFoundError, match="none of the clips is called so"):
+        morec.train(clips, [(name, "wave", 1.0, 2.0)], background=["nobody"])
+    for option, value in [("method", "magic"), ("everyday", "often"), ("unlabelled", "x"), ("svrdm", "x")]:
+        with pytest.raises(ValueError, match=option):
+            morec.train(clips, [(name, "wave", 1.0, 2.0)], **{option: value})  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="no figure is called nothing"):
+        morec.train(clips, [(name, "wave", 1.0, 2.0)], params={"nothing": 3})
+
+
+def test_what_is_left_out_is_warned_of(clips: list[morec.Clip], labels: morec.Table) -> None:
+    with pytest.warns(morec.MorecWarning) as caught:
+        morec.train(clips, [*labels[:10], (labels[0]["clip"], "wave", 1e4, 1e4 + 1)], everyday="never")
+    texts = [str(warning.message) for warning in caught]
+    assert any("left out" in text for text in texts), texts
+
+
+def test_progress_is_told_and_may_stop_training(clips: list[morec.Clip], labels: morec.Table) -> None:
+    told: list[tuple[str, int, int]] = []
+    morec.train(clips, labels, everyday="never", progress=lambda *args: told.append(args))
+    assert told[-1] == ("", 0, 0)
+
+    def stop(stage: str, done: int, total: int) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        morec.train(clips, labels, progress=stop)
+
+
+def test_a_stream_gives_what_its_clip_gives(index: morec.Index, newcomer: morec.Clip) -> None:
+    whole = spans(index.recognize(newcomer))
+    for dtype in (np.float64, np.float32):
+        live = index.recognizer(newcomer)
+        positions = newcomer.positions.astype(dtype)
+        found = []
+        for frame, pose in enumerate(positions):
+            found += live.push(frame / newcomer.rate_hz, pose)
+        found += live.finish()
+        assert [row[0] for row in spans(found)] == [row[0] for row in whole]
+        if dtype is np.float64:
+            assert spans(found) == whole
+    live = index.recognizer(newcomer)
+    times = np.arange(newcomer.frames) / newcomer.rate_hz
+    assert spans(live.push_all(times, newcomer.positions) + live.finish()) == whole
+
+
+def test_a_stream_of_named_joints_in_another_frame(index: morec.Index, newcomer: morec.Clip) -> None:
+    whole = spans(index.recognize(newcomer))
+    named = morec.normalize(newcomer, dtype=np.float64)
+    known = [role for role in morec.ROLES if role in newcomer.roles]
+    points = named[:, [morec.ROLES.index(role) for role in known]]
+    times = np.arange(newcomer.frames) / newcomer.rate_hz
+    live = index.recognizer(known)
+    assert spans(live.push_all(times, points) + live.finish()) == whole
+    # Z up, in millimetres; rows that are every other of a larger array.
+    upright = np.stack([points[..., 0], -points[..., 2], points[..., 1]], axis=-1) * 1000.0
+    doubled = np.repeat(upright, 2, axis=1)[:, ::2]
+    live = index.recognizer(known, up="z")
+    found = [row for frame, pose in enumerate(doubled) for row in live.push(times[frame], pose)]
+    assert [row[0] for row in spans(found + live.finish())] == [row[0] for row in whole]
+    strange = [f"J{number}" for number in range(len(known))]
+    live = index.recognizer(strange, roles={role: strange[at] for at, role in enumerate(known)})
+    assert spans(live.push_all(times, points) + live.finish()) == whole
+
+
+def test_streams_refuse_what_makes_no_sense(index: morec.Index, newcomer: morec.Clip) -> None:
+    live = index.recognizer(newcomer)
+    joints = len(newcomer.names)
+    with pytest.raises(ValueError, match=rf"shape \({joints}, 3\), found \(2, 3\)"):
+        live.push(0.0, np.zeros((2, 3)))
+    with pytest.raises(ValueError, match="found"):
+        live.push(0.0, np.zeros(3))
+    with pytest.raises((ValueError, TypeError)):
+        live.push(0.0, "nothing")
+    with pytest.raises(TypeError):
+        live.push("now", np.zeros((joints, 3)))  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="found"):
+        live.push_all([0.0], np.zeros((2, joints, 3)))
+    for wrong in (np.nan, np.inf, -1e300):
+        assert live.push(wrong, np.full((joints, 3), wrong)) == []
+    with pytest.raises(ValueError, match="no known set of points"):
+        index.recognizer(["a", "b", "c"])
+    with pytest.raises(ValueError, match="a joint of the skeleton"):
+        index.recognizer(["a", "b", "c"], roles={"hips": "z"})
+    with pytest.raises(ValueError, match="up:"):
+        index.recognizer(newcomer, up="sideways")
+    with pytest.raises(ValueError, match="sensitivity"):
+        index.recognizer(newcomer, sensitivity=-1.0)
+
+
+def test_threads_share_an_index_and_a_recogniser(index: morec.Index, newcomer: morec.Clip) -> None:
+    whole = spans(index.recognize(newcomer))
+    results: dict[int, Any] = {}
+
+    def work(number: int) -> None:
+        live = index.recognizer(newcomer)
+        found = live.push_all(np.arange(newcomer.frames) / newcomer.rate_hz, newcomer.positions)
+        results[number] = spans(found + live.finish())
+
+    threads = [threading.Thread(target=work, args=(number,)) for number in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert results == dict.fromkeys(range(4), whole)
+    # One recogniser pushed to by several: no order is promised, and nothing breaks.
+    live = index.recognizer(newcomer)
+
+    def push(number: int) -> None:
+        for frame in range(number, 400, 2):
+            live.push(frame / newcomer.rate_hz, newcomer.positions[frame])
+
+    threads = [threading.Thread(target=push, args=(number,)) for number in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    live.finish()
+
+
+def test_sensitivity_and_hunches(index: morec.Index, newcomer: morec.Clip) -> None:
+    live = index.recognizer(newcomer)
+    hunches = []
+    for frame in range(newcomer.frames):
+        live.push(frame / newcomer.rate_hz, newcomer.positions[frame])
+        hunches.append(live.hunch())
+    told = [hunch for hunch in hunches if hunch is not None]
+    assert told and all(0 <= hunch["progress"] <= 1 and hunch["class"] in index.class_names for hunch in told)
+    assert 0.0 < live.latency_secs < 1.0
+
+
+def test_cross_validation_measures_and_reports(
+    clips: list[morec.Clip], labels: morec.Table, tmp_path: Path
+) -> None:
+    measured = morec.crossval(clips, labels, by="person", everyday="never", perturb=["mirror"])
+    assert measured.accuracy is not None and 0 <= measured.accuracy <= 1
+    assert len(measured.truth) == len(labels) and len(measured.folds) == 3
+    assert list(measured.perturbed) == ["mirror"]
+    path = tmp_path / "report.html"
+    measured.report(path)
+    assert path.read_text().startswith("<!DOCTYPE html>")
+    again = morec.evaluate(measured.truth, measured.found, clips)
+    assert again["thesis"] == measured.evaluation["thesis"]
+    assert "by person" in repr(measured)
+    with pytest.raises(ValueError, match="by: expected"):
+        morec.crossval(clips, labels, by="shoe")
+    with pytest.raises(ValueError, match="perturb:"):
+        morec.crossval(clips, labels, perturb=["louder"])
+    with pytest.raises(ValueError, match="lies in the stream"):
+        morec.evaluate([{"clip": "x", "class": "a", "start_secs": 0, "stop_secs": 1}], [], {"y": 3.0})
+
+
+def test_tables_are_lists_and_frames(index: morec.Index, newcomer: morec.Clip) -> None:
+    import pandas
+
+    found = index.recognize(newcomer)
+    assert list(found.to_pandas().columns) == found.columns and len(pandas.DataFrame(found)) == len(found)
+    assert found.column("class") == [row["class"] for row in found]
+    nothing = index.recognize(newcomer[0.0:0.3])
+    assert len(nothing) == 0 and list(nothing.to_pandas().columns) == found.columns
+    assert pickle.loads(pickle.dumps(found)) == found
+    assert "<table>" in found._repr_html_() and "class" in repr(found)
+    with pytest.raises(KeyError, match="no column is called"):
+        found.column("nothing")
