@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use morec::clip::Clip;
 use morec::features::{FeatureParams, Rows};
 use morec::files::{FileReader, split_choice};
-use morec::import::{ImportOptions, normalize};
+use morec::formats::{Place, Warning};
+use morec::import::{ImportOptions, Stated, normalize};
 
 use crate::motion::{Packed, pack, unpack};
 use crate::rows::{self, ClipRows, rows_of};
@@ -92,6 +93,10 @@ impl KeptClip {
     pub fn of_file(path: &Path, bytes: &[u8], reader: &FileReader) -> Result<Vec<Self>, String> {
         let parsed = reader.parse(path, bytes);
         let parsed = parsed.map_err(|error| error.kind.to_string())?;
+        let options = ImportOptions {
+            stated: Stated::of(parsed.format),
+            ..reader.import.clone()
+        };
         let shown = |path: &PathBuf| path.to_string_lossy().into_owned();
         let file = KeptFile {
             hash: content_hash(path, bytes),
@@ -102,7 +107,7 @@ impl KeptClip {
             warnings: parsed.warnings.iter().map(ToString::to_string).collect(),
         };
         let clips = parsed.clips.into_iter().enumerate();
-        let kept = clips.map(|(character, clip)| Self::new(clip, character, &file, &reader.import));
+        let kept = clips.map(|(character, clip)| Self::new(clip, character, &file, &options));
         let kept: Vec<Self> = kept.collect::<Result<_, _>>()?;
         match kept.is_empty() {
             true => Err("there is no clip in it".to_owned()),
@@ -121,6 +126,11 @@ impl KeptClip {
         }
         let name = clip.name.clone();
         let take = normalize(clip, options).map_err(|error| error.to_string())?;
+        let mut file = file.clone();
+        for doubt in &take.report.doubts {
+            let warning = Warning::new(Place::File, format!("{name}: {doubt}"));
+            file.warnings.push(warning.to_string());
+        }
         let packed = pack(take, &()).map_err(|reason| format!("{name}: {reason}"))?;
         let params = FeatureParams::default();
         let (bones, rows) = rows_of(&packed.stored, &params);
@@ -136,7 +146,7 @@ impl KeptClip {
         } = packed;
         Ok(Self {
             name,
-            file: file.clone(),
+            file,
             character,
             subject: None,
             source: None,

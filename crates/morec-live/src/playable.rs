@@ -54,6 +54,13 @@ fn load_file(
     rate_hz: Option<f64>,
 ) -> Result<Vec<PlayableClip>, LiveError> {
     let ready = |mut take: Take| {
+        if index.is_some_and(|index| index.model.needs_rotations()) && !take.clip.has_rotations() {
+            return Err(LiveError::Clip(format!(
+                "{}: a clip of points has no rotations, and this index looks at nothing else (it is of the method of \
+                 2009); train one without --method svrdm",
+                path.display()
+            )));
+        }
         if let Some(index) = index.filter(|_| reader.import.mapping.is_none()) {
             index.complete_roles(&mut take.roles, &take.clip.skeleton);
         }

@@ -68,6 +68,7 @@
 //! | learning | [`labels`], [`train`] | a [`TemplateModel`](templates::TemplateModel) and a report |
 //! | keeping | [`index`] | one file, with a checksum and where it came from |
 //! | recognising | [`templates`] or [`svrdm`], [`decode`], [`live`] | [`Detection`](live::Detection)s, nothing taken back |
+//! | numbers for other programs | [`tables`] | positions, rotations and feature rows as NumPy archives and CSV |
 //! | looking at a stream | [`diagnosis`] | what is wrong with it, in sentences that say what to do |
 //! | without labels | [`pivots`], [`pca`], [`segment`], [`cluster`] | pose rows, fewer dimensions, cuts, samples that are alike |
 //! | measuring | [`eval`], [`crossval`], [`explain`], [`report`], [`plot`] | figures, timelines, charts, one page of HTML |
@@ -133,6 +134,8 @@ pub mod features;
 
 #[cfg(feature = "files")]
 pub mod files;
+#[cfg(feature = "files")]
+pub mod tables;
 #[cfg(feature = "formats")]
 pub mod formats;
 #[cfg(feature = "formats")]
@@ -176,6 +179,8 @@ pub mod synth;
 #[cfg(feature = "train")]
 pub mod train;
 
+#[cfg(feature = "report")]
+pub mod player;
 #[cfg(feature = "report")]
 pub mod plot;
 #[cfg(feature = "report")]

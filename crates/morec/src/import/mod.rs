@@ -17,7 +17,9 @@ pub use take::Take;
 
 use crate::clip::{Clip, Span};
 use crate::formats::ParseError;
+use crate::formats::probe::Format;
 use crate::kinematics::WorldPose;
+use crate::math::{Axis, Vec3};
 use crate::roles::mapping::Mapping;
 use crate::roles::{self, RoleMap};
 use body::Body;
@@ -33,6 +35,35 @@ pub struct ImportOptions {
     pub rest_frames: Option<usize>,
     /// Roles that override those found.
     pub mapping: Option<Mapping>,
+    /// What the file's format states; believed where the body does not say otherwise.
+    pub stated: Option<Stated>,
+}
+
+/// What the specification of a format, or a file itself, states about lengths and axes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stated {
+    /// Which way is up.
+    pub up: SignedAxis,
+    /// Metres in one unit of length.
+    pub metres_per_unit: f64,
+}
+
+impl Stated {
+    /// What files of `format` state by its specification; `None` for those that leave it to the writer.
+    pub fn of(format: Format) -> Option<Self> {
+        let up = match format {
+            Format::Gltf | Format::Mocopi => SignedAxis::Y,
+            Format::Mvnx => SignedAxis {
+                axis: Axis::Z,
+                negative: false,
+            },
+            _ => return None,
+        };
+        Some(Self {
+            up,
+            metres_per_unit: 1.0,
+        })
+    }
 }
 
 /// What was inferred about a clip, or given in the options.
@@ -59,6 +90,8 @@ pub struct ImportReport {
     pub point_set: Option<&'static str>,
     /// Guesses worth doubting, each in a sentence.
     pub notes: Vec<String>,
+    /// What cannot be true of a person's body: recognition would be misled. Each a sentence with what to do.
+    pub doubts: Vec<String>,
 }
 
 /// Infers what `clip` is and makes it Y-up in metres. Where a role is played by a place between joints (in a clip of
@@ -79,10 +112,12 @@ pub fn normalize(mut clip: Clip, options: &ImportOptions) -> Result<Take, ParseE
     let body = Body::measure(&clip, &map);
     let up = options
         .up
-        .unwrap_or_else(|| axes::infer_up(&clip, &body, &mut notes));
+        .unwrap_or_else(|| axes::choose(&clip, &body, options.stated, &mut notes));
     let metres_per_unit = options
         .metres_per_unit
-        .unwrap_or_else(|| units::choose(&clip, &body, up, &mut notes));
+        .unwrap_or_else(|| units::choose(&clip, &body, up, options.stated, &mut notes));
+    let mut doubts = roles::check(&clip.skeleton, &map, &poses(&clip));
+    doubts.extend(units::doubt(&body, metres_per_unit));
     axes::turn_up(&mut clip, up);
     units::scale(&mut clip, metres_per_unit);
     let rest = match options.rest_frames {
@@ -100,6 +135,7 @@ pub fn normalize(mut clip: Clip, options: &ImportOptions) -> Result<Take, ParseE
         has_rotations: clip.has_rotations(),
         point_set,
         notes,
+        doubts,
     };
     Ok(Take {
         clip,
@@ -109,17 +145,26 @@ pub fn normalize(mut clip: Clip, options: &ImportOptions) -> Result<Take, ParseE
     })
 }
 
-/// The roles, with the side of nameless limbs judged in a posed frame.
+/// The roles, judged in frames spread over the clip.
 fn find_roles(clip: &Clip, notes: &mut Vec<String>) -> RoleMap {
-    let found = if clip.frames == 0 {
-        roles::find(&clip.skeleton)
-    } else {
-        // The first frame may be a rest pose or spoiled; the second is as good as any.
-        let pose = WorldPose::of(clip, 1.min(clip.frames - 1));
-        roles::find_posed(&clip.skeleton, &pose.positions)
+    let found = match clip.frames {
+        0 => roles::find(&clip.skeleton),
+        _ => roles::find_moving(&clip.skeleton, &poses(clip)),
     };
     notes.extend(found.notes);
     found.map
+}
+
+/// World positions of every joint in some frames spread over the clip.
+fn poses(clip: &Clip) -> Vec<Vec<Vec3>> {
+    const FRAMES: usize = 12;
+    // The first frame may be a rest pose or spoiled.
+    let first = 1.min(clip.frames.saturating_sub(1));
+    let step = (clip.frames - first).div_ceil(FRAMES).max(1);
+    (first..clip.frames)
+        .step_by(step)
+        .map(|frame| WorldPose::of(clip, frame).positions)
+        .collect()
 }
 
 #[cfg(test)]

@@ -1,13 +1,19 @@
 //! Which joint of a skeleton plays which part of the body.
 
+mod check;
 mod find;
 mod limbs;
 pub mod mapping;
 mod names;
 pub mod points;
+pub(crate) mod proportions;
+mod sides;
 mod tree;
+mod trunk;
+mod words;
 
-pub use find::{Found, find, find_posed};
+pub use check::check;
+pub use find::{Found, find, find_moving};
 
 use std::fmt;
 
