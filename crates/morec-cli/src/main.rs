@@ -55,6 +55,7 @@ enum Command {
     Demo(commands::demo::Args),
     Completions(commands::complete::Completions),
     Man(commands::complete::Man),
+    Studio(commands::studio::Args),
 }
 
 fn main() -> ExitCode {
@@ -80,6 +81,7 @@ fn main() -> ExitCode {
         Command::Demo(args) => commands::demo::run(&args),
         Command::Completions(args) => commands::complete::completions(&args, Cli::command()),
         Command::Man(args) => commands::complete::man(&args, Cli::command()),
+        Command::Studio(args) => commands::studio::run(&args),
     };
     match outcome {
         Ok(code) => code,

@@ -20,5 +20,6 @@ pub mod reduce;
 pub mod reproduce;
 pub mod send;
 pub mod smooth;
+pub mod studio;
 pub mod teach;
 pub mod train;

@@ -16,3 +16,4 @@ mod play;
 mod poses;
 mod record;
 mod smooth;
+mod studio;

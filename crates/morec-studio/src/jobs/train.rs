@@ -1,0 +1,197 @@
+//! Training in the background.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+use morec::features::BoneSet;
+use morec::index::{MotionIndex, Provenance};
+use morec::labels::Sample;
+use morec::progress::Progress;
+use morec::roles::RoleMap;
+use morec::synth;
+use morec::train::{
+    EVERYDAY_SEED, Everyday, Labelling, Prepared, Recipe, Source, TrainClip, TrainError,
+    TrainOptions, TrainParams, TrainStream, TrainingData, TrainingReport, prepare, train,
+};
+use morec_db::labels::{SampleFilter, State};
+use morec_db::{ClipFilter, DbError, MotionDb};
+
+use super::{JobProgress, Outcome};
+
+/// What training made.
+pub struct Trained {
+    pub index: Arc<MotionIndex>,
+    pub bytes: Vec<u8>,
+    pub report: TrainingReport,
+    pub secs: f64,
+}
+
+/// The accepted samples of `classes` (all, if none are named) and the clips they lie in.
+pub fn material(path: &Path, classes: &[String]) -> Result<TrainingData, DbError> {
+    let db = MotionDb::open_read_only(path)?;
+    let filter = SampleFilter {
+        state: Some(State::Accepted),
+        ..SampleFilter::default()
+    };
+    let wanted = |class: &String| classes.is_empty() || classes.contains(class);
+    let accepted = db.samples(&filter)?;
+    let samples: Vec<Sample> = accepted
+        .into_iter()
+        .filter(|s| wanted(&s.class))
+        .zip(1..)
+        .map(|(s, line)| Sample {
+            clip: s.clip_name,
+            class: s.class,
+            start_secs: s.start_secs,
+            stop_secs: s.stop_secs,
+            whole_clip: s.whole_clip,
+            person: s.subject,
+            line,
+        })
+        .collect();
+    let mut names: Vec<&str> = samples.iter().map(|s| s.clip.as_str()).collect();
+    names.sort_unstable();
+    names.dedup();
+    let mut clips = Vec::new();
+    for info in db.clips(&ClipFilter::default())? {
+        if names.binary_search(&info.name.as_str()).is_ok() {
+            let stored = db.clip(info.id)?;
+            clips.push(TrainClip {
+                name: info.name,
+                clip: stored.clip,
+                roles: stored.roles,
+                rest: stored.rest,
+                source: Source::Labelled,
+                person: info.subject,
+            });
+        }
+    }
+    let mut classes: Vec<String> = samples.iter().map(|s| s.class.clone()).collect();
+    classes.sort();
+    classes.dedup();
+    Ok(TrainingData {
+        clips,
+        samples,
+        classes,
+        ..TrainingData::default()
+    })
+}
+
+/// Everyday motion, made once: it is the same for every index.
+pub fn everyday() -> &'static [TrainClip] {
+    static CLIPS: OnceLock<Vec<TrainClip>> = OnceLock::new();
+    CLIPS.get_or_init(|| {
+        let clip = |clip: morec::clip::Clip| TrainClip {
+            name: clip.name.clone(),
+            roles: RoleMap::find(&clip.skeleton),
+            rest: 0..0,
+            source: Source::Everyday,
+            person: None,
+            clip,
+        };
+        synth::everyday(EVERYDAY_SEED)
+            .into_iter()
+            .map(clip)
+            .collect()
+    })
+}
+
+/// How the studio trains: as `morec train` does, with everyday motion that is among the clips already.
+pub fn recipe() -> Recipe {
+    let everyday = Everyday::Never;
+    TrainOptions {
+        everyday,
+        ..TrainOptions::default()
+    }
+    .into()
+}
+
+/// Trains an index of the database at `path`.
+pub fn run(path: &Path, classes: &[String], progress: &JobProgress) -> Outcome {
+    let begun = std::time::Instant::now();
+    match trained(path, classes, progress) {
+        Ok(mut trained) => {
+            trained.secs = begun.elapsed().as_secs_f64();
+            Outcome::Trained(Box::new(trained))
+        }
+        Err(None) => Outcome::Cancelled,
+        Err(Some(why)) => Outcome::Failed(why),
+    }
+}
+
+/// Why there is nothing; `None` if it was cancelled.
+type Why = Option<String>;
+
+fn trained(path: &Path, classes: &[String], progress: &JobProgress) -> Result<Trained, Why> {
+    let data = material(path, classes).map_err(|e| Some(e.to_string()))?;
+    if data.samples.is_empty() {
+        return Err(Some(
+            "Nothing to learn from: label a few motions first".to_owned(),
+        ));
+    }
+    let params = TrainParams::default();
+    let prepared = prepared(&data, &params, progress);
+    if progress.cancelled() {
+        return Err(None);
+    }
+    if prepared.bones == BoneSet::NONE {
+        return Err(Some(format!("Training stopped: {}", TrainError::NoSamples)));
+    }
+    let done = train(&prepared.set, prepared.bones, &params, progress).map_err(|e| match e {
+        TrainError::Cancelled => None,
+        other => Some(format!("Training stopped: {other}")),
+    })?;
+    let report = TrainingReport::of(&prepared, &done, params.features.tick_hz());
+    let index = MotionIndex {
+        roles: data.role_names(),
+        provenance: Provenance {
+            created: created(),
+            morec_version: env!("CARGO_PKG_VERSION").to_owned(),
+            clips: data.labelled().map(|c| c.name.clone()).collect(),
+            samples: data.samples.len(),
+            background_secs: report.background_secs.clone(),
+        },
+        model: done.model.into(),
+    };
+    let bytes = index.to_bytes().map_err(|e| Some(e.to_string()))?;
+    Ok(Trained {
+        index: Arc::new(index),
+        bytes,
+        report,
+        secs: 0.0,
+    })
+}
+
+/// Streams to train from. Everyday motion is the same for every index of the same bones: its rows are made once.
+fn prepared(data: &TrainingData, params: &TrainParams, progress: &JobProgress) -> Prepared {
+    static EVERYDAY: Mutex<BTreeMap<BoneSet, Vec<TrainStream>>> = Mutex::new(BTreeMap::new());
+    let labelling = Labelling {
+        samples: &data.samples,
+        held_back: &[],
+        classes: &data.classes,
+        unlabelled_is_background: true,
+    };
+    let mut prepared = prepare(&data.clips, &labelling, BoneSet::ALL, &params.features);
+    let mut known = EVERYDAY.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(streams) = known.get(&prepared.bones) {
+        prepared.set.streams.extend_from_slice(streams);
+        return prepared;
+    }
+    progress.report("everyday motion", 0, 0);
+    let mut clips = data.clips.clone();
+    clips.extend_from_slice(everyday());
+    let prepared = prepare(&clips, &labelling, BoneSet::ALL, &params.features);
+    let streams = prepared.set.streams.iter();
+    let made = streams.filter(|s| s.source == Source::Everyday).cloned();
+    known.insert(prepared.bones, made.collect());
+    prepared
+}
+
+/// Now, as dates in indexes are written: `2026-11-22T06:30:00Z`.
+fn created() -> String {
+    let secs = std::time::SystemTime::now()
+        .duration_since(std::time::UNIX_EPOCH)
+        .map_or(0, |d| d.as_secs() as i64);
+    crate::format::utc(secs)
+}
