@@ -109,14 +109,20 @@ pub fn normalize(mut clip: Clip, options: &ImportOptions) -> Result<Take, ParseE
     })
 }
 
-/// The roles, with the side of nameless limbs judged in a posed frame.
+/// The roles, judged in frames spread over the clip.
 fn find_roles(clip: &Clip, notes: &mut Vec<String>) -> RoleMap {
+    const FRAMES: usize = 12;
     let found = if clip.frames == 0 {
         roles::find(&clip.skeleton)
     } else {
-        // The first frame may be a rest pose or spoiled; the second is as good as any.
-        let pose = WorldPose::of(clip, 1.min(clip.frames - 1));
-        roles::find_posed(&clip.skeleton, &pose.positions)
+        // The first frame may be a rest pose or spoiled.
+        let first = 1.min(clip.frames - 1);
+        let step = (clip.frames - first).div_ceil(FRAMES).max(1);
+        let poses: Vec<_> = (first..clip.frames)
+            .step_by(step)
+            .map(|frame| WorldPose::of(clip, frame).positions)
+            .collect();
+        roles::find_moving(&clip.skeleton, &poses)
     };
     notes.extend(found.notes);
     found.map

@@ -1,9 +1,11 @@
 //! Finding the roles: limbs and trunk by the shape of the tree, then names, then sides.
 
-use super::limbs::{self, Limb};
+use super::limbs::{self, Limb, Part};
 use super::names::{Kind, Side};
+use super::proportions as human;
+use super::sides::Sides;
 use super::tree::{Pair, Tree};
-use super::{Role, RoleMap};
+use super::{Role, RoleMap, trunk};
 use crate::clip::Skeleton;
 use crate::math::Vec3;
 
@@ -18,235 +20,206 @@ pub struct Found {
 
 /// Finds the roles of `skeleton` from its tree, its bone lengths and its names. O(joints²) at worst.
 ///
-/// Names that say nothing (`joint_7`) leave the tree and the lengths: two pairs of limbs that mirror each other,
-/// the lower one the legs. Left and right are then told by where the toes point in the zero pose.
+/// Names that say nothing (`joint_7`) leave the tree and the lengths: two pairs of limbs that mirror each other, in
+/// the proportions of people. Left and right are then told by where the toes point in the zero pose.
 pub fn find(skeleton: &Skeleton) -> Found {
     let mut positions: Vec<Vec3> = Vec::with_capacity(skeleton.len());
     for joint in skeleton.joints() {
         positions.push(joint.offset + joint.parent.map_or_else(Vec3::zeros, |p| positions[p]));
     }
-    find_posed(skeleton, &positions)
+    find_moving(skeleton, &[positions])
 }
 
-/// [`find`] with the joints where `positions` says (one for each joint, any unit), as in a frame of a clip: a
-/// better witness than a zero pose that nobody ever stood in.
+/// [`find`] with the joints where `poses` says, as in frames of a clip (a position for each joint, any unit): better
+/// witnesses than a zero pose that nobody ever stood in. Where knees and elbows bend, they are told from joints that
+/// halve a bone; where knees and toes point tells left from right, even against the names.
 ///
 /// # Panics
-/// If `positions` is not as long as the skeleton.
-pub fn find_posed(skeleton: &Skeleton, positions: &[Vec3]) -> Found {
-    assert_eq!(skeleton.len(), positions.len(), "a position for each joint");
+/// If there is no pose, or one that is not as long as the skeleton.
+pub fn find_moving(skeleton: &Skeleton, poses: &[Vec<Vec3>]) -> Found {
+    assert!(!poses.is_empty(), "at least one pose");
+    assert!(
+        poses.iter().all(|pose| pose.len() == skeleton.len()),
+        "a position for each joint"
+    );
     let mut found = Found::default();
     if skeleton.is_empty() {
         return found;
     }
-    let tree = Tree::new(skeleton, positions);
-    let (legs, arms) = legs_and_arms(&tree);
-    trunk(&tree, legs, arms, &mut found.map);
-    let leg = legs.map(|pair| (pair, pair.members.map(|m| limbs::leg(&tree, m))));
-    let arm = arms.map(|pair| (pair, pair.members.map(|m| limbs::arm(&tree, m))));
-    let left = lateral(&tree, &found.map, leg.map(|(_, limbs)| limbs));
+    let tree = Tree::new(skeleton, poses);
+    let pairs = Pairs::choose(&tree);
+    trunk::find(&tree, &pairs, &mut found);
+    let sides = Sides::of(&tree, &found.map, pairs.leg_limbs());
+    let mut taken = [None, None];
+    for (at, found_pair) in [&pairs.legs, &pairs.arms].into_iter().enumerate() {
+        taken[at] = found_pair.as_ref().map(|found_pair| {
+            let (first, note) = sides.first(&tree, found_pair.pair, found_pair.limbs);
+            found.notes.extend(note);
+            first
+        });
+    }
+    sides.settle(&mut taken, &mut found.notes);
     for side in [Side::Left, Side::Right] {
-        let limb = match leg {
-            Some((pair, limbs)) => limbs[member(&tree, pair, limbs, side, left, &mut found.notes)],
-            None => limbs::leg_by_name(&tree, &named(&tree, side, Kind::is_leg)),
+        let member = |at: usize| usize::from(taken[at] != Some(side));
+        let mut leg = match &pairs.legs {
+            Some(legs) => legs.limbs[member(0)],
+            None => limbs::named(&tree, &named(&tree, side, Kind::is_leg), Part::Leg),
         };
-        set_leg(&mut found.map, side, limb);
-        let limb = match arm {
-            Some((pair, limbs)) => limbs[member(&tree, pair, limbs, side, left, &mut found.notes)],
-            None => limbs::arm_by_name(&tree, &named(&tree, side, Kind::is_arm)),
+        limbs::end_elsewhere(&tree, &mut leg, side, Kind::Foot);
+        set_leg(&mut found.map, side, leg);
+        let part = Part::Arm { leg: pairs.leg };
+        let mut arm = match &pairs.arms {
+            Some(arms) => arms.limbs[member(1)],
+            None => limbs::named(&tree, &named(&tree, side, Kind::is_arm), part),
         };
-        set_arm(&mut found.map, side, limb);
+        limbs::end_elsewhere(&tree, &mut arm, side, Kind::Hand);
+        set_arm(&mut found.map, side, arm);
     }
     found.notes.dedup();
     found
 }
 
-/// The pair of legs and the pair of arms.
-fn legs_and_arms(tree: &Tree) -> (Option<Pair>, Option<Pair>) {
-    let mut pairs = tree.pairs();
-    let reach = |pair: &Pair| tree.reach(pair.members[0]) + tree.reach(pair.members[1]);
-    pairs.sort_by(|a, b| reach(b).total_cmp(&reach(a)));
-    let votes = |pair: &Pair| pair.members.iter().map(|&m| tree.leg_votes(m)).sum::<i64>();
-    let mut legs = pairs.iter().copied().find(|pair| votes(pair) > 0);
-    let mut arms = pairs.iter().copied().find(|pair| votes(pair) < 0);
-    let mut silent: Vec<Pair> = pairs
-        .iter()
-        .copied()
-        .filter(|pair| votes(pair) == 0)
-        .take(2)
-        .collect();
-    if legs.is_none() && arms.is_none() && silent.len() == 2 {
-        // The legs hang nearer to the root; on one joint, the longer limbs come first already.
-        silent.sort_by_key(|pair| tree.upwards(pair.parent).count());
+/// A pair of limbs with its joints.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct FoundPair {
+    pub(super) pair: Pair,
+    pub(super) limbs: [Limb; 2],
+    cost: f64,
+}
+
+impl FoundPair {
+    fn of(tree: &Tree, pair: Pair, part: Part) -> Self {
+        let (limbs, cost) = limbs::pair(tree, pair.members, part);
+        Self { pair, limbs, cost }
     }
-    let mut silent = silent.into_iter();
-    legs = legs.or_else(|| silent.next());
-    arms = arms.or_else(|| silent.next());
-    (legs, arms)
+
+    /// The middle of the joints that `of` names.
+    fn middle(&self, pose: &[Vec3], of: impl Fn(&Limb) -> Option<usize>) -> Option<Vec3> {
+        let [a, b] = [of(&self.limbs[0])?, of(&self.limbs[1])?];
+        Some((pose[a] + pose[b]) / 2.0)
+    }
+}
+
+/// The legs and the arms.
+#[derive(Debug)]
+pub(super) struct Pairs {
+    pub(super) legs: Option<FoundPair>,
+    pub(super) arms: Option<FoundPair>,
+    /// Length of the legs, hip to ankle.
+    leg: Option<f64>,
+}
+
+impl Pairs {
+    /// Names choose first; among pairs whose names say nothing, those that make a person.
+    fn choose(tree: &Tree) -> Self {
+        const LOOKED_AT: usize = 6;
+        let mut pairs = tree.pairs();
+        let reach = |pair: &Pair| tree.reach(pair.members[0]) + tree.reach(pair.members[1]);
+        pairs.sort_by(|a, b| reach(b).total_cmp(&reach(a)));
+        let votes = |pair: &Pair| pair.members.iter().map(|&m| tree.leg_votes(m)).sum::<i64>();
+        let find = |fits: &dyn Fn(i64) -> bool| pairs.iter().copied().find(|pair| fits(votes(pair)));
+        let (legs, arms) = (find(&|v| v > 0), find(&|v| v < 0));
+        let silent: Vec<Pair> = pairs
+            .iter()
+            .copied()
+            .filter(|pair| votes(pair) == 0)
+            .take(LOOKED_AT)
+            .collect();
+        let candidates = |named: Option<Pair>| match named {
+            Some(pair) => vec![pair],
+            None => silent.clone(),
+        };
+        let mut best: Option<(f64, FoundPair, FoundPair)> = None;
+        for leg_pair in candidates(legs) {
+            let legs = FoundPair::of(tree, leg_pair, Part::Leg);
+            let part = Part::Arm {
+                leg: length(tree, &legs),
+            };
+            let others = candidates(arms).into_iter();
+            for arm_pair in others.filter(|pair| pair.members != leg_pair.members) {
+                let arms = FoundPair::of(tree, arm_pair, part);
+                let cost = legs.cost + arms.cost + person(tree, &legs, &arms);
+                if best.as_ref().is_none_or(|(least, ..)| cost < *least) {
+                    best = Some((cost, legs, arms));
+                }
+            }
+        }
+        let (legs, arms) = match best {
+            Some((_, legs, arms)) => (Some(legs), Some(arms)),
+            // One pair alone: legs, unless it is called arms.
+            None => {
+                let part = Part::Arm { leg: None };
+                let legs = legs.or(silent.first().copied().filter(|_| arms.is_none()));
+                (
+                    legs.map(|pair| FoundPair::of(tree, pair, Part::Leg)),
+                    arms.map(|pair| FoundPair::of(tree, pair, part)),
+                )
+            }
+        };
+        Self {
+            leg: legs.as_ref().and_then(|legs| length(tree, legs)),
+            legs,
+            arms,
+        }
+    }
+
+    fn leg_limbs(&self) -> Option<[Limb; 2]> {
+        self.legs.as_ref().map(|legs| legs.limbs)
+    }
+
+    /// From the middle of the hip joints to that of the shoulders, in the first pose.
+    pub(super) fn upwards(&self, tree: &Tree) -> Option<Vec3> {
+        let (legs, arms) = (self.legs.as_ref()?, self.arms.as_ref()?);
+        let hips = legs.middle(tree.positions, |limb| limb.upper)?;
+        (arms.middle(tree.positions, |limb| limb.upper)? - hips).try_normalize(1e-9)
+    }
+
+    /// The middle of the shoulders in the first pose, and the length of the legs.
+    pub(super) fn shoulders(&self, tree: &Tree) -> Option<(Vec3, f64)> {
+        let middle = self.arms.as_ref()?.middle(tree.positions, |limb| limb.upper)?;
+        Some((middle, self.leg?))
+    }
+}
+
+/// The mean length of both legs, hip to ankle.
+fn length(tree: &Tree, legs: &FoundPair) -> Option<f64> {
+    let one = |limb: &Limb| {
+        let [a, b, c] = [limb.upper?, limb.lower?, limb.end?];
+        Some(tree.distance(a, b) + tree.distance(b, c))
+    };
+    Some((one(&legs.limbs[0])? + one(&legs.limbs[1])?) / 2.0)
+}
+
+/// How far these legs and arms are from making a person: the length of the trunk, and that it leads away from the feet.
+fn person(tree: &Tree, legs: &FoundPair, arms: &FoundPair) -> f64 {
+    const UNKNOWN: f64 = 2.0;
+    let lengths = || {
+        let hips = legs.middle(tree.positions, |limb| limb.upper)?;
+        let shoulders = arms.middle(tree.positions, |limb| limb.upper)?;
+        let trunk = (shoulders - hips).norm() / (length(tree, legs)? * human::TRUNK_TO_LEG);
+        Some(trunk.max(1e-6).ln().abs().min(3.0))
+    };
+    let against_feet = |pose: &Vec<Vec3>| {
+        let hips = legs.middle(pose, |limb| limb.upper)?;
+        let up = (arms.middle(pose, |limb| limb.upper)? - hips).try_normalize(1e-12)?;
+        let down = (legs.middle(pose, |limb| limb.end)? - hips).try_normalize(1e-12)?;
+        Some(1.0 + up.dot(&down))
+    };
+    let turned: Vec<f64> = tree.poses.iter().filter_map(against_feet).collect();
+    let turned = match turned.len() {
+        0 => UNKNOWN,
+        count => turned.iter().sum::<f64>() / count as f64,
+    };
+    // The root is nearer to the hips.
+    let depth = |pair: &FoundPair| tree.upwards(pair.pair.parent).count();
+    let upside_down = if depth(legs) > depth(arms) { 0.5 } else { 0.0 };
+    lengths().unwrap_or(UNKNOWN) + turned + upside_down
 }
 
 fn named(tree: &Tree, side: Side, belongs: impl Fn(Kind) -> bool) -> Vec<usize> {
     (0..tree.skeleton.len())
         .filter(|&j| tree.readings[j].side == Some(side) && belongs(tree.kind(j)))
         .collect()
-}
-
-/// Hips, torso, neck and head.
-fn trunk(tree: &Tree, legs: Option<Pair>, arms: Option<Pair>, map: &mut RoleMap) {
-    let limbs: Vec<usize> = legs
-        .iter()
-        .chain(&arms)
-        .flat_map(|pair| pair.members)
-        .collect();
-    let in_trunk = |j: usize| {
-        !limbs
-            .iter()
-            .any(|&limb| limb == j || tree.is_above(limb, j))
-    };
-    let by_name = |kind| {
-        (0..tree.skeleton.len())
-            .find(|&j| tree.kind(j) == kind && tree.readings[j].side.is_none() && in_trunk(j))
-    };
-    let hips = hips(tree, legs, arms).or(by_name(Kind::Hips)).unwrap_or(0);
-    map.set(Role::Hips, Some(hips));
-
-    let (mut neck, mut head) = (by_name(Kind::Neck), by_name(Kind::Head));
-    if let (None, Some(arms)) = (head, arms) {
-        let chain = neck_chain(tree, arms.parent, legs, &in_trunk, hips);
-        head = head_of(tree, &chain);
-        neck = neck.or(chain.first().copied().filter(|first| Some(*first) != head));
-    }
-    map.set(Role::Neck, neck);
-    map.set(Role::Head, head);
-
-    let top = arms
-        .map(|pair| pair.parent)
-        .or(neck.and_then(|neck| tree.parent(neck)));
-    let torso = match top {
-        Some(top) => {
-            let mut spine: Vec<usize> = tree.upwards(top).take_while(|&j| j != hips).collect();
-            spine.reverse();
-            // Without the hips above it, this is no spine.
-            let hangs = spine
-                .first()
-                .is_some_and(|&first| tree.is_above(hips, first));
-            spine
-                .into_iter()
-                .filter(|_| hangs)
-                .find(|&j| !tree.coincide(j, hips))
-        }
-        None => by_name(Kind::Spine).filter(|&j| j != hips),
-    };
-    map.set(Role::Torso, torso);
-}
-
-/// Where legs and arms meet, or what is called hips next to it.
-fn hips(tree: &Tree, legs: Option<Pair>, arms: Option<Pair>) -> Option<usize> {
-    let legs = legs?.parent;
-    let meeting = arms
-        .and_then(|arms| tree.meeting(legs, arms.parent))
-        .unwrap_or(legs);
-    let is_hips = |j: &usize| tree.kind(*j) == Kind::Hips;
-    let called = tree
-        .upwards(meeting)
-        .find(is_hips)
-        .or_else(|| Some(legs).filter(is_hips));
-    Some(called.unwrap_or(meeting))
-}
-
-/// The longest chain of the trunk that rises from the arms' joint and does not lead to the legs.
-fn neck_chain(
-    tree: &Tree,
-    from: usize,
-    legs: Option<Pair>,
-    in_trunk: &impl Fn(usize) -> bool,
-    hips: usize,
-) -> Vec<usize> {
-    let leads_to_legs =
-        |j: usize| legs.is_some_and(|legs| j == legs.parent || tree.is_above(j, legs.parent));
-    let span = |j: usize| tree.reach(j) + tree.distance(from, j);
-    let start = tree
-        .children(from)
-        .iter()
-        .copied()
-        .filter(|&j| in_trunk(j) && !leads_to_legs(j))
-        .max_by(|&a, &b| span(a).total_cmp(&span(b)));
-    let chain = start
-        .map(|start| tree.main_chain(start))
-        .unwrap_or_default();
-    // Dummies at the middle of the body are no neck.
-    chain
-        .into_iter()
-        .skip_while(|&j| tree.coincide(j, hips))
-        .collect()
-}
-
-/// The last joint of the chain that has a bone: one without a tip is itself only the end of a bone.
-fn head_of(tree: &Tree, chain: &[usize]) -> Option<usize> {
-    let (&last, before) = chain.split_last()?;
-    let is_end = tree.skeleton.joints()[last].tip.is_none();
-    before
-        .last()
-        .copied()
-        .filter(|_| is_end && before.len() > 1)
-        .or(Some(last))
-}
-
-/// The direction to the left of the body, as far as the pose tells: up × forward.
-fn lateral(tree: &Tree, map: &RoleMap, legs: Option<[Limb; 2]>) -> Vec3 {
-    let at = |joint: usize| tree.positions[joint];
-    let low = map.joint(Role::Hips).map_or_else(Vec3::zeros, at);
-    let high = map
-        .joint(Role::Head)
-        .or(map.joint(Role::Neck))
-        .or(map.joint(Role::Torso));
-    let up = high
-        .map_or_else(Vec3::zeros, |high| at(high) - low)
-        .try_normalize(1e-9)
-        .unwrap_or(Vec3::y());
-    let toes: Vec3 = legs
-        .iter()
-        .flatten()
-        .filter_map(|leg| toes_from_heel(tree, leg.end?))
-        .sum();
-    let forward = toes - up * toes.dot(&up);
-    // Without toes: facing +Z in a Y-up file, −Y in a Z-up one.
-    let usual = if up.z.abs() > up.y.abs() {
-        -Vec3::y()
-    } else {
-        Vec3::z()
-    };
-    let forward = if forward.norm() > 0.3 * toes.norm() && toes.norm() > 0.0 {
-        forward
-    } else {
-        usual
-    };
-    up.cross(&forward)
-}
-
-fn toes_from_heel(tree: &Tree, foot: usize) -> Option<Vec3> {
-    match tree.main_chain(foot).last() {
-        Some(&toes) if toes != foot => Some(tree.positions[toes] - tree.positions[foot]),
-        _ => tree.skeleton.joints()[foot].tip,
-    }
-}
-
-/// Which member of the pair, 0 or 1, is on `side`.
-fn member(
-    tree: &Tree,
-    pair: Pair,
-    limbs: [Limb; 2],
-    side: Side,
-    left: Vec3,
-    notes: &mut Vec<String>,
-) -> usize {
-    if let Some(first) = tree.side(pair.members[0]) {
-        return usize::from(first != side);
-    }
-    let at = |i: usize| tree.positions[limbs[i].upper.unwrap_or(pair.members[i])];
-    let first_is_left = (at(0) - at(1)).dot(&left) > 0.0;
-    notes.push("left and right are told by where the toes point; the names do not say".to_owned());
-    usize::from(first_is_left != (side == Side::Left))
 }
 
 fn set_leg(map: &mut RoleMap, side: Side, limb: Limb) {

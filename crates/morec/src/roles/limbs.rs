@@ -1,9 +1,11 @@
-//! Which joints of a limb's subtree are thigh, shin and foot, or collar, arm, forearm and hand.
+//! Which joints of a limb's chain are thigh, shin and foot, or collar, arm, forearm and hand.
 //!
-//! Both readings are tried: the names, with their traps settled by what other names are there; and the lengths
-//! alone. Names win where they make a chain of real bones.
+//! Every choice of three points along the chain is judged: by what the names say, by the proportions of people, by how
+//! far the two limbs of the pair begin apart, and by where the chain bends in the poses at hand. Names weigh most, but no
+//! name makes a bone without a length, nor two thighs in one point.
 
-use super::names::Kind;
+use super::names::{Kind, Side};
+use super::proportions as human;
 use super::tree::Tree;
 
 /// The joints of one limb.
@@ -19,137 +21,310 @@ pub(super) struct Limb {
     pub(super) end: Option<usize>,
 }
 
-/// Thigh, shin and foot among the joints under `member`.
-pub(super) fn leg(tree: &Tree, member: usize) -> Limb {
-    let named = leg_by_name(tree, &tree.subtree(member));
-    if is_real(tree, &named) {
-        return with_end(tree, named);
-    }
-    by_length(tree, &tree.main_chain(member), |_, _| true)
+/// What kind of limb is looked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Part {
+    Leg,
+    /// With the length of the legs, hip to ankle, where it is known.
+    Arm {
+        leg: Option<f64>,
+    },
 }
 
-/// Collar, upper arm, forearm and hand among the joints under `member`.
-pub(super) fn arm(tree: &Tree, member: usize) -> Limb {
-    let named = arm_by_name(tree, &tree.subtree(member));
-    if is_real(tree, &named) {
-        return with_end(tree, named);
-    }
-    let chain: Vec<usize> = tree
-        .main_chain(member)
-        .into_iter()
-        .filter(|&j| tree.kind(j) != Kind::Finger)
-        .collect();
-    // A forearm is not much longer than its upper arm: this tells the upper arm from a long collar.
-    let human = |upper: f64, lower: f64| lower < 1.25 * upper && upper < 2.0 * lower;
-    let limb = by_length(tree, &chain, human);
-    let before = limb
-        .upper
-        .and_then(|upper| chain.iter().position(|&j| j == upper)?.checked_sub(1));
-    Limb {
-        first: before.map(|at| chain[at]),
-        ..limb
-    }
+/// Points of a chain: `upper < lower < end`; `end` may be one behind the last joint, the tip of its bone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Place {
+    upper: usize,
+    lower: usize,
+    end: usize,
 }
 
-/// Settles the words of a leg. `joints` are parents first.
-pub(super) fn leg_by_name(tree: &Tree, joints: &[usize]) -> Limb {
-    let first = |kind| joints.iter().copied().find(|&j| tree.kind(j) == kind);
-    let (leg, hip) = (first(Kind::Leg), first(Kind::Hip));
-    let shin = first(Kind::Shin);
-    let above_shin = |j: &usize| shin.is_some_and(|shin| tree.is_above(*j, shin));
-    // `LeftLeg` is the thigh only above a knee of its own name; a hip is the thigh if nothing else is.
-    let upper = first(Kind::Thigh).or(leg.filter(above_shin)).or(hip);
-    let lower = shin.or(leg.filter(|leg| Some(*leg) != upper));
-    let under_lower = |j: &usize| lower.is_some_and(|lower| tree.is_above(lower, *j));
-    let end = joints
-        .iter()
-        .copied()
-        .filter(under_lower)
-        .find(|&j| tree.kind(j) == Kind::Foot);
-    Limb {
-        first: None,
-        upper,
-        lower,
-        end,
-    }
-}
-
-/// Settles the words of an arm. `joints` are parents first.
-pub(super) fn arm_by_name(tree: &Tree, joints: &[usize]) -> Limb {
-    let first = |kind| joints.iter().copied().find(|&j| tree.kind(j) == kind);
-    let shoulder = first(Kind::Shoulder);
-    // `LeftShoulder` is the upper arm if no joint is called arm.
-    let upper = first(Kind::UpperArm).or(first(Kind::Arm)).or(shoulder);
-    let collar = first(Kind::Collar)
-        .or(shoulder)
-        .filter(|j| Some(*j) != upper);
-    let lower = first(Kind::Forearm);
-    let under_lower = |j: &usize| lower.is_some_and(|lower| tree.is_above(lower, *j));
-    let end = joints
-        .iter()
-        .copied()
-        .filter(under_lower)
-        .find(|&j| tree.kind(j) == Kind::Hand);
-    Limb {
-        first: collar,
-        upper,
-        lower,
-        end,
-    }
-}
-
-/// Whether the names made a chain whose bones have a length.
-fn is_real(tree: &Tree, limb: &Limb) -> bool {
-    let (Some(upper), Some(lower)) = (limb.upper, limb.lower) else {
-        return false;
+/// Both limbs of a pair, and what they cost: the less, the more like a person's.
+pub(super) fn pair(tree: &Tree, members: [usize; 2], part: Part) -> ([Limb; 2], f64) {
+    let chains = members.map(|member| Chain::new(tree, member, part));
+    let limbs = if chains[0].joints.len() == chains[1].joints.len() {
+        let (place, cost) = best(chains[0].joints.len(), |place| {
+            Some(
+                (chains[0].cost(place)? + chains[1].cost(place)?) / 2.0
+                    + separation(&chains, place),
+            )
+        });
+        ([place; 2], cost)
+    } else {
+        let own = |at: usize| {
+            let other = &chains[1 - at];
+            best(chains[at].joints.len(), |place| {
+                let from_other = place.upper.min(other.joints.len() - 1);
+                let together = tree.coincide(
+                    chains[at].joints[place.upper],
+                    other.joints[from_other],
+                );
+                Some(chains[at].cost(place)? + if together { 2.0 } else { 0.0 })
+            })
+        };
+        let (a, b) = (own(0), own(1));
+        ([a.0, b.0], (a.1 + b.1) / 2.0)
     };
-    let whole = tree.reach(upper);
-    let bone = |a: usize, b: usize| tree.is_above(a, b) && tree.distance(a, b) > 0.1 * whole;
-    bone(upper, lower)
-        && limb.end.is_none_or(|end| bone(lower, end))
-        && limb.first.is_none_or(|first| tree.is_above(first, upper))
+    let (places, cost) = limbs;
+    let other = |at: usize| chains[1 - at].joints.as_slice();
+    let limbs = [0, 1].map(|at| chains[at].limb(places[at], other(at)));
+    (limbs, cost)
 }
 
-/// Where no name says foot or hand: the next joint of the chain, if that is one of the body's.
-fn with_end(tree: &Tree, limb: Limb) -> Limb {
-    let next = || {
-        let chain = tree.main_chain(limb.lower?);
-        chain
-            .into_iter()
-            .skip(1)
-            .find(|&j| !matches!(tree.kind(j), Kind::Finger | Kind::Toe))
+/// A limb without another that mirrors it.
+pub(super) fn single(tree: &Tree, member: usize, part: Part) -> Limb {
+    let chain = Chain::new(tree, member, part);
+    let (place, _) = best(chain.joints.len(), |place| chain.cost(place));
+    chain.limb(place, &[])
+}
+
+/// The limb whose joints the names tell, wherever they hang; `joints` are those of one side and kind, parents first.
+pub(super) fn named(tree: &Tree, joints: &[usize], part: Part) -> Limb {
+    let Some(&top) = joints.first() else {
+        return Limb::default();
     };
-    Limb {
-        end: limb.end.or_else(next),
-        ..limb
+    let limb = single(tree, top, part);
+    if limb.lower.is_some() {
+        return limb;
     }
-}
-
-/// The two neighbouring bones of a chain with the greatest length together, among those that `fits`.
-fn by_length(tree: &Tree, chain: &[usize], fits: impl Fn(f64, f64) -> bool) -> Limb {
-    let bone = |i: usize| tree.distance(chain[i], chain[i + 1]);
-    // A first joint in the place of its parent is a dummy: what leads away from it is no limb's bone.
-    let dummies = chain
-        .iter()
-        .take_while(|&&j| tree.parent(j).is_some_and(|p| tree.coincide(j, p)))
-        .count();
-    let starts = dummies..chain.len().saturating_sub(2);
-    let longest = |starts: &mut dyn Iterator<Item = usize>| {
-        starts.max_by(|&a, &b| (bone(a) + bone(a + 1)).total_cmp(&(bone(b) + bone(b + 1))))
+    // Joints that do not hang together, as in rigs whose feet follow handles.
+    let first = |wanted: &dyn Fn(Kind) -> bool| {
+        joints.iter().copied().find(|&j| wanted(tree.kind(j)))
     };
-    let start = longest(&mut starts.clone().filter(|&i| fits(bone(i), bone(i + 1))))
-        .or_else(|| longest(&mut starts.clone()));
-    match start {
-        Some(i) => Limb {
+    match part {
+        Part::Leg => Limb {
             first: None,
-            upper: Some(chain[i]),
-            lower: Some(chain[i + 1]),
-            end: Some(chain[i + 2]),
+            upper: first(&|k| k == Kind::Thigh).or(first(&|k| matches!(k, Kind::Hip | Kind::Leg))),
+            lower: first(&|k| k == Kind::Shin),
+            end: first(&|k| k == Kind::Foot),
         },
-        None => Limb {
-            upper: chain.first().copied(),
-            lower: chain.get(1).copied(),
-            ..Limb::default()
+        Part::Arm { .. } => Limb {
+            first: first(&|k| k == Kind::Collar),
+            upper: first(&|k| matches!(k, Kind::UpperArm | Kind::Arm)),
+            lower: first(&|k| k == Kind::Forearm),
+            end: first(&|k| k == Kind::Hand),
         },
+    }
+}
+
+/// A foot or hand that hangs elsewhere (on a handle of the rig) and is called so.
+pub(super) fn end_elsewhere(tree: &Tree, limb: &mut Limb, side: Side, kind: Kind) {
+    if limb.end.is_some() || limb.lower.is_none() {
+        return;
+    }
+    limb.end = (0..tree.skeleton.len())
+        .find(|&j| tree.kind(j) == kind && tree.readings[j].side == Some(side));
+}
+
+/// The place with the least cost; `None` if no place is possible.
+fn best(joints: usize, cost: impl Fn(Place) -> Option<f64>) -> (Option<Place>, f64) {
+    let mut best: Option<(f64, Place)> = None;
+    for upper in 0..joints {
+        for lower in upper + 1..joints {
+            for end in lower + 1..=joints {
+                let place = Place { upper, lower, end };
+                let Some(cost) = cost(place) else { continue };
+                if best.is_none_or(|(least, _)| cost < least) {
+                    best = Some((cost, place));
+                }
+            }
+        }
+    }
+    best.map_or((None, f64::INFINITY), |(cost, place)| (Some(place), cost))
+}
+
+/// What it costs that the two limbs begin nearer to each other or farther apart than those of people.
+fn separation(chains: &[Chain; 2], place: Place) -> f64 {
+    const MOST: f64 = 3.0;
+    let tree = chains[0].tree;
+    let between = tree.distance(chains[0].joints[place.upper], chains[1].joints[place.upper]);
+    let length = chains[0].length(place);
+    let usual = match chains[0].part {
+        Part::Leg => human::BETWEEN_HIPS,
+        Part::Arm { .. } => human::BETWEEN_SHOULDERS,
+    };
+    0.7 * (between / (length * usual)).ln().abs().min(MOST)
+}
+
+/// The joints down one limb.
+struct Chain<'a> {
+    tree: &'a Tree<'a>,
+    part: Part,
+    joints: Vec<usize>,
+    /// Length of the bone that the last joint carries.
+    tip: f64,
+    /// From the first joint to the tip along the bones.
+    whole: f64,
+}
+
+impl<'a> Chain<'a> {
+    /// Longer chains than this are ropes.
+    const MOST: usize = 24;
+
+    fn new(tree: &'a Tree<'a>, member: usize, part: Part) -> Self {
+        let mut joints = tree.main_chain(member);
+        joints.truncate(Self::MOST);
+        let last = &tree.skeleton.joints()[joints[joints.len() - 1]];
+        let tip = last.tip.map_or(0.0, |tip| tip.norm());
+        let bones = joints.windows(2).map(|pair| tree.distance(pair[0], pair[1]));
+        let whole = bones.sum::<f64>() + tip;
+        Self {
+            tree,
+            part,
+            joints,
+            tip,
+            whole,
+        }
+    }
+
+    /// From one point of the chain to another; the point behind the last joint is the tip.
+    fn apart(&self, a: usize, b: usize, pose: usize) -> f64 {
+        let positions = &self.tree.poses[pose];
+        let last = b.min(self.joints.len() - 1);
+        let between = (positions[self.joints[a]] - positions[self.joints[last]]).norm();
+        between + if b == self.joints.len() { self.tip } else { 0.0 }
+    }
+
+    /// The longest that a bone is in any pose: where it bends it is shorter, and then it is none.
+    fn bone(&self, a: usize, b: usize) -> f64 {
+        (0..self.tree.poses.len())
+            .map(|pose| self.apart(a, b, pose))
+            .fold(0.0, f64::max)
+    }
+
+    fn length(&self, place: Place) -> f64 {
+        self.bone(place.upper, place.lower) + self.bone(place.lower, place.end)
+    }
+
+    /// How much longer the way over the joints between is than the bone, at most, as a share of it.
+    fn bent(&self, a: usize, b: usize) -> f64 {
+        if b - a < 2 {
+            return 0.0;
+        }
+        let bent = |pose: usize| {
+            let way: f64 = (a..b).map(|i| self.apart(i, i + 1, pose)).sum();
+            way / self.apart(a, b, pose).max(1e-12) - 1.0
+        };
+        (0..self.tree.poses.len()).map(bent).fold(0.0, f64::max)
+    }
+
+    /// What a choice costs; `None` if its bones have no length.
+    fn cost(&self, place: Place) -> Option<f64> {
+        const SHORTEST: f64 = 0.08;
+        let tip = place.end == self.joints.len();
+        if tip && self.tip == 0.0 {
+            return None;
+        }
+        let upper = self.bone(place.upper, place.lower);
+        let lower = self.bone(place.lower, place.end);
+        if upper.min(lower) <= SHORTEST * self.whole {
+            return None;
+        }
+        let kind = |at: usize| self.tree.kind(self.joints[at]);
+        let mut names = self.named_upper(kind(place.upper)) + self.named_lower(kind(place.lower));
+        names += match tip {
+            true => -0.5,
+            false => self.named_end(kind(place.end)),
+        };
+        let share = ((upper + lower) / self.whole).ln();
+        let shape = match self.part {
+            Part::Leg => 2.0 * (upper / lower / human::THIGH_TO_SHIN).ln().abs() - share,
+            Part::Arm { leg } => {
+                let of_leg = leg.map_or(0.0, |leg| {
+                    ((upper + lower) / (leg * human::ARM_TO_LEG)).ln().abs()
+                });
+                2.0 * (upper / lower / human::ARM_TO_FOREARM).ln().abs() - 0.5 * share
+                    + 1.2 * of_leg
+            }
+        };
+        let bends = self.bent(place.upper, place.lower) + self.bent(place.lower, place.end);
+        Some(shape + (20.0 * bends).min(4.0) - self.turns(place) - names)
+    }
+
+    /// Something for a joint that is seen to bend, as knees and elbows do.
+    fn turns(&self, place: Place) -> f64 {
+        if self.tree.poses.len() < 3 || place.end == self.joints.len() {
+            return 0.0;
+        }
+        let [a, b, c] = [place.upper, place.lower, place.end].map(|at| self.joints[at]);
+        let angles = self.tree.poses.iter().map(|pose| {
+            let (upper, lower) = (pose[b] - pose[a], pose[c] - pose[b]);
+            upper.angle(&lower)
+        });
+        let (low, high) = angles.fold((f64::MAX, f64::MIN), |(low, high), angle| {
+            (low.min(angle), high.max(angle))
+        });
+        0.4 * ((high - low) / 0.6).clamp(0.0, 1.0)
+    }
+
+    fn named_upper(&self, kind: Kind) -> f64 {
+        use Kind::*;
+        match (self.part, kind) {
+            (_, Unknown) => 0.0,
+            (Part::Leg, Thigh) | (Part::Arm { .. }, UpperArm) => 3.0,
+            (Part::Leg, Leg) => 1.2,
+            (Part::Arm { .. }, Arm) => 2.5,
+            (Part::Leg, Hip) | (Part::Arm { .. }, Shoulder) => 1.0,
+            (Part::Leg, HipJoint | Hips | Spine) | (Part::Arm { .. }, Collar | Spine) => -2.0,
+            (Part::Leg, Foot) | (Part::Arm { .. }, Hand) => -4.0,
+            (_, Toe | Finger) => -6.0,
+            _ => -3.0,
+        }
+    }
+
+    fn named_lower(&self, kind: Kind) -> f64 {
+        use Kind::*;
+        match (self.part, kind) {
+            (_, Unknown) => 0.0,
+            (Part::Leg, Shin) | (Part::Arm { .. }, Forearm) => 3.0,
+            (Part::Leg, Leg) => 1.5,
+            (Part::Arm { .. }, Arm) => 0.5,
+            (Part::Leg, Foot) | (Part::Arm { .. }, Hand) => -4.0,
+            (_, Toe | Finger) => -6.0,
+            _ => -3.0,
+        }
+    }
+
+    fn named_end(&self, kind: Kind) -> f64 {
+        use Kind::*;
+        match (self.part, kind) {
+            (_, Unknown) => 0.0,
+            (Part::Leg, Foot) | (Part::Arm { .. }, Hand) => 3.0,
+            (_, Toe | Finger) => -1.5,
+            _ => -3.0,
+        }
+    }
+
+    fn limb(&self, place: Option<Place>, other: &[usize]) -> Limb {
+        let Some(Place { upper, lower, end }) = place else {
+            return Limb {
+                upper: self.joints.first().copied(),
+                lower: self.joints.get(1).copied(),
+                ..Limb::default()
+            };
+        };
+        Limb {
+            first: self.collar(upper, other),
+            upper: Some(self.joints[upper]),
+            lower: Some(self.joints[lower]),
+            end: self.joints.get(end).copied(),
+        }
+    }
+
+    /// The joint before the upper arm that a collar bone turns about; `other` are the joints of the other side.
+    fn collar(&self, upper: usize, other: &[usize]) -> Option<usize> {
+        if self.part == Part::Leg {
+            return None;
+        }
+        let tree = self.tree;
+        let is_apart = |&j: &usize| {
+            let dummy = tree.parent(j).is_some_and(|parent| tree.coincide(j, parent));
+            !dummy && !other.iter().any(|&o| tree.coincide(j, o))
+        };
+        let before = || self.joints[..upper].iter().copied().filter(is_apart);
+        let called = |kind| before().find(|&j| tree.kind(j) == kind);
+        called(Kind::Collar)
+            .or_else(|| called(Kind::Shoulder))
+            .or_else(|| called(Kind::Unknown))
     }
 }

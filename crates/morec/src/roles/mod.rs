@@ -5,9 +5,13 @@ mod limbs;
 pub mod mapping;
 mod names;
 pub mod points;
+pub(crate) mod proportions;
+mod sides;
 mod tree;
+mod trunk;
+mod words;
 
-pub use find::{Found, find, find_posed};
+pub use find::{Found, find, find_moving};
 
 use std::fmt;
 

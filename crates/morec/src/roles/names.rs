@@ -3,11 +3,22 @@
 //! Names are evidence, not truth: `LeftLeg` is the shin where there is a `LeftUpLeg`, `LeftShoulder` the collar
 //! where there is a `LeftArm`. Such words get a kind of their own here and are settled in [`super::limbs`].
 
+use super::words::{glued_side, in_english, is_side_word, kind_of, spelt_side, words};
+
 /// A side of the body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Side {
     Left,
     Right,
+}
+
+impl Side {
+    pub(super) fn other(self) -> Self {
+        match self {
+            Side::Left => Side::Right,
+            Side::Right => Side::Left,
+        }
+    }
 }
 
 /// What a name could mean.
@@ -39,6 +50,8 @@ pub(super) enum Kind {
     Finger,
     /// A joint that shares a limb's bone: twist and roll joints.
     Twist,
+    /// A part that animals have and people do not: tails, wings, hooves.
+    Animal,
     /// Nothing of the body: ends, handles, faces, props.
     Other,
     /// The name says nothing.
@@ -72,7 +85,7 @@ pub(super) struct Reading {
 /// Reads a name; namespaces (`mixamorig7:`), prefixes and case do not matter.
 pub(super) fn read(name: &str) -> Reading {
     let bare = name.rsplit(':').next().unwrap_or(name);
-    let words = words(bare);
+    let words = words(&in_english(bare));
     let (mut side, letters) = spelt_side(&words);
     let rest: Vec<&str> = words
         .iter()
@@ -92,200 +105,6 @@ pub(super) fn read(name: &str) -> Reading {
         kind = Kind::Hip;
     }
     Reading { side, kind }
-}
-
-/// Lower-case words of a name: cut at anything but letters and where the case changes, digits dropped.
-fn words(name: &str) -> Vec<String> {
-    let letters: Vec<char> = name.chars().collect();
-    let mut words = Vec::new();
-    let mut word = String::new();
-    for (i, &c) in letters.iter().enumerate() {
-        let next_is_lower = letters.get(i + 1).is_some_and(|n| n.is_lowercase());
-        let before_is_lower = i > 0 && letters[i - 1].is_lowercase();
-        let begins = c.is_uppercase() && (before_is_lower || next_is_lower);
-        if (begins || !c.is_alphabetic()) && !word.is_empty() {
-            words.push(std::mem::take(&mut word));
-        }
-        if c.is_alphabetic() {
-            word.extend(c.to_lowercase());
-        }
-    }
-    if !word.is_empty() {
-        words.push(word);
-    }
-    words
-}
-
-fn is_side_word(word: &str) -> bool {
-    matches!(
-        word,
-        "left" | "right" | "l" | "r" | "lft" | "rgt" | "lt" | "rt" | "lf"
-    )
-}
-
-/// The side that whole words say, and the one that single letters would say.
-fn spelt_side(words: &[String]) -> (Option<Side>, Option<Side>) {
-    let find = |left: &[&str], right: &[&str]| {
-        words.iter().find_map(|w| match w.as_str() {
-            w if left.contains(&w) => Some(Side::Left),
-            w if right.contains(&w) => Some(Side::Right),
-            _ => None,
-        })
-    };
-    let spelt = find(&["left"], &["right"]).or_else(|| {
-        words.iter().find_map(|w| match w.as_str() {
-            w if w.starts_with("left") => Some(Side::Left),
-            w if w.starts_with("right") => Some(Side::Right),
-            _ => None,
-        })
-    });
-    (spelt, find(&["l", "lft", "lt", "lf"], &["r", "rgt", "rt"]))
-}
-
-/// Names without any mark between side and part: `lfemur`, `rhumerus`, `lhipjoint`.
-fn glued_side(words: &[&str]) -> Option<(Side, Kind)> {
-    words.iter().find_map(|word| {
-        let (side, part) = match word.as_bytes().first()? {
-            b'l' => (Side::Left, &word[1..]),
-            b'r' => (Side::Right, &word[1..]),
-            _ => return None,
-        };
-        // The remainder must begin with a part: `radius` and `lowerback` have no side.
-        let begins = GLUED.iter().any(|p| part.starts_with(p));
-        begins.then(|| (side, kind_of(&[part])))
-    })
-}
-
-const GLUED: [&str; 27] = [
-    "hip", "femur", "thigh", "tibia", "shin", "calf", "knee", "foot", "ankle", "toe", "clavicle",
-    "collar", "shoulder", "shldr", "humerus", "upperarm", "uparm", "arm", "radius", "forearm",
-    "elbow", "wrist", "hand", "finger", "thumb", "upleg", "leg",
-];
-
-/// Words that say so only as whole words.
-const OTHER: [&str; 34] = [
-    "end",
-    "nub",
-    "site",
-    "tip",
-    "eye",
-    "eyes",
-    "ear",
-    "jaw",
-    "mouth",
-    "lip",
-    "lips",
-    "brow",
-    "cheek",
-    "tongue",
-    "teeth",
-    "chin",
-    "nose",
-    "lid",
-    "eyelid",
-    "eyebrow",
-    "hair",
-    "ponytail",
-    "tail",
-    "skirt",
-    "cloth",
-    "breast",
-    "pectoral",
-    "ik",
-    "pole",
-    "prop",
-    "weapon",
-    "camera",
-    "footsteps",
-    "face",
-];
-
-/// In the order in which they are tried: the more telling part of a joined word first.
-const PARTS: [(&str, Kind); 59] = [
-    ("twist", Kind::Twist),
-    ("roll", Kind::Twist),
-    ("finger", Kind::Finger),
-    ("thumb", Kind::Finger),
-    ("pinky", Kind::Finger),
-    ("metacarpal", Kind::Finger),
-    ("carpal", Kind::Finger),
-    ("index", Kind::Finger),
-    ("toe", Kind::Toe),
-    ("metatarsal", Kind::Toe),
-    ("forearm", Kind::Forearm),
-    ("lowerarm", Kind::Forearm),
-    ("lowarm", Kind::Forearm),
-    ("armlower", Kind::Forearm),
-    ("radius", Kind::Forearm),
-    ("ulna", Kind::Forearm),
-    ("elbow", Kind::Forearm),
-    ("upperarm", Kind::UpperArm),
-    ("uparm", Kind::UpperArm),
-    ("armupper", Kind::UpperArm),
-    ("humerus", Kind::UpperArm),
-    ("collar", Kind::Collar),
-    ("clavicle", Kind::Collar),
-    ("scapula", Kind::Collar),
-    ("shoulder", Kind::Shoulder),
-    ("shldr", Kind::Shoulder),
-    ("hipjoint", Kind::HipJoint),
-    ("buttock", Kind::HipJoint),
-    ("thigh", Kind::Thigh),
-    ("femur", Kind::Thigh),
-    ("upleg", Kind::Thigh),
-    ("upperleg", Kind::Thigh),
-    ("legupper", Kind::Thigh),
-    ("shin", Kind::Shin),
-    ("calf", Kind::Shin),
-    ("tibia", Kind::Shin),
-    ("lowleg", Kind::Shin),
-    ("lowerleg", Kind::Shin),
-    ("leglower", Kind::Shin),
-    ("knee", Kind::Shin),
-    ("foot", Kind::Foot),
-    ("ankle", Kind::Foot),
-    ("hand", Kind::Hand),
-    ("wrist", Kind::Hand),
-    ("pelvis", Kind::Hips),
-    ("hip", Kind::Hips),
-    ("neck", Kind::Neck),
-    ("head", Kind::Head),
-    ("skull", Kind::Head),
-    ("spine", Kind::Spine),
-    ("chest", Kind::Spine),
-    ("torso", Kind::Spine),
-    ("thorax", Kind::Spine),
-    ("abdomen", Kind::Spine),
-    ("waist", Kind::Spine),
-    ("back", Kind::Spine),
-    ("trunk", Kind::Spine),
-    ("leg", Kind::Leg),
-    ("arm", Kind::Arm),
-];
-
-/// The kind that the words together say; they are also read as one, so that `up leg` is `upleg`.
-fn kind_of(words: &[&str]) -> Kind {
-    if words.iter().any(|w| OTHER.contains(w)) {
-        return Kind::Other;
-    }
-    let joined = words.concat();
-    if joined.contains("armature") {
-        return Kind::Unknown;
-    }
-    // The hand's middle finger; but a spine may have a middle, too.
-    let of_finger = words
-        .iter()
-        .any(|w| matches!(*w, "middle" | "mid" | "ring" | "little"));
-    let part = PARTS
-        .iter()
-        .find(|(part, _)| joined.contains(part))
-        .map(|(_, kind)| *kind);
-    match part {
-        None if words.contains(&"ball") => Kind::Toe,
-        None | Some(Kind::Hand) if of_finger => Kind::Finger,
-        Some(kind) => kind,
-        None => Kind::Unknown,
-    }
 }
 
 #[cfg(test)]
@@ -327,6 +146,24 @@ mod tests {
             ("joint_12", None, Unknown),
             ("joint_Root", None, Unknown),
             ("", None, Unknown),
+            ("Body Controller", None, Unknown),
+            ("CC_Base_NeckTwist01", None, Neck),
+            ("CC_Base_L_ForearmTwist02", left, Twist),
+            ("LeftForeArmRoll", left, Twist),
+            ("__UpLeg_L", left, Thigh),
+            ("LoLeg_R", right, Shin),
+            ("左ひざ", left, Shin),
+            ("右足首", right, Foot),
+            ("左腕捩", left, Twist),
+            ("下半身", None, Hips),
+            ("RFArm", right, Forearm),
+            ("LUArm", left, UpperArm),
+            ("ShoulderCenter", None, Neck),
+            ("SPINE_SHOULDER", None, Spine),
+            ("HandLeft", left, Hand),
+            ("FrontLeg_L", left, Animal),
+            ("Tail3", None, Animal),
+            ("hips_joint", None, Hips),
         ] {
             assert_eq!(read(name), Reading { side, kind }, "{name}");
         }

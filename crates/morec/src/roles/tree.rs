@@ -8,7 +8,9 @@ use crate::math::Vec3;
 pub(super) struct Tree<'a> {
     pub(super) skeleton: &'a Skeleton,
     pub(super) readings: Vec<Reading>,
-    /// Where the joints are, in the zero pose or any other.
+    /// Where the joints are, in the zero pose or any others; never empty.
+    pub(super) poses: &'a [Vec<Vec3>],
+    /// The first of these.
     pub(super) positions: &'a [Vec3],
     /// Children that belong to the body.
     children: Vec<Vec<usize>>,
@@ -25,13 +27,31 @@ pub(super) struct Pair {
     pub(super) members: [usize; 2],
 }
 
+/// A joint with limbs under it is no prop, whatever it is called: `Camera`, `Target_Root`.
+fn keep_bodies(skeleton: &Skeleton, readings: &mut [Reading]) {
+    const LIMBS: usize = 6;
+    let mut limbs = vec![0usize; readings.len()];
+    for j in (0..readings.len()).rev() {
+        let kind = readings[j].kind;
+        limbs[j] += usize::from(readings[j].side.is_some() && (kind.is_leg() || kind.is_arm()));
+        if kind == Kind::Other && limbs[j] >= LIMBS {
+            readings[j].kind = Kind::Unknown;
+        }
+        if let Some(parent) = skeleton.joints()[j].parent {
+            limbs[parent] += limbs[j];
+        }
+    }
+}
+
 /// Limbs of a person differ less than this from side to side; trackers may err so far.
 const UNLIKE: f64 = 0.25;
 
 impl<'a> Tree<'a> {
-    pub(super) fn new(skeleton: &'a Skeleton, positions: &'a [Vec3]) -> Self {
+    pub(super) fn new(skeleton: &'a Skeleton, poses: &'a [Vec<Vec3>]) -> Self {
         let joints = skeleton.joints();
-        let readings: Vec<Reading> = joints.iter().map(|j| read(&j.name)).collect();
+        let positions: &[Vec3] = &poses[0];
+        let mut readings: Vec<Reading> = joints.iter().map(|j| read(&j.name)).collect();
+        keep_bodies(skeleton, &mut readings);
         let mut children = vec![Vec::new(); joints.len()];
         let mut reach: Vec<f64> = joints
             .iter()
@@ -42,7 +62,7 @@ impl<'a> Tree<'a> {
         for j in (0..joints.len()).rev() {
             children[j].reverse();
             let Some(p) = joints[j].parent else { continue };
-            if readings[j].kind == Kind::Other {
+            if matches!(readings[j].kind, Kind::Other | Kind::Animal) {
                 continue;
             }
             children[p].push(j);
@@ -52,6 +72,7 @@ impl<'a> Tree<'a> {
         Self {
             skeleton,
             readings,
+            poses,
             positions,
             children,
             reach,
@@ -79,10 +100,14 @@ impl<'a> Tree<'a> {
         (self.positions[a] - self.positions[b]).norm()
     }
 
+    /// The longest reach of any joint: a length to compare with.
+    pub(super) fn size(&self) -> f64 {
+        self.reach.iter().copied().fold(0.0, f64::max)
+    }
+
     /// Whether two joints are in one place, seen against the size of the body.
     pub(super) fn coincide(&self, a: usize, b: usize) -> bool {
-        let size = self.reach.iter().copied().fold(0.0, f64::max);
-        self.distance(a, b) <= 1e-4 * size
+        self.distance(a, b) <= 1e-4 * self.size()
     }
 
     /// `joint` and its ancestors, upwards.
