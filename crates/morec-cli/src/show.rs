@@ -4,7 +4,7 @@
 //! real time, or just the events where there is none.
 
 mod frame;
-mod picture;
+pub mod picture;
 
 use std::io::{self, IsTerminal, Write};
 use std::time::{Duration, Instant};
@@ -99,7 +99,7 @@ pub fn play(scene: &Scene, speed: f64) -> io::Result<()> {
 }
 
 /// What this terminal can show now; asked for every picture, as windows change their size.
-fn look() -> Look {
+pub fn look() -> Look {
     let (columns, rows) = match terminal_size::terminal_size() {
         Some((width, height)) => (usize::from(width.0), usize::from(height.0)),
         None => (80, 24),

@@ -1,6 +1,6 @@
 //! A clip: a skeleton and its motion, as a file gave it.
 
-use crate::math::{Quat, Vec3};
+use crate::math::{Quat, Vec3, same_hemisphere};
 
 /// A half-open range of frames, `start..stop`.
 pub type Span = std::ops::Range<usize>;
@@ -185,6 +185,43 @@ impl Clip {
             repaired: Vec::new(),
             points: Some(known),
         }
+    }
+
+    /// A clip of other joints with the name, rate and repairs of `from`, whose first joint moves in the world as `places`
+    /// say.
+    ///
+    /// # Panics
+    /// If parents do not come first, or numbers of frames differ.
+    pub(crate) fn of_chain(
+        from: &Clip,
+        joints: Vec<Joint>,
+        rotations: Vec<Quat>,
+        places: Vec<Vec3>,
+    ) -> Self {
+        assert_eq!(rotations.len(), from.frames * joints.len());
+        assert_eq!(places.len(), from.frames);
+        for (j, joint) in joints.iter().enumerate() {
+            assert!(joint.parent.is_none_or(|parent| parent < j));
+        }
+        let mut clip = Self {
+            name: from.name.clone(),
+            skeleton: Skeleton { joints },
+            rate_hz: from.rate_hz,
+            rotations,
+            tracks: vec![JointTrack {
+                joint: 0,
+                positions: places,
+            }],
+            frames: from.frames,
+            repaired: from.repaired.clone(),
+            points: None,
+        };
+        let joints = clip.skeleton.len();
+        for at in joints..clip.rotations.len() {
+            let before = clip.rotations[at - joints];
+            clip.rotations[at] = same_hemisphere(&before, clip.rotations[at]);
+        }
+        clip
     }
 
     /// Adds joints that move in the world, each with a position for every frame. O(frames × joints).

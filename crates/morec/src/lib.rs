@@ -68,6 +68,7 @@
 //! | learning | [`labels`], [`train`] | a [`TemplateModel`](templates::TemplateModel) and a report |
 //! | keeping | [`index`] | one file, with a checksum and where it came from |
 //! | recognising | [`templates`] or [`svrdm`], [`decode`], [`live`] | [`Detection`](live::Detection)s, nothing taken back |
+//! | numbers for other programs | [`tables`] | positions, rotations and feature rows as NumPy archives and CSV |
 //! | looking at a stream | [`diagnosis`] | what is wrong with it, in sentences that say what to do |
 //! | without labels | [`pivots`], [`pca`], [`segment`], [`cluster`] | pose rows, fewer dimensions, cuts, samples that are alike |
 //! | measuring | [`eval`], [`crossval`], [`explain`], [`report`], [`plot`] | figures, timelines, charts, one page of HTML |
@@ -133,6 +134,7 @@ pub mod segment;
 pub mod smooth;
 pub mod svrdm;
 pub mod synth;
+pub mod tables;
 pub mod templates;
 #[cfg(test)]
 #[path = "../tests/testing/mod.rs"]

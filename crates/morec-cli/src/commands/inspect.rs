@@ -1,16 +1,20 @@
 //! `morec inspect`: what a clip is, and what will be made of it.
 
+mod draw;
 mod report;
 
-use std::path::PathBuf;
+use std::io::{IsTerminal, Write};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::{Context, Result};
-use morec::import::{ImportOptions, SignedAxis};
+use anyhow::{Context, Result, bail};
+use morec::import::{ImportOptions, Imported, SignedAxis};
 
 use crate::figures::write_json;
 use crate::files::{self, ReadArgs};
+use crate::output;
 use crate::progress::Progress;
+use draw::Drawing;
 use report::{FileReport, Report};
 
 /// Show what a clip is: skeleton, roles, rate, units, repairs
@@ -26,6 +30,8 @@ Examples:
   morec inspect recordings/ --json
   morec inspect 13_29.amc --skeleton 13.asf --file-rate 60
   morec inspect odd.bvh --roles mine.tsv
+  morec inspect odd.bvh --draw
+  morec inspect odd.bvh --draw -o odd.svg
 
 A roles file has one role a line, a tab, and the joint's name (or - for none):
   hips<TAB>Pelvis
@@ -43,6 +49,12 @@ pub struct Args {
     /// Print every joint of every clip, even of several
     #[arg(long, conflicts_with = "json")]
     full: bool,
+    /// Draw the body as it was understood, left and right in colours of their own
+    #[arg(long, conflicts_with = "json")]
+    draw: bool,
+    /// With --draw: write the picture of one clip as SVG, with the names of its joints
+    #[arg(short, long, value_name = "FILE", requires = "draw")]
+    output: Option<PathBuf>,
     /// Roles that override those found: a file of `role<TAB>joint` lines
     #[arg(long, value_name = "FILE")]
     roles: Option<PathBuf>,
@@ -63,21 +75,32 @@ pub fn run(args: Args) -> Result<ExitCode> {
     let left_out = files::say_left_out(&expanded);
     let paths = expanded.clips;
     let full = args.full || paths.len() == 1;
+    if let Some(output) = &args.output {
+        output::check(output).with_context(|| output.display().to_string())?;
+        if paths.len() != 1 {
+            bail!("--output writes the picture of one clip; {} are named", paths.len());
+        }
+    }
     let mut progress = Progress::new(paths.len(), "reading clips");
     let mut failed = left_out;
     let mut reports: Vec<FileReport> = Vec::new();
     for path in paths {
-        let report = match inspect(&path, &args.read, &options) {
-            Ok(report) => FileReport::Read(Box::new(report)),
+        let (report, drawings) = match inspect(&path, &args.read, &options) {
+            Ok((report, imported)) => {
+                let drawn = imported.iter().filter(|_| args.draw);
+                let drawings = drawn.map(Drawing::of).collect();
+                (FileReport::Read(Box::new(report)), drawings)
+            }
             Err(error) => {
                 failed = true;
-                FileReport::failed(&path, &error)
+                (FileReport::failed(&path, &error), Vec::new())
             }
         };
         if args.json {
             reports.push(report);
         } else {
             progress.suspend(|| print(&report, full))?;
+            progress.suspend(|| draw(&drawings, &path, args.output.as_deref()))?;
         }
         progress.step();
     }
@@ -101,7 +124,32 @@ fn print(report: &FileReport, full: bool) -> Result<()> {
     Ok(())
 }
 
-fn inspect(path: &std::path::Path, read: &ReadArgs, options: &ImportOptions) -> Result<Report> {
+/// Shows pictures on the terminal, or writes the first one as SVG.
+fn draw(drawings: &[Option<Drawing>], path: &Path, output: Option<&Path>) -> Result<()> {
+    let nobody = "there is no body to draw";
+    if let (Some(output), Some(drawing)) = (output, drawings.first()) {
+        let drawing = drawing.as_ref().with_context(|| format!("{}: {nobody}", path.display()))?;
+        let svg = drawing.svg(&path.display().to_string());
+        return output::write_whole(output, |out| out.write_all(svg.as_bytes()))
+            .with_context(|| output.display().to_string());
+    }
+    let mut out = std::io::stdout().lock();
+    let look = crate::show::look();
+    let colour = look.colour && out.is_terminal();
+    for drawing in drawings {
+        match drawing {
+            Some(drawing) => write!(out, "\n{}", drawing.text(colour, look.unicode))?,
+            None => writeln!(out, "\n  {nobody}")?,
+        }
+    }
+    Ok(())
+}
+
+fn inspect(
+    path: &Path,
+    read: &ReadArgs,
+    options: &ImportOptions,
+) -> Result<(Report, Vec<Imported>)> {
     let opened = files::open(path, read)?;
     let (format, skeleton, warnings) = (
         opened.format,
@@ -110,7 +158,8 @@ fn inspect(path: &std::path::Path, read: &ReadArgs, options: &ImportOptions) -> 
     );
     let takes = opened.into_takes(options);
     let takes = takes.with_context(|| format!("{}: --roles", path.display()))?;
-    Ok(Report::new(path, format, skeleton, &takes, warnings))
+    let report = Report::new(path, format, skeleton, &takes, warnings);
+    Ok((report, takes))
 }
 
 fn import_options(args: &Args) -> Result<ImportOptions> {

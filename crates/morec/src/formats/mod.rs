@@ -19,7 +19,7 @@ mod mangle;
 pub mod mclip;
 pub mod mocopi;
 pub mod mvnx;
-mod points;
+pub(crate) mod points;
 pub mod probe;
 mod scene;
 pub mod smpl;

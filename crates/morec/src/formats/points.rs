@@ -210,7 +210,7 @@ pub(super) fn check_size(points: usize, frames: usize, bytes: usize) -> Result<(
 }
 
 /// Whether the point `joint` was not seen at `frame`. O(gaps).
-pub(super) fn is_gap_at(clip: &Clip, joint: usize, frame: usize) -> bool {
+pub(crate) fn is_gap_at(clip: &Clip, joint: usize, frame: usize) -> bool {
     let gaps = clip.points.iter().flat_map(|points| &points.gaps);
     gaps.into_iter()
         .any(|gap| gap.joint == joint && gap.frames.contains(&frame))

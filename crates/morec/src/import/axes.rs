@@ -68,9 +68,12 @@ impl serde::Serialize for SignedAxis {
 
 /// The axis along which the head is above the feet, over the whole clip.
 pub(super) fn infer_up(clip: &Clip, body: &Body, notes: &mut Vec<String>) -> SignedAxis {
+    /// A mean shorter than this share of the body, or not longer than its next axis by this factor, says little.
+    const SHORT: f64 = 0.5;
+    const CLEAR: f64 = 1.5;
     let sum: Vec3 = body.upwards.iter().sum();
-    let biggest = sum.iamax();
-    if sum[biggest] == 0.0 {
+    let lengths: f64 = body.upwards.iter().map(|v| v.norm()).sum();
+    if lengths == 0.0 {
         if let Some(up) = floor(clip) {
             notes.push(format!(
                 "no head above feet to tell which way is up; along {up} alone everything lies above 0, so it is taken"
@@ -80,16 +83,58 @@ pub(super) fn infer_up(clip: &Clip, body: &Body, notes: &mut Vec<String>) -> Sig
         notes.push("no head above feet to tell which way is up; Y is assumed".to_owned());
         return SignedAxis::Y;
     }
-    // Someone lying or bent double for the whole clip: the usual axis, if it is at all possible.
-    let doubtful = sum.y > 0.0 && sum.y > 0.6 * sum[biggest].abs() && biggest != Axis::Y.index();
-    if doubtful {
-        notes.push("the body hardly stands; Y is assumed to be up".to_owned());
-        return SignedAxis::Y;
+    let biggest = sum.iamax();
+    let next = (0..3)
+        .filter(|&axis| axis != biggest)
+        .map(|axis| sum[axis].abs())
+        .fold(0.0, f64::max);
+    if sum.norm() >= SHORT * lengths && sum[biggest].abs() >= CLEAR * next {
+        return SignedAxis {
+            axis: Axis::ALL[biggest],
+            negative: sum[biggest] < 0.0,
+        };
     }
-    SignedAxis {
-        axis: Axis::ALL[biggest],
-        negative: sum[biggest] < 0.0,
+    lying(body, notes)
+}
+
+/// Which way is up where somebody lies, crawls or turns over: along which axis the body stands at its straightest, and
+/// where the floor is, which its lowest point never leaves.
+fn lying(body: &Body, notes: &mut Vec<String>) -> SignedAxis {
+    const UNSURE: f64 = 0.25;
+    let size = body.upwards.iter().map(|v| v.norm()).fold(0.0, f64::max);
+    let quantile = |mut values: Vec<f64>, share: f64| -> f64 {
+        values.sort_by(f64::total_cmp);
+        let at = (values.len().saturating_sub(1)) as f64 * share;
+        values.get(at.round() as usize).copied().unwrap_or(0.0)
+    };
+    let mut scores: Vec<(f64, SignedAxis)> = Vec::with_capacity(6);
+    for axis in Axis::ALL {
+        for negative in [false, true] {
+            let up = SignedAxis { axis, negative };
+            let along = |v: &Vec3| v.dot(&up.unit());
+            let stands = quantile(body.upwards.iter().map(along).collect(), 0.95) / size;
+            let lowest: Vec<f64> = body
+                .poses
+                .iter()
+                .map(|pose| pose.iter().map(along).fold(f64::MAX, f64::min))
+                .collect();
+            let spread = (quantile(lowest.clone(), 0.9) - quantile(lowest, 0.1)) / size;
+            let usual = match (axis, negative) {
+                (Axis::Y, false) => 0.2,
+                (Axis::Z, false) => 0.1,
+                _ => 0.0,
+            };
+            scores.push((stands + 0.5 * (-10.0 * spread).exp() + usual, up));
+        }
     }
+    scores.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let (best, up) = scores[0];
+    if best - scores[1].0 < UNSURE {
+        notes.push(format!(
+            "the body hardly stands; {up} is assumed to be up (--up AXIS says otherwise)"
+        ));
+    }
+    up
 }
 
 /// The one axis, Y or Z, along which no point of a clip of points is ever below the floor of the room.

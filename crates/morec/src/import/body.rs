@@ -15,8 +15,14 @@ pub(super) struct Body {
     pub(super) feet_to_head: Vec<Vec3>,
     /// The same, with the highest part that is known where head and neck are not: it says which way is up.
     pub(super) upwards: Vec<Vec3>,
+    /// Where the joints that play roles are, in the same frames.
+    pub(super) poses: Vec<Vec<Vec3>>,
     /// Thigh and shin together.
     pub(super) leg: Option<f64>,
+    /// Upper arm and forearm together.
+    pub(super) arm: Option<f64>,
+    /// From the middle of the hip joints to that of the shoulders.
+    pub(super) trunk: Option<f64>,
     /// Leg, hips to neck, neck to head: the height of someone who stands straight, up to the head's joint.
     pub(super) chain: Option<f64>,
 }
@@ -29,19 +35,28 @@ impl Body {
         let frames = || (usize::from(clip.frames > 1)..clip.frames).step_by(step);
         let (mut feet_to_head, mut upwards) = (Vec::new(), Vec::new());
         let (mut legs, mut chains) = (Vec::new(), Vec::new());
+        let (mut arms, mut trunks) = (Vec::new(), Vec::new());
+        let mut poses = Vec::new();
         for frame in frames() {
             pose.set(clip, frame);
+            let joints = Role::ALL.iter().filter_map(|&role| map.joint(role));
+            poses.push(joints.map(|joint| pose.positions[joint]).collect());
             let head = extent(clip, map, &pose, &[Role::Head, Role::Neck]);
             feet_to_head.extend(head);
             upwards.extend(head.or_else(|| extent(clip, map, &pose, &[Role::Torso, Role::Hips])));
-            let leg = mean([leg_length(map, &pose, true), leg_length(map, &pose, false)]);
+            let leg = mean(LEGS.map(|limb| limb_length(map, &pose, limb)));
+            arms.extend(mean(ARMS.map(|limb| limb_length(map, &pose, limb))));
+            trunks.extend(hips_to_shoulders(map, &pose));
             legs.extend(leg);
             chains.extend(leg.and_then(|leg| Some(leg + trunk_length(map, &pose)?)));
         }
         Self {
             feet_to_head,
             upwards,
+            poses,
             leg: median(legs),
+            arm: median(arms),
+            trunk: median(trunks),
             chain: median(chains),
         }
     }
@@ -87,12 +102,25 @@ fn distance(map: &RoleMap, pose: &WorldPose, a: Role, b: Role) -> Option<f64> {
     Some((pose.positions[map.joint(a)?] - pose.positions[map.joint(b)?]).norm())
 }
 
-fn leg_length(map: &RoleMap, pose: &WorldPose, left: bool) -> Option<f64> {
-    let [thigh, shin, foot] = match left {
-        true => [Role::LeftThigh, Role::LeftShin, Role::LeftFoot],
-        false => [Role::RightThigh, Role::RightShin, Role::RightFoot],
+const LEGS: [[Role; 3]; 2] = [
+    [Role::LeftThigh, Role::LeftShin, Role::LeftFoot],
+    [Role::RightThigh, Role::RightShin, Role::RightFoot],
+];
+const ARMS: [[Role; 3]; 2] = [
+    [Role::LeftArm, Role::LeftForearm, Role::LeftHand],
+    [Role::RightArm, Role::RightForearm, Role::RightHand],
+];
+
+fn limb_length(map: &RoleMap, pose: &WorldPose, [upper, lower, end]: [Role; 3]) -> Option<f64> {
+    Some(distance(map, pose, upper, lower)? + distance(map, pose, lower, end)?)
+}
+
+fn hips_to_shoulders(map: &RoleMap, pose: &WorldPose) -> Option<f64> {
+    let middle = |a: Role, b: Role| {
+        Some((pose.positions[map.joint(a)?] + pose.positions[map.joint(b)?]) / 2.0)
     };
-    Some(distance(map, pose, thigh, shin)? + distance(map, pose, shin, foot)?)
+    let hips = middle(Role::LeftThigh, Role::RightThigh)?;
+    Some((middle(Role::LeftArm, Role::RightArm)? - hips).norm())
 }
 
 fn trunk_length(map: &RoleMap, pose: &WorldPose) -> Option<f64> {

@@ -18,6 +18,7 @@ pub use take::Take;
 use crate::clip::{Clip, Span};
 use crate::formats::ParseError;
 use crate::kinematics::WorldPose;
+use crate::math::Vec3;
 use crate::roles::mapping::Mapping;
 use crate::roles::{self, RoleMap};
 use body::Body;
@@ -59,6 +60,8 @@ pub struct ImportReport {
     pub point_set: Option<&'static str>,
     /// Guesses worth doubting, each in a sentence.
     pub notes: Vec<String>,
+    /// What cannot be true of a person's body: recognition would be misled. Each a sentence with what to do.
+    pub doubts: Vec<String>,
 }
 
 /// Infers what `clip` is and makes it Y-up in metres. Where a role is played by a place between joints (in a clip of
@@ -83,6 +86,8 @@ pub fn normalize(mut clip: Clip, options: &ImportOptions) -> Result<Take, ParseE
     let metres_per_unit = options
         .metres_per_unit
         .unwrap_or_else(|| units::choose(&clip, &body, up, &mut notes));
+    let mut doubts = roles::check(&clip.skeleton, &map, &poses(&clip));
+    doubts.extend(units::doubt(&body, metres_per_unit));
     axes::turn_up(&mut clip, up);
     units::scale(&mut clip, metres_per_unit);
     let rest = match options.rest_frames {
@@ -100,6 +105,7 @@ pub fn normalize(mut clip: Clip, options: &ImportOptions) -> Result<Take, ParseE
         has_rotations: clip.has_rotations(),
         point_set,
         notes,
+        doubts,
     };
     Ok(Take {
         clip,
@@ -111,21 +117,24 @@ pub fn normalize(mut clip: Clip, options: &ImportOptions) -> Result<Take, ParseE
 
 /// The roles, judged in frames spread over the clip.
 fn find_roles(clip: &Clip, notes: &mut Vec<String>) -> RoleMap {
-    const FRAMES: usize = 12;
-    let found = if clip.frames == 0 {
-        roles::find(&clip.skeleton)
-    } else {
-        // The first frame may be a rest pose or spoiled.
-        let first = 1.min(clip.frames - 1);
-        let step = (clip.frames - first).div_ceil(FRAMES).max(1);
-        let poses: Vec<_> = (first..clip.frames)
-            .step_by(step)
-            .map(|frame| WorldPose::of(clip, frame).positions)
-            .collect();
-        roles::find_moving(&clip.skeleton, &poses)
+    let found = match clip.frames {
+        0 => roles::find(&clip.skeleton),
+        _ => roles::find_moving(&clip.skeleton, &poses(clip)),
     };
     notes.extend(found.notes);
     found.map
+}
+
+/// World positions of every joint in some frames spread over the clip.
+fn poses(clip: &Clip) -> Vec<Vec<Vec3>> {
+    const FRAMES: usize = 12;
+    // The first frame may be a rest pose or spoiled.
+    let first = 1.min(clip.frames.saturating_sub(1));
+    let step = (clip.frames - first).div_ceil(FRAMES).max(1);
+    (first..clip.frames)
+        .step_by(step)
+        .map(|frame| WorldPose::of(clip, frame).positions)
+        .collect()
 }
 
 #[cfg(test)]

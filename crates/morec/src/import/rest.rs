@@ -16,9 +16,15 @@ const LEAST: f64 = 0.03;
 /// Frames whose steps say what is usual.
 const LOOKED_AT: usize = 60;
 
-/// The rest pose at the start of a clip in metres and Y-up: `0..1`, or `0..0` if there is none.
+/// A rest pose that a change of rate repeated is this many frames long at most.
+const REPEATED: usize = 8;
+/// Frames nearer to each other than this, metres a joint, are one frame twice.
+const SAME: f64 = 1e-6;
+
+/// The rest pose at the start of a clip in metres and Y-up: `0..1` (more where frames are doubled), or `0..0` if there is
+/// none.
 ///
-/// A rest pose is far from the second frame, much farther than frames lie apart after it, and symmetric: so a
+/// A rest pose is far from the frame behind it, much farther than frames lie apart after it, and symmetric: so a
 /// clip that begins in the middle of a motion has none.
 pub fn rest_frames(clip: &Clip, map: &RoleMap) -> Span {
     if clip.frames < 3 || clip.skeleton.is_empty() {
@@ -32,12 +38,25 @@ pub fn rest_frames(clip: &Clip, map: &RoleMap) -> Span {
         .windows(2)
         .map(|pair| apart(&pair[0], &pair[1]))
         .collect();
-    let usual = median(steps[1..].to_vec()).unwrap_or(0.0);
+    let Some(jump) = steps.iter().position(|&step| step > SAME) else {
+        return 0..0;
+    };
+    if jump >= REPEATED {
+        return 0..0;
+    }
+    // Between doubled frames nothing moves, which is no usual step.
+    let after: Vec<f64> = steps[jump + 1..]
+        .iter()
+        .copied()
+        .filter(|&step| jump == 0 || step > SAME)
+        .collect();
+    let usual = median(after.clone()).unwrap_or(0.0);
     // Motion may jerk where it begins; a rest pose is still farther away.
-    let most = steps[1..].iter().take(3).copied().fold(0.0, f64::max);
-    let jumps = steps[0] > LEAST && steps[0] > JUMP * usual && steps[0] > most;
+    let most = after.iter().take(3).copied().fold(0.0, f64::max);
+    let step = steps[jump];
+    let jumps = step > LEAST && step > JUMP * usual && step > most;
     if jumps && (is_zero_pose(clip) || is_symmetric(&poses[0], map)) {
-        0..1
+        0..jump + 1
     } else {
         0..0
     }

@@ -269,3 +269,94 @@ fn real_clips_are_understood() {
         assert!(wrong.is_empty(), "{folder}:\n{}", wrong.join("\n"));
     }
 }
+
+/// Every frame twice, as a change of 30 to 60 Hz without interpolation leaves it.
+fn doubled(mut clip: Clip) -> Clip {
+    let joints = clip.skeleton.len();
+    let frames = clip.rotations.chunks(joints);
+    clip.rotations = frames.flat_map(|frame| [frame, frame].concat()).collect();
+    for track in &mut clip.tracks {
+        track.positions = track.positions.iter().flat_map(|p| [*p, *p]).collect();
+    }
+    clip.frames *= 2;
+    clip
+}
+
+#[test]
+fn doubled_frames_do_not_hide_the_rest_pose() {
+    let imported = ready(doubled(with_t_pose(person(50, 0.01))));
+    assert_eq!(imported.facts.rest_frames, 0..2);
+    assert_eq!(ready(doubled(person(50, 0.01))).facts.rest_frames, 0..0);
+}
+
+/// Turns the whole person about an axis, frame by frame.
+fn turned(mut clip: Clip, turn: impl Fn(usize) -> Quat) -> Clip {
+    let joints = clip.skeleton.len();
+    for frame in 0..clip.frames {
+        let root = &mut clip.rotations[frame * joints];
+        *root = turn(frame) * *root;
+    }
+    clip
+}
+
+#[test]
+fn who_turns_over_or_stands_on_the_hands_still_has_the_floor_below() {
+    // Cartwheels: the mean of feet to head is nearly nothing, and the lowest joint is always on the floor.
+    let mut wheels = turned(person(60, 0.0), |frame| {
+        Axis::Z.rotation(frame as f64 * 0.1047)
+    });
+    for frame in 0..wheels.frames {
+        let pose = WorldPose::of(&wheels, frame).positions;
+        let lowest = pose.iter().map(|p| p.y).fold(f64::MAX, f64::min);
+        wheels.tracks[0].positions[frame].y -= lowest;
+    }
+    assert_eq!(ready(wheels.clone()).facts.up, SignedAxis::Y);
+    for (turn, up) in [
+        (signed(Axis::Z, false), signed(Axis::Z, true)),
+        (signed(Axis::Z, true), signed(Axis::Z, false)),
+        (signed(Axis::X, false), signed(Axis::X, true)),
+        (signed(Axis::Y, true), signed(Axis::Y, true)),
+    ] {
+        let mut other = wheels.clone();
+        axes::turn_up(&mut other, turn);
+        assert_eq!(ready(other).facts.up, up, "{turn}");
+    }
+}
+
+#[test]
+fn the_unit_is_that_of_the_skeleton_however_somebody_crouches() {
+    for (name, metres) in [
+        ("CMU unit (inch / 0.45)", 0.0254 / 0.45),
+        ("inch", 0.0254),
+        ("cm", 0.01),
+        ("mm", 0.001),
+        ("dm", 0.1),
+        ("m", 1.0),
+    ] {
+        for size in [0.8, 1.0, 1.15] {
+            let mut clip = person(50, 0.0);
+            units::scale(&mut clip, size / metres);
+            // Folded up: hips to the ground, trunk level.
+            let joints = clip.skeleton.len();
+            for frame in 0..clip.frames {
+                clip.rotations[frame * joints] = Axis::X.rotation(1.5);
+            }
+            let facts = ready(clip).facts;
+            assert_eq!(facts.unit, Some(name), "{size}: {facts:?}");
+        }
+    }
+}
+
+#[test]
+fn legs_of_nobody_are_doubted() {
+    let options = ImportOptions {
+        metres_per_unit: Some(10.0),
+        ..ImportOptions::default()
+    };
+    let doubts = prepare(person(20, 0.0), &options).unwrap().facts.doubts;
+    assert!(
+        doubts.iter().any(|d| d.contains("no person's")),
+        "{doubts:?}"
+    );
+    assert!(ready(person(20, 0.0)).facts.doubts.is_empty());
+}

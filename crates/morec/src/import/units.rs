@@ -3,6 +3,7 @@
 use super::SignedAxis;
 use super::body::Body;
 use crate::clip::Clip;
+use crate::roles::proportions as human;
 
 /// Units that files are written in: name, metres.
 const UNITS: [(&str, f64); 6] = [
@@ -13,9 +14,6 @@ const UNITS: [(&str, f64); 6] = [
     ("cm", 0.01),
     ("mm", 0.001),
 ];
-
-/// What the height of most people comes to, measured from the ankles to the top of the head.
-const HEIGHT: f64 = 1.65;
 
 /// The unit that the file of a clip of points states, if a body can be so large; else the one the body tells.
 pub(super) fn choose(clip: &Clip, body: &Body, up: SignedAxis, notes: &mut Vec<String>) -> f64 {
@@ -49,22 +47,59 @@ fn height(body: &Body, up: SignedAxis) -> Option<f64> {
     body.height(up).or(by_leg).filter(|&height| height > 0.0)
 }
 
-/// The known unit in which the body comes nearest to a person's height.
+/// What the height of most people comes to, measured from the ankles to the top of the head.
+const HEIGHT: f64 = 1.65;
+
+/// How many times as large as a usual adult the body is, by one of the file's units a metre.
+///
+/// Legs, arms and trunk belong to the skeleton: they are the same in every clip of it, however somebody crouches. The
+/// one in the middle is taken, so that a cartoon's legs or long arms do not decide; only a body of which they are not
+/// known is measured by its height.
+fn size(body: &Body, up: SignedAxis) -> Option<f64> {
+    let usual = [
+        (body.leg, human::LEG),
+        (body.arm, human::LEG * human::ARM_TO_LEG),
+        (body.trunk, human::LEG * human::TRUNK_TO_LEG),
+    ];
+    let shares = usual
+        .into_iter()
+        .filter_map(|(length, usual)| Some(length? / usual));
+    let mut shares: Vec<f64> = shares.filter(|&share| share > 0.0).collect();
+    shares.sort_by(f64::total_cmp);
+    match shares.as_slice() {
+        [_, middle, _] => Some(*middle),
+        [a, b] => Some((a * b).sqrt()),
+        [one] if body.leg.is_some() => Some(*one),
+        _ => height(body, up).map(|height| height / HEIGHT),
+    }
+}
+
+/// The known unit in which the body comes nearest to a person's size.
 pub(super) fn infer(body: &Body, up: SignedAxis, notes: &mut Vec<String>) -> f64 {
-    let Some(height) = height(body, up) else {
+    let Some(size) = size(body, up) else {
         notes.push("no body to measure; lengths are taken as metres".to_owned());
         return 1.0;
     };
-    let away = |metres: f64| (height * metres / HEIGHT).ln().abs();
+    let away = |metres: f64| (size * metres).ln().abs();
     let nearest = |a: &&(&str, f64), b: &&(&str, f64)| away(a.1).total_cmp(&away(b.1));
     let (unit, metres) = UNITS.iter().min_by(nearest).copied().unwrap_or(("m", 1.0));
-    let tall = height * metres;
+    let tall = size * metres * HEIGHT;
     if !(1.0..=2.3).contains(&tall) {
         notes.push(format!(
             "in {unit}, the nearest known unit, the body is {tall:.2} m tall"
         ));
     }
     metres
+}
+
+/// What is wrong with a body whose legs, in this unit, are no person's.
+pub(super) fn doubt(body: &Body, metres_per_unit: f64) -> Option<String> {
+    let leg = body.leg? * metres_per_unit;
+    (!(0.3..=1.3).contains(&leg)).then(|| {
+        format!(
+            "legs of {leg:.3} m are no person's: say the unit with --unit METRES, or the joints with --roles FILE"
+        )
+    })
 }
 
 /// The name of a known unit.

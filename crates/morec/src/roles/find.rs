@@ -117,7 +117,8 @@ impl Pairs {
         let reach = |pair: &Pair| tree.reach(pair.members[0]) + tree.reach(pair.members[1]);
         pairs.sort_by(|a, b| reach(b).total_cmp(&reach(a)));
         let votes = |pair: &Pair| pair.members.iter().map(|&m| tree.leg_votes(m)).sum::<i64>();
-        let find = |fits: &dyn Fn(i64) -> bool| pairs.iter().copied().find(|pair| fits(votes(pair)));
+        let find =
+            |fits: &dyn Fn(i64) -> bool| pairs.iter().copied().find(|pair| fits(votes(pair)));
         let (legs, arms) = (find(&|v| v > 0), find(&|v| v < 0));
         let silent: Vec<Pair> = pairs
             .iter()
@@ -176,7 +177,10 @@ impl Pairs {
 
     /// The middle of the shoulders in the first pose, and the length of the legs.
     pub(super) fn shoulders(&self, tree: &Tree) -> Option<(Vec3, f64)> {
-        let middle = self.arms.as_ref()?.middle(tree.positions, |limb| limb.upper)?;
+        let middle = self
+            .arms
+            .as_ref()?
+            .middle(tree.positions, |limb| limb.upper)?;
         Some((middle, self.leg?))
     }
 }

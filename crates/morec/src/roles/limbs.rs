@@ -55,10 +55,8 @@ pub(super) fn pair(tree: &Tree, members: [usize; 2], part: Part) -> ([Limb; 2], 
             let other = &chains[1 - at];
             best(chains[at].joints.len(), |place| {
                 let from_other = place.upper.min(other.joints.len() - 1);
-                let together = tree.coincide(
-                    chains[at].joints[place.upper],
-                    other.joints[from_other],
-                );
+                let together =
+                    tree.coincide(chains[at].joints[place.upper], other.joints[from_other]);
                 Some(chains[at].cost(place)? + if together { 2.0 } else { 0.0 })
             })
         };
@@ -88,9 +86,8 @@ pub(super) fn named(tree: &Tree, joints: &[usize], part: Part) -> Limb {
         return limb;
     }
     // Joints that do not hang together, as in rigs whose feet follow handles.
-    let first = |wanted: &dyn Fn(Kind) -> bool| {
-        joints.iter().copied().find(|&j| wanted(tree.kind(j)))
-    };
+    let first =
+        |wanted: &dyn Fn(Kind) -> bool| joints.iter().copied().find(|&j| wanted(tree.kind(j)));
     match part {
         Part::Leg => Limb {
             first: None,
@@ -166,7 +163,9 @@ impl<'a> Chain<'a> {
         joints.truncate(Self::MOST);
         let last = &tree.skeleton.joints()[joints[joints.len() - 1]];
         let tip = last.tip.map_or(0.0, |tip| tip.norm());
-        let bones = joints.windows(2).map(|pair| tree.distance(pair[0], pair[1]));
+        let bones = joints
+            .windows(2)
+            .map(|pair| tree.distance(pair[0], pair[1]));
         let whole = bones.sum::<f64>() + tip;
         Self {
             tree,
@@ -182,7 +181,12 @@ impl<'a> Chain<'a> {
         let positions = &self.tree.poses[pose];
         let last = b.min(self.joints.len() - 1);
         let between = (positions[self.joints[a]] - positions[self.joints[last]]).norm();
-        between + if b == self.joints.len() { self.tip } else { 0.0 }
+        between
+            + if b == self.joints.len() {
+                self.tip
+            } else {
+                0.0
+            }
     }
 
     /// The longest that a bone is in any pose: where it bends it is shorter, and then it is none.
@@ -318,13 +322,22 @@ impl<'a> Chain<'a> {
         }
         let tree = self.tree;
         let is_apart = |&j: &usize| {
-            let dummy = tree.parent(j).is_some_and(|parent| tree.coincide(j, parent));
+            let dummy = tree
+                .parent(j)
+                .is_some_and(|parent| tree.coincide(j, parent));
             !dummy && !other.iter().any(|&o| tree.coincide(j, o))
         };
-        let before = || self.joints[..upper].iter().copied().filter(is_apart);
-        let called = |kind| before().find(|&j| tree.kind(j) == kind);
+        let before = || self.joints[..upper].iter().copied();
+        let called = |kind| {
+            let mut apart = before().filter(is_apart);
+            apart.find(|&j| tree.kind(j) == kind)
+        };
+        // Both collars may begin in one point, if nothing better is called so.
+        let in_one_point =
+            || before().find(|&j| matches!(tree.kind(j), Kind::Collar | Kind::Shoulder));
         called(Kind::Collar)
             .or_else(|| called(Kind::Shoulder))
+            .or_else(in_one_point)
             .or_else(|| called(Kind::Unknown))
     }
 }

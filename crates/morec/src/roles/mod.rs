@@ -1,5 +1,6 @@
 //! Which joint of a skeleton plays which part of the body.
 
+mod check;
 mod find;
 mod limbs;
 pub mod mapping;
@@ -11,6 +12,7 @@ mod tree;
 mod trunk;
 mod words;
 
+pub use check::check;
 pub use find::{Found, find, find_moving};
 
 use std::fmt;

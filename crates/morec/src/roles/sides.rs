@@ -8,6 +8,10 @@ use crate::math::Vec3;
 
 /// Knees that bend less than this share of the leg do not tell where they point.
 const LEAST_BEND: f64 = 0.04;
+/// The same of a zero pose, in which bones need not lie as in any body.
+const LEAST_BEND_AT_ZERO: f64 = 0.12;
+/// What toes weigh beside the bends of both knees, in shares of the legs.
+const TOES: f64 = 0.3;
 /// A mean cosine from here on is certain.
 const CERTAIN: f64 = 0.5;
 
@@ -26,11 +30,25 @@ impl Sides {
         let (mut toes, mut knees) = (Vec::new(), Vec::new());
         for pose in tree.poses {
             let up = upwards(pose, map);
-            let forward_toes = across(legs.iter().flatten().filter_map(|leg| toes_of(tree, pose, leg)), up);
-            let forward_knees = across(legs.iter().flatten().filter_map(|leg| knee_of(pose, leg)), up);
+            let forward_toes = across(
+                legs.iter()
+                    .flatten()
+                    .filter_map(|leg| toes_of(tree, pose, leg)),
+                up,
+            );
             let usual = usual(up);
+            // Toes tell at once, knees the better the more they bend.
+            let least = match tree.poses.len() {
+                1 => LEAST_BEND_AT_ZERO,
+                _ => LEAST_BEND,
+            };
+            let knee_of = |leg| knee_of(pose, leg).filter(|(_, share)| *share > least);
+            let bend = legs.iter().flatten().filter_map(knee_of);
+            let bent: f64 = bend.map(|(_, share)| share).sum();
+            let knee = |leg| Some(knee_of(leg)?.0);
+            let forward_knees = across(legs.iter().flatten().filter_map(knee), up);
             let forward = match (forward_toes, forward_knees) {
-                (Some(toes), Some(knees)) => toes + knees,
+                (Some(toes), Some(knees)) => toes * TOES + knees * bent,
                 (toes, knees) => toes.or(knees).unwrap_or(usual),
             };
             left.push(up.cross(&forward));
@@ -68,7 +86,11 @@ impl Sides {
             .zip(&self.left)
             .map(|(pose, left)| (pose[joint(0)] - pose[joint(1)]).dot(left))
             .sum();
-        let side = if leftwards > 0.0 { Side::Left } else { Side::Right };
+        let side = if leftwards > 0.0 {
+            Side::Left
+        } else {
+            Side::Right
+        };
         let note = "left and right are told by where the toes point; the names do not say";
         (side, Some(note.to_owned()))
     }
@@ -143,10 +165,11 @@ fn toes_of(tree: &Tree, pose: &[Vec3], leg: &Limb) -> Option<Vec3> {
     }
 }
 
-/// From the line between hip and ankle to the knee, where it is bent.
-fn knee_of(pose: &[Vec3], leg: &Limb) -> Option<Vec3> {
+/// From the line between hip and ankle to the knee, where it is bent, and how long that is as a share of the line.
+fn knee_of(pose: &[Vec3], leg: &Limb) -> Option<(Vec3, f64)> {
     let [hip, knee, ankle] = [pose[leg.upper?], pose[leg.lower?], pose[leg.end?]];
     let line = (ankle - hip).try_normalize(1e-12)?;
     let out = (knee - hip) - line * (knee - hip).dot(&line);
-    (out.norm() > LEAST_BEND * (ankle - hip).norm()).then_some(out)
+    let share = out.norm() / (ankle - hip).norm();
+    Some((out, share))
 }

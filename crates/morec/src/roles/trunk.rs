@@ -93,7 +93,9 @@ impl Trunk<'_> {
         let called_head = self.by_name(Kind::Head);
         let neck = self.by_name(Kind::Neck).filter(|&neck| {
             called_head.is_none_or(|head| tree.is_above(neck, head))
-                && self.top().is_none_or(|top| neck == top || !tree.is_above(neck, top))
+                && self
+                    .top()
+                    .is_none_or(|top| neck == top || !tree.is_above(neck, top))
         });
         let Some(top) = self.top() else {
             return (neck, called_head);
@@ -149,8 +151,7 @@ impl Trunk<'_> {
     fn rising(&self, from: usize, hips: usize) -> Vec<usize> {
         let tree = self.tree;
         let legs = self.pairs.legs.as_ref().map(|legs| legs.pair.parent);
-        let leads_to_legs =
-            |j: usize| legs.is_some_and(|legs| j == legs || tree.is_above(j, legs));
+        let leads_to_legs = |j: usize| legs.is_some_and(|legs| j == legs || tree.is_above(j, legs));
         let up = self.pairs.upwards(tree);
         let rise = |j: usize| {
             let chain = tree.main_chain(j);
@@ -168,7 +169,9 @@ impl Trunk<'_> {
             .copied()
             .filter(|&j| self.contains(j) && !leads_to_legs(j))
             .max_by(|&a, &b| rise(a).total_cmp(&rise(b)));
-        let chain = start.map(|start| tree.main_chain(start)).unwrap_or_default();
+        let chain = start
+            .map(|start| tree.main_chain(start))
+            .unwrap_or_default();
         // Dummies at the middle of the body are no neck.
         chain
             .into_iter()
@@ -180,8 +183,12 @@ impl Trunk<'_> {
     /// bone: one without a tip is itself only the end of a bone.
     fn head_of(&self, chain: &[usize]) -> Option<usize> {
         let (&last, before) = chain.split_last()?;
-        let fork = chain.iter().copied().find(|&j| self.tree.children(j).len() > 1);
-        let is_end = self.tree.skeleton.joints()[last].tip.is_none();
+        let fork = chain
+            .iter()
+            .copied()
+            .find(|&j| self.tree.children(j).len() > 1);
+        let is_end = self.tree.skeleton.joints()[last].tip.is_none()
+            && self.tree.skeleton.children(last).next().is_none();
         let last_bone = before.last().copied().filter(|_| is_end);
         fork.or(last_bone).or(Some(last))
     }

@@ -209,6 +209,9 @@ impl ClipReport {
         )?;
         writeln!(out, "  joints     {}", self.joints.len())?;
         self.write_joints(out)?;
+        for doubt in &facts.doubts {
+            writeln!(out, "  warning    {doubt}")?;
+        }
         for note in &facts.notes {
             writeln!(out, "  note       {note}")?;
         }
@@ -255,6 +258,9 @@ impl ClipReport {
         if !self.facts.has_rotations {
             let set = self.facts.point_set.unwrap_or("no known set of points");
             writeln!(out, "  {set}; rotations are not known")?;
+        }
+        for doubt in &self.facts.doubts {
+            writeln!(out, "  warning: {doubt}")?;
         }
         for note in &self.facts.notes {
             writeln!(out, "  note: {note}")?;

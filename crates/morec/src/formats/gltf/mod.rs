@@ -8,6 +8,9 @@ mod accessor;
 mod animation;
 mod document;
 mod nodes;
+mod write;
+
+pub use self::write::{write, write_vrma};
 
 use self::animation::Animation;
 use self::document::Document;

@@ -329,3 +329,91 @@ fn clips_survive_the_way_through_bvh() {
         }
     }
 }
+
+/// A person who waves, imported.
+fn waving() -> crate::import::Imported {
+    use crate::synth::{Person, Script};
+    let script = Script::new(3, Person::draw(31, 2)).rest(0.3).play("wave");
+    prepare(
+        script.film("wave", 60.0).unwrap().clip,
+        &ImportOptions::default(),
+    )
+    .unwrap()
+}
+
+#[test]
+fn what_is_written_is_read_back() {
+    let imported = waving();
+    let mut bytes = Vec::new();
+    write(&imported.clip, &mut bytes).unwrap();
+    let loaded = open(&bytes).unwrap();
+    assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
+    let clip = &loaded.clips[0];
+    assert_eq!(
+        (clip.frames, clip.rate_hz.round()),
+        (imported.clip.frames, 60.0)
+    );
+    assert_eq!(clip.skeleton.len(), imported.clip.skeleton.len());
+    for frame in [0, clip.frames / 2, clip.frames - 1] {
+        let (a, b) = (
+            WorldPose::of(clip, frame),
+            WorldPose::of(&imported.clip, frame),
+        );
+        for (joint, place) in imported.clip.skeleton.joints().iter().zip(&b.positions) {
+            let read = clip.skeleton.find(&joint.name).unwrap();
+            assert!((a.positions[read] - place).norm() < 1e-5, "{}", joint.name);
+        }
+    }
+}
+
+#[test]
+fn vrm_animations_hold_the_humanoid_and_rest_in_a_t_pose() {
+    let imported = waving();
+    let mut bytes = Vec::new();
+    write_vrma(&imported.clip, &imported.roles, &mut bytes).unwrap();
+    let again = prepare(
+        open(&bytes).unwrap().clips.remove(0),
+        &ImportOptions::default(),
+    )
+    .unwrap();
+    assert_eq!(
+        (again.facts.unit, again.facts.up.to_string().as_str()),
+        (Some("m"), "y")
+    );
+    assert_eq!(again.clip.frames, imported.clip.frames);
+    for role in crate::roles::Role::ALL {
+        assert_eq!(
+            again.roles.joint(role).is_some(),
+            imported.roles.joint(role).is_some(),
+            "{role}"
+        );
+        let (Some(a), Some(b)) = (again.roles.joint(role), imported.roles.joint(role)) else {
+            continue;
+        };
+        let frame = imported.clip.frames / 2;
+        let read = WorldPose::of(&again.clip, frame).positions[a];
+        let place = WorldPose::of(&imported.clip, frame).positions[b];
+        assert!((read - place).norm() < 1e-3, "{role}: {read} {place}");
+    }
+    // At rest, as the nodes say.
+    let document = Document::parse(&bytes, &Limits::default(), &mut Vec::new()).unwrap();
+    let stage = Stage::of(&document, &Limits::default(), &mut Vec::new()).unwrap();
+    let mut world: Vec<(String, Vec3, Quat)> = Vec::new();
+    let nodes = document.json["nodes"].as_array().unwrap().clone();
+    let mut left: Vec<(usize, Vec3, Quat)> = vec![(0, Vec3::zeros(), Quat::identity())];
+    while let Some((node, at, turn)) = left.pop() {
+        let rest = &stage.nodes[node].rest;
+        let (at, turn) = (at + turn * rest.translation, turn * rest.rotation);
+        world.push((nodes[node]["name"].as_str().unwrap().to_owned(), at, turn));
+        for child in nodes[node]["children"].as_array().into_iter().flatten() {
+            left.push((child.as_u64().unwrap() as usize, at, turn));
+        }
+    }
+    let at = |name: &str| world.iter().find(|(n, ..)| n == name).unwrap().1;
+    let along = |a: &str, b: &str| (at(b) - at(a)).normalize();
+    assert!(along("leftUpperArm", "leftHand").x > 0.999);
+    assert!(along("rightUpperArm", "rightHand").x < -0.999);
+    assert!(along("leftUpperLeg", "leftFoot").y < -0.99);
+    assert!(along("rightUpperLeg", "leftUpperLeg").x > 0.99);
+    assert!(along("hips", "head").y > 0.95);
+}

@@ -1,0 +1,232 @@
+//! The mapped body as a small picture: which joint is taken for what is seen at a glance.
+
+use std::fmt::Write as _;
+
+use morec::import::Imported;
+use morec::kinematics::WorldPose;
+use morec::math::Vec3;
+use morec::roles::Role;
+
+use crate::show::picture::{DIM, Dots, PLAIN, Picture, Style, class_style};
+
+/// Which side of the body a bone is drawn for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Side {
+    Left,
+    Middle,
+    Right,
+}
+
+/// Lines between roles. Where one is not played, the line is left out.
+const BONES: [(Role, Role, Side); 19] = [
+    (Role::Hips, Role::Torso, Side::Middle),
+    (Role::Torso, Role::Neck, Side::Middle),
+    (Role::Hips, Role::Neck, Side::Middle),
+    (Role::Neck, Role::Head, Side::Middle),
+    (Role::Neck, Role::LeftShoulder, Side::Left),
+    (Role::LeftShoulder, Role::LeftArm, Side::Left),
+    (Role::Neck, Role::LeftArm, Side::Left),
+    (Role::LeftArm, Role::LeftForearm, Side::Left),
+    (Role::LeftForearm, Role::LeftHand, Side::Left),
+    (Role::Hips, Role::LeftThigh, Side::Left),
+    (Role::LeftThigh, Role::LeftShin, Side::Left),
+    (Role::LeftShin, Role::LeftFoot, Side::Left),
+    (Role::Neck, Role::RightArm, Side::Right),
+    (Role::RightArm, Role::RightForearm, Side::Right),
+    (Role::RightForearm, Role::RightHand, Side::Right),
+    (Role::Hips, Role::RightThigh, Side::Right),
+    (Role::RightThigh, Role::RightShin, Side::Right),
+    (Role::RightShin, Role::RightFoot, Side::Right),
+    (Role::RightShoulder, Role::RightArm, Side::Right),
+];
+
+/// The body in one frame, seen from the front and from its left: places of the roles in metres, right and up.
+pub struct Drawing {
+    front: Vec<Option<[f64; 2]>>,
+    side: Vec<Option<[f64; 2]>>,
+    names: Vec<String>,
+    height: f64,
+    width: f64,
+    low: f64,
+}
+
+impl Drawing {
+    /// The pose in the middle of the clip, facing out of the picture. `None` without frames or roles.
+    pub fn of(imported: &Imported) -> Option<Self> {
+        let Imported { clip, roles, facts } = imported;
+        if clip.frames == 0 {
+            return None;
+        }
+        let frame = (facts.rest_frames.end + clip.frames) / 2;
+        let pose = WorldPose::of(clip, frame.min(clip.frames - 1));
+        let at = |role: Role| roles.joint(role).map(|joint| pose.positions[joint]);
+        let hips = at(Role::Hips).or(at(Role::Neck)).or(at(Role::Head))?;
+        let across = |a: Role, b: Role| {
+            let mut across = at(a)? - at(b)?;
+            across.y = 0.0;
+            across.try_normalize(1e-9)
+        };
+        let left = across(Role::LeftThigh, Role::RightThigh)
+            .or_else(|| across(Role::LeftArm, Role::RightArm))
+            .unwrap_or(Vec3::x());
+        let forward = left.cross(&Vec3::y());
+        let seen = |axis: Vec3| -> Vec<Option<[f64; 2]>> {
+            let place = |role: &Role| at(*role).map(|p| [(p - hips).dot(&axis), p.y]);
+            Role::ALL.iter().map(place).collect()
+        };
+        // Seen from the front, the left is on the right; seen from its left, the body faces left.
+        let (front, side) = (seen(left), seen(-forward));
+        let all = || front.iter().chain(&side).flatten();
+        let low = all().map(|p| p[1]).fold(f64::MAX, f64::min);
+        let high = all().map(|p| p[1]).fold(f64::MIN, f64::max);
+        let width = all().map(|p| p[0].abs()).fold(0.0, f64::max);
+        let names = Role::ALL.iter().map(|&role| match roles.joint(role) {
+            Some(joint) => clip.skeleton.joints()[joint].name.clone(),
+            None => String::new(),
+        });
+        (high - low > 0.0).then(|| Self {
+            names: names.collect(),
+            height: high - low,
+            width,
+            low,
+            front,
+            side,
+        })
+    }
+
+    /// On a terminal: the front view, the view from the left, and what the colours mean.
+    pub fn text(&self, colour: bool, unicode: bool) -> String {
+        const ROWS: usize = 18;
+        const GAP: usize = 4;
+        // A character is twice as high as wide: two dots by four.
+        let scale = 4.0 * (ROWS as f64 - 0.5) / self.height;
+        let half = ((self.width * scale / 2.0).ceil() as usize + 1).min(30);
+        let columns = 2 * half;
+        let mut picture = Picture::new(2 * columns + GAP, ROWS + 2);
+        for (places, from) in [(&self.front, 0), (&self.side, columns + GAP)] {
+            for side in [Side::Right, Side::Middle, Side::Left] {
+                let mut dots = Dots::new(columns, ROWS);
+                let dot = |[x, y]: [f64; 2]| {
+                    [
+                        half as f64 * 2.0 + x * scale,
+                        (self.low + self.height - y) * scale,
+                    ]
+                };
+                for (a, b) in self.lines(places, side) {
+                    dots.line(dot(a), dot(b));
+                }
+                dots.draw(&mut picture, (from, 0), unicode, style(side));
+            }
+        }
+        picture.text(half.saturating_sub(6), ROWS, columns, "from the front", DIM);
+        let from = columns + GAP + half.saturating_sub(6);
+        picture.text(from, ROWS, from + 14, "from its left", DIM);
+        let mut text = picture.render(colour);
+        if colour {
+            text += "  \x1b[0;1;34mleft\x1b[0m, \x1b[0;1;32mright\x1b[0m\n";
+        } else {
+            text += "  seen from the front, the body's left is on the right\n";
+        }
+        text
+    }
+
+    /// Lines of one side between roles that are played. A line from the hips to the neck stands for those over the torso
+    /// where that is missing, and so with shoulders.
+    fn lines<'a>(
+        &'a self,
+        places: &'a [Option<[f64; 2]>],
+        side: Side,
+    ) -> impl Iterator<Item = ([f64; 2], [f64; 2])> + 'a {
+        let there = |role: Role| places[role.index()].is_some();
+        BONES
+            .iter()
+            .filter(move |&&(a, b, of)| {
+                of == side
+                    && !(a == Role::Hips && b == Role::Neck && there(Role::Torso))
+                    && !(a == Role::Neck && b == Role::LeftArm && there(Role::LeftShoulder))
+            })
+            .filter_map(|&(a, b, _)| Some((places[a.index()]?, places[b.index()]?)))
+    }
+
+    /// As an SVG picture, with the joints' names at their places.
+    pub fn svg(&self, title: &str) -> String {
+        const HEIGHT: f64 = 480.0;
+        const MARGIN: f64 = 40.0;
+        let scale = HEIGHT / self.height;
+        let half = (self.width * scale).max(120.0) + MARGIN;
+        let (width, height) = (4.0 * half, HEIGHT + 2.0 * MARGIN);
+        let mut svg = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width:.0} {height:.0}\" font-family=\"sans-serif\" \
+             font-size=\"11\">\n<title>{}</title>\n",
+            escaped(title)
+        );
+        for (places, middle, said) in [
+            (&self.front, half, "from the front"),
+            (&self.side, 3.0 * half, "from its left"),
+        ] {
+            let dot = |[x, y]: [f64; 2]| {
+                let down = MARGIN + (self.low + self.height - y) * scale;
+                [middle + x * scale, down]
+            };
+            for side in [Side::Right, Side::Middle, Side::Left] {
+                for (a, b) in self.lines(places, side) {
+                    let ([x, y], [u, v]) = (dot(a), dot(b));
+                    // Writing to a string cannot fail.
+                    let _ = writeln!(
+                        svg,
+                        "<line x1=\"{x:.1}\" y1=\"{y:.1}\" x2=\"{u:.1}\" y2=\"{v:.1}\" stroke=\"{}\" stroke-width=\"3\"/>",
+                        paint(side)
+                    );
+                }
+            }
+            for (role, place) in Role::ALL.into_iter().zip(places) {
+                let Some([x, y]) = place.map(dot) else { continue };
+                let _ = writeln!(
+                    svg,
+                    "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"3\"><title>{role}: {}</title></circle>",
+                    escaped(&self.names[role.index()])
+                );
+                if middle == half {
+                    let (end, shift) = if x < middle - 1.0 { ("end", -6.0) } else { ("start", 6.0) };
+                    let _ = writeln!(
+                        svg,
+                        "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"{end}\">{}</text>",
+                        x + shift,
+                        y - 3.0,
+                        escaped(&self.names[role.index()])
+                    );
+                }
+            }
+            let _ = writeln!(
+                svg,
+                "<text x=\"{middle:.1}\" y=\"{:.1}\" text-anchor=\"middle\" fill=\"#777\">{said}</text>",
+                height - 8.0
+            );
+        }
+        svg += "</svg>\n";
+        svg
+    }
+}
+
+fn style(side: Side) -> Style {
+    match side {
+        Side::Left => class_style(1),
+        Side::Middle => PLAIN,
+        Side::Right => class_style(0),
+    }
+}
+
+fn paint(side: Side) -> &'static str {
+    match side {
+        Side::Left => "#2b6cb0",
+        Side::Middle => "#555",
+        Side::Right => "#2f855a",
+    }
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+        .replace('"', "&quot;")
+}

@@ -1,0 +1,75 @@
+//! Clips as tables of numbers, for NumPy and for spreadsheets: where joints are, how they are turned, and feature rows, with
+//! names, units and rate inside.
+//!
+//! Tables are made of imported clips: metres, Y up, right-handed; rotations are quaternions `x, y, z, w` that take the
+//! joint's own frame to its parent's; times are seconds.
+
+mod csv;
+mod npz;
+
+pub use csv::{Content, write as write_csv};
+pub use npz::write as write_npz;
+
+use crate::clip::Clip;
+use crate::features::{ALL_BONES, BoneSet, FeatureParams, Rows, bones_of_clip, rows_of_clip};
+use crate::import::Imported;
+use crate::kinematics::WorldPose;
+
+/// The feature rows of a clip with the name of each column.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Features {
+    /// What a column holds: `left_thigh.direction.x`.
+    pub names: Vec<String>,
+    /// Rows, the first of which ends at one over [`rate_hz`](Self::rate_hz) seconds.
+    pub rows: Rows,
+    /// Rows a second.
+    pub rate_hz: f64,
+}
+
+impl Features {
+    /// The rows over the bones that `imported` shows, by the usual parameters. `None` where no heading is known: without
+    /// hip joints there are no rows.
+    pub fn of(imported: &Imported) -> Option<Self> {
+        let Imported { clip, roles, facts } = imported;
+        let params = FeatureParams::default();
+        let bones = bones_of_clip(clip, roles, &facts.rest_frames);
+        if bones.is_empty() || clip.frames == 0 {
+            return None;
+        }
+        let rows = rows_of_clip(clip, roles, &facts.rest_frames, bones, &params);
+        (!rows.is_empty()).then(|| Self {
+            names: column_names(bones),
+            rows,
+            rate_hz: params.tick_hz(),
+        })
+    }
+}
+
+/// What the columns of feature rows over `bones` are called, in their order.
+fn column_names(bones: BoneSet) -> Vec<String> {
+    let mut names = Vec::with_capacity(6 * bones.len() + 4);
+    for what in ["direction", "velocity"] {
+        for bone in bones.indices() {
+            let bone = ALL_BONES[bone].name;
+            names.extend(["lateral", "up", "forward"].map(|axis| format!("{bone}.{what}.{axis}")));
+        }
+    }
+    names.extend(["lateral", "up", "forward", "turning"].map(|axis| format!("root.{axis}")));
+    names
+}
+
+/// Calls `each` with the number and the world pose of every frame.
+fn for_each_frame(
+    clip: &Clip,
+    mut each: impl FnMut(usize, &WorldPose) -> std::io::Result<()>,
+) -> std::io::Result<()> {
+    let mut pose = WorldPose::default();
+    for frame in 0..clip.frames {
+        pose.set(clip, frame);
+        each(frame, &pose)?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests;
