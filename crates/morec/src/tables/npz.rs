@@ -155,7 +155,7 @@ fn header(kind: &str, shape: &[usize]) -> Vec<u8> {
     };
     let mut text = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}");
     const PREFIX: usize = 10;
-    while (PREFIX + text.len() + 1) % 64 != 0 {
+    while !(PREFIX + text.len() + 1).is_multiple_of(64) {
         text.push(' ');
     }
     text.push('\n');
