@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
-use morec::import::{ImportOptions, Imported, SignedAxis};
+use morec::import::{ImportOptions, SignedAxis, Take};
 
 use crate::figures::write_json;
 use crate::files::{self, ReadArgs};
@@ -78,7 +78,10 @@ pub fn run(args: Args) -> Result<ExitCode> {
     if let Some(output) = &args.output {
         output::check(output).with_context(|| output.display().to_string())?;
         if paths.len() != 1 {
-            bail!("--output writes the picture of one clip; {} are named", paths.len());
+            bail!(
+                "--output writes the picture of one clip; {} are named",
+                paths.len()
+            );
         }
     }
     let mut progress = Progress::new(paths.len(), "reading clips");
@@ -86,8 +89,8 @@ pub fn run(args: Args) -> Result<ExitCode> {
     let mut reports: Vec<FileReport> = Vec::new();
     for path in paths {
         let (report, drawings) = match inspect(&path, &args.read, &options) {
-            Ok((report, imported)) => {
-                let drawn = imported.iter().filter(|_| args.draw);
+            Ok((report, takes)) => {
+                let drawn = takes.iter().filter(|_| args.draw);
                 let drawings = drawn.map(Drawing::of).collect();
                 (FileReport::Read(Box::new(report)), drawings)
             }
@@ -128,7 +131,9 @@ fn print(report: &FileReport, full: bool) -> Result<()> {
 fn draw(drawings: &[Option<Drawing>], path: &Path, output: Option<&Path>) -> Result<()> {
     let nobody = "there is no body to draw";
     if let (Some(output), Some(drawing)) = (output, drawings.first()) {
-        let drawing = drawing.as_ref().with_context(|| format!("{}: {nobody}", path.display()))?;
+        let drawing = drawing
+            .as_ref()
+            .with_context(|| format!("{}: {nobody}", path.display()))?;
         let svg = drawing.svg(&path.display().to_string());
         return output::write_whole(output, |out| out.write_all(svg.as_bytes()))
             .with_context(|| output.display().to_string());
@@ -145,11 +150,7 @@ fn draw(drawings: &[Option<Drawing>], path: &Path, output: Option<&Path>) -> Res
     Ok(())
 }
 
-fn inspect(
-    path: &Path,
-    read: &ReadArgs,
-    options: &ImportOptions,
-) -> Result<(Report, Vec<Imported>)> {
+fn inspect(path: &Path, read: &ReadArgs, options: &ImportOptions) -> Result<(Report, Vec<Take>)> {
     let opened = files::open(path, read)?;
     let (format, skeleton, warnings) = (
         opened.format,

@@ -286,7 +286,7 @@ fn doubled(mut clip: Clip) -> Clip {
 fn doubled_frames_do_not_hide_the_rest_pose() {
     let imported = ready(doubled(with_t_pose(person(50, 0.01))));
     assert_eq!(imported.facts.rest_frames, 0..2);
-    assert_eq!(ready(doubled(person(50, 0.01))).facts.rest_frames, 0..0);
+    assert_eq!(ready(doubled(person(50, 0.01))).report.rest_frames, 0..0);
 }
 
 /// Turns the whole person about an axis, frame by frame.
@@ -310,7 +310,7 @@ fn who_turns_over_or_stands_on_the_hands_still_has_the_floor_below() {
         let lowest = pose.iter().map(|p| p.y).fold(f64::MAX, f64::min);
         wheels.tracks[0].positions[frame].y -= lowest;
     }
-    assert_eq!(ready(wheels.clone()).facts.up, SignedAxis::Y);
+    assert_eq!(ready(wheels.clone()).report.up, SignedAxis::Y);
     for (turn, up) in [
         (signed(Axis::Z, false), signed(Axis::Z, true)),
         (signed(Axis::Z, true), signed(Axis::Z, false)),
@@ -319,7 +319,7 @@ fn who_turns_over_or_stands_on_the_hands_still_has_the_floor_below() {
     ] {
         let mut other = wheels.clone();
         axes::turn_up(&mut other, turn);
-        assert_eq!(ready(other).facts.up, up, "{turn}");
+        assert_eq!(ready(other).report.up, up, "{turn}");
     }
 }
 
@@ -341,7 +341,7 @@ fn the_unit_is_that_of_the_skeleton_however_somebody_crouches() {
             for frame in 0..clip.frames {
                 clip.rotations[frame * joints] = Axis::X.rotation(1.5);
             }
-            let facts = ready(clip).facts;
+            let facts = ready(clip).report;
             assert_eq!(facts.unit, Some(name), "{size}: {facts:?}");
         }
     }
@@ -353,10 +353,10 @@ fn legs_of_nobody_are_doubted() {
         metres_per_unit: Some(10.0),
         ..ImportOptions::default()
     };
-    let doubts = prepare(person(20, 0.0), &options).unwrap().facts.doubts;
+    let doubts = normalize(person(20, 0.0), &options).unwrap().report.doubts;
     assert!(
         doubts.iter().any(|d| d.contains("no person's")),
         "{doubts:?}"
     );
-    assert!(ready(person(20, 0.0)).facts.doubts.is_empty());
+    assert!(ready(person(20, 0.0)).report.doubts.is_empty());
 }

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use super::{Features, for_each_frame};
 use crate::formats::points::is_gap_at;
-use crate::import::Imported;
+use crate::import::Take;
 
 /// What the rows of a table hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -18,15 +18,15 @@ pub enum Content {
     Features,
 }
 
-/// Writes one table of `imported`; the first column is the time in seconds. Points that were not seen are blank cells.
+/// Writes one table of `take`; the first column is the time in seconds. Points that were not seen are blank cells.
 ///
 /// # Errors
 /// What `out` fails with; rotations of a clip that has none; features of a body whose hips are not known.
-pub fn write(imported: &Imported, content: Content, out: &mut dyn Write) -> io::Result<()> {
+pub fn write(take: &Take, content: Content, out: &mut dyn Write) -> io::Result<()> {
     match content {
-        Content::Positions => positions(imported, out),
-        Content::Rotations => rotations(imported, out),
-        Content::Features => features(imported, out),
+        Content::Positions => positions(take, out),
+        Content::Rotations => rotations(take, out),
+        Content::Features => features(take, out),
     }
 }
 
@@ -43,8 +43,8 @@ fn cell(text: &str) -> String {
     }
 }
 
-fn positions(imported: &Imported, out: &mut dyn Write) -> io::Result<()> {
-    let clip = &imported.clip;
+fn positions(take: &Take, out: &mut dyn Write) -> io::Result<()> {
+    let clip = &take.clip;
     write!(out, "time_secs")?;
     for joint in clip.skeleton.joints() {
         for axis in ["x", "y", "z"] {
@@ -65,8 +65,8 @@ fn positions(imported: &Imported, out: &mut dyn Write) -> io::Result<()> {
     })
 }
 
-fn rotations(imported: &Imported, out: &mut dyn Write) -> io::Result<()> {
-    let clip = &imported.clip;
+fn rotations(take: &Take, out: &mut dyn Write) -> io::Result<()> {
+    let clip = &take.clip;
     if !clip.has_rotations() {
         return Err(refused("a clip of points has no rotations"));
     }
@@ -97,8 +97,8 @@ fn rotations(imported: &Imported, out: &mut dyn Write) -> io::Result<()> {
     Ok(())
 }
 
-fn features(imported: &Imported, out: &mut dyn Write) -> io::Result<()> {
-    let features = Features::of(imported).ok_or_else(|| {
+fn features(take: &Take, out: &mut dyn Write) -> io::Result<()> {
+    let features = Features::of(take).ok_or_else(|| {
         refused("there are no feature rows without the hip joints (--roles FILE names them)")
     })?;
     write!(out, "time_secs")?;

@@ -12,7 +12,7 @@ pub use npz::write as write_npz;
 
 use crate::clip::Clip;
 use crate::features::{ALL_BONES, BoneSet, FeatureParams, Rows, bones_of_clip, rows_of_clip};
-use crate::import::Imported;
+use crate::import::Take;
 use crate::kinematics::WorldPose;
 
 /// The feature rows of a clip with the name of each column.
@@ -27,16 +27,21 @@ pub struct Features {
 }
 
 impl Features {
-    /// The rows over the bones that `imported` shows, by the usual parameters. `None` where no heading is known: without
+    /// The rows over the bones that `take` shows, by the usual parameters. `None` where no heading is known: without
     /// hip joints there are no rows.
-    pub fn of(imported: &Imported) -> Option<Self> {
-        let Imported { clip, roles, facts } = imported;
+    pub fn of(take: &Take) -> Option<Self> {
+        let Take {
+            clip,
+            roles,
+            report,
+            ..
+        } = take;
         let params = FeatureParams::default();
-        let bones = bones_of_clip(clip, roles, &facts.rest_frames);
+        let bones = bones_of_clip(clip, roles, &report.rest_frames);
         if bones.is_empty() || clip.frames == 0 {
             return None;
         }
-        let rows = rows_of_clip(clip, roles, &facts.rest_frames, bones, &params);
+        let rows = rows_of_clip(clip, roles, &report.rest_frames, bones, &params);
         (!rows.is_empty()).then(|| Self {
             names: column_names(bones),
             rows,

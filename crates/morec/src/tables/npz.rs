@@ -6,10 +6,10 @@ use zip::write::{SimpleFileOptions, ZipWriter};
 
 use super::{Features, for_each_frame};
 use crate::formats::points::is_gap_at;
-use crate::import::Imported;
+use crate::import::Take;
 use crate::roles::Role;
 
-/// Writes `imported` as an archive for `numpy.load`, with these arrays (`f` frames, `j` joints, `r` feature rows, `d`
+/// Writes `take` as an archive for `numpy.load`, with these arrays (`f` frames, `j` joints, `r` feature rows, `d`
 /// values in each):
 ///
 /// | array | shape | holds |
@@ -26,8 +26,13 @@ use crate::roles::Role;
 ///
 /// # Errors
 /// What `out` fails with.
-pub fn write(imported: &Imported, out: &mut dyn Write) -> io::Result<()> {
-    let Imported { clip, roles, facts } = imported;
+pub fn write(take: &Take, out: &mut dyn Write) -> io::Result<()> {
+    let Take {
+        clip,
+        roles,
+        report,
+        ..
+    } = take;
     let (frames, joints) = (clip.frames, clip.skeleton.len());
     let mut archive = Archive(ZipWriter::new(Cursor::new(Vec::new())));
     let mut values: Vec<f32> = Vec::with_capacity(frames * joints * 3);
@@ -65,7 +70,7 @@ pub fn write(imported: &Imported, out: &mut dyn Write) -> io::Result<()> {
     archive.texts("role_names", &Role::ALL.map(Role::name))?;
     let played = Role::ALL.map(|role| number(roles.joint(role)));
     archive.integers("role_joints", &[Role::COUNT], &played)?;
-    if let Some(features) = Features::of(imported) {
+    if let Some(features) = Features::of(take) {
         let shape = [features.rows.len(), features.rows.dim()];
         archive.floats("features", &shape, features.rows.values())?;
         let names: Vec<&str> = features.names.iter().map(String::as_str).collect();
@@ -73,7 +78,7 @@ pub fn write(imported: &Imported, out: &mut dyn Write) -> io::Result<()> {
         archive.double("feature_rate_hz", features.rate_hz)?;
     }
     archive.double("rate_hz", clip.rate_hz)?;
-    let rest = [facts.rest_frames.start, facts.rest_frames.end].map(|at| number(Some(at)));
+    let rest = [report.rest_frames.start, report.rest_frames.end].map(|at| number(Some(at)));
     archive.integers("rest_frames", &[2], &rest)?;
     archive.text("units", "metres, seconds, Y up, right-handed")?;
     archive.text("name", &clip.name)?;

@@ -2,15 +2,14 @@ use std::io::Read;
 
 use super::*;
 use crate::formats::{Limits, table};
-use crate::import::{ImportOptions, prepare};
+
 use crate::synth;
 
-fn imported() -> Imported {
+fn waving() -> Take {
     let script = synth::Script::new(3, synth::Person::draw(31, 2))
         .rest(0.5)
         .play("wave");
-    let take = script.film("wave", 60.0).unwrap();
-    prepare(take.clip, &ImportOptions::default()).unwrap()
+    Take::new(script.film("wave", 60.0).unwrap().clip).unwrap()
 }
 
 fn members(bytes: &[u8]) -> Vec<(String, Vec<u8>)> {
@@ -27,9 +26,9 @@ fn members(bytes: &[u8]) -> Vec<(String, Vec<u8>)> {
 
 #[test]
 fn archives_hold_what_the_clip_holds() {
-    let imported = imported();
+    let take = waving();
     let mut bytes = Vec::new();
-    write_npz(&imported, &mut bytes).unwrap();
+    write_npz(&take, &mut bytes).unwrap();
     let members = members(&bytes);
     let find = |name: &str| {
         &members
@@ -38,7 +37,7 @@ fn archives_hold_what_the_clip_holds() {
             .unwrap()
             .1
     };
-    let (frames, joints) = (imported.clip.frames, imported.clip.skeleton.len());
+    let (frames, joints) = (take.clip.frames, take.clip.skeleton.len());
     let positions = find("positions");
     let length = usize::from(positions[8]) + 256 * usize::from(positions[9]) + 10;
     assert_eq!(length % 64, 0);
@@ -48,7 +47,7 @@ fn archives_hold_what_the_clip_holds() {
         "{header}"
     );
     assert_eq!(positions.len() - length, frames * joints * 12);
-    let last = WorldPose::of(&imported.clip, frames - 1).positions[joints - 1];
+    let last = WorldPose::of(&take.clip, frames - 1).positions[joints - 1];
     let z = f32::from_le_bytes(positions[positions.len() - 4..].try_into().unwrap());
     assert!((f64::from(z) - last.z).abs() < 1e-5);
     for name in [
@@ -65,16 +64,16 @@ fn archives_hold_what_the_clip_holds() {
 
 #[test]
 fn tables_of_positions_are_read_back() {
-    let imported = imported();
+    let take = waving();
     let mut text = Vec::new();
-    write_csv(&imported, Content::Positions, &mut text).unwrap();
+    write_csv(&take, Content::Positions, &mut text).unwrap();
     let again = table::read(&text, "again", None, &Limits::default()).unwrap();
     let clip = &again.clips[0];
-    assert_eq!(clip.frames, imported.clip.frames);
-    assert!((clip.rate_hz - imported.clip.rate_hz).abs() < 0.01);
+    assert_eq!(clip.frames, take.clip.frames);
+    assert!((clip.rate_hz - take.clip.rate_hz).abs() < 0.01);
     for frame in [0, clip.frames / 2, clip.frames - 1] {
-        let pose = WorldPose::of(&imported.clip, frame).positions;
-        for (joint, track) in imported.clip.skeleton.joints().iter().zip(&pose) {
+        let pose = WorldPose::of(&take.clip, frame).positions;
+        for (joint, track) in take.clip.skeleton.joints().iter().zip(&pose) {
             let read = clip.skeleton.find(&joint.name).unwrap();
             assert!(
                 (clip.tracks[read].positions[frame] - track).norm() < 1e-5,
@@ -89,7 +88,7 @@ fn tables_of_positions_are_read_back() {
 fn every_table_has_as_many_cells_as_names() {
     for content in [Content::Positions, Content::Rotations, Content::Features] {
         let mut text = Vec::new();
-        write_csv(&imported(), content, &mut text).unwrap();
+        write_csv(&waving(), content, &mut text).unwrap();
         let text = String::from_utf8(text).unwrap();
         let cells: Vec<usize> = text.lines().map(|line| line.split(',').count()).collect();
         assert!(cells.iter().all(|&count| count == cells[0]), "{content:?}");
@@ -98,7 +97,7 @@ fn every_table_has_as_many_cells_as_names() {
 
 #[test]
 fn features_are_named_one_by_one() {
-    let names = column_names(crate::features::BoneSet::of_roles(&imported().roles));
-    let dim = crate::features::row_dim(crate::features::BoneSet::of_roles(&imported().roles));
+    let names = column_names(crate::features::BoneSet::of_roles(&waving().roles));
+    let dim = crate::features::row_dim(crate::features::BoneSet::of_roles(&waving().roles));
     assert_eq!(names.len(), dim);
 }

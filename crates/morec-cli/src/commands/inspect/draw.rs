@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use morec::import::Imported;
+use morec::import::Take;
 use morec::kinematics::WorldPose;
 use morec::math::Vec3;
 use morec::roles::Role;
@@ -52,12 +52,17 @@ pub struct Drawing {
 
 impl Drawing {
     /// The pose in the middle of the clip, facing out of the picture. `None` without frames or roles.
-    pub fn of(imported: &Imported) -> Option<Self> {
-        let Imported { clip, roles, facts } = imported;
+    pub fn of(take: &Take) -> Option<Self> {
+        let Take {
+            clip,
+            roles,
+            report,
+            ..
+        } = take;
         if clip.frames == 0 {
             return None;
         }
-        let frame = (facts.rest_frames.end + clip.frames) / 2;
+        let frame = (report.rest_frames.end + clip.frames) / 2;
         let pose = WorldPose::of(clip, frame.min(clip.frames - 1));
         let at = |role: Role| roles.joint(role).map(|joint| pose.positions[joint]);
         let hips = at(Role::Hips).or(at(Role::Neck)).or(at(Role::Head))?;
@@ -180,14 +185,20 @@ impl Drawing {
                 }
             }
             for (role, place) in Role::ALL.into_iter().zip(places) {
-                let Some([x, y]) = place.map(dot) else { continue };
+                let Some([x, y]) = place.map(dot) else {
+                    continue;
+                };
                 let _ = writeln!(
                     svg,
                     "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"3\"><title>{role}: {}</title></circle>",
                     escaped(&self.names[role.index()])
                 );
                 if middle == half {
-                    let (end, shift) = if x < middle - 1.0 { ("end", -6.0) } else { ("start", 6.0) };
+                    let (end, shift) = if x < middle - 1.0 {
+                        ("end", -6.0)
+                    } else {
+                        ("start", 6.0)
+                    };
                     let _ = writeln!(
                         svg,
                         "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"{end}\">{}</text>",

@@ -331,14 +331,10 @@ fn clips_survive_the_way_through_bvh() {
 }
 
 /// A person who waves, imported.
-fn waving() -> crate::import::Imported {
+fn waving() -> crate::import::Take {
     use crate::synth::{Person, Script};
     let script = Script::new(3, Person::draw(31, 2)).rest(0.3).play("wave");
-    prepare(
-        script.film("wave", 60.0).unwrap().clip,
-        &ImportOptions::default(),
-    )
-    .unwrap()
+    crate::import::Take::new(script.film("wave", 60.0).unwrap().clip).unwrap()
 }
 
 #[test]
@@ -371,13 +367,9 @@ fn vrm_animations_hold_the_humanoid_and_rest_in_a_t_pose() {
     let imported = waving();
     let mut bytes = Vec::new();
     write_vrma(&imported.clip, &imported.roles, &mut bytes).unwrap();
-    let again = prepare(
-        open(&bytes).unwrap().clips.remove(0),
-        &ImportOptions::default(),
-    )
-    .unwrap();
+    let again = crate::import::Take::new(open(&bytes).unwrap().clips.remove(0)).unwrap();
     assert_eq!(
-        (again.facts.unit, again.facts.up.to_string().as_str()),
+        (again.report.unit, again.report.up.to_string().as_str()),
         (Some("m"), "y")
     );
     assert_eq!(again.clip.frames, imported.clip.frames);

@@ -127,17 +127,28 @@ fn humanoid(clip: &Clip, roles: &RoleMap) -> (Clip, Vec<Quat>) {
     // What the arms hang on is no neck, even where it stands for one.
     let is_chest = |bone: &Bone, joint: usize| {
         let above = |arm| std::iter::successors(joints[arm].parent, |&j| joints[j].parent);
-        bone.role == Role::Neck && roles.joint(Role::LeftArm).is_some_and(|arm| above(arm).any(|j| j == joint))
+        bone.role == Role::Neck
+            && roles
+                .joint(Role::LeftArm)
+                .is_some_and(|arm| above(arm).any(|j| j == joint))
     };
-    let skeleton = chosen.iter().zip(&parents).map(|(&(bone, joint), &parent)| Joint {
-        name: if is_chest(bone, joint) { "chest" } else { bone.name }.to_owned(),
-        parent,
-        offset: match parent {
-            Some(parent) => zero[joint] - zero[chosen[parent].1],
-            None => zero[joint],
-        },
-        tip: None,
-    });
+    let skeleton = chosen
+        .iter()
+        .zip(&parents)
+        .map(|(&(bone, joint), &parent)| Joint {
+            name: if is_chest(bone, joint) {
+                "chest"
+            } else {
+                bone.name
+            }
+            .to_owned(),
+            parent,
+            offset: match parent {
+                Some(parent) => zero[joint] - zero[chosen[parent].1],
+                None => zero[joint],
+            },
+            tip: None,
+        });
     let skeleton = skeleton.collect();
     let mut rotations = Vec::with_capacity(clip.frames * chosen.len());
     let mut places = Vec::with_capacity(clip.frames);
