@@ -11,9 +11,10 @@ use crate::formats::probe::{Format, probe};
 use crate::formats::{Limits, Loaded, ParseError, Place, Warning, mclip};
 use crate::formats::{c3d, jsonl, read_scene, table, trc};
 use crate::import::{ImportOptions, Take, normalize};
+use crate::kinematics::WorldPose;
 
 use super::archives::Around;
-use super::skeletons::{Skeleton, skeletons_among, skeletons_near};
+use super::skeletons::{Skeleton, prefer_stated, skeletons_among, skeletons_near};
 use super::{FileError, FileErrorKind, Takes, list, read_file, read_stream, split_choice};
 
 /// Reads every format that morec knows, as its fields say; the default decides everything from the files.
@@ -185,7 +186,7 @@ impl FileReader {
         Ok(loaded)
     }
 
-    /// A motion with the skeleton given, or with the first one near it that it fits.
+    /// A motion with the skeleton given, or with the one near it that is most likely its own.
     fn amc(
         &self,
         path: &Path,
@@ -197,36 +198,39 @@ impl FileReader {
             let loaded = self.amc_with(bytes, stem, skeleton, Around::Folder)?;
             return Ok((loaded, skeleton.clone()));
         }
-        let candidates = match around {
+        let mut candidates = match around {
             Around::Folder => skeletons_near(path, stem),
             Around::Archive(members) => skeletons_among(members, stem),
         };
-        let mut best: Option<(Loaded, &Skeleton)> = None;
+        prefer_stated(&mut candidates, bytes);
+        let mut fitting: Vec<Fitting> = Vec::new();
         let mut first_error = None;
         for skeleton in &candidates {
+            // A skeleton whose name says less is asked only where none that says more fits.
+            let says_less = |fits: &Fitting| skeleton.kinship < fits.skeleton.kinship;
+            if fitting.len() == MOST_COMPARED || fitting.first().is_some_and(says_less) {
+                break;
+            }
             match self.amc_with(bytes, stem, &skeleton.path, around) {
-                // Fewer warnings: a skeleton that lacks bones of the motion is not the right one.
-                Ok(loaded)
-                    if best
-                        .as_ref()
-                        .is_none_or(|(b, _)| loaded.warnings.len() < b.warnings.len()) =>
-                {
-                    let clean = loaded.warnings.len() <= usize::from(self.rate_hz.is_none());
-                    best = Some((loaded, skeleton));
-                    if clean {
-                        break;
-                    }
-                }
-                Ok(_) => {}
+                Ok(loaded) => fitting.push(Fitting { skeleton, loaded }),
                 Err(error) => _ = first_error.get_or_insert(error),
             }
         }
-        let Some((mut loaded, skeleton)) = best else {
+        let alike = fitting.len();
+        let likeliest = fitting.into_iter().min_by(Fitting::compare);
+        let Some(Fitting {
+            mut loaded,
+            skeleton,
+        }) = likeliest
+        else {
             return Err(first_error.unwrap_or(FileErrorKind::NoSkeleton));
         };
-        if skeleton.kinship == 0 && candidates.len() > 1 {
-            let shown = skeleton.path.display();
-            let note = format!("skeleton {shown} is the first that fits; its name does not say");
+        if skeleton.kinship == 0 && alike > 1 {
+            let note = format!(
+                "{alike} skeletons fit and no name says which is right; {} is taken, with which the feet are nearest to the \
+                 floor (--skeleton names another)",
+                skeleton.path.display()
+            );
             loaded.warnings.push(Warning::new(Place::File, note));
         }
         Ok((loaded, skeleton.path.clone()))
@@ -261,6 +265,44 @@ impl FileReader {
             })?;
         loaded.warnings.splice(0..0, warnings);
         Ok(loaded)
+    }
+}
+
+/// So many skeletons are compared by their bodies.
+const MOST_COMPARED: usize = 8;
+
+/// A motion read with a skeleton that it fits.
+struct Fitting<'a> {
+    skeleton: &'a Skeleton,
+    loaded: Loaded,
+}
+
+impl Fitting<'_> {
+    /// Fewer warnings first (a skeleton that lacks bones of the motion is not the right one), then feet nearer to the
+    /// floor: legs of another length make them float or sink.
+    fn compare(a: &Self, b: &Self) -> std::cmp::Ordering {
+        let warnings = a.loaded.warnings.len().cmp(&b.loaded.warnings.len());
+        warnings.then_with(|| a.off_floor().total_cmp(&b.off_floor()))
+    }
+
+    /// How far from 0 the lowest joint is, in the usual frame.
+    fn off_floor(&self) -> f64 {
+        const FRAMES: usize = 40;
+        let Some(clip) = self.loaded.clips.first().filter(|clip| clip.frames > 0) else {
+            return f64::INFINITY;
+        };
+        let mut pose = WorldPose::default();
+        let mut lowest: Vec<f64> = (0..clip.frames)
+            .step_by(clip.frames.div_ceil(FRAMES))
+            .map(|frame| {
+                pose.set(clip, frame);
+                let joints = 0..clip.skeleton.len();
+                let heights = joints.map(|joint| pose.tip(clip, joint).y);
+                heights.fold(f64::MAX, f64::min)
+            })
+            .collect();
+        lowest.sort_by(f64::total_cmp);
+        lowest[lowest.len() / 2].abs()
     }
 }
 
@@ -314,6 +356,35 @@ mod tests {
         };
         let error = named.parse(&motion, AMC).unwrap_err().to_string();
         assert!(error.contains("nowhere.asf"), "{error}");
+    }
+
+    #[test]
+    fn of_several_skeletons_the_one_whose_feet_stand_is_taken() {
+        let skeleton = |leg: f64| {
+            format!(
+                ":version 1.10\n:name x\n:units\n mass 1\n length 1\n angle deg\n:root\n order TX TY TZ RX RY RZ\n \
+                 axis XYZ\n position 0 0 0\n orientation 0 0 0\n:bonedata\n begin\n id 1\n name leg\n direction 0 -1 0\n \
+                 length {leg}\n axis 0 0 0 XYZ\n dof rx\n limits (-180 180)\n end\n:hierarchy\n begin\n root leg\n end\n"
+            )
+        };
+        let folder = tempfile::TempDir::new().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        std::fs::write(at("anna.asf"), skeleton(9.0)).unwrap();
+        std::fs::write(at("bert.asf"), skeleton(7.0)).unwrap();
+        let motion = ":FULLY-SPECIFIED\n:DEGREES\n1\nroot 0 7.1 0 0 0 0\nleg 0\n2\nroot 0 7 0 0 0 0\nleg 1\n";
+        let reader = FileReader::default();
+        let of = |name: &str, motion: &str| reader.parse(&at(name), motion.as_bytes()).unwrap();
+        let read = of("take.amc", motion);
+        assert_eq!(read.skeleton, Some(at("bert.asf")));
+        let told = read
+            .warnings
+            .iter()
+            .any(|w| w.text.contains("2 skeletons fit"));
+        assert!(told, "{:?}", read.warnings);
+        // A name counts for more, in the file's or in the motion itself.
+        assert_eq!(of("anna_walks.amc", motion).skeleton, Some(at("anna.asf")));
+        let stated = format!("#!OML:ASF C:\\takes\\ANNA.ASF\n{motion}");
+        assert_eq!(of("take.amc", &stated).skeleton, Some(at("anna.asf")));
     }
 
     #[test]

@@ -64,15 +64,64 @@ fn likeliest_first(paths: impl Iterator<Item = PathBuf>, stem: &str) -> Vec<Skel
     found
 }
 
-/// How much of a motion's stem a skeleton's stem says: its length if the motion's begins with it and a mark
-/// follows, else 0.
-fn kinship(skeleton: &str, motion: &str) -> usize {
-    match motion.to_lowercase().strip_prefix(&skeleton.to_lowercase()) {
-        Some(rest) if rest.chars().next().is_none_or(|c| !c.is_alphanumeric()) => {
-            skeleton.len() + 1
+/// A skeleton whose name is stated on the first lines of a motion (`#!OML:ASF C:\\takes\\anna.ASF`) comes before all others.
+pub(super) fn prefer_stated(candidates: &mut [Skeleton], motion: &[u8]) {
+    const LINES: usize = 10;
+    let head = String::from_utf8_lossy(&motion[..motion.len().min(4096)]).to_lowercase();
+    let stated: Vec<&str> = head
+        .lines()
+        .take(LINES)
+        .filter_map(|line| line.trim().strip_suffix(".asf"))
+        .filter_map(|line| line.rsplit(['\\', '/', ' ', ':']).next())
+        .collect();
+    for candidate in candidates.iter_mut() {
+        let stem = candidate.path.file_stem().unwrap_or_default();
+        if stated.contains(&stem.to_string_lossy().to_lowercase().as_str()) {
+            // As much as a file of the motion's own name.
+            candidate.kinship = usize::MAX;
         }
-        _ => 0,
     }
+    candidates.sort_by_key(|candidate| std::cmp::Reverse(candidate.kinship));
+}
+
+/// How much of a motion's stem a skeleton's stem says: most if the motion's begins with it and a mark follows; less if all
+/// its words are among the motion's, whatever zeros stand before their numbers; else 0.
+fn kinship(skeleton: &str, motion: &str) -> usize {
+    const BEGINS: usize = 1000;
+    let (skeleton, motion) = (skeleton.to_lowercase(), motion.to_lowercase());
+    match motion.strip_prefix(&skeleton) {
+        Some(rest) if rest.chars().next().is_none_or(|c| !c.is_alphanumeric()) => {
+            BEGINS + skeleton.len()
+        }
+        _ => {
+            let (own, of_motion) = (words(&skeleton), words(&motion));
+            match !own.is_empty() && own.iter().all(|word| of_motion.contains(word)) {
+                true => skeleton.len(),
+                false => 0,
+            }
+        }
+    }
+}
+
+/// Words and numbers of a name, without zeros before them; words for what such files are say nothing.
+fn words(name: &str) -> Vec<&str> {
+    let mut words = Vec::new();
+    let mut rest = name;
+    while let Some(first) = rest.chars().next() {
+        let same = |c: char| match first {
+            first if first.is_ascii_digit() => c.is_ascii_digit(),
+            first if first.is_alphabetic() => c.is_alphabetic(),
+            _ => !c.is_alphanumeric(),
+        };
+        let end = rest.find(|c| !same(c)).unwrap_or(rest.len());
+        let (word, after) = rest.split_at(end);
+        if first.is_alphanumeric() {
+            words.push(word.trim_start_matches('0'));
+        }
+        rest = after;
+    }
+    words.retain(|word| !matches!(*word, "skeleton" | "skel" | "subject" | "actor" | "asf"));
+    words
 }
 
 #[cfg(test)]
@@ -86,5 +135,25 @@ mod tests {
         assert_eq!(kinship("1", "13_29"), 0);
         assert_eq!(kinship("skeleton", "13_29"), 0);
         assert!(kinship("HDM_dg", "hdm_dg_06-03_120") > 0);
+        assert!(kinship("subject13", "walk_13_02") > 0);
+        assert!(kinship("07", "7_walk") > 0);
+        assert_eq!(kinship("3", "13_29"), 0);
+        assert!(kinship("13", "13_29") > kinship("29", "13_29"));
+    }
+
+    #[test]
+    fn a_motion_may_state_its_skeleton() {
+        let mut near = likeliest_first(
+            ["a.asf", "walk.asf", "rory3.ASF"]
+                .map(PathBuf::from)
+                .into_iter(),
+            "walk",
+        );
+        assert_eq!(near[0].path, PathBuf::from("walk.asf"));
+        prefer_stated(
+            &mut near,
+            b"#!OML:ASF F:\\VICON\\USERDATA\\rory3.ASF\n:FULLY-SPECIFIED\n1\n",
+        );
+        assert_eq!(near[0].path, PathBuf::from("rory3.ASF"));
     }
 }
