@@ -101,7 +101,16 @@ pub fn expand_all(paths: &[PathBuf]) -> Result<Listing> {
 /// The takes in a file; `-` is standard input. Errors begin with the path.
 pub fn takes(path: &Path, args: &ReadArgs, options: &ImportOptions) -> Result<Vec<Take>> {
     let takes = open(path, args)?.into_takes(options);
-    takes.with_context(|| path.display().to_string())
+    let takes = takes.with_context(|| path.display().to_string())?;
+    say_doubts(path, &takes);
+    Ok(takes)
+}
+
+/// Says on standard error what cannot be true of the bodies in a file.
+pub fn say_doubts(path: &Path, takes: &[Take]) {
+    for doubt in takes.iter().flat_map(|take| &take.report.doubts) {
+        eprintln!("morec: {}: {doubt}", path.display());
+    }
 }
 
 /// Reads a clip; `-` is standard input. Errors begin with the path.

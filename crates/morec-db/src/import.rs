@@ -7,7 +7,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use morec::clip::Clip;
 use morec::features::{BoneSet, FeatureParams};
 use morec::files::{ClipFile, FileReader, read_file, split_choice};
-use morec::import::{ImportOptions, normalize};
+use morec::formats::{Place, Warning};
+use morec::import::{ImportOptions, Stated, normalize};
 use morec::progress::Progress;
 use rayon::prelude::*;
 use rusqlite::{Connection, OptionalExtension, params};
@@ -217,9 +218,13 @@ fn make(
         Ok(read) => read,
         Err(error) => return Made::Refused(error.kind.to_string()),
     };
+    let options = ImportOptions {
+        stated: Stated::of(read.format),
+        ..reader.import.clone()
+    };
     let mut clips = Vec::new();
     for clip in std::mem::take(&mut read.clips) {
-        match new_clip(clip, &reader.import, params) {
+        match new_clip(clip, &options, params, &mut read.warnings) {
             Ok(clip) => clips.push(clip),
             Err(reason) => return Made::Refused(reason),
         }
@@ -239,12 +244,17 @@ fn new_clip(
     clip: Clip,
     options: &ImportOptions,
     params: &FeatureParams,
+    warnings: &mut Vec<Warning>,
 ) -> Result<NewClip, String> {
     if clip.frames == 0 {
         return Err(format!("{}: expected frames, found none", clip.name));
     }
     let name = clip.name.clone();
     let imported = normalize(clip, options).map_err(|error| error.to_string())?;
+    for doubt in &imported.report.doubts {
+        let text = format!("{name}: {doubt}");
+        warnings.push(Warning::new(Place::File, text));
+    }
     let packed = pack(imported, &()).map_err(|reason| format!("{name}: {reason}"))?;
     let (bones, rows) = rows::rows_of(&packed.stored, params);
     Ok(NewClip {

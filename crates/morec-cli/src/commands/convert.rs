@@ -1,4 +1,7 @@
-//! `morec convert`: any clip becomes BVH, or points over time.
+//! `morec convert`: clips become BVH, points over time, scenes, or tables of numbers.
+
+mod folder;
+mod form;
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -6,73 +9,141 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
 use morec::clip::Clip;
-use morec::formats::{bvh, c3d, jsonl, trc};
-use morec::import::{ImportOptions, normalize};
+use morec::formats::bvh;
+use morec::import::ImportOptions;
+use morec::tables::Content;
 
 use crate::files::{self, ReadArgs};
-use crate::output;
+use form::Form;
+pub use form::write_clip;
 
-/// Write a clip as BVH, or its points as C3D, TRC or lines of JSON
+/// Write clips as BVH, C3D, TRC, GLB, VRMA, lines of JSON, NumPy archives or CSV
 ///
-/// The ending of the output chooses: .c3d, .trc and .jsonl get where joints and points are, without rotations;
-/// everything else is BVH. Lengths and axes stay as the clip has them: nothing is scaled (but lengths without a named unit
-/// in C3D and TRC, which become millimetres) or turned. Joints, their names and their movements are kept; points in BVH
-/// have no rotations. What was repaired in reading is said on standard error.
+/// The ending of the output chooses: .bvh; .c3d, .trc and .jsonl with where joints and points are, without rotations; .glb
+/// and .vrma for other programs and avatars; .npz with positions, rotations and feature rows by name; .csv with one of
+/// these. In BVH and the formats of points lengths and axes stay as the clip has them (but lengths without a named unit in
+/// C3D and TRC become millimetres); the others hold metres with Y up, as `morec inspect` understands the clip. Folders and
+/// several clips are written into a folder, in the form that --form names. What was repaired in reading is said on
+/// standard error.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   morec convert 13_29.amc -o 13_29.bvh
   morec convert walk.bvh -o walk30.bvh --rate 30
   morec convert gait.c3d -o gait.trc
+  morec convert dance.fbx -o dance.vrma
+  morec convert walk.bvh -o walk.csv --table features
+  morec convert clips/ -o arrays/ --form npz
   morec convert 13_29.amc --skeleton 13.asf -o - | head")]
 pub struct Args {
-    /// The clip, in any format that is read; - is standard input
-    clip: PathBuf,
-    /// The file to write; - is BVH on standard output
-    #[arg(short, long, value_name = "FILE")]
+    /// Clips in any format that is read, or folders of clips; - is standard input
+    #[arg(required = true, value_name = "CLIP")]
+    clips: Vec<PathBuf>,
+    /// The file to write, or the folder for several clips; - is BVH on standard output
+    #[arg(short, long, value_name = "FILE|FOLDER")]
     output: PathBuf,
+    /// The form of clips that are written into a folder [default: bvh]
+    #[arg(long, value_enum)]
+    form: Option<Form>,
+    /// What a CSV holds
+    #[arg(long, value_enum, default_value_t = Table::Positions)]
+    table: Table,
     /// Resample to this rate; without it, every frame is kept as it is
     #[arg(long, value_name = "HZ", value_parser = files::rate)]
     rate: Option<f64>,
     /// Which character to write, from 1, of a file that holds several
     #[arg(long, value_name = "N")]
     character: Option<usize>,
+    /// Roles that override those found: a file of `role<TAB>joint` lines
+    #[arg(long, value_name = "FILE")]
+    roles: Option<PathBuf>,
     #[command(flatten)]
     read: ReadArgs,
 }
 
+/// What a CSV holds.
+#[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+enum Table {
+    /// Where the joints are, metres
+    Positions,
+    /// How each joint is turned in its parent's frame, quaternions
+    Rotations,
+    /// Feature rows, 30 a second
+    Features,
+}
+
+impl From<Table> for Content {
+    fn from(table: Table) -> Self {
+        match table {
+            Table::Positions => Content::Positions,
+            Table::Rotations => Content::Rotations,
+            Table::Features => Content::Features,
+        }
+    }
+}
+
+/// How clips are to be written.
+struct Wanted {
+    content: Content,
+    import: ImportOptions,
+    rate_hz: Option<f64>,
+}
+
+impl Wanted {
+    fn resampled(&self, clip: Clip) -> Result<Clip> {
+        Ok(match self.rate_hz {
+            Some(rate_hz) => clip.resampled(rate_hz)?,
+            None => clip,
+        })
+    }
+}
+
 /// Reads, resamples if asked to, and writes.
 pub fn run(args: Args) -> Result<ExitCode> {
-    let opened = files::open(&args.clip, &args.read)?;
+    let wanted = Wanted {
+        content: args.table.into(),
+        import: ImportOptions {
+            mapping: files::mapping(args.roles.as_deref())?,
+            ..ImportOptions::default()
+        },
+        rate_hz: args.rate,
+    };
+    let into_folder = args.clips.len() > 1
+        || args.clips.iter().any(|path| path.is_dir())
+        || args.output.is_dir()
+        || args.output.to_string_lossy().ends_with(['/', '\\']);
+    if into_folder {
+        return folder::convert(&args, &wanted);
+    }
+    let (path, output) = (&args.clips[0], &args.output);
+    if args.form.is_some() {
+        bail!("--form is for folders; the ending of --output says the form of one clip");
+    }
+    let to_stdout = output == Path::new("-");
+    let form = match to_stdout {
+        true => Form::Bvh,
+        false => Form::of(output).with_context(|| output.display().to_string())?,
+    };
+    if args.table != Table::Positions && form != Form::Csv {
+        bail!("--table says what a .csv holds, and the output is none");
+    }
+    let opened = files::open(path, &args.read)?;
     for warning in &opened.warnings {
-        eprintln!("morec: {}: {warning}", args.clip.display());
+        eprintln!("morec: {}: {warning}", path.display());
     }
-    let mut clip =
-        one_of(opened.clips, args.character).with_context(|| args.clip.display().to_string())?;
-    if let Some(rate_hz) = args.rate {
-        clip = clip
-            .resampled(rate_hz)
-            .with_context(|| args.clip.display().to_string())?;
-    }
-    if args.output == Path::new("-") {
+    let clip = one_of(opened.clips, args.character).with_context(|| path.display().to_string())?;
+    let clip = wanted
+        .resampled(clip)
+        .with_context(|| path.display().to_string())?;
+    if to_stdout {
         let mut out = std::io::stdout().lock();
         bvh::write(&clip, &mut out).context("standard output")?;
         out.flush().context("standard output")?;
     } else {
-        write_clip(&clip, &args.output).with_context(|| args.output.display().to_string())?;
+        form::write(clip, form, &wanted, output).with_context(|| output.display().to_string())?;
     }
     Ok(ExitCode::SUCCESS)
 }
-
-/// What writes a clip in some format.
-type Writer = fn(&Clip, &mut dyn Write) -> std::io::Result<()>;
-
-/// Formats of points, by the ending of their files; everything else is written as BVH.
-const POINTS: [(&str, Writer); 3] = [
-    ("trc", trc::write),
-    ("c3d", c3d::write),
-    ("jsonl", jsonl::write),
-];
 
 fn one_of(mut clips: Vec<Clip>, character: Option<usize>) -> Result<Clip> {
     let count = clips.len();
@@ -82,28 +153,4 @@ fn one_of(mut clips: Vec<Clip>, character: Option<usize>) -> Result<Clip> {
         Some(n) if (1..=count).contains(&n) => Ok(clips.remove(n - 1)),
         Some(n) => bail!("there is no character {n}; the file holds {count}"),
     }
-}
-
-/// Writes a clip in the format that the ending of `path` names, else as BVH; whole or not at all.
-pub fn write_clip(clip: &Clip, path: &Path) -> Result<()> {
-    let ending = path.extension().unwrap_or_default();
-    match POINTS
-        .iter()
-        .find(|(known, _)| ending.eq_ignore_ascii_case(known))
-    {
-        Some((_, write)) => {
-            let points = points_of(clip)?;
-            output::write_whole(path, |out| write(&points, out))
-        }
-        None => output::write_whole(path, |out| bvh::write(clip, out)),
-    }
-}
-
-/// Where the joints are; formats of points name their unit, so one is inferred where the clip says none.
-fn points_of(clip: &Clip) -> Result<Clip> {
-    if !clip.has_rotations() || clip.frames == 0 {
-        return Ok(clip.clone());
-    }
-    let facts = normalize(clip.clone(), &ImportOptions::default())?.report;
-    Ok(clip.to_points(Some(facts.metres_per_unit)))
 }

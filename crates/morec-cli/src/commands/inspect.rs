@@ -168,8 +168,8 @@ fn import_options(args: &Args) -> Result<ImportOptions> {
     Ok(ImportOptions {
         up: args.up,
         metres_per_unit: args.unit,
-        rest_frames: None,
         mapping,
+        ..ImportOptions::default()
     })
 }
 

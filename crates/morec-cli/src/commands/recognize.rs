@@ -15,7 +15,7 @@ use morec::live::{Detection, Model, PoseReader, recognize_clip, recognize_clip_i
 use morec::roles::Role;
 
 use super::send::bundling;
-use crate::files::{ReadArgs, expand, mapping, open, rate, read};
+use crate::files::{ReadArgs, expand, mapping, open, rate, read, say_doubts};
 use crate::live::layout::LayoutArg;
 use crate::live::loaded::Loaded;
 use crate::live::network::Conditions;
@@ -189,7 +189,9 @@ fn recognize_file(
     let shown = || path.display().to_string();
     let opened = stats.reading(|| open(path, &args.read))?;
     let mut all = Vec::new();
-    for mut imported in opened.into_takes(options).with_context(shown)? {
+    let takes = opened.into_takes(options).with_context(shown)?;
+    say_doubts(path, &takes);
+    for mut imported in takes {
         adapt(&mut imported, index, path, options.mapping.is_none());
         let found = match args.over_vmc {
             Some(rate_hz) => over_vmc(&imported, rate_hz, index, args)?,

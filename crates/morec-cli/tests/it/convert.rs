@@ -106,3 +106,55 @@ fn tables_in_folders_are_clips_if_they_hold_positions() {
         "{shown}"
     );
 }
+
+#[test]
+fn an_ending_that_promises_another_format_is_refused() {
+    let folder = Folder::with(&[("wave.bvh", WAVE_BVH)]);
+    for name in ["x.fbx", "x.amc", "x.gltf", "x.txt"] {
+        let ran = folder.morec(&["convert", "wave.bvh", "-o", name]);
+        assert_eq!(ran.code, Some(1), "{ran:?}");
+        assert!(ran.err.contains("not as ."), "{ran:?}");
+        assert!(!folder.path().join(name).exists());
+    }
+    let ran = folder.morec(&["convert", "wave.bvh", "-o", "x.bvh", "--table", "features"]);
+    assert!(ran.err.contains(".csv"), "{ran:?}");
+}
+
+#[test]
+fn folders_are_written_whole_in_any_form() {
+    let folder = Folder::with(&[
+        ("takes/wave.bvh", WAVE_BVH),
+        ("takes/deep/wave.bvh", WAVE_BVH),
+        ("takes/notes.txt", "nothing"),
+    ]);
+    for form in ["bvh", "c3d", "trc", "jsonl", "glb", "npz", "csv"] {
+        let ran = folder.morec(&["convert", "takes", "-o", form, "--form", form]);
+        assert_eq!(ran.code, Some(0), "{ran:?}");
+        for name in ["wave", "deep/wave"] {
+            let path = folder.path().join(form).join(name).with_extension(form);
+            assert!(path.is_file(), "{}", path.display());
+        }
+        if !matches!(form, "npz") {
+            let one = format!("{form}/wave.{form}");
+            let ran = folder.morec(&["inspect", &one]);
+            assert_eq!(ran.code, Some(0), "{ran:?}");
+        }
+    }
+    // An arm is no humanoid, and the others would be written.
+    let ran = folder.morec(&["convert", "takes", "-o", "vrma", "--form", "vrma"]);
+    assert_eq!(ran.code, Some(1));
+    assert!(ran.err.contains("a VRM animation needs"), "{ran:?}");
+}
+
+#[test]
+fn clips_of_one_name_do_not_replace_each_other() {
+    let folder = Folder::with(&[("a/wave.bvh", WAVE_BVH), ("b/wave.bvh", WAVE_BVH)]);
+    let ran = folder.morec(&["convert", "a", "b", "-o", "out"]);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    assert_eq!(
+        std::fs::read_dir(folder.path().join("out"))
+            .unwrap()
+            .count(),
+        2
+    );
+}

@@ -10,7 +10,7 @@ use crate::formats::bvh::{self, BvhOptions, PositionChannels};
 use crate::formats::probe::{Format, probe};
 use crate::formats::{Limits, Loaded, ParseError, Place, Warning, mclip};
 use crate::formats::{c3d, jsonl, read_scene, table, trc};
-use crate::import::{ImportOptions, Take, normalize};
+use crate::import::{ImportOptions, Stated, Take, normalize};
 use crate::kinematics::WorldPose;
 
 use super::archives::Around;
@@ -52,6 +52,10 @@ impl ClipFile {
     /// A mapping in `options` that names a joint which a clip does not have.
     pub fn into_takes(self, options: &ImportOptions) -> Result<Vec<Take>, ParseError> {
         let warnings = self.warnings;
+        let options = &ImportOptions {
+            stated: Stated::of(self.format),
+            ..options.clone()
+        };
         let ready = |clip| {
             let take = normalize(clip, options)?;
             Ok(Take {

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
+use super::Stated;
 use super::body::Body;
 use crate::clip::Clip;
 use crate::math::{Axis, Quat, Vec3, same_hemisphere};
@@ -66,14 +67,30 @@ impl serde::Serialize for SignedAxis {
     }
 }
 
+/// The axis that the format states, unless the body clearly stands along another; else the one the body tells.
+pub(super) fn choose(
+    clip: &Clip,
+    body: &Body,
+    stated: Option<Stated>,
+    notes: &mut Vec<String>,
+) -> SignedAxis {
+    let Some(Stated { up: stated, .. }) = stated else {
+        return infer_up(clip, body, notes);
+    };
+    match standing(body) {
+        Some(up) if up != stated => {
+            notes.push(format!(
+                "by the file's format {stated} is up, but the body stands along {up}, which is taken"
+            ));
+            up
+        }
+        _ => stated,
+    }
+}
+
 /// The axis along which the head is above the feet, over the whole clip.
-pub(super) fn infer_up(clip: &Clip, body: &Body, notes: &mut Vec<String>) -> SignedAxis {
-    /// A mean shorter than this share of the body, or not longer than its next axis by this factor, says little.
-    const SHORT: f64 = 0.5;
-    const CLEAR: f64 = 1.5;
-    let sum: Vec3 = body.upwards.iter().sum();
-    let lengths: f64 = body.upwards.iter().map(|v| v.norm()).sum();
-    if lengths == 0.0 {
+fn infer_up(clip: &Clip, body: &Body, notes: &mut Vec<String>) -> SignedAxis {
+    if body.upwards.iter().all(|v| v.norm() == 0.0) {
         if let Some(up) = floor(clip) {
             notes.push(format!(
                 "no head above feet to tell which way is up; along {up} alone everything lies above 0, so it is taken"
@@ -83,18 +100,26 @@ pub(super) fn infer_up(clip: &Clip, body: &Body, notes: &mut Vec<String>) -> Sig
         notes.push("no head above feet to tell which way is up; Y is assumed".to_owned());
         return SignedAxis::Y;
     }
+    standing(body).unwrap_or_else(|| lying(body, notes))
+}
+
+/// The axis along which the body stands through most of the clip; `None` where it lies, turns over or is not known.
+fn standing(body: &Body) -> Option<SignedAxis> {
+    /// A mean shorter than this share of the body, or not longer than its next axis by this factor, says little.
+    const SHORT: f64 = 0.5;
+    const CLEAR: f64 = 1.5;
+    let sum: Vec3 = body.upwards.iter().sum();
+    let lengths: f64 = body.upwards.iter().map(|v| v.norm()).sum();
     let biggest = sum.iamax();
     let next = (0..3)
         .filter(|&axis| axis != biggest)
         .map(|axis| sum[axis].abs())
         .fold(0.0, f64::max);
-    if sum.norm() >= SHORT * lengths && sum[biggest].abs() >= CLEAR * next {
-        return SignedAxis {
-            axis: Axis::ALL[biggest],
-            negative: sum[biggest] < 0.0,
-        };
-    }
-    lying(body, notes)
+    let clear = sum.norm() >= SHORT * lengths && sum[biggest].abs() >= CLEAR * next;
+    (lengths > 0.0 && clear).then(|| SignedAxis {
+        axis: Axis::ALL[biggest],
+        negative: sum[biggest] < 0.0,
+    })
 }
 
 /// Which way is up where somebody lies, crawls or turns over: along which axis the body stands at its straightest, and

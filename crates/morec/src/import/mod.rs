@@ -17,8 +17,9 @@ pub use take::Take;
 
 use crate::clip::{Clip, Span};
 use crate::formats::ParseError;
+use crate::formats::probe::Format;
 use crate::kinematics::WorldPose;
-use crate::math::Vec3;
+use crate::math::{Axis, Vec3};
 use crate::roles::mapping::Mapping;
 use crate::roles::{self, RoleMap};
 use body::Body;
@@ -34,6 +35,35 @@ pub struct ImportOptions {
     pub rest_frames: Option<usize>,
     /// Roles that override those found.
     pub mapping: Option<Mapping>,
+    /// What the file's format states; believed where the body does not say otherwise.
+    pub stated: Option<Stated>,
+}
+
+/// What the specification of a format, or a file itself, states about lengths and axes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stated {
+    /// Which way is up.
+    pub up: SignedAxis,
+    /// Metres in one unit of length.
+    pub metres_per_unit: f64,
+}
+
+impl Stated {
+    /// What files of `format` state by its specification; `None` for those that leave it to the writer.
+    pub fn of(format: Format) -> Option<Self> {
+        let up = match format {
+            Format::Gltf | Format::Mocopi => SignedAxis::Y,
+            Format::Mvnx => SignedAxis {
+                axis: Axis::Z,
+                negative: false,
+            },
+            _ => return None,
+        };
+        Some(Self {
+            up,
+            metres_per_unit: 1.0,
+        })
+    }
 }
 
 /// What was inferred about a clip, or given in the options.
@@ -82,10 +112,10 @@ pub fn normalize(mut clip: Clip, options: &ImportOptions) -> Result<Take, ParseE
     let body = Body::measure(&clip, &map);
     let up = options
         .up
-        .unwrap_or_else(|| axes::infer_up(&clip, &body, &mut notes));
+        .unwrap_or_else(|| axes::choose(&clip, &body, options.stated, &mut notes));
     let metres_per_unit = options
         .metres_per_unit
-        .unwrap_or_else(|| units::choose(&clip, &body, up, &mut notes));
+        .unwrap_or_else(|| units::choose(&clip, &body, up, options.stated, &mut notes));
     let mut doubts = roles::check(&clip.skeleton, &map, &poses(&clip));
     doubts.extend(units::doubt(&body, metres_per_unit));
     axes::turn_up(&mut clip, up);

@@ -133,6 +133,7 @@ fn what_a_person_says_counts() {
         metres_per_unit: Some(2.0),
         rest_frames: Some(7),
         mapping: Some(Mapping::read(b"neck\t-\n").unwrap()),
+        stated: None,
     };
     let imported = normalize(person(20, 0.0), &options).unwrap();
     assert_eq!(imported.report.up, signed(Axis::Z, false));
@@ -285,7 +286,7 @@ fn doubled(mut clip: Clip) -> Clip {
 #[test]
 fn doubled_frames_do_not_hide_the_rest_pose() {
     let imported = ready(doubled(with_t_pose(person(50, 0.01))));
-    assert_eq!(imported.facts.rest_frames, 0..2);
+    assert_eq!(imported.report.rest_frames, 0..2);
     assert_eq!(ready(doubled(person(50, 0.01))).report.rest_frames, 0..0);
 }
 
@@ -359,4 +360,25 @@ fn legs_of_nobody_are_doubted() {
         "{doubts:?}"
     );
     assert!(ready(person(20, 0.0)).report.doubts.is_empty());
+}
+
+#[test]
+fn what_a_format_states_counts_where_the_body_does_not_say_otherwise() {
+    let stated = |up: &str, metres_per_unit| ImportOptions {
+        stated: Some(Stated {
+            up: up.parse().unwrap(),
+            metres_per_unit,
+        }),
+        ..ImportOptions::default()
+    };
+    // Somebody who lies on the back throughout: only the format knows.
+    let lying = turned(person(40, 0.0), |_| Axis::X.rotation(-1.57));
+    let report = normalize(lying, &stated("y", 1.0)).unwrap().report;
+    assert_eq!((report.up, report.unit), (SignedAxis::Y, Some("m")));
+    // Somebody who stands along Y in a file that says Z and millimetres.
+    let report = normalize(person(40, 0.0), &stated("z", 0.001))
+        .unwrap()
+        .report;
+    assert_eq!((report.up, report.unit), (SignedAxis::Y, Some("m")));
+    assert_eq!(report.notes.len(), 2, "{:?}", report.notes);
 }

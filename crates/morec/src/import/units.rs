@@ -1,7 +1,7 @@
 //! How long the file's unit of length is, from how tall a body is.
 
-use super::SignedAxis;
 use super::body::Body;
+use super::{SignedAxis, Stated};
 use crate::clip::Clip;
 use crate::roles::proportions as human;
 
@@ -15,12 +15,19 @@ const UNITS: [(&str, f64); 6] = [
     ("mm", 0.001),
 ];
 
-/// The unit that the file of a clip of points states, if a body can be so large; else the one the body tells.
-pub(super) fn choose(clip: &Clip, body: &Body, up: SignedAxis, notes: &mut Vec<String>) -> f64 {
+/// The unit that the file or its format states, if a body can be so large; else the one the body tells.
+pub(super) fn choose(
+    clip: &Clip,
+    body: &Body,
+    up: SignedAxis,
+    format: Option<Stated>,
+    notes: &mut Vec<String>,
+) -> f64 {
     let stated = clip
         .points
         .as_ref()
-        .and_then(|points| points.metres_per_unit);
+        .and_then(|points| points.metres_per_unit)
+        .or(format.map(|stated| stated.metres_per_unit));
     let Some(stated) = stated else {
         return infer(body, up, notes);
     };

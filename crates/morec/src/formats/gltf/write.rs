@@ -126,7 +126,7 @@ fn humanoid(clip: &Clip, roles: &RoleMap) -> (Clip, Vec<Quat>) {
     let rest = t_pose(&chosen, &parents, &zero, roles);
     // What the arms hang on is no neck, even where it stands for one.
     let is_chest = |bone: &Bone, joint: usize| {
-        let above = |arm| std::iter::successors(joints[arm].parent, |&j| joints[j].parent);
+        let above = |arm: usize| std::iter::successors(joints[arm].parent, |&j| joints[j].parent);
         bone.role == Role::Neck
             && roles
                 .joint(Role::LeftArm)

@@ -1,0 +1,134 @@
+//! The forms that clips are written in, and which ending stands for which.
+
+use std::path::Path;
+
+use anyhow::{Result, bail};
+use morec::clip::Clip;
+use morec::formats::{bvh, c3d, gltf, jsonl, trc};
+use morec::import::{ImportOptions, normalize};
+use morec::tables::{Content, write_csv, write_npz};
+
+use super::Wanted;
+use crate::output;
+
+/// A form of clips.
+#[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// Skeleton and rotations; the clip's own units and axes
+    Bvh,
+    /// Points, binary
+    C3d,
+    /// Points, tab-separated
+    Trc,
+    /// Points, a line of JSON for each frame
+    Jsonl,
+    /// Binary glTF: skeleton and rotations, metres
+    Glb,
+    /// A VRM animation: the joints that play roles
+    Vrma,
+    /// Positions, rotations and feature rows for NumPy
+    Npz,
+    /// One of these as a table
+    Csv,
+}
+
+impl Form {
+    /// Every form with its ending.
+    const ALL: [(Form, &'static str); 8] = [
+        (Form::Bvh, "bvh"),
+        (Form::C3d, "c3d"),
+        (Form::Trc, "trc"),
+        (Form::Jsonl, "jsonl"),
+        (Form::Glb, "glb"),
+        (Form::Vrma, "vrma"),
+        (Form::Npz, "npz"),
+        (Form::Csv, "csv"),
+    ];
+
+    /// The ending of its files.
+    pub fn ending(self) -> &'static str {
+        Self::ALL
+            .into_iter()
+            .find(|(form, _)| *form == self)
+            .map_or("bvh", |(_, ending)| ending)
+    }
+
+    /// The form that the ending of `path` promises; BVH without one.
+    ///
+    /// # Errors
+    /// The ending of something that is not written.
+    pub fn of(path: &Path) -> Result<Self> {
+        let Some(ending) = path.extension() else {
+            return Ok(Form::Bvh);
+        };
+        let found = Self::ALL
+            .into_iter()
+            .find(|(_, known)| ending.eq_ignore_ascii_case(known));
+        if let Some((form, _)) = found {
+            return Ok(form);
+        }
+        let endings: Vec<String> = Self::ALL.iter().map(|(_, e)| format!(".{e}")).collect();
+        bail!(
+            "clips are written as {}, not as .{}",
+            endings.join(", "),
+            ending.to_string_lossy()
+        )
+    }
+}
+
+/// Writes a clip in the format that the ending of `path` names; whole or not at all.
+pub fn write_clip(clip: &Clip, path: &Path) -> Result<()> {
+    let wanted = Wanted {
+        content: Content::default(),
+        import: ImportOptions::default(),
+        rate_hz: None,
+    };
+    write(clip.clone(), Form::of(path)?, &wanted, path)
+}
+
+/// Writes a clip in `form`; whole or not at all.
+pub fn write(clip: Clip, form: Form, wanted: &Wanted, path: &Path) -> Result<()> {
+    match form {
+        Form::Bvh => output::write_whole(path, |out| bvh::write(&clip, out)),
+        Form::C3d => {
+            let points = points_of(clip, wanted)?;
+            output::write_whole(path, |out| c3d::write(&points, out))
+        }
+        Form::Trc => {
+            let points = points_of(clip, wanted)?;
+            output::write_whole(path, |out| trc::write(&points, out))
+        }
+        Form::Jsonl => {
+            let points = points_of(clip, wanted)?;
+            output::write_whole(path, |out| jsonl::write(&points, out))
+        }
+        Form::Glb => {
+            let take = normalize(clip, &wanted.import)?;
+            output::write_whole(path, |out| gltf::write(&take.clip, out))
+        }
+        Form::Vrma => {
+            let take = normalize(clip, &wanted.import)?;
+            for doubt in &take.report.doubts {
+                eprintln!("morec: {}: {doubt}", take.clip.name);
+            }
+            output::write_whole(path, |out| gltf::write_vrma(&take.clip, &take.roles, out))
+        }
+        Form::Npz => {
+            let take = normalize(clip, &wanted.import)?;
+            output::write_whole(path, |out| write_npz(&take, out))
+        }
+        Form::Csv => {
+            let take = normalize(clip, &wanted.import)?;
+            output::write_whole(path, |out| write_csv(&take, wanted.content, out))
+        }
+    }
+}
+
+/// Where the joints are; formats of points name their unit, so one is inferred where the clip says none.
+fn points_of(clip: Clip, wanted: &Wanted) -> Result<Clip> {
+    if !clip.has_rotations() || clip.frames == 0 {
+        return Ok(clip);
+    }
+    let report = normalize(clip.clone(), &wanted.import)?.report;
+    Ok(clip.to_points(Some(report.metres_per_unit)))
+}
