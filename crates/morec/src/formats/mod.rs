@@ -14,11 +14,13 @@ pub mod fbx;
 pub mod gltf;
 pub mod jsonl;
 mod keys;
+pub mod landmarks;
 #[cfg(test)]
 mod mangle;
 pub mod mclip;
 pub mod mocopi;
 pub mod mvnx;
+pub mod ntu;
 pub(crate) mod points;
 pub mod probe;
 mod scene;
@@ -140,7 +142,7 @@ pub struct Loaded {
 }
 
 /// Reads the formats of whole scenes and suits: [MVNX](mvnx), [glTF](gltf), FBX (feature `fbx`), [SMPL](smpl) and
-/// [mocopi]. `rate_hz` replaces the rate where the file holds frames; keys in seconds keep theirs. `None` for
+/// [mocopi], and of points that need nothing but the file ([NTU](ntu), [landmarks]). `rate_hz` replaces the rate where the file holds frames; keys in seconds keep theirs. `None` for
 /// other formats.
 pub fn read_scene(
     format: probe::Format,
@@ -156,6 +158,8 @@ pub fn read_scene(
         Format::Smpl => smpl::read(bytes, name, limits),
         Format::Mocopi => mocopi::read(bytes, name, limits),
         Format::Gltf => gltf::read(bytes, name, beside, limits),
+        Format::NtuSkeleton => ntu::read(bytes, name, rate_hz, limits),
+        Format::Landmarks => landmarks::read(bytes, name, rate_hz, limits),
         Format::Fbx => read_fbx(bytes, name, limits),
         _ => return None,
     };

@@ -35,6 +35,10 @@ pub enum Format {
     Smpl,
     /// Recorded packets of mocopi.
     Mocopi,
+    /// Joints of Kinect v2 as text, as NTU RGB+D has them.
+    NtuSkeleton,
+    /// JSON with a list of points in each frame.
+    Landmarks,
 }
 
 impl Format {
@@ -54,6 +58,8 @@ impl Format {
             Format::Fbx => "fbx",
             Format::Smpl => "smpl",
             Format::Mocopi => "mocopi",
+            Format::NtuSkeleton => "ntu_skeleton",
+            Format::Landmarks => "landmarks",
         }
     }
 }
@@ -65,7 +71,7 @@ struct Readable {
 }
 
 /// Every format that is read, in the order in which its content is asked for.
-const READ: [Readable; 19] = [
+const READ: [Readable; 21] = [
     Readable {
         format: Format::Mclip,
         extension: "mclip",
@@ -151,6 +157,17 @@ const READ: [Readable; 19] = [
         looks_so: |_| false,
     },
     Readable {
+        format: Format::NtuSkeleton,
+        extension: "skeleton",
+        looks_so: |h| !h.is_binary() && super::ntu::looks_so(h.bytes),
+    },
+    Readable {
+        format: Format::Landmarks,
+        // Most files that end in .json are no motion: content alone decides.
+        extension: "landmarks",
+        looks_so: |h| !h.is_binary() && super::landmarks::looks_so(h.bytes),
+    },
+    Readable {
         format: Format::Table,
         extension: "csv",
         looks_so: |h| !h.is_binary() && table::looks_so(h.bytes),
@@ -189,7 +206,7 @@ const NUMPY: &str = "save poses as AMASS does, in an .npz, or positions as a tab
 const VIDEO: &str = "it holds pictures; a tracker of poses makes positions of them";
 
 /// Formats that are recognised only to say that they are not read.
-const UNREAD: [Unread; 36] = [
+const UNREAD: [Unread; 39] = [
     unread("a zip archive", UNPACK, |h| {
         h.bytes.starts_with(b"PK\x03\x04") || h.bytes.starts_with(b"PK\x05\x06")
     }),
@@ -239,6 +256,15 @@ const UNREAD: [Unread; 36] = [
         "play it in Unity and record it with its FBX exporter, or as VRMA",
         |h| h.starts("%YAML") && h.contains(b"unity3d.com"),
     ),
+    unread("DirectX (.x)", BLENDER, |h| h.starts("xof ")),
+    unread("a Source engine animation (SMD)", BLENDER, |h| {
+        h.starts("version 1") && h.contains(b"nodes") && h.contains(b"skeleton")
+    }),
+    unread(
+        "OpenPose keypoints (JSON) in two dimensions",
+        "a direction in space needs three: triangulate several views (Pose2Sim, FreeMoCap) and give TRC, C3D or a table",
+        |h| h.starts("{") && h.contains(b"\"pose_keypoints_2d\""),
+    ),
     unread("HDF5", NUMPY, |h| h.bytes.starts_with(b"\x89HDF")),
     unread("MATLAB's MAT", NUMPY, |h| h.starts("MATLAB 5.0")),
     unread(
@@ -250,7 +276,9 @@ const UNREAD: [Unread; 36] = [
         h.bytes.starts_with(b"(dp") || h.bytes.starts_with(b"(lp")
     }),
     unread("HTR of Motion Analysis", SCENE, |h| {
-        h.contains(b"FileType htr") || h.contains(b"[SegmentNames&Hierarchy]")
+        h.contains(b"FileType htr")
+            || h.contains(b"FileType gtr")
+            || h.contains(b"[SegmentNames&Hierarchy]")
     }),
     unread("a Vicon or Nexus XML file", "export C3D", |h| {
         h.starts("<") && (h.contains(b"<KinematicModel") || h.contains(b"<ViconModel"))
@@ -290,6 +318,74 @@ const UNREAD: [Unread; 36] = [
     }),
 ];
 
+/// Endings of files whose content does not tell what they are, to be refused by name.
+const UNREAD_ENDINGS: [(&str, &str, &str); 20] = [
+    (
+        "qtm",
+        "a Qualisys QTM measurement",
+        "export C3D, TSV or FBX from QTM",
+    ),
+    ("tdf", "a BTS TDF recording", "export C3D from BTS SMART"),
+    (
+        "v",
+        "a Vicon V file",
+        "export C3D or FBX from the program that made it",
+    ),
+    (
+        "x1d",
+        "a Vicon recording of cameras",
+        "process it and export C3D",
+    ),
+    (
+        "x2d",
+        "a Vicon recording of cameras",
+        "process it and export C3D",
+    ),
+    (
+        "vsk",
+        "a Vicon skeleton",
+        "it holds no motion; export FBX or C3D of a trial",
+    ),
+    (
+        "trb",
+        "a Motion Analysis TRB recording",
+        "export TRC or C3D from Cortex",
+    ),
+    (
+        "cap",
+        "a Motion Analysis capture",
+        "export TRC or C3D from Cortex",
+    ),
+    ("gtr", "GTR of Motion Analysis", SCENE),
+    ("htr", "HTR of Motion Analysis", SCENE),
+    (
+        "tak",
+        "a Motive take",
+        "export CSV, BVH, C3D or FBX from Motive",
+    ),
+    (
+        "mvn",
+        "an Xsens MVN recording",
+        "export MVNX, BVH or FBX from MVN",
+    ),
+    (
+        "raw",
+        "a raw recording of Axis Neuron",
+        "export BVH or FBX from it",
+    ),
+    ("x", "DirectX (.x)", BLENDER),
+    ("smd", "a Source engine animation (SMD)", BLENDER),
+    ("blend", "a Blender file", BLENDER),
+    (
+        "bip",
+        "a 3ds Max biped motion (BIP)",
+        "load it on a Biped in 3ds Max and save BVH or FBX",
+    ),
+    ("anm", "a game's animation", SCENE),
+    ("max", "a 3ds Max file", SCENE),
+    ("usdz", "USD", BLENDER),
+];
+
 const OPENSIM: &str = "joint angles mean something only with the model they were made for; run OpenSim's BodyKinematics \
     or PointKinematics with it and give the positions as a table or TRC";
 
@@ -314,6 +410,17 @@ pub fn probe(bytes: &[u8], name: &str) -> Result<Format, ParseError> {
     let by_name = |format: &Format| !head.is_binary() || *format == Format::C3d;
     if let Some(format) = format_of_name(name).filter(by_name) {
         return Ok(format);
+    }
+    let (_, ending) = name.rsplit_once('.').unwrap_or_default();
+    let known = UNREAD_ENDINGS
+        .iter()
+        .find(|(known, ..)| known.eq_ignore_ascii_case(ending) && !bytes.is_empty());
+    if let Some((_, what, help)) = known {
+        return Err(ParseError::new(
+            Place::File,
+            "a motion format that is read",
+            format!("what by its name is {what}, which is not read: {help}"),
+        ));
     }
     let found = match bytes {
         [] => "an empty file",

@@ -14,7 +14,7 @@ use crate::progress::Progress;
 
 /// Writes every clip that `args` name. Exit code 1 if one of them could not be read or written, or a folder holds motion
 /// that is not read; the others are written.
-pub fn convert(args: &Args, wanted: &Wanted) -> Result<ExitCode> {
+pub(super) fn convert(args: &Args, wanted: &Wanted) -> Result<ExitCode> {
     let output = &args.output;
     if args.character.is_some() {
         bail!("--character chooses from one file; in a folder, every character is written");

@@ -87,7 +87,7 @@ pub fn write_clip(clip: &Clip, path: &Path) -> Result<()> {
 }
 
 /// Writes a clip in `form`; whole or not at all.
-pub fn write(clip: Clip, form: Form, wanted: &Wanted, path: &Path) -> Result<()> {
+pub(super) fn write(clip: Clip, form: Form, wanted: &Wanted, path: &Path) -> Result<()> {
     match form {
         Form::Bvh => output::write_whole(path, |out| bvh::write(&clip, out)),
         Form::C3d => {

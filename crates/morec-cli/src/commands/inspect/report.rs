@@ -353,6 +353,8 @@ fn format_name(format: Format) -> &'static str {
         Format::Gltf => "glTF",
         Format::Fbx => "FBX",
         Format::Smpl => "SMPL poses (npz)",
+        Format::NtuSkeleton => "Kinect joints (NTU)",
+        Format::Landmarks => "landmarks (JSON)",
         Format::Mocopi => "mocopi packets",
     }
 }

@@ -16,7 +16,22 @@ pub(super) fn layout(rows: &[Row]) -> Option<Layout> {
         let is = |(_, cells): &&Row| cells.iter().take(2).any(|cell| *cell == name);
         rows[..frame_row].iter().find(is).map(|(_, cells)| cells)
     };
-    let (types, names) = (named("Type")?, named("Name")?);
+    // Older versions have the same rows without a word before them.
+    const KINDS: [&str; 5] = [
+        "Bone",
+        "Bone Marker",
+        "Rigid Body",
+        "Rigid Body Marker",
+        "Marker",
+    ];
+    let kinds = rows
+        .get(1..frame_row)?
+        .iter()
+        .position(|(_, cells)| cells.iter().skip(2).any(|cell| KINDS.contains(cell)))
+        .map(|at| at + 1);
+    let row_of = |at: usize| rows[..frame_row].get(at).map(|(_, cells)| cells);
+    let types = named("Type").or_else(|| row_of(kinds?))?;
+    let names = named("Name").or_else(|| row_of(kinds? + 1))?;
     let properties = rows[..frame_row].iter().rev().map(|(_, cells)| cells);
     let properties = properties
         .into_iter()
@@ -51,6 +66,14 @@ pub(super) fn layout(rows: &[Row]) -> Option<Layout> {
             found.notes.push(text);
         }
     }
+    // Markers that the solver laid onto a body repeat those that were measured.
+    let name = |x: usize| names.get(x).copied().unwrap_or_default();
+    let measured: Vec<&str> = columns
+        .iter()
+        .filter(|(_, kind)| *kind == "Marker")
+        .map(|&(x, _)| name(x))
+        .collect();
+    columns.retain(|(x, kind)| !kind.ends_with(" Marker") || !measured.contains(&name(*x)));
     for (x, _) in columns {
         let name = names.get(x).copied().unwrap_or_default();
         found.points.push((name.to_owned(), [x, x + 1, x + 2]));

@@ -17,13 +17,18 @@ pub(super) fn layout(rows: &[Row]) -> Option<Layout> {
     if !cells.iter().all(is_number) {
         return None;
     }
-    let fits = |before: usize| {
+    let fits = |before: usize, width: usize| {
         let values = cells.len().checked_sub(before)?;
-        (values % 3 == 0 && COUNTS.contains(&(values / 3))).then_some((before, values / 3))
+        let known = values.is_multiple_of(width) && COUNTS.contains(&(values / width));
+        known.then_some((before, width, values / width))
     };
-    let (before, count) = fits(0).or_else(|| fits(1))?;
+    // A fourth number is how sure the sensor was.
+    let (before, width, count) = fits(0, 3)
+        .or_else(|| fits(1, 3))
+        .or_else(|| fits(0, 4))
+        .or_else(|| fits(1, 4))?;
     let point = |number: usize| {
-        let x = before + 3 * number;
+        let x = before + width * number;
         (number.to_string(), [x, x + 1, x + 2])
     };
     let value = |(_, cells): &Row| number(cells[0], Decimal::Either);

@@ -198,3 +198,39 @@ fn cut_or_altered_tables_never_panic() {
         }
     }
 }
+
+#[test]
+fn exports_of_motive_without_words_before_their_rows() {
+    let text = "Format Version,1.22,Take Name,t,Capture Frame Rate,120.000000,Length Units,Meters\n\n\
+        ,,Rigid Body Marker,Rigid Body Marker,Rigid Body Marker,Marker,Marker,Marker,Marker,Marker,Marker\n\
+        ,,S:M1,S:M1,S:M1,S:M1,S:M1,S:M1,S:M2,S:M2,S:M2\n\
+        ,,Position,Position,Position,Position,Position,Position,Position,Position,Position\n\
+        Frame,Time (Seconds),X,Y,Z,X,Y,Z,X,Y,Z\n\
+        0,0.0,9,9,9,1,2,3,4,5,6\n1,0.008333,9,9,9,1,2,4,4,5,7\n";
+    let loaded = read(text.as_bytes(), "t", None, &Limits::default()).unwrap();
+    let clip = &loaded.clips[0];
+    let names: Vec<&str> = clip
+        .skeleton
+        .joints()
+        .iter()
+        .map(|j| j.name.as_str())
+        .collect();
+    assert_eq!(names, ["S:M1", "S:M2"]);
+    assert_eq!(clip.tracks[0].positions[1], Vec3::new(1.0, 2.0, 4.0));
+    assert_eq!(clip.rate_hz, 120.0);
+}
+
+#[test]
+fn numbers_alone_may_say_how_sure_they_are() {
+    // MSRC-12: a time in ticks, then x, y, z and a confidence for each of 20 joints.
+    let row = |f: usize| {
+        let joint = |j: usize| format!("{} {} {} 1", 0.01 * j as f64, 0.1 * f as f64 + 0.5, 2.0);
+        let joints: Vec<String> = (0..20).map(joint).collect();
+        format!("{} {}\n", 1000 + 33 * f, joints.join(" "))
+    };
+    let text: String = (0..8).map(row).collect();
+    let clip = &read(text.as_bytes(), "t", None, &Limits::default())
+        .unwrap()
+        .clips[0];
+    assert_eq!((clip.frames, clip.skeleton.len()), (8, 20));
+}
