@@ -18,13 +18,13 @@ mod table;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 /// Index a motion-capture database, recognise its motions live.
 #[derive(Parser)]
 #[command(
     name = "morec",
-    version,
+    version = env!("MOREC_VERSION"),
     propagate_version = true,
     max_term_width = 100
 )]
@@ -38,6 +38,7 @@ enum Command {
     Inspect(commands::inspect::Args),
     Convert(commands::convert::Args),
     Smooth(commands::smooth::Args),
+    Play(commands::play::Args),
     Train(commands::train::Args),
     Recognize(commands::recognize::Args),
     Evaluate(commands::evaluate::Args),
@@ -53,6 +54,8 @@ enum Command {
     Soak(commands::soak::Args),
     Db(commands::db::Args),
     Demo(commands::demo::Args),
+    Completions(commands::complete::Completions),
+    Man(commands::complete::Man),
 }
 
 fn main() -> ExitCode {
@@ -61,6 +64,7 @@ fn main() -> ExitCode {
         Command::Inspect(args) => commands::inspect::run(args),
         Command::Convert(args) => commands::convert::run(args),
         Command::Smooth(args) => commands::smooth::run(&args),
+        Command::Play(args) => commands::play::run(&args),
         Command::Reproduce(args) => commands::reproduce::run(&args),
         Command::Train(args) => commands::train::run(&args),
         Command::Recognize(args) => commands::recognize::run(&args),
@@ -76,6 +80,8 @@ fn main() -> ExitCode {
         Command::Soak(args) => commands::soak::run(&args),
         Command::Db(args) => commands::db::run(args),
         Command::Demo(args) => commands::demo::run(&args),
+        Command::Completions(args) => commands::complete::completions(&args, Cli::command()),
+        Command::Man(args) => commands::complete::man(&args, Cli::command()),
     };
     match outcome {
         Ok(code) => code,

@@ -124,6 +124,7 @@ pub mod math;
 pub mod pca;
 pub mod perturb;
 pub mod pivots;
+pub mod player;
 pub mod plot;
 pub mod progress;
 pub mod report;

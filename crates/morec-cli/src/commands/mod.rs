@@ -3,6 +3,7 @@
 //! Exit codes: 0 all went well; 1 something could not be done (the message says what); 2 the command line was
 //! wrong.
 
+pub mod complete;
 pub mod convert;
 pub mod crossval;
 pub mod cut;
@@ -12,6 +13,7 @@ pub mod evaluate;
 pub mod group;
 pub mod inspect;
 pub mod live;
+pub mod play;
 pub mod recognize;
 pub mod record;
 pub mod reduce;

@@ -6,6 +6,7 @@ use anyhow::{Context, Result, bail};
 use morec::clip::Clip;
 use morec::import::{ImportOptions, Take};
 use morec::index::MotionIndex;
+use morec::live::Model;
 use morec::roles::RoleMap;
 
 use crate::files::{ReadArgs, expand, takes};
@@ -50,6 +51,14 @@ fn load_file(
     rate_hz: Option<f64>,
 ) -> Result<Vec<Loaded>> {
     let ready = |mut take: Take| {
+        let by_rotations = index.is_some_and(|index| matches!(index.model, Model::Svrdm(_)));
+        if by_rotations && !take.clip.has_rotations() {
+            bail!(
+                "{}: a clip of points has no rotations, and this index looks at nothing else (it is of the method of 2009); \
+                 train one without --method svrdm",
+                path.display()
+            );
+        }
         if let Some(index) = index.filter(|_| options.mapping.is_none()) {
             index.complete_roles(&mut take.roles, &take.clip.skeleton);
         }

@@ -227,3 +227,36 @@ fn a_device_without_an_end_is_refused() {
         "{ran:?}"
     );
 }
+
+#[test]
+fn the_body_is_drawn_in_the_terminal_and_as_a_picture() {
+    let folder = Folder::with(&[("wave.bvh", WAVE_BVH)]);
+    let ran = folder.morec(&["inspect", "wave.bvh", "--draw"]);
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    assert!(
+        ran.out.contains("from the front") || ran.out.contains("no body"),
+        "{ran:?}"
+    );
+    let ran = folder.morec(&["inspect", "wave.bvh", "--draw", "-o", "wave.svg"]);
+    if ran.code == Some(0) {
+        let svg = std::fs::read_to_string(folder.path().join("wave.svg")).unwrap();
+        assert!(
+            svg.starts_with("<svg") && svg.contains("from its left"),
+            "{svg}"
+        );
+    }
+    assert_eq!(
+        folder.morec(&["inspect", "wave.bvh", "-o", "x.svg"]).code,
+        Some(2)
+    );
+}
+
+#[test]
+fn what_is_no_human_body_is_told() {
+    let folder = Folder::with(&[("wave.bvh", WAVE_BVH)]);
+    let out = folder.morec(&["inspect", "wave.bvh"]).ok();
+    assert!(
+        out.contains("hardly is a human body"),
+        "an arm alone: {out}"
+    );
+}

@@ -12,6 +12,7 @@ mod kit;
 mod labels;
 mod live;
 mod outputs;
+mod play;
 mod poses;
 mod record;
 mod smooth;

@@ -11,8 +11,7 @@ use crate::formats::ParseError;
 pub struct FileError {
     /// The file, as it was named.
     pub path: PathBuf,
-    /// Why.
-    #[source]
+    /// Why. It is in the message, and so no source: reports that print the chain would say it twice.
     pub kind: Box<FileErrorKind>,
 }
 

@@ -1,0 +1,197 @@
+//! `morec play`: clips in the terminal, or on a page that plays them.
+
+use std::collections::BTreeMap;
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::{Context, Result, bail};
+use morec::import::{ImportOptions, Take};
+use morec::index::MotionIndex;
+use morec::labels::{ClipLength, Labels};
+use morec::live::recognize_clip;
+use morec::player::{Mark, Played, page};
+
+use super::recognize::open_index;
+use crate::files::{self, ReadArgs};
+use crate::output;
+use crate::show::{self, Said, Scene, Truth};
+
+/// Play clips in the terminal, or write a page that plays them
+///
+/// The body is shown from the front, with labels and detections on lines below it. With --output, one HTML file is written that
+/// needs nothing else: the body can be turned and zoomed, time can be scrubbed, and a list leads to every label and detection.
+#[derive(clap::Args)]
+#[command(after_help = "\
+Examples:
+  morec play walk.bvh
+  morec play new/signals_3.bvh --index signs.index --speed 2
+  morec play clips/ --labels labels.tsv -o clips.html")]
+pub struct Args {
+    /// Clips in any format that is read, or folders of clips
+    #[arg(required = true, value_name = "CLIP")]
+    clips: Vec<PathBuf>,
+    /// Labels to show, in any form that `morec train` reads
+    #[arg(long, value_name = "FILE")]
+    labels: Option<PathBuf>,
+    /// Show what this index recognises, too
+    #[arg(long, value_name = "FILE")]
+    index: Option<PathBuf>,
+    /// How many times as fast as performed, in the terminal
+    #[arg(long, default_value_t = 1.0, value_parser = speed)]
+    speed: f64,
+    /// Write a page of HTML that plays the clips, instead
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Roles that override those found: a file of `role<TAB>joint` lines
+    #[arg(long, value_name = "FILE")]
+    roles: Option<PathBuf>,
+    #[command(flatten)]
+    read: ReadArgs,
+}
+
+fn speed(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(speed) if (0.01..=1000.0).contains(&speed) => Ok(speed),
+        _ => Err("expected a factor between 0.01 and 1000".to_owned()),
+    }
+}
+
+/// Plays or writes.
+pub fn run(args: &Args) -> Result<ExitCode> {
+    if let Some(output) = &args.output {
+        output::check(output).with_context(|| output.display().to_string())?;
+    }
+    let options = ImportOptions {
+        mapping: files::mapping(args.roles.as_deref())?,
+        ..ImportOptions::default()
+    };
+    let index = args.index.as_deref().map(open_index).transpose()?;
+    let mut takes = Vec::new();
+    for path in files::expand(&args.clips)? {
+        takes.extend(files::takes(&path, &args.read, &options)?);
+    }
+    takes.retain(|take| take.clip.frames > 0);
+    if takes.is_empty() {
+        bail!("no clip with a frame of motion among what was named");
+    }
+    let mut labelled = labels(args.labels.as_deref(), &takes)?;
+    let mut played = Vec::with_capacity(takes.len());
+    for take in &mut takes {
+        let said = match &index {
+            Some(index) => said(take, index, options.mapping.is_none())?,
+            None => Vec::new(),
+        };
+        let labels = labelled.remove(take.name()).unwrap_or_default();
+        played.push((labels, said));
+    }
+    match &args.output {
+        Some(path) => write_page(path, &takes, played)?,
+        None => in_terminal(&takes, &played, args.speed)?,
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The labels of each clip by its name.
+fn labels(path: Option<&Path>, takes: &[Take]) -> Result<BTreeMap<String, Vec<Truth>>> {
+    let Some(path) = path else {
+        return Ok(BTreeMap::new());
+    };
+    let shown = || path.display().to_string();
+    let labels = Labels::read(&files::read(path)?).with_context(shown)?;
+    let lengths: BTreeMap<String, ClipLength> = takes
+        .iter()
+        .map(|take| {
+            let length = ClipLength {
+                frames: take.clip.frames,
+                rate_hz: take.clip.rate_hz,
+            };
+            (take.name().to_owned(), length)
+        })
+        .collect();
+    let resolved = labels.resolve(&lengths);
+    for warning in &resolved.warnings {
+        eprintln!("morec: {}: {warning}", path.display());
+    }
+    let mut of_clip: BTreeMap<String, Vec<Truth>> = BTreeMap::new();
+    for sample in resolved.samples {
+        of_clip.entry(sample.clip).or_default().push(Truth {
+            class: sample.class,
+            start_secs: sample.start_secs,
+            stop_secs: sample.stop_secs,
+        });
+    }
+    if of_clip.is_empty() {
+        eprintln!("morec: {}: no label is of these clips", path.display());
+    }
+    Ok(of_clip)
+}
+
+/// What the index recognises, in the order in which it is said.
+fn said(take: &mut Take, index: &MotionIndex, complete: bool) -> Result<Vec<Said>> {
+    if complete {
+        index.complete_roles(&mut take.roles, &take.clip.skeleton);
+    }
+    let found = recognize_clip(&index.model, &take.clip, &take.roles, take.rest())
+        .with_context(|| take.name().to_owned())?;
+    let mut said: Vec<Said> = found
+        .into_iter()
+        .map(|found| Said {
+            class: index.model.class_name(found.class).to_owned(),
+            start_secs: found.start_secs,
+            stop_secs: found.stop_secs,
+            score: found.score,
+            reported_secs: found.reported_secs,
+        })
+        .collect();
+    said.sort_by(|a, b| a.reported_secs.total_cmp(&b.reported_secs));
+    Ok(said)
+}
+
+fn in_terminal(takes: &[Take], played: &[(Vec<Truth>, Vec<Said>)], speed: f64) -> Result<()> {
+    let watched = std::io::stdout().is_terminal();
+    for (take, (truth, said)) in takes.iter().zip(played) {
+        if !watched {
+            // Where nobody watches, what would be seen is said in lines.
+            println!("{}: {:.2} s", take.name(), take.clip.duration_secs());
+        }
+        let scene = Scene {
+            title: take.name(),
+            clip: &take.clip,
+            truth,
+            said,
+        };
+        show::play(&scene, speed)?;
+    }
+    Ok(())
+}
+
+fn write_page(path: &Path, takes: &[Take], played: Vec<(Vec<Truth>, Vec<Said>)>) -> Result<()> {
+    let mark = |name: String, start_secs, stop_secs| Mark {
+        name,
+        start_secs,
+        stop_secs,
+    };
+    let clips: Vec<Played> = takes
+        .iter()
+        .zip(played)
+        .map(|(take, (truth, said))| Played {
+            take,
+            labels: truth
+                .into_iter()
+                .map(|t| mark(t.class, t.start_secs, t.stop_secs))
+                .collect(),
+            detections: said
+                .into_iter()
+                .map(|s| mark(s.class, s.start_secs, s.stop_secs))
+                .collect(),
+        })
+        .collect();
+    let title = match takes {
+        [one] => one.name().to_owned(),
+        several => format!("{} clips", several.len()),
+    };
+    let html = page(&title, &clips);
+    output::write_whole(path, |out| out.write_all(html.as_bytes()))
+        .with_context(|| path.display().to_string())
+}

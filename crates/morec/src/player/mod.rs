@@ -1,0 +1,203 @@
+//! A page that plays clips: one HTML file that stands alone, with a skeleton to turn and zoom, a timeline to scrub, and the
+//! labels and detections of each clip below it.
+//!
+//! Positions are stored in millimetres as 16-bit differences from the clip's middle, at most 30 frames a second, and drawn
+//! on a canvas by a script in the page; nothing is fetched from anywhere.
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use serde_json::json;
+
+use crate::import::Take;
+use crate::kinematics::WorldPose;
+use crate::math::Vec3;
+
+/// A stretch of a clip with a name.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mark {
+    /// What happens there.
+    pub name: String,
+    /// Where it starts, seconds from the clip's beginning.
+    pub start_secs: f64,
+    /// Where it stops.
+    pub stop_secs: f64,
+}
+
+/// A clip with what is known of it.
+#[derive(Debug, Clone)]
+pub struct Played<'a> {
+    /// The motion.
+    pub take: &'a Take,
+    /// What somebody labelled.
+    pub labels: Vec<Mark>,
+    /// What was recognised.
+    pub detections: Vec<Mark>,
+}
+
+/// Frames a second of the page at most.
+const RATE_HZ: f64 = 30.0;
+/// Frames of a clip at most: an hour. What is longer is shown up to there.
+const FRAMES: usize = 108_000;
+
+const SCRIPT: &str = include_str!("player.js");
+const STYLE: &str = include_str!("player.css");
+
+/// The page. O(frames × joints) memory.
+pub fn page(title: &str, clips: &[Played]) -> String {
+    let clips: Vec<serde_json::Value> = clips.iter().map(clip).collect();
+    // A closing tag within text would end the script.
+    let data = json!(clips).to_string().replace("</", "<\\/");
+    let title = escaped(title);
+    format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width\">\n<title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n\
+         <body>\n<h1>{title}</h1>\n<noscript>This page plays clips with a script, which is switched off.</noscript>\n\
+         <nav id=\"clips\" aria-label=\"Clips\"></nav>\n<canvas id=\"stage\" tabindex=\"0\" \
+         aria-label=\"The body; drag to turn, wheel to zoom\"></canvas>\n<p id=\"bar\"><button id=\"play\">Pause</button> \
+         <input id=\"time\" type=\"range\" min=\"0\" step=\"any\" aria-label=\"Time\"> <output id=\"now\"></output> \
+         <label>speed <select id=\"speed\"><option>0.25</option><option>0.5</option><option selected>1</option>\
+         <option>2</option></select></label></p>\n<canvas id=\"lanes\" aria-label=\"Labels above, detections \
+         below\"></canvas>\n<ul id=\"marks\"></ul>\n<script>\nconst clips = {data};\n{SCRIPT}</script>\n</body>\n</html>\n"
+    )
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+}
+
+fn clip(played: &Played) -> serde_json::Value {
+    let clip = &played.take.clip;
+    let step = (clip.rate_hz / RATE_HZ).max(1.0);
+    let frames =
+        ((clip.frames as f64 / step).floor() as usize).clamp(usize::from(clip.frames > 0), FRAMES);
+    let mut pose = WorldPose::default();
+    let mut poses: Vec<Vec<Vec3>> = Vec::with_capacity(frames);
+    for frame in 0..frames {
+        let at = (frame as f64 * step) as usize;
+        pose.set(clip, at.min(clip.frames - 1));
+        let mut places = pose.positions.clone();
+        let joints = clip.skeleton.joints().iter().enumerate();
+        places.extend(
+            joints
+                .filter(|(_, j)| j.tip.is_some())
+                .map(|(j, _)| pose.tip(clip, j)),
+        );
+        poses.push(places);
+    }
+    let middle = middle(&poses);
+    let mut bytes: Vec<u8> = Vec::new();
+    for place in poses.iter().flatten() {
+        for axis in 0..3 {
+            // Millimetres; a body within 32 m of the middle.
+            let off = ((place[axis] - middle[axis]) * 1000.0).round();
+            bytes.extend((off.clamp(-32768.0, 32767.0) as i16).to_le_bytes());
+        }
+    }
+    let joints = clip.skeleton.joints();
+    let own = joints.iter().map(|joint| joint.parent);
+    let tips = (0..joints.len())
+        .filter(|&j| joints[j].tip.is_some())
+        .map(Some);
+    let parents: Vec<Option<usize>> = own.chain(tips).collect();
+    let marks = |marks: &[Mark]| -> Vec<serde_json::Value> {
+        let mark = |m: &Mark| json!([m.name, m.start_secs, m.stop_secs]);
+        marks.iter().map(mark).collect()
+    };
+    let sides: Vec<i8> = (0..joints.len()).map(|j| side(played.take, j)).collect();
+    json!({
+        "name": clip.name,
+        "rate": clip.rate_hz / step,
+        "frames": frames,
+        "parents": parents,
+        "sides": sides,
+        "middle": [middle.x, middle.y, middle.z],
+        "points": !clip.has_rotations(),
+        "places": STANDARD.encode(bytes),
+        "labels": marks(&played.labels),
+        "detections": marks(&played.detections),
+    })
+}
+
+/// −1 for a joint of the right limbs, 1 for one of the left, 0 else.
+fn side(take: &Take, joint: usize) -> i8 {
+    let joints = take.clip.skeleton.joints();
+    let mut above = std::iter::successors(Some(joint), |&j| joints[j].parent);
+    above
+        .find_map(|j| {
+            let role = crate::roles::Role::ALL
+                .into_iter()
+                .find(|&role| take.roles.joint(role) == Some(j))?;
+            Some(match role.name() {
+                name if name.starts_with("left") => 1,
+                name if name.starts_with("right") => -1,
+                _ => 0,
+            })
+        })
+        .unwrap_or(0)
+}
+
+/// The middle of the floor that the clip is on.
+fn middle(poses: &[Vec<Vec3>]) -> Vec3 {
+    let (mut low, mut high) = (Vec3::repeat(f64::MAX), Vec3::repeat(f64::MIN));
+    for place in poses
+        .iter()
+        .flatten()
+        .filter(|p| p.iter().all(|v| v.is_finite()))
+    {
+        low = low.inf(place);
+        high = high.sup(place);
+    }
+    if low.x > high.x {
+        return Vec3::zeros();
+    }
+    Vec3::new((low.x + high.x) / 2.0, low.y, (low.z + high.z) / 2.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::synth::{Person, Script};
+
+    #[test]
+    fn a_page_stands_alone_and_holds_every_clip() {
+        let script = Script::new(3, Person::draw(31, 2)).rest(0.3).play("wave");
+        let take = Take::new(script.film("wa</script>ve", 120.0).unwrap().clip).unwrap();
+        let mark = |name: &str| Mark {
+            name: name.to_owned(),
+            start_secs: 0.3,
+            stop_secs: 1.0,
+        };
+        let played = Played {
+            take: &take,
+            labels: vec![mark("wave")],
+            detections: vec![mark("wave"), mark("<b>")],
+        };
+        let page = page("A & B", &[played.clone(), played]);
+        assert_eq!(
+            page.matches("</script>").count(),
+            1,
+            "names cannot end the script"
+        );
+        for outside in ["http://", "https://", "src=", "@import", "url("] {
+            assert!(!page.contains(outside), "{outside}");
+        }
+        let from = page.find("const clips = ").unwrap() + "const clips = ".len();
+        let to = from + page[from..].find(";\n").unwrap();
+        let data: serde_json::Value =
+            serde_json::from_str(&page[from..to].replace("<\\/", "</")).unwrap();
+        let clip = &data[1];
+        assert_eq!(clip["name"], "wa</script>ve");
+        assert!((clip["rate"].as_f64().unwrap() - 30.0).abs() < 0.1);
+        // The positions are those of the clip, to the millimetre.
+        let bytes = STANDARD.decode(clip["places"].as_str().unwrap()).unwrap();
+        let joints = clip["parents"].as_array().unwrap().len();
+        let frames = usize::try_from(clip["frames"].as_u64().unwrap()).unwrap();
+        assert_eq!(bytes.len(), frames * joints * 6);
+        let at = 5 * joints * 6;
+        let x = f64::from(i16::from_le_bytes([bytes[at], bytes[at + 1]])) / 1000.0;
+        let place = WorldPose::of(&take.clip, 20).positions[0];
+        assert!((x + clip["middle"][0].as_f64().unwrap() - place.x).abs() < 1e-3);
+    }
+}

@@ -1,0 +1,178 @@
+"use strict";
+const at = (id) => document.getElementById(id);
+const stage = at("stage"), lanes = at("lanes");
+const view = { yaw: 0.6, tilt: 0.25, zoom: 1 };
+let clip = null, secs = 0, playing = true, last = 0;
+
+function open(number) {
+  clip = clips[number];
+  if (!clip.xyz) {
+    const text = atob(clip.places), bytes = new Uint8Array(text.length);
+    for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);
+    const view16 = new DataView(bytes.buffer);
+    clip.xyz = new Float32Array(bytes.length / 2);
+    for (let i = 0; i < clip.xyz.length; i++) clip.xyz[i] = view16.getInt16(2 * i, true) / 1000;
+    clip.height = 0.5;
+    for (let i = 1; i < clip.xyz.length; i += 3) clip.height = Math.max(clip.height, clip.xyz[i]);
+  }
+  secs = 0;
+  at("time").max = Math.max(0.01, (clip.frames - 1) / clip.rate);
+  for (const [i, button] of [...at("clips").children].entries()) {
+    if (i === number) button.setAttribute("aria-current", "true"); else button.removeAttribute("aria-current");
+  }
+  const marks = at("marks");
+  marks.replaceChildren();
+  for (const [kind, list] of [["label", clip.labels], ["detection", clip.detections]]) {
+    for (const [name, start, stop] of list) {
+      const item = document.createElement("li"), button = document.createElement("button");
+      button.textContent = `${start.toFixed(2)}–${stop.toFixed(2)} s  ${name} (${kind})`;
+      button.onclick = () => { secs = start; draw(); };
+      item.append(button);
+      marks.append(item);
+    }
+  }
+  draw();
+}
+
+function sized(canvas) {
+  const scale = window.devicePixelRatio || 1, box = canvas.getBoundingClientRect();
+  canvas.width = Math.max(1, Math.round(box.width * scale));
+  canvas.height = Math.max(1, Math.round(box.height * scale));
+  const pen = canvas.getContext("2d");
+  pen.setTransform(scale, 0, 0, scale, 0, 0);
+  return [pen, box.width, box.height];
+}
+
+const ink = () => getComputedStyle(document.body).color;
+
+function draw() {
+  if (!clip || !clip.frames) return;
+  const [pen, width, height] = sized(stage);
+  const frame = Math.min(clip.frames - 1, Math.max(0, Math.floor(secs * clip.rate + 1e-6)));
+  const joints = clip.parents.length, from = 3 * joints * frame;
+  const scale = view.zoom * 0.8 * height / Math.max(1, clip.height);
+  const [sy, cy, st, ct] = [Math.sin(view.yaw), Math.cos(view.yaw), Math.sin(view.tilt), Math.cos(view.tilt)];
+  // The camera follows the first joint over the floor.
+  const [ox, oz] = [clip.xyz[from], clip.xyz[from + 2]];
+  const seen = (x, y, z) => {
+    const right = cy * (x - ox) - sy * (z - oz), away = sy * (x - ox) + cy * (z - oz);
+    return [width / 2 + scale * right, 0.9 * height - scale * (ct * y + st * -away)];
+  };
+  pen.strokeStyle = "#8886";
+  pen.lineWidth = 1;
+  const fx = Math.round(ox), fz = Math.round(oz);
+  for (let k = -3; k <= 3; k++) {
+    for (const [a, b] of [[[fx + k, fz - 3], [fx + k, fz + 3]], [[fx - 3, fz + k], [fx + 3, fz + k]]]) {
+      pen.beginPath();
+      pen.moveTo(...seen(a[0], 0, a[1]));
+      pen.lineTo(...seen(b[0], 0, b[1]));
+      pen.stroke();
+    }
+  }
+  const colour = ink();
+  for (let j = 0; j < joints; j++) {
+    const place = (k) => seen(clip.xyz[from + 3 * k], clip.xyz[from + 3 * k + 1], clip.xyz[from + 3 * k + 2]);
+    const side = clip.sides[j] ?? clip.sides[clip.parents[j]] ?? 0;
+    pen.strokeStyle = pen.fillStyle = side > 0 ? "#2b7bd0" : side < 0 ? "#2f9e5a" : colour;
+    pen.lineWidth = 3;
+    const [x, y] = place(j);
+    if (clip.parents[j] !== null) {
+      pen.beginPath();
+      pen.moveTo(...place(clip.parents[j]));
+      pen.lineTo(x, y);
+      pen.stroke();
+    } else {
+      pen.fillRect(x - 2, y - 2, 4, 4);
+    }
+  }
+  at("time").value = secs;
+  at("now").textContent = `${secs.toFixed(2)} of ${(clip.frames / clip.rate).toFixed(2)} s`;
+  drawLanes();
+}
+
+function hue(name) {
+  let sum = 0;
+  for (const letter of name) sum = (sum * 31 + letter.codePointAt(0)) % 360;
+  return `hsl(${sum} 55% 50%)`;
+}
+
+function drawLanes() {
+  const [pen, width, height] = sized(lanes), whole = clip.frames / clip.rate;
+  pen.font = "12px sans-serif";
+  for (const [row, list] of [[0, clip.labels], [1, clip.detections]]) {
+    const top = 2 + row * height / 2, tall = height / 2 - 4;
+    pen.fillStyle = "#8882";
+    pen.fillRect(0, top, width, tall);
+    for (const [name, start, stop] of list) {
+      const x = width * start / whole, w = Math.max(2, width * (stop - start) / whole);
+      pen.fillStyle = hue(name);
+      pen.fillRect(x, top, w, tall);
+      pen.save();
+      pen.beginPath();
+      pen.rect(x, top, w, tall);
+      pen.clip();
+      pen.fillStyle = "#fff";
+      pen.fillText(name, x + 3, top + tall / 2 + 4);
+      pen.restore();
+    }
+  }
+  pen.fillStyle = ink();
+  pen.fillRect(width * secs / whole - 1, 0, 2, height);
+}
+
+function tick(now) {
+  const step = Math.min(0.1, (now - last) / 1000);
+  last = now;
+  if (playing && clip && clip.frames) {
+    secs += step * Number(at("speed").value);
+    if (secs >= clip.frames / clip.rate) secs = 0;
+    draw();
+  }
+  requestAnimationFrame(tick);
+}
+
+function toggle() {
+  playing = !playing;
+  at("play").textContent = playing ? "Pause" : "Play";
+}
+
+clips.forEach((other, number) => {
+  const button = document.createElement("button");
+  button.textContent = other.name;
+  button.onclick = () => open(number);
+  at("clips").append(button);
+});
+at("play").onclick = toggle;
+at("time").oninput = () => { secs = Number(at("time").value); draw(); };
+let drag = null;
+stage.onpointerdown = (event) => { drag = [event.clientX, event.clientY]; stage.setPointerCapture(event.pointerId); };
+stage.onpointerup = () => { drag = null; };
+stage.onpointermove = (event) => {
+  if (!drag) return;
+  view.yaw += (event.clientX - drag[0]) / 150;
+  view.tilt = Math.min(1.5, Math.max(-0.2, view.tilt + (event.clientY - drag[1]) / 150));
+  drag = [event.clientX, event.clientY];
+  draw();
+};
+stage.onwheel = (event) => {
+  event.preventDefault();
+  view.zoom = Math.min(8, Math.max(0.2, view.zoom * Math.exp(-event.deltaY / 500)));
+  draw();
+};
+lanes.onpointerdown = (event) => {
+  const box = lanes.getBoundingClientRect();
+  secs = (event.clientX - box.left) / box.width * clip.frames / clip.rate;
+  draw();
+};
+document.onkeydown = (event) => {
+  if (event.target.tagName === "BUTTON" || event.target.tagName === "SELECT") return;
+  const steps = { ArrowLeft: -1, ArrowRight: 1 };
+  if (event.key === " ") toggle();
+  else if (event.key in steps) secs = Math.min((clip.frames - 1) / clip.rate, Math.max(0, secs + steps[event.key] / clip.rate));
+  else return;
+  event.preventDefault();
+  draw();
+};
+window.onresize = draw;
+if (clips.length) open(0);
+requestAnimationFrame(tick);
