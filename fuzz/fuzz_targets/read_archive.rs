@@ -4,8 +4,8 @@
 use std::path::Path;
 
 use libfuzzer_sys::fuzz_target;
-use morec_db::FileReader;
+use morec::files::FileReader;
 
 fuzz_target!(|bytes: &[u8]| {
-    let _ = FileReader::default().open(Path::new("-"), bytes);
+    let _ = FileReader::default().parse(Path::new("clip"), bytes);
 });

@@ -3,7 +3,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use morec::formats::{Limits, table};
-use morec::import::{ImportOptions, prepare};
+use morec::import::{ImportOptions, normalize};
 
 fuzz_target!(|bytes: &[u8]| {
     let limits = Limits {
@@ -21,6 +21,6 @@ fuzz_target!(|bytes: &[u8]| {
         let mut values = clip.tracks.iter().flat_map(|t| t.positions.iter().flatten());
         assert!(values.all(|v| v.is_finite()));
         assert!(clip.rate_hz.is_finite() && clip.rate_hz > 0.0);
-        prepare(clip, &ImportOptions::default()).expect("no mapping that could be wrong");
+        normalize(clip, &ImportOptions::default()).expect("no mapping that could be wrong");
     }
 });
