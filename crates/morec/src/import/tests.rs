@@ -371,8 +371,10 @@ fn what_a_format_states_counts_where_the_body_does_not_say_otherwise() {
         }),
         ..ImportOptions::default()
     };
-    // Somebody who lies on the back throughout: only the format knows.
-    let lying = turned(person(40, 0.0), |_| Axis::X.rotation(-1.57));
+    // Somebody who lies on the back for half of the clip: the format knows.
+    let lying = turned(person(40, 0.0), |frame| {
+        Axis::X.rotation(if frame % 2 == 0 { -1.57 } else { 0.0 })
+    });
     let report = normalize(lying, &stated("y", 1.0)).unwrap().report;
     assert_eq!((report.up, report.unit), (SignedAxis::Y, Some("m")));
     // Somebody who stands along Y in a file that says Z and millimetres.

@@ -170,7 +170,7 @@ impl Tables {
         lengths: &[u32],
         step: Option<&[f32]>,
     ) -> Result<Vec<Rows>, IndexError> {
-        let values = match step {
+        let values: Vec<f32> = match step {
             Some(step) => {
                 let bytes = &self.get(name, Dtype::I8)?.bytes;
                 bytes
@@ -180,6 +180,11 @@ impl Tables {
             }
             None => self.f32s(name)?,
         };
+        // A finite step times a whole number need not be finite.
+        if !values.iter().all(|v| v.is_finite()) {
+            let message = format!("tensor {name:?} holds a value that is not finite");
+            return Err(IndexError::Content(message));
+        }
         let rows: u64 = lengths.iter().map(|l| u64::from(*l)).sum();
         if rows * dim as u64 != values.len() as u64 {
             let message = format!(
@@ -203,4 +208,20 @@ pub(super) fn class_id(number: u32) -> Result<ClassId, IndexError> {
     u16::try_from(number)
         .map(ClassId)
         .map_err(|_| IndexError::Content(format!("class number {number}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_that_steps_make_infinite_are_refused() {
+        let rows = [[1.0f32, -2.0], [3.0, 4.0]];
+        let tensor = Tensor::of_rows(rows.iter().map(|r| r.as_slice()), 2, Some(&[1.0, 1.0]));
+        let tables = Tables(BTreeMap::from([("rows".to_owned(), tensor)]));
+        let pieces = |step: &[f32]| tables.pieces("rows", 2, &[1, 1], Some(step));
+        assert_eq!(pieces(&[1.0, 1.0]).unwrap()[1].row(0), [3.0, 4.0]);
+        let error = pieces(&[1.0, f32::MAX]).err().unwrap().to_string();
+        assert!(error.contains("not finite"), "{error}");
+    }
 }

@@ -317,10 +317,10 @@ fn moving_bodies_are_understood_without_any_name() {
         let mut found = find_moving(&renamed(case, 5), &poses).map;
         // Of joints that are always in one point, either will do.
         for role in Role::ALL {
-            if let (Some(a), Some(b)) = (found.joint(role), case.expected.joint(role)) {
-                if poses.iter().all(|pose| (pose[a] - pose[b]).norm() < 1e-9) {
-                    found.set(role, Some(b));
-                }
+            if let (Some(a), Some(b)) = (found.joint(role), case.expected.joint(role))
+                && poses.iter().all(|pose| (pose[a] - pose[b]).norm() < 1e-9)
+            {
+                found.set(role, Some(b));
             }
         }
         let differ: Vec<String> = differences(case, &found)

@@ -97,69 +97,112 @@ const BONES: [Bone; Role::COUNT] = [
     bone(Role::RightHand, "rightHand", true),
 ];
 
-/// The joints that play roles, each under the nearest of them above it, the hips first; and how each is turned in its
-/// parent's frame in a T-pose that faces +Z.
+/// A joint that becomes a humanoid bone.
+struct Chosen {
+    /// Its role; the chest has none.
+    role: Option<Role>,
+    name: &'static str,
+    joint: usize,
+}
+
+/// The joints that become bones, parents first and the hips before all others: those that play roles, and of the spine
+/// between the first of these and the arms one or two more, as `chest` and `upperChest`.
+fn choose(clip: &Clip, roles: &RoleMap) -> Vec<Chosen> {
+    let joints = clip.skeleton.joints();
+    let above = |joint: usize| std::iter::successors(joints[joint].parent, |&j| joints[j].parent);
+    let mut chosen: Vec<Chosen> = Vec::new();
+    for bone in &BONES {
+        let Some(joint) = roles.joint(bone.role) else {
+            continue;
+        };
+        // What the arms hang on is no neck, even where it stands for one.
+        let carries_arm = || {
+            let arm = roles.joint(Role::LeftArm);
+            arm.is_some_and(|arm| above(arm).any(|j| j == joint))
+        };
+        let is_chest = bone.role == Role::Neck && carries_arm();
+        if !is_chest && chosen.iter().all(|other| other.joint != joint) {
+            chosen.push(Chosen {
+                role: Some(bone.role),
+                name: bone.name,
+                joint,
+            });
+        }
+    }
+    let arms = (roles.joint(Role::LeftArm), roles.joint(Role::RightArm));
+    if let (Some(torso), (Some(left), Some(right))) = (roles.joint(Role::Torso), arms) {
+        let top = above(left).find(|&joint| above(right).any(|other| other == joint));
+        let up = |joint: &usize| *joint != torso;
+        let mut spine: Vec<usize> = top
+            .into_iter()
+            .flat_map(|top| std::iter::once(top).chain(above(top)))
+            .take_while(up)
+            .collect();
+        spine.reverse();
+        // A spine that does not lead to the torso is another.
+        let hangs = spine
+            .first()
+            .is_some_and(|&first| above(first).any(|j| j == torso));
+        let free = |joint: usize| chosen.iter().all(|other| other.joint != joint);
+        let named: Vec<(&'static str, usize)> = match spine.as_slice() {
+            [] => Vec::new(),
+            [one] => vec![("chest", *one)],
+            [first, .., last] => vec![("chest", *first), ("upperChest", *last)],
+        };
+        let named = named.into_iter().filter(|&(_, joint)| hangs && free(joint));
+        let added: Vec<Chosen> = named
+            .map(|(name, joint)| Chosen {
+                role: None,
+                name,
+                joint,
+            })
+            .collect();
+        chosen.extend(added);
+    }
+    let hips = roles.joint(Role::Hips);
+    // Parents come first in a skeleton, and the hips before all that hangs on them here.
+    chosen.sort_by_key(|bone| (Some(bone.joint) != hips, bone.joint));
+    chosen
+}
+
+/// The bones of the humanoid, each under the nearest of them above it; and how each is turned in its parent's frame in a
+/// T-pose that faces +Z.
 fn humanoid(clip: &Clip, roles: &RoleMap) -> (Clip, Vec<Quat>) {
     let hips = roles.joint(Role::Hips);
-    let mut taken: Vec<usize> = Vec::new();
-    let mut chosen: Vec<(&Bone, usize)> = BONES
-        .iter()
-        .filter_map(|bone| Some((bone, roles.joint(bone.role)?)))
-        .filter(|&(_, joint)| {
-            let free = !taken.contains(&joint);
-            taken.push(joint);
-            free
-        })
-        .collect();
-    // Parents come first in a skeleton, and the hips before all that hangs on them here.
-    chosen.sort_by_key(|&(_, joint)| (Some(joint) != hips, joint));
-    let place = |joint: usize| chosen.iter().position(|&(_, other)| other == joint);
+    let chosen = choose(clip, roles);
+    let place = |joint: usize| chosen.iter().position(|other| other.joint == joint);
     let joints = clip.skeleton.joints();
     let parents: Vec<Option<usize>> = chosen
         .iter()
-        .map(|&(_, joint)| {
-            let mut above = std::iter::successors(joints[joint].parent, |&j| joints[j].parent);
-            above.find_map(place).or((Some(joint) != hips).then_some(0))
+        .map(|bone| {
+            let above = joints[bone.joint].parent;
+            let mut above = std::iter::successors(above, |&j| joints[j].parent);
+            let rooted = (Some(bone.joint) != hips).then_some(0);
+            above.find_map(place).or(rooted)
         })
         .collect();
     let zero = zero_pose(clip);
     let rest = t_pose(&chosen, &parents, &zero, roles);
-    // What the arms hang on is no neck, even where it stands for one.
-    let is_chest = |bone: &Bone, joint: usize| {
-        let above = |arm: usize| std::iter::successors(joints[arm].parent, |&j| joints[j].parent);
-        bone.role == Role::Neck
-            && roles
-                .joint(Role::LeftArm)
-                .is_some_and(|arm| above(arm).any(|j| j == joint))
-    };
-    let skeleton = chosen
-        .iter()
-        .zip(&parents)
-        .map(|(&(bone, joint), &parent)| Joint {
-            name: if is_chest(bone, joint) {
-                "chest"
-            } else {
-                bone.name
-            }
-            .to_owned(),
-            parent,
-            offset: match parent {
-                Some(parent) => zero[joint] - zero[chosen[parent].1],
-                None => zero[joint],
-            },
-            tip: None,
-        });
+    let skeleton = chosen.iter().zip(&parents).map(|(bone, &parent)| Joint {
+        name: bone.name.to_owned(),
+        parent,
+        offset: match parent {
+            Some(parent) => zero[bone.joint] - zero[chosen[parent].joint],
+            None => zero[bone.joint],
+        },
+        tip: None,
+    });
     let skeleton = skeleton.collect();
     let mut rotations = Vec::with_capacity(clip.frames * chosen.len());
     let mut places = Vec::with_capacity(clip.frames);
     let mut world = WorldPose::default();
     for frame in 0..clip.frames {
         world.set(clip, frame);
-        places.push(world.positions[chosen[0].1]);
-        for (&(_, joint), &parent) in chosen.iter().zip(&parents) {
-            let own = world.rotations[joint];
+        places.push(world.positions[chosen[0].joint]);
+        for (bone, &parent) in chosen.iter().zip(&parents) {
+            let own = world.rotations[bone.joint];
             rotations.push(match parent {
-                Some(parent) => world.rotations[chosen[parent].1].inverse() * own,
+                Some(parent) => world.rotations[chosen[parent].joint].inverse() * own,
                 None => own,
             });
         }
@@ -180,7 +223,7 @@ fn zero_pose(clip: &Clip) -> Vec<Vec3> {
 /// How each bone is turned in its parent's frame when arms are out to the sides, legs are straight and the body faces +Z:
 /// the whole body by its trunk and hip joints, then each limb by the least rotation.
 fn t_pose(
-    chosen: &[(&Bone, usize)],
+    chosen: &[Chosen],
     parents: &[Option<usize>],
     zero: &[Vec3],
     roles: &RoleMap,
@@ -196,10 +239,10 @@ fn t_pose(
     };
     let body = body().unwrap_or_else(Quat::identity);
     let mut world: Vec<Quat> = Vec::with_capacity(chosen.len());
-    for (&(bone, joint), &parent) in chosen.iter().zip(parents) {
+    for (bone, &parent) in chosen.iter().zip(parents) {
         let above = parent.map_or(body, |parent| world[parent]);
-        let next = next_in_limb(bone.role).and_then(|(next, wanted)| {
-            let direction = above * (at(next)? - zero[joint]);
+        let next = bone.role.and_then(next_in_limb).and_then(|(next, wanted)| {
+            let direction = above * (at(next)? - zero[bone.joint]);
             Quat::rotation_between(&direction, &wanted)
         });
         world.push(next.map_or(above, |turn| turn * above));
