@@ -1,7 +1,7 @@
 """Positions as morec reads them beside those of other readers, on files of your own.
 
     python3 -m venv v && v/bin/pip install numpy ezc3d c3d bvh
-    v/bin/python docs/peers/readers.py target/release/morec FILE...
+    v/bin/python docs/scripts/readers.py target/release/morec FILE...
 
 Each file is converted to TRC by morec (positions, in the file's own axes and a named unit) and compared with what ezc3d
 and c3d (C3D) or bvh with forward kinematics in NumPy (BVH) make of it. The figure is the largest distance of any point
