@@ -134,14 +134,14 @@ pub mod features;
 
 #[cfg(feature = "files")]
 pub mod files;
-#[cfg(feature = "files")]
-pub mod tables;
 #[cfg(feature = "formats")]
 pub mod formats;
 #[cfg(feature = "formats")]
 pub mod import;
 #[cfg(feature = "formats")]
 pub mod smooth;
+#[cfg(feature = "files")]
+pub mod tables;
 
 #[cfg(feature = "live")]
 pub mod decode;

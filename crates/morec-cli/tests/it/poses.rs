@@ -239,10 +239,17 @@ fn a_database_is_grouped_as_its_clips_are() {
     folder.morec(&["db", "label", "m.mdb", "labels.tsv"]).ok();
     let files = ["group", "clips", "--labels", "labels.tsv", "--json"];
     let of_files = json(&folder.morec(&files).ok());
-    let of_db = json(&folder.morec(&["group", "m.mdb", "--of", "labels", "--json"]).ok());
+    let of_db = json(
+        &folder
+            .morec(&["group", "m.mdb", "--of", "labels", "--json"])
+            .ok(),
+    );
     let sizes = |found: &Value| -> Vec<usize> {
         let groups = found["groups"].as_array().unwrap();
-        groups.iter().map(|group| group.as_array().unwrap().len()).collect()
+        groups
+            .iter()
+            .map(|group| group.as_array().unwrap().len())
+            .collect()
     };
     assert_eq!(sizes(&of_files), sizes(&of_db));
     assert_eq!(sizes(&of_files).iter().sum::<usize>(), 6);
@@ -251,7 +258,10 @@ fn a_database_is_grouped_as_its_clips_are() {
     assert!(old.err.contains("is `morec group` now"), "{old:?}");
     assert_eq!(json(&old.ok()), of_db);
     let segments = folder.morec(&["group", "clips"]).ok();
-    assert!(segments.contains("ann 0.0") && !segments.contains("Rand"), "{segments}");
+    assert!(
+        segments.contains("ann 0.0") && !segments.contains("Rand"),
+        "{segments}"
+    );
 }
 
 #[test]

@@ -204,11 +204,10 @@ fn trained(ui: &mut Ui, state: &State, out: Out) {
         }
         if let Some(report) = &state.train.report {
             ui.add_space(4.0);
-            let text = format!(
-                "Threshold {:.2}, set by {}",
-                report.threshold, report.threshold_from
-            );
-            ui.label(RichText::new(text).size(12.0).color(c.muted));
+            if let Some(threshold) = report.threshold {
+                let text = format!("Threshold {threshold:.2}, set by {}", report.threshold_from);
+                ui.label(RichText::new(text).size(12.0).color(c.muted));
+            }
             for note in &report.notes {
                 ui.label(RichText::new(format!("• {note}")).size(12.0));
             }

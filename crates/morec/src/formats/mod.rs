@@ -118,7 +118,9 @@ pub fn from_positions(
     limits: &Limits,
 ) -> Result<Loaded, ParseError> {
     let frames = points.first().map_or(0, |(_, positions)| positions.len());
-    let other = points.iter().find(|(_, positions)| positions.len() != frames);
+    let other = points
+        .iter()
+        .find(|(_, positions)| positions.len() != frames);
     if let Some((point, positions)) = other {
         let expected = format!("{frames} positions of each point");
         let found = format!("{} of {point}", positions.len());
