@@ -21,7 +21,8 @@ use crate::tables::{DETECTION, plain, table};
 pub struct PyCrossval {
     tested: Tested,
     evaluation: Evaluation,
-    perturbed: Vec<(String, Evaluation)>,
+    perturbed: Vec<(Perturbation, Evaluation)>,
+    sensitivities: Vec<(f64, Evaluation)>,
     folds: serde_json::Value,
     training: Vec<TrainedClass>,
     by: String,
@@ -53,10 +54,13 @@ pub fn crossval(
     let outcome = outcome.map_err(morec_error)?;
     let measure = |t: &Tested| Evaluation::of(&t.streams, &t.truths, &t.founds);
     let perturbed = outcome.perturbed.iter();
-    let perturbed = perturbed.map(|(p, t)| Ok((p.to_string(), measure(t).map_err(morec_error)?)));
+    let perturbed = perturbed.map(|(p, t)| Ok((*p, measure(t).map_err(morec_error)?)));
+    let rates = outcome.sensitivities.iter();
+    let rates = rates.map(|(rate, t)| Ok((*rate, measure(t).map_err(morec_error)?)));
     Ok(PyCrossval {
         evaluation: measure(&outcome.tested).map_err(morec_error)?,
         perturbed: perturbed.collect::<PyResult<_>>()?,
+        sensitivities: rates.collect::<PyResult<_>>()?,
         folds: serde_json::to_value(&outcome.folds).map_err(morec_error)?,
         training: trained_classes(&given.data.samples, &given.data.classes),
         tested: outcome.tested,
@@ -83,6 +87,7 @@ fn options(how: &Bound<'_, PyDict>) -> PyResult<(CrossvalOptions, String)> {
             }
         },
         samples_per_class: get("samples")?.extract()?,
+        sensitivities: get("sensitivities")?.extract()?,
         perturbations: get("perturb")?
             .extract::<Vec<String>>()?
             .iter()
@@ -133,9 +138,25 @@ impl PyCrossval {
     fn perturbed<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
         for (name, evaluation) in &self.perturbed {
-            dict.set_item(name, plain(py, evaluation)?)?;
+            dict.set_item(name.to_string(), plain(py, evaluation)?)?;
         }
         Ok(dict)
+    }
+
+    /// For each rate of false alarms a minute its measures.
+    #[getter]
+    fn sensitivities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        for (rate, evaluation) in &self.sensitivities {
+            dict.set_item(rate, plain(py, evaluation)?)?;
+        }
+        Ok(dict)
+    }
+
+    /// Samples that were missed, and why.
+    #[getter]
+    fn missed<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        plain(py, &self.tested.misses)
     }
 
     /// What was left out in each fold, and how its training went.
@@ -194,6 +215,9 @@ impl PyCrossval {
             evaluation: &self.evaluation,
             timelines: &timelines,
             training: &self.training,
+            misses: &self.tested.misses,
+            sensitivities: &self.sensitivities,
+            perturbed: &self.perturbed,
         };
         Ok(report.html())
     }

@@ -9,7 +9,7 @@ use morec::import::SignedAxis;
 use morec::index::MotionIndex;
 use morec::live::{Detection, Model, StartError, recognize_clip};
 use morec::roles::Role;
-use morec::templates::{Matcher, Metric};
+use morec::templates::{Matcher, Metric, Stretches};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use rayon::prelude::*;
@@ -299,14 +299,15 @@ fn class_distances(index: &MotionIndex, data: &Arc<ClipData>) -> Result<Vec<f32>
         .map(|s| metric.apply_all(&s.rows))
         .collect();
     let mut matcher = Matcher::new(&templates, metric.dim(), model.decode.spread_exponent);
+    let mut stretches = Stretches::new(metric.dim(), matcher.longest_match());
     let rest_share = model.decode.rest_share(model.rule());
     let mut least = vec![f32::INFINITY; model.classes.len()];
     for row in metric.apply_all(&rows).iter() {
         matcher.step(row);
+        stretches.push(row);
         for (number, sample) in model.samples.iter().enumerate() {
-            let found = matcher.compare(number);
             let best = &mut least[sample.class.index()];
-            if found.distance < *best && found.moves(rest_share) {
+            if let Some(found) = matcher.nearer(number, *best, rest_share, &mut stretches) {
                 *best = found.distance;
             }
         }

@@ -219,6 +219,22 @@ def test_a_driver_that_is_killed_leaves_whole_parts(raw: Path, archive: ma.Archi
     assert ours == whole and made.info()["errors"] == 3
 
 
+def test_the_guide_runs(
+    index: morec.Index, clips: list[morec.Clip], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "clips").mkdir()
+    for number, clip in enumerate(clips[:2], 1):
+        clip[:10.0].save(tmp_path / "clips" / f"signals_{number}.bvh")
+    index.save(tmp_path / "mine.index")
+    text = (Path(__file__).parents[3] / "docs/guide/archive.md").read_text(encoding="utf-8")
+    blocks = text.split("```python\n")[1:]
+    names: dict[str, Any] = {}
+    for block in blocks:
+        exec(block.split("```")[0], names)
+    assert len(blocks) == 2 and len(names["hits"]) > 0
+
+
 @pytest.fixture()
 def bucket() -> Iterator[dict[str, str]]:
     """A store that answers every fifth request late and every seventh with an error."""
@@ -254,7 +270,7 @@ def bucket() -> Iterator[dict[str, str]]:
         region_name="us-east-1",
     )  # fmt: skip
     client.create_bucket(Bucket="bucket")
-    yield {**s3, "_": ""} and s3
+    yield s3
     served.shutdown()
 
 

@@ -157,6 +157,7 @@ def crossval(
     exclude: Sequence[str] = (),
     samples: int | None = None,
     perturb: Sequence[str] = (),
+    sensitivities: Sequence[float] = (),
     seed: int = 1,
     method: str = "templates",
     svrdm: str = "tuned",
@@ -180,6 +181,8 @@ def crossval(
         Let at most so many samples of each class teach, from its people in turn.
     perturb : sequence of str
         Also test copies that are worse in one way each, as ``"cam:1"``, ``"rate:30"``.
+    sensitivities : sequence of float
+        Also test at these rates of false alarms a minute.
     seed : int
         Of the shuffle that halves the samples.
 
@@ -193,6 +196,7 @@ def crossval(
     material["unknown"] = _aside(unknown, material["clips"])
     recipe = _recipe(method, svrdm, unlabelled, everyday, mirror, one_sided, bones, params)
     how = {"by": by, "samples": samples, "perturb": list(perturb), "seed": seed}
+    how["sensitivities"] = list(sensitivities)
     return _morec.crossval(material, list(classes), recipe, how, listener(progress))
 
 

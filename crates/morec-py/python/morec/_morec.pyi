@@ -300,6 +300,12 @@ class Crossval:
     def perturbed(self) -> dict[str, dict[str, Any]]:
         """For each perturbation its measures."""
     @property
+    def sensitivities(self) -> dict[float, dict[str, Any]]:
+        """For each rate of false alarms a minute its measures."""
+    @property
+    def missed(self) -> list[dict[str, Any]]:
+        """Samples that were missed, and why."""
+    @property
     def folds(self) -> list[dict[str, Any]]:
         """What was left out in each fold, and how its training went."""
     @property

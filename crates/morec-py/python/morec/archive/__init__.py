@@ -14,12 +14,15 @@ from __future__ import annotations
 import os
 from typing import Any
 
+# Daft and Ray report that they are used unless they are told not to; who wants that sets these.
+os.environ.setdefault("DAFT_ANALYTICS_ENABLED", "0")
+os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
+
 import daft
 from daft import Expression
 
 from .. import __version__
-from .._learn import Index
-from .._morec import load
+from .._morec import Index, load
 from . import _layout as layout
 from ._archive import Archive
 from ._create import Importer, tasks
@@ -120,7 +123,7 @@ def _add_files(archive: Archive, pattern: str, about: dict[str, Any], s3: dict[s
         if daft.get_or_infer_runner_type() == "ray":
             # A task for each part, wherever there is room.
             frame = frame.into_partitions(len(made))
-        importer = Importer(archive.store, raw, about)
+        importer: Any = Importer(archive.store, raw, about)
         frame.select(importer.run(frame["part"], frame["files"]).alias("done")).collect()
     archive.drop_copies()
 

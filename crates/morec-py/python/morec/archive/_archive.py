@@ -104,7 +104,8 @@ class Archive:
 
     def _row(self, name: str, *columns: str) -> dict[str, Any]:
         frame = self._clips("name", *columns)
-        rows = frame.where((col("clip") == name) | (col("name") == name)).limit(2).to_pylist()
+        called: Any = (col("clip") == name) | (col("name") == name)
+        rows = frame.where(called).limit(2).to_pylist()
         if len(rows) != 1:
             found = "none" if not rows else "several; name it by its key"
             raise KeyError(f"expected one clip called {name!r}, found {found}")
@@ -253,7 +254,8 @@ class Archive:
         asked = self._example(example, start, stop)
         frame = self._clips("bones", "rows")
         numbered = frame.select(_number(col("clip")).alias("number"), col("bones"), col("rows"))
-        near = Nearest(asked, limit, mirror, one_a_clip).run(col("number"), col("bones"), col("rows"))
+        worker: Any = Nearest(asked, limit, mirror, one_a_clip)
+        near = worker.run(col("number"), col("bones"), col("rows"))
         answers = numbered.select(near.alias("near")).explode("near").where(~col("near").is_null())
         rows = answers.select(
             col("near").get("clip").alias("clip"), col("near").get("distance").alias("distance")
@@ -291,11 +293,13 @@ class Archive:
             Columns clip, name, secs, cuts_secs.
         """
         frame = self._clips("name", "secs", "bones", "rows")
+        work: Any = cuts_of
+        cuts = work(col("bones"), col("rows"), window, penalty, least)
         return frame.select(
             col("clip"),
             col("name"),
             col("secs"),
-            cuts_of(col("bones"), col("rows"), window, penalty, least).alias("cuts_secs"),
+            cuts.alias("cuts_secs"),
         )
 
     def moments(self) -> dict[int, dict[str, Any]]:
@@ -306,7 +310,9 @@ class Archive:
         dict
             For each set of bones ``rows`` (int), ``mean`` (columns,) and ``covariance`` (columns, columns).
         """
-        frame = self._clips("bones", "rows").select(col("bones"), _moments(col("bones"), col("rows")).alias("sums"))
+        work: Any = _moments
+        sums = work(col("bones"), col("rows")).alias("sums")
+        frame = self._clips("bones", "rows").select(col("bones"), sums)
         merged: dict[int, list[Any]] = {}
         for row in frame.where(~col("sums").is_null()).to_pylist():
             count = row["sums"]["count"]
@@ -332,7 +338,8 @@ class Archive:
         Table
             Columns clip, class, start_secs, stop_secs, group (from 0, larger groups first).
         """
-        labels = self.labels().where(col("state") == "accepted")
+        accepted: Any = col("state") == "accepted"
+        labels = self.labels().where(accepted)
         if classes:
             labels = labels.where(col("class").is_in(list(classes)))
         joined = labels.join(self._clips("bones", "rows"), on="clip")

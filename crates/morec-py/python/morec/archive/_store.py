@@ -48,7 +48,7 @@ class Store:
         """How Daft reads it."""
         if not self.is_s3:
             return None
-        known = {name: value for name, value in self.s3.items() if value is not None}
+        known: dict[str, Any] = {name: value for name, value in self.s3.items() if value is not None}
         endpoint = known.get("endpoint_url", "")
         return IOConfig(s3=S3Config(use_ssl=not endpoint.startswith("http://"), num_tries=10, **known))
 

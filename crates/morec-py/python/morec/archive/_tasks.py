@@ -35,7 +35,7 @@ class Recognise:
     @daft.method.batch(return_dtype=EVENTS, batch_size=BATCH)
     def run(self, motion: Series, roles: Series, rest_frames: Series) -> list[dict[str, Any]]:
         clips = list(zip(motion.to_pylist(), roles.to_pylist(), rest_frames.to_pylist()))
-        made = []
+        made: list[dict[str, Any]] = []
         for found in _morec.recognize_kept(self.index, clips):
             if isinstance(found, str):
                 made.append({"events": [], "error": found})
@@ -49,11 +49,14 @@ def events_of(
 ) -> Expression:
     """Events and the error of each clip, as a struct."""
     nothing = lit(None)
-    return Recognise(index.to_bytes()).run(  # type: ignore[no-any-return]
+    # What Daft's decorators make of a method is an expression when it is given expressions.
+    worker: Any = Recognise(index.to_bytes())
+    made: Expression = worker.run(
         motion,
         roles if roles is not None else nothing.cast(DataType.string()),
         rest_frames if rest_frames is not None else nothing.cast(DataType.int64()),
     )
+    return made
 
 
 @daft.func.batch(return_dtype=DataType.list(DataType.float64()), batch_size=64)
