@@ -1,12 +1,39 @@
 //! Databases as the commands open them: no output of the same run may take their place, and older ones are brought up
 //! to date first.
 
-use std::path::Path;
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
 
+use anyhow::{Result, bail};
 use morec::features::FeatureParams;
 use morec_db::{DbError, MotionDb};
 
 use crate::output::mark_database;
+
+/// The database, where a command was given one in place of clips.
+///
+/// # Errors
+/// A database beside something else.
+pub fn only(inputs: &[PathBuf]) -> Result<Option<&Path>> {
+    match inputs {
+        [one] if is_database(one) => Ok(Some(one)),
+        _ => match inputs.iter().find(|path| is_database(path)) {
+            Some(path) => bail!(
+                "{}: a database stands alone; give either clips or one database",
+                path.display()
+            ),
+            None => Ok(None),
+        },
+    }
+}
+
+/// Whether a file begins as SQLite's do.
+fn is_database(path: &Path) -> bool {
+    let mut head = [0; 16];
+    let read = File::open(path).and_then(|mut file| file.read_exact(&mut head));
+    read.is_ok() && &head == b"SQLite format 3\0"
+}
 
 /// Opens a database for reading and writing.
 pub fn open(path: &Path) -> Result<MotionDb, DbError> {

@@ -124,6 +124,17 @@ pub fn parse(path: &Path, bytes: &[u8], args: &ReadArgs) -> Result<ClipFile> {
 }
 
 impl ReadArgs {
+    /// What reads files so, with the roles of a mapping file.
+    pub fn reader_with(&self, mapping: Option<Mapping>) -> FileReader {
+        FileReader {
+            import: ImportOptions {
+                mapping,
+                ..ImportOptions::default()
+            },
+            ..self.reader()
+        }
+    }
+
     /// What reads files so.
     pub fn reader(&self) -> FileReader {
         let positions = self.positions.map(|positions| match positions {

@@ -50,7 +50,6 @@ enum Command {
     Record(commands::record::Args),
     Teach(commands::teach::Args),
     Send(commands::send::Args),
-    Soak(commands::soak::Args),
     Db(commands::db::Args),
     Demo(commands::demo::Args),
 }
@@ -73,7 +72,6 @@ fn main() -> ExitCode {
         Command::Record(args) => commands::record::run(&args),
         Command::Teach(args) => commands::teach::run(&args),
         Command::Send(args) => commands::send::run(&args),
-        Command::Soak(args) => commands::soak::run(&args),
         Command::Db(args) => commands::db::run(args),
         Command::Demo(args) => commands::demo::run(&args),
     };

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use morec::features::Rows;
-use morec::import::ImportOptions;
+use morec::import::{ImportOptions, Take};
 use morec::labels::ClipLength;
 use morec::pivots::{PivotMap, PivotSet, PoseParams, pose_rows_of_clip};
 
@@ -83,13 +83,40 @@ impl PoseReader<'_> {
     pub fn each(
         &self,
         paths: &[PathBuf],
-        mut each: impl FnMut(PosedClip) -> Result<()>,
+        each: impl FnMut(PosedClip) -> Result<()>,
+    ) -> Result<()> {
+        self.each_made(paths, &|take, progress| self.posed(take, progress), each)
+    }
+
+    /// The same with takes as they are.
+    ///
+    /// # Errors
+    /// As [`each`](Self::each).
+    pub fn each_take(
+        &self,
+        paths: &[PathBuf],
+        each: impl FnMut(Take) -> Result<()>,
+    ) -> Result<()> {
+        self.each_made(paths, &|take, _| Ok(take), each)
+    }
+
+    fn each_made<T>(
+        &self,
+        paths: &[PathBuf],
+        make: &dyn Fn(Take, &Progress) -> Result<T>,
+        mut each: impl FnMut(T) -> Result<()>,
     ) -> Result<()> {
         let paths = files::expand(paths)?;
         let mut progress = Progress::new(paths.len(), "reading clips");
         let mut failed = 0;
         for path in &paths {
-            match self.open(path, &progress) {
+            let takes = files::takes(path, self.read, &self.options);
+            let shown = || path.display().to_string();
+            let made = takes.and_then(|takes| {
+                let made = takes.into_iter().map(|take| make(take, &progress).with_context(shown));
+                made.collect::<Result<Vec<T>>>()
+            });
+            match made {
                 Ok(clips) => clips.into_iter().try_for_each(&mut each)?,
                 Err(error) => {
                     failed += 1;
@@ -104,29 +131,22 @@ impl PoseReader<'_> {
         Ok(())
     }
 
-    fn open(&self, path: &Path, progress: &Progress) -> Result<Vec<PosedClip>> {
-        let takes = files::takes(path, self.read, &self.options)?;
-        let mut posed = Vec::with_capacity(takes.len());
-        for take in takes {
-            let clip = &take.clip;
-            let map = PivotMap::of_clip(&self.set, clip, &take.roles)
-                .with_context(|| path.display().to_string())?;
-            if !map.missing().is_empty() {
-                let missing = map.missing().join(", ");
-                let what = "no joint plays these pivots, they turn with their parents";
-                progress.suspend(|| eprintln!("morec: {}: {what}: {missing}", path.display()));
-            }
-            let rows = pose_rows_of_clip(clip, &self.set, &map, take.rest(), &self.params);
-            let length = ClipLength {
+    fn posed(&self, take: Take, progress: &Progress) -> Result<PosedClip> {
+        let clip = &take.clip;
+        let map = PivotMap::of_clip(&self.set, clip, &take.roles)?;
+        if !map.missing().is_empty() {
+            let missing = map.missing().join(", ");
+            let what = "no joint plays these pivots, they turn with their parents";
+            progress.suspend(|| eprintln!("morec: {}: {what}: {missing}", clip.name));
+        }
+        let rows = pose_rows_of_clip(clip, &self.set, &map, take.rest(), &self.params);
+        Ok(PosedClip {
+            name: clip.name.clone(),
+            length: ClipLength {
                 frames: clip.frames,
                 rate_hz: clip.rate_hz,
-            };
-            posed.push(PosedClip {
-                name: clip.name.clone(),
-                length,
-                rows,
-            });
-        }
-        Ok(posed)
+            },
+            rows,
+        })
     }
 }

@@ -83,34 +83,35 @@ pub struct ClipUpdate {
 }
 
 const COLUMNS: &str = "c.id, c.name, c.frames, c.rate_hz, c.rest_frames, c.repaired_frames, k.joints, c.skeleton, \
-    f.path, f.format, length(c.motion), c.source, c.licence, c.subject, \
-    (SELECT group_concat(tag, char(10)) FROM tags t WHERE t.clip = c.id), \
-    (SELECT count(*) FROM samples s WHERE s.clip = c.id AND s.state = 'accepted') \
+    f.path, f.format, length(c.motion) AS motion_bytes, c.source, c.licence, c.subject, \
+    (SELECT group_concat(tag, char(10)) FROM tags t WHERE t.clip = c.id) AS tags, \
+    (SELECT count(*) FROM samples s WHERE s.clip = c.id AND s.state = 'accepted') AS samples \
     FROM clips c JOIN files f ON f.id = c.file JOIN skeletons k ON k.id = c.skeleton";
 
 fn info(row: &Row<'_>) -> rusqlite::Result<ClipInfo> {
-    let count =
-        |column| -> rusqlite::Result<usize> { Ok(row.get::<_, i64>(column)?.max(0) as usize) };
-    let tags: Option<String> = row.get(14)?;
+    let count = |column: &str| -> rusqlite::Result<usize> {
+        Ok(row.get::<_, i64>(column)?.max(0) as usize)
+    };
+    let tags: Option<String> = row.get("tags")?;
     Ok(ClipInfo {
-        id: ClipId(row.get(0)?),
-        name: row.get(1)?,
-        frames: count(2)?,
-        rate_hz: row.get(3)?,
-        rest_frames: count(4)?,
-        repaired_frames: count(5)?,
-        joints: count(6)?,
-        skeleton: row.get(7)?,
-        path: row.get(8)?,
-        format: row.get(9)?,
-        motion_bytes: count(10)?,
-        source: row.get(11)?,
-        licence: row.get(12)?,
-        subject: row.get(13)?,
+        id: ClipId(row.get("id")?),
+        name: row.get("name")?,
+        frames: count("frames")?,
+        rate_hz: row.get("rate_hz")?,
+        rest_frames: count("rest_frames")?,
+        repaired_frames: count("repaired_frames")?,
+        joints: count("joints")?,
+        skeleton: row.get("skeleton")?,
+        path: row.get("path")?,
+        format: row.get("format")?,
+        motion_bytes: count("motion_bytes")?,
+        source: row.get("source")?,
+        licence: row.get("licence")?,
+        subject: row.get("subject")?,
         tags: tags.map_or_else(Vec::new, |tags| {
             tags.split('\n').map(str::to_owned).collect()
         }),
-        samples: count(15)?,
+        samples: count("samples")?,
     })
 }
 

@@ -315,7 +315,7 @@ fn insert(
     recipe: &str,
 ) -> Result<ImportOutcome, DbError> {
     let warnings: Vec<String> = new.file.warnings.iter().map(ToString::to_string).collect();
-    conn.prepare(
+    conn.prepare_cached(
         "INSERT INTO files (hash, path, skeleton_path, format, bytes, imported_secs, warnings) \
          VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)",
     )?
@@ -361,7 +361,7 @@ fn speakable(name: &str) -> String {
 fn free_name(conn: &Connection, path: &Path, name: &str) -> Result<String, DbError> {
     let name = &speakable(name);
     let taken = |name: &str| {
-        conn.prepare("SELECT 1 FROM clips WHERE name = ?1")?
+        conn.prepare_cached("SELECT 1 FROM clips WHERE name = ?1")?
             .exists(params![name])
     };
     let folder = path
@@ -387,10 +387,10 @@ fn insert_clip(
 ) -> Result<ClipId, DbError> {
     let packed = &clip.packed;
     let sql = "INSERT OR IGNORE INTO skeletons (hash, joints) VALUES (?1, ?2)";
-    conn.prepare(sql)?
+    conn.prepare_cached(sql)?
         .execute(params![packed.skeleton_hash, packed.joints as i64])?;
     let motion = &packed.stored.clip;
-    conn.prepare(
+    conn.prepare_cached(
         "INSERT INTO clips (name, file, character, skeleton, frames, rate_hz, rest_frames, repaired_frames, roles, \
          facts, max_angle_rad, max_position_metres, motion, source, licence, subject) VALUES (?1, ?2, ?3, \
          (SELECT id FROM skeletons WHERE hash = ?4), ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16)",

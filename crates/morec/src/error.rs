@@ -1,44 +1,44 @@
 //! One error over those of the areas.
 
-#[cfg(feature = "files")]
-use crate::files::FileError;
-use crate::formats::ParseError;
-use crate::index::IndexError;
-use crate::live::{RecordingError, SensitivityError, SessionError, StartError};
-use crate::train::{DataError, TrainError};
-
 /// Any error of this library's main path: files to takes, takes to an index, an index to a recogniser.
 ///
 /// Every area has an error type of its own, which its functions return; each converts into this one.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
+    /// Bytes are not what they should be.
+    #[error(transparent)]
+    Parse(#[from] crate::ParseError),
     /// A file on disk cannot be used.
     #[cfg(feature = "files")]
     #[error(transparent)]
-    File(#[from] FileError),
-    /// Bytes are not what they should be.
-    #[error(transparent)]
-    Parse(#[from] ParseError),
-    /// Takes and labels do not make training data.
-    #[error(transparent)]
-    Data(#[from] DataError),
-    /// Nothing can be learned from the training data.
-    #[error(transparent)]
-    Train(#[from] TrainError),
+    File(#[from] crate::files::FileError),
     /// An index cannot be read or written as bytes.
+    #[cfg(feature = "live")]
     #[error(transparent)]
-    Index(#[from] IndexError),
+    Index(#[from] crate::index::IndexError),
     /// A stream cannot be recognised with an index.
+    #[cfg(feature = "live")]
     #[error(transparent)]
-    Start(#[from] StartError),
+    Start(#[from] crate::live::StartError),
     /// A session cannot be opened.
+    #[cfg(feature = "live")]
     #[error(transparent)]
-    Session(#[from] SessionError),
+    Session(#[from] crate::live::SessionError),
     /// The sensitivity of an index cannot be changed.
+    #[cfg(feature = "live")]
     #[error(transparent)]
-    Sensitivity(#[from] SensitivityError),
+    Sensitivity(#[from] crate::index::SensitivityError),
     /// A recorded stream does not make a clip.
+    #[cfg(feature = "live")]
     #[error(transparent)]
-    Recording(#[from] RecordingError),
+    Recording(#[from] crate::live::RecordingError),
+    /// Takes and labels do not make training data.
+    #[cfg(feature = "train")]
+    #[error(transparent)]
+    Data(#[from] crate::train::DataError),
+    /// Nothing can be learned from the training data.
+    #[cfg(feature = "train")]
+    #[error(transparent)]
+    Train(#[from] crate::train::TrainError),
 }

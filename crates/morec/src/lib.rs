@@ -75,6 +75,19 @@
 //! [`smooth`] turns clips into keyframes and curves, a small form to keep them in. [`synth`] makes people, clips and
 //! labels where there are none; [`resample`], [`math`], [`classes`] and [`progress`] are shared by several of these.
 //!
+//! # Features
+//!
+//! All are on by default but `fbx`.
+//!
+//! | feature | has |
+//! |---|---|
+//! | `live` | index files, and recognition of poses: [`index`], [`live`], [`diagnosis`] and what they need |
+//! | `formats` | clip files as bytes, and takes: [`formats`], [`import`], [`smooth`] |
+//! | `files` | clip files by path: [`files`]; includes `formats` |
+//! | `train` | labels, training, measuring, synthetic people; includes `formats` and `live` |
+//! | `report` | pages and pictures: [`report`], [`plot`], [`reproduce`]; includes `train` |
+//! | `fbx` | FBX files, which takes a C compiler |
+//!
 //! # Notation
 //!
 //! Times are seconds in every public interface, frames stand beside them only where files count in them; ranges are
@@ -102,49 +115,92 @@
 
 pub mod classes;
 pub mod clip;
-pub mod cluster;
+pub mod humanoid;
+pub mod kinematics;
+pub mod math;
+mod parse_error;
+pub mod progress;
+pub mod resample;
+pub mod rng;
+pub mod roles;
+
+#[cfg(any(feature = "formats", feature = "live"))]
 mod coder;
-pub mod crossval;
-pub mod decode;
-pub mod diagnosis;
+#[cfg(any(feature = "formats", feature = "live"))]
 mod error;
-pub mod eval;
-pub mod explain;
+#[cfg(any(feature = "formats", feature = "live"))]
 pub mod features;
+
 #[cfg(feature = "files")]
 pub mod files;
+#[cfg(feature = "formats")]
 pub mod formats;
+#[cfg(feature = "formats")]
 pub mod import;
-pub mod index;
-pub mod kinematics;
-pub mod labels;
-pub mod live;
-pub mod math;
-pub mod pca;
-pub mod perturb;
-pub mod pivots;
-pub mod plot;
-pub mod progress;
-pub mod report;
-pub mod reproduce;
-pub mod resample;
-pub mod roles;
-pub mod segment;
+#[cfg(feature = "formats")]
 pub mod smooth;
+
+#[cfg(feature = "live")]
+pub mod decode;
+#[cfg(feature = "live")]
+pub mod diagnosis;
+#[cfg(feature = "live")]
+pub mod index;
+#[cfg(feature = "live")]
+pub mod live;
+#[cfg(feature = "live")]
+pub mod pca;
+#[cfg(feature = "live")]
+pub mod pivots;
+#[cfg(feature = "live")]
 pub mod svrdm;
-pub mod synth;
+#[cfg(feature = "live")]
 pub mod templates;
+
+#[cfg(feature = "train")]
+pub mod cluster;
+#[cfg(feature = "train")]
+pub mod crossval;
+#[cfg(feature = "train")]
+pub mod eval;
+#[cfg(feature = "train")]
+pub mod explain;
+#[cfg(feature = "train")]
+pub mod labels;
+#[cfg(feature = "train")]
+pub mod perturb;
+#[cfg(feature = "train")]
+pub mod segment;
+#[cfg(feature = "train")]
+pub mod synth;
+#[cfg(feature = "train")]
+pub mod train;
+
+#[cfg(feature = "report")]
+pub mod plot;
+#[cfg(feature = "report")]
+pub mod report;
+#[cfg(feature = "report")]
+pub mod reproduce;
+
 #[cfg(test)]
 #[path = "../tests/testing/mod.rs"]
 mod testing;
-pub mod train;
 
 pub use classes::{ClassId, ClassInfo};
 pub use clip::{Clip, Skeleton};
+#[cfg(any(feature = "formats", feature = "live"))]
 pub use error::Error;
+#[cfg(any(feature = "formats", feature = "live"))]
 pub use features::{BoneSet, KeyPose};
+#[cfg(feature = "formats")]
 pub use import::{ImportOptions, Take};
+#[cfg(feature = "live")]
 pub use index::MotionIndex;
+#[cfg(feature = "train")]
 pub use labels::Labels;
+#[cfg(feature = "live")]
 pub use live::{Detection, Event, Recognizer, Session};
+pub use parse_error::{ParseError, Place, Warning};
+#[cfg(feature = "train")]
 pub use train::{Trainer, TrainingReport};

@@ -287,10 +287,15 @@ fn write_folds(out: &mut impl Write, outcome: &Outcome) -> std::io::Result<()> {
     for fold in &outcome.folds {
         let training = &fold.training;
         let negatives: usize = training.negatives.values().sum();
+        let accepted = match (training.threshold, &training.svrdm) {
+            (Some(threshold), _) => format!("threshold {threshold:.3}"),
+            (None, Some(svrdm)) => format!("least confidence {:.3}", svrdm.min_confidence),
+            (None, None) => "no threshold".to_owned(),
+        };
         writeln!(
             out,
-            "  {}: threshold {:.3} ({}), {negatives} hard negatives",
-            fold.name, training.threshold, training.threshold_from
+            "  {}: {accepted} ({}), {negatives} hard negatives",
+            fold.name, training.threshold_from
         )?;
         for note in &training.notes {
             writeln!(out, "    {note}")?;

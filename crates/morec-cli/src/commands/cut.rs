@@ -1,49 +1,66 @@
-//! `morec cut`: where a clip's behaviours begin and end.
+//! `morec cut`: where behaviours begin and end, in clips or in a database.
 
-use std::io::Write;
+mod files;
+mod stored;
+
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 use clap::ValueEnum;
-use morec::segment::{Directions, PpcaParams, Segmentation, segment};
-use serde::Serialize;
+use morec::segment::{Directions, KernelParams, PpcaParams};
 
-use crate::figures::write_json;
-use crate::output;
-use crate::poses::{PoseArgs, PosedClip};
+use crate::database;
+use crate::poses::PoseArgs;
 
-/// Cut clips where their behaviour changes
+/// Cut clips, or those of a database, where their behaviour changes
 ///
-/// No labels are needed: the poses so far are modelled, and a cut lies where the poses ahead stop fitting. Walking,
-/// then jumping, are cut apart; one step is not cut from the next, as cycles of one behaviour stay together.
+/// No labels are needed. Kernel change points make segments as alike within as they can be, for a price a cut; the
+/// thesis's method models the poses so far and cuts where those ahead stop fitting. Walking, then jumping, are cut apart;
+/// one step is not cut from the next. A database keeps what is found, stillness and T-poses with it, in place of earlier
+/// cuts, by whatever method.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   morec cut 86_01.amc
-  morec cut 86_01.amc --plot cuts.svg
+  morec cut moves.mdb                   # every clip of a database
   morec cut recordings/ --json > cuts.json
-  morec cut long.bvh --rise 10          # fewer cuts")]
+  morec cut long.bvh --penalty 8        # fewer cuts
+  morec cut 86_01.amc --method ppca --plot cuts.svg")]
 pub struct Args {
-    /// Clips (BVH, AMC) or folders of clips
-    #[arg(required = true, value_name = "CLIP")]
-    clips: Vec<PathBuf>,
+    /// Clips, folders of clips, or one database
+    #[arg(required = true, value_name = "CLIP|DB")]
+    inputs: Vec<PathBuf>,
+    /// Clips of the database whose name matches (`*` any text, `?` one character)
+    #[arg(long, value_name = "PATTERN")]
+    name: Option<String>,
     /// How to cut
-    #[arg(long, value_enum, default_value = "ppca")]
+    #[arg(long, value_enum, default_value = "kernel")]
     method: Method,
-    /// Which way to go through a clip: what begins is found forward, what ceases backward
+    /// Length of the windows whose statistics are compared, seconds (kernel)
+    #[arg(long, value_name = "SECS", default_value_t = KernelParams::default().window_secs)]
+    window: f64,
+    /// What a cut costs: more, and there are fewer (kernel)
+    #[arg(long, value_name = "P", default_value_t = KernelParams::default().penalty)]
+    penalty: f64,
+    /// No segment is shorter, seconds (kernel)
+    #[arg(long, value_name = "SECS", default_value_t = KernelParams::default().least_secs)]
+    least: f64,
+    /// Which way to go through a clip: what begins is found forward, what ceases backward (ppca)
     #[arg(long, value_enum, default_value = "both")]
     direction: Direction,
-    /// How far the misfit must rise before a cut, in multiples of what fitting poses have
+    /// How far the misfit must rise before a cut, in multiples of what fitting poses have: more, and there are fewer
+    /// (ppca)
     #[arg(long, value_name = "R", default_value_t = PpcaParams::default().rise)]
     rise: f64,
-    /// Share of the variance that the model of a segment keeps
+    /// Share of the variance that the model of a segment keeps (ppca)
     #[arg(long, value_name = "SHARE", default_value_t = PpcaParams::default().quality)]
     quality: f64,
-    /// Print one JSON array: for each clip its cuts and the misfit over time
+    /// Print one JSON array: of clips with their cuts and the misfit over time (ppca), of a database with its cuts and
+    /// still stretches
     #[arg(long)]
     json: bool,
-    /// Draw the misfit over time with the cuts marked (one clip)
+    /// Draw the misfit over time with the cuts marked (ppca, one clip)
     #[arg(long, value_name = "SVG")]
     plot: Option<PathBuf>,
     #[command(flatten)]
@@ -53,8 +70,20 @@ pub struct Args {
 /// A method of segmentation.
 #[derive(ValueEnum, Clone, Copy, Debug)]
 enum Method {
-    /// Probabilistic principal components, as in the thesis of 2009 with its distance corrected
+    /// Kernel change points over feature rows
+    Kernel,
+    /// Probabilistic principal components over joint rotations, as in the thesis of 2009 with its distance corrected
     Ppca,
+}
+
+impl Method {
+    /// Its name in the database.
+    fn name(self) -> &'static str {
+        match self {
+            Method::Kernel => "kernel",
+            Method::Ppca => "ppca",
+        }
+    }
 }
 
 #[derive(ValueEnum, Clone, Copy, Debug)]
@@ -67,105 +96,55 @@ enum Direction {
     Both,
 }
 
-#[derive(Serialize)]
-struct Found {
-    clip: String,
-    rate_hz: f64,
-    frames: usize,
-    cuts: Vec<FoundCut>,
-    forward: Vec<morec::segment::HPoint>,
-    backward: Vec<morec::segment::HPoint>,
+/// How to cut, checked.
+enum Cutter {
+    Kernel(KernelParams),
+    Ppca(PpcaParams),
 }
 
-#[derive(Serialize)]
-struct FoundCut {
-    secs: f64,
-    /// First frame of what begins here, counted from 0.
-    frame: usize,
-    forward: bool,
-    backward: bool,
-}
-
-/// Reads, cuts and prints every clip.
-pub fn run(args: &Args) -> Result<ExitCode> {
-    let Method::Ppca = args.method;
-    let params = params(args)?;
-    let reader = args.poses.reader()?;
-    let mut found = Vec::new();
-    reader.each(&args.clips, |clip| {
-        if args.plot.is_some() && !found.is_empty() {
-            bail!("--plot draws one clip; give one, or leave --plot out");
-        }
-        let segmentation =
-            segment(&clip.rows, reader.rate_hz(), &params).context(clip.name.clone())?;
-        if let Some(path) = &args.plot {
-            let svg = segmentation
-                .chart(&format!("{}: misfit and cuts", clip.name), &[])
-                .svg();
-            output::write_whole(path, |out| out.write_all(svg.as_bytes()))
-                .with_context(|| path.display().to_string())?;
-        }
-        found.push(Found::new(&clip, segmentation));
-        Ok(())
-    })?;
-    let mut out = std::io::stdout().lock();
-    if args.json {
-        write_json(&mut out, &found)?;
-    } else {
-        found.iter().try_for_each(|f| f.write(&mut out))?;
-    }
-    out.flush()?;
-    Ok(ExitCode::SUCCESS)
-}
-
-fn params(args: &Args) -> Result<PpcaParams> {
-    let directions = match args.direction {
-        Direction::Forward => Directions::Forward,
-        Direction::Backward => Directions::Backward,
-        Direction::Both => Directions::Both,
-    };
-    let params = PpcaParams {
-        rise: args.rise,
-        quality: args.quality,
-        directions,
-        ..PpcaParams::default()
-    };
-    params.check().map_err(anyhow::Error::msg)?;
-    Ok(params)
-}
-
-impl Found {
-    fn new(clip: &PosedClip, found: Segmentation) -> Self {
-        let rate_hz = clip.length.rate_hz;
-        let cut = |c: &morec::segment::Cut| FoundCut {
-            secs: c.secs,
-            frame: (c.secs * rate_hz).round() as usize,
-            forward: c.forward,
-            backward: c.backward,
+impl Cutter {
+    fn new(args: &Args) -> Result<Self> {
+        let kernel = KernelParams {
+            window_secs: args.window,
+            penalty: args.penalty,
+            least_secs: args.least,
+            ..KernelParams::default()
         };
-        Self {
-            clip: clip.name.clone(),
-            rate_hz,
-            frames: clip.length.frames,
-            cuts: found.cuts.iter().map(cut).collect(),
-            forward: found.forward,
-            backward: found.backward,
-        }
+        let ppca = PpcaParams {
+            rise: args.rise,
+            quality: args.quality,
+            directions: match args.direction {
+                Direction::Forward => Directions::Forward,
+                Direction::Backward => Directions::Backward,
+                Direction::Both => Directions::Both,
+            },
+            ..PpcaParams::default()
+        };
+        kernel
+            .check()
+            .and_then(|()| ppca.check())
+            .map_err(anyhow::Error::msg)?;
+        Ok(match args.method {
+            Method::Kernel => Self::Kernel(kernel),
+            Method::Ppca => Self::Ppca(ppca),
+        })
     }
+}
 
-    fn write(&self, out: &mut impl Write) -> std::io::Result<()> {
-        let secs = self.frames as f64 / self.rate_hz;
-        let (name, count) = (&self.clip, self.cuts.len());
-        let plural = if count == 1 { "" } else { "s" };
-        writeln!(out, "{name}: {count} cut{plural} in {secs:.2} s")?;
-        for cut in &self.cuts {
-            let found = match (cut.forward, cut.backward) {
-                (true, true) => "both ways",
-                (true, false) => "forward",
-                _ => "backward",
-            };
-            writeln!(out, "  {:8.2} s  frame {:6}  {found}", cut.secs, cut.frame)?;
-        }
-        Ok(())
+/// Cuts clips, or the clips of a database.
+pub fn run(args: &Args) -> Result<ExitCode> {
+    match database::only(&args.inputs)? {
+        Some(db) => stored::run(db, &Cutter::new(args)?, args),
+        None if args.name.is_some() => bail!("--name chooses clips of a database"),
+        None => files::run(&Cutter::new(args)?, args),
+    }
+}
+
+/// The spelling of old, `morec db cut`.
+pub fn run_stored(args: &Args) -> Result<ExitCode> {
+    eprintln!("morec: `morec db cut` is `morec cut` now");
+    match args.inputs.as_slice() {
+        [db] => stored::run(db, &Cutter::new(args)?, args),
+        _ => bail!("expected one database"),
     }
 }

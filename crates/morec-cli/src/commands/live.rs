@@ -11,15 +11,16 @@ use morec::live::{EventOptions, EventReader, Session, SessionOptions, Status, St
 
 use super::recognize::{SensitivityArgs, open_index};
 use crate::interrupt::stop_on_ctrl_c;
-use crate::live::Said;
-use crate::live::address::Address;
 use crate::live::advice::{self, Advice};
-use crate::live::complaints::Complaints;
 use crate::live::layout::LayoutArg;
 use crate::live::open::TrackerArgs;
-use crate::live::sinks::Outlet;
-use crate::live::status::{StatusLine, summary};
+use crate::live::sinks::CountedSink;
+use crate::live::status::StatusLine;
 use crate::live::takes::secs;
+use morec_live::Address;
+use morec_live::NamedEvent;
+use morec_live::Notices;
+use morec_live::summary;
 
 /// Recognise motions live, from a tracker to an event.
 ///
@@ -88,7 +89,7 @@ struct Listening {
     name: String,
     session: Session,
     reader: EventReader,
-    complaints: Complaints,
+    notices: Notices,
 }
 
 /// Runs the command.
@@ -96,10 +97,10 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let mut index = open_index(&args.index)?;
     args.sensitivity.apply(&mut index)?;
     let mut outlets = match args.emit.as_slice() {
-        [] => vec![Outlet::open(
+        [] => vec![CountedSink::open(
             &"terminal:-".parse().map_err(anyhow::Error::msg)?,
         )?],
-        emit => emit.iter().map(Outlet::open).collect::<Result<_>>()?,
+        emit => emit.iter().map(CountedSink::open).collect::<Result<_>>()?,
     };
     let mut listening: Vec<Listening> = args
         .listen
@@ -119,7 +120,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         for source in &mut listening {
             if let Some(event) = source.reader.wait(nap) {
                 let class = index.model.class_name(event.class);
-                let said = Said {
+                let said = NamedEvent {
                     event: &event,
                     class,
                     source: &source.name,
@@ -127,7 +128,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
                 tell(&said, &mut outlets, &mut line)?;
             }
             ended &= source.reader.is_ended();
-            complain(&source.name, &source.complaints, &mut line);
+            complain(&source.name, &source.notices, &mut line);
         }
         if ended {
             break;
@@ -148,7 +149,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         while let Some(event) = source.reader.pop() {
             let class = index.model.class_name(event.class);
             tell(
-                &Said {
+                &NamedEvent {
                     event: &event,
                     class,
                     source: &source.name,
@@ -157,7 +158,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
                 &mut line,
             )?;
         }
-        complain(&source.name, &source.complaints, &mut line);
+        complain(&source.name, &source.notices, &mut line);
         eprintln!("morec: {}", summary(&source.name, &status));
         advice::of_status(&status)
             .iter()
@@ -165,17 +166,17 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     }
     outlets
         .iter()
-        .filter_map(Outlet::farewell)
+        .filter_map(CountedSink::farewell)
         .for_each(|text| eprintln!("morec: {text}"));
     Ok(ExitCode::SUCCESS)
 }
 
-fn tell(said: &Said, outlets: &mut [Outlet], line: &mut StatusLine) -> Result<()> {
+fn tell(said: &NamedEvent, outlets: &mut [CountedSink], line: &mut StatusLine) -> Result<()> {
     if said.is_final() {
         line.clear();
     }
     for outlet in outlets {
-        if let Some(failure) = outlet.tell(said)? {
+        if let Some(failure) = outlet.emit(said)? {
             line.clear();
             eprintln!("morec: {failure}");
         }
@@ -184,8 +185,8 @@ fn tell(said: &Said, outlets: &mut [Outlet], line: &mut StatusLine) -> Result<()
 }
 
 /// Says what the source has found wrong with what it was sent.
-fn complain(source: &str, complaints: &Complaints, line: &mut StatusLine) {
-    for text in complaints.take() {
+fn complain(source: &str, notices: &Notices, line: &mut StatusLine) {
+    for text in notices.take() {
         line.clear();
         eprintln!("morec: {source}: {text}");
     }
@@ -211,6 +212,6 @@ fn listen(address: &Address, index: &MotionIndex, args: &Args) -> Result<Listeni
         name: opened.name,
         session,
         reader,
-        complaints: opened.complaints,
+        notices: opened.notices,
     })
 }

@@ -18,6 +18,5 @@ pub mod reduce;
 pub mod reproduce;
 pub mod send;
 pub mod smooth;
-pub mod soak;
 pub mod teach;
 pub mod train;

@@ -17,12 +17,12 @@ use morec::roles::Role;
 use super::send::bundling;
 use crate::files::{ReadArgs, expand, mapping, open, rate, read};
 use crate::live::layout::LayoutArg;
-use crate::live::loaded::Loaded;
-use crate::live::network::Conditions;
+use crate::live::network::NetworkArgs;
 use crate::live::wire::recognise_over_vmc;
 use crate::output::Output;
 use crate::progress::Progress;
 use crate::stats::Stats;
+use morec_live::PlayableClip;
 
 /// Recognise motions in clips, frame by frame as in a live stream.
 ///
@@ -65,7 +65,7 @@ pub struct Args {
     #[arg(long, value_name = "whole|single|BYTES", default_value = "1500", value_parser = bundling)]
     bundle: Bundling,
     #[command(flatten)]
-    conditions: Conditions,
+    conditions: NetworkArgs,
     #[command(flatten)]
     read: ReadArgs,
 }
@@ -225,8 +225,13 @@ fn over_vmc(
     index: &MotionIndex,
     args: &Args,
 ) -> Result<Vec<Detection>> {
-    let loaded = Loaded::of(imported.clone(), Some(rate_hz))?;
-    let (found, counts) = recognise_over_vmc(&index.model, &loaded, args.bundle, &args.conditions);
+    let loaded = PlayableClip::of(imported.clone(), Some(rate_hz))?;
+    let (found, counts) = recognise_over_vmc(
+        &index.model,
+        &loaded,
+        args.bundle,
+        &args.conditions.accidents(),
+    );
     if args.stats {
         eprintln!(
             "{}: {}",

@@ -8,10 +8,10 @@ use morec::diagnosis::{Diagnoser, Severity};
 use morec::live::Recording;
 
 use crate::interrupt::stop_on_ctrl_c;
-use crate::live::address::Address;
 use crate::live::keep::Store;
 use crate::live::open::TrackerArgs;
 use crate::live::takes::{Ended, Stage, TakeArgs, secs};
+use morec_live::Address;
 
 /// Record takes from a tracker, for `morec train --clips` and everything else that reads clips.
 ///

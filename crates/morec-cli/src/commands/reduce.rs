@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Context, Result};
-use morec::pca::{Keep, Moments, Pca, QualityRow, quality_chart};
+use morec::pca::{Keep, Moments, Pca, QualityRow};
+use morec::report::pictures::quality_chart;
 use serde::Serialize;
 
 use crate::figures::write_json;

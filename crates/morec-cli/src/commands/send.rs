@@ -7,19 +7,19 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail};
-use morec::import::ImportOptions;
 use morec::kinematics::WorldPose;
 use morec::live::axis::AxisSender;
 use morec::live::vmc::{Bundling, VmcSender};
 use morec::roles::RoleMap;
 
-use crate::files::{ReadArgs, mapping, rate};
+use crate::files::{ReadArgs, expand, mapping, rate};
 use crate::interrupt::stop_on_ctrl_c;
-use crate::live::address::Address;
-use crate::live::broadcast::Broadcast;
-use crate::live::clip::PAUSE_SECS;
-use crate::live::loaded::load;
-use crate::live::network::{Conditions, Network};
+use crate::live::network::NetworkArgs;
+use morec_live::Address;
+use morec_live::Broadcast;
+use morec_live::Network;
+use morec_live::PAUSE_SECS;
+use morec_live::load;
 
 /// Play clips as a VMC sender, so that anything that listens to VMC can be tried without a tracker; or as Axis
 /// Neuron would broadcast them.
@@ -64,7 +64,7 @@ pub struct Args {
     #[arg(long, value_name = "FILE")]
     roles: Option<PathBuf>,
     #[command(flatten)]
-    conditions: Conditions,
+    conditions: NetworkArgs,
     #[command(flatten)]
     read: ReadArgs,
 }
@@ -81,11 +81,8 @@ pub fn bundling(text: &str) -> Result<Bundling, String> {
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let options = ImportOptions {
-        mapping: mapping(args.roles.as_deref())?,
-        ..ImportOptions::default()
-    };
-    let clips = load(&args.clips, &args.read, &options, None, Some(args.rate))?;
+    let reader = args.read.reader_with(mapping(args.roles.as_deref())?);
+    let clips = load(&expand(&args.clips)?, &reader, None, Some(args.rate))?;
     let stop = stop_on_ctrl_c()?;
     let mut to: Box<dyn Receiver> = match args.to.kind.as_str() {
         "vmc" => Box::new(ToVmc::open(args)?),
@@ -176,7 +173,7 @@ impl ToVmc {
             socket,
             to,
             sender,
-            network: Network::new(&args.conditions),
+            network: Network::new(&args.conditions.accidents()),
             packets: 0,
         })
     }
@@ -235,7 +232,7 @@ impl ToAxis {
         Ok(Self {
             to,
             sender,
-            network: Network::new(&args.conditions),
+            network: Network::new(&args.conditions.accidents()),
         })
     }
 }

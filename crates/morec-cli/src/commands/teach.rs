@@ -11,12 +11,12 @@ use morec::index::MotionIndex;
 use morec::live::{Actor, Event, EventOptions, MAX_ACTORS, Next, Performer};
 
 use crate::interrupt::stop_on_ctrl_c;
-use crate::live::Said;
-use crate::live::address::Address;
 use crate::live::open::TrackerArgs;
-use crate::live::sinks::Outlet;
+use crate::live::sinks::CountedSink;
 use crate::live::takes::{Ended, Stage, TakeArgs, secs};
 use lesson::Lessons;
+use morec_live::Address;
+use morec_live::NamedEvent;
 
 /// Teach gestures by performing them: name one, perform it three times, and it is recognised from then on.
 ///
@@ -159,7 +159,7 @@ fn teach(name: &str, args: &Args, stage: &mut Stage, lessons: &mut Lessons) -> R
 
 /// Recognition between lessons.
 struct Watch {
-    outlets: Vec<Outlet>,
+    outlets: Vec<CountedSink>,
     performers: Vec<Performer>,
     events: Vec<Event>,
     sequence: u64,
@@ -174,7 +174,7 @@ impl Watch {
             &args.emit
         };
         let mut watch = Self {
-            outlets: emit.iter().map(Outlet::open).collect::<Result<_>>()?,
+            outlets: emit.iter().map(CountedSink::open).collect::<Result<_>>()?,
             performers: Vec::new(),
             events: Vec::new(),
             sequence: 0,
@@ -237,13 +237,13 @@ impl Watch {
         for mut event in self.events.drain(..) {
             self.sequence += 1;
             event.sequence = self.sequence;
-            let said = Said {
+            let said = NamedEvent {
                 event: &event,
                 class: index.model.class_name(event.class),
                 source,
             };
             for outlet in &mut self.outlets {
-                if let Some(failure) = outlet.tell(&said)? {
+                if let Some(failure) = outlet.emit(&said)? {
                     eprintln!("morec: {failure}");
                 }
             }

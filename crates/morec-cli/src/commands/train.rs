@@ -107,10 +107,12 @@ fn print_report(report: &TrainingReport, bytes: usize, material: &Material, outp
 }
 
 fn print_templates(report: &TrainingReport) {
-    println!(
-        "threshold: {:.3}, set by {}",
-        report.threshold, report.threshold_from
-    );
+    if let Some(threshold) = report.threshold {
+        println!(
+            "threshold: {threshold:.3}, set by {}",
+            report.threshold_from
+        );
+    }
     let points: Vec<String> = report
         .operating
         .iter()

@@ -1,15 +1,13 @@
 //! Recordings into files: BVH, lines of JSON, or clips of a database.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use morec::files::FileReader;
 use morec::formats::bvh;
 use morec::live::Recording;
-use morec::roles::Role;
 use morec_db::{ClipUpdate, ImportOutcome, MotionDb};
-use serde_json::{Map, Value, json};
+use morec_live::write_pose_lines;
 
 use crate::output::write_whole;
 
@@ -93,40 +91,8 @@ pub fn write_bvh(recording: &Recording, file: &Path) -> Result<()> {
 }
 
 fn write_lines(recording: &Recording, file: &Path) -> Result<()> {
-    write_whole(file, |out| lines(recording, out)).with_context(|| file.display().to_string())
-}
-
-/// A line for each frame, its time from the first.
-fn lines(recording: &Recording, out: &mut dyn Write) -> std::io::Result<()> {
-    let rig = recording.rig();
-    let begun_secs = recording
-        .frames()
-        .first()
-        .map_or(0.0, |frame| frame.time_secs);
-    for frame in recording.frames() {
-        let pose = frame.key_pose(rig);
-        let mut positions = Map::new();
-        for role in Role::ALL {
-            if let Some(place) = pose.get(role) {
-                let place = [place.x, place.y, place.z].map(|c| rounded(c, 1e6));
-                positions.insert(role.name().to_owned(), json!(place));
-            }
-        }
-        if positions.is_empty() {
-            continue;
-        }
-        let secs = rounded(frame.time_secs - begun_secs, 1e6);
-        let (actor, positions) = (frame.actor.0, Value::Object(positions));
-        writeln!(
-            out,
-            r#"{{"t": {secs}, "actor": {actor}, "positions": {positions}}}"#
-        )?;
-    }
-    Ok(())
-}
-
-fn rounded(value: f64, steps: f64) -> f64 {
-    (value * steps).round() / steps
+    write_whole(file, |out| write_pose_lines(recording, out))
+        .with_context(|| file.display().to_string())
 }
 
 fn import(database: &Path, file: &Path) -> Result<()> {

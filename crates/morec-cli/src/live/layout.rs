@@ -1,6 +1,7 @@
 //! How recognition is laid out on threads, as it is typed.
 
 use morec::live::{Layout, SessionOptions};
+use morec_live::pin_thread;
 
 /// `--layout`.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -20,36 +21,12 @@ impl LayoutArg {
         let (layout, on_thread): (_, Option<fn(&'static str)>) = match self {
             LayoutArg::Inline => (Layout::Inline, None),
             LayoutArg::Stages => (Layout::Stages, None),
-            LayoutArg::Pinned => (Layout::Stages, Some(pin)),
+            LayoutArg::Pinned => (Layout::Stages, Some(pin_thread)),
         };
         SessionOptions {
             layout,
             on_thread,
             ..SessionOptions::default()
         }
-    }
-}
-
-/// Threads in the order in which frames pass them: neighbours go to neighbouring cores.
-const STAGES: [&str; 7] = [
-    "source",
-    "input",
-    "segments",
-    "extraction",
-    "classification",
-    "scoring",
-    "tracking",
-];
-
-/// Ties this thread to its core. Where the system allows no such thing, the thread goes where it is sent.
-fn pin(what: &'static str) {
-    let (Some(stage), Some(cores)) = (
-        STAGES.iter().position(|stage| *stage == what),
-        core_affinity::get_core_ids(),
-    ) else {
-        return;
-    };
-    if let Some(core) = cores.get(stage % cores.len().max(1)) {
-        core_affinity::set_for_current(*core);
     }
 }

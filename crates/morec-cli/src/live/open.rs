@@ -1,21 +1,14 @@
 //! Sources as they are typed, opened.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use anyhow::{Result, bail};
-use morec::import::ImportOptions;
+use anyhow::Result;
 use morec::index::MotionIndex;
-use morec::live::axis::AxisOptions;
-use morec::live::vmc::VmcOptions;
-use morec::live::{MAX_ACTORS, Overload, Source};
+use morec::live::MAX_ACTORS;
+use morec_live::{Address, OpenSource, SourceOptions, open_source};
 
-use super::address::Address;
-use super::axis::{self, AxisSource};
-use super::clip::ClipSource;
-use super::complaints::Complaints;
-use super::json::JsonSource;
-use super::vmc::VmcSource;
 use crate::files::mapping;
+use crate::output;
 
 /// What can be said of trackers.
 #[derive(clap::Args, Debug)]
@@ -38,87 +31,25 @@ pub struct TrackerArgs {
     pub roles: Option<PathBuf>,
 }
 
-/// A source that has been opened.
-pub struct Opened {
-    /// It.
-    pub source: Box<dyn Source>,
-    /// Whether it can wait for whoever takes its frames.
-    pub overload: Overload,
-    /// What it is called, with the port that was free if it asked for any.
-    pub name: String,
-    /// What it finds wrong with what it is sent.
-    pub complaints: Complaints,
-}
-
 impl TrackerArgs {
-    /// Opens the source at `address`. `index` knows the roles of joints of its own clips.
-    pub fn open(&self, address: &Address, index: Option<&MotionIndex>) -> Result<Opened> {
-        let mut complaints = Complaints::default();
-        let (source, overload, name): (Box<dyn Source>, Overload, String) = match address
-            .kind
-            .as_str()
-        {
-            "vmc" => {
-                let source = self.vmc(address)?;
-                let name = format!("vmc://{}", source.address()?);
-                (Box::new(source), Overload::Drop, name)
-            }
-            "axis" | "axis+udp" => {
-                let (source, name) = AxisSource::open(address, &self.axis()?)?;
-                (Box::new(source), Overload::Drop, name)
-            }
-            "json" => {
-                let source = JsonSource::open(address)?;
-                complaints = source.complaints();
-                (Box::new(source), Overload::Wait, address.to_string())
-            }
-            "json+tcp" => {
-                let (source, at) = JsonSource::listen(address)?;
-                complaints = source.complaints();
-                (Box::new(source), Overload::Wait, format!("json+tcp://{at}"))
-            }
-            "clip" => {
-                let options = ImportOptions {
-                    mapping: mapping(self.roles.as_deref())?,
-                    ..ImportOptions::default()
-                };
-                let source = ClipSource::open(address, index, &options)?;
-                let paced = source.is_paced();
-                let overload = if paced {
-                    Overload::Drop
-                } else {
-                    Overload::Wait
-                };
-                (Box::new(source), overload, address.to_string())
-            }
-            other => bail!(
-                "{address}: no source is called {other}; there are vmc://HOST:PORT, axis://HOST:PORT, axis+udp://HOST:PORT, json:-, json+tcp://HOST:PORT, clip://FILE"
-            ),
-        };
-        eprintln!("morec: listening to {name}");
-        Ok(Opened {
-            source,
-            overload,
-            name,
-            complaints,
-        })
-    }
-
-    fn vmc(&self, address: &Address) -> Result<VmcSource> {
-        address.allow(&[])?;
-        let options = VmcOptions {
+    /// Opens the source at `address` and says so. `index` knows the roles of joints of its own clips.
+    pub fn open(&self, address: &Address, index: Option<&MotionIndex>) -> Result<OpenSource> {
+        if address.kind == "clip" {
+            output::mark_read(Path::new(&address.place));
+        }
+        if let Some(skeleton) = &self.skeleton {
+            output::mark_read(skeleton);
+        }
+        let options = SourceOptions {
             mirrored: self.mirror,
             actors: self.actors.into(),
             skip_t_pose: !self.keep_t_pose,
+            axis_skeleton: self.skeleton.clone(),
+            roles: mapping(self.roles.as_deref())?,
+            index,
         };
-        VmcSource::bind(address.socket()?, &options)
-    }
-
-    fn axis(&self) -> Result<AxisOptions> {
-        let skeleton = self.skeleton.as_deref().map(axis::skeleton).transpose()?;
-        Ok(AxisOptions {
-            skeleton: skeleton.unwrap_or_default(),
-            actors: self.actors.into(),
-        })
+        let opened = open_source(address, &options)?;
+        eprintln!("morec: listening to {}", opened.name);
+        Ok(opened)
     }
 }

@@ -9,7 +9,7 @@ use std::time::Instant;
 use anyhow::{Result, bail};
 use morec::live::{Actor, Frame, MAX_ACTORS, Next, Recording, Rig};
 
-use super::open::Opened;
+use morec_live::OpenSource;
 
 /// A take that is shorter than this is none, seconds.
 pub const SHORTEST_SECS: f64 = 0.3;
@@ -53,7 +53,7 @@ pub enum Ended {
 
 /// A source before which somebody performs.
 pub struct Stage {
-    opened: Opened,
+    opened: OpenSource,
     actor: Actor,
     bell: bool,
     count_down_secs: f64,
@@ -66,7 +66,7 @@ pub struct Stage {
 
 impl Stage {
     /// Before `opened`. `stop` is set when somebody wants it all to end.
-    pub fn new(opened: Opened, args: &TakeArgs, stop: Arc<AtomicBool>) -> Self {
+    pub fn new(opened: OpenSource, args: &TakeArgs, stop: Arc<AtomicBool>) -> Self {
         // Poses on standard input leave no room for anybody's words.
         let keys = (!opened.name.starts_with("json:")).then(typed);
         Self {
@@ -112,7 +112,7 @@ impl Stage {
             Next::Ended => self.ended = true,
             _ => {}
         }
-        for text in self.opened.complaints.take() {
+        for text in self.opened.notices.take() {
             eprintln!("morec: {}: {text}", self.opened.name);
         }
         (next, &self.frame)

@@ -6,21 +6,20 @@ use morec::live::{
     Detection, Event, EventOptions, Frame, Model, Next, Performer, Phase, SourceCounts,
 };
 
-use super::loaded::Loaded;
-use super::network::{Conditions, Network};
+use morec_live::{Accidents, Network, PlayableClip};
 
 /// Somebody stands still before the performance, until the receiver knows the skeleton.
 const BEFORE_SECS: f64 = 1.0;
 
-/// Sends `loaded` frame by frame, carries the packets and recognises what arrives. Times are the clip's.
+/// Sends `played` frame by frame, carries the packets and recognises what arrives. Times are the clip's.
 pub fn recognise_over_vmc(
     model: &Model,
-    loaded: &Loaded,
+    played: &PlayableClip,
     bundle: Bundling,
-    conditions: &Conditions,
+    accidents: &Accidents,
 ) -> (Vec<Detection>, SourceCounts) {
     let mut sender = VmcSender::new(bundle, true);
-    let mut network = Network::new(conditions);
+    let mut network = Network::new(accidents);
     let mut over = Over {
         receiver: VmcReceiver::new(&VmcOptions::default()),
         performer: Performer::new(
@@ -35,13 +34,13 @@ pub fn recognise_over_vmc(
         found: Vec::new(),
     };
     let (mut pose, mut now_secs) = (WorldPose::default(), 0.0f64);
-    let rate_hz = loaded.clip.rate_hz;
+    let rate_hz = played.clip.rate_hz;
     let before = (BEFORE_SECS * rate_hz) as usize;
-    for step in 0..before + loaded.clip.frames - loaded.first {
+    for step in 0..before + played.clip.frames - played.first {
         let time_secs = step as f64 / rate_hz;
-        pose.set(&loaded.clip, loaded.first + step.saturating_sub(before));
+        pose.set(&played.clip, played.first + step.saturating_sub(before));
         now_secs = now_secs.max(time_secs + network.delay_secs());
-        for packet in sender.frame(time_secs, &pose, &loaded.roles) {
+        for packet in sender.frame(time_secs, &pose, &played.roles) {
             // Taking a packet cannot fail.
             let _ = network.carry::<()>(packet, &mut |bytes| {
                 over.receiver.packet((), now_secs, bytes);
@@ -60,7 +59,7 @@ pub fn recognise_over_vmc(
     } = over;
     performer.finish(&mut |event| found.extend(detection(&event)));
     // From the receiver's clock to the clip's.
-    let shift_secs = (loaded.first as f64 - before as f64) / rate_hz;
+    let shift_secs = (played.first as f64 - before as f64) / rate_hz;
     for d in &mut found {
         d.start_secs = (d.start_secs + shift_secs).max(0.0);
         d.stop_secs += shift_secs;
@@ -92,11 +91,5 @@ impl Over {
 }
 
 fn detection(event: &Event) -> Option<Detection> {
-    (event.phase == Phase::End).then_some(Detection {
-        class: event.class,
-        start_secs: event.start_secs,
-        stop_secs: event.stop_secs,
-        score: event.score,
-        reported_secs: event.reported_secs,
-    })
+    (event.phase == Phase::End).then(|| event.detection())
 }

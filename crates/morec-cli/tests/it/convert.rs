@@ -90,7 +90,7 @@ fn positions_go_through_every_format_of_points() {
         }
         from = to;
     }
-    let refused = folder.morec(&["cut", "points.c3d"]);
+    let refused = folder.morec(&["cut", "points.c3d", "--method", "ppca"]);
     assert!(refused.err.contains("positions alone"), "{refused:?}");
 }
 

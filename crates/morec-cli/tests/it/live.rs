@@ -176,16 +176,6 @@ fn a_clip_ends_by_itself_and_what_cannot_be_opened_says_why() {
     );
 }
 
-#[test]
-fn every_lap_of_a_soak_finds_the_same() {
-    let folder = folder();
-    let out = folder
-        .morec(&["soak", "v1.index", "person.bvh", "--hours", "0.02"])
-        .ok();
-    assert!(out.contains("every lap found the same"), "{out}");
-    assert!(out.contains("processing of one frame"), "{out}");
-}
-
 /// `morec send` as a broadcast, waiting for somebody to listen; and where it is.
 fn broadcast(folder: &Folder, at: &str) -> (Child, String) {
     let mut child = Command::new(env!("CARGO_BIN_EXE_morec"))
@@ -256,7 +246,7 @@ fn a_skeleton_that_is_not_the_broadcasts_is_refused() {
 }
 
 #[test]
-fn both_layouts_recognise_the_same_and_soak_in_stages() {
+fn both_layouts_recognise_the_same() {
     let folder = folder();
     let svrdm = include_bytes!("../../../morec/testdata/index/svrdm_v1.index");
     std::fs::write(folder.path().join("svrdm.index"), svrdm).unwrap();
@@ -273,33 +263,4 @@ fn both_layouts_recognise_the_same_and_soak_in_stages() {
         ])
         .ok();
     assert_eq!(staged, inline);
-    let out = folder
-        .morec(&[
-            "soak",
-            "svrdm.index",
-            "person.bvh",
-            "--hours",
-            "0.01",
-            "--layout",
-            "stages",
-        ])
-        .ok();
-    assert!(out.contains("every lap found the same"), "{out}");
-    let out = folder
-        .morec(&[
-            "soak",
-            "svrdm.index",
-            "person.bvh",
-            "--layout",
-            "both",
-            "--for",
-            "1",
-        ])
-        .ok();
-    assert!(out.contains("stages to inline"), "{out}");
-    let ran = folder.morec(&["soak", "v1.index", "person.bvh", "--layout", "stages"]);
-    assert!(
-        ran.code == Some(1) && ran.err.contains("expected an index of method svrdm"),
-        "{ran:?}"
-    );
 }

@@ -50,7 +50,9 @@ fn cuts_are_printed_and_drawn() {
     let folder = folder();
     let found = json(
         &folder
-            .morec(&["cut", "clips", "--json", "--pivots", "roles", "--rise", "2"])
+            .morec(&[
+                "cut", "clips", "--json", "--method", "ppca", "--pivots", "roles", "--rise", "2",
+            ])
             .ok(),
     );
     let clips = found.as_array().unwrap();
@@ -72,6 +74,8 @@ fn cuts_are_printed_and_drawn() {
     let out = folder.morec(&[
         "cut",
         "clips/ann.bvh",
+        "--method",
+        "ppca",
         "--pivots",
         "roles",
         "--rise",
@@ -93,7 +97,7 @@ fn cuts_are_printed_and_drawn() {
     let few = json(
         &folder
             .morec(&[
-                "cut", "clips", "--json", "--pivots", "roles", "--rise", "1e9",
+                "cut", "clips", "--json", "--method", "ppca", "--pivots", "roles", "--rise", "1e9",
             ])
             .ok(),
     );
@@ -103,11 +107,43 @@ fn cuts_are_printed_and_drawn() {
             .iter()
             .all(|clip| cuts(clip).is_empty())
     );
-    let two = folder.morec(&["cut", "clips", "--plot", "h.svg", "--pivots", "roles"]);
+    let drawn = ["cut", "clips", "--plot", "h.svg", "--pivots", "roles"];
+    let two = folder.morec(&[&drawn[..], &["--method", "ppca"]].concat());
     assert!(
         two.code == Some(1) && two.err.contains("--plot draws one clip"),
         "{two:?}"
     );
+    let kernel = folder.morec(&drawn);
+    assert!(kernel.err.contains("--method ppca"), "{kernel:?}");
+}
+
+/// Clips and a database are cut by one command, with one default; the spelling of old says so.
+#[test]
+fn a_database_is_cut_as_its_clips_are() {
+    let folder = folder();
+    folder.morec(&["db", "import", "m.mdb", "clips"]).ok();
+    let of_files = json(&folder.morec(&["cut", "clips", "--json"]).ok());
+    let of_db = json(&folder.morec(&["cut", "m.mdb", "--json"]).ok());
+    let secs = |clip: &Value| -> Vec<f64> {
+        let cuts = clip["cuts"].as_array().map(|cuts| cuts.iter().map(|cut| &cut["secs"]).collect());
+        let cuts: Vec<&Value> = cuts.unwrap_or_else(|| clip["cuts_secs"].as_array().unwrap().iter().collect());
+        cuts.iter().map(|secs| secs.as_f64().unwrap()).collect()
+    };
+    let (files, db) = (of_files.as_array().unwrap(), of_db.as_array().unwrap());
+    assert_eq!((files.len(), db.len()), (2, 2));
+    for (file, kept) in files.iter().zip(db) {
+        assert_eq!(file["clip"], kept["clip"]);
+        let (a, b) = (secs(file), secs(kept));
+        assert!(!a.is_empty(), "{file}");
+        // The database keeps motion within half a degree: a cut may move by a tick or two.
+        assert_eq!(a.len(), b.len(), "{a:?} {b:?}");
+        assert!(a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 0.15), "{a:?} {b:?}");
+    }
+    let old = folder.morec(&["db", "cut", "m.mdb", "--json"]);
+    assert!(old.err.contains("is `morec cut` now"), "{old:?}");
+    assert_eq!(json(&old.ok()), of_db);
+    let mixed = folder.morec(&["cut", "m.mdb", "clips"]);
+    assert!(mixed.err.contains("a database stands alone"), "{mixed:?}");
 }
 
 #[test]
@@ -226,11 +262,11 @@ fn what_cannot_be_done_is_said() {
     write("pelvis.json", r#"[{"name":"Pelvis","joints":["pelvis"]}]"#);
     let cases: [(&[&str], &str); 7] = [
         (
-            &["cut", "wave.bvh", "--pivots", "pivots.json"],
+            &["cut", "wave.bvh", "--method", "ppca", "--pivots", "pivots.json"],
             "the first pivot is the root and has no parent",
         ),
         (
-            &["cut", "wave.bvh", "--pivots", "none.json"],
+            &["cut", "wave.bvh", "--method", "ppca", "--pivots", "none.json"],
             "--pivots: none.json",
         ),
         (

@@ -36,7 +36,7 @@ pub(super) fn check_name(name: &str) -> Result<&str, DbError> {
 pub(super) fn find(conn: &Connection, name: &str) -> Result<Option<i64>, DbError> {
     let sql = "SELECT id FROM classes WHERE name = ?1";
     Ok(conn
-        .prepare(sql)?
+        .prepare_cached(sql)?
         .query_row(params![name], |row| row.get(0))
         .optional()?)
 }
@@ -138,7 +138,7 @@ impl MotionDb {
         self.edit(
             &format!("move {} samples to {into}", samples.len()),
             |conn| {
-                let mut known = conn.prepare("SELECT 1 FROM samples WHERE id = ?1")?;
+                let mut known = conn.prepare_cached("SELECT 1 FROM samples WHERE id = ?1")?;
                 for id in samples {
                     if !known.exists(params![id.0])? {
                         return Err(DbError::unknown("sample", &format!("#{}", id.0)));

@@ -207,7 +207,7 @@ fn is_there(conn: &Connection, label: &NewSample) -> Result<bool, DbError> {
         label.start_secs,
         label.stop_secs
     ];
-    Ok(conn.prepare(sql)?.exists(given)?)
+    Ok(conn.prepare_cached(sql)?.exists(given)?)
 }
 
 /// The sample that a label stands for: of the same stretch, or the one of its class that overlaps it most.

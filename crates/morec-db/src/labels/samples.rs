@@ -103,31 +103,31 @@ pub struct SampleFilter {
 }
 
 fn sample(row: &Row<'_>) -> rusqlite::Result<DbSample> {
-    let state: String = row.get(8)?;
+    let state: String = row.get("state")?;
     Ok(DbSample {
-        id: SampleId(row.get(0)?),
-        clip: ClipId(row.get(1)?),
-        clip_name: row.get(2)?,
-        subject: row.get(3)?,
-        class: row.get(4)?,
-        start_secs: row.get(5)?,
-        stop_secs: row.get(6)?,
-        whole_clip: row.get(7)?,
+        id: SampleId(row.get("id")?),
+        clip: ClipId(row.get("clip")?),
+        clip_name: row.get("clip_name")?,
+        subject: row.get("subject")?,
+        class: row.get("class")?,
+        start_secs: row.get("start_secs")?,
+        stop_secs: row.get("stop_secs")?,
+        whole_clip: row.get("whole_clip")?,
         // The table allows no other.
         state: State::from_name(&state).unwrap_or(State::Proposed),
-        score: row.get(9)?,
-        set_by: row.get(10)?,
-        set_secs: row.get(11)?,
-        rate_hz: row.get(12)?,
+        score: row.get("score")?,
+        set_by: row.get("set_by")?,
+        set_secs: row.get("set_secs")?,
+        rate_hz: row.get("rate_hz")?,
     })
 }
 
 impl MotionDb {
     /// The samples of a filter, by clip and time.
     pub fn samples(&self, filter: &SampleFilter) -> Result<Vec<DbSample>, DbError> {
-        let mut statement = self.conn.prepare(
-            "SELECT s.id, s.clip, c.name, c.subject, n.name, s.start_secs, s.stop_secs, s.whole_clip, s.state, s.score, \
-             s.set_by, s.set_secs, c.rate_hz FROM samples s JOIN clips c ON c.id = s.clip JOIN classes n ON n.id = s.class \
+        let mut statement = self.conn.prepare_cached(
+            "SELECT s.id, s.clip, c.name AS clip_name, c.subject, n.name AS class, s.start_secs, s.stop_secs, s.whole_clip, \
+             s.state, s.score, s.set_by, s.set_secs, c.rate_hz FROM samples s JOIN clips c ON c.id = s.clip JOIN classes n ON n.id = s.class \
              WHERE (?1 IS NULL OR s.clip = ?1) AND (?2 IS NULL OR n.name = ?2) AND (?3 IS NULL OR s.state = ?3) \
              ORDER BY c.name, s.start_secs, s.stop_secs, n.name",
         )?;
@@ -248,7 +248,7 @@ impl MotionDb {
     /// Forgets samples. Gives how many there were.
     pub fn remove_samples(&mut self, samples: &[SampleId]) -> Result<usize, DbError> {
         self.edit(&format!("remove {} samples", samples.len()), |conn| {
-            let mut statement = conn.prepare("DELETE FROM samples WHERE id = ?1")?;
+            let mut statement = conn.prepare_cached("DELETE FROM samples WHERE id = ?1")?;
             let mut removed = 0;
             for id in samples {
                 removed += statement.execute(params![id.0])?;
@@ -266,7 +266,7 @@ fn judge(
 ) -> Result<usize, DbError> {
     let sql =
         "UPDATE samples SET state = ?2, set_by = ?3, set_secs = ?4 WHERE id = ?1 AND state <> ?2";
-    let mut statement = conn.prepare(sql)?;
+    let mut statement = conn.prepare_cached(sql)?;
     let mut changed = 0;
     for id in samples {
         changed += statement.execute(params![id.0, state.name(), by, now_secs()])?;
@@ -296,13 +296,13 @@ pub(super) fn add(
     let class = classes::find_or_make(conn, &sample.class)?;
     let extent = params![sample.clip.0, class, sample.start_secs, sample.stop_secs];
     let there: Option<(i64, String)> = conn
-        .prepare(
+        .prepare_cached(
             "SELECT id, state FROM samples WHERE clip = ?1 AND class = ?2 AND start_secs = ?3 AND stop_secs = ?4",
         )?
         .query_row(extent, |row| Ok((row.get(0)?, row.get(1)?)))
         .optional()?;
     let Some((id, state)) = there else {
-        conn.prepare(
+        conn.prepare_cached(
             "INSERT INTO samples (clip, class, start_secs, stop_secs, whole_clip, state, score, set_by, set_secs) \
              VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)",
         )?
@@ -326,7 +326,7 @@ pub(super) fn add(
     if state == sample.state.name() || sample.state == State::Proposed {
         return Ok((Change::None, Others::default()));
     }
-    conn.prepare("UPDATE samples SET state = ?2, set_by = ?3, set_secs = ?4 WHERE id = ?1")?
+    conn.prepare_cached("UPDATE samples SET state = ?2, set_by = ?3, set_secs = ?4 WHERE id = ?1")?
         .execute(params![id, sample.state.name(), by, now_secs()])?;
     Ok((Change::Judged, Others::default()))
 }
@@ -350,7 +350,7 @@ fn reject_instead(
     ];
     let sql = format!("SELECT class FROM samples WHERE {stretch} AND set_by = ?5");
     let groups: Vec<i64> = conn
-        .prepare(&sql)?
+        .prepare_cached(&sql)?
         .query_map(given, |row| row.get(0))?
         .collect::<Result<_, _>>()?;
     let sql = format!("DELETE FROM samples WHERE {stretch} AND set_by = ?5");
@@ -364,7 +364,7 @@ fn reject_instead(
     let sql = format!(
         "UPDATE samples SET state = 'rejected', set_by = ?5, set_secs = ?6 WHERE {stretch}"
     );
-    let rejected = conn.prepare(&sql)?.execute(params![
+    let rejected = conn.prepare_cached(&sql)?.execute(params![
         sample.clip.0,
         sample.start_secs,
         sample.stop_secs,
@@ -381,7 +381,7 @@ fn reject_instead(
 pub(super) fn check_extent(conn: &Connection, sample: &NewSample) -> Result<(), DbError> {
     let sql = "SELECT name, frames / rate_hz, rate_hz FROM clips WHERE id = ?1";
     let clip: Option<(String, f64, f64)> = conn
-        .prepare(sql)?
+        .prepare_cached(sql)?
         .query_row(params![sample.clip.0], |row| {
             Ok((row.get(0)?, row.get(1)?, row.get(2)?))
         })

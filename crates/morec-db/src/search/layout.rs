@@ -1,9 +1,11 @@
 //! One layout for rows of any set of bones, and its mirror image.
 
-use morec::features::{BONES, BoneSet, Rows, mirrored_rows, opposite_bone};
+use morec::features::{BONES, BoneSet, FeatureParams, Rows, mirrored_rows, opposite_bone};
 
 /// Values in a laid-out row: directions and velocities of every bone, then the root.
 pub const DIM: usize = 6 * BONES + 4;
+/// How kept rows weigh root motion.
+pub const ROOT_WEIGHT: f64 = FeatureParams::ROOT_WEIGHT;
 
 /// Rows over all bones; those that a clip does not show are 0.
 #[derive(Debug, Clone)]

@@ -9,6 +9,7 @@ use std::ops::Range;
 
 use morec::features::{BONES, BoneSet, opposite_bone, reflected_direction};
 
+use super::layout::ROOT_WEIGHT;
 use super::windows::Sums;
 
 /// Coordinates of directions.
@@ -80,7 +81,7 @@ impl Sums {
         for (i, sum) in root.iter().enumerate() {
             // Rows hold root motion weighted; leg lengths a second and radians a second are meant. Twice as fast is as
             // much for a slow walk as for a run.
-            out[ROOT + i] = (sum / n / 0.3).asinh() as f32;
+            out[ROOT + i] = (sum / n / ROOT_WEIGHT).asinh() as f32;
         }
         out
     }
@@ -129,7 +130,7 @@ impl Sums {
             out[X + i] = means[i] as f32;
         }
         for (out, sum) in out[2 * X..].iter_mut().zip(root) {
-            *out = (sum / span.len() as f64 / 0.3).asinh() as f32;
+            *out = (sum / span.len() as f64 / ROOT_WEIGHT).asinh() as f32;
         }
         out
     }
@@ -272,7 +273,7 @@ mod tests {
         }
         for i in 0..4 {
             let mean = (0..n).map(|t| value(t, DIM - 4 + i)).sum::<f64>() / n as f64;
-            out[ROOT + i] = (mean / 0.3).asinh();
+            out[ROOT + i] = (mean / ROOT_WEIGHT).asinh();
         }
         out
     }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use morec::features::{BONES, Rows};
 
-use super::layout::DIM;
+use super::layout::{DIM, ROOT_WEIGHT};
 
 /// Coordinates of directions.
 const X: usize = 3 * BONES;
@@ -73,7 +73,7 @@ impl Sums {
         }
         for (out, sum) in out[2 * X..].iter_mut().zip(root) {
             // Rows hold root motion weighted; the summary wants it in leg lengths a second.
-            *out = 2.0 * ((sum / span.len() as f64 / 0.3).tanh() as f32);
+            *out = 2.0 * ((sum / span.len() as f64 / ROOT_WEIGHT).tanh() as f32);
         }
     }
 }

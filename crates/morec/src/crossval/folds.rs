@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::labels::Sample;
-use crate::synth::Rng;
+use crate::rng::Rng;
 
 /// What is left out of training in turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

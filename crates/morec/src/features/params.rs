@@ -44,6 +44,9 @@ impl Default for FeatureParams {
 }
 
 impl FeatureParams {
+    /// [`root_weight`](Self::root_weight) unless said otherwise.
+    pub const ROOT_WEIGHT: f64 = 0.3;
+
     /// The values of the reference prototype, whose golden figures the tests hold us to.
     pub fn reference() -> Self {
         Self {
@@ -55,7 +58,7 @@ impl FeatureParams {
             root_cut_frames: 12,
             velocity_saturation: 2.0,
             velocity_weight: 0.5,
-            root_weight: 0.3,
+            root_weight: Self::ROOT_WEIGHT,
             follow_noise: false,
         }
     }

@@ -11,8 +11,8 @@ use super::points::{Point, PointTable, UNSEEN, check_size};
 use super::timing::{Clock, Schedule};
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::clip::{Clip, Joint, JointTrack, Skeleton};
-use crate::live::vmc::{HUMANOID, rotation_of_unity};
-use crate::math::{Quat, Vec3, same_hemisphere, slerp};
+use crate::humanoid::{HUMANOID, HumanoidBone};
+use crate::math::{Quat, Vec3, rotation_of_xyzw, same_hemisphere, slerp};
 use crate::roles::Role;
 
 /// Frames a second of lines without times.
@@ -168,7 +168,7 @@ fn bone_of(role: Role) -> Option<usize> {
 
 /// The standard body that live sources of rotations are shown on, its joints by the names of their roles.
 fn skeleton() -> Result<Skeleton, ParseError> {
-    let joint = |bone: &crate::live::vmc::HumanoidBone| {
+    let joint = |bone: &HumanoidBone| {
         // The table faces −Z.
         let [x, y, z] = bone.offset;
         Joint {
@@ -200,8 +200,7 @@ fn turned(
             .cloned()
             .unwrap_or_else(|| vec![Quat::identity(); joints]);
         for (name, value) in &line.rotations {
-            // The conversion turns Z and w round: twice round is as it was.
-            let rotation = value.and_then(|[x, y, z, w]| rotation_of_unity([x, y, -z, -w]));
+            let rotation = value.and_then(rotation_of_xyzw);
             match (Role::from_name(name).and_then(bone_of), rotation) {
                 (Some(joint), Some(q)) => pose[joint] = same_hemisphere(&pose[joint], q),
                 _ => ignored += 1,

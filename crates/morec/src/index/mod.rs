@@ -19,6 +19,7 @@
 //! A file of a version this program knows opens in every later release; `testdata/index/` keeps one of each.
 
 mod manifest;
+mod model;
 mod read;
 mod svrdm;
 mod templates;
@@ -29,8 +30,9 @@ use std::collections::BTreeMap;
 #[cfg(feature = "files")]
 use std::path::Path;
 
-use crate::live::Model;
 use crate::roles::{Role, RoleMap};
+
+pub use model::{Model, SensitivityError};
 
 /// Version of index files that this program writes, and the newest it reads.
 pub const INDEX_VERSION: u32 = 1;

@@ -4,10 +4,8 @@ use std::collections::{BTreeMap, HashMap};
 
 use serde::Serialize;
 
-use crate::live::Model;
-
 use super::tensors::{Tensor, checksum};
-use super::{IndexError, MotionIndex, svrdm, templates};
+use super::{IndexError, Model, MotionIndex, svrdm, templates};
 
 impl MotionIndex {
     /// The file's bytes: equal for equal indexes.

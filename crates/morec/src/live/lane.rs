@@ -187,6 +187,9 @@ impl Lane {
             .suppressed
             .store(sum(Performer::suppressed), Relaxed);
         self.cells
+            .dropped_detections
+            .store(sum(Performer::dropped), Relaxed);
+        self.cells
             .unusable
             .store(sum(Performer::unusable) + self.beyond, Relaxed);
     }

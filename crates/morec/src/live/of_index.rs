@@ -1,21 +1,23 @@
 //! Recognition with an index.
 
-use crate::Error;
 use crate::features::BoneSet;
-use crate::import::Take;
 use crate::index::MotionIndex;
 
-use super::{Detection, Recognizer, StartError, recognize_clip};
+use super::{Recognizer, StartError};
 
 impl MotionIndex {
     /// What recognition reports of `take`, pose by pose as it would be live; times from its beginning.
     ///
     /// # Errors
     /// The take shows no bone that the index uses, or the index needs joint rotations that it lacks.
-    pub fn recognize(&self, take: &Take) -> Result<Vec<Detection<&str>>, Error> {
+    #[cfg(feature = "formats")]
+    pub fn recognize(
+        &self,
+        take: &crate::Take,
+    ) -> Result<Vec<super::Detection<&str>>, crate::Error> {
         let mut roles = take.roles.clone();
         self.complete_roles(&mut roles, &take.clip.skeleton);
-        let found = recognize_clip(&self.model, &take.clip, &roles, take.rest())?;
+        let found = super::recognize_clip(&self.model, &take.clip, &roles, take.rest())?;
         Ok(found.into_iter().map(|d| d.named(&self.model)).collect())
     }
 

@@ -45,6 +45,7 @@ pub struct Performer {
     teller: Teller,
     wall_secs: f64,
     unusable: u64,
+    dropped: u64,
     /// Made with the first skeleton: a performer that never comes needs none.
     diagnoser: Option<Box<Diagnoser>>,
 }
@@ -63,6 +64,7 @@ impl Performer {
             early: Early::default(),
             wall_secs: 0.0,
             unusable: 0,
+            dropped: 0,
             diagnoser: None,
         }
     }
@@ -71,6 +73,7 @@ impl Performer {
     pub fn set_rig(&mut self, rig: &Arc<Rig>, out: &mut impl FnMut(Event)) {
         self.finish(out);
         self.rig = Some(rig.clone());
+        self.dropped = self.dropped();
         self.recognizer = None;
         self.diagnoser = Some(Box::new(Diagnoser::live()));
         self.reader = PoseReader::new(&self.model, &rig.skeleton, &rig.roles).ok();
@@ -141,6 +144,11 @@ impl Performer {
     /// Frames that could not be used: no skeleton was known, or none of its bones are the index's.
     pub fn unusable(&self) -> u64 {
         self.unusable
+    }
+
+    /// Detections that were lost because one frame settled more than a recogniser keeps.
+    pub fn dropped(&self) -> u64 {
+        self.dropped + self.recognizer.as_ref().map_or(0, Recognizer::dropped)
     }
 
     /// Motions that were not told because of [`EventOptions::refractory_secs`].

@@ -78,6 +78,8 @@ pub(super) struct Steps {
 pub(super) struct Found {
     detections: Vec<Detection>,
     reported_secs: f64,
+    /// Detections for which there was no room.
+    dropped: u64,
 }
 
 impl Found {
@@ -85,6 +87,7 @@ impl Found {
         Self {
             detections: Vec::with_capacity(MAX_DETECTIONS_PER_PUSH),
             reported_secs: 0.0,
+            dropped: 0,
         }
     }
 
@@ -104,6 +107,8 @@ impl Found {
                 score,
                 reported_secs: self.reported_secs,
             });
+        } else {
+            self.dropped += 1;
         }
     }
 }
@@ -113,6 +118,7 @@ impl Clone for Found {
     fn clone(&self) -> Self {
         let mut copy = Self {
             reported_secs: self.reported_secs,
+            dropped: self.dropped,
             ..Self::new()
         };
         copy.detections.extend_from_slice(&self.detections);
@@ -196,6 +202,12 @@ impl Recognizer {
         &self.found.detections
     }
 
+    /// Detections that were lost because one push settled more than 64. None in practice: a push that follows a gap
+    /// completes a second of ticks at most.
+    pub fn dropped(&self) -> u64 {
+        self.found.dropped
+    }
+
     /// What seems to be under way after the last push, if anything does. Tentative: it says nothing about what
     /// [`push`](Self::push) will report, and asking changes nothing of that. Templates only. No allocation.
     pub fn hunch(&mut self) -> Option<Hunch> {
@@ -224,5 +236,28 @@ impl Recognizer {
             Path::Templates(path) => path.end_stretch(&mut self.found),
             Path::Svrdm(path) => path.end_stretch(&mut self.found),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_there_is_no_room_for_is_counted() {
+        let mut found = Found::new();
+        let at = Steps {
+            origin_secs: 0.0,
+            step_secs: 0.1,
+        };
+        found.begin(1.0);
+        for start in 0..70 {
+            found.add(ClassId(0), at, start, start + 1, 0.5);
+        }
+        assert_eq!((found.detections.len(), found.dropped), (64, 6));
+        found.begin(2.0);
+        found.add(ClassId(0), at, 0, 1, 0.5);
+        assert_eq!((found.detections.len(), found.dropped), (1, 6));
+        assert_eq!(found.clone().dropped, 6);
     }
 }

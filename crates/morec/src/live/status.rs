@@ -85,6 +85,7 @@ pub(super) struct Cells {
     pub(super) unusable: AtomicU64,
     pub(super) events: AtomicU64,
     pub(super) dropped_events: AtomicU64,
+    pub(super) dropped_detections: AtomicU64,
     pub(super) motions: AtomicU64,
     pub(super) suppressed: AtomicU64,
     pub(super) source: [AtomicU64; 8],
@@ -227,7 +228,8 @@ impl Cells {
             dropped_frames: self.dropped_frames.load(Relaxed),
             unusable_frames: self.unusable.load(Relaxed),
             events: self.events.load(Relaxed),
-            dropped_events: self.dropped_events.load(Relaxed),
+            dropped_events: self.dropped_events.load(Relaxed)
+                + self.dropped_detections.load(Relaxed),
             motions: self.motions.load(Relaxed),
             suppressed: self.suppressed.load(Relaxed),
             source,

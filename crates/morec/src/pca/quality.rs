@@ -1,7 +1,5 @@
 //! How many dimensions keep how much.
 
-use crate::plot::Chart;
-
 /// How many dimensions to keep.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -54,13 +52,4 @@ pub struct QualityRow {
     pub quality: f64,
     /// The last of them: `λᵣ`, an eigenvalue of `M`.
     pub eigenvalue: f64,
-}
-
-/// The quality table as a curve, with the dimensions kept (`dims`) marked.
-pub fn quality_chart(table: &[QualityRow], dims: usize, title: &str) -> Chart {
-    let curve = table.iter().map(|row| (row.dims as f64, row.quality));
-    Chart::new(title)
-        .axes("dimensions", "share of the variance")
-        .line("kept", std::iter::once((0.0, 0.0)).chain(curve))
-        .marks("chosen", [dims as f64])
 }

@@ -1,8 +1,9 @@
 use nalgebra::DMatrix;
 use proptest::prelude::*;
 
-use super::{Eigen, Keep, Moments, Pca, PcaError, quality_chart};
+use super::{Eigen, Keep, Moments, Pca, PcaError};
 use crate::features::Rows;
+use crate::report::pictures::quality_chart;
 
 /// Rows about a mean that may be far from 0.
 fn rows() -> impl Strategy<Value = Rows> {

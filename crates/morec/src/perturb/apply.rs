@@ -2,8 +2,8 @@
 
 use crate::features::KeyPose;
 use crate::math::{Axis, Vec3};
+use crate::rng::Rng;
 use crate::roles::Role;
-use crate::synth::Rng;
 
 use super::noise::{normal3, slow};
 use super::{OCCLUSION_SECS, Perturbation, REFERENCE_LEG_METRES, SLOW_SIGMA_SECS, SPIKE_METRES};

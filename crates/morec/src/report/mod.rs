@@ -11,6 +11,7 @@ mod html;
 mod misses;
 mod notes;
 mod palette;
+pub mod pictures;
 mod tables;
 mod timeline;
 

@@ -11,9 +11,10 @@ use crate::features::Rows;
 use crate::index::{MotionIndex, Provenance};
 use crate::labels::Sample;
 use crate::plot::HeatMap;
+use crate::report::pictures::{branch_picture, tree_picture};
 use crate::svrdm::{SampleClassifier, SvrdmModel};
 use crate::train::Labelling;
-use crate::train::svrdm::{BranchReport, FeatureSample, branch_picture, tree_picture};
+use crate::train::svrdm::{BranchReport, FeatureSample};
 use crate::train::thesis::{Estimated, SvrdmOptions, train_svrdm};
 
 use super::{Picture, ReproduceError, Setting, Study, frames_of, rows_of};

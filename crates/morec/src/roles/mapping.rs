@@ -13,7 +13,7 @@ use std::fmt::Write;
 use super::points::{Place, said};
 use super::{Role, RoleMap};
 use crate::clip::Skeleton;
-use crate::formats::{self, ParseError};
+use crate::parse_error::{self, ParseError};
 
 /// The lines of a mapping file: each role at most once.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -36,7 +36,7 @@ impl Mapping {
     pub fn read(bytes: &[u8]) -> Result<Self, ParseError> {
         let text = std::str::from_utf8(bytes).map_err(|error| {
             ParseError::new(
-                formats::Place::Byte(error.valid_up_to() as u64),
+                parse_error::Place::Byte(error.valid_up_to() as u64),
                 "UTF-8",
                 "other bytes",
             )
@@ -50,7 +50,7 @@ impl Mapping {
             if let Some(before) = entries.iter().find(|e| e.role == entry.role) {
                 let found = format!("{} here and on line {}", entry.role, before.line);
                 return Err(ParseError::new(
-                    formats::Place::Line(line),
+                    parse_error::Place::Line(line),
                     "each role once",
                     found,
                 ));
@@ -70,7 +70,7 @@ impl Mapping {
             let place = match joint {
                 None => None,
                 Some(text) => Some(said(text, names).map_err(|name| {
-                    let at = formats::Place::Line(*line);
+                    let at = parse_error::Place::Line(*line);
                     ParseError::new(at, "a joint of the skeleton", format!("`{name}`"))
                 })?),
             };
@@ -90,7 +90,7 @@ impl Mapping {
                 None => None,
                 Some(name) => Some(skeleton.find(name).ok_or_else(|| {
                     ParseError::new(
-                        formats::Place::Line(*line),
+                        parse_error::Place::Line(*line),
                         "a joint of the skeleton",
                         format!("`{name}`"),
                     )
@@ -104,7 +104,7 @@ impl Mapping {
 }
 
 fn entry(line: u64, content: &str) -> Result<Entry, ParseError> {
-    let at = formats::Place::Line(line);
+    let at = parse_error::Place::Line(line);
     let (role, joint) = content.split_once('\t').ok_or_else(|| {
         ParseError::new(
             at,

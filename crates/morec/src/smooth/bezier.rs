@@ -3,7 +3,7 @@
 use nalgebra::{Matrix4x3, Vector3, Vector4};
 
 /// A value of a channel: a quaternion `[x, y, z, w]`, or a position `[x, y, z, 0]`.
-pub(super) type Point = Vector4<f64>;
+pub(crate) type Point = Vector4<f64>;
 /// A tangent: of a rotation in the frame of its key, of a position as it is.
 pub(super) type Tangent = Vector3<f64>;
 

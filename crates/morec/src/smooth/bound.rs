@@ -5,7 +5,7 @@ use super::compress::too_coarse;
 use super::measure::angle_between;
 use super::params::{SmoothError, SmoothParams};
 use super::sample::rotation;
-use super::split::Channel;
+use super::split::{Channel, TooCoarse};
 use crate::clip::Clip;
 use crate::kinematics::WorldPose;
 use crate::progress::Progress;
@@ -97,21 +97,13 @@ pub(super) fn tighten(
             return Ok(());
         }
         work.refit(blamed)
-            .map_err(|(channel, frame)| too_coarse_for_bound(clip, channel, frame, metres))?;
+            .map_err(|(channel, coarse)| too_coarse(clip, channel, coarse))?;
     }
     let reached_metres = work.worst * metres_per_unit;
     Err(SmoothError::Bound {
         bound_metres: metres,
         reached_metres,
     })
-}
-
-fn too_coarse_for_bound(clip: &Clip, channel: usize, frame: usize, metres: f64) -> SmoothError {
-    let params = SmoothParams {
-        position_metres: metres,
-        ..SmoothParams::default()
-    };
-    too_coarse(clip, &params, channel, frame)
 }
 
 /// A channel to be fitted to a share of its tolerance at a frame.
@@ -254,7 +246,7 @@ impl<'a> Work<'a> {
     }
 
     /// Fits the blamed channels again. On failure: which channel, and at which frame.
-    fn refit(&mut self, mut blamed: Vec<Blame>) -> Result<(), (usize, usize)> {
+    fn refit(&mut self, mut blamed: Vec<Blame>) -> Result<(), (usize, TooCoarse)> {
         blamed.sort_by_key(|b| (b.channel, b.frame));
         for group in blamed.chunk_by(|a, b| a.channel == b.channel) {
             let index = group[0].channel;
@@ -272,7 +264,7 @@ impl<'a> Work<'a> {
                     .for_each(|range| self.play(index, range.start, range.end)),
                 Err(_) => {
                     channel.lattice = channel.lattice.finer();
-                    channel.fit().map_err(|coarse| (index, coarse.frame))?;
+                    channel.fit().map_err(|coarse| (index, coarse))?;
                     self.play(index, 0, self.clip.frames);
                 }
             }

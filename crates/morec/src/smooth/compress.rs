@@ -4,7 +4,7 @@ use super::bezier::{Kind, Point};
 use super::bound;
 use super::measure::Errors;
 use super::params::{SmoothError, SmoothParams};
-use super::split::Channel;
+use super::split::{Channel, TooCoarse};
 use super::{CompressedClip, Curve};
 use crate::clip::Clip;
 use crate::progress::Progress;
@@ -44,7 +44,7 @@ pub fn compress(
         progress.report("fitting curves", done, total);
         channel
             .fit()
-            .map_err(|coarse| too_coarse(clip, params, done, coarse.frame))?;
+            .map_err(|coarse| too_coarse(clip, done, coarse))?;
     }
     if let Some(metres) = params.joint_position_metres {
         bound::tighten(
@@ -120,9 +120,8 @@ pub(super) fn chord(angle_rad: f64) -> f64 {
 /// Values beyond what steps can reach.
 pub(super) fn too_coarse(
     clip: &Clip,
-    params: &SmoothParams,
     channel: usize,
-    frame: usize,
+    TooCoarse { frame, limit }: TooCoarse,
 ) -> SmoothError {
     let joints = clip.skeleton.len();
     let joint = if channel < joints {
@@ -131,12 +130,11 @@ pub(super) fn too_coarse(
         clip.tracks[channel - joints].joint
     };
     let name = clip.skeleton.joints()[joint].name.clone();
-    let most = params.position_metres / params.metres_per_unit * 1e12;
     SmoothError::Value {
         joint,
         name,
         frame,
-        most,
+        most: limit,
     }
 }
 

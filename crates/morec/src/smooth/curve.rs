@@ -102,7 +102,7 @@ impl Curve {
 
     /// The value at `place`, in sample periods; before the first key and after the last it stands still.
     /// O(log keyframes).
-    pub(super) fn at(&self, place: f64) -> Point {
+    pub(crate) fn at(&self, place: f64) -> Point {
         let after = self
             .segments
             .partition_point(|s| f64::from(s.start) <= place);
@@ -113,7 +113,7 @@ impl Curve {
     }
 
     /// The values at `places`, which do not fall. O(places + keyframes).
-    pub(super) fn along(&self, places: impl Iterator<Item = f64>, mut take: impl FnMut(Point)) {
+    pub(crate) fn along(&self, places: impl Iterator<Item = f64>, mut take: impl FnMut(Point)) {
         let still = self.lattice.key_point(&self.first, None);
         let mut current = 0;
         for place in places {

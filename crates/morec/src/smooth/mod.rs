@@ -32,12 +32,13 @@ mod fit;
 mod lattice;
 mod measure;
 mod params;
-mod picture;
 mod sample;
 mod split;
 mod stored;
 
 pub use bezier::Kind;
+#[cfg(feature = "report")]
+pub(crate) use bezier::Point;
 pub use compress::compress;
 pub use curve::{Bezier, Curve};
 pub use measure::Errors;
@@ -144,4 +145,4 @@ impl CompressedClip {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -27,9 +27,11 @@ pub(super) struct Channel {
 }
 
 /// The steps are too coarse for what is allowed at this frame.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct TooCoarse {
     pub frame: usize,
+    /// Values beyond this are more steps away than are counted.
+    pub limit: f64,
 }
 
 impl Channel {
@@ -68,13 +70,9 @@ impl Channel {
     /// The frame at which no step is fine enough, or a value is too many steps away.
     pub fn fit(&mut self) -> Result<(), TooCoarse> {
         loop {
-            let reachable = MOST_STEPS as f64 * self.lattice.key.size();
-            if let Some(frame) = self
-                .samples
-                .iter()
-                .position(|sample| sample.amax() > reachable)
-            {
-                return Err(TooCoarse { frame });
+            let limit = self.limit();
+            if let Some(frame) = self.samples.iter().position(|sample| sample.amax() > limit) {
+                return Err(TooCoarse { frame, limit });
             }
             match self.fit_with_steps() {
                 Err(_) if self.lattice != self.lattice.finer() => {
@@ -83,6 +81,11 @@ impl Channel {
                 outcome => return outcome,
             }
         }
+    }
+
+    /// The largest value that steps reach.
+    fn limit(&self) -> f64 {
+        MOST_STEPS as f64 * self.lattice.key.size()
     }
 
     fn fit_with_steps(&mut self) -> Result<(), TooCoarse> {
@@ -182,6 +185,7 @@ impl Channel {
                     if to - from == 1 {
                         return Err(TooCoarse {
                             frame: from + worst.index,
+                            limit: self.limit(),
                         });
                     }
                     let at_an_end = worst.index == 0 || worst.index == to - from;

@@ -2,10 +2,10 @@
 
 use super::body::Body;
 use super::person::Person;
-use super::rng::Rng;
 use super::timeline::{
     CHANNELS, Controls, FOOT, HAND, HEAD, HIPS, HIPS_TURN, SPINE, Side, Timeline,
 };
+use crate::rng::Rng;
 
 /// A person on stage. Motions are scheduled from [`Actor::now_secs`] on and move it forward.
 #[derive(Debug, Clone)]

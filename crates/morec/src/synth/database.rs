@@ -4,9 +4,9 @@ use super::actor::Actor;
 use super::film::film;
 use super::motion::{self, Kind, Motion};
 use super::person::Person;
-use super::rng::Rng;
 use super::timeline::Side;
 use super::{Label, SyntheticTake};
+use crate::rng::Rng;
 
 /// What [`database`] makes.
 #[derive(Debug, Clone, PartialEq)]

@@ -9,10 +9,10 @@ use super::film::film;
 use super::gait::{self, Gait};
 use super::motion::Perform;
 use super::person::Person;
-use super::rng::Rng;
 use super::timeline::{FOOT, HAND, HEAD, HIPS_TURN, SPINE, SWIVEL, Side, WRIST};
 use super::unknown::{self, any_side};
 use crate::clip::Clip;
+use crate::rng::Rng;
 
 /// People in the library.
 const PEOPLE: usize = 4;

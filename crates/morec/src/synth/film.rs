@@ -3,10 +3,10 @@
 use nalgebra::Quaternion;
 
 use super::actor::Actor;
-use super::rng::Rng;
 use super::timeline::{CHANNELS, Controls, HAND, HEAD, HIPS, HIPS_TURN, SPINE, Side};
 use crate::clip::{Clip, JointTrack};
 use crate::math::{Quat, Vec3, same_hemisphere};
+use crate::rng::Rng;
 
 /// The sensors' noise has no energy far above 1 / this: what a recording system's filter leaves.
 const NOISE_SECS: f64 = 0.03;

@@ -20,7 +20,6 @@ mod limb;
 mod living_room;
 mod motion;
 mod person;
-mod rng;
 mod script;
 mod smooth;
 #[cfg(test)]
@@ -28,12 +27,12 @@ mod tests;
 mod timeline;
 mod unknown;
 
+pub use crate::rng::Rng;
 pub use database::{DatabaseSpec, database};
 pub use everyday::everyday;
 pub use living_room::{LivingRoom, living_room};
 pub use motion::{Kind, Motion, all as motions, of_kind as motions_of};
 pub use person::Person;
-pub use rng::Rng;
 pub use script::{Script, UnknownMotion};
 pub use timeline::Side;
 

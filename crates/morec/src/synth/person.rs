@@ -1,7 +1,7 @@
 //! Synthetic people: how they are built and how they move.
 
-use super::rng::Rng;
 use super::timeline::Side;
+use crate::rng::Rng;
 
 /// A person: lengths of the body, habits of posture and movement.
 #[derive(Debug, Clone, PartialEq)]

@@ -4,8 +4,8 @@ use super::actor::Actor;
 use super::film::film;
 use super::motion::{Kind, Motion, all};
 use super::person::Person;
-use super::rng::Rng;
 use super::{Label, SyntheticTake};
+use crate::rng::Rng;
 
 /// A line of a script that cannot be performed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

@@ -19,8 +19,10 @@ pub struct TrainingReport {
     pub bones: Vec<String>,
     /// Seconds of background motion by source: `unlabelled`, `clips`, `everyday`.
     pub background_secs: BTreeMap<String, f64>,
-    /// Largest distance that is reported.
-    pub threshold: f32,
+    /// Largest distance that is reported, of templates. What the method of 2009 accepts is in
+    /// [`SvrdmReport::min_confidence`].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub threshold: Option<f32>,
     /// What set the threshold.
     pub threshold_from: String,
     /// Thresholds for other rates of false alarms.
@@ -87,7 +89,7 @@ impl TrainingReport {
             classes,
             bones: prepared.bones.into(),
             background_secs,
-            threshold: trained.model.threshold,
+            threshold: Some(trained.model.threshold),
             threshold_from: trained.threshold_from.clone(),
             operating: trained.model.operating.clone(),
             negatives,

@@ -109,11 +109,11 @@ pub fn learn(
     })
 }
 
-fn group_numbers(examples: &[Example], name: impl Fn(&Example) -> String) -> Vec<usize> {
+fn group_numbers<K: Ord>(examples: &[Example], key: impl Fn(&Example) -> K) -> Vec<usize> {
     let mut numbers = BTreeMap::new();
     let number = |e: &Example| {
         let next = numbers.len();
-        *numbers.entry(name(e)).or_insert(next)
+        *numbers.entry(key(e)).or_insert(next)
     };
     examples.iter().map(number).collect()
 }
@@ -225,7 +225,7 @@ impl ClassProblem<'_> {
             return members.iter().map(|&i| self.groups[i]).collect();
         }
         let examples: Vec<Example> = members.iter().map(|&i| self.examples[i].clone()).collect();
-        group_numbers(&examples, |e| format!("{:?}", e.piece(false)))
+        group_numbers(&examples, |e| e.piece(false))
     }
 
     fn shapes(&self, members: &[usize]) -> Rows {

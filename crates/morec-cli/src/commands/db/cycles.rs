@@ -44,7 +44,7 @@ pub struct Args {
 /// What is looked at.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 enum Of {
-    /// Segments that morec db cut found
+    /// Segments that morec cut found
     Cuts,
     /// Whole clips
     Clips,

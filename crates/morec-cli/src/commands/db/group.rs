@@ -68,7 +68,7 @@ pub struct Args {
 /// What is grouped.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 enum Of {
-    /// Segments that morec db cut found
+    /// Segments that morec cut found
     Cuts,
     /// Labelled samples
     Labels,
@@ -127,7 +127,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         .try_for_each(|class| db.need_class(class))?;
     let items = items(&mut db, args)?;
     if items.is_empty() {
-        bail!("nothing to group (morec db cut finds segments, morec db label sets samples)");
+        bail!("nothing to group (morec cut finds segments, morec db label sets samples)");
     }
     let groups = groups(&items, args);
     let mut grouped = Grouped {

@@ -6,8 +6,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::Result;
-use morec::files::{FileReader, split_choice};
-use morec::import::ImportOptions;
+use morec::files::split_choice;
 use morec_db::{ClipUpdate, ImportCounts, ImportLog, ImportOutcome, MotionDb};
 use serde::Serialize;
 
@@ -69,13 +68,8 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         true => database::open(&args.db)?,
         false => MotionDb::create(&args.db)?,
     };
-    let reader = FileReader {
-        import: ImportOptions {
-            mapping: files::mapping(args.roles.as_deref())?,
-            ..ImportOptions::default()
-        },
-        ..args.read.reader()
-    };
+    let mapping = files::mapping(args.roles.as_deref())?;
+    let reader = args.read.reader_with(mapping);
     let about = ClipUpdate {
         source: args.source.clone(),
         licence: args.licence.clone(),

@@ -4,7 +4,6 @@ mod check;
 mod classes;
 mod clips;
 mod copies;
-mod cut;
 mod cycles;
 mod export;
 mod group;
@@ -56,7 +55,8 @@ enum Command {
     Import(import::Args),
     Info(info::Args),
     Clips(clips::Args),
-    Cut(cut::Args),
+    #[command(hide = true)]
+    Cut(crate::commands::cut::Args),
     Cycles(cycles::Args),
     Group(group::Args),
     Classes(classes::Args),
@@ -96,7 +96,7 @@ fn of(args: Args) -> Result<ExitCode> {
         Command::Import(args) => import::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Clips(args) => clips::run(&args),
-        Command::Cut(args) => cut::run(&args),
+        Command::Cut(args) => crate::commands::cut::run_stored(&args),
         Command::Cycles(args) => cycles::run(&args),
         Command::Group(args) => group::run(&args),
         Command::Classes(args) => classes::run(&args),
@@ -134,7 +134,7 @@ fn lengths(db: &MotionDb) -> Result<Lengths> {
 }
 
 /// One value as JSON on standard output.
-fn print_json(value: &impl Serialize) -> Result<()> {
+pub fn print_json(value: &impl Serialize) -> Result<()> {
     let mut out = std::io::stdout().lock();
     write_json(&mut out, value)?;
     out.flush()?;
@@ -151,7 +151,7 @@ fn print(text: impl std::fmt::Display) -> Result<()> {
 
 /// A table that fits the terminal, and a last line below it. Whoever reads it through a pipe gets all of it, separated by
 /// tabs, and the last line on standard error.
-fn print_table(table: &Table, last: &str) -> Result<()> {
+pub fn print_table(table: &Table, last: &str) -> Result<()> {
     let mut out = std::io::stdout().lock();
     if std::io::stdout().is_terminal() {
         let width = terminal_size::terminal_size().map_or(80, |(width, _)| usize::from(width.0));

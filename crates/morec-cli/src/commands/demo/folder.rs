@@ -5,10 +5,8 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
-use morec::synth::SyntheticTake;
-use rayon::prelude::*;
 
-use crate::commands::convert::write_clip;
+use super::cast::Cast;
 use crate::output;
 
 /// Says that a folder is a demo's, so that a second demo may write over it.
@@ -38,50 +36,35 @@ impl DemoFolder {
                 shown()
             );
         }
-        for part in ["clips", "new"] {
-            std::fs::create_dir_all(folder.join(part)).with_context(shown)?;
+        for part in ["clips", "new", "background"] {
+            let part = folder.join(part);
+            if part.is_dir() {
+                // An earlier demo's, perhaps of other people.
+                std::fs::remove_dir_all(&part).with_context(shown)?;
+            }
         }
+        std::fs::create_dir_all(folder).with_context(shown)?;
         output::write_whole(&marker, |out| out.write_all(MARKER_TEXT.as_bytes()))
             .with_context(shown)?;
         Ok(Self(folder.to_owned()))
     }
 
-    /// Writes clips, labels and people of those to train on, and clip and truth of the one to recognise.
-    pub fn write(&self, taught: &[SyntheticTake], unseen: &SyntheticTake) -> Result<()> {
-        let all: Vec<(&SyntheticTake, bool)> = taught
-            .iter()
-            .map(|t| (t, false))
-            .chain([(unseen, true)])
-            .collect();
-        all.par_iter().try_for_each(|(take, unseen)| {
-            let path = self.clip(take, *unseen);
-            write_clip(&take.clip, &path).with_context(|| path.display().to_string())
-        })?;
-        self.write_text("labels.tsv", &labels(taught))?;
-        self.write_text("truth.tsv", &labels(std::slice::from_ref(unseen)))?;
-        let people = taught
-            .iter()
-            .map(|t| format!("{}\t{}\n", t.clip.name, t.person));
-        self.write_text(
-            "people.tsv",
-            &people.fold("clip\tperson\n".to_owned(), |text, row| text + &row),
-        )
+    /// Writes the files of a cast.
+    pub fn write(&self, cast: &Cast) -> Result<()> {
+        for (name, bytes) in &cast.files {
+            let path = self.path(name);
+            let shown = || path.display().to_string();
+            if let Some(folder) = path.parent() {
+                std::fs::create_dir_all(folder).with_context(shown)?;
+            }
+            output::write_whole(&path, |out| out.write_all(bytes)).with_context(shown)?;
+        }
+        Ok(())
     }
 
-    fn write_text(&self, name: &str, text: &str) -> Result<()> {
-        let path = self.path(name);
-        output::write_whole(&path, |out| out.write_all(text.as_bytes()))
-            .with_context(|| path.display().to_string())
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
+    /// A file or folder in it.
+    pub fn path(&self, name: &str) -> PathBuf {
         self.0.join(name)
-    }
-
-    /// Where a take's clip lies.
-    pub fn clip(&self, take: &SyntheticTake, unseen: bool) -> PathBuf {
-        self.path(if unseen { "new" } else { "clips" })
-            .join(format!("{}.bvh", take.clip.name))
     }
 
     /// Where the detections lie.
@@ -90,47 +73,25 @@ impl DemoFolder {
     }
 
     /// What was written, for people to read.
-    pub fn contents(&self, taught: &[SyntheticTake], unseen: &SyntheticTake) -> String {
-        let minutes: f64 = taught.iter().map(|t| t.clip.duration_secs()).sum::<f64>() / 60.0;
-        let samples: usize = taught.iter().map(|t| t.labels.len()).sum();
+    pub fn contents(&self, cast: &Cast) -> String {
         let mut text = format!("\nWritten to {}:\n", self.0.display());
-        let mut line = |name: &str, about: String| _ = writeln!(text, "  {name:<11} {about}");
-        line(
-            "clips/",
-            format!("{} people, a BVH file each, {minutes:.1} min", taught.len()),
-        );
-        line(
-            "labels.tsv",
-            format!("which gesture is where in them: {samples} samples"),
-        );
-        line("people.tsv", "who is seen in which clip".to_owned());
-        line(
-            "new/",
-            format!(
-                "{}, who is not trained on, {:.1} min",
-                unseen.person,
-                unseen.clip.duration_secs() / 60.0
-            ),
-        );
-        line(
-            "truth.tsv",
-            format!("what {} does when, for measuring only", unseen.person),
-        );
+        for (name, about) in &cast.contents {
+            _ = writeln!(text, "  {name:<11} {about}");
+        }
         text.pop();
         text
     }
 
     /// The command that trains.
-    pub fn train(&self) -> Vec<OsString> {
-        self.command(
-            "train",
-            &[
-                ("--clips", "clips"),
-                ("--labels", "labels.tsv"),
-                ("--people", "people.tsv"),
-                ("-o", "demo.index"),
-            ],
-        )
+    pub fn train(&self, cast: &Cast) -> Vec<OsString> {
+        let mut parts = vec![
+            ("--clips", "clips"),
+            ("--labels", "labels.tsv"),
+            ("--people", "people.tsv"),
+        ];
+        parts.extend(cast.background.then_some(("--background", "background")));
+        parts.push(("-o", "demo.index"));
+        self.command("train", &parts)
     }
 
     /// The command that recognises.
@@ -164,32 +125,17 @@ impl DemoFolder {
     }
 
     /// What to make of it all.
-    pub fn farewell(&self) -> String {
+    pub fn farewell(&self, cast: &Cast) -> String {
         format!(
-            "These people are made, not recorded: the figures above say nothing about accuracy on real people.\n\
+            "{}\n\
              The report, with timelines: {}\n\
              With clips of your own, in any folder, and a table of labels like {}, the same three commands do it:\n  \
              morec train, morec recognize, morec evaluate (--help tells the rest).",
+            cast.caveat,
             self.path("report").join("report.html").display(),
             self.path("labels.tsv").display()
         )
     }
-}
-
-/// A table of labels in frames.
-fn labels(takes: &[SyntheticTake]) -> String {
-    let mut text = "clip\tclass\tstart\tstop\n".to_owned();
-    for take in takes {
-        for label in &take.labels {
-            let span = label.span(take.clip.rate_hz);
-            _ = writeln!(
-                text,
-                "{}\t{}\t{}\t{}",
-                take.clip.name, label.class, span.start, span.end
-            );
-        }
-    }
-    text
 }
 
 /// `morec` and `words` as typed into a shell.

@@ -11,6 +11,8 @@ pub enum Check {
     RealClips,
     /// Its commands run; on the real clips they print what the block shows.
     Output,
+    /// Its commands run, and print what the block shows, whatever clips there are.
+    OutputEverywhere,
     /// Nothing.
     None,
 }
@@ -75,6 +77,7 @@ fn check(before: &str, line: usize) -> Check {
         "options" => Check::Options,
         "real clips" => Check::RealClips,
         "output" => Check::Output,
+        "output everywhere" => Check::OutputEverywhere,
         "none" => Check::None,
         other => panic!("line {line}: no check is called {other:?}"),
     }

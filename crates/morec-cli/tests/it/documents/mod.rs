@@ -6,6 +6,7 @@
 //! - `<!-- check: options -->`: nothing runs, options are checked;
 //! - `<!-- check: real clips -->`: it runs only where the real clips are;
 //! - `<!-- check: output -->`: it also runs on the real clips, where they are, and prints the lines that it shows;
+//! - `<!-- check: output everywhere -->`: it prints the lines that it shows, whatever clips there are;
 //! - `<!-- check: none -->`: nothing is checked.
 
 mod blocks;
@@ -73,11 +74,11 @@ fn prelude(mode: Mode) -> &'static str {
 set -e
 morec() {
     case "$1" in
-        live | send | soak) "$MOREC" "$@" --help >/dev/null ;;
+        live | send) "$MOREC" "$@" --help >/dev/null ;;
         *) "$MOREC" "$@" ;;
     esac
 }
-cargo() { [ "$*" != "run --release -- demo" ] || "$MOREC" demo --help >/dev/null; }
+cargo() { [ "$*" != "run --release -- demo" ] || "$MOREC" demo --quiet; }
 "#
         }
         Mode::Options => {
@@ -180,6 +181,7 @@ fn run_documents(
 fn commands_of_readme_and_guide_run() {
     run_documents(&guide(), &Fixture::synthetic(), |block| match block.check {
         Check::Run | Check::Output => Some(Mode::Run),
+        Check::OutputEverywhere => Some(Mode::Compare),
         Check::Options => Some(Mode::Options),
         Check::RealClips | Check::None => None,
     });

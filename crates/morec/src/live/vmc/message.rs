@@ -1,6 +1,6 @@
 //! What VMC's messages say, in right-handed axes.
 
-use super::humanoid::{bone_of_name, mirrored};
+use crate::humanoid::{bone_of_name, mirrored};
 use crate::live::osc::{Arg, Message};
 use crate::math::{Quat, Vec3, rotation_of_xyzw};
 

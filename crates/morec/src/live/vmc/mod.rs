@@ -4,7 +4,6 @@
 //! whoever has a socket feeds it. [`VmcReceiver`] makes frames of packets, [`VmcSender`] packets of frames.
 
 mod clock;
-mod humanoid;
 mod message;
 mod peers;
 mod receiver;
@@ -14,7 +13,7 @@ mod skeleton;
 #[cfg(test)]
 mod tests;
 
-pub use humanoid::{HUMANOID, HUMANOID_BONES, HumanoidBone, bone_of_name};
+pub use crate::humanoid::{HUMANOID, HUMANOID_BONES, HumanoidBone, bone_of_name};
 pub use message::{
     Said, mirror, position_of_unity, rotation_of_unity, rotation_to_unity, understand,
 };

@@ -14,11 +14,11 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use super::clock::SenderClock;
-use super::humanoid::{BoneMask, HUMANOID_BONES, is_body, parent_among};
 use super::message::{Said, mirror, seen_in_mirror, understand};
 use super::peers::{Peer, Ports};
 use super::rest::is_t_pose;
 use super::skeleton::{AssumedNeck, assumed_neck, bones_of, local_position, place, rig_of};
+use crate::humanoid::{BoneMask, HUMANOID_BONES, is_body, parent_among};
 use crate::live::osc::{self, Message};
 use crate::live::{Actor, Frame, MAX_ACTORS, Next, Rig, SourceCounts};
 use crate::math::{Quat, Vec3};

@@ -1,7 +1,7 @@
 //! Frames to packets.
 
-use super::humanoid::{HUMANOID, HUMANOID_BONES, standard_offset};
 use super::message::{position_of_unity, rotation_to_unity};
+use crate::humanoid::{HUMANOID, HUMANOID_BONES, standard_offset};
 use crate::kinematics::WorldPose;
 use crate::live::osc::{Arg, begin_bundle, write_element, write_message};
 use crate::math::{Quat, Vec3};

@@ -1,9 +1,9 @@
 //! The skeleton that a set of bones makes, and what stands in for bones that are not sent.
 
-use super::humanoid::{
+use crate::clip::{Joint, Skeleton};
+use crate::humanoid::{
     BoneMask, HUMANOID, HUMANOID_BONES, bone_of_name, parent_among, standard_offset,
 };
-use crate::clip::{Joint, Skeleton};
 use crate::live::Rig;
 use crate::math::Vec3;
 use crate::roles::{Role, RoleMap};

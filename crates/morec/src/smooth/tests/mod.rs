@@ -10,7 +10,7 @@ use crate::clip::{Clip, Joint, JointTrack, Skeleton};
 use crate::math::{Quat, Vec3, same_hemisphere};
 
 /// A clip of one joint, its rotation and position given by functions of time.
-pub(super) fn one_joint(
+pub(crate) fn one_joint(
     rate_hz: f64,
     frames: usize,
     rotation: impl Fn(f64) -> Quat,

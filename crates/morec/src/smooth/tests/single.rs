@@ -190,6 +190,14 @@ fn what_cannot_be_compressed_is_refused() {
         ),
         "{error}"
     );
+    // The limit that the message names is the limit: beyond it nothing is kept, below it all is.
+    let SmoothError::Value { most, .. } = error else {
+        panic!("{error}");
+    };
+    bad.tracks[0].positions[7].y = 1.01 * most;
+    assert!(compress(&bad, &SmoothParams::default(), &()).is_err());
+    bad.tracks[0].positions[7].y = 0.25 * most;
+    assert!(compress(&bad, &SmoothParams::default(), &()).is_ok());
     let mut bad = good.clone();
     bad.rotations.pop();
     assert!(matches!(

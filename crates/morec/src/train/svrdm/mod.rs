@@ -10,7 +10,6 @@ mod gram;
 mod grow;
 mod params;
 mod partition;
-mod pictures;
 mod qp;
 mod reduce;
 mod sigma;
@@ -19,7 +18,7 @@ mod sphere;
 mod svrm;
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 pub use branch::{Machines, Plane, Sides};
 pub use cross::{CrossParams, Multiples, Outcome};
@@ -27,7 +26,6 @@ pub use gram::Distances;
 pub use grow::{BranchReport, FeatureSample, GrowError, Grown, grow};
 pub use params::TreeParams;
 pub use partition::{PartitionParams, Split, function_products, partition, scatter};
-pub use pictures::{branch_picture, tree_picture};
 pub use qp::{BoxQp, Solution, Stop};
 pub use reduce::centroid_factor;
 pub use sigma::{Algorithm4, Estimate, SigmaRule, Sweep, algorithm4};

@@ -3,8 +3,8 @@
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
+use crate::rng::Rng;
 use crate::svrdm::kernel::Gaussian;
-use crate::synth::Rng;
 
 use super::gram::Distances;
 use super::svrm::{MachineParams, svrm};

@@ -106,7 +106,7 @@ pub(super) fn of(
             .map(|p| p.name.clone())
             .collect(),
         background_secs,
-        threshold: model.params.min_confidence as f32,
+        threshold: None,
         threshold_from,
         negatives: BTreeMap::new(),
         verified: false,

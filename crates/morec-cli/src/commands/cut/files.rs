@@ -1,0 +1,149 @@
+//! Cuts of clips in files.
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use anyhow::{Context, Result, bail};
+use morec::features::{FeatureParams, rows_of_clip};
+use morec::import::Take;
+use morec::segment::{KernelParams, PpcaParams, Segmentation, kernel_cuts, segment};
+use serde::Serialize;
+
+use super::{Args, Cutter};
+use crate::figures::write_json;
+use crate::output;
+use crate::poses::{PoseReader, PosedClip};
+
+#[derive(Serialize)]
+struct Found {
+    clip: String,
+    rate_hz: f64,
+    frames: usize,
+    cuts: Vec<FoundCut>,
+    forward: Vec<morec::segment::HPoint>,
+    backward: Vec<morec::segment::HPoint>,
+}
+
+#[derive(Serialize)]
+struct FoundCut {
+    secs: f64,
+    /// First frame of what begins here, counted from 0.
+    frame: usize,
+    /// Which pass found it (ppca).
+    #[serde(flatten)]
+    passes: Option<Passes>,
+}
+
+#[derive(Serialize, Clone, Copy)]
+struct Passes {
+    forward: bool,
+    backward: bool,
+}
+
+/// Reads, cuts and prints every clip.
+pub fn run(cutter: &Cutter, args: &Args) -> Result<ExitCode> {
+    let reader = args.poses.reader()?;
+    let found = match cutter {
+        Cutter::Kernel(params) if args.plot.is_none() => by_kernel(&reader, params, args)?,
+        Cutter::Kernel(_) => bail!("--plot draws the misfit of --method ppca"),
+        Cutter::Ppca(params) => by_ppca(&reader, params, args)?,
+    };
+    let mut out = std::io::stdout().lock();
+    if args.json {
+        write_json(&mut out, &found)?;
+    } else {
+        found.iter().try_for_each(|f| f.write(&mut out))?;
+    }
+    out.flush()?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn by_kernel(reader: &PoseReader<'_>, params: &KernelParams, args: &Args) -> Result<Vec<Found>> {
+    let features = FeatureParams::default();
+    let mut found = Vec::new();
+    reader.each_take(&args.inputs, |take| {
+        let rows = rows_of_clip(&take.clip, &take.roles, take.rest(), take.bones(), &features);
+        let cuts = kernel_cuts(&rows, &features, params).context(take.clip.name.clone())?;
+        found.push(Found::at(&take, &cuts));
+        Ok(())
+    })?;
+    Ok(found)
+}
+
+fn by_ppca(reader: &PoseReader<'_>, params: &PpcaParams, args: &Args) -> Result<Vec<Found>> {
+    let mut found = Vec::new();
+    reader.each(&args.inputs, |clip| {
+        if args.plot.is_some() && !found.is_empty() {
+            bail!("--plot draws one clip; give one, or leave --plot out");
+        }
+        let segmentation =
+            segment(&clip.rows, reader.rate_hz(), params).context(clip.name.clone())?;
+        if let Some(path) = &args.plot {
+            let svg = segmentation
+                .chart(&format!("{}: misfit and cuts", clip.name), &[])
+                .svg();
+            output::write_whole(path, |out| out.write_all(svg.as_bytes()))
+                .with_context(|| path.display().to_string())?;
+        }
+        found.push(Found::new(&clip, segmentation));
+        Ok(())
+    })?;
+    Ok(found)
+}
+
+impl Found {
+    /// A clip cut at these seconds.
+    fn at(take: &Take, cuts: &[f64]) -> Self {
+        let rate_hz = take.clip.rate_hz;
+        let cut = |secs: &f64| FoundCut {
+            secs: *secs,
+            frame: (secs * rate_hz).round() as usize,
+            passes: None,
+        };
+        Self {
+            clip: take.clip.name.clone(),
+            rate_hz,
+            frames: take.clip.frames,
+            cuts: cuts.iter().map(cut).collect(),
+            forward: Vec::new(),
+            backward: Vec::new(),
+        }
+    }
+
+    fn new(clip: &PosedClip, found: Segmentation) -> Self {
+        let rate_hz = clip.length.rate_hz;
+        let cut = |c: &morec::segment::Cut| FoundCut {
+            secs: c.secs,
+            frame: (c.secs * rate_hz).round() as usize,
+            passes: Some(Passes {
+                forward: c.forward,
+                backward: c.backward,
+            }),
+        };
+        Self {
+            clip: clip.name.clone(),
+            rate_hz,
+            frames: clip.length.frames,
+            cuts: found.cuts.iter().map(cut).collect(),
+            forward: found.forward,
+            backward: found.backward,
+        }
+    }
+
+    fn write(&self, out: &mut impl Write) -> std::io::Result<()> {
+        let secs = self.frames as f64 / self.rate_hz;
+        let (name, count) = (&self.clip, self.cuts.len());
+        let plural = if count == 1 { "" } else { "s" };
+        writeln!(out, "{name}: {count} cut{plural} in {secs:.2} s")?;
+        for cut in &self.cuts {
+            let found = match cut.passes.map(|p| (p.forward, p.backward)) {
+                None => "",
+                Some((true, true)) => "  both ways",
+                Some((true, false)) => "  forward",
+                Some(_) => "  backward",
+            };
+            writeln!(out, "  {:8.2} s  frame {:6}{found}", cut.secs, cut.frame)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,262 @@
+//! Poses as lines of JSON, from standard input or over TCP: for trackers that speak nothing else.
+//!
+//! What a line says is in [`json_line`](super::json_line).
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use morec::live::{Actor, Frame, MAX_ACTORS, Next, Rig, Source, SourceCounts, wall_now_secs};
+use morec::roles::{Role, RoleMap};
+
+use crate::address::openness;
+use crate::lines::{Came, Lines};
+use crate::{Address, LiveError, Notices, PoseLine};
+
+/// Performers of one connection over TCP; others shall find places, too.
+const NAMES: usize = 8;
+/// A performer over TCP of whom nothing has come for so long has gone.
+const GONE_SECS: f64 = 5.0;
+
+const WAIT: Duration = Duration::from_millis(20);
+
+/// A performer of some connection.
+struct Performer {
+    connection: u64,
+    number: u16,
+    gone: bool,
+    heard_secs: f64,
+    /// Roles that were seen.
+    known: u32,
+}
+
+/// Poses as lines of JSON.
+pub struct JsonSource {
+    lines: Lines,
+    /// Whether the end of the lines is the end of the source.
+    ends: bool,
+    performers: Vec<Performer>,
+    /// A pose whose skeleton was announced first.
+    waiting: Option<(Actor, PoseLine)>,
+    leaving: Vec<Actor>,
+    begun_secs: f64,
+    counts: SourceCounts,
+    notices: Notices,
+}
+
+impl JsonSource {
+    /// `json:-` is standard input.
+    ///
+    /// # Errors
+    /// Another address.
+    pub fn open(address: &Address) -> Result<Self, LiveError> {
+        address.allow(&[])?;
+        if address.place != "-" {
+            return Err(LiveError::Address(format!(
+                "{address}: expected json:- (standard input) or json+tcp://HOST:PORT"
+            )));
+        }
+        Ok(Self::new(Lines::stdin()?, true))
+    }
+
+    /// `json+tcp://HOST:PORT` listens there. Returns where, too.
+    ///
+    /// # Errors
+    /// An address without a port, a port that is taken.
+    pub fn listen(address: &Address) -> Result<(Self, std::net::SocketAddr), LiveError> {
+        address.allow(&[])?;
+        let (lines, at) = Lines::listen(address.socket()?)?;
+        let source = Self::new(lines, false);
+        openness(at)
+            .into_iter()
+            .for_each(|text| source.notices.tell(text));
+        Ok((source, at))
+    }
+
+    fn new(lines: Lines, ends: bool) -> Self {
+        Self {
+            lines,
+            ends,
+            performers: Vec::new(),
+            waiting: None,
+            leaving: Vec::new(),
+            begun_secs: wall_now_secs(),
+            counts: SourceCounts::default(),
+            notices: Notices::default(),
+        }
+    }
+
+    /// Where it says which lines are no poses, and why.
+    pub fn notices(&self) -> Notices {
+        self.notices.clone()
+    }
+
+    /// The performer `number` of `connection`, a new one if there is room.
+    fn performer(&mut self, connection: u64, number: u16) -> Option<usize> {
+        let is = |p: &Performer| p.connection == connection && p.number == number;
+        if let Some(at) = self.performers.iter().position(is) {
+            let performer = &mut self.performers[at];
+            performer.heard_secs = wall_now_secs();
+            if std::mem::take(&mut performer.gone) {
+                self.counts.interruptions += 1;
+                // Its skeleton is announced anew.
+                performer.known = 0;
+            }
+            return Some(at);
+        }
+        let of_connection = |p: &&Performer| p.connection == connection && !p.gone;
+        if !self.ends && self.performers.iter().filter(of_connection).count() >= NAMES {
+            return None;
+        }
+        let new = Performer {
+            connection,
+            number,
+            gone: false,
+            heard_secs: wall_now_secs(),
+            known: 0,
+        };
+        if let Some(at) = self.performers.iter().position(|p| p.gone) {
+            self.counts.interruptions += 1;
+            self.performers[at] = new;
+            return Some(at);
+        }
+        (self.performers.len() < MAX_ACTORS).then(|| {
+            self.performers.push(new);
+            self.performers.len() - 1
+        })
+    }
+
+    /// Performers of whom nothing comes any more make room; a file on standard input may take its time.
+    fn forget_silent(&mut self) {
+        if self.ends {
+            return;
+        }
+        let now_secs = wall_now_secs();
+        for (at, performer) in self.performers.iter_mut().enumerate() {
+            if !performer.gone && now_secs - performer.heard_secs > GONE_SECS {
+                performer.gone = true;
+                self.leaving.push(Actor(at as u16));
+            }
+        }
+    }
+
+    fn line(
+        &mut self,
+        connection: u64,
+        number: u64,
+        text: Option<&str>,
+        frame: &mut Frame,
+    ) -> Next {
+        self.counts.packets += 1;
+        let pose = text
+            .ok_or_else(|| "no text, or longer than 65536 bytes".to_owned())
+            .and_then(PoseLine::of_line);
+        let pose = match pose {
+            Ok(pose) => pose,
+            Err(error) => {
+                self.counts.malformed += 1;
+                self.notices.add(|| format!("line {number}"), error);
+                return Next::Quiet;
+            }
+        };
+        let Some(at) = self.performer(connection, pose.actor) else {
+            self.counts.refused += 1;
+            return Next::Quiet;
+        };
+        let performer = &mut self.performers[at];
+        let actor = Actor(at as u16);
+        let seen = pose.known();
+        if seen & !performer.known != 0 {
+            performer.known |= seen;
+            let rig = rig_of(performer.known);
+            self.waiting = Some((actor, pose));
+            return Next::Rig(actor, Arc::new(rig));
+        }
+        self.counts.incomplete += u64::from(seen != performer.known);
+        self.fill(actor, &pose, frame)
+    }
+
+    fn fill(&self, actor: Actor, pose: &PoseLine, frame: &mut Frame) -> Next {
+        frame.wall_secs = wall_now_secs();
+        frame.time_secs = pose.time_secs.unwrap_or(frame.wall_secs - self.begun_secs);
+        frame.actor = actor;
+        frame.pose.positions.clear();
+        frame.pose.positions.extend(pose.positions);
+        frame.pose.rotations.clone_from(&pose.rotations);
+        Next::Frame
+    }
+}
+
+impl Source for JsonSource {
+    fn next(&mut self, frame: &mut Frame) -> Next {
+        if let Some((actor, pose)) = self.waiting.take() {
+            return self.fill(actor, &pose, frame);
+        }
+        self.forget_silent();
+        if let Some(actor) = self.leaving.pop() {
+            return Next::Gone(actor);
+        }
+        match self.lines.next(WAIT) {
+            Came::Line {
+                connection,
+                number,
+                text,
+            } => self.line(connection, number, text.as_deref(), frame),
+            Came::Closed(connection) => {
+                for (at, performer) in self.performers.iter_mut().enumerate() {
+                    if performer.connection == connection && !performer.gone {
+                        performer.gone = true;
+                        self.leaving.push(Actor(at as u16));
+                    }
+                }
+                Next::Quiet
+            }
+            Came::Nothing => Next::Quiet,
+            Came::Ended if self.ends => Next::Ended,
+            Came::Ended => {
+                std::thread::sleep(WAIT);
+                Next::Quiet
+            }
+        }
+    }
+
+    fn counts(&self) -> SourceCounts {
+        self.counts
+    }
+}
+
+/// A skeleton of the roles in `known`.
+fn rig_of(known: u32) -> Rig {
+    let mut rig = Rig::of_roles();
+    let mut roles = RoleMap::default();
+    for role in Role::ALL
+        .into_iter()
+        .filter(|r| known >> r.index() & 1 == 1)
+    {
+        roles.set(role, Some(role.index()));
+    }
+    rig.roles = roles;
+    rig
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One connection cannot take every place, and a place of whom nothing comes is free again.
+    #[test]
+    fn one_connection_does_not_take_all_places() {
+        let lines = Lines::listen("127.0.0.1:0".parse().unwrap()).unwrap().0;
+        let mut source = JsonSource::new(lines, false);
+        let taken = (0..40)
+            .filter_map(|number| source.performer(1, number))
+            .count();
+        assert_eq!(taken, NAMES);
+        assert!(source.performer(2, 0).is_some());
+        for performer in &mut source.performers {
+            performer.heard_secs -= 2.0 * GONE_SECS;
+        }
+        source.forget_silent();
+        assert_eq!(source.leaving.len(), NAMES + 1);
+        assert!(source.performer(1, 39).is_some() && source.performer(1, 0).is_some());
+    }
+}

@@ -1,0 +1,362 @@
+//! A pose as a line of JSON: what live recognition reads and what `morec record` writes.
+//!
+//! One object a line, right-handed axes, Y up:
+//!
+//! ```json
+//! {"t": 1.25, "actor": 0, "positions": {"hips": [0, 0.92, 0], "left_thigh": [0.09, 0.9, 0]}}
+//! {"t": 1.27, "root": [0, 0.92, 0], "rotations": {"hips": [0, 0, 0, 1], "left_arm": [0, 0, 0.38, 0.92]}}
+//! ```
+//!
+//! - `t`: seconds on the sender's clock; without it the time of arrival counts.
+//! - `actor`: whom it shows, 0 if nothing is said.
+//! - `positions`: where joints are in the world, by role, in any one unit of length; or
+//! - `rotations`: how joints are turned in their parents' frames, `[x, y, z, w]`, by role. Turned by nothing, a
+//!   person stands in a T-pose, facing +Z, the left side at +X. Lengths are those of a standard body; `root` is where
+//!   its hips are.
+//!
+//! Roles are those of mapping files: hips, torso, neck, head, and left_ and right_ thigh, shin, foot, shoulder, arm,
+//! forearm, hand. What a line leaves out, or
+//! gives as `null`, is unknown at that time. Other fields are ignored.
+
+use std::collections::BTreeMap;
+use std::io::Write;
+
+use morec::live::Recording;
+use morec::live::vmc::{HUMANOID, HUMANOID_BONES};
+use morec::math::{Quat, Vec3, rotation_of_xyzw};
+use morec::roles::Role;
+use serde_json::{Map, Value, json};
+
+/// A pose as a line gives it.
+#[derive(Debug, Default, serde::Deserialize)]
+#[serde(default)]
+struct Line {
+    t: Option<f64>,
+    actor: u16,
+    root: Option<[f64; 3]>,
+    positions: BTreeMap<String, Option<[f64; 3]>>,
+    rotations: BTreeMap<String, Option<[f64; 4]>>,
+}
+
+/// A pose in the order of roles; what is unknown is not a number.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PoseLine {
+    /// On the sender's clock.
+    pub time_secs: Option<f64>,
+    /// Whom it shows.
+    pub actor: u16,
+    /// Places of the role joints.
+    pub positions: [Vec3; Role::COUNT],
+    /// Empty if the line gave positions.
+    pub rotations: Vec<Quat>,
+}
+
+impl PoseLine {
+    /// The pose that a line says; the error names the key, what was expected there and what was found.
+    pub fn of_line(text: &str) -> Result<Self, String> {
+        // A list would do for the values of a struct in their order; here it is a mistake.
+        let line: Line = match serde_json::from_str(text) {
+            Ok(line) if text.trim_start().starts_with('{') => line,
+            Ok(_) => return Err(explain(text, "expected an object {…}")),
+            Err(error) => return Err(explain(text, &error.to_string())),
+        };
+        let mut pose = Self {
+            time_secs: line.t.filter(|t| t.is_finite()),
+            actor: line.actor,
+            positions: [Vec3::repeat(f64::NAN); Role::COUNT],
+            rotations: Vec::new(),
+        };
+        if line.rotations.is_empty() {
+            for (name, position) in &line.positions {
+                let role = role("positions", name)?;
+                if let Some(position) = position {
+                    pose.positions[role.index()] = Vec3::from(*position);
+                }
+            }
+        } else {
+            pose.turn(&line)?;
+        }
+        if pose.known() == 0 {
+            let text =
+                "expected `positions` or `rotations` of some part of the body, found neither";
+            return Err(text.to_owned());
+        }
+        Ok(pose)
+    }
+
+    /// A standard body with its joints turned; what is not named is not turned.
+    fn turn(&mut self, line: &Line) -> Result<(), String> {
+        let mut locals = [Quat::identity(); Role::COUNT];
+        let mut named = [false; Role::COUNT];
+        for (name, rotation) in &line.rotations {
+            let role = role("rotations", name)?;
+            let Some(rotation) = rotation else { continue };
+            let rotation = rotation_of_xyzw(*rotation).ok_or_else(|| {
+                format!("rotations.{name}: expected [x, y, z, w] of length 1, found {rotation:?}")
+            })?;
+            (locals[role.index()], named[role.index()]) = (rotation, true);
+        }
+        let mut world = [(Vec3::zeros(), Quat::identity()); HUMANOID_BONES];
+        self.rotations = vec![Quat::identity(); Role::COUNT];
+        for (b, bone) in HUMANOID.iter().enumerate() {
+            let local = bone
+                .role
+                .map_or(Quat::identity(), |role| locals[role.index()]);
+            // The table faces −Z.
+            let [x, y, z] = bone.offset;
+            let offset = Vec3::new(-x, y, -z);
+            world[b] = match bone.parent {
+                Some(p) => (world[p].0 + world[p].1 * offset, world[p].1 * local),
+                None => (line.root.map_or(offset, Vec3::from), local),
+            };
+            let Some(role) = bone.role else { continue };
+            self.rotations[role.index()] = world[b].1;
+            // A joint is known where the one that carries it is; shoulders and spine are seldom sent.
+            use Role::*;
+            let carried = matches!(
+                role,
+                LeftShin
+                    | LeftFoot
+                    | RightShin
+                    | RightFoot
+                    | LeftForearm
+                    | LeftHand
+                    | RightForearm
+                    | RightHand
+            );
+            let by = bone.parent.and_then(|p| HUMANOID[p].role);
+            if !carried || by.is_some_and(|role| named[role.index()]) {
+                self.positions[role.index()] = world[b].0;
+            }
+        }
+        Ok(())
+    }
+
+    /// The roles whose joints have a place: bit `r` for role `r`.
+    pub fn known(&self) -> u32 {
+        let known = |p: &Vec3| p.iter().all(|c| c.is_finite());
+        (0..Role::COUNT)
+            .filter(|r| known(&self.positions[*r]))
+            .fold(0, |mask, r| mask | 1 << r)
+    }
+}
+
+/// The role of this name under `key`.
+fn role(key: &str, name: &str) -> Result<Role, String> {
+    Role::from_name(name).ok_or_else(|| {
+        let names = Role::ALL.map(Role::name).join(", ");
+        format!("{key}.{name}: no part of the body is called {name}; there are {names}")
+    })
+}
+
+/// Why a line is no pose: the key that is wrong, what was expected and what was found.
+fn explain(text: &str, otherwise: &str) -> String {
+    let value: Value = match serde_json::from_str(text) {
+        Ok(value) => value,
+        Err(error) => return format!("column {}: no JSON: {error}", error.column()),
+    };
+    let Some(object) = value.as_object() else {
+        return format!("expected an object {{…}}, found {}", kind(&value));
+    };
+    for (key, value) in object {
+        let wrong = match key.as_str() {
+            "t" => (!value.is_number() && !value.is_null()).then_some((
+                String::new(),
+                "seconds",
+                value,
+            )),
+            "actor" => {
+                let number = value.as_u64().filter(|n| *n <= u64::from(u16::MAX));
+                number
+                    .is_none()
+                    .then_some((String::new(), "a whole number from 0", value))
+            }
+            "root" => (!value.is_null() && !is_numbers(value, 3)).then_some((
+                String::new(),
+                "[x, y, z]",
+                value,
+            )),
+            "positions" => parts(value, 3, "[x, y, z]"),
+            "rotations" => parts(value, 4, "[x, y, z, w]"),
+            _ => None,
+        };
+        if let Some((part, expected, found)) = wrong {
+            return format!("{key}{part}: expected {expected}, found {}", kind(found));
+        }
+    }
+    otherwise.to_owned()
+}
+
+/// The first part of the body in `value` that is no list of `count` numbers.
+fn parts<'v>(
+    value: &'v Value,
+    count: usize,
+    expected: &'static str,
+) -> Option<(String, &'static str, &'v Value)> {
+    let Some(parts) = value.as_object() else {
+        return Some((String::new(), "an object of parts of the body", value));
+    };
+    parts
+        .iter()
+        .find(|(_, value)| !value.is_null() && !is_numbers(value, count))
+        .map(|(name, value)| (format!(".{name}"), expected, value))
+}
+
+fn is_numbers(value: &Value, count: usize) -> bool {
+    value
+        .as_array()
+        .is_some_and(|list| list.len() == count && list.iter().all(Value::is_number))
+}
+
+/// What a value is, in a word or two.
+fn kind(value: &Value) -> String {
+    match value {
+        Value::Null => "null".to_owned(),
+        Value::Bool(value) => value.to_string(),
+        Value::Number(value) => value.to_string(),
+        Value::String(text) => format!("the text {:?}", text.chars().take(30).collect::<String>()),
+        Value::Array(list) if list.iter().all(Value::is_number) => {
+            format!("{} numbers", list.len())
+        }
+        Value::Array(list) => format!("a list of {}", list.len()),
+        Value::Object(_) => "an object".to_owned(),
+    }
+}
+
+/// Writes a line for each frame of `recording`, its time from the first.
+///
+/// # Errors
+/// `out` cannot be written.
+pub fn write_pose_lines(recording: &Recording, out: &mut dyn Write) -> std::io::Result<()> {
+    let rig = recording.rig();
+    let begun_secs = recording
+        .frames()
+        .first()
+        .map_or(0.0, |frame| frame.time_secs);
+    for frame in recording.frames() {
+        let pose = frame.key_pose(rig);
+        let mut positions = Map::new();
+        for role in Role::ALL {
+            if let Some(place) = pose.get(role) {
+                let place = [place.x, place.y, place.z].map(rounded);
+                positions.insert(role.name().to_owned(), json!(place));
+            }
+        }
+        if positions.is_empty() {
+            continue;
+        }
+        let secs = rounded(frame.time_secs - begun_secs);
+        let (actor, positions) = (frame.actor.0, Value::Object(positions));
+        writeln!(
+            out,
+            r#"{{"t": {secs}, "actor": {actor}, "positions": {positions}}}"#
+        )?;
+    }
+    Ok(())
+}
+
+/// To the sixth decimal.
+fn rounded(value: f64) -> f64 {
+    (value * 1e6).round() / 1e6
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn positions_are_taken_as_they_are() {
+        let pose = PoseLine::of_line(
+            r#"{"t": 2.5, "actor": 3, "positions": {"head": [0, 1.6, 0.1]}, "note": 1}"#,
+        )
+        .unwrap();
+        assert_eq!(
+            (pose.time_secs, pose.actor, pose.known()),
+            (Some(2.5), 3, 1 << Role::Head.index())
+        );
+        assert_eq!(pose.positions[Role::Head.index()], Vec3::new(0.0, 1.6, 0.1));
+    }
+
+    #[test]
+    fn an_arm_turned_about_the_vertical_reaches_forward() {
+        // The left arm lies along +X; −90° about Y takes it to +Z, where the person looks.
+        let line = r#"{"rotations": {"hips": [0,0,0,1], "left_arm": [0,-0.7071068,0,0.7071068]}}"#;
+        let pose = PoseLine::of_line(line).unwrap();
+        let at = |role: Role| pose.positions[role.index()];
+        let arm = (at(Role::LeftForearm) - at(Role::LeftArm)).normalize();
+        assert!((arm - Vec3::z()).norm() < 1e-6, "{arm}");
+        assert!(at(Role::LeftThigh).x > 0.0 && at(Role::Neck).y > at(Role::Hips).y);
+        // Nothing was said of the forearm, so nothing is known of the hand.
+        assert!(at(Role::LeftHand).x.is_nan());
+    }
+
+    #[test]
+    fn rubbish_is_no_pose() {
+        for (line, said) in [
+            ("", "no JSON"),
+            ("hello", "column 1: no JSON"),
+            ("{}", "expected `positions` or `rotations`"),
+            ("[1,2]", "expected an object {…}, found 2 numbers"),
+            (
+                r#"{"positions": {"tail": [0,0,0]}}"#,
+                "positions.tail: no part of the body is called tail; there are hips, left_thigh",
+            ),
+            (
+                r#"{"positions": {"head": [0,0]}}"#,
+                "positions.head: expected [x, y, z], found 2 numbers",
+            ),
+            (
+                r#"{"positions": {"head": null}}"#,
+                "expected `positions` or `rotations`",
+            ),
+            (
+                r#"{"positions": 5}"#,
+                "positions: expected an object of parts of the body, found 5",
+            ),
+            (
+                r#"{"rotations": {"head": [0,0,0,0]}}"#,
+                "rotations.head: expected [x, y, z, w] of length 1",
+            ),
+            (
+                r#"{"rotations": {"head": [0,0,"up",1]}}"#,
+                "rotations.head: expected [x, y, z, w], found a list of 4",
+            ),
+            (
+                r#"{"t": "soon", "positions": {"head": [0,0,0]}}"#,
+                "t: expected seconds, found the text \"soon\"",
+            ),
+            (
+                r#"{"actor": -1, "positions": {"head": [0,0,0]}}"#,
+                "actor: expected a whole number from 0, found -1",
+            ),
+        ] {
+            let error = PoseLine::of_line(line).unwrap_err();
+            assert!(error.contains(said), "{line}: {error}");
+        }
+    }
+
+    #[test]
+    fn no_mutation_of_a_line_is_a_panic() {
+        let line = r#"{"t": 2.5, "actor": 3, "root": [0,1,0], "rotations": {"head": [0, 0, 0.1, 1e3]}, "x": null}"#;
+        const SIGNS: &[u8] = b"{}[]\",:0123456789eE-+.n t";
+        let mut rng = morec::rng::Rng::new(7);
+        for _ in 0..20_000 {
+            let mut bytes = line.as_bytes().to_vec();
+            for _ in 0..=rng.below(3) {
+                let at = rng.below(bytes.len());
+                match rng.below(3) {
+                    0 => bytes.truncate(at + 1),
+                    1 => bytes[at] = SIGNS[rng.below(SIGNS.len())],
+                    _ => _ = bytes.remove(at),
+                }
+                if bytes.is_empty() {
+                    break;
+                }
+            }
+            if let Ok(text) = std::str::from_utf8(&bytes) {
+                let said = PoseLine::of_line(text).err();
+                assert!(said.is_none_or(|said| !said.is_empty()));
+            }
+        }
+    }
+}

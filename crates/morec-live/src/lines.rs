@@ -1,0 +1,202 @@
+//! Lines of text from standard input or from whoever connects, each on a thread of its own.
+
+use std::io::{BufRead, BufReader, ErrorKind, Read};
+use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use crate::LiveError;
+use crate::error::Context;
+
+/// A longer line is no pose.
+pub const LONGEST: u64 = 1 << 16;
+/// Lines that may wait; then whoever sends them does.
+const WAITING: usize = 1024;
+/// Connections at once.
+const CONNECTIONS: usize = 16;
+/// A connection over which no whole line has come for so long is closed.
+const SILENCE: Duration = Duration::from_secs(30);
+
+/// Something that came.
+pub enum Came {
+    /// A line.
+    Line {
+        /// Whose it is.
+        connection: u64,
+        /// Which of the connection's lines, from 1.
+        number: u64,
+        /// It without its end; `None` if it was too long or no text.
+        text: Option<String>,
+    },
+    /// This connection has ended.
+    Closed(u64),
+    /// Nothing came in a while.
+    Nothing,
+    /// Nothing will come.
+    Ended,
+}
+
+/// Where lines come from.
+pub struct Lines {
+    came: Receiver<Came>,
+}
+
+impl Lines {
+    /// Standard input.
+    pub fn stdin() -> Result<Self, LiveError> {
+        let (sender, came) = sync_channel(WAITING);
+        spawn("standard input", move || {
+            forward(0, std::io::stdin().lock(), &sender)
+        })?;
+        Ok(Self { came })
+    }
+
+    /// Whoever connects to `address` over TCP. Returns where it listens, too.
+    pub fn listen(address: SocketAddr) -> Result<(Self, SocketAddr), LiveError> {
+        let listener = TcpListener::bind(address)
+            .with_context(|| format!("cannot listen at {address} (TCP)"))?;
+        let at = listener.local_addr().context("TCP socket")?;
+        let (sender, came) = sync_channel(WAITING);
+        spawn("connections", move || accept(&listener, &sender))?;
+        Ok((Self { came }, at))
+    }
+
+    /// What comes next; waits for it a little.
+    pub fn next(&mut self, most: Duration) -> Came {
+        match self.came.recv_timeout(most) {
+            Ok(came) => came,
+            Err(RecvTimeoutError::Timeout) => Came::Nothing,
+            Err(RecvTimeoutError::Disconnected) => Came::Ended,
+        }
+    }
+}
+
+fn spawn(name: &str, job: impl FnOnce() + Send + 'static) -> Result<(), LiveError> {
+    thread::Builder::new()
+        .name(name.to_owned())
+        .spawn(job)
+        .with_context(|| format!("no thread for {name}"))?;
+    Ok(())
+}
+
+fn accept(listener: &TcpListener, sender: &SyncSender<Came>) {
+    let open = std::sync::Arc::new(std::sync::atomic::AtomicUsize::new(0));
+    for (number, stream) in (1..).zip(listener.incoming()) {
+        use std::sync::atomic::Ordering::SeqCst;
+        let Ok(stream) = stream else {
+            // Out of files, most likely; others may close theirs.
+            thread::sleep(Duration::from_millis(100));
+            continue;
+        };
+        if open.fetch_add(1, SeqCst) >= CONNECTIONS {
+            open.fetch_sub(1, SeqCst);
+            continue;
+        }
+        let (sender, count) = (sender.clone(), open.clone());
+        let job = move || {
+            let patient = Patient::new(stream);
+            forward(number, BufReader::new(patient), &sender);
+            count.fetch_sub(1, SeqCst);
+        };
+        if spawn("a connection", job).is_err() {
+            open.fetch_sub(1, SeqCst);
+        }
+    }
+}
+
+/// A connection that must bring a whole line in time: one that sends nothing, or a byte now and then, holds no place.
+struct Patient {
+    stream: TcpStream,
+    /// When the line under way began to be waited for.
+    since: Instant,
+    silence: Duration,
+}
+
+impl Patient {
+    fn new(stream: TcpStream) -> Self {
+        Self {
+            stream,
+            since: Instant::now(),
+            silence: SILENCE,
+        }
+    }
+}
+
+impl Read for Patient {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        let left = self.silence.saturating_sub(self.since.elapsed());
+        if left.is_zero() {
+            return Err(ErrorKind::TimedOut.into());
+        }
+        self.stream.set_read_timeout(Some(left))?;
+        let count = self.stream.read(buffer)?;
+        if buffer[..count].contains(&b'\n') {
+            self.since = Instant::now();
+        }
+        Ok(count)
+    }
+}
+
+/// Sends every line until the end of `reader`, or until nobody takes them.
+fn forward(number: u64, mut reader: impl BufRead, sender: &SyncSender<Came>) {
+    let (mut bytes, mut lines) = (Vec::new(), 0);
+    loop {
+        bytes.clear();
+        match reader.by_ref().take(LONGEST).read_until(b'\n', &mut bytes) {
+            Ok(0) => break,
+            Ok(_) => {}
+            Err(error) if error.kind() == ErrorKind::Interrupted => continue,
+            Err(_) => break,
+        }
+        // What follows a part of a line that is too long still belongs to it.
+        let ended = bytes.ends_with(b"\n");
+        let line = lines + 1;
+        lines += u64::from(ended);
+        let whole = ended || (bytes.len() as u64) < LONGEST;
+        let text = std::str::from_utf8(&bytes).ok().filter(|_| whole);
+        if text.is_some_and(|text| text.trim().is_empty()) {
+            continue;
+        }
+        let came = Came::Line {
+            connection: number,
+            number: line,
+            text: text.map(|text| text.trim_end().to_owned()),
+        };
+        if sender.send(came).is_err() {
+            return;
+        }
+    }
+    // If nobody takes it, nobody needs to know.
+    let _ = sender.send(Came::Closed(number));
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+
+    use super::*;
+
+    /// A connection that sends bytes but no line is closed; a line buys time for the next.
+    #[test]
+    fn a_connection_without_lines_is_closed() {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let mut client = TcpStream::connect(listener.local_addr().unwrap()).unwrap();
+        let mut patient = Patient::new(listener.accept().unwrap().0);
+        let hour = Duration::from_secs(3600);
+        let mut byte = [0; 16];
+        for (text, buys) in [("x", false), ("y\n", true)] {
+            patient.silence = 2 * hour;
+            let Some(before) = Instant::now().checked_sub(hour) else {
+                // The machine has been up for less than an hour, and its clock began then.
+                return;
+            };
+            patient.since = before;
+            client.write_all(text.as_bytes()).unwrap();
+            assert_eq!(patient.read(&mut byte).unwrap(), text.len());
+            assert_eq!(patient.since > before, buys, "{text:?}");
+        }
+        patient.silence = Duration::from_millis(1);
+        assert!(patient.read(&mut byte).is_err(), "nothing came in time");
+    }
+}

@@ -1,0 +1,154 @@
+//! Sources by their addresses.
+
+use std::path::PathBuf;
+
+use morec::files::FileReader;
+use morec::import::ImportOptions;
+use morec::index::MotionIndex;
+use morec::live::axis::AxisOptions;
+use morec::live::vmc::VmcOptions;
+use morec::live::{Overload, Source};
+use morec::roles::mapping::Mapping;
+
+use crate::axis::{AxisSource, axis_skeleton};
+use crate::clip::ClipSource;
+use crate::json::JsonSource;
+use crate::vmc::VmcSource;
+use crate::{Address, LiveError, Notices};
+
+/// How sources are opened.
+#[derive(Debug, Clone)]
+pub struct SourceOptions<'a> {
+    /// Exchange left and right, for VMC senders that show their performer as a mirror would.
+    pub mirrored: bool,
+    /// Performers that one VMC port, or one broadcast, follows at once.
+    pub actors: usize,
+    /// Leave out frames of VMC senders that show a T-pose too exact to be a person's.
+    pub skip_t_pose: bool,
+    /// A BVH file of the program at `axis://`, for how bones hang together and how long they are.
+    pub axis_skeleton: Option<PathBuf>,
+    /// Roles of joints of clips, where inference fails.
+    pub roles: Option<Mapping>,
+    /// The index that will recognise: it knows the roles of joints of its own clips.
+    pub index: Option<&'a MotionIndex>,
+}
+
+impl Default for SourceOptions<'_> {
+    fn default() -> Self {
+        let VmcOptions {
+            mirrored,
+            actors,
+            skip_t_pose,
+        } = VmcOptions::default();
+        Self {
+            mirrored,
+            actors,
+            skip_t_pose,
+            axis_skeleton: None,
+            roles: None,
+            index: None,
+        }
+    }
+}
+
+/// A source that has been opened.
+pub struct OpenSource {
+    /// It.
+    pub source: Box<dyn Source>,
+    /// Whether it can wait for whoever takes its frames.
+    pub overload: Overload,
+    /// What it is called, with the port that was free if it asked for any.
+    pub name: String,
+    /// What it notices of what it is sent.
+    pub notices: Notices,
+}
+
+/// Opens the source at `address`: `vmc://HOST:PORT`, `axis://HOST:PORT`, `axis+udp://HOST:PORT`, `json:-`,
+/// `json+tcp://HOST:PORT` or `clip://FILE`.
+///
+/// # Errors
+/// Another address, an option that the source does not have, a socket that cannot be opened, a file that cannot be read.
+pub fn open_source(
+    address: &Address,
+    options: &SourceOptions<'_>,
+) -> Result<OpenSource, LiveError> {
+    match address.kind.as_str() {
+        "vmc" => {
+            let source = vmc(address, options)?;
+            let (name, notices) = (format!("vmc://{}", source.address()?), source.notices());
+            Ok(opened(source, Overload::Drop, name, notices))
+        }
+        "axis" | "axis+udp" => {
+            let skeleton = options.axis_skeleton.as_deref().map(axis_skeleton);
+            let axis = AxisOptions {
+                skeleton: skeleton.transpose()?.unwrap_or_default(),
+                actors: options.actors,
+            };
+            let (source, name) = AxisSource::open(address, &axis)?;
+            let notices = source.notices();
+            Ok(opened(source, Overload::Drop, name, notices))
+        }
+        "json" => {
+            let source = JsonSource::open(address)?;
+            let notices = source.notices();
+            Ok(opened(source, Overload::Wait, address.to_string(), notices))
+        }
+        "json+tcp" => {
+            let (source, at) = JsonSource::listen(address)?;
+            let notices = source.notices();
+            Ok(opened(
+                source,
+                Overload::Wait,
+                format!("json+tcp://{at}"),
+                notices,
+            ))
+        }
+        "clip" => {
+            let reader = FileReader {
+                import: ImportOptions {
+                    mapping: options.roles.clone(),
+                    ..ImportOptions::default()
+                },
+                ..FileReader::default()
+            };
+            let source = ClipSource::open(address, options.index, &reader)?;
+            let overload = match source.is_paced() {
+                true => Overload::Drop,
+                false => Overload::Wait,
+            };
+            Ok(opened(
+                source,
+                overload,
+                address.to_string(),
+                Notices::default(),
+            ))
+        }
+        other => Err(LiveError::Address(format!(
+            "{address}: no source is called {other}; there are vmc://HOST:PORT, axis://HOST:PORT, axis+udp://HOST:PORT, json:-, json+tcp://HOST:PORT, clip://FILE"
+        ))),
+    }
+}
+
+fn opened(
+    source: impl Source + 'static,
+    overload: Overload,
+    name: String,
+    notices: Notices,
+) -> OpenSource {
+    OpenSource {
+        source: Box::new(source),
+        overload,
+        name,
+        notices,
+    }
+}
+
+fn vmc(address: &Address, options: &SourceOptions<'_>) -> Result<VmcSource, LiveError> {
+    address.allow(&[])?;
+    let vmc = VmcOptions {
+        mirrored: options.mirrored,
+        actors: options.actors,
+        skip_t_pose: options.skip_t_pose,
+    };
+    VmcSource::bind(address.socket()?, &vmc)
+}

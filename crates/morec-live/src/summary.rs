@@ -1,0 +1,32 @@
+//! What a session did, in a line.
+
+use morec::live::Status;
+
+/// What a session did, at its end.
+pub fn summary(source: &str, status: &Status) -> String {
+    let mut text = format!(
+        "{source}: {} frames, {} motions",
+        status.frames, status.motions
+    );
+    let counts = &status.source;
+    let parts = [
+        (counts.packets, "packets"),
+        (counts.malformed, "malformed packets"),
+        (counts.late, "late packets"),
+        (counts.refused, "packets of senders beyond --actors"),
+        (counts.incomplete, "incomplete frames"),
+        (
+            counts.not_motion,
+            "frames of a rest pose or without tracking",
+        ),
+        (counts.interruptions, "interruptions"),
+        (status.dropped_frames, "frames dropped for want of time"),
+        (status.unusable_frames, "frames without a bone of the index"),
+        (status.dropped_events, "events dropped"),
+        (status.suppressed, "motions within the refractory time"),
+    ];
+    for (count, what) in parts.into_iter().filter(|(count, _)| *count > 0) {
+        text += &format!(", {count} {what}");
+    }
+    text + &format!("; longest wait {:.1} ms", 1000.0 * status.longest_wait_secs)
+}

@@ -1,0 +1,120 @@
+//! What an index recognises with, whatever the method.
+
+use std::sync::Arc;
+
+use crate::classes::{ClassId, ClassInfo};
+use crate::features::{ALL_BONES, BoneSet};
+use crate::roles::Role;
+use crate::svrdm::SvrdmModel;
+use crate::templates::TemplateModel;
+
+/// A trained model of any method. Cheap to copy: the tables are shared.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Model {
+    /// Templates matched elastically, over the places of joints.
+    Templates(Arc<TemplateModel>),
+    /// The method of the thesis, over the rotations of joints.
+    Svrdm(Arc<SvrdmModel>),
+}
+
+impl Model {
+    /// What `--method` and an index's manifest call the method.
+    pub fn method(&self) -> &'static str {
+        match self {
+            Model::Templates(_) => "templates",
+            Model::Svrdm(_) => "svrdm",
+        }
+    }
+
+    /// The classes; a [`ClassId`] is an index into this.
+    pub fn classes(&self) -> &[ClassInfo] {
+        match self {
+            Model::Templates(model) => &model.classes,
+            Model::Svrdm(model) => &model.classes,
+        }
+    }
+
+    /// The name of a class of this model.
+    pub fn class_name(&self, class: ClassId) -> &str {
+        &self.classes()[class.index()].name
+    }
+
+    /// The parts of the body that recognition looks at, some perhaps more than once.
+    pub fn roles(&self) -> impl Iterator<Item = Role> {
+        let (bones, pivots) = match self {
+            Model::Templates(model) => (model.bones, &[][..]),
+            Model::Svrdm(model) => (BoneSet::NONE, model.pivots.pivots()),
+        };
+        let ends = bones
+            .indices()
+            .flat_map(|bone| [ALL_BONES[bone].from, ALL_BONES[bone].to]);
+        ends.chain(pivots.iter().filter_map(|pivot| pivot.role))
+    }
+
+    /// How often a second the stream is compared.
+    pub fn tick_hz(&self) -> f64 {
+        match self {
+            Model::Templates(model) => model.features.tick_hz(),
+            Model::Svrdm(model) => model.rate_hz() / model.params.chunk_frames as f64,
+        }
+    }
+
+    /// The model for another rate of false alarms, as background motion raised them in training, a minute. More
+    /// alarms also mean fewer motions missed.
+    ///
+    /// # Errors
+    /// A rate that is not above 0, or a model that was trained without noting rates: the method of the thesis, an
+    /// index of an older version, one that verifies candidates.
+    pub fn with_sensitivity(&self, alarms_per_minute: f64) -> Result<Self, SensitivityError> {
+        if !(alarms_per_minute.is_finite() && alarms_per_minute > 0.0) {
+            return Err(SensitivityError::Rate(alarms_per_minute));
+        }
+        let Model::Templates(model) = self else {
+            return Err(SensitivityError::Fixed);
+        };
+        let changed = model.with_sensitivity(alarms_per_minute);
+        changed.map(Into::into).ok_or(SensitivityError::Fixed)
+    }
+
+    /// Whether poses must say how joints are turned; where they are is enough otherwise.
+    pub fn needs_rotations(&self) -> bool {
+        matches!(self, Model::Svrdm(_))
+    }
+}
+
+impl From<Arc<TemplateModel>> for Model {
+    fn from(model: Arc<TemplateModel>) -> Self {
+        Model::Templates(model)
+    }
+}
+
+impl From<TemplateModel> for Model {
+    fn from(model: TemplateModel) -> Self {
+        Model::Templates(Arc::new(model))
+    }
+}
+
+impl From<Arc<SvrdmModel>> for Model {
+    fn from(model: Arc<SvrdmModel>) -> Self {
+        Model::Svrdm(model)
+    }
+}
+
+impl From<SvrdmModel> for Model {
+    fn from(model: SvrdmModel) -> Self {
+        Model::Svrdm(Arc::new(model))
+    }
+}
+
+/// Why the sensitivity of a model cannot be changed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SensitivityError {
+    /// The rate makes no sense.
+    #[error("the sensitivity is a number of false alarms a minute above 0, found {0}")]
+    Rate(f64),
+    /// The model does not note rates.
+    #[error(
+        "this index has one sensitivity only: train it again with templates and without a verifier to choose"
+    )]
+    Fixed,
+}

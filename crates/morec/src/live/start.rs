@@ -1,0 +1,18 @@
+//! Why a stream cannot be recognised.
+
+use crate::pivots::NoPivots;
+use crate::templates::TemplateModelError;
+
+/// Why a stream cannot be recognised with a model.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum StartError {
+    /// The model's parts do not fit together, or the stream shows none of its bones.
+    #[error(transparent)]
+    Templates(#[from] TemplateModelError),
+    /// The model's parts do not fit together.
+    #[error(transparent)]
+    Svrdm(#[from] crate::svrdm::ModelError),
+    /// The skeleton lacks the pivot that all others hang from, or its rotations are not known.
+    #[error(transparent)]
+    Pivots(#[from] NoPivots),
+}

@@ -1,0 +1,152 @@
+//! A channel with its curves and keyframes, drawn.
+
+use crate::clip::Clip;
+use crate::plot::Chart;
+use crate::smooth::{Bezier, CompressedClip, Curve, Kind, Point};
+
+/// Points drawn for each frame of the source.
+const POINTS_A_FRAME: f64 = 4.0;
+const NAMES: [&str; 4] = ["x", "y", "z", "w"];
+
+impl CompressedClip {
+    /// A chart of a joint's rotation (as a quaternion) or position over time: samples of `source` (the clip that
+    /// was compressed), curves, keyframes. With `axis` (0 to 3 for x, y, z, w) only that component, and the curves'
+    /// control points with it. `None` if there is no such channel. O(frames).
+    pub fn chart(
+        &self,
+        source: &Clip,
+        joint: usize,
+        kind: Kind,
+        axis: Option<usize>,
+    ) -> Option<Chart> {
+        let curve = self.curve(joint, kind)?;
+        let components = match kind {
+            Kind::Rotation => 0..4,
+            Kind::Position => 0..3,
+        };
+        let components = match axis {
+            Some(axis) if components.contains(&axis) => axis..axis + 1,
+            Some(_) => return None,
+            None => components,
+        };
+        let what = match kind {
+            Kind::Rotation => "rotation",
+            Kind::Position => "position",
+        };
+        let name = &self.skeleton().joints()[joint].name;
+        let title = format!(
+            "{}: {what} of {name}, {} keyframes",
+            self.name(),
+            curve.keyframes()
+        );
+        let unit = if kind == Kind::Rotation {
+            "quaternion"
+        } else {
+            "units of the clip"
+        };
+        let mut chart = Chart::new(title).axes("seconds", unit);
+        let samples = samples(source, curve);
+        let drawn = self.drawn(curve);
+        for c in components {
+            let at = |i: usize| i as f64 / self.source_rate_hz();
+            chart = chart.line(
+                NAMES[c],
+                samples.iter().enumerate().map(|(i, p)| (at(i), p[c])),
+            );
+            chart = chart.line(
+                &format!("{} curves", NAMES[c]),
+                drawn.iter().map(|(t, p)| (*t, p[c])),
+            );
+            if axis.is_some() {
+                chart = chart.points("control points", self.control_points(curve, c));
+            }
+        }
+        let first = std::iter::once(0.0);
+        let keys = first.chain(self.beziers(curve).map(|bezier| bezier.stop_secs));
+        Some(chart.marks("keyframes", keys))
+    }
+
+    /// The curve, finely.
+    fn drawn(&self, curve: &Curve) -> Vec<(f64, Point)> {
+        let last = self.source_frames().saturating_sub(1) as f64;
+        let places = (0..=(last * POINTS_A_FRAME) as usize).map(|i| i as f64 / POINTS_A_FRAME);
+        let mut drawn = Vec::new();
+        curve.along(places, |point| {
+            drawn.push((drawn.len() as f64 / POINTS_A_FRAME / self.source_rate_hz(), point))
+        });
+        drawn
+    }
+
+    /// Inner control points, at the thirds of their curves' times.
+    fn control_points(&self, curve: &Curve, component: usize) -> Vec<(f64, f64)> {
+        let inner = |bezier: Bezier| {
+            let third = (bezier.stop_secs - bezier.start_secs) / 3.0;
+            [1, 2].map(|i| {
+                (
+                    bezier.start_secs + i as f64 * third,
+                    bezier.points[i][component],
+                )
+            })
+        };
+        self.beziers(curve).flat_map(inner).collect()
+    }
+}
+
+/// The channel's samples, with the signs that its curves have.
+fn samples(source: &Clip, curve: &Curve) -> Vec<Point> {
+    if curve.kind() == Kind::Position {
+        return source.track(curve.joint()).map_or_else(Vec::new, |track| {
+            track.positions.iter().map(|p| p.push(0.0)).collect()
+        });
+    }
+    let mut last = curve.at(0.0);
+    let of_joint = source
+        .rotations
+        .iter()
+        .skip(curve.joint())
+        .step_by(source.skeleton.len());
+    let signed = |q: &crate::math::Quat| {
+        last = if last.dot(&q.coords) < 0.0 {
+            -q.coords
+        } else {
+            q.coords
+        };
+        last
+    };
+    of_joint.map(signed).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::math::{Axis, Vec3};
+    use crate::smooth::tests::one_joint;
+    use crate::smooth::{Kind, SmoothParams, compress};
+
+    #[test]
+    fn every_channel_can_be_drawn() {
+        let clip = one_joint(
+            60.0,
+            121,
+            |t| Axis::Y.rotation(4.0 * t),
+            |t| Vec3::new(t.sin(), t, 0.0),
+        );
+        let compressed = compress(&clip, &SmoothParams::default(), &()).unwrap();
+        let svg = |kind, axis| {
+            compressed
+                .chart(&clip, 0, kind, axis)
+                .map(|chart| chart.svg())
+        };
+        let all = svg(Kind::Rotation, None).unwrap();
+        assert!(
+            all.contains("rotation of Hips")
+                && all.contains("w curves")
+                && all.contains("keyframes")
+        );
+        let one = svg(Kind::Position, Some(0)).unwrap();
+        assert!(
+            one.contains("x curves") && !one.contains("y curves") && one.contains("control points")
+        );
+        assert!(svg(Kind::Position, Some(3)).is_none() && svg(Kind::Rotation, Some(4)).is_none());
+        assert!(compressed.chart(&clip, 1, Kind::Rotation, None).is_none());
+    }
+}

@@ -1,0 +1,13 @@
+//! Pictures of what other modules compute: they return numbers, and are drawn here.
+
+mod confidence_map;
+mod curves;
+mod cuts;
+mod machines;
+mod quality;
+
+#[cfg(test)]
+mod tests;
+
+pub use machines::{branch_picture, tree_picture};
+pub use quality::quality_chart;

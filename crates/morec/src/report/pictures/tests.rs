@@ -1,0 +1,58 @@
+use super::{branch_picture, tree_picture};
+use crate::classes::ClassId;
+use crate::rng::Rng;
+use crate::svrdm::Node;
+use crate::train::svrdm::tests::cloud;
+use crate::train::svrdm::{FeatureSample, SigmaRule, TreeParams, grow};
+
+#[test]
+fn pictures_show_every_class_by_name_and_where_machines_accept() {
+    let mut rng = Rng::new(2);
+    let names: Vec<String> = ["wave", "clap", "bow & rise"].map(str::to_owned).into();
+    let mut samples = vec![];
+    for class in 0..3u16 {
+        let vectors = cloud(
+            &mut rng,
+            5,
+            &[f64::from(class), 0.0, f64::from(class * class)],
+            0.1,
+        );
+        let of_class = |vector| FeatureSample {
+            class: ClassId(class),
+            group: 0,
+            vector,
+        };
+        samples.extend(vectors.into_iter().map(of_class));
+    }
+    let params = TreeParams {
+        sigma: SigmaRule::Quantile {
+            full: 0.5,
+            reduced: 0.5,
+        },
+        ..Default::default()
+    };
+    let tree = grow(&samples, &[], &params).unwrap().tree;
+    let drawn = tree_picture(&tree, &names);
+    assert!(
+        ["wave", "clap", "bow &amp; rise"]
+            .iter()
+            .all(|n| drawn.contains(n))
+    );
+    assert_eq!(drawn.matches("class=\"box\"").count(), 5);
+    let root = branch_picture(&tree, 0, &samples, &names, [0.4, 1.0]).unwrap();
+    assert!(
+        ["wave", "clap", "bow &amp; rise", "left ≥ 1", "right ≥ 0.4"]
+            .iter()
+            .all(|n| root.contains(n))
+    );
+    let leaf = tree
+        .nodes()
+        .iter()
+        .position(|n| matches!(n, Node::Leaf(_)))
+        .unwrap();
+    assert!(
+        branch_picture(&tree, leaf, &samples, &names, [0.4, 1.0]).is_none(),
+        "a leaf has no plane"
+    );
+    assert!(branch_picture(&tree, 99, &samples, &names, [0.4, 1.0]).is_none());
+}

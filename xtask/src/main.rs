@@ -1,0 +1,22 @@
+//! Tools of morec's developers: `cargo xtask --help`.
+
+mod soak;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+/// Tools of morec's developers; no part of what is installed.
+#[derive(Parser)]
+#[command(name = "xtask")]
+enum Task {
+    Soak(soak::Args),
+}
+
+fn main() -> ExitCode {
+    let Task::Soak(args) = Task::parse();
+    soak::run(&args).unwrap_or_else(|error| {
+        eprintln!("xtask: {error:#}");
+        ExitCode::FAILURE
+    })
+}

@@ -1,0 +1,114 @@
+//! One stream on this thread alone: how long a frame takes.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use morec::features::BoneSet;
+use morec::live::{Actor, EventOptions, Frame, Model, Next, Performer, Recognizer, Source};
+
+use morec_live::ClipSource;
+use morec_live::PlayableClip;
+
+/// Laps of which each frame's median is taken; more say the same.
+const MOST_LAPS: usize = 25;
+
+/// Plays `clips` round and round for about `most` and says how long recognition took for a frame: from the posed
+/// skeleton to events.
+///
+/// A frame's first lap, and the first frame of a skeleton, at which recognisers are made, do not count. What else the
+/// machine does interrupts now this frame, now that; the median over the laps of each frame is what the frame itself
+/// costs.
+pub fn tell(model: &Model, clips: &Arc<Vec<PlayableClip>>, most: Duration) {
+    let mut laps = Vec::new();
+    let mut player = Player::new(model);
+    let begun = Instant::now();
+    player.lap(clips);
+    // Three at least: a median of fewer is none.
+    while laps.len() < MOST_LAPS && (laps.len() < 3 || begun.elapsed() < most) {
+        laps.push(player.lap(clips));
+    }
+    let frames = laps[0].len();
+    if frames == 0 {
+        return;
+    }
+    println!(
+        "processing of one frame, {frames} frames {} times over: {}",
+        laps.len(),
+        shares(laps.iter().flatten().copied().collect())
+    );
+    let median = |frame: usize| {
+        let mut of: Vec<f64> = laps.iter().map(|lap| lap[frame]).collect();
+        of.sort_by(f64::total_cmp);
+        of[of.len() / 2]
+    };
+    println!(
+        "the same, of each frame the median: {}",
+        shares((0..frames).map(median).collect())
+    );
+}
+
+/// Percentiles of `secs` in words.
+fn shares(mut secs: Vec<f64>) -> String {
+    secs.sort_by(f64::total_cmp);
+    let at = |share: f64| 1e6 * secs[((secs.len() as f64 - 1.0) * share).round() as usize];
+    let mean = 1e6 * secs.iter().sum::<f64>() / secs.len() as f64;
+    format!(
+        "mean {mean:.1}, p50 {:.1}, p99 {:.1}, p99.9 {:.1}, most {:.1} µs",
+        at(0.5),
+        at(0.99),
+        at(0.999),
+        at(1.0)
+    )
+}
+
+/// A performer, and recognisers ready to be copied.
+struct Player {
+    model: Model,
+    performer: Performer,
+    ready: Vec<(BoneSet, Option<Recognizer>)>,
+}
+
+impl Player {
+    fn new(model: &Model) -> Self {
+        let performer = Performer::new(model, Actor(0), &EventOptions::default());
+        Self {
+            model: model.clone(),
+            performer,
+            ready: Vec::new(),
+        }
+    }
+
+    /// Seconds of each frame of one lap.
+    fn lap(&mut self, clips: &Arc<Vec<PlayableClip>>) -> Vec<f64> {
+        let mut source = ClipSource::new(clips.clone());
+        let (mut frame, mut secs, mut fresh) = (Frame::default(), Vec::new(), true);
+        let (model, ready) = (&self.model, &mut self.ready);
+        let mut make = |bones: BoneSet| match ready.iter().find(|(of, _)| *of == bones) {
+            Some((_, known)) => known.clone(),
+            None => {
+                ready.push((bones, Recognizer::new(model, bones).ok()));
+                ready.last().and_then(|(_, new)| new.clone())
+            }
+        };
+        loop {
+            match source.next(&mut frame) {
+                Next::Frame => {
+                    let begun = Instant::now();
+                    self.performer.push(&frame, &mut make, &mut |_| ());
+                    if !std::mem::take(&mut fresh) {
+                        secs.push(begun.elapsed().as_secs_f64());
+                    }
+                }
+                Next::Rig(_, rig) => {
+                    self.performer.set_rig(&rig, &mut |_| ());
+                    fresh = true;
+                }
+                Next::Gone(_) => self.performer.finish(&mut |_| ()),
+                Next::Quiet => {}
+                Next::Ended => break,
+            }
+        }
+        self.performer.finish(&mut |_| ());
+        secs
+    }
+}
