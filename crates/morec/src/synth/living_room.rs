@@ -4,7 +4,7 @@ use super::actor::Actor;
 use super::film::film;
 use super::motion::{Kind, Motion, Perform};
 use super::person::Person;
-use super::rng::Rng;
+use crate::rng::Rng;
 use super::{Label, SyntheticTake, everyday, unknown};
 
 /// What is done between gestures, in turn.
