@@ -26,12 +26,12 @@ enum Object {
 }
 
 #[derive(Default)]
-struct Table {
+struct HandleTable {
     objects: BTreeMap<usize, Object>,
     given: usize,
 }
 
-static TABLE: RwLock<Table> = RwLock::new(Table {
+static TABLE: RwLock<HandleTable> = RwLock::new(HandleTable {
     objects: BTreeMap::new(),
     given: 0,
 });
@@ -132,7 +132,7 @@ fn other_kind<H: Handle>() -> Error {
     )
 }
 
-fn unknown<H: Handle>(table: &Table, number: usize) -> Error {
+fn unknown<H: Handle>(table: &HandleTable, number: usize) -> Error {
     if number == 0 {
         return Error::new(
             MorecStatus::NullPointer,

@@ -95,10 +95,10 @@ pub fn growing(path: &Path) -> Result<File> {
 pub struct Output {
     /// Where it will lie; links are followed.
     target: PathBuf,
-    sink: Sink,
+    sink: Target,
 }
 
-enum Sink {
+enum Target {
     /// A file beside the target.
     Beside(BufWriter<NamedTempFile>),
     /// A device or a pipe: there is nothing to rename.
@@ -115,7 +115,7 @@ impl Output {
         let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         if target.exists() && !target.is_file() {
             let file = OpenOptions::new().write(true).open(&target)?;
-            let sink = Sink::Through(BufWriter::new(file));
+            let sink = Target::Through(BufWriter::new(file));
             return Ok(Self { target, sink });
         }
         let name = target.file_name().context("expected the name of a file")?;
@@ -133,7 +133,7 @@ impl Output {
             // Best effort: on some file systems files have no permissions.
             let _ = beside.as_file().set_permissions(there.permissions());
         }
-        let sink = Sink::Beside(BufWriter::new(beside));
+        let sink = Target::Beside(BufWriter::new(beside));
         Ok(Self { target, sink })
     }
 
@@ -143,8 +143,8 @@ impl Output {
     /// The disk is full; the target has become an input meanwhile.
     pub fn finish(self) -> Result<()> {
         let beside = match self.sink {
-            Sink::Through(mut out) => return Ok(out.flush()?),
-            Sink::Beside(out) => out.into_inner().map_err(io::IntoInnerError::into_error)?,
+            Target::Through(mut out) => return Ok(out.flush()?),
+            Target::Beside(out) => out.into_inner().map_err(io::IntoInnerError::into_error)?,
         };
         beside.as_file().sync_all()?;
         check(&self.target)?;
@@ -162,15 +162,15 @@ impl Output {
 impl Write for Output {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match &mut self.sink {
-            Sink::Beside(out) => out.write(bytes),
-            Sink::Through(out) => out.write(bytes),
+            Target::Beside(out) => out.write(bytes),
+            Target::Through(out) => out.write(bytes),
         }
     }
 
     fn flush(&mut self) -> io::Result<()> {
         match &mut self.sink {
-            Sink::Beside(out) => out.flush(),
-            Sink::Through(out) => out.flush(),
+            Target::Beside(out) => out.flush(),
+            Target::Through(out) => out.flush(),
         }
     }
 }

@@ -101,7 +101,7 @@ pub struct ImportCounts {
 }
 
 /// A file after the parallel part.
-enum Made {
+enum PreparedFile {
     Known(i64),
     Refused(String),
     New(Box<NewFile>),
@@ -146,7 +146,7 @@ impl MotionDb {
                 break;
             }
             let known = self.known_hashes()?;
-            let made: Vec<Option<Made>> = batch
+            let made: Vec<Option<PreparedFile>> = batch
                 .par_iter()
                 .map(|path| {
                     if progress.cancelled() {
@@ -199,11 +199,11 @@ fn make(
     reader: &FileReader,
     params: &FeatureParams,
     known: &std::collections::HashMap<[u8; 32], i64>,
-) -> Made {
+) -> PreparedFile {
     let (file, choice) = split_choice(path);
     let bytes = match read_file(&file) {
         Ok(bytes) => bytes,
-        Err(error) => return Made::Refused(error.to_string()),
+        Err(error) => return PreparedFile::Refused(error.to_string()),
     };
     // One clip of a file is another content than the whole.
     let mut hasher = blake3::Hasher::new();
@@ -211,23 +211,23 @@ fn make(
     hasher.update(choice.unwrap_or_default().as_bytes());
     let hash = *hasher.finalize().as_bytes();
     if let Some(file) = known.get(&hash) {
-        return Made::Known(*file);
+        return PreparedFile::Known(*file);
     }
     let mut read = match reader.parse(path, &bytes) {
         Ok(read) => read,
-        Err(error) => return Made::Refused(error.kind.to_string()),
+        Err(error) => return PreparedFile::Refused(error.kind.to_string()),
     };
     let mut clips = Vec::new();
     for clip in std::mem::take(&mut read.clips) {
         match new_clip(clip, &reader.import, params) {
             Ok(clip) => clips.push(clip),
-            Err(reason) => return Made::Refused(reason),
+            Err(reason) => return PreparedFile::Refused(reason),
         }
     }
     if clips.is_empty() {
-        return Made::Refused("there is no clip in it".to_owned());
+        return PreparedFile::Refused("there is no clip in it".to_owned());
     }
-    Made::New(Box::new(NewFile {
+    PreparedFile::New(Box::new(NewFile {
         hash,
         bytes: bytes.len(),
         file: read,
@@ -258,13 +258,13 @@ fn new_clip(
 fn store(
     conn: &Connection,
     path: &Path,
-    made: Made,
+    made: PreparedFile,
     about: &ClipUpdate,
     recipe: &str,
 ) -> Result<ImportOutcome, DbError> {
     let shown = path.to_string_lossy();
     match made {
-        Made::Refused(reason) => {
+        PreparedFile::Refused(reason) => {
             // Refused for the same reason again, it is no change.
             let sql = "INSERT INTO refused (path, reason, tried_secs) VALUES (?1, ?2, ?3) \
                 ON CONFLICT (path) DO UPDATE SET reason = excluded.reason, tried_secs = excluded.tried_secs \
@@ -272,8 +272,8 @@ fn store(
             conn.execute(sql, params![shown, reason, now_secs()])?;
             Ok(ImportOutcome::Refused(Refused { reason }))
         }
-        Made::Known(file) => known(conn, &shown, file),
-        Made::New(new) => {
+        PreparedFile::Known(file) => known(conn, &shown, file),
+        PreparedFile::New(new) => {
             conn.execute("DELETE FROM refused WHERE path = ?1", params![shown])?;
             // Two files of one batch may hold the same bytes.
             let twin = conn

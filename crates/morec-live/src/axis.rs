@@ -26,14 +26,14 @@ const PATIENCE: Duration = Duration::from_secs(2);
 const WAITING: usize = 64;
 
 /// Something that a connection gave.
-enum Came {
+enum Received {
     Bytes(Vec<u8>, f64),
     Lost,
 }
 
 enum From {
     /// Connected to whenever it is there, by a thread of its own.
-    Tcp(Receiver<Came>),
+    Tcp(Receiver<Received>),
     Udp(UdpSocket, Vec<u8>),
 }
 
@@ -116,8 +116,8 @@ impl Source for AxisSource {
         }
         match &mut self.from {
             From::Tcp(came) => match came.recv_timeout(WAIT) {
-                Ok(Came::Bytes(bytes, at_secs)) => self.receiver.bytes(at_secs, &bytes),
-                Ok(Came::Lost) => self.receiver.lost(),
+                Ok(Received::Bytes(bytes, at_secs)) => self.receiver.bytes(at_secs, &bytes),
+                Ok(Received::Lost) => self.receiver.lost(),
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => thread::sleep(WAIT),
             },
@@ -142,12 +142,12 @@ impl Source for AxisSource {
 }
 
 /// Connects again and again, and passes on what comes.
-fn connect(at: SocketAddr, to: &SyncSender<Came>, closed: &AtomicBool) {
+fn connect(at: SocketAddr, to: &SyncSender<Received>, closed: &AtomicBool) {
     while !closed.load(Relaxed) {
         if let Ok(stream) = TcpStream::connect_timeout(&at, PATIENCE) {
             // Without it a source that is no longer wanted is noticed late, no more.
             let _ = stream.set_read_timeout(Some(PATIENCE));
-            if !pass_on(stream, to, closed) || to.send(Came::Lost).is_err() {
+            if !pass_on(stream, to, closed) || to.send(Received::Lost).is_err() {
                 return;
             }
         }
@@ -156,14 +156,14 @@ fn connect(at: SocketAddr, to: &SyncSender<Came>, closed: &AtomicBool) {
 }
 
 /// Reads until the other end goes; says whether anybody still wants to hear.
-fn pass_on(mut stream: TcpStream, to: &SyncSender<Came>, closed: &AtomicBool) -> bool {
+fn pass_on(mut stream: TcpStream, to: &SyncSender<Received>, closed: &AtomicBool) -> bool {
     let mut bytes = vec![0; 16_384];
     while !closed.load(Relaxed) {
         match stream.read(&mut bytes) {
             Ok(0) => return true,
             Ok(length) => {
                 if to
-                    .send(Came::Bytes(bytes[..length].to_vec(), wall_now_secs()))
+                    .send(Received::Bytes(bytes[..length].to_vec(), wall_now_secs()))
                     .is_err()
                 {
                     return false;

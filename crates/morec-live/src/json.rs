@@ -20,7 +20,7 @@ const GONE_SECS: f64 = 5.0;
 const WAIT: Duration = Duration::from_millis(20);
 
 /// A performer of some connection.
-struct Performer {
+struct RemotePerformer {
     connection: u64,
     number: u16,
     gone: bool,
@@ -34,7 +34,7 @@ pub struct JsonSource {
     lines: Lines,
     /// Whether the end of the lines is the end of the source.
     ends: bool,
-    performers: Vec<Performer>,
+    performers: Vec<RemotePerformer>,
     /// A pose whose skeleton was announced first.
     waiting: Option<(Actor, PoseLine)>,
     leaving: Vec<Actor>,
@@ -92,7 +92,7 @@ impl JsonSource {
 
     /// The performer `number` of `connection`, a new one if there is room.
     fn performer(&mut self, connection: u64, number: u16) -> Option<usize> {
-        let is = |p: &Performer| p.connection == connection && p.number == number;
+        let is = |p: &RemotePerformer| p.connection == connection && p.number == number;
         if let Some(at) = self.performers.iter().position(is) {
             let performer = &mut self.performers[at];
             performer.heard_secs = wall_now_secs();
@@ -103,11 +103,11 @@ impl JsonSource {
             }
             return Some(at);
         }
-        let of_connection = |p: &&Performer| p.connection == connection && !p.gone;
+        let of_connection = |p: &&RemotePerformer| p.connection == connection && !p.gone;
         if !self.ends && self.performers.iter().filter(of_connection).count() >= NAMES {
             return None;
         }
-        let new = Performer {
+        let new = RemotePerformer {
             connection,
             number,
             gone: false,

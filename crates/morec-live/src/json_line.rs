@@ -30,7 +30,7 @@ use serde_json::{Map, Value, json};
 /// A pose as a line gives it.
 #[derive(Debug, Default, serde::Deserialize)]
 #[serde(default)]
-struct Line {
+struct PoseFields {
     t: Option<f64>,
     actor: u16,
     root: Option<[f64; 3]>,
@@ -85,7 +85,7 @@ impl PoseLine {
     }
 
     /// A standard body with its joints turned; what is not named is not turned.
-    fn turn(&mut self, line: &Line) -> Result<(), String> {
+    fn turn(&mut self, line: &PoseFields) -> Result<(), String> {
         let mut locals = [Quat::identity(); Role::COUNT];
         let mut named = [false; Role::COUNT];
         for (name, rotation) in &line.rotations {

@@ -46,9 +46,9 @@ struct Hall {
 }
 
 #[derive(Clone, Default)]
-struct Shared(Arc<Mutex<Hall>>);
+struct SharedHall(Arc<Mutex<Hall>>);
 
-impl Shared {
+impl SharedHall {
     fn lock(&self) -> MutexGuard<'_, Hall> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -56,7 +56,7 @@ impl Shared {
 
 /// Serves events as JSON, one text message each, to every listener.
 pub struct WebSocketSink {
-    hall: Shared,
+    hall: SharedHall,
 }
 
 impl WebSocketSink {
@@ -74,7 +74,7 @@ impl WebSocketSink {
         let listener =
             TcpListener::bind(at).with_context(|| format!("cannot listen at {at} (TCP)"))?;
         let at = listener.local_addr().context("TCP socket")?;
-        let hall = Shared::default();
+        let hall = SharedHall::default();
         let open = hall.clone();
         thread::Builder::new()
             .name("listeners".to_owned())
@@ -112,7 +112,7 @@ impl Drop for WebSocketSink {
     }
 }
 
-fn accept(listener: &TcpListener, hall: &Shared, origin: Option<&str>) {
+fn accept(listener: &TcpListener, hall: &SharedHall, origin: Option<&str>) {
     for (number, stream) in (0..).zip(listener.incoming()) {
         let Ok(stream) = stream else {
             thread::sleep(Duration::from_millis(100));
@@ -140,7 +140,7 @@ fn accept(listener: &TcpListener, hall: &Shared, origin: Option<&str>) {
 }
 
 /// A listener from its hello to its end.
-fn attend(number: u64, stream: TcpStream, hall: &Shared, origin: Option<&str>) {
+fn attend(number: u64, stream: TcpStream, hall: &SharedHall, origin: Option<&str>) {
     let socket = greet(stream, origin);
     let (sender, events) = sync_channel(WAITING);
     {

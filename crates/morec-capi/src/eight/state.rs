@@ -25,14 +25,14 @@ const KEPT: usize = 16_384;
 /// Everything there is between `mrInit` and `mrTerminate`.
 pub(super) struct State {
     index: Option<MotionIndex>,
-    source: Option<ClipSource>,
+    source: Option<ClipData>,
     run: Option<Run>,
     solution: VecDeque<MotionSeg>,
     found: u64,
     speed: f64,
 }
 
-struct ClipSource {
+struct ClipData {
     take: Arc<Take>,
     control: Arc<Control>,
 }
@@ -93,7 +93,7 @@ impl State {
             ));
         }
         let take = Arc::new(clips::load(path, index)?);
-        self.source = Some(ClipSource {
+        self.source = Some(ClipData {
             take,
             control: Arc::new(Control::new(self.speed)),
         });

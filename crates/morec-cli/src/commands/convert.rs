@@ -68,7 +68,7 @@ pub fn run(args: Args) -> Result<ExitCode> {
 type Writer = fn(&Clip, &mut dyn Write) -> std::io::Result<()>;
 
 /// Formats of points, by the ending of their files; everything else is written as BVH.
-const POINTS: [(&str, Writer); 3] = [
+const POINTS: [(&str, WriteClip); 3] = [
     ("trc", trc::write),
     ("c3d", c3d::write),
     ("jsonl", jsonl::write),

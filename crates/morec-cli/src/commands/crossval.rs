@@ -37,7 +37,7 @@ pub struct Args {
     material: MaterialArgs,
     /// What is left out of training in turn
     #[arg(long, value_enum)]
-    by: Split,
+    by: SplitArg,
     /// Other clips to test on, each in the fold of its person; what --clips and --labels name then only teaches
     #[arg(long, value_name = "DIR|CLIP", num_args = 1.., requires = "test_labels")]
     test: Vec<PathBuf>,
@@ -73,7 +73,7 @@ pub struct Args {
 
 /// What is left out.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-enum Split {
+enum SplitArg {
     /// Half of each class's samples
     Half,
     /// One clip after the other
@@ -86,7 +86,7 @@ enum Split {
 
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    if args.by == Split::Own && args.test.is_empty() {
+    if args.by == SplitArg::Own && args.test.is_empty() {
         anyhow::bail!(
             "--by own tests each person in other clips: name them with --test and --test-labels"
         );
@@ -165,10 +165,10 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 impl Args {
     fn options(&self) -> CrossvalOptions {
         let by = match self.by {
-            Split::Half => By::Half { seed: self.seed },
-            Split::Clip => By::Clip,
-            Split::Person => By::Person,
-            Split::Own => By::Own,
+            SplitArg::Half => By::Half { seed: self.seed },
+            SplitArg::Clip => By::Clip,
+            SplitArg::Person => By::Person,
+            SplitArg::Own => By::Own,
         };
         CrossvalOptions {
             by,

@@ -36,7 +36,7 @@ pub struct Args {
     name: Option<String>,
     /// How to cut
     #[arg(long, value_enum, default_value = "kernel")]
-    method: Method,
+    method: CutMethod,
     /// Length of the windows whose statistics are compared, seconds (kernel)
     #[arg(long, value_name = "SECS", default_value_t = KernelParams::default().window_secs)]
     window: f64,
@@ -69,19 +69,19 @@ pub struct Args {
 
 /// A method of segmentation.
 #[derive(ValueEnum, Clone, Copy, Debug)]
-enum Method {
+enum CutMethod {
     /// Kernel change points over feature rows
     Kernel,
     /// Probabilistic principal components over joint rotations, as in the thesis of 2009 with its distance corrected
     Ppca,
 }
 
-impl Method {
+impl CutMethod {
     /// Its name in the database.
     fn name(self) -> &'static str {
         match self {
-            Method::Kernel => "kernel",
-            Method::Ppca => "ppca",
+            CutMethod::Kernel => "kernel",
+            CutMethod::Ppca => "ppca",
         }
     }
 }
@@ -125,8 +125,8 @@ impl Cutter {
             .and_then(|()| ppca.check())
             .map_err(anyhow::Error::msg)?;
         Ok(match args.method {
-            Method::Kernel => Self::Kernel(kernel),
-            Method::Ppca => Self::Ppca(ppca),
+            CutMethod::Kernel => Self::Kernel(kernel),
+            CutMethod::Ppca => Self::Ppca(ppca),
         })
     }
 }

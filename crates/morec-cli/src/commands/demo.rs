@@ -91,7 +91,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 /// A command's arguments alone on a line.
 #[derive(Parser)]
 #[command(no_binary_name = true)]
-struct Line<A: clap::Args> {
+struct CommandLine<A: clap::Args> {
     #[command(flatten)]
     args: A,
 }
@@ -103,7 +103,7 @@ fn step<A: clap::Args>(
     run: impl FnOnce(&A) -> Result<ExitCode>,
 ) -> Result<ExitCode> {
     println!("\n{title}\n$ {}\n", folder::shell_line(words));
-    let line = Line::<A>::try_parse_from(&words[1..]).context("a command of the demo's own")?;
+    let line = CommandLine::<A>::try_parse_from(&words[1..]).context("a command of the demo's own")?;
     let begun = Instant::now();
     let code = run(&line.args)?;
     println!("({:.1} s)", begun.elapsed().as_secs_f64());

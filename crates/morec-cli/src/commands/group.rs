@@ -85,7 +85,7 @@ enum Centre {
 
 /// A stretch of a clip to be grouped.
 #[derive(Debug, Clone, Serialize)]
-struct Sample {
+struct GroupedSample {
     clip: String,
     start_secs: f64,
     stop_secs: f64,
@@ -107,7 +107,7 @@ struct Grouped {
     centre: Centre,
     dims: usize,
     quality: f64,
-    clusters: Vec<Vec<Sample>>,
+    clusters: Vec<Vec<GroupedSample>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     agreement: Option<Agreement>,
 }
@@ -134,7 +134,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         .is_some()
         .then(|| Agreement::of(&samples, &clusters));
     let take = |members: Vec<usize>| members.into_iter().map(|i| samples[i].clone()).collect();
-    let mut clusters: Vec<Vec<Sample>> = clusters.members().into_iter().map(take).collect();
+    let mut clusters: Vec<Vec<GroupedSample>> = clusters.members().into_iter().map(take).collect();
     clusters.sort_by_key(|cluster| std::cmp::Reverse(cluster.len()));
     let (dims, quality) = pca.map_or((reader.set.row_dim(), 1.0), |pca| {
         (pca.dims(), pca.quality())
@@ -191,7 +191,7 @@ fn read_clips(args: &Args, reader: &PoseReader<'_>) -> Result<BTreeMap<String, P
 }
 
 /// The samples of the labels that lie in `clips`.
-fn labelled(args: &Args, clips: &BTreeMap<String, PosedClip>) -> Result<Vec<Sample>> {
+fn labelled(args: &Args, clips: &BTreeMap<String, PosedClip>) -> Result<Vec<GroupedSample>> {
     let Some(path) = &args.labels else {
         return Ok(Vec::new());
     };
@@ -213,11 +213,11 @@ fn labelled(args: &Args, clips: &BTreeMap<String, PosedClip>) -> Result<Vec<Samp
         eprintln!("morec: {rows} labels are of clips that are not there: {names}");
     }
     let wanted = |class: &String| args.classes.is_empty() || args.classes.contains(class);
-    let samples: Vec<Sample> = resolved
+    let samples: Vec<GroupedSample> = resolved
         .samples
         .into_iter()
         .filter(|s| wanted(&s.class))
-        .map(|s| Sample {
+        .map(|s| GroupedSample {
             clip: s.clip,
             start_secs: s.start_secs,
             stop_secs: s.stop_secs,
@@ -233,7 +233,7 @@ fn labelled(args: &Args, clips: &BTreeMap<String, PosedClip>) -> Result<Vec<Samp
 }
 
 /// The segments of all clips.
-fn cut(reader: &PoseReader<'_>, clips: &BTreeMap<String, PosedClip>) -> Result<Vec<Sample>> {
+fn cut(reader: &PoseReader<'_>, clips: &BTreeMap<String, PosedClip>) -> Result<Vec<GroupedSample>> {
     let mut samples = Vec::new();
     for (name, clip) in clips {
         let found =
@@ -241,7 +241,7 @@ fn cut(reader: &PoseReader<'_>, clips: &BTreeMap<String, PosedClip>) -> Result<V
         let mut start_secs = 0.0;
         let end_secs = clip.length.duration_secs();
         for stop_secs in found.cuts.iter().map(|c| c.secs).chain([end_secs]) {
-            samples.push(Sample {
+            samples.push(GroupedSample {
                 clip: name.clone(),
                 start_secs,
                 stop_secs,
@@ -263,11 +263,11 @@ fn components(clips: &BTreeMap<String, PosedClip>, dim: usize, keep: Keep) -> Re
 
 /// The samples of at least one pose, and what kWAS knows of each.
 fn spectra(
-    samples: Vec<Sample>,
+    samples: Vec<GroupedSample>,
     clips: &BTreeMap<String, PosedClip>,
     rate_hz: f64,
     pca: Option<&Pca>,
-) -> Result<(Vec<Sample>, Vec<Spectrum>)> {
+) -> Result<(Vec<GroupedSample>, Vec<Spectrum>)> {
     let (mut kept, mut spectra) = (Vec::new(), Vec::new());
     for sample in samples {
         let rows: &Rows = &clips.get(&sample.clip).context("a sample of no clip")?.rows;
@@ -290,9 +290,9 @@ fn spectra(
 }
 
 impl Agreement {
-    fn of(samples: &[Sample], clusters: &Clusters) -> Self {
+    fn of(samples: &[GroupedSample], clusters: &Clusters) -> Self {
         let names: BTreeSet<Option<&str>> = samples.iter().map(|s| s.class.as_deref()).collect();
-        let number = |s: &Sample| names.range(..s.class.as_deref()).count();
+        let number = |s: &GroupedSample| names.range(..s.class.as_deref()).count();
         let classes: Vec<usize> = samples.iter().map(number).collect();
         let pairs = Pairs::count(&classes, &clusters.of);
         Self {
@@ -348,7 +348,7 @@ impl Grouped {
 }
 
 /// Classes and how often, or where the segments lie.
-fn contents(cluster: &[Sample]) -> String {
+fn contents(cluster: &[GroupedSample]) -> String {
     let mut classes: BTreeMap<&str, usize> = BTreeMap::new();
     let mut parts = Vec::new();
     for sample in cluster {

@@ -43,7 +43,7 @@ pub struct Args {
     clips: Vec<PathBuf>,
     /// How to write detections
     #[arg(long, value_enum, default_value = "tsv")]
-    format: Format,
+    format: OutputFormat,
     /// Where to write them [default: standard output]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -72,7 +72,7 @@ pub struct Args {
 
 /// Forms of output.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-enum Format {
+enum OutputFormat {
     /// Tab-separated text with a header
     Tsv,
     /// One JSON object a line
@@ -146,7 +146,7 @@ fn recognize_all(
     options: &ImportOptions,
     args: &Args,
 ) -> Result<bool> {
-    if args.format == Format::Tsv {
+    if args.format == OutputFormat::Tsv {
         writeln!(out, "{FOUND_HEADER}")?;
     }
     let mut stats = Stats::default();
@@ -294,7 +294,7 @@ fn needed(role: Role) -> bool {
 
 fn write_found(
     out: &mut dyn Write,
-    format: Format,
+    format: OutputFormat,
     in_clip: &FoundInClip,
     index: &MotionIndex,
 ) -> std::io::Result<()> {
@@ -314,8 +314,8 @@ fn write_found(
         rate_hz: *rate_hz,
     };
     match format {
-        Format::Tsv => writeln!(out, "{line}"),
-        Format::Jsonl => {
+        OutputFormat::Tsv => writeln!(out, "{line}"),
+        OutputFormat::Jsonl => {
             let frame = |secs: f64| (secs * rate_hz).round() as u64;
             let object = serde_json::json!({
                 "clip": clip, "start": frame(found.start_secs), "stop": frame(found.stop_secs), "class": class,

@@ -11,7 +11,7 @@ const SILENCE: Duration = Duration::from_secs(2);
 const EVERY: Duration = Duration::from_millis(200);
 
 /// What one source has been found to be.
-struct Source {
+struct AdvisedSource {
     name: String,
     /// Bits of the findings of each performer that were there at the last look, and of those that were said.
     seen: [u32; MAX_ACTORS],
@@ -21,7 +21,7 @@ struct Source {
 
 /// Says findings of sources, each once.
 pub struct Advice {
-    sources: Vec<Source>,
+    sources: Vec<AdvisedSource>,
     begun: Instant,
     looked: Instant,
 }
@@ -29,7 +29,7 @@ pub struct Advice {
 impl Advice {
     /// For sources of these names.
     pub fn new(names: impl IntoIterator<Item = String>) -> Self {
-        let source = |name| Source {
+        let source = |name| AdvisedSource {
             name,
             seen: [0; MAX_ACTORS],
             said: [0; MAX_ACTORS],
@@ -62,7 +62,7 @@ impl Advice {
     }
 }
 
-impl Source {
+impl AdvisedSource {
     fn look(&mut self, status: &Status, lines: &mut Vec<String>) {
         for actor in &status.actors {
             let Some(diagnosis) = actor.diagnosis else {

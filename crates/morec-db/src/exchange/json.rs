@@ -9,11 +9,11 @@ use crate::labels::State;
 
 #[derive(Serialize, Deserialize)]
 struct File {
-    labels: Vec<Row>,
+    labels: Vec<JsonRow>,
 }
 
 #[derive(Serialize, Deserialize)]
-struct Row {
+struct JsonRow {
     clip: String,
     class: String,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -90,7 +90,7 @@ pub fn read(bytes: &[u8], lengths: &Lengths) -> Result<ReadLabels, ParseError> {
 }
 
 pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, String> {
-    let row = |a: &Annotation| -> Result<Row, String> {
+    let row = |a: &Annotation| -> Result<JsonRow, String> {
         let (start_secs, stop_secs) = secs(a, lengths)?;
         let framed = frames(
             &Annotation {
@@ -99,7 +99,7 @@ pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, St
             },
             lengths,
         );
-        Ok(Row {
+        Ok(JsonRow {
             clip: a.clip.clone(),
             class: a.class.clone(),
             start_secs: Some(start_secs),

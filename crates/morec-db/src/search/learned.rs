@@ -53,7 +53,7 @@ impl Place {
 }
 
 /// A sample to learn from.
-struct Seen {
+struct LabelledStretch {
     class: usize,
     summary: Summary,
     rows: usize,
@@ -90,7 +90,7 @@ impl SearchIndex {
             )));
         }
         let classes: Vec<String> = counts.keys().map(|name| (*name).to_owned()).collect();
-        let seen: Vec<Seen> = counts
+        let seen: Vec<LabelledStretch> = counts
             .into_values()
             .enumerate()
             .flat_map(|(class, of_class)| of_class.into_iter().map(move |sample| (class, sample)))
@@ -103,13 +103,13 @@ impl SearchIndex {
         })
     }
 
-    fn seen(&self, class: usize, sample: &DbSample, clip: usize) -> Option<Seen> {
+    fn seen(&self, class: usize, sample: &DbSample, clip: usize) -> Option<LabelledStretch> {
         let clip = &self.clips[clip];
         let tick =
             |secs: f64| ((secs * self.tick_hz).round().max(0.0) as usize).min(clip.laid.rows.len());
         let span = tick(sample.start_secs)..tick(sample.stop_secs);
         let bones = clip.laid.bones;
-        (span.len() >= 3).then(|| Seen {
+        (span.len() >= 3).then(|| LabelledStretch {
             class,
             rows: span.len(),
             summary: clip.sums.octaves(&span),
@@ -140,7 +140,7 @@ impl LearnedMetric {
         )
     }
 
-    fn of(seen: &[Seen], classes: Vec<String>) -> Option<Self> {
+    fn of(seen: &[LabelledStretch], classes: Vec<String>) -> Option<Self> {
         let mean = mean(seen);
         let inputs: Vec<DVector<f64>> = seen
             .iter()
@@ -161,9 +161,9 @@ impl LearnedMetric {
     }
 
     /// What brings the median of learned distances to that of summaries', over pairs of samples.
-    fn length(&self, seen: &[Seen]) -> Option<f64> {
+    fn length(&self, seen: &[LabelledStretch]) -> Option<f64> {
         let stride = seen.len().div_ceil(SCALED_ON);
-        let some: Vec<&Seen> = seen.iter().step_by(stride).collect();
+        let some: Vec<&LabelledStretch> = seen.iter().step_by(stride).collect();
         let places: Vec<Place> = some
             .iter()
             .map(|s| self.place(&s.summary, s.rows, s.bones))
@@ -182,8 +182,8 @@ impl LearnedMetric {
 }
 
 /// Means over the samples that show each value's bone.
-fn mean(seen: &[Seen]) -> Vec<f64> {
-    let shown = |s: &Seen, i: usize| bone_of(i).is_none_or(|bone| s.bones.contains(bone));
+fn mean(seen: &[LabelledStretch]) -> Vec<f64> {
+    let shown = |s: &LabelledStretch, i: usize| bone_of(i).is_none_or(|bone| s.bones.contains(bone));
     let of = |i: usize| {
         let values: Vec<f64> = seen
             .iter()
@@ -222,7 +222,7 @@ fn components(inputs: &[DVector<f64>]) -> Option<DMatrix<f64>> {
 }
 
 /// `p × (classes − 1)`, or fewer: see above.
-fn discriminants(reduced: &[DVector<f64>], seen: &[Seen], classes: usize) -> Option<DMatrix<f64>> {
+fn discriminants(reduced: &[DVector<f64>], seen: &[LabelledStretch], classes: usize) -> Option<DMatrix<f64>> {
     let p = reduced.first()?.len();
     let mut means = vec![DVector::<f64>::zeros(p); classes];
     let mut counts = vec![0.0; classes];

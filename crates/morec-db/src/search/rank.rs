@@ -174,13 +174,13 @@ impl SearchIndex {
             } else {
                 (summary, bones)
             };
-            Node {
+            GraphNode {
                 look: Look::new(summary, c.span.len(), bones, metric),
                 bones,
                 rows: clip.laid.rows.len(),
             }
         };
-        let nodes: Vec<Node> = candidates.par_iter().map(node).collect();
+        let nodes: Vec<GraphNode> = candidates.par_iter().map(node).collect();
         spread(nodes.len() + 1, |i, j| {
             let (i, j) = (i.min(j), i.max(j));
             if i == 0 {
@@ -264,7 +264,7 @@ fn key(c: &Candidate, options: &SearchOptions) -> (usize, usize) {
 }
 
 /// A candidate in the graph.
-struct Node {
+struct GraphNode {
     look: Look,
     bones: BoneSet,
     /// Of its whole clip.

@@ -15,7 +15,7 @@ const STANDS_MPS: f64 = 0.6;
 
 /// Mean and spread of a position over time.
 #[derive(Debug, Clone, Copy, Default)]
-struct Spread {
+struct PositionSpread {
     /// The first place: figures are taken from it, so that a place far away loses no digits.
     origin: Vec3,
     count: f64,
@@ -23,7 +23,7 @@ struct Spread {
     squares: f64,
 }
 
-impl Spread {
+impl PositionSpread {
     fn add(&mut self, place: Vec3) {
         if self.count <= 0.0 {
             *self = Self {
@@ -55,7 +55,7 @@ impl Spread {
 
 /// Where the feet were.
 #[derive(Debug, Clone, Copy)]
-struct Look {
+struct LastLook {
     secs: f64,
     feet: [Vec3; 2],
 }
@@ -67,9 +67,9 @@ pub(super) struct Stillness {
     since_secs: f64,
     now_secs: f64,
     longest_secs: f64,
-    hips: Spread,
-    hands: [Spread; 2],
-    look: Option<Look>,
+    hips: PositionSpread,
+    hands: [PositionSpread; 2],
+    look: Option<LastLook>,
     looks: f64,
     standing: f64,
 }
@@ -81,8 +81,8 @@ impl Stillness {
             since_secs: f64::NAN,
             now_secs: f64::NAN,
             longest_secs: 0.0,
-            hips: Spread::default(),
-            hands: [Spread::default(); 2],
+            hips: PositionSpread::default(),
+            hands: [PositionSpread::default(); 2],
             look: None,
             looks: 0.0,
             standing: 0.0,
@@ -123,7 +123,7 @@ impl Stillness {
         };
         let feet = [left, right];
         let Some(before) = self.look else {
-            self.look = Some(Look {
+            self.look = Some(LastLook {
                 secs: time_secs,
                 feet,
             });
@@ -133,7 +133,7 @@ impl Stillness {
         if passed < LOOK_SECS {
             return;
         }
-        self.look = Some(Look {
+        self.look = Some(LastLook {
             secs: time_secs,
             feet,
         });
@@ -168,7 +168,7 @@ impl Stillness {
 
     /// How far the hips, and the hand that moves more as seen from them, stray from their mean, in the stream's unit.
     pub(super) fn hips_and_hands(&self) -> Option<(f64, f64)> {
-        let hands = self.hands.iter().filter_map(Spread::deviation);
+        let hands = self.hands.iter().filter_map(PositionSpread::deviation);
         Some((self.hips.deviation()?, hands.reduce(f64::max)?))
     }
 

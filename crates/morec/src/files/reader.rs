@@ -13,7 +13,7 @@ use crate::formats::{c3d, jsonl, read_scene, table, trc};
 use crate::import::{ImportOptions, Take, normalize};
 
 use super::archives::Around;
-use super::skeletons::{Skeleton, skeletons_among, skeletons_near};
+use super::skeletons::{SkeletonFile, skeletons_among, skeletons_near};
 use super::{FileError, FileErrorKind, Takes, list, read_file, read_stream, split_choice};
 
 /// Reads every format that morec knows, as its fields say; the default decides everything from the files.
@@ -201,7 +201,7 @@ impl FileReader {
             Around::Folder => skeletons_near(path, stem),
             Around::Archive(members) => skeletons_among(members, stem),
         };
-        let mut best: Option<(Loaded, &Skeleton)> = None;
+        let mut best: Option<(Loaded, &SkeletonFile)> = None;
         let mut first_error = None;
         for skeleton in &candidates {
             match self.amc_with(bytes, stem, &skeleton.path, around) {

@@ -10,7 +10,7 @@ use crate::formats::probe::{Format, format_of_name};
 const MAX_PER_FOLDER: usize = 64;
 
 /// A skeleton file that may be a motion's.
-pub(super) struct Skeleton {
+pub(super) struct SkeletonFile {
     /// How much the names have in common; 0 if the name says nothing.
     pub kinship: usize,
     pub path: PathBuf,
@@ -18,7 +18,7 @@ pub(super) struct Skeleton {
 
 /// Skeletons beside a motion and then those a folder above, in each the likeliest first: of the same stem, of
 /// the longest part of it (`13` for `13_29`), the others.
-pub(super) fn skeletons_near(path: &Path, stem: &str) -> Vec<Skeleton> {
+pub(super) fn skeletons_near(path: &Path, stem: &str) -> Vec<SkeletonFile> {
     if path == Path::new("-") {
         return Vec::new();
     }
@@ -45,14 +45,14 @@ pub(super) fn skeletons_near(path: &Path, stem: &str) -> Vec<Skeleton> {
 }
 
 /// Skeletons in the archive that a motion is in.
-pub(super) fn skeletons_among(members: &[Member], stem: &str) -> Vec<Skeleton> {
+pub(super) fn skeletons_among(members: &[Member], stem: &str) -> Vec<SkeletonFile> {
     likeliest_first(members.iter().map(|m| PathBuf::from(&m.path)), stem)
 }
 
-fn likeliest_first(paths: impl Iterator<Item = PathBuf>, stem: &str) -> Vec<Skeleton> {
-    let mut found: Vec<Skeleton> = paths
+fn likeliest_first(paths: impl Iterator<Item = PathBuf>, stem: &str) -> Vec<SkeletonFile> {
+    let mut found: Vec<SkeletonFile> = paths
         .filter(|path| format_of_name(&path.to_string_lossy()) == Some(Format::Asf))
-        .map(|path| Skeleton {
+        .map(|path| SkeletonFile {
             kinship: kinship(
                 &path.file_stem().unwrap_or_default().to_string_lossy(),
                 stem,

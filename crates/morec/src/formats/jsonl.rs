@@ -21,7 +21,7 @@ const ASSUMED_HZ: f64 = 30.0;
 /// A line; fields that are not named here are ignored.
 #[derive(Debug, Default, serde::Deserialize)]
 #[serde(default)]
-struct Line {
+struct PoseRecord {
     t: Option<f64>,
     actor: u16,
     root: Option<[f64; 3]>,
@@ -31,9 +31,9 @@ struct Line {
 
 /// What one performer did.
 #[derive(Default)]
-struct Performer {
+struct RecordedPerformer {
     times: Vec<Option<f64>>,
-    lines: Vec<Line>,
+    lines: Vec<PoseRecord>,
 }
 
 /// Reads lines of JSON: for each performer a clip called `name` (`name.1`, `name.2` … of several), of points if lines hold
@@ -48,7 +48,7 @@ pub fn read(
     limits: &Limits,
 ) -> Result<Loaded, ParseError> {
     let mut warnings = Vec::new();
-    let mut performers: BTreeMap<u16, Performer> = BTreeMap::new();
+    let mut performers: BTreeMap<u16, RecordedPerformer> = BTreeMap::new();
     let rows = lines(bytes, limits)?;
     if rows.len() > limits.frames {
         let expected = format!("at most {} lines", limits.frames);
@@ -60,7 +60,7 @@ pub fn read(
     }
     let mut broken: Vec<(u64, String)> = Vec::new();
     for (number, text) in &rows {
-        match serde_json::from_str::<Line>(text) {
+        match serde_json::from_str::<PoseRecord>(text) {
             Ok(line) if line.positions.is_empty() && line.rotations.is_empty() => {
                 broken.push((*number, "neither positions nor rotations".to_owned()));
             }
@@ -118,7 +118,7 @@ pub fn read(
 
 /// A clip of points.
 fn positions(
-    lines: &[Line],
+    lines: &[PoseRecord],
     name: &str,
     schedule: &Schedule,
     limits: &Limits,
@@ -184,7 +184,7 @@ fn skeleton() -> Result<Skeleton, ParseError> {
 
 /// A clip with rotations; joints that a line leaves out stay as they were.
 fn turned(
-    lines: &[Line],
+    lines: &[PoseRecord],
     name: String,
     schedule: &Schedule,
     warnings: &mut Vec<Warning>,

@@ -55,7 +55,7 @@ pub fn looks_so(bytes: &[u8]) -> bool {
 /// are left out with a warning. O(bytes).
 pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseError> {
     let mut warnings = Vec::new();
-    let mut recording = Recording::default();
+    let mut recording = PacketFile::default();
     if let Err(error) = recording.read(bytes) {
         if recording.frames.is_empty() {
             return Err(error);
@@ -95,7 +95,7 @@ pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseEr
 
 /// A bone as a skeleton packet has it, or as it is in a frame.
 #[derive(Clone, Copy)]
-struct Bone {
+struct MocopiBone {
     id: u16,
     parent: Option<u16>,
     rotation: Quat,
@@ -103,16 +103,16 @@ struct Bone {
 }
 
 #[derive(Default)]
-struct Frame {
+struct MocopiFrame {
     time_secs: Option<f64>,
-    bones: Vec<Bone>,
+    bones: Vec<MocopiBone>,
 }
 
-impl Frame {
+impl MocopiFrame {
     /// Rotations and positions in the order of `ids`; `None` if one is missing.
     fn in_order(&self, ids: &[u16]) -> Option<(Vec<Quat>, Vec<Vec3>)> {
         let find = |id: &u16| self.bones.iter().find(|bone| bone.id == *id);
-        let bones: Option<Vec<&Bone>> = ids.iter().map(find).collect();
+        let bones: Option<Vec<&MocopiBone>> = ids.iter().map(find).collect();
         let bones = bones?;
         Some((
             bones.iter().map(|bone| bone.rotation).collect(),
@@ -122,12 +122,12 @@ impl Frame {
 }
 
 #[derive(Default)]
-struct Recording {
-    skeleton: Option<Vec<Bone>>,
-    frames: Vec<Frame>,
+struct PacketFile {
+    skeleton: Option<Vec<MocopiBone>>,
+    frames: Vec<MocopiFrame>,
 }
 
-impl Recording {
+impl PacketFile {
     fn read(&mut self, bytes: &[u8]) -> Result<(), ParseError> {
         for (name, value, at) in Boxes::of(bytes, 0).collect::<Result<Vec<_>, _>>()? {
             match &name {
@@ -139,7 +139,7 @@ impl Recording {
                     }
                 }
                 b"fram" => {
-                    let mut frame = Frame::default();
+                    let mut frame = MocopiFrame::default();
                     for part in Boxes::of(value, at) {
                         let (name, value, _) = part?;
                         if let (b"uttm", Ok(bytes)) = (&name, value.try_into()) {
@@ -181,7 +181,7 @@ fn read_bones(
     begin: u64,
     list: [u8; 4],
     each: [u8; 4],
-    bones: &mut Vec<Bone>,
+    bones: &mut Vec<MocopiBone>,
 ) -> Result<(), ParseError> {
     for part in Boxes::of(bytes, begin) {
         let (name, value, at) = part?;
@@ -198,7 +198,7 @@ fn read_bones(
 }
 
 /// A bone; `None` of numbers that are no pose.
-fn read_bone(bytes: &[u8], begin: u64) -> Result<Option<Bone>, ParseError> {
+fn read_bone(bytes: &[u8], begin: u64) -> Result<Option<MocopiBone>, ParseError> {
     let (mut id, mut parent, mut pose) = (None, None, None);
     for part in Boxes::of(bytes, begin) {
         let (name, value, _) = part?;
@@ -222,7 +222,7 @@ fn read_bone(bytes: &[u8], begin: u64) -> Result<Option<Bone>, ParseError> {
     };
     let quaternion = nalgebra::Quaternion::new(w, x, y, z);
     let usable = (0.5..2.0).contains(&quaternion.norm()) && [a, b, c].iter().all(|v| v.is_finite());
-    Ok(usable.then(|| Bone {
+    Ok(usable.then(|| MocopiBone {
         id,
         parent,
         rotation: Quat::new_normalize(quaternion),
@@ -231,11 +231,11 @@ fn read_bone(bytes: &[u8], begin: u64) -> Result<Option<Bone>, ParseError> {
 }
 
 /// The bones of a frame with the parents they always have.
-fn usual(frame: &Frame) -> Vec<Bone> {
+fn usual(frame: &MocopiFrame) -> Vec<MocopiBone> {
     let parent = |id: u16| BONES.get(usize::from(id)).and_then(|bone| bone.1);
     let bones = frame.bones.iter();
     bones
-        .map(|bone| Bone {
+        .map(|bone| MocopiBone {
             parent: parent(bone.id),
             ..*bone
         })
@@ -243,13 +243,13 @@ fn usual(frame: &Frame) -> Vec<Bone> {
 }
 
 /// Bone numbers and joints, parents first; parents that are not there or lead in a circle are dropped.
-fn joints(mut bones: Vec<Bone>) -> (Vec<u16>, Vec<Joint>) {
+fn joints(mut bones: Vec<MocopiBone>) -> (Vec<u16>, Vec<Joint>) {
     bones.sort_by_key(|bone| bone.id);
     bones.dedup_by_key(|bone| bone.id);
     let mut ids: Vec<u16> = Vec::new();
     let mut joints = Vec::new();
     while !bones.is_empty() {
-        let waits = |bone: &Bone, ids: &[u16]| {
+        let waits = |bone: &MocopiBone, ids: &[u16]| {
             let there = bone
                 .parent
                 .is_none_or(|p| ids.contains(&p) || bones.iter().all(|b| b.id != p));

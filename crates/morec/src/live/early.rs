@@ -29,11 +29,11 @@ const FORGET_SECS: f64 = 0.5;
 /// Makes starts, updates and cancellations of hunches, a few for each motion.
 #[derive(Debug, Default)]
 pub(super) struct Early {
-    open: Option<Open>,
+    open: Option<OpenMotion>,
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Open {
+struct OpenMotion {
     motion: u64,
     told: Hunch,
     heard_secs: f64,
@@ -60,7 +60,7 @@ impl Early {
             (Some(hunch), None) => {
                 let motion = say.new_motion();
                 say.event(Phase::Start, motion, hunch, now_secs);
-                self.open = Some(Open {
+                self.open = Some(OpenMotion {
                     motion,
                     told: hunch,
                     heard_secs: now_secs,

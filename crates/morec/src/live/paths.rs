@@ -8,7 +8,7 @@ use crate::pivots::{PivotPose, PoseStream};
 use crate::svrdm::{FrameDetection, SvrdmEngine, SvrdmModel};
 use crate::templates::{EarlyParams, TemplateEngine, TemplateModel, Underway};
 
-use super::recognizer::{Found, Steps};
+use super::recognizer::{DetectionBuffer, Steps};
 use super::{Hunch, Pose, StartError};
 
 /// Feature rows and templates.
@@ -68,7 +68,7 @@ impl TemplatePath {
         self.features.breaks_at(time_secs)
     }
 
-    pub(super) fn push(&mut self, time_secs: f64, pose: Pose<'_>, found: &mut Found) -> Pushed {
+    pub(super) fn push(&mut self, time_secs: f64, pose: Pose<'_>, found: &mut DetectionBuffer) -> Pushed {
         // The first pose of a stretch sets its origin and completes no row: the origin read here is right.
         let (steps, engine) = (self.steps(), &mut self.engine);
         self.features.push(time_secs, pose.key, &mut |row| {
@@ -78,7 +78,7 @@ impl TemplatePath {
         })
     }
 
-    pub(super) fn end_stretch(&mut self, found: &mut Found) {
+    pub(super) fn end_stretch(&mut self, found: &mut DetectionBuffer) {
         let (steps, engine) = (self.steps(), &mut self.engine);
         let mut out = |d: TickDetection| found.add(d.class, steps, d.start, d.stop, d.score);
         self.features.finish(&mut |row| engine.push(row, &mut out));
@@ -145,7 +145,7 @@ impl SvrdmPath {
         self.rows.breaks_at(time_secs)
     }
 
-    pub(super) fn push(&mut self, time_secs: f64, pose: Pose<'_>, found: &mut Found) -> Pushed {
+    pub(super) fn push(&mut self, time_secs: f64, pose: Pose<'_>, found: &mut DetectionBuffer) -> Pushed {
         let (steps, engine) = (self.steps(), &mut self.engine);
         let unknown;
         let pivots = match pose.pivots {
@@ -162,7 +162,7 @@ impl SvrdmPath {
         })
     }
 
-    pub(super) fn end_stretch(&mut self, found: &mut Found) {
+    pub(super) fn end_stretch(&mut self, found: &mut DetectionBuffer) {
         let (steps, engine) = (self.steps(), &mut self.engine);
         let mut out = |d: FrameDetection| found.add(d.class, steps, d.start, d.stop, d.score);
         self.rows.finish(&mut |row| engine.push(row, &mut out));

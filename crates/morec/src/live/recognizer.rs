@@ -55,13 +55,13 @@ impl<C: fmt::Display> fmt::Display for Detection<C> {
 #[derive(Debug, Clone)]
 pub struct Recognizer {
     model: Model,
-    path: Path,
-    found: Found,
+    path: Pipeline,
+    found: DetectionBuffer,
     now_secs: f64,
 }
 
 #[derive(Debug, Clone)]
-enum Path {
+enum Pipeline {
     Templates(Box<TemplatePath>),
     Svrdm(Box<SvrdmPath>),
 }
@@ -75,14 +75,14 @@ pub(super) struct Steps {
 
 /// Detections of the present push, with the time at which they are reported.
 #[derive(Debug)]
-pub(super) struct Found {
+pub(super) struct DetectionBuffer {
     detections: Vec<Detection>,
     reported_secs: f64,
     /// Detections for which there was no room.
     dropped: u64,
 }
 
-impl Found {
+impl DetectionBuffer {
     fn new() -> Self {
         Self {
             detections: Vec::with_capacity(MAX_DETECTIONS_PER_PUSH),
@@ -113,7 +113,7 @@ impl Found {
     }
 }
 
-impl Clone for Found {
+impl Clone for DetectionBuffer {
     /// By hand, because a copied vector has room only for what it holds.
     fn clone(&self) -> Self {
         let mut copy = Self {
@@ -137,18 +137,18 @@ impl Recognizer {
                 let path = TemplatePath::new(&model, bones)?;
                 (
                     Model::Templates(path.model.clone()),
-                    Path::Templates(Box::new(path)),
+                    Pipeline::Templates(Box::new(path)),
                 )
             }
             Model::Svrdm(model) => {
                 let path = SvrdmPath::new(&model)?;
-                (Model::Svrdm(model), Path::Svrdm(Box::new(path)))
+                (Model::Svrdm(model), Pipeline::Svrdm(Box::new(path)))
             }
         };
         Ok(Self {
             model,
             path,
-            found: Found::new(),
+            found: DetectionBuffer::new(),
             now_secs: 0.0,
         })
     }
@@ -161,8 +161,8 @@ impl Recognizer {
     /// Seconds from the end of a motion to its report at the earliest: filters, windows, lag.
     pub fn latency_secs(&self) -> f64 {
         match &self.path {
-            Path::Templates(path) => path.latency_secs(),
-            Path::Svrdm(path) => path.latency_secs(),
+            Pipeline::Templates(path) => path.latency_secs(),
+            Pipeline::Svrdm(path) => path.latency_secs(),
         }
     }
 
@@ -178,8 +178,8 @@ impl Recognizer {
         self.found.reported_secs = time_secs;
         let (pose, found) = (pose.into(), &mut self.found);
         let pushed = match &mut self.path {
-            Path::Templates(path) => path.push(time_secs, pose, found),
-            Path::Svrdm(path) => path.push(time_secs, pose, found),
+            Pipeline::Templates(path) => path.push(time_secs, pose, found),
+            Pipeline::Svrdm(path) => path.push(time_secs, pose, found),
         };
         if matches!(pushed, Pushed::Taken | Pushed::Restarted) {
             self.now_secs = time_secs;
@@ -212,29 +212,29 @@ impl Recognizer {
     /// [`push`](Self::push) will report, and asking changes nothing of that. Templates only. No allocation.
     pub fn hunch(&mut self) -> Option<Hunch> {
         match &mut self.path {
-            Path::Templates(path) => path.hunch(),
-            Path::Svrdm(_) => None,
+            Pipeline::Templates(path) => path.hunch(),
+            Pipeline::Svrdm(_) => None,
         }
     }
 
     /// How near a beginning must be for [`hunch`](Self::hunch).
     pub fn set_early(&mut self, params: EarlyParams) {
-        if let Path::Templates(path) = &mut self.path {
+        if let Pipeline::Templates(path) = &mut self.path {
             path.set_early(params);
         }
     }
 
     fn breaks_at(&self, time_secs: f64) -> bool {
         match &self.path {
-            Path::Templates(path) => path.breaks_at(time_secs),
-            Path::Svrdm(path) => path.breaks_at(time_secs),
+            Pipeline::Templates(path) => path.breaks_at(time_secs),
+            Pipeline::Svrdm(path) => path.breaks_at(time_secs),
         }
     }
 
     fn end_stretch(&mut self) {
         match &mut self.path {
-            Path::Templates(path) => path.end_stretch(&mut self.found),
-            Path::Svrdm(path) => path.end_stretch(&mut self.found),
+            Pipeline::Templates(path) => path.end_stretch(&mut self.found),
+            Pipeline::Svrdm(path) => path.end_stretch(&mut self.found),
         }
     }
 }
@@ -245,7 +245,7 @@ mod tests {
 
     #[test]
     fn what_there_is_no_room_for_is_counted() {
-        let mut found = Found::new();
+        let mut found = DetectionBuffer::new();
         let at = Steps {
             origin_secs: 0.0,
             step_secs: 0.1,

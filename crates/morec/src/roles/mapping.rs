@@ -18,11 +18,11 @@ use crate::parse_error::{self, ParseError};
 /// The lines of a mapping file: each role at most once.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Mapping {
-    entries: Vec<Entry>,
+    entries: Vec<MappingEntry>,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq)]
-struct Entry {
+struct MappingEntry {
     line: u64,
     role: Role,
     joint: Option<String>,
@@ -41,7 +41,7 @@ impl Mapping {
                 "other bytes",
             )
         })?;
-        let mut entries: Vec<Entry> = Vec::new();
+        let mut entries: Vec<MappingEntry> = Vec::new();
         for (line, content) in (1..).zip(text.trim_start_matches('\u{feff}').lines()) {
             if content.trim().is_empty() || content.starts_with('#') {
                 continue;
@@ -66,7 +66,7 @@ impl Mapping {
     /// A joint that is not there, with its line in the mapping file.
     pub fn places(&self, names: &[&str]) -> Result<Vec<(Role, Option<Place>)>, ParseError> {
         let mut places = Vec::with_capacity(self.entries.len());
-        for Entry { line, role, joint } in &self.entries {
+        for MappingEntry { line, role, joint } in &self.entries {
             let place = match joint {
                 None => None,
                 Some(text) => Some(said(text, names).map_err(|name| {
@@ -85,7 +85,7 @@ impl Mapping {
     /// A joint that `skeleton` does not have, with its line in the mapping file; `map` is then unchanged.
     pub fn apply(&self, skeleton: &Skeleton, map: &mut RoleMap) -> Result<(), ParseError> {
         let mut changed = map.clone();
-        for Entry { line, role, joint } in &self.entries {
+        for MappingEntry { line, role, joint } in &self.entries {
             let joint = match joint {
                 None => None,
                 Some(name) => Some(skeleton.find(name).ok_or_else(|| {
@@ -103,7 +103,7 @@ impl Mapping {
     }
 }
 
-fn entry(line: u64, content: &str) -> Result<Entry, ParseError> {
+fn entry(line: u64, content: &str) -> Result<MappingEntry, ParseError> {
     let at = parse_error::Place::Line(line);
     let (role, joint) = content.split_once('\t').ok_or_else(|| {
         ParseError::new(
@@ -126,12 +126,12 @@ fn entry(line: u64, content: &str) -> Result<Entry, ParseError> {
             format!("a joint's name or - for {role}"),
             "nothing",
         )),
-        "-" => Ok(Entry {
+        "-" => Ok(MappingEntry {
             line,
             role,
             joint: None,
         }),
-        name => Ok(Entry {
+        name => Ok(MappingEntry {
             line,
             role,
             joint: Some(name.to_owned()),

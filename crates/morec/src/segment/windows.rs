@@ -22,7 +22,7 @@ pub fn window_rows(
     let bones = rows.dim().saturating_sub(4) / 6;
     let (x, tick_hz, hop) = (3 * bones, params.tick_hz(), hop.max(1));
     let half = ((window_secs * tick_hz / 2.0).round() as usize).max(1);
-    let sums = Sums::of(rows, x, params);
+    let sums = PrefixSums::of(rows, x, params);
     let mut out = Rows::new(3 * x + 8);
     let mut row = vec![0f32; 3 * x + 8];
     for centre in (0..rows.len()).step_by(hop) {
@@ -49,12 +49,12 @@ pub fn window_rows(
 }
 
 /// Running sums of values, of their squares, and of squared velocities.
-struct Sums {
+struct PrefixSums {
     width: usize,
     tables: [Vec<f64>; 3],
 }
 
-impl Sums {
+impl PrefixSums {
     fn of(rows: &Rows, x: usize, params: &FeatureParams) -> Self {
         let width = x + 4;
         let root = if params.root_weight > 0.0 {

@@ -87,7 +87,7 @@ pub(super) fn tighten(
     metres_per_unit: f64,
     progress: &dyn Progress,
 ) -> Result<(), SmoothError> {
-    let mut work = Work::new(clip, channels, metres / metres_per_unit);
+    let mut work = Tightening::new(clip, channels, metres / metres_per_unit);
     for _ in 0..ROUNDS {
         if progress.cancelled() {
             return Err(SmoothError::Cancelled);
@@ -113,7 +113,7 @@ struct Blame {
     share: f32,
 }
 
-struct Work<'a> {
+struct Tightening<'a> {
     clip: &'a Clip,
     channels: &'a mut [Channel],
     /// What the curves give at the clip's frames.
@@ -128,7 +128,7 @@ struct Work<'a> {
     fitted_pose: WorldPose,
 }
 
-impl<'a> Work<'a> {
+impl<'a> Tightening<'a> {
     fn new(clip: &'a Clip, channels: &'a mut [Channel], bound: f64) -> Self {
         let joints = clip.skeleton.len();
         let mut tracks = vec![None; joints];

@@ -19,7 +19,7 @@ pub(super) struct Stretch<'a> {
 }
 
 /// The sums of the normal equations.
-struct Sums {
+struct NormalEquations {
     /// Σ B₁², Σ B₁B₂, Σ B₂² over the inner samples.
     b11: f64,
     b12: f64,
@@ -58,10 +58,10 @@ impl<'a> Stretch<'a> {
         i as f64 / (self.samples.len() - 1) as f64
     }
 
-    fn sums(&self) -> Sums {
+    fn sums(&self) -> NormalEquations {
         let start = self.kind.identity();
         let zero = Vector4::zeros();
-        let mut sums = Sums {
+        let mut sums = NormalEquations {
             b11: 0.0,
             b12: 0.0,
             b22: 0.0,

@@ -24,13 +24,13 @@ pub struct Errors {
 
 /// The largest and the mean of many.
 #[derive(Default)]
-struct Spread {
+struct ErrorSum {
     largest: f64,
     sum: f64,
     count: usize,
 }
 
-impl Spread {
+impl ErrorSum {
     fn add(&mut self, value: f64) {
         self.largest = self.largest.max(value);
         self.sum += value;
@@ -82,7 +82,7 @@ impl Errors {
     /// The distances between two clips of the same skeleton and frames. O(frames × joints).
     pub(super) fn between(a: &Clip, b: &Clip, metres_per_unit: f64) -> Self {
         let (mut angle, mut position, mut world) =
-            (Spread::default(), Spread::default(), Spread::default());
+            (ErrorSum::default(), ErrorSum::default(), ErrorSum::default());
         for (x, y) in a.rotations.iter().zip(&b.rotations) {
             angle.add(angle_between(x, y));
         }

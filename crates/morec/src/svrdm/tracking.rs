@@ -71,13 +71,13 @@ impl ChunkDetection {
 
 /// A maximum that may still overlap another.
 #[derive(Debug, Clone, Copy)]
-struct Tracked {
+struct TrackedMaximum {
     found: ChunkDetection,
-    state: State,
+    state: MaximumState,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum State {
+enum MaximumState {
     /// Undecided; would be dropped if the stream ended now.
     Trails,
     /// Undecided; would be reported if the stream ended now.
@@ -88,9 +88,9 @@ enum State {
     Reported,
 }
 
-impl State {
+impl MaximumState {
     fn is_open(self) -> bool {
-        matches!(self, State::Trails | State::Leads)
+        matches!(self, MaximumState::Trails | MaximumState::Leads)
     }
 }
 
@@ -117,7 +117,7 @@ pub struct SegmentTracking {
     /// Columns taken.
     chunks: i64,
     /// The winning first.
-    tracked: Vec<Tracked>,
+    tracked: Vec<TrackedMaximum>,
 }
 
 impl Clone for SegmentTracking {
@@ -227,9 +227,9 @@ impl SegmentTracking {
             if self.tracked.len() < self.tracked.capacity() {
                 self.tracked.insert(
                     at,
-                    Tracked {
+                    TrackedMaximum {
                         found,
-                        state: State::Trails,
+                        state: MaximumState::Trails,
                     },
                 );
             }
@@ -262,16 +262,16 @@ impl SegmentTracking {
     /// Reports and drops what can be; nothing waits longer than `wait` chunks.
     fn decide(&mut self, wait: i64, out: &mut impl FnMut(ChunkDetection)) {
         for at in 0..self.tracked.len() {
-            let Tracked { found, state } = self.tracked[at];
+            let TrackedMaximum { found, state } = self.tracked[at];
             if !state.is_open() {
                 continue;
             }
             let rivals = self.rivals(at);
             let settled = !rivals.open && !self.may_be_beaten(&found);
             self.tracked[at].state = match () {
-                _ if rivals.led => State::Trails,
-                _ if settled || self.is_late(&found, wait) => State::Settled,
-                _ => State::Leads,
+                _ if rivals.led => MaximumState::Trails,
+                _ if settled || self.is_late(&found, wait) => MaximumState::Settled,
+                _ => MaximumState::Leads,
             };
             // What a late one is dropped for must stand, or in a chain of ever better ones each would go for the next
             // and none be reported.
@@ -291,11 +291,11 @@ impl SegmentTracking {
     fn settle_winner(&mut self, found: &ChunkDetection) {
         let overlap = self.overlap;
         let winner =
-            |t: &&mut Tracked| t.state != State::Trails && t.found.overlaps(found, overlap);
+            |t: &&mut TrackedMaximum| t.state != MaximumState::Trails && t.found.overlaps(found, overlap);
         if let Some(winner) = self.tracked.iter_mut().find(winner)
-            && winner.state == State::Leads
+            && winner.state == MaximumState::Leads
         {
-            winner.state = State::Settled;
+            winner.state = MaximumState::Settled;
         }
     }
 
@@ -309,7 +309,7 @@ impl SegmentTracking {
         for (index, other) in self.tracked.iter().enumerate() {
             let counts = index < at || (index > at && !other.state.is_open());
             if counts && found.overlaps(&other.found, self.overlap) {
-                rivals.led |= other.state != State::Trails;
+                rivals.led |= other.state != MaximumState::Trails;
                 rivals.open |= other.state.is_open();
             }
         }
@@ -318,14 +318,14 @@ impl SegmentTracking {
 
     /// Gives out what is settled, the earliest first.
     fn report(&mut self, out: &mut impl FnMut(ChunkDetection)) {
-        let settled = |t: &&mut Tracked| t.state == State::Settled;
+        let settled = |t: &&mut TrackedMaximum| t.state == MaximumState::Settled;
         while let Some(next) = self
             .tracked
             .iter_mut()
             .filter(settled)
             .min_by_key(|t| t.found.start)
         {
-            next.state = State::Reported;
+            next.state = MaximumState::Reported;
             out(next.found);
         }
     }
@@ -357,10 +357,10 @@ impl SegmentTracking {
             .fold(self.chunks - self.max_chunks as i64, i64::min);
         let mut at = 0;
         while at < self.tracked.len() {
-            let Tracked { found, state } = self.tracked[at];
+            let TrackedMaximum { found, state } = self.tracked[at];
             let over = match state {
-                State::Reported | State::Settled => found.stop <= first,
-                State::Leads | State::Trails => self.is_late(&found, wait) || self.lost(&found),
+                MaximumState::Reported | MaximumState::Settled => found.stop <= first,
+                MaximumState::Leads | MaximumState::Trails => self.is_late(&found, wait) || self.lost(&found),
             };
             if over {
                 self.tracked.remove(at);
@@ -372,7 +372,7 @@ impl SegmentTracking {
 
     /// Whether one that overlaps it has been reported.
     fn lost(&self, found: &ChunkDetection) -> bool {
-        let reported = |t: &&Tracked| t.state == State::Reported;
+        let reported = |t: &&TrackedMaximum| t.state == MaximumState::Reported;
         self.tracked
             .iter()
             .filter(reported)

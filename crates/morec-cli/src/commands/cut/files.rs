@@ -15,7 +15,7 @@ use crate::output;
 use crate::poses::{PoseReader, PosedClip};
 
 #[derive(Serialize)]
-struct Found {
+struct CutClip {
     clip: String,
     rate_hz: f64,
     frames: usize,
@@ -58,19 +58,19 @@ pub fn run(cutter: &Cutter, args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn by_kernel(reader: &PoseReader<'_>, params: &KernelParams, args: &Args) -> Result<Vec<Found>> {
+fn by_kernel(reader: &PoseReader<'_>, params: &KernelParams, args: &Args) -> Result<Vec<CutClip>> {
     let features = FeatureParams::default();
     let mut found = Vec::new();
     reader.each_take(&args.inputs, |take| {
         let rows = rows_of_clip(&take.clip, &take.roles, take.rest(), take.bones(), &features);
         let cuts = kernel_cuts(&rows, &features, params).context(take.clip.name.clone())?;
-        found.push(Found::at(&take, &cuts));
+        found.push(CutClip::at(&take, &cuts));
         Ok(())
     })?;
     Ok(found)
 }
 
-fn by_ppca(reader: &PoseReader<'_>, params: &PpcaParams, args: &Args) -> Result<Vec<Found>> {
+fn by_ppca(reader: &PoseReader<'_>, params: &PpcaParams, args: &Args) -> Result<Vec<CutClip>> {
     let mut found = Vec::new();
     reader.each(&args.inputs, |clip| {
         if args.plot.is_some() && !found.is_empty() {
@@ -85,13 +85,13 @@ fn by_ppca(reader: &PoseReader<'_>, params: &PpcaParams, args: &Args) -> Result<
             output::write_whole(path, |out| out.write_all(svg.as_bytes()))
                 .with_context(|| path.display().to_string())?;
         }
-        found.push(Found::new(&clip, segmentation));
+        found.push(CutClip::new(&clip, segmentation));
         Ok(())
     })?;
     Ok(found)
 }
 
-impl Found {
+impl CutClip {
     /// A clip cut at these seconds.
     fn at(take: &Take, cuts: &[f64]) -> Self {
         let rate_hz = take.clip.rate_hz;

@@ -21,7 +21,7 @@ use crate::progress::Bar;
 use crate::table::Table;
 
 #[derive(Serialize)]
-struct Cut {
+struct StoredCuts {
     clip: String,
     secs: f64,
     cuts_secs: Vec<f64>,
@@ -113,10 +113,10 @@ pub fn run(path: &Path, cutter: &Cutter, args: &Args) -> Result<ExitCode> {
 }
 
 /// A clip that was cut: what is told of it and what is kept.
-type Done = (ClipId, Cut, Vec<Segment>);
+type Done = (ClipId, StoredCuts, Vec<Segment>);
 
-fn nothing(clip: &ClipInfo) -> Cut {
-    Cut {
+fn nothing(clip: &ClipInfo) -> StoredCuts {
+    StoredCuts {
         clip: clip.name.clone(),
         secs: clip.duration_secs(),
         cuts_secs: Vec::new(),
@@ -173,7 +173,7 @@ fn cut(clip: &ClipInfo, rows: &ClipRows, cuts: Vec<f64>) -> Done {
     segments.retain(|s| s.stop_secs > s.start_secs);
     (
         clip.id,
-        Cut {
+        StoredCuts {
             cuts_secs: cuts,
             still,
             ..nothing(clip)
@@ -182,7 +182,7 @@ fn cut(clip: &ClipInfo, rows: &ClipRows, cuts: Vec<f64>) -> Done {
     )
 }
 
-fn print(cuts: &[Cut]) -> Result<()> {
+fn print(cuts: &[StoredCuts]) -> Result<()> {
     const SHOWN: usize = 12;
     let mut table =
         Table::new(["clip", "secs", "still", "T-pose", "cuts"]).least(["T-pose", "still", "secs"]);

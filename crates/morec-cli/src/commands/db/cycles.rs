@@ -26,7 +26,7 @@ pub struct Args {
     db: PathBuf,
     /// What is looked at
     #[arg(long, value_enum, default_value = "cuts")]
-    of: Of,
+    of: CycledSpans,
     /// Labelled stretches of this class only
     #[arg(long, value_name = "CLASS")]
     class: Option<String>,
@@ -43,7 +43,7 @@ pub struct Args {
 
 /// What is looked at.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-enum Of {
+enum CycledSpans {
     /// Segments that morec cut found
     Cuts,
     /// Whole clips
@@ -122,11 +122,11 @@ fn stretches(db: &MotionDb, args: &Args) -> Result<Vec<Counted>> {
         })
     };
     Ok(match args.of {
-        Of::Clips => clips
+        CycledSpans::Clips => clips
             .iter()
             .filter_map(|c| stretch(c.id, 0.0, c.duration_secs()))
             .collect(),
-        Of::Cuts => {
+        CycledSpans::Cuts => {
             let segments = db.segments()?;
             let moving = segments
                 .iter()
@@ -135,7 +135,7 @@ fn stretches(db: &MotionDb, args: &Args) -> Result<Vec<Counted>> {
                 .filter_map(|s| stretch(s.clip, s.start_secs, s.stop_secs))
                 .collect()
         }
-        Of::Labels => {
+        CycledSpans::Labels => {
             let filter = SampleFilter {
                 class: args.class.clone(),
                 state: Some(State::Accepted),

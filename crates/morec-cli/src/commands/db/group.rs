@@ -35,13 +35,13 @@ pub struct Args {
     db: PathBuf,
     /// What is grouped
     #[arg(long, value_enum, default_value = "cuts")]
-    of: Of,
+    of: Grouping,
     /// Samples of these classes only, separated by commas
     #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
     classes: Vec<String>,
     /// How
     #[arg(long, value_enum, default_value = "affinity")]
-    method: Method,
+    method: GroupMethod,
     /// How willing a sample is to stand for a group, as a quantile of similarities (affinity)
     #[arg(long, value_name = "Q", value_parser = super::share, default_value_t = AffinityParams::default().preference)]
     preference: f64,
@@ -67,7 +67,7 @@ pub struct Args {
 
 /// What is grouped.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-enum Of {
+enum Grouping {
     /// Segments that morec cut found
     Cuts,
     /// Labelled samples
@@ -78,7 +78,7 @@ enum Of {
 
 /// A method of grouping.
 #[derive(clap::ValueEnum, Clone, Copy, Debug)]
-enum Method {
+enum GroupMethod {
     /// Affinity propagation over evenly resampled rows
     Affinity,
     /// Average linkage over evenly resampled rows
@@ -88,7 +88,7 @@ enum Method {
 }
 
 #[derive(Serialize, Clone)]
-struct Item {
+struct Member {
     clip: String,
     start_secs: f64,
     stop_secs: f64,
@@ -101,8 +101,8 @@ struct Item {
 }
 
 #[derive(Serialize)]
-struct Grouped {
-    groups: Vec<Vec<Item>>,
+struct Groups {
+    groups: Vec<Vec<Member>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     rand_index: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -130,12 +130,12 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         bail!("nothing to group (morec cut finds segments, morec db label sets samples)");
     }
     let groups = groups(&items, args);
-    let mut grouped = Grouped {
+    let mut grouped = Groups {
         groups: Vec::new(),
         rand_index: None,
         adjusted_rand_index: None,
     };
-    if args.of == Of::Labels {
+    if args.of == Grouping::Labels {
         let names: BTreeSet<Option<&str>> = items.iter().map(|i| i.class.as_deref()).collect();
         let classes: Vec<usize> = items
             .iter()
@@ -151,7 +151,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         .collect();
     grouped
         .groups
-        .sort_by_key(|group: &Vec<Item>| std::cmp::Reverse(group.len()));
+        .sort_by_key(|group: &Vec<Member>| std::cmp::Reverse(group.len()));
     if let Some(name) = &args.name_as {
         propose(&mut db, &grouped.groups, name)?;
     }
@@ -166,17 +166,17 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn items(db: &mut MotionDb, args: &Args) -> Result<Vec<Item>> {
+fn items(db: &mut MotionDb, args: &Args) -> Result<Vec<Member>> {
     let params = FeatureParams::default();
     let rows = db.rows(&params, &Bar::stoppable()?)?;
     let clips = db.clips(&ClipFilter::default())?;
     let names: BTreeMap<ClipId, &str> = clips.iter().map(|c| (c.id, c.name.as_str())).collect();
     let spans: Vec<(ClipId, f64, f64, Option<String>)> = match args.of {
-        Of::Clips => clips
+        Grouping::Clips => clips
             .iter()
             .map(|c| (c.id, 0.0, c.duration_secs(), None))
             .collect(),
-        Of::Cuts => {
+        Grouping::Cuts => {
             let moving = db
                 .segments()?
                 .into_iter()
@@ -185,7 +185,7 @@ fn items(db: &mut MotionDb, args: &Args) -> Result<Vec<Item>> {
                 .map(|s| (s.clip, s.start_secs, s.stop_secs, None))
                 .collect()
         }
-        Of::Labels => {
+        Grouping::Labels => {
             let samples = db.samples(&SampleFilter {
                 state: Some(State::Accepted),
                 ..Default::default()
@@ -211,7 +211,7 @@ fn items(db: &mut MotionDb, args: &Args) -> Result<Vec<Item>> {
         let tick = |secs: f64| ((secs * params.tick_hz()).round() as usize).min(of.rows.len());
         let span = tick(start_secs)..tick(stop_secs);
         let rows = (!span.is_empty()).then(|| only(&of.rows.slice(span), of.bones, bones))?;
-        Some(Item {
+        Some(Member {
             clip: (*names.get(&id)?).to_owned(),
             start_secs,
             stop_secs,
@@ -244,21 +244,21 @@ fn only(rows: &Rows, of: BoneSet, wanted: BoneSet) -> Rows {
     rows.columns(&columns)
 }
 
-fn groups(items: &[Item], args: &Args) -> Clusters {
+fn groups(items: &[Member], args: &Args) -> Clusters {
     let points: Vec<Vec<f32>> = items
         .iter()
         .map(|item| resampled(&item.rows, POINTS))
         .collect();
     let apart = |a: usize, b: usize| squared_distance(&points[a], &points[b], POINTS);
     match args.method {
-        Method::Affinity => {
+        GroupMethod::Affinity => {
             let params = AffinityParams {
                 preference: args.preference,
                 ..AffinityParams::default()
             };
             affinity_propagation(items.len(), |a, b| -apart(a, b), &params)
         }
-        Method::Hierarchy => {
+        GroupMethod::Hierarchy => {
             let tree = Hierarchy::average(items.len(), |a, b| apart(a, b).sqrt());
             match (args.groups, args.height) {
                 (Some(count), _) => tree.into_clusters(count),
@@ -266,7 +266,7 @@ fn groups(items: &[Item], args: &Args) -> Clusters {
                 (None, None) => tree.into_clusters((items.len() as f64).sqrt().ceil() as usize),
             }
         }
-        Method::Kwas => {
+        GroupMethod::Kwas => {
             let spectra: Vec<Spectrum> = items
                 .iter()
                 .map(|item| Spectrum::of_rows(&item.rows))
@@ -282,7 +282,7 @@ fn groups(items: &[Item], args: &Args) -> Clusters {
     }
 }
 
-fn propose(db: &mut MotionDb, groups: &[Vec<Item>], name: &str) -> Result<()> {
+fn propose(db: &mut MotionDb, groups: &[Vec<Member>], name: &str) -> Result<()> {
     let mut samples = Vec::new();
     for (number, group) in groups.iter().enumerate() {
         samples.extend(group.iter().map(|item| NewSample {
@@ -299,7 +299,7 @@ fn propose(db: &mut MotionDb, groups: &[Vec<Item>], name: &str) -> Result<()> {
     Ok(())
 }
 
-fn report(path: &Path, db: &MotionDb, args: &Args, grouped: &Grouped) -> Result<()> {
+fn report(path: &Path, db: &MotionDb, args: &Args, grouped: &Groups) -> Result<()> {
     /// A page people look through: of a large group the first members tell what it is.
     const SHOWN: usize = 24;
     let mut page = Page::default();
@@ -328,7 +328,7 @@ fn report(path: &Path, db: &MotionDb, args: &Args, grouped: &Grouped) -> Result<
     )
 }
 
-fn print(grouped: &Grouped) -> Result<()> {
+fn print(grouped: &Groups) -> Result<()> {
     const SHOWN: usize = 6;
     let mut table = Table::new(["group", "members", "what"]);
     for (number, group) in grouped.groups.iter().enumerate() {

@@ -46,11 +46,11 @@ Examples:
   morec db search moves.mdb walk_01 --start 1 --stop 2")]
 pub struct Args {
     #[command(subcommand)]
-    command: Command,
+    command: DbCommand,
 }
 
 #[derive(Subcommand)]
-enum Command {
+enum DbCommand {
     Init(init::Args),
     Import(import::Args),
     Info(info::Args),
@@ -92,26 +92,26 @@ pub fn run(args: Args) -> Result<ExitCode> {
 
 fn of(args: Args) -> Result<ExitCode> {
     match args.command {
-        Command::Init(args) => init::run(&args),
-        Command::Import(args) => import::run(&args),
-        Command::Info(args) => info::run(&args),
-        Command::Clips(args) => clips::run(&args),
-        Command::Cut(args) => crate::commands::cut::run_stored(&args),
-        Command::Cycles(args) => cycles::run(&args),
-        Command::Group(args) => group::run(&args),
-        Command::Classes(args) => classes::run(&args),
-        Command::Label(args) => label::run(&args),
-        Command::Samples(args) => samples::run(&args),
-        Command::Search(args) => search::run(&args),
-        Command::Propose(args) => propose::run(&args),
-        Command::Report(args) => report::run(&args),
-        Command::Indexes(args) => indexes::run(&args),
-        Command::History(args) => history::run(&args),
-        Command::Undo(args) => history::undo(&args),
-        Command::Redo(args) => history::redo(&args),
-        Command::Export(args) => export::run(&args),
-        Command::Check(args) => check::run(&args),
-        Command::Vacuum(args) => vacuum::run(&args),
+        DbCommand::Init(args) => init::run(&args),
+        DbCommand::Import(args) => import::run(&args),
+        DbCommand::Info(args) => info::run(&args),
+        DbCommand::Clips(args) => clips::run(&args),
+        DbCommand::Cut(args) => crate::commands::cut::run_stored(&args),
+        DbCommand::Cycles(args) => cycles::run(&args),
+        DbCommand::Group(args) => group::run(&args),
+        DbCommand::Classes(args) => classes::run(&args),
+        DbCommand::Label(args) => label::run(&args),
+        DbCommand::Samples(args) => samples::run(&args),
+        DbCommand::Search(args) => search::run(&args),
+        DbCommand::Propose(args) => propose::run(&args),
+        DbCommand::Report(args) => report::run(&args),
+        DbCommand::Indexes(args) => indexes::run(&args),
+        DbCommand::History(args) => history::run(&args),
+        DbCommand::Undo(args) => history::undo(&args),
+        DbCommand::Redo(args) => history::redo(&args),
+        DbCommand::Export(args) => export::run(&args),
+        DbCommand::Check(args) => check::run(&args),
+        DbCommand::Vacuum(args) => vacuum::run(&args),
     }
 }
 

@@ -146,7 +146,7 @@ fn list(args: &Args, db: &MotionDb) -> Result<ExitCode> {
 }
 
 #[derive(Serialize)]
-struct Named {
+struct NamedProposal {
     name: String,
     #[serde(flatten)]
     proposal: Proposal,
@@ -163,11 +163,11 @@ fn show(args: &Args, db: &MotionDb, mut proposals: Vec<Proposal>) -> Result<Exit
         .into_iter()
         .map(|c| (c.id, c.name))
         .collect();
-    let named = |p: Proposal| Named {
+    let named = |p: Proposal| NamedProposal {
         name: names.get(&p.clip).cloned().unwrap_or_default(),
         proposal: p,
     };
-    let all: Vec<Named> = proposals.into_iter().map(named).collect();
+    let all: Vec<NamedProposal> = proposals.into_iter().map(named).collect();
     if args.json {
         // A new round is printed as a whole; a list is as long as asked for.
         let shown = if args.list { args.limit } else { all.len() };
@@ -175,7 +175,7 @@ fn show(args: &Args, db: &MotionDb, mut proposals: Vec<Proposal>) -> Result<Exit
         return Ok(ExitCode::SUCCESS);
     }
     let mut table = Table::new(["clip", "class", "start", "stop", "score"]).least(["stop"]);
-    for Named { name, proposal: p } in all.iter().take(args.limit) {
+    for NamedProposal { name, proposal: p } in all.iter().take(args.limit) {
         let secs = |secs: f64| format!("{secs:.2}");
         table.row([
             name.clone(),

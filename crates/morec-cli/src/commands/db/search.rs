@@ -78,13 +78,13 @@ pub struct Args {
 }
 
 #[derive(Serialize)]
-struct Found {
+struct SearchResult {
     ticks: usize,
     load_secs: f64,
     search_secs: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     learned: Option<Learned>,
-    hits: Vec<Named>,
+    hits: Vec<NamedHit>,
 }
 
 /// What the metric was learned from.
@@ -95,7 +95,7 @@ struct Learned {
 }
 
 #[derive(Serialize)]
-struct Named {
+struct NamedHit {
     name: String,
     #[serde(flatten)]
     hit: Hit,
@@ -133,16 +133,16 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     };
     let hits = index.search_by(&example, &options, metric.as_ref());
     let search_secs = begun.elapsed().as_secs_f64();
-    let named = |hit: Hit| Named {
+    let named = |hit: Hit| NamedHit {
         name: names.get(&hit.clip).cloned().unwrap_or_default(),
         hit,
     };
-    let hits: Vec<Named> = hits.into_iter().map(named).collect();
+    let hits: Vec<NamedHit> = hits.into_iter().map(named).collect();
     let learned = metric.map(|m| Learned {
         classes: m.classes().len(),
         samples: m.samples(),
     });
-    let found = Found {
+    let found = SearchResult {
         ticks: index.ticks(),
         load_secs,
         search_secs,
@@ -223,7 +223,7 @@ fn example(db: &MotionDb, index: &SearchIndex, args: &Args) -> Result<(Example, 
     ))
 }
 
-fn report(path: &Path, db: &MotionDb, example: &Shown, args: &Args, found: &Found) -> Result<()> {
+fn report(path: &Path, db: &MotionDb, example: &Shown, args: &Args, found: &SearchResult) -> Result<()> {
     let mut page = Page::default();
     page.heading("Looked for");
     let end = match example {
@@ -237,7 +237,7 @@ fn report(path: &Path, db: &MotionDb, example: &Shown, args: &Args, found: &Foun
         Shown::File(stored) => page.figure_of(stored, start, stop, &caption),
     }
     page.heading("Found");
-    for Named { name, hit } in &found.hits {
+    for NamedHit { name, hit } in &found.hits {
         let mirrored = if hit.mirrored { ", mirrored" } else { "" };
         let span = format!("{:.2}–{:.2} s", hit.start_secs, hit.stop_secs);
         let caption = format!("{name} {span}, score {:.3}{mirrored}", hit.score);
@@ -247,7 +247,7 @@ fn report(path: &Path, db: &MotionDb, example: &Shown, args: &Args, found: &Foun
     page.write(path, &format!("Like {}", args.example), &head)
 }
 
-fn print(found: &Found, tick_hz: f64) -> Result<()> {
+fn print(found: &SearchResult, tick_hz: f64) -> Result<()> {
     let mut table = Table::new(["clip", "start", "stop", "score", "path", "seen"]).least(["path"]);
     for named in &found.hits {
         let hit = &named.hit;

@@ -41,7 +41,7 @@ pub fn read_amc(
     options: &AmcOptions,
     limits: &Limits,
 ) -> Result<Loaded, ParseError> {
-    let mut reader = Reader::new(skeleton, limits);
+    let mut reader = AmcReader::new(skeleton, limits);
     let mut lines = Lines::new(bytes, limits);
     while let Some((line, content)) = lines.next()? {
         reader.line(line, content)?;
@@ -71,7 +71,7 @@ pub fn read_amc(
     })
 }
 
-struct Reader<'a> {
+struct AmcReader<'a> {
     skeleton: &'a Asf,
     limits: &'a Limits,
     degrees: bool,
@@ -91,7 +91,7 @@ struct Reader<'a> {
     warnings: Vec<Warning>,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> AmcReader<'a> {
     fn new(skeleton: &'a Asf, limits: &'a Limits) -> Self {
         let names =
             std::iter::once(Asf::ROOT).chain(skeleton.bones.iter().map(|b| b.name.as_str()));

@@ -13,7 +13,7 @@ use crate::math::{Axis, Quat, Vec3};
 /// No `:bonedata` or `:hierarchy`, a bone without a name, direction or length, a name given twice, a hierarchy
 /// that names unknown bones, gives one two parents or closes a loop, or more joints than `limits` allows.
 pub fn read_asf(bytes: &[u8], limits: &Limits) -> Result<(Asf, Vec<Warning>), ParseError> {
-    let mut reader = Reader::new(bytes, limits);
+    let mut reader = AsfReader::new(bytes, limits);
     let mut section = Vec::new();
     while let Some((line, content)) = reader.next()? {
         let first = tokens(content).next().unwrap_or_default();
@@ -45,7 +45,7 @@ pub fn read_asf(bytes: &[u8], limits: &Limits) -> Result<(Asf, Vec<Warning>), Pa
     reader.finish()
 }
 
-struct Reader<'a> {
+struct AsfReader<'a> {
     lines: Lines<'a>,
     limits: &'a Limits,
     name: String,
@@ -76,7 +76,7 @@ struct RawBone {
     channels: Vec<Channel>,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> AsfReader<'a> {
     fn new(bytes: &'a [u8], limits: &'a Limits) -> Self {
         use Axis::{X, Y, Z};
         let root_channels = [X, Y, Z]

@@ -71,7 +71,7 @@ pub(super) fn parse(
 }
 
 /// A brace that was opened and not yet closed.
-struct Open {
+struct OpenJoint {
     /// The joint, or for an End Site the joint it belongs to.
     joint: usize,
     is_end: bool,
@@ -85,7 +85,7 @@ struct Parser<'a, 't> {
     limits: &'a Limits,
     notes: &'a mut Notes,
     found: Hierarchy,
-    open: Vec<Open>,
+    open: Vec<OpenJoint>,
 }
 
 impl<'t> Parser<'_, 't> {
@@ -176,7 +176,7 @@ impl<'t> Parser<'_, 't> {
         let line = self.cursor.line;
         match self.keyword()? {
             Some(b"{") => {
-                self.open.push(Open {
+                self.open.push(OpenJoint {
                     joint,
                     is_end,
                     line,

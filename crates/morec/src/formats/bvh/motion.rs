@@ -116,24 +116,24 @@ pub(super) fn table(
         .max(1);
     let by_size = ((1 << 20) + cursor.text.len().saturating_mul(SAMPLES_PER_BYTE)) / joints;
     let max_frames = request.limits.frames.min(by_size);
-    let table = Table {
+    let table = MotionTable {
         width,
         max_frames,
         characters,
-        tally: Tally::default(),
+        tally: RepairCounts::default(),
     };
-    let Table {
+    let MotionTable {
         characters, tally, ..
     } = table.by_line(Rows::new(cursor.clone(), notes), notes)?;
     if tally.flows(width, request.declared) {
         characters.iter_mut().for_each(Character::clear);
         let text = "the frames are not one to a line; the numbers are read as one stream, as their count fits";
         notes.add(Place::Line(tally.first_line), text);
-        let table = Table {
+        let table = MotionTable {
             width,
             max_frames,
             characters,
-            tally: Tally::default(),
+            tally: RepairCounts::default(),
         };
         table.by_stream(Rows::new(cursor, &mut Notes::default()), notes)?;
         return Ok(Vec::new());
@@ -150,14 +150,14 @@ pub(super) struct Request<'a> {
     pub limits: &'a Limits,
 }
 
-struct Table<'a> {
+struct MotionTable<'a> {
     width: usize,
     max_frames: usize,
     characters: &'a mut [Character],
-    tally: Tally,
+    tally: RepairCounts,
 }
 
-impl Table<'_> {
+impl MotionTable<'_> {
     fn push(&mut self, row: &[f64], line: u64) -> Result<(), ParseError> {
         if self
             .characters
@@ -224,7 +224,7 @@ fn note_missing(values: &[f64], line: u64, notes: &mut Notes) {
 
 /// What was counted while reading line by line.
 #[derive(Debug, Default)]
-struct Tally {
+struct RepairCounts {
     lines: u64,
     numbers: u64,
     first_line: u64,
@@ -235,7 +235,7 @@ struct Tally {
     last_good: Option<usize>,
 }
 
-impl Tally {
+impl RepairCounts {
     fn good(&mut self, line: u64) {
         self.start(line);
         self.last_good = Some(self.lines as usize);

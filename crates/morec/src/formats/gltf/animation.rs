@@ -17,7 +17,7 @@ pub(super) struct Animation {
 
 /// What a channel moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Path {
+enum TargetPath {
     Translation,
     Rotation,
     Scale,
@@ -34,7 +34,7 @@ enum Between {
 /// Keys of one property of one node.
 pub(super) struct Channel {
     node: usize,
-    path: Path,
+    path: TargetPath,
     between: Between,
     /// Seconds, increasing; at least one.
     times: Vec<f64>,
@@ -96,9 +96,9 @@ fn read(
 ) -> Result<Option<Channel>, ParseError> {
     let target = &channel["target"];
     let path = match target["path"].as_str() {
-        Some("translation") => Path::Translation,
-        Some("rotation") => Path::Rotation,
-        Some("scale") => Path::Scale,
+        Some("translation") => TargetPath::Translation,
+        Some("rotation") => TargetPath::Rotation,
+        Some("scale") => TargetPath::Scale,
         _ => return Ok(None),
     };
     let nodes = document.list("nodes").len();
@@ -110,7 +110,7 @@ fn read(
     let sampler = sampler.ok_or_else(|| missing("a sampler of each channel"))?;
     let accessor = |key: &str| index(&sampler[key]).ok_or_else(|| missing("keys of a sampler"));
     let times = buffers.numbers(accessor("input")?, false)?;
-    let values = buffers.numbers(accessor("output")?, path == Path::Rotation)?;
+    let values = buffers.numbers(accessor("output")?, path == TargetPath::Rotation)?;
     let between = match sampler["interpolation"].as_str() {
         Some("STEP") => Between::Step,
         Some("CUBICSPLINE") => Between::CubicSpline,
@@ -123,12 +123,12 @@ impl Channel {
     /// As many keys as have both time and value, in order of time; `None` without any.
     fn new(
         node: usize,
-        path: Path,
+        path: TargetPath,
         between: Between,
         times: &Numbers,
         values: &Numbers,
     ) -> Result<Option<Self>, ParseError> {
-        let width = if path == Path::Rotation { 4 } else { 3 };
+        let width = if path == TargetPath::Rotation { 4 } else { 3 };
         if (times.width, values.width) != (1, width) {
             let found = format!("{} and {}", times.width, values.width);
             let expected = format!("1 number for each time and {width} for each value");
@@ -159,7 +159,7 @@ impl Channel {
     }
 
     fn width(&self) -> usize {
-        if self.path == Path::Rotation { 4 } else { 3 }
+        if self.path == TargetPath::Rotation { 4 } else { 3 }
     }
 
     /// The value of key `key`.
@@ -197,7 +197,7 @@ impl Channel {
             return self.set(&spline[..self.width()], local);
         }
         let (a, b) = (self.value(a), self.value(b));
-        if self.path == Path::Rotation {
+        if self.path == TargetPath::Rotation {
             // A key of zeros is none.
             local.rotation = match (rotation(a), rotation(b)) {
                 (Some(a), Some(b)) => slerp(&a, &b, t),
@@ -238,9 +238,9 @@ impl Channel {
 
     fn set(&self, value: &[f64], local: &mut Local) {
         match self.path {
-            Path::Rotation => local.rotation = rotation(value).unwrap_or(local.rotation),
-            Path::Translation => local.translation = Vec3::from_column_slice(&value[..3]),
-            Path::Scale => local.scale = Vec3::from_column_slice(&value[..3]),
+            TargetPath::Rotation => local.rotation = rotation(value).unwrap_or(local.rotation),
+            TargetPath::Translation => local.translation = Vec3::from_column_slice(&value[..3]),
+            TargetPath::Scale => local.scale = Vec3::from_column_slice(&value[..3]),
         }
     }
 }

@@ -61,8 +61,8 @@ pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseEr
     let find = |keys: &[&str]| keys.iter().find_map(|key| arrays.get(*key));
     let mut warnings = Vec::new();
     let frames = match (find(&POSES), find(&ROOT), find(&BODY)) {
-        (Some(poses), ..) => Frames::of_whole(poses)?,
-        (None, Some(root), Some(body)) => Frames::of_parts(root, body)?,
+        (Some(poses), ..) => SmplFrames::of_whole(poses)?,
+        (None, Some(root), Some(body)) => SmplFrames::of_parts(root, body)?,
         _ => return Err(no_poses(bytes)),
     };
     check_size(frames.count, body::JOINTS, bytes.len(), limits)?;
@@ -85,7 +85,7 @@ pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseEr
     })
 }
 
-fn clip(frames: &Frames<'_>, places: &[Vec3]) -> ClipBuilder {
+fn clip(frames: &SmplFrames<'_>, places: &[Vec3]) -> ClipBuilder {
     let joints = body::joints();
     let offsets: Vec<Vec3> = joints.iter().map(|joint| joint.offset).collect();
     let mut builder = ClipBuilder::new(joints);
@@ -127,21 +127,21 @@ fn no_poses(bytes: &[u8]) -> ParseError {
 }
 
 /// Rotations of joints in one or two arrays.
-struct Frames<'a> {
+struct SmplFrames<'a> {
     count: usize,
     joints: usize,
-    parts: [(&'a Array, Layout); 2],
+    parts: [(&'a Array, SmplLayout); 2],
 }
 
 /// Where the numbers of a frame are.
 #[derive(Clone, Copy)]
-struct Layout {
+struct SmplLayout {
     joints: usize,
     /// 3 for axis-angle, 9 for matrices.
     width: usize,
 }
 
-impl Layout {
+impl SmplLayout {
     fn of(array: &Array, what: &str) -> Result<Self, ParseError> {
         let (joints, width) = match array.shape[..] {
             [_, 3, 3] => (1, 9),
@@ -158,16 +158,16 @@ impl Layout {
     }
 }
 
-impl<'a> Frames<'a> {
+impl<'a> SmplFrames<'a> {
     fn of_whole(poses: &'a Array) -> Result<Self, ParseError> {
         // (frames, joints, 3): the same numbers in the same order.
-        let layout = Layout::of(poses, "poses")?;
+        let layout = SmplLayout::of(poses, "poses")?;
         Self::checked(
             poses.shape[0],
             (poses, layout),
             (
                 poses,
-                Layout {
+                SmplLayout {
                     joints: 0,
                     ..layout
                 },
@@ -177,8 +177,8 @@ impl<'a> Frames<'a> {
 
     fn of_parts(root: &'a Array, body: &'a Array) -> Result<Self, ParseError> {
         let (first, second) = (
-            Layout::of(root, "root_orient")?,
-            Layout::of(body, "pose_body")?,
+            SmplLayout::of(root, "root_orient")?,
+            SmplLayout::of(body, "pose_body")?,
         );
         if root.shape[0] != body.shape[0] {
             let found = format!("{} and {}", root.shape[0], body.shape[0]);
@@ -190,8 +190,8 @@ impl<'a> Frames<'a> {
 
     fn checked(
         count: usize,
-        first: (&'a Array, Layout),
-        second: (&'a Array, Layout),
+        first: (&'a Array, SmplLayout),
+        second: (&'a Array, SmplLayout),
     ) -> Result<Self, ParseError> {
         let joints = first.1.joints + second.1.joints;
         if joints < body::JOINTS {

@@ -76,7 +76,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Array, ParseError> {
     let wrong = |expected: String, found: String| {
         ParseError::new(Place::Byte(header.begin as u64), expected, found)
     };
-    let kind = Kind::of(&header.descr).ok_or_else(|| {
+    let kind = NumberKind::of(&header.descr).ok_or_else(|| {
         wrong(
             "an array of numbers".into(),
             format!("type {}", header.descr),
@@ -133,13 +133,13 @@ fn c_order(values: &[f64], shape: &[usize]) -> Vec<f64> {
 }
 
 /// A type of numbers.
-struct Kind {
+struct NumberKind {
     letter: u8,
     size: usize,
     big: bool,
 }
 
-impl Kind {
+impl NumberKind {
     fn of(descr: &str) -> Option<Self> {
         let (big, rest) = match descr.as_bytes() {
             [b'>', rest @ ..] => (true, rest),

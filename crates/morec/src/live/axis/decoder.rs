@@ -77,7 +77,7 @@ pub struct AxisDecoder {
 }
 
 /// What the buffer begins with.
-enum Head {
+enum FrameHead {
     /// Too little to say.
     Short,
     /// No frame.
@@ -107,12 +107,12 @@ impl AxisDecoder {
             let mut used = 0;
             loop {
                 match self.head(used, out) {
-                    Head::Short => break,
-                    Head::None => {
+                    FrameHead::Short => break,
+                    FrameHead::None => {
                         self.rubbish_at.get_or_insert(self.at + used as u64);
                         used += self.next_begin(used + 1);
                     }
-                    Head::Frame(length) => {
+                    FrameHead::Frame(length) => {
                         self.end_rubbish(used, out);
                         self.frame(used, length, out);
                         used += length;
@@ -158,17 +158,17 @@ impl AxisDecoder {
     }
 
     /// What there is at `used`.
-    fn head(&self, used: usize, out: &mut impl FnMut(Result<AxisFrame<'_>, AxisError>)) -> Head {
+    fn head(&self, used: usize, out: &mut impl FnMut(Result<AxisFrame<'_>, AxisError>)) -> FrameHead {
         let begin = BEGIN.to_le_bytes();
         let there = &self.buffer[used..];
         if !there.iter().zip(&begin).all(|(a, b)| a == b) {
-            return Head::None;
+            return FrameHead::None;
         }
         let Some(end) = self.u16(used + HEADER - 2) else {
-            return Head::Short;
+            return FrameHead::Short;
         };
         if end != END {
-            return Head::None;
+            return FrameHead::None;
         }
         let count = usize::from(self.u16(used + 6).unwrap_or_default());
         let (positions, reference) = (there[8] != 0, there[9] != 0);
@@ -184,13 +184,13 @@ impl AxisDecoder {
                 expected,
                 found: count,
             }));
-            return Head::None;
+            return FrameHead::None;
         }
         let length = HEADER + 4 * count;
         if there.len() < length {
-            Head::Short
+            FrameHead::Short
         } else {
-            Head::Frame(length)
+            FrameHead::Frame(length)
         }
     }
 

@@ -50,7 +50,7 @@ struct Followed {
     rig: Arc<Rig>,
     actors: usize,
     avatars: Vec<Avatar>,
-    items: VecDeque<Item>,
+    items: VecDeque<AxisItem>,
     spare: Vec<Frame>,
     counts: SourceCounts,
     begun_secs: Option<f64>,
@@ -67,7 +67,7 @@ struct Avatar {
 }
 
 #[derive(Debug)]
-enum Item {
+enum AxisItem {
     Frame(Frame),
     Rig(Actor),
     Gone(Actor),
@@ -144,7 +144,7 @@ impl AxisReceiver {
             .filter(|(_, avatar)| !avatar.gone)
         {
             avatar.gone = true;
-            items.push_back(Item::Gone(Actor(at as u16)));
+            items.push_back(AxisItem::Gone(Actor(at as u16)));
         }
     }
 
@@ -154,7 +154,7 @@ impl AxisReceiver {
         for (at, avatar) in avatars.iter_mut().enumerate() {
             if !avatar.gone && now_secs - avatar.heard_secs > GONE_SECS {
                 avatar.gone = true;
-                items.push_back(Item::Gone(Actor(at as u16)));
+                items.push_back(AxisItem::Gone(Actor(at as u16)));
             }
         }
     }
@@ -162,13 +162,13 @@ impl AxisReceiver {
     /// What is complete, oldest first; fills `frame` for [`Next::Frame`].
     pub fn next(&mut self, frame: &mut Frame) -> Option<Next> {
         Some(match self.followed.items.pop_front()? {
-            Item::Frame(mut full) => {
+            AxisItem::Frame(mut full) => {
                 std::mem::swap(frame, &mut full);
                 self.followed.spare.push(full);
                 Next::Frame
             }
-            Item::Rig(actor) => Next::Rig(actor, self.followed.rig.clone()),
-            Item::Gone(actor) => Next::Gone(actor),
+            AxisItem::Rig(actor) => Next::Rig(actor, self.followed.rig.clone()),
+            AxisItem::Gone(actor) => Next::Gone(actor),
         })
     }
 }
@@ -199,7 +199,7 @@ impl Followed {
         full.wall_secs = now_secs;
         full.actor = Actor(at as u16);
         pose(&self.rig, frame, &mut full);
-        self.items.push_back(Item::Frame(full));
+        self.items.push_back(AxisItem::Frame(full));
     }
 
     /// The place of avatar `number`, a new one if there is room; one that has gone makes room.
@@ -226,7 +226,7 @@ impl Followed {
             self.avatars[place] = new;
             place
         };
-        self.items.push_back(Item::Rig(Actor(place as u16)));
+        self.items.push_back(AxisItem::Rig(Actor(place as u16)));
         Some(place)
     }
 }

@@ -18,14 +18,14 @@ use super::parcel::{End, Mark, Parcel, What};
 
 /// The last stage.
 pub(super) struct Tracking {
-    performers: Vec<Performer>,
+    performers: Vec<TrackedPerformer>,
     min_chunks: usize,
     chunk_frames: i64,
     outlets: Outlets,
     cells: Arc<Cells>,
 }
 
-struct Performer {
+struct TrackedPerformer {
     tracking: SegmentTracking,
     column: Vec<Cell>,
     teller: Teller,
@@ -41,7 +41,7 @@ impl Tracking {
         outlets: Outlets,
         cells: &Arc<Cells>,
     ) -> Self {
-        let performer = |actor| Performer {
+        let performer = |actor| TrackedPerformer {
             tracking: SegmentTracking::of_model(model, scoring),
             column: vec![Cell::NOTHING; model.params.lengths()],
             teller: Teller::new(
@@ -82,7 +82,7 @@ impl Tracking {
                 performer.column[window.chunks() - self.min_chunks] = parcel.cell
             }
             What::Column | What::End(_) => {
-                let Performer {
+                let TrackedPerformer {
                     tracking,
                     column,
                     teller,

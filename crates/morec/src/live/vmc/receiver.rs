@@ -79,19 +79,19 @@ pub struct VmcReceiver<P> {
 /// What is complete and waits to be taken.
 #[derive(Debug, Default)]
 struct Ready {
-    items: VecDeque<Item>,
+    items: VecDeque<VmcItem>,
     spare: Vec<Frame>,
 }
 
 #[derive(Debug)]
-enum Item {
+enum VmcItem {
     Frame(Frame),
     Rig(Actor, Arc<Rig>),
     Gone(Actor),
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Bone {
+struct BoneState {
     position: Vec3,
     rotation: Quat,
     seen_secs: f64,
@@ -102,7 +102,7 @@ struct Sender<P> {
     ports: Ports<P>,
     /// Its place; none before it has shown a body.
     actor: Option<Actor>,
-    bones: [Bone; HUMANOID_BONES],
+    bones: [BoneState; HUMANOID_BONES],
     root: (Vec3, Quat),
     /// Bones that the open frame holds.
     fresh: BoneMask,
@@ -227,7 +227,7 @@ impl<P: Peer> VmcReceiver<P> {
                 && now_secs - sender.shown_secs > GONE_SECS
             {
                 sender.gone = true;
-                self.ready.items.push_back(Item::Gone(actor));
+                self.ready.items.push_back(VmcItem::Gone(actor));
             }
         }
         let silent = |sender: &Sender<P>| now_secs - sender.heard_secs > GONE_SECS;
@@ -238,13 +238,13 @@ impl<P: Peer> VmcReceiver<P> {
     /// What is complete, oldest first; fills `frame` for [`Next::Frame`].
     pub fn next(&mut self, frame: &mut Frame) -> Option<Next> {
         Some(match self.ready.items.pop_front()? {
-            Item::Frame(mut full) => {
+            VmcItem::Frame(mut full) => {
                 std::mem::swap(frame, &mut full);
                 self.ready.spare.push(full);
                 Next::Frame
             }
-            Item::Rig(actor, rig) => Next::Rig(actor, rig),
-            Item::Gone(actor) => Next::Gone(actor),
+            VmcItem::Rig(actor, rig) => Next::Rig(actor, rig),
+            VmcItem::Gone(actor) => Next::Gone(actor),
         })
     }
 
@@ -287,7 +287,7 @@ impl<P: Peer> VmcReceiver<P> {
 
 impl<P: Peer> Sender<P> {
     fn new(peer: P, now_secs: f64) -> Self {
-        let bone = Bone {
+        let bone = BoneState {
             position: Vec3::zeros(),
             rotation: Quat::identity(),
             seen_secs: f64::NEG_INFINITY,
@@ -424,7 +424,7 @@ impl<P: Peer> Taking<'_, P> {
         if self.sender.fresh >> bone & 1 == 1 {
             self.close();
         }
-        self.sender.bones[bone] = Bone {
+        self.sender.bones[bone] = BoneState {
             position,
             rotation,
             seen_secs: self.now_secs,
@@ -471,7 +471,7 @@ impl<P: Peer> Taking<'_, P> {
             self.counts.not_motion += 1;
             self.ready.spare.push(frame);
         } else {
-            self.ready.items.push_back(Item::Frame(frame));
+            self.ready.items.push_back(VmcItem::Frame(frame));
         }
     }
 
@@ -510,7 +510,7 @@ impl<P: Peer> Taking<'_, P> {
             };
             self.sender.actor = Some(actor);
             let rig = Arc::new(rig_of(alive, |bone| self.sender.bones[bone].position));
-            self.ready.items.push_back(Item::Rig(actor, rig.clone()));
+            self.ready.items.push_back(VmcItem::Rig(actor, rig.clone()));
             self.sender.rig = Some((alive, rig));
             self.sender.changed_secs = None;
         }
@@ -523,7 +523,7 @@ impl<P: Peer> Taking<'_, P> {
         let neck = assumed_neck(mask);
         frame.clear(mask.count_ones() as usize + usize::from(neck.is_some()));
         for (joint, bone) in bones_of(mask).enumerate() {
-            let Bone {
+            let BoneState {
                 position, rotation, ..
             } = self.sender.bones[bone];
             let parent = parent_among(bone, mask);

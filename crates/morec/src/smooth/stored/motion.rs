@@ -18,7 +18,7 @@ pub(super) enum Fault {
 
 /// What is foreseen of one kind of channel.
 #[derive(Default)]
-struct Model {
+struct CurveModel {
     steps: [Whole; 2],
     constant: Flag,
     same_steps: Flag,
@@ -34,8 +34,8 @@ struct Model {
 /// Foresees and codes channels, one after the other.
 #[derive(Default)]
 pub(super) struct Motion {
-    rotation: Model,
-    position: Model,
+    rotation: CurveModel,
+    position: CurveModel,
     steps: [Option<Lattice>; 2],
 }
 
@@ -47,7 +47,7 @@ pub(super) struct Stored {
 }
 
 /// Where a curve stands, between one piece and the next.
-struct State {
+struct ChannelState {
     key: Code,
     point: Point,
     /// Velocity at which the last piece arrived, in tangents a sample period; zero at the start.
@@ -83,7 +83,7 @@ impl Motion {
                 pieces,
             });
         }
-        let mut state = State {
+        let mut state = ChannelState {
             key: first,
             point: lattice.key_point(&first, None),
             arrival: Tangent::zeros(),
@@ -111,7 +111,7 @@ impl Motion {
     }
 }
 
-impl Model {
+impl CurveModel {
     /// The steps of a channel: mostly those of the channel before.
     fn lattice<C: Coder>(
         &mut self,
@@ -140,7 +140,7 @@ impl Model {
         coder: &mut C,
         lattice: &Lattice,
         given: Option<Piece>,
-        state: &mut State,
+        state: &mut ChannelState,
     ) -> Result<Piece, Fault> {
         let given = given.unwrap_or(Piece {
             frames: 1,
@@ -192,7 +192,7 @@ impl Model {
             )
         };
         let (_, b) = tangents.resolve(lattice, &chord);
-        *state = State {
+        *state = ChannelState {
             key,
             point: end,
             arrival: -b / f64::from(frames),
@@ -205,7 +205,7 @@ impl Model {
     }
 
     /// The key that the tangent points to.
-    fn promised_key(&self, lattice: &Lattice, state: &State, leaving: &Tangent) -> Code {
+    fn promised_key(&self, lattice: &Lattice, state: &ChannelState, leaving: &Tangent) -> Code {
         let kind = lattice.kind;
         let ahead = state.point + kind.tangents(&state.point) * (leaving * REACH_OF_TANGENT);
         kind.finish(ahead)
