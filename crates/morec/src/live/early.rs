@@ -2,7 +2,7 @@
 
 use crate::classes::ClassId;
 
-use super::teller::Say;
+use super::event_tracker::Say;
 use super::{Detection, Event, Phase};
 
 /// A motion that seems to be under way.
@@ -28,7 +28,7 @@ const FORGET_SECS: f64 = 0.5;
 
 /// Makes starts, updates and cancellations of hunches, a few for each motion.
 #[derive(Debug, Default)]
-pub(super) struct Early {
+pub(super) struct EarlyTracker {
     open: Option<OpenMotion>,
 }
 
@@ -39,7 +39,7 @@ struct OpenMotion {
     heard_secs: f64,
 }
 
-impl Early {
+impl EarlyTracker {
     /// What was told last of a motion that is still under way.
     pub(super) fn told(&self) -> Option<Hunch> {
         self.open.map(|open| open.told)

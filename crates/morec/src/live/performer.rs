@@ -5,8 +5,8 @@ use std::sync::Arc;
 use crate::diagnosis::{Diagnoser, Diagnosis};
 use crate::features::BoneSet;
 
-use super::early::{Early, Hunch};
-use super::teller::Teller;
+use super::early::{EarlyTracker, Hunch};
+use super::event_tracker::EventTracker;
 use super::{Actor, Event, Frame, Model, Pose, PoseReader, Recognizer, Rig};
 
 /// What is to be said, and how often.
@@ -41,8 +41,8 @@ pub struct Performer {
     recognizer: Option<Recognizer>,
     /// Reads what a model asks for beyond places of joints.
     reader: Option<PoseReader>,
-    early: Early,
-    teller: Teller,
+    early: EarlyTracker,
+    tracker: EventTracker,
     wall_secs: f64,
     unusable: u64,
     dropped: u64,
@@ -55,13 +55,13 @@ impl Performer {
     pub fn new<M: Clone + Into<Model>>(model: &M, actor: Actor, options: &EventOptions) -> Self {
         let model: Model = model.clone().into();
         Self {
-            teller: Teller::new(actor, model.classes().len(), options.refractory_secs),
+            tracker: EventTracker::new(actor, model.classes().len(), options.refractory_secs),
             model,
             reader: None,
             tells_early: options.early,
             rig: None,
             recognizer: None,
-            early: Early::default(),
+            early: EarlyTracker::default(),
             wall_secs: 0.0,
             unusable: 0,
             dropped: 0,
@@ -110,12 +110,12 @@ impl Performer {
             .as_mut()
             .and_then(|reader| reader.pivots(&frame.pose));
         for detection in recognizer.push(frame.time_secs, Pose { key: &pose, pivots }) {
-            self.teller
-                .tell(detection, &mut self.early, self.wall_secs, out);
+            self.tracker
+                .emit(detection, &mut self.early, self.wall_secs, out);
         }
         if self.tells_early {
-            let after_secs = self.teller.last_stop_secs();
-            let say = &mut self.teller.say(self.wall_secs, out);
+            let after_secs = self.tracker.last_stop_secs();
+            let say = &mut self.tracker.say(self.wall_secs, out);
             self.early
                 .look(recognizer.hunch(), after_secs, frame.time_secs, say);
         }
@@ -127,12 +127,12 @@ impl Performer {
             return;
         };
         for detection in recognizer.finish() {
-            self.teller
-                .tell(detection, &mut self.early, self.wall_secs, out);
+            self.tracker
+                .emit(detection, &mut self.early, self.wall_secs, out);
         }
         self.early
-            .cancel(None, &mut self.teller.say(self.wall_secs, out));
-        self.teller.forget();
+            .cancel(None, &mut self.tracker.say(self.wall_secs, out));
+        self.tracker.forget();
     }
 
     /// [`push`](Self::push) that makes recognisers of its own.
@@ -153,7 +153,7 @@ impl Performer {
 
     /// Motions that were not told because of [`EventOptions::refractory_secs`].
     pub fn suppressed(&self) -> u64 {
-        self.teller.suppressed()
+        self.tracker.suppressed()
     }
 
     /// What is known of the stream since its present skeleton was set; `None` before there is one.

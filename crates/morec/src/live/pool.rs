@@ -7,7 +7,7 @@ use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use super::feed::{FeedSender, Waker, feed};
-use super::lane::{EventReader, Lane, LaneOptions, Stock, Work};
+use super::worker::{EventReader, StreamWorker, WorkerOptions, RecognizerCache, TurnOutcome};
 use super::status::{Cells, StatusHandle};
 use super::{Model, SessionError, SessionOptions};
 
@@ -21,14 +21,14 @@ const OPENING: usize = 64;
 /// [`open`](Pool::open), fed from any thread, and ends when its [`FeedSender`] is dropped.
 #[derive(Debug)]
 pub struct Pool {
-    stock: Arc<Stock>,
+    cache: Arc<RecognizerCache>,
     workers: Vec<Worker>,
     stop: Arc<AtomicBool>,
 }
 
 #[derive(Debug)]
 struct Worker {
-    lanes: Option<SyncSender<Box<Lane>>>,
+    workers: Option<SyncSender<Box<StreamWorker>>>,
     /// Streams it has.
     load: Arc<AtomicUsize>,
     waker: Arc<Waker>,
@@ -50,12 +50,12 @@ impl Pool {
     /// A pool of `threads` threads, at least one.
     pub fn new<M: Clone + Into<Model>>(model: &M, threads: usize) -> Result<Self, SessionError> {
         let mut pool = Self {
-            stock: Arc::new(Stock::new(model.clone().into())),
+            cache: Arc::new(RecognizerCache::new(model.clone().into())),
             workers: Vec::new(),
             stop: Arc::default(),
         };
         for _ in 0..threads.max(1) {
-            let (lanes, taken) = sync_channel(OPENING);
+            let (workers, taken) = sync_channel(OPENING);
             let (load, waker) = (Arc::new(AtomicUsize::new(0)), Arc::new(Waker::default()));
             let job = {
                 let (load, waker) = (load.clone(), waker.clone());
@@ -69,7 +69,7 @@ impl Pool {
                     error,
                 })?;
             pool.workers.push(Worker {
-                lanes: Some(lanes),
+                workers: Some(workers),
                 load,
                 waker,
                 thread: Some(thread),
@@ -94,20 +94,20 @@ impl Pool {
             &cells.dropped_frames,
             &self.stop,
         );
-        let lane_options = LaneOptions {
+        let lane_options = WorkerOptions {
             events: options.events.clone(),
             overload: options.overload,
             readers: options.readers,
             capacity: options.event_capacity,
         };
-        let (lane, readers) = Lane::new(receiver, &self.stock, &lane_options, &cells, &self.stop);
+        let (worker, readers) = StreamWorker::new(receiver, &self.cache, &lane_options, &cells, &self.stop);
         if let Some(worker) = least {
             worker.load.fetch_add(1, Relaxed);
-            // A thread that has died gives the lane back, and dropping it ends the stream.
+            // A thread that has died gives the worker back, and dropping it ends the stream.
             let _ = worker
-                .lanes
+                .workers
                 .as_ref()
-                .map(|lanes| lanes.send(Box::new(lane)));
+                .map(|workers| workers.send(Box::new(worker)));
             worker.waker.wake();
         }
         PoolStream {
@@ -133,7 +133,7 @@ impl Pool {
     fn wait(&mut self) {
         self.workers
             .iter_mut()
-            .for_each(|worker| worker.lanes = None);
+            .for_each(|worker| worker.workers = None);
         for worker in &mut self.workers {
             worker.waker.wake();
             if let Some(thread) = worker.thread.take() {
@@ -151,35 +151,35 @@ impl Drop for Pool {
     }
 }
 
-/// A worker's thread: every lane in turn, a few frames each.
-fn serve(opened: &Receiver<Box<Lane>>, load: &AtomicUsize, waker: &Waker) {
-    let mut lanes: Vec<Box<Lane>> = Vec::new();
+/// A worker's thread: every worker in turn, a few frames each.
+fn serve(opened: &Receiver<Box<StreamWorker>>, load: &AtomicUsize, waker: &Waker) {
+    let mut workers: Vec<Box<StreamWorker>> = Vec::new();
     loop {
         let closed = loop {
             match opened.try_recv() {
-                Ok(lane) => lanes.push(lane),
+                Ok(worker) => workers.push(worker),
                 Err(TryRecvError::Empty) => break false,
                 Err(TryRecvError::Disconnected) => break true,
             }
         };
         let (mut busy, mut blocked) = (false, false);
-        lanes.retain_mut(|lane| match lane.work(16) {
-            Work::Ended => {
+        workers.retain_mut(|worker| match worker.work(16) {
+            TurnOutcome::Ended => {
                 load.fetch_sub(1, Relaxed);
                 false
             }
             outcome => {
-                busy |= outcome == Work::Some;
-                blocked |= outcome == Work::Blocked;
+                busy |= outcome == TurnOutcome::Some;
+                blocked |= outcome == TurnOutcome::Blocked;
                 true
             }
         });
-        if closed && lanes.is_empty() {
+        if closed && workers.is_empty() {
             return;
         }
         if !busy {
             let nap = Duration::from_millis(if blocked { 1 } else { 20 });
-            waker.sleep(nap, || lanes.iter().any(|lane| lane.is_ready()) && !blocked);
+            waker.sleep(nap, || workers.iter().any(|worker| worker.is_ready()) && !blocked);
         }
     }
 }

@@ -6,7 +6,7 @@ use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use super::feed::{FeedReceiver, FeedSender, feed};
-use super::lane::{EventReader, Lane, LaneOptions, Stock, Work};
+use super::worker::{EventReader, StreamWorker, WorkerOptions, RecognizerCache, TurnOutcome};
 use super::performer::EventOptions;
 use super::status::{Cells, Status, StatusHandle};
 use super::waker::Waker;
@@ -127,7 +127,7 @@ impl Session {
             &cells.dropped_frames,
             &stop,
         );
-        let lane_options = LaneOptions {
+        let lane_options = WorkerOptions {
             events: options.events.clone(),
             overload: options.overload,
             readers: options.readers,
@@ -155,14 +155,14 @@ impl Session {
         model: Model,
         feed: FeedReceiver,
         layout: Layout,
-        options: &LaneOptions,
+        options: &WorkerOptions,
     ) -> Result<Vec<EventReader>, SessionError> {
         let (cells, stop, waker) = (self.cells.clone(), self.stop.clone(), self.waker.clone());
         match (layout, model) {
             (Layout::Inline, model) => {
-                let (lane, readers) =
-                    Lane::new(feed, &Arc::new(Stock::new(model)), options, &cells, &stop);
-                self.spawn("recognition", Box::new(move || recognise(lane, &waker)))?;
+                let (worker, readers) =
+                    StreamWorker::new(feed, &Arc::new(RecognizerCache::new(model)), options, &cells, &stop);
+                self.spawn("recognition", Box::new(move || recognise(worker, &waker)))?;
                 Ok(readers)
             }
             (Layout::Stages, Model::Svrdm(model)) => {
@@ -264,14 +264,14 @@ fn carry(mut source: Box<dyn Source>, mut sender: FeedSender, cells: &Cells, sto
 }
 
 /// Recognition's thread.
-fn recognise(mut lane: Lane, waker: &Waker) {
+fn recognise(mut worker: StreamWorker, waker: &Waker) {
     loop {
-        match lane.work(64) {
-            Work::Some => {}
-            Work::Idle => waker.sleep(Duration::from_millis(20), || lane.is_ready()),
+        match worker.work(64) {
+            TurnOutcome::Some => {}
+            TurnOutcome::Idle => waker.sleep(Duration::from_millis(20), || worker.is_ready()),
             // Readers do not wake recognition: they would have to know of it.
-            Work::Blocked => thread::sleep(Duration::from_millis(1)),
-            Work::Ended => return,
+            TurnOutcome::Blocked => thread::sleep(Duration::from_millis(1)),
+            TurnOutcome::Ended => return,
         }
     }
 }

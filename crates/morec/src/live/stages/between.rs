@@ -8,23 +8,23 @@ use crate::svrdm::{
 };
 
 use super::belt::{In, Out};
-use super::parcel::{Chunk, Mark, Of, Parcel, What};
+use super::message::{Chunk, Mark, Of, StageMessage, What};
 
 /// Segment assembly's ends of the belts.
 pub(super) struct Segments {
     pub(super) chunks: In<Chunk>,
     pub(super) used: Out<Chunk>,
-    pub(super) out: Out<Parcel>,
-    pub(super) spare: In<Parcel>,
+    pub(super) out: Out<StageMessage>,
+    pub(super) spare: In<StageMessage>,
 }
 
 impl Segments {
-    /// Sends what `fill` makes of a spare parcel.
-    fn send(&mut self, mark: Mark, what: What, fill: impl FnOnce(&mut Parcel)) {
-        if let Some(mut parcel) = self.spare.next() {
-            (parcel.mark, parcel.what) = (mark, what);
-            fill(&mut parcel);
-            self.out.send(parcel);
+    /// Sends what `fill` makes of a spare message.
+    fn send(&mut self, mark: Mark, what: What, fill: impl FnOnce(&mut StageMessage)) {
+        if let Some(mut message) = self.spare.next() {
+            (message.mark, message.what) = (mark, what);
+            fill(&mut message);
+            self.out.send(message);
         }
     }
 
@@ -37,12 +37,12 @@ impl Segments {
             let (mark, assembly) = (chunk.mark, &mut assemblies[chunk.mark.actor]);
             match chunk.of {
                 Of::Chunk => {
-                    self.send(mark, What::Rows, |parcel| {
-                        std::mem::swap(&mut parcel.rows, &mut chunk.rows)
+                    self.send(mark, What::Rows, |message| {
+                        std::mem::swap(&mut message.rows, &mut chunk.rows)
                     });
                     assembly.push(&chunk.gram, &mut |window, gram: &Gram| {
-                        self.send(mark, What::Segment(window), |parcel| {
-                            parcel.gram.copy_from(gram)
+                        self.send(mark, What::Segment(window), |message| {
+                            message.gram.copy_from(gram)
                         });
                     });
                     self.send(mark, What::Column, |_| ());
@@ -59,26 +59,26 @@ impl Segments {
 }
 
 /// Feature vector extraction: segments get their feature vector and profile.
-pub(super) fn extract(model: &SvrdmModel, mut from: In<Parcel>, mut to: Out<Parcel>) {
+pub(super) fn extract(model: &SvrdmModel, mut from: In<StageMessage>, mut to: Out<StageMessage>) {
     let dim = model.pca.dims();
     let mut extraction = FeatureExtraction::new(&model.params, dim, &model.signs);
     let mut rings: Vec<_> = (0..MAX_ACTORS)
         .map(|_| RowRing::new(&model.params, dim))
         .collect();
-    while let Some(mut parcel) = from.next() {
-        let ring = &mut rings[parcel.mark.actor];
-        match parcel.what {
-            What::Rows => parcel.rows.chunks_exact(dim).for_each(|row| ring.push(row)),
+    while let Some(mut message) = from.next() {
+        let ring = &mut rings[message.mark.actor];
+        match message.what {
+            What::Rows => message.rows.chunks_exact(dim).for_each(|row| ring.push(row)),
             What::End(_) => ring.reset(),
             What::Segment(_) => {
-                let Parcel {
+                let StageMessage {
                     gram,
                     has_feature,
                     feature,
                     profile,
                     profile_len,
                     ..
-                } = &mut *parcel;
+                } = &mut *message;
                 let found = extraction
                     .feature(gram)
                     .map(|found| feature.copy_from_slice(found));
@@ -91,49 +91,49 @@ pub(super) fn extract(model: &SvrdmModel, mut from: In<Parcel>, mut to: Out<Parc
             }
             What::Column | What::Frame { .. } => {}
         }
-        to.send(parcel);
+        to.send(message);
     }
 }
 
 /// Classification: segments get the classes that they may be.
-pub(super) fn classify(model: &SvrdmModel, mut from: In<Parcel>, mut to: Out<Parcel>) {
+pub(super) fn classify(model: &SvrdmModel, mut from: In<StageMessage>, mut to: Out<StageMessage>) {
     let SvrdmParams {
         accept, descent, ..
     } = model.params;
-    while let Some(mut parcel) = from.next() {
-        if let What::Segment(_) = parcel.what {
-            let Parcel {
+    while let Some(mut message) = from.next() {
+        if let What::Segment(_) = message.what {
+            let StageMessage {
                 has_feature,
                 feature,
                 candidates,
                 ..
-            } = &mut *parcel;
+            } = &mut *message;
             candidates.clear();
             if *has_feature {
                 model.tree.descend(feature, accept, descent, candidates);
             }
         }
-        to.send(parcel);
+        to.send(message);
     }
 }
 
 /// Scoring: segments get what they most certainly are.
-pub(super) fn score(mut scoring: SegmentScoring, mut from: In<Parcel>, mut to: Out<Parcel>) {
-    while let Some(mut parcel) = from.next() {
-        if let What::Segment(_) = parcel.what {
-            let Parcel {
+pub(super) fn score(mut scoring: SegmentScoring, mut from: In<StageMessage>, mut to: Out<StageMessage>) {
+    while let Some(mut message) = from.next() {
+        if let What::Segment(_) = message.what {
+            let StageMessage {
                 candidates,
                 profile,
                 profile_len,
                 gram,
                 cell,
                 ..
-            } = &mut *parcel;
+            } = &mut *message;
             *cell = match candidates.is_empty() {
                 true => Cell::NOTHING,
                 false => scoring.best(candidates, &profile[..*profile_len], gram.frames()),
             };
         }
-        to.send(parcel);
+        to.send(message);
     }
 }

@@ -9,7 +9,7 @@ use crate::pivots::{PivotPose, PoseStream};
 use crate::svrdm::{ChunkAssembly, SvrdmModel};
 
 use super::belt::{In, Out};
-use super::parcel::{Chunk, End, Mark, Of};
+use super::message::{Chunk, End, Mark, Of};
 
 /// Where chunks go, and where used boxes come back.
 #[derive(Debug)]

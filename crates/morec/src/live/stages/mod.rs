@@ -9,7 +9,7 @@
 mod belt;
 mod between;
 mod input;
-mod parcel;
+mod message;
 mod tracking;
 
 use std::sync::Arc;
@@ -21,11 +21,11 @@ use crate::svrdm::{SegmentScoring, SvrdmModel};
 use self::belt::belt;
 use self::between::{Segments, classify, extract, score};
 use self::input::{Chunks, Fate, Input};
-use self::parcel::{Chunk, Parcel};
+use self::message::{Chunk, StageMessage};
 use self::tracking::Tracking;
 use super::feed::{FeedReceiver, Item};
-use super::lane::LaneOptions;
-use super::outlets::{EventReader, Outlets};
+use super::worker::WorkerOptions;
+use super::broadcast::{EventReader, EventBroadcast};
 use super::status::Cells;
 use super::waker::Waker;
 use super::{Actor, Frame, MAX_ACTORS, SessionError, wall_now_secs};
@@ -51,13 +51,13 @@ pub(super) struct Shared<'a> {
 pub(super) fn start(
     model: &Arc<SvrdmModel>,
     feed: FeedReceiver,
-    options: &LaneOptions,
+    options: &WorkerOptions,
     shared: &Shared<'_>,
     spawn: &mut Spawn<'_>,
 ) -> Result<Vec<EventReader>, SessionError> {
     let scoring = SegmentScoring::new(model).map_err(|error| SessionError::Start(error.into()))?;
-    let (outlets, readers) = Outlets::new(options, shared.cells, shared.stop);
-    let tracking = Tracking::new(model, &scoring, options, outlets, shared.cells);
+    let (broadcast, readers) = EventBroadcast::new(options, shared.cells, shared.stop);
+    let tracking = Tracking::new(model, &scoring, options, broadcast, shared.cells);
     let [segments, features, classes, scores, last] =
         std::array::from_fn(|_| Arc::new(Waker::default()));
     let (chunks_out, chunks_in) = belt(CHUNKS, &segments);
@@ -68,7 +68,7 @@ pub(super) fn start(
     let (to_scores, from_classes) = belt(PARCELS, &scores);
     let (to_tracking, from_scores) = belt(PARCELS, &last);
     let (mut home, spare) = belt(PARCELS, &segments);
-    (0..PARCELS).for_each(|_| home.send(Box::new(Parcel::new(model))));
+    (0..PARCELS).for_each(|_| home.send(Box::new(StageMessage::new(model))));
 
     let of = || model.clone();
     let assembly = Segments {

@@ -5,105 +5,105 @@ use std::sync::atomic::Ordering::{Relaxed, Release};
 use std::thread;
 use std::time::Duration;
 
-use crate::live::early::Early;
-use crate::live::lane::LaneOptions;
-use crate::live::outlets::Outlets;
+use crate::live::early::EarlyTracker;
+use crate::live::worker::WorkerOptions;
+use crate::live::broadcast::EventBroadcast;
 use crate::live::status::Cells;
-use crate::live::teller::Teller;
+use crate::live::event_tracker::EventTracker;
 use crate::live::{Actor, Detection, MAX_ACTORS, wall_now_secs};
 use crate::svrdm::{Cell, ChunkDetection, SegmentScoring, SegmentTracking, SvrdmModel};
 
 use super::belt::{In, Out};
-use super::parcel::{End, Mark, Parcel, What};
+use super::message::{End, Mark, StageMessage, What};
 
 /// The last stage.
 pub(super) struct Tracking {
     performers: Vec<TrackedPerformer>,
     min_chunks: usize,
     chunk_frames: i64,
-    outlets: Outlets,
+    broadcast: EventBroadcast,
     cells: Arc<Cells>,
 }
 
 struct TrackedPerformer {
     tracking: SegmentTracking,
     column: Vec<Cell>,
-    teller: Teller,
+    tracker: EventTracker,
     /// Nothing is told early by this method.
-    early: Early,
+    early: EarlyTracker,
 }
 
 impl Tracking {
     pub(super) fn new(
         model: &SvrdmModel,
         scoring: &SegmentScoring,
-        options: &LaneOptions,
-        outlets: Outlets,
+        options: &WorkerOptions,
+        broadcast: EventBroadcast,
         cells: &Arc<Cells>,
     ) -> Self {
         let performer = |actor| TrackedPerformer {
             tracking: SegmentTracking::of_model(model, scoring),
             column: vec![Cell::NOTHING; model.params.lengths()],
-            teller: Teller::new(
+            tracker: EventTracker::new(
                 Actor(actor as u16),
                 model.classes.len(),
                 options.events.refractory_secs,
             ),
-            early: Early::default(),
+            early: EarlyTracker::default(),
         };
         Self {
             performers: (0..MAX_ACTORS).map(performer).collect(),
             min_chunks: model.params.min_chunks,
             chunk_frames: model.params.chunk_frames as i64,
-            outlets,
+            broadcast,
             cells: cells.clone(),
         }
     }
 
     /// Parcels in, and back to where they came from.
-    pub(super) fn run(mut self, mut from: In<Parcel>, mut home: Out<Parcel>) {
-        while let Some(parcel) = from.next() {
-            self.take(&parcel);
-            home.send(parcel);
+    pub(super) fn run(mut self, mut from: In<StageMessage>, mut home: Out<StageMessage>) {
+        while let Some(message) = from.next() {
+            self.take(&message);
+            home.send(message);
             // Readers do not wake this thread: they would have to know of it.
-            while !self.outlets.deliver() {
+            while !self.broadcast.deliver() {
                 thread::sleep(Duration::from_millis(1));
             }
         }
     }
 
-    fn take(&mut self, parcel: &Parcel) {
+    fn take(&mut self, message: &StageMessage) {
         let Mark {
             actor, wall_secs, ..
-        } = parcel.mark;
+        } = message.mark;
         let performer = &mut self.performers[actor];
-        match parcel.what {
+        match message.what {
             What::Segment(window) => {
-                performer.column[window.chunks() - self.min_chunks] = parcel.cell
+                performer.column[window.chunks() - self.min_chunks] = message.cell
             }
             What::Column | What::End(_) => {
                 let TrackedPerformer {
                     tracking,
                     column,
-                    teller,
+                    tracker,
                     early,
                 } = performer;
-                let (frames, outlets) = (self.chunk_frames, &mut self.outlets);
+                let (frames, broadcast) = (self.chunk_frames, &mut self.broadcast);
                 let mut tell = |found: ChunkDetection| {
-                    let detection = detection(&found, &parcel.mark, frames);
-                    teller.tell(&detection, early, wall_secs, &mut |event| {
-                        outlets.keep(event)
+                    let detection = detection(&found, &message.mark, frames);
+                    tracker.emit(&detection, early, wall_secs, &mut |event| {
+                        broadcast.keep(event)
                     });
                 };
-                match parcel.what {
+                match message.what {
                     What::Column => tracking.push(column, &mut tell),
                     _ => tracking.finish(&mut tell),
                 }
                 column.fill(Cell::NOTHING);
-                if let What::End(End::Gone) = parcel.what {
-                    teller.forget();
+                if let What::End(End::Gone) = message.what {
+                    tracker.forget();
                 }
-                let suppressed = self.performers.iter().map(|p| p.teller.suppressed()).sum();
+                let suppressed = self.performers.iter().map(|p| p.tracker.suppressed()).sum();
                 self.cells.suppressed.store(suppressed, Relaxed);
             }
             What::Frame { time_secs } => {

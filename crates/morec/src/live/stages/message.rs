@@ -72,7 +72,7 @@ impl Chunk {
     }
 }
 
-/// What a parcel says to the stages that it passes.
+/// What a message says to the stages that it passes.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum What {
     /// A new chunk's rows.
@@ -89,7 +89,7 @@ pub(super) enum What {
 
 /// A segment on its way; each stage adds what it finds. Other news travel alike, so that nothing overtakes anything.
 #[derive(Debug)]
-pub(super) struct Parcel {
+pub(super) struct StageMessage {
     pub(super) mark: Mark,
     pub(super) what: What,
     pub(super) rows: Vec<f32>,
@@ -104,7 +104,7 @@ pub(super) struct Parcel {
     pub(super) cell: Cell,
 }
 
-impl Parcel {
+impl StageMessage {
     pub(super) fn new(model: &SvrdmModel) -> Self {
         let (params, dim) = (&model.params, model.pca.dims());
         let profile = params.comparison.rows(params.max_frames()) * params.comparison.width(dim);

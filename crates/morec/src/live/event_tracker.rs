@@ -1,11 +1,11 @@
 //! Detections to events: numbers for motions, the refractory rule.
 
-use super::early::{Early, Hunch};
+use super::early::{EarlyTracker, Hunch};
 use super::{Actor, Detection, Event, Phase};
 
 /// Tells one performer's motions.
 #[derive(Debug)]
-pub(super) struct Teller {
+pub(super) struct EventTracker {
     actor: Actor,
     refractory_secs: f64,
     motions: u64,
@@ -15,7 +15,7 @@ pub(super) struct Teller {
     suppressed: u64,
 }
 
-impl Teller {
+impl EventTracker {
     pub(super) fn new(actor: Actor, classes: usize, refractory_secs: f64) -> Self {
         let (any_secs, class_secs) = (f64::NEG_INFINITY, vec![f64::NEG_INFINITY; classes]);
         Self {
@@ -29,10 +29,10 @@ impl Teller {
     }
 
     /// Tells the end of a motion, unless the refractory rule says otherwise.
-    pub(super) fn tell(
+    pub(super) fn emit(
         &mut self,
         d: &Detection,
-        early: &mut Early,
+        early: &mut EarlyTracker,
         wall_secs: f64,
         out: &mut impl FnMut(Event),
     ) {

@@ -6,8 +6,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use crate::features::BoneSet;
 
 use super::feed::{FeedReceiver, Item};
-pub use super::outlets::EventReader;
-use super::outlets::Outlets;
+pub use super::broadcast::EventReader;
+use super::broadcast::EventBroadcast;
 use super::performer::{EventOptions, Performer};
 use super::status::Cells;
 use super::{Actor, Frame, MAX_ACTORS, Model, Overload, Recognizer, Rig, wall_now_secs};
@@ -17,12 +17,12 @@ const DIAGNOSE_EVERY: u64 = 16;
 
 /// Recognisers ready to be copied, one for each set of bones that has come up.
 #[derive(Debug)]
-pub(super) struct Stock {
+pub(super) struct RecognizerCache {
     model: Model,
     made: Mutex<Vec<(BoneSet, Option<Recognizer>)>>,
 }
 
-impl Stock {
+impl RecognizerCache {
     pub(super) fn new(model: Model) -> Self {
         Self {
             model,
@@ -43,9 +43,9 @@ impl Stock {
     }
 }
 
-/// What became of a lane's turn.
+/// What became of a worker's turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Work {
+pub(super) enum TurnOutcome {
     /// There was something to do, and there may be more.
     Some,
     /// There was nothing.
@@ -56,9 +56,9 @@ pub(super) enum Work {
     Ended,
 }
 
-/// How a lane is run.
+/// How a worker is run.
 #[derive(Debug, Clone)]
-pub(super) struct LaneOptions {
+pub(super) struct WorkerOptions {
     pub(super) events: EventOptions,
     pub(super) overload: Overload,
     pub(super) readers: usize,
@@ -66,13 +66,13 @@ pub(super) struct LaneOptions {
 }
 
 #[derive(Debug)]
-pub(super) struct Lane {
+pub(super) struct StreamWorker {
     feed: FeedReceiver,
     performers: Vec<Performer>,
     /// Frames that each performer has had.
     frames: [u64; MAX_ACTORS],
-    stock: Arc<Stock>,
-    outlets: Outlets,
+    cache: Arc<RecognizerCache>,
+    broadcast: EventBroadcast,
     cells: Arc<Cells>,
     stop: Arc<AtomicBool>,
     /// Frames of performers beyond those that can be followed.
@@ -81,29 +81,29 @@ pub(super) struct Lane {
     finished: bool,
 }
 
-impl Lane {
-    /// A lane and its readers.
+impl StreamWorker {
+    /// A worker and its readers.
     pub(super) fn new(
         feed: FeedReceiver,
-        stock: &Arc<Stock>,
-        options: &LaneOptions,
+        cache: &Arc<RecognizerCache>,
+        options: &WorkerOptions,
         cells: &Arc<Cells>,
         stop: &Arc<AtomicBool>,
     ) -> (Self, Vec<EventReader>) {
-        let (outlets, readers) = Outlets::new(options, cells, stop);
-        let performer = |i| Performer::new(&stock.model, Actor(i as u16), &options.events);
-        let lane = Self {
+        let (broadcast, readers) = EventBroadcast::new(options, cells, stop);
+        let performer = |i| Performer::new(&cache.model, Actor(i as u16), &options.events);
+        let worker = Self {
             feed,
             performers: (0..MAX_ACTORS).map(performer).collect(),
             frames: [0; MAX_ACTORS],
-            stock: stock.clone(),
-            outlets,
+            cache: cache.clone(),
+            broadcast,
             cells: cells.clone(),
             stop: stop.clone(),
             beyond: 0,
             finished: false,
         };
-        (lane, readers)
+        (worker, readers)
     }
 
     /// Whether there is something to do.
@@ -112,17 +112,17 @@ impl Lane {
     }
 
     /// Takes up to `most` things from the feed.
-    pub(super) fn work(&mut self, most: usize) -> Work {
+    pub(super) fn work(&mut self, most: usize) -> TurnOutcome {
         let mut done = 0;
         loop {
             if !self.deliver() {
-                return Work::Blocked;
+                return TurnOutcome::Blocked;
             }
             if self.finished {
-                return Work::Ended;
+                return TurnOutcome::Ended;
             }
             if done >= most {
-                return Work::Some;
+                return TurnOutcome::Some;
             }
             match self.feed.next() {
                 Some(Item::Frame(frame)) => {
@@ -135,8 +135,8 @@ impl Lane {
                     (0..self.performers.len()).for_each(|i| self.gone(Actor(i as u16)));
                     self.finished = true;
                 }
-                None if done == 0 => return Work::Idle,
-                None => return Work::Some,
+                None if done == 0 => return TurnOutcome::Idle,
+                None => return TurnOutcome::Some,
             }
             done += 1;
         }
@@ -145,9 +145,9 @@ impl Lane {
     fn frame(&mut self, frame: &Frame) {
         match self.performers.get_mut(frame.actor.index()) {
             Some(performer) => {
-                let (stock, outlets) = (&self.stock, &mut self.outlets);
-                performer.push(frame, &mut |bones| stock.get(bones), &mut |event| {
-                    outlets.keep(event)
+                let (cache, broadcast) = (&self.cache, &mut self.broadcast);
+                performer.push(frame, &mut |bones| cache.get(bones), &mut |event| {
+                    broadcast.keep(event)
                 });
                 let frames = &mut self.frames[frame.actor.index()];
                 *frames += 1;
@@ -162,23 +162,23 @@ impl Lane {
 
     fn set_rig(&mut self, actor: Actor, rig: &Arc<Rig>) {
         if let Some(performer) = self.performers.get_mut(actor.index()) {
-            performer.set_rig(rig, &mut |event| self.outlets.keep(event));
+            performer.set_rig(rig, &mut |event| self.broadcast.keep(event));
         }
     }
 
     fn gone(&mut self, actor: Actor) {
         if let Some(performer) = self.performers.get_mut(actor.index()) {
-            performer.finish(&mut |event| self.outlets.keep(event));
+            performer.finish(&mut |event| self.broadcast.keep(event));
             self.cells.diagnosis(actor, performer.diagnosis());
         }
     }
 
     /// Hands out what is pending; says whether nothing is left.
     fn deliver(&mut self) -> bool {
-        if self.outlets.has_pending() {
+        if self.broadcast.has_pending() {
             self.count();
         }
-        self.outlets.deliver()
+        self.broadcast.deliver()
     }
 
     fn count(&self) {
@@ -195,7 +195,7 @@ impl Lane {
     }
 }
 
-impl Drop for Lane {
+impl Drop for StreamWorker {
     fn drop(&mut self) {
         self.count();
         self.cells

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::Duration;
 
-use super::lane::LaneOptions;
+use super::worker::WorkerOptions;
 use super::status::Cells;
 use super::waker::Waker;
 use super::{Event, Overload};
@@ -51,12 +51,12 @@ impl EventReader {
 }
 
 #[derive(Debug)]
-struct Outlet {
+struct EventSender {
     events: rtrb::Producer<Event>,
     waker: Arc<Waker>,
 }
 
-impl Drop for Outlet {
+impl Drop for EventSender {
     fn drop(&mut self) {
         self.waker.wake();
     }
@@ -64,8 +64,8 @@ impl Drop for Outlet {
 
 /// The readers of a stream, and what waits to be handed to them.
 #[derive(Debug)]
-pub(super) struct Outlets {
-    outlets: Vec<Outlet>,
+pub(super) struct EventBroadcast {
+    broadcast: Vec<EventSender>,
     pending: Vec<Event>,
     cells: Arc<Cells>,
     stop: Arc<AtomicBool>,
@@ -73,10 +73,10 @@ pub(super) struct Outlets {
     sequence: u64,
 }
 
-impl Outlets {
+impl EventBroadcast {
     /// Outlets and their readers.
     pub(super) fn new(
-        options: &LaneOptions,
+        options: &WorkerOptions,
         cells: &Arc<Cells>,
         stop: &Arc<AtomicBool>,
     ) -> (Self, Vec<EventReader>) {
@@ -84,7 +84,7 @@ impl Outlets {
             let (events, taken) = rtrb::RingBuffer::new(options.capacity.max(PENDING));
             let waker = Arc::new(Waker::default());
             (
-                Outlet {
+                EventSender {
                     events,
                     waker: waker.clone(),
                 },
@@ -94,16 +94,16 @@ impl Outlets {
                 },
             )
         };
-        let (outlets, readers) = (0..options.readers.max(1)).map(|_| pair()).unzip();
-        let outlets = Self {
-            outlets,
+        let (broadcast, readers) = (0..options.readers.max(1)).map(|_| pair()).unzip();
+        let broadcast = Self {
+            broadcast,
             pending: Vec::with_capacity(PENDING),
             cells: cells.clone(),
             stop: stop.clone(),
             overload: options.overload,
             sequence: 0,
         };
-        (outlets, readers)
+        (broadcast, readers)
     }
 
     /// Puts an event where the next delivery takes it from.
@@ -126,11 +126,11 @@ impl Outlets {
         if self.pending.is_empty() {
             return true;
         }
-        self.outlets.retain(|outlet| !outlet.events.is_abandoned());
+        self.broadcast.retain(|outlet| !outlet.events.is_abandoned());
         let waits = self.overload == Overload::Wait && !self.stop.load(Relaxed);
         if waits
             && self
-                .outlets
+                .broadcast
                 .iter()
                 .any(|outlet| outlet.events.slots() < self.pending.len())
         {
@@ -140,14 +140,14 @@ impl Outlets {
             self.sequence += 1;
             event.sequence = self.sequence;
             self.cells.event(event);
-            for outlet in &mut self.outlets {
+            for outlet in &mut self.broadcast {
                 if outlet.events.push(*event).is_err() {
                     self.cells.dropped_events.fetch_add(1, Relaxed);
                 }
             }
         }
         self.pending.clear();
-        self.outlets.iter().for_each(|outlet| outlet.waker.wake());
+        self.broadcast.iter().for_each(|outlet| outlet.waker.wake());
         true
     }
 }
@@ -160,14 +160,14 @@ mod tests {
 
     #[test]
     fn what_there_is_no_room_for_is_counted() {
-        let options = LaneOptions {
+        let options = WorkerOptions {
             events: EventOptions::default(),
             overload: Overload::Wait,
             readers: 1,
             capacity: PENDING,
         };
         let (cells, stop) = (Arc::new(Cells::default()), Arc::default());
-        let (mut outlets, mut readers) = Outlets::new(&options, &cells, &stop);
+        let (mut broadcast, mut readers) = EventBroadcast::new(&options, &cells, &stop);
         let event = Event {
             phase: Phase::End,
             motion: 1,
@@ -181,8 +181,8 @@ mod tests {
             reported_secs: 1.0,
             wall_secs: 0.0,
         };
-        (0..PENDING + 3).for_each(|_| outlets.keep(event));
-        assert!(outlets.deliver());
+        (0..PENDING + 3).for_each(|_| broadcast.keep(event));
+        assert!(broadcast.deliver());
         let taken = std::iter::from_fn(|| readers[0].pop()).count();
         let dropped = cells.dropped_events.load(Relaxed);
         assert_eq!((taken, dropped), (PENDING, 3));
