@@ -12,7 +12,7 @@ pub use classes::ClassInfo;
 pub use plan::{ChangedLabel, LabelChange, LabelOptions, Labelled};
 pub use samples::{Added, DbSample, NewSample, SampleFilter, SampleId};
 
-/// Who says what `morec db group` proposes: that stretches are alike, under a name of its own making.
+/// Who says what `morec group` proposes: that stretches are alike, under a name of its own making.
 pub const GROUPED_BY: &str = "group";
 
 /// What is thought of a sample.

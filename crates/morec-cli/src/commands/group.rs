@@ -1,71 +1,88 @@
 //! `morec group`: which samples are alike, and whether classes would say the same.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::io::Write;
+mod files;
+mod kwas;
+mod members;
+mod stored;
+
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 use clap::ValueEnum;
-use morec::cluster::{
-    Clusters, KwasForm, KwasParams, Pairs, Spectrum, adjusted_rand_index, kwas_clusters,
-};
-use morec::features::Rows;
-use morec::labels::Labels;
-use morec::pca::{Keep, Moments, Pca};
-use morec::segment::{PpcaParams, segment};
+use morec::cluster::{AffinityParams, KwasParams};
 use serde::Serialize;
 
-use crate::figures::write_json;
-use crate::files::{self, some_of};
-use crate::poses::{PoseArgs, PoseReader, PosedClip};
-use crate::table::Table;
+use crate::commands::db::share;
+use crate::database;
+use crate::poses::PoseArgs;
 
-/// Group samples that are alike
+/// Group samples or segments that are alike, of clips or of a database
 ///
-/// Two samples are alike if the principal directions of their poses are (kWAS, above --tau); whoever is alike, over
-/// however many others, is one cluster. With labels their samples are grouped, and the clusters held against the
-/// classes; without, clips are cut first (as `morec cut` does) and the segments grouped.
+/// With labels their samples are grouped, and the groups held against the classes; without, clips are cut first (as
+/// `morec cut` does) and the segments grouped. Affinity propagation finds the number of groups itself; --method hierarchy
+/// is cut at --groups or --height; kwas is the thesis's. With --name-as the groups of a database become classes of
+/// proposed samples: rename, merge and accept what is right.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
-  morec group --clips recordings/ --labels labels.tsv
-  morec group --clips recordings/ --labels labels.tsv --centre none --tau 0.995
-  morec group --clips 86_01.amc")]
+  morec group recordings/ --labels labels.tsv
+  morec group recordings/ --labels labels.tsv --method kwas --centre none --tau 0.995
+  morec group moves.mdb --of labels                       # and how well that agrees with the classes
+  morec group moves.mdb --method hierarchy --groups 12 --name-as group")]
 pub struct Args {
-    /// Clips, or folders of clips
-    #[arg(long, value_name = "DIR|CLIP", num_args = 1.., required = true)]
+    /// Clips, folders of clips, or one database
+    #[arg(value_name = "CLIP|DB", required_unless_present = "clips")]
+    inputs: Vec<PathBuf>,
+    /// The spelling of old for clips
+    #[arg(long, value_name = "DIR|CLIP", num_args = 1.., hide = true)]
     clips: Vec<PathBuf>,
-    /// Labels: tab-separated text with a header; columns clip (file stem), class, and start, stop (frames, stop
-    /// exclusive) or start_secs, stop_secs, or neither: then the whole clip is one sample
+    /// Labels of clips in files: tab-separated text with a header; columns clip (file stem), class, and start, stop
+    /// (frames, stop exclusive) or start_secs, stop_secs, or neither: then the whole clip is one sample
     #[arg(long, value_name = "TSV")]
     labels: Option<PathBuf>,
-    /// Group samples of these classes only, separated by commas [default: every class of the labels]
-    #[arg(
-        long,
-        value_delimiter = ',',
-        value_name = "CLASSES",
-        requires = "labels"
-    )]
+    /// What is grouped [default: labelled samples if --labels are given, else cuts]
+    #[arg(long, value_enum)]
+    of: Option<Grouping>,
+    /// Samples of these classes only, separated by commas
+    #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
     classes: Vec<String>,
-    /// How alike two samples must be to be one cluster, 0 to 1
-    #[arg(long, value_name = "TAU", default_value_t = KwasParams::default().tau)]
+    /// How
+    #[arg(long, value_enum, default_value = "affinity")]
+    method: GroupMethod,
+    /// How willing a sample is to stand for a group, as a quantile of similarities (affinity)
+    #[arg(long, value_name = "Q", value_parser = share, default_value_t = AffinityParams::default().preference)]
+    preference: f64,
+    /// Cut the hierarchy into so many groups
+    #[arg(long, value_name = "N", conflicts_with = "height")]
+    groups: Option<usize>,
+    /// Cut the hierarchy where groups are so far apart on average
+    #[arg(long, value_name = "DISTANCE")]
+    height: Option<f64>,
+    /// Similarity above which two are of one group, 0 to 1 (kwas)
+    #[arg(long, value_name = "TAU", value_parser = share, default_value_t = KwasParams::default().tau)]
     tau: f64,
-    /// Principal directions of a sample that count
+    /// Principal directions of a sample that count (kwas)
     #[arg(short, long, value_name = "N", default_value_t = KwasParams::default().k)]
     k: usize,
-    /// Scale similarity so that a sample is 1 like itself, however few directions count
+    /// Scale similarity so that a sample is 1 like itself, however few directions count (kwas)
     #[arg(long)]
     normalised: bool,
-    /// What samples are centred on before they are compared
+    /// What samples are centred on before they are compared (kwas, clips in files)
     #[arg(long, value_enum, default_value = "database")]
     centre: Centre,
-    /// Share of the variance of all poses that is kept before samples are compared
+    /// Share of the variance of all poses that is kept before samples are compared (kwas, clips in files)
     #[arg(long, value_name = "SHARE", default_value_t = 0.99)]
     quality: f64,
-    /// Keep so many dimensions instead
+    /// Keep so many dimensions instead (kwas, clips in files)
     #[arg(long, value_name = "N", conflicts_with = "quality")]
     dims: Option<usize>,
+    /// Propose each member of a group as a sample of the class NAME_1, NAME_2, … (databases)
+    #[arg(long, value_name = "NAME")]
+    name_as: Option<String>,
+    /// Write a page with a strip of poses for each member of each group, too (databases)
+    #[arg(long, value_name = "HTML")]
+    report: Option<PathBuf>,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -76,294 +93,50 @@ pub struct Args {
 /// What samples are centred on.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-enum Centre {
+pub enum Centre {
     /// The mean of all poses, which are then reduced to --quality or --dims: samples are many small clusters
     Database,
     /// Nothing, and all dimensions are kept: the mean pose counts, samples are more alike, and --tau belongs near 1
     None,
 }
 
-/// A stretch of a clip to be grouped.
-#[derive(Debug, Clone, Serialize)]
-struct GroupedSample {
-    clip: String,
-    start_secs: f64,
-    stop_secs: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    class: Option<String>,
+/// What is grouped.
+#[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Grouping {
+    /// Segments that morec cut found
+    Cuts,
+    /// Labelled samples
+    Labels,
+    /// Whole clips
+    Clips,
 }
 
-#[derive(Serialize)]
-struct Agreement {
-    classes: usize,
-    pairs: Pairs,
-    rand_index: f64,
-    adjusted_rand_index: f64,
+/// A method of grouping.
+#[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GroupMethod {
+    /// Affinity propagation over evenly resampled rows
+    Affinity,
+    /// Average linkage over evenly resampled rows
+    Hierarchy,
+    /// Principal directions of poses, as in the thesis of 2009
+    Kwas,
 }
 
-#[derive(Serialize)]
-struct Grouped {
-    kwas: KwasParams,
-    centre: Centre,
-    dims: usize,
-    quality: f64,
-    clusters: Vec<Vec<GroupedSample>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    agreement: Option<Agreement>,
-}
-
-/// Reads, groups, compares and prints.
+/// Groups samples of clips or of a database.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let keep = args.dims.map_or(Keep::Quality(args.quality), Keep::Dims);
-    keep.check().map_err(anyhow::Error::msg)?;
-    let kwas = args.kwas()?;
-    let reader = args.poses.reader()?;
-    let clips = read_clips(args, &reader)?;
-    let samples = match &args.labels {
-        Some(_) => labelled(args, &clips)?,
-        None => cut(&reader, &clips)?,
-    };
-    let pca = match args.centre {
-        Centre::Database => Some(components(&clips, reader.set.row_dim(), keep)?),
-        Centre::None => None,
-    };
-    let (samples, spectra) = spectra(samples, &clips, reader.rate_hz(), pca.as_ref())?;
-    let clusters = kwas_clusters(&spectra, &kwas);
-    let agreement = args
-        .labels
-        .is_some()
-        .then(|| Agreement::of(&samples, &clusters));
-    let take = |members: Vec<usize>| members.into_iter().map(|i| samples[i].clone()).collect();
-    let mut clusters: Vec<Vec<GroupedSample>> = clusters.members().into_iter().map(take).collect();
-    clusters.sort_by_key(|cluster| std::cmp::Reverse(cluster.len()));
-    let (dims, quality) = pca.map_or((reader.set.row_dim(), 1.0), |pca| {
-        (pca.dims(), pca.quality())
-    });
-    let grouped = Grouped {
-        kwas,
-        centre: args.centre,
-        dims,
-        quality,
-        clusters,
-        agreement,
-    };
-    let mut out = std::io::stdout().lock();
-    if args.json {
-        write_json(&mut out, &grouped)?;
-    } else {
-        grouped.write(&mut out)?;
-    }
-    out.flush()?;
-    Ok(ExitCode::SUCCESS)
-}
-
-impl Args {
-    fn kwas(&self) -> Result<KwasParams> {
-        if !(0.0..=1.0).contains(&self.tau) {
-            bail!("--tau {}: expected 0 to 1", self.tau);
-        }
-        if self.k == 0 {
-            bail!("--k 0: at least one direction must count");
-        }
-        let form = if self.normalised {
-            KwasForm::Normalised
-        } else {
-            KwasForm::Printed
-        };
-        Ok(KwasParams {
-            k: self.k,
-            tau: self.tau,
-            form,
-        })
+    let inputs: Vec<PathBuf> = args.inputs.iter().chain(&args.clips).cloned().collect();
+    match (database::only(&inputs)?, args.method) {
+        (Some(db), _) => stored::run(db, args),
+        (None, GroupMethod::Kwas) => kwas::run(&inputs, args),
+        (None, _) => files::run(&inputs, args),
     }
 }
 
-fn read_clips(args: &Args, reader: &PoseReader<'_>) -> Result<BTreeMap<String, PosedClip>> {
-    let mut clips = BTreeMap::new();
-    reader.each(&args.clips, |clip| {
-        let name = clip.name.clone();
-        if clips.insert(name.clone(), clip).is_some() {
-            bail!("two clips are called {name}: labels could not tell them apart");
-        }
-        Ok(())
-    })?;
-    Ok(clips)
-}
-
-/// The samples of the labels that lie in `clips`.
-fn labelled(args: &Args, clips: &BTreeMap<String, PosedClip>) -> Result<Vec<GroupedSample>> {
-    let Some(path) = &args.labels else {
-        return Ok(Vec::new());
-    };
-    let labels = Labels::read(&files::read(path)?).with_context(|| path.display().to_string())?;
-    let resolved = labels.resolve(
-        &clips
-            .iter()
-            .map(|(name, clip)| (name.clone(), clip.length))
-            .collect(),
-    );
-    for warning in labels.warnings.iter().chain(&resolved.warnings) {
-        eprintln!("morec: {}: {warning}", path.display());
+/// The spelling of old, `morec db group`.
+pub fn run_stored(args: &Args) -> Result<ExitCode> {
+    eprintln!("morec: `morec db group` is `morec group` now");
+    match args.inputs.as_slice() {
+        [db] => stored::run(db, args),
+        _ => bail!("expected one database"),
     }
-    if !resolved.absent.is_empty() {
-        let (rows, names) = (
-            resolved.absent.values().sum::<usize>(),
-            some_of(resolved.absent.keys()),
-        );
-        eprintln!("morec: {rows} labels are of clips that are not there: {names}");
-    }
-    let wanted = |class: &String| args.classes.is_empty() || args.classes.contains(class);
-    let samples: Vec<GroupedSample> = resolved
-        .samples
-        .into_iter()
-        .filter(|s| wanted(&s.class))
-        .map(|s| GroupedSample {
-            clip: s.clip,
-            start_secs: s.start_secs,
-            stop_secs: s.stop_secs,
-            class: Some(s.class),
-        })
-        .collect();
-    if samples.is_empty() {
-        bail!(
-            "no sample to group: no label names any of these clips (labels name clips by file stem)"
-        );
-    }
-    Ok(samples)
-}
-
-/// The segments of all clips.
-fn cut(reader: &PoseReader<'_>, clips: &BTreeMap<String, PosedClip>) -> Result<Vec<GroupedSample>> {
-    let mut samples = Vec::new();
-    for (name, clip) in clips {
-        let found =
-            segment(&clip.rows, reader.rate_hz(), &PpcaParams::default()).context(name.clone())?;
-        let mut start_secs = 0.0;
-        let end_secs = clip.length.duration_secs();
-        for stop_secs in found.cuts.iter().map(|c| c.secs).chain([end_secs]) {
-            samples.push(GroupedSample {
-                clip: name.clone(),
-                start_secs,
-                stop_secs,
-                class: None,
-            });
-            start_secs = stop_secs;
-        }
-    }
-    Ok(samples)
-}
-
-fn components(clips: &BTreeMap<String, PosedClip>, dim: usize, keep: Keep) -> Result<Pca> {
-    let mut moments = Moments::new(dim);
-    clips
-        .values()
-        .for_each(|clip| moments.push_rows(&clip.rows));
-    Ok(Pca::fit(&moments, keep)?)
-}
-
-/// The samples of at least one pose, and what kWAS knows of each.
-fn spectra(
-    samples: Vec<GroupedSample>,
-    clips: &BTreeMap<String, PosedClip>,
-    rate_hz: f64,
-    pca: Option<&Pca>,
-) -> Result<(Vec<GroupedSample>, Vec<Spectrum>)> {
-    let (mut kept, mut spectra) = (Vec::new(), Vec::new());
-    for sample in samples {
-        let rows: &Rows = &clips.get(&sample.clip).context("a sample of no clip")?.rows;
-        let row = |secs: f64| ((secs * rate_hz).round() as usize).min(rows.len());
-        let (start, stop) = (row(sample.start_secs), row(sample.stop_secs));
-        if start >= stop {
-            eprintln!(
-                "morec: {}: a sample at {:.2} s holds no pose",
-                sample.clip, sample.start_secs
-            );
-            continue;
-        }
-        let rows = rows.slice(start..stop);
-        spectra.push(Spectrum::of_rows(
-            &pca.map_or_else(|| rows.clone(), |pca| pca.project(&rows)),
-        ));
-        kept.push(sample);
-    }
-    Ok((kept, spectra))
-}
-
-impl Agreement {
-    fn of(samples: &[GroupedSample], clusters: &Clusters) -> Self {
-        let names: BTreeSet<Option<&str>> = samples.iter().map(|s| s.class.as_deref()).collect();
-        let number = |s: &GroupedSample| names.range(..s.class.as_deref()).count();
-        let classes: Vec<usize> = samples.iter().map(number).collect();
-        let pairs = Pairs::count(&classes, &clusters.of);
-        Self {
-            classes: names.len(),
-            pairs,
-            rand_index: pairs.rand_index(),
-            adjusted_rand_index: adjusted_rand_index(&classes, &clusters.of),
-        }
-    }
-}
-
-impl Grouped {
-    fn write(&self, out: &mut impl Write) -> std::io::Result<()> {
-        let samples: usize = self.clusters.iter().map(Vec::len).sum();
-        let (clusters, dims, percent) = (self.clusters.len(), self.dims, 100.0 * self.quality);
-        let plural = if clusters == 1 { "" } else { "s" };
-        let kept = format!("{dims} dimensions, {percent:.1} % of all poses");
-        writeln!(
-            out,
-            "{samples} samples in {clusters} cluster{plural}; {kept}"
-        )?;
-        for (number, cluster) in self.clusters.iter().enumerate() {
-            writeln!(
-                out,
-                "  cluster {}: {} samples: {}",
-                number + 1,
-                cluster.len(),
-                contents(cluster)
-            )?;
-        }
-        let Some(agreement) = &self.agreement else {
-            return Ok(());
-        };
-        let pairs = &agreement.pairs;
-        writeln!(out, "\nagainst {} classes, pair by pair", agreement.classes)?;
-        let mut table = Table::new(["", "one class", "two classes"]);
-        let row =
-            |name: &str, one: u64, two: u64| [name.to_owned(), one.to_string(), two.to_string()];
-        table.row(row(
-            "one cluster",
-            pairs.true_positive,
-            pairs.false_positive,
-        ));
-        table.row(row(
-            "two clusters",
-            pairs.false_negative,
-            pairs.true_negative,
-        ));
-        write!(out, "{table}")?;
-        let (rand, adjusted) = (agreement.rand_index, agreement.adjusted_rand_index);
-        writeln!(out, "Rand index {rand:.3}, adjusted {adjusted:.3}")
-    }
-}
-
-/// Classes and how often, or where the segments lie.
-fn contents(cluster: &[GroupedSample]) -> String {
-    let mut classes: BTreeMap<&str, usize> = BTreeMap::new();
-    let mut parts = Vec::new();
-    for sample in cluster {
-        match &sample.class {
-            Some(class) => *classes.entry(class).or_default() += 1,
-            None => parts.push(format!(
-                "{} {:.2}-{:.2} s",
-                sample.clip, sample.start_secs, sample.stop_secs
-            )),
-        }
-    }
-    parts.extend(
-        classes
-            .iter()
-            .map(|(class, count)| format!("{class} {count}")),
-    );
-    parts.join(", ")
 }

@@ -6,14 +6,13 @@ mod clips;
 mod copies;
 mod cycles;
 mod export;
-mod group;
 mod history;
 mod import;
 mod indexes;
 mod info;
 mod init;
 mod label;
-mod page;
+pub mod page;
 mod propose;
 mod report;
 mod samples;
@@ -58,7 +57,8 @@ enum DbCommand {
     #[command(hide = true)]
     Cut(crate::commands::cut::Args),
     Cycles(cycles::Args),
-    Group(group::Args),
+    #[command(hide = true)]
+    Group(crate::commands::group::Args),
     Classes(classes::Args),
     Label(label::Args),
     Samples(samples::Args),
@@ -98,7 +98,7 @@ fn of(args: Args) -> Result<ExitCode> {
         DbCommand::Clips(args) => clips::run(&args),
         DbCommand::Cut(args) => crate::commands::cut::run_stored(&args),
         DbCommand::Cycles(args) => cycles::run(&args),
-        DbCommand::Group(args) => group::run(&args),
+        DbCommand::Group(args) => crate::commands::group::run_stored(&args),
         DbCommand::Classes(args) => classes::run(&args),
         DbCommand::Label(args) => label::run(&args),
         DbCommand::Samples(args) => samples::run(&args),
@@ -174,7 +174,7 @@ fn megabytes(bytes: u64) -> String {
 }
 
 /// A share on the command line.
-fn share(text: &str) -> std::result::Result<f64, String> {
+pub fn share(text: &str) -> std::result::Result<f64, String> {
     let value: f64 = text
         .parse()
         .map_err(|_| "expected a number from 0 to 1".to_owned())?;

@@ -19,7 +19,7 @@ use crate::table::Table;
 /// as far as your answers tell. Look at the sure ones in bulk and at the doubtful ones singly; what you accept teaches
 /// the next round, what you reject speaks against its like and is not asked about again. Every class goes on being asked
 /// about, however unlikely its best candidates are. Proposals of an earlier round that nobody judged are replaced;
-/// those of others (`morec db group --name-as`, a file) stay.
+/// those of others (`morec group --name-as`, a file) stay.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:

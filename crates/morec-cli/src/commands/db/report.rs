@@ -13,7 +13,7 @@ use crate::database;
 
 /// Write a page of HTML with a strip of poses for clips, cuts and samples
 ///
-/// One file, nothing loaded from elsewhere. Groups and search hits have pages of their own: `morec db group --report`,
+/// One file, nothing loaded from elsewhere. Groups and search hits have pages of their own: `morec group --report`,
 /// `morec db search --report`.
 #[derive(clap::Args)]
 pub struct Args {

@@ -200,7 +200,7 @@ pub const NOTES: &[(&str, &str)] = &[
     ("KwasParams.k", "thesis, §4.4"),
     (
         "KwasParams.tau",
-        "thesis, §4.4, of rows centred on the database. Its Tables 5.2–5.4 come nearer to uncentred rows (`morec group --centre none`), where 0.995 is best on referee samples",
+        "thesis, §4.4, of rows centred on the database. Its Tables 5.2–5.4 come nearer to uncentred rows (`morec group --method kwas --centre none`), where 0.995 is best on referee samples",
     ),
     (
         "features.follow_noise",

@@ -1,0 +1,110 @@
+//! Samples or segments of clips in files that are alike.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::{Context, Result, bail};
+use morec::features::{BoneSet, FeatureParams, Rows, rows_of_clip};
+use morec::labels::ClipLength;
+use morec::segment::{KernelParams, kernel_cuts};
+
+use super::members::{GroupedSample, Groups, Member, labelled, only};
+use super::{Args, Grouping};
+
+/// A clip as feature rows.
+struct RowedClip {
+    length: ClipLength,
+    bones: BoneSet,
+    rows: Rows,
+}
+
+/// Reads, groups and prints.
+pub fn run(paths: &[PathBuf], args: &Args) -> Result<ExitCode> {
+    if args.name_as.is_some() || args.report.is_some() {
+        bail!("--name-as and --report are of databases (morec db import makes one of clips)");
+    }
+    let params = FeatureParams::default();
+    let mut clips = BTreeMap::new();
+    args.poses.reader()?.each_take(paths, |take| {
+        let bones = take.bones();
+        let clip = RowedClip {
+            length: ClipLength {
+                frames: take.clip.frames,
+                rate_hz: take.clip.rate_hz,
+            },
+            bones,
+            rows: rows_of_clip(&take.clip, &take.roles, take.rest(), bones, &params),
+        };
+        let name = take.clip.name;
+        match clips.insert(name.clone(), clip) {
+            None => Ok(()),
+            Some(_) => bail!("two clips are called {name}: labels could not tell them apart"),
+        }
+    })?;
+    let samples = samples(&clips, args, &params)?;
+    let items = items(samples, &clips, &params);
+    if items.is_empty() {
+        bail!("nothing to group: no sample holds a tick of motion");
+    }
+    Groups::of(&items, args, args.labels.is_some()).print(args)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// What is grouped: labelled samples, whole clips, or what lies between cuts.
+fn samples(
+    clips: &BTreeMap<String, RowedClip>,
+    args: &Args,
+    params: &FeatureParams,
+) -> Result<Vec<GroupedSample>> {
+    if let Some(path) = &args.labels {
+        let length = |(name, clip): (&String, &RowedClip)| (name.clone(), clip.length);
+        return labelled(path, &args.classes, &clips.iter().map(length).collect());
+    }
+    let mut samples = Vec::new();
+    for (name, clip) in clips {
+        let cuts = match args.of {
+            Some(Grouping::Labels) => bail!("--of labels: which? Give --labels"),
+            Some(Grouping::Clips) => Vec::new(),
+            None | Some(Grouping::Cuts) => {
+                kernel_cuts(&clip.rows, params, &KernelParams::default()).context(name.clone())?
+            }
+        };
+        let mut start_secs = 0.0;
+        for stop_secs in cuts.into_iter().chain([clip.length.duration_secs()]) {
+            samples.push(GroupedSample {
+                clip: name.clone(),
+                start_secs,
+                stop_secs,
+                class: None,
+            });
+            start_secs = stop_secs;
+        }
+    }
+    Ok(samples)
+}
+
+/// Samples with their rows, over the bones that all of them show.
+fn items(
+    samples: Vec<GroupedSample>,
+    clips: &BTreeMap<String, RowedClip>,
+    params: &FeatureParams,
+) -> Vec<Member> {
+    let shown = samples.iter().filter_map(|s| Some(clips.get(&s.clip)?.bones));
+    let bones = shown.reduce(BoneSet::and).unwrap_or(BoneSet::NONE);
+    let item = |sample: GroupedSample| {
+        let clip = clips.get(&sample.clip)?;
+        let tick = |secs: f64| ((secs * params.tick_hz()).round() as usize).min(clip.rows.len());
+        let span = tick(sample.start_secs)..tick(sample.stop_secs);
+        let rows = (!span.is_empty()).then(|| only(&clip.rows.slice(span), clip.bones, bones))?;
+        Some(Member {
+            clip: sample.clip,
+            start_secs: sample.start_secs,
+            stop_secs: sample.stop_secs,
+            class: sample.class,
+            id: None,
+            rows,
+        })
+    };
+    samples.into_iter().filter_map(item).collect()
+}

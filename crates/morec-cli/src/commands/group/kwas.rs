@@ -1,0 +1,254 @@
+//! kWAS, as in the thesis of 2009: two samples are alike if the principal directions of their poses are.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::{Context, Result, bail};
+use morec::cluster::{
+    Clusters, KwasForm, KwasParams, Pairs, Spectrum, adjusted_rand_index, kwas_clusters,
+};
+use morec::features::Rows;
+use morec::pca::{Keep, Moments, Pca};
+use morec::segment::{PpcaParams, segment};
+use serde::Serialize;
+
+use super::members::{GroupedSample, labelled};
+use super::{Args, Centre};
+use crate::figures::write_json;
+use crate::poses::{PoseReader, PosedClip};
+use crate::table::Table;
+
+#[derive(Serialize)]
+struct Agreement {
+    classes: usize,
+    pairs: Pairs,
+    rand_index: f64,
+    adjusted_rand_index: f64,
+}
+
+#[derive(Serialize)]
+struct Grouped {
+    kwas: KwasParams,
+    centre: Centre,
+    dims: usize,
+    quality: f64,
+    clusters: Vec<Vec<GroupedSample>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    agreement: Option<Agreement>,
+}
+
+/// Reads clips in files, groups, compares and prints.
+pub fn run(paths: &[PathBuf], args: &Args) -> Result<ExitCode> {
+    let keep = args.dims.map_or(Keep::Quality(args.quality), Keep::Dims);
+    keep.check().map_err(anyhow::Error::msg)?;
+    let kwas = args.kwas()?;
+    let reader = args.poses.reader()?;
+    let clips = read_clips(paths, &reader)?;
+    let samples = match &args.labels {
+        Some(path) => {
+            let length = |(name, clip): (&String, &PosedClip)| (name.clone(), clip.length);
+            labelled(path, &args.classes, &clips.iter().map(length).collect())?
+        }
+        None => cut(&reader, &clips)?,
+    };
+    let pca = match args.centre {
+        Centre::Database => Some(components(&clips, reader.set.row_dim(), keep)?),
+        Centre::None => None,
+    };
+    let (samples, spectra) = spectra(samples, &clips, reader.rate_hz(), pca.as_ref())?;
+    let clusters = kwas_clusters(&spectra, &kwas);
+    let agreement = args
+        .labels
+        .is_some()
+        .then(|| Agreement::of(&samples, &clusters));
+    let take = |members: Vec<usize>| members.into_iter().map(|i| samples[i].clone()).collect();
+    let mut clusters: Vec<Vec<GroupedSample>> = clusters.members().into_iter().map(take).collect();
+    clusters.sort_by_key(|cluster| std::cmp::Reverse(cluster.len()));
+    let (dims, quality) = pca.map_or((reader.set.row_dim(), 1.0), |pca| {
+        (pca.dims(), pca.quality())
+    });
+    let grouped = Grouped {
+        kwas,
+        centre: args.centre,
+        dims,
+        quality,
+        clusters,
+        agreement,
+    };
+    let mut out = std::io::stdout().lock();
+    if args.json {
+        write_json(&mut out, &grouped)?;
+    } else {
+        grouped.write(&mut out)?;
+    }
+    out.flush()?;
+    Ok(ExitCode::SUCCESS)
+}
+
+impl Args {
+    pub(super) fn kwas(&self) -> Result<KwasParams> {
+        if self.k == 0 {
+            bail!("--k 0: at least one direction must count");
+        }
+        let form = if self.normalised {
+            KwasForm::Normalised
+        } else {
+            KwasForm::Printed
+        };
+        Ok(KwasParams {
+            k: self.k,
+            tau: self.tau,
+            form,
+        })
+    }
+}
+
+fn read_clips(paths: &[PathBuf], reader: &PoseReader<'_>) -> Result<BTreeMap<String, PosedClip>> {
+    let mut clips = BTreeMap::new();
+    reader.each(paths, |clip| {
+        let name = clip.name.clone();
+        if clips.insert(name.clone(), clip).is_some() {
+            bail!("two clips are called {name}: labels could not tell them apart");
+        }
+        Ok(())
+    })?;
+    Ok(clips)
+}
+
+/// The segments of all clips.
+fn cut(reader: &PoseReader<'_>, clips: &BTreeMap<String, PosedClip>) -> Result<Vec<GroupedSample>> {
+    let mut samples = Vec::new();
+    for (name, clip) in clips {
+        let found =
+            segment(&clip.rows, reader.rate_hz(), &PpcaParams::default()).context(name.clone())?;
+        let mut start_secs = 0.0;
+        let end_secs = clip.length.duration_secs();
+        for stop_secs in found.cuts.iter().map(|c| c.secs).chain([end_secs]) {
+            samples.push(GroupedSample {
+                clip: name.clone(),
+                start_secs,
+                stop_secs,
+                class: None,
+            });
+            start_secs = stop_secs;
+        }
+    }
+    Ok(samples)
+}
+
+fn components(clips: &BTreeMap<String, PosedClip>, dim: usize, keep: Keep) -> Result<Pca> {
+    let mut moments = Moments::new(dim);
+    clips
+        .values()
+        .for_each(|clip| moments.push_rows(&clip.rows));
+    Ok(Pca::fit(&moments, keep)?)
+}
+
+/// The samples of at least one pose, and what kWAS knows of each.
+fn spectra(
+    samples: Vec<GroupedSample>,
+    clips: &BTreeMap<String, PosedClip>,
+    rate_hz: f64,
+    pca: Option<&Pca>,
+) -> Result<(Vec<GroupedSample>, Vec<Spectrum>)> {
+    let (mut kept, mut spectra) = (Vec::new(), Vec::new());
+    for sample in samples {
+        let rows: &Rows = &clips.get(&sample.clip).context("a sample of no clip")?.rows;
+        let row = |secs: f64| ((secs * rate_hz).round() as usize).min(rows.len());
+        let (start, stop) = (row(sample.start_secs), row(sample.stop_secs));
+        if start >= stop {
+            eprintln!(
+                "morec: {}: a sample at {:.2} s holds no pose",
+                sample.clip, sample.start_secs
+            );
+            continue;
+        }
+        let rows = rows.slice(start..stop);
+        spectra.push(Spectrum::of_rows(
+            &pca.map_or_else(|| rows.clone(), |pca| pca.project(&rows)),
+        ));
+        kept.push(sample);
+    }
+    Ok((kept, spectra))
+}
+
+impl Agreement {
+    fn of(samples: &[GroupedSample], clusters: &Clusters) -> Self {
+        let names: BTreeSet<Option<&str>> = samples.iter().map(|s| s.class.as_deref()).collect();
+        let number = |s: &GroupedSample| names.range(..s.class.as_deref()).count();
+        let classes: Vec<usize> = samples.iter().map(number).collect();
+        let pairs = Pairs::count(&classes, &clusters.of);
+        Self {
+            classes: names.len(),
+            pairs,
+            rand_index: pairs.rand_index(),
+            adjusted_rand_index: adjusted_rand_index(&classes, &clusters.of),
+        }
+    }
+}
+
+impl Grouped {
+    fn write(&self, out: &mut impl Write) -> std::io::Result<()> {
+        let samples: usize = self.clusters.iter().map(Vec::len).sum();
+        let (clusters, dims, percent) = (self.clusters.len(), self.dims, 100.0 * self.quality);
+        let plural = if clusters == 1 { "" } else { "s" };
+        let kept = format!("{dims} dimensions, {percent:.1} % of all poses");
+        writeln!(
+            out,
+            "{samples} samples in {clusters} cluster{plural}; {kept}"
+        )?;
+        for (number, cluster) in self.clusters.iter().enumerate() {
+            writeln!(
+                out,
+                "  cluster {}: {} samples: {}",
+                number + 1,
+                cluster.len(),
+                contents(cluster)
+            )?;
+        }
+        let Some(agreement) = &self.agreement else {
+            return Ok(());
+        };
+        let pairs = &agreement.pairs;
+        writeln!(out, "\nagainst {} classes, pair by pair", agreement.classes)?;
+        let mut table = Table::new(["", "one class", "two classes"]);
+        let row =
+            |name: &str, one: u64, two: u64| [name.to_owned(), one.to_string(), two.to_string()];
+        table.row(row(
+            "one cluster",
+            pairs.true_positive,
+            pairs.false_positive,
+        ));
+        table.row(row(
+            "two clusters",
+            pairs.false_negative,
+            pairs.true_negative,
+        ));
+        write!(out, "{table}")?;
+        let (rand, adjusted) = (agreement.rand_index, agreement.adjusted_rand_index);
+        writeln!(out, "Rand index {rand:.3}, adjusted {adjusted:.3}")
+    }
+}
+
+/// Classes and how often, or where the segments lie.
+fn contents(cluster: &[GroupedSample]) -> String {
+    let mut classes: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut parts = Vec::new();
+    for sample in cluster {
+        match &sample.class {
+            Some(class) => *classes.entry(class).or_default() += 1,
+            None => parts.push(format!(
+                "{} {:.2}-{:.2} s",
+                sample.clip, sample.start_secs, sample.stop_secs
+            )),
+        }
+    }
+    parts.extend(
+        classes
+            .iter()
+            .map(|(class, count)| format!("{class} {count}")),
+    );
+    parts.join(", ")
+}

@@ -1,0 +1,227 @@
+//! What is grouped, by whatever is found alike: the part that clips and databases share.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use anyhow::{Context, Result, bail};
+use morec::cluster::{
+    AffinityParams, Clusters, Hierarchy, KwasParams, Pairs, Spectrum, adjusted_rand_index,
+    affinity_propagation, kwas_clusters, resampled, squared_distance,
+};
+use morec::features::{BoneSet, Rows};
+use morec::labels::{ClipLength, Labels};
+use morec_db::ClipId;
+use serde::Serialize;
+
+use super::{Args, GroupMethod};
+use crate::commands::db::{print_json, print_table};
+use crate::files::{self, some_of};
+use crate::table::Table;
+
+/// A stretch of a clip to be grouped.
+#[derive(Debug, Clone, Serialize)]
+pub struct GroupedSample {
+    pub clip: String,
+    pub start_secs: f64,
+    pub stop_secs: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub class: Option<String>,
+}
+
+/// What is grouped, with its rows.
+#[derive(Serialize, Clone)]
+pub struct Member {
+    pub clip: String,
+    pub start_secs: f64,
+    pub stop_secs: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub class: Option<String>,
+    /// Its clip in the database, if it is in one.
+    #[serde(skip)]
+    pub id: Option<ClipId>,
+    #[serde(skip)]
+    pub rows: Rows,
+}
+
+/// Groups, the largest first.
+#[derive(Serialize)]
+pub struct Groups {
+    pub groups: Vec<Vec<Member>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rand_index: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    adjusted_rand_index: Option<f64>,
+}
+
+/// Rows that a sample of any length becomes.
+const POINTS: usize = 16;
+
+impl Groups {
+    /// Groups `items` as `args` say, and holds the groups against the classes if there are any.
+    pub fn of(items: &[Member], args: &Args, has_classes: bool) -> Self {
+        let clusters = clusters(items, args);
+        let mut groups = Self {
+            groups: Vec::new(),
+            rand_index: None,
+            adjusted_rand_index: None,
+        };
+        if has_classes {
+            let names: BTreeSet<Option<&str>> = items.iter().map(|i| i.class.as_deref()).collect();
+            let classes: Vec<usize> = items
+                .iter()
+                .map(|i| names.range(..i.class.as_deref()).count())
+                .collect();
+            groups.rand_index = Some(Pairs::count(&classes, &clusters.of).rand_index());
+            groups.adjusted_rand_index = Some(adjusted_rand_index(&classes, &clusters.of));
+        }
+        let members = clusters.members().into_iter();
+        groups.groups = members
+            .map(|m| m.into_iter().map(|i| items[i].clone()).collect())
+            .collect();
+        groups
+            .groups
+            .sort_by_key(|group: &Vec<Member>| std::cmp::Reverse(group.len()));
+        groups
+    }
+
+    /// Prints the groups as a table, or as JSON if `args` say so.
+    pub fn print(&self, args: &Args) -> Result<()> {
+        match args.json {
+            true => print_json(self),
+            false => print(self),
+        }
+    }
+}
+
+/// The columns of some of the bones, and of the root.
+pub fn only(rows: &Rows, of: BoneSet, wanted: BoneSet) -> Rows {
+    let b = of.len();
+    let places: Vec<usize> = of
+        .indices()
+        .enumerate()
+        .filter(|(_, bone)| wanted.contains(*bone))
+        .map(|(at, _)| at)
+        .collect();
+    let block = |start: usize| {
+        places
+            .iter()
+            .flat_map(move |at| (0..3).map(move |i| start + 3 * at + i))
+    };
+    let columns: Vec<usize> = block(0)
+        .chain(block(3 * b))
+        .chain(6 * b..6 * b + 4)
+        .collect();
+    rows.columns(&columns)
+}
+
+fn clusters(items: &[Member], args: &Args) -> Clusters {
+    let points: Vec<Vec<f32>> = items
+        .iter()
+        .map(|item| resampled(&item.rows, POINTS))
+        .collect();
+    let apart = |a: usize, b: usize| squared_distance(&points[a], &points[b], POINTS);
+    match args.method {
+        GroupMethod::Affinity => {
+            let params = AffinityParams {
+                preference: args.preference,
+                ..AffinityParams::default()
+            };
+            affinity_propagation(items.len(), |a, b| -apart(a, b), &params)
+        }
+        GroupMethod::Hierarchy => {
+            let tree = Hierarchy::average(items.len(), |a, b| apart(a, b).sqrt());
+            match (args.groups, args.height) {
+                (Some(count), _) => tree.into_clusters(count),
+                (None, Some(height)) => tree.at_height(height),
+                (None, None) => tree.into_clusters((items.len() as f64).sqrt().ceil() as usize),
+            }
+        }
+        GroupMethod::Kwas => {
+            let spectra: Vec<Spectrum> = items
+                .iter()
+                .map(|item| Spectrum::of_rows(&item.rows))
+                .collect();
+            kwas_clusters(
+                &spectra,
+                &KwasParams {
+                    tau: args.tau,
+                    ..KwasParams::default()
+                },
+            )
+        }
+    }
+}
+
+/// The samples of the table `path` that lie in clips of these lengths, of `classes` or of all.
+pub fn labelled(
+    path: &Path,
+    classes: &[String],
+    clips: &BTreeMap<String, ClipLength>,
+) -> Result<Vec<GroupedSample>> {
+    let labels = Labels::read(&files::read(path)?).with_context(|| path.display().to_string())?;
+    let resolved = labels.resolve(clips);
+    for warning in labels.warnings.iter().chain(&resolved.warnings) {
+        eprintln!("morec: {}: {warning}", path.display());
+    }
+    if !resolved.absent.is_empty() {
+        let (rows, names) = (
+            resolved.absent.values().sum::<usize>(),
+            some_of(resolved.absent.keys()),
+        );
+        eprintln!("morec: {rows} labels are of clips that are not there: {names}");
+    }
+    let wanted = |class: &String| classes.is_empty() || classes.contains(class);
+    let samples: Vec<GroupedSample> = resolved
+        .samples
+        .into_iter()
+        .filter(|s| wanted(&s.class))
+        .map(|s| GroupedSample {
+            clip: s.clip,
+            start_secs: s.start_secs,
+            stop_secs: s.stop_secs,
+            class: Some(s.class),
+        })
+        .collect();
+    if samples.is_empty() {
+        bail!(
+            "no sample to group: no label names any of these clips (labels name clips by file stem)"
+        );
+    }
+    Ok(samples)
+}
+
+fn print(grouped: &Groups) -> Result<()> {
+    const SHOWN: usize = 6;
+    let mut table = Table::new(["group", "members", "what"]);
+    for (number, group) in grouped.groups.iter().enumerate() {
+        let mut classes: BTreeMap<&str, usize> = BTreeMap::new();
+        let mut what = Vec::new();
+        for item in group {
+            match &item.class {
+                Some(class) => *classes.entry(class).or_default() += 1,
+                None if what.len() < SHOWN => {
+                    what.push(format!("{} {:.1}", item.clip, item.start_secs))
+                }
+                None => {}
+            }
+        }
+        what.extend(
+            classes
+                .iter()
+                .map(|(class, count)| format!("{class} {count}")),
+        );
+        table.row([
+            (number + 1).to_string(),
+            group.len().to_string(),
+            what.join(", "),
+        ]);
+    }
+    let members: usize = grouped.groups.iter().map(Vec::len).sum();
+    let mut last = format!("{members} in {} groups\n", grouped.groups.len());
+    if let (Some(rand), Some(adjusted)) = (grouped.rand_index, grouped.adjusted_rand_index) {
+        last.push_str(&format!(
+            "against the classes: Rand index {rand:.3}, adjusted {adjusted:.3}\n"
+        ));
+    }
+    print_table(&table, &last)
+}

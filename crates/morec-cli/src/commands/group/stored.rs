@@ -1,0 +1,153 @@
+//! Samples or segments of a database that are alike.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::process::ExitCode;
+
+use anyhow::{Result, bail};
+use morec::features::{BoneSet, FeatureParams};
+use morec_db::labels::{GROUPED_BY, NewSample, SampleFilter, State};
+use morec_db::{ClipFilter, ClipId, MotionDb, SegmentKind};
+
+use super::members::{Groups, Member, only};
+use super::{Args, Grouping};
+use crate::commands::db::page::{self, Page};
+use crate::database;
+use crate::progress::Bar;
+
+/// Clusters, prints, and proposes if asked to.
+pub fn run(path: &Path, args: &Args) -> Result<ExitCode> {
+    if args.labels.is_some() {
+        bail!("--labels: a database has its own; --of labels groups them");
+    }
+    let mut db = if args.name_as.is_some() {
+        database::open(path)?
+    } else {
+        database::open_read_only(path)?
+    };
+    if let Some(path) = &args.report {
+        page::check(path)?;
+    }
+    args.classes
+        .iter()
+        .try_for_each(|class| db.need_class(class))?;
+    let of = args.of.unwrap_or(Grouping::Cuts);
+    let items = items(&mut db, of, args)?;
+    if items.is_empty() {
+        bail!("nothing to group (morec cut finds segments, morec db label sets samples)");
+    }
+    let grouped = Groups::of(&items, args, of == Grouping::Labels);
+    if let Some(name) = &args.name_as {
+        propose(&mut db, &grouped.groups, name)?;
+    }
+    if let Some(page) = &args.report {
+        report(page, &db, path, &grouped)?;
+    }
+    grouped.print(args)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn items(db: &mut MotionDb, of: Grouping, args: &Args) -> Result<Vec<Member>> {
+    let params = FeatureParams::default();
+    let rows = db.rows(&params, &Bar::stoppable()?)?;
+    let clips = db.clips(&ClipFilter::default())?;
+    let names: BTreeMap<ClipId, &str> = clips.iter().map(|c| (c.id, c.name.as_str())).collect();
+    let spans: Vec<(ClipId, f64, f64, Option<String>)> = match of {
+        Grouping::Clips => clips
+            .iter()
+            .map(|c| (c.id, 0.0, c.duration_secs(), None))
+            .collect(),
+        Grouping::Cuts => {
+            let moving = db
+                .segments()?
+                .into_iter()
+                .filter(|s| s.kind == SegmentKind::Motion);
+            moving
+                .map(|s| (s.clip, s.start_secs, s.stop_secs, None))
+                .collect()
+        }
+        Grouping::Labels => {
+            let samples = db.samples(&SampleFilter {
+                state: Some(State::Accepted),
+                ..Default::default()
+            })?;
+            let wanted = samples
+                .into_iter()
+                .filter(|s| args.classes.is_empty() || args.classes.contains(&s.class));
+            wanted
+                .map(|s| (s.clip, s.start_secs, s.stop_secs, Some(s.class)))
+                .collect()
+        }
+    };
+    let rows: BTreeMap<ClipId, _> = rows.into_iter().map(|r| (r.clip, r)).collect();
+    // Only bones that every one of them shows.
+    let bones = spans
+        .iter()
+        .filter_map(|s| rows.get(&s.0))
+        .map(|r| r.bones)
+        .reduce(BoneSet::and);
+    let bones = bones.unwrap_or(BoneSet::NONE);
+    let item = |(id, start_secs, stop_secs, class): (ClipId, f64, f64, Option<String>)| {
+        let of = rows.get(&id)?;
+        let tick = |secs: f64| ((secs * params.tick_hz()).round() as usize).min(of.rows.len());
+        let span = tick(start_secs)..tick(stop_secs);
+        let rows = (!span.is_empty()).then(|| only(&of.rows.slice(span), of.bones, bones))?;
+        Some(Member {
+            clip: (*names.get(&id)?).to_owned(),
+            start_secs,
+            stop_secs,
+            class,
+            id: Some(id),
+            rows,
+        })
+    };
+    Ok(spans.into_iter().filter_map(item).collect())
+}
+
+fn propose(db: &mut MotionDb, groups: &[Vec<Member>], name: &str) -> Result<()> {
+    let mut samples = Vec::new();
+    for (number, group) in groups.iter().enumerate() {
+        let kept = group.iter().filter_map(|item| Some((item.id?, item)));
+        samples.extend(kept.map(|(clip, item)| NewSample {
+            clip,
+            class: format!("{name}_{}", number + 1),
+            start_secs: item.start_secs,
+            stop_secs: item.stop_secs,
+            whole_clip: false,
+            state: State::Proposed,
+            score: None,
+        }));
+    }
+    db.add_samples(&samples, GROUPED_BY)?;
+    Ok(())
+}
+
+fn report(path: &Path, db: &MotionDb, of: &Path, grouped: &Groups) -> Result<()> {
+    /// A page people look through: of a large group the first members tell what it is.
+    const SHOWN: usize = 24;
+    let mut page = Page::default();
+    for (number, group) in grouped.groups.iter().enumerate() {
+        page.heading(&format!("Group {}: {} members", number + 1, group.len()));
+        for item in group.iter().take(SHOWN) {
+            let class = item
+                .class
+                .as_ref()
+                .map_or_else(String::new, |class| format!(", {class}"));
+            let caption = format!(
+                "{} {:.2}–{:.2} s{class}",
+                item.clip, item.start_secs, item.stop_secs
+            );
+            let Some(id) = item.id else { continue };
+            page.figure(db, id, item.start_secs, item.stop_secs, &caption)?;
+        }
+        if group.len() > SHOWN {
+            page.paragraph(&format!("and {} more", group.len() - SHOWN));
+        }
+    }
+    let members: usize = grouped.groups.iter().map(Vec::len).sum();
+    page.write(
+        path,
+        &format!("Groups of {}", of.display()),
+        &format!("{members} in {} groups", grouped.groups.len()),
+    )
+}
