@@ -80,11 +80,7 @@ impl PoseReader<'_> {
     ///
     /// # Errors
     /// There is nothing to read, or no file could be; what `each` fails with.
-    pub fn each(
-        &self,
-        paths: &[PathBuf],
-        each: impl FnMut(PosedClip) -> Result<()>,
-    ) -> Result<()> {
+    pub fn each(&self, paths: &[PathBuf], each: impl FnMut(PosedClip) -> Result<()>) -> Result<()> {
         self.each_made(paths, &|take, progress| self.posed(take, progress), each)
     }
 
@@ -92,11 +88,7 @@ impl PoseReader<'_> {
     ///
     /// # Errors
     /// As [`each`](Self::each).
-    pub fn each_take(
-        &self,
-        paths: &[PathBuf],
-        each: impl FnMut(Take) -> Result<()>,
-    ) -> Result<()> {
+    pub fn each_take(&self, paths: &[PathBuf], each: impl FnMut(Take) -> Result<()>) -> Result<()> {
         self.each_made(paths, &|take, _| Ok(take), each)
     }
 
@@ -113,7 +105,9 @@ impl PoseReader<'_> {
             let takes = files::takes(path, self.read, &self.options);
             let shown = || path.display().to_string();
             let made = takes.and_then(|takes| {
-                let made = takes.into_iter().map(|take| make(take, &progress).with_context(shown));
+                let made = takes
+                    .into_iter()
+                    .map(|take| make(take, &progress).with_context(shown));
                 made.collect::<Result<Vec<T>>>()
             });
             match made {

@@ -55,7 +55,7 @@ impl PoseLine {
     /// The pose that a line says; the error names the key, what was expected there and what was found.
     pub fn of_line(text: &str) -> Result<Self, String> {
         // A list would do for the values of a struct in their order; here it is a mistake.
-        let line: Line = match serde_json::from_str(text) {
+        let line: PoseFields = match serde_json::from_str(text) {
             Ok(line) if text.trim_start().starts_with('{') => line,
             Ok(_) => return Err(explain(text, "expected an object {…}")),
             Err(error) => return Err(explain(text, &error.to_string())),

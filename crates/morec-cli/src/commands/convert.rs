@@ -65,7 +65,7 @@ pub fn run(args: Args) -> Result<ExitCode> {
 }
 
 /// What writes a clip in some format.
-type Writer = fn(&Clip, &mut dyn Write) -> std::io::Result<()>;
+type WriteClip = fn(&Clip, &mut dyn Write) -> std::io::Result<()>;
 
 /// Formats of points, by the ending of their files; everything else is written as BVH.
 const POINTS: [(&str, WriteClip); 3] = [

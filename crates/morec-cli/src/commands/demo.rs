@@ -103,7 +103,8 @@ fn step<A: clap::Args>(
     run: impl FnOnce(&A) -> Result<ExitCode>,
 ) -> Result<ExitCode> {
     println!("\n{title}\n$ {}\n", folder::shell_line(words));
-    let line = CommandLine::<A>::try_parse_from(&words[1..]).context("a command of the demo's own")?;
+    let line =
+        CommandLine::<A>::try_parse_from(&words[1..]).context("a command of the demo's own")?;
     let begun = Instant::now();
     let code = run(&line.args)?;
     println!("({:.1} s)", begun.elapsed().as_secs_f64());

@@ -125,8 +125,11 @@ fn a_database_is_cut_as_its_clips_are() {
     let of_files = json(&folder.morec(&["cut", "clips", "--json"]).ok());
     let of_db = json(&folder.morec(&["cut", "m.mdb", "--json"]).ok());
     let secs = |clip: &Value| -> Vec<f64> {
-        let cuts = clip["cuts"].as_array().map(|cuts| cuts.iter().map(|cut| &cut["secs"]).collect());
-        let cuts: Vec<&Value> = cuts.unwrap_or_else(|| clip["cuts_secs"].as_array().unwrap().iter().collect());
+        let cuts = clip["cuts"]
+            .as_array()
+            .map(|cuts| cuts.iter().map(|cut| &cut["secs"]).collect());
+        let cuts: Vec<&Value> =
+            cuts.unwrap_or_else(|| clip["cuts_secs"].as_array().unwrap().iter().collect());
         cuts.iter().map(|secs| secs.as_f64().unwrap()).collect()
     };
     let (files, db) = (of_files.as_array().unwrap(), of_db.as_array().unwrap());
@@ -137,7 +140,10 @@ fn a_database_is_cut_as_its_clips_are() {
         assert!(!a.is_empty(), "{file}");
         // The database keeps motion within half a degree: a cut may move by a tick or two.
         assert_eq!(a.len(), b.len(), "{a:?} {b:?}");
-        assert!(a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 0.15), "{a:?} {b:?}");
+        assert!(
+            a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 0.15),
+            "{a:?} {b:?}"
+        );
     }
     let old = folder.morec(&["db", "cut", "m.mdb", "--json"]);
     assert!(old.err.contains("is `morec cut` now"), "{old:?}");
@@ -233,10 +239,17 @@ fn a_database_is_grouped_as_its_clips_are() {
     folder.morec(&["db", "label", "m.mdb", "labels.tsv"]).ok();
     let files = ["group", "clips", "--labels", "labels.tsv", "--json"];
     let of_files = json(&folder.morec(&files).ok());
-    let of_db = json(&folder.morec(&["group", "m.mdb", "--of", "labels", "--json"]).ok());
+    let of_db = json(
+        &folder
+            .morec(&["group", "m.mdb", "--of", "labels", "--json"])
+            .ok(),
+    );
     let sizes = |found: &Value| -> Vec<usize> {
         let groups = found["groups"].as_array().unwrap();
-        groups.iter().map(|group| group.as_array().unwrap().len()).collect()
+        groups
+            .iter()
+            .map(|group| group.as_array().unwrap().len())
+            .collect()
     };
     assert_eq!(sizes(&of_files), sizes(&of_db));
     assert_eq!(sizes(&of_files).iter().sum::<usize>(), 6);
@@ -245,7 +258,10 @@ fn a_database_is_grouped_as_its_clips_are() {
     assert!(old.err.contains("is `morec group` now"), "{old:?}");
     assert_eq!(json(&old.ok()), of_db);
     let segments = folder.morec(&["group", "clips"]).ok();
-    assert!(segments.contains("ann 0.0") && !segments.contains("Rand"), "{segments}");
+    assert!(
+        segments.contains("ann 0.0") && !segments.contains("Rand"),
+        "{segments}"
+    );
 }
 
 #[test]
@@ -289,11 +305,25 @@ fn what_cannot_be_done_is_said() {
     write("pelvis.json", r#"[{"name":"Pelvis","joints":["pelvis"]}]"#);
     let cases: [(&[&str], &str); 6] = [
         (
-            &["cut", "wave.bvh", "--method", "ppca", "--pivots", "pivots.json"],
+            &[
+                "cut",
+                "wave.bvh",
+                "--method",
+                "ppca",
+                "--pivots",
+                "pivots.json",
+            ],
             "the first pivot is the root and has no parent",
         ),
         (
-            &["cut", "wave.bvh", "--method", "ppca", "--pivots", "none.json"],
+            &[
+                "cut",
+                "wave.bvh",
+                "--method",
+                "ppca",
+                "--pivots",
+                "none.json",
+            ],
             "--pivots: none.json",
         ),
         (

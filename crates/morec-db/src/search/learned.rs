@@ -183,7 +183,8 @@ impl LearnedMetric {
 
 /// Means over the samples that show each value's bone.
 fn mean(seen: &[LabelledStretch]) -> Vec<f64> {
-    let shown = |s: &LabelledStretch, i: usize| bone_of(i).is_none_or(|bone| s.bones.contains(bone));
+    let shown =
+        |s: &LabelledStretch, i: usize| bone_of(i).is_none_or(|bone| s.bones.contains(bone));
     let of = |i: usize| {
         let values: Vec<f64> = seen
             .iter()
@@ -222,7 +223,11 @@ fn components(inputs: &[DVector<f64>]) -> Option<DMatrix<f64>> {
 }
 
 /// `p × (classes − 1)`, or fewer: see above.
-fn discriminants(reduced: &[DVector<f64>], seen: &[LabelledStretch], classes: usize) -> Option<DMatrix<f64>> {
+fn discriminants(
+    reduced: &[DVector<f64>],
+    seen: &[LabelledStretch],
+    classes: usize,
+) -> Option<DMatrix<f64>> {
     let p = reduced.first()?.len();
     let mut means = vec![DVector::<f64>::zeros(p); classes];
     let mut counts = vec![0.0; classes];

@@ -4,9 +4,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::Duration;
 
-use super::worker::WorkerOptions;
 use super::status::Cells;
 use super::waker::Waker;
+use super::worker::WorkerOptions;
 use super::{Event, Overload};
 
 /// Events that one frame can give at most, with room to spare: what is kept while readers are full.
@@ -126,7 +126,8 @@ impl EventBroadcast {
         if self.pending.is_empty() {
             return true;
         }
-        self.broadcast.retain(|outlet| !outlet.events.is_abandoned());
+        self.broadcast
+            .retain(|outlet| !outlet.events.is_abandoned());
         let waits = self.overload == Overload::Wait && !self.stop.load(Relaxed);
         if waits
             && self

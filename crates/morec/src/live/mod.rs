@@ -13,16 +13,16 @@
 //! [`Overload`] says who gives way, and everything that is dropped is counted in [`Status`].
 
 pub mod axis;
+mod broadcast;
 mod clock;
 mod early;
 mod event;
+mod event_tracker;
 mod feed;
 mod frame;
-mod worker;
 mod of_clip;
 mod of_index;
 pub mod osc;
-mod broadcast;
 mod paths;
 mod performer;
 mod pool;
@@ -35,19 +35,19 @@ mod stages;
 mod start;
 mod status;
 mod sync;
-mod event_tracker;
 pub mod vmc;
 mod waits;
 mod waker;
+mod worker;
 
 pub use crate::index::{Model, SensitivityError};
+pub use broadcast::EventReader;
 pub use clock::wall_now_secs;
 pub use early::Hunch;
 pub use event::{Event, Phase};
 pub use feed::{FeedSender, Overload};
 pub use frame::{Actor, Frame, Rig};
 pub use of_clip::{recognize_clip, recognize_clip_in_session, recognize_poses};
-pub use broadcast::EventReader;
 pub use performer::{EventOptions, Performer};
 pub use pool::{Pool, PoolStream};
 pub use pose::{Pose, PoseReader};

@@ -68,7 +68,12 @@ impl TemplatePath {
         self.features.breaks_at(time_secs)
     }
 
-    pub(super) fn push(&mut self, time_secs: f64, pose: Pose<'_>, found: &mut DetectionBuffer) -> Pushed {
+    pub(super) fn push(
+        &mut self,
+        time_secs: f64,
+        pose: Pose<'_>,
+        found: &mut DetectionBuffer,
+    ) -> Pushed {
         // The first pose of a stretch sets its origin and completes no row: the origin read here is right.
         let (steps, engine) = (self.steps(), &mut self.engine);
         self.features.push(time_secs, pose.key, &mut |row| {
@@ -145,7 +150,12 @@ impl SvrdmPath {
         self.rows.breaks_at(time_secs)
     }
 
-    pub(super) fn push(&mut self, time_secs: f64, pose: Pose<'_>, found: &mut DetectionBuffer) -> Pushed {
+    pub(super) fn push(
+        &mut self,
+        time_secs: f64,
+        pose: Pose<'_>,
+        found: &mut DetectionBuffer,
+    ) -> Pushed {
         let (steps, engine) = (self.steps(), &mut self.engine);
         let unknown;
         let pivots = match pose.pivots {

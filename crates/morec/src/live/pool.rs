@@ -7,8 +7,8 @@ use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use super::feed::{FeedSender, Waker, feed};
-use super::worker::{EventReader, StreamWorker, WorkerOptions, RecognizerCache, TurnOutcome};
 use super::status::{Cells, StatusHandle};
+use super::worker::{EventReader, RecognizerCache, StreamWorker, TurnOutcome, WorkerOptions};
 use super::{Model, SessionError, SessionOptions};
 
 /// Streams that may wait to be taken up by a thread.
@@ -28,7 +28,7 @@ pub struct Pool {
 
 #[derive(Debug)]
 struct Worker {
-    workers: Option<SyncSender<Box<StreamWorker>>>,
+    streams: Option<SyncSender<Box<StreamWorker>>>,
     /// Streams it has.
     load: Arc<AtomicUsize>,
     waker: Arc<Waker>,
@@ -55,7 +55,7 @@ impl Pool {
             stop: Arc::default(),
         };
         for _ in 0..threads.max(1) {
-            let (workers, taken) = sync_channel(OPENING);
+            let (streams, taken) = sync_channel(OPENING);
             let (load, waker) = (Arc::new(AtomicUsize::new(0)), Arc::new(Waker::default()));
             let job = {
                 let (load, waker) = (load.clone(), waker.clone());
@@ -69,7 +69,7 @@ impl Pool {
                     error,
                 })?;
             pool.workers.push(Worker {
-                workers: Some(workers),
+                streams: Some(streams),
                 load,
                 waker,
                 thread: Some(thread),
@@ -94,20 +94,21 @@ impl Pool {
             &cells.dropped_frames,
             &self.stop,
         );
-        let lane_options = WorkerOptions {
+        let stream_options = WorkerOptions {
             events: options.events.clone(),
             overload: options.overload,
             readers: options.readers,
             capacity: options.event_capacity,
         };
-        let (worker, readers) = StreamWorker::new(receiver, &self.cache, &lane_options, &cells, &self.stop);
+        let (stream, readers) =
+            StreamWorker::new(receiver, &self.cache, &stream_options, &cells, &self.stop);
         if let Some(worker) = least {
             worker.load.fetch_add(1, Relaxed);
-            // A thread that has died gives the worker back, and dropping it ends the stream.
+            // A thread that has died gives the stream back, and dropping it ends the stream.
             let _ = worker
-                .workers
+                .streams
                 .as_ref()
-                .map(|workers| workers.send(Box::new(worker)));
+                .map(|streams| streams.send(Box::new(stream)));
             worker.waker.wake();
         }
         PoolStream {
@@ -133,7 +134,7 @@ impl Pool {
     fn wait(&mut self) {
         self.workers
             .iter_mut()
-            .for_each(|worker| worker.workers = None);
+            .for_each(|worker| worker.streams = None);
         for worker in &mut self.workers {
             worker.waker.wake();
             if let Some(thread) = worker.thread.take() {
@@ -151,19 +152,19 @@ impl Drop for Pool {
     }
 }
 
-/// A worker's thread: every worker in turn, a few frames each.
+/// A worker's thread: every stream in turn, a few frames each.
 fn serve(opened: &Receiver<Box<StreamWorker>>, load: &AtomicUsize, waker: &Waker) {
-    let mut workers: Vec<Box<StreamWorker>> = Vec::new();
+    let mut streams: Vec<Box<StreamWorker>> = Vec::new();
     loop {
         let closed = loop {
             match opened.try_recv() {
-                Ok(worker) => workers.push(worker),
+                Ok(stream) => streams.push(stream),
                 Err(TryRecvError::Empty) => break false,
                 Err(TryRecvError::Disconnected) => break true,
             }
         };
         let (mut busy, mut blocked) = (false, false);
-        workers.retain_mut(|worker| match worker.work(16) {
+        streams.retain_mut(|stream| match stream.work(16) {
             TurnOutcome::Ended => {
                 load.fetch_sub(1, Relaxed);
                 false
@@ -174,12 +175,14 @@ fn serve(opened: &Receiver<Box<StreamWorker>>, load: &AtomicUsize, waker: &Waker
                 true
             }
         });
-        if closed && workers.is_empty() {
+        if closed && streams.is_empty() {
             return;
         }
         if !busy {
             let nap = Duration::from_millis(if blocked { 1 } else { 20 });
-            waker.sleep(nap, || workers.iter().any(|worker| worker.is_ready()) && !blocked);
+            waker.sleep(nap, || {
+                streams.iter().any(|stream| stream.is_ready()) && !blocked
+            });
         }
     }
 }

@@ -6,10 +6,10 @@ use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use super::feed::{FeedReceiver, FeedSender, feed};
-use super::worker::{EventReader, StreamWorker, WorkerOptions, RecognizerCache, TurnOutcome};
 use super::performer::EventOptions;
 use super::status::{Cells, Status, StatusHandle};
 use super::waker::Waker;
+use super::worker::{EventReader, RecognizerCache, StreamWorker, TurnOutcome, WorkerOptions};
 use super::{Frame, Model, Next, Overload, Source, StartError, stages};
 
 /// How recognition is laid out on threads. Events are the same.
@@ -127,7 +127,7 @@ impl Session {
             &cells.dropped_frames,
             &stop,
         );
-        let lane_options = WorkerOptions {
+        let worker_options = WorkerOptions {
             events: options.events.clone(),
             overload: options.overload,
             readers: options.readers,
@@ -145,7 +145,7 @@ impl Session {
             model.clone().into(),
             receiver,
             options.layout,
-            &lane_options,
+            &worker_options,
         )?;
         Ok((session, sender, readers))
     }
@@ -160,8 +160,13 @@ impl Session {
         let (cells, stop, waker) = (self.cells.clone(), self.stop.clone(), self.waker.clone());
         match (layout, model) {
             (Layout::Inline, model) => {
-                let (worker, readers) =
-                    StreamWorker::new(feed, &Arc::new(RecognizerCache::new(model)), options, &cells, &stop);
+                let (worker, readers) = StreamWorker::new(
+                    feed,
+                    &Arc::new(RecognizerCache::new(model)),
+                    options,
+                    &cells,
+                    &stop,
+                );
                 self.spawn("recognition", Box::new(move || recognise(worker, &waker)))?;
                 Ok(readers)
             }

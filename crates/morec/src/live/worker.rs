@@ -5,9 +5,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::features::BoneSet;
 
-use super::feed::{FeedReceiver, Item};
-pub use super::broadcast::EventReader;
 use super::broadcast::EventBroadcast;
+pub use super::broadcast::EventReader;
+use super::feed::{FeedReceiver, Item};
 use super::performer::{EventOptions, Performer};
 use super::status::Cells;
 use super::{Actor, Frame, MAX_ACTORS, Model, Overload, Recognizer, Rig, wall_now_secs};

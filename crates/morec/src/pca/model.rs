@@ -31,7 +31,7 @@ pub enum PcaError {
     #[error("{0}")]
     Keep(String),
     #[error("stored components do not fit together: {0}")]
-    StoredPca(String),
+    Parts(String),
 }
 
 impl Pca {
@@ -173,14 +173,14 @@ impl Pca {
 
 /// What is stored; checked when it comes back.
 #[derive(serde::Serialize, serde::Deserialize)]
-struct StoredPca {
+struct Parts {
     mean: Vec<f64>,
     axes: Vec<f64>,
     eigenvalues: Vec<f64>,
     rows: u64,
 }
 
-impl From<Pca> for StoredPca {
+impl From<Pca> for Parts {
     fn from(pca: Pca) -> Self {
         Self {
             mean: pca.mean,
@@ -191,10 +191,10 @@ impl From<Pca> for StoredPca {
     }
 }
 
-impl TryFrom<StoredPca> for Pca {
+impl TryFrom<Parts> for Pca {
     type Error = PcaError;
 
-    fn try_from(parts: StoredPca) -> Result<Self, PcaError> {
+    fn try_from(parts: Parts) -> Result<Self, PcaError> {
         Pca::from_parts(parts.mean, parts.axes, parts.eigenvalues, parts.rows)
     }
 }

@@ -81,8 +81,11 @@ impl Errors {
 
     /// The distances between two clips of the same skeleton and frames. O(frames × joints).
     pub(super) fn between(a: &Clip, b: &Clip, metres_per_unit: f64) -> Self {
-        let (mut angle, mut position, mut world) =
-            (ErrorSum::default(), ErrorSum::default(), ErrorSum::default());
+        let (mut angle, mut position, mut world) = (
+            ErrorSum::default(),
+            ErrorSum::default(),
+            ErrorSum::default(),
+        );
         for (x, y) in a.rotations.iter().zip(&b.rotations) {
             angle.add(angle_between(x, y));
         }

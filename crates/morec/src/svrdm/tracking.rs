@@ -290,8 +290,9 @@ impl SegmentTracking {
     /// Settles the best that wins over `found`, unless that is reported already.
     fn settle_winner(&mut self, found: &ChunkDetection) {
         let overlap = self.overlap;
-        let winner =
-            |t: &&mut TrackedMaximum| t.state != MaximumState::Trails && t.found.overlaps(found, overlap);
+        let winner = |t: &&mut TrackedMaximum| {
+            t.state != MaximumState::Trails && t.found.overlaps(found, overlap)
+        };
         if let Some(winner) = self.tracked.iter_mut().find(winner)
             && winner.state == MaximumState::Leads
         {
@@ -360,7 +361,9 @@ impl SegmentTracking {
             let TrackedMaximum { found, state } = self.tracked[at];
             let over = match state {
                 MaximumState::Reported | MaximumState::Settled => found.stop <= first,
-                MaximumState::Leads | MaximumState::Trails => self.is_late(&found, wait) || self.lost(&found),
+                MaximumState::Leads | MaximumState::Trails => {
+                    self.is_late(&found, wait) || self.lost(&found)
+                }
             };
             if over {
                 self.tracked.remove(at);

@@ -4,8 +4,8 @@ use super::actor::Actor;
 use super::film::film;
 use super::motion::{Kind, Motion, Perform};
 use super::person::Person;
-use crate::rng::Rng;
 use super::{Label, SyntheticTake, everyday, unknown};
+use crate::rng::Rng;
 
 /// What is done between gestures, in turn.
 const IDLE: [(&str, Perform); 6] = [

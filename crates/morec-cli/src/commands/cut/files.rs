@@ -62,7 +62,13 @@ fn by_kernel(reader: &PoseReader<'_>, params: &KernelParams, args: &Args) -> Res
     let features = FeatureParams::default();
     let mut found = Vec::new();
     reader.each_take(&args.inputs, |take| {
-        let rows = rows_of_clip(&take.clip, &take.roles, take.rest(), take.bones(), &features);
+        let rows = rows_of_clip(
+            &take.clip,
+            &take.roles,
+            take.rest(),
+            take.bones(),
+            &features,
+        );
         let cuts = kernel_cuts(&rows, &features, params).context(take.clip.name.clone())?;
         found.push(CutClip::at(&take, &cuts));
         Ok(())

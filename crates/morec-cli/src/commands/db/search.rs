@@ -223,7 +223,13 @@ fn example(db: &MotionDb, index: &SearchIndex, args: &Args) -> Result<(Example, 
     ))
 }
 
-fn report(path: &Path, db: &MotionDb, example: &Shown, args: &Args, found: &SearchResult) -> Result<()> {
+fn report(
+    path: &Path,
+    db: &MotionDb,
+    example: &Shown,
+    args: &Args,
+    found: &SearchResult,
+) -> Result<()> {
     let mut page = Page::default();
     page.heading("Looked for");
     let end = match example {

@@ -90,7 +90,9 @@ fn items(
     clips: &BTreeMap<String, RowedClip>,
     params: &FeatureParams,
 ) -> Vec<Member> {
-    let shown = samples.iter().filter_map(|s| Some(clips.get(&s.clip)?.bones));
+    let shown = samples
+        .iter()
+        .filter_map(|s| Some(clips.get(&s.clip)?.bones));
     let bones = shown.reduce(BoneSet::and).unwrap_or(BoneSet::NONE);
     let item = |sample: GroupedSample| {
         let clip = clips.get(&sample.clip)?;

@@ -159,7 +159,11 @@ impl Channel {
     }
 
     fn width(&self) -> usize {
-        if self.path == TargetPath::Rotation { 4 } else { 3 }
+        if self.path == TargetPath::Rotation {
+            4
+        } else {
+            3
+        }
     }
 
     /// The value of key `key`.

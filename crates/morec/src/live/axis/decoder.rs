@@ -158,7 +158,11 @@ impl AxisDecoder {
     }
 
     /// What there is at `used`.
-    fn head(&self, used: usize, out: &mut impl FnMut(Result<AxisFrame<'_>, AxisError>)) -> FrameHead {
+    fn head(
+        &self,
+        used: usize,
+        out: &mut impl FnMut(Result<AxisFrame<'_>, AxisError>),
+    ) -> FrameHead {
         let begin = BEGIN.to_le_bytes();
         let there = &self.buffer[used..];
         if !there.iter().zip(&begin).all(|(a, b)| a == b) {

@@ -68,7 +68,10 @@ pub(super) fn extract(model: &SvrdmModel, mut from: In<StageMessage>, mut to: Ou
     while let Some(mut message) = from.next() {
         let ring = &mut rings[message.mark.actor];
         match message.what {
-            What::Rows => message.rows.chunks_exact(dim).for_each(|row| ring.push(row)),
+            What::Rows => message
+                .rows
+                .chunks_exact(dim)
+                .for_each(|row| ring.push(row)),
             What::End(_) => ring.reset(),
             What::Segment(_) => {
                 let StageMessage {
@@ -118,7 +121,11 @@ pub(super) fn classify(model: &SvrdmModel, mut from: In<StageMessage>, mut to: O
 }
 
 /// Scoring: segments get what they most certainly are.
-pub(super) fn score(mut scoring: SegmentScoring, mut from: In<StageMessage>, mut to: Out<StageMessage>) {
+pub(super) fn score(
+    mut scoring: SegmentScoring,
+    mut from: In<StageMessage>,
+    mut to: Out<StageMessage>,
+) {
     while let Some(mut message) = from.next() {
         if let What::Segment(_) = message.what {
             let StageMessage {

@@ -23,11 +23,11 @@ use self::between::{Segments, classify, extract, score};
 use self::input::{Chunks, Fate, Input};
 use self::message::{Chunk, StageMessage};
 use self::tracking::Tracking;
+use super::broadcast::{EventBroadcast, EventReader};
 use super::feed::{FeedReceiver, Item};
-use super::worker::WorkerOptions;
-use super::broadcast::{EventReader, EventBroadcast};
 use super::status::Cells;
 use super::waker::Waker;
+use super::worker::WorkerOptions;
 use super::{Actor, Frame, MAX_ACTORS, SessionError, wall_now_secs};
 
 /// Chunks on their way at once.

@@ -5,11 +5,11 @@ use std::sync::atomic::Ordering::{Relaxed, Release};
 use std::thread;
 use std::time::Duration;
 
-use crate::live::early::EarlyTracker;
-use crate::live::worker::WorkerOptions;
 use crate::live::broadcast::EventBroadcast;
-use crate::live::status::Cells;
+use crate::live::early::EarlyTracker;
 use crate::live::event_tracker::EventTracker;
+use crate::live::status::Cells;
+use crate::live::worker::WorkerOptions;
 use crate::live::{Actor, Detection, MAX_ACTORS, wall_now_secs};
 use crate::svrdm::{Cell, ChunkDetection, SegmentScoring, SegmentTracking, SvrdmModel};
 

@@ -72,7 +72,10 @@ impl CompressedClip {
         let places = (0..=(last * POINTS_A_FRAME) as usize).map(|i| i as f64 / POINTS_A_FRAME);
         let mut drawn = Vec::new();
         curve.along(places, |point| {
-            drawn.push((drawn.len() as f64 / POINTS_A_FRAME / self.source_rate_hz(), point))
+            drawn.push((
+                drawn.len() as f64 / POINTS_A_FRAME / self.source_rate_hz(),
+                point,
+            ))
         });
         drawn
     }
