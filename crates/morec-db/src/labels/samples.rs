@@ -173,6 +173,30 @@ impl MotionDb {
         })
     }
 
+    /// Puts samples in place of others, as one step called `what`: how a label is split or several become one. New
+    /// samples are as in [`MotionDb::label`].
+    ///
+    /// # Errors
+    /// As [`MotionDb::label`]; an old sample that is not there.
+    pub fn change_samples(
+        &mut self,
+        what: &str,
+        old: &[SampleId],
+        new: &[NewSample],
+        by: &str,
+    ) -> Result<(), DbError> {
+        self.edit(what, |conn| {
+            for id in old {
+                let sql = "DELETE FROM samples WHERE id = ?1";
+                if conn.execute(sql, params![id.0])? == 0 {
+                    return Err(DbError::unknown("sample", &format!("#{}", id.0)));
+                }
+            }
+            new.iter()
+                .try_for_each(|sample| add(conn, sample, by).map(drop))
+        })
+    }
+
     /// Says what is thought of samples. Gives how many changed.
     pub fn judge(
         &mut self,

@@ -1,0 +1,76 @@
+//! The window: a frame is time that passes, keys, panels, and carrying out what they asked for.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use crate::panels;
+use crate::state::{Command, State};
+use crate::store::Wake;
+use crate::{dialogs, keys, theme};
+
+/// A frame that took longer than this was not one: the window was hidden or the machine slept, seconds.
+const LONGEST_FRAME: f64 = 0.25;
+
+/// The program.
+pub struct Studio {
+    pub state: State,
+    dialogs: dialogs::Dialogs,
+    themed: Option<bool>,
+}
+
+impl Studio {
+    /// With what was named on the command line: a database, clips, or nothing.
+    pub fn new(ctx: &egui::Context, paths: &[PathBuf]) -> Self {
+        theme::install(ctx);
+        let waker = ctx.clone();
+        let wake: Wake = Arc::new(move || waker.request_repaint());
+        let mut state = State::new(wake);
+        state.begin(paths);
+        Self {
+            state,
+            dialogs: dialogs::Dialogs::default(),
+            themed: None,
+        }
+    }
+
+    /// Draws one frame.
+    pub fn frame(&mut self, ctx: &egui::Context) {
+        if self.themed != Some(self.state.dark) {
+            self.themed = Some(self.state.dark);
+            ctx.set_theme(if self.state.dark {
+                egui::Theme::Dark
+            } else {
+                egui::Theme::Light
+            });
+        }
+        let dt = ctx.input(|i| f64::from(i.unstable_dt)).min(LONGEST_FRAME);
+        self.state.tick_keys(dt);
+        self.state.tick(dt);
+        let mut commands: Vec<Command> = Vec::new();
+        keys::read(ctx, &self.state, &mut commands);
+        dialogs::dropped(ctx, &mut commands);
+        panels::show(ctx, &self.state, &mut commands);
+        for command in commands {
+            self.state.apply(command);
+        }
+        let wanted = panels::wanted_clips(ctx);
+        for clip in wanted {
+            self.state.want_motion(clip);
+        }
+        if let Some(ask) = self.state.ask.take() {
+            self.dialogs.ask(ask, ctx);
+        }
+        for command in self.dialogs.answers() {
+            self.state.apply(command);
+        }
+        if self.state.is_moving() {
+            ctx.request_repaint();
+        }
+    }
+}
+
+impl eframe::App for Studio {
+    fn update(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
+        self.frame(ctx);
+    }
+}

@@ -1,0 +1,168 @@
+//! Where the performer is looked at from.
+
+use egui::{Pos2, Rect, Vec2};
+use morec::math::Vec3;
+
+/// Nearer than this nothing is drawn, metres.
+const NEAR: f64 = 0.15;
+
+/// A camera that looks at a point from some way off. Right-handed, Y up, metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Camera {
+    pub target: Vec3,
+    /// About the vertical; 0 looks from +Z, which is the front of somebody who faces +Z.
+    pub yaw: f64,
+    /// Above the horizon.
+    pub pitch: f64,
+    pub distance: f64,
+    /// Whether the target goes with the performer.
+    pub follow: bool,
+}
+
+impl Default for Camera {
+    fn default() -> Self {
+        Self {
+            target: Vec3::new(0.0, 0.9, 0.0),
+            yaw: 0.55,
+            pitch: 0.16,
+            distance: 3.9,
+            follow: true,
+        }
+    }
+}
+
+/// A camera before a picture: its axes in the world, and the picture's middle and scale.
+#[derive(Debug, Clone, Copy)]
+pub struct View {
+    eye: Vec3,
+    right: Vec3,
+    up: Vec3,
+    pub forward: Vec3,
+    centre: Pos2,
+    scale: f64,
+}
+
+impl Camera {
+    /// Turns by a drag over so many points.
+    pub fn orbit(&mut self, drag: Vec2) {
+        self.yaw -= f64::from(drag.x) * 0.008;
+        self.pitch = (self.pitch + f64::from(drag.y) * 0.008).clamp(-1.5, 1.5);
+    }
+
+    /// Moves the target by a drag over so many points of a picture of this height.
+    pub fn pan(&mut self, drag: Vec2, height: f32) {
+        let metres = self.distance * 0.9 / f64::from(height.max(1.0));
+        let (right, up, _) = self.axes();
+        self.target -= right * (f64::from(drag.x) * metres);
+        self.target += up * (f64::from(drag.y) * metres);
+        self.follow = false;
+    }
+
+    /// Nearer for factors above 1.
+    pub fn zoom(&mut self, factor: f64) {
+        if factor.is_finite() && factor > 0.0 {
+            self.distance = (self.distance / factor).clamp(0.6, 40.0);
+        }
+    }
+
+    fn axes(&self) -> (Vec3, Vec3, Vec3) {
+        let (sin_y, cos_y) = self.yaw.sin_cos();
+        let (sin_p, cos_p) = self.pitch.sin_cos();
+        let back = Vec3::new(sin_y * cos_p, sin_p, cos_y * cos_p);
+        let right = Vec3::new(cos_y, 0.0, -sin_y);
+        (right, back.cross(&right), -back)
+    }
+
+    /// This camera before a picture.
+    pub fn view(&self, rect: Rect) -> View {
+        let (right, up, forward) = self.axes();
+        View {
+            eye: self.target - forward * self.distance,
+            right,
+            up,
+            forward,
+            centre: rect.center(),
+            // 48° from the lower edge to the upper.
+            scale: f64::from(rect.height()) / (2.0 * 24f64.to_radians().tan()),
+        }
+    }
+}
+
+impl View {
+    /// Where a point of the world is in the picture, and how far it is; `None` behind the camera.
+    pub fn project(&self, point: &Vec3) -> Option<(Pos2, f64)> {
+        let from_eye = point - self.eye;
+        let depth = from_eye.dot(&self.forward);
+        if !(depth > NEAR) {
+            return None;
+        }
+        let scale = self.scale / depth;
+        let x = from_eye.dot(&self.right) * scale;
+        let y = from_eye.dot(&self.up) * scale;
+        Some((self.centre + Vec2::new(x as f32, -y as f32), depth))
+    }
+
+    /// The part of a line that lies before the camera, in the picture.
+    pub fn line(&self, a: &Vec3, b: &Vec3) -> Option<[Pos2; 2]> {
+        let depth = |p: &Vec3| (p - self.eye).dot(&self.forward) - 1.01 * NEAR;
+        let (da, db) = (depth(a), depth(b));
+        let cut = |inside: &Vec3, outside: &Vec3, di: f64, d_o: f64| {
+            inside + (outside - inside) * (di / (di - d_o))
+        };
+        let (a, b) = match (da > 0.0, db > 0.0) {
+            (true, true) => (*a, *b),
+            (true, false) => (*a, cut(a, b, da, db)),
+            (false, true) => (cut(b, a, db, da), *b),
+            (false, false) => return None,
+        };
+        Some([self.project(&a)?.0, self.project(&b)?.0])
+    }
+
+    /// Towards the camera from a point, a unit vector.
+    pub fn towards_eye(&self, point: &Vec3) -> Vec3 {
+        (self.eye - point).normalize()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn picture() -> Rect {
+        Rect::from_min_size(Pos2::ZERO, Vec2::new(400.0, 300.0))
+    }
+
+    #[test]
+    fn the_target_is_in_the_middle_and_up_is_up() {
+        let camera = Camera::default();
+        let view = camera.view(picture());
+        let (at, depth) = view.project(&camera.target).unwrap();
+        assert!((at - picture().center()).length() < 1e-3);
+        assert!((depth - camera.distance).abs() < 1e-9);
+        let (above, _) = view.project(&(camera.target + Vec3::y() * 0.5)).unwrap();
+        assert!(above.y < at.y);
+    }
+
+    #[test]
+    fn from_the_front_the_left_hand_is_at_the_right() {
+        let camera = Camera {
+            yaw: 0.0,
+            pitch: 0.0,
+            ..Camera::default()
+        };
+        let view = camera.view(picture());
+        // Whoever faces +Z has the left hand at +X.
+        let (hand, _) = view.project(&(camera.target + Vec3::x())).unwrap();
+        assert!(hand.x > picture().center().x);
+    }
+
+    #[test]
+    fn what_is_behind_is_not_drawn_and_lines_are_cut() {
+        let camera = Camera::default();
+        let view = camera.view(picture());
+        let behind = view.eye - view.forward;
+        assert_eq!(view.project(&behind), None);
+        assert!(view.line(&behind, &camera.target).is_some());
+        assert_eq!(view.line(&behind, &(behind - view.forward)), None);
+    }
+}

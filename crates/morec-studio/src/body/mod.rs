@@ -1,0 +1,260 @@
+//! A performer as limbs: which joints a limb joins, how thick it is, which side it belongs to.
+
+pub mod camera;
+pub mod mesh;
+pub mod strip;
+
+use morec::clip::Clip;
+use morec::kinematics::WorldPose;
+use morec::math::Vec3;
+use morec::roles::{Role, RoleMap};
+
+pub use camera::Camera;
+
+/// Which side of the body a limb belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    Left,
+    Right,
+    Middle,
+}
+
+/// A limb from one joint to another.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Limb {
+    pub from: usize,
+    pub to: usize,
+    /// Radii at both ends, in heights of the body.
+    pub radii: [f64; 2],
+    pub side: Side,
+}
+
+/// What a performer looks like.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Body {
+    pub limbs: Vec<Limb>,
+    /// The joint of the head, which is drawn as a ball in front of it.
+    pub head: Option<(usize, Option<usize>)>,
+    pub hips: Option<usize>,
+    pub hip_joints: Option<(usize, usize)>,
+    /// From the lowest joint to the highest, metres.
+    pub height: f64,
+}
+
+/// Bones between roles, for skeletons whose joints do not hang together (clips of points, streams of roles).
+const ROLE_BONES: [(Role, Role); 16] = {
+    use Role::*;
+    [
+        (Hips, LeftThigh),
+        (LeftThigh, LeftShin),
+        (LeftShin, LeftFoot),
+        (Hips, RightThigh),
+        (RightThigh, RightShin),
+        (RightShin, RightFoot),
+        (Hips, Torso),
+        (Torso, Neck),
+        (Hips, Neck),
+        (Neck, Head),
+        (Neck, LeftArm),
+        (LeftArm, LeftForearm),
+        (LeftForearm, LeftHand),
+        (Neck, RightArm),
+        (RightArm, RightForearm),
+        (RightForearm, RightHand),
+    ]
+};
+
+impl Body {
+    /// The body of a clip, measured in frame `frame`.
+    pub fn of(clip: &Clip, roles: &RoleMap, frame: usize) -> Self {
+        if clip.frames == 0 {
+            return Self::default();
+        }
+        let pose = WorldPose::of(clip, frame);
+        let parents: Vec<Option<usize>> = clip.skeleton.joints().iter().map(|j| j.parent).collect();
+        Self::new(&parents, roles, &pose)
+    }
+
+    /// Of a skeleton whose joints hang from `parents`, measured in `pose`.
+    pub fn new(parents: &[Option<usize>], roles: &RoleMap, pose: &WorldPose) -> Self {
+        let height = height(&pose.positions);
+        let flat = parents.iter().all(Option::is_none);
+        let mut limbs = Vec::new();
+        let mut add = |from: usize, to: usize| {
+            let kind = Kind::of(from, to, parents, roles);
+            limbs.push(Limb {
+                from,
+                to,
+                radii: kind.radii(),
+                side: side(from, to, parents, roles),
+            });
+        };
+        if flat {
+            let bones = ROLE_BONES.iter().filter(|(from, to)| {
+                let chest = roles.joint(Role::Torso).is_some();
+                // The trunk goes by the chest if there is one.
+                !(chest && (*from, *to) == (Role::Hips, Role::Neck))
+            });
+            for (from, to) in bones {
+                if let (Some(from), Some(to)) = (roles.joint(*from), roles.joint(*to)) {
+                    add(from, to);
+                }
+            }
+        } else {
+            for (joint, parent) in parents.iter().enumerate() {
+                if let Some(parent) = *parent {
+                    add(parent, joint);
+                }
+            }
+        }
+        let of = |role| roles.joint(role);
+        Self {
+            limbs,
+            head: of(Role::Head).map(|head| (head, of(Role::Neck))),
+            hips: of(Role::Hips).or((!parents.is_empty()).then_some(0)),
+            hip_joints: of(Role::LeftThigh).zip(of(Role::RightThigh)),
+            height,
+        }
+    }
+
+    /// Where the performer is in `pose`: the hips.
+    pub fn centre(&self, pose: &WorldPose) -> Option<Vec3> {
+        let at = pose.positions.get(self.hips?)?;
+        at.iter().all(|v| v.is_finite()).then_some(*at)
+    }
+
+    /// Which way the performer faces in `pose`, as an angle about the vertical; 0 is +Z.
+    pub fn heading(&self, pose: &WorldPose) -> Option<f64> {
+        let (left, right) = self.hip_joints?;
+        let across = pose.positions.get(left)? - pose.positions.get(right)?;
+        // Left is at +X of somebody who faces +Z.
+        let heading = (-across.z).atan2(across.x);
+        heading.is_finite().then_some(heading)
+    }
+}
+
+fn height(positions: &[Vec3]) -> f64 {
+    let heights = || positions.iter().map(|p| p.y).filter(|y| y.is_finite());
+    let span = heights().fold(f64::MIN, f64::max) - heights().fold(f64::MAX, f64::min);
+    if span.is_finite() && span > 0.3 {
+        span
+    } else {
+        1.7
+    }
+}
+
+/// What part of the body a limb is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Kind {
+    Trunk,
+    Pelvis,
+    Neck,
+    Clavicle,
+    UpperArm,
+    Forearm,
+    Hand,
+    Thigh,
+    Shin,
+    Foot,
+    Small,
+}
+
+impl Kind {
+    fn of(from: usize, to: usize, parents: &[Option<usize>], roles: &RoleMap) -> Self {
+        use Role::*;
+        let is =
+            |joint: usize, wanted: &[Role]| wanted.iter().any(|r| roles.joint(*r) == Some(joint));
+        if is(to, &[LeftThigh, RightThigh]) {
+            return Kind::Pelvis;
+        }
+        if is(to, &[LeftArm, RightArm, LeftShoulder, RightShoulder]) {
+            return Kind::Clavicle;
+        }
+        if is(to, &[Head]) || is(from, &[Neck]) {
+            return Kind::Neck;
+        }
+        // The nearest joint above that plays a role says which limb this is a part of.
+        let mut at = Some(from);
+        while let Some(joint) = at {
+            let kinds: [(&[Role], Kind); 9] = [
+                (&[LeftThigh, RightThigh], Kind::Thigh),
+                (&[LeftShin, RightShin], Kind::Shin),
+                (&[LeftFoot, RightFoot], Kind::Foot),
+                (&[LeftArm, RightArm], Kind::UpperArm),
+                (&[LeftForearm, RightForearm], Kind::Forearm),
+                (&[LeftHand, RightHand], Kind::Hand),
+                (&[LeftShoulder, RightShoulder], Kind::Clavicle),
+                (&[Head], Kind::Small),
+                (&[Hips, Torso], Kind::Trunk),
+            ];
+            if let Some((_, kind)) = kinds.iter().find(|(wanted, _)| is(joint, wanted)) {
+                // Fingers and toes beyond the first joint are thin.
+                let end = matches!(kind, Kind::Hand | Kind::Foot);
+                return if end && joint != from {
+                    Kind::Small
+                } else {
+                    *kind
+                };
+            }
+            at = parents.get(joint).copied().flatten();
+        }
+        Kind::Small
+    }
+
+    /// In heights of the body.
+    fn radii(self) -> [f64; 2] {
+        match self {
+            Kind::Trunk => [0.062, 0.066],
+            Kind::Pelvis => [0.052, 0.046],
+            Kind::Neck => [0.030, 0.026],
+            Kind::Clavicle => [0.040, 0.032],
+            Kind::UpperArm => [0.029, 0.023],
+            Kind::Forearm => [0.023, 0.016],
+            Kind::Hand => [0.017, 0.012],
+            Kind::Thigh => [0.045, 0.032],
+            Kind::Shin => [0.031, 0.021],
+            Kind::Foot => [0.023, 0.016],
+            Kind::Small => [0.008, 0.006],
+        }
+    }
+}
+
+fn side(from: usize, to: usize, parents: &[Option<usize>], roles: &RoleMap) -> Side {
+    use Role::*;
+    const LEFT: [Role; 8] = [
+        LeftThigh,
+        LeftShin,
+        LeftFoot,
+        LeftShoulder,
+        LeftArm,
+        LeftForearm,
+        LeftHand,
+        LeftArm,
+    ];
+    const RIGHT: [Role; 8] = [
+        RightThigh,
+        RightShin,
+        RightFoot,
+        RightShoulder,
+        RightArm,
+        RightForearm,
+        RightHand,
+        RightArm,
+    ];
+    let mut at = Some(to);
+    let mut first = true;
+    while let Some(joint) = at {
+        if LEFT.iter().any(|r| roles.joint(*r) == Some(joint)) {
+            return Side::Left;
+        }
+        if RIGHT.iter().any(|r| roles.joint(*r) == Some(joint)) {
+            return Side::Right;
+        }
+        at = match first {
+            true => Some(from),
+            false => parents.get(joint).copied().flatten(),
+        };
+        first = false;
+    }
+    Side::Middle
+}

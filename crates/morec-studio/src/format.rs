@@ -1,0 +1,100 @@
+//! Numbers as people read them.
+
+/// A time in a clip: `1:02.35`, below a minute `2.35 s`.
+pub fn secs(secs: f64) -> String {
+    match secs.abs() < 60.0 {
+        true => format!("{secs:.2} s"),
+        false => clock(secs, 2),
+    }
+}
+
+/// Minutes and seconds, with so many decimals.
+pub fn clock(secs: f64, decimals: usize) -> String {
+    let sign = if secs < 0.0 { "-" } else { "" };
+    // Rounded before it is divided: 59.999 s is 1:00.
+    let unit = 10f64.powi(decimals as i32);
+    let secs = (secs.abs() * unit).round() / unit;
+    let (hours, minutes) = ((secs / 3600.0) as u64, (secs / 60.0) as u64 % 60);
+    let width = if decimals > 0 { 3 + decimals } else { 2 };
+    let rest = format!("{:0width$.decimals$}", secs % 60.0);
+    match hours {
+        0 => format!("{sign}{minutes}:{rest}"),
+        _ => format!("{sign}{hours}:{minutes:02}:{rest}"),
+    }
+}
+
+/// A length of time: `42 s`, `3.5 min`, `2.1 h`.
+pub fn duration(secs: f64) -> String {
+    match secs {
+        s if s < 10.0 => format!("{s:.1} s"),
+        s if s < 120.0 => format!("{s:.0} s"),
+        s if s < 7200.0 => format!("{:.1} min", s / 60.0),
+        s => format!("{:.1} h", s / 3600.0),
+    }
+}
+
+/// Seconds since 1970 as a date in UTC, to the second.
+pub fn utc(secs: i64) -> String {
+    let (days, time) = (secs.div_euclid(86_400), secs.rem_euclid(86_400));
+    // Civil from days: H. Hinnant, "chrono-Compatible Low-Level Date Algorithms".
+    let z = days + 719_468;
+    let (era, day) = (z.div_euclid(146_097), z.rem_euclid(146_097));
+    let year = (day - day / 1460 + day / 36_524 - day / 146_096) / 365;
+    let of_year = day - (365 * year + year / 4 - year / 100);
+    let m = (5 * of_year + 2) / 153;
+    let (date, month) = (
+        of_year - (153 * m + 2) / 5 + 1,
+        if m < 10 { m + 3 } else { m - 9 },
+    );
+    let year = year + era * 400 + i64::from(month <= 2);
+    format!(
+        "{year:04}-{month:02}-{date:02}T{:02}:{:02}:{:02}Z",
+        time / 3600,
+        time / 60 % 60,
+        time % 60
+    )
+}
+
+/// One thing or several: `1 clip`, `2 clips`.
+pub fn count(n: usize, what: &str) -> String {
+    let plural = match what.strip_suffix("s") {
+        // Already plural by itself: "class" becomes "classes".
+        Some(_) => format!("{what}es"),
+        None => format!("{what}s"),
+    };
+    match n {
+        1 => format!("1 {what}"),
+        n => format!("{} {plural}", grouped(n)),
+    }
+}
+
+/// A number with thin gaps between thousands.
+pub fn grouped(n: usize) -> String {
+    let digits = n.to_string();
+    let mut out = String::new();
+    for (at, digit) in digits.chars().enumerate() {
+        if at > 0 && (digits.len() - at) % 3 == 0 {
+            out.push('\u{2009}');
+        }
+        out.push(digit);
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_read_as_people_write_them() {
+        assert_eq!(secs(2.345), "2.35 s");
+        assert_eq!(clock(62.3, 1), "1:02.3");
+        assert_eq!(clock(59.96, 1), "1:00.0");
+        assert_eq!(clock(3725.0, 0), "1:02:05");
+        assert_eq!(duration(42.2), "42 s");
+        assert_eq!(utc(0), "1970-01-01T00:00:00Z");
+        assert_eq!(utc(1_795_330_800), "2026-11-22T07:00:00Z");
+        assert_eq!(count(2, "class"), "2 classes");
+        assert_eq!(count(10_000, "clip"), "10\u{2009}000 clips");
+    }
+}

@@ -1,0 +1,236 @@
+//! Cutting clips where their behaviour changes, and the curves that say why.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use morec::features::FeatureParams;
+use morec::pivots::{PivotMap, PivotSet, PoseParams, pose_rows_of_clip};
+use morec::progress::Progress;
+use morec::segment::{
+    CycleParams, HPoint, KernelParams, PpcaParams, StillKind, StillParams, cycles, kernel_cuts,
+    segment, still_stretches,
+};
+use morec_db::rows::ClipRows;
+use morec_db::{ClipFilter, ClipId, ClipInfo, MotionDb, Segment, SegmentKind};
+
+use super::load::Motion;
+use super::{JobProgress, Outcome};
+
+/// A method of segmentation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Method {
+    /// Kernel change points over feature rows.
+    #[default]
+    Kernel,
+    /// Probabilistic principal components, as in the thesis.
+    Ppca,
+}
+
+impl Method {
+    pub fn name(self) -> &'static str {
+        match self {
+            Method::Kernel => "kernel",
+            Method::Ppca => "ppca",
+        }
+    }
+}
+
+/// What was cut.
+#[derive(Debug, Clone)]
+pub struct Report {
+    pub clips: usize,
+    pub segments: usize,
+    /// Clips that could not be cut, with the reason.
+    pub left: Vec<(String, String)>,
+}
+
+/// What both methods say of one clip, for the timeline.
+#[derive(Debug, Clone, Default)]
+pub struct Curves {
+    pub clip: Option<ClipId>,
+    /// Cuts by kernel change points, seconds.
+    pub kernel: Vec<f64>,
+    /// Cuts by the thesis's method.
+    pub ppca: Vec<f64>,
+    /// The misfit of the thesis's method, forward and backward.
+    pub forward: Vec<HPoint>,
+    pub backward: Vec<HPoint>,
+    /// Stretches in which nobody moves; whether each is a T-pose.
+    pub still: Vec<(f64, f64, bool)>,
+    /// Repetitions between kernel cuts: where each begins and ends.
+    pub cycles: Vec<Vec<f64>>,
+    /// What could not be computed, and why.
+    pub note: Option<String>,
+}
+
+/// Cuts clips (all, if none are named) and keeps the cuts in place of earlier ones, as one step.
+pub fn cut(db: &Path, method: Method, only: &[ClipId], progress: &JobProgress) -> Outcome {
+    match cut_all(db, method, only, progress) {
+        Ok(Some(report)) => Outcome::Cut(report),
+        Ok(None) => Outcome::Cancelled,
+        Err(error) => Outcome::Failed(format!("Cutting stopped: {error}")),
+    }
+}
+
+fn cut_all(
+    path: &Path,
+    method: Method,
+    only: &[ClipId],
+    progress: &JobProgress,
+) -> Result<Option<Report>, morec_db::DbError> {
+    let mut db = MotionDb::open(path)?;
+    let rows = db.rows(&FeatureParams::default(), progress)?;
+    let clips = db.clips(&ClipFilter::default())?;
+    let clips: Vec<&ClipInfo> = clips
+        .iter()
+        .filter(|c| only.is_empty() || only.contains(&c.id))
+        .collect();
+    let (mut done, mut segments, mut left) = (Vec::new(), Vec::new(), Vec::new());
+    for (number, clip) in clips.iter().enumerate() {
+        if progress.cancelled() {
+            return Ok(None);
+        }
+        progress.report("cutting", number, clips.len());
+        let Some(rows) = rows.iter().find(|r| r.clip == clip.id) else {
+            left.push((clip.name.clone(), "no body part is known".to_owned()));
+            continue;
+        };
+        let cuts = match method {
+            Method::Kernel => kernel(rows),
+            Method::Ppca => ppca(&Motion::of(clip.id, db.clip(clip.id)?)).map(|found| found.0),
+        };
+        match cuts {
+            Ok(cuts) => {
+                done.push(clip.id);
+                segments.extend(stretches(clip, rows, &cuts));
+            }
+            Err(why) => left.push((clip.name.clone(), why)),
+        }
+    }
+    db.set_segments(method.name(), &done, &segments)?;
+    let motions = |s: &&Segment| s.kind == SegmentKind::Motion;
+    Ok(Some(Report {
+        clips: done.len(),
+        segments: segments.iter().filter(motions).count(),
+        left,
+    }))
+}
+
+fn kernel(rows: &ClipRows) -> Result<Vec<f64>, String> {
+    let params = FeatureParams::default();
+    kernel_cuts(&rows.rows, &params, &KernelParams::default()).map_err(|e| e.to_string())
+}
+
+type Misfit = (Vec<f64>, Vec<HPoint>, Vec<HPoint>);
+
+fn ppca(motion: &Motion) -> Result<Misfit, String> {
+    let (set, poses) = (PivotSet::thesis(), PoseParams::default());
+    let map = PivotMap::of_clip(&set, &motion.clip, &motion.roles).map_err(|e| e.to_string())?;
+    let rows = pose_rows_of_clip(&motion.clip, &set, &map, &motion.rest, &poses);
+    let found = segment(&rows, poses.rate_hz, &PpcaParams::default()).map_err(|e| e.to_string())?;
+    let cuts = found.cuts.iter().map(|cut| cut.secs).collect();
+    Ok((cuts, found.forward, found.backward))
+}
+
+fn still(rows: &ClipRows) -> Vec<(f64, f64, bool)> {
+    let features = FeatureParams::default();
+    let tick = 1.0 / features.tick_hz();
+    still_stretches(&rows.rows, rows.bones, &features, &StillParams::default())
+        .into_iter()
+        .map(|(ticks, kind)| {
+            let t_pose = kind == StillKind::TPose;
+            (ticks.start as f64 * tick, ticks.end as f64 * tick, t_pose)
+        })
+        .collect()
+}
+
+/// What is kept of a clip cut at `cuts`, as `morec db cut` keeps it.
+fn stretches(clip: &ClipInfo, rows: &ClipRows, cuts: &[f64]) -> Vec<Segment> {
+    let end = clip.duration_secs();
+    let stretch = |kind, start_secs, stop_secs| Segment {
+        clip: clip.id,
+        kind,
+        start_secs,
+        stop_secs,
+    };
+    let mut segments = Vec::new();
+    if clip.rest_frames > 0 {
+        let rest = clip.rest_frames as f64 / clip.rate_hz;
+        segments.push(stretch(SegmentKind::Rest, 0.0, rest));
+    }
+    for (start, stop, t_pose) in still(rows) {
+        let kind = match t_pose {
+            true => SegmentKind::Rest,
+            false => SegmentKind::Still,
+        };
+        segments.push(stretch(kind, start, stop.min(end)));
+    }
+    let mut start = 0.0;
+    for stop in cuts.iter().copied().chain([end]) {
+        segments.push(stretch(SegmentKind::Motion, start, stop));
+        start = stop;
+    }
+    segments.retain(|s| s.stop_secs > s.start_secs);
+    segments
+}
+
+/// What both methods say of one clip. Nothing is written.
+pub fn curves(motion: &Arc<Motion>, progress: &JobProgress) -> Outcome {
+    let params = FeatureParams::default();
+    let bones = morec::features::bones_of_clip(&motion.clip, &motion.roles, &motion.rest);
+    let mut curves = Curves {
+        clip: Some(motion.id),
+        ..Curves::default()
+    };
+    if bones.is_empty() {
+        curves.note = Some("no body part is known, so nothing can be cut".to_owned());
+        return Outcome::Curves(curves);
+    }
+    let rows = ClipRows {
+        clip: motion.id,
+        bones,
+        rows: morec::features::rows_of_clip(
+            &motion.clip,
+            &motion.roles,
+            &motion.rest,
+            bones,
+            &params,
+        ),
+    };
+    curves.still = still(&rows);
+    match kernel(&rows) {
+        Ok(cuts) => curves.kernel = cuts,
+        Err(why) => curves.note = Some(why),
+    }
+    curves.cycles = repetitions(&rows, &curves.kernel, motion.secs(), params.tick_hz());
+    if progress.cancelled() {
+        return Outcome::Cancelled;
+    }
+    match ppca(motion) {
+        Ok((cuts, forward, backward)) => {
+            (curves.ppca, curves.forward, curves.backward) = (cuts, forward, backward);
+        }
+        Err(why) => curves.note = Some(format!("no misfit curve: {why}")),
+    }
+    Outcome::Curves(curves)
+}
+
+/// Where repetitions begin and end in the segments that repeat at least twice.
+fn repetitions(rows: &ClipRows, cuts: &[f64], end: f64, tick_hz: f64) -> Vec<Vec<f64>> {
+    let mut found = Vec::new();
+    let mut start = 0.0;
+    for stop in cuts.iter().copied().chain([end]) {
+        let tick = |secs: f64| ((secs * tick_hz).round() as usize).min(rows.rows.len());
+        // A stretch of minutes takes long to correlate, and is no exercise.
+        if stop - start < 120.0 && tick(start) < tick(stop) {
+            let rows = rows.rows.slice(tick(start)..tick(stop));
+            if let Some(c) = cycles(&rows, tick_hz, &CycleParams::default())
+                .filter(|c| c.whole() >= 2 && c.correlation > 0.4)
+            {
+                found.push(c.bounds(stop - start).iter().map(|b| start + b).collect());
+            }
+        }
+        start = stop;
+    }
+    found
+}

@@ -1,0 +1,117 @@
+//! A database to begin with: made people who perform a few gestures, as `morec demo` makes them; or clips that were named.
+
+use std::path::{Path, PathBuf};
+
+use morec::formats::bvh;
+use morec::progress::Progress;
+use morec::synth::{DatabaseSpec, Take, database};
+use morec_db::labels::{NewSample, State};
+use morec_db::{ClipUpdate, FileReader, ImportSettings, MotionDb};
+
+use super::{JobProgress, Outcome};
+use crate::store::BY;
+
+/// Seed of the people: the year of the thesis, as in the demo.
+const SEED: u64 = 2009;
+/// What they perform.
+pub const GESTURES: [&str; 4] = ["wave", "raise_hands", "clap", "bow"];
+
+/// What the example is made of.
+pub fn spec() -> DatabaseSpec {
+    DatabaseSpec {
+        people: 4,
+        repetitions: 2,
+        classes: GESTURES.to_vec(),
+        ..DatabaseSpec::default()
+    }
+}
+
+/// A folder of this run's own for what nobody has named yet.
+pub fn temporary_folder() -> std::io::Result<PathBuf> {
+    let folder = (0..)
+        .map(|n| std::env::temp_dir().join(format!("morec-studio-{}-{n}", std::process::id())))
+        .find(|folder| !folder.exists())
+        .unwrap_or_default();
+    std::fs::create_dir_all(&folder)?;
+    Ok(folder)
+}
+
+/// Makes the example in `folder`; all but the last person's gestures are labelled.
+pub fn make(folder: &Path, progress: &JobProgress) -> Outcome {
+    match make_in(folder, progress) {
+        Ok(path) => Outcome::Made(path),
+        Err(error) => Outcome::Failed(format!("The example cannot be made: {error}")),
+    }
+}
+
+fn make_in(folder: &Path, progress: &dyn Progress) -> Result<PathBuf, String> {
+    let said = |error: &dyn std::fmt::Display| error.to_string();
+    progress.report("making people", 0, 3);
+    let takes = database(SEED, &spec());
+    progress.report("filming them", 1, 3);
+    let mut files = Vec::new();
+    for take in &takes {
+        let path = folder.join(format!("{}.bvh", take.clip.name));
+        let mut bytes = Vec::new();
+        bvh::write(&take.clip, &mut bytes).map_err(|e| said(&e))?;
+        std::fs::write(&path, bytes).map_err(|e| said(&e))?;
+        files.push(path);
+    }
+    progress.report("into the database", 2, 3);
+    let path = folder.join("example.mdb");
+    let mut db = MotionDb::create(&path).map_err(|e| said(&e))?;
+    db.import(
+        &files,
+        &FileReader::default(),
+        &ImportSettings::default(),
+        &(),
+    )
+    .map_err(|e| said(&e))?;
+    describe(&mut db, &takes).map_err(|e| said(&e))?;
+    // There is nothing of the person's own to take back yet.
+    db.forget_history().map_err(|e| said(&e))?;
+    Ok(path)
+}
+
+/// Who is seen, and what all but the last perform.
+fn describe(db: &mut MotionDb, takes: &[Take]) -> Result<(), morec_db::DbError> {
+    let mut labels = Vec::new();
+    for (number, take) in takes.iter().enumerate() {
+        let clip = db.find_clip(&take.clip.name)?.id;
+        let update = ClipUpdate {
+            subject: Some(take.person.clone()),
+            source: Some("made by morec".to_owned()),
+            ..ClipUpdate::default()
+        };
+        db.update_clips(&[clip], &update)?;
+        if number + 1 < takes.len() {
+            labels.extend(take.labels.iter().map(|label| NewSample {
+                clip,
+                class: label.class.to_owned(),
+                start_secs: label.start_secs,
+                stop_secs: label.stop_secs,
+                whole_clip: false,
+                state: State::Accepted,
+                score: None,
+            }));
+        }
+    }
+    db.add_samples(&labels, BY)?;
+    Ok(())
+}
+
+/// A database in `folder` that holds clips which were named instead of one.
+pub fn of_clips(folder: &Path, clips: &[PathBuf], progress: &JobProgress) -> Outcome {
+    let path = folder.join("clips.mdb");
+    if let Err(error) = MotionDb::create(&path) {
+        return Outcome::Failed(error.to_string());
+    }
+    match super::import::import(&path, clips, progress) {
+        Outcome::Imported(report) if report.imported == 0 && !report.refused.is_empty() => {
+            let (file, why) = &report.refused[0];
+            Outcome::Failed(format!("{}: {why}", file.display()))
+        }
+        Outcome::Imported(_) => Outcome::Made(path),
+        other => other,
+    }
+}

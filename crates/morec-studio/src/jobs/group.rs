@@ -1,0 +1,175 @@
+//! Groups of samples or cuts that are alike, as a hierarchy whose depth a slider sets.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use morec::cluster::{Hierarchy, resampled, squared_distance};
+use morec::features::{BoneSet, FeatureParams, Rows};
+use morec_db::labels::{SampleFilter, SampleId, State};
+use morec_db::{ClipId, MotionDb, SegmentKind};
+
+use super::{JobProgress, Outcome};
+
+/// Rows that a sample of any length becomes.
+const POINTS: usize = 16;
+/// The hierarchy takes the square of this in memory; what is beyond is left out, and said.
+pub const MOST: usize = 3000;
+
+/// A stretch that is grouped.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Item {
+    pub clip: ClipId,
+    pub start_secs: f64,
+    pub stop_secs: f64,
+    /// Its number, if it is a sample.
+    pub sample: Option<SampleId>,
+    pub class: Option<String>,
+}
+
+/// What was grouped and how it hangs together.
+#[derive(Debug, Clone)]
+pub struct Groups {
+    pub items: Vec<Item>,
+    pub hierarchy: Hierarchy,
+    /// Distance of each item from all others of its group would depend on the depth; this is from all there are.
+    shapes: Vec<Vec<f32>>,
+    pub left_out: usize,
+}
+
+/// A group at some depth: its items, those least like the others first.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Group {
+    pub members: Vec<usize>,
+}
+
+impl Groups {
+    pub fn of(items: Vec<Item>, shapes: Vec<Vec<f32>>, left_out: usize) -> Self {
+        let distance = |a: usize, b: usize| squared_distance(&shapes[a], &shapes[b], POINTS);
+        Self {
+            hierarchy: Hierarchy::average(items.len(), distance),
+            items,
+            shapes,
+            left_out,
+        }
+    }
+
+    /// So many groups, the largest first; outliers first within each.
+    pub fn at(&self, count: usize) -> Vec<Group> {
+        let clusters = self.hierarchy.into_clusters(count);
+        let mut groups: Vec<Group> = clusters
+            .members()
+            .into_iter()
+            .map(|members| self.outliers_first(members))
+            .collect();
+        groups.sort_by_key(|g| std::cmp::Reverse(g.members.len()));
+        groups
+    }
+
+    fn outliers_first(&self, mut members: Vec<usize>) -> Group {
+        let mut mean = vec![0f32; self.shapes.first().map_or(0, Vec::len)];
+        for &m in &members {
+            let share = 1.0 / members.len() as f32;
+            mean.iter_mut()
+                .zip(&self.shapes[m])
+                .for_each(|(a, b)| *a += share * b);
+        }
+        let off = |m: &usize| squared_distance(&self.shapes[*m], &mean, POINTS);
+        members.sort_by(|a, b| off(b).total_cmp(&off(a)));
+        Group { members }
+    }
+}
+
+/// Groups the accepted samples, or the cuts if `cuts`, of the database at `path`.
+pub fn group(path: &Path, cuts: bool, progress: &JobProgress) -> Outcome {
+    match grouped(path, cuts, progress) {
+        Ok(groups) if groups.items.is_empty() => Outcome::Failed(
+            match cuts {
+                true => "Nothing to group: cut the clips first",
+                false => "Nothing to group: label a few motions first",
+            }
+            .to_owned(),
+        ),
+        Ok(groups) => Outcome::Grouped(groups),
+        Err(error) => Outcome::Failed(format!("Grouping stopped: {error}")),
+    }
+}
+
+fn grouped(path: &Path, cuts: bool, progress: &JobProgress) -> Result<Groups, morec_db::DbError> {
+    let params = FeatureParams::default();
+    let mut db = MotionDb::open(path)?;
+    let clip_rows = db.rows(&params, progress)?;
+    let rows: BTreeMap<ClipId, (&Rows, BoneSet)> = clip_rows
+        .iter()
+        .map(|r| (r.clip, (&r.rows, r.bones)))
+        .collect();
+    let mut items = items(&db, cuts)?;
+    items.retain(|item| rows.contains_key(&item.clip));
+    let left_out = items.len().saturating_sub(MOST);
+    items.truncate(MOST);
+    let of_item = |item: &Item| rows.get(&item.clip);
+    let common = items
+        .iter()
+        .filter_map(of_item)
+        .map(|(_, bones)| *bones)
+        .fold(BoneSet::ALL, BoneSet::and);
+    let mut shapes = Vec::new();
+    for item in &items {
+        let Some((rows, bones)) = of_item(item) else {
+            continue;
+        };
+        let tick = |secs: f64| ((secs * params.tick_hz()).round() as usize).min(rows.len());
+        let span = tick(item.start_secs)..tick(item.stop_secs);
+        let rows = rows.slice(span.start..span.end.max(span.start));
+        shapes.push(resampled(&only(&rows, *bones, common), POINTS));
+    }
+    Ok(Groups::of(items, shapes, left_out))
+}
+
+fn items(db: &MotionDb, cuts: bool) -> Result<Vec<Item>, morec_db::DbError> {
+    if cuts {
+        let segments = db.segments()?.into_iter();
+        let moving = segments.filter(|s| s.kind == SegmentKind::Motion);
+        return Ok(moving
+            .map(|s| Item {
+                clip: s.clip,
+                start_secs: s.start_secs,
+                stop_secs: s.stop_secs,
+                sample: None,
+                class: None,
+            })
+            .collect());
+    }
+    let filter = SampleFilter {
+        state: Some(State::Accepted),
+        ..SampleFilter::default()
+    };
+    let samples = db.samples(&filter)?.into_iter();
+    Ok(samples
+        .map(|s| Item {
+            clip: s.clip,
+            start_secs: s.start_secs,
+            stop_secs: s.stop_secs,
+            sample: Some(s.id),
+            class: Some(s.class),
+        })
+        .collect())
+}
+
+/// Rows over `bones` as rows over those that all items have.
+fn only(rows: &Rows, bones: BoneSet, common: BoneSet) -> Rows {
+    if bones == common {
+        return rows.clone();
+    }
+    let n = bones.len();
+    let mut columns = Vec::new();
+    for part in 0..2 {
+        for (place, bone) in bones.indices().enumerate() {
+            if common.contains(bone) {
+                let first = 3 * (part * n + place);
+                columns.extend(first..first + 3);
+            }
+        }
+    }
+    columns.extend(6 * n..6 * n + 4);
+    rows.columns(&columns)
+}

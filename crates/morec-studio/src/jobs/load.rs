@@ -1,0 +1,113 @@
+//! A clip's motion, decoded for looking at.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use morec::clip::Clip;
+use morec::features::{FeatureParams, bones_of_clip, rows_of_clip};
+use morec::kinematics::WorldPose;
+use morec::roles::RoleMap;
+use morec_db::{ClipId, MotionDb, StoredClip};
+
+use super::{JobProgress, Outcome};
+use crate::body::Body;
+
+/// A clip as the view and the timeline need it.
+#[derive(Debug)]
+pub struct Motion {
+    pub id: ClipId,
+    pub clip: Clip,
+    pub roles: RoleMap,
+    pub rest: std::ops::Range<usize>,
+    pub body: Body,
+    /// How fast the body's bones turn, at every tick: radians a second; the channel under the timeline.
+    pub speed: Vec<f32>,
+    pub tick_hz: f64,
+    /// Height of the lowest joint over the whole clip, metres.
+    pub floor: f64,
+}
+
+/// A clip that was asked for.
+pub struct Loaded {
+    pub id: ClipId,
+    pub motion: Result<Arc<Motion>, String>,
+}
+
+/// Decodes clip `id` of the database at `path`.
+pub fn load(path: &Path, id: ClipId, _progress: &JobProgress) -> Outcome {
+    let motion = MotionDb::open_read_only(path)
+        .and_then(|db| db.clip(id))
+        .map(|stored| Arc::new(Motion::of(id, stored)))
+        .map_err(|error| error.to_string());
+    Outcome::Loaded(Loaded { id, motion })
+}
+
+impl Motion {
+    pub fn of(id: ClipId, stored: StoredClip) -> Self {
+        let StoredClip { clip, roles, rest } = stored;
+        let params = FeatureParams::default();
+        let bones = bones_of_clip(&clip, &roles, &rest);
+        let speed = match bones.is_empty() {
+            true => Vec::new(),
+            false => speeds(
+                &rows_of_clip(&clip, &roles, &rest, bones, &params),
+                bones.len(),
+            ),
+        };
+        let body = Body::of(&clip, &roles, rest.end.min(clip.frames.saturating_sub(1)));
+        let floor = floor(&clip, &rest);
+        Self {
+            id,
+            body,
+            speed,
+            tick_hz: params.tick_hz(),
+            floor,
+            clip,
+            roles,
+            rest,
+        }
+    }
+
+    pub fn secs(&self) -> f64 {
+        self.clip.duration_secs()
+    }
+
+    /// The frame shown at a moment: T-poses that a conversion left at the start show what follows.
+    pub fn frame_at(&self, secs: f64) -> usize {
+        let last = self.clip.frames.saturating_sub(1);
+        let frame = ((secs * self.clip.rate_hz).floor().max(0.0) as usize).min(last);
+        match self.rest.contains(&frame) {
+            true => self.rest.end.min(last),
+            false => frame,
+        }
+    }
+
+    pub fn pose(&self, secs: f64) -> WorldPose {
+        match self.clip.frames {
+            0 => WorldPose::default(),
+            _ => WorldPose::of(&self.clip, self.frame_at(secs)),
+        }
+    }
+}
+
+/// Root mean square of the bones' speeds: rows hold them saturated, which is well for a picture.
+fn speeds(rows: &morec::features::Rows, bones: usize) -> Vec<f32> {
+    let speed = |row: &[f32]| {
+        let velocities = &row[3 * bones..6 * bones];
+        (velocities.iter().map(|v| v * v).sum::<f32>() / bones.max(1) as f32).sqrt()
+    };
+    rows.iter().map(speed).collect()
+}
+
+/// The lowest joint of some fifty frames.
+fn floor(clip: &Clip, rest: &std::ops::Range<usize>) -> f64 {
+    let first = rest.end.min(clip.frames.saturating_sub(1));
+    let step = ((clip.frames - first.min(clip.frames)) / 50).max(1);
+    let lowest = (first..clip.frames)
+        .step_by(step)
+        .flat_map(|frame| WorldPose::of(clip, frame).positions)
+        .map(|p| p.y)
+        .filter(|y| y.is_finite())
+        .fold(f64::INFINITY, f64::min);
+    if lowest.is_finite() { lowest } else { 0.0 }
+}

@@ -1,0 +1,169 @@
+//! Long work on threads of its own: with progress, cancelled when told to, its outcome collected frame by frame.
+
+pub mod cut;
+pub mod example;
+pub mod group;
+pub mod import;
+pub mod judge;
+pub mod load;
+pub mod propose;
+pub mod recognise;
+pub mod teach;
+pub mod train;
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use morec::progress::Progress;
+
+use crate::store::Wake;
+
+/// How far a job is; shared with the thread that does it.
+pub struct JobProgress {
+    state: Mutex<Stage>,
+    cancelled: AtomicBool,
+    wake: Wake,
+}
+
+/// A stage of a job.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Stage {
+    pub name: String,
+    pub done: usize,
+    pub total: usize,
+}
+
+impl Stage {
+    /// 0 to 1, if it is known.
+    pub fn share(&self) -> Option<f32> {
+        (self.total > 0).then(|| (self.done as f32 / self.total as f32).min(1.0))
+    }
+}
+
+impl Progress for JobProgress {
+    fn report(&self, stage: &str, done: usize, total: usize) {
+        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        *state = Stage {
+            name: stage.to_owned(),
+            done,
+            total,
+        };
+        drop(state);
+        (self.wake)();
+    }
+
+    fn cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
+    }
+}
+
+/// What a job came to.
+pub enum Outcome {
+    Imported(import::Report),
+    Cut(cut::Report),
+    Loaded(load::Loaded),
+    Curves(cut::Curves),
+    Grouped(group::Groups),
+    Proposed(usize),
+    Trained(Box<train::Trained>),
+    Judged(Box<judge::Judged>),
+    Taught(teach::Taught),
+    /// What an index recognises in a clip.
+    Recognised {
+        clip: morec_db::ClipId,
+        found: Vec<morec::eval::Found>,
+    },
+    /// What would have been recognised at another sensitivity.
+    Resensed(Vec<morec::live::Detection>),
+    /// An example, or clips that were named, lie in a database of this path now.
+    Made(std::path::PathBuf),
+    /// It could not be done, and why.
+    Failed(String),
+    Cancelled,
+}
+
+/// A job that is under way.
+pub struct Job {
+    /// What it does, as a person would say it: "Importing clips".
+    pub name: String,
+    /// Whether it is shown; small jobs are over before anybody could read their name.
+    pub shown: bool,
+    progress: Arc<JobProgress>,
+    outcome: Receiver<Outcome>,
+}
+
+impl Job {
+    pub fn stage(&self) -> Stage {
+        let state = self.progress.state.lock();
+        state.unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    pub fn cancel(&self) {
+        self.progress.cancelled.store(true, Ordering::Relaxed);
+    }
+
+    pub fn is_cancelled(&self) -> bool {
+        self.progress.cancelled()
+    }
+}
+
+/// All jobs that are under way.
+#[derive(Default)]
+pub struct Jobs {
+    pub running: Vec<Job>,
+}
+
+impl Jobs {
+    /// Starts `work` on a thread of its own.
+    pub fn start(
+        &mut self,
+        name: &str,
+        shown: bool,
+        wake: &Wake,
+        work: impl FnOnce(&JobProgress) -> Outcome + Send + 'static,
+    ) {
+        let progress = Arc::new(JobProgress {
+            state: Mutex::default(),
+            cancelled: AtomicBool::new(false),
+            wake: wake.clone(),
+        });
+        let (sender, outcome) = channel();
+        let (theirs, wake) = (progress.clone(), wake.clone());
+        let job = move || {
+            // Nobody may listen any more: the window was closed.
+            let _ = sender.send(work(&theirs));
+            wake();
+        };
+        // Without a thread the sender is dropped, which is a failure like any other.
+        let _ = std::thread::Builder::new().name(name.to_owned()).spawn(job);
+        self.running.push(Job {
+            name: name.to_owned(),
+            shown,
+            progress,
+            outcome,
+        });
+    }
+
+    /// What has ended since.
+    pub fn poll(&mut self) -> Vec<(String, Outcome)> {
+        let mut ended = Vec::new();
+        self.running.retain(|job| match job.outcome.try_recv() {
+            Ok(outcome) => {
+                ended.push((job.name.clone(), outcome));
+                false
+            }
+            Err(TryRecvError::Empty) => true,
+            Err(TryRecvError::Disconnected) => {
+                let failed = format!("{}: ended without an answer", job.name);
+                ended.push((job.name.clone(), Outcome::Failed(failed)));
+                false
+            }
+        });
+        ended
+    }
+
+    pub fn is_running(&self, name: &str) -> bool {
+        self.running.iter().any(|job| job.name == name)
+    }
+}

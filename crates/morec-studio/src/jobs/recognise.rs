@@ -1,0 +1,40 @@
+//! What an index recognises in a clip, or in what was recorded.
+
+use std::sync::Arc;
+
+use morec::eval::Found;
+use morec::features::KeyPose;
+use morec::index::MotionIndex;
+use morec::live::{Model, recognize_clip, recognize_poses};
+
+use super::load::Motion;
+use super::{JobProgress, Outcome};
+
+/// Plays a clip through the recogniser.
+pub fn clip(index: &MotionIndex, motion: &Arc<Motion>, _progress: &JobProgress) -> Outcome {
+    match recognize_clip(&index.model, &motion.clip, &motion.roles, &motion.rest) {
+        Ok(found) => Outcome::Recognised {
+            clip: motion.id,
+            found: found
+                .iter()
+                .map(|d| Found {
+                    clip: motion.clip.name.clone(),
+                    class: index.model.class_name(d.class).to_owned(),
+                    start_secs: d.start_secs,
+                    stop_secs: d.stop_secs,
+                    score: Some(d.score),
+                    reported_secs: Some(d.reported_secs),
+                })
+                .collect(),
+        },
+        Err(error) => Outcome::Failed(format!("{}: not recognised: {error}", motion.clip.name)),
+    }
+}
+
+/// What a model would have found in poses that were recorded.
+pub fn poses(model: &Model, poses: &[(f64, KeyPose)], _progress: &JobProgress) -> Outcome {
+    match recognize_poses(model, poses) {
+        Ok(found) => Outcome::Resensed(found),
+        Err(error) => Outcome::Failed(format!("The sensitivity cannot be tried: {error}")),
+    }
+}

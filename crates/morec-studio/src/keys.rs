@@ -1,0 +1,263 @@
+//! The keyboard.
+
+use egui::{Key, Modifiers};
+
+use crate::state::{
+    ClassCommand, Command, FileCommand, Grip, LiveCommand, Panel, PlayCommand, State,
+    TimelineCommand, TrainCommand,
+};
+use crate::store::Edit;
+
+/// The keys of the first nine classes.
+pub const CLASS_KEYS: [Key; 9] = [
+    Key::Num1,
+    Key::Num2,
+    Key::Num3,
+    Key::Num4,
+    Key::Num5,
+    Key::Num6,
+    Key::Num7,
+    Key::Num8,
+    Key::Num9,
+];
+
+/// What each key does, for the page of keys: where, key, what.
+pub const HELP: &[(&str, &str, &str)] = &[
+    (
+        "Anywhere",
+        "Ctrl 1 … 5",
+        "Library, Label, Classes, Train, Live",
+    ),
+    ("Anywhere", "Ctrl Z, Ctrl Shift Z", "undo, redo"),
+    (
+        "Anywhere",
+        "Ctrl O, Ctrl I",
+        "open a database, import clips",
+    ),
+    ("Anywhere", "Ctrl T", "train"),
+    ("Anywhere", "Ctrl H, F1", "history, this page"),
+    ("Playing", "Space", "play, stop"),
+    (
+        "Playing",
+        "J  K  L",
+        "backwards, stop, forwards; again is faster",
+    ),
+    ("Playing", "← →  , .", "a frame back, a frame on"),
+    ("Playing", "Shift ← →", "a second back, a second on"),
+    ("Playing", "Home, End", "to the beginning, to the end"),
+    ("Playing", "O", "loop the selected stretch or label"),
+    ("Labels", "1 … 9 held", "label what passes while playing"),
+    (
+        "Labels",
+        "1 … 9 tapped",
+        "count repetitions: each tap ends one and begins the next",
+    ),
+    (
+        "Labels",
+        "1 … 9 stopped",
+        "label the selected stretch, or change the selected label's class",
+    ),
+    ("Labels", "S, M", "split at the playhead, merge"),
+    (
+        "Labels",
+        "[  ]",
+        "start, stop of the selected label to the playhead",
+    ),
+    ("Labels", "Ctrl ← →", "move the selected label by a frame"),
+    ("Labels", "Alt ← →", "move its start by a frame"),
+    ("Labels", "Alt Shift ← →", "move its stop by a frame"),
+    ("Labels", "Delete", "remove the selected labels"),
+    ("Labels", "Tab, Enter", "go to a label, select it"),
+    (
+        "Proposals",
+        "A, R",
+        "accept, reject; the next doubtful one is shown",
+    ),
+    ("Proposals", "N", "the next doubtful one"),
+    ("Timeline", "+  −  0", "zoom in, zoom out, the whole clip"),
+    (
+        "Live",
+        "1 … 9",
+        "the last motion, or the selected stretch, was this class",
+    ),
+    ("Live", "Space, R", "start or stop, record a take"),
+];
+
+/// What the keys ask for.
+pub fn read(ctx: &egui::Context, state: &State, out: &mut Vec<Command>) {
+    let typing = ctx.wants_keyboard_input();
+    ctx.input_mut(|i| {
+        commands(i, out);
+        if typing {
+            // Keys that were held when typing began are let go.
+            if let Some(held) = &state.classes.held {
+                out.push(class_key(held.slot, false));
+            }
+            return;
+        }
+        match state.panel {
+            Panel::Live => live(i, state, out),
+            _ => {
+                playing(i, state, out);
+                labels(i, state, out);
+            }
+        }
+    });
+}
+
+fn class_key(slot: usize, down: bool) -> Command {
+    Command::Classes(ClassCommand::Key { slot, down })
+}
+
+fn commands(i: &mut egui::InputState, out: &mut Vec<Command>) {
+    let shift = Modifiers::COMMAND | Modifiers::SHIFT;
+    // The longer combination first: a shortcut is also met with more modifiers.
+    if i.consume_key(shift, Key::Z) || i.consume_key(Modifiers::COMMAND, Key::Y) {
+        out.push(Command::Edit(Edit::Redo));
+    }
+    if i.consume_key(Modifiers::COMMAND, Key::Z) {
+        out.push(Command::Edit(Edit::Undo(None)));
+    }
+    for (panel, key) in Panel::ALL.into_iter().zip(CLASS_KEYS) {
+        if i.consume_key(Modifiers::COMMAND, key) {
+            out.push(Command::Show(panel));
+        }
+    }
+    let keys = [
+        (Key::O, Command::File(FileCommand::AskOpen)),
+        (Key::I, Command::File(FileCommand::AskImport)),
+        (Key::S, Command::File(FileCommand::AskSave)),
+        (Key::T, Command::Train(TrainCommand::Train)),
+        (Key::H, Command::ShowHistory(true)),
+    ];
+    for (key, command) in keys {
+        if i.consume_key(Modifiers::COMMAND, key) {
+            out.push(command);
+        }
+    }
+    if i.consume_key(Modifiers::NONE, Key::F1) {
+        out.push(Command::ShowKeys(true));
+    }
+    if i.key_pressed(Key::Escape) {
+        out.push(Command::ShowKeys(false));
+        out.push(Command::ShowHistory(false));
+    }
+}
+
+fn playing(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
+    let rate = state.player.rate_hz();
+    let second = rate.round() as i64;
+    let mut play = |command| out.push(Command::Play(command));
+    if i.consume_key(Modifiers::NONE, Key::Space) {
+        play(PlayCommand::Toggle);
+    }
+    for (key, command) in [
+        (Key::J, PlayCommand::Shuttle(-1.0)),
+        (Key::K, PlayCommand::Pause),
+        (Key::L, PlayCommand::Shuttle(1.0)),
+        (Key::Comma, PlayCommand::Step(-1)),
+        (Key::Period, PlayCommand::Step(1)),
+        (Key::Home, PlayCommand::Seek(0.0)),
+        (Key::End, PlayCommand::Seek(state.player.secs())),
+    ] {
+        if i.consume_key(Modifiers::NONE, key) {
+            play(command);
+        }
+    }
+    let stretch = state.timeline.range.or_else(|| {
+        let selected = state.selected();
+        selected.first().map(|s| (s.start_secs, s.stop_secs))
+    });
+    if i.consume_key(Modifiers::NONE, Key::O) {
+        play(PlayCommand::Loop(match state.player.looped {
+            Some(_) => None,
+            None => stretch,
+        }));
+    }
+    let nudge = |grip, by| Command::Timeline(TimelineCommand::Nudge(grip, by));
+    for (key, way) in [(Key::ArrowLeft, -1), (Key::ArrowRight, 1)] {
+        if i.consume_key(Modifiers::ALT | Modifiers::SHIFT, key) {
+            out.push(nudge(Grip::Stop, way));
+        } else if i.consume_key(Modifiers::ALT, key) {
+            out.push(nudge(Grip::Start, way));
+        } else if i.consume_key(Modifiers::COMMAND, key) {
+            out.push(nudge(Grip::Whole, way));
+        } else if i.consume_key(Modifiers::SHIFT, key) {
+            out.push(Command::Play(PlayCommand::Step(way * second)));
+        } else if i.consume_key(Modifiers::NONE, key) {
+            out.push(Command::Play(PlayCommand::Step(way)));
+        }
+    }
+}
+
+fn labels(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
+    for (slot, key) in CLASS_KEYS.into_iter().enumerate() {
+        // Keys repeat while they are held; going down is what counts.
+        let went_down = i.events.iter().any(|event| {
+            matches!(event, egui::Event::Key { key: k, pressed: true, repeat: false, modifiers, .. }
+                if *k == key && modifiers.is_none())
+        });
+        let held = state.classes.held.as_ref().is_some_and(|h| h.slot == slot);
+        if went_down && !held {
+            out.push(class_key(slot, true));
+        }
+        if (held || went_down) && !i.key_down(key) {
+            out.push(class_key(slot, false));
+        }
+    }
+    for (key, command) in [
+        (Key::S, TimelineCommand::Split),
+        (Key::M, TimelineCommand::Merge),
+        (Key::Delete, TimelineCommand::Remove),
+        (Key::Backspace, TimelineCommand::Remove),
+        (Key::OpenBracket, TimelineCommand::ToPlayhead(Grip::Start)),
+        (Key::CloseBracket, TimelineCommand::ToPlayhead(Grip::Stop)),
+        (Key::Num0, TimelineCommand::Whole),
+        (Key::Plus, zoom(state, 1.5)),
+        (Key::Equals, zoom(state, 1.5)),
+        (Key::Minus, zoom(state, 1.0 / 1.5)),
+    ] {
+        if i.consume_key(Modifiers::NONE, key) {
+            out.push(Command::Timeline(command));
+        }
+    }
+    let selected = state.selected();
+    let proposed = selected
+        .iter()
+        .find(|s| s.state == morec_db::labels::State::Proposed);
+    if let Some(sample) = proposed {
+        if i.consume_key(Modifiers::NONE, Key::A) {
+            out.push(Command::Classes(ClassCommand::Accept(sample.id)));
+        }
+        if i.consume_key(Modifiers::NONE, Key::R) {
+            out.push(Command::Classes(ClassCommand::Reject(sample.id)));
+        }
+    }
+    if i.consume_key(Modifiers::NONE, Key::N) {
+        out.push(Command::Classes(ClassCommand::NextDoubtful));
+    }
+}
+
+fn zoom(state: &State, factor: f64) -> TimelineCommand {
+    TimelineCommand::Zoom {
+        factor,
+        about_secs: state.player.at_secs,
+    }
+}
+
+fn live(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
+    for (slot, key) in CLASS_KEYS.into_iter().enumerate() {
+        if i.consume_key(Modifiers::NONE, key) {
+            out.push(Command::Live(LiveCommand::Mark(slot)));
+        }
+    }
+    if i.consume_key(Modifiers::NONE, Key::Space) {
+        out.push(Command::Live(match state.live.is_running() {
+            true => LiveCommand::Stop,
+            false => LiveCommand::Start,
+        }));
+    }
+    if i.consume_key(Modifiers::NONE, Key::R) {
+        out.push(Command::Live(LiveCommand::Record));
+    }
+}

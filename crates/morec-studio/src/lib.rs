@@ -1,0 +1,24 @@
+//! `morec-studio`: a desktop window over the motion database.
+//!
+//! State, edits and drawing are apart. [`state`] is everything the window shows, without a widget; [`store`] sends edits
+//! to the thread that owns the database and brings back what it holds; [`jobs`] is long work on threads of its own;
+//! [`panels`] are functions of the state that emit commands. [`screenshot`] draws panels without a window.
+
+mod app;
+mod body;
+mod dialogs;
+mod format;
+mod jobs;
+mod keys;
+mod panels;
+mod raster;
+mod screenshot;
+mod sources;
+mod state;
+mod store;
+#[cfg(test)]
+mod tests;
+mod theme;
+mod window;
+
+pub use window::{Args, run};

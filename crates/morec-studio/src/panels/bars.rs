@@ -1,0 +1,237 @@
+//! The bar at the top, with the panels; the bar at the bottom, with what was done and what is being done.
+
+use egui::{Align, Button, Context, Frame, Layout, Margin, RichText, TopBottomPanel, Ui, Vec2};
+
+use super::Out;
+use crate::state::{Command, FileCommand, Panel, State};
+use crate::store::Edit;
+use crate::theme::Colours;
+
+pub fn top(ctx: &Context, state: &State, out: Out) {
+    let c = Colours::of(state.dark);
+    let frame = Frame::new()
+        .fill(c.ground)
+        .inner_margin(Margin::symmetric(10, 0));
+    TopBottomPanel::top("top")
+        .frame(frame)
+        .exact_height(42.0)
+        .show(ctx, |ui| {
+            ui.horizontal_centered(|ui| {
+                file_menu(ui, state, out);
+                ui.add_space(6.0);
+                for panel in Panel::ALL {
+                    tab(ui, state, panel, out);
+                }
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    right(ui, state, out);
+                    let width = ui.available_width();
+                    if width > 90.0 {
+                        title(ui, state, &c);
+                    }
+                });
+            });
+        });
+}
+
+fn file_menu(ui: &mut Ui, state: &State, out: Out) {
+    ui.menu_button("File", |ui| {
+        let open = state.store.is_some();
+        let mut item = |ui: &mut Ui, text: &str, keys: &str, on: bool, command: FileCommand| {
+            let button = Button::new(text)
+                .shortcut_text(keys)
+                .min_size(Vec2::new(220.0, 24.0));
+            if ui.add_enabled(on, button).clicked() {
+                out.push(Command::File(command));
+                ui.close();
+            }
+        };
+        item(ui, "Open …", "Ctrl O", true, FileCommand::AskOpen);
+        item(ui, "New database …", "", true, FileCommand::AskNew);
+        ui.separator();
+        item(ui, "Import clips …", "Ctrl I", true, FileCommand::AskImport);
+        item(
+            ui,
+            "Import a folder …",
+            "",
+            true,
+            FileCommand::AskImportFolder,
+        );
+        ui.separator();
+        item(ui, "Save a copy as …", "Ctrl S", open, FileCommand::AskSave);
+        let trained = !state.train.bytes.is_empty();
+        item(
+            ui,
+            "Export the index …",
+            "",
+            trained,
+            FileCommand::AskExportIndex,
+        );
+    });
+}
+
+fn tab(ui: &mut Ui, state: &State, panel: Panel, out: Out) {
+    let c = Colours::now(ui);
+    let on = state.panel == panel;
+    let text = RichText::new(panel.name()).size(14.0);
+    let text = if on {
+        text.strong().color(c.text)
+    } else {
+        text.color(c.muted)
+    };
+    let button = Button::selectable(on, text)
+        .fill(egui::Color32::TRANSPARENT)
+        .stroke(egui::Stroke::NONE)
+        .min_size(Vec2::new(64.0, 30.0));
+    let response = ui.add(button);
+    if on {
+        let rect = response.rect;
+        let line = egui::Rect::from_min_max(
+            egui::pos2(rect.left() + 8.0, rect.bottom() + 3.0),
+            egui::pos2(rect.right() - 8.0, rect.bottom() + 5.5),
+        );
+        ui.painter().rect_filled(line, 1.0, c.accent);
+    }
+    if response.clicked() {
+        out.push(Command::Show(panel));
+    }
+}
+
+fn right(ui: &mut Ui, state: &State, out: Out) {
+    let (theme, hint) = match state.dark {
+        true => ("☀", "Light theme"),
+        false => ("🌙", "Dark theme"),
+    };
+    let icon = |ui: &mut Ui, text: &str, name: &str| {
+        let response = ui
+            .add(Button::new(text).min_size(Vec2::splat(28.0)))
+            .on_hover_text(name);
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, name));
+        response.clicked()
+    };
+    if icon(ui, theme, hint) {
+        out.push(Command::Dark(!state.dark));
+    }
+    if icon(ui, "?", "Keys") {
+        out.push(Command::ShowKeys(!state.show_keys));
+    }
+    if ui.button("History").clicked() {
+        out.push(Command::ShowHistory(!state.show_history));
+    }
+    let names = state.store.as_ref().map(|s| {
+        let snapshot = &s.snapshot;
+        (
+            snapshot.undo_name().map(str::to_owned),
+            snapshot.redo_name().map(str::to_owned),
+        )
+    });
+    let (undo, redo) = names.unwrap_or_default();
+    for (text, name, what, edit) in [
+        ("⟳", "Redo", redo, Edit::Redo),
+        ("⟲", "Undo", undo, Edit::Undo(None)),
+    ] {
+        let button = Button::new(text).min_size(Vec2::splat(28.0));
+        let response = ui.add_enabled(what.is_some(), button);
+        response.widget_info(|| {
+            egui::WidgetInfo::labeled(egui::WidgetType::Button, what.is_some(), name)
+        });
+        let response = response.on_hover_text(match &what {
+            Some(what) => format!("{name}: {what}"),
+            None => format!("Nothing to {}", name.to_lowercase()),
+        });
+        if response.clicked() {
+            out.push(Command::Edit(edit));
+        }
+    }
+}
+
+fn title(ui: &mut Ui, state: &State, c: &Colours) {
+    let Some(store) = &state.store else { return };
+    let name = store
+        .path()
+        .file_name()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
+    let text = match store.temporary {
+        true => format!("{} (not saved)", name.trim_end_matches(".mdb")),
+        false => name,
+    };
+    ui.add_space(6.0);
+    ui.add(egui::Label::new(RichText::new(text).color(c.muted)).truncate())
+        .on_hover_text(match store.temporary {
+            true => "Lies in a temporary folder: File, Save a copy as".to_owned(),
+            false => store.path().display().to_string(),
+        });
+}
+
+pub fn bottom(ctx: &Context, state: &State, out: Out) {
+    let c = Colours::of(state.dark);
+    let frame = Frame::new()
+        .fill(c.ground)
+        .inner_margin(Margin::symmetric(12, 0));
+    TopBottomPanel::bottom("bottom")
+        .frame(frame)
+        .exact_height(28.0)
+        .show(ctx, |ui| {
+            ui.horizontal_centered(|ui| {
+                jobs(ui, state, out);
+                ui.label(RichText::new(&state.said).size(12.0));
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    command_line(ui, state, &c);
+                });
+            });
+        });
+}
+
+fn jobs(ui: &mut Ui, state: &State, out: Out) {
+    for (at, job) in state
+        .jobs
+        .running
+        .iter()
+        .enumerate()
+        .filter(|(_, j)| j.shown)
+    {
+        let stage = job.stage();
+        ui.add(egui::Spinner::new().size(13.0));
+        ui.label(RichText::new(&job.name).size(12.0));
+        if let Some(share) = stage.share() {
+            ui.add(
+                egui::ProgressBar::new(share)
+                    .desired_width(90.0)
+                    .desired_height(5.0),
+            );
+            let text = format!("{} {} of {}", stage.name, stage.done, stage.total);
+            ui.label(RichText::new(text).size(11.0).weak());
+        }
+        let text = if job.is_cancelled() {
+            "stopping …"
+        } else {
+            "Stop"
+        };
+        let button = Button::new(RichText::new(text).size(11.0)).small();
+        if ui.add_enabled(!job.is_cancelled(), button).clicked() {
+            out.push(Command::Cancel(at));
+        }
+        ui.separator();
+    }
+}
+
+/// The command that does what was done last, for who wants to automate it.
+fn command_line(ui: &mut Ui, state: &State, c: &Colours) {
+    if state.command_line.is_empty() || ui.available_width() < 80.0 {
+        return;
+    }
+    let copy = ui.add(Button::new(RichText::new("Copy").size(11.0)).small());
+    if copy
+        .on_hover_text("Copy the command that does the same")
+        .clicked()
+    {
+        ui.ctx().copy_text(state.command_line.clone());
+    }
+    let text = RichText::new(format!("$ {}", state.command_line))
+        .monospace()
+        .size(11.0)
+        .color(c.muted);
+    ui.add(egui::Label::new(text).truncate())
+        .on_hover_text("The command that does the same");
+}

@@ -1,0 +1,433 @@
+//! Classes side by side, each with strips of its samples; segments are dragged from one to another.
+
+use egui::{
+    Button, CentralPanel, Context, DragAndDrop, Frame, Margin, Rect, RichText, ScrollArea, Sense,
+    SidePanel, TextEdit, Ui, Vec2, WidgetType,
+};
+use morec_db::ClipId;
+use morec_db::labels::{DbSample, SampleId, State as Judged};
+
+use super::{Out, padded, player, strips, view, widgets};
+use crate::format;
+use crate::state::{ClassCommand, Command, LibraryCommand, Panel, State};
+use crate::theme::Colours;
+
+const COLUMN: f32 = 214.0;
+const STRIP: f32 = 62.0;
+const CARD: f32 = STRIP + 20.0;
+
+pub fn show(ctx: &Context, state: &State, out: Out) {
+    let c = Colours::of(state.dark);
+    SidePanel::right("shown")
+        .frame(padded(&c))
+        .default_width(330.0)
+        .width_range(260.0..=620.0)
+        .show(ctx, |ui| {
+            let height = (ui.available_height() * 0.55).max(160.0);
+            let rect =
+                Rect::from_min_size(ui.cursor().min, Vec2::new(ui.available_width(), height));
+            ui.scope_builder(egui::UiBuilder::new().max_rect(rect), |ui| {
+                view::clip(ui, state, out)
+            });
+            ui.advance_cursor_after_rect(rect);
+            player::transport(ui, state, out);
+            chosen(ui, state, out);
+        });
+    CentralPanel::default().frame(padded(&c)).show(ctx, |ui| {
+        tools(ui, state, out);
+        ui.add_space(4.0);
+        match &state.classes.groups {
+            Some(_) => groups(ui, state, out),
+            None => columns(ui, state, out),
+        }
+    });
+}
+
+fn tools(ui: &mut Ui, state: &State, out: Out) {
+    let c = Colours::now(ui);
+    ui.horizontal_wrapped(|ui| {
+        let mut class = |command| out.push(Command::Classes(command));
+        if let Some(groups) = &state.classes.groups {
+            ui.label(RichText::new("Groups").strong());
+            let most = groups.items.len().clamp(2, 60);
+            let mut depth = state.classes.depth.min(most);
+            ui.spacing_mut().slider_width = 220.0;
+            let response = ui.add(egui::Slider::new(&mut depth, 1..=most));
+            widgets::named(&response, WidgetType::Slider, "Number of groups", false);
+            if response.changed() {
+                class(ClassCommand::Depth(depth));
+            }
+            ui.colored_label(
+                c.muted,
+                format!(
+                    "of {}, outliers first",
+                    format::count(groups.items.len(), "stretch")
+                ),
+            );
+            if groups.left_out > 0 {
+                ui.colored_label(c.warn, format!("{} left out", groups.left_out));
+            }
+            if ui.button("Back to classes").clicked() {
+                class(ClassCommand::CloseGroups);
+            }
+            return;
+        }
+        if ui
+            .button("Propose more")
+            .on_hover_text("Look for more of what is labelled, in all clips")
+            .clicked()
+        {
+            class(ClassCommand::Propose);
+        }
+        if ui.button("Next doubtful  N").clicked() {
+            class(ClassCommand::NextDoubtful);
+        }
+        ui.separator();
+        if ui
+            .button("Group labels")
+            .on_hover_text("Which labels are alike, whatever their class")
+            .clicked()
+        {
+            class(ClassCommand::Group { cuts: false });
+        }
+        if ui
+            .button("Group cuts")
+            .on_hover_text("Which cuts are alike: a way to begin without labels")
+            .clicked()
+        {
+            class(ClassCommand::Group { cuts: true });
+        }
+        ui.colored_label(
+            c.muted,
+            "Drag a strip to another class; double click opens it.",
+        );
+    });
+}
+
+/// The samples of each class in a column.
+fn columns(ui: &mut Ui, state: &State, out: Out) {
+    let Some(store) = &state.store else { return };
+    if state.classes.order.is_empty() {
+        widgets::nothing(
+            ui,
+            "No classes yet",
+            "Label a few motions, or cut the clips and group the cuts.",
+        );
+        return;
+    }
+    let height = ui.available_height();
+    ScrollArea::horizontal().auto_shrink(false).show(ui, |ui| {
+        ui.horizontal_top(|ui| {
+            for (place, class) in state.classes.order.iter().enumerate() {
+                let samples: Vec<&DbSample> = store
+                    .snapshot
+                    .samples
+                    .iter()
+                    .filter(|s| s.class == *class && s.state != Judged::Rejected)
+                    .collect();
+                column(ui, state, place, class, samples, height - 14.0, out);
+            }
+        });
+    });
+}
+
+fn column(
+    ui: &mut Ui,
+    state: &State,
+    place: usize,
+    class: &str,
+    mut samples: Vec<&DbSample>,
+    height: f32,
+    out: Out,
+) {
+    let c = Colours::now(ui);
+    // What is to be looked at first, the likeliest of it first.
+    let order = |s: &&DbSample| {
+        (
+            s.state != Judged::Proposed,
+            -(s.score.unwrap_or(0.0) * 1e6) as i64,
+        )
+    };
+    samples.sort_by_key(order);
+    let frame = Frame::new()
+        .fill(c.ground)
+        .corner_radius(6.0)
+        .inner_margin(Margin::same(8));
+    let inner = |ui: &mut Ui| {
+        ui.set_width(COLUMN);
+        ui.set_height(height - 16.0);
+        ui.vertical(|ui| {
+            ui.horizontal(|ui| {
+                widgets::chip(ui, Some(place), class);
+                ui.add(egui::Label::new(RichText::new(class).strong()).truncate());
+                let proposed = samples
+                    .iter()
+                    .filter(|s| s.state == Judged::Proposed)
+                    .count();
+                let accepted = samples.len() - proposed;
+                let text = if proposed > 0 {
+                    format!("{accepted} + {proposed}?")
+                } else {
+                    accepted.to_string()
+                };
+                ui.label(RichText::new(text).color(c.muted));
+            });
+            ui.add_space(2.0);
+            ui.spacing_mut().item_spacing.y = 6.0;
+            ScrollArea::vertical()
+                .id_salt(class)
+                .auto_shrink(false)
+                .show_rows(ui, CARD, samples.len(), |ui, rows| {
+                    for sample in &samples[rows] {
+                        card(ui, state, sample, out);
+                    }
+                });
+        });
+    };
+    let (dropped, payload) = dropzone(ui, frame, inner);
+    widgets::named(
+        &dropped,
+        WidgetType::Other,
+        format!("Column {class}"),
+        false,
+    );
+    if let Some(id) = payload {
+        let class = class.to_owned();
+        out.push(Command::Classes(ClassCommand::Move { id: *id, class }));
+    }
+}
+
+/// A frame on which a sample can be dropped.
+fn dropzone(
+    ui: &mut Ui,
+    frame: Frame,
+    add: impl FnOnce(&mut Ui),
+) -> (egui::Response, Option<std::sync::Arc<SampleId>>) {
+    let c = Colours::now(ui);
+    let response = frame.show(ui, add).response;
+    let over =
+        response.contains_pointer() && DragAndDrop::has_payload_of_type::<SampleId>(ui.ctx());
+    if over {
+        ui.painter().rect_stroke(
+            response.rect,
+            6.0,
+            (2.0, c.accent),
+            egui::StrokeKind::Inside,
+        );
+    }
+    let payload = response.dnd_release_payload::<SampleId>();
+    (response, payload)
+}
+
+/// A sample: its strip, where it is, and for proposals yes and no.
+fn card(ui: &mut Ui, state: &State, sample: &DbSample, out: Out) {
+    let c = Colours::now(ui);
+    let (rect, response) =
+        ui.allocate_exact_size(Vec2::new(COLUMN - 8.0, CARD - 6.0), Sense::click_and_drag());
+    let selected = state.timeline.selected.contains(&sample.id);
+    let kind = if sample.state == Judged::Proposed {
+        "proposed "
+    } else {
+        ""
+    };
+    widgets::named(
+        &response,
+        WidgetType::Button,
+        format!(
+            "{kind}{} in {} at {:.2} s",
+            sample.class, sample.clip_name, sample.start_secs
+        ),
+        selected,
+    );
+    let picture = Rect::from_min_size(rect.min, Vec2::new(rect.width(), STRIP));
+    strips::draw(
+        ui,
+        state,
+        sample.clip,
+        sample.start_secs,
+        sample.stop_secs,
+        picture,
+    );
+    let caption = Rect::from_min_max(egui::pos2(rect.left() + 2.0, picture.bottom()), rect.max);
+    let text = format!("{}  {}", sample.clip_name, format::secs(sample.start_secs));
+    widgets::text_in(ui, caption, &text, 11.0, c.muted, false);
+    if sample.state == Judged::Proposed {
+        ui.painter()
+            .rect_stroke(picture, 3.0, (1.0, c.warn), egui::StrokeKind::Inside);
+        let score = format!("{:.0} %", 100.0 * sample.score.unwrap_or(0.0));
+        widgets::text_in(ui, caption, &score, 11.0, c.warn, true);
+    }
+    if selected {
+        widgets::selected_frame(ui, picture);
+    }
+    if response.drag_started() {
+        response.dnd_set_drag_payload(sample.id);
+    }
+    if response.clicked() || response.double_clicked() {
+        go(
+            sample.clip,
+            sample.start_secs,
+            sample.stop_secs,
+            Some(sample.id),
+            out,
+        );
+    }
+    if response.double_clicked() {
+        out.push(Command::Show(Panel::Label));
+    }
+    if sample.state == Judged::Proposed {
+        answers(ui, picture, sample.id, out);
+    }
+}
+
+fn answers(ui: &mut Ui, picture: Rect, id: SampleId, out: Out) {
+    let size = Vec2::splat(20.0);
+    for (at, (text, name, command)) in [
+        ("✔", "Accept", ClassCommand::Accept(id)),
+        ("✖", "Reject", ClassCommand::Reject(id)),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let corner = picture.right_top() + Vec2::new(-46.0 + 23.0 * at as f32, 3.0);
+        let response = ui.put(Rect::from_min_size(corner, size), Button::new(text).small());
+        response.widget_info(|| {
+            egui::WidgetInfo::labeled(WidgetType::Button, true, format!("{name} {}", id.0))
+        });
+        if response.clicked() {
+            out.push(Command::Classes(command));
+        }
+    }
+}
+
+fn go(clip: ClipId, start_secs: f64, stop_secs: f64, sample: Option<SampleId>, out: Out) {
+    out.push(Command::Library(LibraryCommand::GoTo {
+        clip,
+        start_secs,
+        stop_secs,
+    }));
+    if let Some(id) = sample {
+        out.push(Command::Timeline(crate::state::TimelineCommand::Select {
+            id: Some(id),
+            add: false,
+        }));
+    }
+}
+
+/// The groups at the depth that the slider says.
+fn groups(ui: &mut Ui, state: &State, out: Out) {
+    let Some(groups) = &state.classes.groups else {
+        return;
+    };
+    let c = Colours::now(ui);
+    let key = egui::Id::new(("groups", groups.items.len(), state.classes.depth));
+    let all = ui
+        .data(|d| d.get_temp::<std::sync::Arc<Vec<crate::jobs::group::Group>>>(key))
+        .unwrap_or_else(|| {
+            let made = std::sync::Arc::new(groups.at(state.classes.depth));
+            ui.data_mut(|d| d.insert_temp(key, made.clone()));
+            made
+        });
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        for (number, group) in all.iter().enumerate() {
+            ui.horizontal(|ui| {
+                ui.label(RichText::new(format!("Group {}", number + 1)).strong());
+                ui.colored_label(c.muted, format::count(group.members.len(), "stretch"));
+                let id = ui.id().with(("name", number));
+                let mut name = ui.data(|d| d.get_temp::<String>(id)).unwrap_or_default();
+                let edit = ui.add(
+                    TextEdit::singleline(&mut name)
+                        .hint_text("name …")
+                        .desired_width(110.0),
+                );
+                edit.widget_info(|| {
+                    let mut info = egui::WidgetInfo::labeled(
+                        WidgetType::TextEdit,
+                        true,
+                        format!("Name of group {}", number + 1),
+                    );
+                    info.current_text_value = Some(name.clone());
+                    info
+                });
+                let named = !name.trim().is_empty();
+                if ui
+                    .add_enabled(named, Button::new("Make it a class").small())
+                    .clicked()
+                {
+                    let (group, name) = (number, name.clone());
+                    out.push(Command::Classes(ClassCommand::NameGroup { group, name }));
+                }
+                ui.data_mut(|d| d.insert_temp(id, name));
+            });
+            ScrollArea::horizontal()
+                .id_salt(("group", number))
+                .show(ui, |ui| {
+                    ui.horizontal(|ui| {
+                        for &member in group.members.iter().take(24) {
+                            let item = &groups.items[member];
+                            let (rect, response) =
+                                ui.allocate_exact_size(Vec2::new(150.0, STRIP), Sense::click());
+                            widgets::named(
+                                &response,
+                                WidgetType::Button,
+                                format!("Stretch {member} of group {}", number + 1),
+                                false,
+                            );
+                            strips::draw(
+                                ui,
+                                state,
+                                item.clip,
+                                item.start_secs,
+                                item.stop_secs,
+                                rect,
+                            );
+                            if let Some(class) = &item.class {
+                                let place = state.classes.place(class);
+                                let mark =
+                                    Rect::from_min_size(rect.min, Vec2::new(rect.width(), 3.0));
+                                ui.painter().rect_filled(mark, 1.0, c.class(place));
+                            }
+                            if response.clicked() {
+                                go(item.clip, item.start_secs, item.stop_secs, item.sample, out);
+                            }
+                        }
+                        if group.members.len() > 24 {
+                            ui.colored_label(
+                                c.muted,
+                                format!("and {} more", group.members.len() - 24),
+                            );
+                        }
+                    });
+                });
+            ui.add_space(6.0);
+        }
+    });
+}
+
+/// The sample that is shown, with what can be done.
+fn chosen(ui: &mut Ui, state: &State, out: Out) {
+    let selected = state.selected();
+    let Some(sample) = selected.first() else {
+        return;
+    };
+    ui.label(RichText::new(&sample.class).size(15.0).strong());
+    let extent = format!(
+        "{}, {} to {}",
+        sample.clip_name,
+        format::secs(sample.start_secs),
+        format::secs(sample.stop_secs)
+    );
+    ui.colored_label(Colours::now(ui).muted, extent);
+    if sample.state == Judged::Proposed {
+        ui.horizontal(|ui| {
+            for (text, command) in [
+                ("Accept  A", ClassCommand::Accept(sample.id)),
+                ("Reject  R", ClassCommand::Reject(sample.id)),
+            ] {
+                if ui.button(text).clicked() {
+                    out.push(Command::Classes(command));
+                }
+            }
+        });
+    }
+}

@@ -1,0 +1,180 @@
+//! What is known of the chosen clip, and can be changed.
+
+use egui::{Grid, RichText, TextEdit, Ui, WidgetType};
+use morec::roles::Role;
+use morec_db::{ClipInfo, ClipUpdate};
+
+use super::{Out, widgets};
+use crate::format;
+use crate::state::{Command, State};
+use crate::store::Edit;
+use crate::theme::Colours;
+
+pub fn show(ui: &mut Ui, state: &State, out: Out) {
+    let Some(store) = &state.store else { return };
+    let selected = &state.library.selected;
+    if selected.len() > 1 {
+        return several(ui, state, out);
+    }
+    let Some(clip) = selected.first().and_then(|id| store.snapshot.clip(*id)) else {
+        return;
+    };
+    known(ui, clip, out);
+    widgets::section(ui, "Parts of the body");
+    roles(ui, state);
+    ui.add_space(6.0);
+    if ui.button("Remove this clip").clicked() {
+        out.push(Command::Edit(Edit::RemoveClips(vec![clip.id])));
+    }
+}
+
+fn several(ui: &mut Ui, state: &State, out: Out) {
+    let selected = &state.library.selected;
+    ui.label(format!("{} clips are selected", selected.len()));
+    ui.horizontal(|ui| {
+        ui.label("Person");
+        if let Some(name) = committed(ui, "Person of all", "") {
+            let update = ClipUpdate {
+                subject: Some(name),
+                ..ClipUpdate::default()
+            };
+            out.push(Command::Edit(Edit::Describe {
+                clips: selected.clone(),
+                update,
+            }));
+        }
+    });
+    if ui.button("Remove these clips").clicked() {
+        out.push(Command::Edit(Edit::RemoveClips(selected.clone())));
+    }
+}
+
+/// A field whose text counts once Enter is pressed or it is left.
+pub fn committed(ui: &mut Ui, name: &str, text: &str) -> Option<String> {
+    let id = ui.make_persistent_id((name, text));
+    let mut now = ui
+        .data(|d| d.get_temp::<String>(id))
+        .unwrap_or_else(|| text.to_owned());
+    let edit = TextEdit::singleline(&mut now)
+        .id(id.with("edit"))
+        .desired_width(220.0);
+    let response = ui.add(edit);
+    response.widget_info(|| {
+        let mut info = egui::WidgetInfo::labeled(WidgetType::TextEdit, true, name);
+        info.current_text_value = Some(now.clone());
+        info
+    });
+    if response.lost_focus() {
+        ui.data_mut(|d| d.remove::<String>(id));
+        return (now != text).then_some(now);
+    }
+    if response.has_focus() {
+        ui.data_mut(|d| d.insert_temp(id, now));
+    }
+    None
+}
+
+fn known(ui: &mut Ui, clip: &ClipInfo, out: Out) {
+    let c = Colours::now(ui);
+    Grid::new("known")
+        .num_columns(2)
+        .spacing([12.0, 5.0])
+        .show(ui, |ui| {
+            let name = |ui: &mut Ui, text: &str| ui.colored_label(c.muted, text);
+            name(ui, "Name");
+            if let Some(to) = committed(ui, "Clip name", &clip.name) {
+                let from = clip.name.clone();
+                out.push(Command::Edit(Edit::RenameClip { from, to }));
+            }
+            ui.end_row();
+            let mut describe = |update| {
+                out.push(Command::Edit(Edit::Describe {
+                    clips: vec![clip.id],
+                    update,
+                }));
+            };
+            name(ui, "Person");
+            if let Some(subject) = committed(ui, "Person", clip.subject.as_deref().unwrap_or("")) {
+                describe(ClipUpdate {
+                    subject: Some(subject),
+                    ..ClipUpdate::default()
+                });
+            }
+            ui.end_row();
+            name(ui, "Tags");
+            let tags = clip.tags.join(", ");
+            if let Some(text) = committed(ui, "Tags", &tags) {
+                let wanted: Vec<String> = text
+                    .split(',')
+                    .map(|t| t.trim().to_owned())
+                    .filter(|t| !t.is_empty())
+                    .collect();
+                let gone = clip.tags.iter().filter(|t| !wanted.contains(t)).cloned();
+                describe(ClipUpdate {
+                    remove_tags: gone.collect(),
+                    add_tags: wanted.clone(),
+                    ..ClipUpdate::default()
+                });
+            }
+            ui.end_row();
+            let fact = |ui: &mut Ui, what: &str, text: String| {
+                ui.colored_label(c.muted, what);
+                ui.add(egui::Label::new(text).truncate());
+                ui.end_row();
+            };
+            let frames = format!(
+                "{}, {} frames at {:.0} Hz, {} joints",
+                format::duration(clip.duration_secs()),
+                format::grouped(clip.frames),
+                clip.rate_hz,
+                clip.joints
+            );
+            fact(ui, "Motion", frames);
+            if clip.repaired_frames > 0 {
+                fact(
+                    ui,
+                    "Repaired",
+                    format!("{} frames were filled in", clip.repaired_frames),
+                );
+            }
+            if let Some(source) = &clip.source {
+                fact(ui, "Source", source.clone());
+            }
+            fact(ui, "File", clip.path.clone());
+        });
+}
+
+/// Which joint plays which part of the body.
+fn roles(ui: &mut Ui, state: &State) {
+    let c = Colours::now(ui);
+    let Some(motion) = &state.player.motion else {
+        ui.colored_label(c.muted, "…");
+        return;
+    };
+    let joints = motion.clip.skeleton.joints();
+    let missing = Role::ALL
+        .into_iter()
+        .filter(|r| motion.roles.joint(*r).is_none())
+        .count();
+    if missing == Role::COUNT {
+        ui.colored_label(c.warn, "None is known, so nothing can be recognised in this clip. Import it again with a map of roles: morec db import DB FILE --roles MAP");
+    }
+    Grid::new("roles")
+        .num_columns(4)
+        .spacing([12.0, 2.0])
+        .show(ui, |ui| {
+            for (at, role) in Role::ALL.into_iter().enumerate() {
+                let part = RichText::new(role.name().replace('_', " "))
+                    .size(12.0)
+                    .color(c.muted);
+                ui.label(part);
+                match motion.roles.joint(role).and_then(|j| joints.get(j)) {
+                    Some(joint) => ui.label(RichText::new(&joint.name).size(12.0)),
+                    None => ui.label(RichText::new("—").size(12.0).color(c.muted)),
+                };
+                if at % 2 == 1 {
+                    ui.end_row();
+                }
+            }
+        });
+}

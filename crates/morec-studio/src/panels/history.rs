@@ -1,0 +1,50 @@
+//! What was changed, by name; everything down to a step can be taken back.
+
+use egui::{Align, Context, Frame, Layout, Margin, RichText, ScrollArea, SidePanel};
+
+use super::{Out, widgets};
+use crate::state::{Command, State};
+use crate::store::Edit;
+use crate::theme::Colours;
+
+pub fn show(ctx: &Context, state: &State, out: Out) {
+    let Some(store) = state.store.as_ref().filter(|_| state.show_history) else {
+        return;
+    };
+    let c = Colours::of(state.dark);
+    let frame = Frame::new().fill(c.ground).inner_margin(Margin::same(12));
+    SidePanel::right("history").frame(frame).exact_width(280.0).show(ctx, |ui| {
+        ui.horizontal(|ui| {
+            ui.label(RichText::new("History").size(15.0).strong());
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                if ui.button("Close").clicked() {
+                    out.push(Command::ShowHistory(false));
+                }
+            });
+        });
+        ui.colored_label(c.muted, "The last change is at the top. Any of them can be taken back if no later one depends on it.");
+        ui.add_space(6.0);
+        let steps = &store.snapshot.history;
+        if steps.is_empty() {
+            widgets::nothing(ui, "Nothing was changed yet", "");
+            return;
+        }
+        ScrollArea::vertical().auto_shrink(false).show_rows(ui, 24.0, steps.len(), |ui, rows| {
+            for step in &steps[rows] {
+                ui.horizontal(|ui| {
+                    ui.set_height(24.0);
+                    let text = RichText::new(&step.what);
+                    let text = if step.undone { text.color(c.muted).strikethrough() } else { text };
+                    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                        if !step.undone && ui.small_button("Undo").clicked() {
+                            out.push(Command::Edit(Edit::Undo(Some(step.id))));
+                        }
+                        ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                            ui.add(egui::Label::new(text).truncate());
+                        });
+                    });
+                });
+            }
+        });
+    });
+}

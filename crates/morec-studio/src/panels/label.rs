@@ -1,0 +1,305 @@
+//! Labelling: clips at the left, the performer in the middle, classes at the right, the timeline below.
+
+use egui::{
+    Button, CentralPanel, Context, Rect, RichText, ScrollArea, Sense, SidePanel, TextEdit,
+    TopBottomPanel, Ui, Vec2, WidgetType,
+};
+use morec_db::labels::State as Judged;
+
+use super::{Out, padded, player, timeline, view, widgets};
+use crate::format;
+use crate::state::{ClassCommand, Command, LibraryCommand, State, TimelineCommand};
+use crate::theme::Colours;
+
+pub fn show(ctx: &Context, state: &State, out: Out) {
+    let c = Colours::of(state.dark);
+    let height = ctx.content_rect().height();
+    TopBottomPanel::bottom("timeline")
+        .frame(padded(&c))
+        .resizable(true)
+        .default_height((height * 0.40).clamp(240.0, 420.0))
+        .height_range(160.0..=height * 0.65)
+        .show(ctx, |ui| timeline::show(ui, state, out));
+    SidePanel::left("clips")
+        .frame(padded(&c))
+        .default_width(190.0)
+        .width_range(140.0..=320.0)
+        .show(ctx, |ui| clips(ui, state, out));
+    SidePanel::right("classes")
+        .frame(padded(&c))
+        .default_width(250.0)
+        .width_range(220.0..=340.0)
+        .show(ctx, |ui| {
+            ScrollArea::vertical()
+                .auto_shrink(false)
+                .show(ui, |ui| classes(ui, state, out));
+        });
+    CentralPanel::default().frame(padded(&c)).show(ctx, |ui| {
+        let room = Vec2::new(0.0, player::HEIGHT + 6.0);
+        let rect = Rect::from_min_size(ui.cursor().min, ui.available_size() - room);
+        ui.scope_builder(egui::UiBuilder::new().max_rect(rect), |ui| {
+            view::clip(ui, state, out)
+        });
+        ui.advance_cursor_after_rect(rect);
+        player::transport(ui, state, out);
+    });
+}
+
+fn clips(ui: &mut Ui, state: &State, out: Out) {
+    const ROW: f32 = 24.0;
+    let Some(store) = &state.store else { return };
+    let c = Colours::now(ui);
+    widgets::section(ui, "CLIPS");
+    ui.spacing_mut().item_spacing.y = 0.0;
+    let shown = state.library.shown();
+    let now = state.player.motion.as_ref().map(|m| m.id);
+    ScrollArea::vertical()
+        .auto_shrink(false)
+        .show_rows(ui, ROW, shown.len(), |ui, rows| {
+            for &place in &shown[rows] {
+                let Some(clip) = store.snapshot.clips.get(place) else {
+                    continue;
+                };
+                let size = Vec2::new(ui.available_width(), ROW);
+                let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+                let on = now == Some(clip.id);
+                widgets::named(
+                    &response,
+                    WidgetType::SelectableLabel,
+                    format!("Show {}", clip.name),
+                    on,
+                );
+                if on {
+                    ui.painter()
+                        .rect_filled(rect, 3.0, ui.visuals().selection.bg_fill);
+                } else if response.hovered() {
+                    ui.painter().rect_filled(rect, 3.0, c.tint(c.accent, 0.10));
+                }
+                let inner = rect.shrink2(Vec2::new(6.0, 0.0));
+                let left =
+                    Rect::from_min_max(inner.min, egui::pos2(inner.right() - 34.0, inner.bottom()));
+                widgets::text_in(ui, left, &clip.name, 13.0, c.text, false);
+                if clip.samples > 0 {
+                    widgets::text_in(ui, inner, &clip.samples.to_string(), 12.0, c.muted, true);
+                }
+                if response.clicked() {
+                    out.push(Command::Library(LibraryCommand::Open(clip.id)));
+                }
+            }
+        });
+}
+
+fn classes(ui: &mut Ui, state: &State, out: Out) {
+    widgets::section(ui, "CLASSES");
+    for place in 0..state.classes.order.len() {
+        class(ui, state, place, out);
+    }
+    add_class(ui, state, out);
+    ui.add_space(8.0);
+    selection(ui, state, out);
+    ui.add_space(8.0);
+    help(ui, state, out);
+}
+
+fn class(ui: &mut Ui, state: &State, place: usize, out: Out) {
+    let c = Colours::now(ui);
+    let name = &state.classes.order[place];
+    let held = state.classes.held.as_ref().is_some_and(|h| h.slot == place);
+    if let Some((from, now)) = state
+        .classes
+        .renaming
+        .as_ref()
+        .filter(|(from, _)| from == name)
+    {
+        let mut text = now.clone();
+        let response = ui.add(TextEdit::singleline(&mut text).desired_width(180.0));
+        response.request_focus();
+        if response.lost_focus() || ui.input(|i| i.key_pressed(egui::Key::Enter)) {
+            let (from, to) = (from.clone(), text);
+            out.push(Command::Classes(ClassCommand::Rename { from, to }));
+        } else if text != *now {
+            out.push(Command::Classes(ClassCommand::Renaming(Some((
+                from.clone(),
+                text,
+            )))));
+        }
+        return;
+    }
+    let size = Vec2::new(ui.available_width(), 26.0);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+    widgets::named(&response, WidgetType::Button, format!("Class {name}"), held);
+    let fill = if held {
+        c.panel.lerp_to_gamma(c.class(Some(place)), 0.5)
+    } else if response.hovered() {
+        c.tint(c.accent, 0.10)
+    } else {
+        egui::Color32::TRANSPARENT
+    };
+    ui.painter().rect_filled(rect, 4.0, fill);
+    let square =
+        Rect::from_center_size(rect.left_center() + Vec2::new(14.0, 0.0), Vec2::splat(18.0));
+    ui.painter().rect_filled(square, 3.0, c.class(Some(place)));
+    if place < 9 {
+        let font = egui::FontId::proportional(12.0);
+        let key = (place + 1).to_string();
+        ui.painter().text(
+            square.center(),
+            egui::Align2::CENTER_CENTER,
+            key,
+            font,
+            c.on_class(),
+        );
+    }
+    let info = state
+        .store
+        .as_ref()
+        .and_then(|s| s.snapshot.classes.iter().find(|i| i.name == *name));
+    let count = match info {
+        Some(i) if i.proposed > 0 => format!("{} + {}?", i.accepted, i.proposed),
+        Some(i) => i.accepted.to_string(),
+        None => "new".to_owned(),
+    };
+    let inner = rect.shrink2(Vec2::new(6.0, 0.0));
+    let text = Rect::from_min_max(
+        egui::pos2(square.right() + 8.0, inner.top()),
+        egui::pos2(inner.right() - 44.0, inner.bottom()),
+    );
+    widgets::text_in(ui, text, name, 13.5, c.text, false);
+    widgets::text_in(ui, inner, &count, 12.0, c.muted, true);
+    let response = response.on_hover_text("Click labels the selected stretch, or changes the selected label. Right click renames, removes.");
+    if response.clicked() {
+        let command = match state.timeline.range {
+            Some(_) => Command::Timeline(TimelineCommand::LabelRange(name.clone())),
+            None => Command::Classes(ClassCommand::Key {
+                slot: place,
+                down: true,
+            }),
+        };
+        out.push(command);
+        out.push(Command::Classes(ClassCommand::Key {
+            slot: place,
+            down: false,
+        }));
+    }
+    response.context_menu(|ui| {
+        if ui.button("Rename").clicked() {
+            let now = Some((name.clone(), name.clone()));
+            out.push(Command::Classes(ClassCommand::Renaming(now)));
+            ui.close();
+        }
+        if ui.button("Remove the class and its labels").clicked() {
+            out.push(Command::Classes(ClassCommand::Remove(name.clone())));
+            ui.close();
+        }
+    });
+}
+
+fn add_class(ui: &mut Ui, state: &State, out: Out) {
+    ui.horizontal(|ui| {
+        let mut text = state.classes.adding.clone();
+        let width = ui.available_width() - 62.0;
+        let response = ui.add(
+            TextEdit::singleline(&mut text)
+                .hint_text("New class …")
+                .desired_width(width),
+        );
+        response.widget_info(|| {
+            let mut info = egui::WidgetInfo::labeled(WidgetType::TextEdit, true, "New class");
+            info.current_text_value = Some(state.classes.adding.clone());
+            info
+        });
+        let entered = response.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+        let add = ui
+            .add_enabled(!text.trim().is_empty(), Button::new("Add"))
+            .clicked();
+        if text != state.classes.adding {
+            out.push(Command::Classes(ClassCommand::Adding(text.clone())));
+        }
+        if entered || add {
+            out.push(Command::Classes(ClassCommand::Add(text)));
+        }
+    });
+}
+
+/// What is selected, and what can be done with it.
+fn selection(ui: &mut Ui, state: &State, out: Out) {
+    let c = Colours::now(ui);
+    let selected = state.selected();
+    let mut timeline = |command| out.push(Command::Timeline(command));
+    if let Some((start, stop)) = state.timeline.range {
+        widgets::section(ui, "SELECTED STRETCH");
+        ui.label(format!("{} to {}", format::secs(start), format::secs(stop)));
+        ui.colored_label(c.muted, "A class's key or a click on a class labels it.");
+        return;
+    }
+    let [sample] = selected[..] else {
+        if selected.len() > 1 {
+            widgets::section(ui, "SELECTED LABELS");
+            ui.label(format::count(selected.len(), "label"));
+            ui.horizontal(|ui| {
+                if ui.button("Merge").clicked() {
+                    timeline(TimelineCommand::Merge);
+                }
+                if ui.button("Remove").clicked() {
+                    timeline(TimelineCommand::Remove);
+                }
+            });
+        }
+        return;
+    };
+    widgets::section(ui, "SELECTED LABEL");
+    let (start, stop) = (sample.start_secs, sample.stop_secs);
+    ui.label(RichText::new(&sample.class).strong());
+    ui.label(format!(
+        "{} to {}, {:.2} s",
+        format::secs(start),
+        format::secs(stop),
+        stop - start
+    ));
+    if sample.state == Judged::Proposed {
+        let score = sample
+            .score
+            .map_or_else(String::new, |s| format!(", score {s:.2}"));
+        ui.colored_label(c.muted, format!("Proposed{score}"));
+        ui.horizontal(|ui| {
+            if ui.button("Accept  A").clicked() {
+                out.push(Command::Classes(ClassCommand::Accept(sample.id)));
+            }
+            if ui.button("Reject  R").clicked() {
+                out.push(Command::Classes(ClassCommand::Reject(sample.id)));
+            }
+        });
+        return;
+    }
+    ui.horizontal(|ui| {
+        if ui.button("Split  S").clicked() {
+            timeline(TimelineCommand::Split);
+        }
+        if ui.button("Remove").clicked() {
+            timeline(TimelineCommand::Remove);
+        }
+    });
+}
+
+fn help(ui: &mut Ui, state: &State, out: Out) {
+    let c = Colours::now(ui);
+    let Some(store) = &state.store else { return };
+    if store.snapshot.accepted().next().is_none() {
+        widgets::section(ui, "HOW");
+        ui.colored_label(c.muted, "Play with Space and hold 1 while the first gesture passes, 2 for the second. Two or three of each are enough to begin with; then Train.");
+        return;
+    }
+    widgets::section(ui, "MORE LIKE THESE");
+    ui.horizontal_wrapped(|ui| {
+        if ui
+            .button("Propose")
+            .on_hover_text("Look for more of what is labelled, in all clips")
+            .clicked()
+        {
+            out.push(Command::Classes(ClassCommand::Propose));
+        }
+        if ui.button("Next doubtful  N").clicked() {
+            out.push(Command::Classes(ClassCommand::NextDoubtful));
+        }
+    });
+}

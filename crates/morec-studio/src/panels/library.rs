@@ -1,0 +1,259 @@
+//! The clips as a table, and the chosen one beside it.
+
+use egui::{
+    CentralPanel, Context, Key, Rect, RichText, ScrollArea, Sense, SidePanel, TextEdit, Ui, Vec2,
+    WidgetType,
+};
+use morec_db::ClipInfo;
+
+use super::{Out, details, padded, player, view, widgets};
+use crate::format;
+use crate::state::{Column, Command, FileCommand, LibraryCommand, State};
+use crate::theme::Colours;
+
+const ROW: f32 = 26.0;
+
+pub fn show(ctx: &Context, state: &State, out: Out) {
+    let c = Colours::of(state.dark);
+    let width = (ctx.content_rect().width() * 0.42).clamp(430.0, 760.0);
+    SidePanel::right("clip")
+        .frame(padded(&c))
+        .exact_width(width)
+        .show(ctx, |ui| {
+            let height = (ui.available_height() * 0.52).max(200.0);
+            let rect =
+                Rect::from_min_size(ui.cursor().min, Vec2::new(ui.available_width(), height));
+            ui.scope_builder(egui::UiBuilder::new().max_rect(rect), |ui| {
+                view::clip(ui, state, out)
+            });
+            ui.advance_cursor_after_rect(rect);
+            player::transport(ui, state, out);
+            scrub(ui, state, out);
+            ScrollArea::vertical()
+                .auto_shrink(false)
+                .show(ui, |ui| details::show(ui, state, out));
+        });
+    CentralPanel::default().frame(padded(&c)).show(ctx, |ui| {
+        tools(ui, state, out);
+        report(ui, state, out);
+        table(ui, state, out);
+    });
+}
+
+/// A line with the playhead, for clips that are only looked at.
+fn scrub(ui: &mut Ui, state: &State, out: Out) {
+    let mut at = state.player.at_secs;
+    let end = state.player.secs().max(0.01);
+    ui.spacing_mut().slider_width = ui.available_width();
+    let slider = egui::Slider::new(&mut at, 0.0..=end).show_value(false);
+    let response = ui.add(slider);
+    widgets::named(&response, WidgetType::Slider, "Position", false);
+    if response.changed() {
+        out.push(Command::Play(crate::state::PlayCommand::Seek(at)));
+    }
+}
+
+fn tools(ui: &mut Ui, state: &State, out: Out) {
+    let c = Colours::now(ui);
+    ui.horizontal(|ui| {
+        let mut text = state.library.filter.clone();
+        let edit = TextEdit::singleline(&mut text)
+            .hint_text("Search names, people, tags …")
+            .desired_width((ui.available_width() - 260.0).clamp(120.0, 320.0));
+        let response = ui.add(edit);
+        response.widget_info(|| {
+            let mut info = egui::WidgetInfo::labeled(WidgetType::TextEdit, true, "Search clips");
+            info.current_text_value = Some(state.library.filter.clone());
+            info
+        });
+        if response.has_focus() && ui.input(|i| i.key_pressed(Key::Escape)) {
+            text.clear();
+        }
+        if text != state.library.filter {
+            out.push(Command::Library(LibraryCommand::Filter(text)));
+        }
+        if ui.button("Import clips …").clicked() {
+            out.push(Command::File(FileCommand::AskImport));
+        }
+        if ui.button("Folder …").clicked() {
+            out.push(Command::File(FileCommand::AskImportFolder));
+        }
+        let Some(store) = &state.store else { return };
+        let (shown, all) = (state.library.shown().len(), store.snapshot.clips.len());
+        let text = match shown == all {
+            true => format::count(all, "clip"),
+            false => format!("{} of {}", format::grouped(shown), format::grouped(all)),
+        };
+        ui.label(RichText::new(text).color(c.muted));
+    });
+    ui.add_space(4.0);
+}
+
+/// What became of the last import.
+fn report(ui: &mut Ui, state: &State, out: Out) {
+    let Some(report) = &state.import_report else {
+        return;
+    };
+    let c = Colours::now(ui);
+    let fill = c.tint(
+        if report.refused.is_empty() {
+            c.good
+        } else {
+            c.warn
+        },
+        0.14,
+    );
+    egui::Frame::new()
+        .fill(fill)
+        .corner_radius(4.0)
+        .inner_margin(8.0)
+        .show(ui, |ui| {
+            ui.horizontal(|ui| {
+                ui.label(RichText::new(report.said()).strong());
+                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                    if ui.small_button("Close").clicked() {
+                        out.push(Command::Library(LibraryCommand::DismissReport));
+                    }
+                });
+            });
+            let lines = report.refused.iter().map(|line| (line, "refused"));
+            let lines = lines.chain(report.warnings.iter().map(|line| (line, "note")));
+            ScrollArea::vertical()
+                .id_salt("report")
+                .max_height(120.0)
+                .show(ui, |ui| {
+                    for ((path, why), kind) in lines.take(200) {
+                        let name = path.file_name().unwrap_or_default().to_string_lossy();
+                        ui.label(RichText::new(format!("{name}: {kind}: {why}")).size(12.0))
+                            .on_hover_text(path.display().to_string());
+                    }
+                });
+        });
+    ui.add_space(6.0);
+}
+
+/// A column: what it is, its heading, its share of the width, whether it is a number.
+const COLUMNS: [(Column, &str, f32, bool); 5] = [
+    (Column::Name, "Clip", 0.42, false),
+    (Column::Subject, "Person", 0.20, false),
+    (Column::Length, "Length", 0.14, true),
+    (Column::Labels, "Labels", 0.11, true),
+    (Column::Format, "Format", 0.13, true),
+];
+
+fn cells(rect: Rect) -> [Rect; 5] {
+    let inner = rect.shrink2(Vec2::new(8.0, 0.0));
+    let mut x = inner.left();
+    COLUMNS.map(|(_, _, share, _)| {
+        let width = inner.width() * share;
+        let cell = Rect::from_min_size(
+            egui::pos2(x, inner.top()),
+            Vec2::new(width - 12.0, inner.height()),
+        );
+        x += width;
+        cell
+    })
+}
+
+fn table(ui: &mut Ui, state: &State, out: Out) {
+    let Some(store) = &state.store else { return };
+    header(ui, state, out);
+    let clips = &store.snapshot.clips;
+    if clips.is_empty() {
+        widgets::nothing(
+            ui,
+            "No clips yet",
+            "Drop files or folders here, or import them.",
+        );
+        ui.vertical_centered(|ui| {
+            ui.add_space(8.0);
+            if ui.button("Import clips").clicked() {
+                out.push(Command::File(FileCommand::AskImport));
+            }
+        });
+        return;
+    }
+    let shown = state.library.shown();
+    if shown.is_empty() {
+        let hint = format!("Nothing matches “{}”.", state.library.filter);
+        return widgets::nothing(ui, "No clip is found", &hint);
+    }
+    ui.spacing_mut().item_spacing.y = 0.0;
+    ScrollArea::vertical()
+        .auto_shrink(false)
+        .show_rows(ui, ROW, shown.len(), |ui, rows| {
+            for &place in &shown[rows] {
+                if let Some(clip) = clips.get(place) {
+                    row(ui, state, clip, out);
+                }
+            }
+        });
+}
+
+fn header(ui: &mut Ui, state: &State, out: Out) {
+    let c = Colours::now(ui);
+    let (rect, _) = ui.allocate_exact_size(Vec2::new(ui.available_width(), ROW), Sense::hover());
+    for ((column, name, _, right), cell) in COLUMNS.into_iter().zip(cells(rect)) {
+        let response = ui.interact(cell, ui.id().with(name), Sense::click());
+        widgets::named(
+            &response,
+            WidgetType::Button,
+            format!("Sort by {}", name.to_lowercase()),
+            false,
+        );
+        let arrow = match state.library.sort {
+            Some((by, down)) if by == column => {
+                if down {
+                    " ⏷"
+                } else {
+                    " ⏶"
+                }
+            }
+            _ => "",
+        };
+        let colour = if response.hovered() { c.text } else { c.muted };
+        widgets::text_in(ui, cell, &format!("{name}{arrow}"), 12.0, colour, right);
+        if response.clicked() {
+            out.push(Command::Library(LibraryCommand::Sort(column)));
+        }
+    }
+    ui.painter().hline(
+        rect.x_range(),
+        rect.bottom(),
+        egui::Stroke::new(1.0, c.line),
+    );
+}
+
+fn row(ui: &mut Ui, state: &State, clip: &ClipInfo, out: Out) {
+    let c = Colours::now(ui);
+    let (rect, response) =
+        ui.allocate_exact_size(Vec2::new(ui.available_width(), ROW), Sense::click());
+    let on = state.library.selected.contains(&clip.id);
+    widgets::named(&response, WidgetType::SelectableLabel, &clip.name, on);
+    if on {
+        ui.painter()
+            .rect_filled(rect, 3.0, ui.visuals().selection.bg_fill);
+    } else if response.hovered() {
+        ui.painter().rect_filled(rect, 3.0, c.tint(c.accent, 0.10));
+    }
+    let labels = match clip.samples {
+        0 => String::new(),
+        n => n.to_string(),
+    };
+    let texts = [
+        clip.name.clone(),
+        clip.subject.clone().unwrap_or_default(),
+        format::duration(clip.duration_secs()),
+        labels,
+        clip.format.clone(),
+    ];
+    for (at, (text, cell)) in texts.iter().zip(cells(rect)).enumerate() {
+        let colour = if at == 0 || at == 3 { c.text } else { c.muted };
+        widgets::text_in(ui, cell, text, 13.0, colour, COLUMNS[at].3);
+    }
+    if response.clicked() {
+        let add = ui.input(|i| i.modifiers.command);
+        let clip = clip.id;
+        out.push(Command::Library(LibraryCommand::Select { clip, add }));
+    }
+}

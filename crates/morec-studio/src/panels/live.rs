@@ -1,0 +1,402 @@
+//! Live: a source, the performer, what is recognised as it comes, and teaching from what just happened.
+
+use egui::{
+    CentralPanel, ComboBox, Context, ProgressBar, Rect, RichText, ScrollArea, SidePanel, TextEdit,
+    TopBottomPanel, Ui, Vec2, WidgetType,
+};
+use morec::kinematics::WorldPose;
+
+use super::{Out, live_line, padded, view, widgets};
+use crate::body::Body;
+use crate::format;
+use crate::state::live::Choice;
+use crate::state::{Command, LiveCommand, State, TrainCommand};
+use crate::theme::Colours;
+
+pub fn show(ctx: &Context, state: &State, out: Out) {
+    let c = Colours::of(state.dark);
+    TopBottomPanel::bottom("minutes")
+        .frame(padded(&c))
+        .resizable(true)
+        .default_height(178.0)
+        .height_range(120.0..=360.0)
+        .show(ctx, |ui| live_line::show(ui, state, out));
+    SidePanel::left("source")
+        .frame(padded(&c))
+        .default_width(250.0)
+        .width_range(220.0..=340.0)
+        .show(ctx, |ui| {
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                source(ui, state, out);
+                health(ui, state);
+                sensitivity(ui, state, out);
+            });
+        });
+    SidePanel::right("recognised")
+        .frame(padded(&c))
+        .default_width(270.0)
+        .width_range(230.0..=380.0)
+        .show(ctx, |ui| {
+            teach(ui, state, out);
+            recognised(ui, state);
+        });
+    CentralPanel::default()
+        .frame(padded(&c))
+        .show(ctx, |ui| performer(ui, state, out));
+}
+
+fn source(ui: &mut Ui, state: &State, out: Out) {
+    let c = Colours::now(ui);
+    let mut live = |command| out.push(Command::Live(command));
+    widgets::section(ui, "SOURCE");
+    let running = state.live.is_running();
+    ui.horizontal(|ui| {
+        let is_clip = matches!(state.live.choice, Choice::Clip(_));
+        if ui.selectable_label(is_clip, "Clip").clicked() {
+            live(LiveCommand::Choose(Choice::Clip(None)));
+        }
+        for (name, address) in [
+            ("VMC", "vmc://0.0.0.0:39539"),
+            ("Axis", "axis://127.0.0.1:7002"),
+            ("JSON", "json+tcp://127.0.0.1:9000"),
+        ] {
+            let kind = address.split("://").next().unwrap_or_default();
+            let on = matches!(&state.live.choice, Choice::Network(a) if a.starts_with(kind));
+            if ui.selectable_label(on, name).clicked() {
+                live(LiveCommand::Choose(Choice::Network(address.to_owned())));
+            }
+        }
+    });
+    match &state.live.choice {
+        Choice::Clip(chosen) => clip_choice(ui, state, *chosen, &mut live),
+        Choice::Network(address) => {
+            let mut text = address.clone();
+            let response = ui.add(TextEdit::singleline(&mut text).desired_width(f32::INFINITY));
+            response.widget_info(|| {
+                let mut info = egui::WidgetInfo::labeled(WidgetType::TextEdit, true, "Address");
+                info.current_text_value = Some(address.clone());
+                info
+            });
+            if text != *address {
+                live(LiveCommand::Choose(Choice::Network(text)));
+            }
+        }
+    }
+    ui.add_space(4.0);
+    let (text, command) = match running {
+        true => ("Stop", LiveCommand::Stop),
+        false => ("Start", LiveCommand::Start),
+    };
+    let size = Vec2::new(ui.available_width(), 30.0);
+    let button = match running {
+        true => egui::Button::new(text),
+        false => widgets::main_button(text, &c),
+    };
+    if ui.add(button.min_size(size)).clicked() {
+        live(command);
+    }
+    record(ui, state, &mut live);
+}
+
+fn clip_choice(
+    ui: &mut Ui,
+    state: &State,
+    chosen: Option<morec_db::ClipId>,
+    live: &mut impl FnMut(LiveCommand),
+) {
+    let Some(store) = &state.store else { return };
+    let shown = state.player.motion.as_ref().map(|m| m.id);
+    let now = chosen.or(shown).and_then(|id| store.snapshot.clip(id));
+    let text = now.map_or("choose a clip", |clip| clip.name.as_str());
+    let combo = ComboBox::from_id_salt("live clip")
+        .width(ui.available_width() - 8.0)
+        .selected_text(text);
+    combo.show_ui(ui, |ui| {
+        for clip in store.snapshot.clips.iter().take(500) {
+            let on = now.is_some_and(|n| n.id == clip.id);
+            if ui.selectable_label(on, &clip.name).clicked() {
+                live(LiveCommand::Choose(Choice::Clip(Some(clip.id))));
+            }
+        }
+    });
+}
+
+fn record(ui: &mut Ui, state: &State, live: &mut impl FnMut(LiveCommand)) {
+    let c = Colours::now(ui);
+    let text = match (&state.live.take, state.live.countdown) {
+        (Some(take), _) => format!("● Stop recording, {:.1} s", take.secs()),
+        (None, Some(left)) => format!("Recording in {:.0} …", left.ceil()),
+        (None, None) => "● Record a take  R".to_owned(),
+    };
+    let text = RichText::new(text);
+    let text = if state.live.take.is_some() {
+        text.color(c.bad).strong()
+    } else {
+        text
+    };
+    let button = egui::Button::new(text).min_size(Vec2::new(ui.available_width(), 26.0));
+    let response = ui.add_enabled(state.live.run.is_some(), button);
+    response.widget_info(|| egui::WidgetInfo::labeled(WidgetType::Button, true, "Record a take"));
+    if response
+        .on_hover_text("Three seconds to get ready; the take becomes a clip of the database")
+        .clicked()
+    {
+        live(LiveCommand::Record);
+    }
+}
+
+/// How the stream is, in words.
+fn health(ui: &mut Ui, state: &State) {
+    let c = Colours::now(ui);
+    let Some(run) = &state.live.run else { return };
+    ui.add_space(6.0);
+    widgets::section(ui, "STREAM");
+    if let Some(d) = run.diagnosis() {
+        let rate = d
+            .rate_hz
+            .map_or("– Hz".to_owned(), |hz| format!("{hz:.0} Hz"));
+        let lost = format!("{:.1} % lost", 100.0 * d.lost_share);
+        let height = d
+            .height_m
+            .map_or(String::new(), |h| format!(", {h:.2} m to the head"));
+        ui.label(RichText::new(format!("{rate}, {lost}{height}")).size(12.5));
+    }
+    let said = run.health();
+    if said.is_empty() {
+        ui.colored_label(c.good, "✔ Nothing is wrong with it.");
+    }
+    for (text, fault) in said.iter().take(5) {
+        let colour = if *fault { c.warn } else { c.muted };
+        ui.label(
+            RichText::new(format!("{} {text}", if *fault { "⚠" } else { "•" }))
+                .size(12.0)
+                .color(colour),
+        );
+    }
+}
+
+fn sensitivity(ui: &mut Ui, state: &State, out: Out) {
+    let c = Colours::now(ui);
+    if state.live.index().is_none() {
+        return;
+    }
+    ui.add_space(6.0);
+    widgets::section(ui, "SENSITIVITY");
+    if !state.live.can_sense() {
+        ui.colored_label(c.muted, "This index has one sensitivity only.");
+        return;
+    }
+    let mut alarms = state.live.alarms.unwrap_or(0.3);
+    ui.spacing_mut().slider_width = ui.available_width() - 60.0;
+    let slider = egui::Slider::new(&mut alarms, 0.03..=2.0)
+        .logarithmic(true)
+        .max_decimals(2);
+    let response = ui.add(slider);
+    widgets::named(&response, WidgetType::Slider, "Sensitivity", false);
+    if response.changed() {
+        out.push(Command::Live(LiveCommand::Sensitivity(alarms)));
+    }
+    ui.label(
+        RichText::new("false alarms a minute that are put up with")
+            .size(11.0)
+            .color(c.muted),
+    );
+    if let Some(found) = &state.live.resensed {
+        let text = format!(
+            "The minutes below would have held {}.",
+            format::count(found.len(), "motion")
+        );
+        ui.label(RichText::new(text).size(12.0));
+    }
+}
+
+fn performer(ui: &mut Ui, state: &State, out: Out) {
+    let rect = ui.available_rect_before_wrap();
+    let Some(run) = &state.live.run else {
+        let c = Colours::now(ui);
+        ui.painter().rect_filled(rect, 4.0, c.well);
+        ui.add_space(rect.height() * 0.3);
+        widgets::nothing(
+            ui,
+            "Nobody performs yet",
+            "Choose a source at the left and start it.",
+        );
+        return;
+    };
+    let empty = (Body::default(), WorldPose::default());
+    let known = !run.body.limbs.is_empty();
+    let scene = view::Scene {
+        body: if known { &run.body } else { &empty.0 },
+        pose: if known { &run.pose } else { &empty.1 },
+        floor: run.floor(),
+        motion: None,
+    };
+    view::draw(ui, rect, state, &scene, out);
+    banner(ui, state, rect);
+}
+
+/// What was recognised last, large enough to be read from a few metres.
+fn banner(ui: &Ui, state: &State, rect: Rect) {
+    const SHOWN_SECS: f64 = 2.0;
+    let c = Colours::now(ui);
+    let Some(run) = &state.live.run else { return };
+    let painter = ui.painter_at(rect);
+    if let Some(left) = state.live.countdown {
+        let text = format!("{:.0}", left.ceil());
+        painter.text(
+            rect.center(),
+            egui::Align2::CENTER_CENTER,
+            text,
+            egui::FontId::proportional(96.0),
+            c.warn,
+        );
+    }
+    let fresh = run
+        .seen
+        .last()
+        .filter(|s| run.now_secs - s.reported_secs < SHOWN_SECS);
+    let Some(seen) = fresh else { return };
+    let age = ((run.now_secs - seen.reported_secs) / SHOWN_SECS) as f32;
+    let place = state.classes.place(&seen.class);
+    let galley = painter.layout_no_wrap(
+        seen.class.clone(),
+        egui::FontId::proportional(30.0),
+        c.on_class(),
+    );
+    let size = galley.size() + Vec2::new(40.0, 18.0);
+    let at = Rect::from_center_size(rect.center_bottom() - Vec2::new(0.0, 46.0), size);
+    let fill = c.class(place).gamma_multiply((1.4 - age).clamp(0.0, 1.0));
+    painter.rect_filled(at, 8.0, fill);
+    painter.galley(at.center() - galley.size() / 2.0, galley, c.on_class());
+}
+
+/// Marking what just happened.
+fn teach(ui: &mut Ui, state: &State, out: Out) {
+    let c = Colours::now(ui);
+    widgets::section(ui, "WHAT WAS THAT?");
+    let hint = match (&state.live.run, state.live.range) {
+        (None, _) => {
+            "Start a source; then a key or a click says what the last motion was, and it is recognised from then on."
+        }
+        (_, Some(_)) => "The selected stretch was …",
+        (_, None) => "The last motion was …",
+    };
+    ui.label(RichText::new(hint).size(12.0).color(c.muted));
+    let on = state.live.run.is_some() && !state.live.teaching;
+    ui.horizontal_wrapped(|ui| {
+        let order = &state.classes.order;
+        for (place, class) in order.iter().enumerate() {
+            let key = if place < 9 {
+                format!("{}  ", place + 1)
+            } else {
+                String::new()
+            };
+            let fill = c.panel.lerp_to_gamma(c.class(Some(place)), 0.35);
+            let button = egui::Button::new(format!("{key}{class}")).fill(fill);
+            let response = ui.add_enabled(on, button);
+            widgets::named(
+                &response,
+                WidgetType::Button,
+                format!("Mark as {class}"),
+                false,
+            );
+            if response.clicked() {
+                out.push(Command::Live(LiveCommand::MarkAs(class.clone())));
+            }
+        }
+        let next = order.len();
+        let text = format!(
+            "{}a new gesture",
+            if next < 9 {
+                format!("{}  ", next + 1)
+            } else {
+                String::new()
+            }
+        );
+        if ui.add_enabled(on, egui::Button::new(text)).clicked() {
+            out.push(Command::Live(LiveCommand::Mark(next)));
+        }
+    });
+    if state.live.teaching || state.is_training() {
+        ui.horizontal(|ui| {
+            ui.add(egui::Spinner::new().size(14.0));
+            ui.label(if state.live.teaching {
+                "keeping it …"
+            } else {
+                "training …"
+            });
+        });
+    }
+    if state.live.index().is_none() && !state.is_training() {
+        ui.add_space(4.0);
+        ui.colored_label(c.warn, "No index is in use yet: mark something, or");
+        if ui.button("Train with the labels that are there").clicked() {
+            out.push(Command::Train(TrainCommand::Train));
+        }
+    }
+    ui.add_space(8.0);
+}
+
+/// What is under way, and what was recognised, the last first.
+fn recognised(ui: &mut Ui, state: &State) {
+    let c = Colours::now(ui);
+    widgets::section(ui, "RECOGNISED");
+    let Some(run) = &state.live.run else {
+        ui.colored_label(c.muted, "Nothing yet.");
+        return;
+    };
+    match run.hunch() {
+        Some((class, hunch)) => {
+            ui.horizontal(|ui| {
+                let colour = c.class(state.classes.place(&class));
+                ui.add(
+                    ProgressBar::new(hunch.progress as f32)
+                        .desired_width(90.0)
+                        .desired_height(8.0)
+                        .fill(colour),
+                );
+                ui.label(RichText::new(format!("{class}?")).color(c.muted));
+            });
+        }
+        None => {
+            ui.label(RichText::new("…").color(c.muted));
+        }
+    }
+    if run.seen.is_empty() {
+        return;
+    }
+    let totals: Vec<String> = state
+        .live
+        .counts
+        .iter()
+        .map(|(class, n)| format!("{class} {n}"))
+        .collect();
+    ui.label(RichText::new(totals.join(", ")).size(12.0).color(c.muted));
+    ui.separator();
+    ScrollArea::vertical()
+        .id_salt("seen")
+        .auto_shrink(false)
+        .show_rows(ui, 24.0, run.seen.len(), |ui, rows| {
+            for seen in run.seen.iter().rev().skip(rows.start).take(rows.len()) {
+                ui.horizontal(|ui| {
+                    ui.set_height(24.0);
+                    widgets::chip(ui, state.classes.place(&seen.class), &seen.class);
+                    let name = ui.label(&seen.class);
+                    widgets::named(
+                        &name,
+                        WidgetType::Label,
+                        format!("Recognised {}", seen.class),
+                        false,
+                    );
+                    let text = format!(
+                        "{}  {:.0} %",
+                        format::clock(seen.start_secs, 1),
+                        100.0 * seen.score
+                    );
+                    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                        ui.label(RichText::new(text).size(12.0).color(c.muted));
+                    });
+                });
+            }
+        });
+}

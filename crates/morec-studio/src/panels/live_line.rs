@@ -1,0 +1,221 @@
+//! The last minutes of the stream as a timeline: movement, what was recognised, what was marked.
+
+use egui::{Rect, RichText, Sense, Ui, WidgetType, pos2};
+
+use super::timeline::Scale;
+use super::{Out, tracks, widgets};
+use crate::format;
+use crate::state::live::Run;
+use crate::state::{Command, LiveCommand, State};
+use crate::theme::Colours;
+
+/// How much is shown, seconds.
+const SHOWN_SECS: f64 = 60.0;
+const NAMES: f32 = 100.0;
+
+pub fn show(ui: &mut Ui, state: &State, out: Out) {
+    let c = Colours::now(ui);
+    let Some(run) = &state.live.run else {
+        return widgets::nothing(
+            ui,
+            "The last minutes appear here",
+            "Drag over what just happened to say what it was.",
+        );
+    };
+    ui.horizontal(|ui| {
+        widgets::section(ui, "THE LAST MINUTE");
+        if let Some((start, stop)) = state.live.range {
+            ui.label(RichText::new(format!("{:.2} s selected", stop - start)).color(c.muted));
+            if ui.small_button("Clear").clicked() {
+                out.push(Command::Live(LiveCommand::Range(None)));
+            }
+        } else {
+            ui.label(
+                RichText::new(
+                    "drag to select a stretch; without a selection the last motion is meant",
+                )
+                .size(12.0)
+                .color(c.muted),
+            );
+        }
+    });
+    let area = ui.available_rect_before_wrap();
+    let to = run.now_secs.max(SHOWN_SECS);
+    let scale = Scale {
+        left: area.left() + NAMES,
+        width: area.width() - NAMES - 8.0,
+        from: to - SHOWN_SECS,
+        to,
+    };
+    ground(ui, area, &scale, out);
+    let height = area.height() - 20.0;
+    let band = |from: f32, to: f32| {
+        Rect::from_min_max(
+            pos2(scale.left, area.top() + from * height),
+            pos2(scale.right(), area.top() + to * height - 3.0),
+        )
+    };
+    let (movement, seen, marks) = (band(0.0, 0.42), band(0.42, 0.72), band(0.72, 1.0));
+    for (rect, name) in [
+        (movement, "Movement"),
+        (seen, "Recognised"),
+        (marks, "Marked"),
+    ] {
+        ui.painter().rect_filled(rect, 0.0, c.well);
+        let text = Rect::from_min_max(
+            pos2(area.left(), rect.top()),
+            pos2(scale.left - 8.0, rect.bottom()),
+        );
+        widgets::text_in(ui, text, name, 12.0, c.muted, false);
+    }
+    draw_movement(ui, run, movement, &scale, &c);
+    draw_seen(ui, state, run, seen, &scale, &c);
+    draw_marks(ui, state, marks, &scale, &c);
+    ruler(ui, area, &scale, run.now_secs, &c);
+    if let Some((start, stop)) = state.live.range {
+        let rect = Rect::from_x_y_ranges(
+            scale.x(start)..=scale.x(stop),
+            area.top()..=area.top() + height,
+        );
+        ui.painter_at(area)
+            .rect_filled(rect, 0.0, c.accent.gamma_multiply(0.22));
+    }
+}
+
+fn ground(ui: &mut Ui, area: Rect, scale: &Scale, out: Out) {
+    let rect = Rect::from_min_max(
+        pos2(scale.left, area.top()),
+        pos2(scale.right(), area.bottom()),
+    );
+    let response = ui.allocate_rect(rect, Sense::click_and_drag());
+    widgets::named(&response, WidgetType::Other, "The last minute", false);
+    // The ground moves under the pointer: where the drag began is remembered as a time.
+    let id = response.id.with("begun");
+    let at = response.interact_pointer_pos().map(|p| scale.secs(p.x));
+    if response.drag_started()
+        && let Some(origin) = ui.input(|i| i.pointer.press_origin())
+    {
+        ui.data_mut(|d| d.insert_temp(id, scale.secs(origin.x)));
+    }
+    if response.dragged()
+        && let (Some(at), Some(begun)) = (at, ui.data(|d| d.get_temp::<f64>(id)))
+    {
+        let range = (at.min(begun), at.max(begun));
+        out.push(Command::Live(LiveCommand::Range(Some(range))));
+    }
+    if response.clicked() {
+        out.push(Command::Live(LiveCommand::Range(None)));
+    }
+}
+
+fn draw_movement(ui: &Ui, run: &Run, rect: Rect, scale: &Scale, c: &Colours) {
+    // Frames of live sources come unevenly: each second has as many values as came in it.
+    let mut values = Vec::with_capacity((SHOWN_SECS * 30.0) as usize);
+    let mut frame = run.frames.partition_point(|f| f.time_secs < scale.from);
+    for tick in 0..(SHOWN_SECS * 30.0) as usize {
+        let until = scale.from + (tick + 1) as f64 / 30.0;
+        let mut most = 0f32;
+        while frame < run.frames.len() && run.frames[frame].time_secs < until {
+            most = most.max(run.speeds[frame].min(6.0));
+            frame += 1;
+        }
+        values.push(most);
+    }
+    tracks::area(
+        ui,
+        rect,
+        scale,
+        &values,
+        30.0,
+        scale.from,
+        c.tint(c.accent, 0.55),
+    );
+}
+
+fn draw_seen(ui: &Ui, state: &State, run: &Run, rect: Rect, scale: &Scale, c: &Colours) {
+    let painter = ui.painter_at(rect);
+    for seen in run
+        .seen
+        .iter()
+        .rev()
+        .take_while(|s| s.stop_secs > scale.from - 10.0)
+    {
+        let place = state.classes.place(&seen.class);
+        bar(
+            &painter,
+            rect,
+            scale,
+            (seen.start_secs, seen.stop_secs),
+            &seen.class,
+            c.class(place),
+            c,
+        );
+    }
+}
+
+fn draw_marks(ui: &Ui, state: &State, rect: Rect, scale: &Scale, c: &Colours) {
+    let painter = ui.painter_at(rect);
+    for (start, stop, class) in state.live.marks.iter().filter(|m| m.1 > scale.from) {
+        let place = state.classes.place(class);
+        bar(
+            &painter,
+            rect,
+            scale,
+            (*start, *stop),
+            class,
+            c.class(place),
+            c,
+        );
+    }
+}
+
+fn bar(
+    painter: &egui::Painter,
+    rect: Rect,
+    scale: &Scale,
+    at: (f64, f64),
+    name: &str,
+    colour: egui::Color32,
+    c: &Colours,
+) {
+    let bar = Rect::from_x_y_ranges(
+        scale.x(at.0)..=scale.x(at.1).max(scale.x(at.0) + 2.0),
+        rect.top() + 2.0..=rect.bottom() - 2.0,
+    );
+    painter.rect_filled(bar, 3.0, colour);
+    let galley = painter.layout_no_wrap(
+        name.to_owned(),
+        egui::FontId::proportional(11.0),
+        c.on_class(),
+    );
+    if galley.size().x + 6.0 < bar.width() {
+        painter.galley(bar.center() - galley.size() / 2.0, galley, c.on_class());
+    }
+}
+
+fn ruler(ui: &Ui, area: Rect, scale: &Scale, now: f64, c: &Colours) {
+    let painter = ui.painter_at(area);
+    for ago in [0.0, 10.0, 20.0, 30.0, 40.0, 50.0] {
+        let x = scale.x(now - ago);
+        if x < scale.left {
+            continue;
+        }
+        let text = if ago == 0.0 {
+            "now".to_owned()
+        } else {
+            format!("−{}", format::duration(ago))
+        };
+        let align = if ago == 0.0 {
+            egui::Align2::RIGHT_BOTTOM
+        } else {
+            egui::Align2::CENTER_BOTTOM
+        };
+        painter.text(
+            pos2(x, area.bottom()),
+            align,
+            text,
+            egui::FontId::proportional(11.0),
+            c.muted,
+        );
+    }
+}

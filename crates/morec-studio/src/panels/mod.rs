@@ -1,0 +1,99 @@
+//! What is drawn: functions of the state that emit commands.
+
+mod bars;
+mod classes;
+mod details;
+mod help;
+mod history;
+mod label;
+mod library;
+mod live;
+mod live_line;
+mod matrix;
+mod notices;
+mod player;
+mod strips;
+mod timeline;
+mod tracks;
+mod train;
+mod view;
+mod widgets;
+
+use egui::{CentralPanel, Context, Frame, Id, Margin};
+use morec_db::ClipId;
+
+use crate::state::{Command, Panel, State};
+use crate::theme::Colours;
+
+pub type Out<'a> = &'a mut Vec<Command>;
+
+/// Draws the whole window.
+pub fn show(ctx: &Context, state: &State, out: Out) {
+    ctx.data_mut(|data| data.insert_temp(wanted_id(), Vec::<ClipId>::new()));
+    bars::top(ctx, state, out);
+    bars::bottom(ctx, state, out);
+    notices::show(ctx, state, out);
+    help::show(ctx, state, out);
+    history::show(ctx, state, out);
+    if state.store.is_none() {
+        return empty(ctx, state, out);
+    }
+    match state.panel {
+        Panel::Library => library::show(ctx, state, out),
+        Panel::Label => label::show(ctx, state, out),
+        Panel::Classes => classes::show(ctx, state, out),
+        Panel::Train => train::show(ctx, state, out),
+        Panel::Live => live::show(ctx, state, out),
+    }
+}
+
+/// Nothing is open: what can be done about it.
+fn empty(ctx: &Context, state: &State, out: Out) {
+    CentralPanel::default().show(ctx, |ui| {
+        let c = Colours::now(ui);
+        ui.add_space(ui.available_height() * 0.3);
+        ui.vertical_centered(|ui| {
+            ui.spacing_mut().item_spacing.y = 12.0;
+            if let Some(job) = state.jobs.running.iter().find(|j| j.shown) {
+                ui.heading(&job.name);
+                let stage = job.stage();
+                ui.colored_label(c.muted, stage.name.clone());
+                let share = stage.share().unwrap_or(0.0);
+                ui.add(
+                    egui::ProgressBar::new(share)
+                        .desired_width(260.0)
+                        .desired_height(6.0),
+                );
+                return;
+            }
+            ui.heading("No database is open");
+            ui.colored_label(c.muted, "Drop clips or a database here, or");
+            widgets::file_buttons(ui, out);
+        });
+    });
+}
+
+fn wanted_id() -> Id {
+    Id::new("clips that strips are drawn of")
+}
+
+/// Says that a clip's motion is needed to draw what is seen.
+fn want(ctx: &Context, clip: ClipId) {
+    ctx.data_mut(|data| {
+        let wanted = data.get_temp_mut_or_default::<Vec<ClipId>>(wanted_id());
+        if !wanted.contains(&clip) && wanted.len() < 64 {
+            wanted.push(clip);
+        }
+    });
+}
+
+/// The clips that were needed and are not decoded.
+pub fn wanted_clips(ctx: &Context) -> Vec<ClipId> {
+    ctx.data(|data| data.get_temp(wanted_id()))
+        .unwrap_or_default()
+}
+
+/// The frame of panels' contents.
+fn padded(c: &Colours) -> Frame {
+    Frame::new().fill(c.panel).inner_margin(Margin::same(12))
+}

@@ -1,0 +1,96 @@
+//! Strips of poses of samples, drawn once and kept.
+
+use std::sync::Arc;
+
+use egui::epaint::{Mesh, Vertex, WHITE_UV};
+use egui::{Color32, Id, Rect, Shape, Ui, Vec2, pos2};
+use morec_db::ClipId;
+
+use crate::body::strip::strip;
+use crate::state::State;
+use crate::theme::Colours;
+
+/// Draws the strip of a stretch of a clip, or says that it is coming.
+pub fn draw(ui: &Ui, state: &State, clip: ClipId, start_secs: f64, stop_secs: f64, rect: Rect) {
+    if !ui.is_rect_visible(rect) {
+        return;
+    }
+    let c = Colours::now(ui);
+    ui.painter().rect_filled(rect, 3.0, c.well);
+    let Some(motion) = state.motions.get(clip) else {
+        let text = state.motions.failure(clip).unwrap_or("…");
+        super::widgets::text_in(ui, rect.shrink(6.0), text, 11.0, c.muted, false);
+        super::want(ui.ctx(), clip);
+        return;
+    };
+    let size = rect.size();
+    let id = Id::new((
+        "strip",
+        clip,
+        start_secs.to_bits(),
+        stop_secs.to_bits(),
+        size.x as i32,
+        size.y as i32,
+        c.dark,
+    ));
+    let known = ui.data(|data| data.get_temp::<Arc<Mesh>>(id));
+    let mesh = known.unwrap_or_else(|| {
+        let at = Rect::from_min_size(pos2(0.0, 0.0), size);
+        let mesh = Arc::new(one(&strip(motion, start_secs, stop_secs, at, &c.body())));
+        ui.data_mut(|data| data.insert_temp(id, mesh.clone()));
+        mesh
+    });
+    let mut mesh = Mesh::clone(&mesh);
+    mesh.translate(rect.min - pos2(0.0, 0.0));
+    ui.painter_at(rect).add(Shape::mesh(mesh));
+}
+
+/// Lines and discs as one mesh.
+fn one(shapes: &[Shape]) -> Mesh {
+    let mut mesh = Mesh::default();
+    for shape in shapes {
+        match shape {
+            Shape::LineSegment { points, stroke } => {
+                line(&mut mesh, *points, stroke.width, stroke.color)
+            }
+            Shape::Circle(circle) => disc(&mut mesh, circle.center, circle.radius, circle.fill),
+            _ => {}
+        }
+    }
+    mesh
+}
+
+fn line(mesh: &mut Mesh, [a, b]: [egui::Pos2; 2], width: f32, colour: Color32) {
+    let along = (b - a).normalized();
+    let across = Vec2::new(-along.y, along.x) * (width / 2.0);
+    // Ends reach over the joint, so that limbs meet.
+    let over = along * (width / 3.0);
+    let first = mesh.vertices.len() as u32;
+    let corners = [
+        a - over + across,
+        a - over - across,
+        b + over - across,
+        b + over + across,
+    ];
+    mesh.vertices.extend(corners.map(|pos| Vertex {
+        pos,
+        uv: WHITE_UV,
+        color: colour,
+    }));
+    mesh.indices.extend([0, 1, 2, 0, 2, 3].map(|k| first + k));
+}
+
+fn disc(mesh: &mut Mesh, centre: egui::Pos2, radius: f32, colour: Color32) {
+    const CORNERS: u32 = 12;
+    let first = mesh.vertices.len() as u32;
+    for k in 0..CORNERS {
+        let turn = std::f32::consts::TAU * k as f32 / CORNERS as f32;
+        let pos = centre + Vec2::angled(turn) * radius;
+        mesh.vertices.push(Vertex {
+            pos,
+            uv: WHITE_UV,
+            color: colour,
+        });
+    }
+    (1..CORNERS - 1).for_each(|k| mesh.indices.extend([first, first + k, first + k + 1]));
+}

@@ -1,0 +1,536 @@
+//! The tracks of the timeline.
+
+use egui::epaint::Mesh;
+use egui::{
+    Color32, Pos2, Rect, Response, Sense, Shape, Stroke, StrokeKind, Ui, Vec2, WidgetType, pos2,
+};
+use morec_db::labels::{DbSample, State as Judged};
+
+use super::timeline::{NAMES, Scale};
+use super::{Out, widgets};
+use crate::state::{Command, Drag, Grip, PlayCommand, State, TimelineCommand};
+use crate::theme::Colours;
+
+const ROW: f32 = 19.0;
+/// Labels narrower than this cannot be held; those that touch are drawn as one.
+const NARROW: f32 = 6.0;
+/// So near to its end a label is held by the end, points.
+const EDGE: f32 = 6.0;
+
+/// Room for a track: its name at the left, and where it lies. Dragging over its ground selects a stretch.
+fn track(
+    ui: &mut Ui,
+    state: &State,
+    scale: &Scale,
+    name: &str,
+    height: f32,
+    colour: Option<Color32>,
+    out: Option<Out>,
+) -> Rect {
+    let c = Colours::now(ui);
+    let (rect, _) = ui.allocate_exact_size(Vec2::new(ui.available_width(), height), Sense::hover());
+    let tracks = Rect::from_min_max(
+        pos2(scale.left, rect.top()),
+        pos2(scale.right(), rect.bottom()),
+    );
+    ui.painter().rect_filled(tracks, 0.0, c.well);
+    let mut text = Rect::from_min_max(rect.min, pos2(rect.left() + NAMES - 8.0, rect.bottom()));
+    if let Some(colour) = colour {
+        let square =
+            Rect::from_center_size(text.left_center() + Vec2::new(5.0, 0.0), Vec2::splat(10.0));
+        ui.painter().rect_filled(square, 2.0, colour);
+        text.min.x += 16.0;
+    }
+    widgets::text_in(ui, text, name, 12.0, c.muted, false);
+    if let Some(out) = out {
+        let response = ui.interact(
+            tracks,
+            ui.id().with(("ground", name)),
+            Sense::click_and_drag(),
+        );
+        widgets::named(&response, WidgetType::Other, format!("Track {name}"), false);
+        ground(ui, state, scale, &response, out);
+    }
+    tracks
+}
+
+/// A click on the ground goes there; a drag selects a stretch.
+fn ground(ui: &Ui, state: &State, scale: &Scale, response: &Response, out: Out) {
+    let pointer = response.interact_pointer_pos();
+    if response.clicked()
+        && let Some(at) = pointer
+    {
+        out.push(Command::Play(PlayCommand::Seek(scale.secs(at.x))));
+        out.push(Command::Timeline(TimelineCommand::Range(None)));
+        out.push(Command::Timeline(TimelineCommand::Select {
+            id: None,
+            add: false,
+        }));
+    }
+    if response.dragged_by(egui::PointerButton::Primary)
+        && let (Some(at), Some(from)) = (pointer, ui.input(|i| i.pointer.press_origin()))
+    {
+        let (a, b) = (scale.secs(from.x), scale.secs(at.x));
+        let end = state.player.secs();
+        let rate = state.player.rate_hz();
+        let marks = state.marks();
+        let snap = |secs: f64| {
+            state
+                .timeline
+                .snapped(secs, marks.iter().copied(), rate)
+                .clamp(0.0, end)
+        };
+        let range = (snap(a.min(b)), snap(a.max(b)));
+        out.push(Command::Timeline(TimelineCommand::Range(Some(range))));
+    }
+}
+
+/// A track for each class, with its labels and proposals.
+pub fn labels(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
+    let c = Colours::now(ui);
+    let samples = state.shown_samples();
+    // Labels are sorted by start; the longest says how far before the view one can begin that reaches into it.
+    let longest = samples
+        .iter()
+        .map(|s| s.stop_secs - s.start_secs)
+        .fold(0.0, f64::max);
+    let first = samples.partition_point(|s| s.start_secs < scale.from - longest);
+    let last = samples.partition_point(|s| s.start_secs <= scale.to);
+    // What is dragged may come from outside of the view.
+    let visible = &samples[first.min(last)..last];
+    if state.classes.order.is_empty() {
+        track(ui, state, scale, "Labels", ROW, None, Some(out));
+        return;
+    }
+    for (place, class) in state.classes.order.iter().enumerate() {
+        let colour = c.class(Some(place));
+        let tracks = track(ui, state, scale, class, ROW, Some(colour), Some(out));
+        if !ui.is_rect_visible(tracks) {
+            continue;
+        }
+        let mut row = Row {
+            rect: tracks.shrink2(Vec2::new(0.0, 1.5)),
+            colour,
+            mesh: Mesh::default(),
+            run: None,
+        };
+        for sample in visible.iter().filter(|s| s.class == *class) {
+            label(ui, state, scale, sample, &mut row, &c, out);
+        }
+        row.flush();
+        ui.painter_at(tracks).add(Shape::mesh(row.mesh));
+    }
+}
+
+/// The narrow labels of a row, drawn as one mesh; those that touch as one.
+struct Row {
+    rect: Rect,
+    colour: Color32,
+    mesh: Mesh,
+    run: Option<(f32, f32)>,
+}
+
+impl Row {
+    fn narrow(&mut self, left: f32, right: f32) {
+        let right = right.max(left + 1.0);
+        self.run = match self.run {
+            Some((from, to)) if left <= to + 0.75 => Some((from, to.max(right))),
+            Some((from, to)) => {
+                self.bar(from, to);
+                Some((left, right))
+            }
+            None => Some((left, right)),
+        };
+    }
+
+    fn flush(&mut self) {
+        if let Some((from, to)) = self.run.take() {
+            self.bar(from, to);
+        }
+    }
+
+    fn bar(&mut self, left: f32, right: f32) {
+        let rect = Rect::from_x_y_ranges(left..=right, self.rect.y_range());
+        self.mesh.add_colored_rect(rect, self.colour);
+    }
+}
+
+fn label(
+    ui: &Ui,
+    state: &State,
+    scale: &Scale,
+    sample: &DbSample,
+    row: &mut Row,
+    c: &Colours,
+    out: Out,
+) {
+    if sample.state == Judged::Rejected {
+        return;
+    }
+    let (start, stop) = state.timeline.extent(sample);
+    let (left, right) = (scale.x(start), scale.x(stop));
+    let held = state
+        .timeline
+        .drag
+        .as_ref()
+        .is_some_and(|d| d.id == sample.id);
+    if right - left < NARROW && !held {
+        return row.narrow(left, right);
+    }
+    let rect = Rect::from_x_y_ranges(left + 0.5..=right - 0.5, row.rect.y_range());
+    let clip = Rect::from_x_y_ranges(scale.left..=scale.right(), rect.y_range());
+    let painter = ui.painter_at(clip);
+    let selected = state.timeline.selected.contains(&sample.id);
+    let response = ui.interact(
+        rect.intersect(clip),
+        ui.id().with(sample.id),
+        Sense::click_and_drag(),
+    );
+    let kind = if sample.state == Judged::Proposed {
+        "proposed "
+    } else {
+        ""
+    };
+    widgets::named(
+        &response,
+        WidgetType::Button,
+        format!("{kind}{} {start:.2}–{stop:.2} s", sample.class),
+        selected,
+    );
+    if sample.state == Judged::Proposed {
+        let sure = sample.score.unwrap_or(0.5).clamp(0.0, 1.0) as f32;
+        painter.rect_filled(rect, 3.0, c.tint(row.colour, 0.10 + 0.30 * sure));
+        painter.rect_stroke(rect, 3.0, Stroke::new(1.0, row.colour), StrokeKind::Inside);
+        if rect.width() > 18.0 {
+            painter.text(
+                rect.center(),
+                egui::Align2::CENTER_CENTER,
+                "?",
+                egui::FontId::proportional(12.0),
+                c.text,
+            );
+        }
+    } else {
+        let fill = if response.hovered() || held {
+            row.colour.lerp_to_gamma(c.text, 0.15)
+        } else {
+            row.colour
+        };
+        painter.rect_filled(rect, 3.0, fill);
+    }
+    if selected {
+        painter.rect_stroke(
+            rect.expand(1.0),
+            3.0,
+            Stroke::new(2.0, c.text),
+            StrokeKind::Inside,
+        );
+    }
+    held_by(ui, state, scale, sample, rect, &response, out);
+}
+
+/// Clicks select, drags move: an end, or all of it.
+fn held_by(
+    ui: &Ui,
+    state: &State,
+    scale: &Scale,
+    sample: &DbSample,
+    rect: Rect,
+    response: &Response,
+    out: Out,
+) {
+    let grip = |x: f32| match rect.width() > 3.0 * EDGE {
+        true if x < rect.left() + EDGE => Grip::Start,
+        true if x > rect.right() - EDGE => Grip::Stop,
+        _ => Grip::Whole,
+    };
+    if let Some(at) = response.hover_pos() {
+        ui.ctx().set_cursor_icon(match grip(at.x) {
+            Grip::Whole => egui::CursorIcon::Grab,
+            _ => egui::CursorIcon::ResizeHorizontal,
+        });
+    }
+    if response.double_clicked() {
+        out.push(Command::Play(PlayCommand::Stretch(
+            sample.start_secs,
+            sample.stop_secs,
+        )));
+    } else if response.clicked() {
+        let add = ui.input(|i| i.modifiers.command || i.modifiers.shift);
+        out.push(Command::Timeline(TimelineCommand::Select {
+            id: Some(sample.id),
+            add,
+        }));
+        out.push(Command::Timeline(TimelineCommand::Range(None)));
+    }
+    let origin = ui.input(|i| i.pointer.press_origin());
+    if response.drag_started_by(egui::PointerButton::Primary)
+        && let Some(origin) = origin
+    {
+        out.push(Command::Timeline(TimelineCommand::Grab(Drag {
+            id: sample.id,
+            grip: grip(origin.x),
+            held_secs: scale.secs(origin.x) - sample.start_secs,
+            start_secs: sample.start_secs,
+            stop_secs: sample.stop_secs,
+            dropped: false,
+        })));
+    }
+    let mine = state
+        .timeline
+        .drag
+        .as_ref()
+        .is_some_and(|d| d.id == sample.id && !d.dropped);
+    if response.dragged()
+        && mine
+        && let Some(at) = response.interact_pointer_pos()
+    {
+        out.push(Command::Timeline(TimelineCommand::Drag(scale.secs(at.x))));
+    }
+    if response.drag_stopped() {
+        if let Some(at) = response.interact_pointer_pos() {
+            out.push(Command::Timeline(TimelineCommand::Drag(scale.secs(at.x))));
+        }
+        out.push(Command::Timeline(TimelineCommand::Drop));
+    }
+}
+
+/// What the index recognises in this clip.
+pub fn detections(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
+    let c = Colours::now(ui);
+    let rect = track(ui, state, scale, "Recognised", ROW, None, None);
+    let shown = state.player.motion.as_ref().map(|m| m.id);
+    let Some((clip, found)) = &state.detections else {
+        let text = if state.train.index.is_some() {
+            "…"
+        } else {
+            "train, and what is recognised appears here"
+        };
+        return widgets::text_in(
+            ui,
+            rect.shrink2(Vec2::new(8.0, 0.0)),
+            text,
+            11.0,
+            c.muted,
+            false,
+        );
+    };
+    if shown != Some(*clip) {
+        return;
+    }
+    let painter = ui.painter_at(rect);
+    for (at, found) in found.iter().enumerate() {
+        if found.stop_secs < scale.from || found.start_secs > scale.to {
+            continue;
+        }
+        let bar = Rect::from_x_y_ranges(
+            scale.x(found.start_secs)..=scale.x(found.stop_secs),
+            rect.top() + 4.0..=rect.bottom() - 4.0,
+        );
+        painter.rect_filled(bar, 2.0, c.class(state.classes.place(&found.class)));
+        if let Some(reported) = found.reported_secs {
+            painter.vline(scale.x(reported), rect.y_range(), (1.0, c.muted));
+        }
+        let response = ui.interact(
+            bar.intersect(rect),
+            ui.id().with(("found", at)),
+            Sense::click(),
+        );
+        widgets::named(
+            &response,
+            WidgetType::Button,
+            format!("recognised {} {:.2} s", found.class, found.start_secs),
+            false,
+        );
+        if response
+            .on_hover_text(format!(
+                "{}, score {:.2}",
+                found.class,
+                found.score.unwrap_or(0.0)
+            ))
+            .clicked()
+        {
+            out.push(Command::Play(PlayCommand::Stretch(
+                found.start_secs,
+                found.stop_secs,
+            )));
+        }
+    }
+}
+
+/// Cuts of both methods, stillness, repetitions.
+pub fn cuts(ui: &mut Ui, state: &State, scale: &Scale) {
+    let c = Colours::now(ui);
+    let rect = track(ui, state, scale, "Cuts, stillness", ROW, None, None);
+    let Some(curves) = &state.curves else {
+        return widgets::text_in(
+            ui,
+            rect.shrink2(Vec2::new(8.0, 0.0)),
+            "looking at the clip …",
+            11.0,
+            c.muted,
+            false,
+        );
+    };
+    let painter = ui.painter_at(rect);
+    let seen = |from: f64, to: f64| to >= scale.from && from <= scale.to;
+    for (start, stop, t_pose) in curves.still.iter().filter(|s| seen(s.0, s.1)) {
+        let bar = Rect::from_x_y_ranges(scale.x(*start)..=scale.x(*stop), rect.y_range());
+        let colour = if *t_pose { c.warn } else { c.muted };
+        painter.rect_filled(bar, 0.0, c.tint(colour, 0.28));
+    }
+    for bounds in &curves.cycles {
+        for (number, pair) in bounds
+            .windows(2)
+            .enumerate()
+            .filter(|(_, p)| seen(p[0], p[1]))
+        {
+            let (a, b) = (scale.x(pair[0]), scale.x(pair[1]));
+            painter.vline(a, rect.bottom() - 5.0..=rect.bottom(), (1.0, c.accent));
+            if b - a > 16.0 {
+                let at = pos2((a + b) / 2.0, rect.center().y);
+                painter.text(
+                    at,
+                    egui::Align2::CENTER_CENTER,
+                    (number + 1).to_string(),
+                    egui::FontId::proportional(10.0),
+                    c.muted,
+                );
+            }
+        }
+    }
+    for cut in curves.kernel.iter().filter(|cut| seen(**cut, **cut)) {
+        painter.vline(scale.x(*cut), rect.y_range(), (1.5, c.text));
+    }
+    for cut in curves.ppca.iter().filter(|cut| seen(**cut, **cut)) {
+        let x = scale.x(*cut);
+        painter.add(Shape::dashed_line(
+            &[pos2(x, rect.top()), pos2(x, rect.bottom())],
+            (1.5, c.warn),
+            3.0,
+            3.0,
+        ));
+    }
+}
+
+/// The misfit of the thesis's method, on a logarithmic scale, with its cuts.
+pub fn misfit(ui: &mut Ui, state: &State, scale: &Scale) {
+    let c = Colours::now(ui);
+    let rect = track(ui, state, scale, "Misfit (thesis)", 40.0, None, None);
+    let Some(curves) = &state.curves else { return };
+    if let Some(note) = curves.note.as_ref().filter(|_| curves.forward.is_empty()) {
+        return widgets::text_in(
+            ui,
+            rect.shrink2(Vec2::new(8.0, 0.0)),
+            note,
+            11.0,
+            c.muted,
+            false,
+        );
+    }
+    let painter = ui.painter_at(rect);
+    let level = |value: f64| value.max(1e-3).log10();
+    let all = || {
+        curves
+            .forward
+            .iter()
+            .chain(&curves.backward)
+            .map(|p| level(p.value))
+    };
+    let (low, high) = (
+        all().fold(f64::MAX, f64::min),
+        all().fold(f64::MIN, f64::max),
+    );
+    let y = |value: f64| {
+        rect.bottom()
+            - 3.0
+            - ((level(value) - low) / (high - low).max(1e-9)) as f32 * (rect.height() - 6.0)
+    };
+    for (points, colour) in [(&curves.backward, c.muted), (&curves.forward, c.accent)] {
+        // Passes begin anew at each cut: a line does not go from one to the next.
+        let line = points.iter().map(|p| (p.secs, y(p.value)));
+        for part in parts(line, scale, 1.0) {
+            painter.line(part, Stroke::new(1.2, colour));
+        }
+    }
+    for cut in &curves.ppca {
+        painter.vline(scale.x(*cut), rect.y_range(), (1.0, c.warn));
+    }
+}
+
+/// How fast the body turns.
+pub fn speed(ui: &mut Ui, state: &State, scale: &Scale) {
+    let c = Colours::now(ui);
+    let rect = track(ui, state, scale, "Speed", 32.0, None, None);
+    let Some(motion) = &state.player.motion else {
+        return;
+    };
+    area(
+        ui,
+        rect,
+        scale,
+        &motion.speed,
+        motion.tick_hz,
+        0.0,
+        c.tint(c.accent, 0.55),
+    );
+}
+
+/// Values at an even rate as a filled area: the highest of each point of the screen.
+pub fn area(
+    ui: &Ui,
+    rect: Rect,
+    scale: &Scale,
+    values: &[f32],
+    hz: f64,
+    origin: f64,
+    colour: Color32,
+) {
+    let highest = values.iter().copied().fold(1e-6, f32::max);
+    let mut mesh = Mesh::default();
+    let mut x = rect.left();
+    while x < rect.right() {
+        let at =
+            |x: f32| (((scale.secs(x) - origin) * hz).floor().max(0.0) as usize).min(values.len());
+        let (first, last) = (at(x), at(x + 2.0).max(at(x) + 1).min(values.len()));
+        let value = values
+            .get(first..last)
+            .into_iter()
+            .flatten()
+            .copied()
+            .fold(0.0, f32::max);
+        if value > 0.0 {
+            let top = rect.bottom() - value / highest * (rect.height() - 2.0);
+            mesh.add_colored_rect(
+                Rect::from_min_max(pos2(x, top), pos2(x + 2.0, rect.bottom())),
+                colour,
+            );
+        }
+        x += 2.0;
+    }
+    ui.painter_at(rect).add(Shape::mesh(mesh));
+}
+
+/// The visible parts of a line; more than `gap` seconds between points divide it.
+fn parts(points: impl Iterator<Item = (f64, f32)>, scale: &Scale, gap: f64) -> Vec<Vec<Pos2>> {
+    let mut parts: Vec<Vec<Pos2>> = vec![Vec::new()];
+    let mut last: Option<(f64, f32)> = None;
+    for (secs, y) in points {
+        let near = last.is_none_or(|(before, _)| secs - before <= gap && secs >= before);
+        if !near {
+            parts.push(Vec::new());
+        }
+        if secs >= scale.from - gap && secs <= scale.to + gap {
+            let at = pos2(scale.x(secs), y);
+            if let Some(part) = parts.last_mut()
+                // Points within half a point of the screen add nothing.
+                && part.last().is_none_or(|p| at.x - p.x > 0.5 || (at.y - p.y).abs() > 2.0)
+            {
+                part.push(at);
+            }
+        }
+        last = Some((secs, y));
+    }
+    parts.retain(|part| part.len() > 1);
+    parts
+}

@@ -1,0 +1,217 @@
+//! Training: what is learned, how it went, how good it is on what it was not taught.
+
+use egui::{CentralPanel, Context, Frame, Margin, Rect, RichText, ScrollArea, SidePanel, Ui, Vec2};
+
+use super::{Out, matrix, padded, player, view, widgets};
+use crate::format;
+use crate::state::{Command, FileCommand, State, TrainCommand};
+use crate::theme::Colours;
+
+pub fn show(ctx: &Context, state: &State, out: Out) {
+    let c = Colours::of(state.dark);
+    SidePanel::left("what to learn")
+        .frame(padded(&c))
+        .default_width(220.0)
+        .width_range(180.0..=320.0)
+        .show(ctx, |ui| {
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                choose(ui, state, out);
+                indexes(ui, state, out);
+            });
+        });
+    SidePanel::right("the moment")
+        .frame(padded(&c))
+        .default_width(340.0)
+        .width_range(280.0..=620.0)
+        .show(ctx, |ui| {
+            let height = (ui.available_height() - player::HEIGHT - 8.0).clamp(160.0, 420.0);
+            let rect =
+                Rect::from_min_size(ui.cursor().min, Vec2::new(ui.available_width(), height));
+            ui.scope_builder(egui::UiBuilder::new().max_rect(rect), |ui| {
+                view::clip(ui, state, out)
+            });
+            ui.advance_cursor_after_rect(rect);
+            player::transport(ui, state, out);
+            matrix::instances(ui, state, out);
+        });
+    CentralPanel::default().frame(padded(&c)).show(ctx, |ui| {
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            if state.train.index.is_none() && state.train.judged.is_none() {
+                widgets::nothing(
+                    ui,
+                    "Nothing is trained yet",
+                    "Choose classes at the left and train: a second for a hundred labels.",
+                );
+                return;
+            }
+            trained(ui, state, out);
+            matrix::show(ui, state, out);
+        });
+    });
+}
+
+fn choose(ui: &mut Ui, state: &State, out: Out) {
+    let c = Colours::now(ui);
+    let Some(store) = &state.store else { return };
+    widgets::section(ui, "LEARN");
+    if store.snapshot.classes.is_empty() {
+        ui.colored_label(c.muted, "No class has a label yet.");
+    }
+    for class in &store.snapshot.classes {
+        let mut on = !state.train.without.contains(&class.name);
+        ui.horizontal(|ui| {
+            if ui.checkbox(&mut on, &class.name).changed() {
+                let class = class.name.clone();
+                out.push(Command::Train(TrainCommand::Choose { class, on }));
+            }
+            let colour = if class.accepted < 3 { c.warn } else { c.muted };
+            ui.colored_label(colour, class.accepted.to_string());
+        });
+    }
+    ui.add_space(6.0);
+    let label = if state.is_training() {
+        "Training …"
+    } else {
+        "Train"
+    };
+    let button = widgets::main_button(label, &c).min_size(Vec2::new(ui.available_width(), 30.0));
+    if ui.add_enabled(!state.is_training(), button).clicked() {
+        out.push(Command::Train(TrainCommand::Train));
+    }
+    let label = if state.is_judging() {
+        "Judging …"
+    } else {
+        "Cross-validate"
+    };
+    let button = egui::Button::new(label).min_size(Vec2::new(ui.available_width(), 26.0));
+    let response = ui.add_enabled(!state.is_judging(), button);
+    if response
+        .on_hover_text("Leave out each person in turn, train without, and see what is recognised")
+        .clicked()
+    {
+        out.push(Command::Train(TrainCommand::Judge));
+    }
+    teach_next(ui, state);
+}
+
+/// What would help most.
+fn teach_next(ui: &mut Ui, state: &State) {
+    let Some(store) = &state.store else { return };
+    let c = Colours::now(ui);
+    let mut hints = Vec::new();
+    for class in store.snapshot.classes.iter().filter(|k| k.accepted < 3) {
+        hints.push(format!(
+            "{}: {}, give at least three",
+            class.name,
+            format::count(class.accepted, "label")
+        ));
+    }
+    if let Some(judged) = &state.train.judged {
+        let mut worst: Vec<_> = judged
+            .evaluation
+            .classes
+            .iter()
+            .filter(|k| k.missed > 0 && k.samples > 0)
+            .collect();
+        worst.sort_by(|a, b| (b.missed * a.samples).cmp(&(a.missed * b.samples)));
+        for class in worst.iter().take(3) {
+            hints.push(format!(
+                "{}: {} of {} missed, add some by other people",
+                class.class, class.missed, class.samples
+            ));
+        }
+    }
+    if hints.is_empty() {
+        return;
+    }
+    ui.add_space(8.0);
+    widgets::section(ui, "WHAT TO TEACH NEXT");
+    for hint in hints.iter().take(5) {
+        ui.label(RichText::new(hint).size(12.0).color(c.muted));
+    }
+}
+
+fn indexes(ui: &mut Ui, state: &State, out: Out) {
+    let Some(store) = &state.store else { return };
+    let c = Colours::now(ui);
+    ui.add_space(8.0);
+    widgets::section(ui, "INDEXES IN THE DATABASE");
+    if store.snapshot.indexes.is_empty() {
+        ui.colored_label(c.muted, "None is kept yet.");
+    }
+    for index in &store.snapshot.indexes {
+        ui.horizontal(|ui| {
+            if ui.small_button("Use").clicked() {
+                out.push(Command::Train(TrainCommand::UseIndex(index.name.clone())));
+            }
+            ui.label(&index.name);
+            let text = if index.stale {
+                "labels changed since"
+            } else {
+                "up to date"
+            };
+            ui.label(RichText::new(text).size(11.0).color(c.muted));
+        });
+    }
+    let trained = !state.train.bytes.is_empty();
+    ui.horizontal(|ui| {
+        if ui.add_enabled(trained, egui::Button::new("Keep")).clicked() {
+            out.push(Command::Train(TrainCommand::Keep("studio".to_owned())));
+        }
+        if ui
+            .add_enabled(trained, egui::Button::new("Export …"))
+            .clicked()
+        {
+            out.push(Command::File(FileCommand::AskExportIndex));
+        }
+    });
+}
+
+fn trained(ui: &mut Ui, state: &State, out: Out) {
+    let c = Colours::now(ui);
+    let Some(index) = &state.train.index else {
+        return;
+    };
+    let frame = Frame::new()
+        .fill(c.ground)
+        .corner_radius(6.0)
+        .inner_margin(Margin::same(12));
+    frame.show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing.x = 26.0;
+            widgets::figure(ui, index.model.classes().len().to_string(), "classes");
+            widgets::figure(ui, index.provenance.samples.to_string(), "labels");
+            widgets::figure(ui, index.provenance.clips.len().to_string(), "clips");
+            widgets::figure(
+                ui,
+                format!("{} kB", state.train.bytes.len().div_ceil(1024)),
+                "index",
+            );
+            if state.train.report.is_some() {
+                widgets::figure(ui, format!("{:.1} s", state.train.secs), "training");
+            }
+        });
+        if state.train.is_stale() {
+            ui.add_space(4.0);
+            ui.horizontal(|ui| {
+                ui.colored_label(c.warn, "Labels have changed since.");
+                if ui.button("Train again").clicked() {
+                    out.push(Command::Train(TrainCommand::Train));
+                }
+            });
+        }
+        if let Some(report) = &state.train.report {
+            ui.add_space(4.0);
+            let text = format!(
+                "Threshold {:.2}, set by {}",
+                report.threshold, report.threshold_from
+            );
+            ui.label(RichText::new(text).size(12.0).color(c.muted));
+            for note in &report.notes {
+                ui.label(RichText::new(format!("• {note}")).size(12.0));
+            }
+        }
+    });
+    ui.add_space(10.0);
+}

@@ -1,0 +1,251 @@
+//! The performer in three dimensions: floor, shadow, limbs, trail.
+
+use egui::{Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, WidgetType};
+use morec::kinematics::WorldPose;
+use morec::math::Vec3;
+
+use super::{Out, widgets};
+use crate::body::mesh::Painter;
+use crate::body::{Body, Camera};
+use crate::jobs::load::Motion;
+use crate::state::{Command, Look, State};
+use crate::theme::Colours;
+
+/// So far the floor is drawn from the performer, metres.
+const FLOOR: i32 = 6;
+/// A trail reaches so far into past and future, seconds.
+const TRAIL_SECS: f64 = 1.0;
+/// Poses of the onion skin, seconds from now.
+const ONION: [f64; 4] = [-0.4, -0.2, 0.2, 0.4];
+
+/// What is drawn.
+pub struct Scene<'a> {
+    pub body: &'a Body,
+    pub pose: &'a WorldPose,
+    pub floor: f64,
+    /// The clip, for trail and onion skin.
+    pub motion: Option<(&'a Motion, f64)>,
+}
+
+/// Draws the performer of the clip that is shown.
+pub fn clip(ui: &mut Ui, state: &State, out: Out) {
+    let rect = ui.available_rect_before_wrap();
+    let Some(motion) = &state.player.motion else {
+        let c = Colours::now(ui);
+        ui.painter().rect_filled(rect, 4.0, c.well);
+        widgets::nothing(ui, "No clip is shown", "Choose one in the library.");
+        return;
+    };
+    let pose = motion.pose(state.player.at_secs);
+    let scene = Scene {
+        body: &motion.body,
+        pose: &pose,
+        floor: motion.floor,
+        motion: Some((motion, state.player.at_secs)),
+    };
+    draw(ui, rect, state, &scene, out);
+}
+
+/// Draws a scene into `rect`; drags and wheel move the camera.
+pub fn draw(ui: &mut Ui, rect: Rect, state: &State, scene: &Scene, out: Out) {
+    let c = Colours::now(ui);
+    let response = ui.allocate_rect(rect, Sense::click_and_drag());
+    widgets::named(&response, WidgetType::Image, "Performer", false);
+    let camera = moved(ui, &response, &state.camera);
+    if camera != state.camera {
+        out.push(Command::Look(Look::Camera(camera)));
+    }
+    let painter = ui.painter_at(rect);
+    painter.rect_filled(rect, 4.0, c.well);
+    let view = camera.view(rect);
+    painter.extend(floor(&view, scene.floor, &camera, &c));
+    let mut bodies = Painter::new(view);
+    let palette = c.body();
+    painter.add(bodies.shadow(scene.body, scene.pose, scene.floor, palette.shadow));
+    if let Some((motion, at)) = scene.motion {
+        if state.onion {
+            painter.extend(onion(motion, at, &view, &c));
+        }
+        if let Some(joint) = state.trail {
+            painter.extend(trail(motion, at, joint, &view, &c));
+        }
+    }
+    bodies.body(scene.body, scene.pose, &palette);
+    painter.add(bodies.finish());
+    if scene.body.limbs.is_empty() {
+        let text = "No body part of this clip is known: see its roles in the library";
+        widgets::text_in(
+            ui,
+            Rect::from_center_size(rect.center(), Vec2::new(420.0, 20.0)),
+            text,
+            13.0,
+            c.muted,
+            false,
+        );
+    }
+    controls(ui, rect, state, out);
+}
+
+/// The camera after this frame's drags and wheel.
+fn moved(ui: &Ui, response: &egui::Response, camera: &Camera) -> Camera {
+    let mut camera = *camera;
+    let shift = ui.input(|i| i.modifiers.shift);
+    let other = response.dragged_by(egui::PointerButton::Secondary)
+        || response.dragged_by(egui::PointerButton::Middle);
+    if other || (response.dragged() && shift) {
+        camera.pan(response.drag_delta(), response.rect.height());
+    } else if response.dragged() {
+        camera.orbit(response.drag_delta());
+    }
+    if response.hovered() {
+        let (scroll, zoom) = ui.input(|i| (i.smooth_scroll_delta.y, i.zoom_delta()));
+        camera.zoom(f64::from(zoom) * (f64::from(scroll) * 0.003).exp());
+    }
+    camera
+}
+
+fn floor(view: &crate::body::camera::View, y: f64, camera: &Camera, c: &Colours) -> Vec<Shape> {
+    let (x0, z0) = (
+        camera.target.x.round() as i32,
+        camera.target.z.round() as i32,
+    );
+    let mut shapes = Vec::new();
+    for n in -FLOOR..=FLOOR {
+        for step in -FLOOR..FLOOR {
+            let at = |x: i32, z: i32| Vec3::new(f64::from(x), y, f64::from(z));
+            let lines = [
+                (at(x0 + n, z0 + step), at(x0 + n, z0 + step + 1)),
+                (at(x0 + step, z0 + n), at(x0 + step + 1, z0 + n)),
+            ];
+            // The floor fades away from the performer.
+            let far = (f64::from(n * n) + f64::from(step * step)).sqrt() / f64::from(FLOOR);
+            let strength = (1.0 - far).clamp(0.0, 1.0) as f32;
+            if strength < 0.03 {
+                continue;
+            }
+            let colour = c.well.lerp_to_gamma(c.line, 0.9 * strength);
+            for (a, b) in lines {
+                if let Some(line) = view.line(&a, &b) {
+                    shapes.push(Shape::line_segment(line, Stroke::new(1.0, colour)));
+                }
+            }
+        }
+    }
+    shapes
+}
+
+fn trail(
+    motion: &Motion,
+    at: f64,
+    joint: usize,
+    view: &crate::body::camera::View,
+    c: &Colours,
+) -> Vec<Shape> {
+    let steps = 60;
+    let place = |step: i32| -> Option<Pos2> {
+        let secs = at + TRAIL_SECS * f64::from(step) / f64::from(steps);
+        (secs >= 0.0 && secs <= motion.secs())
+            .then(|| motion.pose(secs).positions.get(joint).copied())
+            .flatten()
+            .and_then(|p| Some(view.project(&p)?.0))
+    };
+    let mut shapes = Vec::new();
+    for step in -steps..steps {
+        if let (Some(a), Some(b)) = (place(step), place(step + 1)) {
+            let colour = if step < 0 { c.accent } else { c.warn };
+            let strength = 1.0 - step.abs() as f32 / steps as f32;
+            let colour = c.well.lerp_to_gamma(colour, 0.2 + 0.8 * strength);
+            shapes.push(Shape::line_segment([a, b], Stroke::new(2.5, colour)));
+        }
+    }
+    shapes
+}
+
+fn onion(motion: &Motion, at: f64, view: &crate::body::camera::View, c: &Colours) -> Vec<Shape> {
+    let mut shapes = Vec::new();
+    for offset in ONION {
+        let secs = at + offset;
+        if !(0.0..=motion.secs()).contains(&secs) {
+            continue;
+        }
+        let pose = motion.pose(secs);
+        let colour = if offset < 0.0 { c.accent } else { c.warn };
+        let share = 0.45 - 0.6 * offset.abs() as f32;
+        let stroke = Stroke::new(3.0, c.well.lerp_to_gamma(colour, share.max(0.15)));
+        for limb in &motion.body.limbs {
+            let (a, b) = (pose.positions[limb.from], pose.positions[limb.to]);
+            if (b - a).norm() < 0.6 * motion.body.height
+                && let Some(line) = view.line(&a, &b)
+            {
+                shapes.push(Shape::line_segment(line, stroke));
+            }
+        }
+    }
+    shapes
+}
+
+/// Buttons over the picture.
+fn controls(ui: &mut Ui, rect: Rect, state: &State, out: Out) {
+    let area = Rect::from_min_size(
+        rect.min + Vec2::new(8.0, 8.0),
+        Vec2::new(rect.width() - 16.0, 24.0),
+    );
+    let mut child = ui.new_child(egui::UiBuilder::new().max_rect(area));
+    child.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let mut look = |look| out.push(Command::Look(look));
+        let buttons = [
+            ("Front", Look::Front),
+            ("Side", Look::Side),
+            ("Top", Look::Top),
+            ("Reset", Look::Reset),
+        ];
+        for (text, command) in buttons {
+            if ui.small_button(text).clicked() {
+                look(command);
+            }
+        }
+        if ui.selectable_label(state.camera.follow, "Follow").clicked() {
+            look(Look::Follow(!state.camera.follow));
+        }
+        if let Some(motion) = state
+            .player
+            .motion
+            .as_ref()
+            .filter(|_| state.panel != crate::state::Panel::Live)
+        {
+            if ui.selectable_label(state.onion, "Onion skin").clicked() {
+                look(Look::Onion(!state.onion));
+            }
+            trail_menu(ui, state, motion, &mut look);
+        }
+    });
+}
+
+fn trail_menu(ui: &mut Ui, state: &State, motion: &Motion, look: &mut impl FnMut(Look)) {
+    let joints = motion.clip.skeleton.joints();
+    let text = match state.trail.and_then(|j| joints.get(j)) {
+        Some(joint) => format!("Trail: {}", joint.name),
+        None => "Trail".to_owned(),
+    };
+    ui.menu_button(text, |ui| {
+        if ui.button("None").clicked() {
+            look(Look::Trail(None));
+        }
+        use morec::roles::Role;
+        for role in [
+            Role::LeftHand,
+            Role::RightHand,
+            Role::LeftFoot,
+            Role::RightFoot,
+            Role::Head,
+            Role::Hips,
+        ] {
+            if let Some(joint) = motion.roles.joint(role)
+                && ui.button(role.name().replace('_', " ")).clicked()
+            {
+                look(Look::Trail(Some(joint)));
+            }
+        }
+    });
+}

@@ -1,0 +1,119 @@
+//! Small parts that several panels draw.
+
+use egui::{
+    Align2, Button, Color32, FontId, Rect, Response, RichText, Sense, Stroke, StrokeKind, Ui, Vec2,
+    WidgetInfo, WidgetType,
+};
+
+use super::Out;
+use crate::state::{Command, FileCommand};
+use crate::theme::Colours;
+
+/// A heading of a section.
+pub fn section(ui: &mut Ui, text: &str) {
+    let c = Colours::now(ui);
+    ui.add_space(4.0);
+    ui.label(RichText::new(text).color(c.muted).size(11.5).strong());
+}
+
+/// What to say where there is nothing: a sentence, and what to do.
+pub fn nothing(ui: &mut Ui, text: &str, hint: &str) {
+    let c = Colours::now(ui);
+    ui.add_space(28.0);
+    ui.vertical_centered(|ui| {
+        ui.label(RichText::new(text).size(15.0));
+        ui.add_space(4.0);
+        ui.label(RichText::new(hint).color(c.muted));
+    });
+}
+
+/// The button of a panel's main action.
+pub fn main_button(text: &str, c: &Colours) -> Button<'static> {
+    let fill = c
+        .panel
+        .lerp_to_gamma(c.accent, if c.dark { 0.62 } else { 0.9 });
+    let colour = Color32::WHITE;
+    Button::new(RichText::new(text.to_owned()).color(colour).strong())
+        .fill(fill)
+        .stroke(Stroke::NONE)
+        .min_size(Vec2::new(0.0, 28.0))
+}
+
+/// A square of a class's colour with its key.
+pub fn chip(ui: &mut Ui, place: Option<usize>, name: &str) -> Response {
+    let c = Colours::now(ui);
+    let (rect, response) = ui.allocate_exact_size(Vec2::splat(18.0), Sense::hover());
+    ui.painter().rect_filled(rect, 3.0, c.class(place));
+    if let Some(place) = place.filter(|p| *p < 9) {
+        let key = (place + 1).to_string();
+        let font = FontId::proportional(12.0);
+        ui.painter().text(
+            rect.center(),
+            Align2::CENTER_CENTER,
+            key,
+            font,
+            c.on_class(),
+        );
+    }
+    response.on_hover_text(name)
+}
+
+/// A frame around what is selected.
+pub fn selected_frame(ui: &Ui, rect: Rect) {
+    let c = Colours::now(ui);
+    ui.painter()
+        .rect_stroke(rect, 4.0, Stroke::new(1.5, c.accent), StrokeKind::Inside);
+}
+
+/// Text cut off at the right where it does not fit.
+pub fn text_in(ui: &Ui, rect: Rect, text: &str, size: f32, colour: Color32, right: bool) {
+    let mut job = egui::text::LayoutJob::simple_singleline(
+        text.to_owned(),
+        FontId::proportional(size),
+        colour,
+    );
+    job.wrap.max_width = rect.width().max(1.0);
+    job.wrap.max_rows = 1;
+    job.wrap.break_anywhere = true;
+    let galley = ui.fonts_mut(|fonts| fonts.layout_job(job));
+    let x = match right {
+        true => rect.right() - galley.size().x,
+        false => rect.left(),
+    };
+    let y = rect.center().y - galley.size().y / 2.0;
+    ui.painter().galley(egui::pos2(x, y), galley, colour);
+}
+
+/// Names a painted part for screen readers and tests.
+pub fn named(response: &Response, kind: WidgetType, name: impl ToString, selected: bool) {
+    response.widget_info(|| WidgetInfo::selected(kind, true, selected, name.to_string()));
+}
+
+/// A figure with what it counts.
+pub fn figure(ui: &mut Ui, value: impl Into<String>, what: &str) {
+    let c = Colours::now(ui);
+    ui.vertical(|ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        ui.label(RichText::new(value).size(19.0).strong());
+        ui.label(RichText::new(what).size(11.0).color(c.muted));
+    });
+}
+
+/// Open, new, import.
+pub fn file_buttons(ui: &mut Ui, out: Out) {
+    let c = Colours::now(ui);
+    let buttons = [
+        ("Open a database …", FileCommand::AskOpen),
+        ("New database …", FileCommand::AskNew),
+        ("Import clips …", FileCommand::AskImport),
+    ];
+    for (at, (text, command)) in buttons.into_iter().enumerate() {
+        let button = match at {
+            0 => main_button(text, &c),
+            _ => Button::new(text),
+        };
+        if ui.add(button.min_size(Vec2::new(180.0, 28.0))).clicked() {
+            out.push(Command::File(command));
+        }
+    }
+}

@@ -1,0 +1,195 @@
+//! Pictures of panels in files, for the guide: `--screenshot FILE.png --panel NAME --at SECS`.
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use egui::{Color32, ColorImage, Pos2, RawInput, Rect, Vec2};
+
+use crate::app::Studio;
+use crate::raster::{self, Textures};
+use crate::state::{
+    ClassCommand, Command, LibraryCommand, LiveCommand, Panel, PlayCommand, TrainCommand,
+};
+
+/// What is to be drawn.
+#[derive(Debug, Clone)]
+pub struct Shot {
+    pub panel: Panel,
+    /// The clip that is shown; the first, if none is named.
+    pub clip: Option<String>,
+    pub at_secs: f64,
+    pub size: [usize; 2],
+    pub dark: bool,
+}
+
+/// No picture takes longer; what is not there by then is not in it.
+const PATIENCE: Duration = Duration::from_secs(300);
+/// Frames a second of the time that passes in pictures.
+const RATE_HZ: f64 = 30.0;
+/// Pixels of the drawing for one of the picture: edges are smooth.
+const TIMES: usize = 2;
+
+/// The program without a window: frames follow each other as fast as they can.
+pub struct Headless {
+    ctx: egui::Context,
+    pub studio: Studio,
+    textures: Textures,
+    size: Vec2,
+    now: f64,
+}
+
+impl Headless {
+    pub fn new(paths: &[PathBuf], size: [usize; 2], dark: bool) -> Self {
+        let ctx = egui::Context::default();
+        let mut studio = Studio::new(&ctx, paths);
+        studio.state.dark = dark;
+        Self {
+            ctx,
+            studio,
+            textures: Textures::default(),
+            size: Vec2::new(size[0] as f32, size[1] as f32),
+            now: 0.0,
+        }
+    }
+
+    fn input(&mut self, dt: f64) -> RawInput {
+        self.now += dt;
+        let mut input = RawInput {
+            screen_rect: Some(Rect::from_min_size(Pos2::ZERO, self.size)),
+            time: Some(self.now),
+            predicted_dt: dt as f32,
+            focused: true,
+            ..RawInput::default()
+        };
+        if let Some(viewport) = input.viewports.get_mut(&input.viewport_id) {
+            viewport.native_pixels_per_point = Some(TIMES as f32);
+        }
+        input
+    }
+
+    /// One frame after `dt` seconds; gives what to draw.
+    pub fn frame(&mut self, dt: f64) -> egui::FullOutput {
+        let input = self.input(dt);
+        let studio = &mut self.studio;
+        let output = self.ctx.run(input, |ctx| studio.frame(ctx));
+        self.textures.apply(&output.textures_delta);
+        output
+    }
+
+    /// Frames until no thread is at work.
+    pub fn settle(&mut self) {
+        let begun = Instant::now();
+        let mut quiet = 0;
+        while quiet < 3 && begun.elapsed() < PATIENCE {
+            self.frame(0.0);
+            quiet = if self.studio.state.is_busy() {
+                0
+            } else {
+                quiet + 1
+            };
+            std::thread::sleep(Duration::from_millis(4));
+        }
+    }
+
+    /// Lets time pass.
+    pub fn play(&mut self, secs: f64) {
+        for _ in 0..(secs * RATE_HZ).round() as usize {
+            self.frame(1.0 / RATE_HZ);
+        }
+    }
+
+    pub fn command(&mut self, command: Command) {
+        self.studio.state.apply(command);
+    }
+
+    /// The window as it is now.
+    pub fn picture(&mut self) -> ColorImage {
+        let output = self.frame(0.0);
+        let primitives = self.ctx.tessellate(output.shapes, output.pixels_per_point);
+        let size = [self.size.x as usize * TIMES, self.size.y as usize * TIMES];
+        let image = raster::draw(
+            &primitives,
+            &self.textures,
+            size,
+            output.pixels_per_point,
+            Color32::BLACK,
+        );
+        raster::smaller(&image, TIMES)
+    }
+}
+
+/// Draws a panel with the database or clips at `paths`.
+pub fn draw(paths: &[PathBuf], shot: &Shot) -> Result<ColorImage, String> {
+    let mut window = Headless::new(paths, shot.size, shot.dark);
+    window.settle();
+    let state = &window.studio.state;
+    let Some(store) = &state.store else {
+        let why = state.notices.first().map(|n| n.text.clone());
+        return Err(why.unwrap_or_else(|| "nothing was opened in time".to_owned()));
+    };
+    if let Some(name) = &shot.clip {
+        let clip = store.snapshot.clips.iter().find(|c| c.name == *name);
+        let id = clip.ok_or_else(|| format!("no clip is called {name}"))?.id;
+        window.command(Command::Library(LibraryCommand::Open(id)));
+    }
+    prepare(&mut window, shot);
+    Ok(window.picture())
+}
+
+/// Brings the panel into a state that is worth a picture.
+fn prepare(window: &mut Headless, shot: &Shot) {
+    window.command(Command::Show(shot.panel));
+    window.settle();
+    let has_labels = window
+        .studio
+        .state
+        .store
+        .as_ref()
+        .is_some_and(|s| s.snapshot.accepted().next().is_some());
+    match shot.panel {
+        Panel::Label if has_labels => {
+            window.command(Command::Train(TrainCommand::Train));
+        }
+        Panel::Train if has_labels => {
+            window.command(Command::Train(TrainCommand::Train));
+            window.settle();
+            window.command(Command::Train(TrainCommand::Judge));
+        }
+        Panel::Classes if has_labels => window.command(Command::Classes(ClassCommand::Propose)),
+        Panel::Live => {
+            if has_labels {
+                window.command(Command::Train(TrainCommand::Train));
+                window.settle();
+            }
+            window.command(Command::Live(LiveCommand::Start));
+            window.settle();
+            window.play(shot.at_secs);
+        }
+        _ => {}
+    }
+    window.settle();
+    window.command(Command::Play(PlayCommand::Seek(shot.at_secs)));
+    // Strips and mistakes load clips of their own.
+    window.settle();
+    window.frame(1.0);
+    window.settle();
+}
+
+/// Writes a picture as PNG.
+pub fn write(image: &ColorImage, path: &Path) -> Result<(), String> {
+    let said = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
+    let file = std::fs::File::create(path).map_err(|e| said(&e))?;
+    let [width, height] = image.size;
+    let mut encoder = png::Encoder::new(std::io::BufWriter::new(file), width as u32, height as u32);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::High);
+    let bytes: Vec<u8> = image
+        .pixels
+        .iter()
+        .flat_map(|p| [p.r(), p.g(), p.b()])
+        .collect();
+    let mut writer = encoder.write_header().map_err(|e| said(&e))?;
+    writer.write_image_data(&bytes).map_err(|e| said(&e))?;
+    writer.finish().map_err(|e| said(&e))
+}

@@ -1,0 +1,355 @@
+//! Classes: which key labels which, what is proposed, what is alike.
+
+use std::collections::BTreeSet;
+
+use morec_db::labels::{DbSample, NewSample, SampleId, State as Judged};
+use morec_db::{Proposal, questions};
+
+use super::files::quoted;
+use super::{ClassCommand, Panel, State};
+use crate::jobs::group::{self, Groups};
+use crate::jobs::propose;
+use crate::store::{Edit, Snapshot};
+
+/// A key that is held for less is a tap, seconds on the wall.
+const TAP_SECS: f64 = 0.22;
+/// Taps further apart than this are no repetitions of one another, seconds of the clip.
+const TAPS_SECS: f64 = 6.0;
+/// Cuts, ends of stillness nearer than this attract labels made while playing, seconds.
+const ATTRACTED_SECS: f64 = 0.2;
+
+/// A class's key that is down.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Held {
+    pub slot: usize,
+    /// Where in the clip it went down.
+    pub since_secs: f64,
+    /// How long it has been down, seconds on the wall.
+    pub wall_secs: f64,
+}
+
+/// The classes' own state.
+#[derive(Default)]
+pub struct Classes {
+    /// The classes in the order of their keys: 1 to 9, then none.
+    pub order: Vec<String>,
+    /// Classes that were named and have no label yet.
+    pub added: Vec<String>,
+    pub held: Option<Held>,
+    /// Where a key was tapped last: which class, and the moment.
+    pub tapped: Option<(usize, f64)>,
+    pub groups: Option<Groups>,
+    /// Into how many groups the hierarchy is cut.
+    pub depth: usize,
+    /// A class that is being renamed, and its new name so far.
+    pub renaming: Option<(String, String)>,
+    /// The name of a new class so far.
+    pub adding: String,
+}
+
+impl Classes {
+    /// Keeps the order of the classes that are there, new ones behind.
+    pub(super) fn follow(&mut self, snapshot: &Snapshot) {
+        let there: BTreeSet<&str> = snapshot.classes.iter().map(|c| c.name.as_str()).collect();
+        self.added.retain(|name| !there.contains(name.as_str()));
+        let added = self.added.clone();
+        self.order
+            .retain(|name| there.contains(name.as_str()) || added.contains(name));
+        for class in &snapshot.classes {
+            if !self.order.contains(&class.name) {
+                self.order.push(class.name.clone());
+            }
+        }
+    }
+
+    /// The place of a class, which its colour and its key go by.
+    pub fn place(&self, class: &str) -> Option<usize> {
+        self.order.iter().position(|name| name == class)
+    }
+
+    pub(super) fn show_groups(&mut self, groups: Groups) {
+        let classes: BTreeSet<_> = groups
+            .items
+            .iter()
+            .filter_map(|i| i.class.as_ref())
+            .collect();
+        self.depth = classes.len().max(groups.items.len().min(4)).max(1);
+        self.groups = Some(groups);
+    }
+
+    /// A name for the class of a key that has none yet.
+    fn free_name(&self) -> String {
+        (1..)
+            .map(|n| format!("gesture {n}"))
+            .find(|name| !self.order.contains(name))
+            .unwrap_or_default()
+    }
+}
+
+impl State {
+    pub(super) fn apply_classes(&mut self, command: ClassCommand) {
+        match command {
+            ClassCommand::Add(name) => self.add_class(&name),
+            ClassCommand::Rename { from, to } => self.rename_class(&from, to.trim()),
+            ClassCommand::Remove(name) => match self.classes.added.contains(&name) {
+                true => {
+                    self.classes.added.retain(|n| *n != name);
+                    self.classes.order.retain(|n| *n != name);
+                }
+                false => self.edit(Edit::RemoveClass(name)),
+            },
+            ClassCommand::Key { slot, down: true } => self.key_down(slot),
+            ClassCommand::Key { slot, down: false } => self.key_up(slot),
+            ClassCommand::Propose => self.propose(),
+            ClassCommand::Group { cuts } => self.group(cuts),
+            ClassCommand::Depth(depth) => self.classes.depth = depth.max(1),
+            ClassCommand::CloseGroups => self.classes.groups = None,
+            ClassCommand::NameGroup { group, name } => self.name_group(group, &name),
+            ClassCommand::Move { id, class } => {
+                let other = self
+                    .store
+                    .as_ref()
+                    .and_then(|s| s.snapshot.sample(id))
+                    .is_some_and(|s| s.class != class);
+                if other {
+                    self.edit(Edit::Reclass {
+                        ids: vec![id],
+                        class,
+                    });
+                }
+            }
+            ClassCommand::Accept(id) => self.judge(id, Judged::Accepted),
+            ClassCommand::Reject(id) => self.judge(id, Judged::Rejected),
+            ClassCommand::NextDoubtful => self.next_doubtful(None),
+            ClassCommand::Renaming(now) => self.classes.renaming = now,
+            ClassCommand::Adding(name) => self.classes.adding = name,
+        }
+    }
+
+    fn add_class(&mut self, name: &str) {
+        let name = name.trim();
+        self.classes.adding.clear();
+        if name.is_empty() || self.classes.order.iter().any(|n| n == name) {
+            return;
+        }
+        self.classes.added.push(name.to_owned());
+        self.classes.order.push(name.to_owned());
+    }
+
+    fn rename_class(&mut self, from: &str, to: &str) {
+        self.classes.renaming = None;
+        if to.is_empty() || from == to {
+            return;
+        }
+        if self.classes.order.iter().any(|n| n == to) {
+            self.complain(format!("There is a class {to} already"));
+            return;
+        }
+        // It keeps its place, its key and its colour.
+        for name in self.classes.order.iter_mut().filter(|n| *n == from) {
+            to.clone_into(name);
+        }
+        match self.classes.added.iter_mut().find(|n| *n == from) {
+            Some(added) => to.clone_into(added),
+            None => self.edit(Edit::RenameClass {
+                from: from.to_owned(),
+                to: to.to_owned(),
+            }),
+        }
+    }
+
+    /// The class of a key; a key beyond the classes there are makes one.
+    pub(super) fn class_of_key(&mut self, slot: usize) -> String {
+        if slot >= self.classes.order.len() {
+            let name = self.classes.free_name();
+            self.add_class(&name);
+            return name;
+        }
+        self.classes.order[slot].clone()
+    }
+
+    fn key_down(&mut self, slot: usize) {
+        if self.player.motion.is_none() || self.classes.held.is_some() {
+            return;
+        }
+        let (held, slot) = (
+            self.class_of_key(slot),
+            slot.min(self.classes.order.len() - 1),
+        );
+        // With a selection and nothing playing a key says what the selection is.
+        if !self.player.playing {
+            if self.timeline.range.is_some() {
+                self.apply_timeline(super::TimelineCommand::LabelRange(held));
+                return;
+            }
+            let ids: Vec<SampleId> = self.selected().iter().map(|s| s.id).collect();
+            if !ids.is_empty() {
+                self.edit(Edit::Reclass { ids, class: held });
+                return;
+            }
+            self.say("play (Space) and hold the key while the motion passes, or select a stretch");
+            return;
+        }
+        self.classes.held = Some(super::classes::Held {
+            slot,
+            since_secs: self.player.at_secs,
+            wall_secs: 0.0,
+        });
+    }
+
+    fn key_up(&mut self, slot: usize) {
+        let Some(held) = self.classes.held.take_if(|h| h.slot == slot) else {
+            return;
+        };
+        let class = self.class_of_key(slot);
+        let (start, stop) = (held.since_secs, self.player.at_secs);
+        if held.wall_secs >= TAP_SECS {
+            self.classes.tapped = None;
+            // Hands are slow: an end near a cut or near stillness is meant to be there.
+            let (start, stop) = (self.attracted(start), self.attracted(stop));
+            self.label(&class, start, stop);
+            return;
+        }
+        // Each tap begins a repetition and ends the one before.
+        let at = start;
+        match self.classes.tapped {
+            Some((same, last)) if same == slot && at > last && at - last <= TAPS_SECS => {
+                self.label(&class, last, at);
+            }
+            _ => self.say(format!(
+                "{class}: tap again where the next repetition begins"
+            )),
+        }
+        self.classes.tapped = Some((slot, at));
+    }
+
+    fn attracted(&self, secs: f64) -> f64 {
+        let Some(curves) = self.curves.as_ref().filter(|_| self.timeline.snap) else {
+            return secs;
+        };
+        let still = curves.still.iter().flat_map(|s| [s.0, s.1]);
+        let marks = curves.kernel.iter().copied().chain(still);
+        marks
+            .filter(|m| (m - secs).abs() <= ATTRACTED_SECS)
+            .min_by(|a, b| (a - secs).abs().total_cmp(&(b - secs).abs()))
+            .unwrap_or(secs)
+    }
+
+    /// A key that is down when another clip or panel is shown labels nothing.
+    pub(super) fn release_keys(&mut self) {
+        self.classes.held = None;
+        self.classes.tapped = None;
+    }
+
+    /// Counts how long a key has been down.
+    pub fn tick_keys(&mut self, dt: f64) {
+        if let Some(held) = &mut self.classes.held {
+            held.wall_secs += dt;
+        }
+    }
+
+    fn propose(&mut self) {
+        let Some(store) = &self.store else { return };
+        let db = store.path().to_owned();
+        self.command_line = format!("morec db propose {}", quoted(&db));
+        self.jobs
+            .start("Looking for more", true, &self.wake, move |progress| {
+                propose::propose(&db, progress)
+            });
+    }
+
+    fn group(&mut self, cuts: bool) {
+        let Some(store) = &self.store else { return };
+        let db = store.path().to_owned();
+        let of = if cuts { "cuts" } else { "labels" };
+        self.command_line = format!(
+            "morec db group {} --of {of} --method hierarchy",
+            quoted(&db)
+        );
+        self.jobs
+            .start("Grouping", true, &self.wake, move |progress| {
+                group::group(&db, cuts, progress)
+            });
+    }
+
+    /// A group's samples become a class; cuts in it become labels of the class.
+    fn name_group(&mut self, group: usize, name: &str) {
+        let Some(groups) = &self.classes.groups else {
+            return;
+        };
+        let members = groups.at(self.classes.depth);
+        let Some(group) = members.get(group).filter(|_| !name.trim().is_empty()) else {
+            return;
+        };
+        let items = || group.members.iter().map(|&m| &groups.items[m]);
+        let ids: Vec<SampleId> = items().filter_map(|i| i.sample).collect();
+        let new: Vec<NewSample> = items()
+            .filter(|i| i.sample.is_none())
+            .map(|i| NewSample {
+                clip: i.clip,
+                class: name.trim().to_owned(),
+                start_secs: i.start_secs,
+                stop_secs: i.stop_secs,
+                whole_clip: false,
+                state: Judged::Accepted,
+                score: None,
+            })
+            .collect();
+        if !ids.is_empty() {
+            let class = name.trim().to_owned();
+            self.edit(Edit::Reclass { ids, class });
+        }
+        if !new.is_empty() {
+            self.edit(Edit::Label(new));
+        }
+    }
+
+    fn judge(&mut self, id: SampleId, state: Judged) {
+        self.edit(Edit::Judge {
+            ids: vec![id],
+            state,
+        });
+        self.next_doubtful(Some(id));
+    }
+
+    /// The proposals whose answers tell most, first.
+    pub fn doubtful(&self) -> Vec<&DbSample> {
+        let Some(store) = &self.store else {
+            return Vec::new();
+        };
+        let proposed: Vec<&DbSample> = store
+            .snapshot
+            .samples
+            .iter()
+            .filter(|s| s.state == Judged::Proposed)
+            .collect();
+        let as_proposals: Vec<Proposal> = proposed
+            .iter()
+            .map(|s| Proposal {
+                clip: s.clip,
+                class: s.class.clone(),
+                start_secs: s.start_secs,
+                stop_secs: s.stop_secs,
+                whole_clip: s.whole_clip,
+                score: s.score.unwrap_or(0.0) as f32,
+            })
+            .collect();
+        let order = questions(&as_proposals, as_proposals.len());
+        order.into_iter().map(|at| proposed[at]).collect()
+    }
+
+    /// Shows the next proposal, other than one that was just judged.
+    fn next_doubtful(&mut self, not: Option<SampleId>) {
+        let next = self.doubtful().into_iter().find(|s| Some(s.id) != not);
+        let Some((id, clip, start, stop)) = next.map(|s| (s.id, s.clip, s.start_secs, s.stop_secs))
+        else {
+            self.say("no proposal is left to look at");
+            return;
+        };
+        self.open_clip(clip, Some((start, stop)));
+        self.timeline.selected = [id].into();
+        if self.panel != Panel::Label && self.panel != Panel::Classes {
+            self.panel = Panel::Label;
+        }
+    }
+}

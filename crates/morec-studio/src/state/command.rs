@@ -1,0 +1,213 @@
+//! What a person can ask for. Panels emit these; `State` carries them out.
+
+use std::path::PathBuf;
+
+use morec_db::ClipId;
+use morec_db::labels::SampleId;
+
+use super::live::LiveCommand;
+use super::player::PlayCommand;
+use crate::body::Camera;
+use crate::jobs::cut::Method;
+use crate::store::Edit;
+
+/// The panels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Panel {
+    Library,
+    Label,
+    Classes,
+    Train,
+    Live,
+}
+
+impl Panel {
+    pub const ALL: [Panel; 5] = [
+        Panel::Library,
+        Panel::Label,
+        Panel::Classes,
+        Panel::Train,
+        Panel::Live,
+    ];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Panel::Library => "Library",
+            Panel::Label => "Label",
+            Panel::Classes => "Classes",
+            Panel::Train => "Train",
+            Panel::Live => "Live",
+        }
+    }
+
+    /// The panel of this name, in whatever letters.
+    pub fn named(name: &str) -> Option<Self> {
+        let same = |p: &Panel| p.name().eq_ignore_ascii_case(name);
+        Panel::ALL.into_iter().find(same)
+    }
+}
+
+/// One thing that is asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Command {
+    Show(Panel),
+    Dark(bool),
+    ShowHistory(bool),
+    ShowKeys(bool),
+    Dismiss(usize),
+    File(FileCommand),
+    Edit(Edit),
+    Library(LibraryCommand),
+    Play(PlayCommand),
+    Look(Look),
+    Timeline(TimelineCommand),
+    Classes(ClassCommand),
+    Train(TrainCommand),
+    Live(LiveCommand),
+    /// Cancels the job of this place.
+    Cancel(usize),
+}
+
+/// Files, named or to be asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub enum FileCommand {
+    AskOpen,
+    AskImport,
+    AskImportFolder,
+    AskSave,
+    AskExportIndex,
+    AskNew,
+    Open(PathBuf),
+    New(PathBuf),
+    Import(Vec<PathBuf>),
+    Save(PathBuf),
+    ExportIndex(PathBuf),
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub enum LibraryCommand {
+    Filter(String),
+    Sort(Column),
+    /// Selects a clip, beside those that are selected if `add`.
+    Select {
+        clip: ClipId,
+        add: bool,
+    },
+    /// Shows a clip.
+    Open(ClipId),
+    /// Shows a stretch of a clip of this name, in a loop.
+    GoTo {
+        clip: ClipId,
+        start_secs: f64,
+        stop_secs: f64,
+    },
+    DismissReport,
+}
+
+/// Columns of the table of clips.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Column {
+    Name,
+    Length,
+    Subject,
+    Labels,
+    Format,
+}
+
+/// The view of the performer.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Look {
+    Camera(Camera),
+    Front,
+    Side,
+    Top,
+    Reset,
+    Follow(bool),
+    Trail(Option<usize>),
+    Onion(bool),
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub enum TimelineCommand {
+    Zoom {
+        factor: f64,
+        about_secs: f64,
+    },
+    Pan(f64),
+    Whole,
+    Select {
+        id: Option<SampleId>,
+        add: bool,
+    },
+    Range(Option<(f64, f64)>),
+    Snap(bool),
+    /// Takes hold of a label.
+    Grab(super::timeline::Drag),
+    /// The pointer that holds it is at a moment.
+    Drag(f64),
+    Drop,
+    /// Splits the selected label at the playhead.
+    Split,
+    Merge,
+    Remove,
+    /// Moves start, stop or both of the selected label by so many frames.
+    Nudge(super::timeline::Grip, i64),
+    /// Puts the start or the stop of the selected label to the playhead.
+    ToPlayhead(super::timeline::Grip),
+    /// Labels the selected stretch.
+    LabelRange(String),
+    Cut(Method),
+    /// Width of the tracks, as drawn.
+    Width(f32),
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub enum ClassCommand {
+    /// A new class of this name; it is in the database once it has a label.
+    Add(String),
+    Rename {
+        from: String,
+        to: String,
+    },
+    Remove(String),
+    /// The key of a class goes down, or up.
+    Key {
+        slot: usize,
+        down: bool,
+    },
+    Propose,
+    Group {
+        cuts: bool,
+    },
+    Depth(usize),
+    CloseGroups,
+    /// The group of this place becomes a class.
+    NameGroup {
+        group: usize,
+        name: String,
+    },
+    Move {
+        id: SampleId,
+        class: String,
+    },
+    Accept(SampleId),
+    Reject(SampleId),
+    /// The next proposal that is doubtful.
+    NextDoubtful,
+    Renaming(Option<(String, String)>),
+    Adding(String),
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub enum TrainCommand {
+    Choose {
+        class: String,
+        on: bool,
+    },
+    Train,
+    Judge,
+    /// Shows the cell of the confusion matrix.
+    Cell(Option<(usize, usize)>),
+    Keep(String),
+    UseIndex(String),
+}

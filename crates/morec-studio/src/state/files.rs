@@ -1,0 +1,219 @@
+//! Opening, saving, importing.
+
+use std::path::{Path, PathBuf};
+
+use super::{Classes, FileCommand, Library, Live, Motions, Player, State, Timeline, Train};
+use crate::jobs::{Jobs, example, import};
+use crate::store::Store;
+
+/// A file dialog.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ask {
+    Open,
+    New,
+    Import,
+    ImportFolder,
+    Save,
+    ExportIndex,
+}
+
+impl State {
+    /// Opens what was named on the command line: a database, clips, or nothing, which is the example.
+    pub fn begin(&mut self, paths: &[PathBuf]) {
+        match paths {
+            [] => self.make_example(),
+            [one] if is_database(one) => self.open(one),
+            clips => self.open_clips(clips),
+        }
+    }
+
+    fn open(&mut self, path: &Path) {
+        if !path.exists() {
+            self.complain(format!("{}: there is no such file", path.display()));
+            return;
+        }
+        self.open_store(path, false);
+    }
+
+    pub(super) fn open_store(&mut self, path: &Path, temporary: bool) {
+        match Store::open(path, temporary, self.wake.clone()) {
+            Ok(store) => {
+                let first = store.snapshot.clips.first().map(|c| c.id);
+                self.forget();
+                self.say(format!("{} opened", path.display()));
+                self.command_line = format!("morec-studio {}", quoted(path));
+                self.store = Some(store);
+                if let Some(clip) = first {
+                    self.open_clip(clip, None);
+                }
+            }
+            Err(error) => self.complain(crate::store::sentence(&error.to_string())),
+        }
+    }
+
+    /// What belongs to the database that was open.
+    fn forget(&mut self) {
+        self.jobs.running.iter().for_each(|job| job.cancel());
+        self.store = None;
+        self.jobs = Jobs::default();
+        self.library = Library::default();
+        self.player = Player::new();
+        self.timeline = Timeline::default();
+        self.curves = None;
+        self.detections = None;
+        self.classes = Classes::default();
+        self.train = Train::default();
+        self.live = Live::default();
+        self.import_report = None;
+        self.motions = Motions::default();
+        self.pending = None;
+        self.seen_version = 0;
+    }
+
+    fn own_folder(&mut self) -> Option<PathBuf> {
+        if self.folder.is_none() {
+            match example::temporary_folder() {
+                Ok(folder) => self.folder = Some(folder),
+                Err(error) => self.complain(format!("No temporary folder can be made: {error}")),
+            }
+        }
+        self.folder.clone()
+    }
+
+    /// Where files lie for a moment.
+    pub(super) fn scratch(&mut self) -> PathBuf {
+        self.own_folder().unwrap_or_else(std::env::temp_dir)
+    }
+
+    fn make_example(&mut self) {
+        let Some(folder) = self.own_folder() else {
+            return;
+        };
+        self.jobs
+            .start("Making an example", true, &self.wake, move |progress| {
+                example::make(&folder, progress)
+            });
+    }
+
+    fn open_clips(&mut self, clips: &[PathBuf]) {
+        let Some(folder) = self.own_folder() else {
+            return;
+        };
+        let clips = clips.to_vec();
+        self.jobs
+            .start("Importing clips", true, &self.wake, move |progress| {
+                example::of_clips(&folder, &clips, progress)
+            });
+    }
+
+    pub(super) fn apply_file(&mut self, command: FileCommand) {
+        match command {
+            FileCommand::AskOpen => self.ask = Some(Ask::Open),
+            FileCommand::AskNew => self.ask = Some(Ask::New),
+            FileCommand::AskImport => self.ask = Some(Ask::Import),
+            FileCommand::AskImportFolder => self.ask = Some(Ask::ImportFolder),
+            FileCommand::AskSave => self.ask = Some(Ask::Save),
+            FileCommand::AskExportIndex => self.ask = Some(Ask::ExportIndex),
+            FileCommand::Open(path) => self.open(&path),
+            FileCommand::New(path) => match path.exists() {
+                true => self.complain(format!("{}: there is a file already", path.display())),
+                false => self.open_store(&path, false),
+            },
+            FileCommand::Import(paths) => self.import(paths),
+            FileCommand::Save(path) => self.save(&path),
+            FileCommand::ExportIndex(path) => self.export_index(&path),
+        }
+    }
+
+    fn import(&mut self, paths: Vec<PathBuf>) {
+        let databases = paths.iter().filter(|p| is_database(p)).count();
+        if databases == 1 && paths.len() == 1 {
+            self.open(&paths[0]);
+            return;
+        }
+        let Some(store) = &self.store else {
+            self.open_clips(&paths);
+            return;
+        };
+        let (db, shown) = (store.path().to_owned(), quoted_all(&paths));
+        self.command_line = format!("morec db import {} {shown}", quoted(&db));
+        self.jobs
+            .start("Importing clips", true, &self.wake, move |progress| {
+                import::import(&db, &paths, progress)
+            });
+    }
+
+    /// A copy of the database somewhere else, which is then the one that is open.
+    fn save(&mut self, path: &Path) {
+        let Some(store) = &self.store else { return };
+        if store.is_busy() || !self.jobs.running.iter().all(|j| !j.shown) {
+            self.complain(
+                "Not saved yet: wait until the work at the bottom is done, then save again",
+            );
+            return;
+        }
+        let from = store.path().to_owned();
+        // The log is empty once the last connection closes.
+        self.store = None;
+        let copied = settle(&from).and_then(|()| copy_whole(&from, path));
+        match copied {
+            Ok(()) => self.open_store(path, false),
+            Err(error) => {
+                self.open_store(&from, true);
+                self.complain(format!("{}: not saved: {error}", path.display()));
+            }
+        }
+    }
+}
+
+/// Brings what is in the log into the file.
+fn settle(path: &Path) -> Result<(), String> {
+    let mut db = morec_db::MotionDb::open(path).map_err(|e| e.to_string())?;
+    db.vacuum(false).map_err(|e| e.to_string())
+}
+
+/// Copies a file so that there is all of it or none.
+fn copy_whole(from: &Path, to: &Path) -> Result<(), String> {
+    let beside = to.with_extension("mdb-part");
+    let copied = std::fs::copy(from, &beside).and_then(|_| std::fs::rename(&beside, to));
+    copied.map_err(|error| {
+        // What is there of it is of no use.
+        let _ = std::fs::remove_file(&beside);
+        error.to_string()
+    })
+}
+
+pub(super) fn is_database(path: &Path) -> bool {
+    let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
+    ["mdb", "db", "sqlite"].iter().any(|known| ending == *known)
+}
+
+/// A path as it is typed in a shell.
+pub(super) fn quoted(path: &Path) -> String {
+    let text = path.display().to_string();
+    let plain = |c: char| c.is_alphanumeric() || "/._-+=:,@".contains(c);
+    match !text.is_empty() && text.chars().all(plain) {
+        true => text,
+        false => format!("'{}'", text.replace('\'', r"'\''")),
+    }
+}
+
+fn quoted_all(paths: &[PathBuf]) -> String {
+    const SHOWN: usize = 3;
+    let mut text: Vec<String> = paths.iter().take(SHOWN).map(|p| quoted(p)).collect();
+    if paths.len() > SHOWN {
+        text.push("…".to_owned());
+    }
+    text.join(" ")
+}
+
+impl Drop for State {
+    /// Leaves nothing of this run's own behind.
+    fn drop(&mut self) {
+        self.jobs.running.iter().for_each(|job| job.cancel());
+        self.store = None;
+        if let Some(folder) = &self.folder {
+            let _ = std::fs::remove_dir_all(folder);
+        }
+    }
+}

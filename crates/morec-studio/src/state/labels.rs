@@ -1,0 +1,251 @@
+//! Labels on the timeline: selected, dragged, split, merged, nudged.
+
+use morec_db::labels::{DbSample, NewSample, State as Judged};
+
+use super::files::quoted;
+use super::{Drag, Grip, State, TimelineCommand};
+use crate::jobs::cut::{self, Method};
+use crate::store::Edit;
+
+impl State {
+    /// Sends an edit to the database, and says which command would do it.
+    pub(super) fn edit(&mut self, edit: Edit) {
+        if let Some(line) = self.line_of(&edit) {
+            self.command_line = line;
+        }
+        if let Some(store) = &mut self.store {
+            store.edit(edit);
+        }
+    }
+
+    /// The labels of the clip that is shown.
+    pub fn shown_samples(&self) -> &[DbSample] {
+        match (&self.store, &self.player.motion) {
+            (Some(store), Some(motion)) => store.snapshot.samples_of(motion.id),
+            _ => &[],
+        }
+    }
+
+    /// The labels that are selected, by time.
+    pub fn selected(&self) -> Vec<&DbSample> {
+        let selected = &self.timeline.selected;
+        let samples = self.shown_samples().iter();
+        samples.filter(|s| selected.contains(&s.id)).collect()
+    }
+
+    /// Moments that dragged ends snap to: cuts, the ends of other labels, the playhead.
+    pub fn marks(&self) -> Vec<f64> {
+        let mut marks = vec![self.player.at_secs];
+        if let Some(curves) = &self.curves {
+            marks.extend(curves.kernel.iter().chain(&curves.ppca));
+            marks.extend(curves.still.iter().flat_map(|s| [s.0, s.1]));
+        }
+        let held = self.timeline.drag.as_ref().map(|d| d.id);
+        let others = self.shown_samples().iter().filter(|s| Some(s.id) != held);
+        marks.extend(others.flat_map(|s| [s.start_secs, s.stop_secs]));
+        marks
+    }
+
+    pub(super) fn apply_timeline(&mut self, command: TimelineCommand) {
+        let (end, rate) = (self.player.secs(), self.player.rate_hz());
+        let timeline = &mut self.timeline;
+        match command {
+            TimelineCommand::Zoom { factor, about_secs } => timeline.zoom(factor, about_secs, end),
+            TimelineCommand::Pan(secs) => timeline.pan(secs, end),
+            TimelineCommand::Whole => timeline.whole(end),
+            TimelineCommand::Snap(on) => timeline.snap = on,
+            TimelineCommand::Width(width) => timeline.width = width,
+            TimelineCommand::Range(range) => timeline.range = range.filter(|r| r.1 - r.0 > 1e-3),
+            TimelineCommand::Select { id, add } => {
+                if !add {
+                    timeline.selected.clear();
+                }
+                if let Some(id) = id
+                    && !timeline.selected.remove(&id)
+                {
+                    timeline.selected.insert(id);
+                }
+            }
+            TimelineCommand::Grab(drag) => {
+                timeline.selected = [drag.id].into();
+                timeline.drag = Some(drag);
+            }
+            TimelineCommand::Drag(secs) => {
+                let marks = self.marks();
+                self.timeline.drag_to(secs, &marks, rate, end);
+            }
+            TimelineCommand::Drop => self.drop_label(),
+            TimelineCommand::Split => self.split(),
+            TimelineCommand::Merge => self.merge(),
+            TimelineCommand::Remove => {
+                let ids: Vec<_> = self.selected().iter().map(|s| s.id).collect();
+                if !ids.is_empty() {
+                    self.edit(Edit::Remove(ids));
+                }
+            }
+            TimelineCommand::Nudge(grip, frames) => {
+                let by = frames as f64 / rate;
+                self.change_selected(|start, stop| moved(grip, start, stop, by));
+            }
+            TimelineCommand::ToPlayhead(grip) => {
+                let at = self.player.at_secs;
+                self.change_selected(|start, stop| match grip {
+                    Grip::Start => (at, stop),
+                    Grip::Stop => (start, at),
+                    Grip::Whole => (at, at + stop - start),
+                });
+            }
+            TimelineCommand::LabelRange(class) => {
+                if let Some((start, stop)) = self.timeline.range.take() {
+                    self.label(&class, start, stop);
+                }
+            }
+            TimelineCommand::Cut(method) => self.cut(method),
+        }
+    }
+
+    fn drop_label(&mut self) {
+        let Some(drag) = self.timeline.drag.take() else {
+            return;
+        };
+        let moved = self.shown_samples().iter().any(|s| {
+            s.id == drag.id
+                && ((s.start_secs - drag.start_secs).abs() > 1e-6
+                    || (s.stop_secs - drag.stop_secs).abs() > 1e-6)
+        });
+        if !moved {
+            return;
+        }
+        self.edit(Edit::Move {
+            id: drag.id,
+            start_secs: drag.start_secs,
+            stop_secs: drag.stop_secs,
+        });
+        self.timeline.drag = Some(Drag {
+            dropped: true,
+            ..drag
+        });
+    }
+
+    fn change_selected(&mut self, change: impl Fn(f64, f64) -> (f64, f64)) {
+        let end = self.player.secs();
+        let [sample] = self.selected()[..] else {
+            self.say("select one label first");
+            return;
+        };
+        let (id, (start, stop)) = (sample.id, change(sample.start_secs, sample.stop_secs));
+        if start < 0.0 || stop > end + 1e-9 || stop <= start {
+            self.say("a label stays inside its clip and ends after it begins");
+            return;
+        }
+        self.edit(Edit::Move {
+            id,
+            start_secs: start,
+            stop_secs: stop,
+        });
+    }
+
+    fn split(&mut self) {
+        let at = self.player.at_secs;
+        let inside = |s: &&&DbSample| s.start_secs < at - 1e-6 && at + 1e-6 < s.stop_secs;
+        let selected = self.selected();
+        let there = self.shown_samples();
+        let found = selected
+            .iter()
+            .find(inside)
+            .copied()
+            .or_else(|| there.iter().find(|s| inside(&s)));
+        let Some(sample) = found else {
+            self.say("no label lies under the playhead");
+            return;
+        };
+        let part = |start_secs, stop_secs| NewSample {
+            start_secs,
+            stop_secs,
+            whole_clip: false,
+            ..new_of(sample)
+        };
+        let edit = Edit::Replace {
+            what: format!("split {} of {}", sample.class, sample.clip_name),
+            old: vec![sample.id],
+            new: vec![part(sample.start_secs, at), part(at, sample.stop_secs)],
+        };
+        self.edit(edit);
+    }
+
+    fn merge(&mut self) {
+        let selected = self.selected();
+        let (Some(first), true) = (selected.first(), selected.len() >= 2) else {
+            self.say("select two labels or more to merge them");
+            return;
+        };
+        if selected.iter().any(|s| s.class != first.class) {
+            self.say("labels of different classes are not merged");
+            return;
+        }
+        let stop_secs = selected.iter().map(|s| s.stop_secs).fold(0.0, f64::max);
+        let edit = Edit::Replace {
+            what: format!("merge {} labels of {}", selected.len(), first.class),
+            old: selected.iter().map(|s| s.id).collect(),
+            new: vec![NewSample {
+                stop_secs,
+                whole_clip: false,
+                ..new_of(first)
+            }],
+        };
+        self.edit(edit);
+    }
+
+    /// Labels a stretch of the clip that is shown.
+    pub(super) fn label(&mut self, class: &str, start_secs: f64, stop_secs: f64) {
+        let Some(motion) = &self.player.motion else {
+            return;
+        };
+        let (rate, end) = (motion.clip.rate_hz, motion.secs());
+        let frame = |secs: f64| (secs * rate).round() / rate;
+        let (start, stop) = (start_secs.min(stop_secs), start_secs.max(stop_secs));
+        let sample = NewSample {
+            clip: motion.id,
+            class: class.to_owned(),
+            start_secs: frame(start.max(0.0)),
+            stop_secs: frame(stop.min(end)),
+            whole_clip: false,
+            state: Judged::Accepted,
+            score: None,
+        };
+        if sample.stop_secs > sample.start_secs {
+            self.edit(Edit::Label(vec![sample]));
+        }
+    }
+
+    fn cut(&mut self, method: Method) {
+        let Some(store) = &self.store else { return };
+        let db = store.path().to_owned();
+        self.command_line = format!("morec db cut {} --method {}", quoted(&db), method.name());
+        self.jobs
+            .start("Cutting clips", true, &self.wake, move |progress| {
+                cut::cut(&db, method, &[], progress)
+            });
+    }
+}
+
+fn moved(grip: Grip, start: f64, stop: f64, by: f64) -> (f64, f64) {
+    match grip {
+        Grip::Start => (start + by, stop),
+        Grip::Stop => (start, stop + by),
+        Grip::Whole => (start + by, stop + by),
+    }
+}
+
+/// A sample as a new one.
+pub(super) fn new_of(sample: &DbSample) -> NewSample {
+    NewSample {
+        clip: sample.clip,
+        class: sample.class.clone(),
+        start_secs: sample.start_secs,
+        stop_secs: sample.stop_secs,
+        whole_clip: sample.whole_clip,
+        state: sample.state,
+        score: sample.score,
+    }
+}

@@ -1,0 +1,102 @@
+//! The table of clips: what is searched, sorted, selected.
+
+use morec_db::{ClipId, ClipInfo};
+
+use super::{Column, LibraryCommand, State};
+
+/// The library's own state.
+#[derive(Default)]
+pub struct Library {
+    pub filter: String,
+    pub sort: Option<(Column, bool)>,
+    pub selected: Vec<ClipId>,
+    /// Places of the clips that are shown, in the snapshot; computed when something changes.
+    shown: Vec<usize>,
+    computed_for: Option<(u64, String, Option<(Column, bool)>)>,
+}
+
+impl Library {
+    pub fn shown(&self) -> &[usize] {
+        &self.shown
+    }
+
+    /// Filters and sorts anew if the clips, the filter or the order have changed.
+    pub(super) fn refresh(&mut self, clips: &[ClipInfo], version: u64) {
+        let wanted = (version, self.filter.clone(), self.sort);
+        if self.computed_for.as_ref() == Some(&wanted) {
+            return;
+        }
+        let words: Vec<String> = self
+            .filter
+            .split_whitespace()
+            .map(str::to_lowercase)
+            .collect();
+        self.shown = (0..clips.len())
+            .filter(|&at| words.iter().all(|word| matches(&clips[at], word)))
+            .collect();
+        if let Some((column, down)) = self.sort {
+            let key = |at: &usize| &clips[*at];
+            match column {
+                Column::Name => self.shown.sort_by(|a, b| key(a).name.cmp(&key(b).name)),
+                Column::Length => self
+                    .shown
+                    .sort_by(|a, b| key(a).duration_secs().total_cmp(&key(b).duration_secs())),
+                Column::Subject => self
+                    .shown
+                    .sort_by(|a, b| key(a).subject.cmp(&key(b).subject)),
+                Column::Labels => self.shown.sort_by_key(|a| key(a).samples),
+                Column::Format => self.shown.sort_by(|a, b| key(a).format.cmp(&key(b).format)),
+            }
+            if down {
+                self.shown.reverse();
+            }
+        }
+        self.computed_for = Some(wanted);
+    }
+}
+
+/// Whether a word is in the clip's name, subject, format, source or tags.
+fn matches(clip: &ClipInfo, word: &str) -> bool {
+    let has = |text: &str| text.to_lowercase().contains(word);
+    has(&clip.name)
+        || has(&clip.format)
+        || clip.subject.as_deref().is_some_and(has)
+        || clip.source.as_deref().is_some_and(has)
+        || clip.tags.iter().any(|tag| has(tag))
+}
+
+impl State {
+    pub(super) fn apply_library(&mut self, command: LibraryCommand) {
+        match command {
+            LibraryCommand::Filter(text) => self.library.filter = text,
+            LibraryCommand::Sort(column) => {
+                let down = self.library.sort == Some((column, false));
+                self.library.sort = Some((column, down));
+            }
+            LibraryCommand::Select { clip, add } => {
+                let selected = &mut self.library.selected;
+                match (add, selected.iter().position(|c| *c == clip)) {
+                    (true, Some(at)) => {
+                        selected.remove(at);
+                    }
+                    (true, None) => selected.push(clip),
+                    (false, _) => self.open_clip(clip, None),
+                }
+            }
+            LibraryCommand::Open(clip) => self.open_clip(clip, None),
+            LibraryCommand::GoTo {
+                clip,
+                start_secs,
+                stop_secs,
+            } => self.open_clip(clip, Some((start_secs, stop_secs))),
+            LibraryCommand::DismissReport => self.import_report = None,
+        }
+        self.refresh_library();
+    }
+
+    pub(super) fn refresh_library(&mut self) {
+        if let Some(store) = &self.store {
+            self.library.refresh(&store.snapshot.clips, store.version);
+        }
+    }
+}

@@ -1,0 +1,188 @@
+//! Where live poses come from.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, sync_channel};
+
+use morec::live::{Actor, Frame, Next, Rig, Source, SourceCounts, wall_now_secs};
+
+use crate::jobs::load::Motion;
+use crate::store::Wake;
+
+/// Between one lap of a clip and the next.
+const PAUSE_SECS: f64 = 1.0;
+/// Frames that wait for the window at most: what a minute at 240 Hz has.
+const WAITING: usize = 16_384;
+
+/// Something that a source said.
+pub enum Item {
+    Rig(Actor, Arc<Rig>),
+    Frame(Box<Frame>),
+    Gone(Actor),
+    Ended,
+}
+
+/// Poses as they come.
+pub enum Feed {
+    Clip(ClipFeed),
+    Thread(ThreadFeed),
+}
+
+impl Feed {
+    /// What has come while `dt` seconds passed on the wall.
+    pub fn poll(&mut self, dt: f64, out: &mut Vec<Item>) {
+        match self {
+            Feed::Clip(feed) => feed.poll(dt, out),
+            Feed::Thread(feed) => feed.poll(out),
+        }
+    }
+
+    pub fn counts(&self) -> SourceCounts {
+        match self {
+            Feed::Clip(_) => SourceCounts::default(),
+            Feed::Thread(feed) => feed.counts(),
+        }
+    }
+}
+
+/// A clip of the database, played as if somebody performed it; again and again.
+pub struct ClipFeed {
+    motion: Arc<Motion>,
+    announced: bool,
+    /// Seconds of stream at which the present lap began.
+    origin_secs: f64,
+    now_secs: f64,
+    next_frame: usize,
+}
+
+impl ClipFeed {
+    pub fn new(motion: Arc<Motion>) -> Self {
+        Self {
+            next_frame: first(&motion),
+            motion,
+            announced: false,
+            origin_secs: 0.0,
+            now_secs: 0.0,
+        }
+    }
+
+    fn poll(&mut self, dt: f64, out: &mut Vec<Item>) {
+        if !self.announced {
+            self.announced = true;
+            let rig = Rig {
+                skeleton: self.motion.clip.skeleton.clone(),
+                roles: self.motion.roles.clone(),
+            };
+            out.push(Item::Rig(Actor(0), Arc::new(rig)));
+        }
+        // A window that was hidden for an hour does not play an hour at once.
+        self.now_secs += dt.clamp(0.0, 1.0);
+        let motion = self.motion.clone();
+        let (clip, begin) = (&motion.clip, first(&motion));
+        let time = |feed: &Self| feed.origin_secs + (feed.next_frame - begin) as f64 / clip.rate_hz;
+        while time(self) <= self.now_secs {
+            if self.next_frame >= clip.frames {
+                self.origin_secs = time(self) + PAUSE_SECS;
+                self.next_frame = begin;
+                out.push(Item::Gone(Actor(0)));
+                continue;
+            }
+            let mut frame = Frame {
+                time_secs: time(self),
+                wall_secs: wall_now_secs(),
+                ..Frame::default()
+            };
+            frame.pose.set(clip, self.next_frame);
+            self.next_frame += 1;
+            out.push(Item::Frame(Box::new(frame)));
+        }
+    }
+}
+
+fn first(motion: &Motion) -> usize {
+    motion.rest.end.min(motion.clip.frames.saturating_sub(1))
+}
+
+/// A source that is asked on a thread of its own.
+pub struct ThreadFeed {
+    items: Receiver<Item>,
+    counts: Receiver<SourceCounts>,
+    last: std::cell::Cell<SourceCounts>,
+    stop: Arc<AtomicBool>,
+}
+
+impl ThreadFeed {
+    /// Asks `source` until the feed is dropped.
+    pub fn start(source: Box<dyn Source>, wake: Wake) -> std::io::Result<Self> {
+        let (sender, items) = sync_channel(WAITING);
+        let (counter, counts) = sync_channel(1);
+        let stop = Arc::new(AtomicBool::new(false));
+        let theirs = stop.clone();
+        std::thread::Builder::new()
+            .name("live source".to_owned())
+            .spawn(move || ask(source, &sender, &counter, &theirs, &wake))?;
+        Ok(Self {
+            items,
+            counts,
+            last: std::cell::Cell::default(),
+            stop,
+        })
+    }
+
+    fn poll(&mut self, out: &mut Vec<Item>) {
+        loop {
+            match self.items.try_recv() {
+                Ok(item) => out.push(item),
+                Err(TryRecvError::Empty) => return,
+                Err(TryRecvError::Disconnected) => {
+                    out.push(Item::Ended);
+                    return;
+                }
+            }
+        }
+    }
+
+    fn counts(&self) -> SourceCounts {
+        if let Ok(counts) = self.counts.try_recv() {
+            self.last.set(counts);
+        }
+        self.last.get()
+    }
+}
+
+impl Drop for ThreadFeed {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+    }
+}
+
+fn ask(
+    mut source: Box<dyn Source>,
+    sender: &SyncSender<Item>,
+    counter: &SyncSender<SourceCounts>,
+    stop: &AtomicBool,
+    wake: &Wake,
+) {
+    let mut frame = Frame::default();
+    while !stop.load(Ordering::Relaxed) {
+        let item = match source.next(&mut frame) {
+            Next::Frame => Item::Frame(Box::new(frame.clone())),
+            Next::Rig(actor, rig) => Item::Rig(actor, rig),
+            Next::Gone(actor) => Item::Gone(actor),
+            Next::Quiet => {
+                // Nobody has asked for the last ones yet: these are newer, and come with the next.
+                let _ = counter.try_send(source.counts());
+                continue;
+            }
+            Next::Ended => {
+                let _ = sender.send(Item::Ended);
+                wake();
+                return;
+            }
+        };
+        if sender.send(item).is_err() {
+            return;
+        }
+        wake();
+    }
+}

@@ -1,0 +1,369 @@
+//! A live stream: who performs, what is recognised, what is taught from what just happened.
+
+mod feed;
+mod moved;
+mod run;
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use morec::features::KeyPose;
+use morec::index::MotionIndex;
+use morec::live::{Detection, Model, Recording};
+use morec::math::Vec3;
+use morec_db::ClipId;
+
+use super::State;
+use crate::jobs::recognise;
+use crate::jobs::teach::{Lesson, Taught, teach};
+pub use feed::{ClipFeed, Feed, ThreadFeed};
+pub use run::Run;
+
+/// Name of the job that keeps what was marked.
+pub(super) const TEACHING: &str = "Keeping what was marked";
+/// What is kept before and after a marked stretch, seconds.
+const AROUND_SECS: f64 = 0.7;
+
+/// Where poses are to come from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Choice {
+    /// A clip of the database.
+    Clip(Option<ClipId>),
+    /// `vmc://…`, `axis://…`, `json+tcp://…`.
+    Network(String),
+}
+
+/// The live panel's own state.
+pub struct Live {
+    pub choice: Choice,
+    pub run: Option<Run>,
+    /// A clip that starts once it is decoded.
+    starting: Option<ClipId>,
+    index: Option<Arc<MotionIndex>>,
+    /// False alarms a minute that are put up with; `None` as trained.
+    pub alarms: Option<f64>,
+    /// A stretch of the stream that is selected, on its clock.
+    pub range: Option<(f64, f64)>,
+    /// What was marked: from when to when, as what.
+    pub marks: Vec<(f64, f64, String)>,
+    /// What the recorded minutes would have held at this sensitivity.
+    pub resensed: Option<Vec<Detection>>,
+    /// Something that was marked is being kept.
+    pub teaching: bool,
+    /// The index is to be trained anew once the mark is in the database.
+    retrain: bool,
+    /// Seconds until a take begins.
+    pub countdown: Option<f64>,
+    /// The take.
+    pub take: Option<Recording>,
+    /// How many motions of each class were recognised.
+    pub counts: BTreeMap<String, usize>,
+}
+
+impl Default for Live {
+    fn default() -> Self {
+        Self {
+            choice: Choice::Clip(None),
+            run: None,
+            starting: None,
+            index: None,
+            alarms: None,
+            range: None,
+            marks: Vec::new(),
+            resensed: None,
+            teaching: false,
+            retrain: false,
+            countdown: None,
+            take: None,
+            counts: BTreeMap::new(),
+        }
+    }
+}
+
+/// What can be asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub enum LiveCommand {
+    Choose(Choice),
+    Start,
+    Stop,
+    /// False alarms a minute.
+    Sensitivity(f64),
+    Range(Option<(f64, f64)>),
+    /// The selected stretch, or the last motion, shows the class of this key.
+    Mark(usize),
+    /// Likewise, of this class.
+    MarkAs(String),
+    /// Begins a take after a countdown, or ends it.
+    Record,
+}
+
+impl Live {
+    pub fn is_running(&self) -> bool {
+        self.run.is_some() || self.starting.is_some()
+    }
+
+    pub fn centre(&self) -> Option<Vec3> {
+        self.run.as_ref()?.centre()
+    }
+
+    pub fn heading(&self) -> Option<f64> {
+        let run = self.run.as_ref()?;
+        run.body.heading(&run.pose)
+    }
+
+    /// The index, at the sensitivity that was chosen.
+    fn model(&self) -> Option<Model> {
+        let model = self.index.as_ref()?.model.clone();
+        match self.alarms.map(|alarms| model.with_sensitivity(alarms)) {
+            Some(Ok(changed)) => Some(changed),
+            _ => Some(model),
+        }
+    }
+
+    /// Whether the index can be made more or less sensitive.
+    pub fn can_sense(&self) -> bool {
+        let index = self.index.as_ref();
+        index.is_some_and(|index| index.model.with_sensitivity(0.3).is_ok())
+    }
+
+    pub fn index(&self) -> Option<&Arc<MotionIndex>> {
+        self.index.as_ref()
+    }
+
+    /// Recognises with another index from the next frame on.
+    pub(super) fn follow_index(&mut self, index: Option<&Arc<MotionIndex>>) {
+        let Some(index) = index else { return };
+        if self
+            .index
+            .as_ref()
+            .is_some_and(|mine| Arc::ptr_eq(mine, index))
+        {
+            return;
+        }
+        self.index = Some(index.clone());
+        let model = self.model();
+        if let (Some(run), Some(model)) = (&mut self.run, model) {
+            run.recognise_with(&model);
+        }
+    }
+}
+
+impl State {
+    pub(super) fn apply_live(&mut self, command: LiveCommand) {
+        match command {
+            LiveCommand::Choose(choice) => self.live.choice = choice,
+            LiveCommand::Start => self.start_live(),
+            LiveCommand::Stop => self.stop_live(),
+            LiveCommand::Sensitivity(alarms) => self.set_sensitivity(alarms),
+            LiveCommand::Range(range) => self.live.range = range.filter(|r| r.1 - r.0 > 0.05),
+            LiveCommand::Mark(slot) => {
+                if self.live.run.is_some() {
+                    let class = self.class_of_key(slot);
+                    self.mark(&class);
+                }
+            }
+            LiveCommand::MarkAs(class) => self.mark(&class),
+            LiveCommand::Record => self.record(),
+        }
+    }
+
+    fn start_live(&mut self) {
+        self.stop_live();
+        match self.live.choice.clone() {
+            Choice::Clip(chosen) => {
+                let shown = self.player.motion.as_ref().map(|m| m.id);
+                let Some(clip) = chosen.or(shown) else {
+                    self.complain("There is no clip to play: import one first");
+                    return;
+                };
+                self.live.choice = Choice::Clip(Some(clip));
+                self.live.starting = Some(clip);
+                self.want_motion(clip);
+            }
+            Choice::Network(address) => self.listen(&address),
+        }
+        self.live.follow_index(self.train.index.as_ref());
+    }
+
+    fn listen(&mut self, address: &str) {
+        match crate::sources::open(address) {
+            Ok(source) => match ThreadFeed::start(source, self.wake.clone()) {
+                Ok(feed) => self.run(Feed::Thread(feed), address.to_owned()),
+                Err(error) => self.complain(format!("{address}: {error}")),
+            },
+            Err(why) => self.complain(why),
+        }
+    }
+
+    fn run(&mut self, feed: Feed, name: String) {
+        let mut run = Run::new(feed, name);
+        if let Some(model) = self.live.model() {
+            run.recognise_with(&model);
+        }
+        self.live.run = Some(run);
+        self.live.marks.clear();
+        self.live.counts.clear();
+        self.live.range = None;
+        self.live.resensed = None;
+        self.player.playing = false;
+    }
+
+    fn stop_live(&mut self) {
+        if self.live.take.is_some() {
+            self.keep_take();
+        }
+        self.live.run = None;
+        self.live.starting = None;
+        self.live.countdown = None;
+    }
+
+    /// Time passes on the stream.
+    pub(super) fn tick_live(&mut self, dt: f64) {
+        if let Some(clip) = self.live.starting {
+            if let Some(motion) = self.motions.get(clip).cloned() {
+                self.live.starting = None;
+                let name = motion.clip.name.clone();
+                self.run(Feed::Clip(ClipFeed::new(motion)), name);
+            } else if let Some(why) = self.motions.failure(clip).map(str::to_owned) {
+                self.live.starting = None;
+                self.complain(why);
+            } else {
+                self.want_motion(clip);
+            }
+        }
+        let live = &mut self.live;
+        let Some(run) = &mut live.run else { return };
+        let frames = run.tick(dt);
+        if let Some(take) = &mut live.take {
+            frames.iter().for_each(|frame| take.push(frame));
+        }
+        if let Some(index) = &live.index {
+            for class in run.news.drain(..) {
+                let name = index.model.class_name(class).to_owned();
+                *live.counts.entry(name).or_default() += 1;
+            }
+        }
+        if let Some(left) = &mut live.countdown {
+            *left -= dt;
+            if *left <= 0.0 {
+                live.countdown = None;
+                live.take = run.rig.as_ref().map(Recording::new);
+            }
+        }
+    }
+
+    fn set_sensitivity(&mut self, alarms: f64) {
+        self.live.alarms = Some(alarms);
+        let Some(model) = self.live.model() else {
+            return;
+        };
+        let Some(run) = &mut self.live.run else {
+            return;
+        };
+        run.recognise_with(&model);
+        let poses: Vec<(f64, KeyPose)> = run.key_poses();
+        if poses.len() > 30 && !self.jobs.is_running("Trying the sensitivity") {
+            self.jobs.start(
+                "Trying the sensitivity",
+                false,
+                &self.wake,
+                move |progress| recognise::poses(&model, &poses, progress),
+            );
+        }
+    }
+
+    /// Keeps the selected stretch, or the last motion, as a sample of a class, and trains anew.
+    fn mark(&mut self, class: &str) {
+        let Some(store) = self.store.as_ref().map(|s| s.path().to_owned()) else {
+            return;
+        };
+        let Some(run) = &self.live.run else {
+            self.say("start a source first");
+            return;
+        };
+        if self.live.teaching {
+            self.say("the mark before this one is still being kept");
+            return;
+        }
+        let Some((start, stop)) = self.live.range.or_else(|| run.last_motion()) else {
+            self.say("nothing has moved yet that could be marked");
+            return;
+        };
+        let Some((recording, origin)) = run.cut_out(start - AROUND_SECS, stop + AROUND_SECS) else {
+            self.complain("That part of the stream is no longer kept");
+            return;
+        };
+        self.live.marks.push((start, stop, class.to_owned()));
+        self.live.range = None;
+        self.live.teaching = true;
+        self.live.retrain = true;
+        let lesson = Lesson {
+            recording,
+            label: Some((class.to_owned(), start - origin, stop - origin)),
+            name: class.replace(' ', "_"),
+        };
+        self.command_line = format!(
+            "morec db label {} --clip {}_001 --class {class}",
+            super::files::quoted(&store),
+            lesson.name
+        );
+        self.keep(store, lesson);
+    }
+
+    fn keep(&mut self, db: std::path::PathBuf, lesson: Lesson) {
+        let folder = self.scratch();
+        self.jobs
+            .start(TEACHING, false, &self.wake, move |progress| {
+                teach(&db, &folder, &lesson, progress)
+            });
+    }
+
+    pub(super) fn taught(&mut self, taught: &Taught) {
+        self.live.teaching = false;
+        let secs = crate::format::duration(taught.secs);
+        self.say(match &taught.class {
+            Some(class) => format!("{class}: kept as {}", taught.name),
+            None => format!("take {} kept, {secs}", taught.name),
+        });
+    }
+
+    /// Trains with what was marked, once it is in the database.
+    pub(super) fn teach_again(&mut self) {
+        if self.live.retrain && !self.live.teaching {
+            self.live.retrain = false;
+            self.start_training();
+        }
+    }
+
+    fn record(&mut self) {
+        if self.live.take.is_some() {
+            self.keep_take();
+        } else if self.live.countdown.take().is_some() {
+            self.say("recording called off");
+        } else if self.live.run.is_some() {
+            self.live.countdown = Some(3.0);
+        } else {
+            self.say("start a source first");
+        }
+    }
+
+    fn keep_take(&mut self) {
+        let Some(recording) = self.live.take.take() else {
+            return;
+        };
+        let Some(store) = self.store.as_ref().map(|s| s.path().to_owned()) else {
+            return;
+        };
+        let lesson = Lesson {
+            recording,
+            label: None,
+            name: "take".to_owned(),
+        };
+        self.command_line = format!(
+            "morec record {} --listen {}",
+            super::files::quoted(&store),
+            self.live.run.as_ref().map_or("SOURCE", |r| r.name.as_str())
+        );
+        self.keep(store, lesson);
+    }
+}

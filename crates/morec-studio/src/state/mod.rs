@@ -1,0 +1,272 @@
+//! Everything the window shows, without a widget: tests apply commands to it without a window.
+
+mod classes;
+mod command;
+mod files;
+mod labels;
+mod library;
+mod lines;
+pub mod live;
+mod outcomes;
+pub mod player;
+mod shown;
+pub mod timeline;
+mod train;
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use morec::eval::Found;
+use morec_db::{ClipId, ClipInfo};
+
+use crate::body::Camera;
+use crate::jobs::{Jobs, cut::Curves, import, load::Motion};
+use crate::store::{Store, Wake};
+
+pub use classes::Classes;
+pub use command::{
+    ClassCommand, Column, Command, FileCommand, LibraryCommand, Look, Panel, TimelineCommand,
+    TrainCommand,
+};
+pub use files::Ask;
+pub use library::Library;
+pub use live::{Live, LiveCommand};
+pub use player::{PlayCommand, Player, SPEEDS};
+pub use timeline::{Drag, Grip, Timeline};
+pub use train::Train;
+
+/// A sentence that stays until it is read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Notice {
+    pub text: String,
+    pub is_error: bool,
+}
+
+/// Everything the window shows.
+pub struct State {
+    pub store: Option<Store>,
+    pub jobs: Jobs,
+    pub panel: Panel,
+    pub dark: bool,
+    pub show_history: bool,
+    pub show_keys: bool,
+    /// What went wrong, until it is dismissed.
+    pub notices: Vec<Notice>,
+    /// What was done last.
+    pub said: String,
+    /// The command that would do the same.
+    pub command_line: String,
+    pub library: Library,
+    pub player: Player,
+    pub camera: Camera,
+    /// The joint that leaves a trail.
+    pub trail: Option<usize>,
+    pub onion: bool,
+    pub timeline: Timeline,
+    pub curves: Option<Arc<Curves>>,
+    /// What the index recognises in the clip that is shown.
+    pub detections: Option<(ClipId, Vec<Found>)>,
+    pub classes: Classes,
+    pub train: Train,
+    pub live: Live,
+    pub import_report: Option<import::Report>,
+    /// A file dialog that should be shown.
+    pub ask: Option<Ask>,
+    pub(crate) wake: Wake,
+    pub(crate) motions: Motions,
+    /// A stretch to show once its clip is decoded.
+    pending: Option<(ClipId, Option<(f64, f64)>)>,
+    /// A folder of this run's own, for what nobody has named yet.
+    folder: Option<PathBuf>,
+    seen_version: u64,
+}
+
+/// Decoded clips, the ones used last; others are decoded again when they are looked at.
+#[derive(Default)]
+pub(crate) struct Motions {
+    kept: BTreeMap<ClipId, (Arc<Motion>, u64)>,
+    failed: BTreeMap<ClipId, String>,
+    loading: Vec<ClipId>,
+    clock: u64,
+}
+
+/// So much decoded motion is kept: joints times frames, 32 bytes each.
+const MOTION_KEPT: usize = 12_000_000;
+/// So many clips are decoded at once.
+const LOADERS: usize = 2;
+
+impl Motions {
+    pub fn get(&self, clip: ClipId) -> Option<&Arc<Motion>> {
+        self.kept.get(&clip).map(|(motion, _)| motion)
+    }
+
+    pub fn failure(&self, clip: ClipId) -> Option<&str> {
+        self.failed.get(&clip).map(String::as_str)
+    }
+
+    fn keep(&mut self, motion: Arc<Motion>) {
+        self.clock += 1;
+        self.kept.insert(motion.id, (motion, self.clock));
+        let size = |m: &Motion| m.clip.frames * m.clip.skeleton.len().max(1);
+        while self.kept.len() > 2
+            && self.kept.values().map(|(m, _)| size(m)).sum::<usize>() > MOTION_KEPT
+        {
+            let oldest = self.kept.iter().min_by_key(|(_, (_, used))| *used);
+            let Some(id) = oldest.map(|(id, _)| *id) else {
+                break;
+            };
+            self.kept.remove(&id);
+        }
+    }
+}
+
+impl State {
+    /// Nothing is open yet. `wake` calls for a new frame from any thread.
+    pub fn new(wake: Wake) -> Self {
+        Self {
+            store: None,
+            jobs: Jobs::default(),
+            panel: Panel::Library,
+            dark: true,
+            show_history: false,
+            show_keys: false,
+            notices: Vec::new(),
+            said: String::new(),
+            command_line: String::new(),
+            library: Library::default(),
+            player: Player::new(),
+            camera: Camera::default(),
+            trail: None,
+            onion: false,
+            timeline: Timeline::default(),
+            curves: None,
+            detections: None,
+            classes: Classes::default(),
+            train: Train::default(),
+            live: Live::default(),
+            import_report: None,
+            ask: None,
+            wake,
+            motions: Motions::default(),
+            pending: None,
+            folder: None,
+            seen_version: 0,
+        }
+    }
+
+    /// Time passes, and what threads have done arrives. `dt` in seconds.
+    pub fn tick(&mut self, dt: f64) {
+        self.player.tick(dt);
+        if self.player.playing {
+            let (at, end) = (self.player.at_secs, self.player.secs());
+            self.timeline.follow(at, end);
+        }
+        if self.camera.follow
+            && let Some(centre) = self.performer_centre()
+        {
+            self.camera.target = centre;
+        }
+        self.tick_live(dt);
+        self.poll();
+    }
+
+    /// Where the shown performer is, at the height of a waist so that the picture does not bob.
+    fn performer_centre(&self) -> Option<morec::math::Vec3> {
+        if self.panel == Panel::Live {
+            return self.live.centre();
+        }
+        let motion = self.player.motion.as_ref()?;
+        let at = motion.body.centre(&motion.pose(self.player.at_secs))?;
+        let waist = motion.floor + 0.52 * motion.body.height;
+        Some(morec::math::Vec3::new(at.x, waist, at.z))
+    }
+
+    /// Carries out what was asked for.
+    pub fn apply(&mut self, command: Command) {
+        match command {
+            Command::Show(panel) => self.show(panel),
+            Command::Dark(dark) => self.dark = dark,
+            Command::ShowHistory(on) => self.show_history = on,
+            Command::ShowKeys(on) => self.show_keys = on,
+            Command::Dismiss(at) => {
+                if at < self.notices.len() {
+                    self.notices.remove(at);
+                }
+            }
+            Command::File(command) => self.apply_file(command),
+            Command::Edit(edit) => self.edit(edit),
+            Command::Library(command) => self.apply_library(command),
+            Command::Play(command) => self.player.apply(&command),
+            Command::Look(look) => self.look(look),
+            Command::Timeline(command) => self.apply_timeline(command),
+            Command::Classes(command) => self.apply_classes(command),
+            Command::Train(command) => self.apply_train(command),
+            Command::Live(command) => self.apply_live(command),
+            Command::Cancel(at) => {
+                if let Some(job) = self.jobs.running.get(at) {
+                    job.cancel();
+                }
+            }
+        }
+    }
+
+    fn show(&mut self, panel: Panel) {
+        self.panel = panel;
+        if panel != Panel::Label {
+            self.release_keys();
+        }
+    }
+
+    /// The clip that is shown.
+    pub fn shown_clip(&self) -> Option<&ClipInfo> {
+        let id = self.player.motion.as_ref()?.id;
+        self.store.as_ref()?.snapshot.clip(id)
+    }
+
+    /// Whether anything moves by itself: then the next frame is wanted at once.
+    pub fn is_moving(&self) -> bool {
+        self.player.playing || self.live.is_running()
+    }
+
+    /// Whether threads are at work.
+    pub fn is_busy(&self) -> bool {
+        !self.jobs.running.is_empty()
+            || self.store.as_ref().is_some_and(Store::is_busy)
+            || !self.motions.loading.is_empty()
+    }
+
+    /// Asks for a clip's motion, if it is not decoded yet.
+    pub fn want_motion(&mut self, clip: ClipId) {
+        let known = self.motions.kept.contains_key(&clip)
+            || self.motions.failed.contains_key(&clip)
+            || self.motions.loading.contains(&clip);
+        let Some(store) = self.store.as_ref().filter(|_| !known) else {
+            return;
+        };
+        if self.motions.loading.len() >= LOADERS {
+            return;
+        }
+        self.motions.loading.push(clip);
+        let path = store.path().to_owned();
+        self.jobs
+            .start("Reading a clip", false, &self.wake, move |progress| {
+                crate::jobs::load::load(&path, clip, progress)
+            });
+    }
+
+    pub(crate) fn complain(&mut self, text: impl Into<String>) {
+        let notice = Notice {
+            text: text.into(),
+            is_error: true,
+        };
+        // The same twice says no more than once.
+        if !self.notices.contains(&notice) {
+            self.notices.push(notice);
+        }
+    }
+
+    pub(crate) fn say(&mut self, text: impl Into<String>) {
+        self.said = text.into();
+    }
+}

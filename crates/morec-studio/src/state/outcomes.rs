@@ -1,0 +1,149 @@
+//! What threads have done arrives here, once a frame.
+
+use super::{Panel, State};
+use crate::jobs::Outcome;
+use crate::store::Said;
+
+impl State {
+    /// Takes what threads have done since the last frame.
+    pub fn poll(&mut self) {
+        for said in self.store.as_mut().map(|s| s.poll()).unwrap_or_default() {
+            match said {
+                Said::Done(text) => self.say(text),
+                Said::Failed(text) => {
+                    self.timeline.drag = None;
+                    self.complain(text);
+                }
+            }
+        }
+        for (name, outcome) in self.jobs.poll() {
+            self.take(&name, outcome);
+        }
+        let version = self.store.as_ref().map_or(0, |s| s.version);
+        if version != self.seen_version {
+            self.seen_version = version;
+            self.changed();
+        }
+        self.refresh_library();
+    }
+
+    /// The database is not what it was.
+    fn changed(&mut self) {
+        let Some(store) = &self.store else { return };
+        let snapshot = store.snapshot.clone();
+        if self.timeline.drag.as_ref().is_some_and(|d| d.dropped) {
+            self.timeline.drag = None;
+        }
+        self.timeline
+            .selected
+            .retain(|id| snapshot.sample(*id).is_some());
+        self.library
+            .selected
+            .retain(|id| snapshot.clip(*id).is_some());
+        self.classes.follow(&snapshot);
+        self.train.follow(&snapshot);
+        let gone = self
+            .player
+            .motion
+            .as_ref()
+            .is_some_and(|m| snapshot.clip(m.id).is_none());
+        if gone {
+            self.player = super::Player::new();
+            self.curves = None;
+        }
+        if self.player.motion.is_none()
+            && self.pending.is_none()
+            && let Some(first) = snapshot.clips.first()
+        {
+            self.open_clip(first.id, None);
+        }
+        self.teach_again();
+    }
+
+    fn reload(&mut self) {
+        if let Some(store) = &mut self.store {
+            store.reload();
+        }
+    }
+
+    fn take(&mut self, name: &str, outcome: Outcome) {
+        match outcome {
+            Outcome::Made(path) => self.open_store(&path, true),
+            Outcome::Loaded(loaded) => {
+                self.motions.loading.retain(|id| *id != loaded.id);
+                match loaded.motion {
+                    Ok(motion) => {
+                        self.motions.keep(motion.clone());
+                        if let Some((_, stretch)) = self.pending.filter(|(id, _)| *id == motion.id)
+                        {
+                            self.show_motion(motion, stretch);
+                        }
+                    }
+                    Err(why) => {
+                        if self.pending.is_some_and(|(id, _)| id == loaded.id) {
+                            self.pending = None;
+                            self.complain(crate::store::sentence(&why));
+                        }
+                        self.motions.failed.insert(loaded.id, why);
+                    }
+                }
+            }
+            Outcome::Curves(curves) => {
+                let shown = self.player.motion.as_ref().map(|m| m.id);
+                if curves.clip == shown {
+                    self.curves = Some(curves.into());
+                }
+            }
+            Outcome::Imported(report) => {
+                self.say(report.said());
+                self.import_report = Some(report);
+                self.reload();
+            }
+            Outcome::Cut(report) => {
+                let clips = crate::format::count(report.clips, "clip");
+                let segments = crate::format::count(report.segments, "segment");
+                self.say(format!("{clips} cut into {segments}"));
+                for (clip, why) in report.left.iter().take(3) {
+                    self.complain(format!("{clip}: not cut: {why}"));
+                }
+                self.reload();
+            }
+            Outcome::Proposed(count) => {
+                self.say(match count {
+                    0 => "no candidate was found".to_owned(),
+                    n => format!("{n} proposals to look at"),
+                });
+                self.reload();
+            }
+            Outcome::Grouped(groups) => self.classes.show_groups(groups),
+            Outcome::Trained(trained) => self.trained(*trained),
+            Outcome::Judged(judged) => {
+                self.say("cross-validation done");
+                self.train.judged = Some((*judged).into());
+                self.train.cell = None;
+            }
+            Outcome::Recognised { clip, found } => self.detections = Some((clip, found)),
+            Outcome::Resensed(found) => self.live.resensed = Some(found),
+            Outcome::Taught(taught) => {
+                self.taught(&taught);
+                self.reload();
+            }
+            Outcome::Failed(why) => {
+                if name == super::live::TEACHING {
+                    self.live.teaching = false;
+                }
+                self.complain(why);
+            }
+            Outcome::Cancelled => {
+                // What looks at a clip is cancelled whenever another is shown.
+                if name != super::shown::CURVES {
+                    self.say(format!("{name}: stopped"));
+                }
+                self.reload();
+            }
+        }
+        if self.panel == Panel::Live {
+            self.live.follow_index(self.train.index.as_ref());
+        }
+    }
+}

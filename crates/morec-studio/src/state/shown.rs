@@ -1,0 +1,105 @@
+//! What is shown: the clip, and where it is looked at from.
+
+use std::sync::Arc;
+
+use morec_db::ClipId;
+
+use super::{Look, Panel, State};
+use crate::body::Camera;
+use crate::jobs::load::Motion;
+
+impl State {
+    /// Shows a clip, and a stretch of it in a loop if one is named, once it is decoded.
+    pub(super) fn open_clip(&mut self, clip: ClipId, stretch: Option<(f64, f64)>) {
+        self.library.selected = vec![clip];
+        if let Some(motion) = self.motions.get(clip).cloned() {
+            self.show_motion(motion, stretch);
+            return;
+        }
+        if let Some(why) = self.motions.failure(clip).map(str::to_owned) {
+            self.complain(why);
+            return;
+        }
+        self.pending = Some((clip, stretch));
+        self.want_motion(clip);
+    }
+
+    /// Shows a clip that is decoded.
+    pub(super) fn show_motion(&mut self, motion: Arc<Motion>, stretch: Option<(f64, f64)>) {
+        self.pending = None;
+        let same = self
+            .player
+            .motion
+            .as_ref()
+            .is_some_and(|m| m.id == motion.id);
+        if !same {
+            self.release_keys();
+            self.player.show(motion.clone());
+            self.timeline.whole(motion.secs());
+            self.timeline.selected.clear();
+            self.timeline.range = None;
+            self.timeline.drag = None;
+            self.curves = None;
+            self.want_curves(&motion);
+            self.want_detections(&motion);
+        }
+        if let Some((start, stop)) = stretch {
+            self.player.apply(&super::PlayCommand::Stretch(start, stop));
+            let margin = (stop - start).max(1.0);
+            self.timeline.from_secs = (start - 2.0 * margin).max(0.0);
+            self.timeline.to_secs = stop + 2.0 * margin;
+            self.timeline.pan(0.0, motion.secs());
+        }
+    }
+
+    /// Computes what both methods of cutting say of a clip.
+    fn want_curves(&mut self, motion: &Arc<Motion>) {
+        for job in self.jobs.running.iter().filter(|j| j.name == CURVES) {
+            job.cancel();
+        }
+        let motion = motion.clone();
+        self.jobs.start(CURVES, false, &self.wake, move |progress| {
+            crate::jobs::cut::curves(&motion, progress)
+        });
+    }
+
+    pub(super) fn look(&mut self, look: Look) {
+        let heading = self.heading();
+        let camera = &mut self.camera;
+        match look {
+            Look::Camera(new) => *camera = new,
+            Look::Front => (camera.yaw, camera.pitch) = (heading, 0.08),
+            Look::Side => {
+                (camera.yaw, camera.pitch) = (heading + std::f64::consts::FRAC_PI_2, 0.08)
+            }
+            Look::Top => (camera.yaw, camera.pitch) = (heading, 1.45),
+            Look::Reset => {
+                let target = camera.target;
+                *camera = Camera {
+                    target,
+                    yaw: heading + Camera::default().yaw,
+                    ..Camera::default()
+                };
+            }
+            Look::Follow(on) => camera.follow = on,
+            Look::Trail(joint) => self.trail = joint,
+            Look::Onion(on) => self.onion = on,
+        }
+    }
+
+    /// Which way the performer faces now.
+    fn heading(&self) -> f64 {
+        if self.panel == Panel::Live {
+            return self.live.heading().unwrap_or(0.0);
+        }
+        let heading = self
+            .player
+            .motion
+            .as_ref()
+            .and_then(|motion| motion.body.heading(&motion.pose(self.player.at_secs)));
+        heading.unwrap_or(0.0)
+    }
+}
+
+/// Name of the job that computes cuts and misfit of the clip that is shown.
+pub(super) const CURVES: &str = "Looking at the clip";

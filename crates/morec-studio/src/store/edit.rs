@@ -1,0 +1,146 @@
+//! Edits of the database as values: what the window may change, each one step of the history.
+
+use morec_db::labels::{LabelOptions, NewSample, SampleId, State};
+use morec_db::{ClipId, ClipUpdate, DbError, MotionDb};
+
+/// Who says so, in the database.
+pub const BY: &str = "studio";
+
+/// One change of the database.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Edit {
+    /// Labels that are new.
+    Label(Vec<NewSample>),
+    /// A label that starts or stops elsewhere.
+    Move {
+        id: SampleId,
+        start_secs: f64,
+        stop_secs: f64,
+    },
+    /// Labels in place of others: splitting and merging.
+    Replace {
+        what: String,
+        old: Vec<SampleId>,
+        new: Vec<NewSample>,
+    },
+    /// Samples of another class.
+    Reclass {
+        ids: Vec<SampleId>,
+        class: String,
+    },
+    /// Samples that are forgotten.
+    Remove(Vec<SampleId>),
+    /// What is thought of samples.
+    Judge {
+        ids: Vec<SampleId>,
+        state: State,
+    },
+    RenameClass {
+        from: String,
+        to: String,
+    },
+    RemoveClass(String),
+    Describe {
+        clips: Vec<ClipId>,
+        update: ClipUpdate,
+    },
+    RenameClip {
+        from: String,
+        to: String,
+    },
+    RemoveClips(Vec<ClipId>),
+    KeepIndex {
+        name: String,
+        bytes: Vec<u8>,
+    },
+    /// Takes a step back: that of this number, or the last.
+    Undo(Option<i64>),
+    Redo,
+}
+
+impl Edit {
+    /// Makes the change. Gives a sentence for the status line.
+    pub fn apply(&self, db: &mut MotionDb) -> Result<String, DbError> {
+        match self {
+            Edit::Label(samples) => {
+                let options = LabelOptions {
+                    by: BY.to_owned(),
+                    ..LabelOptions::default()
+                };
+                let counts = db.label(samples, &options)?.counts;
+                let class = samples.first().map_or("", |s| s.class.as_str());
+                Ok(match counts.added + counts.changed {
+                    0 => "that label is there already".to_owned(),
+                    1 => format!("labelled {class}"),
+                    n => format!("{n} labels of {class}"),
+                })
+            }
+            Edit::Move {
+                id,
+                start_secs,
+                stop_secs,
+            } => {
+                db.move_sample(*id, *start_secs, *stop_secs, BY)?;
+                Ok(format!("moved to {start_secs:.2}–{stop_secs:.2} s"))
+            }
+            Edit::Replace { what, old, new } => {
+                db.change_samples(what, old, new, BY)?;
+                Ok(what.clone())
+            }
+            Edit::Reclass { ids, class } => {
+                let moved = db.split_class(ids, class)?;
+                Ok(format!("{} now {class}", samples(moved)))
+            }
+            Edit::Remove(ids) => {
+                let removed = db.remove_samples(ids)?;
+                Ok(format!("{} removed", samples(removed)))
+            }
+            Edit::Judge { ids, state } => {
+                let changed = db.judge(ids, *state, BY)?;
+                Ok(format!("{} {}", samples(changed), state.name()))
+            }
+            Edit::RenameClass { from, to } => {
+                db.rename_class(from, to)?;
+                Ok(format!("{from} is called {to} now"))
+            }
+            Edit::RemoveClass(name) => {
+                db.remove_class(name)?;
+                Ok(format!("class {name} removed"))
+            }
+            Edit::Describe { clips, update } => {
+                let n = db.update_clips(clips, update)?;
+                Ok(format!("{n} clips described"))
+            }
+            Edit::RenameClip { from, to } => {
+                db.rename_clip(from, to)?;
+                Ok(format!("{from} is called {to} now"))
+            }
+            Edit::RemoveClips(clips) => {
+                let labels = db.remove_clips(clips)?;
+                Ok(format!(
+                    "{} clips removed, {labels} labels with them",
+                    clips.len()
+                ))
+            }
+            Edit::KeepIndex { name, bytes } => {
+                db.keep_index(name, bytes)?;
+                Ok(format!("index {name} kept in the database"))
+            }
+            Edit::Undo(step) => Ok(match db.undo(*step)? {
+                Some(turned) => format!("undone: {}", turned.step.what),
+                None => "there is nothing to undo".to_owned(),
+            }),
+            Edit::Redo => Ok(match db.redo(None)? {
+                Some(turned) => format!("done again: {}", turned.step.what),
+                None => "there is nothing to do again".to_owned(),
+            }),
+        }
+    }
+}
+
+fn samples(n: usize) -> String {
+    match n {
+        1 => "1 label".to_owned(),
+        n => format!("{n} labels"),
+    }
+}

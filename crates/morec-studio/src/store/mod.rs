@@ -1,0 +1,95 @@
+//! The database behind the window: one thread owns it, edits go there, snapshots come back.
+//!
+//! The window never waits for the disk: an edit is a value that is sent away; what the database then holds arrives with
+//! a later frame. What another program changes arrives likewise, within a second.
+
+mod edit;
+mod snapshot;
+mod worker;
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender};
+
+use morec_db::DbError;
+
+pub use edit::{BY, Edit};
+pub use snapshot::Snapshot;
+pub use worker::sentence;
+use worker::{Reply, Request};
+
+/// Calls for a new frame, from any thread.
+pub type Wake = Arc<dyn Fn() + Send + Sync>;
+
+/// What the database thread said since it was asked last.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Said {
+    /// An edit was made.
+    Done(String),
+    /// An edit was not made, and why.
+    Failed(String),
+}
+
+/// An open database.
+pub struct Store {
+    path: PathBuf,
+    /// Whether it lies in a temporary folder, to be saved elsewhere.
+    pub temporary: bool,
+    requests: Sender<Request>,
+    replies: Receiver<Reply>,
+    pub snapshot: Arc<Snapshot>,
+    /// Counts up with every new snapshot.
+    pub version: u64,
+    /// Edits that are under way.
+    pending: usize,
+}
+
+impl Store {
+    /// Opens a database, or makes one where there is none.
+    pub fn open(path: &Path, temporary: bool, wake: Wake) -> Result<Self, DbError> {
+        let (db, snapshot) = worker::open(path)?;
+        let (requests, replies) = worker::start(db, wake)?;
+        Ok(Self {
+            path: path.to_owned(),
+            temporary,
+            requests,
+            replies,
+            snapshot,
+            version: 1,
+            pending: 0,
+        })
+    }
+
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Sends an edit to the database.
+    pub fn edit(&mut self, edit: Edit) {
+        self.pending += usize::from(self.requests.send(Request::Edit(edit)).is_ok());
+    }
+
+    /// Asks for a new snapshot: a job changed the database.
+    pub fn reload(&mut self) {
+        self.pending += usize::from(self.requests.send(Request::Reload).is_ok());
+    }
+
+    /// Takes what has arrived.
+    pub fn poll(&mut self) -> Vec<Said> {
+        let mut said = Vec::new();
+        while let Ok(reply) = self.replies.try_recv() {
+            self.pending -= usize::from(reply.answers).min(self.pending);
+            if let Some(snapshot) = reply.snapshot {
+                self.snapshot = snapshot;
+                self.version += 1;
+            }
+            said.extend(reply.said);
+        }
+        said
+    }
+
+    /// Whether edits are under way.
+    pub fn is_busy(&self) -> bool {
+        self.pending > 0
+    }
+}

@@ -1,0 +1,106 @@
+//! What the database holds, read at once: what panels draw.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use morec_db::labels::{ClassInfo, DbSample, SampleFilter, SampleId, State};
+use morec_db::{ClipFilter, ClipId, ClipInfo, DbError, IndexInfo, MotionDb, Segment, Step};
+
+/// The database at one moment, without motion.
+#[derive(Debug, Clone, Default)]
+pub struct Snapshot {
+    /// By name.
+    pub clips: Vec<ClipInfo>,
+    /// By name.
+    pub classes: Vec<ClassInfo>,
+    /// By clip and time.
+    pub samples: Vec<DbSample>,
+    /// By clip and time.
+    pub segments: Vec<Segment>,
+    pub indexes: Vec<IndexInfo>,
+    /// The last first.
+    pub history: Vec<Step>,
+    place: BTreeMap<ClipId, usize>,
+    samples_of: BTreeMap<ClipId, Range<usize>>,
+    segments_of: BTreeMap<ClipId, Range<usize>>,
+    sample_place: BTreeMap<SampleId, usize>,
+}
+
+impl Snapshot {
+    pub fn read(db: &MotionDb) -> Result<Self, DbError> {
+        Ok(Self::of(
+            db.clips(&ClipFilter::default())?,
+            db.classes()?,
+            db.samples(&SampleFilter::default())?,
+            db.segments()?,
+            db.indexes()?,
+            db.history()?,
+        ))
+    }
+
+    pub fn of(
+        clips: Vec<ClipInfo>,
+        classes: Vec<ClassInfo>,
+        samples: Vec<DbSample>,
+        segments: Vec<Segment>,
+        indexes: Vec<IndexInfo>,
+        history: Vec<Step>,
+    ) -> Self {
+        Self {
+            place: clips.iter().enumerate().map(|(i, c)| (c.id, i)).collect(),
+            samples_of: runs(samples.iter().map(|s| s.clip)),
+            segments_of: runs(segments.iter().map(|s| s.clip)),
+            sample_place: samples.iter().enumerate().map(|(i, s)| (s.id, i)).collect(),
+            clips,
+            classes,
+            samples,
+            segments,
+            indexes,
+            history,
+        }
+    }
+
+    pub fn clip(&self, id: ClipId) -> Option<&ClipInfo> {
+        self.place.get(&id).map(|&at| &self.clips[at])
+    }
+
+    /// The samples of a clip, by time.
+    pub fn samples_of(&self, clip: ClipId) -> &[DbSample] {
+        let range = self.samples_of.get(&clip).cloned().unwrap_or_default();
+        &self.samples[range]
+    }
+
+    pub fn segments_of(&self, clip: ClipId) -> &[Segment] {
+        let range = self.segments_of.get(&clip).cloned().unwrap_or_default();
+        &self.segments[range]
+    }
+
+    pub fn sample(&self, id: SampleId) -> Option<&DbSample> {
+        self.sample_place.get(&id).map(|&at| &self.samples[at])
+    }
+
+    /// What undoing would take back.
+    pub fn undo_name(&self) -> Option<&str> {
+        let step = self.history.iter().find(|s| !s.undone)?;
+        Some(&step.what)
+    }
+
+    /// What doing again would do: the earliest of the steps that were taken back.
+    pub fn redo_name(&self) -> Option<&str> {
+        let step = self.history.iter().rev().find(|s| s.undone)?;
+        Some(&step.what)
+    }
+
+    pub fn accepted(&self) -> impl Iterator<Item = &DbSample> {
+        self.samples.iter().filter(|s| s.state == State::Accepted)
+    }
+}
+
+/// Where each number's run lies, in a list that is sorted so that equal ones are together.
+fn runs(clips: impl Iterator<Item = ClipId>) -> BTreeMap<ClipId, Range<usize>> {
+    let mut runs: BTreeMap<ClipId, Range<usize>> = BTreeMap::new();
+    for (at, clip) in clips.enumerate() {
+        runs.entry(clip).or_insert(at..at).end = at + 1;
+    }
+    runs
+}

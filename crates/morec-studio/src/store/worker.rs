@@ -1,0 +1,120 @@
+//! The thread that owns the database.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::time::Duration;
+
+use morec_db::{DbError, MotionDb};
+
+use super::{Edit, Said, Snapshot, Wake};
+
+/// How often it is looked whether another program changed the database.
+const LOOK: Duration = Duration::from_secs(1);
+
+pub enum Request {
+    Edit(Edit),
+    Reload,
+}
+
+pub struct Reply {
+    pub snapshot: Option<Arc<Snapshot>>,
+    pub said: Option<Said>,
+    /// Whether it answers a request.
+    pub answers: bool,
+}
+
+pub fn open(path: &Path) -> Result<(MotionDb, Arc<Snapshot>), DbError> {
+    let db = match path.exists() {
+        true => MotionDb::open(path)?,
+        false => MotionDb::create(path)?,
+    };
+    let snapshot = Arc::new(Snapshot::read(&db)?);
+    Ok((db, snapshot))
+}
+
+pub fn start(db: MotionDb, wake: Wake) -> Result<(Sender<Request>, Receiver<Reply>), DbError> {
+    let (requests, incoming) = channel();
+    let (outgoing, replies) = channel();
+    let mut worker = Worker {
+        seen: mark(&db),
+        db,
+        outgoing,
+        wake,
+    };
+    let job = move || worker.run(&incoming);
+    std::thread::Builder::new()
+        .name("database".to_owned())
+        .spawn(job)
+        .map_err(|error| DbError::Disk(format!("no thread can be started: {error}")))?;
+    Ok((requests, replies))
+}
+
+struct Worker {
+    db: MotionDb,
+    /// The last step and how many were taken back, by which changes from elsewhere are noticed.
+    seen: Option<(i64, i64)>,
+    outgoing: Sender<Reply>,
+    wake: Wake,
+}
+
+fn mark(db: &MotionDb) -> Option<(i64, i64)> {
+    let step = db.last_step().ok()??;
+    Some((step.id, step.set_secs))
+}
+
+impl Worker {
+    fn run(&mut self, incoming: &Receiver<Request>) {
+        loop {
+            let (said, answers) = match incoming.recv_timeout(LOOK) {
+                Ok(Request::Edit(edit)) => {
+                    let said = match edit.apply(&mut self.db) {
+                        Ok(done) => Said::Done(done),
+                        Err(error) => Said::Failed(sentence(&error.to_string())),
+                    };
+                    (Some(said), true)
+                }
+                Ok(Request::Reload) => (None, true),
+                Err(RecvTimeoutError::Timeout) => {
+                    if mark(&self.db) == self.seen {
+                        continue;
+                    }
+                    (None, false)
+                }
+                Err(RecvTimeoutError::Disconnected) => return,
+            };
+            if !self.reply(said, answers) {
+                return;
+            }
+        }
+    }
+
+    /// Sends a new snapshot; says whether anybody still listens.
+    fn reply(&mut self, mut said: Option<Said>, answers: bool) -> bool {
+        self.seen = mark(&self.db);
+        let snapshot = match Snapshot::read(&self.db) {
+            Ok(snapshot) => Some(Arc::new(snapshot)),
+            Err(error) => {
+                said = Some(Said::Failed(sentence(&error.to_string())));
+                None
+            }
+        };
+        let reply = Reply {
+            snapshot,
+            said,
+            answers,
+        };
+        let heard = self.outgoing.send(reply).is_ok();
+        (self.wake)();
+        heard
+    }
+}
+
+/// An error as a sentence: with a capital, without a full stop.
+pub fn sentence(text: &str) -> String {
+    let mut letters = text.chars();
+    match letters.next() {
+        Some(first) => first.to_uppercase().chain(letters).collect(),
+        None => String::new(),
+    }
+}

@@ -1,0 +1,123 @@
+//! The program: what was typed, then a window or a picture.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use crate::app::Studio;
+use crate::screenshot::{self, Shot};
+use crate::state::Panel;
+
+/// See motions, cut them, sort them, teach them, watch them recognised
+///
+/// A window over a motion database. Without a file it opens an example of made people.
+#[derive(Debug, Clone, Parser)]
+#[command(
+    name = "morec-studio",
+    version,
+    max_term_width = 100,
+    after_help = "Exit codes: 0 closed, or the picture is written; 1 no window can be opened, or no picture drawn; 2 wrong \
+    command line.\n\n\
+    Examples:\n  morec-studio\n  morec-studio moves.mdb\n  morec-studio takes/ walk.bvh\n  \
+    morec-studio moves.mdb --screenshot label.png --panel label --at 12"
+)]
+pub struct Args {
+    /// A motion database (.mdb), or clips and folders of clips
+    #[arg(value_name = "FILE.mdb|CLIPS")]
+    paths: Vec<PathBuf>,
+    /// Draw a panel into this file and end; needs no display
+    #[arg(long, value_name = "FILE.png")]
+    screenshot: Option<PathBuf>,
+    /// The panel that is shown: library, label, classes, train or live
+    #[arg(long, value_name = "NAME", default_value = "library", value_parser = panel)]
+    panel: Panel,
+    /// The clip that is shown in a screenshot
+    #[arg(long, value_name = "CLIP", requires = "screenshot")]
+    clip: Option<String>,
+    /// The moment that is shown in a screenshot, seconds
+    #[arg(
+        long,
+        value_name = "SECS",
+        default_value_t = 0.0,
+        requires = "screenshot"
+    )]
+    at: f64,
+    /// Width and height of a screenshot, pixels
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size, requires = "screenshot")]
+    size: (usize, usize),
+    /// Begin with the light theme
+    #[arg(long)]
+    light: bool,
+}
+
+fn panel(name: &str) -> Result<Panel, String> {
+    let known = || Panel::ALL.map(|p| p.name().to_lowercase()).join(", ");
+    Panel::named(name).ok_or_else(|| format!("expected one of {}", known()))
+}
+
+fn size(text: &str) -> Result<(usize, usize), String> {
+    let parse = || {
+        let (width, height) = text.split_once('x')?;
+        Some((width.parse().ok()?, height.parse().ok()?))
+    };
+    parse()
+        .filter(|(w, h)| (320..=8000).contains(w) && (240..=8000).contains(h))
+        .ok_or_else(|| "expected WIDTHxHEIGHT, as 1280x720".to_owned())
+}
+
+/// Opens the window, or draws the picture.
+pub fn run(args: &Args) -> ExitCode {
+    let done = match &args.screenshot {
+        Some(path) => picture(args, path),
+        None => window(args),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(why) => {
+            complain(&why);
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn picture(args: &Args, path: &std::path::Path) -> Result<(), String> {
+    let shot = Shot {
+        panel: args.panel,
+        clip: args.clip.clone(),
+        at_secs: args.at,
+        size: [args.size.0, args.size.1],
+        dark: !args.light,
+    };
+    screenshot::write(&screenshot::draw(&args.paths, &shot)?, path)
+}
+
+fn window(args: &Args) -> Result<(), String> {
+    let options = eframe::NativeOptions {
+        viewport: egui::ViewportBuilder::default()
+            .with_title("morec studio")
+            .with_app_id("morec-studio")
+            .with_inner_size([1400.0, 860.0])
+            .with_min_inner_size([1000.0, 600.0])
+            .with_drag_and_drop(true),
+        // Limbs are triangles: their edges are smoothed by the card.
+        multisampling: 4,
+        ..Default::default()
+    };
+    let (paths, light, panel) = (args.paths.clone(), args.light, args.panel);
+    let make = move |cc: &eframe::CreationContext<'_>| {
+        let mut studio = Studio::new(&cc.egui_ctx, &paths);
+        studio.state.dark = !light;
+        studio.state.panel = panel;
+        Ok(Box::new(studio) as Box<dyn eframe::App>)
+    };
+    eframe::run_native("morec-studio", options, Box::new(make)).map_err(|error| {
+        format!("no window can be opened: {error}; `--screenshot` draws a panel without one")
+    })
+}
+
+/// What went wrong, for a terminal.
+#[allow(clippy::print_stderr)] // A program's own words, not a library's.
+fn complain(why: &str) {
+    eprintln!("morec-studio: {why}");
+}
