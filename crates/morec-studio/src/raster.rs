@@ -88,7 +88,7 @@ fn triangle(
         v.swap(1, 2);
         area = -area;
     }
-    if !(area > 1e-6) {
+    if area.is_nan() || area <= 1e-6 {
         return;
     }
     let p = [at(&v[0]), at(&v[1]), at(&v[2])];

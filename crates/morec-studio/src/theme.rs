@@ -24,6 +24,8 @@ pub struct Colours {
     pub bad: Color32,
     pub warn: Color32,
     pub playhead: Color32,
+    /// Behind the performer, above and below.
+    pub sky: [Color32; 2],
 }
 
 const DARK: Colours = Colours {
@@ -39,6 +41,10 @@ const DARK: Colours = Colours {
     bad: Color32::from_rgb(0xee, 0x75, 0x4a),
     warn: Color32::from_rgb(0xe6, 0xb0, 0x3c),
     playhead: Color32::from_rgb(0xff, 0xff, 0xff),
+    sky: [
+        Color32::from_rgb(0x16, 0x1a, 0x20),
+        Color32::from_rgb(0x25, 0x2b, 0x34),
+    ],
 };
 
 const LIGHT: Colours = Colours {
@@ -54,6 +60,10 @@ const LIGHT: Colours = Colours {
     bad: Color32::from_rgb(0xb9, 0x46, 0x0c),
     warn: Color32::from_rgb(0x8f, 0x66, 0x00),
     playhead: Color32::from_rgb(0x10, 0x14, 0x1a),
+    sky: [
+        Color32::from_rgb(0xfb, 0xfc, 0xfd),
+        Color32::from_rgb(0xe3, 0xe8, 0xee),
+    ],
 };
 
 /// Eight colours that colour-blind people tell apart (Okabe and Ito 2008, *Color Universal Design*), lightened a little
@@ -105,13 +115,13 @@ impl Colours {
                 left: Color32::from_rgb(0x5f, 0xa8, 0xe6),
                 right: Color32::from_rgb(0xe8, 0x8b, 0x4c),
                 middle: Color32::from_rgb(0xc3, 0xc8, 0xd0),
-                shadow: Color32::from_rgb(0x0c, 0x0e, 0x12),
+                shadow: Color32::from_rgb(0x16, 0x1a, 0x20),
             },
             false => Palette {
                 left: Color32::from_rgb(0x2f, 0x7f, 0xc4),
                 right: Color32::from_rgb(0xd0, 0x68, 0x24),
                 middle: Color32::from_rgb(0x8b, 0x94, 0xa0),
-                shadow: Color32::from_rgb(0xd3, 0xd8, 0xdf),
+                shadow: Color32::from_rgb(0xc6, 0xcd, 0xd6),
             },
         }
     }

@@ -25,7 +25,7 @@ impl Default for Camera {
             target: Vec3::new(0.0, 0.9, 0.0),
             yaw: 0.55,
             pitch: 0.16,
-            distance: 3.9,
+            distance: 3.2,
             follow: true,
         }
     }
@@ -93,13 +93,19 @@ impl View {
     pub fn project(&self, point: &Vec3) -> Option<(Pos2, f64)> {
         let from_eye = point - self.eye;
         let depth = from_eye.dot(&self.forward);
-        if !(depth > NEAR) {
+        // A place that is not a number is nowhere.
+        if depth.is_nan() || depth <= NEAR {
             return None;
         }
         let scale = self.scale / depth;
         let x = from_eye.dot(&self.right) * scale;
         let y = from_eye.dot(&self.up) * scale;
         Some((self.centre + Vec2::new(x as f32, -y as f32), depth))
+    }
+
+    /// How far before the camera a point lies.
+    pub fn depth(&self, point: &Vec3) -> f64 {
+        (point - self.eye).dot(&self.forward)
     }
 
     /// The part of a line that lies before the camera, in the picture.

@@ -24,7 +24,8 @@ const CAP: usize = 3;
 
 /// A triangle of the picture.
 struct Triangle {
-    depth: f64,
+    /// Of the middle of its limb, then its own: where limbs meet, one lies before the other as a whole.
+    depth: (f64, f64),
     at: [egui::Pos2; 3],
     colours: [Color32; 3],
 }
@@ -34,6 +35,8 @@ pub struct Painter {
     view: View,
     light: Vec3,
     triangles: Vec<Triangle>,
+    /// Distance of the limb that is being added.
+    limb: f64,
 }
 
 impl Painter {
@@ -42,6 +45,7 @@ impl Painter {
             view,
             light: Vec3::new(0.35, 0.8, 0.45).normalize(),
             triangles: Vec::new(),
+            limb: 0.0,
         }
     }
 
@@ -55,7 +59,7 @@ impl Painter {
             };
             let length = (b - a).norm();
             // Props, worlds and points that are not seen are no limbs; neither are joints that coincide.
-            if !(length > 0.004 * height && length < 0.6 * height) {
+            if !is_limb(length, height) || length < 0.004 * height {
                 continue;
             }
             let colour = match limb.side {
@@ -102,6 +106,7 @@ impl Painter {
             false => Vec3::y().cross(&axis).normalize(),
         };
         let other = axis.cross(&side);
+        self.limb = self.view.depth(&((a + b) / 2.0));
         // Rings from one end to the other: where along the axis from which end, how wide, how the surface leans.
         let mut rings: Vec<(Vec3, f64, f64)> = Vec::with_capacity(2 * CAP + 2);
         for step in 0..=CAP {
@@ -162,7 +167,7 @@ impl Painter {
             return;
         }
         self.triangles.push(Triangle {
-            depth: corners.iter().map(|c| c.depth).sum(),
+            depth: (self.limb, corners.iter().map(|c| c.depth).sum()),
             at: corners.map(|c| c.at),
             colours: corners.map(|c| c.colour),
         });
@@ -176,7 +181,7 @@ impl Painter {
             else {
                 continue;
             };
-            if !((b - a).norm() < 0.6 * body.height) {
+            if !is_limb((b - a).norm(), body.height) {
                 continue;
             }
             let flat = |p: &Vec3| {
@@ -206,8 +211,10 @@ impl Painter {
 
     /// All triangles as one shape.
     pub fn finish(mut self) -> Shape {
-        self.triangles
-            .sort_unstable_by(|a, b| b.depth.total_cmp(&a.depth));
+        self.triangles.sort_unstable_by(|a, b| {
+            let (a, b) = (a.depth, b.depth);
+            b.0.total_cmp(&a.0).then(b.1.total_cmp(&a.1))
+        });
         let mut mesh = Mesh::default();
         mesh.vertices.reserve(3 * self.triangles.len());
         mesh.indices.reserve(3 * self.triangles.len());
@@ -229,6 +236,11 @@ struct Corner {
     colour: Color32,
     /// Cosine of the angle between the surface and the direction to the camera.
     faces: f64,
+}
+
+/// Props, worlds and points that are not seen are no limbs.
+fn is_limb(length: f64, height: f64) -> bool {
+    length < 0.6 * height
 }
 
 fn vertex(at: egui::Pos2, colour: Color32) -> Vertex {

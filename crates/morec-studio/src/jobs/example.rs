@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use morec::files::FileReader;
 use morec::formats::bvh;
 use morec::progress::Progress;
-use morec::synth::{DatabaseSpec, Take, database};
+use morec::synth::{DatabaseSpec, SyntheticTake, database};
 use morec_db::labels::{NewSample, State};
-use morec_db::{ClipUpdate, FileReader, ImportSettings, MotionDb};
+use morec_db::{ClipUpdate, MotionDb};
 
 use super::{JobProgress, Outcome};
 use crate::store::BY;
@@ -60,13 +61,8 @@ fn make_in(folder: &Path, progress: &dyn Progress) -> Result<PathBuf, String> {
     progress.report("into the database", 2, 3);
     let path = folder.join("example.mdb");
     let mut db = MotionDb::create(&path).map_err(|e| said(&e))?;
-    db.import(
-        &files,
-        &FileReader::default(),
-        &ImportSettings::default(),
-        &(),
-    )
-    .map_err(|e| said(&e))?;
+    db.import(&files, &FileReader::default(), &ClipUpdate::default(), &())
+        .map_err(|e| said(&e))?;
     describe(&mut db, &takes).map_err(|e| said(&e))?;
     // There is nothing of the person's own to take back yet.
     db.forget_history().map_err(|e| said(&e))?;
@@ -74,7 +70,7 @@ fn make_in(folder: &Path, progress: &dyn Progress) -> Result<PathBuf, String> {
 }
 
 /// Who is seen, and what all but the last perform.
-fn describe(db: &mut MotionDb, takes: &[Take]) -> Result<(), morec_db::DbError> {
+fn describe(db: &mut MotionDb, takes: &[SyntheticTake]) -> Result<(), morec_db::DbError> {
     let mut labels = Vec::new();
     for (number, take) in takes.iter().enumerate() {
         let clip = db.find_clip(&take.clip.name)?.id;

@@ -2,10 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use morec::files::FileReader;
 use morec::formats::bvh;
 use morec::live::Recording;
 use morec_db::labels::{LabelOptions, NewSample, State};
-use morec_db::{ClipId, FileReader, ImportSettings, MotionDb, Outcome as FileOutcome};
+use morec_db::{ClipUpdate, ImportOutcome, MotionDb};
 
 use super::{JobProgress, Outcome};
 use crate::store::BY;
@@ -13,7 +14,6 @@ use crate::store::BY;
 /// What was kept.
 #[derive(Debug, Clone)]
 pub struct Taught {
-    pub clip: ClipId,
     pub name: String,
     pub secs: f64,
     /// The class it was marked as.
@@ -50,15 +50,15 @@ fn taught(path: &Path, folder: &Path, lesson: &Lesson) -> Result<Taught, String>
     let report = db.import(
         std::slice::from_ref(&file),
         &FileReader::default(),
-        &ImportSettings::default(),
+        &ClipUpdate::default(),
         &(),
     );
     // It is in the database, or it never was a clip.
     let _ = std::fs::remove_file(&file);
     let report = report.map_err(|e| e.to_string())?;
     let name = match report.files.into_iter().next().map(|(_, outcome)| outcome) {
-        Some(FileOutcome::Imported { clips, .. }) => clips.into_iter().next().unwrap_or(name),
-        Some(FileOutcome::Refused(why)) => return Err(why.reason),
+        Some(ImportOutcome::Imported { clips, .. }) => clips.into_iter().next().unwrap_or(name),
+        Some(ImportOutcome::Refused(why)) => return Err(why.reason),
         _ => return Err("the same motion is in the database already".to_owned()),
     };
     let id = db.find_clip(&name).map_err(|e| e.to_string())?.id;
@@ -79,7 +79,6 @@ fn taught(path: &Path, folder: &Path, lesson: &Lesson) -> Result<Taught, String>
         db.label(&[sample], &options).map_err(|e| e.to_string())?;
     }
     Ok(Taught {
-        clip: id,
         name,
         secs,
         class: lesson.label.as_ref().map(|l| l.0.clone()),

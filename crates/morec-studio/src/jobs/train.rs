@@ -1,15 +1,18 @@
 //! Training in the background.
 
+use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
+use morec::features::BoneSet;
 use morec::index::{MotionIndex, Provenance};
 use morec::labels::Sample;
-use morec::roles::{Role, RoleMap};
+use morec::progress::Progress;
+use morec::roles::RoleMap;
 use morec::synth;
 use morec::train::{
-    EVERYDAY_SEED, Everyday, Labelling, Recipe, Source, TrainClip, TrainError, TrainOptions,
-    TrainingReport, train_model,
+    EVERYDAY_SEED, Everyday, Labelling, Prepared, Recipe, Source, TrainClip, TrainError,
+    TrainOptions, TrainParams, TrainStream, TrainingData, TrainingReport, prepare, train,
 };
 use morec_db::labels::{SampleFilter, State};
 use morec_db::{ClipFilter, DbError, MotionDb};
@@ -24,15 +27,8 @@ pub struct Trained {
     pub secs: f64,
 }
 
-/// Clips and samples to learn from.
-pub struct Material {
-    pub clips: Vec<TrainClip>,
-    pub samples: Vec<Sample>,
-    pub classes: Vec<String>,
-}
-
 /// The accepted samples of `classes` (all, if none are named) and the clips they lie in.
-pub fn material(path: &Path, classes: &[String]) -> Result<Material, DbError> {
+pub fn material(path: &Path, classes: &[String]) -> Result<TrainingData, DbError> {
     let db = MotionDb::open_read_only(path)?;
     let filter = SampleFilter {
         state: Some(State::Accepted),
@@ -74,10 +70,11 @@ pub fn material(path: &Path, classes: &[String]) -> Result<Material, DbError> {
     let mut classes: Vec<String> = samples.iter().map(|s| s.class.clone()).collect();
     classes.sort();
     classes.dedup();
-    Ok(Material {
+    Ok(TrainingData {
         clips,
         samples,
         classes,
+        ..TrainingData::default()
     })
 }
 
@@ -111,7 +108,7 @@ pub fn recipe() -> Recipe {
 }
 
 /// Trains an index of the database at `path`.
-pub fn train(path: &Path, classes: &[String], progress: &JobProgress) -> Outcome {
+pub fn run(path: &Path, classes: &[String], progress: &JobProgress) -> Outcome {
     let begun = std::time::Instant::now();
     match trained(path, classes, progress) {
         Ok(mut trained) => {
@@ -127,41 +124,32 @@ pub fn train(path: &Path, classes: &[String], progress: &JobProgress) -> Outcome
 type Why = Option<String>;
 
 fn trained(path: &Path, classes: &[String], progress: &JobProgress) -> Result<Trained, Why> {
-    use morec::progress::Progress;
-    let material = material(path, classes).map_err(|e| Some(e.to_string()))?;
-    if material.samples.is_empty() {
+    let data = material(path, classes).map_err(|e| Some(e.to_string()))?;
+    if data.samples.is_empty() {
         return Err(Some(
             "Nothing to learn from: label a few motions first".to_owned(),
         ));
     }
-    progress.report("everyday motion", 0, 0);
-    let mut clips = material.clips;
-    clips.extend_from_slice(everyday());
+    let params = TrainParams::default();
+    let prepared = prepared(&data, &params, progress);
     if progress.cancelled() {
         return Err(None);
     }
-    let labelling = Labelling {
-        samples: &material.samples,
-        held_back: &[],
-        classes: &material.classes,
-        unlabelled_is_background: true,
-    };
-    let (model, report) =
-        train_model(&clips, &labelling, &recipe(), progress).map_err(|e| match e {
-            TrainError::Cancelled => None,
-            other => Some(format!("Training stopped: {other}")),
-        })?;
-    let labelled = || clips.iter().filter(|c| c.source == Source::Labelled);
+    let done = train(&prepared.set, prepared.bones, &params, progress).map_err(|e| match e {
+        TrainError::Cancelled => None,
+        other => Some(format!("Training stopped: {other}")),
+    })?;
+    let report = TrainingReport::of(&prepared, &done, params.features.tick_hz());
     let index = MotionIndex {
-        roles: labelled().next().map(roles_of).unwrap_or_default(),
+        roles: data.role_names(),
         provenance: Provenance {
             created: created(),
             morec_version: env!("CARGO_PKG_VERSION").to_owned(),
-            clips: labelled().map(|c| c.name.clone()).collect(),
-            samples: material.samples.len(),
+            clips: data.labelled().map(|c| c.name.clone()).collect(),
+            samples: data.samples.len(),
             background_secs: report.background_secs.clone(),
         },
-        model,
+        model: done.model.into(),
     };
     let bytes = index.to_bytes().map_err(|e| Some(e.to_string()))?;
     Ok(Trained {
@@ -172,10 +160,29 @@ fn trained(path: &Path, classes: &[String], progress: &JobProgress) -> Result<Tr
     })
 }
 
-fn roles_of(clip: &TrainClip) -> std::collections::BTreeMap<Role, String> {
-    let joints = clip.clip.skeleton.joints();
-    let name = |role: Role| Some((role, joints[clip.roles.joint(role)?].name.clone()));
-    Role::ALL.into_iter().filter_map(name).collect()
+/// Streams to train from. Everyday motion is the same for every index of the same bones: its rows are made once.
+fn prepared(data: &TrainingData, params: &TrainParams, progress: &JobProgress) -> Prepared {
+    static EVERYDAY: Mutex<BTreeMap<BoneSet, Vec<TrainStream>>> = Mutex::new(BTreeMap::new());
+    let labelling = Labelling {
+        samples: &data.samples,
+        held_back: &[],
+        classes: &data.classes,
+        unlabelled_is_background: true,
+    };
+    let mut prepared = prepare(&data.clips, &labelling, &params.features);
+    let mut known = EVERYDAY.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(streams) = known.get(&prepared.bones) {
+        prepared.set.streams.extend_from_slice(streams);
+        return prepared;
+    }
+    progress.report("everyday motion", 0, 0);
+    let mut clips = data.clips.clone();
+    clips.extend_from_slice(everyday());
+    let prepared = prepare(&clips, &labelling, &params.features);
+    let streams = prepared.set.streams.iter();
+    let made = streams.filter(|s| s.source == Source::Everyday).cloned();
+    known.insert(prepared.bones, made.collect());
+    prepared
 }
 
 /// Now, as dates in indexes are written: `2026-11-22T06:30:00Z`.

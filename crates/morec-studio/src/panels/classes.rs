@@ -290,7 +290,10 @@ fn answers(ui: &mut Ui, picture: Rect, id: SampleId, out: Out) {
     .enumerate()
     {
         let corner = picture.right_top() + Vec2::new(-46.0 + 23.0 * at as f32, 3.0);
-        let response = ui.put(Rect::from_min_size(corner, size), Button::new(text).small());
+        let at = Rect::from_min_size(corner, size);
+        // Over the picture, without a place of its own in the column.
+        let mut over = ui.new_child(egui::UiBuilder::new().max_rect(at));
+        let response = over.put(at, Button::new(text).small());
         response.widget_info(|| {
             egui::WidgetInfo::labeled(WidgetType::Button, true, format!("{name} {}", id.0))
         });

@@ -87,12 +87,11 @@ fn source(ui: &mut Ui, state: &State, out: Out) {
         true => ("Stop", LiveCommand::Stop),
         false => ("Start", LiveCommand::Start),
     };
-    let size = Vec2::new(ui.available_width(), 30.0);
     let button = match running {
         true => egui::Button::new(text),
         false => widgets::main_button(text, &c),
     };
-    if ui.add(button.min_size(size)).clicked() {
+    if widgets::wide(ui, true, button, 30.0).clicked() {
         live(command);
     }
     record(ui, state, &mut live);
@@ -124,9 +123,9 @@ fn clip_choice(
 fn record(ui: &mut Ui, state: &State, live: &mut impl FnMut(LiveCommand)) {
     let c = Colours::now(ui);
     let text = match (&state.live.take, state.live.countdown) {
-        (Some(take), _) => format!("● Stop recording, {:.1} s", take.secs()),
+        (Some(take), _) => format!("⏺ Stop recording, {:.1} s", take.secs()),
         (None, Some(left)) => format!("Recording in {:.0} …", left.ceil()),
-        (None, None) => "● Record a take  R".to_owned(),
+        (None, None) => "⏺ Record a take  R".to_owned(),
     };
     let text = RichText::new(text);
     let text = if state.live.take.is_some() {
@@ -134,8 +133,7 @@ fn record(ui: &mut Ui, state: &State, live: &mut impl FnMut(LiveCommand)) {
     } else {
         text
     };
-    let button = egui::Button::new(text).min_size(Vec2::new(ui.available_width(), 26.0));
-    let response = ui.add_enabled(state.live.run.is_some(), button);
+    let response = widgets::wide(ui, state.live.run.is_some(), egui::Button::new(text), 26.0);
     response.widget_info(|| egui::WidgetInfo::labeled(WidgetType::Button, true, "Record a take"));
     if response
         .on_hover_text("Three seconds to get ready; the take becomes a clip of the database")

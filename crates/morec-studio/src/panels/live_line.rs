@@ -16,11 +16,11 @@ const NAMES: f32 = 100.0;
 pub fn show(ui: &mut Ui, state: &State, out: Out) {
     let c = Colours::now(ui);
     let Some(run) = &state.live.run else {
-        return widgets::nothing(
-            ui,
-            "The last minutes appear here",
-            "Drag over what just happened to say what it was.",
-        );
+        let hint = "Drag over what just happened to say what it was.";
+        widgets::nothing(ui, "The last minutes appear here", hint);
+        // A panel is as high as what is in it.
+        ui.allocate_space(ui.available_size());
+        return;
     };
     ui.horizontal(|ui| {
         widgets::section(ui, "THE LAST MINUTE");

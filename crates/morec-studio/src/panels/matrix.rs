@@ -77,7 +77,7 @@ fn matrix(ui: &mut Ui, state: &State, out: Out) {
                 .get(column)
                 .map_or("missed", String::as_str);
             let x = area.left() + names + cell * (column as f32 + 0.5);
-            slanted(ui, pos2(x - 6.0, area.top() + head - 4.0), name, &c);
+            slanted(ui, pos2(x - 10.0, area.top() + head - 16.0), name, &c);
         }
         for row in 0..rows {
             let name = confusion.rows.get(row).map_or("unlabelled", String::as_str);

@@ -43,7 +43,10 @@ impl Scale {
 
 pub fn show(ui: &mut Ui, state: &State, out: Out) {
     if state.player.motion.is_none() {
-        return widgets::nothing(ui, "No clip is shown", "Choose one at the left.");
+        widgets::nothing(ui, "No clip is shown", "Choose one at the left.");
+        // A panel is as high as what is in it.
+        ui.allocate_space(ui.available_size());
+        return;
     }
     tools(ui, state, out);
     let c = Colours::now(ui);

@@ -74,8 +74,10 @@ fn choose(ui: &mut Ui, state: &State, out: Out) {
     } else {
         "Train"
     };
-    let button = widgets::main_button(label, &c).min_size(Vec2::new(ui.available_width(), 30.0));
-    if ui.add_enabled(!state.is_training(), button).clicked() {
+    let button = widgets::main_button(label, &c);
+    let response = widgets::wide(ui, !state.is_training(), button, 30.0);
+    widgets::named(&response, egui::WidgetType::Button, "Start training", false);
+    if response.clicked() {
         out.push(Command::Train(TrainCommand::Train));
     }
     let label = if state.is_judging() {
@@ -83,8 +85,7 @@ fn choose(ui: &mut Ui, state: &State, out: Out) {
     } else {
         "Cross-validate"
     };
-    let button = egui::Button::new(label).min_size(Vec2::new(ui.available_width(), 26.0));
-    let response = ui.add_enabled(!state.is_judging(), button);
+    let response = widgets::wide(ui, !state.is_judging(), egui::Button::new(label), 26.0);
     if response
         .on_hover_text("Leave out each person in turn, train without, and see what is recognised")
         .clicked()

@@ -56,7 +56,7 @@ pub fn draw(ui: &mut Ui, rect: Rect, state: &State, scene: &Scene, out: Out) {
         out.push(Command::Look(Look::Camera(camera)));
     }
     let painter = ui.painter_at(rect);
-    painter.rect_filled(rect, 4.0, c.well);
+    painter.add(sky(rect, &c));
     let view = camera.view(rect);
     painter.extend(floor(&view, scene.floor, &camera, &c));
     let mut bodies = Painter::new(view);
@@ -84,6 +84,23 @@ pub fn draw(ui: &mut Ui, rect: Rect, state: &State, scene: &Scene, out: Out) {
         );
     }
     controls(ui, rect, state, out);
+}
+
+/// Behind the performer: a little lighter towards the floor.
+fn sky(rect: Rect, c: &Colours) -> Shape {
+    let mut mesh = egui::epaint::Mesh::default();
+    let [top, bottom] = c.sky;
+    for (at, colour) in [
+        (rect.left_top(), top),
+        (rect.right_top(), top),
+        (rect.right_bottom(), bottom),
+        (rect.left_bottom(), bottom),
+    ] {
+        mesh.colored_vertex(at, colour);
+    }
+    mesh.add_triangle(0, 1, 2);
+    mesh.add_triangle(0, 2, 3);
+    Shape::mesh(mesh)
 }
 
 /// The camera after this frame's drags and wheel.
@@ -123,7 +140,7 @@ fn floor(view: &crate::body::camera::View, y: f64, camera: &Camera, c: &Colours)
             if strength < 0.03 {
                 continue;
             }
-            let colour = c.well.lerp_to_gamma(c.line, 0.9 * strength);
+            let colour = c.sky[1].lerp_to_gamma(c.muted, 0.34 * strength);
             for (a, b) in lines {
                 if let Some(line) = view.line(&a, &b) {
                     shapes.push(Shape::line_segment(line, Stroke::new(1.0, colour)));
@@ -193,6 +210,9 @@ fn controls(ui: &mut Ui, rect: Rect, state: &State, out: Out) {
     let mut child = ui.new_child(egui::UiBuilder::new().max_rect(area));
     child.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
+        ui.spacing_mut().button_padding = Vec2::new(7.0, 2.0);
+        ui.spacing_mut().interact_size.y = 22.0;
+        ui.style_mut().override_text_style = Some(egui::TextStyle::Small);
         let mut look = |look| out.push(Command::Look(look));
         let buttons = [
             ("Front", Look::Front),
@@ -201,7 +221,7 @@ fn controls(ui: &mut Ui, rect: Rect, state: &State, out: Out) {
             ("Reset", Look::Reset),
         ];
         for (text, command) in buttons {
-            if ui.small_button(text).clicked() {
+            if ui.button(text).clicked() {
                 look(command);
             }
         }

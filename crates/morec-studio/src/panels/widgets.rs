@@ -39,6 +39,12 @@ pub fn main_button(text: &str, c: &Colours) -> Button<'static> {
         .min_size(Vec2::new(0.0, 28.0))
 }
 
+/// A button as wide as there is room.
+pub fn wide(ui: &mut Ui, on: bool, button: Button<'_>, height: f32) -> Response {
+    let size = Vec2::new(ui.available_width(), height);
+    ui.add_enabled_ui(on, |ui| ui.add_sized(size, button)).inner
+}
+
 /// A square of a class's colour with its key.
 pub fn chip(ui: &mut Ui, place: Option<usize>, name: &str) -> Response {
     let c = Colours::now(ui);

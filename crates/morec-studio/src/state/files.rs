@@ -40,7 +40,10 @@ impl State {
             Ok(store) => {
                 let first = store.snapshot.clips.first().map(|c| c.id);
                 self.forget();
-                self.say(format!("{} opened", path.display()));
+                self.say(match temporary {
+                    true => "lies in a temporary folder: save a copy to keep it".to_owned(),
+                    false => format!("{} opened", path.display()),
+                });
                 self.command_line = format!("morec-studio {}", quoted(path));
                 self.store = Some(store);
                 if let Some(clip) = first {

@@ -4,6 +4,9 @@ use morec_db::{ClipId, ClipInfo};
 
 use super::{Column, LibraryCommand, State};
 
+/// What the list of shown clips was computed for: snapshot, filter, order.
+type Order = (u64, String, Option<(Column, bool)>);
+
 /// The library's own state.
 #[derive(Default)]
 pub struct Library {
@@ -12,7 +15,7 @@ pub struct Library {
     pub selected: Vec<ClipId>,
     /// Places of the clips that are shown, in the snapshot; computed when something changes.
     shown: Vec<usize>,
-    computed_for: Option<(u64, String, Option<(Column, bool)>)>,
+    computed_for: Option<Order>,
 }
 
 impl Library {

@@ -87,14 +87,6 @@ impl Timeline {
         self.keep_inside(clip_secs);
     }
 
-    /// Brings a moment into view, in the middle if it was not.
-    pub fn reveal(&mut self, secs: f64, clip_secs: f64) {
-        let margin = 0.02 * self.span();
-        if secs < self.from_secs + margin || secs > self.to_secs - margin {
-            self.pan(secs - 0.5 * (self.from_secs + self.to_secs), clip_secs);
-        }
-    }
-
     /// Goes on by a page when the playhead leaves the view.
     pub fn follow(&mut self, secs: f64, clip_secs: f64) {
         if self.follow && (secs > self.to_secs - 0.02 * self.span() || secs < self.from_secs) {

@@ -136,7 +136,7 @@ impl State {
         self.command_line = format!("morec train --db {}{chosen} -o {INDEX}.index", quoted(&db));
         self.jobs
             .start(TRAINING, true, &self.wake, move |progress| {
-                train::train(&db, &classes, progress)
+                train::run(&db, &classes, progress)
             });
     }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use morec_db::labels::{ClassInfo, DbSample, SampleFilter, SampleId, State};
-use morec_db::{ClipFilter, ClipId, ClipInfo, DbError, IndexInfo, MotionDb, Segment, Step};
+use morec_db::{ClipFilter, ClipId, ClipInfo, DbError, IndexInfo, MotionDb, Step};
 
 /// The database at one moment, without motion.
 #[derive(Debug, Clone, Default)]
@@ -15,14 +15,11 @@ pub struct Snapshot {
     pub classes: Vec<ClassInfo>,
     /// By clip and time.
     pub samples: Vec<DbSample>,
-    /// By clip and time.
-    pub segments: Vec<Segment>,
     pub indexes: Vec<IndexInfo>,
     /// The last first.
     pub history: Vec<Step>,
     place: BTreeMap<ClipId, usize>,
     samples_of: BTreeMap<ClipId, Range<usize>>,
-    segments_of: BTreeMap<ClipId, Range<usize>>,
     sample_place: BTreeMap<SampleId, usize>,
 }
 
@@ -32,7 +29,6 @@ impl Snapshot {
             db.clips(&ClipFilter::default())?,
             db.classes()?,
             db.samples(&SampleFilter::default())?,
-            db.segments()?,
             db.indexes()?,
             db.history()?,
         ))
@@ -42,19 +38,16 @@ impl Snapshot {
         clips: Vec<ClipInfo>,
         classes: Vec<ClassInfo>,
         samples: Vec<DbSample>,
-        segments: Vec<Segment>,
         indexes: Vec<IndexInfo>,
         history: Vec<Step>,
     ) -> Self {
         Self {
             place: clips.iter().enumerate().map(|(i, c)| (c.id, i)).collect(),
             samples_of: runs(samples.iter().map(|s| s.clip)),
-            segments_of: runs(segments.iter().map(|s| s.clip)),
             sample_place: samples.iter().enumerate().map(|(i, s)| (s.id, i)).collect(),
             clips,
             classes,
             samples,
-            segments,
             indexes,
             history,
         }
@@ -68,11 +61,6 @@ impl Snapshot {
     pub fn samples_of(&self, clip: ClipId) -> &[DbSample] {
         let range = self.samples_of.get(&clip).cloned().unwrap_or_default();
         &self.samples[range]
-    }
-
-    pub fn segments_of(&self, clip: ClipId) -> &[Segment] {
-        let range = self.segments_of.get(&clip).cloned().unwrap_or_default();
-        &self.segments[range]
     }
 
     pub fn sample(&self, id: SampleId) -> Option<&DbSample> {

@@ -1,0 +1,82 @@
+//! What is wrong is said in place, and nothing is lost.
+
+use super::{Person, made};
+use crate::state::{Command, FileCommand, Panel};
+
+#[test]
+fn a_file_that_is_no_database_gives_a_sentence() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("text.mdb");
+    std::fs::write(
+        &path,
+        "this is no database, whatever its name says".repeat(40),
+    )
+    .unwrap();
+    let person = Person::before(&[path]);
+    assert!(person.state().store.is_none());
+    assert!(person.sees_part("another kind of file"));
+    assert!(person.sees("Open a database …"), "and what to do");
+    let person = Person::before(&[folder.path().join("nowhere.mdb")]);
+    assert!(person.sees_part("there is no such file"));
+}
+
+#[test]
+fn a_database_that_is_damaged_keeps_what_is_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = made(folder.path(), 1);
+    let mut person = Person::before(std::slice::from_ref(&path));
+    person.command(Command::Show(Panel::Library));
+    // The motion of one clip is overwritten.
+    let mut bytes = std::fs::read(&path).unwrap();
+    let magic = morec::smooth::MAGIC;
+    let at = bytes.windows(magic.len()).position(|w| w == magic).unwrap();
+    bytes[at..at + 64].fill(0xff);
+    drop(person);
+    std::fs::write(&path, bytes).unwrap();
+    let mut person = Person::before(&[path]);
+    let names = ["ada_1", "ben_1", "cleo_1"];
+    for name in names {
+        person.command(Command::Show(Panel::Library));
+        person.click(name);
+        person.settle();
+    }
+    assert!(
+        !person.state().notices.is_empty(),
+        "the damaged clip is named"
+    );
+    assert!(
+        person.state().player.motion.is_some(),
+        "the others are shown"
+    );
+    assert!(names.iter().all(|name| person.sees(name)));
+}
+
+#[test]
+fn a_clip_without_roles_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("box.bvh");
+    let frame = "0 0 0 0 0 0\n".repeat(60);
+    std::fs::write(&file, format!("HIERARCHY\nROOT crate\n{{\nOFFSET 0 0 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\nEnd Site\n{{\nOFFSET 0 1 0\n}}\n}}\nMOTION\nFrames: 60\nFrame Time: 0.0166667\n{frame}")).unwrap();
+    let mut person = Person::before(&[file]);
+    assert!(person.sees("box"));
+    assert!(person.sees_part("nothing can be recognised in this clip"));
+    person.goes_to(Panel::Label);
+    person.settle();
+    let note = person.state().curves.as_ref().unwrap().note.clone();
+    assert!(note.is_some(), "and the timeline says why there is no cut");
+}
+
+#[test]
+fn what_cannot_be_written_is_said_and_what_was_there_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 1)]);
+    let before = person.labels();
+    let nowhere = folder.path().join("no such folder").join("copy.mdb");
+    person.command(Command::File(FileCommand::Save(nowhere)));
+    assert!(person.sees_part("not saved"));
+    assert_eq!(person.labels(), before, "the old one is open again");
+    person.command(Command::File(FileCommand::ExportIndex(
+        folder.path().join("x.index"),
+    )));
+    assert!(person.sees_part("There is no index yet"));
+}
