@@ -53,6 +53,7 @@ enum Command {
     Soak(commands::soak::Args),
     Db(commands::db::Args),
     Demo(commands::demo::Args),
+    Studio(commands::studio::Args),
 }
 
 fn main() -> ExitCode {
@@ -76,6 +77,7 @@ fn main() -> ExitCode {
         Command::Soak(args) => commands::soak::run(&args),
         Command::Db(args) => commands::db::run(args),
         Command::Demo(args) => commands::demo::run(&args),
+        Command::Studio(args) => commands::studio::run(&args),
     };
     match outcome {
         Ok(code) => code,

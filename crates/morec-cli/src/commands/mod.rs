@@ -19,5 +19,6 @@ pub mod reproduce;
 pub mod send;
 pub mod smooth;
 pub mod soak;
+pub mod studio;
 pub mod teach;
 pub mod train;

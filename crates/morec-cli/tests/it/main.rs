@@ -15,3 +15,4 @@ mod outputs;
 mod poses;
 mod record;
 mod smooth;
+mod studio;

@@ -135,6 +135,9 @@ fn trained(path: &Path, classes: &[String], progress: &JobProgress) -> Result<Tr
     if progress.cancelled() {
         return Err(None);
     }
+    if prepared.bones == BoneSet::NONE {
+        return Err(Some(format!("Training stopped: {}", TrainError::NoSamples)));
+    }
     let done = train(&prepared.set, prepared.bones, &params, progress).map_err(|e| match e {
         TrainError::Cancelled => None,
         other => Some(format!("Training stopped: {other}")),
@@ -169,7 +172,7 @@ fn prepared(data: &TrainingData, params: &TrainParams, progress: &JobProgress) -
         classes: &data.classes,
         unlabelled_is_background: true,
     };
-    let mut prepared = prepare(&data.clips, &labelling, &params.features);
+    let mut prepared = prepare(&data.clips, &labelling, BoneSet::ALL, &params.features);
     let mut known = EVERYDAY.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(streams) = known.get(&prepared.bones) {
         prepared.set.streams.extend_from_slice(streams);
@@ -178,7 +181,7 @@ fn prepared(data: &TrainingData, params: &TrainParams, progress: &JobProgress) -
     progress.report("everyday motion", 0, 0);
     let mut clips = data.clips.clone();
     clips.extend_from_slice(everyday());
-    let prepared = prepare(&clips, &labelling, &params.features);
+    let prepared = prepare(&clips, &labelling, BoneSet::ALL, &params.features);
     let streams = prepared.set.streams.iter();
     let made = streams.filter(|s| s.source == Source::Everyday).cloned();
     known.insert(prepared.bones, made.collect());

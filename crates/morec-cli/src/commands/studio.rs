@@ -1,0 +1,51 @@
+//! `morec studio`: starts the window, where it is installed.
+
+use std::ffi::OsString;
+use std::io::ErrorKind;
+use std::path::PathBuf;
+use std::process::{Command, ExitCode};
+
+use anyhow::{Context, Result, bail};
+
+/// The program of the window.
+const PROGRAM: &str = "morec-studio";
+
+/// See motions, cut, sort and label them, train and watch live, in a window
+///
+/// The window is a program of its own, `morec-studio`, so that the command does not depend on a window system. It is
+/// started from beside this program, or from where commands are found.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Exit codes: those of morec-studio; 1 if it is not installed.\n\n\
+    Examples:\n  morec studio\n  morec studio moves.mdb\n  morec studio takes/ walk.bvh"
+)]
+pub struct Args {
+    /// A motion database, or clips; and options of morec-studio (morec-studio --help)
+    #[arg(
+        value_name = "FILE.mdb|CLIPS",
+        trailing_var_arg = true,
+        allow_hyphen_values = true
+    )]
+    arguments: Vec<OsString>,
+}
+
+/// Starts it and waits until it is closed.
+pub fn run(args: &Args) -> Result<ExitCode> {
+    let beside = beside().filter(|path| path.is_file());
+    let program = beside.unwrap_or_else(|| PathBuf::from(PROGRAM));
+    let status = match Command::new(&program).args(&args.arguments).status() {
+        Err(error) if error.kind() == ErrorKind::NotFound => bail!(
+            "the window is a program of its own and is not installed; in a clone of the repository: cargo install \
+             --path crates/{PROGRAM}, or cargo run --release -p {PROGRAM}"
+        ),
+        started => started.with_context(|| program.display().to_string())?,
+    };
+    let code = status.code().and_then(|code| u8::try_from(code).ok());
+    Ok(code.map_or(ExitCode::FAILURE, ExitCode::from))
+}
+
+/// Where it is if both were installed together.
+fn beside() -> Option<PathBuf> {
+    let own = std::env::current_exe().ok()?;
+    Some(own.with_file_name(format!("{PROGRAM}{}", std::env::consts::EXE_SUFFIX)))
+}
