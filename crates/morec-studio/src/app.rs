@@ -26,6 +26,11 @@ impl Studio {
         let wake: Wake = Arc::new(move || waker.request_repaint());
         let mut state = State::new(wake);
         state.begin(paths);
+        Self::of(state)
+    }
+
+    /// With a state that is at hand.
+    pub fn of(state: State) -> Self {
         Self {
             state,
             dialogs: dialogs::Dialogs::default(),

@@ -1,8 +1,8 @@
 //! `morec-studio`: a desktop window over the motion database.
 //!
-//! State, edits and drawing are apart. [`state`] is everything the window shows, without a widget; [`store`] sends edits
-//! to the thread that owns the database and brings back what it holds; [`jobs`] is long work on threads of its own;
-//! [`panels`] are functions of the state that emit commands. [`screenshot`] draws panels without a window.
+//! State, edits and drawing are apart. `state` is everything the window shows, without a widget; `store` sends edits to the
+//! thread that owns the database and brings back what it holds; `jobs` is long work on threads of its own; `panels` are
+//! functions of the state that emit commands. `screenshot` draws panels without a window.
 
 mod app;
 mod body;
@@ -10,6 +10,7 @@ mod dialogs;
 mod format;
 mod jobs;
 mod keys;
+pub mod measure;
 mod panels;
 mod raster;
 mod screenshot;

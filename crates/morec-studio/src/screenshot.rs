@@ -1,15 +1,18 @@
 //! Pictures of panels in files, for the guide: `--screenshot FILE.png --panel NAME --at SECS`.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use egui::{Color32, ColorImage, Pos2, RawInput, Rect, Vec2};
 
 use crate::app::Studio;
+use crate::jobs::load::Motion;
 use crate::raster::{self, Textures};
 use crate::state::{
-    ClassCommand, Command, LibraryCommand, LiveCommand, Panel, PlayCommand, TrainCommand,
+    ClassCommand, Command, LibraryCommand, LiveCommand, Panel, PlayCommand, State, TrainCommand,
 };
+use crate::store::Store;
 
 /// What is to be drawn.
 #[derive(Debug, Clone)]
@@ -50,6 +53,30 @@ impl Headless {
             size: Vec2::new(size[0] as f32, size[1] as f32),
             now: 0.0,
         }
+    }
+
+    /// With a database and a clip that are at hand.
+    pub fn of(store: Store, motion: Arc<Motion>, size: [usize; 2]) -> Self {
+        let ctx = egui::Context::default();
+        crate::theme::install(&ctx);
+        let mut state = State::new(Arc::new(|| {}));
+        state.store = Some(store);
+        state.player.show(motion);
+        let secs = state.player.secs();
+        state.timeline.whole(secs);
+        Self {
+            ctx,
+            studio: Studio::of(state),
+            textures: Textures::default(),
+            size: Vec2::new(size[0] as f32, size[1] as f32),
+            now: 0.0,
+        }
+    }
+
+    /// One frame down to its triangles.
+    pub fn tessellated(&mut self) -> usize {
+        let output = self.frame(1.0 / RATE_HZ);
+        self.ctx.tessellate(output.shapes, 1.0).len()
     }
 
     fn input(&mut self, dt: f64) -> RawInput {

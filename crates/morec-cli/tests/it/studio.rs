@@ -6,7 +6,9 @@ use crate::kit::Folder;
 
 /// The command alone in a folder, and a search path on which nothing is found.
 fn alone(folder: &Folder) -> Command {
-    let here = folder.path().join(format!("morec{}", std::env::consts::EXE_SUFFIX));
+    let here = folder
+        .path()
+        .join(format!("morec{}", std::env::consts::EXE_SUFFIX));
     std::fs::copy(env!("CARGO_BIN_EXE_morec"), &here).unwrap();
     let mut command = Command::new(here);
     command.env("PATH", folder.path().join("nothing"));
@@ -16,10 +18,16 @@ fn alone(folder: &Folder) -> Command {
 #[test]
 fn without_the_window_it_says_how_to_get_it() {
     let folder = Folder::with(&[]);
-    let output = alone(&folder).args(["studio", "moves.mdb"]).output().unwrap();
+    let output = alone(&folder)
+        .args(["studio", "moves.mdb"])
+        .output()
+        .unwrap();
     assert_eq!(output.status.code(), Some(1));
     let said = String::from_utf8(output.stderr).unwrap();
-    assert!(said.contains("cargo install --path crates/morec-studio"), "{said}");
+    assert!(
+        said.contains("cargo install --path crates/morec-studio"),
+        "{said}"
+    );
 }
 
 #[cfg(unix)]
@@ -29,7 +37,13 @@ fn the_window_beside_the_command_is_started_with_the_words_that_were_typed() {
     let folder = Folder::with(&[("morec-studio", "#!/bin/sh\necho \"$@\"\nexit 7\n")]);
     let window = folder.path().join("morec-studio");
     std::fs::set_permissions(&window, std::fs::Permissions::from_mode(0o755)).unwrap();
-    let output = alone(&folder).args(["studio", "moves.mdb", "--light"]).output().unwrap();
+    let output = alone(&folder)
+        .args(["studio", "moves.mdb", "--light"])
+        .output()
+        .unwrap();
     assert_eq!(output.status.code(), Some(7), "its exit code is passed on");
-    assert_eq!(String::from_utf8(output.stdout).unwrap(), "moves.mdb --light\n");
+    assert_eq!(
+        String::from_utf8(output.stdout).unwrap(),
+        "moves.mdb --light\n"
+    );
 }

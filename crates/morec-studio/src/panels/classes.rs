@@ -2,18 +2,18 @@
 
 use egui::{
     Button, CentralPanel, Context, DragAndDrop, Frame, Margin, Rect, RichText, ScrollArea, Sense,
-    SidePanel, TextEdit, Ui, Vec2, WidgetType,
+    SidePanel, Ui, Vec2, WidgetType,
 };
 use morec_db::ClipId;
 use morec_db::labels::{DbSample, SampleId, State as Judged};
 
-use super::{Out, padded, player, strips, view, widgets};
+use super::{Out, groups, padded, player, strips, view, widgets};
 use crate::format;
 use crate::state::{ClassCommand, Command, LibraryCommand, Panel, State};
 use crate::theme::Colours;
 
 const COLUMN: f32 = 214.0;
-const STRIP: f32 = 62.0;
+pub(super) const STRIP: f32 = 62.0;
 const CARD: f32 = STRIP + 20.0;
 
 pub fn show(ctx: &Context, state: &State, out: Out) {
@@ -37,7 +37,7 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
         tools(ui, state, out);
         ui.add_space(4.0);
         match &state.classes.groups {
-            Some(_) => groups(ui, state, out),
+            Some(_) => groups::show(ui, state, out),
             None => columns(ui, state, out),
         }
     });
@@ -177,7 +177,7 @@ fn column(
             ScrollArea::vertical()
                 .id_salt(class)
                 .auto_shrink(false)
-                .show_rows(ui, CARD, samples.len(), |ui, rows| {
+                .show_rows(ui, CARD - 6.0, samples.len(), |ui, rows| {
                     for sample in &samples[rows] {
                         card(ui, state, sample, out);
                     }
@@ -303,7 +303,13 @@ fn answers(ui: &mut Ui, picture: Rect, id: SampleId, out: Out) {
     }
 }
 
-fn go(clip: ClipId, start_secs: f64, stop_secs: f64, sample: Option<SampleId>, out: Out) {
+pub(super) fn go(
+    clip: ClipId,
+    start_secs: f64,
+    stop_secs: f64,
+    sample: Option<SampleId>,
+    out: Out,
+) {
     out.push(Command::Library(LibraryCommand::GoTo {
         clip,
         start_secs,
@@ -315,96 +321,6 @@ fn go(clip: ClipId, start_secs: f64, stop_secs: f64, sample: Option<SampleId>, o
             add: false,
         }));
     }
-}
-
-/// The groups at the depth that the slider says.
-fn groups(ui: &mut Ui, state: &State, out: Out) {
-    let Some(groups) = &state.classes.groups else {
-        return;
-    };
-    let c = Colours::now(ui);
-    let key = egui::Id::new(("groups", groups.items.len(), state.classes.depth));
-    let all = ui
-        .data(|d| d.get_temp::<std::sync::Arc<Vec<crate::jobs::group::Group>>>(key))
-        .unwrap_or_else(|| {
-            let made = std::sync::Arc::new(groups.at(state.classes.depth));
-            ui.data_mut(|d| d.insert_temp(key, made.clone()));
-            made
-        });
-    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        for (number, group) in all.iter().enumerate() {
-            ui.horizontal(|ui| {
-                ui.label(RichText::new(format!("Group {}", number + 1)).strong());
-                ui.colored_label(c.muted, format::count(group.members.len(), "stretch"));
-                let id = ui.id().with(("name", number));
-                let mut name = ui.data(|d| d.get_temp::<String>(id)).unwrap_or_default();
-                let edit = ui.add(
-                    TextEdit::singleline(&mut name)
-                        .hint_text("name …")
-                        .desired_width(110.0),
-                );
-                edit.widget_info(|| {
-                    let mut info = egui::WidgetInfo::labeled(
-                        WidgetType::TextEdit,
-                        true,
-                        format!("Name of group {}", number + 1),
-                    );
-                    info.current_text_value = Some(name.clone());
-                    info
-                });
-                let named = !name.trim().is_empty();
-                if ui
-                    .add_enabled(named, Button::new("Make it a class").small())
-                    .clicked()
-                {
-                    let (group, name) = (number, name.clone());
-                    out.push(Command::Classes(ClassCommand::NameGroup { group, name }));
-                }
-                ui.data_mut(|d| d.insert_temp(id, name));
-            });
-            ScrollArea::horizontal()
-                .id_salt(("group", number))
-                .show(ui, |ui| {
-                    ui.horizontal(|ui| {
-                        for &member in group.members.iter().take(24) {
-                            let item = &groups.items[member];
-                            let (rect, response) =
-                                ui.allocate_exact_size(Vec2::new(150.0, STRIP), Sense::click());
-                            widgets::named(
-                                &response,
-                                WidgetType::Button,
-                                format!("Stretch {member} of group {}", number + 1),
-                                false,
-                            );
-                            strips::draw(
-                                ui,
-                                state,
-                                item.clip,
-                                item.start_secs,
-                                item.stop_secs,
-                                rect,
-                            );
-                            if let Some(class) = &item.class {
-                                let place = state.classes.place(class);
-                                let mark =
-                                    Rect::from_min_size(rect.min, Vec2::new(rect.width(), 3.0));
-                                ui.painter().rect_filled(mark, 1.0, c.class(place));
-                            }
-                            if response.clicked() {
-                                go(item.clip, item.start_secs, item.stop_secs, item.sample, out);
-                            }
-                        }
-                        if group.members.len() > 24 {
-                            ui.colored_label(
-                                c.muted,
-                                format!("and {} more", group.members.len() - 24),
-                            );
-                        }
-                    });
-                });
-            ui.add_space(6.0);
-        }
-    });
 }
 
 /// The sample that is shown, with what can be done.

@@ -152,12 +152,9 @@ fn roles(ui: &mut Ui, state: &State) {
         return;
     };
     let joints = motion.clip.skeleton.joints();
-    let missing = Role::ALL
-        .into_iter()
-        .filter(|r| motion.roles.joint(*r).is_none())
-        .count();
-    if missing == Role::COUNT {
-        ui.colored_label(c.warn, "None is known, so nothing can be recognised in this clip. Import it again with a map of roles: morec db import DB FILE --roles MAP");
+    // Without a bone there are no rows, and no speeds.
+    if motion.speed.is_empty() {
+        ui.colored_label(c.warn, "No bone of a body is known, so nothing can be recognised in this clip. Import it again with a map of roles: morec db import DB FILE --roles MAP");
     }
     Grid::new("roles")
         .num_columns(4)

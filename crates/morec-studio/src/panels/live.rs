@@ -1,16 +1,16 @@
 //! Live: a source, the performer, what is recognised as it comes, and teaching from what just happened.
 
 use egui::{
-    CentralPanel, ComboBox, Context, ProgressBar, Rect, RichText, ScrollArea, SidePanel, TextEdit,
+    CentralPanel, ComboBox, Context, Rect, RichText, ScrollArea, SidePanel, TextEdit,
     TopBottomPanel, Ui, Vec2, WidgetType,
 };
 use morec::kinematics::WorldPose;
 
-use super::{Out, live_line, padded, view, widgets};
+use super::{Out, live_line, padded, teach, view, widgets};
 use crate::body::Body;
 use crate::format;
 use crate::state::live::Choice;
-use crate::state::{Command, LiveCommand, State, TrainCommand};
+use crate::state::{Command, LiveCommand, State};
 use crate::theme::Colours;
 
 pub fn show(ctx: &Context, state: &State, out: Out) {
@@ -37,8 +37,8 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
         .default_width(270.0)
         .width_range(230.0..=380.0)
         .show(ctx, |ui| {
-            teach(ui, state, out);
-            recognised(ui, state);
+            teach::show(ui, state, out);
+            teach::recognised(ui, state);
         });
     CentralPanel::default()
         .frame(padded(&c))
@@ -266,135 +266,4 @@ fn banner(ui: &Ui, state: &State, rect: Rect) {
     let fill = c.class(place).gamma_multiply((1.4 - age).clamp(0.0, 1.0));
     painter.rect_filled(at, 8.0, fill);
     painter.galley(at.center() - galley.size() / 2.0, galley, c.on_class());
-}
-
-/// Marking what just happened.
-fn teach(ui: &mut Ui, state: &State, out: Out) {
-    let c = Colours::now(ui);
-    widgets::section(ui, "WHAT WAS THAT?");
-    let hint = match (&state.live.run, state.live.range) {
-        (None, _) => {
-            "Start a source; then a key or a click says what the last motion was, and it is recognised from then on."
-        }
-        (_, Some(_)) => "The selected stretch was …",
-        (_, None) => "The last motion was …",
-    };
-    ui.label(RichText::new(hint).size(12.0).color(c.muted));
-    let on = state.live.run.is_some() && !state.live.teaching;
-    ui.horizontal_wrapped(|ui| {
-        let order = &state.classes.order;
-        for (place, class) in order.iter().enumerate() {
-            let key = if place < 9 {
-                format!("{}  ", place + 1)
-            } else {
-                String::new()
-            };
-            let fill = c.panel.lerp_to_gamma(c.class(Some(place)), 0.35);
-            let button = egui::Button::new(format!("{key}{class}")).fill(fill);
-            let response = ui.add_enabled(on, button);
-            widgets::named(
-                &response,
-                WidgetType::Button,
-                format!("Mark as {class}"),
-                false,
-            );
-            if response.clicked() {
-                out.push(Command::Live(LiveCommand::MarkAs(class.clone())));
-            }
-        }
-        let next = order.len();
-        let text = format!(
-            "{}a new gesture",
-            if next < 9 {
-                format!("{}  ", next + 1)
-            } else {
-                String::new()
-            }
-        );
-        if ui.add_enabled(on, egui::Button::new(text)).clicked() {
-            out.push(Command::Live(LiveCommand::Mark(next)));
-        }
-    });
-    if state.live.teaching || state.is_training() {
-        ui.horizontal(|ui| {
-            ui.add(egui::Spinner::new().size(14.0));
-            ui.label(if state.live.teaching {
-                "keeping it …"
-            } else {
-                "training …"
-            });
-        });
-    }
-    if state.live.index().is_none() && !state.is_training() {
-        ui.add_space(4.0);
-        ui.colored_label(c.warn, "No index is in use yet: mark something, or");
-        if ui.button("Train with the labels that are there").clicked() {
-            out.push(Command::Train(TrainCommand::Train));
-        }
-    }
-    ui.add_space(8.0);
-}
-
-/// What is under way, and what was recognised, the last first.
-fn recognised(ui: &mut Ui, state: &State) {
-    let c = Colours::now(ui);
-    widgets::section(ui, "RECOGNISED");
-    let Some(run) = &state.live.run else {
-        ui.colored_label(c.muted, "Nothing yet.");
-        return;
-    };
-    match run.hunch() {
-        Some((class, hunch)) => {
-            ui.horizontal(|ui| {
-                let colour = c.class(state.classes.place(&class));
-                ui.add(
-                    ProgressBar::new(hunch.progress as f32)
-                        .desired_width(90.0)
-                        .desired_height(8.0)
-                        .fill(colour),
-                );
-                ui.label(RichText::new(format!("{class}?")).color(c.muted));
-            });
-        }
-        None => {
-            ui.label(RichText::new("…").color(c.muted));
-        }
-    }
-    if run.seen.is_empty() {
-        return;
-    }
-    let totals: Vec<String> = state
-        .live
-        .counts
-        .iter()
-        .map(|(class, n)| format!("{class} {n}"))
-        .collect();
-    ui.label(RichText::new(totals.join(", ")).size(12.0).color(c.muted));
-    ui.separator();
-    ScrollArea::vertical()
-        .id_salt("seen")
-        .auto_shrink(false)
-        .show_rows(ui, 24.0, run.seen.len(), |ui, rows| {
-            for seen in run.seen.iter().rev().skip(rows.start).take(rows.len()) {
-                ui.horizontal(|ui| {
-                    ui.set_height(24.0);
-                    widgets::chip(ui, state.classes.place(&seen.class), &seen.class);
-                    let name = ui.label(&seen.class);
-                    widgets::named(
-                        &name,
-                        WidgetType::Label,
-                        format!("Recognised {}", seen.class),
-                        false,
-                    );
-                    let text = format!(
-                        "{}  {:.0} %",
-                        format::clock(seen.start_secs, 1),
-                        100.0 * seen.score
-                    );
-                    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                        ui.label(RichText::new(text).size(12.0).color(c.muted));
-                    });
-                });
-            }
-        });
 }

@@ -3,7 +3,7 @@
 use egui::{Rect, RichText, Sense, Ui, WidgetType, pos2};
 
 use super::timeline::Scale;
-use super::{Out, tracks, widgets};
+use super::{Out, curves, widgets};
 use crate::format;
 use crate::state::live::Run;
 use crate::state::{Command, LiveCommand, State};
@@ -121,7 +121,7 @@ fn draw_movement(ui: &Ui, run: &Run, rect: Rect, scale: &Scale, c: &Colours) {
         }
         values.push(most);
     }
-    tracks::area(
+    curves::area(
         ui,
         rect,
         scale,

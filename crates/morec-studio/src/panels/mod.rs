@@ -2,7 +2,9 @@
 
 mod bars;
 mod classes;
+mod curves;
 mod details;
+mod groups;
 mod help;
 mod history;
 mod label;
@@ -13,6 +15,7 @@ mod matrix;
 mod notices;
 mod player;
 mod strips;
+mod teach;
 mod timeline;
 mod tracks;
 mod train;

@@ -2,7 +2,7 @@
 
 use egui::{Rect, RichText, ScrollArea, Sense, Ui, Vec2, WidgetType, pos2};
 
-use super::{Out, tracks, widgets};
+use super::{Out, curves, tracks, widgets};
 use crate::format;
 use crate::jobs::cut::Method;
 use crate::state::{Command, PlayCommand, State, TimelineCommand};
@@ -76,10 +76,10 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
             .show(ui, |ui| {
                 ui.spacing_mut().item_spacing.y = 2.0;
                 tracks::labels(ui, state, &scale, out);
-                tracks::detections(ui, state, &scale, out);
-                tracks::cuts(ui, state, &scale);
-                tracks::misfit(ui, state, &scale);
-                tracks::speed(ui, state, &scale);
+                curves::detections(ui, state, &scale, out);
+                curves::cuts(ui, state, &scale);
+                curves::misfit(ui, state, &scale);
+                curves::speed(ui, state, &scale);
             });
     });
     playhead(ui, area, state, &scale, &c);

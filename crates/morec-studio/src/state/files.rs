@@ -155,14 +155,14 @@ impl State {
             );
             return;
         }
-        let from = store.path().to_owned();
+        let (from, temporary) = (store.path().to_owned(), store.temporary);
         // The log is empty once the last connection closes.
         self.store = None;
         let copied = settle(&from).and_then(|()| copy_whole(&from, path));
         match copied {
             Ok(()) => self.open_store(path, false),
             Err(error) => {
-                self.open_store(&from, true);
+                self.open_store(&from, temporary);
                 self.complain(format!("{}: not saved: {error}", path.display()));
             }
         }

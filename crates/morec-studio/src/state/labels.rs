@@ -28,9 +28,16 @@ impl State {
 
     /// The labels that are selected, by time.
     pub fn selected(&self) -> Vec<&DbSample> {
-        let selected = &self.timeline.selected;
-        let samples = self.shown_samples().iter();
-        samples.filter(|s| selected.contains(&s.id)).collect()
+        let (Some(store), Some(motion)) = (&self.store, &self.player.motion) else {
+            return Vec::new();
+        };
+        let ids = self.timeline.selected.iter();
+        let mut selected: Vec<&DbSample> = ids
+            .filter_map(|id| store.snapshot.sample(*id))
+            .filter(|s| s.clip == motion.id)
+            .collect();
+        selected.sort_by(|a, b| a.start_secs.total_cmp(&b.start_secs));
+        selected
     }
 
     /// Moments that dragged ends snap to: cuts, the ends of other labels, the playhead.

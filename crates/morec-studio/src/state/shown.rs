@@ -36,7 +36,11 @@ impl State {
             self.release_keys();
             self.player.show(motion.clone());
             self.timeline.whole(motion.secs());
-            self.timeline.selected.clear();
+            let snapshot = self.store.as_ref().map(|s| s.snapshot.clone());
+            let here = |id| Some(snapshot.as_ref()?.sample(id)?.clip == motion.id);
+            self.timeline
+                .selected
+                .retain(|id| here(*id).unwrap_or(false));
             self.timeline.range = None;
             self.timeline.drag = None;
             self.curves = None;

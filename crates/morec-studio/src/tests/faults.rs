@@ -20,19 +20,28 @@ fn a_file_that_is_no_database_gives_a_sentence() {
     assert!(person.sees_part("there is no such file"));
 }
 
+/// Overwrites the motion of one clip.
+fn damage_one_clip(path: &std::path::Path) {
+    let whole = std::fs::read(path).unwrap();
+    let magic = morec::smooth::MAGIC;
+    let places = whole.windows(magic.len()).enumerate();
+    let damaged = places.filter(|(_, w)| *w == magic).any(|(at, _)| {
+        let mut bytes = whole.clone();
+        bytes[at..at + 64].fill(0xff);
+        std::fs::write(path, bytes).unwrap();
+        // Not every place is a clip's: rooms that are free again hold old copies.
+        let db = morec_db::MotionDb::open_read_only(path).unwrap();
+        let clips = db.clips(&morec_db::ClipFilter::default()).unwrap();
+        clips.iter().filter(|c| db.clip(c.id).is_err()).count() == 1
+    });
+    assert!(damaged);
+}
+
 #[test]
 fn a_database_that_is_damaged_keeps_what_is_whole() {
     let folder = tempfile::tempdir().unwrap();
     let path = made(folder.path(), 1);
-    let mut person = Person::before(std::slice::from_ref(&path));
-    person.command(Command::Show(Panel::Library));
-    // The motion of one clip is overwritten.
-    let mut bytes = std::fs::read(&path).unwrap();
-    let magic = morec::smooth::MAGIC;
-    let at = bytes.windows(magic.len()).position(|w| w == magic).unwrap();
-    bytes[at..at + 64].fill(0xff);
-    drop(person);
-    std::fs::write(&path, bytes).unwrap();
+    damage_one_clip(&path);
     let mut person = Person::before(&[path]);
     let names = ["ada_1", "ben_1", "cleo_1"];
     for name in names {

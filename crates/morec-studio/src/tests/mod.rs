@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use morec::formats::bvh;
 use morec::synth::{DatabaseSpec, SyntheticTake, database};
 use morec_db::labels::{NewSample, State as Judged};
@@ -147,8 +147,22 @@ impl Person {
             .is_some()
     }
 
+    /// Where a thing of this name is that can be clicked; a text only if nothing else is called so.
     pub fn place(&self, name: &str) -> Rect {
-        self.window.get_by_label(name).rect()
+        let found = self.window.query_all_by_label(name);
+        let is_text = |node: &egui_kittest::Node<'_>| {
+            node.accesskit_node().role() == egui::accesskit::Role::Label
+        };
+        let node = found.min_by_key(is_text);
+        node.unwrap_or_else(|| panic!("nothing is called {name:?}"))
+            .rect()
+    }
+
+    /// Whether there is a thing of this name that can be clicked.
+    pub fn offers(&self, name: &str) -> bool {
+        self.window
+            .query_all_by_label(name)
+            .any(|node| node.accesskit_node().role() != egui::accesskit::Role::Label)
     }
 
     pub fn click(&mut self, name: &str) {

@@ -1,6 +1,7 @@
 //! A live stream: who performs, what is recognised, what is taught from what just happened.
 
 mod feed;
+mod marks;
 mod moved;
 mod run;
 
@@ -15,14 +16,11 @@ use morec_db::ClipId;
 
 use super::State;
 use crate::jobs::recognise;
-use crate::jobs::teach::{Lesson, Taught, teach};
 pub use feed::{ClipFeed, Feed, ThreadFeed};
 pub use run::Run;
 
 /// Name of the job that keeps what was marked.
 pub(super) const TEACHING: &str = "Keeping what was marked";
-/// What is kept before and after a marked stretch, seconds.
-const AROUND_SECS: f64 = 0.7;
 
 /// Where poses are to come from.
 #[derive(Debug, Clone, PartialEq)]
@@ -270,100 +268,5 @@ impl State {
                 move |progress| recognise::poses(&model, &poses, progress),
             );
         }
-    }
-
-    /// Keeps the selected stretch, or the last motion, as a sample of a class, and trains anew.
-    fn mark(&mut self, class: &str) {
-        let Some(store) = self.store.as_ref().map(|s| s.path().to_owned()) else {
-            return;
-        };
-        let Some(run) = &self.live.run else {
-            self.say("start a source first");
-            return;
-        };
-        if self.live.teaching {
-            self.say("the mark before this one is still being kept");
-            return;
-        }
-        let Some((start, stop)) = self.live.range.or_else(|| run.last_motion()) else {
-            self.say("nothing has moved yet that could be marked");
-            return;
-        };
-        let Some((recording, origin)) = run.cut_out(start - AROUND_SECS, stop + AROUND_SECS) else {
-            self.complain("That part of the stream is no longer kept");
-            return;
-        };
-        self.live.marks.push((start, stop, class.to_owned()));
-        self.live.range = None;
-        self.live.teaching = true;
-        self.live.retrain = true;
-        let lesson = Lesson {
-            recording,
-            label: Some((class.to_owned(), start - origin, stop - origin)),
-            name: class.replace(' ', "_"),
-        };
-        self.command_line = format!(
-            "morec db label {} --clip {}_001 --class {class}",
-            super::files::quoted(&store),
-            lesson.name
-        );
-        self.keep(store, lesson);
-    }
-
-    fn keep(&mut self, db: std::path::PathBuf, lesson: Lesson) {
-        let folder = self.scratch();
-        self.jobs
-            .start(TEACHING, false, &self.wake, move |progress| {
-                teach(&db, &folder, &lesson, progress)
-            });
-    }
-
-    pub(super) fn taught(&mut self, taught: &Taught) {
-        self.live.teaching = false;
-        let secs = crate::format::duration(taught.secs);
-        self.say(match &taught.class {
-            Some(class) => format!("{class}: kept as {}", taught.name),
-            None => format!("take {} kept, {secs}", taught.name),
-        });
-    }
-
-    /// Trains with what was marked, once it is in the database.
-    pub(super) fn teach_again(&mut self) {
-        if self.live.retrain && !self.live.teaching {
-            self.live.retrain = false;
-            self.start_training();
-        }
-    }
-
-    fn record(&mut self) {
-        if self.live.take.is_some() {
-            self.keep_take();
-        } else if self.live.countdown.take().is_some() {
-            self.say("recording called off");
-        } else if self.live.run.is_some() {
-            self.live.countdown = Some(3.0);
-        } else {
-            self.say("start a source first");
-        }
-    }
-
-    fn keep_take(&mut self) {
-        let Some(recording) = self.live.take.take() else {
-            return;
-        };
-        let Some(store) = self.store.as_ref().map(|s| s.path().to_owned()) else {
-            return;
-        };
-        let lesson = Lesson {
-            recording,
-            label: None,
-            name: "take".to_owned(),
-        };
-        self.command_line = format!(
-            "morec record {} --listen {}",
-            super::files::quoted(&store),
-            self.live.run.as_ref().map_or("SOURCE", |r| r.name.as_str())
-        );
-        self.keep(store, lesson);
     }
 }

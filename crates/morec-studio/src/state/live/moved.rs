@@ -7,13 +7,18 @@ use morec::roles::Role;
 
 /// Hands, feet and head slower than this against the hips stand still, metres a second.
 const STILL: f32 = 0.12;
+/// Movement slower than this share of the fastest of the last seconds is swaying.
+const SHARE: f32 = 0.15;
 /// A rest in which a motion has ended, seconds.
 const REST_SECS: f64 = 0.35;
 /// A motion that is shorter is none, a longer one is cut, seconds.
 const LENGTH_SECS: (f64, f64) = (0.3, 5.0);
 
-/// The fastest of hands, feet and head against the hips.
-pub fn speed(last: &Frame, frame: &Frame, rig: &Rig) -> f32 {
+/// Speeds are taken over so long: from frame to frame a tracker's noise alone is as fast as a hand.
+const OVER_SECS: f64 = 0.1;
+
+/// The fastest of hands, feet and head against the hips, over the last tenth of a second.
+pub fn speed(frames: &VecDeque<Frame>, frame: &Frame, rig: &Rig) -> f32 {
     const ENDS: [Role; 5] = [
         Role::LeftHand,
         Role::RightHand,
@@ -21,10 +26,12 @@ pub fn speed(last: &Frame, frame: &Frame, rig: &Rig) -> f32 {
         Role::RightFoot,
         Role::Head,
     ];
-    let dt = frame.time_secs - last.time_secs;
-    let (Some(hips), true) = (rig.roles.joint(Role::Hips), dt > 1e-4) else {
+    let old = frame.time_secs - OVER_SECS;
+    let before = frames.iter().rev().find(|f| f.time_secs <= old);
+    let (Some(hips), Some(last)) = (rig.roles.joint(Role::Hips), before) else {
         return 0.0;
     };
+    let dt = frame.time_secs - last.time_secs;
     let place = |frame: &Frame, joint: usize| {
         Some(frame.pose.positions.get(joint)? - frame.pose.positions.get(hips)?)
     };
@@ -38,7 +45,12 @@ pub fn speed(last: &Frame, frame: &Frame, rig: &Rig) -> f32 {
 
 /// The last stretch of movement before now, rests at its ends left out.
 pub fn last_motion(frames: &VecDeque<Frame>, speeds: &VecDeque<f32>) -> Option<(f64, f64)> {
-    let moving = |at: usize| smoothed(speeds, at) > STILL;
+    let last = frames.back()?.time_secs;
+    let recent = frames.partition_point(|f| f.time_secs < last - LENGTH_SECS.1);
+    let fastest = speeds.range(recent..).copied().fold(0.0, f32::max);
+    // Nobody stands quite still: what counts is the share of the fastest.
+    let least = (SHARE * fastest).max(STILL);
+    let moving = |at: usize| smoothed(speeds, at) > least;
     let stop = (0..frames.len()).rev().find(|&at| moving(at))?;
     let stop_secs = frames[stop].time_secs;
     let mut start = stop;

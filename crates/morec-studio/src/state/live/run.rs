@@ -150,9 +150,9 @@ impl Run {
         }
         self.now_secs = frame.time_secs;
         self.pose.clone_from(&frame.pose);
-        let speed = match (self.frames.back(), &self.rig) {
-            (Some(last), Some(rig)) => moved::speed(last, frame, rig),
-            _ => 0.0,
+        let speed = match &self.rig {
+            Some(rig) => moved::speed(&self.frames, frame, rig),
+            None => 0.0,
         };
         self.speeds.push_back(speed);
         self.frames.push_back(frame.clone());

@@ -1,0 +1,250 @@
+//! The tracks under the labels: what is recognised, cuts, the misfit, the speed.
+
+use egui::epaint::Mesh;
+use egui::{Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, WidgetType, pos2};
+
+use super::timeline::Scale;
+use super::tracks::{ROW, track};
+use super::{Out, widgets};
+use crate::state::{Command, PlayCommand, State};
+use crate::theme::Colours;
+
+/// What the index recognises in this clip.
+pub fn detections(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
+    let c = Colours::now(ui);
+    let rect = track(ui, state, scale, "Recognised", ROW, None, None);
+    let shown = state.player.motion.as_ref().map(|m| m.id);
+    let Some((clip, found)) = &state.detections else {
+        let text = if state.train.index.is_some() {
+            "…"
+        } else {
+            "train, and what is recognised appears here"
+        };
+        return widgets::text_in(
+            ui,
+            rect.shrink2(Vec2::new(8.0, 0.0)),
+            text,
+            11.0,
+            c.muted,
+            false,
+        );
+    };
+    if shown != Some(*clip) {
+        return;
+    }
+    let painter = ui.painter_at(rect);
+    for (at, found) in found.iter().enumerate() {
+        if found.stop_secs < scale.from || found.start_secs > scale.to {
+            continue;
+        }
+        let bar = Rect::from_x_y_ranges(
+            scale.x(found.start_secs)..=scale.x(found.stop_secs),
+            rect.top() + 4.0..=rect.bottom() - 4.0,
+        );
+        painter.rect_filled(bar, 2.0, c.class(state.classes.place(&found.class)));
+        if let Some(reported) = found.reported_secs {
+            painter.vline(scale.x(reported), rect.y_range(), (1.0, c.muted));
+        }
+        let response = ui.interact(
+            bar.intersect(rect),
+            ui.id().with(("found", at)),
+            Sense::click(),
+        );
+        widgets::named(
+            &response,
+            WidgetType::Button,
+            format!("recognised {} {:.2} s", found.class, found.start_secs),
+            false,
+        );
+        if response
+            .on_hover_text(format!(
+                "{}, score {:.2}",
+                found.class,
+                found.score.unwrap_or(0.0)
+            ))
+            .clicked()
+        {
+            out.push(Command::Play(PlayCommand::Stretch(
+                found.start_secs,
+                found.stop_secs,
+            )));
+        }
+    }
+}
+
+/// Cuts of both methods, stillness, repetitions.
+pub fn cuts(ui: &mut Ui, state: &State, scale: &Scale) {
+    let c = Colours::now(ui);
+    let rect = track(ui, state, scale, "Cuts, stillness", ROW, None, None);
+    let Some(curves) = &state.curves else {
+        return widgets::text_in(
+            ui,
+            rect.shrink2(Vec2::new(8.0, 0.0)),
+            "looking at the clip …",
+            11.0,
+            c.muted,
+            false,
+        );
+    };
+    let painter = ui.painter_at(rect);
+    let seen = |from: f64, to: f64| to >= scale.from && from <= scale.to;
+    for (start, stop, t_pose) in curves.still.iter().filter(|s| seen(s.0, s.1)) {
+        let bar = Rect::from_x_y_ranges(scale.x(*start)..=scale.x(*stop), rect.y_range());
+        let colour = if *t_pose { c.warn } else { c.muted };
+        painter.rect_filled(bar, 0.0, c.tint(colour, 0.28));
+    }
+    for bounds in &curves.cycles {
+        for (number, pair) in bounds
+            .windows(2)
+            .enumerate()
+            .filter(|(_, p)| seen(p[0], p[1]))
+        {
+            let (a, b) = (scale.x(pair[0]), scale.x(pair[1]));
+            painter.vline(a, rect.bottom() - 5.0..=rect.bottom(), (1.0, c.accent));
+            if b - a > 16.0 {
+                let at = pos2((a + b) / 2.0, rect.center().y);
+                painter.text(
+                    at,
+                    egui::Align2::CENTER_CENTER,
+                    (number + 1).to_string(),
+                    egui::FontId::proportional(10.0),
+                    c.muted,
+                );
+            }
+        }
+    }
+    for cut in curves.kernel.iter().filter(|cut| seen(**cut, **cut)) {
+        painter.vline(scale.x(*cut), rect.y_range(), (1.5, c.text));
+    }
+    for cut in curves.ppca.iter().filter(|cut| seen(**cut, **cut)) {
+        let x = scale.x(*cut);
+        painter.add(Shape::dashed_line(
+            &[pos2(x, rect.top()), pos2(x, rect.bottom())],
+            (1.5, c.warn),
+            3.0,
+            3.0,
+        ));
+    }
+}
+
+/// The misfit of the thesis's method, on a logarithmic scale, with its cuts.
+pub fn misfit(ui: &mut Ui, state: &State, scale: &Scale) {
+    let c = Colours::now(ui);
+    let rect = track(ui, state, scale, "Misfit (thesis)", 40.0, None, None);
+    let Some(curves) = &state.curves else { return };
+    if let Some(note) = curves.note.as_ref().filter(|_| curves.forward.is_empty()) {
+        return widgets::text_in(
+            ui,
+            rect.shrink2(Vec2::new(8.0, 0.0)),
+            note,
+            11.0,
+            c.muted,
+            false,
+        );
+    }
+    let painter = ui.painter_at(rect);
+    let level = |value: f64| value.max(1e-3).log10();
+    let all = || {
+        curves
+            .forward
+            .iter()
+            .chain(&curves.backward)
+            .map(|p| level(p.value))
+    };
+    let (low, high) = (
+        all().fold(f64::MAX, f64::min),
+        all().fold(f64::MIN, f64::max),
+    );
+    let y = |value: f64| {
+        rect.bottom()
+            - 3.0
+            - ((level(value) - low) / (high - low).max(1e-9)) as f32 * (rect.height() - 6.0)
+    };
+    for (points, colour) in [(&curves.backward, c.muted), (&curves.forward, c.accent)] {
+        // Passes begin anew at each cut: a line does not go from one to the next.
+        let line = points.iter().map(|p| (p.secs, y(p.value)));
+        for part in parts(line, scale, 1.0) {
+            painter.line(part, Stroke::new(1.2, colour));
+        }
+    }
+    for cut in &curves.ppca {
+        painter.vline(scale.x(*cut), rect.y_range(), (1.0, c.warn));
+    }
+}
+
+/// How fast the body turns.
+pub fn speed(ui: &mut Ui, state: &State, scale: &Scale) {
+    let c = Colours::now(ui);
+    let rect = track(ui, state, scale, "Speed", 32.0, None, None);
+    let Some(motion) = &state.player.motion else {
+        return;
+    };
+    area(
+        ui,
+        rect,
+        scale,
+        &motion.speed,
+        motion.tick_hz,
+        0.0,
+        c.tint(c.accent, 0.55),
+    );
+}
+
+/// Values at an even rate as a filled area: the highest of each point of the screen.
+pub fn area(
+    ui: &Ui,
+    rect: Rect,
+    scale: &Scale,
+    values: &[f32],
+    hz: f64,
+    origin: f64,
+    colour: Color32,
+) {
+    let highest = values.iter().copied().fold(1e-6, f32::max);
+    let mut mesh = Mesh::default();
+    let mut x = rect.left();
+    while x < rect.right() {
+        let at =
+            |x: f32| (((scale.secs(x) - origin) * hz).floor().max(0.0) as usize).min(values.len());
+        let (first, last) = (at(x), at(x + 2.0).max(at(x) + 1).min(values.len()));
+        let value = values
+            .get(first..last)
+            .into_iter()
+            .flatten()
+            .copied()
+            .fold(0.0, f32::max);
+        if value > 0.0 {
+            let top = rect.bottom() - value / highest * (rect.height() - 2.0);
+            mesh.add_colored_rect(
+                Rect::from_min_max(pos2(x, top), pos2(x + 2.0, rect.bottom())),
+                colour,
+            );
+        }
+        x += 2.0;
+    }
+    ui.painter_at(rect).add(Shape::mesh(mesh));
+}
+
+/// The visible parts of a line; more than `gap` seconds between points divide it.
+fn parts(points: impl Iterator<Item = (f64, f32)>, scale: &Scale, gap: f64) -> Vec<Vec<Pos2>> {
+    let mut parts: Vec<Vec<Pos2>> = vec![Vec::new()];
+    let mut last: Option<(f64, f32)> = None;
+    for (secs, y) in points {
+        let near = last.is_none_or(|(before, _)| secs - before <= gap && secs >= before);
+        if !near {
+            parts.push(Vec::new());
+        }
+        if secs >= scale.from - gap && secs <= scale.to + gap {
+            let at = pos2(scale.x(secs), y);
+            if let Some(part) = parts.last_mut()
+                // Points within half a point of the screen add nothing.
+                && part.last().is_none_or(|p| at.x - p.x > 0.5 || (at.y - p.y).abs() > 2.0)
+            {
+                part.push(at);
+            }
+        }
+        last = Some((secs, y));
+    }
+    parts.retain(|part| part.len() > 1);
+    parts
+}

@@ -1,0 +1,105 @@
+//! What just happened becomes a sample; a take becomes a clip.
+
+use super::TEACHING;
+use crate::jobs::teach::{Lesson, Taught, teach};
+use crate::state::State;
+
+/// What is kept before and after a marked stretch, seconds.
+const AROUND_SECS: f64 = 0.7;
+
+impl State {
+    /// Keeps the selected stretch, or the last motion, as a sample of a class, and trains anew.
+    pub(super) fn mark(&mut self, class: &str) {
+        let Some(store) = self.store.as_ref().map(|s| s.path().to_owned()) else {
+            return;
+        };
+        let Some(run) = &self.live.run else {
+            self.say("start a source first");
+            return;
+        };
+        if self.live.teaching {
+            self.say("the mark before this one is still being kept");
+            return;
+        }
+        let Some((start, stop)) = self.live.range.or_else(|| run.last_motion()) else {
+            self.say("nothing has moved yet that could be marked");
+            return;
+        };
+        let Some((recording, origin)) = run.cut_out(start - AROUND_SECS, stop + AROUND_SECS) else {
+            self.complain("That part of the stream is no longer kept");
+            return;
+        };
+        self.live.marks.push((start, stop, class.to_owned()));
+        self.live.range = None;
+        self.live.teaching = true;
+        self.live.retrain = true;
+        let lesson = Lesson {
+            recording,
+            label: Some((class.to_owned(), start - origin, stop - origin)),
+            name: class.replace(' ', "_"),
+        };
+        self.command_line = format!(
+            "morec db label {} --clip {}_001 --class {class}",
+            crate::state::files::quoted(&store),
+            lesson.name
+        );
+        self.keep(store, lesson);
+    }
+
+    fn keep(&mut self, db: std::path::PathBuf, lesson: Lesson) {
+        let folder = self.scratch();
+        self.jobs
+            .start(TEACHING, false, &self.wake, move |progress| {
+                teach(&db, &folder, &lesson, progress)
+            });
+    }
+
+    pub(in crate::state) fn taught(&mut self, taught: &Taught) {
+        self.live.teaching = false;
+        let secs = crate::format::duration(taught.secs);
+        self.say(match &taught.class {
+            Some(class) => format!("{class}: kept as {}", taught.name),
+            None => format!("take {} kept, {secs}", taught.name),
+        });
+    }
+
+    /// Trains with what was marked, once it is in the database.
+    pub(in crate::state) fn teach_again(&mut self) {
+        if self.live.retrain && !self.live.teaching {
+            self.live.retrain = false;
+            self.start_training();
+        }
+    }
+
+    pub(super) fn record(&mut self) {
+        if self.live.take.is_some() {
+            self.keep_take();
+        } else if self.live.countdown.take().is_some() {
+            self.say("recording called off");
+        } else if self.live.run.is_some() {
+            self.live.countdown = Some(3.0);
+        } else {
+            self.say("start a source first");
+        }
+    }
+
+    pub(super) fn keep_take(&mut self) {
+        let Some(recording) = self.live.take.take() else {
+            return;
+        };
+        let Some(store) = self.store.as_ref().map(|s| s.path().to_owned()) else {
+            return;
+        };
+        let lesson = Lesson {
+            recording,
+            label: None,
+            name: "take".to_owned(),
+        };
+        self.command_line = format!(
+            "morec record {} --listen {}",
+            crate::state::files::quoted(&store),
+            self.live.run.as_ref().map_or("SOURCE", |r| r.name.as_str())
+        );
+        self.keep(store, lesson);
+    }
+}
