@@ -195,8 +195,13 @@ def crossval(
     material = _material(clips, labels, people, background, exclude)
     material["unknown"] = _aside(unknown, material["clips"])
     recipe = _recipe(method, svrdm, unlabelled, everyday, mirror, one_sided, bones, params)
-    how = {"by": by, "samples": samples, "perturb": list(perturb), "seed": seed}
-    how["sensitivities"] = list(sensitivities)
+    how: dict[str, Any] = {
+        "by": by,
+        "samples": samples,
+        "perturb": list(perturb),
+        "sensitivities": list(sensitivities),
+        "seed": seed,
+    }
     return _morec.crossval(material, list(classes), recipe, how, listener(progress))
 
 
