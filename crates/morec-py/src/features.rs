@@ -24,6 +24,9 @@ fn bones(clip: &PyClip, names: Option<Vec<String>>) -> PyResult<BoneSet> {
     }
 }
 
+/// Values, names of the columns, names of the bones, rows a second.
+type FeatureTable<'py> = (Bound<'py, PyAny>, Vec<String>, Vec<String>, f64);
+
 /// Feature rows, float32 of shape (ticks, 6 bones + 4); names of the columns, names of the bones, rows a second.
 #[pyfunction]
 #[pyo3(signature = (clip, bones=None))]
@@ -31,7 +34,7 @@ pub fn features<'py>(
     py: Python<'py>,
     clip: &PyClip,
     bones: Option<Vec<String>>,
-) -> PyResult<(Bound<'py, PyAny>, Vec<String>, Vec<String>, f64)> {
+) -> PyResult<FeatureTable<'py>> {
     let bones = self::bones(clip, bones)?;
     if bones.is_empty() {
         let name = &clip.data.clip.name;
