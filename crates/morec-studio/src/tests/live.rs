@@ -33,12 +33,7 @@ fn what_just_happened_is_marked_learned_and_recognised_and_undone() {
     );
     assert_eq!(person.labels().len(), 1);
     assert_eq!(person.labels()[0].1, "gesture 1");
-    let later = take
-        .labels
-        .iter()
-        .filter(|l| l.class == "wave")
-        .next_back()
-        .unwrap();
+    let later = take.labels.iter().rfind(|l| l.class == "wave").unwrap();
     while now(&person) < later.stop_secs + 1.5 && later.start_secs > wave.stop_secs {
         person.frames(1);
     }
