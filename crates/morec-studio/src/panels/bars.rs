@@ -228,7 +228,17 @@ fn command_line(ui: &mut Ui, state: &State, c: &Colours) {
     {
         ui.ctx().copy_text(state.command_line.clone());
     }
-    let text = RichText::new(format!("$ {}", state.command_line))
+    // Where a temporary folder lies is of no interest, but to who copies the command.
+    let folder = state
+        .store
+        .as_ref()
+        .filter(|s| s.temporary)
+        .and_then(|s| Some(format!("{}/", s.path().parent()?.display())));
+    let shown = folder.map_or_else(
+        || state.command_line.clone(),
+        |folder| state.command_line.replace(&folder, ""),
+    );
+    let text = RichText::new(format!("$ {shown}"))
         .monospace()
         .size(11.0)
         .color(c.muted);

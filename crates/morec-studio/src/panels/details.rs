@@ -140,7 +140,9 @@ fn known(ui: &mut Ui, clip: &ClipInfo, out: Out) {
             if let Some(source) = &clip.source {
                 fact(ui, "Source", source.clone());
             }
-            fact(ui, "File", clip.path.clone());
+            let file = std::path::Path::new(&clip.path).file_name();
+            let file = file.unwrap_or_default().to_string_lossy().into_owned();
+            fact(ui, "File", file);
         });
 }
 
