@@ -42,7 +42,7 @@ pub struct Args {
     /// The file to write, or the folder for several clips; - is BVH on standard output
     #[arg(short, long, value_name = "FILE|FOLDER")]
     output: PathBuf,
-    /// The form of clips that are written into a folder [default: bvh]
+    /// Write into a folder, in this form [default: bvh]
     #[arg(long, value_enum)]
     form: Option<Form>,
     /// What a CSV holds
@@ -108,17 +108,12 @@ pub fn run(args: Args) -> Result<ExitCode> {
         },
         rate_hz: args.rate,
     };
-    let into_folder = args.clips.len() > 1
-        || args.clips.iter().any(|path| path.is_dir())
-        || args.output.is_dir()
-        || args.output.to_string_lossy().ends_with(['/', '\\']);
+    let into_folder =
+        args.clips.len() > 1 || args.clips.iter().any(|path| path.is_dir()) || args.form.is_some();
     if into_folder {
         return folder::convert(&args, &wanted);
     }
     let (path, output) = (&args.clips[0], &args.output);
-    if args.form.is_some() {
-        bail!("--form is for folders; the ending of --output says the form of one clip");
-    }
     let to_stdout = output == Path::new("-");
     let form = match to_stdout {
         true => Form::Bvh,

@@ -77,13 +77,10 @@ fn a_skeleton_is_an_input() {
 
 #[test]
 fn another_kind_of_file_is_not_lost() {
-    let folder = Folder::with(&[
-        ("a.bvh", WAVE_BVH),
-        ("labels.tsv", "clip\tclass\na\twave\n"),
-    ]);
-    let ran = folder.morec(&["convert", "a.bvh", "-o", "labels.tsv"]);
-    assert!(ran.err.contains("labels.tsv.old"), "{ran:?}");
-    assert_eq!(bytes(&folder, "labels.tsv.old"), b"clip\tclass\na\twave\n");
+    let folder = Folder::with(&[("a.bvh", WAVE_BVH), ("labels", "clip\tclass\na\twave\n")]);
+    let ran = folder.morec(&["convert", "a.bvh", "-o", "labels"]);
+    assert!(ran.err.contains("labels.old"), "{ran:?}");
+    assert_eq!(bytes(&folder, "labels.old"), b"clip\tclass\na\twave\n");
 }
 
 #[test]
