@@ -40,7 +40,7 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
                 widgets::nothing(
                     ui,
                     "Nothing is trained yet",
-                    "Choose classes at the left and train: a second for a hundred labels.",
+                    "Choose classes at the left and train.",
                 );
                 return;
             }
