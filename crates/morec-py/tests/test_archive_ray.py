@@ -1,8 +1,12 @@
-"""Archives on Ray, two workers on this machine: the same answers, also when a worker is killed."""
+"""Archives on Ray, two workers on this machine: the same answers, also when a worker is killed.
+
+Starting Ray takes minutes on a busy machine, so these run on request: MOREC_TEST_RAY=1, with ray installed.
+"""
 
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -11,6 +15,8 @@ import pytest
 
 import morec
 
+if not os.environ.get("MOREC_TEST_RAY"):
+    pytest.skip("archives on Ray are tested with MOREC_TEST_RAY=1", allow_module_level=True)
 pytest.importorskip("ray")
 pytest.importorskip("daft")
 import morec.archive as ma
@@ -45,7 +51,9 @@ def kill_one():
             name = Path(f"/proc/{pid}/cmdline").read_bytes()
         except OSError:
             continue
-        if name.startswith(b"ray::") and b"IDLE" not in name:
+        # Tasks and actors of Daft, not Ray's own agents.
+        own = (b"ray::IDLE", b"ray::Dashboard", b"ray::RuntimeEnv")
+        if name.startswith(b"ray::") and not name.startswith(own):
             os.kill(pid, signal.SIGKILL)
             print("killed", name[:60], file=sys.stderr)
             return
@@ -74,7 +82,7 @@ def test_two_workers_give_what_one_machine_gives(
     index.save(tmp_path / "signs.index")
     pattern = f"{raw}/*.bvh"
     command = [sys.executable, "-c", PROGRAM, tmp_path / "on_ray", pattern, tmp_path / "signs.index", accident]
-    done = subprocess.run([str(part) for part in command], capture_output=True, text=True, check=False, timeout=240)
+    done = subprocess.run([str(part) for part in command], capture_output=True, text=True, check=False, timeout=900)
     assert done.returncode == 0, done.stderr[-3000:]
     found = json.loads(done.stdout.splitlines()[-1])
     native = ma.create(tmp_path / "native", from_files=pattern)

@@ -60,7 +60,7 @@ def test_frames_arrive_and_listening_ends(index: morec.Index) -> None:
 def test_what_cannot_be_listened_to(index: morec.Index) -> None:
     with pytest.raises(ValueError, match="vmc://HOST:PORT"):
         morec.listen("http://127.0.0.1:1", index)
-    with pytest.raises(ValueError, match="HOST:PORT"):
+    with pytest.raises(OSError, match="expected HOST:PORT"):
         morec.listen("vmc://nowhere", index)
     with pytest.raises(ValueError, match="actors"):
         morec.listen("vmc://127.0.0.1:0", index, actors=0)
