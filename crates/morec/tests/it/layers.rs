@@ -53,9 +53,14 @@ fn the_library_touches_no_file_and_prints_nothing() {
     ];
     let sources = sources();
     assert!(sources.len() > 50);
-    // What opens files is the module of that name, and paths given to it.
+    // What opens files is the module of that name, and paths given to it. An index notes when it was trained, and
+    // SOURCE_DATE_EPOCH fixes that.
     for (path, _, code) in sources.iter().filter(|(_, module, _)| module != "files") {
-        for word in forbidden {
+        let dated = path.ends_with("train/trainer.rs");
+        for word in forbidden
+            .into_iter()
+            .filter(|word| !(dated && *word == "std::env"))
+        {
             assert!(!code.contains(word), "{} says {word}", path.display());
         }
     }
