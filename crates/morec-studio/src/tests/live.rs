@@ -3,7 +3,8 @@
 use egui::Key;
 
 use super::{Person, made, takes};
-use crate::state::{Command, Panel};
+use crate::state::live::Choice;
+use crate::state::{Command, LiveCommand, Panel};
 
 #[test]
 fn what_just_happened_is_marked_learned_and_recognised_and_undone() {
@@ -76,4 +77,32 @@ fn a_take_is_recorded_into_the_database_after_a_countdown() {
     );
     person.command(Command::Show(Panel::Library));
     assert!(person.sees("take_001"));
+}
+
+#[test]
+fn a_device_is_listened_to_and_its_absence_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 0)]);
+    person.goes_to(Panel::Live);
+    let listen =
+        |address: &str| Command::Live(LiveCommand::Choose(Choice::Network(address.to_owned())));
+    person.command(listen("vmc://127.0.0.1:0"));
+    person.click("Start");
+    assert!(
+        person
+            .state()
+            .live
+            .run
+            .as_ref()
+            .unwrap()
+            .name
+            .starts_with("vmc://127.0.0.1:")
+    );
+    assert!(person.sees_part("Nothing has come yet"));
+    person.click("Stop");
+    // What is no address gives a sentence.
+    person.command(listen("carrier://pigeon"));
+    person.click("Start");
+    assert!(person.state().live.run.is_none());
+    assert!(!person.state().notices.is_empty());
 }

@@ -184,12 +184,19 @@ impl State {
     }
 
     fn listen(&mut self, address: &str) {
-        match crate::sources::open(address) {
-            Ok(source) => match ThreadFeed::start(source, self.wake.clone()) {
-                Ok(feed) => self.run(Feed::Thread(feed), address.to_owned()),
-                Err(error) => self.complain(format!("{address}: {error}")),
-            },
-            Err(why) => self.complain(why),
+        let opened = match crate::sources::open(address) {
+            Ok(opened) => opened,
+            Err(why) => return self.complain(crate::store::sentence(&why)),
+        };
+        match ThreadFeed::start(opened.source, self.wake.clone()) {
+            Ok(feed) => {
+                self.command_line = format!("morec live studio.index --listen {address}");
+                self.run(Feed::Thread(feed), opened.name);
+                if let Some(run) = &mut self.live.run {
+                    run.notices = Some(opened.notices);
+                }
+            }
+            Err(error) => self.complain(format!("{address}: {error}")),
         }
     }
 

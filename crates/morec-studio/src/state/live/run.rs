@@ -52,6 +52,9 @@ pub struct Run {
     /// How long nothing has come, seconds on the wall.
     pub silent_secs: f64,
     pub ended: bool,
+    /// What the source finds wrong with what it is sent, and what it has said so far.
+    pub notices: Option<morec_live::Notices>,
+    noticed: Vec<String>,
 }
 
 impl Run {
@@ -72,6 +75,8 @@ impl Run {
             actor: None,
             silent_secs: 0.0,
             ended: false,
+            notices: None,
+            noticed: Vec::new(),
         }
     }
 
@@ -95,6 +100,9 @@ impl Run {
         let (mut items, mut frames, mut events) = (Vec::new(), Vec::new(), Vec::new());
         self.feed.poll(dt, &mut items);
         self.silent_secs += dt;
+        if let Some(notices) = &self.notices {
+            self.noticed.extend(notices.take());
+        }
         for item in items {
             match item {
                 Item::Rig(actor, rig) => {
@@ -230,6 +238,7 @@ impl Run {
                 true,
             ));
         }
+        said.extend(self.noticed.iter().rev().map(|text| (text.clone(), true)));
         if let Some(diagnosis) = self.diagnosis() {
             for finding in diagnosis.findings().iter() {
                 said.push((
