@@ -22,10 +22,11 @@
 //!     println!("{detection}");                                  // wave from 1.23 s to 2.50 s, score 0.87
 //! }
 //!
+//! let model = index.model.clone();                              // for the names of the classes
 //! let mut live = index.recognizer(take.bones())?;               // allocates; says why it cannot
 //! for (secs, pose) in take.poses() {                            // world positions of the body's joints, any rate
 //!     for detection in live.push(secs, &pose) {                 // allocates nothing, cannot fail
-//!         println!("{}", detection.named(live.model()));
+//!         println!("{}", detection.named(&model));
 //!     }
 //! }
 //! # Ok(())

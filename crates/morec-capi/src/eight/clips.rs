@@ -16,6 +16,13 @@ fn file_error(path: &Path, error: impl std::fmt::Display) -> Error {
 
 /// The first clip in the file, in metres and Y up, with its roles.
 pub(super) fn load(path: &Path, index: &MotionIndex) -> Result<Take, Error> {
+    if path
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("asf"))
+    {
+        let text = "an ASF file is a skeleton without motion; name the AMC file beside it";
+        return Err(file_error(path, text));
+    }
     let takes = files::open(path);
     let takes = takes.map_err(|error| file_error(&error.path, error.kind))?;
     let take = takes.into_iter().find(|take| take.clip.frames > 0);

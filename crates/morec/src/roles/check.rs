@@ -138,7 +138,7 @@ impl Body<'_> {
     /// Knees that bend backwards.
     fn exchanged(&self) -> Option<String> {
         // Legs that are nearly straight bend any way in the noise of a depth camera.
-        const LEAST_BEND: f64 = 0.15;
+        const LEAST_BEND: f64 = 0.25;
         const LEAST_POSES: usize = 3;
         let (mut sum, mut count) = (0.0, 0);
         for pose in self.poses {

@@ -7,7 +7,7 @@ use super::{guide, others, root};
 use crate::kit::Folder;
 
 /// Options of other programs.
-const FOREIGN: [&str; 11] = [
+const FOREIGN: [&str; 14] = [
     "--release",
     "--workspace",
     "--open",
@@ -19,6 +19,9 @@ const FOREIGN: [&str; 11] = [
     "--seeds",
     "--rounds",
     "--ask",
+    "--endpoint",
+    "--from-files",
+    "--ray",
 ];
 
 fn all() -> Vec<PathBuf> {
