@@ -17,7 +17,7 @@ pub struct Opened {
 /// # Errors
 /// Why it cannot be opened, in a sentence.
 pub fn open(address: &str) -> Result<Opened, String> {
-    let parsed: Address = address.parse().map_err(|error| error.to_string())?;
+    let parsed: Address = address.parse()?;
     if parsed.kind == "json" {
         return Err(format!(
             "{address}: a window has no standard input; json+tcp://127.0.0.1:9000 listens to a port"
