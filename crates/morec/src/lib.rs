@@ -1,7 +1,7 @@
 //! Index a motion-capture database, recognise its motions live.
 //!
-//! Labelled motion-capture clips train a [`MotionIndex`](index::MotionIndex), one immutable file; a
-//! [`Recognizer`](live::Recognizer) made from it takes a performer's poses one by one and says which motions
+//! Labelled motion-capture clips train a [`MotionIndex`], one immutable file; a
+//! [`Recognizer`] made from it takes a performer's poses one by one and says which motions
 //! happened, from when to when, a tenth of a second or two after each has ended.
 //!
 //! The library prints nothing and starts no runtime; it takes bytes and values, and opens files only in [`files`] and
@@ -62,13 +62,13 @@
 //!
 //! | step | module | gives |
 //! |---|---|---|
-//! | bytes of a file | [`formats`] | a [`Clip`](clip::Clip): skeleton, frames, and what had to be repaired |
+//! | bytes of a file | [`formats`] | a [`Clip`]: skeleton, frames, and what had to be repaired |
 //! | units, axes, body parts | [`import`], [`roles`] | metres, Y up, a [`RoleMap`](roles::RoleMap) |
-//! | poses in the world | [`kinematics`] | a [`KeyPose`](features::KeyPose) for each frame |
+//! | poses in the world | [`kinematics`] | a [`KeyPose`] for each frame |
 //! | feature rows | [`features`] | 30 rows a second, alike for people of any size, facing anywhere |
 //! | learning | [`labels`], [`train`] | a [`TemplateModel`](templates::TemplateModel) and a report |
 //! | keeping | [`index`] | one file, with a checksum and where it came from |
-//! | recognising | [`templates`] or [`svrdm`], [`decode`], [`live`] | [`Detection`](live::Detection)s, nothing taken back |
+//! | recognising | [`templates`] or [`svrdm`], [`decode`], [`live`] | [`Detection`]s, nothing taken back |
 //! | numbers for other programs | [`tables`] | positions, rotations and feature rows as NumPy archives and CSV |
 //! | looking at a stream | [`diagnosis`] | what is wrong with it, in sentences that say what to do |
 //! | without labels | [`pivots`], [`pca`], [`segment`], [`cluster`] | pose rows, fewer dimensions, cuts, samples that are alike |

@@ -76,7 +76,7 @@ impl Script {
         self
     }
 
-    /// Films the script. Every motion is labelled, of whatever kind; see [`Take::keep`].
+    /// Films the script. Every motion is labelled, of whatever kind; see [`SyntheticTake::keep`].
     pub fn film(&self, name: &str, rate_hz: f64) -> Result<SyntheticTake, UnknownMotion> {
         let mut person = self.person.clone();
         let mut labels = Vec::new();
