@@ -17,7 +17,7 @@ use anyhow::{Context, Result};
 use morec::MotionIndex;
 use morec::files::FileReader;
 use morec::live::vmc::Bundling;
-use morec::live::{Layout, SessionOptions};
+use morec::live::{SessionOptions, Threading};
 use morec_live::{Accidents, load, pin_thread};
 
 /// Recognise clips round and round and see whether memory stays flat, every lap finds the same, and everything is on time.
@@ -115,9 +115,9 @@ impl Laid {
     /// The usual options with this layout.
     fn options(self) -> SessionOptions {
         let (layout, on_thread): (_, Option<fn(&'static str)>) = match self {
-            Laid::Inline => (Layout::Inline, None),
-            Laid::Stages => (Layout::Stages, None),
-            Laid::Pinned => (Layout::Stages, Some(pin_thread)),
+            Laid::Inline => (Threading::Inline, None),
+            Laid::Stages => (Threading::Stages, None),
+            Laid::Pinned => (Threading::Stages, Some(pin_thread)),
         };
         SessionOptions {
             layout,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
-use morec::live::{EventOptions, Model, Overload, Session, SessionOptions, Waits};
+use morec::live::{EventOptions, LatencyHistogram, Model, OverflowPolicy, Session, SessionOptions};
 
 use super::Args;
 use super::Laid;
@@ -28,7 +28,7 @@ struct Measured {
     frames: u64,
     secs: f64,
     /// Of each turn in real time.
-    waits: Vec<Waits>,
+    waits: Vec<LatencyHistogram>,
 }
 
 pub fn run(model: &Model, clips: &Arc<Vec<PlayableClip>>, args: &Args) -> Result<ExitCode> {
@@ -97,12 +97,12 @@ fn play(
     layout: Laid,
     speed: f64,
     turn: Duration,
-) -> Result<(u64, f64, Waits)> {
+) -> Result<(u64, f64, LatencyHistogram)> {
     let source = ClipSource::new(clips.clone()).laps(0).speed(speed);
     let overload = if speed.is_finite() {
-        Overload::Drop
+        OverflowPolicy::Drop
     } else {
-        Overload::Wait
+        OverflowPolicy::Wait
     };
     let events = EventOptions {
         early: false,

@@ -9,7 +9,9 @@ use anyhow::Result;
 use morec::features::KeyPose;
 use morec::kinematics::WorldPose;
 use morec::live::Model;
-use morec::live::{Actor, Frame, Overload, Pool, PoolStream, Rig, SessionOptions, wall_now_secs};
+use morec::live::{
+    Frame, OverflowPolicy, PerformerId, Pool, PoolStream, Rig, SessionOptions, wall_now_secs,
+};
 use morec::math::Vec3;
 
 use super::memory::resident_bytes;
@@ -36,7 +38,7 @@ pub fn run(
     let poses: Vec<Vec<Vec3>> = clips.iter().flat_map(poses_of).collect();
     let pool = Pool::new(model, args.threads)?;
     let options = SessionOptions {
-        overload: Overload::Drop,
+        overload: OverflowPolicy::Drop,
         frame_capacity: 24,
         ..SessionOptions::default()
     };
@@ -48,7 +50,7 @@ pub fn run(
                 frame: Box::default(),
                 number,
             };
-            stream.of_pool.feed.set_rig(Actor(0), &rig);
+            stream.of_pool.feed.set_rig(PerformerId(0), &rig);
             stream
         })
         .collect();

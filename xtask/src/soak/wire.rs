@@ -12,7 +12,7 @@ use morec::kinematics::WorldPose;
 use morec::labels::{ClipLength, Labels, Sample};
 use morec::live::Model;
 use morec::live::vmc::{VmcOptions, VmcSender};
-use morec::live::{Overload, Phase, Session, SessionOptions, wall_now_secs};
+use morec::live::{OverflowPolicy, Phase, Session, SessionOptions, wall_now_secs};
 
 use super::{Args, stop_on_ctrl_c};
 use morec_live::NamedEvent;
@@ -41,7 +41,7 @@ pub fn run(model: &Model, clips: &Arc<Vec<PlayableClip>>, args: &Args) -> Result
     let source = VmcSource::bind(here, &VmcOptions::default())?;
     let to = source.address()?;
     let options = SessionOptions {
-        overload: Overload::Drop,
+        overload: OverflowPolicy::Drop,
         ..SessionOptions::default()
     };
     let (session, readers) = Session::start(model, Box::new(source), &options)?;
