@@ -120,7 +120,7 @@ impl State {
             FileCommand::AskExportIndex => self.ask = Some(Ask::ExportIndex),
             FileCommand::Open(path) => self.open(&path),
             FileCommand::New(path) => match path.exists() {
-                true => self.complain(format!("{}: there is a file already", file_name(path))),
+                true => self.complain(format!("{}: there is a file already", file_name(&path))),
                 false => self.open_store(&path, false),
             },
             FileCommand::Import(paths) => self.import(paths),

@@ -218,7 +218,10 @@ impl State {
         }
         match std::fs::write(path, &self.train.bytes) {
             Ok(()) => self.say(format!("{} written", crate::format::file_name(path))),
-            Err(error) => self.complain(format!("{}: not written: {error}", crate::format::file_name(path))),
+            Err(error) => self.complain(format!(
+                "{}: not written: {error}",
+                crate::format::file_name(path)
+            )),
         }
     }
 }
