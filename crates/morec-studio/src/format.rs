@@ -116,9 +116,15 @@ mod tests {
     #[test]
     fn commands_are_read_without_folders() {
         let line = "morec db cut /home/a/moves.mdb --method kernel";
-        assert_eq!(without_folders(line), "morec db cut moves.mdb --method kernel");
+        assert_eq!(
+            without_folders(line),
+            "morec db cut moves.mdb --method kernel"
+        );
         let line = "morec train --db '/tmp/my moves/a b.mdb' -o studio.index";
-        assert_eq!(without_folders(line), "morec train --db 'a b.mdb' -o studio.index");
+        assert_eq!(
+            without_folders(line),
+            "morec train --db 'a b.mdb' -o studio.index"
+        );
         let line = "morec live studio.index --listen vmc://0.0.0.0:39539";
         assert_eq!(without_folders(line), line);
     }

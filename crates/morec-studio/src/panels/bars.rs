@@ -234,5 +234,8 @@ fn command_line(ui: &mut Ui, state: &State, c: &Colours) {
         .size(11.0)
         .color(c.muted);
     ui.add(egui::Label::new(text).truncate())
-        .on_hover_text(format!("The command that does the same:\n{}", state.command_line));
+        .on_hover_text(format!(
+            "The command that does the same:\n{}",
+            state.command_line
+        ));
 }
