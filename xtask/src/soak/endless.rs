@@ -9,7 +9,7 @@ use anyhow::{Context, Result};
 use morec::live::Model;
 use morec::live::{Event, EventOptions, OverflowPolicy, Phase, Session, SessionOptions};
 
-use super::Laid;
+use super::ThreadLayout;
 use super::memory::resident_bytes;
 use super::{Args, stop_on_ctrl_c};
 use morec_live::PlayableClip;
@@ -27,7 +27,7 @@ type Lap = Vec<(u16, i64, i64, i64)>;
 pub fn run(
     model: &Model,
     clips: &Arc<Vec<PlayableClip>>,
-    layout: Laid,
+    layout: ThreadLayout,
     args: &Args,
 ) -> Result<ExitCode> {
     let lap_secs: f64 = clips

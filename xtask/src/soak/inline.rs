@@ -22,7 +22,7 @@ const MOST_LAPS: usize = 25;
 /// costs.
 pub fn tell(model: &Model, clips: &Arc<Vec<PlayableClip>>, most: Duration) {
     let mut laps = Vec::new();
-    let mut player = Player::new(model);
+    let mut player = InlinePlayer::new(model);
     let begun = Instant::now();
     player.lap(clips);
     // Three at least: a median of fewer is none.
@@ -64,13 +64,13 @@ fn shares(mut secs: Vec<f64>) -> String {
 }
 
 /// A performer, and recognisers ready to be copied.
-struct Player {
+struct InlinePlayer {
     model: Model,
     performer: Performer,
     ready: Vec<(BoneSet, Option<Recognizer>)>,
 }
 
-impl Player {
+impl InlinePlayer {
     fn new(model: &Model) -> Self {
         let performer = Performer::new(model, PerformerId(0), &EventOptions::default());
         Self {

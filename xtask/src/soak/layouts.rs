@@ -8,14 +8,14 @@ use anyhow::{Context, Result};
 use morec::live::{EventOptions, LatencyHistogram, Model, OverflowPolicy, Session, SessionOptions};
 
 use super::Args;
-use super::Laid;
+use super::ThreadLayout;
 use morec_live::ClipSource;
 use morec_live::PlayableClip;
 
-const LAYOUTS: [(&str, Laid); 3] = [
-    ("inline", Laid::Inline),
-    ("stages", Laid::Stages),
-    ("pinned", Laid::Pinned),
+const LAYOUTS: [(&str, ThreadLayout); 3] = [
+    ("inline", ThreadLayout::Inline),
+    ("stages", ThreadLayout::Stages),
+    ("pinned", ThreadLayout::Pinned),
 ];
 /// Turns of each; whatever else the machine does should meet both alike.
 const TURNS: usize = 3;
@@ -94,7 +94,7 @@ impl Measured {
 fn play(
     model: &Model,
     clips: &Arc<Vec<PlayableClip>>,
-    layout: Laid,
+    layout: ThreadLayout,
     speed: f64,
     turn: Duration,
 ) -> Result<(u64, f64, LatencyHistogram)> {

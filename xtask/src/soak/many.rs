@@ -43,9 +43,9 @@ pub fn run(
         ..SessionOptions::default()
     };
     let rig = Arc::new(Rig::of_roles());
-    let mut open: Vec<Stream> = (0..streams)
+    let mut open: Vec<SoakStream> = (0..streams)
         .map(|number| {
-            let mut stream = Stream {
+            let mut stream = SoakStream {
                 of_pool: pool.open(&options),
                 frame: Box::default(),
                 number,
@@ -136,13 +136,13 @@ fn poses_of(loaded: &PlayableClip) -> Vec<Vec<Vec3>> {
         .collect()
 }
 
-struct Stream {
+struct SoakStream {
     of_pool: PoolStream,
     frame: Box<Frame>,
     number: usize,
 }
 
-impl Stream {
+impl SoakStream {
     /// Sends the next pose, if the stream has begun; says whether it has. Every stream is at another place of the
     /// clips, and they begin one after the other: nobody's performers move in step.
     fn send(&mut self, poses: &[Vec<Vec3>], tick: usize, rate_hz: f64) -> bool {

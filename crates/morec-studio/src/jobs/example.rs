@@ -105,7 +105,7 @@ pub fn of_clips(folder: &Path, clips: &[PathBuf], progress: &JobProgress) -> Job
     match super::import::import(&path, clips, progress) {
         JobOutcome::Imported(report) if report.imported == 0 && !report.refused.is_empty() => {
             let (file, why) = &report.refused[0];
-            JobOutcome::Failed(format!("{}: {why}", file.display()))
+            JobOutcome::Failed(format!("{}: {why}", crate::format::file_name(file)))
         }
         JobOutcome::Imported(_) => JobOutcome::Made(path),
         other => other,
