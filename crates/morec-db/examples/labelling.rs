@@ -17,7 +17,9 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use morec_db::labels::{NewSample, SampleState};
-use morec_db::{ClipFilter, ClipId, ClipUpdate, MotionDb, Proposal, ProposeOptions, questions};
+use morec_db::{
+    ClipFilter, ClipId, ClipUpdate, MotionDb, Proposal, ProposeOptions, most_informative,
+};
 
 /// The classes of the database figure: seven signals, walking and two dribbles.
 const TEN: [&str; 10] = [
@@ -270,7 +272,7 @@ fn play(
         if right.len() == user.truth.len() && wrong == 0 {
             break;
         }
-        let asked = questions(&proposals, ask);
+        let asked = most_informative(&proposals, ask);
         if asked.is_empty() {
             break;
         }

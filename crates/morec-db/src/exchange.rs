@@ -101,7 +101,7 @@ impl LabelFormat {
         }
     }
 
-    /// Whether a label of this state is read again in the same state.
+    /// True if a label of this state is read again in the same state.
     pub fn keeps(self, state: SampleState) -> bool {
         match self {
             LabelFormat::Audacity => state == SampleState::Accepted,
@@ -109,7 +109,7 @@ impl LabelFormat {
         }
     }
 
-    /// Whether a file of this form tells of one clip only.
+    /// True if a file of this form tells of one clip only.
     pub fn is_of_one_clip(self) -> bool {
         matches!(self, LabelFormat::Eaf | LabelFormat::Audacity)
     }

@@ -37,7 +37,7 @@ pub struct HistoryStep {
     pub what: String,
     /// When, seconds since 1970.
     pub set_secs: i64,
-    /// Whether it has been taken back.
+    /// True if it has been taken back.
     pub undone: bool,
     /// How many rows of each table it touched.
     pub rows: BTreeMap<String, usize>,

@@ -50,7 +50,7 @@ pub struct Refused {
 pub struct ImportLog {
     /// Path and outcome.
     pub files: Vec<(PathBuf, ImportOutcome)>,
-    /// Whether it was cancelled: files that are not named were not looked at.
+    /// True if it was cancelled: files that are not named were not looked at.
     pub cancelled: bool,
 }
 

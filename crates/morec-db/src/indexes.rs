@@ -16,7 +16,7 @@ pub struct IndexInfo {
     pub bytes: usize,
     /// How many samples taught it.
     pub samples: usize,
-    /// Whether accepted samples have changed since.
+    /// True if accepted samples have changed since.
     pub stale: bool,
 }
 
@@ -36,7 +36,7 @@ impl MotionDb {
     }
 
     /// Keeps an index that the accepted samples of now have taught, in place of one of the same name.
-    pub fn keep_index(&mut self, name: &str, bytes: &[u8]) -> Result<(), DbError> {
+    pub fn store_index(&mut self, name: &str, bytes: &[u8]) -> Result<(), DbError> {
         let taught = self.taught()?;
         self.edit(&format!("keep the index {name}"), |conn| {
             conn.execute(

@@ -16,7 +16,7 @@
 //! | labels in other programs' forms | [`exchange`] |
 //! | cuts where behaviour changes | [`MotionDb::cut`] |
 //! | rows, search by example, near copies | [`rows`], [`search`] |
-//! | the other samples of classes that a few are labelled of | [`MotionDb::propose`], [`questions`] |
+//! | the other samples of classes that a few are labelled of | [`MotionDb::propose`], [`most_informative`] |
 
 mod body;
 mod clips;
@@ -51,6 +51,6 @@ pub use import::{ImportCounts, ImportLog, ImportOutcome, Refused};
 pub use indexes::IndexInfo;
 pub use kept::{KeptClip, KeptFile, clip_rows, packed_rows, rows_recipe, stored_clip};
 pub use motion::StoredClip;
-pub use propose::{Proposal, ProposeOptions, questions};
+pub use propose::{Proposal, ProposeOptions, most_informative};
 pub use schema::{APPLICATION_ID, SCHEMA};
 pub use segments::{Segment, SegmentKind};

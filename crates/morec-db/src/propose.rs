@@ -26,7 +26,7 @@ mod material;
 mod questions;
 mod views;
 
-pub use questions::questions;
+pub use questions::most_informative;
 
 use candidates::{ClassDistances, ProposalCandidate};
 use confidence::{Confidence, Judgement, NEAR_NOTHING};
@@ -71,14 +71,14 @@ pub struct Proposal {
     pub start_secs: f64,
     /// Where it stops.
     pub stop_secs: f64,
-    /// Whether the clip as a whole is meant: so where all samples of the class are whole clips.
+    /// True if the clip as a whole is meant: so where all samples of the class are whole clips.
     pub whole_clip: bool,
     /// How likely it is right, 0 to 1, as far as the answers so far tell.
     pub score: f32,
 }
 
 impl Proposal {
-    /// Whether it is likelier right than wrong.
+    /// True if it is likelier right than wrong.
     pub fn is_sure(&self) -> bool {
         self.score >= 0.5
     }

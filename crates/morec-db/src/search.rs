@@ -18,7 +18,7 @@ mod summary;
 mod tests;
 mod windows;
 
-pub use copies::{NearCopy, near_copies, near_copies_of};
+pub use copies::{NearCopy, near_duplicates, near_duplicates_of};
 pub use learned::LearnedMetric;
 pub use rank::{Hit, SearchOptions};
 
@@ -27,7 +27,7 @@ use morec::progress::Progress;
 
 use crate::rows::ClipRows;
 use crate::{ClipId, DbError, MotionDb};
-use layout::{Laid, lay_out};
+use layout::{CanonicalRows, to_canonical};
 use windows::Sums;
 
 /// The rows of a whole database, ready to be searched. O(rows) memory: 0.5 MB for a minute.
@@ -40,17 +40,17 @@ pub struct SearchIndex {
 #[derive(Debug, Clone)]
 struct Indexed {
     clip: ClipId,
-    laid: Laid,
+    laid: CanonicalRows,
     sums: Sums,
 }
 
 /// An example to search for.
 #[derive(Debug, Clone)]
 pub struct Example {
-    laid: Laid,
+    laid: CanonicalRows,
     /// Where it is from, to leave it out of the hits.
     from: Option<(ClipId, std::ops::Range<usize>)>,
-    /// Whether it is all of its clip.
+    /// True if it is all of its clip.
     whole: bool,
 }
 
@@ -69,7 +69,7 @@ impl SearchIndex {
     /// Lays out rows of which `tick_hz` make a second.
     pub fn new(rows: &[ClipRows], tick_hz: f64) -> Self {
         let index = |clip: &ClipRows| {
-            let laid = lay_out(&clip.rows, clip.bones);
+            let laid = to_canonical(&clip.rows, clip.bones);
             Indexed {
                 clip: clip.clip,
                 sums: Sums::of(&laid.rows),
@@ -111,7 +111,7 @@ impl SearchIndex {
         if span.len() < 3 {
             return None;
         }
-        let laid = Laid {
+        let laid = CanonicalRows {
             rows: rows.slice(span.clone()),
             bones: found.laid.bones,
         };
@@ -131,7 +131,7 @@ impl SearchIndex {
         bones: morec::features::BoneSet,
     ) -> Option<Example> {
         (rows.len() >= 3).then(|| Example {
-            laid: lay_out(rows, bones),
+            laid: to_canonical(rows, bones),
             from: None,
             whole: true,
         })

@@ -92,7 +92,7 @@ impl ClipSource {
         Ok(source)
     }
 
-    /// Whether time passes for it as for those who watch.
+    /// True if time passes for it as for those who watch.
     pub fn is_paced(&self) -> bool {
         self.speed.is_finite()
     }

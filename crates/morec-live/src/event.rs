@@ -15,7 +15,7 @@ pub struct NamedEvent<'a> {
 }
 
 impl NamedEvent<'_> {
-    /// Whether it is the final word on a motion.
+    /// True if it is the final word on a motion.
     pub fn is_final(&self) -> bool {
         self.event.phase == Phase::End
     }

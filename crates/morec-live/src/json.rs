@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use morec::live::{
-    Frame, MAX_ACTORS, PerformerId, Rig, Source, SourceCounts, SourceEvent, wall_now_secs,
+    Frame, MAX_PERFORMERS, PerformerId, Rig, Source, SourceCounts, SourceEvent, wall_now_secs,
 };
 use morec::roles::{Role, RoleMap};
 
@@ -34,7 +34,7 @@ struct RemotePerformer {
 /// Poses as lines of JSON.
 pub struct JsonSource {
     lines: Lines,
-    /// Whether the end of the lines is the end of the source.
+    /// True if the end of the lines is the end of the source.
     ends: bool,
     performers: Vec<RemotePerformer>,
     /// A pose whose skeleton was announced first.
@@ -121,7 +121,7 @@ impl JsonSource {
             self.performers[at] = new;
             return Some(at);
         }
-        (self.performers.len() < MAX_ACTORS).then(|| {
+        (self.performers.len() < MAX_PERFORMERS).then(|| {
             self.performers.push(new);
             self.performers.len() - 1
         })

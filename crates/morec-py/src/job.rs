@@ -15,19 +15,19 @@ const LOOK: Duration = Duration::from_millis(50);
 
 /// How far a job is, and whether it is to go on.
 #[derive(Default)]
-pub struct Told {
+pub struct JobState {
     last: Mutex<Option<(String, usize, usize)>>,
     cancelled: AtomicBool,
 }
 
-impl Told {
+impl JobState {
     fn take(&self) -> Option<(String, usize, usize)> {
         let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
         last.take()
     }
 }
 
-impl Progress for Told {
+impl Progress for JobState {
     fn report(&self, stage: &str, done: usize, total: usize) {
         let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
         *last = Some((stage.to_owned(), done, total));
@@ -49,7 +49,7 @@ pub fn run<T: Send>(
     progress: Option<&Bound<'_, PyAny>>,
     job: impl FnOnce(&dyn Progress) -> T + Send,
 ) -> PyResult<T> {
-    let told = Told::default();
+    let told = JobState::default();
     let (sender, receiver) = sync_channel(1);
     // Only one thread at a time waits on it; the lock says so to the compiler.
     let receiver = Mutex::new(receiver);
@@ -95,7 +95,7 @@ pub fn run<T: Send>(
     }
 }
 
-fn look(py: Python<'_>, progress: Option<&Bound<'_, PyAny>>, told: &Told) -> PyResult<()> {
+fn look(py: Python<'_>, progress: Option<&Bound<'_, PyAny>>, told: &JobState) -> PyResult<()> {
     py.check_signals()?;
     if let (Some(progress), Some(last)) = (progress, told.take()) {
         progress.call1(last)?;

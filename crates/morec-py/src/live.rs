@@ -3,7 +3,9 @@
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use morec::live::{Event, EventOptions, EventReader, MAX_ACTORS, Model, Session, SessionOptions};
+use morec::live::{
+    Event, EventOptions, EventReader, MAX_PERFORMERS, Model, Session, SessionOptions,
+};
 use morec_live::{Address, LiveError, Notices, SourceOptions, open_source};
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
@@ -47,9 +49,9 @@ impl LiveSession {
         mirror: bool,
         tentative: bool,
     ) -> PyResult<Self> {
-        if !(1..=MAX_ACTORS).contains(&actors) {
+        if !(1..=MAX_PERFORMERS).contains(&actors) {
             return Err(value_error(format!(
-                "actors: expected 1 to {MAX_ACTORS}, found {actors}"
+                "actors: expected 1 to {MAX_PERFORMERS}, found {actors}"
             )));
         }
         let how = SourceOptions {

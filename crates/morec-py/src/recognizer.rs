@@ -222,20 +222,20 @@ impl PyRecognizer {
     }
 
     /// What seems to be under way after the last push, or `None`. Tentative.
-    fn hunch<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
-        let hunch = {
+    fn early_detection<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let early = {
             let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-            state.recognizer.hunch()
+            state.recognizer.early_detection()
         };
-        let Some(hunch) = hunch else { return Ok(None) };
+        let Some(early) = early else { return Ok(None) };
         let row = PyDict::new(py);
-        if let Some(class) = self.classes.get(hunch.class.index()) {
+        if let Some(class) = self.classes.get(early.class.index()) {
             row.set_item("class", class)?;
         }
-        row.set_item("score", hunch.score)?;
-        row.set_item("progress", hunch.progress)?;
-        row.set_item("start_secs", hunch.start_secs)?;
-        row.set_item("seen_secs", hunch.seen_secs)?;
+        row.set_item("score", early.score)?;
+        row.set_item("progress", early.progress)?;
+        row.set_item("start_secs", early.start_secs)?;
+        row.set_item("seen_secs", early.seen_secs)?;
         Ok(Some(row))
     }
 

@@ -207,14 +207,14 @@ def test_threads_share_an_index_and_a_recogniser(index: morec.Index, newcomer: m
     live.finish()
 
 
-def test_sensitivity_and_hunches(index: morec.Index, newcomer: morec.Clip) -> None:
+def test_sensitivity_and_early(index: morec.Index, newcomer: morec.Clip) -> None:
     live = index.recognizer(newcomer)
-    hunches = []
+    early = []
     for frame in range(newcomer.frames):
         live.push(frame / newcomer.rate_hz, newcomer.positions[frame])
-        hunches.append(live.hunch())
-    told = [hunch for hunch in hunches if hunch is not None]
-    assert told and all(0 <= hunch["progress"] <= 1 and hunch["class"] in index.class_names for hunch in told)
+        early.append(live.early_detection())
+    told = [one for one in early if one is not None]
+    assert told and all(0 <= one["progress"] <= 1 and one["class"] in index.class_names for one in told)
     assert 0.0 < live.latency_secs < 1.0
 
 

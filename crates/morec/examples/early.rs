@@ -191,7 +191,7 @@ fn play(
     let mut told = Vec::new();
     for_each_pose(&c.clip, &c.roles, &c.rest, |time_secs, pose| {
         recognizer.push(time_secs, pose);
-        told.push((time_secs, recognizer.hunch()));
+        told.push((time_secs, recognizer.early_detection()));
     });
     told
 }

@@ -28,8 +28,8 @@ impl fmt::Display for ClassId {
 pub struct ClassInfo {
     /// Its name in the labels.
     pub name: String,
-    /// How many samples it was learned from.
+    /// Number of samples it was learned from.
     pub samples: usize,
-    /// How many people these show, as far as they were named; 0 if nobody was.
+    /// Number of people in these, as far as they were named; 0 if nobody was.
     pub people: usize,
 }

@@ -34,7 +34,7 @@ pub struct OrderError {
     pub joint: usize,
     /// Its name.
     pub name: String,
-    /// What it gave as its parent.
+    /// The parent that it gave.
     pub parent: usize,
 }
 
@@ -63,7 +63,7 @@ impl Skeleton {
         self.joints.len()
     }
 
-    /// Whether there is no joint at all.
+    /// True if there is no joint at all.
     pub fn is_empty(&self) -> bool {
         self.joints.is_empty()
     }
@@ -100,7 +100,7 @@ impl Skeleton {
 /// A joint whose position in its parent's frame changes over time (a root, nearly always).
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointTrack {
-    /// Which joint.
+    /// The joint.
     pub joint: usize,
     /// Its position in its parent's frame (in the world's, for a root), one for each frame, in the clip's
     /// length unit. Replaces [`Joint::offset`].
@@ -116,7 +116,7 @@ pub struct Gap {
     pub frames: Span,
 }
 
-/// What is known of a clip of points: markers, landmarks or joint positions without rotations.
+/// Properties of a clip of points: markers, landmarks or joint positions without rotations.
 ///
 /// Its skeleton is flat: each point is a root joint with a [`JointTrack`] and no rotation. Every position is finite:
 /// where a point was not seen, it lies on the line between where it was seen before and after.
@@ -133,7 +133,7 @@ pub struct Points {
 /// [`import`](crate::import) has made them metres and Y-up.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Clip {
-    /// What the clip is called: its file's stem, by default.
+    /// Name of the clip: its file's stem, by default.
     pub name: String,
     /// The joints.
     pub skeleton: Skeleton,
@@ -252,7 +252,7 @@ impl Clip {
         self.rotations = rotations;
     }
 
-    /// Whether joints are known to turn; a clip of points has positions alone.
+    /// True if joints are known to turn; a clip of points has positions alone.
     pub fn has_rotations(&self) -> bool {
         self.points.is_none()
     }

@@ -5,12 +5,12 @@
 //! coding for data compression*, 1994. Writing and reading go through the same functions, so that they cannot drift
 //! apart.
 
-/// How likely a 0 is, of 4096.
+/// Probability of a 0, of 4096.
 pub(crate) type Chance = u16;
 
 const CHANCE_BITS: u32 = 12;
 const EVEN: Chance = 1 << (CHANCE_BITS - 1);
-/// How slowly chances follow what comes; motions are short.
+/// Rate of adaptation of probabilities; motions are short.
 const PATIENCE: u32 = 4;
 /// A 1 is next to never seen.
 const FEW: Chance = (1 << CHANCE_BITS) - 32;
@@ -24,7 +24,7 @@ pub(crate) trait Coder {
     fn bit(&mut self, chance: &mut Chance, bit: bool) -> bool;
     /// A bit that nothing is known of.
     fn even(&mut self, bit: bool) -> bool;
-    /// Whether a reader has asked for more than there was.
+    /// True if a reader has asked for more than there was.
     fn is_beyond_end(&self) -> bool;
 }
 

@@ -15,7 +15,7 @@ pub struct HumanoidBone {
     pub parent: Option<usize>,
     /// The role of its joint.
     pub role: Option<Role>,
-    /// Where it is in its parent's frame in a T-pose, metres, right-handed, Y up, facing −Z (as poses come out of the
+    /// Position in the parent's frame in a T-pose, metres, right-handed, Y up, facing −Z (as poses come out of the
     /// conversion from Unity's axes); for senders that send no positions.
     pub offset: [f64; 3],
 }
@@ -158,7 +158,7 @@ pub type BoneMask = u64;
 /// A body shows its hips, and so many other joints that play a role.
 const BODY_JOINTS: u32 = 5;
 
-/// Whether bones make a body that can be recognised, and not only some message in the form of one.
+/// True if bones make a body that can be recognised, and not only some message in the form of one.
 pub fn is_body(mask: BoneMask) -> bool {
     let plays = |bone: &usize| mask >> bone & 1 == 1 && HUMANOID[*bone].role.is_some();
     let hips = HUMANOID.iter().position(|bone| bone.parent.is_none());
@@ -172,7 +172,7 @@ pub fn parent_among(bone: usize, sent: BoneMask) -> Option<usize> {
         .find(|b| sent >> b & 1 == 1)
 }
 
-/// Where `bone` is in a T-pose seen from `above`, some bone above it, or from the floor.
+/// Position of `bone` in a T-pose seen from `above`, some bone above it, or from the floor.
 pub fn standard_offset(bone: usize, above: Option<usize>) -> Vec3 {
     let chain = std::iter::successors(Some(bone), |&b| HUMANOID[b].parent);
     chain

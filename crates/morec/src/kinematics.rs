@@ -61,7 +61,7 @@ impl WorldPose {
 }
 
 impl Clip {
-    /// Where the joints are in the world, as a clip of points; `metres_per_unit` becomes what is known of its unit. A
+    /// Positions of the joints in the world, as a clip of points; `metres_per_unit` becomes its unit. A
     /// clip of points stays what it is. O(joints × frames).
     pub fn to_points(&self, metres_per_unit: Option<f64>) -> Clip {
         if !self.has_rotations() {

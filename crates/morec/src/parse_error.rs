@@ -1,8 +1,8 @@
-//! What is wrong with a file, and where: shared by everything that reads bytes.
+//! Errors and warnings with their place in a file: shared by everything that reads bytes.
 
 use std::fmt;
 
-/// Where in a file something was noticed.
+/// Place in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Place {
@@ -31,11 +31,11 @@ impl fmt::Display for Place {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{at}: expected {expected}, found {found}")]
 pub struct ParseError {
-    /// Where reading stopped.
+    /// Place where reading stopped.
     pub at: Place,
-    /// What would have been right.
+    /// The expected content.
     pub expected: String,
-    /// What stood there instead.
+    /// The content found.
     pub found: String,
 }
 
@@ -53,9 +53,9 @@ impl ParseError {
 /// Something that was repaired or looks wrong, in a file that was read all the same.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct Warning {
-    /// Where it was noticed.
+    /// Its place.
     pub at: Place,
-    /// What it is and what was done about it, in a sentence.
+    /// Fault and repair, in a sentence.
     pub text: String,
 }
 

@@ -1,4 +1,4 @@
-//! How long jobs say how far they are, and are told to stop.
+//! Progress and cancellation of long jobs.
 
 /// Told about a long job's progress; asked whether to go on.
 ///
@@ -9,7 +9,7 @@ pub trait Progress: Sync {
         let _ = (stage, done, total);
     }
 
-    /// Whether the job should stop as soon as it can.
+    /// True if the job should stop as soon as it can.
     fn cancelled(&self) -> bool {
         false
     }

@@ -61,7 +61,7 @@ impl Clip {
     }
 }
 
-/// Where the frames of a clip of `frames` frames at `to_hz` lie among those it has at `from_hz`: a frame, and how far
+/// Positions of the frames of a clip of `frames` frames at `to_hz` among those it has at `from_hz`: a frame, and how far
 /// towards the next. All of them lie within the clip.
 ///
 /// # Errors

@@ -63,7 +63,7 @@ fn pushing_takes_no_memory() {
     let allocations = allocations(|| {
         for (time_secs, pose) in &poses {
             found += recognizer.push(*time_secs, pose).len();
-            std::hint::black_box(recognizer.hunch());
+            std::hint::black_box(recognizer.early_detection());
         }
         found += recognizer.finish().len();
         for (time_secs, pose) in &poses {

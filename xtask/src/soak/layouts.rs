@@ -85,7 +85,7 @@ impl Measured {
         let waits = self
             .waits
             .iter()
-            .filter_map(|waits| waits.share_secs(share));
+            .filter_map(|waits| waits.quantile_secs(share));
         1e3 * waits.sum::<f64>() / self.waits.len() as f64
     }
 }

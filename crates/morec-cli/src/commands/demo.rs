@@ -12,7 +12,7 @@ use std::time::Instant;
 use anyhow::{Context, Result, bail};
 use clap::Parser;
 use morec::import::ImportOptions;
-use morec::labels::{ClipLength, Labels, read_found};
+use morec::labels::{ClipLength, Labels, read_detections};
 
 use super::{evaluate, recognize, train};
 use crate::files::{ReadArgs, takes};
@@ -157,7 +157,7 @@ fn show(folder: &DemoFolder, cast: &Cast, args: &Args) -> Result<()> {
 /// The detections in the table `path`, in the order they were reported.
 fn said(path: &Path, lengths: &BTreeMap<String, ClipLength>) -> Result<Vec<ReportedDetection>> {
     let shown = || path.display().to_string();
-    let table = read_found(&std::fs::read(path).with_context(shown)?).with_context(shown)?;
+    let table = read_detections(&std::fs::read(path).with_context(shown)?).with_context(shown)?;
     let (found, _) = table.resolve(lengths);
     let mut said: Vec<ReportedDetection> = found
         .into_iter()

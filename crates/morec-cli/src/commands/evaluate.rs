@@ -11,7 +11,7 @@ use morec::eval::{ClipDetection, Evaluation, GroundTruth, StreamInfo, event_pair
 use morec::explain::{Miss, Sought, explain};
 use morec::formats::Warning;
 use morec::import::ImportOptions;
-use morec::labels::{ClipLength, Labels, Resolved, read_found};
+use morec::labels::{ClipLength, Labels, Resolved, read_detections};
 use morec::live::{Detection, Model};
 use morec::report::Report;
 use rayon::prelude::*;
@@ -73,7 +73,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let labels =
         Labels::read(&read(&args.truth)?).with_context(|| args.truth.display().to_string())?;
     let table =
-        read_found(&read(&args.found)?).with_context(|| args.found.display().to_string())?;
+        read_detections(&read(&args.found)?).with_context(|| args.found.display().to_string())?;
     warn(&args.truth, &labels.warnings);
     warn(&args.found, &table.warnings);
     let mut clips = lengths(&args.clips, &args.read)?;

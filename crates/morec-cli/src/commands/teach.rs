@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use anyhow::Result;
 use morec::index::MotionIndex;
-use morec::live::{Event, EventOptions, MAX_ACTORS, Performer, PerformerId, SourceEvent};
+use morec::live::{Event, EventOptions, MAX_PERFORMERS, Performer, PerformerId, SourceEvent};
 
 use crate::interrupt::stop_on_ctrl_c;
 use crate::live::open::TrackerArgs;
@@ -188,7 +188,7 @@ impl Watch {
         let options = EventOptions::default();
         self.performers = index.map_or_else(Vec::new, |index| {
             let performer = |actor| Performer::new(&index.model, PerformerId(actor), &options);
-            (0..MAX_ACTORS as u16).map(performer).collect()
+            (0..MAX_PERFORMERS as u16).map(performer).collect()
         });
     }
 

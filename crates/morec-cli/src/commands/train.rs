@@ -58,7 +58,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             .file_stem()
             .unwrap_or_default()
             .to_string_lossy();
-        database::open(db)?.keep_index(&name, &bytes)?;
+        database::open(db)?.store_index(&name, &bytes)?;
     }
     if args.json {
         println!("{}", serde_json::to_string_pretty(&report)?);

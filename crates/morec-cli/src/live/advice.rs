@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use morec::diagnosis::{Finding, Severity};
-use morec::live::{MAX_ACTORS, Status};
+use morec::live::{MAX_PERFORMERS, Status};
 
 /// Nothing has come in so long: say so.
 const SILENCE: Duration = Duration::from_secs(2);
@@ -14,8 +14,8 @@ const EVERY: Duration = Duration::from_millis(200);
 struct AdvisedSource {
     name: String,
     /// Bits of the findings of each performer that were there at the last look, and of those that were said.
-    seen: [u32; MAX_ACTORS],
-    said: [u32; MAX_ACTORS],
+    seen: [u32; MAX_PERFORMERS],
+    said: [u32; MAX_PERFORMERS],
     silence_said: bool,
 }
 
@@ -31,8 +31,8 @@ impl Advice {
     pub fn new(names: impl IntoIterator<Item = String>) -> Self {
         let source = |name| AdvisedSource {
             name,
-            seen: [0; MAX_ACTORS],
-            said: [0; MAX_ACTORS],
+            seen: [0; MAX_PERFORMERS],
+            said: [0; MAX_PERFORMERS],
             silence_said: false,
         };
         let now = Instant::now();
@@ -136,7 +136,7 @@ mod tests {
     use super::*;
     use morec::diagnosis::Diagnoser;
     use morec::features::KeyPose;
-    use morec::live::{ActorStatus, PerformerId};
+    use morec::live::{PerformerId, PerformerStatus};
 
     #[test]
     fn a_finding_is_said_once_when_it_has_lasted_for_two_looks() {
@@ -145,13 +145,13 @@ mod tests {
             let secs = f64::from(frame) / 30.0;
             diagnoser.push(secs, secs, &KeyPose::default());
         }
-        let actor = ActorStatus {
+        let actor = PerformerStatus {
             actor: PerformerId(1),
             frames: 60,
             time_secs: 2.0,
             wall_secs: 2.0,
             wait_secs: 0.0,
-            hunch: None,
+            early: None,
             last: None,
             diagnosis: Some(diagnoser.diagnosis()),
         };

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use morec::index::MotionIndex;
-use morec::live::MAX_ACTORS;
+use morec::live::MAX_PERFORMERS;
 use morec_live::{Address, OpenSource, SourceOptions, open_source};
 
 use crate::files::mapping;

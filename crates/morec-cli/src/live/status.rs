@@ -94,7 +94,7 @@ fn describe(statuses: &[Status], classes: &[ClassInfo], rate_hz: f64) -> String 
         let name = |class: morec::classes::ClassId| {
             classes.get(class.index()).map_or("?", |c| c.name.as_str())
         };
-        match (actor.hunch, actor.last) {
+        match (actor.early, actor.last) {
             (Some((class, progress)), _) => {
                 text += &format!("  | {} {:.0} % …", name(class), 100.0 * progress);
             }

@@ -7,7 +7,7 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::Instant;
 
 use anyhow::{Result, bail};
-use morec::live::{Frame, MAX_ACTORS, PerformerId, Recording, Rig, SourceEvent};
+use morec::live::{Frame, MAX_PERFORMERS, PerformerId, Recording, Rig, SourceEvent};
 
 use morec_live::OpenSource;
 

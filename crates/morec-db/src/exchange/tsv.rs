@@ -37,7 +37,7 @@ pub fn read(bytes: &[u8], lengths: &ClipLengths) -> Result<ReadLabels, ParseErro
     Ok(read)
 }
 
-/// Whether a name is read again as it is written: cells are cut at tabs and line ends, and trimmed.
+/// True if a name is read again as it is written: cells are cut at tabs and line ends, and trimmed.
 fn fits_a_cell(name: &str) -> bool {
     name.trim() == name && !name.contains(['\t', '\n', '\r'])
 }

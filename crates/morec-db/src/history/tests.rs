@@ -80,10 +80,10 @@ fn changes() -> Vec<fn(&mut MotionDb)> {
                 .unwrap()
         },
         cut,
-        |db| db.keep_index("i", b"first").unwrap(),
+        |db| db.store_index("i", b"first").unwrap(),
         retag,
         |db| db.rename_class("bow", "nod").unwrap(),
-        |db| db.keep_index("i", b"second").unwrap(),
+        |db| db.store_index("i", b"second").unwrap(),
     ]
 }
 

@@ -29,7 +29,7 @@ pub struct DbSample {
     pub start_secs: f64,
     /// Where it stops.
     pub stop_secs: f64,
-    /// Whether the clip as a whole was labelled, still ends and all.
+    /// True if the clip as a whole was labelled, still ends and all.
     pub whole_clip: bool,
     /// What is thought of it.
     pub state: SampleState,
@@ -62,7 +62,7 @@ pub struct NewSample {
     pub start_secs: f64,
     /// Where it stops.
     pub stop_secs: f64,
-    /// Whether the clip as a whole is meant.
+    /// True if the clip as a whole is meant.
     pub whole_clip: bool,
     /// What is thought of it.
     pub state: SampleState,

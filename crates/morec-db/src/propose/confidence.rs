@@ -28,7 +28,7 @@ pub struct Judgement {
     pub class: usize,
     pub evidence: Evidence,
     pub right: bool,
-    /// Whether the clip as a whole was judged.
+    /// True if the clip as a whole was judged.
     pub whole: bool,
 }
 

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use morec::features::BoneSet;
-use morec::train::moving_part;
+use morec::train::motion_span;
 
 use crate::labels::{DbSample, SampleState};
 use crate::rows::ClipRows;
-use crate::search::layout::{Laid, lay_out};
+use crate::search::layout::{CanonicalRows, to_canonical};
 use crate::{ClipId, ClipInfo};
 
 /// Shorter samples are no motion.
@@ -17,7 +17,7 @@ const LEAST_TICKS: usize = 4;
 /// A clip's rows over all bones, and what else counts.
 pub struct ClipFeatures {
     pub id: ClipId,
-    pub laid: Laid,
+    pub laid: CanonicalRows,
     pub end_secs: f64,
     /// Who is seen; the clip's name if nobody is named.
     pub group: String,
@@ -30,7 +30,7 @@ pub struct JudgedSpan {
     /// Its class's place in [`ProposalData::classes`]; none if no sample of the class is accepted.
     pub class: Option<usize>,
     pub accepted: bool,
-    /// Whether the clip as a whole was judged; `ticks` are then its moving part.
+    /// True if the clip as a whole was judged; `ticks` are then its moving part.
     pub whole: bool,
     pub ticks: Range<usize>,
 }
@@ -67,14 +67,14 @@ impl ProposalData {
             }
             let whole = own.iter().any(|s| s.whole_clip);
             moving.push(if whole {
-                moving_part(&of.rows, of.bones)
+                motion_span(&of.rows, of.bones)
             } else {
                 0..0
             });
             places.insert(of.clip, clips.len());
             clips.push(ClipFeatures {
                 id: of.clip,
-                laid: lay_out(&of.rows, of.bones),
+                laid: to_canonical(&of.rows, of.bones),
                 end_secs: info.duration_secs(),
                 group: info.subject.clone().unwrap_or_else(|| info.name.clone()),
             });

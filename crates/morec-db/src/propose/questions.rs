@@ -6,7 +6,7 @@ use super::Proposal;
 
 /// The places of `most` proposals whose answers tell most, the most telling first: the least certain ones, classes in
 /// turn, as several answers about one class at once tell less each.
-pub fn questions(proposals: &[Proposal], most: usize) -> Vec<usize> {
+pub fn most_informative(proposals: &[Proposal], most: usize) -> Vec<usize> {
     let doubt = |p: &Proposal| f64::from(p.score * (1.0 - p.score)).max(1e-6);
     let mut left: Vec<usize> = (0..proposals.len()).collect();
     let mut asked: BTreeMap<&str, usize> = BTreeMap::new();
@@ -46,18 +46,18 @@ mod tests {
     #[test]
     fn the_least_certain_come_first_and_classes_take_turns() {
         let all = proposals(&[("a", 0.99), ("a", 0.52), ("a", 0.5), ("b", 0.7), ("a", 0.1)]);
-        assert_eq!(questions(&all, 3), [2, 3, 1]);
+        assert_eq!(most_informative(&all, 3), [2, 3, 1]);
         assert_eq!(
-            questions(&all, 99).len(),
+            most_informative(&all, 99).len(),
             5,
             "all of them, if so many are asked for"
         );
-        assert!(questions(&[], 3).is_empty());
+        assert!(most_informative(&[], 3).is_empty());
     }
 
     #[test]
     fn what_is_hardly_likely_is_asked_about_when_nothing_else_is_left() {
         let all = proposals(&[("a", 0.0), ("b", 1.0)]);
-        assert_eq!(questions(&all, 2).len(), 2);
+        assert_eq!(most_informative(&all, 2).len(), 2);
     }
 }

@@ -148,7 +148,7 @@ fn answers_lead_to_every_sample() {
             found.len()
         );
         let proposals = db.propose(&ProposeOptions::default(), &()).unwrap();
-        let asked = questions(&proposals, 4);
+        let asked = most_informative(&proposals, 4);
         assert!(
             !asked.is_empty(),
             "{} of {all} found and nothing is asked",

@@ -23,7 +23,7 @@ pub struct NearCopy {
     pub stop_secs: f64,
     /// Mean squared distance of their directions.
     pub distance: f32,
-    /// Whether one is the other's mirror image.
+    /// True if one is the other's mirror image.
     pub mirrored: bool,
 }
 
@@ -35,12 +35,12 @@ const SAME: f32 = 0.005;
 const SHORTER: f64 = 0.8;
 
 /// Every pair of which one is nearly the other. O(clips²) summaries, and rows against rows where these agree.
-pub fn near_copies(index: &SearchIndex) -> Vec<NearCopy> {
+pub fn near_duplicates(index: &SearchIndex) -> Vec<NearCopy> {
     pairs(index, |_| true)
 }
 
 /// The same of pairs with at least one of `clips`: O(clips · all clips).
-pub fn near_copies_of(index: &SearchIndex, clips: &BTreeSet<ClipId>) -> Vec<NearCopy> {
+pub fn near_duplicates_of(index: &SearchIndex, clips: &BTreeSet<ClipId>) -> Vec<NearCopy> {
     pairs(index, |clip| clips.contains(&clip))
 }
 

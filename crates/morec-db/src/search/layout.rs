@@ -9,13 +9,13 @@ pub const ROOT_WEIGHT: f64 = FeatureParams::ROOT_WEIGHT;
 
 /// Rows over all bones; those that a clip does not show are 0.
 #[derive(Debug, Clone)]
-pub struct Laid {
+pub struct CanonicalRows {
     pub rows: Rows,
     pub bones: BoneSet,
 }
 
 /// Puts the columns of `bones` where those of all bones lie.
-pub fn lay_out(rows: &Rows, bones: BoneSet) -> Laid {
+pub fn to_canonical(rows: &Rows, bones: BoneSet) -> CanonicalRows {
     let present: Vec<usize> = bones.indices().collect();
     let b = present.len();
     let mut out = Rows::new(DIM);
@@ -31,7 +31,7 @@ pub fn lay_out(rows: &Rows, bones: BoneSet) -> Laid {
         laid[6 * BONES..].copy_from_slice(&row[6 * b..]);
         out.push(&laid);
     }
-    Laid { rows: out, bones }
+    CanonicalRows { rows: out, bones }
 }
 
 /// The columns of the directions of `bones`.
@@ -53,11 +53,11 @@ pub fn shared_columns(bones: BoneSet) -> Vec<usize> {
 }
 
 /// What a mirror beside the performer shows.
-pub fn mirrored(laid: &Laid) -> Laid {
+pub fn mirrored(laid: &CanonicalRows) -> CanonicalRows {
     let bones = opposite_bones(laid.bones);
     // Every bone has its opposite among all.
     let rows = mirrored_rows(&laid.rows, BoneSet::ALL).unwrap_or_else(|| Rows::new(DIM));
-    Laid { rows, bones }
+    CanonicalRows { rows, bones }
 }
 
 /// What the mirror image of a skeleton with `bones` shows.

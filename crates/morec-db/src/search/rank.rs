@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::candidates::{Descriptor, QueryDescriptor, WindowDistance, length_cost};
 use super::graph::{SCALE_NEIGHBOUR, spread};
-use super::layout::{Laid, mirrored, opposite_bones, shared_columns};
+use super::layout::{CanonicalRows, mirrored, opposite_bones, shared_columns};
 use super::learned::LearnedMetric;
 use super::summary::{SummaryDistance, mirrored_summary};
 use super::windows::shown;
@@ -53,7 +53,7 @@ pub struct Hit {
     pub score: f32,
     /// Mean squared distance along the warping path.
     pub warp_distance: f32,
-    /// Whether its mirror image is what is like the example.
+    /// True if its mirror image is what is like the example.
     pub mirrored: bool,
 }
 
@@ -322,8 +322,8 @@ fn overlap(a: &Hit, b: &Hit) -> f64 {
 
 /// The best path of `example` through rows `within` of a clip, by these columns: mean squared distance, and where it lies.
 pub fn warp(
-    example: &Laid,
-    clip: &Laid,
+    example: &CanonicalRows,
+    clip: &CanonicalRows,
     within: Range<usize>,
     columns: &[usize],
 ) -> Option<(f32, Range<usize>)> {

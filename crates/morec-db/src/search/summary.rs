@@ -240,7 +240,7 @@ pub fn bone_of(i: usize) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::search::layout::{DIM, lay_out, mirrored};
+    use crate::search::layout::{DIM, mirrored, to_canonical};
     use morec::features::Rows;
     use proptest::prelude::*;
 
@@ -297,7 +297,7 @@ mod tests {
 
         #[test]
         fn the_mirror_image_is_summed_up_in_the_mirror(values in prop::collection::vec(-1f32..1.0, 20 * DIM)) {
-            let laid = lay_out(&Rows::from_values(DIM, values), BoneSet::ALL);
+            let laid = to_canonical(&Rows::from_values(DIM, values), BoneSet::ALL);
             let of = Sums::of(&laid.rows).octaves(&(2..19));
             let image = Sums::of(&mirrored(&laid).rows).octaves(&(2..19));
             for (a, b) in mirrored_summary(&of).iter().zip(&image) {

@@ -2,7 +2,7 @@
 
 use morec::features::{FeatureParams, Rows};
 
-use super::layout::{DIM, lay_out, mirrored};
+use super::layout::{DIM, mirrored, to_canonical};
 use super::*;
 use crate::labels::{NewSample, SampleFilter, SampleState};
 use crate::rows::ClipRows;
@@ -14,7 +14,7 @@ use crate::{ClipFilter, ClipUpdate};
 #[test]
 fn a_mirror_of_a_mirror_is_the_thing() {
     let values = (0..3 * DIM).map(|i| i as f32 - 50.0).collect();
-    let laid = lay_out(
+    let laid = to_canonical(
         &Rows::from_values(DIM, values),
         morec::features::BoneSet::ALL,
     );
@@ -69,7 +69,7 @@ fn an_exact_copy_comes_first() {
         ..rows[2].clone()
     });
     let bones = rows[2].bones;
-    let image = mirrored(&lay_out(&rows[2].rows, bones)).rows;
+    let image = mirrored(&to_canonical(&rows[2].rows, bones)).rows;
     again.push(ClipRows {
         clip: ClipId(1001),
         bones: morec::features::BoneSet::ALL,
@@ -291,11 +291,11 @@ fn planted_copies_are_found_and_nothing_else() {
     };
     let (a, b, c) = (id(&original.name), id("resampled"), id("image"));
     assert_eq!(
-        pairs(near_copies(&index)),
+        pairs(near_duplicates(&index)),
         [([a, b], false), ([a, c], true), ([b, c], true)]
     );
     assert_eq!(
-        pairs(near_copies_of(&index, &[b].into())),
+        pairs(near_duplicates_of(&index, &[b].into())),
         [([a, b], false), ([b, c], true)]
     );
 }

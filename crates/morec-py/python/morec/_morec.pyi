@@ -264,7 +264,7 @@ class Recognizer:
         """
     def finish(self) -> list[dict[str, Any]]:
         """End the stream: the detections that its last moments still hold. The next push begins a new stream."""
-    def hunch(self) -> dict[str, Any] | None:
+    def early_detection(self) -> dict[str, Any] | None:
         """What seems to be under way after the last push, or None. Tentative.
 
         Keys class, score, progress (0 to 1), start_secs, seen_secs.

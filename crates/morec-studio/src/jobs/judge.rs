@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use morec::crossval::{CrossvalData as Tested, CrossvalError, CrossvalOptions, FoldBy, crossval};
-use morec::eval::{Evaluation, FoundVerdict, Timeline, TruthVerdict, timelines};
+use morec::eval::{DetectionVerdict, Evaluation, GroundTruthVerdict, Timeline, timelines};
 use morec::train::TrainError;
 
 use super::{JobOutcome, JobProgress, train};
@@ -44,9 +44,9 @@ impl CrossvalResult {
             let clip = clip_of(&timeline.stream.clip);
             for (truth, verdict) in &timeline.truths {
                 let found = match verdict {
-                    TruthVerdict::Right => Some(truth.class.clone()),
-                    TruthVerdict::Mistaken(class) => Some(class.clone()),
-                    TruthVerdict::Missed => None,
+                    GroundTruthVerdict::Right => Some(truth.class.clone()),
+                    GroundTruthVerdict::Mistaken(class) => Some(class.clone()),
+                    GroundTruthVerdict::Missed => None,
                 };
                 moments.push(Moment {
                     clip: clip.clone(),
@@ -59,7 +59,7 @@ impl CrossvalResult {
             let alarms = timeline
                 .founds
                 .iter()
-                .filter(|(_, verdict)| *verdict == FoundVerdict::FalseAlarm);
+                .filter(|(_, verdict)| *verdict == DetectionVerdict::FalseAlarm);
             moments.extend(alarms.map(|(found, _)| Moment {
                 clip: clip.clone(),
                 start_secs: found.start_secs,

@@ -12,7 +12,7 @@ use morec::roles::RoleMap;
 use morec::synth;
 use morec::train::{
     EVERYDAY_SEED, Everyday, LabelSet, Prepared, Recipe, StreamKind, TrainClip, TrainError,
-    TrainOptions, TrainParams, TrainStream, TrainingData, TrainingReport, prepare, train,
+    TrainOptions, TrainParams, TrainStream, TrainingData, TrainingReport, build_train_set, train,
 };
 use morec_db::labels::{SampleFilter, SampleState};
 use morec_db::{ClipFilter, DbError, MotionDb};
@@ -172,7 +172,7 @@ fn prepared(data: &TrainingData, params: &TrainParams, progress: &JobProgress) -
         classes: &data.classes,
         unlabelled_is_background: true,
     };
-    let mut prepared = prepare(&data.clips, &labelling, BoneSet::ALL, &params.features);
+    let mut prepared = build_train_set(&data.clips, &labelling, BoneSet::ALL, &params.features);
     let mut known = EVERYDAY.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(streams) = known.get(&prepared.bones) {
         prepared.set.streams.extend_from_slice(streams);
@@ -181,7 +181,7 @@ fn prepared(data: &TrainingData, params: &TrainParams, progress: &JobProgress) -
     progress.report("everyday motion", 0, 0);
     let mut clips = data.clips.clone();
     clips.extend_from_slice(everyday());
-    let prepared = prepare(&clips, &labelling, BoneSet::ALL, &params.features);
+    let prepared = build_train_set(&clips, &labelling, BoneSet::ALL, &params.features);
     let streams = prepared.set.streams.iter();
     let made = streams
         .filter(|s| s.source == StreamKind::Everyday)

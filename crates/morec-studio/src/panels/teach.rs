@@ -82,12 +82,12 @@ pub fn recognised(ui: &mut Ui, state: &State) {
         ui.colored_label(c.muted, "Nothing yet.");
         return;
     };
-    match run.hunch() {
-        Some((class, hunch)) => {
+    match run.early_detection() {
+        Some((class, early)) => {
             ui.horizontal(|ui| {
                 let colour = c.class(state.classes.place(&class));
                 ui.add(
-                    ProgressBar::new(hunch.progress as f32)
+                    ProgressBar::new(early.progress as f32)
                         .desired_width(90.0)
                         .desired_height(8.0)
                         .fill(colour),

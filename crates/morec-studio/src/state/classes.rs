@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use morec_db::labels::{DbSample, NewSample, SampleId, SampleState as Judged};
-use morec_db::{Proposal, questions};
+use morec_db::{Proposal, most_informative};
 
 use super::files::quoted;
 use super::{ClassCommand, Panel, State};
@@ -334,7 +334,7 @@ impl State {
                 score: s.score.unwrap_or(0.0) as f32,
             })
             .collect();
-        let order = questions(&as_proposals, as_proposals.len());
+        let order = most_informative(&as_proposals, as_proposals.len());
         order.into_iter().map(|at| proposed[at]).collect()
     }
 

@@ -123,7 +123,7 @@ impl Edit {
                 ))
             }
             Edit::KeepIndex { name, bytes } => {
-                db.keep_index(name, bytes)?;
+                db.store_index(name, bytes)?;
                 Ok(format!("index {name} kept in the database"))
             }
             Edit::Undo(step) => Ok(match db.undo(*step)? {

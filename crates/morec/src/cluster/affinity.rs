@@ -6,9 +6,9 @@ use super::Clusters;
 /// Figures of [`affinity_propagation`].
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct AffinityParams {
-    /// How much of the old message stays, 0.5 to below 1.
+    /// Share of the old message that stays, 0.5 to below 1.
     pub damping: f64,
-    /// How willing an item is to be an exemplar, as a quantile of all similarities: the higher, the more groups.
+    /// Readiness of an item to be an exemplar, as a quantile of all similarities: the higher, the more groups.
     pub preference: f64,
     /// Messages are passed so often at most.
     pub rounds: usize,
@@ -89,7 +89,7 @@ fn similarities(n: usize, similarity: impl Fn(usize, usize) -> f64, quantile: f6
     s
 }
 
-/// How well `k` serves as `i`'s exemplar, against the best other.
+/// Suitability of `k` as `i`'s exemplar, against the best other.
 fn responsibilities(n: usize, s: &[f64], a: &[f64], r: &mut [f64], damping: f64) {
     for i in 0..n {
         let row = i * n..(i + 1) * n;
@@ -109,7 +109,7 @@ fn responsibilities(n: usize, s: &[f64], a: &[f64], r: &mut [f64], damping: f64)
     }
 }
 
-/// How much others speak for `k` as an exemplar.
+/// Support of others for `k` as an exemplar.
 fn availabilities(n: usize, r: &[f64], a: &mut [f64], damping: f64) {
     let mut support = vec![0.0; n];
     for i in 0..n {

@@ -2,7 +2,7 @@
 
 use super::{KwasParams, Spectrum, kwas};
 
-/// Which cluster each item is in. Clusters are numbered by their first item.
+/// Assignment of items to clusters. Clusters are numbered by their first item.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct Clusters {
     /// Cluster of each item.

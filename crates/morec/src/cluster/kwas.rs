@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 use crate::features::Rows;
 use crate::pca::Eigen;
 
-/// How `kWAS` is scaled.
+/// Scaling of `kWAS`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum KwasForm {
@@ -23,7 +23,7 @@ pub struct KwasParams {
     pub k: usize,
     /// Two samples are alike if their similarity is above this, τ.
     pub tau: f64,
-    /// How similarity is scaled.
+    /// Scaling of the similarity.
     pub form: KwasForm,
 }
 
@@ -38,7 +38,7 @@ impl Default for KwasParams {
     }
 }
 
-/// What kWAS knows of a sample: the eigenpairs of its `M = AᵀA`.
+/// Input of kWAS for a sample: the eigenpairs of its `M = AᵀA`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spectrum {
     /// All eigenvalues over their sum, descending; zeros if every row is the mean.

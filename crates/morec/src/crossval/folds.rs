@@ -1,11 +1,11 @@
-//! Which samples teach and which clips are tested, fold by fold.
+//! Folds: the samples that train and the clips that are tested.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::labels::Sample;
 use crate::rng::Rng;
 
-/// What is left out of training in turn.
+/// Unit that is left out of training in turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FoldBy {
     /// Half of each class's samples, rounded down, chosen by a seeded shuffle; all clips are tested once.
@@ -25,7 +25,7 @@ pub enum FoldBy {
 /// One round of training and testing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fold {
-    /// What is left out: `half`, a clip or a person.
+    /// Name of the part that is left out: `half`, a clip or a person.
     pub name: String,
     /// Samples that teach, as places in the list of samples.
     pub taught: Vec<usize>,

@@ -20,7 +20,7 @@ use crate::train::{
 use folds::thin;
 pub use folds::{Fold, FoldBy, folds};
 
-/// What to cross-validate on.
+/// Data of a cross-validation.
 #[derive(Debug, Clone)]
 pub struct CrossvalData<'a> {
     /// Clips with samples and background clips.
@@ -45,10 +45,10 @@ pub struct Tests<'a> {
     pub samples: &'a [Sample],
 }
 
-/// How to cross-validate.
+/// Options of a cross-validation.
 #[derive(Debug, Clone)]
 pub struct CrossvalOptions {
-    /// What is left out in turn.
+    /// Unit that is left out in turn.
     pub by: FoldBy,
     /// Samples of a class that teach in a fold at most, from its people in turn.
     pub samples_per_class: Option<usize>,
@@ -69,14 +69,14 @@ impl From<FoldBy> for CrossvalOptions {
     }
 }
 
-/// What was recognised in tested streams, and what was there.
+/// Detections and labels of tested streams.
 #[derive(Debug, Clone, Default)]
 pub struct Tested {
     /// Every stream. A clip tested in several folds is several streams, with the fold in the name.
     pub streams: Vec<StreamInfo>,
     /// The samples of those streams.
     pub truths: Vec<GroundTruth>,
-    /// What was recognised.
+    /// The detections.
     pub founds: Vec<ClipDetection>,
     /// Samples without an event ([`event_pairs`]), and why; not looked for in copies.
     pub misses: Vec<Miss>,
@@ -91,18 +91,18 @@ pub struct CrossvalOutcome {
     pub perturbed: Vec<(Perturbation, Tested)>,
     /// The clips at each of [`CrossvalOptions::sensitivities`], where every fold's model has more than one.
     pub sensitivities: Vec<(f64, Tested)>,
-    /// How each fold's training went.
+    /// Report of each fold's training.
     pub folds: Vec<FoldReport>,
-    /// What each fold trained.
+    /// Model of each fold.
     pub models: Vec<Model>,
 }
 
 /// One fold's training.
 #[derive(Debug, Clone, serde::Serialize)]
 pub struct FoldReport {
-    /// What was left out.
+    /// Name of the part that was left out.
     pub name: String,
-    /// What training reported.
+    /// Report of the training.
     pub training: TrainingReport,
 }
 
@@ -115,7 +115,7 @@ pub enum CrossvalError {
     /// Training failed.
     #[error("fold {fold}: {source}")]
     Train {
-        /// Which fold.
+        /// The fold.
         fold: String,
         /// Why.
         source: TrainError,
@@ -123,9 +123,9 @@ pub enum CrossvalError {
     /// A clip cannot be recognised.
     #[error("fold {fold}, clip {clip}: {source}")]
     Recognize {
-        /// Which fold.
+        /// The fold.
         fold: String,
-        /// Which clip.
+        /// The clip.
         clip: String,
         /// Why.
         source: StartError,
@@ -287,7 +287,7 @@ fn train_fold(
 /// A clip to test.
 struct TestClip<'a> {
     clip: &'a TrainClip,
-    /// Whether it holds none of the classes.
+    /// True if it holds none of the classes.
     unknown: bool,
     /// Name of its stream.
     name: String,
@@ -331,7 +331,7 @@ struct FoldTest<'a> {
     model: &'a Model,
     fold: &'a Fold,
     truths: &'a [&'a Sample],
-    /// Whether to look for the reasons of misses.
+    /// True if to look for the reasons of misses.
     explains: bool,
 }
 

@@ -29,7 +29,7 @@ struct Ending {
     spread: f32,
 }
 
-/// What was last reported of a class.
+/// The last report of a class.
 #[derive(Debug, Clone, Copy, Default)]
 struct LastReport {
     stop: i64,
@@ -220,7 +220,7 @@ impl Decoder {
         }
     }
 
-    /// Whether another class has a nearer match that ends around `tick` and covers enough of the candidate.
+    /// True if another class has a nearer match that ends around `tick` and covers enough of the candidate.
     fn has_rival(&self, tick: i64, class: usize) -> bool {
         if self.params.rival_share <= 0.0 {
             return false;
@@ -263,7 +263,7 @@ impl Decoder {
         })
     }
 
-    /// Whether the stream ends before the peak at `tick` could be told from a class still coming nearer.
+    /// True if the stream ends before the peak at `tick` could be told from a class still coming nearer.
     fn cut_off(&self, tick: i64, class: usize) -> bool {
         if tick + (self.params.peak_ticks as i64) < self.ticks || tick == 0 {
             return false;
@@ -316,12 +316,12 @@ impl Decoder {
         self.decided = tick + 1;
     }
 
-    /// Whether a candidate that starts here is the last detection of its class over again, longer.
+    /// True if a candidate that starts here is the last detection of its class over again, longer.
     fn repeats(&self, class: usize, start: i64) -> bool {
         self.params.once && start < self.last[class].stop - self.params.overlap_ticks as i64
     }
 
-    /// Whether a candidate that follows a detection of its class moves too little to be one more repetition.
+    /// True if a candidate that follows a detection of its class moves too little to be one more repetition.
     fn is_tail(&self, class: usize, start: i64, spread: f32) -> bool {
         let last = self.last[class];
         last.stop > 0
@@ -335,7 +335,7 @@ impl Decoder {
         self.params.overlap_ticks.max(share) as i64
     }
 
-    /// Whether a match of another class that encloses `detection` may yet become a better candidate.
+    /// True if a match of another class that encloses `detection` may yet become a better candidate.
     fn waits(&self, detection: &TickDetection) -> bool {
         let waited = self.decided - detection.stop;
         if !matches!(self.rule, CandidatePolicy::Gate { .. })

@@ -14,7 +14,7 @@ pub use params::{CandidatePolicy, DecodeParams};
 /// Distance of a class that nothing has matched yet.
 pub const FAR: f32 = 1e30;
 
-/// How near one class is at one tick.
+/// Distance of one class at one tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClassDistance {
     /// Smallest distance to any of the class's templates; [`FAR`] if none has matched.
@@ -37,7 +37,7 @@ impl ClassDistance {
 /// A stretch that may be a motion, for a judge to look at.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Candidate {
-    /// What it may be.
+    /// Class of the candidate.
     pub class: ClassId,
     /// Its last tick.
     pub tick: i64,
@@ -54,7 +54,7 @@ pub struct Candidate {
 /// A motion recognised, in ticks of the present stretch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TickDetection {
-    /// What it is.
+    /// Class of the detection.
     pub class: ClassId,
     /// First tick.
     pub start: i64,

@@ -1,13 +1,13 @@
 //! The parameters of decoding.
 
-/// How distances become detections. An index keeps the values it was trained with; fields that older indexes lack
+/// Parameters of decoding: from distances to detections. An index keeps the values it was trained with; fields that older indexes lack
 /// take values that change nothing.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct DecodeParams {
     /// A class's distance counts only while it is below this times the smallest distance to any negative
     /// template nearby.
     pub gate: f32,
-    /// How many ticks before and after count as nearby.
+    /// Number of ticks before and after that count as nearby.
     pub gate_ticks: usize,
     /// A candidate's distance must be the smallest of this many ticks before and after.
     pub peak_ticks: usize,
@@ -34,7 +34,7 @@ pub struct DecodeParams {
     /// The same under [`CandidatePolicy::Verify`], where motion is evidence besides.
     #[serde(default)]
     pub rest_gate_verified: f32,
-    /// Whether a candidate may reach only [`overlap_ticks`](Self::overlap_ticks) into the last detection of its own
+    /// True if a candidate may reach only [`overlap_ticks`](Self::overlap_ticks) into the last detection of its own
     /// class, so that a motion out and the same motion out and back are not two detections.
     #[serde(default)]
     pub once: bool,
@@ -180,7 +180,7 @@ impl DecodeParams {
     }
 }
 
-/// What makes a candidate of a distance.
+/// Policy by which distances become candidates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum CandidatePolicy {
     /// Distances below the class's threshold and below [`DecodeParams::gate`] times the smallest negative distance

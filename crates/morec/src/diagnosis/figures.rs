@@ -1,4 +1,4 @@
-//! What is known of a stream in figures.
+//! Measurements of a stream.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::role_set::RoleSet;
 
-/// How joints lie towards the front of a body, as shares of its trunk's length; the front is where it would be if the
+/// Offsets of joints towards the front of a body, as shares of its trunk's length; the front is where it would be if the
 /// joint that is called the left hip were the left one.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct SideEvidence {
@@ -19,7 +19,7 @@ pub struct SideEvidence {
 }
 
 impl SideEvidence {
-    /// What speaks for the sides being right, weighed; negative if more speaks against it. `None` if too little is seen.
+    /// Evidence for the sides, weighed; negative if more speaks against them. `None` if too little is seen.
     ///
     /// The weights are those of a search for the widest margin over the 795 real clips of `examples/diagnose.rs`, whose
     /// sums lie from 0.03 to 0.6 (97 of 100 above 0.08); of mirrored clips they are the negative.
@@ -33,7 +33,7 @@ impl SideEvidence {
     }
 }
 
-/// What is known of a stream, or of a clip: figures, and [what they mean](Self::findings).
+/// Measurements of a stream, or of a clip, and [their meaning](Self::findings).
 ///
 /// Lengths are metres by a [guess](Self::metres_per_unit) of the stream's unit.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -56,15 +56,15 @@ pub struct Diagnosis {
     pub empty_share: f64,
     /// Metres in the stream's unit of length, guessed by the length of legs.
     pub metres_per_unit: f64,
-    /// Whether the unit is a common one.
+    /// True if the unit is a common one.
     pub unit_known: bool,
     /// From the ankles to the head joint along the bones, metres.
     pub height_m: Option<f64>,
     /// Thigh and shin, metres.
     pub leg_m: Option<f64>,
-    /// Which way a standing body points, on the mean; a unit vector.
+    /// Mean direction of a standing body; a unit vector.
     pub up: Option<[f64; 3]>,
-    /// Whether `up` is that of a body seen standing straight, legs included.
+    /// True if `up` is that of a body seen standing straight, legs included.
     pub stands: bool,
     /// The angle of `up` with +Y, radians.
     pub tilt_rad: Option<f64>,
@@ -76,13 +76,13 @@ pub struct Diagnosis {
     pub missing: RoleSet,
     /// Body parts that are seen in less than four fifths of the frames.
     pub flickering: RoleSet,
-    /// What says whether the sides are right.
+    /// Evidence on whether the sides are right.
     pub sides: SideEvidence,
     /// For how long nothing has moved (in a clip: the longest such time), seconds.
     pub still_secs: f64,
-    /// How far the hips stray from where they are on the mean, metres.
+    /// Distance of the hips from their mean position, metres.
     pub hips_m: Option<f64>,
-    /// How far the livelier hand strays from its mean place, as seen from the hips, metres.
+    /// Distance of the livelier hand from its mean position, as seen from the hips, metres.
     pub hands_m: Option<f64>,
     /// Of the time in which the feet do not move against each other, the share in which they stand.
     pub standing_share: Option<f64>,

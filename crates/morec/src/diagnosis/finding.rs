@@ -1,4 +1,4 @@
-//! What can be wrong with a stream, and how much it matters.
+//! Faults of a stream and their severity.
 
 use std::fmt;
 
@@ -9,7 +9,7 @@ use crate::roles::Role;
 
 use super::role_set::RoleSet;
 
-/// How much a finding matters.
+/// Severity of a finding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Severity {
@@ -56,16 +56,16 @@ pub enum Finding {
     NoHeading,
     /// The body stands on its head: Y points down.
     UpsideDown {
-        /// Whether turning Y round is all (the coordinates are left-handed), or Z must be turned, too.
+        /// True if turning Y round is enough (the coordinates are left-handed); otherwise Z must be turned, too.
         mirrored: bool,
     },
     /// The body lies along an axis that is not Y: most likely that axis is up.
     UpIsNotY {
         /// The axis.
         axis: Axis,
-        /// Whether the body points against it.
+        /// True if the body points against it.
         negative: bool,
-        /// Whether the coordinates are left-handed.
+        /// True if the coordinates are left-handed.
         mirrored: bool,
     },
     /// A standing body is not upright.
@@ -82,12 +82,12 @@ pub enum Finding {
     },
     /// Parts of the body are never seen.
     JointsMissing {
-        /// Which.
+        /// The roles concerned.
         roles: RoleSet,
     },
     /// Parts of the body come and go.
     JointsFlicker {
-        /// Which.
+        /// The roles concerned.
         roles: RoleSet,
     },
     /// The size of the body is none in any common unit of length.
@@ -107,7 +107,7 @@ pub enum Finding {
     },
     /// Few frames a second.
     SlowRate {
-        /// How many.
+        /// The rate.
         rate_hz: f64,
     },
     /// Frames are missing.
@@ -142,7 +142,7 @@ const ARMS: [Role; 6] = [
 ];
 
 impl Finding {
-    /// How much it matters.
+    /// Severity of the finding.
     pub fn severity(&self) -> Severity {
         use Finding::*;
         match *self {

@@ -1,4 +1,4 @@
-//! What is wrong with a stream, judged by its figures.
+//! Findings about a stream, from its measurements.
 
 use serde::ser::SerializeSeq;
 use serde::{Serialize, Serializer};
@@ -37,7 +37,7 @@ impl Findings {
         self.count
     }
 
-    /// Whether nothing was found.
+    /// True if nothing was found.
     pub fn is_empty(&self) -> bool {
         self.count == 0
     }
@@ -85,7 +85,7 @@ const NOT_SECS: (f64, f64) = (8e-4, MAX_GAP_SECS);
 const LEAST_FRAMES: u64 = 12;
 
 impl Diagnosis {
-    /// What is wrong, the gravest first. Empty until there is a second of stream, or half a minute's worth of frames
+    /// Findings, the gravest first. Empty until there is a second of stream, or half a minute's worth of frames
     /// whose times cannot be believed.
     pub fn findings(&self) -> Findings {
         let mut found = Findings::default();

@@ -1,4 +1,4 @@
-//! What can be known of a stream of poses before anything is recognised in it: how big the body is, whether it stands
+//! Diagnosis of a stream of poses before recognition: the body's size, whether it stands
 //! upright, how noisy it is, how evenly frames come, and what is wrong, in sentences that say what to do.
 //!
 //! [`Diagnoser`] takes the key poses that live recognition takes, one by one and in fixed memory; [`diagnose_clip`] looks
@@ -69,7 +69,7 @@ const UNITS_M: [f64; 6] = [1.0, 0.01, 0.001, 0.0254, 0.3048, 0.1];
 /// ```
 #[derive(Debug, Clone)]
 pub struct Diagnoser {
-    /// Whether the past fades.
+    /// True if the past fades.
     fades: bool,
     to_fade_secs: f64,
     timing: Timing,
@@ -147,7 +147,7 @@ impl Diagnoser {
         }
     }
 
-    /// What need not be looked at in every frame of a fast stream.
+    /// Measurements that need not be taken in every frame of a fast stream.
     fn look(&mut self, time_secs: f64, pose: &KeyPose, repeated: bool) {
         self.looked += 1.0;
         for role in Role::ALL {
@@ -198,7 +198,7 @@ impl Diagnoser {
         }
     }
 
-    /// What is known so far. O(1), no allocation: some microseconds.
+    /// Findings so far. O(1), no allocation: some microseconds.
     pub fn diagnosis(&self) -> Diagnosis {
         let rhythm = self.timing.rhythm();
         let (unit, unit_known) = self.metres_per_unit();
@@ -259,7 +259,7 @@ impl Diagnoser {
     }
 }
 
-/// Whether a pose shows nothing: no joint, or all of them at one place.
+/// True if a pose shows nothing: no joint, or all of them at one place.
 fn is_empty(pose: &KeyPose) -> bool {
     let mut places = Role::ALL.into_iter().filter_map(|role| pose.get(role));
     let Some(first) = places.next() else {

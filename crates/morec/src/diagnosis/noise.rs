@@ -1,4 +1,4 @@
-//! How noisy positions are, and single frames in which a joint is thrown aside.
+//! Noise of positions, and spikes: single frames in which a joint is displaced.
 
 use crate::features::KeyPose;
 use crate::math::Vec3;
@@ -129,7 +129,7 @@ impl NoiseEstimate {
     }
 }
 
-/// Whether the middle place of five lies far from all others, which go on without it.
+/// True if the middle place of five lies far from all others, which go on without it.
 fn is_thrown([a, b, c, d, e]: &[Vec3; ROW], far: f64) -> bool {
     let aside = (c - 0.5 * (b + d)).norm();
     let way = (b - a).norm().max((d - b).norm()).max((e - d).norm());

@@ -18,12 +18,12 @@ impl RoleSet {
         Self(self.0 | 1 << role.index())
     }
 
-    /// Whether `role` is in the set.
+    /// True if `role` is in the set.
     pub fn contains(self, role: Role) -> bool {
         self.0 >> role.index() & 1 == 1
     }
 
-    /// Whether there is none.
+    /// True if there is none.
     pub fn is_empty(self) -> bool {
         self.0 == 0
     }

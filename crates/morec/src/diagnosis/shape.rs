@@ -1,4 +1,4 @@
-//! How the body is built, which way it stands, and whether its sides agree with the way it bends.
+//! Proportions of the body, its vertical, and agreement of its sides with the way it bends.
 
 use crate::features::KeyPose;
 use crate::math::Vec3;
@@ -71,7 +71,7 @@ impl Leg {
         (self.knee - self.hip).norm() + (self.ankle - self.knee).norm()
     }
 
-    /// How far the knee lies off the line from hip to ankle.
+    /// Offset of the knee from the line between hip and ankle.
     fn bend(&self) -> Vec3 {
         let line = self.ankle - self.hip;
         let along = (self.knee - self.hip).dot(&line) / line.norm_squared().max(1e-12);
@@ -131,7 +131,7 @@ impl BodyShape {
         }
     }
 
-    /// How joints lie towards the front, if the hip that is called left is the left one.
+    /// Offsets of joints towards the front, if the hip that is called left is the left one.
     fn sides(&mut self, pose: &KeyPose, legs: &[Option<Leg>; 2], trunk: &Vec3) {
         let pair = (pose.get(Role::LeftThigh), pose.get(Role::RightThigh));
         let (Some(left), Some(right)) = pair else {
@@ -178,7 +178,7 @@ impl BodyShape {
         (self.body_count > 8.0).then(|| self.body_up / self.body_count)
     }
 
-    /// What speaks for and against the sides.
+    /// Evidence for and against the sides.
     pub(super) fn evidence(&self) -> SideEvidence {
         SideEvidence {
             knees: self.knees.get(),

@@ -1,4 +1,4 @@
-//! What moves and what does not: the whole body, the hips, the floor.
+//! Motion of the whole body, of the hips, and the floor.
 
 use crate::features::KeyPose;
 use crate::math::Vec3;
@@ -53,14 +53,14 @@ impl PositionSpread {
     }
 }
 
-/// Where the feet were.
+/// Positions of the feet.
 #[derive(Debug, Clone, Copy)]
 struct LastLook {
     secs: f64,
     feet: [Vec3; 2],
 }
 
-/// What moves in a stream.
+/// Parts of a stream that move.
 #[derive(Debug, Clone)]
 pub(super) struct Stillness {
     reference: KeyPose,
@@ -166,7 +166,8 @@ impl Stillness {
         self.longest_secs
     }
 
-    /// How far the hips, and the hand that moves more as seen from them, stray from their mean, in the stream's unit.
+    /// Distances of the hips, and of the hand that moves more as seen from them, from their mean, in the stream's
+    /// unit.
     pub(super) fn hips_and_hands(&self) -> Option<(f64, f64)> {
         let hands = self.hands.iter().filter_map(PositionSpread::deviation);
         Some((self.hips.deviation()?, hands.reduce(f64::max)?))

@@ -60,7 +60,7 @@ pub(super) struct Timing {
     repeated: f64,
 }
 
-/// What the times of a stream say.
+/// Statistics of a stream's times.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Rhythm {
     pub(super) secs: f64,

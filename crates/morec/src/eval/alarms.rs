@@ -12,24 +12,24 @@ use super::interval::{mostly_outside, union};
 /// false alarm.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct FalseAlarms {
-    /// How many.
+    /// Their number.
     pub count: usize,
     /// Length of the known streams.
     pub minutes: f64,
-    /// How many in a minute.
+    /// Number in a minute.
     pub per_minute: Option<f64>,
 }
 
-/// What was found in streams that hold none of the classes. Every detection there is a false alarm.
+/// Detections in streams that hold none of the classes. Every detection there is a false alarm.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct UnknownFigures {
-    /// How many unknown streams there are.
+    /// Number of unknown streams.
     pub clips: usize,
-    /// How many of them have at least one detection.
+    /// Number of them with at least one detection.
     pub clips_accepted: usize,
     /// Their share.
     pub unknown_accepted: Option<f64>,
-    /// How many detections there are.
+    /// Number of detections.
     pub detections: usize,
     /// Length of the unknown streams.
     pub minutes: f64,
@@ -37,7 +37,7 @@ pub struct UnknownFigures {
     pub per_minute: Option<f64>,
 }
 
-/// Which detections of a stream are false alarms. O(samples × detections).
+/// Marks the detections of a stream that are false alarms. O(samples × detections).
 pub(super) fn are_false_alarms(stream: &EvaluatedStream<'_>) -> Vec<bool> {
     let labelled = union(stream.truths.iter().map(|t| t.interval()));
     stream

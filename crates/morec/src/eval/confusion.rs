@@ -1,4 +1,4 @@
-//! What was taken for what.
+//! Confusion matrix.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -17,7 +17,7 @@ pub struct Confusion {
     pub rows: Vec<String>,
     /// Classes of the columns, in order; the column for no detection follows them.
     pub columns: Vec<String>,
-    /// How many, `counts[row][column]`; one row and one column more than there are names.
+    /// Counts, `counts[row][column]`; one row and one column more than there are names.
     pub counts: Vec<Vec<usize>>,
 }
 
@@ -26,7 +26,7 @@ pub struct Confusion {
 pub struct Mistake {
     /// The class it was taken for.
     pub class: String,
-    /// How often.
+    /// Number of times.
     pub count: usize,
 }
 
@@ -54,7 +54,7 @@ impl Confusion {
         }
     }
 
-    /// What samples of `class` were taken for, most frequent first.
+    /// Classes that samples of `class` were taken for, most frequent first.
     pub fn mistakes(&self, class: &str) -> Vec<Mistake> {
         let Some(row) = self.rows.iter().position(|c| c == class) else {
             return Vec::new();
@@ -70,7 +70,7 @@ impl Confusion {
         mistakes
     }
 
-    /// How many samples of `class` no detection matched.
+    /// Number of samples of `class` that no detection matched.
     pub fn missed(&self, class: &str) -> usize {
         let row = self.rows.iter().position(|c| c == class);
         row.and_then(|row| self.counts[row].last())

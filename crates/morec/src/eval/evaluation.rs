@@ -15,7 +15,7 @@ use super::{
 /// --json` prints: a measure that has nothing to be computed from is `null`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Evaluation {
-    /// What was evaluated.
+    /// Size of the evaluated data.
     pub totals: Totals,
     /// Thesis accuracy over known streams.
     pub thesis: ThesisAccuracy,
@@ -35,13 +35,13 @@ pub struct Evaluation {
     pub boundaries: Boundaries,
     /// P_C, P_E and P_R.
     pub classification: Classification,
-    /// What was taken for what, in known streams.
+    /// Confusion matrix of known streams.
     pub confusion: Confusion,
     /// Each class that is labelled or found, by name.
     pub classes: Vec<ClassFigures>,
 }
 
-/// What was evaluated.
+/// Size of the evaluated data.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Totals {
     /// Streams that are not unknown motion.
@@ -75,9 +75,9 @@ pub struct ClassFigures {
     pub boundaries: Boundaries,
     /// P_C, P_E and P_R of its samples.
     pub classification: Classification,
-    /// What its samples were taken for, most frequent first (as in [`Confusion`]).
+    /// Classes that its samples were taken for, most frequent first (as in [`Confusion`]).
     pub mistaken_for: Vec<Mistake>,
-    /// How many of its samples no detection matched (as in [`Confusion`]).
+    /// Number of its samples that no detection matched (as in [`Confusion`]).
     pub missed: usize,
 }
 

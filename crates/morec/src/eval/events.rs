@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::figures::share;
 use super::{ClipDetection, EvaluatedStream, GroundTruth};
 
-/// How far outside a sample the middle of its detection may lie, in seconds: eight frames at 30 Hz.
+/// Largest distance of the middle of a detection from its sample, in seconds: eight frames at 30 Hz.
 pub const EVENT_TOLERANCE_SECS: f64 = 8.0 / 30.0;
 
 /// Precision, recall and F1 of events. A detection is right if its middle lies within a sample of its class,
@@ -49,7 +49,7 @@ impl EventScore {
     }
 }
 
-/// Which detections of a stream are right.
+/// Marks the detections of a stream that are right.
 pub(super) fn right_in(stream: &EvaluatedStream<'_>) -> Vec<bool> {
     let mut right = vec![false; stream.founds.len()];
     for found in event_pairs(&stream.truths, &stream.founds)
@@ -85,7 +85,7 @@ pub fn event_pairs(truths: &[&GroundTruth], founds: &[&ClipDetection]) -> Vec<Op
     pairs
 }
 
-/// Whether a detection is of the sample's class and its middle lies within the sample, [`EVENT_TOLERANCE_SECS`] more on
+/// True if a detection is of the sample's class and its middle lies within the sample, [`EVENT_TOLERANCE_SECS`] more on
 /// each side.
 fn is_event_of(truth: &GroundTruth, found: &ClipDetection) -> bool {
     let near = truth.start_secs - EVENT_TOLERANCE_SECS..=truth.stop_secs + EVENT_TOLERANCE_SECS;

@@ -13,7 +13,7 @@ pub(super) struct Interval {
 }
 
 impl Interval {
-    /// Whether both ends are numbers and in order.
+    /// True if both ends are numbers and in order.
     pub fn is_stretch(self) -> bool {
         self.start.is_finite() && self.stop.is_finite() && self.stop > self.start
     }
@@ -40,7 +40,7 @@ impl Interval {
         shared / (self.secs() + other.secs() - shared)
     }
 
-    /// Whether the intersection over union is at least `least`.
+    /// True if the intersection over union is at least `least`.
     pub fn reaches(self, other: Interval, least: f64) -> bool {
         self.overlap(other) > 0.0 && self.iou(other) >= least - SAME_SECS
     }
@@ -63,7 +63,7 @@ pub(super) fn union(sorted: impl IntoIterator<Item = Interval>) -> Vec<Interval>
     merged
 }
 
-/// Whether less than half of `interval` lies in any of `disjoint` stretches. O(n).
+/// True if less than half of `interval` lies in any of `disjoint` stretches. O(n).
 pub(super) fn mostly_outside(interval: Interval, disjoint: &[Interval]) -> bool {
     let inside: f64 = disjoint.iter().map(|other| interval.overlap(*other)).sum();
     inside < 0.5 * interval.secs() - SAME_SECS

@@ -37,7 +37,7 @@ pub use evaluation::{ClassFigures, Evaluation, Totals};
 pub use events::{EVENT_TOLERANCE_SECS, EventScore, event_pairs};
 pub use pairs::OverlapScore;
 pub use reliability::{Reliability, SCORE_BINS, ScoreBin};
-pub use timeline::{FoundVerdict, Timeline, TruthVerdict, timelines};
+pub use timeline::{DetectionVerdict, GroundTruthVerdict, Timeline, timelines};
 pub use timing::{Boundaries, Delay};
 
 /// Least overlaps, as intersection over union, at which F1 is given.
@@ -55,11 +55,11 @@ pub const UNLABELLED_MIN_SECS: f64 = 0.4;
 pub struct GroundTruth {
     /// The stream's name.
     pub clip: String,
-    /// What happens.
+    /// Class of the motion.
     pub class: String,
-    /// Where it starts, from the stream's beginning.
+    /// Start, from the stream's beginning.
     pub start_secs: f64,
-    /// Where it stops.
+    /// Stop, from the stream's beginning.
     pub stop_secs: f64,
 }
 
@@ -70,11 +70,11 @@ pub struct ClipDetection {
     pub clip: String,
     /// The detected class.
     pub class: String,
-    /// Where it starts, from the stream's beginning.
+    /// Start, from the stream's beginning.
     pub start_secs: f64,
-    /// Where it stops.
+    /// Stop, from the stream's beginning.
     pub stop_secs: f64,
-    /// How sure the recogniser is, if it says; larger is surer.
+    /// Score, if the recogniser gives one; larger is surer.
     pub score: Option<f64>,
     /// When it was reported, in seconds of the stream, if known.
     pub reported_secs: Option<f64>,
@@ -87,7 +87,7 @@ pub struct StreamInfo {
     pub clip: String,
     /// Its length.
     pub duration_secs: f64,
-    /// Whether it is known to hold none of the classes.
+    /// True if it is known to hold none of the classes.
     pub unknown: bool,
 }
 
@@ -105,7 +105,7 @@ pub enum EvalError {
     NoLength {
         /// The stream.
         clip: String,
-        /// What was given.
+        /// The duration that was given.
         duration_secs: f64,
     },
     /// A sample or a detection in a stream that is not there.

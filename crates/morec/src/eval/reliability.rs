@@ -1,4 +1,4 @@
-//! Whether scores mean what they say: the share of right detections at each score.
+//! Reliability of scores: the share of right detections at each score.
 
 use serde::Serialize;
 
@@ -11,7 +11,7 @@ pub const SCORE_BINS: usize = 10;
 /// Detections of about one score.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct ScoreBin {
-    /// How many there are.
+    /// Number of detections.
     pub count: usize,
     /// Their mean score.
     pub mean_score: f64,

@@ -1,4 +1,4 @@
-//! What became of each sample and each detection, stream by stream: what a report draws.
+//! Verdict on each sample and each detection, stream by stream, for reports.
 
 use serde::Serialize;
 
@@ -9,10 +9,10 @@ use super::{
     ClipDetection, EvalError, EvaluatedStream, GroundTruth, MEASURED_OVERLAP, StreamInfo, streams,
 };
 
-/// What became of a sample, as in [`ThesisAccuracy`](super::ThesisAccuracy).
+/// Verdict on a sample, as in [`ThesisAccuracy`](super::ThesisAccuracy).
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum TruthVerdict {
+pub enum GroundTruthVerdict {
     /// Recognised.
     Right,
     /// Taken for this class.
@@ -21,10 +21,10 @@ pub enum TruthVerdict {
     Missed,
 }
 
-/// What a detection is worth.
+/// Verdict on a detection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum FoundVerdict {
+pub enum DetectionVerdict {
     /// Paired with a sample of its class at an intersection over union of at least [`MEASURED_OVERLAP`].
     Right,
     /// Shares more than half of the shorter one with a sample of its class, but is badly placed or a repetition.
@@ -41,9 +41,9 @@ pub struct Timeline {
     /// The stream.
     pub stream: StreamInfo,
     /// Its samples and what became of them.
-    pub truths: Vec<(GroundTruth, TruthVerdict)>,
+    pub truths: Vec<(GroundTruth, GroundTruthVerdict)>,
     /// Its detections and what they are worth.
-    pub founds: Vec<(ClipDetection, FoundVerdict)>,
+    pub founds: Vec<(ClipDetection, DetectionVerdict)>,
 }
 
 /// The timelines of all streams, by name. Fails and costs as [`Evaluation::of`](super::Evaluation::of).
@@ -66,9 +66,9 @@ fn timeline(stream: &EvaluatedStream<'_>) -> Timeline {
         .zip(decisions(stream))
         .map(|(truth, decision)| {
             let verdict = match decision.found {
-                Some(class) if class == truth.class => TruthVerdict::Right,
-                Some(class) => TruthVerdict::Mistaken(class.to_owned()),
-                None => TruthVerdict::Missed,
+                Some(class) if class == truth.class => GroundTruthVerdict::Right,
+                Some(class) => GroundTruthVerdict::Mistaken(class.to_owned()),
+                None => GroundTruthVerdict::Missed,
             };
             ((*truth).clone(), verdict)
         });
@@ -84,15 +84,15 @@ fn timeline(stream: &EvaluatedStream<'_>) -> Timeline {
         .map(|((found, right), alarm)| {
             let mut samples = stream.truths.iter();
             let verdict = if right {
-                FoundVerdict::Right
+                DetectionVerdict::Right
             } else if samples
                 .any(|t| t.class == found.class && t.interval().matches(found.interval()))
             {
-                FoundVerdict::Loose
+                DetectionVerdict::Loose
             } else if alarm {
-                FoundVerdict::FalseAlarm
+                DetectionVerdict::FalseAlarm
             } else {
-                FoundVerdict::WrongClass
+                DetectionVerdict::WrongClass
             };
             ((*found).clone(), verdict)
         });

@@ -11,7 +11,7 @@ use super::{ClipDetection, EvaluatedStream, GroundTruth, MEASURED_OVERLAP};
 /// Negative if reported before the sample ended.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Delay {
-    /// How many were measured.
+    /// Number of measured pairs.
     pub count: usize,
     /// Median.
     pub median_secs: Option<f64>,
@@ -23,7 +23,7 @@ pub struct Delay {
 /// positive is late.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Boundaries {
-    /// How many pairs there are.
+    /// Number of pairs.
     pub count: usize,
     /// Median error of the start: its bias.
     pub start_median_secs: Option<f64>,

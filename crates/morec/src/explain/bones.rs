@@ -1,4 +1,4 @@
-//! Which bones point elsewhere than those of a template.
+//! Bones whose directions differ from those of a template.
 
 use crate::features::{ALL_BONES, Rows};
 use crate::train::align;

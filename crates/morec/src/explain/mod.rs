@@ -33,7 +33,7 @@ pub struct Miss {
     pub start_secs: f64,
     /// Its end.
     pub stop_secs: f64,
-    /// What kept it from being reported.
+    /// Reason why it was not reported.
     pub reason: Reason,
     /// The least rate of false alarms a minute at which it would have been near enough, if the threshold was the
     /// reason and a higher rate would have helped.

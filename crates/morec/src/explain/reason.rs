@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// What kept a sample from being reported.
+/// Reason why a sample was not reported.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 #[non_exhaustive]
@@ -39,7 +39,7 @@ pub enum Reason {
     },
     /// Another class is nearer.
     OtherClass {
-        /// Which.
+        /// Name of the class.
         class: String,
         /// Distance of the sample's class.
         distance: f32,
@@ -57,7 +57,7 @@ pub enum Reason {
     },
     /// A detection took its place.
     Neighbour {
-        /// Whether the detection is of the same class.
+        /// True if the detection is of the same class.
         same: bool,
         /// Class of the detection.
         class: String,

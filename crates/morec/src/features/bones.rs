@@ -63,7 +63,7 @@ impl BoneSet {
     /// The line of the shoulders and the arms.
     pub const ARMS: BoneSet = BoneSet(0b011_1110_0000);
 
-    /// Whether bone `index` of [`ALL_BONES`] is in the set.
+    /// True if bone `index` of [`ALL_BONES`] is in the set.
     pub fn contains(self, index: usize) -> bool {
         self.0 >> index & 1 == 1
     }
@@ -86,7 +86,7 @@ impl BoneSet {
         self.0.count_ones() as usize
     }
 
-    /// Whether there is none.
+    /// True if there is none.
     pub fn is_empty(self) -> bool {
         self.0 == 0
     }

@@ -35,7 +35,7 @@ impl<S> Grid<S> {
         self.last.as_ref().map(|(_, pose)| pose)
     }
 
-    /// Whether a pose at `time_secs` would begin a new stretch.
+    /// True if a pose at `time_secs` would begin a new stretch.
     pub fn breaks_at(&self, time_secs: f64) -> bool {
         let last = self.last.as_ref().map(|(secs, _)| *secs);
         last.is_some_and(|last| time_secs > last + MAX_GAP_SECS || time_secs < last - MAX_GAP_SECS)

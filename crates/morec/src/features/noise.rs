@@ -1,4 +1,4 @@
-//! How noisy a stream is, and which filter that asks for.
+//! Noise of a stream, and the filter for it.
 
 /// One filter: the standard deviation and half width of a Gaussian, in frames.
 #[derive(Debug, Clone, Copy, PartialEq)]

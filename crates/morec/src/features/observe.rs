@@ -52,7 +52,7 @@ pub struct Observer {
     last: Option<Observation>,
     leg_sum: f64,
     leg_count: f64,
-    /// Whether the hip joints have been seen: the heading then stays theirs.
+    /// True if the hip joints have been seen: the heading then stays theirs.
     hips_seen: bool,
 }
 
@@ -172,7 +172,7 @@ impl Observer {
 /// (.186 + .146) (Winter, *Biomechanics and Motor Control of Human Movement*, 2009, Fig. 4.1).
 const LEG_OF_ARM: f64 = 1.48;
 
-/// Where two joints are, if both are seen.
+/// Positions of two joints, if both are seen.
 fn pair(pose: &KeyPose, left: Role, right: Role) -> Option<(Vec3, Vec3)> {
     Some((pose.get(left)?, pose.get(right)?))
 }

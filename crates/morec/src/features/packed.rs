@@ -13,7 +13,7 @@ use super::{FeatureParams, Rows};
 const STEP: f64 = 1.0 / 64.0;
 /// Levels stay within this; rows hold directions and saturated velocities, so only root motion could come near.
 const LIMIT: i64 = 1 << 24;
-/// How much of the last change is expected again.
+/// Share of the last change that is expected again.
 const GOES_ON: f64 = 0.3;
 /// Of a velocity's share of its largest: nearer to saturation than this says no more about its size.
 const MOST_SATURATED: f64 = 0.95;
@@ -34,7 +34,7 @@ impl Rows {
         bytes
     }
 
-    /// What [`to_packed`](Self::to_packed) wrote of rows of `dim` values; `None` for bytes that are none of it.
+    /// Reads rows of `dim` values that [`to_packed`](Self::to_packed) wrote; `None` for bytes that are none of it.
     pub fn from_packed(bytes: &[u8], dim: usize, params: &FeatureParams) -> Option<Rows> {
         let (len, codes) = bytes.split_first_chunk::<4>()?;
         let len = u32::from_le_bytes(*len) as usize;
@@ -65,7 +65,7 @@ fn level(value: f64) -> i64 {
     ((value / STEP).round() as i64).clamp(-LIMIT, LIMIT)
 }
 
-/// What is expected of the next row, and how far expectations of each kind have been off.
+/// Forecast of the next row, and past errors of forecasts of each kind.
 struct Forecast {
     bones: Vec<BoneHistory>,
     root: [CoordinateHistory; 4],

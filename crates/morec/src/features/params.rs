@@ -1,6 +1,6 @@
 //! The figures that turn observations into feature rows.
 
-/// How observations are resampled, smoothed and weighted. An index keeps the values it was trained with.
+/// Parameters of resampling, smoothing and weighting. An index keeps the values it was trained with.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct FeatureParams {
     /// Every source is resampled to this many frames a second before anything else.
@@ -17,11 +17,11 @@ pub struct FeatureParams {
     pub root_cut_frames: usize,
     /// Bone velocities saturate towards this speed, per second: fast is fast, whoever does it.
     pub velocity_saturation: f64,
-    /// How much velocities count against directions.
+    /// Weight of velocities against directions.
     pub velocity_weight: f64,
-    /// How much root motion counts against directions.
+    /// Weight of root motion against directions.
     pub root_weight: f64,
-    /// Whether the filters follow the noise of the stream: as given while it is clean, longer as they must be.
+    /// True if the filters follow the noise of the stream: as given while it is clean, longer as they must be.
     #[serde(default = "follows_noise")]
     pub follow_noise: bool,
 }

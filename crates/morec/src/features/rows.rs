@@ -32,7 +32,7 @@ impl Rows {
         self.data.len().checked_div(self.dim).unwrap_or(0)
     }
 
-    /// Whether there is no row.
+    /// True if there is no row.
     pub fn is_empty(&self) -> bool {
         self.data.is_empty()
     }

@@ -48,7 +48,7 @@ pub struct Smoother {
     params: FeatureParams,
     /// For each step of the noise meter.
     kernels: Vec<Kernels>,
-    /// What noise is measured with.
+    /// Filter by which noise is measured.
     probe: Vec<f64>,
     noise: NoiseMeter,
     ring: Vec<FilterInput>,
@@ -149,7 +149,7 @@ impl Smoother {
         }
     }
 
-    /// What the probe's filter takes away at the last frame whose neighbours are known.
+    /// Measures the noise that the filter removes at the last frame whose neighbours are known.
     fn measure_noise(&mut self) {
         if self.pushed <= 2 * PROBE.cut_frames {
             return;

@@ -17,7 +17,7 @@ const LEG_METRES: f64 = 0.85;
 /// A joint that is taken out counts as unseen: its bones keep their last directions. No delay, no allocation.
 #[derive(Debug, Clone)]
 pub(super) struct SpikeFilter {
-    /// Where each joint last was, relative to the hips, and when.
+    /// Last position of each joint, relative to the hips, and its time.
     last: [Option<(f64, Vec3)>; Role::COUNT],
 }
 

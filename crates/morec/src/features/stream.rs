@@ -12,7 +12,7 @@ use super::{KeyPose, row_dim};
 /// interpolating it would invent motion.
 pub const MAX_GAP_SECS: f64 = 0.5;
 
-/// What a pose did to the stream.
+/// Effect of a pose on the stream.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pushed {
     /// It was taken.
@@ -71,7 +71,7 @@ impl FeatureStream {
         self.smoother.noise()
     }
 
-    /// Whether a pose at `time_secs` would begin a new stretch, so that the caller can
+    /// True if a pose at `time_secs` would begin a new stretch, so that the caller can
     /// [`finish`](FeatureStream::finish) the old one first.
     pub fn breaks_at(&self, time_secs: f64) -> bool {
         self.grid.breaks_at(time_secs)

@@ -15,7 +15,7 @@ use super::{ClipFile, FileError, FileErrorKind, FileReader};
 /// Archives in archives are opened so deep.
 const DEEPEST: usize = 3;
 
-/// Where the files lie that another one needs.
+/// Place of files that another file needs.
 #[derive(Clone, Copy)]
 pub(super) enum Around<'a> {
     /// On disk.
@@ -166,7 +166,7 @@ fn may_be_needed(path: &str) -> bool {
                 .any(|known| ending.eq_ignore_ascii_case(known)))
 }
 
-/// Whether a file of an archive is read for itself: by its name, or if its content says so.
+/// True if a file of an archive is read for itself: by its name, or if its content says so.
 fn is_motion(member: &Member) -> bool {
     match format_of_name(&member.path) {
         Some(Format::Asf) => false,

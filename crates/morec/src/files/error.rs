@@ -38,7 +38,7 @@ pub enum FileErrorKind {
     Skeleton {
         /// The skeleton file.
         path: PathBuf,
-        /// Where and why.
+        /// Place and cause.
         why: ParseError,
     },
     /// The motion is not what it should be, or not of this skeleton.
@@ -46,7 +46,7 @@ pub enum FileErrorKind {
     Motion {
         /// The skeleton file.
         skeleton: PathBuf,
-        /// Where and why.
+        /// Place and cause.
         why: ParseError,
     },
     /// There is no skeleton near an AMC motion.

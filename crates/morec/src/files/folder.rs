@@ -1,4 +1,4 @@
-//! Which files of a folder are clips.
+//! Clips among the files of a folder.
 
 use std::fs::{self, File};
 use std::io::Read;
@@ -21,7 +21,7 @@ pub struct Listing {
     pub clips: Vec<PathBuf>,
     /// Motion in folders that cannot be read, with the reason, by path.
     pub left_out: Vec<FileError>,
-    /// How many files in folders are no motion at all.
+    /// Number of files in folders that are no motion at all.
     pub others: usize,
 }
 
@@ -72,7 +72,7 @@ fn collect(folder: &Path, all: &mut Listing) -> Result<(), FileError> {
     Ok(())
 }
 
-/// What a file in a folder is.
+/// Kind of a file in a folder.
 enum FileKind {
     Clip,
     /// Motion, but in a format that is not read, or a file that cannot be opened.

@@ -1,4 +1,4 @@
-//! What reads clip files: from bytes and their path to clips, and on to takes.
+//! Reader of clip files: from bytes and their path to clips, and on to takes.
 
 use std::path::{Path, PathBuf};
 
@@ -24,24 +24,24 @@ pub struct FileReader {
     pub skeleton: Option<PathBuf>,
     /// Frames a second, in place of what the file says (AMC files say nothing).
     pub rate_hz: Option<f64>,
-    /// What BVH position channels below the root mean; decided from the data if not given.
+    /// Meaning of BVH position channels below the root; decided from the data if not given.
     pub positions: Option<PositionChannels>,
-    /// What a file may declare.
+    /// Limits of what a file may declare.
     pub limits: Limits,
-    /// How clips become takes.
+    /// Options of the import.
     pub import: ImportOptions,
 }
 
 /// Clips of a file as it holds them: in its units and axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ClipFile {
-    /// What it is.
+    /// Format of the file.
     pub format: Format,
     /// The skeleton file that an AMC motion was read with.
     pub skeleton: Option<PathBuf>,
     /// One clip for each character; an ASF file gives one without frames.
     pub clips: Vec<Clip>,
-    /// What was repaired or looks wrong.
+    /// Repairs and oddities.
     pub warnings: Vec<Warning>,
 }
 
@@ -289,7 +289,7 @@ impl Fitting<'_> {
         warnings.then_with(|| a.off_floor().total_cmp(&b.off_floor()))
     }
 
-    /// How far from 0 the lowest joint is, in the usual frame.
+    /// Distance of the lowest joint from 0, in the usual frame.
     fn off_floor(&self) -> f64 {
         const FRAMES: usize = 40;
         let Some(clip) = self.loaded.clips.first().filter(|clip| clip.frames > 0) else {
@@ -310,7 +310,7 @@ impl Fitting<'_> {
     }
 }
 
-/// What a clip is called after its file.
+/// Name of a clip after its file.
 fn stem(path: &Path) -> String {
     if path == Path::new("-") {
         return "stdin".to_owned();

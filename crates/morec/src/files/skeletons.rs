@@ -11,7 +11,7 @@ const MAX_PER_FOLDER: usize = 64;
 
 /// A skeleton file that may be a motion's.
 pub(super) struct SkeletonFile {
-    /// How much the names have in common; 0 if the name says nothing.
+    /// Likeness of the names; 0 if the name says nothing.
     pub kinship: usize,
     pub path: PathBuf,
 }
@@ -84,7 +84,7 @@ pub(super) fn prefer_stated(candidates: &mut [SkeletonFile], motion: &[u8]) {
     candidates.sort_by_key(|candidate| std::cmp::Reverse(candidate.kinship));
 }
 
-/// How much of a motion's stem a skeleton's stem says: most if the motion's begins with it and a mark follows; less if all
+/// Likeness of a motion's stem to a skeleton's stem: most if the motion's begins with it and a mark follows; less if all
 /// its words are among the motion's, whatever zeros stand before their numbers; else 0.
 fn kinship(skeleton: &str, motion: &str) -> usize {
     const BEGINS: usize = 1000;

@@ -13,7 +13,7 @@ pub struct Takes {
     pub takes: Vec<Take>,
     /// Motion files that could not be used, with the reason.
     pub refused: Vec<FileError>,
-    /// How many files in folders are no motion at all.
+    /// Number of files in folders that are no motion at all.
     pub others: usize,
 }
 

@@ -30,12 +30,12 @@ fn budget(packed: usize) -> u64 {
         .min(MOST_BYTES)
 }
 
-/// Whether `bytes` begin as a gzip file does.
+/// True if `bytes` begin as a gzip file does.
 pub fn is_gzip(bytes: &[u8]) -> bool {
     bytes.starts_with(b"\x1f\x8b\x08")
 }
 
-/// Whether `bytes` begin as a zip archive does; one without files counts.
+/// True if `bytes` begin as a zip archive does; one without files counts.
 pub fn is_zip(bytes: &[u8]) -> bool {
     bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"PK\x05\x06")
 }
@@ -144,7 +144,7 @@ pub fn utf8(bytes: &[u8]) -> Cow<'_, [u8]> {
     text.into_owned().into_bytes().into()
 }
 
-/// Whether the first 32 bytes are printable ASCII with zeros between, those at `zero` and every other behind.
+/// True if the first 32 bytes are printable ASCII with zeros between, those at `zero` and every other behind.
 fn every_other_is_zero(bytes: &[u8], zero: usize) -> bool {
     let Some(head) = bytes.get(..32) else {
         return false;

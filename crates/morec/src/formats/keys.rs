@@ -39,7 +39,7 @@ pub(super) struct KeyGrid {
     pub(super) rate_hz: f64,
     /// Number of frames; the last one lies at the last key or just behind it.
     pub(super) frames: usize,
-    /// Whether the keys lie on the grid.
+    /// True if the keys lie on the grid.
     pub(super) exact: bool,
 }
 
@@ -109,7 +109,7 @@ fn even_rate(times: &[f64]) -> Option<f64> {
     Some(usual.map_or(hz, |(usual, _)| usual))
 }
 
-/// Whether all but a few of the times are multiples of the period, within a twentieth of it or the rounding of 32-bit
+/// True if all but a few of the times are multiples of the period, within a twentieth of it or the rounding of 32-bit
 /// floats.
 fn lies_on(times: &[f64], hz: f64) -> bool {
     let off = times

@@ -18,7 +18,7 @@ const LEAST_POINTS: usize = 5;
 /// Lists and objects within each other, down to the points.
 const DEEPEST: usize = 6;
 
-/// Whether text begins as such a document does.
+/// True if text begins as such a document does.
 pub(super) fn looks_so(head: &[u8]) -> bool {
     let contains = |word: &[u8]| {
         head.windows(word.len())

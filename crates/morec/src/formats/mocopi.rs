@@ -43,7 +43,7 @@ const BONES: [(&str, Option<u16>); 27] = [
     ("r_toes", Some(25)),
 ];
 
-/// Whether `bytes` begin with a packet's head.
+/// True if `bytes` begin with a packet's head.
 pub fn looks_so(bytes: &[u8]) -> bool {
     bytes.get(4..8) == Some(b"head") && bytes.get(12..16) == Some(b"ftyp")
 }

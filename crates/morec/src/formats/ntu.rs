@@ -42,7 +42,7 @@ const VALUES: usize = 12;
 /// Frames a second of the sensor; the files do not say.
 const RATE_HZ: f64 = 30.0;
 
-/// Whether text begins so: two counts, a line of a body, 25, and a line of a joint.
+/// True if text begins so: two counts, a line of a body, 25, and a line of a joint.
 pub(super) fn looks_so(head: &[u8]) -> bool {
     let text = String::from_utf8_lossy(&head[..head.len().min(4096)]);
     let mut lines = text.lines().map(|line| line.split_whitespace().count());

@@ -26,7 +26,7 @@ pub(super) struct PointTable {
     pub(super) points: Vec<Point>,
     pub(super) rate_hz: f64,
     pub(super) metres_per_unit: Option<f64>,
-    /// Whether a point at the origin was not seen.
+    /// True if a point at the origin was not seen.
     pub(super) zero_is_missing: bool,
 }
 

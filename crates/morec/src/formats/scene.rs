@@ -30,7 +30,7 @@ pub(super) struct SceneNode {
     pub(super) parent: Option<usize>,
     /// When nothing moves it.
     pub(super) rest: Local,
-    /// Whether it is a joint of a skeleton.
+    /// True if it is a joint of a skeleton.
     pub(super) joint: bool,
 }
 
@@ -171,7 +171,7 @@ struct World {
     /// Rotation and scale.
     linear: Matrix3<f64>,
     rotation: Quat,
-    /// Whether `linear` is the rotation times a positive number.
+    /// True if `linear` is the rotation times a positive number.
     plain: bool,
 }
 

@@ -81,9 +81,9 @@ pub struct ImportReport {
     pub body_height: Option<f64>,
     /// Thigh and shin together, metres.
     pub leg_length: Option<f64>,
-    /// Whether the hips travel along the floor; without it, root motion says nothing.
+    /// True if the hips travel along the floor; without it, root motion says nothing.
     pub travels: bool,
-    /// Whether joints are known to turn; a clip of points has positions alone.
+    /// True if joints are known to turn; a clip of points has positions alone.
     pub has_rotations: bool,
     /// The published set of points, of a clip of points that was recognised.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -76,7 +76,7 @@ fn apart(a: &[Vec3], b: &[Vec3]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).norm()).sum::<f64>() / a.len() as f64
 }
 
-/// Whether hardly any joint is turned in the first frame.
+/// True if hardly any joint is turned in the first frame.
 fn is_zero_pose(clip: &Clip) -> bool {
     if !clip.has_rotations() {
         return false;
@@ -89,7 +89,7 @@ fn is_zero_pose(clip: &Clip) -> bool {
     turned * 10 <= clip.skeleton.len()
 }
 
-/// Whether the left limbs mirror the right ones through the body's middle plane.
+/// True if the left limbs mirror the right ones through the body's middle plane.
 fn is_symmetric(pose: &[Vec3], map: &RoleMap) -> bool {
     const SIDES: [(Role, Role); 6] = [
         (Role::LeftThigh, Role::RightThigh),

@@ -1,4 +1,4 @@
-//! What an index file says in words.
+//! The manifest of an index file, in words.
 
 use std::collections::BTreeMap;
 
@@ -22,7 +22,7 @@ pub struct Manifest {
     pub format: String,
     /// Version of the layout.
     pub version: u32,
-    /// Which recogniser the model is for.
+    /// The recogniser that the model is for.
     pub method: String,
     /// CRC-32 of the manifest with this field 0, then of every tensor's name, type, shape and bytes in order of
     /// names.
@@ -31,9 +31,9 @@ pub struct Manifest {
     pub classes: Vec<ClassInfo>,
     /// Bones that rows hold.
     pub bones: BoneSet,
-    /// How rows are made.
+    /// Parameters of feature rows.
     pub features: FeatureParams,
-    /// How distances become detections.
+    /// Parameters of decoding.
     pub decode: DecodeParams,
     /// Largest distance that is reported.
     pub threshold: f32,
@@ -43,15 +43,15 @@ pub struct Manifest {
     /// Thresholds for other rates of false alarms.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub operating: Vec<OperatingPoint>,
-    /// What margins mean.
+    /// Meaning of margins.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub calibration: Option<Calibration>,
-    /// What the verifier is beside its tables, if there is one.
+    /// The verifier without its tables, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub verifier: Option<VerifierWords>,
     /// Joints of the training clips, by role.
     pub roles: BTreeMap<Role, String>,
-    /// Where the index came from.
+    /// Origin of the index.
     pub provenance: Provenance,
 }
 
@@ -62,7 +62,7 @@ pub struct VerifierWords {
     pub reach: f32,
     /// Scores must be above this.
     pub bar: f64,
-    /// What holds for all classes.
+    /// The part common to all classes.
     pub generic: LinearScore,
 }
 
@@ -73,17 +73,17 @@ pub struct SvrdmManifest {
     pub format: String,
     /// Version of the layout.
     pub version: u32,
-    /// Which recogniser the model is for.
+    /// The recogniser that the model is for.
     pub method: String,
     /// As in [`Manifest::checksum`].
     pub checksum: u32,
     /// The classes, in the order of their numbers.
     pub classes: Vec<ClassInfo>,
-    /// Which joints make a pose row.
+    /// Joints of a pose row.
     pub pivots: PivotSet,
-    /// How rows are made of poses.
+    /// Parameters of pose rows.
     pub pose: PoseParams,
-    /// How the stages work.
+    /// Parameters of the stages.
     pub params: SvrdmParams,
     /// Rows that the principal components were fitted to.
     pub pca_rows: u64,
@@ -91,11 +91,11 @@ pub struct SvrdmManifest {
     pub nodes: Vec<NodeWords>,
     /// For each class, its samples' mean length in seconds.
     pub mean_secs: Vec<f64>,
-    /// How near profile values must be.
+    /// Tolerance between profile values.
     pub epsilon: f32,
     /// Joints of the training clips, by role.
     pub roles: BTreeMap<Role, String>,
-    /// Where the index came from.
+    /// Origin of the index.
     pub provenance: Provenance,
 }
 
@@ -109,7 +109,7 @@ pub enum NodeWords {
     Branch(BranchWords),
 }
 
-/// What a branch is beside its tables.
+/// A branch without its tables.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 #[allow(missing_docs)] // As in svrdm::Branch.
 pub struct BranchWords {

@@ -37,7 +37,7 @@ pub use model::{Model, SensitivityError};
 /// Version of index files that this program writes, and the newest it reads.
 pub const INDEX_VERSION: u32 = 1;
 
-/// Where an index came from.
+/// Origin of an index.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct Provenance {
     /// When it was trained, `2026-11-21T10:00:00Z`.
@@ -57,9 +57,9 @@ pub struct Provenance {
 pub struct MotionIndex {
     /// The trained model.
     pub model: Model,
-    /// Which joint played which role in training, by name: a hint for skeletons on which the role map fails.
+    /// Names of the joints that played each role in training: a hint for skeletons on which the role map fails.
     pub roles: BTreeMap<Role, String>,
-    /// Where it came from.
+    /// Origin of the index.
     pub provenance: Provenance,
 }
 
@@ -123,9 +123,9 @@ pub enum IndexError {
     /// The bytes are not those that were written.
     #[error("damaged: the checksum is {found:08x}, the file says {expected:08x}")]
     Checksum {
-        /// What the file says.
+        /// The checksum that the file states.
         expected: u32,
-        /// What its bytes give.
+        /// The checksum of its bytes.
         found: u32,
     },
     /// Parts that do not fit together.

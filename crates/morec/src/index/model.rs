@@ -1,4 +1,4 @@
-//! What an index recognises with, whatever the method.
+//! The model of an index, for either method.
 
 use std::sync::Arc;
 
@@ -18,7 +18,7 @@ pub enum Model {
 }
 
 impl Model {
-    /// What `--method` and an index's manifest call the method.
+    /// Name of the method, as in `--method` and in the index's manifest.
     pub fn method(&self) -> &'static str {
         match self {
             Model::Templates(_) => "templates",
@@ -51,7 +51,7 @@ impl Model {
         ends.chain(pivots.iter().filter_map(|pivot| pivot.role))
     }
 
-    /// How often a second the stream is compared.
+    /// Comparisons of the stream a second.
     pub fn tick_hz(&self) -> f64 {
         match self {
             Model::Templates(model) => model.features.tick_hz(),
@@ -76,7 +76,7 @@ impl Model {
         changed.map(Into::into).ok_or(SensitivityError::Fixed)
     }
 
-    /// Whether poses must say how joints are turned; where they are is enough otherwise.
+    /// True if poses must say how joints are turned; where they are is enough otherwise.
     pub fn needs_rotations(&self) -> bool {
         matches!(self, Model::Svrdm(_))
     }

@@ -11,7 +11,7 @@ use super::manifest::{BranchWords, FORMAT, NodeWords, SvrdmManifest};
 use super::tensors::{Tables, Tensor, class_id};
 use super::{INDEX_VERSION, IndexError, MotionIndex};
 
-/// What is written in words of `model`.
+/// The part of `model` that is written in words.
 pub(super) fn manifest(model: &SvrdmModel, index: &MotionIndex) -> SvrdmManifest {
     let nodes = model.tree.nodes().iter().map(|node| match node {
         Node::Leaf(class) => NodeWords::Leaf(*class),
@@ -41,7 +41,7 @@ pub(super) fn manifest(model: &SvrdmModel, index: &MotionIndex) -> SvrdmManifest
     }
 }
 
-/// What is written in tables of `model`, in single precision: a [compact](SvrdmModel::compact) model is read back as
+/// The part of `model` that is written in tables, in single precision: a [compact](SvrdmModel::compact) model is read back as
 /// it was.
 pub(super) fn tensors(model: &SvrdmModel) -> BTreeMap<String, Tensor> {
     let pca = &model.pca;

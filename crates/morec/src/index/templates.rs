@@ -11,7 +11,7 @@ use super::manifest::{FORMAT, Manifest, VerifierWords};
 use super::tensors::{Tables, Tensor, class_id};
 use super::{INDEX_VERSION, IndexError, MotionIndex};
 
-/// What is written in words of `model`.
+/// The part of `model` that is written in words.
 pub(super) fn manifest(model: &TemplateModel, index: &MotionIndex) -> Manifest {
     Manifest {
         format: FORMAT.to_owned(),
@@ -36,7 +36,7 @@ pub(super) fn manifest(model: &TemplateModel, index: &MotionIndex) -> Manifest {
     }
 }
 
-/// What is written in tables of `model`.
+/// The part of `model` that is written in tables.
 pub(super) fn tensors(model: &TemplateModel) -> BTreeMap<String, Tensor> {
     let dim = model.ridged.dim();
     let step = model.step.as_deref();

@@ -157,7 +157,7 @@ impl Tables {
         Ok(bytes.map(|b| u32::from_le_bytes(*b)).collect())
     }
 
-    /// Whether the file has this tensor.
+    /// True if the file has this tensor.
     pub fn has(&self, name: &str) -> bool {
         self.0.contains_key(name)
     }

@@ -27,7 +27,7 @@ pub struct FoundLine<'a> {
     pub start_secs: f64,
     /// Stop in seconds.
     pub stop_secs: f64,
-    /// How sure the recogniser is.
+    /// Score; larger is surer.
     pub score: f64,
     /// When the detection was reported, in seconds.
     pub reported_secs: f64,
@@ -71,9 +71,9 @@ pub struct FoundRow {
     pub clip: String,
     /// The detected class.
     pub class: String,
-    /// Where it lies.
+    /// Its extent.
     pub extent: Extent,
-    /// How sure the recogniser is, if it says.
+    /// Score, if the recogniser gives one.
     pub score: Option<f64>,
     /// When it was reported, if the table says.
     pub reported: Option<ReportedAt>,
@@ -86,13 +86,13 @@ pub struct FoundRow {
 pub struct FoundTable {
     /// The rows in file order.
     pub rows: Vec<FoundRow>,
-    /// What was left out or looks wrong.
+    /// Omissions and oddities.
     pub warnings: Vec<Warning>,
 }
 
 /// Reads a table of detections. Columns `clip`, `class` and an extent (frames or seconds, as in labels) must be
 /// there; `score`, `reported_at` (a frame) and `reported_secs` may be. Fails as [`super::Labels::read`] does.
-pub fn read_found(bytes: &[u8]) -> Result<FoundTable, ParseError> {
+pub fn read_detections(bytes: &[u8]) -> Result<FoundTable, ParseError> {
     let table = Table::new(bytes)?;
     let (clip, class) = (table.need("clip")?, table.need("class")?);
     let extents = ExtentColumns::find(&table)?;
@@ -193,12 +193,12 @@ mod tests {
 
     #[test]
     fn a_foreign_table_needs_no_score() {
-        let table = read_found(b"clip\tstart\tstop\tclass\na\t3\t9\twave\n").unwrap();
+        let table = read_detections(b"clip\tstart\tstop\tclass\na\t3\t9\twave\n").unwrap();
         assert_eq!((table.rows[0].score, table.rows[0].reported), (None, None));
-        let error = read_found(b"clip\tclass\na\twave\n").unwrap_err();
+        let error = read_detections(b"clip\tclass\na\twave\n").unwrap_err();
         assert!(error.to_string().contains("a column `start`"), "{error}");
         let error =
-            read_found(b"clip\tstart\tstop\tclass\tscore\na\t3\t9\twave\thigh\n").unwrap_err();
+            read_detections(b"clip\tstart\tstop\tclass\tscore\na\t3\t9\twave\thigh\n").unwrap_err();
         assert_eq!(
             error.to_string(),
             "line 2, column 12: expected a number or nothing, found `high`"
@@ -207,7 +207,7 @@ mod tests {
 
     #[test]
     fn detections_of_other_clips_are_counted() {
-        let table = read_found(
+        let table = read_detections(
             b"clip\tstart\tstop\tclass\treported_at\na\t30\t60\tx\t90\nb\t0\t1\tx\t\nb\t1\t2\tx\t\n",
         );
         let clips = BTreeMap::from([(
@@ -244,7 +244,7 @@ mod tests {
                 clip: "clip 1", class: &class, start_secs: at(start), stop_secs: at(start + length), score,
                 reported_secs: at(start + length + delay), rate_hz,
             };
-            let row = read_found(format!("{FOUND_HEADER}\n{line}\n").as_bytes()).unwrap().rows.remove(0);
+            let row = read_detections(format!("{FOUND_HEADER}\n{line}\n").as_bytes()).unwrap().rows.remove(0);
             prop_assert_eq!(row.extent, Extent::Frames(start..start + length));
             prop_assert_eq!(row.reported, Some(ReportedAt::Frame(start + length + delay)));
             prop_assert!((row.score.unwrap() - score).abs() <= 5.1e-5);

@@ -7,7 +7,7 @@
 //! - Labels ([`Labels::read`]): `clip`, `class`, then `start` and `stop` (frames, stop exclusive) or
 //!   `start_secs` and `stop_secs`, or neither: the whole clip is one sample. `person` if it is known.
 //! - People ([`read_people`]): `clip`, `person`.
-//! - Detections ([`read_found`], [`FoundLine`]): what `morec recognize` writes.
+//! - Detections ([`read_detections`], [`FoundLine`]): what `morec recognize` writes.
 
 mod found;
 mod people;
@@ -20,11 +20,11 @@ use std::collections::BTreeMap;
 use crate::clip::Span;
 use crate::formats::Warning;
 
-pub use found::{FOUND_HEADER, FoundLine, FoundRow, FoundTable, ReportedAt, read_found};
+pub use found::{FOUND_HEADER, FoundLine, FoundRow, FoundTable, ReportedAt, read_detections};
 pub use people::{People, read_people};
 pub use resolve::{ClipLength, Resolved, Sample};
 
-/// Where in its clip a label lies, as the table gives it.
+/// Extent of a label in its clip, as the table gives it.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Extent {
     /// Frames at the clip's own rate, from 0, stop exclusive.
@@ -40,11 +40,11 @@ pub enum Extent {
 pub struct Label {
     /// The clip's name: the stem of its file.
     pub clip: String,
-    /// What happens there.
+    /// Class of the motion.
     pub class: String,
     /// When it happens.
     pub extent: Extent,
-    /// Who does it, where the table says so.
+    /// The person who moves, where the table says so.
     pub person: Option<String>,
     /// The row's line in its file, from 1.
     pub line: u64,
@@ -55,7 +55,7 @@ pub struct Label {
 pub struct Labels {
     /// The rows in file order.
     pub rows: Vec<Label>,
-    /// What was left out or looks wrong.
+    /// Omissions and oddities.
     pub warnings: Vec<Warning>,
 }
 
@@ -82,7 +82,7 @@ impl Labels {
         });
     }
 
-    /// How many rows each class has, by class name.
+    /// Number of rows of each class, by class name.
     pub fn class_counts(&self) -> BTreeMap<&str, usize> {
         let mut counts = BTreeMap::new();
         for row in &self.rows {

@@ -1,4 +1,4 @@
-//! Who is seen in which clip.
+//! The person of each clip.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use crate::formats::{ParseError, Warning};
 pub struct People {
     /// Person by clip name.
     pub by_clip: BTreeMap<String, String>,
-    /// What was left out or looks wrong.
+    /// Omissions and oddities.
     pub warnings: Vec<Warning>,
 }
 

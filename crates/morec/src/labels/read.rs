@@ -13,7 +13,7 @@ pub(super) struct ExtentColumns {
 impl Labels {
     /// Reads a table of labels, or of whole clips, which is one without extents.
     ///
-    /// Where a row gives both frames and seconds, the frames count; where a column `whole_clip` says 1, neither. Fails on a missing column, an empty clip or
+    /// If a row gives both frames and seconds, the frames count; where a column `whole_clip` says 1, neither. Fails on a missing column, an empty clip or
     /// class, a cell that is no number, a negative one, and a stop that does not come after its start.
     pub fn read(bytes: &[u8]) -> Result<Self, ParseError> {
         Ok(Self::of_table(&Table::new(bytes)?, &[])?.0)
@@ -85,7 +85,7 @@ impl ExtentColumns {
         })
     }
 
-    /// Whether the table has any of them.
+    /// True if the table has any of them.
     pub fn any(&self) -> bool {
         self.frames.is_some() || self.secs.is_some()
     }

@@ -6,7 +6,7 @@ use super::{Extent, Label, Labels};
 use crate::eval::GroundTruth;
 use crate::formats::{Place, Warning};
 
-/// How long a clip is.
+/// Length of a clip.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClipLength {
     /// Number of frames.
@@ -20,15 +20,15 @@ pub struct ClipLength {
 pub struct Sample {
     /// The clip's name.
     pub clip: String,
-    /// What happens.
+    /// Class of the motion.
     pub class: String,
-    /// Where it starts, from the clip's beginning.
+    /// Start, from the clip's beginning.
     pub start_secs: f64,
-    /// Where it stops.
+    /// Stop, from the clip's beginning.
     pub stop_secs: f64,
-    /// Whether the table gave no extent: the clip as a whole is the sample, still ends and all.
+    /// True if the table gave no extent: the clip as a whole is the sample, still ends and all.
     pub whole_clip: bool,
-    /// Who does it, if known.
+    /// The person who moves, if known.
     pub person: Option<String>,
     /// The line of its row.
     pub line: u64,

@@ -155,7 +155,7 @@ impl<'a> Row<'a> {
         self.cells.get(column).map_or("", |(_, cell)| cell)
     }
 
-    /// Where the cell of a column stands.
+    /// Place of a column's cell in the file.
     pub fn place(&self, column: usize) -> Place {
         Place::Column(
             self.line,

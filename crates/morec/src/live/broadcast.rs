@@ -1,4 +1,4 @@
-//! Where a session's events leave it: a ring for each reader.
+//! Delivery of a session's events: a ring for each reader.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -44,7 +44,7 @@ impl EventReader {
         }
     }
 
-    /// Whether the stream has ended and every event has been taken.
+    /// True if the stream has ended and every event has been taken.
     pub fn is_ended(&self) -> bool {
         self.events.is_abandoned() && self.events.is_empty()
     }

@@ -1,4 +1,4 @@
-//! What seems to be under way, while it is.
+//! Tentative detections of motions that have not ended.
 
 use crate::classes::ClassId;
 
@@ -8,11 +8,11 @@ use super::{Detection, Event, Phase};
 /// A motion that seems to be under way.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EarlyDetection {
-    /// What it seems to be.
+    /// Class of the motion, tentatively.
     pub class: ClassId,
-    /// How near what was seen is: 0 just worth telling … 1 identical to the beginning of a sample.
+    /// Nearness to the beginning of a sample: 0 just worth reporting … 1 identical.
     pub score: f64,
-    /// How much of the motion was seen, 0 to 1.
+    /// Share of the motion that was seen, 0 to 1.
     pub progress: f64,
     /// When it began, on the stream's clock.
     pub start_secs: f64,
@@ -23,10 +23,10 @@ pub struct EarlyDetection {
 /// Progress is told again when it has grown by this.
 const STEP: f64 = 0.1;
 
-/// Nothing heard of a motion for so long is the end of the hunch, seconds: it came to nothing.
+/// Nothing heard of a motion for so long is the end of the early detection, seconds: it came to nothing.
 const FORGET_SECS: f64 = 0.5;
 
-/// Makes starts, updates and cancellations of hunches, a few for each motion.
+/// Makes starts, updates and cancellations of early detections, a few for each motion.
 #[derive(Debug, Default)]
 pub(super) struct EarlyTracker {
     open: Option<OpenMotion>,
@@ -40,7 +40,7 @@ struct OpenMotion {
 }
 
 impl EarlyTracker {
-    /// What was told last of a motion that is still under way.
+    /// The last report of a motion that is still under way.
     pub(super) fn told(&self) -> Option<EarlyDetection> {
         self.open.map(|open| open.told)
     }
@@ -48,32 +48,32 @@ impl EarlyTracker {
     /// Takes what seems to be under way at `now_secs`; nothing that began before `after_secs` is told again.
     pub(super) fn look(
         &mut self,
-        hunch: Option<EarlyDetection>,
+        early: Option<EarlyDetection>,
         after_secs: f64,
         now_secs: f64,
         say: &mut Say<impl FnMut(Event)>,
     ) {
         match (
-            hunch.filter(|h| middle_secs(h) > after_secs),
+            early.filter(|h| middle_secs(h) > after_secs),
             &mut self.open,
         ) {
-            (Some(hunch), None) => {
+            (Some(early), None) => {
                 let motion = say.new_motion();
-                say.event(Phase::Start, motion, hunch, now_secs);
+                say.event(Phase::Start, motion, early, now_secs);
                 self.open = Some(OpenMotion {
                     motion,
-                    told: hunch,
+                    told: early,
                     heard_secs: now_secs,
                 });
             }
-            (Some(hunch), Some(open)) => {
+            (Some(early), Some(open)) => {
                 open.heard_secs = now_secs;
                 let news =
-                    hunch.class != open.told.class || hunch.progress >= open.told.progress + STEP;
+                    early.class != open.told.class || early.progress >= open.told.progress + STEP;
                 if news {
-                    open.told = hunch;
+                    open.told = early;
                     let motion = open.motion;
-                    say.event(Phase::Update, motion, hunch, now_secs);
+                    say.event(Phase::Update, motion, early, now_secs);
                 }
             }
             (None, Some(open)) if now_secs - open.heard_secs > FORGET_SECS => {
@@ -92,7 +92,7 @@ impl EarlyTracker {
         Some(open.motion)
     }
 
-    /// What was told came to nothing.
+    /// Cancels the motion that was reported.
     pub(super) fn cancel(&mut self, now_secs: Option<f64>, say: &mut Say<impl FnMut(Event)>) {
         if let Some(open) = self.open.take() {
             say.event(
@@ -106,6 +106,6 @@ impl EarlyTracker {
 }
 
 /// Tails of a motion that has just ended resemble its beginning: what is told must lie mostly after it.
-fn middle_secs(hunch: &EarlyDetection) -> f64 {
-    0.5 * (hunch.start_secs + hunch.seen_secs)
+fn middle_secs(early: &EarlyDetection) -> f64 {
+    0.5 * (early.start_secs + early.seen_secs)
 }

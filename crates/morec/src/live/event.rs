@@ -1,10 +1,10 @@
-//! What a live session says of a motion.
+//! Events that a live session emits.
 
 use crate::classes::ClassId;
 
 use super::{Detection, PerformerId};
 
-/// What is being said.
+/// Phase of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Phase {
     /// A motion seems to be under way. Tentative.
@@ -32,7 +32,7 @@ impl Phase {
 /// Something said of a motion. Times are on the source's clock, if not said otherwise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Event {
-    /// What is being said.
+    /// Phase of the motion.
     pub phase: Phase,
     /// Number of the motion, from 1, for each performer: its start, updates and end share it.
     pub motion: u64,
@@ -40,11 +40,11 @@ pub struct Event {
     pub sequence: u64,
     /// Whose motion.
     pub actor: PerformerId,
-    /// What it is, or seems to be.
+    /// Class of the motion, tentative before its end.
     pub class: ClassId,
     /// Of an end: 0 just accepted … 1 identical to a sample. Tentative: how near what was seen so far is, likewise.
     pub score: f64,
-    /// How much of the motion has been seen, 0 to 1; 1 at its end.
+    /// Share of the motion that has been seen, 0 to 1; 1 at its end.
     pub progress: f64,
     /// When it began.
     pub start_secs: f64,
@@ -57,7 +57,7 @@ pub struct Event {
 }
 
 impl Event {
-    /// What ended, as a [`Recognizer`](super::Recognizer) says it.
+    /// The detection that ended, as [`Recognizer`](super::Recognizer) reports it.
     pub fn detection(&self) -> Detection {
         Detection {
             class: self.class,

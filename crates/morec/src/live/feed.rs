@@ -8,7 +8,7 @@ pub(super) use super::waker::Waker;
 use super::waker::NAP;
 use super::{Frame, PerformerId, Rig};
 
-/// What happens to a frame when recognition has not caught up with the ones before it.
+/// Fate of a frame that arrives while earlier frames still wait for recognition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum OverflowPolicy {
     /// The source waits for room. Nothing is lost and the outcome does not depend on timing: for files.
@@ -18,7 +18,7 @@ pub enum OverflowPolicy {
     Drop,
 }
 
-/// What goes over the ring.
+/// An item of the ring.
 #[derive(Debug)]
 pub(super) enum QueueItem {
     Frame(Box<Frame>),
@@ -121,12 +121,12 @@ impl FeedSender {
     }
 
     /// Says that `actor` has stopped for now. Waits for room if there is none.
-    pub fn set_gone(&mut self, actor: PerformerId) {
+    pub fn end_performer(&mut self, actor: PerformerId) {
         self.push(QueueItem::Gone(actor));
     }
 
     /// Frames there is room for now.
-    pub fn room(&self) -> usize {
+    pub fn available(&self) -> usize {
         self.spare.slots()
     }
 
@@ -173,12 +173,12 @@ impl FeedReceiver {
         self.wakers.sender.wake();
     }
 
-    /// Whether something waits to be taken.
+    /// True if something waits to be taken.
     pub(super) fn has_more(&self) -> bool {
         !self.items.is_empty()
     }
 
-    /// Whether the sender is gone and everything it sent was taken.
+    /// True if the sender is gone and everything it sent was taken.
     pub(super) fn is_ended(&self) -> bool {
         // In this order: what was sent before the end is seen after it.
         self.items.is_abandoned() && self.items.is_empty()

@@ -1,4 +1,4 @@
-//! What a live source delivers: a skeleton, and frames of it posed in the world.
+//! Values that a live source delivers: a skeleton, and frames of it posed in the world.
 
 use crate::clip::{Joint, Skeleton};
 use crate::features::{BoneSet, KeyPose};
@@ -6,7 +6,7 @@ use crate::kinematics::WorldPose;
 use crate::math::{Quat, Vec3};
 use crate::roles::{Role, RoleMap};
 
-/// Which performer of a source a frame shows; sources number them from 0.
+/// Number of a source's performer, from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
 pub struct PerformerId(pub u16);
 
@@ -22,7 +22,7 @@ impl PerformerId {
 pub struct Rig {
     /// The joints, parents first.
     pub skeleton: Skeleton,
-    /// Who plays what.
+    /// Joint of each role.
     pub roles: RoleMap,
 }
 
@@ -59,7 +59,7 @@ pub struct Frame {
     pub time_secs: f64,
     /// When its last part arrived: [`wall_now_secs`](super::wall_now_secs) then.
     pub wall_secs: f64,
-    /// Whom it shows.
+    /// The performer it shows.
     pub actor: PerformerId,
     /// Joints of the rig that was announced last, one position each. A joint that is unknown at this instant has a
     /// position that is not a number. Rotations are empty if the source knows positions only.
@@ -67,7 +67,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Where the role joints are: the one place where a posed skeleton becomes what templates compare.
+    /// Positions of the role joints: the one place where a posed skeleton becomes what templates compare.
     pub fn key_pose(&self, rig: &Rig) -> KeyPose {
         let mut key = KeyPose::default();
         for role in Role::ALL {

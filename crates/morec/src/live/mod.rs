@@ -56,5 +56,5 @@ pub use recording::{Recording, RecordingError};
 pub use session::{Session, SessionError, SessionOptions, Threading};
 pub use source::{Source, SourceCounts, SourceEvent};
 pub use start::StartError;
-pub use status::{ActorStatus, MAX_ACTORS, Status, StatusHandle};
+pub use status::{MAX_PERFORMERS, PerformerStatus, Status, StatusHandle};
 pub use waits::LatencyHistogram;

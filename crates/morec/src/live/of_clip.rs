@@ -56,7 +56,7 @@ pub fn recognize_poses<M: Clone + Into<Model>>(
     Ok(found)
 }
 
-/// What reads poses of `clip` for `model`, unless that asks for rotations and the clip has none.
+/// A reader of the poses of `clip` for `model`; an error if that asks for rotations and the clip has none.
 fn reader(model: &Model, clip: &Clip, roles: &RoleMap) -> Result<PoseExtractor, StartError> {
     if matches!(model, Model::Svrdm(_)) && !clip.has_rotations() {
         return Err(NoPivots::Rotations.into());

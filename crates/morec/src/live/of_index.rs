@@ -6,7 +6,7 @@ use crate::index::MotionIndex;
 use super::{Recognizer, StartError};
 
 impl MotionIndex {
-    /// What recognition reports of `take`, pose by pose as it would be live; times from its beginning.
+    /// Detections of `take`, recognised pose by pose as in a live stream; times from its beginning.
     ///
     /// # Errors
     /// The take shows no bone that the index uses, or the index needs joint rotations that it lacks.

@@ -7,7 +7,7 @@
 /// Bundles within bundles deeper than this are not believed.
 const MAX_DEPTH: usize = 16;
 
-/// What every bundle begins with.
+/// First bytes of every bundle.
 const BUNDLE: &[u8; 8] = b"#bundle\0";
 
 /// An argument of a message.
@@ -46,7 +46,7 @@ impl Arg<'_> {
 /// A message within a packet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Message<'a> {
-    /// Where it goes, as `/VMC/Ext/Bone/Pos`.
+    /// Address of the message, as `/VMC/Ext/Bone/Pos`.
     pub address: &'a str,
     tags: &'a [u8],
     data: &'a [u8],

@@ -21,7 +21,7 @@ pub(super) struct TemplatePipeline {
     seen: PartialMatchTracker,
 }
 
-/// What was under way at the last tick that was asked about.
+/// The partial match at the last tick that was asked about.
 #[derive(Debug, Clone, Copy, Default)]
 struct PartialMatchTracker {
     ticks: usize,
@@ -101,7 +101,7 @@ impl TemplatePipeline {
         }
     }
 
-    pub(super) fn hunch(&mut self) -> Option<EarlyDetection> {
+    pub(super) fn early_detection(&mut self) -> Option<EarlyDetection> {
         let ticks = self.engine.ticks();
         if ticks != self.seen.ticks {
             let underway = self.engine.underway(&self.early);

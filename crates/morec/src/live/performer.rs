@@ -9,7 +9,7 @@ use super::early::{EarlyDetection, EarlyTracker};
 use super::event_tracker::EventTracker;
 use super::{Event, Frame, Model, PerformerId, PoseExtractor, Recognizer, RecognizerInput, Rig};
 
-/// What is to be said, and how often.
+/// Selection and rate of events.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EventOptions {
     /// Say what seems to be under way, too.
@@ -120,8 +120,12 @@ impl Performer {
         if self.tells_early {
             let after_secs = self.tracker.last_stop_secs();
             let say = &mut self.tracker.say(self.wall_secs, out);
-            self.early
-                .look(recognizer.hunch(), after_secs, frame.time_secs, say);
+            self.early.look(
+                recognizer.early_detection(),
+                after_secs,
+                frame.time_secs,
+                say,
+            );
         }
     }
 
@@ -160,15 +164,15 @@ impl Performer {
         self.tracker.suppressed()
     }
 
-    /// What is known of the stream since its present skeleton was set; `None` before there is one.
+    /// Findings about the stream since its present skeleton was set; `None` before there is one.
     pub fn diagnosis(&self) -> Option<Diagnosis> {
         self.diagnoser
             .as_ref()
             .map(|diagnoser| diagnoser.diagnosis())
     }
 
-    /// What seems to be under way.
-    pub fn hunch(&self) -> Option<EarlyDetection> {
+    /// The motion that seems to be under way.
+    pub fn early_detection(&self) -> Option<EarlyDetection> {
         self.early.told()
     }
 }

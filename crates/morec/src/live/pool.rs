@@ -38,11 +38,11 @@ struct Worker {
 /// A stream of a pool.
 #[derive(Debug)]
 pub struct PoolStream {
-    /// Where its frames go. Dropping it ends the stream.
+    /// Input for frames. Dropping it ends the stream.
     pub feed: FeedSender,
-    /// Where its events come from; as many as [`SessionOptions::readers`] says.
+    /// Outputs for events; as many as [`SessionOptions::readers`].
     pub readers: Vec<EventReader>,
-    /// How it stands.
+    /// Status of the stream.
     pub status: StatusHandle,
 }
 

@@ -8,7 +8,7 @@ use crate::roles::RoleMap;
 
 use super::{Model, StartError};
 
-/// Where the role joints are, and how the model's pivots are turned if it asks for that.
+/// Positions of the role joints, and rotations of the model's pivots if it asks for them.
 #[derive(Debug, Clone, Copy)]
 pub struct RecognizerInput<'p> {
     /// Places of the role joints.
@@ -56,7 +56,7 @@ impl PoseExtractor {
         self.pivots.as_ref().map_or(&[], |pivots| pivots.missing())
     }
 
-    /// How the pivots are turned in `world`; `None` if the model does not ask, or the source does not say.
+    /// Rotations of the pivots in `world`; `None` if the model asks for none, or the source has none.
     pub fn pivots(&mut self, world: &WorldPose) -> Option<&PivotPose> {
         let pivots = self
             .pivots

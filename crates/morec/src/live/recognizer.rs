@@ -15,7 +15,7 @@ const MAX_DETECTIONS_PER_PUSH: usize = 64;
 /// A motion recognised in a stream. Its class is a number of the index's, or a name ([`named`](Detection::named)).
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Detection<C = ClassId> {
-    /// What it is.
+    /// Class of the motion.
     pub class: C,
     /// When it began, on the stream's clock.
     pub start_secs: f64,
@@ -66,7 +66,7 @@ enum Pipeline {
     Svrdm(Box<SvrdmPipeline>),
 }
 
-/// How a path counts time: from where, and in what.
+/// Time of a path: its origin and its step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Steps {
     pub origin_secs: f64,
@@ -212,16 +212,16 @@ impl Recognizer {
         self.found.dropped
     }
 
-    /// What seems to be under way after the last push, if anything does. Tentative: it says nothing about what
+    /// The motion that seems to be under way after the last push, if any. Tentative: it says nothing about what
     /// [`push`](Self::push) will report, and asking changes nothing of that. Templates only. No allocation.
-    pub fn hunch(&mut self) -> Option<EarlyDetection> {
+    pub fn early_detection(&mut self) -> Option<EarlyDetection> {
         match &mut self.path {
-            Pipeline::Templates(path) => path.hunch(),
+            Pipeline::Templates(path) => path.early_detection(),
             Pipeline::Svrdm(_) => None,
         }
     }
 
-    /// How near a beginning must be for [`hunch`](Self::hunch).
+    /// Sets the limits of [`early_detection`](Self::early_detection).
     pub fn set_early(&mut self, params: EarlyDetectionParams) {
         if let Pipeline::Templates(path) = &mut self.path {
             path.set_early(params);

@@ -39,7 +39,7 @@ pub enum RecordingError {
     },
 }
 
-/// What one performer of a live source did.
+/// Poses of one performer of a live source.
 #[derive(Debug, Clone, Default)]
 pub struct Recording {
     rig: Arc<Rig>,

@@ -12,7 +12,7 @@ use super::waker::Waker;
 use super::worker::{EventReader, RecognizerCache, StreamWorker, TurnOutcome, WorkerOptions};
 use super::{Frame, Model, OverflowPolicy, Source, SourceEvent, StartError, stages};
 
-/// How recognition is laid out on threads. Events are the same.
+/// Distribution of recognition over threads. Events are the same.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Threading {
     /// All of it on one thread.
@@ -23,17 +23,17 @@ pub enum Threading {
     Stages,
 }
 
-/// How a session is run.
+/// Options of a session.
 #[derive(Debug, Clone)]
 pub struct SessionOptions {
-    /// How recognition is laid out on threads; pools are always inline.
+    /// Distribution of recognition over threads; pools are always inline.
     pub layout: Threading,
     /// Called first on every thread of the session, with what the thread is for: `source`, `recognition`, or the stage.
     /// The place to tie it to a core or to give it a priority.
     pub on_thread: Option<fn(&'static str)>,
-    /// What is said of motions.
+    /// Selection of events.
     pub events: EventOptions,
-    /// What happens when recognition, or a reader, does not keep up.
+    /// Behaviour when recognition, or a reader, does not keep up.
     pub overload: OverflowPolicy,
     /// Frames that may wait for recognition.
     pub frame_capacity: usize,
@@ -64,9 +64,9 @@ pub enum SessionError {
     /// The system gave no thread.
     #[error("no thread for {what}: {error}")]
     Thread {
-        /// What it was for.
+        /// Purpose of the thread.
         what: &'static str,
-        /// What the system said.
+        /// The system's error.
         error: std::io::Error,
     },
     /// Stages on threads of their own were asked for of a method that has none.
@@ -207,7 +207,7 @@ impl Session {
         Ok(())
     }
 
-    /// How it stands. Never waits, holds nothing up.
+    /// Status of the session. Never waits, holds nothing up.
     pub fn status(&self) -> Status {
         self.handle().get()
     }
@@ -264,7 +264,7 @@ fn carry(
         match source.next(&mut frame) {
             SourceEvent::Frame => _ = sender.send(&mut frame),
             SourceEvent::Rig(actor, rig) => sender.set_rig(actor, &rig),
-            SourceEvent::Gone(actor) => sender.set_gone(actor),
+            SourceEvent::Gone(actor) => sender.end_performer(actor),
             SourceEvent::Quiet => {}
             SourceEvent::Ended => break,
         }

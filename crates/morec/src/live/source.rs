@@ -1,10 +1,10 @@
-//! Where poses come from.
+//! Sources of poses.
 
 use std::sync::Arc;
 
 use super::{Frame, PerformerId, Rig};
 
-/// What a source had to give.
+/// One event of a source.
 #[derive(Debug, Clone)]
 pub enum SourceEvent {
     /// The frame was filled in.
@@ -19,7 +19,7 @@ pub enum SourceEvent {
     Ended,
 }
 
-/// What a source has seen so far, counted since its beginning. What does not apply stays 0.
+/// Counts of a source since its beginning. Those that do not apply stay 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 pub struct SourceCounts {
     /// Packets or lines that arrived.
@@ -36,7 +36,7 @@ pub struct SourceCounts {
     pub late: u64,
     /// Packets of senders beyond the number that can be followed at once.
     pub refused: u64,
-    /// How often it broke off and came back.
+    /// Number of interruptions after which it came back.
     pub interruptions: u64,
 }
 
@@ -49,7 +49,7 @@ pub trait Source: Send {
     /// stopped). `frame` may hold an older frame's values and is filled in only for [`SourceEvent::Frame`].
     fn next(&mut self, frame: &mut Frame) -> SourceEvent;
 
-    /// What it has seen so far.
+    /// Counts since the beginning.
     fn counts(&self) -> SourceCounts {
         SourceCounts::default()
     }

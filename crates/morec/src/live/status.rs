@@ -1,4 +1,4 @@
-//! How a session stands, readable at any time by anybody without holding anything up.
+//! Status of a session, readable at any time without holding anything up.
 
 use std::array;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
@@ -11,9 +11,9 @@ use super::waits::{LatencyHistogram, WaitCells};
 use super::{Event, Frame, PerformerId, Phase, SourceCounts};
 
 /// Performers that one session can follow at once.
-pub const MAX_ACTORS: usize = 16;
+pub const MAX_PERFORMERS: usize = 16;
 
-/// How a session stands. Each figure is right at some instant of the reading; figures of different lines may be a
+/// Status of a session. Each figure is right at some instant of the reading; figures of different lines may be a
 /// frame apart.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Status {
@@ -31,22 +31,22 @@ pub struct Status {
     pub motions: u64,
     /// Motions not told because of the refractory time.
     pub suppressed: u64,
-    /// What the source counted.
+    /// Counts of the source.
     pub source: SourceCounts,
     /// The longest that a frame has waited from its arrival to the end of its recognition, seconds.
     pub longest_wait_secs: f64,
-    /// How long frames have waited likewise.
+    /// Waiting times of frames likewise.
     pub waits: LatencyHistogram,
-    /// Whether the stream has ended and everything is told.
+    /// True if the stream has ended and everything is told.
     pub ended: bool,
     /// The performers seen so far.
-    pub actors: Vec<ActorStatus>,
+    pub actors: Vec<PerformerStatus>,
 }
 
-/// How one performer stands: the solution at this moment.
+/// Status of one performer: the solution at this moment.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ActorStatus {
-    /// Who.
+pub struct PerformerStatus {
+    /// The performer.
     pub actor: PerformerId,
     /// Frames of this performer.
     pub frames: u64,
@@ -56,11 +56,11 @@ pub struct ActorStatus {
     pub wall_secs: f64,
     /// From its arrival to the end of its recognition, seconds.
     pub wait_secs: f64,
-    /// What seems to be under way, and its progress, 0 to 1.
-    pub hunch: Option<(ClassId, f64)>,
+    /// The motion that seems to be under way, and its progress, 0 to 1.
+    pub early: Option<(ClassId, f64)>,
     /// The last motion that ended, and its score.
     pub last: Option<(ClassId, f64)>,
-    /// What is known of the stream, renewed every 16 frames.
+    /// Findings about the stream, renewed every 16 frames.
     pub diagnosis: Option<Diagnosis>,
 }
 
@@ -77,7 +77,7 @@ impl StatusHandle {
     }
 }
 
-/// What the threads of a session write; single words.
+/// Counters that the threads of a session write; single words.
 #[derive(Debug, Default)]
 pub(super) struct SessionCounters {
     pub(super) frames: AtomicU64,
@@ -92,16 +92,16 @@ pub(super) struct SessionCounters {
     pub(super) longest_wait: AtomicU64,
     waits: WaitCells,
     pub(super) ended: AtomicBool,
-    actors: [ActorCells; MAX_ACTORS],
+    actors: [PerformerCounters; MAX_PERFORMERS],
 }
 
 #[derive(Debug, Default)]
-struct ActorCells {
+struct PerformerCounters {
     frames: AtomicU64,
     time: AtomicU64,
     wall: AtomicU64,
     wait: AtomicU64,
-    hunch: AtomicU64,
+    early: AtomicU64,
     last: AtomicU64,
     /// Written with `try_lock` only: recognition never waits for a reader.
     diagnosis: Mutex<Option<Diagnosis>>,
@@ -145,7 +145,7 @@ impl SessionCounters {
         cells.wait.store(wait_secs.to_bits(), Relaxed);
     }
 
-    /// What is known of the stream of `actor`; left out while somebody reads what was known before.
+    /// Findings about the stream of `actor`; left out while somebody reads what was known before.
     pub(super) fn diagnosis(&self, actor: PerformerId, diagnosis: Option<Diagnosis>) {
         let Some(cells) = self.actors.get(actor.index()) else {
             return;
@@ -168,11 +168,11 @@ impl SessionCounters {
         };
         match event.phase {
             Phase::Start | Phase::Update => cells
-                .hunch
+                .early
                 .store(pack(event.class, event.progress), Relaxed),
-            Phase::Cancel => cells.hunch.store(0, Relaxed),
+            Phase::Cancel => cells.early.store(0, Relaxed),
             Phase::End => {
-                cells.hunch.store(0, Relaxed);
+                cells.early.store(0, Relaxed);
                 cells.last.store(pack(event.class, event.score), Relaxed);
             }
         }
@@ -216,13 +216,13 @@ impl SessionCounters {
             interruptions,
         };
         let bits = |cell: &AtomicU64| f64::from_bits(cell.load(Relaxed));
-        let actor = |(i, cells): (usize, &ActorCells)| ActorStatus {
+        let actor = |(i, cells): (usize, &PerformerCounters)| PerformerStatus {
             actor: PerformerId(i as u16),
             frames: cells.frames.load(Relaxed),
             time_secs: bits(&cells.time),
             wall_secs: bits(&cells.wall),
             wait_secs: bits(&cells.wait),
-            hunch: unpack(cells.hunch.load(Relaxed)),
+            early: unpack(cells.early.load(Relaxed)),
             last: unpack(cells.last.load(Relaxed)),
             diagnosis: *cells
                 .diagnosis

@@ -1,4 +1,4 @@
-//! What [`Waker`](super::waker::Waker) is made of.
+//! Primitives of [`Waker`](super::waker::Waker).
 
 pub(super) use std::sync::OnceLock;
 pub(super) use std::sync::atomic::{AtomicBool, Ordering};

@@ -1,4 +1,4 @@
-//! How long frames waited: counts that cost next to nothing to keep.
+//! Histogram of frames' waiting times: counts that cost next to nothing to keep.
 
 use std::array;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
@@ -9,7 +9,7 @@ const STEPS: usize = 8;
 const COUNTS: usize = 30 * STEPS;
 const LEAST_SECS: f64 = 1e-6;
 
-/// How many frames waited how long, in steps of a twelfth: what shares of them can be told from.
+/// Number of frames by waiting time, in steps of a twelfth.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LatencyHistogram {
     counts: [u64; COUNTS],
@@ -31,7 +31,7 @@ impl LatencyHistogram {
 
     /// The wait that this share of the frames did not exceed, 0 … 1, seconds, to a twelfth upwards; `None` before the
     /// first frame. Waits below a microsecond count as one.
-    pub fn share_secs(&self, share: f64) -> Option<f64> {
+    pub fn quantile_secs(&self, share: f64) -> Option<f64> {
         let wanted = (self.frames() as f64 * share.clamp(0.0, 1.0))
             .ceil()
             .max(1.0) as u64;
@@ -86,7 +86,7 @@ mod tests {
     #[test]
     fn shares_are_told_to_a_twelfth() {
         let cells = WaitCells::default();
-        assert_eq!(cells.read().share_secs(0.5), None);
+        assert_eq!(cells.read().quantile_secs(0.5), None);
         for n in 1..=1000 {
             cells.add(f64::from(n) * 1e-4);
         }
@@ -94,7 +94,7 @@ mod tests {
         assert_eq!(waits.frames(), 1000);
         for share in [0.001, 0.5, 0.9, 0.99, 1.0] {
             let exact = share * 0.1;
-            let told = waits.share_secs(share).unwrap();
+            let told = waits.quantile_secs(share).unwrap();
             assert!(
                 told >= exact * 0.999 && told <= exact * 1.1,
                 "{share}: {told} for {exact}"
@@ -105,6 +105,8 @@ mod tests {
         cells.add(1e9);
         let more = cells.read().since(&waits);
         assert_eq!(more.frames(), 3);
-        assert!(more.share_secs(0.5).unwrap() < 2e-6 && more.share_secs(1.0).unwrap() > 900.0);
+        assert!(
+            more.quantile_secs(0.5).unwrap() < 2e-6 && more.quantile_secs(1.0).unwrap() > 900.0
+        );
     }
 }

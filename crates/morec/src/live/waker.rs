@@ -5,7 +5,7 @@ use std::time::Duration;
 // By this name, so that the models in `loom/` can put theirs in its place.
 use super::sync::{AtomicBool, OnceLock, Ordering, Thread, current, park_timeout};
 
-/// How long a thread sleeps that missed its waking call, if such a thing should happen.
+/// Longest sleep of a thread that missed its wake-up.
 pub(super) const NAP: Duration = Duration::from_millis(20);
 
 /// Lets one thread sleep until others have something for it.

@@ -11,7 +11,7 @@ use super::feed::{FeedReceiver, QueueItem};
 use super::performer::{EventOptions, Performer};
 use super::status::SessionCounters;
 use super::{
-    Frame, MAX_ACTORS, Model, OverflowPolicy, PerformerId, Recognizer, Rig, wall_now_secs,
+    Frame, MAX_PERFORMERS, Model, OverflowPolicy, PerformerId, Recognizer, Rig, wall_now_secs,
 };
 
 /// Frames of a performer after which its diagnosis is renewed: a quarter of a second at 60 Hz.
@@ -45,7 +45,7 @@ impl RecognizerCache {
     }
 }
 
-/// What became of a worker's turn.
+/// Result of a worker's turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum TurnOutcome {
     /// There was something to do, and there may be more.
@@ -58,7 +58,7 @@ pub(super) enum TurnOutcome {
     Ended,
 }
 
-/// How a worker is run.
+/// Options of a worker.
 #[derive(Debug, Clone)]
 pub(super) struct WorkerOptions {
     pub(super) events: EventOptions,
@@ -72,7 +72,7 @@ pub(super) struct StreamWorker {
     feed: FeedReceiver,
     performers: Vec<Performer>,
     /// Frames that each performer has had.
-    frames: [u64; MAX_ACTORS],
+    frames: [u64; MAX_PERFORMERS],
     cache: Arc<RecognizerCache>,
     broadcast: EventBroadcast,
     cells: Arc<SessionCounters>,
@@ -96,8 +96,8 @@ impl StreamWorker {
         let performer = |i| Performer::new(&cache.model, PerformerId(i as u16), &options.events);
         let worker = Self {
             feed,
-            performers: (0..MAX_ACTORS).map(performer).collect(),
-            frames: [0; MAX_ACTORS],
+            performers: (0..MAX_PERFORMERS).map(performer).collect(),
+            frames: [0; MAX_PERFORMERS],
             cache: cache.clone(),
             broadcast,
             cells: cells.clone(),
@@ -108,7 +108,7 @@ impl StreamWorker {
         (worker, readers)
     }
 
-    /// Whether there is something to do.
+    /// True if there is something to do.
     pub(super) fn is_ready(&self) -> bool {
         self.feed.has_more() || self.feed.is_ended()
     }

@@ -108,7 +108,7 @@ impl Pca {
         (lost / (self.rows as f64 * self.dim() as f64)).sqrt()
     }
 
-    /// What each number of dimensions would keep, `1..=D`.
+    /// Variance kept by each number of dimensions, `1..=D`.
     pub fn quality_table(&self) -> Vec<QualityRow> {
         let all: f64 = self.eigenvalues.iter().sum();
         let mut sum = 0.0;
@@ -171,7 +171,7 @@ impl Pca {
     }
 }
 
-/// What is stored; checked when it comes back.
+/// Stored parts; checked when read.
 #[derive(serde::Serialize, serde::Deserialize)]
 struct PcaParts {
     mean: Vec<f64>,

@@ -93,7 +93,7 @@ impl Moments {
         self.shift(other.count, &other.mean);
     }
 
-    /// What the distance between the means of two parts adds, once their own scatters are in.
+    /// Scatter from the distance between the means of two parts, once their own scatters are in.
     fn shift(&mut self, rows: u64, mean: &[f64]) {
         if rows == 0 {
             return;

@@ -1,6 +1,6 @@
-//! How many dimensions keep how much.
+//! Variance kept by the number of dimensions.
 
-/// How many dimensions to keep.
+/// Number of dimensions to keep.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ComponentCount {

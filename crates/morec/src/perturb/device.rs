@@ -1,4 +1,4 @@
-//! What usual devices make of a motion.
+//! Effects of usual devices on a motion.
 
 use super::Perturbation;
 
@@ -34,7 +34,7 @@ impl Device {
         }
     }
 
-    /// What it does to a motion, in order.
+    /// Perturbations of a motion by the device, in order.
     pub fn perturbations(self) -> Vec<Perturbation> {
         match self {
             Self::Optical => Vec::new(),

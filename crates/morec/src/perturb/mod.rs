@@ -47,9 +47,9 @@ pub enum Perturbation {
 pub const REFERENCE_LEG_METRES: f64 = 0.85;
 /// Standard deviation of the Gaussian that makes slow noise smooth.
 pub const SLOW_SIGMA_SECS: f64 = 0.35;
-/// How long a limb stays hidden.
+/// Duration for which a limb stays hidden.
 pub const OCCLUSION_SECS: f64 = 0.4;
-/// How far off a spike lies.
+/// Distance of a spike.
 pub const SPIKE_METRES: f64 = 1.0;
 
 #[cfg(test)]

@@ -61,7 +61,7 @@ impl Perturbation {
         self.parts().1
     }
 
-    /// What its size counts.
+    /// Unit of its size.
     pub fn unit(&self) -> &'static str {
         self.parts().2
     }

@@ -1,4 +1,4 @@
-//! Which joints of a skeleton play which pivots.
+//! Joints of a skeleton that play pivots.
 
 use crate::clip::{Clip, Skeleton};
 use crate::kinematics::WorldPose;

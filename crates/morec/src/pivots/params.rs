@@ -1,6 +1,6 @@
-//! How poses become rows.
+//! Parameters of pose rows.
 
-/// What stands for the root.
+/// Representation of the root.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RootForm {
@@ -12,7 +12,7 @@ pub enum RootForm {
     Body,
 }
 
-/// Which of the two quaternions of a rotation a row holds. Either way a frame's signs depend on it and on frames
+/// Selects one of the two quaternions of a rotation for a row. Either way a frame's signs depend on it and on frames
 /// before it, never on later ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -30,7 +30,7 @@ pub enum QuaternionSign {
 pub struct PoseParams {
     /// Rows a second; every source is resampled to it. The root's Δ is one such frame.
     pub rate_hz: f64,
-    /// What stands for the root.
+    /// Representation of the root.
     pub root: RootForm,
     /// Signs of the pivots below the root; the root's turn is near none and always has `w ≥ 0`.
     pub signs: QuaternionSign,

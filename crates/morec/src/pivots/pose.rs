@@ -1,4 +1,4 @@
-//! What pose rows need of one frame.
+//! Input of pose rows from one frame.
 
 use crate::math::Quat;
 

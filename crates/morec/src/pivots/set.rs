@@ -1,4 +1,4 @@
-//! Which pivots describe a pose.
+//! Pivots that describe a pose.
 
 use crate::roles::Role;
 
@@ -7,7 +7,7 @@ use super::MAX_PIVOTS;
 /// One joint that counts, and how to find it on a skeleton.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Pivot {
-    /// What it is called.
+    /// Name of the pivot.
     pub name: String,
     /// Name of its parent pivot, which comes before it; `None` for the root alone.
     pub parent: Option<String>,
@@ -88,7 +88,7 @@ impl PivotSet {
         self.pivots.len()
     }
 
-    /// Whether there is no pivot; never so.
+    /// True if there is no pivot; never so.
     pub fn is_empty(&self) -> bool {
         self.pivots.is_empty()
     }

@@ -27,7 +27,7 @@ pub struct PoseStream {
 struct RowMaker {
     pivots: usize,
     params: PoseParams,
-    /// Whether a grid frame of this stretch waits for the next.
+    /// True if a grid frame of this stretch waits for the next.
     waits: bool,
     /// That frame, with the signs it goes into its row with.
     waiting: Locals,
@@ -65,7 +65,7 @@ impl PoseStream {
         self.grid.origin_secs()
     }
 
-    /// Whether a pose at `time_secs` would begin a new stretch, so that the caller can
+    /// True if a pose at `time_secs` would begin a new stretch, so that the caller can
     /// [`finish`](PoseStream::finish) the old one first.
     pub fn breaks_at(&self, time_secs: f64) -> bool {
         self.grid.breaks_at(time_secs)

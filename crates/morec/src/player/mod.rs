@@ -15,11 +15,11 @@ use crate::math::Vec3;
 /// A stretch of a clip with a name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mark {
-    /// What happens there.
+    /// Name of the motion.
     pub name: String,
-    /// Where it starts, seconds from the clip's beginning.
+    /// Start, seconds from the clip's beginning.
     pub start_secs: f64,
-    /// Where it stops.
+    /// Stop, seconds from the clip's beginning.
     pub stop_secs: f64,
 }
 
@@ -28,9 +28,9 @@ pub struct Mark {
 pub struct Played<'a> {
     /// The motion.
     pub take: &'a Take,
-    /// What somebody labelled.
+    /// Labels of the clip.
     pub labels: Vec<Mark>,
-    /// What was recognised.
+    /// Detections in the clip.
     pub detections: Vec<Mark>,
 }
 

@@ -42,7 +42,7 @@ impl PlotAxis {
         }
     }
 
-    /// Where `value` is on the paper.
+    /// Position of `value` on the paper.
     pub fn at(&self, value: f64) -> f64 {
         self.low + (value - self.from) / (self.to - self.from) * (self.high - self.low)
     }

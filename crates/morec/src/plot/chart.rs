@@ -49,7 +49,7 @@ pub struct Regions {
     pub columns: usize,
     /// The kind of each cell, an index into `names`.
     pub kinds: Vec<Option<u8>>,
-    /// What the kinds are called.
+    /// Names of the kinds.
     pub names: Vec<String>,
 }
 

@@ -73,7 +73,7 @@ impl HeatMap {
         self
     }
 
-    /// What the columns stand for: from the left edge of the first to the right edge of the last.
+    /// Range of the columns: from the left edge of the first to the right edge of the last.
     #[must_use]
     pub fn x_range(mut self, from: f64, to: f64) -> Self {
         self.x_range = Some((from, to));

@@ -17,7 +17,7 @@ pub struct Bar {
     pub from_secs: f64,
     /// Seconds.
     pub to_secs: f64,
-    /// Which kind, an index into the names of [`LaneChart::new`]; decides the colour.
+    /// Kind of the bar, an index into the names of [`LaneChart::new`]; decides the colour.
     pub kind: usize,
 }
 
@@ -113,7 +113,7 @@ impl LaneChart {
         ));
     }
 
-    /// Where each kind that is there stands in the legend.
+    /// Position of each kind that occurs in the legend.
     fn legend(&self, first_y: f64) -> Vec<(f64, f64, usize)> {
         let (mut at, mut places) = ((LEFT, first_y), vec![]);
         for (kind, name) in self.kinds.iter().enumerate() {

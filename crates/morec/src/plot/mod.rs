@@ -27,7 +27,7 @@ pub fn colour(i: usize) -> String {
     format!("hsl({hue:.0} 62% {lightness}%)")
 }
 
-/// What every picture starts with: size, style, title.
+/// Opening of every picture: size, style, title.
 fn open(out: &mut String, width: f64, height: f64, title: &str) {
     out.push_str(&format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"plot\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" \

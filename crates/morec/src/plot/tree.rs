@@ -12,7 +12,7 @@ const TOP: f64 = 40.0;
 /// A node as it is drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TreeBox {
-    /// What stands in it.
+    /// Lines of text in it.
     pub lines: Vec<String>,
     /// Its children, as places in the list of nodes: each behind the node itself, and nobody else's child.
     pub children: Vec<usize>,

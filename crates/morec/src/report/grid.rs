@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::html::Text;
 use super::palette::Palette;
-use crate::eval::{Timeline, TruthVerdict};
+use crate::eval::{GroundTruthVerdict, Timeline};
 
 /// A clip up to this long, with at most one sample, is short.
 const SHORT_SECS: f64 = 15.0;
@@ -77,9 +77,9 @@ impl<'a> Square<'a> {
     fn new(timeline: &'a Timeline) -> Self {
         let first_found = timeline.founds.first().map(|(f, _)| f.class.as_str());
         let (found, right, mark) = match timeline.truths.first() {
-            Some((truth, TruthVerdict::Right)) => (Some(truth.class.as_str()), true, ""),
-            Some((_, TruthVerdict::Mistaken(other))) => (Some(other.as_str()), false, "✗"),
-            Some((_, TruthVerdict::Missed)) => (None, false, ""),
+            Some((truth, GroundTruthVerdict::Right)) => (Some(truth.class.as_str()), true, ""),
+            Some((_, GroundTruthVerdict::Mistaken(other))) => (Some(other.as_str()), false, "✗"),
+            Some((_, GroundTruthVerdict::Missed)) => (None, false, ""),
             None => (
                 first_found,
                 first_found.is_none(),

@@ -26,14 +26,14 @@ use palette::Palette;
 
 pub use notes::learning_notes;
 
-/// What trained a class, for the notes.
+/// Training data of a class, for the notes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TrainedClass {
     /// Its name.
     pub class: String,
-    /// How many samples trained it.
+    /// Number of samples that trained it.
     pub samples: usize,
-    /// How many people made them, if that is known.
+    /// Number of people who made them, if known.
     pub people: Option<usize>,
 }
 
@@ -42,13 +42,13 @@ pub struct TrainedClass {
 pub struct Report<'a> {
     /// The heading.
     pub title: &'a str,
-    /// How this came about, as pairs of name and value: command, data, method, date.
+    /// Origin of the report, as pairs of name and value: command, data, method, date.
     pub about: &'a [(String, String)],
     /// The measures.
     pub evaluation: &'a Evaluation,
-    /// What became of samples and detections, stream by stream.
+    /// Verdicts on samples and detections, stream by stream.
     pub timelines: &'a [Timeline],
-    /// What trained the classes; empty if unknown.
+    /// Training data of the classes; empty if unknown.
     pub training: &'a [TrainedClass],
     /// Samples that were missed, and why; empty if nobody looked.
     pub misses: &'a [Miss],

@@ -8,7 +8,7 @@ const FEW_SAMPLES: usize = 5;
 /// A median boundary error of at least this is worth a note.
 const NOTABLE_BIAS_SECS: f64 = 0.2;
 
-/// What went wrong and what would help, the most frequent first, a sentence each. Never empty.
+/// Mistakes and remedies, the most frequent first, a sentence each. Never empty.
 ///
 /// A class is said to need more people or samples only where it also makes mistakes: one person's two samples
 /// that are always recognised need nothing.

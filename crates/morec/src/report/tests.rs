@@ -1,4 +1,4 @@
-//! What a reader of the report must be able to rely on.
+//! Properties that a reader of the report may rely on.
 
 use super::*;
 use crate::eval::{ClipDetection, GroundTruth, StreamInfo, timelines};

@@ -3,7 +3,7 @@
 use super::grid;
 use super::html::Text;
 use super::palette::Palette;
-use crate::eval::{ClipDetection, FoundVerdict, GroundTruth, Timeline, TruthVerdict};
+use crate::eval::{ClipDetection, DetectionVerdict, GroundTruth, GroundTruthVerdict, Timeline};
 
 const WIDTH: f64 = 1120.0;
 /// Room for the lanes' names on the left, and a little on the right.
@@ -113,12 +113,12 @@ fn summary(timeline: &Timeline) -> String {
     let lost = timeline
         .truths
         .iter()
-        .filter(|(_, v)| *v != TruthVerdict::Right)
+        .filter(|(_, v)| *v != GroundTruthVerdict::Right)
         .count();
     let alarms = timeline
         .founds
         .iter()
-        .filter(|(_, v)| *v == FoundVerdict::FalseAlarm)
+        .filter(|(_, v)| *v == DetectionVerdict::FalseAlarm)
         .count();
     format!(
         "{} labelled, {lost} not recognised, {found} found, {alarms} false",
@@ -204,14 +204,14 @@ fn push_row(out: &mut String, timeline: &Timeline, window: TimeWindow, palette: 
 fn push_truth(
     out: &mut String,
     truth: &GroundTruth,
-    verdict: &TruthVerdict,
+    verdict: &GroundTruthVerdict,
     window: TimeWindow,
     palette: &Palette,
 ) {
     let (class, mark, text) = match verdict {
-        TruthVerdict::Right => ("bar", "", "recognised".to_owned()),
-        TruthVerdict::Mistaken(other) => ("bar mistaken", "✗", format!("taken for {other}")),
-        TruthVerdict::Missed => ("bar missed", "○", "missed".to_owned()),
+        GroundTruthVerdict::Right => ("bar", "", "recognised".to_owned()),
+        GroundTruthVerdict::Mistaken(other) => ("bar mistaken", "✗", format!("taken for {other}")),
+        GroundTruthVerdict::Missed => ("bar missed", "○", "missed".to_owned()),
     };
     let title = format!(
         "{} {:.2}–{:.2} s: {text}",
@@ -231,15 +231,15 @@ fn push_truth(
 fn push_found(
     out: &mut String,
     found: &ClipDetection,
-    verdict: FoundVerdict,
+    verdict: DetectionVerdict,
     window: TimeWindow,
     palette: &Palette,
 ) {
     let (class, mark, text) = match verdict {
-        FoundVerdict::Right => ("bar", "", "right"),
-        FoundVerdict::Loose => ("bar loose", "~", "right class, but badly placed or twice"),
-        FoundVerdict::WrongClass => ("bar wrong", "✗", "wrong class"),
-        FoundVerdict::FalseAlarm => ("bar alarm", "!", "false alarm"),
+        DetectionVerdict::Right => ("bar", "", "right"),
+        DetectionVerdict::Loose => ("bar loose", "~", "right class, but badly placed or twice"),
+        DetectionVerdict::WrongClass => ("bar wrong", "✗", "wrong class"),
+        DetectionVerdict::FalseAlarm => ("bar alarm", "!", "false alarm"),
     };
     let mut title = format!(
         "{} {:.2}–{:.2} s: {text}",

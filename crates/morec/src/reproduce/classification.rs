@@ -19,10 +19,10 @@ use crate::train::thesis::{Estimated, SvrdmOptions, train_svrdm};
 
 use super::{Picture, ReproduceError, Setting, Study, frames_of, rows_of};
 
-/// What became of samples (Eq. 5.1).
+/// Classification rates of samples (Eq. 5.1).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Rates {
-    /// How many there are.
+    /// Number of samples.
     pub samples: usize,
     /// Share given their class.
     pub p_c: f64,
@@ -35,7 +35,7 @@ pub struct Rates {
 /// One half split.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SplitResult {
-    /// How the tree was trained.
+    /// Setting of the tree's training.
     pub setting: Setting,
     /// Seed of the split.
     pub seed: u64,
@@ -55,7 +55,7 @@ pub struct SplitResult {
     pub index_bytes: usize,
     /// The branches.
     pub branches: Vec<BranchReport>,
-    /// How thresholds were estimated, if they were.
+    /// Estimation of thresholds, if they were estimated.
     pub estimated: Option<Estimated>,
 }
 

@@ -15,9 +15,10 @@ use super::{ReproduceError, Study, frames_of, rows_of};
 /// Clusters at one τ.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Clustering {
-    /// How alike two samples must be.
+    /// Required likeness of two samples.
     pub tau: f64,
-    /// Whether samples are centred on the database's mean and reduced to 16 dimensions (§4.2), or taken as they are.
+    /// True if samples are centred on the database's mean and reduced to 16 dimensions (§4.2), false if taken as they
+    /// are.
     pub centred: bool,
     /// Samples.
     pub samples: usize,

@@ -30,7 +30,7 @@ pub use page::page;
 pub use segmentation::Segmented;
 pub use streams::Streamed;
 
-/// What to work on.
+/// Data of the study.
 #[derive(Debug, Clone)]
 pub struct Study<'a> {
     /// Labelled clips; clips named as background too.
@@ -43,7 +43,7 @@ pub struct Study<'a> {
     pub unknown: &'a [TrainClip],
     /// Seeds of the half splits.
     pub seeds: &'a [u64],
-    /// How to train.
+    /// Options of training, by setting.
     pub settings: &'a [(Setting, SvrdmOptions)],
 }
 
@@ -78,13 +78,13 @@ impl Setting {
 /// A picture to be kept beside the page.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Picture {
-    /// What its file is called, without ending.
+    /// Name of its file, without ending.
     pub name: String,
-    /// What it shows.
+    /// Caption of the picture.
     pub caption: String,
     /// The picture.
     pub svg: String,
-    /// What it is drawn from, as tab-separated text with a header, where that is not in [`Reproduction`].
+    /// Data of the picture, as tab-separated text with a header, where that is not in [`Reproduction`].
     pub table: Option<String>,
 }
 

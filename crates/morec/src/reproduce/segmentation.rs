@@ -19,7 +19,7 @@ pub struct Segmented {
     pub secs: f64,
     /// Labelled samples in it.
     pub samples: usize,
-    /// Where it was cut.
+    /// Positions of the cuts.
     pub cuts_secs: Vec<f64>,
     /// Labelled samples that have a segment for themselves: the two share more than half of the longer one.
     pub alone: usize,

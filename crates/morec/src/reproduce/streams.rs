@@ -18,7 +18,7 @@ use super::{Picture, ReproduceError, Setting, Study, rows_of};
 /// One half split.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Streamed {
-    /// How the recogniser was trained.
+    /// Setting of the recogniser's training.
     pub setting: Setting,
     /// Seed of the split.
     pub seed: u64,
@@ -122,7 +122,7 @@ fn map_picture(
     let mut engine = SvrdmEngine::new(model).map_err(|e| ReproduceError::Other(e.to_string()))?;
     let mut cells = ConfidenceMap::new();
     rows.iter().for_each(|row| {
-        engine.push_watched(
+        engine.push_with_observer(
             row,
             &mut |window, cell| cells.record(window, cell),
             &mut |_| (),

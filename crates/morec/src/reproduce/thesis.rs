@@ -1,4 +1,4 @@
-//! What the thesis prints, to stand beside what comes out.
+//! The thesis's own numbers, for comparison with ours.
 
 /// τ, clusters found, pairs TP, FP, FN, TN (Tables 5.2 to 5.4).
 pub(super) const CLUSTERS: [(f64, usize, [u64; 4]); 3] = [

@@ -59,13 +59,13 @@ pub(super) enum NameMeaning {
 }
 
 impl NameMeaning {
-    /// Whether the word belongs to the leg.
+    /// True if the word belongs to the leg.
     pub(super) fn is_leg(self) -> bool {
         use NameMeaning::*;
         matches!(self, Hip | HipJoint | Thigh | Shin | Leg | Foot | Toe)
     }
 
-    /// Whether the word belongs to the arm.
+    /// True if the word belongs to the arm.
     pub(super) fn is_arm(self) -> bool {
         use NameMeaning::*;
         matches!(

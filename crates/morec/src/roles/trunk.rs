@@ -138,7 +138,7 @@ impl Trunk<'_> {
         Some(top)
     }
 
-    /// Whether a single joint above the shoulders is as low as a neck.
+    /// True if a single joint above the shoulders is as low as a neck.
     fn is_neck(&self, joint: usize) -> bool {
         let measured = || {
             let up = self.pairs.upwards(self.tree)?;

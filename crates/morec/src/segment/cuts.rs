@@ -7,29 +7,29 @@ use super::{PassDirections, PpcaParams, SegmentError};
 use crate::features::Rows;
 use crate::pca::{Eigen, Moments};
 
-/// Where one behaviour ends and the next begins.
+/// The boundary between two behaviours.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Cut {
     /// First row of the new segment.
     pub row: usize,
     /// Its time.
     pub secs: f64,
-    /// Whether the pass from start to end found it.
+    /// True if the pass from start to end found it.
     pub forward: bool,
-    /// Whether the pass from end to start found it.
+    /// True if the pass from end to start found it.
     pub backward: bool,
 }
 
 /// A value of `H`: how badly the rows from `secs` on (before it, in the backward pass) fit the segment before them.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct MisfitSample {
-    /// Where the look-ahead window begins.
+    /// Start of the look-ahead window.
     pub secs: f64,
     /// Mean Mahalanobis distance; about `n` for rows that fit.
     pub value: f64,
 }
 
-/// What [`segment`] found.
+/// Result of [`segment`].
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Segmentation {
     /// In the order of their times.

@@ -29,9 +29,9 @@ impl Default for CycleParams {
 pub struct Cycles {
     /// Length of one, seconds.
     pub period_secs: f64,
-    /// How many the stretch holds: its length over the period.
+    /// Number of repetitions in the stretch: its length over the period.
     pub count: f64,
-    /// How alike one is to the next, 1 for the same.
+    /// Correlation of one with the next, 1 for the same.
     pub correlation: f64,
 }
 
@@ -41,7 +41,7 @@ impl Cycles {
         self.count.round().max(1.0) as usize
     }
 
-    /// Where repetitions begin and end if a stretch of so many seconds is divided evenly: one more than there are.
+    /// Bounds of repetitions if a stretch of so many seconds is divided evenly: one more than there are.
     pub fn bounds(&self, secs: f64) -> Vec<f64> {
         let n = self.whole();
         (0..=n).map(|i| secs * i as f64 / n as f64).collect()

@@ -15,7 +15,7 @@ use super::windows::window_rows;
 pub struct KernelParams {
     /// Length of the windows whose statistics are compared.
     pub window_secs: f64,
-    /// What a cut costs; a segment of rows at right angles costs one a row.
+    /// Cost of a cut; a segment of rows at right angles costs one a row.
     pub penalty: f64,
     /// No segment is shorter.
     pub least_secs: f64,
@@ -55,7 +55,7 @@ impl KernelParams {
     }
 }
 
-/// Where a clip's behaviour changes, seconds from the first row, from feature rows made with `features`.
+/// Change points of a clip's behaviour, seconds from the first row, from feature rows made with `features`.
 /// O(windows · values) where segments come up regularly, O(windows²) at worst.
 ///
 /// # Errors

@@ -1,6 +1,6 @@
 //! The figures of segmentation.
 
-/// Which way a clip is gone through.
+/// Direction in which a clip is passed through.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PassDirections {
@@ -14,7 +14,7 @@ pub enum PassDirections {
     Both,
 }
 
-/// How a clip is cut. Times are scaled with the rate of the rows.
+/// Parameters of cutting. Times are scaled with the rate of the rows.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct PpcaParams {
     /// `K₀`: what a segment's first model is made of; no segment is shorter. 150 frames at 120 Hz (thesis §4.3).
@@ -31,7 +31,7 @@ pub struct PpcaParams {
     pub rise: f64,
     /// A peak counts once `H` has fallen from it by this share of its rise.
     pub fall: f64,
-    /// Which way to go.
+    /// Directions of the passes.
     pub directions: PassDirections,
     /// A backward cut this near to a forward one is the same. Half of `T`.
     pub same_secs: f64,

@@ -15,7 +15,7 @@ pub(super) struct Values {
     pub space: usize,
 }
 
-/// What [`PpcaParams`] are in rows.
+/// [`PpcaParams`] in rows.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PassLengths {
     pub first: usize,
@@ -34,7 +34,7 @@ impl PassLengths {
     }
 }
 
-/// What one pass found; places are rows from where it began.
+/// Result of one pass; places are rows from its start.
 #[derive(Debug, Default)]
 pub(super) struct Pass {
     /// `(place, H)`: the rows from `place` on, against the segment before it.

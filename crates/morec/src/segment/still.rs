@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::features::{ALL_BONES, BoneSet, FeatureParams, Rows};
 
-/// What kind of stillness.
+/// Kind of stillness.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StillKind {

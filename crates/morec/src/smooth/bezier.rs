@@ -7,7 +7,7 @@ pub(crate) type ChannelValue = Vector4<f64>;
 /// A tangent: of a rotation in the frame of its key, of a position as it is.
 pub(super) type Tangent = Vector3<f64>;
 
-/// What the values of a channel are.
+/// Kind of a channel's values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ChannelKind {
@@ -70,7 +70,7 @@ impl ChannelKind {
         }
     }
 
-    /// What the origin is when seen from itself.
+    /// The origin as seen from itself.
     pub(super) fn identity(self) -> ChannelValue {
         match self {
             ChannelKind::Position => ChannelValue::zeros(),
@@ -78,7 +78,7 @@ impl ChannelKind {
         }
     }
 
-    /// How a tangent at `key` moves the value, in the coordinates that `key` is given in: 4 × 3, columns
+    /// Derivative of the value by a tangent at `key`, in the coordinates that `key` is given in: 4 × 3, columns
     /// orthonormal.
     pub(super) fn tangents(self, key: &ChannelValue) -> Matrix4x3<f64> {
         match self {

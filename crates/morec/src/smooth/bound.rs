@@ -22,12 +22,12 @@ const TIGHTER: f64 = 0.5;
 /// Rounds of looking and fitting; ten or twenty are usual.
 const ROUNDS: usize = 400;
 
-/// What each channel may be off by, to begin with.
+/// Initial tolerance of each channel.
 pub(super) struct Thresholds {
     angle_rad: f64,
     position: f64,
     bound: Option<f64>,
-    /// How far the furthest joint that hangs on each is from it at most, in the clip's unit.
+    /// Largest distance of a joint that hangs on each, in the clip's unit.
     reach: Vec<f64>,
 }
 
@@ -116,7 +116,7 @@ struct Blame {
 struct Tightening<'a> {
     clip: &'a Clip,
     channels: &'a mut [ChannelFit],
-    /// What the curves give at the clip's frames.
+    /// Values of the curves at the clip's frames.
     fitted: Clip,
     /// Frames at which `fitted` has changed since they were looked at.
     changed: Vec<bool>,

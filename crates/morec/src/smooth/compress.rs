@@ -116,7 +116,7 @@ fn channels(clip: &Clip, params: &SmoothParams) -> Vec<ChannelFit> {
     channels
 }
 
-/// How far apart the quaternions of two rotations are that differ by an angle.
+/// Distance between the quaternions of two rotations that differ by an angle.
 pub(super) fn chord(angle_rad: f64) -> f64 {
     2.0 * (angle_rad / 4.0).sin()
 }

@@ -53,7 +53,7 @@ impl Curve {
         self.joint
     }
 
-    /// What its values are.
+    /// Kind of its values.
     pub fn kind(&self) -> ChannelKind {
         self.lattice.kind
     }
@@ -63,7 +63,7 @@ impl Curve {
         self.pieces.len() + 1
     }
 
-    /// Whether it is a single key.
+    /// True if it is a single key.
     pub fn is_constant(&self) -> bool {
         self.pieces.is_empty()
     }

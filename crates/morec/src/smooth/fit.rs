@@ -14,7 +14,7 @@ pub(super) struct Stretch<'a> {
     samples: &'a [ChannelValue],
     /// The last key.
     end: ChannelValue,
-    /// What a tangent at the last key does.
+    /// Derivative by a tangent at the last key.
     end_tangents: Matrix4x3<f64>,
 }
 
@@ -32,7 +32,7 @@ struct NormalEquations {
 /// The sample that a curve misses most.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Worst {
-    /// Which, from the start of the stretch.
+    /// Its number, from the start of the stretch.
     pub index: usize,
     /// Squared distance over the squared distance allowed there.
     pub ratio: f64,
@@ -115,7 +115,7 @@ impl<'a> Stretch<'a> {
         self.end_tangents.fixed_rows::<3>(0).into()
     }
 
-    /// Where the curve with these tangents is furthest from the samples, against `allowed(i)`, the squared
+    /// The place where the curve with these tangents is furthest from the samples, against `allowed(i)`, the squared
     /// distance that sample `i` may lie from it. Both ends are looked at as well. O(samples).
     pub fn worst(&self, (a, b): (Tangent, Tangent), allowed: impl Fn(usize) -> f64) -> Worst {
         let p0 = self.kind.identity();

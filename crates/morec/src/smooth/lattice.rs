@@ -45,10 +45,10 @@ impl StepSize {
     }
 }
 
-/// How a channel's control points are rounded.
+/// Rounding of a channel's control points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Lattice {
-    /// What the values are.
+    /// Kind of the values.
     pub kind: ChannelKind,
     /// Step of keys.
     pub key: StepSize,

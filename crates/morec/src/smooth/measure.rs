@@ -1,4 +1,4 @@
-//! How far a compressed clip lies from its source, frame by frame.
+//! Distance of a compressed clip from its source, frame by frame.
 
 use super::CompressedClip;
 use crate::clip::Clip;
@@ -114,7 +114,7 @@ impl Errors {
 }
 
 impl CompressedClip {
-    /// How far the curves lie from `clip`, at each of its frames; `None` if its joints, tracks or number of frames
+    /// Distance of the curves from `clip` at each of its frames; `None` if its joints, tracks or number of frames
     /// are not those of the clip that was compressed. O(frames × joints).
     pub fn measure(&self, clip: &Clip) -> Option<Errors> {
         let same = clip.frames == self.frames

@@ -65,7 +65,7 @@ pub struct CompressedClip {
 }
 
 impl CompressedClip {
-    /// What the clip is called.
+    /// Name of the clip.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -100,7 +100,7 @@ impl CompressedClip {
         &self.params
     }
 
-    /// How far it lies from the clip it was made of, measured when it was made.
+    /// Distance from the clip it was made of, measured when it was made.
     pub fn errors(&self) -> &Errors {
         &self.errors
     }

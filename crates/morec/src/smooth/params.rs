@@ -1,4 +1,4 @@
-//! How far a compressed clip may lie from what it was made of.
+//! Allowed distance of a compressed clip from its source.
 
 /// Thresholds of [`compress`](super::compress).
 ///
@@ -30,7 +30,7 @@ impl Default for SmoothParams {
 }
 
 impl SmoothParams {
-    /// What a database keeps: every angle within half a degree and every joint within five millimetres of where it
+    /// The quality of databases: every angle within half a degree and every joint within five millimetres of where it
     /// was in the world.
     pub fn database() -> Self {
         Self {
@@ -39,7 +39,7 @@ impl SmoothParams {
         }
     }
 
-    /// Whether every figure is within its range.
+    /// Checks that every number is within its range.
     pub(super) fn check(&self) -> Result<(), SmoothError> {
         let figures = [
             ("angle_rad", Some(self.angle_rad), 1e-6, 1.0),
@@ -72,13 +72,13 @@ pub enum SmoothError {
     /// A threshold beyond all use.
     #[error("{name}: expected {least:e} to {most:e}, found {found:e}")]
     Param {
-        /// Which.
+        /// Name of the parameter.
         name: &'static str,
         /// The least it may be.
         least: f64,
         /// The most it may be.
         most: f64,
-        /// What it was.
+        /// The value found.
         found: f64,
     },
     /// Tables whose sizes disagree, or a rate beyond all use.
@@ -95,7 +95,7 @@ pub enum SmoothError {
         name: String,
         /// The frame.
         frame: usize,
-        /// What is still allowed, in the clip's unit of length.
+        /// The largest value allowed, in the clip's unit of length.
         most: f64,
     },
     /// The bound on world positions was not reached, however small the errors of single joints were made.
@@ -105,7 +105,7 @@ pub enum SmoothError {
     Bound {
         /// The bound.
         bound_metres: f64,
-        /// What was reached.
+        /// The distance reached.
         reached_metres: f64,
     },
     /// The listener said so.

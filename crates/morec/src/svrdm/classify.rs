@@ -9,17 +9,17 @@ use super::{
     ClassCandidates, Descent, FeatureExtraction, Gram, ModelError, SegmentScoring, SvrdmModel,
 };
 
-/// What the tree says of a cut-out sample.
+/// Classification of a cut-out sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Classified {
     /// The class at the leaf.
     pub class: ClassId,
     /// The least output on the way there; rejected if below `T`.
     pub output: f64,
-    /// How like the class's samples these frames are, 0 … 1: confidence without the prior on length, as somebody else
+    /// Likeness of these frames to the class's samples, 0 … 1: confidence without the prior on length, as somebody else
     /// has said where the sample begins and ends.
     pub likeness: f64,
-    /// How confident the recogniser would be of a segment of just these frames (Eq. 4.5).
+    /// Confidence of the recogniser in a segment of just these frames (Eq. 4.5).
     pub confidence: f64,
 }
 

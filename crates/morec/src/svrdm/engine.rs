@@ -12,7 +12,7 @@ use super::{
 /// A motion recognised, in frames of the present stretch at the model's rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FrameDetection {
-    /// What it is.
+    /// Class of the motion.
     pub class: ClassId,
     /// First frame.
     pub start: i64,
@@ -92,12 +92,12 @@ impl SvrdmEngine {
     ///
     /// Every [`chunk_frames`](super::SvrdmParams::chunk_frames)th row completes a chunk and does all the work.
     pub fn push(&mut self, row: &[f32], out: &mut impl FnMut(FrameDetection)) {
-        self.push_watched(row, &mut |_, _| (), out);
+        self.push_with_observer(row, &mut |_, _| (), out);
     }
 
     /// The same, and calls `watch` with every segment that was looked at: the map of Fig. 4.3, cell by cell. See
     /// [`ConfidenceMap`](super::ConfidenceMap).
-    pub fn push_watched(
+    pub fn push_with_observer(
         &mut self,
         row: &[f32],
         watch: &mut impl FnMut(Window, Cell),

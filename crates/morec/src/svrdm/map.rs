@@ -23,7 +23,7 @@ impl ConfidenceMap {
         }
     }
 
-    /// What was kept, by end and then from the shortest to the longest.
+    /// Cells that were kept, by end and then from the shortest to the longest.
     pub fn cells(&self) -> &[(Window, Cell)] {
         &self.cells
     }

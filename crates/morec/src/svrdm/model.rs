@@ -14,13 +14,13 @@ use super::{MAX_PROFILE_FRAMES, Node, SvrdmParams, Tree};
 pub struct SvrdmModel {
     /// The classes; a [`ClassId`] is an index into this.
     pub classes: Vec<ClassInfo>,
-    /// Which joints make a pose row.
+    /// Joints of a pose row.
     pub pivots: PivotSet,
-    /// How rows are made of poses; their rate is the model's.
+    /// Parameters of pose rows; their rate is the model's.
     pub pose: PoseParams,
     /// From `D` values to `r`.
     pub pca: Pca,
-    /// How the stages work.
+    /// Parameters of the stages.
     pub params: SvrdmParams,
     /// Sign vectors (thesis, Alg. 5): `k × r`, one after the other.
     pub signs: Vec<f64>,
@@ -43,7 +43,7 @@ pub struct Profiles {
     pub width: usize,
     /// All values end to end.
     pub values: Vec<f32>,
-    /// Where values were rounded to multiples of a step, as a file of whole rows keeps them: for each column, its step.
+    /// Step of each column, if values were rounded to multiples of it, as in a file of whole rows.
     #[serde(default)]
     pub step: Option<Vec<f32>>,
     /// For each profile, its length in rows.
@@ -104,12 +104,12 @@ impl Profiles {
         }
     }
 
-    /// How many.
+    /// Number of samples.
     pub fn len(&self) -> usize {
         self.lengths.len()
     }
 
-    /// Whether there is none.
+    /// True if there is none.
     pub fn is_empty(&self) -> bool {
         self.lengths.is_empty()
     }
@@ -154,11 +154,11 @@ pub enum ModelError {
     /// A table has another size than others ask for.
     #[error("{what}: expected {expected}, found {found}")]
     Size {
-        /// Which table, and of what.
+        /// Name of the table.
         what: &'static str,
-        /// What the others ask for.
+        /// Number that the other tables ask for.
         expected: usize,
-        /// What it has.
+        /// Number found.
         found: usize,
     },
     /// A number that must be sensible is not.

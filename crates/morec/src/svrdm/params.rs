@@ -12,7 +12,7 @@ const MAX_CHUNKS: usize = 64;
 /// Most chunks that a segment may wait for its report.
 const MAX_WAIT_CHUNKS: usize = 256;
 
-/// What a feature vector is made of eigenvectors by.
+/// Scaling of eigenvectors in a feature vector.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Scaling {
@@ -24,7 +24,7 @@ pub enum Scaling {
     UnitRange,
 }
 
-/// What is subtracted from a segment's rows before its directions are sought.
+/// Subtraction from a segment's rows before its directions are sought.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Centring {
@@ -35,7 +35,7 @@ pub enum Centring {
     Segment,
 }
 
-/// What an edit distance is divided by.
+/// Divisor of an edit distance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Normalisation {
@@ -46,7 +46,7 @@ pub enum Normalisation {
     LeastRatio,
 }
 
-/// What a segment is compared with its class's samples by.
+/// Distance between a segment and a class's samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SegmentDistance {
@@ -86,7 +86,7 @@ impl SegmentDistance {
     }
 }
 
-/// How segments are formed, described, scored and tracked. A model keeps the values it was trained with.
+/// Parameters of segments: forming, description, scoring, tracking. A model keeps the values it was trained with.
 ///
 /// Chunks are counted at the model's rate: 16 frames at 120 Hz are 0.133 s.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -100,21 +100,21 @@ pub struct SvrdmParams {
     pub max_chunks: usize,
     /// Eigenvectors in a feature vector, `k`. 2 (thesis, §4.5).
     pub eigenvectors: usize,
-    /// How eigenvectors make a feature vector. `UnitRange` (thesis, §5.3).
+    /// Scaling of eigenvectors in a feature vector. `UnitRange` (thesis, §5.3).
     pub scaling: Scaling,
-    /// What segments are centred on. `Database` (thesis, §4.6.2).
+    /// Centre of segments. `Database` (thesis, §4.6.2).
     pub centring: Centring,
     /// A branch of the tree is followed if its machine says at least this, `T`. 0.92 (thesis, §4.6.5).
     pub accept: f64,
-    /// Where both machines of a branch accept: both ways, so that up to four classes are scored (thesis, §4.7.2), or
+    /// If both machines of a branch accept: both ways, so that up to four classes are scored (thesis, §4.7.2), or
     /// that of the larger output (§4.6.5). `Larger`.
     pub descent: Descent,
-    /// What segments and samples are compared by. `Profiles` (thesis, §3.8).
+    /// Distance between segments and samples. `Profiles` (thesis, §3.8).
     pub comparison: SegmentDistance,
     /// ε: profile values match if they differ by at most this many standard deviations of all training profiles.
     /// 0.25 (thesis, §3.8).
     pub tolerance: f64,
-    /// What edit distances are divided by. `CheapestPath` (thesis, §4.6.5).
+    /// Divisor of edit distances. `CheapestPath` (thesis, §4.6.5).
     pub normalisation: Normalisation,
     /// Standard deviation of the length prior, as a share of the class's mean length. 0.25 (thesis, Eq. 4.5).
     pub prior_spread: f64,

@@ -1,4 +1,4 @@
-//! How certain it is that a segment is a class (thesis, §4.6.5, Eq. 4.5).
+//! Confidence that a segment is a class (thesis, §4.6.5, Eq. 4.5).
 
 use crate::classes::ClassId;
 
@@ -36,7 +36,7 @@ struct OfClass {
     nearest: usize,
 }
 
-/// What distances are taken with.
+/// Measure of distances.
 #[derive(Debug, Clone)]
 enum Measure {
     Values(Edr, Normalisation),
@@ -97,7 +97,7 @@ impl SegmentScoring {
         })
     }
 
-    /// How certain it is that a segment of `frames` frames with this profile is `class`; 0 if less than the least
+    /// Confidence that a segment of `frames` frames with this profile is `class`; 0 if less than the least
     /// confidence that counts. O(rows of the profile · rows of the class's profiles), no allocation.
     pub fn score(&mut self, class: ClassId, profile: &[f32], frames: usize) -> f64 {
         if self.most(class, frames) < self.min_confidence {
@@ -127,7 +127,7 @@ impl SegmentScoring {
         best
     }
 
-    /// How like a class's samples what lies at distance `edr` from them is, whatever its length: the first factor of
+    /// Likeness at distance `edr` from a class's samples, whatever the length: the first factor of
     /// Eq. 4.5, or what stands for it.
     pub fn likeness(&self, edr: f64) -> f64 {
         match self.comparison {

@@ -12,7 +12,7 @@ pub struct Window {
 }
 
 impl Window {
-    /// How many chunks.
+    /// Number of chunks.
     pub fn chunks(self) -> usize {
         (self.stop - self.start) as usize
     }

@@ -7,7 +7,7 @@ use super::{FrameDetection, SegmentScoring, SvrdmModel, SvrdmParams};
 #[cfg(test)]
 mod tests;
 
-/// What one segment seems to be.
+/// Class and confidence of one segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cell {
     /// Its class; of no meaning where the confidence is 0.
@@ -27,7 +27,7 @@ impl Cell {
 /// A motion recognised, in chunks of the present stretch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChunkDetection {
-    /// What it is.
+    /// Class of the motion.
     pub class: ClassId,
     /// First chunk.
     pub start: i64,
@@ -53,13 +53,13 @@ impl ChunkDetection {
         self.stop - self.start
     }
 
-    /// Whether the two share more than `share` of the shorter one.
+    /// True if the two share more than `share` of the shorter one.
     fn overlaps(&self, other: &ChunkDetection, share: f64) -> bool {
         let common = self.stop.min(other.stop) - self.start.max(other.start);
         common as f64 > share * self.chunks().min(other.chunks()) as f64
     }
 
-    /// Whether this one wins where both overlap: the more certain, then the one that ended first, then the shorter.
+    /// True if this one wins where both overlap: the more certain, then the one that ended first, then the shorter.
     fn beats(&self, other: &ChunkDetection) -> bool {
         let order = other.score.total_cmp(&self.score);
         order
@@ -236,7 +236,7 @@ impl SegmentTracking {
         }
     }
 
-    /// Whether the segment of this length in the last column but one is more certain than its eight neighbours, start
+    /// True if the segment of this length in the last column but one is more certain than its eight neighbours, start
     /// and end moved by one chunk; one that is not there counts as lower.
     fn is_maximum(&self, length: usize) -> bool {
         let cell = self.columns[1][length].confidence;
@@ -300,7 +300,7 @@ impl SegmentTracking {
         }
     }
 
-    /// What else overlaps a maximum and wins over it; one that is reported stands, be it the lesser.
+    /// Cells that overlap a maximum and win over it; one that is reported stands, be it the lesser.
     fn rivals(&self, at: usize) -> Rivals {
         let found = &self.tracked[at].found;
         let mut rivals = Rivals {
@@ -331,7 +331,7 @@ impl SegmentTracking {
         }
     }
 
-    /// Whether a segment that is no known maximum yet can become one, win over `found` and overlap it.
+    /// True if a segment that is no known maximum yet can become one, win over `found` and overlap it.
     fn may_be_beaten(&self, found: &ChunkDetection) -> bool {
         (0..self.most.len()).any(|length| {
             let chunks = (self.min_chunks + length) as i64;
@@ -373,7 +373,7 @@ impl SegmentTracking {
         }
     }
 
-    /// Whether one that overlaps it has been reported.
+    /// True if one that overlaps it has been reported.
     fn lost(&self, found: &ChunkDetection) -> bool {
         let reported = |t: &&TrackedMaximum| t.state == MaximumState::Reported;
         self.tracked
@@ -383,7 +383,7 @@ impl SegmentTracking {
     }
 }
 
-/// What overlaps a maximum and wins over it.
+/// Cells that overlap a maximum and win over it.
 struct Rivals {
     /// One of them is reported, or would be if the stream ended now.
     led: bool,

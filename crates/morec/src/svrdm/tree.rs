@@ -23,7 +23,7 @@ pub struct Tree {
     parts: TreeParts,
 }
 
-/// What a tree is made of.
+/// Parts of a tree.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TreeParts {
     /// Values in a feature vector, `n`.
@@ -76,12 +76,12 @@ impl Tree {
         Ok(Self { parts })
     }
 
-    /// What it is made of.
+    /// Its parts.
     pub fn parts(&self) -> &TreeParts {
         &self.parts
     }
 
-    /// What it is made of, to keep.
+    /// Its parts, to keep.
     pub fn into_parts(self) -> TreeParts {
         self.parts
     }
@@ -116,7 +116,7 @@ impl Tree {
         reduce(exemplars, branch.factor, branch.sigma_full, vector)
     }
 
-    /// What both machines of `branch` say of `vector`. O(exemplars · n + points), no allocation.
+    /// Outputs of both machines of `branch` for `vector`. O(exemplars · n + points), no allocation.
     pub fn outputs(&self, branch: &Branch, vector: &[f64]) -> [f64; 2] {
         branch.outputs_at(self.reduce(branch, vector))
     }
@@ -128,7 +128,7 @@ impl Tree {
 }
 
 impl Branch {
-    /// What both machines say at a place in the plane: about `T` and more at samples of their own side. O(points), no
+    /// Outputs of both machines at a place in the plane: about `T` and more at samples of their own side. O(points), no
     /// allocation.
     pub fn outputs_at(&self, place: [f64; 2]) -> [f64; 2] {
         outputs_at(&self.points, &self.weights, self.sigma_reduced, place)

@@ -10,13 +10,13 @@ use crate::rng::Rng;
 /// A person on stage. Motions are scheduled from [`Actor::now_secs`] on and move it forward.
 #[derive(Debug, Clone)]
 pub struct Actor {
-    /// Who it is.
+    /// The person.
     pub person: Person,
     /// Lengths of the person's body.
     pub body: SyntheticBody,
     /// Chance, for what varies from one performance to the next.
     pub rng: Rng,
-    /// What has been scheduled.
+    /// The scheduled motion.
     pub timeline: PoseTimeline,
     /// When the next motion starts.
     pub now_secs: f64,
@@ -25,7 +25,7 @@ pub struct Actor {
     pace: f64,
     size: f64,
     rest_hands: [[f64; 3]; 2],
-    /// Where the actor stands, x and z.
+    /// Position of the actor, x and z.
     place: [f64; 2],
     heading_rad: f64,
 }
@@ -85,7 +85,7 @@ impl Actor {
         hz * self.person.tempo * self.pace * (1.0 + 0.03 * self.rng.normal())
     }
 
-    /// How large this person makes movements now; 1 is average.
+    /// Scale of this person's movements now; 1 is average.
     pub fn size(&self) -> f64 {
         self.person.amplitude * self.size
     }
@@ -191,12 +191,12 @@ impl Actor {
         self.place = self.point(left, forward);
     }
 
-    /// Which way the actor faces at rest, radians from +Z towards +X.
+    /// Direction that the actor faces at rest, radians from +Z towards +X.
     pub fn heading_rad(&self) -> f64 {
         self.heading_rad
     }
 
-    /// Where a foot stands at rest, x and z in the world.
+    /// Position of a foot at rest, x and z in the world.
     pub fn stance(&self, side: LimbSide) -> [f64; 2] {
         self.point(self.stance_m() * side.sign(), 0.0)
     }

@@ -235,7 +235,7 @@ fn turned(pitch_yaw_roll: &[f64]) -> Quat {
         * turn(Axis::Z, pitch_yaw_roll[2])
 }
 
-/// Where an elbow points when the hand is at `target` from the shoulder (x outward): backward when the arm hangs,
+/// Direction of an elbow when the hand is at `target` from the shoulder (x outward): backward when the arm hangs,
 /// down when it is level, outward and ahead when it is raised.
 fn elbow_side(target: &Vec3, swivel_rad: f64) -> Vec3 {
     let along = target / target.norm().max(1e-9);

@@ -8,14 +8,14 @@ use super::timeline::LimbSide;
 use super::{SyntheticLabel, SyntheticTake};
 use crate::rng::Rng;
 
-/// What [`database`] makes.
+/// Contents of a synthetic [`database`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct DatabaseSpec {
     /// Number of people.
     pub people: usize,
     /// Streams of each person.
     pub streams: usize,
-    /// How often each class occurs in a stream.
+    /// Number of times that each class occurs in a stream.
     pub repetitions: usize,
     /// The classes, names of [`MotionKind::Gesture`] motions.
     pub classes: Vec<&'static str>,

@@ -23,7 +23,7 @@ const ARMS_SECS: f64 = 36.0;
 /// Frame rate of the library.
 const RATE_HZ: f64 = 60.0;
 
-/// What the library shows, each by every person.
+/// Motions of the library, each by every person.
 pub const CONTENTS: [(&str, Perform); 16] = [
     ("stand", stand),
     ("walk", walk),

@@ -3,7 +3,7 @@
 use super::actor::Actor;
 use super::timeline::{FOOT, HAND, HIPS, HIPS_TURN, LimbSide, SPINE};
 
-/// How somebody steps.
+/// Parameters of steps.
 #[derive(Debug, Clone, Copy)]
 pub struct Gait {
     /// Seconds from one step to the next.

@@ -7,7 +7,7 @@ use super::person::Person;
 use super::{SyntheticLabel, SyntheticTake, everyday, unknown};
 use crate::rng::Rng;
 
-/// What is done between gestures, in turn.
+/// Motions between gestures, in turn.
 const IDLE: [(&str, Perform); 6] = [
     ("stand_still", stand_still),
     ("shift_weight", unknown::shift_weight),
@@ -25,7 +25,7 @@ const IDLE_SECS: f64 = 4.0;
 pub struct LivingRoom {
     /// The clip and its gestures.
     pub take: SyntheticTake,
-    /// What was done between them.
+    /// Motions that were performed between them.
     pub idle: Vec<SyntheticLabel>,
 }
 

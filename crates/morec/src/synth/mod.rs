@@ -61,8 +61,8 @@ impl SyntheticLabel {
 pub struct SyntheticTake {
     /// The clip.
     pub clip: Clip,
-    /// What was performed when, in order, without overlap.
+    /// Performed motions with their times, in order, without overlap.
     pub labels: Vec<SyntheticLabel>,
-    /// Who is seen.
+    /// The person.
     pub person: String,
 }

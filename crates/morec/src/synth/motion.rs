@@ -3,14 +3,14 @@
 use super::actor::Actor;
 use super::{everyday, gestures, unknown};
 
-/// What a motion is there for.
+/// Purpose of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MotionKind {
     /// A class of the demo.
     Gesture,
-    /// What people do between gestures.
+    /// Motions between gestures.
     Unknown,
-    /// What the everyday library shows.
+    /// Motions of the everyday library.
     Everyday,
 }
 
@@ -75,12 +75,12 @@ impl SyntheticMotion {
         all().find(|m| m.name == name)
     }
 
-    /// What it is called; for a gesture, its class.
+    /// Name of the motion; for a gesture, its class.
     pub fn name(&self) -> &'static str {
         self.name
     }
 
-    /// What it is there for.
+    /// Purpose of the motion.
     pub fn kind(&self) -> MotionKind {
         self.kind
     }

@@ -16,13 +16,13 @@ pub struct Person {
     pub arm_ratio: f64,
     /// Width of shoulders and hips over the average for the height.
     pub width_ratio: f64,
-    /// How far the upper back is bent forward at rest, radians.
+    /// Angle by which the upper back is bent forward at rest, radians.
     pub stoop_rad: f64,
     /// Sideways lean at rest, radians.
     pub lean_rad: f64,
-    /// Where the hands hang: outward, up, forward from the shoulder, in arm lengths.
+    /// Position of the hands at rest: outward, up, forward from the shoulder, in arm lengths.
     pub rest_hand: [f64; 3],
-    /// How far the elbows are carried outward, radians.
+    /// Angle by which the elbows are carried outward, radians.
     pub elbow_rad: f64,
     /// Half the distance between the feet over that between the hip joints.
     pub stance: f64,

@@ -11,7 +11,7 @@ use crate::rng::Rng;
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("line {line} of the script: expected one of {expected}, found \"{found}\"")]
 pub struct UnknownMotion {
-    /// Which line, from 1.
+    /// The line, from 1.
     pub line: usize,
     /// The names there are.
     pub expected: String,

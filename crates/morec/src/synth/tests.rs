@@ -1,4 +1,4 @@
-//! What holds for every motion, whoever performs it.
+//! Properties of every motion, whoever performs it.
 
 use std::collections::BTreeMap;
 

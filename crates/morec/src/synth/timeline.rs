@@ -1,4 +1,4 @@
-//! What a body is told to do over time: a set of channels, each a sum of smooth movements.
+//! Schedule of a body's movements: a set of channels, each a sum of smooth movements.
 //!
 //! A movement adds a minimum-jerk course from the channel's last goal to the next. Movements may overlap: human
 //! reaches superpose in the same way (Flash and Henis, J. Cogn. Neurosci. 3, 1991), and a sum of smooth courses
@@ -6,7 +6,7 @@
 
 use super::smooth::{min_jerk, sin_cos};
 
-/// Which limb of a pair.
+/// One limb of a pair.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LimbSide {
     /// The left one, at +X when facing +Z.
@@ -108,7 +108,7 @@ impl PoseTimeline {
         Self { tracks }
     }
 
-    /// Where `channel` will be when all its movements so far have ended.
+    /// Final value of `channel`, when all its movements so far have ended.
     pub fn goal(&self, channel: usize) -> f64 {
         self.tracks[channel].goal
     }

@@ -1,4 +1,4 @@
-//! What people do between gestures and that is none of them.
+//! Motions between gestures that are none of them.
 
 use super::actor::Actor;
 use super::gait::{self, Gait};

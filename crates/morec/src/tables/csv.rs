@@ -6,7 +6,7 @@ use super::{Features, for_each_frame};
 use crate::formats::points::is_gap_at;
 use crate::import::Take;
 
-/// What the rows of a table hold.
+/// Content of a table's rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Content {
     /// World positions of the joints, metres: `Hips_x`, `Hips_y`, `Hips_z`. Such a table is read as a clip of points.

@@ -18,7 +18,7 @@ use crate::kinematics::WorldPose;
 /// The feature rows of a clip with the name of each column.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Features {
-    /// What a column holds: `left_thigh.direction.x`.
+    /// Name of each column: `left_thigh.direction.x`.
     pub names: Vec<String>,
     /// Rows, the first of which ends at one over [`rate_hz`](Self::rate_hz) seconds.
     pub rows: Rows,
@@ -50,7 +50,7 @@ impl Features {
     }
 }
 
-/// What the columns of feature rows over `bones` are called, in their order.
+/// Names of the columns of feature rows over `bones`, in their order.
 fn column_names(bones: BoneSet) -> Vec<String> {
     let mut names = Vec::with_capacity(6 * bones.len() + 4);
     for what in ["direction", "velocity"] {

@@ -42,12 +42,12 @@ pub struct TemplateBank {
     tick: usize,
 }
 
-/// How a template matches a stretch that ends now.
+/// Best match of a template to a stretch that ends now.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Match {
     /// Mean squared distance along the path.
     pub distance: f32,
-    /// How many ticks ago the path began: 0 means with this tick.
+    /// Ticks since the path began: 0 means with this tick.
     pub age: usize,
 }
 
@@ -90,7 +90,7 @@ impl TemplateBank {
         self.extents.len()
     }
 
-    /// Whether there is no template.
+    /// True if there is no template.
     pub fn is_empty(&self) -> bool {
         self.extents.is_empty()
     }
@@ -137,7 +137,7 @@ impl TemplateBank {
         self.tick += 1;
     }
 
-    /// How template `index` matches a stretch that ends with the last tick stepped.
+    /// Match of template `index` to a stretch that ends with the last tick stepped.
     pub fn matched(&self, index: usize) -> Match {
         let length = self.template_len(index);
         if length == 0 || self.tick == 0 {
@@ -166,8 +166,8 @@ impl TemplateBank {
         (block.total[now][cell % LANES], block.age[now][cell % LANES])
     }
 
-    /// How the first rows of template `index`, at least `least` of them, match a stretch that ends with the last tick
-    /// stepped: where they match best. O(rows), changes nothing.
+    /// Best match of the first rows of template `index`, at least `least` of them, to a stretch that ends with the
+    /// last tick stepped. O(rows), changes nothing.
     pub fn partial(&self, index: usize, least: usize) -> Option<PartialMatch> {
         let (first, last) = self.extents[index];
         let from = first + least.max(1) - 1;
@@ -197,12 +197,12 @@ impl TemplateBank {
     }
 }
 
-/// How the beginning of a template matches a stretch that ends now.
+/// Best match of a template's beginning to a stretch that ends now.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PartialMatch {
     /// Mean squared distance along the path, over the rows it has come to: `D(j,t) / j`.
     pub distance: f32,
-    /// How many ticks ago the path began.
+    /// Ticks since the path began.
     pub age: usize,
     /// Rows it has come to, of the template's.
     pub rows: usize,

@@ -1,4 +1,4 @@
-//! Which motion is under way, before it has ended.
+//! Detection of motions before they have ended.
 
 use crate::classes::ClassId;
 
@@ -51,6 +51,6 @@ pub struct OngoingMatch {
     pub distance: f32,
     /// Ticks since it began.
     pub age: usize,
-    /// How much of the sample has been seen, 0 to 1.
+    /// Share of the sample that has been seen, 0 to 1.
     pub progress: f32,
 }

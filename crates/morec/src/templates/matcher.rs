@@ -45,7 +45,7 @@ pub struct NormalizedMatch {
 }
 
 impl NormalizedMatch {
-    /// Whether the match is nearer than `share` of a motionless body's distance; 0 admits all.
+    /// True if the match is nearer than `share` of a motionless body's distance; 0 admits all.
     pub fn moves(&self, share: f32) -> bool {
         share <= 0.0 || self.rest_share < share
     }
@@ -89,7 +89,8 @@ impl Matcher {
         self.bank.step(row);
     }
 
-    /// How template `index` matches a stretch that ends with the last tick; `stretches` has taken the same rows. O(d).
+    /// Match of template `index` to a stretch that ends with the last tick; `stretches` has taken the same rows.
+    /// O(d).
     pub fn compare(&self, index: usize, stretches: &mut Stretches) -> NormalizedMatch {
         let near = self.nearness(index, stretches);
         NormalizedMatch {
@@ -143,7 +144,7 @@ impl Matcher {
         distance / self.at_rest(index, age, stretches).max(f32::MIN_POSITIVE)
     }
 
-    /// What a distance is divided by where the mean spread is `spread`.
+    /// Divisor of a distance where the mean spread is `spread`.
     fn norm(&self, spread: f32) -> f32 {
         if self.exponent == 0.0 {
             1.0
@@ -152,7 +153,7 @@ impl Matcher {
         }
     }
 
-    /// How the first rows of template `index`, at least `least` of them, match, as [`TemplateBank::partial`] has it, with the
+    /// Match of the first rows of template `index`, at least `least` of them, as [`TemplateBank::partial`] has it, with the
     /// distance normalised by the template's spread. O(rows).
     pub fn partial(&self, index: usize, least: usize) -> Option<PartialMatch> {
         let found = self.bank.partial(index, least)?;

@@ -18,11 +18,11 @@ pub struct TemplateSample {
 /// Everything the template recogniser needs, immutable.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TemplateModel {
-    /// How rows are made.
+    /// Parameters of feature rows.
     pub features: FeatureParams,
-    /// Which bones the rows hold.
+    /// Bones of the rows.
     pub bones: BoneSet,
-    /// How distances become detections.
+    /// Parameters of decoding.
     pub decode: DecodeParams,
     /// The classes; a [`ClassId`] is an index into this.
     pub classes: Vec<ClassInfo>,
@@ -40,7 +40,7 @@ pub struct TemplateModel {
     pub class_thresholds: Vec<f32>,
     /// Thresholds for other rates of false alarms, ascending; empty in older indexes.
     pub operating: Vec<OperatingPoint>,
-    /// What scores mean; older indexes report margins.
+    /// Meaning of scores; older indexes report margins.
     pub calibration: Option<Calibration>,
     /// The second look at candidates, if there was enough to learn it from.
     pub verifier: Option<Verifier>,
@@ -54,11 +54,11 @@ pub enum TemplateModelError {
     /// A table's width is not what the bones give.
     #[error("{what} has {found} values in a row, the bones give {expected}")]
     Width {
-        /// Which part.
+        /// Name of the part.
         what: &'static str,
-        /// What the bones give.
+        /// Number expected from the bones.
         expected: usize,
-        /// What it has.
+        /// Number found.
         found: usize,
     },
     /// A number that must be sensible is not.
@@ -133,7 +133,7 @@ impl TemplateModel {
         }
     }
 
-    /// What makes a candidate of a distance.
+    /// The policy by which distances become candidates.
     pub fn rule(&self) -> CandidatePolicy {
         match &self.verifier {
             Some(verifier) => CandidatePolicy::Verify {
@@ -161,7 +161,7 @@ impl TemplateModel {
         })
     }
 
-    /// What scores mean. Indexes from before verified scores were calibrated hold the map of plain margins beside a
+    /// The calibration of scores in use. Indexes from before verified scores were calibrated hold the map of plain margins beside a
     /// verifier, where it never held: they report the verifier's scores.
     pub(super) fn calibration_in_use(&self) -> Option<Calibration> {
         let stale = self.verifier.is_some() && self.calibration == Some(Calibration::MEASURED);

@@ -1,6 +1,6 @@
 //! The operating point of a trained model: how often it may raise a false alarm, and what a score means.
 
-/// Where the threshold must lie for a rate of false alarms.
+/// Threshold for a rate of false alarms.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct OperatingPoint {
     /// False alarms a minute of background motion in training.
@@ -40,7 +40,7 @@ pub struct Calibration {
 }
 
 impl Calibration {
-    /// Where distances alone decide. Fitted on detections of referee signals by clip and by person and of Kinect sessions by the same person and by
+    /// For models in which distances alone decide. Fitted on detections of referee signals by clip and by person and of Kinect sessions by the same person and by
     /// others, each set with the same weight; `docs/figures.md` says how well it holds on each.
     pub const MEASURED: Self = Self {
         slope: 0.33,

@@ -1,4 +1,4 @@
-//! How near every class is to a stream at each tick, before anything is decided.
+//! Distance of a stream from every class at each tick, before any decision.
 
 use crate::classes::ClassId;
 use crate::decode::{Candidate, FAR};

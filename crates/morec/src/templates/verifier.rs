@@ -24,7 +24,7 @@ const CUT: f64 = 6.0;
 /// Missing distances (no other class, no negatives) count as this.
 const NOTHING_NEAR: f64 = 9.0;
 
-/// How near a stretch is to a class and to what it should not be.
+/// Distances of a stretch from a class and from what it should not be.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Evidence {
     /// Smallest distance to the class's templates.
@@ -98,7 +98,7 @@ pub fn shape_of<'r>(len: usize, row: impl Fn(usize) -> &'r [f32], out: &mut [f32
     }
 }
 
-/// How all classes together weigh evidence: a linear score of standardised ratios, bounded to ±1.
+/// Common weights of evidence for all classes: a linear score of standardised ratios, bounded to ±1.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct LinearScore {
     /// Mean of each ratio in training.
@@ -141,7 +141,7 @@ impl Exemplars {
         self.weights.len()
     }
 
-    /// Whether there is none.
+    /// True if there is none.
     pub fn is_empty(&self) -> bool {
         self.weights.is_empty()
     }
@@ -154,9 +154,9 @@ pub struct Verifier {
     pub reach: f32,
     /// Scores must be above this.
     pub bar: f64,
-    /// What holds for all classes.
+    /// The part common to all classes.
     pub generic: LinearScore,
-    /// What holds for single classes.
+    /// The parts of single classes.
     pub classes: Vec<Exemplars>,
 }
 

@@ -6,7 +6,7 @@ use crate::roles::RoleMap;
 use crate::synth;
 use crate::templates::TemplateModel;
 
-use super::from_clips::{LabelSet, TrainClip, prepare};
+use super::from_clips::{LabelSet, TrainClip, build_train_set};
 use super::mirror::add_mirrored;
 use super::options::{ENOUGH_BACKGROUND_SECS, EVERYDAY_SEED, Everyday, TrainOptions};
 use super::report::TrainingReport;
@@ -24,7 +24,7 @@ pub fn train_clips(
     if adds_everyday(clips, options.everyday) {
         all.extend(everyday_clips(EVERYDAY_SEED));
     }
-    let mut prepared = prepare(&all, labelling, options.bones, &options.params.features);
+    let mut prepared = build_train_set(&all, labelling, options.bones, &options.params.features);
     if prepared.bones == BoneSet::NONE {
         return Err(if options.bones == BoneSet::ALL {
             TrainError::NoSamples

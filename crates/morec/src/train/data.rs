@@ -18,7 +18,7 @@ pub struct TrainingData {
     pub classes: Vec<String>,
     /// Names of labelled clips that hold no sample of the classes; they are not used.
     pub unused: Vec<String>,
-    /// What was left out or cut, each in a sentence.
+    /// Omissions and cuts, each in a sentence.
     pub notes: Vec<String>,
 }
 

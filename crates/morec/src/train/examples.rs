@@ -18,15 +18,15 @@ const TOUCHES: f64 = 0.3;
 /// A stretch that came near a class.
 #[derive(Debug, Clone)]
 pub struct VerifierExample {
-    /// Whether it was the class.
+    /// True if it was the class.
     pub positive: bool,
-    /// Which class, as its place in the set.
+    /// Index of the class in the set.
     pub class: usize,
     /// Its stream's place in the set.
     pub stream: usize,
-    /// Which ticks.
+    /// Its ticks.
     pub ticks: Range<usize>,
-    /// How near it came.
+    /// Its distances.
     pub evidence: Evidence,
     /// The labelled sample it is, by its first tick.
     label: Option<usize>,
@@ -46,7 +46,7 @@ impl VerifierExample {
     }
 }
 
-/// What is known of every stream when it is seen as a new person's would be, without the stream's own person.
+/// All streams, each as seen by a model without the stream's own person.
 pub struct LeaveOneOutView<'a> {
     /// All streams.
     pub set: &'a TrainSet,
@@ -200,7 +200,7 @@ impl<'a> CandidateFinder<'a> {
         })
     }
 
-    /// Whether a stretch that is none of the class's samples may be held against the class.
+    /// True if a stretch that is none of the class's samples may be held against the class.
     fn is_background(&self, stream: &TrainStream, ticks: &Range<usize>, distance: f32) -> bool {
         let on_other_class = stream.overlaps_known(ticks, TOUCHES);
         let suspicious = stream.source == StreamKind::Labelled && distance < self.suspicious;
@@ -208,7 +208,7 @@ impl<'a> CandidateFinder<'a> {
     }
 }
 
-/// How far candidates may be: twice what nine in ten samples need when their own person is left out, and no less
+/// Largest distance of candidates: twice what nine in ten samples need when their own person is left out, and no less
 /// than the plain threshold.
 pub fn reach(examples: &[VerifierExample], threshold: f32, params: &TrainParams) -> f32 {
     let mut best: BTreeMap<(usize, usize, usize), f64> = BTreeMap::new();

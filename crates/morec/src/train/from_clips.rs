@@ -12,7 +12,7 @@ use crate::labels::Sample;
 use crate::roles::RoleMap;
 
 use super::set::{LabelledSpan, StreamKind, TrainSet, TrainStream};
-use super::trim::moving_part;
+use super::trim::motion_span;
 
 /// A clip ready for training: Y up, its joints' roles known.
 #[derive(Debug, Clone)]
@@ -21,13 +21,13 @@ pub struct TrainClip {
     pub name: String,
     /// Skeleton and frames.
     pub clip: Clip,
-    /// Who plays what.
+    /// Joint of each role.
     pub roles: RoleMap,
     /// Frames that a conversion left at the start.
     pub rest: Span,
-    /// What it is here for.
+    /// Kind of the stream.
     pub source: StreamKind,
-    /// Who moves, if known.
+    /// The person who moves, if known.
     pub person: Option<String>,
 }
 
@@ -45,7 +45,7 @@ impl From<Take> for TrainClip {
     }
 }
 
-/// What labels say about clips, and what is to be made of the rest.
+/// Labels of clips, and the use of unlabelled parts.
 #[derive(Debug, Clone, Default)]
 pub struct LabelSet<'a> {
     /// Samples to learn from.
@@ -54,7 +54,7 @@ pub struct LabelSet<'a> {
     pub held_back: &'a [Sample],
     /// The classes to learn, in order; labels of others say that a stretch is none of these.
     pub classes: &'a [String],
-    /// Whether unlabelled parts of labelled clips are background.
+    /// True if unlabelled parts of labelled clips are background.
     pub unlabelled_is_background: bool,
 }
 
@@ -72,7 +72,7 @@ pub struct Prepared {
 /// Cuts clips into what training needs. Rows are made in parallel, in the order of `clips`.
 ///
 /// `wanted` are the bones that count, of those that every labelled clip shows.
-pub fn prepare(
+pub fn build_train_set(
     clips: &[TrainClip],
     labelling: &LabelSet<'_>,
     wanted: BoneSet,
@@ -148,7 +148,7 @@ fn stream(
     let held = held_back.get(clip.name.as_str()).unwrap_or(&none);
     let ticks = |sample: &Sample| {
         if sample.whole_clip {
-            return moving_part(&rows, bones);
+            return motion_span(&rows, bones);
         }
         // Half a frame's tolerance: a label given in seconds must not gain a tick by rounding.
         let (first, last) = (

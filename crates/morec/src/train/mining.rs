@@ -102,11 +102,11 @@ const NO_MATCH: Match = Match {
 /// A stretch of a stream that comes near to some template.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NearMiss {
-    /// How near.
+    /// Distance from the class.
     pub distance: f32,
     /// Its stream's place in the set.
     pub stream: usize,
-    /// Which ticks.
+    /// Its ticks.
     pub ticks: Range<usize>,
 }
 
@@ -115,7 +115,7 @@ pub struct NearMiss {
 ///
 /// In labelled streams this is done twice, the second time without the same person's templates, as a new person's
 /// stream would be seen.
-pub fn near_misses(
+pub fn hard_negatives(
     distances: &TemplateDistances,
     samples: &[TrainSample],
     (index, stream): (usize, &TrainStream),

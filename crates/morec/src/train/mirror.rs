@@ -5,7 +5,7 @@ use crate::features::{BoneSet, mirrored_rows};
 
 use super::set::{LabelledSpan, StreamKind, TrainSet, TrainStream};
 
-/// Whether mirrored copies of samples teach too.
+/// Use of mirrored copies of samples in training.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Mirror {
     /// Between classes that are named as the two sides of one motion (`wave_left`, `wave_right`): each also teaches the
@@ -19,7 +19,7 @@ pub enum Mirror {
     No,
 }
 
-/// What a mirrored copy of a sample shows.
+/// Content of a mirrored copy of a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Image {
     Class(ClassId),
@@ -101,7 +101,7 @@ fn with_sides_exchanged(name: &str) -> Option<String> {
     })
 }
 
-/// Where `word` stands in `name` as a word of its own.
+/// Byte offset of `word` in `name` as a word of its own.
 fn word_at(name: &str, word: &str) -> Option<usize> {
     let starts_small = word.starts_with(char::is_lowercase);
     let ends_small = word.ends_with(char::is_lowercase);

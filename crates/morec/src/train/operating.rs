@@ -10,7 +10,7 @@ use super::mining::TemplateDistances;
 use super::params::TrainParams;
 use super::set::{StreamKind, TrainSet, overlap_share};
 
-/// How often motion that is none of the classes comes how near: the nearest events in background motion.
+/// Rate of background motion by distance: the nearest events in background motion.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct AlarmCurve {
     /// Minutes of background motion.

@@ -1,4 +1,4 @@
-//! What a training run is asked to do beyond the figures of the method.
+//! Options of a training run beyond the parameters of the method.
 
 use crate::features::BoneSet;
 
@@ -8,7 +8,7 @@ use super::params::TrainParams;
 /// When made everyday motion is background too.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Everyday {
-    /// Where clips named as background hold less than [`ENOUGH_BACKGROUND_SECS`]: real motion says more about what
+    /// If clips named as background hold less than [`ENOUGH_BACKGROUND_SECS`]: real motion says more about what
     /// will be met than made motion does, and on referee clips the two together were worse than the real alone.
     Auto,
     /// In any case.
@@ -17,12 +17,12 @@ pub enum Everyday {
     Never,
 }
 
-/// How to train from clips.
+/// Options of training from clips.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrainOptions {
     /// The figures of the method.
     pub params: TrainParams,
-    /// Whether unlabelled parts of labelled clips are background.
+    /// True if unlabelled parts of labelled clips are background.
     pub unlabelled_is_background: bool,
     /// Whether made everyday motion is background.
     pub everyday: Everyday,

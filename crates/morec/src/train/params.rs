@@ -3,12 +3,12 @@
 use crate::decode::DecodeParams;
 use crate::features::FeatureParams;
 
-/// How templates are trained.
+/// Parameters of templates' training.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct TrainParams {
-    /// How rows are made.
+    /// Parameters of feature rows.
     pub features: FeatureParams,
-    /// How distances become detections.
+    /// Parameters of decoding.
     pub decode: DecodeParams,
     /// Ridge of the metric, as a share of the mean variance; .15 to .5 are alike.
     pub rho: f64,
@@ -36,7 +36,7 @@ pub struct TrainParams {
     pub suspicious_below: f64,
     /// Negatives kept at most.
     pub max_negatives: usize,
-    /// Whether negatives are looked for at all.
+    /// True if negatives are looked for at all.
     pub mine_negatives: bool,
     /// Templates of a class at most, taken from its people in turn.
     pub max_templates: usize,
@@ -45,9 +45,9 @@ pub struct TrainParams {
     pub whole_background: f64,
     /// Samples whose spread is below this share of what is usual for their class do not teach: they hardly move.
     pub quiet_share: f64,
-    /// Whether scores are probabilities instead of margins.
+    /// True if scores are probabilities instead of margins.
     pub calibrate: bool,
-    /// Whether candidates are verified.
+    /// True if candidates are verified.
     pub verify: bool,
     /// Samples that the median class must have before candidates are verified: with few, the plain rule is better.
     pub verify_samples: usize,
@@ -72,7 +72,7 @@ pub struct TrainParams {
     pub min_negatives: usize,
     /// Ridge of the verifier's kernel regression; .03 to .3 are alike.
     pub verifier_ridge: f64,
-    /// Whether rows are kept in steps of a byte.
+    /// True if rows are kept in steps of a byte.
     pub compact: bool,
     /// Bounds of the score above which a candidate is accepted.
     pub bar_range: (f64, f64),

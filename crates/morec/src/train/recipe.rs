@@ -1,4 +1,4 @@
-//! How to train, whatever the method.
+//! Options of training for either method.
 
 use crate::live::Model;
 use crate::progress::Progress;
@@ -20,7 +20,7 @@ pub enum Recipe {
 }
 
 impl Recipe {
-    /// Whether unlabelled parts of labelled clips are background.
+    /// True if unlabelled parts of labelled clips are background.
     pub fn unlabelled_is_background(&self) -> bool {
         match self {
             Recipe::Templates(options) => options.unlabelled_is_background,

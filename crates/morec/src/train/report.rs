@@ -1,4 +1,4 @@
-//! What training did, for people to read.
+//! Report of a training run, for people to read.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use super::set::{StreamKind, TrainSample};
 use super::templates::TrainedTemplates;
 use super::thesis::SvrdmReport;
 
-/// How a training run went.
+/// Report of a training run.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct TrainingReport {
     /// The classes and what they were learned from.
@@ -23,18 +23,18 @@ pub struct TrainingReport {
     /// [`SvrdmReport::min_confidence`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub threshold: Option<f32>,
-    /// What set the threshold.
+    /// Origin of the threshold.
     pub threshold_from: String,
     /// Thresholds for other rates of false alarms.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub operating: Vec<OperatingPoint>,
     /// Hard negatives found, by the same sources.
     pub negatives: BTreeMap<String, usize>,
-    /// Whether candidates are verified; it takes clips named as background to learn that.
+    /// True if candidates are verified; it takes clips named as background to learn that.
     pub verified: bool,
-    /// What the user should know or do.
+    /// Notes for the user.
     pub notes: Vec<String>,
-    /// What only the thesis's method reports.
+    /// Results that only the thesis's method has.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub svrdm: Option<SvrdmReport>,
 }
@@ -100,7 +100,7 @@ impl TrainingReport {
     }
 }
 
-/// What to say of a sample that hardly moves.
+/// Note about a sample that hardly moves.
 fn quiet_note(sample: &TrainSample, prepared: &Prepared, tick_hz: f64) -> String {
     format!(
         "{}: the sample in {} from {:.2} to {:.2} s hardly moves and does not teach; check its label",
@@ -111,7 +111,7 @@ fn quiet_note(sample: &TrainSample, prepared: &Prepared, tick_hz: f64) -> String
     )
 }
 
-/// What to say of classes with few samples.
+/// Notes about classes with few samples.
 pub(super) fn class_notes(classes: &[ClassInfo]) -> Vec<String> {
     let note = |class: &ClassInfo| match class.samples {
         0 => Some(format!(
@@ -127,7 +127,7 @@ pub(super) fn class_notes(classes: &[ClassInfo]) -> Vec<String> {
     classes.iter().filter_map(note).collect()
 }
 
-/// How reports name where background motion came from.
+/// Name of a background's origin in reports.
 pub fn source_name(source: StreamKind) -> &'static str {
     match source {
         StreamKind::Labelled => "unlabelled",

@@ -1,4 +1,4 @@
-//! How samples of one class differ, and how rows differ at all.
+//! Scatter of samples within a class, and of rows at all.
 
 use nalgebra::{DMatrix, DVector};
 

@@ -1,11 +1,11 @@
-//! What training works on: streams of feature rows and what is known about them.
+//! The training set: streams of feature rows and their labels.
 
 use std::ops::Range;
 
 use crate::classes::ClassId;
 use crate::features::Rows;
 
-/// Where a training stream came from, and so how far its unlabelled parts may be trusted to hold no class.
+/// Origin of a training stream, and so how far its unlabelled parts may be trusted to hold no class.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StreamKind {
     /// A clip with labels.
@@ -19,7 +19,7 @@ pub enum StreamKind {
 /// A stretch of a stream, in ticks.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LabelledSpan {
-    /// Which ticks.
+    /// Its ticks.
     pub ticks: Range<usize>,
     /// The class it shows; `None` for a stretch that must be used for nothing (a sample held back for testing,
     /// a label outside the chosen classes).
@@ -31,15 +31,15 @@ pub struct LabelledSpan {
 pub struct TrainStream {
     /// The clip's name.
     pub name: String,
-    /// Who moves; the clip's name if nobody is named, so that clips then count as people.
+    /// The person who moves; the clip's name if nobody is named, so that clips then count as people.
     pub group: String,
-    /// Who moves, if named.
+    /// The person who moves, if named.
     pub person: Option<String>,
-    /// Where it came from.
+    /// Origin of the stream.
     pub source: StreamKind,
-    /// Whether what is not in `known` holds none of the classes.
+    /// True if what is not in `known` holds none of the classes.
     pub rest_is_background: bool,
-    /// Whether it was made from another stream: it teaches, but it is no sample that somebody showed.
+    /// True if it was made from another stream: it teaches, but it is no sample that somebody showed.
     pub is_copy: bool,
     /// One row for each tick.
     pub rows: Rows,
@@ -48,7 +48,7 @@ pub struct TrainStream {
 }
 
 impl TrainStream {
-    /// Whether `ticks` shares more than `share` of the shorter of the two with any known stretch.
+    /// True if `ticks` shares more than `share` of the shorter of the two with any known stretch.
     pub fn overlaps_known(&self, ticks: &Range<usize>, share: f64) -> bool {
         self.known
             .iter()
@@ -61,11 +61,11 @@ impl TrainStream {
 pub struct TrainSample {
     /// Its class.
     pub class: ClassId,
-    /// Who shows it: see [`TrainStream::group`].
+    /// The person who shows it: see [`TrainStream::group`].
     pub group: String,
     /// Its stream's place in the set.
     pub stream: usize,
-    /// Which ticks of the stream.
+    /// Ticks of the stream.
     pub ticks: Range<usize>,
     /// Those rows.
     pub rows: Rows,

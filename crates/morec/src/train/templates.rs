@@ -14,13 +14,13 @@ use crate::templates::{
 };
 
 use super::examples::{self, CandidateFinder, LeaveOneOutView, VerifierExample};
-use super::mining::{NearMiss, TemplateDistances, near_misses};
+use super::mining::{NearMiss, TemplateDistances, hard_negatives};
 use super::operating::AlarmCurve;
 use super::params::TrainParams;
 use super::scatter::{covariance, ridged, within_class};
 use super::set::{StreamKind, TrainSample, TrainSet, TrainStream};
 use super::thresholds;
-use super::trim::moving_part;
+use super::trim::motion_span;
 use super::verifier;
 
 /// Why nothing could be trained.
@@ -37,13 +37,13 @@ pub enum TrainError {
         "class {class}: no sample of it can be described; each needs some motion inside its clip"
     )]
     NoSample {
-        /// Which.
+        /// Name of the class.
         class: String,
     },
     /// A clip cannot serve.
     #[error("clip {clip}: {problem}")]
     Clip {
-        /// Which.
+        /// Name of the clip.
         clip: String,
         /// Why.
         problem: String,
@@ -69,7 +69,7 @@ pub struct TrainedTemplates {
     pub model: TemplateModel,
     /// The stretches that became negatives.
     pub negatives: Vec<NearMiss>,
-    /// What set the threshold, in words.
+    /// Origin of the threshold, in words.
     pub threshold_from: String,
     /// Samples that hardly move, and so are no templates.
     pub quiet: Vec<TrainSample>,
@@ -192,7 +192,7 @@ fn set_rest_share(distances: &mut [TemplateDistances], share: f32) {
 /// 3.3 at three times, for 2.8.
 const CAP_EXPONENT: f64 = 0.15;
 
-/// Where the threshold lies and why.
+/// The threshold and its origin.
 struct Operating {
     threshold: f32,
     from: String,
@@ -200,7 +200,7 @@ struct Operating {
     points: Vec<OperatingPoint>,
 }
 
-/// What the steps of a training have in common.
+/// State common to the steps of a training.
 struct TrainingContext<'a> {
     set: &'a TrainSet,
     metric: &'a Metric,
@@ -244,7 +244,7 @@ impl TrainingContext<'_> {
     ) -> Operating {
         let params = self.params;
         if params.alarms_per_minute <= 0.0 {
-            let (threshold, from) = thresholds::common(self.set, distances, params);
+            let (threshold, from) = thresholds::global_threshold(self.set, distances, params);
             let points = Vec::new();
             return Operating {
                 threshold,
@@ -377,7 +377,7 @@ fn templates_of(samples: Vec<TrainSample>, classes: usize, most: usize) -> Vec<T
         .collect()
 }
 
-/// What [`Metric::new`] takes, of the samples of a set: `S_w + ρ tr(S_t)/d · I` and `S_t`. With no two samples of any class
+/// Arguments of [`Metric::new`] from the samples of a set: `S_w + ρ tr(S_t)/d · I` and `S_t`. With no two samples of any class
 /// the metric is the identity. `None` if there is no sample.
 pub fn scatters(
     set: &TrainSet,
@@ -435,14 +435,14 @@ fn negatives_of(
         .partition(|(_, s)| short(s));
     let mut found: Vec<NearMiss> = long
         .into_iter()
-        .flat_map(|(i, s)| near_misses(&distances[i], samples, (i, s), threshold, params))
+        .flat_map(|(i, s)| hard_negatives(&distances[i], samples, (i, s), threshold, params))
         .collect();
     found.sort_by(|a, b| a.distance.total_cmp(&b.distance));
     found.truncate(params.max_negatives);
     found.extend(whole.into_iter().map(|(stream, s)| NearMiss {
         distance: distances[stream].smallest(),
         stream,
-        ticks: moving_part(&s.rows, bones),
+        ticks: motion_span(&s.rows, bones),
     }));
     found
 }

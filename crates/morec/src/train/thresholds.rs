@@ -1,4 +1,4 @@
-//! How near is near enough: for all classes together, and for each by itself.
+//! Distance thresholds: for all classes together, and for each by itself.
 
 use crate::decode::FAR;
 
@@ -13,7 +13,7 @@ const TOUCHES: f64 = 0.3;
 ///
 /// Clips that the user calls background count in full. Of made everyday motion a tenth may come nearer: some of it
 /// may happen to be one of the classes, and what comes that near becomes a hard negative.
-pub fn common(
+pub fn global_threshold(
     set: &TrainSet,
     distances: &[TemplateDistances],
     params: &TrainParams,

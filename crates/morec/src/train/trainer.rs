@@ -11,7 +11,7 @@ use super::{
     train_model,
 };
 
-/// What to train from, and how. Only the labels must be given.
+/// Data and options of training. Only the labels must be given.
 ///
 /// ```no_run
 /// # fn main() -> Result<(), morec::Error> {
@@ -56,14 +56,14 @@ impl<'a> Trainer<'a> {
         Self::default()
     }
 
-    /// Which stretch of which take is a sample of which class.
+    /// Sets the labelled samples.
     #[must_use]
     pub fn labels(mut self, labels: &'a Labels) -> Self {
         self.labels = Some(labels);
         self
     }
 
-    /// Who is seen in which take, where the labels do not say.
+    /// Sets the person of each take, where the labels do not say.
     #[must_use]
     pub fn people(mut self, people: &'a People) -> Self {
         self.people = Some(people);
@@ -91,7 +91,7 @@ impl<'a> Trainer<'a> {
         self
     }
 
-    /// Who hears of progress, and may cancel.
+    /// Sets the receiver of progress, which may cancel.
     #[must_use]
     pub fn progress(mut self, progress: &'a dyn Progress) -> Self {
         self.progress = progress;

@@ -1,4 +1,4 @@
-//! Where in a whole clip the motion is.
+//! Detection of the moving part of a whole clip.
 
 use std::ops::Range;
 
@@ -18,7 +18,7 @@ const PAD_TICKS: usize = 2;
 ///
 /// Movement of a tick is how far the bone directions travel over ±3 ticks of the averaged rows; it
 /// counts above a fifth of the way from the stillest tenth to the largest. Never empty if `rows` is not.
-pub fn moving_part(rows: &Rows, bones: BoneSet) -> Range<usize> {
+pub fn motion_span(rows: &Rows, bones: BoneSet) -> Range<usize> {
     let n = rows.len();
     if n == 0 {
         return 0..0;
@@ -82,7 +82,7 @@ mod tests {
             row[1] = angle.sin() as f32;
             rows.push(&row);
         }
-        let part = moving_part(&rows, bones);
+        let part = motion_span(&rows, bones);
         assert!(
             (26..=32).contains(&part.start) && (58..=64).contains(&part.end),
             "{part:?}"
@@ -92,6 +92,6 @@ mod tests {
     #[test]
     fn a_clip_without_movement_is_kept_whole() {
         let rows = Rows::from_values(10, vec![0.5; 10 * 20]);
-        assert_eq!(moving_part(&rows, BoneSet::NONE.with(6)), 0..20);
+        assert_eq!(motion_span(&rows, BoneSet::NONE.with(6)), 0..20);
     }
 }

@@ -163,7 +163,7 @@ fn fit_generic(
     Some((whole, scores))
 }
 
-/// What the kernel regressions of all classes have in common.
+/// State common to the kernel regressions of all classes.
 struct ClassProblem<'a> {
     examples: &'a [VerifierExample],
     set: &'a TrainSet,
@@ -277,7 +277,7 @@ fn spread(distances: &DMatrix<f64>) -> f64 {
     distances.mean() / 2.0 + 1e-9
 }
 
-/// Where the share of positives above it exceeds the share of negatives above it most; the lowest such place.
+/// The lowest score where the share of positives above it exceeds the share of negatives above it most.
 fn bar(positives: &[f64], negatives: &[f64], params: &TrainParams) -> f64 {
     let (low, high) = params.bar_range;
     let above = |scores: &[f64], bar: f64| {

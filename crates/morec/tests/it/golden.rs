@@ -6,7 +6,7 @@ use std::path::Path;
 use morec::features::{BoneSet, rows_of_clip};
 use morec::labels::{ClipLength, Labels, Sample};
 use morec::templates::TemplateEngine;
-use morec::train::{LabelSet, StreamKind, TrainClip, TrainParams, prepare, train};
+use morec::train::{LabelSet, StreamKind, TrainClip, TrainParams, build_train_set, train};
 
 use crate::kit;
 
@@ -133,7 +133,7 @@ fn thresholds_and_detections_are_the_prototypes() {
             classes: &classes,
             unlabelled_is_background: true,
         };
-        let prepared = prepare(&others, &labelling, BoneSet::ALL, &params.features);
+        let prepared = build_train_set(&others, &labelling, BoneSet::ALL, &params.features);
         let model = train(&prepared.set, prepared.bones, &params, &())
             .unwrap()
             .model;

@@ -65,7 +65,7 @@ fn the_map_and_its_detections_are_the_prototypes() {
         let (mut map, mut found) = (ConfidenceMap::new(), vec![]);
         for row in &rows {
             let mut watch = |window, cell| map.record(window, cell);
-            engine.push_watched(row, &mut watch, &mut |d| found.push(d));
+            engine.push_with_observer(row, &mut watch, &mut |d| found.push(d));
         }
         engine.finish(&mut |d| found.push(d));
         assert_eq!(map.cells().len(), figures.cells.len());

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 use anyhow::Result;
-use morec_db::search::{NearCopy, SearchIndex, near_copies, near_copies_of};
+use morec_db::search::{NearCopy, SearchIndex, near_duplicates, near_duplicates_of};
 use morec_db::{ClipFilter, ClipId, MotionDb};
 use serde::Serialize;
 
@@ -50,12 +50,12 @@ pub fn find(
         .map(|c| (c.id, c.name))
         .collect();
     let found = match among {
-        None => near_copies(&index),
+        None => near_duplicates(&index),
         Some(wanted) => {
             let of_names = names
                 .iter()
                 .filter(|(_, name)| wanted.contains(name.as_str()));
-            near_copies_of(&index, &of_names.map(|(id, _)| *id).collect())
+            near_duplicates_of(&index, &of_names.map(|(id, _)| *id).collect())
         }
     };
     let name = |id: ClipId| names.get(&id).cloned().unwrap_or_default();

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use morec_db::labels::{SampleFilter, SampleId, SampleState};
-use morec_db::{ClipFilter, ClipId, MotionDb, Proposal, ProposeOptions, questions};
+use morec_db::{ClipFilter, ClipId, MotionDb, Proposal, ProposeOptions, most_informative};
 use serde::Serialize;
 
 use crate::database;
@@ -145,7 +145,7 @@ struct NamedProposal {
 fn show(args: &Args, db: &MotionDb, mut proposals: Vec<Proposal>) -> Result<ExitCode> {
     let sure = proposals.iter().filter(|p| p.is_sure()).count();
     if args.doubtful {
-        let order = questions(&proposals, proposals.len());
+        let order = most_informative(&proposals, proposals.len());
         proposals = order.into_iter().map(|at| proposals[at].clone()).collect();
     }
     let names: BTreeMap<ClipId, String> = db

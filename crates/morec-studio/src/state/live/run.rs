@@ -205,10 +205,10 @@ impl Run {
     }
 
     /// What seems to be under way: class and progress.
-    pub fn hunch(&self) -> Option<(String, EarlyDetection)> {
-        let hunch = self.performer.as_ref()?.hunch()?;
+    pub fn early_detection(&self) -> Option<(String, EarlyDetection)> {
+        let early = self.performer.as_ref()?.early_detection()?;
         let model = self.model.as_ref()?;
-        Some((model.class_name(hunch.class).to_owned(), hunch))
+        Some((model.class_name(early.class).to_owned(), early))
     }
 
     pub fn diagnosis(&self) -> Option<Diagnosis> {

@@ -29,7 +29,7 @@ fn performance(number: usize, rate_hz: f64) -> Vec<Timed> {
     poses
 }
 
-/// What is found in `poses` as a live stream that arrives as it was performed, and as a recording.
+/// Findings in `poses` as a live stream that arrives as it was performed, and as a recording.
 fn found(poses: &[Timed]) -> Vec<&'static str> {
     let mut diagnoser = Diagnoser::live();
     for (at, (secs, pose)) in poses.iter().enumerate() {

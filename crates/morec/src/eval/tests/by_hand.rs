@@ -124,14 +124,14 @@ fn ten_seconds_as_timelines() {
         .iter()
         .map(|(_, verdict)| verdict.clone())
         .collect();
-    use TruthVerdict::{Missed, Mistaken, Right};
+    use GroundTruthVerdict::{Missed, Mistaken, Right};
     assert_eq!(truths, [Right, Right, Mistaken("run".into()), Missed]);
     let founds: Vec<_> = lines[0]
         .founds
         .iter()
         .map(|(_, verdict)| *verdict)
         .collect();
-    use FoundVerdict as F;
+    use DetectionVerdict as F;
     assert_eq!(founds, [F::Right, F::Loose, F::WrongClass, F::FalseAlarm]);
     assert!(
         lines[1]

@@ -1,4 +1,4 @@
-//! What must hold for any samples and any detections.
+//! Properties that hold for any samples and any detections.
 
 use proptest::prelude::*;
 

@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use super::*;
-use crate::labels::{ClipLength, Labels, read_found};
+use crate::labels::{ClipLength, Labels, read_detections};
 
 /// Frames and rate as the clip's own header has them.
 fn length(bvh: &str) -> ClipLength {
@@ -44,7 +44,7 @@ fn the_published_figures_come_out() {
         .into_iter()
         .map(GroundTruth::from)
         .collect();
-    let (founds, warnings) = read_found(include_bytes!("reference_found.tsv"))
+    let (founds, warnings) = read_detections(include_bytes!("reference_found.tsv"))
         .unwrap()
         .resolve(&clips);
     assert!(warnings.is_empty());

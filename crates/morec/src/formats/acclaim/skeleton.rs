@@ -76,7 +76,7 @@ pub struct Asf {
     pub name: String,
     /// The `length` of `:units`: what inches were multiplied by.
     pub length_unit: f64,
-    /// Whether its angles, and those of motions that do not say otherwise, are in degrees.
+    /// True if its angles, and those of motions that do not say otherwise, are in degrees.
     pub degrees: bool,
     /// The root.
     pub root: Root,

@@ -138,7 +138,7 @@ impl Character {
 }
 
 impl JointPositions {
-    /// Whether no frame holds a position.
+    /// True if no frame holds a position.
     pub fn are_missing(&self) -> bool {
         self.gaps.len() == self.values.len()
     }

@@ -30,7 +30,7 @@ pub(super) struct BvhHierarchy {
     pub channels: Vec<Channel>,
     /// First joint of each root, in order.
     pub roots: Vec<usize>,
-    /// Whether a MOTION section follows.
+    /// True if a MOTION section follows.
     pub motion_follows: bool,
 }
 

@@ -258,7 +258,7 @@ impl RepairCounts {
         }
     }
 
-    /// Whether the numbers are meant as one stream: their count is what the header declares, that of the lines
+    /// True if the numbers are meant as one stream: their count is what the header declares, that of the lines
     /// is not.
     fn flows(&self, width: usize, declared: Option<u64>) -> bool {
         let fits = declared

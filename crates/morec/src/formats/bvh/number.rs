@@ -9,12 +9,12 @@ const POWERS: [f64; 23] = [
 /// No length or angle is larger: what is, is damage, and would overflow further on.
 const LARGEST: f64 = 1e12;
 
-/// Whether `byte` separates tokens within a line. Control characters do: NUL padding and Ctrl-Z occur.
+/// True if `byte` separates tokens within a line. Control characters do: NUL padding and Ctrl-Z occur.
 pub(super) fn is_blank(byte: u8) -> bool {
     byte <= b' ' && !is_newline(byte)
 }
 
-/// Whether `byte` ends a line (CR alone does too).
+/// True if `byte` ends a line (CR alone does too).
 pub(super) fn is_newline(byte: u8) -> bool {
     byte == b'\n' || byte == b'\r'
 }
@@ -79,7 +79,7 @@ fn usable(value: f64) -> f64 {
     }
 }
 
-/// Whether C runtimes spell a NaN or an infinity like this.
+/// True if C runtimes spell a NaN or an infinity like this.
 fn is_not_a_number(token: &[u8]) -> bool {
     let lower = token.to_ascii_lowercase();
     let bare = lower

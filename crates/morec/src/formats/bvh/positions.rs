@@ -122,7 +122,7 @@ impl Character {
 }
 
 impl JointPositions {
-    /// Whether a root's channels say nothing, so that its OFFSET is where it stands.
+    /// True if a root's channels say nothing, so that its OFFSET is where it stands.
     fn is_zero_beside(&self, offset: &Vec3) -> bool {
         let largest = self.values.iter().map(Vec3::amax).fold(0.0, f64::max);
         largest <= 1e-3 * offset.amax()

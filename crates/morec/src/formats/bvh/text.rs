@@ -95,7 +95,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Whether nothing is left on the line.
+    /// True if nothing is left on the line.
     pub fn at_line_end(&self) -> bool {
         self.peek().is_none_or(is_newline)
     }
@@ -144,7 +144,7 @@ impl<'a> Cursor<'a> {
         trim(&self.text[start..self.pos])
     }
 
-    /// Whether a comment begins here (`#` or `//`).
+    /// True if a comment begins here (`#` or `//`).
     pub fn at_comment(&self) -> bool {
         self.text[self.pos..].starts_with(b"#") || self.text[self.pos..].starts_with(b"//")
     }

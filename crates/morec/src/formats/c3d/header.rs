@@ -54,7 +54,7 @@ impl C3dHeader {
         }
     }
 
-    /// Whether these values can be a header's.
+    /// True if these values can be a header's.
     pub(super) fn is_plausible(&self) -> bool {
         let rate = self.rate_hz;
         self.data_block > 1 && (rate == 0.0 || (0.01..100_000.0).contains(&rate))

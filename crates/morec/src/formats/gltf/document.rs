@@ -9,7 +9,7 @@ pub(super) struct Document<'a> {
     pub(super) json: Value,
     /// The binary chunk of a GLB file, where its bytes begin.
     pub(super) binary: Option<(&'a [u8], usize)>,
-    /// Whether the file is shorter than it says.
+    /// True if the file is shorter than it says.
     pub(super) cut: bool,
 }
 

@@ -15,7 +15,7 @@ pub(super) struct GltfScene {
     pub(super) rigs: Vec<SceneSkeleton>,
     /// For each node the humanoid bone that it is.
     bones: Vec<Option<String>>,
-    /// Whether there is a skin or a humanoid.
+    /// True if there is a skin or a humanoid.
     character: bool,
 }
 
@@ -69,7 +69,7 @@ impl GltfScene {
         })
     }
 
-    /// Whether there is a skin or a humanoid.
+    /// True if there is a skin or a humanoid.
     pub(super) fn is_character(&self) -> bool {
         self.character && !self.rigs.is_empty()
     }

@@ -104,7 +104,7 @@ fn clip(frames: &SmplFrames<'_>, places: &[Vec3]) -> ClipBuilder {
     builder
 }
 
-/// Whether an archive with these paths may hold such a motion: NumPy's have arrays only.
+/// True if an archive with these paths may hold such a motion: NumPy's have arrays only.
 pub fn is_numpy_archive(paths: &[String]) -> bool {
     paths.iter().any(|path| path.ends_with(".npy"))
 }

@@ -41,7 +41,7 @@ pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
     (!found.points.is_empty()).then_some(found)
 }
 
-/// Whether the columns have x and y, and z nowhere.
+/// True if the columns have x and y, and z nowhere.
 pub(super) fn is_flat(rows: &[TableLine]) -> bool {
     let Some(header_rows) = header_rows(rows) else {
         return false;

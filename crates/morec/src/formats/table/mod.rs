@@ -92,7 +92,7 @@ pub fn read(
 /// Rows among which a header is looked for.
 const HEAD_ROWS: usize = 40;
 
-/// Whether text begins as a table of positions does: its header names x, y and z of something.
+/// True if text begins as a table of positions does: its header names x, y and z of something.
 pub(super) fn looks_so(head: &[u8]) -> bool {
     let limits = Limits {
         line_bytes: usize::MAX,

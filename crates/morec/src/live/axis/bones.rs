@@ -16,7 +16,7 @@ pub struct AxisBone {
     pub parent: Option<usize>,
     /// The role of its joint.
     pub role: Option<Role>,
-    /// Where it is in its parent's frame, centimetres, while nothing is turned: a T-pose that faces +Z, left at +X.
+    /// Position in the parent's frame, centimetres, while nothing is turned: a T-pose that faces +Z, left at +X.
     pub offset_cm: [f64; 3],
 }
 
@@ -123,7 +123,7 @@ pub const AXIS_BONES: [AxisBone; AXIS_BONE_COUNT] = [
     plain("LeftHandPinky3", 57, 2.0, 0.0, 0.0),
 ];
 
-/// How the bones hang together and how long they are.
+/// Parents and lengths of the bones.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AxisSkeleton {
     pub(super) skeleton: Skeleton,
@@ -136,7 +136,7 @@ pub struct AxisSkeleton {
     "expected {AXIS_BONE_COUNT} joints in the broadcast's order, beginning with the hips, found {found}"
 )]
 pub struct AxisSkeletonError {
-    /// How many joints there are.
+    /// Number of joints.
     pub found: usize,
 }
 

@@ -1,6 +1,6 @@
 //! When a frame was, from its number and when it arrived.
 
-/// How much of the difference between prediction and arrival is made up for with each frame, in time and in period.
+/// Share of the difference between prediction and arrival that each frame corrects, in time and in period.
 const PULL: f64 = 0.1;
 const PULL_PERIOD: f64 = 0.01;
 /// A difference of more than this is no jitter: somebody paused.

@@ -21,13 +21,13 @@ pub(super) const REFERENCE: usize = 6;
 /// A frame as it was sent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisFrame<'a> {
-    /// Which avatar.
+    /// Number of the avatar.
     pub avatar: u32,
-    /// What it is called, as far as that is text.
+    /// Name of the avatar, as far as it is text.
     pub name: &'a str,
     /// Number of the frame.
     pub number: u32,
-    /// Whether every bone has a position.
+    /// True if every bone has a position.
     pub positions: bool,
     /// From the hips on: 354 with positions, 180 without.
     pub values: &'a [f32],
@@ -41,7 +41,7 @@ pub enum AxisError {
     Rubbish {
         /// Place in the stream, bytes from its beginning.
         at: u64,
-        /// How many bytes were left out.
+        /// Number of bytes left out.
         skipped: u64,
     },
     /// A header that says something impossible.
@@ -49,9 +49,9 @@ pub enum AxisError {
     Count {
         /// Place of the header.
         at: u64,
-        /// How many there must be, in words.
+        /// The required number, in words.
         expected: &'static str,
-        /// How many the header declares.
+        /// The number that the header declares.
         found: usize,
     },
     /// A number that is none.
@@ -59,7 +59,7 @@ pub enum AxisError {
     Value {
         /// Place of the number.
         at: u64,
-        /// What it is, as text.
+        /// The value, as text.
         found: String,
     },
 }
@@ -72,11 +72,11 @@ pub struct AxisDecoder {
     values: Vec<f32>,
     /// Place of the buffer's first byte in the stream.
     at: u64,
-    /// Where the present run of rubbish began.
+    /// Start of the present run of bytes that belong to no frame.
     rubbish_at: Option<u64>,
 }
 
-/// What the buffer begins with.
+/// Contents of the buffer's beginning.
 enum FrameHead {
     /// Too little to say.
     Short,
@@ -157,7 +157,7 @@ impl AxisDecoder {
         u32::from_le_bytes(bytes.unwrap_or_default())
     }
 
-    /// What there is at `used`.
+    /// Decodes the contents at `used`.
     fn head(
         &self,
         used: usize,
@@ -198,7 +198,7 @@ impl AxisDecoder {
         }
     }
 
-    /// How far it is from the byte before `from` to where a frame may begin next.
+    /// Bytes from the one before `from` to the next possible beginning of a frame.
     fn next_begin(&self, from: usize) -> usize {
         let [first, _] = BEGIN.to_le_bytes();
         let found = self.buffer[from..].iter().position(|byte| *byte == first);

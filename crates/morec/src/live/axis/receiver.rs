@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::clock::FrameClock;
 use super::decoder::{AxisDecoder, AxisError, AxisFrame};
 use super::{AXIS_BONE_COUNT, AxisSkeleton};
-use crate::live::{Frame, MAX_ACTORS, PerformerId, Rig, SourceCounts, SourceEvent};
+use crate::live::{Frame, MAX_PERFORMERS, PerformerId, Rig, SourceCounts, SourceEvent};
 use crate::math::{Axis, Quat, Vec3};
 
 /// An avatar that has been silent for so long has stopped, for now.
@@ -16,12 +16,12 @@ const LEAST_BONE_M: f64 = 1e-4;
 /// A frame whose number lies back by less than this came late; by more, the sender has begun anew.
 const LATE_FRAMES: u32 = 100;
 
-/// How a receiver takes what it is sent.
+/// Options of a receiver.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AxisOptions {
-    /// How bones hang together; and their lengths, where frames have none.
+    /// Parents of the bones, and their lengths where frames have none.
     pub skeleton: AxisSkeleton,
-    /// Performers that are followed at once, at most [`MAX_ACTORS`]; frames of others are counted and left.
+    /// Performers that are followed at once, at most [`MAX_PERFORMERS`]; frames of others are counted and left.
     pub actors: usize,
 }
 
@@ -79,7 +79,7 @@ impl AxisReceiver {
         let AxisSkeleton { skeleton, roles } = options.skeleton.clone();
         let followed = Followed {
             rig: Arc::new(Rig { skeleton, roles }),
-            actors: options.actors.clamp(1, MAX_ACTORS),
+            actors: options.actors.clamp(1, MAX_PERFORMERS),
             avatars: Vec::new(),
             items: VecDeque::new(),
             spare: Vec::new(),
@@ -93,12 +93,12 @@ impl AxisReceiver {
         }
     }
 
-    /// What it has seen so far; packets are frames.
+    /// Counts of packets since the beginning; packets are frames.
     pub fn counts(&self) -> SourceCounts {
         self.followed.counts
     }
 
-    /// What was wrong last, once.
+    /// Takes the last error, once.
     pub fn take_error(&mut self) -> Option<AxisError> {
         self.last_error.take()
     }
@@ -159,7 +159,7 @@ impl AxisReceiver {
         }
     }
 
-    /// What is complete, oldest first; fills `frame` for [`SourceEvent::Frame`].
+    /// The next complete event, oldest first; fills `frame` for [`SourceEvent::Frame`].
     pub fn next(&mut self, frame: &mut Frame) -> Option<SourceEvent> {
         Some(match self.followed.items.pop_front()? {
             AxisItem::Frame(mut full) => {
@@ -232,7 +232,7 @@ impl Followed {
     }
 }
 
-/// Where the bones are and how they are turned.
+/// Positions and rotations of the bones.
 fn pose(rig: &Rig, frame: &AxisFrame<'_>, full: &mut Frame) {
     full.pose.positions.clear();
     full.pose.rotations.clear();

@@ -233,7 +233,7 @@ fn frames_without_positions_are_of_the_skeleton_that_was_given() {
 /// A frame's avatar, number and values.
 type Decoded = (u32, u32, Vec<f32>);
 
-/// What a decoder makes of `bytes` in these pieces: frames' numbers, and errors.
+/// Frames' numbers, and errors, decoded from `bytes` in these pieces.
 fn decoded(bytes: &[u8], cuts: &[usize]) -> (Vec<Decoded>, Vec<AxisError>) {
     let mut decoder = AxisDecoder::new();
     let (mut frames, mut errors) = (vec![], vec![]);

@@ -190,7 +190,8 @@ fn is_place(place: &Vec3) -> bool {
     place.iter().all(|c| c.is_finite())
 }
 
-/// Where `joint` is on the grid; `None` if it was never seen. Before the first and after the last sight it stays there.
+/// Positions of `joint` on the grid; `None` if it was never seen. Before the first and after the last sight it stays
+/// there.
 fn places(frames: &[Frame], joint: usize, rate_hz: f64, count: usize) -> Option<Vec<Vec3>> {
     let seen = |frame: &&Frame| is_place(&frame.pose.positions[joint]);
     let known: Vec<(f64, Vec3)> = frames
@@ -206,7 +207,7 @@ fn places(frames: &[Frame], joint: usize, rate_hz: f64, count: usize) -> Option<
     on_grid(&known, rate_hz, count, |a, b, t| a.lerp(b, t))
 }
 
-/// How `joint` is turned on the grid.
+/// Rotations of `joint` on the grid.
 fn rotations(frames: &[Frame], joint: usize, rate_hz: f64, count: usize) -> Vec<Quat> {
     let seen = |frame: &&Frame| {
         frame.pose.rotations[joint]

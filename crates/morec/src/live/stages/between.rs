@@ -1,7 +1,7 @@
 //! The stages between chunks and detections (thesis, §4.6.3–4.6.5), each the body of a thread: it ends when what it
 //! takes from has ended, and its going ends the next.
 
-use crate::live::MAX_ACTORS;
+use crate::live::MAX_PERFORMERS;
 use crate::svrdm::{
     Cell, FeatureExtraction, Gram, RowRing, SegmentAssembly, SegmentScoring, SvrdmModel,
     SvrdmParams,
@@ -30,7 +30,7 @@ impl Segments {
 
     /// Chunks in, segments out.
     pub(super) fn run(mut self, model: &SvrdmModel) {
-        let mut assemblies: Vec<_> = (0..MAX_ACTORS)
+        let mut assemblies: Vec<_> = (0..MAX_PERFORMERS)
             .map(|_| SegmentAssembly::new(&model.params, model.pca.dims()))
             .collect();
         while let Some(mut chunk) = self.chunks.next() {
@@ -66,7 +66,7 @@ pub(super) fn extract(
 ) {
     let dim = model.pca.dims();
     let mut extraction = FeatureExtraction::new(&model.params, dim, &model.signs);
-    let mut rings: Vec<_> = (0..MAX_ACTORS)
+    let mut rings: Vec<_> = (0..MAX_PERFORMERS)
         .map(|_| RowRing::new(&model.params, dim))
         .collect();
     while let Some(mut message) = from.next() {

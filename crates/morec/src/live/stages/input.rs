@@ -11,7 +11,7 @@ use crate::svrdm::{ChunkAssembly, SvrdmModel};
 use super::belt::{RingReceiver, RingSender};
 use super::message::{Chunk, End, MessageStamp, Of};
 
-/// Where chunks go, and where used boxes come back.
+/// Output for chunks, and return of used boxes.
 #[derive(Debug)]
 pub(super) struct Chunks {
     pub(super) out: RingSender<Chunk>,
@@ -29,7 +29,7 @@ impl Chunks {
     }
 }
 
-/// What became of a frame.
+/// Fate of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Fate {
     /// Its skeleton is not known.
@@ -170,7 +170,7 @@ struct RowSink<'a> {
     chunks: &'a mut ChunkAssembly,
     mark: MessageStamp,
     to: &'a mut Chunks,
-    /// Whether a chunk has gone.
+    /// True if a chunk has gone.
     sent: bool,
 }
 

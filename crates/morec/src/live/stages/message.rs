@@ -1,16 +1,16 @@
-//! What travels from stage to stage.
+//! Messages between stages.
 
 use crate::live::recognizer::Steps;
 use crate::svrdm::{Cell, ClassCandidates, Gram, SvrdmModel, Window};
 
-/// Whom something is about, and when it was.
+/// Performer and time of a message.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct MessageStamp {
     pub(super) actor: usize,
     /// The stream's clock when what follows from it is reported, and the wall clock then.
     pub(super) reported_secs: f64,
     pub(super) wall_secs: f64,
-    /// How the present stretch counts time.
+    /// Time base of the present stretch.
     pub(super) steps: Steps,
 }
 
@@ -29,7 +29,7 @@ impl MessageStamp {
     }
 }
 
-/// What a stretch's end means.
+/// Reason of a stretch's end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum End {
     /// A gap: the clock goes on.
@@ -72,7 +72,7 @@ impl Chunk {
     }
 }
 
-/// What a message says to the stages that it passes.
+/// Contents of a message for the stages that it passes.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum What {
     /// A new chunk's rows.

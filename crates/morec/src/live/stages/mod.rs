@@ -28,7 +28,7 @@ use super::feed::{FeedReceiver, QueueItem};
 use super::status::SessionCounters;
 use super::waker::Waker;
 use super::worker::WorkerOptions;
-use super::{Frame, MAX_ACTORS, PerformerId, SessionError, wall_now_secs};
+use super::{Frame, MAX_PERFORMERS, PerformerId, SessionError, wall_now_secs};
 
 /// Chunks on their way at once.
 const CHUNKS: usize = 16;
@@ -39,7 +39,7 @@ const PARCELS: usize = 128;
 pub(super) type Spawn<'a> =
     dyn FnMut(&'static str, Box<dyn FnOnce() + Send>) -> Result<(), SessionError> + 'a;
 
-/// What a session has anyway.
+/// Parts that a session shares with its stages.
 pub(super) struct Shared<'a> {
     pub(super) cells: &'a Arc<SessionCounters>,
     pub(super) stop: &'a Arc<AtomicBool>,
@@ -79,7 +79,7 @@ pub(super) fn start(
     };
     let input = InputStage {
         feed,
-        performers: (0..MAX_ACTORS)
+        performers: (0..MAX_PERFORMERS)
             .map(|actor| PerformerInput::new(model, actor))
             .collect(),
         chunks: Chunks {
@@ -147,7 +147,7 @@ impl InputStage {
                 }
             }
         }
-        (0..MAX_ACTORS).for_each(|actor| self.gone(PerformerId(actor as u16)));
+        (0..MAX_PERFORMERS).for_each(|actor| self.gone(PerformerId(actor as u16)));
     }
 
     fn frame(&mut self, frame: &Frame) {

@@ -10,7 +10,7 @@ use crate::live::early::EarlyTracker;
 use crate::live::event_tracker::EventTracker;
 use crate::live::status::SessionCounters;
 use crate::live::worker::WorkerOptions;
-use crate::live::{Detection, MAX_ACTORS, PerformerId, wall_now_secs};
+use crate::live::{Detection, MAX_PERFORMERS, PerformerId, wall_now_secs};
 use crate::svrdm::{Cell, ChunkDetection, SegmentScoring, SegmentTracking, SvrdmModel};
 
 use super::belt::{RingReceiver, RingSender};
@@ -52,7 +52,7 @@ impl Tracking {
             early: EarlyTracker::default(),
         };
         Self {
-            performers: (0..MAX_ACTORS).map(performer).collect(),
+            performers: (0..MAX_PERFORMERS).map(performer).collect(),
             min_chunks: model.params.min_chunks,
             chunk_frames: model.params.chunk_frames as i64,
             broadcast,

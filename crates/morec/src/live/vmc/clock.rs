@@ -1,6 +1,6 @@
 //! When a frame was, from when its sender says it was and when it arrived.
 
-/// How much of the difference between the sender's clock and the arrival is made up for with each frame: networks
+/// Share of the difference between the sender's clock and the arrival that each frame corrects: networks
 /// delay packets unevenly, clocks only drift.
 const PULL: f64 = 0.02;
 /// A difference of more than this is no jitter: somebody paused, or a clock was set.

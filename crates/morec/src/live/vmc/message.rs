@@ -1,4 +1,4 @@
-//! What VMC's messages say, in right-handed axes.
+//! Messages of VMC, in right-handed axes.
 
 use crate::humanoid::{bone_of_name, mirrored};
 use crate::live::osc::{Arg, Message};
@@ -22,7 +22,7 @@ pub enum VmcMessage {
     Other,
 }
 
-/// What a message says; `None` if it is one of the known but its arguments are too few, of the wrong kinds or not
+/// Parses a message; `None` if it is one of the known but its arguments are too few, of the wrong kinds or not
 /// finite. Surplus arguments are ignored, as the specification (V3.1) has it.
 pub fn understand(message: &Message) -> Option<VmcMessage> {
     let mut args = message.args();
@@ -64,20 +64,20 @@ fn pose<'a>(args: &mut impl Iterator<Item = Arg<'a>>) -> Option<(Vec3, Quat)> {
     }
     let [x, y, z, qx, qy, qz, qw] = values;
     Some((
-        position_of_unity(Vec3::new(x, y, z))?,
-        rotation_of_unity([qx, qy, qz, qw])?,
+        position_from_unity(Vec3::new(x, y, z))?,
+        rotation_from_unity([qx, qy, qz, qw])?,
     ))
 }
 
 /// From Unity's left-handed axes (Y up, Z forward) to right-handed ones: Z turns round. The way back is the same.
-pub fn position_of_unity(p: Vec3) -> Option<Vec3> {
+pub fn position_from_unity(p: Vec3) -> Option<Vec3> {
     let turned = Vec3::new(p.x, p.y, -p.z);
     // Farther than a planet's size is no position, and squares must stay finite.
     turned.iter().all(|c| c.abs() < 1e9).then_some(turned)
 }
 
 /// A rotation `x y z w` from Unity's axes: the axis' Z turns round, and so does the sense of turning.
-pub fn rotation_of_unity([x, y, z, w]: [f64; 4]) -> Option<Quat> {
+pub fn rotation_from_unity([x, y, z, w]: [f64; 4]) -> Option<Quat> {
     rotation_of_xyzw([x, y, -z, -w])
 }
 
@@ -110,12 +110,12 @@ mod tests {
     #[test]
     fn a_left_arm_stretched_forward_stays_a_left_arm_stretched_forward() {
         let half = std::f64::consts::FRAC_1_SQRT_2;
-        let turn = rotation_of_unity([0.0, half, 0.0, half]).unwrap();
-        let arm = position_of_unity(Vec3::new(-0.3, 0.0, 0.0)).unwrap();
-        let forward = position_of_unity(Vec3::new(0.0, 0.0, 1.0)).unwrap();
+        let turn = rotation_from_unity([0.0, half, 0.0, half]).unwrap();
+        let arm = position_from_unity(Vec3::new(-0.3, 0.0, 0.0)).unwrap();
+        let forward = position_from_unity(Vec3::new(0.0, 0.0, 1.0)).unwrap();
         let (up, left) = (
             Vec3::y(),
-            position_of_unity(Vec3::new(-1.0, 0.0, 0.0)).unwrap(),
+            position_from_unity(Vec3::new(-1.0, 0.0, 0.0)).unwrap(),
         );
         assert!((turn * arm - forward * 0.3).norm() < 1e-12);
         // In right-handed axes left is up × forward: so left has stayed left.
@@ -126,8 +126,8 @@ mod tests {
     fn a_right_arm_raised_sideways_goes_up() {
         // Unity: +90° about Z takes +X to +Y.
         let half = std::f64::consts::FRAC_1_SQRT_2;
-        let turn = rotation_of_unity([0.0, 0.0, half, half]).unwrap();
-        let arm = position_of_unity(Vec3::new(0.3, 0.0, 0.0)).unwrap();
+        let turn = rotation_from_unity([0.0, 0.0, half, half]).unwrap();
+        let arm = position_from_unity(Vec3::new(0.3, 0.0, 0.0)).unwrap();
         assert!((turn * arm - Vec3::new(0.0, 0.3, 0.0)).norm() < 1e-12);
     }
 
@@ -135,8 +135,8 @@ mod tests {
     fn a_nod_forward_goes_forward() {
         // Unity: a turn about +X takes +Y to +Z: the head's top goes forward.
         let half = std::f64::consts::FRAC_1_SQRT_2;
-        let turn = rotation_of_unity([half, 0.0, 0.0, half]).unwrap();
-        let forward = position_of_unity(Vec3::z()).unwrap();
+        let turn = rotation_from_unity([half, 0.0, 0.0, half]).unwrap();
+        let forward = position_from_unity(Vec3::z()).unwrap();
         assert!((turn * Vec3::y() - forward).norm() < 1e-12);
     }
 
@@ -160,16 +160,16 @@ mod tests {
         fn turning_and_converting_can_be_exchanged(q in quat(), v in vector()) {
             let norm = q.iter().map(|c| c * c).sum::<f64>().sqrt();
             let unit = q.map(|c| c / norm);
-            let there = position_of_unity(turned(unit, v)).unwrap();
-            let here = rotation_of_unity(q).unwrap() * position_of_unity(v).unwrap();
+            let there = position_from_unity(turned(unit, v)).unwrap();
+            let here = rotation_from_unity(q).unwrap() * position_from_unity(v).unwrap();
             prop_assert!((there - here).norm() < 1e-9);
-            let back = rotation_of_unity(rotation_to_unity(&rotation_of_unity(q).unwrap())).unwrap();
-            prop_assert!(back.angle_to(&rotation_of_unity(q).unwrap()) < 1e-6);
+            let back = rotation_from_unity(rotation_to_unity(&rotation_from_unity(q).unwrap())).unwrap();
+            prop_assert!(back.angle_to(&rotation_from_unity(q).unwrap()) < 1e-6);
         }
 
         #[test]
         fn turning_and_mirroring_can_be_exchanged(q in quat(), v in vector()) {
-            let q = rotation_of_unity(q).unwrap();
+            let q = rotation_from_unity(q).unwrap();
             let (mirrored_v, mirrored_q) = mirror(v, q);
             prop_assert!((mirror(q * v, q).0 - mirrored_q * mirrored_v).norm() < 1e-9);
         }
@@ -177,12 +177,12 @@ mod tests {
 
     #[test]
     fn nonsense_is_no_pose() {
-        assert!(rotation_of_unity([0.0; 4]).is_none());
-        assert!(rotation_of_unity([f64::NAN, 0.0, 0.0, 1.0]).is_none());
-        assert!(position_of_unity(Vec3::new(f64::INFINITY, 0.0, 0.0)).is_none());
+        assert!(rotation_from_unity([0.0; 4]).is_none());
+        assert!(rotation_from_unity([f64::NAN, 0.0, 0.0, 1.0]).is_none());
+        assert!(position_from_unity(Vec3::new(f64::INFINITY, 0.0, 0.0)).is_none());
         let quarter = Axis::Y.rotation(1.0);
         assert!(
-            rotation_of_unity(rotation_to_unity(&quarter).map(|c| c * 3.0))
+            rotation_from_unity(rotation_to_unity(&quarter).map(|c| c * 3.0))
                 .unwrap()
                 .angle_to(&quarter)
                 < 1e-9

@@ -1,4 +1,4 @@
-//! Who sends, as far as an address tells.
+//! Identity of senders, as far as an address tells.
 
 use core::net::SocketAddr;
 
@@ -7,9 +7,9 @@ const SETTLED_SECS: f64 = 0.25;
 /// Ports that are remembered.
 const EARLIER: usize = 8;
 
-/// Where packets come from.
+/// Address of a sender.
 pub trait Peer: Copy + PartialEq {
-    /// Whether both are on one machine, at different ports perhaps.
+    /// True if both are on one machine, at different ports perhaps.
     fn same_host(&self, other: &Self) -> bool;
 }
 
@@ -80,7 +80,7 @@ impl<P: Peer> Ports<P> {
         true
     }
 
-    /// Where the sender is now.
+    /// Present address of the sender.
     pub(super) fn now(&self) -> P {
         self.now
     }

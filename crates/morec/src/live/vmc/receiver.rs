@@ -20,7 +20,7 @@ use super::rest::is_t_pose;
 use super::skeleton::{AssumedNeck, assumed_neck, bones_of, local_position, place, rig_of};
 use crate::humanoid::{BoneMask, HUMANOID_BONES, is_body, parent_among};
 use crate::live::osc::{self, Message};
-use crate::live::{Frame, MAX_ACTORS, PerformerId, Rig, SourceCounts, SourceEvent};
+use crate::live::{Frame, MAX_PERFORMERS, PerformerId, Rig, SourceCounts, SourceEvent};
 use crate::math::{Quat, Vec3};
 
 /// (d) of the rules.
@@ -38,12 +38,12 @@ const NEWCOMERS: usize = 16;
 /// A time stamp that lies back by less than this is a packet that was overtaken; by more, a sender begun anew.
 const LATE_SECS: f64 = 1.0;
 
-/// How a receiver takes what it is sent.
+/// Options of a receiver.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VmcOptions {
     /// Exchange left and right: for senders that show their performer as a mirror would.
     pub mirrored: bool,
-    /// Performers that are followed at once, at most [`MAX_ACTORS`]; packets of others are counted and left.
+    /// Performers that are followed at once, at most [`MAX_PERFORMERS`]; packets of others are counted and left.
     pub actors: usize,
     /// Leave out frames that show a T-pose too exact to be a person's.
     pub skip_t_pose: bool,
@@ -76,7 +76,7 @@ pub struct VmcReceiver<P> {
     refused: Option<P>,
 }
 
-/// What is complete and waits to be taken.
+/// A complete frame that waits to be taken.
 #[derive(Debug, Default)]
 struct Ready {
     items: VecDeque<VmcItem>,
@@ -139,12 +139,12 @@ impl<P: Peer> VmcReceiver<P> {
         self.refused.take()
     }
 
-    /// What it has seen so far.
+    /// Counts since the beginning.
     pub fn counts(&self) -> SourceCounts {
         self.counts
     }
 
-    /// Whether a frame is open that [`tick`](Self::tick) would close soon.
+    /// True if a frame is open that [`tick`](Self::tick) would close soon.
     pub fn is_open(&self) -> bool {
         self.senders.iter().any(|sender| sender.fresh != 0)
     }
@@ -201,7 +201,7 @@ impl<P: Peer> VmcReceiver<P> {
         if self.senders[at].actor.is_some() {
             return None;
         }
-        let most = self.options.actors.clamp(1, MAX_ACTORS) as u16;
+        let most = self.options.actors.clamp(1, MAX_PERFORMERS) as u16;
         let taken = |actor: &PerformerId, here: bool| {
             let mut senders = self.senders.iter();
             senders.any(|s| s.actor == Some(*actor) && (here || !s.gone))
@@ -235,7 +235,7 @@ impl<P: Peer> VmcReceiver<P> {
             .retain(|sender| sender.actor.is_some() || !silent(sender));
     }
 
-    /// What is complete, oldest first; fills `frame` for [`SourceEvent::Frame`].
+    /// The next complete event, oldest first; fills `frame` for [`SourceEvent::Frame`].
     pub fn next(&mut self, frame: &mut Frame) -> Option<SourceEvent> {
         Some(match self.ready.items.pop_front()? {
             VmcItem::Frame(mut full) => {
@@ -318,7 +318,7 @@ impl<P: Peer> Sender<P> {
             .fold(0, |mask, b| mask | 1 << b)
     }
 
-    /// Whether the open frame holds all there usually is.
+    /// True if the open frame holds all there usually is.
     fn is_complete(&self, now_secs: f64) -> bool {
         // As long as it is not known what usually comes, the other rules must do.
         let expected = self
@@ -361,7 +361,7 @@ impl<P: Peer> Taking<'_, P> {
         }
     }
 
-    /// Whether the sender stamped this packet earlier than one before it.
+    /// True if the sender stamped this packet earlier than one before it.
     fn was_overtaken(&self, bytes: &[u8]) -> bool {
         if self.sender.gone {
             // Whoever comes back may have begun its clock anew.

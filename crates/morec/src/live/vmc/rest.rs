@@ -9,7 +9,7 @@ const ARMS: f64 = 0.999_39;
 /// Legs hang down as exactly as this (8°).
 const LEGS: f64 = 0.990_27;
 
-/// Whether `pose` is a T-pose, too exact to be a person's: what a sender shows that has lost its tracker.
+/// True if `pose` is a T-pose, too exact to be a person's: what a sender shows that has lost its tracker.
 pub fn is_t_pose(pose: &KeyPose) -> bool {
     let along = |from, to| (pose.get(to)? - pose.get(from)?).try_normalize(1e-6);
     let check = || -> Option<bool> {

@@ -1,13 +1,13 @@
 //! Frames to packets.
 
-use super::message::{position_of_unity, rotation_to_unity};
+use super::message::{position_from_unity, rotation_to_unity};
 use crate::humanoid::{HUMANOID, HUMANOID_BONES, standard_offset};
 use crate::kinematics::WorldPose;
 use crate::live::osc::{Arg, begin_bundle, write_element, write_message};
 use crate::math::{Quat, Vec3};
 use crate::roles::RoleMap;
 
-/// How a frame's messages are put into datagrams; all of this is found in the wild.
+/// Distribution of a frame's messages over datagrams; all of this is found in the wild.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Bundling {
     /// One bundle for all.
@@ -93,7 +93,7 @@ impl VmcSender {
         args[..first.len()].copy_from_slice(first);
         let mut count = first.len();
         if let Some((position, rotation)) = pose {
-            let position = position_of_unity(position).unwrap_or_default();
+            let position = position_from_unity(position).unwrap_or_default();
             let [x, y, z, w] = rotation_to_unity(&rotation);
             for value in [position.x, position.y, position.z, x, y, z, w] {
                 args[count] = Arg::Float(value as f32);

@@ -14,7 +14,7 @@ use crate::roles::{Role, RoleMap};
 pub(super) struct AssumedNeck {
     /// The bone that it moves with.
     pub(super) parent: usize,
-    /// How far along the way to the head, 0 … 1.
+    /// Position along the way to the head, 0 … 1.
     pub(super) share: f64,
 }
 
@@ -34,7 +34,7 @@ pub(super) fn assumed_neck(mask: BoneMask) -> Option<(usize, AssumedNeck)> {
     Some((head, AssumedNeck { parent, share }))
 }
 
-/// Who plays the trunk if its own bone is not sent.
+/// Bones that stand for the trunk if its own bone is not sent.
 const TRUNK: [&str; 3] = ["Spine", "Chest", "UpperChest"];
 
 /// Senders without lengths send zeros; a body has none of these.

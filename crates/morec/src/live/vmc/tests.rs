@@ -561,7 +561,7 @@ fn two_senders_on_one_machine_are_two_performers_though_they_begin_together() {
     assert!(frames.iter().all(|n| *n > 180), "{frames:?}");
 }
 
-/// What arrived at which place, and how many frames each place had.
+/// Arrivals at each place, and the number of frames of each.
 fn frames_of(receiver: &mut VmcReceiver<At>, frames: &mut std::collections::BTreeMap<u16, usize>) {
     let mut frame = Frame::default();
     while let Some(next) = receiver.next(&mut frame) {

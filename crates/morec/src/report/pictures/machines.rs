@@ -79,7 +79,7 @@ fn planar(
         .collect()
 }
 
-/// Which machines accept in each cell, as an index into the names of the regions.
+/// Machines that accept in each cell, as an index into the names of the regions.
 fn kinds(branch: &Branch, x: (f64, f64), y: (f64, f64), [low, high]: [f64; 2]) -> Vec<Option<u8>> {
     let at =
         |(from, to): (f64, f64), i: usize| from + (to - from) * (i as f64 + 0.5) / CELLS as f64;

@@ -1,4 +1,4 @@
-//! How much of the variance so many principal components keep.
+//! Share of the variance by number of principal components.
 
 use crate::pca::QualityRow;
 use crate::plot::Chart;

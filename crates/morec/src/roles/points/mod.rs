@@ -24,11 +24,11 @@ pub(super) struct PointSet {
     /// Its points, blanks between them; `?` stands for `l` and `r`. In the order of their numbers, where points without
     /// names are numbered.
     points: &'static str,
-    /// Whether points may come as numbers alone.
+    /// True if points may come as numbers alone.
     numbered: bool,
     /// Who plays what: [`Expression`]s.
     roles: &'static [(&'static str, &'static str)],
-    /// Whether roles that `roles` leaves open are looked for among usual joint names.
+    /// True if roles that `roles` leaves open are looked for among usual joint names.
     joints_too: bool,
 }
 

@@ -13,7 +13,7 @@ pub enum PointJoint {
     Point(usize),
     /// A hip joint's centre, from the pelvis.
     HipCentre {
-        /// Whether it is the left one.
+        /// True if it is the left one.
         left: bool,
         /// The left and the right anterior superior iliac spine.
         front: [usize; 2],

@@ -26,7 +26,7 @@ use crate::math::Vec3;
 use motion::{Fault, MotionCoder, Stored};
 use words::{Fields, Words};
 
-/// What every file begins with.
+/// First bytes of every file.
 pub const MAGIC: &[u8; 6] = b"MCLIP\n";
 /// The newest version that is read: that of clips of points.
 pub const VERSION: u16 = 2;
@@ -173,7 +173,7 @@ impl CompressedClip {
     }
 }
 
-/// What a reader gives where a writer gives a channel.
+/// Stands in a reader for the channel that a writer gives.
 const NO_STEPS: Lattice = Lattice {
     kind: ChannelKind::Rotation,
     key: StepSize(0),
@@ -267,7 +267,7 @@ fn read_facts(fields: &mut Fields, limits: &Limits) -> Result<CompressedClip, Pa
     })
 }
 
-/// What is known of a clip of points. Joints are looked at where they are used.
+/// Reads the part of a clip of points. Joints are looked at where they are used.
 fn read_points(fields: &mut Fields, frames: usize, limits: &Limits) -> Result<Points, ParseError> {
     let metres = fields.number("metres in the stated unit")?;
     if metres < 0.0 {

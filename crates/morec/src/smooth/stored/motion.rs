@@ -16,7 +16,7 @@ pub(super) enum Fault {
     Number,
 }
 
-/// What is foreseen of one kind of channel.
+/// Forecasts of one kind of channel.
 #[derive(Default)]
 struct CurveModel {
     steps: [Whole; 2],
@@ -46,7 +46,7 @@ pub(super) struct Stored {
     pub pieces: Vec<Piece>,
 }
 
-/// Where a curve stands, between one piece and the next.
+/// State of a curve between one piece and the next.
 struct ChannelState {
     key: Code,
     point: ChannelValue,
@@ -54,7 +54,7 @@ struct ChannelState {
     arrival: Tangent,
 }
 
-/// How much of the way to the next key the leaving tangent foretells: 3 were the curve a line, and less the more it
+/// Share of the way to the next key that the leaving tangent predicts: 3 were the curve a line, and less the more it
 /// slows down.
 const REACH_OF_TANGENT: f64 = 1.8;
 

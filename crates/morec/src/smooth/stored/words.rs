@@ -60,12 +60,12 @@ impl<'a> Fields<'a> {
         Self { bytes, at }
     }
 
-    /// Where the next field begins.
+    /// Position of the next field.
     pub fn at(&self) -> usize {
         self.at
     }
 
-    /// What is left.
+    /// The rest of the bytes.
     pub fn rest(&self) -> &'a [u8] {
         &self.bytes[self.at..]
     }

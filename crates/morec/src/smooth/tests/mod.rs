@@ -48,7 +48,7 @@ fn vec3(size: f64) -> impl Strategy<Value = Vec3> {
     [-size..size, -size..size, -size..size].prop_map(Vec3::from)
 }
 
-/// How a channel moves: a random walk of this much a frame, with now and then a jump.
+/// A channel's motion: a random walk of this much a frame, with now and then a jump.
 fn walk(frames: usize) -> impl Strategy<Value = Vec<Vec3>> {
     let pace = prop_oneof![Just(0.0), Just(0.003), Just(0.05), Just(0.8)];
     (

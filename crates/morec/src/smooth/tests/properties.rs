@@ -5,7 +5,7 @@ use crate::clip::Clip;
 use crate::math::{Quat, Vec3};
 use crate::smooth::{Bezier, CompressedClip, Errors, SmoothParams, compress};
 
-/// Where a joint is in the world, by walking up its chain.
+/// Position of a joint in the world, by walking up its chain.
 fn in_world(clip: &Clip, frame: usize, joint: usize) -> Vec3 {
     let (mut point, mut at) = (Vec3::zeros(), joint);
     loop {

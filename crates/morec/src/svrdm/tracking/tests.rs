@@ -75,7 +75,7 @@ fn at_once(map: &[Vec<Cell>], overlap: f64) -> Vec<ChunkDetection> {
     kept
 }
 
-/// What is reported, with the number of columns seen by then.
+/// Reports, each with the number of columns seen by then.
 fn streamed(
     map: &[Vec<Cell>],
     params: &SvrdmParams,

@@ -7,7 +7,7 @@ use super::gram::Distances;
 use super::params::TreeParams;
 use super::reduce::centroid_factor;
 use super::sigma::{Algorithm4, SigmaRule, algorithm4, of_sides, quantile};
-use super::sphere::enclosing;
+use super::sphere::smallest_enclosing_sphere;
 use super::svrm::{MachineParams, svrdm};
 
 /// The samples of two macro-classes, and motion that is neither.
@@ -15,7 +15,7 @@ use super::svrm::{MachineParams, svrdm};
 pub struct MacroClasses<'a> {
     /// Feature vectors of each side; neither is empty.
     pub vectors: [&'a [&'a [f64]]; 2],
-    /// Who shows each of these: what is left out together.
+    /// Group of each of these: what is left out together.
     pub groups: [&'a [usize]; 2],
     /// Feature vectors of motion that is neither; may be empty.
     pub background: &'a [&'a [f64]],
@@ -35,7 +35,9 @@ pub struct Plane {
 impl Plane {
     /// The plane of two sides under a kernel of this width. O(m²) and more for the spheres.
     pub fn new(sides: [&[&[f64]]; 2], sigma: f64) -> Self {
-        let exemplars = sides.map(|side| enclosing(&Distances::new(side).kernel(sigma)).holders());
+        let exemplars = sides.map(|side| {
+            smallest_enclosing_sphere(&Distances::new(side).kernel(sigma)).support_vectors()
+        });
         let [a, b] = [0, 1].map(|k| {
             exemplars[k]
                 .iter()
@@ -94,7 +96,7 @@ impl Machines {
         }
     }
 
-    /// What both say of a place in the plane, by the function that recognises.
+    /// Outputs of both sides at a place in the plane, by the function that recognises.
     pub fn outputs(&self, place: &[f64; 2]) -> [f64; 2] {
         outputs_at(&self.points, &self.weights, self.sigma, *place)
     }
@@ -107,7 +109,7 @@ pub struct TrainedBranch {
     pub plane: Plane,
     /// The machines in it.
     pub machines: Machines,
-    /// Where widths were cross-validated: what they did.
+    /// Results of the cross-validation of widths, if there was one.
     pub cross: Option<cross::WidthOutcome>,
 }
 
@@ -142,7 +144,7 @@ fn with_widths(
     }
 }
 
-/// Which of the two widths is asked for.
+/// Selects one of the two widths.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Space {
     /// `σ_f`, between feature vectors.

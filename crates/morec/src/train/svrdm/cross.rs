@@ -9,7 +9,7 @@ use super::gram::Distances;
 use super::sigma::{of_sides, quantile};
 use super::svrm::MachineParams;
 
-/// How widths are cross-validated.
+/// Parameters of the cross-validation of widths.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CrossParams {
     /// Outputs from here on accept: 0.92 (thesis, §4.6.5).
@@ -20,9 +20,9 @@ pub struct CrossParams {
     pub full: Multiples,
     /// Widths in the plane, likewise.
     pub reduced: Multiples,
-    /// What accepting all background costs, where accepting all samples is worth 1.
+    /// Cost of accepting all background, relative to accepting all samples.
     pub background_cost: f64,
-    /// What accepting all samples on the wrong side costs.
+    /// Cost of accepting all samples on the wrong side.
     pub other_cost: f64,
 }
 
@@ -54,7 +54,7 @@ pub struct Multiples {
     pub low: f64,
     /// The largest.
     pub high: f64,
-    /// How many.
+    /// Their number.
     pub count: usize,
 }
 
@@ -66,7 +66,7 @@ impl Multiples {
     }
 }
 
-/// What the chosen widths did.
+/// Acceptance under the chosen widths.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct WidthOutcome {
     /// Share of left-out samples that their own side accepts.
@@ -86,7 +86,7 @@ impl WidthOutcome {
 /// `σ_f`, `σ_r` and what they did: the pair that is worth most, of equals the larger widths. Everything is trained
 /// for each pair and each fold: O(pairs · folds · m³).
 ///
-/// Where no group can be left out without emptying a side, the samples themselves are judged, which says little: all
+/// If no group can be left out without emptying a side, the samples themselves are judged, which says little: all
 /// are then accepted by some width.
 pub fn choose(
     sides: &MacroClasses,

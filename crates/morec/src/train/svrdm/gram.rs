@@ -23,12 +23,12 @@ impl Distances {
         Self(squared)
     }
 
-    /// How many vectors.
+    /// Number of vectors.
     pub fn len(&self) -> usize {
         self.0.nrows()
     }
 
-    /// Whether there are none.
+    /// True if there are none.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

@@ -18,7 +18,7 @@ use super::sigma::SigmaRule;
 pub struct FeatureSample {
     /// Its class.
     pub class: ClassId,
-    /// Who shows it: what is left out together.
+    /// The group that shows it: what is left out together.
     pub group: usize,
     /// Its feature vector, `n` values.
     pub vector: Vec<f64>,
@@ -33,7 +33,7 @@ pub struct Grown {
     pub branches: Vec<BranchReport>,
 }
 
-/// What was found at a branch.
+/// Results at a branch.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BranchReport {
     /// Its place among the tree's nodes.
@@ -54,7 +54,7 @@ pub struct BranchReport {
     pub background: usize,
     /// Of these, how many each side accepts.
     pub passed: [usize; 2],
-    /// Where widths were cross-validated: what they did.
+    /// Results of the cross-validation of widths, if there was one.
     pub cross: Option<WidthOutcome>,
 }
 
@@ -87,7 +87,7 @@ pub enum GrowError {
         /// Its number.
         index: usize,
     },
-    /// What grew is no tree: too many classes, or widths of 0 asked for.
+    /// The result is no tree: too many classes, or widths of 0 asked for.
     #[error(transparent)]
     Tree(#[from] TreeError),
 }

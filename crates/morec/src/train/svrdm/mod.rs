@@ -30,5 +30,5 @@ pub use qp::{BoxQp, Solution, Stop};
 pub use reduce::centroid_factor;
 pub use sigma::{Algorithm4, Estimate, SigmaRule, Sweep, algorithm4};
 pub use signs::{SignRule, SignVector, sign_vector};
-pub use sphere::{Sphere, enclosing};
+pub use sphere::{Sphere, smallest_enclosing_sphere};
 pub use svrm::{MachinePair, MachineParams, on_boundary, problem, svrdm, svrm};

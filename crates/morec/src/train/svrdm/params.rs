@@ -6,15 +6,15 @@ use super::partition::PartitionParams;
 use super::sigma::{Algorithm4, SigmaRule};
 use super::svrm::MachineParams;
 
-/// How a tree is trained.
+/// Parameters of a tree's training.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct TreeParams {
     /// `T`, `t` and `C` of the machines: 1, 0.4 and 10 (thesis, §4.5).
     pub machine: MachineParams,
-    /// How widths are chosen: Algorithm 4 (§4.5).
+    /// Rule for widths: Algorithm 4 (§4.5).
     pub sigma: SigmaRule,
     /// The figures of Algorithm 4.
     pub algorithm4: Algorithm4,
-    /// How classes are parted in two.
+    /// Parameters of the partition of classes in two.
     pub partition: PartitionParams,
 }

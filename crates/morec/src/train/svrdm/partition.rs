@@ -9,7 +9,7 @@ use crate::svrdm::kernel::Gaussian;
 use super::gram::Distances;
 use super::svrm::{MachineParams, svrm};
 
-/// How classes are parted.
+/// Parameters of the partition of classes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PartitionParams {
     /// Up to this many classes every split is tried (at most 20).
@@ -18,7 +18,7 @@ pub struct PartitionParams {
     pub restarts: usize,
     /// Seed of that chance.
     pub seed: u64,
-    /// Whether the functions `h_j` are brought to length 1 first. As printed they are not, and with narrow kernels a
+    /// True if the functions `h_j` are brought to length 1 first. As printed they are not, and with narrow kernels a
     /// class of many samples has a long one.
     pub unit_length: bool,
 }

@@ -81,7 +81,7 @@ impl BoxQp {
         }
     }
 
-    /// How far coordinate `i` goes to its best place, all others fixed.
+    /// Distance of coordinate `i` to its optimum, all others fixed.
     fn step(&self, i: usize, alpha: &DVector<f64>, gradient: &DVector<f64>) -> f64 {
         (alpha[i] - gradient[i] / self.matrix[(i, i)]).clamp(0.0, self.upper) - alpha[i]
     }

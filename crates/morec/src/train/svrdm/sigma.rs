@@ -6,7 +6,7 @@ use super::cross::CrossParams;
 use super::gram::{Distances, SAME};
 use super::svrm::{MachineParams, on_boundary, svrm};
 
-/// How the widths of a branch are chosen: `σ_f` between feature vectors and `σ_r` in the plane.
+/// Rule for the widths of a branch: `σ_f` between feature vectors and `σ_r` in the plane.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SigmaRule {
@@ -46,7 +46,7 @@ pub struct Algorithm4 {
     pub radius_factor: f64,
     /// By so much less is tried while no sample is found on the boundary: 0.1 (§5.3).
     pub radius_step: f64,
-    /// Whether a sample alone in its ball counts as on the boundary: its ball has radius 0 and no machine.
+    /// True if a sample alone in its ball counts as on the boundary: its ball has radius 0 and no machine.
     pub lone_is_boundary: bool,
     /// Widths tried.
     pub sweep: Sweep,
@@ -73,7 +73,7 @@ pub enum Sweep {
         low: f64,
         /// Of the largest.
         high: f64,
-        /// How many.
+        /// Their number.
         count: usize,
     },
     /// In even steps between multiples of the largest distance: as the reference prototype has it.
@@ -82,7 +82,7 @@ pub enum Sweep {
         low: f64,
         /// Of the largest.
         high: f64,
-        /// How many.
+        /// Their number.
         count: usize,
     },
 }
@@ -118,16 +118,16 @@ impl Sweep {
     }
 }
 
-/// What Algorithm 4 found.
+/// Result of Algorithm 4.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Estimate {
     /// `σ`.
     pub sigma: f64,
     /// The factor of `R` at which samples were on the boundary.
     pub radius_factor: f64,
-    /// Which samples are taken to be on the boundary.
+    /// Membership of each sample in the boundary.
     pub boundary: Vec<bool>,
-    /// How many of these the machine of all samples has on its boundary.
+    /// Number of these that the machine of all samples has on its boundary.
     pub score: usize,
 }
 
@@ -200,7 +200,7 @@ fn shrunk_boundary<V: AsRef<[f64]>>(
     }
 }
 
-/// Whether sample `i` is on the boundary of the machine of the samples in its ball.
+/// True if sample `i` is on the boundary of the machine of the samples in its ball.
 fn on_ball_boundary<V: AsRef<[f64]>>(
     samples: &[V],
     distances: &Distances,

@@ -1,8 +1,8 @@
-//! Which way round eigenvectors are taken.
+//! Signs of eigenvectors.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-/// How a sign vector is estimated.
+/// Estimation of a sign vector.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SignRule {

@@ -18,7 +18,7 @@ const HOLDS: f64 = 1e-6;
 
 impl Sphere {
     /// The samples it rests on: those with a weight.
-    pub fn holders(&self) -> Vec<usize> {
+    pub fn support_vectors(&self) -> Vec<usize> {
         (0..self.alpha.len())
             .filter(|&i| self.alpha[i] > HOLDS)
             .collect()
@@ -31,7 +31,7 @@ impl Sphere {
 /// Weight goes from one sample to another, the pair that gains most (Fan, Chen and Lin, *Working set selection using
 /// second order information for training support vector machines*, 2005), until no pair gains anything to speak of.
 /// O(m) a step.
-pub fn enclosing(kernel: &DMatrix<f64>) -> Sphere {
+pub fn smallest_enclosing_sphere(kernel: &DMatrix<f64>) -> Sphere {
     let m = kernel.nrows();
     let mut alpha = DVector::from_element(m, 1.0 / m.max(1) as f64);
     let mut product = kernel * &alpha;
@@ -60,7 +60,7 @@ pub fn enclosing(kernel: &DMatrix<f64>) -> Sphere {
     }
 }
 
-/// Where weight should go, where it should come from, and how far the two are from balance.
+/// The index that should gain weight, the one that should lose it, and the violation of balance.
 fn pair(
     kernel: &DMatrix<f64>,
     alpha: &DVector<f64>,

@@ -21,7 +21,7 @@ use super::SvrdmOptions;
 pub struct ThesisSample {
     /// Its class.
     pub class: ClassId,
-    /// Who shows it, by number: the clip where nobody is named.
+    /// Number of the person who shows it: the clip where nobody is named.
     pub group: usize,
     /// Its reduced rows, `frames × r`.
     pub rows: Rows,
@@ -34,11 +34,11 @@ pub struct Background {
     pub rows: Rows,
     /// Frames of what is labelled or held back: to be left out of account.
     pub known: Vec<Range<usize>>,
-    /// Whether it is the rest of a labelled clip.
+    /// True if it is the rest of a labelled clip.
     pub unlabelled: bool,
 }
 
-/// What training works on.
+/// Training data of the thesis's method.
 #[derive(Debug, Clone)]
 pub struct ThesisTrainingData {
     pub classes: Vec<ClassInfo>,

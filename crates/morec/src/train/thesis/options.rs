@@ -1,4 +1,4 @@
-//! How the thesis's recogniser is trained.
+//! Options of the thesis's recogniser's training.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +9,7 @@ use crate::train::svrdm::{SigmaRule, SignRule, TreeParams};
 
 use super::thresholds::ThresholdRule;
 
-/// Which joints count.
+/// Joints that count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Pivots {
@@ -33,19 +33,19 @@ impl Pivots {
 /// The figures of training.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SvrdmTrainParams {
-    /// Which joints make pose rows.
+    /// Joints of the pose rows.
     pub pivots: Pivots,
-    /// How rows are made of poses.
+    /// Parameters of pose rows.
     pub pose: PoseParams,
-    /// How many principal components are kept: 16 (thesis, §4.2).
+    /// Number of principal components that are kept: 16 (thesis, §4.2).
     pub keep: ComponentCount,
-    /// How the stages work; training describes its samples the same way.
+    /// Parameters of the stages; training describes its samples the same way.
     pub stages: SvrdmParams,
-    /// How sign vectors are found.
+    /// Estimation of sign vectors.
     pub sign: SignRule,
-    /// How the tree is grown.
+    /// Parameters of the tree's growth.
     pub tree: TreeParams,
-    /// Where the thresholds of recognition come from.
+    /// Origin of the thresholds of recognition.
     pub thresholds: ThresholdRule,
 }
 
@@ -103,12 +103,12 @@ impl Default for SvrdmTrainParams {
     }
 }
 
-/// How to train from clips.
+/// Options of training from clips.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SvrdmOptions {
     /// The figures of the method.
     pub params: SvrdmTrainParams,
-    /// Whether unlabelled parts of labelled clips are background.
+    /// True if unlabelled parts of labelled clips are background.
     pub unlabelled_is_background: bool,
 }
 

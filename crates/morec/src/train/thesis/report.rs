@@ -1,4 +1,4 @@
-//! How a training run of the thesis's method went.
+//! Report of a training run of the thesis's method.
 
 use std::collections::BTreeMap;
 
@@ -17,14 +17,14 @@ use super::thresholds::Estimated;
 /// Vectors whose product with their sign vector is below this are close to being turned round.
 const CLOSE_TO_FLIPPING: f64 = 0.1;
 
-/// What training found, beyond what it reports of every method.
+/// Training results beyond those of every method.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SvrdmReport {
     /// Values in a reduced row, `r`.
     pub dims: usize,
     /// Share of the variance that they keep (Eq. 3.8).
     pub quality: f64,
-    /// What fewer or more would keep.
+    /// Variance kept by fewer or more components.
     pub quality_table: Vec<QualityRow>,
     /// Of each direction, the share of samples whose sign was close to flipping (Alg. 5).
     pub unsure_signs: Vec<f64>,
@@ -34,7 +34,7 @@ pub struct SvrdmReport {
     pub accept: f64,
     /// Least confidence that is reported.
     pub min_confidence: f64,
-    /// How these two were estimated, if they were.
+    /// Estimation of these two, if they were estimated.
     pub estimated: Option<Estimated>,
 }
 

@@ -27,14 +27,14 @@ const MAY_MISTAKE: f64 = 0.01;
 /// This share of the left-out samples that the tree gets right may fall below the least confidence, if background
 /// asks for as much: what lies near a motion in its own clip must not silence the class.
 const MAY_SILENCE: f64 = 0.25;
-/// What is to be refused must stay below a threshold by so much.
+/// Margin below a threshold that unwanted detections must keep.
 const MARGIN: f64 = 0.01;
 /// The least confidence where there is no background to ask for more.
 const LEAST_CONFIDENCE: f64 = 0.3;
 /// Detections that share more than this with a sample say nothing about background.
 const MAX_OVERLAP: f64 = 0.3;
 
-/// Where the thresholds come from.
+/// Origin of the thresholds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ThresholdRule {
@@ -47,7 +47,7 @@ pub enum ThresholdRule {
     },
 }
 
-/// What was estimated, and from what.
+/// Estimated thresholds and the data behind them.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Estimated {
     /// `T`.
@@ -64,7 +64,7 @@ pub struct Estimated {
     pub confident: f64,
     /// Minutes of background that were looked at.
     pub background_minutes: f64,
-    /// What was detected in it before the threshold on confidence.
+    /// Detections in the background before the threshold on confidence.
     pub background_detections: usize,
     /// The most confident of these.
     pub background_confidence: f64,
@@ -79,7 +79,7 @@ impl Estimated {
     }
 }
 
-/// How one left-out sample came through.
+/// Result of one left-out sample.
 struct LeftOutResult {
     right: bool,
     /// Least output on its way down the tree.

@@ -68,14 +68,14 @@ proptest! {
     fn the_sphere_encloses_and_rests_on_its_holders(seed in any::<u64>(), m in 1usize..40, log_width in -2.0f64..1.5) {
         let samples = cloud(&mut Rng::new(seed), m, &[0.0; 4], 1.0);
         let kernel = Distances::new(&samples).kernel(log_width.exp());
-        let sphere = enclosing(&kernel);
+        let sphere = smallest_enclosing_sphere(&kernel);
         prop_assert!((sphere.alpha.sum() - 1.0).abs() < 1e-9 && sphere.alpha.iter().all(|a| *a >= 0.0));
         let product = &kernel * &sphere.alpha;
         let centre = sphere.alpha.dot(&product);
         let squared = |i: usize| 1.0 - 2.0 * product[i] + centre;
         let radius = sphere.radius * sphere.radius;
         prop_assert!((0..m).all(|i| squared(i) <= radius + 1e-8));
-        prop_assert!(sphere.holders().into_iter().all(|i| (squared(i) - radius).abs() < 1e-6));
+        prop_assert!(sphere.support_vectors().into_iter().all(|i| (squared(i) - radius).abs() < 1e-6));
     }
 }
 

@@ -76,7 +76,7 @@ fn reference() -> Reference {
     .unwrap()
 }
 
-/// Where the prototype differs from the default: its sweep, and samples alone in their ball.
+/// Parameters of the prototype where they differ from the default: its sweep, and samples alone in their ball.
 fn as_prototype() -> TreeParams {
     let sweep = Sweep::Linear {
         low: 0.02,
@@ -117,7 +117,7 @@ fn machines_are_those_of_an_outside_solver() {
 #[test]
 fn spheres_are_those_of_an_outside_solver() {
     for (number, case) in reference().spheres.iter().enumerate() {
-        let sphere = enclosing(&Distances::new(&case.vectors).kernel(case.sigma));
+        let sphere = smallest_enclosing_sphere(&Distances::new(&case.vectors).kernel(case.sigma));
         assert!(
             near(sphere.radius, case.radius, 1e-7),
             "sphere {number}: {} {}",
