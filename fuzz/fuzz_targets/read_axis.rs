@@ -3,7 +3,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use morec::live::axis::{AxisDecoder, AxisOptions, AxisReceiver};
-use morec::live::{Frame, MAX_ACTORS, SourceEvent};
+use morec::live::{Frame, MAX_PERFORMERS, SourceEvent};
 
 fn decoded<'a>(pieces: impl Iterator<Item = &'a [u8]>) -> Vec<String> {
     let (mut decoder, mut found) = (AxisDecoder::new(), vec![]);
@@ -24,7 +24,7 @@ fuzz_target!(|input: (u16, u8, &[u8])| {
         ..AxisOptions::default()
     });
     let (mut now_secs, mut frame) = (0.0, Frame::default());
-    let mut last_secs = [f64::NEG_INFINITY; MAX_ACTORS];
+    let mut last_secs = [f64::NEG_INFINITY; MAX_PERFORMERS];
     for bytes in bytes.chunks(piece) {
         now_secs += f64::from(wait) / 500.0;
         receiver.bytes(now_secs, bytes);

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use libfuzzer_sys::fuzz_target;
-use morec::labels::{ClipLength, Labels, read_found, read_people};
+use morec::labels::{ClipLength, Labels, read_detections, read_people};
 
 fuzz_target!(|bytes: &[u8]| {
     let lengths = BTreeMap::from([
@@ -38,7 +38,7 @@ fuzz_target!(|bytes: &[u8]| {
             );
         }
     }
-    if let Ok(table) = read_found(bytes) {
+    if let Ok(table) = read_detections(bytes) {
         let (found, _) = table.resolve(&lengths);
         assert!(
             found

@@ -3,7 +3,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use morec::live::vmc::{VmcOptions, VmcReceiver};
-use morec::live::{Frame, MAX_ACTORS, SourceEvent};
+use morec::live::{Frame, MAX_PERFORMERS, SourceEvent};
 
 fuzz_target!(|packets: Vec<(u8, u8, Vec<u8>)>| {
     let mut receiver = VmcReceiver::new(&VmcOptions {
@@ -11,7 +11,7 @@ fuzz_target!(|packets: Vec<(u8, u8, Vec<u8>)>| {
         ..VmcOptions::default()
     });
     let (mut now_secs, mut frame) = (0.0, Frame::default());
-    let mut last_secs = [f64::NEG_INFINITY; MAX_ACTORS];
+    let mut last_secs = [f64::NEG_INFINITY; MAX_PERFORMERS];
     for (peer, wait, bytes) in &packets {
         now_secs += f64::from(*wait) / 1000.0;
         receiver.packet(peer % 5, now_secs, bytes);

@@ -50,8 +50,10 @@ impl Stats {
         });
         let mut engine = TemplateEngine::new(model)?;
         timed(&mut self.matching, || {
-            rows.iter().for_each(|row| engine.push(row, &mut |_| {}));
-            engine.finish(&mut |_| {});
+            for row in rows.iter() {
+                engine.push(row);
+            }
+            engine.finish();
         });
         let template_rows = model.samples.iter().map(|s| s.rows.len()).sum::<usize>()
             + model

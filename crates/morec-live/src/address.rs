@@ -10,9 +10,9 @@ use crate::error::Context;
 /// A source or a sink, not yet opened.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Address {
-    /// What it is: `vmc`, `osc`, `json` …
+    /// Kind of the source or sink: `vmc`, `osc`, `json` …
     pub kind: String,
-    /// Where it is: a host and a port, a file, `-`.
+    /// Its place: a host and a port, a file, `-`.
     pub place: String,
     options: Vec<(String, String)>,
     typed: String,
@@ -112,7 +112,7 @@ impl Address {
     }
 }
 
-/// What to say of a socket that listens to everybody, which is a choice.
+/// Warning about a socket that listens to everybody, which is a choice.
 pub(crate) fn openness(at: SocketAddr) -> Option<String> {
     at.ip().is_unspecified().then(|| {
         let port = at.port();

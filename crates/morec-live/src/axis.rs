@@ -20,7 +20,7 @@ use crate::{Address, LiveError, Notices};
 const WAIT: Duration = Duration::from_millis(10);
 /// Between one try to connect and the next.
 const AGAIN: Duration = Duration::from_millis(500);
-/// How long connecting may take, and how often a silent connection is looked after.
+/// Limit of connecting, and interval between looks at a silent connection.
 const PATIENCE: Duration = Duration::from_secs(2);
 /// Pieces of a connection's bytes that may wait; then the sender does.
 const WAITING: usize = 64;
@@ -42,7 +42,7 @@ pub struct AxisSource {
     from: From,
     receiver: AxisReceiver,
     closed: Arc<AtomicBool>,
-    /// What was wrong was said once; it is counted ever after.
+    /// True once the fault was reported; further ones are counted only.
     complained: bool,
     notices: Notices,
 }
@@ -97,7 +97,7 @@ impl AxisSource {
         }
     }
 
-    /// What it notices of what it is sent.
+    /// Notices about received data.
     pub fn notices(&self) -> Notices {
         self.notices.clone()
     }

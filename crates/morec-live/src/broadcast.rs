@@ -12,7 +12,7 @@ const PATIENCE: Duration = Duration::from_millis(500);
 /// Listeners at once.
 const LISTENERS: usize = 16;
 
-/// Where frames go.
+/// Output for frames.
 pub enum Broadcast {
     /// To everybody who has connected.
     Tcp(TcpListener, Vec<TcpStream>),
@@ -41,7 +41,7 @@ impl Broadcast {
         Ok(Broadcast::Tcp(listener, Vec::new()))
     }
 
-    /// Where it listens, if it does.
+    /// Address that it listens at, if it does.
     pub fn address(&self) -> Option<SocketAddr> {
         match self {
             Broadcast::Tcp(listener, _) => listener.local_addr().ok(),

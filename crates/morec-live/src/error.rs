@@ -11,10 +11,10 @@ pub enum LiveError {
     /// An address that names no source or sink, or an option that it does not have.
     #[error("{0}")]
     Address(String),
-    /// What the system refused.
+    /// An operation that the system refused.
     #[error("{what}")]
     Io {
-        /// What was to be done, with the address.
+        /// The operation, with the address.
         what: String,
         /// Why it could not.
         #[source]
@@ -28,7 +28,7 @@ pub enum LiveError {
     Clip(String),
 }
 
-/// What was to be done when the system refused.
+/// Adds the operation to a system's error.
 pub(crate) trait Context<T> {
     /// The error with what was to be done.
     fn context(self, what: impl Into<String>) -> Result<T, LiveError>;

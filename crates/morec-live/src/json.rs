@@ -87,7 +87,7 @@ impl JsonSource {
         }
     }
 
-    /// Where it says which lines are no poses, and why.
+    /// Notices about lines that are no poses, with the reason.
     pub fn notices(&self) -> Notices {
         self.notices.clone()
     }

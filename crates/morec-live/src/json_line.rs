@@ -43,7 +43,7 @@ struct PoseFields {
 pub struct PoseLine {
     /// On the sender's clock.
     pub time_secs: Option<f64>,
-    /// Whom it shows.
+    /// The performer it shows.
     pub actor: u16,
     /// Places of the role joints.
     pub positions: [Vec3; Role::COUNT],
@@ -208,7 +208,7 @@ fn is_numbers(value: &Value, count: usize) -> bool {
         .is_some_and(|list| list.len() == count && list.iter().all(Value::is_number))
 }
 
-/// What a value is, in a word or two.
+/// Type of a value, in a word or two.
 fn kind(value: &Value) -> String {
     match value {
         Value::Null => "null".to_owned(),

@@ -24,7 +24,7 @@ pub enum Came {
     Line {
         /// Whose it is.
         connection: u64,
-        /// Which of the connection's lines, from 1.
+        /// Number of the connection's line, from 1.
         number: u64,
         /// It without its end; `None` if it was too long or no text.
         text: Option<String>,
@@ -37,7 +37,7 @@ pub enum Came {
     Ended,
 }
 
-/// Where lines come from.
+/// A source of lines.
 pub struct Lines {
     came: Receiver<Came>,
 }
@@ -62,7 +62,7 @@ impl Lines {
         Ok((Self { came }, at))
     }
 
-    /// What comes next; waits for it a little.
+    /// The next arrival; waits for it a little.
     pub fn next(&mut self, most: Duration) -> Came {
         match self.came.recv_timeout(most) {
             Ok(came) => came,

@@ -1,8 +1,8 @@
-//! What networks do to packets, done on purpose: for trying things without a bad network at hand.
+//! A simulated bad network, for tests without one at hand.
 
 use morec::rng::Rng;
 
-/// How bad a network is to be; the default is a perfect one.
+/// Probabilities of a bad network's faults; the default is a perfect one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Accidents {
     /// The share of packets that are lost, 0 to 1.
@@ -76,7 +76,7 @@ impl Network {
         Ok(())
     }
 
-    /// How long the next packet takes, seconds.
+    /// Delay of the next packet, seconds.
     pub fn delay_secs(&mut self) -> f64 {
         if self.accidents.jitter_secs > 0.0 {
             self.rng.range(0.0, self.accidents.jitter_secs)

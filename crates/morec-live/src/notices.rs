@@ -1,4 +1,4 @@
-//! What a source notices of what it is sent, on its way from the source's thread to whoever shows it.
+//! Notices about received data, on their way from a source's thread to the caller.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -13,7 +13,7 @@ pub struct Notices {
 
 #[derive(Debug, Default)]
 struct Left {
-    /// What was said already.
+    /// Notices that were given already.
     known: Vec<String>,
     /// To be shown.
     texts: Vec<String>,

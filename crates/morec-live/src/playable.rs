@@ -16,7 +16,7 @@ use crate::LiveError;
 pub struct PlayableClip {
     /// The motion, in metres and Y up, at the rate at which it is played.
     pub clip: Clip,
-    /// Which joint is which part of the body.
+    /// Joint of each role.
     pub roles: RoleMap,
     /// The first frame that is motion and not a rest pose.
     pub first: usize,

@@ -1,4 +1,4 @@
-//! Where events go.
+//! Sinks of events.
 
 use std::io::{self, Write};
 
@@ -19,9 +19,9 @@ pub trait Sink: Send {
 pub struct OpenSink {
     /// It.
     pub sink: Box<dyn Sink>,
-    /// What it is called, with the port that was free if it asked for any.
+    /// Name of the sink, with the port that was free if it asked for any.
     pub name: String,
-    /// What is worth knowing of it, each in a sentence.
+    /// Notes for the user, each in a sentence.
     pub notes: Vec<String>,
 }
 

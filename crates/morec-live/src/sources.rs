@@ -16,7 +16,7 @@ use crate::json::JsonSource;
 use crate::vmc::VmcSource;
 use crate::{Address, LiveError, Notices};
 
-/// How sources are opened.
+/// Options of opening a source.
 #[derive(Debug, Clone)]
 pub struct SourceOptions<'a> {
     /// Exchange left and right, for VMC senders that show their performer as a mirror would.
@@ -55,11 +55,11 @@ impl Default for SourceOptions<'_> {
 pub struct OpenSource {
     /// It.
     pub source: Box<dyn Source>,
-    /// Whether it can wait for whoever takes its frames.
+    /// Behaviour when its frames are not taken in time: whether it can wait.
     pub overload: OverflowPolicy,
-    /// What it is called, with the port that was free if it asked for any.
+    /// Name of the source, with the port that was free if it asked for any.
     pub name: String,
-    /// What it notices of what it is sent.
+    /// Notices about received data.
     pub notices: Notices,
 }
 

@@ -1,8 +1,8 @@
-//! What a session did, in a line.
+//! Summary of a session in a line.
 
 use morec::live::Status;
 
-/// What a session did, at its end.
+/// Summary of a session, at its end.
 pub fn summary(source: &str, status: &Status) -> String {
     let mut text = format!(
         "{source}: {} frames, {} motions",

@@ -61,7 +61,7 @@ impl VmcSource {
         ));
     }
 
-    /// Where it listens.
+    /// Address that it listens at.
     ///
     /// # Errors
     /// The system does not say.
@@ -69,7 +69,7 @@ impl VmcSource {
         self.socket.local_addr().context("UDP socket")
     }
 
-    /// What it notices of what it is sent.
+    /// Notices about received data.
     pub fn notices(&self) -> Notices {
         self.notices.clone()
     }

@@ -27,13 +27,13 @@ const WAITING: usize = 256;
 const LISTENERS: usize = 32;
 /// Connections at once that have not said hello.
 const GREETING: usize = 16;
-/// How long saying goodbye to all listeners may take.
+/// Limit of saying goodbye to all listeners.
 const GOODBYE: Duration = Duration::from_millis(500);
 
 /// A listener by number.
 type Listener = (u64, SyncSender<String>);
 
-/// Who is there.
+/// The connected listeners.
 #[derive(Default)]
 struct Hall {
     listeners: Vec<Listener>,

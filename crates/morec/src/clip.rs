@@ -40,6 +40,9 @@ pub struct OrderError {
 
 impl Skeleton {
     /// Checks that every parent comes before its children.
+    ///
+    /// # Errors
+    /// A joint whose parent does not come before it.
     pub fn new(joints: Vec<Joint>) -> Result<Self, OrderError> {
         for (j, joint) in joints.iter().enumerate() {
             if let Some(parent) = joint.parent.filter(|&p| p >= j) {

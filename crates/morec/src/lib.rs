@@ -115,6 +115,8 @@
 //! The method with its sources is in `docs/method.md`, the invariants in `ARCHITECTURE.md`, the reasons for every
 //! dependency in `docs/decisions.md`.
 
+#![warn(clippy::missing_errors_doc, clippy::missing_panics_doc)]
+
 pub mod classes;
 pub mod clip;
 pub mod humanoid;

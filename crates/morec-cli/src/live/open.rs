@@ -17,7 +17,7 @@ pub struct TrackerArgs {
     #[arg(long)]
     pub mirror: bool,
     /// Performers that one VMC port, or one broadcast, follows at once
-    #[arg(long, value_name = "N", default_value = "4", value_parser = clap::value_parser!(u16).range(1..=MAX_ACTORS as i64))]
+    #[arg(long, value_name = "N", default_value = "4", value_parser = clap::value_parser!(u16).range(1..=MAX_PERFORMERS as i64))]
     pub actors: u16,
     /// A BVH file of the program at axis://, for how bones hang together and how long they are [default: a person of
     /// 1.7 m]

@@ -21,7 +21,7 @@ pub struct TakeArgs {
     #[arg(long, value_name = "SECS", default_value = "3", value_parser = secs)]
     pub count_down: f64,
     /// Which performer of the source, from 0
-    #[arg(long, value_name = "N", default_value = "0", value_parser = clap::value_parser!(u16).range(..MAX_ACTORS as i64))]
+    #[arg(long, value_name = "N", default_value = "0", value_parser = clap::value_parser!(u16).range(..MAX_PERFORMERS as i64))]
     pub performer: u16,
     /// No bell at the beginning and the end of a take
     #[arg(long)]

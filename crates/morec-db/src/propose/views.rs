@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use morec::classes::ClassId;
 use morec::features::{BoneSet, Rows};
-use morec::templates::{Metric, PackedSymmetric, TemplateBank};
+use morec::templates::{Metric, TemplateBank};
 use morec::train::{LabelledSpan, StreamKind, TrainParams, TrainSet, TrainStream, scatters};
 
 use super::ProposeOptions;
@@ -77,7 +77,7 @@ pub fn views(material: &ProposalData, chosen: &[usize]) -> BTreeMap<BoneSet, Bon
             .filter(|at| kept.contains(&columns[*at]))
             .collect();
         let part = total.restricted(&keep);
-        let factor = (trace(&total) / trace(&part).max(1e-12)) as f32;
+        let factor = (total.trace() / part.trace().max(1e-12)) as f32;
         let metric = Metric::new(&ridged.restricted(&keep), &part);
         let template = |judged: &JudgedSpan| {
             let laid = &material.clips[judged.clip].laid;
@@ -104,10 +104,6 @@ pub fn views(material: &ProposalData, chosen: &[usize]) -> BTreeMap<BoneSet, Bon
         .filter(|bones| !bones.is_empty())
         .map(view)
         .collect()
-}
-
-fn trace(matrix: &PackedSymmetric) -> f64 {
-    matrix.unpack().trace()
 }
 
 fn params() -> TrainParams {

@@ -9,7 +9,7 @@ use tungstenite::http::StatusCode;
 use tungstenite::protocol::WebSocketConfig;
 use tungstenite::{WebSocket, accept_hdr_with_config};
 
-/// How long a listener may take to say hello, all of it; or to take a packet.
+/// Limit for a listener's whole handshake, or for taking a packet.
 const PATIENCE: Duration = Duration::from_secs(2);
 /// A listener says pings and goodbyes; nothing that it sends is read.
 const LARGEST_MESSAGE: usize = 4096;

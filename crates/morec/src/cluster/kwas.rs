@@ -59,7 +59,7 @@ impl Spectrum {
     }
 
     /// Of `M` itself, symmetric `n × n`. O(n³).
-    pub fn of_matrix(m: DMatrix<f64>) -> Self {
+    pub(crate) fn of_matrix(m: DMatrix<f64>) -> Self {
         let eigen = Eigen::of(m);
         let sum: f64 = eigen.values.iter().sum();
         let share = |value: &f64| if sum > 0.0 { value / sum } else { 0.0 };

@@ -62,13 +62,31 @@ pub struct Decoder {
     /// Of each class.
     last: Vec<LastReport>,
     chain: Vec<TickDetection>,
+    /// One tick's candidates.
+    candidates: Vec<ScoredCandidate>,
+    /// Detections of the last report.
+    found: Vec<TickDetection>,
+}
+
+/// A candidate and its score: known by its distance under [`CandidatePolicy::Gate`], and for the caller to set under
+/// [`CandidatePolicy::Verify`], where 0 and less refuse it.
+#[derive(Debug, Clone, Copy)]
+pub struct ScoredCandidate {
+    /// The stretch.
+    pub candidate: Candidate,
+    /// Its score, above 0 and to 1.
+    pub score: f64,
+    spread: f32,
 }
 
 impl Clone for Decoder {
     fn clone(&self) -> Self {
         // A derived copy of a vector has room for what it holds only, and pushing must not allocate.
-        let mut chain = Vec::with_capacity(self.chain.capacity());
-        chain.extend_from_slice(&self.chain);
+        fn copy<T: Copy>(of: &Vec<T>) -> Vec<T> {
+            let mut copy = Vec::with_capacity(of.capacity());
+            copy.extend_from_slice(of);
+            copy
+        }
         Self {
             params: self.params.clone(),
             thresholds: self.thresholds.clone(),
@@ -76,7 +94,9 @@ impl Clone for Decoder {
             negatives: self.negatives.clone(),
             paths: self.paths.clone(),
             last: self.last.clone(),
-            chain,
+            chain: copy(&self.chain),
+            candidates: copy(&self.candidates),
+            found: copy(&self.found),
             ..*self
         }
     }
@@ -117,6 +137,8 @@ impl Decoder {
             reported: 0,
             last: vec![LastReport::default(); classes],
             chain: Vec::with_capacity(path_len),
+            candidates: Vec::with_capacity(classes),
+            found: Vec::with_capacity(path_len),
         }
     }
 
@@ -128,7 +150,12 @@ impl Decoder {
             .for_each(|(mine, given)| *mine = *given);
     }
 
-    /// Forgets the stream so far.
+    /// Detections of the last [`report`](Self::report).
+    pub fn found(&self) -> &[TickDetection] {
+        &self.found
+    }
+
+    /// Forgets the stream so far, but for what was [`found`](Self::found).
     pub fn reset(&mut self) {
         self.paths.fill(PathCell::default());
         self.last.fill(LastReport::default());
@@ -136,35 +163,92 @@ impl Decoder {
     }
 
     /// Takes the next tick: one distance for each class and the smallest to any negative ([`FAR`] if there is
-    /// none). Calls `out` with what is now certain; `judge` scores candidates under [`CandidatePolicy::Verify`].
-    pub fn push(
-        &mut self,
-        near: &[ClassDistance],
-        negative: f32,
-        judge: &mut impl FnMut(&Candidate) -> f64,
-        out: &mut impl FnMut(TickDetection),
-    ) {
+    /// none). Then, while a tick [is due](Self::is_due), [`candidates`](Self::candidates) are to be scored and
+    /// [`decide`](Self::decide) called, and [`report`](Self::report) at the end. No allocation.
+    pub fn push(&mut self, near: &[ClassDistance], negative: f32) {
         let slot = self.ticks as usize & (self.ring_len - 1);
         self.ring[slot * self.classes..][..self.classes].copy_from_slice(near);
         self.negatives[slot] = negative;
         self.ticks += 1;
-        let wait = self.params.window_ticks(self.rule) as i64;
-        if self.ticks > wait {
-            self.decide(self.ticks - 1 - wait, judge);
-            self.report(self.params.lag_ticks as i64, out);
-        }
     }
 
-    /// Ends the stretch: decides the last ticks with what there is and reports all that is left.
-    pub fn finish(
-        &mut self,
-        judge: &mut impl FnMut(&Candidate) -> f64,
-        out: &mut impl FnMut(TickDetection),
-    ) {
-        while self.decided < self.ticks {
-            self.decide(self.decided, judge);
+    /// True if all is known that decides one more tick; with `ended`, what is known must do.
+    pub fn is_due(&self, ended: bool) -> bool {
+        let wait = match ended {
+            true => 0,
+            false => self.params.window_ticks(self.rule) as i64,
+        };
+        self.decided + wait < self.ticks
+    }
+
+    /// The candidates of the tick that is [due](Self::is_due), at most one for each class. Under
+    /// [`CandidatePolicy::Verify`] their scores are to be set before [`decide`](Self::decide).
+    pub fn candidates(&mut self) -> &mut [ScoredCandidate] {
+        let tick = self.decided;
+        self.candidates.clear();
+        for class in 0..self.classes {
+            let ClassDistance { age, spread, .. } = self.near(tick, class);
+            let start = tick - age as i64;
+            if start < self.reported - self.slack(age)
+                || self.repeats(class, start)
+                || self.is_tail(class, start, spread)
+                || self.cut_off(tick, class)
+            {
+                continue;
+            }
+            let candidate = match self.rule {
+                CandidatePolicy::Gate { .. } => self.gated(tick, class),
+                CandidatePolicy::Verify { reach } => self.unverified(tick, class, reach),
+            };
+            if let Some((candidate, score)) = candidate {
+                self.candidates.push(ScoredCandidate {
+                    candidate,
+                    score,
+                    spread,
+                });
+            }
         }
-        self.report(0, out);
+        &mut self.candidates
+    }
+
+    /// Decides the tick of the [candidates](Self::candidates): the best path that ends with it.
+    pub fn decide(&mut self) {
+        let tick = self.decided;
+        let mut cell = PathCell {
+            ends_here: None,
+            ..*self.path(tick)
+        };
+        let verifies = matches!(self.rule, CandidatePolicy::Verify { .. });
+        for scored in &self.candidates {
+            let ScoredCandidate {
+                candidate: Candidate { class, age, .. },
+                score,
+                spread,
+            } = *scored;
+            if verifies && score <= 0.0 {
+                continue;
+            }
+            let start = (tick - age as i64).max(self.reported);
+            for begin in start..=(start + self.slack(age)).min(tick) {
+                let total = self.path(begin).total + score;
+                if total > cell.total + 1e-12 {
+                    let ends_here = Some(Ending {
+                        start: begin,
+                        class,
+                        score,
+                        spread,
+                    });
+                    cell = PathCell {
+                        total,
+                        ends_here,
+                        last_end: tick + 1,
+                    };
+                }
+            }
+        }
+        let index = (tick + 1) as usize & (self.paths.len() - 1);
+        self.paths[index] = cell;
+        self.decided = tick + 1;
     }
 
     fn path(&self, tick: i64) -> &PathCell {
@@ -189,35 +273,27 @@ impl Decoder {
         (tick - reach).max(0)..=(tick + reach).min(self.ticks - 1)
     }
 
-    /// The class's score at `tick` if it is a candidate there: near enough, and no larger than any distance that
-    /// counts nearby.
-    fn score(
-        &self,
-        tick: i64,
-        class: usize,
-        judge: &mut impl FnMut(&Candidate) -> f64,
-    ) -> Option<f64> {
-        let distance = self.near(tick, class).distance;
-        match self.rule {
-            CandidatePolicy::Gate { .. } => {
-                let threshold = self.thresholds[class];
-                if distance >= threshold || distance >= self.gate(tick) {
-                    return None;
-                }
-                if self.has_rival(tick, class) {
-                    return None;
-                }
-                let beaten = self.around(tick).any(|t| {
-                    let there = self.near(t, class).distance;
-                    there < distance && there < self.gate(t)
-                });
-                (!beaten).then(|| 1.0 - f64::from(distance) / f64::from(threshold))
-            }
-            CandidatePolicy::Verify { reach } => {
-                let candidate = self.unverified(tick, class, reach)?;
-                Some(judge(&candidate)).filter(|score| *score > 0.0)
-            }
+    /// The candidate of a class at `tick` and its score, if its distance is near enough, and no larger than any
+    /// distance that counts nearby.
+    fn gated(&self, tick: i64, class: usize) -> Option<(Candidate, f64)> {
+        let ClassDistance { distance, age, .. } = self.near(tick, class);
+        let threshold = self.thresholds[class];
+        if distance >= threshold || distance >= self.gate(tick) || self.has_rival(tick, class) {
+            return None;
         }
+        let beaten = self.around(tick).any(|t| {
+            let there = self.near(t, class).distance;
+            there < distance && there < self.gate(t)
+        });
+        let candidate = Candidate {
+            class: ClassId(class as u16),
+            tick,
+            age,
+            distance,
+            other: FAR,
+            negative: FAR,
+        };
+        (!beaten).then(|| (candidate, 1.0 - f64::from(distance) / f64::from(threshold)))
     }
 
     /// True if another class has a nearer match that ends around `tick` and covers enough of the candidate.
@@ -238,7 +314,8 @@ impl Decoder {
             .any(|t| (0..self.classes).any(|rival| rival != class && beats(t, rival)))
     }
 
-    fn unverified(&self, tick: i64, class: usize, reach: f32) -> Option<Candidate> {
+    /// The candidate of a class at `tick`, without a score yet.
+    fn unverified(&self, tick: i64, class: usize, reach: f32) -> Option<(Candidate, f64)> {
         let ClassDistance { distance, age, .. } = self.near(tick, class);
         if distance > reach || age < MIN_AGE_TICKS {
             return None;
@@ -253,14 +330,15 @@ impl Decoder {
                 other = other.min(self.near(t, rival).distance);
             }
         }
-        Some(Candidate {
+        let candidate = Candidate {
             class: ClassId(class as u16),
             tick,
             age,
             distance,
             other,
             negative,
-        })
+        };
+        Some((candidate, 0.0))
     }
 
     /// True if the stream ends before the peak at `tick` could be told from a class still coming nearer.
@@ -273,47 +351,6 @@ impl Decoder {
             self.near(tick, class).distance,
         );
         before > here * (1.0 + self.params.end_fall)
-    }
-
-    fn decide(&mut self, tick: i64, judge: &mut impl FnMut(&Candidate) -> f64) {
-        let mut cell = PathCell {
-            ends_here: None,
-            ..*self.path(tick)
-        };
-        for class in 0..self.classes {
-            let ClassDistance { age, spread, .. } = self.near(tick, class);
-            let (start, slack) = (tick - age as i64, self.slack(age));
-            if start < self.reported - slack
-                || self.repeats(class, start)
-                || self.is_tail(class, start, spread)
-                || self.cut_off(tick, class)
-            {
-                continue;
-            }
-            let Some(score) = self.score(tick, class, judge) else {
-                continue;
-            };
-            let start = start.max(self.reported);
-            for begin in start..=(start + slack).min(tick) {
-                let total = self.path(begin).total + score;
-                if total > cell.total + 1e-12 {
-                    let ends_here = Some(Ending {
-                        start: begin,
-                        class: ClassId(class as u16),
-                        score,
-                        spread,
-                    });
-                    cell = PathCell {
-                        total,
-                        ends_here,
-                        last_end: tick + 1,
-                    };
-                }
-            }
-        }
-        let index = (tick + 1) as usize & (self.paths.len() - 1);
-        self.paths[index] = cell;
-        self.decided = tick + 1;
     }
 
     /// True if a candidate that starts here is the last detection of its class over again, longer.
@@ -354,8 +391,14 @@ impl Decoder {
         others.any(|class| (self.decided.max(1)..=last).any(|t| grows(t, class)))
     }
 
-    /// Reports what lies on the best path and ended at least `lag` ticks ago, up to the first that must wait.
-    fn report(&mut self, lag: i64, out: &mut impl FnMut(TickDetection)) {
+    /// Detections that are now certain, in order of time: those on the best path that ended long enough ago, or all
+    /// with `ended`, up to the first that must wait.
+    pub fn report(&mut self, ended: bool) -> &mut [TickDetection] {
+        let lag = match ended {
+            true => 0,
+            false => self.params.lag_ticks as i64,
+        };
+        self.found.clear();
         let mut chain = std::mem::take(&mut self.chain);
         chain.clear();
         let oldest = self
@@ -387,13 +430,14 @@ impl Decoder {
             if detection.start >= self.reported && self.decided - detection.stop >= lag {
                 self.reported = detection.stop;
                 self.note_report(detection);
-                out(TickDetection {
+                self.found.push(TickDetection {
                     score: detection.score.min(1.0),
                     ..*detection
                 });
             }
         }
         self.chain = chain;
+        &mut self.found
     }
 
     fn note_report(&mut self, detection: &TickDetection) {

@@ -8,7 +8,7 @@ mod tests;
 
 use crate::classes::ClassId;
 
-pub use decoder::Decoder;
+pub use decoder::{Decoder, ScoredCandidate};
 pub use params::{CandidatePolicy, DecodeParams};
 
 /// Distance of a class that nothing has matched yet.

@@ -111,6 +111,9 @@ impl DecodeParams {
     }
 
     /// Says what is wrong with these values, if anything is.
+    ///
+    /// # Errors
+    /// A sentence about the first value out of its range.
     pub fn check(&self) -> Result<(), String> {
         if !(self.gate.is_finite() && self.gate > 0.0) {
             return Err(format!("gate must be above 0, found {}", self.gate));

@@ -1,10 +1,18 @@
 use super::*;
 
+/// Decides what is due, with the scores that candidates have, and returns what is then certain.
+fn decided(decoder: &mut Decoder, ended: bool) -> Vec<TickDetection> {
+    while decoder.is_due(ended) {
+        decoder.candidates();
+        decoder.decide();
+    }
+    decoder.report(ended).to_vec()
+}
+
 /// Runs one class's distances (age: always 3 ticks) through a decoder and returns spans.
 fn spans(distances: &[f32], negatives: &[f32], params: &DecodeParams) -> Vec<(i64, i64)> {
     let rule = CandidatePolicy::Gate { threshold: 2.0 };
     let mut decoder = Decoder::new(params, rule, 1, 4);
-    let mut judge = |_: &Candidate| 0.0;
     let mut found = vec![];
     for (t, d) in distances.iter().enumerate() {
         let negative = negatives.get(t).copied().unwrap_or(FAR);
@@ -13,12 +21,11 @@ fn spans(distances: &[f32], negatives: &[f32], params: &DecodeParams) -> Vec<(i6
             age: t.min(3),
             spread: 1.0,
         }];
-        decoder.push(&near, negative, &mut judge, &mut |d| {
-            found.push((d.start, d.stop))
-        });
+        decoder.push(&near, negative);
+        found.extend(decided(&mut decoder, false));
     }
-    decoder.finish(&mut judge, &mut |d| found.push((d.start, d.stop)));
-    found
+    found.extend(decided(&mut decoder, true));
+    found.iter().map(|d| (d.start, d.stop)).collect()
 }
 
 #[test]
@@ -71,7 +78,6 @@ fn reports(ticks: &[Vec<(f32, usize)>], params: &DecodeParams) -> Vec<(u16, i64,
         ticks[0].len(),
         20,
     );
-    let mut judge = |_: &Candidate| 0.0;
     let mut found = vec![];
     for (t, near) in ticks.iter().enumerate() {
         let near: Vec<_> = near
@@ -82,13 +88,15 @@ fn reports(ticks: &[Vec<(f32, usize)>], params: &DecodeParams) -> Vec<(u16, i64,
                 spread: 1.0,
             })
             .collect();
-        decoder.push(&near, FAR, &mut judge, &mut |d| {
-            found.push((d.class.0, d.start, d.stop, t))
-        });
+        decoder.push(&near, FAR);
+        let now = decided(&mut decoder, false);
+        found.extend(now.iter().map(|d| (d.class.0, d.start, d.stop, t)));
     }
-    decoder.finish(&mut judge, &mut |d| {
-        found.push((d.class.0, d.start, d.stop, ticks.len()))
-    });
+    let last = decided(&mut decoder, true);
+    found.extend(
+        last.iter()
+            .map(|d| (d.class.0, d.start, d.stop, ticks.len())),
+    );
     found
 }
 
@@ -200,7 +208,8 @@ fn the_last_partial_repetition_is_not_one_more() {
                     };
                 }
             }
-            decoder.push(&[near], FAR, &mut |_| 0.0, &mut |_| found += 1);
+            decoder.push(&[near], FAR);
+            found += decided(&mut decoder, false).len();
         }
         found
     };
@@ -245,9 +254,9 @@ fn classes_may_have_thresholds_of_their_own() {
             age: 4,
             spread: 1.0,
         }; 2];
-        decoder.push(&near, FAR, &mut |_| 0.0, &mut |d| {
-            found.push((d.class.0, d.stop, d.score))
-        });
+        decoder.push(&near, FAR);
+        let now = decided(&mut decoder, false);
+        found.extend(now.iter().map(|d| (d.class.0, d.stop, d.score)));
     }
     assert_eq!(found.len(), 1);
     assert_eq!((found[0].0, found[0].1), (1, 7));

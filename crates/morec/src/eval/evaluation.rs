@@ -83,6 +83,9 @@ pub struct ClassFigures {
 
 impl Evaluation {
     /// Computes every measure. O(samples × detections) within each stream.
+    ///
+    /// # Errors
+    /// A stream named twice or without a length, or a sample or detection in an unknown stream or without a positive extent.
     pub fn of(
         infos: &[StreamInfo],
         truths: &[GroundTruth],

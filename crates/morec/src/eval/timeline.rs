@@ -47,6 +47,9 @@ pub struct Timeline {
 }
 
 /// The timelines of all streams, by name. Fails and costs as [`Evaluation::of`](super::Evaluation::of).
+///
+/// # Errors
+/// As [`Evaluation::of`](super::Evaluation::of).
 pub fn timelines(
     infos: &[StreamInfo],
     truths: &[GroundTruth],

@@ -13,6 +13,17 @@ pub(crate) struct Grid<S> {
     /// Grid frames made in this stretch.
     frames: u64,
     last: Option<(f64, S)>,
+    /// The pose whose grid frames are being taken.
+    now: Option<(f64, S)>,
+}
+
+/// A grid frame between two poses, or at the first.
+#[derive(Debug)]
+pub(crate) struct GridFrame<'a, S> {
+    /// The pose before, and how far from it to this one the frame lies, 0 … 1; `None` where it is this pose itself.
+    pub before: Option<(&'a S, f64)>,
+    /// The pose.
+    pub now: &'a S,
 }
 
 impl<S> Grid<S> {
@@ -22,6 +33,7 @@ impl<S> Grid<S> {
             origin_secs: 0.0,
             frames: 0,
             last: None,
+            now: None,
         }
     }
 
@@ -50,41 +62,41 @@ impl<S> Grid<S> {
                 .is_some_and(|(last, _)| time_secs <= *last)
     }
 
-    /// Takes a pose that is not [ignored](Self::ignores) and calls `frame` for every grid frame in
-    /// `(last, time_secs]`: with the pose before and how far from it to this one (0 … 1) the frame lies, or with
-    /// nothing before where it is this pose itself.
-    pub fn push(&mut self, time_secs: f64, now: S, frame: &mut impl FnMut(Option<(&S, f64)>, &S)) {
-        match &self.last {
-            None => {
-                self.origin_secs = time_secs;
-                self.frames = 1;
-                frame(None, &now);
-            }
-            Some((last_secs, last)) => {
-                // A source at the model's own rate must fall on the grid whatever its clock's last bits say.
-                let tolerance_secs = 1e-6;
-                loop {
-                    let grid_secs = self.origin_secs + self.frames as f64 / self.rate_hz;
-                    if grid_secs > time_secs + tolerance_secs {
-                        break;
-                    }
-                    let t = (grid_secs - last_secs) / (time_secs - last_secs);
-                    let t = if time_secs - grid_secs < tolerance_secs {
-                        1.0
-                    } else {
-                        t
-                    };
-                    frame(Some((last, t)), &now);
-                    self.frames += 1;
-                }
-            }
+    /// Takes a pose that is not [ignored](Self::ignores), after [`next_frame`](Self::next_frame) gave all frames of
+    /// the pose before. Its own come from there.
+    pub fn push(&mut self, time_secs: f64, now: S) {
+        if self.last.is_none() {
+            self.origin_secs = time_secs;
+            self.frames = 0;
         }
-        self.last = Some((time_secs, now));
+        self.now = Some((time_secs, now));
+    }
+
+    /// The next grid frame in `(last, time_secs]` of the pose that was pushed; `None` if there are no more.
+    pub fn next_frame(&mut self) -> Option<GridFrame<'_, S>> {
+        // A source at the model's own rate must fall on the grid whatever its clock's last bits say.
+        let tolerance_secs = 1e-6;
+        let time_secs = self.now.as_ref()?.0;
+        let grid_secs = self.origin_secs + self.frames as f64 / self.rate_hz;
+        let is_first = self.last.is_none();
+        if (is_first && self.frames > 0) || (!is_first && grid_secs > time_secs + tolerance_secs) {
+            self.last = self.now.take();
+            return None;
+        }
+        self.frames += 1;
+        let (_, now) = self.now.as_ref()?;
+        let before = self.last.as_ref().map(|(last_secs, last)| {
+            let t = (grid_secs - last_secs) / (time_secs - last_secs);
+            let is_now = time_secs - grid_secs < tolerance_secs;
+            (last, if is_now { 1.0 } else { t })
+        });
+        Some(GridFrame { before, now })
     }
 
     /// Ends the stretch.
     pub fn end(&mut self) {
         self.last = None;
+        self.now = None;
         self.frames = 0;
     }
 }

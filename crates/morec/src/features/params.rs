@@ -75,6 +75,9 @@ impl FeatureParams {
     }
 
     /// Says what is wrong with these values, if anything is.
+    ///
+    /// # Errors
+    /// A sentence about the first value out of its range.
     pub fn check(&self) -> Result<(), String> {
         let positive = [
             ("rate_hz", self.rate_hz),

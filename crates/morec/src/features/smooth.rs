@@ -54,6 +54,8 @@ pub struct Smoother {
     ring: Vec<FilterInput>,
     pushed: usize,
     next_row_frame: usize,
+    /// No more frames come: rows need not wait for them.
+    ended: bool,
     row: Vec<f32>,
 }
 
@@ -118,6 +120,7 @@ impl Smoother {
             ring: vec![FilterInput::of(&empty); reach.next_power_of_two()],
             pushed: 0,
             next_row_frame: params.frames_per_tick - 1,
+            ended: false,
             row: vec![0.0; row_dim(bones)],
             params: params.clone(),
         }
@@ -126,6 +129,7 @@ impl Smoother {
     /// Forgets the stream so far.
     pub fn reset(&mut self) {
         self.pushed = 0;
+        self.ended = false;
         self.noise.reset();
         self.next_row_frame = self.params.frames_per_tick - 1;
     }
@@ -135,18 +139,24 @@ impl Smoother {
         self.noise.level()
     }
 
-    /// Takes the next frame; calls `out` with each row that is now complete: one, or a few where a stream has become
-    /// less noisy and its filter shorter.
-    pub fn push(&mut self, observation: &Observation, out: &mut impl FnMut(&[f32])) {
+    /// Takes the next frame; rows that are now complete come from [`next_row`](Self::next_row): one, or a few where a
+    /// stream has become less noisy and its filter shorter.
+    pub fn push(&mut self, observation: &Observation) {
         let mask = self.ring.len() - 1;
         self.ring[self.pushed & mask] = FilterInput::of(observation);
         self.pushed += 1;
         if self.params.follow_noise && self.pushed.is_multiple_of(self.params.frames_per_tick) {
             self.measure_noise();
         }
-        while self.next_row_frame + self.kernels[self.noise.step()].look_ahead < self.pushed {
-            self.emit(out);
-        }
+    }
+
+    /// True if [`next_row`](Self::next_row) gives a row.
+    pub fn has_row(&self) -> bool {
+        let ahead = match self.ended {
+            true => 0,
+            false => self.kernels[self.noise.step()].look_ahead,
+        };
+        self.next_row_frame + ahead < self.pushed
     }
 
     /// Measures the noise that the filter removes at the last frame whose neighbours are known.
@@ -162,14 +172,17 @@ impl Smoother {
         self.noise.take(sum / self.bones.len().max(1) as f64);
     }
 
-    /// Calls `out` with the rows that were still waiting for frames that will not come.
-    pub fn finish(&mut self, out: &mut impl FnMut(&[f32])) {
-        while self.next_row_frame < self.pushed {
-            self.emit(out);
-        }
+    /// Ends the stream: rows that were still waiting for frames come from [`next_row`](Self::next_row), until
+    /// [`reset`](Self::reset).
+    pub fn end(&mut self) {
+        self.ended = true;
     }
 
-    fn emit(&mut self, out: &mut impl FnMut(&[f32])) {
+    /// The next complete row.
+    pub fn next_row(&mut self) -> Option<&[f32]> {
+        if !self.has_row() {
+            return None;
+        }
         let frame = self.next_row_frame as isize;
         let mut row = std::mem::take(&mut self.row);
         let bones = self.bones.len();
@@ -197,9 +210,9 @@ impl Smoother {
         for (slot, value) in self.root_motion(frame, &kernels.root).iter().enumerate() {
             row[6 * bones + slot] = (value * self.params.root_weight) as f32;
         }
-        out(&row);
         self.row = row;
         self.next_row_frame += self.params.frames_per_tick;
+        Some(&self.row)
     }
 
     /// The frame that a possibly mirrored index stands for.

@@ -81,13 +81,32 @@ impl FeatureStream {
     ///
     /// At most `MAX_GAP_SECS` of rows come of one push.
     pub fn push(&mut self, time_secs: f64, pose: &KeyPose, out: &mut impl FnMut(&[f32])) -> Pushed {
-        if !time_secs.is_finite() {
-            return Pushed::Ignored;
-        }
-        let restarted = self.breaks_at(time_secs);
-        if restarted {
+        let restarts = time_secs.is_finite() && self.breaks_at(time_secs);
+        if restarts {
             self.finish(out);
         }
+        let pushed = self.take(time_secs, pose);
+        while let Some(row) = self.next_row() {
+            out(row);
+        }
+        match pushed {
+            Pushed::Taken if restarts => Pushed::Restarted,
+            pushed => pushed,
+        }
+    }
+
+    /// Ends the stretch: calls `out` with the rows that still waited for later frames, and forgets it.
+    pub fn finish(&mut self, out: &mut impl FnMut(&[f32])) {
+        self.end();
+        while let Some(row) = self.next_row() {
+            out(row);
+        }
+        self.reset();
+    }
+
+    /// Takes the pose at `time_secs`, which must not [break](Self::breaks_at) the stretch. Rows that are now complete
+    /// come from [`next_row`](Self::next_row), and must be taken before the next pose.
+    pub(crate) fn take(&mut self, time_secs: f64, pose: &KeyPose) -> Pushed {
         if self.grid.ignores(time_secs) {
             return Pushed::Ignored;
         }
@@ -97,22 +116,33 @@ impl FeatureStream {
         let Some(observation) = self.observer.observe(&pose) else {
             return Pushed::NoHips;
         };
-        let (smoother, bones) = (&mut self.smoother, self.bones);
-        self.grid
-            .push(time_secs, observation, &mut |before, now| match before {
-                Some((last, t)) => smoother.push(&Observation::between(last, now, t, bones), out),
-                None => smoother.push(now, out),
-            });
-        if restarted {
-            Pushed::Restarted
-        } else {
-            Pushed::Taken
-        }
+        self.grid.push(time_secs, observation);
+        Pushed::Taken
     }
 
-    /// Ends the stretch: calls `out` with the rows that still waited for later frames, and forgets it.
-    pub fn finish(&mut self, out: &mut impl FnMut(&[f32])) {
-        self.smoother.finish(out);
+    /// The next row that is complete.
+    pub(crate) fn next_row(&mut self) -> Option<&[f32]> {
+        while !self.smoother.has_row() {
+            let frame = self.grid.next_frame()?;
+            match frame.before {
+                Some((last, t)) => {
+                    let between = Observation::between(last, frame.now, t, self.bones);
+                    self.smoother.push(&between);
+                }
+                None => self.smoother.push(frame.now),
+            }
+        }
+        self.smoother.next_row()
+    }
+
+    /// Ends the stretch: rows that still waited for later frames come from [`next_row`](Self::next_row), until
+    /// [`reset`](Self::reset).
+    pub(crate) fn end(&mut self) {
+        self.smoother.end();
+    }
+
+    /// Forgets the stretch.
+    pub(crate) fn reset(&mut self) {
         self.smoother.reset();
         self.observer.reset();
         self.spikes.reset();

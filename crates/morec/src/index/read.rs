@@ -8,6 +8,9 @@ use super::{INDEX_VERSION, IndexError, MotionIndex, svrdm, templates};
 
 impl MotionIndex {
     /// Opens a file's bytes and checks every part of them.
+    ///
+    /// # Errors
+    /// Bytes that are no index, damaged, of a newer version, or of parts that do not fit together.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, IndexError> {
         let foreign = |e: safetensors::SafeTensorError| IndexError::Foreign(e.to_string());
         let (_, header) = SafeTensors::read_metadata(bytes).map_err(foreign)?;

@@ -9,6 +9,9 @@ use super::{IndexError, Model, MotionIndex, svrdm, templates};
 
 impl MotionIndex {
     /// The file's bytes: equal for equal indexes.
+    ///
+    /// # Errors
+    /// The manifest or the tables cannot be written.
     pub fn to_bytes(&self) -> Result<Vec<u8>, IndexError> {
         match &self.model {
             Model::Templates(model) => {

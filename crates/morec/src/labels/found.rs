@@ -92,6 +92,9 @@ pub struct FoundTable {
 
 /// Reads a table of detections. Columns `clip`, `class` and an extent (frames or seconds, as in labels) must be
 /// there; `score`, `reported_at` (a frame) and `reported_secs` may be. Fails as [`super::Labels::read`] does.
+///
+/// # Errors
+/// As [`super::Labels::read`].
 pub fn read_detections(bytes: &[u8]) -> Result<FoundTable, ParseError> {
     let table = Table::new(bytes)?;
     let (clip, class) = (table.need("clip")?, table.need("class")?);

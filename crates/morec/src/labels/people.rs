@@ -16,6 +16,9 @@ pub struct People {
 
 /// Reads a table with the columns `clip` and `person`. A clip named twice keeps its last person, with a warning
 /// if the two differ. A clip without a person is left out.
+///
+/// # Errors
+/// An empty table, a missing or repeated column, or a row without a clip, with its place.
 pub fn read_people(bytes: &[u8]) -> Result<People, ParseError> {
     let table = Table::new(bytes)?;
     let (clip, person) = (table.need("clip")?, table.need("person")?);

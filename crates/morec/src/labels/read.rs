@@ -15,11 +15,17 @@ impl Labels {
     ///
     /// If a row gives both frames and seconds, the frames count; where a column `whole_clip` says 1, neither. Fails on a missing column, an empty clip or
     /// class, a cell that is no number, a negative one, and a stop that does not come after its start.
+    ///
+    /// # Errors
+    /// As above, with the place, what was expected and what was found.
     pub fn read(bytes: &[u8]) -> Result<Self, ParseError> {
         Ok(Self::of_table(&Table::new(bytes)?, &[])?.0)
     }
 
     /// The same, and the cells of one more column, one for each row; `None` if the table has no such column.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
     pub fn read_with(
         bytes: &[u8],
         column: &str,

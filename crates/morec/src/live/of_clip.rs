@@ -17,6 +17,9 @@ use super::{
 
 /// Everything that the recogniser reports of a clip, pose by pose as it would be live; times from the clip's
 /// beginning. `rest` are the frames that a conversion left at the start; the first pose after them stands in for them.
+///
+/// # Errors
+/// The clip lacks joints or rotations that the model asks for, or the model's parts do not fit together.
 pub fn recognize_clip<M: Clone + Into<Model>>(
     model: &M,
     clip: &Clip,
@@ -66,6 +69,9 @@ fn reader(model: &Model, clip: &Clip, roles: &RoleMap) -> Result<PoseExtractor, 
 
 /// The same through a [`Session`], and on as many threads as its layout has. The session waits for room, whatever
 /// `options` say of that.
+///
+/// # Errors
+/// As [`recognize_clip`]; or the system refuses a thread.
 pub fn recognize_clip_in_session<M: Clone + Into<Model>>(
     model: &M,
     clip: &Clip,

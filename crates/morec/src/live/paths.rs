@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use crate::decode::TickDetection;
 use crate::features::{BoneSet, FeatureStream, Pushed};
 use crate::pivots::{PivotPose, PoseStream};
 use crate::svrdm::{FrameDetection, SvrdmEngine, SvrdmModel};
@@ -77,20 +76,29 @@ impl TemplatePipeline {
         pose: RecognizerInput<'_>,
         found: &mut DetectionBuffer,
     ) -> Pushed {
-        // The first pose of a stretch sets its origin and completes no row: the origin read here is right.
-        let (steps, engine) = (self.steps(), &mut self.engine);
-        self.features.push(time_secs, pose.key, &mut |row| {
-            engine.push(row, &mut |d| {
-                found.add(d.class, steps, d.start, d.stop, d.score)
-            });
-        })
+        let pushed = self.features.take(time_secs, pose.key);
+        self.recognise_rows(found);
+        pushed
     }
 
     pub(super) fn end_stretch(&mut self, found: &mut DetectionBuffer) {
-        let (steps, engine) = (self.steps(), &mut self.engine);
-        let mut out = |d: TickDetection| found.add(d.class, steps, d.start, d.stop, d.score);
-        self.features.finish(&mut |row| engine.push(row, &mut out));
-        engine.finish(&mut out);
+        self.features.end();
+        self.recognise_rows(found);
+        let steps = self.steps();
+        for d in self.engine.finish() {
+            found.add(d.class, steps, d.start, d.stop, d.score);
+        }
+        self.features.reset();
+    }
+
+    /// Detections of the rows that are complete.
+    fn recognise_rows(&mut self, found: &mut DetectionBuffer) {
+        let steps = self.steps();
+        while let Some(row) = self.features.next_row() {
+            for d in self.engine.push(row) {
+                found.add(d.class, steps, d.start, d.stop, d.score);
+            }
+        }
     }
 
     fn steps(&self) -> Steps {

@@ -48,6 +48,9 @@ pub struct PoolStream {
 
 impl Pool {
     /// A pool of `threads` threads, at least one.
+    ///
+    /// # Errors
+    /// The model's parts do not fit together, or the system refuses a thread.
     pub fn new<M: Clone + Into<Model>>(model: &M, threads: usize) -> Result<Self, SessionError> {
         let mut pool = Self {
             cache: Arc::new(RecognizerCache::new(model.clone().into())),

@@ -36,6 +36,9 @@ pub struct PoseExtractor {
 impl PoseExtractor {
     /// For poses of `skeleton`, whose joints play `roles`. Fails if nothing plays a pivot that the model cannot do
     /// without.
+    ///
+    /// # Errors
+    /// A pivot that the model cannot do without has no joint.
     pub fn new(model: &Model, skeleton: &Skeleton, roles: &RoleMap) -> Result<Self, StartError> {
         let pivots = match model {
             Model::Templates(_) => None,

@@ -130,6 +130,9 @@ impl Recognizer {
     /// For a stream that offers `bones`; what a template model uses beyond them is left out of every comparison.
     ///
     /// Fails if the model's parts do not fit together, or no bone is left of a template model's.
+    ///
+    /// # Errors
+    /// The model's parts do not fit together, or no bone of a template model is left.
     pub fn new<M: Clone + Into<Model>>(model: &M, bones: BoneSet) -> Result<Self, StartError> {
         let model = model.clone().into();
         let (model, path) = match model {

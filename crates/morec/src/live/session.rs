@@ -96,6 +96,9 @@ pub struct Session {
 
 impl Session {
     /// Starts recognising what `source` gives; returns the session and its readers.
+    ///
+    /// # Errors
+    /// The model's parts do not fit together, the system refuses a thread, or stages are asked for of a method that has none.
     pub fn start<M: Clone + Into<Model>>(
         model: &M,
         source: Box<dyn Source>,
@@ -111,6 +114,9 @@ impl Session {
     }
 
     /// A session without a source: the caller feeds it. Dropping the [`FeedSender`] ends the stream.
+    ///
+    /// # Errors
+    /// As [`start`](Self::start).
     pub fn open<M: Clone + Into<Model>>(
         model: &M,
         options: &SessionOptions,

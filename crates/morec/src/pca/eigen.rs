@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, SymmetricEigen};
 
 /// Eigenpairs of a symmetric positive semidefinite `n × n` matrix, the largest first.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Eigen {
+pub(crate) struct Eigen {
     /// `n` eigenvalues, descending; what rounding made negative is 0.
     pub values: Vec<f64>,
     /// `n` columns, the eigenvectors in the order of their values, each of length 1 and with its sign by

@@ -9,7 +9,7 @@ mod model;
 mod moments;
 mod quality;
 
-pub use eigen::Eigen;
+pub(crate) use eigen::Eigen;
 pub use model::{Pca, PcaError};
 pub use moments::Moments;
 pub use quality::{ComponentCount, QualityRow};

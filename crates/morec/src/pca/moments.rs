@@ -118,13 +118,13 @@ impl Moments {
     }
 
     /// `M`, the `D × D` scatter about the mean.
-    pub fn scatter(&self) -> DMatrix<f64> {
+    pub(crate) fn scatter(&self) -> DMatrix<f64> {
         let dim = self.dim();
         DMatrix::from_fn(dim, dim, |i, j| self.scatter[i.max(j) * dim + i.min(j)])
     }
 
     /// `S = M / (m − 1)`, the sample covariance (thesis Eq. 3.14 as corrected: of centred rows).
-    pub fn covariance(&self) -> DMatrix<f64> {
+    pub(crate) fn covariance(&self) -> DMatrix<f64> {
         self.scatter() / self.count.saturating_sub(1).max(1) as f64
     }
 }

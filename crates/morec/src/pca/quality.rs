@@ -32,6 +32,9 @@ impl ComponentCount {
     }
 
     /// Says what is wrong with it, if anything is.
+    ///
+    /// # Errors
+    /// A sentence about the first value out of its range.
     pub fn check(self) -> Result<(), String> {
         match self {
             ComponentCount::Quality(share) if !(share > 0.0 && share <= 1.0) => Err(format!(

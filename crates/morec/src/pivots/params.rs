@@ -49,6 +49,9 @@ impl Default for PoseParams {
 
 impl PoseParams {
     /// Says what is wrong with these values, if anything is.
+    ///
+    /// # Errors
+    /// A sentence about the first value out of its range.
     pub fn check(&self) -> Result<(), String> {
         // A push makes every frame since the one before: a rate without bounds would be a push without end.
         match self.rate_hz {

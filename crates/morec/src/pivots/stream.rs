@@ -94,12 +94,16 @@ impl PoseStream {
         let Some(locals) = self.locals(pose) else {
             return Pushed::NoHips;
         };
-        let rows = &mut self.rows;
-        self.grid
-            .push(time_secs, locals, &mut |before, now| match before {
-                Some((last, t)) => rows.grid_frame(&rows.between(last, now, t), out),
-                None => rows.grid_frame(now, out),
-            });
+        self.grid.push(time_secs, locals);
+        while let Some(frame) = self.grid.next_frame() {
+            match frame.before {
+                Some((last, t)) => {
+                    let between = self.rows.between(last, frame.now, t);
+                    self.rows.grid_frame(&between, out);
+                }
+                None => self.rows.grid_frame(frame.now, out),
+            }
+        }
         if restarted {
             Pushed::Restarted
         } else {

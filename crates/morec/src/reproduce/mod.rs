@@ -144,6 +144,9 @@ fn frames_of(sample: &Sample, rate_hz: f64, count: usize) -> Range<usize> {
 }
 
 /// Runs the whole evaluation. Trains twice for each setting and seed.
+///
+/// # Errors
+/// Training fails, an evaluation is impossible, or `progress` cancels.
 pub fn reproduce(
     study: &Study<'_>,
     progress: &dyn Progress,

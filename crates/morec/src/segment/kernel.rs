@@ -37,6 +37,9 @@ impl Default for KernelParams {
 
 impl KernelParams {
     /// Says what is wrong with these values, if anything is.
+    ///
+    /// # Errors
+    /// A sentence about the first value out of its range.
     pub fn check(&self) -> Result<(), String> {
         let figures = [
             ("window_secs", self.window_secs, 0.1, 60.0),

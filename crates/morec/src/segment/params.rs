@@ -69,6 +69,9 @@ pub enum SegmentError {
 
 impl PpcaParams {
     /// Says what is wrong with these values, if anything is.
+    ///
+    /// # Errors
+    /// A sentence about the first value out of its range.
     pub fn check(&self) -> Result<(), String> {
         let above_0 = [
             ("first_secs", self.first_secs),

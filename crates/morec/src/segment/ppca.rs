@@ -75,7 +75,7 @@ impl Ppca {
     }
 
     /// The covariance `C` itself, `q × q`.
-    pub fn covariance(&self) -> DMatrix<f64> {
+    pub(crate) fn covariance(&self) -> DMatrix<f64> {
         let dim = self.mean.len();
         let noise = 1.0 / self.noise_precision;
         let mut c = DMatrix::identity(dim, dim) * noise;

@@ -34,6 +34,9 @@ pub struct SampleClassifier {
 
 impl SampleClassifier {
     /// For a model whose parts fit together.
+    ///
+    /// # Errors
+    /// As [`SvrdmModel::check`].
     pub fn new(model: &Arc<SvrdmModel>) -> Result<Self, ModelError> {
         Ok(Self {
             extraction: FeatureExtraction::new(&model.params, model.pca.dims(), &model.signs),

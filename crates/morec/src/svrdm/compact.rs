@@ -9,6 +9,9 @@ impl SvrdmModel {
     /// This model with every table rounded to single precision, and profiles of whole rows to a byte a value, as an index
     /// file keeps them. What is judged in
     /// training is then what recognises later.
+    ///
+    /// # Errors
+    /// Parts that rounding makes unusable.
     pub fn compact(&self) -> Result<Self, ModelError> {
         let invalid = |e: &dyn std::fmt::Display| ModelError::Value(e.to_string());
         let axes = (0..self.pca.dims())

@@ -49,6 +49,9 @@ struct SegmentRecogniser {
 
 impl SvrdmEngine {
     /// Lays the model out for streaming; fails if its parts do not fit together.
+    ///
+    /// # Errors
+    /// As [`SvrdmModel::check`].
     pub fn new(model: &Arc<SvrdmModel>) -> Result<Self, ModelError> {
         model.check()?;
         let (params, dim) = (&model.params, model.pca.dims());

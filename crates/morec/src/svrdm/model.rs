@@ -173,6 +173,9 @@ impl SvrdmModel {
     }
 
     /// Checks that all parts fit together. O(size).
+    ///
+    /// # Errors
+    /// The first part that does not fit the others.
     pub fn check(&self) -> Result<(), ModelError> {
         self.pose.check().map_err(ModelError::Value)?;
         self.params.check().map_err(ModelError::Value)?;

@@ -168,6 +168,9 @@ impl SvrdmParams {
     }
 
     /// Says what is wrong with these values, if anything is.
+    ///
+    /// # Errors
+    /// A sentence about the first value out of its range.
     pub fn check(&self) -> Result<(), String> {
         let counts = [
             ("chunk_frames", self.chunk_frames, 1, MAX_PROFILE_FRAMES),

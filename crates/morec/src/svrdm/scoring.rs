@@ -58,6 +58,9 @@ pub struct SegmentScoring {
 
 impl SegmentScoring {
     /// For the profiles of a model whose parts fit together.
+    ///
+    /// # Errors
+    /// As [`SvrdmModel::check`].
     pub fn new(model: &SvrdmModel) -> Result<Self, ModelError> {
         model.check()?;
         let mut classes: Vec<OfClass> = model

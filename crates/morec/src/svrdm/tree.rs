@@ -71,6 +71,9 @@ pub struct Branch {
 
 impl Tree {
     /// A tree of these parts, if they fit together. O(size).
+    ///
+    /// # Errors
+    /// The first part that does not fit the others.
     pub fn new(parts: TreeParts) -> Result<Self, TreeError> {
         check::check(&parts)?;
         Ok(Self { parts })

@@ -77,6 +77,9 @@ impl Script {
     }
 
     /// Films the script. Every motion is labelled, of whatever kind; see [`SyntheticTake::keep`].
+    ///
+    /// # Errors
+    /// The first motion whose name is not known, with its line.
     pub fn film(&self, name: &str, rate_hz: f64) -> Result<SyntheticTake, UnknownMotion> {
         let mut person = self.person.clone();
         let mut labels = Vec::new();

@@ -63,6 +63,9 @@ impl RecentRows {
 
 impl TemplateEngine {
     /// Lays the model out for streaming.
+    ///
+    /// # Errors
+    /// As [`TemplateModel::check`].
     pub fn new(model: &TemplateModel) -> Result<Self, TemplateModelError> {
         model.check()?;
         let metric = Metric::new(&model.ridged, &model.total);
@@ -107,8 +110,8 @@ impl TemplateEngine {
         self.recent.pushed = 0;
     }
 
-    /// Takes the next tick's row; calls `out` with what is now certain.
-    pub fn push(&mut self, row: &[f32], out: &mut impl FnMut(TickDetection)) {
+    /// Takes the next tick's row and returns the detections that are now certain. No allocation.
+    pub fn push(&mut self, row: &[f32]) -> &[TickDetection] {
         self.recent.push(row);
         self.metric.apply(row, &mut self.mapped);
         self.matcher.step(&self.mapped);
@@ -116,13 +119,25 @@ impl TemplateEngine {
         self.stretches.push(&self.mapped);
         self.nearest_by_class();
         let negative = nearest(&self.negatives, &mut self.stretches);
-        let (judge, recent, metric) = (&mut self.judge, &self.recent, &self.metric);
-        self.decoder.push(
-            &self.near,
-            negative,
-            &mut |c| score(judge, recent, metric, c),
-            &mut |found| out(calibrated(self.calibration, found)),
-        );
+        self.decoder.push(&self.near, negative);
+        self.decode(false);
+        self.decoder.found()
+    }
+
+    /// Decides the ticks that are due, and reports.
+    fn decode(&mut self, ended: bool) {
+        while self.decoder.is_due(ended) {
+            let candidates = self.decoder.candidates();
+            if let Some(judge) = &mut self.judge {
+                for scored in candidates {
+                    scored.score = score(judge, &self.recent, &self.metric, &scored.candidate);
+                }
+            }
+            self.decoder.decide();
+        }
+        for detection in self.decoder.report(ended) {
+            *detection = calibrated(self.calibration, *detection);
+        }
     }
 
     /// The nearest match of each class that is no body at rest.
@@ -200,15 +215,11 @@ impl TemplateEngine {
         self.threshold
     }
 
-    /// Ends the stretch: calls `out` with what the last ticks still hold.
-    pub fn finish(&mut self, out: &mut impl FnMut(TickDetection)) {
-        let (judge, recent, metric) = (&mut self.judge, &self.recent, &self.metric);
-        let calibration = self.calibration;
-        self.decoder
-            .finish(&mut |c| score(judge, recent, metric, c), &mut |found| {
-                out(calibrated(calibration, found));
-            });
+    /// Ends the stretch and returns the detections that its last ticks still hold. The next row begins a new one.
+    pub fn finish(&mut self) -> &[TickDetection] {
+        self.decode(true);
         self.reset();
+        self.decoder.found()
     }
 }
 
@@ -234,12 +245,11 @@ fn nearest(matcher: &Matcher, stretches: &mut Stretches) -> f32 {
 }
 
 fn score(
-    judge: &mut Option<CandidateScorer>,
+    judge: &mut CandidateScorer,
     recent: &RecentRows,
     metric: &Metric,
     candidate: &Candidate,
 ) -> f64 {
-    let Some(judge) = judge else { return 0.0 };
     let first = candidate.tick as usize - candidate.age;
     judge.score(
         candidate.class,

@@ -17,7 +17,7 @@ pub struct PackedSymmetric {
 
 impl PackedSymmetric {
     /// Packs the lower triangle of a square matrix.
-    pub fn pack(matrix: &DMatrix<f64>) -> Self {
+    pub(crate) fn pack(matrix: &DMatrix<f64>) -> Self {
         let dim = matrix.nrows();
         let lower = (0..dim).flat_map(|i| (0..=i).map(move |j| (i, j)));
         Self {
@@ -42,8 +42,14 @@ impl PackedSymmetric {
         self.dim
     }
 
+    /// Sum of the diagonal.
+    pub fn trace(&self) -> f64 {
+        let diagonal = (0..self.dim).map(|i| i * (i + 1) / 2 + i);
+        diagonal.map(|at| f64::from(self.packed[at])).sum()
+    }
+
     /// The square matrix.
-    pub fn unpack(&self) -> DMatrix<f64> {
+    pub(crate) fn unpack(&self) -> DMatrix<f64> {
         DMatrix::from_fn(self.dim, self.dim, |i, j| {
             let (row, column) = if i >= j { (i, j) } else { (j, i) };
             f64::from(self.packed[row * (row + 1) / 2 + column])

@@ -71,6 +71,9 @@ pub enum TemplateModelError {
 
 impl TemplateModel {
     /// Checks that all parts fit together.
+    ///
+    /// # Errors
+    /// The first part that does not fit the others.
     pub fn check(&self) -> Result<(), TemplateModelError> {
         self.features.check().map_err(TemplateModelError::Value)?;
         self.decode.check().map_err(TemplateModelError::Value)?;
@@ -175,6 +178,9 @@ impl TemplateModel {
 
     /// The model for streams that offer only `bones`: the columns of the others are dropped everywhere and the
     /// threshold shrinks with the share of variance that is left.
+    ///
+    /// # Errors
+    /// No bone of the model is left, or its parts do not fit together.
     pub fn restricted(&self, bones: BoneSet) -> Result<Self, TemplateModelError> {
         let bones = self.bones.and(bones);
         if bones.is_empty() {

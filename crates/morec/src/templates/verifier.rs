@@ -162,6 +162,9 @@ pub struct Verifier {
 
 impl Verifier {
     /// Says which part does not fit the others, if one does not.
+    ///
+    /// # Errors
+    /// The name of the part that does not fit.
     pub fn check(&self, classes: usize) -> Result<(), String> {
         for exemplars in &self.classes {
             let n = exemplars.len();

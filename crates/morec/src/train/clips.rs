@@ -14,6 +14,9 @@ use super::set::StreamKind;
 use super::templates::{TrainError, train};
 
 /// Trains on labelled and background clips, and on everyday motion as the options say.
+///
+/// # Errors
+/// No sample, options that make no sense, or `progress` cancels.
 pub fn train_clips(
     clips: &[TrainClip],
     labelling: &LabelSet<'_>,

@@ -42,6 +42,9 @@ impl From<SvrdmOptions> for Recipe {
 }
 
 /// Trains as `recipe` says.
+///
+/// # Errors
+/// As [`train_clips`](super::train_clips) and [`train_svrdm`](super::thesis::train_svrdm).
 pub fn train_model(
     clips: &[TrainClip],
     labelling: &LabelSet<'_>,

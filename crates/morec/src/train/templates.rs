@@ -81,6 +81,9 @@ pub struct TrainedTemplates {
 /// 2. every sample is a template;
 /// 3. threshold from the nearest that background motion comes to any of them;
 /// 4. hard negatives from unlabelled stretches that come near.
+///
+/// # Errors
+/// No sample, more classes than an index numbers, a model whose parts do not fit together, or `progress` cancels.
 pub fn train(
     set: &TrainSet,
     bones: BoneSet,

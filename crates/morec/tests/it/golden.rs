@@ -157,9 +157,11 @@ fn thresholds_and_detections_are_the_prototypes() {
         let mut engine = TemplateEngine::new(&model).unwrap();
         let mut found = vec![];
         for (tick, row) in rows.iter().enumerate() {
-            engine.push(row, &mut |d| found.push((d, 4 * (tick as i64 + 1))));
+            let now = engine.push(row).iter();
+            found.extend(now.map(|d| (*d, 4 * (tick as i64 + 1))));
         }
-        engine.finish(&mut |d| found.push((d, 4 * rows.len() as i64)));
+        let last = engine.finish().iter();
+        found.extend(last.map(|d| (*d, 4 * rows.len() as i64)));
         assert_eq!(found.len(), expected.detections.len(), "{left_out}");
         for ((d, reported), e) in found.iter().zip(&expected.detections) {
             let class = &classes[d.class.index()];

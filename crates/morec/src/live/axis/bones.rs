@@ -164,6 +164,9 @@ impl Default for AxisSkeleton {
 impl AxisSkeleton {
     /// That of a clip which the same program wrote, in metres: its joints are taken to be the broadcast's in its order,
     /// whatever they are called.
+    ///
+    /// # Errors
+    /// The clip has another number of joints than the broadcast.
     pub fn of_clip(skeleton: &Skeleton, roles: &RoleMap) -> Result<Self, AxisSkeletonError> {
         if skeleton.len() != AXIS_BONE_COUNT {
             return Err(AxisSkeletonError {

@@ -48,7 +48,7 @@ impl Distances {
     }
 
     /// The kernel's matrix `K` at this width. O(m²).
-    pub fn kernel(&self, sigma: f64) -> DMatrix<f64> {
+    pub(crate) fn kernel(&self, sigma: f64) -> DMatrix<f64> {
         let kernel = Gaussian::new(sigma);
         self.0.map(|d| kernel.of_squared(d))
     }

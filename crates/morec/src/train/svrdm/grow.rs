@@ -97,6 +97,9 @@ pub enum GrowError {
 ///
 /// `background` vectors are motion that is none of the classes; only cross-validated widths look at them, at each
 /// branch at those that the branches above let pass. The outcome depends on the arguments alone, seed included.
+///
+/// # Errors
+/// Fewer than two classes, vectors of different length, or parameters that no tree grows with.
 pub fn grow(
     samples: &[FeatureSample],
     background: &[Vec<f64>],

@@ -44,7 +44,7 @@ pub struct Split {
 }
 
 /// Products `h_iᵀh_j` of the functions of each class's machine (Eq. 3.44). O(all samples² · n).
-pub fn function_products<V: AsRef<[f64]>>(
+pub(crate) fn function_products<V: AsRef<[f64]>>(
     classes: &[Vec<V>],
     sigma: f64,
     machine: &MachineParams,
@@ -76,7 +76,7 @@ pub fn function_products<V: AsRef<[f64]>>(
 
 /// The split of at least two classes with the least scatter: of all for few classes, else of those that clustering
 /// reaches (Alg. 6) from seeded random splits. `products` are those of [`function_products`].
-pub fn partition(products: &DMatrix<f64>, params: &PartitionParams) -> Split {
+pub(crate) fn partition(products: &DMatrix<f64>, params: &PartitionParams) -> Split {
     let products = if params.unit_length {
         to_unit_length(products)
     } else {
@@ -123,7 +123,7 @@ fn to_unit_length(products: &DMatrix<f64>) -> DMatrix<f64> {
 }
 
 /// `Σ_k (Σ_{j ∈ Q_k} ‖h_j‖² − ‖Σ_{j ∈ Q_k} h_j‖² / |Q_k|)`.
-pub fn scatter(products: &DMatrix<f64>, sides: &[usize]) -> f64 {
+pub(crate) fn scatter(products: &DMatrix<f64>, sides: &[usize]) -> f64 {
     let of_side = |side: usize| {
         let members = members(sides, side);
         let own: f64 = members.iter().map(|&i| products[(i, i)]).sum();

@@ -6,7 +6,7 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 ///
 /// `Q` is symmetric and positive semidefinite with a positive diagonal.
 #[derive(Debug, Clone, PartialEq)]
-pub struct BoxQp {
+pub(crate) struct BoxQp {
     /// `Q`, `m × m`: `yᵢyⱼKᵢⱼ`.
     pub matrix: DMatrix<f64>,
     /// `τ`, `m` values.
@@ -37,7 +37,7 @@ impl Default for Stop {
 
 /// A solution and how good it is.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Solution {
+pub(crate) struct Solution {
     /// `α`.
     pub alpha: DVector<f64>,
     /// By how much the Karush-Kuhn-Tucker conditions are missed at most.

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 /// The smallest enclosing sphere of samples in the feature space of a kernel.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Sphere {
+pub(crate) struct Sphere {
     /// Its centre is `Σ αᵢ ψ(xᵢ)`; `αᵢ ≥ 0`, and their sum is 1.
     pub alpha: DVector<f64>,
     /// Its radius.
@@ -31,7 +31,7 @@ impl Sphere {
 /// Weight goes from one sample to another, the pair that gains most (Fan, Chen and Lin, *Working set selection using
 /// second order information for training support vector machines*, 2005), until no pair gains anything to speak of.
 /// O(m) a step.
-pub fn smallest_enclosing_sphere(kernel: &DMatrix<f64>) -> Sphere {
+pub(crate) fn smallest_enclosing_sphere(kernel: &DMatrix<f64>) -> Sphere {
     let m = kernel.nrows();
     let mut alpha = DVector::from_element(m, 1.0 / m.max(1) as f64);
     let mut product = kernel * &alpha;

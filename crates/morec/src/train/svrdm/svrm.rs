@@ -32,7 +32,7 @@ impl Default for MachineParams {
 const AT_BOUND: f64 = 1e-6;
 
 /// The machine that represents one class, `f(x) = Σ αᵢ K(xᵢ, x)` (Eq. 3.36, as corrected), from its samples' kernel.
-pub fn svrm(kernel: DMatrix<f64>, params: &MachineParams) -> Solution {
+pub(crate) fn svrm(kernel: DMatrix<f64>, params: &MachineParams) -> Solution {
     let linear = DVector::from_element(kernel.nrows(), params.own);
     BoxQp {
         matrix: kernel,
@@ -43,7 +43,7 @@ pub fn svrm(kernel: DMatrix<f64>, params: &MachineParams) -> Solution {
 }
 
 /// The samples on a machine's bounding boundary: `0 < αᵢ < C`, where `f(xᵢ) = T` (§3.7.3).
-pub fn on_boundary(alpha: &DVector<f64>, params: &MachineParams) -> Vec<bool> {
+pub(crate) fn on_boundary(alpha: &DVector<f64>, params: &MachineParams) -> Vec<bool> {
     alpha
         .iter()
         .map(|a| *a > AT_BOUND && *a < params.penalty - AT_BOUND)
@@ -52,7 +52,7 @@ pub fn on_boundary(alpha: &DVector<f64>, params: &MachineParams) -> Vec<bool> {
 
 /// The two machines of a pair.
 #[derive(Debug, Clone, PartialEq)]
-pub struct MachinePair {
+pub(crate) struct MachinePair {
     /// For each machine the weights `±αᵢ` of the samples: `f_j(x) = Σᵢ wᵢ K(xᵢ, x)`.
     pub weights: [DVector<f64>; 2],
     /// By how much the conditions of either problem are missed at most.
@@ -62,7 +62,7 @@ pub struct MachinePair {
 /// The machine that says at least `T` of side 0 and at most `t` of side 1 (Eq. 3.27), and the one that has it the
 /// other way round (Eq. 3.28; the thesis says that only thresholds change places, which is so once labels do), from
 /// all samples' kernel and their sides.
-pub fn svrdm(kernel: &DMatrix<f64>, sides: &[usize], params: &MachineParams) -> MachinePair {
+pub(crate) fn svrdm(kernel: &DMatrix<f64>, sides: &[usize], params: &MachineParams) -> MachinePair {
     let solutions = [0, 1].map(|side| {
         let qp = problem(kernel, sides, side, params);
         let solution = qp.solve(params.stop);
@@ -80,7 +80,7 @@ pub fn svrdm(kernel: &DMatrix<f64>, sides: &[usize], params: &MachineParams) -> 
 
 /// The quadratic program of the machine for `side` (Eq. 3.31): labels are +1 on that side, `τ` is `T` there and `−t`
 /// on the other.
-pub fn problem(
+pub(crate) fn problem(
     kernel: &DMatrix<f64>,
     sides: &[usize],
     side: usize,

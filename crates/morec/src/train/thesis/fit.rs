@@ -21,6 +21,9 @@ pub struct Fitted {
 
 /// Trains on samples of reduced rows (§4.5): sign vectors (Alg. 5), feature vectors (Eq. 3.37), the tree (Alg. 7),
 /// profiles (§3.8). O(samples³) in the largest branch.
+///
+/// # Errors
+/// No sample, fewer than two classes, a class none of whose samples can be described, or parameters that no tree grows with.
 pub fn fit(
     samples: &[ThesisSample],
     classes: &[ClassInfo],

@@ -51,6 +51,9 @@ pub struct ThesisTrainingData {
 }
 
 /// Pose rows of every clip, the components of all of them (Eqs. 4.2 and 4.3), the samples of the classes.
+///
+/// # Errors
+/// Parameters out of range, a clip without the pivots, or no sample.
 pub fn of_clips(
     clips: &[TrainClip],
     labelling: &LabelSet<'_>,

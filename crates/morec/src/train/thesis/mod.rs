@@ -23,6 +23,9 @@ use super::templates::TrainError;
 ///
 /// Pose rows depend on the axes that a rig gave its joints, so made everyday motion, which has a rig of its own, is no
 /// background here.
+///
+/// # Errors
+/// As [`ThesisTrainingData::of_clips`](material::ThesisTrainingData::of_clips) and [`fit`]; or `progress` cancels.
 pub fn train_svrdm(
     clips: &[TrainClip],
     labelling: &LabelSet<'_>,
