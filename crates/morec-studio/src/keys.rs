@@ -3,8 +3,8 @@
 use egui::{Key, Modifiers};
 
 use crate::state::{
-    ClassCommand, Command, FileCommand, Grip, LiveCommand, Panel, PlayCommand, State,
-    TimelineCommand, TrainCommand,
+    ClassCommand, Command, CompareCommand, FileCommand, Grip, LiveCommand, Panel, PlayCommand,
+    SimilarCommand, State, TimelineCommand, TrainCommand,
 };
 use crate::store::Edit;
 
@@ -74,6 +74,12 @@ pub const HELP: &[(&str, &str, &str)] = &[
         "accept, reject; the next doubtful one is shown",
     ),
     ("Proposals", "N", "the next doubtful one"),
+    (
+        "Searching",
+        "F, C",
+        "more like the selection, the nearest of it beside the performer",
+    ),
+    ("Cuts", "Delete", "remove the selected cut"),
     ("Timeline", "+  −  0", "zoom in, zoom out, the whole clip"),
     (
         "Live",
@@ -220,6 +226,12 @@ fn labels(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
         if i.consume_key(Modifiers::NONE, key) {
             out.push(Command::Timeline(command));
         }
+    }
+    if i.consume_key(Modifiers::NONE, Key::F) {
+        out.push(Command::Similar(SimilarCommand::OfSelection));
+    }
+    if i.consume_key(Modifiers::NONE, Key::C) {
+        out.push(Command::Compare(CompareCommand::Nearest));
     }
     let selected = state.selected();
     let proposed = selected

@@ -7,7 +7,7 @@ use egui::{
 use morec_db::ClipId;
 use morec_db::labels::{DbSample, SampleId, State as Judged};
 
-use super::{Out, groups, padded, player, strips, view, widgets};
+use super::{Out, groups, label, padded, player, similar, strips, view, widgets};
 use crate::format;
 use crate::state::{ClassCommand, Command, LibraryCommand, Panel, State};
 use crate::theme::Colours;
@@ -38,9 +38,10 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
     CentralPanel::default().frame(padded(&c)).show(ctx, |ui| {
         tools(ui, state, out);
         ui.add_space(4.0);
-        match &state.classes.groups {
-            Some(_) => groups::show(ui, state, out),
-            None => columns(ui, state, out),
+        match (&state.classes.similar, &state.classes.groups) {
+            (Some(found), _) => similar::show(ui, state, found, out),
+            (None, Some(_)) => groups::show(ui, state, out),
+            (None, None) => columns(ui, state, out),
         }
     });
 }
@@ -48,6 +49,10 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
 fn tools(ui: &mut Ui, state: &State, out: Out) {
     let c = Colours::now(ui);
     ui.horizontal_wrapped(|ui| {
+        if let Some(found) = &state.classes.similar {
+            similar::tools(ui, state, found, out);
+            return;
+        }
         let mut class = |command| out.push(Command::Classes(command));
         if let Some(groups) = &state.classes.groups {
             ui.label(RichText::new("Groups").strong());
@@ -342,6 +347,7 @@ fn chosen(ui: &mut Ui, state: &State, out: Out) {
         format::secs(sample.stop_secs)
     );
     ui.colored_label(Colours::now(ui).muted, extent);
+    label::like_this(ui, out);
     if sample.state == Judged::Proposed {
         ui.horizontal(|ui| {
             for (text, command) in [

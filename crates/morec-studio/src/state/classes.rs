@@ -9,6 +9,7 @@ use super::files::quoted;
 use super::{ClassCommand, Panel, State};
 use crate::jobs::group::{self, Groups};
 use crate::jobs::propose;
+use crate::jobs::similar::Similar;
 use crate::store::{Edit, Snapshot};
 
 /// A key that is held for less is a tap, seconds on the wall.
@@ -39,6 +40,10 @@ pub struct Classes {
     /// Where a key was tapped last: which class, and the moment.
     pub tapped: Option<(usize, f64)>,
     pub groups: Option<Groups>,
+    /// What is like an example, while that is shown.
+    pub similar: Option<Similar>,
+    /// Whether the mirror image of an example is looked for too.
+    pub mirror: bool,
     /// Into how many groups the hierarchy is cut.
     pub depth: usize,
     /// A class that is being renamed, and its new name so far.
@@ -228,7 +233,7 @@ impl State {
             return secs;
         };
         let still = curves.still.iter().flat_map(|s| [s.0, s.1]);
-        let marks = curves.kernel.iter().copied().chain(still);
+        let marks = self.cuts().into_iter().chain(still);
         marks
             .filter(|m| (m - secs).abs() <= ATTRACTED_SECS)
             .min_by(|a, b| (a - secs).abs().total_cmp(&(b - secs).abs()))

@@ -21,11 +21,13 @@ impl State {
             self.say("the mark before this one is still being kept");
             return;
         }
-        let Some((start, stop)) = self.live.range.or_else(|| run.last_motion()) else {
+        let Some((start, stop)) = self.live.range.or_else(|| run.watched()?.last_motion()) else {
             self.say("nothing has moved yet that could be marked");
             return;
         };
-        let Some((recording, origin)) = run.cut_out(start - AROUND_SECS, stop + AROUND_SECS) else {
+        let cut =
+            |performer: &super::Tracked| performer.cut_out(start - AROUND_SECS, stop + AROUND_SECS);
+        let Some((recording, origin)) = run.watched().and_then(cut) else {
             self.complain("That part of the stream is no longer kept");
             return;
         };
