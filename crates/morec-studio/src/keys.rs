@@ -46,6 +46,7 @@ pub const HELP: &[(&str, &str, &str)] = &[
     ("Playing", "Shift ← →", "a second back, a second on"),
     ("Playing", "Home, End", "to the beginning, to the end"),
     ("Playing", "O", "loop the selected stretch or label"),
+    ("Playing", "I", "stay inside the segment between the cuts"),
     ("Labels", "1 … 9 held", "label what passes while playing"),
     (
         "Labels",
@@ -178,6 +179,12 @@ fn playing(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
         play(PlayCommand::Loop(match state.player.looped {
             Some(_) => None,
             None => stretch,
+        }));
+    }
+    if i.consume_key(Modifiers::NONE, Key::I) {
+        play(PlayCommand::Loop(match state.player.looped {
+            Some(_) => None,
+            None => Some(state.segment()),
         }));
     }
     let nudge = |grip, by| Command::Timeline(TimelineCommand::Nudge(grip, by));

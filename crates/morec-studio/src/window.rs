@@ -44,6 +44,9 @@ pub struct Args {
         requires = "screenshot"
     )]
     at: f64,
+    /// Show in a screenshot what is like the clip's first label of this class, the nearest beside it
+    #[arg(long, value_name = "CLASS", requires = "screenshot")]
+    like: Option<String>,
     /// Width and height of a screenshot, pixels
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size, requires = "screenshot")]
     size: (usize, usize),
@@ -87,6 +90,7 @@ fn picture(args: &Args, path: &std::path::Path) -> Result<(), String> {
         panel: args.panel.unwrap_or(Panel::Library),
         clip: args.clip.clone(),
         at_secs: args.at,
+        like: args.like.clone(),
         size: [args.size.0, args.size.1],
         dark: !args.light,
     };

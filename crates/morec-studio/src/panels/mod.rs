@@ -1,6 +1,7 @@
 //! What is drawn: functions of the state that emit commands.
 
 mod bars;
+mod card;
 mod channel;
 mod classes;
 mod compare;

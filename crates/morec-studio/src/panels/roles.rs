@@ -83,7 +83,7 @@ fn asked(ui: &mut Ui, state: &State, motion: &Motion, out: Out) {
         }
         let mut all = !state.library.roles_of_one;
         let count = format::count(state.clips_of_roles().len(), "clip");
-        let response = ui.checkbox(&mut all, format!("in all of this skeleton ({count})"));
+        let response = ui.checkbox(&mut all, format!("in all of this rig ({count})"));
         if response.changed() {
             library(LibraryCommand::RolesOfAll(all));
         }

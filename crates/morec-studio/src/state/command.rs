@@ -129,7 +129,7 @@ pub enum LibraryCommand {
         role: Role,
         joint: Option<usize>,
     },
-    /// Whether roles are given in all clips of the skeleton.
+    /// Whether roles are given in all clips of the rig.
     RolesOfAll(bool),
 }
 

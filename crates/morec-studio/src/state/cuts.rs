@@ -64,6 +64,18 @@ impl State {
         (!starts.is_empty()).then(|| starts[1..].to_vec())
     }
 
+    /// The stretch between the cuts around the playhead.
+    pub fn segment(&self) -> (f64, f64) {
+        let at = self.player.at_secs;
+        let cuts = self.cuts();
+        let start = cuts.iter().copied().filter(|cut| *cut <= at + 1e-9);
+        let stop = cuts.iter().copied().filter(|cut| *cut > at + 1e-9);
+        (
+            start.fold(0.0, f64::max),
+            stop.fold(self.player.secs(), f64::min),
+        )
+    }
+
     /// By which method the clip that is shown was cut, if its cuts are kept.
     pub fn cut_method(&self) -> Option<&str> {
         let clip = self.player.motion.as_ref()?.id;

@@ -18,7 +18,7 @@ pub struct Library {
     pub strips: bool,
     /// The part of the body whose joint is to be clicked.
     pub role: Option<Role>,
-    /// Roles are given in the shown clip alone, not in all of its skeleton that had the same.
+    /// Roles are given in the shown clip alone, not in all of its rig.
     pub roles_of_one: bool,
     /// Places of the clips that are shown, in the snapshot; computed when something changes.
     shown: Vec<usize>,

@@ -1,10 +1,12 @@
 //! Everything the window shows, without a widget: tests apply commands to it without a window.
 
 mod classes;
+mod columns;
 mod command;
 pub mod compare;
 pub mod cuts;
 mod files;
+mod groups;
 mod labels;
 pub mod layout;
 mod library;
@@ -12,6 +14,7 @@ mod lines;
 pub mod live;
 mod outcomes;
 pub mod player;
+mod proposals;
 mod roles;
 mod shown;
 pub mod similar;

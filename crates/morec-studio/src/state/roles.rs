@@ -9,7 +9,8 @@ use super::State;
 use crate::store::{Edit, Snapshot};
 
 impl State {
-    /// The clips whose roles change with those of the clip that is shown: of its skeleton, with the same roles until now.
+    /// The clips whose roles change with those of the clip that is shown: those with as many joints and the same roles until
+    /// now are of the same rig, whoever performs.
     pub fn clips_of_roles(&self) -> Vec<ClipId> {
         let (Some(store), Some(clip)) = (&self.store, self.shown_clip()) else {
             return Vec::new();
@@ -20,7 +21,7 @@ impl State {
         let roles = store.snapshot.roles.get(&clip.id);
         let clips = store.snapshot.clips.iter();
         clips
-            .filter(|c| c.skeleton == clip.skeleton && store.snapshot.roles.get(&c.id) == roles)
+            .filter(|c| c.joints == clip.joints && store.snapshot.roles.get(&c.id) == roles)
             .map(|c| c.id)
             .collect()
     }

@@ -3,7 +3,7 @@
 use egui::{Key, vec2};
 
 use super::{Person, made};
-use crate::state::Panel;
+use crate::state::{Command, Panel, PlayCommand};
 
 fn labelling() -> (tempfile::TempDir, Person) {
     let folder = tempfile::tempdir().unwrap();
@@ -85,4 +85,26 @@ fn a_channel_is_shown_with_its_keyframes() {
     person.click("Channel: Hips");
     person.click("None");
     assert!(person.state().channel_wanted.is_none());
+}
+
+#[test]
+fn playing_stays_inside_the_segment_between_the_cuts() {
+    let (_folder, mut person) = labelling();
+    let cuts = person.state().cuts();
+    let pair = cuts
+        .windows(2)
+        .min_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])));
+    let (start, stop) = (pair.unwrap()[0], pair.unwrap()[1]);
+    let middle = 0.5 * (start + stop);
+    person.command(Command::Play(PlayCommand::Seek(middle)));
+    person.key(Key::I);
+    person.key(Key::Space);
+    for _ in 0..40 {
+        person.wait(0.1);
+        let at = person.state().player.at_secs;
+        assert!(start - 1e-6 <= at && at <= stop, "{start} {at} {stop}");
+    }
+    assert!(person.state().player.playing);
+    person.key(Key::I);
+    assert!(person.state().player.looped.is_none());
 }

@@ -43,7 +43,7 @@ fn a_part_and_a_joint_are_clicked_and_the_skeleton_follows_and_it_is_undone() {
     let now = &person.state().store.as_ref().unwrap().snapshot.roles;
     assert!(
         now.iter().all(|(id, roles)| *roles != before[id]),
-        "in all of this skeleton"
+        "in all of this rig"
     );
     let line = &person.state().command_line;
     assert!(
@@ -65,7 +65,7 @@ fn a_part_is_given_to_nobody_in_one_clip_only() {
     let mut person = Person::before(&[made(folder.path(), 0)]);
     let hips = joint_name(&person, Role::Hips);
     person.click(&format!("Part hips: {hips}"));
-    person.click("in all of this skeleton (3 clips)");
+    person.click("in all of this rig (3 clips)");
     person.click("None");
     person.settle();
     let snapshot = &person.state().store.as_ref().unwrap().snapshot;
