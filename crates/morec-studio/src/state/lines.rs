@@ -96,7 +96,7 @@ impl State {
                 format!("morec db classes {db} --rename {} {}", word(from), word(to))
             }
             Edit::RemoveClass(name) => {
-                format!("morec db classes {db} --remove {}", word(name))
+                format!("morec db classes {db} --forget {}", word(name))
             }
             Edit::Describe { clips, update } => {
                 let name = clip(*clips.first()?)?;
@@ -113,6 +113,9 @@ impl State {
                 }
                 for tag in &update.add_tags {
                     line += &format!(" --add-tag {}", word(tag));
+                }
+                for tag in &update.remove_tags {
+                    line += &format!(" --remove-tag {}", word(tag));
                 }
                 line
             }

@@ -72,7 +72,7 @@ impl State {
         let (db, mirror) = (store.path().to_owned(), self.classes.mirror);
         if let Some(clip) = store.snapshot.clip(of.clip) {
             self.command_line = format!(
-                "morec db search {} --clip {} --start {:.3} --stop {:.3}{}",
+                "morec db search {} {} --start {:.3} --stop {:.3}{}",
                 quoted(&db),
                 quoted(clip.name.as_ref()),
                 of.start_secs,

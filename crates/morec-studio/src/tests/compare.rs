@@ -14,7 +14,10 @@ fn with_a_wave() -> (tempfile::TempDir, Person) {
     let label = person.state().shown_samples().iter();
     let wave = label.clone().find(|s| s.class == "wave").unwrap();
     let name = format!("wave {:.2}–{:.2} s", wave.start_secs, wave.stop_secs);
+    // Soon after another click it would be a double click.
+    person.wait(1.0);
     person.click(&name);
+    assert_eq!(person.state().selected().len(), 1);
     (folder, person)
 }
 

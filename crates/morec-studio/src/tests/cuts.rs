@@ -61,6 +61,8 @@ fn a_cut_is_removed_and_another_added() {
     person.settle();
     assert_eq!(person.state().cuts().len(), found.len() - 1);
     assert!(!person.offers(&name));
+    // Soon after another click it would be a triple click.
+    person.wait(1.0);
     person.double_click_at(at);
     person.settle();
     assert_eq!(person.state().cuts().len(), found.len());

@@ -65,8 +65,12 @@ fn a_clip_and_a_page_go_out_and_the_database_is_not_written_over() {
     let nowhere = folder.path().join("no such folder").join("out.html");
     person.command(Command::File(FileCommand::ExportPage(nowhere)));
     assert!(person.sees_part("out.html: not written"));
+    person.wait(1.0);
     person.click("File");
-    assert!(person.offers("Export this clip …") && person.offers("A page of it to send …"));
+    person.frames(3);
+    for entry in ["Export this clip", "A page of it to send", "Export labels"] {
+        assert!(person.sees_part(entry), "{entry}");
+    }
 }
 
 #[test]

@@ -31,6 +31,10 @@ impl State {
             self.complain("That part of the stream is no longer kept");
             return;
         };
+        let source = match run.name.contains("://") {
+            true => run.name.clone(),
+            false => "SOURCE".to_owned(),
+        };
         self.live.marks.push((start, stop, class.to_owned()));
         self.live.range = None;
         self.live.teaching = true;
@@ -41,9 +45,8 @@ impl State {
             name: class.replace(' ', "_"),
         };
         self.command_line = format!(
-            "morec db label {} --clip {}_001 --class {class}",
-            crate::state::files::quoted(&store),
-            lesson.name
+            "morec teach studio.index --name {} --listen {source}",
+            crate::state::files::quoted(class.as_ref())
         );
         self.keep(store, lesson);
     }
@@ -98,9 +101,9 @@ impl State {
             name: "take".to_owned(),
         };
         self.command_line = format!(
-            "morec record {} --listen {}",
-            crate::state::files::quoted(&store),
-            self.live.run.as_ref().map_or("SOURCE", |r| r.name.as_str())
+            "morec record --listen {} -o take.bvh && morec db import {} take.bvh",
+            self.live.run.as_ref().map_or("SOURCE", |r| r.name.as_str()),
+            crate::state::files::quoted(&store)
         );
         self.keep(store, lesson);
     }

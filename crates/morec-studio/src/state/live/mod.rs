@@ -187,6 +187,14 @@ impl State {
                     self.complain("There is no clip to play: import one first");
                     return;
                 };
+                let path = self
+                    .store
+                    .as_ref()
+                    .and_then(|s| Some(s.snapshot.clip(clip)?.path.clone()));
+                if let Some(path) = path {
+                    let file = super::files::quoted(path.as_ref());
+                    self.command_line = format!("morec recognize studio.index {file}");
+                }
                 self.live.choice = Choice::Clip(Some(clip));
                 self.live.starting = Some(clip);
                 self.want_motion(clip);
@@ -279,6 +287,14 @@ impl State {
         };
         let Some(run) = &mut self.live.run else {
             return;
+        };
+        self.command_line = match &self.live.choice {
+            Choice::Network(address) => {
+                format!("morec live studio.index --listen {address} --sensitivity {alarms:.2}")
+            }
+            Choice::Clip(_) => {
+                format!("morec recognize studio.index CLIP --sensitivity {alarms:.2}")
+            }
         };
         run.recognise_with(&model);
         let poses: Vec<(f64, KeyPose)> = run.watched().map(|w| w.key_poses()).unwrap_or_default();
