@@ -13,7 +13,7 @@ use crate::stretch::Stretch;
 
 /// What became of an import.
 #[derive(Debug, Clone, Default)]
-pub struct Report {
+pub struct ImportSummary {
     /// Files whose clips are in the database now.
     pub imported: usize,
     /// Files that were there already.
@@ -65,8 +65,8 @@ fn files(n: usize, what: &str) -> String {
 }
 
 /// Imports files, and those in folders, into the database at `db`.
-pub fn import(db: &Path, paths: &[PathBuf], progress: &JobProgress) -> Outcome {
-    let mut report = Report::default();
+pub fn import(db: &Path, paths: &[PathBuf], progress: &JobProgress) -> JobOutcome {
+    let mut report = ImportSummary::default();
     let mut clips = Vec::new();
     for path in paths {
         match list(std::slice::from_ref(path)) {
@@ -104,7 +104,7 @@ pub fn import(db: &Path, paths: &[PathBuf], progress: &JobProgress) -> Outcome {
             ImportOutcome::Refused(why) => report.refused.push((path, why.reason)),
         }
     }
-    Outcome::Imported(report)
+    JobOutcome::Imported(report)
 }
 
 /// Which of the clips that have just come are nearly others, that somebody may leave one of the two out.

@@ -3,15 +3,15 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use morec::crossval::{By, CrossvalError, CrossvalOptions, Material as Tested, crossval};
+use morec::crossval::{CrossvalData as Tested, CrossvalError, CrossvalOptions, FoldBy, crossval};
 use morec::eval::{Evaluation, FoundVerdict, Timeline, TruthVerdict, timelines};
 use morec::explain::Miss;
 use morec::train::TrainError;
 
-use super::{JobProgress, Outcome, train};
+use super::{JobOutcome, JobProgress, train};
 
 /// What a cross-validation found.
-pub struct Judged {
+pub struct CrossvalResult {
     pub evaluation: Evaluation,
     pub timelines: Vec<Timeline>,
     /// Why labels were missed.
@@ -40,7 +40,7 @@ impl Moment {
     }
 }
 
-impl Judged {
+impl CrossvalResult {
     /// What became of every label, and the detections that belong to none.
     pub fn moments(&self) -> Vec<Moment> {
         let mut moments = Vec::new();
@@ -98,11 +98,11 @@ fn clip_of(stream: &str) -> String {
 }
 
 /// Trains and tests every fold of the database at `path`.
-pub fn judge(path: &Path, classes: &[String], progress: &JobProgress) -> Outcome {
+pub fn judge(path: &Path, classes: &[String], progress: &JobProgress) -> JobOutcome {
     match judged(path, classes, progress) {
-        Ok(judged) => Outcome::Judged(Box::new(judged)),
-        Err(None) => Outcome::Cancelled,
-        Err(Some(why)) => Outcome::Failed(why),
+        Ok(judged) => JobOutcome::Judged(Box::new(judged)),
+        Err(None) => JobOutcome::Cancelled,
+        Err(Some(why)) => JobOutcome::Failed(why),
     }
 }
 
@@ -110,7 +110,7 @@ fn judged(
     path: &Path,
     classes: &[String],
     progress: &JobProgress,
-) -> Result<Judged, Option<String>> {
+) -> Result<CrossvalResult, Option<String>> {
     let material = train::material(path, classes).map_err(|e| Some(e.to_string()))?;
     let people: BTreeSet<&str> = material
         .samples
@@ -118,11 +118,11 @@ fn judged(
         .filter_map(|s| s.person.as_deref())
         .collect();
     let (by, said) = if people.len() >= 2 {
-        (By::Person, "each person in turn")
+        (FoldBy::Person, "each person in turn")
     } else if material.clips.len() >= 2 {
-        (By::Clip, "each clip in turn")
+        (FoldBy::Clip, "each clip in turn")
     } else {
-        (By::Half { seed: 1 }, "half of the labels")
+        (FoldBy::Half { seed: 1 }, "half of the labels")
     };
     let mut clips = material.clips;
     clips.extend_from_slice(train::everyday());

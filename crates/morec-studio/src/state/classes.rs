@@ -73,7 +73,7 @@ impl Classes {
         self.order.iter().position(|name| name == class)
     }
 
-    pub(super) fn show_groups(&mut self, groups: Groups) {
+    pub(super) fn show_groups(&mut self, groups: ClusteredItems) {
         let classes: BTreeSet<_> = groups
             .items
             .iter()

@@ -14,7 +14,7 @@ use super::live::LiveCommand;
 use super::player::PlayCommand;
 use super::similar::SimilarCommand;
 use crate::body::Camera;
-use crate::jobs::cut::Method;
+use crate::jobs::cut::SegmentMethod;
 use crate::store::Edit;
 
 /// The panels.
@@ -65,7 +65,7 @@ pub enum Command {
     Edit(Edit),
     Library(LibraryCommand),
     Play(PlayCommand),
-    Look(Look),
+    Look(ViewCommand),
     Timeline(TimelineCommand),
     Classes(ClassCommand),
     Train(TrainCommand),
@@ -145,7 +145,7 @@ pub enum Column {
 
 /// The view of the performer.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Look {
+pub enum ViewCommand {
     Camera(Camera),
     Front,
     Side,

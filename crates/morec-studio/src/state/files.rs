@@ -69,7 +69,7 @@ impl State {
         self.jobs = Jobs::default();
         self.library = Library::default();
         self.player = Player::new();
-        self.timeline = Timeline::default();
+        self.timeline = TimelineState::default();
         self.curves = None;
         self.detections = None;
         self.classes = Classes::default();

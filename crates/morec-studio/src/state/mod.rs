@@ -36,8 +36,8 @@ use crate::store::{Store, Wake};
 
 pub use classes::Classes;
 pub use command::{
-    ClassCommand, Column, Command, FileCommand, LibraryCommand, Look, Panel, TimelineCommand,
-    TrainCommand,
+    ClassCommand, Column, Command, FileCommand, LibraryCommand, Panel, TimelineCommand,
+    TrainCommand, ViewCommand,
 };
 pub use compare::{Companions, CompareCommand};
 pub use cuts::CutCommand;
@@ -84,11 +84,11 @@ pub struct State {
     pub channel: Option<Channel>,
     pub curves: Option<Arc<Curves>>,
     /// What the index recognises in the clip that is shown.
-    pub detections: Option<(ClipId, Vec<Found>)>,
+    pub detections: Option<(ClipId, Vec<ClipDetection>)>,
     pub classes: Classes,
     pub train: Train,
     pub live: Live,
-    pub import_report: Option<import::Report>,
+    pub import_report: Option<import::ImportSummary>,
     /// A file dialog that should be shown.
     pub ask: Option<Ask>,
     pub(crate) wake: Wake,
@@ -107,7 +107,7 @@ pub struct State {
 /// Decoded clips, the ones used last; others are decoded again when they are looked at.
 #[derive(Default)]
 pub(crate) struct Motions {
-    kept: BTreeMap<ClipId, (Arc<Motion>, u64)>,
+    kept: BTreeMap<ClipId, (Arc<ClipMotion>, u64)>,
     failed: BTreeMap<ClipId, String>,
     loading: Vec<ClipId>,
     clock: u64,
@@ -119,7 +119,7 @@ const MOTION_KEPT: usize = 12_000_000;
 const LOADERS: usize = 2;
 
 impl Motions {
-    pub fn get(&self, clip: ClipId) -> Option<&Arc<Motion>> {
+    pub fn get(&self, clip: ClipId) -> Option<&Arc<ClipMotion>> {
         self.kept.get(&clip).map(|(motion, _)| motion)
     }
 
@@ -136,7 +136,7 @@ impl Motions {
     fn keep(&mut self, motion: Arc<Motion>) {
         self.clock += 1;
         self.kept.insert(motion.id, (motion, self.clock));
-        let size = |m: &Motion| m.clip.frames * m.clip.skeleton.len().max(1);
+        let size = |m: &ClipMotion| m.clip.frames * m.clip.skeleton.len().max(1);
         while self.kept.len() > 2
             && self.kept.values().map(|(m, _)| size(m)).sum::<usize>() > MOTION_KEPT
         {

@@ -34,7 +34,7 @@ pub enum Edit {
     /// What is thought of samples.
     Judge {
         ids: Vec<SampleId>,
-        state: State,
+        state: SampleState,
     },
     RenameClass {
         from: String,

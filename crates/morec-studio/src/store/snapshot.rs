@@ -13,7 +13,7 @@ pub struct Snapshot {
     /// By name.
     pub clips: Vec<ClipInfo>,
     /// By name.
-    pub classes: Vec<ClassInfo>,
+    pub classes: Vec<ClassCount>,
     /// By clip and time.
     pub samples: Vec<DbSample>,
     pub indexes: Vec<IndexInfo>,
@@ -51,10 +51,10 @@ impl Snapshot {
 
     pub fn of(
         clips: Vec<ClipInfo>,
-        classes: Vec<ClassInfo>,
+        classes: Vec<ClassCount>,
         samples: Vec<DbSample>,
         indexes: Vec<IndexInfo>,
-        history: Vec<Step>,
+        history: Vec<HistoryStep>,
     ) -> Self {
         Self {
             place: clips.iter().enumerate().map(|(i, c)| (c.id, i)).collect(),
@@ -102,7 +102,9 @@ impl Snapshot {
     }
 
     pub fn accepted(&self) -> impl Iterator<Item = &DbSample> {
-        self.samples.iter().filter(|s| s.state == State::Accepted)
+        self.samples
+            .iter()
+            .filter(|s| s.state == SampleState::Accepted)
     }
 }
 

@@ -16,7 +16,7 @@ const MOST: usize = 16;
 
 /// Something that was recognised.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Seen {
+pub struct LiveDetection {
     pub class: String,
     pub actor: Actor,
     pub start_secs: f64,
@@ -144,7 +144,7 @@ impl Run {
         let Some(model) = &self.model else { return };
         for event in events.iter().filter(|e| e.phase == Phase::End) {
             self.news.push(event.class);
-            self.seen.push(Seen {
+            self.seen.push(LiveDetection {
                 class: model.class_name(event.class).to_owned(),
                 actor: event.actor,
                 start_secs: event.start_secs,
