@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, channel};
 
-use morec_db::exchange::Form;
+use morec_db::exchange::LabelFormat;
 
 use crate::state::{Ask, Command, FileCommand};
 
@@ -70,8 +70,8 @@ fn answered(ask: Ask) -> Option<Command> {
         }
         Ask::ExportLabels(form) => {
             let ending = match form {
-                Form::Tsv => "tsv",
-                Form::Csv => "csv",
+                LabelFormat::Tsv => "tsv",
+                LabelFormat::Csv => "csv",
                 _ => "json",
             };
             let dialog = rfd::FileDialog::new().add_filter("labels", &[ending]);

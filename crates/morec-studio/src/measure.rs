@@ -79,7 +79,7 @@ pub fn first_frame_secs(database: &std::path::Path) -> f64 {
     begun.elapsed().as_secs_f64()
 }
 
-fn measured(window: &mut Headless, scene: &'static str, frames: usize) -> Measured {
+fn measured(window: &mut Headless, scene: &'static str, frames: usize) -> FrameTimes {
     let mut took: Vec<f64> = (0..frames.max(1))
         .map(|_| {
             let before = processor_secs();

@@ -4,17 +4,17 @@ use morec::kinematics::WorldPose;
 use morec::math::{Axis, Vec3};
 
 use crate::jobs::align::Aligned;
-use crate::jobs::load::Motion;
+use crate::jobs::load::ClipMotion;
 
 /// To the left of a performer at a moment: the direction in which companions stand.
-pub fn aside(motion: &Motion, secs: f64) -> Vec3 {
+pub fn aside(motion: &ClipMotion, secs: f64) -> Vec3 {
     let heading = motion.body.heading(&motion.pose(secs)).unwrap_or(0.0);
     Axis::Y.rotation(heading) * Vec3::x()
 }
 
 /// The companion's pose when the performer of `motion` is at `secs`: turned as the performer is turned and standing on the same
 /// place where both stretches begin, moved `aside` by so many metres.
-pub fn pose(aligned: &Aligned, motion: &Motion, secs: f64, apart: f64) -> WorldPose {
+pub fn pose(aligned: &Aligned, motion: &ClipMotion, secs: f64, apart: f64) -> WorldPose {
     let (other, of) = (&aligned.motion, aligned.of.start_secs);
     let begin = other.pose(aligned.with.start_secs);
     let mut pose = other.pose(aligned.at(secs));

@@ -17,7 +17,7 @@ pub struct BodyColours {
     pub shadow: Color32,
 }
 
-impl Palette {
+impl BodyColours {
     /// All colours brought so far towards another.
     pub fn mixed(self, colour: Color32, share: f32) -> Self {
         let towards = |own: Color32| own.lerp_to_gamma(colour, share);

@@ -8,8 +8,8 @@ use morec::features::{FeatureParams, Rows, bones_of_clip, mirrored_rows, rows_of
 use morec::train::align as warp;
 use morec_db::{DbError, MotionDb};
 
-use super::load::Motion;
-use super::{JobProgress, Outcome, similar};
+use super::load::ClipMotion;
+use super::{JobOutcome, JobProgress, similar};
 use crate::stretch::Stretch;
 
 /// The table of the alignment has this many cells at most; longer stretches are compared at the same pace.
@@ -23,7 +23,7 @@ pub struct Aligned {
     /// Whether the second is shown in a mirror.
     pub mirrored: bool,
     /// The second's clip.
-    pub motion: Arc<Motion>,
+    pub motion: Arc<ClipMotion>,
     /// For every tick of the first, the moment of the second, seconds.
     path: Vec<f64>,
     tick_hz: f64,
@@ -53,12 +53,12 @@ pub fn align(
     of: Stretch,
     with: Option<(Stretch, bool)>,
     progress: &JobProgress,
-) -> Outcome {
+) -> JobOutcome {
     match aligned(path, of, with, progress) {
-        Ok(Some(aligned)) => Outcome::Aligned(Arc::new(aligned)),
-        Ok(None) => Outcome::Failed("Nothing like it is in the database".to_owned()),
-        Err(DbError::Cancelled) => Outcome::Cancelled,
-        Err(error) => Outcome::Failed(format!("Nothing was compared: {error}")),
+        Ok(Some(aligned)) => JobOutcome::Aligned(Arc::new(aligned)),
+        Ok(None) => JobOutcome::Failed("Nothing like it is in the database".to_owned()),
+        Err(DbError::Cancelled) => JobOutcome::Cancelled,
+        Err(error) => JobOutcome::Failed(format!("Nothing was compared: {error}")),
     }
 }
 
@@ -84,8 +84,8 @@ fn aligned(
             (stretch, hit.mirrored)
         }
     };
-    let first = Motion::of(of.clip, db.clip(of.clip)?);
-    let motion = Arc::new(Motion::of(with.clip, db.clip(with.clip)?));
+    let first = ClipMotion::of(of.clip, db.clip(of.clip)?);
+    let motion = Arc::new(ClipMotion::of(with.clip, db.clip(with.clip)?));
     let params = FeatureParams::default();
     let path = path_of((&first, &of), (&motion, &with), mirrored, &params);
     Ok(Some(Aligned {
@@ -100,17 +100,17 @@ fn aligned(
 
 /// For every tick of the first stretch, the moment of the second.
 fn path_of(
-    (first, of): (&Motion, &Stretch),
-    (second, with): (&Motion, &Stretch),
+    (first, of): (&ClipMotion, &Stretch),
+    (second, with): (&ClipMotion, &Stretch),
     mirrored: bool,
     params: &FeatureParams,
 ) -> Vec<f64> {
     let hz = params.tick_hz();
-    let bones = |m: &Motion| bones_of_clip(&m.clip, &m.roles, &m.rest);
+    let bones = |m: &ClipMotion| bones_of_clip(&m.clip, &m.roles, &m.rest);
     let common = bones(first).and(bones(second));
     // Velocities say how fast, and alignment is to forgive just that.
     let directions: Vec<usize> = (0..3 * common.len()).collect();
-    let cut = |motion: &Motion, span: Range<f64>| -> Rows {
+    let cut = |motion: &ClipMotion, span: Range<f64>| -> Rows {
         let rows = rows_of_clip(&motion.clip, &motion.roles, &motion.rest, common, params);
         let tick = |secs: f64| ((secs * hz).round().max(0.0) as usize).min(rows.len());
         rows.slice(tick(span.start)..tick(span.end))

@@ -2,17 +2,17 @@
 
 use std::path::Path;
 
-use morec::smooth::{Bezier, CompressedClip, Kind};
+use morec::smooth::{Bezier, ChannelKind, CompressedClip};
 use morec_db::{ClipId, MotionDb};
 
-use super::Outcome;
+use super::JobOutcome;
 
 /// The curves of a joint's rotation (x, y, z, w of a quaternion) or position (x, y, z, metres).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Channel {
     pub clip: ClipId,
     pub joint: usize,
-    pub kind: Kind,
+    pub kind: ChannelKind,
     /// End to end; none where the channel stands still.
     pub curves: Vec<Bezier>,
 }
@@ -21,8 +21,8 @@ impl Channel {
     /// How many values a moment has.
     pub fn components(&self) -> usize {
         match self.kind {
-            Kind::Rotation => 4,
-            Kind::Position => 3,
+            ChannelKind::Rotation => 4,
+            ChannelKind::Position => 3,
         }
     }
 
@@ -36,7 +36,7 @@ impl Channel {
                 *sum += weight * part;
             }
         }
-        if self.kind == Kind::Rotation {
+        if self.kind == ChannelKind::Rotation {
             let norm = value.iter().map(|v| v * v).sum::<f64>().sqrt().max(1e-12);
             value.iter_mut().for_each(|v| *v /= norm);
         }
@@ -58,7 +58,7 @@ impl Channel {
 }
 
 /// Reads a channel of a clip in the database at `path`.
-pub fn read(path: &Path, clip: ClipId, joint: usize, kind: Kind) -> Outcome {
+pub fn read(path: &Path, clip: ClipId, joint: usize, kind: ChannelKind) -> JobOutcome {
     let read = MotionDb::open_read_only(path)
         .and_then(|db| db.motion_bytes(clip))
         .map_err(|error| error.to_string())
@@ -66,14 +66,14 @@ pub fn read(path: &Path, clip: ClipId, joint: usize, kind: Kind) -> Outcome {
     match read {
         Ok(compressed) => {
             let curve = compressed.curve(joint, kind);
-            Outcome::Channel(Channel {
+            JobOutcome::Channel(Channel {
                 clip,
                 joint,
                 kind,
                 curves: curve.map_or_else(Vec::new, |c| compressed.beziers(c).collect()),
             })
         }
-        Err(why) => Outcome::Failed(format!("The channel cannot be read: {why}")),
+        Err(why) => JobOutcome::Failed(format!("The channel cannot be read: {why}")),
     }
 }
 
@@ -97,7 +97,7 @@ mod tests {
         let channel = Channel {
             clip: ClipId(1),
             joint: 0,
-            kind: Kind::Position,
+            kind: ChannelKind::Position,
             curves: vec![curve],
         };
         assert_eq!(channel.value(&curve, 0.0)[..3], curve.points[0][..3]);

@@ -13,8 +13,8 @@ use morec::segment::{
 use morec_db::rows::ClipRows;
 use morec_db::{ClipFilter, ClipId, ClipInfo, MotionDb, Segment, SegmentKind};
 
-use super::load::Motion;
-use super::{JobProgress, Outcome};
+use super::load::ClipMotion;
+use super::{JobOutcome, JobProgress};
 use crate::state::cuts::BY_HAND;
 
 /// A method of segmentation.

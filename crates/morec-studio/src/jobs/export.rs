@@ -7,18 +7,18 @@ use morec::formats::bvh;
 use morec::import::{ImportOptions, SignedAxis, normalize};
 use morec::labels::ClipLength;
 use morec::player::{Mark, Played, page};
-use morec_db::exchange::{self, Annotation, Form, Lengths};
-use morec_db::labels::{SampleFilter, State};
+use morec_db::exchange::{self, Annotation, ClipLengths, LabelFormat};
+use morec_db::labels::{SampleFilter, SampleState};
 use morec_db::{ClipFilter, ClipId, MotionDb};
 
-use super::Outcome;
+use super::JobOutcome;
 use crate::format;
 
 /// What is to be written.
 #[derive(Debug, Clone)]
 pub enum Export {
     /// Accepted labels; forms of one clip into a folder, a file for each.
-    Labels(Form),
+    Labels(LabelFormat),
     /// The motion of a clip, as BVH.
     Clip(ClipId),
     /// A page that plays a clip with its labels and with what was recognised.
@@ -26,11 +26,11 @@ pub enum Export {
 }
 
 /// Writes what is asked for of the database at `db` to `path`.
-pub fn export(db: &Path, what: &Export, path: &Path) -> Outcome {
+pub fn export(db: &Path, what: &Export, path: &Path) -> JobOutcome {
     let name = format::file_name(path);
     match written(db, what, path) {
-        Ok(said) => Outcome::Written(format!("{name}: {said}")),
-        Err(why) => Outcome::Failed(format!("{name}: not written: {why}")),
+        Ok(said) => JobOutcome::Written(format!("{name}: {said}")),
+        Err(why) => JobOutcome::Failed(format!("{name}: not written: {why}")),
     }
 }
 
@@ -57,9 +57,9 @@ fn written(db: &Path, what: &Export, path: &Path) -> Result<String, String> {
     }
 }
 
-fn labels(db: &MotionDb, form: Form, path: &Path) -> Result<String, String> {
+fn labels(db: &MotionDb, form: LabelFormat, path: &Path) -> Result<String, String> {
     let filter = SampleFilter {
-        state: Some(State::Accepted),
+        state: Some(SampleState::Accepted),
         ..SampleFilter::default()
     };
     let samples = db.samples(&filter).map_err(|e| e.to_string())?;
@@ -77,7 +77,7 @@ fn labels(db: &MotionDb, form: Form, path: &Path) -> Result<String, String> {
     let clips = db
         .clips(&ClipFilter::default())
         .map_err(|e| e.to_string())?;
-    let lengths: Lengths = clips
+    let lengths: ClipLengths = clips
         .into_iter()
         .map(|c| {
             let (frames, rate_hz) = (c.frames, c.rate_hz);
@@ -93,7 +93,11 @@ fn labels(db: &MotionDb, form: Form, path: &Path) -> Result<String, String> {
     std::fs::create_dir_all(path).map_err(|e| e.to_string())?;
     let of_clips: Vec<&[Annotation]> = annotations.chunk_by(|a, b| a.clip == b.clip).collect();
     let names = exchange::file_names(of_clips.iter().map(|all| all[0].clip.as_str()));
-    let ending = if form == Form::Eaf { "eaf" } else { "txt" };
+    let ending = if form == LabelFormat::Eaf {
+        "eaf"
+    } else {
+        "txt"
+    };
     for (of_clip, name) in of_clips.iter().zip(&names) {
         let text = exchange::write(form, of_clip, &lengths)?;
         write_whole(&path.join(format!("{name}.{ending}")), text.as_bytes())?;
@@ -105,7 +109,7 @@ fn played(db: &MotionDb, clip: ClipId, detections: Vec<Mark>) -> Result<String, 
     let stored = db.clip(clip)?;
     let filter = SampleFilter {
         clip: Some(clip),
-        state: Some(State::Accepted),
+        state: Some(SampleState::Accepted),
         ..SampleFilter::default()
     };
     let labels = db.samples(&filter)?.into_iter().map(|s| Mark {

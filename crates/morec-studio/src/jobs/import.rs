@@ -8,7 +8,7 @@ use morec::progress::Progress;
 use morec_db::search::{SearchIndex, near_copies_of};
 use morec_db::{ClipFilter, ClipId, ClipUpdate, DbError, ImportLog, ImportOutcome, MotionDb};
 
-use super::{JobProgress, Outcome};
+use super::{JobOutcome, JobProgress};
 use crate::stretch::Stretch;
 
 /// What became of an import.
@@ -37,7 +37,7 @@ pub struct Copy {
     pub text: String,
 }
 
-impl Report {
+impl ImportSummary {
     /// What it did, in a sentence.
     pub fn said(&self) -> String {
         let mut parts = vec![files(self.imported, "imported")];
@@ -90,7 +90,7 @@ pub fn import(db: &Path, paths: &[PathBuf], progress: &JobProgress) -> JobOutcom
             report.copies = copies;
             done
         }
-        Err(error) => return Outcome::Failed(format!("Import stopped: {error}")),
+        Err(error) => return JobOutcome::Failed(format!("Import stopped: {error}")),
     };
     report.cancelled = done.cancelled || progress.cancelled();
     for (path, outcome) in done.files {

@@ -149,7 +149,7 @@ fn judged(
     .tested;
     let (streams, truths, founds) = (&outcome.streams, &outcome.truths, &outcome.founds);
     let said_of = |e: morec::eval::EvalError| Some(format!("Not judged: {e}"));
-    Ok(Judged {
+    Ok(CrossvalResult {
         misses: outcome.misses.clone(),
         evaluation: Evaluation::of(streams, truths, founds).map_err(said_of)?,
         timelines: timelines(streams, truths, founds).map_err(said_of)?,

@@ -5,7 +5,7 @@ use std::path::Path;
 use morec_db::search::{Hit, SearchIndex, SearchOptions};
 use morec_db::{DbError, MotionDb};
 
-use super::{JobProgress, Outcome};
+use super::{JobOutcome, JobProgress};
 use crate::stretch::Stretch;
 
 /// So many are shown.
@@ -30,21 +30,21 @@ pub fn find(
     class: Option<String>,
     mirror: bool,
     progress: &JobProgress,
-) -> Outcome {
+) -> JobOutcome {
     let found = MotionDb::open(path).and_then(|mut db| hits(&mut db, &of, mirror, MOST, progress));
     match found {
-        Ok(Some(hits)) => Outcome::Similar(Similar {
+        Ok(Some(hits)) => JobOutcome::Similar(Similar {
             of,
             class,
             mirror,
             hits,
         }),
-        Ok(None) => Outcome::Failed(
+        Ok(None) => JobOutcome::Failed(
             "Nothing was searched: the stretch is too short, or no body part of its clip is known"
                 .to_owned(),
         ),
-        Err(DbError::Cancelled) => Outcome::Cancelled,
-        Err(error) => Outcome::Failed(format!("Nothing was searched: {error}")),
+        Err(DbError::Cancelled) => JobOutcome::Cancelled,
+        Err(error) => JobOutcome::Failed(format!("Nothing was searched: {error}")),
     }
 }
 

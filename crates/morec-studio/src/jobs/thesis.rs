@@ -6,11 +6,11 @@ use std::sync::Arc;
 use morec::pivots::{PivotMap, pose_rows_of_clip};
 use morec::svrdm::{Branch, Node, SampleClassifier, SvrdmEngine, SvrdmModel};
 use morec::train::thesis::{SvrdmOptions, train_svrdm};
-use morec::train::{Labelling, TrainError};
+use morec::train::{LabelSet, TrainError};
 use morec_db::ClipId;
 
-use super::load::Motion;
-use super::{JobProgress, Outcome, train};
+use super::load::ClipMotion;
+use super::{JobOutcome, JobProgress, train};
 
 /// Places along each side of a picture of a branch.
 pub const GRID: usize = 72;
@@ -55,11 +55,11 @@ pub struct Boundary {
 }
 
 /// Trains on the accepted samples of the database at `path`.
-pub fn run(path: &Path, classes: &[String], progress: &JobProgress) -> Outcome {
+pub fn run(path: &Path, classes: &[String], progress: &JobProgress) -> JobOutcome {
     match trained(path, classes, progress) {
-        Ok(thesis) => Outcome::Thesis(Arc::new(thesis)),
-        Err(None) => Outcome::Cancelled,
-        Err(Some(why)) => Outcome::Failed(format!("The method of 2009 was not trained: {why}")),
+        Ok(thesis) => JobOutcome::Thesis(Arc::new(thesis)),
+        Err(None) => JobOutcome::Cancelled,
+        Err(Some(why)) => JobOutcome::Failed(format!("The method of 2009 was not trained: {why}")),
     }
 }
 
@@ -69,7 +69,7 @@ fn trained(
     progress: &JobProgress,
 ) -> Result<Thesis, Option<String>> {
     let data = train::material(path, classes).map_err(|e| Some(e.to_string()))?;
-    let labelling = Labelling {
+    let labelling = LabelSet {
         samples: &data.samples,
         held_back: &[],
         classes: &data.classes,
@@ -187,9 +187,9 @@ pub struct Map {
 }
 
 /// Looks at every segment of a clip.
-pub fn map(model: &Arc<SvrdmModel>, motion: &Motion, progress: &JobProgress) -> Outcome {
+pub fn map(model: &Arc<SvrdmModel>, motion: &ClipMotion, progress: &JobProgress) -> JobOutcome {
     use morec::progress::Progress;
-    let why = |why: String| Outcome::Failed(format!("No map of confidences: {why}"));
+    let why = |why: String| JobOutcome::Failed(format!("No map of confidences: {why}"));
     let pivots = match PivotMap::of_clip(&model.pivots, &motion.clip, &motion.roles) {
         Ok(map) => map,
         Err(error) => return why(error.to_string()),
@@ -209,7 +209,7 @@ pub fn map(model: &Arc<SvrdmModel>, motion: &Motion, progress: &JobProgress) -> 
     let mut cells = vec![(0u8, 0u8); (rows.len() / params.chunk_frames + 1) * lengths];
     for (at, row) in rows.iter().enumerate() {
         if at % 4096 == 0 && progress.cancelled() {
-            return Outcome::Cancelled;
+            return JobOutcome::Cancelled;
         }
         engine.push_watched(
             row,
@@ -224,7 +224,7 @@ pub fn map(model: &Arc<SvrdmModel>, motion: &Motion, progress: &JobProgress) -> 
             &mut |_| (),
         );
     }
-    Outcome::Map(Map {
+    JobOutcome::Map(Map {
         clip: motion.id,
         chunk_secs: params.chunk_frames as f64 / model.rate_hz(),
         shortest: params.min_chunks,

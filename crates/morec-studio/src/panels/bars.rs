@@ -2,7 +2,7 @@
 
 use egui::{Align, Button, Context, Frame, Layout, Margin, RichText, TopBottomPanel, Ui, Vec2};
 
-use morec_db::exchange::Form;
+use morec_db::exchange::LabelFormat;
 
 use super::Out;
 use crate::state::{Command, FileCommand, Panel, State};
@@ -72,7 +72,7 @@ fn file_menu(ui: &mut Ui, state: &State, out: Out) {
         item(ui, "A page of it to send …", "", open && shown, page);
         ui.add_enabled_ui(open, |ui| {
             ui.menu_button("Export labels", |ui| {
-                for form in Form::ALL {
+                for form in LabelFormat::ALL {
                     if ui.button(form_name(form)).clicked() {
                         out.push(Command::File(FileCommand::AskExportLabels(form)));
                         ui.close();
@@ -98,15 +98,15 @@ fn file_menu(ui: &mut Ui, state: &State, out: Out) {
 }
 
 /// A form of labels as people know it.
-fn form_name(form: Form) -> &'static str {
+fn form_name(form: LabelFormat) -> &'static str {
     match form {
-        Form::Tsv => "Table (TSV) …",
-        Form::Csv => "Table (CSV) …",
-        Form::Json => "JSON …",
-        Form::Eaf => "ELAN, a file for each clip …",
-        Form::Audacity => "Audacity, a file for each clip …",
-        Form::Babel => "BABEL …",
-        Form::LabelStudio => "Label Studio …",
+        LabelFormat::Tsv => "Table (TSV) …",
+        LabelFormat::Csv => "Table (CSV) …",
+        LabelFormat::Json => "JSON …",
+        LabelFormat::Eaf => "ELAN, a file for each clip …",
+        LabelFormat::Audacity => "Audacity, a file for each clip …",
+        LabelFormat::Babel => "BABEL …",
+        LabelFormat::LabelStudio => "Label Studio …",
     }
 }
 

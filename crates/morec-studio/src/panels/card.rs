@@ -1,7 +1,7 @@
 //! A sample in a column of its class: its strip, where it is, for proposals yes and no.
 
 use egui::{Button, Rect, RichText, Sense, Ui, Vec2, WidgetType};
-use morec_db::labels::{DbSample, SampleId, State as Judged};
+use morec_db::labels::{DbSample, SampleId, SampleState as Judged};
 
 use super::classes::{COLUMN, STRIP, go};
 use super::{Out, strips, widgets};

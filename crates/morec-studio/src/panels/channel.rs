@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use egui::epaint::Mesh;
 use egui::{Color32, Pos2, Rect, Shape, Stroke, Ui, Vec2, WidgetType, pos2};
-use morec::smooth::Kind;
+use morec::smooth::ChannelKind;
 
 use super::timeline::Scale;
 use super::tracks::track;
@@ -134,11 +134,11 @@ pub fn menu(ui: &mut Ui, state: &State, out: Out) {
                 for (at, joint) in joints.iter().enumerate() {
                     let moves = joint.parent.is_none();
                     if moves && ui.button(format!("{}: position", joint.name)).clicked() {
-                        choose(Some((at, Kind::Position)));
+                        choose(Some((at, ChannelKind::Position)));
                         ui.close();
                     }
                     if ui.button(format!("{}: rotation", joint.name)).clicked() {
-                        choose(Some((at, Kind::Rotation)));
+                        choose(Some((at, ChannelKind::Rotation)));
                         ui.close();
                     }
                 }

@@ -5,13 +5,13 @@ use egui::Ui;
 use super::Out;
 use super::view::Other;
 use crate::body::companion;
-use crate::jobs::load::Motion;
+use crate::jobs::load::ClipMotion;
 use crate::state::compare::Placement;
 use crate::state::{Command, CompareCommand, State};
 use crate::theme::Colours;
 
 /// The companions at the present moment.
-pub fn others<'a>(state: &'a State, motion: &Motion, c: &Colours) -> Vec<Other<'a>> {
+pub fn others<'a>(state: &'a State, motion: &ClipMotion, c: &Colours) -> Vec<Other<'a>> {
     let at = state.player.at_secs;
     let on_top = state.companions.placement == Placement::OnTop;
     let here = state

@@ -3,7 +3,7 @@
 use egui::{RichText, ScrollArea, Ui};
 
 use super::Out;
-use crate::jobs::import::Report;
+use crate::jobs::import::ImportSummary;
 use crate::state::{Command, CompareCommand, LibraryCommand, State};
 use crate::store::Edit;
 use crate::theme::Colours;
@@ -53,7 +53,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
 }
 
 /// Clips that are nearly others: compared, or left out again.
-fn copies(ui: &mut Ui, report: &Report, out: Out) {
+fn copies(ui: &mut Ui, report: &ImportSummary, out: Out) {
     for copy in report.copies.iter().take(50) {
         ui.horizontal(|ui| {
             ui.label(RichText::new(&copy.text).size(12.0));

@@ -7,7 +7,7 @@ use morec::roles::Role;
 use super::{Out, widgets};
 use crate::body::camera::View;
 use crate::format;
-use crate::jobs::load::Motion;
+use crate::jobs::load::ClipMotion;
 use crate::state::{Command, LibraryCommand, State};
 use crate::theme::Colours;
 
@@ -46,7 +46,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
 }
 
 /// What is asked for while a part waits for its joint.
-fn asked(ui: &mut Ui, state: &State, motion: &Motion, out: Out) {
+fn asked(ui: &mut Ui, state: &State, motion: &ClipMotion, out: Out) {
     let c = Colours::now(ui);
     let Some(role) = state.library.role else {
         let hint = "Click a part that is wrong, then its joint in the picture.";
@@ -131,7 +131,7 @@ fn part(ui: &mut Ui, state: &State, role: Role, joint: &str, out: Out) {
 pub fn joints(
     ui: &mut Ui,
     state: &State,
-    motion: &Motion,
+    motion: &ClipMotion,
     pose: &WorldPose,
     view: &View,
     out: Out,

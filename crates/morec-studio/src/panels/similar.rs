@@ -36,7 +36,12 @@ pub fn tools(ui: &mut Ui, state: &State, similar: &Similar, out: Out) {
     if ui.button("Back to classes").clicked() {
         out.push(Command::Similar(SimilarCommand::Close));
     }
-    ui.colored_label(c.muted, format::count(similar.hits.len(), "stretch"));
+    let count = format::count(similar.hits.len(), "stretch");
+    let text = match similar.mirror {
+        true => format!("{count}, as they are and in a mirror"),
+        false => count,
+    };
+    ui.colored_label(c.muted, text);
 }
 
 /// The cards, in as many columns as there is room for.
@@ -95,6 +100,11 @@ fn card(ui: &mut Ui, state: &State, similar: &Similar, at: usize, out: Out) {
     below.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         ui.style_mut().override_text_style = Some(egui::TextStyle::Small);
+        let stretch = Stretch {
+            clip: hit.clip,
+            start_secs: hit.start_secs,
+            stop_secs: hit.stop_secs,
+        };
         let compare = ui.button("Compare");
         widgets::named(
             &compare,
@@ -106,16 +116,19 @@ fn card(ui: &mut Ui, state: &State, similar: &Similar, at: usize, out: Out) {
             .on_hover_text("Beside the example, at the same pace")
             .clicked()
         {
-            let with = Stretch {
-                clip: hit.clip,
-                start_secs: hit.start_secs,
-                stop_secs: hit.stop_secs,
-            };
             out.push(Command::Compare(CompareCommand::With {
                 of: similar.of,
-                with,
+                with: stretch,
                 mirrored: hit.mirrored,
             }));
+        }
+        if ui
+            .button("More")
+            .on_hover_text("What is like this one")
+            .clicked()
+        {
+            let class = similar.class.clone();
+            out.push(Command::Similar(SimilarCommand::Of(stretch, class)));
         }
         label(ui, state, similar, at, out);
     });

@@ -5,10 +5,10 @@ use morec::kinematics::WorldPose;
 use morec::math::Vec3;
 
 use super::{Out, widgets};
-use crate::body::mesh::{Painter, Palette};
+use crate::body::mesh::{BodyColours, Painter};
 use crate::body::{Body, Camera};
-use crate::jobs::load::Motion;
-use crate::state::{Command, Look, Panel, State};
+use crate::jobs::load::ClipMotion;
+use crate::state::{Command, Panel, State, ViewCommand};
 use crate::theme::Colours;
 
 /// So far the floor is drawn from the performer, metres.
@@ -24,7 +24,7 @@ pub struct Scene<'a> {
     pub pose: &'a WorldPose,
     pub floor: f64,
     /// The clip, for trail and onion skin.
-    pub motion: Option<(&'a Motion, f64)>,
+    pub motion: Option<(&'a ClipMotion, f64)>,
     /// Who else is seen.
     pub others: Vec<Other<'a>>,
     /// Said at the performer's feet, where there are others.
@@ -35,7 +35,7 @@ pub struct Scene<'a> {
 pub struct Other<'a> {
     pub body: &'a Body,
     pub pose: WorldPose,
-    pub palette: Palette,
+    pub palette: BodyColours,
     /// Said at their feet.
     pub caption: String,
 }

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use morec_db::labels::{SampleId, State as Judged};
+use morec_db::labels::{SampleId, SampleState as Judged};
 
 use super::columns::Columns;
 use super::{ClassCommand, State};
-use crate::jobs::group::Groups;
+use crate::jobs::group::ClusteredItems;
 use crate::jobs::similar::Similar;
 use crate::store::{Edit, Snapshot};
 
@@ -39,7 +39,7 @@ pub struct Classes {
     pub tapped: Option<(usize, f64)>,
     /// The samples of each class as they are shown.
     pub columns: Columns,
-    pub groups: Option<Groups>,
+    pub groups: Option<ClusteredItems>,
     /// What is like an example, while that is shown.
     pub similar: Option<Similar>,
     /// Whether the mirror image of an example is looked for too.

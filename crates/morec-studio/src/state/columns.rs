@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use morec_db::labels::State as Judged;
+use morec_db::labels::SampleState as Judged;
 
 use crate::store::Snapshot;
 

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use morec::roles::Role;
-use morec::smooth::Kind;
+use morec::smooth::ChannelKind;
 use morec_db::ClipId;
-use morec_db::exchange::Form;
+use morec_db::exchange::LabelFormat;
 use morec_db::labels::SampleId;
 
 use super::compare::CompareCommand;
@@ -92,12 +92,12 @@ pub enum FileCommand {
     Save(PathBuf),
     ExportIndex(PathBuf),
     /// Labels of all clips in a form.
-    AskExportLabels(Form),
+    AskExportLabels(LabelFormat),
     /// The clip that is shown, as BVH.
     AskExportClip,
     /// A page that plays the clip that is shown.
     AskExportPage,
-    ExportLabels(Form, PathBuf),
+    ExportLabels(LabelFormat, PathBuf),
     ExportClip(PathBuf),
     ExportPage(PathBuf),
 }
@@ -185,9 +185,9 @@ pub enum TimelineCommand {
     ToPlayhead(super::timeline::Grip),
     /// Labels the selected stretch.
     LabelRange(String),
-    Cut(Method),
+    Cut(SegmentMethod),
     /// The curve of a joint with its keyframes.
-    Channel(Option<(usize, Kind)>),
+    Channel(Option<(usize, ChannelKind)>),
     /// Width of the tracks, as drawn.
     Width(f32),
 }

@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use morec::player::Mark;
-use morec_db::exchange::Form;
+use morec_db::exchange::LabelFormat;
 
-use super::{Classes, FileCommand, Library, Live, Motions, Player, State, Timeline, Train};
+use super::{Classes, FileCommand, Library, Live, Motions, Player, State, TimelineState, Train};
 use crate::format::file_name;
 use crate::jobs::export::{self, Export};
 use crate::jobs::{Jobs, example, import};
@@ -20,7 +20,7 @@ pub enum Ask {
     ImportFolder,
     Save,
     ExportIndex,
-    ExportLabels(Form),
+    ExportLabels(LabelFormat),
     ExportClip(String),
     ExportPage(String),
 }

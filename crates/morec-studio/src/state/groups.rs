@@ -1,6 +1,6 @@
 //! Groups of what is alike, and what of them becomes classes.
 
-use morec_db::labels::{NewSample, SampleId, State as Judged};
+use morec_db::labels::{NewSample, SampleId, SampleState as Judged};
 
 use super::State;
 use super::files::quoted;

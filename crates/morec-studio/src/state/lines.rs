@@ -1,7 +1,7 @@
 //! The command line that does what an edit does.
 
 use morec::roles::Role;
-use morec_db::labels::State as Judged;
+use morec_db::labels::SampleState as Judged;
 
 use super::State;
 use super::files::quoted;

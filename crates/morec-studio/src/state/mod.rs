@@ -25,13 +25,13 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use morec::eval::Found;
+use morec::eval::ClipDetection;
 use morec::roles::RoleMap;
-use morec::smooth::Kind;
+use morec::smooth::ChannelKind;
 use morec_db::{ClipId, ClipInfo};
 
 use crate::body::Camera;
-use crate::jobs::{Jobs, channel::Channel, cut::Curves, import, load::Motion};
+use crate::jobs::{Jobs, channel::Channel, cut::Curves, import, load::ClipMotion};
 use crate::store::{Store, Wake};
 
 pub use classes::Classes;
@@ -46,7 +46,7 @@ pub use library::Library;
 pub use live::{Live, LiveCommand};
 pub use player::{PlayCommand, Player, SPEEDS};
 pub use similar::SimilarCommand;
-pub use timeline::{Drag, Grip, Timeline};
+pub use timeline::{Drag, Grip, TimelineState};
 pub use train::Train;
 
 /// A sentence that stays until it is read.
@@ -78,9 +78,9 @@ pub struct State {
     pub onion: bool,
     /// Who is seen beside the performer.
     pub companions: Companions,
-    pub timeline: Timeline,
+    pub timeline: TimelineState,
     /// The channel whose curve is shown: joint and kind; and the curve, once it is read.
-    pub channel_wanted: Option<(usize, Kind)>,
+    pub channel_wanted: Option<(usize, ChannelKind)>,
     pub channel: Option<Channel>,
     pub curves: Option<Arc<Curves>>,
     /// What the index recognises in the clip that is shown.
@@ -129,11 +129,11 @@ impl Motions {
 
     /// Forgets clips whose roles are not what they were when they were decoded.
     fn forget_changed(&mut self, roles: &BTreeMap<ClipId, RoleMap>) {
-        let same = |motion: &Motion| roles.get(&motion.id).is_none_or(|r| *r == motion.roles);
+        let same = |motion: &ClipMotion| roles.get(&motion.id).is_none_or(|r| *r == motion.roles);
         self.kept.retain(|_, (motion, _)| same(motion));
     }
 
-    fn keep(&mut self, motion: Arc<Motion>) {
+    fn keep(&mut self, motion: Arc<ClipMotion>) {
         self.clock += 1;
         self.kept.insert(motion.id, (motion, self.clock));
         let size = |m: &ClipMotion| m.clip.frames * m.clip.skeleton.len().max(1);
@@ -168,7 +168,7 @@ impl State {
             trail: None,
             onion: false,
             companions: Companions::default(),
-            timeline: Timeline::default(),
+            timeline: TimelineState::default(),
             channel_wanted: None,
             channel: None,
             curves: None,

@@ -146,13 +146,13 @@ impl State {
                 self.taught(&taught);
                 self.reload();
             }
-            Outcome::Similar(similar) => self.found_similar(similar),
-            Outcome::Aligned(aligned) => self.aligned(aligned),
-            Outcome::Channel(channel) => self.channel = Some(channel),
-            Outcome::Thesis(thesis) => self.thesis_trained(thesis),
-            Outcome::Map(map) => self.train.map = Some(map),
-            Outcome::Written(said) => self.say(said),
-            Outcome::Failed(why) => {
+            JobOutcome::Similar(similar) => self.found_similar(similar),
+            JobOutcome::Aligned(aligned) => self.aligned(aligned),
+            JobOutcome::Channel(channel) => self.channel = Some(channel),
+            JobOutcome::Thesis(thesis) => self.thesis_trained(thesis),
+            JobOutcome::Map(map) => self.train.map = Some(map),
+            JobOutcome::Written(said) => self.say(said),
+            JobOutcome::Failed(why) => {
                 if name == super::live::TEACHING {
                     self.live.teaching = false;
                 }

@@ -1,6 +1,6 @@
 //! Proposals: accepted and rejected, the doubtful first.
 
-use morec_db::labels::{DbSample, SampleId, State as Judged};
+use morec_db::labels::{DbSample, SampleId, SampleState as Judged};
 use morec_db::{Proposal, questions};
 
 use super::{Panel, State};

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use morec::smooth::Kind;
+use morec::smooth::ChannelKind;
 use morec_db::ClipId;
 
 use super::{Panel, State, ViewCommand};
@@ -60,7 +60,7 @@ impl State {
     }
 
     /// Asks for all that is computed of the clip that is shown.
-    pub(super) fn look_anew(&mut self, motion: &Arc<Motion>) {
+    pub(super) fn look_anew(&mut self, motion: &Arc<ClipMotion>) {
         self.curves = None;
         self.want_curves(motion);
         self.want_detections(motion);
@@ -80,7 +80,7 @@ impl State {
     }
 
     /// Reads a channel of the clip that is shown.
-    pub(super) fn want_channel(&mut self, wanted: Option<(usize, Kind)>) {
+    pub(super) fn want_channel(&mut self, wanted: Option<(usize, ChannelKind)>) {
         self.channel = None;
         self.channel_wanted = wanted;
         let (Some((joint, kind)), Some(motion)) = (wanted, &self.player.motion) else {
@@ -98,7 +98,7 @@ impl State {
             });
     }
 
-    pub(super) fn look(&mut self, look: Look) {
+    pub(super) fn look(&mut self, look: ViewCommand) {
         let heading = self.heading();
         let camera = &mut self.camera;
         match look {

@@ -1,6 +1,6 @@
 //! More like this: what is like a stretch, and becomes labels by a click.
 
-use morec_db::labels::{NewSample, State as Judged};
+use morec_db::labels::{NewSample, SampleState as Judged};
 use morec_db::search::Hit;
 
 use super::files::quoted;

@@ -9,7 +9,7 @@ use morec::train::TrainingReport;
 
 use super::files::quoted;
 use super::{Panel, State, TrainCommand};
-use crate::jobs::load::Motion;
+use crate::jobs::load::ClipMotion;
 use crate::jobs::thesis::{self, Map, Thesis};
 use crate::jobs::{judge, recognise, train};
 use crate::store::{Edit, Snapshot};
@@ -188,7 +188,7 @@ impl State {
     }
 
     /// The confidences of the method of 2009 over the clip that is shown.
-    pub(super) fn want_map(&mut self, motion: &Arc<Motion>) {
+    pub(super) fn want_map(&mut self, motion: &Arc<ClipMotion>) {
         self.train.map = None;
         let Some(thesis) = self.train.thesis.clone() else {
             return;

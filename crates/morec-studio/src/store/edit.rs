@@ -1,7 +1,7 @@
 //! Edits of the database as values: what the window may change, each one step of the history.
 
 use morec::roles::RoleMap;
-use morec_db::labels::{LabelOptions, NewSample, SampleId, State};
+use morec_db::labels::{LabelOptions, NewSample, SampleId, SampleState};
 use morec_db::{ClipId, ClipUpdate, DbError, MotionDb, Segment};
 
 /// Who says so, in the database.

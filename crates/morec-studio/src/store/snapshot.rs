@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use morec::roles::RoleMap;
-use morec_db::labels::{ClassInfo, DbSample, SampleFilter, SampleId, State};
-use morec_db::{ClipFilter, ClipId, ClipInfo, DbError, IndexInfo, MotionDb, Segment, Step};
+use morec_db::labels::{ClassCount, DbSample, SampleFilter, SampleId, SampleState};
+use morec_db::{ClipFilter, ClipId, ClipInfo, DbError, HistoryStep, IndexInfo, MotionDb, Segment};
 
 /// The database at one moment, without motion.
 #[derive(Debug, Clone, Default)]
@@ -18,7 +18,7 @@ pub struct Snapshot {
     pub samples: Vec<DbSample>,
     pub indexes: Vec<IndexInfo>,
     /// The last first.
-    pub history: Vec<Step>,
+    pub history: Vec<HistoryStep>,
     /// By clip and time.
     pub segments: Vec<Segment>,
     /// By which method each clip was cut.

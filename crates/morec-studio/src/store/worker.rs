@@ -81,7 +81,7 @@ impl StoreWorker {
                 #[cfg(test)]
                 Ok(Request::Fill) => {
                     let filled = self.db.limit_bytes(0).err();
-                    (filled.map(|e| Said::Failed(e.to_string())), true)
+                    (filled.map(|e| StoreMessage::Failed(e.to_string())), true)
                 }
                 Err(RecvTimeoutError::Timeout) => {
                     if mark(&self.db) == self.seen {

@@ -1,6 +1,6 @@
 //! What is wrong is said in place, and nothing is lost.
 
-use morec_db::labels::{NewSample, State as Judged};
+use morec_db::labels::{NewSample, SampleState as Judged};
 
 use super::{Person, made};
 use crate::state::{Command, FileCommand, Panel};

@@ -1,6 +1,6 @@
 //! Out of the studio: labels in every form, a clip, a page; and what a session leaves for the next.
 
-use morec_db::exchange::{self, Form, Lengths};
+use morec_db::exchange::{self, ClipLengths, LabelFormat};
 
 use super::{Person, made, takes};
 use crate::state::layout::Layout;
@@ -11,7 +11,7 @@ fn labels_go_out_in_every_form() {
     let folder = tempfile::tempdir().unwrap();
     let mut person = Person::before(&[made(folder.path(), 2)]);
     let count = person.labels().len();
-    for form in Form::ALL {
+    for form in LabelFormat::ALL {
         let path = folder.path().join(format!("out-{}", form.name()));
         person.command(Command::File(FileCommand::ExportLabels(form, path.clone())));
         assert!(
@@ -35,7 +35,7 @@ fn labels_go_out_in_every_form() {
                 morec::labels::ClipLength { frames, rate_hz },
             )
         });
-        let lengths: Lengths = lengths.collect();
+        let lengths: ClipLengths = lengths.collect();
         let read = |file: &std::path::PathBuf| {
             let bytes = std::fs::read(file).unwrap();
             let read = exchange::read(form, &bytes, Some("ada_1"), &lengths).unwrap();

@@ -1,6 +1,6 @@
 //! Training and judging through the window.
 
-use morec_db::labels::{NewSample, State as Judged};
+use morec_db::labels::{NewSample, SampleState as Judged};
 
 use super::{Person, made};
 use crate::jobs::thesis::{GRID, Shown};

@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use morec::features::KeyPose;
 use morec::index::MotionIndex;
-use morec::live::{Actor, Detection, Model, Recording};
+use morec::live::{Detection, Model, PerformerId, Recording};
 use morec::math::Vec3;
 use morec_db::ClipId;
 
@@ -94,7 +94,7 @@ pub enum LiveCommand {
     /// Likewise, of this class.
     MarkAs(String),
     /// Watches another performer.
-    Watch(Actor),
+    Watch(PerformerId),
     /// Begins a take after a countdown, or ends it.
     Record,
 }

@@ -2,9 +2,9 @@
 
 use morec::classes::ClassId;
 use morec::diagnosis::Severity;
-use morec::live::{Actor, Event, Frame, Hunch, Model, Phase};
+use morec::live::{EarlyDetection, Event, Frame, Model, PerformerId, Phase};
 
-use super::feed::{Feed, Item};
+use super::feed::{Feed, SourceItem};
 use super::tracked::Tracked;
 
 /// So much of the stream is kept for looking back.
@@ -18,7 +18,7 @@ const MOST: usize = 16;
 #[derive(Debug, Clone, PartialEq)]
 pub struct LiveDetection {
     pub class: String,
-    pub actor: Actor,
+    pub actor: PerformerId,
     pub start_secs: f64,
     pub stop_secs: f64,
     pub reported_secs: f64,
@@ -34,7 +34,7 @@ pub struct Run {
     /// Which of them is watched, taught from and recorded.
     watched: usize,
     pub now_secs: f64,
-    pub seen: Vec<Seen>,
+    pub seen: Vec<LiveDetection>,
     /// Classes of motions that ended since they were asked for.
     pub news: Vec<ClassId>,
     model: Option<Model>,
@@ -70,7 +70,7 @@ impl Run {
     }
 
     /// Watches another performer.
-    pub fn watch(&mut self, actor: Actor) {
+    pub fn watch(&mut self, actor: PerformerId) {
         if let Some(at) = self.performers.iter().position(|p| p.actor == actor) {
             self.watched = at;
         }
@@ -96,12 +96,12 @@ impl Run {
         }
         for item in items {
             match item {
-                Item::Rig(actor, rig) => {
+                SourceItem::Rig(actor, rig) => {
                     if let Some(performer) = self.performer(actor) {
                         performer.set_rig(rig, &mut events);
                     }
                 }
-                Item::Frame(frame) => {
+                SourceItem::Frame(frame) => {
                     self.silent_secs = 0.0;
                     self.now_secs = self.now_secs.max(frame.time_secs);
                     let Some(performer) = self.performer(frame.actor) else {
@@ -112,13 +112,13 @@ impl Run {
                         frames.push(*frame);
                     }
                 }
-                Item::Gone(actor) => {
+                SourceItem::Gone(actor) => {
                     if let Some(performer) = self.performer(actor) {
                         performer.finish(&mut events);
                         performer.gone = true;
                     }
                 }
-                Item::Ended => self.ended = true,
+                SourceItem::Ended => self.ended = true,
             }
         }
         self.take_events(&events);
@@ -126,7 +126,7 @@ impl Run {
     }
 
     /// The performer of a number; somebody new has a place while there is one.
-    fn performer(&mut self, actor: Actor) -> Option<&mut Tracked> {
+    fn performer(&mut self, actor: PerformerId) -> Option<&mut Tracked> {
         let known = self.performers.iter().position(|p| p.actor == actor);
         let at = match known {
             Some(at) => at,
@@ -156,7 +156,7 @@ impl Run {
     }
 
     /// What seems to be under way with the performer who is watched: class and progress.
-    pub fn hunch(&self) -> Option<(String, Hunch)> {
+    pub fn hunch(&self) -> Option<(String, EarlyDetection)> {
         let hunch = self.watched()?.hunch()?;
         let model = self.model.as_ref()?;
         Some((model.class_name(hunch.class).to_owned(), hunch))

@@ -6,7 +6,9 @@ use std::sync::Arc;
 use morec::diagnosis::Diagnosis;
 use morec::features::KeyPose;
 use morec::kinematics::WorldPose;
-use morec::live::{Actor, Event, EventOptions, Frame, Hunch, Model, Performer, Recording, Rig};
+use morec::live::{
+    EarlyDetection, Event, EventOptions, Frame, Model, Performer, PerformerId, Recording, Rig,
+};
 use morec::math::Vec3;
 
 use super::moved;
@@ -15,7 +17,7 @@ use crate::body::Body;
 
 /// A performer.
 pub struct Tracked {
-    pub actor: Actor,
+    pub actor: PerformerId,
     pub rig: Option<Arc<Rig>>,
     pub body: Body,
     pub pose: WorldPose,
@@ -31,7 +33,7 @@ pub struct Tracked {
 }
 
 impl Tracked {
-    pub fn new(actor: Actor, model: Option<&Model>) -> Self {
+    pub fn new(actor: PerformerId, model: Option<&Model>) -> Self {
         Self {
             actor,
             rig: None,
@@ -128,7 +130,7 @@ impl Tracked {
         }
     }
 
-    pub fn hunch(&self) -> Option<Hunch> {
+    pub fn hunch(&self) -> Option<EarlyDetection> {
         self.performer.as_ref()?.hunch()
     }
 
