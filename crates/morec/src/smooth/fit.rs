@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Matrix4x3, Vector3, Vector4};
 use super::bezier::{ChannelKind, ChannelValue, Tangent, bernstein};
 
 /// Samples between two keys, seen from the first: `samples[0]` is (nearly) the identity.
-pub(super) struct Stretch<'a> {
+pub(super) struct FitSpan<'a> {
     kind: ChannelKind,
     samples: &'a [ChannelValue],
     /// The last key.
@@ -38,7 +38,7 @@ pub(super) struct Worst {
     pub ratio: f64,
 }
 
-impl<'a> Stretch<'a> {
+impl<'a> FitSpan<'a> {
     /// A stretch of at least two `samples`, which end near `end`.
     pub fn new(kind: ChannelKind, samples: &'a [ChannelValue], end: ChannelValue) -> Self {
         Self {
@@ -158,7 +158,7 @@ mod tests {
     }
 
     /// Sum of squared distances of the raw curve, which is what is minimised.
-    fn cost(stretch: &Stretch, (a, b): (Tangent, Tangent)) -> f64 {
+    fn cost(stretch: &FitSpan, (a, b): (Tangent, Tangent)) -> f64 {
         let p0 = stretch.kind.identity();
         let points = [
             p0,
@@ -196,7 +196,7 @@ mod tests {
                 samples.push(kind.identity().lerp(&end, (i + 1) as f64 / last as f64) + n);
             }
             samples.push(end);
-            let stretch = Stretch::new(kind, &samples, end);
+            let stretch = FitSpan::new(kind, &samples, end);
             let (step, other) = (step.xyz(), other.xyz());
             if let Some((a, b)) = stretch.cubic() {
                 let best = cost(&stretch, (a, b));

@@ -1,7 +1,7 @@
 //! Curve simplification (thesis, Alg. 1): one curve if it is near enough, else two that meet where it is furthest.
 
 use super::bezier::{ChannelKind, ChannelValue, CurveSegment};
-use super::fit::{Stretch, Worst};
+use super::fit::{FitSpan, Worst};
 use super::lattice::{Code, Lattice, MOST_STEPS, Piece, Tangents};
 use crate::clip::Span;
 
@@ -223,7 +223,7 @@ impl ChannelFit {
         );
         let key = lattice.key_code(&self.samples[to]);
         let end = lattice.key_point(&key, Some(&start));
-        let stretch = Stretch::new(kind, &local, kind.local(&start, &end));
+        let stretch = FitSpan::new(kind, &local, kind.local(&start, &end));
         let try_on = |tangents: Tangents| {
             let resolved = tangents.resolve(&lattice, &stretch.chord());
             (

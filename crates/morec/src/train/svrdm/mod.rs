@@ -26,12 +26,16 @@ pub use gram::Distances;
 pub use grow::{BranchReport, FeatureSample, GrowError, Grown, grow};
 pub use params::TreeParams;
 pub use partition::{PartitionParams, Split};
-pub(crate) use partition::{function_products, partition, scatter};
 pub use qp::Stop;
-pub(crate) use qp::{BoxQp, Solution};
 pub use reduce::centroid_factor;
 pub use sigma::{Algorithm4, Estimate, SigmaRule, Sweep, algorithm4};
 pub use signs::{SignRule, SignVector, sign_vector};
-pub(crate) use sphere::{Sphere, smallest_enclosing_sphere};
 pub use svrm::MachineParams;
-pub(crate) use svrm::{MachinePair, on_boundary, problem, svrdm, svrm};
+
+#[cfg(test)]
+use {
+    partition::{function_products, partition},
+    qp::BoxQp,
+    sphere::smallest_enclosing_sphere,
+    svrm::{on_boundary, problem, svrdm, svrm},
+};
