@@ -1,6 +1,8 @@
 //! The even grid of instants that a stream of poses is brought to.
 
-use super::MAX_GAP_SECS;
+/// A pause longer than this ends one stretch of stream and begins another: what lies between is unknown, and
+/// interpolating it would invent motion.
+pub const MAX_GAP_SECS: f64 = 0.5;
 
 /// Clock of a stream at a fixed rate: which grid frames a new pose completes, and where between two poses they lie.
 ///

@@ -22,6 +22,7 @@ mod spikes;
 mod stream;
 
 pub use bones::{ALL_BONES, BONES, Bone, BoneSet};
+pub use grid::MAX_GAP_SECS;
 pub use key_pose::KeyPose;
 pub use mirror::{mirrored_rows, opposite_bone, reflected_direction};
 pub use observe::{Observation, Observer};
@@ -29,4 +30,4 @@ pub use of_clip::{bones_of_clip, for_each_pose, rows_of_clip};
 pub use params::FeatureParams;
 pub use rows::Rows;
 pub use smooth::row_dim;
-pub use stream::{FeatureStream, MAX_GAP_SECS, Pushed};
+pub use stream::{FeatureStream, Pushed};

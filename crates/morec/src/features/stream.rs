@@ -8,16 +8,12 @@ use super::smooth::Smoother;
 use super::spikes::SpikeFilter;
 use super::{KeyPose, row_dim};
 
-/// A pause longer than this ends one stretch of stream and begins another: what lies between is unknown, and
-/// interpolating it would invent motion.
-pub const MAX_GAP_SECS: f64 = 0.5;
-
 /// Effect of a pose on the stream.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pushed {
     /// It was taken.
     Taken,
-    /// It came after a gap of more than [`MAX_GAP_SECS`], or its clock ran back by as much: the stream was
+    /// It came after a gap of more than [`MAX_GAP_SECS`](super::MAX_GAP_SECS), or its clock ran back by as much: the stream was
     /// finished and begins anew with this pose.
     Restarted,
     /// It was not later than the pose before it (a duplicate or a late packet) or its time is not finite.

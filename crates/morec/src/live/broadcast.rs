@@ -6,11 +6,19 @@ use std::time::Duration;
 
 use super::status::SessionCounters;
 use super::waker::Waker;
-use super::worker::WorkerOptions;
-use super::{Event, OverflowPolicy};
+use super::{Event, EventOptions, OverflowPolicy};
 
 /// Events that one frame can give at most, with room to spare: what is kept while readers are full.
 const PENDING: usize = 256;
+
+/// Options of a worker.
+#[derive(Debug, Clone)]
+pub(super) struct WorkerOptions {
+    pub(super) events: EventOptions,
+    pub(super) overload: OverflowPolicy,
+    pub(super) readers: usize,
+    pub(super) capacity: usize,
+}
 
 /// The end of a session that events come out of.
 #[derive(Debug)]

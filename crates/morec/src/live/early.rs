@@ -1,24 +1,7 @@
 //! Tentative detections of motions that have not ended.
 
-use crate::classes::ClassId;
-
-use super::event_tracker::Say;
-use super::{Detection, Event, Phase};
-
-/// A motion that seems to be under way.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct EarlyDetection {
-    /// Class of the motion, tentatively.
-    pub class: ClassId,
-    /// Nearness to the beginning of a sample: 0 just worth reporting … 1 identical.
-    pub score: f64,
-    /// Share of the motion that was seen, 0 to 1.
-    pub progress: f64,
-    /// When it began, on the stream's clock.
-    pub start_secs: f64,
-    /// Up to when it was seen.
-    pub seen_secs: f64,
-}
+use super::emitter::EventEmitter;
+use super::{Detection, EarlyDetection, Event, Phase};
 
 /// Progress is told again when it has grown by this.
 const STEP: f64 = 0.1;
@@ -51,7 +34,7 @@ impl EarlyTracker {
         early: Option<EarlyDetection>,
         after_secs: f64,
         now_secs: f64,
-        say: &mut Say<impl FnMut(Event)>,
+        say: &mut EventEmitter<impl FnMut(Event)>,
     ) {
         match (
             early.filter(|h| middle_secs(h) > after_secs),
@@ -93,7 +76,11 @@ impl EarlyTracker {
     }
 
     /// Cancels the motion that was reported.
-    pub(super) fn cancel(&mut self, now_secs: Option<f64>, say: &mut Say<impl FnMut(Event)>) {
+    pub(super) fn cancel(
+        &mut self,
+        now_secs: Option<f64>,
+        say: &mut EventEmitter<impl FnMut(Event)>,
+    ) {
         if let Some(open) = self.open.take() {
             say.event(
                 Phase::Cancel,

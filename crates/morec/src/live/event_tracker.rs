@@ -1,7 +1,8 @@
 //! Detections to events: numbers for motions, the refractory rule.
 
-use super::early::{EarlyDetection, EarlyTracker};
-use super::{Detection, Event, PerformerId, Phase};
+use super::early::EarlyTracker;
+use super::emitter::EventEmitter;
+use super::{Detection, EarlyDetection, Event, PerformerId, Phase};
 
 /// Tells one performer's motions.
 #[derive(Debug)]
@@ -66,8 +67,8 @@ impl EventTracker {
         &'a mut self,
         wall_secs: f64,
         out: &'a mut F,
-    ) -> Say<'a, F> {
-        Say {
+    ) -> EventEmitter<'a, F> {
+        EventEmitter {
             actor: self.actor,
             wall_secs,
             motions: &mut self.motions,
@@ -89,43 +90,5 @@ impl EventTracker {
     /// Motions that were not told because of the refractory rule.
     pub(super) fn suppressed(&self) -> u64 {
         self.suppressed
-    }
-}
-
-/// Numbers motions and gives events their common parts.
-pub(super) struct Say<'a, F: FnMut(Event)> {
-    actor: PerformerId,
-    wall_secs: f64,
-    motions: &'a mut u64,
-    out: &'a mut F,
-}
-
-impl<F: FnMut(Event)> Say<'_, F> {
-    pub(super) fn new_motion(&mut self) -> u64 {
-        *self.motions += 1;
-        *self.motions
-    }
-
-    pub(super) fn event(
-        &mut self,
-        phase: Phase,
-        motion: u64,
-        what: EarlyDetection,
-        reported_secs: f64,
-    ) {
-        (self.out)(Event {
-            phase,
-            motion,
-            // Whoever carries events out numbers them.
-            sequence: 0,
-            actor: self.actor,
-            class: what.class,
-            score: what.score,
-            progress: what.progress,
-            start_secs: what.start_secs,
-            stop_secs: what.seen_secs,
-            reported_secs,
-            wall_secs: self.wall_secs,
-        });
     }
 }

@@ -7,7 +7,7 @@ use crate::pivots::{PivotPose, PoseStream};
 use crate::svrdm::{FrameDetection, SvrdmEngine, SvrdmModel};
 use crate::templates::{EarlyDetectionParams, OngoingMatch, TemplateEngine, TemplateModel};
 
-use super::recognizer::{DetectionBuffer, Steps};
+use super::detection::{DetectionBuffer, Steps};
 use super::{EarlyDetection, RecognizerInput, StartError};
 
 /// Feature rows and templates.

@@ -6,9 +6,10 @@ use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, sync_channel};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
+use super::broadcast::WorkerOptions;
 use super::feed::{FeedSender, Waker, feed};
 use super::status::{SessionCounters, StatusHandle};
-use super::worker::{EventReader, RecognizerCache, StreamWorker, TurnOutcome, WorkerOptions};
+use super::worker::{EventReader, RecognizerCache, StreamWorker, TurnOutcome};
 use super::{Model, SessionError, SessionOptions};
 
 /// Streams that may wait to be taken up by a thread.

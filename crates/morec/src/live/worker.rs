@@ -5,10 +5,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::features::BoneSet;
 
-use super::broadcast::EventBroadcast;
 pub use super::broadcast::EventReader;
+use super::broadcast::{EventBroadcast, WorkerOptions};
 use super::feed::{FeedReceiver, QueueItem};
-use super::performer::{EventOptions, Performer};
+use super::performer::Performer;
 use super::status::SessionCounters;
 use super::{
     Frame, MAX_PERFORMERS, Model, OverflowPolicy, PerformerId, Recognizer, Rig, wall_now_secs,
@@ -56,15 +56,6 @@ pub(super) enum TurnOutcome {
     Blocked,
     /// The stream has ended, and everything is told.
     Ended,
-}
-
-/// Options of a worker.
-#[derive(Debug, Clone)]
-pub(super) struct WorkerOptions {
-    pub(super) events: EventOptions,
-    pub(super) overload: OverflowPolicy,
-    pub(super) readers: usize,
-    pub(super) capacity: usize,
 }
 
 #[derive(Debug)]

@@ -1,7 +1,6 @@
 //! Keeping joints where they were in the world: thresholds by reach, then closer fits where that is not enough.
 
 use super::bezier::ChannelKind;
-use super::compress::too_coarse;
 use super::measure::angle_between;
 use super::params::{SmoothError, SmoothParams};
 use super::sample::rotation;
@@ -228,7 +227,7 @@ impl<'a> Tightening<'a> {
                 let i = frame * joints + j;
                 let angle = angle_between(&self.clip.rotations[i], &self.fitted.rotations[i]);
                 let arm = (self.pose.positions[joint] - self.pose.positions[j]).norm();
-                parts.push((angle * arm, j, super::compress::chord(angle)));
+                parts.push((angle * arm, j, chord(angle)));
             }
             at = self.clip.skeleton.joints()[j].parent;
         }
@@ -270,5 +269,31 @@ impl<'a> Tightening<'a> {
             }
         }
         Ok(())
+    }
+}
+
+/// Distance between the quaternions of two rotations that differ by an angle.
+pub(super) fn chord(angle_rad: f64) -> f64 {
+    2.0 * (angle_rad / 4.0).sin()
+}
+
+/// Values beyond what steps can reach.
+pub(super) fn too_coarse(
+    clip: &Clip,
+    channel: usize,
+    TooCoarse { frame, limit }: TooCoarse,
+) -> SmoothError {
+    let joints = clip.skeleton.len();
+    let joint = if channel < joints {
+        channel
+    } else {
+        clip.tracks[channel - joints].joint
+    };
+    let name = clip.skeleton.joints()[joint].name.clone();
+    SmoothError::Value {
+        joint,
+        name,
+        frame,
+        most: limit,
     }
 }

@@ -1,10 +1,10 @@
 //! A clip to curves.
 
 use super::bezier::{ChannelKind, ChannelValue};
-use super::bound;
+use super::bound::{self, chord, too_coarse};
 use super::measure::Errors;
 use super::params::{SmoothError, SmoothParams};
-use super::split::{ChannelFit, TooCoarse};
+use super::split::ChannelFit;
 use super::{CompressedClip, Curve};
 use crate::clip::Clip;
 use crate::progress::Progress;
@@ -114,32 +114,6 @@ fn channels(clip: &Clip, params: &SmoothParams) -> Vec<ChannelFit> {
         ));
     }
     channels
-}
-
-/// Distance between the quaternions of two rotations that differ by an angle.
-pub(super) fn chord(angle_rad: f64) -> f64 {
-    2.0 * (angle_rad / 4.0).sin()
-}
-
-/// Values beyond what steps can reach.
-pub(super) fn too_coarse(
-    clip: &Clip,
-    channel: usize,
-    TooCoarse { frame, limit }: TooCoarse,
-) -> SmoothError {
-    let joints = clip.skeleton.len();
-    let joint = if channel < joints {
-        channel
-    } else {
-        clip.tracks[channel - joints].joint
-    };
-    let name = clip.skeleton.joints()[joint].name.clone();
-    SmoothError::Value {
-        joint,
-        name,
-        frame,
-        most: limit,
-    }
 }
 
 fn check(clip: &Clip) -> Result<(), SmoothError> {

@@ -2,25 +2,10 @@
 
 use std::sync::Arc;
 
-use crate::classes::ClassId;
-
 use super::{
-    Cell, ChunkAssembly, ClassCandidates, FeatureExtraction, Gram, ModelError, SegmentAssembly,
-    SegmentScoring, SegmentTracking, SvrdmModel, SvrdmParams, Window,
+    Cell, ChunkAssembly, ClassCandidates, FeatureExtraction, FrameDetection, Gram, ModelError,
+    SegmentAssembly, SegmentScoring, SegmentTracking, SvrdmModel, SvrdmParams, Window,
 };
-
-/// A motion recognised, in frames of the present stretch at the model's rate.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FrameDetection {
-    /// Class of the motion.
-    pub class: ClassId,
-    /// First frame.
-    pub start: i64,
-    /// One past the last frame.
-    pub stop: i64,
-    /// Its confidence (thesis, Eq. 4.5), 0 … 1.
-    pub score: f64,
-}
 
 /// The live stages of the thesis one after the other (§4.6): input assembly, segment assembly, feature vector
 /// extraction, classification, scoring, tracking. It knows no clock: rows come at the model's rate.

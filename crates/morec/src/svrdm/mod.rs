@@ -33,19 +33,19 @@ pub mod tree;
 mod vectors;
 
 pub use classify::{Classified, SampleClassifier};
-pub use engine::{FrameDetection, SvrdmEngine};
+pub use engine::SvrdmEngine;
 pub use extraction::FeatureExtraction;
 pub use gram::Gram;
 pub use map::ConfidenceMap;
 pub use model::{ModelError, Profiles, SvrdmModel};
 pub use params::{
-    Centring, MAX_PROFILE_FRAMES, Normalisation, Scaling, SegmentDistance, SvrdmParams,
+    Centring, MAX_DIM, MAX_PROFILE_FRAMES, Normalisation, Scaling, SegmentDistance, SvrdmParams,
 };
-pub use scoring::{SegmentScoring, confidence};
+pub use scoring::{Cell, SegmentScoring, confidence};
 pub use segments::{ChunkAssembly, RowRing, SegmentAssembly, Window};
-pub use tracking::{Cell, ChunkDetection, SegmentTracking};
+pub use tracking::{ChunkDetection, FrameDetection, SegmentTracking};
 pub use tree::{
     Branch, ClassCandidate, ClassCandidates, Descent, MAX_CANDIDATES, Node, Tree, TreeError,
     TreeParts,
 };
-pub use vectors::{Directions, MAX_DIM};
+pub use vectors::Directions;

@@ -4,7 +4,7 @@ use crate::classes::{ClassId, ClassInfo};
 use crate::pca::Pca;
 use crate::pivots::{PivotSet, PoseParams};
 
-use super::vectors::MAX_DIM;
+use super::MAX_DIM;
 use super::{MAX_PROFILE_FRAMES, Node, SvrdmParams, Tree};
 
 /// Everything this recogniser needs, immutable (thesis, §4.7.2, lists the same).

@@ -1,7 +1,9 @@
 //! The figures of the live stages.
 
 use super::Descent;
-use super::vectors::MAX_DIM;
+
+/// Widest rows after projection.
+pub const MAX_DIM: usize = 64;
 
 /// Longest segment, in frames, and longest profile: the edit distance counts exactly up to their sum.
 pub const MAX_PROFILE_FRAMES: usize = 2047;

@@ -5,9 +5,25 @@ use crate::classes::ClassId;
 use super::edr::{Edr, least_ratio};
 use super::rows_edr::RowsEdr;
 use super::{
-    Cell, ClassCandidates, MAX_PROFILE_FRAMES, ModelError, Normalisation, SegmentDistance,
-    SvrdmModel,
+    ClassCandidates, MAX_PROFILE_FRAMES, ModelError, Normalisation, SegmentDistance, SvrdmModel,
 };
+
+/// Class and confidence of one segment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cell {
+    /// Its class; of no meaning where the confidence is 0.
+    pub class: ClassId,
+    /// 0 (rejected) … 1.
+    pub confidence: f64,
+}
+
+impl Cell {
+    /// A segment that is no class, or that is not there.
+    pub const NOTHING: Cell = Cell {
+        class: ClassId(0),
+        confidence: 0.0,
+    };
+}
 
 /// Eq. 4.5: `(1 − 0.9 / (1 + e^(−30 EDR + 15))) · e^(−(len − mean)² / (2 (spread · mean)²))`, lengths in seconds.
 pub fn confidence(edr: f64, length_secs: f64, mean_secs: f64, spread: f64) -> f64 {

@@ -2,26 +2,22 @@
 
 use crate::classes::ClassId;
 
-use super::{FrameDetection, SegmentScoring, SvrdmModel, SvrdmParams};
+use super::{Cell, SegmentScoring, SvrdmModel, SvrdmParams};
 
 #[cfg(test)]
 mod tests;
 
-/// Class and confidence of one segment.
+/// A motion recognised, in frames of the present stretch at the model's rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Cell {
-    /// Its class; of no meaning where the confidence is 0.
+pub struct FrameDetection {
+    /// Class of the motion.
     pub class: ClassId,
-    /// 0 (rejected) … 1.
-    pub confidence: f64,
-}
-
-impl Cell {
-    /// A segment that is no class, or that is not there.
-    pub const NOTHING: Cell = Cell {
-        class: ClassId(0),
-        confidence: 0.0,
-    };
+    /// First frame.
+    pub start: i64,
+    /// One past the last frame.
+    pub stop: i64,
+    /// Its confidence (thesis, Eq. 4.5), 0 … 1.
+    pub score: f64,
 }
 
 /// A motion recognised, in chunks of the present stretch.

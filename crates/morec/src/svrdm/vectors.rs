@@ -2,10 +2,7 @@
 
 use nalgebra::{SMatrix, SymmetricEigen};
 
-use super::{Centring, Gram, Scaling};
-
-/// Widest rows after projection.
-pub const MAX_DIM: usize = 64;
+use super::{Centring, Gram, MAX_DIM, Scaling};
 
 /// Rounds of the eigenvalue iteration before a matrix is given up; a few a row are the rule.
 const MAX_ROUNDS: usize = 64 * MAX_DIM;

@@ -7,6 +7,9 @@ use super::timeline::{
 };
 use crate::rng::Rng;
 
+/// Schedules a motion from the actor's present time on.
+pub(super) type Perform = fn(&mut Actor);
+
 /// A person on stage. Motions are scheduled from [`Actor::now_secs`] on and move it forward.
 #[derive(Debug, Clone)]
 pub struct Actor {

@@ -5,9 +5,9 @@
 //! held out by a standing body. A class that lay within the library would be refused together with it.
 
 use super::actor::Actor;
+use super::actor::Perform;
 use super::film::film;
 use super::gait::{self, Gait};
-use super::motion::Perform;
 use super::person::Person;
 use super::timeline::{FOOT, HAND, HEAD, HIPS_TURN, LimbSide, SPINE, SWIVEL, WRIST};
 use super::unknown::{self, any_side};

@@ -1,8 +1,9 @@
 //! A living room: gestures by people who otherwise stand, shift their weight, walk about and sit down.
 
 use super::actor::Actor;
+use super::actor::Perform;
 use super::film::film;
-use super::motion::{MotionKind, Perform, SyntheticMotion};
+use super::motion::{MotionKind, SyntheticMotion};
 use super::person::Person;
 use super::{SyntheticLabel, SyntheticTake, everyday, unknown};
 use crate::rng::Rng;

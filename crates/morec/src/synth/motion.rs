@@ -1,6 +1,6 @@
 //! The motions by name.
 
-use super::actor::Actor;
+use super::actor::{Actor, Perform};
 use super::{everyday, gestures, unknown};
 
 /// Purpose of a motion.
@@ -21,9 +21,6 @@ pub struct SyntheticMotion {
     kind: MotionKind,
     perform: Perform,
 }
-
-/// Schedules a motion from the actor's present time on.
-pub(super) type Perform = fn(&mut Actor);
 
 const GESTURES: [(&str, Perform); 8] = [
     ("wave", gestures::wave),

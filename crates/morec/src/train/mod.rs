@@ -7,6 +7,7 @@ mod examples;
 mod from_clips;
 mod mining;
 mod mirror;
+mod notes;
 mod operating;
 mod options;
 mod params;

@@ -6,6 +6,7 @@ use crate::classes::ClassInfo;
 use crate::templates::OperatingPoint;
 
 use super::from_clips::Prepared;
+use super::notes::class_notes;
 use super::set::{StreamKind, TrainSample};
 use super::templates::TrainedTemplates;
 use super::thesis::SvrdmReport;
@@ -109,22 +110,6 @@ fn quiet_note(sample: &TrainSample, prepared: &Prepared, tick_hz: f64) -> String
         sample.ticks.start as f64 / tick_hz,
         sample.ticks.end as f64 / tick_hz,
     )
-}
-
-/// Notes about classes with few samples.
-pub(super) fn class_notes(classes: &[ClassInfo]) -> Vec<String> {
-    let note = |class: &ClassInfo| match class.samples {
-        0 => Some(format!(
-            "{}: no sample, it will never be recognised",
-            class.name
-        )),
-        1 => Some(format!(
-            "{}: a single sample; give more, by several people",
-            class.name
-        )),
-        _ => None,
-    };
-    classes.iter().filter_map(note).collect()
 }
 
 /// Name of a background's origin in reports.

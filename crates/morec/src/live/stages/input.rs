@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::features::Pushed;
-use crate::live::recognizer::Steps;
+use crate::live::detection::Steps;
 use crate::live::{Frame, Model, PoseExtractor, Rig};
 use crate::pivots::{PivotPose, PoseStream};
 use crate::svrdm::{ChunkAssembly, SvrdmModel};

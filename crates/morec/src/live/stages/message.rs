@@ -1,6 +1,6 @@
 //! Messages between stages.
 
-use crate::live::recognizer::Steps;
+use crate::live::detection::Steps;
 use crate::svrdm::{Cell, ClassCandidates, Gram, SvrdmModel, Window};
 
 /// Performer and time of a message.

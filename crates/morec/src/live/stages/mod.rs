@@ -23,11 +23,11 @@ use self::between::{Segments, classify, extract, score};
 use self::input::{Chunks, Fate, PerformerInput};
 use self::message::{Chunk, StageMessage};
 use self::tracking::Tracking;
+use super::broadcast::WorkerOptions;
 use super::broadcast::{EventBroadcast, EventReader};
 use super::feed::{FeedReceiver, QueueItem};
 use super::status::SessionCounters;
 use super::waker::Waker;
-use super::worker::WorkerOptions;
 use super::{Frame, MAX_PERFORMERS, PerformerId, SessionError, wall_now_secs};
 
 /// Chunks on their way at once.

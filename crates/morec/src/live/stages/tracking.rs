@@ -6,10 +6,10 @@ use std::thread;
 use std::time::Duration;
 
 use crate::live::broadcast::EventBroadcast;
+use crate::live::broadcast::WorkerOptions;
 use crate::live::early::EarlyTracker;
 use crate::live::event_tracker::EventTracker;
 use crate::live::status::SessionCounters;
-use crate::live::worker::WorkerOptions;
 use crate::live::{Detection, MAX_PERFORMERS, PerformerId, wall_now_secs};
 use crate::svrdm::{Cell, ChunkDetection, SegmentScoring, SegmentTracking, SvrdmModel};
 

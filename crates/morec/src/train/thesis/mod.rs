@@ -8,9 +8,9 @@ mod report;
 mod thresholds;
 
 pub use material::ThesisSample;
-pub use options::{Pivots, SvrdmOptions, SvrdmTrainParams};
+pub use options::{Pivots, SvrdmOptions, SvrdmTrainParams, ThresholdRule};
 pub use report::SvrdmReport;
-pub use thresholds::{Estimated, ThresholdRule};
+pub use thresholds::Estimated;
 
 use crate::progress::Progress;
 use crate::svrdm::SvrdmModel;

@@ -7,7 +7,18 @@ use crate::pivots::{PivotSet, PoseParams};
 use crate::svrdm::{Centring, Descent, Scaling, SegmentDistance, SvrdmParams};
 use crate::train::svrdm::{SigmaRule, SignRule, TreeParams};
 
-use super::thresholds::ThresholdRule;
+/// Origin of the thresholds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ThresholdRule {
+    /// Those that the parameters name.
+    Fixed,
+    /// Estimated.
+    Estimated {
+        /// Parts into which each class's samples are dealt; each is left out in turn.
+        folds: usize,
+    },
+}
 
 /// Joints that count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]

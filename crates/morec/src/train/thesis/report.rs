@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::pca::QualityRow;
 use crate::svrdm::SvrdmModel;
 use crate::train::TrainingReport;
-use crate::train::report::class_notes;
+use crate::train::notes::class_notes;
 use crate::train::svrdm::BranchReport;
 
 use super::fit::Fitted;

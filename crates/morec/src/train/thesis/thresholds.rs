@@ -7,7 +7,7 @@
 use std::sync::Arc;
 
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 use crate::progress::Progress;
 use crate::svrdm::{FrameDetection, SampleClassifier, SvrdmEngine, SvrdmModel};
@@ -33,19 +33,6 @@ const MARGIN: f64 = 0.01;
 const LEAST_CONFIDENCE: f64 = 0.3;
 /// Detections that share more than this with a sample say nothing about background.
 const MAX_OVERLAP: f64 = 0.3;
-
-/// Origin of the thresholds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ThresholdRule {
-    /// Those that the parameters name.
-    Fixed,
-    /// Estimated.
-    Estimated {
-        /// Parts into which each class's samples are dealt; each is left out in turn.
-        folds: usize,
-    },
-}
 
 /// Estimated thresholds and the data behind them.
 #[derive(Debug, Clone, PartialEq, Serialize)]

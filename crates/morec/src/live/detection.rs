@@ -1,0 +1,147 @@
+//! Detections, final and tentative, and the buffer of one push.
+
+use std::fmt;
+
+use crate::classes::ClassId;
+
+use super::Model;
+
+/// Detections that one push can complete at most; more than a motion a tick is not a motion.
+const MAX_DETECTIONS_PER_PUSH: usize = 64;
+
+/// A motion recognised in a stream. Its class is a number of the index's, or a name ([`named`](Detection::named)).
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct Detection<C = ClassId> {
+    /// Class of the motion.
+    pub class: C,
+    /// When it began, on the stream's clock.
+    pub start_secs: f64,
+    /// When it ended.
+    pub stop_secs: f64,
+    /// 0 just accepted … 1 identical to a sample.
+    pub score: f64,
+    /// The stream's clock when it was reported: the time of the pose that settled it.
+    pub reported_secs: f64,
+}
+
+impl Detection {
+    /// The same with the name of its class in `model`.
+    pub fn named(self, model: &Model) -> Detection<&str> {
+        Detection {
+            class: model.class_name(self.class),
+            start_secs: self.start_secs,
+            stop_secs: self.stop_secs,
+            score: self.score,
+            reported_secs: self.reported_secs,
+        }
+    }
+}
+
+impl<C: fmt::Display> fmt::Display for Detection<C> {
+    /// `wave from 1.23 s to 2.50 s, score 0.87`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{} from {:.2} s to {:.2} s, score {:.2}",
+            self.class, self.start_secs, self.stop_secs, self.score
+        )
+    }
+}
+
+/// A motion that seems to be under way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EarlyDetection {
+    /// Class of the motion, tentatively.
+    pub class: ClassId,
+    /// Nearness to the beginning of a sample: 0 just worth reporting … 1 identical.
+    pub score: f64,
+    /// Share of the motion that was seen, 0 to 1.
+    pub progress: f64,
+    /// When it began, on the stream's clock.
+    pub start_secs: f64,
+    /// Up to when it was seen.
+    pub seen_secs: f64,
+}
+
+/// Time of a path: its origin and its step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Steps {
+    pub origin_secs: f64,
+    pub step_secs: f64,
+}
+
+/// Detections of the present push, with the time at which they are reported.
+#[derive(Debug)]
+pub(super) struct DetectionBuffer {
+    pub(super) detections: Vec<Detection>,
+    pub(super) reported_secs: f64,
+    /// Detections for which there was no room.
+    pub(super) dropped: u64,
+}
+
+impl DetectionBuffer {
+    pub(super) fn new() -> Self {
+        Self {
+            detections: Vec::with_capacity(MAX_DETECTIONS_PER_PUSH),
+            reported_secs: 0.0,
+            dropped: 0,
+        }
+    }
+
+    pub(super) fn begin(&mut self, reported_secs: f64) {
+        self.detections.clear();
+        self.reported_secs = reported_secs;
+    }
+
+    /// Adds what lies from step `start` to step `stop`.
+    pub(super) fn add(&mut self, class: ClassId, at: Steps, start: i64, stop: i64, score: f64) {
+        // The buffer never grows: pushing must not allocate.
+        if self.detections.len() < self.detections.capacity() {
+            self.detections.push(Detection {
+                class,
+                start_secs: at.origin_secs + start as f64 * at.step_secs,
+                stop_secs: at.origin_secs + stop as f64 * at.step_secs,
+                score,
+                reported_secs: self.reported_secs,
+            });
+        } else {
+            self.dropped += 1;
+        }
+    }
+}
+
+impl Clone for DetectionBuffer {
+    /// By hand, because a copied vector has room only for what it holds.
+    fn clone(&self) -> Self {
+        let mut copy = Self {
+            reported_secs: self.reported_secs,
+            dropped: self.dropped,
+            ..Self::new()
+        };
+        copy.detections.extend_from_slice(&self.detections);
+        copy
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_there_is_no_room_for_is_counted() {
+        let mut found = DetectionBuffer::new();
+        let at = Steps {
+            origin_secs: 0.0,
+            step_secs: 0.1,
+        };
+        found.begin(1.0);
+        for start in 0..70 {
+            found.add(ClassId(0), at, start, start + 1, 0.5);
+        }
+        assert_eq!((found.detections.len(), found.dropped), (64, 6));
+        found.begin(2.0);
+        found.add(ClassId(0), at, 0, 1, 0.5);
+        assert_eq!((found.detections.len(), found.dropped), (1, 6));
+        assert_eq!(found.clone().dropped, 6);
+    }
+}

@@ -1,0 +1,19 @@
+//! Notes that the reports of both methods share.
+
+use crate::classes::ClassInfo;
+
+/// Notes about classes with few samples.
+pub(super) fn class_notes(classes: &[ClassInfo]) -> Vec<String> {
+    let note = |class: &ClassInfo| match class.samples {
+        0 => Some(format!(
+            "{}: no sample, it will never be recognised",
+            class.name
+        )),
+        1 => Some(format!(
+            "{}: a single sample; give more, by several people",
+            class.name
+        )),
+        _ => None,
+    };
+    classes.iter().filter_map(note).collect()
+}
