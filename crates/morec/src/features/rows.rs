@@ -58,6 +58,9 @@ impl Rows {
     }
 
     /// Adds a row; it must have `dim` values.
+    ///
+    /// # Panics
+    /// The row has another width.
     pub fn push(&mut self, row: &[f32]) {
         assert_eq!(row.len(), self.dim, "a row of another width");
         self.data.extend_from_slice(row);

@@ -5,9 +5,12 @@ use std::sync::Arc;
 use crate::diagnosis::{Diagnoser, Diagnosis};
 use crate::features::BoneSet;
 
-use super::early::{EarlyDetection, EarlyTracker};
+use super::early::EarlyTracker;
 use super::event_tracker::EventTracker;
-use super::{Event, Frame, Model, PerformerId, PoseExtractor, Recognizer, RecognizerInput, Rig};
+use super::{
+    EarlyDetection, Event, Frame, Model, PerformerId, PoseExtractor, Recognizer, RecognizerInput,
+    Rig,
+};
 
 /// Selection and rate of events.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,11 +5,12 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
+use super::broadcast::WorkerOptions;
 use super::feed::{FeedReceiver, FeedSender, feed};
 use super::performer::EventOptions;
 use super::status::{SessionCounters, Status, StatusHandle};
 use super::waker::Waker;
-use super::worker::{EventReader, RecognizerCache, StreamWorker, TurnOutcome, WorkerOptions};
+use super::worker::{EventReader, RecognizerCache, StreamWorker, TurnOutcome};
 use super::{Frame, Model, OverflowPolicy, Source, SourceEvent, StartError, stages};
 
 /// Distribution of recognition over threads. Events are the same.

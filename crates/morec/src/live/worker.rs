@@ -10,9 +10,7 @@ use super::broadcast::{EventBroadcast, WorkerOptions};
 use super::feed::{FeedReceiver, QueueItem};
 use super::performer::Performer;
 use super::status::SessionCounters;
-use super::{
-    Frame, MAX_PERFORMERS, Model, OverflowPolicy, PerformerId, Recognizer, Rig, wall_now_secs,
-};
+use super::{Frame, MAX_PERFORMERS, Model, PerformerId, Recognizer, Rig, wall_now_secs};
 
 /// Frames of a performer after which its diagnosis is renewed: a quarter of a second at 60 Hz.
 const DIAGNOSE_EVERY: u64 = 16;

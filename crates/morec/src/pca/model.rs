@@ -124,6 +124,9 @@ impl Pca {
     }
 
     /// A raw row (`D` values) reduced to `out` (`r` values): `(x − x̄) · [v₁ | … | vᵣ]`, Eq. 3.9. Takes no memory.
+    ///
+    /// # Panics
+    /// `row` or `out` has another width.
     pub fn project_into(&self, row: &[f32], out: &mut [f32]) {
         let dim = self.dim();
         assert!(
@@ -138,6 +141,9 @@ impl Pca {
 
     /// A reduced row (`r` values) back to `out` (`D` values), as well as its dimensions can: Eq. 3.10, with the mean
     /// added again. Takes no memory.
+    ///
+    /// # Panics
+    /// `reduced` or `out` has another width.
     pub fn reconstruct_into(&self, reduced: &[f32], out: &mut [f32]) {
         assert!(
             out.len() == self.dim() && reduced.len() == self.dims,

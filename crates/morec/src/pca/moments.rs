@@ -52,6 +52,9 @@ impl Moments {
     }
 
     /// Adds every row of `rows`, which must be of this width. O(rows · D²).
+    ///
+    /// # Panics
+    /// The rows have another width.
     pub fn push_rows(&mut self, rows: &Rows) {
         assert_eq!(rows.dim(), self.dim(), "rows of another width");
         self.push_values(rows.values());
@@ -84,6 +87,9 @@ impl Moments {
     }
 
     /// Joins the rows that `other` has seen. O(D²).
+    ///
+    /// # Panics
+    /// The other rows have another width.
     pub fn merge(&mut self, other: &Moments) {
         assert_eq!(other.dim(), self.dim(), "rows of another width");
         self.scatter

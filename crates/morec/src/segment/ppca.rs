@@ -75,6 +75,7 @@ impl Ppca {
     }
 
     /// The covariance `C` itself, `q × q`.
+    #[cfg(test)]
     pub(crate) fn covariance(&self) -> DMatrix<f64> {
         let dim = self.mean.len();
         let noise = 1.0 / self.noise_precision;

@@ -61,6 +61,9 @@ pub struct Edr {
 impl Edr {
     /// For sequences of at most `longest` values (itself at most [`MAX_PROFILE_FRAMES`]), which match within
     /// `epsilon`.
+    ///
+    /// # Panics
+    /// `longest` is larger than that.
     pub fn new(epsilon: f32, longest: usize) -> Self {
         assert!(
             longest <= MAX_PROFILE_FRAMES,

@@ -18,6 +18,9 @@ pub struct FeatureExtraction {
 
 impl FeatureExtraction {
     /// For rows of `dim` values, `r`, and `signs` as of [`SvrdmModel::signs`](super::SvrdmModel::signs): `k × r`.
+    ///
+    /// # Panics
+    /// `signs` has another size.
     pub fn new(params: &SvrdmParams, dim: usize, signs: &[f64]) -> Self {
         assert_eq!(
             signs.len(),

@@ -53,6 +53,9 @@ impl Gram {
     }
 
     /// Adds a row of `r` values; sums are in double precision. O(r²).
+    ///
+    /// # Panics
+    /// The row has another width.
     pub fn add_row(&mut self, row: &[f32]) {
         assert_eq!(row.len(), self.dim(), "a row of another width");
         let mut rest = &mut self.products[..];
@@ -78,6 +81,9 @@ impl Gram {
     }
 
     /// Adds the rows of another. O(r²).
+    ///
+    /// # Panics
+    /// The other's rows have another width.
     pub fn add(&mut self, other: &Gram) {
         assert_eq!(other.dim(), self.dim(), "rows of another width");
         self.products

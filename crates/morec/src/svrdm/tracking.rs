@@ -133,6 +133,9 @@ impl Clone for SegmentTracking {
 impl SegmentTracking {
     /// For parameters that pass their check. `most` gives for each length, from the shortest on, a bound on the
     /// confidence of any segment that long; 1 always holds.
+    ///
+    /// # Panics
+    /// `most` does not have a bound for each length.
     pub fn new(params: &SvrdmParams, most: Vec<f64>) -> Self {
         let lengths = params.lengths();
         assert_eq!(most.len(), lengths, "a bound for each length");

@@ -59,6 +59,9 @@ impl Directions {
     ///
     /// `false`, and nothing of use left inside, if there is no direction: no motion at all, or a value that is no
     /// number. O(r³), no allocation.
+    ///
+    /// # Panics
+    /// `gram`'s rows have another width.
     pub fn find(&mut self, gram: &Gram, centring: Centring) -> bool {
         assert_eq!(gram.dim(), self.dim, "rows of another width");
         match self.dim {
@@ -86,6 +89,9 @@ impl Directions {
     }
 
     /// Writes the feature vector, `k · r` values (Eq. 3.37, or §5.3).
+    ///
+    /// # Panics
+    /// `out` has another length.
     pub fn feature(&self, scaling: Scaling, out: &mut [f64]) {
         assert_eq!(
             out.len(),

@@ -116,6 +116,9 @@ impl TemplateBank {
     }
 
     /// Advances by one tick with the stream's row `z`, of `dim` values.
+    ///
+    /// # Panics
+    /// `z` has another width than the templates.
     pub fn step(&mut self, z: &[f32]) {
         assert_eq!(
             z.len(),

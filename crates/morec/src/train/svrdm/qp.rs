@@ -48,6 +48,7 @@ pub(crate) struct Solution {
 
 impl BoxQp {
     /// `½ αᵀQα − τᵀα`.
+    #[cfg(test)]
     pub fn objective(&self, alpha: &DVector<f64>) -> f64 {
         0.5 * (&self.matrix * alpha).dot(alpha) - self.linear.dot(alpha)
     }
@@ -94,6 +95,7 @@ impl BoxQp {
     /// Algorithm 3 as corrected: coordinates in turn, each to its best place (Eq. 3.32 with `yᵢyⱼKᵢⱼ`). A pass is
     /// O(m²); the number of passes grows without bound as the kernel widens. The thesis stops when no coordinate
     /// moves far any more, which says little about how near the solution is; this stops by the residual.
+    #[cfg(test)]
     pub fn sor(&self, stop: Stop) -> Solution {
         let m = self.linear.len();
         let mut alpha = DVector::zeros(m);
