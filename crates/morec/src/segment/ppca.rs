@@ -1,7 +1,5 @@
 //! A Gaussian of few dimensions and noise in all others.
 
-use nalgebra::DMatrix;
-
 use crate::pca::{ComponentCount, Eigen, Moments};
 
 /// Probabilistic principal components: rows as a Gaussian whose covariance is
@@ -76,7 +74,7 @@ impl Ppca {
 
     /// The covariance `C` itself, `q × q`.
     #[cfg(test)]
-    pub(crate) fn covariance(&self) -> DMatrix<f64> {
+    pub(crate) fn covariance(&self) -> nalgebra::DMatrix<f64> {
         let dim = self.mean.len();
         let noise = 1.0 / self.noise_precision;
         let mut c = DMatrix::identity(dim, dim) * noise;
