@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use morec::files::{FileReader, list};
 use morec::progress::Progress;
-use morec_db::search::{SearchIndex, near_copies_of};
+use morec_db::search::{SearchIndex, near_duplicates_of};
 use morec_db::{ClipFilter, ClipId, ClipUpdate, DbError, ImportLog, ImportOutcome, MotionDb};
 
 use super::{JobOutcome, JobProgress};
@@ -138,7 +138,7 @@ fn copies(
         Err(DbError::Cancelled) => return Ok(Vec::new()),
         index => index?,
     };
-    let found = near_copies_of(&index, &new).into_iter();
+    let found = near_duplicates_of(&index, &new).into_iter();
     let copies = found.filter_map(|pair| {
         let (of, copy) = (by_id.get(&pair.of)?, by_id.get(&pair.copy)?);
         let how = match pair.mirrored {

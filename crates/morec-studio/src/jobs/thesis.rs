@@ -211,7 +211,7 @@ pub fn map(model: &Arc<SvrdmModel>, motion: &ClipMotion, progress: &JobProgress)
         if at % 4096 == 0 && progress.cancelled() {
             return JobOutcome::Cancelled;
         }
-        engine.push_watched(
+        engine.push_with_observer(
             row,
             &mut |window, cell| {
                 let place = window.start.max(0) as usize * lengths
