@@ -57,8 +57,8 @@ fn templates() -> Vec<Group> {
             intro: "### Tentative events (`EarlyDetectionParams`)\n\nThese are not stored in the index and cannot be set with \
                     `--param`. Chosen with `examples/early.rs` on referee signals.",
             source: include_str!("../../../src/templates/early.rs"),
-            name: "EarlyParams",
-            prefix: "EarlyParams.",
+            name: "EarlyDetectionParams",
+            prefix: "EarlyDetectionParams.",
             values: vec![("default", printed(&EarlyDetectionParams::default()))],
         },
     ]

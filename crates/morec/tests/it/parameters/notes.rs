@@ -83,10 +83,13 @@ pub const NOTES: &[(&str, &str)] = &[
     ("verifier_ridge", "0.03 to 0.3 are alike"),
     ("bar_range", "bounds what the examples may decide"),
     (
-        "EarlyParams.least_progress",
+        "EarlyDetectionParams.least_progress",
         "from a fifth of a template on",
     ),
-    ("EarlyParams.reach", "within 1.8 times the threshold"),
+    (
+        "EarlyDetectionParams.reach",
+        "within 1.8 times the threshold",
+    ),
     ("keep", "thesis, §4.2"),
     (
         "sign",
