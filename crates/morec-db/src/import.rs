@@ -4,12 +4,12 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use morec::files::{FileReader, read_file, split_choice};
+use morec::files::{FileReader, is_large, read_file, split_choice};
 use morec::progress::Progress;
 use rayon::prelude::*;
 use rusqlite::{Connection, OptionalExtension, Row, params};
 
-use crate::kept::{KeptClip, KeptFile, content_hash, packed_rows, rows_recipe};
+use crate::kept::{Content, KeptClip, KeptFile, packed_rows, rows_recipe};
 use crate::time::now_secs;
 use crate::{ClipId, ClipUpdate, DbError, MotionDb, history, rows};
 
@@ -286,14 +286,24 @@ fn make(
     about: &ClipUpdate,
     known: &std::collections::HashMap<[u8; 32], i64>,
 ) -> PreparedFile {
-    let bytes = match read_file(&split_choice(path).0) {
-        Ok(bytes) => bytes,
+    let (file, _) = split_choice(path);
+    let large = is_large(&file);
+    let opened = match large {
+        true => Content::of_large(path).map(|content| (content, Vec::new())),
+        false => read_file(&file).map(|bytes| (Content::of(path, &bytes), bytes)),
+    };
+    let (content, bytes) = match opened {
+        Ok(opened) => opened,
         Err(error) => return PreparedFile::Refused(error.to_string()),
     };
-    if let Some(file) = known.get(&content_hash(path, &bytes)) {
+    if let Some(file) = known.get(&content.hash) {
         return PreparedFile::Known(*file);
     }
-    match KeptClip::of_file(path, &bytes, reader) {
+    let kept = match large {
+        true => KeptClip::of_large(path, content, reader),
+        false => KeptClip::of_file(path, &bytes, reader),
+    };
+    match kept {
         Err(reason) => PreparedFile::Refused(reason),
         Ok(clips) => {
             let told = |clip| KeptClip {

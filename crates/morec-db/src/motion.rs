@@ -47,11 +47,14 @@ pub(crate) fn pack(take: Take, progress: &dyn Progress) -> Result<Packed, String
     };
     let compressed = bounded.map_err(|error| error.to_string())?;
     let errors = compressed.errors();
+    let (skeleton_hash, joints) = (skeleton_hash(&clip), clip.skeleton.len());
+    // Long clips take much memory: the one that is stored takes the place of the one that was read.
+    drop(clip);
     Ok(Packed {
         max_angle_rad: errors.max_angle_rad,
         max_position_metres: errors.max_joint_position_metres,
-        skeleton_hash: skeleton_hash(&clip),
-        joints: clip.skeleton.len(),
+        skeleton_hash,
+        joints,
         roles: roles_to_json(&roles),
         facts: report_to_json(&report),
         stored: StoredClip {

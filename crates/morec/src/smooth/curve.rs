@@ -2,6 +2,7 @@
 
 use super::bezier::{Kind, Point, Segment};
 use super::lattice::{Code, Lattice, Piece, Tangents};
+use super::playhead::Played;
 
 /// A channel as a run of cubic Bézier curves, end to end; a channel that stands still is a single key.
 #[derive(Debug, Clone, PartialEq)]
@@ -130,6 +131,20 @@ impl Curve {
                     .map_or(still, |segment| segment.at(self.kind(), place)),
             );
         }
+    }
+}
+
+impl Played for Curve {
+    fn kind(&self) -> Kind {
+        self.lattice.kind
+    }
+
+    fn start(&self) -> Point {
+        self.lattice.key_point(&self.first, None)
+    }
+
+    fn segments(&self) -> &[Segment] {
+        &self.segments
     }
 }
 
