@@ -6,9 +6,12 @@ mod dates;
 mod figures;
 mod files;
 mod interrupt;
+mod json;
+mod labels;
 mod lengths;
 mod live;
 mod material;
+mod motion;
 mod output;
 mod poses;
 mod progress;
@@ -100,3 +103,6 @@ fn is_broken_pipe(error: &anyhow::Error) -> bool {
         .filter_map(|cause| cause.downcast_ref::<std::io::Error>())
         .any(|io| io.kind() == std::io::ErrorKind::BrokenPipe)
 }
+
+#[cfg(test)]
+mod vocabulary;

@@ -31,9 +31,9 @@ pub struct Args {
     /// Clips, folders of clips, or one database
     #[arg(required = true, value_name = "CLIP|DB")]
     inputs: Vec<PathBuf>,
-    /// Clips of the database whose name matches (`*` any text, `?` one character)
-    #[arg(long, value_name = "PATTERN")]
-    name: Option<String>,
+    /// Clips of a database of this name; `*` stands for any text, `?` for one character
+    #[arg(long, alias = "name", value_name = "CLIP")]
+    clip: Option<String>,
     /// How to cut
     #[arg(long, value_enum, default_value = "kernel")]
     method: CutMethod,
@@ -125,7 +125,7 @@ impl Cutter {
 pub fn run(args: &Args) -> Result<ExitCode> {
     match database::only(&args.inputs)? {
         Some(db) => stored::run(db, Cutter::new(args)?, args),
-        None if args.name.is_some() => bail!("--name chooses clips of a database"),
+        None if args.clip.is_some() => bail!("--clip chooses clips of a database"),
         None => files::run(&Cutter::new(args)?, args),
     }
 }

@@ -37,9 +37,9 @@ pub struct Args {
     /// The spelling of old for clips
     #[arg(long, value_name = "DIR|CLIP", num_args = 1.., hide = true)]
     clips: Vec<PathBuf>,
-    /// Labels of clips in files: tab-separated text with a header; columns clip (file stem), class, and start, stop
-    /// (frames, stop exclusive) or start_secs, stop_secs, or neither: then the whole clip is one sample
-    #[arg(long, value_name = "TSV")]
+    /// Labels of clips in files, in a form that `morec db label` reads; of tables columns clip (file stem), class, and
+    /// start, stop (frames, stop exclusive) or start_secs, stop_secs, or neither: then the whole clip is one sample
+    #[arg(long, value_name = "FILE|DIR")]
     labels: Option<PathBuf>,
     /// What is grouped [default: labelled samples if --labels are given, else cuts]
     #[arg(long, value_enum)]

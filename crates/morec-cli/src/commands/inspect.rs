@@ -10,8 +10,8 @@ use std::process::ExitCode;
 use anyhow::{Context, Result, bail};
 use morec::import::{ImportOptions, SignedAxis, Take};
 
-use crate::figures::write_json;
 use crate::files::{self, ReadArgs};
+use crate::json::write_json;
 use crate::output;
 use crate::progress::Progress;
 use draw::Drawing;

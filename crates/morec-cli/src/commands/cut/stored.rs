@@ -23,7 +23,7 @@ pub fn run(path: &Path, cutter: Cutter, args: &Args) -> Result<ExitCode> {
     let mut db = database::open(path)?;
     let bar = Bar::stoppable()?;
     let clips = db.find_clips(&ClipFilter {
-        name: args.name.clone(),
+        name: args.clip.clone(),
         ..ClipFilter::default()
     })?;
     let report = db.cut(&clips, &cutter, &bar)?;

@@ -44,7 +44,7 @@ pub struct Args {
     /// List the samples of this class with their numbers
     #[arg(long, value_name = "CLASS")]
     samples: Option<String>,
-    /// Print JSON
+    /// Print one JSON array
     #[arg(long)]
     json: bool,
 }

@@ -137,6 +137,7 @@ fn list(args: &Args, db: &MotionDb) -> Result<ExitCode> {
 
 #[derive(Serialize)]
 struct NamedProposal {
+    #[serde(rename = "clip")]
     name: String,
     #[serde(flatten)]
     proposal: Proposal,

@@ -9,13 +9,14 @@ use morec::cluster::{
     affinity_propagation, kwas_clusters, resampled, squared_distance,
 };
 use morec::features::{BoneSet, Rows};
-use morec::labels::{ClipLength, Labels};
+use morec::labels::ClipLength;
 use morec_db::ClipId;
 use serde::Serialize;
 
 use super::{Args, GroupMethod};
 use crate::commands::db::{print_json, print_table};
-use crate::files::{self, some_of};
+use crate::files::some_of;
+use crate::labels;
 use crate::table::Table;
 
 /// A stretch of a clip to be grouped.
@@ -158,7 +159,7 @@ pub fn labelled(
     classes: &[String],
     clips: &BTreeMap<String, ClipLength>,
 ) -> Result<Vec<GroupedSample>> {
-    let labels = Labels::read(&files::read(path)?).with_context(|| path.display().to_string())?;
+    let labels = labels::read(path)?;
     let resolved = labels.resolve(clips);
     for warning in labels.warnings.iter().chain(&resolved.warnings) {
         eprintln!("morec: {}: {warning}", path.display());
