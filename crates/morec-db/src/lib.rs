@@ -18,6 +18,7 @@
 //! | rows, search by example, near copies | [`rows`], [`search`] |
 //! | the other samples of classes that a few are labelled of | [`MotionDb::propose`], [`questions`] |
 
+mod body;
 mod clips;
 mod cut;
 mod db;

@@ -17,7 +17,8 @@ pub fn strip(
 ) -> Vec<Shape> {
     let count = ((rect.width() / (rect.height() * 0.62)).round() as usize).clamp(2, 12);
     let width = rect.width() / count as f32;
-    let scale = 0.78 * rect.height() / motion.body.height as f32;
+    // Raised arms reach a quarter above the head.
+    let scale = 0.68 * rect.height() / motion.body.height as f32;
     let mut shapes = Vec::new();
     for number in 0..count {
         let share = number as f64 / (count - 1) as f64;

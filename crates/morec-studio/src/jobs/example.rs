@@ -105,7 +105,7 @@ pub fn of_clips(folder: &Path, clips: &[PathBuf], progress: &JobProgress) -> Out
     match super::import::import(&path, clips, progress) {
         Outcome::Imported(report) if report.imported == 0 && !report.refused.is_empty() => {
             let (file, why) = &report.refused[0];
-            Outcome::Failed(format!("{}: {why}", file.display()))
+            Outcome::Failed(format!("{}: {why}", crate::format::file_name(file)))
         }
         Outcome::Imported(_) => Outcome::Made(path),
         other => other,

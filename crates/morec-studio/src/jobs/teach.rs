@@ -46,7 +46,8 @@ fn taught(path: &Path, folder: &Path, lesson: &Lesson) -> Result<Taught, String>
     let file: PathBuf = folder.join(format!("{name}.bvh"));
     let mut bytes = Vec::new();
     bvh::write(&clip, &mut bytes).map_err(|e| e.to_string())?;
-    std::fs::write(&file, bytes).map_err(|e| format!("{}: {e}", file.display()))?;
+    std::fs::write(&file, bytes)
+        .map_err(|e| format!("{}: {e}", crate::format::file_name(&file)))?;
     let report = db.import(
         std::slice::from_ref(&file),
         &FileReader::default(),

@@ -217,8 +217,11 @@ impl State {
             return;
         }
         match std::fs::write(path, &self.train.bytes) {
-            Ok(()) => self.say(format!("{} written", path.display())),
-            Err(error) => self.complain(format!("{}: not written: {error}", path.display())),
+            Ok(()) => self.say(format!("{} written", crate::format::file_name(path))),
+            Err(error) => self.complain(format!(
+                "{}: not written: {error}",
+                crate::format::file_name(path)
+            )),
         }
     }
 }
