@@ -7,7 +7,6 @@ use anyhow::Context;
 use morec::eval::{ClassFigures, Evaluation, MEASURED_OVERLAP};
 use morec::explain::Miss;
 use morec::report::Report;
-use serde::Serialize;
 
 use crate::output;
 use crate::table::Table;

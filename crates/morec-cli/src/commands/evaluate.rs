@@ -306,7 +306,7 @@ mod tests {
         };
         let clips: BTreeMap<String, ClipLength> =
             ["a", "b", "c"].map(|name| (name.to_owned(), length)).into();
-        let resolved = Labels::read(labels.as_bytes()).unwrap().resolve(&clips);
+        let resolved = morec::labels::Labels::read(labels.as_bytes()).unwrap().resolve(&clips);
         let owned = |names: &[&str]| names.iter().map(|n| (*n).to_owned()).collect::<Vec<_>>();
         Cases::new(
             &clips,

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 use morec::cluster::{
     AffinityParams, Clusters, Hierarchy, KwasParams, Pairs, Spectrum, adjusted_rand_index,
     affinity_propagation, kwas_clusters, resampled, squared_distance,

@@ -9,7 +9,6 @@ use morec_db::{ClipFilter, ClipInfo, MotionDb, exchange};
 
 use super::{Args, said};
 use crate::commands::convert::{Form, Table, write_take};
-use crate::output;
 use crate::progress::Progress;
 
 /// Writes the clips whose names match `pattern`: one as the file that `args` name, several into it as a folder.
