@@ -9,7 +9,7 @@ use morec::explain::Miss;
 use morec::report::Report;
 
 use crate::output;
-use crate::table::Table;
+use crate::table::TextTable;
 
 /// Writes the report as a page, and says so on standard error.
 pub fn write_report(path: &Path, report: &Report<'_>) -> anyhow::Result<()> {
@@ -130,7 +130,7 @@ fn write_figures(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
 }
 
 fn write_overlaps(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
-    let mut table = Table::new([
+    let mut table = TextTable::new([
         "overlap",
         "F1",
         "precision",
@@ -156,7 +156,7 @@ fn write_overlaps(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
 }
 
 fn write_classes(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
-    let mut table = Table::new([
+    let mut table = TextTable::new([
         "class",
         "samples",
         "found",
@@ -219,7 +219,7 @@ fn write_confusion(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
     let mut header = vec![String::new()];
     header.extend((1..=columns.len()).map(|i| i.to_string()));
     header.push("nothing".to_owned());
-    let mut table = Table::with_header(header);
+    let mut table = TextTable::with_header(header);
     let names = e
         .confusion
         .rows

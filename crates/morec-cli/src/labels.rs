@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use morec::formats::{Place, Warning};
 use morec::labels::{Extent, Label, Labels};
-use morec_db::exchange::{self, Annotation, Form, Lengths};
-use morec_db::labels::State;
+use morec_db::exchange::{self, Annotation, ClipLengths, LabelFormat};
+use morec_db::labels::SampleState;
 
 use crate::files;
 
@@ -34,8 +34,9 @@ pub fn files_of_labels(paths: &[PathBuf]) -> Result<Vec<PathBuf>> {
         for entry in std::fs::read_dir(path).with_context(shown)? {
             inside.push(entry.with_context(shown)?.path());
         }
-        inside
-            .retain(|file| file.is_file() && Form::of_file(&file.to_string_lossy(), b"").is_some());
+        inside.retain(|file| {
+            file.is_file() && LabelFormat::of_file(&file.to_string_lossy(), b"").is_some()
+        });
         if inside.is_empty() {
             bail!("{}: no file of labels in this folder", path.display());
         }
@@ -49,11 +50,11 @@ fn one(path: &Path) -> Result<Labels> {
     let shown = || path.display().to_string();
     let bytes = files::read(path)?;
     // A table of labels may have any ending: all others say their form.
-    let form = match Form::of_file(&path.to_string_lossy(), &bytes) {
-        Some(Form::Audacity) if is_table(&bytes) => Form::Tsv,
-        form => form.unwrap_or(Form::Tsv),
+    let form = match LabelFormat::of_file(&path.to_string_lossy(), &bytes) {
+        Some(LabelFormat::Audacity) if is_table(&bytes) => LabelFormat::Tsv,
+        form => form.unwrap_or(LabelFormat::Tsv),
     };
-    if form == Form::Tsv {
+    if form == LabelFormat::Tsv {
         return Labels::read(&bytes).with_context(shown);
     }
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
@@ -61,7 +62,7 @@ fn one(path: &Path) -> Result<Labels> {
         .is_of_one_clip()
         .then(|| exchange::clip_of_file_name(&stem));
     let read =
-        exchange::read(form, &bytes, clip.as_deref(), &Lengths::new()).with_context(shown)?;
+        exchange::read(form, &bytes, clip.as_deref(), &ClipLengths::new()).with_context(shown)?;
     if let Some((clip, count)) = read.absent.iter().next() {
         bail!(
             "{}: {count} labels of clip {clip} are in frames; expected seconds, which need no rate",
@@ -72,7 +73,7 @@ fn one(path: &Path) -> Result<Labels> {
     let (accepted, others): (Vec<Annotation>, Vec<Annotation>) = read
         .annotations
         .into_iter()
-        .partition(|annotation| annotation.state == State::Accepted);
+        .partition(|annotation| annotation.state == SampleState::Accepted);
     if !others.is_empty() {
         let text = format!("{} labels are not accepted; left out", others.len());
         warnings.push(Warning::new(Place::File, text));

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::Result;
 use morec::eval::Timeline;
 use morec::import::Take;
-use morec::player::{Mark, Played, Reel};
+use morec::player::{Mark, PlayedClip, Reel};
 use morec_db::{ClipFilter, MotionDb};
 
 use crate::files::{ReadArgs, expand};
@@ -16,13 +16,13 @@ const FRAMES: usize = 3600;
 const MOST_BYTES: usize = 48 << 20;
 
 /// Clips in which something was labelled or found, with both.
-pub struct Motion<'a> {
+pub struct ReportMotion<'a> {
     timelines: &'a [Timeline],
     reel: Reel,
     left_out: usize,
 }
 
-impl<'a> Motion<'a> {
+impl<'a> ReportMotion<'a> {
     /// None yet, of the clips of `timelines`.
     pub fn of(timelines: &'a [Timeline]) -> Self {
         Self {
@@ -87,7 +87,7 @@ impl<'a> Motion<'a> {
         };
         let truths = timeline.truths.iter();
         let founds = timeline.founds.iter();
-        let played = Played {
+        let played = PlayedClip {
             clip: &take.clip,
             roles: &take.roles,
             secs: None,

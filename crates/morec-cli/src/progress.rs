@@ -10,15 +10,15 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::interrupt::stop_on_ctrl_c;
 
-/// Lines in a log are so far apart, beginning so long after the work.
+/// LogLines in a log are so far apart, beginning so long after the work.
 const BETWEEN_LINES: Duration = Duration::from_secs(10);
 
-/// Lines that say how far work is, for logs: where standard error is no terminal.
-struct Lines {
+/// LogLines that say how far work is, for logs: where standard error is no terminal.
+struct LogLines {
     last: Mutex<Option<Instant>>,
 }
 
-impl Lines {
+impl LogLines {
     fn new(begun: Instant) -> Self {
         let last = (!std::io::stderr().is_terminal()).then_some(begun);
         Self {
@@ -47,15 +47,15 @@ impl Lines {
 }
 
 /// A bar that shows itself only once a second has passed.
-pub struct Progress {
+pub struct SlowProgress {
     bar: ProgressBar,
     begun: Instant,
     shown: bool,
     what: &'static str,
-    lines: Lines,
+    lines: LogLines,
 }
 
-impl Progress {
+impl SlowProgress {
     /// A bar over `steps` steps of `what`.
     pub fn new(steps: usize, what: &'static str) -> Self {
         let bar = ProgressBar::with_draw_target(Some(steps as u64), ProgressDrawTarget::hidden());
@@ -68,7 +68,7 @@ impl Progress {
             begun: Instant::now(),
             shown: false,
             what,
-            lines: Lines::new(Instant::now()),
+            lines: LogLines::new(Instant::now()),
         }
     }
 
@@ -90,21 +90,21 @@ impl Progress {
     }
 }
 
-impl Drop for Progress {
+impl Drop for SlowProgress {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
     }
 }
 
 /// A bar that follows a long job of the library, stage by stage; it shows itself only once a second has passed.
-pub struct Bar {
+pub struct StageBar {
     bar: ProgressBar,
     begun: Instant,
     stop: Arc<AtomicBool>,
-    lines: Lines,
+    lines: LogLines,
 }
 
-impl Bar {
+impl StageBar {
     /// A hidden bar.
     pub fn new() -> Self {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
@@ -115,7 +115,7 @@ impl Bar {
             bar,
             begun: Instant::now(),
             stop: Arc::default(),
-            lines: Lines::new(Instant::now()),
+            lines: LogLines::new(Instant::now()),
         }
     }
 
@@ -128,7 +128,7 @@ impl Bar {
     }
 }
 
-impl morec::progress::Progress for Bar {
+impl morec::progress::Progress for StageBar {
     fn report(&self, stage: &str, done: usize, total: usize) {
         if self.bar.is_hidden() && self.begun.elapsed() > Duration::from_secs(1) {
             self.bar.set_draw_target(ProgressDrawTarget::stderr());
@@ -144,7 +144,7 @@ impl morec::progress::Progress for Bar {
     }
 }
 
-impl Drop for Bar {
+impl Drop for StageBar {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
     }
@@ -158,7 +158,7 @@ mod tests {
     fn a_log_gets_a_line_now_and_then() {
         let begun = Instant::now();
         let at = |secs| begun + Duration::from_secs(secs);
-        let lines = Lines {
+        let lines = LogLines {
             last: Mutex::new(Some(begun)),
         };
         let line = lines.line(at(9), "importing", 3, 10);
@@ -169,7 +169,7 @@ mod tests {
         let line = lines.line(at(25), "reading", 9, 0);
         assert_eq!(line.as_deref(), Some("morec: reading: 9"));
         // On a terminal there is a bar.
-        let lines = Lines {
+        let lines = LogLines {
             last: Mutex::new(None),
         };
         assert_eq!(lines.line(at(100), "importing", 4, 10), None);

@@ -85,14 +85,14 @@ const MEANINGS: [(&str, &[&str]); 9] = [
 ];
 
 /// An option of a command: what it takes, and what its help says.
-struct Use {
+struct OptionUse {
     command: String,
     takes: String,
     short: Option<char>,
     help: String,
 }
 
-fn collect(command: &Command, path: &str, all: &mut BTreeMap<String, Vec<Use>>) {
+fn collect(command: &Command, path: &str, all: &mut BTreeMap<String, Vec<OptionUse>>) {
     for arg in command.get_arguments() {
         let Some(long) = arg.get_long().filter(|_| !arg.is_hide_set()) else {
             continue;
@@ -105,7 +105,7 @@ fn collect(command: &Command, path: &str, all: &mut BTreeMap<String, Vec<Use>>) 
             }
             _ => String::new(),
         };
-        all.entry(long.to_owned()).or_default().push(Use {
+        all.entry(long.to_owned()).or_default().push(OptionUse {
             command: path.to_owned(),
             takes,
             short: arg.get_short(),
@@ -117,7 +117,7 @@ fn collect(command: &Command, path: &str, all: &mut BTreeMap<String, Vec<Use>>) 
     }
 }
 
-fn options() -> BTreeMap<String, Vec<Use>> {
+fn options() -> BTreeMap<String, Vec<OptionUse>> {
     let mut all = BTreeMap::new();
     collect(&super::Cli::command(), "morec", &mut all);
     assert!(all.len() > 100, "{} options", all.len());
@@ -127,7 +127,7 @@ fn options() -> BTreeMap<String, Vec<Use>> {
 #[test]
 fn an_option_takes_the_same_everywhere() {
     for (long, uses) in options() {
-        let differs = |other: &&Use| {
+        let differs = |other: &&OptionUse| {
             let first = &uses[0];
             (&other.takes, other.short) != (&first.takes, first.short)
         };

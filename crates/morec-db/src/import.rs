@@ -9,7 +9,7 @@ use morec::progress::Progress;
 use rayon::prelude::*;
 use rusqlite::{Connection, OptionalExtension, Row, params};
 
-use crate::kept::{Content, KeptClip, KeptFile, packed_rows, rows_recipe};
+use crate::kept::{FileContent, KeptClip, KeptFile, packed_rows, rows_recipe};
 use crate::time::now_secs;
 use crate::{ClipId, ClipUpdate, DbError, MotionDb, history, rows};
 
@@ -289,8 +289,8 @@ pub(crate) fn make(
     let (file, _) = split_choice(path);
     let large = is_large(&file);
     let opened = match large {
-        true => Content::of_large(path).map(|content| (content, Vec::new())),
-        false => read_file(&file).map(|bytes| (Content::of(path, &bytes), bytes)),
+        true => FileContent::of_large(path).map(|content| (content, Vec::new())),
+        false => read_file(&file).map(|bytes| (FileContent::of(path, &bytes), bytes)),
     };
     let (content, bytes) = match opened {
         Ok(opened) => opened,

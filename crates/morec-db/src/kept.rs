@@ -79,12 +79,12 @@ pub struct KeptFile {
 
 /// The content of a file by its hash and its size. One clip of a file (`FILE#2`) is another content than the whole.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Content {
+pub(crate) struct FileContent {
     pub hash: [u8; 32],
     pub bytes: u64,
 }
 
-impl Content {
+impl FileContent {
     /// Of the file at `path`, which holds `bytes`.
     pub fn of(path: &Path, bytes: &[u8]) -> Self {
         let mut hasher = blake3::Hasher::new();
@@ -117,17 +117,17 @@ impl KeptClip {
     pub fn of_file(path: &Path, bytes: &[u8], reader: &FileReader) -> Result<Vec<Self>, String> {
         let parsed = reader.parse(path, bytes);
         let parsed = parsed.map_err(|error| error.kind.to_string())?;
-        Self::of_parsed(path, parsed, Content::of(path, bytes), reader)
+        Self::of_parsed(path, parsed, FileContent::of(path, bytes), reader)
     }
 
     /// The same for a large file of this content, which is not held as a whole if its format allows it.
     pub(crate) fn of_large(
         path: &Path,
-        content: Content,
+        content: FileContent,
         reader: &FileReader,
     ) -> Result<Vec<Self>, String> {
         let parsed = reader.read(path).map_err(|error| error.kind.to_string())?;
-        if Content::of_large(path).map_err(|error| error.to_string())? != content {
+        if FileContent::of_large(path).map_err(|error| error.to_string())? != content {
             return Err("the file changed while it was read".to_owned());
         }
         Self::of_parsed(path, parsed, content, reader)
@@ -136,7 +136,7 @@ impl KeptClip {
     fn of_parsed(
         path: &Path,
         parsed: ClipFile,
-        content: Content,
+        content: FileContent,
         reader: &FileReader,
     ) -> Result<Vec<Self>, String> {
         let options = ImportOptions {

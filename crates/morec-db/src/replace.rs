@@ -133,7 +133,7 @@ fn put(conn: &Connection, id: ClipId, path: &Path, clip: &KeptClip) -> Result<()
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::labels::{NewSample, State};
+    use crate::labels::{NewSample, SampleState};
     use crate::testing::{database_of_waves, waves, write_bvh};
 
     fn sample(clip: ClipId, class: &str, extent: (f64, f64), whole_clip: bool) -> NewSample {
@@ -143,7 +143,7 @@ mod tests {
             start_secs: extent.0,
             stop_secs: extent.1,
             whole_clip,
-            state: State::Accepted,
+            state: SampleState::Accepted,
             score: None,
         }
     }

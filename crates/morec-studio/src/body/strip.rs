@@ -3,17 +3,17 @@
 use egui::{Pos2, Rect, Shape, Stroke, Vec2};
 use morec::math::{Axis, Vec3};
 
-use super::Side;
-use super::mesh::Palette;
-use crate::jobs::load::Motion;
+use super::BodySide;
+use super::mesh::BodyColours;
+use crate::jobs::load::ClipMotion;
 
 /// Figures evenly over a stretch, each seen from its own three-quarter front.
 pub fn strip(
-    motion: &Motion,
+    motion: &ClipMotion,
     start_secs: f64,
     stop_secs: f64,
     rect: Rect,
-    palette: &Palette,
+    palette: &BodyColours,
 ) -> Vec<Shape> {
     let count = ((rect.width() / (rect.height() * 0.62)).round() as usize).clamp(2, 12);
     let width = rect.width() / count as f32;
@@ -33,11 +33,11 @@ pub fn strip(
 }
 
 fn figure(
-    motion: &Motion,
+    motion: &ClipMotion,
     secs: f64,
     foot: Pos2,
     scale: f32,
-    palette: &Palette,
+    palette: &BodyColours,
     out: &mut Vec<Shape>,
 ) {
     let (body, pose) = (&motion.body, motion.pose(secs));
@@ -58,11 +58,11 @@ fn figure(
         foot + Vec2::new(x, -y)
     };
     let limit = 0.6 * body.height;
-    for side in [Side::Right, Side::Middle, Side::Left] {
+    for side in [BodySide::Right, BodySide::Middle, BodySide::Left] {
         let colour = match side {
-            Side::Left => palette.left,
-            Side::Right => palette.right,
-            Side::Middle => palette.middle,
+            BodySide::Left => palette.left,
+            BodySide::Right => palette.right,
+            BodySide::Middle => palette.middle,
         };
         for limb in body.limbs.iter().filter(|l| l.side == side) {
             let (a, b) = (pose.positions[limb.from], pose.positions[limb.to]);

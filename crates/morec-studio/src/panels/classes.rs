@@ -5,7 +5,7 @@ use egui::{
     SidePanel, Ui, Vec2, WidgetType,
 };
 use morec_db::ClipId;
-use morec_db::labels::{DbSample, SampleId, State as Judged};
+use morec_db::labels::{DbSample, SampleId, SampleState as Judged};
 
 use super::{Out, groups, padded, player, strips, view, widgets};
 use crate::format;

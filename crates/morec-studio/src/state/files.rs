@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{Classes, FileCommand, Library, Live, Motions, Player, State, Timeline, Train};
+use super::{Classes, FileCommand, Library, Live, Motions, Player, State, TimelineState, Train};
 use crate::format::file_name;
 use crate::jobs::{Jobs, example, import};
 use crate::store::Store;
@@ -62,7 +62,7 @@ impl State {
         self.jobs = Jobs::default();
         self.library = Library::default();
         self.player = Player::new();
-        self.timeline = Timeline::default();
+        self.timeline = TimelineState::default();
         self.curves = None;
         self.detections = None;
         self.classes = Classes::default();

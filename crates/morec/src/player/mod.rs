@@ -28,7 +28,7 @@ pub struct Mark {
 
 /// A clip with what is known of it.
 #[derive(Debug, Clone)]
-pub struct Played<'a> {
+pub struct PlayedClip<'a> {
     /// The motion, in metres and Y up.
     pub clip: &'a Clip,
     /// Who plays what.
@@ -64,7 +64,7 @@ pub struct Reel {
 impl Reel {
     /// Adds a clip, thinned to at most `frames` frames by whole steps of its rate; the page moves smoothly between them.
     /// Gives its number on the page. O(frames × joints).
-    pub fn add(&mut self, played: &Played, frames: usize) -> usize {
+    pub fn add(&mut self, played: &PlayedClip, frames: usize) -> usize {
         // A closing tag within text would end the script.
         let clip = clip(played, frames).to_string().replace("</", "<\\/");
         self.bytes += clip.len();
@@ -112,7 +112,7 @@ impl Reel {
 }
 
 /// A page of clips, up to an hour of each. O(frames × joints) memory.
-pub fn page(title: &str, clips: &[Played]) -> String {
+pub fn page(title: &str, clips: &[PlayedClip]) -> String {
     const FRAMES: usize = 108_000;
     let mut reel = Reel::default();
     for played in clips {
@@ -133,8 +133,8 @@ fn escaped(text: &str) -> String {
         .replace('>', "&gt;")
 }
 
-fn clip(played: &Played, most: usize) -> serde_json::Value {
-    let Played { clip, roles, .. } = played;
+fn clip(played: &PlayedClip, most: usize) -> serde_json::Value {
+    let PlayedClip { clip, roles, .. } = played;
     let whole = 0.0..clip.duration_secs();
     let secs = played.secs.clone().unwrap_or(whole);
     let frame_at = |secs: f64| ((secs * clip.rate_hz).round().max(0.0) as usize).min(clip.frames);
@@ -249,7 +249,7 @@ mod tests {
             start_secs: 0.3,
             stop_secs: 1.0,
         };
-        let played = Played {
+        let played = PlayedClip {
             clip: &take.clip,
             roles: &take.roles,
             secs: None,
@@ -288,7 +288,7 @@ mod tests {
     fn a_stretch_is_cut_out_and_thinned() {
         let script = Script::new(3, Person::draw(31, 2)).rest(0.3).play("wave");
         let take = Take::new(script.film("wave", 30.0).unwrap().clip).unwrap();
-        let played = Played {
+        let played = PlayedClip {
             clip: &take.clip,
             roles: &take.roles,
             secs: Some(0.3..1.3),

@@ -4,7 +4,7 @@ use super::compress::too_coarse;
 use super::measure::angle_between;
 use super::params::{SmoothError, SmoothParams};
 use super::playhead::Playhead;
-use super::split::{Channel, TooCoarse};
+use super::split::{ChannelFit, TooCoarse};
 use crate::clip::Clip;
 use crate::kinematics::WorldPose;
 use crate::progress::Progress;
@@ -81,7 +81,7 @@ fn reach(clip: &Clip) -> Vec<f64> {
 /// Fits channels again, more closely, until every joint lies within `metres` of where it was, at every frame.
 pub(super) fn tighten<'c>(
     clip: &'c Clip,
-    channels: &mut [Channel<'c>],
+    channels: &mut [ChannelFit<'c>],
     metres: f64,
     metres_per_unit: f64,
     progress: &dyn Progress,
@@ -114,7 +114,7 @@ struct Blame {
 
 struct Tightening<'w, 'c> {
     clip: &'c Clip,
-    channels: &'w mut [Channel<'c>],
+    channels: &'w mut [ChannelFit<'c>],
     /// Frames at which curves have changed since they were looked at.
     changed: Vec<bool>,
     /// Of each joint, its track's channel.
@@ -127,7 +127,7 @@ struct Tightening<'w, 'c> {
 }
 
 impl<'w, 'c> Tightening<'w, 'c> {
-    fn new(clip: &'c Clip, channels: &'w mut [Channel<'c>], bound: f64) -> Self {
+    fn new(clip: &'c Clip, channels: &'w mut [ChannelFit<'c>], bound: f64) -> Self {
         let joints = clip.skeleton.len();
         let mut tracks = vec![None; joints];
         for (i, track) in clip.tracks.iter().enumerate() {

@@ -3,8 +3,8 @@
 use super::bound;
 use super::measure::Errors;
 use super::params::{SmoothError, SmoothParams};
-use super::samples::{Samples, with_continuous_signs};
-use super::split::{Channel, TooCoarse};
+use super::samples::{ChannelSamples, with_continuous_signs};
+use super::split::{ChannelFit, TooCoarse};
 use super::{CompressedClip, Curve};
 use crate::clip::Clip;
 use crate::progress::Progress;
@@ -83,21 +83,21 @@ pub fn compress(
 }
 
 /// Rotations joint by joint, then tracks, each with its threshold.
-fn channels<'a>(clip: &'a Clip, params: &SmoothParams) -> Vec<Channel<'a>> {
+fn channels<'a>(clip: &'a Clip, params: &SmoothParams) -> Vec<ChannelFit<'a>> {
     let joints = clip.skeleton.len();
     let thresholds = bound::Thresholds::new(clip, params);
     let mut channels = Vec::with_capacity(joints + clip.tracks.len());
     for joint in 0..joints {
-        let samples = Samples::Rotations {
+        let samples = ChannelSamples::Rotations {
             table: &clip.rotations,
             joints,
             joint,
         };
-        channels.push(Channel::new(samples, chord(thresholds.angle_rad(joint))));
+        channels.push(ChannelFit::new(samples, chord(thresholds.angle_rad(joint))));
     }
     for track in &clip.tracks {
-        let samples = Samples::Positions(&track.positions);
-        channels.push(Channel::new(samples, thresholds.position()));
+        let samples = ChannelSamples::Positions(&track.positions);
+        channels.push(ChannelFit::new(samples, thresholds.position()));
     }
     channels
 }

@@ -1,16 +1,16 @@
 //! Curves frame by frame: only the frame at hand is held, however long the clip is.
 
-use super::bezier::{Kind, Point, Segment};
+use super::bezier::{ChannelKind, ChannelValue, CurveSegment};
 use super::sample::rotation;
 use crate::clip::{Clip, JointTrack, Skeleton};
 use crate::kinematics::WorldPose;
 use crate::math::{Quat, Vec3};
 
 /// A channel to be played: its curves in order, and the value that a channel without curves keeps.
-pub(super) trait Played {
-    fn kind(&self) -> Kind;
-    fn start(&self) -> Point;
-    fn segments(&self) -> &[Segment];
+pub(super) trait PlayedChannel {
+    fn kind(&self) -> ChannelKind;
+    fn start(&self) -> ChannelValue;
+    fn segments(&self) -> &[CurveSegment];
 }
 
 /// The frame of some channels at which they were last asked, rotations joint by joint and then tracks.
@@ -58,21 +58,25 @@ impl Playhead {
     }
 
     /// Moves on to `frame`. O(channels), and O(log curves) for each channel that comes to another curve.
-    pub fn set<'a, C: Played + 'a>(&mut self, channels: impl Iterator<Item = &'a C>, frame: usize) {
+    pub fn set<'a, C: PlayedChannel + 'a>(
+        &mut self,
+        channels: impl Iterator<Item = &'a C>,
+        frame: usize,
+    ) {
         let joints = self.frame.skeleton.len();
         for (c, channel) in channels.enumerate() {
             let value = self.value(c, channel, frame);
             match channel.kind() {
-                Kind::Rotation => self.frame.rotations[c] = rotation(&value),
-                Kind::Position => self.frame.tracks[c - joints].positions[0] = value.xyz(),
+                ChannelKind::Rotation => self.frame.rotations[c] = rotation(&value),
+                ChannelKind::Position => self.frame.tracks[c - joints].positions[0] = value.xyz(),
             }
         }
         self.pose.set(&self.frame, 0);
     }
 
-    fn value(&mut self, c: usize, channel: &impl Played, frame: usize) -> Point {
+    fn value(&mut self, c: usize, channel: &impl PlayedChannel, frame: usize) -> ChannelValue {
         let (segments, current) = (channel.segments(), &mut self.current[c]);
-        let begun = |segment: &Segment| segment.start as usize <= frame;
+        let begun = |segment: &CurveSegment| segment.start as usize <= frame;
         if segments.get(*current + 1).is_some_and(begun) {
             *current += segments[*current + 1..].partition_point(begun);
         }

@@ -2,13 +2,13 @@
 
 use std::borrow::Cow;
 
-use super::bezier::{Kind, Point};
+use super::bezier::{ChannelKind, ChannelValue};
 use crate::clip::Clip;
 use crate::math::{Quat, Vec3, same_hemisphere};
 
 /// The samples of a channel, read where the clip has them: copies of all channels would take more than the clip.
 #[derive(Clone, Copy)]
-pub(super) enum Samples<'a> {
+pub(super) enum ChannelSamples<'a> {
     /// Column `joint` of a table of `joints` columns; signs are continuous.
     Rotations {
         table: &'a [Quat],
@@ -19,11 +19,11 @@ pub(super) enum Samples<'a> {
     Positions(&'a [Vec3]),
 }
 
-impl Samples<'_> {
-    pub fn kind(&self) -> Kind {
+impl ChannelSamples<'_> {
+    pub fn kind(&self) -> ChannelKind {
         match self {
-            Self::Rotations { .. } => Kind::Rotation,
-            Self::Positions(_) => Kind::Position,
+            Self::Rotations { .. } => ChannelKind::Rotation,
+            Self::Positions(_) => ChannelKind::Position,
         }
     }
 
@@ -39,7 +39,7 @@ impl Samples<'_> {
         self.len() == 0
     }
 
-    pub fn at(&self, frame: usize) -> Point {
+    pub fn at(&self, frame: usize) -> ChannelValue {
         match self {
             Self::Rotations {
                 table,
@@ -51,12 +51,12 @@ impl Samples<'_> {
     }
 
     /// The samples of a range of frames.
-    pub fn range(&self, frames: impl Iterator<Item = usize>) -> impl Iterator<Item = Point> {
+    pub fn range(&self, frames: impl Iterator<Item = usize>) -> impl Iterator<Item = ChannelValue> {
         frames.map(|frame| self.at(frame))
     }
 
     /// All samples.
-    pub fn iter(&self) -> impl Iterator<Item = Point> {
+    pub fn iter(&self) -> impl Iterator<Item = ChannelValue> {
         self.range(0..self.len())
     }
 }

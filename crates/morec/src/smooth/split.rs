@@ -1,10 +1,10 @@
 //! Curve simplification (thesis, Alg. 1): one curve if it is near enough, else two that meet where it is furthest.
 
-use super::bezier::{Kind, Point, Segment};
+use super::bezier::{ChannelKind, ChannelValue, CurveSegment};
 use super::fit::{Stretch, Worst};
 use super::lattice::{Code, Lattice, MOST_STEPS, Piece, Tangents};
-use super::playhead::Played;
-use super::samples::Samples;
+use super::playhead::PlayedChannel;
+use super::samples::ChannelSamples;
 use crate::clip::Span;
 
 /// A channel being fitted.
@@ -13,18 +13,18 @@ use crate::clip::Span;
 /// which is 0 for whatever returns to where it was. As corrected: from the curve to the samples, against a fixed
 /// threshold, which is what its text asks for. Splits that all fall near one end would cost O(n²); below a depth of
 /// some log n stretches are halved, so that fitting takes O(n log n).
-pub(super) struct Channel<'a> {
+pub(super) struct ChannelFit<'a> {
     pub lattice: Lattice,
-    pub samples: Samples<'a>,
+    pub samples: ChannelSamples<'a>,
     /// Largest distance (chord between quaternions) from curve to sample.
     pub tolerance: f64,
     /// Shares of the tolerance that are allowed frame by frame, where they are not 1.
     pub shares: Option<Vec<f32>>,
     pub first: Code,
     pub pieces: Vec<Piece>,
-    pub segments: Vec<Segment>,
-    /// Samples seen from the key at hand.
-    local: Vec<Point>,
+    pub segments: Vec<CurveSegment>,
+    /// ChannelSamples seen from the key at hand.
+    local: Vec<ChannelValue>,
 }
 
 /// The steps are too coarse for what is allowed at this frame.
@@ -35,23 +35,23 @@ pub(super) struct TooCoarse {
     pub limit: f64,
 }
 
-impl Played for Channel<'_> {
-    fn kind(&self) -> Kind {
+impl PlayedChannel for ChannelFit<'_> {
+    fn kind(&self) -> ChannelKind {
         self.lattice.kind
     }
 
     /// The first key's point.
-    fn start(&self) -> Point {
+    fn start(&self) -> ChannelValue {
         self.lattice.key_point(&self.first, None)
     }
 
-    fn segments(&self) -> &[Segment] {
+    fn segments(&self) -> &[CurveSegment] {
         &self.segments
     }
 }
 
-impl<'a> Channel<'a> {
-    pub fn new(samples: Samples<'a>, tolerance: f64) -> Self {
+impl<'a> ChannelFit<'a> {
+    pub fn new(samples: ChannelSamples<'a>, tolerance: f64) -> Self {
         let lattice = Lattice::new(samples.kind(), tolerance);
         let (pieces, segments) = (Vec::new(), Vec::new());
         Self {
@@ -82,7 +82,7 @@ impl<'a> Channel<'a> {
     pub fn fit(&mut self) -> Result<(), TooCoarse> {
         loop {
             let limit = self.limit();
-            let beyond = |sample: Point| sample.amax() > limit;
+            let beyond = |sample: ChannelValue| sample.amax() > limit;
             if let Some(frame) = self.samples.iter().position(beyond) {
                 return Err(TooCoarse { frame, limit });
             }
@@ -122,15 +122,15 @@ impl<'a> Channel<'a> {
 
     /// One key for all frames, if it is near enough to each.
     fn fit_constant(&mut self) -> bool {
-        let middle = self.samples.iter().sum::<Point>() / self.samples.len() as f64;
+        let middle = self.samples.iter().sum::<ChannelValue>() / self.samples.len() as f64;
         let Some(middle) = self.lattice.kind.finish(middle) else {
             return false;
         };
         self.first = self.lattice.key_code(&middle);
         let key = self.start();
-        let near = |sample: &Point| match self.lattice.kind {
-            Kind::Position => (sample - key).norm_squared(),
-            Kind::Rotation => (sample - key)
+        let near = |sample: &ChannelValue| match self.lattice.kind {
+            ChannelKind::Position => (sample - key).norm_squared(),
+            ChannelKind::Rotation => (sample - key)
                 .norm_squared()
                 .min((sample + key).norm_squared()),
         };
@@ -157,9 +157,9 @@ impl<'a> Channel<'a> {
             );
             frames = &frames[frames.partition_point(|&frame| frame < from)..];
             if frames.first().is_some_and(|&frame| frame <= to) {
-                let start: Point = segments
+                let start: ChannelValue = segments
                     .last()
-                    .map_or_else(|| self.start(), |s: &Segment| s.points[3]);
+                    .map_or_else(|| self.start(), |s: &CurveSegment| s.points[3]);
                 self.simplify(from, to, start, &mut pieces, &mut segments)?;
                 ranges.push(from..to + 1);
             } else {
@@ -178,9 +178,9 @@ impl<'a> Channel<'a> {
         &mut self,
         from: usize,
         to: usize,
-        start: Point,
+        start: ChannelValue,
         pieces: &mut Vec<Piece>,
-        segments: &mut Vec<Segment>,
+        segments: &mut Vec<CurveSegment>,
     ) -> Result<(), TooCoarse> {
         let depth_of_halving = 2 * (to - from).max(1).ilog2() + 8;
         let mut key = start;
@@ -220,10 +220,10 @@ impl<'a> Channel<'a> {
         &mut self,
         from: usize,
         to: usize,
-        start: Point,
-    ) -> Result<(Piece, Segment), Worst> {
+        start: ChannelValue,
+    ) -> Result<(Piece, CurveSegment), Worst> {
         let (lattice, kind) = (self.lattice, self.lattice.kind);
-        let sign = if kind == Kind::Rotation && start.dot(&self.samples.at(from)) < 0.0 {
+        let sign = if kind == ChannelKind::Rotation && start.dot(&self.samples.at(from)) < 0.0 {
             -1.0
         } else {
             1.0

@@ -8,7 +8,7 @@ use morec::roles::Role;
 use morec_db::{ClipFilter, ClipId, ClipInfo, ClipUpdate};
 
 use crate::database;
-use crate::table::Table;
+use crate::table::TextTable;
 
 /// List the clips of a database, or change what is known about them
 #[derive(clap::Args)]
@@ -168,7 +168,7 @@ fn remove(args: &Args, filter: &ClipFilter) -> Result<ExitCode> {
 }
 
 fn print(clips: &[ClipInfo], all: usize) -> Result<()> {
-    let mut table = Table::new([
+    let mut table = TextTable::new([
         "clip", "secs", "Hz", "joints", "samples", "kB", "who", "tags",
     ])
     .least(["kB", "joints", "Hz", "tags", "who", "secs"]);

@@ -7,11 +7,11 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
 use clap::ValueEnum;
-use morec_db::exchange::{self, Annotation, Form};
-use morec_db::labels::{SampleFilter, State};
+use morec_db::exchange::{self, Annotation, LabelFormat};
+use morec_db::labels::{SampleFilter, SampleState};
 
 use super::label::StateArg;
-use crate::commands::convert::{self, Table};
+use crate::commands::convert::{self, CsvContent};
 use crate::database;
 use crate::output;
 
@@ -53,7 +53,7 @@ pub struct Args {
     motion: Option<String>,
     /// What a CSV of motion holds
     #[arg(long, value_enum, default_value = "positions", requires = "motion")]
-    table: Table,
+    table: CsvContent,
     /// Print one JSON object: what was written
     #[arg(long)]
     json: bool,
@@ -80,29 +80,29 @@ enum ExportForm {
 }
 
 impl ExportForm {
-    fn of_labels(self) -> Result<Form> {
+    fn of_labels(self) -> Result<LabelFormat> {
         Ok(match self {
-            Self::Tsv => Form::Tsv,
-            Self::Csv => Form::Csv,
-            Self::Json => Form::Json,
-            Self::Eaf => Form::Eaf,
-            Self::Audacity => Form::Audacity,
-            Self::Babel => Form::Babel,
-            Self::LabelStudio => Form::LabelStudio,
+            Self::Tsv => LabelFormat::Tsv,
+            Self::Csv => LabelFormat::Csv,
+            Self::Json => LabelFormat::Json,
+            Self::Eaf => LabelFormat::Eaf,
+            Self::Audacity => LabelFormat::Audacity,
+            Self::Babel => LabelFormat::Babel,
+            Self::LabelStudio => LabelFormat::LabelStudio,
             _ => bail!("--form: that is a form of motion; say of which clip with --motion"),
         })
     }
 
-    fn of_motion(self) -> Result<convert::Form> {
+    fn of_motion(self) -> Result<convert::ClipForm> {
         Ok(match self {
-            Self::Csv => convert::Form::Csv,
-            Self::Bvh => convert::Form::Bvh,
-            Self::C3d => convert::Form::C3d,
-            Self::Trc => convert::Form::Trc,
-            Self::Jsonl => convert::Form::Jsonl,
-            Self::Glb => convert::Form::Glb,
-            Self::Vrma => convert::Form::Vrma,
-            Self::Npz => convert::Form::Npz,
+            Self::Csv => convert::ClipForm::Csv,
+            Self::Bvh => convert::ClipForm::Bvh,
+            Self::C3d => convert::ClipForm::C3d,
+            Self::Trc => convert::ClipForm::Trc,
+            Self::Jsonl => convert::ClipForm::Jsonl,
+            Self::Glb => convert::ClipForm::Glb,
+            Self::Vrma => convert::ClipForm::Vrma,
+            Self::Npz => convert::ClipForm::Npz,
             _ => bail!("--form: that is a form of labels, and --motion writes motion"),
         })
     }
@@ -137,17 +137,17 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             class: s.class,
             person: s.subject,
             score: s.score,
-            state: State::from(args.state),
+            state: SampleState::from(args.state),
         })
         .collect();
     let shown = args.output.to_string_lossy();
     let form = match args.form {
         Some(form) => form.of_labels()?,
-        None => Form::of_file(&shown, b"{\"labels\":[]}")
+        None => LabelFormat::of_file(&shown, b"{\"labels\":[]}")
             .with_context(|| format!("{shown}: its ending says no form of labels; give --form"))?,
     };
     if annotations.iter().any(|a| !form.keeps(a.state)) {
-        let (form, state) = (form.name(), State::from(args.state).name());
+        let (form, state) = (form.name(), SampleState::from(args.state).name());
         eprintln!(
             "morec: {form} does not say that these are {state}; read back, give --state {state} again"
         );
@@ -181,9 +181,9 @@ fn said(args: &Args, files: usize, count: usize, what: &str) -> Result<ExitCode>
 
 fn a_file_a_clip(
     folder: &Path,
-    form: Form,
+    form: LabelFormat,
     annotations: &[Annotation],
-    lengths: &exchange::Lengths,
+    lengths: &exchange::ClipLengths,
 ) -> Result<usize> {
     if folder.is_file() {
         bail!(
@@ -193,7 +193,11 @@ fn a_file_a_clip(
         );
     }
     std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
-    let ending = if form == Form::Eaf { "eaf" } else { "txt" };
+    let ending = if form == LabelFormat::Eaf {
+        "eaf"
+    } else {
+        "txt"
+    };
     let mut files = 0;
     let of_clips: Vec<&[Annotation]> = annotations.chunk_by(|a, b| a.clip == b.clip).collect();
     let names = exchange::file_names(of_clips.iter().map(|of_clip| of_clip[0].clip.as_str()));

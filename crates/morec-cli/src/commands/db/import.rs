@@ -14,7 +14,7 @@ use super::copies::{self, Copy};
 use super::samples;
 use crate::database;
 use crate::files::{self, ReadArgs};
-use crate::progress::Bar;
+use crate::progress::StageBar;
 
 /// Import clips, or folders of clips
 ///
@@ -90,7 +90,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         add_tags: args.tags.clone(),
         remove_tags: Vec::new(),
     };
-    let bar = Bar::stoppable()?;
+    let bar = StageBar::stoppable()?;
     let report = db.import(&paths, &reader, &about, &bar)?;
     let near_copies = near_copies(&mut db, &report, &bar)?;
     if args.json {
@@ -156,7 +156,7 @@ struct Reported<'a> {
 }
 
 /// Which of the clips that have just come are nearly others.
-fn near_copies(db: &mut MotionDb, report: &ImportLog, bar: &Bar) -> Result<Vec<Copy>> {
+fn near_copies(db: &mut MotionDb, report: &ImportLog, bar: &StageBar) -> Result<Vec<Copy>> {
     let names = report.files.iter().flat_map(|(_, outcome)| match outcome {
         ImportOutcome::Imported { clips, .. } => clips.as_slice(),
         _ => &[],

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Context, Result};
-use morec::player::{Mark, Played, Reel};
+use morec::player::{Mark, PlayedClip, Reel};
 use morec_db::{ClipId, MotionDb, StoredClip};
 
 use super::strip::strip;
@@ -99,7 +99,7 @@ impl Page {
         let svg = strip(stored, start_secs, stop_secs, POSES);
         let moves = match self.reel.bytes() < MOST_BYTES {
             true => {
-                let played = Played {
+                let played = PlayedClip {
                     clip: &stored.clip,
                     roles: &stored.roles,
                     secs: Some(start_secs..stop_secs),

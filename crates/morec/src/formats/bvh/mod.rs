@@ -24,7 +24,7 @@ pub use positions::PositionChannels;
 pub use write::write;
 
 use self::character::Character;
-use self::hierarchy::Hierarchy;
+use self::hierarchy::BvhHierarchy;
 use self::notes::Notes;
 use self::positions::Votes;
 use self::source::{InFile, InMemory, TableText};
@@ -74,7 +74,7 @@ pub fn read(
 ) -> Result<Loaded, ParseError> {
     let text = without_bom(bytes)?;
     let mut notes = Notes::default();
-    let head = Head::read(text, limits, &mut notes)?;
+    let head = BvhHead::read(text, limits, &mut notes)?;
     let mut table = InMemory::new(&text[head.end..]);
     head.with_table(&mut table, name, options, limits, notes)
 }
@@ -108,7 +108,7 @@ fn read_in_pieces(
         let is_whole = source::read_all(file.by_ref().take(more), &mut bytes)? < more as usize;
         let text = without_bom(&bytes)?;
         let mut notes = Notes::default();
-        let head = match Head::read(text, limits, &mut notes) {
+        let head = match BvhHead::read(text, limits, &mut notes) {
             Ok(head) if is_whole || head.is_followed(text) => head,
             Err(error) if is_whole => return Err(error),
             _ => continue,
@@ -121,17 +121,17 @@ fn read_in_pieces(
 }
 
 /// All that stands before the table.
-struct Head {
-    hierarchy: Hierarchy,
+struct BvhHead {
+    hierarchy: BvhHierarchy,
     /// The MOTION section's, if there is one.
-    header: Option<motion::Header>,
+    header: Option<motion::MotionHeader>,
     /// Where the head ends, in bytes,
     end: usize,
     /// and on which line.
     line: u64,
 }
 
-impl Head {
+impl BvhHead {
     fn read(text: &[u8], limits: &Limits, notes: &mut Notes) -> Result<Self, ParseError> {
         let mut cursor = find_hierarchy(text, limits, notes)?;
         let encoding = Encoding::of(hierarchy_bytes(&text[cursor.pos..]));
@@ -219,7 +219,7 @@ impl Head {
             );
             return Ok((rate_hz, Vec::new()));
         }
-        let request = motion::Request {
+        let request = motion::TableSpec {
             declared: header.frames,
             bad_line_share: options.bad_line_share,
             first_line: self.line,

@@ -3,14 +3,14 @@
 use super::character::Character;
 use super::notes::Notes;
 use super::number;
-use super::rows::{Row, Rows, SoFar};
+use super::rows::{LinesSoFar, MotionLine, MotionLines};
 use super::source::TableText;
 use super::text::{Cursor, show};
 use crate::formats::{Limits, ParseError, Place};
 
 /// What stands between MOTION and the table.
 #[derive(Debug)]
-pub(super) struct Header {
+pub(super) struct MotionHeader {
     /// `Frames:`, if it is a count.
     pub frames: Option<u64>,
     /// `Frame Time:`, if it is a number.
@@ -20,8 +20,11 @@ pub(super) struct Header {
 }
 
 /// Reads `Frames` and `Frame Time`, in any order, as far as they are there.
-pub(super) fn header(cursor: &mut Cursor<'_>, notes: &mut Notes) -> Result<Header, ParseError> {
-    let mut header = Header {
+pub(super) fn header(
+    cursor: &mut Cursor<'_>,
+    notes: &mut Notes,
+) -> Result<MotionHeader, ParseError> {
+    let mut header = MotionHeader {
         frames: None,
         frame_time_secs: None,
         at: cursor.place(),
@@ -109,7 +112,7 @@ pub(super) fn table(
     text: &mut dyn TableText,
     width: usize,
     characters: &mut [Character],
-    request: &Request<'_>,
+    request: &TableSpec<'_>,
     notes: &mut Notes,
 ) -> Result<Vec<usize>, ParseError> {
     let joints = characters.iter().map(|c| c.joints.len()).sum::<usize>();
@@ -144,14 +147,14 @@ pub(super) fn table(
 /// Gives every row of the table to `take`: its numbers, its line, what it is.
 fn each_row(
     text: &mut dyn TableText,
-    request: &Request<'_>,
+    request: &TableSpec<'_>,
     notes: &mut Notes,
-    mut take: impl FnMut(&mut Vec<f64>, u64, Row, &mut Notes) -> Result<(), ParseError>,
+    mut take: impl FnMut(&mut Vec<f64>, u64, MotionLine, &mut Notes) -> Result<(), ParseError>,
 ) -> Result<(), ParseError> {
-    let mut so_far = SoFar::new(request.first_line);
+    let mut so_far = LinesSoFar::new(request.first_line);
     let mut values = Vec::new();
     while let Some(piece) = text.next()? {
-        let mut rows = Rows::new(piece, request.limits.line_bytes, so_far, notes);
+        let mut rows = MotionLines::new(piece, request.limits.line_bytes, so_far, notes);
         while let Some((line, row)) = rows.next(&mut values, notes)? {
             take(&mut values, line, row, notes)?;
         }
@@ -161,7 +164,7 @@ fn each_row(
 }
 
 /// What the file and the caller say about the table.
-pub(super) struct Request<'a> {
+pub(super) struct TableSpec<'a> {
     /// Frames the header declares.
     pub declared: Option<u64>,
     /// Share of bad lines above which the table is refused.
@@ -196,21 +199,21 @@ impl MotionTable<'_> {
     fn by_line(
         mut self,
         text: &mut dyn TableText,
-        request: &Request<'_>,
+        request: &TableSpec<'_>,
         notes: &mut Notes,
     ) -> Result<Self, ParseError> {
         each_row(text, request, notes, |values, line, row, notes| {
             self.tally.numbers += values.len() as u64;
             match row {
-                Row::Numbers if values.len() == self.width => {
+                MotionLine::Numbers if values.len() == self.width => {
                     self.push(values, line)?;
                     self.tally.good(line);
                     note_missing(values, line, notes);
                 }
-                Row::Numbers => self.tally.bad(line, values.len() < self.width, || {
+                MotionLine::Numbers => self.tally.bad(line, values.len() < self.width, || {
                     format!("{} values", values.len())
                 }),
-                Row::Spoilt(token) => {
+                MotionLine::Spoilt(token) => {
                     self.tally.spoilt += 1;
                     self.tally.bad(line, true, || token);
                 }
@@ -224,7 +227,7 @@ impl MotionTable<'_> {
     fn by_stream(
         mut self,
         text: &mut dyn TableText,
-        request: &Request<'_>,
+        request: &TableSpec<'_>,
         notes: &mut Notes,
     ) -> Result<(), ParseError> {
         let mut pending = Vec::new();
@@ -304,7 +307,7 @@ impl RepairCounts {
     fn judge(
         mut self,
         width: usize,
-        request: &Request<'_>,
+        request: &TableSpec<'_>,
         notes: &mut Notes,
     ) -> Result<Vec<usize>, ParseError> {
         let keep = self.last_good.map_or(0, |f| f + 1);
@@ -340,7 +343,7 @@ impl RepairCounts {
         &self,
         bad: usize,
         width: usize,
-        request: &Request<'_>,
+        request: &TableSpec<'_>,
     ) -> Result<(), ParseError> {
         if bad as f64 <= request.bad_line_share * self.lines as f64 {
             return Ok(());
@@ -358,7 +361,7 @@ impl RepairCounts {
 }
 
 /// Says what is wrong with a header whose counts do not match the `frames` that were found.
-pub(super) fn compare_counts(header: &Header, frames: usize, notes: &mut Notes) {
+pub(super) fn compare_counts(header: &MotionHeader, frames: usize, notes: &mut Notes) {
     match header.frames {
         None => notes.add(
             header.at,

@@ -7,7 +7,7 @@ use crate::formats::ParseError;
 
 /// What a line of the motion table held; its numbers are in the caller's buffer.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Row {
+pub(super) enum MotionLine {
     /// Numbers only.
     Numbers,
     /// Numbers and something that is none.
@@ -15,7 +15,7 @@ pub(super) enum Row {
 }
 
 /// Reads lines of the motion table, skipping what is blank, a comment or foreign text.
-pub(super) struct Rows<'t> {
+pub(super) struct MotionLines<'t> {
     cursor: Cursor<'t>,
     /// `None`: no line with numbers has been seen.
     decimal_comma: Option<bool>,
@@ -23,12 +23,12 @@ pub(super) struct Rows<'t> {
 
 /// What the lines of a table before others have shown.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct SoFar {
+pub(super) struct LinesSoFar {
     line: u64,
     decimal_comma: Option<bool>,
 }
 
-impl SoFar {
+impl LinesSoFar {
     /// Nothing; the table begins on `line`.
     pub fn new(line: u64) -> Self {
         Self {
@@ -38,9 +38,9 @@ impl SoFar {
     }
 }
 
-impl<'t> Rows<'t> {
+impl<'t> MotionLines<'t> {
     /// The lines of `text`. Commas are decimal points if the table's first line with numbers has them and no points.
-    pub fn new(text: &'t [u8], line_limit: usize, so_far: SoFar, notes: &mut Notes) -> Self {
+    pub fn new(text: &'t [u8], line_limit: usize, so_far: LinesSoFar, notes: &mut Notes) -> Self {
         let mut cursor = Cursor::new(text, line_limit);
         cursor.line = so_far.line;
         let mut first = cursor.clone();
@@ -68,8 +68,8 @@ impl<'t> Rows<'t> {
     }
 
     /// For the lines that follow.
-    pub fn so_far(&self) -> SoFar {
-        SoFar {
+    pub fn so_far(&self) -> LinesSoFar {
+        LinesSoFar {
             line: self.cursor.line,
             decimal_comma: self.decimal_comma,
         }
@@ -80,7 +80,7 @@ impl<'t> Rows<'t> {
         &mut self,
         values: &mut Vec<f64>,
         notes: &mut Notes,
-    ) -> Result<Option<(u64, Row)>, ParseError> {
+    ) -> Result<Option<(u64, MotionLine)>, ParseError> {
         loop {
             self.cursor.skip_space()?;
             if self.cursor.peek().is_none() {
@@ -97,7 +97,7 @@ impl<'t> Rows<'t> {
     }
 
     /// Reads the rest of the line; `None` if it held no number.
-    fn line(&mut self, values: &mut Vec<f64>, notes: &mut Notes) -> Option<Row> {
+    fn line(&mut self, values: &mut Vec<f64>, notes: &mut Notes) -> Option<MotionLine> {
         loop {
             // The common case in a tight loop; whatever it does not understand is looked at closely.
             while let Some(value) = number::fixed(self.cursor.text, &mut self.cursor.pos) {
@@ -105,12 +105,12 @@ impl<'t> Rows<'t> {
                 self.cursor.skip_blanks();
             }
             if self.cursor.at_line_end() {
-                return Some(Row::Numbers);
+                return Some(MotionLine::Numbers);
             }
             if self.cursor.at_comment() {
                 notes.count("comment", self.cursor.line, || "comment skipped".into());
                 self.cursor.rest_of_line();
-                return (!values.is_empty()).then_some(Row::Numbers);
+                return (!values.is_empty()).then_some(MotionLine::Numbers);
             }
             let start = self.cursor.pos;
             let token = self.word();
@@ -160,11 +160,11 @@ impl<'t> Rows<'t> {
         token: &[u8],
         values: &[f64],
         notes: &mut Notes,
-    ) -> Option<Row> {
+    ) -> Option<MotionLine> {
         let rest = self.cursor.rest_of_line();
         let mut others = rest.split(|&b| b <= b' ');
         if !values.is_empty() || others.any(|t| number::parse(t).is_some()) {
-            return Some(Row::Spoilt(show(Some(token))));
+            return Some(MotionLine::Spoilt(show(Some(token))));
         }
         let whole = &self.cursor.text[start..self.cursor.pos];
         let text = || format!("a line without a number skipped, {}", show(Some(whole)));

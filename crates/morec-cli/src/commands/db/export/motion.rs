@@ -8,8 +8,8 @@ use morec::formats::bvh;
 use morec_db::{ClipFilter, ClipInfo, MotionDb, exchange};
 
 use super::{Args, said};
-use crate::commands::convert::{Form, Table, write_take};
-use crate::progress::Progress;
+use crate::commands::convert::{ClipForm, CsvContent, write_take};
+use crate::progress::SlowProgress;
 
 /// Writes the clips whose names match `pattern`: one as the file that `args` name, several into it as a folder.
 pub(super) fn export(args: &Args, db: &MotionDb, pattern: &str) -> Result<ExitCode> {
@@ -29,21 +29,21 @@ pub(super) fn export(args: &Args, db: &MotionDb, pattern: &str) -> Result<ExitCo
     said(args, files, frames, "frames")
 }
 
-fn one(args: &Args, db: &MotionDb, clip: &ClipInfo, form: Option<Form>) -> Result<usize> {
+fn one(args: &Args, db: &MotionDb, clip: &ClipInfo, form: Option<ClipForm>) -> Result<usize> {
     let output = &args.output;
     let shown = || output.display().to_string();
     let to_stdout = output == Path::new("-");
     let form = match form {
         Some(form) => form,
-        None if to_stdout => Form::Bvh,
-        None => Form::of(output).with_context(shown)?,
+        None if to_stdout => ClipForm::Bvh,
+        None => ClipForm::of(output).with_context(shown)?,
     };
-    if args.table != Table::Positions && form != Form::Csv {
+    if args.table != CsvContent::Positions && form != ClipForm::Csv {
         bail!("--table says what a .csv holds, and the output is none");
     }
     let take = db.clip(clip.id)?.into_take()?;
     if to_stdout {
-        if form != Form::Bvh {
+        if form != ClipForm::Bvh {
             bail!("standard output takes motion as BVH; give a file for other forms");
         }
         let mut text = Vec::new();
@@ -55,7 +55,7 @@ fn one(args: &Args, db: &MotionDb, clip: &ClipInfo, form: Option<Form>) -> Resul
     Ok(take.clip.frames)
 }
 
-fn folder(args: &Args, db: &MotionDb, clips: &[ClipInfo], form: Option<Form>) -> Result<usize> {
+fn folder(args: &Args, db: &MotionDb, clips: &[ClipInfo], form: Option<ClipForm>) -> Result<usize> {
     let folder = &args.output;
     if folder == Path::new("-") || folder.is_file() {
         bail!(
@@ -64,13 +64,13 @@ fn folder(args: &Args, db: &MotionDb, clips: &[ClipInfo], form: Option<Form>) ->
             clips.len()
         );
     }
-    let form = form.unwrap_or(Form::Bvh);
-    if args.table != Table::Positions && form != Form::Csv {
+    let form = form.unwrap_or(ClipForm::Bvh);
+    if args.table != CsvContent::Positions && form != ClipForm::Csv {
         bail!("--table says what a .csv holds; add --form csv");
     }
     std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
     let names = exchange::file_names(clips.iter().map(|clip| clip.name.as_str()));
-    let mut progress = Progress::new(clips.len(), "writing clips");
+    let mut progress = SlowProgress::new(clips.len(), "writing clips");
     let mut frames = 0;
     for (clip, name) in clips.iter().zip(&names) {
         let take = db.clip(clip.id)?.into_take()?;
