@@ -29,7 +29,7 @@ use clap::{CommandFactory, Parser, Subcommand};
     name = "morec",
     version = env!("MOREC_VERSION"),
     propagate_version = true,
-    max_term_width = 100
+    max_term_width = 80
 )]
 struct Cli {
     #[command(subcommand)]

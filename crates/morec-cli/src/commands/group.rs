@@ -26,9 +26,9 @@ use crate::poses::PoseArgs;
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
-  morec group recordings/ --labels labels.tsv
+  morec group clips/ --labels labels.tsv
   morec group recordings/ --labels labels.tsv --method kwas --centre none --tau 0.995
-  morec group moves.mdb --of labels                       # and how well that agrees with the classes
+  morec group moves.mdb --of labels             # and how well classes agree
   morec group moves.mdb --method hierarchy --groups 12 --name-as group")]
 pub struct Args {
     /// Clips, folders of clips, or one database

@@ -52,7 +52,7 @@ pub struct Args {
     /// Draw the body as it was understood, left and right in colours of their own
     #[arg(long, conflicts_with = "json")]
     draw: bool,
-    /// With --draw: write the picture of one clip as SVG, with the names of its joints
+    /// Where to write, with --draw: the picture of one clip as SVG, with the names of its joints
     #[arg(short, long, value_name = "FILE", requires = "draw")]
     output: Option<PathBuf>,
     /// Roles that override those found: a file of `role<TAB>joint` lines

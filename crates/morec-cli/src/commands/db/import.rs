@@ -25,7 +25,7 @@ use crate::progress::StageBar;
 #[command(after_help = "\
 Examples:
   morec db import moves.mdb recordings/
-  morec db import moves.mdb 13_29.amc --skeleton 13.asf --subject 13 --tag exercise
+  morec db import moves.mdb 13_29.amc --skeleton 13.asf --subject 13
   morec db import moves.mdb cleaned/take_1.bvh --in-place-of take_1
 
 Ctrl-C finishes what is being written and says what was imported; the same command then goes on where it stopped.
