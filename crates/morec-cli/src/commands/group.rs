@@ -27,7 +27,7 @@ use crate::poses::PoseArgs;
 #[command(after_help = "\
 Examples:
   morec group clips/ --labels labels.tsv
-  morec group recordings/ --labels labels.tsv --method kwas --centre none --tau 0.995
+  morec group clips/ --labels labels.tsv --method kwas --centre none --tau 0.995
   morec group moves.mdb --of labels             # and how well classes agree
   morec group moves.mdb --method hierarchy --groups 12 --name-as group")]
 pub struct Args {
