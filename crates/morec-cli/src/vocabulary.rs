@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use clap::{ArgAction, Command, CommandFactory};
 
 /// Options that take something else from one command to another, and why they are called alike all the same.
-const EXCEPTIONS: [(&str, &str); 9] = [
+const EXCEPTIONS: [(&str, &str); 8] = [
     (
         "by",
         "`crossval` leaves out by clip or person, `db label` says who judges",
@@ -30,7 +30,6 @@ const EXCEPTIONS: [(&str, &str); 9] = [
         "samples",
         "`crossval` counts them, `db classes` lists those of a class",
     ),
-    ("seed", "`reproduce` takes several"),
     (
         "skeleton",
         "AMC motions have an ASF, broadcasts of Axis a BVH",
