@@ -24,7 +24,7 @@ use crate::poses::PoseArgs;
 Examples:
   morec cut 86_01.amc
   morec cut moves.mdb                   # every clip of a database
-  morec cut moves.mdb --name take_1 --at 1.2,4.5
+  morec cut moves.mdb --clip take_1 --at 1.2,4.5
   morec cut recordings/ --json > cuts.json
   morec cut long.bvh --penalty 8        # fewer cuts
   morec cut 86_01.amc --method ppca --plot cuts.svg")]

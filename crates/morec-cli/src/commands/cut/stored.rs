@@ -28,7 +28,7 @@ pub fn run(path: &Path, cutter: CheckedCutter, args: &Args) -> Result<ExitCode> 
     })?;
     if !args.at.is_empty() {
         let [clip] = clips.as_slice() else {
-            bail!("--at cuts one clip: --name chooses {}", clips.len());
+            bail!("--at cuts one clip: --clip chooses {}", clips.len());
         };
         db.cut_by_hand(clip, &args.at)?;
         let said = format!("{}: {} segments\n", clip.name, args.at.len() + 1);
