@@ -6,7 +6,7 @@ use crate::decode::TickDetection;
 use crate::features::{BoneSet, FeatureStream, Pushed};
 use crate::pivots::{PivotPose, PoseStream};
 use crate::svrdm::{FrameDetection, SvrdmEngine, SvrdmModel};
-use crate::templates::{EarlyParams, TemplateEngine, TemplateModel, Underway};
+use crate::templates::{ClassMatches, EarlyParams, TemplateEngine, TemplateModel, Underway};
 
 use super::recognizer::{DetectionBuffer, Steps};
 use super::{Hunch, Pose, StartError};
@@ -41,20 +41,30 @@ impl Seen {
 
 impl TemplatePath {
     pub(super) fn new(model: &Arc<TemplateModel>, bones: BoneSet) -> Result<Self, StartError> {
-        let model = if model.bones.and(bones) == model.bones {
-            model.clone()
-        } else {
-            Arc::new(model.restricted(bones)?)
-        };
-        let features = FeatureStream::new(model.bones, &model.features);
-        let (early, seen) = (EarlyParams::default(), Seen::default());
-        Ok(Self {
-            features,
-            engine: TemplateEngine::new(&model)?,
+        let model = restricted(model, bones)?;
+        let engine = TemplateEngine::new(&model)?;
+        Ok(Self::with(model, engine))
+    }
+
+    /// On matches from elsewhere, of the stream that will be pushed.
+    pub(super) fn replay(
+        model: &Arc<TemplateModel>,
+        bones: BoneSet,
+        matches: ClassMatches,
+    ) -> Result<Self, StartError> {
+        let model = restricted(model, bones)?;
+        let engine = TemplateEngine::replay(&model, matches)?;
+        Ok(Self::with(model, engine))
+    }
+
+    fn with(model: Arc<TemplateModel>, engine: TemplateEngine) -> Self {
+        Self {
+            features: FeatureStream::new(model.bones, &model.features),
+            engine,
             model,
-            early,
-            seen,
-        })
+            early: EarlyParams::default(),
+            seen: Seen::default(),
+        }
     }
 
     pub(super) fn latency_secs(&self) -> f64 {
@@ -123,6 +133,17 @@ impl TemplatePath {
     pub(super) fn set_early(&mut self, params: EarlyParams) {
         self.early = params;
     }
+}
+
+/// The model for a stream that shows `bones`; the same if that is all of them.
+fn restricted(
+    model: &Arc<TemplateModel>,
+    bones: BoneSet,
+) -> Result<Arc<TemplateModel>, StartError> {
+    if model.bones.and(bones) == model.bones {
+        return Ok(model.clone());
+    }
+    Ok(Arc::new(model.restricted(bones)?))
 }
 
 /// Pose rows and the stages of the thesis.

@@ -1,6 +1,8 @@
 //! Matching a stream against labelled samples, elastically in time.
 
 mod bank;
+mod class_matcher;
+mod class_matches;
 mod compact;
 mod early;
 mod engine;
@@ -14,6 +16,8 @@ mod trace;
 mod verifier;
 
 pub use bank::{Bank, Match, PartialMatch};
+pub use class_matcher::ClassMatcher;
+pub use class_matches::{ClassMatches, ClassMatchesError, reach_of};
 pub use early::{EarlyParams, Underway};
 pub use engine::TemplateEngine;
 pub use matcher::{Comparison, Matcher, TYPICAL_SPREAD, mean_and_spread};
