@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use crate::classes::ClassInfo;
-use crate::features::{BoneSet, Rows};
+use crate::features::{BoneSet, Rows, retimed_rows};
 use crate::progress::Progress;
 use crate::templates::{
     ALARM_RATES, Calibration, Matcher, Metric, OperatingPoint, Sample, Symmetric, TemplateModel,
@@ -99,6 +99,18 @@ pub fn train(
     let classes = class_infos(set, &samples);
     let (samples, quiet) = moving(samples, &metric, params);
     let samples = templates_of(samples, set.classes.len(), params.max_templates);
+    let mut samples = samples;
+    if params.tempo_templates > 0.0 {
+        let few = templates_of(samples.clone(), set.classes.len(), params.tempo_most);
+        let copies: Vec<TrainSample> = few
+            .iter()
+            .map(|s| TrainSample {
+                rows: retimed_rows(&s.rows, bones, &params.features, params.tempo_templates),
+                ..s.clone()
+            })
+            .collect();
+        samples.extend(copies);
+    }
     let step = Step {
         set,
         metric: &metric,
