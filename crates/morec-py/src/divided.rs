@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use rayon::prelude::*;
 
-use crate::archive::{Event, Motion, events, stored_motion};
+use crate::archive::{EventTuple, MotionColumns, events, stored_motion};
 use crate::index::PyIndex;
 
 fn templates(index: &MotionIndex) -> PyResult<&TemplateModel> {
@@ -39,11 +39,11 @@ pub fn part_of(index: &MotionIndex, part: usize, of: usize) -> PyResult<MotionIn
 pub fn match_kept<'py>(
     py: Python<'py>,
     part: &PyIndex,
-    clips: Vec<Motion>,
+    clips: Vec<MotionColumns>,
 ) -> PyResult<Vec<Bound<'py, PyAny>>> {
     let index = &part.index;
     let model = templates(index)?;
-    let one = |clip: &Motion| {
+    let one = |clip: &MotionColumns| {
         let stored = stored_motion(index, clip)?;
         let matches = match_clip(model, &stored.clip, &stored.roles, &stored.rest);
         Ok(matches.map_err(|error| error.to_string())?.to_bytes())
@@ -62,11 +62,11 @@ pub fn match_kept<'py>(
 pub fn recognize_matched_kept<'py>(
     py: Python<'py>,
     first: &PyIndex,
-    clips: Vec<(Motion, Vec<Vec<u8>>)>,
+    clips: Vec<(MotionColumns, Vec<Vec<u8>>)>,
 ) -> PyResult<Vec<Bound<'py, PyAny>>> {
     let index = &first.index;
     let model = templates(index)?;
-    let one = |(clip, matches): &(Motion, Vec<Vec<u8>>)| {
+    let one = |(clip, matches): &(MotionColumns, Vec<Vec<u8>>)| {
         let parts = matches.iter().map(|bytes| ClassMatches::from_bytes(bytes));
         let parts = parts.collect::<Result<Vec<_>, _>>();
         let merged = parts.and_then(ClassMatches::merge);
@@ -75,8 +75,9 @@ pub fn recognize_matched_kept<'py>(
         let found = recognize_matched(model, merged, &stored.clip, &stored.roles, &stored.rest);
         Ok(events(index, found.map_err(|error| error.to_string())?))
     };
-    let found: Vec<Result<Vec<Event>, String>> = py.detach(|| clips.par_iter().map(one).collect());
-    let told = |found: Result<Vec<Event>, String>| match found {
+    let found: Vec<Result<Vec<EventTuple>, String>> =
+        py.detach(|| clips.par_iter().map(one).collect());
+    let told = |found: Result<Vec<EventTuple>, String>| match found {
         Ok(events) => Ok(events.into_pyobject(py)?.into_any()),
         Err(error) => Ok(error.into_pyobject(py)?.into_any()),
     };

@@ -39,7 +39,11 @@ pub fn retimed_rows(rows: &Rows, bones: BoneSet, params: &FeatureParams, factor:
 /// Divides a weighted, saturated velocity by `factor` before its saturation.
 fn slow_down(velocity: &mut [f32], params: &FeatureParams, factor: f64) {
     let plain = |v: &f32| f64::from(*v) / params.velocity_weight;
-    let size = velocity.iter().map(|v| plain(v).powi(2)).sum::<f64>().sqrt();
+    let size = velocity
+        .iter()
+        .map(|v| plain(v).powi(2))
+        .sum::<f64>()
+        .sqrt();
     let share = (size / params.velocity_saturation).min(MOST_SATURATED);
     // v / (1 + |v| / s) has the length s · share: |v| = s · share / (1 − share).
     let slower = params.velocity_saturation * share / (1.0 - share) / factor;

@@ -1,7 +1,7 @@
 //! Role maps that cannot be true: each doubt is a sentence that says what to do.
 
-use super::names::{Kind, read};
-use super::tree::Tree;
+use super::names::{NameMeaning, read};
+use super::tree::JointTree;
 use super::{Role, RoleMap, proportions};
 use crate::clip::Skeleton;
 use crate::math::Vec3;
@@ -17,7 +17,7 @@ pub fn check(skeleton: &Skeleton, map: &RoleMap, poses: &[Vec<Vec3>]) -> Vec<Str
     let Some(first) = poses.first().filter(|_| !skeleton.is_empty()) else {
         return Vec::new();
     };
-    let body = Body {
+    let body = PosedBody {
         skeleton,
         map,
         poses,
@@ -31,7 +31,7 @@ pub fn check(skeleton: &Skeleton, map: &RoleMap, poses: &[Vec<Vec3>]) -> Vec<Str
     doubts
 }
 
-struct Body<'a> {
+struct PosedBody<'a> {
     skeleton: &'a Skeleton,
     map: &'a RoleMap,
     poses: &'a [Vec<Vec3>],
@@ -46,7 +46,7 @@ const ARMS: [[Role; 3]; 2] = [
     [Role::RightArm, Role::RightForearm, Role::RightHand],
 ];
 
-impl Body<'_> {
+impl PosedBody<'_> {
     fn at(&self, pose: &[Vec3], role: Role) -> Option<Vec3> {
         self.map.joint(role).map(|joint| pose[joint])
     }
@@ -213,7 +213,7 @@ impl Body<'_> {
     /// Whether this is a body of something else than a person.
     fn not_human(&self, first: &[Vec3]) -> Option<String> {
         let poses = [first.to_vec()];
-        let tree = Tree::new(self.skeleton, &poses);
+        let tree = JointTree::new(self.skeleton, &poses);
         let why = self
             .other_limbs(&tree)
             .or_else(|| self.on_all_fours())
@@ -225,7 +225,7 @@ impl Body<'_> {
     }
 
     /// No limbs at all, limbs of animals, or too many.
-    fn other_limbs(&self, tree: &Tree) -> Option<String> {
+    fn other_limbs(&self, tree: &JointTree) -> Option<String> {
         let has = |limb: &[Role; 3]| {
             limb.iter()
                 .filter(|r| self.map.joint(**r).is_some())
@@ -238,7 +238,7 @@ impl Body<'_> {
         }
         let human = self.human_words();
         let animal = self.skeleton.joints().iter().find(|joint| {
-            read(&joint.name).kind == Kind::Animal && read(&joint.name).side.is_some()
+            read(&joint.name).kind == NameMeaning::Animal && read(&joint.name).side.is_some()
         });
         if let Some(joint) = animal.filter(|_| human < 4) {
             return Some(format!("it has a joint `{}`", joint.name));
@@ -247,7 +247,7 @@ impl Body<'_> {
             return None;
         }
         let longest = tree.size();
-        let long = |pair: &super::tree::Pair| {
+        let long = |pair: &super::tree::MirroredPair| {
             pair.members
                 .iter()
                 .all(|&m| tree.reach(m) > 0.45 * longest && tree.main_chain(m).len() > 2)
@@ -264,7 +264,7 @@ impl Body<'_> {
             .iter()
             .map(|j| read(&j.name))
             .collect();
-        let both = |fits: &dyn Fn(Kind) -> bool| {
+        let both = |fits: &dyn Fn(NameMeaning) -> bool| {
             let side = |side| {
                 readings
                     .iter()
@@ -273,17 +273,20 @@ impl Body<'_> {
             side(super::names::Side::Left) && side(super::names::Side::Right)
         };
         [
-            both(&|k| k == Kind::Thigh),
-            both(&|k| k == Kind::Shin),
-            both(&|k| k == Kind::Foot),
+            both(&|k| k == NameMeaning::Thigh),
+            both(&|k| k == NameMeaning::Shin),
+            both(&|k| k == NameMeaning::Foot),
             both(&|k| {
                 matches!(
                     k,
-                    Kind::UpperArm | Kind::Arm | Kind::Shoulder | Kind::Collar
+                    NameMeaning::UpperArm
+                        | NameMeaning::Arm
+                        | NameMeaning::Shoulder
+                        | NameMeaning::Collar
                 )
             }),
-            both(&|k| k == Kind::Forearm),
-            both(&|k| k == Kind::Hand),
+            both(&|k| k == NameMeaning::Forearm),
+            both(&|k| k == NameMeaning::Hand),
         ]
         .into_iter()
         .filter(|&there| there)

@@ -6,7 +6,7 @@ use crate::classes::ClassId;
 use crate::decode::{ClassDistance, FAR};
 use crate::features::Rows;
 
-use super::early::{EarlyParams, Underway};
+use super::early::{EarlyDetectionParams, OngoingMatch};
 use super::{Matcher, Metric, Stretches, TemplateModel};
 
 /// Templates and negatives of a model, matched against a stream of mapped rows.
@@ -100,15 +100,15 @@ impl ClassMatcher {
 
     /// The class whose beginning is nearest at the last tick, if one is near enough by `params` under this threshold.
     /// O(template rows), no allocation; changes nothing.
-    pub fn underway(&self, params: &EarlyParams, threshold: f32) -> Option<Underway> {
-        let (mut best, mut other) = (None::<Underway>, FAR);
+    pub fn underway(&self, params: &EarlyDetectionParams, threshold: f32) -> Option<OngoingMatch> {
+        let (mut best, mut other) = (None::<OngoingMatch>, FAR);
         for (template, class) in self.template_classes.iter().enumerate() {
             let length = self.matcher.bank().template_len(template);
             let Some(found) = self.matcher.partial(template, params.least_rows(length)) else {
                 continue;
             };
             let progress = found.rows as f32 / length as f32;
-            let new = Underway {
+            let new = OngoingMatch {
                 class: *class,
                 distance: found.distance,
                 age: found.age,

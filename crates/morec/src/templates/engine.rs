@@ -3,8 +3,8 @@
 use crate::decode::{Candidate, Decoder, TickDetection};
 
 use super::class_matches::{ClassMatches, MatchReplay};
-use super::early::{EarlyParams, Underway};
-use super::verifier::{Evidence, Judge};
+use super::early::{EarlyDetectionParams, OngoingMatch};
+use super::verifier::{CandidateScorer, Evidence};
 use super::{Calibration, ClassMatcher, Metric, TemplateModel, TemplateModelError};
 
 /// The part of recognition that knows no clock: metric, templates, verifier, decoding.
@@ -12,7 +12,7 @@ use super::{Calibration, ClassMatcher, Metric, TemplateModel, TemplateModelError
 pub struct TemplateEngine {
     metric: Metric,
     matches: Matches,
-    judge: Option<Judge>,
+    judge: Option<CandidateScorer>,
     decoder: Decoder,
     recent: RecentRows,
     mapped: Vec<f32>,
@@ -92,7 +92,7 @@ impl TemplateEngine {
             judge: model
                 .verifier
                 .as_ref()
-                .map(|v| Judge::new(v, &metric, model.threshold)),
+                .map(|v| CandidateScorer::new(v, &metric, model.threshold)),
             decoder: Decoder::new(&model.decode, model.rule(), 0, 0),
             recent: RecentRows::new(dim, 1),
             mapped: vec![0.0; dim],
@@ -150,7 +150,7 @@ impl TemplateEngine {
 
     /// The class whose beginning is nearest at the last tick, if one is near enough by `params`. O(template rows),
     /// no allocation; changes nothing. None on matches from elsewhere.
-    pub fn underway(&self, params: &EarlyParams) -> Option<Underway> {
+    pub fn underway(&self, params: &EarlyDetectionParams) -> Option<OngoingMatch> {
         match &self.matches {
             Matches::Computed(matcher) => matcher.underway(params, self.threshold),
             Matches::Given(_) => None,
@@ -186,7 +186,7 @@ fn calibrated(calibration: Option<Calibration>, found: TickDetection) -> TickDet
 }
 
 fn score(
-    judge: &mut Option<Judge>,
+    judge: &mut Option<CandidateScorer>,
     recent: &RecentRows,
     metric: &Metric,
     candidate: &Candidate,

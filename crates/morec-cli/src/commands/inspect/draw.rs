@@ -7,37 +7,37 @@ use morec::kinematics::WorldPose;
 use morec::math::Vec3;
 use morec::roles::Role;
 
-use crate::show::picture::{DIM, Dots, PLAIN, Picture, Style, class_style};
+use crate::show::picture::{CharGrid, DIM, Dots, PLAIN, Style, class_style};
 
 /// Which side of the body a bone is drawn for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Side {
+enum DrawnSide {
     Left,
     Middle,
     Right,
 }
 
 /// Lines between roles. Where one is not played, the line is left out.
-const BONES: [(Role, Role, Side); 19] = [
-    (Role::Hips, Role::Torso, Side::Middle),
-    (Role::Torso, Role::Neck, Side::Middle),
-    (Role::Hips, Role::Neck, Side::Middle),
-    (Role::Neck, Role::Head, Side::Middle),
-    (Role::Neck, Role::LeftShoulder, Side::Left),
-    (Role::LeftShoulder, Role::LeftArm, Side::Left),
-    (Role::Neck, Role::LeftArm, Side::Left),
-    (Role::LeftArm, Role::LeftForearm, Side::Left),
-    (Role::LeftForearm, Role::LeftHand, Side::Left),
-    (Role::Hips, Role::LeftThigh, Side::Left),
-    (Role::LeftThigh, Role::LeftShin, Side::Left),
-    (Role::LeftShin, Role::LeftFoot, Side::Left),
-    (Role::Neck, Role::RightArm, Side::Right),
-    (Role::RightArm, Role::RightForearm, Side::Right),
-    (Role::RightForearm, Role::RightHand, Side::Right),
-    (Role::Hips, Role::RightThigh, Side::Right),
-    (Role::RightThigh, Role::RightShin, Side::Right),
-    (Role::RightShin, Role::RightFoot, Side::Right),
-    (Role::RightShoulder, Role::RightArm, Side::Right),
+const BONES: [(Role, Role, DrawnSide); 19] = [
+    (Role::Hips, Role::Torso, DrawnSide::Middle),
+    (Role::Torso, Role::Neck, DrawnSide::Middle),
+    (Role::Hips, Role::Neck, DrawnSide::Middle),
+    (Role::Neck, Role::Head, DrawnSide::Middle),
+    (Role::Neck, Role::LeftShoulder, DrawnSide::Left),
+    (Role::LeftShoulder, Role::LeftArm, DrawnSide::Left),
+    (Role::Neck, Role::LeftArm, DrawnSide::Left),
+    (Role::LeftArm, Role::LeftForearm, DrawnSide::Left),
+    (Role::LeftForearm, Role::LeftHand, DrawnSide::Left),
+    (Role::Hips, Role::LeftThigh, DrawnSide::Left),
+    (Role::LeftThigh, Role::LeftShin, DrawnSide::Left),
+    (Role::LeftShin, Role::LeftFoot, DrawnSide::Left),
+    (Role::Neck, Role::RightArm, DrawnSide::Right),
+    (Role::RightArm, Role::RightForearm, DrawnSide::Right),
+    (Role::RightForearm, Role::RightHand, DrawnSide::Right),
+    (Role::Hips, Role::RightThigh, DrawnSide::Right),
+    (Role::RightThigh, Role::RightShin, DrawnSide::Right),
+    (Role::RightShin, Role::RightFoot, DrawnSide::Right),
+    (Role::RightShoulder, Role::RightArm, DrawnSide::Right),
 ];
 
 /// The body in one frame, seen from the front and from its left: places of the roles in metres, right and up.
@@ -107,9 +107,9 @@ impl Drawing {
         let scale = 4.0 * (ROWS as f64 - 0.5) / self.height;
         let half = ((self.width * scale / 2.0).ceil() as usize + 1).min(30);
         let columns = 2 * half;
-        let mut picture = Picture::new(2 * columns + GAP, ROWS + 2);
+        let mut picture = CharGrid::new(2 * columns + GAP, ROWS + 2);
         for (places, from) in [(&self.front, 0), (&self.side, columns + GAP)] {
-            for side in [Side::Right, Side::Middle, Side::Left] {
+            for side in [DrawnSide::Right, DrawnSide::Middle, DrawnSide::Left] {
                 let mut dots = Dots::new(columns, ROWS);
                 let dot = |[x, y]: [f64; 2]| {
                     [
@@ -140,7 +140,7 @@ impl Drawing {
     fn lines<'a>(
         &'a self,
         places: &'a [Option<[f64; 2]>],
-        side: Side,
+        side: DrawnSide,
     ) -> impl Iterator<Item = ([f64; 2], [f64; 2])> + 'a {
         let there = |role: Role| places[role.index()].is_some();
         BONES
@@ -173,7 +173,7 @@ impl Drawing {
                 let down = MARGIN + (self.low + self.height - y) * scale;
                 [middle + x * scale, down]
             };
-            for side in [Side::Right, Side::Middle, Side::Left] {
+            for side in [DrawnSide::Right, DrawnSide::Middle, DrawnSide::Left] {
                 for (a, b) in self.lines(places, side) {
                     let ([x, y], [u, v]) = (dot(a), dot(b));
                     // Writing to a string cannot fail.
@@ -219,19 +219,19 @@ impl Drawing {
     }
 }
 
-fn style(side: Side) -> Style {
+fn style(side: DrawnSide) -> Style {
     match side {
-        Side::Left => class_style(1),
-        Side::Middle => PLAIN,
-        Side::Right => class_style(0),
+        DrawnSide::Left => class_style(1),
+        DrawnSide::Middle => PLAIN,
+        DrawnSide::Right => class_style(0),
     }
 }
 
-fn paint(side: Side) -> &'static str {
+fn paint(side: DrawnSide) -> &'static str {
     match side {
-        Side::Left => "#2b6cb0",
-        Side::Middle => "#555",
-        Side::Right => "#2f855a",
+        DrawnSide::Left => "#2b6cb0",
+        DrawnSide::Middle => "#555",
+        DrawnSide::Right => "#2f855a",
     }
 }
 

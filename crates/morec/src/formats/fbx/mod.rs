@@ -7,7 +7,7 @@ use ufbx::{ElementType, LoadOpts, Scene as Fbx};
 
 use super::builder::clip_names;
 use super::keys::{self, KeyGrid};
-use super::scene::{self, Local, Node, Rig, Sampling};
+use super::scene::{self, Local, Sampling, SceneNode, SceneSkeleton};
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::clip::Clip;
 use crate::math::{Quat, Vec3};
@@ -47,7 +47,7 @@ pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseEr
     }
     let takes = takes(&fbx, &rigs, &mut warnings);
     if takes.is_empty() {
-        let joints: usize = rigs.iter().map(Rig::len).sum();
+        let joints: usize = rigs.iter().map(SceneSkeleton::len).sum();
         let found = match joints {
             0 => "an FBX scene without a skeleton that moves".to_owned(),
             _ => format!("an FBX model with a skeleton of {joints} joints, without animation"),
@@ -125,7 +125,7 @@ fn version(bytes: &[u8]) -> Option<String> {
 }
 
 /// The nodes; a node's number is its place in `fbx.nodes`.
-fn nodes(fbx: &Fbx, limits: &Limits) -> Result<Vec<Node>, ParseError> {
+fn nodes(fbx: &Fbx, limits: &Limits) -> Result<Vec<SceneNode>, ParseError> {
     let most = limits.joints.saturating_mul(16);
     if fbx.nodes.len() > most {
         let expected = format!("at most {most} nodes");
@@ -135,21 +135,25 @@ fn nodes(fbx: &Fbx, limits: &Limits) -> Result<Vec<Node>, ParseError> {
             fbx.nodes.len().to_string(),
         ));
     }
-    let nodes = fbx.nodes.iter().enumerate().map(|(number, node)| Node {
-        name: match node.element.name.trim() {
-            "" => format!("node{number}"),
-            _ => node.element.name.to_string(),
-        },
-        parent: node.parent.as_ref().map(|p| p.element.typed_id as usize),
-        rest: local(&node.local_transform),
-        joint: false,
-    });
+    let nodes = fbx
+        .nodes
+        .iter()
+        .enumerate()
+        .map(|(number, node)| SceneNode {
+            name: match node.element.name.trim() {
+                "" => format!("node{number}"),
+                _ => node.element.name.to_string(),
+            },
+            parent: node.parent.as_ref().map(|p| p.element.typed_id as usize),
+            rest: local(&node.local_transform),
+            joint: false,
+        });
     Ok(nodes.collect())
 }
 
 /// Bones, what skins hang on, and animated nodes below these; in a scene without any, all animated nodes that are no
 /// cameras or lights.
-fn mark_joints(fbx: &Fbx, order: &[usize], nodes: &mut [Node]) {
+fn mark_joints(fbx: &Fbx, order: &[usize], nodes: &mut [SceneNode]) {
     for node in &fbx.nodes {
         nodes[node.element.typed_id as usize].joint = node.bone.is_some();
     }
@@ -192,7 +196,7 @@ fn mark_joints(fbx: &Fbx, order: &[usize], nodes: &mut [Node]) {
 }
 
 /// Among animated nodes of no kind, those between two of them are joints, too.
-fn join_nulls(fbx: &Fbx, order: &[usize], nodes: &mut [Node]) {
+fn join_nulls(fbx: &Fbx, order: &[usize], nodes: &mut [SceneNode]) {
     let mut leads_to_joint = vec![false; nodes.len()];
     for &n in order.iter().rev() {
         leads_to_joint[n] |= nodes[n].joint;
@@ -221,7 +225,7 @@ fn moved_node(prop: &ufbx::AnimProp, nodes: usize) -> Option<usize> {
 struct AnimationStack<'a> {
     name: String,
     stack: &'a ufbx::AnimStack,
-    rig: &'a Rig,
+    rig: &'a SceneSkeleton,
     /// Seconds.
     keys: Vec<f64>,
 }
@@ -229,7 +233,7 @@ struct AnimationStack<'a> {
 /// The takes that move a skeleton. A take whose keys are one pose is left out where others move.
 fn takes<'a>(
     fbx: &'a Fbx,
-    rigs: &'a [Rig],
+    rigs: &'a [SceneSkeleton],
     warnings: &mut Vec<Warning>,
 ) -> Vec<AnimationStack<'a>> {
     let mut takes = Vec::new();
@@ -257,7 +261,7 @@ fn takes<'a>(
     takes
 }
 
-fn key_times(stack: &ufbx::AnimStack, rig: &Rig, nodes: usize) -> Vec<f64> {
+fn key_times(stack: &ufbx::AnimStack, rig: &SceneSkeleton, nodes: usize) -> Vec<f64> {
     let mut times = Vec::new();
     for layer in &stack.layers {
         for prop in &layer.anim_props {
@@ -317,7 +321,7 @@ fn grid(
 fn clip(
     fbx: &Fbx,
     take: &AnimationStack<'_>,
-    nodes: &[Node],
+    nodes: &[SceneNode],
     clip_name: String,
     bytes: usize,
     limits: &Limits,

@@ -21,11 +21,11 @@ use crate::math::Vec3;
 const ASSUMED_HZ: f64 = 30.0;
 
 /// A row: its line and its cells.
-type Row<'a> = (u64, Vec<&'a str>);
+type TableLine<'a> = (u64, Vec<&'a str>);
 
 /// What the header of a table says.
 #[derive(Debug, Clone, PartialEq, Default)]
-struct Layout {
+struct ColumnLayout {
     /// Points and the columns of x, y and z.
     points: Vec<(String, [usize; 3])>,
     /// The column of times, and seconds in its unit.
@@ -53,15 +53,15 @@ pub fn read(
 ) -> Result<Loaded, ParseError> {
     let rows = lines(bytes, limits)?;
     let separator = separator(&rows);
-    let mut cells: Vec<Row> = Vec::with_capacity(rows.len());
+    let mut cells: Vec<TableLine> = Vec::with_capacity(rows.len());
     for (line, row) in &rows {
         cells.push((*line, split(row, separator)));
     }
     let head = &cells[..cells.len().min(HEAD_ROWS)];
     let mut warnings = Vec::new();
     let (mut points, times, layout) = match header(head) {
-        Some(Header::Long(columns)) => long::frames(&columns, &cells, limits)?,
-        Some(Header::Wide(layout)) => {
+        Some(TableHeader::Long(columns)) => long::frames(&columns, &cells, limits)?,
+        Some(TableHeader::Wide(layout)) => {
             check_size(layout.points.len(), cells.len(), bytes.len())?;
             wide(layout, &cells, limits, &mut warnings)?
         }
@@ -103,33 +103,33 @@ pub(super) fn looks_so(head: &[u8]) -> bool {
     };
     let separator = separator(&rows);
     let rows = rows.iter().take(HEAD_ROWS);
-    let cells: Vec<Row> = rows
+    let cells: Vec<TableLine> = rows
         .map(|(line, row)| (*line, split(row, separator)))
         .collect();
     match header(&cells) {
-        Some(Header::Long(_)) => true,
-        Some(Header::Wide(layout)) => layout.points.len() >= 2,
+        Some(TableHeader::Long(_)) => true,
+        Some(TableHeader::Wide(layout)) => layout.points.len() >= 2,
         None => false,
     }
 }
 
-enum Header {
-    Wide(Layout),
+enum TableHeader {
+    Wide(ColumnLayout),
     Long(long::Columns),
 }
 
-fn header(rows: &[Row]) -> Option<Header> {
+fn header(rows: &[TableLine]) -> Option<TableHeader> {
     if let Some(layout) = motive::layout(rows) {
-        return Some(Header::Wide(layout));
+        return Some(TableHeader::Wide(layout));
     }
     if let Some(columns) = rows
         .iter()
         .enumerate()
         .find_map(|(r, row)| long::columns(r, row))
     {
-        return Some(Header::Long(columns));
+        return Some(TableHeader::Long(columns));
     }
-    columns::layout(rows).map(Header::Wide)
+    columns::layout(rows).map(TableHeader::Wide)
 }
 
 /// What separates cells: of tab, semicolon and comma the one that most rows have; none if no row has any.
@@ -149,7 +149,7 @@ fn separator(rows: &[(u64, &str)]) -> Option<char> {
         .next()
 }
 
-fn no_columns(rows: &[Row]) -> ParseError {
+fn no_columns(rows: &[TableLine]) -> ParseError {
     const SHOWN: usize = 6;
     let expected = "columns of x, y and z for each point, as in `hips_x`, `hips_y`, `hips_z`";
     let Some((line, first)) = rows.first() else {
@@ -170,15 +170,15 @@ fn no_columns(rows: &[Row]) -> ParseError {
 }
 
 /// What frames hold: points, times, and the layout they were read by.
-type Frames = (Vec<Point>, Vec<Option<f64>>, Layout);
+type TableFrames = (Vec<Point>, Vec<Option<f64>>, ColumnLayout);
 
 /// The frames of a table with three columns for each point.
 fn wide(
-    layout: Layout,
-    rows: &[Row],
+    layout: ColumnLayout,
+    rows: &[TableLine],
     limits: &Limits,
     warnings: &mut Vec<Warning>,
-) -> Result<Frames, ParseError> {
+) -> Result<TableFrames, ParseError> {
     let body = &rows[layout.header_rows.min(rows.len())..];
     let decimal = Decimal::of(body.iter().flat_map(|(_, cells)| cells).copied());
     let mut points: Vec<Point> = layout

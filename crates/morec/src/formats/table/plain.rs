@@ -1,6 +1,6 @@
 //! Tables of numbers without names.
 
-use super::{Layout, Row};
+use super::{ColumnLayout, TableLine};
 use crate::formats::cells::{Decimal, number};
 
 /// How many points known sets of landmarks have.
@@ -8,7 +8,7 @@ const COUNTS: [usize; 7] = [17, 18, 20, 22, 24, 25, 33];
 
 /// The layout of a table of numbers whose width is that of a known set of landmarks, with or without a column of frames
 /// or times before it.
-pub(super) fn layout(rows: &[Row]) -> Option<Layout> {
+pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
     let (_, first) = rows.first()?;
     let is_number = |cell: &&str| number(cell, Decimal::Either).is_some();
     // A header that says nothing may stand before the numbers.
@@ -31,18 +31,18 @@ pub(super) fn layout(rows: &[Row]) -> Option<Layout> {
         let x = before + width * number;
         (number.to_string(), [x, x + 1, x + 2])
     };
-    let value = |(_, cells): &Row| number(cells[0], Decimal::Either);
+    let value = |(_, cells): &TableLine| number(cells[0], Decimal::Either);
     let counts = rows[header_rows..]
         .iter()
         .filter_map(value)
         .all(|v| v.fract() == 0.0);
     let text = format!("no names of columns; read as x, y and z of {count} points");
-    Some(Layout {
+    Some(ColumnLayout {
         points: (0..count).map(point).collect(),
         time: (before == 1 && !counts).then_some((0, None)),
         frame: (before == 1 && counts).then_some(0),
         header_rows,
         notes: vec![text],
-        ..Layout::default()
+        ..ColumnLayout::default()
     })
 }
