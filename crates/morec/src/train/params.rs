@@ -16,8 +16,6 @@ pub struct TrainParams {
     pub faster_copies: usize,
     /// Duration of those copies, as a share of the sample's.
     pub faster_duration: f64,
-    /// Samples that a class must have before faster copies are made: with few, they cost more precision than they bring.
-    pub faster_samples: usize,
     /// Sample pairs a class's scatter is estimated from at most.
     pub max_pairs: usize,
     /// The threshold is this times the smallest distance from a template to background motion.
@@ -113,7 +111,6 @@ impl TrainParams {
             rho: 0.3,
             faster_copies: 0,
             faster_duration: 0.7,
-            faster_samples: 4,
             max_pairs: 200,
             background_share: 0.85,
             class_share: 0.0,

@@ -389,10 +389,7 @@ fn with_faster(
     if params.faster_copies == 0 {
         return samples;
     }
-    let mut counts = vec![0; classes];
-    samples.iter().for_each(|s| counts[s.class.index()] += 1);
     let mut copied = templates_of(samples.clone(), classes, params.faster_copies);
-    copied.retain(|s| counts[s.class.index()] >= params.faster_samples);
     for sample in &mut copied {
         let factor = params.faster_duration;
         sample.rows = retimed_rows(&sample.rows, bones, &params.features, factor);
