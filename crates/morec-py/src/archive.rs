@@ -246,7 +246,7 @@ pub(crate) fn stored_motion(
 }
 
 /// Detections as rows of a table hold them.
-pub(crate) fn events(index: &MotionIndex, found: Vec<Detection>) -> Vec<Event> {
+pub(crate) fn events(index: &MotionIndex, found: Vec<Detection>) -> Vec<EventTuple> {
     let event = |d: Detection| {
         let class = index.model.class_name(d.class).to_owned();
         (class, d.start_secs, d.stop_secs, d.score, d.reported_secs)
