@@ -15,6 +15,7 @@
 pub mod axis;
 mod broadcast;
 mod clock;
+mod divided;
 mod early;
 mod event;
 mod event_tracker;
@@ -43,6 +44,7 @@ mod worker;
 pub use crate::index::{Model, SensitivityError};
 pub use broadcast::EventReader;
 pub use clock::wall_now_secs;
+pub use divided::{PartMatcher, match_clip, recognize_matched};
 pub use early::EarlyDetection;
 pub use event::{Event, Phase};
 pub use feed::{FeedSender, OverflowPolicy};

@@ -57,7 +57,7 @@ fn templates() -> Vec<Group> {
             intro: "### Tentative events (`EarlyDetectionParams`)\n\nThese are not stored in the index and cannot be set with \
                     `--param`. Chosen with `examples/early.rs` on referee signals.",
             source: include_str!("../../../src/templates/early.rs"),
-            name: "EarlyParams",
+            name: "EarlyDetectionParams",
             prefix: "EarlyParams.",
             values: vec![("default", printed(&EarlyDetectionParams::default()))],
         },
