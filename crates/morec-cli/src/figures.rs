@@ -1,31 +1,25 @@
 //! Results in the terminal: the same tables for every command that evaluates, JSON for every command.
 
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use anyhow::Context;
 use morec::eval::{ClassFigures, Evaluation, MEASURED_OVERLAP};
 use morec::explain::Miss;
 use morec::report::Report;
-use serde::Serialize;
 
 use crate::output;
 use crate::table::TextTable;
 
-/// Writes a value as JSON, indented, with a line ending. A reader that has gone is an [`io::Error`] that says so.
-pub fn write_json(out: &mut impl Write, value: &impl Serialize) -> io::Result<()> {
-    serde_json::to_writer_pretty(&mut *out, value)?;
-    writeln!(out)
-}
-
-/// Writes the report as `report.html` into `folder`, which is made if need be, and says so on standard error.
-pub fn write_report(folder: &Path, report: &Report<'_>) -> anyhow::Result<PathBuf> {
-    std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
-    let path = folder.join("report.html");
-    output::write_whole(&path, |out| out.write_all(report.html().as_bytes()))
+/// Writes the report as a page, and says so on standard error.
+pub fn write_report(path: &Path, report: &Report<'_>) -> anyhow::Result<()> {
+    if let Some(folder) = path.parent() {
+        std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
+    }
+    output::write_whole(path, |out| out.write_all(report.html().as_bytes()))
         .with_context(|| path.display().to_string())?;
     eprintln!("morec: report: {}", path.display());
-    Ok(path)
+    Ok(())
 }
 
 /// Writes every measure as text tables.

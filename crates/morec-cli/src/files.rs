@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use clap::{Args, ValueEnum};
 use morec::files::{
-    ClipFile, FileError, FileReader, Listing, list, read_file, read_stream, split_choice,
+    ClipFile, FileError, FileReader, Listing, is_large, list, read_file, read_stream, split_choice,
 };
 use morec::formats::bvh::PositionChannels;
 use morec::import::{ImportOptions, Take};
@@ -115,6 +115,13 @@ pub fn say_doubts(path: &Path, takes: &[Take]) {
 
 /// Reads a clip; `-` is standard input. Errors begin with the path.
 pub fn open(path: &Path, args: &ReadArgs) -> Result<ClipFile> {
+    let (file, _) = split_choice(path);
+    if path != Path::new("-") && is_large(&file) {
+        // Not held as a whole, if its format allows it.
+        output::mark_read(path);
+        output::mark_read(&file);
+        return marked(args.reader().read(path)?);
+    }
     let bytes = if path == Path::new("-") {
         read_stream(std::io::stdin().lock()).context("standard input")?
     } else {
@@ -125,7 +132,11 @@ pub fn open(path: &Path, args: &ReadArgs) -> Result<ClipFile> {
 
 /// Reads a clip whose bytes are at hand. Errors begin with the path.
 pub fn parse(path: &Path, bytes: &[u8], args: &ReadArgs) -> Result<ClipFile> {
-    let opened = args.reader().parse(path, bytes)?;
+    marked(args.reader().parse(path, bytes)?)
+}
+
+/// No output of this run may take the place of the skeleton that a clip was read with.
+fn marked(opened: ClipFile) -> Result<ClipFile> {
     if let Some(skeleton) = &opened.skeleton {
         output::mark_read(skeleton);
     }

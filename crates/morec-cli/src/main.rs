@@ -6,9 +6,12 @@ mod dates;
 mod figures;
 mod files;
 mod interrupt;
+mod json;
+mod labels;
 mod lengths;
 mod live;
 mod material;
+mod motion;
 mod output;
 mod poses;
 mod progress;
@@ -26,7 +29,7 @@ use clap::{CommandFactory, Parser, Subcommand};
     name = "morec",
     version = env!("MOREC_VERSION"),
     propagate_version = true,
-    max_term_width = 100
+    max_term_width = 80
 )]
 struct Cli {
     #[command(subcommand)]
@@ -100,3 +103,6 @@ fn is_broken_pipe(error: &anyhow::Error) -> bool {
         .filter_map(|cause| cause.downcast_ref::<std::io::Error>())
         .any(|io| io.kind() == std::io::ErrorKind::BrokenPipe)
 }
+
+#[cfg(test)]
+mod vocabulary;

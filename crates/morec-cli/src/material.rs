@@ -15,13 +15,14 @@ use morec::train::{
     Everyday, Mirror, Recipe, StreamKind, TrainClip, TrainOptions, TrainParams, TrainingData,
 };
 use morec_db::labels::{DbSample, SampleFilter, SampleState};
-use morec_db::{ClipFilter, MotionDb};
+use morec_db::{ClipFilter, MotionDb, hint};
 use rayon::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::database;
 use crate::files::{ReadArgs, expand, mapping, read, some_of, takes};
+use crate::labels;
 
 /// Which clips teach what.
 #[derive(Args, Debug)]
@@ -33,9 +34,9 @@ pub struct MaterialArgs {
     /// clips. See `morec db`
     #[arg(long, value_name = "DB", conflicts_with_all = ["clips", "labels"])]
     pub db: Option<PathBuf>,
-    /// Labels: tab-separated text with a header; columns clip (file stem), class, and start, stop (frames, stop
-    /// exclusive) or start_secs, stop_secs, or neither: then the whole clip is one sample, its still ends trimmed
-    #[arg(long, value_name = "TSV", required_unless_present = "db")]
+    /// Labels, in a form that `morec db label` reads; of tables columns clip (file stem), class, and start, stop (frames,
+    /// stop exclusive) or start_secs, stop_secs, or neither: then the whole clip is one sample, its still ends trimmed
+    #[arg(long, value_name = "FILE|DIR", required_unless_present = "db")]
     pub labels: Option<PathBuf>,
     /// Learn only these classes, separated by commas [default: every class of the labels]
     #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
@@ -78,7 +79,7 @@ pub struct MaterialArgs {
     /// Roles of joints, where inference fails: lines of `role<TAB>joint name`
     #[arg(long, value_name = "FILE")]
     pub roles: Option<PathBuf>,
-    /// Set a figure of the method by its path, as `rho=0.4`, `decode.lag_ticks=2`, `stages.scaling=unit_range`; may be
+    /// Set a parameter of the method by its path, as `rho=0.4`, `decode.lag_ticks=2`, `stages.scaling=unit_range`; may be
     /// given several times
     #[arg(long = "param", value_name = "NAME=VALUE")]
     pub params: Vec<String>,
@@ -95,26 +96,62 @@ pub enum Unlabelled {
     Ignore,
 }
 
-/// `params` with the figures that `settings` name.
-fn with_figures<P: Serialize + DeserializeOwned>(params: P, settings: &[String]) -> Result<P> {
+/// `params` with those that `settings` name set.
+fn with_settings<P: Serialize + DeserializeOwned>(params: P, settings: &[String]) -> Result<P> {
     let mut tree = serde_json::to_value(&params)?;
     for setting in settings {
         let (name, value) = setting
             .split_once('=')
             .context(format!("--param {setting}: expected NAME=VALUE"))?;
+        let known = paths(&tree);
+        if !known.iter().any(|path| path == name) {
+            let hint = nearest(name, &known);
+            bail!("--param {setting}: there is no parameter {name}{hint}");
+        }
         let pointer = format!("/{}", name.replace('.', "/"));
-        let Some(figure) = tree.pointer_mut(&pointer) else {
-            let known = serde_json::to_string_pretty(&params)?;
-            bail!("--param {setting}: no figure is called {name}; there are {known}");
+        let Some(parameter) = tree.pointer_mut(&pointer) else {
+            bail!("--param {setting}: {name} is not set");
         };
+        let before = parameter.clone();
         // What is no JSON is the name of a choice.
         let named = || serde_json::Value::String(value.to_owned());
-        *figure = serde_json::from_str(value).unwrap_or_else(|_| named());
+        *parameter = serde_json::from_str(value).unwrap_or_else(|_| named());
         if let Err(error) = serde_json::from_value::<P>(tree.clone()) {
-            bail!("--param {setting}: {error}");
+            bail!("--param {setting}: {error} (it is {before})");
         }
     }
     serde_json::from_value(tree).context("--param")
+}
+
+/// The paths of all parameters in a tree of them: `decode.lag_ticks`.
+fn paths(tree: &serde_json::Value) -> Vec<String> {
+    let serde_json::Value::Object(branches) = tree else {
+        return Vec::new();
+    };
+    let mut all = Vec::new();
+    for (name, branch) in branches {
+        let below = paths(branch);
+        match below.is_empty() {
+            true => all.push(name.clone()),
+            false => all.extend(below.into_iter().map(|path| format!("{name}.{path}"))),
+        }
+    }
+    all
+}
+
+/// The parameters that may have been meant by `name`: those near it as a whole, or near its last word.
+fn nearest(name: &str, known: &[String]) -> String {
+    let last = |path: &str| path.rsplit('.').next().unwrap_or_default().to_owned();
+    let below: Vec<String> = known
+        .iter()
+        .filter(|path| path.starts_with(&format!("{name}.")) || last(path) == last(name))
+        .cloned()
+        .collect();
+    match below.as_slice() {
+        [] => hint(name, known),
+        [only] => format!("; did you mean `{only}`?"),
+        several => format!("; there are {}", several.join(", ")),
+    }
 }
 
 /// Methods of recognition.
@@ -194,7 +231,7 @@ impl MaterialArgs {
             Method::Templates => Ok(self.template_options(unlabelled_is_background)?.into()),
             Method::Svrdm => {
                 let params =
-                    with_figures(reproduce::Setting::from(self.svrdm).params(), &self.params)?;
+                    with_settings(reproduce::Setting::from(self.svrdm).params(), &self.params)?;
                 Ok(SvrdmOptions {
                     params,
                     unlabelled_is_background,
@@ -208,7 +245,7 @@ impl MaterialArgs {
     pub fn svrdm_options(&self, setting: reproduce::Setting) -> Result<SvrdmOptions> {
         let params = match setting {
             reproduce::Setting::Faithful => setting.params(),
-            reproduce::Setting::Tuned => with_figures(setting.params(), &self.params)?,
+            reproduce::Setting::Tuned => with_settings(setting.params(), &self.params)?,
         };
         Ok(SvrdmOptions {
             params,
@@ -222,7 +259,7 @@ impl MaterialArgs {
             EverydayArg::Always => Everyday::Always,
             EverydayArg::Never => Everyday::Never,
         };
-        let params = with_figures(TrainParams::default(), &self.params)?;
+        let params = with_settings(TrainParams::default(), &self.params)?;
         Ok(TrainOptions {
             unlabelled_is_background,
             everyday,
@@ -275,7 +312,7 @@ impl MaterialArgs {
         labels: &Path,
         classes: &[String],
     ) -> Result<ClipMaterial> {
-        let text = Labels::read(&read(labels)?).with_context(|| shown(labels))?;
+        let text = labels::read(labels)?;
         warn(labels, &text.warnings);
         let people: BTreeMap<String, String> = text
             .rows
@@ -344,7 +381,7 @@ impl MaterialArgs {
     /// The labels, and who is seen in which clip, labelled or not.
     fn labels(&self) -> Result<(Labels, BTreeMap<String, String>)> {
         let path = self.labels.as_deref().context("--labels: which?")?;
-        let mut labels = Labels::read(&read(path)?).with_context(|| shown(path))?;
+        let mut labels = labels::read(path)?;
         warn(path, &labels.warnings);
         let mut by_clip = BTreeMap::new();
         if let Some(path) = &self.people {

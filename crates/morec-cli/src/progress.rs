@@ -1,7 +1,8 @@
-//! A bar for work that takes more than a second, on standard error, if that is a terminal.
+//! How far work is that takes more than a second, on standard error: a bar on a terminal, now and then a line elsewhere.
 
-use std::sync::Arc;
+use std::io::IsTerminal;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use anyhow::Result;
@@ -9,11 +10,49 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::interrupt::stop_on_ctrl_c;
 
+/// LogLines in a log are so far apart, beginning so long after the work.
+const BETWEEN_LINES: Duration = Duration::from_secs(10);
+
+/// LogLines that say how far work is, for logs: where standard error is no terminal.
+struct LogLines {
+    last: Mutex<Option<Instant>>,
+}
+
+impl LogLines {
+    fn new(begun: Instant) -> Self {
+        let last = (!std::io::stderr().is_terminal()).then_some(begun);
+        Self {
+            last: Mutex::new(last),
+        }
+    }
+
+    /// The line to be printed now, if it is time.
+    fn line(&self, now: Instant, stage: &str, done: usize, total: usize) -> Option<String> {
+        let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+        if now.duration_since((*last)?) < BETWEEN_LINES {
+            return None;
+        }
+        *last = Some(now);
+        Some(match total {
+            0 => format!("morec: {stage}: {done}"),
+            _ => format!("morec: {stage}: {done} of {total}"),
+        })
+    }
+
+    fn say(&self, stage: &str, done: usize, total: usize) {
+        if let Some(line) = self.line(Instant::now(), stage, done, total) {
+            eprintln!("{line}");
+        }
+    }
+}
+
 /// A bar that shows itself only once a second has passed.
 pub struct SlowProgress {
     bar: ProgressBar,
     begun: Instant,
     shown: bool,
+    what: &'static str,
+    lines: LogLines,
 }
 
 impl SlowProgress {
@@ -28,6 +67,8 @@ impl SlowProgress {
             bar,
             begun: Instant::now(),
             shown: false,
+            what,
+            lines: LogLines::new(Instant::now()),
         }
     }
 
@@ -38,6 +79,9 @@ impl SlowProgress {
             self.shown = true;
         }
         self.bar.inc(1);
+        let total = self.bar.length().unwrap_or_default();
+        let done = self.bar.position();
+        self.lines.say(self.what, done as usize, total as usize);
     }
 
     /// Runs `print` with the bar out of the way.
@@ -57,6 +101,7 @@ pub struct StageBar {
     bar: ProgressBar,
     begun: Instant,
     stop: Arc<AtomicBool>,
+    lines: LogLines,
 }
 
 impl StageBar {
@@ -70,6 +115,7 @@ impl StageBar {
             bar,
             begun: Instant::now(),
             stop: Arc::default(),
+            lines: LogLines::new(Instant::now()),
         }
     }
 
@@ -90,6 +136,7 @@ impl morec::progress::Progress for StageBar {
         self.bar.set_message(stage.to_owned());
         self.bar.set_length(total as u64);
         self.bar.set_position(done as u64);
+        self.lines.say(stage, done, total);
     }
 
     fn cancelled(&self) -> bool {
@@ -100,5 +147,31 @@ impl morec::progress::Progress for StageBar {
 impl Drop for StageBar {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_log_gets_a_line_now_and_then() {
+        let begun = Instant::now();
+        let at = |secs| begun + Duration::from_secs(secs);
+        let lines = LogLines {
+            last: Mutex::new(Some(begun)),
+        };
+        let line = lines.line(at(9), "importing", 3, 10);
+        assert_eq!(line, None);
+        let line = lines.line(at(10), "importing", 4, 10);
+        assert_eq!(line.as_deref(), Some("morec: importing: 4 of 10"));
+        assert_eq!(lines.line(at(19), "importing", 9, 10), None);
+        let line = lines.line(at(25), "reading", 9, 0);
+        assert_eq!(line.as_deref(), Some("morec: reading: 9"));
+        // On a terminal there is a bar.
+        let lines = LogLines {
+            last: Mutex::new(None),
+        };
+        assert_eq!(lines.line(at(100), "importing", 4, 10), None);
     }
 }

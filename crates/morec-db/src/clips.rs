@@ -16,6 +16,7 @@ pub struct ClipInfo {
     /// Its number.
     pub id: ClipId,
     /// Its name, one of a kind in the database.
+    #[serde(rename = "clip")]
     pub name: String,
     /// Frames at the file's rate.
     pub frames: usize,

@@ -4,12 +4,12 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use morec::files::{FileReader, read_file, split_choice};
+use morec::files::{FileReader, is_large, read_file, split_choice};
 use morec::progress::Progress;
 use rayon::prelude::*;
 use rusqlite::{Connection, OptionalExtension, Row, params};
 
-use crate::kept::{KeptClip, KeptFile, content_hash, packed_rows, rows_recipe};
+use crate::kept::{FileContent, KeptClip, KeptFile, packed_rows, rows_recipe};
 use crate::time::now_secs;
 use crate::{ClipId, ClipUpdate, DbError, MotionDb, history, rows};
 
@@ -98,7 +98,7 @@ pub struct ImportCounts {
 }
 
 /// A file after the parallel part.
-enum PreparedFile {
+pub(crate) enum PreparedFile {
     Known(i64),
     Refused(String),
     New(Vec<KeptClip>),
@@ -273,27 +273,37 @@ impl MotionDb {
         })
     }
 
-    fn known_hashes(&self) -> Result<std::collections::HashMap<[u8; 32], i64>, DbError> {
+    pub(crate) fn known_hashes(&self) -> Result<std::collections::HashMap<[u8; 32], i64>, DbError> {
         let mut statement = self.conn.prepare("SELECT hash, id FROM files")?;
         let pairs = statement.query_map([], |row| Ok((row.get(0)?, row.get(1)?)))?;
         Ok(pairs.collect::<Result<_, _>>()?)
     }
 }
 
-fn make(
+pub(crate) fn make(
     path: &Path,
     reader: &FileReader,
     about: &ClipUpdate,
     known: &std::collections::HashMap<[u8; 32], i64>,
 ) -> PreparedFile {
-    let bytes = match read_file(&split_choice(path).0) {
-        Ok(bytes) => bytes,
+    let (file, _) = split_choice(path);
+    let large = is_large(&file);
+    let opened = match large {
+        true => FileContent::of_large(path).map(|content| (content, Vec::new())),
+        false => read_file(&file).map(|bytes| (FileContent::of(path, &bytes), bytes)),
+    };
+    let (content, bytes) = match opened {
+        Ok(opened) => opened,
         Err(error) => return PreparedFile::Refused(error.to_string()),
     };
-    if let Some(file) = known.get(&content_hash(path, &bytes)) {
+    if let Some(file) = known.get(&content.hash) {
         return PreparedFile::Known(*file);
     }
-    match KeptClip::of_file(path, &bytes, reader) {
+    let kept = match large {
+        true => KeptClip::of_large(path, content, reader),
+        false => KeptClip::of_file(path, &bytes, reader),
+    };
+    match kept {
         Err(reason) => PreparedFile::Refused(reason),
         Ok(clips) => {
             let told = |clip| KeptClip {
@@ -368,6 +378,22 @@ fn insert(
     file: &KeptFile,
     clips: &[KeptClip],
 ) -> Result<ImportOutcome, DbError> {
+    let number = insert_file(conn, path, file)?;
+    let mut names = Vec::new();
+    for clip in clips {
+        let name = free_name(conn, path, &clip.name)?;
+        let id = insert_clip(conn, number, &name, clip)?;
+        rows::keep(conn, id, &clip.recipe, clip.bones, &clip.rows)?;
+        names.push(name);
+    }
+    Ok(ImportOutcome::Imported {
+        clips: names,
+        warnings: file.warnings.clone(),
+    })
+}
+
+/// Adds what is known of a file; gives its number.
+pub(crate) fn insert_file(conn: &Connection, path: &Path, file: &KeptFile) -> Result<i64, DbError> {
     conn.prepare_cached(
         "INSERT INTO files (hash, path, skeleton_path, format, bytes, imported_secs, warnings) \
          VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)",
@@ -381,18 +407,17 @@ fn insert(
         now_secs(),
         serde_json::to_string(&file.warnings).unwrap_or_default(),
     ])?;
-    let number = conn.last_insert_rowid();
-    let mut names = Vec::new();
-    for clip in clips {
-        let name = free_name(conn, path, &clip.name)?;
-        let id = insert_clip(conn, number, &name, clip)?;
-        rows::keep(conn, id, &clip.recipe, clip.bones, &clip.rows)?;
-        names.push(name);
-    }
-    Ok(ImportOutcome::Imported {
-        clips: names,
-        warnings: file.warnings.clone(),
-    })
+    Ok(conn.last_insert_rowid())
+}
+
+/// The number of a clip's skeleton, which is added if need be.
+pub(crate) fn skeleton_of(conn: &Connection, clip: &KeptClip) -> Result<i64, DbError> {
+    let sql = "INSERT OR IGNORE INTO skeletons (hash, joints) VALUES (?1, ?2)";
+    conn.prepare_cached(sql)?
+        .execute(params![clip.skeleton_hash, clip.joints as i64])?;
+    let sql = "SELECT id FROM skeletons WHERE hash = ?1";
+    let mut statement = conn.prepare_cached(sql)?;
+    Ok(statement.query_row(params![clip.skeleton_hash], |row| row.get(0))?)
 }
 
 /// A name that tables and terminals can hold: control characters are blanks, and it neither begins nor ends with one.
@@ -433,19 +458,17 @@ fn insert_clip(
     name: &str,
     clip: &KeptClip,
 ) -> Result<ClipId, DbError> {
-    let sql = "INSERT OR IGNORE INTO skeletons (hash, joints) VALUES (?1, ?2)";
-    conn.prepare_cached(sql)?
-        .execute(params![clip.skeleton_hash, clip.joints as i64])?;
+    let skeleton = skeleton_of(conn, clip)?;
     conn.prepare_cached(
         "INSERT INTO clips (name, file, character, skeleton, frames, rate_hz, rest_frames, repaired_frames, roles, \
-         facts, max_angle_rad, max_position_metres, motion, source, licence, subject) VALUES (?1, ?2, ?3, \
-         (SELECT id FROM skeletons WHERE hash = ?4), ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16)",
+         facts, max_angle_rad, max_position_metres, motion, source, licence, subject) VALUES (?1, ?2, ?3, ?4, ?5, \
+         ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16)",
     )?
     .execute(params![
         name,
         file,
         clip.character as i64,
-        clip.skeleton_hash,
+        skeleton,
         clip.frames as i64,
         clip.rate_hz,
         clip.rest_frames as i64,

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use morec::clip::Clip;
 use morec::features::{FeatureParams, Rows};
-use morec::files::{FileReader, split_choice};
+use morec::files::{ClipFile, FileReader, each_piece, split_choice};
 use morec::formats::{Place, Warning};
 use morec::import::{ImportOptions, Stated, normalize};
 
@@ -77,12 +77,36 @@ pub struct KeptFile {
     pub warnings: Vec<String>,
 }
 
-/// The hash of a file's content. One clip of a file (`FILE#2`) is another content than the whole.
-pub(crate) fn content_hash(path: &Path, bytes: &[u8]) -> [u8; 32] {
-    let mut hasher = blake3::Hasher::new();
-    hasher.update(bytes);
-    hasher.update(split_choice(path).1.unwrap_or_default().as_bytes());
-    *hasher.finalize().as_bytes()
+/// The content of a file by its hash and its size. One clip of a file (`FILE#2`) is another content than the whole.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct FileContent {
+    pub hash: [u8; 32],
+    pub bytes: u64,
+}
+
+impl FileContent {
+    /// Of the file at `path`, which holds `bytes`.
+    pub fn of(path: &Path, bytes: &[u8]) -> Self {
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(bytes);
+        Self::new(hasher, path, bytes.len() as u64)
+    }
+
+    /// Of the file at `path`, of which a piece at a time is held.
+    pub fn of_large(path: &Path) -> std::io::Result<Self> {
+        let mut hasher = blake3::Hasher::new();
+        let take = |piece: &[u8]| _ = hasher.update(piece);
+        let bytes = each_piece(&split_choice(path).0, take)?;
+        Ok(Self::new(hasher, path, bytes))
+    }
+
+    fn new(mut hasher: blake3::Hasher, path: &Path, bytes: u64) -> Self {
+        hasher.update(split_choice(path).1.unwrap_or_default().as_bytes());
+        Self {
+            hash: *hasher.finalize().as_bytes(),
+            bytes,
+        }
+    }
 }
 
 impl KeptClip {
@@ -93,16 +117,38 @@ impl KeptClip {
     pub fn of_file(path: &Path, bytes: &[u8], reader: &FileReader) -> Result<Vec<Self>, String> {
         let parsed = reader.parse(path, bytes);
         let parsed = parsed.map_err(|error| error.kind.to_string())?;
+        Self::of_parsed(path, parsed, FileContent::of(path, bytes), reader)
+    }
+
+    /// The same for a large file of this content, which is not held as a whole if its format allows it.
+    pub(crate) fn of_large(
+        path: &Path,
+        content: FileContent,
+        reader: &FileReader,
+    ) -> Result<Vec<Self>, String> {
+        let parsed = reader.read(path).map_err(|error| error.kind.to_string())?;
+        if FileContent::of_large(path).map_err(|error| error.to_string())? != content {
+            return Err("the file changed while it was read".to_owned());
+        }
+        Self::of_parsed(path, parsed, content, reader)
+    }
+
+    fn of_parsed(
+        path: &Path,
+        parsed: ClipFile,
+        content: FileContent,
+        reader: &FileReader,
+    ) -> Result<Vec<Self>, String> {
         let options = ImportOptions {
             stated: Stated::of(parsed.format),
             ..reader.import.clone()
         };
         let shown = |path: &PathBuf| path.to_string_lossy().into_owned();
         let file = KeptFile {
-            hash: content_hash(path, bytes),
+            hash: content.hash,
             path: path.to_string_lossy().into_owned(),
             format: parsed.format.name().to_owned(),
-            bytes: bytes.len() as u64,
+            bytes: content.bytes,
             skeleton: parsed.skeleton.as_ref().map(shown),
             warnings: parsed.warnings.iter().map(ToString::to_string).collect(),
         };

@@ -1,7 +1,8 @@
 //! The stored form of a clip's motion, and back. Nothing else knows what the bytes are.
 
 use morec::clip::{Clip, Span};
-use morec::import::{ImportReport, Take};
+use morec::formats::ParseError;
+use morec::import::{ImportOptions, ImportReport, SignedAxis, Take, normalize};
 use morec::progress::Progress;
 use morec::roles::{Role, RoleMap};
 use morec::smooth::{CompressedClip, SmoothError, SmoothParams, compress};
@@ -18,6 +19,27 @@ pub struct StoredClip {
     pub roles: RoleMap,
     /// T-pose frames at the start.
     pub rest: Span,
+}
+
+impl StoredClip {
+    /// The clip as one that was read from a file in metres with Y up: its roles and rest pose are those that are kept.
+    ///
+    /// # Errors
+    /// None at present: only a mapping of roles can be wrong, and there is none.
+    pub fn into_take(self) -> Result<Take, ParseError> {
+        let options = ImportOptions {
+            up: Some(SignedAxis::Y),
+            metres_per_unit: Some(1.0),
+            rest_frames: Some(self.rest.len()),
+            ..ImportOptions::default()
+        };
+        let read = normalize(self.clip.clone(), &options)?;
+        Ok(Take {
+            clip: self.clip,
+            roles: self.roles,
+            ..read
+        })
+    }
 }
 
 /// What goes into the file for one clip.
@@ -47,11 +69,14 @@ pub(crate) fn pack(take: Take, progress: &dyn Progress) -> Result<Packed, String
     };
     let compressed = bounded.map_err(|error| error.to_string())?;
     let errors = compressed.errors();
+    let (skeleton_hash, joints) = (skeleton_hash(&clip), clip.skeleton.len());
+    // Long clips take much memory: the one that is stored takes the place of the one that was read.
+    drop(clip);
     Ok(Packed {
         max_angle_rad: errors.max_angle_rad,
         max_position_metres: errors.max_joint_position_metres,
-        skeleton_hash: skeleton_hash(&clip),
-        joints: clip.skeleton.len(),
+        skeleton_hash,
+        joints,
         roles: roles_to_json(&roles),
         facts: report_to_json(&report),
         stored: StoredClip {

@@ -12,8 +12,9 @@ const LISTED: usize = 8;
 /// So many near names are offered.
 const OFFERED: usize = 3;
 
-/// What to say of a name that is not among `known`: the nearest ones, or some of them and how many more there are.
-pub(crate) fn hint(name: &str, known: &[String]) -> String {
+/// What to say of a name that is not among `known`, to be put behind a sentence: the nearest ones, or some of them and how
+/// many more there are.
+pub fn hint(name: &str, known: &[String]) -> String {
     if known.is_empty() {
         return "; there is none".to_owned();
     }

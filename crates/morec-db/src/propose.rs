@@ -64,6 +64,7 @@ impl Default for ProposeOptions {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Proposal {
     /// Its clip.
+    #[serde(rename = "clip_id")]
     pub clip: ClipId,
     /// What it may show.
     pub class: String,

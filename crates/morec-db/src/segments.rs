@@ -32,6 +32,7 @@ impl SegmentKind {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Segment {
     /// Its clip.
+    #[serde(rename = "clip_id")]
     pub clip: ClipId,
     /// What it is.
     pub kind: SegmentKind,

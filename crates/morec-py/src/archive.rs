@@ -189,10 +189,10 @@ pub fn kept_clip(
     .into())
 }
 
-type EventTuple = (String, f64, f64, f64, f64);
+pub(crate) type EventTuple = (String, f64, f64, f64, f64);
 
 /// A clip as rows of a table give it: motion, roles and frames of rest; without roles all is inferred.
-type MotionColumns = (Option<Vec<u8>>, Option<String>, Option<usize>);
+pub(crate) type MotionColumns = (Option<Vec<u8>>, Option<String>, Option<usize>);
 
 /// What an index recognises in kept clips, in parallel: for each the class, start, stop, score and report of its motions,
 /// or why there is nothing to recognise.
@@ -215,6 +215,16 @@ pub fn recognize_kept<'py>(
 }
 
 fn recognized(index: &MotionIndex, clip: &MotionColumns) -> Result<Vec<EventTuple>, String> {
+    let stored = stored_motion(index, clip)?;
+    let found = recognize_clip(&index.model, &stored.clip, &stored.roles, &stored.rest);
+    Ok(events(index, found.map_err(|error| error.to_string())?))
+}
+
+/// The clip of a row, with the roles that `index` knows by name.
+pub(crate) fn stored_motion(
+    index: &MotionIndex,
+    clip: &MotionColumns,
+) -> Result<StoredClip, String> {
     let (motion, roles, rest_frames) = clip;
     let motion = motion.as_ref().ok_or("no motion")?;
     let mut stored = match roles {
@@ -232,13 +242,16 @@ fn recognized(index: &MotionIndex, clip: &MotionColumns) -> Result<Vec<EventTupl
         }
     };
     index.complete_roles(&mut stored.roles, &stored.clip.skeleton);
-    let found = recognize_clip(&index.model, &stored.clip, &stored.roles, &stored.rest);
-    let found = found.map_err(|error| error.to_string())?;
+    Ok(stored)
+}
+
+/// Detections as rows of a table hold them.
+pub(crate) fn events(index: &MotionIndex, found: Vec<Detection>) -> Vec<EventTuple> {
     let event = |d: Detection| {
         let class = index.model.class_name(d.class).to_owned();
         (class, d.start_secs, d.stop_secs, d.score, d.reported_secs)
     };
-    Ok(found.into_iter().map(event).collect())
+    found.into_iter().map(event).collect()
 }
 
 /// Seconds at which a kept clip is cut by kernel change points, as `morec db cut` cuts it.

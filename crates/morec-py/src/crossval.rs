@@ -220,6 +220,7 @@ impl PyCrossval {
             misses: &self.tested.misses,
             sensitivities: &self.sensitivities,
             perturbed: &self.perturbed,
+            motion: None,
         };
         Ok(report.html())
     }

@@ -121,6 +121,11 @@ impl PyIndex {
         ))
     }
 
+    /// Part `part` of `of`: the templates of every `of`-th class.
+    fn part(&self, part: usize, of: usize) -> PyResult<Self> {
+        Ok(crate::divided::part_of(&self.index, part, of)?.into())
+    }
+
     /// Writes the index file, whole or not at all.
     fn save(&self, path: PathBuf) -> PyResult<()> {
         self.index.save(&path).map_err(library_error)

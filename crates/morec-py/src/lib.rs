@@ -5,6 +5,7 @@ mod arrays;
 mod clip;
 mod crossval;
 mod database;
+mod divided;
 mod errors;
 mod features;
 mod index;
@@ -45,6 +46,8 @@ fn _morec(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(material::resolve_labels, module)?)?;
     module.add_function(wrap_pyfunction!(material::rows_of_table, module)?)?;
     archive::register(module)?;
+    module.add_function(wrap_pyfunction!(divided::match_kept, module)?)?;
+    module.add_function(wrap_pyfunction!(divided::recognize_matched_kept, module)?)?;
     module.add_function(wrap_pyfunction!(crossval::crossval, module)?)?;
     module.add_function(wrap_pyfunction!(crossval::evaluate, module)?)?;
     module.add_function(wrap_pyfunction!(segment::cut_kernel, module)?)?;

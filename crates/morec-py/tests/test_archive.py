@@ -101,6 +101,19 @@ def test_recognition_is_that_of_the_clips(archive: ma.Archive, index: morec.Inde
     assert nothing.to_pydict() == {"e": [[], []]}
 
 
+@pytest.mark.parametrize("parts", [2, 5])
+def test_a_divided_index_recognises_the_same(archive: ma.Archive, index: morec.Index, parts: int) -> None:
+    whole = archive.recognize(index).to_pylist()
+    divided = archive.recognize(index, parts=parts).to_pylist()
+    order = lambda rows: sorted(rows, key=repr)  # noqa: E731
+    assert whole and order(divided) == order(whole)
+    # Less of it in each part, and none of it twice.
+    sizes = [len(index.part(part, parts).to_bytes()) for part in range(parts)]
+    assert max(sizes) < len(index.to_bytes())
+    with pytest.raises(ValueError, match="below 2"):
+        index.part(2, 2)
+
+
 def test_search_and_cuts_are_those_of_a_database(archive: ma.Archive, clips: list[morec.Clip], tmp_path: Path) -> None:
     assert archive.sample().to_database(tmp_path / "all.mdb") == 6
     with morec.Database(tmp_path / "all.mdb") as db:

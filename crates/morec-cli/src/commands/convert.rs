@@ -14,8 +14,7 @@ use morec::import::ImportOptions;
 use morec::tables::Content;
 
 use crate::files::{self, ReadArgs};
-use form::ClipForm;
-pub use form::write_clip;
+pub use form::{ClipForm, write_clip, write_take};
 
 /// Write clips as BVH, C3D, TRC, GLB, VRMA, lines of JSON, NumPy archives or CSV
 ///
@@ -63,7 +62,7 @@ pub struct Args {
 
 /// What a CSV holds.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-enum CsvContent {
+pub enum CsvContent {
     /// Where the joints are, metres
     Positions,
     /// How each joint is turned in its parent's frame, quaternions

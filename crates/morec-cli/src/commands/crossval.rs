@@ -15,8 +15,11 @@ use morec::perturb::Perturbation;
 use morec::report::{Report, TrainedClass};
 use morec::templates::ALARM_RATES;
 
+use crate::database;
 use crate::figures;
+use crate::json;
 use crate::material::MaterialArgs;
+use crate::motion::ReportMotion;
 use crate::progress::StageBar;
 use crate::table::TextTable;
 
@@ -30,7 +33,7 @@ use crate::table::TextTable;
 #[derive(clap::Args)]
 #[command(
     after_help = "Exit codes: 0 measured; 1 something cannot be read or trained; 2 wrong command line.\n\n\
-    Example: morec crossval --clips takes/ --labels labels.tsv --people people.tsv --by person --report out/"
+    Example: morec crossval --clips takes/ --labels labels.tsv --people people.tsv --by person --report report.html"
 )]
 pub struct Args {
     #[command(flatten)]
@@ -42,7 +45,7 @@ pub struct Args {
     #[arg(long, value_name = "DIR|CLIP", num_args = 1.., requires = "test_labels")]
     test: Vec<PathBuf>,
     /// Labels of --test, with a column person
-    #[arg(long, value_name = "TSV", requires = "test")]
+    #[arg(long, value_name = "FILE|DIR", requires = "test")]
     test_labels: Option<PathBuf>,
     /// Let at most N samples of each class teach, from its people in turn
     #[arg(long, value_name = "N")]
@@ -66,8 +69,8 @@ pub struct Args {
     /// Print one JSON object instead of tables
     #[arg(long)]
     json: bool,
-    /// Write report.html, one file without outside links, into this folder
-    #[arg(long, value_name = "DIR")]
+    /// Write a page of HTML too, one file without outside links
+    #[arg(long, value_name = "HTML")]
     report: Option<PathBuf>,
 }
 
@@ -121,12 +124,19 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let perturbed = measured(&outcome.perturbed)?;
     let sensitivities = measured(&outcome.sensitivities)?;
     // Before anything is printed: whoever stops reading still gets the report.
-    if let Some(folder) = &args.report {
+    if let Some(path) = &args.report {
         let timelines = timelines(&tested.streams, &tested.truths, &tested.founds)?;
         let about = [
             ("labels".to_owned(), args.material.label_source()),
             ("left out".to_owned(), format!("{:?}", args.options().by)),
         ];
+        let mut motion = ReportMotion::of(&timelines);
+        match &args.material.db {
+            Some(db) => motion.add_db(&database::open_read_only(db)?)?,
+            None => motion.add_files(&args.material.clips, &args.material.read)?,
+        }
+        motion.add_files(&args.test, &args.material.read)?;
+        let reel = motion.into_reel();
         let report = Report {
             title: "Cross-validation",
             about: &about,
@@ -136,8 +146,9 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             misses: &tested.misses,
             sensitivities: &sensitivities,
             perturbed: &perturbed,
+            motion: reel.as_ref(),
         };
-        figures::write_report(folder, &report)?;
+        figures::write_report(path, &report)?;
     }
     let mut out = std::io::stdout().lock();
     if args.json {
@@ -155,7 +166,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             perturbed: perturbed.iter().map(named).collect(),
             sensitivities: sensitivities.iter().map(at_rate).collect(),
         };
-        figures::write_json(&mut out, &all)?;
+        json::write_json(&mut out, &all)?;
     } else {
         figures::write_tables(&mut out, &evaluation)?;
         figures::write_misses(&mut out, &tested.misses)?;

@@ -24,7 +24,7 @@ use crate::poses::PoseArgs;
 Examples:
   morec cut 86_01.amc
   morec cut moves.mdb                   # every clip of a database
-  morec cut moves.mdb --name take_1 --at 1.2,4.5
+  morec cut moves.mdb --clip take_1 --at 1.2,4.5
   morec cut recordings/ --json > cuts.json
   morec cut long.bvh --penalty 8        # fewer cuts
   morec cut 86_01.amc --method ppca --plot cuts.svg")]
@@ -32,11 +32,11 @@ pub struct Args {
     /// Clips, folders of clips, or one database
     #[arg(required = true, value_name = "CLIP|DB")]
     inputs: Vec<PathBuf>,
-    /// Clips of the database whose name matches (`*` any text, `?` one character)
-    #[arg(long, value_name = "PATTERN")]
-    name: Option<String>,
-    /// Cut the one clip that --name chooses at these moments, seconds separated by commas; cutting again leaves it so
-    #[arg(long, value_name = "SECS", value_delimiter = ',', requires = "name")]
+    /// Clips of a database of this name; `*` stands for any text, `?` for one character
+    #[arg(long, alias = "name", value_name = "CLIP")]
+    clip: Option<String>,
+    /// Cut the one clip that --clip chooses at these moments, seconds separated by commas; cutting again leaves it so
+    #[arg(long, value_name = "SECS", value_delimiter = ',', requires = "clip")]
     at: Vec<f64>,
     /// How to cut
     #[arg(long, value_enum, default_value = "kernel")]
@@ -129,7 +129,7 @@ impl CheckedCutter {
 pub fn run(args: &Args) -> Result<ExitCode> {
     match database::only(&args.inputs)? {
         Some(db) => stored::run(db, CheckedCutter::new(args)?, args),
-        None if args.name.is_some() => bail!("--name chooses clips of a database"),
+        None if args.clip.is_some() => bail!("--clip chooses clips of a database"),
         None => files::run(&CheckedCutter::new(args)?, args),
     }
 }

@@ -11,7 +11,7 @@ use morec::eval::{ClipDetection, Evaluation, GroundTruth, StreamInfo, event_pair
 use morec::explain::{Miss, Sought, explain};
 use morec::formats::Warning;
 use morec::import::ImportOptions;
-use morec::labels::{ClipLength, Labels, Resolved, read_detections};
+use morec::labels::{ClipLength, Resolved, read_detections};
 use morec::live::{Detection, Model};
 use morec::report::Report;
 use rayon::prelude::*;
@@ -19,8 +19,11 @@ use rayon::prelude::*;
 use super::recognize::open_index;
 use crate::figures;
 use crate::files::{self, ReadArgs, some_of};
+use crate::json;
+use crate::labels;
 use crate::lengths::lengths;
 use crate::material::{LoadedClip, load_clips};
+use crate::motion::ReportMotion;
 
 /// Measure detections against labels.
 ///
@@ -35,12 +38,13 @@ use crate::material::{LoadedClip, load_clips};
 #[command(
     after_help = "Exit codes: 0 measured; 1 a file cannot be read or nothing can be measured; 2 wrong command line.\n\n\
     Example: morec recognize signs.index new/ -o found.tsv\n         \
-    morec evaluate --truth labels.tsv --found found.tsv --clips new/ --report out/"
+    morec evaluate --labels labels.tsv --found found.tsv --clips new/ --report report.html"
 )]
 pub struct Args {
-    /// Labels: columns clip, class, and start, stop or start_secs, stop_secs, or neither for whole clips
-    #[arg(long, value_name = "TSV")]
-    truth: PathBuf,
+    /// Labels, in a form that `morec db label` reads; of tables columns clip, class, and start, stop or start_secs,
+    /// stop_secs, or neither for whole clips
+    #[arg(long, alias = "truth", value_name = "FILE|DIR")]
+    labels: PathBuf,
     /// Detections, as `morec recognize` writes them or with as little as clip, start, stop, class; - reads them
     /// from standard input
     #[arg(long, value_name = "TSV")]
@@ -61,8 +65,8 @@ pub struct Args {
     /// Print one JSON object instead of tables
     #[arg(long)]
     json: bool,
-    /// Write report.html, one file without outside links, into this folder
-    #[arg(long, value_name = "DIR")]
+    /// Write a page of HTML too, one file without outside links
+    #[arg(long, value_name = "HTML")]
     report: Option<PathBuf>,
     #[command(flatten)]
     read: ReadArgs,
@@ -70,11 +74,10 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
-    let labels =
-        Labels::read(&read(&args.truth)?).with_context(|| args.truth.display().to_string())?;
+    let labels = labels::read(&args.labels)?;
     let table =
         read_detections(&read(&args.found)?).with_context(|| args.found.display().to_string())?;
-    warn(&args.truth, &labels.warnings);
+    warn(&args.labels, &labels.warnings);
     warn(&args.found, &table.warnings);
     let mut clips = lengths(&args.clips, &args.read)?;
     let unknown = lengths(&args.unknown, &args.read)?;
@@ -82,7 +85,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     clips.extend(unknown);
 
     let resolved = labels.resolve(&clips);
-    warn(&args.truth, &resolved.warnings);
+    warn(&args.labels, &resolved.warnings);
     let cases = Cases::new(&clips, resolved, &unknown_names, &args.classes)?;
     cases
         .notes
@@ -103,14 +106,18 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         None => Vec::new(),
     };
     // Before anything is printed: whoever stops reading still gets the report.
-    if let Some(folder) = &args.report {
+    if let Some(path) = &args.report {
         let timelines = timelines(&cases.streams, &cases.truths, &founds)?;
         let named = |path: &Path| path.display().to_string();
         let about = [
-            ("labels".to_owned(), named(&args.truth)),
+            ("labels".to_owned(), named(&args.labels)),
             ("detections".to_owned(), named(&args.found)),
         ];
         let title = "Detections against labels";
+        let mut motion = ReportMotion::of(&timelines);
+        motion.add_files(&args.clips, &args.read)?;
+        motion.add_files(&args.unknown, &args.read)?;
+        let reel = motion.into_reel();
         let report = Report {
             title,
             about: &about,
@@ -120,14 +127,15 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             misses: &misses,
             sensitivities: &[],
             perturbed: &[],
+            motion: reel.as_ref(),
         };
-        figures::write_report(folder, &report)?;
+        figures::write_report(path, &report)?;
     }
     let mut out = std::io::stdout().lock();
     if args.json {
         let missed = args.index.is_some().then_some(misses.as_slice());
         let evaluation = &evaluation;
-        figures::write_json(&mut out, &EvaluationMeasures { evaluation, missed })?;
+        json::write_json(&mut out, &EvaluationMeasures { evaluation, missed })?;
     } else {
         figures::write_tables(&mut out, &evaluation)?;
         figures::write_misses(&mut out, &misses)?;
@@ -303,7 +311,9 @@ mod tests {
         };
         let clips: BTreeMap<String, ClipLength> =
             ["a", "b", "c"].map(|name| (name.to_owned(), length)).into();
-        let resolved = Labels::read(labels.as_bytes()).unwrap().resolve(&clips);
+        let resolved = morec::labels::Labels::read(labels.as_bytes())
+            .unwrap()
+            .resolve(&clips);
         let owned = |names: &[&str]| names.iter().map(|n| (*n).to_owned()).collect::<Vec<_>>();
         Cases::new(
             &clips,

@@ -26,9 +26,9 @@ use crate::poses::PoseArgs;
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
-  morec group recordings/ --labels labels.tsv
-  morec group recordings/ --labels labels.tsv --method kwas --centre none --tau 0.995
-  morec group moves.mdb --of labels                       # and how well that agrees with the classes
+  morec group clips/ --labels labels.tsv
+  morec group clips/ --labels labels.tsv --method kwas --centre none --tau 0.995
+  morec group moves.mdb --of labels             # and how well classes agree
   morec group moves.mdb --method hierarchy --groups 12 --name-as group")]
 pub struct Args {
     /// Clips, folders of clips, or one database
@@ -37,9 +37,9 @@ pub struct Args {
     /// The spelling of old for clips
     #[arg(long, value_name = "DIR|CLIP", num_args = 1.., hide = true)]
     clips: Vec<PathBuf>,
-    /// Labels of clips in files: tab-separated text with a header; columns clip (file stem), class, and start, stop
-    /// (frames, stop exclusive) or start_secs, stop_secs, or neither: then the whole clip is one sample
-    #[arg(long, value_name = "TSV")]
+    /// Labels of clips in files, in a form that `morec db label` reads; of tables columns clip (file stem), class, and
+    /// start, stop (frames, stop exclusive) or start_secs, stop_secs, or neither: then the whole clip is one sample
+    #[arg(long, value_name = "FILE|DIR")]
     labels: Option<PathBuf>,
     /// What is grouped [default: labelled samples if --labels are given, else cuts]
     #[arg(long, value_enum)]

@@ -10,8 +10,8 @@ use std::process::ExitCode;
 use anyhow::{Context, Result, bail};
 use morec::import::{ImportOptions, SignedAxis, Take};
 
-use crate::figures::write_json;
 use crate::files::{self, ReadArgs};
+use crate::json::write_json;
 use crate::output;
 use crate::progress::SlowProgress;
 use draw::Drawing;
@@ -52,7 +52,7 @@ pub struct Args {
     /// Draw the body as it was understood, left and right in colours of their own
     #[arg(long, conflicts_with = "json")]
     draw: bool,
-    /// With --draw: write the picture of one clip as SVG, with the names of its joints
+    /// Where to write, with --draw: the picture of one clip as SVG, with the names of its joints
     #[arg(short, long, value_name = "FILE", requires = "draw")]
     output: Option<PathBuf>,
     /// Roles that override those found: a file of `role<TAB>joint` lines

@@ -8,12 +8,13 @@ use std::process::ExitCode;
 use anyhow::{Context, Result, bail};
 use morec::import::{ImportOptions, Take};
 use morec::index::MotionIndex;
-use morec::labels::{ClipLength, Labels};
+use morec::labels::ClipLength;
 use morec::live::recognize_clip;
-use morec::player::{Mark, Played, page};
+use morec::player::{Mark, PlayedClip, page};
 
 use super::recognize::open_index;
 use crate::files::{self, ReadArgs};
+use crate::labels;
 use crate::output;
 use crate::show::{self, KnownSpan, ReportedDetection, ShownClip};
 
@@ -31,17 +32,17 @@ pub struct Args {
     /// Clips in any format that is read, or folders of clips
     #[arg(required = true, value_name = "CLIP")]
     clips: Vec<PathBuf>,
-    /// Labels to show, in any form that `morec train` reads
-    #[arg(long, value_name = "FILE")]
+    /// Labels, in a form that `morec db label` reads, to be shown
+    #[arg(long, value_name = "FILE|DIR")]
     labels: Option<PathBuf>,
     /// Show what this index recognises, too
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "INDEX")]
     index: Option<PathBuf>,
     /// How many times as fast as performed, in the terminal
-    #[arg(long, default_value_t = 1.0, value_parser = speed)]
+    #[arg(long, value_name = "TIMES", default_value_t = 1.0, value_parser = speed)]
     speed: f64,
-    /// Write a page of HTML that plays the clips, instead
-    #[arg(short, long, value_name = "FILE")]
+    /// The file to write: a page of HTML that plays the clips, instead
+    #[arg(short, long, value_name = "HTML")]
     output: Option<PathBuf>,
     /// Roles that override those found: a file of `role<TAB>joint` lines
     #[arg(long, value_name = "FILE")]
@@ -97,8 +98,7 @@ fn labels(path: Option<&Path>, takes: &[Take]) -> Result<BTreeMap<String, Vec<Kn
     let Some(path) = path else {
         return Ok(BTreeMap::new());
     };
-    let shown = || path.display().to_string();
-    let labels = Labels::read(&files::read(path)?).with_context(shown)?;
+    let labels = labels::read(path)?;
     let lengths: BTreeMap<String, ClipLength> = takes
         .iter()
         .map(|take| {
@@ -180,11 +180,13 @@ fn write_page(
         start_secs,
         stop_secs,
     };
-    let clips: Vec<Played> = takes
+    let clips: Vec<PlayedClip> = takes
         .iter()
         .zip(played)
-        .map(|(take, (truth, said))| Played {
-            take,
+        .map(|(take, (truth, said))| PlayedClip {
+            clip: &take.clip,
+            roles: &take.roles,
+            secs: None,
             labels: truth
                 .into_iter()
                 .map(|t| mark(t.class, t.start_secs, t.stop_secs))

@@ -42,8 +42,8 @@ pub struct Args {
     #[arg(required = true, value_name = "CLIP")]
     clips: Vec<PathBuf>,
     /// How to write detections
-    #[arg(long, value_enum, default_value = "tsv")]
-    format: OutputFormat,
+    #[arg(long, alias = "format", value_enum, default_value = "tsv")]
+    form: OutputFormat,
     /// Where to write them [default: standard output]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -146,7 +146,7 @@ fn recognize_all(
     options: &ImportOptions,
     args: &Args,
 ) -> Result<bool> {
-    if args.format == OutputFormat::Tsv {
+    if args.form == OutputFormat::Tsv {
         writeln!(out, "{FOUND_HEADER}")?;
     }
     let mut stats = Stats::default();
@@ -156,7 +156,7 @@ fn recognize_all(
         match recognize_file(path, index, options, args, &mut stats) {
             Ok(found) => found
                 .iter()
-                .try_for_each(|f| write_found(out, args.format, f, index))?,
+                .try_for_each(|f| write_found(out, args.form, f, index))?,
             Err(error) => {
                 failed = true;
                 progress.suspend(|| eprintln!("morec: {error:#}"));

@@ -25,7 +25,7 @@ use morec_live::Address;
     written; 2 wrong command line.\n\n\
     Examples:\n  \
     morec record --listen vmc://0.0.0.0:39539 -o take.bvh\n  \
-    morec record --listen vmc://0.0.0.0:39539 -o wave.bvh --takes 3 --secs 4    # wave_1.bvh …\n  \
+    morec record --listen vmc://0.0.0.0:39539 -o wave.bvh --takes 3 --secs 4\n  \
     morec record --listen json:- -o take.jsonl --count-down 0 < poses.jsonl"
 )]
 pub struct Args {

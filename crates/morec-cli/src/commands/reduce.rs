@@ -9,7 +9,7 @@ use morec::pca::{ComponentCount, Moments, Pca, QualityRow};
 use morec::report::pictures::quality_chart;
 use serde::Serialize;
 
-use crate::figures::write_json;
+use crate::json::write_json;
 use crate::output;
 use crate::poses::PoseArgs;
 use crate::table::TextTable;

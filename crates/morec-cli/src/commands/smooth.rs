@@ -15,8 +15,8 @@ use morec::progress::Progress as _;
 use morec::smooth::{SmoothParams, compress};
 use rayon::prelude::*;
 
-use crate::figures::write_json;
 use crate::files::{self, ReadArgs};
+use crate::json::write_json;
 use crate::progress::StageBar;
 use output::{MotionForm, MotionTarget};
 use report::{CompressionReport, CompressionResult};

@@ -9,6 +9,7 @@ use morec::train::thesis::SvrdmReport;
 use morec::train::{TrainingReport, train_index};
 
 use crate::database;
+use crate::json::write_json;
 use crate::material::{ClipMaterial, MaterialArgs};
 use crate::output;
 use crate::progress::StageBar;
@@ -29,7 +30,7 @@ pub struct Args {
     /// Where to write the index
     #[arg(short, long, value_name = "INDEX")]
     output: PathBuf,
-    /// Print the training report as JSON
+    /// Print one JSON object: the report of training
     #[arg(long)]
     json: bool,
 }
@@ -61,7 +62,8 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         database::open(db)?.store_index(&name, &bytes)?;
     }
     if args.json {
-        println!("{}", serde_json::to_string_pretty(&report)?);
+        let mut out = std::io::stdout().lock();
+        write_json(&mut out, &report)?;
     } else {
         print_report(&report, bytes.len(), &material, &args.output);
     }

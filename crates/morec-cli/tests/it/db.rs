@@ -157,7 +157,7 @@ fn from_clips_to_labels_and_back() {
         "1",
     ]);
     assert_eq!(
-        outside["hits"][0]["name"],
+        outside["hits"][0]["clip"],
         Value::from(name.as_str()),
         "a file finds itself"
     );

@@ -89,7 +89,7 @@ fn json_holds_every_measure() {
 #[test]
 fn tables_report_and_what_was_left_out() {
     let folder = folder();
-    let output = evaluate(folder.path(), &["--report", "out/deep"]);
+    let output = evaluate(folder.path(), &["--report", "out/deep/report.html"]);
     let (printed, said) = (text(&output.stdout), text(&output.stderr));
     assert!(output.status.success(), "{said}");
     for line in [

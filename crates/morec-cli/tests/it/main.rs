@@ -11,6 +11,7 @@ mod inspect;
 mod kit;
 mod labels;
 mod live;
+mod motion_out;
 mod outputs;
 mod play;
 mod poses;

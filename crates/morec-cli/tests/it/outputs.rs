@@ -133,8 +133,8 @@ fn a_closed_pipe_does_not_lose_the_report() {
     let found = "clip\tstart\tstop\tclass\n".to_owned();
     std::fs::write(folder.path().join("found.tsv"), found).unwrap();
     for command in [
-        "evaluate --truth labels.tsv --found found.tsv --clips clips --report report",
-        "crossval --clips clips --labels labels.tsv --by half --report report",
+        "evaluate --truth labels.tsv --found found.tsv --clips clips --report report/report.html",
+        "crossval --clips clips --labels labels.tsv --by half --report report/report.html",
     ] {
         let mut running = Command::new(env!("CARGO_BIN_EXE_morec"))
             .args(command.split(' '))

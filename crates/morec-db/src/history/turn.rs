@@ -191,6 +191,13 @@ fn swap(tx: &Transaction<'_>, way: Way, step: &HistoryStep) -> Result<Vec<Effect
         return Err(refusal(step, way, "need it", &dependents));
     }
     digest::follow(tx, recording.step, recording.after)?;
+    // Kept rows follow from the motion: those of a motion that went would mislead.
+    tx.execute(
+        "DELETE FROM feature_rows WHERE clip IN (SELECT t.id FROM clips t JOIN was w ON w.c0 = t.id \
+         WHERE w.edit = ?1 AND w.tab = 'clips' AND w.present \
+         AND (w.c16 IS NOT NULL OR w.c9 IS NOT t.roles OR w.c7 IS NOT t.rest_frames))",
+        params![recording.step],
+    )?;
     let effects = effects(tx, recording.step)?;
     tx.execute("DELETE FROM was WHERE edit = ?1", params![step.id])?;
     let sql = "UPDATE was SET edit = ?1 WHERE edit = ?2";

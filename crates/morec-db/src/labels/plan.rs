@@ -42,6 +42,7 @@ pub struct ChangedLabel {
     /// What happens.
     pub change: LabelChange,
     /// Its clip.
+    #[serde(rename = "clip_id")]
     pub clip: crate::ClipId,
     /// Its class.
     pub class: String,

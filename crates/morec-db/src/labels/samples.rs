@@ -18,8 +18,10 @@ pub struct DbSample {
     /// Its number.
     pub id: SampleId,
     /// Its clip.
+    #[serde(rename = "clip_id")]
     pub clip: ClipId,
     /// Its clip's name.
+    #[serde(rename = "clip")]
     pub clip_name: String,
     /// Who is seen in the clip.
     pub subject: Option<String>,

@@ -44,6 +44,7 @@ impl Default for SearchOptions {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Hit {
     /// Its clip.
+    #[serde(rename = "clip_id")]
     pub clip: ClipId,
     /// Where it starts, seconds from the clip's beginning.
     pub start_secs: f64,

@@ -147,6 +147,16 @@ class Index:
         """An index from the bytes of its file."""
     def to_bytes(self) -> bytes:
         """The bytes of the index file."""
+    def part(self, part: int, of: int) -> Index:
+        """Part ``part`` of ``of``: the templates of every ``of``-th class, for one of several machines.
+
+        `morec.archive.Archive.recognize` divides an index so and decides between what all parts match.
+
+        Raises
+        ------
+        ValueError
+            There is no such part, or the index is of the method svrdm.
+        """
     def save(self, path: _Path) -> None:
         """Write the index file, whole or not at all."""
     def recognize(
@@ -503,6 +513,10 @@ def kept_to_database(path: str, rows: list[dict[str, Any]], /) -> int: ...
 def names_in_database(path: str, /) -> list[tuple[bytes, int, str]]: ...
 def kept_clip(name: str, motion: bytes, roles: str, rest_frames: int, facts: str, /) -> Clip: ...
 def recognize_kept(index: Index, clips: list[tuple[bytes | None, str | None, int | None]], /) -> list[Any]: ...
+def match_kept(part: Index, clips: list[tuple[bytes | None, str | None, int | None]], /) -> list[bytes | str]: ...
+def recognize_matched_kept(
+    first: Index, clips: list[tuple[tuple[bytes | None, str | None, int | None], list[bytes]]], /
+) -> list[Any]: ...
 def index_from_bytes(bytes: bytes, /) -> Index: ...
 def cut_kept(
     bones: int, rows: bytes, window: float | None = None, penalty: float | None = None, least: float | None = None, /

@@ -4,9 +4,8 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use morec::formats::bvh;
-use morec::import::{ImportOptions, SignedAxis, normalize};
 use morec::labels::ClipLength;
-use morec::player::{Mark, Played, page};
+use morec::player::{Mark, PlayedClip, page};
 use morec_db::exchange::{self, Annotation, ClipLengths, LabelFormat};
 use morec_db::labels::{SampleFilter, SampleState};
 use morec_db::{ClipFilter, ClipId, MotionDb};
@@ -118,16 +117,10 @@ fn played(db: &MotionDb, clip: ClipId, detections: Vec<Mark>) -> Result<String, 
         stop_secs: s.stop_secs,
     });
     let title = stored.clip.name.clone();
-    // Kept clips are in metres and Y up.
-    let as_it_is = ImportOptions {
-        up: Some(SignedAxis::Y),
-        metres_per_unit: Some(1.0),
-        ..ImportOptions::default()
-    };
-    let mut take = normalize(stored.clip, &as_it_is)?;
-    take.roles = stored.roles;
-    let played = Played {
-        take: &take,
+    let played = PlayedClip {
+        clip: &stored.clip,
+        roles: &stored.roles,
+        secs: None,
         labels: labels.collect(),
         detections,
     };

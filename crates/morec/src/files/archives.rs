@@ -1,8 +1,8 @@
 //! Files that are packed, in UTF-16, or hold several clips of which one is meant.
 
 use std::borrow::Cow;
-use std::fs;
-use std::io;
+use std::fs::{self, File};
+use std::io::{self, Read, Seek};
 use std::path::{Path, PathBuf};
 
 use crate::clip::Clip;
@@ -10,7 +10,7 @@ use crate::formats::container::{self, Member};
 use crate::formats::probe::{Format, format_of_name, probe};
 use crate::formats::{ParseError, Place, Warning, mocopi};
 
-use super::{ClipFile, FileError, FileErrorKind, FileReader};
+use super::{ClipFile, FileError, FileErrorKind, FileReader, is_large};
 
 /// Archives in archives are opened so deep.
 const DEEPEST: usize = 3;
@@ -76,13 +76,30 @@ impl FileReader {
     pub fn parse(&self, path: &Path, bytes: &[u8]) -> Result<ClipFile, FileError> {
         let (file, choice) = split_choice(path);
         let parsed = self.parse_packed(&file, bytes, Around::Folder, 0);
-        let chosen = parsed.and_then(|mut parsed| {
-            if let Some(choice) = choice {
-                parsed.clips = chosen(parsed.clips, &choice)?;
-            }
-            Ok(parsed)
-        });
+        let chosen = parsed.and_then(|parsed| choose(parsed, choice.as_deref()));
         chosen.map_err(|kind| kind.at(path))
+    }
+
+    /// A large BVH file, which is then not held as a whole; `None` for all else.
+    pub(super) fn read_large(&self, path: &Path) -> Option<Result<ClipFile, FileError>> {
+        let (file, choice) = split_choice(path);
+        if !is_large(&file) {
+            return None;
+        }
+        // What goes wrong here goes wrong again, and is said, when the file is read as a whole.
+        let mut opened = File::open(&file).ok()?;
+        let mut head = Vec::new();
+        (&mut opened).take(1 << 16).read_to_end(&mut head).ok()?;
+        opened.rewind().ok()?;
+        let packed = container::is_gzip(&head)
+            || container::is_zip(&head)
+            || matches!(container::utf8(&head), Cow::Owned(_));
+        if packed || probe(&head, &file.to_string_lossy()) != Ok(Format::Bvh) {
+            return None;
+        }
+        let read = self.parse_bvh(&file, opened);
+        let chosen = read.and_then(|read| choose(read, choice.as_deref()));
+        Some(chosen.map_err(|kind| kind.at(path)))
     }
 
     fn parse_packed(
@@ -213,6 +230,14 @@ fn nothing_in(bytes: &[u8], refused: &[String]) -> ParseError {
         )
     };
     ParseError::new(Place::File, "a zip archive with motions", found)
+}
+
+/// The file with the clip that was asked for, if one was.
+fn choose(mut file: ClipFile, choice: Option<&str>) -> Result<ClipFile, FileErrorKind> {
+    if let Some(choice) = choice {
+        file.clips = chosen(file.clips, choice)?;
+    }
+    Ok(file)
 }
 
 /// The clip of number `choice`, from 1, or of that name (all of it or what follows the file's).

@@ -24,6 +24,39 @@ pub fn read_file(path: &Path) -> io::Result<Vec<u8>> {
     read_stream(file)
 }
 
+/// A file of so many bytes is not held as a whole where there is another way.
+const LARGE_FILE: u64 = 8 << 20;
+
+/// Whether `path` is a file on disk so large that it is better not held as a whole, and not too large to be read.
+pub fn is_large(path: &Path) -> bool {
+    fs::metadata(path)
+        .is_ok_and(|about| about.is_file() && (LARGE_FILE..=LARGEST_FILE).contains(&about.len()))
+}
+
+/// Gives the bytes of a file to `take`, a piece at a time; returns how many there were.
+///
+/// # Errors
+/// The file cannot be read, or is larger than [`LARGEST_FILE`].
+pub fn each_piece(path: &Path, mut take: impl FnMut(&[u8])) -> io::Result<u64> {
+    let mut file = File::open(path)?;
+    let mut piece = vec![0; 1 << 16];
+    let mut total = 0;
+    loop {
+        match file.read(&mut piece) {
+            Ok(0) => return Ok(total),
+            Ok(read) => {
+                total += read as u64;
+                if total > LARGEST_FILE {
+                    return Err(too_large(LARGEST_FILE));
+                }
+                take(&piece[..read]);
+            }
+            Err(error) if error.kind() == ErrorKind::Interrupted => {}
+            Err(error) => return Err(error),
+        }
+    }
+}
+
 /// All of a stream.
 ///
 /// # Errors
@@ -57,18 +90,19 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     written
 }
 
+fn too_large(most: u64) -> io::Error {
+    let text = format!("expected at most {} MB, found more", most >> 20);
+    io::Error::new(ErrorKind::FileTooLarge, text)
+}
+
 fn read_up_to(from: impl Read, length: u64, most: u64) -> io::Result<Vec<u8>> {
-    let too_large = || {
-        let text = format!("expected at most {} MB, found more", most >> 20);
-        io::Error::new(ErrorKind::FileTooLarge, text)
-    };
     if length > most {
-        return Err(too_large());
+        return Err(too_large(most));
     }
     let mut bytes = Vec::with_capacity(length as usize);
     from.take(most + 1).read_to_end(&mut bytes)?;
     match bytes.len() as u64 > most {
-        true => Err(too_large()),
+        true => Err(too_large(most)),
         false => Ok(bytes),
     }
 }

@@ -24,7 +24,7 @@ use std::path::Path;
 
 pub use archives::split_choice;
 pub(crate) use bounded::write_whole;
-pub use bounded::{LARGEST_FILE, LARGEST_STREAM, read_file, read_stream};
+pub use bounded::{LARGEST_FILE, LARGEST_STREAM, each_piece, is_large, read_file, read_stream};
 pub use error::{FileError, FileErrorKind};
 pub use folder::{Listing, list};
 pub use reader::{ClipFile, FileReader};

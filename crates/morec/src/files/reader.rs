@@ -1,5 +1,6 @@
 //! Reader of clip files: from bytes and their path to clips, and on to takes.
 
+use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
@@ -115,6 +116,9 @@ impl FileReader {
     /// # Errors
     /// Those of [`open`](Self::open), but for the mapping of roles.
     pub fn read(&self, path: &Path) -> Result<ClipFile, FileError> {
+        if let Some(read) = self.read_large(path) {
+            return read;
+        }
         let bytes = match path == Path::new("-") {
             true => read_stream(std::io::stdin().lock()),
             false => read_file(&split_choice(path).0),
@@ -169,6 +173,17 @@ impl FileReader {
         Ok(ClipFile {
             format,
             skeleton,
+            clips: loaded.clips,
+            warnings: loaded.warnings,
+        })
+    }
+
+    /// A BVH file of which a piece at a time is held.
+    pub(super) fn parse_bvh(&self, path: &Path, file: File) -> Result<ClipFile, FileErrorKind> {
+        let loaded = bvh::read_from(file, &stem(path), &self.bvh(), &self.limits)?;
+        Ok(ClipFile {
+            format: Format::Bvh,
+            skeleton: None,
             clips: loaded.clips,
             warnings: loaded.warnings,
         })

@@ -186,9 +186,9 @@ pub(super) fn clip_names(file: &str, names: &[String]) -> Vec<String> {
 }
 
 /// So many poses (frames × joints) are made of a file however small it is,
-const FREE_POSES: usize = 1 << 24;
-/// and so many for each of its bytes: two keys can stand a year apart.
-const POSES_A_BYTE: usize = 4096;
+const FREE_POSES: usize = 1 << 22;
+/// and so many for each of its bytes: two keys may stand far apart, and a short file could fill the memory with that.
+const POSES_A_BYTE: usize = 16;
 
 /// Refuses to make more frames of a file than its size lets believe.
 pub(super) fn check_size(

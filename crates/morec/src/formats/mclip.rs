@@ -3,10 +3,10 @@
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::smooth::CompressedClip;
 
-/// So many rotations are made of a file however small it is,
+/// So many rotations are made of a file however small it is: an hour of a body that stands still,
 const FREE_ROTATIONS: usize = 1 << 24;
-/// and so many for each of its bytes. Real motion has ten or so, stillness thousands.
-const ROTATIONS_A_BYTE: usize = 4096;
+/// and so many for each of its bytes. Real motion has ten or so.
+const ROTATIONS_A_BYTE: usize = 24;
 
 /// Reads a stored clip and samples it at its source's rate; it is called `name`. Time and memory O(frames × joints).
 ///
@@ -15,7 +15,7 @@ const ROTATIONS_A_BYTE: usize = 4096;
 /// so few bytes can be believed to hold.
 pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseError> {
     let stored = CompressedClip::from_bytes_within(bytes, limits)?;
-    let most = FREE_ROTATIONS.max(bytes.len().saturating_mul(ROTATIONS_A_BYTE));
+    let most = FREE_ROTATIONS + bytes.len().saturating_mul(ROTATIONS_A_BYTE);
     let rotations = stored
         .source_frames()
         .saturating_mul(stored.skeleton().len());

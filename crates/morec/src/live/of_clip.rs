@@ -27,12 +27,23 @@ pub fn recognize_clip<M: Clone + Into<Model>>(
     rest: &Span,
 ) -> Result<Vec<Detection>, StartError> {
     let model = model.clone().into();
-    let mut recognizer = Recognizer::new(&model, bones_of_clip(clip, roles, rest))?;
+    let recognizer = Recognizer::new(&model, bones_of_clip(clip, roles, rest))?;
+    recognize_with(recognizer, &model, clip, roles, rest)
+}
+
+/// What a new recogniser for `model` reports of a clip.
+pub(super) fn recognize_with(
+    mut recognizer: Recognizer,
+    model: &Model,
+    clip: &Clip,
+    roles: &RoleMap,
+    rest: &Span,
+) -> Result<Vec<Detection>, StartError> {
     let mut found = Vec::new();
     if clip.frames == 0 {
         return Ok(found);
     }
-    let mut reader = reader(&model, clip, roles)?;
+    let mut reader = reader(model, clip, roles)?;
     for_each_world_pose(clip, rest, |time_secs, world| {
         found.extend_from_slice(recognizer.push(time_secs, reader.read(world)));
     });

@@ -5,7 +5,9 @@ use std::sync::Arc;
 use crate::features::{BoneSet, FeatureStream, Pushed};
 use crate::pivots::{PivotPose, PoseStream};
 use crate::svrdm::{FrameDetection, SvrdmEngine, SvrdmModel};
-use crate::templates::{EarlyDetectionParams, OngoingMatch, TemplateEngine, TemplateModel};
+use crate::templates::{
+    ClassMatches, EarlyDetectionParams, OngoingMatch, TemplateEngine, TemplateModel,
+};
 
 use super::detection::{DetectionBuffer, Steps};
 use super::{EarlyDetection, RecognizerInput, StartError};
@@ -40,23 +42,30 @@ impl PartialMatchTracker {
 
 impl TemplatePipeline {
     pub(super) fn new(model: &Arc<TemplateModel>, bones: BoneSet) -> Result<Self, StartError> {
-        let model = if model.bones.and(bones) == model.bones {
-            model.clone()
-        } else {
-            Arc::new(model.restricted(bones)?)
-        };
-        let features = FeatureStream::new(model.bones, &model.features);
-        let (early, seen) = (
-            EarlyDetectionParams::default(),
-            PartialMatchTracker::default(),
-        );
-        Ok(Self {
-            features,
-            engine: TemplateEngine::new(&model)?,
+        let model = restricted(model, bones)?;
+        let engine = TemplateEngine::new(&model)?;
+        Ok(Self::with(model, engine))
+    }
+
+    /// On matches from elsewhere, of the stream that will be pushed.
+    pub(super) fn replay(
+        model: &Arc<TemplateModel>,
+        bones: BoneSet,
+        matches: ClassMatches,
+    ) -> Result<Self, StartError> {
+        let model = restricted(model, bones)?;
+        let engine = TemplateEngine::replay(&model, matches)?;
+        Ok(Self::with(model, engine))
+    }
+
+    fn with(model: Arc<TemplateModel>, engine: TemplateEngine) -> Self {
+        Self {
+            features: FeatureStream::new(model.bones, &model.features),
+            engine,
             model,
-            early,
-            seen,
-        })
+            early: EarlyDetectionParams::default(),
+            seen: PartialMatchTracker::default(),
+        }
     }
 
     pub(super) fn latency_secs(&self) -> f64 {
@@ -134,6 +143,17 @@ impl TemplatePipeline {
     pub(super) fn set_early(&mut self, params: EarlyDetectionParams) {
         self.early = params;
     }
+}
+
+/// The model for a stream that shows `bones`; the same if that is all of them.
+fn restricted(
+    model: &Arc<TemplateModel>,
+    bones: BoneSet,
+) -> Result<Arc<TemplateModel>, StartError> {
+    if model.bones.and(bones) == model.bones {
+        return Ok(model.clone());
+    }
+    Ok(Arc::new(model.restricted(bones)?))
 }
 
 /// Pose rows and the stages of the thesis.

@@ -1,7 +1,9 @@
 //! The recogniser on a live stream, whatever the method.
 
+use std::sync::Arc;
+
 use crate::features::{BoneSet, KeyPose, Pushed};
-use crate::templates::EarlyDetectionParams;
+use crate::templates::{ClassMatches, EarlyDetectionParams, TemplateModel};
 
 use super::detection::DetectionBuffer;
 use super::paths::{SvrdmPipeline, TemplatePipeline};
@@ -47,6 +49,25 @@ impl Recognizer {
         Ok(Self {
             model,
             path,
+            found: DetectionBuffer::new(),
+            now_secs: 0.0,
+        })
+    }
+
+    /// A recogniser that decides between matches of the stream that will be pushed, found by all parts of an index and
+    /// [merged](ClassMatches::merge); `model` is the first part.
+    ///
+    /// # Errors
+    /// The model uses none of `bones`.
+    pub fn replay(
+        model: &TemplateModel,
+        bones: BoneSet,
+        matches: ClassMatches,
+    ) -> Result<Self, StartError> {
+        let path = TemplatePipeline::replay(&Arc::new(model.clone()), bones, matches)?;
+        Ok(Self {
+            model: Model::Templates(path.model.clone()),
+            path: Pipeline::Templates(Box::new(path)),
             found: DetectionBuffer::new(),
             now_secs: 0.0,
         })

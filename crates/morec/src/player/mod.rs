@@ -1,16 +1,19 @@
-//! A page that plays clips: one HTML file that stands alone, with a skeleton to turn and zoom, a timeline to scrub, and the
-//! labels and detections of each clip below it.
+//! Clips that play in a page of HTML which stands alone: a skeleton to turn and zoom, a timeline to scrub, and the labels and
+//! detections of each clip below it.
 //!
 //! Positions are stored in millimetres as 16-bit differences from the clip's middle, at most 30 frames a second, and drawn
 //! on a canvas by a script in the page; nothing is fetched from anywhere.
+
+use std::ops::Range;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::json;
 
-use crate::import::Take;
+use crate::clip::Clip;
 use crate::kinematics::WorldPose;
 use crate::math::Vec3;
+use crate::roles::{Role, RoleMap};
 
 /// A stretch of a clip with a name.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,39 +28,102 @@ pub struct Mark {
 
 /// A clip with what is known of it.
 #[derive(Debug, Clone)]
-pub struct Played<'a> {
-    /// The motion.
-    pub take: &'a Take,
-    /// Labels of the clip.
+pub struct PlayedClip<'a> {
+    /// The motion, in metres and Y up.
+    pub clip: &'a Clip,
+    /// Who plays what.
+    pub roles: &'a RoleMap,
+    /// What is shown of it, in seconds; `None` for all.
+    pub secs: Option<Range<f64>>,
+    /// What somebody labelled.
     pub labels: Vec<Mark>,
     /// Detections in the clip.
     pub detections: Vec<Mark>,
 }
 
-/// Frames a second of the page at most.
+/// Frames a second at most.
 const RATE_HZ: f64 = 30.0;
-/// Frames of a clip at most: an hour. What is longer is shown up to there.
-const FRAMES: usize = 108_000;
 
 const SCRIPT: &str = include_str!("player.js");
 const STYLE: &str = include_str!("player.css");
+const PAGE_STYLE: &str = "\
+:root { color-scheme: light dark; --ink: #222; --ground: #fff; }
+@media (prefers-color-scheme: dark) { :root { --ink: #ddd; --ground: #181818; } }
+body { font: 15px/1.4 sans-serif; color: var(--ink); background: var(--ground); margin: 1rem auto; max-width: 60rem; \
+padding: 0 1rem; }
+h1 { font-size: 1.2rem; }
+";
 
-/// The page. O(frames × joints) memory.
-pub fn page(title: &str, clips: &[Played]) -> String {
-    let clips: Vec<serde_json::Value> = clips.iter().map(clip).collect();
-    // A closing tag within text would end the script.
-    let data = json!(clips).to_string().replace("</", "<\\/");
+/// Clips for one page, as its script reads them.
+#[derive(Debug, Clone, Default)]
+pub struct Reel {
+    clips: Vec<String>,
+    bytes: usize,
+}
+
+impl Reel {
+    /// Adds a clip, thinned to at most `frames` frames by whole steps of its rate; the page moves smoothly between them.
+    /// Gives its number on the page. O(frames × joints).
+    pub fn add(&mut self, played: &PlayedClip, frames: usize) -> usize {
+        // A closing tag within text would end the script.
+        let clip = clip(played, frames).to_string().replace("</", "<\\/");
+        self.bytes += clip.len();
+        self.clips.push(clip);
+        self.clips.len() - 1
+    }
+
+    /// Bytes so far.
+    pub fn bytes(&self) -> usize {
+        self.bytes
+    }
+
+    /// Whether there is no clip.
+    pub fn is_empty(&self) -> bool {
+        self.clips.is_empty()
+    }
+
+    /// The player as part of a page, with a button for each clip.
+    pub fn section(&self) -> String {
+        let list = "<nav id=\"clips\" aria-label=\"Clips\"></nav>\n";
+        format!("<section id=\"player\">\n{list}{}", self.rest())
+    }
+
+    /// The player as a panel over a page, which opens at elements with the attribute `data-motion`: the clip's number.
+    pub fn panel(&self) -> String {
+        let head = "<p><b id=\"shown\"></b> <button id=\"close\">Close</button></p>\n";
+        format!(
+            "<section id=\"player\" class=\"panel\" hidden>\n{head}{}",
+            self.rest()
+        )
+    }
+
+    fn rest(&self) -> String {
+        let data = self.clips.join(",");
+        format!(
+            "<style>\n{STYLE}</style>\n<canvas id=\"stage\" tabindex=\"0\" aria-label=\"The body; drag to turn, wheel to \
+             zoom\"></canvas>\n<p id=\"bar\"><button id=\"play\">Pause</button> <input id=\"time\" type=\"range\" min=\"0\" \
+             step=\"any\" aria-label=\"Time\"> <output id=\"now\"></output> <label>speed <select id=\"speed\">\
+             <option>0.25</option><option>0.5</option><option selected>1</option><option>2</option></select></label></p>\n\
+             <canvas id=\"lanes\" aria-label=\"Labels above, detections below\"></canvas>\n<ul id=\"marks\"></ul>\n\
+             <noscript>Clips are played by a script, which is switched off.</noscript>\n\
+             <script>\nconst clips = [{data}];\n{SCRIPT}</script>\n</section>\n"
+        )
+    }
+}
+
+/// A page of clips, up to an hour of each. O(frames × joints) memory.
+pub fn page(title: &str, clips: &[PlayedClip]) -> String {
+    const FRAMES: usize = 108_000;
+    let mut reel = Reel::default();
+    for played in clips {
+        reel.add(played, FRAMES);
+    }
     let title = escaped(title);
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width\">\n<title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n\
-         <body>\n<h1>{title}</h1>\n<noscript>This page plays clips with a script, which is switched off.</noscript>\n\
-         <nav id=\"clips\" aria-label=\"Clips\"></nav>\n<canvas id=\"stage\" tabindex=\"0\" \
-         aria-label=\"The body; drag to turn, wheel to zoom\"></canvas>\n<p id=\"bar\"><button id=\"play\">Pause</button> \
-         <input id=\"time\" type=\"range\" min=\"0\" step=\"any\" aria-label=\"Time\"> <output id=\"now\"></output> \
-         <label>speed <select id=\"speed\"><option>0.25</option><option>0.5</option><option selected>1</option>\
-         <option>2</option></select></label></p>\n<canvas id=\"lanes\" aria-label=\"Labels above, detections \
-         below\"></canvas>\n<ul id=\"marks\"></ul>\n<script>\nconst clips = {data};\n{SCRIPT}</script>\n</body>\n</html>\n"
+         <meta name=\"viewport\" content=\"width=device-width\">\n<title>{title}</title>\n<style>\n{PAGE_STYLE}</style>\n\
+         </head>\n<body>\n<h1>{title}</h1>\n{}</body>\n</html>\n",
+        reel.section()
     )
 }
 
@@ -67,15 +133,23 @@ fn escaped(text: &str) -> String {
         .replace('>', "&gt;")
 }
 
-fn clip(played: &Played) -> serde_json::Value {
-    let clip = &played.take.clip;
-    let step = (clip.rate_hz / RATE_HZ).max(1.0);
-    let frames =
-        ((clip.frames as f64 / step).floor() as usize).clamp(usize::from(clip.frames > 0), FRAMES);
+fn clip(played: &PlayedClip, most: usize) -> serde_json::Value {
+    let PlayedClip { clip, roles, .. } = played;
+    let whole = 0.0..clip.duration_secs();
+    let secs = played.secs.clone().unwrap_or(whole);
+    let frame_at = |secs: f64| ((secs * clip.rate_hz).round().max(0.0) as usize).min(clip.frames);
+    let (first, end) = (frame_at(secs.start), frame_at(secs.end));
+    let shown = end.saturating_sub(first);
+    // Rates are halved until the stretch has no more frames than wanted.
+    let mut step = (clip.rate_hz / RATE_HZ).max(1.0);
+    while shown as f64 / step > most as f64 {
+        step *= 2.0;
+    }
+    let frames = ((shown as f64 / step).floor() as usize).max(usize::from(shown > 0));
     let mut pose = WorldPose::default();
     let mut poses: Vec<Vec<Vec3>> = Vec::with_capacity(frames);
     for frame in 0..frames {
-        let at = (frame as f64 * step) as usize;
+        let at = first + (frame as f64 * step) as usize;
         pose.set(clip, at.min(clip.frames - 1));
         let mut places = pose.positions.clone();
         let joints = clip.skeleton.joints().iter().enumerate();
@@ -101,13 +175,18 @@ fn clip(played: &Played) -> serde_json::Value {
         .filter(|&j| joints[j].tip.is_some())
         .map(Some);
     let parents: Vec<Option<usize>> = own.chain(tips).collect();
+    let start = first as f64 / clip.rate_hz;
     let marks = |marks: &[Mark]| -> Vec<serde_json::Value> {
-        let mark = |m: &Mark| json!([m.name, m.start_secs, m.stop_secs]);
+        let mark = |m: &Mark| json!([m.name, m.start_secs - start, m.stop_secs - start]);
         marks.iter().map(mark).collect()
     };
-    let sides: Vec<i8> = (0..joints.len()).map(|j| side(played.take, j)).collect();
+    let sides: Vec<i8> = (0..joints.len()).map(|j| side(clip, roles, j)).collect();
+    let name = match &played.secs {
+        Some(secs) => format!("{} {:.2}–{:.2} s", clip.name, secs.start, secs.end),
+        None => clip.name.clone(),
+    };
     json!({
-        "name": clip.name,
+        "name": name,
         "rate": clip.rate_hz / step,
         "frames": frames,
         "parents": parents,
@@ -121,14 +200,14 @@ fn clip(played: &Played) -> serde_json::Value {
 }
 
 /// −1 for a joint of the right limbs, 1 for one of the left, 0 else.
-fn side(take: &Take, joint: usize) -> i8 {
-    let joints = take.clip.skeleton.joints();
+fn side(clip: &Clip, roles: &RoleMap, joint: usize) -> i8 {
+    let joints = clip.skeleton.joints();
     let mut above = std::iter::successors(Some(joint), |&j| joints[j].parent);
     above
         .find_map(|j| {
-            let role = crate::roles::Role::ALL
+            let role = Role::ALL
                 .into_iter()
-                .find(|&role| take.roles.joint(role) == Some(j))?;
+                .find(|&role| roles.joint(role) == Some(j))?;
             Some(match role.name() {
                 name if name.starts_with("left") => 1,
                 name if name.starts_with("right") => -1,
@@ -158,6 +237,7 @@ fn middle(poses: &[Vec<Vec3>]) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::import::Take;
     use crate::synth::{Person, Script};
 
     #[test]
@@ -169,8 +249,10 @@ mod tests {
             start_secs: 0.3,
             stop_secs: 1.0,
         };
-        let played = Played {
-            take: &take,
+        let played = PlayedClip {
+            clip: &take.clip,
+            roles: &take.roles,
+            secs: None,
             labels: vec![mark("wave")],
             detections: vec![mark("wave"), mark("<b>")],
         };
@@ -199,5 +281,34 @@ mod tests {
         let x = f64::from(i16::from_le_bytes([bytes[at], bytes[at + 1]])) / 1000.0;
         let place = WorldPose::of(&take.clip, 20).positions[0];
         assert!((x + clip["middle"][0].as_f64().unwrap() - place.x).abs() < 1e-3);
+    }
+
+    /// A stretch holds its own frames, thinned as asked, and its marks begin with it.
+    #[test]
+    fn a_stretch_is_cut_out_and_thinned() {
+        let script = Script::new(3, Person::draw(31, 2)).rest(0.3).play("wave");
+        let take = Take::new(script.film("wave", 30.0).unwrap().clip).unwrap();
+        let played = PlayedClip {
+            clip: &take.clip,
+            roles: &take.roles,
+            secs: Some(0.3..1.3),
+            labels: vec![Mark {
+                name: "wave".to_owned(),
+                start_secs: 0.5,
+                stop_secs: 1.0,
+            }],
+            detections: Vec::new(),
+        };
+        for (most, frames, rate) in [(100, 30, 30.0), (20, 15, 15.0), (8, 7, 7.5)] {
+            let clip = clip(&played, most);
+            assert_eq!(clip["frames"], frames);
+            assert!((clip["rate"].as_f64().unwrap() - rate).abs() < 0.01);
+            assert!((clip["labels"][0][1].as_f64().unwrap() - 0.2).abs() < 1e-6);
+            assert_eq!(clip["name"], "wave 0.30–1.30 s");
+        }
+        let mut reel = Reel::default();
+        assert_eq!((reel.add(&played, 100), reel.add(&played, 100)), (0, 1));
+        let panel = reel.panel();
+        assert!(panel.len() > reel.bytes() && panel.contains("hidden"));
     }
 }

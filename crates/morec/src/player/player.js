@@ -1,6 +1,6 @@
 "use strict";
 const at = (id) => document.getElementById(id);
-const stage = at("stage"), lanes = at("lanes");
+const player = at("player"), stage = at("stage"), lanes = at("lanes"), list = at("clips");
 const view = { yaw: 0.6, tilt: 0.25, zoom: 1 };
 let clip = null, secs = 0, playing = true, last = 0;
 
@@ -17,9 +17,10 @@ function open(number) {
   }
   secs = 0;
   at("time").max = Math.max(0.01, (clip.frames - 1) / clip.rate);
-  for (const [i, button] of [...at("clips").children].entries()) {
+  for (const [i, button] of [...(list?.children ?? [])].entries()) {
     if (i === number) button.setAttribute("aria-current", "true"); else button.removeAttribute("aria-current");
   }
+  if (!list) at("shown").textContent = clip.name;
   const marks = at("marks");
   marks.replaceChildren();
   for (const [kind, list] of [["label", clip.labels], ["detection", clip.detections]]) {
@@ -48,12 +49,16 @@ const ink = () => getComputedStyle(document.body).color;
 function draw() {
   if (!clip || !clip.frames) return;
   const [pen, width, height] = sized(stage);
-  const frame = Math.min(clip.frames - 1, Math.max(0, Math.floor(secs * clip.rate + 1e-6)));
+  // Between two frames a joint goes straight.
+  const exact = Math.min(clip.frames - 1, Math.max(0, secs * clip.rate + 1e-6));
+  const frame = Math.floor(exact), part = exact - frame;
   const joints = clip.parents.length, from = 3 * joints * frame;
+  const next = 3 * joints * Math.min(clip.frames - 1, frame + 1);
+  const value = (i) => (1 - part) * clip.xyz[from + i] + part * clip.xyz[next + i];
   const scale = view.zoom * 0.8 * height / Math.max(1, clip.height);
   const [sy, cy, st, ct] = [Math.sin(view.yaw), Math.cos(view.yaw), Math.sin(view.tilt), Math.cos(view.tilt)];
   // The camera follows the first joint over the floor.
-  const [ox, oz] = [clip.xyz[from], clip.xyz[from + 2]];
+  const [ox, oz] = [value(0), value(2)];
   const seen = (x, y, z) => {
     const right = cy * (x - ox) - sy * (z - oz), away = sy * (x - ox) + cy * (z - oz);
     return [width / 2 + scale * right, 0.9 * height - scale * (ct * y + st * -away)];
@@ -71,7 +76,7 @@ function draw() {
   }
   const colour = ink();
   for (let j = 0; j < joints; j++) {
-    const place = (k) => seen(clip.xyz[from + 3 * k], clip.xyz[from + 3 * k + 1], clip.xyz[from + 3 * k + 2]);
+    const place = (k) => seen(value(3 * k), value(3 * k + 1), value(3 * k + 2));
     const side = clip.sides[j] ?? clip.sides[clip.parents[j]] ?? 0;
     pen.strokeStyle = pen.fillStyle = side > 0 ? "#2b7bd0" : side < 0 ? "#2f9e5a" : colour;
     pen.lineWidth = 3;
@@ -136,12 +141,24 @@ function toggle() {
   at("play").textContent = playing ? "Pause" : "Play";
 }
 
-clips.forEach((other, number) => {
-  const button = document.createElement("button");
-  button.textContent = other.name;
-  button.onclick = () => open(number);
-  at("clips").append(button);
-});
+if (list) {
+  clips.forEach((other, number) => {
+    const button = document.createElement("button");
+    button.textContent = other.name;
+    button.onclick = () => open(number);
+    list.append(button);
+  });
+} else {
+  const show = (number) => { player.hidden = false; playing = true; at("play").textContent = "Pause"; open(number); };
+  for (const element of document.querySelectorAll("[data-motion]")) {
+    const number = Number(element.dataset.motion);
+    element.tabIndex = 0;
+    element.setAttribute("role", "button");
+    element.onclick = () => show(number);
+    element.onkeydown = (event) => { if (event.key === "Enter") show(number); };
+  }
+  at("close").onclick = () => { player.hidden = true; clip = null; };
+}
 at("play").onclick = toggle;
 at("time").oninput = () => { secs = Number(at("time").value); draw(); };
 let drag = null;
@@ -164,7 +181,9 @@ lanes.onpointerdown = (event) => {
   secs = (event.clientX - box.left) / box.width * clip.frames / clip.rate;
   draw();
 };
-document.onkeydown = (event) => {
+document.addEventListener("keydown", (event) => {
+  // On a page with more than the player, keys are the player's where it has the focus.
+  if (!clip || document.body.children.length > 2 && !player.contains(event.target)) return;
   if (event.target.tagName === "BUTTON" || event.target.tagName === "SELECT") return;
   const steps = { ArrowLeft: -1, ArrowRight: 1 };
   if (event.key === " ") toggle();
@@ -172,7 +191,7 @@ document.onkeydown = (event) => {
   else return;
   event.preventDefault();
   draw();
-};
+});
 window.onresize = draw;
-if (clips.length) open(0);
+if (list && clips.length) open(0);
 requestAnimationFrame(tick);

@@ -26,3 +26,22 @@ pub(super) fn secs(value: Option<f64>, signed: bool) -> String {
         None => "–".to_owned(),
     }
 }
+
+/// `body` behind a table of its sections, which are named by `<h2>`; `motion`: one that follows it has the clips.
+pub(super) fn with_contents(body: &str, motion: bool) -> String {
+    let mut sections = body.split("<h2>");
+    let mut out = sections.next().unwrap_or_default().to_owned();
+    let (mut contents, mut rest) = (String::new(), String::new());
+    for (number, section) in (1..).zip(sections) {
+        let name = section.split("</h2>").next().unwrap_or_default();
+        contents.push_str(&format!("<a href=\"#s{number}\">{name}</a>\n"));
+        rest.push_str(&format!("<h2 id=\"s{number}\">{section}"));
+    }
+    if motion {
+        contents.push_str("<a href=\"#motion\">Motion</a>\n");
+    }
+    out.push_str(&format!(
+        "<nav class=\"contents\" aria-label=\"Contents\">\n{contents}</nav>\n{rest}"
+    ));
+    out
+}

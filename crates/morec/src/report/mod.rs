@@ -1,8 +1,8 @@
 //! A report: one HTML file that stands alone, with figures, timelines, confusion and notes on what to teach next.
 //!
 //! Timelines follow the thesis's Figures 5.13 and 5.14: ground truth above, detections below, colour by class.
-//! The file has no scripts and no outside links; its pictures are inline SVG, whose titles say in words what
-//! they show. It follows the reader's light or dark theme and prints in the light one.
+//! The file has no outside links, and no script but that of the [player](crate::player), if clips were given to play; its
+//! pictures are inline SVG, whose titles say in words what they show. It follows the reader's light or dark theme and prints in the light one.
 
 mod curves;
 mod figures;
@@ -21,7 +21,8 @@ mod tests;
 use crate::eval::{Evaluation, Timeline};
 use crate::explain::Miss;
 use crate::perturb::Perturbation;
-use html::Text;
+use crate::player::Reel;
+use html::{Text, with_contents};
 use palette::Palette;
 
 pub use notes::learning_notes;
@@ -56,6 +57,8 @@ pub struct Report<'a> {
     pub sensitivities: &'a [(f64, Evaluation)],
     /// The measures of copies that are worse in one way; may be empty.
     pub perturbed: &'a [(Perturbation, Evaluation)],
+    /// Clips to play, with their labels and detections, if there are any.
+    pub motion: Option<&'a Reel>,
 }
 
 /// Notes that are shown at once; the others unfold.
@@ -75,15 +78,21 @@ impl Report<'_> {
              <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n"
         );
         self.push_about(&mut out);
-        figures::push(&mut out, self.evaluation);
-        self.push_notes(&mut out);
-        misses::push(&mut out, self.misses);
-        curves::push_sensitivity(&mut out, self.sensitivities);
-        curves::push_reliability(&mut out, &self.evaluation.reliability);
-        curves::push_perturbed(&mut out, self.evaluation, self.perturbed);
-        timeline::push(&mut out, self.timelines, &palette);
-        tables::push_confusion(&mut out, &self.evaluation.confusion);
-        tables::push_classes(&mut out, self.evaluation, self.training);
+        let mut body = String::new();
+        figures::push(&mut body, self.evaluation);
+        self.push_notes(&mut body);
+        misses::push(&mut body, self.misses);
+        curves::push_sensitivity(&mut body, self.sensitivities);
+        curves::push_reliability(&mut body, &self.evaluation.reliability);
+        curves::push_perturbed(&mut body, self.evaluation, self.perturbed);
+        timeline::push(&mut body, self.timelines, &palette);
+        tables::push_confusion(&mut body, &self.evaluation.confusion);
+        tables::push_classes(&mut body, self.evaluation, self.training);
+        out.push_str(&with_contents(&body, self.motion.is_some()));
+        if let Some(reel) = self.motion {
+            out.push_str("<h2 id=\"motion\">Motion</h2>\n");
+            out.push_str(&reel.section());
+        }
         out.push_str("</body>\n</html>\n");
         out
     }

@@ -50,6 +50,7 @@ fn report(
         misses: &[],
         sensitivities: &[],
         perturbed: &[],
+        motion: None,
     }
     .html()
 }
@@ -120,7 +121,7 @@ fn nothing_from_outside() {
         &[],
     );
     for outside in [
-        "http:", "https:", "src=", "href=", "@import", "url(", "<script",
+        "http:", "https:", "src=", "href=\"h", "@import", "url(", "<script",
     ] {
         assert!(!html.contains(outside), "{outside}");
     }
@@ -212,6 +213,7 @@ fn curves_and_reasons_are_shown_where_they_are_known() {
             (Perturbation::White(0.01), evaluation.clone()),
             (Perturbation::White(0.02), none),
         ],
+        motion: None,
     }
     .html();
     check_nesting(&html);
@@ -219,6 +221,30 @@ fn curves_and_reasons_are_shown_where_they_are_known() {
     // Sensitivity, reliability, white noise.
     assert_eq!(html.matches("<svg").count(), 3);
     assert!(html.contains("white:0.02"));
+}
+
+/// Every section is in the table of contents, and the player comes with the clips alone.
+#[test]
+fn sections_are_reached_from_the_top() {
+    let (infos, truths) = ([stream("c", 40.0, false)], [truth("c", "x", 1.0, 2.0)]);
+    let html = report(&infos, &truths, &[], &[]);
+    let sections = html.matches("<h2 id=\"s").count();
+    assert!(sections > 3 && html.matches("<a href=\"#s").count() == sections);
+    assert_eq!(html.matches("<h2>").count(), 0);
+    let evaluation = Evaluation::of(&infos, &truths, &[]).unwrap();
+    let html = Report {
+        title: "motion",
+        about: &[],
+        evaluation: &evaluation,
+        timelines: &[],
+        training: &[],
+        misses: &[],
+        sensitivities: &[],
+        perturbed: &[],
+        motion: Some(&Reel::default()),
+    }
+    .html();
+    assert!(html.contains("<a href=\"#motion\">") && html.contains("<section id=\"player\">"));
 }
 
 #[test]

@@ -1,9 +1,8 @@
 //! Keeping joints where they were in the world: thresholds by reach, then closer fits where that is not enough.
 
-use super::bezier::ChannelKind;
 use super::measure::angle_between;
 use super::params::{SmoothError, SmoothParams};
-use super::sample::rotation;
+use super::playhead::Playhead;
 use super::split::{ChannelFit, TooCoarse};
 use crate::clip::Clip;
 use crate::kinematics::WorldPose;
@@ -79,9 +78,9 @@ fn reach(clip: &Clip) -> Vec<f64> {
 }
 
 /// Fits channels again, more closely, until every joint lies within `metres` of where it was, at every frame.
-pub(super) fn tighten(
-    clip: &Clip,
-    channels: &mut [ChannelFit],
+pub(super) fn tighten<'c>(
+    clip: &'c Clip,
+    channels: &mut [ChannelFit<'c>],
     metres: f64,
     metres_per_unit: f64,
     progress: &dyn Progress,
@@ -112,78 +111,36 @@ struct Blame {
     share: f32,
 }
 
-struct Tightening<'a> {
-    clip: &'a Clip,
-    channels: &'a mut [ChannelFit],
-    /// Values of the curves at the clip's frames.
-    fitted: Clip,
-    /// Frames at which `fitted` has changed since they were looked at.
+struct Tightening<'w, 'c> {
+    clip: &'c Clip,
+    channels: &'w mut [ChannelFit<'c>],
+    /// Frames at which curves have changed since they were looked at.
     changed: Vec<bool>,
     /// Of each joint, its track's channel.
     tracks: Vec<Option<usize>>,
     bound: f64,
     worst: f64,
     pose: WorldPose,
-    fitted_pose: WorldPose,
+    /// What the curves give.
+    fitted: Playhead,
 }
 
-impl<'a> Tightening<'a> {
-    fn new(clip: &'a Clip, channels: &'a mut [ChannelFit], bound: f64) -> Self {
+impl<'w, 'c> Tightening<'w, 'c> {
+    fn new(clip: &'c Clip, channels: &'w mut [ChannelFit<'c>], bound: f64) -> Self {
         let joints = clip.skeleton.len();
         let mut tracks = vec![None; joints];
         for (i, track) in clip.tracks.iter().enumerate() {
             tracks[track.joint] = Some(joints + i);
         }
-        let (pose, fitted_pose) = (WorldPose::default(), WorldPose::default());
-        let changed = vec![true; clip.frames];
-        let fitted = clip.clone();
-        let mut work = Self {
+        Self {
             clip,
             channels,
-            fitted,
-            changed,
+            changed: vec![true; clip.frames],
             tracks,
             bound,
             worst: 0.0,
-            pose,
-            fitted_pose,
-        };
-        for channel in 0..work.channels.len() {
-            work.play(channel, 0, clip.frames);
-        }
-        work
-    }
-
-    /// Brings `fitted` up to date with a channel in `from..to`.
-    fn play(&mut self, channel: usize, from: usize, to: usize) {
-        let joints = self.clip.skeleton.len();
-        let c = &self.channels[channel];
-        let (kind, start) = (c.lattice.kind, c.start());
-        let mut current = c
-            .segments
-            .partition_point(|s| (s.start as usize) < from)
-            .saturating_sub(1);
-        for frame in from..to {
-            while c
-                .segments
-                .get(current + 1)
-                .is_some_and(|next| next.start as usize <= frame)
-            {
-                current += 1;
-            }
-            let value = c
-                .segments
-                .get(current)
-                .map_or(start, |s| s.at(kind, frame as f64));
-            match kind {
-                ChannelKind::Rotation => {
-                    self.fitted.rotations[frame * joints + channel] = rotation(&value)
-                }
-                ChannelKind::Position => {
-                    self.fitted.tracks[channel - joints].positions[frame] = value.xyz()
-                }
-            }
-            self.changed[frame] = true;
+            pose: WorldPose::default(),
+            fitted: Playhead::new(clip),
         }
     }
 
@@ -191,13 +148,14 @@ impl<'a> Tightening<'a> {
     fn blame(&mut self) -> Vec<Blame> {
         let mut blamed = Vec::new();
         self.worst = 0.0;
+        self.fitted.rewind();
         for frame in 0..self.clip.frames {
             if !std::mem::take(&mut self.changed[frame]) {
                 continue;
             }
             self.pose.set(self.clip, frame);
-            self.fitted_pose.set(&self.fitted, frame);
-            let off = |j: usize| (self.pose.positions[j] - self.fitted_pose.positions[j]).norm();
+            self.fitted.set(self.channels.iter(), frame);
+            let off = |j: usize| (self.pose.positions[j] - self.fitted.world()[j]).norm();
             let furthest = (0..self.clip.skeleton.len())
                 .map(|j| (off(j), j))
                 .max_by(|a, b| a.0.total_cmp(&b.0));
@@ -219,13 +177,13 @@ impl<'a> Tightening<'a> {
         while let Some(j) = at {
             if let Some(channel) = self.tracks[j] {
                 let track = channel - joints;
-                let positions = |clip: &Clip| clip.tracks[track].positions[frame];
-                let off = (positions(self.clip) - positions(&self.fitted)).norm();
+                let position = self.clip.tracks[track].positions[frame];
+                let off = (position - self.fitted.position(track)).norm();
                 parts.push((off, channel, off));
             }
             if j != joint {
-                let i = frame * joints + j;
-                let angle = angle_between(&self.clip.rotations[i], &self.fitted.rotations[i]);
+                let rotation = &self.clip.rotations[frame * joints + j];
+                let angle = angle_between(rotation, &self.fitted.rotations()[j]);
                 let arm = (self.pose.positions[joint] - self.pose.positions[j]).norm();
                 parts.push((angle * arm, j, chord(angle)));
             }
@@ -260,11 +218,11 @@ impl<'a> Tightening<'a> {
             match channel.refine(&frames) {
                 Ok(ranges) => ranges
                     .into_iter()
-                    .for_each(|range| self.play(index, range.start, range.end)),
+                    .for_each(|range| self.changed[range].fill(true)),
                 Err(_) => {
                     channel.lattice = channel.lattice.finer();
                     channel.fit().map_err(|coarse| (index, coarse))?;
-                    self.play(index, 0, self.clip.frames);
+                    self.changed.fill(true);
                 }
             }
         }

@@ -1,9 +1,9 @@
 //! A clip to curves.
 
-use super::bezier::{ChannelKind, ChannelValue};
 use super::bound::{self, chord, too_coarse};
 use super::measure::Errors;
 use super::params::{SmoothError, SmoothParams};
+use super::samples::{ChannelSamples, with_continuous_signs};
 use super::split::ChannelFit;
 use super::{CompressedClip, Curve};
 use crate::clip::Clip;
@@ -22,7 +22,7 @@ use crate::progress::Progress;
 /// for, and wherever a joint is still too far away the ancestor that does most of it is fitted again, more closely.
 ///
 /// Thresholds hold at the frames of `clip`; between them the curves are as smooth as cubics are. O(n log n) for a
-/// channel of n frames, times a few for the bound. Reports a step for each channel to `progress`.
+/// channel of n frames, times a few for the bound; memory beside the clip is that of the curves. Reports a step for each channel to `progress`.
 ///
 /// # Errors
 /// Parameters out of range, a clip whose tables disagree or hold values that are not finite, or
@@ -34,6 +34,8 @@ pub fn compress(
 ) -> Result<CompressedClip, SmoothError> {
     params.check()?;
     check(clip)?;
+    let signed = with_continuous_signs(clip);
+    let clip = &*signed;
     let joints = clip.skeleton.len();
     let mut channels = channels(clip, params);
     let total = channels.len();
@@ -76,42 +78,26 @@ pub fn compress(
         rotations: curves.by_ref().take(joints).collect(),
         positions: curves.collect(),
     };
-    compressed.errors =
-        Errors::between(clip, &compressed.at_source_frames(), params.metres_per_unit);
+    compressed.errors = Errors::of(&compressed, clip);
     Ok(compressed)
 }
 
 /// Rotations joint by joint, then tracks, each with its threshold.
-fn channels(clip: &Clip, params: &SmoothParams) -> Vec<ChannelFit> {
+fn channels<'a>(clip: &'a Clip, params: &SmoothParams) -> Vec<ChannelFit<'a>> {
     let joints = clip.skeleton.len();
     let thresholds = bound::Thresholds::new(clip, params);
     let mut channels = Vec::with_capacity(joints + clip.tracks.len());
-    for j in 0..joints {
-        let mut samples: Vec<ChannelValue> = Vec::with_capacity(clip.frames);
-        for frame in 0..clip.frames {
-            let q = clip.rotations[frame * joints + j].coords;
-            let turned = samples
-                .last()
-                .is_some_and(|previous| previous.dot(&q) < 0.0);
-            samples.push(if turned { -q } else { q });
-        }
-        channels.push(ChannelFit::new(
-            ChannelKind::Rotation,
-            samples,
-            chord(thresholds.angle_rad(j)),
-        ));
+    for joint in 0..joints {
+        let samples = ChannelSamples::Rotations {
+            table: &clip.rotations,
+            joints,
+            joint,
+        };
+        channels.push(ChannelFit::new(samples, chord(thresholds.angle_rad(joint))));
     }
     for track in &clip.tracks {
-        let samples = track
-            .positions
-            .iter()
-            .map(|position| position.push(0.0))
-            .collect();
-        channels.push(ChannelFit::new(
-            ChannelKind::Position,
-            samples,
-            thresholds.position(),
-        ));
+        let samples = ChannelSamples::Positions(&track.positions);
+        channels.push(ChannelFit::new(samples, thresholds.position()));
     }
     channels
 }

@@ -2,6 +2,7 @@
 
 use super::bezier::{ChannelKind, ChannelValue, CurveSegment};
 use super::lattice::{Code, Lattice, Piece, Tangents};
+use super::playhead::PlayedChannel;
 
 /// A channel as a run of cubic Bézier curves, end to end; a channel that stands still is a single key.
 #[derive(Debug, Clone, PartialEq)]
@@ -134,6 +135,20 @@ impl Curve {
                     .map_or(still, |segment| segment.at(self.kind(), place)),
             );
         }
+    }
+}
+
+impl PlayedChannel for Curve {
+    fn kind(&self) -> ChannelKind {
+        self.lattice.kind
+    }
+
+    fn start(&self) -> ChannelValue {
+        self.lattice.key_point(&self.first, None)
+    }
+
+    fn segments(&self) -> &[CurveSegment] {
+        &self.segments
     }
 }
 

@@ -1,6 +1,7 @@
 //! Distance of a compressed clip from its source, frame by frame.
 
 use super::CompressedClip;
+use super::playhead::Playhead;
 use crate::clip::Clip;
 use crate::kinematics::WorldPose;
 use crate::math::Quat;
@@ -79,26 +80,29 @@ impl Errors {
         }
     }
 
-    /// The distances between two clips of the same skeleton and frames. O(frames × joints).
-    pub(super) fn between(a: &Clip, b: &Clip, metres_per_unit: f64) -> Self {
+    /// The distances between a clip and its curves, which have its joints, tracks and frames. O(frames × joints).
+    pub(super) fn of(curves: &CompressedClip, clip: &Clip) -> Self {
+        let metres_per_unit = curves.params.metres_per_unit;
         let (mut angle, mut position, mut world) = (
             ErrorSum::default(),
             ErrorSum::default(),
             ErrorSum::default(),
         );
-        for (x, y) in a.rotations.iter().zip(&b.rotations) {
-            angle.add(angle_between(x, y));
+        for (track, curve) in clip.tracks.iter().zip(&curves.positions) {
+            let mut positions = track.positions.iter();
+            curve.along((0..clip.frames).map(|frame| frame as f64), |point| {
+                let off = positions.next().map(|p| (p - point.xyz()).norm());
+                position.add(off.unwrap_or_default() * metres_per_unit);
+            });
         }
-        for (x, y) in a.tracks.iter().zip(&b.tracks) {
-            for (x, y) in x.positions.iter().zip(&y.positions) {
-                position.add((x - y).norm() * metres_per_unit);
+        let (mut pose, mut played) = (WorldPose::default(), Playhead::new(clip));
+        for frame in 0..clip.frames {
+            pose.set(clip, frame);
+            played.set(curves.curves(), frame);
+            for (x, y) in clip.frame_rotations(frame).iter().zip(played.rotations()) {
+                angle.add(angle_between(x, y));
             }
-        }
-        let (mut pose_a, mut pose_b) = (WorldPose::default(), WorldPose::default());
-        for frame in 0..a.frames {
-            pose_a.set(a, frame);
-            pose_b.set(b, frame);
-            for (x, y) in pose_a.positions.iter().zip(&pose_b.positions) {
+            for (x, y) in pose.positions.iter().zip(played.world()) {
                 world.add((x - y).norm() * metres_per_unit);
             }
         }
@@ -126,6 +130,6 @@ impl CompressedClip {
                 .map(|t| t.joint)
                 .eq(self.positions.iter().map(|c| c.joint))
             && clip.tracks.iter().all(|t| t.positions.len() == clip.frames);
-        same.then(|| Errors::between(clip, &self.at_source_frames(), self.params.metres_per_unit))
+        same.then(|| Errors::of(self, clip))
     }
 }

@@ -32,7 +32,9 @@ mod fit;
 mod lattice;
 mod measure;
 mod params;
+mod playhead;
 mod sample;
+mod samples;
 mod split;
 mod stored;
 

@@ -40,12 +40,6 @@ impl CompressedClip {
         Ok(self.at(rate_hz, &instants))
     }
 
-    /// The clip at its source's own frames.
-    pub(super) fn at_source_frames(&self) -> Clip {
-        let instants: Vec<(usize, f64)> = (0..self.frames).map(|frame| (frame, 0.0)).collect();
-        self.at(self.rate_hz, &instants)
-    }
-
     fn at(&self, rate_hz: f64, instants: &[(usize, f64)]) -> Clip {
         let joints = self.skeleton.len();
         let places = || instants.iter().map(|&(frame, t)| frame as f64 + t);

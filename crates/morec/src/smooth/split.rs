@@ -3,6 +3,8 @@
 use super::bezier::{ChannelKind, ChannelValue, CurveSegment};
 use super::fit::{FitSpan, Worst};
 use super::lattice::{Code, Lattice, MOST_STEPS, Piece, Tangents};
+use super::playhead::PlayedChannel;
+use super::samples::ChannelSamples;
 use crate::clip::Span;
 
 /// A channel being fitted.
@@ -11,10 +13,9 @@ use crate::clip::Span;
 /// which is 0 for whatever returns to where it was. As corrected: from the curve to the samples, against a fixed
 /// threshold, which is what its text asks for. Splits that all fall near one end would cost O(n²); below a depth of
 /// some log n stretches are halved, so that fitting takes O(n log n).
-pub(super) struct ChannelFit {
+pub(super) struct ChannelFit<'a> {
     pub lattice: Lattice,
-    /// One for each frame; quaternions of continuous signs.
-    pub samples: Vec<ChannelValue>,
+    pub samples: ChannelSamples<'a>,
     /// Largest distance (chord between quaternions) from curve to sample.
     pub tolerance: f64,
     /// Shares of the tolerance that are allowed frame by frame, where they are not 1.
@@ -22,7 +23,7 @@ pub(super) struct ChannelFit {
     pub first: Code,
     pub pieces: Vec<Piece>,
     pub segments: Vec<CurveSegment>,
-    /// Samples seen from the key at hand.
+    /// ChannelSamples seen from the key at hand.
     local: Vec<ChannelValue>,
 }
 
@@ -34,9 +35,24 @@ pub(super) struct TooCoarse {
     pub limit: f64,
 }
 
-impl ChannelFit {
-    pub fn new(kind: ChannelKind, samples: Vec<ChannelValue>, tolerance: f64) -> Self {
-        let lattice = Lattice::new(kind, tolerance);
+impl PlayedChannel for ChannelFit<'_> {
+    fn kind(&self) -> ChannelKind {
+        self.lattice.kind
+    }
+
+    /// The first key's point.
+    fn start(&self) -> ChannelValue {
+        self.lattice.key_point(&self.first, None)
+    }
+
+    fn segments(&self) -> &[CurveSegment] {
+        &self.segments
+    }
+}
+
+impl<'a> ChannelFit<'a> {
+    pub fn new(samples: ChannelSamples<'a>, tolerance: f64) -> Self {
+        let lattice = Lattice::new(samples.kind(), tolerance);
         let (pieces, segments) = (Vec::new(), Vec::new());
         Self {
             lattice,
@@ -48,11 +64,6 @@ impl ChannelFit {
             segments,
             local: Vec::new(),
         }
-    }
-
-    /// The first key's point.
-    pub fn start(&self) -> ChannelValue {
-        self.lattice.key_point(&self.first, None)
     }
 
     /// Squared distance that the curve may have from the sample of `frame`.
@@ -71,7 +82,8 @@ impl ChannelFit {
     pub fn fit(&mut self) -> Result<(), TooCoarse> {
         loop {
             let limit = self.limit();
-            if let Some(frame) = self.samples.iter().position(|sample| sample.amax() > limit) {
+            let beyond = |sample: ChannelValue| sample.amax() > limit;
+            if let Some(frame) = self.samples.iter().position(beyond) {
                 return Err(TooCoarse { frame, limit });
             }
             match self.fit_with_steps() {
@@ -94,7 +106,7 @@ impl ChannelFit {
         if self.samples.is_empty() || self.fit_constant() {
             return Ok(());
         }
-        self.first = self.lattice.key_code(&self.samples[0]);
+        self.first = self.lattice.key_code(&self.samples.at(0));
         let (mut pieces, mut segments) = (Vec::new(), Vec::new());
         self.simplify(
             0,
@@ -104,6 +116,7 @@ impl ChannelFit {
             &mut segments,
         )?;
         (self.pieces, self.segments) = (pieces, segments);
+        self.local = Vec::new();
         Ok(())
     }
 
@@ -121,7 +134,7 @@ impl ChannelFit {
                 .norm_squared()
                 .min((sample + key).norm_squared()),
         };
-        (0..self.samples.len()).all(|f| near(&self.samples[f]) <= self.allowed(f))
+        (0..self.samples.len()).all(|f| near(&self.samples.at(f)) <= self.allowed(f))
     }
 
     /// Splits again where less is allowed than before: at `frames`, in increasing order. Returns the ranges of frames
@@ -155,6 +168,7 @@ impl ChannelFit {
             }
         }
         (self.pieces, self.segments) = (pieces, segments);
+        self.local = Vec::new();
         Ok(ranges)
     }
 
@@ -209,7 +223,7 @@ impl ChannelFit {
         start: ChannelValue,
     ) -> Result<(Piece, CurveSegment), Worst> {
         let (lattice, kind) = (self.lattice, self.lattice.kind);
-        let sign = if kind == ChannelKind::Rotation && start.dot(&self.samples[from]) < 0.0 {
+        let sign = if kind == ChannelKind::Rotation && start.dot(&self.samples.at(from)) < 0.0 {
             -1.0
         } else {
             1.0
@@ -217,11 +231,11 @@ impl ChannelFit {
         let mut local = std::mem::take(&mut self.local);
         local.clear();
         local.extend(
-            self.samples[from..=to]
-                .iter()
+            self.samples
+                .range(from..=to)
                 .map(|sample| kind.local(&start, &(sample * sign))),
         );
-        let key = lattice.key_code(&self.samples[to]);
+        let key = lattice.key_code(&self.samples.at(to));
         let end = lattice.key_point(&key, Some(&start));
         let stretch = FitSpan::new(kind, &local, kind.local(&start, &end));
         let try_on = |tangents: Tangents| {

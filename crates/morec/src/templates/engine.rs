@@ -1,33 +1,31 @@
 //! Feature rows in, detections in ticks out.
 
-use std::sync::Arc;
+use crate::decode::{Candidate, Decoder, TickDetection};
 
-use crate::classes::ClassId;
-use crate::decode::{Candidate, ClassDistance, Decoder, FAR, TickDetection};
-use crate::features::Rows;
-
+use super::class_matches::{ClassMatches, MatchReplay};
 use super::early::{EarlyDetectionParams, OngoingMatch};
 use super::verifier::{CandidateScorer, Evidence};
-use super::{Calibration, Matcher, Metric, Stretches, TemplateModel, TemplateModelError};
+use super::{Calibration, ClassMatcher, Metric, TemplateModel, TemplateModelError};
 
 /// The part of recognition that knows no clock: metric, templates, verifier, decoding.
 #[derive(Debug, Clone)]
 pub struct TemplateEngine {
     metric: Metric,
-    matcher: Matcher,
-    /// Matches count below this share of a motionless body's distance.
-    rest_share: f32,
-    negatives: Matcher,
-    /// Of the mapped rows.
-    stretches: Stretches,
-    template_classes: Arc<[ClassId]>,
+    matches: Matches,
     judge: Option<CandidateScorer>,
     decoder: Decoder,
     recent: RecentRows,
     mapped: Vec<f32>,
-    near: Vec<ClassDistance>,
     threshold: f32,
     calibration: Option<Calibration>,
+}
+
+/// Where the nearest matches of the classes come from.
+#[derive(Debug, Clone)]
+enum Matches {
+    Computed(ClassMatcher),
+    /// Of the same stream, from elsewhere.
+    Given(MatchReplay),
 }
 
 /// The last rows of the stream, as many as a match can span.
@@ -67,45 +65,63 @@ impl TemplateEngine {
     /// # Errors
     /// As [`TemplateModel::check`].
     pub fn new(model: &TemplateModel) -> Result<Self, TemplateModelError> {
+        Self::with(model, |metric| {
+            Matches::Computed(ClassMatcher::new(model, metric))
+        })
+    }
+
+    /// The same on matches that were computed elsewhere, of the stream that will be pushed. Templates of `model` are not
+    /// looked at.
+    pub fn replay(
+        model: &TemplateModel,
+        matches: ClassMatches,
+    ) -> Result<Self, TemplateModelError> {
+        let longest = matches.longest();
+        let replay = MatchReplay::new(matches, model.classes.len());
+        let mut engine = Self::with(model, |_| Matches::Given(replay))?;
+        engine.size(model, longest);
+        Ok(engine)
+    }
+
+    fn with(
+        model: &TemplateModel,
+        matches: impl FnOnce(&Metric) -> Matches,
+    ) -> Result<Self, TemplateModelError> {
         model.check()?;
         let metric = Metric::new(&model.ridged, &model.total);
-        let map = |rows: &Rows| metric.apply_all(rows);
-        let templates: Vec<Rows> = model.samples.iter().map(|s| map(&s.rows)).collect();
-        let negatives: Vec<Rows> = model.negatives.iter().map(map).collect();
         let dim = metric.dim();
-        let rule = model.rule();
-        let window = model.decode.look_ahead_ticks(rule);
-        let mut decoder = Decoder::new(&model.decode, rule, model.classes.len(), model.longest());
-        decoder.set_thresholds(&model.class_thresholds);
-        let matcher = Matcher::new(&templates, dim, model.decode.spread_exponent);
-        let negatives = Matcher::new(&negatives, dim, model.decode.spread_exponent);
-        let longest_match = matcher.longest_match().max(negatives.longest_match());
-        Ok(Self {
-            stretches: Stretches::new(dim, longest_match),
-            matcher,
-            rest_share: model.decode.rest_share(rule),
-            negatives,
-            template_classes: model.samples.iter().map(|s| s.class).collect(),
+        let mut engine = Self {
+            matches: matches(&metric),
             judge: model
                 .verifier
                 .as_ref()
                 .map(|v| CandidateScorer::new(v, &metric, model.threshold)),
-            decoder,
-            // A match of n rows spans at most 2 n ticks and is judged when its window has passed.
-            recent: RecentRows::new(dim, 2 * model.longest() + window + 2),
+            decoder: Decoder::new(&model.decode, model.rule(), 0, 0),
+            recent: RecentRows::new(dim, 1),
             mapped: vec![0.0; dim],
             threshold: model.threshold,
             calibration: model.calibration_in_use(),
-            near: vec![ClassDistance::NONE; model.classes.len()],
             metric,
-        })
+        };
+        engine.size(model, model.longest());
+        Ok(engine)
+    }
+
+    /// Makes room for matches of templates of up to `longest` rows.
+    fn size(&mut self, model: &TemplateModel, longest: usize) {
+        let rule = model.rule();
+        self.decoder = Decoder::new(&model.decode, rule, model.classes.len(), longest);
+        self.decoder.set_thresholds(&model.class_thresholds);
+        // A match of n rows spans at most 2 n ticks and is judged when its window has passed.
+        let window = model.decode.look_ahead_ticks(rule);
+        self.recent = RecentRows::new(self.metric.dim(), 2 * longest + window + 2);
     }
 
     /// Forgets the stream so far.
     pub fn reset(&mut self) {
-        self.matcher.reset();
-        self.negatives.reset();
-        self.stretches.reset();
+        if let Matches::Computed(matcher) = &mut self.matches {
+            matcher.reset();
+        }
         self.decoder.reset();
         self.recent.pushed = 0;
     }
@@ -113,13 +129,15 @@ impl TemplateEngine {
     /// Takes the next tick's row and returns the detections that are now certain. No allocation.
     pub fn push(&mut self, row: &[f32]) -> &[TickDetection] {
         self.recent.push(row);
-        self.metric.apply(row, &mut self.mapped);
-        self.matcher.step(&self.mapped);
-        self.negatives.step(&self.mapped);
-        self.stretches.push(&self.mapped);
-        self.nearest_by_class();
-        let negative = nearest(&self.negatives, &mut self.stretches);
-        self.decoder.push(&self.near, negative);
+        let (near, negative) = match &mut self.matches {
+            Matches::Computed(matcher) => {
+                self.metric.apply(row, &mut self.mapped);
+                matcher.step(&self.mapped);
+                (matcher.near(), matcher.negative())
+            }
+            Matches::Given(replay) => replay.step(),
+        };
+        self.decoder.push(near, negative);
         self.decode(false);
         self.decoder.found()
     }
@@ -140,74 +158,18 @@ impl TemplateEngine {
         }
     }
 
-    /// The nearest match of each class that is no body at rest.
-    fn nearest_by_class(&mut self) {
-        self.near.fill(ClassDistance::NONE);
-        for (template, class) in self.template_classes.iter().enumerate() {
-            let best = &mut self.near[class.index()];
-            let nearer = self.matcher.nearer(
-                template,
-                best.distance,
-                self.rest_share,
-                &mut self.stretches,
-            );
-            if let Some(found) = nearer {
-                *best = ClassDistance {
-                    distance: found.distance,
-                    age: found.age,
-                    spread: found.spread,
-                };
-            }
-        }
-    }
-
     /// Ticks taken since the stretch began.
     pub fn ticks(&self) -> usize {
         self.recent.pushed
     }
 
     /// The class whose beginning is nearest at the last tick, if one is near enough by `params`. O(template rows),
-    /// no allocation; changes nothing.
+    /// no allocation; changes nothing. None on matches from elsewhere.
     pub fn underway(&self, params: &EarlyDetectionParams) -> Option<OngoingMatch> {
-        let (mut best, mut other) = (None::<OngoingMatch>, FAR);
-        for (template, class) in self.template_classes.iter().enumerate() {
-            let length = self.matcher.bank().template_len(template);
-            let Some(found) = self.matcher.partial(template, params.least_rows(length)) else {
-                continue;
-            };
-            let progress = found.rows as f32 / length as f32;
-            let new = OngoingMatch {
-                class: *class,
-                distance: found.distance,
-                age: found.age,
-                progress,
-            };
-            match best {
-                Some(old) if found.distance >= old.distance => {
-                    if old.class != *class {
-                        other = other.min(found.distance);
-                    }
-                }
-                old => {
-                    if let Some(old) = old.filter(|old| old.class != *class) {
-                        other = other.min(old.distance);
-                    }
-                    best = Some(new);
-                }
-            }
+        match &self.matches {
+            Matches::Computed(matcher) => matcher.underway(params, self.threshold),
+            Matches::Given(_) => None,
         }
-        let bank = self.negatives.bank();
-        let negatives = (0..bank.len()).filter_map(|i| {
-            let least = params.least_rows(bank.template_len(i));
-            self.negatives.partial(i, least)
-        });
-        let negative = negatives.map(|n| n.distance).fold(FAR, f32::min);
-        best.filter(|b| {
-            b.distance < params.reach * self.threshold
-                && b.distance < params.gate * negative
-                && b.distance < params.rival * other
-                && b.age + 1 >= params.least_ticks
-        })
     }
 
     /// Distances at or above this are never reported.
@@ -232,16 +194,6 @@ fn calibrated(calibration: Option<Calibration>, found: TickDetection) -> TickDet
         },
         None => found,
     }
-}
-
-fn nearest(matcher: &Matcher, stretches: &mut Stretches) -> f32 {
-    let mut nearest = FAR;
-    for i in 0..matcher.bank().len() {
-        if let Some(found) = matcher.nearer(i, nearest, 0.0, stretches) {
-            nearest = found.distance;
-        }
-    }
-    nearest
 }
 
 fn score(

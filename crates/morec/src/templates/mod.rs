@@ -1,6 +1,8 @@
 //! Matching a stream against labelled samples, elastically in time.
 
 mod bank;
+mod class_matcher;
+mod class_matches;
 mod compact;
 mod early;
 mod engine;
@@ -14,6 +16,8 @@ mod trace;
 mod verifier;
 
 pub use bank::{Match, PartialMatch, TemplateBank};
+pub use class_matcher::ClassMatcher;
+pub use class_matches::{ClassMatches, ClassMatchesError, reach_of};
 pub use early::{EarlyDetectionParams, OngoingMatch};
 pub use engine::TemplateEngine;
 pub use matcher::{Matcher, NormalizedMatch, TYPICAL_SPREAD, mean_and_spread};

@@ -12,6 +12,10 @@ pub struct TrainParams {
     pub decode: DecodeParams,
     /// Ridge of the metric, as a share of the mean variance; .15 to .5 are alike.
     pub rho: f64,
+    /// Templates of a class that are copied faster at most, from its people in turn; the copies are templates too.
+    pub faster_copies: usize,
+    /// Duration of those copies, as a share of the sample's.
+    pub faster_duration: f64,
     /// Sample pairs a class's scatter is estimated from at most.
     pub max_pairs: usize,
     /// The threshold is this times the smallest distance from a template to background motion.
@@ -105,6 +109,8 @@ impl TrainParams {
             features: FeatureParams::reference(),
             decode: DecodeParams::reference(),
             rho: 0.3,
+            faster_copies: 0,
+            faster_duration: 0.7,
             max_pairs: 200,
             background_share: 0.85,
             class_share: 0.0,

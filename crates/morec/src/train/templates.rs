@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 use crate::classes::ClassInfo;
-use crate::features::{BoneSet, Rows};
+use crate::features::{BoneSet, Rows, retimed_rows};
 use crate::progress::Progress;
 use crate::templates::{
     ALARM_RATES, Calibration, Matcher, Metric, OperatingPoint, PackedSymmetric, TemplateModel,
@@ -102,6 +102,7 @@ pub fn train(
     let classes = class_infos(set, &samples);
     let (samples, quiet) = moving(samples, &metric, params);
     let samples = templates_of(samples, set.classes.len(), params.max_templates);
+    let samples = with_faster(samples, bones, set.classes.len(), params);
     let step = TrainingContext {
         set,
         metric: &metric,
@@ -378,6 +379,26 @@ fn templates_of(samples: Vec<TrainSample>, classes: usize, most: usize) -> Vec<T
         .filter(|(i, _)| kept.contains(i))
         .map(|(_, s)| s)
         .collect()
+}
+
+/// `samples` and faster copies of some of them, as templates. A template matches motion of half to twice its duration, but
+/// a fast motion has other velocities; a slow one is matched without help.
+fn with_faster(
+    mut samples: Vec<TrainSample>,
+    bones: BoneSet,
+    classes: usize,
+    params: &TrainParams,
+) -> Vec<TrainSample> {
+    if params.faster_copies == 0 {
+        return samples;
+    }
+    let mut copied = templates_of(samples.clone(), classes, params.faster_copies);
+    for sample in &mut copied {
+        let factor = params.faster_duration;
+        sample.rows = retimed_rows(&sample.rows, bones, &params.features, factor);
+    }
+    samples.extend(copied);
+    samples
 }
 
 /// Arguments of [`Metric::new`] from the samples of a set: `S_w + ρ tr(S_t)/d · I` and `S_t`. With no two samples of any class

@@ -5,10 +5,10 @@ use std::time::Duration;
 
 use morec::features::BoneSet;
 use morec::live::{
-    Detection, EventReader, Frame, OverflowPolicy, PerformerId, Phase, Pool, PoolStream,
-    Recognizer, Rig, Session, SessionOptions, Source, SourceEvent,
+    Detection, EventReader, Frame, OverflowPolicy, PartMatcher, PerformerId, Phase, Pool,
+    PoolStream, Recognizer, Rig, Session, SessionOptions, Source, SourceEvent,
 };
-use morec::templates::TemplateModel;
+use morec::templates::{ClassMatches, TemplateModel};
 
 use crate::made::Timed;
 
@@ -21,7 +21,7 @@ pub struct Engine {
 }
 
 /// All of them.
-pub const ENGINES: [Engine; 4] = [
+pub const ENGINES: [Engine; 5] = [
     Engine {
         name: "inline",
         run: inline,
@@ -29,6 +29,10 @@ pub const ENGINES: [Engine; 4] = [
     Engine {
         name: "inline, in batches",
         run: batches,
+    },
+    Engine {
+        name: "classes divided among three",
+        run: divided,
     },
     Engine {
         name: "session",
@@ -56,6 +60,23 @@ fn batches(model: &Arc<TemplateModel>, bones: BoneSet, poses: &[Timed]) -> Vec<D
     for batch in poses.chunks(37) {
         recognizer.push_all(batch, &mut found);
     }
+    found.extend_from_slice(recognizer.finish());
+    found
+}
+
+/// Each part's matches go over bytes, as they would from another machine.
+fn divided(model: &Arc<TemplateModel>, bones: BoneSet, poses: &[Timed]) -> Vec<Detection> {
+    let matches = |part| {
+        let mut matcher = PartMatcher::new(&model.part(part, 3), bones).unwrap();
+        for (time_secs, pose) in poses {
+            matcher.push(*time_secs, pose);
+        }
+        ClassMatches::from_bytes(&matcher.finish().to_bytes()).unwrap()
+    };
+    let matches = ClassMatches::merge((0..3).map(matches)).unwrap();
+    let mut recognizer = Recognizer::replay(&model.part(0, 3), bones, matches).unwrap();
+    let mut found = Vec::new();
+    recognizer.push_all(poses, &mut found);
     found.extend_from_slice(recognizer.finish());
     found
 }

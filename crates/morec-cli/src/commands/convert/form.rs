@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::{Result, bail};
 use morec::clip::Clip;
 use morec::formats::{bvh, c3d, gltf, jsonl, trc};
-use morec::import::{ImportOptions, normalize};
+use morec::import::{ImportOptions, Take, normalize};
 use morec::tables::{Content, write_csv, write_npz};
 
 use super::Wanted;
@@ -90,38 +90,41 @@ pub fn write_clip(clip: &Clip, path: &Path) -> Result<()> {
 pub(super) fn write(clip: Clip, form: ClipForm, wanted: &Wanted, path: &Path) -> Result<()> {
     match form {
         ClipForm::Bvh => output::write_whole(path, |out| bvh::write(&clip, out)),
-        ClipForm::C3d => {
-            let points = points_of(clip, wanted)?;
-            output::write_whole(path, |out| c3d::write(&points, out))
+        ClipForm::C3d | ClipForm::Trc | ClipForm::Jsonl => {
+            write_points(&points_of(clip, wanted)?, form, path)
         }
-        ClipForm::Trc => {
-            let points = points_of(clip, wanted)?;
-            output::write_whole(path, |out| trc::write(&points, out))
-        }
-        ClipForm::Jsonl => {
-            let points = points_of(clip, wanted)?;
-            output::write_whole(path, |out| jsonl::write(&points, out))
-        }
-        ClipForm::Glb => {
+        ClipForm::Glb | ClipForm::Vrma | ClipForm::Npz | ClipForm::Csv => {
             let take = normalize(clip, &wanted.import)?;
-            output::write_whole(path, |out| gltf::write(&take.clip, out))
+            write_take(&take, form, wanted.content, path)
         }
+    }
+}
+
+/// Writes a take in `form`, in metres with Y up; whole or not at all.
+pub fn write_take(take: &Take, form: ClipForm, content: Content, path: &Path) -> Result<()> {
+    match form {
+        ClipForm::Bvh => output::write_whole(path, |out| bvh::write(&take.clip, out)),
+        ClipForm::C3d | ClipForm::Trc | ClipForm::Jsonl => {
+            write_points(&take.clip.to_points(Some(1.0)), form, path)
+        }
+        ClipForm::Glb => output::write_whole(path, |out| gltf::write(&take.clip, out)),
         ClipForm::Vrma => {
-            let take = normalize(clip, &wanted.import)?;
             for doubt in &take.report.doubts {
                 eprintln!("morec: {}: {doubt}", take.clip.name);
             }
             output::write_whole(path, |out| gltf::write_vrma(&take.clip, &take.roles, out))
         }
-        ClipForm::Npz => {
-            let take = normalize(clip, &wanted.import)?;
-            output::write_whole(path, |out| write_npz(&take, out))
-        }
-        ClipForm::Csv => {
-            let take = normalize(clip, &wanted.import)?;
-            output::write_whole(path, |out| write_csv(&take, wanted.content, out))
-        }
+        ClipForm::Npz => output::write_whole(path, |out| write_npz(take, out)),
+        ClipForm::Csv => output::write_whole(path, |out| write_csv(take, content, out)),
     }
+}
+
+fn write_points(points: &Clip, form: ClipForm, path: &Path) -> Result<()> {
+    output::write_whole(path, |out| match form {
+        ClipForm::C3d => c3d::write(points, out),
+        ClipForm::Trc => trc::write(points, out),
+        _ => jsonl::write(points, out),
+    })
 }
 
 /// Where the joints are; formats of points name their unit, so one is inferred where the clip says none.

@@ -10,7 +10,7 @@ use morec::segment::{KernelParams, PpcaParams, Segmentation, kernel_cuts, segmen
 use serde::Serialize;
 
 use super::{Args, CheckedCutter};
-use crate::figures::write_json;
+use crate::json::write_json;
 use crate::output;
 use crate::poses::{PoseReader, PosedClip};
 

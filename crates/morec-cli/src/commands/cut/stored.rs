@@ -23,12 +23,12 @@ pub fn run(path: &Path, cutter: CheckedCutter, args: &Args) -> Result<ExitCode> 
     let mut db = database::open(path)?;
     let bar = StageBar::stoppable()?;
     let clips = db.find_clips(&ClipFilter {
-        name: args.name.clone(),
+        name: args.clip.clone(),
         ..ClipFilter::default()
     })?;
     if !args.at.is_empty() {
         let [clip] = clips.as_slice() else {
-            bail!("--at cuts one clip: --name chooses {}", clips.len());
+            bail!("--at cuts one clip: --clip chooses {}", clips.len());
         };
         db.cut_by_hand(clip, &args.at)?;
         let said = format!("{}: {} segments\n", clip.name, args.at.len() + 1);

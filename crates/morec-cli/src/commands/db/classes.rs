@@ -20,7 +20,7 @@ Examples:
   morec db classes moves.mdb
   morec db classes moves.mdb --rename hopp hop
   morec db classes moves.mdb --merge hop,leap --into jump
-  morec db classes moves.mdb --split 12,15,19 --into skip     # sample numbers, see --samples
+  morec db classes moves.mdb --split 12,15,19 --into skip  # numbers: --samples
   morec db classes moves.mdb --forget 'group_*'")]
 pub struct Args {
     /// The database
@@ -44,7 +44,7 @@ pub struct Args {
     /// List the samples of this class with their numbers
     #[arg(long, value_name = "CLASS")]
     samples: Option<String>,
-    /// Print JSON
+    /// Print one JSON array
     #[arg(long)]
     json: bool,
 }

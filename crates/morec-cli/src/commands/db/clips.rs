@@ -14,19 +14,19 @@ use crate::table::TextTable;
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
-  morec db clips moves.mdb --name 'walk*'
+  morec db clips moves.mdb --clip 'walk*'
   morec db clips moves.mdb --class wave --subject anna
-  morec db clips moves.mdb --name 'ah_*' --set-subject ah --add-tag gesture
-  morec db clips moves.mdb --name 'test_*' --remove
+  morec db clips moves.mdb --clip 'ah_*' --set-subject ah --add-tag gesture
+  morec db clips moves.mdb --clip 'test_*' --remove
   morec db clips moves.mdb --rename take_1 walk_01
-  morec db clips moves.mdb --name 'take_*' --set-role left_hand=LeftWrist")]
+  morec db clips moves.mdb --clip 'take_*' --set-role left_hand=LeftWrist")]
 pub struct Args {
     /// The database
     #[arg(value_name = "DB")]
     db: PathBuf,
-    /// Clips whose name matches (`*` any text, `?` one character)
-    #[arg(long, value_name = "PATTERN")]
-    name: Option<String>,
+    /// Clips of this name; `*` stands for any text, `?` for one character
+    #[arg(long, alias = "name", value_name = "CLIP")]
+    clip: Option<String>,
     /// Clips in which this person is seen
     #[arg(long, value_name = "NAME")]
     subject: Option<String>,
@@ -48,7 +48,7 @@ pub struct Args {
     /// Give a clip another name; labels, cuts and tags stay with it
     #[arg(long, num_args = 2, value_names = ["OLD", "NEW"])]
     rename: Vec<String>,
-    /// Remove the clips that --name, --subject, --tag and --class choose, with their cuts and labels
+    /// Remove the clips that --clip, --subject, --tag and --class choose, with their cuts and labels
     #[arg(long, conflicts_with = "rename")]
     remove: bool,
     /// Say which joint plays a part of the body, in place of what import found: left_hand=LeftWrist; `left_hand=` for none
@@ -60,6 +60,9 @@ pub struct Args {
     /// Take a tag off
     #[arg(long, value_name = "WORD")]
     remove_tag: Vec<String>,
+    /// List at most so many
+    #[arg(long, value_name = "N")]
+    limit: Option<usize>,
     /// Print one JSON array
     #[arg(long)]
     json: bool,
@@ -68,7 +71,7 @@ pub struct Args {
 /// Changes, then lists.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let filter = ClipFilter {
-        name: args.name.clone(),
+        name: args.clip.clone(),
         subject: args.subject.clone(),
         tag: args.tag.clone(),
         class: args.class.clone(),
@@ -105,10 +108,12 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             .collect()
     };
     clips.sort_by(|a, b| a.name.cmp(&b.name));
+    let all = clips.len();
+    clips.truncate(args.limit.unwrap_or(all));
     if args.json {
         super::print_json(&clips)?;
     } else {
-        print(&clips)?;
+        print(&clips, all)?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -141,10 +146,10 @@ fn set_roles(args: &Args, filter: &ClipFilter) -> Result<()> {
     Ok(db.set_roles(&changed)?)
 }
 
-/// Removes what a filter chooses; all clips of a database only by `--name '*'`.
+/// Removes what a filter chooses; all clips of a database only by `--clip '*'`.
 fn remove(args: &Args, filter: &ClipFilter) -> Result<ExitCode> {
     if *filter == ClipFilter::default() {
-        bail!("--remove: which clips? say with --name, --subject, --tag or --class");
+        bail!("--remove: which clips? say with --clip, --subject, --tag or --class");
     }
     let mut db = database::open(&args.db)?;
     let clips = db.find_clips(filter)?;
@@ -162,7 +167,7 @@ fn remove(args: &Args, filter: &ClipFilter) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn print(clips: &[ClipInfo]) -> Result<()> {
+fn print(clips: &[ClipInfo], all: usize) -> Result<()> {
     let mut table = TextTable::new([
         "clip", "secs", "Hz", "joints", "samples", "kB", "who", "tags",
     ])
@@ -179,5 +184,5 @@ fn print(clips: &[ClipInfo]) -> Result<()> {
             clip.tags.join(" "),
         ]);
     }
-    super::print_table(&table, &format!("{} clips\n", clips.len()))
+    super::print_table(&table, &super::counted(clips.len(), all, "clips"))
 }

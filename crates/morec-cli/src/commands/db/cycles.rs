@@ -30,9 +30,9 @@ pub struct Args {
     /// Labelled stretches of this class only
     #[arg(long, value_name = "CLASS")]
     class: Option<String>,
-    /// Clips whose name matches
-    #[arg(long, value_name = "PATTERN")]
-    name: Option<String>,
+    /// Clips of this name; `*` stands for any text, `?` for one character
+    #[arg(long, alias = "name", value_name = "CLIP")]
+    clip: Option<String>,
     /// Replace each labelled stretch that repeats by its repetitions
     #[arg(long)]
     split: bool,
@@ -105,7 +105,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 
 fn stretches(db: &MotionDb, args: &Args) -> Result<Vec<Counted>> {
     let clips = db.find_clips(&ClipFilter {
-        name: args.name.clone(),
+        name: args.clip.clone(),
         ..ClipFilter::default()
     })?;
     let names: BTreeMap<ClipId, &str> = clips.iter().map(|c| (c.id, c.name.as_str())).collect();

@@ -1,35 +1,43 @@
-//! `morec db export`: labels in other programs' forms, or a clip.
+//! `morec db export`: labels in other programs' forms, or the motion of clips.
+
+mod motion;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
-use morec::formats::bvh;
+use clap::ValueEnum;
 use morec_db::exchange::{self, Annotation, LabelFormat};
 use morec_db::labels::{SampleFilter, SampleState};
 
-use super::label::{FormArg, StateArg};
+use super::label::StateArg;
+use crate::commands::convert::{self, CsvContent};
 use crate::database;
 use crate::output;
 
-/// Write labels for other programs, or a clip as BVH
+/// Write labels for other programs, or the motion of clips
+///
+/// The output's ending chooses the form: .tsv, .csv, .json, .eaf or .txt of labels; with --motion .bvh, .c3d, .trc, .jsonl,
+/// .glb, .vrma, .npz with positions, rotations and feature rows, or .csv with one of these. Motion is in metres with Y up.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   morec db export moves.mdb labels.tsv
   morec db export moves.mdb proposals.csv --state proposed
   morec db export moves.mdb eaf/ --form eaf            # a file for each clip
-  morec db export moves.mdb walk.bvh --motion walk_01")]
+  morec db export moves.mdb walk.bvh --motion walk_01
+  morec db export moves.mdb arrays/ --motion 'walk*' --form npz
+  morec db export moves.mdb features/ --motion '*' --form csv --table features")]
 pub struct Args {
     /// The database
     #[arg(value_name = "DB")]
     db: PathBuf,
-    /// The file to write, `-` for standard output; a folder for forms of one clip
+    /// The file to write, `-` for standard output; a folder for forms of one clip, and for the motion of several
     #[arg(value_name = "FILE|DIR")]
     output: PathBuf,
     /// What form to write [default: by the file's ending]
     #[arg(long, value_enum)]
-    form: Option<FormArg>,
+    form: Option<ExportForm>,
     /// Labels of this clip only
     #[arg(long, value_name = "CLIP")]
     clip: Option<String>,
@@ -39,22 +47,72 @@ pub struct Args {
     /// Which samples
     #[arg(long, value_enum, default_value = "accepted")]
     state: StateArg,
-    /// Write this clip's motion as BVH instead of labels
-    #[arg(long, value_name = "CLIP")]
+    /// Write the motion of this clip instead of labels, or of all clips whose name matches (`*` any text, `?` one
+    /// character)
+    #[arg(long, value_name = "CLIP", conflicts_with_all = ["clip", "class", "state"])]
     motion: Option<String>,
+    /// What a CSV of motion holds
+    #[arg(long, value_enum, default_value = "positions", requires = "motion")]
+    table: CsvContent,
     /// Print one JSON object: what was written
     #[arg(long)]
     json: bool,
 }
 
+/// A form of labels or of motion; a CSV may be either.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)]
+enum ExportForm {
+    Tsv,
+    Csv,
+    Json,
+    Eaf,
+    Audacity,
+    Babel,
+    LabelStudio,
+    Bvh,
+    C3d,
+    Trc,
+    Jsonl,
+    Glb,
+    Vrma,
+    Npz,
+}
+
+impl ExportForm {
+    fn of_labels(self) -> Result<LabelFormat> {
+        Ok(match self {
+            Self::Tsv => LabelFormat::Tsv,
+            Self::Csv => LabelFormat::Csv,
+            Self::Json => LabelFormat::Json,
+            Self::Eaf => LabelFormat::Eaf,
+            Self::Audacity => LabelFormat::Audacity,
+            Self::Babel => LabelFormat::Babel,
+            Self::LabelStudio => LabelFormat::LabelStudio,
+            _ => bail!("--form: that is a form of motion; say of which clip with --motion"),
+        })
+    }
+
+    fn of_motion(self) -> Result<convert::ClipForm> {
+        Ok(match self {
+            Self::Csv => convert::ClipForm::Csv,
+            Self::Bvh => convert::ClipForm::Bvh,
+            Self::C3d => convert::ClipForm::C3d,
+            Self::Trc => convert::ClipForm::Trc,
+            Self::Jsonl => convert::ClipForm::Jsonl,
+            Self::Glb => convert::ClipForm::Glb,
+            Self::Vrma => convert::ClipForm::Vrma,
+            Self::Npz => convert::ClipForm::Npz,
+            _ => bail!("--form: that is a form of labels, and --motion writes motion"),
+        })
+    }
+}
+
 /// Writes what was asked for.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let db = database::open_read_only(&args.db)?;
-    if let Some(name) = &args.motion {
-        let stored = db.clip(db.find_clip(name)?.id)?;
-        output::write_whole(&args.output, |out| bvh::write(&stored.clip, out))
-            .with_context(|| args.output.display().to_string())?;
-        return said(args, 1, stored.clip.frames, "frames");
+    if let Some(pattern) = &args.motion {
+        return motion::export(args, &db, pattern);
     }
     let clip = args
         .clip
@@ -84,7 +142,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         .collect();
     let shown = args.output.to_string_lossy();
     let form = match args.form {
-        Some(form) => form.into(),
+        Some(form) => form.of_labels()?,
         None => LabelFormat::of_file(&shown, b"{\"labels\":[]}")
             .with_context(|| format!("{shown}: its ending says no form of labels; give --form"))?,
     };

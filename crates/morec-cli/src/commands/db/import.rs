@@ -5,12 +5,13 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use anyhow::Result;
-use morec::files::split_choice;
+use anyhow::{Result, bail};
+use morec::files::{FileReader, split_choice};
 use morec_db::{ClipUpdate, ImportCounts, ImportLog, ImportOutcome, MotionDb};
 use serde::Serialize;
 
 use super::copies::{self, Copy};
+use super::samples;
 use crate::database;
 use crate::files::{self, ReadArgs};
 use crate::progress::StageBar;
@@ -24,7 +25,8 @@ use crate::progress::StageBar;
 #[command(after_help = "\
 Examples:
   morec db import moves.mdb recordings/
-  morec db import moves.mdb 13_29.amc --skeleton 13.asf --subject 13 --tag exercise
+  morec db import moves.mdb 13_29.amc --skeleton 13.asf --subject 13
+  morec db import moves.mdb cleaned/take_1.bvh --in-place-of take_1
 
 Ctrl-C finishes what is being written and says what was imported; the same command then goes on where it stopped.
 
@@ -36,6 +38,14 @@ pub struct Args {
     /// Clips in any format that is read, or folders of clips; FILE#2 and FILE#name are one clip of a file
     #[arg(required = true, value_name = "DIR|CLIP")]
     clips: Vec<PathBuf>,
+    /// Put the one file given in the place of this clip's: its name, tags and labels stay; labels behind the new end are
+    /// removed and listed, and so are cuts
+    #[arg(
+        long,
+        value_name = "CLIP",
+        conflicts_with_all = ["source", "licence", "subject", "tags"]
+    )]
+    in_place_of: Option<String>,
     /// Where the material is from
     #[arg(long, value_name = "TEXT")]
     source: Option<String>,
@@ -70,6 +80,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     };
     let mapping = files::mapping(args.roles.as_deref())?;
     let reader = args.read.reader_with(mapping);
+    if let Some(clip) = &args.in_place_of {
+        return replace(args, &mut db, clip, &paths, &reader);
+    }
     let about = ClipUpdate {
         source: args.source.clone(),
         licence: args.licence.clone(),
@@ -100,6 +113,39 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     } else {
         ExitCode::SUCCESS
     })
+}
+
+fn replace(
+    args: &Args,
+    db: &mut MotionDb,
+    clip: &str,
+    paths: &[PathBuf],
+    reader: &FileReader,
+) -> Result<ExitCode> {
+    let [path] = paths else {
+        bail!("--in-place-of: expected one file, found {}", paths.len());
+    };
+    let replaced = db.replace_clip(clip, path, reader)?;
+    if args.json {
+        super::print_json(&replaced)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    for warning in &replaced.warnings {
+        eprintln!("morec: {}: {warning}", path.display());
+    }
+    super::print(format_args!(
+        "{}: {:.2} s now, {:.2} s before; {} samples kept, {} removed, {} cuts removed; morec db undo brings it back\n",
+        replaced.clip,
+        replaced.after_secs,
+        replaced.before_secs,
+        replaced.kept,
+        replaced.removed.len(),
+        replaced.cuts
+    ))?;
+    match replaced.removed.is_empty() {
+        true => Ok(ExitCode::SUCCESS),
+        false => samples::print(&replaced.removed, false),
+    }
 }
 
 #[derive(Serialize)]

@@ -15,7 +15,8 @@ use crate::table::TextTable;
 #[command(after_help = "\
 Examples:
   morec db indexes moves.mdb
-  morec db indexes moves.mdb --write moves -o moves.index && morec recognize moves.index new/
+  morec db indexes moves.mdb --write moves -o moves.index
+  morec recognize moves.index new/
   morec db indexes moves.mdb --remove moves")]
 pub struct Args {
     /// The database

@@ -7,12 +7,16 @@ use std::process::ExitCode;
 use anyhow::{Context, Result, bail};
 use clap::ValueEnum;
 use morec_db::exchange::{self, Annotation, ClipLengths, LabelFormat};
-use morec_db::labels::{Added, LabelChange, LabelOptions, Labelled, NewSample, SampleState};
+use morec_db::labels::{
+    Added, ChangedLabel, LabelChange, LabelOptions, Labelled, NewSample, SampleState,
+};
 use morec_db::{ClipFilter, MotionDb};
+use serde::Serialize;
 
 use super::history;
 use crate::database;
 use crate::files::{self, some_of};
+use crate::labels;
 use crate::table::TextTable;
 
 /// Read labels from a file, set one by hand, or accept and reject what is there
@@ -151,7 +155,10 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     };
     let done = db.label(&samples, &options)?;
     if args.json {
-        let changes = args.dry_run.then_some(&done.changes);
+        let changes = match args.dry_run {
+            true => Some(named_changes(&db, &done)?),
+            false => None,
+        };
         super::print_json(&serde_json::json!({
             "samples": done.counts, "absent_clips": absent, "changes": changes,
         }))?;
@@ -216,6 +223,24 @@ fn said(counts: &Added, args: &Args) -> String {
         ""
     };
     format!("{would}{}\n", parts.join(", "))
+}
+
+/// A change with the name of its clip.
+#[derive(Serialize)]
+struct NamedChange<'a> {
+    clip: String,
+    #[serde(flatten)]
+    change: &'a ChangedLabel,
+}
+
+fn named_changes<'a>(db: &MotionDb, done: &'a Labelled) -> Result<Vec<NamedChange<'a>>> {
+    let clips = db.clips(&ClipFilter::default())?;
+    let names: BTreeMap<_, _> = clips.into_iter().map(|c| (c.id, c.name)).collect();
+    let named = |change: &'a ChangedLabel| NamedChange {
+        clip: names.get(&change.clip).cloned().unwrap_or_default(),
+        change,
+    };
+    Ok(done.changes.iter().map(named).collect())
 }
 
 fn changes(db: &MotionDb, done: &Labelled) -> Result<TextTable> {
@@ -300,7 +325,7 @@ fn by_hand(args: &Args, class: &str, lengths: &ClipLengths) -> Result<Annotation
 
 fn read(args: &Args, lengths: &ClipLengths, absent: &mut Absent) -> Result<Vec<Annotation>> {
     let mut all = Vec::new();
-    for path in &label_files(&args.labels)? {
+    for path in &labels::files_of_labels(&args.labels)? {
         let shown = path.display().to_string();
         let bytes = files::read(path)?;
         let form = match args.form {
@@ -332,31 +357,6 @@ fn read(args: &Args, lengths: &ClipLengths, absent: &mut Absent) -> Result<Vec<A
 fn named_by_file(path: &Path, lengths: &ClipLengths) -> Option<String> {
     let clip = exchange::clip_of_file_name(&path.file_stem()?.to_string_lossy());
     lengths.contains_key(&clip).then_some(clip)
-}
-
-/// A folder stands for the files in it, by name.
-fn label_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>> {
-    let mut files = Vec::new();
-    for path in paths {
-        if !path.is_dir() {
-            files.push(path.clone());
-            continue;
-        }
-        let shown = || path.display().to_string();
-        let mut inside = Vec::new();
-        for entry in std::fs::read_dir(path).with_context(shown)? {
-            inside.push(entry.with_context(shown)?.path());
-        }
-        inside.retain(|file| {
-            file.is_file() && LabelFormat::of_file(&file.to_string_lossy(), b"").is_some()
-        });
-        if inside.is_empty() {
-            bail!("{}: no file of labels in this folder", path.display());
-        }
-        inside.sort();
-        files.append(&mut inside);
-    }
-    Ok(files)
 }
 
 /// Labels drawn by hand run over a clip's end by so much without a word.

@@ -30,7 +30,7 @@ use morec_db::exchange::ClipLengths;
 use morec_db::{ClipFilter, ClipInfo, DbError, MotionDb};
 use serde::Serialize;
 
-use crate::figures::write_json;
+use crate::json::write_json;
 use crate::table::TextTable;
 
 /// Keep clips, cuts, classes and labels in one file, and search them
@@ -162,6 +162,14 @@ pub fn print_table(table: &TextTable, last: &str) -> Result<()> {
     }
     out.flush()?;
     Ok(())
+}
+
+/// `12 clips`, or `10 of 12 clips` where not all are shown.
+fn counted(shown: usize, all: usize, what: &str) -> String {
+    match shown == all {
+        true => format!("{all} {what}\n"),
+        false => format!("{shown} of {all} {what}\n"),
+    }
 }
 
 /// `12.3 MB`.

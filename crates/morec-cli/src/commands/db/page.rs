@@ -1,8 +1,9 @@
-//! A page of HTML with strips of poses: one file, nothing loaded from elsewhere.
+//! A page of HTML with strips of poses that move when they are chosen: one file, nothing loaded from elsewhere.
 
 use std::path::Path;
 
 use anyhow::{Context, Result};
+use morec::player::{Mark, PlayedClip, Reel};
 use morec_db::{ClipId, MotionDb, StoredClip};
 
 use super::strip::strip;
@@ -10,11 +11,16 @@ use crate::output;
 
 /// Poses in a strip.
 const POSES: usize = 8;
+/// Frames of a stretch that moves: a minute at 30 a second; of longer ones not every frame is kept.
+const FRAMES: usize = 1800;
+/// A page of so many bytes of motion takes no more: a browser must still open it.
+const MOST_BYTES: usize = 48 << 20;
 
 const STYLE: &str = "body{font:15px/1.4 system-ui,sans-serif;margin:2em auto;max-width:70em;padding:0 1em;\
 color:#222;background:#fff}h2{margin-top:1.6em}figure{display:inline-block;margin:.3em 1em .6em 0}\
 figcaption{font-size:13px}svg{background:#f4f4f4;border-radius:4px}path{fill:none;stroke-width:1.3;stroke-linecap:round}\
-@media(prefers-color-scheme:dark){body{color:#ddd;background:#181818}svg{background:#262626}}";
+nav.contents{display:flex;flex-wrap:wrap;gap:.2em 1em}nav.contents a{color:inherit}\
+@media(prefers-color-scheme:dark){:root{color-scheme:dark}body{color:#ddd;background:#181818}svg{background:#262626}}";
 
 /// Whether a page can be written there: asked before the work.
 pub fn check(path: &Path) -> Result<()> {
@@ -25,7 +31,11 @@ pub fn check(path: &Path) -> Result<()> {
 #[derive(Default)]
 pub struct Page {
     html: String,
+    headings: Vec<String>,
     strips: usize,
+    reel: Reel,
+    /// Strips that do not move, as the page would be too large.
+    still: usize,
     /// The clip decoded last: stretches mostly come clip by clip.
     last: Option<(ClipId, StoredClip)>,
 }
@@ -36,12 +46,24 @@ impl Page {
         self.strips
     }
 
+    /// A section, which the table of contents names.
     pub fn heading(&mut self, text: &str) {
-        self.html.push_str(&format!("<h2>{}</h2>\n", escaped(text)));
+        self.headings.push(text.to_owned());
+        let number = self.headings.len();
+        self.html
+            .push_str(&format!("<h2 id=\"s{number}\">{}</h2>\n", escaped(text)));
     }
 
-    pub fn paragraph(&mut self, text: &str) {
-        self.html.push_str(&format!("<p>{}</p>\n", escaped(text)));
+    /// A list that unfolds.
+    pub fn folded(&mut self, summary: &str, items: &[String]) {
+        let items: String = items
+            .iter()
+            .map(|item| format!("<li>{}</li>\n", escaped(item)))
+            .collect();
+        self.html.push_str(&format!(
+            "<details><summary>{}</summary>\n<ul>\n{items}</ul>\n</details>\n",
+            escaped(summary)
+        ));
     }
 
     pub fn new_line(&mut self) {
@@ -75,8 +97,25 @@ impl Page {
         caption: &str,
     ) {
         let svg = strip(stored, start_secs, stop_secs, POSES);
+        let moves = match self.reel.bytes() < MOST_BYTES {
+            true => {
+                let played = PlayedClip {
+                    clip: &stored.clip,
+                    roles: &stored.roles,
+                    secs: Some(start_secs..stop_secs),
+                    labels: Vec::<Mark>::new(),
+                    detections: Vec::new(),
+                };
+                let number = self.reel.add(&played, FRAMES);
+                format!(" data-motion=\"{number}\"")
+            }
+            false => {
+                self.still += 1;
+                String::new()
+            }
+        };
         self.html.push_str(&format!(
-            "<figure>{svg}<figcaption>{}</figcaption></figure>\n",
+            "<figure{moves}>{svg}<figcaption>{}</figcaption></figure>\n",
             escaped(caption)
         ));
         self.strips += 1;
@@ -85,9 +124,25 @@ impl Page {
     /// Writes the page under `title`, with `head` as its first line; the file is whole or not there.
     pub fn write(&self, path: &Path, title: &str, head: &str) -> Result<()> {
         let (title, head) = (escaped(title), escaped(head));
+        let contents: String = (1..)
+            .zip(&self.headings)
+            .map(|(number, text)| format!("<a href=\"#s{number}\">{}</a>\n", escaped(text)))
+            .collect();
+        let hint = match (self.strips, self.still) {
+            (0, _) => String::new(),
+            (_, 0) => "<p>A strip that is chosen moves.</p>\n".to_owned(),
+            (_, still) => format!(
+                "<p>A strip that is chosen moves, but for the last {still}: with them the page would be too large to open.</p>\n"
+            ),
+        };
+        let panel = match self.reel.is_empty() {
+            true => String::new(),
+            false => self.reel.panel(),
+        };
         let html = format!(
             "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{title}</title>\n\
-             <style>{STYLE}</style></head>\n<body>\n<h1>{title}</h1>\n<p>{head}</p>\n{}</body></html>\n",
+             <style>{STYLE}</style></head>\n<body>\n<h1>{title}</h1>\n<p>{head}</p>\n\
+             <nav class=\"contents\" aria-label=\"Contents\">\n{contents}</nav>\n{hint}{}{panel}</body></html>\n",
             self.html
         );
         output::write_whole(path, |out| out.write_all(html.as_bytes()))

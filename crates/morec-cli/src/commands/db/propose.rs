@@ -24,9 +24,10 @@ use crate::table::TextTable;
 #[command(after_help = "\
 Examples:
   morec db propose moves.mdb
-  morec db propose moves.mdb --accept 0.6               # take those of at least this score
-  morec db propose moves.mdb --list --doubtful          # those whose answers tell most first
-  morec db export moves.mdb ask.csv --state proposed    # edit its column state, then: morec db label moves.mdb ask.csv")]
+  morec db propose moves.mdb --accept 0.6             # those of this score
+  morec db propose moves.mdb --list --doubtful        # most telling first
+  morec db export moves.mdb ask.csv --state proposed  # edit its column state:
+  morec db label moves.mdb ask.csv")]
 pub struct Args {
     /// The database
     #[arg(value_name = "DB")]
@@ -137,6 +138,7 @@ fn list(args: &Args, db: &MotionDb) -> Result<ExitCode> {
 
 #[derive(Serialize)]
 struct NamedProposal {
+    #[serde(rename = "clip")]
     name: String,
     #[serde(flatten)]
     proposal: Proposal,

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
-use morec_db::labels::{SampleFilter, SampleState};
-use morec_db::{ClipFilter, MotionDb, SegmentKind};
+use morec_db::labels::{DbSample, SampleFilter, SampleState};
+use morec_db::{ClipFilter, ClipInfo, MotionDb, SegmentKind};
 
 use super::megabytes;
 use super::page::{self, Page};
@@ -13,7 +13,7 @@ use crate::database;
 
 /// Write a page of HTML with a strip of poses for clips, cuts and samples
 ///
-/// One file, nothing loaded from elsewhere. Groups and search hits have pages of their own: `morec group --report`,
+/// One file, nothing loaded from elsewhere; a strip that is chosen moves. What --limit leaves out is listed by name. Groups and search hits have pages of their own: `morec group --report`,
 /// `morec db search --report`.
 #[derive(clap::Args)]
 pub struct Args {
@@ -23,10 +23,10 @@ pub struct Args {
     /// The file to write
     #[arg(short, long, value_name = "HTML")]
     output: PathBuf,
-    /// Clips whose name matches
-    #[arg(long, value_name = "PATTERN")]
-    name: Option<String>,
-    /// At most so many clips, and so many samples of a class
+    /// Clips of this name; `*` stands for any text, `?` for one character
+    #[arg(long, alias = "name", value_name = "CLIP")]
+    clip: Option<String>,
+    /// At most so many clips, and so many samples of a class, as strips
     #[arg(long, value_name = "N", default_value_t = 40)]
     limit: usize,
     /// Print one JSON object: what was drawn
@@ -83,7 +83,9 @@ fn classes(page: &mut Page, db: &MotionDb, limit: usize) -> Result<()> {
                 state: Some(state),
                 clip: None,
             };
-            for s in db.samples(&filter)?.into_iter().take(limit) {
+            let samples = db.samples(&filter)?;
+            let (shown, rest) = samples.split_at(samples.len().min(limit));
+            for s in shown {
                 let score = s
                     .score
                     .map_or_else(String::new, |score| format!(", score {score:.2}"));
@@ -98,6 +100,17 @@ fn classes(page: &mut Page, db: &MotionDb, limit: usize) -> Result<()> {
                 );
                 page.figure(db, s.clip, s.start_secs, s.stop_secs, &caption)?;
             }
+            if !rest.is_empty() {
+                let item = |s: &DbSample| {
+                    format!(
+                        "{} {:.2}–{:.2} s, number {}",
+                        s.clip_name, s.start_secs, s.stop_secs, s.id.0
+                    )
+                };
+                let items: Vec<String> = rest.iter().map(item).collect();
+                let summary = format!("{} more {} samples", rest.len(), state.name());
+                page.folded(&summary, &items);
+            }
         }
     }
     Ok(())
@@ -107,7 +120,7 @@ fn classes(page: &mut Page, db: &MotionDb, limit: usize) -> Result<()> {
 fn clips(page: &mut Page, db: &MotionDb, args: &Args) -> Result<()> {
     let segments = db.segments()?;
     let clips = db.find_clips(&ClipFilter {
-        name: args.name.clone(),
+        name: args.clip.clone(),
         ..ClipFilter::default()
     })?;
     page.heading("Clips");
@@ -127,7 +140,8 @@ fn clips(page: &mut Page, db: &MotionDb, args: &Args) -> Result<()> {
         if of_clip.len() > 1 {
             for (number, s) in of_clip.iter().enumerate() {
                 let caption = format!(
-                    "segment {}: {:.1}–{:.1} s",
+                    "{} cut {}: {:.1}–{:.1} s",
+                    clip.name,
                     number + 1,
                     s.start_secs,
                     s.stop_secs
@@ -138,7 +152,9 @@ fn clips(page: &mut Page, db: &MotionDb, args: &Args) -> Result<()> {
         }
     }
     if clips.len() > args.limit {
-        page.paragraph(&format!("and {} more clips", clips.len() - args.limit));
+        let item = |clip: &ClipInfo| format!("{} {:.1} s", clip.name, clip.duration_secs());
+        let rest: Vec<String> = clips[args.limit..].iter().map(item).collect();
+        page.folded(&format!("{} more clips", rest.len()), &rest);
     }
     Ok(())
 }

@@ -50,6 +50,9 @@ pub struct Args {
     /// Where it stops, seconds
     #[arg(long, value_name = "SECS", requires = "moved")]
     stop: Option<f64>,
+    /// List at most so many
+    #[arg(long, value_name = "N")]
+    limit: Option<usize>,
     /// Print one JSON array
     #[arg(long)]
     json: bool,
@@ -69,7 +72,8 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     }
     let db = database::open_read_only(&args.db)?;
     let samples = db.samples(&filter(args, &db)?)?;
-    print(&samples, args.json)
+    let shown = samples.len().min(args.limit.unwrap_or(usize::MAX));
+    print_some(&samples[..shown], samples.len(), args.json)
 }
 
 fn filter(args: &Args, db: &MotionDb) -> Result<SampleFilter> {
@@ -105,6 +109,11 @@ fn remove(args: &Args) -> Result<ExitCode> {
 
 /// The samples as a table, or as JSON.
 pub fn print(samples: &[DbSample], json: bool) -> Result<ExitCode> {
+    print_some(samples, samples.len(), json)
+}
+
+/// The same of some of so many.
+fn print_some(samples: &[DbSample], all: usize, json: bool) -> Result<ExitCode> {
     if json {
         super::print_json(&samples)?;
         return Ok(ExitCode::SUCCESS);
@@ -128,6 +137,6 @@ pub fn print(samples: &[DbSample], json: bool) -> Result<ExitCode> {
             s.set_by.clone(),
         ]);
     }
-    super::print_table(&table, &format!("{} samples\n", samples.len()))?;
+    super::print_table(&table, &super::counted(samples.len(), all, "samples"))?;
     Ok(ExitCode::SUCCESS)
 }

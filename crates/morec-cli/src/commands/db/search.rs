@@ -59,7 +59,7 @@ pub struct Args {
     /// Learn from these classes only
     #[arg(
         long,
-        value_name = "A,B,…",
+        value_name = "CLASSES",
         value_delimiter = ',',
         requires = "learned"
     )]
@@ -96,6 +96,7 @@ struct Learned {
 
 #[derive(Serialize)]
 struct NamedHit {
+    #[serde(rename = "clip")]
     name: String,
     #[serde(flatten)]
     hit: Hit,

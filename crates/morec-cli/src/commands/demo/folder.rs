@@ -107,10 +107,10 @@ impl DemoFolder {
         self.command(
             "evaluate",
             &[
-                ("--truth", "truth.tsv"),
+                ("--labels", "truth.tsv"),
                 ("--found", "found.tsv"),
                 ("--clips", "new"),
-                ("--report", "report"),
+                ("--report", "report/report.html"),
             ],
         )
     }
@@ -132,7 +132,7 @@ impl DemoFolder {
              With clips of your own, in any folder, and a table of labels like {}, the same three commands do it:\n  \
              morec train, morec recognize, morec evaluate (--help tells the rest).",
             cast.caveat,
-            self.path("report").join("report.html").display(),
+            self.path("report/report.html").display(),
             self.path("labels.tsv").display()
         )
     }

@@ -16,7 +16,7 @@ use serde::Serialize;
 
 use super::members::{GroupedSample, labelled};
 use super::{Args, Centre};
-use crate::figures::write_json;
+use crate::json::write_json;
 use crate::poses::{PoseReader, PosedClip};
 use crate::table::TextTable;
 

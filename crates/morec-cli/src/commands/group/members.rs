@@ -3,19 +3,20 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 use morec::cluster::{
     AffinityParams, Clusters, Hierarchy, KwasParams, PairCounts, Spectrum, adjusted_rand_index,
     affinity_propagation, kwas_clusters, resampled, squared_distance,
 };
 use morec::features::{BoneSet, Rows};
-use morec::labels::{ClipLength, Labels};
+use morec::labels::ClipLength;
 use morec_db::ClipId;
 use serde::Serialize;
 
 use super::{Args, GroupMethod};
 use crate::commands::db::{print_json, print_table};
-use crate::files::{self, some_of};
+use crate::files::some_of;
+use crate::labels;
 use crate::table::TextTable;
 
 /// A stretch of a clip to be grouped.
@@ -43,7 +44,7 @@ pub struct GroupMember {
     pub rows: Rows,
 }
 
-/// Groups, the largest first.
+/// GroupList, the largest first.
 #[derive(Serialize)]
 pub struct GroupList {
     pub groups: Vec<Vec<GroupMember>>,
@@ -57,7 +58,7 @@ pub struct GroupList {
 const POINTS: usize = 16;
 
 impl GroupList {
-    /// Groups `items` as `args` say, and holds the groups against the classes if there are any.
+    /// GroupList `items` as `args` say, and holds the groups against the classes if there are any.
     pub fn of(items: &[GroupMember], args: &Args, has_classes: bool) -> Self {
         let clusters = clusters(items, args);
         let mut groups = Self {
@@ -158,7 +159,7 @@ pub fn labelled(
     classes: &[String],
     clips: &BTreeMap<String, ClipLength>,
 ) -> Result<Vec<GroupedSample>> {
-    let labels = Labels::read(&files::read(path)?).with_context(|| path.display().to_string())?;
+    let labels = labels::read(path)?;
     let resolved = labels.resolve(clips);
     for warning in labels.warnings.iter().chain(&resolved.warnings) {
         eprintln!("morec: {}: {warning}", path.display());

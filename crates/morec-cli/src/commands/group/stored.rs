@@ -141,7 +141,14 @@ fn report(path: &Path, db: &MotionDb, of: &Path, grouped: &GroupList) -> Result<
             page.figure(db, id, item.start_secs, item.stop_secs, &caption)?;
         }
         if group.len() > SHOWN {
-            page.paragraph(&format!("and {} more", group.len() - SHOWN));
+            let rest = group[SHOWN..].iter().map(|item| {
+                format!(
+                    "{} {:.2}–{:.2} s",
+                    item.clip, item.start_secs, item.stop_secs
+                )
+            });
+            let rest: Vec<String> = rest.collect();
+            page.folded(&format!("{} more", rest.len()), &rest);
         }
     }
     let members: usize = grouped.groups.iter().map(Vec::len).sum();

@@ -27,6 +27,7 @@ def parser() -> argparse.ArgumentParser:
     one.add_argument("archive")
     one.add_argument("index")
     one.add_argument("-o", "--output", metavar="FOLDER", help="write Parquet there instead")
+    one.add_argument("--parts", type=int, default=1, help="divide the index by its classes; no worker holds two parts")
     one = commands.add_parser("search", help="stretches that are like an example")
     one.add_argument("archive")
     one.add_argument("example", help="a file, or a clip of the archive")
@@ -78,7 +79,7 @@ def run(args: argparse.Namespace, s3: dict[str, str] | None) -> int:
     if args.command == "info":
         print(json.dumps(archive.info(), indent=1))
     elif args.command == "recognize":
-        events = archive.recognize(args.index)
+        events = archive.recognize(args.index, parts=args.parts)
         if args.output:
             events.write_parquet(args.output)
         else:

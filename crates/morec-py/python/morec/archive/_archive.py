@@ -17,6 +17,7 @@ from .._labels import Labels, label_rows
 from .._morec import Clip, Index, load
 from .._tables import Table
 from . import _layout as layout
+from ._divided import divided_events
 from ._group import group
 from ._store import Store
 from ._tasks import Example, Nearest, cuts_of, events_of
@@ -212,8 +213,15 @@ class Archive:
 
     # Asking
 
-    def recognize(self, index: Index | str | os.PathLike[str]) -> DataFrame:
+    def recognize(self, index: Index | str | os.PathLike[str], *, parts: int = 1) -> DataFrame:
         """What an index recognises in every clip.
+
+        Parameters
+        ----------
+        index : Index or path
+        parts : int
+            Into how many parts the index is divided by its classes, so that no worker holds more than one of them at a
+            time. The events stay the same; every clip is read and decoded once more for each part.
 
         Returns
         -------
@@ -222,8 +230,14 @@ class Archive:
         """
         model = index if isinstance(index, Index) else load(index)
         frame = self._clips("name", "motion", "roles", "rest_frames")
-        found = events_of(col("motion"), model, col("roles"), col("rest_frames"))
-        events = frame.select(col("clip"), col("name"), found.get("events").alias("event")).explode("event")
+        if parts < 1:
+            raise ValueError(f"parts: expected 1 or more, found {parts}")
+        if parts == 1:
+            found = events_of(col("motion"), model, col("roles"), col("rest_frames"))
+            frame = frame.select(col("clip"), col("name"), found.alias("found"))
+        else:
+            frame = divided_events(frame, self.store, model, parts)
+        events = frame.select(col("clip"), col("name"), col("found").get("events").alias("event")).explode("event")
         events = events.where(~col("event").is_null())
         fields = ["class", "start_secs", "stop_secs", "score", "reported_secs"]
         return events.select(col("clip"), col("name"), *[col("event").get(name).alias(name) for name in fields])

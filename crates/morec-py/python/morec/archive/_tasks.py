@@ -35,13 +35,18 @@ class Recognise:
     @daft.method.batch(return_dtype=EVENTS, batch_size=BATCH)
     def run(self, motion: Series, roles: Series, rest_frames: Series) -> list[dict[str, Any]]:
         clips = list(zip(motion.to_pylist(), roles.to_pylist(), rest_frames.to_pylist()))
-        made: list[dict[str, Any]] = []
-        for found in _morec.recognize_kept(self.index, clips):
-            if isinstance(found, str):
-                made.append({"events": [], "error": found})
-            else:
-                made.append({"events": [dict(zip(EVENT, event)) for event in found], "error": None})
-        return made
+        return told(_morec.recognize_kept(self.index, clips))
+
+
+def told(found: list[Any]) -> list[dict[str, Any]]:
+    """Events or the error of each clip, as rows of `EVENTS`."""
+    made: list[dict[str, Any]] = []
+    for one in found:
+        if isinstance(one, str):
+            made.append({"events": [], "error": one})
+        else:
+            made.append({"events": [dict(zip(EVENT, event)) for event in one], "error": None})
+    return made
 
 
 def events_of(

@@ -14,8 +14,11 @@ mod points;
 mod positions;
 mod rate;
 mod rows;
+mod source;
 mod text;
 mod write;
+
+use std::io::{Read, Seek};
 
 pub use positions::PositionChannels;
 pub use write::write;
@@ -24,6 +27,7 @@ use self::character::Character;
 use self::hierarchy::BvhHierarchy;
 use self::notes::Notes;
 use self::positions::Votes;
+use self::source::{InFile, InMemory, TableText};
 use self::text::{Cursor, Encoding, show};
 use super::{Limits, Loaded, ParseError, Place};
 use crate::clip::{Clip, Skeleton, Span};
@@ -68,44 +72,163 @@ pub fn read(
     options: &BvhOptions,
     limits: &Limits,
 ) -> Result<Loaded, ParseError> {
-    let mut notes = Notes::default();
     let text = without_bom(bytes)?;
-    let mut cursor = find_hierarchy(text, limits, &mut notes)?;
-    let encoding = Encoding::of(hierarchy_bytes(&text[cursor.pos..]));
-    if encoding != Encoding::Utf8 {
-        notes.add(
-            cursor.place(),
-            format!("names are not UTF-8, read as {}", encoding.name()),
-        );
+    let mut notes = Notes::default();
+    let head = BvhHead::read(text, limits, &mut notes)?;
+    let mut table = InMemory::new(&text[head.end..]);
+    head.with_table(&mut table, name, options, limits, notes)
+}
+
+/// Reads a BVH file as [`read`] does, from a file of which it holds a megabyte at a time: beside the result, it takes the
+/// memory of the skeleton's text and of one line.
+///
+/// # Errors
+/// Those of [`read`], and a file that cannot be read.
+pub fn read_from(
+    file: impl Read + Seek,
+    name: &str,
+    options: &BvhOptions,
+    limits: &Limits,
+) -> Result<Loaded, ParseError> {
+    const PIECE: usize = 1 << 20;
+    read_in_pieces(file, PIECE, name, options, limits)
+}
+
+fn read_in_pieces(
+    mut file: impl Read + Seek,
+    piece: usize,
+    name: &str,
+    options: &BvhOptions,
+    limits: &Limits,
+) -> Result<Loaded, ParseError> {
+    let mut bytes = Vec::new();
+    loop {
+        // Twice as much each time, until the table's beginning is in it.
+        let more = bytes.len().max(piece) as u64;
+        let is_whole = source::read_all(file.by_ref().take(more), &mut bytes)? < more as usize;
+        let text = without_bom(&bytes)?;
+        let mut notes = Notes::default();
+        let head = match BvhHead::read(text, limits, &mut notes) {
+            Ok(head) if is_whole || head.is_followed(text) => head,
+            Err(error) if is_whole => return Err(error),
+            _ => continue,
+        };
+        let start = (bytes.len() - text.len() + head.end) as u64;
+        drop(bytes);
+        let mut table = InFile::new(file, start, piece, limits.line_bytes)?;
+        return head.with_table(&mut table, name, options, limits, notes);
     }
-    let hierarchy = hierarchy::parse(&mut cursor, encoding, limits, &mut notes)?;
-    let mut characters: Vec<_> = (0..hierarchy.roots.len())
-        .map(|k| Character::new(&hierarchy, k))
-        .collect();
-    let (stated_hz, lost) = read_motion(
-        cursor,
-        &hierarchy,
-        &mut characters,
-        options,
-        limits,
-        &mut notes,
-    )?;
-    let rate_hz = match options.rate_hz {
-        Some(rate) if rate.is_finite() && rate > 0.0 => rate,
-        Some(rate) => {
-            return Err(ParseError::new(
-                Place::File,
-                "a positive rate in the options",
-                rate.to_string(),
-            ));
+}
+
+/// All that stands before the table.
+struct BvhHead {
+    hierarchy: BvhHierarchy,
+    /// The MOTION section's, if there is one.
+    header: Option<motion::MotionHeader>,
+    /// Where the head ends, in bytes,
+    end: usize,
+    /// and on which line.
+    line: u64,
+}
+
+impl BvhHead {
+    fn read(text: &[u8], limits: &Limits, notes: &mut Notes) -> Result<Self, ParseError> {
+        let mut cursor = find_hierarchy(text, limits, notes)?;
+        let encoding = Encoding::of(hierarchy_bytes(&text[cursor.pos..]));
+        if encoding != Encoding::Utf8 {
+            notes.add(
+                cursor.place(),
+                format!("names are not UTF-8, read as {}", encoding.name()),
+            );
         }
-        None => stated_hz,
-    };
-    let clips = finish(characters, name, rate_hz, &lost, options, &mut notes)?;
-    Ok(Loaded {
-        clips,
-        warnings: notes.into_warnings(),
-    })
+        let hierarchy = hierarchy::parse(&mut cursor, encoding, limits, notes)?;
+        let header = match hierarchy.motion_follows {
+            true => Some(motion::header(&mut cursor, notes)?),
+            false => None,
+        };
+        Ok(Self {
+            hierarchy,
+            header,
+            end: cursor.pos,
+            line: cursor.line,
+        })
+    }
+
+    /// Whether so much of the table lies in `text` that the head surely ends where it seems to.
+    fn is_followed(&self, text: &[u8]) -> bool {
+        const SURE: usize = 4096;
+        self.header.is_some() && self.end + SURE <= text.len()
+    }
+
+    fn with_table(
+        self,
+        table: &mut dyn TableText,
+        name: &str,
+        options: &BvhOptions,
+        limits: &Limits,
+        mut notes: Notes,
+    ) -> Result<Loaded, ParseError> {
+        let mut characters: Vec<_> = (0..self.hierarchy.roots.len())
+            .map(|k| Character::new(&self.hierarchy, k))
+            .collect();
+        let motion = self.read_motion(table, &mut characters, options, limits, &mut notes);
+        let (stated_hz, lost) = motion?;
+        let rate_hz = match options.rate_hz {
+            Some(rate) if rate.is_finite() && rate > 0.0 => rate,
+            Some(rate) => {
+                return Err(ParseError::new(
+                    Place::File,
+                    "a positive rate in the options",
+                    rate.to_string(),
+                ));
+            }
+            None => stated_hz,
+        };
+        let clips = finish(characters, name, rate_hz, &lost, options, &mut notes)?;
+        Ok(Loaded {
+            clips,
+            warnings: notes.into_warnings(),
+        })
+    }
+
+    /// Reads the table into `characters`; returns the rate that the header states and the frames that were lost.
+    fn read_motion(
+        &self,
+        table: &mut dyn TableText,
+        characters: &mut [Character],
+        options: &BvhOptions,
+        limits: &Limits,
+        notes: &mut Notes,
+    ) -> Result<(f64, Vec<usize>), ParseError> {
+        let Some(header) = &self.header else {
+            notes.add(
+                Place::Line(self.line),
+                "no MOTION section: a skeleton without frames",
+            );
+            return Ok((rate::ASSUMED_HZ, Vec::new()));
+        };
+        let rate_hz = match options.rate_hz {
+            Some(rate) => rate,
+            None => rate::rate_hz(header.frame_time_secs, header.at, notes),
+        };
+        let width = self.hierarchy.channels.len();
+        if width == 0 {
+            notes.add(
+                header.at,
+                "no joint has a channel: a skeleton without frames",
+            );
+            return Ok((rate_hz, Vec::new()));
+        }
+        let request = motion::TableSpec {
+            declared: header.frames,
+            bad_line_share: options.bad_line_share,
+            first_line: self.line,
+            limits,
+        };
+        let lost = motion::table(table, width, characters, &request, notes)?;
+        motion::compare_counts(header, characters[0].frames + lost.len(), notes);
+        Ok((rate_hz, lost))
+    }
 }
 
 /// Strips a UTF-8 byte order mark; refuses UTF-16, of which every other byte is 0.
@@ -175,45 +298,6 @@ fn hierarchy_bytes(text: &[u8]) -> &[u8] {
         start += line.len();
     }
     &text[..start]
-}
-
-/// Reads the MOTION section into `characters`; returns the rate it states and the frames that were lost.
-fn read_motion(
-    mut cursor: Cursor<'_>,
-    hierarchy: &BvhHierarchy,
-    characters: &mut [Character],
-    options: &BvhOptions,
-    limits: &Limits,
-    notes: &mut Notes,
-) -> Result<(f64, Vec<usize>), ParseError> {
-    if !hierarchy.motion_follows {
-        notes.add(
-            cursor.place(),
-            "no MOTION section: a skeleton without frames",
-        );
-        return Ok((rate::ASSUMED_HZ, Vec::new()));
-    }
-    let header = motion::header(&mut cursor, notes)?;
-    let rate_hz = match options.rate_hz {
-        Some(rate) => rate,
-        None => rate::rate_hz(header.frame_time_secs, header.at, notes),
-    };
-    let width = hierarchy.channels.len();
-    if width == 0 {
-        notes.add(
-            header.at,
-            "no joint has a channel: a skeleton without frames",
-        );
-        return Ok((rate_hz, Vec::new()));
-    }
-    let request = motion::TableSpec {
-        declared: header.frames,
-        bad_line_share: options.bad_line_share,
-        limits,
-    };
-    let lost = motion::table(cursor, width, characters, &request, notes)?;
-    motion::compare_counts(&header, characters[0].frames + lost.len(), notes);
-    Ok((rate_hz, lost))
 }
 
 /// Repairs the characters, decides what their position channels mean and makes clips of them.
@@ -308,3 +392,6 @@ fn note_repairs(repaired: &[Span], rate_hz: f64, notes: &mut Notes) {
         ),
     );
 }
+
+#[cfg(test)]
+mod tests;

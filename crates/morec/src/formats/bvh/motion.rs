@@ -3,7 +3,8 @@
 use super::character::Character;
 use super::notes::Notes;
 use super::number;
-use super::rows::{MotionLine, MotionLines};
+use super::rows::{LinesSoFar, MotionLine, MotionLines};
+use super::source::TableText;
 use super::text::{Cursor, show};
 use crate::formats::{Limits, ParseError, Place};
 
@@ -99,26 +100,24 @@ fn value(cursor: &mut Cursor<'_>) -> Option<f64> {
     Some(value)
 }
 
-/// Joint rotations a file may ask for, for each of its bytes: ordinary files stay below a tenth, and without a
-/// limit a short file with many joints and one channel would fill the memory.
-const SAMPLES_PER_BYTE: usize = 64;
+/// Joint rotations a file may ask for, for each byte of its table: ordinary files stay below a tenth, and without a limit a
+/// short file with many joints and one channel would fill the memory.
+const SAMPLES_PER_BYTE: usize = 4;
+/// And so many, however short it is: props of a hundred joints, of which one moves.
+const FREE_SAMPLES: usize = 1 << 20;
 
 /// Reads the table into `characters`, `width` numbers a frame. Returns the frames that were lost, as frame numbers
 /// of the whole; the characters hold the others.
 pub(super) fn table(
-    cursor: Cursor<'_>,
+    text: &mut dyn TableText,
     width: usize,
     characters: &mut [Character],
     request: &TableSpec<'_>,
     notes: &mut Notes,
 ) -> Result<Vec<usize>, ParseError> {
-    let joints = characters
-        .iter()
-        .map(|c| c.joints.len())
-        .sum::<usize>()
-        .max(1);
-    let by_size = ((1 << 20) + cursor.text.len().saturating_mul(SAMPLES_PER_BYTE)) / joints;
-    let max_frames = request.limits.frames.min(by_size);
+    let joints = characters.iter().map(|c| c.joints.len()).sum::<usize>();
+    let samples = FREE_SAMPLES + text.bytes().saturating_mul(SAMPLES_PER_BYTE);
+    let max_frames = request.limits.frames.min(samples / joints.max(1));
     let table = MotionTable {
         width,
         max_frames,
@@ -127,21 +126,41 @@ pub(super) fn table(
     };
     let MotionTable {
         characters, tally, ..
-    } = table.by_line(MotionLines::new(cursor.clone(), notes), notes)?;
+    } = table.by_line(text, request, notes)?;
     if tally.flows(width, request.declared) {
         characters.iter_mut().for_each(Character::clear);
-        let text = "the frames are not one to a line; the numbers are read as one stream, as their count fits";
-        notes.add(Place::Line(tally.first_line), text);
+        let words = "the frames are not one to a line; the numbers are read as one stream, as their count fits";
+        notes.add(Place::Line(tally.first_line), words);
         let table = MotionTable {
             width,
             max_frames,
             characters,
             tally: RepairCounts::default(),
         };
-        table.by_stream(MotionLines::new(cursor, &mut Notes::default()), notes)?;
+        text.rewind()?;
+        table.by_stream(text, request, notes)?;
         return Ok(Vec::new());
     }
     tally.judge(width, request, notes)
+}
+
+/// Gives every row of the table to `take`: its numbers, its line, what it is.
+fn each_row(
+    text: &mut dyn TableText,
+    request: &TableSpec<'_>,
+    notes: &mut Notes,
+    mut take: impl FnMut(&mut Vec<f64>, u64, MotionLine, &mut Notes) -> Result<(), ParseError>,
+) -> Result<(), ParseError> {
+    let mut so_far = LinesSoFar::new(request.first_line);
+    let mut values = Vec::new();
+    while let Some(piece) = text.next()? {
+        let mut rows = MotionLines::new(piece, request.limits.line_bytes, so_far, notes);
+        while let Some((line, row)) = rows.next(&mut values, notes)? {
+            take(&mut values, line, row, notes)?;
+        }
+        so_far = rows.so_far();
+    }
+    Ok(())
 }
 
 /// What the file and the caller say about the table.
@@ -150,6 +169,8 @@ pub(super) struct TableSpec<'a> {
     pub declared: Option<u64>,
     /// Share of bad lines above which the table is refused.
     pub bad_line_share: f64,
+    /// Line on which the table begins.
+    pub first_line: u64,
     pub limits: &'a Limits,
 }
 
@@ -175,15 +196,19 @@ impl MotionTable<'_> {
     }
 
     /// One frame a line; lines that are none are counted and remembered.
-    fn by_line(mut self, mut rows: MotionLines<'_>, notes: &mut Notes) -> Result<Self, ParseError> {
-        let mut values = Vec::with_capacity(self.width);
-        while let Some((line, row)) = rows.next(&mut values, notes)? {
+    fn by_line(
+        mut self,
+        text: &mut dyn TableText,
+        request: &TableSpec<'_>,
+        notes: &mut Notes,
+    ) -> Result<Self, ParseError> {
+        each_row(text, request, notes, |values, line, row, notes| {
             self.tally.numbers += values.len() as u64;
             match row {
                 MotionLine::Numbers if values.len() == self.width => {
-                    self.push(&values, line)?;
+                    self.push(values, line)?;
                     self.tally.good(line);
-                    note_missing(&values, line, notes);
+                    note_missing(values, line, notes);
                 }
                 MotionLine::Numbers => self.tally.bad(line, values.len() < self.width, || {
                     format!("{} values", values.len())
@@ -193,23 +218,34 @@ impl MotionTable<'_> {
                     self.tally.bad(line, true, || token);
                 }
             }
-        }
+            Ok(())
+        })?;
         Ok(self)
     }
 
-    /// A frame every `width` numbers, whatever the lines.
-    fn by_stream(mut self, mut rows: MotionLines<'_>, notes: &mut Notes) -> Result<(), ParseError> {
-        let (mut values, mut pending) = (Vec::new(), Vec::new());
-        while let Some((line, _)) = rows.next(&mut values, &mut Notes::default())? {
-            note_missing(&values, line, notes);
-            pending.append(&mut values);
-            let whole = pending.len() / self.width * self.width;
-            for row in pending[..whole].chunks_exact(self.width) {
-                self.push(row, line)?;
-            }
-            pending.drain(..whole);
-        }
-        Ok(())
+    /// A frame every `width` numbers, whatever the lines. What is wrong with lines was noted before.
+    fn by_stream(
+        mut self,
+        text: &mut dyn TableText,
+        request: &TableSpec<'_>,
+        notes: &mut Notes,
+    ) -> Result<(), ParseError> {
+        let mut pending = Vec::new();
+        each_row(
+            text,
+            request,
+            &mut Notes::default(),
+            |values, line, _, _| {
+                note_missing(values, line, notes);
+                pending.append(values);
+                let whole = pending.len() / self.width * self.width;
+                for row in pending[..whole].chunks_exact(self.width) {
+                    self.push(row, line)?;
+                }
+                pending.drain(..whole);
+                Ok(())
+            },
+        )
     }
 }
 

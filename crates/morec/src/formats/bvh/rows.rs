@@ -14,23 +14,45 @@ pub(super) enum MotionLine {
     Spoilt(String),
 }
 
-/// Reads the motion table line by line, skipping what is blank, a comment or foreign text.
+/// Reads lines of the motion table, skipping what is blank, a comment or foreign text.
 pub(super) struct MotionLines<'t> {
     cursor: Cursor<'t>,
-    decimal_comma: bool,
+    /// `None`: no line with numbers has been seen.
+    decimal_comma: Option<bool>,
+}
+
+/// What the lines of a table before others have shown.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct LinesSoFar {
+    line: u64,
+    decimal_comma: Option<bool>,
+}
+
+impl LinesSoFar {
+    /// Nothing; the table begins on `line`.
+    pub fn new(line: u64) -> Self {
+        Self {
+            line,
+            decimal_comma: None,
+        }
+    }
 }
 
 impl<'t> MotionLines<'t> {
-    /// Starts at `cursor`. Commas are decimal points if the first line with numbers has them and no points.
-    pub fn new(cursor: Cursor<'t>, notes: &mut Notes) -> Self {
+    /// The lines of `text`. Commas are decimal points if the table's first line with numbers has them and no points.
+    pub fn new(text: &'t [u8], line_limit: usize, so_far: LinesSoFar, notes: &mut Notes) -> Self {
+        let mut cursor = Cursor::new(text, line_limit);
+        cursor.line = so_far.line;
         let mut first = cursor.clone();
-        let line = if first.skip_space().is_ok() {
-            first.rest_of_line()
-        } else {
-            &[]
+        let line = match so_far.decimal_comma.is_none() && first.skip_space().is_ok() {
+            true => first.rest_of_line(),
+            false => &[],
         };
-        let decimal_comma = has_decimal_commas(line);
-        if decimal_comma {
+        let decimal_comma = match line {
+            [] => so_far.decimal_comma,
+            line => Some(has_decimal_commas(line)),
+        };
+        if so_far.decimal_comma.is_none() && decimal_comma == Some(true) {
             let text = || {
                 format!(
                     "decimal commas read as points, as in {}",
@@ -42,6 +64,14 @@ impl<'t> MotionLines<'t> {
         Self {
             cursor,
             decimal_comma,
+        }
+    }
+
+    /// For the lines that follow.
+    pub fn so_far(&self) -> LinesSoFar {
+        LinesSoFar {
+            line: self.cursor.line,
+            decimal_comma: self.decimal_comma,
         }
     }
 
@@ -106,7 +136,9 @@ impl<'t> MotionLines<'t> {
             values.push(value);
             return Some(());
         }
-        if let Some(value) = number::parse_with_comma(token).filter(|_| self.decimal_comma) {
+        if let Some(value) =
+            number::parse_with_comma(token).filter(|_| self.decimal_comma == Some(true))
+        {
             values.push(value);
             return Some(());
         }

@@ -34,8 +34,11 @@ pub const VERSION: u16 = 2;
 const ROTATIONS: u16 = 1;
 
 const HEADER: usize = 20;
-/// No writer makes more curves than eight for a byte: what takes less than a bit is made up.
-const CURVES_A_BYTE: usize = 8;
+/// A file has at most so many curves for each byte: what takes less than four bits is made up, and a curve takes two hundred
+/// bytes of memory.
+const CURVES_A_BYTE: usize = 2;
+/// And so many, however short it is.
+const FREE_CURVES: usize = 1 << 14;
 
 impl CompressedClip {
     /// The stored form. O(control points).
@@ -49,7 +52,12 @@ impl CompressedClip {
         }
         let curves: usize = self.curves().map(|curve| curve.pieces.len()).sum();
         let mut motion = self.motion();
-        motion.resize(motion.len().max(curves.div_ceil(CURVES_A_BYTE)), 0);
+        motion.resize(
+            motion
+                .len()
+                .max(curves.saturating_sub(FREE_CURVES).div_ceil(CURVES_A_BYTE)),
+            0,
+        );
         let mut body = words.bytes;
         body.append(&mut motion);
         let mut bytes = Vec::with_capacity(HEADER + body.len());
@@ -142,7 +150,7 @@ impl CompressedClip {
             ParseError::new(Place::Byte(at as u64), "the curves of all channels", found)
         };
         let (mut reader, mut motion) = (Reader::new(fields.rest()), MotionCoder::default());
-        let mut most = fields.rest().len() * CURVES_A_BYTE;
+        let mut most = FREE_CURVES + fields.rest().len() * CURVES_A_BYTE;
         let nothing = Stored {
             lattice: NO_STEPS,
             first: [0; 3],

@@ -1,0 +1,84 @@
+//! The motion of clips, each in a file of its own.
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use anyhow::{Context, Result, bail};
+use morec::formats::bvh;
+use morec_db::{ClipFilter, ClipInfo, MotionDb, exchange};
+
+use super::{Args, said};
+use crate::commands::convert::{ClipForm, CsvContent, write_take};
+use crate::progress::SlowProgress;
+
+/// Writes the clips whose names match `pattern`: one as the file that `args` name, several into it as a folder.
+pub(super) fn export(args: &Args, db: &MotionDb, pattern: &str) -> Result<ExitCode> {
+    let clips = match pattern.contains(['*', '?']) {
+        true => db.find_clips(&ClipFilter {
+            name: Some(pattern.to_owned()),
+            ..ClipFilter::default()
+        })?,
+        false => vec![db.find_clip(pattern)?],
+    };
+    let form = args.form.map(|form| form.of_motion()).transpose()?;
+    let (frames, files) = match clips.as_slice() {
+        [] => bail!("--motion {pattern}: there is no such clip"),
+        [clip] if !args.output.is_dir() => (one(args, db, clip, form)?, 1),
+        several => (folder(args, db, several, form)?, several.len()),
+    };
+    said(args, files, frames, "frames")
+}
+
+fn one(args: &Args, db: &MotionDb, clip: &ClipInfo, form: Option<ClipForm>) -> Result<usize> {
+    let output = &args.output;
+    let shown = || output.display().to_string();
+    let to_stdout = output == Path::new("-");
+    let form = match form {
+        Some(form) => form,
+        None if to_stdout => ClipForm::Bvh,
+        None => ClipForm::of(output).with_context(shown)?,
+    };
+    if args.table != CsvContent::Positions && form != ClipForm::Csv {
+        bail!("--table says what a .csv holds, and the output is none");
+    }
+    let take = db.clip(clip.id)?.into_take()?;
+    if to_stdout {
+        if form != ClipForm::Bvh {
+            bail!("standard output takes motion as BVH; give a file for other forms");
+        }
+        let mut text = Vec::new();
+        bvh::write(&take.clip, &mut text)?;
+        super::super::print(String::from_utf8_lossy(&text))?;
+    } else {
+        write_take(&take, form, args.table.into(), output).with_context(shown)?;
+    }
+    Ok(take.clip.frames)
+}
+
+fn folder(args: &Args, db: &MotionDb, clips: &[ClipInfo], form: Option<ClipForm>) -> Result<usize> {
+    let folder = &args.output;
+    if folder == Path::new("-") || folder.is_file() {
+        bail!(
+            "{}: {} clips are written into a folder, and this is none",
+            folder.display(),
+            clips.len()
+        );
+    }
+    let form = form.unwrap_or(ClipForm::Bvh);
+    if args.table != CsvContent::Positions && form != ClipForm::Csv {
+        bail!("--table says what a .csv holds; add --form csv");
+    }
+    std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
+    let names = exchange::file_names(clips.iter().map(|clip| clip.name.as_str()));
+    let mut progress = SlowProgress::new(clips.len(), "writing clips");
+    let mut frames = 0;
+    for (clip, name) in clips.iter().zip(&names) {
+        let take = db.clip(clip.id)?.into_take()?;
+        let path = folder.join(format!("{name}.{}", form.ending()));
+        write_take(&take, form, args.table.into(), &path)
+            .with_context(|| path.display().to_string())?;
+        frames += take.clip.frames;
+        progress.step();
+    }
+    Ok(frames)
+}

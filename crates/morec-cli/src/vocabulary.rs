@@ -1,0 +1,187 @@
+//! An option means the same in every command.
+
+use std::collections::BTreeMap;
+
+use clap::{ArgAction, Command, CommandFactory};
+
+/// Options that take something else from one command to another, and why they are called alike all the same.
+const EXCEPTIONS: [(&str, &str); 8] = [
+    (
+        "by",
+        "`crossval` leaves out by clip or person, `db label` says who judges",
+    ),
+    (
+        "mirror",
+        "training says which classes, streams and searches only whether",
+    ),
+    (
+        "output",
+        "its name says what is written: a file, an index, a page, a folder",
+    ),
+    (
+        "plot",
+        "`smooth` draws one of many channels, and is told which",
+    ),
+    (
+        "remove",
+        "of clips that were chosen, of samples by number, of an index by name",
+    ),
+    (
+        "samples",
+        "`crossval` counts them, `db classes` lists those of a class",
+    ),
+    (
+        "skeleton",
+        "AMC motions have an ASF, broadcasts of Axis a BVH",
+    ),
+    (
+        "split",
+        "`db cycles` splits what it found, `db classes` what is numbered",
+    ),
+];
+
+/// What the help of an option begins with wherever there is one.
+const MEANINGS: [(&str, &[&str]); 9] = [
+    ("json", &["Print one JSON array", "Print one JSON object"]),
+    ("limit", &["At most so many", "List at most so many"]),
+    ("report", &["Write a page "]),
+    (
+        "clip",
+        &[
+            "Clips of ",
+            "Samples of this clip",
+            "Labels of this clip",
+            "The clip that ",
+        ],
+    ),
+    (
+        "labels",
+        &[
+            "Labels, in a form that `morec db label` reads",
+            "Labels of clips in files, in a form that `morec db label` reads",
+        ],
+    ),
+    (
+        "output",
+        &[
+            "Where ",
+            "The file to write",
+            "What to write",
+            "Folder for ",
+        ],
+    ),
+    ("roles", &["Roles "]),
+    (
+        "class",
+        &[
+            "Clips that hold a sample of this class",
+            "Labelled stretches of this class only",
+            "Set one sample of this class",
+            "Samples of this class",
+            "Labels of this class only",
+        ],
+    ),
+    (
+        "subject",
+        &["Who is seen", "Clips in which this person is seen"],
+    ),
+];
+
+/// An option of a command: what it takes, and what its help says.
+struct OptionUse {
+    command: String,
+    takes: String,
+    short: Option<char>,
+    help: String,
+}
+
+fn collect(command: &Command, path: &str, all: &mut BTreeMap<String, Vec<OptionUse>>) {
+    for arg in command.get_arguments() {
+        let Some(long) = arg.get_long().filter(|_| !arg.is_hide_set()) else {
+            continue;
+        };
+        let takes = match arg.get_action() {
+            ArgAction::Set | ArgAction::Append => {
+                let names = arg.get_value_names().unwrap_or_default();
+                let names: Vec<&str> = names.iter().map(|name| name.as_str()).collect();
+                names.join(" ")
+            }
+            _ => String::new(),
+        };
+        all.entry(long.to_owned()).or_default().push(OptionUse {
+            command: path.to_owned(),
+            takes,
+            short: arg.get_short(),
+            help: arg.get_help().map(ToString::to_string).unwrap_or_default(),
+        });
+    }
+    for below in command.get_subcommands() {
+        collect(below, &format!("{path} {}", below.get_name()), all);
+    }
+}
+
+fn options() -> BTreeMap<String, Vec<OptionUse>> {
+    let mut all = BTreeMap::new();
+    collect(&super::Cli::command(), "morec", &mut all);
+    assert!(all.len() > 100, "{} options", all.len());
+    all
+}
+
+#[test]
+fn an_option_takes_the_same_everywhere() {
+    for (long, uses) in options() {
+        let differs = |other: &&OptionUse| {
+            let first = &uses[0];
+            (&other.takes, other.short) != (&first.takes, first.short)
+        };
+        let odd = uses.iter().find(differs);
+        let excepted = EXCEPTIONS.iter().any(|(known, _)| *known == long);
+        match odd {
+            Some(odd) => assert!(
+                excepted,
+                "--{long} takes {:?} in {} and {:?} in {}",
+                uses[0].takes, uses[0].command, odd.takes, odd.command
+            ),
+            None => assert!(!excepted, "--{long} is no exception any more"),
+        }
+    }
+}
+
+#[test]
+fn an_option_means_the_same_everywhere() {
+    let all = options();
+    for (long, beginnings) in MEANINGS {
+        for one in &all[long] {
+            assert!(
+                beginnings.iter().any(|begins| one.help.starts_with(begins)),
+                "{} --{long}: {}",
+                one.command,
+                one.help
+            );
+        }
+    }
+}
+
+/// Lines of help fit a terminal of 80 columns, whatever is said in them.
+#[test]
+fn help_fits_eighty_columns() {
+    fn check(command: &mut Command, path: &str) {
+        let help = command.render_long_help().to_string();
+        // What is typed as a whole is not broken.
+        for line in help.lines().filter(|line| !line.starts_with("Usage:")) {
+            assert!(line.chars().count() <= 80, "{path}: {line}");
+        }
+        let examples = command.get_after_help().map(ToString::to_string);
+        for line in examples.unwrap_or_default().lines() {
+            let is_example = line.starts_with("  morec ");
+            assert!(!is_example || line.chars().count() <= 80, "{path}: {line}");
+        }
+        for below in command.get_subcommands_mut() {
+            let path = format!("{path} {}", below.get_name());
+            check(below, &path);
+        }
+    }
+    let mut command = super::Cli::command().term_width(80);
+    command.build();
+    check(&mut command, "morec");
+}

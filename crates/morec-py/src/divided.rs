@@ -1,0 +1,85 @@
+//! Recognition with an index that is divided by classes among workers.
+
+use std::sync::Arc;
+
+use morec::index::{Model, MotionIndex};
+use morec::live::{match_clip, recognize_matched};
+use morec::templates::{ClassMatches, TemplateModel};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+use rayon::prelude::*;
+
+use crate::archive::{EventTuple, MotionColumns, events, stored_motion};
+use crate::index::PyIndex;
+
+fn templates(index: &MotionIndex) -> PyResult<&TemplateModel> {
+    match &index.model {
+        Model::Templates(model) => Ok(model),
+        Model::Svrdm(_) => Err(PyValueError::new_err(
+            "an index of the method svrdm cannot be divided: its tree needs all classes",
+        )),
+    }
+}
+
+/// Part `part` of `of` of an index: the templates of every `of`-th class.
+pub fn part_of(index: &MotionIndex, part: usize, of: usize) -> PyResult<MotionIndex> {
+    if part >= of {
+        let message = format!("part: expected a number below {of}, found {part}");
+        return Err(PyValueError::new_err(message));
+    }
+    Ok(MotionIndex {
+        model: Model::Templates(Arc::new(templates(index)?.part(part, of))),
+        ..index.clone()
+    })
+}
+
+/// What a part of an index matches in kept clips, in parallel: for each the bytes of its matches, or why there are none.
+#[pyfunction]
+pub fn match_kept<'py>(
+    py: Python<'py>,
+    part: &PyIndex,
+    clips: Vec<MotionColumns>,
+) -> PyResult<Vec<Bound<'py, PyAny>>> {
+    let index = &part.index;
+    let model = templates(index)?;
+    let one = |clip: &MotionColumns| {
+        let stored = stored_motion(index, clip)?;
+        let matches = match_clip(model, &stored.clip, &stored.roles, &stored.rest);
+        Ok(matches.map_err(|error| error.to_string())?.to_bytes())
+    };
+    let found: Vec<Result<Vec<u8>, String>> = py.detach(|| clips.par_iter().map(one).collect());
+    let told = |found: Result<Vec<u8>, String>| match found {
+        Ok(bytes) => Ok(PyBytes::new(py, &bytes).into_any()),
+        Err(error) => Ok(error.into_pyobject(py)?.into_any()),
+    };
+    found.into_iter().map(told).collect()
+}
+
+/// What an index recognises in kept clips, decided between the matches of all its parts; `first` is the first part. For
+/// each the class, start, stop, score and report of its motions, or why there is nothing to recognise.
+#[pyfunction]
+pub fn recognize_matched_kept<'py>(
+    py: Python<'py>,
+    first: &PyIndex,
+    clips: Vec<(MotionColumns, Vec<Vec<u8>>)>,
+) -> PyResult<Vec<Bound<'py, PyAny>>> {
+    let index = &first.index;
+    let model = templates(index)?;
+    let one = |(clip, matches): &(MotionColumns, Vec<Vec<u8>>)| {
+        let parts = matches.iter().map(|bytes| ClassMatches::from_bytes(bytes));
+        let parts = parts.collect::<Result<Vec<_>, _>>();
+        let merged = parts.and_then(ClassMatches::merge);
+        let merged = merged.map_err(|error| error.to_string())?;
+        let stored = stored_motion(index, clip)?;
+        let found = recognize_matched(model, merged, &stored.clip, &stored.roles, &stored.rest);
+        Ok(events(index, found.map_err(|error| error.to_string())?))
+    };
+    let found: Vec<Result<Vec<EventTuple>, String>> =
+        py.detach(|| clips.par_iter().map(one).collect());
+    let told = |found: Result<Vec<EventTuple>, String>| match found {
+        Ok(events) => Ok(events.into_pyobject(py)?.into_any()),
+        Err(error) => Ok(error.into_pyobject(py)?.into_any()),
+    };
+    found.into_iter().map(told).collect()
+}

@@ -1,0 +1,115 @@
+//! Feature rows of the same motion at another speed.
+
+use super::bones::BoneSet;
+use super::params::FeatureParams;
+use super::rows::Rows;
+
+/// Velocities nearer to saturation than this say no more about their size.
+const MOST_SATURATED: f64 = 0.98;
+
+/// What `rows` over `bones` would be if the motion took `factor` times as long: resampled linearly, velocities divided by the
+/// factor. O(values).
+pub fn retimed_rows(rows: &Rows, bones: BoneSet, params: &FeatureParams, factor: f64) -> Rows {
+    let len = ((rows.len() as f64 * factor).round() as usize).max(2);
+    let mut out = Rows::new(rows.dim());
+    if rows.is_empty() {
+        return out;
+    }
+    let (velocities, root) = (3 * bones.len(), 6 * bones.len());
+    let mut row = vec![0f32; rows.dim()];
+    for i in 0..len {
+        let at = i as f64 * (rows.len() - 1) as f64 / (len - 1) as f64;
+        let before = (at as usize).min(rows.len().saturating_sub(2));
+        let after = (before + 1).min(rows.len() - 1);
+        let share = (at - before as f64) as f32;
+        for ((out, a), b) in row.iter_mut().zip(rows.row(before)).zip(rows.row(after)) {
+            *out = a * (1.0 - share) + b * share;
+        }
+        for velocity in row[velocities..root].chunks_exact_mut(3) {
+            slow_down(velocity, params, factor);
+        }
+        for value in &mut row[root..] {
+            *value /= factor as f32;
+        }
+        out.push(&row);
+    }
+    out
+}
+
+/// Divides a weighted, saturated velocity by `factor` before its saturation.
+fn slow_down(velocity: &mut [f32], params: &FeatureParams, factor: f64) {
+    let plain = |v: &f32| f64::from(*v) / params.velocity_weight;
+    let size = velocity
+        .iter()
+        .map(|v| plain(v).powi(2))
+        .sum::<f64>()
+        .sqrt();
+    let share = (size / params.velocity_saturation).min(MOST_SATURATED);
+    // v / (1 + |v| / s) has the length s · share: |v| = s · share / (1 − share).
+    let slower = params.velocity_saturation * share / (1.0 - share) / factor;
+    let saturated = slower / (1.0 + slower / params.velocity_saturation);
+    let scale = if size > 0.0 { saturated / size } else { 1.0 };
+    velocity.iter_mut().for_each(|v| *v *= scale as f32);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::features::{FeatureStream, KeyPose, for_each_pose};
+    use crate::roles::RoleMap;
+    use crate::synth::{Person, Script};
+
+    fn rows(poses: &[(f64, KeyPose)], duration: f64) -> Rows {
+        let mut stream = FeatureStream::new(BoneSet::ALL, &FeatureParams::default());
+        let mut rows = Rows::new(stream.dim());
+        for (t, pose) in poses {
+            stream.push(t * duration, pose, &mut |row| rows.push(row));
+        }
+        stream.finish(&mut |row| rows.push(row));
+        rows
+    }
+
+    /// Mean squared difference over some columns.
+    fn difference(a: &Rows, b: &Rows, columns: std::ops::Range<usize>) -> f64 {
+        let len = a.len().min(b.len());
+        let squares = (0..len).flat_map(|i| {
+            let (a, b) = (&a.row(i)[columns.clone()], &b.row(i)[columns.clone()]);
+            a.iter()
+                .zip(b)
+                .map(|(a, b)| f64::from(a - b).powi(2))
+                .collect::<Vec<_>>()
+        });
+        squares.sum::<f64>() / (len * columns.len()) as f64
+    }
+
+    #[test]
+    fn retimed_rows_are_the_rows_of_a_faster_performer() {
+        let person = Person::draw(1, 0);
+        let script = Script::new(1, person).play("walk").play("wave");
+        let take = script.film("m", 60.0).unwrap();
+        let roles = RoleMap::find(&take.clip.skeleton);
+        let mut poses = Vec::new();
+        for_each_pose(&take.clip, &roles, &(0..0), |t, pose| {
+            poses.push((t, *pose))
+        });
+        let (usual, fast) = (rows(&poses, 1.0), rows(&poses, 0.7));
+        let params = FeatureParams::default();
+        let retimed = retimed_rows(&usual, BoneSet::ALL, &params, 0.7);
+        assert!(retimed.len().abs_diff(fast.len()) <= 1);
+        // The same poses at the same velocities: without dividing by the factor velocities are far off.
+        let velocities = 3 * BoneSet::ALL.len()..6 * BoneSet::ALL.len();
+        let slow = FeatureParams {
+            velocity_saturation: 1e9,
+            ..params
+        };
+        let resampled = retimed_rows(&usual, BoneSet::ALL, &slow, 0.7);
+        let zero = Rows::from_values(fast.dim(), vec![0.0; fast.values().len()]);
+        let size = difference(&fast, &zero, velocities.clone());
+        let error = difference(&fast, &retimed, velocities.clone());
+        assert!(error < 0.1 * size, "{error} of {size}");
+        assert!(error < difference(&fast, &resampled, velocities.clone()));
+        let directions = 0..velocities.start;
+        let error = difference(&fast, &retimed, directions);
+        assert!(error < 0.01, "{error}");
+    }
+}

@@ -1,0 +1,142 @@
+//! Recognition with an index whose classes lie on several machines.
+//!
+//! Matching the templates is nearly all of the work and of the memory, and the templates of one class know nothing of
+//! another's. So each machine matches some classes ([`PartMatcher`] with a [part](TemplateModel::part) of the model), and one
+//! decides between what all have found ([`Recognizer::replay`]). The detections are those of the whole index, to the bit.
+
+use crate::clip::{Clip, Span};
+use crate::features::{BoneSet, FeatureStream, KeyPose, bones_of_clip, for_each_pose};
+use crate::roles::RoleMap;
+use crate::templates::{ClassMatcher, ClassMatches, Metric, TemplateModel, reach_of};
+
+use super::of_clip::recognize_with;
+use super::{Detection, Model, Recognizer, StartError};
+
+impl TemplateModel {
+    /// Part `part` of `of`: the templates of every `of`-th class, and as large a share of the negatives. Everything else is
+    /// the whole model's; only the first part holds what its verifier has learned of single classes.
+    ///
+    /// # Panics
+    /// `part` is not below `of`.
+    pub fn part(&self, part: usize, of: usize) -> Self {
+        assert!(part < of, "part {part} of {of}");
+        let mut model = self.clone();
+        model.samples.retain(|s| s.class.index() % of == part);
+        let negatives = self.negatives.iter().enumerate();
+        let mine = negatives.filter(|(i, _)| i % of == part);
+        model.negatives = mine.map(|(_, rows)| rows.clone()).collect();
+        if part > 0
+            && let Some(verifier) = &mut model.verifier
+        {
+            verifier.classes.clear();
+        }
+        model
+    }
+}
+
+/// Matches the templates of a [part](TemplateModel::part) against one performer's stream.
+#[derive(Debug, Clone)]
+pub struct PartMatcher {
+    features: FeatureStream,
+    steps: MatchSteps,
+}
+
+/// What is done with each row.
+#[derive(Debug, Clone)]
+struct MatchSteps {
+    metric: Metric,
+    matcher: ClassMatcher,
+    matches: ClassMatches,
+    /// Distances from here on do not count.
+    reach: f32,
+    mapped: Vec<f32>,
+}
+
+impl MatchSteps {
+    fn take(&mut self, row: &[f32]) {
+        self.metric.apply(row, &mut self.mapped);
+        self.matcher.step(&self.mapped);
+        let (near, negative) = (self.matcher.near(), self.matcher.negative());
+        self.matches.push(near, negative, self.reach);
+    }
+}
+
+impl PartMatcher {
+    /// For a stream that offers `bones`.
+    ///
+    /// # Errors
+    /// The model uses none of these bones.
+    pub fn new(part: &TemplateModel, bones: BoneSet) -> Result<Self, StartError> {
+        let part = part.restricted(bones)?;
+        part.check()?;
+        let metric = Metric::new(&part.ridged, &part.total);
+        Ok(Self {
+            features: FeatureStream::new(part.bones, &part.features),
+            steps: MatchSteps {
+                matcher: ClassMatcher::new(&part, &metric),
+                matches: ClassMatches::new(part.longest()),
+                reach: reach_of(&part),
+                mapped: vec![0.0; metric.dim()],
+                metric,
+            },
+        })
+    }
+
+    /// Takes the pose at `time_secs`, as [`Recognizer::push`] does.
+    pub fn push(&mut self, time_secs: f64, pose: &KeyPose) {
+        if self.features.breaks_at(time_secs) {
+            self.features.finish(&mut |row| self.steps.take(row));
+            self.steps.matcher.reset();
+        }
+        let steps = &mut self.steps;
+        self.features
+            .push(time_secs, pose, &mut |row| steps.take(row));
+    }
+
+    /// Ends the stream: what it matched.
+    pub fn finish(mut self) -> ClassMatches {
+        self.features.finish(&mut |row| self.steps.take(row));
+        self.steps.matches
+    }
+}
+
+/// What a [part](TemplateModel::part) matches in a clip. `rest` are the frames that a conversion left at the start, as in
+/// [`recognize_clip`](super::recognize_clip).
+///
+/// # Errors
+/// The clip shows none of the model's bones.
+pub fn match_clip(
+    part: &TemplateModel,
+    clip: &Clip,
+    roles: &RoleMap,
+    rest: &Span,
+) -> Result<ClassMatches, StartError> {
+    let mut matcher = PartMatcher::new(part, bones_of_clip(clip, roles, rest))?;
+    for_each_pose(clip, roles, rest, |time_secs, pose| {
+        matcher.push(time_secs, pose);
+    });
+    Ok(matcher.finish())
+}
+
+/// What the whole index reports of a clip whose matches with all its parts are `matches`
+/// ([merged](ClassMatches::merge)); `first` is the first part.
+///
+/// # Errors
+/// The clip shows none of the model's bones.
+pub fn recognize_matched(
+    first: &TemplateModel,
+    matches: ClassMatches,
+    clip: &Clip,
+    roles: &RoleMap,
+    rest: &Span,
+) -> Result<Vec<Detection>, StartError> {
+    let model = Model::Templates(std::sync::Arc::new(first.clone()));
+    let bones = bones_of_clip(clip, roles, rest);
+    recognize_with(
+        Recognizer::replay(first, bones, matches)?,
+        &model,
+        clip,
+        roles,
+        rest,
+    )
+}

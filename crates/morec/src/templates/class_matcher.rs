@@ -1,0 +1,144 @@
+//! The nearest match of every class, tick by tick.
+
+use std::sync::Arc;
+
+use crate::classes::ClassId;
+use crate::decode::{ClassDistance, FAR};
+use crate::features::Rows;
+
+use super::early::{EarlyDetectionParams, OngoingMatch};
+use super::{Matcher, Metric, Stretches, TemplateModel};
+
+/// Templates and negatives of a model, matched against a stream of mapped rows.
+#[derive(Debug, Clone)]
+pub struct ClassMatcher {
+    matcher: Matcher,
+    negatives: Matcher,
+    /// Of the mapped rows.
+    stretches: Stretches,
+    template_classes: Arc<[ClassId]>,
+    /// Matches count below this share of a motionless body's distance.
+    rest_share: f32,
+    near: Vec<ClassDistance>,
+    negative: f32,
+}
+
+impl ClassMatcher {
+    /// Lays the templates of `model` out for streaming, mapped by `metric`.
+    pub fn new(model: &TemplateModel, metric: &Metric) -> Self {
+        let map = |rows: &Rows| metric.apply_all(rows);
+        let templates: Vec<Rows> = model.samples.iter().map(|s| map(&s.rows)).collect();
+        let negatives: Vec<Rows> = model.negatives.iter().map(map).collect();
+        let (dim, exponent) = (metric.dim(), model.decode.spread_exponent);
+        let matcher = Matcher::new(&templates, dim, exponent);
+        let negatives = Matcher::new(&negatives, dim, exponent);
+        let longest_match = matcher.longest_match().max(negatives.longest_match());
+        Self {
+            stretches: Stretches::new(dim, longest_match),
+            matcher,
+            negatives,
+            template_classes: model.samples.iter().map(|s| s.class).collect(),
+            rest_share: model.decode.rest_share(model.rule()),
+            near: vec![ClassDistance::NONE; model.classes.len()],
+            negative: FAR,
+        }
+    }
+
+    /// Forgets the stream so far.
+    pub fn reset(&mut self) {
+        self.matcher.reset();
+        self.negatives.reset();
+        self.stretches.reset();
+    }
+
+    /// Takes the next tick's row, mapped. O(template rows · d), no allocation.
+    pub fn step(&mut self, mapped: &[f32]) {
+        self.matcher.step(mapped);
+        self.negatives.step(mapped);
+        self.stretches.push(mapped);
+        self.match_classes();
+        self.negative = FAR;
+        for i in 0..self.negatives.bank().len() {
+            let nearer = self
+                .negatives
+                .nearer(i, self.negative, 0.0, &mut self.stretches);
+            if let Some(found) = nearer {
+                self.negative = found.distance;
+            }
+        }
+    }
+
+    fn match_classes(&mut self) {
+        self.near.fill(ClassDistance::NONE);
+        for (template, class) in self.template_classes.iter().enumerate() {
+            let best = &mut self.near[class.index()];
+            let nearer = self.matcher.nearer(
+                template,
+                best.distance,
+                self.rest_share,
+                &mut self.stretches,
+            );
+            if let Some(found) = nearer {
+                *best = ClassDistance {
+                    distance: found.distance,
+                    age: found.age,
+                    spread: found.spread,
+                };
+            }
+        }
+    }
+
+    /// The nearest match of each class at the last tick that is no body at rest.
+    pub fn near(&self) -> &[ClassDistance] {
+        &self.near
+    }
+
+    /// Distance of the nearest negative at the last tick; [`FAR`] if nothing matches.
+    pub fn negative(&self) -> f32 {
+        self.negative
+    }
+
+    /// The class whose beginning is nearest at the last tick, if one is near enough by `params` under this threshold.
+    /// O(template rows), no allocation; changes nothing.
+    pub fn underway(&self, params: &EarlyDetectionParams, threshold: f32) -> Option<OngoingMatch> {
+        let (mut best, mut other) = (None::<OngoingMatch>, FAR);
+        for (template, class) in self.template_classes.iter().enumerate() {
+            let length = self.matcher.bank().template_len(template);
+            let Some(found) = self.matcher.partial(template, params.least_rows(length)) else {
+                continue;
+            };
+            let progress = found.rows as f32 / length as f32;
+            let new = OngoingMatch {
+                class: *class,
+                distance: found.distance,
+                age: found.age,
+                progress,
+            };
+            match best {
+                Some(old) if found.distance >= old.distance => {
+                    if old.class != *class {
+                        other = other.min(found.distance);
+                    }
+                }
+                old => {
+                    if let Some(old) = old.filter(|old| old.class != *class) {
+                        other = other.min(old.distance);
+                    }
+                    best = Some(new);
+                }
+            }
+        }
+        let bank = self.negatives.bank();
+        let negatives = (0..bank.len()).filter_map(|i| {
+            let least = params.least_rows(bank.template_len(i));
+            self.negatives.partial(i, least)
+        });
+        let negative = negatives.map(|n| n.distance).fold(FAR, f32::min);
+        best.filter(|b| {
+            b.distance < params.reach * threshold
+                && b.distance < params.gate * negative
+                && b.distance < params.rival * other
+                && b.age + 1 >= params.least_ticks
+        })
+    }
+}
