@@ -7,9 +7,10 @@ use rayon::prelude::*;
 use crate::clip::Clip;
 use crate::formats::acclaim::{self, AmcOptions, Asf};
 use crate::formats::bvh::{self, BvhOptions, PositionChannels};
+use crate::formats::container::zip_paths;
 use crate::formats::probe::{Format, probe};
 use crate::formats::{Limits, Loaded, ParseError, Place, Warning, mclip};
-use crate::formats::{c3d, jsonl, read_scene, table, trc};
+use crate::formats::{c3d, jsonl, numpy, read_scene, table, trc};
 use crate::import::{ImportOptions, Stated, Take, normalize};
 use crate::kinematics::WorldPose;
 
@@ -136,7 +137,13 @@ impl FileReader {
         around: Around<'_>,
     ) -> Result<ClipFile, FileErrorKind> {
         let stem = stem(path);
-        let format = probe(bytes, &path.to_string_lossy())?;
+        let format = match probe(bytes, &path.to_string_lossy())? {
+            // Archives of poses and of positions look alike at their beginning.
+            Format::Smpl if numpy::has_positions(&zip_paths(bytes).unwrap_or_default()) => {
+                Format::Numpy
+            }
+            format => format,
+        };
         let (loaded, skeleton) = match format {
             Format::Bvh => (bvh::read(bytes, &stem, &self.bvh(), &self.limits)?, None),
             Format::Asf => {
