@@ -195,6 +195,8 @@ fn gather(all: &mut Option<ClipFile>, mut opened: ClipFile, path: &str) {
         Some(all) => {
             all.clips.append(&mut opened.clips);
             all.warnings.append(&mut opened.warnings);
+            // What one file states says nothing of another.
+            all.stated = all.stated.filter(|stated| opened.stated == Some(*stated));
         }
         None => *all = Some(opened),
     }

@@ -98,15 +98,18 @@ pub fn read_scene(
     let timed = matches!(format, Format::Gltf | Format::Fbx);
     Some(loaded.map(|mut loaded| {
         match rate_hz {
-            Some(_) if timed => {
-                let text = "its keys stand at times, not frames; the rate given is not used";
-                loaded.warnings.push(Warning::new(Place::File, text));
-            }
+            Some(_) if timed => loaded.warnings.push(rate_not_used()),
             Some(rate_hz) => loaded.clips.iter_mut().for_each(|c| c.rate_hz = rate_hz),
             None => {}
         }
         loaded
     }))
+}
+
+/// What is said of a rate given for a file whose keys stand at times.
+fn rate_not_used() -> Warning {
+    let text = "its keys stand at times, not frames; the rate given is not used";
+    Warning::new(Place::File, text)
 }
 
 /// Clips of points whose positions are at hand: one, or one for each subject (`Anna:LFHD`) whose points make a body. For

@@ -324,4 +324,6 @@ fn insert_missing(
 }
 
 #[cfg(test)]
+mod habits;
+#[cfg(test)]
 mod tests;
