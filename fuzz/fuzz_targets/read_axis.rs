@@ -3,7 +3,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use morec::live::axis::{AxisDecoder, AxisOptions, AxisReceiver};
-use morec::live::{Frame, MAX_ACTORS, Next};
+use morec::live::{Frame, MAX_ACTORS, SourceEvent};
 
 fn decoded<'a>(pieces: impl Iterator<Item = &'a [u8]>) -> Vec<String> {
     let (mut decoder, mut found) = (AxisDecoder::new(), vec![]);
@@ -30,7 +30,7 @@ fuzz_target!(|input: (u16, u8, &[u8])| {
         receiver.bytes(now_secs, bytes);
         receiver.tick(now_secs);
         while let Some(next) = receiver.next(&mut frame) {
-            if !matches!(next, Next::Frame) {
+            if !matches!(next, SourceEvent::Frame) {
                 last_secs.fill(f64::NEG_INFINITY);
                 continue;
             }

@@ -4,14 +4,14 @@
 
 use libfuzzer_sys::fuzz_target;
 use morec::labels::ClipLength;
-use morec_db::exchange::{Form, Lengths, read, write};
+use morec_db::exchange::{ClipLengths, LabelFormat, read, write};
 
 fuzz_target!(|bytes: &[u8]| {
     let Some((first, bytes)) = bytes.split_first() else {
         return;
     };
-    let form = Form::ALL[usize::from(*first) % Form::ALL.len()];
-    let lengths = Lengths::from([
+    let form = LabelFormat::ALL[usize::from(*first) % LabelFormat::ALL.len()];
+    let lengths = ClipLengths::from([
         (
             "a".to_owned(),
             ClipLength {
@@ -27,7 +27,7 @@ fuzz_target!(|bytes: &[u8]| {
             },
         ),
     ]);
-    let _ = Form::of_file("x.json", bytes);
+    let _ = LabelFormat::of_file("x.json", bytes);
     let Ok(labels) = read(form, bytes, Some("a"), &lengths) else {
         return;
     };
@@ -44,7 +44,7 @@ fuzz_target!(|bytes: &[u8]| {
         .annotations
         .iter()
         .all(|a| lengths.contains_key(&a.clip));
-    if matches!(form, Form::Csv | Form::Json) && known {
+    if matches!(form, LabelFormat::Csv | LabelFormat::Json) && known {
         let text = write(form, &labels.annotations, &lengths).expect("every length is known");
         let again =
             read(form, text.as_bytes(), None, &lengths).expect("what was written can be read");

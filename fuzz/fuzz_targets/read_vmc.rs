@@ -3,7 +3,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use morec::live::vmc::{VmcOptions, VmcReceiver};
-use morec::live::{Frame, MAX_ACTORS, Next};
+use morec::live::{Frame, MAX_ACTORS, SourceEvent};
 
 fuzz_target!(|packets: Vec<(u8, u8, Vec<u8>)>| {
     let mut receiver = VmcReceiver::new(&VmcOptions {
@@ -17,7 +17,7 @@ fuzz_target!(|packets: Vec<(u8, u8, Vec<u8>)>| {
         receiver.packet(peer % 5, now_secs, bytes);
         receiver.tick(now_secs + 0.001);
         while let Some(next) = receiver.next(&mut frame) {
-            if matches!(next, Next::Gone(_)) || !matches!(next, Next::Frame) {
+            if matches!(next, SourceEvent::Gone(_)) || !matches!(next, SourceEvent::Frame) {
                 last_secs.fill(f64::NEG_INFINITY);
                 continue;
             }

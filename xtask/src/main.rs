@@ -9,12 +9,12 @@ use clap::Parser;
 /// Tools of morec's developers; no part of what is installed.
 #[derive(Parser)]
 #[command(name = "xtask")]
-enum Task {
+enum Tool {
     Soak(soak::Args),
 }
 
 fn main() -> ExitCode {
-    let Task::Soak(args) = Task::parse();
+    let Tool::Soak(args) = Tool::parse();
     soak::run(&args).unwrap_or_else(|error| {
         eprintln!("xtask: {error:#}");
         ExitCode::FAILURE

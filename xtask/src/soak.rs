@@ -17,7 +17,7 @@ use anyhow::{Context, Result};
 use morec::MotionIndex;
 use morec::files::FileReader;
 use morec::live::vmc::Bundling;
-use morec::live::{Layout, SessionOptions};
+use morec::live::{SessionOptions, Threading};
 use morec_live::{Accidents, load, pin_thread};
 
 /// Recognise clips round and round and see whether memory stays flat, every lap finds the same, and everything is on time.
@@ -105,19 +105,19 @@ fn bundling(text: &str) -> Result<Bundling, String> {
 
 /// How one session is laid out.
 #[derive(Clone, Copy)]
-enum Laid {
+enum ThreadLayout {
     Inline,
     Stages,
     Pinned,
 }
 
-impl Laid {
+impl ThreadLayout {
     /// The usual options with this layout.
     fn options(self) -> SessionOptions {
         let (layout, on_thread): (_, Option<fn(&'static str)>) = match self {
-            Laid::Inline => (Layout::Inline, None),
-            Laid::Stages => (Layout::Stages, None),
-            Laid::Pinned => (Layout::Stages, Some(pin_thread)),
+            ThreadLayout::Inline => (Threading::Inline, None),
+            ThreadLayout::Stages => (Threading::Stages, None),
+            ThreadLayout::Pinned => (Threading::Stages, Some(pin_thread)),
         };
         SessionOptions {
             layout,
@@ -170,10 +170,10 @@ pub fn run(args: &Args) -> Result<ExitCode> {
                     &clips,
                     Duration::from_secs_f64(most_secs.max(0.0)),
                 );
-                endless::run(&index.model, &clips, Laid::Inline, args)
+                endless::run(&index.model, &clips, ThreadLayout::Inline, args)
             }
-            Layouts::Stages => endless::run(&index.model, &clips, Laid::Stages, args),
-            Layouts::Pinned => endless::run(&index.model, &clips, Laid::Pinned, args),
+            Layouts::Stages => endless::run(&index.model, &clips, ThreadLayout::Stages, args),
+            Layouts::Pinned => endless::run(&index.model, &clips, ThreadLayout::Pinned, args),
             Layouts::Both => layouts::run(&index.model, &clips, args),
         },
     }

@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use morec::math::{Axis, Quat, Vec3};
 
-use crate::status::Error;
+use crate::status::CallError;
 
 /// Which hand the coordinate axes are like.
 #[repr(i32)]
@@ -38,13 +38,13 @@ pub(crate) struct Convention {
 }
 
 impl Convention {
-    pub(crate) fn new(handedness: i32, up: i32) -> Result<Self, Error> {
+    pub(crate) fn new(handedness: i32, up: i32) -> Result<Self, CallError> {
         let z_up = if up == MorecUpAxis::Y as i32 {
             false
         } else if up == MorecUpAxis::Z as i32 {
             true
         } else {
-            return Err(Error::invalid(format!(
+            return Err(CallError::invalid(format!(
                 "up_axis is {up}, expected a MorecUpAxis"
             )));
         };
@@ -55,7 +55,7 @@ impl Convention {
             Some(if z_up { Axis::Y } else { Axis::Z })
         } else {
             let text = "expected MOREC_HANDEDNESS_RIGHT or MOREC_HANDEDNESS_LEFT";
-            return Err(Error::invalid(format!(
+            return Err(CallError::invalid(format!(
                 "handedness is {handedness}, {text}"
             )));
         };

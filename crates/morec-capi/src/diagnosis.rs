@@ -6,7 +6,7 @@ use morec::diagnosis::{Diagnosis, Finding, Severity};
 
 use crate::handles::{self, MorecRecognizer};
 use crate::memory::{self, Versioned};
-use crate::status::{Error, MorecStatus, guard};
+use crate::status::{CallError, MorecStatus, guard};
 
 /// Something that is wrong with a stream, or worth knowing of it: one bit each, the same in every release.
 #[repr(u32)]
@@ -194,6 +194,6 @@ pub unsafe extern "C" fn morec_recognizer_diagnosis_text(
             "the text takes {} bytes, the buffer has {size}",
             text.len() + 1
         );
-        Err(Error::new(MorecStatus::BufferTooSmall, text))
+        Err(CallError::new(MorecStatus::BufferTooSmall, text))
     })
 }

@@ -6,7 +6,7 @@ use morec::math::{Quat, Vec3};
 use crate::axes::Convention;
 use crate::memory::{self, Versioned};
 use crate::skeleton::{Declared, is_place};
-use crate::status::Error;
+use crate::status::CallError;
 
 /// Where positions and rotations are seen from.
 #[repr(i32)]
@@ -53,14 +53,14 @@ unsafe impl Versioned for MorecFrame {
 
 /// A frame whose pointers were followed.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Given<'a> {
+pub(crate) struct CheckedFrame<'a> {
     time_secs: f64,
     space: MorecSpace,
     positions: Option<&'a [[f64; 3]]>,
     rotations: Option<&'a [[f64; 4]]>,
 }
 
-impl Given<'_> {
+impl CheckedFrame<'_> {
     /// Follows the pointers of a frame of `joints` joints.
     ///
     /// # Safety
@@ -68,29 +68,30 @@ impl Given<'_> {
     pub(crate) unsafe fn read<'a>(
         frame: *const MorecFrame,
         joints: usize,
-    ) -> Result<Given<'a>, Error> {
+    ) -> Result<CheckedFrame<'a>, CallError> {
         // SAFETY: as promised to this function.
         let c = unsafe { memory::read_struct(frame) }?;
         if c.joint_count != joints {
             let text = format!("joint_count is {}, the stream has {joints}", c.joint_count);
-            return Err(Error::invalid(text));
+            return Err(CallError::invalid(text));
         }
         if !c.time_secs.is_finite() {
-            return Err(Error::invalid("time_secs is not a number"));
+            return Err(CallError::invalid("time_secs is not a number"));
         }
         if c.reserved != 0 {
-            return Err(Error::invalid("reserved is not 0"));
+            return Err(CallError::invalid("reserved is not 0"));
         }
         let space = [MorecSpace::World, MorecSpace::Local]
             .into_iter()
             .find(|space| *space as i32 == c.space);
         let text = "expected MOREC_SPACE_WORLD or MOREC_SPACE_LOCAL";
-        let space = space.ok_or_else(|| Error::invalid(format!("space is {}, {text}", c.space)))?;
+        let space =
+            space.ok_or_else(|| CallError::invalid(format!("space is {}, {text}", c.space)))?;
         // SAFETY: as promised to this function; three numbers are aligned as one.
         let positions = unsafe { memory::values_if_any(c.positions.cast(), joints, "positions") }?;
         // SAFETY: as promised to this function; four numbers are aligned as one.
         let rotations = unsafe { memory::values_if_any(c.rotations.cast(), joints, "rotations") }?;
-        Ok(Given {
+        Ok(CheckedFrame {
             time_secs: c.time_secs,
             space,
             positions,
@@ -104,7 +105,7 @@ impl Given<'_> {
         declared: &Declared,
         convention: &Convention,
         frame: &mut Frame,
-    ) -> Result<(), Error> {
+    ) -> Result<(), CallError> {
         frame.time_secs = self.time_secs;
         frame.wall_secs = wall_now_secs();
         frame.pose.positions.clear();
@@ -115,14 +116,14 @@ impl Given<'_> {
         }
         let seen = |p: &Vec3| p.iter().all(|c| c.is_finite());
         if !frame.pose.positions.iter().any(seen) {
-            return Err(Error::invalid("the frame shows no joint at all"));
+            return Err(CallError::invalid("the frame shows no joint at all"));
         }
         Ok(())
     }
 
-    fn pose_world(&self, convention: &Convention, frame: &mut Frame) -> Result<(), Error> {
+    fn pose_world(&self, convention: &Convention, frame: &mut Frame) -> Result<(), CallError> {
         let Some(positions) = self.positions else {
-            return Err(Error::invalid("a frame in world space needs positions"));
+            return Err(CallError::invalid("a frame in world space needs positions"));
         };
         for (joint, &p) in positions.iter().enumerate() {
             frame
@@ -144,12 +145,12 @@ impl Given<'_> {
         declared: &Declared,
         convention: &Convention,
         frame: &mut Frame,
-    ) -> Result<(), Error> {
+    ) -> Result<(), CallError> {
         let Some(rotations) = self.rotations else {
-            return Err(Error::invalid("a frame in local space needs rotations"));
+            return Err(CallError::invalid("a frame in local space needs rotations"));
         };
         if self.positions.is_none() && !declared.has_offsets {
-            return Err(Error::invalid(
+            return Err(CallError::invalid(
                 "a frame in local space needs positions, or a skeleton with offsets",
             ));
         }
@@ -178,7 +179,7 @@ impl Given<'_> {
 const UNSEEN: Vec3 = Vec3::new(f64::NAN, f64::NAN, f64::NAN);
 
 /// `None`: not seen.
-fn position(joint: usize, p: [f64; 3]) -> Result<Option<Vec3>, Error> {
+fn position(joint: usize, p: [f64; 3]) -> Result<Option<Vec3>, CallError> {
     let p = Vec3::from(p);
     if p.iter().any(|c| c.is_nan()) {
         return Ok(None);
@@ -186,12 +187,14 @@ fn position(joint: usize, p: [f64; 3]) -> Result<Option<Vec3>, Error> {
     if is_place(&p) {
         Ok(Some(p))
     } else {
-        Err(Error::invalid(format!("joint {joint} is nowhere: {p:?}")))
+        Err(CallError::invalid(format!(
+            "joint {joint} is nowhere: {p:?}"
+        )))
     }
 }
 
 /// NaN throughout: not seen.
-fn rotation(joint: usize, [x, y, z, w]: [f64; 4]) -> Result<Quat, Error> {
+fn rotation(joint: usize, [x, y, z, w]: [f64; 4]) -> Result<Quat, CallError> {
     let q = nalgebra::Quaternion::new(w, x, y, z);
     if [x, y, z, w].iter().any(|c| c.is_nan()) {
         return Ok(Quat::new_unchecked(q * f64::NAN));
@@ -200,7 +203,7 @@ fn rotation(joint: usize, [x, y, z, w]: [f64; 4]) -> Result<Quat, Error> {
     if length.is_finite() && length > 1e-9 {
         Ok(Quat::new_unchecked(q / length))
     } else {
-        Err(Error::invalid(format!(
+        Err(CallError::invalid(format!(
             "the rotation of joint {joint} has the length {length}"
         )))
     }

@@ -9,7 +9,7 @@ use std::sync::{Arc, PoisonError, RwLock};
 use morec::index::MotionIndex;
 
 use crate::MorecStatus;
-use crate::status::Error;
+use crate::status::CallError;
 use crate::stream::Stream;
 
 /// A loaded index: what recognition knows. It does not change; any number of threads may use it at once.
@@ -87,20 +87,21 @@ impl Handle for MorecRecognizer {
 }
 
 /// A handle for `of`.
-pub(crate) fn give<H: Handle>(of: H::Of) -> Result<*mut H, Error> {
+pub(crate) fn give<H: Handle>(of: H::Of) -> Result<*mut H, CallError> {
     let mut table = TABLE.write().unwrap_or_else(PoisonError::into_inner);
     let number = table
         .given
         .checked_add(1)
         .and_then(|given| given.checked_mul(2)?.checked_add(1));
-    let number = number.ok_or_else(|| Error::new(MorecStatus::Internal, "no handles are left"))?;
+    let number =
+        number.ok_or_else(|| CallError::new(MorecStatus::Internal, "no handles are left"))?;
     table.given += 1;
     table.objects.insert(number, H::wrap(Arc::new(of)));
     Ok(std::ptr::without_provenance_mut(number))
 }
 
 /// What `handle` stands for. It lives on while it is in use, even if it is destroyed meanwhile.
-pub(crate) fn find<H: Handle>(handle: *const H) -> Result<Arc<H::Of>, Error> {
+pub(crate) fn find<H: Handle>(handle: *const H) -> Result<Arc<H::Of>, CallError> {
     let table = TABLE.read().unwrap_or_else(PoisonError::into_inner);
     match table.objects.get(&handle.addr()) {
         Some(object) => H::unwrap(object).cloned().ok_or_else(|| other_kind::<H>()),
@@ -109,7 +110,7 @@ pub(crate) fn find<H: Handle>(handle: *const H) -> Result<Arc<H::Of>, Error> {
 }
 
 /// Takes `handle` back.
-pub(crate) fn take_back<H: Handle>(handle: *const H) -> Result<(), Error> {
+pub(crate) fn take_back<H: Handle>(handle: *const H) -> Result<(), CallError> {
     let mut table = TABLE.write().unwrap_or_else(PoisonError::into_inner);
     let number = handle.addr();
     match table.objects.get(&number) {
@@ -125,16 +126,16 @@ pub(crate) fn take_back<H: Handle>(handle: *const H) -> Result<(), Error> {
     }
 }
 
-fn other_kind<H: Handle>() -> Error {
-    Error::new(
+fn other_kind<H: Handle>() -> CallError {
+    CallError::new(
         MorecStatus::BadHandle,
         format!("this handle is not of {}", H::NAME),
     )
 }
 
-fn unknown<H: Handle>(table: &HandleTable, number: usize) -> Error {
+fn unknown<H: Handle>(table: &HandleTable, number: usize) -> CallError {
     if number == 0 {
-        return Error::new(
+        return CallError::new(
             MorecStatus::NullPointer,
             format!("expected {}, found null", H::NAME),
         );
@@ -145,5 +146,5 @@ fn unknown<H: Handle>(table: &HandleTable, number: usize) -> Error {
     } else {
         "this is no handle of morec's"
     };
-    Error::new(MorecStatus::BadHandle, text)
+    CallError::new(MorecStatus::BadHandle, text)
 }

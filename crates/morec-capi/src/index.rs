@@ -8,7 +8,7 @@ use morec::live::Model;
 
 use crate::handles::{self, MorecIndex};
 use crate::memory::{self, Versioned};
-use crate::status::{Error, MorecStatus, guard};
+use crate::status::{CallError, MorecStatus, guard};
 
 /// How an index recognises.
 #[repr(i32)]
@@ -85,19 +85,19 @@ pub unsafe extern "C" fn morec_index_from_memory(
         // SAFETY: as promised to this function.
         unsafe { memory::put(index, std::ptr::null_mut(), "index") }?;
         let loaded = MotionIndex::from_bytes(bytes)
-            .map_err(|error| Error::new(MorecStatus::BadIndex, error.to_string()))?;
+            .map_err(|error| CallError::new(MorecStatus::BadIndex, error.to_string()))?;
         // SAFETY: as promised to this function.
         unsafe { memory::put(index, handles::give(loaded)?, "index") }
     })
 }
 
 /// The index in a file.
-pub(crate) fn load(path: &Path) -> Result<MotionIndex, Error> {
+pub(crate) fn load(path: &Path) -> Result<MotionIndex, CallError> {
     let shown = path.display();
     let bytes = std::fs::read(path)
-        .map_err(|error| Error::new(MorecStatus::File, format!("{shown}: {error}")))?;
+        .map_err(|error| CallError::new(MorecStatus::File, format!("{shown}: {error}")))?;
     MotionIndex::from_bytes(&bytes)
-        .map_err(|error| Error::new(MorecStatus::BadIndex, format!("{shown}: {error}")))
+        .map_err(|error| CallError::new(MorecStatus::BadIndex, format!("{shown}: {error}")))
 }
 
 /// Gives an index back. Recognisers that were made of it go on.
@@ -160,7 +160,7 @@ pub unsafe extern "C" fn morec_index_class_name(
         let index = handles::find(index)?;
         let classes = index.model.classes();
         let class = classes.get(class_id as usize).ok_or_else(|| {
-            Error::invalid(format!(
+            CallError::invalid(format!(
                 "class {class_id}: the index has {}, numbered from 0",
                 classes.len()
             ))
@@ -179,6 +179,6 @@ pub unsafe extern "C" fn morec_index_class_name(
             "the name takes {} bytes, the buffer has {size}",
             name.len() + 1
         );
-        Err(Error::new(MorecStatus::BufferTooSmall, text))
+        Err(CallError::new(MorecStatus::BufferTooSmall, text))
     })
 }

@@ -7,7 +7,7 @@ use std::ffi::{CStr, c_char};
 use std::mem::size_of;
 
 use crate::MorecStatus;
-use crate::status::Error;
+use crate::status::CallError;
 
 /// A struct may be so many bytes longer than this release's at most; more than that is not a size.
 const LONGEST_STRUCT: usize = 1024;
@@ -23,15 +23,15 @@ pub(crate) unsafe trait Versioned: Copy {
     const FIRST_SIZE: usize;
 }
 
-fn look<T>(pointer: *const T, what: &str) -> Result<(), Error> {
+fn look<T>(pointer: *const T, what: &str) -> Result<(), CallError> {
     if pointer.is_null() {
-        return Err(Error::new(
+        return Err(CallError::new(
             MorecStatus::NullPointer,
             format!("{what} is null"),
         ));
     }
     if !pointer.is_aligned() {
-        return Err(Error::invalid(format!(
+        return Err(CallError::invalid(format!(
             "{what} is not aligned to {} bytes",
             align_of::<T>()
         )));
@@ -43,12 +43,12 @@ fn look<T>(pointer: *const T, what: &str) -> Result<(), Error> {
 ///
 /// # Safety
 /// If it is not null, it points to bytes that end with a zero and stay as they are for `'a`.
-pub(crate) unsafe fn text<'a>(pointer: *const c_char, what: &str) -> Result<&'a str, Error> {
+pub(crate) unsafe fn text<'a>(pointer: *const c_char, what: &str) -> Result<&'a str, CallError> {
     look(pointer, what)?;
     // SAFETY: not null; that it ends with a zero is the caller's promise.
     let text = unsafe { CStr::from_ptr(pointer) };
     text.to_str()
-        .map_err(|_| Error::invalid(format!("{what} is not UTF-8")))
+        .map_err(|_| CallError::invalid(format!("{what} is not UTF-8")))
 }
 
 /// The `len` values at `pointer`.
@@ -59,13 +59,13 @@ pub(crate) unsafe fn values<'a, T: Copy>(
     pointer: *const T,
     len: usize,
     what: &str,
-) -> Result<&'a [T], Error> {
+) -> Result<&'a [T], CallError> {
     look(pointer, what)?;
     if len
         .checked_mul(size_of::<T>())
         .is_none_or(|bytes| bytes > isize::MAX as usize)
     {
-        return Err(Error::invalid(format!(
+        return Err(CallError::invalid(format!(
             "{what}: {len} values do not fit into memory"
         )));
     }
@@ -81,7 +81,7 @@ pub(crate) unsafe fn values_if_any<'a, T: Copy>(
     pointer: *const T,
     len: usize,
     what: &str,
-) -> Result<Option<&'a [T]>, Error> {
+) -> Result<Option<&'a [T]>, CallError> {
     if pointer.is_null() {
         return Ok(None);
     }
@@ -93,7 +93,7 @@ pub(crate) unsafe fn values_if_any<'a, T: Copy>(
 ///
 /// # Safety
 /// If it is not null, a `T` may be written there.
-pub(crate) unsafe fn put<T: Copy>(pointer: *mut T, value: T, what: &str) -> Result<(), Error> {
+pub(crate) unsafe fn put<T: Copy>(pointer: *mut T, value: T, what: &str) -> Result<(), CallError> {
     look(pointer, what)?;
     // SAFETY: not null, aligned; that it may be written to is the caller's promise.
     unsafe { pointer.write(value) };
@@ -104,7 +104,7 @@ pub(crate) unsafe fn put<T: Copy>(pointer: *mut T, value: T, what: &str) -> Resu
 ///
 /// # Safety
 /// If it is not null, it points to a `T`. Any bit pattern must be a `T`.
-pub(crate) unsafe fn get<T: Copy>(pointer: *const T, what: &str) -> Result<T, Error> {
+pub(crate) unsafe fn get<T: Copy>(pointer: *const T, what: &str) -> Result<T, CallError> {
     look(pointer, what)?;
     // SAFETY: not null, aligned; that there is a value is the caller's promise.
     Ok(unsafe { pointer.read() })
@@ -114,7 +114,7 @@ pub(crate) unsafe fn get<T: Copy>(pointer: *const T, what: &str) -> Result<T, Er
 ///
 /// # Safety
 /// If `pointer` is not null, it points to a `T` of any release.
-unsafe fn struct_size<T: Versioned>(pointer: *const T) -> Result<usize, Error> {
+unsafe fn struct_size<T: Versioned>(pointer: *const T) -> Result<usize, CallError> {
     look(pointer, T::NAME)?;
     // SAFETY: not null, aligned; the first field of every release is its size.
     let size = unsafe { pointer.cast::<usize>().read() };
@@ -122,14 +122,14 @@ unsafe fn struct_size<T: Versioned>(pointer: *const T) -> Result<usize, Error> {
         return Ok(size);
     }
     let text = format!("{}: struct_size is {size}; set it to sizeof({0})", T::NAME);
-    Err(Error::new(MorecStatus::StructSize, text))
+    Err(CallError::new(MorecStatus::StructSize, text))
 }
 
 /// Reads a struct of any release: what an older one lacks is 0, what a newer one has beyond this must be 0.
 ///
 /// # Safety
 /// If `pointer` is not null, it points to as many bytes as its first field says.
-pub(crate) unsafe fn read_struct<T: Versioned>(pointer: *const T) -> Result<T, Error> {
+pub(crate) unsafe fn read_struct<T: Versioned>(pointer: *const T) -> Result<T, CallError> {
     // SAFETY: as promised to this function.
     let size = unsafe { struct_size(pointer) }?;
     // SAFETY: `size` bytes are there, by the caller's promise.
@@ -137,7 +137,7 @@ pub(crate) unsafe fn read_struct<T: Versioned>(pointer: *const T) -> Result<T, E
     let known = size.min(size_of::<T>());
     if bytes[known..].iter().any(|byte| *byte != 0) {
         let text = format!("{} has fields set that this release does not know", T::NAME);
-        return Err(Error::new(MorecStatus::StructSize, text));
+        return Err(CallError::new(MorecStatus::StructSize, text));
     }
     let mut value = std::mem::MaybeUninit::<T>::zeroed();
     // SAFETY: `known` bytes are there to read and to write, in different places.
@@ -152,7 +152,10 @@ pub(crate) unsafe fn read_struct<T: Versioned>(pointer: *const T) -> Result<T, E
 ///
 /// # Safety
 /// If `pointer` is not null, as many bytes as its first field says may be written there.
-pub(crate) unsafe fn write_struct<T: Versioned>(pointer: *mut T, value: &T) -> Result<(), Error> {
+pub(crate) unsafe fn write_struct<T: Versioned>(
+    pointer: *mut T,
+    value: &T,
+) -> Result<(), CallError> {
     // SAFETY: as promised to this function.
     let size = unsafe { struct_size(pointer.cast_const()) }?;
     let (from, known) = (size_of::<usize>(), size.min(size_of::<T>()));
@@ -183,7 +186,7 @@ impl<T: Copy> Places<T> {
         capacity: usize,
         first_size: usize,
         what: &str,
-    ) -> Result<Self, Error> {
+    ) -> Result<Self, CallError> {
         if capacity > 0 {
             look(pointer.cast_const(), what)?;
         }
@@ -192,13 +195,13 @@ impl<T: Copy> Places<T> {
                 "{what}: the size of one is given as {size}, in this release it is {}",
                 size_of::<T>()
             );
-            return Err(Error::new(MorecStatus::StructSize, text));
+            return Err(CallError::new(MorecStatus::StructSize, text));
         }
         if size
             .checked_mul(capacity)
             .is_none_or(|bytes| bytes > isize::MAX as usize)
         {
-            return Err(Error::invalid(format!(
+            return Err(CallError::invalid(format!(
                 "{what}: {capacity} do not fit into memory"
             )));
         }
@@ -240,7 +243,7 @@ pub(crate) unsafe fn write_text(
     buffer: *mut c_char,
     size: usize,
     text: &str,
-) -> Result<bool, Error> {
+) -> Result<bool, CallError> {
     if size == 0 {
         return Ok(false);
     }

@@ -8,11 +8,11 @@ use morec::roles::Role;
 
 use crate::axes::Convention;
 use crate::event::MorecEvent;
-use crate::frame::{Given, MorecFrame};
+use crate::frame::{CheckedFrame, MorecFrame};
 use crate::handles::{self, MorecIndex, MorecRecognizer};
 use crate::memory::{self, Places, Versioned};
 use crate::skeleton::{self, MorecSkeleton};
-use crate::status::{Error, MorecStatus, guard};
+use crate::status::{CallError, MorecStatus, guard};
 use crate::stream::{Stream, StreamOptions};
 use crate::words;
 
@@ -105,7 +105,7 @@ pub unsafe extern "C" fn morec_recognizer_create(
             // SAFETY: as promised to this function.
             unsafe { skeleton::read(c.skeleton, &options.convention, &index) }?
         } else {
-            return Err(Error::invalid(
+            return Err(CallError::invalid(
                 "roles is for streams of roles; a skeleton says its own",
             ));
         };
@@ -117,27 +117,30 @@ pub unsafe extern "C" fn morec_recognizer_create(
 }
 
 /// The index with the sensitivity that was asked for.
-fn with_sensitivity(index: Arc<MotionIndex>, per_minute: f64) -> Result<Arc<MotionIndex>, Error> {
+fn with_sensitivity(
+    index: Arc<MotionIndex>,
+    per_minute: f64,
+) -> Result<Arc<MotionIndex>, CallError> {
     if per_minute == 0.0 {
         return Ok(index);
     }
     let model = index.model.with_sensitivity(per_minute);
-    let model = model.map_err(|error| Error::invalid(format!("alarms_per_minute: {error}")))?;
+    let model = model.map_err(|error| CallError::invalid(format!("alarms_per_minute: {error}")))?;
     Ok(Arc::new(MotionIndex {
         model,
         ..(*index).clone()
     }))
 }
 
-fn stream_options(c: &MorecOptions) -> Result<StreamOptions, Error> {
+fn stream_options(c: &MorecOptions) -> Result<StreamOptions, CallError> {
     if c.flags & !MOREC_EARLY_EVENTS != 0 {
-        return Err(Error::invalid(format!(
+        return Err(CallError::invalid(format!(
             "flags is {:#x}, which this release does not know",
             c.flags
         )));
     }
     if !(c.refractory_secs.is_finite() && c.refractory_secs >= 0.0) {
-        return Err(Error::invalid(format!(
+        return Err(CallError::invalid(format!(
             "refractory_secs is {}, expected 0 or more",
             c.refractory_secs
         )));
@@ -171,7 +174,7 @@ pub unsafe extern "C" fn morec_recognizer_joint_of_role(
     guard(|| {
         let stream = handles::find(recognizer)?;
         let role =
-            words::role(role).ok_or_else(|| Error::invalid(format!("role {role} is none")))?;
+            words::role(role).ok_or_else(|| CallError::invalid(format!("role {role} is none")))?;
         let number = stream
             .declared()
             .rig
@@ -198,7 +201,7 @@ pub unsafe extern "C" fn morec_recognizer_push(
     guard(|| {
         let stream = handles::find(recognizer)?;
         // SAFETY: as promised to this function; the frame is not used after it.
-        let given = unsafe { Given::read(frame, stream.declared().rig.skeleton.len()) }?;
+        let given = unsafe { CheckedFrame::read(frame, stream.declared().rig.skeleton.len()) }?;
         stream.push(&given)
     })
 }

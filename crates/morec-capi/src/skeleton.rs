@@ -12,7 +12,7 @@ use morec::roles::{Role, RoleMap};
 
 use crate::axes::Convention;
 use crate::memory::{self, Versioned};
-use crate::status::Error;
+use crate::status::CallError;
 use crate::words;
 
 /// The joints of a stream's skeleton. Everything is copied; nothing is needed after the call it is given to.
@@ -51,10 +51,10 @@ pub(crate) struct Declared {
 }
 
 /// For a stream that shows roles: joint `r` plays role `r`. `mask` has bit `r` for each that it shows.
-pub(crate) fn of_roles(mask: u32) -> Result<Declared, Error> {
+pub(crate) fn of_roles(mask: u32) -> Result<Declared, CallError> {
     let mut rig = Rig::of_roles();
     if mask >> Role::COUNT != 0 {
-        return Err(Error::invalid(format!(
+        return Err(CallError::invalid(format!(
             "roles is {mask:#x}, which has bits beyond the {} roles",
             Role::COUNT
         )));
@@ -80,12 +80,12 @@ pub(crate) unsafe fn read(
     skeleton: *const MorecSkeleton,
     convention: &Convention,
     index: &MotionIndex,
-) -> Result<Declared, Error> {
+) -> Result<Declared, CallError> {
     // SAFETY: as promised to this function.
     let c = unsafe { memory::read_struct(skeleton) }?;
     let most = morec::formats::Limits::default().joints;
     if !(1..=most).contains(&c.joint_count) {
-        return Err(Error::invalid(format!(
+        return Err(CallError::invalid(format!(
             "joint_count is {}, expected 1 to {most}",
             c.joint_count
         )));
@@ -122,7 +122,7 @@ pub(crate) unsafe fn read(
 
 /// # Safety
 /// `names` is null or points to `count` texts that end with a zero.
-unsafe fn names(names: *const *const c_char, count: usize) -> Result<Vec<String>, Error> {
+unsafe fn names(names: *const *const c_char, count: usize) -> Result<Vec<String>, CallError> {
     // SAFETY: as promised to this function.
     let Some(names) = unsafe { memory::values_if_any(names, count, "names") }? else {
         return Ok(vec![String::new(); count]);
@@ -139,7 +139,7 @@ fn joints(
     names: &[String],
     offsets: Option<&[f64]>,
     convention: &Convention,
-) -> Result<Skeleton, Error> {
+) -> Result<Skeleton, CallError> {
     let mut joints = Vec::with_capacity(parents.len());
     for (j, (&parent, name)) in parents.iter().zip(names).enumerate() {
         let parent = match usize::try_from(parent) {
@@ -147,14 +147,14 @@ fn joints(
             Err(_) if parent == -1 => None,
             Err(_) => {
                 let text = format!("the parent of joint {j} is {parent}, expected a joint or -1");
-                return Err(Error::invalid(text));
+                return Err(CallError::invalid(text));
             }
         };
         let offset = offsets.map_or_else(Vec3::zeros, |o| {
             Vec3::new(o[3 * j], o[3 * j + 1], o[3 * j + 2])
         });
         if !is_place(&offset) {
-            return Err(Error::invalid(format!(
+            return Err(CallError::invalid(format!(
                 "the offset of joint {j} is not a place"
             )));
         }
@@ -166,7 +166,7 @@ fn joints(
             tip: None,
         });
     }
-    Skeleton::new(joints).map_err(|error| Error::invalid(error.to_string()))
+    Skeleton::new(joints).map_err(|error| CallError::invalid(error.to_string()))
 }
 
 /// Farther away than this is nobody; and lengths of such numbers can still be squared.
@@ -177,19 +177,19 @@ pub(crate) fn is_place(p: &Vec3) -> bool {
     p.iter().all(|c| c.abs() <= FARTHEST)
 }
 
-fn given_roles(roles: &[i32]) -> Result<RoleMap, Error> {
+fn given_roles(roles: &[i32]) -> Result<RoleMap, CallError> {
     let mut map = RoleMap::default();
     for (joint, &number) in roles.iter().enumerate() {
         if number == words::MorecRole::None as i32 {
             continue;
         }
         let role = words::role(number).ok_or_else(|| {
-            Error::invalid(format!(
+            CallError::invalid(format!(
                 "the role of joint {joint} is {number}, which is none"
             ))
         })?;
         if let Some(other) = map.joint(role) {
-            return Err(Error::invalid(format!(
+            return Err(CallError::invalid(format!(
                 "joints {other} and {joint} are both {role}"
             )));
         }

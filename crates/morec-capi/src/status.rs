@@ -79,12 +79,12 @@ impl MorecStatus {
 
 /// A code and, where there is more to say than the code does, a text.
 #[derive(Debug)]
-pub(crate) struct Error {
+pub(crate) struct CallError {
     status: MorecStatus,
     text: Cow<'static, CStr>,
 }
 
-impl Error {
+impl CallError {
     /// With a text for people: what was expected, what was found.
     pub(crate) fn new(status: MorecStatus, text: impl Into<String>) -> Self {
         // A text from a caller's own strings may hold anything but should not end early.
@@ -101,7 +101,7 @@ impl Error {
     }
 }
 
-impl From<MorecStatus> for Error {
+impl From<MorecStatus> for CallError {
     /// Without memory: for what happens on the frame path.
     fn from(status: MorecStatus) -> Self {
         Self {
@@ -116,7 +116,7 @@ thread_local! {
 }
 
 /// Runs a call so that nothing but a status comes out of it.
-pub(crate) fn guard(call: impl FnOnce() -> Result<(), Error>) -> MorecStatus {
+pub(crate) fn guard(call: impl FnOnce() -> Result<(), CallError>) -> MorecStatus {
     let caught = catch_unwind(AssertUnwindSafe(call));
     match caught.unwrap_or_else(|_| Err(MorecStatus::Internal.into())) {
         Ok(()) => MorecStatus::Ok,
@@ -166,7 +166,7 @@ mod tests {
     #[test]
     fn the_last_error_is_each_threads_own_and_outlasts_what_succeeds() {
         assert_eq!(
-            guard(|| Err(Error::invalid("too \0 many"))),
+            guard(|| Err(CallError::invalid("too \0 many"))),
             MorecStatus::InvalidValue
         );
         assert_eq!(guard(|| Ok(())), MorecStatus::Ok);

@@ -5,13 +5,13 @@ use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 
 use morec::diagnosis::{Diagnoser, Diagnosis};
 use morec::index::MotionIndex;
-use morec::live::{Actor, Event, EventOptions, Frame, Performer, Recognizer, Rig};
+use morec::live::{Event, EventOptions, Frame, Performer, PerformerId, Recognizer, Rig};
 
 use crate::MorecStatus;
 use crate::axes::Convention;
-use crate::frame::Given;
+use crate::frame::CheckedFrame;
 use crate::skeleton::Declared;
-use crate::status::Error;
+use crate::status::CallError;
 
 /// Events that one frame can settle at most, with room to spare; no frame is taken with less.
 const ROOM: usize = 96;
@@ -33,13 +33,13 @@ pub(crate) struct StreamOptions {
 pub(crate) struct Stream {
     declared: Declared,
     convention: Convention,
-    input: Mutex<Input>,
+    input: Mutex<StreamInput>,
     output: Mutex<rtrb::Consumer<Event>>,
-    counts: Counts,
+    counts: StreamCounts,
     latency_secs: f64,
 }
 
-struct Input {
+struct StreamInput {
     performer: Performer,
     /// For [`Performer`] to take at its next first frame.
     ready: Option<Recognizer>,
@@ -60,14 +60,14 @@ struct Made {
 
 impl Made {
     fn performer(&self) -> Performer {
-        let mut performer = Performer::new(&self.index.model, Actor(0), &self.options);
+        let mut performer = Performer::new(&self.index.model, PerformerId(0), &self.options);
         performer.set_rig(&self.rig, &mut |_| {});
         performer
     }
 }
 
 #[derive(Debug, Default)]
-struct Counts {
+struct StreamCounts {
     frames: AtomicU64,
     refused: AtomicU64,
     events: AtomicU64,
@@ -92,13 +92,13 @@ impl Stream {
         index: &Arc<MotionIndex>,
         declared: Declared,
         options: &StreamOptions,
-    ) -> Result<Self, Error> {
+    ) -> Result<Self, CallError> {
         let capacity = match options.event_capacity {
             0 => USUAL_EVENTS,
             capacity if EVENTS.contains(&capacity) => capacity,
             capacity => {
                 let text = format!("event_capacity is {capacity}, expected 0 or {EVENTS:?}");
-                return Err(Error::invalid(text));
+                return Err(CallError::invalid(text));
             }
         };
         // Made now and not at the first frame, so that what does not fit is said now, and no bone is given up because
@@ -106,17 +106,20 @@ impl Stream {
         if index.model.needs_rotations() && declared.rig == Rig::of_roles() {
             let text =
                 "the index looks at how joints are turned: declare a skeleton and give rotations";
-            return Err(Error::new(MorecStatus::NothingInCommon, text.to_owned()));
+            return Err(CallError::new(
+                MorecStatus::NothingInCommon,
+                text.to_owned(),
+            ));
         }
         let new = Recognizer::new(&index.model, declared.bones)
-            .map_err(|error| Error::new(MorecStatus::NothingInCommon, error.to_string()))?;
+            .map_err(|error| CallError::new(MorecStatus::NothingInCommon, error.to_string()))?;
         let made = Made {
             index: index.clone(),
             options: options.events.clone(),
             rig: Arc::new(declared.rig.clone()),
         };
         let (producer, consumer) = rtrb::RingBuffer::new(capacity);
-        let input = Input {
+        let input = StreamInput {
             performer: made.performer(),
             ready: Some(new.clone()),
             new,
@@ -131,7 +134,7 @@ impl Stream {
             convention: options.convention,
             input: Mutex::new(input),
             output: Mutex::new(consumer),
-            counts: Counts::default(),
+            counts: StreamCounts::default(),
         })
     }
 
@@ -141,11 +144,11 @@ impl Stream {
     }
 
     /// Takes a frame; its events go to the queue.
-    pub(crate) fn push(&self, given: &Given) -> Result<(), Error> {
+    pub(crate) fn push(&self, given: &CheckedFrame) -> Result<(), CallError> {
         let input = &mut *turn(&self.input)?;
         self.make_room(input)?;
         given.pose(&self.declared, &self.convention, &mut input.frame)?;
-        let mut out = Out {
+        let mut out = EventOutput {
             events: &mut input.events,
             sequence: &mut input.sequence,
             counts: &self.counts,
@@ -164,10 +167,10 @@ impl Stream {
     }
 
     /// Ends the stream: its last events go to the queue. The next frame begins a new one.
-    pub(crate) fn finish(&self) -> Result<(), Error> {
+    pub(crate) fn finish(&self) -> Result<(), CallError> {
         let input = &mut *turn(&self.input)?;
         self.make_room(input)?;
-        let mut out = Out {
+        let mut out = EventOutput {
             events: &mut input.events,
             sequence: &mut input.sequence,
             counts: &self.counts,
@@ -180,7 +183,7 @@ impl Stream {
     }
 
     /// Forgets everything, waiting events too.
-    pub(crate) fn reset(&self) -> Result<(), Error> {
+    pub(crate) fn reset(&self) -> Result<(), CallError> {
         let input = &mut *turn(&self.input)?;
         let output = &mut *turn(&self.output)?;
         while output.pop().is_ok() {}
@@ -205,7 +208,7 @@ impl Stream {
         &self,
         most: usize,
         mut take: impl FnMut(usize, &Event),
-    ) -> Result<usize, Error> {
+    ) -> Result<usize, CallError> {
         let output = &mut *turn(&self.output)?;
         if most == 0 && !output.is_empty() {
             return Err(MorecStatus::BufferTooSmall.into());
@@ -233,12 +236,12 @@ impl Stream {
     }
 
     /// What is known of the stream; refused while another thread pushes.
-    pub(crate) fn diagnosis(&self) -> Result<Diagnosis, Error> {
+    pub(crate) fn diagnosis(&self) -> Result<Diagnosis, CallError> {
         let known = turn(&self.input)?.performer.diagnosis();
         Ok(known.unwrap_or_else(|| Diagnoser::live().diagnosis()))
     }
 
-    fn make_room(&self, input: &Input) -> Result<(), Error> {
+    fn make_room(&self, input: &StreamInput) -> Result<(), CallError> {
         if input.events.slots() >= ROOM {
             return Ok(());
         }
@@ -248,13 +251,13 @@ impl Stream {
 }
 
 /// Where events go.
-struct Out<'a> {
+struct EventOutput<'a> {
     events: &'a mut rtrb::Producer<Event>,
     sequence: &'a mut u64,
-    counts: &'a Counts,
+    counts: &'a StreamCounts,
 }
 
-impl Out<'_> {
+impl EventOutput<'_> {
     fn event(&mut self, mut event: Event) {
         *self.sequence += 1;
         event.sequence = *self.sequence;
@@ -267,7 +270,7 @@ impl Out<'_> {
 }
 
 /// This thread's turn, if no other thread has it. Never waits.
-fn turn<T>(of: &Mutex<T>) -> Result<MutexGuard<'_, T>, Error> {
+fn turn<T>(of: &Mutex<T>) -> Result<MutexGuard<'_, T>, CallError> {
     match of.try_lock() {
         Ok(guard) => Ok(guard),
         Err(TryLockError::WouldBlock) => Err(MorecStatus::Busy.into()),

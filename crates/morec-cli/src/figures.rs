@@ -10,7 +10,7 @@ use morec::report::Report;
 use serde::Serialize;
 
 use crate::output;
-use crate::table::Table;
+use crate::table::TextTable;
 
 /// Writes a value as JSON, indented, with a line ending. A reader that has gone is an [`io::Error`] that says so.
 pub fn write_json(out: &mut impl Write, value: &impl Serialize) -> io::Result<()> {
@@ -136,7 +136,7 @@ fn write_figures(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
 }
 
 fn write_overlaps(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
-    let mut table = Table::new([
+    let mut table = TextTable::new([
         "overlap",
         "F1",
         "precision",
@@ -162,7 +162,7 @@ fn write_overlaps(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
 }
 
 fn write_classes(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
-    let mut table = Table::new([
+    let mut table = TextTable::new([
         "class",
         "samples",
         "found",
@@ -225,7 +225,7 @@ fn write_confusion(out: &mut impl Write, e: &Evaluation) -> io::Result<()> {
     let mut header = vec![String::new()];
     header.extend((1..=columns.len()).map(|i| i.to_string()));
     header.push("nothing".to_owned());
-    let mut table = Table::with_header(header);
+    let mut table = TextTable::with_header(header);
     let names = e
         .confusion
         .rows

@@ -7,12 +7,12 @@ use anyhow::bail;
 use morec::labels::ClipLength;
 
 use crate::files::{ReadArgs, expand, open};
-use crate::progress::Progress;
+use crate::progress::SlowProgress;
 
 /// Rate and length of every clip in `paths`, by name. What was repaired in them is for `morec inspect` to say.
 pub fn lengths(paths: &[PathBuf], read: &ReadArgs) -> anyhow::Result<BTreeMap<String, ClipLength>> {
     let files = expand(paths)?;
-    let mut progress = Progress::new(files.len(), "reading clips");
+    let mut progress = SlowProgress::new(files.len(), "reading clips");
     let mut lengths = BTreeMap::new();
     for file in files {
         for clip in open(&file, read)?.clips {

@@ -30,11 +30,11 @@ use clap::{CommandFactory, Parser, Subcommand};
 )]
 struct Cli {
     #[command(subcommand)]
-    command: Command,
+    command: Subcommands,
 }
 
 #[derive(Subcommand)]
-enum Command {
+enum Subcommands {
     Inspect(commands::inspect::Args),
     Convert(commands::convert::Args),
     Smooth(commands::smooth::Args),
@@ -61,27 +61,27 @@ enum Command {
 fn main() -> ExitCode {
     let cli = Cli::parse();
     let outcome = match cli.command {
-        Command::Inspect(args) => commands::inspect::run(args),
-        Command::Convert(args) => commands::convert::run(args),
-        Command::Smooth(args) => commands::smooth::run(&args),
-        Command::Play(args) => commands::play::run(&args),
-        Command::Reproduce(args) => commands::reproduce::run(&args),
-        Command::Train(args) => commands::train::run(&args),
-        Command::Recognize(args) => commands::recognize::run(&args),
-        Command::Crossval(args) => commands::crossval::run(&args),
-        Command::Evaluate(args) => commands::evaluate::run(&args),
-        Command::Cut(args) => commands::cut::run(&args),
-        Command::Group(args) => commands::group::run(&args),
-        Command::Reduce(args) => commands::reduce::run(&args),
-        Command::Live(args) => commands::live::run(&args),
-        Command::Record(args) => commands::record::run(&args),
-        Command::Teach(args) => commands::teach::run(&args),
-        Command::Send(args) => commands::send::run(&args),
-        Command::Db(args) => commands::db::run(args),
-        Command::Demo(args) => commands::demo::run(&args),
-        Command::Completions(args) => commands::complete::completions(&args, Cli::command()),
-        Command::Man(args) => commands::complete::man(&args, Cli::command()),
-        Command::Studio(args) => commands::studio::run(&args),
+        Subcommands::Inspect(args) => commands::inspect::run(args),
+        Subcommands::Convert(args) => commands::convert::run(args),
+        Subcommands::Smooth(args) => commands::smooth::run(&args),
+        Subcommands::Play(args) => commands::play::run(&args),
+        Subcommands::Reproduce(args) => commands::reproduce::run(&args),
+        Subcommands::Train(args) => commands::train::run(&args),
+        Subcommands::Recognize(args) => commands::recognize::run(&args),
+        Subcommands::Crossval(args) => commands::crossval::run(&args),
+        Subcommands::Evaluate(args) => commands::evaluate::run(&args),
+        Subcommands::Cut(args) => commands::cut::run(&args),
+        Subcommands::Group(args) => commands::group::run(&args),
+        Subcommands::Reduce(args) => commands::reduce::run(&args),
+        Subcommands::Live(args) => commands::live::run(&args),
+        Subcommands::Record(args) => commands::record::run(&args),
+        Subcommands::Teach(args) => commands::teach::run(&args),
+        Subcommands::Send(args) => commands::send::run(&args),
+        Subcommands::Db(args) => commands::db::run(args),
+        Subcommands::Demo(args) => commands::demo::run(&args),
+        Subcommands::Completions(args) => commands::complete::completions(&args, Cli::command()),
+        Subcommands::Man(args) => commands::complete::man(&args, Cli::command()),
+        Subcommands::Studio(args) => commands::studio::run(&args),
     };
     match outcome {
         Ok(code) => code,

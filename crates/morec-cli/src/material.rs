@@ -12,9 +12,9 @@ use morec::labels::{Extent, Label, Labels, read_people};
 use morec::reproduce;
 use morec::train::thesis::SvrdmOptions;
 use morec::train::{
-    Everyday, Mirror, Recipe, Source, TrainClip, TrainOptions, TrainParams, TrainingData,
+    Everyday, Mirror, Recipe, StreamKind, TrainClip, TrainOptions, TrainParams, TrainingData,
 };
-use morec_db::labels::{DbSample, SampleFilter, State};
+use morec_db::labels::{DbSample, SampleFilter, SampleState};
 use morec_db::{ClipFilter, MotionDb};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -55,7 +55,7 @@ pub struct MaterialArgs {
     pub method: Method,
     /// With --method svrdm: its figures as the thesis has them, or tuned to accept what was not seen
     #[arg(long, value_enum, default_value = "tuned")]
-    pub svrdm: Setting,
+    pub svrdm: ThesisSetting,
     /// What the unlabelled parts of labelled clips are: motion that is none of the classes, or nothing to go by
     #[arg(long, value_enum, default_value = "background")]
     pub unlabelled: Unlabelled,
@@ -128,18 +128,18 @@ pub enum Method {
 
 /// Settings of the thesis's method.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Setting {
+pub enum ThesisSetting {
     /// The thesis's own figures: rejects nearly all it has not seen
     Faithful,
     /// The same method, made to accept what it has not seen
     Tuned,
 }
 
-impl From<Setting> for reproduce::Setting {
-    fn from(setting: Setting) -> Self {
+impl From<ThesisSetting> for reproduce::Setting {
+    fn from(setting: ThesisSetting) -> Self {
         match setting {
-            Setting::Faithful => reproduce::Setting::Faithful,
-            Setting::Tuned => reproduce::Setting::Tuned,
+            ThesisSetting::Faithful => reproduce::Setting::Faithful,
+            ThesisSetting::Tuned => reproduce::Setting::Tuned,
         }
     }
 }
@@ -177,7 +177,7 @@ impl From<MirrorArg> for Mirror {
 }
 
 /// Everything loaded.
-pub struct Material {
+pub struct ClipMaterial {
     /// Labelled and background clips, and the samples in them.
     pub data: TrainingData,
     /// Clips that hold none of the classes, for testing.
@@ -243,7 +243,7 @@ impl MaterialArgs {
 
     /// Loads everything; `unknown` are paths like those of `--background`. What is left out is said on standard
     /// error.
-    pub fn load(&self, unknown: &[PathBuf]) -> Result<Material> {
+    pub fn load(&self, unknown: &[PathBuf]) -> Result<ClipMaterial> {
         if let Some(db) = &self.db {
             return self.load_db(db, unknown);
         }
@@ -274,7 +274,7 @@ impl MaterialArgs {
         paths: &[PathBuf],
         labels: &Path,
         classes: &[String],
-    ) -> Result<Material> {
+    ) -> Result<ClipMaterial> {
         let text = Labels::read(&read(labels)?).with_context(|| shown(labels))?;
         warn(labels, &text.warnings);
         let people: BTreeMap<String, String> = text
@@ -292,7 +292,7 @@ impl MaterialArgs {
 
     /// The same from a database: its clips that hold samples, and those named as background or unknown. A clip's
     /// path is its name here.
-    fn load_db(&self, path: &Path, unknown: &[PathBuf]) -> Result<Material> {
+    fn load_db(&self, path: &Path, unknown: &[PathBuf]) -> Result<ClipMaterial> {
         let db = database::open_read_only(path)?;
         let infos = db.clips(&ClipFilter::default())?;
         let (mut files, mut names) = (Vec::new(), BTreeSet::new());
@@ -325,7 +325,7 @@ impl MaterialArgs {
                 clip: stored.clip,
                 roles: stored.roles,
                 rest: stored.rest,
-                source: Source::Labelled,
+                source: StreamKind::Labelled,
                 person: info.subject.clone(),
             };
             let file_bytes = std::fs::metadata(&info.path).map_or(0, |m| m.len());
@@ -392,7 +392,7 @@ impl MaterialArgs {
 /// The accepted samples of a database as a table of labels.
 fn database_labels(db: &MotionDb) -> Result<Labels> {
     let filter = SampleFilter {
-        state: Some(State::Accepted),
+        state: Some(SampleState::Accepted),
         ..SampleFilter::default()
     };
     let label = |(s, line): (DbSample, u64)| Label {
@@ -486,7 +486,7 @@ fn sort_out(
     classes: &[String],
     background: &BTreeSet<PathBuf>,
     unknown: &BTreeSet<PathBuf>,
-) -> Result<Material> {
+) -> Result<ClipMaterial> {
     let mut unknown_clips = Vec::new();
     let mut tested_only = BTreeSet::new();
     for LoadedClip { clip, path, .. } in &mut clips {
@@ -499,7 +499,7 @@ fn sort_out(
         }
         // Labels in clips that are said to hold no class do not count.
         if is_background || is_unknown {
-            clip.source = Source::Background;
+            clip.source = StreamKind::Background;
         }
     }
     let bytes: BTreeMap<String, u64> = clips
@@ -520,7 +520,7 @@ fn sort_out(
         );
     }
     let labelled_bytes = data.labelled().map(|clip| bytes[&clip.name]).sum();
-    Ok(Material {
+    Ok(ClipMaterial {
         data,
         unknown: unknown_clips,
         labelled_bytes,

@@ -10,7 +10,7 @@ use morec::labels::ClipLength;
 use morec::pivots::{PivotMap, PivotSet, PoseParams, pose_rows_of_clip};
 
 use crate::files::{self, ReadArgs};
-use crate::progress::Progress;
+use crate::progress::SlowProgress;
 
 /// How clips become pose rows.
 #[derive(Args, Debug)]
@@ -95,11 +95,11 @@ impl PoseReader<'_> {
     fn each_made<T>(
         &self,
         paths: &[PathBuf],
-        make: &dyn Fn(Take, &Progress) -> Result<T>,
+        make: &dyn Fn(Take, &SlowProgress) -> Result<T>,
         mut each: impl FnMut(T) -> Result<()>,
     ) -> Result<()> {
         let paths = files::expand(paths)?;
-        let mut progress = Progress::new(paths.len(), "reading clips");
+        let mut progress = SlowProgress::new(paths.len(), "reading clips");
         let mut failed = 0;
         for path in &paths {
             let takes = files::takes(path, self.read, &self.options);
@@ -125,7 +125,7 @@ impl PoseReader<'_> {
         Ok(())
     }
 
-    fn posed(&self, take: Take, progress: &Progress) -> Result<PosedClip> {
+    fn posed(&self, take: Take, progress: &SlowProgress) -> Result<PosedClip> {
         let clip = &take.clip;
         let map = PivotMap::of_clip(&self.set, clip, &take.roles)?;
         if !map.missing().is_empty() {

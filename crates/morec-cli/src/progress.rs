@@ -10,13 +10,13 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use crate::interrupt::stop_on_ctrl_c;
 
 /// A bar that shows itself only once a second has passed.
-pub struct Progress {
+pub struct SlowProgress {
     bar: ProgressBar,
     begun: Instant,
     shown: bool,
 }
 
-impl Progress {
+impl SlowProgress {
     /// A bar over `steps` steps of `what`.
     pub fn new(steps: usize, what: &'static str) -> Self {
         let bar = ProgressBar::with_draw_target(Some(steps as u64), ProgressDrawTarget::hidden());
@@ -46,20 +46,20 @@ impl Progress {
     }
 }
 
-impl Drop for Progress {
+impl Drop for SlowProgress {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
     }
 }
 
 /// A bar that follows a long job of the library, stage by stage; it shows itself only once a second has passed.
-pub struct Bar {
+pub struct StageBar {
     bar: ProgressBar,
     begun: Instant,
     stop: Arc<AtomicBool>,
 }
 
-impl Bar {
+impl StageBar {
     /// A hidden bar.
     pub fn new() -> Self {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
@@ -82,7 +82,7 @@ impl Bar {
     }
 }
 
-impl morec::progress::Progress for Bar {
+impl morec::progress::Progress for StageBar {
     fn report(&self, stage: &str, done: usize, total: usize) {
         if self.bar.is_hidden() && self.begun.elapsed() > Duration::from_secs(1) {
             self.bar.set_draw_target(ProgressDrawTarget::stderr());
@@ -97,7 +97,7 @@ impl morec::progress::Progress for Bar {
     }
 }
 
-impl Drop for Bar {
+impl Drop for StageBar {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
     }

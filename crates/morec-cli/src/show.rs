@@ -11,15 +11,15 @@ use std::time::{Duration, Instant};
 
 use morec::clip::Clip;
 
-pub use frame::Look;
-use frame::Stage;
+use frame::FigureScale;
+pub use frame::TerminalStyle;
 
 /// Pictures a second.
 const PICTURES_HZ: f64 = 25.0;
 
 /// A stretch that is known to hold a class.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Truth {
+pub struct KnownSpan {
     pub class: String,
     pub start_secs: f64,
     pub stop_secs: f64,
@@ -27,7 +27,7 @@ pub struct Truth {
 
 /// A detection, and when it was said.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Said {
+pub struct ReportedDetection {
     pub class: String,
     pub start_secs: f64,
     pub stop_secs: f64,
@@ -37,19 +37,19 @@ pub struct Said {
 
 /// What is shown.
 #[derive(Debug, Clone, Copy)]
-pub struct Scene<'a> {
+pub struct ShownClip<'a> {
     /// Above the picture: who is seen.
     pub title: &'a str,
     /// The stream, Y up.
     pub clip: &'a Clip,
     /// What was performed, in order.
-    pub truth: &'a [Truth],
+    pub truth: &'a [KnownSpan],
     /// What was said about it, in the order of `reported_secs`.
-    pub said: &'a [Said],
+    pub said: &'a [ReportedDetection],
 }
 
 /// The line of one event: `12.40 s  wave  0.93  (said 0.12 s after its end)`.
-pub fn event_line(said: &Said) -> String {
+pub fn event_line(said: &ReportedDetection) -> String {
     let delay = said.reported_secs - said.stop_secs;
     let (size, side) = (delay.abs(), if delay < 0.0 { "before" } else { "after" });
     format!(
@@ -68,7 +68,7 @@ fn printable(name: &str) -> String {
 }
 
 /// Writes the events, a line each: the show where nobody watches.
-pub fn write_events(scene: &Scene, out: &mut impl Write) -> io::Result<()> {
+pub fn write_events(scene: &ShownClip, out: &mut impl Write) -> io::Result<()> {
     for said in scene.said {
         writeln!(out, "{}", event_line(said))?;
     }
@@ -77,12 +77,12 @@ pub fn write_events(scene: &Scene, out: &mut impl Write) -> io::Result<()> {
 
 /// Plays the scene on standard output, `speed` times as fast as it was performed; only the events, at once, if
 /// that is not a terminal.
-pub fn play(scene: &Scene, speed: f64) -> io::Result<()> {
+pub fn play(scene: &ShownClip, speed: f64) -> io::Result<()> {
     let mut out = io::stdout().lock();
     if !out.is_terminal() || std::env::var_os("TERM").is_some_and(|term| term == "dumb") {
         return write_events(scene, &mut out);
     }
-    let stage = Stage::of(scene.clip);
+    let stage = FigureScale::of(scene.clip);
     let (started, length_secs) = (Instant::now(), scene.clip.duration_secs());
     let mut lines = 0;
     loop {
@@ -99,7 +99,7 @@ pub fn play(scene: &Scene, speed: f64) -> io::Result<()> {
 }
 
 /// What this terminal can show now; asked for every picture, as windows change their size.
-pub fn look() -> Look {
+pub fn look() -> TerminalStyle {
     let (columns, rows) = match terminal_size::terminal_size() {
         Some((width, height)) => (usize::from(width.0), usize::from(height.0)),
         None => (80, 24),
@@ -113,7 +113,7 @@ pub fn look() -> Look {
         .or_else(|| set("LC_CTYPE"))
         .or_else(|| set("LANG"));
     let ascii = locale.is_some_and(|l| matches!(l.as_str(), "C" | "POSIX"));
-    Look {
+    TerminalStyle {
         columns,
         rows,
         colour: set("NO_COLOR").is_none(),
@@ -144,7 +144,7 @@ mod tests {
 
     #[test]
     fn an_event_says_what_when_and_how_late() {
-        let mut said = Said {
+        let mut said = ReportedDetection {
             class: "wave".to_owned(),
             start_secs: 10.0,
             stop_secs: 12.28,
@@ -165,7 +165,7 @@ mod tests {
     fn without_a_terminal_there_are_just_the_events() {
         let take = frame::tests::take();
         let said = frame::tests::said(&take);
-        let scene = Scene {
+        let scene = ShownClip {
             title: "ada",
             clip: &take.clip,
             truth: &[],

@@ -3,13 +3,13 @@
 use std::fmt;
 
 /// A table; `Display` writes it, a line for each row, however long.
-pub struct Table {
+pub struct TextTable {
     rows: Vec<Vec<String>>,
     /// Names of columns that may be left out, the least important first.
     least: Vec<String>,
 }
 
-impl Table {
+impl TextTable {
     /// A table with these column names.
     pub fn new<const N: usize>(header: [&str; N]) -> Self {
         Self::with_header(header.map(str::to_owned).to_vec())
@@ -35,7 +35,7 @@ impl Table {
     }
 }
 
-impl Table {
+impl TextTable {
     fn columns(&self) -> usize {
         self.rows.iter().map(Vec::len).max().unwrap_or(0)
     }
@@ -55,8 +55,8 @@ impl Table {
 
     /// The table in at most `width` columns, as far as that can be: long texts lose their middle, then columns go, then
     /// texts lose more. Numbers are never cut.
-    pub fn fitted(&self, width: usize) -> Table {
-        let mut table = Table {
+    pub fn fitted(&self, width: usize) -> TextTable {
+        let mut table = TextTable {
             rows: self.rows.clone(),
             least: Vec::new(),
         };
@@ -99,7 +99,7 @@ impl Table {
             .any(|cell| !cell.is_empty() && cell.parse::<f64>().is_err())
     }
 
-    fn cut_to(mut self, widths: &[usize]) -> Table {
+    fn cut_to(mut self, widths: &[usize]) -> TextTable {
         for row in &mut self.rows {
             for (cell, width) in row.iter_mut().zip(widths) {
                 *cell = shortened(cell, *width);
@@ -169,7 +169,7 @@ fn beginning(signs: impl Iterator<Item = char>, room: usize) -> String {
     signs.take_while(fits).collect()
 }
 
-impl fmt::Display for Table {
+impl fmt::Display for TextTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let widths = self.widths();
         for row in &self.rows {
@@ -193,7 +193,7 @@ mod tests {
 
     #[test]
     fn columns_are_as_wide_as_their_widest_cell() {
-        let mut table = Table::new(["class", "n"]);
+        let mut table = TextTable::new(["class", "n"]);
         table.row(["é".to_owned(), "100".to_owned()]);
         table.row(["walking".to_owned()]);
         assert_eq!(
@@ -202,8 +202,8 @@ mod tests {
         );
     }
 
-    fn clips() -> Table {
-        let mut table = Table::new(["clip", "secs", "joints", "who"]).least(["joints", "secs"]);
+    fn clips() -> TextTable {
+        let mut table = TextTable::new(["clip", "secs", "joints", "who"]).least(["joints", "secs"]);
         for (clip, secs) in [
             ("studio_2026_walk_in_a_circle_take_01", "12.5"),
             ("short", "3"),
@@ -252,7 +252,7 @@ mod tests {
 
     #[test]
     fn other_programs_get_everything() {
-        let mut table = Table::new(["clip", "n", "what"]);
+        let mut table = TextTable::new(["clip", "n", "what"]);
         table.row(["a\tb".to_owned(), "1".to_owned()]);
         assert_eq!(table.tabbed(), "clip\tn\twhat\na b\t1\t\n");
     }

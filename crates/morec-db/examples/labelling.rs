@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-use morec_db::labels::{NewSample, State};
+use morec_db::labels::{NewSample, SampleState};
 use morec_db::{ClipFilter, ClipId, ClipUpdate, MotionDb, Proposal, ProposeOptions, questions};
 
 /// The classes of the database figure: seven signals, walking and two dribbles.
@@ -156,7 +156,7 @@ struct User<'a> {
 }
 
 impl User<'_> {
-    fn sample(&self, truth: &Truth, class: &str, state: State) -> NewSample {
+    fn sample(&self, truth: &Truth, class: &str, state: SampleState) -> NewSample {
         let (start_secs, stop_secs) = truth.secs.unwrap_or((0.0, self.secs[&truth.clip]));
         NewSample {
             clip: self.ids[&truth.clip],
@@ -192,9 +192,9 @@ impl User<'_> {
         let mut answer = NewSample::from(p.clone());
         match self.under(p.clip, p.start_secs, p.stop_secs) {
             Some(t) => {
-                (answer.state, answer.class) = (State::Accepted, self.truth[t].class.clone())
+                (answer.state, answer.class) = (SampleState::Accepted, self.truth[t].class.clone())
             }
-            None => answer.state = State::Rejected,
+            None => answer.state = SampleState::Rejected,
         }
         answer
     }
@@ -232,7 +232,13 @@ fn play(
     }
     let first: Vec<NewSample> = labelled
         .iter()
-        .map(|i| user.sample(&user.truth[*i], &user.truth[*i].class, State::Accepted))
+        .map(|i| {
+            user.sample(
+                &user.truth[*i],
+                &user.truth[*i].class,
+                SampleState::Accepted,
+            )
+        })
         .collect();
     db.add_samples(&first, "user")?;
     let (mut done, mut answers) = (Vec::new(), 0);
@@ -273,7 +279,7 @@ fn play(
             .into_iter()
             .map(|i| user.answer(&proposals[i]))
             .collect();
-        for answer in given.iter().filter(|a| a.state == State::Accepted) {
+        for answer in given.iter().filter(|a| a.state == SampleState::Accepted) {
             labelled.extend(user.under(answer.clip, answer.start_secs, answer.stop_secs));
         }
         db.add_samples(&given, "user")?;

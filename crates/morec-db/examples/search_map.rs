@@ -11,7 +11,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use morec_db::labels::{NewSample, SampleFilter, State};
+use morec_db::labels::{NewSample, SampleFilter, SampleState};
 use morec_db::search::{LearnedMetric, SearchIndex, SearchOptions};
 use morec_db::{ClipFilter, ClipId, ClipUpdate, MotionDb};
 
@@ -185,7 +185,7 @@ fn labelled(clip: &Shown) -> NewSample {
         start_secs: 0.0,
         stop_secs: clip.secs,
         whole_clip: true,
-        state: State::Accepted,
+        state: SampleState::Accepted,
         score: None,
     }
 }

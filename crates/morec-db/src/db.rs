@@ -24,7 +24,7 @@ pub struct MotionDb {
 /// How much is in a database.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[allow(missing_docs)] // The names say it.
-pub struct Summary {
+pub struct DbSummary {
     pub schema: i32,
     pub file_bytes: u64,
     pub files: u64,
@@ -172,7 +172,7 @@ impl MotionDb {
     }
 
     /// How much is in it.
-    pub fn summary(&self) -> Result<Summary, DbError> {
+    pub fn summary(&self) -> Result<DbSummary, DbError> {
         let count = |sql: &str| -> Result<u64, DbError> {
             Ok(self
                 .conn
@@ -182,7 +182,7 @@ impl MotionDb {
         let real = |sql: &str| -> Result<f64, DbError> {
             Ok(self.conn.query_row(sql, [], |row| row.get(0))?)
         };
-        Ok(Summary {
+        Ok(DbSummary {
             schema: SCHEMA,
             file_bytes: count(
                 "SELECT page_count * page_size FROM pragma_page_count(), pragma_page_size()",

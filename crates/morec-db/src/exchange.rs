@@ -32,7 +32,7 @@ use std::collections::BTreeMap;
 use morec::formats::{ParseError, Place, Warning};
 use morec::labels::ClipLength;
 
-use crate::labels::State;
+use crate::labels::SampleState;
 
 /// A labelled stretch as files tell of it.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,13 +48,13 @@ pub struct Annotation {
     /// How sure a program was.
     pub score: Option<f64>,
     /// What is thought of it.
-    pub state: State,
+    pub state: SampleState,
 }
 
 /// A form of labels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[allow(missing_docs)] // The names say it.
-pub enum Form {
+pub enum LabelFormat {
     Tsv,
     Csv,
     Json,
@@ -64,54 +64,54 @@ pub enum Form {
     LabelStudio,
 }
 
-impl Form {
+impl LabelFormat {
     /// All of them.
-    pub const ALL: [Form; 7] = [
-        Form::Tsv,
-        Form::Csv,
-        Form::Json,
-        Form::Eaf,
-        Form::Audacity,
-        Form::Babel,
-        Form::LabelStudio,
+    pub const ALL: [LabelFormat; 7] = [
+        LabelFormat::Tsv,
+        LabelFormat::Csv,
+        LabelFormat::Json,
+        LabelFormat::Eaf,
+        LabelFormat::Audacity,
+        LabelFormat::Babel,
+        LabelFormat::LabelStudio,
     ];
 
     /// Its name on the command line.
     pub fn name(self) -> &'static str {
         match self {
-            Form::Tsv => "tsv",
-            Form::Csv => "csv",
-            Form::Json => "json",
-            Form::Eaf => "eaf",
-            Form::Audacity => "audacity",
-            Form::Babel => "babel",
-            Form::LabelStudio => "label-studio",
+            LabelFormat::Tsv => "tsv",
+            LabelFormat::Csv => "csv",
+            LabelFormat::Json => "json",
+            LabelFormat::Eaf => "eaf",
+            LabelFormat::Audacity => "audacity",
+            LabelFormat::Babel => "babel",
+            LabelFormat::LabelStudio => "label-studio",
         }
     }
 
     /// The form that a file's ending says; text files are Audacity's, JSON is told apart by its content.
     pub fn of_file(name: &str, bytes: &[u8]) -> Option<Self> {
         match name.rsplit_once('.')?.1.to_ascii_lowercase().as_str() {
-            "tsv" => Some(Form::Tsv),
-            "csv" => Some(Form::Csv),
-            "eaf" => Some(Form::Eaf),
-            "txt" => Some(Form::Audacity),
+            "tsv" => Some(LabelFormat::Tsv),
+            "csv" => Some(LabelFormat::Csv),
+            "eaf" => Some(LabelFormat::Eaf),
+            "txt" => Some(LabelFormat::Audacity),
             "json" => Some(json::which(bytes)),
             _ => None,
         }
     }
 
     /// Whether a label of this state is read again in the same state.
-    pub fn keeps(self, state: State) -> bool {
+    pub fn keeps(self, state: SampleState) -> bool {
         match self {
-            Form::Audacity => state == State::Accepted,
+            LabelFormat::Audacity => state == SampleState::Accepted,
             _ => true,
         }
     }
 
     /// Whether a file of this form tells of one clip only.
     pub fn is_of_one_clip(self) -> bool {
-        matches!(self, Form::Eaf | Form::Audacity)
+        matches!(self, LabelFormat::Eaf | LabelFormat::Audacity)
     }
 }
 
@@ -127,26 +127,26 @@ pub struct ReadLabels {
 }
 
 /// Lengths of the clips by name: frames need a rate.
-pub type Lengths = BTreeMap<String, ClipLength>;
+pub type ClipLengths = BTreeMap<String, ClipLength>;
 
 /// Reads labels. `clip` is the clip that a file of one clip speaks of.
 ///
 /// # Errors
 /// Where and why the file cannot be read; frames of a clip that `lengths` does not know are not an error but counted.
 pub fn read(
-    form: Form,
+    form: LabelFormat,
     bytes: &[u8],
     clip: Option<&str>,
-    lengths: &Lengths,
+    lengths: &ClipLengths,
 ) -> Result<ReadLabels, ParseError> {
     match form {
-        Form::Tsv => tsv::read(bytes, lengths),
-        Form::Csv => csv::read(bytes, lengths),
-        Form::Json => json::read(bytes, lengths),
-        Form::Eaf => eaf::read(text(bytes)?, clip),
-        Form::Audacity => audacity::read(text(bytes)?, clip),
-        Form::Babel => babel::read(bytes),
-        Form::LabelStudio => label_studio::read(bytes),
+        LabelFormat::Tsv => tsv::read(bytes, lengths),
+        LabelFormat::Csv => csv::read(bytes, lengths),
+        LabelFormat::Json => json::read(bytes, lengths),
+        LabelFormat::Eaf => eaf::read(text(bytes)?, clip),
+        LabelFormat::Audacity => audacity::read(text(bytes)?, clip),
+        LabelFormat::Babel => babel::read(bytes),
+        LabelFormat::LabelStudio => label_studio::read(bytes),
     }
 }
 
@@ -154,7 +154,11 @@ pub fn read(
 ///
 /// # Errors
 /// Annotations of several clips in a form of one; a clip whose length is needed and not known.
-pub fn write(form: Form, annotations: &[Annotation], lengths: &Lengths) -> Result<String, String> {
+pub fn write(
+    form: LabelFormat,
+    annotations: &[Annotation],
+    lengths: &ClipLengths,
+) -> Result<String, String> {
     if form.is_of_one_clip()
         && annotations
             .windows(2)
@@ -166,13 +170,13 @@ pub fn write(form: Form, annotations: &[Annotation], lengths: &Lengths) -> Resul
         ));
     }
     match form {
-        Form::Tsv => tsv::write(annotations, lengths),
-        Form::Csv => csv::write(annotations, lengths),
-        Form::Json => json::write(annotations, lengths),
-        Form::Eaf => eaf::write(annotations, lengths),
-        Form::Audacity => audacity::write(annotations, lengths),
-        Form::Babel => babel::write(annotations, lengths),
-        Form::LabelStudio => label_studio::write(annotations, lengths),
+        LabelFormat::Tsv => tsv::write(annotations, lengths),
+        LabelFormat::Csv => csv::write(annotations, lengths),
+        LabelFormat::Json => json::write(annotations, lengths),
+        LabelFormat::Eaf => eaf::write(annotations, lengths),
+        LabelFormat::Audacity => audacity::write(annotations, lengths),
+        LabelFormat::Babel => babel::write(annotations, lengths),
+        LabelFormat::LabelStudio => label_studio::write(annotations, lengths),
     }
 }
 
@@ -187,14 +191,14 @@ pub fn snap(secs: f64, rate_hz: f64) -> f64 {
 }
 
 /// Start and stop as seconds.
-fn secs(annotation: &Annotation, lengths: &Lengths) -> Result<(f64, f64), String> {
+fn secs(annotation: &Annotation, lengths: &ClipLengths) -> Result<(f64, f64), String> {
     match annotation.extent {
         Some(extent) => Ok(extent),
         None => Ok((0.0, length(annotation, lengths)?.duration_secs())),
     }
 }
 
-fn length(annotation: &Annotation, lengths: &Lengths) -> Result<ClipLength, String> {
+fn length(annotation: &Annotation, lengths: &ClipLengths) -> Result<ClipLength, String> {
     lengths
         .get(&annotation.clip)
         .copied()
@@ -202,7 +206,7 @@ fn length(annotation: &Annotation, lengths: &Lengths) -> Result<ClipLength, Stri
 }
 
 /// Start and stop as frames, if both lie on frames.
-fn frames(annotation: &Annotation, lengths: &Lengths) -> Option<(u64, u64)> {
+fn frames(annotation: &Annotation, lengths: &ClipLengths) -> Option<(u64, u64)> {
     let rate_hz = lengths.get(&annotation.clip)?.rate_hz;
     let (start, stop) = annotation.extent?;
     let frame = |secs: f64| {
@@ -224,12 +228,12 @@ fn text(bytes: &[u8]) -> Result<&str, ParseError> {
 }
 
 /// What a cell of the column `state` says. Nothing is no judgement: what was judged before stays so.
-fn state(cell: &str, line: u64) -> Result<State, ParseError> {
+fn state(cell: &str, line: u64) -> Result<SampleState, ParseError> {
     let name = cell.trim().to_ascii_lowercase();
     if name.is_empty() {
-        return Ok(State::Proposed);
+        return Ok(SampleState::Proposed);
     }
-    State::from_name(&name).ok_or_else(|| {
+    SampleState::from_name(&name).ok_or_else(|| {
         ParseError::new(
             Place::Line(line),
             "state `accepted`, `rejected` or `proposed`",
@@ -257,7 +261,7 @@ fn json_error(error: &serde_json::Error, expected: &str) -> ParseError {
 }
 
 /// The length of a clip, whose file ending may stand behind its name.
-fn length_of(clip: &str, lengths: &Lengths) -> Option<ClipLength> {
+fn length_of(clip: &str, lengths: &ClipLengths) -> Option<ClipLength> {
     let stem = || {
         clip.rsplit_once('.')
             .and_then(|(stem, _)| lengths.get(stem))

@@ -30,7 +30,7 @@ const BYTES_KEPT: i64 = 256 << 20;
 
 /// A change that was done, and can be taken back; or was taken back, and can be done again.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
-pub struct Step {
+pub struct HistoryStep {
     /// Its number; later steps have greater ones.
     pub id: i64,
     /// What it did.
@@ -44,7 +44,7 @@ pub struct Step {
 }
 
 /// A step while its changes are written down.
-pub(crate) struct Recording {
+pub(crate) struct StepRecorder {
     pub(crate) step: i64,
     /// Rows written down before it have a number up to this.
     after: i64,
@@ -55,7 +55,7 @@ pub(crate) fn record(
     conn: &Connection,
     what: &str,
     step: Option<i64>,
-) -> Result<Recording, DbError> {
+) -> Result<StepRecorder, DbError> {
     let after = conn.query_row("SELECT coalesce(max(seq), 0) FROM was", [], |row| {
         row.get(0)
     })?;
@@ -70,14 +70,14 @@ pub(crate) fn record(
             conn.last_insert_rowid()
         }
     };
-    Ok(Recording { step, after })
+    Ok(StepRecorder { step, after })
 }
 
 /// Ends a step's transaction. A step that touched nothing is forgotten: there is nothing to take back.
 pub(crate) fn recorded(
     conn: &Connection,
     what: &str,
-    recording: &Recording,
+    recording: &StepRecorder,
 ) -> Result<Option<i64>, DbError> {
     let step = recording.step;
     digest::follow(conn, step, recording.after)?;
@@ -123,8 +123,8 @@ fn prune(conn: &Connection) -> Result<(), DbError> {
     Ok(())
 }
 
-fn step(row: &Row<'_>) -> rusqlite::Result<Step> {
-    Ok(Step {
+fn step(row: &Row<'_>) -> rusqlite::Result<HistoryStep> {
+    Ok(HistoryStep {
         id: row.get(0)?,
         what: row.get(1)?,
         set_secs: row.get(2)?,
@@ -158,10 +158,10 @@ impl MotionDb {
     }
 
     /// All steps that are remembered, the last one first.
-    pub fn history(&self) -> Result<Vec<Step>, DbError> {
+    pub fn history(&self) -> Result<Vec<HistoryStep>, DbError> {
         let sql = "SELECT id, what, set_secs, undone FROM edits ORDER BY id DESC";
         let mut statement = self.conn.prepare(sql)?;
-        let mut steps: Vec<Step> = statement
+        let mut steps: Vec<HistoryStep> = statement
             .query_map([], step)?
             .collect::<Result<_, rusqlite::Error>>()?;
         let mut counts: BTreeMap<i64, BTreeMap<String, usize>> = BTreeMap::new();
@@ -181,7 +181,7 @@ impl MotionDb {
     }
 
     /// The last step that was not taken back, without its rows.
-    pub fn last_step(&self) -> Result<Option<Step>, DbError> {
+    pub fn last_step(&self) -> Result<Option<HistoryStep>, DbError> {
         let sql = "SELECT id, what, set_secs, undone FROM edits WHERE undone = 0 ORDER BY id DESC LIMIT 1";
         Ok(self.conn.query_row(sql, [], step).optional()?)
     }

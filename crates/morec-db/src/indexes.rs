@@ -24,7 +24,7 @@ impl MotionDb {
     /// What an index trained now would be taught: clip, class, start and stop of every accepted sample.
     fn taught(&self) -> Result<String, DbError> {
         let filter = crate::labels::SampleFilter {
-            state: Some(crate::labels::State::Accepted),
+            state: Some(crate::labels::SampleState::Accepted),
             ..Default::default()
         };
         let rows: Vec<(String, String, f64, f64)> = self

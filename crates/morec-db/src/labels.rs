@@ -8,7 +8,7 @@ mod classes;
 mod plan;
 mod samples;
 
-pub use classes::ClassInfo;
+pub use classes::ClassCount;
 pub use plan::{ChangedLabel, LabelChange, LabelOptions, Labelled};
 pub use samples::{Added, DbSample, NewSample, SampleFilter, SampleId};
 
@@ -20,7 +20,7 @@ pub const GROUPED_BY: &str = "group";
     Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
 )]
 #[serde(rename_all = "lowercase")]
-pub enum State {
+pub enum SampleState {
     /// It shows its class.
     Accepted,
     /// It may show its class; nobody has looked yet.
@@ -29,13 +29,13 @@ pub enum State {
     Rejected,
 }
 
-impl State {
+impl SampleState {
     /// Its name in tables.
     pub fn name(self) -> &'static str {
         match self {
-            State::Accepted => "accepted",
-            State::Proposed => "proposed",
-            State::Rejected => "rejected",
+            SampleState::Accepted => "accepted",
+            SampleState::Proposed => "proposed",
+            SampleState::Rejected => "rejected",
         }
     }
 

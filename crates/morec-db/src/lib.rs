@@ -18,6 +18,7 @@
 //! | rows, search by example, near copies | [`rows`], [`search`] |
 //! | the other samples of classes that a few are labelled of | [`MotionDb::propose`], [`questions`] |
 
+mod body;
 mod clips;
 mod cut;
 mod db;
@@ -43,9 +44,9 @@ mod time;
 
 pub use clips::{ClipFilter, ClipId, ClipInfo, ClipUpdate};
 pub use cut::{ClipCuts, CutReport, Cutter, Still};
-pub use db::{Health, MotionDb, Summary};
+pub use db::{DbSummary, Health, MotionDb};
 pub use error::DbError;
-pub use history::{Effect, STEPS_KEPT, Step, Turned};
+pub use history::{Effect, HistoryStep, STEPS_KEPT, Turned};
 pub use import::{ImportCounts, ImportLog, ImportOutcome, Refused};
 pub use indexes::IndexInfo;
 pub use kept::{KeptClip, KeptFile, clip_rows, packed_rows, rows_recipe, stored_clip};

@@ -70,7 +70,7 @@ fn report_to_json(report: &ImportReport) -> String {
 }
 
 /// The joint of each role, in the order of [`Role::ALL`].
-fn roles_to_json(roles: &RoleMap) -> String {
+pub(crate) fn roles_to_json(roles: &RoleMap) -> String {
     let joints: Vec<Option<usize>> = Role::ALL
         .into_iter()
         .map(|role| roles.joint(role))
@@ -78,7 +78,7 @@ fn roles_to_json(roles: &RoleMap) -> String {
     serde_json::to_string(&joints).unwrap_or_default()
 }
 
-fn roles_from_json(json: &str, joints: usize) -> Option<RoleMap> {
+pub(crate) fn roles_from_json(json: &str, joints: usize) -> Option<RoleMap> {
     let list: Vec<Option<usize>> = serde_json::from_str(json).ok()?;
     let mut map = RoleMap::default();
     for (role, joint) in Role::ALL.into_iter().zip(list) {

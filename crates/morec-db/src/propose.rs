@@ -17,7 +17,7 @@ use morec::progress::Progress;
 use morec::train::overlap_share;
 use rayon::prelude::*;
 
-use crate::labels::{NewSample, SampleFilter, SampleId, State};
+use crate::labels::{NewSample, SampleFilter, SampleId, SampleState};
 use crate::{ClipId, DbError, MotionDb};
 
 mod candidates;
@@ -28,9 +28,9 @@ mod views;
 
 pub use questions::questions;
 
-use candidates::{Candidate, Seen};
+use candidates::{ClassDistances, ProposalCandidate};
 use confidence::{Confidence, Judgement, NEAR_NOTHING};
-use material::{Judged, Material, overlap};
+use material::{JudgedSpan, ProposalData, overlap};
 use views::{chosen, views};
 
 /// How to propose.
@@ -92,7 +92,7 @@ impl From<Proposal> for NewSample {
             start_secs: p.start_secs,
             stop_secs: p.stop_secs,
             whole_clip: p.whole_clip,
-            state: State::Proposed,
+            state: SampleState::Proposed,
             score: Some(f64::from(p.score)),
         }
     }
@@ -114,7 +114,7 @@ impl MotionDb {
     ) -> Result<Vec<Proposal>, DbError> {
         let proposals = self.propose(options, progress)?;
         let proposed = self.samples(&SampleFilter {
-            state: Some(State::Proposed),
+            state: Some(SampleState::Proposed),
             ..SampleFilter::default()
         })?;
         let old = proposed.into_iter().filter(|s| s.set_by == PROPOSED_BY);
@@ -135,7 +135,7 @@ impl MotionDb {
         let rows = self.rows(&params, progress)?;
         let samples = self.samples(&SampleFilter::default())?;
         let clips = self.clips(&crate::ClipFilter::default())?;
-        let material = Material::new(rows, &clips, &samples, params.tick_hz());
+        let material = ProposalData::new(rows, &clips, &samples, params.tick_hz());
         if material.classes.is_empty() {
             return Err(DbError::Invalid(
                 "no accepted sample to go by: label a few first".to_owned(),
@@ -147,7 +147,7 @@ impl MotionDb {
             .flat_map(|(clip, seen)| judged(&material, *clip, seen))
             .collect();
         let confidence = Confidence::learn(material.classes.len(), &judgements);
-        let of_clip = |(clip, seen): &(usize, Seen)| {
+        let of_clip = |(clip, seen): &(usize, ClassDistances)| {
             in_clip(&material, *clip, seen, &confidence, params.tick_hz())
         };
         let mut proposals: Vec<Proposal> = seen.par_iter().flat_map_iter(of_clip).collect();
@@ -158,10 +158,10 @@ impl MotionDb {
 
 /// What the templates see in every clip.
 fn look(
-    material: &Material,
+    material: &ProposalData,
     options: &ProposeOptions,
     progress: &dyn Progress,
-) -> Result<Vec<(usize, Seen)>, DbError> {
+) -> Result<Vec<(usize, ClassDistances)>, DbError> {
     let templates = chosen(material, options);
     let views = views(material, &templates);
     let (done, total) = (AtomicUsize::new(0), material.clips.len());
@@ -170,7 +170,7 @@ fn look(
             return Some(Err(DbError::Cancelled));
         }
         let view = views.get(&material.clips[clip].laid.bones.and(material.bones))?;
-        let seen = Seen::of(material, clip, &templates, view);
+        let seen = ClassDistances::of(material, clip, &templates, view);
         progress.report("looking", done.fetch_add(1, Ordering::Relaxed) + 1, total);
         Some(Ok((clip, seen)))
     };
@@ -178,7 +178,7 @@ fn look(
 }
 
 /// What the judged stretches of a clip say of right and wrong.
-fn judged(material: &Material, clip: usize, seen: &Seen) -> Vec<Judgement> {
+fn judged(material: &ProposalData, clip: usize, seen: &ClassDistances) -> Vec<Judgement> {
     let mut found = Vec::new();
     for judged in material.judged.iter().filter(|j| j.clip == clip) {
         let Some(class) = judged.class else { continue };
@@ -207,16 +207,16 @@ fn judged(material: &Material, clip: usize, seen: &Seen) -> Vec<Judgement> {
 
 /// The likeliest of the candidates that overlap, none of what was judged already.
 fn in_clip(
-    material: &Material,
+    material: &ProposalData,
     clip: usize,
-    seen: &Seen,
+    seen: &ClassDistances,
     confidence: &Confidence,
     tick_hz: f64,
 ) -> Vec<Proposal> {
     let of = &material.clips[clip];
     let everything = 0..of.laid.rows.len();
-    let known: Vec<&Judged> = material.judged.iter().filter(|j| j.clip == clip).collect();
-    let mut candidates: Vec<(f64, Candidate)> = Vec::new();
+    let known: Vec<&JudgedSpan> = material.judged.iter().filter(|j| j.clip == clip).collect();
+    let mut candidates: Vec<(f64, ProposalCandidate)> = Vec::new();
     for class in 0..material.classes.len() {
         let whole = material.whole[class];
         let found = if whole {
@@ -228,7 +228,7 @@ fn in_clip(
             if whole {
                 candidate.ticks = everything.clone();
             }
-            let answered = |j: &&Judged| match j.accepted {
+            let answered = |j: &&JudgedSpan| match j.accepted {
                 true => j.whole || whole || overlap_share(&j.ticks, &candidate.ticks) > 0.5,
                 false => {
                     j.class == Some(class) && (j.whole || overlap(&j.ticks, &candidate.ticks) > 0.5)
@@ -240,7 +240,7 @@ fn in_clip(
         }
     }
     candidates.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let mut kept: Vec<(f64, Candidate)> = Vec::new();
+    let mut kept: Vec<(f64, ProposalCandidate)> = Vec::new();
     for candidate in candidates {
         if !kept
             .iter()
@@ -249,7 +249,7 @@ fn in_clip(
             kept.push(candidate);
         }
     }
-    let proposal = |(score, c): (f64, Candidate)| Proposal {
+    let proposal = |(score, c): (f64, ProposalCandidate)| Proposal {
         clip: of.id,
         class: material.classes[c.class].clone(),
         start_secs: c.ticks.start as f64 / tick_hz,

@@ -4,7 +4,7 @@
 //! about the example's length is first compared by a summary of its rows (prefix sums: nothing of the length of a window
 //! is gone through): how much moves at which pace, mean pose, mean travel. The nearest are ranked by their distance and by
 //! the company they keep: similarity spreads over a graph of neighbours, so that far styles of a motion are found by way
-//! of those between. The first are placed exactly by subsequence dynamic time warping ([`morec::templates::Bank`]). Where
+//! of those between. The first are placed exactly by subsequence dynamic time warping ([`morec::templates::TemplateBank`]). Where
 //! samples are labelled, a [`LearnedMetric`] says which differences matter.
 
 mod candidates;

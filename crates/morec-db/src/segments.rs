@@ -1,5 +1,7 @@
 //! Stretches that a method found in clips.
 
+use std::collections::BTreeMap;
+
 use rusqlite::params;
 
 use crate::{ClipId, DbError, MotionDb};
@@ -67,6 +69,15 @@ impl MotionDb {
             }
             Ok(())
         })
+    }
+
+    /// By which method each clip was cut; clips that were not cut are not in it.
+    pub fn cut_methods(&self) -> Result<BTreeMap<ClipId, String>, DbError> {
+        let mut statement = self
+            .conn
+            .prepare("SELECT clip, max(method) FROM segments GROUP BY clip")?;
+        let methods = statement.query_map([], |row| Ok((ClipId(row.get(0)?), row.get(1)?)))?;
+        Ok(methods.collect::<Result<_, _>>()?)
     }
 
     /// The segments of all clips, by clip and time.

@@ -299,7 +299,7 @@ fn damage_is_found() {
 
 #[test]
 fn clips_are_renamed_and_removed_with_what_belongs_to_them() {
-    use crate::labels::{NewSample, SampleFilter, State};
+    use crate::labels::{NewSample, SampleFilter, SampleState};
     let (_folder, mut db) = database_of_waves(2);
     let names: Vec<String> = db
         .clips(&ClipFilter::default())
@@ -313,7 +313,7 @@ fn clips_are_renamed_and_removed_with_what_belongs_to_them() {
         start_secs: 0.0,
         stop_secs: 1.0,
         whole_clip: false,
-        state: State::Accepted,
+        state: SampleState::Accepted,
         score: None,
     };
     db.add_samples(&[sample], "me").unwrap();

@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use morec::files;
 use morec::live::axis::{AxisOptions, AxisReceiver, AxisSkeleton};
-use morec::live::{Frame, Next, Source, SourceCounts, wall_now_secs};
+use morec::live::{Frame, Source, SourceCounts, SourceEvent, wall_now_secs};
 
 use crate::error::Context;
 use crate::{Address, LiveError, Notices};
@@ -110,7 +110,7 @@ impl Drop for AxisSource {
 }
 
 impl Source for AxisSource {
-    fn next(&mut self, frame: &mut Frame) -> Next {
+    fn next(&mut self, frame: &mut Frame) -> SourceEvent {
         if let Some(next) = self.receiver.next(frame) {
             return next;
         }
@@ -133,7 +133,7 @@ impl Source for AxisSource {
         }
         self.receiver.tick(wall_now_secs());
         self.complain();
-        self.receiver.next(frame).unwrap_or(Next::Quiet)
+        self.receiver.next(frame).unwrap_or(SourceEvent::Quiet)
     }
 
     fn counts(&self) -> SourceCounts {

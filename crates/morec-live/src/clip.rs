@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use morec::files::FileReader;
 use morec::index::MotionIndex;
-use morec::live::{Actor, Frame, Next, Rig, Source, SourceCounts, wall_now_secs};
+use morec::live::{Frame, PerformerId, Rig, Source, SourceCounts, SourceEvent, wall_now_secs};
 use morec::rng::Rng;
 
 use crate::{Address, LiveError, PlayableClip, load};
@@ -113,9 +113,9 @@ impl ClipSource {
 }
 
 impl Source for ClipSource {
-    fn next(&mut self, frame: &mut Frame) -> Next {
+    fn next(&mut self, frame: &mut Frame) -> SourceEvent {
         if self.laps != 0 && self.lap >= self.laps {
-            return Next::Ended;
+            return SourceEvent::Ended;
         }
         let PlayableClip { clip, roles, .. } = &self.clips[self.clip];
         if !self.announced {
@@ -124,13 +124,13 @@ impl Source for ClipSource {
                 skeleton: clip.skeleton.clone(),
                 roles: roles.clone(),
             };
-            return Next::Rig(Actor(0), Arc::new(rig));
+            return SourceEvent::Rig(PerformerId(0), Arc::new(rig));
         }
         if self.frame >= clip.frames {
             return if self.advance() {
-                Next::Gone(Actor(0))
+                SourceEvent::Gone(PerformerId(0))
             } else {
-                Next::Ended
+                SourceEvent::Ended
             };
         }
         let time_secs = self.origin_secs + self.frame as f64 / clip.rate_hz;
@@ -139,7 +139,7 @@ impl Source for ClipSource {
             let early = due.saturating_sub(self.begun.elapsed());
             if early > NAP {
                 std::thread::sleep(NAP);
-                return Next::Quiet;
+                return SourceEvent::Quiet;
             }
             std::thread::sleep(early);
         }
@@ -147,10 +147,10 @@ impl Source for ClipSource {
         self.counts.packets += 1;
         if self.rng.chance(self.loss) {
             self.counts.incomplete += 1;
-            return Next::Quiet;
+            return SourceEvent::Quiet;
         }
         frame.pose.set(clip, self.frame - 1);
-        frame.actor = Actor(0);
+        frame.actor = PerformerId(0);
         frame.wall_secs = wall_now_secs();
         let jitter_secs = if self.jitter_secs > 0.0 {
             self.rng.range(0.0, self.jitter_secs)
@@ -158,7 +158,7 @@ impl Source for ClipSource {
             0.0
         };
         frame.time_secs = time_secs + jitter_secs;
-        Next::Frame
+        SourceEvent::Frame
     }
 
     fn counts(&self) -> SourceCounts {

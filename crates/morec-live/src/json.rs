@@ -5,7 +5,9 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use morec::live::{Actor, Frame, MAX_ACTORS, Next, Rig, Source, SourceCounts, wall_now_secs};
+use morec::live::{
+    Frame, MAX_ACTORS, PerformerId, Rig, Source, SourceCounts, SourceEvent, wall_now_secs,
+};
 use morec::roles::{Role, RoleMap};
 
 use crate::address::openness;
@@ -36,8 +38,8 @@ pub struct JsonSource {
     ends: bool,
     performers: Vec<RemotePerformer>,
     /// A pose whose skeleton was announced first.
-    waiting: Option<(Actor, PoseLine)>,
-    leaving: Vec<Actor>,
+    waiting: Option<(PerformerId, PoseLine)>,
+    leaving: Vec<PerformerId>,
     begun_secs: f64,
     counts: SourceCounts,
     notices: Notices,
@@ -134,7 +136,7 @@ impl JsonSource {
         for (at, performer) in self.performers.iter_mut().enumerate() {
             if !performer.gone && now_secs - performer.heard_secs > GONE_SECS {
                 performer.gone = true;
-                self.leaving.push(Actor(at as u16));
+                self.leaving.push(PerformerId(at as u16));
             }
         }
     }
@@ -145,7 +147,7 @@ impl JsonSource {
         number: u64,
         text: Option<&str>,
         frame: &mut Frame,
-    ) -> Next {
+    ) -> SourceEvent {
         self.counts.packets += 1;
         let pose = text
             .ok_or_else(|| "no text, or longer than 65536 bytes".to_owned())
@@ -155,45 +157,45 @@ impl JsonSource {
             Err(error) => {
                 self.counts.malformed += 1;
                 self.notices.add(|| format!("line {number}"), error);
-                return Next::Quiet;
+                return SourceEvent::Quiet;
             }
         };
         let Some(at) = self.performer(connection, pose.actor) else {
             self.counts.refused += 1;
-            return Next::Quiet;
+            return SourceEvent::Quiet;
         };
         let performer = &mut self.performers[at];
-        let actor = Actor(at as u16);
+        let actor = PerformerId(at as u16);
         let seen = pose.known();
         if seen & !performer.known != 0 {
             performer.known |= seen;
             let rig = rig_of(performer.known);
             self.waiting = Some((actor, pose));
-            return Next::Rig(actor, Arc::new(rig));
+            return SourceEvent::Rig(actor, Arc::new(rig));
         }
         self.counts.incomplete += u64::from(seen != performer.known);
         self.fill(actor, &pose, frame)
     }
 
-    fn fill(&self, actor: Actor, pose: &PoseLine, frame: &mut Frame) -> Next {
+    fn fill(&self, actor: PerformerId, pose: &PoseLine, frame: &mut Frame) -> SourceEvent {
         frame.wall_secs = wall_now_secs();
         frame.time_secs = pose.time_secs.unwrap_or(frame.wall_secs - self.begun_secs);
         frame.actor = actor;
         frame.pose.positions.clear();
         frame.pose.positions.extend(pose.positions);
         frame.pose.rotations.clone_from(&pose.rotations);
-        Next::Frame
+        SourceEvent::Frame
     }
 }
 
 impl Source for JsonSource {
-    fn next(&mut self, frame: &mut Frame) -> Next {
+    fn next(&mut self, frame: &mut Frame) -> SourceEvent {
         if let Some((actor, pose)) = self.waiting.take() {
             return self.fill(actor, &pose, frame);
         }
         self.forget_silent();
         if let Some(actor) = self.leaving.pop() {
-            return Next::Gone(actor);
+            return SourceEvent::Gone(actor);
         }
         match self.lines.next(WAIT) {
             Came::Line {
@@ -205,16 +207,16 @@ impl Source for JsonSource {
                 for (at, performer) in self.performers.iter_mut().enumerate() {
                     if performer.connection == connection && !performer.gone {
                         performer.gone = true;
-                        self.leaving.push(Actor(at as u16));
+                        self.leaving.push(PerformerId(at as u16));
                     }
                 }
-                Next::Quiet
+                SourceEvent::Quiet
             }
-            Came::Nothing => Next::Quiet,
-            Came::Ended if self.ends => Next::Ended,
+            Came::Nothing => SourceEvent::Quiet,
+            Came::Ended if self.ends => SourceEvent::Ended,
             Came::Ended => {
                 std::thread::sleep(WAIT);
-                Next::Quiet
+                SourceEvent::Quiet
             }
         }
     }

@@ -7,7 +7,7 @@ use morec::import::ImportOptions;
 use morec::index::MotionIndex;
 use morec::live::axis::AxisOptions;
 use morec::live::vmc::VmcOptions;
-use morec::live::{Overload, Source};
+use morec::live::{OverflowPolicy, Source};
 use morec::roles::mapping::Mapping;
 
 use crate::axis::{AxisSource, axis_skeleton};
@@ -56,7 +56,7 @@ pub struct OpenSource {
     /// It.
     pub source: Box<dyn Source>,
     /// Whether it can wait for whoever takes its frames.
-    pub overload: Overload,
+    pub overload: OverflowPolicy,
     /// What it is called, with the port that was free if it asked for any.
     pub name: String,
     /// What it notices of what it is sent.
@@ -76,7 +76,7 @@ pub fn open_source(
         "vmc" => {
             let source = vmc(address, options)?;
             let (name, notices) = (format!("vmc://{}", source.address()?), source.notices());
-            Ok(opened(source, Overload::Drop, name, notices))
+            Ok(opened(source, OverflowPolicy::Drop, name, notices))
         }
         "axis" | "axis+udp" => {
             let skeleton = options.axis_skeleton.as_deref().map(axis_skeleton);
@@ -86,19 +86,24 @@ pub fn open_source(
             };
             let (source, name) = AxisSource::open(address, &axis)?;
             let notices = source.notices();
-            Ok(opened(source, Overload::Drop, name, notices))
+            Ok(opened(source, OverflowPolicy::Drop, name, notices))
         }
         "json" => {
             let source = JsonSource::open(address)?;
             let notices = source.notices();
-            Ok(opened(source, Overload::Wait, address.to_string(), notices))
+            Ok(opened(
+                source,
+                OverflowPolicy::Wait,
+                address.to_string(),
+                notices,
+            ))
         }
         "json+tcp" => {
             let (source, at) = JsonSource::listen(address)?;
             let notices = source.notices();
             Ok(opened(
                 source,
-                Overload::Wait,
+                OverflowPolicy::Wait,
                 format!("json+tcp://{at}"),
                 notices,
             ))
@@ -113,8 +118,8 @@ pub fn open_source(
             };
             let source = ClipSource::open(address, options.index, &reader)?;
             let overload = match source.is_paced() {
-                true => Overload::Drop,
-                false => Overload::Wait,
+                true => OverflowPolicy::Drop,
+                false => OverflowPolicy::Wait,
             };
             Ok(opened(
                 source,
@@ -131,7 +136,7 @@ pub fn open_source(
 
 fn opened(
     source: impl Source + 'static,
-    overload: Overload,
+    overload: OverflowPolicy,
     name: String,
     notices: Notices,
 ) -> OpenSource {

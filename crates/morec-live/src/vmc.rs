@@ -5,7 +5,7 @@ use std::net::{SocketAddr, UdpSocket};
 use std::time::Duration;
 
 use morec::live::vmc::{VmcOptions, VmcReceiver};
-use morec::live::{Frame, Next, Source, SourceCounts, wall_now_secs};
+use morec::live::{Frame, Source, SourceCounts, SourceEvent, wall_now_secs};
 
 use crate::address::openness;
 use crate::error::Context;
@@ -76,7 +76,7 @@ impl VmcSource {
 }
 
 impl Source for VmcSource {
-    fn next(&mut self, frame: &mut Frame) -> Next {
+    fn next(&mut self, frame: &mut Frame) -> SourceEvent {
         if let Some(next) = self.receiver.next(frame) {
             return next;
         }
@@ -91,7 +91,7 @@ impl Source for VmcSource {
             Err(_) => std::thread::sleep(WAIT),
         }
         self.receiver.tick(wall_now_secs());
-        self.receiver.next(frame).unwrap_or(Next::Quiet)
+        self.receiver.next(frame).unwrap_or(SourceEvent::Quiet)
     }
 
     fn counts(&self) -> SourceCounts {

@@ -189,10 +189,10 @@ pub fn kept_clip(
     .into())
 }
 
-type Event = (String, f64, f64, f64, f64);
+type EventTuple = (String, f64, f64, f64, f64);
 
 /// A clip as rows of a table give it: motion, roles and frames of rest; without roles all is inferred.
-type Motion = (Option<Vec<u8>>, Option<String>, Option<usize>);
+type MotionColumns = (Option<Vec<u8>>, Option<String>, Option<usize>);
 
 /// What an index recognises in kept clips, in parallel: for each the class, start, stop, score and report of its motions,
 /// or why there is nothing to recognise.
@@ -200,21 +200,21 @@ type Motion = (Option<Vec<u8>>, Option<String>, Option<usize>);
 pub fn recognize_kept<'py>(
     py: Python<'py>,
     index: &PyIndex,
-    clips: Vec<Motion>,
+    clips: Vec<MotionColumns>,
 ) -> PyResult<Vec<Bound<'py, PyAny>>> {
     let index = &index.index;
-    let found: Vec<Result<Vec<Event>, String>> = py.detach(|| {
-        let one = |clip: &Motion| recognized(index, clip);
+    let found: Vec<Result<Vec<EventTuple>, String>> = py.detach(|| {
+        let one = |clip: &MotionColumns| recognized(index, clip);
         clips.par_iter().map(one).collect()
     });
-    let told = |found: Result<Vec<Event>, String>| match found {
+    let told = |found: Result<Vec<EventTuple>, String>| match found {
         Ok(events) => Ok(events.into_pyobject(py)?.into_any()),
         Err(error) => Ok(error.into_pyobject(py)?.into_any()),
     };
     found.into_iter().map(told).collect()
 }
 
-fn recognized(index: &MotionIndex, clip: &Motion) -> Result<Vec<Event>, String> {
+fn recognized(index: &MotionIndex, clip: &MotionColumns) -> Result<Vec<EventTuple>, String> {
     let (motion, roles, rest_frames) = clip;
     let motion = motion.as_ref().ok_or("no motion")?;
     let mut stored = match roles {

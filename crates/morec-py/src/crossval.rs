@@ -3,8 +3,10 @@
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-use morec::crossval::{By, CrossvalOptions, Material, Tested, crossval as run_crossval};
-use morec::eval::{Evaluation, Found, MEASURED_OVERLAP, StreamInfo, Truth, timelines};
+use morec::crossval::{CrossvalData, CrossvalOptions, FoldBy, Tested, crossval as run_crossval};
+use morec::eval::{
+    ClipDetection, Evaluation, GroundTruth, MEASURED_OVERLAP, StreamInfo, timelines,
+};
 use morec::labels::Sample;
 use morec::perturb::Perturbation;
 use morec::report::{Report, TrainedClass};
@@ -13,7 +15,7 @@ use pyo3::types::PyDict;
 
 use crate::errors::{io_error, morec_error, value_error};
 use crate::job;
-use crate::material::{Given, recipe};
+use crate::material::{TrainingInput, recipe};
 use crate::tables::{DETECTION, plain, table};
 
 /// What a cross-validation measured.
@@ -40,9 +42,9 @@ pub fn crossval(
 ) -> PyResult<PyCrossval> {
     let recipe = self::recipe(recipe)?;
     let (options, by) = options(how)?;
-    let given = Given::new(material, &classes)?;
+    let given = TrainingInput::new(material, &classes)?;
     let outcome = job::run(py, progress, |progress| {
-        let of = Material {
+        let of = CrossvalData {
             clips: &given.data.clips,
             samples: &given.data.samples,
             classes: &given.data.classes,
@@ -77,9 +79,9 @@ fn options(how: &Bound<'_, PyDict>) -> PyResult<(CrossvalOptions, String)> {
     let seed = get("seed")?.extract()?;
     let options = CrossvalOptions {
         by: match by.as_str() {
-            "person" => By::Person,
-            "clip" => By::Clip,
-            "half" => By::Half { seed },
+            "person" => FoldBy::Person,
+            "clip" => FoldBy::Clip,
+            "half" => FoldBy::Half { seed },
             other => {
                 return Err(value_error(format!(
                     "by: expected \"person\", \"clip\" or \"half\", found {other:?}"
@@ -223,36 +225,37 @@ impl PyCrossval {
     }
 }
 
-type Span = (String, String, f64, f64);
-type Hit = (String, String, f64, f64, Option<f64>, Option<f64>);
+type SpanTuple = (String, String, f64, f64);
+type HitTuple = (String, String, f64, f64, Option<f64>, Option<f64>);
 
 /// Every measure of detections held against labels.
 #[pyfunction]
 pub fn evaluate<'py>(
     py: Python<'py>,
     streams: Vec<(String, f64)>,
-    truth: Vec<Span>,
-    found: Vec<Hit>,
+    truth: Vec<SpanTuple>,
+    found: Vec<HitTuple>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let stream = |(clip, duration_secs)| StreamInfo {
         clip,
         duration_secs,
         unknown: false,
     };
-    let label = |(clip, class, start_secs, stop_secs): Span| Truth {
+    let label = |(clip, class, start_secs, stop_secs): SpanTuple| GroundTruth {
         clip,
         class,
         start_secs,
         stop_secs,
     };
-    let hit = |(clip, class, start_secs, stop_secs, score, reported_secs): Hit| Found {
-        clip,
-        class,
-        start_secs,
-        stop_secs,
-        score,
-        reported_secs,
-    };
+    let hit =
+        |(clip, class, start_secs, stop_secs, score, reported_secs): HitTuple| ClipDetection {
+            clip,
+            class,
+            start_secs,
+            stop_secs,
+            score,
+            reported_secs,
+        };
     let streams: Vec<_> = streams.into_iter().map(stream).collect();
     let truth: Vec<_> = truth.into_iter().map(label).collect();
     let found: Vec<_> = found.into_iter().map(hit).collect();

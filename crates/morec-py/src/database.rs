@@ -9,7 +9,7 @@ use morec::files::{FileReader, list};
 use morec::labels::{ClipLength, Sample};
 use morec::pivots::PivotSet;
 use morec::segment::{KernelParams, PpcaParams};
-use morec_db::labels::{NewSample, SampleFilter, SampleId, State};
+use morec_db::labels::{NewSample, SampleFilter, SampleId, SampleState};
 use morec_db::search::{Example, SearchIndex, SearchOptions};
 use morec_db::{
     ClipFilter, ClipId, ClipInfo, ClipUpdate, Cutter, DbError, ImportOutcome, MotionDb,
@@ -90,8 +90,8 @@ fn clip_row<'py>(py: Python<'py>, info: &ClipInfo) -> PyResult<Bound<'py, PyDict
     Ok(row)
 }
 
-fn state(name: &str) -> PyResult<State> {
-    State::from_name(name).ok_or_else(|| {
+fn state(name: &str) -> PyResult<SampleState> {
+    SampleState::from_name(name).ok_or_else(|| {
         value_error(format!(
             "state: expected \"accepted\", \"proposed\" or \"rejected\", found {name:?}"
         ))
@@ -514,7 +514,7 @@ impl PyDatabase {
     ) -> PyResult<(usize, usize)> {
         self.with(py, |db| {
             let all = db.samples(&SampleFilter {
-                state: Some(State::Proposed),
+                state: Some(SampleState::Proposed),
                 ..SampleFilter::default()
             })?;
             let (mut accepted, mut rejected): (Vec<SampleId>, Vec<SampleId>) = Default::default();

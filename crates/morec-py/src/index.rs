@@ -18,7 +18,7 @@ use crate::arrays::owned;
 use crate::clip::{ClipData, PyClip};
 use crate::errors::{library_error, morec_error, value_error, warn};
 use crate::job;
-use crate::recognizer::{Layout, PyRecognizer};
+use crate::recognizer::{PointLayout, PyRecognizer};
 use crate::tables::{detections, plain};
 
 /// A trained index: what recognition needs, in one immutable file.
@@ -181,9 +181,9 @@ impl PyIndex {
         let layout = match joints.cast::<PyClip>() {
             Ok(clip) => {
                 let data = completed(&index, &clip.get().data);
-                Layout::of_clip(&data.into())
+                PointLayout::of_clip(&data.into())
             }
-            Err(_) => Layout::of_names(joints.extract()?, roles)?,
+            Err(_) => PointLayout::of_names(joints.extract()?, roles)?,
         };
         PyRecognizer::new(py, &index.model, layout, up)
     }

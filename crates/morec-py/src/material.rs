@@ -6,7 +6,7 @@ use morec::labels::{ClipLength, Extent, Label, Labels, People, read_people};
 use morec::reproduce::Setting;
 use morec::train::thesis::SvrdmOptions;
 use morec::train::{
-    Everyday, Mirror, Recipe, Source, TrainClip, TrainOptions, TrainParams, TrainingData,
+    Everyday, Mirror, Recipe, StreamKind, TrainClip, TrainOptions, TrainParams, TrainingData,
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -17,7 +17,7 @@ use crate::clip::{ClipData, PyClip};
 use crate::errors::{morec_error, value_error, warn};
 
 /// A label: clip, class, frames, seconds, person. Without both extents, the whole clip.
-type Row = (
+type LabelRow = (
     String,
     String,
     Option<(usize, usize)>,
@@ -34,8 +34,8 @@ pub fn labels(given: &Bound<'_, PyAny>) -> PyResult<Labels> {
         let table = Labels::read(bytes.as_bytes());
         return table.map_err(|error| morec_error(format!("labels: {error}")));
     }
-    let rows: Vec<Row> = given.extract()?;
-    let label = |(line, (clip, class, frames, secs, person)): (u64, Row)| Label {
+    let rows: Vec<LabelRow> = given.extract()?;
+    let label = |(line, (clip, class, frames, secs, person)): (u64, LabelRow)| Label {
         clip,
         class,
         extent: match (frames, secs) {
@@ -64,7 +64,7 @@ fn people(given: &Bound<'_, PyAny>) -> PyResult<People> {
     })
 }
 
-fn train_clip(data: &ClipData, source: Source, people: &BTreeMap<String, String>) -> TrainClip {
+fn train_clip(data: &ClipData, source: StreamKind, people: &BTreeMap<String, String>) -> TrainClip {
     TrainClip {
         name: data.clip.name.clone(),
         clip: data.clip.clone(),
@@ -76,14 +76,14 @@ fn train_clip(data: &ClipData, source: Source, people: &BTreeMap<String, String>
 }
 
 /// What Python gives to learn from, sorted out.
-pub struct Given {
+pub struct TrainingInput {
     /// Clips, samples and classes that fit together.
     pub data: TrainingData,
     /// Clips that hold none of the classes, for testing.
     pub unknown: Vec<TrainClip>,
 }
 
-impl Given {
+impl TrainingInput {
     /// From the keys clips, labels, people, background and perhaps unknown. What was cut or left out is warned of.
     ///
     /// # Errors
@@ -113,7 +113,7 @@ impl Given {
         let name = |clip: &Bound<'_, PyClip>| clip.get().data.clip.name.clone();
         let aside: BTreeSet<String> = background.iter().map(name).collect();
         let tested: BTreeSet<String> = unknown.iter().map(name).collect();
-        let of = |source: Source| {
+        let of = |source: StreamKind| {
             let by_clip = &by_clip;
             move |clip: &Bound<'_, PyClip>| train_clip(&clip.get().data, source, by_clip)
         };
@@ -121,8 +121,8 @@ impl Given {
         let mut all: Vec<TrainClip> = Vec::new();
         for clip in &taught {
             match (aside.contains(&name(clip)), tested.contains(&name(clip))) {
-                (true, _) => all.push(of(Source::Background)(clip)),
-                (false, false) => all.push(of(Source::Labelled)(clip)),
+                (true, _) => all.push(of(StreamKind::Background)(clip)),
+                (false, false) => all.push(of(StreamKind::Labelled)(clip)),
                 (false, true) => {}
             }
         }
@@ -130,8 +130,8 @@ impl Given {
         let others = background
             .iter()
             .filter(|clip| !there.contains(&name(clip)));
-        all.extend(others.map(of(Source::Background)));
-        let unknown = unknown.iter().map(of(Source::Labelled)).collect();
+        all.extend(others.map(of(StreamKind::Background)));
+        let unknown = unknown.iter().map(of(StreamKind::Labelled)).collect();
         let data = TrainingData::new(all, &labels, classes).map_err(morec_error)?;
         warn(py, &data.notes)?;
         if !data.unused.is_empty() {
@@ -231,7 +231,7 @@ fn with_figures<P: Serialize + DeserializeOwned>(
 
 /// The rows of a table of labels.
 #[pyfunction]
-pub fn rows_of_table(bytes: &Bound<'_, PyBytes>) -> PyResult<Vec<Row>> {
+pub fn rows_of_table(bytes: &Bound<'_, PyBytes>) -> PyResult<Vec<LabelRow>> {
     let row = |label: Label| {
         let (frames, secs) = match label.extent {
             Extent::Frames(span) => (Some((span.start, span.end)), None),

@@ -6,7 +6,7 @@ use morec::features::{BoneSet, KeyPose};
 use morec::import::SignedAxis;
 use morec::live::{Detection, Model, Recognizer};
 use morec::math::{Quat, Vec3};
-use morec::roles::points::{Place, recognise};
+use morec::roles::points::{PointJoint, recognise};
 use morec::roles::{Role, RoleMap};
 use pyo3::intern;
 use pyo3::prelude::*;
@@ -22,15 +22,15 @@ use crate::open::mapping;
 /// Any thread may push; two at once wait for each other.
 #[pyclass(frozen, name = "Recognizer", module = "morec")]
 pub struct PyRecognizer {
-    state: Mutex<State>,
+    state: Mutex<RecognizerState>,
     joints: Vec<String>,
     classes: Vec<Py<PyString>>,
     latency_secs: f64,
 }
 
-struct State {
+struct RecognizerState {
     recognizer: Recognizer,
-    places: Vec<(Role, Place)>,
+    places: Vec<(Role, PointJoint)>,
     /// Takes coordinates of the stream to Y up; `None` if they are.
     turn: Option<Quat>,
     positions: Vec<Vec3>,
@@ -38,17 +38,17 @@ struct State {
 }
 
 /// Which point of an array plays which part of the body.
-pub struct Layout {
+pub struct PointLayout {
     /// What the points are called.
     pub joints: Vec<String>,
-    places: Vec<(Role, Place)>,
+    places: Vec<(Role, PointJoint)>,
 }
 
-impl Layout {
+impl PointLayout {
     /// The joints of a clip, in its order.
     pub fn of_clip(clip: &PyClip) -> Self {
         let data = &clip.data;
-        let played = |role: Role| Some((role, Place::Point(data.roles.joint(role)?)));
+        let played = |role: Role| Some((role, PointJoint::Point(data.roles.joint(role)?)));
         let joints = data.clip.skeleton.joints().iter();
         Self {
             joints: joints.map(|joint| joint.name.clone()).collect(),
@@ -82,10 +82,10 @@ impl Layout {
 }
 
 /// Names that are those of roles, if most of them are.
-fn by_role(names: &[&str]) -> Option<Vec<(Role, Place)>> {
+fn by_role(names: &[&str]) -> Option<Vec<(Role, PointJoint)>> {
     let named = names.iter().enumerate();
-    let places: Vec<(Role, Place)> = named
-        .filter_map(|(at, name)| Some((Role::from_name(name)?, Place::Point(at))))
+    let places: Vec<(Role, PointJoint)> = named
+        .filter_map(|(at, name)| Some((Role::from_name(name)?, PointJoint::Point(at))))
         .collect();
     (places.len() >= 5 && 2 * places.len() > names.len()).then_some(places)
 }
@@ -95,7 +95,12 @@ impl PyRecognizer {
     ///
     /// # Errors
     /// A model that needs joint rotations, or that has no bone in common with the layout.
-    pub fn new(py: Python<'_>, model: &Model, layout: Layout, up: SignedAxis) -> PyResult<Self> {
+    pub fn new(
+        py: Python<'_>,
+        model: &Model,
+        layout: PointLayout,
+        up: SignedAxis,
+    ) -> PyResult<Self> {
         if model.needs_rotations() {
             return Err(morec_error(format!(
                 "an index of the method {} looks at joint rotations, which a stream of positions does not have; \
@@ -114,7 +119,7 @@ impl PyRecognizer {
             classes: classes
                 .map(|c| PyString::new(py, &c.name).unbind())
                 .collect(),
-            state: Mutex::new(State {
+            state: Mutex::new(RecognizerState {
                 recognizer,
                 places: layout.places,
                 turn: (up != SignedAxis::Y).then(|| up.to_y()),
@@ -142,7 +147,7 @@ impl PyRecognizer {
     }
 }
 
-impl State {
+impl RecognizerState {
     /// Takes the pose that `positions` hold.
     fn push(&mut self, time_secs: f64) -> &[Detection] {
         let positions = &self.positions;

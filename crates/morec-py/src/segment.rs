@@ -2,7 +2,9 @@
 
 use morec::features::{FeatureParams, bones_of_clip, rows_of_clip};
 use morec::pivots::{PivotMap, PivotSet, PoseParams, pose_rows_of_clip};
-use morec::segment::{Directions, HPoint, KernelParams, PpcaParams, kernel_cuts, segment};
+use morec::segment::{
+    KernelParams, MisfitSample, PassDirections, PpcaParams, kernel_cuts, segment,
+};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -25,9 +27,9 @@ pub fn cut_ppca<'py>(
         rise: rise.unwrap_or(default.rise),
         quality: quality.unwrap_or(default.quality),
         directions: match direction {
-            "forward" => Directions::Forward,
-            "backward" => Directions::Backward,
-            "both" => Directions::Both,
+            "forward" => PassDirections::Forward,
+            "backward" => PassDirections::Backward,
+            "both" => PassDirections::Both,
             other => {
                 return Err(value_error(format!(
                     "direction: expected \"forward\", \"backward\" or \"both\", found {other:?}"
@@ -45,7 +47,7 @@ pub fn cut_ppca<'py>(
         segment(&rows, poses.rate_hz, &params).map_err(|e| e.to_string())
     });
     let found = found.map_err(|error| morec_error(format!("{}: {error}", data.clip.name)))?;
-    let curve = |points: &[HPoint]| {
+    let curve = |points: &[MisfitSample]| {
         let values: Vec<f64> = points.iter().flat_map(|p| [p.secs, p.value]).collect();
         owned(py, values, &[points.len(), 2])
     };

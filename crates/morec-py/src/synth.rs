@@ -1,13 +1,13 @@
 //! Synthetic people performing labelled gestures: for tests, examples and first tries.
 
 use morec::import::Take;
-use morec::synth::{self, DatabaseSpec, Kind, database, everyday, motions_of};
+use morec::synth::{self, DatabaseSpec, MotionKind, database, everyday, motions_of};
 use pyo3::prelude::*;
 
 use crate::clip::{ClipData, PyClip};
 use crate::errors::{morec_error, value_error};
 
-type Label = (&'static str, f64, f64);
+type LabelTuple = (&'static str, f64, f64);
 
 fn ready(clip: morec::clip::Clip) -> PyResult<PyClip> {
     let take = Take::new(clip).map_err(morec_error)?;
@@ -28,7 +28,7 @@ pub fn synth_database(
     unknown_share: f64,
     left_handed: bool,
     rate_hz: f64,
-) -> PyResult<Vec<(PyClip, Vec<Label>, String)>> {
+) -> PyResult<Vec<(PyClip, Vec<LabelTuple>, String)>> {
     let mut spec = DatabaseSpec {
         people,
         streams,
@@ -40,11 +40,11 @@ pub fn synth_database(
     };
     if let Some(names) = classes {
         let gesture = |name: &String| {
-            let known = motions_of(Kind::Gesture)
+            let known = motions_of(MotionKind::Gesture)
                 .map(|m| m.name())
                 .find(|n| n == name);
             known.ok_or_else(|| {
-                let known: Vec<_> = motions_of(Kind::Gesture).map(|m| m.name()).collect();
+                let known: Vec<_> = motions_of(MotionKind::Gesture).map(|m| m.name()).collect();
                 value_error(format!(
                     "no gesture is called {name:?}; there are {}",
                     known.join(", ")
@@ -74,7 +74,7 @@ pub fn synth_everyday(py: Python<'_>, seed: u64, clips: usize) -> PyResult<Vec<P
 /// Names of the gestures.
 #[pyfunction]
 pub fn synth_motions() -> Vec<&'static str> {
-    motions_of(Kind::Gesture)
+    motions_of(MotionKind::Gesture)
         .map(|motion| motion.name())
         .collect()
 }

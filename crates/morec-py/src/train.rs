@@ -9,7 +9,7 @@ use pyo3::types::PyDict;
 use crate::errors::{morec_error, warn};
 use crate::index::PyIndex;
 use crate::job;
-use crate::material::{Given, recipe};
+use crate::material::{TrainingInput, recipe};
 
 /// Trains an index from material as `morec._learn` lays it out.
 #[pyfunction]
@@ -21,7 +21,7 @@ pub fn train(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<PyIndex> {
     let recipe = recipe(how)?;
-    let given = Given::new(material, &classes)?;
+    let given = TrainingInput::new(material, &classes)?;
     let trained = job::run(py, progress, |progress| {
         train_index(&given.data, &recipe, progress)
     })?;

@@ -81,9 +81,53 @@ pub fn grouped(n: usize) -> String {
     out
 }
 
+/// The last part of a path: what a window says of a file.
+pub fn file_name(path: &std::path::Path) -> String {
+    let name = path.file_name().unwrap_or(path.as_os_str());
+    name.to_string_lossy().into_owned()
+}
+
+/// A command line in which absolute paths are their last parts: where a folder lies is of no interest to who reads it.
+pub fn without_folders(line: &str) -> String {
+    let mut quoted = false;
+    let words = line.split(|letter| {
+        quoted ^= letter == '\'';
+        letter == ' ' && !quoted
+    });
+    let short = |word: &str| {
+        let inside = word.trim_matches('\'');
+        let drive = inside.get(1..3) == Some(":\\");
+        let name = match inside.starts_with('/') || drive {
+            true => inside.rsplit(['/', '\\']).next().unwrap_or(inside),
+            false => return word.to_owned(),
+        };
+        match name.contains(' ') {
+            true => format!("'{name}'"),
+            false => name.to_owned(),
+        }
+    };
+    words.map(short).collect::<Vec<_>>().join(" ")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn commands_are_read_without_folders() {
+        let line = "morec db cut /home/a/moves.mdb --method kernel";
+        assert_eq!(
+            without_folders(line),
+            "morec db cut moves.mdb --method kernel"
+        );
+        let line = "morec train --db '/tmp/my moves/a b.mdb' -o studio.index";
+        assert_eq!(
+            without_folders(line),
+            "morec train --db 'a b.mdb' -o studio.index"
+        );
+        let line = "morec live studio.index --listen vmc://0.0.0.0:39539";
+        assert_eq!(without_folders(line), line);
+    }
 
     #[test]
     fn times_read_as_people_write_them() {

@@ -224,7 +224,7 @@ fn labels(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
     let selected = state.selected();
     let proposed = selected
         .iter()
-        .find(|s| s.state == morec_db::labels::State::Proposed);
+        .find(|s| s.state == morec_db::labels::SampleState::Proposed);
     if let Some(sample) = proposed {
         if i.consume_key(Modifiers::NONE, Key::A) {
             out.push(Command::Classes(ClassCommand::Accept(sample.id)));

@@ -6,10 +6,10 @@ use std::time::Instant;
 use morec::clip::{Clip, JointTrack};
 use morec::import::{ImportOptions, normalize};
 use morec::synth::{Person, Script};
-use morec_db::labels::{ClassInfo, DbSample, SampleId, State as Judged};
+use morec_db::labels::{ClassCount, DbSample, SampleId, SampleState as Judged};
 use morec_db::{ClipId, ClipInfo, StoredClip};
 
-use crate::jobs::load::Motion;
+use crate::jobs::load::ClipMotion;
 use crate::screenshot::Headless;
 use crate::state::{Command, Panel, PlayCommand, TimelineCommand};
 use crate::store::{Snapshot, Store};
@@ -29,7 +29,7 @@ pub struct Load {
 
 /// Processor time of the frames of a scene, without putting triangles onto a screen, milliseconds.
 #[derive(Debug, Clone)]
-pub struct Measured {
+pub struct FrameTimes {
     /// What was drawn.
     pub scene: &'static str,
     /// The median.
@@ -42,7 +42,7 @@ pub struct Measured {
 ///
 /// # Errors
 /// The made motion cannot be imported: a fault of the program.
-pub fn frame_times(load: &Load) -> Result<Vec<Measured>, String> {
+pub fn frame_times(load: &Load) -> Result<Vec<FrameTimes>, String> {
     let motion = Arc::new(long_motion(load.secs)?);
     let store = Store::of(snapshot(load, &motion));
     let mut window = Headless::of(store, motion, [1400, 860]);
@@ -70,7 +70,7 @@ pub fn frame_times(load: &Load) -> Result<Vec<Measured>, String> {
     Ok(scenes)
 }
 
-fn measured(window: &mut Headless, scene: &'static str, frames: usize) -> Measured {
+fn measured(window: &mut Headless, scene: &'static str, frames: usize) -> FrameTimes {
     let mut took: Vec<f64> = (0..frames.max(1))
         .map(|_| {
             let before = processor_secs();
@@ -80,7 +80,7 @@ fn measured(window: &mut Headless, scene: &'static str, frames: usize) -> Measur
         .collect();
     took.sort_by(f64::total_cmp);
     let at = |share: f64| took[((took.len() - 1) as f64 * share).round() as usize];
-    Measured {
+    FrameTimes {
         scene,
         p50: at(0.5),
         p99: at(0.99),
@@ -100,7 +100,7 @@ fn processor_secs() -> f64 {
 }
 
 /// A take of some gestures, over and over.
-fn long_motion(secs: f64) -> Result<Motion, String> {
+fn long_motion(secs: f64) -> Result<ClipMotion, String> {
     let mut script = Script::new(1, Person::draw(1, 0)).rest(1.0);
     for gesture in ["wave", "clap", "bow"] {
         script = script.play(gesture).rest(1.0);
@@ -124,10 +124,10 @@ fn long_motion(secs: f64) -> Result<Motion, String> {
         roles,
         rest: 0..0,
     };
-    Ok(Motion::of(ClipId(1), stored))
+    Ok(ClipMotion::of(ClipId(1), stored))
 }
 
-fn snapshot(load: &Load, motion: &Motion) -> Snapshot {
+fn snapshot(load: &Load, motion: &ClipMotion) -> Snapshot {
     const CLASSES: usize = 8;
     let clip = |n: usize| ClipInfo {
         id: ClipId(n as i64 + 1),
@@ -147,7 +147,7 @@ fn snapshot(load: &Load, motion: &Motion) -> Snapshot {
         tags: Vec::new(),
         samples: n % 12,
     };
-    let class = |n: usize| ClassInfo {
+    let class = |n: usize| ClassCount {
         name: format!("gesture {}", n + 1),
         accepted: load.labels / CLASSES,
         proposed: 0,

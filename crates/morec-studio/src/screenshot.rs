@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use egui::{Color32, ColorImage, Pos2, RawInput, Rect, Vec2};
 
 use crate::app::Studio;
-use crate::jobs::load::Motion;
+use crate::jobs::load::ClipMotion;
 use crate::raster::{self, Textures};
 use crate::state::{
     ClassCommand, Command, LibraryCommand, LiveCommand, Panel, PlayCommand, State, TrainCommand,
@@ -56,7 +56,7 @@ impl Headless {
     }
 
     /// With a database and a clip that are at hand.
-    pub fn of(store: Store, motion: Arc<Motion>, size: [usize; 2]) -> Self {
+    pub fn of(store: Store, motion: Arc<ClipMotion>, size: [usize; 2]) -> Self {
         let ctx = egui::Context::default();
         crate::theme::install(&ctx);
         let mut state = State::new(Arc::new(|| {}));

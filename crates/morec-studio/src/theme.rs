@@ -4,7 +4,7 @@ use egui::{
     Color32, Context, CornerRadius, FontFamily, FontId, Stroke, TextStyle, Theme, Vec2, Visuals,
 };
 
-use crate::body::mesh::Palette;
+use crate::body::mesh::BodyColours;
 
 /// Colours that egui has no name for.
 #[derive(Debug, Clone, Copy)]
@@ -109,15 +109,15 @@ impl Colours {
     }
 
     /// Colours of a performer: left blue, right orange, as on the pages of reports.
-    pub fn body(&self) -> Palette {
+    pub fn body(&self) -> BodyColours {
         match self.dark {
-            true => Palette {
+            true => BodyColours {
                 left: Color32::from_rgb(0x5f, 0xa8, 0xe6),
                 right: Color32::from_rgb(0xe8, 0x8b, 0x4c),
                 middle: Color32::from_rgb(0xc3, 0xc8, 0xd0),
                 shadow: Color32::from_rgb(0x16, 0x1a, 0x20),
             },
-            false => Palette {
+            false => BodyColours {
                 left: Color32::from_rgb(0x2f, 0x7f, 0xc4),
                 right: Color32::from_rgb(0xd0, 0x68, 0x24),
                 middle: Color32::from_rgb(0x8b, 0x94, 0xa0),

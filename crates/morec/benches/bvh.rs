@@ -66,10 +66,12 @@ fn read(bencher: Bencher) {
 #[divan::bench]
 fn read_and_prepare(bencher: Bencher) {
     let bytes = file();
-    bencher.counter(BytesCount::new(bytes.len())).bench_local(|| {
-        let clip = parse(&bytes).clips.remove(0);
-        normalize(clip, &ImportOptions::default()).unwrap()
-    });
+    bencher
+        .counter(BytesCount::new(bytes.len()))
+        .bench_local(|| {
+            let clip = parse(&bytes).clips.remove(0);
+            normalize(clip, &ImportOptions::default()).unwrap()
+        });
 }
 
 #[divan::bench]

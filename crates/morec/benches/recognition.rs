@@ -16,7 +16,7 @@ use divan::Bencher;
 use divan::counter::ItemsCount;
 use morec::features::{FeatureParams, FeatureStream, Rows};
 use morec::live::Recognizer;
-use morec::synth::{Person, Rng, Script, Side};
+use morec::synth::{LimbSide, Person, Rng, Script};
 
 fn main() {
     divan::main();
@@ -40,12 +40,15 @@ fn templates(rows_in_all: usize) -> Vec<Rows> {
 
 mod bank {
     use super::*;
-    use morec::templates::Bank;
+    use morec::templates::TemplateBank;
 
     /// The bank's step over so many template rows.
     #[divan::bench(args = [600, 1800])]
     fn step(bencher: Bencher, template_rows: usize) {
-        let (mut bank, stream) = (Bank::new(&templates(template_rows), DIM), rows(99, 64));
+        let (mut bank, stream) = (
+            TemplateBank::new(&templates(template_rows), DIM),
+            rows(99, 64),
+        );
         bencher
             .counter(ItemsCount::new(stream.len()))
             .bench_local(|| {
@@ -131,7 +134,7 @@ mod bank {
 /// Ten seconds of gestures at 60 Hz.
 fn poses() -> (morec::features::BoneSet, Vec<made::Timed>) {
     let person = Person {
-        hand: Side::Right,
+        hand: LimbSide::Right,
         ..Person::draw(3, 1)
     };
     let script = Script::new(3, person)

@@ -15,13 +15,13 @@ use std::sync::Arc;
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use morec::classes::{ClassId, ClassInfo};
-use morec::pca::{Keep, Moments, Pca};
+use morec::pca::{ComponentCount, Moments, Pca};
 use morec::pivots::{Pivot, PivotSet, PoseParams};
 use morec::svrdm::edr::Edr;
 use morec::svrdm::{
-    Branch, Candidates, Cell, Centring, ChunkAssembly, Descent, Directions, Gram, Node,
-    Normalisation, Parts, Profiles, SegmentAssembly, SegmentTracking, SvrdmEngine, SvrdmModel,
-    SvrdmParams, Tree,
+    Branch, Cell, Centring, ChunkAssembly, ClassCandidates, Descent, Directions, Gram, Node,
+    Normalisation, Profiles, SegmentAssembly, SegmentTracking, SvrdmEngine, SvrdmModel,
+    SvrdmParams, Tree, TreeParts,
 };
 use morec::synth::Rng;
 
@@ -76,7 +76,7 @@ fn tree(dim: usize, rng: &mut Rng) -> Tree {
     let vectors = (0..2 * exemplars * (CLASSES - 1) * dim)
         .map(|_| rng.unit())
         .collect();
-    Tree::new(Parts {
+    Tree::new(TreeParts {
         dim,
         vectors,
         nodes,
@@ -88,7 +88,7 @@ fn model() -> Arc<SvrdmModel> {
     let params = SvrdmParams::default();
     let mut moments = Moments::new(4 * PIVOTS);
     moments.push_values(&rows(1, 2000, 4 * PIVOTS).concat());
-    let pca = Pca::fit(&moments, Keep::Dims(REDUCED)).unwrap();
+    let pca = Pca::fit(&moments, ComponentCount::Dims(REDUCED)).unwrap();
     let mut rng = Rng::new(2);
     let mut profiles = Profiles::new(1);
     for sample in 0..CLASSES * SAMPLES {
@@ -159,7 +159,7 @@ fn directions(bencher: Bencher, dim: usize) {
 #[divan::bench]
 fn descent(bencher: Bencher) {
     let model = model();
-    let (vector, mut found) = (vec![0.5; model.tree.dim()], Candidates::default());
+    let (vector, mut found) = (vec![0.5; model.tree.dim()], ClassCandidates::default());
     bencher.bench_local(|| {
         model
             .tree

@@ -2,7 +2,7 @@
 //!
 //! Trains on two of the three referee clips with signals, plays the third, and goes round. At the middle of every
 //! sample: is its class being told? And of all that is told as half done or more: how much is right? Needs the clips
-//! (`MOREC_DATA`). Arguments `name=value` set a figure of `EarlyParams`.
+//! (`MOREC_DATA`). Arguments `name=value` set a figure of `EarlyDetectionParams`.
 
 // What tests share lies outside of test functions, where the lint looks for it.
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::print_stderr)]
@@ -15,9 +15,9 @@ use std::sync::Arc;
 
 use morec::features::{bones_of_clip, for_each_pose};
 use morec::labels::{ClipLength, Labels, Sample};
-use morec::live::{Hunch, Recognizer};
-use morec::templates::{EarlyParams, TemplateModel};
-use morec::train::{Everyday, Labelling, Source, TrainClip, TrainOptions, train_clips};
+use morec::live::{EarlyDetection, Recognizer};
+use morec::templates::{EarlyDetectionParams, TemplateModel};
+use morec::train::{Everyday, LabelSet, StreamKind, TrainClip, TrainOptions, train_clips};
 
 const SIGNALS: [&str; 3] = ["signals_1", "signals_2", "signals_3"];
 const CLASSES: [&str; 7] = [
@@ -32,7 +32,7 @@ const CLASSES: [&str; 7] = [
 
 fn main() {
     let Some(data) = kit::data() else { return };
-    let mut params = EarlyParams::default();
+    let mut params = EarlyDetectionParams::default();
     std::env::args()
         .skip(1)
         .for_each(|arg| set(&mut params, &arg));
@@ -60,14 +60,17 @@ fn main() {
             .map(|n| kit::referee(&data, n, source))
             .collect()
     };
-    let background = load(of(&["jumping_", "soccer_", "running_"]), Source::Background);
+    let background = load(
+        of(&["jumping_", "soccer_", "running_"]),
+        StreamKind::Background,
+    );
     let unknown = load(
         of(&["walking_", "basketball_", "traffic_4"]),
-        Source::Background,
+        StreamKind::Background,
     );
     let signals: Vec<TrainClip> = SIGNALS
         .iter()
-        .map(|n| kit::referee(&data, n, Source::Labelled))
+        .map(|n| kit::referee(&data, n, StreamKind::Labelled))
         .collect();
     let labels = Labels::read(&std::fs::read(data.join("referee/labels.tsv")).unwrap()).unwrap();
     let lengths = signals.iter().map(|c| {
@@ -99,7 +102,7 @@ fn main() {
             .cloned()
             .collect();
         let model = Arc::new(train(&clips, &taught));
-        let name = |h: &Hunch| model.classes[h.class.index()].name.clone();
+        let name = |h: &EarlyDetection| model.classes[h.class.index()].name.clone();
         let hunches = play(&model, &signals[test], params);
         for s in samples.iter().filter(|s| s.clip == SIGNALS[test]) {
             all += 1;
@@ -111,8 +114,9 @@ fn main() {
                 .and_then(|(_, h)| *h);
             // One that began well before the sample is another motion's, perhaps of the same class.
             let length_secs = s.stop_secs - s.start_secs;
-            let of_it =
-                |h: Hunch| name(&h) == s.class && h.start_secs > s.start_secs - 0.25 * length_secs;
+            let of_it = |h: EarlyDetection| {
+                name(&h) == s.class && h.start_secs > s.start_secs - 0.25 * length_secs
+            };
             known += usize::from(at.is_some_and(of_it));
         }
         for h in half_done(&hunches) {
@@ -147,7 +151,7 @@ fn main() {
     );
 }
 
-fn set(params: &mut EarlyParams, arg: &str) {
+fn set(params: &mut EarlyDetectionParams, arg: &str) {
     let (name, value) = arg.split_once('=').expect("name=value");
     let value: f32 = value.parse().expect("a number");
     match name {
@@ -163,7 +167,7 @@ fn set(params: &mut EarlyParams, arg: &str) {
 
 fn train(clips: &[TrainClip], samples: &[Sample]) -> TemplateModel {
     let classes = CLASSES.map(str::to_owned);
-    let labelling = Labelling {
+    let labelling = LabelSet {
         samples,
         held_back: &[],
         classes: &classes,
@@ -180,8 +184,8 @@ fn train(clips: &[TrainClip], samples: &[Sample]) -> TemplateModel {
 fn play(
     model: &Arc<TemplateModel>,
     c: &TrainClip,
-    params: EarlyParams,
-) -> Vec<(f64, Option<Hunch>)> {
+    params: EarlyDetectionParams,
+) -> Vec<(f64, Option<EarlyDetection>)> {
     let mut recognizer = Recognizer::new(model, bones_of_clip(&c.clip, &c.roles, &c.rest)).unwrap();
     recognizer.set_early(params);
     let mut told = Vec::new();
@@ -193,18 +197,19 @@ fn play(
 }
 
 /// One hunch for every row of hunches of a class, at the moment it is half done.
-fn half_done(hunches: &[(f64, Option<Hunch>)]) -> Vec<Hunch> {
-    let mut found: Vec<Hunch> = Vec::new();
+fn half_done(hunches: &[(f64, Option<EarlyDetection>)]) -> Vec<EarlyDetection> {
+    let mut found: Vec<EarlyDetection> = Vec::new();
     for hunch in hunches
         .iter()
         .filter_map(|(_, h)| *h)
         .filter(|h| h.progress >= 0.5)
     {
-        let same =
-            |last: &Hunch| last.class == hunch.class && hunch.seen_secs - last.seen_secs < 0.3;
+        let same = |last: &EarlyDetection| {
+            last.class == hunch.class && hunch.seen_secs - last.seen_secs < 0.3
+        };
         match found.last_mut() {
             Some(last) if same(last) => {
-                *last = Hunch {
+                *last = EarlyDetection {
                     start_secs: last.start_secs,
                     ..hunch
                 }

@@ -35,7 +35,9 @@ pub enum FitError {
     #[error("its joints have rotations already")]
     HasRotations,
     /// Too little of a body is known.
-    #[error("{0} is not known among its points, and without it no skeleton can be laid into them: say with roles which it is")]
+    #[error(
+        "{0} is not known among its points, and without it no skeleton can be laid into them: say with roles which it is"
+    )]
     Missing(Role),
     /// No frame shows the body.
     #[error("no frame shows the hips")]
@@ -44,30 +46,50 @@ pub enum FitError {
 
 /// A joint of the skeleton: its role, its name, the roles it may hang on (the first that is known), and where its bone points
 /// in a T-pose.
-struct Bone(Role, &'static str, &'static [Role], [f64; 3]);
+struct FittedBone(Role, &'static str, &'static [Role], [f64; 3]);
 
 /// The skeleton, parents first. Faces +Z, left at +X.
-const BONES: [Bone; Role::COUNT] = {
+const BONES: [FittedBone; Role::COUNT] = {
     use Role::*;
     [
-        Bone(Hips, "Hips", &[], [0.0, 0.0, 0.0]),
-        Bone(LeftThigh, "LeftUpLeg", &[Hips], [1.0, 0.0, 0.0]),
-        Bone(LeftShin, "LeftLeg", &[LeftThigh], [0.0, -1.0, 0.0]),
-        Bone(LeftFoot, "LeftFoot", &[LeftShin], [0.0, -1.0, 0.0]),
-        Bone(RightThigh, "RightUpLeg", &[Hips], [-1.0, 0.0, 0.0]),
-        Bone(RightShin, "RightLeg", &[RightThigh], [0.0, -1.0, 0.0]),
-        Bone(RightFoot, "RightFoot", &[RightShin], [0.0, -1.0, 0.0]),
-        Bone(Torso, "Spine", &[Hips], [0.0, 1.0, 0.0]),
-        Bone(Neck, "Neck", &[Torso, Hips], [0.0, 1.0, 0.0]),
-        Bone(Head, "Head", &[Neck, Torso, Hips], [0.0, 1.0, 0.0]),
-        Bone(LeftShoulder, "LeftShoulder", &[Torso, Hips], [0.0, 1.0, 0.0]),
-        Bone(LeftArm, "LeftArm", &[LeftShoulder, Torso, Hips], [1.0, 0.0, 0.0]),
-        Bone(LeftForearm, "LeftForeArm", &[LeftArm], [1.0, 0.0, 0.0]),
-        Bone(LeftHand, "LeftHand", &[LeftForearm], [1.0, 0.0, 0.0]),
-        Bone(RightShoulder, "RightShoulder", &[Torso, Hips], [0.0, 1.0, 0.0]),
-        Bone(RightArm, "RightArm", &[RightShoulder, Torso, Hips], [-1.0, 0.0, 0.0]),
-        Bone(RightForearm, "RightForeArm", &[RightArm], [-1.0, 0.0, 0.0]),
-        Bone(RightHand, "RightHand", &[RightForearm], [-1.0, 0.0, 0.0]),
+        FittedBone(Hips, "Hips", &[], [0.0, 0.0, 0.0]),
+        FittedBone(LeftThigh, "LeftUpLeg", &[Hips], [1.0, 0.0, 0.0]),
+        FittedBone(LeftShin, "LeftLeg", &[LeftThigh], [0.0, -1.0, 0.0]),
+        FittedBone(LeftFoot, "LeftFoot", &[LeftShin], [0.0, -1.0, 0.0]),
+        FittedBone(RightThigh, "RightUpLeg", &[Hips], [-1.0, 0.0, 0.0]),
+        FittedBone(RightShin, "RightLeg", &[RightThigh], [0.0, -1.0, 0.0]),
+        FittedBone(RightFoot, "RightFoot", &[RightShin], [0.0, -1.0, 0.0]),
+        FittedBone(Torso, "Spine", &[Hips], [0.0, 1.0, 0.0]),
+        FittedBone(Neck, "Neck", &[Torso, Hips], [0.0, 1.0, 0.0]),
+        FittedBone(Head, "Head", &[Neck, Torso, Hips], [0.0, 1.0, 0.0]),
+        FittedBone(
+            LeftShoulder,
+            "LeftShoulder",
+            &[Torso, Hips],
+            [0.0, 1.0, 0.0],
+        ),
+        FittedBone(
+            LeftArm,
+            "LeftArm",
+            &[LeftShoulder, Torso, Hips],
+            [1.0, 0.0, 0.0],
+        ),
+        FittedBone(LeftForearm, "LeftForeArm", &[LeftArm], [1.0, 0.0, 0.0]),
+        FittedBone(LeftHand, "LeftHand", &[LeftForearm], [1.0, 0.0, 0.0]),
+        FittedBone(
+            RightShoulder,
+            "RightShoulder",
+            &[Torso, Hips],
+            [0.0, 1.0, 0.0],
+        ),
+        FittedBone(
+            RightArm,
+            "RightArm",
+            &[RightShoulder, Torso, Hips],
+            [-1.0, 0.0, 0.0],
+        ),
+        FittedBone(RightForearm, "RightForeArm", &[RightArm], [-1.0, 0.0, 0.0]),
+        FittedBone(RightHand, "RightHand", &[RightForearm], [-1.0, 0.0, 0.0]),
     ]
 };
 
@@ -92,8 +114,10 @@ pub fn fit_skeleton(take: &Take) -> Result<SkeletonFit, FitError> {
             return Err(FitError::Missing(role));
         }
     }
-    let mut fit = Fit::new(take);
-    let frames: Vec<Targets> = (0..take.clip.frames).map(|frame| fit.targets(frame)).collect();
+    let mut fit = SkeletonSolver::new(take);
+    let frames: Vec<MeasuredJoints> = (0..take.clip.frames)
+        .map(|frame| fit.targets(frame))
+        .collect();
     fit.measure(&frames);
     if fit.offsets.is_empty() {
         return Err(FitError::Unseen);
@@ -102,9 +126,9 @@ pub fn fit_skeleton(take: &Take) -> Result<SkeletonFit, FitError> {
 }
 
 /// Where the joints were measured in a frame; `None` where they were not.
-type Targets = Vec<Option<Vec3>>;
+type MeasuredJoints = Vec<Option<Vec3>>;
 
-struct Fit<'a> {
+struct SkeletonSolver<'a> {
     take: &'a Take,
     /// Which of [`BONES`] are there, parents first, and the parent of each among these.
     bones: Vec<usize>,
@@ -114,7 +138,7 @@ struct Fit<'a> {
     behind: Vec<Vec<usize>>,
 }
 
-impl<'a> Fit<'a> {
+impl<'a> SkeletonSolver<'a> {
     fn new(take: &'a Take) -> Self {
         let mut bones: Vec<usize> = (0..BONES.len())
             .filter(|&b| take.roles.joint(BONES[b].0).is_some())
@@ -124,7 +148,8 @@ impl<'a> Fit<'a> {
         let mut at = 0;
         while at < bones.len() {
             let parents = BONES[bones[at]].2;
-            let hangs = parents.is_empty() || parents.iter().any(|&p| has(&bones[..at], p).is_some());
+            let hangs =
+                parents.is_empty() || parents.iter().any(|&p| has(&bones[..at], p).is_some());
             if hangs {
                 at += 1;
             } else {
@@ -150,7 +175,7 @@ impl<'a> Fit<'a> {
         }
     }
 
-    fn targets(&self, frame: usize) -> Targets {
+    fn targets(&self, frame: usize) -> MeasuredJoints {
         let clip = &self.take.clip;
         let pose = WorldPose::of(clip, frame);
         let target = |&bone: &usize| {
@@ -160,8 +185,8 @@ impl<'a> Fit<'a> {
         self.bones.iter().map(target).collect()
     }
 
-    /// Bone lengths and the shapes of pelvis and chest, as medians over the frames.
-    fn measure(&mut self, frames: &[Targets]) {
+    /// FittedBone lengths and the shapes of pelvis and chest, as medians over the frames.
+    fn measure(&mut self, frames: &[MeasuredJoints]) {
         let seen = frames.iter().any(|targets| targets[0].is_some());
         if !seen {
             return;
@@ -175,8 +200,8 @@ impl<'a> Fit<'a> {
         }
     }
 
-    fn offset(&self, joint: usize, parent: usize, frames: &[Targets]) -> Vec3 {
-        let between = |targets: &Targets| Some(targets[joint]? - targets[parent]?);
+    fn offset(&self, joint: usize, parent: usize, frames: &[MeasuredJoints]) -> Vec3 {
+        let between = |targets: &MeasuredJoints| Some(targets[joint]? - targets[parent]?);
         let usual = Vec3::from(BONES[self.bones[joint]].3);
         let siblings = self.parents.iter().filter(|p| **p == Some(parent)).count();
         if siblings < 2 {
@@ -190,7 +215,9 @@ impl<'a> Fit<'a> {
                 continue;
             };
             let local = axes.transpose() * between;
-            own.iter_mut().zip(local.iter()).for_each(|(all, value)| all.push(*value));
+            own.iter_mut()
+                .zip(local.iter())
+                .for_each(|(all, value)| all.push(*value));
         }
         let [x, y, z] = own.map(median);
         match (x, y, z) {
@@ -200,7 +227,7 @@ impl<'a> Fit<'a> {
     }
 
     /// Left, up and forward of the part of the body about `joint`: by the hip joints at the hips, by the shoulders above.
-    fn axes(&self, targets: &Targets, joint: usize) -> Option<Matrix3<f64>> {
+    fn axes(&self, targets: &MeasuredJoints, joint: usize) -> Option<Matrix3<f64>> {
         let at = |role: Role| {
             let place = self.bones.iter().position(|&b| BONES[b].0 == role)?;
             targets[place]
@@ -226,9 +253,9 @@ impl<'a> Fit<'a> {
         Some(Matrix3::from_columns(&[left, up, left.cross(&up)]))
     }
 
-    fn run(self, frames: &[Targets]) -> SkeletonFit {
+    fn run(self, frames: &[MeasuredJoints]) -> SkeletonFit {
         let joints = self.bones.len();
-        let mut pose = Posed {
+        let mut pose = SolvedPose {
             locals: vec![Quat::identity(); joints],
             root: Vec3::zeros(),
             world: WorldPose::default(),
@@ -240,7 +267,10 @@ impl<'a> Fit<'a> {
             self.fit_frame(targets, &mut pose);
             rotations.extend_from_slice(&pose.locals);
             places.push(pose.root);
-            for ((sum, count), (target, at)) in squares.iter_mut().zip(targets.iter().zip(&pose.world.positions)) {
+            for ((sum, count), (target, at)) in squares
+                .iter_mut()
+                .zip(targets.iter().zip(&pose.world.positions))
+            {
                 if let Some(target) = target {
                     *sum += (target - at).norm_squared();
                     *count += 1;
@@ -272,7 +302,7 @@ impl<'a> Fit<'a> {
     }
 
     /// Turns `pose`, that of the frame before, into that of `targets`.
-    fn fit_frame(&self, targets: &Targets, pose: &mut Posed) {
+    fn fit_frame(&self, targets: &MeasuredJoints, pose: &mut SolvedPose) {
         let mut before = f64::INFINITY;
         for _ in 0..ROUNDS {
             self.shift(targets, pose);
@@ -288,7 +318,7 @@ impl<'a> Fit<'a> {
     }
 
     /// Moves the whole body to where its joints are nearest to their targets; the sum of squares there.
-    fn shift(&self, targets: &Targets, pose: &mut Posed) -> f64 {
+    fn shift(&self, targets: &MeasuredJoints, pose: &mut SolvedPose) -> f64 {
         pose.set(self);
         let off: Vec<Vec3> = targets
             .iter()
@@ -305,12 +335,14 @@ impl<'a> Fit<'a> {
     }
 
     /// Turns one joint so that those behind it are nearest to their targets.
-    fn turn(&self, joint: usize, targets: &Targets, pose: &mut Posed) {
+    fn turn(&self, joint: usize, targets: &MeasuredJoints, pose: &mut SolvedPose) {
         let centre = pose.world.positions[joint];
         let mut sum = Matrix3::zeros();
         let mut weight = 0.0;
         for &behind in &self.behind[joint] {
-            let Some(target) = targets[behind] else { continue };
+            let Some(target) = targets[behind] else {
+                continue;
+            };
             let (from, to) = (pose.world.positions[behind] - centre, target - centre);
             sum += to * from.transpose();
             weight += from.norm() * to.norm();
@@ -320,7 +352,9 @@ impl<'a> Fit<'a> {
         }
         // Three directions that would rather stay where they are.
         sum += Matrix3::identity() * (HOLD * weight);
-        let Some(turn) = nearest_rotation(&sum) else { return };
+        let Some(turn) = nearest_rotation(&sum) else {
+            return;
+        };
         let world = turn * pose.world.rotations[joint];
         let parent = self.parents[joint].map_or_else(Quat::identity, |p| pose.world.rotations[p]);
         pose.locals[joint] = Quat::new_normalize((parent.inverse() * world).into_inner());
@@ -329,14 +363,14 @@ impl<'a> Fit<'a> {
 }
 
 /// A pose of the skeleton.
-struct Posed {
+struct SolvedPose {
     locals: Vec<Quat>,
     root: Vec3,
     world: WorldPose,
 }
 
-impl Posed {
-    fn set(&mut self, fit: &Fit) {
+impl SolvedPose {
+    fn set(&mut self, fit: &SkeletonSolver<'_>) {
         self.world.positions.clear();
         self.world.rotations.clear();
         for (joint, local) in self.locals.iter().enumerate() {

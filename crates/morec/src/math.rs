@@ -61,19 +61,27 @@ pub(crate) fn sin_cos_of_half(angle_deg: f64) -> (f64, f64) {
     const ROUNDER: f64 = 6_755_399_441_055_744.0;
     const MOST_QUARTERS: f64 = 1e4;
     let quarters = angle_deg / 180.0;
-    // Not a number takes this way, too.
-    if !(quarters.abs() < MOST_QUARTERS) {
+    if quarters.is_nan() || quarters.abs() >= MOST_QUARTERS {
         return (angle_deg.to_radians() * 0.5).sin_cos();
     }
     let sum = quarters + ROUNDER;
     let rest = (quarters - (sum - ROUNDER)) * std::f64::consts::FRAC_PI_2;
     let square = rest * rest;
-    let series = |terms: [f64; 7]| terms.into_iter().rev().fold(0.0, |sum, term| sum * square + term);
+    let series = |terms: [f64; 7]| {
+        terms
+            .into_iter()
+            .rev()
+            .fold(0.0, |sum, term| sum * square + term)
+    };
     let sin = rest + rest * square * series(SIN_TERMS);
     let cos = 1.0 - square * 0.5 + square * square * series(COS_TERMS);
     let quadrant = sum.to_bits();
-    let (sin, cos) = if quadrant & 1 == 0 { (sin, cos) } else { (cos, sin) };
-    let sign = |value: f64, bits: u64| f64::from_bits(value.to_bits() ^ (bits & 2) << 62);
+    let (sin, cos) = if quadrant & 1 == 0 {
+        (sin, cos)
+    } else {
+        (cos, sin)
+    };
+    let sign = |value: f64, bits: u64| f64::from_bits(value.to_bits() ^ ((bits & 2) << 62));
     (sign(sin, quadrant), sign(cos, quadrant.wrapping_add(1)))
 }
 

@@ -10,15 +10,15 @@ mod thesis;
 
 use assert_no_alloc::{AllocDisabler, assert_no_alloc, reset_violation_count, violation_count};
 use morec::features::MAX_GAP_SECS;
-use morec::pca::{Keep, Moments, Pca};
+use morec::pca::{ComponentCount, Moments, Pca};
 use morec::pivots::{PivotMap, PivotSet, PoseParams, PoseStream, for_each_pivot_pose};
 use morec::roles::RoleMap;
 use morec::svrdm::SvrdmEngine;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use morec::live::vmc::{Bundling, VmcOptions, VmcReceiver, VmcSender};
-use morec::live::{Actor, EventOptions, Frame, Next, Performer, Recognizer, Rig};
-use morec::synth::{Person, Script, Side};
+use morec::live::{EventOptions, Frame, Performer, PerformerId, Recognizer, Rig, SourceEvent};
+use morec::synth::{LimbSide, Person, Script};
 
 #[global_allocator]
 static ALLOCATOR: AllocDisabler = AllocDisabler;
@@ -40,7 +40,7 @@ fn pushing_takes_no_memory() {
     );
 
     let person = Person {
-        hand: Side::Right,
+        hand: LimbSide::Right,
         ..Person::draw(89, 1)
     };
     let script = Script::new(89, person)
@@ -81,7 +81,7 @@ fn pushing_takes_no_memory() {
 
 /// From frames to events, tentative ones included.
 fn events_take_no_memory(model: &Arc<morec::templates::TemplateModel>, poses: &[made::Timed]) {
-    let mut performer = Performer::new(model, Actor(0), &EventOptions::default());
+    let mut performer = Performer::new(model, PerformerId(0), &EventOptions::default());
     let (mut frame, mut events) = (Frame::default(), 0);
     let mut play = |performer: &mut Performer| {
         for (time_secs, pose) in poses {
@@ -105,7 +105,7 @@ fn events_take_no_memory(model: &Arc<morec::templates::TemplateModel>, poses: &[
 /// From packets to frames.
 fn packets_take_no_memory() {
     let person = Person {
-        hand: Side::Right,
+        hand: LimbSide::Right,
         ..Person::draw(89, 1)
     };
     let take = Script::new(89, person)
@@ -135,7 +135,7 @@ fn packets_take_no_memory() {
             receiver.packet(1u8, *secs, packet);
             receiver.tick(*secs);
             while let Some(next) = receiver.next(&mut frame) {
-                frames += usize::from(matches!(next, Next::Frame));
+                frames += usize::from(matches!(next, SourceEvent::Frame));
             }
         }
     };
@@ -148,7 +148,7 @@ fn packets_take_no_memory() {
 #[test]
 fn pose_rows_and_their_reduction_take_no_memory() {
     let person = Person {
-        hand: Side::Right,
+        hand: LimbSide::Right,
         ..Person::draw(89, 1)
     };
     let clip = Script::new(89, person)
@@ -170,7 +170,7 @@ fn pose_rows_and_their_reduction_take_no_memory() {
         stream.push(*time_secs, pose, &mut |row| moments.push_values(row));
     }
     stream.finish(&mut |_| ());
-    let pca = Pca::fit(&moments, Keep::Dims(8)).unwrap();
+    let pca = Pca::fit(&moments, ComponentCount::Dims(8)).unwrap();
     let (mut reduced, mut rows) = ([0f32; 8], 0);
     let allocations = allocations(|| {
         for (time_secs, pose) in &poses {
@@ -220,7 +220,7 @@ fn the_thesiss_method_from_frames_to_events_takes_no_memory() {
         .unwrap()
         .model;
     let person = Person {
-        hand: Side::Right,
+        hand: LimbSide::Right,
         ..Person::draw(90, 3)
     };
     let script = Script::new(90, person)
@@ -243,7 +243,7 @@ fn the_thesiss_method_from_frames_to_events_takes_no_memory() {
         skeleton: clip.skeleton.clone(),
         roles,
     });
-    let mut performer = Performer::new(&model, Actor(0), &EventOptions::default());
+    let mut performer = Performer::new(&model, PerformerId(0), &EventOptions::default());
     let (mut frame, mut events) = (Frame::default(), 0);
     let mut play = |performer: &mut Performer, lap: f64| {
         for (number, pose) in poses.iter().enumerate() {

@@ -10,8 +10,8 @@ use std::time::Duration;
 
 use morec::index::MotionIndex;
 use morec::live::{
-    Actor, Event, EventReader, Frame, Layout, Model, Next, Overload, Pool, Rig, Session,
-    SessionOptions, Source,
+    Event, EventReader, Frame, Model, OverflowPolicy, PerformerId, Pool, Rig, Session,
+    SessionOptions, Source, SourceEvent, Threading,
 };
 use morec::math::Axis;
 use morec::roles::Role;
@@ -41,17 +41,17 @@ fn fill(frame: &mut Frame, number: u32) {
 struct Swinging(u32);
 
 impl Source for Swinging {
-    fn next(&mut self, frame: &mut Frame) -> Next {
+    fn next(&mut self, frame: &mut Frame) -> SourceEvent {
         self.0 += 1;
         match self.0 {
-            1 => Next::Rig(Actor(0), Arc::new(Rig::of_roles())),
+            1 => SourceEvent::Rig(PerformerId(0), Arc::new(Rig::of_roles())),
             // A gap in the middle.
-            number if number == FRAMES / 2 => Next::Gone(Actor(0)),
+            number if number == FRAMES / 2 => SourceEvent::Gone(PerformerId(0)),
             number if number <= FRAMES + 2 => {
                 fill(frame, number);
-                Next::Frame
+                SourceEvent::Frame
             }
-            _ => Next::Ended,
+            _ => SourceEvent::Ended,
         }
     }
 }
@@ -79,7 +79,7 @@ fn a_session_in_stages_goes_through_all_its_rings() {
         assert!(status.ended && status.dropped_frames == 0 && status.unusable_frames == 0);
         (status.frames, events)
     };
-    let (inline, staged) = (run(Layout::Inline), run(Layout::Stages));
+    let (inline, staged) = (run(Threading::Inline), run(Threading::Stages));
     assert_eq!(inline.0, u64::from(FRAMES));
     assert_eq!(inline.0, staged.0);
     assert_eq!(inline.1.len(), staged.1.len());
@@ -87,15 +87,15 @@ fn a_session_in_stages_goes_through_all_its_rings() {
 
 #[test]
 fn sessions_that_are_stopped_or_dropped_leave_no_thread_behind() {
-    for layout in [Layout::Inline, Layout::Stages] {
+    for layout in [Threading::Inline, Threading::Stages] {
         let model = model("svrdm_v1.index");
         let options = SessionOptions {
             layout,
-            overload: Overload::Drop,
+            overload: OverflowPolicy::Drop,
             ..SessionOptions::default()
         };
         let (session, mut feed, readers) = Session::open(&model, &options).unwrap();
-        feed.set_rig(Actor(0), &Arc::new(Rig::of_roles()));
+        feed.set_rig(PerformerId(0), &Arc::new(Rig::of_roles()));
         let mut frame: Box<Frame> = Box::default();
         for number in 0..20 {
             fill(&mut frame, number);
@@ -118,7 +118,9 @@ fn a_pools_streams_end_with_their_feeds() {
     let mut open: Vec<_> = (0..3).map(|_| pool.open(&options)).collect();
     let mut frame: Box<Frame> = Box::default();
     for stream in &mut open {
-        stream.feed.set_rig(Actor(0), &Arc::new(Rig::of_roles()));
+        stream
+            .feed
+            .set_rig(PerformerId(0), &Arc::new(Rig::of_roles()));
         for number in 0..FRAMES / 8 {
             fill(&mut frame, number);
             assert!(stream.feed.send(&mut frame));

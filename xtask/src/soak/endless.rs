@@ -7,9 +7,9 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
 use morec::live::Model;
-use morec::live::{Event, EventOptions, Overload, Phase, Session, SessionOptions};
+use morec::live::{Event, EventOptions, OverflowPolicy, Phase, Session, SessionOptions};
 
-use super::Laid;
+use super::ThreadLayout;
 use super::memory::resident_bytes;
 use super::{Args, stop_on_ctrl_c};
 use morec_live::PlayableClip;
@@ -27,7 +27,7 @@ type Lap = Vec<(u16, i64, i64, i64)>;
 pub fn run(
     model: &Model,
     clips: &Arc<Vec<PlayableClip>>,
-    layout: Laid,
+    layout: ThreadLayout,
     args: &Args,
 ) -> Result<ExitCode> {
     let lap_secs: f64 = clips
@@ -37,7 +37,7 @@ pub fn run(
     let laps = ((args.hours * 3600.0 / lap_secs).ceil() as u64).max(2);
     let source = ClipSource::new(clips.clone()).laps(laps);
     let options = SessionOptions {
-        overload: Overload::Wait,
+        overload: OverflowPolicy::Wait,
         events: EventOptions {
             early: true,
             refractory_secs: 0.0,

@@ -4,7 +4,9 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use morec::features::BoneSet;
-use morec::live::{Actor, EventOptions, Frame, Model, Next, Performer, Recognizer, Source};
+use morec::live::{
+    EventOptions, Frame, Model, Performer, PerformerId, Recognizer, Source, SourceEvent,
+};
 
 use morec_live::ClipSource;
 use morec_live::PlayableClip;
@@ -20,7 +22,7 @@ const MOST_LAPS: usize = 25;
 /// costs.
 pub fn tell(model: &Model, clips: &Arc<Vec<PlayableClip>>, most: Duration) {
     let mut laps = Vec::new();
-    let mut player = Player::new(model);
+    let mut player = InlinePlayer::new(model);
     let begun = Instant::now();
     player.lap(clips);
     // Three at least: a median of fewer is none.
@@ -62,15 +64,15 @@ fn shares(mut secs: Vec<f64>) -> String {
 }
 
 /// A performer, and recognisers ready to be copied.
-struct Player {
+struct InlinePlayer {
     model: Model,
     performer: Performer,
     ready: Vec<(BoneSet, Option<Recognizer>)>,
 }
 
-impl Player {
+impl InlinePlayer {
     fn new(model: &Model) -> Self {
-        let performer = Performer::new(model, Actor(0), &EventOptions::default());
+        let performer = Performer::new(model, PerformerId(0), &EventOptions::default());
         Self {
             model: model.clone(),
             performer,
@@ -92,20 +94,20 @@ impl Player {
         };
         loop {
             match source.next(&mut frame) {
-                Next::Frame => {
+                SourceEvent::Frame => {
                     let begun = Instant::now();
                     self.performer.push(&frame, &mut make, &mut |_| ());
                     if !std::mem::take(&mut fresh) {
                         secs.push(begun.elapsed().as_secs_f64());
                     }
                 }
-                Next::Rig(_, rig) => {
+                SourceEvent::Rig(_, rig) => {
                     self.performer.set_rig(&rig, &mut |_| ());
                     fresh = true;
                 }
-                Next::Gone(_) => self.performer.finish(&mut |_| ()),
-                Next::Quiet => {}
-                Next::Ended => break,
+                SourceEvent::Gone(_) => self.performer.finish(&mut |_| ()),
+                SourceEvent::Quiet => {}
+                SourceEvent::Ended => break,
             }
         }
         self.performer.finish(&mut |_| ());

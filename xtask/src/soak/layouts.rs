@@ -5,17 +5,17 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
-use morec::live::{EventOptions, Model, Overload, Session, SessionOptions, Waits};
+use morec::live::{EventOptions, LatencyHistogram, Model, OverflowPolicy, Session, SessionOptions};
 
 use super::Args;
-use super::Laid;
+use super::ThreadLayout;
 use morec_live::ClipSource;
 use morec_live::PlayableClip;
 
-const LAYOUTS: [(&str, Laid); 3] = [
-    ("inline", Laid::Inline),
-    ("stages", Laid::Stages),
-    ("pinned", Laid::Pinned),
+const LAYOUTS: [(&str, ThreadLayout); 3] = [
+    ("inline", ThreadLayout::Inline),
+    ("stages", ThreadLayout::Stages),
+    ("pinned", ThreadLayout::Pinned),
 ];
 /// Turns of each; whatever else the machine does should meet both alike.
 const TURNS: usize = 3;
@@ -28,7 +28,7 @@ struct Measured {
     frames: u64,
     secs: f64,
     /// Of each turn in real time.
-    waits: Vec<Waits>,
+    waits: Vec<LatencyHistogram>,
 }
 
 pub fn run(model: &Model, clips: &Arc<Vec<PlayableClip>>, args: &Args) -> Result<ExitCode> {
@@ -94,15 +94,15 @@ impl Measured {
 fn play(
     model: &Model,
     clips: &Arc<Vec<PlayableClip>>,
-    layout: Laid,
+    layout: ThreadLayout,
     speed: f64,
     turn: Duration,
-) -> Result<(u64, f64, Waits)> {
+) -> Result<(u64, f64, LatencyHistogram)> {
     let source = ClipSource::new(clips.clone()).laps(0).speed(speed);
     let overload = if speed.is_finite() {
-        Overload::Drop
+        OverflowPolicy::Drop
     } else {
-        Overload::Wait
+        OverflowPolicy::Wait
     };
     let events = EventOptions {
         early: false,

@@ -9,7 +9,9 @@ use anyhow::Result;
 use morec::features::KeyPose;
 use morec::kinematics::WorldPose;
 use morec::live::Model;
-use morec::live::{Actor, Frame, Overload, Pool, PoolStream, Rig, SessionOptions, wall_now_secs};
+use morec::live::{
+    Frame, OverflowPolicy, PerformerId, Pool, PoolStream, Rig, SessionOptions, wall_now_secs,
+};
 use morec::math::Vec3;
 
 use super::memory::resident_bytes;
@@ -36,19 +38,19 @@ pub fn run(
     let poses: Vec<Vec<Vec3>> = clips.iter().flat_map(poses_of).collect();
     let pool = Pool::new(model, args.threads)?;
     let options = SessionOptions {
-        overload: Overload::Drop,
+        overload: OverflowPolicy::Drop,
         frame_capacity: 24,
         ..SessionOptions::default()
     };
     let rig = Arc::new(Rig::of_roles());
-    let mut open: Vec<Stream> = (0..streams)
+    let mut open: Vec<SoakStream> = (0..streams)
         .map(|number| {
-            let mut stream = Stream {
+            let mut stream = SoakStream {
                 of_pool: pool.open(&options),
                 frame: Box::default(),
                 number,
             };
-            stream.of_pool.feed.set_rig(Actor(0), &rig);
+            stream.of_pool.feed.set_rig(PerformerId(0), &rig);
             stream
         })
         .collect();
@@ -134,13 +136,13 @@ fn poses_of(loaded: &PlayableClip) -> Vec<Vec<Vec3>> {
         .collect()
 }
 
-struct Stream {
+struct SoakStream {
     of_pool: PoolStream,
     frame: Box<Frame>,
     number: usize,
 }
 
-impl Stream {
+impl SoakStream {
     /// Sends the next pose, if the stream has begun; says whether it has. Every stream is at another place of the
     /// clips, and they begin one after the other: nobody's performers move in step.
     fn send(&mut self, poses: &[Vec<Vec3>], tick: usize, rate_hz: f64) -> bool {

@@ -12,7 +12,7 @@ use morec::kinematics::WorldPose;
 use morec::labels::{ClipLength, Labels, Sample};
 use morec::live::Model;
 use morec::live::vmc::{VmcOptions, VmcSender};
-use morec::live::{Overload, Phase, Session, SessionOptions, wall_now_secs};
+use morec::live::{OverflowPolicy, Phase, Session, SessionOptions, wall_now_secs};
 
 use super::{Args, stop_on_ctrl_c};
 use morec_live::NamedEvent;
@@ -30,7 +30,7 @@ const BEFORE_SECS: f64 = 1.0;
 const NEAR_SECS: f64 = 1.0;
 
 /// A motion that was told: its class, the wall clock when it ended and when the event left.
-struct Told {
+struct ReceivedEvent {
     class: String,
     ended_wall_secs: f64,
     left_wall_secs: f64,
@@ -41,7 +41,7 @@ pub fn run(model: &Model, clips: &Arc<Vec<PlayableClip>>, args: &Args) -> Result
     let source = VmcSource::bind(here, &VmcOptions::default())?;
     let to = source.address()?;
     let options = SessionOptions {
-        overload: Overload::Drop,
+        overload: OverflowPolicy::Drop,
         ..SessionOptions::default()
     };
     let (session, readers) = Session::start(model, Box::new(source), &options)?;
@@ -88,7 +88,7 @@ pub fn run(model: &Model, clips: &Arc<Vec<PlayableClip>>, args: &Args) -> Result
         let left_wall_secs = wall_now_secs();
         if event.phase == Phase::End {
             let ended_wall_secs = event.wall_at_secs(event.stop_secs);
-            told.push(Told {
+            told.push(ReceivedEvent {
                 class: class.to_owned(),
                 ended_wall_secs,
                 left_wall_secs,
@@ -111,10 +111,10 @@ pub fn run(model: &Model, clips: &Arc<Vec<PlayableClip>>, args: &Args) -> Result
         let delays = samples.iter().filter_map(|sample| {
             let at = clips.iter().position(|c| c.clip.name == sample.clip)?;
             let end_secs = begins.get(at)? + sample.stop_secs;
-            let near = |t: &&Told| {
+            let near = |t: &&ReceivedEvent| {
                 t.class == sample.class && (t.ended_wall_secs - end_secs).abs() < NEAR_SECS
             };
-            let off = |t: &&Told| (t.ended_wall_secs - end_secs).abs();
+            let off = |t: &&ReceivedEvent| (t.ended_wall_secs - end_secs).abs();
             let told = told
                 .iter()
                 .filter(near)

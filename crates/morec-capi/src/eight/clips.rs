@@ -8,14 +8,14 @@ use morec::index::MotionIndex;
 use morec::live::Model;
 use morec::pivots::NoPivots;
 
-use crate::status::{Error, MorecStatus};
+use crate::status::{CallError, MorecStatus};
 
-fn file_error(path: &Path, error: impl std::fmt::Display) -> Error {
-    Error::new(MorecStatus::File, format!("{}: {error}", path.display()))
+fn file_error(path: &Path, error: impl std::fmt::Display) -> CallError {
+    CallError::new(MorecStatus::File, format!("{}: {error}", path.display()))
 }
 
 /// The first clip in the file, in metres and Y up, with its roles.
-pub(super) fn load(path: &Path, index: &MotionIndex) -> Result<Take, Error> {
+pub(super) fn load(path: &Path, index: &MotionIndex) -> Result<Take, CallError> {
     if path
         .extension()
         .is_some_and(|e| e.eq_ignore_ascii_case("asf"))

@@ -13,8 +13,8 @@ use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::memory;
-use crate::status::{Error, MorecStatus, guard};
-use state::State;
+use crate::status::{CallError, MorecStatus, guard};
+use state::ThesisState;
 
 /// Bytes for the name of a class, with the zero at its end; longer names are cut.
 pub(crate) const NAME_BYTES: usize = 64;
@@ -43,14 +43,14 @@ pub struct MotionSeg {
     pub class_name: [c_char; 64],
 }
 
-static STATE: Mutex<State> = Mutex::new(State::new());
+static STATE: Mutex<ThesisState> = Mutex::new(ThesisState::new());
 
-fn state() -> MutexGuard<'static, State> {
+fn state() -> MutexGuard<'static, ThesisState> {
     // After a fault the parts are as they were before it or gone; every call looks at what is there.
     STATE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn done(call: impl FnOnce() -> Result<(), Error>) -> bool {
+fn done(call: impl FnOnce() -> Result<(), CallError>) -> bool {
     guard(call) == MorecStatus::Ok
 }
 
@@ -154,8 +154,8 @@ pub unsafe extern "C" fn mrQueryMotionSegments(
     done(|| {
         // SAFETY: as promised to this function.
         let room = unsafe { memory::get(nSegments, "nSegments") }?;
-        let room =
-            usize::try_from(room).map_err(|_| Error::invalid(format!("nSegments is {room}")))?;
+        let room = usize::try_from(room)
+            .map_err(|_| CallError::invalid(format!("nSegments is {room}")))?;
         let mut state = state();
         let solution = state.solution()?;
         let mut count = solution.len();

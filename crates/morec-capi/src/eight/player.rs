@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 
 use morec::import::Take;
-use morec::live::{Actor, Frame, Next, Rig, Source, wall_now_secs};
+use morec::live::{Frame, PerformerId, Rig, Source, SourceEvent, wall_now_secs};
 
 /// A source must not sleep longer than this.
 const NAP: Duration = Duration::from_millis(10);
@@ -35,7 +35,7 @@ impl Control {
 }
 
 /// Plays a clip once.
-pub(super) struct Player {
+pub(super) struct SourcePlayer {
     take: Arc<Take>,
     control: Arc<Control>,
     announced: bool,
@@ -45,7 +45,7 @@ pub(super) struct Player {
     since: usize,
 }
 
-impl Player {
+impl SourcePlayer {
     pub(super) fn new(take: &Arc<Take>, control: &Arc<Control>) -> Self {
         let (take, control) = (take.clone(), control.clone());
         Self {
@@ -80,8 +80,8 @@ impl Player {
     }
 }
 
-impl Source for Player {
-    fn next(&mut self, frame: &mut Frame) -> Next {
+impl Source for SourcePlayer {
+    fn next(&mut self, frame: &mut Frame) -> SourceEvent {
         let take = self.take.clone();
         let (clip, rest) = (&take.clip, take.rest());
         if !self.announced {
@@ -90,15 +90,15 @@ impl Source for Player {
                 skeleton: clip.skeleton.clone(),
                 roles: take.roles.clone(),
             };
-            return Next::Rig(Actor(0), Arc::new(rig));
+            return SourceEvent::Rig(PerformerId(0), Arc::new(rig));
         }
         if self.frame >= clip.frames || self.control.stop.load(Relaxed) {
-            return Next::Ended;
+            return SourceEvent::Ended;
         }
         let wait = self.wait();
         std::thread::sleep(wait.min(NAP));
         if wait > NAP {
-            return Next::Quiet;
+            return SourceEvent::Quiet;
         }
         // The rest pose that a conversion left shows the first pose after it, as everywhere.
         let shown = if rest.contains(&self.frame) {
@@ -107,15 +107,15 @@ impl Source for Player {
             self.frame
         };
         frame.pose.set(clip, shown);
-        frame.actor = Actor(0);
+        frame.actor = PerformerId(0);
         frame.time_secs = self.frame as f64 / clip.rate_hz;
         frame.wall_secs = wall_now_secs();
         self.frame += 1;
-        Next::Frame
+        SourceEvent::Frame
     }
 }
 
-impl Drop for Player {
+impl Drop for SourcePlayer {
     fn drop(&mut self) {
         self.control.depleted.store(true, Relaxed);
     }

@@ -10,35 +10,35 @@ use std::time::Duration;
 use morec::import::Take;
 use morec::index::MotionIndex;
 use morec::live::{
-    Event, EventOptions, EventReader, Overload, Phase, Recognizer, Session, SessionOptions,
+    Event, EventOptions, EventReader, OverflowPolicy, Phase, Recognizer, Session, SessionOptions,
 };
 
-use super::player::{Control, Player};
+use super::player::{Control, SourcePlayer};
 use super::{MotionSeg, NAME_BYTES, clips};
 use crate::MorecStatus;
 use crate::index;
-use crate::status::Error;
+use crate::status::CallError;
 
 /// Motions that are kept in the solution.
 const KEPT: usize = 16_384;
 
 /// Everything there is between `mrInit` and `mrTerminate`.
-pub(super) struct State {
+pub(super) struct ThesisState {
     index: Option<MotionIndex>,
-    source: Option<ClipData>,
-    run: Option<Run>,
+    source: Option<SourceClip>,
+    run: Option<RunningSession>,
     solution: VecDeque<MotionSeg>,
     found: u64,
     speed: f64,
 }
 
-struct ClipData {
+struct SourceClip {
     take: Arc<Take>,
     control: Arc<Control>,
 }
 
 /// A recognition under way.
-struct Run {
+struct RunningSession {
     session: Session,
     events: EventReader,
     rate_hz: f64,
@@ -46,11 +46,11 @@ struct Run {
     control: Arc<Control>,
 }
 
-fn out_of_order(text: &str) -> Error {
-    Error::new(MorecStatus::WrongOrder, text)
+fn out_of_order(text: &str) -> CallError {
+    CallError::new(MorecStatus::WrongOrder, text)
 }
 
-impl State {
+impl ThesisState {
     pub(super) const fn new() -> Self {
         Self {
             index: None,
@@ -62,7 +62,7 @@ impl State {
         }
     }
 
-    pub(super) fn init(&mut self, path: &Path) -> Result<(), Error> {
+    pub(super) fn init(&mut self, path: &Path) -> Result<(), CallError> {
         if self.index.is_some() {
             return Err(out_of_order(
                 "there is an index already: call mrTerminate first",
@@ -77,7 +77,7 @@ impl State {
         *self = Self::new();
     }
 
-    pub(super) fn set_source(&mut self, path: &Path) -> Result<(), Error> {
+    pub(super) fn set_source(&mut self, path: &Path) -> Result<(), CallError> {
         let index = self
             .index
             .as_ref()
@@ -93,16 +93,16 @@ impl State {
             ));
         }
         let take = Arc::new(clips::load(path, index)?);
-        self.source = Some(ClipData {
+        self.source = Some(SourceClip {
             take,
             control: Arc::new(Control::new(self.speed)),
         });
         Ok(())
     }
 
-    pub(super) fn set_speed(&mut self, speed: f64) -> Result<(), Error> {
+    pub(super) fn set_speed(&mut self, speed: f64) -> Result<(), CallError> {
         if speed.is_nan() || speed <= 0.0 {
-            return Err(Error::invalid(format!(
+            return Err(CallError::invalid(format!(
                 "speed is {speed}, expected more than 0"
             )));
         }
@@ -113,7 +113,7 @@ impl State {
         Ok(())
     }
 
-    pub(super) fn stop_source(&mut self) -> Result<(), Error> {
+    pub(super) fn stop_source(&mut self) -> Result<(), CallError> {
         if self.source.take().is_none() {
             return Err(out_of_order(
                 "there is no data source: call mrSetDataSource first",
@@ -141,7 +141,7 @@ impl State {
             .is_none_or(|source| source.control.depleted.load(Relaxed))
     }
 
-    pub(super) fn start(&mut self) -> Result<(), Error> {
+    pub(super) fn start(&mut self) -> Result<(), CallError> {
         let index = self
             .index
             .as_ref()
@@ -157,7 +157,7 @@ impl State {
             ));
         };
         Recognizer::new(&index.model, source.take.bones())
-            .map_err(|error| Error::new(MorecStatus::NothingInCommon, error.to_string()))?;
+            .map_err(|error| CallError::new(MorecStatus::NothingInCommon, error.to_string()))?;
         let control = Arc::new(Control::new(self.speed));
         source.control = control.clone();
         let options = SessionOptions {
@@ -165,18 +165,18 @@ impl State {
                 early: false,
                 ..Default::default()
             },
-            overload: Overload::Wait,
+            overload: OverflowPolicy::Wait,
             ..Default::default()
         };
-        let player = Box::new(Player::new(&source.take, &control));
+        let player = Box::new(SourcePlayer::new(&source.take, &control));
         let started = Session::start(&index.model, player, &options);
         let (session, readers) =
-            started.map_err(|error| Error::new(MorecStatus::Internal, error.to_string()))?;
+            started.map_err(|error| CallError::new(MorecStatus::Internal, error.to_string()))?;
         let Some(events) = readers.into_iter().next() else {
             return Err(MorecStatus::Internal.into());
         };
         (self.solution, self.found) = (VecDeque::new(), 0);
-        self.run = Some(Run {
+        self.run = Some(RunningSession {
             session,
             events,
             rate_hz: source.take.clip.rate_hz,
@@ -185,7 +185,7 @@ impl State {
         Ok(())
     }
 
-    pub(super) fn stop(&mut self) -> Result<(), Error> {
+    pub(super) fn stop(&mut self) -> Result<(), CallError> {
         let Some(run) = &self.run else {
             return Err(out_of_order(
                 "there is no recognition to stop: call mrStart first",
@@ -203,7 +203,7 @@ impl State {
     }
 
     /// The motions so far, the oldest first.
-    pub(super) fn solution(&mut self) -> Result<&VecDeque<MotionSeg>, Error> {
+    pub(super) fn solution(&mut self) -> Result<&VecDeque<MotionSeg>, CallError> {
         if self.index.is_none() {
             return Err(out_of_order("call mrInit first"));
         }

@@ -11,7 +11,7 @@ use morec::features::KeyPose;
 use morec::index::{MotionIndex, Provenance};
 use morec::live::Detection;
 use morec::roles::Role;
-use morec::synth::{Person, Script, Side, SyntheticTake};
+use morec::synth::{LimbSide, Person, Script, SyntheticTake};
 use morec_capi::*;
 
 use crate::made::{self, Timed};
@@ -54,7 +54,7 @@ fn committed(name: &str) -> Vec<u8> {
 /// A person who performs some gestures.
 pub fn take(rate_hz: f64) -> SyntheticTake {
     let person = Person {
-        hand: Side::Right,
+        hand: LimbSide::Right,
         ..Person::draw(90, 1)
     };
     let script = Script::new(90, person)

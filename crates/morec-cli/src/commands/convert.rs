@@ -15,7 +15,7 @@ use morec::import::{ImportOptions, normalize};
 use morec::tables::Content;
 
 use crate::files::{self, ReadArgs};
-use form::Form;
+use form::ClipForm;
 pub use form::write_clip;
 
 /// Write clips as BVH, C3D, TRC, GLB, VRMA, lines of JSON, NumPy archives or CSV
@@ -46,10 +46,10 @@ pub struct Args {
     output: PathBuf,
     /// Write into a folder, in this form [default: bvh]
     #[arg(long, value_enum)]
-    form: Option<Form>,
+    form: Option<ClipForm>,
     /// What a CSV holds
-    #[arg(long, value_enum, default_value_t = Table::Positions)]
-    table: Table,
+    #[arg(long, value_enum, default_value_t = CsvContent::Positions)]
+    table: CsvContent,
     /// Resample to this rate; without it, every frame is kept as it is
     #[arg(long, value_name = "HZ", value_parser = files::rate)]
     rate: Option<f64>,
@@ -69,7 +69,7 @@ pub struct Args {
 
 /// What a CSV holds.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-enum Table {
+enum CsvContent {
     /// Where the joints are, metres
     Positions,
     /// How each joint is turned in its parent's frame, quaternions
@@ -78,12 +78,12 @@ enum Table {
     Features,
 }
 
-impl From<Table> for Content {
-    fn from(table: Table) -> Self {
+impl From<CsvContent> for Content {
+    fn from(table: CsvContent) -> Self {
         match table {
-            Table::Positions => Content::Positions,
-            Table::Rotations => Content::Rotations,
-            Table::Features => Content::Features,
+            CsvContent::Positions => Content::Positions,
+            CsvContent::Rotations => Content::Rotations,
+            CsvContent::Features => Content::Features,
         }
     }
 }
@@ -145,10 +145,10 @@ pub fn run(args: Args) -> Result<ExitCode> {
     let (path, output) = (&args.clips[0], &args.output);
     let to_stdout = output == Path::new("-");
     let form = match to_stdout {
-        true => Form::Bvh,
-        false => Form::of(output).with_context(|| output.display().to_string())?,
+        true => ClipForm::Bvh,
+        false => ClipForm::of(output).with_context(|| output.display().to_string())?,
     };
-    if args.table != Table::Positions && form != Form::Csv {
+    if args.table != CsvContent::Positions && form != ClipForm::Csv {
         bail!("--table says what a .csv holds, and the output is none");
     }
     let opened = files::open(path, &args.read)?;

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 
 use clap::ValueEnum;
 use morec::crossval::Tested;
-use morec::crossval::{By, CrossvalOptions, Material, Outcome, Tests, crossval};
+use morec::crossval::{CrossvalData, CrossvalOptions, CrossvalOutcome, FoldBy, Tests, crossval};
 use morec::eval::{Evaluation, MEASURED_OVERLAP, timelines};
 use morec::explain::Miss;
 use morec::labels::Sample;
@@ -17,8 +17,8 @@ use morec::templates::ALARM_RATES;
 
 use crate::figures;
 use crate::material::MaterialArgs;
-use crate::progress::Bar;
-use crate::table::Table;
+use crate::progress::StageBar;
+use crate::table::TextTable;
 
 /// Cross-validate: train without a part of the labels, recognise that part, and measure.
 ///
@@ -100,7 +100,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
         )?),
         None => None,
     };
-    let of = Material {
+    let of = CrossvalData {
         clips: &material.data.clips,
         samples: &material.data.samples,
         classes: &material.data.classes,
@@ -110,7 +110,12 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             samples: &tests.data.samples,
         }),
     };
-    let outcome = crossval(&of, &args.options(), &args.material.recipe()?, &Bar::new())?;
+    let outcome = crossval(
+        &of,
+        &args.options(),
+        &args.material.recipe()?,
+        &StageBar::new(),
+    )?;
     let tested = &outcome.tested;
     let evaluation = Evaluation::of(&tested.streams, &tested.truths, &tested.founds)?;
     let perturbed = measured(&outcome.perturbed)?;
@@ -144,7 +149,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             alarms_per_minute: s.0,
             evaluation: s.1.clone(),
         };
-        let all = Measured {
+        let all = CrossvalMeasures {
             evaluation: &evaluation,
             missed: &tested.misses,
             perturbed: perturbed.iter().map(named).collect(),
@@ -165,10 +170,10 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 impl Args {
     fn options(&self) -> CrossvalOptions {
         let by = match self.by {
-            SplitArg::Half => By::Half { seed: self.seed },
-            SplitArg::Clip => By::Clip,
-            SplitArg::Person => By::Person,
-            SplitArg::Own => By::Own,
+            SplitArg::Half => FoldBy::Half { seed: self.seed },
+            SplitArg::Clip => FoldBy::Clip,
+            SplitArg::Person => FoldBy::Person,
+            SplitArg::Own => FoldBy::Own,
         };
         CrossvalOptions {
             by,
@@ -185,7 +190,7 @@ impl Args {
 
 /// Everything measured, for JSON.
 #[derive(serde::Serialize)]
-struct Measured<'a> {
+struct CrossvalMeasures<'a> {
     #[serde(flatten)]
     evaluation: &'a Evaluation,
     missed: &'a [Miss],
@@ -224,7 +229,7 @@ fn write_sensitivities(
     if sensitivities.is_empty() {
         return Ok(());
     }
-    let mut table = Table::new([
+    let mut table = TextTable::new([
         "sensitivity",
         "precision",
         "recall",
@@ -257,7 +262,7 @@ fn write_perturbed(
     if perturbed.is_empty() {
         return Ok(());
     }
-    let mut table = Table::new([
+    let mut table = TextTable::new([
         "copy",
         "accuracy",
         "F1",
@@ -282,7 +287,7 @@ fn write_perturbed(
     write!(out, "{table}")
 }
 
-fn write_folds(out: &mut impl Write, outcome: &Outcome) -> std::io::Result<()> {
+fn write_folds(out: &mut impl Write, outcome: &CrossvalOutcome) -> std::io::Result<()> {
     writeln!(out, "\nTraining, by what was left out")?;
     for fold in &outcome.folds {
         let training = &fold.training;

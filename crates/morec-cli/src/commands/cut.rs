@@ -8,7 +8,7 @@ use std::process::ExitCode;
 
 use anyhow::{Result, bail};
 use clap::ValueEnum;
-use morec::segment::{Directions, KernelParams, PpcaParams};
+use morec::segment::{KernelParams, PassDirections, PpcaParams};
 
 use crate::database;
 use crate::poses::PoseArgs;
@@ -87,12 +87,12 @@ enum Direction {
 }
 
 /// How to cut, checked.
-enum Cutter {
+enum CheckedCutter {
     Kernel(KernelParams),
     Ppca(PpcaParams),
 }
 
-impl Cutter {
+impl CheckedCutter {
     fn new(args: &Args) -> Result<Self> {
         let kernel = KernelParams {
             window_secs: args.window,
@@ -104,9 +104,9 @@ impl Cutter {
             rise: args.rise,
             quality: args.quality,
             directions: match args.direction {
-                Direction::Forward => Directions::Forward,
-                Direction::Backward => Directions::Backward,
-                Direction::Both => Directions::Both,
+                Direction::Forward => PassDirections::Forward,
+                Direction::Backward => PassDirections::Backward,
+                Direction::Both => PassDirections::Both,
             },
             ..PpcaParams::default()
         };
@@ -124,9 +124,9 @@ impl Cutter {
 /// Cuts clips, or the clips of a database.
 pub fn run(args: &Args) -> Result<ExitCode> {
     match database::only(&args.inputs)? {
-        Some(db) => stored::run(db, Cutter::new(args)?, args),
+        Some(db) => stored::run(db, CheckedCutter::new(args)?, args),
         None if args.name.is_some() => bail!("--name chooses clips of a database"),
-        None => files::run(&Cutter::new(args)?, args),
+        None => files::run(&CheckedCutter::new(args)?, args),
     }
 }
 
@@ -134,7 +134,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 pub fn run_stored(args: &Args) -> Result<ExitCode> {
     eprintln!("morec: `morec db cut` is `morec cut` now");
     match args.inputs.as_slice() {
-        [db] => stored::run(db, Cutter::new(args)?, args),
+        [db] => stored::run(db, CheckedCutter::new(args)?, args),
         _ => bail!("expected one database"),
     }
 }

@@ -16,7 +16,7 @@ use morec::labels::{ClipLength, Labels, read_found};
 
 use super::{evaluate, recognize, train};
 use crate::files::{ReadArgs, takes};
-use crate::show::{self, Said, Scene, Truth};
+use crate::show::{self, KnownSpan, ReportedDetection, ShownClip};
 use cast::Cast;
 use folder::DemoFolder;
 
@@ -125,14 +125,18 @@ fn show(folder: &DemoFolder, cast: &Cast, args: &Args) -> Result<()> {
     let lengths = BTreeMap::from([(cast.name.clone(), length)]);
     let said = said(&folder.found(), &lengths)?;
     let table = Labels::from_path(folder.path("truth.tsv"))?;
-    let truth = table.resolve(&lengths).samples.into_iter().map(|l| Truth {
-        class: l.class,
-        start_secs: l.start_secs,
-        stop_secs: l.stop_secs,
-    });
-    let truth: Vec<Truth> = truth.collect();
+    let truth = table
+        .resolve(&lengths)
+        .samples
+        .into_iter()
+        .map(|l| KnownSpan {
+            class: l.class,
+            start_secs: l.start_secs,
+            stop_secs: l.stop_secs,
+        });
+    let truth: Vec<KnownSpan> = truth.collect();
     let title = format!("{}, {} times as fast", cast.whose, args.speed);
-    let scene = Scene {
+    let scene = ShownClip {
         title: &title,
         clip: &take.clip,
         truth: &truth,
@@ -151,13 +155,13 @@ fn show(folder: &DemoFolder, cast: &Cast, args: &Args) -> Result<()> {
 }
 
 /// The detections in the table `path`, in the order they were reported.
-fn said(path: &Path, lengths: &BTreeMap<String, ClipLength>) -> Result<Vec<Said>> {
+fn said(path: &Path, lengths: &BTreeMap<String, ClipLength>) -> Result<Vec<ReportedDetection>> {
     let shown = || path.display().to_string();
     let table = read_found(&std::fs::read(path).with_context(shown)?).with_context(shown)?;
     let (found, _) = table.resolve(lengths);
-    let mut said: Vec<Said> = found
+    let mut said: Vec<ReportedDetection> = found
         .into_iter()
-        .map(|f| Said {
+        .map(|f| ReportedDetection {
             class: f.class,
             start_secs: f.start_secs,
             stop_secs: f.stop_secs,

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 
 use anyhow::{Context, bail};
 use morec::classes::ClassId;
-use morec::eval::{Evaluation, Found, StreamInfo, Truth, event_pairs, timelines};
+use morec::eval::{ClipDetection, Evaluation, GroundTruth, StreamInfo, event_pairs, timelines};
 use morec::explain::{Miss, Sought, explain};
 use morec::formats::Warning;
 use morec::import::ImportOptions;
@@ -127,7 +127,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     if args.json {
         let missed = args.index.is_some().then_some(misses.as_slice());
         let evaluation = &evaluation;
-        figures::write_json(&mut out, &Measured { evaluation, missed })?;
+        figures::write_json(&mut out, &EvaluationMeasures { evaluation, missed })?;
     } else {
         figures::write_tables(&mut out, &evaluation)?;
         figures::write_misses(&mut out, &misses)?;
@@ -138,14 +138,19 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 
 impl Args {
     /// Why samples without an event were missed. The clips are read once more, with their motion.
-    fn misses(&self, index: &Path, cases: &Cases, founds: &[Found]) -> anyhow::Result<Vec<Miss>> {
+    fn misses(
+        &self,
+        index: &Path,
+        cases: &Cases,
+        founds: &[ClipDetection],
+    ) -> anyhow::Result<Vec<Miss>> {
         let model = open_index(index)?.model;
         let paths = files::expand(&self.clips)?;
         let clips = load_clips(&paths, &self.read, &ImportOptions::default())?;
         let misses_in = |loaded: &LoadedClip| {
             let clip = &loaded.clip;
-            let here: Vec<&Found> = founds.iter().filter(|f| f.clip == clip.name).collect();
-            let labelled: Vec<&Truth> = cases
+            let here: Vec<&ClipDetection> = founds.iter().filter(|f| f.clip == clip.name).collect();
+            let labelled: Vec<&GroundTruth> = cases
                 .truths
                 .iter()
                 .filter(|t| t.clip == clip.name)
@@ -169,7 +174,7 @@ impl Args {
 }
 
 /// A row of a table of detections, where the index knows its class.
-fn detection(model: &Model, found: &Found) -> Option<Detection> {
+fn detection(model: &Model, found: &ClipDetection) -> Option<Detection> {
     let class = model.classes().iter().position(|c| c.name == found.class)?;
     Some(Detection {
         class: ClassId(class as u16),
@@ -182,7 +187,7 @@ fn detection(model: &Model, found: &Found) -> Option<Detection> {
 
 /// Everything measured, for JSON.
 #[derive(serde::Serialize)]
-struct Measured<'a> {
+struct EvaluationMeasures<'a> {
     #[serde(flatten)]
     evaluation: &'a Evaluation,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -193,7 +198,7 @@ struct Measured<'a> {
 #[derive(Debug)]
 struct Cases {
     streams: Vec<StreamInfo>,
-    truths: Vec<Truth>,
+    truths: Vec<GroundTruth>,
     /// What was left out, for the person at the terminal.
     notes: Vec<String>,
 }
@@ -230,7 +235,7 @@ impl Cases {
                 lost.len()
             ));
         }
-        let truths: Vec<Truth> = kept.into_iter().map(Truth::from).collect();
+        let truths: Vec<GroundTruth> = kept.into_iter().map(GroundTruth::from).collect();
         let known: BTreeSet<&str> = truths.iter().map(|t| t.clip.as_str()).collect();
         let (used, unlabelled): (Vec<_>, Vec<_>) = clips
             .iter()

@@ -13,9 +13,9 @@ use morec::import::{ImportOptions, SignedAxis, Take};
 use crate::figures::write_json;
 use crate::files::{self, ReadArgs};
 use crate::output;
-use crate::progress::Progress;
+use crate::progress::SlowProgress;
 use draw::Drawing;
-use report::{FileReport, Report};
+use report::{FileReport, InspectReport};
 
 /// Show what a clip is: skeleton, roles, rate, units, repairs
 ///
@@ -84,7 +84,7 @@ pub fn run(args: Args) -> Result<ExitCode> {
             );
         }
     }
-    let mut progress = Progress::new(paths.len(), "reading clips");
+    let mut progress = SlowProgress::new(paths.len(), "reading clips");
     let mut failed = left_out;
     let mut reports: Vec<FileReport> = Vec::new();
     for path in paths {
@@ -150,7 +150,11 @@ fn draw(drawings: &[Option<Drawing>], path: &Path, output: Option<&Path>) -> Res
     Ok(())
 }
 
-fn inspect(path: &Path, read: &ReadArgs, options: &ImportOptions) -> Result<(Report, Vec<Take>)> {
+fn inspect(
+    path: &Path,
+    read: &ReadArgs,
+    options: &ImportOptions,
+) -> Result<(InspectReport, Vec<Take>)> {
     let opened = files::open(path, read)?;
     let (format, skeleton, warnings) = (
         opened.format,
@@ -159,7 +163,7 @@ fn inspect(path: &Path, read: &ReadArgs, options: &ImportOptions) -> Result<(Rep
     );
     let takes = opened.into_takes(options);
     let takes = takes.with_context(|| format!("{}: --roles", path.display()))?;
-    let report = Report::new(path, format, skeleton, &takes, warnings);
+    let report = InspectReport::new(path, format, skeleton, &takes, warnings);
     Ok((report, takes))
 }
 

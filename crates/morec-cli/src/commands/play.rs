@@ -15,7 +15,7 @@ use morec::player::{Mark, Played, page};
 use super::recognize::open_index;
 use crate::files::{self, ReadArgs};
 use crate::output;
-use crate::show::{self, Said, Scene, Truth};
+use crate::show::{self, KnownSpan, ReportedDetection, ShownClip};
 
 /// Play clips in the terminal, or write a page that plays them
 ///
@@ -93,7 +93,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 }
 
 /// The labels of each clip by its name.
-fn labels(path: Option<&Path>, takes: &[Take]) -> Result<BTreeMap<String, Vec<Truth>>> {
+fn labels(path: Option<&Path>, takes: &[Take]) -> Result<BTreeMap<String, Vec<KnownSpan>>> {
     let Some(path) = path else {
         return Ok(BTreeMap::new());
     };
@@ -113,9 +113,9 @@ fn labels(path: Option<&Path>, takes: &[Take]) -> Result<BTreeMap<String, Vec<Tr
     for warning in &resolved.warnings {
         eprintln!("morec: {}: {warning}", path.display());
     }
-    let mut of_clip: BTreeMap<String, Vec<Truth>> = BTreeMap::new();
+    let mut of_clip: BTreeMap<String, Vec<KnownSpan>> = BTreeMap::new();
     for sample in resolved.samples {
-        of_clip.entry(sample.clip).or_default().push(Truth {
+        of_clip.entry(sample.clip).or_default().push(KnownSpan {
             class: sample.class,
             start_secs: sample.start_secs,
             stop_secs: sample.stop_secs,
@@ -128,15 +128,15 @@ fn labels(path: Option<&Path>, takes: &[Take]) -> Result<BTreeMap<String, Vec<Tr
 }
 
 /// What the index recognises, in the order in which it is said.
-fn said(take: &mut Take, index: &MotionIndex, complete: bool) -> Result<Vec<Said>> {
+fn said(take: &mut Take, index: &MotionIndex, complete: bool) -> Result<Vec<ReportedDetection>> {
     if complete {
         index.complete_roles(&mut take.roles, &take.clip.skeleton);
     }
     let found = recognize_clip(&index.model, &take.clip, &take.roles, take.rest())
         .with_context(|| take.name().to_owned())?;
-    let mut said: Vec<Said> = found
+    let mut said: Vec<ReportedDetection> = found
         .into_iter()
-        .map(|found| Said {
+        .map(|found| ReportedDetection {
             class: index.model.class_name(found.class).to_owned(),
             start_secs: found.start_secs,
             stop_secs: found.stop_secs,
@@ -148,14 +148,18 @@ fn said(take: &mut Take, index: &MotionIndex, complete: bool) -> Result<Vec<Said
     Ok(said)
 }
 
-fn in_terminal(takes: &[Take], played: &[(Vec<Truth>, Vec<Said>)], speed: f64) -> Result<()> {
+fn in_terminal(
+    takes: &[Take],
+    played: &[(Vec<KnownSpan>, Vec<ReportedDetection>)],
+    speed: f64,
+) -> Result<()> {
     let watched = std::io::stdout().is_terminal();
     for (take, (truth, said)) in takes.iter().zip(played) {
         if !watched {
             // Where nobody watches, what would be seen is said in lines.
             println!("{}: {:.2} s", take.name(), take.clip.duration_secs());
         }
-        let scene = Scene {
+        let scene = ShownClip {
             title: take.name(),
             clip: &take.clip,
             truth,
@@ -166,7 +170,11 @@ fn in_terminal(takes: &[Take], played: &[(Vec<Truth>, Vec<Said>)], speed: f64) -
     Ok(())
 }
 
-fn write_page(path: &Path, takes: &[Take], played: Vec<(Vec<Truth>, Vec<Said>)>) -> Result<()> {
+fn write_page(
+    path: &Path,
+    takes: &[Take],
+    played: Vec<(Vec<KnownSpan>, Vec<ReportedDetection>)>,
+) -> Result<()> {
     let mark = |name: String, start_secs, stop_secs| Mark {
         name,
         start_secs,

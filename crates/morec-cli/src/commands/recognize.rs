@@ -11,7 +11,7 @@ use morec::import::{ImportOptions, Take};
 use morec::index::MotionIndex;
 use morec::labels::{FOUND_HEADER, FoundLine};
 use morec::live::vmc::Bundling;
-use morec::live::{Detection, Model, PoseReader, recognize_clip, recognize_clip_in_session};
+use morec::live::{Detection, Model, PoseExtractor, recognize_clip, recognize_clip_in_session};
 use morec::roles::Role;
 
 use super::send::bundling;
@@ -20,7 +20,7 @@ use crate::live::layout::LayoutArg;
 use crate::live::network::NetworkArgs;
 use crate::live::wire::recognise_over_vmc;
 use crate::output::Output;
-use crate::progress::Progress;
+use crate::progress::SlowProgress;
 use crate::stats::Stats;
 use morec_live::PlayableClip;
 
@@ -151,7 +151,7 @@ fn recognize_all(
     }
     let mut stats = Stats::default();
     let mut failed = false;
-    let mut progress = Progress::new(paths.len(), "recognising");
+    let mut progress = SlowProgress::new(paths.len(), "recognising");
     for path in paths {
         match recognize_file(path, index, options, args, &mut stats) {
             Ok(found) => found
@@ -256,7 +256,7 @@ fn adapt(imported: &mut Take, index: &MotionIndex, path: &Path, complete: bool) 
         Model::Templates(model) => ("bones", missing_roles(imported, model.bones)),
         Model::Svrdm(_) => {
             // Without a root there is an error to come, which says more.
-            let reader = PoseReader::new(&index.model, &imported.clip.skeleton, &imported.roles);
+            let reader = PoseExtractor::new(&index.model, &imported.clip.skeleton, &imported.roles);
             (
                 "joints",
                 reader.map_or_else(|_| vec![], |reader| reader.missing_pivots().to_vec()),

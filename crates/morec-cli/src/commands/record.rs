@@ -8,9 +8,9 @@ use morec::diagnosis::{Diagnoser, Severity};
 use morec::live::Recording;
 
 use crate::interrupt::stop_on_ctrl_c;
-use crate::live::keep::Store;
+use crate::live::keep::TakeStore;
 use crate::live::open::TrackerArgs;
-use crate::live::takes::{Ended, Stage, TakeArgs, secs};
+use crate::live::takes::{Ended, TakeArgs, TakeRecorder, secs};
 use morec_live::Address;
 
 /// Record takes from a tracker, for `morec train --clips` and everything else that reads clips.
@@ -53,7 +53,7 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let store = Store::of(&args.output)?;
+    let store = TakeStore::of(&args.output)?;
     let files: Vec<PathBuf> = (1..=args.takes)
         .map(|n| store.file(n, args.takes))
         .collect();
@@ -64,7 +64,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         );
     }
     let opened = args.tracker.open(&args.listen, None)?;
-    let mut stage = Stage::new(opened, &args.take, stop_on_ctrl_c()?);
+    let mut stage = TakeRecorder::new(opened, &args.take, stop_on_ctrl_c()?);
     stage.check_end(args.secs)?;
     let mut kept = 0;
     for number in 1..=args.takes {

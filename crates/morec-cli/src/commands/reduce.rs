@@ -5,14 +5,14 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Context, Result};
-use morec::pca::{Keep, Moments, Pca, QualityRow};
+use morec::pca::{ComponentCount, Moments, Pca, QualityRow};
 use morec::report::pictures::quality_chart;
 use serde::Serialize;
 
 use crate::figures::write_json;
 use crate::output;
 use crate::poses::PoseArgs;
-use crate::table::Table;
+use crate::table::TextTable;
 
 /// Show how many dimensions the poses of clips have
 ///
@@ -57,7 +57,9 @@ struct Reduced<'a> {
 
 /// Reads all clips, prints what they come down to.
 pub fn run(args: &Args) -> Result<ExitCode> {
-    let keep = args.dims.map_or(Keep::Quality(args.quality), Keep::Dims);
+    let keep = args
+        .dims
+        .map_or(ComponentCount::Quality(args.quality), ComponentCount::Dims);
     keep.check().map_err(anyhow::Error::msg)?;
     let reader = args.poses.reader()?;
     let mut moments = Moments::new(reader.set.row_dim());
@@ -109,7 +111,7 @@ impl Reduced<'_> {
             self.rms_error
         )?;
         writeln!(out)?;
-        let mut table = Table::new(["dimensions", "keep", "the last adds"]);
+        let mut table = TextTable::new(["dimensions", "keep", "the last adds"]);
         let mut before = 0.0;
         // Up to what was asked for and a little on: the rest is all but nothing.
         for row in self.table.iter().take((self.dims + 4).max(20)) {

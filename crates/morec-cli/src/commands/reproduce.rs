@@ -8,8 +8,8 @@ use morec::reproduce::{Reproduction, Setting, Study, page, reproduce};
 
 use crate::material::MaterialArgs;
 use crate::output;
-use crate::progress::Bar;
-use crate::table::Table;
+use crate::progress::StageBar;
+use crate::table::TextTable;
 
 /// Run the evaluation of the thesis of 2009 on labelled clips and write a page of its tables beside ours.
 ///
@@ -54,7 +54,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         seeds: &args.seed,
         settings: &settings,
     };
-    let result = reproduce(&study, &Bar::new())?;
+    let result = reproduce(&study, &StageBar::new())?;
     // Whoever stops reading what is printed still gets the page.
     write(&args.output, &result, &about(args, &study))?;
     print(&result);
@@ -106,7 +106,7 @@ fn write(folder: &Path, result: &Reproduction, about: &[(String, String)]) -> Re
 
 fn print(result: &Reproduction) {
     println!("Clusters by kWAS (§5.2)");
-    let mut table = Table::new(["", "tau", "clusters", "Rand", "adjusted"]);
+    let mut table = TextTable::new(["", "tau", "clusters", "Rand", "adjusted"]);
     for c in &result.clustering {
         table.row([
             if c.centred { "centred" } else { "as they are" }.to_owned(),
@@ -118,7 +118,7 @@ fn print(result: &Reproduction) {
     }
     print!("{table}");
     println!("\nCut-out samples (§5.3)");
-    let mut table = Table::new([
+    let mut table = TextTable::new([
         "",
         "seed",
         "T",
@@ -146,7 +146,7 @@ fn print(result: &Reproduction) {
     }
     print!("{table}");
     println!("\nStreams (§5.4)");
-    let mut table = Table::new([
+    let mut table = TextTable::new([
         "",
         "seed",
         "accuracy",

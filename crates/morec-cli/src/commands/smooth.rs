@@ -17,9 +17,9 @@ use rayon::prelude::*;
 
 use crate::figures::write_json;
 use crate::files::{self, ReadArgs};
-use crate::progress::Bar;
-use output::{Form, Target};
-use report::{FileReport, Report};
+use crate::progress::StageBar;
+use output::{MotionForm, MotionTarget};
+use report::{CompressionReport, CompressionResult};
 
 /// Smooth clips into keyframes and Bézier curves
 ///
@@ -50,7 +50,7 @@ pub struct Args {
     output: Option<PathBuf>,
     /// What to write into a folder: bvh if not given. A file's ending says it for a file
     #[arg(long, value_enum, requires = "output")]
-    form: Option<Form>,
+    form: Option<MotionForm>,
     /// Largest angle between a joint's rotation in its parent's frame and its curve, at any frame, in degrees
     #[arg(long, value_name = "DEGREES", default_value = "0.5", value_parser = figure)]
     max_angle: f64,
@@ -89,20 +89,20 @@ fn figure(text: &str) -> Result<f64, String> {
 /// Compresses every clip, writes, and says what came of it.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let paths = files::expand(&args.clips)?;
-    let target = Target::new(args.output.as_deref(), args.form, &args.clips, &paths)?;
+    let target = MotionTarget::new(args.output.as_deref(), args.form, &args.clips, &paths)?;
     if !args.plot.is_empty() && paths.len() > 1 {
         bail!("--plot draws one clip; {} are given", paths.len());
     }
-    let (bar, done) = (Bar::new(), AtomicUsize::new(0));
-    let reports: Vec<FileReport> = paths
+    let (bar, done) = (StageBar::new(), AtomicUsize::new(0));
+    let reports: Vec<CompressionResult> = paths
         .par_iter()
         .map(|path| {
             let report = match smooth(path, args, &target) {
-                Ok(clips) => FileReport::Done {
+                Ok(clips) => CompressionResult::Done {
                     path: path.clone(),
                     clips,
                 },
-                Err(error) => FileReport::failed(path, &error),
+                Err(error) => CompressionResult::failed(path, &error),
             };
             bar.report(
                 "smoothing clips",
@@ -114,7 +114,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         .collect();
     drop(bar);
     for report in &reports {
-        if let FileReport::Failed { error, .. } = report {
+        if let CompressionResult::Failed { error, .. } = report {
             eprintln!("morec: {error}");
         }
     }
@@ -126,7 +126,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     }
     let failed = reports
         .iter()
-        .any(|report| matches!(report, FileReport::Failed { .. }));
+        .any(|report| matches!(report, CompressionResult::Failed { .. }));
     Ok(if failed {
         ExitCode::FAILURE
     } else {
@@ -135,7 +135,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 }
 
 /// One file, from reading to writing: a report for each character in it.
-fn smooth(path: &Path, args: &Args, target: &Target) -> Result<Vec<Report>> {
+fn smooth(path: &Path, args: &Args, target: &MotionTarget) -> Result<Vec<CompressionReport>> {
     let opened = files::open(path, &args.read)?;
     for warning in &opened.warnings {
         eprintln!("morec: {}: {warning}", path.display());
@@ -162,7 +162,12 @@ fn smooth(path: &Path, args: &Args, target: &Target) -> Result<Vec<Report>> {
             picture::write(&clip, &compressed, &plot[0], Path::new(&plot[1]))?;
         }
         let file_bytes = file_bytes.filter(|_| !several);
-        reports.push(Report::new(&compressed, written, bytes.len(), file_bytes));
+        reports.push(CompressionReport::new(
+            &compressed,
+            written,
+            bytes.len(),
+            file_bytes,
+        ));
     }
     Ok(reports)
 }

@@ -8,12 +8,12 @@ use std::time::Instant;
 
 use anyhow::Result;
 use morec::index::MotionIndex;
-use morec::live::{Actor, Event, EventOptions, MAX_ACTORS, Next, Performer};
+use morec::live::{Event, EventOptions, MAX_ACTORS, Performer, PerformerId, SourceEvent};
 
 use crate::interrupt::stop_on_ctrl_c;
 use crate::live::open::TrackerArgs;
 use crate::live::sinks::CountedSink;
-use crate::live::takes::{Ended, Stage, TakeArgs, secs};
+use crate::live::takes::{Ended, TakeArgs, TakeRecorder, secs};
 use lesson::Lessons;
 use morec_live::Address;
 use morec_live::NamedEvent;
@@ -75,7 +75,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let mut lessons = Lessons::open(&args.index)?;
     let mut watch = Watch::new(args, lessons.index())?;
     let opened = args.tracker.open(&args.listen, None)?;
-    let mut stage = Stage::new(opened, &args.take, stop_on_ctrl_c()?);
+    let mut stage = TakeRecorder::new(opened, &args.take, stop_on_ctrl_c()?);
     stage.check_end(Some(args.secs))?;
     let begun = Instant::now();
     let mut names = args.names.iter();
@@ -123,7 +123,7 @@ fn ask() {
 }
 
 /// Records the repetitions and trains; says whether there is a new index.
-fn teach(name: &str, args: &Args, stage: &mut Stage, lessons: &mut Lessons) -> Result<bool> {
+fn teach(name: &str, args: &Args, stage: &mut TakeRecorder, lessons: &mut Lessons) -> Result<bool> {
     let mut kept = 0;
     for number in 1..=args.repetitions {
         let what = format!("{name}, {number} of {}", args.repetitions);
@@ -187,20 +187,20 @@ impl Watch {
     fn begin(&mut self, index: Option<&MotionIndex>) {
         let options = EventOptions::default();
         self.performers = index.map_or_else(Vec::new, |index| {
-            let performer = |actor| Performer::new(&index.model, Actor(actor), &options);
+            let performer = |actor| Performer::new(&index.model, PerformerId(actor), &options);
             (0..MAX_ACTORS as u16).map(performer).collect()
         });
     }
 
     /// Takes the next thing the source has.
-    fn step(&mut self, stage: &mut Stage, index: Option<&MotionIndex>) -> Result<()> {
+    fn step(&mut self, stage: &mut TakeRecorder, index: Option<&MotionIndex>) -> Result<()> {
         let known = stage.rig().cloned();
         let watched = stage.actor();
         let (next, frame) = stage.next();
         let events = &mut self.events;
         let mut out = |event| events.push(event);
         match next {
-            Next::Frame => {
+            SourceEvent::Frame => {
                 if let Some(performer) = self.performers.get_mut(frame.actor.index()) {
                     // The skeleton came while this performer's gestures were recorded.
                     let missed = performer.diagnosis().is_none() && frame.actor == watched;
@@ -210,17 +210,17 @@ impl Watch {
                     performer.push_own(frame, &mut out);
                 }
             }
-            Next::Rig(actor, rig) => {
+            SourceEvent::Rig(actor, rig) => {
                 if let Some(performer) = self.performers.get_mut(actor.index()) {
                     performer.set_rig(&rig, &mut out);
                 }
             }
-            Next::Gone(actor) => {
+            SourceEvent::Gone(actor) => {
                 if let Some(performer) = self.performers.get_mut(actor.index()) {
                     performer.finish(&mut out);
                 }
             }
-            Next::Quiet | Next::Ended => {}
+            SourceEvent::Quiet | SourceEvent::Ended => {}
         }
         self.tell(index, stage.name())
     }

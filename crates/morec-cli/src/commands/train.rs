@@ -9,10 +9,10 @@ use morec::train::thesis::SvrdmReport;
 use morec::train::{TrainingReport, train_index};
 
 use crate::database;
-use crate::material::{Material, MaterialArgs};
+use crate::material::{ClipMaterial, MaterialArgs};
 use crate::output;
-use crate::progress::Bar;
-use crate::table::Table;
+use crate::progress::StageBar;
+use crate::table::TextTable;
 
 /// Train an index from labelled clips.
 ///
@@ -38,11 +38,11 @@ pub struct Args {
 pub fn trained(
     args: &MaterialArgs,
     output: &Path,
-) -> Result<(MotionIndex, TrainingReport, Material)> {
+) -> Result<(MotionIndex, TrainingReport, ClipMaterial)> {
     let material = args.load(&[])?;
     // Before the work, not after it.
     output::check(output).with_context(|| output.display().to_string())?;
-    let (index, report) = train_index(&material.data, &args.recipe()?, &Bar::new())?;
+    let (index, report) = train_index(&material.data, &args.recipe()?, &StageBar::new())?;
     Ok((index, report, material))
 }
 
@@ -68,8 +68,8 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn print_report(report: &TrainingReport, bytes: usize, material: &Material, output: &Path) {
-    let mut table = Table::new(["class", "samples", "people"]);
+fn print_report(report: &TrainingReport, bytes: usize, material: &ClipMaterial, output: &Path) {
+    let mut table = TextTable::new(["class", "samples", "people"]);
     for class in &report.classes {
         table.row([
             class.name.clone(),
@@ -160,7 +160,7 @@ fn print_svrdm(report: &TrainingReport, svrdm: &SvrdmReport) {
         "samples whose sign is close to flipping, direction by direction: {}",
         unsure.join(", ")
     );
-    let mut table = Table::new([
+    let mut table = TextTable::new([
         "branch",
         "samples",
         "exemplars",

@@ -136,7 +136,7 @@ mod tests {
     use super::*;
     use morec::diagnosis::Diagnoser;
     use morec::features::KeyPose;
-    use morec::live::{Actor, ActorStatus};
+    use morec::live::{ActorStatus, PerformerId};
 
     #[test]
     fn a_finding_is_said_once_when_it_has_lasted_for_two_looks() {
@@ -146,7 +146,7 @@ mod tests {
             diagnoser.push(secs, secs, &KeyPose::default());
         }
         let actor = ActorStatus {
-            actor: Actor(1),
+            actor: PerformerId(1),
             frames: 60,
             time_secs: 2.0,
             wall_secs: 2.0,

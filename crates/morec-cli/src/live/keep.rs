@@ -13,7 +13,7 @@ use crate::output::write_whole;
 
 /// Where takes go.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Store {
+pub enum TakeStore {
     /// A BVH file.
     Bvh(PathBuf),
     /// Lines of JSON, as live recognition reads them.
@@ -22,7 +22,7 @@ pub enum Store {
     Database(PathBuf),
 }
 
-impl Store {
+impl TakeStore {
     /// By the ending of `path`.
     pub fn of(path: &Path) -> Result<Self> {
         let ending = path

@@ -1,6 +1,6 @@
 //! How recognition is laid out on threads, as it is typed.
 
-use morec::live::{Layout, SessionOptions};
+use morec::live::{SessionOptions, Threading};
 use morec_live::pin_thread;
 
 /// `--layout`.
@@ -19,9 +19,9 @@ impl LayoutArg {
     /// The usual options with this layout.
     pub fn options(self) -> SessionOptions {
         let (layout, on_thread): (_, Option<fn(&'static str)>) = match self {
-            LayoutArg::Inline => (Layout::Inline, None),
-            LayoutArg::Stages => (Layout::Stages, None),
-            LayoutArg::Pinned => (Layout::Stages, Some(pin_thread)),
+            LayoutArg::Inline => (Threading::Inline, None),
+            LayoutArg::Stages => (Threading::Stages, None),
+            LayoutArg::Pinned => (Threading::Stages, Some(pin_thread)),
         };
         SessionOptions {
             layout,

@@ -7,7 +7,7 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::Instant;
 
 use anyhow::{Result, bail};
-use morec::live::{Actor, Frame, MAX_ACTORS, Next, Recording, Rig};
+use morec::live::{Frame, MAX_ACTORS, PerformerId, Recording, Rig, SourceEvent};
 
 use morec_live::OpenSource;
 
@@ -52,9 +52,9 @@ pub enum Ended {
 }
 
 /// A source before which somebody performs.
-pub struct Stage {
+pub struct TakeRecorder {
     opened: OpenSource,
-    actor: Actor,
+    actor: PerformerId,
     bell: bool,
     count_down_secs: f64,
     stop: Arc<AtomicBool>,
@@ -64,14 +64,14 @@ pub struct Stage {
     keys: Option<Receiver<String>>,
 }
 
-impl Stage {
+impl TakeRecorder {
     /// Before `opened`. `stop` is set when somebody wants it all to end.
     pub fn new(opened: OpenSource, args: &TakeArgs, stop: Arc<AtomicBool>) -> Self {
         // Poses on standard input leave no room for anybody's words.
         let keys = (!opened.name.starts_with("json:")).then(typed);
         Self {
             opened,
-            actor: Actor(args.performer),
+            actor: PerformerId(args.performer),
             bell: !args.no_bell,
             count_down_secs: args.count_down,
             stop,
@@ -105,11 +105,11 @@ impl Stage {
     }
 
     /// The next thing that the source has, of whichever performer, and the frame if it is one.
-    pub fn next(&mut self) -> (Next, &Frame) {
+    pub fn next(&mut self) -> (SourceEvent, &Frame) {
         let next = self.opened.source.next(&mut self.frame);
         match &next {
-            Next::Rig(actor, rig) if *actor == self.actor => self.rig = Some(rig.clone()),
-            Next::Ended => self.ended = true,
+            SourceEvent::Rig(actor, rig) if *actor == self.actor => self.rig = Some(rig.clone()),
+            SourceEvent::Ended => self.ended = true,
             _ => {}
         }
         for text in self.opened.notices.take() {
@@ -124,7 +124,7 @@ impl Stage {
     }
 
     /// Who is watched.
-    pub fn actor(&self) -> Actor {
+    pub fn actor(&self) -> PerformerId {
         self.actor
     }
 
@@ -149,7 +149,7 @@ impl Stage {
                 eprintln!("morec: {what} in {said} …");
             }
             let actor = self.actor;
-            if let (Next::Frame, frame) = self.next()
+            if let (SourceEvent::Frame, frame) = self.next()
                 && frame.actor == actor
                 && first_secs.is_none()
             {
@@ -183,24 +183,24 @@ impl Stage {
                 return (recording, Ended::Key);
             }
             match self.next() {
-                (Next::Frame, frame) if frame.actor == actor => {
+                (SourceEvent::Frame, frame) if frame.actor == actor => {
                     if let Some(recording) = &mut recording {
                         recording.push(frame);
                     }
                 }
-                (Next::Rig(of, rig), _) if of == actor => {
+                (SourceEvent::Rig(of, rig), _) if of == actor => {
                     let known = recording.get_or_insert_with(|| Recording::new(&rig));
                     if !known.set_rig(&rig) {
                         return (recording, Ended::Gone);
                     }
                 }
-                (Next::Gone(of), _)
+                (SourceEvent::Gone(of), _)
                     if of == actor
                         && recording.as_ref().is_some_and(|r| !r.frames().is_empty()) =>
                 {
                     return (recording, Ended::Gone);
                 }
-                (Next::Ended, _) => return (recording, Ended::Source),
+                (SourceEvent::Ended, _) => return (recording, Ended::Source),
                 _ => {}
             }
             let passed = recording.as_ref().map_or(0.0, Recording::secs);

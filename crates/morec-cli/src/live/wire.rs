@@ -3,7 +3,7 @@
 use morec::kinematics::WorldPose;
 use morec::live::vmc::{Bundling, VmcOptions, VmcReceiver, VmcSender};
 use morec::live::{
-    Detection, Event, EventOptions, Frame, Model, Next, Performer, Phase, SourceCounts,
+    Detection, Event, EventOptions, Frame, Model, Performer, Phase, SourceCounts, SourceEvent,
 };
 
 use morec_live::{Accidents, Network, PlayableClip};
@@ -81,10 +81,10 @@ impl Over {
         let mut out = |event: Event| found.extend(detection(&event));
         while let Some(next) = self.receiver.next(&mut self.frame) {
             match next {
-                Next::Rig(_, rig) => self.performer.set_rig(&rig, &mut out),
-                Next::Frame => self.performer.push_own(&self.frame, &mut out),
-                Next::Gone(_) => self.performer.finish(&mut out),
-                Next::Quiet | Next::Ended => {}
+                SourceEvent::Rig(_, rig) => self.performer.set_rig(&rig, &mut out),
+                SourceEvent::Frame => self.performer.push_own(&self.frame, &mut out),
+                SourceEvent::Gone(_) => self.performer.finish(&mut out),
+                SourceEvent::Quiet | SourceEvent::Ended => {}
             }
         }
     }

@@ -4,8 +4,8 @@ use morec::clip::Clip;
 use morec::kinematics::WorldPose;
 use morec::math::Vec3;
 
-use super::picture::{DIM, Dots, PLAIN, Picture, Style, class_style};
-use super::{Said, Scene, event_line, printable};
+use super::picture::{CharGrid, DIM, Dots, PLAIN, Style, class_style};
+use super::{ReportedDetection, ShownClip, event_line, printable};
 
 /// Seconds that the bottom lines look back.
 const BACK_SECS: f64 = 20.0;
@@ -16,7 +16,7 @@ const FIGURE_FROM_COLUMNS: usize = 56;
 
 /// What the terminal can show.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Look {
+pub struct TerminalStyle {
     pub columns: usize,
     pub rows: usize,
     pub colour: bool,
@@ -26,13 +26,13 @@ pub struct Look {
 
 /// How large a clip's figure is, so that it keeps its scale throughout.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stage {
+pub struct FigureScale {
     ground: f64,
     height: f64,
     head: Option<usize>,
 }
 
-impl Stage {
+impl FigureScale {
     /// Looks through some hundred frames of `clip`.
     pub fn of(clip: &Clip) -> Self {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -64,11 +64,11 @@ impl Stage {
 
 /// The picture at `now_secs`: always the same number of lines for the same `look`, none wider than the terminal,
 /// all of it one line less than the terminal is high.
-pub fn draw(scene: &Scene, stage: &Stage, now_secs: f64, look: &Look) -> String {
+pub fn draw(scene: &ShownClip, stage: &FigureScale, now_secs: f64, look: &TerminalStyle) -> String {
     let rows = look.rows.saturating_sub(1).clamp(1, 40);
     // The last column stays free: writing to it makes some terminals wrap.
     let columns = look.columns.saturating_sub(1).max(1);
-    let mut picture = Picture::new(columns, rows);
+    let mut picture = CharGrid::new(columns, rows);
     let total = scene.clip.duration_secs();
     let title = format!(
         "{}  {now_secs:.1} s of {total:.1} s",
@@ -113,10 +113,10 @@ pub fn draw(scene: &Scene, stage: &Stage, now_secs: f64, look: &Look) -> String 
 
 /// The person from the front, hips in the middle, in the colour of what was just said.
 fn figure(
-    picture: &mut Picture,
-    scene: &Scene,
-    stage: &Stage,
-    (now_secs, said): (f64, &[Said]),
+    picture: &mut CharGrid,
+    scene: &ShownClip,
+    stage: &FigureScale,
+    (now_secs, said): (f64, &[ReportedDetection]),
     (width, height): (usize, usize),
     unicode: bool,
 ) {
@@ -161,9 +161,9 @@ fn figure(
 
 /// The last events that fit, the newest at the bottom.
 fn events(
-    picture: &mut Picture,
-    scene: &Scene,
-    (now_secs, said): (f64, &[Said]),
+    picture: &mut CharGrid,
+    scene: &ShownClip,
+    (now_secs, said): (f64, &[ReportedDetection]),
     x: usize,
     (columns, rows): (usize, usize),
 ) {
@@ -186,18 +186,18 @@ fn events(
     }
 }
 
-fn is_fresh(said: &Said, now_secs: f64) -> bool {
+fn is_fresh(said: &ReportedDetection, now_secs: f64) -> bool {
     now_secs - said.reported_secs < FRESH_SECS
 }
 
 /// What was performed, what was said, and a line of seconds below.
 fn timelines(
-    picture: &mut Picture,
-    scene: &Scene,
-    said: &[Said],
+    picture: &mut CharGrid,
+    scene: &ShownClip,
+    said: &[ReportedDetection],
     now_secs: f64,
     (columns, y): (usize, usize),
-    look: &Look,
+    look: &TerminalStyle,
 ) {
     let from = 7.min(columns);
     let ruler = Ruler {
@@ -254,13 +254,13 @@ impl Ruler {
 
 /// A stretch with its class written into it, as far as it fits.
 fn bar(
-    picture: &mut Picture,
+    picture: &mut CharGrid,
     ruler: &Ruler,
     y: usize,
     class: &str,
     (start_secs, stop_secs): (f64, f64),
     style: Style,
-    look: &Look,
+    look: &TerminalStyle,
 ) {
     let (start, stop) = (
         ruler.column(start_secs),
@@ -286,7 +286,7 @@ fn bar(
 }
 
 /// A class keeps its colour: that of its place among the names in alphabetical order.
-fn style_of(scene: &Scene, class: &str) -> Style {
+fn style_of(scene: &ShownClip, class: &str) -> Style {
     let names = scene
         .truth
         .iter()
@@ -299,7 +299,7 @@ fn style_of(scene: &Scene, class: &str) -> Style {
 
 #[cfg(test)]
 pub(super) mod tests {
-    use super::super::Truth;
+    use super::super::KnownSpan;
     use super::*;
     use morec::synth::{Person, Script, SyntheticTake};
 
@@ -313,8 +313,8 @@ pub(super) mod tests {
     }
 
     /// Every label, found with an end 0.1 s early and said 0.2 s later.
-    pub fn said(take: &SyntheticTake) -> Vec<Said> {
-        let said = |l: &morec::synth::Label| Said {
+    pub fn said(take: &SyntheticTake) -> Vec<ReportedDetection> {
+        let said = |l: &morec::synth::SyntheticLabel| ReportedDetection {
             class: l.class.to_owned(),
             start_secs: l.start_secs,
             stop_secs: l.stop_secs - 0.1,
@@ -324,8 +324,8 @@ pub(super) mod tests {
         take.labels.iter().map(said).collect()
     }
 
-    fn truth(take: &SyntheticTake) -> Vec<Truth> {
-        let truth = |l: &morec::synth::Label| Truth {
+    fn truth(take: &SyntheticTake) -> Vec<KnownSpan> {
+        let truth = |l: &morec::synth::SyntheticLabel| KnownSpan {
             class: l.class.to_owned(),
             start_secs: l.start_secs,
             stop_secs: l.stop_secs,
@@ -333,23 +333,23 @@ pub(super) mod tests {
         take.labels.iter().map(truth).collect()
     }
 
-    const LOOK: Look = Look {
+    const LOOK: TerminalStyle = TerminalStyle {
         columns: 80,
         rows: 24,
         colour: false,
         unicode: true,
     };
 
-    fn shown(now_secs: f64, look: Look) -> String {
+    fn shown(now_secs: f64, look: TerminalStyle) -> String {
         let take = take();
         let (truth, said) = (truth(&take), said(&take));
-        let scene = Scene {
+        let scene = ShownClip {
             title: "ada",
             clip: &take.clip,
             truth: &truth,
             said: &said,
         };
-        draw(&scene, &Stage::of(&take.clip), now_secs, &look)
+        draw(&scene, &FigureScale::of(&take.clip), now_secs, &look)
     }
 
     #[test]
@@ -367,7 +367,7 @@ pub(super) mod tests {
             for now_secs in [0.0, 2.0, 3.9, 99.0] {
                 let picture = shown(
                     now_secs,
-                    Look {
+                    TerminalStyle {
                         columns,
                         rows,
                         ..LOOK
@@ -446,7 +446,7 @@ pub(super) mod tests {
         assert!(
             shown(
                 3.9,
-                Look {
+                TerminalStyle {
                     colour: true,
                     ..LOOK
                 }
@@ -455,7 +455,7 @@ pub(super) mod tests {
         );
         let plain = shown(
             3.9,
-            Look {
+            TerminalStyle {
                 unicode: false,
                 ..LOOK
             },

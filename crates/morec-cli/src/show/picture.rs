@@ -18,12 +18,12 @@ pub fn class_style(class: usize) -> Style {
 
 /// A grid of characters. Whatever falls outside is cut off.
 #[derive(Debug, Clone)]
-pub struct Picture {
+pub struct CharGrid {
     columns: usize,
     cells: Vec<(char, Style)>,
 }
 
-impl Picture {
+impl CharGrid {
     /// An empty one.
     pub fn new(columns: usize, rows: usize) -> Self {
         Self {
@@ -123,7 +123,13 @@ impl Dots {
     }
 
     /// Copies the dots to `picture` as braille characters, or as asterisks without Unicode.
-    pub fn draw(&self, picture: &mut Picture, (x, y): (usize, usize), unicode: bool, style: Style) {
+    pub fn draw(
+        &self,
+        picture: &mut CharGrid,
+        (x, y): (usize, usize),
+        unicode: bool,
+        style: Style,
+    ) {
         for (at, &bits) in self
             .cells
             .iter()
@@ -153,7 +159,7 @@ mod tests {
 
     #[test]
     fn what_falls_outside_is_cut_off() {
-        let mut picture = Picture::new(5, 2);
+        let mut picture = CharGrid::new(5, 2);
         picture.text(3, 0, 99, "abcdef", PLAIN);
         picture.text(0, 7, 99, "nowhere", PLAIN);
         picture.text(1, 1, 3, "xyz", PLAIN);
@@ -162,7 +168,7 @@ mod tests {
 
     #[test]
     fn colours_are_ended_on_their_line_or_not_used() {
-        let mut picture = Picture::new(8, 1);
+        let mut picture = CharGrid::new(8, 1);
         picture.text(0, 0, 8, "hi", class_style(0));
         assert_eq!(picture.render(true), "\x1b[0;1;32mhi\x1b[0m\n");
         assert_eq!(picture.render(false), "hi\n");
@@ -175,7 +181,7 @@ mod tests {
         dots.set(3.0, 3.0);
         dots.set(-1.0, 0.0);
         dots.set(f64::NAN, 9.0);
-        let mut picture = Picture::new(4, 1);
+        let mut picture = CharGrid::new(4, 1);
         dots.draw(&mut picture, (1, 0), true, PLAIN);
         assert_eq!(picture.render(false), " ⡇⢀\n");
     }

@@ -241,14 +241,28 @@ fn the_body_is_drawn_in_the_terminal_and_as_a_picture() {
     let file = std::fs::File::create(folder.path().join("person.bvh")).unwrap();
     morec::formats::bvh::write(&person, &mut std::io::BufWriter::new(file)).unwrap();
     let out = folder.morec(&["inspect", "person.bvh", "--draw"]).ok();
-    assert!(out.contains("from the front") && out.contains("the body's left is on the right"), "{out}");
-    folder.morec(&["inspect", "person.bvh", "--draw", "-o", "person.svg"]).ok();
+    assert!(
+        out.contains("from the front") && out.contains("the body's left is on the right"),
+        "{out}"
+    );
+    folder
+        .morec(&["inspect", "person.bvh", "--draw", "-o", "person.svg"])
+        .ok();
     let svg = std::fs::read_to_string(folder.path().join("person.svg")).unwrap();
-    assert!(svg.starts_with("<svg") && svg.contains("<title>left_hand: "), "{svg}");
+    assert!(
+        svg.starts_with("<svg") && svg.contains("<title>left_hand: "),
+        "{svg}"
+    );
     // An arm alone has no hips, neck or head to draw it from.
     let ran = folder.morec(&["inspect", "arm.bvh", "--draw", "-o", "arm.svg"]);
-    assert!(ran.err.contains("no body to draw") && ran.code == Some(1), "{ran:?}");
-    assert_eq!(folder.morec(&["inspect", "arm.bvh", "-o", "x.svg"]).code, Some(2));
+    assert!(
+        ran.err.contains("no body to draw") && ran.code == Some(1),
+        "{ran:?}"
+    );
+    assert_eq!(
+        folder.morec(&["inspect", "arm.bvh", "-o", "x.svg"]).code,
+        Some(2)
+    );
 }
 
 #[test]

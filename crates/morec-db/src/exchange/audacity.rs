@@ -2,8 +2,8 @@
 
 use morec::formats::{ParseError, Place};
 
-use super::{Annotation, Lengths, ReadLabels, checked, secs};
-use crate::labels::State;
+use super::{Annotation, ClipLengths, ReadLabels, checked, secs};
+use crate::labels::SampleState;
 
 pub fn read(text: &str, clip: Option<&str>) -> Result<ReadLabels, ParseError> {
     let clip = clip.ok_or_else(|| {
@@ -41,13 +41,13 @@ pub fn read(text: &str, clip: Option<&str>) -> Result<ReadLabels, ParseError> {
             extent: Some(extent),
             person: None,
             score: None,
-            state: State::Accepted,
+            state: SampleState::Accepted,
         });
     }
     Ok(read)
 }
 
-pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, String> {
+pub fn write(annotations: &[Annotation], lengths: &ClipLengths) -> Result<String, String> {
     annotations
         .iter()
         .map(|a| secs(a, lengths).map(|(start, stop)| format!("{start}\t{stop}\t{}\n", a.class)))

@@ -3,8 +3,8 @@
 use morec::formats::{ParseError, Place};
 use serde_json::{Map, Value, json};
 
-use super::{Annotation, Lengths, ReadLabels, checked, json_error, secs};
-use crate::labels::State;
+use super::{Annotation, ClipLengths, ReadLabels, checked, json_error, secs};
+use crate::labels::SampleState;
 
 pub fn read(bytes: &[u8]) -> Result<ReadLabels, ParseError> {
     let expected = "a BABEL object: sequence number to {feat_p, dur, seq_ann, frame_ann}";
@@ -52,7 +52,7 @@ fn read_label(clip: &str, label: &Value, timed: bool, read: &mut ReadLabels) -> 
         (true, _, _) => return Err(label.to_string()),
     };
     // Not of BABEL: what morec writes of labels that are no accepted ones.
-    let state = label["state"].as_str().and_then(State::from_name);
+    let state = label["state"].as_str().and_then(SampleState::from_name);
     let categories: Vec<&str> = label["act_cat"]
         .as_array()
         .into_iter()
@@ -74,13 +74,13 @@ fn read_label(clip: &str, label: &Value, timed: bool, read: &mut ReadLabels) -> 
             extent,
             person: None,
             score: None,
-            state: state.unwrap_or(State::Accepted),
+            state: state.unwrap_or(SampleState::Accepted),
         });
     }
     Ok(())
 }
 
-pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, String> {
+pub fn write(annotations: &[Annotation], lengths: &ClipLengths) -> Result<String, String> {
     let mut file: Map<String, Value> = Map::new();
     for a in annotations {
         let sid = file.len();
@@ -91,7 +91,7 @@ pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, St
         });
         let mut label =
             json!({ "raw_label": a.class, "proc_label": a.class, "act_cat": [a.class] });
-        if a.state != State::Accepted {
+        if a.state != SampleState::Accepted {
             label["state"] = a.state.name().into();
         }
         let set = match a.extent {

@@ -2,13 +2,13 @@
 
 use morec::formats::{ParseError, Place, Warning};
 
-use super::{Annotation, Lengths, ReadLabels, checked, frames, secs};
-use crate::labels::State;
+use super::{Annotation, ClipLengths, ReadLabels, checked, frames, secs};
+use crate::labels::SampleState;
 
 const HEADER: &str =
     "file,label,start_s,end_s,start_frame,end_frame,whole_clip,score,actor,source,state";
 
-pub fn read(bytes: &[u8], lengths: &Lengths) -> Result<ReadLabels, ParseError> {
+pub fn read(bytes: &[u8], lengths: &ClipLengths) -> Result<ReadLabels, ParseError> {
     let mut records = records(super::text(bytes)?)?.into_iter();
     let (line, header) = records.next().ok_or_else(|| {
         ParseError::new(
@@ -76,7 +76,7 @@ pub fn read(bytes: &[u8], lengths: &Lengths) -> Result<ReadLabels, ParseError> {
                 )
             })?;
         }
-        let state = state.map_or(Ok(State::Accepted), |column| {
+        let state = state.map_or(Ok(SampleState::Accepted), |column| {
             super::state(cell(Some(column)), line)
         })?;
         if cell(Some(label)).is_empty() {
@@ -148,7 +148,7 @@ fn quoted(text: &str) -> String {
     }
 }
 
-pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, String> {
+pub fn write(annotations: &[Annotation], lengths: &ClipLengths) -> Result<String, String> {
     let mut out = format!("{HEADER}\n");
     for a in annotations {
         let (start, stop) = secs(a, lengths)?;

@@ -6,8 +6,8 @@ use std::fmt::Write;
 use morec::formats::{ParseError, Place, Warning};
 use roxmltree::{Document, Node, ParsingOptions};
 
-use super::{Annotation, Lengths, ReadLabels, secs};
-use crate::labels::State;
+use super::{Annotation, ClipLengths, ReadLabels, secs};
+use crate::labels::SampleState;
 
 /// Under this name a header property keeps the clip.
 const CLIP: &str = "morec:clip";
@@ -64,7 +64,7 @@ pub fn read(text: &str, clip: Option<&str>) -> Result<ReadLabels, ParseError> {
     for tier in elements("TIER") {
         let state = match tier.attribute("TIER_ID").filter(|_| ours) {
             Some(id) => state_of_tier(id),
-            None => State::Accepted,
+            None => SampleState::Accepted,
         };
         let person = tier.attribute("PARTICIPANT").filter(|p| !p.is_empty());
         for annotation in tier
@@ -124,14 +124,14 @@ fn own_property<'a>(root: Node<'a, '_>, name: &str) -> Option<&'a str> {
 }
 
 /// The first word of a tier's name says what is thought of its annotations.
-fn state_of_tier(id: &str) -> State {
+fn state_of_tier(id: &str) -> SampleState {
     let word = id.split(' ').next().unwrap_or_default();
-    State::from_name(word).unwrap_or(State::Accepted)
+    SampleState::from_name(word).unwrap_or(SampleState::Accepted)
 }
 
-fn tier_name(state: State) -> &'static str {
+fn tier_name(state: SampleState) -> &'static str {
     match state {
-        State::Accepted => "motion",
+        SampleState::Accepted => "motion",
         other => other.name(),
     }
 }
@@ -166,7 +166,7 @@ fn escaped(text: &str) -> String {
     out
 }
 
-pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, String> {
+pub fn write(annotations: &[Annotation], lengths: &ClipLengths) -> Result<String, String> {
     let mut tiers: Vec<Tier> = Vec::new();
     for a in annotations {
         let (start, stop) = secs(a, lengths)?;
@@ -193,7 +193,7 @@ pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, St
 /// Annotations of one person and state that do not overlap: ELAN allows no others in a tier.
 struct Tier<'a> {
     person: Option<&'a str>,
-    state: State,
+    state: SampleState,
     rows: Vec<(i64, i64, &'a str)>,
 }
 

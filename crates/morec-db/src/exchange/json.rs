@@ -4,8 +4,8 @@ use morec::formats::{ParseError, Place};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::{Annotation, Form, Lengths, ReadLabels, checked, frames, json_error, secs};
-use crate::labels::State;
+use super::{Annotation, ClipLengths, LabelFormat, ReadLabels, checked, frames, json_error, secs};
+use crate::labels::SampleState;
 
 #[derive(Serialize, Deserialize)]
 struct File {
@@ -31,25 +31,25 @@ struct JsonRow {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     score: Option<f64>,
     #[serde(default)]
-    state: Option<State>,
+    state: Option<SampleState>,
 }
 
 /// Which of the forms in JSON a file is.
-pub fn which(bytes: &[u8]) -> Form {
+pub fn which(bytes: &[u8]) -> LabelFormat {
     match serde_json::from_slice(bytes) {
-        Ok(Value::Array(_)) => Form::LabelStudio,
-        Ok(Value::Object(map)) if map.contains_key("labels") => Form::Json,
+        Ok(Value::Array(_)) => LabelFormat::LabelStudio,
+        Ok(Value::Object(map)) if map.contains_key("labels") => LabelFormat::Json,
         Ok(Value::Object(map))
             if map.contains_key("predictions") || map.contains_key("annotations") =>
         {
-            Form::LabelStudio
+            LabelFormat::LabelStudio
         }
-        Ok(Value::Object(_)) => Form::Babel,
-        _ => Form::Json,
+        Ok(Value::Object(_)) => LabelFormat::Babel,
+        _ => LabelFormat::Json,
     }
 }
 
-pub fn read(bytes: &[u8], lengths: &Lengths) -> Result<ReadLabels, ParseError> {
+pub fn read(bytes: &[u8], lengths: &ClipLengths) -> Result<ReadLabels, ParseError> {
     let expected = "{\"labels\": [{\"clip\", \"class\", \"start_secs\", \"stop_secs\"}]}";
     let file: File = serde_json::from_slice(bytes).map_err(|error| json_error(&error, expected))?;
     let mut read = ReadLabels::default();
@@ -83,13 +83,13 @@ pub fn read(bytes: &[u8], lengths: &Lengths) -> Result<ReadLabels, ParseError> {
             extent,
             person: row.person,
             score: row.score,
-            state: row.state.unwrap_or(State::Accepted),
+            state: row.state.unwrap_or(SampleState::Accepted),
         });
     }
     Ok(read)
 }
 
-pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, String> {
+pub fn write(annotations: &[Annotation], lengths: &ClipLengths) -> Result<String, String> {
     let row = |a: &Annotation| -> Result<JsonRow, String> {
         let (start_secs, stop_secs) = secs(a, lengths)?;
         let framed = frames(

@@ -3,8 +3,8 @@
 use morec::formats::{ParseError, Place};
 use serde_json::{Value, json};
 
-use super::{Annotation, Lengths, ReadLabels, checked, json_error, secs};
-use crate::labels::State;
+use super::{Annotation, ClipLengths, ReadLabels, checked, json_error, secs};
+use crate::labels::SampleState;
 
 pub fn read(bytes: &[u8]) -> Result<ReadLabels, ParseError> {
     let expected = "Label Studio tasks: [{data, annotations, predictions}]";
@@ -31,7 +31,7 @@ pub fn read(bytes: &[u8]) -> Result<ReadLabels, ParseError> {
         };
         let results = sets.iter().flat_map(|set| {
             let state = match accepted {
-                true => State::Accepted,
+                true => SampleState::Accepted,
                 false => state_of(set),
             };
             let results = set["result"].as_array().into_iter().flatten();
@@ -65,10 +65,10 @@ pub fn read(bytes: &[u8]) -> Result<ReadLabels, ParseError> {
 }
 
 /// What morec rejected is a prediction of a model that says so; all other predictions are proposals.
-fn state_of(prediction: &Value) -> State {
+fn state_of(prediction: &Value) -> SampleState {
     match prediction["model_version"].as_str() {
-        Some(REJECTED) => State::Rejected,
-        _ => State::Proposed,
+        Some(REJECTED) => SampleState::Rejected,
+        _ => SampleState::Proposed,
     }
 }
 
@@ -93,14 +93,14 @@ fn clip_of(task: &Value) -> Option<String> {
 
 /// Accepted labels as annotations, others as predictions; a clip that has both is two tasks, as a task's annotations
 /// are said instead of its predictions.
-pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, String> {
+pub fn write(annotations: &[Annotation], lengths: &ClipLengths) -> Result<String, String> {
     let mut tasks: Vec<Value> = Vec::new();
     for (number, a) in annotations.iter().enumerate() {
         let (start, stop) = secs(a, lengths)?;
         let (set, version) = match a.state {
-            State::Accepted => ("annotations", VERSION),
-            State::Proposed => ("predictions", VERSION),
-            State::Rejected => ("predictions", REJECTED),
+            SampleState::Accepted => ("annotations", VERSION),
+            SampleState::Proposed => ("predictions", VERSION),
+            SampleState::Rejected => ("predictions", REJECTED),
         };
         let there = |task: &Value| {
             let of_clip = task["data"]["clip"].as_str() == Some(&a.clip);

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 
 use super::*;
 
-fn lengths() -> Lengths {
+fn lengths() -> ClipLengths {
     let length = |frames, rate_hz| ClipLength { frames, rate_hz };
     [
         ("take_1", length(1000, 120.0)),
@@ -29,9 +29,9 @@ fn annotation() -> impl Strategy<Value = Annotation> {
         Just(Some("o'b <1>".to_owned()))
     ];
     let state = prop_oneof![
-        Just(State::Accepted),
-        Just(State::Proposed),
-        Just(State::Rejected)
+        Just(SampleState::Accepted),
+        Just(SampleState::Proposed),
+        Just(SampleState::Rejected)
     ];
     (
         clip,
@@ -68,9 +68,9 @@ fn names_that_a_table_cannot_hold_are_refused_not_lost() {
         extent: Some((0.0, 1.0)),
         person: None,
         score: None,
-        state: State::Accepted,
+        state: SampleState::Accepted,
     };
-    let lengths: Lengths = ["a\tb", "a\nb", " a", "x.npz", "dir/x_poses.npz"]
+    let lengths: ClipLengths = ["a\tb", "a\nb", " a", "x.npz", "dir/x_poses.npz"]
         .map(|name| {
             (
                 name.to_owned(),
@@ -83,14 +83,18 @@ fn names_that_a_table_cannot_hold_are_refused_not_lost() {
         .into();
     for name in lengths.keys() {
         let all = [of(name)];
-        match write(Form::Tsv, &all, &lengths) {
+        match write(LabelFormat::Tsv, &all, &lengths) {
             Ok(text) => {
-                let again = read(Form::Tsv, text.as_bytes(), None, &lengths).unwrap();
+                let again = read(LabelFormat::Tsv, text.as_bytes(), None, &lengths).unwrap();
                 assert_eq!(again.annotations, all);
             }
             Err(error) => assert!(error.contains("cannot hold"), "{error}"),
         }
-        for form in [Form::Json, Form::Babel, Form::LabelStudio] {
+        for form in [
+            LabelFormat::Json,
+            LabelFormat::Babel,
+            LabelFormat::LabelStudio,
+        ] {
             let text = write(form, &all, &lengths).unwrap();
             let again = read(form, text.as_bytes(), None, &lengths).unwrap();
             assert_eq!(again.annotations, all, "{form:?}");
@@ -104,23 +108,23 @@ fn sorted(mut annotations: Vec<Annotation>) -> Vec<String> {
 }
 
 /// What a form can say of an annotation.
-fn sayable(form: Form, all: &[Annotation]) -> Vec<Annotation> {
+fn sayable(form: LabelFormat, all: &[Annotation]) -> Vec<Annotation> {
     let says = |a: &Annotation| {
         let mut said = a.clone();
         let spelled = || a.extent.or_else(|| secs(a, &lengths()).ok());
         match form {
-            Form::Csv | Form::Json => return said,
-            Form::Tsv | Form::Babel => {}
+            LabelFormat::Csv | LabelFormat::Json => return said,
+            LabelFormat::Tsv | LabelFormat::Babel => {}
             _ => said.extent = spelled(),
         }
-        if !matches!(form, Form::Tsv | Form::Eaf) {
+        if !matches!(form, LabelFormat::Tsv | LabelFormat::Eaf) {
             said.person = None;
         }
-        if form != Form::LabelStudio {
+        if form != LabelFormat::LabelStudio {
             said.score = None;
         }
-        if form == Form::Audacity {
-            said.state = State::Accepted;
+        if form == LabelFormat::Audacity {
+            said.state = SampleState::Accepted;
         }
         said
     };
@@ -128,7 +132,7 @@ fn sayable(form: Form, all: &[Annotation]) -> Vec<Annotation> {
 }
 
 /// Reads bytes: an error, or annotations whose times are times.
-fn can_be_said(form: Form, bytes: &[u8]) {
+fn can_be_said(form: LabelFormat, bytes: &[u8]) {
     let Ok(labels) = read(form, bytes, Some("take_1"), &lengths()) else {
         return;
     };
@@ -146,13 +150,13 @@ fn can_be_said(form: Form, bytes: &[u8]) {
 proptest! {
     #[test]
     fn round_trips_lose_nothing(all in prop::collection::vec(annotation(), 1..20)) {
-        for form in Form::ALL {
+        for form in LabelFormat::ALL {
             let all: Vec<Annotation> = match form.is_of_one_clip() {
                 true => all.iter().filter(|a| a.clip == all[0].clip).cloned().collect(),
                 false => all.clone(),
             };
             let text = write(form, &all, &lengths()).unwrap();
-            let clip = (form == Form::Audacity).then(|| all[0].clip.as_str());
+            let clip = (form == LabelFormat::Audacity).then(|| all[0].clip.as_str());
             let again = read(form, text.as_bytes(), clip, &lengths()).unwrap();
             prop_assert!(again.warnings.is_empty(), "{form:?} {:?}", again.warnings);
             let snapped = again.annotations.into_iter().map(|mut a| {
@@ -169,7 +173,7 @@ proptest! {
         prop::collection::vec(any::<u8>(), 0..300),
         "[\\PC\t\n<>&\",:{}\\[\\]0-9a-z]{0,200}".prop_map(String::into_bytes),
     ]) {
-        for form in Form::ALL {
+        for form in LabelFormat::ALL {
             can_be_said(form, &bytes);
         }
     }
@@ -180,7 +184,7 @@ proptest! {
         all in prop::collection::vec(annotation(), 1..6),
         damage in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>(), 0..4u8, any::<u8>()), 1..6),
     ) {
-        for form in Form::ALL {
+        for form in LabelFormat::ALL {
             let of_clip = |a: &&Annotation| !form.is_of_one_clip() || a.clip == all[0].clip;
             let all: Vec<Annotation> = all.iter().filter(of_clip).cloned().collect();
             let mut bytes = write(form, &all, &lengths()).unwrap().into_bytes();
@@ -213,7 +217,7 @@ fn files_of_other_programs() {
         <ANNOTATION><ALIGNABLE_ANNOTATION ANNOTATION_ID="a1" TIME_SLOT_REF1="ts1" TIME_SLOT_REF2="ts2"><ANNOTATION_VALUE>nod</ANNOTATION_VALUE></ALIGNABLE_ANNOTATION></ANNOTATION>
         <ANNOTATION><ALIGNABLE_ANNOTATION ANNOTATION_ID="a2" TIME_SLOT_REF1="ts1" TIME_SLOT_REF2="ts3"><ANNOTATION_VALUE>open</ANNOTATION_VALUE></ALIGNABLE_ANNOTATION></ANNOTATION>
         </TIER></ANNOTATION_DOCUMENT>"#;
-    let labels = read(Form::Eaf, eaf.as_bytes(), None, &lengths()).unwrap();
+    let labels = read(LabelFormat::Eaf, eaf.as_bytes(), None, &lengths()).unwrap();
     assert_eq!((labels.annotations.len(), labels.warnings.len()), (1, 1));
     let a = &labels.annotations[0];
     assert_eq!(
@@ -226,7 +230,7 @@ fn files_of_other_programs() {
     let babel = br#"{"12": {"babel_sid": 12, "feat_p": "CMU/CMU/86/86_01_poses.npz", "dur": 9.0,
         "seq_ann": {"labels": [{"raw_label": "he walks", "proc_label": "walk", "act_cat": ["walk", "move"]}]},
         "frame_ann": null}}"#;
-    let labels = read(Form::Babel, babel, None, &lengths()).unwrap();
+    let labels = read(LabelFormat::Babel, babel, None, &lengths()).unwrap();
     let classes: Vec<&str> = labels
         .annotations
         .iter()
@@ -238,7 +242,7 @@ fn files_of_other_programs() {
     );
 
     let track = read(
-        Form::Audacity,
+        LabelFormat::Audacity,
         b"0,5\t1,25\tnod\n\\\t100\t200\n",
         Some("a"),
         &lengths(),
@@ -254,29 +258,31 @@ fn mistakes_are_located() {
             .unwrap_err()
             .to_string()
     };
-    assert!(fails(Form::Csv, "a,b\n1,2\n").starts_with("line 1: expected a column `file`"));
+    assert!(fails(LabelFormat::Csv, "a,b\n1,2\n").starts_with("line 1: expected a column `file`"));
     assert!(
-        fails(Form::Csv, "file,label,start_s,end_s\na,b,3,2\n")
+        fails(LabelFormat::Csv, "file,label,start_s,end_s\na,b,3,2\n")
             .starts_with("line 2: expected a stop after")
     );
     assert!(
-        fails(Form::Csv, "file,label\n\"a,b\n").starts_with("line 2: expected a closing quote")
+        fails(LabelFormat::Csv, "file,label\n\"a,b\n")
+            .starts_with("line 2: expected a closing quote")
     );
     assert!(
-        fails(Form::Audacity, "1\t2\ta\nx\t2\ta\n").starts_with("line 2: expected start<TAB>stop")
+        fails(LabelFormat::Audacity, "1\t2\ta\nx\t2\ta\n")
+            .starts_with("line 2: expected start<TAB>stop")
     );
-    assert!(fails(Form::Eaf, "<a>").contains("line 1"));
-    assert!(fails(Form::Json, "{\"labels\": [{\"clip\": 3}]}").starts_with("line 1"));
+    assert!(fails(LabelFormat::Eaf, "<a>").contains("line 1"));
+    assert!(fails(LabelFormat::Json, "{\"labels\": [{\"clip\": 3}]}").starts_with("line 1"));
     let several = [("a", 1), ("b", 2)].map(|(clip, _)| Annotation {
         clip: clip.into(),
         class: "x".into(),
         extent: Some((0.0, 1.0)),
         person: None,
         score: None,
-        state: State::Accepted,
+        state: SampleState::Accepted,
     });
     assert!(
-        write(Form::Eaf, &several, &lengths())
+        write(LabelFormat::Eaf, &several, &lengths())
             .unwrap_err()
             .contains("one clip")
     );
@@ -284,7 +290,7 @@ fn mistakes_are_located() {
 
 #[test]
 fn a_state_is_one_of_three_or_an_error_with_its_line() {
-    for (form, between) in [(Form::Csv, ","), (Form::Tsv, "\t")] {
+    for (form, between) in [(LabelFormat::Csv, ","), (LabelFormat::Tsv, "\t")] {
         let text = |state: &str| {
             let header = ["clip", "class", "start_secs", "stop_secs", "state"].join(between);
             format!(
@@ -295,20 +301,20 @@ fn a_state_is_one_of_three_or_an_error_with_its_line() {
         let found = |state: &str| read(form, text(state).as_bytes(), None, &lengths());
         assert_eq!(
             found("Rejected").unwrap().annotations[0].state,
-            State::Rejected
+            SampleState::Rejected
         );
-        if form == Form::Tsv {
+        if form == LabelFormat::Tsv {
             let by_cr = text("rejected").replace('\n', "\r");
             let labels = read(form, by_cr.as_bytes(), None, &lengths()).unwrap();
             assert_eq!(
                 labels.annotations[0].state,
-                State::Rejected,
+                SampleState::Rejected,
                 "whatever ends the lines"
             );
         }
         assert_eq!(
             found("").unwrap().annotations[0].state,
-            State::Proposed,
+            SampleState::Proposed,
             "nothing is no judgement"
         );
         let error = found("reject").unwrap_err().to_string();
@@ -322,7 +328,7 @@ fn a_state_is_one_of_three_or_an_error_with_its_line() {
 #[test]
 fn labels_of_clips_that_are_not_there_are_counted() {
     let tsv = "clip\tclass\tstart\tstop\nelsewhere\tnod\t5\t15\nelsewhere\tnod\t25\t35\n";
-    let labels = read(Form::Tsv, tsv.as_bytes(), None, &lengths()).unwrap();
+    let labels = read(LabelFormat::Tsv, tsv.as_bytes(), None, &lengths()).unwrap();
     assert_eq!(labels.absent, [("elsewhere".to_owned(), 2)].into());
     assert!(labels.annotations.is_empty());
 }

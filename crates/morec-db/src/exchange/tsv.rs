@@ -3,10 +3,10 @@
 use morec::formats::ParseError;
 use morec::labels::{Extent, Labels};
 
-use super::{Annotation, Lengths, ReadLabels, frames, secs};
-use crate::labels::State;
+use super::{Annotation, ClipLengths, ReadLabels, frames, secs};
+use crate::labels::SampleState;
 
-pub fn read(bytes: &[u8], lengths: &Lengths) -> Result<ReadLabels, ParseError> {
+pub fn read(bytes: &[u8], lengths: &ClipLengths) -> Result<ReadLabels, ParseError> {
     let (labels, states) = Labels::read_with(bytes, "state")?;
     // Rows with seconds need no clip to be understood; those with frames need its rate.
     let mut read = ReadLabels {
@@ -29,7 +29,7 @@ pub fn read(bytes: &[u8], lengths: &Lengths) -> Result<ReadLabels, ParseError> {
             extent,
             person: row.person,
             score: None,
-            state: states.as_ref().map_or(Ok(State::Accepted), |cells| {
+            state: states.as_ref().map_or(Ok(SampleState::Accepted), |cells| {
                 super::state(&cells[at], row.line)
             })?,
         });
@@ -42,9 +42,9 @@ fn fits_a_cell(name: &str) -> bool {
     name.trim() == name && !name.contains(['\t', '\n', '\r'])
 }
 
-pub fn write(annotations: &[Annotation], lengths: &Lengths) -> Result<String, String> {
+pub fn write(annotations: &[Annotation], lengths: &ClipLengths) -> Result<String, String> {
     let people = annotations.iter().any(|a| a.person.is_some());
-    let judged = annotations.iter().any(|a| a.state != State::Accepted);
+    let judged = annotations.iter().any(|a| a.state != SampleState::Accepted);
     let more = |a: &Annotation| {
         let person = people.then(|| format!("\t{}", a.person.as_deref().unwrap_or("")));
         let state = judged.then(|| format!("\t{}", a.state.name()));

@@ -2,7 +2,7 @@
 
 use rusqlite::Connection;
 
-use crate::labels::{NewSample, SampleFilter, State};
+use crate::labels::{NewSample, SampleFilter, SampleState};
 use crate::testing::{database_of_waves, waves, write_bvh};
 use crate::{
     APPLICATION_ID, ClipFilter, ClipId, ClipUpdate, DbError, MotionDb, SCHEMA, Segment, SegmentKind,
@@ -39,7 +39,7 @@ fn sample(clip: i64, class: &str, start: f64) -> NewSample {
         start_secs: start,
         stop_secs: start + 0.5,
         whole_clip: false,
-        state: State::Accepted,
+        state: SampleState::Accepted,
         score: None,
     }
 }

@@ -3,7 +3,7 @@
 use rusqlite::{Connection, OptionalExtension, Transaction, params};
 
 use super::tracked::{TRACKED, tracked};
-use super::{Step, digest, record, step, weigh};
+use super::{HistoryStep, digest, record, step, weigh};
 use crate::{DbError, MotionDb};
 
 /// What taking a step back, or doing it again, does to a table.
@@ -24,7 +24,7 @@ pub struct Effect {
 pub struct Turned {
     /// Which.
     #[serde(flatten)]
-    pub step: Step,
+    pub step: HistoryStep,
     /// What it does.
     pub effects: Vec<Effect>,
 }
@@ -96,7 +96,7 @@ impl MotionDb {
     }
 }
 
-fn find(conn: &Connection, way: Way, wanted: Option<i64>) -> Result<Option<Step>, DbError> {
+fn find(conn: &Connection, way: Way, wanted: Option<i64>) -> Result<Option<HistoryStep>, DbError> {
     let columns = "SELECT id, what, set_secs, undone FROM edits";
     let Some(id) = wanted else {
         let sql = match way {
@@ -122,7 +122,7 @@ fn find(conn: &Connection, way: Way, wanted: Option<i64>) -> Result<Option<Step>
 }
 
 /// Steps whose changes lie over those of a step: later ones; and, to do it again, earlier ones that are taken back.
-fn in_the_way(conn: &Connection, way: Way, id: i64) -> Result<Vec<Step>, DbError> {
+fn in_the_way(conn: &Connection, way: Way, id: i64) -> Result<Vec<HistoryStep>, DbError> {
     let mut statement = conn.prepare(
         "SELECT e.id, e.what, e.set_secs, e.undone FROM edits e WHERE e.id <> ?1 \
          AND (e.id > ?1 AND e.undone = 0 OR ?2 AND e.id < ?1 AND e.undone = 1) AND EXISTS \
@@ -133,7 +133,7 @@ fn in_the_way(conn: &Connection, way: Way, id: i64) -> Result<Vec<Step>, DbError
     Ok(steps.collect::<Result<_, _>>()?)
 }
 
-fn refusal(step: &Step, way: Way, why: &str, others: &[Step]) -> DbError {
+fn refusal(step: &HistoryStep, way: Way, why: &str, others: &[HistoryStep]) -> DbError {
     let named: Vec<String> = others
         .iter()
         .map(|other| format!("{} ({})", other.id, other.what))
@@ -150,7 +150,7 @@ fn refusal(step: &Step, way: Way, why: &str, others: &[Step]) -> DbError {
     ))
 }
 
-fn needed(step: &Step, error: DbError) -> DbError {
+fn needed(step: &HistoryStep, error: DbError) -> DbError {
     match &error {
         DbError::Sqlite(rusqlite::Error::SqliteFailure(code, _))
             if code.code == rusqlite::ErrorCode::ConstraintViolation =>
@@ -165,7 +165,7 @@ fn needed(step: &Step, error: DbError) -> DbError {
 }
 
 /// Puts back what a step wrote down, and keeps under its number what was there.
-fn swap(tx: &Transaction<'_>, way: Way, step: &Step) -> Result<Vec<Effect>, DbError> {
+fn swap(tx: &Transaction<'_>, way: Way, step: &HistoryStep) -> Result<Vec<Effect>, DbError> {
     let rows: Vec<(i64, String, bool)> = {
         let sql = "SELECT seq, tab, present FROM was WHERE edit = ?1 ORDER BY seq DESC";
         let mut statement = tx.prepare(sql)?;
@@ -202,7 +202,7 @@ fn swap(tx: &Transaction<'_>, way: Way, step: &Step) -> Result<Vec<Effect>, DbEr
 }
 
 /// Steps whose rows went, too, though the step did not touch them.
-fn dependents(conn: &Connection, id: i64, recording: i64) -> Result<Vec<Step>, DbError> {
+fn dependents(conn: &Connection, id: i64, recording: i64) -> Result<Vec<HistoryStep>, DbError> {
     let mut statement = conn.prepare(
         "SELECT DISTINCT e.id, e.what, e.set_secs, e.undone FROM was w \
          JOIN was o ON o.tab = w.tab AND o.c0 = w.c0 JOIN edits e ON e.id = o.edit \

@@ -7,7 +7,7 @@ use crate::{DbError, MotionDb, names};
 
 /// A class and how many samples it has.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct ClassInfo {
+pub struct ClassCount {
     /// Its name.
     pub name: String,
     /// Samples that show it.
@@ -72,7 +72,7 @@ fn move_samples(conn: &Connection, which: &str, of: i64, to: i64) -> Result<usiz
 
 impl MotionDb {
     /// All classes, by name.
-    pub fn classes(&self) -> Result<Vec<ClassInfo>, DbError> {
+    pub fn classes(&self) -> Result<Vec<ClassCount>, DbError> {
         let mut statement = self.conn.prepare(
             "SELECT n.name, coalesce(sum(s.state = 'accepted'), 0), coalesce(sum(s.state = 'proposed'), 0), \
              coalesce(sum(s.state = 'rejected'), 0), \
@@ -83,7 +83,7 @@ impl MotionDb {
             let count = |column| -> rusqlite::Result<usize> {
                 Ok(row.get::<_, i64>(column)?.max(0) as usize)
             };
-            Ok(ClassInfo {
+            Ok(ClassCount {
                 name: row.get(0)?,
                 accepted: count(1)?,
                 proposed: count(2)?,

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use rusqlite::{Connection, params};
 
 use super::samples::{Change, add};
-use super::{Added, DbSample, NewSample, SampleFilter, SampleId, State, classes};
+use super::{Added, DbSample, NewSample, SampleFilter, SampleId, SampleState, classes};
 use crate::time::now_secs;
 use crate::{DbError, MotionDb};
 
@@ -130,7 +130,7 @@ impl MotionDb {
     fn accepted_in(&self, labels: &[NewSample]) -> Result<Vec<DbSample>, DbError> {
         let clips: BTreeSet<_> = labels.iter().map(|label| label.clip).collect();
         let mut samples = self.samples(&SampleFilter {
-            state: Some(State::Accepted),
+            state: Some(SampleState::Accepted),
             ..SampleFilter::default()
         })?;
         samples.retain(|sample| clips.contains(&sample.clip));
@@ -160,7 +160,7 @@ fn take_in(
     done: &mut Labelled,
 ) -> Result<(), DbError> {
     let stands_for = match label.state {
-        State::Accepted if !is_there(conn, label)? => counterpart(label, left),
+        SampleState::Accepted if !is_there(conn, label)? => counterpart(label, left),
         _ => None,
     };
     let Some(at) = stands_for else {

@@ -2,7 +2,7 @@
 
 use rusqlite::{Connection, OptionalExtension, Row, params};
 
-use super::{GROUPED_BY, LabelOptions, State, classes};
+use super::{GROUPED_BY, LabelOptions, SampleState, classes};
 use crate::time::now_secs;
 use crate::{ClipId, DbError, MotionDb};
 
@@ -32,7 +32,7 @@ pub struct DbSample {
     /// Whether the clip as a whole was labelled, still ends and all.
     pub whole_clip: bool,
     /// What is thought of it.
-    pub state: State,
+    pub state: SampleState,
     /// How sure a program was of it.
     pub score: Option<f64>,
     /// Who said so.
@@ -65,7 +65,7 @@ pub struct NewSample {
     /// Whether the clip as a whole is meant.
     pub whole_clip: bool,
     /// What is thought of it.
-    pub state: State,
+    pub state: SampleState,
     /// How sure a program is of it.
     pub score: Option<f64>,
 }
@@ -99,7 +99,7 @@ pub struct SampleFilter {
     /// Of this class.
     pub class: Option<String>,
     /// In this state.
-    pub state: Option<State>,
+    pub state: Option<SampleState>,
 }
 
 fn sample(row: &Row<'_>) -> rusqlite::Result<DbSample> {
@@ -114,7 +114,7 @@ fn sample(row: &Row<'_>) -> rusqlite::Result<DbSample> {
         stop_secs: row.get("stop_secs")?,
         whole_clip: row.get("whole_clip")?,
         // The table allows no other.
-        state: State::from_name(&state).unwrap_or(State::Proposed),
+        state: SampleState::from_name(&state).unwrap_or(SampleState::Proposed),
         score: row.get("score")?,
         set_by: row.get("set_by")?,
         set_secs: row.get("set_secs")?,
@@ -134,7 +134,7 @@ impl MotionDb {
         let given = params![
             filter.clip.map(|c| c.0),
             filter.class,
-            filter.state.map(State::name)
+            filter.state.map(SampleState::name)
         ];
         let samples = statement
             .query_map(given, sample)?
@@ -201,7 +201,7 @@ impl MotionDb {
     pub fn judge(
         &mut self,
         samples: &[SampleId],
-        state: State,
+        state: SampleState,
         by: &str,
     ) -> Result<usize, DbError> {
         let what = format!("{} {} samples", state.name(), samples.len());
@@ -224,8 +224,8 @@ impl MotionDb {
             rejected.len()
         );
         self.edit(&what, |conn| {
-            judge(conn, accepted, State::Accepted, by)?;
-            judge(conn, rejected, State::Rejected, by)?;
+            judge(conn, accepted, SampleState::Accepted, by)?;
+            judge(conn, rejected, SampleState::Rejected, by)?;
             Ok(())
         })
     }
@@ -285,7 +285,7 @@ impl MotionDb {
 fn judge(
     conn: &Connection,
     samples: &[SampleId],
-    state: State,
+    state: SampleState,
     by: &str,
 ) -> Result<usize, DbError> {
     let sql =
@@ -342,12 +342,12 @@ pub(super) fn add(
             now_secs()
         ])?;
         let others = match sample.state {
-            State::Accepted => reject_instead(conn, sample, class, by)?,
+            SampleState::Accepted => reject_instead(conn, sample, class, by)?,
             _ => Others::default(),
         };
         return Ok((Change::New, others));
     };
-    if state == sample.state.name() || sample.state == State::Proposed {
+    if state == sample.state.name() || sample.state == SampleState::Proposed {
         return Ok((Change::None, Others::default()));
     }
     conn.prepare_cached("UPDATE samples SET state = ?2, set_by = ?3, set_secs = ?4 WHERE id = ?1")?

@@ -7,7 +7,7 @@ use crate::testing::database_of_waves;
 use crate::{ClipId, MotionDb};
 
 /// What a user sees: the classes; clip, class, start and state of each sample.
-type Seen = (Vec<String>, Vec<(i64, String, String, State)>);
+type Seen = (Vec<String>, Vec<(i64, String, String, SampleState)>);
 
 fn seen(db: &MotionDb) -> Seen {
     let samples = db.samples(&SampleFilter::default()).unwrap();
@@ -20,7 +20,7 @@ fn seen(db: &MotionDb) -> Seen {
     (classes, rows)
 }
 
-fn sample(class: &str, start: u8, state: State) -> NewSample {
+fn sample(class: &str, start: u8, state: SampleState) -> NewSample {
     NewSample {
         clip: ClipId(1),
         class: class.to_owned(),
@@ -34,8 +34,8 @@ fn sample(class: &str, start: u8, state: State) -> NewSample {
 
 #[derive(Debug, Clone)]
 enum Step {
-    Add(usize, u8, State),
-    Judge(u8, State),
+    Add(usize, u8, SampleState),
+    Judge(u8, SampleState),
     Rename(usize, usize),
     Merge(usize, usize),
     Split(u8, usize),
@@ -47,9 +47,9 @@ const NAMES: [&str; 4] = ["walk", "run", "it's; DROP", "größer"];
 
 fn step() -> impl Strategy<Value = Step> {
     let state = prop_oneof![
-        Just(State::Accepted),
-        Just(State::Proposed),
-        Just(State::Rejected)
+        Just(SampleState::Accepted),
+        Just(SampleState::Proposed),
+        Just(SampleState::Rejected)
     ];
     prop_oneof![
         4 => (0..4usize, 0..6u8, state.clone()).prop_map(|(c, s, state)| Step::Add(c, s, state)),
@@ -125,22 +125,22 @@ proptest! {
 #[test]
 fn a_proposal_does_not_change_what_was_judged() {
     let (_folder, mut db) = database_of_waves(1);
-    db.add_samples(&[sample("walk", 0, State::Rejected)], "me")
+    db.add_samples(&[sample("walk", 0, SampleState::Rejected)], "me")
         .unwrap();
     let added = db
-        .add_samples(&[sample("walk", 0, State::Proposed)], "morec")
+        .add_samples(&[sample("walk", 0, SampleState::Proposed)], "morec")
         .unwrap();
     assert_eq!((added.added, added.unchanged), (0, 1));
     assert_eq!(
         db.samples(&SampleFilter::default()).unwrap()[0].state,
-        State::Rejected
+        SampleState::Rejected
     );
 }
 
 #[test]
 fn samples_outside_their_clip_and_wild_names_are_refused_whole() {
     let (_folder, mut db) = database_of_waves(1);
-    let good = sample("walk", 0, State::Accepted);
+    let good = sample("walk", 0, SampleState::Accepted);
     for bad in [
         NewSample {
             stop_secs: 1e6,
@@ -185,13 +185,13 @@ fn another_class_for_a_proposed_stretch_rejects_the_proposal() {
     let (_folder, mut db) = database_of_waves(1);
     db.add_samples(
         &[
-            sample("walk", 3, State::Proposed),
-            sample("walk", 9, State::Proposed),
+            sample("walk", 3, SampleState::Proposed),
+            sample("walk", 9, SampleState::Proposed),
         ],
         "propose",
     )
     .unwrap();
-    db.add_samples(&[sample("run", 3, State::Accepted)], "user")
+    db.add_samples(&[sample("run", 3, SampleState::Accepted)], "user")
         .unwrap();
     let states: Vec<_> = seen(&db)
         .1
@@ -202,9 +202,9 @@ fn another_class_for_a_proposed_stretch_rejects_the_proposal() {
     assert_eq!(
         states,
         [
-            row("run", "0.3", State::Accepted),
-            row("walk", "0.3", State::Rejected),
-            row("walk", "0.9", State::Proposed),
+            row("run", "0.3", SampleState::Accepted),
+            row("walk", "0.3", SampleState::Rejected),
+            row("walk", "0.9", SampleState::Proposed),
         ]
     );
     let before = seen(&db);
@@ -227,14 +227,14 @@ fn labels_take_the_place_of_what_was_there() {
     let (_folder, mut db) = database_of_waves(2);
     let other_clip = NewSample {
         clip: ClipId(2),
-        ..sample("walk", 9, State::Accepted)
+        ..sample("walk", 9, SampleState::Accepted)
     };
     let old = [
-        sample("walk", 0, State::Accepted),
-        sample("walk", 10, State::Accepted),
-        sample("run", 20, State::Accepted),
-        sample("hop", 30, State::Accepted),
-        sample("hop", 40, State::Proposed),
+        sample("walk", 0, SampleState::Accepted),
+        sample("walk", 10, SampleState::Accepted),
+        sample("run", 20, SampleState::Accepted),
+        sample("hop", 30, SampleState::Accepted),
+        sample("hop", 40, SampleState::Proposed),
         other_clip,
     ];
     db.add_samples(&old, "me").unwrap();
@@ -247,10 +247,10 @@ fn labels_take_the_place_of_what_was_there() {
     let (moved, renamed) = (number(&db, "walk", 1.0), number(&db, "run", 2.0));
     let before = seen(&db);
     let new = [
-        sample("walk", 0, State::Accepted),
-        sample("walk", 12, State::Accepted),
-        sample("jog", 20, State::Accepted),
-        sample("jog", 25, State::Accepted),
+        sample("walk", 0, SampleState::Accepted),
+        sample("walk", 12, SampleState::Accepted),
+        sample("jog", 20, SampleState::Accepted),
+        sample("jog", 25, SampleState::Accepted),
     ];
     let plan = db.label(&new, &replace(true)).unwrap();
     assert_eq!(seen(&db), before, "a rehearsal changes nothing");
@@ -274,12 +274,12 @@ fn labels_take_the_place_of_what_was_there() {
     assert_eq!(
         seen(&db).1,
         [
-            row(1, "hop", "4", State::Proposed),
-            row(1, "jog", "2", State::Accepted),
-            row(1, "jog", "2.5", State::Accepted),
-            row(1, "walk", "0", State::Accepted),
-            row(1, "walk", "1.2", State::Accepted),
-            row(2, "walk", "0.9", State::Accepted),
+            row(1, "hop", "4", SampleState::Proposed),
+            row(1, "jog", "2", SampleState::Accepted),
+            row(1, "jog", "2.5", SampleState::Accepted),
+            row(1, "walk", "0", SampleState::Accepted),
+            row(1, "walk", "1.2", SampleState::Accepted),
+            row(2, "walk", "0.9", SampleState::Accepted),
         ]
     );
     let again = db.label(&new, &replace(false)).unwrap();
@@ -297,7 +297,7 @@ proptest! {
         new in prop::collection::btree_set((0..4usize, 0..12u8), 1..8),
     ) {
         let (_folder, mut db) = database_of_waves(1);
-        let of = |(class, start): (usize, u8)| sample(NAMES[class], start, State::Accepted);
+        let of = |(class, start): (usize, u8)| sample(NAMES[class], start, SampleState::Accepted);
         let old: Vec<NewSample> = old.into_iter().map(of).collect();
         db.add_samples(&old, "me").unwrap();
         let before = seen(&db);
@@ -305,7 +305,7 @@ proptest! {
         db.label(&new, &replace(false)).unwrap();
         let mut wanted: Vec<_> = new
             .iter()
-            .map(|s| (1, s.class.clone(), format!("{}", s.start_secs), State::Accepted))
+            .map(|s| (1, s.class.clone(), format!("{}", s.start_secs), SampleState::Accepted))
             .collect();
         wanted.sort();
         prop_assert_eq!(seen(&db).1, wanted.clone());
@@ -321,14 +321,14 @@ proptest! {
 fn a_label_withdraws_the_groups_proposal_and_its_empty_class() {
     let (_folder, mut db) = database_of_waves(1);
     let grouped = [
-        sample("group_1", 0, State::Proposed),
-        sample("group_2", 10, State::Proposed),
-        sample("group_2", 20, State::Proposed),
+        sample("group_1", 0, SampleState::Proposed),
+        sample("group_2", 10, SampleState::Proposed),
+        sample("group_2", 20, SampleState::Proposed),
     ];
     db.add_samples(&grouped, GROUPED_BY).unwrap();
     let labels = [
-        sample("walk", 0, State::Accepted),
-        sample("walk", 10, State::Accepted),
+        sample("walk", 0, SampleState::Accepted),
+        sample("walk", 10, SampleState::Accepted),
     ];
     let added = db.add_samples(&labels, "me").unwrap();
     assert_eq!((added.added, added.rejected, added.withdrawn), (2, 0, 2));
@@ -342,8 +342,8 @@ fn a_label_withdraws_the_groups_proposal_and_its_empty_class() {
 fn samples_are_moved_by_number() {
     let (_folder, mut db) = database_of_waves(1);
     let two = [
-        sample("walk", 0, State::Accepted),
-        sample("walk", 10, State::Accepted),
+        sample("walk", 0, SampleState::Accepted),
+        sample("walk", 10, SampleState::Accepted),
     ];
     db.add_samples(&two, "me").unwrap();
     db.move_sample(SampleId(2), 1.5, 1.75, "me").unwrap();

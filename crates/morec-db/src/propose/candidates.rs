@@ -5,8 +5,8 @@ use std::ops::Range;
 use morec::templates::{Evidence, Match};
 use morec::train::overlap_share;
 
-use super::material::{Material, overlap};
-use super::views::View;
+use super::material::{ProposalData, overlap};
+use super::views::BoneView;
 
 /// Distance of what was not found.
 pub const FAR: f32 = 1e30;
@@ -26,21 +26,21 @@ const NOTHING: Match = Match {
 };
 
 /// The nearest template of each class, and behind them the nearest rejected stretch, at each tick of a clip.
-pub struct Seen {
+pub struct ClassDistances {
     columns: usize,
     near: Vec<Match>,
 }
 
 /// A stretch that may show a class.
-pub struct Candidate {
+pub struct ProposalCandidate {
     pub class: usize,
     pub ticks: Range<usize>,
     pub evidence: Evidence,
 }
 
-impl Seen {
-    /// Runs the bank over a clip. `templates` are the bank's, as places in [`Material::judged`].
-    pub fn of(material: &Material, clip: usize, templates: &[usize], view: &View) -> Self {
+impl ClassDistances {
+    /// Runs the bank over a clip. `templates` are the bank's, as places in [`ProposalData::judged`].
+    pub fn of(material: &ProposalData, clip: usize, templates: &[usize], view: &BoneView) -> Self {
         let rows = view.map(&material.clips[clip].laid.rows);
         let columns = material.classes.len() + 1;
         let mut bank = view.bank.clone();
@@ -112,7 +112,7 @@ impl Seen {
     }
 
     /// The best of the whole clip.
-    pub fn whole(&self, class: usize) -> Option<Candidate> {
+    pub fn whole(&self, class: usize) -> Option<ProposalCandidate> {
         let nearest = (0..self.ticks()).min_by(|a, b| {
             self.at(*a, class)
                 .distance
@@ -120,7 +120,7 @@ impl Seen {
         })?;
         let found = self.at(nearest, class);
         let ticks = span(nearest, found);
-        (found.distance < FAR).then(|| Candidate {
+        (found.distance < FAR).then(|| ProposalCandidate {
             class,
             evidence: self.evidence(class, &ticks, true),
             ticks,
@@ -128,7 +128,7 @@ impl Seen {
     }
 
     /// Where the class is nearer than before and after.
-    pub fn peaks(&self, class: usize) -> Vec<Candidate> {
+    pub fn peaks(&self, class: usize) -> Vec<ProposalCandidate> {
         let peak = |tick: &usize| {
             let here = self.at(*tick, class).distance;
             let around = tick.saturating_sub(PEAK_TICKS)..(tick + PEAK_TICKS + 1).min(self.ticks());
@@ -141,7 +141,7 @@ impl Seen {
             let ticks = span(tick, self.at(tick, class));
             let mut evidence = self.evidence(class, &ticks, false);
             evidence.distance = self.at(tick, class).distance.into();
-            Candidate {
+            ProposalCandidate {
                 class,
                 ticks,
                 evidence,

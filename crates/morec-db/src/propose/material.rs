@@ -6,7 +6,7 @@ use std::ops::Range;
 use morec::features::BoneSet;
 use morec::train::moving_part;
 
-use crate::labels::{DbSample, State};
+use crate::labels::{DbSample, SampleState};
 use crate::rows::ClipRows;
 use crate::search::layout::{Laid, lay_out};
 use crate::{ClipId, ClipInfo};
@@ -15,7 +15,7 @@ use crate::{ClipId, ClipInfo};
 const LEAST_TICKS: usize = 4;
 
 /// A clip's rows over all bones, and what else counts.
-pub struct Clip {
+pub struct ClipFeatures {
     pub id: ClipId,
     pub laid: Laid,
     pub end_secs: f64,
@@ -24,10 +24,10 @@ pub struct Clip {
 }
 
 /// A stretch that somebody judged.
-pub struct Judged {
-    /// Its clip's place in [`Material::clips`].
+pub struct JudgedSpan {
+    /// Its clip's place in [`ProposalData::clips`].
     pub clip: usize,
-    /// Its class's place in [`Material::classes`]; none if no sample of the class is accepted.
+    /// Its class's place in [`ProposalData::classes`]; none if no sample of the class is accepted.
     pub class: Option<usize>,
     pub accepted: bool,
     /// Whether the clip as a whole was judged; `ticks` are then its moving part.
@@ -35,18 +35,18 @@ pub struct Judged {
     pub ticks: Range<usize>,
 }
 
-pub struct Material {
+pub struct ProposalData {
     /// Names of classes of which a sample is accepted.
     pub classes: Vec<String>,
     /// For each class, whether all its samples are whole clips.
     pub whole: Vec<bool>,
-    pub clips: Vec<Clip>,
-    pub judged: Vec<Judged>,
+    pub clips: Vec<ClipFeatures>,
+    pub judged: Vec<JudgedSpan>,
     /// Bones that every clip with an accepted sample shows.
     pub bones: BoneSet,
 }
 
-impl Material {
+impl ProposalData {
     pub fn new(
         rows: Vec<ClipRows>,
         infos: &[ClipInfo],
@@ -62,7 +62,7 @@ impl Material {
                 continue;
             };
             let own: Vec<&DbSample> = samples.iter().filter(|s| s.clip == of.clip).collect();
-            if own.iter().any(|s| s.state == State::Accepted) {
+            if own.iter().any(|s| s.state == SampleState::Accepted) {
                 taught = taught.and(of.bones);
             }
             let whole = own.iter().any(|s| s.whole_clip);
@@ -72,7 +72,7 @@ impl Material {
                 0..0
             });
             places.insert(of.clip, clips.len());
-            clips.push(Clip {
+            clips.push(ClipFeatures {
                 id: of.clip,
                 laid: lay_out(&of.rows, of.bones),
                 end_secs: info.duration_secs(),
@@ -92,10 +92,14 @@ impl Material {
         };
         let usable: Vec<(&DbSample, (usize, Range<usize>))> = samples
             .iter()
-            .filter(|s| s.state != State::Proposed)
+            .filter(|s| s.state != SampleState::Proposed)
             .filter_map(|s| Some((s, ticks(s)?)))
             .collect();
-        let accepted = || usable.iter().filter(|(s, _)| s.state == State::Accepted);
+        let accepted = || {
+            usable
+                .iter()
+                .filter(|(s, _)| s.state == SampleState::Accepted)
+        };
         let mut classes: Vec<String> = accepted().map(|(s, _)| s.class.clone()).collect();
         classes.sort();
         classes.dedup();
@@ -109,10 +113,10 @@ impl Material {
             .collect();
         let judged = usable
             .iter()
-            .map(|(s, (clip, ticks))| Judged {
+            .map(|(s, (clip, ticks))| JudgedSpan {
                 clip: *clip,
                 class: classes.iter().position(|c| *c == s.class),
-                accepted: s.state == State::Accepted,
+                accepted: s.state == SampleState::Accepted,
                 whole: s.whole_clip,
                 ticks: ticks.clone(),
             })
@@ -127,7 +131,7 @@ impl Material {
     }
 
     /// Accepted samples of each class.
-    pub fn accepted(&self, class: usize) -> impl Iterator<Item = (usize, &Judged)> {
+    pub fn accepted(&self, class: usize) -> impl Iterator<Item = (usize, &JudgedSpan)> {
         self.judged
             .iter()
             .enumerate()

@@ -21,7 +21,7 @@ fn sample(clip: ClipId, class: &str, start_secs: f64, stop_secs: f64) -> NewSamp
         start_secs,
         stop_secs,
         whole_clip: false,
-        state: State::Accepted,
+        state: SampleState::Accepted,
         score: None,
     }
 }
@@ -102,8 +102,9 @@ fn what_was_judged_is_not_proposed_again() {
         .iter()
         .map(|s| s.id)
         .collect();
-    db.judge(&proposed, State::Rejected, "test").unwrap();
-    db.judge(&proposed[..1], State::Accepted, "test").unwrap();
+    db.judge(&proposed, SampleState::Rejected, "test").unwrap();
+    db.judge(&proposed[..1], SampleState::Accepted, "test")
+        .unwrap();
     let again = db.propose(&ProposeOptions::default(), &()).unwrap();
     for known in db.samples(&SampleFilter::default()).unwrap() {
         let same = |p: &&Proposal| {
@@ -156,12 +157,12 @@ fn answers_lead_to_every_sample() {
         answers += asked.len();
         let answer = |p: &Proposal| {
             let mut answer = NewSample {
-                state: State::Rejected,
+                state: SampleState::Rejected,
                 ..p.clone().into()
             };
             if let Some((t, l)) = under(&takes, &ids, p) {
                 (answer.class, answer.state) =
-                    (takes[t].labels[l].class.to_owned(), State::Accepted);
+                    (takes[t].labels[l].class.to_owned(), SampleState::Accepted);
             }
             answer
         };
@@ -202,7 +203,7 @@ fn classes_of_whole_clips_propose_whole_clips() {
         );
     }
     let rejected = NewSample {
-        state: State::Rejected,
+        state: SampleState::Rejected,
         ..whole(1)
     };
     db.add_samples(&[rejected], "test").unwrap();

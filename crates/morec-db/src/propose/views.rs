@@ -4,36 +4,36 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use morec::classes::ClassId;
 use morec::features::{BoneSet, Rows};
-use morec::templates::{Bank, Metric, Symmetric};
-use morec::train::{Known, Source, TrainParams, TrainSet, TrainStream, scatters};
+use morec::templates::{Metric, PackedSymmetric, TemplateBank};
+use morec::train::{LabelledSpan, StreamKind, TrainParams, TrainSet, TrainStream, scatters};
 
 use super::ProposeOptions;
-use super::material::{Judged, Material};
+use super::material::{JudgedSpan, ProposalData};
 use crate::search::layout::shared_columns;
 
 /// Pairs of samples that tell how a class varies: more say the same, and a round must stay quick.
 const PAIRS: usize = 40;
 
 /// What clips that show these bones are compared with.
-pub struct View {
+pub struct BoneView {
     /// Columns of laid-out rows that count.
     columns: Vec<usize>,
     metric: Metric,
     /// Brings distances over these bones to the scale of all.
     pub factor: f32,
     /// A template for each of the chosen stretches; empty where its clip lacks bones.
-    pub bank: Bank,
+    pub bank: TemplateBank,
 }
 
-impl View {
+impl BoneView {
     /// Laid-out rows under the metric.
     pub fn map(&self, laid: &Rows) -> Rows {
         self.metric.apply_all(&laid.columns(&self.columns))
     }
 }
 
-/// Samples that look for others and rejected stretches that speak against them, as places in [`Material::judged`].
-pub fn chosen(material: &Material, options: &ProposeOptions) -> Vec<usize> {
+/// Samples that look for others and rejected stretches that speak against them, as places in [`ProposalData::judged`].
+pub fn chosen(material: &ProposalData, options: &ProposeOptions) -> Vec<usize> {
     let mut chosen = Vec::new();
     for class in 0..material.classes.len() {
         let mut by_group: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
@@ -61,7 +61,7 @@ pub fn chosen(material: &Material, options: &ProposeOptions) -> Vec<usize> {
 }
 
 /// A view for each set of bones that clips show, of those that are taught. O(pairs · rows² · d + d³).
-pub fn views(material: &Material, chosen: &[usize]) -> BTreeMap<BoneSet, View> {
+pub fn views(material: &ProposalData, chosen: &[usize]) -> BTreeMap<BoneSet, BoneView> {
     let columns = shared_columns(material.bones);
     let Some((ridged, total)) = scatters(&train_set(material, &columns), &params()) else {
         return BTreeMap::new();
@@ -79,7 +79,7 @@ pub fn views(material: &Material, chosen: &[usize]) -> BTreeMap<BoneSet, View> {
         let part = total.restricted(&keep);
         let factor = (trace(&total) / trace(&part).max(1e-12)) as f32;
         let metric = Metric::new(&ridged.restricted(&keep), &part);
-        let template = |judged: &Judged| {
+        let template = |judged: &JudgedSpan| {
             let laid = &material.clips[judged.clip].laid;
             match laid.bones.and(bones) == bones {
                 true => metric.apply_all(&laid.rows.slice(judged.ticks.clone()).columns(&kept)),
@@ -92,8 +92,8 @@ pub fn views(material: &Material, chosen: &[usize]) -> BTreeMap<BoneSet, View> {
             .collect();
         (
             bones,
-            View {
-                bank: Bank::new(&templates, kept.len()),
+            BoneView {
+                bank: TemplateBank::new(&templates, kept.len()),
                 columns: kept,
                 metric,
                 factor,
@@ -106,7 +106,7 @@ pub fn views(material: &Material, chosen: &[usize]) -> BTreeMap<BoneSet, View> {
         .collect()
 }
 
-fn trace(matrix: &Symmetric) -> f64 {
+fn trace(matrix: &PackedSymmetric) -> f64 {
     matrix.unpack().trace()
 }
 
@@ -118,14 +118,14 @@ fn params() -> TrainParams {
 }
 
 /// The clips that hold accepted samples.
-fn train_set(material: &Material, columns: &[usize]) -> TrainSet {
-    let mut by_clip: BTreeMap<usize, Vec<&Judged>> = BTreeMap::new();
+fn train_set(material: &ProposalData, columns: &[usize]) -> TrainSet {
+    let mut by_clip: BTreeMap<usize, Vec<&JudgedSpan>> = BTreeMap::new();
     for judged in material.judged.iter().filter(|j| j.accepted) {
         by_clip.entry(judged.clip).or_default().push(judged);
     }
-    let stream = |(clip, judged): (usize, Vec<&Judged>)| {
-        let known = |j: &&Judged| {
-            Some(Known {
+    let stream = |(clip, judged): (usize, Vec<&JudgedSpan>)| {
+        let known = |j: &&JudgedSpan| {
+            Some(LabelledSpan {
                 ticks: j.ticks.clone(),
                 class: Some(ClassId(j.class? as u16)),
             })
@@ -134,7 +134,7 @@ fn train_set(material: &Material, columns: &[usize]) -> TrainSet {
             name: String::new(),
             group: material.clips[clip].group.clone(),
             person: None,
-            source: Source::Labelled,
+            source: StreamKind::Labelled,
             rest_is_background: false,
             is_copy: false,
             rows: material.clips[clip].laid.rows.columns(columns),

@@ -5,13 +5,13 @@ use std::ops::Range;
 use morec::features::BoneSet;
 use rayon::prelude::*;
 
-use super::learned::{LearnedMetric, Place};
-use super::summary::{Comparison, Moments, Summary, mirrored_summary, moments_in};
+use super::learned::{Embedding, LearnedMetric};
+use super::summary::{MomentVector, Summary, SummaryDistance, mirrored_summary, moments_in};
 use super::{Example, Indexed, SearchIndex};
 
 /// A window and how far it is from the example.
 #[derive(Debug, Clone)]
-pub struct Candidate {
+pub struct WindowDistance {
     pub clip: usize,
     pub span: Range<usize>,
     pub distance: f32,
@@ -25,8 +25,8 @@ const SCALES: [f64; 3] = [0.7, 1.0, 1.4];
 const A_CLIP: usize = 4;
 
 /// What compares the example, or its image, with windows.
-pub struct Probe<'a> {
-    pub look: Look,
+pub struct QueryDescriptor<'a> {
+    pub look: Descriptor,
     bones: BoneSet,
     mirrored: bool,
     metric: Option<&'a LearnedMetric>,
@@ -36,12 +36,12 @@ pub struct Probe<'a> {
 }
 
 /// A stretch as it is compared.
-pub struct Look {
+pub struct Descriptor {
     pub summary: Summary,
-    pub place: Option<Place>,
+    pub place: Option<Embedding>,
 }
 
-impl Look {
+impl Descriptor {
     pub fn new(
         summary: Summary,
         rows: usize,
@@ -55,7 +55,7 @@ impl Look {
     }
 
     /// By their summaries; with a learned metric half by it.
-    pub fn distance(&self, other: &Self, comparison: &Comparison) -> f32 {
+    pub fn distance(&self, other: &Self, comparison: &SummaryDistance) -> f32 {
         let plain = comparison.distance(&self.summary, &other.summary);
         match (&self.place, &other.place) {
             (Some(a), Some(b)) => 0.5 * (plain + a.distance(b)),
@@ -64,7 +64,7 @@ impl Look {
     }
 }
 
-impl<'a> Probe<'a> {
+impl<'a> QueryDescriptor<'a> {
     pub fn new(
         example: &Example,
         metric: Option<&'a LearnedMetric>,
@@ -82,7 +82,7 @@ impl<'a> Probe<'a> {
             (plain, example.laid.bones)
         };
         Self {
-            look: Look::new(summary, rows, bones, metric),
+            look: Descriptor::new(summary, rows, bones, metric),
             bones,
             mirrored,
             metric,
@@ -93,7 +93,7 @@ impl<'a> Probe<'a> {
 
     /// How far a stretch of a clip is.
     pub fn distance_of(&self, clip: &Indexed, span: &Range<usize>) -> f32 {
-        let over = Comparison::over(self.bones.and(clip.laid.bones));
+        let over = SummaryDistance::over(self.bones.and(clip.laid.bones));
         self.distance(clip, span, &clip.sums.octaves(span), &over)
     }
 
@@ -102,9 +102,9 @@ impl<'a> Probe<'a> {
         clip: &Indexed,
         span: &Range<usize>,
         summary: &Summary,
-        over: &Comparison,
+        over: &SummaryDistance,
     ) -> f32 {
-        let look = Look::new(*summary, span.len(), clip.laid.bones, self.metric);
+        let look = Descriptor::new(*summary, span.len(), clip.laid.bones, self.metric);
         let excess = if self.whole {
             length_cost(self.rows, clip.laid.rows.len(), 1.4)
         } else {
@@ -128,14 +128,14 @@ impl SearchIndex {
     pub(super) fn candidates(
         &self,
         example: &Example,
-        probes: &[Probe<'_>],
+        probes: &[QueryDescriptor<'_>],
         one_a_clip: bool,
-    ) -> Vec<Candidate> {
+    ) -> Vec<WindowDistance> {
         let of_clip = |(number, clip): (usize, &Indexed)| {
             let mut found = windows(number, clip, example, probes);
             found.sort_by(|a, b| a.distance.total_cmp(&b.distance));
             // Neighbours of a good window say the same: the best of each surroundings is enough.
-            let mut kept: Vec<Candidate> = Vec::new();
+            let mut kept: Vec<WindowDistance> = Vec::new();
             for candidate in found {
                 let full = one_a_clip && kept.len() >= A_CLIP;
                 if !full && !kept.iter().any(|k| overlaps(&k.span, &candidate.span)) {
@@ -144,7 +144,7 @@ impl SearchIndex {
             }
             kept
         };
-        let mut all: Vec<Candidate> = self
+        let mut all: Vec<WindowDistance> = self
             .clips
             .par_iter()
             .enumerate()
@@ -161,12 +161,12 @@ fn windows(
     number: usize,
     clip: &Indexed,
     example: &Example,
-    probes: &[Probe<'_>],
-) -> Vec<Candidate> {
+    probes: &[QueryDescriptor<'_>],
+) -> Vec<WindowDistance> {
     let (n, rows) = (example.laid.rows.len(), clip.laid.rows.len());
-    let over: Vec<Comparison> = probes
+    let over: Vec<SummaryDistance> = probes
         .iter()
-        .map(|probe| Comparison::over(probe.bones.and(clip.laid.bones)))
+        .map(|probe| SummaryDistance::over(probe.bones.and(clip.laid.bones)))
         .collect();
     if rows < 3
         || probes
@@ -199,7 +199,7 @@ fn windows(
             .filter(|(probe, _)| probe.mirrored || !own)
         {
             let distance = probe.distance(clip, &span, &summary, over);
-            found.push(Candidate {
+            found.push(WindowDistance {
                 clip: number,
                 span: span.clone(),
                 distance,
@@ -215,11 +215,11 @@ fn windows(
 /// standard deviations.
 fn nearest_by_moments(
     clip: &Indexed,
-    probes: &[Probe<'_>],
-    over: &[Comparison],
+    probes: &[QueryDescriptor<'_>],
+    over: &[SummaryDistance],
     spans: Vec<Range<usize>>,
 ) -> Vec<Range<usize>> {
-    let moments: Vec<Moments> = spans
+    let moments: Vec<MomentVector> = spans
         .iter()
         .map(|span| clip.sums.moments_of(span))
         .collect();

@@ -13,8 +13,8 @@ use morec::features::BoneSet;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use super::SearchIndex;
-use super::summary::{Comparison, SUMMARY, Summary, bone_of};
-use crate::labels::{DbSample, State};
+use super::summary::{SUMMARY, Summary, SummaryDistance, bone_of};
+use crate::labels::{DbSample, SampleState};
 use crate::{ClipId, DbError};
 
 /// Values that are learned from: a summary and the logarithm of its length.
@@ -38,9 +38,9 @@ pub struct LearnedMetric {
 
 /// Where a stretch lies in the learned space.
 #[derive(Debug, Clone)]
-pub struct Place(Vec<f32>);
+pub struct Embedding(Vec<f32>);
 
-impl Place {
+impl Embedding {
     /// Euclidean.
     pub fn distance(&self, other: &Self) -> f32 {
         self.0
@@ -77,7 +77,7 @@ impl SearchIndex {
         let mut counts: BTreeMap<&str, Vec<&DbSample>> = BTreeMap::new();
         for sample in samples
             .iter()
-            .filter(|s| s.state == State::Accepted && clips.contains_key(&s.clip))
+            .filter(|s| s.state == SampleState::Accepted && clips.contains_key(&s.clip))
         {
             counts.entry(&sample.class).or_default().push(sample);
         }
@@ -130,9 +130,9 @@ impl LearnedMetric {
     }
 
     /// Where a stretch of so many rows lies. Bones that it does not show are taken to be as usual.
-    pub fn place(&self, summary: &Summary, rows: usize, bones: BoneSet) -> Place {
+    pub fn place(&self, summary: &Summary, rows: usize, bones: BoneSet) -> Embedding {
         let input = input(summary, rows, bones, &self.mean);
-        Place(
+        Embedding(
             (&self.projection * input)
                 .iter()
                 .map(|v| *v as f32)
@@ -164,14 +164,14 @@ impl LearnedMetric {
     fn length(&self, seen: &[LabelledStretch]) -> Option<f64> {
         let stride = seen.len().div_ceil(SCALED_ON);
         let some: Vec<&LabelledStretch> = seen.iter().step_by(stride).collect();
-        let places: Vec<Place> = some
+        let places: Vec<Embedding> = some
             .iter()
             .map(|s| self.place(&s.summary, s.rows, s.bones))
             .collect();
         let (mut plain, mut learned) = (Vec::new(), Vec::new());
         for i in 0..some.len() {
             for j in 0..i {
-                let over = Comparison::over(some[i].bones.and(some[j].bones));
+                let over = SummaryDistance::over(some[i].bones.and(some[j].bones));
                 plain.push(over.distance(&some[i].summary, &some[j].summary));
                 learned.push(places[i].distance(&places[j]));
             }

@@ -4,14 +4,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use morec::features::BoneSet;
-use morec::templates::Bank;
+use morec::templates::TemplateBank;
 use rayon::prelude::*;
 
-use super::candidates::{Candidate, Look, Probe, length_cost};
+use super::candidates::{Descriptor, QueryDescriptor, WindowDistance, length_cost};
 use super::graph::{SCALE_NEIGHBOUR, spread};
 use super::layout::{Laid, mirrored, opposite_bones, shared_columns};
 use super::learned::LearnedMetric;
-use super::summary::{Comparison, mirrored_summary};
+use super::summary::{SummaryDistance, mirrored_summary};
 use super::windows::shown;
 use super::{Example, SearchIndex};
 use crate::ClipId;
@@ -135,17 +135,17 @@ impl SearchIndex {
     /// Candidates with the company they keep, cheapest first.
     fn ranked(
         &self,
-        candidates: Vec<Candidate>,
+        candidates: Vec<WindowDistance>,
         example: &Example,
         options: &SearchOptions,
-        probes: &[Probe<'_>],
+        probes: &[QueryDescriptor<'_>],
         metric: Option<&LearnedMetric>,
     ) -> Vec<Ranked> {
         // Where clips are asked for, a clip is one node, at its nearest window.
         let mut seen = BTreeSet::new();
-        let node = |c: &&Candidate| !options.one_a_clip || seen.insert(c.clip);
+        let node = |c: &&WindowDistance| !options.one_a_clip || seen.insert(c.clip);
         let linked = candidates.iter().filter(node).take(linked(options));
-        let nodes: Vec<&Candidate> = linked.collect();
+        let nodes: Vec<&WindowDistance> = linked.collect();
         let reached = self.company(&nodes, example, probes, metric);
         let of_node: BTreeMap<(usize, usize), f32> = nodes
             .iter()
@@ -155,7 +155,7 @@ impl SearchIndex {
         let scale = nodes
             .get(SCALE_NEIGHBOUR.min(nodes.len()).max(1) - 1)
             .map_or(1.0, |c| c.distance);
-        let rank = |candidate: Candidate| {
+        let rank = |candidate: WindowDistance| {
             let reached = of_node
                 .get(&key(&candidate, options))
                 .map_or(UNREACHED, |r| r.max(UNREACHED));
@@ -176,13 +176,13 @@ impl SearchIndex {
     /// What comes to each candidate from the example. Mirrored ones stand in the graph as the example sees them.
     fn company(
         &self,
-        candidates: &[&Candidate],
+        candidates: &[&WindowDistance],
         example: &Example,
-        probes: &[Probe<'_>],
+        probes: &[QueryDescriptor<'_>],
         metric: Option<&LearnedMetric>,
     ) -> Vec<f32> {
         let whole = probes.iter().any(|probe| probe.whole);
-        let node = |c: &&Candidate| {
+        let node = |c: &&WindowDistance| {
             let clip = &self.clips[c.clip];
             let (summary, bones) = (clip.sums.octaves(&c.span), clip.laid.bones);
             let (summary, bones) = if c.mirrored {
@@ -191,7 +191,7 @@ impl SearchIndex {
                 (summary, bones)
             };
             GraphNode {
-                look: Look::new(summary, c.span.len(), bones, metric),
+                look: Descriptor::new(summary, c.span.len(), bones, metric),
                 bones,
                 rows: clip.laid.rows.len(),
             }
@@ -203,7 +203,7 @@ impl SearchIndex {
                 return candidates[j - 1].distance;
             }
             let (a, b) = (&nodes[i - 1], &nodes[j - 1]);
-            let over = Comparison::over(a.bones.and(b.bones).and(example.laid.bones));
+            let over = SummaryDistance::over(a.bones.and(b.bones).and(example.laid.bones));
             let lengths = if whole {
                 length_cost(a.rows.min(b.rows), a.rows.max(b.rows), 1.4)
             } else {
@@ -218,7 +218,7 @@ impl SearchIndex {
         &self,
         ranked: &Ranked,
         example: &Example,
-        probe: &Probe<'_>,
+        probe: &QueryDescriptor<'_>,
         options: &SearchOptions,
     ) -> Hit {
         let candidate = &ranked.candidate;
@@ -261,12 +261,12 @@ fn probes<'a>(
     example: &Example,
     options: &SearchOptions,
     metric: Option<&'a LearnedMetric>,
-) -> Vec<Probe<'a>> {
+) -> Vec<QueryDescriptor<'a>> {
     // Whoever shows a clip and asks for clips compares wholes.
     let whole = example.whole && options.one_a_clip;
-    let mut probes = vec![Probe::new(example, metric, false, whole)];
+    let mut probes = vec![QueryDescriptor::new(example, metric, false, whole)];
     if options.mirror {
-        probes.push(Probe::new(example, metric, true, whole));
+        probes.push(QueryDescriptor::new(example, metric, true, whole));
     }
     probes
 }
@@ -283,7 +283,7 @@ fn placed(options: &SearchOptions) -> usize {
 
 /// A candidate and the company it keeps.
 struct Ranked {
-    candidate: Candidate,
+    candidate: WindowDistance,
     /// What came to it over the graph.
     reached: f32,
     /// The distance of the nearest few candidates.
@@ -300,13 +300,13 @@ impl Ranked {
 }
 
 /// What makes a node: a clip, or a window of it.
-fn key(c: &Candidate, options: &SearchOptions) -> (usize, usize) {
+fn key(c: &WindowDistance, options: &SearchOptions) -> (usize, usize) {
     (c.clip, if options.one_a_clip { 0 } else { c.span.start })
 }
 
 /// A candidate in the graph.
 struct GraphNode {
-    look: Look,
+    look: Descriptor,
     bones: BoneSet,
     /// Of its whole clip.
     rows: usize,
@@ -328,7 +328,7 @@ pub fn warp(
     columns: &[usize],
 ) -> Option<(f32, Range<usize>)> {
     let shared = example.bones.and(clip.bones);
-    let mut bank = Bank::new(&[example.rows.columns(columns)], columns.len());
+    let mut bank = TemplateBank::new(&[example.rows.columns(columns)], columns.len());
     let stream = clip.rows.slice(within.clone()).columns(columns);
     let mut best: Option<(f32, Range<usize>)> = None;
     for (tick, row) in stream.iter().enumerate() {

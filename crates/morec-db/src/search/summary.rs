@@ -105,10 +105,10 @@ impl Sums {
 }
 
 /// `[standard deviation by coordinate (33); mean pose (33); asinh of the mean root motion (4)]`: a summary without paces.
-pub type Moments = [f32; 2 * X + 4];
+pub type MomentVector = [f32; 2 * X + 4];
 
 /// Those that a summary holds: its octaves add up to the variance.
-pub fn moments_in(summary: &Summary) -> Moments {
+pub fn moments_in(summary: &Summary) -> MomentVector {
     let mut out = [0f32; 2 * X + 4];
     for i in 0..X {
         out[i] = (0..OCTAVES)
@@ -122,7 +122,7 @@ pub fn moments_in(summary: &Summary) -> Moments {
 
 impl Sums {
     /// The moments of the rows of `span`, which is not empty.
-    pub fn moments_of(&self, span: &Range<usize>) -> Moments {
+    pub fn moments_of(&self, span: &Range<usize>) -> MomentVector {
         let (means, variances, root) = self.moments(span);
         let mut out = [0f32; 2 * X + 4];
         for i in 0..X {
@@ -138,13 +138,13 @@ impl Sums {
 
 /// Distances of summaries over the bones that two clips share, as if they shared all. A sum of lengths, not of squares:
 /// what differs in one respect (style in the pose, say) does not drown agreement in the others.
-pub struct Comparison {
+pub struct SummaryDistance {
     shared: BoneSet,
     /// All bones over shared ones.
     scale: f32,
 }
 
-impl Comparison {
+impl SummaryDistance {
     /// Over these bones.
     pub fn over(shared: BoneSet) -> Self {
         Self {
@@ -170,7 +170,7 @@ impl Comparison {
     }
 
     /// A lower bound of [`distance`](Self::distance), by the triangle inequality in every coordinate's octaves.
-    pub fn by_moments(&self, a: &Moments, b: &Moments) -> f32 {
+    pub fn by_moments(&self, a: &MomentVector, b: &MomentVector) -> f32 {
         let over = |block: usize| -> f32 {
             let at = |bone: usize| block * X + 3 * bone;
             self.shared
@@ -313,7 +313,7 @@ mod tests {
                 prop_assert!((held - direct).abs() < 2e-3);
             }
             for bones in [BoneSet::ALL, BoneSet::NONE.with(2).with(5)] {
-                let over = Comparison::over(bones);
+                let over = SummaryDistance::over(bones);
                 let bound = over.by_moments(&sums.moments_of(&a), &sums.moments_of(&b));
                 prop_assert!(bound <= over.distance(&sums.octaves(&a), &sums.octaves(&b)) + 5e-3);
             }
@@ -326,7 +326,7 @@ mod tests {
         ) {
             let (a, b): (Summary, Summary) = (a.try_into().unwrap(), b.try_into().unwrap());
             let few = BoneSet::NONE.with(1).with(7);
-            let over = Comparison::over(few);
+            let over = SummaryDistance::over(few);
             let mut changed = b;
             for (i, value) in changed.iter_mut().enumerate() {
                 if bone_of(i).is_some_and(|bone| !few.contains(bone)) {
@@ -334,9 +334,9 @@ mod tests {
                 }
             }
             prop_assert_eq!(over.distance(&a, &b), over.distance(&a, &changed));
-            let all = Comparison::over(BoneSet::ALL);
+            let all = SummaryDistance::over(BoneSet::ALL);
             prop_assert!(all.distance(&a, &b) < all.distance(&a, &changed) + all.distance(&b, &changed) + 1e-4);
-            let masked = Comparison { shared: BoneSet::ALL, scale: 1.0 }.masked(&a, &b);
+            let masked = SummaryDistance { shared: BoneSet::ALL, scale: 1.0 }.masked(&a, &b);
             prop_assert!((masked.0 - squared(&a[..MEAN], &b[..MEAN])).abs() < 1e-3);
             prop_assert_eq!(all.distance(&a, &a), 0.0);
         }

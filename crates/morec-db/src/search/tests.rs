@@ -4,7 +4,7 @@ use morec::features::{FeatureParams, Rows};
 
 use super::layout::{DIM, lay_out, mirrored};
 use super::*;
-use crate::labels::{NewSample, SampleFilter, State};
+use crate::labels::{NewSample, SampleFilter, SampleState};
 use crate::rows::ClipRows;
 use morec::files::FileReader;
 
@@ -121,7 +121,7 @@ fn label(db: &mut crate::MotionDb, takes: &[morec::synth::SyntheticTake]) {
             start_secs: l.start_secs,
             stop_secs: l.stop_secs,
             whole_clip: false,
-            state: State::Accepted,
+            state: SampleState::Accepted,
             score: None,
         }));
     }
@@ -168,7 +168,7 @@ fn a_learned_metric_tells_classes_of_others_apart() {
     };
     let (wave, bow, other) = (place(3, "wave"), place(3, "bow"), place(4, "wave"));
     let plain = |a: &summary::Summary, b: &summary::Summary| {
-        summary::Comparison::over(morec::features::BoneSet::ALL).distance(a, b)
+        summary::SummaryDistance::over(morec::features::BoneSet::ALL).distance(a, b)
     };
     let learned = wave.0.distance(&other.0) / wave.0.distance(&bow.0);
     assert!(

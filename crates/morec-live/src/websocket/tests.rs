@@ -1,7 +1,7 @@
 use std::io::{Read, Write};
 
 use morec::classes::ClassId;
-use morec::live::{Actor, Event, Phase};
+use morec::live::{Event, PerformerId, Phase};
 use tungstenite::client::IntoClientRequest;
 
 use super::*;
@@ -11,7 +11,7 @@ fn event(sequence: u64) -> Event {
         phase: Phase::End,
         motion: sequence,
         sequence,
-        actor: Actor(0),
+        actor: PerformerId(0),
         class: ClassId(0),
         score: 0.5,
         progress: 1.0,

@@ -6,11 +6,11 @@ use morec::kinematics::WorldPose;
 use morec::math::Vec3;
 
 use super::camera::View;
-use super::{Body, Side};
+use super::{Body, BodySide};
 
 /// Colours of a performer.
 #[derive(Debug, Clone, Copy)]
-pub struct Palette {
+pub struct BodyColours {
     pub left: Color32,
     pub right: Color32,
     pub middle: Color32,
@@ -50,7 +50,7 @@ impl Painter {
     }
 
     /// Adds a performer.
-    pub fn body(&mut self, body: &Body, pose: &WorldPose, palette: &Palette) {
+    pub fn body(&mut self, body: &Body, pose: &WorldPose, palette: &BodyColours) {
         let height = body.height;
         for limb in &body.limbs {
             let (Some(a), Some(b)) = (pose.positions.get(limb.from), pose.positions.get(limb.to))
@@ -63,9 +63,9 @@ impl Painter {
                 continue;
             }
             let colour = match limb.side {
-                Side::Left => palette.left,
-                Side::Right => palette.right,
-                Side::Middle => palette.middle,
+                BodySide::Left => palette.left,
+                BodySide::Right => palette.right,
+                BodySide::Middle => palette.middle,
             };
             // A short limb is not thicker than it is long by much.
             let thick = |r: f64| (r * height).min(0.9 * length);

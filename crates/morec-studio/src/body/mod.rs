@@ -13,7 +13,7 @@ pub use camera::Camera;
 
 /// Which side of the body a limb belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Side {
+pub enum BodySide {
     Left,
     Right,
     Middle,
@@ -21,18 +21,18 @@ pub enum Side {
 
 /// A limb from one joint to another.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Limb {
+pub struct LimbShape {
     pub from: usize,
     pub to: usize,
     /// Radii at both ends, in heights of the body.
     pub radii: [f64; 2],
-    pub side: Side,
+    pub side: BodySide,
 }
 
 /// What a performer looks like.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Body {
-    pub limbs: Vec<Limb>,
+    pub limbs: Vec<LimbShape>,
     /// The joint of the head, which is drawn as a ball in front of it.
     pub head: Option<(usize, Option<usize>)>,
     pub hips: Option<usize>,
@@ -81,8 +81,8 @@ impl Body {
         let flat = parents.iter().all(Option::is_none);
         let mut limbs = Vec::new();
         let mut add = |from: usize, to: usize| {
-            let kind = Kind::of(from, to, parents, roles);
-            limbs.push(Limb {
+            let kind = LimbPart::of(from, to, parents, roles);
+            limbs.push(LimbShape {
                 from,
                 to,
                 radii: kind.radii(),
@@ -145,7 +145,7 @@ fn height(positions: &[Vec3]) -> f64 {
 
 /// What part of the body a limb is.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Kind {
+enum LimbPart {
     Trunk,
     Pelvis,
     Neck,
@@ -159,67 +159,67 @@ enum Kind {
     Small,
 }
 
-impl Kind {
+impl LimbPart {
     fn of(from: usize, to: usize, parents: &[Option<usize>], roles: &RoleMap) -> Self {
         use Role::*;
         let is =
             |joint: usize, wanted: &[Role]| wanted.iter().any(|r| roles.joint(*r) == Some(joint));
         if is(to, &[LeftThigh, RightThigh]) {
-            return Kind::Pelvis;
+            return LimbPart::Pelvis;
         }
         if is(to, &[LeftArm, RightArm, LeftShoulder, RightShoulder]) {
-            return Kind::Clavicle;
+            return LimbPart::Clavicle;
         }
         if is(to, &[Head]) || is(from, &[Neck]) {
-            return Kind::Neck;
+            return LimbPart::Neck;
         }
         // The nearest joint above that plays a role says which limb this is a part of.
         let mut at = Some(from);
         while let Some(joint) = at {
-            let kinds: [(&[Role], Kind); 9] = [
-                (&[LeftThigh, RightThigh], Kind::Thigh),
-                (&[LeftShin, RightShin], Kind::Shin),
-                (&[LeftFoot, RightFoot], Kind::Foot),
-                (&[LeftArm, RightArm], Kind::UpperArm),
-                (&[LeftForearm, RightForearm], Kind::Forearm),
-                (&[LeftHand, RightHand], Kind::Hand),
-                (&[LeftShoulder, RightShoulder], Kind::Clavicle),
-                (&[Head], Kind::Small),
-                (&[Hips, Torso], Kind::Trunk),
+            let kinds: [(&[Role], LimbPart); 9] = [
+                (&[LeftThigh, RightThigh], LimbPart::Thigh),
+                (&[LeftShin, RightShin], LimbPart::Shin),
+                (&[LeftFoot, RightFoot], LimbPart::Foot),
+                (&[LeftArm, RightArm], LimbPart::UpperArm),
+                (&[LeftForearm, RightForearm], LimbPart::Forearm),
+                (&[LeftHand, RightHand], LimbPart::Hand),
+                (&[LeftShoulder, RightShoulder], LimbPart::Clavicle),
+                (&[Head], LimbPart::Small),
+                (&[Hips, Torso], LimbPart::Trunk),
             ];
             if let Some((_, kind)) = kinds.iter().find(|(wanted, _)| is(joint, wanted)) {
                 // Fingers and toes beyond the first joint are thin.
-                let end = matches!(kind, Kind::Hand | Kind::Foot);
+                let end = matches!(kind, LimbPart::Hand | LimbPart::Foot);
                 return if end && joint != from {
-                    Kind::Small
+                    LimbPart::Small
                 } else {
                     *kind
                 };
             }
             at = parents.get(joint).copied().flatten();
         }
-        Kind::Small
+        LimbPart::Small
     }
 
     /// In heights of the body.
     fn radii(self) -> [f64; 2] {
         match self {
-            Kind::Trunk => [0.062, 0.066],
-            Kind::Pelvis => [0.052, 0.046],
-            Kind::Neck => [0.030, 0.026],
-            Kind::Clavicle => [0.040, 0.032],
-            Kind::UpperArm => [0.029, 0.023],
-            Kind::Forearm => [0.023, 0.016],
-            Kind::Hand => [0.017, 0.012],
-            Kind::Thigh => [0.045, 0.032],
-            Kind::Shin => [0.031, 0.021],
-            Kind::Foot => [0.023, 0.016],
-            Kind::Small => [0.008, 0.006],
+            LimbPart::Trunk => [0.062, 0.066],
+            LimbPart::Pelvis => [0.052, 0.046],
+            LimbPart::Neck => [0.030, 0.026],
+            LimbPart::Clavicle => [0.040, 0.032],
+            LimbPart::UpperArm => [0.029, 0.023],
+            LimbPart::Forearm => [0.023, 0.016],
+            LimbPart::Hand => [0.017, 0.012],
+            LimbPart::Thigh => [0.045, 0.032],
+            LimbPart::Shin => [0.031, 0.021],
+            LimbPart::Foot => [0.023, 0.016],
+            LimbPart::Small => [0.008, 0.006],
         }
     }
 }
 
-fn side(from: usize, to: usize, parents: &[Option<usize>], roles: &RoleMap) -> Side {
+fn side(from: usize, to: usize, parents: &[Option<usize>], roles: &RoleMap) -> BodySide {
     use Role::*;
     const LEFT: [Role; 8] = [
         LeftThigh,
@@ -245,10 +245,10 @@ fn side(from: usize, to: usize, parents: &[Option<usize>], roles: &RoleMap) -> S
     let mut first = true;
     while let Some(joint) = at {
         if LEFT.iter().any(|r| roles.joint(*r) == Some(joint)) {
-            return Side::Left;
+            return BodySide::Left;
         }
         if RIGHT.iter().any(|r| roles.joint(*r) == Some(joint)) {
-            return Side::Right;
+            return BodySide::Right;
         }
         at = match first {
             true => Some(from),
@@ -256,5 +256,5 @@ fn side(from: usize, to: usize, parents: &[Option<usize>], roles: &RoleMap) -> S
         };
         first = false;
     }
-    Side::Middle
+    BodySide::Middle
 }

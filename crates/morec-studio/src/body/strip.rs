@@ -3,21 +3,22 @@
 use egui::{Pos2, Rect, Shape, Stroke, Vec2};
 use morec::math::{Axis, Vec3};
 
-use super::Side;
-use super::mesh::Palette;
-use crate::jobs::load::Motion;
+use super::BodySide;
+use super::mesh::BodyColours;
+use crate::jobs::load::ClipMotion;
 
 /// Figures evenly over a stretch, each seen from its own three-quarter front.
 pub fn strip(
-    motion: &Motion,
+    motion: &ClipMotion,
     start_secs: f64,
     stop_secs: f64,
     rect: Rect,
-    palette: &Palette,
+    palette: &BodyColours,
 ) -> Vec<Shape> {
     let count = ((rect.width() / (rect.height() * 0.62)).round() as usize).clamp(2, 12);
     let width = rect.width() / count as f32;
-    let scale = 0.78 * rect.height() / motion.body.height as f32;
+    // Raised arms reach a quarter above the head.
+    let scale = 0.68 * rect.height() / motion.body.height as f32;
     let mut shapes = Vec::new();
     for number in 0..count {
         let share = number as f64 / (count - 1) as f64;
@@ -32,11 +33,11 @@ pub fn strip(
 }
 
 fn figure(
-    motion: &Motion,
+    motion: &ClipMotion,
     secs: f64,
     foot: Pos2,
     scale: f32,
-    palette: &Palette,
+    palette: &BodyColours,
     out: &mut Vec<Shape>,
 ) {
     let (body, pose) = (&motion.body, motion.pose(secs));
@@ -57,11 +58,11 @@ fn figure(
         foot + Vec2::new(x, -y)
     };
     let limit = 0.6 * body.height;
-    for side in [Side::Right, Side::Middle, Side::Left] {
+    for side in [BodySide::Right, BodySide::Middle, BodySide::Left] {
         let colour = match side {
-            Side::Left => palette.left,
-            Side::Right => palette.right,
-            Side::Middle => palette.middle,
+            BodySide::Left => palette.left,
+            BodySide::Right => palette.right,
+            BodySide::Middle => palette.middle,
         };
         for limb in body.limbs.iter().filter(|l| l.side == side) {
             let (a, b) = (pose.positions[limb.from], pose.positions[limb.to]);

@@ -7,18 +7,18 @@ use morec::features::FeatureParams;
 use morec::pivots::{PivotMap, PivotSet, PoseParams, pose_rows_of_clip};
 use morec::progress::Progress;
 use morec::segment::{
-    CycleParams, HPoint, KernelParams, PpcaParams, StillKind, StillParams, cycles, kernel_cuts,
-    segment, still_stretches,
+    CycleParams, KernelParams, MisfitSample, PpcaParams, StillKind, StillParams, cycles,
+    kernel_cuts, segment, still_stretches,
 };
 use morec_db::rows::ClipRows;
 use morec_db::{ClipFilter, ClipId, ClipInfo, MotionDb, Segment, SegmentKind};
 
-use super::load::Motion;
-use super::{JobProgress, Outcome};
+use super::load::ClipMotion;
+use super::{JobOutcome, JobProgress};
 
 /// A method of segmentation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Method {
+pub enum SegmentMethod {
     /// Kernel change points over feature rows.
     #[default]
     Kernel,
@@ -26,18 +26,18 @@ pub enum Method {
     Ppca,
 }
 
-impl Method {
+impl SegmentMethod {
     pub fn name(self) -> &'static str {
         match self {
-            Method::Kernel => "kernel",
-            Method::Ppca => "ppca",
+            SegmentMethod::Kernel => "kernel",
+            SegmentMethod::Ppca => "ppca",
         }
     }
 }
 
 /// What was cut.
 #[derive(Debug, Clone)]
-pub struct Report {
+pub struct CutSummary {
     pub clips: usize,
     pub segments: usize,
     /// Clips that could not be cut, with the reason.
@@ -53,8 +53,8 @@ pub struct Curves {
     /// Cuts by the thesis's method.
     pub ppca: Vec<f64>,
     /// The misfit of the thesis's method, forward and backward.
-    pub forward: Vec<HPoint>,
-    pub backward: Vec<HPoint>,
+    pub forward: Vec<MisfitSample>,
+    pub backward: Vec<MisfitSample>,
     /// Stretches in which nobody moves; whether each is a T-pose.
     pub still: Vec<(f64, f64, bool)>,
     /// Repetitions between kernel cuts: where each begins and ends.
@@ -64,20 +64,25 @@ pub struct Curves {
 }
 
 /// Cuts clips (all, if none are named) and keeps the cuts in place of earlier ones, as one step.
-pub fn cut(db: &Path, method: Method, only: &[ClipId], progress: &JobProgress) -> Outcome {
+pub fn cut(
+    db: &Path,
+    method: SegmentMethod,
+    only: &[ClipId],
+    progress: &JobProgress,
+) -> JobOutcome {
     match cut_all(db, method, only, progress) {
-        Ok(Some(report)) => Outcome::Cut(report),
-        Ok(None) => Outcome::Cancelled,
-        Err(error) => Outcome::Failed(format!("Cutting stopped: {error}")),
+        Ok(Some(report)) => JobOutcome::Cut(report),
+        Ok(None) => JobOutcome::Cancelled,
+        Err(error) => JobOutcome::Failed(format!("Cutting stopped: {error}")),
     }
 }
 
 fn cut_all(
     path: &Path,
-    method: Method,
+    method: SegmentMethod,
     only: &[ClipId],
     progress: &JobProgress,
-) -> Result<Option<Report>, morec_db::DbError> {
+) -> Result<Option<CutSummary>, morec_db::DbError> {
     let mut db = MotionDb::open(path)?;
     let rows = db.rows(&FeatureParams::default(), progress)?;
     let clips = db.clips(&ClipFilter::default())?;
@@ -96,8 +101,10 @@ fn cut_all(
             continue;
         };
         let cuts = match method {
-            Method::Kernel => kernel(rows),
-            Method::Ppca => ppca(&Motion::of(clip.id, db.clip(clip.id)?)).map(|found| found.0),
+            SegmentMethod::Kernel => kernel(rows),
+            SegmentMethod::Ppca => {
+                ppca(&ClipMotion::of(clip.id, db.clip(clip.id)?)).map(|found| found.0)
+            }
         };
         match cuts {
             Ok(cuts) => {
@@ -109,7 +116,7 @@ fn cut_all(
     }
     db.set_segments(method.name(), &done, &segments)?;
     let motions = |s: &&Segment| s.kind == SegmentKind::Motion;
-    Ok(Some(Report {
+    Ok(Some(CutSummary {
         clips: done.len(),
         segments: segments.iter().filter(motions).count(),
         left,
@@ -121,9 +128,9 @@ fn kernel(rows: &ClipRows) -> Result<Vec<f64>, String> {
     kernel_cuts(&rows.rows, &params, &KernelParams::default()).map_err(|e| e.to_string())
 }
 
-type Misfit = (Vec<f64>, Vec<HPoint>, Vec<HPoint>);
+type Misfit = (Vec<f64>, Vec<MisfitSample>, Vec<MisfitSample>);
 
-fn ppca(motion: &Motion) -> Result<Misfit, String> {
+fn ppca(motion: &ClipMotion) -> Result<Misfit, String> {
     let (set, poses) = (PivotSet::thesis(), PoseParams::default());
     let map = PivotMap::of_clip(&set, &motion.clip, &motion.roles).map_err(|e| e.to_string())?;
     let rows = pose_rows_of_clip(&motion.clip, &set, &map, &motion.rest, &poses);
@@ -175,7 +182,7 @@ fn stretches(clip: &ClipInfo, rows: &ClipRows, cuts: &[f64]) -> Vec<Segment> {
 }
 
 /// What both methods say of one clip. Nothing is written.
-pub fn curves(motion: &Arc<Motion>, progress: &JobProgress) -> Outcome {
+pub fn curves(motion: &Arc<ClipMotion>, progress: &JobProgress) -> JobOutcome {
     let params = FeatureParams::default();
     let bones = morec::features::bones_of_clip(&motion.clip, &motion.roles, &motion.rest);
     let mut curves = Curves {
@@ -184,7 +191,7 @@ pub fn curves(motion: &Arc<Motion>, progress: &JobProgress) -> Outcome {
     };
     if bones.is_empty() {
         curves.note = Some("no body part is known, so nothing can be cut".to_owned());
-        return Outcome::Curves(curves);
+        return JobOutcome::Curves(curves);
     }
     let rows = ClipRows {
         clip: motion.id,
@@ -204,7 +211,7 @@ pub fn curves(motion: &Arc<Motion>, progress: &JobProgress) -> Outcome {
     }
     curves.cycles = repetitions(&rows, &curves.kernel, motion.secs(), params.tick_hz());
     if progress.cancelled() {
-        return Outcome::Cancelled;
+        return JobOutcome::Cancelled;
     }
     match ppca(motion) {
         Ok((cuts, forward, backward)) => {
@@ -212,7 +219,7 @@ pub fn curves(motion: &Arc<Motion>, progress: &JobProgress) -> Outcome {
         }
         Err(why) => curves.note = Some(format!("no misfit curve: {why}")),
     }
-    Outcome::Curves(curves)
+    JobOutcome::Curves(curves)
 }
 
 /// Where repetitions begin and end in the segments that repeat at least twice.

@@ -6,10 +6,10 @@ use morec::files::FileReader;
 use morec::formats::bvh;
 use morec::progress::Progress;
 use morec::synth::{DatabaseSpec, SyntheticTake, database};
-use morec_db::labels::{NewSample, State};
+use morec_db::labels::{NewSample, SampleState};
 use morec_db::{ClipUpdate, MotionDb};
 
-use super::{JobProgress, Outcome};
+use super::{JobOutcome, JobProgress};
 use crate::store::BY;
 
 /// Seed of the people: the year of the thesis, as in the demo.
@@ -38,10 +38,10 @@ pub fn temporary_folder() -> std::io::Result<PathBuf> {
 }
 
 /// Makes the example in `folder`; all but the last person's gestures are labelled.
-pub fn make(folder: &Path, progress: &JobProgress) -> Outcome {
+pub fn make(folder: &Path, progress: &JobProgress) -> JobOutcome {
     match make_in(folder, progress) {
-        Ok(path) => Outcome::Made(path),
-        Err(error) => Outcome::Failed(format!("The example cannot be made: {error}")),
+        Ok(path) => JobOutcome::Made(path),
+        Err(error) => JobOutcome::Failed(format!("The example cannot be made: {error}")),
     }
 }
 
@@ -87,7 +87,7 @@ fn describe(db: &mut MotionDb, takes: &[SyntheticTake]) -> Result<(), morec_db::
                 start_secs: label.start_secs,
                 stop_secs: label.stop_secs,
                 whole_clip: false,
-                state: State::Accepted,
+                state: SampleState::Accepted,
                 score: None,
             }));
         }
@@ -97,17 +97,17 @@ fn describe(db: &mut MotionDb, takes: &[SyntheticTake]) -> Result<(), morec_db::
 }
 
 /// A database in `folder` that holds clips which were named instead of one.
-pub fn of_clips(folder: &Path, clips: &[PathBuf], progress: &JobProgress) -> Outcome {
+pub fn of_clips(folder: &Path, clips: &[PathBuf], progress: &JobProgress) -> JobOutcome {
     let path = folder.join("clips.mdb");
     if let Err(error) = MotionDb::create(&path) {
-        return Outcome::Failed(error.to_string());
+        return JobOutcome::Failed(error.to_string());
     }
     match super::import::import(&path, clips, progress) {
-        Outcome::Imported(report) if report.imported == 0 && !report.refused.is_empty() => {
+        JobOutcome::Imported(report) if report.imported == 0 && !report.refused.is_empty() => {
             let (file, why) = &report.refused[0];
-            Outcome::Failed(format!("{}: {why}", file.display()))
+            JobOutcome::Failed(format!("{}: {why}", crate::format::file_name(file)))
         }
-        Outcome::Imported(_) => Outcome::Made(path),
+        JobOutcome::Imported(_) => JobOutcome::Made(path),
         other => other,
     }
 }

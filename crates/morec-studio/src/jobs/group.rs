@@ -5,10 +5,10 @@ use std::path::Path;
 
 use morec::cluster::{Hierarchy, resampled, squared_distance};
 use morec::features::{BoneSet, FeatureParams, Rows};
-use morec_db::labels::{SampleFilter, SampleId, State};
+use morec_db::labels::{SampleFilter, SampleId, SampleState};
 use morec_db::{ClipId, MotionDb, SegmentKind};
 
-use super::{JobProgress, Outcome};
+use super::{JobOutcome, JobProgress};
 
 /// Rows that a sample of any length becomes.
 const POINTS: usize = 16;
@@ -17,7 +17,7 @@ pub const MOST: usize = 3000;
 
 /// A stretch that is grouped.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Item {
+pub struct GroupItem {
     pub clip: ClipId,
     pub start_secs: f64,
     pub stop_secs: f64,
@@ -28,8 +28,8 @@ pub struct Item {
 
 /// What was grouped and how it hangs together.
 #[derive(Debug, Clone)]
-pub struct Groups {
-    pub items: Vec<Item>,
+pub struct ClusteredItems {
+    pub items: Vec<GroupItem>,
     pub hierarchy: Hierarchy,
     /// Distance of each item from all others of its group would depend on the depth; this is from all there are.
     shapes: Vec<Vec<f32>>,
@@ -42,8 +42,8 @@ pub struct Group {
     pub members: Vec<usize>,
 }
 
-impl Groups {
-    pub fn of(items: Vec<Item>, shapes: Vec<Vec<f32>>, left_out: usize) -> Self {
+impl ClusteredItems {
+    pub fn of(items: Vec<GroupItem>, shapes: Vec<Vec<f32>>, left_out: usize) -> Self {
         let distance = |a: usize, b: usize| squared_distance(&shapes[a], &shapes[b], POINTS);
         Self {
             hierarchy: Hierarchy::average(items.len(), distance),
@@ -80,21 +80,25 @@ impl Groups {
 }
 
 /// Groups the accepted samples, or the cuts if `cuts`, of the database at `path`.
-pub fn group(path: &Path, cuts: bool, progress: &JobProgress) -> Outcome {
+pub fn group(path: &Path, cuts: bool, progress: &JobProgress) -> JobOutcome {
     match grouped(path, cuts, progress) {
-        Ok(groups) if groups.items.is_empty() => Outcome::Failed(
+        Ok(groups) if groups.items.is_empty() => JobOutcome::Failed(
             match cuts {
                 true => "Nothing to group: cut the clips first",
                 false => "Nothing to group: label a few motions first",
             }
             .to_owned(),
         ),
-        Ok(groups) => Outcome::Grouped(groups),
-        Err(error) => Outcome::Failed(format!("Grouping stopped: {error}")),
+        Ok(groups) => JobOutcome::Grouped(groups),
+        Err(error) => JobOutcome::Failed(format!("Grouping stopped: {error}")),
     }
 }
 
-fn grouped(path: &Path, cuts: bool, progress: &JobProgress) -> Result<Groups, morec_db::DbError> {
+fn grouped(
+    path: &Path,
+    cuts: bool,
+    progress: &JobProgress,
+) -> Result<ClusteredItems, morec_db::DbError> {
     let params = FeatureParams::default();
     let mut db = MotionDb::open(path)?;
     let clip_rows = db.rows(&params, progress)?;
@@ -106,7 +110,7 @@ fn grouped(path: &Path, cuts: bool, progress: &JobProgress) -> Result<Groups, mo
     items.retain(|item| rows.contains_key(&item.clip));
     let left_out = items.len().saturating_sub(MOST);
     items.truncate(MOST);
-    let of_item = |item: &Item| rows.get(&item.clip);
+    let of_item = |item: &GroupItem| rows.get(&item.clip);
     let common = items
         .iter()
         .filter_map(of_item)
@@ -122,15 +126,15 @@ fn grouped(path: &Path, cuts: bool, progress: &JobProgress) -> Result<Groups, mo
         let rows = rows.slice(span.start..span.end.max(span.start));
         shapes.push(resampled(&only(&rows, *bones, common), POINTS));
     }
-    Ok(Groups::of(items, shapes, left_out))
+    Ok(ClusteredItems::of(items, shapes, left_out))
 }
 
-fn items(db: &MotionDb, cuts: bool) -> Result<Vec<Item>, morec_db::DbError> {
+fn items(db: &MotionDb, cuts: bool) -> Result<Vec<GroupItem>, morec_db::DbError> {
     if cuts {
         let segments = db.segments()?.into_iter();
         let moving = segments.filter(|s| s.kind == SegmentKind::Motion);
         return Ok(moving
-            .map(|s| Item {
+            .map(|s| GroupItem {
                 clip: s.clip,
                 start_secs: s.start_secs,
                 stop_secs: s.stop_secs,
@@ -140,12 +144,12 @@ fn items(db: &MotionDb, cuts: bool) -> Result<Vec<Item>, morec_db::DbError> {
             .collect());
     }
     let filter = SampleFilter {
-        state: Some(State::Accepted),
+        state: Some(SampleState::Accepted),
         ..SampleFilter::default()
     };
     let samples = db.samples(&filter)?.into_iter();
     Ok(samples
-        .map(|s| Item {
+        .map(|s| GroupItem {
             clip: s.clip,
             start_secs: s.start_secs,
             stop_secs: s.stop_secs,

@@ -6,11 +6,11 @@ use morec::files::{FileReader, list};
 use morec::progress::Progress;
 use morec_db::{ClipUpdate, ImportOutcome, MotionDb};
 
-use super::{JobProgress, Outcome};
+use super::{JobOutcome, JobProgress};
 
 /// What became of an import.
 #[derive(Debug, Clone, Default)]
-pub struct Report {
+pub struct ImportSummary {
     /// Files whose clips are in the database now.
     pub imported: usize,
     /// Files that were there already.
@@ -22,7 +22,7 @@ pub struct Report {
     pub cancelled: bool,
 }
 
-impl Report {
+impl ImportSummary {
     /// What it did, in a sentence.
     pub fn said(&self) -> String {
         let mut parts = vec![files(self.imported, "imported")];
@@ -47,8 +47,8 @@ fn files(n: usize, what: &str) -> String {
 }
 
 /// Imports files, and those in folders, into the database at `db`.
-pub fn import(db: &Path, paths: &[PathBuf], progress: &JobProgress) -> Outcome {
-    let mut report = Report::default();
+pub fn import(db: &Path, paths: &[PathBuf], progress: &JobProgress) -> JobOutcome {
+    let mut report = ImportSummary::default();
     let mut clips = Vec::new();
     for path in paths {
         match list(std::slice::from_ref(path)) {
@@ -66,7 +66,7 @@ pub fn import(db: &Path, paths: &[PathBuf], progress: &JobProgress) -> Outcome {
         MotionDb::open(db).and_then(|mut db| db.import(&clips, &reader, &about, progress));
     let done = match imported {
         Ok(done) => done,
-        Err(error) => return Outcome::Failed(format!("Import stopped: {error}")),
+        Err(error) => return JobOutcome::Failed(format!("Import stopped: {error}")),
     };
     report.cancelled = done.cancelled || progress.cancelled();
     for (path, outcome) in done.files {
@@ -80,5 +80,5 @@ pub fn import(db: &Path, paths: &[PathBuf], progress: &JobProgress) -> Outcome {
             ImportOutcome::Refused(why) => report.refused.push((path, why.reason)),
         }
     }
-    Outcome::Imported(report)
+    JobOutcome::Imported(report)
 }

@@ -3,14 +3,14 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use morec::crossval::{By, CrossvalError, CrossvalOptions, Material as Tested, crossval};
+use morec::crossval::{CrossvalData as Tested, CrossvalError, CrossvalOptions, FoldBy, crossval};
 use morec::eval::{Evaluation, FoundVerdict, Timeline, TruthVerdict, timelines};
 use morec::train::TrainError;
 
-use super::{JobProgress, Outcome, train};
+use super::{JobOutcome, JobProgress, train};
 
 /// What a cross-validation found.
-pub struct Judged {
+pub struct CrossvalResult {
     pub evaluation: Evaluation,
     pub timelines: Vec<Timeline>,
     /// What was left out in turn: "each person", "each clip", "half of the labels".
@@ -35,7 +35,7 @@ impl Moment {
     }
 }
 
-impl Judged {
+impl CrossvalResult {
     /// What became of every label, and the detections that belong to none.
     pub fn moments(&self) -> Vec<Moment> {
         let mut moments = Vec::new();
@@ -77,11 +77,11 @@ fn clip_of(stream: &str) -> String {
 }
 
 /// Trains and tests every fold of the database at `path`.
-pub fn judge(path: &Path, classes: &[String], progress: &JobProgress) -> Outcome {
+pub fn judge(path: &Path, classes: &[String], progress: &JobProgress) -> JobOutcome {
     match judged(path, classes, progress) {
-        Ok(judged) => Outcome::Judged(Box::new(judged)),
-        Err(None) => Outcome::Cancelled,
-        Err(Some(why)) => Outcome::Failed(why),
+        Ok(judged) => JobOutcome::Judged(Box::new(judged)),
+        Err(None) => JobOutcome::Cancelled,
+        Err(Some(why)) => JobOutcome::Failed(why),
     }
 }
 
@@ -89,7 +89,7 @@ fn judged(
     path: &Path,
     classes: &[String],
     progress: &JobProgress,
-) -> Result<Judged, Option<String>> {
+) -> Result<CrossvalResult, Option<String>> {
     let material = train::material(path, classes).map_err(|e| Some(e.to_string()))?;
     let people: BTreeSet<&str> = material
         .samples
@@ -97,11 +97,11 @@ fn judged(
         .filter_map(|s| s.person.as_deref())
         .collect();
     let (by, said) = if people.len() >= 2 {
-        (By::Person, "each person in turn")
+        (FoldBy::Person, "each person in turn")
     } else if material.clips.len() >= 2 {
-        (By::Clip, "each clip in turn")
+        (FoldBy::Clip, "each clip in turn")
     } else {
-        (By::Half { seed: 1 }, "half of the labels")
+        (FoldBy::Half { seed: 1 }, "half of the labels")
     };
     let mut clips = material.clips;
     clips.extend_from_slice(train::everyday());
@@ -128,7 +128,7 @@ fn judged(
     .tested;
     let (streams, truths, founds) = (&outcome.streams, &outcome.truths, &outcome.founds);
     let said_of = |e: morec::eval::EvalError| Some(format!("Not judged: {e}"));
-    Ok(Judged {
+    Ok(CrossvalResult {
         evaluation: Evaluation::of(streams, truths, founds).map_err(said_of)?,
         timelines: timelines(streams, truths, founds).map_err(said_of)?,
         by: said,

@@ -9,12 +9,12 @@ use morec::kinematics::WorldPose;
 use morec::roles::RoleMap;
 use morec_db::{ClipId, MotionDb, StoredClip};
 
-use super::{JobProgress, Outcome};
+use super::{JobOutcome, JobProgress};
 use crate::body::Body;
 
 /// A clip as the view and the timeline need it.
 #[derive(Debug)]
-pub struct Motion {
+pub struct ClipMotion {
     pub id: ClipId,
     pub clip: Clip,
     pub roles: RoleMap,
@@ -28,21 +28,21 @@ pub struct Motion {
 }
 
 /// A clip that was asked for.
-pub struct Loaded {
+pub struct DecodedClip {
     pub id: ClipId,
-    pub motion: Result<Arc<Motion>, String>,
+    pub motion: Result<Arc<ClipMotion>, String>,
 }
 
 /// Decodes clip `id` of the database at `path`.
-pub fn load(path: &Path, id: ClipId, _progress: &JobProgress) -> Outcome {
+pub fn load(path: &Path, id: ClipId, _progress: &JobProgress) -> JobOutcome {
     let motion = MotionDb::open_read_only(path)
         .and_then(|db| db.clip(id))
-        .map(|stored| Arc::new(Motion::of(id, stored)))
+        .map(|stored| Arc::new(ClipMotion::of(id, stored)))
         .map_err(|error| error.to_string());
-    Outcome::Loaded(Loaded { id, motion })
+    JobOutcome::Loaded(DecodedClip { id, motion })
 }
 
-impl Motion {
+impl ClipMotion {
     pub fn of(id: ClipId, stored: StoredClip) -> Self {
         let StoredClip { clip, roles, rest } = stored;
         let params = FeatureParams::default();

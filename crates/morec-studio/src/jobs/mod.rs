@@ -21,20 +21,20 @@ use crate::store::Wake;
 
 /// How far a job is; shared with the thread that does it.
 pub struct JobProgress {
-    state: Mutex<Stage>,
+    state: Mutex<JobStage>,
     cancelled: AtomicBool,
     wake: Wake,
 }
 
 /// A stage of a job.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Stage {
+pub struct JobStage {
     pub name: String,
     pub done: usize,
     pub total: usize,
 }
 
-impl Stage {
+impl JobStage {
     /// 0 to 1, if it is known.
     pub fn share(&self) -> Option<f32> {
         (self.total > 0).then(|| (self.done as f32 / self.total as f32).min(1.0))
@@ -44,7 +44,7 @@ impl Stage {
 impl Progress for JobProgress {
     fn report(&self, stage: &str, done: usize, total: usize) {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-        *state = Stage {
+        *state = JobStage {
             name: stage.to_owned(),
             done,
             total,
@@ -59,20 +59,20 @@ impl Progress for JobProgress {
 }
 
 /// What a job came to.
-pub enum Outcome {
-    Imported(import::Report),
-    Cut(cut::Report),
-    Loaded(load::Loaded),
+pub enum JobOutcome {
+    Imported(import::ImportSummary),
+    Cut(cut::CutSummary),
+    Loaded(load::DecodedClip),
     Curves(cut::Curves),
-    Grouped(group::Groups),
+    Grouped(group::ClusteredItems),
     Proposed(usize),
-    Trained(Box<train::Trained>),
-    Judged(Box<judge::Judged>),
+    Trained(Box<train::TrainedIndex>),
+    Judged(Box<judge::CrossvalResult>),
     Taught(teach::Taught),
     /// What an index recognises in a clip.
     Recognised {
         clip: morec_db::ClipId,
-        found: Vec<morec::eval::Found>,
+        found: Vec<morec::eval::ClipDetection>,
     },
     /// What would have been recognised at another sensitivity.
     Resensed(Vec<morec::live::Detection>),
@@ -90,11 +90,11 @@ pub struct Job {
     /// Whether it is shown; small jobs are over before anybody could read their name.
     pub shown: bool,
     progress: Arc<JobProgress>,
-    outcome: Receiver<Outcome>,
+    outcome: Receiver<JobOutcome>,
 }
 
 impl Job {
-    pub fn stage(&self) -> Stage {
+    pub fn stage(&self) -> JobStage {
         let state = self.progress.state.lock();
         state.unwrap_or_else(PoisonError::into_inner).clone()
     }
@@ -121,7 +121,7 @@ impl Jobs {
         name: &str,
         shown: bool,
         wake: &Wake,
-        work: impl FnOnce(&JobProgress) -> Outcome + Send + 'static,
+        work: impl FnOnce(&JobProgress) -> JobOutcome + Send + 'static,
     ) {
         let progress = Arc::new(JobProgress {
             state: Mutex::default(),
@@ -146,7 +146,7 @@ impl Jobs {
     }
 
     /// What has ended since.
-    pub fn poll(&mut self) -> Vec<(String, Outcome)> {
+    pub fn poll(&mut self) -> Vec<(String, JobOutcome)> {
         let mut ended = Vec::new();
         self.running.retain(|job| match job.outcome.try_recv() {
             Ok(outcome) => {
@@ -156,7 +156,7 @@ impl Jobs {
             Err(TryRecvError::Empty) => true,
             Err(TryRecvError::Disconnected) => {
                 let failed = format!("{}: ended without an answer", job.name);
-                ended.push((job.name.clone(), Outcome::Failed(failed)));
+                ended.push((job.name.clone(), JobOutcome::Failed(failed)));
                 false
             }
         });

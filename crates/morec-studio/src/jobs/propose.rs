@@ -2,20 +2,20 @@
 
 use std::path::Path;
 
-use morec_db::labels::{NewSample, SampleFilter, SampleId, State};
+use morec_db::labels::{NewSample, SampleFilter, SampleId, SampleState};
 use morec_db::{DbError, MotionDb, ProposeOptions};
 
-use super::{JobProgress, Outcome};
+use super::{JobOutcome, JobProgress};
 
 /// Who says what the database proposes; `morec db propose` uses the same name, so that each replaces the other's.
 const PROPOSED_BY: &str = "propose";
 
 /// Proposes anew, in place of proposals that nobody judged.
-pub fn propose(path: &Path, progress: &JobProgress) -> Outcome {
+pub fn propose(path: &Path, progress: &JobProgress) -> JobOutcome {
     match proposed(path, progress) {
-        Ok(count) => Outcome::Proposed(count),
-        Err(DbError::Cancelled) => Outcome::Cancelled,
-        Err(error) => Outcome::Failed(format!("Nothing was proposed: {error}")),
+        Ok(count) => JobOutcome::Proposed(count),
+        Err(DbError::Cancelled) => JobOutcome::Cancelled,
+        Err(error) => JobOutcome::Failed(format!("Nothing was proposed: {error}")),
     }
 }
 
@@ -23,7 +23,7 @@ fn proposed(path: &Path, progress: &JobProgress) -> Result<usize, DbError> {
     let mut db = MotionDb::open(path)?;
     let proposals = db.propose(&ProposeOptions::default(), progress)?;
     let filter = SampleFilter {
-        state: Some(State::Proposed),
+        state: Some(SampleState::Proposed),
         ..SampleFilter::default()
     };
     let old: Vec<SampleId> = db

@@ -2,22 +2,22 @@
 
 use std::sync::Arc;
 
-use morec::eval::Found;
+use morec::eval::ClipDetection;
 use morec::features::KeyPose;
 use morec::index::MotionIndex;
 use morec::live::{Model, recognize_clip, recognize_poses};
 
-use super::load::Motion;
-use super::{JobProgress, Outcome};
+use super::load::ClipMotion;
+use super::{JobOutcome, JobProgress};
 
 /// Plays a clip through the recogniser.
-pub fn clip(index: &MotionIndex, motion: &Arc<Motion>, _progress: &JobProgress) -> Outcome {
+pub fn clip(index: &MotionIndex, motion: &Arc<ClipMotion>, _progress: &JobProgress) -> JobOutcome {
     match recognize_clip(&index.model, &motion.clip, &motion.roles, &motion.rest) {
-        Ok(found) => Outcome::Recognised {
+        Ok(found) => JobOutcome::Recognised {
             clip: motion.id,
             found: found
                 .iter()
-                .map(|d| Found {
+                .map(|d| ClipDetection {
                     clip: motion.clip.name.clone(),
                     class: index.model.class_name(d.class).to_owned(),
                     start_secs: d.start_secs,
@@ -27,14 +27,14 @@ pub fn clip(index: &MotionIndex, motion: &Arc<Motion>, _progress: &JobProgress) 
                 })
                 .collect(),
         },
-        Err(error) => Outcome::Failed(format!("{}: not recognised: {error}", motion.clip.name)),
+        Err(error) => JobOutcome::Failed(format!("{}: not recognised: {error}", motion.clip.name)),
     }
 }
 
 /// What a model would have found in poses that were recorded.
-pub fn poses(model: &Model, poses: &[(f64, KeyPose)], _progress: &JobProgress) -> Outcome {
+pub fn poses(model: &Model, poses: &[(f64, KeyPose)], _progress: &JobProgress) -> JobOutcome {
     match recognize_poses(model, poses) {
-        Ok(found) => Outcome::Resensed(found),
-        Err(error) => Outcome::Failed(format!("The sensitivity cannot be tried: {error}")),
+        Ok(found) => JobOutcome::Resensed(found),
+        Err(error) => JobOutcome::Failed(format!("The sensitivity cannot be tried: {error}")),
     }
 }

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use morec::files::FileReader;
 use morec::formats::bvh;
 use morec::live::Recording;
-use morec_db::labels::{LabelOptions, NewSample, State};
+use morec_db::labels::{LabelOptions, NewSample, SampleState};
 use morec_db::{ClipUpdate, ImportOutcome, MotionDb};
 
-use super::{JobProgress, Outcome};
+use super::{JobOutcome, JobProgress};
 use crate::store::BY;
 
 /// What was kept.
@@ -31,10 +31,10 @@ pub struct Lesson {
 }
 
 /// Keeps a lesson in the database at `db`; its file lies in `folder` for as long as that takes.
-pub fn teach(db: &Path, folder: &Path, lesson: &Lesson, _progress: &JobProgress) -> Outcome {
+pub fn teach(db: &Path, folder: &Path, lesson: &Lesson, _progress: &JobProgress) -> JobOutcome {
     match taught(db, folder, lesson) {
-        Ok(taught) => Outcome::Taught(taught),
-        Err(why) => Outcome::Failed(format!("Not kept: {why}")),
+        Ok(taught) => JobOutcome::Taught(taught),
+        Err(why) => JobOutcome::Failed(format!("Not kept: {why}")),
     }
 }
 
@@ -46,7 +46,8 @@ fn taught(path: &Path, folder: &Path, lesson: &Lesson) -> Result<Taught, String>
     let file: PathBuf = folder.join(format!("{name}.bvh"));
     let mut bytes = Vec::new();
     bvh::write(&clip, &mut bytes).map_err(|e| e.to_string())?;
-    std::fs::write(&file, bytes).map_err(|e| format!("{}: {e}", file.display()))?;
+    std::fs::write(&file, bytes)
+        .map_err(|e| format!("{}: {e}", crate::format::file_name(&file)))?;
     let report = db.import(
         std::slice::from_ref(&file),
         &FileReader::default(),
@@ -69,7 +70,7 @@ fn taught(path: &Path, folder: &Path, lesson: &Lesson) -> Result<Taught, String>
             start_secs: start.max(0.0),
             stop_secs: stop.min(secs),
             whole_clip: false,
-            state: State::Accepted,
+            state: SampleState::Accepted,
             score: None,
         };
         let options = LabelOptions {

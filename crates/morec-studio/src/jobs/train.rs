@@ -11,16 +11,16 @@ use morec::progress::Progress;
 use morec::roles::RoleMap;
 use morec::synth;
 use morec::train::{
-    EVERYDAY_SEED, Everyday, Labelling, Prepared, Recipe, Source, TrainClip, TrainError,
+    EVERYDAY_SEED, Everyday, LabelSet, Prepared, Recipe, StreamKind, TrainClip, TrainError,
     TrainOptions, TrainParams, TrainStream, TrainingData, TrainingReport, prepare, train,
 };
-use morec_db::labels::{SampleFilter, State};
+use morec_db::labels::{SampleFilter, SampleState};
 use morec_db::{ClipFilter, DbError, MotionDb};
 
-use super::{JobProgress, Outcome};
+use super::{JobOutcome, JobProgress};
 
 /// What training made.
-pub struct Trained {
+pub struct TrainedIndex {
     pub index: Arc<MotionIndex>,
     pub bytes: Vec<u8>,
     pub report: TrainingReport,
@@ -31,7 +31,7 @@ pub struct Trained {
 pub fn material(path: &Path, classes: &[String]) -> Result<TrainingData, DbError> {
     let db = MotionDb::open_read_only(path)?;
     let filter = SampleFilter {
-        state: Some(State::Accepted),
+        state: Some(SampleState::Accepted),
         ..SampleFilter::default()
     };
     let wanted = |class: &String| classes.is_empty() || classes.contains(class);
@@ -62,7 +62,7 @@ pub fn material(path: &Path, classes: &[String]) -> Result<TrainingData, DbError
                 clip: stored.clip,
                 roles: stored.roles,
                 rest: stored.rest,
-                source: Source::Labelled,
+                source: StreamKind::Labelled,
                 person: info.subject,
             });
         }
@@ -86,7 +86,7 @@ pub fn everyday() -> &'static [TrainClip] {
             name: clip.name.clone(),
             roles: RoleMap::find(&clip.skeleton),
             rest: 0..0,
-            source: Source::Everyday,
+            source: StreamKind::Everyday,
             person: None,
             clip,
         };
@@ -108,22 +108,22 @@ pub fn recipe() -> Recipe {
 }
 
 /// Trains an index of the database at `path`.
-pub fn run(path: &Path, classes: &[String], progress: &JobProgress) -> Outcome {
+pub fn run(path: &Path, classes: &[String], progress: &JobProgress) -> JobOutcome {
     let begun = std::time::Instant::now();
     match trained(path, classes, progress) {
         Ok(mut trained) => {
             trained.secs = begun.elapsed().as_secs_f64();
-            Outcome::Trained(Box::new(trained))
+            JobOutcome::Trained(Box::new(trained))
         }
-        Err(None) => Outcome::Cancelled,
-        Err(Some(why)) => Outcome::Failed(why),
+        Err(None) => JobOutcome::Cancelled,
+        Err(Some(why)) => JobOutcome::Failed(why),
     }
 }
 
 /// Why there is nothing; `None` if it was cancelled.
 type Why = Option<String>;
 
-fn trained(path: &Path, classes: &[String], progress: &JobProgress) -> Result<Trained, Why> {
+fn trained(path: &Path, classes: &[String], progress: &JobProgress) -> Result<TrainedIndex, Why> {
     let data = material(path, classes).map_err(|e| Some(e.to_string()))?;
     if data.samples.is_empty() {
         return Err(Some(
@@ -155,7 +155,7 @@ fn trained(path: &Path, classes: &[String], progress: &JobProgress) -> Result<Tr
         model: done.model.into(),
     };
     let bytes = index.to_bytes().map_err(|e| Some(e.to_string()))?;
-    Ok(Trained {
+    Ok(TrainedIndex {
         index: Arc::new(index),
         bytes,
         report,
@@ -166,7 +166,7 @@ fn trained(path: &Path, classes: &[String], progress: &JobProgress) -> Result<Tr
 /// Streams to train from. Everyday motion is the same for every index of the same bones: its rows are made once.
 fn prepared(data: &TrainingData, params: &TrainParams, progress: &JobProgress) -> Prepared {
     static EVERYDAY: Mutex<BTreeMap<BoneSet, Vec<TrainStream>>> = Mutex::new(BTreeMap::new());
-    let labelling = Labelling {
+    let labelling = LabelSet {
         samples: &data.samples,
         held_back: &[],
         classes: &data.classes,
@@ -183,7 +183,9 @@ fn prepared(data: &TrainingData, params: &TrainParams, progress: &JobProgress) -
     clips.extend_from_slice(everyday());
     let prepared = prepare(&clips, &labelling, BoneSet::ALL, &params.features);
     let streams = prepared.set.streams.iter();
-    let made = streams.filter(|s| s.source == Source::Everyday).cloned();
+    let made = streams
+        .filter(|s| s.source == StreamKind::Everyday)
+        .cloned();
     known.insert(prepared.bones, made.collect());
     prepared
 }

@@ -228,20 +228,14 @@ fn command_line(ui: &mut Ui, state: &State, c: &Colours) {
     {
         ui.ctx().copy_text(state.command_line.clone());
     }
-    // Where a temporary folder lies is of no interest, but to who copies the command.
-    let folder = state
-        .store
-        .as_ref()
-        .filter(|s| s.temporary)
-        .and_then(|s| Some(format!("{}/", s.path().parent()?.display())));
-    let shown = folder.map_or_else(
-        || state.command_line.clone(),
-        |folder| state.command_line.replace(&folder, ""),
-    );
+    let shown = crate::format::without_folders(&state.command_line);
     let text = RichText::new(format!("$ {shown}"))
         .monospace()
         .size(11.0)
         .color(c.muted);
     ui.add(egui::Label::new(text).truncate())
-        .on_hover_text("The command that does the same");
+        .on_hover_text(format!(
+            "The command that does the same:\n{}",
+            state.command_line
+        ));
 }

@@ -5,7 +5,7 @@ use egui::{
     SidePanel, Ui, Vec2, WidgetType,
 };
 use morec_db::ClipId;
-use morec_db::labels::{DbSample, SampleId, State as Judged};
+use morec_db::labels::{DbSample, SampleId, SampleState as Judged};
 
 use super::{Out, groups, padded, player, strips, view, widgets};
 use crate::format;
@@ -14,7 +14,9 @@ use crate::theme::Colours;
 
 const COLUMN: f32 = 214.0;
 pub(super) const STRIP: f32 = 62.0;
-const CARD: f32 = STRIP + 20.0;
+const CARD: f32 = STRIP + 24.0;
+/// Room for the answers to a proposal.
+const ANSWERS: f32 = 46.0;
 
 pub fn show(ctx: &Context, state: &State, out: Out) {
     let c = Colours::of(state.dark);
@@ -255,7 +257,8 @@ fn card(ui: &mut Ui, state: &State, sample: &DbSample, out: Out) {
         ui.painter()
             .rect_stroke(picture, 3.0, (1.0, c.warn), egui::StrokeKind::Inside);
         let score = format!("{:.0} %", 100.0 * sample.score.unwrap_or(0.0));
-        widgets::text_in(ui, caption, &score, 11.0, c.warn, true);
+        let left = caption.with_max_x(caption.right() - ANSWERS - 4.0);
+        widgets::text_in(ui, left, &score, 11.0, c.warn, true);
     }
     if selected {
         widgets::selected_frame(ui, picture);
@@ -276,31 +279,33 @@ fn card(ui: &mut Ui, state: &State, sample: &DbSample, out: Out) {
         out.push(Command::Show(Panel::Label));
     }
     if sample.state == Judged::Proposed {
-        answers(ui, picture, sample.id, out);
+        answers(ui, caption, sample.id, out);
     }
 }
 
-fn answers(ui: &mut Ui, picture: Rect, id: SampleId, out: Out) {
-    let size = Vec2::splat(20.0);
-    for (at, (text, name, command)) in [
-        ("✔", "Accept", ClassCommand::Accept(id)),
-        ("✖", "Reject", ClassCommand::Reject(id)),
-    ]
-    .into_iter()
-    .enumerate()
-    {
-        let corner = picture.right_top() + Vec2::new(-46.0 + 23.0 * at as f32, 3.0);
-        let at = Rect::from_min_size(corner, size);
-        // Over the picture, without a place of its own in the column.
-        let mut over = ui.new_child(egui::UiBuilder::new().max_rect(at));
-        let response = over.put(at, Button::new(text).small());
-        response.widget_info(|| {
-            egui::WidgetInfo::labeled(WidgetType::Button, true, format!("{name} {}", id.0))
-        });
-        if response.clicked() {
-            out.push(Command::Classes(command));
+/// Yes and no at the right of a caption.
+fn answers(ui: &mut Ui, caption: Rect, id: SampleId, out: Out) {
+    let corner = caption.right_top() - Vec2::new(ANSWERS, -1.0);
+    let area = Rect::from_min_size(corner, Vec2::new(ANSWERS, caption.height()));
+    // Over the card, without a place of its own in the column.
+    let mut over = ui.new_child(egui::UiBuilder::new().max_rect(area));
+    over.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        ui.spacing_mut().button_padding = Vec2::new(5.0, 0.0);
+        ui.spacing_mut().interact_size.y = caption.height();
+        for (text, name, command) in [
+            ("✔", "Accept", ClassCommand::Accept(id)),
+            ("✖", "Reject", ClassCommand::Reject(id)),
+        ] {
+            let response = ui.add(Button::new(RichText::new(text).size(11.0)));
+            response.widget_info(|| {
+                egui::WidgetInfo::labeled(WidgetType::Button, true, format!("{name} {}", id.0))
+            });
+            if response.clicked() {
+                out.push(Command::Classes(command));
+            }
         }
-    }
+    });
 }
 
 pub(super) fn go(

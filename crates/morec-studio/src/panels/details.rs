@@ -119,8 +119,9 @@ fn known(ui: &mut Ui, clip: &ClipInfo, out: Out) {
             ui.end_row();
             let fact = |ui: &mut Ui, what: &str, text: String| {
                 ui.colored_label(c.muted, what);
-                ui.add(egui::Label::new(text).truncate());
+                let label = ui.add(egui::Label::new(text).truncate());
                 ui.end_row();
+                label
             };
             let frames = format!(
                 "{}, {} frames at {:.0} Hz, {} joints",
@@ -140,9 +141,8 @@ fn known(ui: &mut Ui, clip: &ClipInfo, out: Out) {
             if let Some(source) = &clip.source {
                 fact(ui, "Source", source.clone());
             }
-            let file = std::path::Path::new(&clip.path).file_name();
-            let file = file.unwrap_or_default().to_string_lossy().into_owned();
-            fact(ui, "File", file);
+            let file = format::file_name(std::path::Path::new(&clip.path));
+            fact(ui, "File", file).on_hover_text(&clip.path);
         });
 }
 

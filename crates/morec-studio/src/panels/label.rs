@@ -4,7 +4,7 @@ use egui::{
     Button, CentralPanel, Context, Rect, RichText, ScrollArea, Sense, SidePanel, TextEdit,
     TopBottomPanel, Ui, Vec2, WidgetType,
 };
-use morec_db::labels::State as Judged;
+use morec_db::labels::SampleState as Judged;
 
 use super::{Out, padded, player, timeline, view, widgets};
 use crate::format;

@@ -104,10 +104,16 @@ pub fn transport(ui: &mut Ui, state: &State, out: Out) {
                     .monospace()
                     .size(13.5),
             );
-            let of = format!("of {}   frame {frame}", format::clock(player.secs(), 2));
+            let of = format!("of {}", format::clock(player.secs(), 2));
             ui.label(RichText::new(of).color(c.muted).size(12.0));
+            // Narrow panels have room for the time only.
+            if ui.available_width() > 90.0 {
+                let frame = RichText::new(format!("frame {frame}"));
+                ui.label(frame.color(c.muted).size(12.0));
+            }
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                if let Some(clip) = state.shown_clip() {
+                let room = ui.available_width() > 50.0;
+                if let Some(clip) = state.shown_clip().filter(|_| room) {
                     ui.add(egui::Label::new(RichText::new(&clip.name).strong()).truncate());
                 }
             });

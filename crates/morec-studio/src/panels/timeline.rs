@@ -4,7 +4,7 @@ use egui::{Rect, RichText, ScrollArea, Sense, Ui, Vec2, WidgetType, pos2};
 
 use super::{Out, curves, tracks, widgets};
 use crate::format;
-use crate::jobs::cut::Method;
+use crate::jobs::cut::SegmentMethod;
 use crate::state::{Command, PlayCommand, State, TimelineCommand};
 use crate::theme::Colours;
 
@@ -112,11 +112,11 @@ fn tools(ui: &mut Ui, state: &State, out: Out) {
         ui.separator();
         ui.menu_button("Cut all clips", |ui| {
             if ui.button("By kernel change points").clicked() {
-                timeline(TimelineCommand::Cut(Method::Kernel));
+                timeline(TimelineCommand::Cut(SegmentMethod::Kernel));
                 ui.close();
             }
             if ui.button("By the thesis's method (PPCA)").clicked() {
-                timeline(TimelineCommand::Cut(Method::Ppca));
+                timeline(TimelineCommand::Cut(SegmentMethod::Ppca));
                 ui.close();
             }
         });

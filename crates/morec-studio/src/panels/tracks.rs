@@ -2,7 +2,7 @@
 
 use egui::epaint::Mesh;
 use egui::{Color32, Rect, Response, Sense, Shape, Stroke, StrokeKind, Ui, Vec2, WidgetType, pos2};
-use morec_db::labels::{DbSample, State as Judged};
+use morec_db::labels::{DbSample, SampleState as Judged};
 
 use super::timeline::{NAMES, Scale};
 use super::{Out, widgets};
@@ -106,7 +106,7 @@ pub fn labels(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
         if !ui.is_rect_visible(tracks) {
             continue;
         }
-        let mut row = Row {
+        let mut row = TrackRow {
             rect: tracks.shrink2(Vec2::new(0.0, 1.5)),
             colour,
             mesh: Mesh::default(),
@@ -121,14 +121,14 @@ pub fn labels(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
 }
 
 /// The narrow labels of a row, drawn as one mesh; those that touch as one.
-struct Row {
+struct TrackRow {
     rect: Rect,
     colour: Color32,
     mesh: Mesh,
     run: Option<(f32, f32)>,
 }
 
-impl Row {
+impl TrackRow {
     fn narrow(&mut self, left: f32, right: f32) {
         let right = right.max(left + 1.0);
         self.run = match self.run {
@@ -158,7 +158,7 @@ fn label(
     state: &State,
     scale: &Scale,
     sample: &DbSample,
-    row: &mut Row,
+    row: &mut TrackRow,
     c: &Colours,
     out: Out,
 ) {

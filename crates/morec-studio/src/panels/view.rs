@@ -7,8 +7,8 @@ use morec::math::Vec3;
 use super::{Out, widgets};
 use crate::body::mesh::Painter;
 use crate::body::{Body, Camera};
-use crate::jobs::load::Motion;
-use crate::state::{Command, Look, State};
+use crate::jobs::load::ClipMotion;
+use crate::state::{Command, State, ViewCommand};
 use crate::theme::Colours;
 
 /// So far the floor is drawn from the performer, metres.
@@ -24,7 +24,7 @@ pub struct Scene<'a> {
     pub pose: &'a WorldPose,
     pub floor: f64,
     /// The clip, for trail and onion skin.
-    pub motion: Option<(&'a Motion, f64)>,
+    pub motion: Option<(&'a ClipMotion, f64)>,
 }
 
 /// Draws the performer of the clip that is shown.
@@ -53,7 +53,7 @@ pub fn draw(ui: &mut Ui, rect: Rect, state: &State, scene: &Scene, out: Out) {
     widgets::named(&response, WidgetType::Image, "Performer", false);
     let camera = moved(ui, &response, &state.camera);
     if camera != state.camera {
-        out.push(Command::Look(Look::Camera(camera)));
+        out.push(Command::Look(ViewCommand::Camera(camera)));
     }
     let painter = ui.painter_at(rect);
     painter.add(sky(rect, &c));
@@ -152,7 +152,7 @@ fn floor(view: &crate::body::camera::View, y: f64, camera: &Camera, c: &Colours)
 }
 
 fn trail(
-    motion: &Motion,
+    motion: &ClipMotion,
     at: f64,
     joint: usize,
     view: &crate::body::camera::View,
@@ -178,7 +178,12 @@ fn trail(
     shapes
 }
 
-fn onion(motion: &Motion, at: f64, view: &crate::body::camera::View, c: &Colours) -> Vec<Shape> {
+fn onion(
+    motion: &ClipMotion,
+    at: f64,
+    view: &crate::body::camera::View,
+    c: &Colours,
+) -> Vec<Shape> {
     let mut shapes = Vec::new();
     for offset in ONION {
         let secs = at + offset;
@@ -215,10 +220,10 @@ fn controls(ui: &mut Ui, rect: Rect, state: &State, out: Out) {
         ui.style_mut().override_text_style = Some(egui::TextStyle::Small);
         let mut look = |look| out.push(Command::Look(look));
         let buttons = [
-            ("Front", Look::Front),
-            ("Side", Look::Side),
-            ("Top", Look::Top),
-            ("Reset", Look::Reset),
+            ("Front", ViewCommand::Front),
+            ("Side", ViewCommand::Side),
+            ("Top", ViewCommand::Top),
+            ("Reset", ViewCommand::Reset),
         ];
         for (text, command) in buttons {
             if ui.button(text).clicked() {
@@ -226,7 +231,7 @@ fn controls(ui: &mut Ui, rect: Rect, state: &State, out: Out) {
             }
         }
         if ui.selectable_label(state.camera.follow, "Follow").clicked() {
-            look(Look::Follow(!state.camera.follow));
+            look(ViewCommand::Follow(!state.camera.follow));
         }
         if let Some(motion) = state
             .player
@@ -235,14 +240,14 @@ fn controls(ui: &mut Ui, rect: Rect, state: &State, out: Out) {
             .filter(|_| state.panel != crate::state::Panel::Live)
         {
             if ui.selectable_label(state.onion, "Onion skin").clicked() {
-                look(Look::Onion(!state.onion));
+                look(ViewCommand::Onion(!state.onion));
             }
             trail_menu(ui, state, motion, &mut look);
         }
     });
 }
 
-fn trail_menu(ui: &mut Ui, state: &State, motion: &Motion, look: &mut impl FnMut(Look)) {
+fn trail_menu(ui: &mut Ui, state: &State, motion: &ClipMotion, look: &mut impl FnMut(ViewCommand)) {
     let joints = motion.clip.skeleton.joints();
     let text = match state.trail.and_then(|j| joints.get(j)) {
         Some(joint) => format!("Trail: {}", joint.name),
@@ -250,7 +255,7 @@ fn trail_menu(ui: &mut Ui, state: &State, motion: &Motion, look: &mut impl FnMut
     };
     ui.menu_button(text, |ui| {
         if ui.button("None").clicked() {
-            look(Look::Trail(None));
+            look(ViewCommand::Trail(None));
         }
         use morec::roles::Role;
         for role in [
@@ -264,7 +269,7 @@ fn trail_menu(ui: &mut Ui, state: &State, motion: &Motion, look: &mut impl FnMut
             if let Some(joint) = motion.roles.joint(role)
                 && ui.button(role.name().replace('_', " ")).clicked()
             {
-                look(Look::Trail(Some(joint)));
+                look(ViewCommand::Trail(Some(joint)));
             }
         }
     });

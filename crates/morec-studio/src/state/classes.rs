@@ -2,12 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use morec_db::labels::{DbSample, NewSample, SampleId, State as Judged};
+use morec_db::labels::{DbSample, NewSample, SampleId, SampleState as Judged};
 use morec_db::{Proposal, questions};
 
 use super::files::quoted;
 use super::{ClassCommand, Panel, State};
-use crate::jobs::group::{self, Groups};
+use crate::jobs::group::{self, ClusteredItems};
 use crate::jobs::propose;
 use crate::store::{Edit, Snapshot};
 
@@ -38,7 +38,7 @@ pub struct Classes {
     pub held: Option<Held>,
     /// Where a key was tapped last: which class, and the moment.
     pub tapped: Option<(usize, f64)>,
-    pub groups: Option<Groups>,
+    pub groups: Option<ClusteredItems>,
     /// Into how many groups the hierarchy is cut.
     pub depth: usize,
     /// A class that is being renamed, and its new name so far.
@@ -67,7 +67,7 @@ impl Classes {
         self.order.iter().position(|name| name == class)
     }
 
-    pub(super) fn show_groups(&mut self, groups: Groups) {
+    pub(super) fn show_groups(&mut self, groups: ClusteredItems) {
         let classes: BTreeSet<_> = groups
             .items
             .iter()

@@ -8,7 +8,7 @@ use morec_db::labels::SampleId;
 use super::live::LiveCommand;
 use super::player::PlayCommand;
 use crate::body::Camera;
-use crate::jobs::cut::Method;
+use crate::jobs::cut::SegmentMethod;
 use crate::store::Edit;
 
 /// The panels.
@@ -59,7 +59,7 @@ pub enum Command {
     Edit(Edit),
     Library(LibraryCommand),
     Play(PlayCommand),
-    Look(Look),
+    Look(ViewCommand),
     Timeline(TimelineCommand),
     Classes(ClassCommand),
     Train(TrainCommand),
@@ -116,7 +116,7 @@ pub enum Column {
 
 /// The view of the performer.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Look {
+pub enum ViewCommand {
     Camera(Camera),
     Front,
     Side,
@@ -156,7 +156,7 @@ pub enum TimelineCommand {
     ToPlayhead(super::timeline::Grip),
     /// Labels the selected stretch.
     LabelRange(String),
-    Cut(Method),
+    Cut(SegmentMethod),
     /// Width of the tracks, as drawn.
     Width(f32),
 }

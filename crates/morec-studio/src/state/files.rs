@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{Classes, FileCommand, Library, Live, Motions, Player, State, Timeline, Train};
+use super::{Classes, FileCommand, Library, Live, Motions, Player, State, TimelineState, Train};
+use crate::format::file_name;
 use crate::jobs::{Jobs, example, import};
 use crate::store::Store;
 
@@ -29,7 +30,7 @@ impl State {
 
     fn open(&mut self, path: &Path) {
         if !path.exists() {
-            self.complain(format!("{}: there is no such file", path.display()));
+            self.complain(format!("{}: there is no such file", file_name(path)));
             return;
         }
         self.open_store(path, false);
@@ -42,7 +43,7 @@ impl State {
                 self.forget();
                 self.say(match temporary {
                     true => "lies in a temporary folder: save a copy to keep it".to_owned(),
-                    false => format!("{} opened", path.display()),
+                    false => format!("{} opened", file_name(path)),
                 });
                 self.command_line = format!("morec-studio {}", quoted(path));
                 self.store = Some(store);
@@ -61,7 +62,7 @@ impl State {
         self.jobs = Jobs::default();
         self.library = Library::default();
         self.player = Player::new();
-        self.timeline = Timeline::default();
+        self.timeline = TimelineState::default();
         self.curves = None;
         self.detections = None;
         self.classes = Classes::default();
@@ -119,7 +120,7 @@ impl State {
             FileCommand::AskExportIndex => self.ask = Some(Ask::ExportIndex),
             FileCommand::Open(path) => self.open(&path),
             FileCommand::New(path) => match path.exists() {
-                true => self.complain(format!("{}: there is a file already", path.display())),
+                true => self.complain(format!("{}: there is a file already", file_name(&path))),
                 false => self.open_store(&path, false),
             },
             FileCommand::Import(paths) => self.import(paths),
@@ -163,7 +164,7 @@ impl State {
             Ok(()) => self.open_store(path, false),
             Err(error) => {
                 self.open_store(&from, temporary);
-                self.complain(format!("{}: not saved: {error}", path.display()));
+                self.complain(format!("{}: not saved: {error}", file_name(path)));
             }
         }
     }

@@ -1,10 +1,10 @@
 //! Labels on the timeline: selected, dragged, split, merged, nudged.
 
-use morec_db::labels::{DbSample, NewSample, State as Judged};
+use morec_db::labels::{DbSample, NewSample, SampleState as Judged};
 
 use super::files::quoted;
 use super::{Drag, Grip, State, TimelineCommand};
-use crate::jobs::cut::{self, Method};
+use crate::jobs::cut::{self, SegmentMethod};
 use crate::store::Edit;
 
 impl State {
@@ -225,7 +225,7 @@ impl State {
         }
     }
 
-    fn cut(&mut self, method: Method) {
+    fn cut(&mut self, method: SegmentMethod) {
         let Some(store) = &self.store else { return };
         let db = store.path().to_owned();
         self.command_line = format!("morec db cut {} --method {}", quoted(&db), method.name());

@@ -1,6 +1,6 @@
 //! The command line that does what an edit does.
 
-use morec_db::labels::State as Judged;
+use morec_db::labels::SampleState as Judged;
 
 use super::State;
 use super::files::quoted;

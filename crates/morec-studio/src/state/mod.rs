@@ -17,23 +17,23 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use morec::eval::Found;
+use morec::eval::ClipDetection;
 use morec_db::{ClipId, ClipInfo};
 
 use crate::body::Camera;
-use crate::jobs::{Jobs, cut::Curves, import, load::Motion};
+use crate::jobs::{Jobs, cut::Curves, import, load::ClipMotion};
 use crate::store::{Store, Wake};
 
 pub use classes::Classes;
 pub use command::{
-    ClassCommand, Column, Command, FileCommand, LibraryCommand, Look, Panel, TimelineCommand,
-    TrainCommand,
+    ClassCommand, Column, Command, FileCommand, LibraryCommand, Panel, TimelineCommand,
+    TrainCommand, ViewCommand,
 };
 pub use files::Ask;
 pub use library::Library;
 pub use live::{Live, LiveCommand};
 pub use player::{PlayCommand, Player, SPEEDS};
-pub use timeline::{Drag, Grip, Timeline};
+pub use timeline::{Drag, Grip, TimelineState};
 pub use train::Train;
 
 /// A sentence that stays until it is read.
@@ -63,14 +63,14 @@ pub struct State {
     /// The joint that leaves a trail.
     pub trail: Option<usize>,
     pub onion: bool,
-    pub timeline: Timeline,
+    pub timeline: TimelineState,
     pub curves: Option<Arc<Curves>>,
     /// What the index recognises in the clip that is shown.
-    pub detections: Option<(ClipId, Vec<Found>)>,
+    pub detections: Option<(ClipId, Vec<ClipDetection>)>,
     pub classes: Classes,
     pub train: Train,
     pub live: Live,
-    pub import_report: Option<import::Report>,
+    pub import_report: Option<import::ImportSummary>,
     /// A file dialog that should be shown.
     pub ask: Option<Ask>,
     pub(crate) wake: Wake,
@@ -85,7 +85,7 @@ pub struct State {
 /// Decoded clips, the ones used last; others are decoded again when they are looked at.
 #[derive(Default)]
 pub(crate) struct Motions {
-    kept: BTreeMap<ClipId, (Arc<Motion>, u64)>,
+    kept: BTreeMap<ClipId, (Arc<ClipMotion>, u64)>,
     failed: BTreeMap<ClipId, String>,
     loading: Vec<ClipId>,
     clock: u64,
@@ -97,7 +97,7 @@ const MOTION_KEPT: usize = 12_000_000;
 const LOADERS: usize = 2;
 
 impl Motions {
-    pub fn get(&self, clip: ClipId) -> Option<&Arc<Motion>> {
+    pub fn get(&self, clip: ClipId) -> Option<&Arc<ClipMotion>> {
         self.kept.get(&clip).map(|(motion, _)| motion)
     }
 
@@ -105,10 +105,10 @@ impl Motions {
         self.failed.get(&clip).map(String::as_str)
     }
 
-    fn keep(&mut self, motion: Arc<Motion>) {
+    fn keep(&mut self, motion: Arc<ClipMotion>) {
         self.clock += 1;
         self.kept.insert(motion.id, (motion, self.clock));
-        let size = |m: &Motion| m.clip.frames * m.clip.skeleton.len().max(1);
+        let size = |m: &ClipMotion| m.clip.frames * m.clip.skeleton.len().max(1);
         while self.kept.len() > 2
             && self.kept.values().map(|(m, _)| size(m)).sum::<usize>() > MOTION_KEPT
         {
@@ -139,7 +139,7 @@ impl State {
             camera: Camera::default(),
             trail: None,
             onion: false,
-            timeline: Timeline::default(),
+            timeline: TimelineState::default(),
             curves: None,
             detections: None,
             classes: Classes::default(),

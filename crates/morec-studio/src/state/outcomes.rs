@@ -1,16 +1,16 @@
 //! What threads have done arrives here, once a frame.
 
 use super::{Panel, State};
-use crate::jobs::Outcome;
-use crate::store::Said;
+use crate::jobs::JobOutcome;
+use crate::store::StoreMessage;
 
 impl State {
     /// Takes what threads have done since the last frame.
     pub fn poll(&mut self) {
         for said in self.store.as_mut().map(|s| s.poll()).unwrap_or_default() {
             match said {
-                Said::Done(text) => self.say(text),
-                Said::Failed(text) => {
+                StoreMessage::Done(text) => self.say(text),
+                StoreMessage::Failed(text) => {
                     self.timeline.drag = None;
                     self.complain(text);
                 }
@@ -66,10 +66,10 @@ impl State {
         }
     }
 
-    fn take(&mut self, name: &str, outcome: Outcome) {
+    fn take(&mut self, name: &str, outcome: JobOutcome) {
         match outcome {
-            Outcome::Made(path) => self.open_store(&path, true),
-            Outcome::Loaded(loaded) => {
+            JobOutcome::Made(path) => self.open_store(&path, true),
+            JobOutcome::Loaded(loaded) => {
                 self.motions.loading.retain(|id| *id != loaded.id);
                 match loaded.motion {
                     Ok(motion) => {
@@ -88,18 +88,18 @@ impl State {
                     }
                 }
             }
-            Outcome::Curves(curves) => {
+            JobOutcome::Curves(curves) => {
                 let shown = self.player.motion.as_ref().map(|m| m.id);
                 if curves.clip == shown {
                     self.curves = Some(curves.into());
                 }
             }
-            Outcome::Imported(report) => {
+            JobOutcome::Imported(report) => {
                 self.say(report.said());
                 self.import_report = Some(report);
                 self.reload();
             }
-            Outcome::Cut(report) => {
+            JobOutcome::Cut(report) => {
                 let clips = crate::format::count(report.clips, "clip");
                 let segments = crate::format::count(report.segments, "segment");
                 self.say(format!("{clips} cut into {segments}"));
@@ -108,33 +108,33 @@ impl State {
                 }
                 self.reload();
             }
-            Outcome::Proposed(count) => {
+            JobOutcome::Proposed(count) => {
                 self.say(match count {
                     0 => "no candidate was found".to_owned(),
                     n => format!("{n} proposals to look at"),
                 });
                 self.reload();
             }
-            Outcome::Grouped(groups) => self.classes.show_groups(groups),
-            Outcome::Trained(trained) => self.trained(*trained),
-            Outcome::Judged(judged) => {
+            JobOutcome::Grouped(groups) => self.classes.show_groups(groups),
+            JobOutcome::Trained(trained) => self.trained(*trained),
+            JobOutcome::Judged(judged) => {
                 self.say("cross-validation done");
                 self.train.judged = Some((*judged).into());
                 self.train.cell = None;
             }
-            Outcome::Recognised { clip, found } => self.detections = Some((clip, found)),
-            Outcome::Resensed(found) => self.live.resensed = Some(found),
-            Outcome::Taught(taught) => {
+            JobOutcome::Recognised { clip, found } => self.detections = Some((clip, found)),
+            JobOutcome::Resensed(found) => self.live.resensed = Some(found),
+            JobOutcome::Taught(taught) => {
                 self.taught(&taught);
                 self.reload();
             }
-            Outcome::Failed(why) => {
+            JobOutcome::Failed(why) => {
                 if name == super::live::TEACHING {
                     self.live.teaching = false;
                 }
                 self.complain(why);
             }
-            Outcome::Cancelled => {
+            JobOutcome::Cancelled => {
                 // What looks at a clip is cancelled whenever another is shown.
                 if name != super::shown::CURVES {
                     self.say(format!("{name}: stopped"));

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::jobs::load::Motion;
+use crate::jobs::load::ClipMotion;
 
 /// Speeds that can be chosen.
 pub const SPEEDS: [f64; 9] = [0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 6.0, 8.0];
@@ -10,7 +10,7 @@ pub const SPEEDS: [f64; 9] = [0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 6.0, 8.0];
 /// The clip that is looked at.
 #[derive(Default)]
 pub struct Player {
-    pub motion: Option<Arc<Motion>>,
+    pub motion: Option<Arc<ClipMotion>>,
     pub at_secs: f64,
     pub playing: bool,
     /// So many times as fast as it was performed; below 0 backwards.
@@ -53,7 +53,7 @@ impl Player {
     }
 
     /// Shows a clip from its beginning.
-    pub fn show(&mut self, motion: Arc<Motion>) {
+    pub fn show(&mut self, motion: Arc<ClipMotion>) {
         *self = Self {
             motion: Some(motion),
             speed: self.speed.abs().max(SPEEDS[0]),

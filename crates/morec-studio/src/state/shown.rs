@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use morec_db::ClipId;
 
-use super::{Look, Panel, State};
+use super::{Panel, State, ViewCommand};
 use crate::body::Camera;
-use crate::jobs::load::Motion;
+use crate::jobs::load::ClipMotion;
 
 impl State {
     /// Shows a clip, and a stretch of it in a loop if one is named, once it is decoded.
@@ -25,7 +25,7 @@ impl State {
     }
 
     /// Shows a clip that is decoded.
-    pub(super) fn show_motion(&mut self, motion: Arc<Motion>, stretch: Option<(f64, f64)>) {
+    pub(super) fn show_motion(&mut self, motion: Arc<ClipMotion>, stretch: Option<(f64, f64)>) {
         self.pending = None;
         let same = self
             .player
@@ -57,7 +57,7 @@ impl State {
     }
 
     /// Computes what both methods of cutting say of a clip.
-    fn want_curves(&mut self, motion: &Arc<Motion>) {
+    fn want_curves(&mut self, motion: &Arc<ClipMotion>) {
         for job in self.jobs.running.iter().filter(|j| j.name == CURVES) {
             job.cancel();
         }
@@ -67,17 +67,17 @@ impl State {
         });
     }
 
-    pub(super) fn look(&mut self, look: Look) {
+    pub(super) fn look(&mut self, look: ViewCommand) {
         let heading = self.heading();
         let camera = &mut self.camera;
         match look {
-            Look::Camera(new) => *camera = new,
-            Look::Front => (camera.yaw, camera.pitch) = (heading, 0.08),
-            Look::Side => {
+            ViewCommand::Camera(new) => *camera = new,
+            ViewCommand::Front => (camera.yaw, camera.pitch) = (heading, 0.08),
+            ViewCommand::Side => {
                 (camera.yaw, camera.pitch) = (heading + std::f64::consts::FRAC_PI_2, 0.08)
             }
-            Look::Top => (camera.yaw, camera.pitch) = (heading, 1.45),
-            Look::Reset => {
+            ViewCommand::Top => (camera.yaw, camera.pitch) = (heading, 1.45),
+            ViewCommand::Reset => {
                 let target = camera.target;
                 *camera = Camera {
                     target,
@@ -85,9 +85,9 @@ impl State {
                     ..Camera::default()
                 };
             }
-            Look::Follow(on) => camera.follow = on,
-            Look::Trail(joint) => self.trail = joint,
-            Look::Onion(on) => self.onion = on,
+            ViewCommand::Follow(on) => camera.follow = on,
+            ViewCommand::Trail(joint) => self.trail = joint,
+            ViewCommand::Onion(on) => self.onion = on,
         }
     }
 

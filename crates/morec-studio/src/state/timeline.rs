@@ -32,7 +32,7 @@ pub struct Drag {
 
 /// The timeline's own state.
 #[derive(Debug, Clone)]
-pub struct Timeline {
+pub struct TimelineState {
     pub from_secs: f64,
     pub to_secs: f64,
     pub selected: BTreeSet<SampleId>,
@@ -46,7 +46,7 @@ pub struct Timeline {
     pub follow: bool,
 }
 
-impl Default for Timeline {
+impl Default for TimelineState {
     fn default() -> Self {
         Self {
             from_secs: 0.0,
@@ -61,7 +61,7 @@ impl Default for Timeline {
     }
 }
 
-impl Timeline {
+impl TimelineState {
     /// Shows all of a clip.
     pub fn whole(&mut self, secs: f64) {
         (self.from_secs, self.to_secs) = (0.0, secs.max(SHORTEST));
@@ -151,7 +151,7 @@ mod tests {
 
     #[test]
     fn zooming_keeps_the_moment_under_the_pointer_and_the_view_in_the_clip() {
-        let mut timeline = Timeline::default();
+        let mut timeline = TimelineState::default();
         timeline.whole(100.0);
         timeline.zoom(4.0, 30.0, 100.0);
         assert!((timeline.span() - 25.0).abs() < 1e-9);
@@ -163,9 +163,9 @@ mod tests {
 
     #[test]
     fn what_is_near_a_mark_is_put_there_and_everything_else_on_a_frame() {
-        let mut timeline = Timeline {
+        let mut timeline = TimelineState {
             width: 1000.0,
-            ..Timeline::default()
+            ..TimelineState::default()
         };
         timeline.whole(100.0);
         let marks = || [20.0, 50.03].into_iter();
@@ -177,7 +177,7 @@ mod tests {
 
     #[test]
     fn a_dragged_label_stays_in_its_clip_and_at_least_a_frame_long() {
-        let mut timeline = Timeline::default();
+        let mut timeline = TimelineState::default();
         timeline.whole(10.0);
         let drag = |grip| Drag {
             id: SampleId(1),

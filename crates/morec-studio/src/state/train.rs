@@ -9,7 +9,7 @@ use morec::train::TrainingReport;
 
 use super::files::quoted;
 use super::{Panel, State, TrainCommand};
-use crate::jobs::load::Motion;
+use crate::jobs::load::ClipMotion;
 use crate::jobs::{judge, recognise, train};
 use crate::store::{Edit, Snapshot};
 
@@ -31,20 +31,20 @@ pub struct Train {
     /// The labels that taught the index, to know whether they have changed.
     taught: u64,
     now: u64,
-    pub judged: Option<Judged>,
+    pub judged: Option<CrossvalView>,
     /// The cell of the confusion matrix that is shown.
     pub cell: Option<(usize, usize)>,
 }
 
 /// A cross-validation, ready to be shown.
-pub struct Judged {
+pub struct CrossvalView {
     pub evaluation: morec::eval::Evaluation,
     pub moments: Vec<judge::Moment>,
     pub by: &'static str,
 }
 
-impl From<judge::Judged> for Judged {
-    fn from(judged: judge::Judged) -> Self {
+impl From<judge::CrossvalResult> for CrossvalView {
+    fn from(judged: judge::CrossvalResult) -> Self {
         Self {
             moments: judged.moments(),
             evaluation: judged.evaluation,
@@ -53,7 +53,7 @@ impl From<judge::Judged> for Judged {
     }
 }
 
-impl Judged {
+impl CrossvalView {
     /// The moments of a cell; the row after the last class is what nobody labelled, the column after it nothing found.
     pub fn of_cell(&self, row: usize, column: usize) -> Vec<&judge::Moment> {
         let confusion = &self.evaluation.confusion;
@@ -158,7 +158,7 @@ impl State {
         self.jobs.is_running(JUDGING)
     }
 
-    pub(super) fn trained(&mut self, trained: train::Trained) {
+    pub(super) fn trained(&mut self, trained: train::TrainedIndex) {
         let classes = crate::format::count(trained.report.classes.len(), "class");
         self.say(format!("trained on {classes} in {:.1} s", trained.secs));
         self.train.secs = trained.secs;
@@ -174,7 +174,7 @@ impl State {
     }
 
     /// What the index recognises in a clip that is shown.
-    pub(super) fn want_detections(&mut self, motion: &Arc<Motion>) {
+    pub(super) fn want_detections(&mut self, motion: &Arc<ClipMotion>) {
         self.detections = None;
         let Some(index) = self.train.index.clone() else {
             return;
@@ -217,8 +217,11 @@ impl State {
             return;
         }
         match std::fs::write(path, &self.train.bytes) {
-            Ok(()) => self.say(format!("{} written", path.display())),
-            Err(error) => self.complain(format!("{}: not written: {error}", path.display())),
+            Ok(()) => self.say(format!("{} written", crate::format::file_name(path))),
+            Err(error) => self.complain(format!(
+                "{}: not written: {error}",
+                crate::format::file_name(path)
+            )),
         }
     }
 }

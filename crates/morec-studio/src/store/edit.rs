@@ -1,6 +1,6 @@
 //! Edits of the database as values: what the window may change, each one step of the history.
 
-use morec_db::labels::{LabelOptions, NewSample, SampleId, State};
+use morec_db::labels::{LabelOptions, NewSample, SampleId, SampleState};
 use morec_db::{ClipId, ClipUpdate, DbError, MotionDb};
 
 /// Who says so, in the database.
@@ -33,7 +33,7 @@ pub enum Edit {
     /// What is thought of samples.
     Judge {
         ids: Vec<SampleId>,
-        state: State,
+        state: SampleState,
     },
     RenameClass {
         from: String,

@@ -23,7 +23,7 @@ pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
 /// What the database thread said since it was asked last.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Said {
+pub enum StoreMessage {
     /// An edit was made.
     Done(String),
     /// An edit was not made, and why.
@@ -90,7 +90,7 @@ impl Store {
     }
 
     /// Takes what has arrived.
-    pub fn poll(&mut self) -> Vec<Said> {
+    pub fn poll(&mut self) -> Vec<StoreMessage> {
         let mut said = Vec::new();
         while let Ok(reply) = self.replies.try_recv() {
             self.pending -= usize::from(reply.answers).min(self.pending);

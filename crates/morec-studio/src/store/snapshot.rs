@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use morec_db::labels::{ClassInfo, DbSample, SampleFilter, SampleId, State};
-use morec_db::{ClipFilter, ClipId, ClipInfo, DbError, IndexInfo, MotionDb, Step};
+use morec_db::labels::{ClassCount, DbSample, SampleFilter, SampleId, SampleState};
+use morec_db::{ClipFilter, ClipId, ClipInfo, DbError, HistoryStep, IndexInfo, MotionDb};
 
 /// The database at one moment, without motion.
 #[derive(Debug, Clone, Default)]
@@ -12,12 +12,12 @@ pub struct Snapshot {
     /// By name.
     pub clips: Vec<ClipInfo>,
     /// By name.
-    pub classes: Vec<ClassInfo>,
+    pub classes: Vec<ClassCount>,
     /// By clip and time.
     pub samples: Vec<DbSample>,
     pub indexes: Vec<IndexInfo>,
     /// The last first.
-    pub history: Vec<Step>,
+    pub history: Vec<HistoryStep>,
     place: BTreeMap<ClipId, usize>,
     samples_of: BTreeMap<ClipId, Range<usize>>,
     sample_place: BTreeMap<SampleId, usize>,
@@ -36,10 +36,10 @@ impl Snapshot {
 
     pub fn of(
         clips: Vec<ClipInfo>,
-        classes: Vec<ClassInfo>,
+        classes: Vec<ClassCount>,
         samples: Vec<DbSample>,
         indexes: Vec<IndexInfo>,
-        history: Vec<Step>,
+        history: Vec<HistoryStep>,
     ) -> Self {
         Self {
             place: clips.iter().enumerate().map(|(i, c)| (c.id, i)).collect(),
@@ -80,7 +80,9 @@ impl Snapshot {
     }
 
     pub fn accepted(&self) -> impl Iterator<Item = &DbSample> {
-        self.samples.iter().filter(|s| s.state == State::Accepted)
+        self.samples
+            .iter()
+            .filter(|s| s.state == SampleState::Accepted)
     }
 }
 

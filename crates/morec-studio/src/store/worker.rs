@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use morec_db::{DbError, MotionDb};
 
-use super::{Edit, Said, Snapshot, Wake};
+use super::{Edit, Snapshot, StoreMessage, Wake};
 
 /// How often it is looked whether another program changed the database.
 const LOOK: Duration = Duration::from_secs(1);
@@ -19,7 +19,7 @@ pub enum Request {
 
 pub struct Reply {
     pub snapshot: Option<Arc<Snapshot>>,
-    pub said: Option<Said>,
+    pub said: Option<StoreMessage>,
     /// Whether it answers a request.
     pub answers: bool,
 }
@@ -36,7 +36,7 @@ pub fn open(path: &Path) -> Result<(MotionDb, Arc<Snapshot>), DbError> {
 pub fn start(db: MotionDb, wake: Wake) -> Result<(Sender<Request>, Receiver<Reply>), DbError> {
     let (requests, incoming) = channel();
     let (outgoing, replies) = channel();
-    let mut worker = Worker {
+    let mut worker = StoreWorker {
         seen: mark(&db),
         db,
         outgoing,
@@ -50,7 +50,7 @@ pub fn start(db: MotionDb, wake: Wake) -> Result<(Sender<Request>, Receiver<Repl
     Ok((requests, replies))
 }
 
-struct Worker {
+struct StoreWorker {
     db: MotionDb,
     /// The last step and how many were taken back, by which changes from elsewhere are noticed.
     seen: Option<(i64, i64)>,
@@ -63,14 +63,14 @@ fn mark(db: &MotionDb) -> Option<(i64, i64)> {
     Some((step.id, step.set_secs))
 }
 
-impl Worker {
+impl StoreWorker {
     fn run(&mut self, incoming: &Receiver<Request>) {
         loop {
             let (said, answers) = match incoming.recv_timeout(LOOK) {
                 Ok(Request::Edit(edit)) => {
                     let said = match edit.apply(&mut self.db) {
-                        Ok(done) => Said::Done(done),
-                        Err(error) => Said::Failed(sentence(&error.to_string())),
+                        Ok(done) => StoreMessage::Done(done),
+                        Err(error) => StoreMessage::Failed(sentence(&error.to_string())),
                     };
                     (Some(said), true)
                 }
@@ -90,12 +90,12 @@ impl Worker {
     }
 
     /// Sends a new snapshot; says whether anybody still listens.
-    fn reply(&mut self, mut said: Option<Said>, answers: bool) -> bool {
+    fn reply(&mut self, mut said: Option<StoreMessage>, answers: bool) -> bool {
         self.seen = mark(&self.db);
         let snapshot = match Snapshot::read(&self.db) {
             Ok(snapshot) => Some(Arc::new(snapshot)),
             Err(error) => {
-                said = Some(Said::Failed(sentence(&error.to_string())));
+                said = Some(StoreMessage::Failed(sentence(&error.to_string())));
                 None
             }
         };

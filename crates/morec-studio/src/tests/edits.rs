@@ -1,7 +1,7 @@
 //! Edits through the window, and the way back from each.
 
 use egui::{Key, pos2};
-use morec_db::labels::State as Judged;
+use morec_db::labels::SampleState as Judged;
 
 use super::{Person, made, takes};
 use crate::state::{Command, FileCommand, Panel};

@@ -16,7 +16,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use morec::formats::bvh;
 use morec::synth::{DatabaseSpec, SyntheticTake, database};
-use morec_db::labels::{NewSample, State as Judged};
+use morec_db::labels::{NewSample, SampleState as Judged};
 use morec_db::{ClipUpdate, MotionDb};
 
 use crate::app::Studio;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 /// Pairs of samples by whether they are of one class and in one cluster (thesis Table 3.1, Tables 5.2–5.4).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
-pub struct Pairs {
+pub struct PairCounts {
     /// One class, one cluster.
     pub true_positive: u64,
     /// Two classes, one cluster.
@@ -15,11 +15,11 @@ pub struct Pairs {
     pub true_negative: u64,
 }
 
-impl Pairs {
+impl PairCounts {
     /// Every pair of samples, whose classes and clusters have any numbers; what one list has more than the other is left
     /// out. O(samples · log samples).
     pub fn count(classes: &[usize], clusters: &[usize]) -> Self {
-        let counts = Counts::of(classes, clusters);
+        let counts = ContingencyTable::of(classes, clusters);
         let (both, class, cluster) = (counts.both(), counts.one_class(), counts.one_cluster());
         Self {
             true_positive: both,
@@ -46,7 +46,7 @@ impl Pairs {
 /// Rand index corrected for chance (Hubert and Arabie 1985): 1 for the same partition, about 0 for one at random. 1 if
 /// both partitions are trivial in the same way. O(samples · log samples).
 pub fn adjusted_rand_index(classes: &[usize], clusters: &[usize]) -> f64 {
-    let counts = Counts::of(classes, clusters);
+    let counts = ContingencyTable::of(classes, clusters);
     let (class, cluster) = (counts.one_class() as f64, counts.one_cluster() as f64);
     let expected = class * cluster / pairs(counts.samples).max(1) as f64;
     let most = (class + cluster) / 2.0;
@@ -63,14 +63,14 @@ fn pairs(n: u64) -> u64 {
 }
 
 /// Samples by class, by cluster and by both.
-struct Counts {
+struct ContingencyTable {
     classes: BTreeMap<usize, u64>,
     clusters: BTreeMap<usize, u64>,
     cells: BTreeMap<(usize, usize), u64>,
     samples: u64,
 }
 
-impl Counts {
+impl ContingencyTable {
     fn of(classes: &[usize], clusters: &[usize]) -> Self {
         let mut counts = Self {
             classes: BTreeMap::new(),

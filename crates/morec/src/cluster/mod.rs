@@ -12,7 +12,7 @@ mod kwas;
 mod shape;
 
 pub use affinity::{AffinityParams, affinity_propagation};
-pub use agreement::{Pairs, adjusted_rand_index};
+pub use agreement::{PairCounts, adjusted_rand_index};
 pub use clusters::{Clusters, connected, kwas_clusters};
 pub use hierarchy::{Hierarchy, Merge};
 pub use kwas::{KwasForm, KwasParams, Spectrum, kwas};

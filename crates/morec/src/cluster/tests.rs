@@ -43,7 +43,7 @@ proptest! {
 
     #[test]
     fn pairs_are_those_counted_one_by_one((classes, clusters) in labels()) {
-        let mut expected = Pairs::default();
+        let mut expected = PairCounts::default();
         for i in 0..classes.len() {
             for j in 0..i {
                 *match (classes[i] == classes[j], clusters[i] == clusters[j]) {
@@ -54,9 +54,9 @@ proptest! {
                 } += 1;
             }
         }
-        let found = Pairs::count(&classes, &clusters);
+        let found = PairCounts::count(&classes, &clusters);
         prop_assert_eq!(found, expected);
-        prop_assert_eq!(Pairs::count(&clusters, &classes).rand_index(), found.rand_index());
+        prop_assert_eq!(PairCounts::count(&clusters, &classes).rand_index(), found.rand_index());
         // The adjusted index by its pair-counting form (Hubert and Arabie 1985; Steinley 2004).
         let [tp, fp, fneg, tn] =
             [found.true_positive, found.false_positive, found.false_negative, found.true_negative]
@@ -100,7 +100,7 @@ fn the_printed_rand_indices_follow_from_their_counts() {
         (588, 438, 120, 6235, 0.924, 0.92),
     ];
     for (true_positive, false_positive, false_negative, true_negative, index, printed) in tables {
-        let pairs = Pairs {
+        let pairs = PairCounts {
             true_positive,
             false_positive,
             false_negative,
@@ -158,5 +158,5 @@ fn agreement_of_trivial_partitions() {
     assert_eq!(adjusted_rand_index(&[0, 0, 0], &[4, 4, 4]), 1.0);
     assert_eq!(adjusted_rand_index(&[0, 1, 2], &[2, 1, 0]), 1.0);
     assert_eq!(adjusted_rand_index(&[0, 0, 1, 1], &[7, 7, 7, 7]), 0.0);
-    assert_eq!(Pairs::count(&[], &[]).rand_index(), 1.0);
+    assert_eq!(PairCounts::count(&[], &[]).rand_index(), 1.0);
 }

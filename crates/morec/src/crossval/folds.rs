@@ -7,7 +7,7 @@ use crate::rng::Rng;
 
 /// What is left out of training in turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum By {
+pub enum FoldBy {
     /// Half of each class's samples, rounded down, chosen by a seeded shuffle; all clips are tested once.
     Half {
         /// Of the shuffle.
@@ -18,7 +18,7 @@ pub enum By {
     /// One person after the other; a clip of nobody known counts as a person.
     Person,
     /// Nothing is left out: each person teaches alone and is tested in other clips, see
-    /// [`Material::tests`](super::Material::tests).
+    /// [`CrossvalData::tests`](super::CrossvalData::tests).
     Own,
 }
 
@@ -38,14 +38,14 @@ pub struct Fold {
 }
 
 /// The folds for `samples`, whose clips' people are in `people`.
-pub fn folds(by: By, samples: &[Sample], people: &BTreeMap<String, String>) -> Vec<Fold> {
+pub fn folds(by: FoldBy, samples: &[Sample], people: &BTreeMap<String, String>) -> Vec<Fold> {
     match by {
-        By::Half { seed } => vec![half(samples, seed)],
-        By::Clip => leave_out(samples, people.keys(), |clip| clip.to_owned()),
-        By::Person => leave_out(samples, people.keys(), |clip| {
+        FoldBy::Half { seed } => vec![half(samples, seed)],
+        FoldBy::Clip => leave_out(samples, people.keys(), |clip| clip.to_owned()),
+        FoldBy::Person => leave_out(samples, people.keys(), |clip| {
             people.get(clip).map_or(clip, |p| p).to_owned()
         }),
-        By::Own => own(samples, people),
+        FoldBy::Own => own(samples, people),
     }
 }
 
@@ -202,13 +202,13 @@ mod tests {
 
     #[test]
     fn half_rounds_up_and_gives_every_sample_one_place() {
-        let fold = &folds(By::Half { seed: 3 }, &samples(), &people())[0];
+        let fold = &folds(FoldBy::Half { seed: 3 }, &samples(), &people())[0];
         assert_eq!((fold.taught.len(), fold.held_back.len()), (4, 2));
         assert!(fold.taught.contains(&1), "the only sample of b must teach");
         assert!(fold.taught.iter().all(|t| !fold.held_back.contains(t)));
         assert_eq!(fold.tested.len(), 3);
         let taught = |seed| {
-            folds(By::Half { seed }, &samples(), &people())[0]
+            folds(FoldBy::Half { seed }, &samples(), &people())[0]
                 .taught
                 .clone()
         };
@@ -221,7 +221,7 @@ mod tests {
     #[test]
     fn every_half_comes_up_with_some_seed() {
         let taught = |seed| {
-            folds(By::Half { seed }, &samples(), &people())
+            folds(FoldBy::Half { seed }, &samples(), &people())
                 .remove(0)
                 .taught
         };
@@ -235,7 +235,7 @@ mod tests {
 
     #[test]
     fn a_person_left_out_takes_all_their_clips_along() {
-        let all = folds(By::Person, &samples(), &people());
+        let all = folds(FoldBy::Person, &samples(), &people());
         assert_eq!(all.len(), 2);
         assert_eq!(all[1].name, "y");
         assert_eq!(all[1].taught, [0, 1, 2, 3]);
@@ -248,7 +248,7 @@ mod tests {
 
     #[test]
     fn alone_means_without_the_clips_of_others() {
-        let all = folds(By::Own, &samples(), &people());
+        let all = folds(FoldBy::Own, &samples(), &people());
         assert_eq!(all.len(), 2);
         assert_eq!((all[0].name.as_str(), all[0].taught.len()), ("x", 4));
         assert!(all[0].left_out.contains("3") && all[0].left_out.contains("4"));
@@ -266,7 +266,7 @@ mod tests {
 
     #[test]
     fn every_clip_with_samples_is_left_out_once() {
-        let names: Vec<String> = folds(By::Clip, &samples(), &people())
+        let names: Vec<String> = folds(FoldBy::Clip, &samples(), &people())
             .into_iter()
             .map(|f| f.name)
             .collect();

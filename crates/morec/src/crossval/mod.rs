@@ -6,21 +6,23 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
-use crate::eval::{Found, StreamInfo, Truth, event_pairs};
+use crate::eval::{ClipDetection, GroundTruth, StreamInfo, event_pairs};
 use crate::explain::{Miss, Sought, explain};
 use crate::features::for_each_pose;
 use crate::labels::Sample;
 use crate::live::{Detection, Model, StartError, recognize_clip, recognize_poses};
 use crate::perturb::{Perturbation, Perturbed, perturb};
 use crate::progress::Progress;
-use crate::train::{Labelling, Recipe, Source, TrainClip, TrainError, TrainingReport, train_model};
+use crate::train::{
+    LabelSet, Recipe, StreamKind, TrainClip, TrainError, TrainingReport, train_model,
+};
 
 use folds::thin;
-pub use folds::{By, Fold, folds};
+pub use folds::{Fold, FoldBy, folds};
 
 /// What to cross-validate on.
 #[derive(Debug, Clone)]
-pub struct Material<'a> {
+pub struct CrossvalData<'a> {
     /// Clips with samples and background clips.
     pub clips: &'a [TrainClip],
     /// All samples of the classes.
@@ -47,7 +49,7 @@ pub struct Tests<'a> {
 #[derive(Debug, Clone)]
 pub struct CrossvalOptions {
     /// What is left out in turn.
-    pub by: By,
+    pub by: FoldBy,
     /// Samples of a class that teach in a fold at most, from its people in turn.
     pub samples_per_class: Option<usize>,
     /// Copies of the tested clips that are tested too, each worse in one way.
@@ -56,8 +58,8 @@ pub struct CrossvalOptions {
     pub sensitivities: Vec<f64>,
 }
 
-impl From<By> for CrossvalOptions {
-    fn from(by: By) -> Self {
+impl From<FoldBy> for CrossvalOptions {
+    fn from(by: FoldBy) -> Self {
         Self {
             by,
             samples_per_class: None,
@@ -73,16 +75,16 @@ pub struct Tested {
     /// Every stream. A clip tested in several folds is several streams, with the fold in the name.
     pub streams: Vec<StreamInfo>,
     /// The samples of those streams.
-    pub truths: Vec<Truth>,
+    pub truths: Vec<GroundTruth>,
     /// What was recognised.
-    pub founds: Vec<Found>,
+    pub founds: Vec<ClipDetection>,
     /// Samples without an event ([`event_pairs`]), and why; not looked for in copies.
     pub misses: Vec<Miss>,
 }
 
 /// Everything that was recognised, and what was there.
 #[derive(Debug, Clone, Default)]
-pub struct Outcome {
+pub struct CrossvalOutcome {
     /// The clips as they are.
     pub tested: Tested,
     /// Their copies, for each of [`CrossvalOptions::perturbations`].
@@ -136,11 +138,11 @@ pub enum CrossvalError {
 /// # Errors
 /// No sample, a fold that cannot be trained, or a clip that cannot be recognised.
 pub fn crossval(
-    material: &Material<'_>,
+    material: &CrossvalData<'_>,
     options: &CrossvalOptions,
     recipe: &Recipe,
     progress: &dyn Progress,
-) -> Result<Outcome, CrossvalError> {
+) -> Result<CrossvalOutcome, CrossvalError> {
     let people = people(material);
     let mut folds = folds(options.by, material.samples, &people);
     if folds.is_empty() {
@@ -157,7 +159,7 @@ pub fn crossval(
             fold.tested = of_fold.map(|c| c.name.clone()).collect();
         }
     }
-    let mut outcome = Outcome::default();
+    let mut outcome = CrossvalOutcome::default();
     let perturbations = options.perturbations.iter();
     outcome.perturbed = perturbations.map(|p| (*p, Tested::default())).collect();
     let rates = options.sensitivities.iter();
@@ -177,7 +179,7 @@ pub fn crossval(
     Ok(outcome)
 }
 
-fn people(material: &Material<'_>) -> BTreeMap<String, String> {
+fn people(material: &CrossvalData<'_>) -> BTreeMap<String, String> {
     let clips = material.clips.iter().chain(material.unknown);
     let named = clips.map(|c| {
         (
@@ -189,11 +191,11 @@ fn people(material: &Material<'_>) -> BTreeMap<String, String> {
 }
 
 fn run_fold(
-    material: &Material<'_>,
+    material: &CrossvalData<'_>,
     fold: &Fold,
     several: bool,
     recipe: &Recipe,
-    outcome: &mut Outcome,
+    outcome: &mut CrossvalOutcome,
 ) -> Result<(), CrossvalError> {
     let training = training_clips(material, fold);
     let (model, report) = train_fold(material, fold, &training, recipe)?;
@@ -248,18 +250,18 @@ fn run_sensitivities(
 }
 
 /// The clips that a fold trains on.
-fn training_clips(material: &Material<'_>, fold: &Fold) -> Vec<TrainClip> {
+fn training_clips(material: &CrossvalData<'_>, fold: &Fold) -> Vec<TrainClip> {
     let taught = fold.taught.iter().map(|&i| &material.samples[i]);
     let teachers: BTreeSet<&str> = taught.map(|s| s.clip.as_str()).collect();
     let trains = |c: &&TrainClip| {
         !fold.left_out.contains(&c.name)
-            && (c.source != Source::Labelled || teachers.contains(c.name.as_str()))
+            && (c.source != StreamKind::Labelled || teachers.contains(c.name.as_str()))
     };
     material.clips.iter().filter(trains).cloned().collect()
 }
 
 fn train_fold(
-    material: &Material<'_>,
+    material: &CrossvalData<'_>,
     fold: &Fold,
     training: &[TrainClip],
     recipe: &Recipe,
@@ -269,7 +271,7 @@ fn train_fold(
         chosen.collect()
     };
     let (taught, held_back) = (pick(&fold.taught), pick(&fold.held_back));
-    let labelling = Labelling {
+    let labelling = LabelSet {
         samples: &taught,
         held_back: &held_back,
         classes: material.classes,
@@ -292,7 +294,7 @@ struct TestClip<'a> {
 }
 
 fn tested_clips<'a>(
-    material: &Material<'a>,
+    material: &CrossvalData<'a>,
     fold: &Fold,
     training: &[TrainClip],
     several: bool,
@@ -372,15 +374,15 @@ impl FoldTest<'_> {
         })?;
         let in_copy = |secs: f64| copy.as_ref().map_or(secs, |c| c.secs_in_copy(secs));
         let truths = self.truths.iter().filter(|s| s.clip == clip.name);
-        let truths: Vec<Truth> = truths
-            .map(|s| Truth {
+        let truths: Vec<GroundTruth> = truths
+            .map(|s| GroundTruth {
                 clip: test.name.clone(),
                 class: s.class.clone(),
                 start_secs: in_copy(s.start_secs),
                 stop_secs: in_copy(s.stop_secs),
             })
             .collect();
-        let named = |d: &Detection| Found {
+        let named = |d: &Detection| ClipDetection {
             clip: test.name.clone(),
             class: self.model.class_name(d.class).to_owned(),
             start_secs: d.start_secs,
@@ -388,7 +390,7 @@ impl FoldTest<'_> {
             score: Some(d.score),
             reported_secs: Some(d.reported_secs),
         };
-        let founds: Vec<Found> = found.iter().map(named).collect();
+        let founds: Vec<ClipDetection> = found.iter().map(named).collect();
         let misses = if self.explains {
             let played = (&clip.clip, &clip.roles, &clip.rest);
             explain(self.model, played, &missed(&truths, &founds), &found)
@@ -409,8 +411,8 @@ impl FoldTest<'_> {
 }
 
 /// The samples without an event.
-fn missed<'t>(truths: &'t [Truth], founds: &[Found]) -> Vec<Sought<'t>> {
-    let all: Vec<&Truth> = truths.iter().collect();
+fn missed<'t>(truths: &'t [GroundTruth], founds: &[ClipDetection]) -> Vec<Sought<'t>> {
+    let all: Vec<&GroundTruth> = truths.iter().collect();
     let pairs = event_pairs(&all, &founds.iter().collect::<Vec<_>>());
     let missed = all
         .into_iter()

@@ -2,7 +2,9 @@
 
 use crate::classes::ClassId;
 
-use super::{Candidate, ClassDistance, DecodeParams, FAR, MIN_AGE_TICKS, Rule, TickDetection};
+use super::{
+    Candidate, CandidatePolicy, ClassDistance, DecodeParams, FAR, MIN_AGE_TICKS, TickDetection,
+};
 
 /// Detections of a class within this many ticks count for [`DecodeParams::tail_spread`]: a second.
 const RUN_TICKS: i64 = 30;
@@ -42,9 +44,9 @@ struct LastReport {
 #[derive(Debug)]
 pub struct Decoder {
     params: DecodeParams,
-    rule: Rule,
+    rule: CandidatePolicy,
     classes: usize,
-    /// Of each class, under [`Rule::Gate`].
+    /// Of each class, under [`CandidatePolicy::Gate`].
     thresholds: Vec<f32>,
     /// The last few ticks' distances, `ring_len` × `classes`.
     ring: Vec<ClassDistance>,
@@ -82,7 +84,12 @@ impl Clone for Decoder {
 
 impl Decoder {
     /// For `classes` classes whose matches are at most `longest` ticks long.
-    pub fn new(params: &DecodeParams, rule: Rule, classes: usize, longest: usize) -> Self {
+    pub fn new(
+        params: &DecodeParams,
+        rule: CandidatePolicy,
+        classes: usize,
+        longest: usize,
+    ) -> Self {
         let reach = (2 * (params.gate_ticks + params.peak_ticks))
             .max(params.look_ahead_ticks(rule) + params.rival_ticks);
         let ring_len = (reach + 2).next_power_of_two();
@@ -94,7 +101,7 @@ impl Decoder {
             rule,
             classes,
             thresholds: vec![
-                if let Rule::Gate { threshold } = rule {
+                if let CandidatePolicy::Gate { threshold } = rule {
                     threshold
                 } else {
                     FAR
@@ -129,7 +136,7 @@ impl Decoder {
     }
 
     /// Takes the next tick: one distance for each class and the smallest to any negative ([`FAR`] if there is
-    /// none). Calls `out` with what is now certain; `judge` scores candidates under [`Rule::Verify`].
+    /// none). Calls `out` with what is now certain; `judge` scores candidates under [`CandidatePolicy::Verify`].
     pub fn push(
         &mut self,
         near: &[ClassDistance],
@@ -192,7 +199,7 @@ impl Decoder {
     ) -> Option<f64> {
         let distance = self.near(tick, class).distance;
         match self.rule {
-            Rule::Gate { .. } => {
+            CandidatePolicy::Gate { .. } => {
                 let threshold = self.thresholds[class];
                 if distance >= threshold || distance >= self.gate(tick) {
                     return None;
@@ -206,7 +213,7 @@ impl Decoder {
                 });
                 (!beaten).then(|| 1.0 - f64::from(distance) / f64::from(threshold))
             }
-            Rule::Verify { reach } => {
+            CandidatePolicy::Verify { reach } => {
                 let candidate = self.unverified(tick, class, reach)?;
                 Some(judge(&candidate)).filter(|score| *score > 0.0)
             }
@@ -331,7 +338,9 @@ impl Decoder {
     /// Whether a match of another class that encloses `detection` may yet become a better candidate.
     fn waits(&self, detection: &TickDetection) -> bool {
         let waited = self.decided - detection.stop;
-        if !matches!(self.rule, Rule::Gate { .. }) || waited >= self.params.hold_ticks as i64 {
+        if !matches!(self.rule, CandidatePolicy::Gate { .. })
+            || waited >= self.params.hold_ticks as i64
+        {
             return false;
         }
         let last = self.ticks - 1;

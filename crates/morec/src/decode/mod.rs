@@ -9,7 +9,7 @@ mod tests;
 use crate::classes::ClassId;
 
 pub use decoder::Decoder;
-pub use params::{DecodeParams, Rule};
+pub use params::{CandidatePolicy, DecodeParams};
 
 /// Distance of a class that nothing has matched yet.
 pub const FAR: f32 = 1e30;

@@ -20,7 +20,7 @@ pub struct DecodeParams {
     #[serde(default)]
     pub overlap_share: f32,
     /// A detection waits up to this many ticks while another class's match that encloses it is near enough and still
-    /// coming nearer: a short motion may only be the end of a longer one. Under [`Rule::Verify`] nothing waits.
+    /// coming nearer: a short motion may only be the end of a longer one. Under [`CandidatePolicy::Verify`] nothing waits.
     #[serde(default)]
     pub hold_ticks: usize,
     /// Exponent by which distances are normalised with the spread of template and matched stretch, 0 … 1: see
@@ -31,14 +31,14 @@ pub struct DecodeParams {
     /// pose of the matched stretch (see [`Matcher`](crate::templates::Matcher)). 0 admits everything.
     #[serde(default)]
     pub rest_gate: f32,
-    /// The same under [`Rule::Verify`], where motion is evidence besides.
+    /// The same under [`CandidatePolicy::Verify`], where motion is evidence besides.
     #[serde(default)]
     pub rest_gate_verified: f32,
     /// Whether a candidate may reach only [`overlap_ticks`](Self::overlap_ticks) into the last detection of its own
     /// class, so that a motion out and the same motion out and back are not two detections.
     #[serde(default)]
     pub once: bool,
-    /// Under [`Rule::Gate`], a candidate is refused if another class has a match around its end that is nearer than
+    /// Under [`CandidatePolicy::Gate`], a candidate is refused if another class has a match around its end that is nearer than
     /// this share of the candidate's distance; 0: never.
     #[serde(default)]
     pub rival_share: f32,
@@ -159,30 +159,30 @@ impl DecodeParams {
     }
 
     /// Ticks that must follow a motion's last tick before it can be reported.
-    pub fn look_ahead_ticks(&self, rule: Rule) -> usize {
+    pub fn look_ahead_ticks(&self, rule: CandidatePolicy) -> usize {
         self.window_ticks(rule) + self.lag_ticks
     }
 
     /// Matches count below this share of a motionless body's distance.
-    pub fn rest_share(&self, rule: Rule) -> f32 {
+    pub fn rest_share(&self, rule: CandidatePolicy) -> f32 {
         match rule {
-            Rule::Gate { .. } => self.rest_gate,
-            Rule::Verify { .. } => self.rest_gate_verified,
+            CandidatePolicy::Gate { .. } => self.rest_gate,
+            CandidatePolicy::Verify { .. } => self.rest_gate_verified,
         }
     }
 
     /// Ticks that must follow a tick before it is known whether it is a candidate.
-    pub(super) fn window_ticks(&self, rule: Rule) -> usize {
+    pub(super) fn window_ticks(&self, rule: CandidatePolicy) -> usize {
         match rule {
-            Rule::Gate { .. } => self.gate_ticks + self.peak_ticks,
-            Rule::Verify { .. } => self.peak_ticks,
+            CandidatePolicy::Gate { .. } => self.gate_ticks + self.peak_ticks,
+            CandidatePolicy::Verify { .. } => self.peak_ticks,
         }
     }
 }
 
 /// What makes a candidate of a distance.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Rule {
+pub enum CandidatePolicy {
     /// Distances below the class's threshold and below [`DecodeParams::gate`] times the smallest negative distance
     /// nearby; the score is 1 − distance / threshold.
     Gate {

@@ -2,7 +2,7 @@ use super::*;
 
 /// Runs one class's distances (age: always 3 ticks) through a decoder and returns spans.
 fn spans(distances: &[f32], negatives: &[f32], params: &DecodeParams) -> Vec<(i64, i64)> {
-    let rule = Rule::Gate { threshold: 2.0 };
+    let rule = CandidatePolicy::Gate { threshold: 2.0 };
     let mut decoder = Decoder::new(params, rule, 1, 4);
     let mut judge = |_: &Candidate| 0.0;
     let mut found = vec![];
@@ -65,7 +65,12 @@ fn of_two_overlapping_candidates_the_better_remains_when_the_lag_allows() {
 
 /// Runs several classes' distances and ages; returns class, span and the tick before which each was out.
 fn reports(ticks: &[Vec<(f32, usize)>], params: &DecodeParams) -> Vec<(u16, i64, i64, usize)> {
-    let mut decoder = Decoder::new(params, Rule::Gate { threshold: 2.0 }, ticks[0].len(), 20);
+    let mut decoder = Decoder::new(
+        params,
+        CandidatePolicy::Gate { threshold: 2.0 },
+        ticks[0].len(),
+        20,
+    );
     let mut judge = |_: &Candidate| 0.0;
     let mut found = vec![];
     for (t, near) in ticks.iter().enumerate() {
@@ -182,7 +187,7 @@ fn a_nearer_match_of_another_class_refuses_a_candidate() {
 fn the_last_partial_repetition_is_not_one_more() {
     let run = |last_spread: f32| {
         let params = DecodeParams::default();
-        let mut decoder = Decoder::new(&params, Rule::Gate { threshold: 2.0 }, 1, 20);
+        let mut decoder = Decoder::new(&params, CandidatePolicy::Gate { threshold: 2.0 }, 1, 20);
         let mut found = 0;
         for t in 0..60i64 {
             let mut near = ClassDistance::NONE;
@@ -228,7 +233,7 @@ fn a_motion_that_overlaps_the_one_before_is_cut_not_lost() {
 fn classes_may_have_thresholds_of_their_own() {
     let mut decoder = Decoder::new(
         &DecodeParams::default(),
-        Rule::Gate { threshold: 1.0 },
+        CandidatePolicy::Gate { threshold: 1.0 },
         2,
         20,
     );

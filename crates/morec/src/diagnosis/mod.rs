@@ -27,8 +27,8 @@ use crate::features::{KeyPose, for_each_pose};
 use crate::math::{Axis, Vec3};
 use crate::roles::{Role, RoleMap};
 
-use noise::Noise;
-use shape::Shape;
+use noise::NoiseEstimate;
+use shape::BodyShape;
 use stillness::Stillness;
 use timing::Timing;
 
@@ -79,8 +79,8 @@ pub struct Diagnoser {
     has_body: bool,
     looked_secs: f64,
     last: KeyPose,
-    shape: Shape,
-    noise: Noise,
+    shape: BodyShape,
+    noise: NoiseEstimate,
     stillness: Stillness,
 }
 
@@ -106,8 +106,8 @@ impl Diagnoser {
             has_body: false,
             looked_secs: f64::NEG_INFINITY,
             last: KeyPose::default(),
-            shape: Shape::default(),
-            noise: Noise::new(),
+            shape: BodyShape::default(),
+            noise: NoiseEstimate::new(),
             stillness: Stillness::new(),
         }
     }

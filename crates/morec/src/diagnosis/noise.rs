@@ -24,7 +24,7 @@ const RENEW: u32 = 8;
 
 /// The last poses of an even stretch, and what their differences say.
 #[derive(Debug, Clone)]
-pub(super) struct Noise {
+pub(super) struct NoiseEstimate {
     row: [KeyPose; ROW],
     /// Poses in the row; they are evenly apart.
     filled: usize,
@@ -37,7 +37,7 @@ pub(super) struct Noise {
     looks: u32,
 }
 
-impl Noise {
+impl NoiseEstimate {
     pub(super) fn new() -> Self {
         Self {
             row: [KeyPose::default(); ROW],

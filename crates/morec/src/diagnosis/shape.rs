@@ -38,7 +38,7 @@ impl Mean {
 
 /// Lengths, directions and bends of one body.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Shape {
+pub(super) struct BodyShape {
     pub(super) leg: Mean,
     pub(super) trunk: Mean,
     pub(super) neck: Mean,
@@ -88,7 +88,7 @@ const ARMS: [[Role; 3]; 2] = [
     [Role::RightArm, Role::RightForearm, Role::RightHand],
 ];
 
-impl Shape {
+impl BodyShape {
     pub(super) fn push(&mut self, pose: &KeyPose) {
         let legs = LEGS.map(|roles| Leg::of(pose, roles));
         for leg in legs.iter().flatten() {

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::Stream;
+use super::EvaluatedStream;
 use super::figures::share;
 use super::interval::{mostly_outside, union};
 
@@ -38,7 +38,7 @@ pub struct UnknownFigures {
 }
 
 /// Which detections of a stream are false alarms. O(samples × detections).
-pub(super) fn are_false_alarms(stream: &Stream<'_>) -> Vec<bool> {
+pub(super) fn are_false_alarms(stream: &EvaluatedStream<'_>) -> Vec<bool> {
     let labelled = union(stream.truths.iter().map(|t| t.interval()));
     stream
         .founds
@@ -51,14 +51,14 @@ fn per_minute(count: usize, minutes: f64) -> Option<f64> {
     (minutes > 0.0).then(|| count as f64 / minutes)
 }
 
-fn minutes(streams: &[Stream<'_>]) -> f64 {
+fn minutes(streams: &[EvaluatedStream<'_>]) -> f64 {
     streams.iter().map(|s| s.info.duration_secs).sum::<f64>() / 60.0
 }
 
 impl FalseAlarms {
     /// In known streams, those of one class or of all.
-    pub(super) fn count(known: &[Stream<'_>], class: Option<&str>) -> Self {
-        let of_stream = |stream: &Stream<'_>| {
+    pub(super) fn count(known: &[EvaluatedStream<'_>], class: Option<&str>) -> Self {
+        let of_stream = |stream: &EvaluatedStream<'_>| {
             let founds = stream.founds.iter().zip(are_false_alarms(stream));
             founds
                 .filter(|(found, alarm)| *alarm && class.is_none_or(|c| c == found.class))
@@ -75,7 +75,7 @@ impl FalseAlarms {
 }
 
 impl UnknownFigures {
-    pub(super) fn count(unknown: &[Stream<'_>]) -> Self {
+    pub(super) fn count(unknown: &[EvaluatedStream<'_>]) -> Self {
         let clips_accepted = unknown.iter().filter(|s| !s.founds.is_empty()).count();
         let detections = unknown.iter().map(|s| s.founds.len()).sum();
         let minutes = minutes(unknown);

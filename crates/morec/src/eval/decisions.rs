@@ -4,7 +4,7 @@
 use serde::Serialize;
 
 use super::interval::{Interval, gaps, union};
-use super::{Found, Stream, UNLABELLED_MIN_SECS};
+use super::{ClipDetection, EvaluatedStream, UNLABELLED_MIN_SECS};
 
 /// The thesis's accuracy of segmentation and recognition (§5.4, Eq. 5.2) and its four counts.
 ///
@@ -60,7 +60,7 @@ pub(super) struct Decision<'a> {
 
 /// The decisions of a stream: its samples in order, then its unlabelled stretches.
 /// O(samples × detections).
-pub(super) fn decisions<'a>(stream: &Stream<'a>) -> Vec<Decision<'a>> {
+pub(super) fn decisions<'a>(stream: &EvaluatedStream<'a>) -> Vec<Decision<'a>> {
     let labelled = union(stream.truths.iter().map(|t| t.interval()));
     let unlabelled = gaps(&labelled, stream.info.duration_secs, UNLABELLED_MIN_SECS);
     let samples = stream
@@ -77,7 +77,7 @@ pub(super) fn decisions<'a>(stream: &Stream<'a>) -> Vec<Decision<'a>> {
         .collect()
 }
 
-fn best_match<'a>(at: Interval, stream: &Stream<'a>) -> Option<&'a Found> {
+fn best_match<'a>(at: Interval, stream: &EvaluatedStream<'a>) -> Option<&'a ClipDetection> {
     best_by(at, stream, |found| {
         (at.overlap(found.interval()), at.iou(found.interval()))
     })
@@ -86,10 +86,10 @@ fn best_match<'a>(at: Interval, stream: &Stream<'a>) -> Option<&'a Found> {
 /// The matching detection of the highest key; the earliest of equals.
 fn best_by<'a>(
     at: Interval,
-    stream: &Stream<'a>,
-    key: impl Fn(&Found) -> (f64, f64),
-) -> Option<&'a Found> {
-    let mut best: Option<(&Found, (f64, f64))> = None;
+    stream: &EvaluatedStream<'a>,
+    key: impl Fn(&ClipDetection) -> (f64, f64),
+) -> Option<&'a ClipDetection> {
+    let mut best: Option<(&ClipDetection, (f64, f64))> = None;
     for found in stream.founds.iter().filter(|f| at.matches(f.interval())) {
         let key = key(found);
         if best.is_none_or(|(_, (a, b))| key.0.total_cmp(&a).then(key.1.total_cmp(&b)).is_gt()) {
@@ -124,7 +124,7 @@ impl ThesisAccuracy {
 
 impl Classification {
     /// Over the samples of a class, or of every class.
-    pub(super) fn count(streams: &[Stream<'_>], class: Option<&str>) -> Self {
+    pub(super) fn count(streams: &[EvaluatedStream<'_>], class: Option<&str>) -> Self {
         let mut counts = Self::default();
         for stream in streams {
             for truth in stream
@@ -133,7 +133,7 @@ impl Classification {
                 .filter(|t| class.is_none_or(|c| c == t.class))
             {
                 let at = truth.interval();
-                let score = |found: &Found| found.score.unwrap_or(f64::NEG_INFINITY);
+                let score = |found: &ClipDetection| found.score.unwrap_or(f64::NEG_INFINITY);
                 let best = best_by(at, stream, |found| {
                     (score(found), at.overlap(found.interval()))
                 });

@@ -6,9 +6,9 @@ use super::decisions::{Decision, decisions};
 use super::pairs::pair;
 use super::timing::measured_pairs;
 use super::{
-    Boundaries, Classification, Confusion, Delay, EvalError, EventScore, FalseAlarms, Found,
-    Mistake, OVERLAPS, OverlapScore, Reliability, Stream, StreamInfo, ThesisAccuracy, Truth,
-    UnknownFigures, all_classes, streams,
+    Boundaries, Classification, ClipDetection, Confusion, Delay, EvalError, EvaluatedStream,
+    EventScore, FalseAlarms, GroundTruth, Mistake, OVERLAPS, OverlapScore, Reliability, StreamInfo,
+    ThesisAccuracy, UnknownFigures, all_classes, streams,
 };
 
 /// Every measure, over all streams together and class by class. Serialises to the JSON that `morec evaluate
@@ -83,7 +83,11 @@ pub struct ClassFigures {
 
 impl Evaluation {
     /// Computes every measure. O(samples × detections) within each stream.
-    pub fn of(infos: &[StreamInfo], truths: &[Truth], founds: &[Found]) -> Result<Self, EvalError> {
+    pub fn of(
+        infos: &[StreamInfo],
+        truths: &[GroundTruth],
+        founds: &[ClipDetection],
+    ) -> Result<Self, EvalError> {
         let all = streams(infos, truths, founds)?;
         let classes = all_classes(&all);
         let (unknown, known): (Vec<_>, Vec<_>) = all.into_iter().partition(|s| s.info.unknown);
@@ -137,7 +141,7 @@ impl Evaluation {
 }
 
 impl Totals {
-    fn count(known: &[Stream<'_>]) -> Self {
+    fn count(known: &[EvaluatedStream<'_>]) -> Self {
         Self {
             known_clips: known.len(),
             known_secs: known.iter().map(|s| s.info.duration_secs).sum(),
@@ -151,8 +155,8 @@ impl Totals {
 struct PairedClasses<'a>(Vec<(f64, Vec<&'a str>)>);
 
 impl<'a> PairedClasses<'a> {
-    fn new(known: &[Stream<'a>]) -> Self {
-        let classes_of = |stream: &Stream<'a>, min_iou| {
+    fn new(known: &[EvaluatedStream<'a>]) -> Self {
+        let classes_of = |stream: &EvaluatedStream<'a>, min_iou| {
             pair(stream, min_iou)
                 .into_iter()
                 .map(|(t, _)| stream.truths[t].class.as_str())
@@ -165,7 +169,7 @@ impl<'a> PairedClasses<'a> {
         )
     }
 
-    fn scores(&self, known: &[Stream<'_>], class: Option<&str>) -> Vec<OverlapScore> {
+    fn scores(&self, known: &[EvaluatedStream<'_>], class: Option<&str>) -> Vec<OverlapScore> {
         let (samples, detections) = (count_truths(known, class), count_founds(known, class));
         let matched = |classes: &[&str]| {
             classes
@@ -180,7 +184,7 @@ impl<'a> PairedClasses<'a> {
     }
 }
 
-fn count_truths(streams: &[Stream<'_>], class: Option<&str>) -> usize {
+fn count_truths(streams: &[EvaluatedStream<'_>], class: Option<&str>) -> usize {
     streams
         .iter()
         .flat_map(|s| &s.truths)
@@ -188,7 +192,7 @@ fn count_truths(streams: &[Stream<'_>], class: Option<&str>) -> usize {
         .count()
 }
 
-fn count_founds(streams: &[Stream<'_>], class: Option<&str>) -> usize {
+fn count_founds(streams: &[EvaluatedStream<'_>], class: Option<&str>) -> usize {
     streams
         .iter()
         .flat_map(|s| &s.founds)

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::figures::share;
-use super::{Found, Stream, Truth};
+use super::{ClipDetection, EvaluatedStream, GroundTruth};
 
 /// How far outside a sample the middle of its detection may lie, in seconds: eight frames at 30 Hz.
 pub const EVENT_TOLERANCE_SECS: f64 = 8.0 / 30.0;
@@ -31,7 +31,7 @@ pub struct EventScore {
 
 impl EventScore {
     /// Counts over `streams`. O(samples × detections) within each stream.
-    pub(super) fn count(streams: &[Stream<'_>]) -> Self {
+    pub(super) fn count(streams: &[EvaluatedStream<'_>]) -> Self {
         let (mut matched, mut samples, mut detections) = (0, 0, 0);
         for stream in streams {
             matched += right_in(stream).into_iter().filter(|right| *right).count();
@@ -50,7 +50,7 @@ impl EventScore {
 }
 
 /// Which detections of a stream are right.
-pub(super) fn right_in(stream: &Stream<'_>) -> Vec<bool> {
+pub(super) fn right_in(stream: &EvaluatedStream<'_>) -> Vec<bool> {
     let mut right = vec![false; stream.founds.len()];
     for found in event_pairs(&stream.truths, &stream.founds)
         .into_iter()
@@ -64,7 +64,7 @@ pub(super) fn right_in(stream: &Stream<'_>) -> Vec<bool> {
 /// For each sample of one stream the detection that is its event, as a place in `founds`, if there is one. Samples in
 /// order of their stops each take the earliest detection that is left: for intervals that is the largest pairing there
 /// is. O(samples × detections).
-pub fn event_pairs(truths: &[&Truth], founds: &[&Found]) -> Vec<Option<usize>> {
+pub fn event_pairs(truths: &[&GroundTruth], founds: &[&ClipDetection]) -> Vec<Option<usize>> {
     let mut in_order: Vec<usize> = (0..truths.len()).collect();
     in_order.sort_by(|a, b| truths[*a].stop_secs.total_cmp(&truths[*b].stop_secs));
     let middle = |f: usize| (founds[f].start_secs + founds[f].stop_secs) / 2.0;
@@ -87,7 +87,7 @@ pub fn event_pairs(truths: &[&Truth], founds: &[&Found]) -> Vec<Option<usize>> {
 
 /// Whether a detection is of the sample's class and its middle lies within the sample, [`EVENT_TOLERANCE_SECS`] more on
 /// each side.
-fn is_event_of(truth: &Truth, found: &Found) -> bool {
+fn is_event_of(truth: &GroundTruth, found: &ClipDetection) -> bool {
     let near = truth.start_secs - EVENT_TOLERANCE_SECS..=truth.stop_secs + EVENT_TOLERANCE_SECS;
     found.class == truth.class && near.contains(&((found.start_secs + found.stop_secs) / 2.0))
 }

@@ -52,7 +52,7 @@ pub const UNLABELLED_MIN_SECS: f64 = 0.4;
 
 /// A labelled sample.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Truth {
+pub struct GroundTruth {
     /// The stream's name.
     pub clip: String,
     /// What happens.
@@ -65,7 +65,7 @@ pub struct Truth {
 
 /// A detection.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Found {
+pub struct ClipDetection {
     /// The stream's name.
     pub clip: String,
     /// The detected class.
@@ -144,7 +144,7 @@ pub enum EvalError {
     },
 }
 
-impl Truth {
+impl GroundTruth {
     fn interval(&self) -> Interval {
         Interval {
             start: self.start_secs,
@@ -153,7 +153,7 @@ impl Truth {
     }
 }
 
-impl Found {
+impl ClipDetection {
     fn interval(&self) -> Interval {
         Interval {
             start: self.start_secs,
@@ -164,19 +164,19 @@ impl Found {
 
 /// One stream with what lies in it, each kind ordered by start, stop, class (and score).
 #[derive(Debug)]
-struct Stream<'a> {
+struct EvaluatedStream<'a> {
     info: &'a StreamInfo,
-    truths: Vec<&'a Truth>,
-    founds: Vec<&'a Found>,
+    truths: Vec<&'a GroundTruth>,
+    founds: Vec<&'a ClipDetection>,
 }
 
 /// Sorts samples and detections into their streams, streams in order of name. O(n log n).
 fn streams<'a>(
     infos: &'a [StreamInfo],
-    truths: &'a [Truth],
-    founds: &'a [Found],
-) -> Result<Vec<Stream<'a>>, EvalError> {
-    let mut by_clip: BTreeMap<&str, Stream<'a>> = BTreeMap::new();
+    truths: &'a [GroundTruth],
+    founds: &'a [ClipDetection],
+) -> Result<Vec<EvaluatedStream<'a>>, EvalError> {
+    let mut by_clip: BTreeMap<&str, EvaluatedStream<'a>> = BTreeMap::new();
     for info in infos {
         let (clip, duration_secs) = (info.clip.clone(), info.duration_secs);
         if !(duration_secs > 0.0 && duration_secs.is_finite()) {
@@ -188,7 +188,7 @@ fn streams<'a>(
         if by_clip
             .insert(
                 &info.clip,
-                Stream {
+                EvaluatedStream {
                     info,
                     truths: Vec::new(),
                     founds: Vec::new(),
@@ -226,7 +226,7 @@ fn streams<'a>(
         .founds
         .push(found);
     }
-    let mut streams: Vec<Stream<'a>> = by_clip.into_values().collect();
+    let mut streams: Vec<EvaluatedStream<'a>> = by_clip.into_values().collect();
     for stream in &mut streams {
         stream.truths.sort_by(|a, b| {
             a.interval()
@@ -234,8 +234,8 @@ fn streams<'a>(
                 .then_with(|| a.class.cmp(&b.class))
         });
         stream.founds.sort_by(|a, b| {
-            let score = |f: &Found| f.score.unwrap_or(f64::NEG_INFINITY);
-            let reported = |f: &Found| f.reported_secs.unwrap_or(f64::NEG_INFINITY);
+            let score = |f: &ClipDetection| f.score.unwrap_or(f64::NEG_INFINITY);
+            let reported = |f: &ClipDetection| f.reported_secs.unwrap_or(f64::NEG_INFINITY);
             (a.interval()
                 .order(b.interval())
                 .then_with(|| a.class.cmp(&b.class)))
@@ -247,12 +247,12 @@ fn streams<'a>(
 }
 
 fn stream_of<'s, 'a>(
-    by_clip: &'s mut BTreeMap<&str, Stream<'a>>,
+    by_clip: &'s mut BTreeMap<&str, EvaluatedStream<'a>>,
     what: &'static str,
     clip: &str,
     class: &str,
     at: Interval,
-) -> Result<&'s mut Stream<'a>, EvalError> {
+) -> Result<&'s mut EvaluatedStream<'a>, EvalError> {
     let (class, name) = (class.to_owned(), clip.to_owned());
     if !at.is_stretch() {
         return Err(EvalError::NoStretch {
@@ -271,7 +271,7 @@ fn stream_of<'s, 'a>(
 }
 
 /// Every class that is labelled or found in any stream.
-fn all_classes<'a>(streams: &[Stream<'a>]) -> BTreeSet<&'a str> {
+fn all_classes<'a>(streams: &[EvaluatedStream<'a>]) -> BTreeSet<&'a str> {
     let truths = streams
         .iter()
         .flat_map(|s| s.truths.iter().map(|t| t.class.as_str()));

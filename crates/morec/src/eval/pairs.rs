@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use serde::Serialize;
 
-use super::Stream;
+use super::EvaluatedStream;
 use super::figures::share;
 
 /// Precision, recall and F1 where a detection must overlap a sample of its class by an intersection over union
@@ -48,7 +48,7 @@ impl OverlapScore {
 /// Pairs are taken by falling overlap first; then, as long as another pair is possible at all, partners are
 /// changed along augmenting paths. The number of pairs is therefore the largest possible.
 /// O(samples × possible pairs) at worst; hardly more than the sorting where detections are sparse.
-pub(super) fn pair(stream: &Stream<'_>, min_iou: f64) -> Vec<(usize, usize)> {
+pub(super) fn pair(stream: &EvaluatedStream<'_>, min_iou: f64) -> Vec<(usize, usize)> {
     let mut edges: Vec<(f64, usize, usize)> = Vec::new();
     for (t, truth) in stream.truths.iter().enumerate() {
         for (f, found) in stream.founds.iter().enumerate() {

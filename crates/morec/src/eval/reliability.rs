@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::Stream;
+use super::EvaluatedStream;
 use super::events::right_in;
 
 /// Scores are counted in so many equal bins.
@@ -32,7 +32,9 @@ pub struct Reliability {
 
 impl Reliability {
     /// Counts over known and unknown streams. O(samples × detections) within each stream.
-    pub(super) fn count<'s, 'a: 's>(streams: impl Iterator<Item = &'s Stream<'a>>) -> Self {
+    pub(super) fn count<'s, 'a: 's>(
+        streams: impl Iterator<Item = &'s EvaluatedStream<'a>>,
+    ) -> Self {
         let mut sums = [(0usize, 0.0, 0usize); SCORE_BINS];
         for stream in streams {
             for (found, right) in stream.founds.iter().zip(right_in(stream)) {

@@ -5,7 +5,9 @@ use serde::Serialize;
 use super::alarms::are_false_alarms;
 use super::decisions::decisions;
 use super::pairs::pair;
-use super::{EvalError, Found, MEASURED_OVERLAP, Stream, StreamInfo, Truth, streams};
+use super::{
+    ClipDetection, EvalError, EvaluatedStream, GroundTruth, MEASURED_OVERLAP, StreamInfo, streams,
+};
 
 /// What became of a sample, as in [`ThesisAccuracy`](super::ThesisAccuracy).
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
@@ -39,16 +41,16 @@ pub struct Timeline {
     /// The stream.
     pub stream: StreamInfo,
     /// Its samples and what became of them.
-    pub truths: Vec<(Truth, TruthVerdict)>,
+    pub truths: Vec<(GroundTruth, TruthVerdict)>,
     /// Its detections and what they are worth.
-    pub founds: Vec<(Found, FoundVerdict)>,
+    pub founds: Vec<(ClipDetection, FoundVerdict)>,
 }
 
 /// The timelines of all streams, by name. Fails and costs as [`Evaluation::of`](super::Evaluation::of).
 pub fn timelines(
     infos: &[StreamInfo],
-    truths: &[Truth],
-    founds: &[Found],
+    truths: &[GroundTruth],
+    founds: &[ClipDetection],
 ) -> Result<Vec<Timeline>, EvalError> {
     Ok(streams(infos, truths, founds)?
         .iter()
@@ -56,7 +58,7 @@ pub fn timelines(
         .collect())
 }
 
-fn timeline(stream: &Stream<'_>) -> Timeline {
+fn timeline(stream: &EvaluatedStream<'_>) -> Timeline {
     // Decisions come in the order of the samples; those of unlabelled stretches follow and are cut off here.
     let truths = stream
         .truths

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::figures::quantile;
 use super::pairs::pair;
-use super::{Found, MEASURED_OVERLAP, Stream, Truth};
+use super::{ClipDetection, EvaluatedStream, GroundTruth, MEASURED_OVERLAP};
 
 /// From a sample's stop to the moment its detection is reported, over detections paired with a sample of their
 /// class at an intersection over union of at least [`MEASURED_OVERLAP`], if it is known when they were reported.
@@ -36,8 +36,10 @@ pub struct Boundaries {
 }
 
 /// The pairs that are measured, of every stream.
-pub(super) fn measured_pairs<'a>(streams: &[Stream<'a>]) -> Vec<(&'a Truth, &'a Found)> {
-    let pairs_of = |stream: &Stream<'a>| {
+pub(super) fn measured_pairs<'a>(
+    streams: &[EvaluatedStream<'a>],
+) -> Vec<(&'a GroundTruth, &'a ClipDetection)> {
+    let pairs_of = |stream: &EvaluatedStream<'a>| {
         let pairs = pair(stream, MEASURED_OVERLAP);
         pairs
             .into_iter()
@@ -48,7 +50,7 @@ pub(super) fn measured_pairs<'a>(streams: &[Stream<'a>]) -> Vec<(&'a Truth, &'a 
 }
 
 impl Delay {
-    pub(super) fn of(pairs: &[(&Truth, &Found)]) -> Self {
+    pub(super) fn of(pairs: &[(&GroundTruth, &ClipDetection)]) -> Self {
         let mut delays: Vec<f64> = pairs
             .iter()
             .filter_map(|(truth, found)| Some(found.reported_secs? - truth.stop_secs))
@@ -62,7 +64,7 @@ impl Delay {
 }
 
 impl Boundaries {
-    pub(super) fn of(pairs: &[(&Truth, &Found)]) -> Self {
+    pub(super) fn of(pairs: &[(&GroundTruth, &ClipDetection)]) -> Self {
         let starts: Vec<f64> = pairs
             .iter()
             .map(|(t, f)| f.start_secs - t.start_secs)

@@ -87,7 +87,7 @@ pub fn explain(
     let Ok(trace) = Trace::of(&model, &rows) else {
         return Vec::new();
     };
-    let mut stream = Stream {
+    let mut stream = ComparedStream {
         model: &model,
         rows: &rows,
         trace,
@@ -98,14 +98,14 @@ pub fn explain(
 }
 
 /// A stream that was compared with a model.
-struct Stream<'a> {
+struct ComparedStream<'a> {
     model: &'a TemplateModel,
     rows: &'a Rows,
     trace: Trace<'a>,
     found: &'a [Detection],
 }
 
-impl Stream<'_> {
+impl ComparedStream<'_> {
     fn reason(&mut self, sought: &Sought<'_>) -> (Reason, Option<f64>) {
         let named = |c: &crate::classes::ClassInfo| c.name == sought.class;
         let Some(class) = self.model.classes.iter().position(named) else {

@@ -6,7 +6,7 @@ use crate::labels::Sample;
 use crate::live::{Model, recognize_clip};
 use crate::roles::RoleMap;
 use crate::synth::{DatabaseSpec, SyntheticTake, database};
-use crate::train::{Labelling, Source, TrainClip, TrainOptions, train_clips};
+use crate::train::{LabelSet, StreamKind, TrainClip, TrainOptions, train_clips};
 
 use super::*;
 
@@ -47,7 +47,7 @@ fn trained(takes: &[SyntheticTake], change: impl Fn(&mut TrainOptions)) -> Model
             clip,
             roles,
             rest,
-            source: Source::Labelled,
+            source: StreamKind::Labelled,
             person: Some(take.person.clone()),
         });
         samples.extend(take.labels.iter().map(|label| Sample {
@@ -60,7 +60,7 @@ fn trained(takes: &[SyntheticTake], change: impl Fn(&mut TrainOptions)) -> Model
             line: 0,
         }));
     }
-    let labelling = Labelling {
+    let labelling = LabelSet {
         samples: &samples,
         classes: &CLASSES.map(str::to_owned),
         unlabelled_is_background: true,

@@ -67,8 +67,8 @@ fn level(value: f64) -> i64 {
 
 /// What is expected of the next row, and how far expectations of each kind have been off.
 struct Forecast {
-    bones: Vec<Bone>,
-    root: [Channel; 4],
+    bones: Vec<BoneHistory>,
+    root: [CoordinateHistory; 4],
     tick_secs: f64,
     saturation: f64,
     velocity_weight: f64,
@@ -82,16 +82,16 @@ struct Forecast {
 
 /// A coordinate's last two levels, and how far the last forecast of it was off.
 #[derive(Clone, Copy, Default)]
-struct Channel {
+struct CoordinateHistory {
     last: i64,
     before: i64,
     missed: u64,
 }
 
 #[derive(Clone, Default)]
-struct Bone {
-    velocity: [Channel; 3],
-    direction: [Channel; 3],
+struct BoneHistory {
+    velocity: [CoordinateHistory; 3],
+    direction: [CoordinateHistory; 3],
     /// Velocity before it was saturated, per second.
     rate: [f64; 3],
 }
@@ -103,7 +103,7 @@ impl Forecast {
     fn new(dim: usize, params: &FeatureParams) -> Self {
         let new = || Misses(std::array::from_fn(|_| Whole::of_few_digits()));
         Self {
-            bones: vec![Bone::default(); dim.saturating_sub(4) / 6],
+            bones: vec![BoneHistory::default(); dim.saturating_sub(4) / 6],
             root: Default::default(),
             tick_secs: 1.0 / params.tick_hz(),
             saturation: params.velocity_saturation,
@@ -140,7 +140,7 @@ impl Forecast {
         }
     }
 
-    fn velocity(&mut self, coder: &mut impl Coder, bone: &mut Bone, levels: &mut [i64; 3]) {
+    fn velocity(&mut self, coder: &mut impl Coder, bone: &mut BoneHistory, levels: &mut [i64; 3]) {
         let expected: [f64; 3] = std::array::from_fn(|axis| {
             bone.direction[axis].last as f64 * STEP + bone.rate[axis] * self.tick_secs
         });
@@ -170,7 +170,7 @@ impl Forecast {
             .code(coder, channel, forecast, levels[largest], around / 2);
     }
 
-    fn direction(&mut self, coder: &mut impl Coder, bone: &mut Bone, levels: &mut [i64; 3]) {
+    fn direction(&mut self, coder: &mut impl Coder, bone: &mut BoneHistory, levels: &mut [i64; 3]) {
         let rate = self.unsaturated(bone.velocity.map(|channel| channel.last as f64 * STEP));
         let mut around = 0;
         for axis in 0..3 {
@@ -194,7 +194,7 @@ impl Forecast {
     }
 }
 
-impl Channel {
+impl CoordinateHistory {
     /// The next level if the last change goes on in part.
     fn goes_on(&self) -> f64 {
         self.last as f64 + GOES_ON * (self.last - self.before) as f64
@@ -206,7 +206,7 @@ impl Misses {
     fn code(
         &mut self,
         coder: &mut impl Coder,
-        channel: &mut Channel,
+        channel: &mut CoordinateHistory,
         expected: f64,
         level: i64,
         around: u64,
@@ -217,7 +217,7 @@ impl Misses {
         let level = expected
             .saturating_add(whole.signed(coder, level - expected))
             .clamp(-LIMIT, LIMIT);
-        *channel = Channel {
+        *channel = CoordinateHistory {
             last: level,
             before: channel.last,
             missed: level.abs_diff(expected),

@@ -11,7 +11,7 @@ use super::params::FeatureParams;
 
 /// A frame as the filters want it.
 #[derive(Debug, Clone, Copy)]
-struct Seen {
+struct FilterInput {
     directions: [Vec3; BONES],
     root: Vec3,
     yaw_rad: f64,
@@ -20,7 +20,7 @@ struct Seen {
     leg_length: f64,
 }
 
-impl Seen {
+impl FilterInput {
     fn of(observation: &Observation) -> Self {
         let Observation {
             directions,
@@ -51,7 +51,7 @@ pub struct Smoother {
     /// What noise is measured with.
     probe: Vec<f64>,
     noise: NoiseMeter,
-    ring: Vec<Seen>,
+    ring: Vec<FilterInput>,
     pushed: usize,
     next_row_frame: usize,
     row: Vec<f32>,
@@ -115,7 +115,7 @@ impl Smoother {
             kernels: Kernels::all(params),
             probe: half_gaussian(PROBE.sigma_frames, PROBE.cut_frames),
             noise: NoiseMeter::default(),
-            ring: vec![Seen::of(&empty); reach.next_power_of_two()],
+            ring: vec![FilterInput::of(&empty); reach.next_power_of_two()],
             pushed: 0,
             next_row_frame: params.frames_per_tick - 1,
             row: vec![0.0; row_dim(bones)],
@@ -139,7 +139,7 @@ impl Smoother {
     /// less noisy and its filter shorter.
     pub fn push(&mut self, observation: &Observation, out: &mut impl FnMut(&[f32])) {
         let mask = self.ring.len() - 1;
-        self.ring[self.pushed & mask] = Seen::of(observation);
+        self.ring[self.pushed & mask] = FilterInput::of(observation);
         self.pushed += 1;
         if self.params.follow_noise && self.pushed.is_multiple_of(self.params.frames_per_tick) {
             self.measure_noise();
@@ -211,7 +211,7 @@ impl Smoother {
         i
     }
 
-    fn at(&self, index: isize) -> &Seen {
+    fn at(&self, index: isize) -> &FilterInput {
         &self.ring[self.mirrored(index) as usize & (self.ring.len() - 1)]
     }
 

@@ -12,7 +12,7 @@ pub(super) struct Array {
 
 /// What stands before the numbers.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Header {
+pub(super) struct NpyHeader {
     pub(super) descr: String,
     fortran_order: bool,
     pub(super) shape: Vec<usize>,
@@ -22,7 +22,7 @@ pub(super) struct Header {
 
 const MAGIC: &[u8] = b"\x93NUMPY";
 
-pub(super) fn header(bytes: &[u8]) -> Result<Header, ParseError> {
+pub(super) fn header(bytes: &[u8]) -> Result<NpyHeader, ParseError> {
     let wrong = |found: &str| ParseError::new(Place::Byte(0), "the header of a NumPy array", found);
     let rest = bytes
         .strip_prefix(MAGIC)
@@ -58,13 +58,13 @@ pub(super) fn header(bytes: &[u8]) -> Result<Header, ParseError> {
         .filter(|number| !number.is_empty())
         .map(|number| number.trim_end_matches('L').parse().ok())
         .collect();
-    Ok(Header {
+    Ok(NpyHeader {
         descr: descr.to_owned(),
         fortran_order: value("fortran_order").is_some_and(|order| order.starts_with("True")),
         shape: shape.ok_or_else(|| wrong("another shape"))?,
         begin,
     })
-    .map(|header| Header {
+    .map(|header| NpyHeader {
         begin: end,
         ..header
     })

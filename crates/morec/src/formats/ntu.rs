@@ -64,7 +64,7 @@ pub fn read(
     limits: &Limits,
 ) -> Result<Loaded, ParseError> {
     let rows = lines(bytes, limits)?;
-    let mut rows = Rows(rows.iter());
+    let mut rows = NtuLines(rows.iter());
     let declared = rows.count("the number of frames")?;
     check_size(JOINTS.len(), declared, bytes.len())?;
     let mut warnings = Vec::new();
@@ -109,7 +109,7 @@ pub fn read(
 
 /// Reads the bodies of frame number `at`.
 fn frame(
-    rows: &mut Rows,
+    rows: &mut NtuLines,
     at: usize,
     bodies: &mut BTreeMap<String, Vec<Vec<Vec3>>>,
 ) -> Result<(), ParseError> {
@@ -161,9 +161,9 @@ fn frame(
 }
 
 /// Lines that are not empty, with their numbers.
-struct Rows<'a, 'b>(std::slice::Iter<'b, (u64, &'a str)>);
+struct NtuLines<'a, 'b>(std::slice::Iter<'b, (u64, &'a str)>);
 
-impl<'a> Rows<'a, '_> {
+impl<'a> NtuLines<'a, '_> {
     fn next(&mut self, expected: &str) -> Result<(u64, &'a str), ParseError> {
         let end = || ParseError::new(Place::File, expected, "the end of the file");
         let (line, text) = self

@@ -85,7 +85,7 @@ pub fn read(
     rate_hz: Option<f64>,
     limits: &Limits,
 ) -> Result<Loaded, ParseError> {
-    let mut archive = Archive::default();
+    let mut archive = ArrayArchive::default();
     if bytes.starts_with(b"PK") {
         let keys = || POSITIONS.iter().chain(&NAMES).chain(&RATE);
         let wanted = |path: &str| {
@@ -142,12 +142,12 @@ pub fn read(
 
 /// What was found in an archive.
 #[derive(Default)]
-struct Archive {
+struct ArrayArchive {
     numbers: BTreeMap<String, Array>,
     texts: BTreeMap<String, Vec<String>>,
 }
 
-impl Archive {
+impl ArrayArchive {
     fn add(&mut self, key: &str, bytes: &[u8]) -> Result<(), ParseError> {
         if let Some(texts) = npy::texts(bytes) {
             self.texts.insert(key.to_owned(), texts);
@@ -279,7 +279,7 @@ const SKELETON: [&str; 3] = ["rotations", "local_positions", "parents"];
 
 /// The skeleton of an archive that morec wrote; `None` of others, and of a clip of points.
 fn skeleton(
-    archive: &Archive,
+    archive: &ArrayArchive,
     name: &str,
     rate_hz: Option<f64>,
     limits: &Limits,

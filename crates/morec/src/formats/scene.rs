@@ -25,7 +25,7 @@ impl Local {
 
 /// A node of a scene.
 #[derive(Debug, Clone)]
-pub(super) struct Node {
+pub(super) struct SceneNode {
     pub(super) name: String,
     pub(super) parent: Option<usize>,
     /// When nothing moves it.
@@ -36,7 +36,7 @@ pub(super) struct Node {
 
 /// Nodes that are joints, each with its nearest ancestor among them as its parent.
 #[derive(Debug, Clone)]
-pub(super) struct Rig {
+pub(super) struct SceneSkeleton {
     /// Node and parent of each joint, parents first.
     joints: Vec<(usize, Option<usize>)>,
     /// The joints' nodes and all nodes above them, parents first.
@@ -45,7 +45,7 @@ pub(super) struct Rig {
     sorted: Vec<usize>,
 }
 
-impl Rig {
+impl SceneSkeleton {
     /// The joints' nodes, parents first.
     pub(super) fn nodes(&self) -> impl Iterator<Item = usize> + '_ {
         self.joints.iter().map(|joint| joint.0)
@@ -68,7 +68,10 @@ impl Rig {
 }
 
 /// The scene's nodes so that parents come first; parents that lead in a circle are cut.
-pub(super) fn parents_first(nodes: &mut [Node], limits: &Limits) -> Result<Vec<usize>, ParseError> {
+pub(super) fn parents_first(
+    nodes: &mut [SceneNode],
+    limits: &Limits,
+) -> Result<Vec<usize>, ParseError> {
     let mut children = vec![Vec::new(); nodes.len()];
     let mut open = Vec::new();
     for (n, node) in nodes.iter().enumerate() {
@@ -116,10 +119,10 @@ pub(super) fn parents_first(nodes: &mut [Node], limits: &Limits) -> Result<Vec<u
 }
 
 /// The skeletons of a scene whose nodes `order` lists parents first: joints that hang together.
-pub(super) fn rigs(nodes: &[Node], order: &[usize]) -> Vec<Rig> {
+pub(super) fn rigs(nodes: &[SceneNode], order: &[usize]) -> Vec<SceneSkeleton> {
     // For each node, the nearest joint at or above it: rig and number there.
     let mut nearest: Vec<Option<(usize, usize)>> = vec![None; nodes.len()];
-    let mut rigs: Vec<Rig> = Vec::new();
+    let mut rigs: Vec<SceneSkeleton> = Vec::new();
     for &n in order {
         let above = nodes[n].parent.and_then(|p| nearest[p]);
         if !nodes[n].joint {
@@ -129,7 +132,7 @@ pub(super) fn rigs(nodes: &[Node], order: &[usize]) -> Vec<Rig> {
         let (rig, parent) = match above {
             Some((rig, parent)) => (rig, Some(parent)),
             None => {
-                rigs.push(Rig {
+                rigs.push(SceneSkeleton {
                     joints: Vec::new(),
                     needed: Vec::new(),
                     sorted: Vec::new(),
@@ -215,7 +218,12 @@ fn nearest_rotation(linear: &Matrix3<f64>) -> Option<Quat> {
 }
 
 /// Worlds of the nodes that a rig needs.
-fn pose(nodes: &[Node], rig: &Rig, worlds: &mut [World], mut local: impl FnMut(usize) -> Local) {
+fn pose(
+    nodes: &[SceneNode],
+    rig: &SceneSkeleton,
+    worlds: &mut [World],
+    mut local: impl FnMut(usize) -> Local,
+) {
     for &n in &rig.needed {
         let above = nodes[n].parent.map_or(World::ORIGIN, |p| worlds[p]);
         worlds[n] = above.child(&local(n));
@@ -224,8 +232,8 @@ fn pose(nodes: &[Node], rig: &Rig, worlds: &mut [World], mut local: impl FnMut(u
 
 /// The joints as they rest; `name` may call them otherwise than their nodes.
 fn joints_at_rest(
-    nodes: &[Node],
-    rig: &Rig,
+    nodes: &[SceneNode],
+    rig: &SceneSkeleton,
     worlds: &mut [World],
     name: &dyn Fn(usize) -> String,
 ) -> Vec<Joint> {
@@ -262,7 +270,7 @@ fn joints_at_rest(
 }
 
 /// For each node its child, if it has just one.
-fn only_children(nodes: &[Node]) -> Vec<Option<usize>> {
+fn only_children(nodes: &[SceneNode]) -> Vec<Option<usize>> {
     let mut counts = vec![0; nodes.len()];
     let mut last = vec![None; nodes.len()];
     for (n, node) in nodes.iter().enumerate() {
@@ -279,7 +287,7 @@ fn only_children(nodes: &[Node]) -> Vec<Option<usize>> {
 
 /// How a rig is sampled.
 pub(super) struct Sampling<'a> {
-    pub(super) nodes: &'a [Node],
+    pub(super) nodes: &'a [SceneNode],
     pub(super) grid: KeyGrid,
     /// What a joint is called, by its node.
     pub(super) name: &'a dyn Fn(usize) -> String,
@@ -291,7 +299,7 @@ pub(super) struct Sampling<'a> {
 /// Samples one rig; `local` gives a node's transform at a time in seconds. Frames that are not finite are filled.
 pub(super) fn sample(
     sampling: &Sampling<'_>,
-    rig: &Rig,
+    rig: &SceneSkeleton,
     clip_name: String,
     mut local: impl FnMut(usize, f64) -> Local,
 ) -> Result<Clip, ParseError> {
@@ -333,8 +341,8 @@ pub(super) fn sample(
 }
 
 /// Skeletons worth reading: those of one or two joints are cameras and props where there is a larger one.
-pub(super) fn worthwhile(rigs: Vec<Rig>) -> (Vec<Rig>, Vec<Rig>) {
-    let largest = rigs.iter().map(Rig::len).max().unwrap_or(0);
+pub(super) fn worthwhile(rigs: Vec<SceneSkeleton>) -> (Vec<SceneSkeleton>, Vec<SceneSkeleton>) {
+    let largest = rigs.iter().map(SceneSkeleton::len).max().unwrap_or(0);
     rigs.into_iter()
         .partition(|rig| rig.len() > 2 || largest <= 2)
 }

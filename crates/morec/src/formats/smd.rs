@@ -81,14 +81,14 @@ fn section<'a, 'b>(
     Ok(&rest[..end.unwrap_or(rest.len())])
 }
 
-struct Node {
+struct SmdNode {
     id: i64,
     name: String,
     parent: Option<usize>,
 }
 
-fn nodes(rows: &[(u64, &str)], limits: &Limits) -> Result<Vec<Node>, ParseError> {
-    let mut nodes: Vec<Node> = Vec::with_capacity(rows.len().min(limits.joints));
+fn nodes(rows: &[(u64, &str)], limits: &Limits) -> Result<Vec<SmdNode>, ParseError> {
+    let mut nodes: Vec<SmdNode> = Vec::with_capacity(rows.len().min(limits.joints));
     for &(line, text) in rows {
         let wrong = |found: String| {
             ParseError::new(
@@ -116,7 +116,7 @@ fn nodes(rows: &[(u64, &str)], limits: &Limits) -> Result<Vec<Node>, ParseError>
             let expected = format!("at most {} joints", limits.joints);
             return Err(ParseError::new(Place::Line(line), expected, "more"));
         }
-        nodes.push(Node {
+        nodes.push(SmdNode {
             id,
             name: name.to_owned(),
             parent,
@@ -133,23 +133,23 @@ fn nodes(rows: &[(u64, &str)], limits: &Limits) -> Result<Vec<Node>, ParseError>
 }
 
 /// Place and rotation of a bone in its parent's frame.
-type Bone = (Vec3, Quat);
+type BonePlace = (Vec3, Quat);
 
 fn frames(
     rows: &[(u64, &str)],
-    nodes: &[Node],
+    nodes: &[SmdNode],
     limits: &Limits,
-) -> Result<Vec<Vec<Bone>>, ParseError> {
+) -> Result<Vec<Vec<BonePlace>>, ParseError> {
     let number_of: std::collections::HashMap<i64, usize> = nodes
         .iter()
         .enumerate()
         .map(|(at, node)| (node.id, at))
         .collect();
-    let mut frames: Vec<Vec<Bone>> = Vec::new();
+    let mut frames: Vec<Vec<BonePlace>> = Vec::new();
     let mut current = vec![(Vec3::zeros(), Quat::identity()); nodes.len()];
     let mut time: Option<i64> = None;
     let most = rows.len().saturating_mul(64).max(1 << 16) / nodes.len().max(1) + 1;
-    let mut put = |until: i64, from: i64, pose: &[Bone], line: u64| {
+    let mut put = |until: i64, from: i64, pose: &[BonePlace], line: u64| {
         // Times that are left out repeat what was before.
         for _ in 0..until.saturating_sub(from).max(1) {
             if frames.len() >= limits.frames.min(most.max(rows.len())) {
@@ -204,7 +204,7 @@ fn frames(
     Ok(frames)
 }
 
-fn bone(text: &str) -> Option<(i64, Bone)> {
+fn bone(text: &str) -> Option<(i64, BonePlace)> {
     let mut words = text.split_whitespace();
     let id = words.next()?.parse().ok()?;
     let mut value = || {

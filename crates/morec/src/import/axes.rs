@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use super::Stated;
-use super::body::Body;
+use super::body::BodyMeasures;
 use crate::clip::Clip;
 use crate::math::{Axis, Quat, Vec3, same_hemisphere};
 
@@ -75,7 +75,7 @@ impl serde::Serialize for SignedAxis {
 /// The axis that the format states, unless the body clearly stands along another; else the one the body tells.
 pub(super) fn choose(
     clip: &Clip,
-    body: &Body,
+    body: &BodyMeasures,
     stated: Option<Stated>,
     notes: &mut Vec<String>,
 ) -> SignedAxis {
@@ -94,7 +94,7 @@ pub(super) fn choose(
 }
 
 /// The axis along which the head is above the feet, over the whole clip.
-fn infer_up(clip: &Clip, body: &Body, notes: &mut Vec<String>) -> SignedAxis {
+fn infer_up(clip: &Clip, body: &BodyMeasures, notes: &mut Vec<String>) -> SignedAxis {
     if body.upwards.iter().all(|v| v.norm() == 0.0) {
         if let Some(up) = floor(clip) {
             notes.push(format!(
@@ -109,7 +109,7 @@ fn infer_up(clip: &Clip, body: &Body, notes: &mut Vec<String>) -> SignedAxis {
 }
 
 /// The axis along which the body stands through most of the clip; `None` where it lies, turns over or is not known.
-fn standing(body: &Body) -> Option<SignedAxis> {
+fn standing(body: &BodyMeasures) -> Option<SignedAxis> {
     /// A mean shorter than this share of the body, or not longer than its next axis by this factor, says little.
     const SHORT: f64 = 0.5;
     const CLEAR: f64 = 1.5;
@@ -129,7 +129,7 @@ fn standing(body: &Body) -> Option<SignedAxis> {
 
 /// Which way is up where somebody lies, crawls or turns over: along which axis the body stands at its straightest, and
 /// where the floor is, which its lowest point never leaves.
-fn lying(body: &Body, notes: &mut Vec<String>) -> SignedAxis {
+fn lying(body: &BodyMeasures, notes: &mut Vec<String>) -> SignedAxis {
     const UNSURE: f64 = 0.25;
     let size = body.upwards.iter().map(|v| v.norm()).fold(0.0, f64::max);
     let quantile = |mut values: Vec<f64>, share: f64| -> f64 {

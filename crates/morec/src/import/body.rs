@@ -10,7 +10,7 @@ use crate::roles::{Role, RoleMap};
 const FRAMES: usize = 200;
 
 /// What the poses of a clip say about the body.
-pub(super) struct Body {
+pub(super) struct BodyMeasures {
     /// From the lower end to the upper end of the body, frame by frame.
     pub(super) feet_to_head: Vec<Vec3>,
     /// The same, with the highest part that is known where head and neck are not: it says which way is up.
@@ -27,7 +27,7 @@ pub(super) struct Body {
     pub(super) chain: Option<f64>,
 }
 
-impl Body {
+impl BodyMeasures {
     pub(super) fn measure(clip: &Clip, map: &RoleMap) -> Self {
         let mut pose = WorldPose::default();
         let step = clip.frames.div_ceil(FRAMES).max(1);

@@ -22,7 +22,7 @@ use crate::kinematics::WorldPose;
 use crate::math::{Axis, Vec3};
 use crate::roles::mapping::Mapping;
 use crate::roles::{self, RoleMap};
-use body::Body;
+use body::BodyMeasures;
 
 /// What a person knows better than inference.
 #[derive(Debug, Clone, Default)]
@@ -109,7 +109,7 @@ pub fn normalize(mut clip: Clip, options: &ImportOptions) -> Result<Take, ParseE
         Some(mapping) => points::apply(mapping, &mut clip, map)?,
         None => map,
     };
-    let body = Body::measure(&clip, &map);
+    let body = BodyMeasures::measure(&clip, &map);
     let up = options
         .up
         .unwrap_or_else(|| axes::choose(&clip, &body, options.stated, &mut notes));

@@ -5,7 +5,7 @@ use crate::formats::ParseError;
 use crate::kinematics::WorldPose;
 use crate::math::Vec3;
 use crate::roles::mapping::Mapping;
-use crate::roles::points::{Place, recognise_posed};
+use crate::roles::points::{PointJoint, recognise_posed};
 use crate::roles::{Role, RoleMap};
 
 /// Frames that settle what names leave open.
@@ -59,10 +59,10 @@ pub(super) fn apply(
 }
 
 /// Gives each role to the joint in its place; `clip` gets new joints for places between joints.
-fn play(clip: &mut Clip, mut map: RoleMap, places: Vec<(Role, Option<Place>)>) -> RoleMap {
-    let mut between: Vec<(Role, Place)> = Vec::new();
+fn play(clip: &mut Clip, mut map: RoleMap, places: Vec<(Role, Option<PointJoint>)>) -> RoleMap {
+    let mut between: Vec<(Role, PointJoint)> = Vec::new();
     for (role, place) in places {
-        map.set(role, place.as_ref().and_then(Place::single));
+        map.set(role, place.as_ref().and_then(PointJoint::single));
         between.extend(
             place
                 .filter(|p| p.single().is_none())
@@ -91,7 +91,7 @@ fn play(clip: &mut Clip, mut map: RoleMap, places: Vec<(Role, Option<Place>)>) -
 }
 
 /// A place is unknown wherever one of its points is.
-fn add_gaps(clip: &mut Clip, joint: usize, place: &Place) {
+fn add_gaps(clip: &mut Clip, joint: usize, place: &PointJoint) {
     let Some(points) = &mut clip.points else {
         return;
     };

@@ -1,6 +1,6 @@
 //! How long the file's unit of length is, from how tall a body is.
 
-use super::body::Body;
+use super::body::BodyMeasures;
 use super::{SignedAxis, Stated};
 use crate::clip::Clip;
 use crate::roles::proportions as human;
@@ -18,7 +18,7 @@ const UNITS: [(&str, f64); 6] = [
 /// The unit that the file or its format states, if a body can be so large; else the one the body tells.
 pub(super) fn choose(
     clip: &Clip,
-    body: &Body,
+    body: &BodyMeasures,
     up: SignedAxis,
     format: Option<Stated>,
     notes: &mut Vec<String>,
@@ -48,7 +48,7 @@ pub(super) fn choose(
 }
 
 /// The height of a body, or what its legs make of it.
-fn height(body: &Body, up: SignedAxis) -> Option<f64> {
+fn height(body: &BodyMeasures, up: SignedAxis) -> Option<f64> {
     // Legs from hip to ankle are half of what is above the ankles.
     let by_leg = body.leg.map(|leg| 2.0 * leg);
     body.height(up).or(by_leg).filter(|&height| height > 0.0)
@@ -62,7 +62,7 @@ const HEIGHT: f64 = 1.65;
 /// Legs, arms and trunk belong to the skeleton: they are the same in every clip of it, however somebody crouches. The
 /// one in the middle is taken, so that a cartoon's legs or long arms do not decide; only a body of which they are not
 /// known is measured by its height.
-fn size(body: &Body, up: SignedAxis) -> Option<f64> {
+fn size(body: &BodyMeasures, up: SignedAxis) -> Option<f64> {
     let usual = [
         (body.leg, human::LEG),
         (body.arm, human::LEG * human::ARM_TO_LEG),
@@ -82,7 +82,7 @@ fn size(body: &Body, up: SignedAxis) -> Option<f64> {
 }
 
 /// The known unit in which the body comes nearest to a person's size.
-pub(super) fn infer(body: &Body, up: SignedAxis, notes: &mut Vec<String>) -> f64 {
+pub(super) fn infer(body: &BodyMeasures, up: SignedAxis, notes: &mut Vec<String>) -> f64 {
     let Some(size) = size(body, up) else {
         notes.push("no body to measure; lengths are taken as metres".to_owned());
         return 1.0;
@@ -100,7 +100,7 @@ pub(super) fn infer(body: &Body, up: SignedAxis, notes: &mut Vec<String>) -> f64
 }
 
 /// What is wrong with a body whose legs, in this unit, are no person's.
-pub(super) fn doubt(body: &Body, metres_per_unit: f64) -> Option<String> {
+pub(super) fn doubt(body: &BodyMeasures, metres_per_unit: f64) -> Option<String> {
     let leg = body.leg? * metres_per_unit;
     (!(0.3..=1.3).contains(&leg)).then(|| {
         format!(

@@ -8,7 +8,7 @@ use crate::features::{BoneSet, FeatureParams};
 use crate::pivots::{PivotSet, PoseParams};
 use crate::roles::Role;
 use crate::svrdm::SvrdmParams;
-use crate::templates::{Calibration, Generic, OperatingPoint};
+use crate::templates::{Calibration, LinearScore, OperatingPoint};
 
 use super::Provenance;
 
@@ -63,7 +63,7 @@ pub struct VerifierWords {
     /// Scores must be above this.
     pub bar: f64,
     /// What holds for all classes.
-    pub generic: Generic,
+    pub generic: LinearScore,
 }
 
 /// Everything in an index of the thesis's method that is not a table of numbers.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::classes::ClassId;
 use crate::pca::Pca;
-use crate::svrdm::tree::{Branch, Node, Parts, Tree};
+use crate::svrdm::tree::{Branch, Node, Tree, TreeParts};
 use crate::svrdm::{Profiles, SvrdmModel};
 
 use super::manifest::{BranchWords, FORMAT, NodeWords, SvrdmManifest};
@@ -125,7 +125,7 @@ pub(super) fn read(manifest: &SvrdmManifest, tables: &Tables) -> Result<SvrdmMod
     let profiles = profiles(tables, width)?;
     let dim = manifest.params.eigenvectors.saturating_mul(pca.dims());
     let nodes = nodes(manifest, tables)?;
-    let parts = Parts {
+    let parts = TreeParts {
         dim,
         vectors: double("tree.vectors")?,
         nodes,

@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 
 use crate::features::{Rows, row_dim};
-use crate::templates::{Exemplars, SHAPE_ROWS, Sample, Symmetric, TemplateModel, Verifier};
+use crate::templates::{
+    Exemplars, PackedSymmetric, SHAPE_ROWS, TemplateModel, TemplateSample, Verifier,
+};
 
 use super::manifest::{FORMAT, Manifest, VerifierWords};
 use super::tensors::{Tables, Tensor, class_id};
@@ -124,7 +126,7 @@ pub(super) fn read(manifest: &Manifest, tables: &Tables) -> Result<TemplateModel
         .into_iter()
         .zip(classes)
         .map(|(rows, c)| {
-            Ok(Sample {
+            Ok(TemplateSample {
                 class: class_id(c)?,
                 rows,
             })
@@ -215,10 +217,10 @@ fn verifier(
     }))
 }
 
-fn symmetric(tables: &Tables, name: &str, dim: usize) -> Result<Symmetric, IndexError> {
+fn symmetric(tables: &Tables, name: &str, dim: usize) -> Result<PackedSymmetric, IndexError> {
     let packed = tables.f32s(name)?;
     let found = packed.len();
-    Symmetric::from_packed(dim, packed).ok_or_else(|| {
+    PackedSymmetric::from_packed(dim, packed).ok_or_else(|| {
         IndexError::Content(format!(
             "tensor {name:?}: expected {} values, found {found}",
             dim * (dim + 1) / 2

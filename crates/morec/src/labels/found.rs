@@ -7,7 +7,7 @@ use super::Extent;
 use super::read::ExtentColumns;
 use super::resolve::{ClipLength, known_name};
 use super::table::{Row, Table};
-use crate::eval::Found;
+use crate::eval::ClipDetection;
 use crate::formats::{ParseError, Place, Warning};
 
 /// The first line of a table of detections, without a line ending.
@@ -149,7 +149,10 @@ fn read_reported(
 impl FoundTable {
     /// The detections in seconds, in row order, for those of `clips`; what names another clip is left out, with
     /// one warning for each such clip.
-    pub fn resolve(&self, clips: &BTreeMap<String, ClipLength>) -> (Vec<Found>, Vec<Warning>) {
+    pub fn resolve(
+        &self,
+        clips: &BTreeMap<String, ClipLength>,
+    ) -> (Vec<ClipDetection>, Vec<Warning>) {
         let mut found = Vec::new();
         let mut absent: BTreeMap<&str, (u64, usize)> = BTreeMap::new();
         for row in &self.rows {
@@ -164,7 +167,7 @@ impl FoundTable {
                 ReportedAt::Secs(secs) => secs,
             });
             let (clip, class) = (name.to_owned(), row.class.clone());
-            found.push(Found {
+            found.push(ClipDetection {
                 clip,
                 class,
                 start_secs,

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Extent, Label, Labels};
-use crate::eval::Truth;
+use crate::eval::GroundTruth;
 use crate::formats::{Place, Warning};
 
 /// How long a clip is.
@@ -45,7 +45,7 @@ pub struct Resolved {
     pub warnings: Vec<Warning>,
 }
 
-impl From<Sample> for Truth {
+impl From<Sample> for GroundTruth {
     fn from(sample: Sample) -> Self {
         let Sample {
             clip,

@@ -4,10 +4,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::Duration;
 
-use super::status::Cells;
+use super::status::SessionCounters;
 use super::waker::Waker;
 use super::worker::WorkerOptions;
-use super::{Event, Overload};
+use super::{Event, OverflowPolicy};
 
 /// Events that one frame can give at most, with room to spare: what is kept while readers are full.
 const PENDING: usize = 256;
@@ -67,9 +67,9 @@ impl Drop for EventSender {
 pub(super) struct EventBroadcast {
     broadcast: Vec<EventSender>,
     pending: Vec<Event>,
-    cells: Arc<Cells>,
+    cells: Arc<SessionCounters>,
     stop: Arc<AtomicBool>,
-    overload: Overload,
+    overload: OverflowPolicy,
     sequence: u64,
 }
 
@@ -77,7 +77,7 @@ impl EventBroadcast {
     /// Outlets and their readers.
     pub(super) fn new(
         options: &WorkerOptions,
-        cells: &Arc<Cells>,
+        cells: &Arc<SessionCounters>,
         stop: &Arc<AtomicBool>,
     ) -> (Self, Vec<EventReader>) {
         let pair = || {
@@ -120,7 +120,7 @@ impl EventBroadcast {
         !self.pending.is_empty()
     }
 
-    /// Hands out what is pending; says whether nothing is left. Something is only if [`Overload::Wait`] holds, a
+    /// Hands out what is pending; says whether nothing is left. Something is only if [`OverflowPolicy::Wait`] holds, a
     /// reader has no room and the session goes on.
     pub(super) fn deliver(&mut self) -> bool {
         if self.pending.is_empty() {
@@ -128,7 +128,7 @@ impl EventBroadcast {
         }
         self.broadcast
             .retain(|outlet| !outlet.events.is_abandoned());
-        let waits = self.overload == Overload::Wait && !self.stop.load(Relaxed);
+        let waits = self.overload == OverflowPolicy::Wait && !self.stop.load(Relaxed);
         if waits
             && self
                 .broadcast
@@ -157,23 +157,23 @@ impl EventBroadcast {
 mod tests {
     use super::*;
     use crate::classes::ClassId;
-    use crate::live::{Actor, EventOptions, Phase};
+    use crate::live::{EventOptions, PerformerId, Phase};
 
     #[test]
     fn what_there_is_no_room_for_is_counted() {
         let options = WorkerOptions {
             events: EventOptions::default(),
-            overload: Overload::Wait,
+            overload: OverflowPolicy::Wait,
             readers: 1,
             capacity: PENDING,
         };
-        let (cells, stop) = (Arc::new(Cells::default()), Arc::default());
+        let (cells, stop) = (Arc::new(SessionCounters::default()), Arc::default());
         let (mut broadcast, mut readers) = EventBroadcast::new(&options, &cells, &stop);
         let event = Event {
             phase: Phase::End,
             motion: 1,
             sequence: 0,
-            actor: Actor(0),
+            actor: PerformerId(0),
             class: ClassId(0),
             score: 1.0,
             progress: 1.0,

@@ -7,7 +7,7 @@ use super::{Detection, Event, Phase};
 
 /// A motion that seems to be under way.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Hunch {
+pub struct EarlyDetection {
     /// What it seems to be.
     pub class: ClassId,
     /// How near what was seen is: 0 just worth telling … 1 identical to the beginning of a sample.
@@ -35,20 +35,20 @@ pub(super) struct EarlyTracker {
 #[derive(Debug, Clone, Copy)]
 struct OpenMotion {
     motion: u64,
-    told: Hunch,
+    told: EarlyDetection,
     heard_secs: f64,
 }
 
 impl EarlyTracker {
     /// What was told last of a motion that is still under way.
-    pub(super) fn told(&self) -> Option<Hunch> {
+    pub(super) fn told(&self) -> Option<EarlyDetection> {
         self.open.map(|open| open.told)
     }
 
     /// Takes what seems to be under way at `now_secs`; nothing that began before `after_secs` is told again.
     pub(super) fn look(
         &mut self,
-        hunch: Option<Hunch>,
+        hunch: Option<EarlyDetection>,
         after_secs: f64,
         now_secs: f64,
         say: &mut Say<impl FnMut(Event)>,
@@ -106,6 +106,6 @@ impl EarlyTracker {
 }
 
 /// Tails of a motion that has just ended resemble its beginning: what is told must lie mostly after it.
-fn middle_secs(hunch: &Hunch) -> f64 {
+fn middle_secs(hunch: &EarlyDetection) -> f64 {
     0.5 * (hunch.start_secs + hunch.seen_secs)
 }

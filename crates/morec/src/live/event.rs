@@ -2,7 +2,7 @@
 
 use crate::classes::ClassId;
 
-use super::{Actor, Detection};
+use super::{Detection, PerformerId};
 
 /// What is being said.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -39,7 +39,7 @@ pub struct Event {
     /// Number of the event in its session, from 1, without gaps as long as nothing is lost on the way.
     pub sequence: u64,
     /// Whose motion.
-    pub actor: Actor,
+    pub actor: PerformerId,
     /// What it is, or seems to be.
     pub class: ClassId,
     /// Of an end: 0 just accepted … 1 identical to a sample. Tentative: how near what was seen so far is, likewise.

@@ -1,12 +1,12 @@
 //! Detections to events: numbers for motions, the refractory rule.
 
-use super::early::{EarlyTracker, Hunch};
-use super::{Actor, Detection, Event, Phase};
+use super::early::{EarlyDetection, EarlyTracker};
+use super::{Detection, Event, PerformerId, Phase};
 
 /// Tells one performer's motions.
 #[derive(Debug)]
 pub(super) struct EventTracker {
-    actor: Actor,
+    actor: PerformerId,
     refractory_secs: f64,
     motions: u64,
     /// When the last motion ended that was told: of all classes, and of each.
@@ -16,7 +16,7 @@ pub(super) struct EventTracker {
 }
 
 impl EventTracker {
-    pub(super) fn new(actor: Actor, classes: usize, refractory_secs: f64) -> Self {
+    pub(super) fn new(actor: PerformerId, classes: usize, refractory_secs: f64) -> Self {
         let (any_secs, class_secs) = (f64::NEG_INFINITY, vec![f64::NEG_INFINITY; classes]);
         Self {
             actor,
@@ -50,7 +50,7 @@ impl EventTracker {
         say.event(
             Phase::End,
             motion,
-            Hunch {
+            EarlyDetection {
                 class: d.class,
                 score: d.score,
                 progress: 1.0,
@@ -94,7 +94,7 @@ impl EventTracker {
 
 /// Numbers motions and gives events their common parts.
 pub(super) struct Say<'a, F: FnMut(Event)> {
-    actor: Actor,
+    actor: PerformerId,
     wall_secs: f64,
     motions: &'a mut u64,
     out: &'a mut F,
@@ -106,7 +106,13 @@ impl<F: FnMut(Event)> Say<'_, F> {
         *self.motions
     }
 
-    pub(super) fn event(&mut self, phase: Phase, motion: u64, what: Hunch, reported_secs: f64) {
+    pub(super) fn event(
+        &mut self,
+        phase: Phase,
+        motion: u64,
+        what: EarlyDetection,
+        reported_secs: f64,
+    ) {
         (self.out)(Event {
             phase,
             motion,

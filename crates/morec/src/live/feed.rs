@@ -6,11 +6,11 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 pub(super) use super::waker::Waker;
 
 use super::waker::NAP;
-use super::{Actor, Frame, Rig};
+use super::{Frame, PerformerId, Rig};
 
 /// What happens to a frame when recognition has not caught up with the ones before it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Overload {
+pub enum OverflowPolicy {
     /// The source waits for room. Nothing is lost and the outcome does not depend on timing: for files.
     #[default]
     Wait,
@@ -20,10 +20,10 @@ pub enum Overload {
 
 /// What goes over the ring.
 #[derive(Debug)]
-pub(super) enum Item {
+pub(super) enum QueueItem {
     Frame(Box<Frame>),
-    Rig(Actor, Arc<Rig>),
-    Gone(Actor),
+    Rig(PerformerId, Arc<Rig>),
+    Gone(PerformerId),
 }
 
 /// Room for skeletons beside the frames, so that these are never dropped for want of it.
@@ -32,9 +32,9 @@ const BESIDE_FRAMES: usize = 16;
 /// The end of a feed that frames are put into. Dropping it ends the stream.
 #[derive(Debug)]
 pub struct FeedSender {
-    items: rtrb::Producer<Item>,
+    items: rtrb::Producer<QueueItem>,
     spare: rtrb::Consumer<Box<Frame>>,
-    overload: Overload,
+    overload: OverflowPolicy,
     wakers: Arc<Wakers>,
     dropped: Arc<AtomicU64>,
     stop: Arc<AtomicBool>,
@@ -43,7 +43,7 @@ pub struct FeedSender {
 /// The end that frames come out of.
 #[derive(Debug)]
 pub(super) struct FeedReceiver {
-    items: rtrb::Consumer<Item>,
+    items: rtrb::Consumer<QueueItem>,
     spare: rtrb::Producer<Box<Frame>>,
     wakers: Arc<Wakers>,
 }
@@ -60,7 +60,7 @@ struct Wakers {
 /// waiting when `stop` is set.
 pub(super) fn feed(
     frames: usize,
-    overload: Overload,
+    overload: OverflowPolicy,
     receiver: &Arc<Waker>,
     dropped: &Arc<AtomicU64>,
     stop: &Arc<AtomicBool>,
@@ -97,17 +97,17 @@ pub(super) fn feed(
 
 impl FeedSender {
     /// Sends `frame` and leaves a used one in its place, to be filled anew. Returns whether it went: not if the ring
-    /// was full and [`Overload::Drop`] holds (it is then counted), nor if the session has ended. Takes no memory.
+    /// was full and [`OverflowPolicy::Drop`] holds (it is then counted), nor if the session has ended. Takes no memory.
     pub fn send(&mut self, frame: &mut Box<Frame>) -> bool {
         loop {
             if let Ok(spare) = self.spare.pop() {
                 let full = std::mem::replace(frame, spare);
-                return self.push(Item::Frame(full));
+                return self.push(QueueItem::Frame(full));
             }
             if self.items.is_abandoned() || self.stop.load(Ordering::Relaxed) {
                 return false;
             }
-            if self.overload == Overload::Drop {
+            if self.overload == OverflowPolicy::Drop {
                 self.dropped.fetch_add(1, Ordering::Relaxed);
                 return false;
             }
@@ -116,13 +116,13 @@ impl FeedSender {
     }
 
     /// Says that frames of `actor` from now on are poses of `rig`. Waits for room if there is none: never dropped.
-    pub fn set_rig(&mut self, actor: Actor, rig: &Arc<Rig>) {
-        self.push(Item::Rig(actor, rig.clone()));
+    pub fn set_rig(&mut self, actor: PerformerId, rig: &Arc<Rig>) {
+        self.push(QueueItem::Rig(actor, rig.clone()));
     }
 
     /// Says that `actor` has stopped for now. Waits for room if there is none.
-    pub fn set_gone(&mut self, actor: Actor) {
-        self.push(Item::Gone(actor));
+    pub fn set_gone(&mut self, actor: PerformerId) {
+        self.push(QueueItem::Gone(actor));
     }
 
     /// Frames there is room for now.
@@ -130,7 +130,7 @@ impl FeedSender {
         self.spare.slots()
     }
 
-    fn push(&mut self, item: Item) -> bool {
+    fn push(&mut self, item: QueueItem) -> bool {
         let mut item = item;
         loop {
             match self.items.push(item) {
@@ -162,7 +162,7 @@ impl Drop for FeedSender {
 }
 
 impl FeedReceiver {
-    pub(super) fn next(&mut self) -> Option<Item> {
+    pub(super) fn next(&mut self) -> Option<QueueItem> {
         self.items.pop().ok()
     }
 

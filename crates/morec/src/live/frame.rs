@@ -8,9 +8,9 @@ use crate::roles::{Role, RoleMap};
 
 /// Which performer of a source a frame shows; sources number them from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
-pub struct Actor(pub u16);
+pub struct PerformerId(pub u16);
 
-impl Actor {
+impl PerformerId {
     /// Its place in a list of performers.
     pub fn index(self) -> usize {
         usize::from(self.0)
@@ -60,7 +60,7 @@ pub struct Frame {
     /// When its last part arrived: [`wall_now_secs`](super::wall_now_secs) then.
     pub wall_secs: f64,
     /// Whom it shows.
-    pub actor: Actor,
+    pub actor: PerformerId,
     /// Joints of the rig that was announced last, one position each. A joint that is unknown at this instant has a
     /// position that is not a number. Rotations are empty if the source knows positions only.
     pub pose: WorldPose,

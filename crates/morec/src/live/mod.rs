@@ -10,7 +10,7 @@
 //! Real-time contract: construction allocates and may fail with a reason; [`Recognizer::push`] afterwards does not
 //! allocate, lock, log or fail. A recogniser is owned by one thread at a time. Detections are the same however the
 //! stream is cut into pushes. In sessions and pools frames travel over bounded wait-free rings; when one is full,
-//! [`Overload`] says who gives way, and everything that is dropped is counted in [`Status`].
+//! [`OverflowPolicy`] says who gives way, and everything that is dropped is counted in [`Status`].
 
 pub mod axis;
 mod broadcast;
@@ -43,18 +43,18 @@ mod worker;
 pub use crate::index::{Model, SensitivityError};
 pub use broadcast::EventReader;
 pub use clock::wall_now_secs;
-pub use early::Hunch;
+pub use early::EarlyDetection;
 pub use event::{Event, Phase};
-pub use feed::{FeedSender, Overload};
-pub use frame::{Actor, Frame, Rig};
+pub use feed::{FeedSender, OverflowPolicy};
+pub use frame::{Frame, PerformerId, Rig};
 pub use of_clip::{recognize_clip, recognize_clip_in_session, recognize_poses};
 pub use performer::{EventOptions, Performer};
 pub use pool::{Pool, PoolStream};
-pub use pose::{Pose, PoseReader};
+pub use pose::{PoseExtractor, RecognizerInput};
 pub use recognizer::{Detection, Recognizer};
 pub use recording::{Recording, RecordingError};
-pub use session::{Layout, Session, SessionError, SessionOptions};
-pub use source::{Next, Source, SourceCounts};
+pub use session::{Session, SessionError, SessionOptions, Threading};
+pub use source::{Source, SourceCounts, SourceEvent};
 pub use start::StartError;
 pub use status::{ActorStatus, MAX_ACTORS, Status, StatusHandle};
-pub use waits::Waits;
+pub use waits::LatencyHistogram;

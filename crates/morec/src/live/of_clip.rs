@@ -11,8 +11,8 @@ use crate::pivots::NoPivots;
 use crate::roles::RoleMap;
 
 use super::{
-    Actor, Detection, Event, EventReader, Frame, Model, Phase, PoseReader, Recognizer, Rig,
-    Session, SessionError, SessionOptions, StartError, wall_now_secs,
+    Detection, Event, EventReader, Frame, Model, PerformerId, Phase, PoseExtractor, Recognizer,
+    Rig, Session, SessionError, SessionOptions, StartError, wall_now_secs,
 };
 
 /// Everything that the recogniser reports of a clip, pose by pose as it would be live; times from the clip's
@@ -57,11 +57,11 @@ pub fn recognize_poses<M: Clone + Into<Model>>(
 }
 
 /// What reads poses of `clip` for `model`, unless that asks for rotations and the clip has none.
-fn reader(model: &Model, clip: &Clip, roles: &RoleMap) -> Result<PoseReader, StartError> {
+fn reader(model: &Model, clip: &Clip, roles: &RoleMap) -> Result<PoseExtractor, StartError> {
     if matches!(model, Model::Svrdm(_)) && !clip.has_rotations() {
         return Err(NoPivots::Rotations.into());
     }
-    PoseReader::new(model, &clip.skeleton, roles)
+    PoseExtractor::new(model, &clip.skeleton, roles)
 }
 
 /// The same through a [`Session`], and on as many threads as its layout has. The session waits for room, whatever
@@ -77,7 +77,7 @@ pub fn recognize_clip_in_session<M: Clone + Into<Model>>(
     // What keeps a clip from being recognised is said as it is without a session.
     reader(&model, clip, roles)?;
     let options = SessionOptions {
-        overload: super::Overload::Wait,
+        overload: super::OverflowPolicy::Wait,
         readers: 1,
         ..options.clone()
     };
@@ -88,7 +88,7 @@ pub fn recognize_clip_in_session<M: Clone + Into<Model>>(
     });
     let found = thread::scope(|scope| {
         let found = scope.spawn(|| readers.into_iter().flat_map(ended).collect());
-        feed.set_rig(Actor(0), &rig);
+        feed.set_rig(PerformerId(0), &rig);
         let mut frame: Box<Frame> = Box::default();
         for_each_world_pose(clip, rest, |time_secs, world| {
             (frame.time_secs, frame.wall_secs) = (time_secs, wall_now_secs());

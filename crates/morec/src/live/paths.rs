@@ -6,32 +6,32 @@ use crate::decode::TickDetection;
 use crate::features::{BoneSet, FeatureStream, Pushed};
 use crate::pivots::{PivotPose, PoseStream};
 use crate::svrdm::{FrameDetection, SvrdmEngine, SvrdmModel};
-use crate::templates::{EarlyParams, TemplateEngine, TemplateModel, Underway};
+use crate::templates::{EarlyDetectionParams, OngoingMatch, TemplateEngine, TemplateModel};
 
 use super::recognizer::{DetectionBuffer, Steps};
-use super::{Hunch, Pose, StartError};
+use super::{EarlyDetection, RecognizerInput, StartError};
 
 /// Feature rows and templates.
 #[derive(Debug, Clone)]
-pub(super) struct TemplatePath {
+pub(super) struct TemplatePipeline {
     pub(super) model: Arc<TemplateModel>,
     features: FeatureStream,
     engine: TemplateEngine,
-    early: EarlyParams,
-    seen: Seen,
+    early: EarlyDetectionParams,
+    seen: PartialMatchTracker,
 }
 
 /// What was under way at the last tick that was asked about.
 #[derive(Debug, Clone, Copy, Default)]
-struct Seen {
+struct PartialMatchTracker {
     ticks: usize,
-    underway: Option<Underway>,
+    underway: Option<OngoingMatch>,
     /// Ticks in a row at which it was this class.
     streak: usize,
 }
 
-impl Seen {
-    fn take(&mut self, ticks: usize, underway: Option<Underway>) {
+impl PartialMatchTracker {
+    fn take(&mut self, ticks: usize, underway: Option<OngoingMatch>) {
         let same =
             ticks > self.ticks && underway.map(|u| u.class) == self.underway.map(|u| u.class);
         self.streak = if same { self.streak + 1 } else { 1 };
@@ -39,7 +39,7 @@ impl Seen {
     }
 }
 
-impl TemplatePath {
+impl TemplatePipeline {
     pub(super) fn new(model: &Arc<TemplateModel>, bones: BoneSet) -> Result<Self, StartError> {
         let model = if model.bones.and(bones) == model.bones {
             model.clone()
@@ -47,7 +47,10 @@ impl TemplatePath {
             Arc::new(model.restricted(bones)?)
         };
         let features = FeatureStream::new(model.bones, &model.features);
-        let (early, seen) = (EarlyParams::default(), Seen::default());
+        let (early, seen) = (
+            EarlyDetectionParams::default(),
+            PartialMatchTracker::default(),
+        );
         Ok(Self {
             features,
             engine: TemplateEngine::new(&model)?,
@@ -71,7 +74,7 @@ impl TemplatePath {
     pub(super) fn push(
         &mut self,
         time_secs: f64,
-        pose: Pose<'_>,
+        pose: RecognizerInput<'_>,
         found: &mut DetectionBuffer,
     ) -> Pushed {
         // The first pose of a stretch sets its origin and completes no row: the origin read here is right.
@@ -98,7 +101,7 @@ impl TemplatePath {
         }
     }
 
-    pub(super) fn hunch(&mut self) -> Option<Hunch> {
+    pub(super) fn hunch(&mut self) -> Option<EarlyDetection> {
         let ticks = self.engine.ticks();
         if ticks != self.seen.ticks {
             let underway = self.engine.underway(&self.early);
@@ -110,7 +113,7 @@ impl TemplatePath {
             .filter(|_| self.seen.streak >= self.early.streak)?;
         let tick_secs = 1.0 / self.model.features.tick_hz();
         let seen_secs = self.features.origin_secs() + ticks as f64 * tick_secs;
-        Some(Hunch {
+        Some(EarlyDetection {
             class: underway.class,
             score: 1.0
                 - f64::from(underway.distance / (self.early.reach * self.engine.threshold())),
@@ -120,19 +123,19 @@ impl TemplatePath {
         })
     }
 
-    pub(super) fn set_early(&mut self, params: EarlyParams) {
+    pub(super) fn set_early(&mut self, params: EarlyDetectionParams) {
         self.early = params;
     }
 }
 
 /// Pose rows and the stages of the thesis.
 #[derive(Debug, Clone)]
-pub(super) struct SvrdmPath {
+pub(super) struct SvrdmPipeline {
     rows: PoseStream,
     engine: SvrdmEngine,
 }
 
-impl SvrdmPath {
+impl SvrdmPipeline {
     pub(super) fn new(model: &Arc<SvrdmModel>) -> Result<Self, StartError> {
         let engine = SvrdmEngine::new(model)?;
         Ok(Self {
@@ -153,7 +156,7 @@ impl SvrdmPath {
     pub(super) fn push(
         &mut self,
         time_secs: f64,
-        pose: Pose<'_>,
+        pose: RecognizerInput<'_>,
         found: &mut DetectionBuffer,
     ) -> Pushed {
         let (steps, engine) = (self.steps(), &mut self.engine);

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use crate::diagnosis::{Diagnoser, Diagnosis};
 use crate::features::BoneSet;
 
-use super::early::{EarlyTracker, Hunch};
+use super::early::{EarlyDetection, EarlyTracker};
 use super::event_tracker::EventTracker;
-use super::{Actor, Event, Frame, Model, Pose, PoseReader, Recognizer, Rig};
+use super::{Event, Frame, Model, PerformerId, PoseExtractor, Recognizer, RecognizerInput, Rig};
 
 /// What is to be said, and how often.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,7 +40,7 @@ pub struct Performer {
     rig: Option<Arc<Rig>>,
     recognizer: Option<Recognizer>,
     /// Reads what a model asks for beyond places of joints.
-    reader: Option<PoseReader>,
+    reader: Option<PoseExtractor>,
     early: EarlyTracker,
     tracker: EventTracker,
     wall_secs: f64,
@@ -52,7 +52,11 @@ pub struct Performer {
 
 impl Performer {
     /// Nobody's yet: tell it a rig first.
-    pub fn new<M: Clone + Into<Model>>(model: &M, actor: Actor, options: &EventOptions) -> Self {
+    pub fn new<M: Clone + Into<Model>>(
+        model: &M,
+        actor: PerformerId,
+        options: &EventOptions,
+    ) -> Self {
         let model: Model = model.clone().into();
         Self {
             tracker: EventTracker::new(actor, model.classes().len(), options.refractory_secs),
@@ -76,7 +80,7 @@ impl Performer {
         self.dropped = self.dropped();
         self.recognizer = None;
         self.diagnoser = Some(Box::new(Diagnoser::live()));
-        self.reader = PoseReader::new(&self.model, &rig.skeleton, &rig.roles).ok();
+        self.reader = PoseExtractor::new(&self.model, &rig.skeleton, &rig.roles).ok();
     }
 
     /// Takes a frame and calls `out` with what it settled. A frame without a rig, or of a skeleton that shows none of
@@ -109,7 +113,7 @@ impl Performer {
             .reader
             .as_mut()
             .and_then(|reader| reader.pivots(&frame.pose));
-        for detection in recognizer.push(frame.time_secs, Pose { key: &pose, pivots }) {
+        for detection in recognizer.push(frame.time_secs, RecognizerInput { key: &pose, pivots }) {
             self.tracker
                 .emit(detection, &mut self.early, self.wall_secs, out);
         }
@@ -164,7 +168,7 @@ impl Performer {
     }
 
     /// What seems to be under way.
-    pub fn hunch(&self) -> Option<Hunch> {
+    pub fn hunch(&self) -> Option<EarlyDetection> {
         self.early.told()
     }
 }

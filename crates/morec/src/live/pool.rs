@@ -7,7 +7,7 @@ use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use super::feed::{FeedSender, Waker, feed};
-use super::status::{Cells, StatusHandle};
+use super::status::{SessionCounters, StatusHandle};
 use super::worker::{EventReader, RecognizerCache, StreamWorker, TurnOutcome, WorkerOptions};
 use super::{Model, SessionError, SessionOptions};
 
@@ -86,7 +86,7 @@ impl Pool {
             .iter()
             .min_by_key(|worker| worker.load.load(Relaxed));
         let waker = least.map_or_else(Arc::default, |worker| worker.waker.clone());
-        let cells = Arc::new(Cells::default());
+        let cells = Arc::new(SessionCounters::default());
         let (feed, receiver) = feed(
             options.frame_capacity,
             options.overload,

@@ -10,14 +10,14 @@ use super::{Model, StartError};
 
 /// Where the role joints are, and how the model's pivots are turned if it asks for that.
 #[derive(Debug, Clone, Copy)]
-pub struct Pose<'p> {
+pub struct RecognizerInput<'p> {
     /// Places of the role joints.
     pub key: &'p KeyPose,
     /// Rotations of the pivots; a model that [needs them](Model::needs_rotations) recognises nothing without.
     pub pivots: Option<&'p PivotPose>,
 }
 
-impl<'p> From<&'p KeyPose> for Pose<'p> {
+impl<'p> From<&'p KeyPose> for RecognizerInput<'p> {
     fn from(key: &'p KeyPose) -> Self {
         Self { key, pivots: None }
     }
@@ -25,7 +25,7 @@ impl<'p> From<&'p KeyPose> for Pose<'p> {
 
 /// Takes from a posed skeleton what a model's recogniser needs.
 #[derive(Debug, Clone)]
-pub struct PoseReader {
+pub struct PoseExtractor {
     roles: RoleMap,
     pivots: Option<PivotMap>,
     joints: usize,
@@ -33,7 +33,7 @@ pub struct PoseReader {
     pivot: PivotPose,
 }
 
-impl PoseReader {
+impl PoseExtractor {
     /// For poses of `skeleton`, whose joints play `roles`. Fails if nothing plays a pivot that the model cannot do
     /// without.
     pub fn new(model: &Model, skeleton: &Skeleton, roles: &RoleMap) -> Result<Self, StartError> {
@@ -67,10 +67,10 @@ impl PoseReader {
     }
 
     /// The pose, valid until the next is read. No allocation.
-    pub fn read(&mut self, world: &WorldPose) -> Pose<'_> {
+    pub fn read(&mut self, world: &WorldPose) -> RecognizerInput<'_> {
         self.key = KeyPose::of(world, &self.roles);
         let turned = self.pivots(world).is_some();
-        Pose {
+        RecognizerInput {
             key: &self.key,
             pivots: turned.then_some(&self.pivot),
         }

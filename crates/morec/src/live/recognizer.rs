@@ -4,10 +4,10 @@ use std::fmt;
 
 use crate::classes::ClassId;
 use crate::features::{BoneSet, KeyPose, Pushed};
-use crate::templates::EarlyParams;
+use crate::templates::EarlyDetectionParams;
 
-use super::paths::{SvrdmPath, TemplatePath};
-use super::{Hunch, Model, Pose, StartError};
+use super::paths::{SvrdmPipeline, TemplatePipeline};
+use super::{EarlyDetection, Model, RecognizerInput, StartError};
 
 /// Detections that one push can complete at most; more than a motion a tick is not a motion.
 const MAX_DETECTIONS_PER_PUSH: usize = 64;
@@ -62,8 +62,8 @@ pub struct Recognizer {
 
 #[derive(Debug, Clone)]
 enum Pipeline {
-    Templates(Box<TemplatePath>),
-    Svrdm(Box<SvrdmPath>),
+    Templates(Box<TemplatePipeline>),
+    Svrdm(Box<SvrdmPipeline>),
 }
 
 /// How a path counts time: from where, and in what.
@@ -134,14 +134,14 @@ impl Recognizer {
         let model = model.clone().into();
         let (model, path) = match model {
             Model::Templates(model) => {
-                let path = TemplatePath::new(&model, bones)?;
+                let path = TemplatePipeline::new(&model, bones)?;
                 (
                     Model::Templates(path.model.clone()),
                     Pipeline::Templates(Box::new(path)),
                 )
             }
             Model::Svrdm(model) => {
-                let path = SvrdmPath::new(&model)?;
+                let path = SvrdmPipeline::new(&model)?;
                 (Model::Svrdm(model), Pipeline::Svrdm(Box::new(path)))
             }
         };
@@ -170,7 +170,11 @@ impl Recognizer {
     ///
     /// Poses may come at any rate, also unevenly; late and duplicate ones are ignored. After a gap of more than
     /// [`MAX_GAP_SECS`](crate::features::MAX_GAP_SECS) the stream begins anew. No allocation.
-    pub fn push<'p>(&mut self, time_secs: f64, pose: impl Into<Pose<'p>>) -> &[Detection] {
+    pub fn push<'p>(
+        &mut self,
+        time_secs: f64,
+        pose: impl Into<RecognizerInput<'p>>,
+    ) -> &[Detection] {
         self.found.begin(self.now_secs);
         if self.breaks_at(time_secs) {
             self.end_stretch();
@@ -210,7 +214,7 @@ impl Recognizer {
 
     /// What seems to be under way after the last push, if anything does. Tentative: it says nothing about what
     /// [`push`](Self::push) will report, and asking changes nothing of that. Templates only. No allocation.
-    pub fn hunch(&mut self) -> Option<Hunch> {
+    pub fn hunch(&mut self) -> Option<EarlyDetection> {
         match &mut self.path {
             Pipeline::Templates(path) => path.hunch(),
             Pipeline::Svrdm(_) => None,
@@ -218,7 +222,7 @@ impl Recognizer {
     }
 
     /// How near a beginning must be for [`hunch`](Self::hunch).
-    pub fn set_early(&mut self, params: EarlyParams) {
+    pub fn set_early(&mut self, params: EarlyDetectionParams) {
         if let Pipeline::Templates(path) = &mut self.path {
             path.set_early(params);
         }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use crate::clip::Clip;
 
 use super::{Frame, Rig};
-use tree::Tree;
+use tree::RecordedJoints;
 
 /// Rates of clips made of streams.
 const RATES_HZ: std::ops::RangeInclusive<f64> = 1.0..=1000.0;
@@ -121,7 +121,7 @@ impl Recording {
         if secs * rate_hz > MOST_FRAMES {
             return Err(RecordingError::TooLong { secs, rate_hz });
         }
-        let tree = Tree::of(self).ok_or(RecordingError::Nobody { frames })?;
+        let tree = RecordedJoints::of(self).ok_or(RecordingError::Nobody { frames })?;
         // The last frame counts, even where it lies a little before its place on the grid.
         let count = (secs * rate_hz + 0.5).floor() as usize + 1;
         Ok(tree.clip(self, name, rate_hz, count))

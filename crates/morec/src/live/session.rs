@@ -7,14 +7,14 @@ use std::time::Duration;
 
 use super::feed::{FeedReceiver, FeedSender, feed};
 use super::performer::EventOptions;
-use super::status::{Cells, Status, StatusHandle};
+use super::status::{SessionCounters, Status, StatusHandle};
 use super::waker::Waker;
 use super::worker::{EventReader, RecognizerCache, StreamWorker, TurnOutcome, WorkerOptions};
-use super::{Frame, Model, Next, Overload, Source, StartError, stages};
+use super::{Frame, Model, OverflowPolicy, Source, SourceEvent, StartError, stages};
 
 /// How recognition is laid out on threads. Events are the same.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Layout {
+pub enum Threading {
     /// All of it on one thread.
     #[default]
     Inline,
@@ -27,14 +27,14 @@ pub enum Layout {
 #[derive(Debug, Clone)]
 pub struct SessionOptions {
     /// How recognition is laid out on threads; pools are always inline.
-    pub layout: Layout,
+    pub layout: Threading,
     /// Called first on every thread of the session, with what the thread is for: `source`, `recognition`, or the stage.
     /// The place to tie it to a core or to give it a priority.
     pub on_thread: Option<fn(&'static str)>,
     /// What is said of motions.
     pub events: EventOptions,
     /// What happens when recognition, or a reader, does not keep up.
-    pub overload: Overload,
+    pub overload: OverflowPolicy,
     /// Frames that may wait for recognition.
     pub frame_capacity: usize,
     /// Events that may wait for each reader; at least 256.
@@ -46,10 +46,10 @@ pub struct SessionOptions {
 impl Default for SessionOptions {
     fn default() -> Self {
         Self {
-            layout: Layout::default(),
+            layout: Threading::default(),
             on_thread: None,
             events: EventOptions::default(),
-            overload: Overload::Wait,
+            overload: OverflowPolicy::Wait,
             // Two seconds at 120 Hz: longer waits are no live recognition.
             frame_capacity: 240,
             event_capacity: 1024,
@@ -83,11 +83,11 @@ pub enum SessionError {
 /// A source on a thread of its own, recognition on another, joined by bounded wait-free rings.
 ///
 /// Events come out of [`EventReader`]s; [`status`](Session::status) can be read at any time. Neither a slow reader
-/// nor a curious one holds up the stream unless [`Overload::Wait`] asks for just that. The frame path takes no lock,
+/// nor a curious one holds up the stream unless [`OverflowPolicy::Wait`] asks for just that. The frame path takes no lock,
 /// and no memory once every buffer has been round.
 #[derive(Debug)]
 pub struct Session {
-    cells: Arc<Cells>,
+    cells: Arc<SessionCounters>,
     stop: Arc<AtomicBool>,
     waker: Arc<Waker>,
     threads: Vec<JoinHandle<()>>,
@@ -116,7 +116,7 @@ impl Session {
         options: &SessionOptions,
     ) -> Result<(Self, FeedSender, Vec<EventReader>), SessionError> {
         let (cells, stop, waker) = (
-            Arc::new(Cells::default()),
+            Arc::new(SessionCounters::default()),
             Arc::default(),
             Arc::new(Waker::default()),
         );
@@ -154,12 +154,12 @@ impl Session {
         &mut self,
         model: Model,
         feed: FeedReceiver,
-        layout: Layout,
+        layout: Threading,
         options: &WorkerOptions,
     ) -> Result<Vec<EventReader>, SessionError> {
         let (cells, stop, waker) = (self.cells.clone(), self.stop.clone(), self.waker.clone());
         match (layout, model) {
-            (Layout::Inline, model) => {
+            (Threading::Inline, model) => {
                 let (worker, readers) = StreamWorker::new(
                     feed,
                     &Arc::new(RecognizerCache::new(model)),
@@ -170,7 +170,7 @@ impl Session {
                 self.spawn("recognition", Box::new(move || recognise(worker, &waker)))?;
                 Ok(readers)
             }
-            (Layout::Stages, Model::Svrdm(model)) => {
+            (Threading::Stages, Model::Svrdm(model)) => {
                 let shared = stages::Shared {
                     cells: &cells,
                     stop: &stop,
@@ -180,7 +180,7 @@ impl Session {
                     self.spawn(what, job)
                 })
             }
-            (Layout::Stages, other) => Err(SessionError::NoStages {
+            (Threading::Stages, other) => Err(SessionError::NoStages {
                 method: other.method(),
             }),
         }
@@ -219,7 +219,7 @@ impl Session {
         }
     }
 
-    /// Waits until the source has ended and everything is told. Under [`Overload::Wait`] somebody must go on reading.
+    /// Waits until the source has ended and everything is told. Under [`OverflowPolicy::Wait`] somebody must go on reading.
     pub fn join(mut self) -> Status {
         self.wait();
         self.status()
@@ -253,15 +253,20 @@ impl Drop for Session {
 }
 
 /// The source's thread.
-fn carry(mut source: Box<dyn Source>, mut sender: FeedSender, cells: &Cells, stop: &AtomicBool) {
+fn carry(
+    mut source: Box<dyn Source>,
+    mut sender: FeedSender,
+    cells: &SessionCounters,
+    stop: &AtomicBool,
+) {
     let mut frame: Box<Frame> = Box::default();
     while !stop.load(Relaxed) {
         match source.next(&mut frame) {
-            Next::Frame => _ = sender.send(&mut frame),
-            Next::Rig(actor, rig) => sender.set_rig(actor, &rig),
-            Next::Gone(actor) => sender.set_gone(actor),
-            Next::Quiet => {}
-            Next::Ended => break,
+            SourceEvent::Frame => _ = sender.send(&mut frame),
+            SourceEvent::Rig(actor, rig) => sender.set_rig(actor, &rig),
+            SourceEvent::Gone(actor) => sender.set_gone(actor),
+            SourceEvent::Quiet => {}
+            SourceEvent::Ended => break,
         }
         cells.source(&source.counts());
     }

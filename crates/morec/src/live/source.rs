@@ -2,17 +2,17 @@
 
 use std::sync::Arc;
 
-use super::{Actor, Frame, Rig};
+use super::{Frame, PerformerId, Rig};
 
 /// What a source had to give.
 #[derive(Debug, Clone)]
-pub enum Next {
+pub enum SourceEvent {
     /// The frame was filled in.
     Frame,
     /// From now on this performer has this skeleton. Comes before its first frame, and again on every change.
-    Rig(Actor, Arc<Rig>),
+    Rig(PerformerId, Arc<Rig>),
     /// This performer has stopped sending, for now: what its last moments hold can be told.
-    Gone(Actor),
+    Gone(PerformerId),
     /// Nothing came in a while (some ten milliseconds); ask again.
     Quiet,
     /// There will be nothing more.
@@ -43,11 +43,11 @@ pub struct SourceCounts {
 /// A source of poses, asked from a thread of its own.
 ///
 /// A source survives whatever its other end does: silence, rubbish, a new skeleton, an end and a new beginning. It
-/// says so in [`Next`] and in its counts, and goes on.
+/// says so in [`SourceEvent`] and in its counts, and goes on.
 pub trait Source: Send {
     /// The next thing it has; waits for it a little (at most some ten milliseconds, so that a session can be
-    /// stopped). `frame` may hold an older frame's values and is filled in only for [`Next::Frame`].
-    fn next(&mut self, frame: &mut Frame) -> Next;
+    /// stopped). `frame` may hold an older frame's values and is filled in only for [`SourceEvent::Frame`].
+    fn next(&mut self, frame: &mut Frame) -> SourceEvent;
 
     /// What it has seen so far.
     fn counts(&self) -> SourceCounts {

@@ -7,8 +7,8 @@ use std::sync::{Arc, Mutex, PoisonError, TryLockError};
 use crate::classes::ClassId;
 use crate::diagnosis::Diagnosis;
 
-use super::waits::{WaitCells, Waits};
-use super::{Actor, Event, Frame, Phase, SourceCounts};
+use super::waits::{LatencyHistogram, WaitCells};
+use super::{Event, Frame, PerformerId, Phase, SourceCounts};
 
 /// Performers that one session can follow at once.
 pub const MAX_ACTORS: usize = 16;
@@ -19,7 +19,7 @@ pub const MAX_ACTORS: usize = 16;
 pub struct Status {
     /// Frames that went through recognition.
     pub frames: u64,
-    /// Frames dropped because recognition had not caught up ([`Overload::Drop`](super::Overload)).
+    /// Frames dropped because recognition had not caught up ([`OverflowPolicy::Drop`](super::OverflowPolicy)).
     pub dropped_frames: u64,
     /// Frames of no known skeleton, or of one that shows none of the index's bones.
     pub unusable_frames: u64,
@@ -36,7 +36,7 @@ pub struct Status {
     /// The longest that a frame has waited from its arrival to the end of its recognition, seconds.
     pub longest_wait_secs: f64,
     /// How long frames have waited likewise.
-    pub waits: Waits,
+    pub waits: LatencyHistogram,
     /// Whether the stream has ended and everything is told.
     pub ended: bool,
     /// The performers seen so far.
@@ -47,7 +47,7 @@ pub struct Status {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ActorStatus {
     /// Who.
-    pub actor: Actor,
+    pub actor: PerformerId,
     /// Frames of this performer.
     pub frames: u64,
     /// The source's clock at the last of them.
@@ -67,7 +67,7 @@ pub struct ActorStatus {
 /// A handle on a session's status; copies are cheap and may outlive the session.
 #[derive(Debug, Clone)]
 pub struct StatusHandle {
-    pub(super) cells: Arc<Cells>,
+    pub(super) cells: Arc<SessionCounters>,
 }
 
 impl StatusHandle {
@@ -79,7 +79,7 @@ impl StatusHandle {
 
 /// What the threads of a session write; single words.
 #[derive(Debug, Default)]
-pub(super) struct Cells {
+pub(super) struct SessionCounters {
     pub(super) frames: AtomicU64,
     pub(super) dropped_frames: Arc<AtomicU64>,
     pub(super) unusable: AtomicU64,
@@ -117,14 +117,20 @@ fn unpack(word: u64) -> Option<(ClassId, f64)> {
     (word >> 63 == 1).then_some((ClassId((word >> 32) as u16), share))
 }
 
-impl Cells {
+impl SessionCounters {
     /// A frame has been through recognition at `now_secs`.
     pub(super) fn frame(&self, frame: &Frame, now_secs: f64) {
         self.frame_of(frame.actor, frame.time_secs, frame.wall_secs, now_secs);
     }
 
     /// A frame of `actor`, of `time_secs` on the source's clock, which arrived at `wall_secs`, is through.
-    pub(super) fn frame_of(&self, actor: Actor, time_secs: f64, wall_secs: f64, now_secs: f64) {
+    pub(super) fn frame_of(
+        &self,
+        actor: PerformerId,
+        time_secs: f64,
+        wall_secs: f64,
+        now_secs: f64,
+    ) {
         self.frames.fetch_add(1, Relaxed);
         let wait_secs = (now_secs - wall_secs).max(0.0);
         // What is not negative is in the order of its bits.
@@ -140,7 +146,7 @@ impl Cells {
     }
 
     /// What is known of the stream of `actor`; left out while somebody reads what was known before.
-    pub(super) fn diagnosis(&self, actor: Actor, diagnosis: Option<Diagnosis>) {
+    pub(super) fn diagnosis(&self, actor: PerformerId, diagnosis: Option<Diagnosis>) {
         let Some(cells) = self.actors.get(actor.index()) else {
             return;
         };
@@ -211,7 +217,7 @@ impl Cells {
         };
         let bits = |cell: &AtomicU64| f64::from_bits(cell.load(Relaxed));
         let actor = |(i, cells): (usize, &ActorCells)| ActorStatus {
-            actor: Actor(i as u16),
+            actor: PerformerId(i as u16),
             frames: cells.frames.load(Relaxed),
             time_secs: bits(&cells.time),
             wall_secs: bits(&cells.wall),

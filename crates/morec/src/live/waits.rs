@@ -11,11 +11,11 @@ const LEAST_SECS: f64 = 1e-6;
 
 /// How many frames waited how long, in steps of a twelfth: what shares of them can be told from.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Waits {
+pub struct LatencyHistogram {
     counts: [u64; COUNTS],
 }
 
-impl Default for Waits {
+impl Default for LatencyHistogram {
     fn default() -> Self {
         Self {
             counts: [0; COUNTS],
@@ -23,7 +23,7 @@ impl Default for Waits {
     }
 }
 
-impl Waits {
+impl LatencyHistogram {
     /// Frames counted.
     pub fn frames(&self) -> u64 {
         self.counts.iter().sum()
@@ -72,8 +72,8 @@ impl WaitCells {
         self.counts[step.min(COUNTS - 1)].fetch_add(1, Relaxed);
     }
 
-    pub(super) fn read(&self) -> Waits {
-        Waits {
+    pub(super) fn read(&self) -> LatencyHistogram {
+        LatencyHistogram {
             counts: array::from_fn(|i| self.counts[i].load(Relaxed)),
         }
     }

@@ -7,10 +7,12 @@ use crate::features::BoneSet;
 
 use super::broadcast::EventBroadcast;
 pub use super::broadcast::EventReader;
-use super::feed::{FeedReceiver, Item};
+use super::feed::{FeedReceiver, QueueItem};
 use super::performer::{EventOptions, Performer};
-use super::status::Cells;
-use super::{Actor, Frame, MAX_ACTORS, Model, Overload, Recognizer, Rig, wall_now_secs};
+use super::status::SessionCounters;
+use super::{
+    Frame, MAX_ACTORS, Model, OverflowPolicy, PerformerId, Recognizer, Rig, wall_now_secs,
+};
 
 /// Frames of a performer after which its diagnosis is renewed: a quarter of a second at 60 Hz.
 const DIAGNOSE_EVERY: u64 = 16;
@@ -60,7 +62,7 @@ pub(super) enum TurnOutcome {
 #[derive(Debug, Clone)]
 pub(super) struct WorkerOptions {
     pub(super) events: EventOptions,
-    pub(super) overload: Overload,
+    pub(super) overload: OverflowPolicy,
     pub(super) readers: usize,
     pub(super) capacity: usize,
 }
@@ -73,7 +75,7 @@ pub(super) struct StreamWorker {
     frames: [u64; MAX_ACTORS],
     cache: Arc<RecognizerCache>,
     broadcast: EventBroadcast,
-    cells: Arc<Cells>,
+    cells: Arc<SessionCounters>,
     stop: Arc<AtomicBool>,
     /// Frames of performers beyond those that can be followed.
     beyond: u64,
@@ -87,11 +89,11 @@ impl StreamWorker {
         feed: FeedReceiver,
         cache: &Arc<RecognizerCache>,
         options: &WorkerOptions,
-        cells: &Arc<Cells>,
+        cells: &Arc<SessionCounters>,
         stop: &Arc<AtomicBool>,
     ) -> (Self, Vec<EventReader>) {
         let (broadcast, readers) = EventBroadcast::new(options, cells, stop);
-        let performer = |i| Performer::new(&cache.model, Actor(i as u16), &options.events);
+        let performer = |i| Performer::new(&cache.model, PerformerId(i as u16), &options.events);
         let worker = Self {
             feed,
             performers: (0..MAX_ACTORS).map(performer).collect(),
@@ -125,14 +127,14 @@ impl StreamWorker {
                 return TurnOutcome::Some;
             }
             match self.feed.next() {
-                Some(Item::Frame(frame)) => {
+                Some(QueueItem::Frame(frame)) => {
                     self.frame(&frame);
                     self.feed.give_back(frame);
                 }
-                Some(Item::Rig(actor, rig)) => self.set_rig(actor, &rig),
-                Some(Item::Gone(actor)) => self.gone(actor),
+                Some(QueueItem::Rig(actor, rig)) => self.set_rig(actor, &rig),
+                Some(QueueItem::Gone(actor)) => self.gone(actor),
                 None if self.feed.is_ended() || self.stop.load(Relaxed) => {
-                    (0..self.performers.len()).for_each(|i| self.gone(Actor(i as u16)));
+                    (0..self.performers.len()).for_each(|i| self.gone(PerformerId(i as u16)));
                     self.finished = true;
                 }
                 None if done == 0 => return TurnOutcome::Idle,
@@ -160,13 +162,13 @@ impl StreamWorker {
         self.cells.frame(frame, wall_now_secs());
     }
 
-    fn set_rig(&mut self, actor: Actor, rig: &Arc<Rig>) {
+    fn set_rig(&mut self, actor: PerformerId, rig: &Arc<Rig>) {
         if let Some(performer) = self.performers.get_mut(actor.index()) {
             performer.set_rig(rig, &mut |event| self.broadcast.keep(event));
         }
     }
 
-    fn gone(&mut self, actor: Actor) {
+    fn gone(&mut self, actor: PerformerId) {
         if let Some(performer) = self.performers.get_mut(actor.index()) {
             performer.finish(&mut |event| self.broadcast.keep(event));
             self.cells.diagnosis(actor, performer.diagnosis());

@@ -12,7 +12,7 @@ mod quality;
 pub use eigen::Eigen;
 pub use model::{Pca, PcaError};
 pub use moments::Moments;
-pub use quality::{Keep, QualityRow};
+pub use quality::{ComponentCount, QualityRow};
 
 #[cfg(test)]
 mod tests;

@@ -2,11 +2,11 @@
 
 use crate::features::Rows;
 
-use super::{Eigen, Keep, Moments, QualityRow};
+use super::{ComponentCount, Eigen, Moments, QualityRow};
 
 /// Principal components of a database's rows: centre, axes, and what each axis is worth.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-#[serde(try_from = "Parts", into = "Parts")]
+#[serde(try_from = "PcaParts", into = "PcaParts")]
 pub struct Pca {
     /// `D` values.
     mean: Vec<f64>,
@@ -39,7 +39,7 @@ impl Pca {
     ///
     /// # Errors
     /// Fewer than two rows, rows all alike or not finite, a `keep` that makes no sense.
-    pub fn fit(moments: &Moments, keep: Keep) -> Result<Self, PcaError> {
+    pub fn fit(moments: &Moments, keep: ComponentCount) -> Result<Self, PcaError> {
         keep.check().map_err(PcaError::Keep)?;
         let rows = moments.count();
         if rows < 2 {
@@ -173,14 +173,14 @@ impl Pca {
 
 /// What is stored; checked when it comes back.
 #[derive(serde::Serialize, serde::Deserialize)]
-struct Parts {
+struct PcaParts {
     mean: Vec<f64>,
     axes: Vec<f64>,
     eigenvalues: Vec<f64>,
     rows: u64,
 }
 
-impl From<Pca> for Parts {
+impl From<Pca> for PcaParts {
     fn from(pca: Pca) -> Self {
         Self {
             mean: pca.mean,
@@ -191,10 +191,10 @@ impl From<Pca> for Parts {
     }
 }
 
-impl TryFrom<Parts> for Pca {
+impl TryFrom<PcaParts> for Pca {
     type Error = PcaError;
 
-    fn try_from(parts: Parts) -> Result<Self, PcaError> {
+    fn try_from(parts: PcaParts) -> Result<Self, PcaError> {
         Pca::from_parts(parts.mean, parts.axes, parts.eigenvalues, parts.rows)
     }
 }

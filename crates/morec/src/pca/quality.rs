@@ -3,21 +3,21 @@
 /// How many dimensions to keep.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Keep {
+pub enum ComponentCount {
     /// As few as hold this share of the variance, above 0 and at most 1 (thesis Eq. 3.8: `f ≥ τ`).
     Quality(f64),
     /// So many, or all if there are fewer.
     Dims(usize),
 }
 
-impl Keep {
+impl ComponentCount {
     /// Dimensions to keep of those with these `eigenvalues`, largest first; at least 1 where there is one.
     ///
     /// Rounding is allowed for: quality 1 stops where what is left is 10⁻¹² of all.
     pub fn dims(self, eigenvalues: &[f64]) -> usize {
         let wanted = match self {
-            Keep::Dims(dims) => dims,
-            Keep::Quality(share) => {
+            ComponentCount::Dims(dims) => dims,
+            ComponentCount::Quality(share) => {
                 let all: f64 = eigenvalues.iter().sum();
                 let enough = share.min(1.0 - 1e-12) * all;
                 let mut sum = 0.0;
@@ -34,10 +34,12 @@ impl Keep {
     /// Says what is wrong with it, if anything is.
     pub fn check(self) -> Result<(), String> {
         match self {
-            Keep::Quality(share) if !(share > 0.0 && share <= 1.0) => Err(format!(
+            ComponentCount::Quality(share) if !(share > 0.0 && share <= 1.0) => Err(format!(
                 "quality must be above 0 and at most 1, found {share}"
             )),
-            Keep::Dims(0) => Err("the number of dimensions must be 1 or more, found 0".to_owned()),
+            ComponentCount::Dims(0) => {
+                Err("the number of dimensions must be 1 or more, found 0".to_owned())
+            }
             _ => Ok(()),
         }
     }

@@ -1,7 +1,7 @@
 use nalgebra::DMatrix;
 use proptest::prelude::*;
 
-use super::{Eigen, Keep, Moments, Pca, PcaError};
+use super::{ComponentCount, Eigen, Moments, Pca, PcaError};
 use crate::features::Rows;
 use crate::report::pictures::quality_chart;
 
@@ -29,7 +29,7 @@ fn moments(rows: &Rows) -> Moments {
 proptest! {
     #[test]
     fn eigenvalues_and_projections_are_those_of_the_svd(rows in rows()) {
-        let pca = Pca::fit(&moments(&rows), Keep::Quality(1.0)).unwrap();
+        let pca = Pca::fit(&moments(&rows), ComponentCount::Quality(1.0)).unwrap();
         let a = centred(&rows);
         let svd = a.clone().svd(false, true);
         let v = svd.v_t.unwrap().transpose();
@@ -50,7 +50,7 @@ proptest! {
 
     #[test]
     fn all_dimensions_give_the_rows_back(rows in rows()) {
-        let pca = Pca::fit(&moments(&rows), Keep::Dims(99)).unwrap();
+        let pca = Pca::fit(&moments(&rows), ComponentCount::Dims(99)).unwrap();
         let back = pca.reconstruct(&pca.project(&rows));
         for (a, b) in rows.values().iter().zip(back.values()) {
             prop_assert!((a - b).abs() < 1e-4);
@@ -77,7 +77,7 @@ proptest! {
 
     #[test]
     fn axes_do_not_depend_on_the_sign_a_solver_gave(rows in rows()) {
-        let pca = Pca::fit(&moments(&rows), Keep::Quality(1.0)).unwrap();
+        let pca = Pca::fit(&moments(&rows), ComponentCount::Quality(1.0)).unwrap();
         for i in 0..pca.dims() {
             let axis = pca.axis(i);
             let greatest = axis.iter().copied().fold(0.0, |m: f64, v| if v.abs() > m.abs() { v } else { m });
@@ -95,7 +95,7 @@ proptest! {
         values[0] += 0.1;
         let all: f64 = values.iter().sum();
         let kept = |dims: usize| values[..dims].iter().sum::<f64>() / all;
-        let dims = Keep::Quality(share).dims(&values);
+        let dims = ComponentCount::Quality(share).dims(&values);
         prop_assert!(kept(dims) >= share - 1e-9);
         prop_assert!(dims == 1 || kept(dims - 1) < share + 1e-9);
     }
@@ -125,7 +125,7 @@ fn cross() -> Rows {
 
 #[test]
 fn known_axes_are_found() {
-    let pca = Pca::fit(&moments(&cross()), Keep::Quality(0.9)).unwrap();
+    let pca = Pca::fit(&moments(&cross()), ComponentCount::Quality(0.9)).unwrap();
     assert_eq!((pca.dims(), pca.rows()), (1, 4));
     assert!((pca.quality() - 0.9).abs() < 1e-6);
     let half = std::f64::consts::FRAC_1_SQRT_2;
@@ -152,23 +152,26 @@ fn what_has_no_components_is_refused() {
     let fit = |rows: &Rows, keep| Pca::fit(&moments(rows), keep);
     let one = Rows::from_values(2, vec![1.0, 2.0]);
     assert_eq!(
-        fit(&one, Keep::Dims(1)),
+        fit(&one, ComponentCount::Dims(1)),
         Err(PcaError::TooFewRows { found: 1 })
     );
     let alike = Rows::from_values(1, vec![0.25; 5]);
     assert_eq!(
-        fit(&alike, Keep::Dims(1)),
+        fit(&alike, ComponentCount::Dims(1)),
         Err(PcaError::NoVariance { rows: 5 })
     );
     assert_eq!(
-        fit(&Rows::from_values(1, vec![1.0, f32::NAN]), Keep::Dims(1)),
+        fit(
+            &Rows::from_values(1, vec![1.0, f32::NAN]),
+            ComponentCount::Dims(1)
+        ),
         Err(PcaError::NotFinite)
     );
     for keep in [
-        Keep::Dims(0),
-        Keep::Quality(0.0),
-        Keep::Quality(1.5),
-        Keep::Quality(f64::NAN),
+        ComponentCount::Dims(0),
+        ComponentCount::Quality(0.0),
+        ComponentCount::Quality(1.5),
+        ComponentCount::Quality(f64::NAN),
     ] {
         assert!(matches!(fit(&cross(), keep), Err(PcaError::Keep(_))));
     }
@@ -176,7 +179,7 @@ fn what_has_no_components_is_refused() {
 
 #[test]
 fn what_was_stored_comes_back_and_is_checked() {
-    let pca = Pca::fit(&moments(&cross()), Keep::Dims(2)).unwrap();
+    let pca = Pca::fit(&moments(&cross()), ComponentCount::Dims(2)).unwrap();
     let text = serde_json::to_string(&pca).unwrap();
     assert_eq!(serde_json::from_str::<Pca>(&text).unwrap(), pca);
     for spoilt in [

@@ -19,7 +19,7 @@ mod tables;
 
 pub use map::{NoPivots, PivotMap};
 pub use of_clip::{for_each_pivot_pose, pose_rows_of_clip};
-pub use params::{PoseParams, RootForm, SignRule};
+pub use params::{PoseParams, QuaternionSign, RootForm};
 pub use pose::{MAX_PIVOTS, PivotPose};
 pub use set::{Pivot, PivotSet, PivotSetError};
 pub use stream::PoseStream;

@@ -16,7 +16,7 @@ pub enum RootForm {
 /// before it, never on later ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum SignRule {
+pub enum QuaternionSign {
     /// A stretch's first frame has `w ≥ 0`, every other the sign nearer to the frame before it: nothing jumps.
     #[default]
     Continuous,
@@ -33,7 +33,7 @@ pub struct PoseParams {
     /// What stands for the root.
     pub root: RootForm,
     /// Signs of the pivots below the root; the root's turn is near none and always has `w ≥ 0`.
-    pub signs: SignRule,
+    pub signs: QuaternionSign,
 }
 
 impl Default for PoseParams {
@@ -42,7 +42,7 @@ impl Default for PoseParams {
         Self {
             rate_hz: 120.0,
             root: RootForm::World,
-            signs: SignRule::Continuous,
+            signs: QuaternionSign::Continuous,
         }
     }
 }

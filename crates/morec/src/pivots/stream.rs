@@ -4,7 +4,7 @@ use crate::features::Pushed;
 use crate::features::grid::Grid;
 use crate::math::{Quat, same_hemisphere, slerp};
 
-use super::{MAX_PIVOTS, PivotPose, PivotSet, PoseParams, RootForm, SignRule};
+use super::{MAX_PIVOTS, PivotPose, PivotSet, PoseParams, QuaternionSign, RootForm};
 
 /// Rotations of one frame: the root's in the world, every other pivot's relative to its parent pivot.
 type Locals = [Quat; MAX_PIVOTS];
@@ -161,7 +161,7 @@ impl RowMaker {
         self.waiting[0] = locals[0];
         for pivot in 1..self.pivots {
             let like = match self.params.signs {
-                SignRule::Continuous if self.waits => self.waiting[pivot],
+                QuaternionSign::Continuous if self.waits => self.waiting[pivot],
                 _ => Quat::identity(),
             };
             self.waiting[pivot] = same_hemisphere(&like, locals[pivot]);

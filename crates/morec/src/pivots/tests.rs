@@ -198,7 +198,7 @@ fn signs_follow_the_frame_before_or_the_hemisphere() {
     assert_eq!(jumps(&continuous), 0);
     assert!(continuous.row(0)[4] > 0.0 && continuous.row(119)[4] < -0.9);
     let hemisphere = PoseParams {
-        signs: SignRule::Hemisphere,
+        signs: QuaternionSign::Hemisphere,
         ..PoseParams::default()
     };
     let hemisphere = rows(&clip, &two(), &hemisphere);

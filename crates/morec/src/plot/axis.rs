@@ -2,14 +2,14 @@
 
 /// Maps `from..to` in values to `low..high` on the paper.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Axis {
+pub(super) struct PlotAxis {
     pub from: f64,
     pub to: f64,
     pub low: f64,
     pub high: f64,
 }
 
-impl Axis {
+impl PlotAxis {
     /// An axis over the finite ones of `values`; a little wider than a point if they are all the same.
     pub fn over(values: impl Iterator<Item = f64>, low: f64, high: f64) -> Self {
         let finite = values.filter(|v| v.is_finite());
@@ -73,12 +73,12 @@ fn round_step(step: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::Axis;
+    use super::PlotAxis;
 
     #[test]
     fn ticks_are_round_and_within() {
         let labels = |from, to, most| {
-            let axis = Axis {
+            let axis = PlotAxis {
                 from,
                 to,
                 low: 0.0,
@@ -109,7 +109,7 @@ mod tests {
             vec![7.0, 7.0],
             vec![-1e12],
         ] {
-            let axis = Axis::over(values.iter().copied(), 0.0, 100.0);
+            let axis = PlotAxis::over(values.iter().copied(), 0.0, 100.0);
             assert!(axis.to > axis.from, "{values:?}");
             assert!(!axis.ticks(5).is_empty(), "{values:?}");
         }

@@ -1,6 +1,6 @@
 //! Lines, points, marks and regions over two axes.
 
-use super::axis::Axis;
+use super::axis::PlotAxis;
 use super::{Text, colour, open};
 
 const LEFT: f64 = 64.0;
@@ -142,7 +142,7 @@ impl Chart {
         out
     }
 
-    fn scales(&self) -> (Axis, Axis) {
+    fn scales(&self) -> (PlotAxis, PlotAxis) {
         let (width, height) = self.size;
         let regions = self.regions.iter();
         let xs = self.series.iter().flat_map(|s| s.shape.xs());
@@ -150,11 +150,11 @@ impl Chart {
         let ys = self.series.iter().flat_map(|s| s.shape.ys());
         let ys = ys.chain(regions.flat_map(|r| [r.y.0, r.y.1]));
         let room = if self.regions.is_some() { 0.0 } else { 0.04 };
-        let x = Axis::over(xs, LEFT, width - RIGHT);
-        (x, Axis::over(ys, height - BOTTOM, TOP).widened(room))
+        let x = PlotAxis::over(xs, LEFT, width - RIGHT);
+        (x, PlotAxis::over(ys, height - BOTTOM, TOP).widened(room))
     }
 
-    fn push_axes(&self, out: &mut String, x: &Axis, y: &Axis) {
+    fn push_axes(&self, out: &mut String, x: &PlotAxis, y: &PlotAxis) {
         let (left, right, top, bottom) = (x.low, x.high, y.high, y.low);
         for (value, label) in x.ticks(10) {
             let at = x.at(value);
@@ -245,7 +245,7 @@ impl Shape {
 }
 
 impl Series {
-    fn push(&self, out: &mut String, x: &Axis, y: &Axis) {
+    fn push(&self, out: &mut String, x: &PlotAxis, y: &PlotAxis) {
         let (top, bottom, colour) = (y.high, y.low, &self.colour);
         match &self.shape {
             Shape::Line(points) => push_line(out, points, x, y, colour),
@@ -277,7 +277,7 @@ impl Series {
     }
 }
 
-fn push_line(out: &mut String, points: &[(f64, f64)], x: &Axis, y: &Axis, colour: &str) {
+fn push_line(out: &mut String, points: &[(f64, f64)], x: &PlotAxis, y: &PlotAxis, colour: &str) {
     for part in points
         .split(|p| !p.0.is_finite() || !p.1.is_finite())
         .filter(|part| !part.is_empty())
@@ -321,7 +321,7 @@ impl Regions {
         format!("hsl({hue:.0} 50% 70% / .55)")
     }
 
-    fn push(&self, out: &mut String, x: &Axis, y: &Axis) {
+    fn push(&self, out: &mut String, x: &PlotAxis, y: &PlotAxis) {
         if self.columns == 0 {
             return;
         }

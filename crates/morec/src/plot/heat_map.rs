@@ -1,6 +1,6 @@
 //! A grid of values as a picture: the stronger, the denser.
 
-use super::axis::Axis;
+use super::axis::PlotAxis;
 use super::{Text, colour, open};
 
 const TOP: f64 = 34.0;
@@ -176,7 +176,7 @@ impl HeatMap {
 
     fn push_labels(&self, out: &mut String, (left, right): (f64, f64), bottom: f64, names: f64) {
         if let Some((from, to)) = self.x_range.filter(|(from, to)| to > from) {
-            let axis = Axis {
+            let axis = PlotAxis {
                 from,
                 to,
                 low: left,

@@ -1,6 +1,6 @@
 //! Named stretches of time, lane by lane: what is labelled above what was found.
 
-use super::axis::Axis;
+use super::axis::PlotAxis;
 use super::{Text, colour, open};
 
 const WIDTH: f64 = 1100.0;
@@ -17,20 +17,20 @@ pub struct Bar {
     pub from_secs: f64,
     /// Seconds.
     pub to_secs: f64,
-    /// Which kind, an index into the names of [`Lanes::new`]; decides the colour.
+    /// Which kind, an index into the names of [`LaneChart::new`]; decides the colour.
     pub kind: usize,
 }
 
 /// Lanes of bars over one axis of time.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Lanes {
+pub struct LaneChart {
     title: String,
     kinds: Vec<String>,
     secs: f64,
     lanes: Vec<(String, Vec<Bar>)>,
 }
 
-impl Lanes {
+impl LaneChart {
     /// No lanes yet; `kinds` name what bars may be, `secs` is how long the axis is.
     pub fn new(title: impl Into<String>, kinds: Vec<String>, secs: f64) -> Self {
         Self {
@@ -51,7 +51,7 @@ impl Lanes {
 
     /// The picture. Kinds that no bar has are not in the legend.
     pub fn svg(&self) -> String {
-        let axis = Axis {
+        let axis = PlotAxis {
             from: 0.0,
             to: self.secs,
             low: LEFT,
@@ -95,7 +95,7 @@ impl Lanes {
         out
     }
 
-    fn push_bar(&self, out: &mut String, bar: &Bar, axis: &Axis, y: f64) {
+    fn push_bar(&self, out: &mut String, bar: &Bar, axis: &PlotAxis, y: f64) {
         if !(bar.from_secs.is_finite() && bar.to_secs.is_finite()) {
             return;
         }

@@ -15,7 +15,7 @@ mod tests;
 
 pub use chart::{Chart, Regions};
 pub use heat_map::HeatMap;
-pub use lanes::{Bar, Lanes};
+pub use lanes::{Bar, LaneChart};
 pub(crate) use text::Text;
 pub use tree::{TreeBox, tree_svg};
 

@@ -1,6 +1,6 @@
 //! Pictures hold what was put in, whatever it was called, and nothing that is not a number.
 
-use super::{Bar, Chart, HeatMap, Lanes, Regions};
+use super::{Bar, Chart, HeatMap, LaneChart, Regions};
 
 fn whole(svg: &str) {
     assert!(
@@ -118,7 +118,7 @@ fn lanes_hold_their_bars_and_name_what_is_there() {
         kind,
     };
     let kinds = ["walk", "<jump>", "never"].map(str::to_owned).to_vec();
-    let lanes = Lanes::new("clip", kinds, 10.0)
+    let lanes = LaneChart::new("clip", kinds, 10.0)
         .lane("labelled", [bar(0.0, 2.0, 0), bar(3.0, 99.0, 1)])
         .lane("found", [bar(f64::NAN, 2.0, 0), bar(1.0, 2.0, 7)]);
     let svg = lanes.svg();
@@ -126,5 +126,5 @@ fn lanes_hold_their_bars_and_name_what_is_there() {
     assert!(svg.contains("&lt;jump&gt;, 3.00 to 10.00 s"));
     assert_eq!(svg.matches(">walk</text>").count(), 1);
     assert!(!svg.contains("never"));
-    whole(&Lanes::new("nothing", vec![], 0.0).svg());
+    whole(&LaneChart::new("nothing", vec![], 0.0).svg());
 }

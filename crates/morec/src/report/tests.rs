@@ -1,11 +1,11 @@
 //! What a reader of the report must be able to rely on.
 
 use super::*;
-use crate::eval::{Found, StreamInfo, Truth, timelines};
+use crate::eval::{ClipDetection, GroundTruth, StreamInfo, timelines};
 use crate::explain::Reason;
 
-fn truth(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> Truth {
-    Truth {
+fn truth(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> GroundTruth {
+    GroundTruth {
         clip: clip.into(),
         class: class.into(),
         start_secs,
@@ -13,8 +13,8 @@ fn truth(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> Truth {
     }
 }
 
-fn found(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> Found {
-    Found {
+fn found(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> ClipDetection {
+    ClipDetection {
         clip: clip.into(),
         class: class.into(),
         start_secs,
@@ -34,8 +34,8 @@ fn stream(clip: &str, duration_secs: f64, unknown: bool) -> StreamInfo {
 
 fn report(
     infos: &[StreamInfo],
-    truths: &[Truth],
-    founds: &[Found],
+    truths: &[GroundTruth],
+    founds: &[ClipDetection],
     training: &[TrainedClass],
 ) -> String {
     let evaluation = Evaluation::of(infos, truths, founds).unwrap();
@@ -164,12 +164,12 @@ fn many_short_clips_become_squares() {
         .map(|i| stream(&format!("clip {i:03}"), 2.0, i % 10 == 9))
         .collect();
     let known = infos.iter().filter(|s| !s.unknown);
-    let truths: Vec<Truth> = known
+    let truths: Vec<GroundTruth> = known
         .clone()
         .enumerate()
         .map(|(i, s)| truth(&s.clip, ["a", "b"][i % 2], 0.0, 2.0))
         .collect();
-    let founds: Vec<Found> = infos
+    let founds: Vec<ClipDetection> = infos
         .iter()
         .step_by(3)
         .map(|s| found(&s.clip, "a", 0.1, 1.9))
@@ -224,7 +224,7 @@ fn curves_and_reasons_are_shown_where_they_are_known() {
 #[test]
 fn notes_name_what_to_teach() {
     let infos = [stream("c", 60.0, false), stream("u", 60.0, true)];
-    let mut truths: Vec<Truth> = (0..4)
+    let mut truths: Vec<GroundTruth> = (0..4)
         .map(|i| {
             truth(
                 "c",

@@ -3,7 +3,7 @@
 use super::grid;
 use super::html::Text;
 use super::palette::Palette;
-use crate::eval::{Found, FoundVerdict, Timeline, Truth, TruthVerdict};
+use crate::eval::{ClipDetection, FoundVerdict, GroundTruth, Timeline, TruthVerdict};
 
 const WIDTH: f64 = 1120.0;
 /// Room for the lanes' names on the left, and a little on the right.
@@ -85,12 +85,12 @@ fn push_clip(out: &mut String, timeline: &Timeline, scale: f64, palette: &Palett
     ));
     let rows = rows_of(timeline);
     let row_secs = stream.duration_secs / rows as f64;
-    let windows = (0..rows).map(|r| Window {
+    let windows = (0..rows).map(|r| TimeWindow {
         from: r as f64 * row_secs,
         to: (r + 1) as f64 * row_secs,
         scale,
     });
-    let (shown, blank): (Vec<Window>, Vec<Window>) =
+    let (shown, blank): (Vec<TimeWindow>, Vec<TimeWindow>) =
         windows.partition(|window| window.holds_any(timeline));
     if !blank.is_empty() {
         out.push_str(&format!(
@@ -128,13 +128,13 @@ fn summary(timeline: &Timeline) -> String {
 
 /// The part of a clip that a row shows.
 #[derive(Clone, Copy)]
-struct Window {
+struct TimeWindow {
     from: f64,
     to: f64,
     scale: f64,
 }
 
-impl Window {
+impl TimeWindow {
     fn x(self, secs: f64) -> f64 {
         LEFT + (secs.clamp(self.from, self.to) - self.from) * self.scale
     }
@@ -155,7 +155,7 @@ impl Window {
     }
 }
 
-fn push_row(out: &mut String, timeline: &Timeline, window: Window, palette: &Palette) {
+fn push_row(out: &mut String, timeline: &Timeline, window: TimeWindow, palette: &Palette) {
     let (right, name) = (window.x(window.to), Text(&timeline.stream.clip));
     out.push_str(&format!(
         "<svg viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\"><title>{name}, {:.1} s to {:.1} s</title>\n\
@@ -203,9 +203,9 @@ fn push_row(out: &mut String, timeline: &Timeline, window: Window, palette: &Pal
 
 fn push_truth(
     out: &mut String,
-    truth: &Truth,
+    truth: &GroundTruth,
     verdict: &TruthVerdict,
-    window: Window,
+    window: TimeWindow,
     palette: &Palette,
 ) {
     let (class, mark, text) = match verdict {
@@ -230,9 +230,9 @@ fn push_truth(
 
 fn push_found(
     out: &mut String,
-    found: &Found,
+    found: &ClipDetection,
     verdict: FoundVerdict,
-    window: Window,
+    window: TimeWindow,
     palette: &Palette,
 ) {
     let (class, mark, text) = match verdict {
@@ -292,7 +292,7 @@ fn push_mark(out: &mut String, mark: &str, x: f64, y: f64) {
     }
 }
 
-fn push_axis(out: &mut String, window: Window) {
+fn push_axis(out: &mut String, window: TimeWindow) {
     let right = window.x(window.to);
     out.push_str(&format!(
         "<path class=\"axis\" d=\"M{LEFT} {AXIS_Y}H{right:.1}\"/>"

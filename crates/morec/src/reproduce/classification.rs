@@ -6,14 +6,14 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use crate::classes::ClassId;
-use crate::crossval::{By, folds};
+use crate::crossval::{FoldBy, folds};
 use crate::features::Rows;
 use crate::index::{MotionIndex, Provenance};
 use crate::labels::Sample;
 use crate::plot::HeatMap;
 use crate::report::pictures::{branch_picture, tree_picture};
 use crate::svrdm::{SampleClassifier, SvrdmModel};
-use crate::train::Labelling;
+use crate::train::LabelSet;
 use crate::train::svrdm::{BranchReport, FeatureSample};
 use crate::train::thesis::{Estimated, SvrdmOptions, train_svrdm};
 
@@ -34,7 +34,7 @@ pub struct Rates {
 
 /// One half split.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Classification {
+pub struct SplitResult {
     /// How the tree was trained.
     pub setting: Setting,
     /// Seed of the split.
@@ -64,8 +64,8 @@ pub(super) fn run(
     (setting, options): &(Setting, SvrdmOptions),
     seed: u64,
     pictures: &mut Vec<Picture>,
-) -> Result<Classification, ReproduceError> {
-    let split = folds(By::Half { seed }, study.samples, &BTreeMap::new());
+) -> Result<SplitResult, ReproduceError> {
+    let split = folds(FoldBy::Half { seed }, study.samples, &BTreeMap::new());
     let fold = split
         .first()
         .ok_or_else(|| ReproduceError::Other("there are no samples".to_owned()))?;
@@ -73,7 +73,7 @@ pub(super) fn run(
         places.iter().map(|&i| study.samples[i].clone()).collect()
     };
     let (taught, held_back) = (pick(&fold.taught), pick(&fold.held_back));
-    let labelling = Labelling {
+    let labelling = LabelSet {
         samples: &taught,
         held_back: &held_back,
         classes: study.classes,
@@ -112,7 +112,7 @@ pub(super) fn run(
         provenance: Provenance::default(),
     };
     let svrdm = report.svrdm;
-    Ok(Classification {
+    Ok(SplitResult {
         setting: *setting,
         seed,
         taught: taught.len(),

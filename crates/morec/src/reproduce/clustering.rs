@@ -2,11 +2,13 @@
 
 use serde::Serialize;
 
-use crate::cluster::{KwasForm, KwasParams, Pairs, Spectrum, adjusted_rand_index, kwas_clusters};
+use crate::cluster::{
+    KwasForm, KwasParams, PairCounts, Spectrum, adjusted_rand_index, kwas_clusters,
+};
 use crate::features::Rows;
-use crate::pca::{Keep, Moments, Pca};
+use crate::pca::{ComponentCount, Moments, Pca};
 use crate::pivots::{PivotSet, PoseParams};
-use crate::train::Source;
+use crate::train::StreamKind;
 
 use super::{ReproduceError, Study, frames_of, rows_of};
 
@@ -22,7 +24,7 @@ pub struct Clustering {
     /// Clusters found.
     pub clusters: usize,
     /// Pairs of samples.
-    pub pairs: Pairs,
+    pub pairs: PairCounts,
     /// Rand index.
     pub rand_index: f64,
     /// The same, 0 for chance.
@@ -36,7 +38,11 @@ pub(super) fn run(study: &Study<'_>) -> Result<Vec<Clustering>, ReproduceError> 
     let (set, params) = (PivotSet::thesis(), PoseParams::default());
     let mut moments = Moments::new(set.row_dim());
     let mut cut: Vec<(usize, Rows)> = vec![];
-    for clip in study.clips.iter().filter(|c| c.source == Source::Labelled) {
+    for clip in study
+        .clips
+        .iter()
+        .filter(|c| c.source == StreamKind::Labelled)
+    {
         let rows = rows_of(clip, &set, &params)?;
         moments.push_rows(&rows);
         for sample in study.samples.iter().filter(|s| s.clip == clip.name) {
@@ -47,8 +53,8 @@ pub(super) fn run(study: &Study<'_>) -> Result<Vec<Clustering>, ReproduceError> 
             }
         }
     }
-    let pca =
-        Pca::fit(&moments, Keep::Dims(16)).map_err(|e| ReproduceError::Other(e.to_string()))?;
+    let pca = Pca::fit(&moments, ComponentCount::Dims(16))
+        .map_err(|e| ReproduceError::Other(e.to_string()))?;
     let classes: Vec<usize> = cut.iter().map(|(class, _)| *class).collect();
     let centred: Vec<Spectrum> = cut
         .iter()
@@ -69,7 +75,7 @@ pub(super) fn run(study: &Study<'_>) -> Result<Vec<Clustering>, ReproduceError> 
                     form: KwasForm::Printed,
                 },
             );
-            let pairs = Pairs::count(&classes, &clusters.of);
+            let pairs = PairCounts::count(&classes, &clusters.of);
             found.push(Clustering {
                 tau,
                 centred: is_centred,

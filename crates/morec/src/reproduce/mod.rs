@@ -24,7 +24,7 @@ use crate::segment::SegmentError;
 use crate::train::thesis::{SvrdmOptions, SvrdmTrainParams};
 use crate::train::{TrainClip, TrainError};
 
-pub use classification::Classification;
+pub use classification::SplitResult;
 pub use clustering::Clustering;
 pub use page::page;
 pub use segmentation::Segmented;
@@ -96,7 +96,7 @@ pub struct Reproduction {
     /// §5.2, τ by τ, centred and not.
     pub clustering: Vec<Clustering>,
     /// §5.3, for each setting and seed.
-    pub classification: Vec<Classification>,
+    pub classification: Vec<SplitResult>,
     /// §5.4, for each setting and seed.
     pub streams: Vec<Streamed>,
     /// All pictures.

@@ -4,9 +4,9 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::pivots::{PivotSet, PoseParams};
-use crate::plot::{Bar, Lanes};
+use crate::plot::{Bar, LaneChart};
 use crate::segment::{PpcaParams, segment};
-use crate::train::{Source, TrainClip};
+use crate::train::{StreamKind, TrainClip};
 
 use super::{Picture, ReproduceError, Study, rows_of};
 
@@ -29,7 +29,12 @@ pub(super) fn run(
     study: &Study<'_>,
     pictures: &mut Vec<Picture>,
 ) -> Result<Vec<Segmented>, ReproduceError> {
-    let labelled = || study.clips.iter().filter(|c| c.source == Source::Labelled);
+    let labelled = || {
+        study
+            .clips
+            .iter()
+            .filter(|c| c.source == StreamKind::Labelled)
+    };
     let results: Result<Vec<(Segmented, Picture)>, ReproduceError> = labelled()
         .collect::<Vec<_>>()
         .into_par_iter()
@@ -87,7 +92,7 @@ fn one(study: &Study<'_>, clip: &TrainClip) -> Result<(Segmented, Picture), Repr
         .iter()
         .cloned()
         .chain(["segment".to_owned(), "next segment".to_owned()]);
-    let svg = Lanes::new(
+    let svg = LaneChart::new(
         format!("{}: labels and automatic segments", clip.name),
         kinds.collect(),
         secs,

@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use crate::crossval::{By, Material, crossval};
+use crate::crossval::{CrossvalData, FoldBy, crossval};
 use crate::eval::{Evaluation, Timeline, timelines};
 use crate::live::Model;
-use crate::plot::{Bar, Lanes};
+use crate::plot::{Bar, LaneChart};
 use crate::svrdm::{ConfidenceMap, SvrdmEngine, SvrdmModel};
-use crate::train::Source;
+use crate::train::StreamKind;
 
 use crate::train::thesis::SvrdmOptions;
 
@@ -35,7 +35,7 @@ pub(super) fn run(
     seed: u64,
     pictures: &mut Vec<Picture>,
 ) -> Result<Streamed, ReproduceError> {
-    let material = Material {
+    let material = CrossvalData {
         clips: study.clips,
         samples: study.samples,
         classes: study.classes,
@@ -44,7 +44,7 @@ pub(super) fn run(
     };
     let outcome = crossval(
         &material,
-        &By::Half { seed }.into(),
+        &FoldBy::Half { seed }.into(),
         &options.clone().into(),
         &(),
     )?;
@@ -81,7 +81,7 @@ fn timeline_picture(study: &Study<'_>, setting: Setting, line: &Timeline) -> Pic
     };
     let (name, clip) = (setting.name(), &line.stream.clip);
     let title = format!("{clip}, {name}: what is labelled and what was recognised");
-    let svg = Lanes::new(title, study.classes.to_vec(), line.stream.duration_secs)
+    let svg = LaneChart::new(title, study.classes.to_vec(), line.stream.duration_secs)
         .lane(
             "labelled",
             line.truths
@@ -114,7 +114,7 @@ fn map_picture(
     let Some(clip) = study
         .clips
         .iter()
-        .find(|c| c.name == name && c.source == Source::Labelled)
+        .find(|c| c.name == name && c.source == StreamKind::Labelled)
     else {
         return Ok(None);
     };

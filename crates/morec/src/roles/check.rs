@@ -1,7 +1,7 @@
 //! Role maps that cannot be true: each doubt is a sentence that says what to do.
 
-use super::names::{Kind, read};
-use super::tree::Tree;
+use super::names::{NameMeaning, read};
+use super::tree::JointTree;
 use super::{Role, RoleMap, proportions};
 use crate::clip::Skeleton;
 use crate::math::Vec3;
@@ -17,7 +17,7 @@ pub fn check(skeleton: &Skeleton, map: &RoleMap, poses: &[Vec<Vec3>]) -> Vec<Str
     let Some(first) = poses.first().filter(|_| !skeleton.is_empty()) else {
         return Vec::new();
     };
-    let body = Body {
+    let body = PosedBody {
         skeleton,
         map,
         poses,
@@ -31,7 +31,7 @@ pub fn check(skeleton: &Skeleton, map: &RoleMap, poses: &[Vec<Vec3>]) -> Vec<Str
     doubts
 }
 
-struct Body<'a> {
+struct PosedBody<'a> {
     skeleton: &'a Skeleton,
     map: &'a RoleMap,
     poses: &'a [Vec<Vec3>],
@@ -46,7 +46,7 @@ const ARMS: [[Role; 3]; 2] = [
     [Role::RightArm, Role::RightForearm, Role::RightHand],
 ];
 
-impl Body<'_> {
+impl PosedBody<'_> {
     fn at(&self, pose: &[Vec3], role: Role) -> Option<Vec3> {
         self.map.joint(role).map(|joint| pose[joint])
     }
@@ -213,7 +213,7 @@ impl Body<'_> {
     /// Whether this is a body of something else than a person.
     fn not_human(&self, first: &[Vec3]) -> Option<String> {
         let poses = [first.to_vec()];
-        let tree = Tree::new(self.skeleton, &poses);
+        let tree = JointTree::new(self.skeleton, &poses);
         let why = self
             .other_limbs(&tree)
             .or_else(|| self.on_all_fours())
@@ -225,7 +225,7 @@ impl Body<'_> {
     }
 
     /// No limbs at all, limbs of animals, or too many.
-    fn other_limbs(&self, tree: &Tree) -> Option<String> {
+    fn other_limbs(&self, tree: &JointTree) -> Option<String> {
         let has = |limb: &[Role; 3]| {
             limb.iter()
                 .filter(|r| self.map.joint(**r).is_some())
@@ -237,15 +237,18 @@ impl Body<'_> {
             return Some("it has no arms and legs".to_owned());
         }
         let has_none = |roles: &[Role]| roles.iter().all(|role| self.map.joint(*role).is_none());
-        if LEGS.iter().all(|leg| has_none(leg)) && has_none(&[Role::Torso, Role::Neck, Role::Head]) {
+        if LEGS.iter().all(|leg| has_none(leg)) && has_none(&[Role::Torso, Role::Neck, Role::Head])
+        {
             return Some("it has neither trunk, head nor legs".to_owned());
         }
         if let Some(name) = self.further_limb(tree) {
-            return Some(format!("it has limbs besides its arms and legs, `{name}` among them"));
+            return Some(format!(
+                "it has limbs besides its arms and legs, `{name}` among them"
+            ));
         }
         let human = self.human_words();
         let animal = self.skeleton.joints().iter().find(|joint| {
-            read(&joint.name).kind == Kind::Animal && read(&joint.name).side.is_some()
+            read(&joint.name).kind == NameMeaning::Animal && read(&joint.name).side.is_some()
         });
         if let Some(joint) = animal.filter(|_| human < 4) {
             return Some(format!("it has a joint `{}`", joint.name));
@@ -254,7 +257,7 @@ impl Body<'_> {
             return None;
         }
         let longest = tree.size();
-        let long = |pair: &super::tree::Pair| {
+        let long = |pair: &super::tree::MirroredPair| {
             pair.members
                 .iter()
                 .all(|&m| tree.reach(m) > 0.45 * longest && tree.main_chain(m).len() > 2)
@@ -265,14 +268,17 @@ impl Body<'_> {
 
     /// A joint that begins one of a pair of limbs as long as legs, which are called so or stand where the feet do, and which no
     /// role is played by. Helper joints that lie on the limbs, hair and skirts are none.
-    fn further_limb(&self, tree: &Tree) -> Option<&str> {
+    fn further_limb(&self, tree: &JointTree) -> Option<&str> {
         const LONG: f64 = 0.6;
         const NEAR: f64 = 0.2;
         const LEAST_JOINTS: usize = 3;
         let pose = tree.positions;
         let leg = self.pair(LEGS)?;
         let limbs = LEGS.iter().chain(&ARMS);
-        let played: Vec<usize> = limbs.flatten().filter_map(|role| self.map.joint(*role)).collect();
+        let played: Vec<usize> = limbs
+            .flatten()
+            .filter_map(|role| self.map.joint(*role))
+            .collect();
         let hips = self.middle(pose, Role::LeftThigh, Role::RightThigh)?;
         let down = self.middle(pose, Role::LeftFoot, Role::RightFoot)? - hips;
         let is_further = |&member: &usize| {
@@ -291,7 +297,9 @@ impl Body<'_> {
                 && (stands || tree.leg_votes(member) != 0)
         };
         let pairs = tree.pairs();
-        let pair = pairs.iter().find(|pair| pair.members.iter().all(is_further))?;
+        let pair = pairs
+            .iter()
+            .find(|pair| pair.members.iter().all(is_further))?;
         Some(&self.skeleton.joints()[pair.members[0]].name)
     }
 
@@ -303,7 +311,7 @@ impl Body<'_> {
             .iter()
             .map(|j| read(&j.name))
             .collect();
-        let both = |fits: &dyn Fn(Kind) -> bool| {
+        let both = |fits: &dyn Fn(NameMeaning) -> bool| {
             let side = |side| {
                 readings
                     .iter()
@@ -312,17 +320,20 @@ impl Body<'_> {
             side(super::names::Side::Left) && side(super::names::Side::Right)
         };
         [
-            both(&|k| k == Kind::Thigh),
-            both(&|k| k == Kind::Shin),
-            both(&|k| k == Kind::Foot),
+            both(&|k| k == NameMeaning::Thigh),
+            both(&|k| k == NameMeaning::Shin),
+            both(&|k| k == NameMeaning::Foot),
             both(&|k| {
                 matches!(
                     k,
-                    Kind::UpperArm | Kind::Arm | Kind::Shoulder | Kind::Collar
+                    NameMeaning::UpperArm
+                        | NameMeaning::Arm
+                        | NameMeaning::Shoulder
+                        | NameMeaning::Collar
                 )
             }),
-            both(&|k| k == Kind::Forearm),
-            both(&|k| k == Kind::Hand),
+            both(&|k| k == NameMeaning::Forearm),
+            both(&|k| k == NameMeaning::Hand),
         ]
         .into_iter()
         .filter(|&there| there)

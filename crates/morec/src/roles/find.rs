@@ -1,17 +1,17 @@
 //! Finding the roles: limbs and trunk by the shape of the tree, then names, then sides.
 
 use super::limbs::{self, Limb, Part};
-use super::names::{Kind, Side};
+use super::names::{NameMeaning, Side};
 use super::proportions as human;
-use super::sides::Sides;
-use super::tree::{Pair, Tree};
+use super::sides::SideCues;
+use super::tree::{JointTree, MirroredPair};
 use super::{Role, RoleMap, trunk};
 use crate::clip::Skeleton;
 use crate::math::Vec3;
 
 /// What was found, and what is worth saying about it.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Found {
+pub struct RolesFound {
     /// Who plays what.
     pub map: RoleMap,
     /// Guesses and oddities, each in a sentence.
@@ -22,7 +22,7 @@ pub struct Found {
 ///
 /// Names that say nothing (`joint_7`) leave the tree and the lengths: two pairs of limbs that mirror each other, in
 /// the proportions of people. Left and right are then told by where the toes point in the zero pose.
-pub fn find(skeleton: &Skeleton) -> Found {
+pub fn find(skeleton: &Skeleton) -> RolesFound {
     let mut positions: Vec<Vec3> = Vec::with_capacity(skeleton.len());
     for joint in skeleton.joints() {
         positions.push(joint.offset + joint.parent.map_or_else(Vec3::zeros, |p| positions[p]));
@@ -36,20 +36,20 @@ pub fn find(skeleton: &Skeleton) -> Found {
 ///
 /// # Panics
 /// If there is no pose, or one that is not as long as the skeleton.
-pub fn find_moving(skeleton: &Skeleton, poses: &[Vec<Vec3>]) -> Found {
+pub fn find_moving(skeleton: &Skeleton, poses: &[Vec<Vec3>]) -> RolesFound {
     assert!(!poses.is_empty(), "at least one pose");
     assert!(
         poses.iter().all(|pose| pose.len() == skeleton.len()),
         "a position for each joint"
     );
-    let mut found = Found::default();
+    let mut found = RolesFound::default();
     if skeleton.is_empty() {
         return found;
     }
-    let tree = Tree::new(skeleton, poses);
-    let pairs = Pairs::choose(&tree);
+    let tree = JointTree::new(skeleton, poses);
+    let pairs = LimbPairs::choose(&tree);
     trunk::find(&tree, &pairs, &mut found);
-    let sides = Sides::of(&tree, &found.map, pairs.leg_limbs());
+    let sides = SideCues::of(&tree, &found.map, pairs.leg_limbs());
     let mut taken = [None, None];
     for (at, found_pair) in [&pairs.legs, &pairs.arms].into_iter().enumerate() {
         taken[at] = found_pair.as_ref().map(|found_pair| {
@@ -63,16 +63,16 @@ pub fn find_moving(skeleton: &Skeleton, poses: &[Vec<Vec3>]) -> Found {
         let member = |at: usize| usize::from(taken[at] != Some(side));
         let mut leg = match &pairs.legs {
             Some(legs) => legs.limbs[member(0)],
-            None => limbs::named(&tree, &named(&tree, side, Kind::is_leg), Part::Leg),
+            None => limbs::named(&tree, &named(&tree, side, NameMeaning::is_leg), Part::Leg),
         };
-        limbs::end_elsewhere(&tree, &mut leg, side, Kind::Foot);
+        limbs::end_elsewhere(&tree, &mut leg, side, NameMeaning::Foot);
         set_leg(&mut found.map, side, leg);
         let part = Part::Arm { leg: pairs.leg };
         let mut arm = match &pairs.arms {
             Some(arms) => arms.limbs[member(1)],
-            None => limbs::named(&tree, &named(&tree, side, Kind::is_arm), part),
+            None => limbs::named(&tree, &named(&tree, side, NameMeaning::is_arm), part),
         };
-        limbs::end_elsewhere(&tree, &mut arm, side, Kind::Hand);
+        limbs::end_elsewhere(&tree, &mut arm, side, NameMeaning::Hand);
         set_arm(&mut found.map, side, arm);
     }
     found.notes.dedup();
@@ -82,13 +82,13 @@ pub fn find_moving(skeleton: &Skeleton, poses: &[Vec<Vec3>]) -> Found {
 /// A pair of limbs with its joints.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FoundPair {
-    pub(super) pair: Pair,
+    pub(super) pair: MirroredPair,
     pub(super) limbs: [Limb; 2],
     cost: f64,
 }
 
 impl FoundPair {
-    fn of(tree: &Tree, pair: Pair, part: Part) -> Self {
+    fn of(tree: &JointTree, pair: MirroredPair, part: Part) -> Self {
         let (limbs, cost) = limbs::pair(tree, pair.members, part);
         Self { pair, limbs, cost }
     }
@@ -102,31 +102,32 @@ impl FoundPair {
 
 /// The legs and the arms.
 #[derive(Debug)]
-pub(super) struct Pairs {
+pub(super) struct LimbPairs {
     pub(super) legs: Option<FoundPair>,
     pub(super) arms: Option<FoundPair>,
     /// Length of the legs, hip to ankle.
     leg: Option<f64>,
 }
 
-impl Pairs {
+impl LimbPairs {
     /// Names choose first; among pairs whose names say nothing, those that make a person.
-    fn choose(tree: &Tree) -> Self {
+    fn choose(tree: &JointTree) -> Self {
         const LOOKED_AT: usize = 6;
         let mut pairs = tree.pairs();
-        let reach = |pair: &Pair| tree.reach(pair.members[0]) + tree.reach(pair.members[1]);
+        let reach = |pair: &MirroredPair| tree.reach(pair.members[0]) + tree.reach(pair.members[1]);
         pairs.sort_by(|a, b| reach(b).total_cmp(&reach(a)));
-        let votes = |pair: &Pair| pair.members.iter().map(|&m| tree.leg_votes(m)).sum::<i64>();
+        let votes =
+            |pair: &MirroredPair| pair.members.iter().map(|&m| tree.leg_votes(m)).sum::<i64>();
         let find =
             |fits: &dyn Fn(i64) -> bool| pairs.iter().copied().find(|pair| fits(votes(pair)));
         let (legs, arms) = (find(&|v| v > 0), find(&|v| v < 0));
-        let silent: Vec<Pair> = pairs
+        let silent: Vec<MirroredPair> = pairs
             .iter()
             .copied()
             .filter(|pair| votes(pair) == 0)
             .take(LOOKED_AT)
             .collect();
-        let candidates = |named: Option<Pair>| match named {
+        let candidates = |named: Option<MirroredPair>| match named {
             Some(pair) => vec![pair],
             None => silent.clone(),
         };
@@ -169,14 +170,14 @@ impl Pairs {
     }
 
     /// From the middle of the hip joints to that of the shoulders, in the first pose.
-    pub(super) fn upwards(&self, tree: &Tree) -> Option<Vec3> {
+    pub(super) fn upwards(&self, tree: &JointTree) -> Option<Vec3> {
         let (legs, arms) = (self.legs.as_ref()?, self.arms.as_ref()?);
         let hips = legs.middle(tree.positions, |limb| limb.upper)?;
         (arms.middle(tree.positions, |limb| limb.upper)? - hips).try_normalize(1e-9)
     }
 
     /// The middle of the shoulders in the first pose, and the length of the legs.
-    pub(super) fn shoulders(&self, tree: &Tree) -> Option<(Vec3, f64)> {
+    pub(super) fn shoulders(&self, tree: &JointTree) -> Option<(Vec3, f64)> {
         let middle = self
             .arms
             .as_ref()?
@@ -186,7 +187,7 @@ impl Pairs {
 }
 
 /// The mean length of both legs, hip to ankle.
-fn length(tree: &Tree, legs: &FoundPair) -> Option<f64> {
+fn length(tree: &JointTree, legs: &FoundPair) -> Option<f64> {
     let one = |limb: &Limb| {
         let [a, b, c] = [limb.upper?, limb.lower?, limb.end?];
         Some(tree.distance(a, b) + tree.distance(b, c))
@@ -195,7 +196,7 @@ fn length(tree: &Tree, legs: &FoundPair) -> Option<f64> {
 }
 
 /// How far these legs and arms are from making a person: the length of the trunk, and that it leads away from the feet.
-fn person(tree: &Tree, legs: &FoundPair, arms: &FoundPair) -> f64 {
+fn person(tree: &JointTree, legs: &FoundPair, arms: &FoundPair) -> f64 {
     const UNKNOWN: f64 = 2.0;
     let lengths = || {
         let hips = legs.middle(tree.positions, |limb| limb.upper)?;
@@ -220,7 +221,7 @@ fn person(tree: &Tree, legs: &FoundPair, arms: &FoundPair) -> f64 {
     lengths().unwrap_or(UNKNOWN) + turned + upside_down
 }
 
-fn named(tree: &Tree, side: Side, belongs: impl Fn(Kind) -> bool) -> Vec<usize> {
+fn named(tree: &JointTree, side: Side, belongs: impl Fn(NameMeaning) -> bool) -> Vec<usize> {
     (0..tree.skeleton.len())
         .filter(|&j| tree.readings[j].side == Some(side) && belongs(tree.kind(j)))
         .collect()

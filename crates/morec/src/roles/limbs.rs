@@ -4,9 +4,9 @@
 //! far the two limbs of the pair begin apart, and by where the chain bends in the poses at hand. Names weigh most, but no
 //! name makes a bone without a length, nor two thighs in one point.
 
-use super::names::{Kind, Side};
+use super::names::{NameMeaning, Side};
 use super::proportions as human;
-use super::tree::Tree;
+use super::tree::JointTree;
 
 /// The joints of one limb.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -33,14 +33,14 @@ pub(super) enum Part {
 
 /// Points of a chain: `upper < lower < end`; `end` may be one behind the last joint, the tip of its bone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Place {
+struct ChainSplit {
     upper: usize,
     lower: usize,
     end: usize,
 }
 
 /// Both limbs of a pair, and what they cost: the less, the more like a person's.
-pub(super) fn pair(tree: &Tree, members: [usize; 2], part: Part) -> ([Limb; 2], f64) {
+pub(super) fn pair(tree: &JointTree, members: [usize; 2], part: Part) -> ([Limb; 2], f64) {
     let chains = members.map(|member| Chain::new(tree, member, part));
     let limbs = if chains[0].joints.len() == chains[1].joints.len() {
         let (place, cost) = best(chains[0].joints.len(), |place| {
@@ -70,14 +70,14 @@ pub(super) fn pair(tree: &Tree, members: [usize; 2], part: Part) -> ([Limb; 2], 
 }
 
 /// A limb without another that mirrors it.
-pub(super) fn single(tree: &Tree, member: usize, part: Part) -> Limb {
+pub(super) fn single(tree: &JointTree, member: usize, part: Part) -> Limb {
     let chain = Chain::new(tree, member, part);
     let (place, _) = best(chain.joints.len(), |place| chain.cost(place));
     chain.limb(place, &[])
 }
 
 /// The limb whose joints the names tell, wherever they hang; `joints` are those of one side and kind, parents first.
-pub(super) fn named(tree: &Tree, joints: &[usize], part: Part) -> Limb {
+pub(super) fn named(tree: &JointTree, joints: &[usize], part: Part) -> Limb {
     let Some(&top) = joints.first() else {
         return Limb::default();
     };
@@ -86,26 +86,28 @@ pub(super) fn named(tree: &Tree, joints: &[usize], part: Part) -> Limb {
         return limb;
     }
     // Joints that do not hang together, as in rigs whose feet follow handles.
-    let first =
-        |wanted: &dyn Fn(Kind) -> bool| joints.iter().copied().find(|&j| wanted(tree.kind(j)));
+    let first = |wanted: &dyn Fn(NameMeaning) -> bool| {
+        joints.iter().copied().find(|&j| wanted(tree.kind(j)))
+    };
     match part {
         Part::Leg => Limb {
             first: None,
-            upper: first(&|k| k == Kind::Thigh).or(first(&|k| matches!(k, Kind::Hip | Kind::Leg))),
-            lower: first(&|k| k == Kind::Shin),
-            end: first(&|k| k == Kind::Foot),
+            upper: first(&|k| k == NameMeaning::Thigh)
+                .or(first(&|k| matches!(k, NameMeaning::Hip | NameMeaning::Leg))),
+            lower: first(&|k| k == NameMeaning::Shin),
+            end: first(&|k| k == NameMeaning::Foot),
         },
         Part::Arm { .. } => Limb {
-            first: first(&|k| k == Kind::Collar),
-            upper: first(&|k| matches!(k, Kind::UpperArm | Kind::Arm)),
-            lower: first(&|k| k == Kind::Forearm),
-            end: first(&|k| k == Kind::Hand),
+            first: first(&|k| k == NameMeaning::Collar),
+            upper: first(&|k| matches!(k, NameMeaning::UpperArm | NameMeaning::Arm)),
+            lower: first(&|k| k == NameMeaning::Forearm),
+            end: first(&|k| k == NameMeaning::Hand),
         },
     }
 }
 
 /// A foot or hand that hangs elsewhere (on a handle of the rig) and is called so.
-pub(super) fn end_elsewhere(tree: &Tree, limb: &mut Limb, side: Side, kind: Kind) {
+pub(super) fn end_elsewhere(tree: &JointTree, limb: &mut Limb, side: Side, kind: NameMeaning) {
     if limb.end.is_some() || limb.lower.is_none() {
         return;
     }
@@ -114,12 +116,12 @@ pub(super) fn end_elsewhere(tree: &Tree, limb: &mut Limb, side: Side, kind: Kind
 }
 
 /// The place with the least cost; `None` if no place is possible.
-fn best(joints: usize, cost: impl Fn(Place) -> Option<f64>) -> (Option<Place>, f64) {
-    let mut best: Option<(f64, Place)> = None;
+fn best(joints: usize, cost: impl Fn(ChainSplit) -> Option<f64>) -> (Option<ChainSplit>, f64) {
+    let mut best: Option<(f64, ChainSplit)> = None;
     for upper in 0..joints {
         for lower in upper + 1..joints {
             for end in lower + 1..=joints {
-                let place = Place { upper, lower, end };
+                let place = ChainSplit { upper, lower, end };
                 let Some(cost) = cost(place) else { continue };
                 if best.is_none_or(|(least, _)| cost < least) {
                     best = Some((cost, place));
@@ -131,7 +133,7 @@ fn best(joints: usize, cost: impl Fn(Place) -> Option<f64>) -> (Option<Place>, f
 }
 
 /// What it costs that the two limbs begin nearer to each other or farther apart than those of people.
-fn separation(chains: &[Chain; 2], place: Place) -> f64 {
+fn separation(chains: &[Chain; 2], place: ChainSplit) -> f64 {
     const MOST: f64 = 3.0;
     let tree = chains[0].tree;
     let between = tree.distance(chains[0].joints[place.upper], chains[1].joints[place.upper]);
@@ -145,7 +147,7 @@ fn separation(chains: &[Chain; 2], place: Place) -> f64 {
 
 /// The joints down one limb.
 struct Chain<'a> {
-    tree: &'a Tree<'a>,
+    tree: &'a JointTree<'a>,
     part: Part,
     joints: Vec<usize>,
     /// Length of the bone that the last joint carries.
@@ -158,7 +160,7 @@ impl<'a> Chain<'a> {
     /// Longer chains than this are ropes.
     const MOST: usize = 24;
 
-    fn new(tree: &'a Tree<'a>, member: usize, part: Part) -> Self {
+    fn new(tree: &'a JointTree<'a>, member: usize, part: Part) -> Self {
         let mut joints = tree.main_chain(member);
         joints.truncate(Self::MOST);
         let last = &tree.skeleton.joints()[joints[joints.len() - 1]];
@@ -196,7 +198,7 @@ impl<'a> Chain<'a> {
             .fold(0.0, f64::max)
     }
 
-    fn length(&self, place: Place) -> f64 {
+    fn length(&self, place: ChainSplit) -> f64 {
         self.bone(place.upper, place.lower) + self.bone(place.lower, place.end)
     }
 
@@ -213,7 +215,7 @@ impl<'a> Chain<'a> {
     }
 
     /// What a choice costs; `None` if its bones have no length.
-    fn cost(&self, place: Place) -> Option<f64> {
+    fn cost(&self, place: ChainSplit) -> Option<f64> {
         const SHORTEST: f64 = 0.08;
         let tip = place.end == self.joints.len();
         if tip && self.tip == 0.0 {
@@ -246,7 +248,7 @@ impl<'a> Chain<'a> {
     }
 
     /// Something for a joint that is seen to bend, as knees and elbows do.
-    fn turns(&self, place: Place) -> f64 {
+    fn turns(&self, place: ChainSplit) -> f64 {
         if self.tree.poses.len() < 3 || place.end == self.joints.len() {
             return 0.0;
         }
@@ -261,8 +263,8 @@ impl<'a> Chain<'a> {
         0.4 * ((high - low) / 0.6).clamp(0.0, 1.0)
     }
 
-    fn named_upper(&self, kind: Kind) -> f64 {
-        use Kind::*;
+    fn named_upper(&self, kind: NameMeaning) -> f64 {
+        use NameMeaning::*;
         match (self.part, kind) {
             (_, Unknown) => 0.0,
             (Part::Leg, Thigh) | (Part::Arm { .. }, UpperArm) => 3.0,
@@ -276,8 +278,8 @@ impl<'a> Chain<'a> {
         }
     }
 
-    fn named_lower(&self, kind: Kind) -> f64 {
-        use Kind::*;
+    fn named_lower(&self, kind: NameMeaning) -> f64 {
+        use NameMeaning::*;
         match (self.part, kind) {
             (_, Unknown) => 0.0,
             (Part::Leg, Shin) | (Part::Arm { .. }, Forearm) => 3.0,
@@ -289,8 +291,8 @@ impl<'a> Chain<'a> {
         }
     }
 
-    fn named_end(&self, kind: Kind) -> f64 {
-        use Kind::*;
+    fn named_end(&self, kind: NameMeaning) -> f64 {
+        use NameMeaning::*;
         match (self.part, kind) {
             (_, Unknown) => 0.0,
             (Part::Leg, Foot) | (Part::Arm { .. }, Hand) => 3.0,
@@ -299,8 +301,8 @@ impl<'a> Chain<'a> {
         }
     }
 
-    fn limb(&self, place: Option<Place>, other: &[usize]) -> Limb {
-        let Some(Place { upper, lower, end }) = place else {
+    fn limb(&self, place: Option<ChainSplit>, other: &[usize]) -> Limb {
+        let Some(ChainSplit { upper, lower, end }) = place else {
             return Limb {
                 upper: self.joints.first().copied(),
                 lower: self.joints.get(1).copied(),
@@ -333,11 +335,12 @@ impl<'a> Chain<'a> {
             apart.find(|&j| tree.kind(j) == kind)
         };
         // Both collars may begin in one point, if nothing better is called so.
-        let in_one_point =
-            || before().find(|&j| matches!(tree.kind(j), Kind::Collar | Kind::Shoulder));
-        called(Kind::Collar)
-            .or_else(|| called(Kind::Shoulder))
+        let in_one_point = || {
+            before().find(|&j| matches!(tree.kind(j), NameMeaning::Collar | NameMeaning::Shoulder))
+        };
+        called(NameMeaning::Collar)
+            .or_else(|| called(NameMeaning::Shoulder))
             .or_else(in_one_point)
-            .or_else(|| called(Kind::Unknown))
+            .or_else(|| called(NameMeaning::Unknown))
     }
 }

@@ -10,7 +10,7 @@
 
 use std::fmt::Write;
 
-use super::points::{Place, said};
+use super::points::{PointJoint, said};
 use super::{Role, RoleMap};
 use crate::clip::Skeleton;
 use crate::parse_error::{self, ParseError};
@@ -64,7 +64,7 @@ impl Mapping {
     ///
     /// # Errors
     /// A joint that is not there, with its line in the mapping file.
-    pub fn places(&self, names: &[&str]) -> Result<Vec<(Role, Option<Place>)>, ParseError> {
+    pub fn places(&self, names: &[&str]) -> Result<Vec<(Role, Option<PointJoint>)>, ParseError> {
         let mut places = Vec::with_capacity(self.entries.len());
         for MappingEntry { line, role, joint } in &self.entries {
             let place = match joint {

@@ -14,7 +14,7 @@ mod trunk;
 mod words;
 
 pub use check::check;
-pub use find::{Found, find, find_moving};
+pub use find::{RolesFound, find, find_moving};
 
 use std::fmt;
 

@@ -24,7 +24,7 @@ impl Side {
 
 /// What a name could mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum NameMeaning {
     /// Pelvis, hips, or a hip without a side.
     Hips,
     /// A hip with a side: the thigh, or a joint before it.
@@ -59,16 +59,16 @@ pub(super) enum Kind {
     Unknown,
 }
 
-impl Kind {
+impl NameMeaning {
     /// Whether the word belongs to the leg.
     pub(super) fn is_leg(self) -> bool {
-        use Kind::*;
+        use NameMeaning::*;
         matches!(self, Hip | HipJoint | Thigh | Shin | Leg | Foot | Toe)
     }
 
     /// Whether the word belongs to the arm.
     pub(super) fn is_arm(self) -> bool {
-        use Kind::*;
+        use NameMeaning::*;
         matches!(
             self,
             Collar | Shoulder | UpperArm | Arm | Forearm | Hand | Finger
@@ -80,7 +80,7 @@ impl Kind {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Reading {
     pub(super) side: Option<Side>,
-    pub(super) kind: Kind,
+    pub(super) kind: NameMeaning,
 }
 
 /// Reads a name; namespaces (`mixamorig7:`), prefixes and case do not matter.
@@ -96,14 +96,14 @@ pub(super) fn read(name: &str) -> Reading {
     let mut kind = kind_of(&rest);
     if side.is_none() {
         // A letter is a side only beside a part of the body: `L5` is a vertebra.
-        side = letters.filter(|_| kind != Kind::Unknown);
+        side = letters.filter(|_| kind != NameMeaning::Unknown);
     }
     if let (None, Some((glued, word))) = (side, glued_side(&rest)) {
         side = Some(glued);
         kind = word;
     }
-    if side.is_some() && kind == Kind::Hips {
-        kind = Kind::Hip;
+    if side.is_some() && kind == NameMeaning::Hips {
+        kind = NameMeaning::Hip;
     }
     Reading { side, kind }
 }
@@ -111,7 +111,7 @@ pub(super) fn read(name: &str) -> Reading {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use Kind::*;
+    use NameMeaning::*;
 
     #[test]
     fn sides_and_parts_in_every_spelling() {

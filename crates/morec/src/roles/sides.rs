@@ -2,7 +2,7 @@
 
 use super::limbs::Limb;
 use super::names::Side;
-use super::tree::{Pair, Tree};
+use super::tree::{JointTree, MirroredPair};
 use super::{Role, RoleMap};
 use crate::math::Vec3;
 
@@ -16,7 +16,7 @@ const TOES: f64 = 0.3;
 const CERTAIN: f64 = 0.5;
 
 /// What the body says about left and right.
-pub(super) struct Sides {
+pub(super) struct SideCues {
     /// Towards the left, as far as each pose tells: up × forward.
     left: Vec<Vec3>,
     /// The mean cosine between the way from the right hip to the left, by names, and the left by toes and by knees.
@@ -24,8 +24,8 @@ pub(super) struct Sides {
     knees: Option<f64>,
 }
 
-impl Sides {
-    pub(super) fn of(tree: &Tree, map: &RoleMap, legs: Option<[Limb; 2]>) -> Self {
+impl SideCues {
+    pub(super) fn of(tree: &JointTree, map: &RoleMap, legs: Option<[Limb; 2]>) -> Self {
         let mut left = Vec::with_capacity(tree.poses.len());
         let (mut toes, mut knees) = (Vec::new(), Vec::new());
         for pose in tree.poses {
@@ -72,8 +72,8 @@ impl Sides {
     /// The side of a pair's first limb, and a note where it is a guess.
     pub(super) fn first(
         &self,
-        tree: &Tree,
-        pair: Pair,
+        tree: &JointTree,
+        pair: MirroredPair,
         limbs: [Limb; 2],
     ) -> (Side, Option<String>) {
         if let Some(first) = tree.side(pair.members[0]) {
@@ -117,7 +117,7 @@ impl Sides {
 }
 
 /// From the right hip to the left, by the names, of unit length.
-fn apart(tree: &Tree, pose: &[Vec3], legs: [Limb; 2]) -> Option<Vec3> {
+fn apart(tree: &JointTree, pose: &[Vec3], legs: [Limb; 2]) -> Option<Vec3> {
     let [a, b] = [legs[0].upper?, legs[1].upper?];
     let towards = match tree.side(a)? {
         Side::Left => pose[a] - pose[b],
@@ -155,7 +155,7 @@ fn across(directions: impl Iterator<Item = Vec3>, up: Vec3) -> Option<Vec3> {
 }
 
 /// From heel to toes.
-fn toes_of(tree: &Tree, pose: &[Vec3], leg: &Limb) -> Option<Vec3> {
+fn toes_of(tree: &JointTree, pose: &[Vec3], leg: &Limb) -> Option<Vec3> {
     let foot = leg.end?;
     match tree.main_chain(foot).last() {
         Some(&toes) if toes != foot => Some(pose[toes] - pose[foot]),

@@ -1,11 +1,11 @@
 //! The shape of a skeleton: bone lengths, reaches, and pairs of limbs that mirror each other.
 
-use super::names::{Kind, Reading, Side, read};
+use super::names::{NameMeaning, Reading, Side, read};
 use crate::clip::Skeleton;
 use crate::math::Vec3;
 
 /// A skeleton with what its shape and names say of every joint.
-pub(super) struct Tree<'a> {
+pub(super) struct JointTree<'a> {
     pub(super) skeleton: &'a Skeleton,
     pub(super) readings: Vec<Reading>,
     /// Where the joints are, in the zero pose or any others; never empty.
@@ -22,7 +22,7 @@ pub(super) struct Tree<'a> {
 
 /// Two subtrees that mirror each other, hanging on the same joint.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Pair {
+pub(super) struct MirroredPair {
     pub(super) parent: usize,
     pub(super) members: [usize; 2],
 }
@@ -34,8 +34,8 @@ fn keep_bodies(skeleton: &Skeleton, readings: &mut [Reading]) {
     for j in (0..readings.len()).rev() {
         let kind = readings[j].kind;
         limbs[j] += usize::from(readings[j].side.is_some() && (kind.is_leg() || kind.is_arm()));
-        if kind == Kind::Other && limbs[j] >= LIMBS {
-            readings[j].kind = Kind::Unknown;
+        if kind == NameMeaning::Other && limbs[j] >= LIMBS {
+            readings[j].kind = NameMeaning::Unknown;
         }
         if let Some(parent) = skeleton.joints()[j].parent {
             limbs[parent] += limbs[j];
@@ -46,7 +46,7 @@ fn keep_bodies(skeleton: &Skeleton, readings: &mut [Reading]) {
 /// Limbs of a person differ less than this from side to side; trackers may err so far.
 const UNLIKE: f64 = 0.25;
 
-impl<'a> Tree<'a> {
+impl<'a> JointTree<'a> {
     pub(super) fn new(skeleton: &'a Skeleton, poses: &'a [Vec<Vec3>]) -> Self {
         let joints = skeleton.joints();
         let positions: &[Vec3] = &poses[0];
@@ -62,7 +62,7 @@ impl<'a> Tree<'a> {
         for j in (0..joints.len()).rev() {
             children[j].reverse();
             let Some(p) = joints[j].parent else { continue };
-            if matches!(readings[j].kind, Kind::Other | Kind::Animal) {
+            if matches!(readings[j].kind, NameMeaning::Other | NameMeaning::Animal) {
                 continue;
             }
             children[p].push(j);
@@ -84,7 +84,7 @@ impl<'a> Tree<'a> {
         self.skeleton.joints()[joint].parent
     }
 
-    pub(super) fn kind(&self, joint: usize) -> Kind {
+    pub(super) fn kind(&self, joint: usize) -> NameMeaning {
         self.readings[joint].kind
     }
 
@@ -143,7 +143,7 @@ impl<'a> Tree<'a> {
             .iter()
             .max_by(|&&a, &&b| self.span(at, a).total_cmp(&self.span(at, b)))
         {
-            if self.kind(next) != Kind::Twist {
+            if self.kind(next) != NameMeaning::Twist {
                 chain.push(next);
             }
             at = next;
@@ -178,7 +178,7 @@ impl<'a> Tree<'a> {
     }
 
     /// Every pair of limbs that is not itself part of a limb.
-    pub(super) fn pairs(&self) -> Vec<Pair> {
+    pub(super) fn pairs(&self) -> Vec<MirroredPair> {
         let mut pairs = Vec::new();
         let roots = (0..self.skeleton.len()).filter(|&j| self.parent(j).is_none());
         let mut left: Vec<usize> = roots.collect();
@@ -187,7 +187,7 @@ impl<'a> Tree<'a> {
             let rest = self.children[parent].iter().filter(|j| !free.contains(j));
             left.extend(rest);
             while let Some((a, b)) = self.best_pair(&free) {
-                pairs.push(Pair {
+                pairs.push(MirroredPair {
                     parent,
                     members: [a, b],
                 });

@@ -1,15 +1,15 @@
 //! Hips, torso, neck and head.
 
 use super::Role;
-use super::find::{Found, Pairs};
-use super::names::Kind;
-use super::tree::Tree;
+use super::find::{LimbPairs, RolesFound};
+use super::names::NameMeaning;
+use super::tree::JointTree;
 
 /// A first joint above the shoulders by no more than this share of the legs is the neck's, else the head's.
 const NECK_RISE: f64 = 0.12;
 
 /// Finds the joints of the trunk.
-pub(super) fn find(tree: &Tree, pairs: &Pairs, found: &mut Found) {
+pub(super) fn find(tree: &JointTree, pairs: &LimbPairs, found: &mut RolesFound) {
     let trunk = Trunk { tree, pairs };
     let hips = trunk.hips();
     found.map.set(Role::Hips, Some(hips));
@@ -20,8 +20,8 @@ pub(super) fn find(tree: &Tree, pairs: &Pairs, found: &mut Found) {
 }
 
 struct Trunk<'a> {
-    tree: &'a Tree<'a>,
-    pairs: &'a Pairs,
+    tree: &'a JointTree<'a>,
+    pairs: &'a LimbPairs,
 }
 
 impl Trunk<'_> {
@@ -31,11 +31,11 @@ impl Trunk<'_> {
         !limbs.any(|limb| limb == joint || self.tree.is_above(limb, joint))
     }
 
-    fn by_name(&self, kind: Kind) -> Option<usize> {
+    fn by_name(&self, kind: NameMeaning) -> Option<usize> {
         (0..self.tree.skeleton.len()).find(|&j| self.is_called(j, kind))
     }
 
-    fn is_called(&self, joint: usize, kind: Kind) -> bool {
+    fn is_called(&self, joint: usize, kind: NameMeaning) -> bool {
         self.tree.kind(joint) == kind
             && self.tree.readings[joint].side.is_none()
             && self.contains(joint)
@@ -54,7 +54,7 @@ impl Trunk<'_> {
 
     /// Where legs and arms meet, or what is called hips next to it.
     fn hips(&self) -> usize {
-        let is_hips = |j: &usize| self.tree.kind(*j) == Kind::Hips;
+        let is_hips = |j: &usize| self.tree.kind(*j) == NameMeaning::Hips;
         let met = || {
             let meeting = self.meeting()?;
             let legs = self.pairs.legs.as_ref()?.pair.parent;
@@ -62,13 +62,15 @@ impl Trunk<'_> {
             let called = called.or_else(|| self.tree.upwards(legs).find(is_hips));
             Some(called.unwrap_or(meeting))
         };
-        met().or_else(|| self.by_name(Kind::Hips)).unwrap_or(0)
+        met()
+            .or_else(|| self.by_name(NameMeaning::Hips))
+            .unwrap_or(0)
     }
 
     /// The first joint of the spine that is not in the hips' place.
     fn torso(&self, hips: usize, neck: Option<usize>) -> Option<usize> {
         let tree = self.tree;
-        let by_name = || self.by_name(Kind::Spine).filter(|&j| j != hips);
+        let by_name = || self.by_name(NameMeaning::Spine).filter(|&j| j != hips);
         let Some(top) = self.top().or(neck.and_then(|neck| tree.parent(neck))) else {
             return by_name();
         };
@@ -90,8 +92,8 @@ impl Trunk<'_> {
         notes: &mut Vec<String>,
     ) -> (Option<usize>, Option<usize>) {
         let tree = self.tree;
-        let called_head = self.by_name(Kind::Head);
-        let neck = self.by_name(Kind::Neck).filter(|&neck| {
+        let called_head = self.by_name(NameMeaning::Head);
+        let neck = self.by_name(NameMeaning::Neck).filter(|&neck| {
             called_head.is_none_or(|head| tree.is_above(neck, head))
                 && self
                     .top()

@@ -1,6 +1,6 @@
 //! The words of joint names: taking names apart, and what each word means.
 
-use super::names::{Kind, Side};
+use super::names::{NameMeaning, Side};
 
 /// Lower-case words of a name: cut at anything but letters and where the case changes, digits dropped.
 pub(super) fn words(name: &str) -> Vec<String> {
@@ -54,7 +54,7 @@ pub(super) fn spelt_side(words: &[String]) -> (Option<Side>, Option<Side>) {
 }
 
 /// Names without any mark between side and part: `lfemur`, `rhumerus`, `lhipjoint`.
-pub(super) fn glued_side(words: &[&str]) -> Option<(Side, Kind)> {
+pub(super) fn glued_side(words: &[&str]) -> Option<(Side, NameMeaning)> {
     words.iter().find_map(|word| {
         let (side, part) = match word.as_bytes().first()? {
             b'l' => (Side::Left, &word[1..]),
@@ -136,97 +136,97 @@ const ANIMAL: [&str; 18] = [
 ];
 
 /// In the order in which they are tried: the more telling part of a joined word first.
-const PARTS: [(&str, Kind); 74] = [
-    ("finger", Kind::Finger),
-    ("thumb", Kind::Finger),
-    ("pinky", Kind::Finger),
-    ("metacarpal", Kind::Finger),
-    ("radiocarpal", Kind::Hand),
-    ("carpal", Kind::Finger),
-    ("index", Kind::Finger),
-    ("toe", Kind::Toe),
-    ("metatarsal", Kind::Toe),
-    ("talocrural", Kind::Foot),
-    ("forearm", Kind::Forearm),
-    ("lowerarm", Kind::Forearm),
-    ("lowarm", Kind::Forearm),
-    ("loarm", Kind::Forearm),
-    ("armlower", Kind::Forearm),
-    ("radius", Kind::Forearm),
-    ("ulna", Kind::Forearm),
-    ("elbow", Kind::Forearm),
-    ("upperarm", Kind::UpperArm),
-    ("uparm", Kind::UpperArm),
-    ("armupper", Kind::UpperArm),
-    ("humerus", Kind::UpperArm),
-    ("bicep", Kind::UpperArm),
-    ("collar", Kind::Collar),
-    ("clavic", Kind::Collar),
-    ("scapula", Kind::Collar),
-    ("shoulder", Kind::Shoulder),
-    ("shldr", Kind::Shoulder),
-    ("hipjoint", Kind::HipJoint),
-    ("buttock", Kind::HipJoint),
-    ("thigh", Kind::Thigh),
-    ("femur", Kind::Thigh),
-    ("upleg", Kind::Thigh),
-    ("upperleg", Kind::Thigh),
-    ("legupper", Kind::Thigh),
-    ("shin", Kind::Shin),
-    ("shank", Kind::Shin),
-    ("calf", Kind::Shin),
-    ("tibia", Kind::Shin),
-    ("lowleg", Kind::Shin),
-    ("loleg", Kind::Shin),
-    ("lowerleg", Kind::Shin),
-    ("leglower", Kind::Shin),
-    ("knee", Kind::Shin),
-    ("foot", Kind::Foot),
-    ("ankle", Kind::Foot),
-    ("hand", Kind::Hand),
-    ("wrist", Kind::Hand),
-    ("palm", Kind::Hand),
-    ("fist", Kind::Hand),
-    ("pelvis", Kind::Hips),
-    ("sacro", Kind::Hips),
-    ("lowerbody", Kind::Hips),
-    ("lowertorso", Kind::Hips),
-    ("hip", Kind::Hips),
-    ("neck", Kind::Neck),
-    ("head", Kind::Head),
-    ("skull", Kind::Head),
-    ("spine", Kind::Spine),
-    ("chest", Kind::Spine),
-    ("torso", Kind::Spine),
-    ("thorax", Kind::Spine),
-    ("abdomen", Kind::Spine),
-    ("stomach", Kind::Spine),
-    ("belly", Kind::Spine),
-    ("waist", Kind::Spine),
-    ("back", Kind::Spine),
-    ("trunk", Kind::Spine),
-    ("upperbody", Kind::Spine),
-    ("wing", Kind::Animal),
-    ("tentacle", Kind::Animal),
-    ("hoof", Kind::Animal),
-    ("leg", Kind::Leg),
-    ("arm", Kind::Arm),
+const PARTS: [(&str, NameMeaning); 74] = [
+    ("finger", NameMeaning::Finger),
+    ("thumb", NameMeaning::Finger),
+    ("pinky", NameMeaning::Finger),
+    ("metacarpal", NameMeaning::Finger),
+    ("radiocarpal", NameMeaning::Hand),
+    ("carpal", NameMeaning::Finger),
+    ("index", NameMeaning::Finger),
+    ("toe", NameMeaning::Toe),
+    ("metatarsal", NameMeaning::Toe),
+    ("talocrural", NameMeaning::Foot),
+    ("forearm", NameMeaning::Forearm),
+    ("lowerarm", NameMeaning::Forearm),
+    ("lowarm", NameMeaning::Forearm),
+    ("loarm", NameMeaning::Forearm),
+    ("armlower", NameMeaning::Forearm),
+    ("radius", NameMeaning::Forearm),
+    ("ulna", NameMeaning::Forearm),
+    ("elbow", NameMeaning::Forearm),
+    ("upperarm", NameMeaning::UpperArm),
+    ("uparm", NameMeaning::UpperArm),
+    ("armupper", NameMeaning::UpperArm),
+    ("humerus", NameMeaning::UpperArm),
+    ("bicep", NameMeaning::UpperArm),
+    ("collar", NameMeaning::Collar),
+    ("clavic", NameMeaning::Collar),
+    ("scapula", NameMeaning::Collar),
+    ("shoulder", NameMeaning::Shoulder),
+    ("shldr", NameMeaning::Shoulder),
+    ("hipjoint", NameMeaning::HipJoint),
+    ("buttock", NameMeaning::HipJoint),
+    ("thigh", NameMeaning::Thigh),
+    ("femur", NameMeaning::Thigh),
+    ("upleg", NameMeaning::Thigh),
+    ("upperleg", NameMeaning::Thigh),
+    ("legupper", NameMeaning::Thigh),
+    ("shin", NameMeaning::Shin),
+    ("shank", NameMeaning::Shin),
+    ("calf", NameMeaning::Shin),
+    ("tibia", NameMeaning::Shin),
+    ("lowleg", NameMeaning::Shin),
+    ("loleg", NameMeaning::Shin),
+    ("lowerleg", NameMeaning::Shin),
+    ("leglower", NameMeaning::Shin),
+    ("knee", NameMeaning::Shin),
+    ("foot", NameMeaning::Foot),
+    ("ankle", NameMeaning::Foot),
+    ("hand", NameMeaning::Hand),
+    ("wrist", NameMeaning::Hand),
+    ("palm", NameMeaning::Hand),
+    ("fist", NameMeaning::Hand),
+    ("pelvis", NameMeaning::Hips),
+    ("sacro", NameMeaning::Hips),
+    ("lowerbody", NameMeaning::Hips),
+    ("lowertorso", NameMeaning::Hips),
+    ("hip", NameMeaning::Hips),
+    ("neck", NameMeaning::Neck),
+    ("head", NameMeaning::Head),
+    ("skull", NameMeaning::Head),
+    ("spine", NameMeaning::Spine),
+    ("chest", NameMeaning::Spine),
+    ("torso", NameMeaning::Spine),
+    ("thorax", NameMeaning::Spine),
+    ("abdomen", NameMeaning::Spine),
+    ("stomach", NameMeaning::Spine),
+    ("belly", NameMeaning::Spine),
+    ("waist", NameMeaning::Spine),
+    ("back", NameMeaning::Spine),
+    ("trunk", NameMeaning::Spine),
+    ("upperbody", NameMeaning::Spine),
+    ("wing", NameMeaning::Animal),
+    ("tentacle", NameMeaning::Animal),
+    ("hoof", NameMeaning::Animal),
+    ("leg", NameMeaning::Leg),
+    ("arm", NameMeaning::Arm),
 ];
 
 /// The kind that the words together say; they are also read as one, so that `up leg` is `upleg`.
-pub(super) fn kind_of(words: &[&str]) -> Kind {
+pub(super) fn kind_of(words: &[&str]) -> NameMeaning {
     if words.iter().any(|w| OTHER.contains(w)) {
-        return Kind::Other;
+        return NameMeaning::Other;
     }
     // Letters beside the words (`clavicule_g`) make no other word of them.
     let long: Vec<&str> = words.iter().copied().filter(|w| w.len() > 1).collect();
     let joined = long.concat();
     if joined.contains("armature") {
-        return Kind::Unknown;
+        return NameMeaning::Unknown;
     }
     let legs_of_four = ["frontleg", "foreleg", "hindleg", "rearleg", "backleg"];
     if words.iter().any(|w| ANIMAL.contains(w)) || legs_of_four.iter().any(|w| joined.contains(w)) {
-        return Kind::Animal;
+        return NameMeaning::Animal;
     }
     let part = PARTS
         .iter()
@@ -236,20 +236,25 @@ pub(super) fn kind_of(words: &[&str]) -> Kind {
     let turns = |w: &&str| {
         w.contains("twist") || w.ends_with("roll") || matches!(*w, "rolls" | "part" | "share")
     };
-    if words.iter().any(turns) && !matches!(part, Some(Kind::Neck | Kind::Spine | Kind::Head)) {
-        return Kind::Twist;
+    if words.iter().any(turns)
+        && !matches!(
+            part,
+            Some(NameMeaning::Neck | NameMeaning::Spine | NameMeaning::Head)
+        )
+    {
+        return NameMeaning::Twist;
     }
     let has = |some: &[&str]| words.iter().any(|w| some.contains(w));
     // The hand's middle finger; but a spine may have a middle, too.
     let of_finger = has(&["middle", "mid", "ring", "little"]);
     let central = has(&["center", "centre", "mid", "middle"]);
     match part {
-        Some(Kind::Shoulder) if joined.contains("spine") => Kind::Spine,
-        Some(Kind::Shoulder) if central => Kind::Neck,
-        None if has(&["ball"]) => Kind::Toe,
-        None if has(&["ab"]) => Kind::Spine,
-        None | Some(Kind::Hand) if of_finger => Kind::Finger,
+        Some(NameMeaning::Shoulder) if joined.contains("spine") => NameMeaning::Spine,
+        Some(NameMeaning::Shoulder) if central => NameMeaning::Neck,
+        None if has(&["ball"]) => NameMeaning::Toe,
+        None if has(&["ab"]) => NameMeaning::Spine,
+        None | Some(NameMeaning::Hand) if of_finger => NameMeaning::Finger,
         Some(kind) => kind,
-        None => Kind::Unknown,
+        None => NameMeaning::Unknown,
     }
 }

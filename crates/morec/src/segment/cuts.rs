@@ -2,8 +2,8 @@
 
 use nalgebra::DMatrix;
 
-use super::pass::{Lengths, Pass, Values, pass};
-use super::{Directions, PpcaParams, SegmentError};
+use super::pass::{Pass, PassLengths, Values, pass};
+use super::{PassDirections, PpcaParams, SegmentError};
 use crate::features::Rows;
 use crate::pca::{Eigen, Moments};
 
@@ -22,7 +22,7 @@ pub struct Cut {
 
 /// A value of `H`: how badly the rows from `secs` on (before it, in the backward pass) fit the segment before them.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-pub struct HPoint {
+pub struct MisfitSample {
     /// Where the look-ahead window begins.
     pub secs: f64,
     /// Mean Mahalanobis distance; about `n` for rows that fit.
@@ -35,9 +35,9 @@ pub struct Segmentation {
     /// In the order of their times.
     pub cuts: Vec<Cut>,
     /// `H` of the pass from start to end; empty if it was not asked for or the rows are too few.
-    pub forward: Vec<HPoint>,
+    pub forward: Vec<MisfitSample>,
     /// `H` of the pass from end to start, in the order of times.
-    pub backward: Vec<HPoint>,
+    pub backward: Vec<MisfitSample>,
 }
 
 /// A dimension that varies by less than this share of the one that varies most does not vary.
@@ -64,19 +64,19 @@ pub fn segment(
         return Err(SegmentError::NotFinite { row });
     }
     let values = varying(rows);
-    let lengths = Lengths::at(rate_hz, params);
+    let lengths = PassLengths::at(rate_hz, params);
     let (forward, backward) = rayon::join(
         || match params.directions {
-            Directions::Backward => Pass::default(),
+            PassDirections::Backward => Pass::default(),
             _ => pass(&values, lengths, params),
         },
         || match params.directions {
-            Directions::Forward => Pass::default(),
+            PassDirections::Forward => Pass::default(),
             _ => backward(&values, lengths, params),
         },
     );
     let points = |pass: &Pass| {
-        let point = |&(row, value): &(usize, f64)| HPoint {
+        let point = |&(row, value): &(usize, f64)| MisfitSample {
             secs: row as f64 / rate_hz,
             value,
         };
@@ -115,7 +115,7 @@ fn varying(rows: &Rows) -> Values {
 }
 
 /// The pass over the rows turned round, its places turned back.
-fn backward(rows: &Values, lengths: Lengths, params: &PpcaParams) -> Pass {
+fn backward(rows: &Values, lengths: PassLengths, params: &PpcaParams) -> Pass {
     let turned: Vec<f64> = rows
         .values
         .chunks_exact(rows.dim.max(1))

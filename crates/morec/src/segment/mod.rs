@@ -18,10 +18,10 @@ mod ppca;
 mod still;
 mod windows;
 
-pub use cuts::{Cut, HPoint, Segmentation, segment};
+pub use cuts::{Cut, MisfitSample, Segmentation, segment};
 pub use cycles::{CycleParams, Cycles, cycles};
 pub use kernel::{KernelParams, change_points, kernel_cuts};
-pub use params::{Directions, PpcaParams, SegmentError};
+pub use params::{PassDirections, PpcaParams, SegmentError};
 pub use ppca::Ppca;
 pub use still::{StillKind, StillParams, still_stretches};
 pub use windows::{WindowRows, window_rows};

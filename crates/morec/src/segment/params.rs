@@ -3,7 +3,7 @@
 /// Which way a clip is gone through.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Directions {
+pub enum PassDirections {
     /// From start to end: finds where something new begins. What is a part of what came before (standing after
     /// walking) goes unnoticed.
     Forward,
@@ -32,7 +32,7 @@ pub struct PpcaParams {
     /// A peak counts once `H` has fallen from it by this share of its rise.
     pub fall: f64,
     /// Which way to go.
-    pub directions: Directions,
+    pub directions: PassDirections,
     /// A backward cut this near to a forward one is the same. Half of `T`.
     pub same_secs: f64,
     /// No variance is taken for less, so that a frozen sensor does not make the slightest motion a surprise.
@@ -48,7 +48,7 @@ impl Default for PpcaParams {
             quality: 0.95,
             rise: 6.25,
             fall: 0.5,
-            directions: Directions::Both,
+            directions: PassDirections::Both,
             same_secs: 0.625,
             least_variance: 1e-10,
         }

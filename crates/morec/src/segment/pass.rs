@@ -1,6 +1,6 @@
 //! One way through a clip: Algorithm 2.
 
-use crate::pca::{Keep, Moments};
+use crate::pca::{ComponentCount, Moments};
 
 use super::peaks::Peaks;
 use super::{Ppca, PpcaParams};
@@ -17,13 +17,13 @@ pub(super) struct Values {
 
 /// What [`PpcaParams`] are in rows.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Lengths {
+pub(super) struct PassLengths {
     pub first: usize,
     pub ahead: usize,
     pub step: usize,
 }
 
-impl Lengths {
+impl PassLengths {
     pub(super) fn at(rate_hz: f64, params: &PpcaParams) -> Self {
         let rows = |secs: f64, least: f64| (secs * rate_hz).round().clamp(least, 1e9) as usize;
         Self {
@@ -45,7 +45,7 @@ pub(super) struct Pass {
 
 /// Thesis Algorithm 2 as corrected: `K` grows by `Δ`; a cut where the peak's look-ahead window begins, and the next
 /// segment from there. O(rows / Δ · (q³ + T q r)).
-pub(super) fn pass(rows: &Values, lengths: Lengths, params: &PpcaParams) -> Pass {
+pub(super) fn pass(rows: &Values, lengths: PassLengths, params: &PpcaParams) -> Pass {
     let mut pass = Pass::default();
     let mut start = 0;
     while let Some(cut) = next_cut(rows, start, lengths, params, &mut pass.points) {
@@ -58,7 +58,7 @@ pub(super) fn pass(rows: &Values, lengths: Lengths, params: &PpcaParams) -> Pass
 fn next_cut(
     rows: &Values,
     start: usize,
-    lengths: Lengths,
+    lengths: PassLengths,
     params: &PpcaParams,
     points: &mut Vec<(usize, f64)>,
 ) -> Option<usize> {
@@ -66,14 +66,14 @@ fn next_cut(
     let span = |from: usize, to: usize| &rows.values[from * rows.dim..to * rows.dim];
     let mut peaks = Peaks::new(params.rise * rows.space as f64, params.fall);
     let mut moments = Moments::new(rows.dim);
-    let mut keep = Keep::Quality(params.quality);
+    let mut keep = ComponentCount::Quality(params.quality);
     let mut seen = start;
     let mut end = start + lengths.first;
     while end + lengths.ahead <= count {
         moments.push_values(span(seen, end));
         seen = end;
         let model = Ppca::fit(&moments, keep, rows.space, params.least_variance);
-        keep = Keep::Dims(model.dims());
+        keep = ComponentCount::Dims(model.dims());
         let h = model.mean_distance(span(end, end + lengths.ahead));
         points.push((end, h));
         if let Some(cut) = peaks.push(end, h) {

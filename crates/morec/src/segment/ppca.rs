@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::pca::{Eigen, Keep, Moments};
+use crate::pca::{ComponentCount, Eigen, Moments};
 
 /// Probabilistic principal components: rows as a Gaussian whose covariance is
 /// `C = V diag(λ₁ … λᵣ, λ … λ) Vᵀ`, `λ` the mean of the eigenvalues left out (thesis Eq. 3.13, 3.15).
@@ -23,7 +23,7 @@ impl Ppca {
     ///
     /// `space` is the number of dimensions `n` that the rows have in truth: more than the `q` of `moments` if
     /// dimensions in which nothing varies were left out. No variance is taken for less than `least`.
-    pub fn fit(moments: &Moments, keep: Keep, space: usize, least: f64) -> Self {
+    pub fn fit(moments: &Moments, keep: ComponentCount, space: usize, least: f64) -> Self {
         let eigen = Eigen::of(moments.covariance());
         let dims = keep.dims(&eigen.values).min(space.saturating_sub(1));
         let noise = eigen.values[dims..].iter().sum::<f64>() / (space - dims).max(1) as f64;

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use super::peaks::Peaks;
 use super::*;
 use crate::features::Rows;
-use crate::pca::{Keep, Moments};
+use crate::pca::{ComponentCount, Moments};
 
 fn values(dim: usize, len: usize) -> impl Strategy<Value = Vec<f64>> {
     prop::collection::vec(-1.0f64..1.0, dim * len)
@@ -32,7 +32,7 @@ proptest! {
         let mut moments = Moments::new(6);
         moments.push_values(&rows);
         let space = 6 + extra;
-        let model = Ppca::fit(&moments, Keep::Dims(dims), space, 1e-12);
+        let model = Ppca::fit(&moments, ComponentCount::Dims(dims), space, 1e-12);
         // By hand: eigenvalues of the covariance, those past r replaced by their mean over n - r.
         let all = DMatrix::from_row_slice(40, 6, &rows);
         let mean = all.row_mean();
@@ -60,7 +60,7 @@ proptest! {
         let rows = motion(5, noise);
         let mut moments = Moments::new(5);
         moments.push_values(&rows);
-        let model = Ppca::fit(&moments, Keep::Dims(3), 5, 1e-12);
+        let model = Ppca::fit(&moments, ComponentCount::Dims(3), 5, 1e-12);
         prop_assert!((model.mean_distance(&rows) - 5.0 * 59.0 / 60.0).abs() < 1e-6);
     }
 
@@ -171,10 +171,10 @@ fn going_back_notices_what_ceases() {
         .unwrap();
         found.cuts.iter().map(|c| c.secs).collect::<Vec<_>>()
     };
-    assert_eq!(cut(Directions::Forward), [] as [f64; 0]);
-    let back = cut(Directions::Backward);
+    assert_eq!(cut(PassDirections::Forward), [] as [f64; 0]);
+    let back = cut(PassDirections::Backward);
     assert!(back.len() == 1 && (back[0] - 5.0).abs() < 0.2, "{back:?}");
-    assert_eq!(cut(Directions::Both), back);
+    assert_eq!(cut(PassDirections::Both), back);
 }
 
 #[test]

@@ -3,14 +3,14 @@
 use nalgebra::{Matrix4x3, Vector3, Vector4};
 
 /// A value of a channel: a quaternion `[x, y, z, w]`, or a position `[x, y, z, 0]`.
-pub(crate) type Point = Vector4<f64>;
+pub(crate) type ChannelValue = Vector4<f64>;
 /// A tangent: of a rotation in the frame of its key, of a position as it is.
 pub(super) type Tangent = Vector3<f64>;
 
 /// What the values of a channel are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Kind {
+pub enum ChannelKind {
     /// Rotations of a joint, as unit quaternions. A curve's value is brought to length 1.
     Rotation,
     /// Positions of a joint in its parent's frame.
@@ -27,18 +27,18 @@ pub(super) fn bernstein(t: f64) -> [f64; 4] {
 ///
 /// Lower degrees stand in their cubic form. The parameter runs evenly in time.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Segment {
+pub(super) struct CurveSegment {
     /// First sample.
     pub start: u32,
     /// Sample periods that the curve lasts.
     pub frames: u32,
     /// Control points P0 to P3; P0 and P3 are the keys.
-    pub points: [Point; 4],
+    pub points: [ChannelValue; 4],
 }
 
-impl Segment {
+impl CurveSegment {
     /// The value at `place` (in sample periods from the clip's start).
-    pub fn at(&self, kind: Kind, place: f64) -> Point {
+    pub fn at(&self, kind: ChannelKind, place: f64) -> ChannelValue {
         let t = ((place - f64::from(self.start)) / f64::from(self.frames)).clamp(0.0, 1.0);
         let weights = bernstein(t);
         let [p0, p1, p2, p3] = &self.points;
@@ -47,12 +47,12 @@ impl Segment {
     }
 }
 
-impl Kind {
+impl ChannelKind {
     /// A curve's raw value made a value of the channel; `None` for a quaternion that vanishes.
-    pub(super) fn finish(self, raw: Point) -> Option<Point> {
+    pub(super) fn finish(self, raw: ChannelValue) -> Option<ChannelValue> {
         match self {
-            Kind::Position => Some(raw),
-            Kind::Rotation => {
+            ChannelKind::Position => Some(raw),
+            ChannelKind::Rotation => {
                 let norm = raw.norm();
                 (norm > 1e-9).then(|| raw / norm)
             }
@@ -60,30 +60,30 @@ impl Kind {
     }
 
     /// `value` as seen from `origin`: `origin* value` for rotations, the difference for positions. Keeps distances.
-    pub(super) fn local(self, origin: &Point, value: &Point) -> Point {
+    pub(super) fn local(self, origin: &ChannelValue, value: &ChannelValue) -> ChannelValue {
         match self {
-            Kind::Position => value - origin,
-            Kind::Rotation => product(
-                &Point::new(-origin.x, -origin.y, -origin.z, origin.w),
+            ChannelKind::Position => value - origin,
+            ChannelKind::Rotation => product(
+                &ChannelValue::new(-origin.x, -origin.y, -origin.z, origin.w),
                 value,
             ),
         }
     }
 
     /// What the origin is when seen from itself.
-    pub(super) fn identity(self) -> Point {
+    pub(super) fn identity(self) -> ChannelValue {
         match self {
-            Kind::Position => Point::zeros(),
-            Kind::Rotation => Point::w(),
+            ChannelKind::Position => ChannelValue::zeros(),
+            ChannelKind::Rotation => ChannelValue::w(),
         }
     }
 
     /// How a tangent at `key` moves the value, in the coordinates that `key` is given in: 4 × 3, columns
     /// orthonormal.
-    pub(super) fn tangents(self, key: &Point) -> Matrix4x3<f64> {
+    pub(super) fn tangents(self, key: &ChannelValue) -> Matrix4x3<f64> {
         match self {
-            Kind::Position => Matrix4x3::identity(),
-            Kind::Rotation => {
+            ChannelKind::Position => Matrix4x3::identity(),
+            ChannelKind::Rotation => {
                 let [x, y, z, w]: [f64; 4] = (*key).into();
                 Matrix4x3::new(w, -z, y, z, w, -x, -y, x, w, -x, -y, -z)
             }
@@ -92,8 +92,8 @@ impl Kind {
 }
 
 /// Hamilton's product.
-fn product(a: &Point, b: &Point) -> Point {
-    Point::new(
+fn product(a: &ChannelValue, b: &ChannelValue) -> ChannelValue {
+    ChannelValue::new(
         a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
         a.w * b.y + a.y * b.w + a.z * b.x - a.x * b.z,
         a.w * b.z + a.z * b.w + a.x * b.y - a.y * b.x,

@@ -1,11 +1,11 @@
 //! Keeping joints where they were in the world: thresholds by reach, then closer fits where that is not enough.
 
-use super::bezier::Kind;
+use super::bezier::ChannelKind;
 use super::compress::too_coarse;
 use super::measure::angle_between;
 use super::params::{SmoothError, SmoothParams};
 use super::sample::rotation;
-use super::split::{Channel, TooCoarse};
+use super::split::{ChannelFit, TooCoarse};
 use crate::clip::Clip;
 use crate::kinematics::WorldPose;
 use crate::progress::Progress;
@@ -82,7 +82,7 @@ fn reach(clip: &Clip) -> Vec<f64> {
 /// Fits channels again, more closely, until every joint lies within `metres` of where it was, at every frame.
 pub(super) fn tighten(
     clip: &Clip,
-    channels: &mut [Channel],
+    channels: &mut [ChannelFit],
     metres: f64,
     metres_per_unit: f64,
     progress: &dyn Progress,
@@ -115,7 +115,7 @@ struct Blame {
 
 struct Tightening<'a> {
     clip: &'a Clip,
-    channels: &'a mut [Channel],
+    channels: &'a mut [ChannelFit],
     /// What the curves give at the clip's frames.
     fitted: Clip,
     /// Frames at which `fitted` has changed since they were looked at.
@@ -129,7 +129,7 @@ struct Tightening<'a> {
 }
 
 impl<'a> Tightening<'a> {
-    fn new(clip: &'a Clip, channels: &'a mut [Channel], bound: f64) -> Self {
+    fn new(clip: &'a Clip, channels: &'a mut [ChannelFit], bound: f64) -> Self {
         let joints = clip.skeleton.len();
         let mut tracks = vec![None; joints];
         for (i, track) in clip.tracks.iter().enumerate() {
@@ -177,10 +177,10 @@ impl<'a> Tightening<'a> {
                 .get(current)
                 .map_or(start, |s| s.at(kind, frame as f64));
             match kind {
-                Kind::Rotation => {
+                ChannelKind::Rotation => {
                     self.fitted.rotations[frame * joints + channel] = rotation(&value)
                 }
-                Kind::Position => {
+                ChannelKind::Position => {
                     self.fitted.tracks[channel - joints].positions[frame] = value.xyz()
                 }
             }

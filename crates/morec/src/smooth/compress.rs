@@ -1,10 +1,10 @@
 //! A clip to curves.
 
-use super::bezier::{Kind, Point};
+use super::bezier::{ChannelKind, ChannelValue};
 use super::bound;
 use super::measure::Errors;
 use super::params::{SmoothError, SmoothParams};
-use super::split::{Channel, TooCoarse};
+use super::split::{ChannelFit, TooCoarse};
 use super::{CompressedClip, Curve};
 use crate::clip::Clip;
 use crate::progress::Progress;
@@ -82,12 +82,12 @@ pub fn compress(
 }
 
 /// Rotations joint by joint, then tracks, each with its threshold.
-fn channels(clip: &Clip, params: &SmoothParams) -> Vec<Channel> {
+fn channels(clip: &Clip, params: &SmoothParams) -> Vec<ChannelFit> {
     let joints = clip.skeleton.len();
     let thresholds = bound::Thresholds::new(clip, params);
     let mut channels = Vec::with_capacity(joints + clip.tracks.len());
     for j in 0..joints {
-        let mut samples: Vec<Point> = Vec::with_capacity(clip.frames);
+        let mut samples: Vec<ChannelValue> = Vec::with_capacity(clip.frames);
         for frame in 0..clip.frames {
             let q = clip.rotations[frame * joints + j].coords;
             let turned = samples
@@ -95,8 +95,8 @@ fn channels(clip: &Clip, params: &SmoothParams) -> Vec<Channel> {
                 .is_some_and(|previous| previous.dot(&q) < 0.0);
             samples.push(if turned { -q } else { q });
         }
-        channels.push(Channel::new(
-            Kind::Rotation,
+        channels.push(ChannelFit::new(
+            ChannelKind::Rotation,
             samples,
             chord(thresholds.angle_rad(j)),
         ));
@@ -107,7 +107,11 @@ fn channels(clip: &Clip, params: &SmoothParams) -> Vec<Channel> {
             .iter()
             .map(|position| position.push(0.0))
             .collect();
-        channels.push(Channel::new(Kind::Position, samples, thresholds.position()));
+        channels.push(ChannelFit::new(
+            ChannelKind::Position,
+            samples,
+            thresholds.position(),
+        ));
     }
     channels
 }

@@ -1,6 +1,6 @@
 //! One channel of a compressed clip.
 
-use super::bezier::{Kind, Point, Segment};
+use super::bezier::{ChannelKind, ChannelValue, CurveSegment};
 use super::lattice::{Code, Lattice, Piece, Tangents};
 
 /// A channel as a run of cubic Bézier curves, end to end; a channel that stands still is a single key.
@@ -10,7 +10,7 @@ pub struct Curve {
     pub(super) lattice: Lattice,
     pub(super) first: Code,
     pub(super) pieces: Vec<Piece>,
-    pub(super) segments: Vec<Segment>,
+    pub(super) segments: Vec<CurveSegment>,
 }
 
 /// A Bézier curve of a channel, as a picture or a table needs it.
@@ -30,7 +30,7 @@ pub struct Bezier {
 impl Curve {
     /// A curve from what is stored of it.
     pub(super) fn new(joint: usize, lattice: Lattice, first: Code, pieces: Vec<Piece>) -> Self {
-        let mut segments: Vec<Segment> = Vec::with_capacity(pieces.len());
+        let mut segments: Vec<CurveSegment> = Vec::with_capacity(pieces.len());
         let mut key = lattice.key_point(&first, None);
         let mut start = 0;
         for piece in &pieces {
@@ -54,7 +54,7 @@ impl Curve {
     }
 
     /// What its values are.
-    pub fn kind(&self) -> Kind {
+    pub fn kind(&self) -> ChannelKind {
         self.lattice.kind
     }
 
@@ -71,8 +71,8 @@ impl Curve {
     /// Numbers that it takes: the values of its control points and the times of its keys.
     pub fn control_values(&self) -> usize {
         let per_point = match self.kind() {
-            Kind::Rotation => 4,
-            Kind::Position => 3,
+            ChannelKind::Rotation => 4,
+            ChannelKind::Position => 3,
         };
         let points: usize = self
             .pieces
@@ -102,7 +102,7 @@ impl Curve {
 
     /// The value at `place`, in sample periods; before the first key and after the last it stands still.
     /// O(log keyframes).
-    pub(crate) fn at(&self, place: f64) -> Point {
+    pub(crate) fn at(&self, place: f64) -> ChannelValue {
         let after = self
             .segments
             .partition_point(|s| f64::from(s.start) <= place);
@@ -113,7 +113,11 @@ impl Curve {
     }
 
     /// The values at `places`, which do not fall. O(places + keyframes).
-    pub(crate) fn along(&self, places: impl Iterator<Item = f64>, mut take: impl FnMut(Point)) {
+    pub(crate) fn along(
+        &self,
+        places: impl Iterator<Item = f64>,
+        mut take: impl FnMut(ChannelValue),
+    ) {
         let still = self.lattice.key_point(&self.first, None);
         let mut current = 0;
         for place in places {

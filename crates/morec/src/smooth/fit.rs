@@ -6,14 +6,14 @@
 
 use nalgebra::{Matrix3, Matrix4x3, Vector3, Vector4};
 
-use super::bezier::{Kind, Point, Tangent, bernstein};
+use super::bezier::{ChannelKind, ChannelValue, Tangent, bernstein};
 
 /// Samples between two keys, seen from the first: `samples[0]` is (nearly) the identity.
 pub(super) struct Stretch<'a> {
-    kind: Kind,
-    samples: &'a [Point],
+    kind: ChannelKind,
+    samples: &'a [ChannelValue],
     /// The last key.
-    end: Point,
+    end: ChannelValue,
     /// What a tangent at the last key does.
     end_tangents: Matrix4x3<f64>,
 }
@@ -40,7 +40,7 @@ pub(super) struct Worst {
 
 impl<'a> Stretch<'a> {
     /// A stretch of at least two `samples`, which end near `end`.
-    pub fn new(kind: Kind, samples: &'a [Point], end: Point) -> Self {
+    pub fn new(kind: ChannelKind, samples: &'a [ChannelValue], end: ChannelValue) -> Self {
         Self {
             kind,
             samples,
@@ -130,7 +130,7 @@ impl<'a> Stretch<'a> {
             let raw = p0 * b0 + p1 * b1 + p2 * b2 + self.end * b3;
             let value = self.kind.finish(raw).unwrap_or(p0);
             let mut square = (value - sample).norm_squared();
-            if last == 1 && self.kind == Kind::Rotation {
+            if last == 1 && self.kind == ChannelKind::Rotation {
                 // From one frame to the next a joint may flip: which way round is then nobody's to say.
                 square = square.min((value + sample).norm_squared());
             }
@@ -152,9 +152,9 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn point(spread: f64) -> impl Strategy<Value = Point> {
+    fn point(spread: f64) -> impl Strategy<Value = ChannelValue> {
         let s = -spread..spread;
-        [s.clone(), s.clone(), s.clone(), s].prop_map(Point::from)
+        [s.clone(), s.clone(), s.clone(), s].prop_map(ChannelValue::from)
     }
 
     /// Sum of squared distances of the raw curve, which is what is minimised.
@@ -169,7 +169,7 @@ mod tests {
         let last = stretch.samples.len() - 1;
         let square = |i: usize| {
             let weights = bernstein(i as f64 / last as f64);
-            let at: Point = (0..4).map(|k| points[k] * weights[k]).sum();
+            let at: ChannelValue = (0..4).map(|k| points[k] * weights[k]).sum();
             (at - stretch.samples[i]).norm_squared()
         };
         (1..last).map(square).sum()
@@ -184,10 +184,10 @@ mod tests {
             noise in prop::collection::vec(point(0.3), 1..12),
             step in point(0.01), other in point(0.01),
         ) {
-            let kind = if rotation { Kind::Rotation } else { Kind::Position };
+            let kind = if rotation { ChannelKind::Rotation } else { ChannelKind::Position };
             let end = match kind {
-                Kind::Rotation => (Point::w() + end).normalize(),
-                Kind::Position => end.xyz().push(0.0),
+                ChannelKind::Rotation => (ChannelValue::w() + end).normalize(),
+                ChannelKind::Position => end.xyz().push(0.0),
             };
             let last = noise.len() + 1;
             let mut samples = vec![kind.identity()];

@@ -4,7 +4,7 @@
 //! need no square root's care anywhere (Schaub and Junkins, *Stereographic orientation parameters for attitude
 //! dynamics*, 1996); which of q and −q is meant follows from the key before. Inner points are kept as tangents.
 
-use super::bezier::{Kind, Point, Segment, Tangent};
+use super::bezier::{ChannelKind, ChannelValue, CurveSegment, Tangent};
 
 /// Whole steps in three coordinates.
 pub(super) type Code = [i64; 3];
@@ -14,9 +14,9 @@ pub(super) const MOST_STEPS: i64 = 1 << 48;
 
 /// The size of a channel's steps, as the power of √2 that it is: one byte in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Step(pub i8);
+pub(super) struct StepSize(pub i8);
 
-impl Step {
+impl StepSize {
     /// The largest step that is no larger than `most`.
     pub fn at_most(most: f64) -> Self {
         let power = (2.0 * most.log2()).floor().clamp(-126.0, 126.0) as i8;
@@ -49,11 +49,11 @@ impl Step {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Lattice {
     /// What the values are.
-    pub kind: Kind,
+    pub kind: ChannelKind,
     /// Step of keys.
-    pub key: Step,
+    pub key: StepSize,
     /// Step of tangents.
-    pub tangent: Step,
+    pub tangent: StepSize,
 }
 
 /// Tangents are rounded so much more coarsely than keys: they move a curve by at most 4/9 of themselves, and a turn
@@ -66,17 +66,17 @@ const KEY_SHARE: f64 = 0.4;
 impl Lattice {
     /// Rounds so that a key is off by less than `KEY_SHARE` of `tolerance`: a chord between quaternions, or a
     /// distance.
-    pub fn new(kind: Kind, tolerance: f64) -> Self {
+    pub fn new(kind: ChannelKind, tolerance: f64) -> Self {
         // The corner of a step's cube lies √3/2 from its middle; at 0 the quaternion moves by twice the parameters.
         let (spread, ratio) = match kind {
-            Kind::Rotation => (3f64.sqrt(), TANGENT_ROTATION),
-            Kind::Position => (3f64.sqrt() / 2.0, TANGENT_POSITION),
+            ChannelKind::Rotation => (3f64.sqrt(), TANGENT_ROTATION),
+            ChannelKind::Position => (3f64.sqrt() / 2.0, TANGENT_POSITION),
         };
         let key = KEY_SHARE * tolerance / spread;
         Self {
             kind,
-            key: Step::at_most(key),
-            tangent: Step::at_most(key * ratio),
+            key: StepSize::at_most(key),
+            tangent: StepSize::at_most(key * ratio),
         }
     }
 
@@ -90,21 +90,21 @@ impl Lattice {
     }
 
     /// The key nearest to `value`.
-    pub fn key_code(&self, value: &Point) -> Code {
+    pub fn key_code(&self, value: &ChannelValue) -> Code {
         let parameters = match self.kind {
-            Kind::Position => value.xyz(),
-            Kind::Rotation if value.w < 0.0 => -value.xyz() / (1.0 - value.w),
-            Kind::Rotation => value.xyz() / (1.0 + value.w),
+            ChannelKind::Position => value.xyz(),
+            ChannelKind::Rotation if value.w < 0.0 => -value.xyz() / (1.0 - value.w),
+            ChannelKind::Rotation => value.xyz() / (1.0 + value.w),
         };
         rounded(&parameters, self.key)
     }
 
     /// The key of a code, on the side of `previous`. Any code gives a unit quaternion, or a finite position.
-    pub fn key_point(&self, code: &Code, previous: Option<&Point>) -> Point {
+    pub fn key_point(&self, code: &Code, previous: Option<&ChannelValue>) -> ChannelValue {
         let parameters = vector(code, self.key);
         match self.kind {
-            Kind::Position => parameters.push(0.0),
-            Kind::Rotation => {
+            ChannelKind::Position => parameters.push(0.0),
+            ChannelKind::Rotation => {
                 let square = parameters.norm_squared();
                 let q = (2.0 / (1.0 + square) * parameters).push((1.0 - square) / (1.0 + square));
                 if previous.is_some_and(|p| p.dot(&q) < 0.0) {
@@ -127,7 +127,7 @@ impl Lattice {
     }
 }
 
-fn rounded(v: &Tangent, step: Step) -> Code {
+fn rounded(v: &Tangent, step: StepSize) -> Code {
     let size = step.size();
     // `as` keeps within i64 and makes 0 of what is no number.
     [
@@ -137,7 +137,7 @@ fn rounded(v: &Tangent, step: Step) -> Code {
     ]
 }
 
-fn vector(code: &Code, step: Step) -> Tangent {
+fn vector(code: &Code, step: StepSize) -> Tangent {
     Tangent::new(code[0] as f64, code[1] as f64, code[2] as f64) * step.size()
 }
 
@@ -179,13 +179,13 @@ impl Tangents {
 
 impl Piece {
     /// The segment that begins with the key `p0` at sample `start`.
-    pub fn segment(&self, lattice: &Lattice, start: u32, p0: Point) -> Segment {
+    pub fn segment(&self, lattice: &Lattice, start: u32, p0: ChannelValue) -> CurveSegment {
         let kind = lattice.kind;
         let p3 = lattice.key_point(&self.key, Some(&p0));
         let (a, b) = self.tangents.resolve(lattice, &kind.local(&p0, &p3).xyz());
         let p1 = p0 + kind.tangents(&p0) * a;
         let p2 = p3 + kind.tangents(&p3) * b;
-        Segment {
+        CurveSegment {
             start,
             frames: self.frames,
             points: [p0, p1, p2, p3],
@@ -205,14 +205,14 @@ mod tests {
             q in [-1.0f64..1.0, -1.0..1.0, -1.0..1.0, -1.0..1.0], before in [-1.0f64..1.0, -1.0..1.0, -1.0..1.0, -1.0..1.0],
             tolerance in 1e-5f64..0.3,
         ) {
-            let q = Point::from(q);
+            let q = ChannelValue::from(q);
             prop_assume!(q.norm() > 0.1);
-            let (q, before) = (q.normalize(), Point::from(before));
-            let lattice = Lattice::new(Kind::Rotation, tolerance);
+            let (q, before) = (q.normalize(), ChannelValue::from(before));
+            let lattice = Lattice::new(ChannelKind::Rotation, tolerance);
             let key = lattice.key_point(&lattice.key_code(&q), Some(&before));
             prop_assert!(key.dot(&before) >= 0.0);
             prop_assert!((key - q).norm().min((key + q).norm()) <= KEY_SHARE * tolerance * 1.001);
-            let lattice = Lattice::new(Kind::Position, tolerance);
+            let lattice = Lattice::new(ChannelKind::Position, tolerance);
             let position = before.xyz().push(0.0);
             let key = lattice.key_point(&lattice.key_code(&position), None);
             prop_assert!((key - position).norm() <= KEY_SHARE * tolerance * 1.001);
@@ -220,15 +220,15 @@ mod tests {
 
         #[test]
         fn any_code_is_a_rotation(code in any::<[i64; 3]>(), power in any::<i8>()) {
-            let lattice = Lattice { kind: Kind::Rotation, key: Step(power), tangent: Step(power) };
+            let lattice = Lattice { kind: ChannelKind::Rotation, key: StepSize(power), tangent: StepSize(power) };
             let q = lattice.key_point(&code, None);
             prop_assert!((q.norm() - 1.0).abs() < 1e-9, "{}", q);
         }
 
         #[test]
         fn steps_are_the_largest_of_their_kind(most in 1e-15f64..1e15) {
-            let step = Step::at_most(most);
-            prop_assert!(step.size() <= most && most < Step(step.0 + 1).size() * 1.000001);
+            let step = StepSize::at_most(most);
+            prop_assert!(step.size() <= most && most < StepSize(step.0 + 1).size() * 1.000001);
             prop_assert!((step.halved().size() * 2.0 / step.size() - 1.0).abs() < 1e-12);
         }
     }

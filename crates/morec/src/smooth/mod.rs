@@ -36,9 +36,9 @@ mod sample;
 mod split;
 mod stored;
 
-pub use bezier::Kind;
+pub use bezier::ChannelKind;
 #[cfg(feature = "report")]
-pub(crate) use bezier::Point;
+pub(crate) use bezier::ChannelValue;
 pub use compress::compress;
 pub use curve::{Bezier, Curve};
 pub use measure::Errors;
@@ -111,10 +111,10 @@ impl CompressedClip {
     }
 
     /// The channel of one joint, if it has one of this kind.
-    pub fn curve(&self, joint: usize, kind: Kind) -> Option<&Curve> {
+    pub fn curve(&self, joint: usize, kind: ChannelKind) -> Option<&Curve> {
         match kind {
-            Kind::Rotation => self.rotations.get(joint),
-            Kind::Position => self.positions.iter().find(|curve| curve.joint == joint),
+            ChannelKind::Rotation => self.rotations.get(joint),
+            ChannelKind::Position => self.positions.iter().find(|curve| curve.joint == joint),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::Quaternion;
 
-use super::bezier::Point;
+use super::bezier::ChannelValue;
 use super::{CompressedClip, Curve};
 use crate::clip::{Clip, JointTrack};
 use crate::math::{Quat, Vec3, same_hemisphere};
@@ -98,6 +98,6 @@ fn fill_rotations(
 }
 
 /// A curve's value, which has length 1 already.
-pub(super) fn rotation(point: &Point) -> Quat {
+pub(super) fn rotation(point: &ChannelValue) -> Quat {
     Quat::new_unchecked(Quaternion::from(*point))
 }

@@ -1,6 +1,6 @@
 //! Curve simplification (thesis, Alg. 1): one curve if it is near enough, else two that meet where it is furthest.
 
-use super::bezier::{Kind, Point, Segment};
+use super::bezier::{ChannelKind, ChannelValue, CurveSegment};
 use super::fit::{Stretch, Worst};
 use super::lattice::{Code, Lattice, MOST_STEPS, Piece, Tangents};
 use crate::clip::Span;
@@ -11,19 +11,19 @@ use crate::clip::Span;
 /// which is 0 for whatever returns to where it was. As corrected: from the curve to the samples, against a fixed
 /// threshold, which is what its text asks for. Splits that all fall near one end would cost O(n²); below a depth of
 /// some log n stretches are halved, so that fitting takes O(n log n).
-pub(super) struct Channel {
+pub(super) struct ChannelFit {
     pub lattice: Lattice,
     /// One for each frame; quaternions of continuous signs.
-    pub samples: Vec<Point>,
+    pub samples: Vec<ChannelValue>,
     /// Largest distance (chord between quaternions) from curve to sample.
     pub tolerance: f64,
     /// Shares of the tolerance that are allowed frame by frame, where they are not 1.
     pub shares: Option<Vec<f32>>,
     pub first: Code,
     pub pieces: Vec<Piece>,
-    pub segments: Vec<Segment>,
+    pub segments: Vec<CurveSegment>,
     /// Samples seen from the key at hand.
-    local: Vec<Point>,
+    local: Vec<ChannelValue>,
 }
 
 /// The steps are too coarse for what is allowed at this frame.
@@ -34,8 +34,8 @@ pub(super) struct TooCoarse {
     pub limit: f64,
 }
 
-impl Channel {
-    pub fn new(kind: Kind, samples: Vec<Point>, tolerance: f64) -> Self {
+impl ChannelFit {
+    pub fn new(kind: ChannelKind, samples: Vec<ChannelValue>, tolerance: f64) -> Self {
         let lattice = Lattice::new(kind, tolerance);
         let (pieces, segments) = (Vec::new(), Vec::new());
         Self {
@@ -51,7 +51,7 @@ impl Channel {
     }
 
     /// The first key's point.
-    pub fn start(&self) -> Point {
+    pub fn start(&self) -> ChannelValue {
         self.lattice.key_point(&self.first, None)
     }
 
@@ -109,15 +109,15 @@ impl Channel {
 
     /// One key for all frames, if it is near enough to each.
     fn fit_constant(&mut self) -> bool {
-        let middle = self.samples.iter().sum::<Point>() / self.samples.len() as f64;
+        let middle = self.samples.iter().sum::<ChannelValue>() / self.samples.len() as f64;
         let Some(middle) = self.lattice.kind.finish(middle) else {
             return false;
         };
         self.first = self.lattice.key_code(&middle);
         let key = self.start();
-        let near = |sample: &Point| match self.lattice.kind {
-            Kind::Position => (sample - key).norm_squared(),
-            Kind::Rotation => (sample - key)
+        let near = |sample: &ChannelValue| match self.lattice.kind {
+            ChannelKind::Position => (sample - key).norm_squared(),
+            ChannelKind::Rotation => (sample - key)
                 .norm_squared()
                 .min((sample + key).norm_squared()),
         };
@@ -144,9 +144,9 @@ impl Channel {
             );
             frames = &frames[frames.partition_point(|&frame| frame < from)..];
             if frames.first().is_some_and(|&frame| frame <= to) {
-                let start: Point = segments
+                let start: ChannelValue = segments
                     .last()
-                    .map_or_else(|| self.start(), |s: &Segment| s.points[3]);
+                    .map_or_else(|| self.start(), |s: &CurveSegment| s.points[3]);
                 self.simplify(from, to, start, &mut pieces, &mut segments)?;
                 ranges.push(from..to + 1);
             } else {
@@ -164,9 +164,9 @@ impl Channel {
         &mut self,
         from: usize,
         to: usize,
-        start: Point,
+        start: ChannelValue,
         pieces: &mut Vec<Piece>,
-        segments: &mut Vec<Segment>,
+        segments: &mut Vec<CurveSegment>,
     ) -> Result<(), TooCoarse> {
         let depth_of_halving = 2 * (to - from).max(1).ilog2() + 8;
         let mut key = start;
@@ -206,10 +206,10 @@ impl Channel {
         &mut self,
         from: usize,
         to: usize,
-        start: Point,
-    ) -> Result<(Piece, Segment), Worst> {
+        start: ChannelValue,
+    ) -> Result<(Piece, CurveSegment), Worst> {
         let (lattice, kind) = (self.lattice, self.lattice.kind);
-        let sign = if kind == Kind::Rotation && start.dot(&self.samples[from]) < 0.0 {
+        let sign = if kind == ChannelKind::Rotation && start.dot(&self.samples[from]) < 0.0 {
             -1.0
         } else {
             1.0

@@ -5,7 +5,9 @@ use std::sync::Arc;
 use crate::classes::ClassId;
 use crate::features::Rows;
 
-use super::{Candidates, Descent, FeatureExtraction, Gram, ModelError, SegmentScoring, SvrdmModel};
+use super::{
+    ClassCandidates, Descent, FeatureExtraction, Gram, ModelError, SegmentScoring, SvrdmModel,
+};
 
 /// What the tree says of a cut-out sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,7 +29,7 @@ pub struct SampleClassifier {
     model: Arc<SvrdmModel>,
     extraction: FeatureExtraction,
     scoring: SegmentScoring,
-    candidates: Candidates,
+    candidates: ClassCandidates,
 }
 
 impl SampleClassifier {
@@ -36,7 +38,7 @@ impl SampleClassifier {
         Ok(Self {
             extraction: FeatureExtraction::new(&model.params, model.pca.dims(), &model.signs),
             scoring: SegmentScoring::new(model)?,
-            candidates: Candidates::default(),
+            candidates: ClassCandidates::default(),
             model: model.clone(),
         })
     }

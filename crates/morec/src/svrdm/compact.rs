@@ -3,7 +3,7 @@
 use crate::pca::Pca;
 
 use super::tree::{Node, Tree};
-use super::{Comparison, ModelError, SvrdmModel};
+use super::{ModelError, SegmentDistance, SvrdmModel};
 
 impl SvrdmModel {
     /// This model with every table rounded to single precision, and profiles of whole rows to a byte a value, as an index
@@ -30,8 +30,8 @@ impl SvrdmModel {
         }
         let tree = Tree::new(parts).map_err(|e| invalid(&e))?;
         let profiles = match self.params.comparison {
-            Comparison::Profiles => self.profiles.clone(),
-            Comparison::Rows { .. } => self.profiles.in_steps(),
+            SegmentDistance::Profiles => self.profiles.clone(),
+            SegmentDistance::Rows { .. } => self.profiles.in_steps(),
         };
         Ok(Self {
             pca,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::classes::ClassId;
 
 use super::{
-    Candidates, Cell, ChunkAssembly, FeatureExtraction, Gram, ModelError, SegmentAssembly,
+    Cell, ChunkAssembly, ClassCandidates, FeatureExtraction, Gram, ModelError, SegmentAssembly,
     SegmentScoring, SegmentTracking, SvrdmModel, SvrdmParams, Window,
 };
 
@@ -43,7 +43,7 @@ pub struct SvrdmEngine {
 struct SegmentRecogniser {
     model: Arc<SvrdmModel>,
     extraction: FeatureExtraction,
-    candidates: Candidates,
+    candidates: ClassCandidates,
     scoring: SegmentScoring,
 }
 
@@ -62,7 +62,7 @@ impl SvrdmEngine {
             recogniser: SegmentRecogniser {
                 model: model.clone(),
                 extraction: FeatureExtraction::new(params, dim, &model.signs),
-                candidates: Candidates::default(),
+                candidates: ClassCandidates::default(),
                 scoring,
             },
             model: model.clone(),

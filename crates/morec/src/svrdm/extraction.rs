@@ -1,6 +1,6 @@
 //! Segments to feature vectors and profiles (thesis, §4.6.4).
 
-use super::{Centring, Comparison, Directions, Gram, Scaling, SvrdmParams};
+use super::{Centring, Directions, Gram, Scaling, SegmentDistance, SvrdmParams};
 
 /// Feature vector extraction: a segment's `AᵀA` in; its feature vector and, where asked for, its profile out.
 ///
@@ -9,7 +9,7 @@ use super::{Centring, Comparison, Directions, Gram, Scaling, SvrdmParams};
 pub struct FeatureExtraction {
     scaling: Scaling,
     centring: Centring,
-    comparison: Comparison,
+    comparison: SegmentDistance,
     signs: Vec<f64>,
     directions: Directions,
     feature: Vec<f64>,
@@ -55,7 +55,7 @@ impl FeatureExtraction {
     }
 
     /// The profile of the segment that the last feature vector is of: a value for each of its `rows`, or some of them
-    /// whole ([`Comparison`]). Allocates only for segments longer than the parameters' longest, as training may have
+    /// whole ([`SegmentDistance`]). Allocates only for segments longer than the parameters' longest, as training may have
     /// them. O(rows · r).
     pub fn profile<'a>(&mut self, segment: &Gram, rows: impl Iterator<Item = &'a [f32]>) -> &[f32] {
         let width = self.comparison.width(segment.dim());
@@ -65,8 +65,8 @@ impl FeatureExtraction {
         }
         let out = &mut self.profile[..values];
         match self.comparison {
-            Comparison::Profiles => self.directions.profile(rows, segment, self.centring, out),
-            Comparison::Rows { every } => {
+            SegmentDistance::Profiles => self.directions.profile(rows, segment, self.centring, out),
+            SegmentDistance::Rows { every } => {
                 for (kept, row) in out.chunks_exact_mut(width).zip(rows.step_by(every)) {
                     kept.copy_from_slice(row);
                 }

@@ -38,11 +38,14 @@ pub use extraction::FeatureExtraction;
 pub use gram::Gram;
 pub use map::ConfidenceMap;
 pub use model::{ModelError, Profiles, SvrdmModel};
-pub use params::{Centring, Comparison, MAX_PROFILE_FRAMES, Normalisation, Scaling, SvrdmParams};
+pub use params::{
+    Centring, MAX_PROFILE_FRAMES, Normalisation, Scaling, SegmentDistance, SvrdmParams,
+};
 pub use scoring::{SegmentScoring, confidence};
 pub use segments::{ChunkAssembly, RowRing, SegmentAssembly, Window};
 pub use tracking::{Cell, ChunkDetection, SegmentTracking};
 pub use tree::{
-    Branch, Candidate, Candidates, Descent, MAX_CANDIDATES, Node, Parts, Tree, TreeError,
+    Branch, ClassCandidate, ClassCandidates, Descent, MAX_CANDIDATES, Node, Tree, TreeError,
+    TreeParts,
 };
 pub use vectors::{Directions, MAX_DIM};

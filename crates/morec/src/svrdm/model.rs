@@ -34,7 +34,7 @@ pub struct SvrdmModel {
     pub epsilon: f32,
 }
 
-/// Profiles of training samples: what segments are compared with ([`Comparison`](super::Comparison)). In the thesis
+/// Profiles of training samples: what segments are compared with ([`SegmentDistance`](super::SegmentDistance)). In the thesis
 /// ("motion vectors") each sample's rows projected on its own first direction.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Profiles {

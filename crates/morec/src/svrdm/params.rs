@@ -49,7 +49,7 @@ pub enum Normalisation {
 /// What a segment is compared with its class's samples by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Comparison {
+pub enum SegmentDistance {
     /// One value a frame, along the segment's first direction, which matches or does not (thesis, §3.8): see
     /// [`edr`](super::edr).
     #[default]
@@ -63,20 +63,20 @@ pub enum Comparison {
     },
 }
 
-impl Comparison {
+impl SegmentDistance {
     /// Values in one row of a profile, of rows of `dim` values.
     pub fn width(self, dim: usize) -> usize {
         match self {
-            Comparison::Profiles => 1,
-            Comparison::Rows { .. } => dim,
+            SegmentDistance::Profiles => 1,
+            SegmentDistance::Rows { .. } => dim,
         }
     }
 
     /// Frames from one row of a profile to the next.
     pub fn every(self) -> usize {
         match self {
-            Comparison::Profiles => 1,
-            Comparison::Rows { every } => every,
+            SegmentDistance::Profiles => 1,
+            SegmentDistance::Rows { every } => every,
         }
     }
 
@@ -110,7 +110,7 @@ pub struct SvrdmParams {
     /// that of the larger output (§4.6.5). `Larger`.
     pub descent: Descent,
     /// What segments and samples are compared by. `Profiles` (thesis, §3.8).
-    pub comparison: Comparison,
+    pub comparison: SegmentDistance,
     /// ε: profile values match if they differ by at most this many standard deviations of all training profiles.
     /// 0.25 (thesis, §3.8).
     pub tolerance: f64,
@@ -140,7 +140,7 @@ impl Default for SvrdmParams {
             centring: Centring::Database,
             accept: 0.92,
             descent: Descent::Larger,
-            comparison: Comparison::Profiles,
+            comparison: SegmentDistance::Profiles,
             tolerance: 0.25,
             normalisation: Normalisation::CheapestPath,
             prior_spread: 0.25,

@@ -5,7 +5,8 @@ use crate::classes::ClassId;
 use super::edr::{Edr, least_ratio};
 use super::rows_edr::RowsEdr;
 use super::{
-    Candidates, Cell, Comparison, MAX_PROFILE_FRAMES, ModelError, Normalisation, SvrdmModel,
+    Cell, ClassCandidates, MAX_PROFILE_FRAMES, ModelError, Normalisation, SegmentDistance,
+    SvrdmModel,
 };
 
 /// Eq. 4.5: `(1 − 0.9 / (1 + e^(−30 EDR + 15))) · e^(−(len − mean)² / (2 (spread · mean)²))`, lengths in seconds.
@@ -48,7 +49,7 @@ pub struct SegmentScoring {
     values: Vec<f32>,
     classes: Vec<OfClass>,
     width: usize,
-    comparison: Comparison,
+    comparison: SegmentDistance,
     edr: Measure,
     spread: f64,
     min_confidence: f64,
@@ -80,11 +81,11 @@ impl SegmentScoring {
             width: model.profiles.width,
             comparison: model.params.comparison,
             edr: match model.params.comparison {
-                Comparison::Profiles => Measure::Values(
+                SegmentDistance::Profiles => Measure::Values(
                     Edr::new(model.epsilon, MAX_PROFILE_FRAMES),
                     model.params.normalisation,
                 ),
-                Comparison::Rows { .. } => Measure::Rows(RowsEdr::new(
+                SegmentDistance::Rows { .. } => Measure::Rows(RowsEdr::new(
                     model.profiles.width,
                     model.epsilon,
                     MAX_PROFILE_FRAMES,
@@ -112,7 +113,7 @@ impl SegmentScoring {
     }
 
     /// The most certain of `candidates` for a segment of `frames` frames with this profile; of equals the first.
-    pub fn best(&mut self, candidates: &Candidates, profile: &[f32], frames: usize) -> Cell {
+    pub fn best(&mut self, candidates: &ClassCandidates, profile: &[f32], frames: usize) -> Cell {
         let mut best = Cell::NOTHING;
         for candidate in candidates.iter() {
             let confidence = self.score(candidate.class, profile, frames);
@@ -130,8 +131,8 @@ impl SegmentScoring {
     /// Eq. 4.5, or what stands for it.
     pub fn likeness(&self, edr: f64) -> f64 {
         match self.comparison {
-            Comparison::Profiles => sigmoid(edr),
-            Comparison::Rows { .. } => 1.0 - edr,
+            SegmentDistance::Profiles => sigmoid(edr),
+            SegmentDistance::Rows { .. } => 1.0 - edr,
         }
     }
 

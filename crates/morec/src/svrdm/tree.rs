@@ -12,20 +12,20 @@ mod descent;
 mod tests;
 
 pub use check::{MAX_CLASSES, TreeError};
-pub use descent::{Candidate, Candidates, Descent, MAX_CANDIDATES};
+pub use descent::{ClassCandidate, ClassCandidates, Descent, MAX_CANDIDATES};
 
 /// A trained classifier: branches that part the classes in two until each stands alone.
 ///
 /// Training vectors that enclosing spheres rest on are kept once, however many branches use them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "Parts", into = "Parts")]
+#[serde(try_from = "TreeParts", into = "TreeParts")]
 pub struct Tree {
-    parts: Parts,
+    parts: TreeParts,
 }
 
 /// What a tree is made of.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Parts {
+pub struct TreeParts {
     /// Values in a feature vector, `n`.
     pub dim: usize,
     /// Training vectors that branches refer to, `rows × n`, row by row.
@@ -53,7 +53,7 @@ pub enum Node {
 pub struct Branch {
     /// Width `σ_f` of the kernel between feature vectors.
     pub sigma_full: f64,
-    /// For each side, the rows of [`Parts::vectors`] that its enclosing sphere rests on.
+    /// For each side, the rows of [`TreeParts::vectors`] that its enclosing sphere rests on.
     pub exemplars: [Vec<u32>; 2],
     /// `L₁₁`, `L₂₁`, `L₂₂` of the Cholesky factor of the centroids' products (Eq. 3.39).
     pub factor: [f64; 3],
@@ -71,18 +71,18 @@ pub struct Branch {
 
 impl Tree {
     /// A tree of these parts, if they fit together. O(size).
-    pub fn new(parts: Parts) -> Result<Self, TreeError> {
+    pub fn new(parts: TreeParts) -> Result<Self, TreeError> {
         check::check(&parts)?;
         Ok(Self { parts })
     }
 
     /// What it is made of.
-    pub fn parts(&self) -> &Parts {
+    pub fn parts(&self) -> &TreeParts {
         &self.parts
     }
 
     /// What it is made of, to keep.
-    pub fn into_parts(self) -> Parts {
+    pub fn into_parts(self) -> TreeParts {
         self.parts
     }
 
@@ -173,15 +173,15 @@ pub fn reduce<'a>(
     [along, (second - l21 * along) / l22]
 }
 
-impl TryFrom<Parts> for Tree {
+impl TryFrom<TreeParts> for Tree {
     type Error = TreeError;
 
-    fn try_from(parts: Parts) -> Result<Self, TreeError> {
+    fn try_from(parts: TreeParts) -> Result<Self, TreeError> {
         Self::new(parts)
     }
 }
 
-impl From<Tree> for Parts {
+impl From<Tree> for TreeParts {
     fn from(tree: Tree) -> Self {
         tree.parts
     }

@@ -1,9 +1,9 @@
 //! An actor: a person with a timeline, the words in which motions are written.
 
-use super::body::Body;
+use super::body::SyntheticBody;
 use super::person::Person;
 use super::timeline::{
-    CHANNELS, Controls, FOOT, HAND, HEAD, HIPS, HIPS_TURN, SPINE, Side, Timeline,
+    CHANNELS, Controls, FOOT, HAND, HEAD, HIPS, HIPS_TURN, LimbSide, PoseTimeline, SPINE,
 };
 use crate::rng::Rng;
 
@@ -13,15 +13,15 @@ pub struct Actor {
     /// Who it is.
     pub person: Person,
     /// Lengths of the person's body.
-    pub body: Body,
+    pub body: SyntheticBody,
     /// Chance, for what varies from one performance to the next.
     pub rng: Rng,
     /// What has been scheduled.
-    pub timeline: Timeline,
+    pub timeline: PoseTimeline,
     /// When the next motion starts.
     pub now_secs: f64,
     /// The hand that waves now.
-    pub hand: Side,
+    pub hand: LimbSide,
     pace: f64,
     size: f64,
     rest_hands: [[f64; 3]; 2],
@@ -33,16 +33,16 @@ pub struct Actor {
 impl Actor {
     /// `person` at rest, somewhere near the origin, facing about +Z.
     pub fn new(person: &Person, mut rng: Rng) -> Self {
-        let body = Body::of(person);
+        let body = SyntheticBody::of(person);
         let place = [0.2 * rng.normal(), 0.2 * rng.normal()];
         let heading_rad = 0.12 * rng.normal();
-        let rest_hands = Side::BOTH.map(|_| person.rest_hand.map(|v| v + 0.015 * rng.normal()));
+        let rest_hands = LimbSide::BOTH.map(|_| person.rest_hand.map(|v| v + 0.015 * rng.normal()));
         let mut first: Controls = [0.0; CHANNELS];
         (first[HIPS], first[HIPS + 2]) = (place[0], place[1]);
         first[HIPS_TURN + 1] = heading_rad;
         first[SPINE + 2] = person.lean_rad;
         first[HEAD + 2] = -person.lean_rad;
-        for side in Side::BOTH {
+        for side in LimbSide::BOTH {
             first[HAND[side.index()]..HAND[side.index()] + 3]
                 .copy_from_slice(&rest_hands[side.index()]);
         }
@@ -50,7 +50,7 @@ impl Actor {
             person: person.clone(),
             body,
             rng,
-            timeline: Timeline::new(&first),
+            timeline: PoseTimeline::new(&first),
             now_secs: 0.0,
             hand: person.hand,
             pace: 1.0,
@@ -59,13 +59,13 @@ impl Actor {
             place,
             heading_rad,
         };
-        for side in Side::BOTH {
+        for side in LimbSide::BOTH {
             let [x, z] = actor.stance(side);
             let at = FOOT[side.index()];
             (first[at], first[at + 2]) = (x, z);
             first[at + 3] = heading_rad + 0.12 * side.sign();
         }
-        actor.timeline = Timeline::new(&first);
+        actor.timeline = PoseTimeline::new(&first);
         actor
     }
 
@@ -97,7 +97,7 @@ impl Actor {
 
     /// Moves a hand to `target` (outward, up, forward from the shoulder, in arm lengths), around the shoulder
     /// where the straight way would pass too close to it.
-    pub fn hand(&mut self, side: Side, start_secs: f64, secs: f64, target: [f64; 3]) {
+    pub fn hand(&mut self, side: LimbSide, start_secs: f64, secs: f64, target: [f64; 3]) {
         let rest = self.rest_hands[side.index()];
         let mut to = [0.0; 3];
         for k in 0..3 {
@@ -109,12 +109,12 @@ impl Actor {
     }
 
     /// Moves a hand back to where it hangs.
-    pub fn rest_hand(&mut self, side: Side, start_secs: f64, secs: f64) {
+    pub fn rest_hand(&mut self, side: LimbSide, start_secs: f64, secs: f64) {
         let rest = self.rest_hands[side.index()].map(|v| v + 0.012 * self.rng.normal());
         self.hand_exact(side, start_secs, secs, rest);
     }
 
-    fn hand_exact(&mut self, side: Side, start_secs: f64, secs: f64, mut to: [f64; 3]) {
+    fn hand_exact(&mut self, side: LimbSide, start_secs: f64, secs: f64, mut to: [f64; 3]) {
         let length = (to[0] * to[0] + to[1] * to[1] + to[2] * to[2]).sqrt();
         if length > 1.0 {
             to = to.map(|v| v / length);
@@ -169,7 +169,7 @@ impl Actor {
     /// Moves a foot to `out`, `up`, `forward` of where it stands at rest, in leg lengths, toes down by `pitch_rad`.
     pub fn foot(
         &mut self,
-        side: Side,
+        side: LimbSide,
         start_secs: f64,
         secs: f64,
         target: [f64; 3],
@@ -197,7 +197,7 @@ impl Actor {
     }
 
     /// Where a foot stands at rest, x and z in the world.
-    pub fn stance(&self, side: Side) -> [f64; 2] {
+    pub fn stance(&self, side: LimbSide) -> [f64; 2] {
         self.point(self.stance_m() * side.sign(), 0.0)
     }
 

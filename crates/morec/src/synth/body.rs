@@ -5,7 +5,9 @@
 use super::limb::{self, Bend};
 use super::person::Person;
 use super::smooth::{min_jerk, sin_cos, soft_max, soft_min, turn};
-use super::timeline::{Controls, FOOT, HAND, HEAD, HIPS, HIPS_TURN, SPINE, SWIVEL, Side, WRIST};
+use super::timeline::{
+    Controls, FOOT, HAND, HEAD, HIPS, HIPS_TURN, LimbSide, SPINE, SWIVEL, WRIST,
+};
 use crate::clip::{Joint, Skeleton};
 use crate::math::{Axis, Quat, Vec3};
 
@@ -20,7 +22,7 @@ const LEG: [usize; 2] = [13, 17];
 
 /// A skeleton with the lengths that posing it needs.
 #[derive(Debug, Clone)]
-pub struct Body {
+pub struct SyntheticBody {
     skeleton: Skeleton,
     arm: [f64; 2],
     leg: [f64; 2],
@@ -30,7 +32,7 @@ pub struct Body {
     elbow_rad: f64,
 }
 
-impl Body {
+impl SyntheticBody {
     /// The body of `person`; segment lengths as shares of the height after Drillis and Contini (1966).
     pub fn of(person: &Person) -> Self {
         let h = person.height_m;
@@ -68,12 +70,12 @@ impl Body {
         let world_from_hips = turned(&controls[HIPS_TURN..HIPS_TURN + 3]);
         locals[0] = world_from_hips;
         self.pose_trunk(controls, locals);
-        for side in Side::BOTH {
+        for side in LimbSide::BOTH {
             self.pose_arm(controls, side, locals);
         }
-        let feet = Side::BOTH.map(|side| self.foot(controls, side));
+        let feet = LimbSide::BOTH.map(|side| self.foot(controls, side));
         let hips = self.hips(controls, &world_from_hips, &feet);
-        for side in Side::BOTH {
+        for side in LimbSide::BOTH {
             self.pose_leg(&hips, &world_from_hips, &feet[side.index()], side, locals);
         }
         hips
@@ -106,7 +108,7 @@ impl Body {
     }
 
     /// In coordinates with x outward, so that both arms are left arms; mirrored at the end.
-    fn pose_arm(&self, controls: &Controls, side: Side, locals: &mut [Quat]) {
+    fn pose_arm(&self, controls: &Controls, side: LimbSide, locals: &mut [Quat]) {
         let i = side.index();
         let wanted = Vec3::new(
             controls[HAND[i]],
@@ -166,7 +168,7 @@ impl Body {
         let length = self.leg_m();
         let height = self.stand_height + controls[HIPS + 1] * length;
         let mut hips = Vec3::new(controls[HIPS], height, controls[HIPS + 2]);
-        for side in Side::BOTH {
+        for side in LimbSide::BOTH {
             let joint = world_from_hips * self.offset(LEG[side.index()]);
             let ankle = feet[side.index()].ankle;
             let (dx, dz) = (hips.x + joint.x - ankle.x, hips.z + joint.z - ankle.z);
@@ -180,7 +182,7 @@ impl Body {
     }
 
     /// A foot turns about its ball when the heel comes up, about the ankle when the toes do.
-    fn foot(&self, controls: &Controls, side: Side) -> Foot {
+    fn foot(&self, controls: &Controls, side: LimbSide) -> Foot {
         let c = &controls[FOOT[side.index()]..FOOT[side.index()] + 5];
         let (yaw, pitch) = (turn(Axis::Y, c[3]), c[4]);
         let heel_up_rad = soft_max(pitch, 0.0, 0.02);
@@ -200,7 +202,7 @@ impl Body {
         hips: &Vec3,
         world_from_hips: &Quat,
         foot: &Foot,
-        side: Side,
+        side: LimbSide,
         locals: &mut [Quat],
     ) {
         let first = LEG[side.index()];
@@ -263,10 +265,14 @@ fn skeleton(person: &Person, arm: [f64; 2], leg: [f64; 2]) -> Skeleton {
             Vec3::new(0.0, 0.11 * h, 0.02 * h),
         ),
     ];
-    for side in Side::BOTH {
+    for side in LimbSide::BOTH {
         let (s, name) = (
             side.sign(),
-            if side == Side::Left { "Left" } else { "Right" },
+            if side == LimbSide::Left {
+                "Left"
+            } else {
+                "Right"
+            },
         );
         let at = ARM[side.index()];
         let hand = Vec3::new(s * arm[1], 0.0, 0.0);
@@ -292,10 +298,14 @@ fn skeleton(person: &Person, arm: [f64; 2], leg: [f64; 2]) -> Skeleton {
             Vec3::new(s * 0.1 * h, 0.0, 0.0),
         ));
     }
-    for side in Side::BOTH {
+    for side in LimbSide::BOTH {
         let (s, name) = (
             side.sign(),
-            if side == Side::Left { "Left" } else { "Right" },
+            if side == LimbSide::Left {
+                "Left"
+            } else {
+                "Right"
+            },
         );
         let at = LEG[side.index()];
         let toes = Vec3::new(0.0, -0.03 * h, 0.09 * h);

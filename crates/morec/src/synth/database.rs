@@ -2,10 +2,10 @@
 
 use super::actor::Actor;
 use super::film::film;
-use super::motion::{self, Kind, Motion};
+use super::motion::{self, MotionKind, SyntheticMotion};
 use super::person::Person;
-use super::timeline::Side;
-use super::{Label, SyntheticTake};
+use super::timeline::LimbSide;
+use super::{SyntheticLabel, SyntheticTake};
 use crate::rng::Rng;
 
 /// What [`database`] makes.
@@ -17,7 +17,7 @@ pub struct DatabaseSpec {
     pub streams: usize,
     /// How often each class occurs in a stream.
     pub repetitions: usize,
-    /// The classes, names of [`Kind::Gesture`] motions.
+    /// The classes, names of [`MotionKind::Gesture`] motions.
     pub classes: Vec<&'static str>,
     /// Unknown motions in a stream, for each gesture in it.
     pub unknown_share: f64,
@@ -34,7 +34,9 @@ impl Default for DatabaseSpec {
             people: 5,
             streams: 1,
             repetitions: 3,
-            classes: motion::of_kind(Kind::Gesture).map(|m| m.name()).collect(),
+            classes: motion::of_kind(MotionKind::Gesture)
+                .map(|m| m.name())
+                .collect(),
             unknown_share: 0.6,
             left_handed: false,
             rate_hz: 60.0,
@@ -49,7 +51,7 @@ pub fn database(seed: u64, spec: &DatabaseSpec) -> Vec<SyntheticTake> {
     for number in 0..spec.people {
         let mut person = Person::draw(seed, number);
         if !spec.left_handed {
-            person.hand = Side::Right;
+            person.hand = LimbSide::Right;
         }
         for stream in 0..spec.streams {
             let rng = Rng::for_part(seed, 0x5712 + (number * 1000 + stream) as u64);
@@ -67,8 +69,8 @@ fn take(person: &Person, mut rng: Rng, name: &str, spec: &DatabaseSpec) -> Synth
     let mut labels = Vec::new();
     for motion in plan {
         let (start_secs, stop_secs) = motion.perform(&mut actor);
-        if motion.kind() == Kind::Gesture {
-            labels.push(Label {
+        if motion.kind() == MotionKind::Gesture {
+            labels.push(SyntheticLabel {
                 class: motion.name(),
                 start_secs,
                 stop_secs,
@@ -86,14 +88,14 @@ fn take(person: &Person, mut rng: Rng, name: &str, spec: &DatabaseSpec) -> Synth
 }
 
 /// The gestures and the unknown motions of one stream in random order.
-fn plan(rng: &mut Rng, spec: &DatabaseSpec) -> Vec<Motion> {
-    let gestures: Vec<Motion> = spec
+fn plan(rng: &mut Rng, spec: &DatabaseSpec) -> Vec<SyntheticMotion> {
+    let gestures: Vec<SyntheticMotion> = spec
         .classes
         .iter()
-        .filter_map(|name| Motion::named(name).filter(|m| m.kind() == Kind::Gesture))
+        .filter_map(|name| SyntheticMotion::named(name).filter(|m| m.kind() == MotionKind::Gesture))
         .collect();
-    let unknown: Vec<Motion> = motion::of_kind(Kind::Unknown).collect();
-    let mut plan: Vec<Motion> = Vec::new();
+    let unknown: Vec<SyntheticMotion> = motion::of_kind(MotionKind::Unknown).collect();
+    let mut plan: Vec<SyntheticMotion> = Vec::new();
     for _ in 0..spec.repetitions {
         plan.extend(&gestures);
     }

@@ -9,7 +9,7 @@ use super::film::film;
 use super::gait::{self, Gait};
 use super::motion::Perform;
 use super::person::Person;
-use super::timeline::{FOOT, HAND, HEAD, HIPS_TURN, SPINE, SWIVEL, Side, WRIST};
+use super::timeline::{FOOT, HAND, HEAD, HIPS_TURN, LimbSide, SPINE, SWIVEL, WRIST};
 use super::unknown::{self, any_side};
 use crate::clip::Clip;
 use crate::rng::Rng;
@@ -93,7 +93,7 @@ fn fold_hands(a: &mut Actor) {
     } else {
         [-0.3, -0.72, 0.36]
     };
-    for side in Side::BOTH {
+    for side in LimbSide::BOTH {
         a.hand(side, t, up, hold);
         a.rest_hand(side, t + up + stay, down);
     }
@@ -189,7 +189,7 @@ pub fn reach(a: &mut Actor) {
     a.timeline
         .pulse(foot + 1, leave + 0.2 * back, 0.7 * back, 0.06);
     a.hips(leave, back, [0.0; 3]);
-    for hand in Side::BOTH {
+    for hand in LimbSide::BOTH {
         a.rest_hand(hand, leave, back);
     }
     a.spine(leave, back, [0.0; 3]);
@@ -244,7 +244,7 @@ pub fn exercise(a: &mut Actor) {
                 .wave(SPINE + 1, on, secs, (hz * 2.0, phase), 0.15);
         }
     }
-    for hand in Side::BOTH {
+    for hand in LimbSide::BOTH {
         a.rest_hand(hand, on + secs, down);
     }
     a.now_secs = on + secs + down;
@@ -306,7 +306,7 @@ pub fn throw(a: &mut Actor) {
     a.hand(side, t + wind, fling, to);
     a.spine(t + 0.9 * wind, fling, [0.25, twist, 0.0]);
     let leave = t + wind + fling + 0.1;
-    for hand in Side::BOTH {
+    for hand in LimbSide::BOTH {
         a.rest_hand(hand, leave, back);
     }
     a.spine(leave, back, [0.0; 3]);
@@ -376,7 +376,7 @@ pub fn flail(a: &mut Actor) {
     let stop = a.now_secs + a.rng.range(3.0, 6.0);
     while a.now_secs < stop {
         let (t, secs) = (a.now_secs, a.rng.range(0.42, 1.4));
-        for side in Side::BOTH {
+        for side in LimbSide::BOTH {
             // Each arm on its own: arms raised alike are what signals are made of.
             let own = direction(a, 0.45, 1.0);
             if a.rng.chance(0.8) {
@@ -426,8 +426,8 @@ pub fn swing_arms(a: &mut Actor) {
     let (t, secs, hz) = (a.now_secs, a.rng.range(2.5, 4.5), a.hz(0.8));
     let (reach, across) = (a.rng.range(0.3, 0.8), a.rng.chance(0.35));
     let opposed = a.rng.chance(0.5);
-    for side in Side::BOTH {
-        let phase = if opposed && side == Side::Left {
+    for side in LimbSide::BOTH {
+        let phase = if opposed && side == LimbSide::Left {
             std::f64::consts::PI
         } else {
             0.0
@@ -464,7 +464,7 @@ pub fn applaud(a: &mut Actor) {
     a.timeline
         .wave(HAND[side.index()], on, secs, (hz, 0.0), 0.05);
     a.timeline.wave(HEAD, t, secs, (0.5 * hz, 0.0), 0.03);
-    for hand in Side::BOTH {
+    for hand in LimbSide::BOTH {
         a.rest_hand(hand, on + secs, 0.7);
     }
     a.now_secs = on + secs + 0.7;
@@ -473,7 +473,7 @@ pub fn applaud(a: &mut Actor) {
 /// Everything back to rest.
 fn finish(a: &mut Actor) {
     let (t, secs) = (a.now_secs, a.secs(0.9));
-    for side in Side::BOTH {
+    for side in LimbSide::BOTH {
         a.rest_hand(side, t, secs);
         a.timeline.to(WRIST[side.index()], t, secs, 0.0);
         a.timeline.to(SWIVEL[side.index()], t, secs, 0.0);

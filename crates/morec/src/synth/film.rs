@@ -3,7 +3,7 @@
 use nalgebra::Quaternion;
 
 use super::actor::Actor;
-use super::timeline::{CHANNELS, Controls, HAND, HEAD, HIPS, HIPS_TURN, SPINE, Side};
+use super::timeline::{CHANNELS, Controls, HAND, HEAD, HIPS, HIPS_TURN, LimbSide, SPINE};
 use crate::clip::{Clip, JointTrack};
 use crate::math::{Quat, Vec3, same_hemisphere};
 use crate::rng::Rng;
@@ -68,7 +68,7 @@ fn sway(actor: &mut Actor) {
     for k in 0..3 {
         slow[SPINE + k] = 0.012;
         slow[HEAD + k] = 0.025;
-        for side in Side::BOTH {
+        for side in LimbSide::BOTH {
             slow[HAND[side.index()] + k] = 0.01;
         }
     }
@@ -86,7 +86,7 @@ fn sway(actor: &mut Actor) {
     actor
         .timeline
         .wave(SPINE, -1.0, secs + 2.0, (breath, 0.0), 0.008);
-    for side in Side::BOTH {
+    for side in LimbSide::BOTH {
         for k in 0..3 {
             let hz = actor.rng.range(6.0, 10.0);
             actor.timeline.wave(

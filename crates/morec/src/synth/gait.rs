@@ -1,7 +1,7 @@
 //! Motions of the whole body: stepping, walking, running, jumping, sitting down.
 
 use super::actor::Actor;
-use super::timeline::{FOOT, HAND, HIPS, HIPS_TURN, SPINE, Side};
+use super::timeline::{FOOT, HAND, HIPS, HIPS_TURN, LimbSide, SPINE};
 
 /// How somebody steps.
 #[derive(Debug, Clone, Copy)]
@@ -53,9 +53,9 @@ pub fn steps(a: &mut Actor, gait: Gait, turns_rad: &[f64]) {
     };
     // Sideways, the leading foot steps first; otherwise it is chance.
     let first = match gait.left {
-        l if l > 0.0 => Side::Left,
-        l if l < 0.0 => Side::Right,
-        _ => Side::BOTH[a.rng.below(2)],
+        l if l > 0.0 => LimbSide::Left,
+        l if l < 0.0 => LimbSide::Right,
+        _ => LimbSide::BOTH[a.rng.below(2)],
     };
     let mut side = first;
     for &turn_rad in turns_rad {
@@ -67,7 +67,7 @@ pub fn steps(a: &mut Actor, gait: Gait, turns_rad: &[f64]) {
     step(a, &gait, side, 0.0, 0.0);
     a.now_secs += gait.period_secs * (1.0 + gait.swing.max(1.0));
     let close = a.now_secs - gait.period_secs;
-    for side in Side::BOTH {
+    for side in LimbSide::BOTH {
         a.rest_hand(side, close - gait.period_secs * 0.3, gait.period_secs * 1.6);
     }
     a.timeline.to(HIPS_TURN + 2, close, gait.period_secs, 0.0);
@@ -75,7 +75,7 @@ pub fn steps(a: &mut Actor, gait: Gait, turns_rad: &[f64]) {
     a.now_secs += gait.period_secs * 0.4;
 }
 
-fn step(a: &mut Actor, gait: &Gait, side: Side, turn_rad: f64, share: f64) {
+fn step(a: &mut Actor, gait: &Gait, side: LimbSide, turn_rad: f64, share: f64) {
     let (t, period) = (a.now_secs, gait.period_secs);
     let leg = a.body.leg_m();
     let (forward, left) = (gait.forward * share * leg, gait.left * share * leg);
@@ -94,7 +94,7 @@ fn step(a: &mut Actor, gait: &Gait, side: Side, turn_rad: f64, share: f64) {
 }
 
 /// The foot lands where the hips will be in the middle of its stance.
-fn swing_foot(a: &mut Actor, gait: &Gait, side: Side, share: f64) {
+fn swing_foot(a: &mut Actor, gait: &Gait, side: LimbSide, share: f64) {
     let (t, period) = (a.now_secs, gait.period_secs);
     let (secs, at) = (gait.swing * period, FOOT[side.index()]);
     let leg = a.body.leg_m();
@@ -129,11 +129,11 @@ fn swing_foot(a: &mut Actor, gait: &Gait, side: Side, share: f64) {
 }
 
 /// Each arm swings with the other leg; the trunk turns against the hips.
-fn swing_arms(a: &mut Actor, gait: &Gait, side: Side, share: f64) {
+fn swing_arms(a: &mut Actor, gait: &Gait, side: LimbSide, share: f64) {
     let (t, period) = (a.now_secs, gait.period_secs);
     let reach = gait.arms * a.size() * share;
     let bent = gait.swing > 1.0;
-    for arm in Side::BOTH {
+    for arm in LimbSide::BOTH {
         let swing = if arm == side { -reach } else { reach };
         let [out, up, ahead] = if bent {
             [0.1, -0.42, 0.2]
@@ -167,14 +167,14 @@ pub fn jump(a: &mut Actor, height: f64, forward: f64, arms: f64) {
     let crouch = -0.16 - 0.15 * height;
     a.hips(t, down, [0.0, crouch, -0.06]);
     a.spine(t, down, [0.45, 0.0, 0.0]);
-    for side in Side::BOTH {
+    for side in LimbSide::BOTH {
         a.hand(side, t, down, [0.2, -0.8, -0.3]);
     }
     let up = t + 0.85 * down;
     a.advance(forward * a.body.leg_m(), 0.0, 0.0);
     a.hips(up, flight * 0.75, [0.0, height, 0.0]);
     a.spine(up, flight * 0.7, [-0.05, 0.0, 0.0]);
-    for side in Side::BOTH {
+    for side in LimbSide::BOTH {
         a.hand(side, up, flight, [0.25, -0.5 + arms, 0.6 - 0.3 * arms]);
         a.foot(
             side,
@@ -201,14 +201,14 @@ pub fn sit(a: &mut Actor, depth: f64, stay_secs: f64) {
     a.hips(t + 0.1 * down, down, seat);
     a.spine(t, 0.7 * down, [0.6, 0.0, 0.0]);
     a.spine(t + 0.65 * down, 0.6 * down, [0.05, 0.0, 0.0]);
-    for side in Side::BOTH {
+    for side in LimbSide::BOTH {
         a.hand(side, t + 0.2 * down, 0.9 * down, [0.0, -0.6, 0.55]);
     }
     let leave = t + 1.25 * down + stay_secs;
     a.spine(leave, 0.6 * up, [0.65, 0.0, 0.0]);
     a.spine(leave + 0.5 * up, 0.7 * up, [0.0, 0.0, 0.0]);
     a.hips(leave + 0.2 * up, up, [0.0, 0.0, 0.0]);
-    for side in Side::BOTH {
+    for side in LimbSide::BOTH {
         a.rest_hand(side, leave + 0.4 * up, 0.9 * up);
     }
     a.now_secs = leave + 1.3 * up;

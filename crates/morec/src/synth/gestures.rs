@@ -4,7 +4,7 @@
 //! lengths: outward, up, forward.
 
 use super::actor::Actor;
-use super::timeline::{HAND, Side, WRIST};
+use super::timeline::{HAND, LimbSide, WRIST};
 
 /// Waves hello with a raised hand, two or three times.
 pub fn wave(a: &mut Actor) {
@@ -29,7 +29,7 @@ pub fn wave(a: &mut Actor) {
 pub fn raise_hands(a: &mut Actor) {
     let (up, hold, down) = (a.secs(0.8), a.secs(0.3), a.secs(0.85));
     let t = a.now_secs;
-    for side in Side::BOTH {
+    for side in LimbSide::BOTH {
         let late = 0.03 * a.rng.unit();
         a.hand(side, t + late, up, [0.2, 1.02, 0.12]);
         a.rest_hand(side, t + up + hold + late, down);
@@ -59,18 +59,18 @@ pub fn clap(a: &mut Actor) {
     let (t, claps) = (a.now_secs, 3);
     let (apart, together) = ([0.42, -0.08, 0.66], [-0.36, -0.08, 0.64]);
     let stroke = a.secs(0.27);
-    for side in Side::BOTH {
+    for side in LimbSide::BOTH {
         a.hand(side, t, up, apart);
     }
     let mut at = t + 0.85 * up;
     for _ in 0..claps {
-        for side in Side::BOTH {
+        for side in LimbSide::BOTH {
             a.hand(side, at, stroke, together);
             a.hand(side, at + stroke, stroke, apart);
         }
         at += 2.0 * stroke;
     }
-    for side in Side::BOTH {
+    for side in LimbSide::BOTH {
         a.rest_hand(side, at - 0.1, down);
     }
     a.now_secs = at - 0.1 + down;
@@ -81,7 +81,7 @@ pub fn push(a: &mut Actor) {
     let (lift, out, hold, back) = (a.secs(0.55), a.secs(0.5), a.secs(0.2), a.secs(0.75));
     let t = a.now_secs;
     let leave = t + 0.95 * lift + out + hold;
-    for side in Side::BOTH {
+    for side in LimbSide::BOTH {
         a.hand(side, t, lift, [-0.02, -0.12, 0.34]);
         a.hand(side, t + 0.95 * lift, out, [-0.04, -0.02, 0.97]);
         a.rest_hand(side, leave, back);
@@ -122,7 +122,7 @@ pub fn bow(a: &mut Actor) {
     }
     a.hand(side, t, 0.9 * down, [-0.35, -0.5, 0.34]);
     a.hand(side.other(), t, 0.9 * down, [0.75, -0.5, -0.05]);
-    for hand in Side::BOTH {
+    for hand in LimbSide::BOTH {
         a.rest_hand(hand, leave, up);
     }
     a.now_secs = leave + up;
@@ -146,7 +146,7 @@ pub fn kick(a: &mut Actor) {
     let other = side.other();
     a.hand(other, strike - 0.1, out, [0.35, -0.75, 0.4]);
     a.hand(side, strike - 0.1, out, [0.4, -0.8, -0.25]);
-    for hand in Side::BOTH {
+    for hand in LimbSide::BOTH {
         a.rest_hand(hand, leave, 1.1 * back);
     }
     a.now_secs = leave + 1.2 * back;

@@ -2,9 +2,9 @@
 
 use super::actor::Actor;
 use super::film::film;
-use super::motion::{Kind, Motion, Perform};
+use super::motion::{MotionKind, Perform, SyntheticMotion};
 use super::person::Person;
-use super::{Label, SyntheticTake, everyday, unknown};
+use super::{SyntheticLabel, SyntheticTake, everyday, unknown};
 use crate::rng::Rng;
 
 /// What is done between gestures, in turn.
@@ -26,10 +26,10 @@ pub struct LivingRoom {
     /// The clip and its gestures.
     pub take: SyntheticTake,
     /// What was done between them.
-    pub idle: Vec<Label>,
+    pub idle: Vec<SyntheticLabel>,
 }
 
-/// Every class of `classes` (names of [`Kind::Gesture`] motions) `repetitions` times by person `number`, in random
+/// Every class of `classes` (names of [`MotionKind::Gesture`] motions) `repetitions` times by person `number`, in random
 /// order, with at least four seconds of idling before each. The person stands as they like: nobody returns to one pose.
 /// The same arguments give the same take on every platform.
 pub fn living_room(
@@ -41,9 +41,13 @@ pub fn living_room(
 ) -> LivingRoom {
     let person = Person::draw(seed, number);
     let mut rng = Rng::for_part(seed, 0x1119 + number as u64);
-    let gestures = classes.iter().filter_map(|name| Motion::named(name));
-    let gestures: Vec<Motion> = gestures.filter(|m| m.kind() == Kind::Gesture).collect();
-    let mut plan: Vec<Motion> = (0..repetitions).flat_map(|_| gestures.clone()).collect();
+    let gestures = classes
+        .iter()
+        .filter_map(|name| SyntheticMotion::named(name));
+    let gestures: Vec<SyntheticMotion> = gestures
+        .filter(|m| m.kind() == MotionKind::Gesture)
+        .collect();
+    let mut plan: Vec<SyntheticMotion> = (0..repetitions).flat_map(|_| gestures.clone()).collect();
     rng.shuffle(&mut plan);
     let first_idle = rng.below(IDLE.len());
     let mut actor = Actor::new(&person, rng);
@@ -56,7 +60,7 @@ pub fn living_room(
             let start_secs = actor.now_secs;
             actor.vary();
             perform(&mut actor);
-            idle.push(Label {
+            idle.push(SyntheticLabel {
                 class,
                 start_secs,
                 stop_secs: actor.now_secs,
@@ -65,7 +69,7 @@ pub fn living_room(
             actor.wait(pause);
         }
         let (start_secs, stop_secs) = motion.perform(&mut actor);
-        labels.push(Label {
+        labels.push(SyntheticLabel {
             class: motion.name(),
             start_secs,
             stop_secs,

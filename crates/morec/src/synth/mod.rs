@@ -31,16 +31,16 @@ pub use crate::rng::Rng;
 pub use database::{DatabaseSpec, database};
 pub use everyday::everyday;
 pub use living_room::{LivingRoom, living_room};
-pub use motion::{Kind, Motion, all as motions, of_kind as motions_of};
+pub use motion::{MotionKind, SyntheticMotion, all as motions, of_kind as motions_of};
 pub use person::Person;
 pub use script::{Script, UnknownMotion};
-pub use timeline::Side;
+pub use timeline::LimbSide;
 
 use crate::clip::{Clip, Span};
 
 /// A labelled stretch of a take.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Label {
+pub struct SyntheticLabel {
     /// The class; the motion's name.
     pub class: &'static str,
     /// When it leaves rest.
@@ -49,7 +49,7 @@ pub struct Label {
     pub stop_secs: f64,
 }
 
-impl Label {
+impl SyntheticLabel {
     /// The frames it covers at `rate_hz`, half-open.
     pub fn span(&self, rate_hz: f64) -> Span {
         (self.start_secs * rate_hz).round() as usize..(self.stop_secs * rate_hz).round() as usize
@@ -62,7 +62,7 @@ pub struct SyntheticTake {
     /// The clip.
     pub clip: Clip,
     /// What was performed when, in order, without overlap.
-    pub labels: Vec<Label>,
+    pub labels: Vec<SyntheticLabel>,
     /// Who is seen.
     pub person: String,
 }

@@ -5,7 +5,7 @@ use super::{everyday, gestures, unknown};
 
 /// What a motion is there for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum MotionKind {
     /// A class of the demo.
     Gesture,
     /// What people do between gestures.
@@ -16,9 +16,9 @@ pub enum Kind {
 
 /// A motion that a synthetic person can perform.
 #[derive(Debug, Clone, Copy)]
-pub struct Motion {
+pub struct SyntheticMotion {
     name: &'static str,
-    kind: Kind,
+    kind: MotionKind,
     perform: Perform,
 }
 
@@ -50,28 +50,28 @@ const UNKNOWN: [(&str, Perform); 10] = [
 ];
 
 /// All motions: gestures, unknown ones, everyday ones.
-pub fn all() -> impl Iterator<Item = Motion> {
+pub fn all() -> impl Iterator<Item = SyntheticMotion> {
     let everyday = everyday::CONTENTS;
     let of = |kind| {
-        move |(name, perform)| Motion {
+        move |(name, perform)| SyntheticMotion {
             name,
             kind,
             perform,
         }
     };
-    (GESTURES.into_iter().map(of(Kind::Gesture)))
-        .chain(UNKNOWN.into_iter().map(of(Kind::Unknown)))
-        .chain(everyday.into_iter().map(of(Kind::Everyday)))
+    (GESTURES.into_iter().map(of(MotionKind::Gesture)))
+        .chain(UNKNOWN.into_iter().map(of(MotionKind::Unknown)))
+        .chain(everyday.into_iter().map(of(MotionKind::Everyday)))
 }
 
 /// The motions of one kind.
-pub fn of_kind(kind: Kind) -> impl Iterator<Item = Motion> {
+pub fn of_kind(kind: MotionKind) -> impl Iterator<Item = SyntheticMotion> {
     all().filter(move |m| m.kind == kind)
 }
 
-impl Motion {
+impl SyntheticMotion {
     /// The motion of this name.
-    pub fn named(name: &str) -> Option<Motion> {
+    pub fn named(name: &str) -> Option<SyntheticMotion> {
         all().find(|m| m.name == name)
     }
 
@@ -81,7 +81,7 @@ impl Motion {
     }
 
     /// What it is there for.
-    pub fn kind(&self) -> Kind {
+    pub fn kind(&self) -> MotionKind {
         self.kind
     }
 

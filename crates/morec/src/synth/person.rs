@@ -1,6 +1,6 @@
 //! Synthetic people: how they are built and how they move.
 
-use super::timeline::Side;
+use super::timeline::LimbSide;
 use crate::rng::Rng;
 
 /// A person: lengths of the body, habits of posture and movement.
@@ -31,7 +31,7 @@ pub struct Person {
     /// Size of movement; 1 is average.
     pub amplitude: f64,
     /// The hand that waves and points, the foot that kicks.
-    pub hand: Side,
+    pub hand: LimbSide,
     /// Size of the slow sway of body and hands; 1 is average.
     pub sway: f64,
     /// Deviation of the sensors' noise on every joint, radians.
@@ -58,7 +58,7 @@ impl Person {
             stance: 1.1,
             tempo: 1.0,
             amplitude: 1.0,
-            hand: Side::Right,
+            hand: LimbSide::Right,
             sway: 0.0,
             noise_rad: 0.0,
         }
@@ -91,9 +91,9 @@ impl Person {
             tempo: rng.range(0.8, 1.22),
             amplitude: rng.range(0.86, 1.08),
             hand: if rng.chance(0.125) {
-                Side::Left
+                LimbSide::Left
             } else {
-                Side::Right
+                LimbSide::Right
             },
             sway: rng.range(0.5, 1.6),
             noise_rad: rng.range(0.001, 0.006),

@@ -2,9 +2,9 @@
 
 use super::actor::Actor;
 use super::film::film;
-use super::motion::{Kind, Motion, all};
+use super::motion::{MotionKind, SyntheticMotion, all};
 use super::person::Person;
-use super::{Label, SyntheticTake};
+use super::{SyntheticLabel, SyntheticTake};
 use crate::rng::Rng;
 
 /// A line of a script that cannot be performed.
@@ -61,7 +61,7 @@ impl Script {
         self.line(Line::RestUntil(secs))
     }
 
-    /// Performs the motion `name` of any [`Kind`].
+    /// Performs the motion `name` of any [`MotionKind`].
     pub fn play(self, name: &str) -> Self {
         self.play_at_speed(name, 1.0)
     }
@@ -86,12 +86,13 @@ impl Script {
                 Line::Rest(secs) => actor.wait(secs.max(0.0)),
                 Line::RestUntil(secs) => actor.wait((secs - actor.now_secs).max(0.0)),
                 Line::Play(motion, speed) => {
-                    let motion = Motion::named(motion).ok_or_else(|| unknown(at, motion))?;
+                    let motion =
+                        SyntheticMotion::named(motion).ok_or_else(|| unknown(at, motion))?;
                     let usual = actor.person.tempo;
                     actor.person.tempo = usual * speed.clamp(0.2, 5.0);
                     let (start_secs, stop_secs) = motion.perform(&mut actor);
                     actor.person.tempo = usual;
-                    labels.push(Label {
+                    labels.push(SyntheticLabel {
                         class: motion.name(),
                         start_secs,
                         stop_secs,
@@ -119,9 +120,9 @@ fn unknown(at: usize, found: &str) -> UnknownMotion {
 
 impl SyntheticTake {
     /// The take with only the labels of `kind`: what a recogniser trained on those classes should find.
-    pub fn keep(mut self, kind: Kind) -> SyntheticTake {
+    pub fn keep(mut self, kind: MotionKind) -> SyntheticTake {
         self.labels
-            .retain(|l| Motion::named(l.class).is_some_and(|m| m.kind() == kind));
+            .retain(|l| SyntheticMotion::named(l.class).is_some_and(|m| m.kind() == kind));
         self
     }
 }

@@ -8,7 +8,7 @@ use crate::math::Vec3;
 
 /// Every motion there is by somebody, `people` times over.
 fn every_motion(people: usize, rate_hz: f64) -> Vec<SyntheticTake> {
-    let film = |n: usize, m: Motion| {
+    let film = |n: usize, m: SyntheticMotion| {
         let person = Person::draw(11, n);
         let script = Script::new(n as u64, person)
             .rest(0.3)
@@ -314,7 +314,7 @@ fn scripts_keep_their_times() {
         (starts[0] - 2.0).abs() < 0.1 && (starts[1] - 8.0).abs() < 0.1,
         "{starts:?}"
     );
-    let kept = take.keep(Kind::Gesture);
+    let kept = take.keep(MotionKind::Gesture);
     assert_eq!(
         kept.labels.iter().map(|l| l.class).collect::<Vec<_>>(),
         ["bow"]
@@ -326,7 +326,7 @@ fn everyday_motion_goes_everywhere_but_shows_no_class() {
     let clips = everyday(1);
     let secs: f64 = clips.iter().map(Clip::duration_secs).sum();
     assert!((300.0..1500.0).contains(&secs), "{secs:.0} s");
-    for class in motions_of(Kind::Gesture) {
+    for class in motions_of(MotionKind::Gesture) {
         assert!(
             clips.iter().all(|c| !c.name.contains(class.name())),
             "{}",

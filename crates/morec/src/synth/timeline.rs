@@ -8,16 +8,16 @@ use super::smooth::{min_jerk, sin_cos};
 
 /// Which limb of a pair.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Side {
+pub enum LimbSide {
     /// The left one, at +X when facing +Z.
     Left,
     /// The right one.
     Right,
 }
 
-impl Side {
+impl LimbSide {
     /// Both, left first.
-    pub const BOTH: [Side; 2] = [Side::Left, Side::Right];
+    pub const BOTH: [LimbSide; 2] = [LimbSide::Left, LimbSide::Right];
 
     /// 0 for left, 1 for right.
     pub fn index(self) -> usize {
@@ -25,18 +25,18 @@ impl Side {
     }
 
     /// The other one.
-    pub fn other(self) -> Side {
+    pub fn other(self) -> LimbSide {
         match self {
-            Side::Left => Side::Right,
-            Side::Right => Side::Left,
+            LimbSide::Left => LimbSide::Right,
+            LimbSide::Right => LimbSide::Left,
         }
     }
 
     /// +1 for left, -1 for right: the direction of "outward" along X.
     pub fn sign(self) -> f64 {
         match self {
-            Side::Left => 1.0,
-            Side::Right => -1.0,
+            LimbSide::Left => 1.0,
+            LimbSide::Right => -1.0,
         }
     }
 }
@@ -90,11 +90,11 @@ struct Track {
 
 /// All channels over time.
 #[derive(Debug, Clone)]
-pub struct Timeline {
+pub struct PoseTimeline {
     tracks: Vec<Track>,
 }
 
-impl Timeline {
+impl PoseTimeline {
     /// Every channel holds its value in `first` until it is moved.
     pub fn new(first: &Controls) -> Self {
         let tracks = first
@@ -218,7 +218,7 @@ mod tests {
 
     #[test]
     fn overlapping_movements_end_at_the_last_goal() {
-        let mut timeline = Timeline::new(&[1.0; CHANNELS]);
+        let mut timeline = PoseTimeline::new(&[1.0; CHANNELS]);
         timeline.to(0, 0.1, 1.0, 4.0);
         timeline.to(0, 0.6, 1.0, -2.0);
         timeline.pulse(0, 0.2, 0.7, 5.0);
@@ -231,7 +231,7 @@ mod tests {
 
     #[test]
     fn velocity_has_no_steps() {
-        let mut timeline = Timeline::new(&[0.0; CHANNELS]);
+        let mut timeline = PoseTimeline::new(&[0.0; CHANNELS]);
         timeline.to(0, 0.103, 0.5, 1.0);
         timeline.to(0, 0.351, 0.4, 0.0);
         timeline.wave(0, 0.2, 0.6, (3.0, 0.0), 0.1);

@@ -2,7 +2,7 @@
 
 use super::actor::Actor;
 use super::gait::{self, Gait};
-use super::timeline::{HAND, HIPS_TURN, SPINE, SWIVEL, Side};
+use super::timeline::{HAND, HIPS_TURN, LimbSide, SPINE, SWIVEL};
 
 /// Scratches the head with either hand.
 pub fn scratch_head(a: &mut Actor) {
@@ -52,7 +52,7 @@ pub fn shift_weight(a: &mut Actor) {
 pub fn stretch(a: &mut Actor) {
     let (up, stay, down) = (a.secs(1.0), a.secs(0.9), a.secs(1.0));
     let t = a.now_secs;
-    for side in Side::BOTH {
+    for side in LimbSide::BOTH {
         a.hand(side, t, up, [0.15, 0.02, 0.28]);
         a.timeline.to(SWIVEL[side.index()], t, up, 0.9);
         a.rest_hand(side, t + up + stay, down);
@@ -103,7 +103,7 @@ pub fn phone(a: &mut Actor) {
 pub fn cross_arms(a: &mut Actor) {
     let (fold, stay, open) = (a.secs(0.9), a.secs(1.8), a.secs(0.8));
     let (t, upper) = (a.now_secs, any_side(a));
-    for side in Side::BOTH {
+    for side in LimbSide::BOTH {
         let over = if side == upper { 0.08 } else { -0.02 };
         a.hand(side, t, fold, [-0.38, -0.3 + over, 0.36 + over]);
         a.rest_hand(side, t + fold + stay, open);
@@ -127,7 +127,7 @@ pub fn wipe(a: &mut Actor) {
 pub fn hands_on_hips(a: &mut Actor) {
     let (up, stay, down) = (a.secs(0.7), a.secs(1.4), a.secs(0.7));
     let t = a.now_secs;
-    for side in Side::BOTH {
+    for side in LimbSide::BOTH {
         a.hand(side, t, up, [0.12, -0.66, 0.1]);
         a.timeline.to(SWIVEL[side.index()], t, up, 0.9);
         a.rest_hand(side, t + up + stay, down);
@@ -148,6 +148,6 @@ pub fn look_at_watch(a: &mut Actor) {
     a.now_secs = t + up + stay + down;
 }
 
-pub fn any_side(a: &mut Actor) -> Side {
-    Side::BOTH[a.rng.below(2)]
+pub fn any_side(a: &mut Actor) -> LimbSide {
+    LimbSide::BOTH[a.rng.below(2)]
 }

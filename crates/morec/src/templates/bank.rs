@@ -29,7 +29,7 @@ const GUARDS: usize = 2;
 /// One step costs O(F·d) for `F` template rows in all; nothing is allocated after construction. Copies share the
 /// templates and have cells of their own.
 #[derive(Debug, Clone)]
-pub struct Bank {
+pub struct TemplateBank {
     dim: usize,
     /// The cells' rows, [`interleaved`].
     rows: Arc<[Lanes]>,
@@ -51,7 +51,7 @@ pub struct Match {
     pub age: usize,
 }
 
-impl Bank {
+impl TemplateBank {
     /// Lays out `templates`, all of rows of `dim` values; empty ones never match.
     pub fn new(templates: &[Rows], dim: usize) -> Self {
         let mut extents = Vec::with_capacity(templates.len());
@@ -268,7 +268,7 @@ mod tests {
             templates in prop::collection::vec(rows(1..9), 1..5),
             stream in rows(1..40),
         ) {
-            let mut bank = Bank::new(&templates, 3);
+            let mut bank = TemplateBank::new(&templates, 3);
             let expected: Vec<_> = templates.iter().map(|t| plain(t, &stream)).collect();
             for (t, z) in stream.iter().enumerate() {
                 bank.step(z);
@@ -296,7 +296,7 @@ mod tests {
             let least = least.min(template.len());
             let alone: Vec<_> =
                 (least..=template.len()).map(|n| plain(&template.slice(0..n), &stream)).collect();
-            let mut bank = Bank::new(std::slice::from_ref(&template), 3);
+            let mut bank = TemplateBank::new(std::slice::from_ref(&template), 3);
             for (t, z) in stream.iter().enumerate() {
                 bank.step(z);
                 let best = alone.iter().map(|table| table[t].0).fold(f64::INFINITY, f64::min);
@@ -316,7 +316,7 @@ mod tests {
     fn a_template_finds_itself_where_it_lies() {
         let template = Rows::from_values(1, vec![0.0, 1.0, 3.0, 2.0, -1.0]);
         let stream = Rows::from_values(1, vec![9.0, 9.0, 0.0, 1.0, 3.0, 2.0, -1.0, 9.0]);
-        let mut bank = Bank::new(&[template], 1);
+        let mut bank = TemplateBank::new(&[template], 1);
         let mut best = (FAR, 0, 0);
         for (t, z) in stream.iter().enumerate() {
             bank.step(z);
@@ -331,12 +331,12 @@ mod tests {
     #[test]
     fn a_reset_bank_is_a_new_bank() {
         let template = Rows::from_values(1, vec![0.0, 1.0, 2.0]);
-        let mut used = Bank::new(std::slice::from_ref(&template), 1);
+        let mut used = TemplateBank::new(std::slice::from_ref(&template), 1);
         for v in [0.0, 1.0, 2.0, 3.0] {
             used.step(&[v]);
         }
         used.reset();
-        let mut fresh = Bank::new(&[template], 1);
+        let mut fresh = TemplateBank::new(&[template], 1);
         for v in [0.5, 1.0, 2.5, 1.0] {
             used.step(&[v]);
             fresh.step(&[v]);

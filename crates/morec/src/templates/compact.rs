@@ -2,7 +2,7 @@
 
 use crate::features::Rows;
 
-use super::{Sample, TemplateModel};
+use super::{TemplateModel, TemplateSample};
 
 /// Steps from zero to the largest value of a column: signed bytes.
 const STEPS: f32 = 127.0;
@@ -39,7 +39,7 @@ impl TemplateModel {
         self.samples = self
             .samples
             .iter()
-            .map(|s| Sample {
+            .map(|s| TemplateSample {
                 class: s.class,
                 rows: snap(&s.rows),
             })

@@ -4,7 +4,7 @@ use crate::classes::ClassId;
 
 /// When a beginning is near enough to be told. Tentative: none of this has a say in detections.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct EarlyParams {
+pub struct EarlyDetectionParams {
     /// A match must have come through this share of its template.
     pub least_progress: f32,
     /// And have lasted for so many ticks.
@@ -19,7 +19,7 @@ pub struct EarlyParams {
     pub streak: usize,
 }
 
-impl Default for EarlyParams {
+impl Default for EarlyDetectionParams {
     /// Chosen on referee signals by `examples/early.rs`: at half of a motion it is known nine times in ten, and of what is
     /// told as half done an eighth is wrong. With a reach of 1.2 and gates of 1 (0.84 known, 0.04 wrong) other motion
     /// is hardly ever taken for the beginning of a class.
@@ -35,7 +35,7 @@ impl Default for EarlyParams {
     }
 }
 
-impl EarlyParams {
+impl EarlyDetectionParams {
     /// Rows that a match must have come to, of a template of `length`.
     pub fn least_rows(&self, length: usize) -> usize {
         ((length as f32 * self.least_progress).ceil() as usize).clamp(1, length.max(1))
@@ -44,7 +44,7 @@ impl EarlyParams {
 
 /// A class that seems to be under way.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Underway {
+pub struct OngoingMatch {
     /// The class.
     pub class: ClassId,
     /// Mean squared distance of what was seen from the beginning of a sample.

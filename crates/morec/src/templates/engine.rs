@@ -6,8 +6,8 @@ use crate::classes::ClassId;
 use crate::decode::{Candidate, ClassDistance, Decoder, FAR, TickDetection};
 use crate::features::Rows;
 
-use super::early::{EarlyParams, Underway};
-use super::verifier::{Evidence, Judge};
+use super::early::{EarlyDetectionParams, OngoingMatch};
+use super::verifier::{CandidateScorer, Evidence};
 use super::{Calibration, Matcher, Metric, Stretches, TemplateModel, TemplateModelError};
 
 /// The part of recognition that knows no clock: metric, templates, verifier, decoding.
@@ -21,7 +21,7 @@ pub struct TemplateEngine {
     /// Of the mapped rows.
     stretches: Stretches,
     template_classes: Arc<[ClassId]>,
-    judge: Option<Judge>,
+    judge: Option<CandidateScorer>,
     decoder: Decoder,
     recent: RecentRows,
     mapped: Vec<f32>,
@@ -86,7 +86,7 @@ impl TemplateEngine {
             judge: model
                 .verifier
                 .as_ref()
-                .map(|v| Judge::new(v, &metric, model.threshold)),
+                .map(|v| CandidateScorer::new(v, &metric, model.threshold)),
             decoder,
             // A match of n rows spans at most 2 n ticks and is judged when its window has passed.
             recent: RecentRows::new(dim, 2 * model.longest() + window + 2),
@@ -153,15 +153,15 @@ impl TemplateEngine {
 
     /// The class whose beginning is nearest at the last tick, if one is near enough by `params`. O(template rows),
     /// no allocation; changes nothing.
-    pub fn underway(&self, params: &EarlyParams) -> Option<Underway> {
-        let (mut best, mut other) = (None::<Underway>, FAR);
+    pub fn underway(&self, params: &EarlyDetectionParams) -> Option<OngoingMatch> {
+        let (mut best, mut other) = (None::<OngoingMatch>, FAR);
         for (template, class) in self.template_classes.iter().enumerate() {
             let length = self.matcher.bank().template_len(template);
             let Some(found) = self.matcher.partial(template, params.least_rows(length)) else {
                 continue;
             };
             let progress = found.rows as f32 / length as f32;
-            let new = Underway {
+            let new = OngoingMatch {
                 class: *class,
                 distance: found.distance,
                 age: found.age,
@@ -234,7 +234,7 @@ fn nearest(matcher: &Matcher, stretches: &mut Stretches) -> f32 {
 }
 
 fn score(
-    judge: &mut Option<Judge>,
+    judge: &mut Option<CandidateScorer>,
     recent: &RecentRows,
     metric: &Metric,
     candidate: &Candidate,

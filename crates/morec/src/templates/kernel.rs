@@ -60,7 +60,7 @@ struct Behind {
     earlier: (f32, i32),
 }
 
-/// One tick of [`Bank`](super::Bank): distances of the cells' rows `T` from `z`, as `max(0, |T|² + |z|² − 2 T·z)`
+/// One tick of [`TemplateBank`](super::TemplateBank): distances of the cells' rows `T` from `z`, as `max(0, |T|² + |z|² − 2 T·z)`
 /// (cancellation can leave a hair below zero), and the three transitions of every cell. `rows` are [`interleaved`], `norms`
 /// hold the `|T|²`; the totals and ages at `now` are those of two ticks before and become those of this tick.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]

@@ -5,10 +5,10 @@ use std::sync::Arc;
 use crate::decode::FAR;
 use crate::features::Rows;
 
-use super::bank::{Bank, Match, PartialMatch};
+use super::bank::{Match, PartialMatch, TemplateBank};
 use super::stretches::Stretches;
 
-/// A [`Bank`] that also knows how far from each template a motionless body would be.
+/// A [`TemplateBank`] that also knows how far from each template a motionless body would be.
 ///
 /// For template rows `T` with mean `m_T` and spread `V_T = mean |T_j − m_T|²`, and a matched stretch of the stream
 /// with mean `m_S`, a performer frozen in the stretch's mean pose is at the distance `V_T + |m_T − m_S|²`. A match
@@ -21,7 +21,7 @@ use super::stretches::Stretches;
 /// Means and spreads of stretches come from [`Stretches`].
 #[derive(Debug, Clone)]
 pub struct Matcher {
-    bank: Bank,
+    bank: TemplateBank,
     exponent: f32,
     spreads: Arc<[f32]>,
     /// `m_T` of each template.
@@ -33,7 +33,7 @@ pub const TYPICAL_SPREAD: f32 = 1.7;
 
 /// A template's match, held against a body at rest and normalised.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Comparison {
+pub struct NormalizedMatch {
     /// Normalised distance; [`FAR`] if nothing matches.
     pub distance: f32,
     /// Ticks since the match began.
@@ -44,7 +44,7 @@ pub struct Comparison {
     pub spread: f32,
 }
 
-impl Comparison {
+impl NormalizedMatch {
     /// Whether the match is nearer than `share` of a motionless body's distance; 0 admits all.
     pub fn moves(&self, share: f32) -> bool {
         share <= 0.0 || self.rest_share < share
@@ -62,7 +62,7 @@ impl Matcher {
             spreads.push(spread);
         }
         Self {
-            bank: Bank::new(templates, dim),
+            bank: TemplateBank::new(templates, dim),
             exponent,
             spreads: spreads.into(),
             means: Arc::new(means),
@@ -70,7 +70,7 @@ impl Matcher {
     }
 
     /// The templates' dynamic program.
-    pub fn bank(&self) -> &Bank {
+    pub fn bank(&self) -> &TemplateBank {
         &self.bank
     }
 
@@ -90,15 +90,15 @@ impl Matcher {
     }
 
     /// How template `index` matches a stretch that ends with the last tick; `stretches` has taken the same rows. O(d).
-    pub fn compare(&self, index: usize, stretches: &mut Stretches) -> Comparison {
+    pub fn compare(&self, index: usize, stretches: &mut Stretches) -> NormalizedMatch {
         let near = self.nearness(index, stretches);
-        Comparison {
+        NormalizedMatch {
             rest_share: self.rest_share(index, near.age, stretches),
             ..near
         }
     }
 
-    /// The match of template `index` if it is nearer than `distance` and moves, see [`Comparison::moves`]. O(1) for most
+    /// The match of template `index` if it is nearer than `distance` and moves, see [`NormalizedMatch::moves`]. O(1) for most
     /// templates that are not nearer.
     pub fn nearer(
         &self,
@@ -106,12 +106,12 @@ impl Matcher {
         distance: f32,
         share: f32,
         stretches: &mut Stretches,
-    ) -> Option<Comparison> {
+    ) -> Option<NormalizedMatch> {
         let near = self.nearness(index, stretches);
         if near.distance >= distance {
             return None;
         }
-        let found = Comparison {
+        let found = NormalizedMatch {
             rest_share: self.rest_share(index, near.age, stretches),
             ..near
         };
@@ -119,9 +119,9 @@ impl Matcher {
     }
 
     /// A match that is not compared with a body at rest.
-    fn nearness(&self, index: usize, stretches: &mut Stretches) -> Comparison {
+    fn nearness(&self, index: usize, stretches: &mut Stretches) -> NormalizedMatch {
         let Match { distance, age } = self.bank.matched(index);
-        let mut found = Comparison {
+        let mut found = NormalizedMatch {
             distance: FAR,
             age,
             rest_share: f32::MAX,
@@ -152,7 +152,7 @@ impl Matcher {
         }
     }
 
-    /// How the first rows of template `index`, at least `least` of them, match, as [`Bank::partial`] has it, with the
+    /// How the first rows of template `index`, at least `least` of them, match, as [`TemplateBank::partial`] has it, with the
     /// distance normalised by the template's spread. O(rows).
     pub fn partial(&self, index: usize, least: usize) -> Option<PartialMatch> {
         let found = self.bank.partial(index, least)?;

@@ -10,12 +10,12 @@ use super::kernel;
 
 /// A symmetric `dim` × `dim` matrix, its lower triangle packed row by row: what an index file stores.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Symmetric {
+pub struct PackedSymmetric {
     dim: usize,
     packed: Vec<f32>,
 }
 
-impl Symmetric {
+impl PackedSymmetric {
     /// Packs the lower triangle of a square matrix.
     pub fn pack(matrix: &DMatrix<f64>) -> Self {
         let dim = matrix.nrows();
@@ -74,7 +74,7 @@ impl Metric {
     ///
     /// (Within-class whitening as in Hastie and Tibshirani 1996; the ridge is what keeps directions in which
     /// few samples happen to agree from taking over.)
-    pub fn new(ridged: &Symmetric, total: &Symmetric) -> Self {
+    pub fn new(ridged: &PackedSymmetric, total: &PackedSymmetric) -> Self {
         let dim = ridged.dim();
         let eigen = SymmetricEigen::new(ridged.unpack());
         // Packing to single precision can push the smallest eigenvalue below zero; it then counts as tiny.
@@ -131,7 +131,10 @@ mod tests {
     fn whitening_makes_the_within_class_spread_round_and_keeps_the_total() {
         let within = DMatrix::from_row_slice(2, 2, &[4.0, 1.0, 1.0, 2.0]);
         let total = DMatrix::from_row_slice(2, 2, &[9.0, 0.5, 0.5, 3.0]);
-        let metric = Metric::new(&Symmetric::pack(&within), &Symmetric::pack(&total));
+        let metric = Metric::new(
+            &PackedSymmetric::pack(&within),
+            &PackedSymmetric::pack(&total),
+        );
         let map = DMatrix::from_row_slice(
             2,
             2,

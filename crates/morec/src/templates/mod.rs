@@ -13,15 +13,16 @@ mod stretches;
 mod trace;
 mod verifier;
 
-pub use bank::{Bank, Match, PartialMatch};
-pub use early::{EarlyParams, Underway};
+pub use bank::{Match, PartialMatch, TemplateBank};
+pub use early::{EarlyDetectionParams, OngoingMatch};
 pub use engine::TemplateEngine;
-pub use matcher::{Comparison, Matcher, TYPICAL_SPREAD, mean_and_spread};
-pub use metric::{Metric, Symmetric};
-pub use model::{Sample, TemplateModel, TemplateModelError};
+pub use matcher::{Matcher, NormalizedMatch, TYPICAL_SPREAD, mean_and_spread};
+pub use metric::{Metric, PackedSymmetric};
+pub use model::{TemplateModel, TemplateModelError, TemplateSample};
 pub use operating::{ALARM_RATES, Calibration, OperatingPoint, threshold_at};
 pub use stretches::Stretches;
 pub use trace::{Nearest, Trace};
 pub use verifier::{
-    Evidence, Exemplars, Generic, SHAPE_ROWS, Verifier, shape_distance, shape_of, squared_distance,
+    Evidence, Exemplars, LinearScore, SHAPE_ROWS, Verifier, shape_distance, shape_of,
+    squared_distance,
 };

@@ -1,14 +1,14 @@
 //! A trained set of templates: what an index file holds for this method.
 
 use crate::classes::{ClassId, ClassInfo};
-use crate::decode::{DecodeParams, Rule};
+use crate::decode::{CandidatePolicy, DecodeParams};
 use crate::features::{BoneSet, FeatureParams, Rows, row_dim};
 
-use super::{Calibration, Exemplars, OperatingPoint, Symmetric, Verifier, threshold_at};
+use super::{Calibration, Exemplars, OperatingPoint, PackedSymmetric, Verifier, threshold_at};
 
 /// One labelled sample's rows, before the metric.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Sample {
+pub struct TemplateSample {
     /// Its class.
     pub class: ClassId,
     /// One row for each tick.
@@ -27,13 +27,13 @@ pub struct TemplateModel {
     /// The classes; a [`ClassId`] is an index into this.
     pub classes: Vec<ClassInfo>,
     /// The templates.
-    pub samples: Vec<Sample>,
+    pub samples: Vec<TemplateSample>,
     /// Templates of what must not be taken for any class, before the metric.
     pub negatives: Vec<Rows>,
     /// `S_w + ρ tr(S_t)/d I`: see [`Metric::new`](super::Metric::new).
-    pub ridged: Symmetric,
+    pub ridged: PackedSymmetric,
     /// `S_t`.
-    pub total: Symmetric,
+    pub total: PackedSymmetric,
     /// Distances at or above this are never reported.
     pub threshold: f32,
     /// The same for each class by itself, where there is no verifier; empty if the one holds for all.
@@ -134,12 +134,12 @@ impl TemplateModel {
     }
 
     /// What makes a candidate of a distance.
-    pub fn rule(&self) -> Rule {
+    pub fn rule(&self) -> CandidatePolicy {
         match &self.verifier {
-            Some(verifier) => Rule::Verify {
+            Some(verifier) => CandidatePolicy::Verify {
                 reach: verifier.reach,
             },
-            None => Rule::Gate {
+            None => CandidatePolicy::Gate {
                 threshold: self.threshold,
             },
         }
@@ -200,7 +200,7 @@ impl TemplateModel {
             samples: self
                 .samples
                 .iter()
-                .map(|s| Sample {
+                .map(|s| TemplateSample {
                     class: s.class,
                     rows: pick(&s.rows),
                 })

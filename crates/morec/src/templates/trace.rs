@@ -4,23 +4,23 @@ use crate::classes::ClassId;
 use crate::decode::{Candidate, FAR};
 use crate::features::Rows;
 
-use super::matcher::{Comparison, Matcher};
+use super::matcher::{Matcher, NormalizedMatch};
 use super::stretches::Stretches;
-use super::verifier::{Evidence, Judge};
+use super::verifier::{CandidateScorer, Evidence};
 use super::{Metric, TemplateModel, TemplateModelError};
 
 /// The nearest template of a class at a tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Nearest {
     /// The match.
-    pub comparison: Comparison,
+    pub comparison: NormalizedMatch,
     /// Its place among the model's samples.
     pub template: usize,
 }
 
 impl Nearest {
     const NONE: Self = Self {
-        comparison: Comparison {
+        comparison: NormalizedMatch {
             distance: FAR,
             age: 0,
             rest_share: f32::MAX,
@@ -41,7 +41,7 @@ pub struct Trace<'a> {
     /// ticks × classes; of all matches.
     all: Vec<Nearest>,
     negatives: Vec<f32>,
-    judge: Option<Judge>,
+    judge: Option<CandidateScorer>,
 }
 
 impl<'a> Trace<'a> {
@@ -69,7 +69,7 @@ impl<'a> Trace<'a> {
             judge: model
                 .verifier
                 .as_ref()
-                .map(|v| Judge::new(v, &metric, model.threshold)),
+                .map(|v| CandidateScorer::new(v, &metric, model.threshold)),
             model,
             rows,
             metric,
@@ -131,7 +131,7 @@ impl<'a> Trace<'a> {
     /// The verifier's score of the candidate of `class` that ends at `tick`, above 0 is accepted, and its evidence.
     /// `None` without a verifier.
     pub fn verify(&mut self, tick: usize, class: ClassId) -> Option<(f64, Evidence)> {
-        let Comparison { distance, age, .. } = self.moving(tick, class).comparison;
+        let NormalizedMatch { distance, age, .. } = self.moving(tick, class).comparison;
         let reach = self.model.decode.peak_ticks;
         let around = tick.saturating_sub(reach)..=(tick + reach).min(self.ticks() - 1);
         let (mut other, mut negative) = (FAR, FAR);

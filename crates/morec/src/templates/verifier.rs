@@ -100,7 +100,7 @@ pub fn shape_of<'r>(len: usize, row: impl Fn(usize) -> &'r [f32], out: &mut [f32
 
 /// How all classes together weigh evidence: a linear score of standardised ratios, bounded to ±1.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Generic {
+pub struct LinearScore {
     /// Mean of each ratio in training.
     pub mean: [f64; 3],
     /// Standard deviation of each ratio in training.
@@ -109,7 +109,7 @@ pub struct Generic {
     pub weights: [f64; 4],
 }
 
-impl Generic {
+impl LinearScore {
     /// The score: above 0 for, below 0 against.
     pub fn score(&self, ratios: &[f64; 3]) -> f64 {
         let mut sum = self.weights[0];
@@ -155,7 +155,7 @@ pub struct Verifier {
     /// Scores must be above this.
     pub bar: f64,
     /// What holds for all classes.
-    pub generic: Generic,
+    pub generic: LinearScore,
     /// What holds for single classes.
     pub classes: Vec<Exemplars>,
 }
@@ -197,7 +197,7 @@ impl Verifier {
 
 /// A verifier laid out for streaming; copies share the exemplars.
 #[derive(Debug, Clone)]
-pub struct Judge {
+pub struct CandidateScorer {
     verifier: Arc<Verifier>,
     /// Mapped shapes of each class's exemplars, [`interleaved`].
     shapes: Arc<[Vec<Lanes>]>,
@@ -208,7 +208,7 @@ pub struct Judge {
     mapped: Vec<f32>,
 }
 
-impl Judge {
+impl CandidateScorer {
     /// Maps all exemplars with `metric`.
     pub fn new(verifier: &Verifier, metric: &Metric, threshold: f32) -> Self {
         let len = SHAPE_ROWS * metric.dim();

@@ -6,17 +6,17 @@ use crate::roles::RoleMap;
 use crate::synth;
 use crate::templates::TemplateModel;
 
-use super::from_clips::{Labelling, TrainClip, prepare};
+use super::from_clips::{LabelSet, TrainClip, prepare};
 use super::mirror::add_mirrored;
 use super::options::{ENOUGH_BACKGROUND_SECS, EVERYDAY_SEED, Everyday, TrainOptions};
 use super::report::TrainingReport;
-use super::set::Source;
+use super::set::StreamKind;
 use super::templates::{TrainError, train};
 
 /// Trains on labelled and background clips, and on everyday motion as the options say.
 pub fn train_clips(
     clips: &[TrainClip],
-    labelling: &Labelling<'_>,
+    labelling: &LabelSet<'_>,
     options: &TrainOptions,
     progress: &dyn Progress,
 ) -> Result<(TemplateModel, TrainingReport), TrainError> {
@@ -44,7 +44,7 @@ pub fn train_clips(
 }
 
 fn adds_everyday(clips: &[TrainClip], everyday: Everyday) -> bool {
-    let background = clips.iter().filter(|c| c.source == Source::Background);
+    let background = clips.iter().filter(|c| c.source == StreamKind::Background);
     match everyday {
         Everyday::Auto => {
             background.map(|c| c.clip.duration_secs()).sum::<f64>() < ENOUGH_BACKGROUND_SECS
@@ -60,7 +60,7 @@ fn everyday_clips(seed: u64) -> Vec<TrainClip> {
         name: clip.name.clone(),
         roles: RoleMap::find(&clip.skeleton),
         rest: 0..0,
-        source: Source::Everyday,
+        source: StreamKind::Everyday,
         person: None,
         clip,
     })

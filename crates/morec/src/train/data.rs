@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::labels::{ClipLength, Labels, Sample};
 use crate::roles::Role;
 
-use super::{Source, TrainClip};
+use super::{StreamKind, TrainClip};
 
 /// Clips, samples and classes that fit together.
 #[derive(Debug, Clone, Default)]
@@ -40,7 +40,7 @@ pub enum DataError {
 }
 
 impl TrainingData {
-    /// Resolves `labels` against `clips`. Clips of [`Source::Labelled`] teach where labels lie in them; labels in other
+    /// Resolves `labels` against `clips`. Clips of [`StreamKind::Labelled`] teach where labels lie in them; labels in other
     /// clips are not used. `classes` are those to learn, in order; every class of the labels if empty.
     ///
     /// # Errors
@@ -75,7 +75,7 @@ impl TrainingData {
         }
         let teaching: BTreeSet<&str> = clips
             .iter()
-            .filter(|c| c.source == Source::Labelled)
+            .filter(|c| c.source == StreamKind::Labelled)
             .map(|c| c.name.as_str())
             .collect();
         let wanted = |s: &Sample| classes.is_empty() || classes.contains(&s.class);
@@ -86,9 +86,9 @@ impl TrainingData {
             .collect();
         let classes = classes_of(&samples, classes)?;
         let with_samples: BTreeSet<&str> = samples.iter().map(|s| s.clip.as_str()).collect();
-        let (clips, unused): (Vec<_>, Vec<_>) = clips
-            .into_iter()
-            .partition(|c| c.source != Source::Labelled || with_samples.contains(c.name.as_str()));
+        let (clips, unused): (Vec<_>, Vec<_>) = clips.into_iter().partition(|c| {
+            c.source != StreamKind::Labelled || with_samples.contains(c.name.as_str())
+        });
         Ok(Self {
             clips,
             samples,
@@ -100,7 +100,9 @@ impl TrainingData {
 
     /// The clips that hold samples.
     pub fn labelled(&self) -> impl Iterator<Item = &TrainClip> {
-        self.clips.iter().filter(|c| c.source == Source::Labelled)
+        self.clips
+            .iter()
+            .filter(|c| c.source == StreamKind::Labelled)
     }
 
     /// Joint names by role, of the first labelled clip.

@@ -6,9 +6,9 @@ use std::ops::Range;
 use crate::decode::{FAR, MIN_AGE_TICKS};
 use crate::templates::{Evidence, Match};
 
-use super::mining::{Distances, NearMiss};
+use super::mining::{NearMiss, TemplateDistances};
 use super::params::TrainParams;
-use super::set::{Source, TrainSample, TrainSet, TrainStream, overlap_share};
+use super::set::{StreamKind, TrainSample, TrainSet, TrainStream, overlap_share};
 
 /// Ticks of a long stream that count as one piece: neighbours say the same.
 const PIECE_TICKS: usize = 60;
@@ -17,7 +17,7 @@ const TOUCHES: f64 = 0.3;
 
 /// A stretch that came near a class.
 #[derive(Debug, Clone)]
-pub struct Example {
+pub struct VerifierExample {
     /// Whether it was the class.
     pub positive: bool,
     /// Which class, as its place in the set.
@@ -32,7 +32,7 @@ pub struct Example {
     label: Option<usize>,
 }
 
-impl Example {
+impl VerifierExample {
     /// The piece of stream it ends in.
     pub fn piece(&self, whole: bool) -> (usize, usize) {
         (
@@ -47,7 +47,7 @@ impl Example {
 }
 
 /// What is known of every stream when it is seen as a new person's would be, without the stream's own person.
-pub struct Seen<'a> {
+pub struct LeaveOneOutView<'a> {
     /// All streams.
     pub set: &'a TrainSet,
     /// The templates.
@@ -55,10 +55,10 @@ pub struct Seen<'a> {
     /// The negatives.
     pub negatives: &'a [NearMiss],
     /// Each stream against every negative.
-    pub near_negatives: &'a [Distances],
+    pub near_negatives: &'a [TemplateDistances],
 }
 
-impl Seen<'_> {
+impl LeaveOneOutView<'_> {
     /// Distance of the nearest negative that is not of the stream's own group.
     pub fn nearest_negative(&self, stream: usize, tick: usize) -> f32 {
         let streams = &self.set.streams;
@@ -68,10 +68,10 @@ impl Seen<'_> {
 }
 
 /// Finds the stretches of all streams that come near a class.
-pub struct Candidates<'a> {
-    seen: &'a Seen<'a>,
+pub struct CandidateFinder<'a> {
+    seen: &'a LeaveOneOutView<'a>,
     /// Each stream against every template.
-    distances: &'a [Distances],
+    distances: &'a [TemplateDistances],
     /// For each class, whether a single group shows it: then only the very sample is left out.
     single: Vec<bool>,
     /// Largest distance under which an unlabelled stretch of a labelled clip is probably an unlabelled sample.
@@ -80,11 +80,11 @@ pub struct Candidates<'a> {
     peak_ticks: usize,
 }
 
-impl<'a> Candidates<'a> {
+impl<'a> CandidateFinder<'a> {
     /// Candidates among `distances`, where `threshold` is near enough.
     pub fn new(
-        seen: &'a Seen<'a>,
-        distances: &'a [Distances],
+        seen: &'a LeaveOneOutView<'a>,
+        distances: &'a [TemplateDistances],
         threshold: f32,
         params: &TrainParams,
     ) -> Self {
@@ -103,7 +103,7 @@ impl<'a> Candidates<'a> {
     }
 
     /// Every candidate of one stream. O(ticks · templates).
-    pub fn examples(&self, stream: usize) -> Vec<Example> {
+    pub fn examples(&self, stream: usize) -> Vec<VerifierExample> {
         let ticks = self.distances[stream].len();
         let classes = self.seen.set.classes.len();
         let near: Vec<Match> = (0..ticks)
@@ -170,7 +170,7 @@ impl<'a> Candidates<'a> {
         class: usize,
         ticks: Range<usize>,
         evidence: Evidence,
-    ) -> Option<Example> {
+    ) -> Option<VerifierExample> {
         let stream = &self.seen.set.streams[index];
         let mut label = None;
         let mut touches = false;
@@ -190,7 +190,7 @@ impl<'a> Candidates<'a> {
         {
             return None;
         }
-        Some(Example {
+        Some(VerifierExample {
             positive: label.is_some(),
             class,
             stream: index,
@@ -203,14 +203,14 @@ impl<'a> Candidates<'a> {
     /// Whether a stretch that is none of the class's samples may be held against the class.
     fn is_background(&self, stream: &TrainStream, ticks: &Range<usize>, distance: f32) -> bool {
         let on_other_class = stream.overlaps_known(ticks, TOUCHES);
-        let suspicious = stream.source == Source::Labelled && distance < self.suspicious;
+        let suspicious = stream.source == StreamKind::Labelled && distance < self.suspicious;
         on_other_class || (stream.rest_is_background && !suspicious)
     }
 }
 
 /// How far candidates may be: twice what nine in ten samples need when their own person is left out, and no less
 /// than the plain threshold.
-pub fn reach(examples: &[Example], threshold: f32, params: &TrainParams) -> f32 {
+pub fn reach(examples: &[VerifierExample], threshold: f32, params: &TrainParams) -> f32 {
     let mut best: BTreeMap<(usize, usize, usize), f64> = BTreeMap::new();
     for example in examples {
         if let Some(label) = example.label {
@@ -228,18 +228,18 @@ pub fn reach(examples: &[Example], threshold: f32, params: &TrainParams) -> f32 
 
 /// The examples worth learning from: of each class and sign the nearest, few from any one piece.
 pub fn select(
-    examples: Vec<Example>,
+    examples: Vec<VerifierExample>,
     set: &TrainSet,
     reach: f32,
     params: &TrainParams,
-) -> Vec<Example> {
+) -> Vec<VerifierExample> {
     let mut chosen = Vec::new();
     for class in 0..set.classes.len() {
         for positive in [true, false] {
             let of = examples
                 .iter()
                 .filter(|e| e.class == class && e.positive == positive);
-            let mut of: Vec<&Example> = of.collect();
+            let mut of: Vec<&VerifierExample> = of.collect();
             of.sort_by(|a, b| a.evidence.distance.total_cmp(&b.evidence.distance));
             let spread = few_from_each_piece(of, set, params);
             if positive {
@@ -269,13 +269,13 @@ pub fn select(
 }
 
 fn few_from_each_piece<'e>(
-    examples: Vec<&'e Example>,
+    examples: Vec<&'e VerifierExample>,
     set: &TrainSet,
     params: &TrainParams,
-) -> Vec<&'e Example> {
+) -> Vec<&'e VerifierExample> {
     let mut taken: BTreeMap<(usize, usize), usize> = BTreeMap::new();
-    let whole = |e: &Example| !set.streams[e.stream].rest_is_background;
-    let mut few = |e: &&Example| {
+    let whole = |e: &VerifierExample| !set.streams[e.stream].rest_is_background;
+    let mut few = |e: &&VerifierExample| {
         let count = taken.entry(e.piece(whole(e))).or_insert(0);
         *count += 1;
         *count <= params.examples_per_piece

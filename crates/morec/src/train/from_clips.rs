@@ -11,7 +11,7 @@ use crate::import::Take;
 use crate::labels::Sample;
 use crate::roles::RoleMap;
 
-use super::set::{Known, Source, TrainSet, TrainStream};
+use super::set::{LabelledSpan, StreamKind, TrainSet, TrainStream};
 use super::trim::moving_part;
 
 /// A clip ready for training: Y up, its joints' roles known.
@@ -26,7 +26,7 @@ pub struct TrainClip {
     /// Frames that a conversion left at the start.
     pub rest: Span,
     /// What it is here for.
-    pub source: Source,
+    pub source: StreamKind,
     /// Who moves, if known.
     pub person: Option<String>,
 }
@@ -39,7 +39,7 @@ impl From<Take> for TrainClip {
             clip: take.clip,
             roles: take.roles,
             rest: take.report.rest_frames,
-            source: Source::Labelled,
+            source: StreamKind::Labelled,
             person: None,
         }
     }
@@ -47,7 +47,7 @@ impl From<Take> for TrainClip {
 
 /// What labels say about clips, and what is to be made of the rest.
 #[derive(Debug, Clone, Default)]
-pub struct Labelling<'a> {
+pub struct LabelSet<'a> {
     /// Samples to learn from.
     pub samples: &'a [Sample],
     /// Samples held back: to be learned neither as a class nor as background.
@@ -74,7 +74,7 @@ pub struct Prepared {
 /// `wanted` are the bones that count, of those that every labelled clip shows.
 pub fn prepare(
     clips: &[TrainClip],
-    labelling: &Labelling<'_>,
+    labelling: &LabelSet<'_>,
     wanted: BoneSet,
     params: &FeatureParams,
 ) -> Prepared {
@@ -138,7 +138,7 @@ fn stream(
     clip: &TrainClip,
     bones: BoneSet,
     params: &FeatureParams,
-    labelling: &Labelling<'_>,
+    labelling: &LabelSet<'_>,
     taught: &ByClip<'_>,
     held_back: &ByClip<'_>,
 ) -> TrainStream {
@@ -165,19 +165,19 @@ fn stream(
             .map(|c| ClassId(c as u16))
     };
     let wanted = samples.iter().filter_map(|s| {
-        Some(Known {
+        Some(LabelledSpan {
             ticks: ticks(s),
             class: Some(class(s)?),
         })
     });
-    let spared = held.iter().map(|s| Known {
+    let spared = held.iter().map(|s| LabelledSpan {
         ticks: ticks(s),
         class: None,
     });
-    let mut known: Vec<Known> = wanted.chain(spared).collect();
+    let mut known: Vec<LabelledSpan> = wanted.chain(spared).collect();
     known.sort_by_key(|k| (k.ticks.start, k.ticks.end));
     let whole = samples.iter().chain(held).any(|s| s.whole_clip);
-    let labelled = clip.source == Source::Labelled;
+    let labelled = clip.source == StreamKind::Labelled;
     let named = samples.iter().chain(held).find_map(|s| s.person.clone());
     let person = clip.person.clone().or(named);
     TrainStream {

@@ -7,10 +7,10 @@ use crate::features::Rows;
 use crate::templates::{Match, Matcher, Stretches};
 
 use super::params::TrainParams;
-use super::set::{Source, TrainSample, TrainStream, overlap_share};
+use super::set::{StreamKind, TrainSample, TrainStream, overlap_share};
 
 /// Every template's match at every tick of one stream: `ticks` × `templates`.
-pub struct Distances {
+pub struct TemplateDistances {
     templates: usize,
     matches: Vec<Compared>,
     /// Matches count below this share of a motionless body's distance; 0 admits all.
@@ -25,7 +25,7 @@ struct Compared {
     rest_share: f32,
 }
 
-impl Distances {
+impl TemplateDistances {
     /// Runs `matcher` over rows that are already in its metric. O(ticks · template rows · d).
     pub fn of(matcher: &mut Matcher, rows: &Rows) -> Self {
         matcher.reset();
@@ -116,13 +116,13 @@ pub struct NearMiss {
 /// In labelled streams this is done twice, the second time without the same person's templates, as a new person's
 /// stream would be seen.
 pub fn near_misses(
-    distances: &Distances,
+    distances: &TemplateDistances,
     samples: &[TrainSample],
     (index, stream): (usize, &TrainStream),
     threshold: f32,
     params: &TrainParams,
 ) -> Vec<NearMiss> {
-    let labelled = stream.source == Source::Labelled;
+    let labelled = stream.source == StreamKind::Labelled;
     let floor = if labelled {
         params.suspicious_below as f32 * threshold
     } else {

@@ -3,7 +3,7 @@
 use crate::classes::ClassId;
 use crate::features::{BoneSet, mirrored_rows};
 
-use super::set::{Known, Source, TrainSet, TrainStream};
+use super::set::{LabelledSpan, StreamKind, TrainSet, TrainStream};
 
 /// Whether mirrored copies of samples teach too.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -43,13 +43,13 @@ pub(super) fn add_mirrored(
     let samples = set.samples();
     let copies = samples.iter().filter_map(|sample| {
         let (source, class) = match images[sample.class.index()] {
-            Image::Class(class) => (Source::Labelled, Some(class)),
-            Image::NoClass => (Source::Background, None),
+            Image::Class(class) => (StreamKind::Labelled, Some(class)),
+            Image::NoClass => (StreamKind::Background, None),
             Image::Unknown => return None,
         };
         let of = &set.streams[sample.stream];
         let rows = mirrored_rows(&sample.rows, bones)?;
-        let known = class.map(|class| Known {
+        let known = class.map(|class| LabelledSpan {
             ticks: 0..rows.len(),
             class: Some(class),
         });

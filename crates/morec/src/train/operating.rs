@@ -5,10 +5,10 @@ use std::ops::Range;
 use crate::decode::FAR;
 use crate::templates::Match;
 
-use super::examples::Seen;
-use super::mining::Distances;
+use super::examples::LeaveOneOutView;
+use super::mining::TemplateDistances;
 use super::params::TrainParams;
-use super::set::{Source, TrainSet, overlap_share};
+use super::set::{StreamKind, TrainSet, overlap_share};
 
 /// How often motion that is none of the classes comes how near: the nearest events in background motion.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -26,14 +26,14 @@ impl AlarmCurve {
     /// O(ticks · templates + events²).
     pub fn of(
         set: &TrainSet,
-        distances: &[Distances],
-        seen: Option<&Seen<'_>>,
+        distances: &[TemplateDistances],
+        seen: Option<&LeaveOneOutView<'_>>,
         params: &TrainParams,
     ) -> Self {
         let mut curve = Self::default();
         let minute_ticks = 60.0 * params.features.tick_hz();
         for (stream, of) in set.streams.iter().enumerate() {
-            if of.source == Source::Labelled {
+            if of.source == StreamKind::Labelled {
                 continue;
             }
             curve.minutes += of.rows.len() as f64 / minute_ticks;
@@ -58,7 +58,7 @@ impl AlarmCurve {
 }
 
 /// Distances of the separate approaches in one stream that are nearer than `gate` says at their tick.
-fn events(distances: &Distances, gate: impl Fn(usize) -> f32) -> impl Iterator<Item = f32> {
+fn events(distances: &TemplateDistances, gate: impl Fn(usize) -> f32) -> impl Iterator<Item = f32> {
     let counted = |tick: usize| {
         let found = distances.nearest(tick, |_| true);
         let admitted = found.distance < FAR && found.distance < gate(tick);

@@ -4,7 +4,7 @@ use crate::live::Model;
 use crate::progress::Progress;
 
 use super::clips::train_clips;
-use super::from_clips::{Labelling, TrainClip};
+use super::from_clips::{LabelSet, TrainClip};
 use super::options::TrainOptions;
 use super::report::TrainingReport;
 use super::templates::TrainError;
@@ -44,7 +44,7 @@ impl From<SvrdmOptions> for Recipe {
 /// Trains as `recipe` says.
 pub fn train_model(
     clips: &[TrainClip],
-    labelling: &Labelling<'_>,
+    labelling: &LabelSet<'_>,
     recipe: &Recipe,
     progress: &dyn Progress,
 ) -> Result<(Model, TrainingReport), TrainError> {

@@ -6,8 +6,8 @@ use crate::classes::ClassInfo;
 use crate::templates::OperatingPoint;
 
 use super::from_clips::Prepared;
-use super::set::{Source, TrainSample};
-use super::templates::Trained;
+use super::set::{StreamKind, TrainSample};
+use super::templates::TrainedTemplates;
 use super::thesis::SvrdmReport;
 
 /// How a training run went.
@@ -41,7 +41,7 @@ pub struct TrainingReport {
 
 impl TrainingReport {
     /// The report on `trained`, from `prepared`.
-    pub fn of(prepared: &Prepared, trained: &Trained, tick_hz: f64) -> Self {
+    pub fn of(prepared: &Prepared, trained: &TrainedTemplates, tick_hz: f64) -> Self {
         let streams = &prepared.set.streams;
         let mut background_secs = BTreeMap::new();
         for stream in streams
@@ -78,7 +78,7 @@ impl TrainingReport {
                 .iter()
                 .map(|s| quiet_note(s, prepared, tick_hz)),
         );
-        if streams.iter().all(|s| s.source == Source::Labelled) {
+        if streams.iter().all(|s| s.source == StreamKind::Labelled) {
             notes.push(
                 "no background clips and no everyday motion: the threshold is a general value; name clips that \
                  hold none of the classes as background"
@@ -128,10 +128,10 @@ pub(super) fn class_notes(classes: &[ClassInfo]) -> Vec<String> {
 }
 
 /// How reports name where background motion came from.
-pub fn source_name(source: Source) -> &'static str {
+pub fn source_name(source: StreamKind) -> &'static str {
     match source {
-        Source::Labelled => "unlabelled",
-        Source::Background => "clips",
-        Source::Everyday => "everyday",
+        StreamKind::Labelled => "unlabelled",
+        StreamKind::Background => "clips",
+        StreamKind::Everyday => "everyday",
     }
 }

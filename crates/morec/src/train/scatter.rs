@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::features::Rows;
-use crate::templates::Symmetric;
+use crate::templates::PackedSymmetric;
 
 use super::align::align;
 use super::set::TrainSample;
@@ -91,9 +91,9 @@ pub fn covariance<'r>(tables: impl Iterator<Item = &'r Rows> + Clone, dim: usize
 }
 
 /// `S_w + ρ tr(S_t)/d · I`.
-pub fn ridged(within: &DMatrix<f64>, total: &DMatrix<f64>, rho: f64) -> Symmetric {
+pub fn ridged(within: &DMatrix<f64>, total: &DMatrix<f64>, rho: f64) -> PackedSymmetric {
     let dim = total.nrows();
     // A stream that never moves has no variance; any positive ridge then gives a usable metric.
     let ridge = (rho * total.trace() / dim.max(1) as f64).max(1e-9);
-    Symmetric::pack(&(within + DMatrix::identity(dim, dim) * ridge))
+    PackedSymmetric::pack(&(within + DMatrix::identity(dim, dim) * ridge))
 }

@@ -7,7 +7,7 @@ use crate::features::Rows;
 
 /// Where a training stream came from, and so how far its unlabelled parts may be trusted to hold no class.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Source {
+pub enum StreamKind {
     /// A clip with labels.
     Labelled,
     /// A clip that the user says holds none of the classes.
@@ -18,7 +18,7 @@ pub enum Source {
 
 /// A stretch of a stream, in ticks.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Known {
+pub struct LabelledSpan {
     /// Which ticks.
     pub ticks: Range<usize>,
     /// The class it shows; `None` for a stretch that must be used for nothing (a sample held back for testing,
@@ -36,7 +36,7 @@ pub struct TrainStream {
     /// Who moves, if named.
     pub person: Option<String>,
     /// Where it came from.
-    pub source: Source,
+    pub source: StreamKind,
     /// Whether what is not in `known` holds none of the classes.
     pub rest_is_background: bool,
     /// Whether it was made from another stream: it teaches, but it is no sample that somebody showed.
@@ -44,7 +44,7 @@ pub struct TrainStream {
     /// One row for each tick.
     pub rows: Rows,
     /// Labelled stretches, in order of their starts.
-    pub known: Vec<Known>,
+    pub known: Vec<LabelledSpan>,
 }
 
 impl TrainStream {

@@ -9,16 +9,16 @@ use crate::classes::ClassInfo;
 use crate::features::{BoneSet, Rows};
 use crate::progress::Progress;
 use crate::templates::{
-    ALARM_RATES, Calibration, Matcher, Metric, OperatingPoint, Sample, Symmetric, TemplateModel,
-    TemplateModelError, Verifier, mean_and_spread,
+    ALARM_RATES, Calibration, Matcher, Metric, OperatingPoint, PackedSymmetric, TemplateModel,
+    TemplateModelError, TemplateSample, Verifier, mean_and_spread,
 };
 
-use super::examples::{self, Candidates, Example, Seen};
-use super::mining::{Distances, NearMiss, near_misses};
+use super::examples::{self, CandidateFinder, LeaveOneOutView, VerifierExample};
+use super::mining::{NearMiss, TemplateDistances, near_misses};
 use super::operating::AlarmCurve;
 use super::params::TrainParams;
 use super::scatter::{covariance, ridged, within_class};
-use super::set::{Source, TrainSample, TrainSet, TrainStream};
+use super::set::{StreamKind, TrainSample, TrainSet, TrainStream};
 use super::thresholds;
 use super::trim::moving_part;
 use super::verifier;
@@ -64,7 +64,7 @@ pub enum TrainError {
 
 /// A model and how it came about.
 #[derive(Debug, Clone)]
-pub struct Trained {
+pub struct TrainedTemplates {
     /// The model.
     pub model: TemplateModel,
     /// The stretches that became negatives.
@@ -86,7 +86,7 @@ pub fn train(
     bones: BoneSet,
     params: &TrainParams,
     progress: &dyn Progress,
-) -> Result<Trained, TrainError> {
+) -> Result<TrainedTemplates, TrainError> {
     let samples = set.samples();
     if samples.is_empty() {
         return Err(TrainError::NoSamples);
@@ -99,7 +99,7 @@ pub fn train(
     let classes = class_infos(set, &samples);
     let (samples, quiet) = moving(samples, &metric, params);
     let samples = templates_of(samples, set.classes.len(), params.max_templates);
-    let step = Step {
+    let step = TrainingContext {
         set,
         metric: &metric,
         params,
@@ -120,7 +120,7 @@ pub fn train(
     let rows: Vec<Rows> = negatives.iter().map(|n| negative_rows(set, n)).collect();
     let matcher = step.matcher(rows.iter());
     let near_negatives = step.distances(&matcher, "comparing with near misses")?;
-    let seen = Seen {
+    let seen = LeaveOneOutView {
         set,
         samples: &samples,
         negatives: &negatives,
@@ -155,7 +155,7 @@ pub fn train(
         classes,
         samples: samples
             .into_iter()
-            .map(|s| Sample {
+            .map(|s| TemplateSample {
                 class: s.class,
                 rows: s.rows,
             })
@@ -176,7 +176,7 @@ pub fn train(
         model
     };
     model.check()?;
-    Ok(Trained {
+    Ok(TrainedTemplates {
         model,
         negatives,
         threshold_from: operating.from,
@@ -184,7 +184,7 @@ pub fn train(
     })
 }
 
-fn set_rest_share(distances: &mut [Distances], share: f32) {
+fn set_rest_share(distances: &mut [TemplateDistances], share: f32) {
     distances.iter_mut().for_each(|d| d.set_rest_share(share));
 }
 
@@ -201,14 +201,14 @@ struct Operating {
 }
 
 /// What the steps of a training have in common.
-struct Step<'a> {
+struct TrainingContext<'a> {
     set: &'a TrainSet,
     metric: &'a Metric,
     params: &'a TrainParams,
     progress: &'a dyn Progress,
 }
 
-impl Step<'_> {
+impl TrainingContext<'_> {
     /// Lays out templates that are not mapped yet.
     fn matcher<'r>(&self, rows: impl Iterator<Item = &'r Rows>) -> Matcher {
         let mapped: Vec<Rows> = rows.map(|r| self.metric.apply_all(r)).collect();
@@ -217,13 +217,17 @@ impl Step<'_> {
     }
 
     /// Every stream against every template, in parallel, in the order of the set.
-    fn distances(&self, matcher: &Matcher, stage: &str) -> Result<Vec<Distances>, TrainError> {
+    fn distances(
+        &self,
+        matcher: &Matcher,
+        stage: &str,
+    ) -> Result<Vec<TemplateDistances>, TrainError> {
         let (done, total) = (AtomicUsize::new(0), self.set.streams.len());
         let compare = |matcher: &mut Matcher, stream: &TrainStream| {
             if self.progress.cancelled() {
                 return Err(TrainError::Cancelled);
             }
-            let distances = Distances::of(matcher, &self.metric.apply_all(&stream.rows));
+            let distances = TemplateDistances::of(matcher, &self.metric.apply_all(&stream.rows));
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
             self.progress.report(stage, done, total);
             Ok(distances)
@@ -233,7 +237,11 @@ impl Step<'_> {
     }
 
     /// The threshold; `seen` adds what negatives of other people and clips keep out.
-    fn operating(&self, distances: &[Distances], seen: Option<&Seen<'_>>) -> Operating {
+    fn operating(
+        &self,
+        distances: &[TemplateDistances],
+        seen: Option<&LeaveOneOutView<'_>>,
+    ) -> Operating {
         let params = self.params;
         if params.alarms_per_minute <= 0.0 {
             let (threshold, from) = thresholds::common(self.set, distances, params);
@@ -273,13 +281,13 @@ impl Step<'_> {
     /// Candidates of all streams, each seen without its own person, and what a verifier learns from them.
     fn verifier(
         &self,
-        seen: &Seen<'_>,
-        distances: &[Distances],
+        seen: &LeaveOneOutView<'_>,
+        distances: &[TemplateDistances],
         threshold: f32,
     ) -> Option<Verifier> {
         let (set, params) = (self.set, self.params);
-        let candidates = Candidates::new(seen, distances, threshold, params);
-        let examples: Vec<Example> = (0..set.streams.len())
+        let candidates = CandidateFinder::new(seen, distances, threshold, params);
+        let examples: Vec<VerifierExample> = (0..set.streams.len())
             .into_par_iter()
             .flat_map_iter(|stream| candidates.examples(stream))
             .collect();
@@ -371,7 +379,10 @@ fn templates_of(samples: Vec<TrainSample>, classes: usize, most: usize) -> Vec<T
 
 /// What [`Metric::new`] takes, of the samples of a set: `S_w + ρ tr(S_t)/d · I` and `S_t`. With no two samples of any class
 /// the metric is the identity. `None` if there is no sample.
-pub fn scatters(set: &TrainSet, params: &TrainParams) -> Option<(Symmetric, Symmetric)> {
+pub fn scatters(
+    set: &TrainSet,
+    params: &TrainParams,
+) -> Option<(PackedSymmetric, PackedSymmetric)> {
     let samples = set.samples();
     (!samples.is_empty()).then(|| metric_of(set, &samples, params))
 }
@@ -380,7 +391,7 @@ fn metric_of(
     set: &TrainSet,
     samples: &[TrainSample],
     params: &TrainParams,
-) -> (Symmetric, Symmetric) {
+) -> (PackedSymmetric, PackedSymmetric) {
     let dim = samples[0].rows.dim();
     let labelled = set
         .streams
@@ -394,14 +405,17 @@ fn metric_of(
         .cloned()
         .collect();
     let within = within_class(&shown, set.classes.len(), dim, params.max_pairs);
-    (ridged(&within, &total, params.rho), Symmetric::pack(&total))
+    (
+        ridged(&within, &total, params.rho),
+        PackedSymmetric::pack(&total),
+    )
 }
 
 /// Short background clips as a whole, and the nearest misses in everything else that is background.
 fn negatives_of(
     set: &TrainSet,
     bones: BoneSet,
-    (samples, distances): (&[TrainSample], &[Distances]),
+    (samples, distances): (&[TrainSample], &[TemplateDistances]),
     threshold: f32,
     params: &TrainParams,
 ) -> Vec<NearMiss> {
@@ -410,7 +424,8 @@ fn negatives_of(
     }
     let longest = samples.iter().map(|s| s.rows.len()).max().unwrap_or(0) as f64;
     let short = |s: &TrainStream| {
-        s.source == Source::Background && s.rows.len() as f64 <= params.whole_background * longest
+        s.source == StreamKind::Background
+            && s.rows.len() as f64 <= params.whole_background * longest
     };
     let (whole, long): (Vec<_>, Vec<_>) = set
         .streams

@@ -2,9 +2,9 @@
 
 use crate::decode::FAR;
 
-use super::mining::Distances;
+use super::mining::TemplateDistances;
 use super::params::TrainParams;
-use super::set::{Source, TrainSample, TrainSet, TrainStream, overlap_share};
+use super::set::{StreamKind, TrainSample, TrainSet, TrainStream, overlap_share};
 
 /// A match belongs to what it shares more than this part of the shorter with.
 const TOUCHES: f64 = 0.3;
@@ -13,8 +13,12 @@ const TOUCHES: f64 = 0.3;
 ///
 /// Clips that the user calls background count in full. Of made everyday motion a tenth may come nearer: some of it
 /// may happen to be one of the classes, and what comes that near becomes a hard negative.
-pub fn common(set: &TrainSet, distances: &[Distances], params: &TrainParams) -> (f32, String) {
-    let of = |source: Source, share: f64| {
+pub fn common(
+    set: &TrainSet,
+    distances: &[TemplateDistances],
+    params: &TrainParams,
+) -> (f32, String) {
+    let of = |source: StreamKind, share: f64| {
         let streams = set
             .streams
             .iter()
@@ -28,8 +32,8 @@ pub fn common(set: &TrainSet, distances: &[Distances], params: &TrainParams) -> 
             .get((share * nearest.len() as f64) as usize)
             .copied()
     };
-    let clips = of(Source::Background, 0.0);
-    let everyday = of(Source::Everyday, params.everyday_may_pass);
+    let clips = of(StreamKind::Background, 0.0);
+    let everyday = of(StreamKind::Everyday, params.everyday_may_pass);
     let nearest = clips
         .into_iter()
         .chain(everyday)
@@ -57,17 +61,17 @@ pub fn common(set: &TrainSet, distances: &[Distances], params: &TrainParams) -> 
 pub fn of_classes(
     set: &TrainSet,
     samples: &[TrainSample],
-    distances: &[Distances],
+    distances: &[TemplateDistances],
     threshold: f32,
     params: &TrainParams,
 ) -> Vec<f32> {
-    if set.streams.iter().all(|s| s.source == Source::Labelled) {
+    if set.streams.iter().all(|s| s.source == StreamKind::Labelled) {
         return Vec::new();
     }
     let streams = || set.streams.iter().zip(distances);
     let of_class = |class: usize| {
         let counts = |template: usize| samples[template].class.index() == class;
-        let background = |source: Source, share: f64| {
+        let background = |source: StreamKind, share: f64| {
             let of = streams().filter(|(s, _)| s.source == source);
             let mut nearest: Vec<f32> = of.map(|(_, d)| nearest_anywhere(d, &counts)).collect();
             nearest.sort_by(f32::total_cmp);
@@ -76,12 +80,12 @@ pub fn of_classes(
                 .copied()
                 .unwrap_or(FAR)
         };
-        let others = streams().filter(|(s, _)| s.source == Source::Labelled);
+        let others = streams().filter(|(s, _)| s.source == StreamKind::Labelled);
         let others = others
             .map(|(s, d)| nearest_on_others(s, d, class, &counts))
             .fold(FAR, f32::min);
-        let everyday = background(Source::Everyday, params.everyday_may_pass);
-        let nearest = background(Source::Background, 0.0)
+        let everyday = background(StreamKind::Everyday, params.everyday_may_pass);
+        let nearest = background(StreamKind::Background, 0.0)
             .min(everyday)
             .min(others);
         let most = params.class_range as f32 * threshold;
@@ -92,7 +96,7 @@ pub fn of_classes(
     (0..set.classes.len()).map(of_class).collect()
 }
 
-fn nearest_anywhere(distances: &Distances, counts: &impl Fn(usize) -> bool) -> f32 {
+fn nearest_anywhere(distances: &TemplateDistances, counts: &impl Fn(usize) -> bool) -> f32 {
     (0..distances.len())
         .map(|t| distances.nearest(t, counts).distance)
         .fold(FAR, f32::min)
@@ -101,7 +105,7 @@ fn nearest_anywhere(distances: &Distances, counts: &impl Fn(usize) -> bool) -> f
 /// The smallest distance of a match that lies on a sample of another class, and on none of this or of unknown class.
 fn nearest_on_others(
     stream: &TrainStream,
-    distances: &Distances,
+    distances: &TemplateDistances,
     class: usize,
     counts: &impl Fn(usize) -> bool,
 ) -> f32 {
@@ -132,9 +136,14 @@ mod tests {
     use crate::classes::ClassId;
     use crate::features::Rows;
     use crate::templates::Matcher;
-    use crate::train::Known;
+    use crate::train::LabelledSpan;
 
-    fn stream(name: &str, source: Source, values: Vec<f32>, known: Vec<Known>) -> TrainStream {
+    fn stream(
+        name: &str,
+        source: StreamKind,
+        values: Vec<f32>,
+        known: Vec<LabelledSpan>,
+    ) -> TrainStream {
         let rows = Rows::from_values(1, values);
         let (group, rest_is_background) = (name.to_owned(), true);
         TrainStream {
@@ -159,7 +168,7 @@ mod tests {
             .collect();
         let known = (0..3).map(|c| {
             let start = 8 + 12 * usize::from(c);
-            Known {
+            LabelledSpan {
                 ticks: start..start + 4,
                 class: Some(ClassId(c)),
             }
@@ -170,11 +179,12 @@ mod tests {
         };
         set.streams.push(stream(
             "labelled",
-            Source::Labelled,
+            StreamKind::Labelled,
             values,
             known.collect(),
         ));
-        let background = background.map(|v| stream("b", Source::Background, vec![v; 8], vec![]));
+        let background =
+            background.map(|v| stream("b", StreamKind::Background, vec![v; 8], vec![]));
         set.streams.extend(background);
         let samples = set.samples();
         let mut bank = Matcher::new(
@@ -185,7 +195,7 @@ mod tests {
         let distances: Vec<_> = set
             .streams
             .iter()
-            .map(|s| Distances::of(&mut bank, &s.rows))
+            .map(|s| TemplateDistances::of(&mut bank, &s.rows))
             .collect();
         let params = TrainParams {
             class_share: 0.5,

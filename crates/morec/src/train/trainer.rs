@@ -7,7 +7,8 @@ use crate::labels::{Labels, People};
 use crate::progress::Progress;
 
 use super::{
-    Labelling, Recipe, Source, TrainClip, TrainOptions, TrainingData, TrainingReport, train_model,
+    LabelSet, Recipe, StreamKind, TrainClip, TrainOptions, TrainingData, TrainingReport,
+    train_model,
 };
 
 /// What to train from, and how. Only the labels must be given.
@@ -124,9 +125,9 @@ impl<'a> Trainer<'a> {
             person: person(take.name()),
             ..take.clone().into()
         };
-        let taught = takes.iter().map(|take| clip(take, Source::Labelled));
+        let taught = takes.iter().map(|take| clip(take, StreamKind::Labelled));
         let background = self.background.iter();
-        let background = background.map(|take| clip(take, Source::Background));
+        let background = background.map(|take| clip(take, StreamKind::Background));
         let clips = taught.chain(background).collect();
         let data = TrainingData::new(clips, &labels, &self.classes)?;
         let (index, mut report) = train_index(&data, &self.method, self.progress)?;
@@ -150,7 +151,7 @@ pub fn train_index(
     recipe: &Recipe,
     progress: &dyn Progress,
 ) -> Result<(MotionIndex, TrainingReport), super::TrainError> {
-    let labelling = Labelling {
+    let labelling = LabelSet {
         samples: &data.samples,
         held_back: &[],
         classes: &data.classes,

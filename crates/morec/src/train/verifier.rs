@@ -8,13 +8,14 @@ use rayon::prelude::*;
 use crate::classes::ClassId;
 use crate::features::Rows;
 use crate::templates::{
-    Exemplars, Generic, Metric, SHAPE_ROWS, Verifier, shape_distance, shape_of, squared_distance,
+    Exemplars, LinearScore, Metric, SHAPE_ROWS, Verifier, shape_distance, shape_of,
+    squared_distance,
 };
 
-use super::examples::Example;
+use super::examples::VerifierExample;
 use super::params::TrainParams;
 use super::ridge::{balanced, kernel, linear};
-use super::set::{Source, TrainSet};
+use super::set::{StreamKind, TrainSet};
 
 /// No example weighs more than this times the mean: three samples against hundreds of near misses.
 const MOST_WEIGHT: f64 = 20.0;
@@ -29,7 +30,7 @@ const MOST_WEIGHT: f64 = 20.0;
 ///
 /// Cross-fitted means: the score of an example comes from a fit without its group. O(Σ n_c³).
 pub fn learn(
-    examples: &[Example],
+    examples: &[VerifierExample],
     set: &TrainSet,
     metric: &Metric,
     threshold: f32,
@@ -41,7 +42,9 @@ pub fn learn(
         .map(|e| if e.positive { 1.0 } else { -1.0 })
         .collect();
     let positives = targets.iter().filter(|t| **t > 0.0).count();
-    let given = |e: &&Example| !e.positive && set.streams[e.stream].source == Source::Background;
+    let given = |e: &&VerifierExample| {
+        !e.positive && set.streams[e.stream].source == StreamKind::Background
+    };
     if positives < params.min_positives
         || examples.iter().filter(given).count() < params.min_negatives
     {
@@ -91,7 +94,7 @@ pub fn learn(
             .for_each(|(&i, c)| scores[i] += c);
         classes.push(exemplars);
     }
-    let of = |keep: &dyn Fn(&Example) -> bool| -> Vec<f64> {
+    let of = |keep: &dyn Fn(&VerifierExample) -> bool| -> Vec<f64> {
         examples
             .iter()
             .zip(&scores)
@@ -99,7 +102,7 @@ pub fn learn(
             .map(|(_, s)| *s)
             .collect()
     };
-    let background = |e: &Example| !e.positive && set.streams[e.stream].rest_is_background;
+    let background = |e: &VerifierExample| !e.positive && set.streams[e.stream].rest_is_background;
     let bar = bar(&of(&|e| e.positive), &of(&background), params);
     Some(Verifier {
         reach,
@@ -109,9 +112,12 @@ pub fn learn(
     })
 }
 
-fn group_numbers<K: Ord>(examples: &[Example], key: impl Fn(&Example) -> K) -> Vec<usize> {
+fn group_numbers<K: Ord>(
+    examples: &[VerifierExample],
+    key: impl Fn(&VerifierExample) -> K,
+) -> Vec<usize> {
     let mut numbers = BTreeMap::new();
-    let number = |e: &Example| {
+    let number = |e: &VerifierExample| {
         let next = numbers.len();
         *numbers.entry(key(e)).or_insert(next)
     };
@@ -123,7 +129,7 @@ fn fit_generic(
     ratios: &[[f64; 3]],
     targets: &[f64],
     groups: &[usize],
-) -> Option<(Generic, Vec<f64>)> {
+) -> Option<(LinearScore, Vec<f64>)> {
     let n = ratios.len() as f64;
     let mean: [f64; 3] = std::array::from_fn(|k| ratios.iter().map(|r| r[k]).sum::<f64>() / n);
     let deviation: [f64; 3] = std::array::from_fn(|k| {
@@ -134,13 +140,13 @@ fn fit_generic(
         .iter()
         .map(|r| std::array::from_fn(|k| (r[k] - mean[k]) / deviation[k]))
         .collect();
-    let fit = |keep: &dyn Fn(usize) -> bool| -> Option<Generic> {
+    let fit = |keep: &dyn Fn(usize) -> bool| -> Option<LinearScore> {
         let kept: Vec<usize> = (0..targets.len()).filter(|&i| keep(i)).collect();
         let both = kept.iter().any(|&i| targets[i] > 0.0) && kept.iter().any(|&i| targets[i] < 0.0);
         let pick = |v: &[f64]| kept.iter().map(|&i| v[i]).collect::<Vec<f64>>();
         let rows: Vec<[f64; 3]> = kept.iter().map(|&i| standard[i]).collect();
         let found = linear(&rows, &pick(targets), &pick(&weights), 0.01).filter(|_| both)?;
-        Some(Generic {
+        Some(LinearScore {
             mean,
             deviation,
             weights: [found[0], found[1], found[2], found[3]],
@@ -159,7 +165,7 @@ fn fit_generic(
 
 /// What the kernel regressions of all classes have in common.
 struct ClassProblem<'a> {
-    examples: &'a [Example],
+    examples: &'a [VerifierExample],
     set: &'a TrainSet,
     metric: &'a Metric,
     threshold: f32,
@@ -224,7 +230,8 @@ impl ClassProblem<'_> {
         if groups.len() > 1 {
             return members.iter().map(|&i| self.groups[i]).collect();
         }
-        let examples: Vec<Example> = members.iter().map(|&i| self.examples[i].clone()).collect();
+        let examples: Vec<VerifierExample> =
+            members.iter().map(|&i| self.examples[i].clone()).collect();
         group_numbers(&examples, |e| e.piece(false))
     }
 

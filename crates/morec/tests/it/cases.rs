@@ -7,7 +7,7 @@ use std::path::Path;
 use morec::features::KeyPose;
 use morec::math::{Quat, Vec3};
 use morec::roles::Role;
-use morec::synth::{Person, Rng, Script, Side, SyntheticTake};
+use morec::synth::{LimbSide, Person, Rng, Script, SyntheticTake};
 
 use crate::made::Timed;
 
@@ -79,7 +79,7 @@ impl Case {
     pub fn take(&self, rate_hz: f64) -> SyntheticTake {
         let mut person = Person::draw(self.seed, self.person);
         // The people of the model are right-handed, as in every synthetic database unless told otherwise.
-        person.hand = Side::Right;
+        person.hand = LimbSide::Right;
         person.height_m = self.height_m.unwrap_or(person.height_m);
         let perform = |script: Script, line: &Line| match line {
             Line::Rest(secs) => script.rest(*secs),

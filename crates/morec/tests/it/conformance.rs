@@ -2,7 +2,7 @@
 //! [`ENGINES`] goes through every case at every rate.
 
 use morec::live::Detection;
-use morec::synth::Kind;
+use morec::synth::MotionKind;
 
 use crate::cases::{Case, cases};
 use crate::engines::ENGINES;
@@ -32,7 +32,7 @@ fn every_engine_finds_what_every_case_expects() {
 fn print_what_is_performed() {
     for (name, case) in cases() {
         println!("{name}");
-        for l in case.take(60.0).keep(Kind::Gesture).labels {
+        for l in case.take(60.0).keep(MotionKind::Gesture).labels {
             println!(
                 "    {{\"class\": \"{}\", \"start_secs\": {:.2}, \"stop_secs\": {:.2}}},",
                 l.class, l.start_secs, l.stop_secs

@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use morec::features::{BoneSet, MAX_GAP_SECS};
 use morec::live::{Detection, Recognizer};
-use morec::synth::{Person, Script, Side};
+use morec::synth::{LimbSide, Person, Script};
 use proptest::prelude::*;
 
 use crate::engines::inline;
@@ -15,7 +15,7 @@ fn stream() -> &'static (BoneSet, Vec<Timed>, Vec<Detection>) {
     static STREAM: OnceLock<(BoneSet, Vec<Timed>, Vec<Detection>)> = OnceLock::new();
     STREAM.get_or_init(|| {
         let person = Person {
-            hand: Side::Right,
+            hand: LimbSide::Right,
             ..Person::draw(88, 1)
         };
         let script = Script::new(88, person)

@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use morec::features::BoneSet;
 use morec::live::{
-    Actor, Detection, EventReader, Frame, Next, Overload, Phase, Pool, PoolStream, Recognizer, Rig,
-    Session, SessionOptions, Source,
+    Detection, EventReader, Frame, OverflowPolicy, PerformerId, Phase, Pool, PoolStream,
+    Recognizer, Rig, Session, SessionOptions, Source, SourceEvent,
 };
 use morec::templates::TemplateModel;
 
@@ -78,23 +78,23 @@ impl Played {
 }
 
 impl Source for Played {
-    fn next(&mut self, frame: &mut Frame) -> Next {
+    fn next(&mut self, frame: &mut Frame) -> SourceEvent {
         if let Some(rig) = self.rig.take() {
-            return Next::Rig(Actor(0), rig);
+            return SourceEvent::Rig(PerformerId(0), rig);
         }
         let Some((time_secs, pose)) = self.poses.get(self.played) else {
-            return Next::Ended;
+            return SourceEvent::Ended;
         };
         self.played += 1;
         fill(frame, *time_secs, pose);
-        Next::Frame
+        SourceEvent::Frame
     }
 }
 
 fn fill(frame: &mut Frame, time_secs: f64, pose: &morec::features::KeyPose) {
     frame.time_secs = time_secs;
     frame.wall_secs = morec::live::wall_now_secs();
-    frame.actor = Actor(0);
+    frame.actor = PerformerId(0);
     frame.set_key_pose(pose);
 }
 
@@ -114,7 +114,7 @@ pub fn ended(mut reader: EventReader) -> Vec<Detection> {
 
 fn session(model: &Arc<TemplateModel>, _: BoneSet, poses: &[Timed]) -> Vec<Detection> {
     let options = SessionOptions {
-        overload: Overload::Wait,
+        overload: OverflowPolicy::Wait,
         frame_capacity: 7,
         ..Default::default()
     };
@@ -145,7 +145,7 @@ fn pool(model: &Arc<TemplateModel>, _: BoneSet, poses: &[Timed]) -> Vec<Detectio
     let rig = Arc::new(Rig::of_roles());
     feeds
         .iter_mut()
-        .for_each(|(feed, _)| feed.set_rig(Actor(0), &rig));
+        .for_each(|(feed, _)| feed.set_rig(PerformerId(0), &rig));
     for (time_secs, pose) in poses {
         for (feed, frame) in &mut feeds {
             fill(frame, *time_secs, pose);

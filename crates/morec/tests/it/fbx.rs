@@ -36,8 +36,16 @@ impl Scene {
     /// Curves of a property of `model`, in layer 2: three values for each frame.
     fn curves(&mut self, model: usize, property: &str, values: &[[f64; 3]], rate_hz: f64) {
         let node = self.id();
-        writeln!(self.objects, "AnimationCurveNode: {node}, \"AnimCurveNode::C\", \"\" {{\n}}").unwrap();
-        writeln!(self.connections, "C: \"OO\",{node},2\nC: \"OP\",{node},{model}, \"{property}\"").unwrap();
+        writeln!(
+            self.objects,
+            "AnimationCurveNode: {node}, \"AnimCurveNode::C\", \"\" {{\n}}"
+        )
+        .unwrap();
+        writeln!(
+            self.connections,
+            "C: \"OO\",{node},2\nC: \"OP\",{node},{model}, \"{property}\""
+        )
+        .unwrap();
         let count = values.len();
         let times: Vec<String> = (0..count)
             .map(|frame| format!("{:.0}", frame as f64 / rate_hz * TICKS))
@@ -84,7 +92,11 @@ fn fbx_of(clip: &Clip, up: usize, unit_cm: f64) -> String {
         )
         .unwrap();
         let parent = joint.parent.map_or(0, |parent| 100 + parent);
-        writeln!(scene.connections, "C: \"OO\",{attribute},{model}\nC: \"OO\",{model},{parent}").unwrap();
+        writeln!(
+            scene.connections,
+            "C: \"OO\",{attribute},{model}\nC: \"OO\",{model},{parent}"
+        )
+        .unwrap();
         let is_root = joint.parent.is_none();
         let turns: Vec<[f64; 3]> = (0..clip.frames)
             .map(|frame| {
@@ -94,7 +106,10 @@ fn fbx_of(clip: &Clip, up: usize, unit_cm: f64) -> String {
             .collect();
         scene.curves(model, "Lcl Rotation", &turns, clip.rate_hz);
         if let Some(track) = clip.track(j) {
-            let place = |at: &Vec3| (if is_root { turn * at } else { *at } * scale).into();
+            let place = |at: &Vec3| -> [f64; 3] {
+                let at = if is_root { turn * at } else { *at };
+                (at * scale).into()
+            };
             let places: Vec<[f64; 3]> = track.positions.iter().map(place).collect();
             scene.curves(model, "Lcl Translation", &places, clip.rate_hz);
         }
@@ -117,7 +132,13 @@ fn fbx_of(clip: &Clip, up: usize, unit_cm: f64) -> String {
 }
 
 fn recognised(take: &Take) -> Vec<Detection> {
-    recognize_clip(&made::model(), &take.clip, &take.roles, &take.report.rest_frames).unwrap()
+    recognize_clip(
+        &made::model(),
+        &take.clip,
+        &take.roles,
+        &take.report.rest_frames,
+    )
+    .unwrap()
 }
 
 #[test]
@@ -131,23 +152,40 @@ fn fbx_and_bvh_of_one_motion_give_the_same_detections() {
     let clip = database(4, &spec).remove(0).clip;
     let read = |name: &str, bytes: &[u8]| {
         let file = FileReader::default().parse(name.as_ref(), bytes).unwrap();
-        file.into_takes(&FileReader::default().import).unwrap().remove(0)
+        file.into_takes(&FileReader::default().import)
+            .unwrap()
+            .remove(0)
     };
     let mut bytes = Vec::new();
     bvh::write(&clip, &mut bytes).unwrap();
     let expected = recognised(&read("take.bvh", &bytes));
     assert!(expected.len() >= 5, "{} detections", expected.len());
-    for (up, unit_cm, axis, unit) in [(1, 1.0, "y", "cm"), (2, 1.0, "z", "cm"), (1, 100.0, "y", "m"), (2, 2.54, "z", "inch")] {
+    for (up, unit_cm, axis, unit) in [
+        (1, 1.0, "y", "cm"),
+        (2, 1.0, "z", "cm"),
+        (1, 100.0, "y", "m"),
+        (2, 2.54, "z", "inch"),
+    ] {
         let take = read("take.fbx", fbx_of(&clip, up, unit_cm).as_bytes());
-        assert_eq!((take.clip.frames, take.clip.rate_hz), (clip.frames, clip.rate_hz), "{unit}");
+        assert_eq!(
+            (take.clip.frames, take.clip.rate_hz),
+            (clip.frames, clip.rate_hz),
+            "{unit}"
+        );
         assert_eq!(take.report.up.to_string(), axis, "{unit}");
         assert_eq!(take.report.unit, Some(unit));
         let found = recognised(&take);
         assert_eq!(found.len(), expected.len(), "{up} {unit}");
         for (found, expected) in found.iter().zip(&expected) {
             assert_eq!(found.class, expected.class, "{up} {unit}");
-            assert!((found.start_secs - expected.start_secs).abs() < 0.05, "{up} {unit}");
-            assert!((found.stop_secs - expected.stop_secs).abs() < 0.05, "{up} {unit}");
+            assert!(
+                (found.start_secs - expected.start_secs).abs() < 0.05,
+                "{up} {unit}"
+            );
+            assert!(
+                (found.stop_secs - expected.stop_secs).abs() < 0.05,
+                "{up} {unit}"
+            );
         }
     }
 }

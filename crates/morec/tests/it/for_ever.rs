@@ -9,7 +9,7 @@ use morec::kinematics::WorldPose;
 use morec::live::recognize_clip;
 use morec::roles::RoleMap;
 use morec::smooth::{SmoothParams, VERSION, compress};
-use morec::synth::{Person, Script, Side, SyntheticTake};
+use morec::synth::{LimbSide, Person, Script, SyntheticTake};
 use morec::train::thesis::SvrdmTrainParams;
 
 use crate::thesis_method::{index_of, trained};
@@ -27,7 +27,7 @@ fn read(name: &str) -> Vec<u8> {
 /// Somebody never seen, who performs two of the classes and something else.
 fn stream() -> SyntheticTake {
     let person = Person {
-        hand: Side::Right,
+        hand: LimbSide::Right,
         ..Person::draw(90, 3)
     };
     let script = Script::new(90, person)

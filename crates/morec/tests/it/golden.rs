@@ -6,7 +6,7 @@ use std::path::Path;
 use morec::features::{BoneSet, rows_of_clip};
 use morec::labels::{ClipLength, Labels, Sample};
 use morec::templates::TemplateEngine;
-use morec::train::{Labelling, Source, TrainClip, TrainParams, prepare, train};
+use morec::train::{LabelSet, StreamKind, TrainClip, TrainParams, prepare, train};
 
 use crate::kit;
 
@@ -49,14 +49,20 @@ fn golden() -> Golden {
 fn clips(data: &Path) -> Vec<TrainClip> {
     let signals = SIGNALS
         .iter()
-        .map(|n| kit::referee(data, n, Source::Labelled));
+        .map(|n| kit::referee(data, n, StreamKind::Labelled));
     let background = BACKGROUND
         .iter()
-        .map(|n| kit::referee(data, n, Source::Background));
+        .map(|n| kit::referee(data, n, StreamKind::Background));
     let exercises = ["13_29", "13_30", "13_31"].iter();
-    let exercises =
-        exercises.map(|n| kit::acclaim(data, "exercises", "skeleton.asf", n, Source::Background));
-    let mixed = kit::acclaim(data, "segmentation", "86.asf", "86_01", Source::Background);
+    let exercises = exercises
+        .map(|n| kit::acclaim(data, "exercises", "skeleton.asf", n, StreamKind::Background));
+    let mixed = kit::acclaim(
+        data,
+        "segmentation",
+        "86.asf",
+        "86_01",
+        StreamKind::Background,
+    );
     signals
         .chain(background)
         .chain(exercises)
@@ -86,7 +92,7 @@ fn feature_rows_are_the_prototypes() {
     let Some(data) = kit::data() else { return };
     let params = TrainParams::reference().features;
     for (name, expected) in golden().feature_rows {
-        let clip = kit::referee(&data, &name, Source::Labelled);
+        let clip = kit::referee(&data, &name, StreamKind::Labelled);
         let bones = morec::features::BoneSet::ALL;
         let rows = rows_of_clip(&clip.clip, &clip.roles, &clip.rest, bones, &params);
         for (index, expected) in expected.iter().enumerate() {
@@ -121,7 +127,7 @@ fn thresholds_and_detections_are_the_prototypes() {
             .filter(|s| s.clip != left_out)
             .cloned()
             .collect();
-        let labelling = Labelling {
+        let labelling = LabelSet {
             samples: &taught,
             held_back: &[],
             classes: &classes,

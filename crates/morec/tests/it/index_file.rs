@@ -7,7 +7,7 @@ use std::sync::{Arc, OnceLock};
 use morec::index::{INDEX_VERSION, IndexError, MotionIndex, Provenance};
 use morec::live::Model;
 use morec::roles::Role;
-use morec::synth::{DatabaseSpec, Person, Script, Side, SyntheticTake};
+use morec::synth::{DatabaseSpec, LimbSide, Person, Script, SyntheticTake};
 use morec::train::TrainParams;
 
 use crate::engines::inline;
@@ -150,7 +150,7 @@ fn a_newer_version_asks_for_a_newer_morec() {
 /// The stream of the compatibility test: both classes and something else, by somebody never seen.
 fn stream() -> SyntheticTake {
     let person = Person {
-        hand: Side::Right,
+        hand: LimbSide::Right,
         ..Person::draw(90, 3)
     };
     let script = Script::new(90, person)

@@ -3,7 +3,7 @@
 use morec::clip::Clip;
 use morec::formats::{Limits, acclaim, bvh};
 use morec::roles::{Role, RoleMap};
-use morec::train::{Source, TrainClip};
+use morec::train::{StreamKind, TrainClip};
 
 #[path = "../testing/mod.rs"]
 mod testing;
@@ -37,7 +37,7 @@ fn roles(clip: &Clip) -> RoleMap {
 }
 
 /// A referee clip; frame 0 is a T-pose that the conversion left there.
-pub fn referee(data: &std::path::Path, name: &str, source: Source) -> TrainClip {
+pub fn referee(data: &std::path::Path, name: &str, source: StreamKind) -> TrainClip {
     let bytes = std::fs::read(data.join("referee/clips").join(format!("{name}.bvh"))).unwrap();
     let loaded = bvh::read(
         &bytes,
@@ -63,7 +63,7 @@ pub fn acclaim(
     folder: &str,
     asf: &str,
     name: &str,
-    source: Source,
+    source: StreamKind,
 ) -> TrainClip {
     let skeleton = std::fs::read(data.join(folder).join(asf)).unwrap();
     let (asf, _) = acclaim::read_asf(&skeleton, &Limits::default()).unwrap();

@@ -5,13 +5,13 @@
 
 use std::collections::BTreeMap;
 
-use morec::eval::{Evaluation, Found, StreamInfo, Truth};
+use morec::eval::{ClipDetection, Evaluation, GroundTruth, StreamInfo};
 use morec::import::Take;
 use morec::labels::Sample;
 use morec::live::{Model, recognize_poses};
 use morec::perturb::{Device, perturb};
-use morec::synth::{DatabaseSpec, Label, database, living_room};
-use morec::train::{Labelling, Source, TrainClip, TrainOptions, train_clips};
+use morec::synth::{DatabaseSpec, SyntheticLabel, database, living_room};
+use morec::train::{LabelSet, StreamKind, TrainClip, TrainOptions, train_clips};
 
 const CLASSES: [&str; 5] = ["wave", "raise_hands", "point_side", "push", "bow"];
 const PEOPLE: std::ops::Range<usize> = 20..24;
@@ -56,11 +56,11 @@ fn trained() -> Model {
             rest: imported.rest().clone(),
             clip: imported.clip,
             roles: imported.roles,
-            source: Source::Labelled,
+            source: StreamKind::Labelled,
             person: Some(take.person),
         });
     }
-    let labelling = Labelling {
+    let labelling = LabelSet {
         samples: &samples,
         classes: &CLASSES.map(str::to_owned),
         unlabelled_is_background: true,
@@ -71,7 +71,7 @@ fn trained() -> Model {
 }
 
 /// Whether the middle of a detection lies in one of `idle`.
-fn is_idle(found: &Found, idle: &[Label]) -> bool {
+fn is_idle(found: &ClipDetection, idle: &[SyntheticLabel]) -> bool {
     let middle = (found.start_secs + found.stop_secs) / 2.0;
     idle.iter()
         .any(|i| (i.start_secs..i.stop_secs).contains(&middle))
@@ -86,9 +86,9 @@ fn measured(model: &Model, device: Device) -> Figures {
         let clip = &take.clip;
         let seen = perturb(take.poses(), &device.perturbations(), number as u64);
         let found = recognize_poses(model, &seen.poses).unwrap();
-        let found: Vec<Found> = found
+        let found: Vec<ClipDetection> = found
             .iter()
-            .map(|d| Found {
+            .map(|d| ClipDetection {
                 clip: clip.name.clone(),
                 class: model.class_name(d.class).to_owned(),
                 start_secs: d.start_secs,
@@ -104,7 +104,7 @@ fn measured(model: &Model, device: Device) -> Figures {
             .map(|i| i.stop_secs - i.start_secs)
             .sum::<f64>();
         founds.extend(found);
-        truths.extend(room.take.labels.iter().map(|label| Truth {
+        truths.extend(room.take.labels.iter().map(|label| GroundTruth {
             clip: clip.name.clone(),
             class: label.class.to_owned(),
             start_secs: label.start_secs,

@@ -9,7 +9,7 @@ use morec::roles::RoleMap;
 use morec::synth::{DatabaseSpec, SyntheticTake, database, everyday};
 use morec::templates::TemplateModel;
 use morec::train::{
-    EVERYDAY_SEED, Labelling, Source, TrainClip, TrainOptions, TrainParams, train_clips,
+    EVERYDAY_SEED, LabelSet, StreamKind, TrainClip, TrainOptions, TrainParams, train_clips,
 };
 
 /// A pose and its time on the stream's clock.
@@ -47,15 +47,15 @@ pub fn train(spec: &DatabaseSpec, params: TrainParams) -> TemplateModel {
     let samples: Vec<Sample> = takes.iter().flat_map(samples_of).collect();
     let mut clips: Vec<TrainClip> = takes
         .into_iter()
-        .map(|t| train_clip(t.clip, Some(t.person), Source::Labelled))
+        .map(|t| train_clip(t.clip, Some(t.person), StreamKind::Labelled))
         .collect();
     // Talking hands come nearest to gestures; with all of it, training would take several times as long.
     let talking = everyday(EVERYDAY_SEED)
         .into_iter()
         .filter(|c| c.name.contains("talk"));
-    clips.extend(talking.map(|c| train_clip(c, None, Source::Background)));
+    clips.extend(talking.map(|c| train_clip(c, None, StreamKind::Background)));
     let classes: Vec<String> = spec.classes.iter().map(|c| (*c).to_owned()).collect();
-    let labelling = Labelling {
+    let labelling = LabelSet {
         samples: &samples,
         held_back: &[],
         classes: &classes,
@@ -70,7 +70,7 @@ pub fn train(spec: &DatabaseSpec, params: TrainParams) -> TemplateModel {
 }
 
 fn samples_of(take: &SyntheticTake) -> Vec<Sample> {
-    let sample = |l: &morec::synth::Label| Sample {
+    let sample = |l: &morec::synth::SyntheticLabel| Sample {
         clip: take.clip.name.clone(),
         class: l.class.to_owned(),
         start_secs: l.start_secs,
@@ -82,7 +82,7 @@ fn samples_of(take: &SyntheticTake) -> Vec<Sample> {
     take.labels.iter().map(sample).collect()
 }
 
-fn train_clip(clip: Clip, person: Option<String>, source: Source) -> TrainClip {
+fn train_clip(clip: Clip, person: Option<String>, source: StreamKind) -> TrainClip {
     let (name, roles) = (clip.name.clone(), RoleMap::find(&clip.skeleton));
     TrainClip {
         name,

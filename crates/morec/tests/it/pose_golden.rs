@@ -6,10 +6,10 @@ use std::path::Path;
 
 use morec::cluster::{KwasForm, Spectrum, kwas};
 use morec::features::Rows;
-use morec::pca::{Keep, Moments, Pca};
+use morec::pca::{ComponentCount, Moments, Pca};
 use morec::pivots::{PivotMap, PivotSet, PoseParams, pose_rows_of_clip};
-use morec::segment::{Directions, PpcaParams, segment};
-use morec::train::Source;
+use morec::segment::{PassDirections, PpcaParams, segment};
+use morec::train::StreamKind;
 
 use crate::kit;
 
@@ -40,14 +40,14 @@ fn golden() -> Golden {
 }
 
 fn rows(data: &Path, name: &str) -> Rows {
-    let clip = kit::referee(data, name, Source::Labelled);
+    let clip = kit::referee(data, name, StreamKind::Labelled);
     let set = PivotSet::thesis();
     let map = PivotMap::resolve(&set, &clip.clip.skeleton, &clip.roles).unwrap();
     assert_eq!(map.missing().len(), 0);
     pose_rows_of_clip(&clip.clip, &set, &map, &clip.rest, &PoseParams::default())
 }
 
-fn components(rows: &BTreeMap<String, Rows>, keep: Keep) -> Pca {
+fn components(rows: &BTreeMap<String, Rows>, keep: ComponentCount) -> Pca {
     let mut moments = Moments::new(64);
     rows.values().for_each(|rows| moments.push_rows(rows));
     Pca::fit(&moments, keep).unwrap()
@@ -71,7 +71,7 @@ fn pose_rows_and_components_and_similarities_are_the_scripts() {
             );
         }
     }
-    let pca = components(&rows, Keep::Dims(16));
+    let pca = components(&rows, ComponentCount::Dims(16));
     assert_eq!(pca.rows(), golden.pca.rows);
     for (found, expected) in pca.eigenvalues().iter().zip(&golden.pca.eigenvalues) {
         assert!(
@@ -80,7 +80,7 @@ fn pose_rows_and_components_and_similarities_are_the_scripts() {
         );
     }
     for (quality, dims) in &golden.pca.dims {
-        let keep = Keep::Quality(quality.parse().unwrap());
+        let keep = ComponentCount::Quality(quality.parse().unwrap());
         assert_eq!(components(&rows, keep).dims(), *dims, "{quality}");
     }
     let cut = |(clip, start, stop): &(String, usize, usize)| {
@@ -104,7 +104,7 @@ fn distances_ahead_are_those_of_the_whole_inverse() {
         // A rise that nothing reaches: one segment from the start, as in the script.
         let params = PpcaParams {
             rise: 1e12,
-            directions: Directions::Forward,
+            directions: PassDirections::Forward,
             ..PpcaParams::default()
         };
         let found = segment(&rows(&data, &name), 120.0, &params).unwrap();

@@ -5,19 +5,19 @@ use std::time::Duration;
 
 use morec::features::{BoneSet, KeyPose};
 use morec::live::{
-    Actor, Event, EventOptions, EventReader, Frame, Next, Overload, Phase, Rig, Session,
-    SessionOptions, Source,
+    Event, EventOptions, EventReader, Frame, OverflowPolicy, PerformerId, Phase, Rig, Session,
+    SessionOptions, Source, SourceEvent,
 };
 use morec::math::Vec3;
 use morec::roles::Role;
-use morec::synth::{Person, Script, Side};
+use morec::synth::{LimbSide, Person, Script};
 
 use crate::engines::{Played, ended, inline};
 use crate::made::{self, Timed};
 
 fn stream() -> Vec<Timed> {
     let person = Person {
-        hand: Side::Right,
+        hand: LimbSide::Right,
         ..Person::draw(90, 1)
     };
     let script = Script::new(90, person)
@@ -52,21 +52,21 @@ fn rig(actor: u16, rig: Rig) -> Step {
 }
 
 impl Source for Scripted {
-    fn next(&mut self, frame: &mut Frame) -> Next {
+    fn next(&mut self, frame: &mut Frame) -> SourceEvent {
         match self.0.as_mut_slice().first_mut() {
             Some(Step::Frames(actor, poses)) if !poses.is_empty() => {
                 let (time_secs, pose) = poses.remove(0);
                 frame.set_key_pose(&pose);
-                (frame.time_secs, frame.actor) = (time_secs, Actor(*actor));
-                return Next::Frame;
+                (frame.time_secs, frame.actor) = (time_secs, PerformerId(*actor));
+                return SourceEvent::Frame;
             }
             _ => {}
         }
         match self.0.next() {
-            Some(Step::Rig(actor, rig)) => Next::Rig(Actor(actor), rig),
-            Some(Step::Gone(actor)) => Next::Gone(Actor(actor)),
-            Some(Step::Frames(..) | Step::Quiet) => Next::Quiet,
-            None => Next::Ended,
+            Some(Step::Rig(actor, rig)) => SourceEvent::Rig(PerformerId(actor), rig),
+            Some(Step::Gone(actor)) => SourceEvent::Gone(PerformerId(actor)),
+            Some(Step::Frames(..) | Step::Quiet) => SourceEvent::Quiet,
+            None => SourceEvent::Ended,
         }
     }
 }
@@ -124,7 +124,7 @@ fn performers_do_not_disturb_each_other() {
     for actor in [0, 3] {
         let of_actor: Vec<&Event> = events
             .iter()
-            .filter(|e| e.actor == Actor(actor) && e.phase == Phase::End)
+            .filter(|e| e.actor == PerformerId(actor) && e.phase == Phase::End)
             .collect();
         assert_eq!(of_actor.len(), alone.len());
         for (event, expected) in of_actor.iter().zip(&alone) {
@@ -201,7 +201,7 @@ fn a_source_that_may_not_wait_loses_frames_and_they_are_counted() {
         })
         .collect();
     let options = SessionOptions {
-        overload: Overload::Drop,
+        overload: OverflowPolicy::Drop,
         frame_capacity: 1,
         ..Default::default()
     };
@@ -241,16 +241,16 @@ fn several_readers_each_get_everything_and_one_that_left_holds_nobody_up() {
 fn a_session_that_is_stopped_ends_though_nobody_reads_and_the_source_goes_on_for_ever() {
     struct Endless(u64, Vec<Timed>, bool);
     impl Source for Endless {
-        fn next(&mut self, frame: &mut Frame) -> Next {
+        fn next(&mut self, frame: &mut Frame) -> SourceEvent {
             if !self.2 {
                 self.2 = true;
-                return Next::Rig(Actor(0), Arc::new(Rig::of_roles()));
+                return SourceEvent::Rig(PerformerId(0), Arc::new(Rig::of_roles()));
             }
             let (time_secs, pose) = self.1[self.0 as usize % self.1.len()];
             frame.time_secs = time_secs + 60.0 * (self.0 / self.1.len() as u64) as f64;
             frame.set_key_pose(&pose);
             self.0 += 1;
-            Next::Frame
+            SourceEvent::Frame
         }
     }
     let source = Box::new(Endless(0, stream(), false));

@@ -6,8 +6,9 @@ use std::time::Duration;
 use morec::features::MAX_GAP_SECS;
 use morec::kinematics::WorldPose;
 use morec::live::{
-    Actor, Event, EventOptions, Frame, Layout, Model, Next, Overload, Phase, Rig, Session,
-    SessionError, SessionOptions, Source, Status, recognize_clip, recognize_clip_in_session,
+    Event, EventOptions, Frame, Model, OverflowPolicy, PerformerId, Phase, Rig, Session,
+    SessionError, SessionOptions, Source, SourceEvent, Status, Threading, recognize_clip,
+    recognize_clip_in_session,
 };
 use morec::roles::RoleMap;
 use morec::synth::SyntheticTake;
@@ -29,16 +30,16 @@ enum Step {
 struct Scripted(std::vec::IntoIter<Step>);
 
 impl Source for Scripted {
-    fn next(&mut self, frame: &mut Frame) -> Next {
+    fn next(&mut self, frame: &mut Frame) -> SourceEvent {
         match self.0.next() {
-            Some(Step::Rig(actor, rig)) => Next::Rig(Actor(actor), rig),
+            Some(Step::Rig(actor, rig)) => SourceEvent::Rig(PerformerId(actor), rig),
             Some(Step::Frame(next)) => {
                 *frame = *next;
-                Next::Frame
+                SourceEvent::Frame
             }
-            Some(Step::Gone(actor)) => Next::Gone(Actor(actor)),
-            Some(Step::Quiet) => Next::Quiet,
-            None => Next::Ended,
+            Some(Step::Gone(actor)) => SourceEvent::Gone(PerformerId(actor)),
+            Some(Step::Quiet) => SourceEvent::Quiet,
+            None => SourceEvent::Ended,
         }
     }
 }
@@ -64,7 +65,7 @@ fn frames(take: &SyntheticTake, actor: u16, origin_secs: f64, speed: f64) -> Vec
         Step::Frame(Box::new(Frame {
             time_secs,
             wall_secs: 1e9 + time_secs,
-            actor: Actor(actor),
+            actor: PerformerId(actor),
             pose,
         }))
     };
@@ -73,7 +74,7 @@ fn frames(take: &SyntheticTake, actor: u16, origin_secs: f64, speed: f64) -> Vec
 
 fn run(
     model: &Model,
-    layout: Layout,
+    layout: Threading,
     steps: &[Step],
     events: EventOptions,
 ) -> (Vec<Event>, Status) {
@@ -133,8 +134,8 @@ fn events_are_those_of_the_inline_layout_to_the_bit() {
                 early: true,
                 refractory_secs,
             };
-            let (inline, by_one) = run(&model, Layout::Inline, &steps, events.clone());
-            let (staged, by_many) = run(&model, Layout::Stages, &steps, events);
+            let (inline, by_one) = run(&model, Threading::Inline, &steps, events.clone());
+            let (staged, by_many) = run(&model, Threading::Stages, &steps, events);
             assert_eq!(staged, inline);
             assert!(
                 inline.len() >= 6 && inline.iter().all(|e| e.phase == Phase::End),
@@ -168,7 +169,7 @@ fn a_clip_recognised_in_stages_has_the_detections_it_has_inline() {
     for take in takes() {
         let roles = RoleMap::find(&take.clip.skeleton);
         let inline = recognize_clip(&model, &take.clip, &roles, &(0..0)).unwrap();
-        for layout in [Layout::Inline, Layout::Stages] {
+        for layout in [Threading::Inline, Threading::Stages] {
             let options = SessionOptions {
                 layout,
                 ..Default::default()
@@ -189,7 +190,7 @@ fn every_thread_says_what_it_is_for() {
         HEARD.lock().unwrap().push((thread, what));
     }
     let options = SessionOptions {
-        layout: Layout::Stages,
+        layout: Threading::Stages,
         on_thread: Some(hear),
         ..Default::default()
     };
@@ -214,7 +215,7 @@ fn every_thread_says_what_it_is_for() {
 #[test]
 fn a_method_without_stages_is_refused() {
     let options = SessionOptions {
-        layout: Layout::Stages,
+        layout: Threading::Stages,
         ..Default::default()
     };
     let started = Session::start(
@@ -238,25 +239,25 @@ fn a_method_without_stages_is_refused() {
 fn stages_that_are_stopped_end_though_nobody_reads_and_the_source_goes_on_for_ever() {
     struct Endless(Vec<Step>, usize);
     impl Source for Endless {
-        fn next(&mut self, frame: &mut Frame) -> Next {
+        fn next(&mut self, frame: &mut Frame) -> SourceEvent {
             self.1 += 1;
             match &self.0[(self.1 - 1) % self.0.len()] {
-                Step::Rig(actor, rig) => Next::Rig(Actor(*actor), rig.clone()),
+                Step::Rig(actor, rig) => SourceEvent::Rig(PerformerId(*actor), rig.clone()),
                 Step::Frame(next) => {
                     frame.clone_from(next);
                     frame.time_secs += (self.1 / self.0.len()) as f64 * 100.0;
-                    Next::Frame
+                    SourceEvent::Frame
                 }
-                Step::Gone(_) | Step::Quiet => Next::Quiet,
+                Step::Gone(_) | Step::Quiet => SourceEvent::Quiet,
             }
         }
     }
     let model = tuned();
     let mut steps = vec![Step::Rig(0, rig_of(&takes()[0]))];
     steps.extend(frames(&takes()[0], 0, 0.0, 1.0));
-    for overload in [Overload::Wait, Overload::Drop] {
+    for overload in [OverflowPolicy::Wait, OverflowPolicy::Drop] {
         let options = SessionOptions {
-            layout: Layout::Stages,
+            layout: Threading::Stages,
             overload,
             ..Default::default()
         };
@@ -291,8 +292,8 @@ proptest! {
                 }
             }
         }
-        let inline = run(&model, Layout::Inline, &steps, EventOptions::default()).0;
-        let staged = run(&model, Layout::Stages, &steps, EventOptions::default()).0;
+        let inline = run(&model, Threading::Inline, &steps, EventOptions::default()).0;
+        let staged = run(&model, Threading::Stages, &steps, EventOptions::default()).0;
         prop_assert_eq!(staged, inline);
     }
 }

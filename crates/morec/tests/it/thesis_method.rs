@@ -11,7 +11,7 @@ use morec::reproduce::{Setting, Study, page, reproduce};
 use morec::roles::RoleMap;
 use morec::synth::{DatabaseSpec, SyntheticTake, database};
 use morec::train::thesis::{SvrdmOptions, SvrdmTrainParams, train_svrdm};
-use morec::train::{Labelling, Source, TrainClip, TrainError, TrainingReport};
+use morec::train::{LabelSet, StreamKind, TrainClip, TrainError, TrainingReport};
 
 const CLASSES: [&str; 3] = ["wave", "bow", "push"];
 
@@ -38,7 +38,7 @@ fn clips(takes: &[SyntheticTake]) -> (Vec<TrainClip>, Vec<Sample>) {
         roles: RoleMap::find(&take.clip.skeleton),
         clip: take.clip.clone(),
         rest: 0..0,
-        source: Source::Labelled,
+        source: StreamKind::Labelled,
         person: Some(take.person.clone()),
     };
     let samples = takes.iter().flat_map(|take| {
@@ -62,7 +62,7 @@ fn classes() -> Vec<String> {
 pub fn trained(params: SvrdmTrainParams) -> (Model, TrainingReport) {
     let (clips, samples) = clips(takes());
     let classes = classes();
-    let labelling = Labelling {
+    let labelling = LabelSet {
         samples: &samples,
         classes: &classes,
         unlabelled_is_background: true,
@@ -182,7 +182,7 @@ fn thresholds_come_from_left_out_samples_and_background() {
 fn one_class_or_none_is_refused() {
     let (clips, samples) = clips(takes());
     let train = |classes: &[String], samples: &[Sample]| {
-        let labelling = Labelling {
+        let labelling = LabelSet {
             samples,
             classes,
             unlabelled_is_background: true,

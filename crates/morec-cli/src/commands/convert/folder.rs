@@ -7,10 +7,10 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
 
-use super::form::{self, Form};
+use super::form::{self, ClipForm};
 use super::{Args, Wanted};
 use crate::files;
-use crate::progress::Progress;
+use crate::progress::SlowProgress;
 
 /// Writes every clip that `args` name. Exit code 1 if one of them could not be read or written, or a folder holds motion
 /// that is not read; the others are written.
@@ -25,7 +25,7 @@ pub(super) fn convert(args: &Args, wanted: &Wanted) -> Result<ExitCode> {
             output.display()
         );
     }
-    let form = args.form.unwrap_or(Form::Bvh);
+    let form = args.form.unwrap_or(ClipForm::Bvh);
     let mut failed = false;
     let mut from: Vec<(PathBuf, PathBuf)> = Vec::new();
     for path in &args.clips {
@@ -40,7 +40,7 @@ pub(super) fn convert(args: &Args, wanted: &Wanted) -> Result<ExitCode> {
             from.push((clip.clone(), name.to_owned()));
         }
     }
-    let mut progress = Progress::new(from.len(), "converting clips");
+    let mut progress = SlowProgress::new(from.len(), "converting clips");
     let mut taken: BTreeSet<PathBuf> = BTreeSet::new();
     for (path, name) in &from {
         let done = one(path, &output.join(name), form, args, wanted, &mut taken);
@@ -66,7 +66,7 @@ pub(super) fn convert(args: &Args, wanted: &Wanted) -> Result<ExitCode> {
 fn one(
     path: &Path,
     target: &Path,
-    form: Form,
+    form: ClipForm,
     args: &Args,
     wanted: &Wanted,
     taken: &mut BTreeSet<PathBuf>,
@@ -101,7 +101,7 @@ fn one(
 }
 
 /// `target` with the form's ending; with its own before that where another clip of this run has the name.
-fn free(target: &Path, form: Form, path: &Path, taken: &BTreeSet<PathBuf>) -> PathBuf {
+fn free(target: &Path, form: ClipForm, path: &Path, taken: &BTreeSet<PathBuf>) -> PathBuf {
     let plain = target.with_extension(form.ending());
     if !taken.contains(&plain) {
         return plain;

@@ -13,7 +13,7 @@ use crate::output;
 
 /// A form of clips.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Form {
+pub enum ClipForm {
     /// Skeleton and rotations; the clip's own units and axes
     Bvh,
     /// Points, binary
@@ -32,17 +32,17 @@ pub enum Form {
     Csv,
 }
 
-impl Form {
+impl ClipForm {
     /// Every form with its ending.
-    const ALL: [(Form, &'static str); 8] = [
-        (Form::Bvh, "bvh"),
-        (Form::C3d, "c3d"),
-        (Form::Trc, "trc"),
-        (Form::Jsonl, "jsonl"),
-        (Form::Glb, "glb"),
-        (Form::Vrma, "vrma"),
-        (Form::Npz, "npz"),
-        (Form::Csv, "csv"),
+    const ALL: [(ClipForm, &'static str); 8] = [
+        (ClipForm::Bvh, "bvh"),
+        (ClipForm::C3d, "c3d"),
+        (ClipForm::Trc, "trc"),
+        (ClipForm::Jsonl, "jsonl"),
+        (ClipForm::Glb, "glb"),
+        (ClipForm::Vrma, "vrma"),
+        (ClipForm::Npz, "npz"),
+        (ClipForm::Csv, "csv"),
     ];
 
     /// The ending of its files.
@@ -59,7 +59,7 @@ impl Form {
     /// The ending of something that is not written.
     pub fn of(path: &Path) -> Result<Self> {
         let Some(ending) = path.extension() else {
-            return Ok(Form::Bvh);
+            return Ok(ClipForm::Bvh);
         };
         let found = Self::ALL
             .into_iter()
@@ -84,41 +84,41 @@ pub fn write_clip(clip: &Clip, path: &Path) -> Result<()> {
         rate_hz: None,
         fit: false,
     };
-    write(clip.clone(), Form::of(path)?, &wanted, path)
+    write(clip.clone(), ClipForm::of(path)?, &wanted, path)
 }
 
 /// Writes a clip in `form`; whole or not at all.
-pub(super) fn write(clip: Clip, form: Form, wanted: &Wanted, path: &Path) -> Result<()> {
+pub(super) fn write(clip: Clip, form: ClipForm, wanted: &Wanted, path: &Path) -> Result<()> {
     match form {
-        Form::Bvh => output::write_whole(path, |out| bvh::write(&clip, out)),
-        Form::C3d => {
+        ClipForm::Bvh => output::write_whole(path, |out| bvh::write(&clip, out)),
+        ClipForm::C3d => {
             let points = points_of(clip, wanted)?;
             output::write_whole(path, |out| c3d::write(&points, out))
         }
-        Form::Trc => {
+        ClipForm::Trc => {
             let points = points_of(clip, wanted)?;
             output::write_whole(path, |out| trc::write(&points, out))
         }
-        Form::Jsonl => {
+        ClipForm::Jsonl => {
             let points = points_of(clip, wanted)?;
             output::write_whole(path, |out| jsonl::write(&points, out))
         }
-        Form::Glb => {
+        ClipForm::Glb => {
             let take = normalize(clip, &wanted.import)?;
             output::write_whole(path, |out| gltf::write(&take.clip, out))
         }
-        Form::Vrma => {
+        ClipForm::Vrma => {
             let take = normalize(clip, &wanted.import)?;
             for doubt in &take.report.doubts {
                 eprintln!("morec: {}: {doubt}", take.clip.name);
             }
             output::write_whole(path, |out| gltf::write_vrma(&take.clip, &take.roles, out))
         }
-        Form::Npz => {
+        ClipForm::Npz => {
             let take = normalize(clip, &wanted.import)?;
             output::write_whole(path, |out| write_npz(&take, out))
         }
-        Form::Csv => {
+        ClipForm::Csv => {
             let take = normalize(clip, &wanted.import)?;
             output::write_whole(path, |out| write_csv(&take, wanted.content, out))
         }

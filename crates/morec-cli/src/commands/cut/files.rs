@@ -9,7 +9,7 @@ use morec::import::Take;
 use morec::segment::{KernelParams, PpcaParams, Segmentation, kernel_cuts, segment};
 use serde::Serialize;
 
-use super::{Args, Cutter};
+use super::{Args, CheckedCutter};
 use crate::figures::write_json;
 use crate::output;
 use crate::poses::{PoseReader, PosedClip};
@@ -20,8 +20,8 @@ struct CutClip {
     rate_hz: f64,
     frames: usize,
     cuts: Vec<FoundCut>,
-    forward: Vec<morec::segment::HPoint>,
-    backward: Vec<morec::segment::HPoint>,
+    forward: Vec<morec::segment::MisfitSample>,
+    backward: Vec<morec::segment::MisfitSample>,
 }
 
 #[derive(Serialize)]
@@ -41,12 +41,12 @@ struct Passes {
 }
 
 /// Reads, cuts and prints every clip.
-pub fn run(cutter: &Cutter, args: &Args) -> Result<ExitCode> {
+pub fn run(cutter: &CheckedCutter, args: &Args) -> Result<ExitCode> {
     let reader = args.poses.reader()?;
     let found = match cutter {
-        Cutter::Kernel(params) if args.plot.is_none() => by_kernel(&reader, params, args)?,
-        Cutter::Kernel(_) => bail!("--plot draws the misfit of --method ppca"),
-        Cutter::Ppca(params) => by_ppca(&reader, params, args)?,
+        CheckedCutter::Kernel(params) if args.plot.is_none() => by_kernel(&reader, params, args)?,
+        CheckedCutter::Kernel(_) => bail!("--plot draws the misfit of --method ppca"),
+        CheckedCutter::Ppca(params) => by_ppca(&reader, params, args)?,
     };
     let mut out = std::io::stdout().lock();
     if args.json {

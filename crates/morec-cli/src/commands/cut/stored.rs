@@ -6,22 +6,22 @@ use std::process::ExitCode;
 use anyhow::{Result, bail};
 use morec_db::{ClipCuts, ClipFilter, SegmentKind};
 
-use super::{Args, Cutter};
+use super::{Args, CheckedCutter};
 use crate::database;
-use crate::progress::Bar;
-use crate::table::Table;
+use crate::progress::StageBar;
+use crate::table::TextTable;
 
 /// Cuts, keeps and prints.
-pub fn run(path: &Path, cutter: Cutter, args: &Args) -> Result<ExitCode> {
+pub fn run(path: &Path, cutter: CheckedCutter, args: &Args) -> Result<ExitCode> {
     if args.plot.is_some() {
         bail!("--plot draws a clip of a file, not of a database");
     }
     let cutter = match cutter {
-        Cutter::Kernel(params) => morec_db::Cutter::Kernel(params),
-        Cutter::Ppca(params) => morec_db::Cutter::Ppca(params, args.poses.reader()?.set),
+        CheckedCutter::Kernel(params) => morec_db::Cutter::Kernel(params),
+        CheckedCutter::Ppca(params) => morec_db::Cutter::Ppca(params, args.poses.reader()?.set),
     };
     let mut db = database::open(path)?;
-    let bar = Bar::stoppable()?;
+    let bar = StageBar::stoppable()?;
     let clips = db.find_clips(&ClipFilter {
         name: args.name.clone(),
         ..ClipFilter::default()
@@ -41,8 +41,8 @@ pub fn run(path: &Path, cutter: Cutter, args: &Args) -> Result<ExitCode> {
 
 fn print(cuts: &[ClipCuts]) -> Result<()> {
     const SHOWN: usize = 12;
-    let mut table =
-        Table::new(["clip", "secs", "still", "T-pose", "cuts"]).least(["T-pose", "still", "secs"]);
+    let mut table = TextTable::new(["clip", "secs", "still", "T-pose", "cuts"])
+        .least(["T-pose", "still", "secs"]);
     for cut in cuts {
         let of = |kind| -> f64 {
             cut.still

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::copies::{self, Copy};
 use crate::database;
-use crate::progress::Bar;
+use crate::progress::StageBar;
 
 /// Read everything in a database and say what is wrong
 #[derive(clap::Args)]
@@ -40,7 +40,7 @@ struct Checked {
 /// Checks and prints.
 pub fn run(args: &Args) -> Result<ExitCode> {
     if args.repair {
-        let made = database::open(&args.db)?.repair(&Bar::new())?;
+        let made = database::open(&args.db)?.repair(&StageBar::new())?;
         eprintln!("morec: feature rows of {made} clips made again");
     }
     let health = database::open_read_only(&args.db)?.check()?;
@@ -48,7 +48,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         true => Some(copies::find(
             &mut database::open_read_only(&args.db)?,
             None,
-            &Bar::stoppable()?,
+            &StageBar::stoppable()?,
         )?),
         false => None,
     };

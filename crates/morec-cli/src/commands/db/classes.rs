@@ -9,7 +9,7 @@ use morec_db::labels::SampleId;
 
 use super::samples;
 use crate::database;
-use crate::table::Table;
+use crate::table::TextTable;
 
 /// List the classes, or rename, merge, split and forget them
 ///
@@ -74,7 +74,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         super::print_json(&classes)?;
         return Ok(ExitCode::SUCCESS);
     }
-    let mut table = Table::new(["class", "samples", "secs", "proposed", "rejected"])
+    let mut table = TextTable::new(["class", "samples", "secs", "proposed", "rejected"])
         .least(["rejected", "secs", "proposed"]);
     for class in &classes {
         table.row([

@@ -4,10 +4,11 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
+use morec::roles::Role;
 use morec_db::{ClipFilter, ClipId, ClipInfo, ClipUpdate};
 
 use crate::database;
-use crate::table::Table;
+use crate::table::TextTable;
 
 /// List the clips of a database, or change what is known about them
 #[derive(clap::Args)]
@@ -17,7 +18,8 @@ Examples:
   morec db clips moves.mdb --class wave --subject anna
   morec db clips moves.mdb --name 'ah_*' --set-subject ah --add-tag gesture
   morec db clips moves.mdb --name 'test_*' --remove
-  morec db clips moves.mdb --rename take_1 walk_01")]
+  morec db clips moves.mdb --rename take_1 walk_01
+  morec db clips moves.mdb --name 'take_*' --set-role left_hand=LeftWrist")]
 pub struct Args {
     /// The database
     #[arg(value_name = "DB")]
@@ -49,6 +51,9 @@ pub struct Args {
     /// Remove the clips that --name, --subject, --tag and --class choose, with their cuts and labels
     #[arg(long, conflicts_with = "rename")]
     remove: bool,
+    /// Say which joint plays a part of the body, in place of what import found: left_hand=LeftWrist; `left_hand=` for none
+    #[arg(long, value_name = "ROLE=JOINT", value_parser = role_and_joint)]
+    set_role: Vec<(Role, String)>,
     /// Attach a tag
     #[arg(long, value_name = "WORD")]
     add_tag: Vec<String>,
@@ -85,6 +90,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             return Ok(ExitCode::SUCCESS);
         }
     }
+    if !args.set_role.is_empty() {
+        set_roles(args, &filter)?;
+    }
     let mut clips = if update == ClipUpdate::default() {
         database::open_read_only(&args.db)?.find_clips(&filter)?
     } else {
@@ -103,6 +111,34 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         print(&clips)?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+fn role_and_joint(text: &str) -> Result<(Role, String), String> {
+    let (role, joint) = text
+        .split_once('=')
+        .ok_or("expected ROLE=JOINT, as left_hand=LeftWrist")?;
+    let known = || Role::ALL.map(Role::name).join(", ");
+    let role = Role::from_name(role).ok_or_else(|| format!("expected one of {}", known()))?;
+    Ok((role, joint.to_owned()))
+}
+
+/// Gives parts of the body to joints in all clips that a filter chooses, as one step.
+fn set_roles(args: &Args, filter: &ClipFilter) -> Result<()> {
+    let mut db = database::open(&args.db)?;
+    let mut changed = Vec::new();
+    for clip in db.find_clips(filter)? {
+        let stored = db.clip(clip.id)?;
+        let (joints, mut roles) = (stored.clip.skeleton.joints(), stored.roles);
+        for (role, name) in &args.set_role {
+            let joint = joints.iter().position(|joint| joint.name == *name);
+            if joint.is_none() && !name.is_empty() {
+                bail!("clip {} has no joint called {name:?}", clip.name);
+            }
+            roles.set(*role, joint);
+        }
+        changed.push((clip.id, roles));
+    }
+    Ok(db.set_roles(&changed)?)
 }
 
 /// Removes what a filter chooses; all clips of a database only by `--name '*'`.
@@ -127,7 +163,7 @@ fn remove(args: &Args, filter: &ClipFilter) -> Result<ExitCode> {
 }
 
 fn print(clips: &[ClipInfo]) -> Result<()> {
-    let mut table = Table::new([
+    let mut table = TextTable::new([
         "clip", "secs", "Hz", "joints", "samples", "kB", "who", "tags",
     ])
     .least(["kB", "joints", "Hz", "tags", "who", "secs"]);

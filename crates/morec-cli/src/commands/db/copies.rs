@@ -8,7 +8,7 @@ use morec_db::search::{NearCopy, SearchIndex, near_copies, near_copies_of};
 use morec_db::{ClipFilter, ClipId, MotionDb};
 use serde::Serialize;
 
-use crate::progress::Bar;
+use crate::progress::StageBar;
 
 /// A clip that is nearly another.
 #[derive(Serialize)]
@@ -38,7 +38,11 @@ impl fmt::Display for Copy {
 }
 
 /// Every pair of near copies, or those with at least one of the clips `among` these names.
-pub fn find(db: &mut MotionDb, among: Option<&BTreeSet<&str>>, bar: &Bar) -> Result<Vec<Copy>> {
+pub fn find(
+    db: &mut MotionDb,
+    among: Option<&BTreeSet<&str>>,
+    bar: &StageBar,
+) -> Result<Vec<Copy>> {
     let index = SearchIndex::of_db(db, bar)?;
     let names: BTreeMap<ClipId, String> = db
         .clips(&ClipFilter::default())?

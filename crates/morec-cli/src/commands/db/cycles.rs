@@ -7,13 +7,13 @@ use std::process::ExitCode;
 use anyhow::Result;
 use morec::features::FeatureParams;
 use morec::segment::{CycleParams, Cycles, cycles};
-use morec_db::labels::{NewSample, SampleFilter, SampleId, State};
+use morec_db::labels::{NewSample, SampleFilter, SampleId, SampleState};
 use morec_db::{ClipFilter, ClipId, MotionDb};
 use serde::Serialize;
 
 use crate::database;
-use crate::progress::Bar;
-use crate::table::Table;
+use crate::progress::StageBar;
+use crate::table::TextTable;
 
 /// Count repetitions within cuts, clips or labelled stretches
 ///
@@ -77,7 +77,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     };
     let params = FeatureParams::default();
     let rows: BTreeMap<ClipId, _> = db
-        .rows(&params, &Bar::stoppable()?)?
+        .rows(&params, &StageBar::stoppable()?)?
         .into_iter()
         .map(|r| (r.clip, r.rows))
         .collect();
@@ -138,7 +138,7 @@ fn stretches(db: &MotionDb, args: &Args) -> Result<Vec<Counted>> {
         CycledSpans::Labels => {
             let filter = SampleFilter {
                 class: args.class.clone(),
-                state: Some(State::Accepted),
+                state: Some(SampleState::Accepted),
                 ..Default::default()
             };
             let mut found: Vec<Counted> = Vec::new();
@@ -186,7 +186,7 @@ fn split(db: &mut MotionDb, found: &[Counted]) -> Result<()> {
                 start_secs: stretch.start_secs + pair[0],
                 stop_secs: stretch.start_secs + pair[1],
                 whole_clip: false,
-                state: State::Accepted,
+                state: SampleState::Accepted,
                 score: None,
             });
         }
@@ -197,7 +197,7 @@ fn split(db: &mut MotionDb, found: &[Counted]) -> Result<()> {
 }
 
 fn print(found: &[Counted]) -> Result<()> {
-    let mut table = Table::new([
+    let mut table = TextTable::new([
         "clip", "class", "start", "stop", "labels", "cycles", "period", "alike",
     ])
     .least(["alike", "labels", "class"]);

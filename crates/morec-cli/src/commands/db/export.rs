@@ -5,8 +5,8 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
 use morec::formats::bvh;
-use morec_db::exchange::{self, Annotation, Form};
-use morec_db::labels::{SampleFilter, State};
+use morec_db::exchange::{self, Annotation, LabelFormat};
+use morec_db::labels::{SampleFilter, SampleState};
 
 use super::label::{FormArg, StateArg};
 use crate::database;
@@ -79,17 +79,17 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             class: s.class,
             person: s.subject,
             score: s.score,
-            state: State::from(args.state),
+            state: SampleState::from(args.state),
         })
         .collect();
     let shown = args.output.to_string_lossy();
     let form = match args.form {
         Some(form) => form.into(),
-        None => Form::of_file(&shown, b"{\"labels\":[]}")
+        None => LabelFormat::of_file(&shown, b"{\"labels\":[]}")
             .with_context(|| format!("{shown}: its ending says no form of labels; give --form"))?,
     };
     if annotations.iter().any(|a| !form.keeps(a.state)) {
-        let (form, state) = (form.name(), State::from(args.state).name());
+        let (form, state) = (form.name(), SampleState::from(args.state).name());
         eprintln!(
             "morec: {form} does not say that these are {state}; read back, give --state {state} again"
         );
@@ -123,9 +123,9 @@ fn said(args: &Args, files: usize, count: usize, what: &str) -> Result<ExitCode>
 
 fn a_file_a_clip(
     folder: &Path,
-    form: Form,
+    form: LabelFormat,
     annotations: &[Annotation],
-    lengths: &exchange::Lengths,
+    lengths: &exchange::ClipLengths,
 ) -> Result<usize> {
     if folder.is_file() {
         bail!(
@@ -135,7 +135,11 @@ fn a_file_a_clip(
         );
     }
     std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
-    let ending = if form == Form::Eaf { "eaf" } else { "txt" };
+    let ending = if form == LabelFormat::Eaf {
+        "eaf"
+    } else {
+        "txt"
+    };
     let mut files = 0;
     let of_clips: Vec<&[Annotation]> = annotations.chunk_by(|a, b| a.clip == b.clip).collect();
     let names = exchange::file_names(of_clips.iter().map(|of_clip| of_clip[0].clip.as_str()));

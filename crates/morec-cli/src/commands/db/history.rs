@@ -8,7 +8,7 @@ use morec_db::{Effect, Turned};
 
 use crate::database;
 use crate::dates;
-use crate::table::Table;
+use crate::table::TextTable;
 
 /// List the changes of a database, the last one first
 ///
@@ -59,7 +59,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         super::print_json(&steps)?;
         return Ok(ExitCode::SUCCESS);
     }
-    let mut table = Table::new(["step", "when", "what", "rows", ""]).least(["when", "rows"]);
+    let mut table = TextTable::new(["step", "when", "what", "rows", ""]).least(["when", "rows"]);
     for step in &steps {
         let rows: Vec<String> = step
             .rows

@@ -13,7 +13,7 @@ use serde::Serialize;
 use super::copies::{self, Copy};
 use crate::database;
 use crate::files::{self, ReadArgs};
-use crate::progress::Bar;
+use crate::progress::StageBar;
 
 /// Import clips, or folders of clips
 ///
@@ -77,7 +77,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         add_tags: args.tags.clone(),
         remove_tags: Vec::new(),
     };
-    let bar = Bar::stoppable()?;
+    let bar = StageBar::stoppable()?;
     let report = db.import(&paths, &reader, &about, &bar)?;
     let near_copies = near_copies(&mut db, &report, &bar)?;
     if args.json {
@@ -110,7 +110,7 @@ struct Reported<'a> {
 }
 
 /// Which of the clips that have just come are nearly others.
-fn near_copies(db: &mut MotionDb, report: &ImportLog, bar: &Bar) -> Result<Vec<Copy>> {
+fn near_copies(db: &mut MotionDb, report: &ImportLog, bar: &StageBar) -> Result<Vec<Copy>> {
     let names = report.files.iter().flat_map(|(_, outcome)| match outcome {
         ImportOutcome::Imported { clips, .. } => clips.as_slice(),
         _ => &[],

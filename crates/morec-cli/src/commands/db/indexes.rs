@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 use crate::database;
 use crate::dates;
 use crate::output;
-use crate::table::Table;
+use crate::table::TextTable;
 
 /// List the indexes that training kept, write one to a file, or remove one
 #[derive(clap::Args)]
@@ -51,7 +51,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         super::print_json(&indexes)?;
         return Ok(ExitCode::SUCCESS);
     }
-    let mut table = Table::new(["index", "trained", "samples", "kB", ""]).least(["kB"]);
+    let mut table = TextTable::new(["index", "trained", "samples", "kB", ""]).least(["kB"]);
     for index in &indexes {
         let stale = "labels have changed since";
         table.row([

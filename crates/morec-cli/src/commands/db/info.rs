@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
-use morec_db::Summary;
+use morec_db::DbSummary;
 
 use super::megabytes;
 use crate::database;
@@ -37,7 +37,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn text(s: &Summary) -> String {
+fn text(s: &DbSummary) -> String {
     let ratio = |bytes: u64| match bytes {
         0 => String::new(),
         bytes => format!(" (1:{:.1})", s.source_bytes as f64 / bytes as f64),

@@ -6,14 +6,14 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
 use clap::ValueEnum;
-use morec_db::exchange::{self, Annotation, Form, Lengths};
-use morec_db::labels::{Added, LabelChange, LabelOptions, Labelled, NewSample, State};
+use morec_db::exchange::{self, Annotation, ClipLengths, LabelFormat};
+use morec_db::labels::{Added, LabelChange, LabelOptions, Labelled, NewSample, SampleState};
 use morec_db::{ClipFilter, MotionDb};
 
 use super::history;
 use crate::database;
 use crate::files::{self, some_of};
-use crate::table::Table;
+use crate::table::TextTable;
 
 /// Read labels from a file, set one by hand, or accept and reject what is there
 ///
@@ -92,16 +92,16 @@ pub enum FormArg {
     LabelStudio,
 }
 
-impl From<FormArg> for Form {
+impl From<FormArg> for LabelFormat {
     fn from(form: FormArg) -> Self {
         match form {
-            FormArg::Tsv => Form::Tsv,
-            FormArg::Csv => Form::Csv,
-            FormArg::Json => Form::Json,
-            FormArg::Eaf => Form::Eaf,
-            FormArg::Audacity => Form::Audacity,
-            FormArg::Babel => Form::Babel,
-            FormArg::LabelStudio => Form::LabelStudio,
+            FormArg::Tsv => LabelFormat::Tsv,
+            FormArg::Csv => LabelFormat::Csv,
+            FormArg::Json => LabelFormat::Json,
+            FormArg::Eaf => LabelFormat::Eaf,
+            FormArg::Audacity => LabelFormat::Audacity,
+            FormArg::Babel => LabelFormat::Babel,
+            FormArg::LabelStudio => LabelFormat::LabelStudio,
         }
     }
 }
@@ -115,12 +115,12 @@ pub enum StateArg {
     Rejected,
 }
 
-impl From<StateArg> for State {
+impl From<StateArg> for SampleState {
     fn from(state: StateArg) -> Self {
         match state {
-            StateArg::Accepted => State::Accepted,
-            StateArg::Proposed => State::Proposed,
-            StateArg::Rejected => State::Rejected,
+            StateArg::Accepted => SampleState::Accepted,
+            StateArg::Proposed => SampleState::Proposed,
+            StateArg::Rejected => SampleState::Rejected,
         }
     }
 }
@@ -218,10 +218,10 @@ fn said(counts: &Added, args: &Args) -> String {
     format!("{would}{}\n", parts.join(", "))
 }
 
-fn changes(db: &MotionDb, done: &Labelled) -> Result<Table> {
+fn changes(db: &MotionDb, done: &Labelled) -> Result<TextTable> {
     let clips = db.clips(&ClipFilter::default())?;
     let names: BTreeMap<_, _> = clips.into_iter().map(|c| (c.id, c.name)).collect();
-    let mut table = Table::new(["clip", "change", "class", "start", "stop", "was"]);
+    let mut table = TextTable::new(["clip", "change", "class", "start", "stop", "was"]);
     for changed in &done.changes {
         let change = match changed.change {
             LabelChange::Added => "added",
@@ -276,7 +276,7 @@ fn undo(db: &mut MotionDb, json: bool) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn by_hand(args: &Args, class: &str, lengths: &Lengths) -> Result<Annotation> {
+fn by_hand(args: &Args, class: &str, lengths: &ClipLengths) -> Result<Annotation> {
     let clip = args.clip.clone().context("--clip: which clip?")?;
     let secs = lengths.get(&clip).map(|length| length.duration_secs());
     let extent = match (args.start, args.stop) {
@@ -294,25 +294,25 @@ fn by_hand(args: &Args, class: &str, lengths: &Lengths) -> Result<Annotation> {
         extent,
         person: None,
         score: None,
-        state: State::Accepted,
+        state: SampleState::Accepted,
     })
 }
 
-fn read(args: &Args, lengths: &Lengths, absent: &mut Absent) -> Result<Vec<Annotation>> {
+fn read(args: &Args, lengths: &ClipLengths, absent: &mut Absent) -> Result<Vec<Annotation>> {
     let mut all = Vec::new();
     for path in &label_files(&args.labels)? {
         let shown = path.display().to_string();
         let bytes = files::read(path)?;
         let form = match args.form {
             Some(form) => form.into(),
-            None => Form::of_file(&shown, &bytes).with_context(|| {
+            None => LabelFormat::of_file(&shown, &bytes).with_context(|| {
                 format!("{shown}: its ending says no form of labels; give --form")
             })?,
         };
         // A label track does not name its clip; its file does, if morec wrote it.
         let named = match (&args.clip, form) {
             (Some(clip), _) => Some(clip.clone()),
-            (None, Form::Audacity) => named_by_file(path, lengths),
+            (None, LabelFormat::Audacity) => named_by_file(path, lengths),
             (None, _) => None,
         };
         let read = exchange::read(form, &bytes, named.as_deref(), lengths)
@@ -329,7 +329,7 @@ fn read(args: &Args, lengths: &Lengths, absent: &mut Absent) -> Result<Vec<Annot
 }
 
 /// The clip that a file is called after, if there is such a clip.
-fn named_by_file(path: &Path, lengths: &Lengths) -> Option<String> {
+fn named_by_file(path: &Path, lengths: &ClipLengths) -> Option<String> {
     let clip = exchange::clip_of_file_name(&path.file_stem()?.to_string_lossy());
     lengths.contains_key(&clip).then_some(clip)
 }
@@ -347,8 +347,9 @@ fn label_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>> {
         for entry in std::fs::read_dir(path).with_context(shown)? {
             inside.push(entry.with_context(shown)?.path());
         }
-        inside
-            .retain(|file| file.is_file() && Form::of_file(&file.to_string_lossy(), b"").is_some());
+        inside.retain(|file| {
+            file.is_file() && LabelFormat::of_file(&file.to_string_lossy(), b"").is_some()
+        });
         if inside.is_empty() {
             bail!("{}: no file of labels in this folder", path.display());
         }
@@ -369,7 +370,7 @@ fn resolve(
     db: &MotionDb,
     args: &Args,
     annotations: Vec<Annotation>,
-    lengths: &Lengths,
+    lengths: &ClipLengths,
     absent: &mut Absent,
 ) -> Result<Vec<NewSample>> {
     let ids: BTreeMap<String, _> = db
@@ -419,7 +420,7 @@ fn resolve(
             start_secs,
             stop_secs,
             whole_clip: a.extent.is_none(),
-            state: args.state.map_or(a.state, State::from),
+            state: args.state.map_or(a.state, SampleState::from),
             score: a.score,
         });
     }

@@ -26,12 +26,12 @@ use std::process::ExitCode;
 use anyhow::Result;
 use clap::Subcommand;
 use morec::labels::ClipLength;
-use morec_db::exchange::Lengths;
+use morec_db::exchange::ClipLengths;
 use morec_db::{ClipFilter, ClipInfo, DbError, MotionDb};
 use serde::Serialize;
 
 use crate::figures::write_json;
-use crate::table::Table;
+use crate::table::TextTable;
 
 /// Keep clips, cuts, classes and labels in one file, and search them
 ///
@@ -116,7 +116,7 @@ fn of(args: Args) -> Result<ExitCode> {
 }
 
 /// The lengths of all clips by name.
-fn lengths(db: &MotionDb) -> Result<Lengths> {
+fn lengths(db: &MotionDb) -> Result<ClipLengths> {
     let length = |c: ClipInfo| {
         (
             c.name,
@@ -151,7 +151,7 @@ fn print(text: impl std::fmt::Display) -> Result<()> {
 
 /// A table that fits the terminal, and a last line below it. Whoever reads it through a pipe gets all of it, separated by
 /// tabs, and the last line on standard error.
-pub fn print_table(table: &Table, last: &str) -> Result<()> {
+pub fn print_table(table: &TextTable, last: &str) -> Result<()> {
     let mut out = std::io::stdout().lock();
     if std::io::stdout().is_terminal() {
         let width = terminal_size::terminal_size().map_or(80, |(width, _)| usize::from(width.0));

@@ -5,13 +5,13 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
-use morec_db::labels::{SampleFilter, SampleId, State};
+use morec_db::labels::{SampleFilter, SampleId, SampleState};
 use morec_db::{ClipFilter, ClipId, MotionDb, Proposal, ProposeOptions, questions};
 use serde::Serialize;
 
 use crate::database;
-use crate::progress::Bar;
-use crate::table::Table;
+use crate::progress::StageBar;
+use crate::table::TextTable;
 
 /// Propose the other samples of the classes that are labelled
 ///
@@ -73,13 +73,13 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         classes: args.classes.clone(),
         ..ProposeOptions::default()
     };
-    let proposals = db.propose_and_keep(&options, &Bar::stoppable()?)?;
+    let proposals = db.propose_and_keep(&options, &StageBar::stoppable()?)?;
     show(args, &db, proposals)
 }
 
 fn proposed(db: &MotionDb) -> Result<Vec<morec_db::labels::DbSample>> {
     Ok(db.samples(&SampleFilter {
-        state: Some(State::Proposed),
+        state: Some(SampleState::Proposed),
         ..SampleFilter::default()
     })?)
 }
@@ -164,7 +164,7 @@ fn show(args: &Args, db: &MotionDb, mut proposals: Vec<Proposal>) -> Result<Exit
         super::print_json(&&all[..shown.min(all.len())])?;
         return Ok(ExitCode::SUCCESS);
     }
-    let mut table = Table::new(["clip", "class", "start", "stop", "score"]).least(["stop"]);
+    let mut table = TextTable::new(["clip", "class", "start", "stop", "score"]).least(["stop"]);
     for NamedProposal { name, proposal: p } in all.iter().take(args.limit) {
         let secs = |secs: f64| format!("{secs:.2}");
         table.row([

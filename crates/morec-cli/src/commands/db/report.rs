@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
-use morec_db::labels::{SampleFilter, State};
+use morec_db::labels::{SampleFilter, SampleState};
 use morec_db::{ClipFilter, MotionDb, SegmentKind};
 
 use super::megabytes;
@@ -77,7 +77,7 @@ fn classes(page: &mut Page, db: &MotionDb, limit: usize) -> Result<()> {
     for class in db.classes()? {
         let (name, accepted, proposed) = (&class.name, class.accepted, class.proposed);
         page.heading(&format!("{name}: {accepted} samples, {proposed} proposed"));
-        for state in [State::Accepted, State::Proposed] {
+        for state in [SampleState::Accepted, SampleState::Proposed] {
             let filter = SampleFilter {
                 class: Some(class.name.clone()),
                 state: Some(state),
@@ -87,7 +87,7 @@ fn classes(page: &mut Page, db: &MotionDb, limit: usize) -> Result<()> {
                 let score = s
                     .score
                     .map_or_else(String::new, |score| format!(", score {score:.2}"));
-                let state = if state == State::Proposed {
+                let state = if state == SampleState::Proposed {
                     format!(" proposed{score}")
                 } else {
                     String::new()

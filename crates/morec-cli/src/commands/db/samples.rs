@@ -5,11 +5,11 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use morec_db::MotionDb;
-use morec_db::labels::{DbSample, SampleFilter, SampleId, State};
+use morec_db::labels::{DbSample, SampleFilter, SampleId, SampleState};
 
 use super::label::StateArg;
 use crate::database;
-use crate::table::Table;
+use crate::table::TextTable;
 
 /// List samples with their numbers, or remove and move them by number
 #[derive(clap::Args)]
@@ -80,7 +80,7 @@ fn filter(args: &Args, db: &MotionDb) -> Result<SampleFilter> {
     Ok(SampleFilter {
         clip: clip.transpose()?.map(|info| info.id),
         class: args.class.clone(),
-        state: args.state.map(State::from),
+        state: args.state.map(SampleState::from),
     })
 }
 
@@ -109,7 +109,7 @@ pub fn print(samples: &[DbSample], json: bool) -> Result<ExitCode> {
         super::print_json(&samples)?;
         return Ok(ExitCode::SUCCESS);
     }
-    let mut table = Table::new([
+    let mut table = TextTable::new([
         "clip", "number", "class", "start", "stop", "frames", "state", "score", "by",
     ])
     .least(["by", "frames", "score"]);

@@ -8,7 +8,7 @@ use std::time::Instant;
 use anyhow::{Context, Result, bail};
 use morec::features::{FeatureParams, rows_of_clip};
 use morec::import::ImportOptions;
-use morec_db::labels::{SampleFilter, State};
+use morec_db::labels::{SampleFilter, SampleState};
 use morec_db::search::{Example, Hit, LearnedMetric, SearchIndex, SearchOptions};
 use morec_db::{ClipFilter, ClipId, ClipInfo, MotionDb, StoredClip};
 use serde::Serialize;
@@ -16,8 +16,8 @@ use serde::Serialize;
 use super::page::{self, Page};
 use crate::database;
 use crate::files::{self, ReadArgs};
-use crate::progress::Bar;
-use crate::table::Table;
+use crate::progress::StageBar;
+use crate::table::TextTable;
 
 /// Find stretches that are like an example
 ///
@@ -111,7 +111,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     args.classes
         .iter()
         .try_for_each(|class| db.need_class(class))?;
-    let index = SearchIndex::of_db(&mut db, &Bar::stoppable()?)?;
+    let index = SearchIndex::of_db(&mut db, &StageBar::stoppable()?)?;
     let (example, shown) = example(&db, &index, args)?;
     let metric = if args.learned {
         Some(learn(&db, &index, args)?)
@@ -162,7 +162,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
 
 fn learn(db: &MotionDb, index: &SearchIndex, args: &Args) -> Result<LearnedMetric> {
     let mut samples = db.samples(&SampleFilter {
-        state: Some(State::Accepted),
+        state: Some(SampleState::Accepted),
         ..Default::default()
     })?;
     samples.retain(|s| args.classes.is_empty() || args.classes.contains(&s.class));
@@ -254,7 +254,8 @@ fn report(
 }
 
 fn print(found: &SearchResult, tick_hz: f64) -> Result<()> {
-    let mut table = Table::new(["clip", "start", "stop", "score", "path", "seen"]).least(["path"]);
+    let mut table =
+        TextTable::new(["clip", "start", "stop", "score", "path", "seen"]).least(["path"]);
     for named in &found.hits {
         let hit = &named.hit;
         table.row([

@@ -9,7 +9,7 @@ use morec::features::{BoneSet, FeatureParams, Rows, rows_of_clip};
 use morec::labels::ClipLength;
 use morec::segment::{KernelParams, kernel_cuts};
 
-use super::members::{GroupedSample, Groups, Member, labelled, only};
+use super::members::{GroupList, GroupMember, GroupedSample, labelled, only};
 use super::{Args, Grouping};
 
 /// A clip as feature rows.
@@ -47,7 +47,7 @@ pub fn run(paths: &[PathBuf], args: &Args) -> Result<ExitCode> {
     if items.is_empty() {
         bail!("nothing to group: no sample holds a tick of motion");
     }
-    Groups::of(&items, args, args.labels.is_some()).print(args)?;
+    GroupList::of(&items, args, args.labels.is_some()).print(args)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -89,7 +89,7 @@ fn items(
     samples: Vec<GroupedSample>,
     clips: &BTreeMap<String, RowedClip>,
     params: &FeatureParams,
-) -> Vec<Member> {
+) -> Vec<GroupMember> {
     let shown = samples
         .iter()
         .filter_map(|s| Some(clips.get(&s.clip)?.bones));
@@ -99,7 +99,7 @@ fn items(
         let tick = |secs: f64| ((secs * params.tick_hz()).round() as usize).min(clip.rows.len());
         let span = tick(sample.start_secs)..tick(sample.stop_secs);
         let rows = (!span.is_empty()).then(|| only(&clip.rows.slice(span), clip.bones, bones))?;
-        Some(Member {
+        Some(GroupMember {
             clip: sample.clip,
             start_secs: sample.start_secs,
             stop_secs: sample.stop_secs,

@@ -7,10 +7,10 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
 use morec::cluster::{
-    Clusters, KwasForm, KwasParams, Pairs, Spectrum, adjusted_rand_index, kwas_clusters,
+    Clusters, KwasForm, KwasParams, PairCounts, Spectrum, adjusted_rand_index, kwas_clusters,
 };
 use morec::features::Rows;
-use morec::pca::{Keep, Moments, Pca};
+use morec::pca::{ComponentCount, Moments, Pca};
 use morec::segment::{PpcaParams, segment};
 use serde::Serialize;
 
@@ -18,12 +18,12 @@ use super::members::{GroupedSample, labelled};
 use super::{Args, Centre};
 use crate::figures::write_json;
 use crate::poses::{PoseReader, PosedClip};
-use crate::table::Table;
+use crate::table::TextTable;
 
 #[derive(Serialize)]
 struct Agreement {
     classes: usize,
-    pairs: Pairs,
+    pairs: PairCounts,
     rand_index: f64,
     adjusted_rand_index: f64,
 }
@@ -41,7 +41,9 @@ struct Grouped {
 
 /// Reads clips in files, groups, compares and prints.
 pub fn run(paths: &[PathBuf], args: &Args) -> Result<ExitCode> {
-    let keep = args.dims.map_or(Keep::Quality(args.quality), Keep::Dims);
+    let keep = args
+        .dims
+        .map_or(ComponentCount::Quality(args.quality), ComponentCount::Dims);
     keep.check().map_err(anyhow::Error::msg)?;
     let kwas = args.kwas()?;
     let reader = args.poses.reader()?;
@@ -138,7 +140,11 @@ fn cut(reader: &PoseReader<'_>, clips: &BTreeMap<String, PosedClip>) -> Result<V
     Ok(samples)
 }
 
-fn components(clips: &BTreeMap<String, PosedClip>, dim: usize, keep: Keep) -> Result<Pca> {
+fn components(
+    clips: &BTreeMap<String, PosedClip>,
+    dim: usize,
+    keep: ComponentCount,
+) -> Result<Pca> {
     let mut moments = Moments::new(dim);
     clips
         .values()
@@ -179,7 +185,7 @@ impl Agreement {
         let names: BTreeSet<Option<&str>> = samples.iter().map(|s| s.class.as_deref()).collect();
         let number = |s: &GroupedSample| names.range(..s.class.as_deref()).count();
         let classes: Vec<usize> = samples.iter().map(number).collect();
-        let pairs = Pairs::count(&classes, &clusters.of);
+        let pairs = PairCounts::count(&classes, &clusters.of);
         Self {
             classes: names.len(),
             pairs,
@@ -213,7 +219,7 @@ impl Grouped {
         };
         let pairs = &agreement.pairs;
         writeln!(out, "\nagainst {} classes, pair by pair", agreement.classes)?;
-        let mut table = Table::new(["", "one class", "two classes"]);
+        let mut table = TextTable::new(["", "one class", "two classes"]);
         let row =
             |name: &str, one: u64, two: u64| [name.to_owned(), one.to_string(), two.to_string()];
         table.row(row(

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result, bail};
 use morec::cluster::{
-    AffinityParams, Clusters, Hierarchy, KwasParams, Pairs, Spectrum, adjusted_rand_index,
+    AffinityParams, Clusters, Hierarchy, KwasParams, PairCounts, Spectrum, adjusted_rand_index,
     affinity_propagation, kwas_clusters, resampled, squared_distance,
 };
 use morec::features::{BoneSet, Rows};
@@ -16,7 +16,7 @@ use serde::Serialize;
 use super::{Args, GroupMethod};
 use crate::commands::db::{print_json, print_table};
 use crate::files::{self, some_of};
-use crate::table::Table;
+use crate::table::TextTable;
 
 /// A stretch of a clip to be grouped.
 #[derive(Debug, Clone, Serialize)]
@@ -30,7 +30,7 @@ pub struct GroupedSample {
 
 /// What is grouped, with its rows.
 #[derive(Serialize, Clone)]
-pub struct Member {
+pub struct GroupMember {
     pub clip: String,
     pub start_secs: f64,
     pub stop_secs: f64,
@@ -45,8 +45,8 @@ pub struct Member {
 
 /// Groups, the largest first.
 #[derive(Serialize)]
-pub struct Groups {
-    pub groups: Vec<Vec<Member>>,
+pub struct GroupList {
+    pub groups: Vec<Vec<GroupMember>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     rand_index: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -56,9 +56,9 @@ pub struct Groups {
 /// Rows that a sample of any length becomes.
 const POINTS: usize = 16;
 
-impl Groups {
+impl GroupList {
     /// Groups `items` as `args` say, and holds the groups against the classes if there are any.
-    pub fn of(items: &[Member], args: &Args, has_classes: bool) -> Self {
+    pub fn of(items: &[GroupMember], args: &Args, has_classes: bool) -> Self {
         let clusters = clusters(items, args);
         let mut groups = Self {
             groups: Vec::new(),
@@ -71,7 +71,7 @@ impl Groups {
                 .iter()
                 .map(|i| names.range(..i.class.as_deref()).count())
                 .collect();
-            groups.rand_index = Some(Pairs::count(&classes, &clusters.of).rand_index());
+            groups.rand_index = Some(PairCounts::count(&classes, &clusters.of).rand_index());
             groups.adjusted_rand_index = Some(adjusted_rand_index(&classes, &clusters.of));
         }
         let members = clusters.members().into_iter();
@@ -80,7 +80,7 @@ impl Groups {
             .collect();
         groups
             .groups
-            .sort_by_key(|group: &Vec<Member>| std::cmp::Reverse(group.len()));
+            .sort_by_key(|group: &Vec<GroupMember>| std::cmp::Reverse(group.len()));
         groups
     }
 
@@ -114,7 +114,7 @@ pub fn only(rows: &Rows, of: BoneSet, wanted: BoneSet) -> Rows {
     rows.columns(&columns)
 }
 
-fn clusters(items: &[Member], args: &Args) -> Clusters {
+fn clusters(items: &[GroupMember], args: &Args) -> Clusters {
     let points: Vec<Vec<f32>> = items
         .iter()
         .map(|item| resampled(&item.rows, POINTS))
@@ -190,9 +190,9 @@ pub fn labelled(
     Ok(samples)
 }
 
-fn print(grouped: &Groups) -> Result<()> {
+fn print(grouped: &GroupList) -> Result<()> {
     const SHOWN: usize = 6;
-    let mut table = Table::new(["group", "members", "what"]);
+    let mut table = TextTable::new(["group", "members", "what"]);
     for (number, group) in grouped.groups.iter().enumerate() {
         let mut classes: BTreeMap<&str, usize> = BTreeMap::new();
         let mut what = Vec::new();

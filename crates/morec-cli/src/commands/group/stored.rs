@@ -6,14 +6,14 @@ use std::process::ExitCode;
 
 use anyhow::{Result, bail};
 use morec::features::{BoneSet, FeatureParams};
-use morec_db::labels::{GROUPED_BY, NewSample, SampleFilter, State};
+use morec_db::labels::{GROUPED_BY, NewSample, SampleFilter, SampleState};
 use morec_db::{ClipFilter, ClipId, MotionDb, SegmentKind};
 
-use super::members::{Groups, Member, only};
+use super::members::{GroupList, GroupMember, only};
 use super::{Args, Grouping};
 use crate::commands::db::page::{self, Page};
 use crate::database;
-use crate::progress::Bar;
+use crate::progress::StageBar;
 
 /// Clusters, prints, and proposes if asked to.
 pub fn run(path: &Path, args: &Args) -> Result<ExitCode> {
@@ -36,7 +36,7 @@ pub fn run(path: &Path, args: &Args) -> Result<ExitCode> {
     if items.is_empty() {
         bail!("nothing to group (morec cut finds segments, morec db label sets samples)");
     }
-    let grouped = Groups::of(&items, args, of == Grouping::Labels);
+    let grouped = GroupList::of(&items, args, of == Grouping::Labels);
     if let Some(name) = &args.name_as {
         propose(&mut db, &grouped.groups, name)?;
     }
@@ -47,9 +47,9 @@ pub fn run(path: &Path, args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn items(db: &mut MotionDb, of: Grouping, args: &Args) -> Result<Vec<Member>> {
+fn items(db: &mut MotionDb, of: Grouping, args: &Args) -> Result<Vec<GroupMember>> {
     let params = FeatureParams::default();
-    let rows = db.rows(&params, &Bar::stoppable()?)?;
+    let rows = db.rows(&params, &StageBar::stoppable()?)?;
     let clips = db.clips(&ClipFilter::default())?;
     let names: BTreeMap<ClipId, &str> = clips.iter().map(|c| (c.id, c.name.as_str())).collect();
     let spans: Vec<(ClipId, f64, f64, Option<String>)> = match of {
@@ -68,7 +68,7 @@ fn items(db: &mut MotionDb, of: Grouping, args: &Args) -> Result<Vec<Member>> {
         }
         Grouping::Labels => {
             let samples = db.samples(&SampleFilter {
-                state: Some(State::Accepted),
+                state: Some(SampleState::Accepted),
                 ..Default::default()
             })?;
             let wanted = samples
@@ -92,7 +92,7 @@ fn items(db: &mut MotionDb, of: Grouping, args: &Args) -> Result<Vec<Member>> {
         let tick = |secs: f64| ((secs * params.tick_hz()).round() as usize).min(of.rows.len());
         let span = tick(start_secs)..tick(stop_secs);
         let rows = (!span.is_empty()).then(|| only(&of.rows.slice(span), of.bones, bones))?;
-        Some(Member {
+        Some(GroupMember {
             clip: (*names.get(&id)?).to_owned(),
             start_secs,
             stop_secs,
@@ -104,7 +104,7 @@ fn items(db: &mut MotionDb, of: Grouping, args: &Args) -> Result<Vec<Member>> {
     Ok(spans.into_iter().filter_map(item).collect())
 }
 
-fn propose(db: &mut MotionDb, groups: &[Vec<Member>], name: &str) -> Result<()> {
+fn propose(db: &mut MotionDb, groups: &[Vec<GroupMember>], name: &str) -> Result<()> {
     let mut samples = Vec::new();
     for (number, group) in groups.iter().enumerate() {
         let kept = group.iter().filter_map(|item| Some((item.id?, item)));
@@ -114,7 +114,7 @@ fn propose(db: &mut MotionDb, groups: &[Vec<Member>], name: &str) -> Result<()> 
             start_secs: item.start_secs,
             stop_secs: item.stop_secs,
             whole_clip: false,
-            state: State::Proposed,
+            state: SampleState::Proposed,
             score: None,
         }));
     }
@@ -122,7 +122,7 @@ fn propose(db: &mut MotionDb, groups: &[Vec<Member>], name: &str) -> Result<()> 
     Ok(())
 }
 
-fn report(path: &Path, db: &MotionDb, of: &Path, grouped: &Groups) -> Result<()> {
+fn report(path: &Path, db: &MotionDb, of: &Path, grouped: &GroupList) -> Result<()> {
     /// A page people look through: of a large group the first members tell what it is.
     const SHOWN: usize = 24;
     let mut page = Page::default();

@@ -7,38 +7,38 @@ use morec::kinematics::WorldPose;
 use morec::math::Vec3;
 use morec::roles::Role;
 
-use crate::show::picture::{DIM, Dots, PLAIN, Picture, Style, class_style};
+use crate::show::picture::{CharGrid, DIM, Dots, PLAIN, Style, class_style};
 
 /// Which side of the body a bone is drawn for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Side {
+enum DrawnSide {
     Left,
     Middle,
     Right,
 }
 
 /// Lines between roles. Where one is not played, the line is left out.
-const BONES: [(Role, Role, Side); 20] = [
-    (Role::Hips, Role::Torso, Side::Middle),
-    (Role::Torso, Role::Neck, Side::Middle),
-    (Role::Hips, Role::Neck, Side::Middle),
-    (Role::Neck, Role::Head, Side::Middle),
-    (Role::Neck, Role::LeftShoulder, Side::Left),
-    (Role::LeftShoulder, Role::LeftArm, Side::Left),
-    (Role::Neck, Role::LeftArm, Side::Left),
-    (Role::LeftArm, Role::LeftForearm, Side::Left),
-    (Role::LeftForearm, Role::LeftHand, Side::Left),
-    (Role::Hips, Role::LeftThigh, Side::Left),
-    (Role::LeftThigh, Role::LeftShin, Side::Left),
-    (Role::LeftShin, Role::LeftFoot, Side::Left),
-    (Role::Neck, Role::RightShoulder, Side::Right),
-    (Role::RightShoulder, Role::RightArm, Side::Right),
-    (Role::Neck, Role::RightArm, Side::Right),
-    (Role::RightArm, Role::RightForearm, Side::Right),
-    (Role::RightForearm, Role::RightHand, Side::Right),
-    (Role::Hips, Role::RightThigh, Side::Right),
-    (Role::RightThigh, Role::RightShin, Side::Right),
-    (Role::RightShin, Role::RightFoot, Side::Right),
+const BONES: [(Role, Role, DrawnSide); 20] = [
+    (Role::Hips, Role::Torso, DrawnSide::Middle),
+    (Role::Torso, Role::Neck, DrawnSide::Middle),
+    (Role::Hips, Role::Neck, DrawnSide::Middle),
+    (Role::Neck, Role::Head, DrawnSide::Middle),
+    (Role::Neck, Role::LeftShoulder, DrawnSide::Left),
+    (Role::LeftShoulder, Role::LeftArm, DrawnSide::Left),
+    (Role::Neck, Role::LeftArm, DrawnSide::Left),
+    (Role::LeftArm, Role::LeftForearm, DrawnSide::Left),
+    (Role::LeftForearm, Role::LeftHand, DrawnSide::Left),
+    (Role::Hips, Role::LeftThigh, DrawnSide::Left),
+    (Role::LeftThigh, Role::LeftShin, DrawnSide::Left),
+    (Role::LeftShin, Role::LeftFoot, DrawnSide::Left),
+    (Role::Neck, Role::RightShoulder, DrawnSide::Right),
+    (Role::RightShoulder, Role::RightArm, DrawnSide::Right),
+    (Role::Neck, Role::RightArm, DrawnSide::Right),
+    (Role::RightArm, Role::RightForearm, DrawnSide::Right),
+    (Role::RightForearm, Role::RightHand, DrawnSide::Right),
+    (Role::Hips, Role::RightThigh, DrawnSide::Right),
+    (Role::RightThigh, Role::RightShin, DrawnSide::Right),
+    (Role::RightShin, Role::RightFoot, DrawnSide::Right),
 ];
 
 /// The body in one frame, seen from the front and from its left: places of the roles in metres, right and up.
@@ -108,9 +108,9 @@ impl Drawing {
         let scale = 4.0 * (ROWS as f64 - 0.5) / self.height;
         let half = ((self.width * scale / 2.0).ceil() as usize + 1).min(30);
         let columns = 2 * half;
-        let mut picture = Picture::new(2 * columns + GAP, ROWS + 2);
+        let mut picture = CharGrid::new(2 * columns + GAP, ROWS + 2);
         for (places, from) in [(&self.front, 0), (&self.side, columns + GAP)] {
-            for side in [Side::Right, Side::Middle, Side::Left] {
+            for side in [DrawnSide::Right, DrawnSide::Middle, DrawnSide::Left] {
                 let mut dots = Dots::new(columns, ROWS);
                 let dot = |[x, y]: [f64; 2]| {
                     [
@@ -141,7 +141,7 @@ impl Drawing {
     fn lines<'a>(
         &'a self,
         places: &'a [Option<[f64; 2]>],
-        side: Side,
+        side: DrawnSide,
     ) -> impl Iterator<Item = ([f64; 2], [f64; 2])> + 'a {
         let there = |role: Role| places[role.index()].is_some();
         BONES
@@ -175,7 +175,7 @@ impl Drawing {
                 let down = MARGIN + (self.low + self.height - y) * scale;
                 [middle + x * scale, down]
             };
-            for side in [Side::Right, Side::Middle, Side::Left] {
+            for side in [DrawnSide::Right, DrawnSide::Middle, DrawnSide::Left] {
                 for (a, b) in self.lines(places, side) {
                     let ([x, y], [u, v]) = (dot(a), dot(b));
                     // Writing to a string cannot fail.
@@ -221,19 +221,19 @@ impl Drawing {
     }
 }
 
-fn style(side: Side) -> Style {
+fn style(side: DrawnSide) -> Style {
     match side {
-        Side::Left => class_style(1),
-        Side::Middle => PLAIN,
-        Side::Right => class_style(0),
+        DrawnSide::Left => class_style(1),
+        DrawnSide::Middle => PLAIN,
+        DrawnSide::Right => class_style(0),
     }
 }
 
-fn paint(side: Side) -> &'static str {
+fn paint(side: DrawnSide) -> &'static str {
     match side {
-        Side::Left => "#2b6cb0",
-        Side::Middle => "#555",
-        Side::Right => "#2f855a",
+        DrawnSide::Left => "#2b6cb0",
+        DrawnSide::Middle => "#555",
+        DrawnSide::Right => "#2f855a",
     }
 }
 
@@ -293,19 +293,28 @@ mod tests {
             for role in Role::ALL.iter().filter(|r| take.roles.joint(**r).is_some()) {
                 assert_eq!(at(role.name()).len(), 2, "{role} in both views");
             }
-            assert!(at("left_thigh")[0][0] > at("right_thigh")[0][0] + 5.0, "{turned}");
-            assert!(at("left_arm")[0][0] > at("right_arm")[0][0] + 5.0, "{turned}");
+            assert!(
+                at("left_thigh")[0][0] > at("right_thigh")[0][0] + 5.0,
+                "{turned}"
+            );
+            assert!(
+                at("left_arm")[0][0] > at("right_arm")[0][0] + 5.0,
+                "{turned}"
+            );
             for view in 0..2 {
                 let down = |role: &str| at(role)[view][1];
-                assert!(down("head") < down("hips") - 50.0 && down("hips") < down("left_foot") - 50.0);
+                assert!(
+                    down("head") < down("hips") - 50.0 && down("hips") < down("left_foot") - 50.0
+                );
             }
             // From the left, both hips are nearly in one place; from the front they are not.
-            let apart = |view: usize| (at("left_thigh")[view][0] - at("right_thigh")[view][0]).abs();
+            let apart =
+                |view: usize| (at("left_thigh")[view][0] - at("right_thigh")[view][0]).abs();
             assert!(apart(1) < 0.3 * apart(0), "{} {}", apart(0), apart(1));
             // Both sides have as many lines.
-            let lines = |side: Side| svg.matches(paint(side)).count();
-            assert_eq!(lines(Side::Left), lines(Side::Right));
-            assert!(lines(Side::Left) >= 2 * 5);
+            let lines = |side: DrawnSide| svg.matches(paint(side)).count();
+            assert_eq!(lines(DrawnSide::Left), lines(DrawnSide::Right));
+            assert!(lines(DrawnSide::Left) >= 2 * 5);
         }
     }
 
@@ -330,7 +339,10 @@ mod tests {
         }
         let svg = Drawing::of(&take).unwrap().svg("one arm");
         assert!(circles(&svg, "left_hand").is_empty());
-        assert!(svg.matches(paint(Side::Left)).count() < svg.matches(paint(Side::Right)).count());
+        assert!(
+            svg.matches(paint(DrawnSide::Left)).count()
+                < svg.matches(paint(DrawnSide::Right)).count()
+        );
         take.clip.frames = 0;
         assert!(Drawing::of(&take).is_none());
     }

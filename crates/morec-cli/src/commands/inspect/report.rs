@@ -16,7 +16,7 @@ use serde::Serialize;
 #[serde(untagged)]
 pub enum FileReport {
     /// It was read.
-    Read(Box<Report>),
+    Read(Box<InspectReport>),
     /// It was not.
     Failed {
         /// Where it is.
@@ -38,7 +38,7 @@ impl FileReport {
 
 /// A file that was read.
 #[derive(Serialize)]
-pub struct Report {
+pub struct InspectReport {
     path: PathBuf,
     format: Format,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -78,7 +78,7 @@ struct JointReport {
     depth: usize,
 }
 
-impl Report {
+impl InspectReport {
     /// Gathers what there is to say.
     pub fn new(
         path: &Path,

@@ -12,41 +12,41 @@ use crate::output::write_whole;
 
 /// What is written.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Form {
+pub enum MotionForm {
     /// Frames
     Bvh,
     /// Curves, the stored form
     Mclip,
 }
 
-impl Form {
+impl MotionForm {
     fn extension(self) -> &'static str {
         match self {
-            Form::Bvh => "bvh",
-            Form::Mclip => "mclip",
+            MotionForm::Bvh => "bvh",
+            MotionForm::Mclip => "mclip",
         }
     }
 
     fn of(path: &Path) -> Option<Self> {
         let extension = path.extension()?.to_str()?;
-        [Form::Bvh, Form::Mclip]
+        [MotionForm::Bvh, MotionForm::Mclip]
             .into_iter()
             .find(|form| form.extension().eq_ignore_ascii_case(extension))
     }
 }
 
 /// Where to.
-pub enum Target {
+pub enum MotionTarget {
     Nowhere,
-    File(PathBuf, Form),
-    Folder(PathBuf, Form),
+    File(PathBuf, MotionForm),
+    Folder(PathBuf, MotionForm),
 }
 
-impl Target {
+impl MotionTarget {
     /// What was meant by `output` for these clips; a folder is made if it is not there.
     pub fn new(
         output: Option<&Path>,
-        form: Option<Form>,
+        form: Option<MotionForm>,
         given: &[PathBuf],
         clips: &[PathBuf],
     ) -> Result<Self> {
@@ -55,7 +55,7 @@ impl Target {
         };
         let one = clips.len() == 1 && given.iter().all(|path| !path.is_dir());
         if one && !output.is_dir() {
-            let form = match (form, Form::of(output)) {
+            let form = match (form, MotionForm::of(output)) {
                 (Some(form), Some(ending)) if form != ending => {
                     bail!(
                         "{}: --form {} asks for another ending",
@@ -73,7 +73,7 @@ impl Target {
             };
             return Ok(Self::File(output.to_owned(), form));
         }
-        let target = Self::Folder(output.to_owned(), form.unwrap_or(Form::Bvh));
+        let target = Self::Folder(output.to_owned(), form.unwrap_or(MotionForm::Bvh));
         let mut names: HashMap<PathBuf, &Path> = HashMap::new();
         for clip in clips {
             let Some(name) = target.path(clip, None) else {
@@ -104,7 +104,7 @@ impl Target {
     /// The file that a clip becomes; characters of a file that holds several are numbered from 1.
     pub fn path(&self, clip: &Path, character: Option<usize>) -> Option<PathBuf> {
         let number = character.map_or_else(String::new, |n| format!("-{n}"));
-        let beside = |folder: &Path, stem: &Path, form: Form| {
+        let beside = |folder: &Path, stem: &Path, form: MotionForm| {
             let stem = stem.file_stem().unwrap_or_default().to_string_lossy();
             folder.join(format!("{stem}{number}.{}", form.extension()))
         };
@@ -128,7 +128,7 @@ impl Target {
     ) -> Result<()> {
         match self {
             Self::Nowhere => Ok(()),
-            Self::File(_, Form::Bvh) | Self::Folder(_, Form::Bvh) => {
+            Self::File(_, MotionForm::Bvh) | Self::Folder(_, MotionForm::Bvh) => {
                 write_clip(&clip.sample(rate_hz)?, path)
             }
             Self::File(..) | Self::Folder(..) => write_whole(path, |out| out.write_all(stored)),

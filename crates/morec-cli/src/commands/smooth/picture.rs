@@ -4,21 +4,21 @@ use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, bail};
 use morec::clip::{Clip, Skeleton};
-use morec::smooth::{CompressedClip, Kind};
+use morec::smooth::{ChannelKind, CompressedClip};
 
 use crate::files::some_of;
 use crate::output::write_whole;
 
 /// What can follow a joint's name.
-const CHANNELS: [(&str, Kind, Option<usize>); 8] = [
-    ("x", Kind::Rotation, Some(0)),
-    ("y", Kind::Rotation, Some(1)),
-    ("z", Kind::Rotation, Some(2)),
-    ("w", Kind::Rotation, Some(3)),
-    ("position", Kind::Position, None),
-    ("px", Kind::Position, Some(0)),
-    ("py", Kind::Position, Some(1)),
-    ("pz", Kind::Position, Some(2)),
+const CHANNELS: [(&str, ChannelKind, Option<usize>); 8] = [
+    ("x", ChannelKind::Rotation, Some(0)),
+    ("y", ChannelKind::Rotation, Some(1)),
+    ("z", ChannelKind::Rotation, Some(2)),
+    ("w", ChannelKind::Rotation, Some(3)),
+    ("position", ChannelKind::Position, None),
+    ("px", ChannelKind::Position, Some(0)),
+    ("py", ChannelKind::Position, Some(1)),
+    ("pz", ChannelKind::Position, Some(2)),
 ];
 
 /// Draws what `channel` names.
@@ -33,9 +33,9 @@ pub fn write(clip: &Clip, compressed: &CompressedClip, channel: &str, path: &Pat
 }
 
 /// A joint's name alone comes first: it may have points in it.
-fn find(skeleton: &Skeleton, channel: &str) -> Result<(usize, Kind, Option<usize>)> {
+fn find(skeleton: &Skeleton, channel: &str) -> Result<(usize, ChannelKind, Option<usize>)> {
     if let Some(joint) = skeleton.find(channel) {
-        return Ok((joint, Kind::Rotation, None));
+        return Ok((joint, ChannelKind::Rotation, None));
     }
     if let Some((name, ending)) = channel.rsplit_once('.')
         && let Some(joint) = skeleton.find(name)

@@ -6,17 +6,23 @@ use std::path::{Path, PathBuf};
 use morec::smooth::{CompressedClip, Curve, Errors, SmoothParams};
 use serde::Serialize;
 
-use crate::table::Table;
+use crate::table::TextTable;
 
 /// A file, done or not.
 #[derive(Serialize)]
 #[serde(untagged)]
-pub enum FileReport {
-    Done { path: PathBuf, clips: Vec<Report> },
-    Failed { path: PathBuf, error: String },
+pub enum CompressionResult {
+    Done {
+        path: PathBuf,
+        clips: Vec<CompressionReport>,
+    },
+    Failed {
+        path: PathBuf,
+        error: String,
+    },
 }
 
-impl FileReport {
+impl CompressionResult {
     pub fn failed(path: &Path, error: &anyhow::Error) -> Self {
         Self::Failed {
             path: path.to_owned(),
@@ -27,7 +33,7 @@ impl FileReport {
 
 /// A clip that was compressed.
 #[derive(Serialize)]
-pub struct Report {
+pub struct CompressionReport {
     clip: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     written: Option<PathBuf>,
@@ -49,7 +55,7 @@ pub struct Report {
     errors: Errors,
 }
 
-impl Report {
+impl CompressionReport {
     pub fn new(
         clip: &CompressedClip,
         written: Option<PathBuf>,
@@ -129,12 +135,12 @@ impl Report {
 }
 
 /// One clip in full, several in a table with their total.
-pub fn write(out: &mut dyn Write, reports: &[FileReport]) -> io::Result<()> {
-    let clips: Vec<&Report> = reports
+pub fn write(out: &mut dyn Write, reports: &[CompressionResult]) -> io::Result<()> {
+    let clips: Vec<&CompressionReport> = reports
         .iter()
         .filter_map(|report| match report {
-            FileReport::Done { clips, .. } => Some(clips),
-            FileReport::Failed { .. } => None,
+            CompressionResult::Done { clips, .. } => Some(clips),
+            CompressionResult::Failed { .. } => None,
         })
         .flatten()
         .collect();
@@ -145,7 +151,7 @@ pub fn write(out: &mut dyn Write, reports: &[FileReport]) -> io::Result<()> {
     }
 }
 
-fn table(clips: &[&Report]) -> Table {
+fn table(clips: &[&CompressionReport]) -> TextTable {
     let header = [
         "clip",
         "keys",
@@ -158,7 +164,7 @@ fn table(clips: &[&Report]) -> Table {
         "world max",
         "world mean",
     ];
-    let mut table = Table::new(header);
+    let mut table = TextTable::new(header);
     let ratio = |a: f64, b: f64| {
         if a > 0.0 {
             format!("1:{:.1}", a / b)
@@ -187,11 +193,12 @@ fn table(clips: &[&Report]) -> Table {
 }
 
 /// Sums, the largest of the largest, means over all values.
-fn total(clips: &[&Report]) -> [String; 10] {
-    let sum = |of: fn(&Report) -> f64| clips.iter().map(|clip| of(clip)).sum::<f64>();
-    let most = |of: fn(&Report) -> f64| clips.iter().map(|clip| of(clip)).fold(0.0, f64::max);
+fn total(clips: &[&CompressionReport]) -> [String; 10] {
+    let sum = |of: fn(&CompressionReport) -> f64| clips.iter().map(|clip| of(clip)).sum::<f64>();
+    let most =
+        |of: fn(&CompressionReport) -> f64| clips.iter().map(|clip| of(clip)).fold(0.0, f64::max);
     let values = sum(|c| c.raw_values as f64);
-    let mean = |of: fn(&Report) -> f64| {
+    let mean = |of: fn(&CompressionReport) -> f64| {
         clips
             .iter()
             .map(|clip| of(clip) * clip.raw_values as f64)

@@ -4,9 +4,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, sync_channel};
 
-use morec::live::{Actor, Frame, Next, Rig, Source, SourceCounts, wall_now_secs};
+use morec::live::{Frame, PerformerId, Rig, Source, SourceCounts, SourceEvent, wall_now_secs};
 
-use crate::jobs::load::Motion;
+use crate::jobs::load::ClipMotion;
 use crate::store::Wake;
 
 /// Between one lap of a clip and the next.
@@ -15,10 +15,10 @@ const PAUSE_SECS: f64 = 1.0;
 const WAITING: usize = 16_384;
 
 /// Something that a source said.
-pub enum Item {
-    Rig(Actor, Arc<Rig>),
+pub enum SourceItem {
+    Rig(PerformerId, Arc<Rig>),
     Frame(Box<Frame>),
-    Gone(Actor),
+    Gone(PerformerId),
     Ended,
 }
 
@@ -30,7 +30,7 @@ pub enum Feed {
 
 impl Feed {
     /// What has come while `dt` seconds passed on the wall.
-    pub fn poll(&mut self, dt: f64, out: &mut Vec<Item>) {
+    pub fn poll(&mut self, dt: f64, out: &mut Vec<SourceItem>) {
         match self {
             Feed::Clip(feed) => feed.poll(dt, out),
             Feed::Thread(feed) => feed.poll(out),
@@ -47,7 +47,7 @@ impl Feed {
 
 /// A clip of the database, played as if somebody performed it; again and again.
 pub struct ClipFeed {
-    motion: Arc<Motion>,
+    motion: Arc<ClipMotion>,
     announced: bool,
     /// Seconds of stream at which the present lap began.
     origin_secs: f64,
@@ -56,7 +56,7 @@ pub struct ClipFeed {
 }
 
 impl ClipFeed {
-    pub fn new(motion: Arc<Motion>) -> Self {
+    pub fn new(motion: Arc<ClipMotion>) -> Self {
         Self {
             next_frame: first(&motion),
             motion,
@@ -66,14 +66,14 @@ impl ClipFeed {
         }
     }
 
-    fn poll(&mut self, dt: f64, out: &mut Vec<Item>) {
+    fn poll(&mut self, dt: f64, out: &mut Vec<SourceItem>) {
         if !self.announced {
             self.announced = true;
             let rig = Rig {
                 skeleton: self.motion.clip.skeleton.clone(),
                 roles: self.motion.roles.clone(),
             };
-            out.push(Item::Rig(Actor(0), Arc::new(rig)));
+            out.push(SourceItem::Rig(PerformerId(0), Arc::new(rig)));
         }
         // A window that was hidden for an hour does not play an hour at once.
         self.now_secs += dt.clamp(0.0, 1.0);
@@ -84,7 +84,7 @@ impl ClipFeed {
             if self.next_frame >= clip.frames {
                 self.origin_secs = time(self) + PAUSE_SECS;
                 self.next_frame = begin;
-                out.push(Item::Gone(Actor(0)));
+                out.push(SourceItem::Gone(PerformerId(0)));
                 continue;
             }
             let mut frame = Frame {
@@ -94,18 +94,18 @@ impl ClipFeed {
             };
             frame.pose.set(clip, self.next_frame);
             self.next_frame += 1;
-            out.push(Item::Frame(Box::new(frame)));
+            out.push(SourceItem::Frame(Box::new(frame)));
         }
     }
 }
 
-fn first(motion: &Motion) -> usize {
+fn first(motion: &ClipMotion) -> usize {
     motion.rest.end.min(motion.clip.frames.saturating_sub(1))
 }
 
 /// A source that is asked on a thread of its own.
 pub struct ThreadFeed {
-    items: Receiver<Item>,
+    items: Receiver<SourceItem>,
     counts: Receiver<SourceCounts>,
     last: std::cell::Cell<SourceCounts>,
     stop: Arc<AtomicBool>,
@@ -129,13 +129,13 @@ impl ThreadFeed {
         })
     }
 
-    fn poll(&mut self, out: &mut Vec<Item>) {
+    fn poll(&mut self, out: &mut Vec<SourceItem>) {
         loop {
             match self.items.try_recv() {
                 Ok(item) => out.push(item),
                 Err(TryRecvError::Empty) => return,
                 Err(TryRecvError::Disconnected) => {
-                    out.push(Item::Ended);
+                    out.push(SourceItem::Ended);
                     return;
                 }
             }
@@ -158,7 +158,7 @@ impl Drop for ThreadFeed {
 
 fn ask(
     mut source: Box<dyn Source>,
-    sender: &SyncSender<Item>,
+    sender: &SyncSender<SourceItem>,
     counter: &SyncSender<SourceCounts>,
     stop: &AtomicBool,
     wake: &Wake,
@@ -166,16 +166,16 @@ fn ask(
     let mut frame = Frame::default();
     while !stop.load(Ordering::Relaxed) {
         let item = match source.next(&mut frame) {
-            Next::Frame => Item::Frame(Box::new(frame.clone())),
-            Next::Rig(actor, rig) => Item::Rig(actor, rig),
-            Next::Gone(actor) => Item::Gone(actor),
-            Next::Quiet => {
+            SourceEvent::Frame => SourceItem::Frame(Box::new(frame.clone())),
+            SourceEvent::Rig(actor, rig) => SourceItem::Rig(actor, rig),
+            SourceEvent::Gone(actor) => SourceItem::Gone(actor),
+            SourceEvent::Quiet => {
                 // Nobody has asked for the last ones yet: these are newer, and come with the next.
                 let _ = counter.try_send(source.counts());
                 continue;
             }
-            Next::Ended => {
-                let _ = sender.send(Item::Ended);
+            SourceEvent::Ended => {
+                let _ = sender.send(SourceItem::Ended);
                 wake();
                 return;
             }

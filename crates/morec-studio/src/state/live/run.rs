@@ -8,11 +8,12 @@ use morec::diagnosis::{Diagnosis, Severity};
 use morec::features::KeyPose;
 use morec::kinematics::WorldPose;
 use morec::live::{
-    Actor, Event, EventOptions, Frame, Hunch, Model, Performer, Phase, Recording, Rig,
+    EarlyDetection, Event, EventOptions, Frame, Model, Performer, PerformerId, Phase, Recording,
+    Rig,
 };
 use morec::math::Vec3;
 
-use super::feed::{Feed, Item};
+use super::feed::{Feed, SourceItem};
 use super::moved;
 use crate::body::Body;
 
@@ -23,7 +24,7 @@ const LOST_SECS: f64 = 1.5;
 
 /// Something that was recognised.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Seen {
+pub struct LiveDetection {
     pub class: String,
     pub start_secs: f64,
     pub stop_secs: f64,
@@ -43,12 +44,12 @@ pub struct Run {
     pub frames: VecDeque<Frame>,
     /// How fast hands and feet move against the hips, for each of them: metres a second.
     pub speeds: VecDeque<f32>,
-    pub seen: Vec<Seen>,
+    pub seen: Vec<LiveDetection>,
     /// Classes of motions that ended since they were asked for.
     pub news: Vec<ClassId>,
     performer: Option<Performer>,
     model: Option<Model>,
-    actor: Option<Actor>,
+    actor: Option<PerformerId>,
     /// How long nothing has come, seconds on the wall.
     pub silent_secs: f64,
     pub ended: bool,
@@ -88,7 +89,7 @@ impl Run {
         }
         self.take_events(&events);
         self.model = Some(model.clone());
-        let mut performer = Performer::new(model, Actor(0), &EventOptions::default());
+        let mut performer = Performer::new(model, PerformerId(0), &EventOptions::default());
         if let Some(rig) = &self.rig {
             performer.set_rig(rig, &mut |_| {});
         }
@@ -105,23 +106,23 @@ impl Run {
         }
         for item in items {
             match item {
-                Item::Rig(actor, rig) => {
+                SourceItem::Rig(actor, rig) => {
                     if *self.actor.get_or_insert(actor) == actor {
                         self.set_rig(rig, &mut events);
                     }
                 }
-                Item::Frame(frame) if self.actor == Some(frame.actor) => {
+                SourceItem::Frame(frame) if self.actor == Some(frame.actor) => {
                     self.silent_secs = 0.0;
                     self.push(&frame, &mut events);
                     frames.push(*frame);
                 }
-                Item::Gone(actor) if self.actor == Some(actor) => {
+                SourceItem::Gone(actor) if self.actor == Some(actor) => {
                     if let Some(performer) = &mut self.performer {
                         performer.finish(&mut |event| events.push(event));
                     }
                 }
-                Item::Ended => self.ended = true,
-                Item::Frame(_) | Item::Gone(_) => {}
+                SourceItem::Ended => self.ended = true,
+                SourceItem::Frame(_) | SourceItem::Gone(_) => {}
             }
         }
         self.take_events(&events);
@@ -175,7 +176,7 @@ impl Run {
         let Some(model) = &self.model else { return };
         for event in events.iter().filter(|e| e.phase == Phase::End) {
             self.news.push(event.class);
-            self.seen.push(Seen {
+            self.seen.push(LiveDetection {
                 class: model.class_name(event.class).to_owned(),
                 start_secs: event.start_secs,
                 stop_secs: event.stop_secs,
@@ -204,7 +205,7 @@ impl Run {
     }
 
     /// What seems to be under way: class and progress.
-    pub fn hunch(&self) -> Option<(String, Hunch)> {
+    pub fn hunch(&self) -> Option<(String, EarlyDetection)> {
         let hunch = self.performer.as_ref()?.hunch()?;
         let model = self.model.as_ref()?;
         Some((model.class_name(hunch.class).to_owned(), hunch))

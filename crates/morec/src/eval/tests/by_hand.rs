@@ -19,7 +19,7 @@ fn close(value: Option<f64>, expected: f64) {
 }
 
 /// Ten seconds: one walk found well, one badly, a jump taken for a run, a kick missed, a jump seen in a pause.
-fn one_stream() -> (Vec<StreamInfo>, Vec<Truth>, Vec<Found>) {
+fn one_stream() -> (Vec<StreamInfo>, Vec<GroundTruth>, Vec<ClipDetection>) {
     let truths = vec![
         truth("a", "walk", 1.0, 2.0),
         truth("a", "walk", 2.0, 3.0),
@@ -27,11 +27,11 @@ fn one_stream() -> (Vec<StreamInfo>, Vec<Truth>, Vec<Found>) {
         truth("a", "kick", 8.0, 8.8),
     ];
     let founds = vec![
-        Found {
+        ClipDetection {
             reported_secs: Some(2.15),
             ..found("a", "walk", 1.1, 1.95)
         },
-        Found {
+        ClipDetection {
             reported_secs: Some(3.4),
             ..found("a", "walk", 2.6, 3.2)
         },
@@ -181,11 +181,11 @@ fn one_long_detection_decides_every_stretch_it_swallows() {
 fn the_detection_that_shares_most_decides_but_the_best_score_classifies() {
     let truths = [truth("a", "x", 0.0, 2.0)];
     let founds = [
-        Found {
+        ClipDetection {
             score: Some(0.4),
             ..found("a", "x", 0.0, 1.2)
         },
-        Found {
+        ClipDetection {
             score: Some(0.9),
             ..found("a", "y", 1.2, 2.0)
         },
@@ -248,11 +248,11 @@ fn short_pauses_are_no_decisions() {
 #[test]
 fn quantiles_interpolate() {
     let delays = [0.4, 0.1, 0.2, 0.3];
-    let truths: Vec<Truth> = (0..4)
+    let truths: Vec<GroundTruth> = (0..4)
         .map(|i| truth("a", "x", f64::from(i), f64::from(i) + 0.5))
         .collect();
-    let founds: Vec<Found> = (truths.iter().zip(delays))
-        .map(|(t, d)| Found {
+    let founds: Vec<ClipDetection> = (truths.iter().zip(delays))
+        .map(|(t, d)| ClipDetection {
             reported_secs: Some(t.stop_secs + d),
             ..found("a", "x", t.start_secs, t.stop_secs)
         })
@@ -265,8 +265,9 @@ fn quantiles_interpolate() {
 #[test]
 fn input_that_makes_no_sense_is_refused() {
     let infos = [stream("a", 1.0), unknown("u", 1.0)];
-    let refused =
-        |truths: &[Truth], founds: &[Found]| Evaluation::of(&infos, truths, founds).unwrap_err();
+    let refused = |truths: &[GroundTruth], founds: &[ClipDetection]| {
+        Evaluation::of(&infos, truths, founds).unwrap_err()
+    };
     assert!(matches!(
         refused(&[truth("b", "x", 0.0, 1.0)], &[]),
         EvalError::NoStream {

@@ -6,8 +6,8 @@ mod reference;
 
 use super::*;
 
-fn truth(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> Truth {
-    Truth {
+fn truth(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> GroundTruth {
+    GroundTruth {
         clip: clip.into(),
         class: class.into(),
         start_secs,
@@ -15,8 +15,8 @@ fn truth(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> Truth {
     }
 }
 
-fn found(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> Found {
-    Found {
+fn found(clip: &str, class: &str, start_secs: f64, stop_secs: f64) -> ClipDetection {
+    ClipDetection {
         clip: clip.into(),
         class: class.into(),
         start_secs,

@@ -22,7 +22,7 @@ fn crowded(most: usize) -> impl Strategy<Value = Vec<(usize, f64, f64)>> {
 }
 
 /// Samples one after the other, as labels mostly are.
-fn sequence() -> impl Strategy<Value = Vec<Truth>> {
+fn sequence() -> impl Strategy<Value = Vec<GroundTruth>> {
     prop::collection::vec((0usize..3, 0u32..20, 1u32..40), 0..8).prop_map(|steps| {
         let mut at = 0;
         let mut next = |(class, pause, length): (usize, u32, u32)| {
@@ -41,17 +41,17 @@ fn sequence() -> impl Strategy<Value = Vec<Truth>> {
 
 const CLASSES: [&str; 3] = ["x", "y", "z"];
 
-fn truths_of(stretches: &[(usize, f64, f64)]) -> Vec<Truth> {
+fn truths_of(stretches: &[(usize, f64, f64)]) -> Vec<GroundTruth> {
     stretches
         .iter()
         .map(|(c, start, stop)| truth("a", CLASSES[*c], *start, *stop))
         .collect()
 }
 
-fn founds_of(stretches: &[(usize, f64, f64)]) -> Vec<Found> {
+fn founds_of(stretches: &[(usize, f64, f64)]) -> Vec<ClipDetection> {
     let scored = |i: usize| Some((i * 7 % 5) as f64);
     let made = stretches.iter().enumerate();
-    made.map(|(i, (c, start, stop))| Found {
+    made.map(|(i, (c, start, stop))| ClipDetection {
         score: scored(i),
         reported_secs: Some(stop + 0.1),
         ..found("a", CLASSES[*c], *start, *stop)
@@ -59,12 +59,17 @@ fn founds_of(stretches: &[(usize, f64, f64)]) -> Vec<Found> {
     .collect()
 }
 
-fn evaluate(truths: &[Truth], founds: &[Found]) -> Evaluation {
+fn evaluate(truths: &[GroundTruth], founds: &[ClipDetection]) -> Evaluation {
     Evaluation::of(&[stream("a", 40.0), stream("b", 5.0)], truths, founds).unwrap()
 }
 
 /// The largest one-to-one pairing, by trying every partner for each sample.
-fn most_pairs(truths: &[Truth], founds: &[Found], min_iou: f64, used: &mut Vec<bool>) -> usize {
+fn most_pairs(
+    truths: &[GroundTruth],
+    founds: &[ClipDetection],
+    min_iou: f64,
+    used: &mut Vec<bool>,
+) -> usize {
     let Some((first, rest)) = truths.split_first() else {
         return 0;
     };
@@ -112,8 +117,8 @@ proptest! {
 
     #[test]
     fn the_truth_itself_is_perfect(truths in sequence()) {
-        let founds: Vec<Found> = (truths.iter())
-            .map(|t| Found { reported_secs: Some(t.stop_secs), ..found("a", &t.class, t.start_secs, t.stop_secs) })
+        let founds: Vec<ClipDetection> = (truths.iter())
+            .map(|t| ClipDetection { reported_secs: Some(t.stop_secs), ..found("a", &t.class, t.start_secs, t.stop_secs) })
             .collect();
         let e = evaluate(&truths, &founds);
         prop_assert_eq!(e.thesis.accuracy, Some(1.0));
@@ -158,7 +163,7 @@ proptest! {
         let (truths, mut founds) = (truths_of(&truths), founds_of(&founds));
         let before = evaluate(&truths, &founds);
         let calm = founds.is_empty();
-        founds.extend(founds.clone().into_iter().map(|f| Found { clip: "u".into(), ..f }));
+        founds.extend(founds.clone().into_iter().map(|f| ClipDetection { clip: "u".into(), ..f }));
         let infos = [stream("a", 40.0), stream("b", 5.0), unknown("u", 40.0)];
         let after = Evaluation::of(&infos, &truths, &founds).unwrap();
         prop_assert_eq!((&before.thesis, &before.overlap), (&after.thesis, &after.overlap));

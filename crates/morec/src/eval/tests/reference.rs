@@ -39,7 +39,11 @@ fn the_published_figures_come_out() {
         .into();
     let resolved = Labels::read(&labels).unwrap().resolve(&clips);
     assert!(resolved.warnings.is_empty(), "{:?}", resolved.warnings);
-    let truths: Vec<Truth> = resolved.samples.into_iter().map(Truth::from).collect();
+    let truths: Vec<GroundTruth> = resolved
+        .samples
+        .into_iter()
+        .map(GroundTruth::from)
+        .collect();
     let (founds, warnings) = read_found(include_bytes!("reference_found.tsv"))
         .unwrap()
         .resolve(&clips);

@@ -2,9 +2,9 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::motion::{Row, Rows, assemble, channels};
+use super::motion::{AmcRow, AmcRows, assemble, channels};
 use super::skeleton::Asf;
-use super::text::{Lines, number, quoted, text, tokens};
+use super::text::{AsfLines, number, quoted, text, tokens};
 use crate::formats::{Limits, Loaded, ParseError, Place, Warning};
 
 /// Frames a second where nothing says otherwise: what the CMU and HDM05 libraries were recorded at.
@@ -42,7 +42,7 @@ pub fn read_amc(
     limits: &Limits,
 ) -> Result<Loaded, ParseError> {
     let mut reader = AmcReader::new(skeleton, limits);
-    let mut lines = Lines::new(bytes, limits);
+    let mut lines = AsfLines::new(bytes, limits);
     while let Some((line, content)) = lines.next()? {
         reader.line(line, content)?;
     }
@@ -76,7 +76,7 @@ struct AmcReader<'a> {
     limits: &'a Limits,
     degrees: bool,
     slots: HashMap<String, usize>,
-    rows: Rows,
+    rows: AmcRows,
     /// The number that stood before the latest frame.
     number: Option<u64>,
     frames: u64,
@@ -104,7 +104,7 @@ impl<'a> AmcReader<'a> {
             limits,
             degrees: skeleton.degrees,
             slots,
-            rows: Rows::new(skeleton),
+            rows: AmcRows::new(skeleton),
             number: None,
             frames: 0,
             frame_line: 0,
@@ -221,7 +221,7 @@ impl<'a> AmcReader<'a> {
         }
         // `begin_frame` has counted at least one frame before any row comes here.
         let frame = (self.frames - 1) as usize;
-        if self.rows.add(slot, Row { frame, start }) {
+        if self.rows.add(slot, AmcRow { frame, start }) {
             self.warn(
                 line,
                 format!("a second row of bone {name} in one frame; the last one counts"),
@@ -249,7 +249,7 @@ impl<'a> AmcReader<'a> {
         }
     }
 
-    fn finish(mut self, last_line: u64) -> Result<(Rows, Vec<Warning>), ParseError> {
+    fn finish(mut self, last_line: u64) -> Result<(AmcRows, Vec<Warning>), ParseError> {
         let at = Place::Line(last_line.max(1));
         if self.frames == 0 {
             let expected = "frames: a number on a line of its own, then a line for each bone";

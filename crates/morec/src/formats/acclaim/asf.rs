@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::skeleton::{Asf, Bone, Channel, Root, axis_from_letter, composed};
-use super::text::{Lines, number, quoted, text, tokens};
+use super::skeleton::{AmcChannel, Asf, AsfBone, Root, axis_from_letter, composed};
+use super::text::{AsfLines, number, quoted, text, tokens};
 use crate::formats::{Limits, ParseError, Place, Warning};
 use crate::math::{Axis, Quat, Vec3};
 
@@ -46,12 +46,12 @@ pub fn read_asf(bytes: &[u8], limits: &Limits) -> Result<(Asf, Vec<Warning>), Pa
 }
 
 struct AsfReader<'a> {
-    lines: Lines<'a>,
+    lines: AsfLines<'a>,
     limits: &'a Limits,
     name: String,
     length_unit: f64,
     degrees: bool,
-    root_channels: Vec<Channel>,
+    root_channels: Vec<AmcChannel>,
     root_axes: Vec<Axis>,
     root_position: Vec3,
     root_orientation: Vec3,
@@ -73,19 +73,19 @@ struct RawBone {
     length: Option<f64>,
     axis_angles: Vec3,
     axis_order: Vec<Axis>,
-    channels: Vec<Channel>,
+    channels: Vec<AmcChannel>,
 }
 
 impl<'a> AsfReader<'a> {
     fn new(bytes: &'a [u8], limits: &'a Limits) -> Self {
         use Axis::{X, Y, Z};
         let root_channels = [X, Y, Z]
-            .map(Channel::Translation)
+            .map(AmcChannel::Translation)
             .into_iter()
-            .chain([X, Y, Z].map(Channel::Rotation))
+            .chain([X, Y, Z].map(AmcChannel::Rotation))
             .collect();
         Self {
-            lines: Lines::new(bytes, limits),
+            lines: AsfLines::new(bytes, limits),
             limits,
             name: String::new(),
             length_unit: 1.0,
@@ -407,9 +407,9 @@ impl<'a> AsfReader<'a> {
         Ok(order)
     }
 
-    fn finished(&self, bone: usize) -> Bone {
+    fn finished(&self, bone: usize) -> AsfBone {
         let raw = &self.bones[bone];
-        Bone {
+        AsfBone {
             name: raw.name.clone().unwrap_or_default(),
             vector: raw.direction.unwrap_or_else(Vec3::zeros) * raw.length.unwrap_or(0.0),
             axes: self.rotation(&raw.axis_order, raw.axis_angles),
@@ -470,10 +470,10 @@ fn axis_order(line: u64, token: Option<&[u8]>) -> Result<Vec<Axis>, ParseError> 
 fn channels<'t>(
     line: u64,
     words: impl Iterator<Item = &'t [u8]>,
-) -> Result<Vec<Channel>, ParseError> {
+) -> Result<Vec<AmcChannel>, ParseError> {
     let mut channels = Vec::new();
     for word in words {
-        let channel = Channel::from_token(word).ok_or_else(|| {
+        let channel = AmcChannel::from_token(word).ok_or_else(|| {
             ParseError::new(
                 Place::Line(line),
                 "tx, ty, tz, rx, ry, rz or l",

@@ -18,7 +18,7 @@ mod text;
 
 pub use amc::{AmcOptions, DEFAULT_RATE_HZ, read_amc};
 pub use asf::read_asf;
-pub use skeleton::{Asf, Bone, Channel, Root};
+pub use skeleton::{AmcChannel, Asf, AsfBone, Root};
 
 #[cfg(test)]
 mod tests;

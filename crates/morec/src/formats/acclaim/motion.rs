@@ -1,27 +1,27 @@
 //! From the rows of a motion file to a clip: every joint gets a rotation in every frame.
 
-use super::skeleton::{Asf, Channel, composed};
+use super::skeleton::{AmcChannel, Asf, composed};
 use crate::clip::{Clip, JointTrack, Span};
 use crate::formats::{ParseError, Place, Warning};
 use crate::math::{Quat, Vec3, same_hemisphere, slerp};
 
-/// A row that could be read: its frame, and where its numbers begin in [`Rows::values`].
+/// A row that could be read: its frame, and where its numbers begin in [`AmcRows::values`].
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Row {
+pub(super) struct AmcRow {
     pub(super) frame: usize,
     pub(super) start: usize,
 }
 
 /// All rows of a file, for each slot (0 the root, `b + 1` bone `b`) in the order of frames.
-pub(super) struct Rows {
+pub(super) struct AmcRows {
     pub(super) frames: usize,
     pub(super) values: Vec<f64>,
-    of_slot: Vec<Vec<Row>>,
+    of_slot: Vec<Vec<AmcRow>>,
     /// Degrees to radians, or 1; the file may say at any time.
     pub(super) degrees: bool,
 }
 
-impl Rows {
+impl AmcRows {
     pub(super) fn new(skeleton: &Asf) -> Self {
         let of_slot = vec![Vec::new(); skeleton.bones.len() + 1];
         Self {
@@ -33,7 +33,7 @@ impl Rows {
     }
 
     /// Adds a row of the latest frame; true if that frame already had one of this slot, which it replaces.
-    pub(super) fn add(&mut self, slot: usize, row: Row) -> bool {
+    pub(super) fn add(&mut self, slot: usize, row: AmcRow) -> bool {
         let rows = &mut self.of_slot[slot];
         match rows.last_mut().filter(|last| last.frame == row.frame) {
             Some(last) => {
@@ -54,7 +54,7 @@ impl Rows {
         }
         let last = self.frames - 1;
         let in_frame =
-            |rows: &[Row], frame| rows.iter().rev().take(2).any(|row| row.frame == frame);
+            |rows: &[AmcRow], frame| rows.iter().rev().take(2).any(|row| row.frame == frame);
         let unfinished = self
             .of_slot
             .iter()
@@ -70,7 +70,7 @@ impl Rows {
 }
 
 /// The numbers of a slot's row.
-pub(super) fn channels(skeleton: &Asf, slot: usize) -> &[Channel] {
+pub(super) fn channels(skeleton: &Asf, slot: usize) -> &[AmcChannel] {
     match slot {
         0 => &skeleton.root.channels,
         slot => &skeleton.bones[slot - 1].channels,
@@ -81,7 +81,7 @@ pub(super) fn channels(skeleton: &Asf, slot: usize) -> &[Channel] {
 pub(super) fn assemble(
     name: &str,
     asf: &Asf,
-    rows: Rows,
+    rows: AmcRows,
     rate_hz: f64,
     warnings: &mut Vec<Warning>,
 ) -> Result<Clip, ParseError> {
@@ -107,7 +107,7 @@ pub(super) fn assemble(
 /// Which frames lack a row that the file otherwise has; an error if that is most of them.
 fn missing_frames(
     asf: &Asf,
-    rows: &Rows,
+    rows: &AmcRows,
     warnings: &mut Vec<Warning>,
 ) -> Result<Vec<bool>, ParseError> {
     let mut spoiled = vec![false; rows.frames];
@@ -164,22 +164,22 @@ fn spans(flags: &[bool]) -> Vec<Span> {
 }
 
 /// Writes one slot's rotations and movements into the clip.
-fn place_slot(clip: &mut Clip, asf: &Asf, rows: &Rows, slot: usize) {
+fn place_slot(clip: &mut Clip, asf: &Asf, rows: &AmcRows, slot: usize) {
     let channels = channels(asf, slot);
     let present = &rows.of_slot[slot];
     if present.is_empty() || channels.is_empty() {
         return;
     }
-    let moves = |c: &Channel| matches!(c, Channel::Translation(_));
+    let moves = |c: &AmcChannel| matches!(c, AmcChannel::Translation(_));
     let mut positions = (slot == 0 || channels.iter().any(moves)).then(Vec::new);
-    let mut lengths = (slot > 0 && channels.contains(&Channel::Length)).then(Vec::new);
+    let mut lengths = (slot > 0 && channels.contains(&AmcChannel::Length)).then(Vec::new);
     let joints = clip.skeleton.len();
-    let mut before: Option<Motion> = None;
+    let mut before: Option<BoneMotion> = None;
     let mut next = present.iter().peekable();
     for frame in 0..clip.frames {
         let here = match next.next_if(|row| row.frame == frame) {
             Some(row) => {
-                let motion = Motion {
+                let motion = BoneMotion {
                     frame,
                     ..motion(asf, rows, slot, *row)
                 };
@@ -187,7 +187,7 @@ fn place_slot(clip: &mut Clip, asf: &Asf, rows: &Rows, slot: usize) {
                 motion
             }
             None => {
-                let after = next.peek().map(|row| Motion {
+                let after = next.peek().map(|row| BoneMotion {
                     frame: row.frame,
                     ..motion(asf, rows, slot, **row)
                 });
@@ -218,28 +218,28 @@ fn place_slot(clip: &mut Clip, asf: &Asf, rows: &Rows, slot: usize) {
 
 /// What one row says: rotation and movement in the parent's frame, and what is added to the length.
 #[derive(Debug, Clone, Copy)]
-struct Motion {
+struct BoneMotion {
     frame: usize,
     rotation: Quat,
     translation: Vec3,
     length: f64,
 }
 
-fn motion(asf: &Asf, rows: &Rows, slot: usize, row: Row) -> Motion {
+fn motion(asf: &Asf, rows: &AmcRows, slot: usize, row: AmcRow) -> BoneMotion {
     let channels = channels(asf, slot);
     let values = &rows.values[row.start..row.start + channels.len()];
     let mut translation = Vec3::zeros();
     let mut length = 0.0;
     for (channel, &value) in channels.iter().zip(values) {
         match channel {
-            Channel::Translation(axis) => translation[axis.index()] = value,
-            Channel::Length => length = value,
-            Channel::Rotation(_) => {}
+            AmcChannel::Translation(axis) => translation[axis.index()] = value,
+            AmcChannel::Length => length = value,
+            AmcChannel::Rotation(_) => {}
         }
     }
     let turn = composed(channels.iter().zip(values).filter_map(
         |(channel, &value)| match channel {
-            Channel::Rotation(axis) => Some((
+            AmcChannel::Rotation(axis) => Some((
                 *axis,
                 if rows.degrees {
                     value.to_radians()
@@ -260,7 +260,7 @@ fn motion(asf: &Asf, rows: &Rows, slot: usize, row: Row) -> Motion {
             (axes * turn * axes.inverse(), axes * translation)
         }
     };
-    Motion {
+    BoneMotion {
         frame: row.frame,
         rotation,
         translation,
@@ -269,11 +269,11 @@ fn motion(asf: &Asf, rows: &Rows, slot: usize, row: Row) -> Motion {
 }
 
 /// The motion at `frame`, which has no row, from its neighbours with one. At least one of them is there.
-fn between(before: Option<Motion>, after: Option<Motion>, frame: usize) -> Motion {
+fn between(before: Option<BoneMotion>, after: Option<BoneMotion>, frame: usize) -> BoneMotion {
     match (before, after) {
         (Some(a), Some(b)) => {
             let t = (frame - a.frame) as f64 / (b.frame - a.frame) as f64;
-            Motion {
+            BoneMotion {
                 frame,
                 rotation: slerp(&a.rotation, &b.rotation, t),
                 translation: a.translation.lerp(&b.translation, t),
@@ -281,7 +281,7 @@ fn between(before: Option<Motion>, after: Option<Motion>, frame: usize) -> Motio
             }
         }
         (Some(only), None) | (None, Some(only)) => only,
-        (None, None) => Motion {
+        (None, None) => BoneMotion {
             frame,
             rotation: Quat::identity(),
             translation: Vec3::zeros(),

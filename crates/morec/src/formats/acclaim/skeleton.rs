@@ -5,7 +5,7 @@ use crate::math::{Axis, Quat, Vec3};
 
 /// One number of a bone's line in a motion file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Channel {
+pub enum AmcChannel {
     /// `tx`, `ty`, `tz`: movement of the near end.
     Translation(Axis),
     /// `rx`, `ry`, `rz`: rotation.
@@ -14,13 +14,13 @@ pub enum Channel {
     Length,
 }
 
-impl Channel {
+impl AmcChannel {
     /// Reads `rx`, `TY`, `l` and the like.
     pub(super) fn from_token(token: &[u8]) -> Option<Self> {
         match token.to_ascii_lowercase().as_slice() {
-            [b't', axis] => axis_from_letter(*axis).map(Channel::Translation),
-            [b'r', axis] => axis_from_letter(*axis).map(Channel::Rotation),
-            b"l" => Some(Channel::Length),
+            [b't', axis] => axis_from_letter(*axis).map(AmcChannel::Translation),
+            [b'r', axis] => axis_from_letter(*axis).map(AmcChannel::Rotation),
+            b"l" => Some(AmcChannel::Length),
             _ => None,
         }
     }
@@ -49,7 +49,7 @@ pub(super) fn composed(rotations: impl IntoIterator<Item = (Axis, f64)>) -> Quat
 #[derive(Debug, Clone, PartialEq)]
 pub struct Root {
     /// The numbers of the root's line in a motion file, in their order.
-    pub channels: Vec<Channel>,
+    pub channels: Vec<AmcChannel>,
     /// Added to every position; zero in every library known.
     pub position: Vec3,
     /// Applied after every rotation, and to every position; identity in every library known.
@@ -58,7 +58,7 @@ pub struct Root {
 
 /// One entry of `:bonedata`.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Bone {
+pub struct AsfBone {
     /// Its name.
     pub name: String,
     /// From the near end to the far end, in the file's length unit.
@@ -66,7 +66,7 @@ pub struct Bone {
     /// `C`: the axes that its motion is given about.
     pub axes: Quat,
     /// The numbers of its line in a motion file, in their order; none for a bone that has no line.
-    pub channels: Vec<Channel>,
+    pub channels: Vec<AmcChannel>,
 }
 
 /// A skeleton file.
@@ -81,7 +81,7 @@ pub struct Asf {
     /// The root.
     pub root: Root,
     /// The bones that hang on the root, parents first.
-    pub bones: Vec<Bone>,
+    pub bones: Vec<AsfBone>,
     /// For each bone, the bone it continues; `None` for the root.
     pub parents: Vec<Option<usize>>,
 }

@@ -130,10 +130,10 @@ fn a_bone_can_move_and_grow() {
 fn root_order_may_be_anything() {
     let mut skeleton = two_bones("0 0 0 XYZ", "");
     skeleton.root.channels = vec![
-        Channel::Rotation(Axis::Z),
-        Channel::Translation(Axis::Y),
-        Channel::Rotation(Axis::X),
-        Channel::Translation(Axis::X),
+        AmcChannel::Rotation(Axis::Z),
+        AmcChannel::Translation(Axis::Y),
+        AmcChannel::Rotation(Axis::X),
+        AmcChannel::Translation(Axis::X),
     ];
     let clip = clip(&skeleton, b"1\nroot 90 5 90 7\n");
     assert_eq!(clip.tracks[0].positions[0], Vec3::new(7.0, 5.0, 0.0));

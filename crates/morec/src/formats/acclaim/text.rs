@@ -5,13 +5,13 @@ use std::borrow::Cow;
 use crate::formats::{Limits, ParseError, Place};
 
 /// Lines of `bytes` without comments, numbered from 1. LF, CRLF and CR end a line.
-pub(super) struct Lines<'a> {
+pub(super) struct AsfLines<'a> {
     rest: &'a [u8],
     number: u64,
     limit: usize,
 }
 
-impl<'a> Lines<'a> {
+impl<'a> AsfLines<'a> {
     pub(super) fn new(bytes: &'a [u8], limits: &Limits) -> Self {
         let rest = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
         Self {
@@ -98,7 +98,7 @@ mod tests {
 
     fn lines(bytes: &[u8]) -> Vec<(u64, String)> {
         let limits = Limits::default();
-        let mut lines = Lines::new(bytes, &limits);
+        let mut lines = AsfLines::new(bytes, &limits);
         let mut out = Vec::new();
         while let Some((number, line)) = lines.next().unwrap() {
             out.push((number, text(line).into_owned()));
@@ -128,7 +128,7 @@ mod tests {
             line_bytes: 4,
             ..Limits::default()
         };
-        let mut lines = Lines::new(b"ab\nabcdef", &limits);
+        let mut lines = AsfLines::new(b"ab\nabcdef", &limits);
         assert!(lines.next().unwrap().is_some());
         assert_eq!(lines.next().unwrap_err().at, Place::Line(2));
     }

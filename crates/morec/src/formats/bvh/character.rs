@@ -1,7 +1,7 @@
 //! One character's share of the motion table, turned into rotations and positions row by row.
 
 use super::gaps::{self, Gaps};
-use super::hierarchy::{Channel, Hierarchy};
+use super::hierarchy::{BvhHierarchy, Channel};
 use crate::clip::{Joint, Span};
 use crate::math::{Axis, Quat, Vec3, same_hemisphere, sin_cos_of_half};
 
@@ -15,14 +15,14 @@ pub(super) struct Character {
     pub rotations: Vec<Quat>,
     rotation_gaps: Vec<Gaps>,
     /// What the position channels say, for each joint that has any.
-    pub positions: Vec<Positions>,
+    pub positions: Vec<JointPositions>,
     /// Number of frames.
     pub frames: usize,
 }
 
 /// The position channels of one joint.
 #[derive(Debug)]
-pub(super) struct Positions {
+pub(super) struct JointPositions {
     /// Which joint of the character.
     pub joint: usize,
     /// For each axis its column, if the joint has one.
@@ -34,7 +34,7 @@ pub(super) struct Positions {
 
 impl Character {
     /// The `k`th root of `hierarchy`.
-    pub fn new(hierarchy: &Hierarchy, k: usize) -> Self {
+    pub fn new(hierarchy: &BvhHierarchy, k: usize) -> Self {
         let range = hierarchy.character(k);
         let mut character = Self {
             joints: hierarchy.joints[range.clone()].to_vec(),
@@ -63,7 +63,7 @@ impl Character {
         }
         self.turns.push(turns);
         if places.iter().any(Option::is_some) {
-            let positions = Positions {
+            let positions = JointPositions {
                 joint,
                 columns: places,
                 values: Vec::new(),
@@ -137,7 +137,7 @@ impl Character {
     }
 }
 
-impl Positions {
+impl JointPositions {
     /// Whether no frame holds a position.
     pub fn are_missing(&self) -> bool {
         self.gaps.len() == self.values.len()

@@ -12,7 +12,11 @@ use crate::math::Quat;
 pub(super) fn zyx_near(rotation: &Quat, previous: [f64; 3]) -> [f64; 3] {
     // The entries of its matrix that are asked for.
     let [x, y, z, w] = [rotation.i, rotation.j, rotation.k, rotation.w];
-    let first = [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)];
+    let first = [
+        1.0 - 2.0 * (y * y + z * z),
+        2.0 * (x * y + w * z),
+        2.0 * (x * z - w * y),
+    ];
     let last = [2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)];
     let cos_y = (first[0] * first[0] + first[1] * first[1]).sqrt();
     let pitch = (-first[2]).atan2(cos_y);

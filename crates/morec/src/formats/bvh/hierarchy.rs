@@ -19,7 +19,7 @@ pub(super) enum Channel {
 
 /// The skeletons of a file, one after another, and the columns of their shared motion table.
 #[derive(Debug, Default)]
-pub(super) struct Hierarchy {
+pub(super) struct BvhHierarchy {
     /// Joints of all roots in file order; parents are indices into this list.
     pub joints: Vec<Joint>,
     /// For each joint, the line it begins on.
@@ -34,7 +34,7 @@ pub(super) struct Hierarchy {
     pub motion_follows: bool,
 }
 
-impl Hierarchy {
+impl BvhHierarchy {
     /// The joints of the `k`th root.
     pub fn character(&self, k: usize) -> Range<usize> {
         self.roots[k]..self.roots.get(k + 1).copied().unwrap_or(self.joints.len())
@@ -47,13 +47,13 @@ pub(super) fn parse(
     encoding: Encoding,
     limits: &Limits,
     notes: &mut Notes,
-) -> Result<Hierarchy, ParseError> {
+) -> Result<BvhHierarchy, ParseError> {
     let mut parser = Parser {
         cursor,
         encoding,
         limits,
         notes,
-        found: Hierarchy::default(),
+        found: BvhHierarchy::default(),
         open: Vec::new(),
     };
     while let Some(token) = parser.keyword()? {
@@ -84,7 +84,7 @@ struct Parser<'a, 't> {
     encoding: Encoding,
     limits: &'a Limits,
     notes: &'a mut Notes,
-    found: Hierarchy,
+    found: BvhHierarchy,
     open: Vec<OpenJoint>,
 }
 
@@ -334,7 +334,7 @@ impl<'t> Parser<'_, 't> {
         }
     }
 
-    fn finish(mut self) -> Result<Hierarchy, ParseError> {
+    fn finish(mut self) -> Result<BvhHierarchy, ParseError> {
         if let Some(open) = self.open.last() {
             let what = self.describe(open.joint, open.is_end);
             return Err(self.error(

@@ -21,7 +21,7 @@ pub use positions::PositionChannels;
 pub use write::write;
 
 use self::character::Character;
-use self::hierarchy::Hierarchy;
+use self::hierarchy::BvhHierarchy;
 use self::notes::Notes;
 use self::positions::Votes;
 use self::text::{Cursor, Encoding, show};
@@ -180,7 +180,7 @@ fn hierarchy_bytes(text: &[u8]) -> &[u8] {
 /// Reads the MOTION section into `characters`; returns the rate it states and the frames that were lost.
 fn read_motion(
     mut cursor: Cursor<'_>,
-    hierarchy: &Hierarchy,
+    hierarchy: &BvhHierarchy,
     characters: &mut [Character],
     options: &BvhOptions,
     limits: &Limits,
@@ -206,7 +206,7 @@ fn read_motion(
         );
         return Ok((rate_hz, Vec::new()));
     }
-    let request = motion::Request {
+    let request = motion::TableSpec {
         declared: header.frames,
         bad_line_share: options.bad_line_share,
         limits,

@@ -3,13 +3,13 @@
 use super::character::Character;
 use super::notes::Notes;
 use super::number;
-use super::rows::{Row, Rows};
+use super::rows::{MotionLine, MotionLines};
 use super::text::{Cursor, show};
 use crate::formats::{Limits, ParseError, Place};
 
 /// What stands between MOTION and the table.
 #[derive(Debug)]
-pub(super) struct Header {
+pub(super) struct MotionHeader {
     /// `Frames:`, if it is a count.
     pub frames: Option<u64>,
     /// `Frame Time:`, if it is a number.
@@ -19,8 +19,11 @@ pub(super) struct Header {
 }
 
 /// Reads `Frames` and `Frame Time`, in any order, as far as they are there.
-pub(super) fn header(cursor: &mut Cursor<'_>, notes: &mut Notes) -> Result<Header, ParseError> {
-    let mut header = Header {
+pub(super) fn header(
+    cursor: &mut Cursor<'_>,
+    notes: &mut Notes,
+) -> Result<MotionHeader, ParseError> {
+    let mut header = MotionHeader {
         frames: None,
         frame_time_secs: None,
         at: cursor.place(),
@@ -106,7 +109,7 @@ pub(super) fn table(
     cursor: Cursor<'_>,
     width: usize,
     characters: &mut [Character],
-    request: &Request<'_>,
+    request: &TableSpec<'_>,
     notes: &mut Notes,
 ) -> Result<Vec<usize>, ParseError> {
     let joints = characters
@@ -124,7 +127,7 @@ pub(super) fn table(
     };
     let MotionTable {
         characters, tally, ..
-    } = table.by_line(Rows::new(cursor.clone(), notes), notes)?;
+    } = table.by_line(MotionLines::new(cursor.clone(), notes), notes)?;
     if tally.flows(width, request.declared) {
         characters.iter_mut().for_each(Character::clear);
         let text = "the frames are not one to a line; the numbers are read as one stream, as their count fits";
@@ -135,14 +138,14 @@ pub(super) fn table(
             characters,
             tally: RepairCounts::default(),
         };
-        table.by_stream(Rows::new(cursor, &mut Notes::default()), notes)?;
+        table.by_stream(MotionLines::new(cursor, &mut Notes::default()), notes)?;
         return Ok(Vec::new());
     }
     tally.judge(width, request, notes)
 }
 
 /// What the file and the caller say about the table.
-pub(super) struct Request<'a> {
+pub(super) struct TableSpec<'a> {
     /// Frames the header declares.
     pub declared: Option<u64>,
     /// Share of bad lines above which the table is refused.
@@ -172,20 +175,20 @@ impl MotionTable<'_> {
     }
 
     /// One frame a line; lines that are none are counted and remembered.
-    fn by_line(mut self, mut rows: Rows<'_>, notes: &mut Notes) -> Result<Self, ParseError> {
+    fn by_line(mut self, mut rows: MotionLines<'_>, notes: &mut Notes) -> Result<Self, ParseError> {
         let mut values = Vec::with_capacity(self.width);
         while let Some((line, row)) = rows.next(&mut values, notes)? {
             self.tally.numbers += values.len() as u64;
             match row {
-                Row::Numbers if values.len() == self.width => {
+                MotionLine::Numbers if values.len() == self.width => {
                     self.push(&values, line)?;
                     self.tally.good(line);
                     note_missing(&values, line, notes);
                 }
-                Row::Numbers => self.tally.bad(line, values.len() < self.width, || {
+                MotionLine::Numbers => self.tally.bad(line, values.len() < self.width, || {
                     format!("{} values", values.len())
                 }),
-                Row::Spoilt(token) => {
+                MotionLine::Spoilt(token) => {
                     self.tally.spoilt += 1;
                     self.tally.bad(line, true, || token);
                 }
@@ -195,7 +198,7 @@ impl MotionTable<'_> {
     }
 
     /// A frame every `width` numbers, whatever the lines.
-    fn by_stream(mut self, mut rows: Rows<'_>, notes: &mut Notes) -> Result<(), ParseError> {
+    fn by_stream(mut self, mut rows: MotionLines<'_>, notes: &mut Notes) -> Result<(), ParseError> {
         let (mut values, mut pending) = (Vec::new(), Vec::new());
         while let Some((line, _)) = rows.next(&mut values, &mut Notes::default())? {
             note_missing(&values, line, notes);
@@ -268,7 +271,7 @@ impl RepairCounts {
     fn judge(
         mut self,
         width: usize,
-        request: &Request<'_>,
+        request: &TableSpec<'_>,
         notes: &mut Notes,
     ) -> Result<Vec<usize>, ParseError> {
         let keep = self.last_good.map_or(0, |f| f + 1);
@@ -304,7 +307,7 @@ impl RepairCounts {
         &self,
         bad: usize,
         width: usize,
-        request: &Request<'_>,
+        request: &TableSpec<'_>,
     ) -> Result<(), ParseError> {
         if bad as f64 <= request.bad_line_share * self.lines as f64 {
             return Ok(());
@@ -322,7 +325,7 @@ impl RepairCounts {
 }
 
 /// Says what is wrong with a header whose counts do not match the `frames` that were found.
-pub(super) fn compare_counts(header: &Header, frames: usize, notes: &mut Notes) {
+pub(super) fn compare_counts(header: &MotionHeader, frames: usize, notes: &mut Notes) {
     match header.frames {
         None => notes.add(
             header.at,

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::character::{Character, Positions};
+use super::character::{Character, JointPositions};
 use crate::clip::{Joint, JointTrack};
 use crate::math::Vec3;
 
@@ -88,7 +88,7 @@ pub(super) fn median(positions: &[Vec3]) -> Vec3 {
 }
 
 impl Character {
-    fn positions_below_root(&self) -> impl Iterator<Item = (&Joint, &Positions)> {
+    fn positions_below_root(&self) -> impl Iterator<Item = (&Joint, &JointPositions)> {
         self.positions
             .iter()
             .map(|p| (&self.joints[p.joint], p))
@@ -121,7 +121,7 @@ impl Character {
     }
 }
 
-impl Positions {
+impl JointPositions {
     /// Whether a root's channels say nothing, so that its OFFSET is where it stands.
     fn is_zero_beside(&self, offset: &Vec3) -> bool {
         let largest = self.values.iter().map(Vec3::amax).fold(0.0, f64::max);

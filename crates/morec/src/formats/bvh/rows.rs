@@ -7,7 +7,7 @@ use crate::formats::ParseError;
 
 /// What a line of the motion table held; its numbers are in the caller's buffer.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Row {
+pub(super) enum MotionLine {
     /// Numbers only.
     Numbers,
     /// Numbers and something that is none.
@@ -15,12 +15,12 @@ pub(super) enum Row {
 }
 
 /// Reads the motion table line by line, skipping what is blank, a comment or foreign text.
-pub(super) struct Rows<'t> {
+pub(super) struct MotionLines<'t> {
     cursor: Cursor<'t>,
     decimal_comma: bool,
 }
 
-impl<'t> Rows<'t> {
+impl<'t> MotionLines<'t> {
     /// Starts at `cursor`. Commas are decimal points if the first line with numbers has them and no points.
     pub fn new(cursor: Cursor<'t>, notes: &mut Notes) -> Self {
         let mut first = cursor.clone();
@@ -50,7 +50,7 @@ impl<'t> Rows<'t> {
         &mut self,
         values: &mut Vec<f64>,
         notes: &mut Notes,
-    ) -> Result<Option<(u64, Row)>, ParseError> {
+    ) -> Result<Option<(u64, MotionLine)>, ParseError> {
         loop {
             self.cursor.skip_space()?;
             if self.cursor.peek().is_none() {
@@ -67,7 +67,7 @@ impl<'t> Rows<'t> {
     }
 
     /// Reads the rest of the line; `None` if it held no number.
-    fn line(&mut self, values: &mut Vec<f64>, notes: &mut Notes) -> Option<Row> {
+    fn line(&mut self, values: &mut Vec<f64>, notes: &mut Notes) -> Option<MotionLine> {
         loop {
             // The common case in a tight loop; whatever it does not understand is looked at closely.
             let text = self.cursor.text;
@@ -78,12 +78,12 @@ impl<'t> Rows<'t> {
                 self.cursor.skip_blanks();
             }
             if self.cursor.at_line_end() {
-                return Some(Row::Numbers);
+                return Some(MotionLine::Numbers);
             }
             if self.cursor.at_comment() {
                 notes.count("comment", self.cursor.line, || "comment skipped".into());
                 self.cursor.rest_of_line();
-                return (!values.is_empty()).then_some(Row::Numbers);
+                return (!values.is_empty()).then_some(MotionLine::Numbers);
             }
             let start = self.cursor.pos;
             let token = self.word();
@@ -131,11 +131,11 @@ impl<'t> Rows<'t> {
         token: &[u8],
         values: &[f64],
         notes: &mut Notes,
-    ) -> Option<Row> {
+    ) -> Option<MotionLine> {
         let rest = self.cursor.rest_of_line();
         let mut others = rest.split(|&b| b <= b' ');
         if !values.is_empty() || others.any(|t| number::parse(t).is_some()) {
-            return Some(Row::Spoilt(show(Some(token))));
+            return Some(MotionLine::Spoilt(show(Some(token))));
         }
         let whole = &self.cursor.text[start..self.cursor.pos];
         let text = || format!("a line without a number skipped, {}", show(Some(whole)));

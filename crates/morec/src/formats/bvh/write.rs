@@ -164,11 +164,15 @@ impl<'a> Plan<'a> {
                 if self.has_positions(j) {
                     let fixed = &self.clip.skeleton.joints()[j].offset;
                     let position = self.tracks[j].map_or(fixed, |t| &t.positions[frame]);
-                    position.iter().for_each(|value| push_number(&mut line, *value));
+                    position
+                        .iter()
+                        .for_each(|value| push_number(&mut line, *value));
                 }
                 angles[j] = euler::zyx_near(&rotations[j], angles[j]);
                 let degrees = angles[j].map(f64::to_degrees);
-                degrees.iter().for_each(|value| push_number(&mut line, *value));
+                degrees
+                    .iter()
+                    .for_each(|value| push_number(&mut line, *value));
             }
             line.pop();
             line.push(b'\n');
@@ -194,8 +198,8 @@ fn push_number(line: &mut Vec<u8>, value: f64) {
     const DECIMALS: usize = 7;
     const ONE: u64 = 10_000_000;
     let scaled = (value * ONE as f64).abs();
-    // Whole numbers up to 2^53 are doubles; not a number takes this way, too.
-    if !(scaled < 9e15) {
+    // Whole numbers up to 2^53 are doubles.
+    if scaled.is_nan() || scaled >= 9e15 {
         line.extend_from_slice(format!("{value:.7} ").as_bytes());
         return;
     }

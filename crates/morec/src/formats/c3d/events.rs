@@ -1,12 +1,12 @@
 //! Events of a recording.
 
-use super::header::Header;
+use super::header::C3dHeader;
 use super::params::Parameters;
 use crate::formats::{Place, Warning};
 
 /// Events of the EVENT group, else of the header, in one warning: labels are not among what a clip holds.
 pub(super) fn note(
-    header: &Header,
+    header: &C3dHeader,
     parameters: &Parameters,
     rate_hz: f64,
     warnings: &mut Vec<Warning>,

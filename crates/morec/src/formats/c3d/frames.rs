@@ -1,6 +1,6 @@
 //! Frames of points.
 
-use super::layout::Layout;
+use super::layout::C3dLayout;
 use super::number::Processor;
 use crate::formats::points::{Point, UNSEEN};
 use crate::math::Vec3;
@@ -8,7 +8,7 @@ use crate::math::Vec3;
 /// The positions of the points in `wanted`, frame by frame.
 pub(super) fn points(
     bytes: &[u8],
-    layout: &Layout,
+    layout: &C3dLayout,
     processor: Processor,
     scale: f64,
     names: &[String],

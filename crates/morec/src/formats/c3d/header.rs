@@ -5,7 +5,7 @@ use super::params::BLOCK;
 
 /// What the header says.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Header {
+pub(super) struct C3dHeader {
     pub(super) points: usize,
     /// Analog values in a frame.
     pub(super) analog: usize,
@@ -23,7 +23,7 @@ pub(super) struct Header {
 const NAMED_EVENTS: u16 = 12345;
 const MOST_EVENTS: usize = 18;
 
-impl Header {
+impl C3dHeader {
     /// Reads a header of [`BLOCK`] bytes.
     pub(super) fn read(bytes: &[u8; BLOCK], processor: Processor) -> Self {
         // Words are counted from 1 in the format's description.

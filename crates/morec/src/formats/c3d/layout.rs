@@ -1,13 +1,13 @@
 //! How the frames of a C3D file are laid out: what header and parameters say, settled by the length of the file where
 //! they disagree.
 
-use super::header::Header;
+use super::header::C3dHeader;
 use super::params::{BLOCK, Parameters};
 use crate::formats::{ParseError, Place, Warning};
 
 /// Where the frames are and how long.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Layout {
+pub(super) struct C3dLayout {
     /// Byte of the first frame.
     pub(super) start: usize,
     pub(super) points: usize,
@@ -17,7 +17,7 @@ pub(super) struct Layout {
     pub(super) frames: usize,
 }
 
-impl Layout {
+impl C3dLayout {
     /// Bytes in a frame.
     pub(super) fn frame_bytes(&self) -> usize {
         let value = if self.floats { 4 } else { 2 };
@@ -34,20 +34,20 @@ impl Layout {
     /// # Errors
     /// There are no points, or no frames.
     pub(super) fn choose(
-        header: &Header,
+        header: &C3dHeader,
         parameters: &Parameters,
         length: usize,
         warnings: &mut Vec<Warning>,
     ) -> Result<Self, ParseError> {
         let candidates = candidates(header, parameters, length);
-        let with_points: Vec<Layout> = candidates.into_iter().filter(|l| l.points > 0).collect();
+        let with_points: Vec<C3dLayout> = candidates.into_iter().filter(|l| l.points > 0).collect();
         let Some(&first) = with_points.first() else {
             return Err(no_points(parameters));
         };
-        let room = |l: &Layout| length.saturating_sub(l.start);
-        let fits = |l: &&Layout| l.frames > 0 && l.bytes() <= room(l);
+        let room = |l: &C3dLayout| length.saturating_sub(l.start);
+        let fits = |l: &&C3dLayout| l.frames > 0 && l.bytes() <= room(l);
         // Data end with their block; some writers add one.
-        let exact = |l: &&Layout| fits(l) && room(l) - l.bytes() < 2 * BLOCK;
+        let exact = |l: &&C3dLayout| fits(l) && room(l) - l.bytes() < 2 * BLOCK;
         let mut chosen = *with_points
             .iter()
             .find(exact)
@@ -88,7 +88,7 @@ fn no_points(parameters: &Parameters) -> ParseError {
 }
 
 /// Everything that could be meant, the likeliest first.
-fn candidates(header: &Header, parameters: &Parameters, length: usize) -> Vec<Layout> {
+fn candidates(header: &C3dHeader, parameters: &Parameters, length: usize) -> Vec<C3dLayout> {
     let count = |value: Option<f64>| value.map_or(0, |v| v.clamp(0.0, 1e9) as usize);
     let used = parameters.number("POINT", "USED");
     let points = distinct([count(used), header.points]);
@@ -118,7 +118,7 @@ fn candidates(header: &Header, parameters: &Parameters, length: usize) -> Vec<La
             for &analog in &analog {
                 for &floats in &floats {
                     for frames in frame_counts(header, parameters) {
-                        all.push(Layout {
+                        all.push(C3dLayout {
                             start,
                             points,
                             analog,
@@ -134,7 +134,7 @@ fn candidates(header: &Header, parameters: &Parameters, length: usize) -> Vec<La
 }
 
 /// How many frames there may be. Words of 16 bits overflow in long recordings, so other parameters repeat the count.
-fn frame_counts(header: &Header, parameters: &Parameters) -> Vec<usize> {
+fn frame_counts(header: &C3dHeader, parameters: &Parameters) -> Vec<usize> {
     let span = |first: f64, last: f64| (last - first + 1.0).clamp(0.0, 1e9) as usize;
     let by_header = span(f64::from(header.first_frame), f64::from(header.last_frame));
     let actual = match (
@@ -178,7 +178,7 @@ fn distinct<T: PartialEq>([first, second]: [T; 2]) -> Vec<T> {
 }
 
 /// Says where what was taken is not what is said first.
-fn note(first: &Layout, chosen: &Layout, warnings: &mut Vec<Warning>) {
+fn note(first: &C3dLayout, chosen: &C3dLayout, warnings: &mut Vec<Warning>) {
     let pairs = [
         ("points in a frame", first.points, chosen.points),
         ("analog values in a frame", first.analog, chosen.analog),

@@ -14,8 +14,8 @@ mod write;
 
 pub use write::write;
 
-use self::header::Header;
-use self::layout::Layout;
+use self::header::C3dHeader;
+use self::layout::C3dLayout;
 use self::number::Processor;
 use self::params::{BLOCK, Parameters};
 use super::points::{PointTable, metres_of};
@@ -51,9 +51,9 @@ pub fn read(
         ));
     };
     let (start, processor) = parameter_section(bytes, block, &mut warnings)?;
-    let header = Header::read(block, processor);
+    let header = C3dHeader::read(block, processor);
     let parameters = Parameters::read(bytes, start, processor, &mut warnings);
-    let layout = Layout::choose(&header, &parameters, bytes.len(), &mut warnings)?;
+    let layout = C3dLayout::choose(&header, &parameters, bytes.len(), &mut warnings)?;
     if layout.frames > limits.frames {
         let expected = format!("at most {} frames", limits.frames);
         return Err(ParseError::new(
@@ -117,7 +117,7 @@ fn parameter_section(
         return Ok((BLOCK, processor));
     }
     let start = if stated > 0 { stated } else { BLOCK };
-    let plausible = |processor: &&Processor| Header::read(block, **processor).is_plausible();
+    let plausible = |processor: &&Processor| C3dHeader::read(block, **processor).is_plausible();
     match Processor::ALL.iter().find(plausible) {
         Some(&processor) => {
             let name = processor.name();
@@ -134,7 +134,7 @@ fn parameter_section(
     }
 }
 
-fn rate(header: &Header, parameters: &Parameters, warnings: &mut Vec<Warning>) -> f64 {
+fn rate(header: &C3dHeader, parameters: &Parameters, warnings: &mut Vec<Warning>) -> f64 {
     let usable = |rate: &f64| (0.01..=100_000.0).contains(rate);
     let stated = parameters.number("POINT", "RATE").filter(usable);
     let in_header = Some(header.rate_hz).filter(usable);
@@ -155,7 +155,7 @@ fn rate(header: &Header, parameters: &Parameters, warnings: &mut Vec<Warning>) -
 
 /// What an integer step is long; 1 for floats.
 fn scale(
-    header: &Header,
+    header: &C3dHeader,
     parameters: &Parameters,
     floats: bool,
     warnings: &mut Vec<Warning>,

@@ -7,7 +7,7 @@ use ufbx::{ElementType, LoadOpts, Scene as Fbx};
 
 use super::builder::clip_names;
 use super::keys::{self, KeyGrid};
-use super::scene::{self, Local, Node, Rig, Sampling};
+use super::scene::{self, Local, Sampling, SceneNode, SceneSkeleton};
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::clip::Clip;
 use crate::math::{Axis, Quat, Vec3};
@@ -26,7 +26,8 @@ const MEMORY_A_BYTE: usize = 64;
 /// Where and what: no FBX, a version before 3.0 or one that cannot be read, no animation of a skeleton, more than
 /// `limits` allow. O(bytes + frames × nodes).
 pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseError> {
-    read_scene(&load(bytes, limits)?, bytes.len(), name, limits)
+    let fbx = load(bytes, limits)?;
+    read_scene(&fbx, bytes.len(), name, limits)
 }
 
 /// [`read`], with what the scene's settings state about lengths and axes, if they do. A `rate_hz` that is given is not
@@ -71,11 +72,13 @@ fn settings(fbx: &Fbx) -> Option<SceneSettings> {
         Is::Unknown => return None,
     };
     let metres_per_unit = fbx.settings.unit_meters;
-    (1e-6..1e6).contains(&metres_per_unit).then_some(SceneSettings {
-        up,
-        is_down,
-        metres_per_unit,
-    })
+    (1e-6..1e6)
+        .contains(&metres_per_unit)
+        .then_some(SceneSettings {
+            up,
+            is_down,
+            metres_per_unit,
+        })
 }
 
 fn read_scene(fbx: &Fbx, bytes: usize, name: &str, limits: &Limits) -> Result<Loaded, ParseError> {
@@ -99,7 +102,7 @@ fn read_scene(fbx: &Fbx, bytes: usize, name: &str, limits: &Limits) -> Result<Lo
     }
     let takes = takes(fbx, &rigs, &mut warnings);
     if takes.is_empty() {
-        let joints: usize = rigs.iter().map(Rig::len).sum();
+        let joints: usize = rigs.iter().map(SceneSkeleton::len).sum();
         let found = match joints {
             0 => "an FBX scene without a skeleton that moves".to_owned(),
             _ => format!("an FBX model with a skeleton of {joints} joints, without animation"),
@@ -177,7 +180,7 @@ fn version(bytes: &[u8]) -> Option<String> {
 }
 
 /// The nodes; a node's number is its place in `fbx.nodes`.
-fn nodes(fbx: &Fbx, limits: &Limits) -> Result<Vec<Node>, ParseError> {
+fn nodes(fbx: &Fbx, limits: &Limits) -> Result<Vec<SceneNode>, ParseError> {
     let most = limits.joints.saturating_mul(16);
     if fbx.nodes.len() > most {
         let expected = format!("at most {most} nodes");
@@ -187,21 +190,25 @@ fn nodes(fbx: &Fbx, limits: &Limits) -> Result<Vec<Node>, ParseError> {
             fbx.nodes.len().to_string(),
         ));
     }
-    let nodes = fbx.nodes.iter().enumerate().map(|(number, node)| Node {
-        name: match node.element.name.trim() {
-            "" => format!("node{number}"),
-            _ => node.element.name.to_string(),
-        },
-        parent: node.parent.as_ref().map(|p| p.element.typed_id as usize),
-        rest: local(&node.local_transform),
-        joint: false,
-    });
+    let nodes = fbx
+        .nodes
+        .iter()
+        .enumerate()
+        .map(|(number, node)| SceneNode {
+            name: match node.element.name.trim() {
+                "" => format!("node{number}"),
+                _ => node.element.name.to_string(),
+            },
+            parent: node.parent.as_ref().map(|p| p.element.typed_id as usize),
+            rest: local(&node.local_transform),
+            joint: false,
+        });
     Ok(nodes.collect())
 }
 
 /// Bones, what skins hang on, and animated nodes below these; in a scene without any, all animated nodes that are no
 /// cameras or lights.
-fn mark_joints(fbx: &Fbx, order: &[usize], nodes: &mut [Node]) {
+fn mark_joints(fbx: &Fbx, order: &[usize], nodes: &mut [SceneNode]) {
     for node in &fbx.nodes {
         nodes[node.element.typed_id as usize].joint = node.bone.is_some();
     }
@@ -244,7 +251,7 @@ fn mark_joints(fbx: &Fbx, order: &[usize], nodes: &mut [Node]) {
 }
 
 /// Among animated nodes of no kind, those between two of them are joints, too.
-fn join_nulls(fbx: &Fbx, order: &[usize], nodes: &mut [Node]) {
+fn join_nulls(fbx: &Fbx, order: &[usize], nodes: &mut [SceneNode]) {
     let mut leads_to_joint = vec![false; nodes.len()];
     for &n in order.iter().rev() {
         leads_to_joint[n] |= nodes[n].joint;
@@ -273,7 +280,7 @@ fn moved_node(prop: &ufbx::AnimProp, nodes: usize) -> Option<usize> {
 struct AnimationStack<'a> {
     name: String,
     stack: &'a ufbx::AnimStack,
-    rig: &'a Rig,
+    rig: &'a SceneSkeleton,
     /// Seconds.
     keys: Vec<f64>,
 }
@@ -281,7 +288,7 @@ struct AnimationStack<'a> {
 /// The takes that move a skeleton. A take whose keys are one pose is left out where others move.
 fn takes<'a>(
     fbx: &'a Fbx,
-    rigs: &'a [Rig],
+    rigs: &'a [SceneSkeleton],
     warnings: &mut Vec<Warning>,
 ) -> Vec<AnimationStack<'a>> {
     let mut takes = Vec::new();
@@ -309,7 +316,7 @@ fn takes<'a>(
     takes
 }
 
-fn key_times(stack: &ufbx::AnimStack, rig: &Rig, nodes: usize) -> Vec<f64> {
+fn key_times(stack: &ufbx::AnimStack, rig: &SceneSkeleton, nodes: usize) -> Vec<f64> {
     let mut times = Vec::new();
     for layer in &stack.layers {
         for prop in &layer.anim_props {
@@ -369,7 +376,7 @@ fn grid(
 fn clip(
     fbx: &Fbx,
     take: &AnimationStack<'_>,
-    nodes: &[Node],
+    nodes: &[SceneNode],
     clip_name: String,
     bytes: usize,
     limits: &Limits,

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::super::scene::{Local, Rig};
+use super::super::scene::{Local, SceneSkeleton};
 use super::super::{ParseError, Place, Warning};
 use super::Beside;
 use super::accessor::{Buffers, Numbers};
@@ -12,7 +12,7 @@ use crate::math::{Quat, Vec3, slerp};
 /// One animation of a file.
 pub(super) struct Animation {
     pub(super) name: String,
-    pub(super) channels: Vec<Channel>,
+    pub(super) channels: Vec<GltfChannel>,
 }
 
 /// What a channel moves.
@@ -32,7 +32,7 @@ enum Between {
 }
 
 /// Keys of one property of one node.
-pub(super) struct Channel {
+pub(super) struct GltfChannel {
     node: usize,
     path: TargetPath,
     between: Between,
@@ -93,7 +93,7 @@ fn read(
     samplers: &Value,
     document: &Document,
     buffers: &mut Buffers<'_>,
-) -> Result<Option<Channel>, ParseError> {
+) -> Result<Option<GltfChannel>, ParseError> {
     let target = &channel["target"];
     let path = match target["path"].as_str() {
         Some("translation") => TargetPath::Translation,
@@ -116,10 +116,10 @@ fn read(
         Some("CUBICSPLINE") => Between::CubicSpline,
         _ => Between::Linear,
     };
-    Channel::new(node, path, between, &times, &values)
+    GltfChannel::new(node, path, between, &times, &values)
 }
 
-impl Channel {
+impl GltfChannel {
     /// As many keys as have both time and value, in order of time; `None` without any.
     fn new(
         node: usize,
@@ -262,17 +262,17 @@ impl Animation {
     }
 
     /// Whether a channel moves a joint of `rig` or a node above.
-    pub(super) fn moves(&self, rig: &Rig) -> bool {
+    pub(super) fn moves(&self, rig: &SceneSkeleton) -> bool {
         self.of(rig).next().is_some()
     }
 
-    fn of<'a>(&'a self, rig: &'a Rig) -> impl Iterator<Item = &'a Channel> {
-        let moves = |channel: &&Channel| rig.moved_by(channel.node);
+    fn of<'a>(&'a self, rig: &'a SceneSkeleton) -> impl Iterator<Item = &'a GltfChannel> {
+        let moves = |channel: &&GltfChannel| rig.moved_by(channel.node);
         self.channels.iter().filter(moves)
     }
 
     /// The times of all keys that move `rig`.
-    pub(super) fn key_times(&self, rig: &Rig) -> Vec<f64> {
+    pub(super) fn key_times(&self, rig: &SceneSkeleton) -> Vec<f64> {
         self.of(rig)
             .flat_map(|channel| channel.times.iter().copied())
             .collect()

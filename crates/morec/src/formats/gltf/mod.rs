@@ -14,9 +14,9 @@ pub use self::write::{write, write_vrma};
 
 use self::animation::Animation;
 use self::document::Document;
-use self::nodes::Stage;
+use self::nodes::GltfScene;
 use super::builder::clip_names;
-use super::scene::{self, Local, Rig, Sampling};
+use super::scene::{self, Local, Sampling, SceneSkeleton};
 use super::{Limits, Loaded, ParseError, Place, Warning, keys};
 use crate::clip::Clip;
 
@@ -41,7 +41,7 @@ pub fn read(
 ) -> Result<Loaded, ParseError> {
     let mut warnings = Vec::new();
     let document = Document::parse(bytes, limits, &mut warnings)?;
-    let stage = Stage::of(&document, limits, &mut warnings)?;
+    let stage = GltfScene::of(&document, limits, &mut warnings)?;
     let mut animations = animation::all(&document, beside, &mut warnings)?;
     if animations.is_empty() {
         return Err(without_animation(&document, &stage, ""));
@@ -79,9 +79,9 @@ pub fn read(
     Ok(Loaded { clips, warnings })
 }
 
-fn without_animation(document: &Document, stage: &Stage, but: &str) -> ParseError {
+fn without_animation(document: &Document, stage: &GltfScene, but: &str) -> ParseError {
     let kind = document.kind();
-    let joints = match stage.rigs.iter().map(Rig::len).sum::<usize>() {
+    let joints = match stage.rigs.iter().map(SceneSkeleton::len).sum::<usize>() {
         0 => "without a skeleton or animation".to_owned(),
         joints => format!("with a skeleton of {joints} joints, without animation of it{but}"),
     };
@@ -94,14 +94,14 @@ fn without_animation(document: &Document, stage: &Stage, but: &str) -> ParseErro
 
 fn clips(
     animations: &[Animation],
-    stage: &Stage,
+    stage: &GltfScene,
     name: &str,
     bytes: usize,
     limits: &Limits,
     warnings: &mut Vec<Warning>,
 ) -> Result<Vec<Clip>, ParseError> {
     let still = animations.len() == 1 && animations[0].channels.is_empty();
-    let pairs: Vec<(&Animation, &Rig)> = animations
+    let pairs: Vec<(&Animation, &SceneSkeleton)> = animations
         .iter()
         .flat_map(|animation| {
             let moved = stage
@@ -130,8 +130,8 @@ fn clips(
 
 fn clip(
     animation: &Animation,
-    rig: &Rig,
-    stage: &Stage,
+    rig: &SceneSkeleton,
+    stage: &GltfScene,
     clip_name: String,
     bytes: usize,
     limits: &Limits,

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::super::scene::{self, Local, Node, Rig};
+use super::super::scene::{self, Local, SceneNode, SceneSkeleton};
 use super::super::{Limits, ParseError, Place, Warning};
 use super::animation::rotation;
 use super::document::{Document, index, numbers};
@@ -10,16 +10,16 @@ use crate::math::{Quat, Vec3};
 use nalgebra::{Matrix3, Rotation3};
 
 /// The nodes of a file and the skeletons among them.
-pub(super) struct Stage {
-    pub(super) nodes: Vec<Node>,
-    pub(super) rigs: Vec<Rig>,
+pub(super) struct GltfScene {
+    pub(super) nodes: Vec<SceneNode>,
+    pub(super) rigs: Vec<SceneSkeleton>,
     /// For each node the humanoid bone that it is.
     bones: Vec<Option<String>>,
     /// Whether there is a skin or a humanoid.
     character: bool,
 }
 
-impl Stage {
+impl GltfScene {
     pub(super) fn of(
         document: &Document,
         limits: &Limits,
@@ -83,12 +83,12 @@ impl Stage {
     }
 }
 
-fn nodes(document: &Document) -> Vec<Node> {
+fn nodes(document: &Document) -> Vec<SceneNode> {
     let list = document.list("nodes");
-    let mut nodes: Vec<Node> = list
+    let mut nodes: Vec<SceneNode> = list
         .iter()
         .enumerate()
-        .map(|(number, json)| Node {
+        .map(|(number, json)| SceneNode {
             name: match json["name"].as_str() {
                 Some(name) if !name.is_empty() => name.to_owned(),
                 _ => format!("node{number}"),
@@ -178,7 +178,7 @@ fn humanoid(document: &Document, nodes: usize) -> Vec<Option<String>> {
 
 /// Animated nodes below joints are joints, too; in a file without skin or humanoid all are. Nodes that VRM animations
 /// keep expressions and the look in are none.
-fn mark_animated(document: &Document, order: &[usize], character: bool, nodes: &mut [Node]) {
+fn mark_animated(document: &Document, order: &[usize], character: bool, nodes: &mut [SceneNode]) {
     let mut animated = vec![false; nodes.len()];
     for animation in document.list("animations") {
         for channel in animation["channels"].as_array().into_iter().flatten() {
@@ -211,8 +211,16 @@ fn mark_animated(document: &Document, order: &[usize], character: bool, nodes: &
 }
 
 /// Of several trees of joints in one skin the largest is the body; the others are controls and props.
-fn one_a_skin(rigs: Vec<Rig>, skins: &[Vec<usize>], warnings: &mut Vec<Warning>) -> Vec<Rig> {
-    let nodes = rigs.iter().flat_map(Rig::nodes).max().map_or(0, |n| n + 1);
+fn one_a_skin(
+    rigs: Vec<SceneSkeleton>,
+    skins: &[Vec<usize>],
+    warnings: &mut Vec<Warning>,
+) -> Vec<SceneSkeleton> {
+    let nodes = rigs
+        .iter()
+        .flat_map(SceneSkeleton::nodes)
+        .max()
+        .map_or(0, |n| n + 1);
     let mut rig_of = vec![None; nodes];
     for (k, rig) in rigs.iter().enumerate() {
         for node in rig.nodes() {

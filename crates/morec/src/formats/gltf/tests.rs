@@ -389,7 +389,7 @@ fn vrm_animations_hold_the_humanoid_and_rest_in_a_t_pose() {
     }
     // At rest, as the nodes say.
     let document = Document::parse(&bytes, &Limits::default(), &mut Vec::new()).unwrap();
-    let stage = Stage::of(&document, &Limits::default(), &mut Vec::new()).unwrap();
+    let stage = GltfScene::of(&document, &Limits::default(), &mut Vec::new()).unwrap();
     let mut world: Vec<(String, Vec3, Quat)> = Vec::new();
     let nodes = document.json["nodes"].as_array().unwrap().clone();
     let mut left: Vec<(usize, Vec3, Quat)> = vec![(0, Vec3::zeros(), Quat::identity())];

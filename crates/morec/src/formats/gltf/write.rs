@@ -61,14 +61,14 @@ pub fn write_vrma(clip: &Clip, roles: &RoleMap, out: &mut dyn Write) -> io::Resu
 }
 
 /// A bone of a VRM humanoid.
-struct Bone {
+struct VrmBone {
     role: Role,
     name: &'static str,
     required: bool,
 }
 
-const fn bone(role: Role, name: &'static str, required: bool) -> Bone {
-    Bone {
+const fn bone(role: Role, name: &'static str, required: bool) -> VrmBone {
+    VrmBone {
         role,
         name,
         required,
@@ -76,7 +76,7 @@ const fn bone(role: Role, name: &'static str, required: bool) -> Bone {
 }
 
 /// After *VRMC_vrm-1.0*, humanoid.
-const BONES: [Bone; Role::COUNT] = [
+const BONES: [VrmBone; Role::COUNT] = [
     bone(Role::Hips, "hips", true),
     bone(Role::Torso, "spine", true),
     bone(Role::Neck, "neck", false),

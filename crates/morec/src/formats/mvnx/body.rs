@@ -7,7 +7,7 @@ use super::{child, is, place};
 use crate::math::Vec3;
 
 /// A segment; its joint is its origin.
-pub(super) struct Segment {
+pub(super) struct MvnxSegment {
     pub(super) label: String,
     /// Number among the segments of the result, which have parents first.
     pub(super) parent: Option<usize>,
@@ -70,7 +70,7 @@ pub(super) fn segments(
     subject: Node<'_, '_>,
     limits: &Limits,
     warnings: &mut Vec<Warning>,
-) -> Result<Vec<Segment>, ParseError> {
+) -> Result<Vec<MvnxSegment>, ParseError> {
     let list = child(subject, "segments")
         .ok_or_else(|| ParseError::new(place(subject), "<segments>", "none"))?;
     let nodes: Vec<Node> = list.children().filter(|n| is(*n, "segment")).collect();
@@ -99,7 +99,7 @@ pub(super) fn segments(
     let segment = |&column: &usize| {
         let parent = parents[column];
         let tip = TIPS.iter().find(|(label, _)| *label == labels[column]);
-        Segment {
+        MvnxSegment {
             label: labels[column].to_owned(),
             parent: parent.map(|p| number[p]),
             column,

@@ -8,7 +8,7 @@ mod body;
 
 use roxmltree::{Document, Node, ParsingOptions};
 
-use self::body::Segment;
+use self::body::MvnxSegment;
 use super::builder::{ClipBuilder, check_size, clip_names};
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::clip::{Clip, Joint};
@@ -153,7 +153,7 @@ fn read_subject(
     builder.finish(name, rate_hz)
 }
 
-fn joints(segments: &[Segment]) -> Vec<Joint> {
+fn joints(segments: &[MvnxSegment]) -> Vec<Joint> {
     segments
         .iter()
         .map(|segment| Joint {
@@ -188,7 +188,7 @@ impl Flaw<'_, '_> {
 /// Orientations and positions in the world, in the order of `segments`.
 fn read_frame<'a, 'input>(
     frame: Node<'a, 'input>,
-    segments: &[Segment],
+    segments: &[MvnxSegment],
 ) -> Result<(Vec<Quat>, Vec<Vec3>), Flaw<'a, 'input>> {
     let turns = row(frame, "orientation", 4 * segments.len())?;
     let places = row(frame, "position", 3 * segments.len())?;

@@ -8,35 +8,35 @@ const HEIGHT: f64 = 1.7;
 
 /// A joint: name, parent, and its place in the parent's frame in parts of the body's height. T-pose, Y up, facing +Z,
 /// the left at +X, as the models stand.
-struct Part(&'static str, usize, [f64; 3]);
+struct SmplJoint(&'static str, usize, [f64; 3]);
 
 /// The joints that SMPL, SMPL-H and SMPL-X share, in their order (Loper et al., *SMPL: A Skinned Multi-Person Linear Model*,
 /// 2015; Pavlakos et al., 2019). Heights of ankle, knee, hip, shoulder and chin and the lengths of arm, forearm, hand and
 /// foot are the proportions of Drillis and Contini (*Body Segment Parameters*, 1966); the trunk's joints between are spread
 /// over its length.
-const PARTS: [Part; 22] = [
-    Part("pelvis", 0, [0.0, 0.575, 0.0]),
-    Part("left_hip", 0, [0.050, -0.045, 0.0]),
-    Part("right_hip", 0, [-0.050, -0.045, 0.0]),
-    Part("spine1", 0, [0.0, 0.060, 0.0]),
-    Part("left_knee", 1, [0.0, -0.245, 0.0]),
-    Part("right_knee", 2, [0.0, -0.245, 0.0]),
-    Part("spine2", 3, [0.0, 0.075, 0.0]),
-    Part("left_ankle", 4, [0.0, -0.246, 0.0]),
-    Part("right_ankle", 5, [0.0, -0.246, 0.0]),
-    Part("spine3", 6, [0.0, 0.040, 0.0]),
-    Part("left_foot", 7, [0.010, -0.030, 0.075]),
-    Part("right_foot", 8, [-0.010, -0.030, 0.075]),
-    Part("neck", 9, [0.0, 0.100, 0.0]),
-    Part("left_collar", 9, [0.040, 0.058, 0.0]),
-    Part("right_collar", 9, [-0.040, 0.058, 0.0]),
-    Part("head", 12, [0.0, 0.060, 0.0]),
-    Part("left_shoulder", 13, [0.065, 0.010, 0.0]),
-    Part("right_shoulder", 14, [-0.065, 0.010, 0.0]),
-    Part("left_elbow", 16, [0.186, 0.0, 0.0]),
-    Part("right_elbow", 17, [-0.186, 0.0, 0.0]),
-    Part("left_wrist", 18, [0.146, 0.0, 0.0]),
-    Part("right_wrist", 19, [-0.146, 0.0, 0.0]),
+const PARTS: [SmplJoint; 22] = [
+    SmplJoint("pelvis", 0, [0.0, 0.575, 0.0]),
+    SmplJoint("left_hip", 0, [0.050, -0.045, 0.0]),
+    SmplJoint("right_hip", 0, [-0.050, -0.045, 0.0]),
+    SmplJoint("spine1", 0, [0.0, 0.060, 0.0]),
+    SmplJoint("left_knee", 1, [0.0, -0.245, 0.0]),
+    SmplJoint("right_knee", 2, [0.0, -0.245, 0.0]),
+    SmplJoint("spine2", 3, [0.0, 0.075, 0.0]),
+    SmplJoint("left_ankle", 4, [0.0, -0.246, 0.0]),
+    SmplJoint("right_ankle", 5, [0.0, -0.246, 0.0]),
+    SmplJoint("spine3", 6, [0.0, 0.040, 0.0]),
+    SmplJoint("left_foot", 7, [0.010, -0.030, 0.075]),
+    SmplJoint("right_foot", 8, [-0.010, -0.030, 0.075]),
+    SmplJoint("neck", 9, [0.0, 0.100, 0.0]),
+    SmplJoint("left_collar", 9, [0.040, 0.058, 0.0]),
+    SmplJoint("right_collar", 9, [-0.040, 0.058, 0.0]),
+    SmplJoint("head", 12, [0.0, 0.060, 0.0]),
+    SmplJoint("left_shoulder", 13, [0.065, 0.010, 0.0]),
+    SmplJoint("right_shoulder", 14, [-0.065, 0.010, 0.0]),
+    SmplJoint("left_elbow", 16, [0.186, 0.0, 0.0]),
+    SmplJoint("right_elbow", 17, [-0.186, 0.0, 0.0]),
+    SmplJoint("left_wrist", 18, [0.146, 0.0, 0.0]),
+    SmplJoint("right_wrist", 19, [-0.146, 0.0, 0.0]),
 ];
 
 /// Ends of chains, in parts of the height.
@@ -57,7 +57,7 @@ pub(super) fn joints() -> Vec<Joint> {
     PARTS
         .iter()
         .enumerate()
-        .map(|(j, Part(name, parent, offset))| Joint {
+        .map(|(j, SmplJoint(name, parent, offset))| Joint {
             name: (*name).to_owned(),
             parent: (j > 0).then_some(*parent),
             offset: Vec3::from(*offset) * HEIGHT,

@@ -1,10 +1,10 @@
 //! Cells that hold a whole point, as Python prints them: `"(0.1, 0.2, 0.3)"`, `[0.1 0.2 0.3]`.
 
-use super::Row;
+use super::TableLine;
 use crate::formats::cells::{Decimal, number};
 
 /// The table with such cells spread over three columns each, below a row of their axes; as it is without any.
-pub(super) fn spread(rows: Vec<Row<'_>>) -> Vec<Row<'_>> {
+pub(super) fn spread(rows: Vec<TableLine<'_>>) -> Vec<TableLine<'_>> {
     let Some((_, first)) = rows.get(1) else {
         return rows;
     };

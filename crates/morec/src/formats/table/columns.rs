@@ -1,16 +1,16 @@
 //! Which columns are a point's x, y and z, by the rows above them.
 
-use super::{Layout, Row};
+use super::{ColumnLayout, TableLine};
 use crate::formats::cells::{Decimal, number};
 use crate::formats::points::metres_of;
 
 /// The layout of a table whose header names its columns, in one row or several.
-pub(super) fn layout(rows: &[Row]) -> Option<Layout> {
+pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
     let header_rows = header_rows(rows)?;
     let labels = labels(&rows[..header_rows]);
-    let mut found = Layout {
+    let mut found = ColumnLayout {
         header_rows,
-        ..Layout::default()
+        ..ColumnLayout::default()
     };
     let mut open: Vec<(String, [Option<usize>; 3])> = Vec::new();
     let has_sides = labels.iter().any(|label| is_left_alone(label));
@@ -43,7 +43,7 @@ pub(super) fn layout(rows: &[Row]) -> Option<Layout> {
 }
 
 /// Whether the columns have x and y, and z nowhere.
-pub(super) fn is_flat(rows: &[Row]) -> bool {
+pub(super) fn is_flat(rows: &[TableLine]) -> bool {
     let Some(header_rows) = header_rows(rows) else {
         return false;
     };
@@ -55,9 +55,9 @@ pub(super) fn is_flat(rows: &[Row]) -> bool {
 }
 
 /// Rows before the first of numbers; `None` if there is none, or no row of numbers.
-fn header_rows(rows: &[Row]) -> Option<usize> {
+fn header_rows(rows: &[TableLine]) -> Option<usize> {
     // A frame may begin with words (a class, a track) below names that are certain.
-    let names_axes = |(_, cells): &Row| {
+    let names_axes = |(_, cells): &TableLine| {
         let named = cells.iter().filter(|cell| axis_of(cell).is_some());
         named.count() >= 6
     };
@@ -86,7 +86,7 @@ fn is_nan(cell: &str) -> bool {
 
 /// The words above each column. In a row with blanks, a word holds for the columns up to the next; a last row of axes
 /// gets the name that changes above it.
-fn labels(header: &[Row]) -> Vec<String> {
+fn labels(header: &[TableLine]) -> Vec<String> {
     let width = header
         .iter()
         .map(|(_, cells)| cells.len())

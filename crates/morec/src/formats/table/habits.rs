@@ -3,7 +3,8 @@
 use super::*;
 
 fn open(text: &str) -> Loaded {
-    read(text.as_bytes(), "x", None, &Limits::default()).unwrap_or_else(|error| panic!("{error}:\n{text}"))
+    read(text.as_bytes(), "x", None, &Limits::default())
+        .unwrap_or_else(|error| panic!("{error}:\n{text}"))
 }
 
 /// Points that stand and walk along X, for exports made by hand: `frame`, `point` to text of three numbers.
@@ -60,7 +61,10 @@ fn measurements_of_qualisys() {
     for (header, before) in [(header, 2), ("", 0), ("", 1), ("", 2)] {
         let mut text = format!("{keys}{header}");
         for frame in 0..4 {
-            let first = [format!("{}\t", frame + 1), format!("{:.5}\t", frame as f64 / 240.0)];
+            let first = [
+                format!("{}\t", frame + 1),
+                format!("{:.5}\t", frame as f64 / 240.0),
+            ];
             text += &format!("{}{}\n", first[..before].concat(), row(frame, 2, "\t"));
         }
         assert!(looks_so(text.as_bytes()), "{text}");
@@ -74,7 +78,15 @@ fn measurements_of_qualisys() {
 
 #[test]
 fn individuals_of_deeplabcut_are_told_apart() {
-    let names = ["nose", "left_shoulder", "right_shoulder", "left_hip", "right_hip", "left_knee", "right_knee"];
+    let names = [
+        "nose",
+        "left_shoulder",
+        "right_shoulder",
+        "left_hip",
+        "right_hip",
+        "left_knee",
+        "right_knee",
+    ];
     let mut rows = ["scorer", "individuals", "bodyparts", "coords"].map(str::to_owned);
     for whose in ["anna", "bert"] {
         for name in names {
@@ -97,7 +109,11 @@ fn individuals_of_deeplabcut_are_told_apart() {
 
 #[test]
 fn whole_points_in_brackets() {
-    for (open_with, between, close_with) in [("\"(", ", ", ")\""), ("[", " ", "]"), ("\"[", ",", ", 0.9]\"")] {
+    for (open_with, between, close_with) in [
+        ("\"(", ", ", ")\""),
+        ("[", " ", "]"),
+        ("\"[", ",", ", 0.9]\""),
+    ] {
         let mut text = "frame,nose,left hip,right hip\n".to_owned();
         for frame in 0..3 {
             let cells: Vec<String> = (0..3)
@@ -107,7 +123,11 @@ fn whole_points_in_brackets() {
         }
         assert!(looks_so(text.as_bytes()), "{text}");
         let clip = &open(&text).clips[0];
-        assert_eq!((clip.frames, clip.skeleton.joints()[2].name.as_str()), (3, "right hip"), "{text}");
+        assert_eq!(
+            (clip.frames, clip.skeleton.joints()[2].name.as_str()),
+            (3, "right hip"),
+            "{text}"
+        );
         assert_eq!(clip.tracks[2].positions[2], Vec3::new(0.24, 1.2, 0.6));
     }
 }
@@ -126,13 +146,21 @@ fn a_point_on_each_line() {
     assert_eq!((clip.frames, clip.skeleton.len()), (30, 20));
     assert_eq!(clip.tracks[7].positions[3], Vec3::new(0.76, 1.1, 0.6));
     let cut = &text[..text.len() - 40];
-    assert!(read(cut.as_bytes(), "f", None, &Limits::default()).is_err(), "a frame without all of its points");
+    assert!(
+        read(cut.as_bytes(), "f", None, &Limits::default()).is_err(),
+        "a frame without all of its points"
+    );
 }
 
 #[test]
 fn frames_may_begin_with_a_word() {
     let header: Vec<String> = (0..17).map(|p| format!("x_{p},y_{p},z_{p}")).collect();
-    let text = format!("label,{}\nwave,{}\nwave,{}\n", header.join(","), row(0, 17, ","), row(1, 17, ","));
+    let text = format!(
+        "label,{}\nwave,{}\nwave,{}\n",
+        header.join(","),
+        row(0, 17, ","),
+        row(1, 17, ",")
+    );
     let clip = &open(&text).clips[0];
     assert_eq!((clip.frames, clip.skeleton.len()), (2, 17));
 }
@@ -148,18 +176,32 @@ fn long_tables_by_number_and_by_person() {
         }
     }
     let loaded = open(&text);
-    assert_eq!(loaded.clips.iter().map(|clip| clip.skeleton.len()).sum::<usize>(), 34);
-    let kinect = "Time,JointType,X,Y,Z\n0,Head,1,2,3\n0,Neck,1,2,3\n0.1,Head,1,2,3\n0.1,Neck,1,2,3\n";
+    assert_eq!(
+        loaded
+            .clips
+            .iter()
+            .map(|clip| clip.skeleton.len())
+            .sum::<usize>(),
+        34
+    );
+    let kinect =
+        "Time,JointType,X,Y,Z\n0,Head,1,2,3\n0,Neck,1,2,3\n0.1,Head,1,2,3\n0.1,Neck,1,2,3\n";
     assert_eq!(open(kinect).clips[0].skeleton.joints()[1].name, "Neck");
 }
 
 /// `femur_r_X` is the right femur's place where there is a left one; `Hips_R_x` alone is a rotation.
 #[test]
 fn right_sides_are_no_rotations() {
-    let sided = open("time\tfemur_r_X\tfemur_r_Y\tfemur_r_Z\tfemur_l_X\tfemur_l_Y\tfemur_l_Z\n0\t1\t2\t3\t4\t5\t6\n0.1\t1\t2\t3\t4\t5\t6\n");
+    let sided = open(
+        "time\tfemur_r_X\tfemur_r_Y\tfemur_r_Z\tfemur_l_X\tfemur_l_Y\tfemur_l_Z\n0\t1\t2\t3\t4\t5\t6\n0.1\t1\t2\t3\t4\t5\t6\n",
+    );
     assert_eq!(sided.clips[0].skeleton.len(), 2);
-    let turned = open("time,Hips_T_x,Hips_T_y,Hips_T_z,Hips_R_x,Hips_R_y,Hips_R_z\n0,1,2,3,4,5,6\n1,1,2,3,4,5,6\n");
+    let turned = open(
+        "time,Hips_T_x,Hips_T_y,Hips_T_z,Hips_R_x,Hips_R_y,Hips_R_z\n0,1,2,3,4,5,6\n1,1,2,3,4,5,6\n",
+    );
     assert_eq!(turned.clips[0].skeleton.len(), 1);
-    let axis = open("f,Hips-Joint-Posi-x,Hips-Joint-Posi-y,Hips-Joint-Posi-z,Hips-Joint-Quat-0\n0,1,2,3,4\n1,1,2,3,4\n");
+    let axis = open(
+        "f,Hips-Joint-Posi-x,Hips-Joint-Posi-y,Hips-Joint-Posi-z,Hips-Joint-Quat-0\n0,1,2,3,4\n1,1,2,3,4\n",
+    );
     assert_eq!(axis.clips[0].skeleton.joints()[0].name, "Hips");
 }

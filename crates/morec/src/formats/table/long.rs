@@ -1,7 +1,7 @@
 //! The long form: a row for each joint of each frame.
 
 use super::columns::{is_frame, is_time, seconds_of};
-use super::{Frames, Layout, Row, to_seconds};
+use super::{ColumnLayout, TableFrames, TableLine, to_seconds};
 use crate::formats::cells::{Decimal, number};
 use crate::formats::points::{Point, UNSEEN, check_size};
 use crate::formats::{Limits, ParseError, Place};
@@ -49,7 +49,7 @@ const NAMES: [&str; 24] = [
 ];
 
 /// The columns, if `row` is the header of a long table.
-pub(super) fn columns(header: usize, (_, cells): &Row) -> Option<Columns> {
+pub(super) fn columns(header: usize, (_, cells): &TableLine) -> Option<Columns> {
     let lower: Vec<String> = cells.iter().map(|cell| cell.to_ascii_lowercase()).collect();
     let find = |is: &dyn Fn(&str) -> bool| lower.iter().position(|cell| is(cell));
     let axis = |axis: &str| {
@@ -106,12 +106,12 @@ const PEOPLE: [&str; 14] = [
     "individual",
 ];
 
-/// Frames in the order in which they appear.
+/// TableFrames in the order in which they appear.
 pub(super) fn frames(
     columns: &Columns,
-    rows: &[Row],
+    rows: &[TableLine],
     limits: &Limits,
-) -> Result<Frames, ParseError> {
+) -> Result<TableFrames, ParseError> {
     let body = &rows[columns.header + 1..];
     let decimal = Decimal::of(body.iter().flat_map(|(_, cells)| cells).copied());
     let mut points: Vec<Point> = Vec::new();
@@ -177,5 +177,5 @@ pub(super) fn frames(
     if let Some((_, secs)) = columns.time {
         to_seconds(&mut times, secs);
     }
-    Ok((points, times, Layout::default()))
+    Ok((points, times, ColumnLayout::default()))
 }

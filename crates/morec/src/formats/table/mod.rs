@@ -20,15 +20,15 @@ use super::timing::{self, Clock};
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::math::Vec3;
 
-/// Frames a second of a table without times.
+/// TableFrames a second of a table without times.
 const ASSUMED_HZ: f64 = 30.0;
 
 /// A row: its line and its cells.
-type Row<'a> = (u64, Vec<&'a str>);
+type TableLine<'a> = (u64, Vec<&'a str>);
 
 /// What the header of a table says.
 #[derive(Debug, Clone, PartialEq, Default)]
-struct Layout {
+struct ColumnLayout {
     /// Points and the columns of x, y and z.
     points: Vec<(String, [usize; 3])>,
     /// The column of times, and seconds in its unit.
@@ -58,7 +58,7 @@ pub fn read(
 ) -> Result<Loaded, ParseError> {
     let rows = lines(bytes, limits)?;
     let separator = separator(&rows);
-    let mut cells: Vec<Row> = Vec::with_capacity(rows.len());
+    let mut cells: Vec<TableLine> = Vec::with_capacity(rows.len());
     for (line, row) in &rows {
         cells.push((*line, split(row, separator)));
     }
@@ -67,10 +67,10 @@ pub fn read(
     let head = &cells[..cells.len().min(HEAD_ROWS)];
     let mut warnings = Vec::new();
     // Sections of other measurements may stand above that of positions.
-    let section = nexus::layout(&cells).map(Header::Wide);
+    let section = nexus::layout(&cells).map(TableHeader::Wide);
     let (mut points, times, layout) = match section.or_else(|| header(head)) {
-        Some(Header::Long(columns)) => long::frames(&columns, &cells, limits)?,
-        Some(Header::Wide(layout)) => {
+        Some(TableHeader::Long(columns)) => long::frames(&columns, &cells, limits)?,
+        Some(TableHeader::Wide(layout)) => {
             check_size(layout.points.len(), cells.len(), bytes.len())?;
             wide(layout, &cells, limits, &mut warnings)?
         }
@@ -113,15 +113,15 @@ pub(super) fn looks_so(head: &[u8]) -> bool {
     let separator = separator(&rows);
     // The last row may be cut.
     let whole = &rows[..rows.len().saturating_sub(usize::from(rows.len() > 2))];
-    let cells = |most: usize| -> Vec<Row> {
+    let cells = |most: usize| -> Vec<TableLine> {
         let rows = whole.iter().take(most);
         rows.map(|(line, row)| (*line, split(row, separator)))
             .collect()
     };
     let first = brackets::spread(cells(HEAD_ROWS));
     match header(&first) {
-        Some(Header::Long(_)) => true,
-        Some(Header::Wide(layout)) => layout.points.len() >= 2,
+        Some(TableHeader::Long(_)) => true,
+        Some(TableHeader::Wide(layout)) => layout.points.len() >= 2,
         None => {
             nexus::begins(&first)
                 || plain::is_row_of_points(&first)
@@ -130,23 +130,23 @@ pub(super) fn looks_so(head: &[u8]) -> bool {
     }
 }
 
-enum Header {
-    Wide(Layout),
+enum TableHeader {
+    Wide(ColumnLayout),
     Long(long::Columns),
 }
 
-fn header(rows: &[Row]) -> Option<Header> {
+fn header(rows: &[TableLine]) -> Option<TableHeader> {
     if let Some(layout) = motive::layout(rows).or_else(|| qualisys::layout(rows)) {
-        return Some(Header::Wide(layout));
+        return Some(TableHeader::Wide(layout));
     }
     if let Some(columns) = rows
         .iter()
         .enumerate()
         .find_map(|(r, row)| long::columns(r, row))
     {
-        return Some(Header::Long(columns));
+        return Some(TableHeader::Long(columns));
     }
-    columns::layout(rows).map(Header::Wide)
+    columns::layout(rows).map(TableHeader::Wide)
 }
 
 /// What separates cells: of tab, semicolon and comma the one that most rows have; none if no row has any.
@@ -166,7 +166,7 @@ fn separator(rows: &[(u64, &str)]) -> Option<char> {
         .next()
 }
 
-fn no_columns(rows: &[Row]) -> ParseError {
+fn no_columns(rows: &[TableLine]) -> ParseError {
     const SHOWN: usize = 6;
     let expected = "columns of x, y and z for each point, as in `hips_x`, `hips_y`, `hips_z`";
     let Some((line, first)) = rows.first() else {
@@ -202,15 +202,15 @@ fn no_columns(rows: &[Row]) -> ParseError {
 }
 
 /// What frames hold: points, times, and the layout they were read by.
-type Frames = (Vec<Point>, Vec<Option<f64>>, Layout);
+type TableFrames = (Vec<Point>, Vec<Option<f64>>, ColumnLayout);
 
 /// The frames of a table with three columns for each point.
 fn wide(
-    layout: Layout,
-    rows: &[Row],
+    layout: ColumnLayout,
+    rows: &[TableLine],
     limits: &Limits,
     warnings: &mut Vec<Warning>,
-) -> Result<Frames, ParseError> {
+) -> Result<TableFrames, ParseError> {
     let stop = layout.stop_row.unwrap_or(rows.len()).min(rows.len());
     let body = &rows[layout.header_rows.min(stop)..stop];
     let decimal = Decimal::of(body.iter().flat_map(|(_, cells)| cells).copied());

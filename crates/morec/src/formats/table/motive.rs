@@ -1,19 +1,19 @@
 //! OptiTrack Motive's CSV export, after its documentation ("Data Export: CSV"): a row of keys and values, then a row each
 //! of types, names, numbers and properties above the columns.
 
-use super::{Layout, Row};
+use super::{ColumnLayout, TableLine};
 use crate::formats::cells::{Decimal, number};
 use crate::formats::points::metres_of;
 
 /// The layout, if this is such an export. Bones are taken if there are any, else rigid bodies and markers.
-pub(super) fn layout(rows: &[Row]) -> Option<Layout> {
+pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
     let keys = &rows.first()?.1;
     let is_motive = keys
         .iter()
         .any(|cell| matches!(*cell, "Format Version" | "Take Name"));
     let frame_row = rows.iter().position(|(_, cells)| cells[0] == "Frame")?;
     let named = |name: &str| {
-        let is = |(_, cells): &&Row| cells.iter().take(2).any(|cell| *cell == name);
+        let is = |(_, cells): &&TableLine| cells.iter().take(2).any(|cell| *cell == name);
         rows[..frame_row].iter().find(is).map(|(_, cells)| cells)
     };
     // Older versions have the same rows without a word before them.
@@ -44,13 +44,13 @@ pub(super) fn layout(rows: &[Row]) -> Option<Layout> {
         keys.get(at + 1).copied()
     };
     let rate = |key| value(key).and_then(|text| number(text, Decimal::Either));
-    let mut found = Layout {
+    let mut found = ColumnLayout {
         header_rows: frame_row + 1,
         frame: Some(0),
         time: Some((1, Some(1.0))),
         rate_hz: rate("Export Frame Rate").or(rate("Capture Frame Rate")),
         metres_per_unit: value("Length Units").and_then(metres_of),
-        ..Layout::default()
+        ..ColumnLayout::default()
     };
     let axes = &rows[frame_row].1;
     let is_x = |c: &usize| properties[*c] == "Position" && axes.get(*c) == Some(&"X");

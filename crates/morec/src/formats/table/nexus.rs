@@ -2,7 +2,7 @@
 //! its rate, the names, the axes and the units, then its frames. Trajectories hold markers; segments of a solved skeleton
 //! serve where there are none.
 
-use super::{Layout, Row};
+use super::{ColumnLayout, TableLine};
 use crate::formats::cells::{Decimal, number};
 use crate::formats::points::metres_of;
 
@@ -17,8 +17,8 @@ const TITLES: [&str; 7] = [
 ];
 
 /// Whether a file begins as such an export does.
-pub(super) fn begins(rows: &[Row]) -> bool {
-    let rate = |row: &Row| number(row.1[0], Decimal::Either).is_some();
+pub(super) fn begins(rows: &[TableLine]) -> bool {
+    let rate = |row: &TableLine| number(row.1[0], Decimal::Either).is_some();
     match rows {
         [title, next, ..] => {
             is_title(title) && (rate(next) || title.1[0].eq_ignore_ascii_case("events"))
@@ -27,13 +27,13 @@ pub(super) fn begins(rows: &[Row]) -> bool {
     }
 }
 
-fn is_title((_, cells): &Row) -> bool {
+fn is_title((_, cells): &TableLine) -> bool {
     let title = cells[0].to_ascii_lowercase();
     TITLES.contains(&title.as_str()) && cells[1..].iter().all(|cell| cell.is_empty())
 }
 
 /// The layout of the section that holds positions; `None` if there is none.
-pub(super) fn layout(rows: &[Row]) -> Option<Layout> {
+pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
     if !begins(rows) {
         return None;
     }
@@ -61,14 +61,14 @@ pub(super) fn layout(rows: &[Row]) -> Option<Layout> {
 /// Rows from a title to the first frame, at most.
 const SECTION_HEAD: usize = 6;
 
-fn section(rows: &[Row], title: usize) -> Option<Layout> {
-    let is_axes = |(_, cells): &Row| {
+fn section(rows: &[TableLine], title: usize) -> Option<ColumnLayout> {
+    let is_axes = |(_, cells): &TableLine| {
         let first = cells[0].to_ascii_lowercase();
         first.starts_with("frame") || first.starts_with("field") || first.starts_with("sample")
     };
     let head = rows.get(title..(title + SECTION_HEAD).min(rows.len()))?;
     let axes = title + head.iter().position(is_axes)?;
-    let is_frame = |(_, cells): &Row| number(cells[0], Decimal::Either).is_some();
+    let is_frame = |(_, cells): &TableLine| number(cells[0], Decimal::Either).is_some();
     let begin = axes + 1 + rows[axes + 1..].iter().take(3).position(is_frame)?;
     let end = rows[begin..].iter().position(|row| !is_frame(row));
     let (names, labels) = (&rows[axes.checked_sub(1)?].1, &rows[axes].1);
@@ -79,12 +79,12 @@ fn section(rows: &[Row], title: usize) -> Option<Layout> {
             .unwrap_or_default()
             .to_ascii_lowercase()
     };
-    let mut found = Layout {
+    let mut found = ColumnLayout {
         header_rows: begin,
         stop_row: end.map(|rows| begin + rows),
         frame: Some(0),
         rate_hz: number(rows.get(title + 1)?.1[0], Decimal::Either),
-        ..Layout::default()
+        ..ColumnLayout::default()
     };
     let mut name = "";
     for x in 1..labels.len() {

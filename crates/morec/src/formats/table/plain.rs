@@ -1,6 +1,6 @@
 //! Tables of numbers without names.
 
-use super::{Layout, Row};
+use super::{ColumnLayout, TableLine};
 use crate::formats::cells::{Decimal, number};
 use crate::roles::points::numbered_counts;
 
@@ -17,22 +17,22 @@ fn is_number(cell: &&str) -> bool {
 }
 
 /// Whether all rows are numbers, as many as a known set needs.
-pub(super) fn is_row_of_points(rows: &[Row]) -> bool {
+pub(super) fn is_row_of_points(rows: &[TableLine]) -> bool {
     let width = rows.first().map_or(0, |(_, cells)| cells.len());
     let alike =
-        |(_, cells): &Row| cells.len() == width && cells.iter().all(|cell| is_number(&cell));
+        |(_, cells): &TableLine| cells.len() == width && cells.iter().all(|cell| is_number(&cell));
     rows.len() >= LEAST_ROWS && rows.iter().all(alike) && layout(rows).is_some()
 }
 
 /// Whether rows hold one point each, and every so many of them the next frame.
-pub(super) fn is_stacked(rows: &[Row]) -> bool {
+pub(super) fn is_stacked(rows: &[TableLine]) -> bool {
     stride(rows).is_some()
 }
 
 /// Rows of one point each, put together to a row for each frame; `None` if they are not that.
-pub(super) fn stacked<'a>(rows: &[Row<'a>]) -> Option<Vec<Row<'a>>> {
+pub(super) fn stacked<'a>(rows: &[TableLine<'a>]) -> Option<Vec<TableLine<'a>>> {
     let points = stride(rows).filter(|points| rows.len().is_multiple_of(*points))?;
-    let frame = |rows: &[Row<'a>]| {
+    let frame = |rows: &[TableLine<'a>]| {
         let cells = rows.iter().flat_map(|(_, cells)| cells.iter().copied());
         (rows[0].0, cells.collect())
     };
@@ -40,11 +40,11 @@ pub(super) fn stacked<'a>(rows: &[Row<'a>]) -> Option<Vec<Row<'a>>> {
 }
 
 /// After how many rows of one point each the next frame begins: where a point is nearest to where it was.
-fn stride(rows: &[Row]) -> Option<usize> {
+fn stride(rows: &[TableLine]) -> Option<usize> {
     const LOOKED_AT: usize = 4000;
     const LEAST_FRAMES: usize = 3;
     let width = rows.first()?.1.len();
-    let point = |(_, cells): &Row| -> Option<[f64; 3]> {
+    let point = |(_, cells): &TableLine| -> Option<[f64; 3]> {
         let value = |at: usize| number(cells.get(at)?, Decimal::Point);
         (cells.len() == width).then_some([value(0)?, value(1)?, value(2)?])
     };
@@ -70,7 +70,7 @@ fn stride(rows: &[Row]) -> Option<usize> {
 
 /// The layout of a table of numbers whose width is that of a known set of landmarks, with or without a column of frames
 /// or times before it.
-pub(super) fn layout(rows: &[Row]) -> Option<Layout> {
+pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
     let (_, first) = rows.first()?;
     // A header that says nothing may stand before the numbers.
     let header_rows = usize::from(!first.iter().all(|cell| is_number(&cell)));
@@ -92,18 +92,18 @@ pub(super) fn layout(rows: &[Row]) -> Option<Layout> {
         let x = before + width * number;
         (number.to_string(), [x, x + 1, x + 2])
     };
-    let value = |(_, cells): &Row| number(cells[0], Decimal::Either);
+    let value = |(_, cells): &TableLine| number(cells[0], Decimal::Either);
     let counts = rows[header_rows..]
         .iter()
         .filter_map(value)
         .all(|v| v.fract() == 0.0);
     let text = format!("no names of columns; read as x, y and z of {count} points");
-    Some(Layout {
+    Some(ColumnLayout {
         points: (0..count).map(point).collect(),
         time: (before == 1 && !counts).then_some((0, None)),
         frame: (before == 1 && counts).then_some(0),
         header_rows,
         notes: vec![text],
-        ..Layout::default()
+        ..ColumnLayout::default()
     })
 }

@@ -1,11 +1,11 @@
 //! Qualisys' export as text: rows of keys and values (`NO_OF_MARKERS`, `FREQUENCY`, `MARKER_NAMES`), perhaps a row that names
 //! columns, then frames in millimetres, with or without their numbers and times.
 
-use super::{Layout, Row};
+use super::{ColumnLayout, TableLine};
 use crate::formats::cells::{Decimal, number};
 
 /// The layout, if the keys name markers.
-pub(super) fn layout(rows: &[Row]) -> Option<Layout> {
+pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
     let is_number = |cell: &str| number(cell, Decimal::Either).is_some();
     let begin = rows.iter().position(|(_, cells)| is_number(cells[0]))?;
     let keys = &rows[..begin];
@@ -35,13 +35,13 @@ pub(super) fn layout(rows: &[Row]) -> Option<Layout> {
         ((*name).to_owned(), [x, x + 1, x + 2])
     };
     let rate = value("FREQUENCY").and_then(|values| number(values.first()?, Decimal::Either));
-    Some(Layout {
+    Some(ColumnLayout {
         points: names.iter().enumerate().map(point).collect(),
         time: (before == 2).then_some((1, Some(1.0))),
         frame: (before > 0).then_some(0),
         rate_hz: rate,
         metres_per_unit: Some(0.001),
         header_rows: begin,
-        ..Layout::default()
+        ..ColumnLayout::default()
     })
 }

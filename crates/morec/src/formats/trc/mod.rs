@@ -140,10 +140,10 @@ impl Heading {
 }
 
 /// A name and the column of its x.
-type Column = (String, usize);
+type MarkerColumn = (String, usize);
 
 /// Points stand above every third column, or in neighbouring cells. Before them are the frame's number and its time.
-fn columns(names: &[&str]) -> Vec<Column> {
+fn columns(names: &[&str]) -> Vec<MarkerColumn> {
     let first = match names.get(1) {
         Some(second) if second.to_ascii_lowercase().starts_with("time") => 2,
         _ => 1,
@@ -174,17 +174,17 @@ fn is_axes_row(cells: &[&str]) -> bool {
 }
 
 /// Points and times of all frames.
-pub(super) struct Frames {
+pub(super) struct TrcFrames {
     points: Vec<Point>,
     times: Vec<Option<f64>>,
 }
 
 fn frames(
-    columns: &[Column],
+    columns: &[MarkerColumn],
     body: &[(u64, Vec<&str>)],
     limits: &Limits,
     warnings: &mut Vec<Warning>,
-) -> Result<Frames, ParseError> {
+) -> Result<TrcFrames, ParseError> {
     let decimal = Decimal::of(body.iter().flat_map(|(_, cells)| cells).copied());
     let first = columns[0].1;
     let mut points: Vec<Point> = columns
@@ -226,7 +226,7 @@ fn frames(
             "none",
         ));
     }
-    Ok(Frames { points, times })
+    Ok(TrcFrames { points, times })
 }
 
 #[cfg(test)]

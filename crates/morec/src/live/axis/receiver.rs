@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::clock::FrameClock;
 use super::decoder::{AxisDecoder, AxisError, AxisFrame};
 use super::{AXIS_BONE_COUNT, AxisSkeleton};
-use crate::live::{Actor, Frame, MAX_ACTORS, Next, Rig, SourceCounts};
+use crate::live::{Frame, MAX_ACTORS, PerformerId, Rig, SourceCounts, SourceEvent};
 use crate::math::{Axis, Quat, Vec3};
 
 /// An avatar that has been silent for so long has stopped, for now.
@@ -69,8 +69,8 @@ struct Avatar {
 #[derive(Debug)]
 enum AxisItem {
     Frame(Frame),
-    Rig(Actor),
-    Gone(Actor),
+    Rig(PerformerId),
+    Gone(PerformerId),
 }
 
 impl AxisReceiver {
@@ -144,7 +144,7 @@ impl AxisReceiver {
             .filter(|(_, avatar)| !avatar.gone)
         {
             avatar.gone = true;
-            items.push_back(AxisItem::Gone(Actor(at as u16)));
+            items.push_back(AxisItem::Gone(PerformerId(at as u16)));
         }
     }
 
@@ -154,21 +154,21 @@ impl AxisReceiver {
         for (at, avatar) in avatars.iter_mut().enumerate() {
             if !avatar.gone && now_secs - avatar.heard_secs > GONE_SECS {
                 avatar.gone = true;
-                items.push_back(AxisItem::Gone(Actor(at as u16)));
+                items.push_back(AxisItem::Gone(PerformerId(at as u16)));
             }
         }
     }
 
-    /// What is complete, oldest first; fills `frame` for [`Next::Frame`].
-    pub fn next(&mut self, frame: &mut Frame) -> Option<Next> {
+    /// What is complete, oldest first; fills `frame` for [`SourceEvent::Frame`].
+    pub fn next(&mut self, frame: &mut Frame) -> Option<SourceEvent> {
         Some(match self.followed.items.pop_front()? {
             AxisItem::Frame(mut full) => {
                 std::mem::swap(frame, &mut full);
                 self.followed.spare.push(full);
-                Next::Frame
+                SourceEvent::Frame
             }
-            AxisItem::Rig(actor) => Next::Rig(actor, self.followed.rig.clone()),
-            AxisItem::Gone(actor) => Next::Gone(actor),
+            AxisItem::Rig(actor) => SourceEvent::Rig(actor, self.followed.rig.clone()),
+            AxisItem::Gone(actor) => SourceEvent::Gone(actor),
         })
     }
 }
@@ -197,7 +197,7 @@ impl Followed {
         let mut full = self.spare.pop().unwrap_or_default();
         full.time_secs = avatar.clock.stamp(frame.number, now_secs - begun_secs);
         full.wall_secs = now_secs;
-        full.actor = Actor(at as u16);
+        full.actor = PerformerId(at as u16);
         pose(&self.rig, frame, &mut full);
         self.items.push_back(AxisItem::Frame(full));
     }
@@ -226,7 +226,8 @@ impl Followed {
             self.avatars[place] = new;
             place
         };
-        self.items.push_back(AxisItem::Rig(Actor(place as u16)));
+        self.items
+            .push_back(AxisItem::Rig(PerformerId(place as u16)));
         Some(place)
     }
 }

@@ -7,7 +7,7 @@ use super::sender::angles;
 use super::*;
 use crate::formats::{Limits, bvh};
 use crate::kinematics::WorldPose;
-use crate::live::{Actor, Frame, Next};
+use crate::live::{Frame, PerformerId, SourceEvent};
 use crate::math::{Axis, Quat, Vec3};
 use crate::roles::{Role, RoleMap};
 use crate::synth::{Person, Script};
@@ -45,15 +45,15 @@ fn turned(bones: &[(&str, [f32; 3])]) -> Vec<f32> {
 }
 
 /// Whatever comes out of a receiver now.
-fn drain(receiver: &mut AxisReceiver) -> (Vec<Frame>, Vec<Actor>, Vec<Actor>) {
+fn drain(receiver: &mut AxisReceiver) -> (Vec<Frame>, Vec<PerformerId>, Vec<PerformerId>) {
     let (mut frames, mut rigs, mut gone) = (vec![], vec![], vec![]);
     let mut frame = Frame::default();
     while let Some(next) = receiver.next(&mut frame) {
         match next {
-            Next::Frame => frames.push(frame.clone()),
-            Next::Rig(actor, _) => rigs.push(actor),
-            Next::Gone(actor) => gone.push(actor),
-            Next::Quiet | Next::Ended => unreachable!(),
+            SourceEvent::Frame => frames.push(frame.clone()),
+            SourceEvent::Rig(actor, _) => rigs.push(actor),
+            SourceEvent::Gone(actor) => gone.push(actor),
+            SourceEvent::Quiet | SourceEvent::Ended => unreachable!(),
         }
     }
     (frames, rigs, gone)
@@ -381,8 +381,8 @@ fn avatars_are_followed_apart_leave_and_come_back() {
         receiver.tick(secs);
         drain(receiver)
     };
-    assert_eq!(send(&mut receiver, 7, 1, 0.00).1, [Actor(0)]);
-    assert_eq!(send(&mut receiver, 4, 1, 0.01).1, [Actor(1)]);
+    assert_eq!(send(&mut receiver, 7, 1, 0.00).1, [PerformerId(0)]);
+    assert_eq!(send(&mut receiver, 4, 1, 0.01).1, [PerformerId(1)]);
     assert_eq!(send(&mut receiver, 9, 1, 0.01).0.len(), 0);
     assert_eq!(receiver.counts().refused, 1);
     // Late, twice, begun anew.
@@ -394,12 +394,12 @@ fn avatars_are_followed_apart_leave_and_come_back() {
     }
     assert_eq!(send(&mut receiver, 7, 0, 2.1).0.len(), 1);
     // The other has been silent: the third takes its place.
-    assert_eq!(send(&mut receiver, 9, 1, 2.2).1, [Actor(1)]);
+    assert_eq!(send(&mut receiver, 9, 1, 2.2).1, [PerformerId(1)]);
     receiver.lost();
-    assert_eq!(drain(&mut receiver).2, [Actor(0), Actor(1)]);
+    assert_eq!(drain(&mut receiver).2, [PerformerId(0), PerformerId(1)]);
     let (frames, rigs, _) = send(&mut receiver, 9, 1, 5.0);
     assert_eq!((frames.len(), rigs.len()), (1, 0));
-    assert!((frames[0].time_secs - 5.0).abs() < 1e-9 && frames[0].actor == Actor(1));
+    assert!((frames[0].time_secs - 5.0).abs() < 1e-9 && frames[0].actor == PerformerId(1));
     let counts = receiver.counts();
     assert_eq!(
         (counts.malformed, counts.interruptions),

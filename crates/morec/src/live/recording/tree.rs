@@ -10,14 +10,14 @@ use super::Recording;
 /// A joint whose place in its parent's frame strays by less than this does not move there, in the stream's unit.
 const FIXED: f64 = 1e-4;
 /// Joints of a clip: which of the stream's they are, and how they hang together.
-pub(super) struct Tree {
+pub(super) struct RecordedJoints {
     /// The stream's joint, for each of the clip's.
     from: Vec<usize>,
     joints: Vec<Joint>,
     turned: bool,
 }
 
-impl Tree {
+impl RecordedJoints {
     /// The joints that `recording` shows; `None` if it shows none.
     pub(super) fn of(recording: &Recording) -> Option<Self> {
         let skeleton = &recording.rig.skeleton;

@@ -6,7 +6,7 @@ use crate::live::waker::{NAP, Waker};
 
 /// The end that boxes are put into. Dropping it ends the belt.
 #[derive(Debug)]
-pub(super) struct Out<T> {
+pub(super) struct RingSender<T> {
     /// `None` only while it is being dropped.
     ring: Option<rtrb::Producer<Box<T>>>,
     waker: Arc<Waker>,
@@ -14,28 +14,28 @@ pub(super) struct Out<T> {
 
 /// The end that boxes come out of.
 #[derive(Debug)]
-pub(super) struct In<T> {
+pub(super) struct RingReceiver<T> {
     ring: rtrb::Consumer<Box<T>>,
     waker: Arc<Waker>,
 }
 
 /// A belt with room for `boxes`, which must be all that there are: then there is room for each at any time. `waker` is
 /// that of the thread that takes them.
-pub(super) fn belt<T>(boxes: usize, waker: &Arc<Waker>) -> (Out<T>, In<T>) {
+pub(super) fn belt<T>(boxes: usize, waker: &Arc<Waker>) -> (RingSender<T>, RingReceiver<T>) {
     let (ring, taken) = rtrb::RingBuffer::new(boxes);
     (
-        Out {
+        RingSender {
             ring: Some(ring),
             waker: waker.clone(),
         },
-        In {
+        RingReceiver {
             ring: taken,
             waker: waker.clone(),
         },
     )
 }
 
-impl<T> Out<T> {
+impl<T> RingSender<T> {
     /// Sends a box. Never waits.
     pub(super) fn send(&mut self, item: Box<T>) {
         if let Some(ring) = &mut self.ring {
@@ -46,7 +46,7 @@ impl<T> Out<T> {
     }
 }
 
-impl<T> Drop for Out<T> {
+impl<T> Drop for RingSender<T> {
     fn drop(&mut self) {
         // First the end, then the call, so that whoever wakes sees it.
         self.ring = None;
@@ -54,7 +54,7 @@ impl<T> Drop for Out<T> {
     }
 }
 
-impl<T> In<T> {
+impl<T> RingReceiver<T> {
     /// The next box; waits for it. `None` once the other end is gone and all it sent was taken.
     pub(super) fn next(&mut self) -> Option<Box<T>> {
         loop {

@@ -7,20 +7,20 @@ use crate::svrdm::{
     SvrdmParams,
 };
 
-use super::belt::{In, Out};
-use super::message::{Chunk, Mark, Of, StageMessage, What};
+use super::belt::{RingReceiver, RingSender};
+use super::message::{Chunk, MessageStamp, Of, StageMessage, What};
 
 /// Segment assembly's ends of the belts.
 pub(super) struct Segments {
-    pub(super) chunks: In<Chunk>,
-    pub(super) used: Out<Chunk>,
-    pub(super) out: Out<StageMessage>,
-    pub(super) spare: In<StageMessage>,
+    pub(super) chunks: RingReceiver<Chunk>,
+    pub(super) used: RingSender<Chunk>,
+    pub(super) out: RingSender<StageMessage>,
+    pub(super) spare: RingReceiver<StageMessage>,
 }
 
 impl Segments {
     /// Sends what `fill` makes of a spare message.
-    fn send(&mut self, mark: Mark, what: What, fill: impl FnOnce(&mut StageMessage)) {
+    fn send(&mut self, mark: MessageStamp, what: What, fill: impl FnOnce(&mut StageMessage)) {
         if let Some(mut message) = self.spare.next() {
             (message.mark, message.what) = (mark, what);
             fill(&mut message);
@@ -59,7 +59,11 @@ impl Segments {
 }
 
 /// Feature vector extraction: segments get their feature vector and profile.
-pub(super) fn extract(model: &SvrdmModel, mut from: In<StageMessage>, mut to: Out<StageMessage>) {
+pub(super) fn extract(
+    model: &SvrdmModel,
+    mut from: RingReceiver<StageMessage>,
+    mut to: RingSender<StageMessage>,
+) {
     let dim = model.pca.dims();
     let mut extraction = FeatureExtraction::new(&model.params, dim, &model.signs);
     let mut rings: Vec<_> = (0..MAX_ACTORS)
@@ -99,7 +103,11 @@ pub(super) fn extract(model: &SvrdmModel, mut from: In<StageMessage>, mut to: Ou
 }
 
 /// Classification: segments get the classes that they may be.
-pub(super) fn classify(model: &SvrdmModel, mut from: In<StageMessage>, mut to: Out<StageMessage>) {
+pub(super) fn classify(
+    model: &SvrdmModel,
+    mut from: RingReceiver<StageMessage>,
+    mut to: RingSender<StageMessage>,
+) {
     let SvrdmParams {
         accept, descent, ..
     } = model.params;
@@ -123,8 +131,8 @@ pub(super) fn classify(model: &SvrdmModel, mut from: In<StageMessage>, mut to: O
 /// Scoring: segments get what they most certainly are.
 pub(super) fn score(
     mut scoring: SegmentScoring,
-    mut from: In<StageMessage>,
-    mut to: Out<StageMessage>,
+    mut from: RingReceiver<StageMessage>,
+    mut to: RingSender<StageMessage>,
 ) {
     while let Some(mut message) = from.next() {
         if let What::Segment(_) = message.what {

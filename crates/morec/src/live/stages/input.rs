@@ -4,23 +4,23 @@ use std::sync::Arc;
 
 use crate::features::Pushed;
 use crate::live::recognizer::Steps;
-use crate::live::{Frame, Model, PoseReader, Rig};
+use crate::live::{Frame, Model, PoseExtractor, Rig};
 use crate::pivots::{PivotPose, PoseStream};
 use crate::svrdm::{ChunkAssembly, SvrdmModel};
 
-use super::belt::{In, Out};
-use super::message::{Chunk, End, Mark, Of};
+use super::belt::{RingReceiver, RingSender};
+use super::message::{Chunk, End, MessageStamp, Of};
 
 /// Where chunks go, and where used boxes come back.
 #[derive(Debug)]
 pub(super) struct Chunks {
-    pub(super) out: Out<Chunk>,
-    pub(super) spare: In<Chunk>,
+    pub(super) out: RingSender<Chunk>,
+    pub(super) spare: RingReceiver<Chunk>,
 }
 
 impl Chunks {
     /// Sends what `fill` makes of a spare box; nothing once the stages have ended.
-    fn send(&mut self, mark: Mark, of: Of, fill: impl FnOnce(&mut Chunk)) {
+    fn send(&mut self, mark: MessageStamp, of: Of, fill: impl FnOnce(&mut Chunk)) {
         if let Some(mut chunk) = self.spare.next() {
             (chunk.mark, chunk.of) = (mark, of);
             fill(&mut chunk);
@@ -43,11 +43,11 @@ pub(super) enum Fate {
 /// One performer's way from frames to chunks: what [`Recognizer`](crate::live::Recognizer) does with a pose before the
 /// engine has it, and the engine's first stage.
 #[derive(Debug)]
-pub(super) struct Input {
+pub(super) struct PerformerInput {
     actor: usize,
     model: Arc<SvrdmModel>,
     known: bool,
-    reader: Option<PoseReader>,
+    reader: Option<PoseExtractor>,
     rows: PoseStream,
     reduced: Vec<f32>,
     chunks: ChunkAssembly,
@@ -55,7 +55,7 @@ pub(super) struct Input {
     wall_secs: f64,
 }
 
-impl Input {
+impl PerformerInput {
     pub(super) fn new(model: &Arc<SvrdmModel>, actor: usize) -> Self {
         let dim = model.pca.dims();
         Self {
@@ -76,7 +76,7 @@ impl Input {
         self.finish(to);
         let model = Model::Svrdm(self.model.clone());
         self.known = true;
-        self.reader = PoseReader::new(&model, &rig.skeleton, &rig.roles).ok();
+        self.reader = PoseExtractor::new(&model, &rig.skeleton, &rig.roles).ok();
         self.rows = PoseStream::new(&self.model.pivots, &self.model.pose);
         self.now_secs = 0.0;
     }
@@ -131,13 +131,13 @@ impl Input {
         Fate::Sent
     }
 
-    fn mark(&self, reported_secs: f64) -> Mark {
+    fn mark(&self, reported_secs: f64) -> MessageStamp {
         let step_secs = 1.0 / self.model.rate_hz();
         let steps = Steps {
             origin_secs: self.rows.origin_secs(),
             step_secs,
         };
-        Mark {
+        MessageStamp {
             actor: self.actor,
             reported_secs,
             wall_secs: self.wall_secs,
@@ -168,7 +168,7 @@ struct RowSink<'a> {
     model: &'a SvrdmModel,
     reduced: &'a mut [f32],
     chunks: &'a mut ChunkAssembly,
-    mark: Mark,
+    mark: MessageStamp,
     to: &'a mut Chunks,
     /// Whether a chunk has gone.
     sent: bool,

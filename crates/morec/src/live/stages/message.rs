@@ -1,11 +1,11 @@
 //! What travels from stage to stage.
 
 use crate::live::recognizer::Steps;
-use crate::svrdm::{Candidates, Cell, Gram, SvrdmModel, Window};
+use crate::svrdm::{Cell, ClassCandidates, Gram, SvrdmModel, Window};
 
 /// Whom something is about, and when it was.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Mark {
+pub(super) struct MessageStamp {
     pub(super) actor: usize,
     /// The stream's clock when what follows from it is reported, and the wall clock then.
     pub(super) reported_secs: f64,
@@ -14,7 +14,7 @@ pub(super) struct Mark {
     pub(super) steps: Steps,
 }
 
-impl Mark {
+impl MessageStamp {
     fn nobody() -> Self {
         let steps = Steps {
             origin_secs: 0.0,
@@ -52,7 +52,7 @@ pub(super) enum Of {
 /// A chunk on its way.
 #[derive(Debug)]
 pub(super) struct Chunk {
-    pub(super) mark: Mark,
+    pub(super) mark: MessageStamp,
     pub(super) of: Of,
     pub(super) gram: Gram,
     /// Its rows end to end.
@@ -64,7 +64,7 @@ impl Chunk {
         let dim = model.pca.dims();
         let rows = vec![0.0; dim * model.params.chunk_frames];
         Self {
-            mark: Mark::nobody(),
+            mark: MessageStamp::nobody(),
             of: Of::Chunk,
             gram: Gram::new(dim),
             rows,
@@ -90,7 +90,7 @@ pub(super) enum What {
 /// A segment on its way; each stage adds what it finds. Other news travel alike, so that nothing overtakes anything.
 #[derive(Debug)]
 pub(super) struct StageMessage {
-    pub(super) mark: Mark,
+    pub(super) mark: MessageStamp,
     pub(super) what: What,
     pub(super) rows: Vec<f32>,
     pub(super) gram: Gram,
@@ -100,7 +100,7 @@ pub(super) struct StageMessage {
     /// The first `profile_len` values are the profile.
     pub(super) profile_len: usize,
     pub(super) profile: Vec<f32>,
-    pub(super) candidates: Candidates,
+    pub(super) candidates: ClassCandidates,
     pub(super) cell: Cell,
 }
 
@@ -109,7 +109,7 @@ impl StageMessage {
         let (params, dim) = (&model.params, model.pca.dims());
         let profile = params.comparison.rows(params.max_frames()) * params.comparison.width(dim);
         Self {
-            mark: Mark::nobody(),
+            mark: MessageStamp::nobody(),
             what: What::Rows,
             rows: vec![0.0; dim * params.chunk_frames],
             gram: Gram::new(dim),
@@ -117,7 +117,7 @@ impl StageMessage {
             feature: vec![0.0; params.feature_dim(dim)],
             profile_len: 0,
             profile: vec![0.0; profile],
-            candidates: Candidates::default(),
+            candidates: ClassCandidates::default(),
             cell: Cell::NOTHING,
         }
     }

@@ -4,7 +4,7 @@
 //! Stages are joined by bounded wait-free rings whose boxes come round again: segments travel in the same boxes from
 //! segment assembly to tracking and home. Everything goes in one order, so that events are those of the inline layout,
 //! to the bit. When the last stage is held up, so is the first, and what then happens to frames is
-//! [`Overload`](super::Overload)'s matter, as ever.
+//! [`OverflowPolicy`](super::OverflowPolicy)'s matter, as ever.
 
 mod belt;
 mod between;
@@ -20,15 +20,15 @@ use crate::svrdm::{SegmentScoring, SvrdmModel};
 
 use self::belt::belt;
 use self::between::{Segments, classify, extract, score};
-use self::input::{Chunks, Fate, Input};
+use self::input::{Chunks, Fate, PerformerInput};
 use self::message::{Chunk, StageMessage};
 use self::tracking::Tracking;
 use super::broadcast::{EventBroadcast, EventReader};
-use super::feed::{FeedReceiver, Item};
-use super::status::Cells;
+use super::feed::{FeedReceiver, QueueItem};
+use super::status::SessionCounters;
 use super::waker::Waker;
 use super::worker::WorkerOptions;
-use super::{Actor, Frame, MAX_ACTORS, SessionError, wall_now_secs};
+use super::{Frame, MAX_ACTORS, PerformerId, SessionError, wall_now_secs};
 
 /// Chunks on their way at once.
 const CHUNKS: usize = 16;
@@ -41,7 +41,7 @@ pub(super) type Spawn<'a> =
 
 /// What a session has anyway.
 pub(super) struct Shared<'a> {
-    pub(super) cells: &'a Arc<Cells>,
+    pub(super) cells: &'a Arc<SessionCounters>,
     pub(super) stop: &'a Arc<AtomicBool>,
     /// Of the thread that takes frames from the feed.
     pub(super) waker: &'a Arc<Waker>,
@@ -80,7 +80,7 @@ pub(super) fn start(
     let input = InputStage {
         feed,
         performers: (0..MAX_ACTORS)
-            .map(|actor| Input::new(model, actor))
+            .map(|actor| PerformerInput::new(model, actor))
             .collect(),
         chunks: Chunks {
             out: chunks_out,
@@ -117,9 +117,9 @@ pub(super) fn start(
 /// The first stage: frames of all performers to chunks.
 struct InputStage {
     feed: FeedReceiver,
-    performers: Vec<Input>,
+    performers: Vec<PerformerInput>,
     chunks: Chunks,
-    cells: Arc<Cells>,
+    cells: Arc<SessionCounters>,
     stop: Arc<AtomicBool>,
     waker: Arc<Waker>,
 }
@@ -128,16 +128,16 @@ impl InputStage {
     fn run(mut self) {
         loop {
             match self.feed.next() {
-                Some(Item::Frame(frame)) => {
+                Some(QueueItem::Frame(frame)) => {
                     self.frame(&frame);
                     self.feed.give_back(frame);
                 }
-                Some(Item::Rig(actor, rig)) => {
+                Some(QueueItem::Rig(actor, rig)) => {
                     if let Some(performer) = self.performers.get_mut(actor.index()) {
                         performer.set_rig(&rig, &mut self.chunks);
                     }
                 }
-                Some(Item::Gone(actor)) => self.gone(actor),
+                Some(QueueItem::Gone(actor)) => self.gone(actor),
                 None if self.feed.is_ended() || self.stop.load(Relaxed) => break,
                 None => {
                     let feed = &self.feed;
@@ -147,7 +147,7 @@ impl InputStage {
                 }
             }
         }
-        (0..MAX_ACTORS).for_each(|actor| self.gone(Actor(actor as u16)));
+        (0..MAX_ACTORS).for_each(|actor| self.gone(PerformerId(actor as u16)));
     }
 
     fn frame(&mut self, frame: &Frame) {
@@ -163,7 +163,7 @@ impl InputStage {
         }
     }
 
-    fn gone(&mut self, actor: Actor) {
+    fn gone(&mut self, actor: PerformerId) {
         if let Some(performer) = self.performers.get_mut(actor.index()) {
             performer.finish(&mut self.chunks);
         }

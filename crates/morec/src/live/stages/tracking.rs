@@ -8,13 +8,13 @@ use std::time::Duration;
 use crate::live::broadcast::EventBroadcast;
 use crate::live::early::EarlyTracker;
 use crate::live::event_tracker::EventTracker;
-use crate::live::status::Cells;
+use crate::live::status::SessionCounters;
 use crate::live::worker::WorkerOptions;
-use crate::live::{Actor, Detection, MAX_ACTORS, wall_now_secs};
+use crate::live::{Detection, MAX_ACTORS, PerformerId, wall_now_secs};
 use crate::svrdm::{Cell, ChunkDetection, SegmentScoring, SegmentTracking, SvrdmModel};
 
-use super::belt::{In, Out};
-use super::message::{End, Mark, StageMessage, What};
+use super::belt::{RingReceiver, RingSender};
+use super::message::{End, MessageStamp, StageMessage, What};
 
 /// The last stage.
 pub(super) struct Tracking {
@@ -22,7 +22,7 @@ pub(super) struct Tracking {
     min_chunks: usize,
     chunk_frames: i64,
     broadcast: EventBroadcast,
-    cells: Arc<Cells>,
+    cells: Arc<SessionCounters>,
 }
 
 struct TrackedPerformer {
@@ -39,13 +39,13 @@ impl Tracking {
         scoring: &SegmentScoring,
         options: &WorkerOptions,
         broadcast: EventBroadcast,
-        cells: &Arc<Cells>,
+        cells: &Arc<SessionCounters>,
     ) -> Self {
         let performer = |actor| TrackedPerformer {
             tracking: SegmentTracking::of_model(model, scoring),
             column: vec![Cell::NOTHING; model.params.lengths()],
             tracker: EventTracker::new(
-                Actor(actor as u16),
+                PerformerId(actor as u16),
                 model.classes.len(),
                 options.events.refractory_secs,
             ),
@@ -61,7 +61,11 @@ impl Tracking {
     }
 
     /// Parcels in, and back to where they came from.
-    pub(super) fn run(mut self, mut from: In<StageMessage>, mut home: Out<StageMessage>) {
+    pub(super) fn run(
+        mut self,
+        mut from: RingReceiver<StageMessage>,
+        mut home: RingSender<StageMessage>,
+    ) {
         while let Some(message) = from.next() {
             self.take(&message);
             home.send(message);
@@ -73,7 +77,7 @@ impl Tracking {
     }
 
     fn take(&mut self, message: &StageMessage) {
-        let Mark {
+        let MessageStamp {
             actor, wall_secs, ..
         } = message.mark;
         let performer = &mut self.performers[actor];
@@ -107,8 +111,12 @@ impl Tracking {
                 self.cells.suppressed.store(suppressed, Relaxed);
             }
             What::Frame { time_secs } => {
-                self.cells
-                    .frame_of(Actor(actor as u16), time_secs, wall_secs, wall_now_secs());
+                self.cells.frame_of(
+                    PerformerId(actor as u16),
+                    time_secs,
+                    wall_secs,
+                    wall_now_secs(),
+                );
             }
             What::Rows => {}
         }
@@ -121,7 +129,7 @@ impl Drop for Tracking {
     }
 }
 
-fn detection(found: &ChunkDetection, mark: &Mark, chunk_frames: i64) -> Detection {
+fn detection(found: &ChunkDetection, mark: &MessageStamp, chunk_frames: i64) -> Detection {
     let found = found.in_frames(chunk_frames);
     let at_secs = |frame: i64| mark.steps.origin_secs + frame as f64 * mark.steps.step_secs;
     Detection {

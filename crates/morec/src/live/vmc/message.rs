@@ -6,7 +6,7 @@ use crate::math::{Quat, Vec3, rotation_of_xyzw};
 
 /// A message that concerns recognition.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Said {
+pub enum VmcMessage {
     /// `/VMC/Ext/OK`: whether there is a performer to be seen.
     State {
         /// Loaded, and tracking is not known to be lost.
@@ -24,35 +24,35 @@ pub enum Said {
 
 /// What a message says; `None` if it is one of the known but its arguments are too few, of the wrong kinds or not
 /// finite. Surplus arguments are ignored, as the specification (V3.1) has it.
-pub fn understand(message: &Message) -> Option<Said> {
+pub fn understand(message: &Message) -> Option<VmcMessage> {
     let mut args = message.args();
     match message.address {
         "/VMC/Ext/Bone/Pos" => {
             let name = args.next()?;
             let (position, rotation) = pose(&mut args)?;
             let Arg::Text(name) = name else { return None };
-            Some(
-                bone_of_name(name).map_or(Said::Other, |bone| Said::Bone(bone, position, rotation)),
-            )
+            Some(bone_of_name(name).map_or(VmcMessage::Other, |bone| {
+                VmcMessage::Bone(bone, position, rotation)
+            }))
         }
         "/VMC/Ext/Root/Pos" => {
             args.next()?;
             let (position, rotation) = pose(&mut args)?;
-            Some(Said::Root(position, rotation))
+            Some(VmcMessage::Root(position, rotation))
         }
         "/VMC/Ext/T" => {
             let time_secs = args.next()?.number()?;
-            time_secs.is_finite().then_some(Said::Time(time_secs))
+            time_secs.is_finite().then_some(VmcMessage::Time(time_secs))
         }
         "/VMC/Ext/OK" => {
             let loaded = args.next()?.number()?;
             // Calibration and mode say nothing about the pose; the fourth, since V2.7, whether tracking is good.
             let tracking = args.nth(2).and_then(|arg| arg.number()).unwrap_or(1.0);
-            Some(Said::State {
+            Some(VmcMessage::State {
                 good: loaded != 0.0 && tracking != 0.0,
             })
         }
-        _ => Some(Said::Other),
+        _ => Some(VmcMessage::Other),
     }
 }
 

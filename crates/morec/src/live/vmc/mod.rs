@@ -15,7 +15,7 @@ mod tests;
 
 pub use crate::humanoid::{HUMANOID, HUMANOID_BONES, HumanoidBone, bone_of_name};
 pub use message::{
-    Said, mirror, position_of_unity, rotation_of_unity, rotation_to_unity, understand,
+    VmcMessage, mirror, position_of_unity, rotation_of_unity, rotation_to_unity, understand,
 };
 pub use peers::Peer;
 pub use receiver::{VmcOptions, VmcReceiver};

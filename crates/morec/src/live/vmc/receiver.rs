@@ -14,13 +14,13 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use super::clock::SenderClock;
-use super::message::{Said, mirror, seen_in_mirror, understand};
+use super::message::{VmcMessage, mirror, seen_in_mirror, understand};
 use super::peers::{Peer, Ports};
 use super::rest::is_t_pose;
 use super::skeleton::{AssumedNeck, assumed_neck, bones_of, local_position, place, rig_of};
 use crate::humanoid::{BoneMask, HUMANOID_BONES, is_body, parent_among};
 use crate::live::osc::{self, Message};
-use crate::live::{Actor, Frame, MAX_ACTORS, Next, Rig, SourceCounts};
+use crate::live::{Frame, MAX_ACTORS, PerformerId, Rig, SourceCounts, SourceEvent};
 use crate::math::{Quat, Vec3};
 
 /// (d) of the rules.
@@ -86,8 +86,8 @@ struct Ready {
 #[derive(Debug)]
 enum VmcItem {
     Frame(Frame),
-    Rig(Actor, Arc<Rig>),
-    Gone(Actor),
+    Rig(PerformerId, Arc<Rig>),
+    Gone(PerformerId),
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -101,7 +101,7 @@ struct BoneState {
 struct Sender<P> {
     ports: Ports<P>,
     /// Its place; none before it has shown a body.
-    actor: Option<Actor>,
+    actor: Option<PerformerId>,
     bones: [BoneState; HUMANOID_BONES],
     root: (Vec3, Quat),
     /// Bones that the open frame holds.
@@ -197,16 +197,16 @@ impl<P: Peer> VmcReceiver<P> {
     }
 
     /// A place for a sender that has none: one that nobody had, else one of somebody who has gone.
-    fn free_place(&self, at: usize) -> Option<Actor> {
+    fn free_place(&self, at: usize) -> Option<PerformerId> {
         if self.senders[at].actor.is_some() {
             return None;
         }
         let most = self.options.actors.clamp(1, MAX_ACTORS) as u16;
-        let taken = |actor: &Actor, here: bool| {
+        let taken = |actor: &PerformerId, here: bool| {
             let mut senders = self.senders.iter();
             senders.any(|s| s.actor == Some(*actor) && (here || !s.gone))
         };
-        let mut places = (0..most).map(Actor);
+        let mut places = (0..most).map(PerformerId);
         let unused = places.clone().find(|actor| !taken(actor, true));
         unused.or_else(|| places.find(|actor| !taken(actor, false)))
     }
@@ -235,16 +235,16 @@ impl<P: Peer> VmcReceiver<P> {
             .retain(|sender| sender.actor.is_some() || !silent(sender));
     }
 
-    /// What is complete, oldest first; fills `frame` for [`Next::Frame`].
-    pub fn next(&mut self, frame: &mut Frame) -> Option<Next> {
+    /// What is complete, oldest first; fills `frame` for [`SourceEvent::Frame`].
+    pub fn next(&mut self, frame: &mut Frame) -> Option<SourceEvent> {
         Some(match self.ready.items.pop_front()? {
             VmcItem::Frame(mut full) => {
                 std::mem::swap(frame, &mut full);
                 self.ready.spare.push(full);
-                Next::Frame
+                SourceEvent::Frame
             }
-            VmcItem::Rig(actor, rig) => Next::Rig(actor, rig),
-            VmcItem::Gone(actor) => Next::Gone(actor),
+            VmcItem::Rig(actor, rig) => SourceEvent::Rig(actor, rig),
+            VmcItem::Gone(actor) => SourceEvent::Gone(actor),
         })
     }
 
@@ -338,7 +338,7 @@ struct Taking<'a, P> {
     now_secs: f64,
     begun_secs: f64,
     /// A place, if it has none and shows a body.
-    place: Option<Actor>,
+    place: Option<PerformerId>,
     /// It shows a body, and there is no place.
     crowded: bool,
 }
@@ -370,7 +370,7 @@ impl<P: Peer> Taking<'_, P> {
         let mut stamp = None;
         osc::read(bytes, &mut |message: Message| {
             if message.address == "/VMC/Ext/T"
-                && let Some(Said::Time(secs)) = understand(&message)
+                && let Some(VmcMessage::Time(secs)) = understand(&message)
             {
                 stamp = Some(secs);
             }
@@ -382,13 +382,13 @@ impl<P: Peer> Taking<'_, P> {
     }
 
     /// Takes a message; `bones` counts those of its datagram.
-    fn take(&mut self, said: Said, bones: &mut usize) {
+    fn take(&mut self, said: VmcMessage, bones: &mut usize) {
         match said {
-            Said::State { good } => {
+            VmcMessage::State { good } => {
                 self.close();
                 self.sender.bad = !good;
             }
-            Said::Time(secs) => {
+            VmcMessage::Time(secs) => {
                 let news = self.sender.sent_secs != Some(secs);
                 if news && *bones > 0 {
                     // It ends the datagram of its frame.
@@ -399,7 +399,7 @@ impl<P: Peer> Taking<'_, P> {
                     self.sender.sent_secs = Some(secs);
                 }
             }
-            Said::Root(position, rotation) => {
+            VmcMessage::Root(position, rotation) => {
                 let mirrored = self.options.mirrored;
                 self.sender.root = if mirrored {
                     mirror(position, rotation)
@@ -407,7 +407,7 @@ impl<P: Peer> Taking<'_, P> {
                     (position, rotation)
                 };
             }
-            Said::Bone(bone, position, rotation) => {
+            VmcMessage::Bone(bone, position, rotation) => {
                 *bones += 1;
                 let seen = if self.options.mirrored {
                     seen_in_mirror(bone, position, rotation)
@@ -416,7 +416,7 @@ impl<P: Peer> Taking<'_, P> {
                 };
                 self.bone(seen);
             }
-            Said::Other => self.counts.ignored += 1,
+            VmcMessage::Other => self.counts.ignored += 1,
         }
     }
 

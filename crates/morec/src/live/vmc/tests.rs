@@ -6,7 +6,7 @@ use super::*;
 use crate::features::KeyPose;
 use crate::kinematics::WorldPose;
 use crate::live::osc::{Arg, begin_bundle, write_element, write_message};
-use crate::live::{Actor, Frame, Next, Rig};
+use crate::live::{Frame, PerformerId, Rig, SourceEvent};
 use crate::math::{Axis, Quat, Vec3};
 use crate::roles::{Role, RoleMap};
 
@@ -42,9 +42,9 @@ fn roles() -> RoleMap {
 /// A receiver with all that came out of it.
 struct Heard {
     receiver: VmcReceiver<u8>,
-    rigs: Vec<(Actor, Rig)>,
-    frames: Vec<(Actor, f64, KeyPose)>,
-    gone: Vec<Actor>,
+    rigs: Vec<(PerformerId, Rig)>,
+    frames: Vec<(PerformerId, f64, KeyPose)>,
+    gone: Vec<PerformerId>,
 }
 
 impl Heard {
@@ -71,7 +71,7 @@ impl Heard {
         let mut frame = Frame::default();
         while let Some(next) = self.receiver.next(&mut frame) {
             match next {
-                Next::Frame => {
+                SourceEvent::Frame => {
                     let rig = self
                         .rigs
                         .iter()
@@ -81,9 +81,9 @@ impl Heard {
                     self.frames
                         .push((frame.actor, frame.time_secs, frame.key_pose(&rig.1)));
                 }
-                Next::Rig(actor, rig) => self.rigs.push((actor, (*rig).clone())),
-                Next::Gone(actor) => self.gone.push(actor),
-                Next::Quiet | Next::Ended => unreachable!(),
+                SourceEvent::Rig(actor, rig) => self.rigs.push((actor, (*rig).clone())),
+                SourceEvent::Gone(actor) => self.gone.push(actor),
+                SourceEvent::Quiet | SourceEvent::Ended => unreachable!(),
             }
         }
     }
@@ -514,9 +514,9 @@ fn a_sender_that_opens_a_new_port_for_every_packet_or_frame_is_one_performer() {
             }
             receiver.tick(secs + 0.01);
             while let Some(next) = receiver.next(&mut frame) {
-                assert!(!matches!(next, Next::Gone(_)));
-                if let Next::Frame = next {
-                    assert_eq!(frame.actor, Actor(0));
+                assert!(!matches!(next, SourceEvent::Gone(_)));
+                if let SourceEvent::Frame = next {
+                    assert_eq!(frame.actor, PerformerId(0));
                     frames += 1;
                 }
             }
@@ -533,7 +533,7 @@ fn a_sender_that_opens_a_new_port_for_every_packet_or_frame_is_one_performer() {
 fn two_senders_on_one_machine_are_two_performers_though_they_begin_together() {
     let mut receiver = VmcReceiver::new(&VmcOptions::default());
     let mut senders = [0, 1].map(|_| VmcSender::new(Bundling::Bytes(1500), false));
-    let mut rigs: std::collections::BTreeMap<Actor, std::sync::Arc<Rig>> = Default::default();
+    let mut rigs: std::collections::BTreeMap<PerformerId, std::sync::Arc<Rig>> = Default::default();
     let (mut frame, mut frames) = (Frame::default(), [0; 2]);
     for i in 0..240 {
         let secs = f64::from(i) / 60.0;
@@ -546,8 +546,8 @@ fn two_senders_on_one_machine_are_two_performers_though_they_begin_together() {
             receiver.tick(secs);
             while let Some(next) = receiver.next(&mut frame) {
                 match next {
-                    Next::Rig(actor, rig) => _ = rigs.insert(actor, rig),
-                    Next::Frame => {
+                    SourceEvent::Rig(actor, rig) => _ = rigs.insert(actor, rig),
+                    SourceEvent::Frame => {
                         frames[frame.actor.index()] += 1;
                         let key = frame.key_pose(&rigs[&frame.actor]);
                         let off = [0.0, 0.5].map(|ahead| far(&key, &swinging(secs + ahead)));
@@ -565,7 +565,7 @@ fn two_senders_on_one_machine_are_two_performers_though_they_begin_together() {
 fn frames_of(receiver: &mut VmcReceiver<At>, frames: &mut std::collections::BTreeMap<u16, usize>) {
     let mut frame = Frame::default();
     while let Some(next) = receiver.next(&mut frame) {
-        if let Next::Frame = next {
+        if let SourceEvent::Frame = next {
             *frames.entry(frame.actor.0).or_default() += 1;
         }
     }

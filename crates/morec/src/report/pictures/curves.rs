@@ -2,7 +2,7 @@
 
 use crate::clip::Clip;
 use crate::plot::Chart;
-use crate::smooth::{Bezier, CompressedClip, Curve, Kind, Point};
+use crate::smooth::{Bezier, ChannelKind, ChannelValue, CompressedClip, Curve};
 
 /// Points drawn for each frame of the source.
 const POINTS_A_FRAME: f64 = 4.0;
@@ -16,13 +16,13 @@ impl CompressedClip {
         &self,
         source: &Clip,
         joint: usize,
-        kind: Kind,
+        kind: ChannelKind,
         axis: Option<usize>,
     ) -> Option<Chart> {
         let curve = self.curve(joint, kind)?;
         let components = match kind {
-            Kind::Rotation => 0..4,
-            Kind::Position => 0..3,
+            ChannelKind::Rotation => 0..4,
+            ChannelKind::Position => 0..3,
         };
         let components = match axis {
             Some(axis) if components.contains(&axis) => axis..axis + 1,
@@ -30,8 +30,8 @@ impl CompressedClip {
             None => components,
         };
         let what = match kind {
-            Kind::Rotation => "rotation",
-            Kind::Position => "position",
+            ChannelKind::Rotation => "rotation",
+            ChannelKind::Position => "position",
         };
         let name = &self.skeleton().joints()[joint].name;
         let title = format!(
@@ -39,7 +39,7 @@ impl CompressedClip {
             self.name(),
             curve.keyframes()
         );
-        let unit = if kind == Kind::Rotation {
+        let unit = if kind == ChannelKind::Rotation {
             "quaternion"
         } else {
             "units of the clip"
@@ -67,7 +67,7 @@ impl CompressedClip {
     }
 
     /// The curve, finely.
-    fn drawn(&self, curve: &Curve) -> Vec<(f64, Point)> {
+    fn drawn(&self, curve: &Curve) -> Vec<(f64, ChannelValue)> {
         let last = self.source_frames().saturating_sub(1) as f64;
         let places = (0..=(last * POINTS_A_FRAME) as usize).map(|i| i as f64 / POINTS_A_FRAME);
         let mut drawn = Vec::new();
@@ -96,8 +96,8 @@ impl CompressedClip {
 }
 
 /// The channel's samples, with the signs that its curves have.
-fn samples(source: &Clip, curve: &Curve) -> Vec<Point> {
-    if curve.kind() == Kind::Position {
+fn samples(source: &Clip, curve: &Curve) -> Vec<ChannelValue> {
+    if curve.kind() == ChannelKind::Position {
         return source.track(curve.joint()).map_or_else(Vec::new, |track| {
             track.positions.iter().map(|p| p.push(0.0)).collect()
         });
@@ -123,7 +123,7 @@ fn samples(source: &Clip, curve: &Curve) -> Vec<Point> {
 mod tests {
     use crate::math::{Axis, Vec3};
     use crate::smooth::tests::one_joint;
-    use crate::smooth::{Kind, SmoothParams, compress};
+    use crate::smooth::{ChannelKind, SmoothParams, compress};
 
     #[test]
     fn every_channel_can_be_drawn() {
@@ -139,17 +139,24 @@ mod tests {
                 .chart(&clip, 0, kind, axis)
                 .map(|chart| chart.svg())
         };
-        let all = svg(Kind::Rotation, None).unwrap();
+        let all = svg(ChannelKind::Rotation, None).unwrap();
         assert!(
             all.contains("rotation of Hips")
                 && all.contains("w curves")
                 && all.contains("keyframes")
         );
-        let one = svg(Kind::Position, Some(0)).unwrap();
+        let one = svg(ChannelKind::Position, Some(0)).unwrap();
         assert!(
             one.contains("x curves") && !one.contains("y curves") && one.contains("control points")
         );
-        assert!(svg(Kind::Position, Some(3)).is_none() && svg(Kind::Rotation, Some(4)).is_none());
-        assert!(compressed.chart(&clip, 1, Kind::Rotation, None).is_none());
+        assert!(
+            svg(ChannelKind::Position, Some(3)).is_none()
+                && svg(ChannelKind::Rotation, Some(4)).is_none()
+        );
+        assert!(
+            compressed
+                .chart(&clip, 1, ChannelKind::Rotation, None)
+                .is_none()
+        );
     }
 }

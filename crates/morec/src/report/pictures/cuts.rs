@@ -1,13 +1,13 @@
 //! The misfit over time, with the cuts that follow from it.
 
 use crate::plot::Chart;
-use crate::segment::{HPoint, Segmentation};
+use crate::segment::{MisfitSample, Segmentation};
 
 impl Segmentation {
     /// `H` over time with the cuts marked, and beside them the `known` ones (seconds) where there are any. `H` spans
     /// powers of ten, so its logarithm is drawn.
     pub fn chart(&self, title: &str, known: &[f64]) -> Chart {
-        let line = |points: &[HPoint]| -> Vec<(f64, f64)> {
+        let line = |points: &[MisfitSample]| -> Vec<(f64, f64)> {
             points
                 .iter()
                 .map(|p| (p.secs, p.value.max(1e-3).log10()))

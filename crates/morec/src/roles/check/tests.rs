@@ -214,11 +214,23 @@ fn person_with(names: [&str; 3], points: [[f64; 3]; 3], at: &str) -> Made {
 #[test]
 fn further_limbs_are_told_and_hair_and_helpers_are_not() {
     let hind = [[12.0, 92.0, -60.0], [12.0, 50.0, -65.0], [12.0, 8.0, -60.0]];
-    is_told(person_with(["?HindUpLeg", "?HindLeg", "?HindFoot"], hind, "Hips"));
+    is_told(person_with(
+        ["?HindUpLeg", "?HindLeg", "?HindFoot"],
+        hind,
+        "Hips",
+    ));
     is_told(person_with(["bone?1", "bone?2", "bone?3"], hind, "Hips"));
     let second_arms = [[18.0, 120.0, 0.0], [46.0, 110.0, 0.0], [71.0, 100.0, 20.0]];
-    is_told(person_with(["?Arm2", "?ForeArm2", "?Hand2"], second_arms, "Chest"));
-    let hair = [[6.0, 165.0, -8.0], [10.0, 130.0, -15.0], [10.0, 90.0, -15.0]];
+    is_told(person_with(
+        ["?Arm2", "?ForeArm2", "?Hand2"],
+        second_arms,
+        "Chest",
+    ));
+    let hair = [
+        [6.0, 165.0, -8.0],
+        [10.0, 130.0, -15.0],
+        [10.0, 90.0, -15.0],
+    ];
     let skirt = [[15.0, 85.0, -5.0], [20.0, 60.0, -10.0], [22.0, 35.0, -12.0]];
     let helpers = [[9.0, 90.0, 0.0], [9.0, 48.0, 1.0], [9.0, 8.0, 0.0]];
     for made in [
@@ -237,7 +249,10 @@ fn rigs_of_hands_faces_and_cameras_are_told() {
     hands.both(0, &["?Hand"], &[[30.0, 100.0, 30.0]]);
     for (hand, x) in [(1, 30.0), (2, -30.0)] {
         let side = if x > 0.0 { "Left" } else { "Right" };
-        for (finger, name) in ["Thumb", "Index", "Middle", "Ring", "Pinky"].iter().enumerate() {
+        for (finger, name) in ["Thumb", "Index", "Middle", "Ring", "Pinky"]
+            .iter()
+            .enumerate()
+        {
             let names: Vec<String> = (1..4).map(|k| format!("{side}Hand{name}{k}")).collect();
             let names: Vec<&str> = names.iter().map(String::as_str).collect();
             let at = |k: f64| [x - 3.0 + 2.0 * finger as f64, 105.0 + 4.0 * k, 30.0];
@@ -247,8 +262,16 @@ fn rigs_of_hands_faces_and_cameras_are_told() {
     is_told(hands);
 
     let mut face = Made::new("head", [0.0, 160.0, 0.0]);
-    face.chain(0, &["jaw", "chin"], &[[0.0, 155.0, 6.0], [0.0, 150.0, 10.0]]);
-    for (name, at) in [("eye_?", [3.0, 164.0, 8.0]), ("brow_?", [4.0, 166.0, 8.0]), ("lip_?", [2.0, 156.0, 9.0])] {
+    face.chain(
+        0,
+        &["jaw", "chin"],
+        &[[0.0, 155.0, 6.0], [0.0, 150.0, 10.0]],
+    );
+    for (name, at) in [
+        ("eye_?", [3.0, 164.0, 8.0]),
+        ("brow_?", [4.0, 166.0, 8.0]),
+        ("lip_?", [2.0, 156.0, 9.0]),
+    ] {
         face.both(0, &[name], &[at]);
     }
     is_told(face);
@@ -257,7 +280,12 @@ fn rigs_of_hands_faces_and_cameras_are_told() {
     crane.chain(
         0,
         &["Crane", "Arm", "Head", "Camera"],
-        &[[0.0, 50.0, 0.0], [0.0, 100.0, 0.0], [0.0, 200.0, 200.0], [0.0, 200.0, 220.0]],
+        &[
+            [0.0, 50.0, 0.0],
+            [0.0, 100.0, 0.0],
+            [0.0, 200.0, 200.0],
+            [0.0, 200.0, 220.0],
+        ],
     );
     is_told(crane);
 }

@@ -1,7 +1,7 @@
 //! Published marker sets, and joints between their markers.
 //!
 //! Where a joint has markers on both sides, it is their middle; where it has one, the marker stands for it: directions of
-//! bones are then a few degrees off, always alike. Hip joints come from the pelvis ([`Place`](super::Place)).
+//! bones are then a few degrees off, always alike. Hip joints come from the pelvis ([`PointJoint`](super::PointJoint)).
 
 use super::PointSet;
 

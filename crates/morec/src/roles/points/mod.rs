@@ -10,7 +10,7 @@ mod markers;
 mod names;
 mod place;
 
-pub use place::Place;
+pub use place::PointJoint;
 pub(in crate::roles) use place::said;
 
 use super::Role;
@@ -39,7 +39,7 @@ pub struct Recognised {
     /// The set's name.
     pub set: &'static str,
     /// Who plays what, in the order of [`Role::ALL`].
-    pub roles: Vec<(Role, Place)>,
+    pub roles: Vec<(Role, PointJoint)>,
 }
 
 /// Roles that make a body; fewer are chance.
@@ -207,7 +207,7 @@ impl PointSet {
 
     /// Who plays what among points of these normalised names, if that makes a body.
     fn assign(&self, names: &[String]) -> Option<Recognised> {
-        let mut roles: Vec<(Role, Place)> = Vec::new();
+        let mut roles: Vec<(Role, PointJoint)> = Vec::new();
         let tables: &[&[(&str, &str)]] = match self.joints_too {
             true => &[self.roles, landmarks::JOINTS.roles],
             false => &[self.roles],

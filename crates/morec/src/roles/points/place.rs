@@ -6,9 +6,9 @@ use crate::roles::Role;
 
 /// A joint's place among points, by their indices.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Place {
+pub enum PointJoint {
     /// The middle of these; of one, the point itself.
-    Middle(Vec<Place>),
+    Middle(Vec<PointJoint>),
     /// A point.
     Point(usize),
     /// A hip joint's centre, from the pelvis.
@@ -22,19 +22,19 @@ pub enum Place {
     },
 }
 
-impl Place {
+impl PointJoint {
     /// Where it is, `point` being where the points are; `None` if the pelvis has no direction. O(points in it).
     pub fn at(&self, point: impl Fn(usize) -> Vec3 + Copy) -> Option<Vec3> {
         match self {
-            Place::Point(index) => Some(point(*index)),
-            Place::Middle(parts) => {
+            PointJoint::Point(index) => Some(point(*index)),
+            PointJoint::Middle(parts) => {
                 let mut sum = Vec3::zeros();
                 for part in parts {
                     sum += part.at(point)?;
                 }
                 Some(sum / parts.len().max(1) as f64)
             }
-            Place::HipCentre { left, front, back } => {
+            PointJoint::HipCentre { left, front, back } => {
                 let back = back.iter().map(|&p| point(p)).sum::<Vec3>() / back.len() as f64;
                 hip_centre(*left, front.map(point), back)
             }
@@ -44,21 +44,23 @@ impl Place {
     /// The points that it depends on.
     pub fn points(&self) -> Vec<usize> {
         match self {
-            Place::Point(index) => vec![*index],
-            Place::Middle(parts) => parts.iter().flat_map(Place::points).collect(),
-            Place::HipCentre { front, back, .. } => front.iter().chain(back).copied().collect(),
+            PointJoint::Point(index) => vec![*index],
+            PointJoint::Middle(parts) => parts.iter().flat_map(PointJoint::points).collect(),
+            PointJoint::HipCentre { front, back, .. } => {
+                front.iter().chain(back).copied().collect()
+            }
         }
     }
 
     /// The point that it is, if it is one.
     pub fn single(&self) -> Option<usize> {
         match self {
-            Place::Point(index) => Some(*index),
-            Place::Middle(parts) => match parts.as_slice() {
+            PointJoint::Point(index) => Some(*index),
+            PointJoint::Middle(parts) => match parts.as_slice() {
                 [one] => one.single(),
                 _ => None,
             },
-            Place::HipCentre { .. } => None,
+            PointJoint::HipCentre { .. } => None,
         }
     }
 }
@@ -88,17 +90,21 @@ impl<'a> Expression<'a> {
     }
 
     /// The place among points of normalised `names`; `roles` are those known so far.
-    pub(super) fn place(&self, names: &[String], roles: &[(Role, Place)]) -> Option<Place> {
+    pub(super) fn place(
+        &self,
+        names: &[String],
+        roles: &[(Role, PointJoint)],
+    ) -> Option<PointJoint> {
         let mut alternatives = self.0.split('|');
         alternatives.find_map(|text| alternative(text, names, roles))
     }
 }
 
-fn alternative(text: &str, names: &[String], roles: &[(Role, Place)]) -> Option<Place> {
+fn alternative(text: &str, names: &[String], roles: &[(Role, PointJoint)]) -> Option<PointJoint> {
     let find = |name: &str| names.iter().position(|known| known == name);
     if let Some(hip) = text.strip_prefix("hip(").and_then(|t| t.strip_suffix(')')) {
         let [side, left, right, back] = hip.split(';').collect::<Vec<_>>().try_into().ok()?;
-        return Some(Place::HipCentre {
+        return Some(PointJoint::HipCentre {
             left: side == "l",
             front: [find(left)?, find(right)?],
             back: back.split('+').map(find).collect::<Option<_>>()?,
@@ -110,17 +116,17 @@ fn alternative(text: &str, names: &[String], roles: &[(Role, Place)]) -> Option<
             let known = roles.iter().find(|(known, _)| *known == role);
             known.map(|(_, place)| place.clone())
         }
-        None => find(text).map(Place::Point),
+        None => find(text).map(PointJoint::Point),
     };
-    let mut parts: Vec<Place> = text.split('+').map(part).collect::<Option<_>>()?;
+    let mut parts: Vec<PointJoint> = text.split('+').map(part).collect::<Option<_>>()?;
     if parts.len() == 1 {
         return parts.pop();
     }
-    Some(Place::Middle(parts))
+    Some(PointJoint::Middle(parts))
 }
 
 /// The place that a mapping file says: names of points between `+`, spelt as the clip spells them or nearly so.
-pub(in crate::roles) fn said(text: &str, names: &[&str]) -> Result<Place, String> {
+pub(in crate::roles) fn said(text: &str, names: &[&str]) -> Result<PointJoint, String> {
     let find = |name: &str| {
         let exact = names.iter().position(|known| *known == name);
         let nearly = || {
@@ -132,15 +138,15 @@ pub(in crate::roles) fn said(text: &str, names: &[&str]) -> Result<Place, String
     };
     // A name may have a plus in it.
     if let Some(point) = names.iter().position(|known| *known == text) {
-        return Ok(Place::Point(point));
+        return Ok(PointJoint::Point(point));
     }
     let mut parts = text
         .split('+')
-        .map(|name| find(name.trim()).map(Place::Point))
-        .collect::<Result<Vec<Place>, String>>()?;
+        .map(|name| find(name.trim()).map(PointJoint::Point))
+        .collect::<Result<Vec<PointJoint>, String>>()?;
     match parts.len() {
         1 => Ok(parts.remove(0)),
-        _ => Ok(Place::Middle(parts)),
+        _ => Ok(PointJoint::Middle(parts)),
     }
 }
 

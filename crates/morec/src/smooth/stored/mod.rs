@@ -17,13 +17,13 @@
 mod motion;
 mod words;
 
-use super::lattice::{Lattice, Step};
-use super::{CompressedClip, Curve, Errors, Kind, SmoothParams};
+use super::lattice::{Lattice, StepSize};
+use super::{ChannelKind, CompressedClip, Curve, Errors, SmoothParams};
 use crate::clip::{Gap, Joint, Points, Skeleton, Span};
 use crate::coder::{Coder, Reader, Writer};
 use crate::formats::{Limits, ParseError, Place};
 use crate::math::Vec3;
-use motion::{Fault, Motion, Stored};
+use motion::{Fault, MotionCoder, Stored};
 use words::{Fields, Words};
 
 /// What every file begins with.
@@ -97,7 +97,7 @@ impl CompressedClip {
     }
 
     fn motion(&self) -> Vec<u8> {
-        let (mut writer, mut motion) = (Writer::new(), Motion::default());
+        let (mut writer, mut motion) = (Writer::new(), MotionCoder::default());
         for curve in self.curves() {
             let stored = Stored {
                 lattice: curve.lattice,
@@ -141,14 +141,14 @@ impl CompressedClip {
             };
             ParseError::new(Place::Byte(at as u64), "the curves of all channels", found)
         };
-        let (mut reader, mut motion) = (Reader::new(fields.rest()), Motion::default());
+        let (mut reader, mut motion) = (Reader::new(fields.rest()), MotionCoder::default());
         let mut most = fields.rest().len() * CURVES_A_BYTE;
         let nothing = Stored {
             lattice: NO_STEPS,
             first: [0; 3],
             pieces: Vec::new(),
         };
-        let mut channel = |kind: Kind, joint: usize| -> Result<Curve, ParseError> {
+        let mut channel = |kind: ChannelKind, joint: usize| -> Result<Curve, ParseError> {
             let stored = motion
                 .channel(&mut reader, kind, &nothing, clip.frames, most)
                 .map_err(fault)?;
@@ -161,10 +161,10 @@ impl CompressedClip {
             ))
         };
         for joint in 0..clip.skeleton.len() {
-            clip.rotations.push(channel(Kind::Rotation, joint)?);
+            clip.rotations.push(channel(ChannelKind::Rotation, joint)?);
         }
         for joint in tracks {
-            clip.positions.push(channel(Kind::Position, joint)?);
+            clip.positions.push(channel(ChannelKind::Position, joint)?);
         }
         if reader.is_beyond_end() {
             return Err(fault(Fault::Cut));
@@ -175,9 +175,9 @@ impl CompressedClip {
 
 /// What a reader gives where a writer gives a channel.
 const NO_STEPS: Lattice = Lattice {
-    kind: Kind::Rotation,
-    key: Step(0),
-    tangent: Step(0),
+    kind: ChannelKind::Rotation,
+    key: StepSize(0),
+    tangent: StepSize(0),
 };
 
 /// The version, of bytes that are whole.

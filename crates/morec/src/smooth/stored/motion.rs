@@ -1,9 +1,9 @@
 //! The curves of all channels through the coder, each number as its difference from what those before it promise.
 
 use crate::coder::{Coder, Flag, Whole};
-use crate::smooth::Kind;
-use crate::smooth::bezier::{Point, Tangent};
-use crate::smooth::lattice::{Code, Lattice, MOST_STEPS, Piece, Step, Tangents};
+use crate::smooth::ChannelKind;
+use crate::smooth::bezier::{ChannelValue, Tangent};
+use crate::smooth::lattice::{Code, Lattice, MOST_STEPS, Piece, StepSize, Tangents};
 
 /// Why a channel could not be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,7 +33,7 @@ struct CurveModel {
 
 /// Foresees and codes channels, one after the other.
 #[derive(Default)]
-pub(super) struct Motion {
+pub(super) struct MotionCoder {
     rotation: CurveModel,
     position: CurveModel,
     steps: [Option<Lattice>; 2],
@@ -49,7 +49,7 @@ pub(super) struct Stored {
 /// Where a curve stands, between one piece and the next.
 struct ChannelState {
     key: Code,
-    point: Point,
+    point: ChannelValue,
     /// Velocity at which the last piece arrived, in tangents a sample period; zero at the start.
     arrival: Tangent,
 }
@@ -58,19 +58,19 @@ struct ChannelState {
 /// slows down.
 const REACH_OF_TANGENT: f64 = 1.8;
 
-impl Motion {
+impl MotionCoder {
     /// Writes `channel`, or reads one (whatever `channel` then is) of `frames` frames and at most `most` pieces.
     pub fn channel<C: Coder>(
         &mut self,
         coder: &mut C,
-        kind: Kind,
+        kind: ChannelKind,
         channel: &Stored,
         frames: usize,
         most: usize,
     ) -> Result<Stored, Fault> {
         let (model, last) = match kind {
-            Kind::Rotation => (&mut self.rotation, &mut self.steps[0]),
-            Kind::Position => (&mut self.position, &mut self.steps[1]),
+            ChannelKind::Rotation => (&mut self.rotation, &mut self.steps[0]),
+            ChannelKind::Position => (&mut self.position, &mut self.steps[1]),
         };
         let lattice = model.lattice(coder, kind, channel.lattice, *last)?;
         *last = Some(lattice);
@@ -116,7 +116,7 @@ impl CurveModel {
     fn lattice<C: Coder>(
         &mut self,
         coder: &mut C,
-        kind: Kind,
+        kind: ChannelKind,
         given: Lattice,
         last: Option<Lattice>,
     ) -> Result<Lattice, Fault> {
@@ -125,9 +125,9 @@ impl CurveModel {
         {
             return Ok(last);
         }
-        let mut step = |given: Step, model: &mut Whole| {
+        let mut step = |given: StepSize, model: &mut Whole| {
             i8::try_from(model.signed(coder, i64::from(given.0)))
-                .map(Step)
+                .map(StepSize)
                 .map_err(|_| Fault::Number)
         };
         let key = step(given.key, &mut self.steps[0])?;

@@ -6,7 +6,7 @@ use super::one_joint;
 use crate::clip::{Clip, Joint, JointTrack, Skeleton};
 use crate::math::{Axis, Quat, Vec3};
 use crate::progress::Progress;
-use crate::smooth::{Kind, SmoothError, SmoothParams, compress};
+use crate::smooth::{ChannelKind, SmoothError, SmoothParams, compress};
 
 fn still(_: f64) -> Quat {
     Quat::identity()
@@ -15,7 +15,7 @@ fn still(_: f64) -> Quat {
 /// Degrees of the curves of a one-joint clip's position.
 fn degrees(clip: &Clip) -> Vec<u8> {
     let compressed = compress(clip, &SmoothParams::default(), &()).unwrap();
-    let curve = compressed.curve(0, Kind::Position).unwrap();
+    let curve = compressed.curve(0, ChannelKind::Position).unwrap();
     compressed
         .beziers(curve)
         .map(|bezier| bezier.degree)
@@ -42,7 +42,7 @@ fn splits_fall_where_the_motion_breaks() {
         Vec3::new((t - 0.5).abs() * 4.0, 0.0, 0.0)
     });
     let compressed = compress(&clip, &SmoothParams::default(), &()).unwrap();
-    let curve = compressed.curve(0, Kind::Position).unwrap();
+    let curve = compressed.curve(0, ChannelKind::Position).unwrap();
     let keys: Vec<f64> = compressed
         .beziers(curve)
         .map(|bezier| bezier.start_secs)

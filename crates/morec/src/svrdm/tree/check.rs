@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::classes::ClassId;
 
-use super::{Branch, Node, Parts};
+use super::{Branch, Node, TreeParts};
 
 /// More classes than this are refused: descent is recursive, and a tree may be as deep as it has classes.
 pub const MAX_CLASSES: usize = 1024;
@@ -40,7 +40,7 @@ pub enum TreeError {
 }
 
 /// Says what is wrong with `parts`, if anything. O(size · log size).
-pub(super) fn check(parts: &Parts) -> Result<(), TreeError> {
+pub(super) fn check(parts: &TreeParts) -> Result<(), TreeError> {
     if parts.dim == 0 {
         return Err(TreeError::NoValues);
     }

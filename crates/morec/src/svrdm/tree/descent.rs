@@ -20,7 +20,7 @@ pub enum Descent {
 
 /// A class that every branch on the way to it accepted.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Candidate {
+pub struct ClassCandidate {
     /// The class.
     pub class: ClassId,
     /// The least output on the way: at least what was asked for.
@@ -29,15 +29,15 @@ pub struct Candidate {
 
 /// The candidates of one descent, largest output first; of fixed size.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Candidates {
-    kept: [Candidate; MAX_CANDIDATES],
+pub struct ClassCandidates {
+    kept: [ClassCandidate; MAX_CANDIDATES],
     count: usize,
 }
 
-impl Default for Candidates {
+impl Default for ClassCandidates {
     fn default() -> Self {
         Self {
-            kept: [Candidate {
+            kept: [ClassCandidate {
                 class: ClassId(0),
                 output: 0.0,
             }; MAX_CANDIDATES],
@@ -46,15 +46,15 @@ impl Default for Candidates {
     }
 }
 
-impl std::ops::Deref for Candidates {
-    type Target = [Candidate];
+impl std::ops::Deref for ClassCandidates {
+    type Target = [ClassCandidate];
 
-    fn deref(&self) -> &[Candidate] {
+    fn deref(&self) -> &[ClassCandidate] {
         &self.kept[..self.count]
     }
 }
 
-impl Candidates {
+impl ClassCandidates {
     /// None any more.
     pub fn clear(&mut self) {
         self.count = 0;
@@ -62,7 +62,7 @@ impl Candidates {
 
     /// Puts one in its place; where all places are taken, that with the least output goes. Of equal outputs the
     /// earlier stays in front.
-    pub(super) fn insert(&mut self, candidate: Candidate) {
+    pub(super) fn insert(&mut self, candidate: ClassCandidate) {
         let at = self
             .iter()
             .position(|c| c.output < candidate.output)
@@ -80,7 +80,13 @@ impl Tree {
     /// The classes that `vector` (`n` values) may be: those that every machine on the way gives at least `accept`
     /// (0.92 in the thesis, where machines are trained towards 1). `out` is emptied first. No allocation; O(size of
     /// the branches on the way).
-    pub fn descend(&self, vector: &[f64], accept: f64, descent: Descent, out: &mut Candidates) {
+    pub fn descend(
+        &self,
+        vector: &[f64],
+        accept: f64,
+        descent: Descent,
+        out: &mut ClassCandidates,
+    ) {
         out.clear();
         self.visit(
             &self.nodes()[0],
@@ -95,10 +101,10 @@ impl Tree {
     }
 
     /// Goes on below `node`, to which the least output so far was `least`.
-    fn visit(&self, node: &Node, least: f64, question: &Question, out: &mut Candidates) {
+    fn visit(&self, node: &Node, least: f64, question: &Question, out: &mut ClassCandidates) {
         let branch = match node {
             Node::Leaf(class) => {
-                return out.insert(Candidate {
+                return out.insert(ClassCandidate {
                     class: *class,
                     output: least,
                 });

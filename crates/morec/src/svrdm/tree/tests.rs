@@ -3,7 +3,7 @@ use proptest::prelude::*;
 use super::*;
 
 /// Exemplars at the corners of a triangle, one for each of three classes: 0 | (1 | 2).
-fn parts() -> Parts {
+fn parts() -> TreeParts {
     let branch = |exemplars, children, classes| {
         Node::Branch(Box::new(Branch {
             sigma_full: 0.5,
@@ -17,7 +17,7 @@ fn parts() -> Parts {
         }))
     };
     let [a, b, c] = [0, 1, 2].map(ClassId);
-    Parts {
+    TreeParts {
         dim: 2,
         vectors: vec![0.0, 0.0, 2.0, 0.0, 1.0, 2.0],
         nodes: vec![
@@ -30,8 +30,8 @@ fn parts() -> Parts {
     }
 }
 
-fn descended(tree: &Tree, vector: &[f64], accept: f64, descent: Descent) -> Candidates {
-    let mut out = Candidates::default();
+fn descended(tree: &Tree, vector: &[f64], accept: f64, descent: Descent) -> ClassCandidates {
+    let mut out = ClassCandidates::default();
     tree.descend(vector, accept, descent, &mut out);
     out
 }
@@ -75,9 +75,9 @@ fn a_leaf_is_named_with_the_least_output_on_the_way() {
 
 #[test]
 fn the_best_four_are_kept_in_order() {
-    let mut all = Candidates::default();
+    let mut all = ClassCandidates::default();
     for (class, output) in [0.3, 0.9, 0.5, 0.9, 0.1, 0.7].into_iter().enumerate() {
-        all.insert(Candidate {
+        all.insert(ClassCandidate {
             class: ClassId(class as u16),
             output,
         });
@@ -103,8 +103,8 @@ fn parts_come_back_from_json() {
 /// Parts, something done to their root, and what is said about it.
 #[test]
 fn parts_that_do_not_fit_are_refused() {
-    type Damage = fn(&mut Parts);
-    fn root(parts: &mut Parts) -> &mut Branch {
+    type Damage = fn(&mut TreeParts);
+    fn root(parts: &mut TreeParts) -> &mut Branch {
         match &mut parts.nodes[0] {
             Node::Branch(branch) => branch,
             Node::Leaf(_) => panic!("the root is a branch"),

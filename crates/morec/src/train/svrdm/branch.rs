@@ -12,7 +12,7 @@ use super::svrm::{MachineParams, svrdm};
 
 /// The samples of two macro-classes, and motion that is neither.
 #[derive(Debug, Clone, Copy)]
-pub struct Sides<'a> {
+pub struct MacroClasses<'a> {
     /// Feature vectors of each side; neither is empty.
     pub vectors: [&'a [&'a [f64]]; 2],
     /// Who shows each of these: what is left out together.
@@ -102,17 +102,17 @@ impl Machines {
 
 /// A trained branch that does not know its place in the tree yet.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Trained {
+pub struct TrainedBranch {
     /// The plane.
     pub plane: Plane,
     /// The machines in it.
     pub machines: Machines,
     /// Where widths were cross-validated: what they did.
-    pub cross: Option<cross::Outcome>,
+    pub cross: Option<cross::WidthOutcome>,
 }
 
 /// Trains a branch: plane, then machines, with widths by the rule (Alg. 8).
-pub fn train(sides: &Sides, params: &TreeParams) -> Trained {
+pub fn train(sides: &MacroClasses, params: &TreeParams) -> TrainedBranch {
     if let SigmaRule::CrossValidated(how) = &params.sigma {
         let (full, reduced, outcome) = cross::choose(sides, how, &params.machine);
         return with_widths(sides, full, |_| reduced, params, Some(outcome));
@@ -124,18 +124,18 @@ pub fn train(sides: &Sides, params: &TreeParams) -> Trained {
 }
 
 fn with_widths(
-    sides: &Sides,
+    sides: &MacroClasses,
     full: f64,
     reduced: impl Fn([&[[f64; 2]]; 2]) -> f64,
     params: &TreeParams,
-    cross: Option<cross::Outcome>,
-) -> Trained {
+    cross: Option<cross::WidthOutcome>,
+) -> TrainedBranch {
     let plane = Plane::new(sides.vectors, full);
     let [a, b] = sides
         .vectors
         .map(|side| plane.reduce_all(sides.vectors, side));
     let machines = Machines::new([&a, &b], reduced([&a, &b]), &params.machine);
-    Trained {
+    TrainedBranch {
         plane,
         machines,
         cross,

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
 
-use super::branch::{Machines, Plane, Sides};
+use super::branch::{Machines, MacroClasses, Plane};
 use super::gram::Distances;
 use super::sigma::{of_sides, quantile};
 use super::svrm::MachineParams;
@@ -68,7 +68,7 @@ impl Multiples {
 
 /// What the chosen widths did.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct Outcome {
+pub struct WidthOutcome {
     /// Share of left-out samples that their own side accepts.
     pub accepted: f64,
     /// Share of left-out samples that the other side accepts, whether their own does or not.
@@ -77,7 +77,7 @@ pub struct Outcome {
     pub background: f64,
 }
 
-impl Outcome {
+impl WidthOutcome {
     fn worth(&self, params: &CrossParams) -> f64 {
         self.accepted - params.other_cost * self.wrong - params.background_cost * self.background
     }
@@ -88,17 +88,21 @@ impl Outcome {
 ///
 /// Where no group can be left out without emptying a side, the samples themselves are judged, which says little: all
 /// are then accepted by some width.
-pub fn choose(sides: &Sides, params: &CrossParams, machine: &MachineParams) -> (f64, f64, Outcome) {
+pub fn choose(
+    sides: &MacroClasses,
+    params: &CrossParams,
+    machine: &MachineParams,
+) -> (f64, f64, WidthOutcome) {
     let folds = folds(sides, params.folds);
     let unit = of_sides(sides.vectors, |side| {
         quantile(&Distances::new(side).sorted(), 0.5)
     });
-    let mut best: Option<(f64, f64, Outcome)> = None;
+    let mut best: Option<(f64, f64, WidthOutcome)> = None;
     for full in params.full.of(unit) {
-        let whole = View::new(sides, full, |_| true);
-        let parts: Vec<View> = folds
+        let whole = LeaveOutSplit::new(sides, full, |_| true);
+        let parts: Vec<LeaveOutSplit> = folds
             .iter()
-            .map(|fold| View::new(sides, full, |g| !fold.contains(&g)))
+            .map(|fold| LeaveOutSplit::new(sides, full, |g| !fold.contains(&g)))
             .collect();
         let [a, b] = &whole.planar;
         let unit = of_sides([a, b], |side| quantile(&Distances::new(side).sorted(), 0.5));
@@ -112,18 +116,18 @@ pub fn choose(sides: &Sides, params: &CrossParams, machine: &MachineParams) -> (
             }
         }
     }
-    best.unwrap_or((unit, 1.0, Outcome::default()))
+    best.unwrap_or((unit, 1.0, WidthOutcome::default()))
 }
 
 /// Sides without what is left out, and what is left out, in the plane of the former.
-struct View {
+struct LeaveOutSplit {
     planar: [Vec<[f64; 2]>; 2],
     left_out: [Vec<[f64; 2]>; 2],
     background: Vec<[f64; 2]>,
 }
 
-impl View {
-    fn new(sides: &Sides, sigma: f64, keep: impl Fn(usize) -> bool) -> Self {
+impl LeaveOutSplit {
+    fn new(sides: &MacroClasses, sigma: f64, keep: impl Fn(usize) -> bool) -> Self {
         let pick = |side: usize, kept: bool| -> Vec<&[f64]> {
             let all = sides.vectors[side].iter().zip(sides.groups[side]);
             all.filter(|(_, g)| keep(**g) == kept)
@@ -145,7 +149,13 @@ impl View {
     }
 }
 
-fn judge(whole: &View, parts: &[View], sigma: f64, accept: f64, params: &MachineParams) -> Outcome {
+fn judge(
+    whole: &LeaveOutSplit,
+    parts: &[LeaveOutSplit],
+    sigma: f64,
+    accept: f64,
+    params: &MachineParams,
+) -> WidthOutcome {
     let all = whole.machines(sigma, params);
     let background = share(
         whole
@@ -156,11 +166,12 @@ fn judge(whole: &View, parts: &[View], sigma: f64, accept: f64, params: &Machine
     let outputs: Vec<(usize, [f64; 2])> = if parts.is_empty() {
         judged(&all, &whole.planar).collect()
     } else {
-        let of_part =
-            |part: &View| judged(&part.machines(sigma, params), &part.left_out).collect::<Vec<_>>();
+        let of_part = |part: &LeaveOutSplit| {
+            judged(&part.machines(sigma, params), &part.left_out).collect::<Vec<_>>()
+        };
         parts.iter().flat_map(of_part).collect()
     };
-    Outcome {
+    WidthOutcome {
         accepted: share(outputs.iter().map(|(side, o)| o[*side] >= accept)),
         wrong: share(outputs.iter().map(|(side, o)| o[1 - *side] >= accept)),
         background,
@@ -186,7 +197,7 @@ fn share(all: impl Iterator<Item = bool>) -> f64 {
 }
 
 /// Groups dealt into at most `most` parts, without those parts that would leave a side empty.
-fn folds(sides: &Sides, most: usize) -> Vec<BTreeSet<usize>> {
+fn folds(sides: &MacroClasses, most: usize) -> Vec<BTreeSet<usize>> {
     let groups: BTreeSet<usize> = sides
         .groups
         .iter()

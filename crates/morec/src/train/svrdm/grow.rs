@@ -5,10 +5,10 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use serde::Serialize;
 
 use crate::classes::ClassId;
-use crate::svrdm::tree::{Branch, Node, Parts, Tree, TreeError};
+use crate::svrdm::tree::{Branch, Node, Tree, TreeError, TreeParts};
 
-use super::branch::{Sides, Space, Trained, one_width, train};
-use super::cross::{CrossParams, Outcome};
+use super::branch::{MacroClasses, Space, TrainedBranch, one_width, train};
+use super::cross::{CrossParams, WidthOutcome};
 use super::params::TreeParams;
 use super::partition::{function_products, partition};
 use super::sigma::SigmaRule;
@@ -55,7 +55,7 @@ pub struct BranchReport {
     /// Of these, how many each side accepts.
     pub passed: [usize; 2],
     /// Where widths were cross-validated: what they did.
-    pub cross: Option<Outcome>,
+    pub cross: Option<WidthOutcome>,
 }
 
 /// Why no tree grows.
@@ -186,7 +186,7 @@ impl<'a> Grower<'a> {
         let of_side = |k: usize| members[k].iter().map(|&i| &self.samples[i as usize]);
         let vectors = [0, 1].map(|k| of_side(k).map(|s| &s.vector[..]).collect::<Vec<_>>());
         let groups = [0, 1].map(|k| of_side(k).map(|s| s.group).collect::<Vec<_>>());
-        let sides = Sides {
+        let sides = MacroClasses {
             vectors: [&vectors[0], &vectors[1]],
             groups: [&groups[0], &groups[1]],
             background,
@@ -256,7 +256,7 @@ impl<'a> Grower<'a> {
     fn place(
         &mut self,
         at: usize,
-        trained: Trained,
+        trained: TrainedBranch,
         members: &[Vec<u32>; 2],
         parted: &[Vec<ClassId>; 2],
     ) -> [usize; 2] {
@@ -308,7 +308,7 @@ impl<'a> Grower<'a> {
             }
         }
         Ok(Grown {
-            tree: Tree::new(Parts {
+            tree: Tree::new(TreeParts {
                 dim,
                 vectors,
                 nodes,
@@ -320,7 +320,7 @@ impl<'a> Grower<'a> {
 
 /// For each side, the background that its machine accepts.
 fn passing<'a>(
-    trained: &Trained,
+    trained: &TrainedBranch,
     sides: [&[&[f64]]; 2],
     background: &[&'a [f64]],
     accept: f64,

@@ -20,8 +20,8 @@ mod svrm;
 #[cfg(test)]
 pub(crate) mod tests;
 
-pub use branch::{Machines, Plane, Sides};
-pub use cross::{CrossParams, Multiples, Outcome};
+pub use branch::{Machines, MacroClasses, Plane};
+pub use cross::{CrossParams, Multiples, WidthOutcome};
 pub use gram::Distances;
 pub use grow::{BranchReport, FeatureSample, GrowError, Grown, grow};
 pub use params::TreeParams;
@@ -31,4 +31,4 @@ pub use reduce::centroid_factor;
 pub use sigma::{Algorithm4, Estimate, SigmaRule, Sweep, algorithm4};
 pub use signs::{SignRule, SignVector, sign_vector};
 pub use sphere::{Sphere, enclosing};
-pub use svrm::{MachineParams, Pair, on_boundary, problem, svrdm, svrm};
+pub use svrm::{MachinePair, MachineParams, on_boundary, problem, svrdm, svrm};

@@ -52,7 +52,7 @@ pub fn on_boundary(alpha: &DVector<f64>, params: &MachineParams) -> Vec<bool> {
 
 /// The two machines of a pair.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Pair {
+pub struct MachinePair {
     /// For each machine the weights `±αᵢ` of the samples: `f_j(x) = Σᵢ wᵢ K(xᵢ, x)`.
     pub weights: [DVector<f64>; 2],
     /// By how much the conditions of either problem are missed at most.
@@ -62,7 +62,7 @@ pub struct Pair {
 /// The machine that says at least `T` of side 0 and at most `t` of side 1 (Eq. 3.27), and the one that has it the
 /// other way round (Eq. 3.28; the thesis says that only thresholds change places, which is so once labels do), from
 /// all samples' kernel and their sides.
-pub fn svrdm(kernel: &DMatrix<f64>, sides: &[usize], params: &MachineParams) -> Pair {
+pub fn svrdm(kernel: &DMatrix<f64>, sides: &[usize], params: &MachineParams) -> MachinePair {
     let solutions = [0, 1].map(|side| {
         let qp = problem(kernel, sides, side, params);
         let solution = qp.solve(params.stop);
@@ -72,7 +72,7 @@ pub fn svrdm(kernel: &DMatrix<f64>, sides: &[usize], params: &MachineParams) -> 
         (signed, solution.residual)
     });
     let residual = solutions[0].1.max(solutions[1].1);
-    Pair {
+    MachinePair {
         weights: solutions.map(|(weights, _)| weights),
         residual,
     }

@@ -11,8 +11,8 @@ use crate::labels::Sample;
 use crate::pca::{Moments, Pca};
 use crate::pivots::{PivotMap, PivotSet, pose_rows_of_clip};
 use crate::train::TrainError;
-use crate::train::from_clips::{Labelling, TrainClip};
-use crate::train::set::Source;
+use crate::train::from_clips::{LabelSet, TrainClip};
+use crate::train::set::StreamKind;
 
 use super::SvrdmOptions;
 
@@ -40,7 +40,7 @@ pub struct Background {
 
 /// What training works on.
 #[derive(Debug, Clone)]
-pub struct Material {
+pub struct ThesisTrainingData {
     pub classes: Vec<ClassInfo>,
     pub pivots: PivotSet,
     pub pca: Pca,
@@ -53,9 +53,9 @@ pub struct Material {
 /// Pose rows of every clip, the components of all of them (Eqs. 4.2 and 4.3), the samples of the classes.
 pub fn of_clips(
     clips: &[TrainClip],
-    labelling: &Labelling<'_>,
+    labelling: &LabelSet<'_>,
     options: &SvrdmOptions,
-) -> Result<Material, TrainError> {
+) -> Result<ThesisTrainingData, TrainError> {
     let params = &options.params;
     params.pose.check().map_err(TrainError::Params)?;
     params.stages.check().map_err(TrainError::Params)?;
@@ -82,7 +82,7 @@ pub fn of_clips(
     rows.iter().for_each(|rows| moments.push_rows(rows));
     let pca = Pca::fit(&moments, params.keep).map_err(|e| TrainError::Params(e.to_string()))?;
     let groups = groups(clips);
-    let mut material = Material {
+    let mut material = ThesisTrainingData {
         classes: vec![],
         pivots,
         pca,
@@ -100,13 +100,13 @@ pub fn of_clips(
     Ok(material)
 }
 
-impl Material {
+impl ThesisTrainingData {
     fn add(
         &mut self,
         clip: &TrainClip,
         rows: Rows,
         group: usize,
-        labelling: &Labelling<'_>,
+        labelling: &LabelSet<'_>,
         options: &SvrdmOptions,
     ) {
         let of_clip = |s: &&Sample| s.clip == clip.name;
@@ -134,13 +134,13 @@ impl Material {
             whole |= sample.whole_clip;
             known.push(frames(sample, rate_hz, rows.len()));
         }
-        let unlabelled = clip.source == Source::Labelled;
+        let unlabelled = clip.source == StreamKind::Labelled;
         let serves = match clip.source {
-            Source::Labelled => {
+            StreamKind::Labelled => {
                 options.unlabelled_is_background && labelling.unlabelled_is_background && !whole
             }
-            Source::Background => true,
-            Source::Everyday => false,
+            StreamKind::Background => true,
+            StreamKind::Everyday => false,
         };
         if serves {
             self.background.push(Background {
@@ -174,7 +174,7 @@ fn groups(clips: &[TrainClip]) -> Vec<usize> {
         .collect()
 }
 
-fn classes(labelling: &Labelling<'_>) -> Vec<ClassInfo> {
+fn classes(labelling: &LabelSet<'_>) -> Vec<ClassInfo> {
     let info = |name: &String| {
         let of_class: Vec<&Sample> = labelling
             .samples

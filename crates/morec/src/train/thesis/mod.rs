@@ -15,7 +15,7 @@ pub use thresholds::{Estimated, ThresholdRule};
 use crate::progress::Progress;
 use crate::svrdm::SvrdmModel;
 
-use super::from_clips::{Labelling, TrainClip};
+use super::from_clips::{LabelSet, TrainClip};
 use super::report::TrainingReport;
 use super::templates::TrainError;
 
@@ -25,7 +25,7 @@ use super::templates::TrainError;
 /// background here.
 pub fn train_svrdm(
     clips: &[TrainClip],
-    labelling: &Labelling<'_>,
+    labelling: &LabelSet<'_>,
     options: &SvrdmOptions,
     progress: &dyn Progress,
 ) -> Result<(SvrdmModel, TrainingReport), TrainError> {

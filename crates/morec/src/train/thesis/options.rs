@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::pca::Keep;
+use crate::pca::ComponentCount;
 use crate::pivots::{PivotSet, PoseParams};
-use crate::svrdm::{Centring, Comparison, Descent, Scaling, SvrdmParams};
+use crate::svrdm::{Centring, Descent, Scaling, SegmentDistance, SvrdmParams};
 use crate::train::svrdm::{SigmaRule, SignRule, TreeParams};
 
 use super::thresholds::ThresholdRule;
@@ -38,7 +38,7 @@ pub struct SvrdmTrainParams {
     /// How rows are made of poses.
     pub pose: PoseParams,
     /// How many principal components are kept: 16 (thesis, §4.2).
-    pub keep: Keep,
+    pub keep: ComponentCount,
     /// How the stages work; training describes its samples the same way.
     pub stages: SvrdmParams,
     /// How sign vectors are found.
@@ -56,7 +56,7 @@ impl SvrdmTrainParams {
         Self {
             pivots: Pivots::Thesis,
             pose: PoseParams::default(),
-            keep: Keep::Dims(16),
+            keep: ComponentCount::Dims(16),
             stages: SvrdmParams::default(),
             sign: SignRule::Centred,
             tree: TreeParams::default(),
@@ -77,7 +77,7 @@ impl SvrdmTrainParams {
                 centring: Centring::Segment,
                 accept: 0.8,
                 descent: Descent::Larger,
-                comparison: Comparison::Rows { every: 4 },
+                comparison: SegmentDistance::Rows { every: 4 },
                 tolerance: 0.7,
                 min_confidence: 0.5,
                 wait_chunks: 4,

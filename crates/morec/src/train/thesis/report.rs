@@ -11,7 +11,7 @@ use crate::train::report::class_notes;
 use crate::train::svrdm::BranchReport;
 
 use super::fit::Fitted;
-use super::material::Material;
+use super::material::ThesisTrainingData;
 use super::thresholds::Estimated;
 
 /// Vectors whose product with their sign vector is below this are close to being turned round.
@@ -39,7 +39,7 @@ pub struct SvrdmReport {
 }
 
 pub(super) fn of(
-    material: &Material,
+    material: &ThesisTrainingData,
     fitted: &Fitted,
     model: &SvrdmModel,
     estimated: Option<Estimated>,

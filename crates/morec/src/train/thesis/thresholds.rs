@@ -15,7 +15,7 @@ use crate::train::TrainError;
 use crate::train::set::overlap_share;
 
 use super::fit::fit;
-use super::material::{Background, Material};
+use super::material::{Background, ThesisTrainingData};
 use super::{SvrdmTrainParams, ThesisSample};
 
 /// `T` is not below this: outputs between the sides of a branch are about `t = 0.4`.
@@ -80,7 +80,7 @@ impl Estimated {
 }
 
 /// How one left-out sample came through.
-struct Judged {
+struct LeftOutResult {
     right: bool,
     /// Least output on its way down the tree.
     output: f64,
@@ -89,7 +89,7 @@ struct Judged {
 
 /// Estimates both thresholds. Trains `folds` times, then plays all background through the model.
 pub(super) fn estimate(
-    material: &Material,
+    material: &ThesisTrainingData,
     model: &SvrdmModel,
     params: &SvrdmTrainParams,
     folds: usize,
@@ -184,11 +184,11 @@ fn dealt(samples: &[ThesisSample], folds: usize) -> Vec<Option<usize>> {
 
 /// Trains without one fold and puts its samples through.
 fn judge_fold(
-    material: &Material,
+    material: &ThesisTrainingData,
     params: &SvrdmTrainParams,
     places: &[Option<usize>],
     fold: usize,
-) -> Result<Vec<Judged>, TrainError> {
+) -> Result<Vec<LeftOutResult>, TrainError> {
     let (mut out, mut taught) = (vec![], vec![]);
     for (sample, place) in material.samples.iter().zip(places) {
         if *place == Some(fold) {
@@ -204,7 +204,7 @@ fn judge_fold(
     let mut classifier = SampleClassifier::new(&model).map_err(TrainError::Svrdm)?;
     let judge = |sample: &ThesisSample| {
         let found = classifier.classify(&sample.rows)?;
-        Some(Judged {
+        Some(LeftOutResult {
             right: found.class == sample.class,
             output: found.output,
             confidence: found.confidence,

@@ -5,7 +5,7 @@ use morec::decode::DecodeParams;
 use morec::features::FeatureParams;
 use morec::segment::{CycleParams, KernelParams, PpcaParams, StillParams};
 use morec::smooth::SmoothParams;
-use morec::templates::EarlyParams;
+use morec::templates::EarlyDetectionParams;
 use morec::train::TrainParams;
 use morec::train::thesis::SvrdmTrainParams;
 
@@ -54,12 +54,12 @@ fn templates() -> Vec<Group> {
             ],
         },
         Group {
-            intro: "### Tentative events (`EarlyParams`)\n\nThese are not stored in the index and cannot be set with \
+            intro: "### Tentative events (`EarlyDetectionParams`)\n\nThese are not stored in the index and cannot be set with \
                     `--param`. Chosen with `examples/early.rs` on referee signals.",
             source: include_str!("../../../src/templates/early.rs"),
             name: "EarlyParams",
             prefix: "EarlyParams.",
-            values: vec![("default", printed(&EarlyParams::default()))],
+            values: vec![("default", printed(&EarlyDetectionParams::default()))],
         },
     ]
 }

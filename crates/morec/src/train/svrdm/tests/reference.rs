@@ -5,7 +5,7 @@ use serde::Deserialize;
 
 use super::super::*;
 use crate::classes::ClassId;
-use crate::svrdm::{Candidates, Descent, Node};
+use crate::svrdm::{ClassCandidates, Descent, Node};
 
 type Rows = Vec<Vec<f64>>;
 
@@ -226,7 +226,7 @@ fn trees_decide_as_those_of_the_prototype() {
         let mut expected = case.root.clone();
         expected.sort();
         assert_eq!(parted, expected, "tree {number}");
-        let mut out = Candidates::default();
+        let mut out = ClassCandidates::default();
         for (at, (probe, named)) in case.probes.iter().zip(&case.named).enumerate() {
             tree.descend(probe, 0.92, Descent::Larger, &mut out);
             assert_eq!(

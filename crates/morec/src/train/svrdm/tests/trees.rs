@@ -1,7 +1,7 @@
 use super::super::*;
 use super::cloud;
 use crate::classes::ClassId;
-use crate::svrdm::{Candidates, Descent, Tree};
+use crate::svrdm::{ClassCandidates, Descent, Tree};
 use crate::synth::Rng;
 
 /// Three people's samples of classes in clouds of their own, people a little apart.
@@ -22,7 +22,7 @@ fn samples(classes: u16, each: usize, dim: usize) -> Vec<FeatureSample> {
 }
 
 fn named(tree: &Tree, vector: &[f64]) -> Option<ClassId> {
-    let mut out = Candidates::default();
+    let mut out = ClassCandidates::default();
     tree.descend(vector, 0.92, Descent::Larger, &mut out);
     out.first().map(|c| c.class)
 }
