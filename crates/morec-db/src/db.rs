@@ -275,6 +275,20 @@ impl MotionDb {
         Ok(lines)
     }
 
+    /// Lets the file grow to so many bytes at most, until it is closed; what is there already stays. What needs more fails as on a
+    /// full disk, with [`DbError::Full`].
+    pub fn limit_bytes(&mut self, bytes: u64) -> Result<(), DbError> {
+        let page: i64 = self
+            .conn
+            .pragma_query_value(None, "page_size", |row| row.get(0))?;
+        // SQLite takes a limit below what is there for what is there.
+        let pages = (bytes / page.max(1) as u64).clamp(1, i64::MAX as u64) as i64;
+        let set = |row: &rusqlite::Row<'_>| row.get::<_, i64>(0);
+        self.conn
+            .pragma_update_and_check(None, "max_page_count", pages, set)?;
+        Ok(())
+    }
+
     /// Gives room that is no longer used back to the disk; `caches` too drops what can be made again.
     pub fn vacuum(&mut self, caches: bool) -> Result<(), DbError> {
         if caches {

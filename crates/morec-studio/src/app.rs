@@ -74,7 +74,14 @@ impl Studio {
     }
 }
 
+/// Under which name the layout is remembered.
+pub const LAYOUT: &str = "layout";
+
 impl eframe::App for Studio {
+    fn save(&mut self, storage: &mut dyn eframe::Storage) {
+        eframe::set_value(storage, LAYOUT, &self.state.layout());
+    }
+
     fn update(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
         self.frame(ctx);
     }

@@ -3,6 +3,8 @@
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, channel};
 
+use morec_db::exchange::LabelFormat;
+
 use crate::state::{Ask, Command, FileCommand};
 
 /// Dialogs that are open.
@@ -62,6 +64,28 @@ fn answered(ask: Ask) -> Option<Command> {
                 .set_file_name("studio.index")
                 .save_file()?,
         ),
+        Ask::ExportLabels(form) if form.is_of_one_clip() => {
+            let dialog = rfd::FileDialog::new().set_title("A folder for the labels of each clip");
+            FileCommand::ExportLabels(form, dialog.pick_folder()?)
+        }
+        Ask::ExportLabels(form) => {
+            let ending = match form {
+                LabelFormat::Tsv => "tsv",
+                LabelFormat::Csv => "csv",
+                _ => "json",
+            };
+            let dialog = rfd::FileDialog::new().add_filter("labels", &[ending]);
+            let name = format!("labels.{ending}");
+            FileCommand::ExportLabels(form, dialog.set_file_name(name).save_file()?)
+        }
+        Ask::ExportClip(name) => {
+            let dialog = rfd::FileDialog::new().add_filter("BVH", &["bvh"]);
+            FileCommand::ExportClip(dialog.set_file_name(format!("{name}.bvh")).save_file()?)
+        }
+        Ask::ExportPage(name) => {
+            let dialog = rfd::FileDialog::new().add_filter("pages", &["html"]);
+            FileCommand::ExportPage(dialog.set_file_name(format!("{name}.html")).save_file()?)
+        }
     };
     Some(Command::File(file))
 }

@@ -3,8 +3,8 @@
 use egui::{Key, Modifiers};
 
 use crate::state::{
-    ClassCommand, Command, FileCommand, Grip, LiveCommand, Panel, PlayCommand, State,
-    TimelineCommand, TrainCommand,
+    ClassCommand, Command, CompareCommand, FileCommand, Grip, LiveCommand, Panel, PlayCommand,
+    SimilarCommand, State, TimelineCommand, TrainCommand,
 };
 use crate::store::Edit;
 
@@ -46,6 +46,7 @@ pub const HELP: &[(&str, &str, &str)] = &[
     ("Playing", "Shift ← →", "a second back, a second on"),
     ("Playing", "Home, End", "to the beginning, to the end"),
     ("Playing", "O", "loop the selected stretch or label"),
+    ("Playing", "I", "stay inside the segment between the cuts"),
     ("Labels", "1 … 9 held", "label what passes while playing"),
     (
         "Labels",
@@ -74,6 +75,12 @@ pub const HELP: &[(&str, &str, &str)] = &[
         "accept, reject; the next doubtful one is shown",
     ),
     ("Proposals", "N", "the next doubtful one"),
+    (
+        "Searching",
+        "F, C",
+        "more like the selection, the nearest of it beside the performer",
+    ),
+    ("Cuts", "Delete", "remove the selected cut"),
     ("Timeline", "+  −  0", "zoom in, zoom out, the whole clip"),
     (
         "Live",
@@ -174,6 +181,12 @@ fn playing(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
             None => stretch,
         }));
     }
+    if i.consume_key(Modifiers::NONE, Key::I) {
+        play(PlayCommand::Loop(match state.player.looped {
+            Some(_) => None,
+            None => Some(state.segment()),
+        }));
+    }
     let nudge = |grip, by| Command::Timeline(TimelineCommand::Nudge(grip, by));
     for (key, way) in [(Key::ArrowLeft, -1), (Key::ArrowRight, 1)] {
         if i.consume_key(Modifiers::ALT | Modifiers::SHIFT, key) {
@@ -220,6 +233,12 @@ fn labels(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
         if i.consume_key(Modifiers::NONE, key) {
             out.push(Command::Timeline(command));
         }
+    }
+    if i.consume_key(Modifiers::NONE, Key::F) {
+        out.push(Command::Similar(SimilarCommand::OfSelection));
+    }
+    if i.consume_key(Modifiers::NONE, Key::C) {
+        out.push(Command::Compare(CompareCommand::Nearest));
     }
     let selected = state.selected();
     let proposed = selected

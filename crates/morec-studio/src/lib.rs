@@ -17,6 +17,7 @@ mod screenshot;
 mod sources;
 mod state;
 mod store;
+mod stretch;
 #[cfg(test)]
 mod tests;
 mod theme;

@@ -56,6 +56,7 @@ pub fn frame_times(load: &Load) -> Result<Vec<FrameTimes>, String> {
         ("library", Panel::Library, None),
         ("timeline, the whole clip", Panel::Label, Some(whole)),
         ("timeline, twenty seconds", Panel::Label, Some(near)),
+        ("classes", Panel::Classes, None),
     ] {
         window.command(Command::Show(panel));
         if let Some(timeline) = timeline {
@@ -68,6 +69,14 @@ pub fn frame_times(load: &Load) -> Result<Vec<FrameTimes>, String> {
         window.command(Command::Play(PlayCommand::Pause));
     }
     Ok(scenes)
+}
+
+/// How long it takes from the start to the first frame with a database, wall-clock seconds.
+pub fn first_frame_secs(database: &std::path::Path) -> f64 {
+    let begun = Instant::now();
+    let mut window = Headless::new(&[database.to_owned()], [1400, 860], true);
+    window.tessellated();
+    begun.elapsed().as_secs_f64()
 }
 
 fn measured(window: &mut Headless, scene: &'static str, frames: usize) -> FrameTimes {

@@ -10,7 +10,8 @@ use crate::app::Studio;
 use crate::jobs::load::ClipMotion;
 use crate::raster::{self, Textures};
 use crate::state::{
-    ClassCommand, Command, LibraryCommand, LiveCommand, Panel, PlayCommand, State, TrainCommand,
+    ClassCommand, Command, CompareCommand, LibraryCommand, LiveCommand, Panel, PlayCommand,
+    SimilarCommand, State, TimelineCommand, TrainCommand,
 };
 use crate::store::Store;
 
@@ -21,6 +22,8 @@ pub struct Shot {
     /// The clip that is shown; the first, if none is named.
     pub clip: Option<String>,
     pub at_secs: f64,
+    /// What is like the clip's first label of this class is searched for, and the nearest stands beside it.
+    pub like: Option<String>,
     pub size: [usize; 2],
     pub dark: bool,
 }
@@ -160,6 +163,9 @@ pub fn draw(paths: &[PathBuf], shot: &Shot) -> Result<ColorImage, String> {
         window.command(Command::Library(LibraryCommand::Open(id)));
     }
     prepare(&mut window, shot);
+    if let Some(class) = &shot.like {
+        search(&mut window, class)?;
+    }
     Ok(window.picture())
 }
 
@@ -174,6 +180,7 @@ fn prepare(window: &mut Headless, shot: &Shot) {
         .as_ref()
         .is_some_and(|s| s.snapshot.accepted().next().is_some());
     match shot.panel {
+        Panel::Library => window.command(Command::Library(LibraryCommand::Strips(true))),
         Panel::Label if has_labels => {
             window.command(Command::Train(TrainCommand::Train));
         }
@@ -200,6 +207,30 @@ fn prepare(window: &mut Headless, shot: &Shot) {
     window.settle();
     window.frame(1.0);
     window.settle();
+}
+
+/// Searches for what is like the first label of a class, and puts the nearest beside it, in the middle of both.
+fn search(window: &mut Headless, class: &str) -> Result<(), String> {
+    let state = &window.studio.state;
+    let labels = state.shown_samples().iter();
+    let Some(label) = labels.clone().find(|s| s.class == class).cloned() else {
+        return Err(format!("the clip has no label of {class}"));
+    };
+    window.command(Command::Timeline(TimelineCommand::Select {
+        id: Some(label.id),
+        add: false,
+    }));
+    window.command(Command::Similar(SimilarCommand::OfSelection));
+    window.settle();
+    window.command(Command::Compare(CompareCommand::Nearest));
+    window.settle();
+    window.command(Command::Play(PlayCommand::Pause));
+    let middle = 0.5 * (label.start_secs + label.stop_secs);
+    window.command(Command::Play(PlayCommand::Seek(middle)));
+    window.settle();
+    window.frame(1.0);
+    window.settle();
+    Ok(())
 }
 
 /// Writes a picture as PNG.

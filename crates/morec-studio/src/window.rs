@@ -5,9 +5,10 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use crate::app::Studio;
+use crate::app::{LAYOUT, Studio};
 use crate::screenshot::{self, Shot};
 use crate::state::Panel;
+use crate::state::layout::Layout;
 
 /// See motions, cut them, sort them, teach them, watch them recognised
 ///
@@ -29,9 +30,9 @@ pub struct Args {
     /// Draw a panel into this file and end; needs no display
     #[arg(long, value_name = "FILE.png")]
     screenshot: Option<PathBuf>,
-    /// The panel that is shown: library, label, classes, train or live
-    #[arg(long, value_name = "NAME", default_value = "library", value_parser = panel)]
-    panel: Panel,
+    /// The panel that is shown: library, label, classes, train or live [default: library, or that of the last session]
+    #[arg(long, value_name = "NAME", value_parser = panel)]
+    panel: Option<Panel>,
     /// The clip that is shown in a screenshot
     #[arg(long, value_name = "CLIP", requires = "screenshot")]
     clip: Option<String>,
@@ -43,6 +44,9 @@ pub struct Args {
         requires = "screenshot"
     )]
     at: f64,
+    /// Show in a screenshot what is like the clip's first label of this class, the nearest beside it
+    #[arg(long, value_name = "CLASS", requires = "screenshot")]
+    like: Option<String>,
     /// Width and height of a screenshot, pixels
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size, requires = "screenshot")]
     size: (usize, usize),
@@ -83,9 +87,10 @@ pub fn run(args: &Args) -> ExitCode {
 
 fn picture(args: &Args, path: &std::path::Path) -> Result<(), String> {
     let shot = Shot {
-        panel: args.panel,
+        panel: args.panel.unwrap_or(Panel::Library),
         clip: args.clip.clone(),
         at_secs: args.at,
+        like: args.like.clone(),
         size: [args.size.0, args.size.1],
         dark: !args.light,
     };
@@ -106,9 +111,17 @@ fn window(args: &Args) -> Result<(), String> {
     };
     let (paths, light, panel) = (args.paths.clone(), args.light, args.panel);
     let make = move |cc: &eframe::CreationContext<'_>| {
+        let layout: Option<Layout> = cc.storage.and_then(|s| eframe::get_value(s, LAYOUT));
         let mut studio = Studio::new(&cc.egui_ctx, &paths);
-        studio.state.dark = !light;
-        studio.state.panel = panel;
+        if let Some(layout) = &layout {
+            studio.state.lay_out(layout);
+            studio.state.show_again(layout);
+        }
+        // What is typed counts more than what is remembered.
+        studio.state.dark &= !light;
+        if let Some(panel) = panel {
+            studio.state.panel = panel;
+        }
         Ok(Box::new(studio) as Box<dyn eframe::App>)
     };
     eframe::run_native("morec-studio", options, Box::new(make)).map_err(|error| {

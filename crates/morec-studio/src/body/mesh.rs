@@ -17,6 +17,19 @@ pub struct BodyColours {
     pub shadow: Color32,
 }
 
+impl BodyColours {
+    /// All colours brought so far towards another.
+    pub fn mixed(self, colour: Color32, share: f32) -> Self {
+        let towards = |own: Color32| own.lerp_to_gamma(colour, share);
+        Self {
+            left: towards(self.left),
+            right: towards(self.right),
+            middle: towards(self.middle),
+            shadow: self.shadow,
+        }
+    }
+}
+
 /// Corners of a limb's ring.
 const AROUND: usize = 14;
 /// Rings of the rounding at each end.

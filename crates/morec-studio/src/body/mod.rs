@@ -1,6 +1,7 @@
 //! A performer as limbs: which joints a limb joins, how thick it is, which side it belongs to.
 
 pub mod camera;
+pub mod companion;
 pub mod mesh;
 pub mod strip;
 

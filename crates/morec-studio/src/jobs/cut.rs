@@ -15,6 +15,7 @@ use morec_db::{ClipFilter, ClipId, ClipInfo, MotionDb, Segment, SegmentKind};
 
 use super::load::ClipMotion;
 use super::{JobOutcome, JobProgress};
+use crate::state::cuts::BY_HAND;
 
 /// A method of segmentation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -40,6 +41,8 @@ impl SegmentMethod {
 pub struct CutSummary {
     pub clips: usize,
     pub segments: usize,
+    /// Clips that somebody has cut by hand, which are left as they are.
+    pub by_hand: usize,
     /// Clips that could not be cut, with the reason.
     pub left: Vec<(String, String)>,
 }
@@ -86,10 +89,12 @@ fn cut_all(
     let mut db = MotionDb::open(path)?;
     let rows = db.rows(&FeatureParams::default(), progress)?;
     let clips = db.clips(&ClipFilter::default())?;
-    let clips: Vec<&ClipInfo> = clips
+    let methods = db.cut_methods()?;
+    let by_hand = |c: &ClipInfo| methods.get(&c.id).is_some_and(|m| m == BY_HAND);
+    let (kept, clips): (Vec<&ClipInfo>, Vec<&ClipInfo>) = clips
         .iter()
         .filter(|c| only.is_empty() || only.contains(&c.id))
-        .collect();
+        .partition(|c| by_hand(c));
     let (mut done, mut segments, mut left) = (Vec::new(), Vec::new(), Vec::new());
     for (number, clip) in clips.iter().enumerate() {
         if progress.cancelled() {
@@ -118,6 +123,7 @@ fn cut_all(
     let motions = |s: &&Segment| s.kind == SegmentKind::Motion;
     Ok(Some(CutSummary {
         clips: done.len(),
+        by_hand: kept.len(),
         segments: segments.iter().filter(motions).count(),
         left,
     }))

@@ -1,12 +1,15 @@
 //! Files into the database.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use morec::files::{FileReader, list};
 use morec::progress::Progress;
-use morec_db::{ClipUpdate, ImportOutcome, MotionDb};
+use morec_db::search::{SearchIndex, near_copies_of};
+use morec_db::{ClipFilter, ClipId, ClipUpdate, DbError, ImportLog, ImportOutcome, MotionDb};
 
 use super::{JobOutcome, JobProgress};
+use crate::stretch::Stretch;
 
 /// What became of an import.
 #[derive(Debug, Clone, Default)]
@@ -19,7 +22,19 @@ pub struct ImportSummary {
     pub refused: Vec<(PathBuf, String)>,
     /// What was repaired or looks wrong, with its file.
     pub warnings: Vec<(PathBuf, String)>,
+    /// Clips that are nearly others.
+    pub copies: Vec<Copy>,
     pub cancelled: bool,
+}
+
+/// A clip that has come and is nearly another.
+#[derive(Debug, Clone)]
+pub struct Copy {
+    pub copy: Stretch,
+    pub of: Stretch,
+    pub mirrored: bool,
+    /// In a sentence.
+    pub text: String,
 }
 
 impl ImportSummary {
@@ -31,6 +46,9 @@ impl ImportSummary {
         }
         if !self.refused.is_empty() {
             parts.push(format!("{} refused", self.refused.len()));
+        }
+        if !self.copies.is_empty() {
+            parts.push(format!("{} nearly the same as others", self.copies.len()));
         }
         if self.cancelled {
             parts.push("stopped before the end".to_owned());
@@ -62,10 +80,16 @@ pub fn import(db: &Path, paths: &[PathBuf], progress: &JobProgress) -> JobOutcom
         }
     }
     let (reader, about) = (FileReader::default(), ClipUpdate::default());
-    let imported =
-        MotionDb::open(db).and_then(|mut db| db.import(&clips, &reader, &about, progress));
+    let imported = MotionDb::open(db).and_then(|mut db| {
+        let done = db.import(&clips, &reader, &about, progress)?;
+        let copies = copies(&mut db, &done, progress)?;
+        Ok((done, copies))
+    });
     let done = match imported {
-        Ok(done) => done,
+        Ok((done, copies)) => {
+            report.copies = copies;
+            done
+        }
         Err(error) => return JobOutcome::Failed(format!("Import stopped: {error}")),
     };
     report.cancelled = done.cancelled || progress.cancelled();
@@ -81,4 +105,60 @@ pub fn import(db: &Path, paths: &[PathBuf], progress: &JobProgress) -> JobOutcom
         }
     }
     JobOutcome::Imported(report)
+}
+
+/// Which of the clips that have just come are nearly others, that somebody may leave one of the two out.
+fn copies(
+    db: &mut MotionDb,
+    done: &ImportLog,
+    progress: &JobProgress,
+) -> Result<Vec<Copy>, DbError> {
+    let names: BTreeSet<&String> = done
+        .files
+        .iter()
+        .filter_map(|(_, outcome)| match outcome {
+            ImportOutcome::Imported { clips, .. } => Some(clips),
+            _ => None,
+        })
+        .flatten()
+        .collect();
+    if names.is_empty() || done.cancelled {
+        return Ok(Vec::new());
+    }
+    progress.report("looking for near copies", 0, 0);
+    let clips = db.clips(&ClipFilter::default())?;
+    let new: BTreeSet<ClipId> = clips
+        .iter()
+        .filter(|c| names.contains(&c.name))
+        .map(|c| c.id)
+        .collect();
+    let by_id: BTreeMap<ClipId, _> = clips.iter().map(|c| (c.id, c)).collect();
+    let index = match SearchIndex::of_db(db, progress) {
+        // What was imported is there, whatever is not known of it.
+        Err(DbError::Cancelled) => return Ok(Vec::new()),
+        index => index?,
+    };
+    let found = near_copies_of(&index, &new).into_iter();
+    let copies = found.filter_map(|pair| {
+        let (of, copy) = (by_id.get(&pair.of)?, by_id.get(&pair.copy)?);
+        let how = match pair.mirrored {
+            true => "nearly the mirror image of",
+            false => "nearly the same as",
+        };
+        Some(Copy {
+            text: format!("{} is {how} {}", copy.name, of.name),
+            copy: Stretch {
+                clip: copy.id,
+                start_secs: 0.0,
+                stop_secs: copy.duration_secs(),
+            },
+            of: Stretch {
+                clip: of.id,
+                start_secs: pair.start_secs,
+                stop_secs: pair.stop_secs,
+            },
+            mirrored: pair.mirrored,
+        })
+    });
+    Ok(copies.collect())
 }

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use morec::crossval::{CrossvalData as Tested, CrossvalError, CrossvalOptions, FoldBy, crossval};
 use morec::eval::{Evaluation, FoundVerdict, Timeline, TruthVerdict, timelines};
+use morec::explain::Miss;
 use morec::train::TrainError;
 
 use super::{JobOutcome, JobProgress, train};
@@ -13,6 +14,8 @@ use super::{JobOutcome, JobProgress, train};
 pub struct CrossvalResult {
     pub evaluation: Evaluation,
     pub timelines: Vec<Timeline>,
+    /// Why labels were missed.
+    pub misses: Vec<Miss>,
     /// What was left out in turn: "each person", "each clip", "half of the labels".
     pub by: &'static str,
 }
@@ -27,6 +30,8 @@ pub struct Moment {
     pub truth: Option<String>,
     /// What was recognised there, if anything.
     pub found: Option<String>,
+    /// Why it was missed, if it was and that is known.
+    pub why: Option<String>,
 }
 
 impl Moment {
@@ -54,6 +59,7 @@ impl CrossvalResult {
                     stop_secs: truth.stop_secs,
                     truth: Some(truth.class.clone()),
                     found,
+                    why: self.why(&timeline.stream.clip, &truth.class, truth.start_secs),
                 });
             }
             let alarms = timeline
@@ -66,9 +72,24 @@ impl CrossvalResult {
                 stop_secs: found.stop_secs,
                 truth: None,
                 found: Some(found.class.clone()),
+                why: None,
             }));
         }
         moments
+    }
+
+    fn why(&self, stream: &str, class: &str, start_secs: f64) -> Option<String> {
+        let same = |m: &&Miss| {
+            m.clip == stream && m.class == class && (m.start_secs - start_secs).abs() < 1e-6
+        };
+        let miss = self.misses.iter().find(same)?;
+        Some(match miss.sensitivity {
+            Some(alarms) => format!(
+                "{}; at {alarms:.2} false alarms a minute it would have been near enough",
+                miss.reason
+            ),
+            None => miss.reason.to_string(),
+        })
     }
 }
 
@@ -129,6 +150,7 @@ fn judged(
     let (streams, truths, founds) = (&outcome.streams, &outcome.truths, &outcome.founds);
     let said_of = |e: morec::eval::EvalError| Some(format!("Not judged: {e}"));
     Ok(CrossvalResult {
+        misses: outcome.misses.clone(),
         evaluation: Evaluation::of(streams, truths, founds).map_err(said_of)?,
         timelines: timelines(streams, truths, founds).map_err(said_of)?,
         by: said,

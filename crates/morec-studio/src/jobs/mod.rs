@@ -1,14 +1,19 @@
 //! Long work on threads of its own: with progress, cancelled when told to, its outcome collected frame by frame.
 
+pub mod align;
+pub mod channel;
 pub mod cut;
 pub mod example;
+pub mod export;
 pub mod group;
 pub mod import;
 pub mod judge;
 pub mod load;
 pub mod propose;
 pub mod recognise;
+pub mod similar;
 pub mod teach;
+pub mod thesis;
 pub mod train;
 
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -76,6 +81,14 @@ pub enum JobOutcome {
     },
     /// What would have been recognised at another sensitivity.
     Resensed(Vec<morec::live::Detection>),
+    Similar(similar::Similar),
+    Aligned(Arc<align::Aligned>),
+    Channel(channel::Channel),
+    /// The method of 2009, trained.
+    Thesis(Arc<thesis::Thesis>),
+    Map(thesis::Map),
+    /// A file was written: what to say of it.
+    Written(String),
     /// An example, or clips that were named, lie in a database of this path now.
     Made(std::path::PathBuf),
     /// It could not be done, and why.

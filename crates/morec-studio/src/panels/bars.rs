@@ -2,6 +2,8 @@
 
 use egui::{Align, Button, Context, Frame, Layout, Margin, RichText, TopBottomPanel, Ui, Vec2};
 
+use morec_db::exchange::LabelFormat;
+
 use super::Out;
 use crate::state::{Command, FileCommand, Panel, State};
 use crate::store::Edit;
@@ -58,15 +60,54 @@ fn file_menu(ui: &mut Ui, state: &State, out: Out) {
         );
         ui.separator();
         item(ui, "Save a copy as …", "Ctrl S", open, FileCommand::AskSave);
+        if let Some(last) = state.last.as_ref().filter(|p| p.exists()) {
+            let text = format!("Open {} again", crate::format::file_name(last));
+            item(ui, &text, "", true, FileCommand::Open(last.clone()));
+        }
+        ui.separator();
+        let shown = state.player.motion.is_some();
+        let clip = FileCommand::AskExportClip;
+        item(ui, "Export this clip …", "", open && shown, clip);
+        let page = FileCommand::AskExportPage;
+        item(ui, "A page of it to send …", "", open && shown, page);
+        ui.add_enabled_ui(open, |ui| {
+            ui.menu_button("Export labels", |ui| {
+                for form in LabelFormat::ALL {
+                    if ui.button(form_name(form)).clicked() {
+                        out.push(Command::File(FileCommand::AskExportLabels(form)));
+                        ui.close();
+                    }
+                }
+            });
+        });
+        let mut item = |ui: &mut Ui, text: &str, on: bool, command: FileCommand| {
+            let button = Button::new(text).min_size(Vec2::new(220.0, 24.0));
+            if ui.add_enabled(on, button).clicked() {
+                out.push(Command::File(command));
+                ui.close();
+            }
+        };
         let trained = !state.train.bytes.is_empty();
         item(
             ui,
             "Export the index …",
-            "",
             trained,
             FileCommand::AskExportIndex,
         );
     });
+}
+
+/// A form of labels as people know it.
+fn form_name(form: LabelFormat) -> &'static str {
+    match form {
+        LabelFormat::Tsv => "Table (TSV) …",
+        LabelFormat::Csv => "Table (CSV) …",
+        LabelFormat::Json => "JSON …",
+        LabelFormat::Eaf => "ELAN, a file for each clip …",
+        LabelFormat::Audacity => "Audacity, a file for each clip …",
+        LabelFormat::Babel => "BABEL …",
+        LabelFormat::LabelStudio => "Label Studio …",
+    }
 }
 
 fn tab(ui: &mut Ui, state: &State, panel: Panel, out: Out) {

@@ -1,22 +1,19 @@
 //! Classes side by side, each with strips of its samples; segments are dragged from one to another.
 
 use egui::{
-    Button, CentralPanel, Context, DragAndDrop, Frame, Margin, Rect, RichText, ScrollArea, Sense,
-    SidePanel, Ui, Vec2, WidgetType,
+    CentralPanel, Context, DragAndDrop, Frame, Margin, Rect, RichText, ScrollArea, SidePanel, Ui,
+    Vec2, WidgetType,
 };
 use morec_db::ClipId;
 use morec_db::labels::{DbSample, SampleId, SampleState as Judged};
 
-use super::{Out, groups, padded, player, strips, view, widgets};
+use super::{Out, card, groups, label, padded, player, similar, view, widgets};
 use crate::format;
-use crate::state::{ClassCommand, Command, LibraryCommand, Panel, State};
+use crate::state::{ClassCommand, Command, LibraryCommand, State};
 use crate::theme::Colours;
 
-const COLUMN: f32 = 214.0;
+pub(super) const COLUMN: f32 = 214.0;
 pub(super) const STRIP: f32 = 62.0;
-const CARD: f32 = STRIP + 24.0;
-/// Room for the answers to a proposal.
-const ANSWERS: f32 = 46.0;
 
 pub fn show(ctx: &Context, state: &State, out: Out) {
     let c = Colours::of(state.dark);
@@ -38,9 +35,10 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
     CentralPanel::default().frame(padded(&c)).show(ctx, |ui| {
         tools(ui, state, out);
         ui.add_space(4.0);
-        match &state.classes.groups {
-            Some(_) => groups::show(ui, state, out),
-            None => columns(ui, state, out),
+        match (&state.classes.similar, &state.classes.groups) {
+            (Some(found), _) => similar::show(ui, state, found, out),
+            (None, Some(_)) => groups::show(ui, state, out),
+            (None, None) => columns(ui, state, out),
         }
     });
 }
@@ -48,6 +46,10 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
 fn tools(ui: &mut Ui, state: &State, out: Out) {
     let c = Colours::now(ui);
     ui.horizontal_wrapped(|ui| {
+        if let Some(found) = &state.classes.similar {
+            similar::tools(ui, state, found, out);
+            return;
+        }
         let mut class = |command| out.push(Command::Classes(command));
         if let Some(groups) = &state.classes.groups {
             ui.label(RichText::new("Groups").strong());
@@ -121,12 +123,9 @@ fn columns(ui: &mut Ui, state: &State, out: Out) {
     ScrollArea::horizontal().auto_shrink(false).show(ui, |ui| {
         ui.horizontal_top(|ui| {
             for (place, class) in state.classes.order.iter().enumerate() {
-                let samples: Vec<&DbSample> = store
-                    .snapshot
-                    .samples
-                    .iter()
-                    .filter(|s| s.class == *class && s.state != Judged::Rejected)
-                    .collect();
+                let all = &store.snapshot.samples;
+                let places = state.classes.columns.column(class).iter();
+                let samples: Vec<&DbSample> = places.filter_map(|&at| all.get(at)).collect();
                 column(ui, state, place, class, samples, height - 14.0, out);
             }
         });
@@ -138,19 +137,11 @@ fn column(
     state: &State,
     place: usize,
     class: &str,
-    mut samples: Vec<&DbSample>,
+    samples: Vec<&DbSample>,
     height: f32,
     out: Out,
 ) {
     let c = Colours::now(ui);
-    // What is to be looked at first, the likeliest of it first.
-    let order = |s: &&DbSample| {
-        (
-            s.state != Judged::Proposed,
-            -(s.score.unwrap_or(0.0) * 1e6) as i64,
-        )
-    };
-    samples.sort_by_key(order);
     let frame = Frame::new()
         .fill(c.ground)
         .corner_radius(6.0)
@@ -179,9 +170,9 @@ fn column(
             ScrollArea::vertical()
                 .id_salt(class)
                 .auto_shrink(false)
-                .show_rows(ui, CARD - 6.0, samples.len(), |ui, rows| {
+                .show_rows(ui, card::HEIGHT, samples.len(), |ui, rows| {
                     for sample in &samples[rows] {
-                        card(ui, state, sample, out);
+                        card::show(ui, state, sample, out);
                     }
                 });
         });
@@ -221,93 +212,6 @@ fn dropzone(
     (response, payload)
 }
 
-/// A sample: its strip, where it is, and for proposals yes and no.
-fn card(ui: &mut Ui, state: &State, sample: &DbSample, out: Out) {
-    let c = Colours::now(ui);
-    let (rect, response) =
-        ui.allocate_exact_size(Vec2::new(COLUMN - 8.0, CARD - 6.0), Sense::click_and_drag());
-    let selected = state.timeline.selected.contains(&sample.id);
-    let kind = if sample.state == Judged::Proposed {
-        "proposed "
-    } else {
-        ""
-    };
-    widgets::named(
-        &response,
-        WidgetType::Button,
-        format!(
-            "{kind}{} in {} at {:.2} s",
-            sample.class, sample.clip_name, sample.start_secs
-        ),
-        selected,
-    );
-    let picture = Rect::from_min_size(rect.min, Vec2::new(rect.width(), STRIP));
-    strips::draw(
-        ui,
-        state,
-        sample.clip,
-        sample.start_secs,
-        sample.stop_secs,
-        picture,
-    );
-    let caption = Rect::from_min_max(egui::pos2(rect.left() + 2.0, picture.bottom()), rect.max);
-    let text = format!("{}  {}", sample.clip_name, format::secs(sample.start_secs));
-    widgets::text_in(ui, caption, &text, 11.0, c.muted, false);
-    if sample.state == Judged::Proposed {
-        ui.painter()
-            .rect_stroke(picture, 3.0, (1.0, c.warn), egui::StrokeKind::Inside);
-        let score = format!("{:.0} %", 100.0 * sample.score.unwrap_or(0.0));
-        let left = caption.with_max_x(caption.right() - ANSWERS - 4.0);
-        widgets::text_in(ui, left, &score, 11.0, c.warn, true);
-    }
-    if selected {
-        widgets::selected_frame(ui, picture);
-    }
-    if response.drag_started() {
-        response.dnd_set_drag_payload(sample.id);
-    }
-    if response.clicked() || response.double_clicked() {
-        go(
-            sample.clip,
-            sample.start_secs,
-            sample.stop_secs,
-            Some(sample.id),
-            out,
-        );
-    }
-    if response.double_clicked() {
-        out.push(Command::Show(Panel::Label));
-    }
-    if sample.state == Judged::Proposed {
-        answers(ui, caption, sample.id, out);
-    }
-}
-
-/// Yes and no at the right of a caption.
-fn answers(ui: &mut Ui, caption: Rect, id: SampleId, out: Out) {
-    let corner = caption.right_top() - Vec2::new(ANSWERS, -1.0);
-    let area = Rect::from_min_size(corner, Vec2::new(ANSWERS, caption.height()));
-    // Over the card, without a place of its own in the column.
-    let mut over = ui.new_child(egui::UiBuilder::new().max_rect(area));
-    over.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 2.0;
-        ui.spacing_mut().button_padding = Vec2::new(5.0, 0.0);
-        ui.spacing_mut().interact_size.y = caption.height();
-        for (text, name, command) in [
-            ("✔", "Accept", ClassCommand::Accept(id)),
-            ("✖", "Reject", ClassCommand::Reject(id)),
-        ] {
-            let response = ui.add(Button::new(RichText::new(text).size(11.0)));
-            response.widget_info(|| {
-                egui::WidgetInfo::labeled(WidgetType::Button, true, format!("{name} {}", id.0))
-            });
-            if response.clicked() {
-                out.push(Command::Classes(command));
-            }
-        }
-    });
-}
-
 pub(super) fn go(
     clip: ClipId,
     start_secs: f64,
@@ -342,6 +246,7 @@ fn chosen(ui: &mut Ui, state: &State, out: Out) {
         format::secs(sample.stop_secs)
     );
     ui.colored_label(Colours::now(ui).muted, extent);
+    label::like_this(ui, out);
     if sample.state == Judged::Proposed {
         ui.horizontal(|ui| {
             for (text, command) in [

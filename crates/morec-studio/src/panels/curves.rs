@@ -72,61 +72,6 @@ pub fn detections(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
     }
 }
 
-/// Cuts of both methods, stillness, repetitions.
-pub fn cuts(ui: &mut Ui, state: &State, scale: &Scale) {
-    let c = Colours::now(ui);
-    let rect = track(ui, state, scale, "Cuts, stillness", ROW, None, None);
-    let Some(curves) = &state.curves else {
-        return widgets::text_in(
-            ui,
-            rect.shrink2(Vec2::new(8.0, 0.0)),
-            "looking at the clip …",
-            11.0,
-            c.muted,
-            false,
-        );
-    };
-    let painter = ui.painter_at(rect);
-    let seen = |from: f64, to: f64| to >= scale.from && from <= scale.to;
-    for (start, stop, t_pose) in curves.still.iter().filter(|s| seen(s.0, s.1)) {
-        let bar = Rect::from_x_y_ranges(scale.x(*start)..=scale.x(*stop), rect.y_range());
-        let colour = if *t_pose { c.warn } else { c.muted };
-        painter.rect_filled(bar, 0.0, c.tint(colour, 0.28));
-    }
-    for bounds in &curves.cycles {
-        for (number, pair) in bounds
-            .windows(2)
-            .enumerate()
-            .filter(|(_, p)| seen(p[0], p[1]))
-        {
-            let (a, b) = (scale.x(pair[0]), scale.x(pair[1]));
-            painter.vline(a, rect.bottom() - 5.0..=rect.bottom(), (1.0, c.accent));
-            if b - a > 16.0 {
-                let at = pos2((a + b) / 2.0, rect.center().y);
-                painter.text(
-                    at,
-                    egui::Align2::CENTER_CENTER,
-                    (number + 1).to_string(),
-                    egui::FontId::proportional(10.0),
-                    c.muted,
-                );
-            }
-        }
-    }
-    for cut in curves.kernel.iter().filter(|cut| seen(**cut, **cut)) {
-        painter.vline(scale.x(*cut), rect.y_range(), (1.5, c.text));
-    }
-    for cut in curves.ppca.iter().filter(|cut| seen(**cut, **cut)) {
-        let x = scale.x(*cut);
-        painter.add(Shape::dashed_line(
-            &[pos2(x, rect.top()), pos2(x, rect.bottom())],
-            (1.5, c.warn),
-            3.0,
-            3.0,
-        ));
-    }
-}
-
 /// The misfit of the thesis's method, on a logarithmic scale, with its cuts.
 pub fn misfit(ui: &mut Ui, state: &State, scale: &Scale) {
     let c = Colours::now(ui);

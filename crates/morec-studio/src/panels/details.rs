@@ -1,10 +1,9 @@
 //! What is known of the chosen clip, and can be changed.
 
-use egui::{Grid, RichText, TextEdit, Ui, WidgetType};
-use morec::roles::Role;
+use egui::{Grid, TextEdit, Ui, WidgetType};
 use morec_db::{ClipInfo, ClipUpdate};
 
-use super::{Out, widgets};
+use super::{Out, roles, widgets};
 use crate::format;
 use crate::state::{Command, State};
 use crate::store::Edit;
@@ -21,7 +20,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
     };
     known(ui, clip, out);
     widgets::section(ui, "Parts of the body");
-    roles(ui, state);
+    roles::show(ui, state, out);
     ui.add_space(6.0);
     if ui.button("Remove this clip").clicked() {
         out.push(Command::Edit(Edit::RemoveClips(vec![clip.id])));
@@ -143,37 +142,5 @@ fn known(ui: &mut Ui, clip: &ClipInfo, out: Out) {
             }
             let file = format::file_name(std::path::Path::new(&clip.path));
             fact(ui, "File", file).on_hover_text(&clip.path);
-        });
-}
-
-/// Which joint plays which part of the body.
-fn roles(ui: &mut Ui, state: &State) {
-    let c = Colours::now(ui);
-    let Some(motion) = &state.player.motion else {
-        ui.colored_label(c.muted, "…");
-        return;
-    };
-    let joints = motion.clip.skeleton.joints();
-    // Without a bone there are no rows, and no speeds.
-    if motion.speed.is_empty() {
-        ui.colored_label(c.warn, "No bone of a body is known, so nothing can be recognised in this clip. Import it again with a map of roles: morec db import DB FILE --roles MAP");
-    }
-    Grid::new("roles")
-        .num_columns(4)
-        .spacing([12.0, 2.0])
-        .show(ui, |ui| {
-            for (at, role) in Role::ALL.into_iter().enumerate() {
-                let part = RichText::new(role.name().replace('_', " "))
-                    .size(12.0)
-                    .color(c.muted);
-                ui.label(part);
-                match motion.roles.joint(role).and_then(|j| joints.get(j)) {
-                    Some(joint) => ui.label(RichText::new(&joint.name).size(12.0)),
-                    None => ui.label(RichText::new("—").size(12.0).color(c.muted)),
-                };
-                if at % 2 == 1 {
-                    ui.end_row();
-                }
-            }
         });
 }

@@ -8,7 +8,9 @@ use morec_db::labels::SampleState as Judged;
 
 use super::{Out, padded, player, timeline, view, widgets};
 use crate::format;
-use crate::state::{ClassCommand, Command, LibraryCommand, State, TimelineCommand};
+use crate::state::{
+    ClassCommand, Command, CompareCommand, LibraryCommand, SimilarCommand, State, TimelineCommand,
+};
 use crate::theme::Colours;
 
 pub fn show(ctx: &Context, state: &State, out: Out) {
@@ -225,23 +227,24 @@ fn add_class(ui: &mut Ui, state: &State, out: Out) {
 fn selection(ui: &mut Ui, state: &State, out: Out) {
     let c = Colours::now(ui);
     let selected = state.selected();
-    let mut timeline = |command| out.push(Command::Timeline(command));
     if let Some((start, stop)) = state.timeline.range {
         widgets::section(ui, "SELECTED STRETCH");
         ui.label(format!("{} to {}", format::secs(start), format::secs(stop)));
         ui.colored_label(c.muted, "A class's key or a click on a class labels it.");
+        like_this(ui, out);
         return;
     }
+    let timeline = |out: Out, command| out.push(Command::Timeline(command));
     let [sample] = selected[..] else {
         if selected.len() > 1 {
             widgets::section(ui, "SELECTED LABELS");
             ui.label(format::count(selected.len(), "label"));
             ui.horizontal(|ui| {
                 if ui.button("Merge").clicked() {
-                    timeline(TimelineCommand::Merge);
+                    timeline(out, TimelineCommand::Merge);
                 }
                 if ui.button("Remove").clicked() {
-                    timeline(TimelineCommand::Remove);
+                    timeline(out, TimelineCommand::Remove);
                 }
             });
         }
@@ -256,6 +259,7 @@ fn selection(ui: &mut Ui, state: &State, out: Out) {
         format::secs(stop),
         stop - start
     ));
+    like_this(ui, out);
     if sample.state == Judged::Proposed {
         let score = sample
             .score
@@ -273,10 +277,30 @@ fn selection(ui: &mut Ui, state: &State, out: Out) {
     }
     ui.horizontal(|ui| {
         if ui.button("Split  S").clicked() {
-            timeline(TimelineCommand::Split);
+            timeline(out, TimelineCommand::Split);
         }
         if ui.button("Remove").clicked() {
-            timeline(TimelineCommand::Remove);
+            timeline(out, TimelineCommand::Remove);
+        }
+    });
+}
+
+/// What is like the selection, and the nearest of it beside the performer.
+pub(super) fn like_this(ui: &mut Ui, out: Out) {
+    ui.horizontal(|ui| {
+        if ui
+            .button("More like this  F")
+            .on_hover_text("Search all clips for what is like it, in a mirror too if you like")
+            .clicked()
+        {
+            out.push(Command::Similar(SimilarCommand::OfSelection));
+        }
+        if ui
+            .button("Compare  C")
+            .on_hover_text("What is most like it, beside the performer at the same pace")
+            .clicked()
+        {
+            out.push(Command::Compare(CompareCommand::Nearest));
         }
     });
 }

@@ -6,12 +6,13 @@ use egui::{
 };
 use morec_db::ClipInfo;
 
-use super::{Out, details, padded, player, view, widgets};
+use super::{Out, details, import_report, padded, player, strips, view, widgets};
 use crate::format;
 use crate::state::{Column, Command, FileCommand, LibraryCommand, State};
 use crate::theme::Colours;
 
 const ROW: f32 = 26.0;
+const STRIP: f32 = 68.0;
 
 pub fn show(ctx: &Context, state: &State, out: Out) {
     let c = Colours::of(state.dark);
@@ -35,7 +36,7 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
         });
     CentralPanel::default().frame(padded(&c)).show(ctx, |ui| {
         tools(ui, state, out);
-        report(ui, state, out);
+        import_report::show(ui, state, out);
         table(ui, state, out);
     });
 }
@@ -59,7 +60,7 @@ fn tools(ui: &mut Ui, state: &State, out: Out) {
         let mut text = state.library.filter.clone();
         let edit = TextEdit::singleline(&mut text)
             .hint_text("Search names, people, tags …")
-            .desired_width((ui.available_width() - 260.0).clamp(120.0, 320.0));
+            .desired_width((ui.available_width() - 390.0).clamp(110.0, 280.0));
         let response = ui.add(edit);
         response.widget_info(|| {
             let mut info = egui::WidgetInfo::labeled(WidgetType::TextEdit, true, "Search clips");
@@ -78,6 +79,12 @@ fn tools(ui: &mut Ui, state: &State, out: Out) {
         if ui.button("Folder …").clicked() {
             out.push(Command::File(FileCommand::AskImportFolder));
         }
+        let strips = state.library.strips;
+        for (text, on) in [("Table", false), ("Strips", true)] {
+            if ui.selectable_label(strips == on, text).clicked() {
+                out.push(Command::Library(LibraryCommand::Strips(on)));
+            }
+        }
         let Some(store) = &state.store else { return };
         let (shown, all) = (state.library.shown().len(), store.snapshot.clips.len());
         let text = match shown == all {
@@ -87,49 +94,6 @@ fn tools(ui: &mut Ui, state: &State, out: Out) {
         ui.label(RichText::new(text).color(c.muted));
     });
     ui.add_space(4.0);
-}
-
-/// What became of the last import.
-fn report(ui: &mut Ui, state: &State, out: Out) {
-    let Some(report) = &state.import_report else {
-        return;
-    };
-    let c = Colours::now(ui);
-    let fill = c.tint(
-        if report.refused.is_empty() {
-            c.good
-        } else {
-            c.warn
-        },
-        0.14,
-    );
-    egui::Frame::new()
-        .fill(fill)
-        .corner_radius(4.0)
-        .inner_margin(8.0)
-        .show(ui, |ui| {
-            ui.horizontal(|ui| {
-                ui.label(RichText::new(report.said()).strong());
-                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                    if ui.small_button("Close").clicked() {
-                        out.push(Command::Library(LibraryCommand::DismissReport));
-                    }
-                });
-            });
-            let lines = report.refused.iter().map(|line| (line, "refused"));
-            let lines = lines.chain(report.warnings.iter().map(|line| (line, "note")));
-            ScrollArea::vertical()
-                .id_salt("report")
-                .max_height(120.0)
-                .show(ui, |ui| {
-                    for ((path, why), kind) in lines.take(200) {
-                        let name = path.file_name().unwrap_or_default().to_string_lossy();
-                        ui.label(RichText::new(format!("{name}: {kind}: {why}")).size(12.0))
-                            .on_hover_text(path.display().to_string());
-                    }
-                });
-        });
-    ui.add_space(6.0);
 }
 
 /// A column: what it is, its heading, its share of the width, whether it is a number.
@@ -157,7 +121,9 @@ fn cells(rect: Rect) -> [Rect; 5] {
 
 fn table(ui: &mut Ui, state: &State, out: Out) {
     let Some(store) = &state.store else { return };
-    header(ui, state, out);
+    if !state.library.strips {
+        header(ui, state, out);
+    }
     let clips = &store.snapshot.clips;
     if clips.is_empty() {
         widgets::nothing(
@@ -178,16 +144,63 @@ fn table(ui: &mut Ui, state: &State, out: Out) {
         let hint = format!("Nothing matches “{}”.", state.library.filter);
         return widgets::nothing(ui, "No clip is found", &hint);
     }
-    ui.spacing_mut().item_spacing.y = 0.0;
+    let as_strips = state.library.strips;
+    ui.spacing_mut().item_spacing.y = if as_strips { 4.0 } else { 0.0 };
+    let height = if as_strips { STRIP } else { ROW };
     ScrollArea::vertical()
+        .id_salt(as_strips)
         .auto_shrink(false)
-        .show_rows(ui, ROW, shown.len(), |ui, rows| {
+        .show_rows(ui, height, shown.len(), |ui, rows| {
             for &place in &shown[rows] {
-                if let Some(clip) = clips.get(place) {
-                    row(ui, state, clip, out);
+                match clips.get(place) {
+                    Some(clip) if as_strips => strip(ui, state, clip, out),
+                    Some(clip) => row(ui, state, clip, out),
+                    None => {}
                 }
             }
         });
+}
+
+/// A clip as a strip of poses over its whole length, with its name at the left.
+fn strip(ui: &mut Ui, state: &State, clip: &ClipInfo, out: Out) {
+    let c = Colours::now(ui);
+    let size = Vec2::new(ui.available_width(), STRIP);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+    let on = state.library.selected.contains(&clip.id);
+    widgets::named(&response, WidgetType::SelectableLabel, &clip.name, on);
+    if on {
+        ui.painter()
+            .rect_filled(rect, 3.0, ui.visuals().selection.bg_fill);
+    } else if response.hovered() {
+        ui.painter().rect_filled(rect, 3.0, c.tint(c.accent, 0.10));
+    }
+    let names = (0.26 * rect.width()).clamp(90.0, 190.0);
+    let text = rect
+        .with_max_x(rect.left() + names)
+        .shrink2(Vec2::new(8.0, 10.0));
+    let line = |at: f32| {
+        let top = text.top() + at * text.height() / 3.0;
+        Rect::from_min_size(
+            egui::pos2(text.left(), top),
+            Vec2::new(text.width(), text.height() / 3.0),
+        )
+    };
+    let labels = match clip.samples {
+        0 => String::new(),
+        n => format!(", {}", format::count(n, "label")),
+    };
+    let length = format!("{}{labels}", format::duration(clip.duration_secs()));
+    let person = clip.subject.as_deref().unwrap_or_default();
+    widgets::text_in(ui, line(0.0), &clip.name, 13.0, c.text, false);
+    widgets::text_in(ui, line(1.0), person, 11.5, c.muted, false);
+    widgets::text_in(ui, line(2.0), &length, 11.5, c.muted, false);
+    let picture = rect.with_min_x(rect.left() + names).shrink(3.0);
+    strips::draw(ui, state, clip.id, 0.0, clip.duration_secs(), picture);
+    if response.clicked() {
+        let add = ui.input(|i| i.modifiers.command);
+        let clip = clip.id;
+        out.push(Command::Library(LibraryCommand::Select { clip, add }));
+    }
 }
 
 fn header(ui: &mut Ui, state: &State, out: Out) {

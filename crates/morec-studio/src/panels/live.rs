@@ -28,6 +28,7 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
         .show(ctx, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 source(ui, state, out);
+                performers(ui, state, out);
                 health(ui, state);
                 sensitivity(ui, state, out);
             });
@@ -143,13 +144,43 @@ fn record(ui: &mut Ui, state: &State, live: &mut impl FnMut(LiveCommand)) {
     }
 }
 
+/// Who is seen, and who is watched.
+fn performers(ui: &mut Ui, state: &State, out: Out) {
+    let Some(run) = state.live.run.as_ref().filter(|r| r.performers.len() > 1) else {
+        return;
+    };
+    ui.add_space(6.0);
+    widgets::section(ui, "PERFORMERS");
+    let watched = run.watched().map(|w| w.actor);
+    ui.horizontal_wrapped(|ui| {
+        for performer in &run.performers {
+            let number = performer.actor.0 + 1;
+            let text = match performer.gone {
+                true => format!("{number} (gone)"),
+                false => number.to_string(),
+            };
+            let on = watched == Some(performer.actor);
+            let response = ui.selectable_label(on, text);
+            widgets::named(
+                &response,
+                WidgetType::SelectableLabel,
+                format!("Watch performer {number}"),
+                on,
+            );
+            if response.clicked() {
+                out.push(Command::Live(LiveCommand::Watch(performer.actor)));
+            }
+        }
+    });
+}
+
 /// How the stream is, in words.
 fn health(ui: &mut Ui, state: &State) {
     let c = Colours::now(ui);
     let Some(run) = &state.live.run else { return };
     ui.add_space(6.0);
     widgets::section(ui, "STREAM");
-    if let Some(d) = run.diagnosis() {
+    if let Some(d) = run.watched().and_then(|w| w.diagnosis()) {
         let rate = d
             .rate_hz
             .map_or("– Hz".to_owned(), |hz| format!("{hz:.0} Hz"));
@@ -222,12 +253,28 @@ fn performer(ui: &mut Ui, state: &State, out: Out) {
         return;
     };
     let empty = (Body::default(), WorldPose::default());
-    let known = !run.body.limbs.is_empty();
+    let watched = run.watched();
+    let c = Colours::now(ui);
+    // The others pale, so that it is seen who is watched.
+    let palette = c.body().mixed(c.muted, 0.6);
+    let others = run
+        .performers
+        .iter()
+        .filter(|p| !p.gone && !p.body.limbs.is_empty())
+        .filter(|p| watched.is_none_or(|w| w.actor != p.actor))
+        .map(|p| view::Other {
+            body: &p.body,
+            pose: p.pose.clone(),
+            palette,
+            caption: format!("Performer {}", p.actor.0 + 1),
+        });
     let scene = view::Scene {
-        body: if known { &run.body } else { &empty.0 },
-        pose: if known { &run.pose } else { &empty.1 },
-        floor: run.floor(),
+        body: watched.map_or(&empty.0, |w| &w.body),
+        pose: watched.map_or(&empty.1, |w| &w.pose),
+        floor: watched.map_or(0.0, |w| w.floor()),
         motion: None,
+        others: others.collect(),
+        caption: None,
     };
     view::draw(ui, rect, state, &scene, out);
     banner(ui, state, rect);

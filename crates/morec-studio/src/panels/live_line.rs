@@ -111,12 +111,16 @@ fn ground(ui: &mut Ui, area: Rect, scale: &Scale, out: Out) {
 fn draw_movement(ui: &Ui, run: &Run, rect: Rect, scale: &Scale, c: &Colours) {
     // Frames of live sources come unevenly: each second has as many values as came in it.
     let mut values = Vec::with_capacity((SHOWN_SECS * 30.0) as usize);
-    let mut frame = run.frames.partition_point(|f| f.time_secs < scale.from);
+    let Some(performer) = run.watched() else {
+        return;
+    };
+    let (frames, speeds) = (&performer.frames, &performer.speeds);
+    let mut frame = frames.partition_point(|f| f.time_secs < scale.from);
     for tick in 0..(SHOWN_SECS * 30.0) as usize {
         let until = scale.from + (tick + 1) as f64 / 30.0;
         let mut most = 0f32;
-        while frame < run.frames.len() && run.frames[frame].time_secs < until {
-            most = most.max(run.speeds[frame].min(6.0));
+        while frame < frames.len() && frames[frame].time_secs < until {
+            most = most.max(speeds[frame].min(6.0));
             frame += 1;
         }
         values.push(most);
@@ -134,22 +138,30 @@ fn draw_movement(ui: &Ui, run: &Run, rect: Rect, scale: &Scale, c: &Colours) {
 
 fn draw_seen(ui: &Ui, state: &State, run: &Run, rect: Rect, scale: &Scale, c: &Colours) {
     let painter = ui.painter_at(rect);
-    for seen in run
+    let watched = run.watched().map(|w| w.actor);
+    let shown = run
         .seen
         .iter()
         .rev()
-        .take_while(|s| s.stop_secs > scale.from - 10.0)
-    {
-        let place = state.classes.place(&seen.class);
-        bar(
-            &painter,
-            rect,
-            scale,
-            (seen.start_secs, seen.stop_secs),
-            &seen.class,
-            c.class(place),
-            c,
+        .filter(|s| Some(s.actor) == watched)
+        .take_while(|s| s.stop_secs > scale.from - 10.0);
+    for seen in shown {
+        let colour = c.class(state.classes.place(&seen.class));
+        let extent = (seen.start_secs, seen.stop_secs);
+        bar(&painter, rect, scale, extent, &seen.class, colour, c);
+    }
+    // What another sensitivity would have found, as outlines around it.
+    let would = state.live.resensed.iter().flatten();
+    let index = state.live.index();
+    for found in would.filter(|d| d.stop_secs > scale.from) {
+        let name = index.map_or("", |index| index.model.class_name(found.class));
+        let colour = c.class(state.classes.place(name));
+        let frame = Rect::from_x_y_ranges(
+            scale.x(found.start_secs)..=scale.x(found.stop_secs),
+            rect.y_range(),
         );
+        let stroke = egui::Stroke::new(1.5, colour);
+        painter.rect_stroke(frame, 3.0, stroke, egui::StrokeKind::Inside);
     }
 }
 

@@ -200,10 +200,13 @@ pub fn instances(ui: &mut Ui, state: &State, out: Out) {
         );
         return;
     }
+    // Rows are of one height: two lines if any has a reason.
+    let reasons = moments.iter().any(|m| m.why.is_some());
+    let height = if reasons { 42.0 } else { 24.0 };
     ScrollArea::vertical()
         .id_salt("instances")
         .auto_shrink(false)
-        .show_rows(ui, 24.0, moments.len(), |ui, rows| {
+        .show_rows(ui, height, moments.len(), |ui, rows| {
             for moment in &moments[rows] {
                 let what = match (&moment.truth, &moment.found) {
                     (Some(truth), Some(found)) if truth == found => truth.clone(),
@@ -213,18 +216,27 @@ pub fn instances(ui: &mut Ui, state: &State, out: Out) {
                     (None, None) => String::new(),
                 };
                 let colour = if moment.is_right() { c.text } else { c.bad };
-                let text = format!(
+                let mut text = format!(
                     "{what}, {} {}",
                     moment.clip,
                     format::secs(moment.start_secs)
                 );
-                let (rect, response) =
-                    ui.allocate_exact_size(Vec2::new(ui.available_width(), 24.0), Sense::click());
+                if let Some(why) = &moment.why {
+                    text += &format!(": {why}");
+                }
+                let size = Vec2::new(ui.available_width(), height);
+                let (rect, mut response) = ui.allocate_exact_size(size, Sense::click());
                 widgets::named(&response, WidgetType::Button, &text, false);
                 if response.hovered() {
                     ui.painter().rect_filled(rect, 3.0, c.tint(c.accent, 0.12));
                 }
-                let inner = rect.shrink2(Vec2::new(4.0, 0.0));
+                let mut inner = rect.shrink2(Vec2::new(4.0, 0.0));
+                if let Some(why) = &moment.why {
+                    let below = inner.with_min_y(inner.center().y);
+                    widgets::text_in(ui, below, why, 11.5, c.muted, false);
+                    inner = inner.with_max_y(inner.center().y);
+                    response = response.on_hover_text(why);
+                }
                 let place = format!("{}  {}", moment.clip, format::secs(moment.start_secs));
                 let left = Rect::from_min_max(
                     inner.min,

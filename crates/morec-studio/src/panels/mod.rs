@@ -1,12 +1,17 @@
 //! What is drawn: functions of the state that emit commands.
 
 mod bars;
+mod card;
+mod channel;
 mod classes;
+mod compare;
 mod curves;
+mod cuts;
 mod details;
 mod groups;
 mod help;
 mod history;
+mod import_report;
 mod label;
 mod library;
 mod live;
@@ -14,8 +19,11 @@ mod live_line;
 mod matrix;
 mod notices;
 mod player;
+mod roles;
+mod similar;
 mod strips;
 mod teach;
+mod thesis;
 mod timeline;
 mod tracks;
 mod train;

@@ -125,8 +125,12 @@ pub fn recognised(ui: &mut Ui, state: &State) {
                         format!("Recognised {}", seen.class),
                         false,
                     );
+                    let who = match run.performers.len() > 1 {
+                        true => format!("{} · ", seen.actor.0 + 1),
+                        false => String::new(),
+                    };
                     let text = format!(
-                        "{}  {:.0} %",
+                        "{who}{}  {:.0} %",
                         format::clock(seen.start_secs, 1),
                         100.0 * seen.score
                     );

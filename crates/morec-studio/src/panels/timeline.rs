@@ -2,7 +2,7 @@
 
 use egui::{Rect, RichText, ScrollArea, Sense, Ui, Vec2, WidgetType, pos2};
 
-use super::{Out, curves, tracks, widgets};
+use super::{Out, channel, curves, cuts, tracks, widgets};
 use crate::format;
 use crate::jobs::cut::SegmentMethod;
 use crate::state::{Command, PlayCommand, State, TimelineCommand};
@@ -77,9 +77,11 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
                 ui.spacing_mut().item_spacing.y = 2.0;
                 tracks::labels(ui, state, &scale, out);
                 curves::detections(ui, state, &scale, out);
-                curves::cuts(ui, state, &scale);
+                cuts::show(ui, state, &scale, out);
+                channel::map(ui, state, &scale);
                 curves::misfit(ui, state, &scale);
                 curves::speed(ui, state, &scale);
+                channel::curve(ui, state, &scale);
             });
     });
     playhead(ui, area, state, &scale, &c);
@@ -120,6 +122,7 @@ fn tools(ui: &mut Ui, state: &State, out: Out) {
                 ui.close();
             }
         });
+        channel::menu(ui, state, out);
         if let Some((start, stop)) = state.timeline.range {
             ui.separator();
             let text = format!("{:.2} s selected", stop - start);

@@ -2,7 +2,7 @@
 
 use egui::{CentralPanel, Context, Frame, Margin, Rect, RichText, ScrollArea, SidePanel, Ui, Vec2};
 
-use super::{Out, matrix, padded, player, view, widgets};
+use super::{Out, matrix, padded, player, thesis, view, widgets};
 use crate::format;
 use crate::state::{Command, FileCommand, State, TrainCommand};
 use crate::theme::Colours;
@@ -42,10 +42,11 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
                     "Nothing is trained yet",
                     "Choose classes at the left and train.",
                 );
-                return;
+            } else {
+                trained(ui, state, out);
+                matrix::show(ui, state, out);
             }
-            trained(ui, state, out);
-            matrix::show(ui, state, out);
+            thesis::show(ui, state, out);
         });
     });
 }

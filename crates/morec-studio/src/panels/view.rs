@@ -5,10 +5,10 @@ use morec::kinematics::WorldPose;
 use morec::math::Vec3;
 
 use super::{Out, widgets};
-use crate::body::mesh::Painter;
+use crate::body::mesh::{BodyColours, Painter};
 use crate::body::{Body, Camera};
 use crate::jobs::load::ClipMotion;
-use crate::state::{Command, State, ViewCommand};
+use crate::state::{Command, Panel, State, ViewCommand};
 use crate::theme::Colours;
 
 /// So far the floor is drawn from the performer, metres.
@@ -25,6 +25,19 @@ pub struct Scene<'a> {
     pub floor: f64,
     /// The clip, for trail and onion skin.
     pub motion: Option<(&'a ClipMotion, f64)>,
+    /// Who else is seen.
+    pub others: Vec<Other<'a>>,
+    /// Said at the performer's feet, where there are others.
+    pub caption: Option<String>,
+}
+
+/// Somebody beside the performer.
+pub struct Other<'a> {
+    pub body: &'a Body,
+    pub pose: WorldPose,
+    pub palette: BodyColours,
+    /// Said at their feet.
+    pub caption: String,
 }
 
 /// Draws the performer of the clip that is shown.
@@ -42,6 +55,8 @@ pub fn clip(ui: &mut Ui, state: &State, out: Out) {
         pose: &pose,
         floor: motion.floor,
         motion: Some((motion, state.player.at_secs)),
+        others: super::compare::others(state, motion, &Colours::now(ui)),
+        caption: (!state.companions.all.is_empty()).then(|| motion.clip.name.clone()),
     };
     draw(ui, rect, state, &scene, out);
 }
@@ -70,8 +85,16 @@ pub fn draw(ui: &mut Ui, rect: Rect, state: &State, scene: &Scene, out: Out) {
             painter.extend(trail(motion, at, joint, &view, &c));
         }
     }
+    for other in &scene.others {
+        painter.add(bodies.shadow(other.body, &other.pose, scene.floor, palette.shadow));
+        bodies.body(other.body, &other.pose, &other.palette);
+    }
     bodies.body(scene.body, scene.pose, &palette);
     painter.add(bodies.finish());
+    captions(ui, rect, &view, scene);
+    if let Some((motion, _)) = scene.motion.filter(|_| state.panel == Panel::Library) {
+        super::roles::joints(ui, state, motion, scene.pose, &view, out);
+    }
     if scene.body.limbs.is_empty() {
         let text = "No body part of this clip is known: see its roles in the library";
         widgets::text_in(
@@ -84,6 +107,39 @@ pub fn draw(ui: &mut Ui, rect: Rect, state: &State, scene: &Scene, out: Out) {
         );
     }
     controls(ui, rect, state, out);
+}
+
+/// Who is who, at everybody's feet.
+fn captions(ui: &Ui, rect: Rect, view: &crate::body::camera::View, scene: &Scene) {
+    let c = Colours::now(ui);
+    let own = scene
+        .caption
+        .as_ref()
+        .map(|text| (scene.body, scene.pose, text));
+    let others = scene.others.iter().map(|o| (o.body, &o.pose, &o.caption));
+    for (number, (body, pose, text)) in own.into_iter().chain(others).enumerate() {
+        let Some(mut place) = body.centre(pose) else {
+            continue;
+        };
+        place.y = scene.floor;
+        let Some((feet, _)) = view.project(&place) else {
+            continue;
+        };
+        // Performers on top of each other have their names below one another.
+        let at = Rect::from_center_size(
+            feet + Vec2::new(0.0, 22.0 + 16.0 * number as f32),
+            Vec2::new(180.0, 16.0),
+        );
+        let response = ui.interact(at, ui.id().with(("caption", number)), Sense::hover());
+        widgets::named(&response, WidgetType::Label, format!("Seen: {text}"), false);
+        ui.painter_at(rect).text(
+            at.center(),
+            egui::Align2::CENTER_CENTER,
+            text,
+            egui::FontId::proportional(12.0),
+            c.text,
+        );
+    }
 }
 
 /// Behind the performer: a little lighter towards the floor.
@@ -237,12 +293,13 @@ fn controls(ui: &mut Ui, rect: Rect, state: &State, out: Out) {
             .player
             .motion
             .as_ref()
-            .filter(|_| state.panel != crate::state::Panel::Live)
+            .filter(|_| state.panel != Panel::Live)
         {
             if ui.selectable_label(state.onion, "Onion skin").clicked() {
                 look(ViewCommand::Onion(!state.onion));
             }
             trail_menu(ui, state, motion, &mut look);
+            super::compare::controls(ui, state, out);
         }
     });
 }

@@ -2,13 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use morec_db::labels::{DbSample, NewSample, SampleId, SampleState as Judged};
-use morec_db::{Proposal, questions};
+use morec_db::labels::{SampleId, SampleState as Judged};
 
-use super::files::quoted;
-use super::{ClassCommand, Panel, State};
-use crate::jobs::group::{self, ClusteredItems};
-use crate::jobs::propose;
+use super::columns::Columns;
+use super::{ClassCommand, State};
+use crate::jobs::group::ClusteredItems;
+use crate::jobs::similar::Similar;
 use crate::store::{Edit, Snapshot};
 
 /// A key that is held for less is a tap, seconds on the wall.
@@ -38,7 +37,13 @@ pub struct Classes {
     pub held: Option<Held>,
     /// Where a key was tapped last: which class, and the moment.
     pub tapped: Option<(usize, f64)>,
+    /// The samples of each class as they are shown.
+    pub columns: Columns,
     pub groups: Option<ClusteredItems>,
+    /// What is like an example, while that is shown.
+    pub similar: Option<Similar>,
+    /// Whether the mirror image of an example is looked for too.
+    pub mirror: bool,
     /// Into how many groups the hierarchy is cut.
     pub depth: usize,
     /// A class that is being renamed, and its new name so far.
@@ -50,6 +55,7 @@ pub struct Classes {
 impl Classes {
     /// Keeps the order of the classes that are there, new ones behind.
     pub(super) fn follow(&mut self, snapshot: &Snapshot) {
+        self.columns = Columns::of(snapshot);
         let there: BTreeSet<&str> = snapshot.classes.iter().map(|c| c.name.as_str()).collect();
         self.added.retain(|name| !there.contains(name.as_str()));
         let added = self.added.clone();
@@ -228,7 +234,7 @@ impl State {
             return secs;
         };
         let still = curves.still.iter().flat_map(|s| [s.0, s.1]);
-        let marks = curves.kernel.iter().copied().chain(still);
+        let marks = self.cuts().into_iter().chain(still);
         marks
             .filter(|m| (m - secs).abs() <= ATTRACTED_SECS)
             .min_by(|a, b| (a - secs).abs().total_cmp(&(b - secs).abs()))
@@ -245,111 +251,6 @@ impl State {
     pub fn tick_keys(&mut self, dt: f64) {
         if let Some(held) = &mut self.classes.held {
             held.wall_secs += dt;
-        }
-    }
-
-    fn propose(&mut self) {
-        let Some(store) = &self.store else { return };
-        let db = store.path().to_owned();
-        self.command_line = format!("morec db propose {}", quoted(&db));
-        self.jobs
-            .start("Looking for more", true, &self.wake, move |progress| {
-                propose::propose(&db, progress)
-            });
-    }
-
-    fn group(&mut self, cuts: bool) {
-        let Some(store) = &self.store else { return };
-        let db = store.path().to_owned();
-        let of = if cuts { "cuts" } else { "labels" };
-        self.command_line = format!(
-            "morec db group {} --of {of} --method hierarchy",
-            quoted(&db)
-        );
-        self.jobs
-            .start("Grouping", true, &self.wake, move |progress| {
-                group::group(&db, cuts, progress)
-            });
-    }
-
-    /// A group's samples become a class; cuts in it become labels of the class.
-    fn name_group(&mut self, group: usize, name: &str) {
-        let Some(groups) = &self.classes.groups else {
-            return;
-        };
-        let members = groups.at(self.classes.depth);
-        let Some(group) = members.get(group).filter(|_| !name.trim().is_empty()) else {
-            return;
-        };
-        let items = || group.members.iter().map(|&m| &groups.items[m]);
-        let ids: Vec<SampleId> = items().filter_map(|i| i.sample).collect();
-        let new: Vec<NewSample> = items()
-            .filter(|i| i.sample.is_none())
-            .map(|i| NewSample {
-                clip: i.clip,
-                class: name.trim().to_owned(),
-                start_secs: i.start_secs,
-                stop_secs: i.stop_secs,
-                whole_clip: false,
-                state: Judged::Accepted,
-                score: None,
-            })
-            .collect();
-        if !ids.is_empty() {
-            let class = name.trim().to_owned();
-            self.edit(Edit::Reclass { ids, class });
-        }
-        if !new.is_empty() {
-            self.edit(Edit::Label(new));
-        }
-    }
-
-    fn judge(&mut self, id: SampleId, state: Judged) {
-        self.edit(Edit::Judge {
-            ids: vec![id],
-            state,
-        });
-        self.next_doubtful(Some(id));
-    }
-
-    /// The proposals whose answers tell most, first.
-    pub fn doubtful(&self) -> Vec<&DbSample> {
-        let Some(store) = &self.store else {
-            return Vec::new();
-        };
-        let proposed: Vec<&DbSample> = store
-            .snapshot
-            .samples
-            .iter()
-            .filter(|s| s.state == Judged::Proposed)
-            .collect();
-        let as_proposals: Vec<Proposal> = proposed
-            .iter()
-            .map(|s| Proposal {
-                clip: s.clip,
-                class: s.class.clone(),
-                start_secs: s.start_secs,
-                stop_secs: s.stop_secs,
-                whole_clip: s.whole_clip,
-                score: s.score.unwrap_or(0.0) as f32,
-            })
-            .collect();
-        let order = questions(&as_proposals, as_proposals.len());
-        order.into_iter().map(|at| proposed[at]).collect()
-    }
-
-    /// Shows the next proposal, other than one that was just judged.
-    fn next_doubtful(&mut self, not: Option<SampleId>) {
-        let next = self.doubtful().into_iter().find(|s| Some(s.id) != not);
-        let Some((id, clip, start, stop)) = next.map(|s| (s.id, s.clip, s.start_secs, s.stop_secs))
-        else {
-            self.say("no proposal is left to look at");
-            return;
-        };
-        self.open_clip(clip, Some((start, stop)));
-        self.timeline.selected = [id].into();
-        if self.panel != Panel::Label && self.panel != Panel::Classes {
-            self.panel = Panel::Label;
         }
     }
 }

@@ -2,11 +2,17 @@
 
 use std::path::PathBuf;
 
+use morec::roles::Role;
+use morec::smooth::ChannelKind;
 use morec_db::ClipId;
+use morec_db::exchange::LabelFormat;
 use morec_db::labels::SampleId;
 
+use super::compare::CompareCommand;
+use super::cuts::CutCommand;
 use super::live::LiveCommand;
 use super::player::PlayCommand;
+use super::similar::SimilarCommand;
 use crate::body::Camera;
 use crate::jobs::cut::SegmentMethod;
 use crate::store::Edit;
@@ -64,6 +70,9 @@ pub enum Command {
     Classes(ClassCommand),
     Train(TrainCommand),
     Live(LiveCommand),
+    Cuts(CutCommand),
+    Similar(SimilarCommand),
+    Compare(CompareCommand),
     /// Cancels the job of this place.
     Cancel(usize),
 }
@@ -82,6 +91,15 @@ pub enum FileCommand {
     Import(Vec<PathBuf>),
     Save(PathBuf),
     ExportIndex(PathBuf),
+    /// Labels of all clips in a form.
+    AskExportLabels(LabelFormat),
+    /// The clip that is shown, as BVH.
+    AskExportClip,
+    /// A page that plays the clip that is shown.
+    AskExportPage,
+    ExportLabels(LabelFormat, PathBuf),
+    ExportClip(PathBuf),
+    ExportPage(PathBuf),
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -102,6 +120,17 @@ pub enum LibraryCommand {
         stop_secs: f64,
     },
     DismissReport,
+    /// Clips as strips of poses instead of a table.
+    Strips(bool),
+    /// The part of the body whose joint is to be clicked.
+    Role(Option<Role>),
+    /// A joint plays a part of the body from now on; or none does.
+    GiveRole {
+        role: Role,
+        joint: Option<usize>,
+    },
+    /// Whether roles are given in all clips of the rig.
+    RolesOfAll(bool),
 }
 
 /// Columns of the table of clips.
@@ -157,6 +186,8 @@ pub enum TimelineCommand {
     /// Labels the selected stretch.
     LabelRange(String),
     Cut(SegmentMethod),
+    /// The curve of a joint with its keyframes.
+    Channel(Option<(usize, ChannelKind)>),
     /// Width of the tracks, as drawn.
     Width(f32),
 }
@@ -210,4 +241,8 @@ pub enum TrainCommand {
     Cell(Option<(usize, usize)>),
     Keep(String),
     UseIndex(String),
+    /// Trains the method of 2009 on the same labels.
+    Thesis,
+    /// Shows the boundary of a branch of its tree.
+    Branch(usize),
 }

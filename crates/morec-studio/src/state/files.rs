@@ -2,13 +2,17 @@
 
 use std::path::{Path, PathBuf};
 
+use morec::player::Mark;
+use morec_db::exchange::LabelFormat;
+
 use super::{Classes, FileCommand, Library, Live, Motions, Player, State, TimelineState, Train};
 use crate::format::file_name;
+use crate::jobs::export::{self, Export};
 use crate::jobs::{Jobs, example, import};
 use crate::store::Store;
 
 /// A file dialog.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Ask {
     Open,
     New,
@@ -16,6 +20,9 @@ pub enum Ask {
     ImportFolder,
     Save,
     ExportIndex,
+    ExportLabels(LabelFormat),
+    ExportClip(String),
+    ExportPage(String),
 }
 
 impl State {
@@ -71,6 +78,9 @@ impl State {
         self.import_report = None;
         self.motions = Motions::default();
         self.pending = None;
+        self.companions.all.clear();
+        self.channel = None;
+        self.channel_wanted = None;
         self.seen_version = 0;
     }
 
@@ -126,6 +136,16 @@ impl State {
             FileCommand::Import(paths) => self.import(paths),
             FileCommand::Save(path) => self.save(&path),
             FileCommand::ExportIndex(path) => self.export_index(&path),
+            FileCommand::AskExportLabels(form) => self.ask = Some(Ask::ExportLabels(form)),
+            FileCommand::AskExportClip => self.ask = self.shown_name().map(Ask::ExportClip),
+            FileCommand::AskExportPage => self.ask = self.shown_name().map(Ask::ExportPage),
+            FileCommand::ExportLabels(form, path) => self.export(Export::Labels(form), path),
+            FileCommand::ExportClip(path) => {
+                if let Some(clip) = self.player.motion.as_ref().map(|m| m.id) {
+                    self.export(Export::Clip(clip), path);
+                }
+            }
+            FileCommand::ExportPage(path) => self.export_page(path),
         }
     }
 
@@ -145,6 +165,49 @@ impl State {
             .start("Importing clips", true, &self.wake, move |progress| {
                 import::import(&db, &paths, progress)
             });
+    }
+
+    fn shown_name(&self) -> Option<String> {
+        Some(self.shown_clip()?.name.clone())
+    }
+
+    /// A page of the clip that is shown, with what the index in use recognises in it.
+    fn export_page(&mut self, path: PathBuf) {
+        let Some(clip) = self.player.motion.as_ref().map(|m| m.id) else {
+            return;
+        };
+        let found = self.detections.iter().filter(|(of, _)| *of == clip);
+        let detections = found.flat_map(|(_, found)| found).map(|f| Mark {
+            name: f.class.clone(),
+            start_secs: f.start_secs,
+            stop_secs: f.stop_secs,
+        });
+        let detections = detections.collect();
+        self.export(Export::Page(clip, detections), path);
+    }
+
+    fn export(&mut self, what: Export, path: PathBuf) {
+        let Some(store) = &self.store else { return };
+        let (db, to) = (quoted(store.path()), quoted(&path));
+        let clip = |id| store.snapshot.clip(id);
+        self.command_line = match &what {
+            Export::Labels(form) => {
+                format!("morec db export {db} {to} --form {}", form.name())
+            }
+            Export::Clip(id) => clip(*id).map_or_else(String::new, |c| {
+                format!(
+                    "morec db export {db} {to} --motion {}",
+                    quoted(c.name.as_ref())
+                )
+            }),
+            Export::Page(id, _) => clip(*id).map_or_else(String::new, |c| {
+                format!("morec play {} -o {to}", quoted(c.path.as_ref()))
+            }),
+        };
+        let db = store.path().to_owned();
+        self.jobs.start("Exporting", true, &self.wake, move |_| {
+            export::export(&db, &what, &path)
+        });
     }
 
     /// A copy of the database somewhere else, which is then the one that is open.

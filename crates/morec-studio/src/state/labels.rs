@@ -10,9 +10,8 @@ use crate::store::Edit;
 impl State {
     /// Sends an edit to the database, and says which command would do it.
     pub(super) fn edit(&mut self, edit: Edit) {
-        if let Some(line) = self.line_of(&edit) {
-            self.command_line = line;
-        }
+        // Another action's command would mislead.
+        self.command_line = self.line_of(&edit).unwrap_or_default();
         if let Some(store) = &mut self.store {
             store.edit(edit);
         }
@@ -44,9 +43,10 @@ impl State {
     pub fn marks(&self) -> Vec<f64> {
         let mut marks = vec![self.player.at_secs];
         if let Some(curves) = &self.curves {
-            marks.extend(curves.kernel.iter().chain(&curves.ppca));
+            marks.extend(&curves.ppca);
             marks.extend(curves.still.iter().flat_map(|s| [s.0, s.1]));
         }
+        marks.extend(self.cuts());
         let held = self.timeline.drag.as_ref().map(|d| d.id);
         let others = self.shown_samples().iter().filter(|s| Some(s.id) != held);
         marks.extend(others.flat_map(|s| [s.start_secs, s.stop_secs]));
@@ -64,6 +64,7 @@ impl State {
             TimelineCommand::Width(width) => timeline.width = width,
             TimelineCommand::Range(range) => timeline.range = range.filter(|r| r.1 - r.0 > 1e-3),
             TimelineCommand::Select { id, add } => {
+                timeline.cut = None;
                 if !add {
                     timeline.selected.clear();
                 }
@@ -85,6 +86,10 @@ impl State {
             TimelineCommand::Split => self.split(),
             TimelineCommand::Merge => self.merge(),
             TimelineCommand::Remove => {
+                if let Some(cut) = self.timeline.cut {
+                    self.apply_cuts(super::CutCommand::Remove(cut));
+                    return;
+                }
                 let ids: Vec<_> = self.selected().iter().map(|s| s.id).collect();
                 if !ids.is_empty() {
                     self.edit(Edit::Remove(ids));
@@ -108,6 +113,7 @@ impl State {
                 }
             }
             TimelineCommand::Cut(method) => self.cut(method),
+            TimelineCommand::Channel(wanted) => self.want_channel(wanted),
         }
     }
 

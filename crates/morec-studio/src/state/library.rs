@@ -1,5 +1,6 @@
 //! The table of clips: what is searched, sorted, selected.
 
+use morec::roles::Role;
 use morec_db::{ClipId, ClipInfo};
 
 use super::{Column, LibraryCommand, State};
@@ -13,6 +14,12 @@ pub struct Library {
     pub filter: String,
     pub sort: Option<(Column, bool)>,
     pub selected: Vec<ClipId>,
+    /// Clips as strips of poses instead of a table.
+    pub strips: bool,
+    /// The part of the body whose joint is to be clicked.
+    pub role: Option<Role>,
+    /// Roles are given in the shown clip alone, not in all of its rig.
+    pub roles_of_one: bool,
     /// Places of the clips that are shown, in the snapshot; computed when something changes.
     shown: Vec<usize>,
     computed_for: Option<Order>,
@@ -93,6 +100,10 @@ impl State {
                 stop_secs,
             } => self.open_clip(clip, Some((start_secs, stop_secs))),
             LibraryCommand::DismissReport => self.import_report = None,
+            LibraryCommand::Strips(on) => self.library.strips = on,
+            LibraryCommand::Role(role) => self.library.role = role,
+            LibraryCommand::GiveRole { role, joint } => self.give_role(role, joint),
+            LibraryCommand::RolesOfAll(all) => self.library.roles_of_one = !all,
         }
         self.refresh_library();
     }

@@ -1,5 +1,6 @@
 //! The command line that does what an edit does.
 
+use morec::roles::Role;
 use morec_db::labels::SampleState as Judged;
 
 use super::State;
@@ -40,7 +41,36 @@ impl State {
                 "morec db samples {db} --move {} --start {start_secs:.3} --stop {stop_secs:.3}",
                 id.0
             ),
-            Edit::Replace { .. } => return None,
+            Edit::Replace { old, new, .. } => {
+                let mut line = format!("morec db samples {db} --remove {}", numbers(old));
+                for s in new.iter().take(2) {
+                    line += &format!(
+                        " && morec db label {db} --clip {} --class {} --start {:.3} --stop {:.3}",
+                        clip(s.clip)?,
+                        word(&s.class),
+                        s.start_secs,
+                        s.stop_secs
+                    );
+                }
+                line
+            }
+            // No command puts single cuts into place.
+            Edit::Cuts { .. } => return None,
+            Edit::Roles(clips) => {
+                let (id, roles) = clips.first()?;
+                let before = store.snapshot.roles.get(id)?;
+                let joints = self.player.motion.as_ref().filter(|m| m.id == *id)?;
+                let joints = joints.clip.skeleton.joints();
+                let mut line = format!("morec db clips {db} --name {}", clip(*id)?);
+                for role in Role::ALL {
+                    let joint = roles.joint(role);
+                    if joint != before.joint(role) {
+                        let name = joint.and_then(|j| joints.get(j)).map_or("", |j| &j.name);
+                        line += &format!(" --set-role {}", word(&format!("{role}={name}")));
+                    }
+                }
+                line
+            }
             Edit::Reclass { ids, class } => format!(
                 "morec db classes {db} --split {} --into {}",
                 numbers(ids),
@@ -66,7 +96,7 @@ impl State {
                 format!("morec db classes {db} --rename {} {}", word(from), word(to))
             }
             Edit::RemoveClass(name) => {
-                format!("morec db classes {db} --remove {}", word(name))
+                format!("morec db classes {db} --forget {}", word(name))
             }
             Edit::Describe { clips, update } => {
                 let name = clip(*clips.first()?)?;
@@ -83,6 +113,9 @@ impl State {
                 }
                 for tag in &update.add_tags {
                     line += &format!(" --add-tag {}", word(tag));
+                }
+                for tag in &update.remove_tags {
+                    line += &format!(" --remove-tag {}", word(tag));
                 }
                 line
             }

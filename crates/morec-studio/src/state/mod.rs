@@ -1,15 +1,23 @@
 //! Everything the window shows, without a widget: tests apply commands to it without a window.
 
 mod classes;
+mod columns;
 mod command;
+pub mod compare;
+pub mod cuts;
 mod files;
+mod groups;
 mod labels;
+pub mod layout;
 mod library;
 mod lines;
 pub mod live;
 mod outcomes;
 pub mod player;
+mod proposals;
+mod roles;
 mod shown;
+pub mod similar;
 pub mod timeline;
 mod train;
 
@@ -18,10 +26,12 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use morec::eval::ClipDetection;
+use morec::roles::RoleMap;
+use morec::smooth::ChannelKind;
 use morec_db::{ClipId, ClipInfo};
 
 use crate::body::Camera;
-use crate::jobs::{Jobs, cut::Curves, import, load::ClipMotion};
+use crate::jobs::{Jobs, channel::Channel, cut::Curves, import, load::ClipMotion};
 use crate::store::{Store, Wake};
 
 pub use classes::Classes;
@@ -29,10 +39,13 @@ pub use command::{
     ClassCommand, Column, Command, FileCommand, LibraryCommand, Panel, TimelineCommand,
     TrainCommand, ViewCommand,
 };
+pub use compare::{Companions, CompareCommand};
+pub use cuts::CutCommand;
 pub use files::Ask;
 pub use library::Library;
 pub use live::{Live, LiveCommand};
 pub use player::{PlayCommand, Player, SPEEDS};
+pub use similar::SimilarCommand;
 pub use timeline::{Drag, Grip, TimelineState};
 pub use train::Train;
 
@@ -63,7 +76,12 @@ pub struct State {
     /// The joint that leaves a trail.
     pub trail: Option<usize>,
     pub onion: bool,
+    /// Who is seen beside the performer.
+    pub companions: Companions,
     pub timeline: TimelineState,
+    /// The channel whose curve is shown: joint and kind; and the curve, once it is read.
+    pub channel_wanted: Option<(usize, ChannelKind)>,
+    pub channel: Option<Channel>,
     pub curves: Option<Arc<Curves>>,
     /// What the index recognises in the clip that is shown.
     pub detections: Option<(ClipId, Vec<ClipDetection>)>,
@@ -80,6 +98,10 @@ pub struct State {
     /// A folder of this run's own, for what nobody has named yet.
     folder: Option<PathBuf>,
     seen_version: u64,
+    /// The shown clip, while it is decoded anew.
+    reopening: Option<ClipId>,
+    /// The database of the last session.
+    pub last: Option<PathBuf>,
 }
 
 /// Decoded clips, the ones used last; others are decoded again when they are looked at.
@@ -103,6 +125,12 @@ impl Motions {
 
     pub fn failure(&self, clip: ClipId) -> Option<&str> {
         self.failed.get(&clip).map(String::as_str)
+    }
+
+    /// Forgets clips whose roles are not what they were when they were decoded.
+    fn forget_changed(&mut self, roles: &BTreeMap<ClipId, RoleMap>) {
+        let same = |motion: &ClipMotion| roles.get(&motion.id).is_none_or(|r| *r == motion.roles);
+        self.kept.retain(|_, (motion, _)| same(motion));
     }
 
     fn keep(&mut self, motion: Arc<ClipMotion>) {
@@ -139,7 +167,10 @@ impl State {
             camera: Camera::default(),
             trail: None,
             onion: false,
+            companions: Companions::default(),
             timeline: TimelineState::default(),
+            channel_wanted: None,
+            channel: None,
             curves: None,
             detections: None,
             classes: Classes::default(),
@@ -152,6 +183,8 @@ impl State {
             pending: None,
             folder: None,
             seen_version: 0,
+            reopening: None,
+            last: None,
         }
     }
 
@@ -179,7 +212,7 @@ impl State {
         let motion = self.player.motion.as_ref()?;
         let at = motion.body.centre(&motion.pose(self.player.at_secs))?;
         let waist = motion.floor + 0.52 * motion.body.height;
-        Some(morec::math::Vec3::new(at.x, waist, at.z))
+        Some(self.middle(morec::math::Vec3::new(at.x, waist, at.z)))
     }
 
     /// Carries out what was asked for.
@@ -203,6 +236,9 @@ impl State {
             Command::Classes(command) => self.apply_classes(command),
             Command::Train(command) => self.apply_train(command),
             Command::Live(command) => self.apply_live(command),
+            Command::Cuts(command) => self.apply_cuts(command),
+            Command::Similar(command) => self.apply_similar(command),
+            Command::Compare(command) => self.apply_compare(command),
             Command::Cancel(at) => {
                 if let Some(job) = self.jobs.running.get(at) {
                     job.cancel();

@@ -12,6 +12,7 @@ impl State {
                 StoreMessage::Done(text) => self.say(text),
                 StoreMessage::Failed(text) => {
                     self.timeline.drag = None;
+                    self.timeline.held_cut = None;
                     self.complain(text);
                 }
             }
@@ -24,6 +25,11 @@ impl State {
             self.seen_version = version;
             self.changed();
         }
+        // Whoever could not be loaded at once, because others were, is asked for again.
+        let waiting = [self.pending.map(|(id, _)| id), self.reopening];
+        for clip in waiting.into_iter().flatten() {
+            self.want_motion(clip);
+        }
         self.refresh_library();
     }
 
@@ -34,6 +40,10 @@ impl State {
         if self.timeline.drag.as_ref().is_some_and(|d| d.dropped) {
             self.timeline.drag = None;
         }
+        if self.timeline.held_cut.is_some_and(|c| c.dropped) {
+            self.timeline.held_cut = None;
+        }
+        self.roles_changed(&snapshot);
         self.timeline
             .selected
             .retain(|id| snapshot.sample(*id).is_some());
@@ -74,6 +84,7 @@ impl State {
                 match loaded.motion {
                     Ok(motion) => {
                         self.motions.keep(motion.clone());
+                        self.reopened(&motion);
                         if let Some((_, stretch)) = self.pending.filter(|(id, _)| *id == motion.id)
                         {
                             self.show_motion(motion, stretch);
@@ -102,7 +113,14 @@ impl State {
             JobOutcome::Cut(report) => {
                 let clips = crate::format::count(report.clips, "clip");
                 let segments = crate::format::count(report.segments, "segment");
-                self.say(format!("{clips} cut into {segments}"));
+                let kept = match report.by_hand {
+                    0 => String::new(),
+                    n => format!(
+                        "; {} cut by hand left as cut",
+                        crate::format::count(n, "clip")
+                    ),
+                };
+                self.say(format!("{clips} cut into {segments}{kept}"));
                 for (clip, why) in report.left.iter().take(3) {
                     self.complain(format!("{clip}: not cut: {why}"));
                 }
@@ -128,6 +146,12 @@ impl State {
                 self.taught(&taught);
                 self.reload();
             }
+            JobOutcome::Similar(similar) => self.found_similar(similar),
+            JobOutcome::Aligned(aligned) => self.aligned(aligned),
+            JobOutcome::Channel(channel) => self.channel = Some(channel),
+            JobOutcome::Thesis(thesis) => self.thesis_trained(thesis),
+            JobOutcome::Map(map) => self.train.map = Some(map),
+            JobOutcome::Written(said) => self.say(said),
             JobOutcome::Failed(why) => {
                 if name == super::live::TEACHING {
                     self.live.teaching = false;
@@ -136,7 +160,12 @@ impl State {
             }
             JobOutcome::Cancelled => {
                 // What looks at a clip is cancelled whenever another is shown.
-                if name != super::shown::CURVES {
+                let quiet = [
+                    super::shown::CURVES,
+                    super::similar::SEARCHING,
+                    super::train::MAPPING,
+                ];
+                if !quiet.contains(&name) {
                     self.say(format!("{name}: stopped"));
                 }
                 self.reload();

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use morec::smooth::ChannelKind;
 use morec_db::ClipId;
 
 use super::{Panel, State, ViewCommand};
@@ -43,9 +44,11 @@ impl State {
                 .retain(|id| here(*id).unwrap_or(false));
             self.timeline.range = None;
             self.timeline.drag = None;
-            self.curves = None;
-            self.want_curves(&motion);
-            self.want_detections(&motion);
+            self.timeline.cut = None;
+            self.timeline.held_cut = None;
+            self.companions.all.retain(|a| a.of.clip == motion.id);
+            self.library.role = None;
+            self.look_anew(&motion);
         }
         if let Some((start, stop)) = stretch {
             self.player.apply(&super::PlayCommand::Stretch(start, stop));
@@ -54,6 +57,15 @@ impl State {
             self.timeline.to_secs = stop + 2.0 * margin;
             self.timeline.pan(0.0, motion.secs());
         }
+    }
+
+    /// Asks for all that is computed of the clip that is shown.
+    pub(super) fn look_anew(&mut self, motion: &Arc<ClipMotion>) {
+        self.curves = None;
+        self.want_curves(motion);
+        self.want_detections(motion);
+        self.want_map(motion);
+        self.want_channel(self.channel_wanted);
     }
 
     /// Computes what both methods of cutting say of a clip.
@@ -65,6 +77,25 @@ impl State {
         self.jobs.start(CURVES, false, &self.wake, move |progress| {
             crate::jobs::cut::curves(&motion, progress)
         });
+    }
+
+    /// Reads a channel of the clip that is shown.
+    pub(super) fn want_channel(&mut self, wanted: Option<(usize, ChannelKind)>) {
+        self.channel = None;
+        self.channel_wanted = wanted;
+        let (Some((joint, kind)), Some(motion)) = (wanted, &self.player.motion) else {
+            return;
+        };
+        if joint >= motion.clip.skeleton.len() {
+            self.channel_wanted = None;
+            return;
+        }
+        let Some(store) = &self.store else { return };
+        let (db, clip) = (store.path().to_owned(), motion.id);
+        self.jobs
+            .start("Reading a channel", false, &self.wake, move |_| {
+                crate::jobs::channel::read(&db, clip, joint, kind)
+            });
     }
 
     pub(super) fn look(&mut self, look: ViewCommand) {

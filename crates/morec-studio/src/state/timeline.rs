@@ -4,6 +4,8 @@ use std::collections::BTreeSet;
 
 use morec_db::labels::{DbSample, SampleId};
 
+use super::cuts::HeldCut;
+
 /// No view is shorter than this, seconds.
 const SHORTEST: f64 = 0.05;
 /// What is nearer than this to something that can be snapped to is put there, points of the screen.
@@ -39,6 +41,9 @@ pub struct TimelineState {
     /// A stretch of time that is selected.
     pub range: Option<(f64, f64)>,
     pub drag: Option<Drag>,
+    /// The cut that is selected, seconds.
+    pub cut: Option<f64>,
+    pub held_cut: Option<HeldCut>,
     pub snap: bool,
     /// Width of the tracks, points; known once it was drawn.
     pub width: f32,
@@ -54,6 +59,8 @@ impl Default for TimelineState {
             selected: BTreeSet::new(),
             range: None,
             drag: None,
+            cut: None,
+            held_cut: None,
             snap: true,
             width: 800.0,
             follow: true,

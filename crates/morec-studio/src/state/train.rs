@@ -10,6 +10,7 @@ use morec::train::TrainingReport;
 use super::files::quoted;
 use super::{Panel, State, TrainCommand};
 use crate::jobs::load::ClipMotion;
+use crate::jobs::thesis::{self, Map, Thesis};
 use crate::jobs::{judge, recognise, train};
 use crate::store::{Edit, Snapshot};
 
@@ -17,6 +18,9 @@ use crate::store::{Edit, Snapshot};
 pub const INDEX: &str = "studio";
 const TRAINING: &str = "Training";
 const JUDGING: &str = "Judging";
+const THESIS: &str = "Training the method of 2009";
+/// Name of the job that maps confidences.
+pub(super) const MAPPING: &str = "Mapping confidences";
 
 /// The training panel's own state.
 #[derive(Default)]
@@ -34,6 +38,10 @@ pub struct Train {
     pub judged: Option<CrossvalView>,
     /// The cell of the confusion matrix that is shown.
     pub cell: Option<(usize, usize)>,
+    /// The method of 2009, once it is trained; the branch that is shown; its map of the clip that is shown.
+    pub thesis: Option<Arc<Thesis>>,
+    pub branch: usize,
+    pub map: Option<Map>,
 }
 
 /// A cross-validation, ready to be shown.
@@ -99,6 +107,8 @@ impl State {
                 }
             }
             TrainCommand::UseIndex(name) => self.use_index(&name),
+            TrainCommand::Thesis => self.train_thesis(),
+            TrainCommand::Branch(node) => self.train.branch = node,
         }
     }
 
@@ -147,6 +157,54 @@ impl State {
         self.jobs.start(JUDGING, true, &self.wake, move |progress| {
             judge::judge(&db, &classes, progress)
         });
+    }
+
+    fn train_thesis(&mut self) {
+        let Some(store) = &self.store else { return };
+        if store.snapshot.accepted().next().is_none() {
+            self.complain("Nothing to learn from: label a few motions first");
+            return;
+        }
+        let (db, classes) = (store.path().to_owned(), self.chosen());
+        self.command_line = format!(
+            "morec train --db {} --method svrdm -o 2009.index",
+            quoted(&db)
+        );
+        self.jobs.start(THESIS, true, &self.wake, move |progress| {
+            thesis::run(&db, &classes, progress)
+        });
+    }
+
+    pub(super) fn thesis_trained(&mut self, thesis: Arc<Thesis>) {
+        let samples = crate::format::count(thesis.samples.len(), "sample");
+        self.say(format!("the method of 2009 is trained on {samples}"));
+        let mut branches = thesis.nodes.iter();
+        let first = branches.position(|n| matches!(n, thesis::Shown::Branch(_)));
+        self.train.branch = first.unwrap_or(0);
+        self.train.thesis = Some(thesis);
+        if let Some(motion) = self.player.motion.clone() {
+            self.want_map(&motion);
+        }
+    }
+
+    /// The confidences of the method of 2009 over the clip that is shown.
+    pub(super) fn want_map(&mut self, motion: &Arc<ClipMotion>) {
+        self.train.map = None;
+        let Some(thesis) = self.train.thesis.clone() else {
+            return;
+        };
+        for job in self.jobs.running.iter().filter(|j| j.name == MAPPING) {
+            job.cancel();
+        }
+        let motion = motion.clone();
+        self.jobs
+            .start(MAPPING, false, &self.wake, move |progress| {
+                thesis::map(&thesis.model, &motion, progress)
+            });
+    }
+
+    pub fn is_training_thesis(&self) -> bool {
+        self.jobs.is_running(THESIS)
     }
 
     /// Whether an index is being trained.

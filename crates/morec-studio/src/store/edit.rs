@@ -1,7 +1,8 @@
 //! Edits of the database as values: what the window may change, each one step of the history.
 
+use morec::roles::RoleMap;
 use morec_db::labels::{LabelOptions, NewSample, SampleId, SampleState};
-use morec_db::{ClipId, ClipUpdate, DbError, MotionDb};
+use morec_db::{ClipId, ClipUpdate, DbError, MotionDb, Segment};
 
 /// Who says so, in the database.
 pub const BY: &str = "studio";
@@ -49,6 +50,15 @@ pub enum Edit {
         to: String,
     },
     RemoveClips(Vec<ClipId>),
+    /// Who plays what in clips.
+    Roles(Vec<(ClipId, RoleMap)>),
+    /// What a clip is cut into, by a method.
+    Cuts {
+        what: String,
+        method: String,
+        clip: ClipId,
+        segments: Vec<Segment>,
+    },
     KeepIndex {
         name: String,
         bytes: Vec<u8>,
@@ -121,6 +131,22 @@ impl Edit {
                     "{} clips removed, {labels} labels with them",
                     clips.len()
                 ))
+            }
+            Edit::Roles(clips) => {
+                db.set_roles(clips)?;
+                Ok(format!(
+                    "roles of {} changed",
+                    crate::format::count(clips.len(), "clip")
+                ))
+            }
+            Edit::Cuts {
+                what,
+                method,
+                clip,
+                segments,
+            } => {
+                db.set_segments(method, &[*clip], segments)?;
+                Ok(what.clone())
             }
             Edit::KeepIndex { name, bytes } => {
                 db.keep_index(name, bytes)?;

@@ -89,6 +89,12 @@ impl Store {
         self.pending += usize::from(self.requests.send(Request::Reload).is_ok());
     }
 
+    /// From now on the disk is full.
+    #[cfg(test)]
+    pub fn fill(&mut self) {
+        self.pending += usize::from(self.requests.send(Request::Fill).is_ok());
+    }
+
     /// Takes what has arrived.
     pub fn poll(&mut self) -> Vec<StoreMessage> {
         let mut said = Vec::new();

@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use morec::roles::RoleMap;
 use morec_db::labels::{ClassCount, DbSample, SampleFilter, SampleId, SampleState};
-use morec_db::{ClipFilter, ClipId, ClipInfo, DbError, HistoryStep, IndexInfo, MotionDb};
+use morec_db::{ClipFilter, ClipId, ClipInfo, DbError, HistoryStep, IndexInfo, MotionDb, Segment};
 
 /// The database at one moment, without motion.
 #[derive(Debug, Clone, Default)]
@@ -18,20 +19,34 @@ pub struct Snapshot {
     pub indexes: Vec<IndexInfo>,
     /// The last first.
     pub history: Vec<HistoryStep>,
+    /// By clip and time.
+    pub segments: Vec<Segment>,
+    /// By which method each clip was cut.
+    pub cut_methods: BTreeMap<ClipId, String>,
+    /// Who plays what in each clip.
+    pub roles: BTreeMap<ClipId, RoleMap>,
     place: BTreeMap<ClipId, usize>,
+    segments_of: BTreeMap<ClipId, Range<usize>>,
     samples_of: BTreeMap<ClipId, Range<usize>>,
     sample_place: BTreeMap<SampleId, usize>,
 }
 
 impl Snapshot {
     pub fn read(db: &MotionDb) -> Result<Self, DbError> {
-        Ok(Self::of(
-            db.clips(&ClipFilter::default())?,
-            db.classes()?,
-            db.samples(&SampleFilter::default())?,
-            db.indexes()?,
-            db.history()?,
-        ))
+        let segments = db.segments()?;
+        Ok(Self {
+            segments_of: runs(segments.iter().map(|s| s.clip)),
+            segments,
+            cut_methods: db.cut_methods()?,
+            roles: db.roles()?,
+            ..Self::of(
+                db.clips(&ClipFilter::default())?,
+                db.classes()?,
+                db.samples(&SampleFilter::default())?,
+                db.indexes()?,
+                db.history()?,
+            )
+        })
     }
 
     pub fn of(
@@ -50,7 +65,14 @@ impl Snapshot {
             samples,
             indexes,
             history,
+            ..Self::default()
         }
+    }
+
+    /// What a clip is cut into, by time.
+    pub fn segments_of(&self, clip: ClipId) -> &[Segment] {
+        let range = self.segments_of.get(&clip).cloned().unwrap_or_default();
+        &self.segments[range]
     }
 
     pub fn clip(&self, id: ClipId) -> Option<&ClipInfo> {

@@ -15,6 +15,9 @@ const LOOK: Duration = Duration::from_secs(1);
 pub enum Request {
     Edit(Edit),
     Reload,
+    /// The file grows no further: what a full disk looks like.
+    #[cfg(test)]
+    Fill,
 }
 
 pub struct Reply {
@@ -75,6 +78,11 @@ impl StoreWorker {
                     (Some(said), true)
                 }
                 Ok(Request::Reload) => (None, true),
+                #[cfg(test)]
+                Ok(Request::Fill) => {
+                    let filled = self.db.limit_bytes(0).err();
+                    (filled.map(|e| StoreMessage::Failed(e.to_string())), true)
+                }
                 Err(RecvTimeoutError::Timeout) => {
                     if mark(&self.db) == self.seen {
                         continue;

@@ -1,7 +1,10 @@
 //! What is wrong is said in place, and nothing is lost.
 
+use morec_db::labels::{NewSample, SampleState as Judged};
+
 use super::{Person, made};
 use crate::state::{Command, FileCommand, Panel};
+use crate::store::Edit;
 
 #[test]
 fn a_file_that_is_no_database_gives_a_sentence() {
@@ -88,4 +91,28 @@ fn what_cannot_be_written_is_said_and_what_was_there_stays() {
         folder.path().join("x.index"),
     )));
     assert!(person.sees_part("There is no index yet"));
+}
+
+#[test]
+fn a_full_disk_is_said_and_what_was_there_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 1)]);
+    let before = person.labels();
+    let store = person.window.state_mut().state.store.as_mut().unwrap();
+    store.fill();
+    let clip = store.snapshot.clips[0].id;
+    let many = (0..20_000).map(|n| NewSample {
+        clip,
+        class: "wave".to_owned(),
+        start_secs: f64::from(n) * 1e-3,
+        stop_secs: f64::from(n) * 1e-3 + 0.5,
+        whole_clip: false,
+        state: Judged::Accepted,
+        score: None,
+    });
+    person.command(Command::Edit(Edit::Label(many.collect())));
+    assert!(person.sees_part("The disk is full: nothing of the last step was kept"));
+    assert_eq!(person.labels(), before);
+    person.click("Dismiss");
+    assert!(!person.sees_part("The disk is full"));
 }

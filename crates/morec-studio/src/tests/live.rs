@@ -106,3 +106,95 @@ fn a_device_is_listened_to_and_its_absence_is_said() {
     assert!(person.state().live.run.is_none());
     assert!(!person.state().notices.is_empty());
 }
+
+/// Sends the poses of a take as lines of JSON, as of two performers a metre apart.
+fn send(address: &str, take: &morec::synth::SyntheticTake, frames: usize) -> std::net::TcpStream {
+    use std::io::Write;
+    let roles = morec::roles::RoleMap::find(&take.clip.skeleton);
+    let mut stream = std::net::TcpStream::connect(address).unwrap();
+    for frame in 0..frames {
+        let pose = morec::kinematics::WorldPose::of(&take.clip, frame);
+        for actor in 0..2 {
+            let place = |role: morec::roles::Role| {
+                let p = pose.positions[roles.joint(role)?];
+                let [x, y, z] = [p.x + f64::from(actor), p.y, p.z];
+                Some(format!("\"{role}\": [{x:.4}, {y:.4}, {z:.4}]"))
+            };
+            let places: Vec<String> = morec::roles::Role::ALL
+                .into_iter()
+                .filter_map(place)
+                .collect();
+            let secs = frame as f64 / take.clip.rate_hz;
+            let places = places.join(", ");
+            writeln!(
+                stream,
+                "{{\"t\": {secs:.4}, \"actor\": {actor}, \"positions\": {{{places}}}}}"
+            )
+            .unwrap();
+        }
+    }
+    stream
+}
+
+#[test]
+fn two_performers_are_seen_either_is_watched_and_a_lost_sender_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 0)]);
+    person.goes_to(Panel::Live);
+    let choice = Choice::Network("json+tcp://127.0.0.1:0".to_owned());
+    person.command(Command::Live(LiveCommand::Choose(choice)));
+    person.click("Start");
+    let name = person.state().live.run.as_ref().unwrap().name.clone();
+    let address = name.trim_start_matches("json+tcp://").to_owned();
+    let sender = std::thread::spawn(move || send(&address, &takes()[0], 120));
+    let begun = std::time::Instant::now();
+    let frames = |person: &Person| -> Vec<usize> {
+        let run = person.state().live.run.as_ref().unwrap();
+        run.performers.iter().map(|p| p.frames.len()).collect()
+    };
+    while frames(&person) != [120, 120] && begun.elapsed().as_secs() < 60 {
+        person.frames(1);
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    assert_eq!(frames(&person), [120, 120]);
+    // The connection stays open: the sender is silent, not gone.
+    let connection = sender.join().unwrap();
+    person.frames(2);
+    assert!(person.sees_part("Seen: Performer 2"));
+    person.click("Watch performer 2");
+    let run = person.state().live.run.as_ref().unwrap();
+    assert_eq!(run.watched().unwrap().actor.0, 1);
+    assert!(person.sees_part("Seen: Performer 1"));
+    // Two seconds without a word.
+    person.wait(2.0);
+    assert!(person.sees_part("the sender has stopped"));
+    drop(connection);
+    assert_eq!(frames(&person), [120, 120], "what came is still there");
+}
+
+#[test]
+fn the_sensitivity_shows_what_the_minutes_would_have_held() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 2)]);
+    person.goes_to(Panel::Train);
+    person.click("Start training");
+    person.settle();
+    person.goes_to(Panel::Live);
+    person.key(Key::Space);
+    person.settle();
+    let end = takes()[0].clip.duration_secs();
+    while person.state().live.run.as_ref().unwrap().now_secs < end - 0.5 {
+        person.frames(1);
+    }
+    assert!(!person.state().live.counts.is_empty());
+    let slider = person.place("Sensitivity");
+    let at = |share: f32| egui::pos2(slider.left() + share * slider.width(), slider.center().y);
+    person.drag(at(0.5), at(0.05));
+    person.settle();
+    let few = person.state().live.resensed.as_ref().unwrap().len();
+    person.drag(at(0.1), at(0.95));
+    person.settle();
+    let many = person.state().live.resensed.as_ref().unwrap().len();
+    assert!(few <= many && many > 0, "{few} {many}");
+    assert!(person.sees_part("would have held"));
+}

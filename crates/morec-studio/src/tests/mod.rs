@@ -1,10 +1,14 @@
 //! The window without a window: through the accessibility tree, as somebody with a screen reader meets it.
 
+mod compare;
 mod counted;
+mod cuts;
 mod edits;
 mod faults;
 mod live;
+mod out;
 mod pictures;
+mod roles;
 mod train;
 
 use std::path::{Path, PathBuf};
@@ -183,6 +187,16 @@ impl Person {
             modifiers: Modifiers::NONE,
         });
         self.frames(1);
+    }
+
+    /// Clicks twice at a place.
+    pub fn double_click_at(&mut self, at: Pos2) {
+        self.actions += 1;
+        for _ in 0..2 {
+            self.pointer(at, true);
+            self.pointer(at, false);
+        }
+        self.frames(2);
     }
 
     /// Presses, moves in steps, lets go.

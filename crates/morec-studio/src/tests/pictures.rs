@@ -24,6 +24,7 @@ fn panels_are_drawn_without_a_display() {
             panel,
             clip: Some("ben_1".to_owned()),
             at_secs: 2.0,
+            like: None,
             size: [1280, 720],
             dark,
         };
@@ -43,6 +44,7 @@ fn a_clip_that_is_not_there_is_said() {
         panel: Panel::Library,
         clip: Some("nobody".to_owned()),
         at_secs: 0.0,
+        like: None,
         size: [1280, 720],
         dark: true,
     };

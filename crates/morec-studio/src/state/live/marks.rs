@@ -21,13 +21,19 @@ impl State {
             self.say("the mark before this one is still being kept");
             return;
         }
-        let Some((start, stop)) = self.live.range.or_else(|| run.last_motion()) else {
+        let Some((start, stop)) = self.live.range.or_else(|| run.watched()?.last_motion()) else {
             self.say("nothing has moved yet that could be marked");
             return;
         };
-        let Some((recording, origin)) = run.cut_out(start - AROUND_SECS, stop + AROUND_SECS) else {
+        let cut =
+            |performer: &super::Tracked| performer.cut_out(start - AROUND_SECS, stop + AROUND_SECS);
+        let Some((recording, origin)) = run.watched().and_then(cut) else {
             self.complain("That part of the stream is no longer kept");
             return;
+        };
+        let source = match run.name.contains("://") {
+            true => run.name.clone(),
+            false => "SOURCE".to_owned(),
         };
         self.live.marks.push((start, stop, class.to_owned()));
         self.live.range = None;
@@ -39,9 +45,8 @@ impl State {
             name: class.replace(' ', "_"),
         };
         self.command_line = format!(
-            "morec db label {} --clip {}_001 --class {class}",
-            crate::state::files::quoted(&store),
-            lesson.name
+            "morec teach studio.index --name {} --listen {source}",
+            crate::state::files::quoted(class.as_ref())
         );
         self.keep(store, lesson);
     }
@@ -96,9 +101,9 @@ impl State {
             name: "take".to_owned(),
         };
         self.command_line = format!(
-            "morec record {} --listen {}",
-            crate::state::files::quoted(&store),
-            self.live.run.as_ref().map_or("SOURCE", |r| r.name.as_str())
+            "morec record --listen {} -o take.bvh && morec db import {} take.bvh",
+            self.live.run.as_ref().map_or("SOURCE", |r| r.name.as_str()),
+            crate::state::files::quoted(&store)
         );
         self.keep(store, lesson);
     }

@@ -4,13 +4,14 @@ mod feed;
 mod marks;
 mod moved;
 mod run;
+mod tracked;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use morec::features::KeyPose;
 use morec::index::MotionIndex;
-use morec::live::{Detection, Model, Recording};
+use morec::live::{Detection, Model, PerformerId, Recording};
 use morec::math::Vec3;
 use morec_db::ClipId;
 
@@ -18,6 +19,7 @@ use super::State;
 use crate::jobs::recognise;
 pub use feed::{ClipFeed, Feed, ThreadFeed};
 pub use run::Run;
+pub use tracked::Tracked;
 
 /// Name of the job that keeps what was marked.
 pub(super) const TEACHING: &str = "Keeping what was marked";
@@ -91,6 +93,8 @@ pub enum LiveCommand {
     Mark(usize),
     /// Likewise, of this class.
     MarkAs(String),
+    /// Watches another performer.
+    Watch(PerformerId),
     /// Begins a take after a countdown, or ends it.
     Record,
 }
@@ -101,12 +105,12 @@ impl Live {
     }
 
     pub fn centre(&self) -> Option<Vec3> {
-        self.run.as_ref()?.centre()
+        self.run.as_ref()?.watched()?.centre()
     }
 
     pub fn heading(&self) -> Option<f64> {
-        let run = self.run.as_ref()?;
-        run.body.heading(&run.pose)
+        let performer = self.run.as_ref()?.watched()?;
+        performer.body.heading(&performer.pose)
     }
 
     /// The index, at the sensitivity that was chosen.
@@ -162,6 +166,15 @@ impl State {
             }
             LiveCommand::MarkAs(class) => self.mark(&class),
             LiveCommand::Record => self.record(),
+            LiveCommand::Watch(actor) => {
+                // A take is of one performer.
+                if self.live.take.is_some() {
+                    self.say("end the take first");
+                } else if let Some(run) = &mut self.live.run {
+                    run.watch(actor);
+                    self.live.range = None;
+                }
+            }
         }
     }
 
@@ -174,6 +187,14 @@ impl State {
                     self.complain("There is no clip to play: import one first");
                     return;
                 };
+                let path = self
+                    .store
+                    .as_ref()
+                    .and_then(|s| Some(s.snapshot.clip(clip)?.path.clone()));
+                if let Some(path) = path {
+                    let file = super::files::quoted(path.as_ref());
+                    self.command_line = format!("morec recognize studio.index {file}");
+                }
                 self.live.choice = Choice::Clip(Some(clip));
                 self.live.starting = Some(clip);
                 self.want_motion(clip);
@@ -252,7 +273,9 @@ impl State {
             *left -= dt;
             if *left <= 0.0 {
                 live.countdown = None;
-                live.take = run.rig.as_ref().map(Recording::new);
+                live.take = run
+                    .watched()
+                    .and_then(|w| Some(Recording::new(w.rig.as_ref()?)));
             }
         }
     }
@@ -265,8 +288,16 @@ impl State {
         let Some(run) = &mut self.live.run else {
             return;
         };
+        self.command_line = match &self.live.choice {
+            Choice::Network(address) => {
+                format!("morec live studio.index --listen {address} --sensitivity {alarms:.2}")
+            }
+            Choice::Clip(_) => {
+                format!("morec recognize studio.index CLIP --sensitivity {alarms:.2}")
+            }
+        };
         run.recognise_with(&model);
-        let poses: Vec<(f64, KeyPose)> = run.key_poses();
+        let poses: Vec<(f64, KeyPose)> = run.watched().map(|w| w.key_poses()).unwrap_or_default();
         if poses.len() > 30 && !self.jobs.is_running("Trying the sensitivity") {
             self.jobs.start(
                 "Trying the sensitivity",

@@ -1,0 +1,138 @@
+//! One performance beside another: which moment of the second belongs to a moment of the first.
+
+use std::ops::Range;
+use std::path::Path;
+use std::sync::Arc;
+
+use morec::features::{FeatureParams, Rows, bones_of_clip, mirrored_rows, rows_of_clip};
+use morec::train::align as warp;
+use morec_db::{DbError, MotionDb};
+
+use super::load::ClipMotion;
+use super::{JobOutcome, JobProgress, similar};
+use crate::stretch::Stretch;
+
+/// The table of the alignment has this many cells at most; longer stretches are compared at the same pace.
+const CELLS: usize = 4_000_000;
+
+/// Two stretches along their warping path.
+#[derive(Debug)]
+pub struct Aligned {
+    pub of: Stretch,
+    pub with: Stretch,
+    /// Whether the second is shown in a mirror.
+    pub mirrored: bool,
+    /// The second's clip.
+    pub motion: Arc<ClipMotion>,
+    /// For every tick of the first, the moment of the second, seconds.
+    path: Vec<f64>,
+    tick_hz: f64,
+}
+
+impl Aligned {
+    /// The moment of the second stretch that belongs to a moment of the first; before and after it, at the same pace.
+    pub fn at(&self, secs: f64) -> f64 {
+        let (first, last) = (self.with.start_secs, self.with.stop_secs);
+        if secs <= self.of.start_secs {
+            return (first + secs - self.of.start_secs).max(0.0);
+        }
+        if secs >= self.of.stop_secs {
+            return last + secs - self.of.stop_secs;
+        }
+        let place = (secs - self.of.start_secs) * self.tick_hz;
+        let (tick, rest) = (place.floor() as usize, place.fract());
+        let here = self.path.get(tick).copied().unwrap_or(last);
+        let next = self.path.get(tick + 1).copied().unwrap_or(last);
+        here + (next - here) * rest
+    }
+}
+
+/// Aligns `of` with a stretch, or with what is most like it in the database at `path`.
+pub fn align(
+    path: &Path,
+    of: Stretch,
+    with: Option<(Stretch, bool)>,
+    progress: &JobProgress,
+) -> JobOutcome {
+    match aligned(path, of, with, progress) {
+        Ok(Some(aligned)) => JobOutcome::Aligned(Arc::new(aligned)),
+        Ok(None) => JobOutcome::Failed("Nothing like it is in the database".to_owned()),
+        Err(DbError::Cancelled) => JobOutcome::Cancelled,
+        Err(error) => JobOutcome::Failed(format!("Nothing was compared: {error}")),
+    }
+}
+
+fn aligned(
+    path: &Path,
+    of: Stretch,
+    with: Option<(Stretch, bool)>,
+    progress: &JobProgress,
+) -> Result<Option<Aligned>, DbError> {
+    let mut db = MotionDb::open(path)?;
+    let (with, mirrored) = match with {
+        Some(given) => given,
+        None => {
+            let hits = similar::hits(&mut db, &of, true, 1, progress)?;
+            let Some(hit) = hits.into_iter().flatten().next() else {
+                return Ok(None);
+            };
+            let stretch = Stretch {
+                clip: hit.clip,
+                start_secs: hit.start_secs,
+                stop_secs: hit.stop_secs,
+            };
+            (stretch, hit.mirrored)
+        }
+    };
+    let first = ClipMotion::of(of.clip, db.clip(of.clip)?);
+    let motion = Arc::new(ClipMotion::of(with.clip, db.clip(with.clip)?));
+    let params = FeatureParams::default();
+    let path = path_of((&first, &of), (&motion, &with), mirrored, &params);
+    Ok(Some(Aligned {
+        of,
+        with,
+        mirrored,
+        motion,
+        path,
+        tick_hz: params.tick_hz(),
+    }))
+}
+
+/// For every tick of the first stretch, the moment of the second.
+fn path_of(
+    (first, of): (&ClipMotion, &Stretch),
+    (second, with): (&ClipMotion, &Stretch),
+    mirrored: bool,
+    params: &FeatureParams,
+) -> Vec<f64> {
+    let hz = params.tick_hz();
+    let bones = |m: &ClipMotion| bones_of_clip(&m.clip, &m.roles, &m.rest);
+    let common = bones(first).and(bones(second));
+    // Velocities say how fast, and alignment is to forgive just that.
+    let directions: Vec<usize> = (0..3 * common.len()).collect();
+    let cut = |motion: &ClipMotion, span: Range<f64>| -> Rows {
+        let rows = rows_of_clip(&motion.clip, &motion.roles, &motion.rest, common, params);
+        let tick = |secs: f64| ((secs * hz).round().max(0.0) as usize).min(rows.len());
+        rows.slice(tick(span.start)..tick(span.end))
+    };
+    let a = cut(first, of.start_secs..of.stop_secs);
+    let mut b = cut(second, with.start_secs..with.stop_secs);
+    if mirrored && let Some(image) = mirrored_rows(&b, common) {
+        b = image;
+    }
+    if a.len() * b.len() > CELLS || directions.is_empty() || b.is_empty() {
+        let pace = (with.stop_secs - with.start_secs) / (of.stop_secs - of.start_secs).max(1e-9);
+        let ticks = a.len().max(2);
+        return (0..ticks)
+            .map(|tick| with.start_secs + pace * tick as f64 / hz)
+            .collect();
+    }
+    let mut sums = vec![(0.0, 0usize); a.len()];
+    for (i, j) in warp(&a.columns(&directions), &b.columns(&directions)) {
+        sums[i].0 += j as f64;
+        sums[i].1 += 1;
+    }
+    sums.iter()
+        .map(|(sum, count)| with.start_secs + sum / (*count).max(1) as f64 / hz)
+        .collect()
+}

@@ -1,0 +1,148 @@
+//! Out of the database: labels in every form, a clip, a page to send to somebody.
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+use morec::formats::bvh;
+use morec::import::{ImportOptions, SignedAxis, normalize};
+use morec::labels::ClipLength;
+use morec::player::{Mark, Played, page};
+use morec_db::exchange::{self, Annotation, ClipLengths, LabelFormat};
+use morec_db::labels::{SampleFilter, SampleState};
+use morec_db::{ClipFilter, ClipId, MotionDb};
+
+use super::JobOutcome;
+use crate::format;
+
+/// What is to be written.
+#[derive(Debug, Clone)]
+pub enum Export {
+    /// Accepted labels; forms of one clip into a folder, a file for each.
+    Labels(LabelFormat),
+    /// The motion of a clip, as BVH.
+    Clip(ClipId),
+    /// A page that plays a clip with its labels and with what was recognised.
+    Page(ClipId, Vec<Mark>),
+}
+
+/// Writes what is asked for of the database at `db` to `path`.
+pub fn export(db: &Path, what: &Export, path: &Path) -> JobOutcome {
+    let name = format::file_name(path);
+    match written(db, what, path) {
+        Ok(said) => JobOutcome::Written(format!("{name}: {said}")),
+        Err(why) => JobOutcome::Failed(format!("{name}: not written: {why}")),
+    }
+}
+
+fn written(db: &Path, what: &Export, path: &Path) -> Result<String, String> {
+    // Writing over what is read would lose it.
+    if path.exists() && path.canonicalize().ok() == db.canonicalize().ok() {
+        return Err("this is the database itself".to_owned());
+    }
+    let db = MotionDb::open_read_only(db).map_err(|e| e.to_string())?;
+    match what {
+        Export::Labels(form) => labels(&db, *form, path),
+        Export::Clip(clip) => {
+            let stored = db.clip(*clip).map_err(|e| e.to_string())?;
+            let mut bytes = Vec::new();
+            bvh::write(&stored.clip, &mut bytes).map_err(|e| e.to_string())?;
+            write_whole(path, &bytes)?;
+            Ok(format::count(stored.clip.frames, "frame"))
+        }
+        Export::Page(clip, detections) => {
+            let html = played(&db, *clip, detections.clone()).map_err(|e| e.to_string())?;
+            write_whole(path, html.as_bytes())?;
+            Ok("a page that plays the clip in any browser".to_owned())
+        }
+    }
+}
+
+fn labels(db: &MotionDb, form: LabelFormat, path: &Path) -> Result<String, String> {
+    let filter = SampleFilter {
+        state: Some(SampleState::Accepted),
+        ..SampleFilter::default()
+    };
+    let samples = db.samples(&filter).map_err(|e| e.to_string())?;
+    let annotations: Vec<Annotation> = samples
+        .into_iter()
+        .map(|s| Annotation {
+            extent: (!s.whole_clip).then_some((s.start_secs, s.stop_secs)),
+            clip: s.clip_name,
+            class: s.class,
+            person: s.subject,
+            score: s.score,
+            state: s.state,
+        })
+        .collect();
+    let clips = db
+        .clips(&ClipFilter::default())
+        .map_err(|e| e.to_string())?;
+    let lengths: ClipLengths = clips
+        .into_iter()
+        .map(|c| {
+            let (frames, rate_hz) = (c.frames, c.rate_hz);
+            (c.name, ClipLength { frames, rate_hz })
+        })
+        .collect();
+    let said = format::count(annotations.len(), "label");
+    if !form.is_of_one_clip() {
+        let text = exchange::write(form, &annotations, &lengths)?;
+        write_whole(path, text.as_bytes())?;
+        return Ok(said);
+    }
+    std::fs::create_dir_all(path).map_err(|e| e.to_string())?;
+    let of_clips: Vec<&[Annotation]> = annotations.chunk_by(|a, b| a.clip == b.clip).collect();
+    let names = exchange::file_names(of_clips.iter().map(|all| all[0].clip.as_str()));
+    let ending = if form == LabelFormat::Eaf {
+        "eaf"
+    } else {
+        "txt"
+    };
+    for (of_clip, name) in of_clips.iter().zip(&names) {
+        let text = exchange::write(form, of_clip, &lengths)?;
+        write_whole(&path.join(format!("{name}.{ending}")), text.as_bytes())?;
+    }
+    Ok(format!("{said} in {}", format::count(names.len(), "file")))
+}
+
+fn played(db: &MotionDb, clip: ClipId, detections: Vec<Mark>) -> Result<String, Box<dyn Error>> {
+    let stored = db.clip(clip)?;
+    let filter = SampleFilter {
+        clip: Some(clip),
+        state: Some(SampleState::Accepted),
+        ..SampleFilter::default()
+    };
+    let labels = db.samples(&filter)?.into_iter().map(|s| Mark {
+        name: s.class,
+        start_secs: s.start_secs,
+        stop_secs: s.stop_secs,
+    });
+    let title = stored.clip.name.clone();
+    // Kept clips are in metres and Y up.
+    let as_it_is = ImportOptions {
+        up: Some(SignedAxis::Y),
+        metres_per_unit: Some(1.0),
+        ..ImportOptions::default()
+    };
+    let mut take = normalize(stored.clip, &as_it_is)?;
+    take.roles = stored.roles;
+    let played = Played {
+        take: &take,
+        labels: labels.collect(),
+        detections,
+    };
+    Ok(page(&title, &[played]))
+}
+
+/// Writes a file so that there is all of it or what was there before.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), String> {
+    let mut beside = path.as_os_str().to_owned();
+    beside.push(".part");
+    let beside = PathBuf::from(beside);
+    let done = std::fs::write(&beside, bytes).and_then(|()| std::fs::rename(&beside, path));
+    done.map_err(|error| {
+        // What is there of it is of no use.
+        let _ = std::fs::remove_file(&beside);
+        error.to_string()
+    })
+}

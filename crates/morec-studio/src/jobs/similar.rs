@@ -1,0 +1,67 @@
+//! Search by example: where in the database a motion like this one is.
+
+use std::path::Path;
+
+use morec_db::search::{Hit, SearchIndex, SearchOptions};
+use morec_db::{DbError, MotionDb};
+
+use super::{JobOutcome, JobProgress};
+use crate::stretch::Stretch;
+
+/// So many are shown.
+const MOST: usize = 40;
+
+/// What is like an example.
+#[derive(Debug, Clone)]
+pub struct Similar {
+    pub of: Stretch,
+    /// The example's class, if it is a label.
+    pub class: Option<String>,
+    /// Whether the mirror image was looked for too.
+    pub mirror: bool,
+    /// The nearest first.
+    pub hits: Vec<Hit>,
+}
+
+/// Looks for motions like `of` in the database at `path`.
+pub fn find(
+    path: &Path,
+    of: Stretch,
+    class: Option<String>,
+    mirror: bool,
+    progress: &JobProgress,
+) -> JobOutcome {
+    let found = MotionDb::open(path).and_then(|mut db| hits(&mut db, &of, mirror, MOST, progress));
+    match found {
+        Ok(Some(hits)) => JobOutcome::Similar(Similar {
+            of,
+            class,
+            mirror,
+            hits,
+        }),
+        Ok(None) => JobOutcome::Failed(
+            "Nothing was searched: the stretch is too short, or no body part of its clip is known"
+                .to_owned(),
+        ),
+        Err(DbError::Cancelled) => JobOutcome::Cancelled,
+        Err(error) => JobOutcome::Failed(format!("Nothing was searched: {error}")),
+    }
+}
+
+/// The stretches most like `of`; `None` if it cannot be searched for.
+pub fn hits(
+    db: &mut MotionDb,
+    of: &Stretch,
+    mirror: bool,
+    limit: usize,
+    progress: &JobProgress,
+) -> Result<Option<Vec<Hit>>, DbError> {
+    let index = SearchIndex::of_db(db, progress)?;
+    let options = SearchOptions {
+        limit,
+        mirror,
+        ..SearchOptions::default()
+    };
+    let example = index.example(of.clip, of.start_secs, of.stop_secs);
+    Ok(example.map(|example| index.search(&example.cut_out(), &options)))
+}

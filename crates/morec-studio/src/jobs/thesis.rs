@@ -1,0 +1,235 @@
+//! The method of 2009 on the same labels: its tree of classes, the boundaries of its branches, its map of confidences.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use morec::pivots::{PivotMap, pose_rows_of_clip};
+use morec::svrdm::{Branch, Node, SampleClassifier, SvrdmEngine, SvrdmModel};
+use morec::train::thesis::{SvrdmOptions, train_svrdm};
+use morec::train::{LabelSet, TrainError};
+use morec_db::ClipId;
+
+use super::load::ClipMotion;
+use super::{JobOutcome, JobProgress, train};
+
+/// Places along each side of a picture of a branch.
+pub const GRID: usize = 72;
+/// A machine's side of the plane is where it says at least this (the thesis's `T` in recognition).
+const ACCEPTS: f64 = 0.4;
+
+/// A trained tree, ready to be shown.
+#[derive(Debug)]
+pub struct Thesis {
+    pub model: Arc<SvrdmModel>,
+    pub samples: Vec<Taught>,
+    pub nodes: Vec<Shown>,
+}
+
+/// A sample that taught it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Taught {
+    pub clip: String,
+    pub class: String,
+    pub start_secs: f64,
+    pub stop_secs: f64,
+}
+
+/// A node of the tree.
+#[derive(Debug)]
+pub enum Shown {
+    Leaf(String),
+    Branch(Boundary),
+}
+
+/// A branch: its sides, and the plane in which it tells them apart.
+#[derive(Debug)]
+pub struct Boundary {
+    pub children: [usize; 2],
+    pub sides: [Vec<String>; 2],
+    /// Left, lower, right and upper edge of what is shown of the plane.
+    pub edges: [f64; 4],
+    /// For each place, by rows from below: bit 0 where the first side accepts, bit 1 where the second does.
+    pub regions: Vec<u8>,
+    /// Samples of either side: place in `Thesis::samples`, place in the plane, side.
+    pub points: Vec<(usize, [f64; 2], usize)>,
+}
+
+/// Trains on the accepted samples of the database at `path`.
+pub fn run(path: &Path, classes: &[String], progress: &JobProgress) -> JobOutcome {
+    match trained(path, classes, progress) {
+        Ok(thesis) => JobOutcome::Thesis(Arc::new(thesis)),
+        Err(None) => JobOutcome::Cancelled,
+        Err(Some(why)) => JobOutcome::Failed(format!("The method of 2009 was not trained: {why}")),
+    }
+}
+
+fn trained(
+    path: &Path,
+    classes: &[String],
+    progress: &JobProgress,
+) -> Result<Thesis, Option<String>> {
+    let data = train::material(path, classes).map_err(|e| Some(e.to_string()))?;
+    let labelling = LabelSet {
+        samples: &data.samples,
+        held_back: &[],
+        classes: &data.classes,
+        unlabelled_is_background: true,
+    };
+    let options = SvrdmOptions::default();
+    let (model, _) =
+        train_svrdm(&data.clips, &labelling, &options, progress).map_err(|e| match e {
+            TrainError::Cancelled => None,
+            other => Some(other.to_string()),
+        })?;
+    let model = Arc::new(model);
+    let mut classifier = SampleClassifier::new(&model).map_err(|e| Some(e.to_string()))?;
+    let (mut samples, mut vectors) = (Vec::new(), Vec::new());
+    for clip in &data.clips {
+        let Ok(map) = PivotMap::of_clip(&model.pivots, &clip.clip, &clip.roles) else {
+            continue;
+        };
+        let rows = pose_rows_of_clip(&clip.clip, &model.pivots, &map, &clip.rest, &model.pose);
+        let rows = model.pca.project(&rows);
+        for sample in data.samples.iter().filter(|s| s.clip == clip.name) {
+            let frame = |secs: f64| ((secs * model.rate_hz()).round() as usize).min(rows.len());
+            let cut = rows.slice(frame(sample.start_secs)..frame(sample.stop_secs));
+            if let Some(vector) = classifier.feature(&cut) {
+                vectors.push(vector);
+                samples.push(Taught {
+                    clip: sample.clip.clone(),
+                    class: sample.class.clone(),
+                    start_secs: sample.start_secs,
+                    stop_secs: sample.stop_secs,
+                });
+            }
+        }
+    }
+    let nodes = model.tree.nodes().iter().map(|node| match node {
+        Node::Leaf(class) => Shown::Leaf(model.classes[class.index()].name.clone()),
+        Node::Branch(branch) => Shown::Branch(boundary(&model, branch, &samples, &vectors)),
+    });
+    Ok(Thesis {
+        nodes: nodes.collect(),
+        samples,
+        model: model.clone(),
+    })
+}
+
+fn boundary(
+    model: &SvrdmModel,
+    branch: &Branch,
+    samples: &[Taught],
+    vectors: &[Vec<f64>],
+) -> Boundary {
+    let sides = [0, 1].map(|side| {
+        let classes = branch.classes[side].iter();
+        classes
+            .map(|class| model.classes[class.index()].name.clone())
+            .collect::<Vec<_>>()
+    });
+    let points: Vec<(usize, [f64; 2], usize)> = samples
+        .iter()
+        .enumerate()
+        .filter_map(|(at, sample)| {
+            let side = sides.iter().position(|side| side.contains(&sample.class))?;
+            Some((at, model.tree.reduce(branch, &vectors[at]), side))
+        })
+        .collect();
+    let edges = edges(&points);
+    let at = |axis: usize, step: usize| {
+        let (low, high) = (edges[axis], edges[axis + 2]);
+        low + (high - low) * (step as f64 + 0.5) / GRID as f64
+    };
+    let regions = (0..GRID * GRID).map(|place| {
+        let says = branch.outputs_at([at(0, place % GRID), at(1, place / GRID)]);
+        u8::from(says[0] >= ACCEPTS) | u8::from(says[1] >= ACCEPTS) << 1
+    });
+    Boundary {
+        children: branch.children.map(|child| child as usize),
+        regions: regions.collect(),
+        sides,
+        edges,
+        points,
+    }
+}
+
+/// What of the plane is shown: all points with a quarter of their extent around them.
+fn edges(points: &[(usize, [f64; 2], usize)]) -> [f64; 4] {
+    let axis = |k: usize| {
+        let values = || points.iter().map(|p| p.1[k]);
+        let (low, high) = (
+            values().fold(f64::MAX, f64::min),
+            values().fold(f64::MIN, f64::max),
+        );
+        if low > high {
+            return (0.0, 1.0);
+        }
+        let margin = (0.25 * (high - low)).max(0.05);
+        (low - margin, high + margin)
+    };
+    let ((left, right), (lower, upper)) = (axis(0), axis(1));
+    [left, lower, right, upper]
+}
+
+/// Confidences of the segments of a clip (Fig. 4.3), by where they start and how long they are.
+#[derive(Debug, Clone)]
+pub struct Map {
+    pub clip: ClipId,
+    /// Seconds of a chunk.
+    pub chunk_secs: f64,
+    /// Chunks of the shortest segment.
+    pub shortest: usize,
+    /// How many lengths there are.
+    pub lengths: usize,
+    /// For each start and then each length from the shortest: confidence (0 none … 255) and class.
+    pub cells: Vec<(u8, u8)>,
+    pub classes: Vec<String>,
+}
+
+/// Looks at every segment of a clip.
+pub fn map(model: &Arc<SvrdmModel>, motion: &ClipMotion, progress: &JobProgress) -> JobOutcome {
+    use morec::progress::Progress;
+    let why = |why: String| JobOutcome::Failed(format!("No map of confidences: {why}"));
+    let pivots = match PivotMap::of_clip(&model.pivots, &motion.clip, &motion.roles) {
+        Ok(map) => map,
+        Err(error) => return why(error.to_string()),
+    };
+    let mut engine = match SvrdmEngine::new(model) {
+        Ok(engine) => engine,
+        Err(error) => return why(error.to_string()),
+    };
+    let rows = pose_rows_of_clip(
+        &motion.clip,
+        &model.pivots,
+        &pivots,
+        &motion.rest,
+        &model.pose,
+    );
+    let (params, lengths) = (&model.params, model.params.lengths());
+    let mut cells = vec![(0u8, 0u8); (rows.len() / params.chunk_frames + 1) * lengths];
+    for (at, row) in rows.iter().enumerate() {
+        if at % 4096 == 0 && progress.cancelled() {
+            return JobOutcome::Cancelled;
+        }
+        engine.push_watched(
+            row,
+            &mut |window, cell| {
+                let place = window.start.max(0) as usize * lengths
+                    + window.chunks().saturating_sub(params.min_chunks);
+                if let Some(kept) = cells.get_mut(place) {
+                    let level = (255.0 * cell.confidence).round().clamp(0.0, 255.0);
+                    *kept = (level as u8, cell.class.index().min(255) as u8);
+                }
+            },
+            &mut |_| (),
+        );
+    }
+    JobOutcome::Map(Map {
+        clip: motion.id,
+        chunk_secs: params.chunk_frames as f64 / model.rate_hz(),
+        shortest: params.min_chunks,
+        lengths,
+        cells,
+        classes: model.classes.iter().map(|c| c.name.clone()).collect(),
+    })
+}

@@ -1,0 +1,72 @@
+//! What became of the last import: refusals with their reasons, near copies, what was repaired.
+
+use egui::{RichText, ScrollArea, Ui};
+
+use super::Out;
+use crate::jobs::import::ImportSummary;
+use crate::state::{Command, CompareCommand, LibraryCommand, State};
+use crate::store::Edit;
+use crate::theme::Colours;
+
+/// What became of the last import.
+pub fn show(ui: &mut Ui, state: &State, out: Out) {
+    let Some(report) = &state.import_report else {
+        return;
+    };
+    let c = Colours::now(ui);
+    let fill = c.tint(
+        if report.refused.is_empty() && report.copies.is_empty() {
+            c.good
+        } else {
+            c.warn
+        },
+        0.14,
+    );
+    egui::Frame::new()
+        .fill(fill)
+        .corner_radius(4.0)
+        .inner_margin(8.0)
+        .show(ui, |ui| {
+            ui.horizontal(|ui| {
+                ui.label(RichText::new(report.said()).strong());
+                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                    if ui.small_button("Close").clicked() {
+                        out.push(Command::Library(LibraryCommand::DismissReport));
+                    }
+                });
+            });
+            let lines = report.refused.iter().map(|line| (line, "refused"));
+            let lines = lines.chain(report.warnings.iter().map(|line| (line, "note")));
+            ScrollArea::vertical()
+                .id_salt("report")
+                .max_height(120.0)
+                .show(ui, |ui| {
+                    copies(ui, report, out);
+                    for ((path, why), kind) in lines.take(200) {
+                        let name = path.file_name().unwrap_or_default().to_string_lossy();
+                        ui.label(RichText::new(format!("{name}: {kind}: {why}")).size(12.0))
+                            .on_hover_text(path.display().to_string());
+                    }
+                });
+        });
+    ui.add_space(6.0);
+}
+
+/// Clips that are nearly others: compared, or left out again.
+fn copies(ui: &mut Ui, report: &ImportSummary, out: Out) {
+    for copy in report.copies.iter().take(50) {
+        ui.horizontal(|ui| {
+            ui.label(RichText::new(&copy.text).size(12.0));
+            if ui.small_button("Compare").clicked() {
+                out.push(Command::Compare(CompareCommand::With {
+                    of: copy.of,
+                    with: copy.copy,
+                    mirrored: copy.mirrored,
+                }));
+            }
+            if ui.small_button("Remove the copy").clicked() {
+                out.push(Command::Edit(Edit::RemoveClips(vec![copy.copy.clip])));
+            }
+        });
+    }
+}

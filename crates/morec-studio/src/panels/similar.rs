@@ -1,0 +1,163 @@
+//! More like this: what is like an example, nearest first; each plays, stands beside the example, or becomes a label.
+
+use egui::{Rect, RichText, ScrollArea, Sense, Ui, Vec2, WidgetType};
+use morec_db::search::Hit;
+
+use super::classes::{STRIP, go};
+use super::{Out, strips, widgets};
+use crate::format;
+use crate::jobs::similar::Similar;
+use crate::state::{Command, CompareCommand, SimilarCommand, State};
+use crate::stretch::Stretch;
+use crate::theme::Colours;
+
+const WIDTH: f32 = 236.0;
+const CARD: f32 = STRIP + 48.0;
+
+/// What belongs above the cards.
+pub fn tools(ui: &mut Ui, state: &State, similar: &Similar, out: Out) {
+    let c = Colours::now(ui);
+    let name = state
+        .store
+        .as_ref()
+        .and_then(|s| s.snapshot.clip(similar.of.clip))
+        .map_or("?", |clip| clip.name.as_str());
+    let what = similar.class.as_deref().unwrap_or("this");
+    let text = format!(
+        "Like {what} in {name}, {} to {}",
+        format::secs(similar.of.start_secs),
+        format::secs(similar.of.stop_secs)
+    );
+    ui.label(RichText::new(text).strong());
+    let mut mirror = state.classes.mirror;
+    if ui.checkbox(&mut mirror, "Mirror image too").changed() {
+        out.push(Command::Similar(SimilarCommand::Mirror(mirror)));
+    }
+    if ui.button("Back to classes").clicked() {
+        out.push(Command::Similar(SimilarCommand::Close));
+    }
+    let count = format::count(similar.hits.len(), "stretch");
+    let text = match similar.mirror {
+        true => format!("{count}, as they are and in a mirror"),
+        false => count,
+    };
+    ui.colored_label(c.muted, text);
+}
+
+/// The cards, in as many columns as there is room for.
+pub fn show(ui: &mut Ui, state: &State, similar: &Similar, out: Out) {
+    if similar.hits.is_empty() {
+        widgets::nothing(
+            ui,
+            "Nothing is like it",
+            "Other clips may hold more of it: import them.",
+        );
+        return;
+    }
+    let columns = ((ui.available_width() / (WIDTH + 8.0)).floor() as usize).max(1);
+    let rows = similar.hits.len().div_ceil(columns);
+    ScrollArea::vertical()
+        .auto_shrink(false)
+        .show_rows(ui, CARD, rows, |ui, rows| {
+            for row in rows {
+                ui.horizontal(|ui| {
+                    let first = row * columns;
+                    let last = (first + columns).min(similar.hits.len());
+                    for at in first..last {
+                        card(ui, state, similar, at, out);
+                    }
+                });
+            }
+        });
+}
+
+fn card(ui: &mut Ui, state: &State, similar: &Similar, at: usize, out: Out) {
+    let c = Colours::now(ui);
+    let hit: &Hit = &similar.hits[at];
+    let (rect, _) = ui.allocate_exact_size(Vec2::new(WIDTH, CARD), Sense::hover());
+    let picture = Rect::from_min_size(rect.min, Vec2::new(WIDTH, STRIP));
+    let response = ui.interact(picture, ui.id().with(("hit", at)), Sense::click());
+    let clip = state.store.as_ref().and_then(|s| s.snapshot.clip(hit.clip));
+    let name = clip.map_or("?", |clip| clip.name.as_str());
+    let image = if hit.mirrored { ", mirrored" } else { "" };
+    widgets::named(
+        &response,
+        WidgetType::Button,
+        format!("Like it: {name} at {:.2} s{image}", hit.start_secs),
+        false,
+    );
+    strips::draw(ui, state, hit.clip, hit.start_secs, hit.stop_secs, picture);
+    let caption = Rect::from_min_size(picture.left_bottom(), Vec2::new(WIDTH, 18.0));
+    let text = format!("{name}  {}{image}", format::secs(hit.start_secs));
+    widgets::text_in(ui, caption, &text, 11.5, c.muted, false);
+    let score = format!("{:.0} %", 100.0 * hit.score);
+    widgets::text_in(ui, caption, &score, 11.5, c.text, true);
+    if response.clicked() {
+        go(hit.clip, hit.start_secs, hit.stop_secs, None, out);
+    }
+    let area = Rect::from_min_max(caption.left_bottom(), rect.max);
+    let mut below = ui.new_child(egui::UiBuilder::new().max_rect(area));
+    below.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        ui.style_mut().override_text_style = Some(egui::TextStyle::Small);
+        let stretch = Stretch {
+            clip: hit.clip,
+            start_secs: hit.start_secs,
+            stop_secs: hit.stop_secs,
+        };
+        let compare = ui.button("Compare");
+        widgets::named(
+            &compare,
+            WidgetType::Button,
+            format!("Compare with hit {}", at + 1),
+            false,
+        );
+        if compare
+            .on_hover_text("Beside the example, at the same pace")
+            .clicked()
+        {
+            out.push(Command::Compare(CompareCommand::With {
+                of: similar.of,
+                with: stretch,
+                mirrored: hit.mirrored,
+            }));
+        }
+        if ui
+            .button("More")
+            .on_hover_text("What is like this one")
+            .clicked()
+        {
+            let class = similar.class.clone();
+            out.push(Command::Similar(SimilarCommand::Of(stretch, class)));
+        }
+        label(ui, state, similar, at, out);
+    });
+}
+
+/// The hit becomes a label: of the example's class by one click, of another by two.
+fn label(ui: &mut Ui, state: &State, similar: &Similar, at: usize, out: Out) {
+    let mut as_class = |class: &str| {
+        let command = SimilarCommand::Label(at, class.to_owned());
+        out.push(Command::Similar(command));
+    };
+    if let Some(class) = &similar.class {
+        let response = ui.button(format!("Is {class}"));
+        widgets::named(
+            &response,
+            WidgetType::Button,
+            format!("Hit {} is {class}", at + 1),
+            false,
+        );
+        if response.clicked() {
+            as_class(class);
+        }
+    }
+    ui.menu_button("Is …", |ui| {
+        for class in &state.classes.order {
+            if ui.button(class).clicked() {
+                as_class(class);
+                ui.close();
+            }
+        }
+    });
+}

@@ -1,0 +1,164 @@
+//! One performer of a live source: skeleton, poses of the last minutes, recognition.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use morec::diagnosis::Diagnosis;
+use morec::features::KeyPose;
+use morec::kinematics::WorldPose;
+use morec::live::{
+    EarlyDetection, Event, EventOptions, Frame, Model, Performer, PerformerId, Recording, Rig,
+};
+use morec::math::Vec3;
+
+use super::moved;
+use super::run::KEPT_SECS;
+use crate::body::Body;
+
+/// A performer.
+pub struct Tracked {
+    pub actor: PerformerId,
+    pub rig: Option<Arc<Rig>>,
+    pub body: Body,
+    pub pose: WorldPose,
+    /// Time of the last frame, on the stream's clock.
+    pub now_secs: f64,
+    /// The last minutes.
+    pub frames: VecDeque<Frame>,
+    /// How fast hands and feet move against the hips, for each of them: metres a second.
+    pub speeds: VecDeque<f32>,
+    /// Whether the source has said that the performer left.
+    pub gone: bool,
+    performer: Option<Performer>,
+}
+
+impl Tracked {
+    pub fn new(actor: PerformerId, model: Option<&Model>) -> Self {
+        Self {
+            actor,
+            rig: None,
+            body: Body::default(),
+            pose: WorldPose::default(),
+            now_secs: 0.0,
+            frames: VecDeque::new(),
+            speeds: VecDeque::new(),
+            gone: false,
+            performer: model.map(|m| Performer::new(m, actor, &EventOptions::default())),
+        }
+    }
+
+    /// Recognises with this model from the next frame on. What went on with the last one is told before.
+    pub fn recognise_with(&mut self, model: &Model, events: &mut Vec<Event>) {
+        self.finish(events);
+        let mut performer = Performer::new(model, self.actor, &EventOptions::default());
+        if let Some(rig) = &self.rig {
+            performer.set_rig(rig, &mut |_| {});
+        }
+        self.performer = Some(performer);
+    }
+
+    /// What was under way has ended.
+    pub fn finish(&mut self, events: &mut Vec<Event>) {
+        if let Some(performer) = &mut self.performer {
+            performer.finish(&mut |event| events.push(event));
+        }
+    }
+
+    pub fn set_rig(&mut self, rig: Arc<Rig>, events: &mut Vec<Event>) {
+        if let Some(performer) = &mut self.performer {
+            performer.set_rig(&rig, &mut |event| events.push(event));
+        }
+        // Frames of another skeleton cannot stand beside these.
+        let other = self
+            .rig
+            .as_ref()
+            .is_some_and(|old| old.skeleton.len() != rig.skeleton.len());
+        if other {
+            self.frames.clear();
+            self.speeds.clear();
+        }
+        self.body = Body::default();
+        self.gone = false;
+        self.rig = Some(rig);
+    }
+
+    pub fn push(&mut self, frame: &Frame, events: &mut Vec<Event>) {
+        if self.body.limbs.is_empty()
+            && let Some(rig) = &self.rig
+        {
+            let joints = rig.skeleton.joints().iter();
+            let parents: Vec<Option<usize>> = joints.map(|j| j.parent).collect();
+            self.body = Body::new(&parents, &rig.roles, &frame.pose);
+        }
+        if let Some(performer) = &mut self.performer {
+            performer.push_own(frame, &mut |event| events.push(event));
+        }
+        self.gone = false;
+        self.now_secs = frame.time_secs;
+        self.pose.clone_from(&frame.pose);
+        let speed = match &self.rig {
+            Some(rig) => moved::speed(&self.frames, frame, rig),
+            None => 0.0,
+        };
+        self.speeds.push_back(speed);
+        self.frames.push_back(frame.clone());
+        let old = self.now_secs - KEPT_SECS;
+        while self.frames.front().is_some_and(|f| f.time_secs < old) {
+            self.frames.pop_front();
+            self.speeds.pop_front();
+        }
+    }
+
+    pub fn centre(&self) -> Option<Vec3> {
+        let at = self.body.centre(&self.pose)?;
+        Some(Vec3::new(
+            at.x,
+            self.floor() + 0.52 * self.body.height,
+            at.z,
+        ))
+    }
+
+    /// The lowest joint of the present pose, which is about where the floor is.
+    pub fn floor(&self) -> f64 {
+        let heights = self.pose.positions.iter().map(|p| p.y);
+        let lowest = heights.filter(|y| y.is_finite()).fold(f64::MAX, f64::min);
+        // A jump leaves the floor where it is.
+        if lowest < f64::MAX {
+            lowest.min(0.05)
+        } else {
+            0.0
+        }
+    }
+
+    pub fn hunch(&self) -> Option<EarlyDetection> {
+        self.performer.as_ref()?.hunch()
+    }
+
+    pub fn diagnosis(&self) -> Option<Diagnosis> {
+        self.performer.as_ref()?.diagnosis()
+    }
+
+    /// The last stretch in which somebody moved.
+    pub fn last_motion(&self) -> Option<(f64, f64)> {
+        moved::last_motion(&self.frames, &self.speeds)
+    }
+
+    /// The frames of a stretch as a recording, and the time at which it begins.
+    pub fn cut_out(&self, start_secs: f64, stop_secs: f64) -> Option<(Recording, f64)> {
+        let mut recording = Recording::new(self.rig.as_ref()?);
+        let inside = |f: &&Frame| f.time_secs >= start_secs && f.time_secs <= stop_secs;
+        let frames: Vec<&Frame> = self.frames.iter().filter(inside).collect();
+        let origin = frames.first()?.time_secs;
+        frames.iter().for_each(|frame| recording.push(frame));
+        Some((recording, origin))
+    }
+
+    /// The kept poses, for trying another sensitivity.
+    pub fn key_poses(&self) -> Vec<(f64, KeyPose)> {
+        let Some(rig) = &self.rig else {
+            return Vec::new();
+        };
+        let pose = |f: &Frame| (f.time_secs, f.key_pose(rig));
+        self.frames.iter().map(pose).collect()
+    }
+}

@@ -1,0 +1,121 @@
+//! More like this: what is like a stretch, and becomes labels by a click.
+
+use morec_db::labels::{NewSample, SampleState as Judged};
+use morec_db::search::Hit;
+
+use super::files::quoted;
+use super::{Panel, State};
+use crate::jobs::similar::{self, Similar};
+use crate::store::Edit;
+use crate::stretch::Stretch;
+
+/// Name of the job that searches.
+pub(super) const SEARCHING: &str = "Searching";
+
+/// What can be asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SimilarCommand {
+    /// What is like the selected stretch or label?
+    OfSelection,
+    /// What is like this?
+    Of(Stretch, Option<String>),
+    /// Whether the mirror image is looked for too.
+    Mirror(bool),
+    /// The hit of this place is of a class.
+    Label(usize, String),
+    Close,
+}
+
+impl State {
+    pub(super) fn apply_similar(&mut self, command: SimilarCommand) {
+        match command {
+            SimilarCommand::OfSelection => match self.selected_stretch() {
+                Some((of, class)) => self.search(of, class),
+                None => self.say("select a label or a stretch first"),
+            },
+            SimilarCommand::Of(of, class) => self.search(of, class),
+            SimilarCommand::Mirror(on) => {
+                self.classes.mirror = on;
+                if let Some(similar) = &self.classes.similar {
+                    let (of, class) = (similar.of, similar.class.clone());
+                    self.search(of, class);
+                }
+            }
+            SimilarCommand::Label(at, class) => self.label_hit(at, class),
+            SimilarCommand::Close => self.classes.similar = None,
+        }
+    }
+
+    /// The selected stretch of the clip that is shown, or the selected label with its class.
+    pub fn selected_stretch(&self) -> Option<(Stretch, Option<String>)> {
+        let clip = self.player.motion.as_ref()?.id;
+        if let Some((start_secs, stop_secs)) = self.timeline.range {
+            let stretch = Stretch {
+                clip,
+                start_secs,
+                stop_secs,
+            };
+            return Some((stretch, None));
+        }
+        let selected = self.selected();
+        let sample = selected.first()?;
+        let stretch = Stretch {
+            clip,
+            start_secs: sample.start_secs,
+            stop_secs: sample.stop_secs,
+        };
+        Some((stretch, Some(sample.class.clone())))
+    }
+
+    fn search(&mut self, of: Stretch, class: Option<String>) {
+        let Some(store) = &self.store else { return };
+        let (db, mirror) = (store.path().to_owned(), self.classes.mirror);
+        if let Some(clip) = store.snapshot.clip(of.clip) {
+            self.command_line = format!(
+                "morec db search {} {} --start {:.3} --stop {:.3}{}",
+                quoted(&db),
+                quoted(clip.name.as_ref()),
+                of.start_secs,
+                of.stop_secs,
+                if mirror { " --mirror" } else { "" }
+            );
+        }
+        for job in self.jobs.running.iter().filter(|j| j.name == SEARCHING) {
+            job.cancel();
+        }
+        self.jobs
+            .start(SEARCHING, true, &self.wake, move |progress| {
+                similar::find(&db, of, class, mirror, progress)
+            });
+    }
+
+    /// Shows what was found.
+    pub(super) fn found_similar(&mut self, similar: Similar) {
+        self.say(format!(
+            "{} like it",
+            crate::format::count(similar.hits.len(), "stretch")
+        ));
+        self.classes.similar = Some(similar);
+        self.classes.groups = None;
+        self.panel = Panel::Classes;
+    }
+
+    fn label_hit(&mut self, at: usize, class: String) {
+        let Some(similar) = &mut self.classes.similar else {
+            return;
+        };
+        if at >= similar.hits.len() {
+            return;
+        }
+        let hit: Hit = similar.hits.remove(at);
+        self.edit(Edit::Label(vec![NewSample {
+            clip: hit.clip,
+            class,
+            start_secs: hit.start_secs,
+            stop_secs: hit.stop_secs,
+            whole_clip: false,
+            state: Judged::Accepted,
+            score: None,
+        }]));
+    }
+}

@@ -1,0 +1,107 @@
+//! More like this, and one performer beside another.
+
+use egui::Key;
+
+use super::{Person, made, takes};
+use crate::state::compare::Placement;
+use crate::state::{Command, Panel, TimelineCommand};
+
+/// The first wave of the first clip is selected.
+fn with_a_wave() -> (tempfile::TempDir, Person) {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 1)]);
+    person.goes_to(Panel::Label);
+    let label = person.state().shown_samples().iter();
+    let wave = label.clone().find(|s| s.class == "wave").unwrap();
+    let name = format!("wave {:.2}–{:.2} s", wave.start_secs, wave.stop_secs);
+    // Soon after another click it would be a double click.
+    person.wait(1.0);
+    person.click(&name);
+    assert_eq!(person.state().selected().len(), 1);
+    (folder, person)
+}
+
+#[test]
+fn what_is_like_a_label_becomes_labels_and_back() {
+    let (_folder, mut person) = with_a_wave();
+    let before = person.labels();
+    person.key(Key::F);
+    person.settle();
+    assert_eq!(person.state().panel, Panel::Classes);
+    let line = person.state().command_line.clone();
+    assert!(line.contains("morec db search"), "{line}");
+    let of = |clip: &str| takes().iter().find(|t| t.clip.name == clip).unwrap();
+    let similar = person.state().classes.similar.clone().unwrap();
+    let snapshot = person.state().store.as_ref().unwrap().snapshot.clone();
+    // Somebody else's wave is among the first, which nobody has labelled yet.
+    let (at, hit) = similar
+        .hits
+        .iter()
+        .enumerate()
+        .find(|(_, hit)| {
+            let clip = &snapshot.clip(hit.clip).unwrap().name;
+            clip != "ada_1"
+                && of(clip).labels.iter().any(|l| {
+                    let shared = l.stop_secs.min(hit.stop_secs) - l.start_secs.max(hit.start_secs);
+                    l.class == "wave" && shared > 0.5 * (l.stop_secs - l.start_secs)
+                })
+        })
+        .unwrap();
+    assert!(at < 6, "{at}");
+    assert!(person.offers(&format!(
+        "Like it: {} at {:.2} s",
+        snapshot.clip(hit.clip).unwrap().name,
+        hit.start_secs
+    )));
+    person.click(&format!("Hit {} is wave", at + 1));
+    person.settle();
+    assert_eq!(person.labels().len(), before.len() + 1);
+    person.undo();
+    assert_eq!(person.labels(), before);
+    person.click("Mirror image too");
+    person.settle();
+    assert!(person.state().classes.similar.as_ref().unwrap().mirror);
+    assert!(person.state().command_line.contains("--mirror"));
+    person.click("Back to classes");
+    assert!(person.state().classes.similar.is_none());
+}
+
+#[test]
+fn the_nearest_stands_beside_the_performer_and_on_top_along_the_warping_path() {
+    let (_folder, mut person) = with_a_wave();
+    person.key(Key::C);
+    person.settle();
+    let aligned = person.state().companions.all[0].clone();
+    assert!(person.sees_part("Seen: ada_1"));
+    let name = &aligned.motion.clip.name;
+    assert!(person.sees_part(&format!("Seen: {name}")));
+    // Time runs forwards in both, from one end to the other.
+    let steps = (0..=20).map(|k| {
+        let secs = aligned.of.stop_secs - aligned.of.start_secs;
+        aligned.at(aligned.of.start_secs + secs * f64::from(k) / 20.0)
+    });
+    let steps: Vec<f64> = steps.collect();
+    assert!(steps.windows(2).all(|w| w[0] <= w[1] + 1e-9), "{steps:?}");
+    assert!((steps[0] - aligned.with.start_secs).abs() < 1e-6);
+    assert!((steps[20] - aligned.with.stop_secs).abs() < 1e-6);
+    let apart = person.state().apart();
+    assert!(apart > 0.5);
+    person.click("On top");
+    assert_eq!(person.state().companions.placement, Placement::OnTop);
+    assert_eq!(person.state().apart(), 0.0);
+    person.click("Alone");
+    assert!(person.state().companions.all.is_empty());
+    assert!(!person.sees_part("Seen: "));
+}
+
+#[test]
+fn without_a_selection_there_is_a_sentence() {
+    let (_folder, mut person) = with_a_wave();
+    person.command(Command::Timeline(TimelineCommand::Select {
+        id: None,
+        add: false,
+    }));
+    person.key(Key::C);
+    person.key(Key::F);
+    assert!(person.sees_part("select a label or a stretch first"));
+}

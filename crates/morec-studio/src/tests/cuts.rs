@@ -1,0 +1,112 @@
+//! Cuts are dragged into place and kept; a channel is a curve with its keyframes.
+
+use egui::{Key, vec2};
+
+use super::{Person, made};
+use crate::state::{Command, Panel, PlayCommand};
+
+fn labelling() -> (tempfile::TempDir, Person) {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 1)]);
+    person.goes_to(Panel::Label);
+    (folder, person)
+}
+
+/// A cut with room to its right, and its name.
+fn some_cut(person: &Person) -> (f64, String) {
+    let cuts = person.state().cuts();
+    let apart = cuts.windows(2).find(|pair| pair[1] - pair[0] > 2.0);
+    let cut = apart.map_or(cuts[0], |pair| pair[0]);
+    (cut, format!("Cut at {cut:.2} s"))
+}
+
+#[test]
+fn a_cut_is_dragged_into_place_and_cutting_again_leaves_it() {
+    let (_folder, mut person) = labelling();
+    let found = person.state().cuts();
+    assert!(!found.is_empty());
+    let (cut, name) = some_cut(&person);
+    let at = person.place(&name).center();
+    person.drag(at, at + vec2(25.0, 0.0));
+    person.settle();
+    let by_hand = person.state().cuts();
+    assert_eq!(by_hand.len(), found.len());
+    assert!(!by_hand.iter().any(|c| (c - cut).abs() < 1e-6));
+    assert_eq!(person.state().cut_method(), Some("hand"));
+    assert!(person.sees_part("Track of cuts"));
+    person.click("Cut all clips");
+    person.click("By kernel change points");
+    person.settle();
+    assert!(
+        person.state().said.contains("1 clip cut by hand left"),
+        "{}",
+        person.state().said
+    );
+    assert_eq!(person.state().cuts(), by_hand, "edited cuts are kept");
+    person.undo();
+    person.undo();
+    assert_eq!(person.state().cuts(), found);
+    person.redo();
+    assert_eq!(person.state().cuts(), by_hand);
+}
+
+#[test]
+fn a_cut_is_removed_and_another_added() {
+    let (_folder, mut person) = labelling();
+    let found = person.state().cuts();
+    let (_, name) = some_cut(&person);
+    let at = person.place(&name).center();
+    person.click(&name);
+    person.key(Key::Delete);
+    person.settle();
+    assert_eq!(person.state().cuts().len(), found.len() - 1);
+    assert!(!person.offers(&name));
+    // Soon after another click it would be a triple click.
+    person.wait(1.0);
+    person.double_click_at(at);
+    person.settle();
+    assert_eq!(person.state().cuts().len(), found.len());
+    person.undo();
+    person.undo();
+    assert_eq!(person.state().cuts(), found);
+}
+
+#[test]
+fn a_channel_is_shown_with_its_keyframes() {
+    let (_folder, mut person) = labelling();
+    person.click("Channel");
+    person.click("Hips: position");
+    person.settle();
+    let channel = person.state().channel.clone().unwrap();
+    assert!(channel.curves.len() > 3);
+    let keys = channel.curves.len() + 1;
+    assert!(person.sees_part(&format!("Channel Hips, {keys} keyframes")));
+    // Curves follow each other without a gap from the beginning to the end.
+    let meet = |pair: &[morec::smooth::Bezier]| (pair[0].stop_secs - pair[1].start_secs).abs();
+    assert!(channel.curves.windows(2).all(|pair| meet(pair) < 1e-9));
+    person.click("Channel: Hips");
+    person.click("None");
+    assert!(person.state().channel_wanted.is_none());
+}
+
+#[test]
+fn playing_stays_inside_the_segment_between_the_cuts() {
+    let (_folder, mut person) = labelling();
+    let cuts = person.state().cuts();
+    let pair = cuts
+        .windows(2)
+        .min_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])));
+    let (start, stop) = (pair.unwrap()[0], pair.unwrap()[1]);
+    let middle = 0.5 * (start + stop);
+    person.command(Command::Play(PlayCommand::Seek(middle)));
+    person.key(Key::I);
+    person.key(Key::Space);
+    for _ in 0..40 {
+        person.wait(0.1);
+        let at = person.state().player.at_secs;
+        assert!(start - 1e-6 <= at && at <= stop, "{start} {at} {stop}");
+    }
+    assert!(person.state().player.playing);
+    person.key(Key::I);
+    assert!(person.state().player.looped.is_none());
+}

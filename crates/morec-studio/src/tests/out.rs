@@ -1,0 +1,146 @@
+//! Out of the studio: labels in every form, a clip, a page; and what a session leaves for the next.
+
+use morec_db::exchange::{self, ClipLengths, LabelFormat};
+
+use super::{Person, made, takes};
+use crate::state::layout::Layout;
+use crate::state::{Command, FileCommand, LibraryCommand, Panel, State};
+
+#[test]
+fn labels_go_out_in_every_form() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 2)]);
+    let count = person.labels().len();
+    for form in LabelFormat::ALL {
+        let path = folder.path().join(format!("out-{}", form.name()));
+        person.command(Command::File(FileCommand::ExportLabels(form, path.clone())));
+        assert!(
+            person.state().notices.is_empty(),
+            "{:?}",
+            person.state().notices
+        );
+        assert!(person.state().command_line.contains(form.name()));
+        let files: Vec<_> = match form.is_of_one_clip() {
+            true => std::fs::read_dir(&path)
+                .unwrap()
+                .map(|f| f.unwrap().path())
+                .collect(),
+            false => vec![path],
+        };
+        assert_eq!(files.len(), if form.is_of_one_clip() { 2 } else { 1 });
+        let lengths = takes().iter().map(|take| {
+            let (frames, rate_hz) = (take.clip.frames, take.clip.rate_hz);
+            (
+                take.clip.name.clone(),
+                morec::labels::ClipLength { frames, rate_hz },
+            )
+        });
+        let lengths: ClipLengths = lengths.collect();
+        let read = |file: &std::path::PathBuf| {
+            let bytes = std::fs::read(file).unwrap();
+            let read = exchange::read(form, &bytes, Some("ada_1"), &lengths).unwrap();
+            read.annotations.len()
+        };
+        assert_eq!(files.iter().map(read).sum::<usize>(), count, "{form:?}");
+    }
+}
+
+#[test]
+fn a_clip_and_a_page_go_out_and_the_database_is_not_written_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = made(folder.path(), 1);
+    let mut person = Person::before(std::slice::from_ref(&path));
+    let clip = folder.path().join("out.bvh");
+    person.command(Command::File(FileCommand::ExportClip(clip.clone())));
+    let read = morec::files::open(&clip).unwrap();
+    assert_eq!(read[0].clip.frames, takes()[0].clip.frames);
+    let page = folder.path().join("out.html");
+    person.command(Command::File(FileCommand::ExportPage(page.clone())));
+    let html = std::fs::read_to_string(&page).unwrap();
+    assert!(html.contains("<canvas") && html.contains("ada_1") && html.contains("wave"));
+    let before = std::fs::read(&path).unwrap();
+    person.command(Command::File(FileCommand::ExportPage(path.clone())));
+    assert!(person.sees_part("this is the database itself"));
+    assert_eq!(std::fs::read(&path).unwrap(), before);
+    let nowhere = folder.path().join("no such folder").join("out.html");
+    person.command(Command::File(FileCommand::ExportPage(nowhere)));
+    assert!(person.sees_part("out.html: not written"));
+    person.wait(1.0);
+    person.click("File");
+    person.frames(3);
+    for entry in ["Export this clip", "A page of it to send", "Export labels"] {
+        assert!(person.sees_part(entry), "{entry}");
+    }
+}
+
+#[test]
+fn a_clip_that_is_nearly_another_is_told_at_import_and_left_out_by_a_click() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 0)]);
+    let mut clip = takes()[1].clip.clone();
+    clip.frames = clip.frames * 95 / 100;
+    clip.rotations.truncate(clip.frames * clip.skeleton.len());
+    for track in &mut clip.tracks {
+        track.positions.truncate(clip.frames);
+    }
+    let mut bytes = Vec::new();
+    morec::formats::bvh::write(&clip, &mut bytes).unwrap();
+    let file = folder.path().join("shorter.bvh");
+    std::fs::write(&file, bytes).unwrap();
+    person.command(Command::File(FileCommand::Import(vec![file])));
+    assert!(person.sees_part("1 nearly the same as others"));
+    assert!(person.sees_part("shorter is nearly the same as ben_1"));
+    person.click("Compare");
+    person.settle();
+    assert_eq!(person.state().companions.all.len(), 1);
+    person.click("Remove the copy");
+    person.settle();
+    assert!(!person.offers("shorter"));
+    person.undo();
+    assert!(person.offers("shorter"));
+}
+
+#[test]
+fn clips_are_strips_of_poses_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 0)]);
+    person.click("Strips");
+    person.settle();
+    person.click("cleo_1");
+    person.settle();
+    let shown = person.state().player.motion.as_ref().unwrap();
+    assert_eq!(shown.clip.name, "cleo_1");
+    assert!(!person.offers("Sort by clip"));
+    person.click("Table");
+    assert!(person.offers("Sort by clip"));
+}
+
+#[test]
+fn a_layout_comes_back_with_the_next_session() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = made(folder.path(), 0);
+    let mut person = Person::before(std::slice::from_ref(&path));
+    person.goes_to(Panel::Label);
+    person.click("Show ben_1");
+    person.settle();
+    person.command(Command::Dark(false));
+    person.command(Command::Library(LibraryCommand::Strips(true)));
+    let kept = serde_json::to_string(&person.state().layout()).unwrap();
+    let layout: Layout = serde_json::from_str(&kept).unwrap();
+    let mut state = State::new(std::sync::Arc::new(|| {}));
+    state.begin(std::slice::from_ref(&path));
+    state.lay_out(&layout);
+    state.show_again(&layout);
+    assert_eq!(state.layout().panel, "Label");
+    assert!(!state.dark && state.library.strips);
+    assert_eq!(state.last.as_deref(), Some(path.as_path()));
+    while state.is_busy() {
+        state.tick(0.0);
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    assert_eq!(state.layout().clip.as_deref(), Some("ben_1"));
+    // A layout of another version lacks what this one knows.
+    let old: Layout = serde_json::from_str(r#"{"panel": "Nowhere"}"#).unwrap();
+    state.lay_out(&old);
+    assert_eq!(state.panel, Panel::Library);
+}
