@@ -30,7 +30,7 @@ fn a_body_of_fixed_lengths_is_found_again() {
         fit.rms_metres,
         fit.worst
     );
-    assert_eq!(fit.clip.frames, skeleton.clip.frames);
+    assert_eq!(fit.clip.frames, points.clip.frames);
     // Bones point where they did.
     for frame in (0..fit.clip.frames).step_by(7) {
         let (found, was) = (

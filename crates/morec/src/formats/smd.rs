@@ -56,7 +56,11 @@ fn without_comment(text: &str) -> &str {
         .filter_map(|mark| {
             let at = text.find(mark)?;
             // A name may have such marks.
-            (text[..at].matches('"').count() % 2 == 0).then_some(at)
+            text[..at]
+                .matches('"')
+                .count()
+                .is_multiple_of(2)
+                .then_some(at)
         })
         .min();
     &text[..end.unwrap_or(text.len())]

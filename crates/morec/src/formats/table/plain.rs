@@ -12,7 +12,7 @@ fn is_known(count: usize) -> bool {
     numbered_counts().any(|known| known == count)
 }
 
-fn is_number(cell: &&str) -> bool {
+fn is_number(cell: &str) -> bool {
     number(cell, Decimal::Either).is_some()
 }
 
@@ -20,7 +20,7 @@ fn is_number(cell: &&str) -> bool {
 pub(super) fn is_row_of_points(rows: &[TableLine]) -> bool {
     let width = rows.first().map_or(0, |(_, cells)| cells.len());
     let alike =
-        |(_, cells): &TableLine| cells.len() == width && cells.iter().all(|cell| is_number(&cell));
+        |(_, cells): &TableLine| cells.len() == width && cells.iter().all(|cell| is_number(cell));
     rows.len() >= LEAST_ROWS && rows.iter().all(alike) && layout(rows).is_some()
 }
 
@@ -73,9 +73,9 @@ fn stride(rows: &[TableLine]) -> Option<usize> {
 pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
     let (_, first) = rows.first()?;
     // A header that says nothing may stand before the numbers.
-    let header_rows = usize::from(!first.iter().all(|cell| is_number(&cell)));
+    let header_rows = usize::from(!first.iter().all(|cell| is_number(cell)));
     let (_, cells) = rows.get(header_rows)?;
-    if !cells.iter().all(|cell| is_number(&cell)) {
+    if !cells.iter().all(|cell| is_number(cell)) {
         return None;
     }
     let fits = |before: usize, width: usize| {

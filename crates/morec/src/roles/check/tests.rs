@@ -214,11 +214,7 @@ fn person_with(names: [&str; 3], points: [[f64; 3]; 3], at: &str) -> Made {
 #[test]
 fn further_limbs_are_told_and_hair_and_helpers_are_not() {
     let hind = [[12.0, 92.0, -60.0], [12.0, 50.0, -65.0], [12.0, 8.0, -60.0]];
-    is_told(person_with(
-        ["?HindUpLeg", "?HindLeg", "?HindFoot"],
-        hind,
-        "Hips",
-    ));
+    is_told(person_with(["?UpLeg2", "?Leg2", "?Foot2"], hind, "Hips"));
     is_told(person_with(["bone?1", "bone?2", "bone?3"], hind, "Hips"));
     let second_arms = [[18.0, 120.0, 0.0], [46.0, 110.0, 0.0], [71.0, 100.0, 20.0]];
     is_told(person_with(
