@@ -11,8 +11,11 @@ use morec::segment::{
 };
 use rayon::prelude::*;
 
-use crate::rows::ClipRows;
+use crate::rows::{ClipRows, rows_of};
 use crate::{ClipId, ClipInfo, DbError, MotionDb, Segment, SegmentKind, StoredClip};
+
+/// The method of cuts that somebody has put into place, as [`MotionDb::cut_methods`] names it.
+pub const BY_HAND: &str = "hand";
 
 /// A method of cutting with its figures.
 #[derive(Debug, Clone)]
@@ -100,7 +103,8 @@ impl Cutter {
 }
 
 impl MotionDb {
-    /// Cuts `clips` in parallel and keeps what is found in place of earlier cuts, by whatever method.
+    /// Cuts `clips` in parallel and keeps what is found in place of earlier cuts, by whatever method. A clip that was cut by
+    /// hand is left as it is, and the report says so.
     ///
     /// # Errors
     /// Figures that make no sense; the database cannot be read or written; the listener cancelled. A clip that cannot be
@@ -112,10 +116,21 @@ impl MotionDb {
         progress: &dyn Progress,
     ) -> Result<CutReport, DbError> {
         cutter.check()?;
+        let methods = self.cut_methods()?;
+        let by_hand = |clip: &ClipInfo| methods.get(&clip.id).is_some_and(|m| m == BY_HAND);
+        let (kept, clips): (Vec<ClipInfo>, Vec<ClipInfo>) =
+            clips.iter().cloned().partition(by_hand);
         let rows = self.rows(&FeatureParams::default(), progress)?;
-        let mut report = CutReport::default();
+        let left = |clip: ClipInfo| (clip.name, "it was cut by hand".to_owned());
+        let mut report = CutReport {
+            left: kept.into_iter().map(left).collect(),
+            ..CutReport::default()
+        };
         let (mut ids, mut segments) = (Vec::new(), Vec::new());
-        for (clip, cuts) in clips.iter().zip(self.look(clips, &rows, cutter, progress)?) {
+        for (clip, cuts) in clips
+            .iter()
+            .zip(self.look(&clips, &rows, cutter, progress)?)
+        {
             match cuts {
                 Ok((cuts, of_clip)) => {
                     ids.push(clip.id);
@@ -127,6 +142,39 @@ impl MotionDb {
         }
         self.set_segments(cutter.name(), &ids, &segments)?;
         Ok(report)
+    }
+
+    /// Cuts a clip where somebody says, in seconds from its beginning, in place of earlier cuts; stretches of stillness stay,
+    /// or are found if the clip was not cut before.
+    ///
+    /// # Errors
+    /// A cut outside of the clip; the database cannot be read or written.
+    pub fn cut_by_hand(&mut self, clip: &ClipInfo, cuts_secs: &[f64]) -> Result<(), DbError> {
+        let end = clip.duration_secs();
+        if let Some(cut) = cuts_secs.iter().find(|cut| !(**cut > 0.0 && **cut < end)) {
+            return Err(DbError::Invalid(format!(
+                "{}: expected cuts between 0 and {end:.3} s, found one at {cut:.3} s",
+                clip.name
+            )));
+        }
+        let mut cuts = cuts_secs.to_vec();
+        cuts.sort_by(f64::total_cmp);
+        let before = self.segments_of(clip.id)?;
+        let mut segments = match before.is_empty() {
+            false => before,
+            true => {
+                let (bones, rows) = rows_of(&self.clip(clip.id)?, &FeatureParams::default());
+                let rows = ClipRows {
+                    clip: clip.id,
+                    bones,
+                    rows,
+                };
+                stretches(clip, &rows, Vec::new()).1
+            }
+        };
+        segments.retain(|s| s.kind != SegmentKind::Motion);
+        segments.extend(motions(clip, &cuts));
+        self.set_segments(BY_HAND, &[clip.id], &segments)
     }
 
     /// What each clip is cut into, or why it cannot be.
@@ -197,13 +245,7 @@ fn stretches(clip: &ClipInfo, rows: &ClipRows, cuts: Vec<f64>) -> Done {
         stop_secs: s.stop_secs,
     };
     let still = segments.iter().map(told).collect();
-    let mut start = 0.0;
-    for stop in cuts.iter().copied().chain([end]) {
-        if stop > start {
-            segments.push(stretch(SegmentKind::Motion, start, stop));
-        }
-        start = stop;
-    }
+    segments.extend(motions(clip, &cuts));
     segments.retain(|s| s.stop_secs > s.start_secs);
     let cuts = ClipCuts {
         cuts_secs: cuts,
@@ -211,4 +253,61 @@ fn stretches(clip: &ClipInfo, rows: &ClipRows, cuts: Vec<f64>) -> Done {
         ..nothing(clip)
     };
     (cuts, segments)
+}
+
+/// What lies between the cuts.
+fn motions(clip: &ClipInfo, cuts: &[f64]) -> Vec<Segment> {
+    let end = clip.duration_secs();
+    let mut start_secs = 0.0;
+    let mut motions = Vec::with_capacity(cuts.len() + 1);
+    for stop_secs in cuts.iter().copied().chain([end]) {
+        if stop_secs > start_secs {
+            motions.push(Segment {
+                clip: clip.id,
+                kind: SegmentKind::Motion,
+                start_secs,
+                stop_secs,
+            });
+        }
+        start_secs = stop_secs;
+    }
+    motions
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ClipFilter;
+    use crate::testing::database_of_waves;
+
+    #[test]
+    fn cuts_by_hand_stay_until_they_are_taken_back() {
+        let (_folder, mut db) = database_of_waves(2);
+        let clips = db.clips(&ClipFilter::default()).unwrap();
+        db.cut_by_hand(&clips[0], &[2.0, 1.0]).unwrap();
+        let starts = |db: &MotionDb, clip: &ClipInfo| -> Vec<f64> {
+            let segments = db.segments_of(clip.id).unwrap().into_iter();
+            let motions = segments.filter(|s| s.kind == SegmentKind::Motion);
+            motions.map(|s| s.start_secs).collect()
+        };
+        assert_eq!(starts(&db, &clips[0]), [0.0, 1.0, 2.0]);
+        assert_eq!(db.cut_methods().unwrap()[&clips[0].id], BY_HAND);
+        let still = |db: &MotionDb| db.segments_of(clips[0].id).unwrap().len() - 3;
+        let report = db
+            .cut(&clips, &Cutter::Kernel(KernelParams::default()), &())
+            .unwrap();
+        assert_eq!(report.cuts.len(), clips.len() - 1);
+        assert_eq!(report.left[0].0, clips[0].name);
+        assert_eq!(starts(&db, &clips[0]), [0.0, 1.0, 2.0]);
+        let before = still(&db);
+        db.cut_by_hand(&clips[0], &[1.0, 2.5]).unwrap();
+        assert_eq!(starts(&db, &clips[0]), [0.0, 1.0, 2.5]);
+        assert_eq!(still(&db), before, "stillness stays");
+        for outside in [0.0, -1.0, f64::NAN, clips[0].duration_secs()] {
+            assert!(matches!(
+                db.cut_by_hand(&clips[0], &[outside]),
+                Err(DbError::Invalid(_))
+            ));
+        }
+    }
 }

@@ -43,7 +43,7 @@ mod tests;
 mod time;
 
 pub use clips::{ClipFilter, ClipId, ClipInfo, ClipUpdate};
-pub use cut::{ClipCuts, CutReport, Cutter, Still};
+pub use cut::{BY_HAND, ClipCuts, CutReport, Cutter, Still};
 pub use db::{DbSummary, Health, MotionDb};
 pub use error::DbError;
 pub use history::{Effect, HistoryStep, STEPS_KEPT, Turned};

@@ -80,24 +80,35 @@ impl MotionDb {
         Ok(methods.collect::<Result<_, _>>()?)
     }
 
+    /// The segments of a clip, by time.
+    pub fn segments_of(&self, clip: ClipId) -> Result<Vec<Segment>, DbError> {
+        let mut statement = self.conn.prepare_cached(
+            "SELECT clip, kind, start_secs, stop_secs FROM segments WHERE clip = ?1 ORDER BY start_secs",
+        )?;
+        let segments = statement.query_map(params![clip.0], segment)?;
+        Ok(segments.collect::<Result<_, _>>()?)
+    }
+
     /// The segments of all clips, by clip and time.
     pub fn segments(&self) -> Result<Vec<Segment>, DbError> {
         let mut statement = self.conn.prepare(
             "SELECT clip, kind, start_secs, stop_secs FROM segments ORDER BY clip, start_secs",
         )?;
-        let segments = statement.query_map([], |row| {
-            let kind: String = row.get(1)?;
-            Ok(Segment {
-                clip: ClipId(row.get(0)?),
-                kind: match kind.as_str() {
-                    "still" => SegmentKind::Still,
-                    "rest" => SegmentKind::Rest,
-                    _ => SegmentKind::Motion,
-                },
-                start_secs: row.get(2)?,
-                stop_secs: row.get(3)?,
-            })
-        })?;
+        let segments = statement.query_map([], segment)?;
         Ok(segments.collect::<Result<_, _>>()?)
     }
+}
+
+fn segment(row: &rusqlite::Row<'_>) -> rusqlite::Result<Segment> {
+    let kind: String = row.get(1)?;
+    Ok(Segment {
+        clip: ClipId(row.get(0)?),
+        kind: match kind.as_str() {
+            "still" => SegmentKind::Still,
+            "rest" => SegmentKind::Rest,
+            _ => SegmentKind::Motion,
+        },
+        start_secs: row.get(2)?,
+        stop_secs: row.get(3)?,
+    })
 }

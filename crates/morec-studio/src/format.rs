@@ -57,10 +57,10 @@ pub fn utc(secs: i64) -> String {
 
 /// One thing or several: `1 clip`, `2 clips`.
 pub fn count(n: usize, what: &str) -> String {
-    let plural = match what.strip_suffix("s") {
-        // Already plural by itself: "class" becomes "classes".
-        Some(_) => format!("{what}es"),
-        None => format!("{what}s"),
+    // "class" becomes "classes", "stretch" "stretches".
+    let plural = match what.ends_with(['s', 'h']) {
+        true => format!("{what}es"),
+        false => format!("{what}s"),
     };
     match n {
         1 => format!("1 {what}"),
@@ -139,6 +139,7 @@ mod tests {
         assert_eq!(utc(0), "1970-01-01T00:00:00Z");
         assert_eq!(utc(1_795_330_800), "2026-11-22T07:00:00Z");
         assert_eq!(count(2, "class"), "2 classes");
+        assert_eq!(count(40, "stretch"), "40 stretches");
         assert_eq!(count(10_000, "clip"), "10\u{2009}000 clips");
     }
 }

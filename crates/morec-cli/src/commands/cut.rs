@@ -18,12 +18,13 @@ use crate::poses::PoseArgs;
 /// No labels are needed. Kernel change points make segments as alike within as they can be, for a price a cut; the
 /// thesis's method models the poses so far and cuts where those ahead stop fitting. Walking, then jumping, are cut apart;
 /// one step is not cut from the next. A database keeps what is found, stillness and T-poses with it, in place of earlier
-/// cuts, by whatever method.
+/// cuts, by whatever method; clips that were cut by hand (--at) are left as they are.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   morec cut 86_01.amc
   morec cut moves.mdb                   # every clip of a database
+  morec cut moves.mdb --name take_1 --at 1.2,4.5
   morec cut recordings/ --json > cuts.json
   morec cut long.bvh --penalty 8        # fewer cuts
   morec cut 86_01.amc --method ppca --plot cuts.svg")]
@@ -34,6 +35,9 @@ pub struct Args {
     /// Clips of the database whose name matches (`*` any text, `?` one character)
     #[arg(long, value_name = "PATTERN")]
     name: Option<String>,
+    /// Cut the one clip that --name chooses at these moments, seconds separated by commas; cutting again leaves it so
+    #[arg(long, value_name = "SECS", value_delimiter = ',', requires = "name")]
+    at: Vec<f64>,
     /// How to cut
     #[arg(long, value_enum, default_value = "kernel")]
     method: CutMethod,

@@ -394,6 +394,45 @@ fn clips_are_cut_by_either_method_and_one_at_a_time() {
 }
 
 #[test]
+fn a_clip_is_cut_by_hand_and_stays_so() {
+    let (folder, takes) = studio(2);
+    json(&folder, &["db", "import", "m.mdb", "clips"]);
+    let name = takes[0].clip.name.as_str();
+    folder
+        .morec(&["cut", "m.mdb", "--name", name, "--at", "4,1.5"])
+        .ok();
+    let again = folder.morec(&["cut", "m.mdb"]);
+    assert!(again.err.contains("it was cut by hand"), "{}", again.err);
+    assert!(!again.out.contains(name), "{}", again.out);
+    let outside = folder.morec(&["cut", "m.mdb", "--name", name, "--at", "1e6"]);
+    assert_eq!(outside.code, Some(1));
+    assert!(
+        outside.err.contains("expected cuts between"),
+        "{}",
+        outside.err
+    );
+    let several = folder.morec(&["cut", "m.mdb", "--name", "*", "--at", "1"]);
+    assert_eq!(several.code, Some(1));
+}
+
+#[test]
+fn a_part_of_the_body_is_given_to_another_joint() {
+    let (folder, takes) = studio(1);
+    json(&folder, &["db", "import", "m.mdb", "clips"]);
+    let name = takes[0].clip.name.as_str();
+    let give =
+        |role: &str| folder.morec(&["db", "clips", "m.mdb", "--name", name, "--set-role", role]);
+    give("left_foot=RightFoot").ok();
+    let steps = json(&folder, &["db", "history", "m.mdb"]);
+    assert_eq!(steps[0]["what"], "roles of 1 clips");
+    give("left_foot=").ok();
+    let nobody = give("left_foot=Tail");
+    assert_eq!(nobody.code, Some(1));
+    assert!(nobody.err.contains("no joint called"), "{}", nobody.err);
+    assert_eq!(give("tail=RightFoot").code, Some(2));
+}
+
+#[test]
 fn tables_through_a_pipe_are_separated_by_tabs() {
     let (folder, takes) = studio(2);
     json(&folder, &["db", "import", "m.mdb", "clips"]);

@@ -11,11 +11,10 @@ use morec::segment::{
     kernel_cuts, segment, still_stretches,
 };
 use morec_db::rows::ClipRows;
-use morec_db::{ClipFilter, ClipId, ClipInfo, MotionDb, Segment, SegmentKind};
+use morec_db::{BY_HAND, ClipFilter, ClipId, ClipInfo, Cutter, DbError, MotionDb};
 
 use super::load::ClipMotion;
 use super::{JobOutcome, JobProgress};
-use crate::state::cuts::BY_HAND;
 
 /// A method of segmentation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -28,6 +27,13 @@ pub enum SegmentMethod {
 }
 
 impl SegmentMethod {
+    fn cutter(self) -> Cutter {
+        match self {
+            SegmentMethod::Kernel => Cutter::Kernel(KernelParams::default()),
+            SegmentMethod::Ppca => Cutter::Ppca(PpcaParams::default(), PivotSet::thesis()),
+        }
+    }
+
     pub fn name(self) -> &'static str {
         match self {
             SegmentMethod::Kernel => "kernel",
@@ -87,45 +93,22 @@ fn cut_all(
     progress: &JobProgress,
 ) -> Result<Option<CutSummary>, morec_db::DbError> {
     let mut db = MotionDb::open(path)?;
-    let rows = db.rows(&FeatureParams::default(), progress)?;
-    let clips = db.clips(&ClipFilter::default())?;
     let methods = db.cut_methods()?;
     let by_hand = |c: &ClipInfo| methods.get(&c.id).is_some_and(|m| m == BY_HAND);
-    let (kept, clips): (Vec<&ClipInfo>, Vec<&ClipInfo>) = clips
-        .iter()
+    let (kept, clips): (Vec<ClipInfo>, Vec<ClipInfo>) = db
+        .clips(&ClipFilter::default())?
+        .into_iter()
         .filter(|c| only.is_empty() || only.contains(&c.id))
-        .partition(|c| by_hand(c));
-    let (mut done, mut segments, mut left) = (Vec::new(), Vec::new(), Vec::new());
-    for (number, clip) in clips.iter().enumerate() {
-        if progress.cancelled() {
-            return Ok(None);
-        }
-        progress.report("cutting", number, clips.len());
-        let Some(rows) = rows.iter().find(|r| r.clip == clip.id) else {
-            left.push((clip.name.clone(), "no body part is known".to_owned()));
-            continue;
-        };
-        let cuts = match method {
-            SegmentMethod::Kernel => kernel(rows),
-            SegmentMethod::Ppca => {
-                ppca(&ClipMotion::of(clip.id, db.clip(clip.id)?)).map(|found| found.0)
-            }
-        };
-        match cuts {
-            Ok(cuts) => {
-                done.push(clip.id);
-                segments.extend(stretches(clip, rows, &cuts));
-            }
-            Err(why) => left.push((clip.name.clone(), why)),
-        }
-    }
-    db.set_segments(method.name(), &done, &segments)?;
-    let motions = |s: &&Segment| s.kind == SegmentKind::Motion;
+        .partition(by_hand);
+    let report = match db.cut(&clips, &method.cutter(), progress) {
+        Err(DbError::Cancelled) => return Ok(None),
+        report => report?,
+    };
     Ok(Some(CutSummary {
-        clips: done.len(),
+        clips: report.cuts.len(),
         by_hand: kept.len(),
-        segments: segments.iter().filter(motions).count(),
-        left,
+        segments: report.cuts.iter().map(|c| c.cuts_secs.len() + 1).sum(),
+        left: report.left,
     }))
 }
 
@@ -155,36 +138,6 @@ fn still(rows: &ClipRows) -> Vec<(f64, f64, bool)> {
             (ticks.start as f64 * tick, ticks.end as f64 * tick, t_pose)
         })
         .collect()
-}
-
-/// What is kept of a clip cut at `cuts`, as `morec db cut` keeps it.
-fn stretches(clip: &ClipInfo, rows: &ClipRows, cuts: &[f64]) -> Vec<Segment> {
-    let end = clip.duration_secs();
-    let stretch = |kind, start_secs, stop_secs| Segment {
-        clip: clip.id,
-        kind,
-        start_secs,
-        stop_secs,
-    };
-    let mut segments = Vec::new();
-    if clip.rest_frames > 0 {
-        let rest = clip.rest_frames as f64 / clip.rate_hz;
-        segments.push(stretch(SegmentKind::Rest, 0.0, rest));
-    }
-    for (start, stop, t_pose) in still(rows) {
-        let kind = match t_pose {
-            true => SegmentKind::Rest,
-            false => SegmentKind::Still,
-        };
-        segments.push(stretch(kind, start, stop.min(end)));
-    }
-    let mut start = 0.0;
-    for stop in cuts.iter().copied().chain([end]) {
-        segments.push(stretch(SegmentKind::Motion, start, stop));
-        start = stop;
-    }
-    segments.retain(|s| s.stop_secs > s.start_secs);
-    segments
 }
 
 /// What both methods say of one clip. Nothing is written.

@@ -5,6 +5,7 @@ use egui::Ui;
 use super::Out;
 use super::view::Other;
 use crate::body::companion;
+use crate::format;
 use crate::jobs::load::ClipMotion;
 use crate::state::compare::Placement;
 use crate::state::{Command, CompareCommand, State};
@@ -32,10 +33,17 @@ pub fn others<'a>(state: &'a State, motion: &ClipMotion, c: &Colours) -> Vec<Oth
                     true => c.body().mixed(c.good, 0.75),
                     false => c.body().mixed(c.good, 0.25),
                 },
-                caption: format!("{name}{image}"),
+                caption: format!("{name}, {}{image}", format::secs(aligned.with.start_secs)),
             }
         })
         .collect()
+}
+
+/// What is said at the performer's own feet, where there are companions.
+pub fn caption(state: &State, motion: &ClipMotion) -> Option<String> {
+    let first = state.companions.all.first()?;
+    let start = format::secs(first.of.start_secs);
+    Some(format!("{}, {start}", motion.clip.name))
 }
 
 /// Beside or on top; alone again.

@@ -2,11 +2,12 @@
 
 use egui::{CursorIcon, Rect, Sense, Shape, Ui, Vec2, WidgetType, pos2};
 
+use morec_db::BY_HAND;
+
 use super::timeline::Scale;
 use super::tracks::{ROW, track};
 use super::{Out, widgets};
 use crate::jobs::cut::Curves;
-use crate::state::cuts::BY_HAND;
 use crate::state::{Command, CutCommand, PlayCommand, State};
 use crate::theme::Colours;
 

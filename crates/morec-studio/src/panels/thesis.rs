@@ -17,7 +17,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
     let c = Colours::now(ui);
     ui.add_space(14.0);
     widgets::section(ui, "THE METHOD OF 2009");
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         let training = state.is_training_thesis();
         let text = if training { "Training …" } else { "Train it on these labels" };
         if ui.add_enabled(!training, egui::Button::new(text)).clicked() {

@@ -56,7 +56,7 @@ pub fn clip(ui: &mut Ui, state: &State, out: Out) {
         floor: motion.floor,
         motion: Some((motion, state.player.at_secs)),
         others: super::compare::others(state, motion, &Colours::now(ui)),
-        caption: (!state.companions.all.is_empty()).then(|| motion.clip.name.clone()),
+        caption: super::compare::caption(state, motion),
     };
     draw(ui, rect, state, &scene, out);
 }
@@ -269,7 +269,7 @@ fn controls(ui: &mut Ui, rect: Rect, state: &State, out: Out) {
         Vec2::new(rect.width() - 16.0, 24.0),
     );
     let mut child = ui.new_child(egui::UiBuilder::new().max_rect(area));
-    child.horizontal(|ui| {
+    child.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         ui.spacing_mut().button_padding = Vec2::new(7.0, 2.0);
         ui.spacing_mut().interact_size.y = 22.0;

@@ -5,8 +5,6 @@ use morec_db::{ClipId, Segment, SegmentKind};
 use super::State;
 use crate::store::Edit;
 
-/// The method of cuts that somebody has put into place, in the database.
-pub const BY_HAND: &str = "hand";
 /// Cuts nearer than this are one, seconds.
 const SAME_SECS: f64 = 0.02;
 
@@ -128,9 +126,9 @@ impl State {
                 self.timeline.cut = None;
             }
             CutCommand::Reset => {
-                if let Some(curves) = &self.curves {
-                    let cuts = curves.kernel.clone();
-                    self.keep_cuts_by("kernel", cuts, "cuts as found".to_owned());
+                let clip = self.player.motion.as_ref().map(|m| m.id);
+                if let Some(clip) = clip.filter(|_| self.cut_method().is_some()) {
+                    self.edit(Edit::ForgetCuts(clip));
                 }
             }
         }
@@ -167,53 +165,12 @@ impl State {
         });
     }
 
+    /// Keeps cuts of the clip that is shown.
     fn keep_cuts(&mut self, cuts: Vec<f64>, what: String) {
-        self.keep_cuts_by(BY_HAND, cuts, what);
-    }
-
-    /// Keeps cuts of the clip that is shown; stillness and rest stay as they are.
-    fn keep_cuts_by(&mut self, method: &str, mut cuts: Vec<f64>, what: String) {
-        let (Some(store), Some(motion)) = (&self.store, &self.player.motion) else {
-            return;
-        };
-        cuts.sort_by(f64::total_cmp);
-        let (clip, end) = (motion.id, motion.secs());
-        let stretch = |kind, start_secs, stop_secs| Segment {
-            clip,
-            kind,
-            start_secs,
-            stop_secs,
-        };
-        let kept = store.snapshot.segments_of(clip);
-        let mut segments: Vec<Segment> = match kept.is_empty() {
-            false => kept.to_vec(),
-            true => self
-                .curves
-                .iter()
-                .flat_map(|c| &c.still)
-                .map(|(start, stop, t_pose)| {
-                    let kind = match t_pose {
-                        true => SegmentKind::Rest,
-                        false => SegmentKind::Still,
-                    };
-                    stretch(kind, *start, stop.min(end))
-                })
-                .collect(),
-        };
-        segments.retain(|s| s.kind != SegmentKind::Motion && s.stop_secs > s.start_secs);
-        let mut start = 0.0;
-        for stop in cuts.into_iter().chain([end]) {
-            if stop > start {
-                segments.push(stretch(SegmentKind::Motion, start, stop));
-            }
-            start = stop;
+        if let Some(clip) = self.shown_clip().cloned() {
+            let clip = Box::new(clip);
+            self.edit(Edit::Cuts { what, clip, cuts });
         }
-        self.edit(Edit::Cuts {
-            what,
-            method: method.to_owned(),
-            clip,
-            segments,
-        });
     }
 }
 

@@ -22,10 +22,7 @@ impl State {
         let Some(store) = &self.store else { return };
         let db = store.path().to_owned();
         let of = if cuts { "cuts" } else { "labels" };
-        self.command_line = format!(
-            "morec db group {} --of {of} --method hierarchy",
-            quoted(&db)
-        );
+        self.command_line = format!("morec group {} --of {of} --method hierarchy", quoted(&db));
         self.jobs
             .start("Grouping", true, &self.wake, move |progress| {
                 group::group(&db, cuts, progress)

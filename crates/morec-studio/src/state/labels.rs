@@ -234,7 +234,7 @@ impl State {
     fn cut(&mut self, method: SegmentMethod) {
         let Some(store) = &self.store else { return };
         let db = store.path().to_owned();
-        self.command_line = format!("morec db cut {} --method {}", quoted(&db), method.name());
+        self.command_line = format!("morec cut {} --method {}", quoted(&db), method.name());
         self.jobs
             .start("Cutting clips", true, &self.wake, move |progress| {
                 cut::cut(&db, method, &[], progress)

@@ -54,8 +54,14 @@ impl State {
                 }
                 line
             }
-            // No command puts single cuts into place.
-            Edit::Cuts { .. } => return None,
+            Edit::Cuts { clip, cuts, .. } => {
+                let mut cuts = cuts.clone();
+                cuts.sort_by(f64::total_cmp);
+                let at: Vec<String> = cuts.iter().map(|cut| format!("{cut:.3}")).collect();
+                let name = word(&clip.name);
+                format!("morec cut {db} --name {name} --at {}", at.join(","))
+            }
+            Edit::ForgetCuts(_) => return None,
             Edit::Roles(clips) => {
                 let (id, roles) = clips.first()?;
                 let before = store.snapshot.roles.get(id)?;

@@ -2,7 +2,7 @@
 
 use morec::roles::RoleMap;
 use morec_db::labels::{LabelOptions, NewSample, SampleId, SampleState};
-use morec_db::{ClipId, ClipUpdate, DbError, MotionDb, Segment};
+use morec_db::{ClipId, ClipInfo, ClipUpdate, DbError, MotionDb};
 
 /// Who says so, in the database.
 pub const BY: &str = "studio";
@@ -52,13 +52,14 @@ pub enum Edit {
     RemoveClips(Vec<ClipId>),
     /// Who plays what in clips.
     Roles(Vec<(ClipId, RoleMap)>),
-    /// What a clip is cut into, by a method.
+    /// Where somebody cuts a clip, seconds.
     Cuts {
         what: String,
-        method: String,
-        clip: ClipId,
-        segments: Vec<Segment>,
+        clip: Box<ClipInfo>,
+        cuts: Vec<f64>,
     },
+    /// The cuts of a clip are forgotten.
+    ForgetCuts(ClipId),
     KeepIndex {
         name: String,
         bytes: Vec<u8>,
@@ -139,14 +140,13 @@ impl Edit {
                     crate::format::count(clips.len(), "clip")
                 ))
             }
-            Edit::Cuts {
-                what,
-                method,
-                clip,
-                segments,
-            } => {
-                db.set_segments(method, &[*clip], segments)?;
+            Edit::Cuts { what, clip, cuts } => {
+                db.cut_by_hand(clip, cuts)?;
                 Ok(what.clone())
+            }
+            Edit::ForgetCuts(clip) => {
+                db.set_segments("none", &[*clip], &[])?;
+                Ok("the cuts are those that are found".to_owned())
             }
             Edit::KeepIndex { name, bytes } => {
                 db.keep_index(name, bytes)?;

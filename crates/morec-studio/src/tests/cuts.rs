@@ -3,7 +3,7 @@
 use egui::{Key, vec2};
 
 use super::{Person, made};
-use crate::state::{Command, Panel, PlayCommand};
+use crate::state::{Command, CutCommand, Panel, PlayCommand};
 
 fn labelling() -> (tempfile::TempDir, Person) {
     let folder = tempfile::tempdir().unwrap();
@@ -29,6 +29,11 @@ fn a_cut_is_dragged_into_place_and_cutting_again_leaves_it() {
     let at = person.place(&name).center();
     person.drag(at, at + vec2(25.0, 0.0));
     person.settle();
+    let line = person.state().command_line.clone();
+    assert!(
+        line.contains("morec cut") && line.contains("--at"),
+        "{line}"
+    );
     let by_hand = person.state().cuts();
     assert_eq!(by_hand.len(), found.len());
     assert!(!by_hand.iter().any(|c| (c - cut).abs() < 1e-6));
@@ -47,6 +52,10 @@ fn a_cut_is_dragged_into_place_and_cutting_again_leaves_it() {
     person.undo();
     assert_eq!(person.state().cuts(), found);
     person.redo();
+    assert_eq!(person.state().cuts(), by_hand);
+    person.command(Command::Cuts(CutCommand::Reset));
+    assert_eq!(person.state().cuts(), found);
+    person.undo();
     assert_eq!(person.state().cuts(), by_hand);
 }
 

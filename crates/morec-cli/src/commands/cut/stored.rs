@@ -26,6 +26,14 @@ pub fn run(path: &Path, cutter: CheckedCutter, args: &Args) -> Result<ExitCode> 
         name: args.name.clone(),
         ..ClipFilter::default()
     })?;
+    if !args.at.is_empty() {
+        let [clip] = clips.as_slice() else {
+            bail!("--at cuts one clip: --name chooses {}", clips.len());
+        };
+        db.cut_by_hand(clip, &args.at)?;
+        let said = format!("{}: {} segments\n", clip.name, args.at.len() + 1);
+        return crate::commands::db::print(said).map(|()| ExitCode::SUCCESS);
+    }
     let report = db.cut(&clips, &cutter, &bar)?;
     drop(bar);
     for (clip, reason) in &report.left {

@@ -142,7 +142,7 @@ pub fn print_json(value: &impl Serialize) -> Result<()> {
 }
 
 /// Text on standard output.
-fn print(text: impl std::fmt::Display) -> Result<()> {
+pub fn print(text: impl std::fmt::Display) -> Result<()> {
     let mut out = std::io::stdout().lock();
     write!(out, "{text}")?;
     out.flush()?;
