@@ -7,7 +7,7 @@ use morec::clip::Clip;
 use morec::features::{FeatureParams, Rows};
 use morec::files::{FileReader, split_choice};
 use morec::formats::{Place, Warning};
-use morec::import::{ImportOptions, Stated, normalize};
+use morec::import::{ImportOptions, normalize};
 
 use crate::motion::{Packed, pack, unpack};
 use crate::rows::{self, ClipRows, rows_of};
@@ -94,7 +94,7 @@ impl KeptClip {
         let parsed = reader.parse(path, bytes);
         let parsed = parsed.map_err(|error| error.kind.to_string())?;
         let options = ImportOptions {
-            stated: Stated::of(parsed.format),
+            stated: parsed.stated,
             ..reader.import.clone()
         };
         let shown = |path: &PathBuf| path.to_string_lossy().into_owned();
