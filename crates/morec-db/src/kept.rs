@@ -7,7 +7,7 @@ use morec::clip::Clip;
 use morec::features::{FeatureParams, Rows};
 use morec::files::{ClipFile, FileReader, each_piece, split_choice};
 use morec::formats::{Place, Warning};
-use morec::import::{ImportOptions, Stated, normalize};
+use morec::import::{ImportOptions, normalize};
 
 use crate::motion::{Packed, pack, unpack};
 use crate::rows::{self, ClipRows, rows_of};
@@ -140,7 +140,7 @@ impl KeptClip {
         reader: &FileReader,
     ) -> Result<Vec<Self>, String> {
         let options = ImportOptions {
-            stated: Stated::of(parsed.format),
+            stated: parsed.stated,
             ..reader.import.clone()
         };
         let shown = |path: &PathBuf| path.to_string_lossy().into_owned();

@@ -64,6 +64,7 @@
 //! |---|---|---|
 //! | bytes of a file | [`formats`] | a [`Clip`]: skeleton, frames, and what had to be repaired |
 //! | units, axes, body parts | [`import`], [`roles`] | metres, Y up, a [`RoleMap`](roles::RoleMap) |
+//! | rotations of what has positions only | [`fitting`] | a skeleton of fixed bone lengths, and its residuals |
 //! | poses in the world | [`kinematics`] | a [`KeyPose`] for each frame |
 //! | feature rows | [`features`] | 30 rows a second, alike for people of any size, facing anywhere |
 //! | learning | [`labels`], [`train`] | a [`TemplateModel`](templates::TemplateModel) and a report |
@@ -137,6 +138,8 @@ pub mod features;
 
 #[cfg(feature = "files")]
 pub mod files;
+#[cfg(feature = "formats")]
+pub mod fitting;
 #[cfg(feature = "formats")]
 pub mod formats;
 #[cfg(feature = "formats")]

@@ -9,8 +9,9 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
 use morec::clip::Clip;
+use morec::fitting::fit_skeleton;
 use morec::formats::bvh;
-use morec::import::ImportOptions;
+use morec::import::{ImportOptions, normalize};
 use morec::tables::Content;
 
 use crate::files::{self, ReadArgs};
@@ -30,6 +31,7 @@ Examples:
   morec convert 13_29.amc -o 13_29.bvh
   morec convert walk.bvh -o walk30.bvh --rate 30
   morec convert gait.c3d -o gait.trc
+  morec convert gait.c3d -o gait.bvh --fit
   morec convert dance.fbx -o dance.vrma
   morec convert walk.bvh -o walk.csv --table features
   morec convert clips/ -o arrays/ --form npz
@@ -50,6 +52,10 @@ pub struct Args {
     /// Resample to this rate; without it, every frame is kept as it is
     #[arg(long, value_name = "HZ", value_parser = files::rate)]
     rate: Option<f64>,
+    /// Lay a skeleton of fixed bone lengths into clips of points, so that joints have rotations; how far it is from the
+    /// points is said on standard error
+    #[arg(long)]
+    fit: bool,
     /// Which character to write, from 1, of a file that holds several
     #[arg(long, value_name = "N")]
     character: Option<usize>,
@@ -86,15 +92,37 @@ struct Wanted {
     content: Content,
     import: ImportOptions,
     rate_hz: Option<f64>,
+    fit: bool,
 }
 
 impl Wanted {
-    fn resampled(&self, clip: Clip) -> Result<Clip> {
-        Ok(match self.rate_hz {
+    /// The clip at the rate, and with the rotations, that are asked for.
+    fn prepared(&self, clip: Clip) -> Result<Clip> {
+        let clip = match self.rate_hz {
             Some(rate_hz) => clip.resampled(rate_hz)?,
             None => clip,
-        })
+        };
+        match self.fit && !clip.has_rotations() {
+            true => fitted(clip, &self.import),
+            false => Ok(clip),
+        }
     }
+}
+
+/// A skeleton laid into a clip of points.
+fn fitted(clip: Clip, import: &ImportOptions) -> Result<Clip> {
+    let take = normalize(clip, import)?;
+    let fit = fit_skeleton(&take).with_context(|| take.clip.name.clone())?;
+    let (role, worst) = fit.worst;
+    eprintln!(
+        "morec: {}: a skeleton of {} joints fits the points to {:.1} cm (root mean square; {role} to {:.1} cm); how straight limbs \
+         are turned about themselves is not known",
+        take.clip.name,
+        fit.clip.skeleton.len(),
+        100.0 * fit.rms_metres,
+        100.0 * worst
+    );
+    Ok(fit.clip)
 }
 
 /// Reads, resamples if asked to, and writes.
@@ -106,6 +134,7 @@ pub fn run(args: Args) -> Result<ExitCode> {
             ..ImportOptions::default()
         },
         rate_hz: args.rate,
+        fit: args.fit,
     };
     let into_folder =
         args.clips.len() > 1 || args.clips.iter().any(|path| path.is_dir()) || args.form.is_some();
@@ -127,7 +156,7 @@ pub fn run(args: Args) -> Result<ExitCode> {
     }
     let clip = one_of(opened.clips, args.character).with_context(|| path.display().to_string())?;
     let clip = wanted
-        .resampled(clip)
+        .prepared(clip)
         .with_context(|| path.display().to_string())?;
     if to_stdout {
         let mut out = std::io::stdout().lock();

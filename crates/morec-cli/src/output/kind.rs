@@ -36,6 +36,8 @@ pub fn of(head: &[u8]) -> Option<&'static str> {
         Ok(Format::Smpl) => Some("an archive of SMPL poses"),
         Ok(Format::NtuSkeleton) => Some("a recording of a Kinect"),
         Ok(Format::Landmarks) => Some("JSON of landmarks"),
+        Ok(Format::Numpy) => Some("a NumPy array"),
+        Ok(Format::Smd) => Some("an SMD animation"),
         Ok(Format::Mocopi) => Some("recorded mocopi packets"),
         Err(_) => Some(text.map_or("a file of another kind", of_text)),
     }

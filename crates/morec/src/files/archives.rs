@@ -154,7 +154,12 @@ impl FileReader {
         let mut opened = match (all, first_error) {
             (Some(opened), _) => opened,
             (None, Some(error)) if refused.len() == 1 => return Err(error),
-            (None, _) => return Err(nothing_in(bytes, &refused).into()),
+            (None, _) => {
+                // Workbooks and scenes are archives, too.
+                let known = probe(bytes, "").err();
+                let known = known.filter(|error| !error.found.contains("a zip archive"));
+                return Err(known.unwrap_or_else(|| nothing_in(bytes, &refused)).into());
+            }
         };
         for text in refused {
             let text = format!("left out: {text}");
@@ -207,6 +212,8 @@ fn gather(all: &mut Option<ClipFile>, mut opened: ClipFile, path: &str) {
         Some(all) => {
             all.clips.append(&mut opened.clips);
             all.warnings.append(&mut opened.warnings);
+            // What one file states says nothing of another.
+            all.stated = all.stated.filter(|stated| opened.stated == Some(*stated));
         }
         None => *all = Some(opened),
     }

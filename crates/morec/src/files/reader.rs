@@ -8,9 +8,14 @@ use rayon::prelude::*;
 use crate::clip::Clip;
 use crate::formats::acclaim::{self, AmcOptions, Asf};
 use crate::formats::bvh::{self, BvhOptions, PositionChannels};
+use crate::formats::container::zip_paths;
+#[cfg(feature = "fbx")]
+use crate::formats::fbx;
 use crate::formats::probe::{Format, probe};
 use crate::formats::{Limits, Loaded, ParseError, Place, Warning, mclip};
-use crate::formats::{c3d, jsonl, read_scene, table, trc};
+use crate::formats::{c3d, jsonl, numpy, read_scene, table, trc};
+#[cfg(feature = "fbx")]
+use crate::import::SignedAxis;
 use crate::import::{ImportOptions, Stated, Take, normalize};
 use crate::kinematics::WorldPose;
 
@@ -44,6 +49,8 @@ pub struct ClipFile {
     pub clips: Vec<Clip>,
     /// Repairs and oddities.
     pub warnings: Vec<Warning>,
+    /// What the file, or its format, states about lengths and axes.
+    pub stated: Option<Stated>,
 }
 
 impl ClipFile {
@@ -54,7 +61,7 @@ impl ClipFile {
     pub fn into_takes(self, options: &ImportOptions) -> Result<Vec<Take>, ParseError> {
         let warnings = self.warnings;
         let options = &ImportOptions {
-            stated: Stated::of(self.format),
+            stated: self.stated,
             ..options.clone()
         };
         let ready = |clip| {
@@ -140,7 +147,15 @@ impl FileReader {
         around: Around<'_>,
     ) -> Result<ClipFile, FileErrorKind> {
         let stem = stem(path);
-        let format = probe(bytes, &path.to_string_lossy())?;
+        let format = match probe(bytes, &path.to_string_lossy())? {
+            // Archives of poses and of positions look alike at their beginning.
+            Format::Smpl if numpy::has_positions(&zip_paths(bytes).unwrap_or_default()) => {
+                Format::Numpy
+            }
+            format => format,
+        };
+        #[cfg_attr(not(feature = "fbx"), allow(unused_mut))]
+        let mut stated = Stated::of(format);
         let (loaded, skeleton) = match format {
             Format::Bvh => (bvh::read(bytes, &stem, &self.bvh(), &self.limits)?, None),
             Format::Asf => {
@@ -162,6 +177,18 @@ impl FileReader {
             Format::Trc => (trc::read(bytes, &stem, self.rate_hz, &self.limits)?, None),
             Format::Table => (table::read(bytes, &stem, self.rate_hz, &self.limits)?, None),
             Format::Jsonl => (jsonl::read(bytes, &stem, self.rate_hz, &self.limits)?, None),
+            #[cfg(feature = "fbx")]
+            Format::Fbx => {
+                let (loaded, by_file) = fbx::read_stated(bytes, &stem, self.rate_hz, &self.limits)?;
+                stated = by_file.map(|settings| Stated {
+                    up: SignedAxis {
+                        axis: settings.up,
+                        negative: settings.is_down,
+                    },
+                    metres_per_unit: settings.metres_per_unit,
+                });
+                (loaded, None)
+            }
             scene => {
                 let beside = |name: &str| around.file(path, name);
                 let (rate_hz, limits) = (self.rate_hz, &self.limits);
@@ -175,6 +202,7 @@ impl FileReader {
             skeleton,
             clips: loaded.clips,
             warnings: loaded.warnings,
+            stated,
         })
     }
 
@@ -182,6 +210,7 @@ impl FileReader {
     pub(super) fn parse_bvh(&self, path: &Path, file: File) -> Result<ClipFile, FileErrorKind> {
         let loaded = bvh::read_from(file, &stem(path), &self.bvh(), &self.limits)?;
         Ok(ClipFile {
+            stated: Stated::of(Format::Bvh),
             format: Format::Bvh,
             skeleton: None,
             clips: loaded.clips,

@@ -8,8 +8,9 @@ use serde_json::{Map, Value};
 
 use super::points::{Point, PointTable, UNSEEN, check_size};
 use super::timing::{self, Clock};
-use super::{Limits, Loaded, ParseError, Place};
+use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::math::Vec3;
+use crate::roles::points::numbered_counts;
 
 /// Frames a second of a document without times.
 const ASSUMED_HZ: f64 = 30.0;
@@ -24,10 +25,21 @@ pub(super) fn looks_so(head: &[u8]) -> bool {
         head.windows(word.len())
             .any(|at| at.eq_ignore_ascii_case(word))
     };
-    let words: [&[u8]; 3] = [b"landmark", b"keypoint", b"joints"];
-    // Two dimensions, scenes of suits and glTF have words in common with these.
-    let others: [&[u8]; 3] = [b"\"asset\"", b"\"pose_keypoints_2d\"", b"\"actors\""];
-    let numbers = contains(b"\"z\"") || contains(b"[[") || contains(b"[0.") || contains(b"[-");
+    let words: [&[u8]; 6] = [
+        b"landmark",
+        b"keypoint",
+        b"joints",
+        b"joint_",
+        b"left_shoulder",
+        b"leftShoulder",
+    ];
+    // Scenes of suits and glTF have words in common with these.
+    let others: [&[u8]; 2] = [b"\"asset\"", b"\"actors\""];
+    let numbers = contains(b"\"z\"")
+        || contains(b"\"y\"")
+        || head
+            .windows(2)
+            .any(|at| at[0] == b'[' && matches!(at[1], b'[' | b'-' | b'0'..=b'9'));
     matches!(head.trim_ascii_start(), [b'{' | b'[', ..])
         && numbers
         && words.iter().any(|word| contains(word))
@@ -45,22 +57,28 @@ pub fn read(
     rate_hz: Option<f64>,
     limits: &Limits,
 ) -> Result<Loaded, ParseError> {
-    let document: Value = serde_json::from_slice(bytes).map_err(|error| {
-        let line = u64::try_from(error.line()).unwrap_or(0);
-        ParseError::new(Place::Line(line), "JSON", error.to_string())
-    })?;
-    let frames = frames_in(&document, DEEPEST).ok_or_else(|| {
-        ParseError::new(
-            Place::File,
-            "a list of frames, each with at least 5 points that have x, y and z",
-            "JSON without one",
-        )
-    })?;
+    let document = parse(bytes)?;
+    let frames = frames_in(&document, DEEPEST).ok_or_else(|| no_frames(&document))?;
+    let mut warnings = Vec::new();
+    let people = frames.iter().map(|frame| people_in(frame, DEEPEST)).max();
+    if let Some(people @ 2..) = people {
+        let text = format!(
+            "up to {people} bodies in a frame; the first of each is read, the others are left out"
+        );
+        warnings.push(Warning::new(Place::File, text));
+    }
+    let names = names_in(&document, DEEPEST);
     let mut points: Vec<Point> = Vec::new();
     let mut times = Vec::with_capacity(frames.len());
     for (at, frame) in frames.iter().enumerate() {
         times.push(time_of(frame));
-        for (name, place) in points_in(frame, DEEPEST).unwrap_or_default() {
+        let found = points_in(frame, DEEPEST).unwrap_or_default();
+        let names = names.as_ref().filter(|names| names.len() == found.len());
+        for (number, (name, place)) in found.into_iter().enumerate() {
+            let bare = name.bytes().all(|b| b.is_ascii_digit());
+            let name = names
+                .filter(|_| bare)
+                .map_or(name, |names| names[number].clone());
             let point = match points.iter_mut().find(|point| point.name == name) {
                 Some(point) => point,
                 None => {
@@ -89,7 +107,6 @@ pub fn read(
         stated_hz: rate_in(&document),
         assumed_hz: ASSUMED_HZ,
     };
-    let mut warnings = Vec::new();
     let rate_hz = timing::regular(&times, &clock, &mut points, &mut warnings);
     let table = PointTable {
         points,
@@ -100,27 +117,151 @@ pub fn read(
     table.into_loaded(name, warnings, limits)
 }
 
-/// The first list of which most elements hold points.
-fn frames_in(value: &Value, depth: usize) -> Option<&Vec<Value>> {
+/// The document; several one behind the other, as in lines of JSON, are a list.
+fn parse(bytes: &[u8]) -> Result<Value, ParseError> {
+    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+    let mut values = Vec::new();
+    for value in serde_json::Deserializer::from_slice(bytes).into_iter::<Value>() {
+        match value {
+            Ok(value) => values.push(value),
+            // What breaks off behind frames is left out.
+            Err(error) if values.len() > 1 && error.is_eof() => break,
+            Err(error) => {
+                let line = u64::try_from(error.line()).unwrap_or(0);
+                return Err(ParseError::new(
+                    Place::Line(line),
+                    "JSON",
+                    error.to_string(),
+                ));
+            }
+        }
+    }
+    Ok(match values.len() {
+        1 => values.remove(0),
+        _ => Value::Array(values),
+    })
+}
+
+fn no_frames(document: &Value) -> ParseError {
+    let expected = "a list of frames, each with at least 5 points that have x, y and z";
+    let found = match is_flat(document, DEEPEST) {
+        true => {
+            "points in two dimensions: a direction in space needs three (triangulate several views and give TRC, C3D or a table)"
+        }
+        false => "JSON without one",
+    };
+    ParseError::new(Place::File, expected, found)
+}
+
+/// Whether somewhere in it are points with x and y, or numbers in threes as detectors in pictures write them.
+fn is_flat(value: &Value, depth: usize) -> bool {
+    let flat = |point: &Value| match point {
+        Value::Object(fields) => {
+            fields.contains_key("x") && fields.contains_key("y") && !fields.contains_key("z")
+        }
+        Value::Array(list) => list.len() == 2 && list.iter().all(Value::is_number),
+        _ => false,
+    };
+    match value {
+        Value::Array(list) => {
+            let numbers = list.len() >= 3 * LEAST_POINTS && list.iter().all(Value::is_number);
+            let points = list.len() >= LEAST_POINTS && list.iter().all(flat);
+            numbers
+                || points
+                || depth > 0 && list.iter().take(20).any(|child| is_flat(child, depth - 1))
+        }
+        Value::Object(fields) => {
+            depth > 0
+                && fields
+                    .values()
+                    .take(20)
+                    .any(|child| is_flat(child, depth - 1))
+        }
+        _ => false,
+    }
+}
+
+/// The first list, or object of numbered fields, of which most elements hold points.
+fn frames_in(value: &Value, depth: usize) -> Option<Vec<&Value>> {
     if depth == 0 {
         return None;
     }
-    if let Value::Array(list) = value {
+    let list = elements(value).filter(|list| {
         let looked_at = list.len().min(20);
-        let with = list
-            .iter()
-            .take(looked_at)
-            .filter(|frame| points_in(frame, depth - 1).is_some());
+        let holds = |frame: &&&Value| points_in(frame, depth - 1).is_some();
         // A list of points is no list of frames, nor is one of people.
-        if point_list(value).is_none() && with.count() * 2 > looked_at {
-            return Some(list);
-        }
-    }
-    children(value).find_map(|child| frames_in(child, depth - 1))
+        point_list(value).is_none()
+            && list.iter().take(looked_at).filter(holds).count() * 2 > looked_at
+    });
+    list.or_else(|| children(value).find_map(|child| frames_in(child, depth - 1)))
 }
 
-/// Values within a list or an object, those that say `world` first.
+/// The elements of a list, or of an object whose fields are numbers, in their order.
+fn elements(value: &Value) -> Option<Vec<&Value>> {
+    match value {
+        Value::Array(list) => Some(list.iter().collect()),
+        Value::Object(fields) => {
+            let mut numbered: Option<Vec<(u64, &Value)>> = Some(Vec::with_capacity(fields.len()));
+            for (key, child) in fields {
+                let digits: String = key.chars().filter(char::is_ascii_digit).collect();
+                match (digits.parse(), &mut numbered) {
+                    (Ok(number), Some(numbered)) => numbered.push((number, child)),
+                    _ => numbered = None,
+                }
+            }
+            let mut numbered = numbered.filter(|fields| fields.len() > 1)?;
+            numbered.sort_by_key(|field| field.0);
+            numbered.dedup_by_key(|field| field.0);
+            (numbered.len() == fields.len())
+                .then(|| numbered.into_iter().map(|field| field.1).collect())
+        }
+        _ => None,
+    }
+}
+
+/// How many bodies stand beside each other in a frame.
+fn people_in(value: &Value, depth: usize) -> usize {
+    if depth == 0 || point_list(value).is_some() {
+        return usize::from(depth > 0);
+    }
+    match value {
+        Value::Array(list) => list
+            .iter()
+            .filter(|body| points_in(body, depth - 1).is_some())
+            .count(),
+        _ => children(value)
+            .find(|child| points_in(child, depth - 1).is_some())
+            .map_or(0, |child| people_in(child, depth - 1)),
+    }
+}
+
+/// A list of words beside the frames whose field speaks of names.
+fn names_in(value: &Value, depth: usize) -> Option<Vec<String>> {
+    if depth == 0 {
+        return None;
+    }
+    let fields = value.as_object()?;
+    let list = |(key, child): (&String, &Value)| {
+        let lower = key.to_lowercase();
+        let says = ["name", "label", "joints", "keypoints", "landmarks"];
+        let list = child
+            .as_array()
+            .filter(|_| says.iter().any(|word| lower.contains(word)))?;
+        let words: Option<Vec<String>> = list
+            .iter()
+            .map(|word| word.as_str().map(str::to_owned))
+            .collect();
+        words.filter(|words| words.len() >= LEAST_POINTS)
+    };
+    let below = || fields.values().find_map(|child| names_in(child, depth - 1));
+    fields.iter().find_map(list).or_else(below)
+}
+
+/// Values within a list or an object, those that say `world` first, without those that say how something is turned.
 fn children(value: &Value) -> impl Iterator<Item = &Value> {
+    const TURNED: [&str; 8] = [
+        "orient", "rotation", "quat", "euler", "angle", "velocit", "accel", "2d",
+    ];
     let (list, object) = match value {
         Value::Array(list) => (Some(list.iter()), None),
         Value::Object(object) => (None, Some(object)),
@@ -128,7 +269,13 @@ fn children(value: &Value) -> impl Iterator<Item = &Value> {
     };
     let says = |world: bool| {
         let fields = object.into_iter().flat_map(Map::iter);
-        let fields = fields.filter(move |(key, _)| key.to_lowercase().contains("world") == world);
+        let fields = fields.filter(move |(key, _)| {
+            let key = key.to_lowercase();
+            let in_space = ["world", "3d", "position"]
+                .iter()
+                .any(|word| key.contains(word));
+            in_space == world && !TURNED.iter().any(|word| key.contains(word))
+        });
         fields.map(|(_, child)| child)
     };
     list.into_iter()
@@ -142,7 +289,37 @@ fn points_in(value: &Value, depth: usize) -> Option<Vec<(String, Vec3)>> {
     if depth == 0 {
         return None;
     }
-    point_list(value).or_else(|| children(value).find_map(|child| points_in(child, depth - 1)))
+    point_list(value)
+        .or_else(|| points_in_a_row(value))
+        .or_else(|| children(value).find_map(|child| points_in(child, depth - 1)))
+}
+
+/// Numbers without brackets between the points, in a field that says that they are in space: x, y, z, or these and how sure
+/// the tracker was.
+fn points_in_a_row(value: &Value) -> Option<Vec<(String, Vec3)>> {
+    let fields = value.as_object()?;
+    let in_space = |key: &String| {
+        let key = key.to_lowercase();
+        ["3d", "world"].iter().any(|word| key.contains(word))
+    };
+    fields
+        .iter()
+        .filter(|(key, _)| in_space(key))
+        .find_map(|(_, list)| {
+            let numbers: Option<Vec<f64>> = list.as_array()?.iter().map(Value::as_f64).collect();
+            let numbers = numbers?;
+            let known = |width: usize| {
+                let fits = |count: usize| count * width == numbers.len();
+                numbered_counts().any(fits).then_some(width)
+            };
+            let width = known(4)
+                .filter(|_| known(3).is_none())
+                .or_else(|| known(3))?;
+            let point = |(number, at): (usize, &[f64])| {
+                (number.to_string(), Vec3::new(at[0], at[1], at[2]))
+            };
+            Some(numbers.chunks_exact(width).enumerate().map(point).collect())
+        })
 }
 
 fn point_list(value: &Value) -> Option<Vec<(String, Vec3)>> {
@@ -195,7 +372,7 @@ fn place_of(point: &Value) -> Option<Vec3> {
 
 /// The time of a frame in seconds.
 fn time_of(frame: &Value) -> Option<f64> {
-    const KEYS: [(&str, f64); 7] = [
+    const KEYS: [(&str, f64); 10] = [
         ("t", 1.0),
         ("time", 1.0),
         ("timestamp", 1.0),
@@ -203,6 +380,9 @@ fn time_of(frame: &Value) -> Option<f64> {
         ("timestamp_ms", 1e-3),
         ("time_ms", 1e-3),
         ("timestamp_us", 1e-6),
+        ("timestamp_usec", 1e-6),
+        ("timestamp_ns", 1e-9),
+        ("timestampMs", 1e-3),
     ];
     KEYS.iter()
         .find_map(|(key, unit)| Some(frame.get(key)?.as_f64()? * unit))
@@ -216,73 +396,4 @@ fn rate_in(document: &Value) -> Option<f64> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use serde_json::json;
-
-    fn open(document: &Value) -> Result<Loaded, ParseError> {
-        read(
-            document.to_string().as_bytes(),
-            "f",
-            None,
-            &Limits::default(),
-        )
-    }
-
-    fn landmarks(frame: usize) -> Value {
-        let point = |j: usize| json!({"x": 0.01 * j as f64, "y": 0.1 * frame as f64 + 0.5, "z": 0.2, "visibility": 0.9});
-        (0..33).map(point).collect()
-    }
-
-    #[test]
-    fn frames_are_found_wherever_they_are() {
-        let list: Value = (0..6)
-            .map(|f| json!({"frame": f, "timestamp": f as f64 / 25.0, "landmarks": landmarks(f)}))
-            .collect();
-        let within = json!({"fps": 50.0, "frames": (0..6).map(|f| json!({
-            "pose_landmarks": landmarks(0), "pose_world_landmarks": landmarks(f)})).collect::<Value>()});
-        let tasks: Value = (0..6)
-            .map(|f| json!({"pose_landmarks": [landmarks(f)]}))
-            .collect();
-        let arrays = json!({"keypoints": (0..6).map(|f| (0..17)
-            .map(|j| json!([0.1 * f as f64, 0.1 * j as f64, 1.0])).collect::<Value>()).collect::<Value>()});
-        let named: Value = (0..6)
-            .map(|f| json!({"joints": {"nose": [0.1, 1.6, 0.1 * f as f64], "left_hip": [0.1, 1, 0], "right_hip": [0, 1, 0],
-                "left_knee": [0.1, 0.5, 0], "right_knee": [0, 0.5, 0]}}))
-            .collect();
-        for (document, points, rate_hz) in [
-            (&list, 33, 25.0),
-            (&within, 33, 50.0),
-            (&tasks, 33, 30.0),
-            (&arrays, 17, 30.0),
-            (&named, 5, 30.0),
-        ] {
-            assert!(looks_so(document.to_string().as_bytes()));
-            let clip = &open(document).unwrap().clips[0];
-            assert_eq!(
-                (clip.frames, clip.skeleton.len()),
-                (6, points),
-                "{document}"
-            );
-            assert!((clip.rate_hz - rate_hz).abs() < 0.01, "{}", clip.rate_hz);
-            let moves = clip
-                .tracks
-                .iter()
-                .any(|track| track.positions[0] != track.positions[5]);
-            assert!(moves, "{document}");
-        }
-    }
-
-    #[test]
-    fn other_documents_are_refused() {
-        for document in [
-            json!([]),
-            json!({"landmarks": []}),
-            json!({"pose": {"x": 1, "y": 2, "z": 3}}),
-            json!([{"landmarks": [{"x": 1, "y": 2}, {"x": 1, "y": 2}]}]),
-        ] {
-            assert!(open(&document).is_err(), "{document}");
-        }
-        assert!(read(b"{\"landmarks\": [", "f", None, &Limits::default()).is_err());
-    }
-}
+mod tests;

@@ -20,10 +20,13 @@ mod mangle;
 pub mod mclip;
 pub mod mocopi;
 pub mod mvnx;
+mod npy;
 pub mod ntu;
+pub mod numpy;
 pub(crate) mod points;
 pub mod probe;
 mod scene;
+pub mod smd;
 pub mod smpl;
 pub mod table;
 mod timing;
@@ -68,8 +71,8 @@ pub struct Loaded {
     pub warnings: Vec<Warning>,
 }
 
-/// Reads the formats of whole scenes and suits: [MVNX](mvnx), [glTF](gltf), FBX (feature `fbx`), [SMPL](smpl) and
-/// [mocopi], and of points that need nothing but the file ([NTU](ntu), [landmarks]). `rate_hz` replaces the rate where the file holds frames; keys in seconds keep theirs. `None` for
+/// Reads the formats of whole scenes and suits: [MVNX](mvnx), [glTF](gltf), FBX (feature `fbx`), [SMPL](smpl), [SMD](smd), and
+/// [mocopi], and of points that need nothing but the file ([NTU](ntu), [landmarks], [NumPy](numpy)). `rate_hz` replaces the rate where the file holds frames; keys in seconds keep theirs. `None` for
 /// other formats.
 pub fn read_scene(
     format: probe::Format,
@@ -83,6 +86,8 @@ pub fn read_scene(
     let loaded = match format {
         Format::Mvnx => mvnx::read(bytes, name, limits),
         Format::Smpl => smpl::read(bytes, name, limits),
+        Format::Smd => smd::read(bytes, name, limits),
+        Format::Numpy => numpy::read(bytes, name, rate_hz, limits),
         Format::Mocopi => mocopi::read(bytes, name, limits),
         Format::Gltf => gltf::read(bytes, name, beside, limits),
         Format::NtuSkeleton => ntu::read(bytes, name, rate_hz, limits),
@@ -93,15 +98,18 @@ pub fn read_scene(
     let timed = matches!(format, Format::Gltf | Format::Fbx);
     Some(loaded.map(|mut loaded| {
         match rate_hz {
-            Some(_) if timed => {
-                let text = "its keys stand at times, not frames; the rate given is not used";
-                loaded.warnings.push(Warning::new(Place::File, text));
-            }
+            Some(_) if timed => loaded.warnings.push(rate_not_used()),
             Some(rate_hz) => loaded.clips.iter_mut().for_each(|c| c.rate_hz = rate_hz),
             None => {}
         }
         loaded
     }))
+}
+
+/// What is said of a rate given for a file whose keys stand at times.
+fn rate_not_used() -> Warning {
+    let text = "its keys stand at times, not frames; the rate given is not used";
+    Warning::new(Place::File, text)
 }
 
 /// Clips of points whose positions are at hand: one, or one for each subject (`Anna:LFHD`) whose points make a body. For

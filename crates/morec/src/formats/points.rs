@@ -6,7 +6,7 @@ use self::gaps::{Filled, union};
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::clip::{Clip, Points};
 use crate::math::Vec3;
-use crate::roles::points::{recognise, subject_of};
+use crate::roles::points::{recognise_posed, subject_of};
 
 /// Gaps of up to this are filled and trusted: markers hardly leave a straight line in so little time.
 pub(super) const SHORT_GAP_SECS: f64 = 0.25;
@@ -105,17 +105,17 @@ impl PointTable {
     /// Points by subject, if at least two subjects have a body of their own.
     fn subjects(&mut self, name: &str, warnings: &mut Vec<Warning>) -> Vec<(String, Vec<Point>)> {
         let points = std::mem::take(&mut self.points);
-        let mut groups: Vec<(&str, Vec<&str>)> = Vec::new();
+        let mut groups: Vec<(&str, Vec<&Point>)> = Vec::new();
         for point in &points {
             let subject = subject_of(&point.name);
             match groups.iter_mut().find(|(known, _)| *known == subject) {
-                Some((_, names)) => names.push(&point.name),
-                None => groups.push((subject, vec![&point.name])),
+                Some((_, own)) => own.push(point),
+                None => groups.push((subject, vec![point])),
             }
         }
         let bodies: Vec<String> = groups
             .iter()
-            .filter(|(subject, names)| !subject.is_empty() && recognise(names).is_some())
+            .filter(|(subject, own)| !subject.is_empty() && is_body(own))
             .map(|(subject, _)| (*subject).to_owned())
             .collect();
         if bodies.len() < 2 {
@@ -157,6 +157,19 @@ impl PointTable {
         clip.repaired = union(filled.short);
         clip
     }
+}
+
+/// Whether points make a body, by their names and by where they are in some frames that show them all.
+fn is_body(points: &[&Point]) -> bool {
+    const LOOKED_AT: usize = 8;
+    let names: Vec<&str> = points.iter().map(|point| point.name.as_str()).collect();
+    let frames = points.first().map_or(0, |point| point.positions.len());
+    let poses: Vec<Vec<Vec3>> = (0..frames)
+        .step_by(frames.div_ceil(LOOKED_AT).max(1))
+        .map(|frame| points.iter().map(|p| p.positions[frame]).collect())
+        .filter(|pose: &Vec<Vec3>| pose.iter().all(is_seen))
+        .collect();
+    recognise_posed(&names, &poses).is_some()
 }
 
 fn note_left_out(points: &[Point], why: &str, warnings: &mut Vec<Warning>) {

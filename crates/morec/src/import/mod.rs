@@ -103,7 +103,7 @@ pub fn normalize(mut clip: Clip, options: &ImportOptions) -> Result<Take, ParseE
     let mut notes = Vec::new();
     let (map, point_set) = match clip.has_rotations() {
         true => (find_roles(&clip, &mut notes), None),
-        false => points::find_roles(&mut clip, options.mapping.is_none(), &mut notes),
+        false => points::find_roles(&mut clip),
     };
     let map = match &options.mapping {
         Some(mapping) => points::apply(mapping, &mut clip, map)?,
@@ -116,7 +116,11 @@ pub fn normalize(mut clip: Clip, options: &ImportOptions) -> Result<Take, ParseE
     let metres_per_unit = options
         .metres_per_unit
         .unwrap_or_else(|| units::choose(&clip, &body, up, options.stated, &mut notes));
-    let mut doubts = roles::check(&clip.skeleton, &map, &poses(&clip));
+    let unknown = !clip.has_rotations() && point_set.is_none() && options.mapping.is_none();
+    let mut doubts = match unknown {
+        true => vec![points::UNKNOWN.to_owned()],
+        false => roles::check(&clip.skeleton, &map, &poses(&clip)),
+    };
     doubts.extend(units::doubt(&body, metres_per_unit));
     axes::turn_up(&mut clip, up);
     units::scale(&mut clip, metres_per_unit);

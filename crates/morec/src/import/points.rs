@@ -11,13 +11,12 @@ use crate::roles::{Role, RoleMap};
 /// Frames that settle what names leave open.
 const LOOKED_AT: usize = 8;
 
-/// The roles of a clip of points by tables of known sets, and the set's name. `doubt` says that nothing else will name
-/// them, so that a set that is not known is worth a note.
-pub(super) fn find_roles(
-    clip: &mut Clip,
-    doubt: bool,
-    notes: &mut Vec<String>,
-) -> (RoleMap, Option<&'static str>) {
+/// What to say of points that nothing names.
+pub(super) const UNKNOWN: &str = "no known set of points, so no body is known: say with --roles which of them are joints, as in \
+    `left_knee<TAB>LKNE+LKNM` for the middle of two, or leave the clip out if it shows no person";
+
+/// The roles of a clip of points by tables of known sets, and the set's name.
+pub(super) fn find_roles(clip: &mut Clip) -> (RoleMap, Option<&'static str>) {
     let names: Vec<&str> = clip
         .skeleton
         .joints()
@@ -30,13 +29,6 @@ pub(super) fn find_roles(
         .map(|frame| WorldPose::of(clip, frame).positions)
         .collect();
     let Some(found) = recognise_posed(&names, &poses) else {
-        if doubt {
-            notes.push(
-                "no known set of points: say with --roles which of them are joints, as in \
-                 `left_knee<TAB>LKNE+LKNM` for the middle of two"
-                    .to_owned(),
-            );
-        }
         return (RoleMap::default(), None);
     };
     let places = found

@@ -236,6 +236,16 @@ impl PosedBody<'_> {
         if limbs < 2 {
             return Some("it has no arms and legs".to_owned());
         }
+        let has_none = |roles: &[Role]| roles.iter().all(|role| self.map.joint(*role).is_none());
+        if LEGS.iter().all(|leg| has_none(leg)) && has_none(&[Role::Torso, Role::Neck, Role::Head])
+        {
+            return Some("it has neither trunk, head nor legs".to_owned());
+        }
+        if let Some(name) = self.further_limb(tree) {
+            return Some(format!(
+                "it has limbs besides its arms and legs, `{name}` among them"
+            ));
+        }
         let human = self.human_words();
         let animal = self.skeleton.joints().iter().find(|joint| {
             read(&joint.name).kind == NameMeaning::Animal && read(&joint.name).side.is_some()
@@ -254,6 +264,43 @@ impl PosedBody<'_> {
         };
         let pairs = tree.pairs().iter().filter(|pair| long(pair)).count();
         (pairs > 2).then(|| format!("it has {} long limbs", 2 * pairs))
+    }
+
+    /// A joint that begins one of a pair of limbs as long as legs, which are called so or stand where the feet do, and which no
+    /// role is played by. Helper joints that lie on the limbs, hair and skirts are none.
+    fn further_limb(&self, tree: &JointTree) -> Option<&str> {
+        const LONG: f64 = 0.6;
+        const NEAR: f64 = 0.2;
+        const LEAST_JOINTS: usize = 3;
+        let pose = tree.positions;
+        let leg = self.pair(LEGS)?;
+        let limbs = LEGS.iter().chain(&ARMS);
+        let played: Vec<usize> = limbs
+            .flatten()
+            .filter_map(|role| self.map.joint(*role))
+            .collect();
+        let hips = self.middle(pose, Role::LeftThigh, Role::RightThigh)?;
+        let down = self.middle(pose, Role::LeftFoot, Role::RightFoot)? - hips;
+        let is_further = |&member: &usize| {
+            let own = |&joint: &usize| {
+                joint == member || tree.is_above(member, joint) || tree.is_above(joint, member)
+            };
+            let chain = tree.main_chain(member);
+            let Some(&end) = chain.last().filter(|_| chain.len() >= LEAST_JOINTS) else {
+                return false;
+            };
+            let beside = |&joint: &usize| (pose[joint] - pose[end]).norm() > NEAR * leg;
+            let stands = (pose[end] - hips).dot(&down) > 0.9 * down.norm_squared();
+            tree.reach(member) > LONG * leg
+                && !played.iter().any(own)
+                && played.iter().all(beside)
+                && (stands || tree.leg_votes(member) != 0)
+        };
+        let pairs = tree.pairs();
+        let pair = pairs
+            .iter()
+            .find(|pair| pair.members.iter().all(is_further))?;
+        Some(&self.skeleton.joints()[pair.members[0]].name)
     }
 
     /// How many parts of human limbs the names tell, on both sides.

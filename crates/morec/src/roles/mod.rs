@@ -2,6 +2,7 @@
 
 mod check;
 mod find;
+mod languages;
 mod limbs;
 pub mod mapping;
 mod names;

@@ -3,7 +3,8 @@
 //! Names are evidence, not truth: `LeftLeg` is the shin where there is a `LeftUpLeg`, `LeftShoulder` the collar
 //! where there is a `LeftArm`. Such words get a kind of their own here and are settled in [`super::limbs`].
 
-use super::words::{glued_side, in_english, is_side_word, kind_of, spelt_side, words};
+use super::languages::{in_english, words_in_english};
+use super::words::{glued_side, is_side_word, kind_of, spelt_side, words};
 
 /// A side of the body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -85,7 +86,7 @@ pub(super) struct Reading {
 /// Reads a name; namespaces (`mixamorig7:`), prefixes and case do not matter.
 pub(super) fn read(name: &str) -> Reading {
     let bare = name.rsplit(':').next().unwrap_or(name);
-    let words = words(&in_english(bare));
+    let words = words_in_english(words(&in_english(bare)));
     let (mut side, letters) = spelt_side(&words);
     let rest: Vec<&str> = words
         .iter()
@@ -164,6 +165,16 @@ mod tests {
             ("FrontLeg_L", left, Animal),
             ("Tail3", None, Animal),
             ("hips_joint", None, Hips),
+            ("Clavicule_G", left, Collar),
+            ("AvantBras_D", right, Forearm),
+            ("Antebrazo_Izq", left, Forearm),
+            ("Unterschenkel_L", left, Shin),
+            ("右小腿", right, Shin),
+            ("头", None, Head),
+            ("왼쪽손목", left, Hand),
+            ("l_radiocarpal", left, Hand),
+            ("r_sternoclavicular", right, Collar),
+            ("Main", None, Unknown),
         ] {
             assert_eq!(read(name), Reading { side, kind }, "{name}");
         }

@@ -24,64 +24,6 @@ pub(super) fn words(name: &str) -> Vec<String> {
     words
 }
 
-/// Japanese parts as the models of MikuMikuDance have them, longer ones first; and abbreviations that glue a side and
-/// a part together.
-const TRANSLATIONS: [(&str, &str); 42] = [
-    ("LUArm", "l upperarm"),
-    ("RUArm", "r upperarm"),
-    ("LFArm", "l forearm"),
-    ("RFArm", "r forearm"),
-    ("左", " left "),
-    ("右", " right "),
-    ("下半身", " pelvis "),
-    ("上半身", " spine "),
-    ("足首", " ankle "),
-    ("手首", " wrist "),
-    ("つま先", " toe "),
-    ("爪先", " toe "),
-    ("足先", " toe "),
-    ("腕捩", " twist "),
-    ("手捩", " twist "),
-    ("捩", " twist "),
-    ("親指", " thumb "),
-    ("人指", " finger "),
-    ("人差指", " finger "),
-    ("中指", " finger "),
-    ("薬指", " finger "),
-    ("小指", " finger "),
-    ("ひざ", " knee "),
-    ("膝", " knee "),
-    ("ひじ", " elbow "),
-    ("肘", " elbow "),
-    ("肩", " shoulder "),
-    ("腕", " arm "),
-    ("足", " leg "),
-    ("首", " neck "),
-    ("頭", " head "),
-    ("腰", " waist "),
-    ("胸", " breast "),
-    ("髪", " hair "),
-    ("目", " eye "),
-    ("スカート", " skirt "),
-    ("ダミー", " dummy "),
-    ("ＩＫ", " ik "),
-    ("先", " end "),
-    ("尾", " tail "),
-    ("翼", " wing "),
-    ("キャンセル", " cancel "),
-];
-
-/// The name with what is not English replaced.
-pub(super) fn in_english(name: &str) -> String {
-    let mut english = name.to_owned();
-    for (from, to) in TRANSLATIONS {
-        if english.contains(from) {
-            english = english.replace(from, to);
-        }
-    }
-    english
-}
-
 pub(super) fn is_side_word(word: &str) -> bool {
     matches!(
         word,
@@ -194,15 +136,17 @@ const ANIMAL: [&str; 18] = [
 ];
 
 /// In the order in which they are tried: the more telling part of a joined word first.
-const PARTS: [(&str, NameMeaning); 71] = [
+const PARTS: [(&str, NameMeaning); 74] = [
     ("finger", NameMeaning::Finger),
     ("thumb", NameMeaning::Finger),
     ("pinky", NameMeaning::Finger),
     ("metacarpal", NameMeaning::Finger),
+    ("radiocarpal", NameMeaning::Hand),
     ("carpal", NameMeaning::Finger),
     ("index", NameMeaning::Finger),
     ("toe", NameMeaning::Toe),
     ("metatarsal", NameMeaning::Toe),
+    ("talocrural", NameMeaning::Foot),
     ("forearm", NameMeaning::Forearm),
     ("lowerarm", NameMeaning::Forearm),
     ("lowarm", NameMeaning::Forearm),
@@ -217,7 +161,7 @@ const PARTS: [(&str, NameMeaning); 71] = [
     ("humerus", NameMeaning::UpperArm),
     ("bicep", NameMeaning::UpperArm),
     ("collar", NameMeaning::Collar),
-    ("clavicle", NameMeaning::Collar),
+    ("clavic", NameMeaning::Collar),
     ("scapula", NameMeaning::Collar),
     ("shoulder", NameMeaning::Shoulder),
     ("shldr", NameMeaning::Shoulder),
@@ -244,6 +188,7 @@ const PARTS: [(&str, NameMeaning); 71] = [
     ("palm", NameMeaning::Hand),
     ("fist", NameMeaning::Hand),
     ("pelvis", NameMeaning::Hips),
+    ("sacro", NameMeaning::Hips),
     ("lowerbody", NameMeaning::Hips),
     ("lowertorso", NameMeaning::Hips),
     ("hip", NameMeaning::Hips),
@@ -273,7 +218,9 @@ pub(super) fn kind_of(words: &[&str]) -> NameMeaning {
     if words.iter().any(|w| OTHER.contains(w)) {
         return NameMeaning::Other;
     }
-    let joined = words.concat();
+    // Letters beside the words (`clavicule_g`) make no other word of them.
+    let long: Vec<&str> = words.iter().copied().filter(|w| w.len() > 1).collect();
+    let joined = long.concat();
     if joined.contains("armature") {
         return NameMeaning::Unknown;
     }

@@ -77,7 +77,7 @@ impl Ppca {
     pub(crate) fn covariance(&self) -> nalgebra::DMatrix<f64> {
         let dim = self.mean.len();
         let noise = 1.0 / self.noise_precision;
-        let mut c = DMatrix::identity(dim, dim) * noise;
+        let mut c = nalgebra::DMatrix::identity(dim, dim) * noise;
         for (axis, precision) in self.axes.chunks_exact(dim.max(1)).zip(&self.precisions) {
             let axis = nalgebra::DVector::from_row_slice(axis);
             c += &axis * axis.transpose() * (1.0 / precision - noise);

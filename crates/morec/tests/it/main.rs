@@ -8,6 +8,8 @@ mod conformance;
 mod cuts;
 mod diagnosis;
 mod engines;
+#[cfg(feature = "fbx")]
+mod fbx;
 mod for_ever;
 mod golden;
 mod index_file;

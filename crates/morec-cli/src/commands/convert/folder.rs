@@ -91,7 +91,7 @@ fn one(
             fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
         }
         let clip = wanted
-            .resampled(clip)
+            .prepared(clip)
             .with_context(|| path.display().to_string())?;
         form::write(clip, form, wanted, &file)
             .with_context(|| format!("{} to {}", path.display(), file.display()))?;

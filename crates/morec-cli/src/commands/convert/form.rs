@@ -82,6 +82,7 @@ pub fn write_clip(clip: &Clip, path: &Path) -> Result<()> {
         content: Content::default(),
         import: ImportOptions::default(),
         rate_hz: None,
+        fit: false,
     };
     write(clip.clone(), ClipForm::of(path)?, &wanted, path)
 }

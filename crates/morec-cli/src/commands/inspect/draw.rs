@@ -18,7 +18,7 @@ enum DrawnSide {
 }
 
 /// Lines between roles. Where one is not played, the line is left out.
-const BONES: [(Role, Role, DrawnSide); 19] = [
+const BONES: [(Role, Role, DrawnSide); 20] = [
     (Role::Hips, Role::Torso, DrawnSide::Middle),
     (Role::Torso, Role::Neck, DrawnSide::Middle),
     (Role::Hips, Role::Neck, DrawnSide::Middle),
@@ -31,13 +31,14 @@ const BONES: [(Role, Role, DrawnSide); 19] = [
     (Role::Hips, Role::LeftThigh, DrawnSide::Left),
     (Role::LeftThigh, Role::LeftShin, DrawnSide::Left),
     (Role::LeftShin, Role::LeftFoot, DrawnSide::Left),
+    (Role::Neck, Role::RightShoulder, DrawnSide::Right),
+    (Role::RightShoulder, Role::RightArm, DrawnSide::Right),
     (Role::Neck, Role::RightArm, DrawnSide::Right),
     (Role::RightArm, Role::RightForearm, DrawnSide::Right),
     (Role::RightForearm, Role::RightHand, DrawnSide::Right),
     (Role::Hips, Role::RightThigh, DrawnSide::Right),
     (Role::RightThigh, Role::RightShin, DrawnSide::Right),
     (Role::RightShin, Role::RightFoot, DrawnSide::Right),
-    (Role::RightShoulder, Role::RightArm, DrawnSide::Right),
 ];
 
 /// The body in one frame, seen from the front and from its left: places of the roles in metres, right and up.
@@ -149,6 +150,7 @@ impl Drawing {
                 of == side
                     && !(a == Role::Hips && b == Role::Neck && there(Role::Torso))
                     && !(a == Role::Neck && b == Role::LeftArm && there(Role::LeftShoulder))
+                    && !(a == Role::Neck && b == Role::RightArm && there(Role::RightShoulder))
             })
             .filter_map(|&(a, b, _)| Some((places[a.index()]?, places[b.index()]?)))
     }
@@ -240,4 +242,108 @@ fn escaped(text: &str) -> String {
         .replace('<', "&lt;")
         .replace('>', "&gt;")
         .replace('"', "&quot;")
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use morec::synth::{DatabaseSpec, database};
+
+    /// A synthetic person; facing away from +Z if `turned`, so that the picture has to find the front.
+    fn take(turned: bool) -> Take {
+        let spec = DatabaseSpec {
+            people: 1,
+            repetitions: 1,
+            classes: vec!["wave"],
+            ..DatabaseSpec::default()
+        };
+        let mut clip = database(2, &spec).remove(0).clip;
+        if turned {
+            let half = morec::math::Axis::Y.rotation(std::f64::consts::PI);
+            let joints = clip.skeleton.len();
+            for frame in 0..clip.frames {
+                let root = &mut clip.rotations[frame * joints];
+                *root = half * *root;
+            }
+        }
+        Take::new(clip).unwrap()
+    }
+
+    /// Where the circle of a role is: in the front view, then from the left.
+    fn circles(svg: &str, role: &str) -> Vec<[f64; 2]> {
+        let number = |line: &str, key: &str| {
+            let (_, rest) = line.split_once(&format!("{key}=\"")).unwrap();
+            rest.split_once('"').unwrap().0.parse().unwrap()
+        };
+        svg.lines()
+            .filter(|line| line.contains(&format!("<title>{role}: ")))
+            .map(|line| [number(line, "cx"), number(line, "cy")])
+            .collect()
+    }
+
+    #[test]
+    fn the_front_is_seen_from_the_front_and_the_head_is_up() {
+        for turned in [false, true] {
+            let take = take(turned);
+            let drawing = Drawing::of(&take).unwrap();
+            let svg = drawing.svg("a < b");
+            assert!(svg.contains("<title>a &lt; b</title>"));
+            let at = |role: &str| circles(&svg, role);
+            for role in Role::ALL.iter().filter(|r| take.roles.joint(**r).is_some()) {
+                assert_eq!(at(role.name()).len(), 2, "{role} in both views");
+            }
+            assert!(
+                at("left_thigh")[0][0] > at("right_thigh")[0][0] + 5.0,
+                "{turned}"
+            );
+            assert!(
+                at("left_arm")[0][0] > at("right_arm")[0][0] + 5.0,
+                "{turned}"
+            );
+            for view in 0..2 {
+                let down = |role: &str| at(role)[view][1];
+                assert!(
+                    down("head") < down("hips") - 50.0 && down("hips") < down("left_foot") - 50.0
+                );
+            }
+            // From the left, both hips are nearly in one place; from the front they are not.
+            let apart =
+                |view: usize| (at("left_thigh")[view][0] - at("right_thigh")[view][0]).abs();
+            assert!(apart(1) < 0.3 * apart(0), "{} {}", apart(0), apart(1));
+            // Both sides have as many lines.
+            let lines = |side: DrawnSide| svg.matches(paint(side)).count();
+            assert_eq!(lines(DrawnSide::Left), lines(DrawnSide::Right));
+            assert!(lines(DrawnSide::Left) >= 2 * 5);
+        }
+    }
+
+    #[test]
+    fn the_terminal_shows_two_figures_of_the_bodys_height() {
+        let drawing = Drawing::of(&take(false)).unwrap();
+        let text = drawing.text(false, true);
+        let drawn = |line: &&str| line.chars().any(|c| ('\u{2801}'..='\u{28FF}').contains(&c));
+        let rows: Vec<&str> = text.lines().filter(drawn).collect();
+        assert!((16..=19).contains(&rows.len()), "{}\n{text}", rows.len());
+        let label = text.lines().find(|l| l.contains("from the front")).unwrap();
+        assert!(label.contains("from its left"), "{text}");
+        assert!(!drawing.text(false, false).chars().any(|c| c > '\u{7f}'));
+        assert!(drawing.text(true, true).contains("\x1b["));
+    }
+
+    #[test]
+    fn what_is_not_played_is_not_drawn() {
+        let mut take = take(false);
+        for role in [Role::LeftForearm, Role::LeftHand] {
+            take.roles.set(role, None);
+        }
+        let svg = Drawing::of(&take).unwrap().svg("one arm");
+        assert!(circles(&svg, "left_hand").is_empty());
+        assert!(
+            svg.matches(paint(DrawnSide::Left)).count()
+                < svg.matches(paint(DrawnSide::Right)).count()
+        );
+        take.clip.frames = 0;
+        assert!(Drawing::of(&take).is_none());
+    }
 }

@@ -355,6 +355,8 @@ fn format_name(format: Format) -> &'static str {
         Format::Smpl => "SMPL poses (npz)",
         Format::NtuSkeleton => "Kinect joints (NTU)",
         Format::Landmarks => "landmarks (JSON)",
+        Format::Numpy => "positions (NumPy)",
+        Format::Smd => "SMD",
         Format::Mocopi => "mocopi packets",
     }
 }

@@ -3,7 +3,7 @@
 use super::gaps::{self, Gaps};
 use super::hierarchy::{BvhHierarchy, Channel};
 use crate::clip::{Joint, Span};
-use crate::math::{Axis, Quat, Vec3, same_hemisphere};
+use crate::math::{Axis, Quat, Vec3, same_hemisphere, sin_cos_of_half};
 
 /// What a character's columns gave so far. Only the row at hand is ever held as numbers.
 #[derive(Debug)]
@@ -148,7 +148,7 @@ impl JointPositions {
 fn rotation(turns: &[(usize, Axis)], row: &[f64]) -> Quat {
     let mut product = nalgebra::Quaternion::identity();
     for &(column, axis) in turns {
-        let (sin, cos) = (row[column].to_radians() * 0.5).sin_cos();
+        let (sin, cos) = sin_cos_of_half(row[column]);
         let [w, x, y, z] = [product.w, product.i, product.j, product.k];
         // The product with (cos, sin·axis), written out: three quarters of a general one would be zeros.
         let [w, x, y, z] = match axis {

@@ -10,20 +10,27 @@ use crate::math::Quat;
 /// fully round (Shoemake, *Euler Angle Conversion*, Graphics Gems IV, 1994). In gimbal lock, where only a sum or
 /// difference of z and x is given, x stays where it was.
 pub(super) fn zyx_near(rotation: &Quat, previous: [f64; 3]) -> [f64; 3] {
-    let matrix = rotation.to_rotation_matrix();
-    let m = matrix.matrix();
-    let cos_y = m[(0, 0)].hypot(m[(1, 0)]);
-    let y = (-m[(2, 0)]).atan2(cos_y);
+    // The entries of its matrix that are asked for.
+    let [x, y, z, w] = [rotation.i, rotation.j, rotation.k, rotation.w];
+    let first = [
+        1.0 - 2.0 * (y * y + z * z),
+        2.0 * (x * y + w * z),
+        2.0 * (x * z - w * y),
+    ];
+    let last = [2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)];
+    let cos_y = (first[0] * first[0] + first[1] * first[1]).sqrt();
+    let pitch = (-first[2]).atan2(cos_y);
     if cos_y < 1e-8 {
         // With sin y = ±1 the middle column is (-sin(z ∓ x), cos(z ∓ x), 0).
-        let difference = (-m[(0, 1)]).atan2(m[(1, 1)]);
-        let x = previous[2];
-        return nearest([difference + y.signum() * x, y, x], previous);
+        let middle = [2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z)];
+        let difference = (-middle[0]).atan2(middle[1]);
+        let roll = previous[2];
+        return nearest([difference + pitch.signum() * roll, pitch, roll], previous);
     }
-    let z = m[(1, 0)].atan2(m[(0, 0)]);
-    let x = m[(2, 1)].atan2(m[(2, 2)]);
-    let first = nearest([z, y, x], previous);
-    let second = nearest([z + PI, PI - y, x + PI], previous);
+    let yaw = first[1].atan2(first[0]);
+    let roll = last[0].atan2(last[1]);
+    let first = nearest([yaw, pitch, roll], previous);
+    let second = nearest([yaw + PI, PI - pitch, roll + PI], previous);
     if distance(&second, &previous) < distance(&first, &previous) {
         second
     } else {

@@ -19,6 +19,93 @@ pub(super) fn is_newline(byte: u8) -> bool {
     byte == b'\n' || byte == b'\r'
 }
 
+/// `'0'` eight times.
+const ZEROS: u64 = 0x3030_3030_3030_3030;
+
+/// The eight bytes at `at`, less `'0'` each, the first in the lowest place.
+#[inline]
+fn eight_at(text: &[u8], at: usize) -> Option<u64> {
+    let bytes = text.get(at..at + 8)?.first_chunk::<8>()?;
+    Some(u64::from_le_bytes(*bytes) ^ ZEROS)
+}
+
+/// How many of eight such bytes are digits before the first that is none: a byte over 9 carries into its highest bit when
+/// 0x76 is added, and what that spoils lies behind it.
+#[inline]
+fn leading_digits(bytes: u64) -> usize {
+    const OVER_9: u64 = 0x7676_7676_7676_7676;
+    const HIGH: u64 = 0x8080_8080_8080_8080;
+    (((bytes.wrapping_add(OVER_9) | bytes) & HIGH).trailing_zeros() / 8) as usize
+}
+
+/// The number that the first `count` (at most 8) of eight such bytes spell: neighbours are joined to pairs, those to
+/// fours, those to eight.
+#[inline]
+fn spelt(bytes: u64, count: usize) -> u64 {
+    if count == 0 {
+        return 0;
+    }
+    // Digits move behind zeros.
+    let digits = bytes << (64 - 8 * count);
+    let pairs = (digits.wrapping_mul(10).wrapping_add(digits >> 8)) & 0x00FF_00FF_00FF_00FF;
+    let fours = (pairs.wrapping_mul(100).wrapping_add(pairs >> 16)) & 0x0000_FFFF_0000_FFFF;
+    (fours.wrapping_mul(10_000).wrapping_add(fours >> 32)) & 0xFFFF_FFFF
+}
+
+/// [`fixed`] for numbers of up to seven digits before and fifteen behind the point, with something behind them in the file: eight
+/// bytes at once.
+#[inline]
+pub(super) fn quick(text: &[u8], pos: &mut usize) -> Option<f64> {
+    let mut p = *pos;
+    let negative = text.get(p) == Some(&b'-');
+    p += usize::from(negative);
+    let bytes = eight_at(text, p)?;
+    let whole = leading_digits(bytes);
+    if whole == 8 {
+        return None;
+    }
+    let mut mantissa = spelt(bytes, whole);
+    p += whole;
+    let mut fraction = 0;
+    if text.get(p) == Some(&b'.') {
+        p += 1;
+        let bytes = eight_at(text, p)?;
+        fraction = leading_digits(bytes);
+        mantissa = mantissa * WHOLE_POWERS[fraction] + spelt(bytes, fraction);
+        p += fraction;
+        if fraction == 8 {
+            let bytes = eight_at(text, p)?;
+            let more = leading_digits(bytes);
+            if whole + 8 + more > 18 || more == 8 {
+                return None;
+            }
+            mantissa = mantissa * WHOLE_POWERS[more] + spelt(bytes, more);
+            p += more;
+            fraction += more;
+        }
+    }
+    let ends = text.get(p).is_none_or(|&b| b <= b' ');
+    if !ends || whole + fraction == 0 || mantissa >= 1 << 53 {
+        return None;
+    }
+    *pos = p;
+    let magnitude = mantissa as f64 / POWERS[fraction];
+    Some(if negative { -magnitude } else { magnitude })
+}
+
+/// Powers of ten up to eight digits.
+const WHOLE_POWERS: [u64; 9] = [
+    1,
+    10,
+    100,
+    1_000,
+    10_000,
+    100_000,
+    1_000_000,
+    10_000_000,
+    100_000_000,
+];
+
 /// Reads a plain decimal (`-12.0345`) at `text[*pos]` that a blank, a line end or the end follows, and moves past
 /// it; `None`, without moving, leaves the token to [`parse`].
 ///
@@ -151,6 +238,23 @@ mod tests {
             if let Some(value) = read_fixed(&text) {
                 prop_assert_eq!(value.to_bits(), usable(text.parse().unwrap()).to_bits());
             }
+        }
+
+        #[test]
+        fn eight_digits_at_once_are_the_same_number(text in "-?[0-9]{0,9}\\.?[0-9]{0,17}[ \n\re.-]?[0-9. -]{0,12}") {
+            let (mut at, mut expected_at) = (0, 0);
+            if let Some(value) = quick(text.as_bytes(), &mut at) {
+                prop_assert_eq!(Some(value.to_bits()), fixed(text.as_bytes(), &mut expected_at).map(f64::to_bits));
+                prop_assert_eq!(at, expected_at);
+            } else {
+                prop_assert_eq!(at, 0);
+            }
+        }
+
+        #[test]
+        fn eight_digits_at_once_are_taken(text in "-?[0-9]{1,7}\\.[0-9]{1,8}") {
+            let text = format!("{text} 0.0 0.0 0.0");
+            prop_assert!(quick(text.as_bytes(), &mut 0).is_some());
         }
 
         #[test]

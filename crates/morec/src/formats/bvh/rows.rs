@@ -100,7 +100,10 @@ impl<'t> MotionLines<'t> {
     fn line(&mut self, values: &mut Vec<f64>, notes: &mut Notes) -> Option<MotionLine> {
         loop {
             // The common case in a tight loop; whatever it does not understand is looked at closely.
-            while let Some(value) = number::fixed(self.cursor.text, &mut self.cursor.pos) {
+            let text = self.cursor.text;
+            while let Some(value) = number::quick(text, &mut self.cursor.pos)
+                .or_else(|| number::fixed(text, &mut self.cursor.pos))
+            {
                 values.push(value);
                 self.cursor.skip_blanks();
             }

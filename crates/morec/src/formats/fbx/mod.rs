@@ -10,7 +10,7 @@ use super::keys::{self, KeyGrid};
 use super::scene::{self, Local, Sampling, SceneNode, SceneSkeleton};
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::clip::Clip;
-use crate::math::{Quat, Vec3};
+use crate::math::{Axis, Quat, Vec3};
 
 /// Memory that reading may take: so many bytes however small the file is,
 const FREE_BYTES: usize = 256 << 20;
@@ -27,10 +27,65 @@ const MEMORY_A_BYTE: usize = 64;
 /// `limits` allow. O(bytes + frames × nodes).
 pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseError> {
     let fbx = load(bytes, limits)?;
+    read_scene(&fbx, bytes.len(), name, limits)
+}
+
+/// [`read`], with what the scene's settings state about lengths and axes, if they do. A `rate_hz` that is given is not
+/// used, with a warning.
+///
+/// # Errors
+/// Those of [`read`].
+pub fn read_stated(
+    bytes: &[u8],
+    name: &str,
+    rate_hz: Option<f64>,
+    limits: &Limits,
+) -> Result<(Loaded, Option<SceneSettings>), ParseError> {
+    let fbx = load(bytes, limits)?;
+    let mut loaded = read_scene(&fbx, bytes.len(), name, limits)?;
+    if rate_hz.is_some() {
+        loaded.warnings.push(super::rate_not_used());
+    }
+    Ok((loaded, settings(&fbx)))
+}
+
+/// What the settings of a scene state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SceneSettings {
+    /// The axis that points up or down.
+    pub up: Axis,
+    /// Whether it points down.
+    pub is_down: bool,
+    /// Metres in one unit of length.
+    pub metres_per_unit: f64,
+}
+
+fn settings(fbx: &Fbx) -> Option<SceneSettings> {
+    use ufbx::CoordinateAxis as Is;
+    let (up, is_down) = match fbx.settings.axes.up {
+        Is::PositiveX => (Axis::X, false),
+        Is::NegativeX => (Axis::X, true),
+        Is::PositiveY => (Axis::Y, false),
+        Is::NegativeY => (Axis::Y, true),
+        Is::PositiveZ => (Axis::Z, false),
+        Is::NegativeZ => (Axis::Z, true),
+        Is::Unknown => return None,
+    };
+    let metres_per_unit = fbx.settings.unit_meters;
+    (1e-6..1e6)
+        .contains(&metres_per_unit)
+        .then_some(SceneSettings {
+            up,
+            is_down,
+            metres_per_unit,
+        })
+}
+
+fn read_scene(fbx: &Fbx, bytes: usize, name: &str, limits: &Limits) -> Result<Loaded, ParseError> {
     let mut warnings: Vec<Warning> = Vec::new();
-    let mut nodes = nodes(&fbx, limits)?;
+    let mut nodes = nodes(fbx, limits)?;
     let order = scene::parents_first(&mut nodes, limits)?;
-    mark_joints(&fbx, &order, &mut nodes);
+    mark_joints(fbx, &order, &mut nodes);
     let (rigs, left) = scene::worthwhile(scene::rigs(&nodes, &order));
     if !left.is_empty() {
         let names: Vec<&str> = left
@@ -45,7 +100,7 @@ pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseEr
         );
         warnings.push(Warning::new(Place::File, text));
     }
-    let takes = takes(&fbx, &rigs, &mut warnings);
+    let takes = takes(fbx, &rigs, &mut warnings);
     if takes.is_empty() {
         let joints: usize = rigs.iter().map(SceneSkeleton::len).sum();
         let found = match joints {
@@ -69,11 +124,11 @@ pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseEr
     let mut clips = Vec::with_capacity(takes.len());
     for (take, clip_name) in takes.iter().zip(clip_names(name, &titles)) {
         clips.push(clip(
-            &fbx,
+            fbx,
             take,
             &nodes,
             clip_name,
-            bytes.len(),
+            bytes,
             limits,
             &mut warnings,
         )?);

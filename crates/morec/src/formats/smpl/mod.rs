@@ -5,35 +5,46 @@
 //! models' shapes may not be shipped: joints lie in the right directions, at lengths of an average person.
 
 mod body;
-mod npy;
 
 use std::collections::BTreeMap;
 
-use self::npy::Array;
 use super::builder::{ClipBuilder, check_size};
+use super::npy::{self, Array};
 use super::{Limits, Loaded, ParseError, Place, Warning, container};
 use crate::math::{Quat, Vec3};
 
 /// When a file does not say its rate; most of AMASS has it.
 const ASSUMED_HZ: f64 = 120.0;
 
-const POSES: [&str; 5] = ["poses", "pose", "fullpose", "full_pose", "smpl_poses"];
+const POSES: [&str; 8] = [
+    "poses",
+    "pose",
+    "fullpose",
+    "full_pose",
+    "smpl_poses",
+    "pred_pose",
+    "pred_poses",
+    "theta",
+];
 const ROOT: [&str; 3] = ["root_orient", "global_orient", "global_orient_aa"];
 const BODY: [&str; 2] = ["pose_body", "body_pose"];
-const PLACE: [&str; 6] = [
+const PLACE: [&str; 8] = [
     "trans",
+    "pred_trans",
+    "cam_trans",
     "transl",
     "translation",
     "root_trans",
     "smpl_trans",
     "root_translation",
 ];
-const RATE: [&str; 5] = [
+const RATE: [&str; 6] = [
     "mocap_framerate",
     "mocap_frame_rate",
     "framerate",
     "frame_rate",
     "fps",
+    "mocap_fps",
 ];
 
 /// Reads an archive of one motion, called `name`.
@@ -102,6 +113,12 @@ fn clip(frames: &SmplFrames<'_>, places: &[Vec3]) -> ClipBuilder {
         }
     }
     builder
+}
+
+/// Whether an archive with these paths has poses.
+pub(super) fn has_poses(paths: &[String]) -> bool {
+    let has = |keys: &[&str]| paths.iter().any(|path| keys.contains(&key_of(path)));
+    has(&POSES) || has(&ROOT) && has(&BODY)
 }
 
 /// True if an archive with these paths may hold such a motion: NumPy's have arrays only.

@@ -13,8 +13,9 @@ pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
         ..ColumnLayout::default()
     };
     let mut open: Vec<(String, [Option<usize>; 3])> = Vec::new();
+    let has_sides = labels.iter().any(|label| is_left_alone(label));
     for (column, label) in labels.iter().enumerate() {
-        if let Some((name, axis)) = axis_of(label) {
+        if let Some((name, axis)) = axis_with(label, has_sides) {
             match open.iter_mut().find(|(known, _)| *known == name) {
                 Some((_, columns)) => columns[axis] = columns[axis].or(Some(column)),
                 None => {
@@ -55,18 +56,27 @@ pub(super) fn is_flat(rows: &[TableLine]) -> bool {
 
 /// Rows before the first of numbers; `None` if there is none, or no row of numbers.
 fn header_rows(rows: &[TableLine]) -> Option<usize> {
-    let is_frame = |(_, cells): &TableLine| {
+    // A frame may begin with words (a class, a track) below names that are certain.
+    let names_axes = |(_, cells): &TableLine| {
+        let named = cells.iter().filter(|cell| axis_of(cell).is_some());
+        named.count() >= 6
+    };
+    let is_frame = |row: &usize| {
+        let (_, cells) = &rows[*row];
         let filled = cells.iter().filter(|cell| !cell.is_empty());
         let numbers = filled
             .clone()
             .filter(|c| number(c, Decimal::Either).is_some() || is_nan(c));
         let first = filled.clone().next();
         let (filled, numbers) = (filled.count(), numbers.count());
+        let starts = first.is_some_and(|c| number(c, Decimal::Either).is_some() || is_nan(c));
         filled > 0
-            && first.is_some_and(|c| number(c, Decimal::Either).is_some() || is_nan(c))
             && numbers * 5 >= filled * 4
+            && (starts || *row > 0 && names_axes(&rows[row - 1]))
     };
-    let first = rows.iter().position(is_frame).unwrap_or(rows.len());
+    let first = (0..rows.len())
+        .position(|row| is_frame(&row))
+        .unwrap_or(rows.len());
     (first > 0).then_some(first)
 }
 
@@ -111,12 +121,22 @@ fn labels(header: &[TableLine]) -> Vec<String> {
         .max_by_key(different)
         .cloned()
         .unwrap_or_default();
+    // DeepLabCut names animals, or people, in a row of their own.
+    let whose = filled.iter().find(|cells| {
+        cells
+            .first()
+            .is_some_and(|c| c.eq_ignore_ascii_case("individuals"))
+    });
     let label = |column: usize| {
         let axis = last.1.get(column).copied().unwrap_or_default();
         let name = names.get(column).copied().unwrap_or_default();
+        let whose = whose.and_then(|cells| cells.get(column)).copied();
         match axis {
             "" => name.to_owned(),
-            axis if is_axis(&axis) && !name.is_empty() => format!("{name}_{axis}"),
+            axis if is_axis(&axis) && !name.is_empty() => match whose {
+                Some(whose) if !whose.is_empty() => format!("{whose}:{name}_{axis}"),
+                _ => format!("{name}_{axis}"),
+            },
             axis => axis.to_owned(),
         }
     };
@@ -138,8 +158,10 @@ fn carried<'a>(cells: &[&'a str], width: usize) -> Vec<&'a str> {
 }
 
 /// Words behind a name that say that its position is meant.
-const POSITION: [&str; 9] = [
+const POSITION: [&str; 11] = [
     "position",
+    "positions",
+    "posi",
     "pos",
     "translation",
     "translate",
@@ -150,7 +172,7 @@ const POSITION: [&str; 9] = [
     "t",
 ];
 /// Words that say that something else is meant.
-const NO_POSITION: [&str; 17] = [
+const NO_POSITION: [&str; 28] = [
     "rotation",
     "rot",
     "r",
@@ -168,10 +190,34 @@ const NO_POSITION: [&str; 17] = [
     "orientation",
     "error",
     "gyro",
+    "torque",
+    "power",
+    "momentum",
+    "emg",
+    "mag",
+    "magnetic",
+    "magnetometer",
+    "accel",
+    "angular",
+    "omega",
+    "gravity",
 ];
 
 /// The point and the axis (0 to 2) that a column's label names.
 pub(super) fn axis_of(label: &str) -> Option<(String, usize)> {
+    axis_with(label, false)
+}
+
+/// Whether a label is of a point whose name ends in an `l` alone: then an `r` alone is the other side, no rotation.
+fn is_left_alone(label: &str) -> bool {
+    axis_of(label).is_some_and(|(name, _)| {
+        let bare = name.strip_suffix(['l', 'L']);
+        bare.is_some_and(|rest| rest.ends_with(is_mark))
+    })
+}
+
+/// [`axis_of`]; with `has_sides`, a name that ends in `_r` is a right one.
+fn axis_with(label: &str, has_sides: bool) -> Option<(String, usize)> {
     let label = without_unit(label).trim();
     let (name, axis) = suffix(label).or_else(|| prefix(label))?;
     let mut name = name.trim_end_matches(is_mark);
@@ -180,11 +226,16 @@ pub(super) fn axis_of(label: &str) -> Option<(String, usize)> {
         (start, name[start..].to_ascii_lowercase())
     };
     let (start, word) = last(name);
-    if NO_POSITION.contains(&word.as_str()) && start > 0 {
+    if NO_POSITION.contains(&word.as_str()) && start > 0 && !(has_sides && word == "r") {
         return None;
     }
     if POSITION.contains(&word.as_str()) && start > 0 {
         name = name[..start].trim_end_matches(is_mark);
+        // Axis Studio writes `Hips-Joint-Posi-x`.
+        let (start, word) = last(name);
+        if word == "joint" && start > 0 {
+            name = name[..start].trim_end_matches(is_mark);
+        }
     }
     // A point has a name; `rotation x` alone has none.
     let lower = name.to_ascii_lowercase();

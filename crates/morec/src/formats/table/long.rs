@@ -13,14 +13,28 @@ pub(super) struct Columns {
     /// The row that names them.
     header: usize,
     name: usize,
+    /// Whose joint it is.
+    person: Option<usize>,
     axes: [usize; 3],
     time: Option<(usize, Option<f64>)>,
     frame: Option<usize>,
 }
 
 /// What the column of joints' names is called.
-const NAMES: [&str; 12] = [
+const NAMES: [&str; 24] = [
     "joint",
+    "jointtype",
+    "joint_type",
+    "joint type",
+    "jointname",
+    "bone",
+    "bone_name",
+    "bonename",
+    "keypoint_name",
+    "marker_name",
+    "markername",
+    "part",
+    "body part",
     "keypoint",
     "landmark",
     "marker",
@@ -48,21 +62,51 @@ pub(super) fn columns(header: usize, (_, cells): &TableLine) -> Option<Columns> 
         })
     };
     let axes = [axis("x")?, axis("y")?, axis("z")?];
+    let person = find(&|cell| PEOPLE.contains(&cell));
     // A landmark's number serves where it has no name.
     let name = NAMES.iter().find_map(|known| find(&|cell| cell == *known));
-    let name = name.or_else(|| find(&|cell| cell.ends_with("_id") || cell == "id"))?;
+    let numbers = |cell: &str| {
+        let ends = [
+            "_id", "_index", "_idx", " id", " index", "_no", "_num", "_number",
+        ];
+        let others = [
+            "frame", "time", "sample", "image", "video", "file", "trial", "clip",
+        ];
+        let numbered = ends.iter().any(|end| cell.ends_with(end)) || cell == "id";
+        numbered && !PEOPLE.contains(&cell) && !others.iter().any(|other| cell.starts_with(other))
+    };
+    let name = name.or_else(|| find(&numbers))?;
     let time = find(&|cell| is_time(cell)).map(|column| (column, seconds_of(&lower[column])));
     let frame = find(&|cell| !cell.is_empty() && is_frame(cell, 1));
     (time.is_some() || frame.is_some()).then_some(Columns {
         header,
         name,
+        person,
         axes,
         time,
         frame,
     })
 }
 
-/// Frames in the order in which they appear.
+/// What a column is called that tells people apart.
+const PEOPLE: [&str; 14] = [
+    "person",
+    "person_id",
+    "personid",
+    "person_index",
+    "track_id",
+    "trackid",
+    "body_id",
+    "bodyid",
+    "skeleton_id",
+    "skeletonid",
+    "subject",
+    "subject_id",
+    "actor",
+    "individual",
+];
+
+/// TableFrames in the order in which they appear.
 pub(super) fn frames(
     columns: &Columns,
     rows: &[TableLine],
@@ -80,6 +124,7 @@ pub(super) fn frames(
         let time = columns.time.and_then(|(column, _)| value(column));
         let key = columns.frame.or(columns.time.map(|t| t.0)).map_or("", cell);
         let name = cell(columns.name);
+        let whose = columns.person.map_or("", cell);
         if key.is_empty() || name.is_empty() {
             continue;
         }
@@ -93,14 +138,18 @@ pub(super) fn frames(
             times.push(time);
         }
         let next = points.len();
-        let point = *of_name.entry(name).or_insert(next);
+        let point = *of_name.entry((whose, name)).or_insert(next);
         if point == next {
             if next == limits.joints {
                 let expected = format!("at most {} points", limits.joints);
                 return Err(ParseError::new(Place::Line(*line), expected, "more"));
             }
+            let name = match whose {
+                "" => name.to_owned(),
+                whose => format!("{whose}:{name}"),
+            };
             points.push(Point {
-                name: name.to_owned(),
+                name,
                 positions: Vec::new(),
             });
         }

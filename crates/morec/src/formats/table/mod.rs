@@ -2,14 +2,17 @@
 //!
 //! - One joint in three columns, named in one row (`hips_x`, `Hips.X`, `Hips Tx`) or in several (DeepLabCut's `bodyparts`
 //!   and `coords`), with a column of times or frames or none.
-//! - OptiTrack Motive's export, with its rows of types, names and properties.
+//! - The exports of OptiTrack Motive, Vicon Nexus and Qualisys, with their rows of keys, types, names and properties.
 //! - The long form: a row for each joint of each frame.
-//! - Numbers alone, if there are as many columns as a known set of landmarks needs.
+//! - Numbers alone, if there are as many columns as a known set of landmarks needs, or a point on each line.
 
+mod brackets;
 mod columns;
 mod long;
 mod motive;
+mod nexus;
 mod plain;
+mod qualisys;
 
 use super::cells::{Decimal, lines, number, split};
 use super::points::{Point, PointTable, UNSEEN, check_size};
@@ -17,7 +20,7 @@ use super::timing::{self, Clock};
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::math::Vec3;
 
-/// Frames a second of a table without times.
+/// TableFrames a second of a table without times.
 const ASSUMED_HZ: f64 = 30.0;
 
 /// A row: its line and its cells.
@@ -36,6 +39,8 @@ struct ColumnLayout {
     metres_per_unit: Option<f64>,
     /// Rows before the first frame.
     header_rows: usize,
+    /// The row behind the last frame, if others follow.
+    stop_row: Option<usize>,
     /// What was left out or guessed.
     notes: Vec<String>,
 }
@@ -57,9 +62,13 @@ pub fn read(
     for (line, row) in &rows {
         cells.push((*line, split(row, separator)));
     }
+    let cells = brackets::spread(cells);
+    let cells = plain::stacked(&cells).unwrap_or(cells);
     let head = &cells[..cells.len().min(HEAD_ROWS)];
     let mut warnings = Vec::new();
-    let (mut points, times, layout) = match header(head) {
+    // Sections of other measurements may stand above that of positions.
+    let section = nexus::layout(&cells).map(TableHeader::Wide);
+    let (mut points, times, layout) = match section.or_else(|| header(head)) {
         Some(TableHeader::Long(columns)) => long::frames(&columns, &cells, limits)?,
         Some(TableHeader::Wide(layout)) => {
             check_size(layout.points.len(), cells.len(), bytes.len())?;
@@ -102,14 +111,22 @@ pub(super) fn looks_so(head: &[u8]) -> bool {
         return false;
     };
     let separator = separator(&rows);
-    let rows = rows.iter().take(HEAD_ROWS);
-    let cells: Vec<TableLine> = rows
-        .map(|(line, row)| (*line, split(row, separator)))
-        .collect();
-    match header(&cells) {
+    // The last row may be cut.
+    let whole = &rows[..rows.len().saturating_sub(usize::from(rows.len() > 2))];
+    let cells = |most: usize| -> Vec<TableLine> {
+        let rows = whole.iter().take(most);
+        rows.map(|(line, row)| (*line, split(row, separator)))
+            .collect()
+    };
+    let first = brackets::spread(cells(HEAD_ROWS));
+    match header(&first) {
         Some(TableHeader::Long(_)) => true,
         Some(TableHeader::Wide(layout)) => layout.points.len() >= 2,
-        None => false,
+        None => {
+            nexus::begins(&first)
+                || plain::is_row_of_points(&first)
+                || plain::is_stacked(&cells(usize::MAX))
+        }
     }
 }
 
@@ -119,7 +136,7 @@ enum TableHeader {
 }
 
 fn header(rows: &[TableLine]) -> Option<TableHeader> {
-    if let Some(layout) = motive::layout(rows) {
+    if let Some(layout) = motive::layout(rows).or_else(|| qualisys::layout(rows)) {
         return Some(TableHeader::Wide(layout));
     }
     if let Some(columns) = rows
@@ -159,6 +176,21 @@ fn no_columns(rows: &[TableLine]) -> ParseError {
         let found = "x and y alone: two dimensions are not enough";
         return ParseError::new(Place::Line(*line), expected, found);
     }
+    if nexus::begins(rows) {
+        let expected = "a section `Trajectories` or `Segments` in the export of Vicon";
+        let found = format!("`{}` without it: export trajectories, too", first[0]);
+        return ParseError::new(Place::Line(*line), expected, found);
+    }
+    if first
+        .iter()
+        .all(|cell| number(cell, Decimal::Either).is_some())
+    {
+        let found = format!(
+            "numbers alone, {} to a line, which is no known set of points: put a row of names above them",
+            first.len()
+        );
+        return ParseError::new(Place::Line(*line), expected, found);
+    }
     let named: Vec<&str> = first
         .iter()
         .copied()
@@ -179,7 +211,8 @@ fn wide(
     limits: &Limits,
     warnings: &mut Vec<Warning>,
 ) -> Result<TableFrames, ParseError> {
-    let body = &rows[layout.header_rows.min(rows.len())..];
+    let stop = layout.stop_row.unwrap_or(rows.len()).min(rows.len());
+    let body = &rows[layout.header_rows.min(stop)..stop];
     let decimal = Decimal::of(body.iter().flat_map(|(_, cells)| cells).copied());
     let mut points: Vec<Point> = layout
         .points
@@ -290,5 +323,7 @@ fn insert_missing(
     times.resize(count as usize, None);
 }
 
+#[cfg(test)]
+mod habits;
 #[cfg(test)]
 mod tests;

@@ -2,24 +2,85 @@
 
 use super::{ColumnLayout, TableLine};
 use crate::formats::cells::{Decimal, number};
+use crate::roles::points::numbered_counts;
 
-/// How many points known sets of landmarks have.
-const COUNTS: [usize; 7] = [17, 18, 20, 22, 24, 25, 33];
+/// Rows that a table of numbers has at least to be taken for points without its name saying so.
+const LEAST_ROWS: usize = 5;
+
+/// Whether a known set of landmarks has so many points.
+fn is_known(count: usize) -> bool {
+    numbered_counts().any(|known| known == count)
+}
+
+fn is_number(cell: &str) -> bool {
+    number(cell, Decimal::Either).is_some()
+}
+
+/// Whether all rows are numbers, as many as a known set needs.
+pub(super) fn is_row_of_points(rows: &[TableLine]) -> bool {
+    let width = rows.first().map_or(0, |(_, cells)| cells.len());
+    let alike =
+        |(_, cells): &TableLine| cells.len() == width && cells.iter().all(|cell| is_number(cell));
+    rows.len() >= LEAST_ROWS && rows.iter().all(alike) && layout(rows).is_some()
+}
+
+/// Whether rows hold one point each, and every so many of them the next frame.
+pub(super) fn is_stacked(rows: &[TableLine]) -> bool {
+    stride(rows).is_some()
+}
+
+/// Rows of one point each, put together to a row for each frame; `None` if they are not that.
+pub(super) fn stacked<'a>(rows: &[TableLine<'a>]) -> Option<Vec<TableLine<'a>>> {
+    let points = stride(rows).filter(|points| rows.len().is_multiple_of(*points))?;
+    let frame = |rows: &[TableLine<'a>]| {
+        let cells = rows.iter().flat_map(|(_, cells)| cells.iter().copied());
+        (rows[0].0, cells.collect())
+    };
+    Some(rows.chunks_exact(points).map(frame).collect())
+}
+
+/// After how many rows of one point each the next frame begins: where a point is nearest to where it was.
+fn stride(rows: &[TableLine]) -> Option<usize> {
+    const LOOKED_AT: usize = 4000;
+    const LEAST_FRAMES: usize = 3;
+    let width = rows.first()?.1.len();
+    let point = |(_, cells): &TableLine| -> Option<[f64; 3]> {
+        let value = |at: usize| number(cells.get(at)?, Decimal::Point);
+        (cells.len() == width).then_some([value(0)?, value(1)?, value(2)?])
+    };
+    if !(3..=4).contains(&width) {
+        return None;
+    }
+    let points: Option<Vec<[f64; 3]>> = rows.iter().take(LOOKED_AT).map(point).collect();
+    let points = points?;
+    let shift = |by: usize| {
+        let pairs = points.iter().zip(&points[by..]);
+        let sum: f64 = pairs
+            .map(|(a, b)| (0..3).map(|i| (a[i] - b[i]).abs()).sum::<f64>())
+            .sum();
+        sum / (points.len() - by) as f64
+    };
+    let fits = |count: &usize| points.len() >= LEAST_FRAMES * count;
+    let best = numbered_counts()
+        .filter(fits)
+        .min_by(|&a, &b| shift(a).total_cmp(&shift(b)))?;
+    let next = shift(1);
+    (next > 0.0 && shift(best) < 0.2 * next).then_some(best)
+}
 
 /// The layout of a table of numbers whose width is that of a known set of landmarks, with or without a column of frames
 /// or times before it.
 pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
     let (_, first) = rows.first()?;
-    let is_number = |cell: &&str| number(cell, Decimal::Either).is_some();
     // A header that says nothing may stand before the numbers.
-    let header_rows = usize::from(!first.iter().all(is_number));
+    let header_rows = usize::from(!first.iter().all(|cell| is_number(cell)));
     let (_, cells) = rows.get(header_rows)?;
-    if !cells.iter().all(is_number) {
+    if !cells.iter().all(|cell| is_number(cell)) {
         return None;
     }
     let fits = |before: usize, width: usize| {
         let values = cells.len().checked_sub(before)?;
-        let known = values.is_multiple_of(width) && COUNTS.contains(&(values / width));
+        let known = values.is_multiple_of(width) && is_known(values / width);
         known.then_some((before, width, values / width))
     };
     // A fourth number is how sure the sensor was.

@@ -199,6 +199,93 @@ fn snakes_fish_birds_and_props_are_told() {
     is_told(prop);
 }
 
+/// A person with something more below the hips or at the chest.
+fn person_with(names: [&str; 3], points: [[f64; 3]; 3], at: &str) -> Made {
+    let (skeleton, poses) = person();
+    let mut made = Made {
+        joints: skeleton.joints().to_vec(),
+        positions: poses[0].clone(),
+    };
+    let from = skeleton.find(at).unwrap();
+    made.both(from, &names, &points);
+    made
+}
+
+#[test]
+fn further_limbs_are_told_and_hair_and_helpers_are_not() {
+    let hind = [[12.0, 92.0, -60.0], [12.0, 50.0, -65.0], [12.0, 8.0, -60.0]];
+    is_told(person_with(["?UpLeg2", "?Leg2", "?Foot2"], hind, "Hips"));
+    is_told(person_with(["bone?1", "bone?2", "bone?3"], hind, "Hips"));
+    let second_arms = [[18.0, 120.0, 0.0], [46.0, 110.0, 0.0], [71.0, 100.0, 20.0]];
+    is_told(person_with(
+        ["?Arm2", "?ForeArm2", "?Hand2"],
+        second_arms,
+        "Chest",
+    ));
+    let hair = [
+        [6.0, 165.0, -8.0],
+        [10.0, 130.0, -15.0],
+        [10.0, 90.0, -15.0],
+    ];
+    let skirt = [[15.0, 85.0, -5.0], [20.0, 60.0, -10.0], [22.0, 35.0, -12.0]];
+    let helpers = [[9.0, 90.0, 0.0], [9.0, 48.0, 1.0], [9.0, 8.0, 0.0]];
+    for made in [
+        person_with(["?Hair1", "?Hair2", "?Hair3"], hair, "Head"),
+        person_with(["Skirt?1", "Skirt?2", "Skirt?3"], skirt, "Hips"),
+        person_with(["?UpLegIK", "?LegIK", "?FootIK"], helpers, "Hips"),
+    ] {
+        let doubts = made.doubts();
+        assert!(!doubts.iter().any(|d| d.contains("hardly")), "{doubts:?}");
+    }
+}
+
+#[test]
+fn rigs_of_hands_faces_and_cameras_are_told() {
+    let mut hands = Made::new("World", [0.0, 100.0, 0.0]);
+    hands.both(0, &["?Hand"], &[[30.0, 100.0, 30.0]]);
+    for (hand, x) in [(1, 30.0), (2, -30.0)] {
+        let side = if x > 0.0 { "Left" } else { "Right" };
+        for (finger, name) in ["Thumb", "Index", "Middle", "Ring", "Pinky"]
+            .iter()
+            .enumerate()
+        {
+            let names: Vec<String> = (1..4).map(|k| format!("{side}Hand{name}{k}")).collect();
+            let names: Vec<&str> = names.iter().map(String::as_str).collect();
+            let at = |k: f64| [x - 3.0 + 2.0 * finger as f64, 105.0 + 4.0 * k, 30.0];
+            hands.chain(hand, &names, &[at(0.0), at(1.0), at(2.0)]);
+        }
+    }
+    is_told(hands);
+
+    let mut face = Made::new("head", [0.0, 160.0, 0.0]);
+    face.chain(
+        0,
+        &["jaw", "chin"],
+        &[[0.0, 155.0, 6.0], [0.0, 150.0, 10.0]],
+    );
+    for (name, at) in [
+        ("eye_?", [3.0, 164.0, 8.0]),
+        ("brow_?", [4.0, 166.0, 8.0]),
+        ("lip_?", [2.0, 156.0, 9.0]),
+    ] {
+        face.both(0, &[name], &[at]);
+    }
+    is_told(face);
+
+    let mut crane = Made::new("Dolly", [0.0; 3]);
+    crane.chain(
+        0,
+        &["Crane", "Arm", "Head", "Camera"],
+        &[
+            [0.0, 50.0, 0.0],
+            [0.0, 100.0, 0.0],
+            [0.0, 200.0, 200.0],
+            [0.0, 200.0, 220.0],
+        ],
+    );
+    is_told(crane);
+}
+
 /// A person in a T-pose, and one who squats with the feet forward.
 fn person() -> (Skeleton, Vec<Vec<Vec3>>) {
     let mut made = Made::new("Hips", [0.0, 95.0, 0.0]);

@@ -17,7 +17,7 @@ pub(super) const JOINTS: PointSet = PointSet {
             "?_shin",
             "?knee|?shin|?lowleg|?lowerleg|?calf|?tibia|?shank|?kjc|?leg",
         ),
-        ("?_foot", "?ankle|?ajc|?foot"),
+        ("?_foot", "?ankle|?ajc|?talus|?foot"),
         (
             "?_arm",
             "?uparm|?upperarm|?uarm|?arm|?humerus|?sjc|?shldr|?shoulder",
@@ -60,7 +60,7 @@ const fn landmarks(
 }
 
 /// Each with the order of its points.
-pub(super) const SETS: [PointSet; 9] = [
+pub(super) const SETS: [PointSet; 18] = [
     // BlazePose; developers.google.com/mediapipe, "Pose landmark detection".
     landmarks(
         "MediaPipe pose (33)",
@@ -125,6 +125,77 @@ pub(super) const SETS: [PointSet; 9] = [
         "SMPL (22)",
         "pelvis lhip rhip spine1 lknee rknee spine2 lankle rankle spine3 lfoot rfoot neck lcollar rcollar head \
          lshoulder rshoulder lelbow relbow lwrist rwrist",
+        &[],
+    ),
+    // Body Tracking SDK of Azure Kinect, k4abt_joint_id_t.
+    landmarks(
+        "Azure Kinect (32)",
+        "pelvis spinenavel spinechest neck lclavicle lshoulder lelbow lwrist lhand lhandtip lthumb rclavicle \
+         rshoulder relbow rwrist rhand rhandtip rthumb lhip lknee lankle lfoot rhip rknee rankle rfoot head nose \
+         leye lear reye rear",
+        &[
+            ("?_shoulder", "?clavicle"),
+            ("torso", "spinenavel|spinechest"),
+            ("head", "head"),
+        ],
+    ),
+    // MSR-Action3D (Li, Zhang and Liu 2010), in the order of the files of its joints.
+    landmarks(
+        "MSR-Action3D (20)",
+        "rshoulder lshoulder neck spine rhip lhip pelvis relbow lelbow rwrist lwrist rhand lhand rknee lknee rankle lankle \
+         rfoot lfoot head",
+        &[],
+    ),
+    // OpenNI and NiTE, XnSkeletonJoint, as its recorders write them.
+    landmarks(
+        "OpenNI (15)",
+        "head neck torso lshoulder lelbow lhand rshoulder relbow rhand lhip lknee lfoot rhip rknee rfoot",
+        &[("?_hand", "?hand"), ("?_foot", "?foot")],
+    ),
+    // MPII Human Pose (Andriluka et al. 2014).
+    landmarks(
+        "MPII (16)",
+        "rankle rknee rhip lhip lknee lankle pelvis thorax upperneck headtop rwrist relbow rshoulder lshoulder lelbow \
+         lwrist",
+        &[("neck", "thorax|upperneck"), ("head", "headtop")],
+    ),
+    // CMU Panoptic Studio (Joo et al. 2015), joints19.
+    landmarks(
+        "Panoptic (19)",
+        "neck nose bodycenter lshoulder lelbow lwrist lhip lknee lankle rshoulder relbow rwrist rhip rknee rankle leye \
+         lear reye rear",
+        &[("hips", "bodycenter|lhip+rhip"), ("head", "lear+rear|nose")],
+    ),
+    // Halpe (Fang et al. 2022), 26 keypoints of the body, as AlphaPose and Pose2Sim have them.
+    landmarks(
+        "Halpe (26)",
+        "nose leye reye lear rear lshoulder rshoulder lelbow relbow lwrist rwrist lhip rhip lknee rknee lankle rankle head \
+         neck hip lbigtoe rbigtoe lsmalltoe rsmalltoe lheel rheel",
+        &[("hips", "hip|lhip+rhip"), ("head", "lear+rear|head|nose")],
+    ),
+    // The 32 joints of Human3.6M (Ionescu et al. 2014), some in one place.
+    landmarks(
+        "Human3.6M (32)",
+        "hip rhip rknee rankle rfoot rtoe lhip lknee lankle lfoot ltoe spineroot spine neck nose head neck2 \
+         lshoulder lelbow lwrist lthumb lhand lhandtip lsite neck3 rshoulder relbow rwrist rthumb rhand rhandtip rsite",
+        &[("hips", "hip"), ("torso", "spine"), ("neck", "neck")],
+    ),
+    // SMPL-H (Romero et al. 2017): SMPL's 22 joints and 15 for each hand.
+    landmarks(
+        "SMPL-H (52)",
+        "pelvis lhip rhip spine1 lknee rknee spine2 lankle rankle spine3 lfoot rfoot neck lcollar rcollar head \
+         lshoulder rshoulder lelbow relbow lwrist rwrist lindex1 lindex2 lindex3 lmiddle1 lmiddle2 lmiddle3 lpinky1 lpinky2 \
+         lpinky3 lring1 lring2 lring3 lthumb1 lthumb2 lthumb3 rindex1 rindex2 rindex3 rmiddle1 rmiddle2 rmiddle3 rpinky1 \
+         rpinky2 rpinky3 rring1 rring2 rring3 rthumb1 rthumb2 rthumb3",
+        &[],
+    ),
+    // SMPL-X (Pavlakos et al. 2019): the same with jaw and eyes before the hands.
+    landmarks(
+        "SMPL-X (55)",
+        "pelvis lhip rhip spine1 lknee rknee spine2 lankle rankle spine3 lfoot rfoot neck lcollar rcollar head \
+         lshoulder rshoulder lelbow relbow lwrist rwrist jaw leyesmplhf reyesmplhf lindex1 lindex2 lindex3 lmiddle1 lmiddle2 \
+         lmiddle3 lpinky1 lpinky2 lpinky3 lring1 lring2 lring3 lthumb1 lthumb2 lthumb3 rindex1 rindex2 rindex3 rmiddle1 \
+         rmiddle2 rmiddle3 rpinky1 rpinky2 rpinky3 rring1 rring2 rring3 rthumb1 rthumb2 rthumb3",
         &[],
     ),
 ];

@@ -179,7 +179,8 @@ const RIZZOLI: Roles = &[
 const OPTITRACK: Roles = &[
     (
         "?_thigh",
-        "hip(?;lwaistfront;rwaistfront;lwaistback+rwaistback)",
+        "hip(?;lwaistfront;rwaistfront;lwaistback+rwaistback)|hip(?;lwaistfront;rwaistfront;waistback)\
+         |hip(?;lwaistfront;rwaistfront;lwaist+rwaist)|hip(?;lwaistfront;rwaistfront;lback+rback)",
     ),
     ("?_shin", "?kneeout+?kneein|?kneeout"),
     ("?_foot", "?ankleout+?anklein|?ankleout"),
@@ -190,7 +191,10 @@ const OPTITRACK: Roles = &[
         "hips",
         "lwaistfront+rwaistfront+lwaistback+rwaistback|lwaistfront+rwaistfront",
     ),
-    ("neck", "backtop+chest|backtop|@left_arm+@right_arm"),
-    ("torso", "backleft+backright|chest"),
-    ("head", "headtop+headfront|headtop"),
+    (
+        "neck",
+        "backtop+chest|spinetop+chest|backtop|spinetop|@left_arm+@right_arm",
+    ),
+    ("torso", "backleft+backright|lback+rback|chest"),
+    ("head", "headtop+headfront|headtop|lhead+rhead|headfront"),
 ];

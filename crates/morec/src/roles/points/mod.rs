@@ -4,6 +4,7 @@
 //! marker sets. A role is played by one point or by something between several: the hips by the middle
 //! of the hip joints, a knee by the middle of two markers, a hip joint by a regression from the pelvis.
 
+mod anatomy;
 mod landmarks;
 mod markers;
 mod names;
@@ -55,6 +56,12 @@ pub fn subject_of(name: &str) -> &str {
     name.rsplit_once(':').map_or("", |(subject, _)| subject)
 }
 
+/// How many points the sets have whose points may come as numbers alone.
+pub(crate) fn numbered_counts() -> impl Iterator<Item = usize> {
+    let numbered = landmarks::SETS.iter().filter(|set| set.numbered);
+    numbered.map(PointSet::len)
+}
+
 /// The set that points of these names belong to, and who plays what. `None` if too few parts of a body are known.
 /// O(sets × points).
 pub fn recognise(names: &[&str]) -> Option<Recognised> {
@@ -65,7 +72,7 @@ pub fn recognise(names: &[&str]) -> Option<Recognised> {
 /// those of Human3.6M. The set in which left and right limbs are equally long is taken.
 pub fn recognise_posed(names: &[&str], poses: &[Vec<Vec3>]) -> Option<Recognised> {
     let sets = || landmarks::SETS.iter().chain(&markers::SETS);
-    if let Some(order) = numbers(names) {
+    if let Some(order) = numbers(names).filter(|_| !names.iter().any(|name| is_no_body(name))) {
         let fitting = sets().filter(|set| set.numbered && set.len() == names.len());
         let candidates = fitting.filter_map(|set| {
             let own: Vec<&str> = set.points.split_whitespace().collect();
@@ -73,6 +80,7 @@ pub fn recognise_posed(names: &[&str], poses: &[Vec<Vec3>]) -> Option<Recognised
             set.assign(&named)
         });
         return candidates
+            .filter(|found| is_steady(found, poses))
             .map(|found| (asymmetry(&found, poses), found))
             .filter(|(unlike, _)| *unlike < UNLIKE)
             .min_by(|a, b| a.0.total_cmp(&b.0))
@@ -86,7 +94,83 @@ pub fn recognise_posed(names: &[&str], poses: &[Vec<Vec3>]) -> Option<Recognised
         .iter()
         .filter(|(_, set)| set.coverage(&names) >= LEAST_COVERAGE)
         .find_map(|(_, set)| set.assign(&names));
-    best.or_else(|| landmarks::JOINTS.assign(&names))
+    let joints = landmarks::JOINTS.assign(&names);
+    // Words for joints say more than those of bones that markers are stuck to.
+    best.or_else(|| match joints {
+        Some(found) if found.has_hips() => Some(found),
+        joints => anatomy::assign(&names).or(joints),
+    })
+}
+
+/// Whether a numbered point is called after something that is no body: `brow7`, `hand_3`.
+fn is_no_body(name: &str) -> bool {
+    const OTHERS: [&str; 12] = [
+        "face", "hand", "finger", "brow", "lip", "mouth", "cheek", "jaw", "eye", "rigid", "camera",
+        "cluster",
+    ];
+    let lower = name.to_ascii_lowercase();
+    OTHERS.iter().any(|other| lower.contains(other))
+}
+
+/// Pairs of left and right bones.
+const LIMBS: [[Role; 4]; 4] = [
+    [
+        Role::LeftThigh,
+        Role::LeftShin,
+        Role::RightThigh,
+        Role::RightShin,
+    ],
+    [
+        Role::LeftShin,
+        Role::LeftFoot,
+        Role::RightShin,
+        Role::RightFoot,
+    ],
+    [
+        Role::LeftArm,
+        Role::LeftForearm,
+        Role::RightArm,
+        Role::RightForearm,
+    ],
+    [
+        Role::LeftForearm,
+        Role::LeftHand,
+        Role::RightForearm,
+        Role::RightHand,
+    ],
+];
+
+/// Whether bones keep their lengths from pose to pose, as far as a depth camera sees them: what is numbered at random does
+/// not.
+fn is_steady(found: &Recognised, poses: &[Vec<Vec3>]) -> bool {
+    const MOST: f64 = 0.35;
+    let place = |role: Role| {
+        let place = found.roles.iter().find(|(known, _)| *known == role);
+        place.map(|(_, place)| place)
+    };
+    let mut spreads: Vec<f64> = Vec::new();
+    for [a, b] in LIMBS.iter().flat_map(|l| [[l[0], l[1]], [l[2], l[3]]]) {
+        let (Some(a), Some(b)) = (place(a), place(b)) else {
+            continue;
+        };
+        let length = |pose: &Vec<Vec3>| Some((a.at(|p| pose[p])? - b.at(|p| pose[p])?).norm());
+        let lengths: Vec<f64> = poses.iter().filter_map(length).collect();
+        let count = lengths.len().max(1) as f64;
+        let mean = lengths.iter().sum::<f64>() / count;
+        let variance = lengths.iter().map(|l| (l - mean).powi(2)).sum::<f64>() / count;
+        spreads.push(variance.sqrt() / mean.max(1e-12));
+    }
+    spreads.sort_by(f64::total_cmp);
+    spreads
+        .get(spreads.len() / 2)
+        .is_none_or(|&spread| spread < MOST)
+}
+
+impl Recognised {
+    fn has_hips(&self) -> bool {
+        let known = |role| self.roles.iter().any(|(known, _)| *known == role);
+        known(Role::LeftThigh) && known(Role::RightThigh)
+    }
 }
 
 impl PointSet {
@@ -162,13 +246,6 @@ fn sided((role, expression): &(&str, &str)) -> Vec<(String, String)> {
 
 /// How unlike left and right limbs are, 0 to 1; 1 without poses.
 fn asymmetry(found: &Recognised, poses: &[Vec<Vec3>]) -> f64 {
-    use Role::*;
-    const LIMBS: [[Role; 4]; 4] = [
-        [LeftThigh, LeftShin, RightThigh, RightShin],
-        [LeftShin, LeftFoot, RightShin, RightFoot],
-        [LeftArm, LeftForearm, RightArm, RightForearm],
-        [LeftForearm, LeftHand, RightForearm, RightHand],
-    ];
     let (mut apart, mut sum) = (0.0, 0.0);
     for pose in poses {
         let at = |role: Role| {

@@ -1,7 +1,7 @@
 //! NumPy arrays, after *NEP 1: A Simple File Format for NumPy Arrays*. A page of our own: crates for it bring a parser of
 //! Python literals, of which three keys are needed here.
 
-use super::super::{ParseError, Place};
+use super::{ParseError, Place};
 
 /// An array of numbers, in C order.
 #[derive(Debug, Clone, PartialEq)]
@@ -110,6 +110,46 @@ pub(super) fn read(bytes: &[u8]) -> Result<Array, ParseError> {
         shape: header.shape,
         values,
     })
+}
+
+/// Whether an array holds objects of Python.
+pub(super) fn is_of_objects(bytes: &[u8]) -> bool {
+    header(bytes).is_ok_and(|header| header.descr.contains('O'))
+}
+
+/// Reads the texts of an array of one dimension (`<U14`, `|S14`); `None` of other arrays.
+pub(super) fn texts(bytes: &[u8]) -> Option<Vec<String>> {
+    let header = header(bytes).ok()?;
+    let descr = header.descr.trim_start_matches(['<', '|', '=', '>']);
+    let (wide, length) = match descr.split_at_checked(1)? {
+        ("U", length) => (true, length),
+        ("S" | "a", length) => (false, length),
+        _ => return None,
+    };
+    let width = length
+        .parse::<usize>()
+        .ok()?
+        .checked_mul(if wide { 4 } else { 1 })?;
+    let big = header.descr.starts_with('>');
+    let letter = |four: &[u8]| {
+        let mut word = [four[0], four[1], four[2], four[3]];
+        if big {
+            word.reverse();
+        }
+        char::from_u32(u32::from_le_bytes(word)).filter(|c| *c != '\0')
+    };
+    let text = |field: &[u8]| match wide {
+        true => field.chunks_exact(4).filter_map(letter).collect(),
+        false => String::from_utf8_lossy(field).trim_matches('\0').to_owned(),
+    };
+    let count = match header.shape[..] {
+        [] => 1,
+        [count] => count,
+        _ => return None,
+    };
+    let data = bytes.get(header.begin..)?;
+    (width > 0 && data.len() / width >= count)
+        .then(|| data.chunks_exact(width).take(count).map(text).collect())
 }
 
 /// Numbers whose first index runs fastest, put so that the last one does.

@@ -1,7 +1,11 @@
 //! Telling formats apart: by content first, by name where the content says nothing.
 //!
-//! A new format is registered in `READ`; one that is only recognised, to be refused by its name, in `UNREAD`.
+//! A new format is registered in `READ`; one that is only recognised, to be refused by its name, in
+//! `unread`.
 
+mod unread;
+
+use self::unread::{UNREAD, UNREAD_ENDINGS, Unread, is_opensim};
 use super::{ParseError, Place, mocopi, table};
 use crate::smooth::MAGIC;
 
@@ -39,6 +43,10 @@ pub enum Format {
     NtuSkeleton,
     /// JSON with a list of points in each frame.
     Landmarks,
+    /// Positions in NumPy arrays.
+    Numpy,
+    /// Skeletal animation of the Source engine, text.
+    Smd,
 }
 
 impl Format {
@@ -60,6 +68,8 @@ impl Format {
             Format::Mocopi => "mocopi",
             Format::NtuSkeleton => "ntu_skeleton",
             Format::Landmarks => "landmarks",
+            Format::Numpy => "numpy",
+            Format::Smd => "smd",
         }
     }
 }
@@ -71,7 +81,7 @@ struct Readable {
 }
 
 /// Every format that is read, in the order in which its content is asked for.
-const READ: [Readable; 21] = [
+const READ: [Readable; 23] = [
     Readable {
         format: Format::Mclip,
         extension: "mclip",
@@ -168,9 +178,27 @@ const READ: [Readable; 21] = [
         looks_so: |h| !h.is_binary() && super::landmarks::looks_so(h.bytes),
     },
     Readable {
+        format: Format::Numpy,
+        extension: "npy",
+        looks_so: |h| h.bytes.starts_with(b"\x93NUMPY"),
+    },
+    Readable {
+        format: Format::Smd,
+        extension: "smd",
+        looks_so: |h| {
+            !h.is_binary()
+                && h.lines().take(20).any(|l| l.starts_with(b"version 1"))
+                && h.contains(b"\nnodes")
+                && h.contains(b"\nskeleton")
+                && !h.contains(b"vertexanimation")
+        },
+    },
+    Readable {
         format: Format::Table,
         extension: "csv",
-        looks_so: |h| !h.is_binary() && table::looks_so(h.bytes),
+        looks_so: |h| {
+            !h.is_binary() && (!is_opensim(h) || unread::has_markers(h)) && table::looks_so(h.bytes)
+        },
     },
     Readable {
         format: Format::Table,
@@ -183,211 +211,6 @@ const READ: [Readable; 21] = [
         looks_so: |_| false,
     },
 ];
-
-struct Unread {
-    name: &'static str,
-    /// How to get what can be read; a sentence without its first letter's case.
-    help: &'static str,
-    looks_so: fn(&Head) -> bool,
-}
-
-const fn unread(name: &'static str, help: &'static str, looks_so: fn(&Head) -> bool) -> Unread {
-    Unread {
-        name,
-        help,
-        looks_so,
-    }
-}
-
-const BLENDER: &str = "open it in Blender and export BVH, FBX or glTF";
-const UNPACK: &str = "unpack it";
-const SCENE: &str = "export FBX, BVH or glTF from the program that made it";
-const NUMPY: &str = "save poses as AMASS does, in an .npz, or positions as a table";
-const VIDEO: &str = "it holds pictures; a tracker of poses makes positions of them";
-
-/// Formats that are recognised only to say that they are not read.
-const UNREAD: [Unread; 39] = [
-    unread("a zip archive", UNPACK, |h| {
-        h.bytes.starts_with(b"PK\x03\x04") || h.bytes.starts_with(b"PK\x05\x06")
-    }),
-    unread("a gzip file", UNPACK, |h| {
-        h.bytes.starts_with(b"\x1f\x8b\x08")
-    }),
-    unread("a NumPy array", NUMPY, |h| {
-        h.bytes.starts_with(b"\x93NUMPY")
-    }),
-    unread("an OpenSim motion (MOT, STO)", OPENSIM, is_opensim_table),
-    unread("an OpenSim model", OPENSIM, |h| {
-        h.starts("<") && h.contains(b"<OpenSimDocument")
-    }),
-    unread("USD", BLENDER, |h| {
-        h.starts("PXR-USDC") || h.starts("#usda")
-    }),
-    unread("a Blender file", BLENDER, |h| h.starts("BLENDER")),
-    unread("Alembic", BLENDER, |h| h.starts("Ogawa")),
-    unread("COLLADA", BLENDER, |h| {
-        h.starts("<") && h.contains(b"<COLLADA")
-    }),
-    unread("X3D", BLENDER, |h| h.starts("<") && h.contains(b"<X3D")),
-    unread("Maya ASCII", SCENE, |h| h.starts("//Maya ASCII")),
-    unread("Maya binary", SCENE, |h| {
-        (h.starts("FOR4") || h.starts("FOR8")) && h.contains(b"Maya")
-    }),
-    unread(
-        "a 3ds Max biped motion (BIP)",
-        "load it on a Biped in 3ds Max and save BVH or FBX",
-        |h| h.starts("BIPF"),
-    ),
-    unread("a 3ds Max or other OLE file", SCENE, |h| {
-        h.bytes.starts_with(b"\xD0\xCF\x11\xE0")
-    }),
-    unread(
-        "a MikuMikuDance motion (VMD)",
-        "load it on its model in Blender (mmd_tools) and export BVH or FBX",
-        |h| h.starts("Vocaloid Motion Data"),
-    ),
-    unread(
-        "a MikuMikuDance model (PMX, PMD)",
-        "it holds no motion",
-        |h| h.starts("PMX ") || h.bytes.starts_with(b"Pmd"),
-    ),
-    unread(
-        "a Unity asset",
-        "play it in Unity and record it with its FBX exporter, or as VRMA",
-        |h| h.starts("%YAML") && h.contains(b"unity3d.com"),
-    ),
-    unread("DirectX (.x)", BLENDER, |h| h.starts("xof ")),
-    unread("a Source engine animation (SMD)", BLENDER, |h| {
-        h.starts("version 1") && h.contains(b"nodes") && h.contains(b"skeleton")
-    }),
-    unread(
-        "OpenPose keypoints (JSON) in two dimensions",
-        "a direction in space needs three: triangulate several views (Pose2Sim, FreeMoCap) and give TRC, C3D or a table",
-        |h| h.starts("{") && h.contains(b"\"pose_keypoints_2d\""),
-    ),
-    unread("HDF5", NUMPY, |h| h.bytes.starts_with(b"\x89HDF")),
-    unread("MATLAB's MAT", NUMPY, |h| h.starts("MATLAB 5.0")),
-    unread(
-        "a pickle of Python",
-        "it can run programs when it is opened; save poses as AMASS does, in an .npz",
-        |h| matches!(h.bytes, [0x80, 2..=5, ..]),
-    ),
-    unread("a PyTorch or old Python archive", NUMPY, |h| {
-        h.bytes.starts_with(b"(dp") || h.bytes.starts_with(b"(lp")
-    }),
-    unread("HTR of Motion Analysis", SCENE, |h| {
-        h.contains(b"FileType htr")
-            || h.contains(b"FileType gtr")
-            || h.contains(b"[SegmentNames&Hierarchy]")
-    }),
-    unread("a Vicon or Nexus XML file", "export C3D", |h| {
-        h.starts("<") && (h.contains(b"<KinematicModel") || h.contains(b"<ViconModel"))
-    }),
-    unread("Theia or QTM XML", "export C3D, FBX or TRC", |h| {
-        h.starts("<") && h.contains(b"<QTM")
-    }),
-    unread(
-        "a recording of Rokoko (JSON)",
-        "export BVH or FBX from Rokoko Studio",
-        |h| h.starts("{") && h.contains(b"\"actors\"") && h.contains(b"\"scene\""),
-    ),
-    unread("Biovision's BVA", "save BVH", |h| {
-        h.starts("Segment:") && h.contains(b"Frames:")
-    }),
-    unread("a tar archive", UNPACK, |h| {
-        h.bytes.get(257..262) == Some(b"ustar")
-    }),
-    unread("a bzip2 file", UNPACK, |h| h.bytes.starts_with(b"BZh")),
-    unread("an xz file", UNPACK, |h| h.bytes.starts_with(b"\xFD7zXZ")),
-    unread("a 7z archive", UNPACK, |h| {
-        h.bytes.starts_with(b"7z\xBC\xAF")
-    }),
-    unread("a rar archive", UNPACK, |h| h.bytes.starts_with(b"Rar!")),
-    unread("a Zstandard file", UNPACK, |h| {
-        h.bytes.starts_with(b"\x28\xB5\x2F\xFD")
-    }),
-    unread("an MP4 video", VIDEO, |h| {
-        h.bytes.get(4..8) == Some(b"ftyp")
-    }),
-    unread("an AVI video", VIDEO, |h| h.starts("RIFF")),
-    unread("a Matroska video", VIDEO, |h| {
-        h.bytes.starts_with(b"\x1A\x45\xDF\xA3")
-    }),
-    unread("a picture", VIDEO, |h| {
-        h.bytes.starts_with(b"\x89PNG") || h.bytes.starts_with(b"\xFF\xD8\xFF")
-    }),
-];
-
-/// Endings of files whose content does not tell what they are, to be refused by name.
-const UNREAD_ENDINGS: [(&str, &str, &str); 20] = [
-    (
-        "qtm",
-        "a Qualisys QTM measurement",
-        "export C3D, TSV or FBX from QTM",
-    ),
-    ("tdf", "a BTS TDF recording", "export C3D from BTS SMART"),
-    (
-        "v",
-        "a Vicon V file",
-        "export C3D or FBX from the program that made it",
-    ),
-    (
-        "x1d",
-        "a Vicon recording of cameras",
-        "process it and export C3D",
-    ),
-    (
-        "x2d",
-        "a Vicon recording of cameras",
-        "process it and export C3D",
-    ),
-    (
-        "vsk",
-        "a Vicon skeleton",
-        "it holds no motion; export FBX or C3D of a trial",
-    ),
-    (
-        "trb",
-        "a Motion Analysis TRB recording",
-        "export TRC or C3D from Cortex",
-    ),
-    (
-        "cap",
-        "a Motion Analysis capture",
-        "export TRC or C3D from Cortex",
-    ),
-    ("gtr", "GTR of Motion Analysis", SCENE),
-    ("htr", "HTR of Motion Analysis", SCENE),
-    (
-        "tak",
-        "a Motive take",
-        "export CSV, BVH, C3D or FBX from Motive",
-    ),
-    (
-        "mvn",
-        "an Xsens MVN recording",
-        "export MVNX, BVH or FBX from MVN",
-    ),
-    (
-        "raw",
-        "a raw recording of Axis Neuron",
-        "export BVH or FBX from it",
-    ),
-    ("x", "DirectX (.x)", BLENDER),
-    ("smd", "a Source engine animation (SMD)", BLENDER),
-    ("blend", "a Blender file", BLENDER),
-    (
-        "bip",
-        "a 3ds Max biped motion (BIP)",
-        "load it on a Biped in 3ds Max and save BVH or FBX",
-    ),
-    ("anm", "a game's animation", SCENE),
-    ("max", "a 3ds Max file", SCENE),
-    ("usdz", "USD", BLENDER),
-];
-
-const OPENSIM: &str = "joint angles mean something only with the model they were made for; run OpenSim's BodyKinematics \
-    or PointKinematics with it and give the positions as a table or TRC";
 
 /// Which format `bytes` have; `name` (a file's name or path) decides if they do not say.
 ///
@@ -406,6 +229,10 @@ pub fn probe(bytes: &[u8], name: &str) -> Result<Format, ParseError> {
             format!("what looks like {name}, which is not read: {help}"),
         ));
     }
+    let called = |what: &str, help: &str| {
+        let found = format!("what by its name is {what}, which is not read: {help}");
+        ParseError::new(Place::File, "a motion format that is read", found)
+    };
     // A broken C3D file is told what is wrong with it by its reader.
     let by_name = |format: &Format| !head.is_binary() || *format == Format::C3d;
     if let Some(format) = format_of_name(name).filter(by_name) {
@@ -416,15 +243,13 @@ pub fn probe(bytes: &[u8], name: &str) -> Result<Format, ParseError> {
         .iter()
         .find(|(known, ..)| known.eq_ignore_ascii_case(ending) && !bytes.is_empty());
     if let Some((_, what, help)) = known {
-        return Err(ParseError::new(
-            Place::File,
-            "a motion format that is read",
-            format!("what by its name is {what}, which is not read: {help}"),
-        ));
+        return Err(called(what, help));
     }
     let found = match bytes {
         [] => "an empty file",
         _ if head.is_binary() => "unknown binary content",
+        _ if head.is_markup() => "XML of an unknown kind",
+        _ if head.starts("{") || head.starts("[") => "JSON without points, poses or joints",
         _ => "unknown text",
     };
     let expected = match format_of_name(name) {
@@ -465,10 +290,25 @@ impl<'a> Head<'a> {
         self.bytes.trim_ascii_start().starts_with(text.as_bytes())
     }
 
+    /// Whether it starts with one of these, in any case.
+    fn starts_any(&self, texts: &[&str]) -> bool {
+        let start = self.bytes.trim_ascii_start();
+        let begins = |text: &&str| {
+            start
+                .get(..text.len())
+                .is_some_and(|s| s.eq_ignore_ascii_case(text.as_bytes()))
+        };
+        texts.iter().any(begins)
+    }
+
     fn contains(&self, text: &[u8]) -> bool {
         self.bytes
             .windows(text.len())
             .any(|window| window.eq_ignore_ascii_case(text))
+    }
+
+    fn is_markup(&self) -> bool {
+        self.starts("<")
     }
 
     fn is_binary(&self) -> bool {
@@ -514,8 +354,17 @@ fn is_jsonl(head: &Head) -> bool {
     let mut lines = head.lines();
     let first = lines.next().unwrap_or_default();
     let holds = |word: &[u8]| first.windows(word.len()).any(|window| window == word);
+    // By role or name: lists of numbers are landmarks.
+    let named = |field: &[u8]| {
+        let at = first
+            .windows(field.len())
+            .position(|window| window == field);
+        let rest = at.map(|at| first[at + field.len()..].trim_ascii_start());
+        let rest = rest.and_then(|rest| rest.strip_prefix(b":"));
+        rest.is_some_and(|rest| rest.trim_ascii_start().starts_with(b"{"))
+    };
     first.starts_with(b"{")
-        && (holds(b"\"positions\"") || holds(b"\"rotations\""))
+        && (named(b"\"positions\"") || named(b"\"rotations\""))
         && !holds(b"\"asset\"")
 }
 
@@ -532,12 +381,6 @@ fn is_numpy_archive(head: &Head) -> bool {
         head.bytes.get(30..30 + usize::from(length))
     };
     head.bytes.starts_with(b"PK\x03\x04") && name().is_some_and(|name| name.ends_with(b".npy"))
-}
-
-/// A header that ends in `endheader`.
-fn is_opensim_table(head: &Head) -> bool {
-    let mut lines = head.lines().take(200);
-    !head.is_binary() && lines.any(|line| line.eq_ignore_ascii_case(b"endheader"))
 }
 
 fn is_asf(head: &Head) -> bool {
@@ -635,7 +478,6 @@ mod tests {
     fn what_is_not_read_is_named() {
         for (bytes, found) in [
             (b"PK\x03\x04....".as_slice(), "zip"),
-            (b"\x93NUMPY\x01\0", "NumPy array"),
             (
                 b"Coordinates\nversion=1\nendheader\ntime\tpelvis_tilt\n",
                 "OpenSim",
@@ -645,16 +487,21 @@ mod tests {
             (b"\x80\x04\x95", "pickle"),
             (b"", "an empty file"),
             (b"a,b,c\n1,2,3\n", "unknown text"),
-            (b"\x7FELF\0\0", "unknown binary"),
+            (b"\x01\x02\0\0", "unknown binary"),
+            (b"\x7FELF\0\0", "a program"),
+            (b"version https://git-lfs.github.com/spec/v1\n", "Git LFS"),
+            (b"<!DOCTYPE html>\n<html>", "HTML"),
+            (b"PAR1\0", "Parquet"),
+            (b"Coordinates\nnRows=2\nnColumns=3,,,\n", "OpenSim"),
         ] {
             let error = probe(bytes, "file.dat").unwrap_err();
             assert!(error.found.contains(found), "{error}");
         }
-        let called = probe(b"\x7FELF\0\0", "a.glb").unwrap_err();
+        let called = probe(b"\x01\x02\0\0", "a.glb").unwrap_err();
         assert!(
             called.expected.contains("gltf, as its name says"),
             "{called}"
         );
-        assert!(probe(b"\x7FELF\0\0", "a.bvh").is_err());
+        assert!(probe(b"\x01\x02\0\0", "a.bvh").is_err());
     }
 }

@@ -1,0 +1,140 @@
+//! Documents of every habit.
+
+use super::*;
+use serde_json::json;
+
+fn open(document: &Value) -> Result<Loaded, ParseError> {
+    read(
+        document.to_string().as_bytes(),
+        "f",
+        None,
+        &Limits::default(),
+    )
+}
+
+fn landmarks(frame: usize) -> Value {
+    let point = |j: usize| json!({"x": 0.01 * j as f64, "y": 0.1 * frame as f64 + 0.5, "z": 0.2, "visibility": 0.9});
+    (0..33).map(point).collect()
+}
+
+#[test]
+fn frames_are_found_wherever_they_are() {
+    let list: Value = (0..6)
+        .map(|f| json!({"frame": f, "timestamp": f as f64 / 25.0, "landmarks": landmarks(f)}))
+        .collect();
+    let within = json!({"fps": 50.0, "frames": (0..6).map(|f| json!({
+        "pose_landmarks": landmarks(0), "pose_world_landmarks": landmarks(f)})).collect::<Value>()});
+    let tasks: Value = (0..6)
+        .map(|f| json!({"pose_landmarks": [landmarks(f)]}))
+        .collect();
+    let arrays = json!({"keypoints": (0..6).map(|f| (0..17)
+        .map(|j| json!([0.1 * f as f64, 0.1 * j as f64, 1.0])).collect::<Value>()).collect::<Value>()});
+    let named: Value = (0..6)
+        .map(|f| json!({"joints": {"nose": [0.1, 1.6, 0.1 * f as f64], "left_hip": [0.1, 1, 0], "right_hip": [0, 1, 0],
+            "left_knee": [0.1, 0.5, 0], "right_knee": [0, 0.5, 0]}}))
+        .collect();
+    for (document, points, rate_hz) in [
+        (&list, 33, 25.0),
+        (&within, 33, 50.0),
+        (&tasks, 33, 30.0),
+        (&arrays, 17, 30.0),
+        (&named, 5, 30.0),
+    ] {
+        assert!(looks_so(document.to_string().as_bytes()));
+        let clip = &open(document).unwrap().clips[0];
+        assert_eq!(
+            (clip.frames, clip.skeleton.len()),
+            (6, points),
+            "{document}"
+        );
+        assert!((clip.rate_hz - rate_hz).abs() < 0.01, "{}", clip.rate_hz);
+        let moves = clip
+            .tracks
+            .iter()
+            .any(|track| track.positions[0] != track.positions[5]);
+        assert!(moves, "{document}");
+    }
+}
+
+fn sum_of_moves(loaded: &Loaded) -> f64 {
+    let track =
+        |t: &crate::clip::JointTrack| (t.positions[0] - t.positions[t.positions.len() - 1]).norm();
+    loaded.clips[0].tracks.iter().map(track).sum()
+}
+
+#[test]
+fn frames_in_lines_in_numbered_fields_and_in_rows_of_numbers() {
+    let lines: Vec<String> = (0..12)
+        .map(|f| json!({"t": f as f64 / 20.0, "landmarks": landmarks(f)}).to_string())
+        .collect();
+    let lines = read(lines.join("\n").as_bytes(), "f", None, &Limits::default()).unwrap();
+    let numbered: Map<String, Value> = (0..12)
+        .map(|f| (format!("frame_{f}"), json!({"landmarks": landmarks(f)})))
+        .collect();
+    let numbered = open(&json!({"joints": numbered})).unwrap();
+    let row = |f: usize| {
+        (0..25)
+            .flat_map(move |j| [j as f64, f as f64, 1.0, 0.5])
+            .collect::<Vec<f64>>()
+    };
+    let rows: Value = (0..12)
+        .map(|f| json!({"people": [{"pose_keypoints_2d": [1, 2, 0.5], "pose_keypoints_3d": row(f)}]}))
+        .collect();
+    let rows = open(&rows).unwrap();
+    for (loaded, points) in [(lines, 33), (numbered, 33), (rows, 25)] {
+        let clip = &loaded.clips[0];
+        assert_eq!((clip.frames, clip.skeleton.len()), (12, points));
+        // In the order of their numbers: the last is the farthest from the first.
+        assert!(
+            (sum_of_moves(&loaded) / points as f64 - if points == 33 { 1.1 } else { 11.0 }).abs()
+                < 1e-6
+        );
+    }
+}
+
+#[test]
+fn azure_kinect_has_names_beside_its_frames_and_several_bodies() {
+    let names: Vec<String> = (0..8).map(|j| format!("JOINT_{j}X")).collect();
+    let body = |f: usize| {
+        json!({"body_id": 1, "joint_orientations": vec![[1.0, 0.0, 0.0, 0.0]; 8],
+        "joint_positions": (0..8).map(|j| json!([j, f, 2000])).collect::<Value>()})
+    };
+    let document = json!({"joint_names": names, "bone_list": [["A", "B"]],
+        "frames": (0..6).map(|f| json!({"bodies": [body(f), body(f + 100)], "timestamp_usec": f * 33_333})).collect::<Value>()});
+    let loaded = open(&document).unwrap();
+    let clip = &loaded.clips[0];
+    assert_eq!(clip.skeleton.joints()[3].name, "JOINT_3X");
+    assert_eq!(clip.tracks[3].positions[4], Vec3::new(3.0, 4.0, 2000.0));
+    assert!((clip.rate_hz - 30.0).abs() < 0.01);
+    assert!(
+        loaded.warnings.iter().any(|w| w.text.contains("2 bodies")),
+        "{:?}",
+        loaded.warnings
+    );
+}
+
+#[test]
+fn two_dimensions_are_told() {
+    let row: Vec<f64> = (0..51).map(f64::from).collect();
+    for document in [
+        json!([{"image_id": "1.jpg", "keypoints": row}]),
+        json!({"keypoints": vec![vec![json!({"x": 1, "y": 2, "score": 0.5}); 17]; 3]}),
+        json!([vec![[1.0, 2.0]; 17]]),
+    ] {
+        let error = open(&document).unwrap_err();
+        assert!(error.found.contains("two dimensions"), "{error}");
+    }
+}
+
+#[test]
+fn other_documents_are_refused() {
+    for document in [
+        json!([]),
+        json!({"landmarks": []}),
+        json!({"pose": {"x": 1, "y": 2, "z": 3}}),
+        json!([{"landmarks": [{"x": 1, "y": 2}, {"x": 1, "y": 2}]}]),
+    ] {
+        assert!(open(&document).is_err(), "{document}");
+    }
+    assert!(read(b"{\"landmarks\": [", "f", None, &Limits::default()).is_err());
+}

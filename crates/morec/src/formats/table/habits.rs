@@ -1,0 +1,207 @@
+//! Habits of programs that export tables, in files made by hand.
+
+use super::*;
+
+fn open(text: &str) -> Loaded {
+    read(text.as_bytes(), "x", None, &Limits::default())
+        .unwrap_or_else(|error| panic!("{error}:\n{text}"))
+}
+
+/// Points that stand and walk along X, for exports made by hand: `frame`, `point` to text of three numbers.
+fn moving(frame: usize, point: usize, between: &str) -> String {
+    let [x, y, z] = [
+        0.02 * frame as f64 + 0.1 * point as f64,
+        1.0 + 0.1 * (point % 3) as f64,
+        0.3 * (point % 5) as f64,
+    ];
+    format!("{x:.4}{between}{y:.4}{between}{z:.4}")
+}
+
+fn row(frame: usize, points: usize, between: &str) -> String {
+    let cells: Vec<String> = (0..points).map(|p| moving(frame, p, between)).collect();
+    cells.join(between)
+}
+
+/// Vicon's sections: what is measured beside the markers is left out, wherever it stands.
+#[test]
+fn sections_of_nexus() {
+    let devices = "Devices\n1000\n,,Plate - Force,,\nFrame,Sub Frame,Fx,Fy,Fz\n,,N,N,N\n1,0,0,0,700\n1,1,0,0,701\n\n";
+    let model = "Model Outputs\n100\n,,Anna:LKneeAngles,,\nFrame,Sub Frame,X,Y,Z\n,,deg,deg,deg\n1,0,1,2,3\n\n";
+    let mut markers =
+        "Trajectories\n100\n,,Anna:LASI,,,Anna:RASI,,\nFrame,Sub Frame,X,Y,Z,X,Y,Z\n,,mm,mm,mm,mm,mm,mm\n".to_owned();
+    for frame in 0..4 {
+        markers += &format!("{},0,{}\n", frame + 1, row(frame, 2, ","));
+    }
+    for text in [
+        markers.clone(),
+        format!("{devices}{markers}"),
+        format!("{markers}\n{model}"),
+        format!("{model}{devices}{markers}").replace(',', "\t"),
+    ] {
+        assert!(looks_so(text.as_bytes()), "{text}");
+        let loaded = open(&text);
+        let clip = &loaded.clips[0];
+        assert_eq!((clip.frames, clip.rate_hz), (4, 100.0), "{text}");
+        assert_eq!(clip.skeleton.joints()[1].name, "Anna:RASI");
+        assert_eq!(clip.points.as_ref().unwrap().metres_per_unit, Some(0.001));
+        assert_eq!(clip.tracks[1].positions[2], Vec3::new(0.14, 1.1, 0.3));
+        let told = loaded.warnings.iter().any(|w| w.text.contains("left out"));
+        assert_eq!(told, text.len() > markers.len(), "{:?}", loaded.warnings);
+    }
+    let error = read(model.as_bytes(), "f", None, &Limits::default()).unwrap_err();
+    assert!(error.found.contains("export trajectories"), "{error}");
+}
+
+/// Qualisys names columns in a row of its own, or not at all, with frames and times before them, or not.
+#[test]
+fn measurements_of_qualisys() {
+    let keys = "NO_OF_FRAMES\t4\nNO_OF_MARKERS\t2\nFREQUENCY\t240\nTIME_STAMP\t2020-01-01, 10:00:00\nDATA_INCLUDED\t3D\n\
+        MARKER_NAMES\tL heel\tR heel\nTRAJECTORY_TYPES\tMeasured\tMixed\n";
+    let header = "Frame\tTime\tL heel X\tL heel Y\tL heel Z\tR heel X\tR heel Y\tR heel Z\n";
+    for (header, before) in [(header, 2), ("", 0), ("", 1), ("", 2)] {
+        let mut text = format!("{keys}{header}");
+        for frame in 0..4 {
+            let first = [
+                format!("{}\t", frame + 1),
+                format!("{:.5}\t", frame as f64 / 240.0),
+            ];
+            text += &format!("{}{}\n", first[..before].concat(), row(frame, 2, "\t"));
+        }
+        assert!(looks_so(text.as_bytes()), "{text}");
+        let clip = &open(&text).clips[0];
+        assert_eq!((clip.frames, clip.rate_hz), (4, 240.0), "{text}");
+        assert_eq!(clip.skeleton.joints()[1].name, "R heel");
+        assert_eq!(clip.tracks[1].positions[3], Vec3::new(0.16, 1.1, 0.3));
+        assert_eq!(clip.points.as_ref().unwrap().metres_per_unit, Some(0.001));
+    }
+}
+
+#[test]
+fn individuals_of_deeplabcut_are_told_apart() {
+    let names = [
+        "nose",
+        "left_shoulder",
+        "right_shoulder",
+        "left_hip",
+        "right_hip",
+        "left_knee",
+        "right_knee",
+    ];
+    let mut rows = ["scorer", "individuals", "bodyparts", "coords"].map(str::to_owned);
+    for whose in ["anna", "bert"] {
+        for name in names {
+            for axis in ["x", "y", "z"] {
+                for (row, word) in rows.iter_mut().zip(["net", whose, name, axis]) {
+                    *row += &format!(",{word}");
+                }
+            }
+        }
+    }
+    let mut text = rows.join("\n");
+    for frame in 0..5 {
+        text += &format!("\n{frame},{}", row(frame, 14, ","));
+    }
+    let clips = open(&text).clips;
+    assert_eq!(clips.len(), 2);
+    assert_eq!(clips[1].skeleton.len(), 7);
+    assert_eq!(clips[1].tracks[0].positions[1].x, 0.02 + 0.7);
+}
+
+#[test]
+fn whole_points_in_brackets() {
+    for (open_with, between, close_with) in [
+        ("\"(", ", ", ")\""),
+        ("[", " ", "]"),
+        ("\"[", ",", ", 0.9]\""),
+    ] {
+        let mut text = "frame,nose,left hip,right hip\n".to_owned();
+        for frame in 0..3 {
+            let cells: Vec<String> = (0..3)
+                .map(|p| format!("{open_with}{}{close_with}", moving(frame, p, between)))
+                .collect();
+            text += &format!("{frame},{}\n", cells.join(","));
+        }
+        assert!(looks_so(text.as_bytes()), "{text}");
+        let clip = &open(&text).clips[0];
+        assert_eq!(
+            (clip.frames, clip.skeleton.joints()[2].name.as_str()),
+            (3, "right hip"),
+            "{text}"
+        );
+        assert_eq!(clip.tracks[2].positions[2], Vec3::new(0.24, 1.2, 0.6));
+    }
+}
+
+/// MSR-Action3D and its kin: a line for each joint, and every twenty lines the next frame.
+#[test]
+fn a_point_on_each_line() {
+    let mut text = String::new();
+    for frame in 0..30 {
+        for point in 0..20 {
+            text += &format!("{}  1.0\n", moving(frame, point, "  "));
+        }
+    }
+    assert!(looks_so(text.as_bytes()));
+    let clip = &open(&text).clips[0];
+    assert_eq!((clip.frames, clip.skeleton.len()), (30, 20));
+    assert_eq!(clip.tracks[7].positions[3], Vec3::new(0.76, 1.1, 0.6));
+    let cut = &text[..text.len() - 40];
+    assert!(
+        read(cut.as_bytes(), "f", None, &Limits::default()).is_err(),
+        "a frame without all of its points"
+    );
+}
+
+#[test]
+fn frames_may_begin_with_a_word() {
+    let header: Vec<String> = (0..17).map(|p| format!("x_{p},y_{p},z_{p}")).collect();
+    let text = format!(
+        "label,{}\nwave,{}\nwave,{}\n",
+        header.join(","),
+        row(0, 17, ","),
+        row(1, 17, ",")
+    );
+    let clip = &open(&text).clips[0];
+    assert_eq!((clip.frames, clip.skeleton.len()), (2, 17));
+}
+
+#[test]
+fn long_tables_by_number_and_by_person() {
+    let mut text = "frame,person_id,landmark_index,x,y,z\n".to_owned();
+    for frame in 0..4 {
+        for person in 0..2 {
+            for point in 0..17 {
+                text += &format!("{frame},{person},{point},{}\n", moving(frame, point, ","));
+            }
+        }
+    }
+    let loaded = open(&text);
+    assert_eq!(
+        loaded
+            .clips
+            .iter()
+            .map(|clip| clip.skeleton.len())
+            .sum::<usize>(),
+        34
+    );
+    let kinect =
+        "Time,JointType,X,Y,Z\n0,Head,1,2,3\n0,Neck,1,2,3\n0.1,Head,1,2,3\n0.1,Neck,1,2,3\n";
+    assert_eq!(open(kinect).clips[0].skeleton.joints()[1].name, "Neck");
+}
+
+/// `femur_r_X` is the right femur's place where there is a left one; `Hips_R_x` alone is a rotation.
+#[test]
+fn right_sides_are_no_rotations() {
+    let sided = open(
+        "time\tfemur_r_X\tfemur_r_Y\tfemur_r_Z\tfemur_l_X\tfemur_l_Y\tfemur_l_Z\n0\t1\t2\t3\t4\t5\t6\n0.1\t1\t2\t3\t4\t5\t6\n",
+    );
+    assert_eq!(sided.clips[0].skeleton.len(), 2);
+    let turned = open(
+        "time,Hips_T_x,Hips_T_y,Hips_T_z,Hips_R_x,Hips_R_y,Hips_R_z\n0,1,2,3,4,5,6\n1,1,2,3,4,5,6\n",
+    );
+    assert_eq!(turned.clips[0].skeleton.len(), 1);
+    let axis = open(
+        "f,Hips-Joint-Posi-x,Hips-Joint-Posi-y,Hips-Joint-Posi-z,Hips-Joint-Quat-0\n0,1,2,3,4\n1,1,2,3,4\n",
+    );
+    assert_eq!(axis.clips[0].skeleton.joints()[0].name, "Hips");
+}
