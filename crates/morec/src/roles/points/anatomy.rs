@@ -306,6 +306,7 @@ const ANATOMY: PointSet = PointSet {
     name: "anatomical markers",
     points: "",
     numbered: false,
+    by_name: true,
     roles: &[
         (
             "?_thigh",

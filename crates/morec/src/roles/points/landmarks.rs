@@ -8,6 +8,7 @@ pub(super) const JOINTS: PointSet = PointSet {
     name: "joint names",
     points: "",
     numbered: false,
+    by_name: true,
     roles: &[
         (
             "?_thigh",
@@ -54,6 +55,7 @@ const fn landmarks(
         name,
         points,
         numbered: true,
+        by_name: true,
         roles,
         joints_too: true,
     }
@@ -147,11 +149,14 @@ pub(super) const SETS: [PointSet; 18] = [
         &[],
     ),
     // OpenNI and NiTE, XnSkeletonJoint, as its recorders write them.
-    landmarks(
-        "OpenNI (15)",
-        "head neck torso lshoulder lelbow lhand rshoulder relbow rhand lhip lknee lfoot rhip rknee rfoot",
-        &[("?_hand", "?hand"), ("?_foot", "?foot")],
-    ),
+    PointSet {
+        by_name: false,
+        ..landmarks(
+            "OpenNI (15)",
+            "head neck torso lshoulder lelbow lhand rshoulder relbow rhand lhip lknee lfoot rhip rknee rfoot",
+            &[("?_hand", "?hand"), ("?_foot", "?foot")],
+        )
+    },
     // MPII Human Pose (Andriluka et al. 2014).
     landmarks(
         "MPII (16)",

@@ -14,6 +14,7 @@ const fn markers(
         name,
         points,
         numbered: false,
+        by_name: true,
         roles,
         joints_too: false,
     }

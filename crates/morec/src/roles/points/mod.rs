@@ -27,6 +27,8 @@ pub(super) struct PointSet {
     points: &'static str,
     /// True if points may come as numbers alone.
     numbered: bool,
+    /// True if points are recognised by these names; false where the names are everybody's, and only numbers tell.
+    by_name: bool,
     /// Who plays what: [`Expression`]s.
     roles: &'static [(&'static str, &'static str)],
     /// True if roles that `roles` leaves open are looked for among usual joint names.
@@ -87,8 +89,10 @@ pub fn recognise_posed(names: &[&str], poses: &[Vec<Vec3>]) -> Option<Recognised
             .map(|(_, found)| found);
     }
     let names = normalised(names);
-    let mut fitting: Vec<(f64, &PointSet)> =
-        sets().map(|set| (set.likeness(&names), set)).collect();
+    let mut fitting: Vec<(f64, &PointSet)> = sets()
+        .filter(|set| set.by_name)
+        .map(|set| (set.likeness(&names), set))
+        .collect();
     fitting.sort_by(|a, b| b.0.total_cmp(&a.0));
     let best = fitting
         .iter()
