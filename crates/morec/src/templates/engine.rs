@@ -23,7 +23,7 @@ pub struct TemplateEngine {
 /// Where the nearest matches of the classes come from.
 #[derive(Debug, Clone)]
 enum Matches {
-    Computed(ClassMatcher),
+    Computed(Box<ClassMatcher>),
     /// Of the same stream, from elsewhere.
     Given(MatchReplay),
 }
@@ -66,12 +66,15 @@ impl TemplateEngine {
     /// As [`TemplateModel::check`].
     pub fn new(model: &TemplateModel) -> Result<Self, TemplateModelError> {
         Self::with(model, |metric| {
-            Matches::Computed(ClassMatcher::new(model, metric))
+            Matches::Computed(Box::new(ClassMatcher::new(model, metric)))
         })
     }
 
     /// The same on matches that were computed elsewhere, of the stream that will be pushed. Templates of `model` are not
     /// looked at.
+    ///
+    /// # Errors
+    /// As [`TemplateModel::check`].
     pub fn replay(
         model: &TemplateModel,
         matches: ClassMatches,

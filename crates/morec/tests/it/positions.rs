@@ -112,8 +112,8 @@ fn one_recording_in_two_formats_agrees() {
     let (c3d, trc) = (ready(c3d.clips[0].clone()), ready(trc.clips[0].clone()));
     assert_eq!(c3d.clip.frames, trc.clip.frames);
     // The TRC has the hip and the neck as well, which make its points another set; the roles of the limbs are the same.
-    assert_eq!(c3d.report.point_set.as_deref(), Some("OpenPose BODY_25"));
-    assert_eq!(trc.report.point_set.as_deref(), Some("Halpe (26)"));
+    assert_eq!(c3d.report.point_set, Some("OpenPose BODY_25"));
+    assert_eq!(trc.report.point_set, Some("Halpe (26)"));
     assert_eq!(
         (c3d.report.up, c3d.clip.rate_hz),
         (trc.report.up, trc.clip.rate_hz)

@@ -142,12 +142,15 @@ pub(super) const SETS: [PointSet; 18] = [
         ],
     ),
     // MSR-Action3D (Li, Zhang and Liu 2010), in the order of the files of its joints.
-    landmarks(
-        "MSR-Action3D (20)",
-        "rshoulder lshoulder neck spine rhip lhip pelvis relbow lelbow rwrist lwrist rhand lhand rknee lknee rankle lankle \
-         rfoot lfoot head",
-        &[],
-    ),
+    PointSet {
+        by_name: false,
+        ..landmarks(
+            "MSR-Action3D (20)",
+            "rshoulder lshoulder neck spine rhip lhip pelvis relbow lelbow rwrist lwrist rhand lhand rknee lknee rankle \
+             lankle rfoot lfoot head",
+            &[],
+        )
+    },
     // OpenNI and NiTE, XnSkeletonJoint, as its recorders write them.
     PointSet {
         by_name: false,
