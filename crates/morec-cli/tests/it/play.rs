@@ -65,8 +65,8 @@ fn the_version_names_the_commit_where_there_is_one() {
 
 #[test]
 fn errors_are_said_once() {
-    let folder = Folder::with(&[("x.smd", "version 1\nnodes\nskeleton\n")]);
-    let ran = folder.morec(&["inspect", "x.smd"]);
+    let folder = Folder::with(&[("x.vmd", "Vocaloid Motion Data 0002\0\0")]);
+    let ran = folder.morec(&["inspect", "x.vmd"]);
     assert_eq!(ran.err.matches("which is not read").count(), 1, "{ran:?}");
-    assert!(ran.err.contains("Source engine"), "{ran:?}");
+    assert!(ran.err.contains("MikuMikuDance"), "{ran:?}");
 }

@@ -124,7 +124,8 @@ impl Drawing {
                 dots.draw(&mut picture, (from, 0), unicode, style(side));
             }
         }
-        picture.text(half.saturating_sub(6), ROWS, columns, "from the front", DIM);
+        let from = half.saturating_sub(6);
+        picture.text(from, ROWS, from + 15, "from the front", DIM);
         let from = columns + GAP + half.saturating_sub(6);
         picture.text(from, ROWS, from + 14, "from its left", DIM);
         let mut text = picture.render(colour);
@@ -325,8 +326,8 @@ mod tests {
         let drawn = |line: &&str| line.chars().any(|c| ('\u{2801}'..='\u{28FF}').contains(&c));
         let rows: Vec<&str> = text.lines().filter(drawn).collect();
         assert!((16..=19).contains(&rows.len()), "{}\n{text}", rows.len());
-        let label = text.lines().find(|l| l.contains("from the front")).unwrap();
-        assert!(label.contains("from its left"), "{text}");
+        let label = text.lines().find(|l| l.contains("from its left")).unwrap();
+        assert!(label.contains("from the front"), "{text}");
         assert!(!drawing.text(false, false).chars().any(|c| c > '\u{7f}'));
         assert!(drawing.text(true, true).contains("\x1b["));
     }

@@ -7,7 +7,7 @@ use super::{guide, others, root};
 use crate::kit::Folder;
 
 /// Options of other programs.
-const FOREIGN: [&str; 14] = [
+const FOREIGN: [&str; 15] = [
     "--release",
     "--workspace",
     "--open",
@@ -21,6 +21,7 @@ const FOREIGN: [&str; 14] = [
     "--ask",
     "--endpoint",
     "--from-files",
+    "--parts",
     "--ray",
 ];
 
