@@ -87,7 +87,7 @@ impl Pca {
     }
 
     /// Axis `index` (`vᵢ`), `D` values of length 1 together; its greatest component is positive
-    /// ([`Eigen::canonical_sign`]).
+    /// (`Eigen::canonical_sign`).
     pub fn axis(&self, index: usize) -> &[f64] {
         &self.axes[index * self.dim()..(index + 1) * self.dim()]
     }

@@ -3,7 +3,7 @@
 use super::{Cell, Window};
 
 /// Every segment that was looked at and what it seemed to be: what
-/// [`SvrdmEngine::push_with_observer`](super::SvrdmEngine::push_watched) calls with. Recording allocates; a live stream
+/// [`SvrdmEngine::push_with_observer`](super::SvrdmEngine::push_with_observer) calls with. Recording allocates; a live stream
 /// without end should not be recorded.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ConfidenceMap {

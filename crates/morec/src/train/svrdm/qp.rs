@@ -18,7 +18,7 @@ pub(crate) struct BoxQp {
 /// When to stop.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Stop {
-    /// When the [residual](BoxQp::residual) is at most this.
+    /// When the residual is at most this.
     pub residual: f64,
     /// After this many passes over all coordinates (steps of the active set method, beside 20 a coordinate), however
     /// good.

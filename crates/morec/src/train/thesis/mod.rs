@@ -25,7 +25,7 @@ use super::templates::TrainError;
 /// background here.
 ///
 /// # Errors
-/// As [`ThesisTrainingData::of_clips`](material::ThesisTrainingData::of_clips) and [`fit`]; or `progress` cancels.
+/// Clips that cannot teach, a class without samples; or `progress` cancels.
 pub fn train_svrdm(
     clips: &[TrainClip],
     labelling: &LabelSet<'_>,
