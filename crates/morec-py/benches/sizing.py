@@ -1,6 +1,6 @@
 """What clusters of 10, 100 and 1,000 cores would need for an archive, computed from what one core is measured to do.
 
-    python sizing.py FOLDER INDEX [--hours 100000] [--gigabits 10]
+    python sizing.py FOLDER INDEX [--hours 100000] [--gigabits 10] [--tasks-a-second 200]
 
 FOLDER holds clips. Measured here: processor time of a second of motion in each step, its spread over row groups, bytes of
 an hour. Computed: a list of tasks as long as the archive, drawn from what was measured, given out one by one by a scheduler
@@ -23,9 +23,9 @@ from morec import _morec
 
 #: Seconds of work in a row group, about.
 GROUP_SECS = 60.0
-#: Tasks that the scheduler starts in a second: what Ray's authors give for one driver is of this order (thousands for empty tasks);
-#: Daft's tasks carry plans, so a tenth.
+#: Tasks that the scheduler starts in a second: an assumption, not measured. `--tasks-a-second` sets another.
 TASKS_A_SECOND = 200.0
+#: An assumption too.
 CORES_A_MACHINE = 16
 
 
@@ -46,7 +46,9 @@ def measured(archive: ma.Archive, index: morec.Index) -> dict[str, list[tuple[fl
     return made
 
 
-def makespan(cores: int, tasks: list[tuple[float, int]], bytes_a_second: float) -> tuple[float, str]:
+def makespan(
+    cores: int, tasks: list[tuple[float, int]], bytes_a_second: float, tasks_a_second: float
+) -> tuple[float, str]:
     """Seconds until the last task is done, and what was busy all the time."""
     machines = max(1, cores // CORES_A_MACHINE)
     link = [0.0] * machines
@@ -55,7 +57,7 @@ def makespan(cores: int, tasks: list[tuple[float, int]], bytes_a_second: float) 
     last = 0.0
     for number, (work, size) in enumerate(tasks):
         at, machine = heapq.heappop(free)
-        at = max(at, number / TASKS_A_SECOND)
+        at = max(at, number / tasks_a_second)
         read = max(at, link[machine]) + size / bytes_a_second
         link[machine] = read
         done = read + work
@@ -64,7 +66,7 @@ def makespan(cores: int, tasks: list[tuple[float, int]], bytes_a_second: float) 
     limits = {
         "cores": sum(work for work, _ in tasks) / cores,
         "links": sum(size for _, size in tasks) / bytes_a_second / machines,
-        "scheduler": len(tasks) / TASKS_A_SECOND,
+        "scheduler": len(tasks) / tasks_a_second,
         "the longest task": max(work for work, _ in tasks),
     }
     return last, max(limits, key=lambda name: limits[name])
@@ -76,6 +78,7 @@ def main() -> None:
     parser.add_argument("index")
     parser.add_argument("--hours", type=float, default=100_000.0)
     parser.add_argument("--gigabits", type=float, default=10.0, help="of each machine's link")
+    parser.add_argument("--tasks-a-second", type=float, default=TASKS_A_SECOND, help="that the scheduler starts; assumed")
     args = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         begun = time.process_time()
@@ -98,7 +101,7 @@ def main() -> None:
             skew = sum(clip[1] for clip in shares) / sum(clip[0] for clip in shares) / rate
             groups.append((GROUP_SECS * skew, int(hour / 3600 * group_motion)))
         for cores in (10, 100, 1000):
-            last, limit = makespan(cores, groups, args.gigabits / 8 * 1e9)
+            last, limit = makespan(cores, groups, args.gigabits / 8 * 1e9, args.tasks_a_second)
             ideal = sum(size for size, _ in groups) / cores
             print(
                 f"computed: {step}, {args.hours:.0f} h on {cores} cores: {last / 3600:.2f} h in {len(groups)} tasks, "

@@ -14,6 +14,7 @@ use morec_db::{
     rows_recipe, stored_clip,
 };
 use numpy::PyArrayDyn;
+use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use rayon::prelude::*;
@@ -207,11 +208,19 @@ pub fn recognize_kept<'py>(
         let one = |clip: &MotionColumns| recognized(index, clip);
         clips.par_iter().map(one).collect()
     });
-    let told = |found: Result<Vec<EventTuple>, String>| match found {
-        Ok(events) => Ok(events.into_pyobject(py)?.into_any()),
-        Err(error) => Ok(error.into_pyobject(py)?.into_any()),
+    values_or_errors(py, found)
+}
+
+/// A list with the value of each clip, or in its place the error as text.
+pub(crate) fn values_or_errors<'py, T: IntoPyObjectExt<'py>>(
+    py: Python<'py>,
+    found: Vec<Result<T, String>>,
+) -> PyResult<Vec<Bound<'py, PyAny>>> {
+    let object = |one: Result<T, String>| match one {
+        Ok(value) => value.into_bound_py_any(py),
+        Err(error) => error.into_bound_py_any(py),
     };
-    found.into_iter().map(told).collect()
+    found.into_iter().map(object).collect()
 }
 
 fn recognized(index: &MotionIndex, clip: &MotionColumns) -> Result<Vec<EventTuple>, String> {

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use rayon::prelude::*;
 
-use crate::archive::{EventTuple, MotionColumns, events, stored_motion};
+use crate::archive::{EventTuple, MotionColumns, events, stored_motion, values_or_errors};
 use crate::index::PyIndex;
 
 fn templates(index: &MotionIndex) -> PyResult<&TemplateModel> {
@@ -49,11 +49,9 @@ pub fn match_kept<'py>(
         Ok(matches.map_err(|error| error.to_string())?.to_bytes())
     };
     let found: Vec<Result<Vec<u8>, String>> = py.detach(|| clips.par_iter().map(one).collect());
-    let told = |found: Result<Vec<u8>, String>| match found {
-        Ok(bytes) => Ok(PyBytes::new(py, &bytes).into_any()),
-        Err(error) => Ok(error.into_pyobject(py)?.into_any()),
-    };
-    found.into_iter().map(told).collect()
+    let found = found.into_iter();
+    let bytes = found.map(|one| one.map(|bytes| PyBytes::new(py, &bytes).unbind()));
+    values_or_errors(py, bytes.collect())
 }
 
 /// What an index recognises in kept clips, decided between the matches of all its parts; `first` is the first part. For
@@ -77,9 +75,5 @@ pub fn recognize_matched_kept<'py>(
     };
     let found: Vec<Result<Vec<EventTuple>, String>> =
         py.detach(|| clips.par_iter().map(one).collect());
-    let told = |found: Result<Vec<EventTuple>, String>| match found {
-        Ok(events) => Ok(events.into_pyobject(py)?.into_any()),
-        Err(error) => Ok(error.into_pyobject(py)?.into_any()),
-    };
-    found.into_iter().map(told).collect()
+    values_or_errors(py, found)
 }

@@ -7,6 +7,7 @@
 
 use crate::coder::{Coder, Reader, Whole, Writer};
 
+use super::retime::unsaturated;
 use super::{FeatureParams, Rows};
 
 /// Values are whole multiples of this.
@@ -185,12 +186,10 @@ impl Forecast {
         bone.rate = rate;
     }
 
-    /// Undoes `v / (1 + |v| / saturation)` and the weight.
+    /// Bone velocity before the weight and the saturation.
     fn unsaturated(&self, velocity: [f64; 3]) -> [f64; 3] {
         let velocity = velocity.map(|v| v / self.velocity_weight);
-        let size = velocity.iter().map(|v| v * v).sum::<f64>().sqrt();
-        let share = (size / self.saturation).min(MOST_SATURATED);
-        velocity.map(|v| v / (1.0 - share))
+        unsaturated(velocity, self.saturation, MOST_SATURATED)
     }
 }
 

@@ -38,18 +38,23 @@ pub fn retimed_rows(rows: &Rows, bones: BoneSet, params: &FeatureParams, factor:
 
 /// Divides a weighted, saturated velocity by `factor` before its saturation.
 fn slow_down(velocity: &mut [f32], params: &FeatureParams, factor: f64) {
-    let plain = |v: &f32| f64::from(*v) / params.velocity_weight;
-    let size = velocity
-        .iter()
-        .map(|v| plain(v).powi(2))
-        .sum::<f64>()
-        .sqrt();
-    let share = (size / params.velocity_saturation).min(MOST_SATURATED);
-    // v / (1 + |v| / s) has the length s · share: |v| = s · share / (1 − share).
-    let slower = params.velocity_saturation * share / (1.0 - share) / factor;
-    let saturated = slower / (1.0 + slower / params.velocity_saturation);
-    let scale = if size > 0.0 { saturated / size } else { 1.0 };
-    velocity.iter_mut().for_each(|v| *v *= scale as f32);
+    let (saturation, weight) = (params.velocity_saturation, params.velocity_weight);
+    let stored = [0, 1, 2].map(|axis| f64::from(velocity[axis]) / weight);
+    let slower = unsaturated(stored, saturation, MOST_SATURATED).map(|v| v / factor);
+    let saturate = 1.0 / (1.0 + length(slower) / saturation);
+    for (out, v) in velocity.iter_mut().zip(slower) {
+        *out = (v * saturate * weight) as f32;
+    }
+}
+
+/// `v` from `v / (1 + |v| / saturation)`; a length of more than `most` times the saturation counts as that much.
+pub(super) fn unsaturated(velocity: [f64; 3], saturation: f64, most: f64) -> [f64; 3] {
+    let share = (length(velocity) / saturation).min(most);
+    velocity.map(|v| v / (1.0 - share))
+}
+
+fn length(v: [f64; 3]) -> f64 {
+    v.iter().map(|v| v * v).sum::<f64>().sqrt()
 }
 
 #[cfg(test)]

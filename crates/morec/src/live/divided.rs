@@ -1,8 +1,8 @@
 //! Recognition with an index whose classes lie on several machines.
 //!
-//! Matching the templates is nearly all of the work and of the memory, and the templates of one class know nothing of
-//! another's. So each machine matches some classes ([`PartMatcher`] with a [part](TemplateModel::part) of the model), and one
-//! decides between what all have found ([`Recognizer::replay`]). The detections are those of the whole index, to the bit.
+//! Matching the templates is nearly all of the work and of the memory, and it is independent from class to class. So each
+//! machine matches some classes ([`PartMatcher`] with a [part](TemplateModel::part) of the model), and one
+//! decodes the matches of all ([`Recognizer::replay`]). The detections are those of the whole index, to the bit.
 
 use crate::clip::{Clip, Span};
 use crate::features::{BoneSet, FeatureStream, KeyPose, bones_of_clip, for_each_pose};
@@ -14,7 +14,7 @@ use super::{Detection, Model, Recognizer, StartError};
 
 impl TemplateModel {
     /// Part `part` of `of`: the templates of every `of`-th class, and as large a share of the negatives. Everything else is
-    /// the whole model's; only the first part holds what its verifier has learned of single classes.
+    /// the whole model's; only the first part holds the class exemplars of its verifier.
     ///
     /// # Panics
     /// `part` is not below `of`.
@@ -41,7 +41,7 @@ pub struct PartMatcher {
     steps: MatchSteps,
 }
 
-/// What is done with each row.
+/// Metric, templates and recorded matches: the steps for each feature row.
 #[derive(Debug, Clone)]
 struct MatchSteps {
     metric: Metric,

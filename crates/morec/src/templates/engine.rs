@@ -65,7 +65,7 @@ impl TemplateEngine {
     /// # Errors
     /// As [`TemplateModel::check`].
     pub fn new(model: &TemplateModel) -> Result<Self, TemplateModelError> {
-        Self::with(model, |metric| {
+        Self::with(model, model.longest(), |metric| {
             Matches::Computed(Box::new(ClassMatcher::new(model, metric)))
         })
     }
@@ -81,43 +81,35 @@ impl TemplateEngine {
     ) -> Result<Self, TemplateModelError> {
         let longest = matches.longest();
         let replay = MatchReplay::new(matches, model.classes.len());
-        let mut engine = Self::with(model, |_| Matches::Given(replay))?;
-        engine.size(model, longest);
-        Ok(engine)
+        Self::with(model, longest, |_| Matches::Given(replay))
     }
 
+    /// With room for matches of templates of up to `longest` rows.
     fn with(
         model: &TemplateModel,
+        longest: usize,
         matches: impl FnOnce(&Metric) -> Matches,
     ) -> Result<Self, TemplateModelError> {
         model.check()?;
         let metric = Metric::new(&model.ridged, &model.total);
-        let dim = metric.dim();
-        let mut engine = Self {
+        let (dim, rule) = (metric.dim(), model.rule());
+        let window = model.decode.look_ahead_ticks(rule);
+        let mut decoder = Decoder::new(&model.decode, rule, model.classes.len(), longest);
+        decoder.set_thresholds(&model.class_thresholds);
+        Ok(Self {
             matches: matches(&metric),
             judge: model
                 .verifier
                 .as_ref()
                 .map(|v| CandidateScorer::new(v, &metric, model.threshold)),
-            decoder: Decoder::new(&model.decode, model.rule(), 0, 0),
-            recent: RecentRows::new(dim, 1),
+            decoder,
+            // A match of n rows spans at most 2 n ticks and is judged when its window has passed.
+            recent: RecentRows::new(dim, 2 * longest + window + 2),
             mapped: vec![0.0; dim],
             threshold: model.threshold,
             calibration: model.calibration_in_use(),
             metric,
-        };
-        engine.size(model, model.longest());
-        Ok(engine)
-    }
-
-    /// Makes room for matches of templates of up to `longest` rows.
-    fn size(&mut self, model: &TemplateModel, longest: usize) {
-        let rule = model.rule();
-        self.decoder = Decoder::new(&model.decode, rule, model.classes.len(), longest);
-        self.decoder.set_thresholds(&model.class_thresholds);
-        // A match of n rows spans at most 2 n ticks and is judged when its window has passed.
-        let window = model.decode.look_ahead_ticks(rule);
-        self.recent = RecentRows::new(self.metric.dim(), 2 * longest + window + 2);
+        })
     }
 
     /// Forgets the stream so far.

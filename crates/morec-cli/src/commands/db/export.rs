@@ -10,7 +10,7 @@ use clap::ValueEnum;
 use morec_db::exchange::{self, Annotation, LabelFormat};
 use morec_db::labels::{SampleFilter, SampleState};
 
-use super::label::StateArg;
+use super::label::{FormArg, StateArg};
 use crate::commands::convert::{self, CsvContent};
 use crate::database;
 use crate::output;
@@ -80,31 +80,20 @@ enum ExportForm {
 }
 
 impl ExportForm {
+    /// The value of this name among another set of forms.
+    fn among<Form: ValueEnum>(self) -> Option<Form> {
+        let value = self.to_possible_value()?;
+        Form::from_str(value.get_name(), false).ok()
+    }
+
     fn of_labels(self) -> Result<LabelFormat> {
-        Ok(match self {
-            Self::Tsv => LabelFormat::Tsv,
-            Self::Csv => LabelFormat::Csv,
-            Self::Json => LabelFormat::Json,
-            Self::Eaf => LabelFormat::Eaf,
-            Self::Audacity => LabelFormat::Audacity,
-            Self::Babel => LabelFormat::Babel,
-            Self::LabelStudio => LabelFormat::LabelStudio,
-            _ => bail!("--form: that is a form of motion; say of which clip with --motion"),
-        })
+        let form = self.among::<FormArg>().map(LabelFormat::from);
+        form.context("--form: that is a form of motion; say of which clip with --motion")
     }
 
     fn of_motion(self) -> Result<convert::ClipForm> {
-        Ok(match self {
-            Self::Csv => convert::ClipForm::Csv,
-            Self::Bvh => convert::ClipForm::Bvh,
-            Self::C3d => convert::ClipForm::C3d,
-            Self::Trc => convert::ClipForm::Trc,
-            Self::Jsonl => convert::ClipForm::Jsonl,
-            Self::Glb => convert::ClipForm::Glb,
-            Self::Vrma => convert::ClipForm::Vrma,
-            Self::Npz => convert::ClipForm::Npz,
-            _ => bail!("--form: that is a form of labels, and --motion writes motion"),
-        })
+        self.among()
+            .context("--form: that is a form of labels, and --motion writes motion")
     }
 }
 

@@ -1,8 +1,8 @@
 """Recognition with an index that is too large for one worker.
 
-The templates of one class know nothing of another's, and matching them is nearly all of the work. So the index is divided by
-classes, each part matches every clip where there is room for it, and the matches of all parts are decided together, by the
-first part. The events are those of the whole index.
+Template matching is independent from class to class, and nearly all of the work. So the index is divided by classes, a worker
+matches every clip with one part at a time, and the matches of all parts are decoded together with the first part. The events
+are those of the whole index.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def write_parts(store: Store, index: Index, of: int) -> list[str]:
 
 
 class Parts:
-    """The part that a worker has in memory."""
+    """Cache of one part of an index, for each worker."""
 
     def __init__(self, store: Store) -> None:
         self.store = store
@@ -54,7 +54,7 @@ class Parts:
 
 @daft.cls(max_retries=3)
 class Match:
-    """One part at a time at work."""
+    """Matches clips with a part of an index."""
 
     def __init__(self, store: Store) -> None:
         self.parts = Parts(store)
@@ -75,7 +75,7 @@ class Match:
 
 @daft.cls(max_retries=3)
 class Decide:
-    """The first part, which knows what all classes have in common."""
+    """Decodes the matches of all parts; holds the first part, with the metric and the verifier."""
 
     def __init__(self, store: Store, first: str) -> None:
         self.index = _morec.index_from_bytes(store.read(first))
