@@ -105,4 +105,6 @@ fn is_broken_pipe(error: &anyhow::Error) -> bool {
 }
 
 #[cfg(test)]
+mod studio_lines;
+#[cfg(test)]
 mod vocabulary;

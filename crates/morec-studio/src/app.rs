@@ -1,4 +1,4 @@
-//! The window: a frame is time that passes, keys, panels, and carrying out what they asked for.
+//! A frame of the window: time passes, keys are read, panels are drawn, and their commands are carried out.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -14,7 +14,7 @@ const LONGEST_FRAME: f64 = 0.25;
 /// The program.
 pub struct Studio {
     pub state: State,
-    dialogs: dialogs::Dialogs,
+    pub dialogs: dialogs::Dialogs,
     themed: Option<bool>,
 }
 
@@ -33,7 +33,7 @@ impl Studio {
     pub fn of(state: State) -> Self {
         Self {
             state,
-            dialogs: dialogs::Dialogs::default(),
+            dialogs: dialogs::Dialogs::of(Arc::new(dialogs::SystemDialogs)),
             themed: None,
         }
     }

@@ -1,29 +1,96 @@
-//! File dialogs of the system, on threads of their own; and files that are dropped on the window.
+//! File dialogs on threads of their own, and files that are dropped on the window.
+//!
+//! A dialog is a value ([`Dialog`]) that a [`Chooser`] answers with paths: the system's, or one that a test gives.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 
 use morec_db::exchange::LabelFormat;
 
 use crate::state::{Ask, Command, FileCommand};
 
+/// Kind of what a dialog chooses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Choice {
+    /// One file that exists.
+    File,
+    /// Files that exist.
+    Files,
+    /// Folders that exist.
+    Folders,
+    /// One folder, which may be new.
+    Folder,
+    /// A file to write.
+    Save,
+}
+
+/// A dialog as it is shown.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Dialog {
+    pub choice: Choice,
+    pub title: &'static str,
+    /// Name and ending of the files that are offered; `None` offers all.
+    pub filter: Option<(&'static str, &'static str)>,
+    /// The file name that is proposed for saving.
+    pub file_name: String,
+}
+
+/// Shows dialogs.
+pub trait Chooser: Send + Sync {
+    /// The paths that were chosen; empty if the dialog was cancelled. Called on a thread of its own.
+    fn choose(&self, dialog: &Dialog) -> Vec<PathBuf>;
+}
+
+/// The dialogs of the system.
+pub struct SystemDialogs;
+
+impl Chooser for SystemDialogs {
+    fn choose(&self, dialog: &Dialog) -> Vec<PathBuf> {
+        let mut shown = rfd::FileDialog::new().set_title(dialog.title);
+        if let Some((name, ending)) = dialog.filter {
+            shown = shown.add_filter(name, &[ending]);
+        }
+        if !dialog.file_name.is_empty() {
+            shown = shown.set_file_name(&dialog.file_name);
+        }
+        match dialog.choice {
+            Choice::File => shown.pick_file().into_iter().collect(),
+            Choice::Files => shown.pick_files().unwrap_or_default(),
+            Choice::Folders => shown.pick_folders().unwrap_or_default(),
+            Choice::Folder => shown.pick_folder().into_iter().collect(),
+            Choice::Save => shown.save_file().into_iter().collect(),
+        }
+    }
+}
+
 /// Dialogs that are open.
-#[derive(Default)]
 pub struct Dialogs {
+    chooser: Arc<dyn Chooser>,
     open: Vec<Receiver<Command>>,
 }
 
 impl Dialogs {
+    /// Dialogs that `chooser` answers.
+    pub fn of(chooser: Arc<dyn Chooser>) -> Self {
+        Self {
+            chooser,
+            open: Vec::new(),
+        }
+    }
+
     /// Opens a dialog; the window goes on meanwhile.
     pub fn ask(&mut self, ask: Ask, ctx: &egui::Context) {
         let (sender, answer) = channel();
-        let ctx = ctx.clone();
+        let (ctx, chooser) = (ctx.clone(), self.chooser.clone());
         let job = move || {
-            if let Some(command) = answered(ask) {
+            let paths = chooser.choose(&dialog(&ask));
+            if let Some(file) = command(&ask, paths) {
                 // The window may be gone by now.
-                let _ = sender.send(command);
-                ctx.request_repaint();
+                let _ = sender.send(Command::File(file));
             }
+            drop(sender);
+            ctx.request_repaint();
         };
         if std::thread::Builder::new()
             .name("file dialog".to_owned())
@@ -34,7 +101,13 @@ impl Dialogs {
         }
     }
 
-    /// What has been answered since.
+    /// True while a dialog waits for an answer.
+    #[cfg(test)]
+    pub fn is_open(&self) -> bool {
+        !self.open.is_empty()
+    }
+
+    /// The commands of the dialogs that were answered since the last frame.
     pub fn answers(&mut self) -> Vec<Command> {
         use std::sync::mpsc::TryRecvError;
         let mut answers = Vec::new();
@@ -50,23 +123,26 @@ impl Dialogs {
     }
 }
 
-fn answered(ask: Ask) -> Option<Command> {
-    let databases = || rfd::FileDialog::new().add_filter("motion databases", &["mdb"]);
-    let file = match ask {
-        Ask::Open => FileCommand::Open(databases().pick_file()?),
-        Ask::New => FileCommand::New(databases().set_file_name("motions.mdb").save_file()?),
-        Ask::Import => FileCommand::Import(rfd::FileDialog::new().pick_files()?),
-        Ask::ImportFolder => FileCommand::Import(rfd::FileDialog::new().pick_folders()?),
-        Ask::Save => FileCommand::Save(databases().set_file_name("motions.mdb").save_file()?),
-        Ask::ExportIndex => FileCommand::ExportIndex(
-            rfd::FileDialog::new()
-                .add_filter("indexes", &["index"])
-                .set_file_name("studio.index")
-                .save_file()?,
-        ),
+/// The dialog of a question.
+fn dialog(ask: &Ask) -> Dialog {
+    const DATABASES: (&str, &str) = ("motion databases", "mdb");
+    let shown = |choice, title, filter, name: &str| Dialog {
+        choice,
+        title,
+        filter,
+        file_name: name.to_owned(),
+    };
+    let open = |choice, title, filter| shown(choice, title, filter, "");
+    let save = |title, filter, name: &str| shown(Choice::Save, title, Some(filter), name);
+    match ask {
+        Ask::Open => open(Choice::File, "Open a database", Some(DATABASES)),
+        Ask::New => save("New database", DATABASES, "motions.mdb"),
+        Ask::Import => open(Choice::Files, "Import clips", None),
+        Ask::ImportFolder => open(Choice::Folders, "Import folders of clips", None),
+        Ask::Save => save("Save a copy of the database", DATABASES, "motions.mdb"),
+        Ask::ExportIndex => save("Export the index", ("indexes", "index"), "studio.index"),
         Ask::ExportLabels(form) if form.is_of_one_clip() => {
-            let dialog = rfd::FileDialog::new().set_title("A folder for the labels of each clip");
-            FileCommand::ExportLabels(form, dialog.pick_folder()?)
+            open(Choice::Folder, "A folder for the labels of each clip", None)
         }
         Ask::ExportLabels(form) => {
             let ending = match form {
@@ -74,23 +150,31 @@ fn answered(ask: Ask) -> Option<Command> {
                 LabelFormat::Csv => "csv",
                 _ => "json",
             };
-            let dialog = rfd::FileDialog::new().add_filter("labels", &[ending]);
-            let name = format!("labels.{ending}");
-            FileCommand::ExportLabels(form, dialog.set_file_name(name).save_file()?)
+            save("Export labels", ("labels", ending), &format!("labels.{ending}"))
         }
-        Ask::ExportClip(name) => {
-            let dialog = rfd::FileDialog::new().add_filter("BVH", &["bvh"]);
-            FileCommand::ExportClip(dialog.set_file_name(format!("{name}.bvh")).save_file()?)
-        }
+        Ask::ExportClip(name) => save("Export the clip", ("BVH", "bvh"), &format!("{name}.bvh")),
         Ask::ExportPage(name) => {
-            let dialog = rfd::FileDialog::new().add_filter("pages", &["html"]);
-            FileCommand::ExportPage(dialog.set_file_name(format!("{name}.html")).save_file()?)
+            save("A page of the clip", ("pages", "html"), &format!("{name}.html"))
         }
-    };
-    Some(Command::File(file))
+    }
 }
 
-/// Files that were dropped on the window are imported.
+/// The command of an answer; `None` if nothing was chosen.
+fn command(ask: &Ask, paths: Vec<PathBuf>) -> Option<FileCommand> {
+    let first = paths.first()?.clone();
+    Some(match ask {
+        Ask::Open => FileCommand::Open(first),
+        Ask::New => FileCommand::New(first),
+        Ask::Import | Ask::ImportFolder => FileCommand::Import(paths),
+        Ask::Save => FileCommand::Save(first),
+        Ask::ExportIndex => FileCommand::ExportIndex(first),
+        Ask::ExportLabels(form) => FileCommand::ExportLabels(*form, first),
+        Ask::ExportClip(_) => FileCommand::ExportClip(first),
+        Ask::ExportPage(_) => FileCommand::ExportPage(first),
+    })
+}
+
+/// Imports files that were dropped on the window.
 pub fn dropped(ctx: &egui::Context, out: &mut Vec<Command>) {
     let paths: Vec<PathBuf> = ctx.input(|i| {
         let files = i.raw.dropped_files.iter();

@@ -87,7 +87,7 @@ pub fn file_name(path: &std::path::Path) -> String {
     name.to_string_lossy().into_owned()
 }
 
-/// A command line in which absolute paths are their last parts: where a folder lies is of no interest to who reads it.
+/// A command line with absolute paths shortened to their last parts, for the line at the bottom of the window.
 pub fn without_folders(line: &str) -> String {
     let mut quoted = false;
     let words = line.split(|letter| {
@@ -96,14 +96,18 @@ pub fn without_folders(line: &str) -> String {
     });
     let short = |word: &str| {
         let inside = word.trim_matches('\'');
-        let drive = inside.get(1..3) == Some(":\\");
-        let name = match inside.starts_with('/') || drive {
-            true => inside.rsplit(['/', '\\']).next().unwrap_or(inside),
+        let (kind, path) = match inside.strip_prefix("clip://") {
+            Some(path) => ("clip://", path),
+            None => ("", inside),
+        };
+        let drive = path.get(1..3) == Some(":\\");
+        let name = match path.starts_with('/') || drive {
+            true => path.rsplit(['/', '\\']).next().unwrap_or(path),
             false => return word.to_owned(),
         };
         match name.contains(' ') {
-            true => format!("'{name}'"),
-            false => name.to_owned(),
+            true => format!("'{kind}{name}'"),
+            false => format!("{kind}{name}"),
         }
     };
     words.map(short).collect::<Vec<_>>().join(" ")
@@ -124,6 +128,11 @@ mod tests {
         assert_eq!(
             without_folders(line),
             "morec train --db 'a b.mdb' -o studio.index"
+        );
+        let line = "morec live studio.index --listen clip:///tmp/a/walk.bvh";
+        assert_eq!(
+            without_folders(line),
+            "morec live studio.index --listen clip://walk.bvh"
         );
         let line = "morec live studio.index --listen vmc://0.0.0.0:39539";
         assert_eq!(without_folders(line), line);

@@ -3,7 +3,7 @@
 use egui::{Key, Modifiers};
 
 use crate::state::{
-    ClassCommand, Command, CompareCommand, FileCommand, Grip, LiveCommand, Panel, PlayCommand,
+    ClassCommand, Command, CompareCommand, CutCommand, FileCommand, Grip, LiveCommand, Panel, PlayCommand,
     SimilarCommand, State, TimelineCommand, TrainCommand,
 };
 use crate::store::Edit;
@@ -21,7 +21,7 @@ pub const CLASS_KEYS: [Key; 9] = [
     Key::Num9,
 ];
 
-/// What each key does, for the page of keys: where, key, what.
+/// Entries of the page of keys: area, keys, effect.
 pub const HELP: &[(&str, &str, &str)] = &[
     (
         "Anywhere",
@@ -78,7 +78,13 @@ pub const HELP: &[(&str, &str, &str)] = &[
     (
         "Searching",
         "F, C",
-        "more like the selection, the nearest of it beside the performer",
+        "more like the selection, the nearest beside the performer",
+    ),
+    ("Cuts", "X", "cut at the playhead"),
+    (
+        "Cuts",
+        "Ctrl ← →  [ ]",
+        "move the selected cut by a frame, to the playhead",
     ),
     ("Cuts", "Delete", "remove the selected cut"),
     ("Timeline", "+  −  0", "zoom in, zoom out, the whole clip"),
@@ -90,7 +96,7 @@ pub const HELP: &[(&str, &str, &str)] = &[
     ("Live", "Space, R", "start or stop, record a take"),
 ];
 
-/// What the keys ask for.
+/// Reads the keyboard into commands.
 pub fn read(ctx: &egui::Context, state: &State, out: &mut Vec<Command>) {
     let typing = ctx.wants_keyboard_input();
     ctx.input_mut(|i| {
@@ -238,7 +244,14 @@ fn labels(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
         out.push(Command::Similar(SimilarCommand::OfSelection));
     }
     if i.consume_key(Modifiers::NONE, Key::C) {
-        out.push(Command::Compare(CompareCommand::Nearest));
+        let judged = state.panel == Panel::Train && state.chosen_moment().is_some();
+        out.push(Command::Compare(match judged {
+            true => CompareCommand::Moment(None),
+            false => CompareCommand::Nearest,
+        }));
+    }
+    if i.consume_key(Modifiers::NONE, Key::X) {
+        out.push(Command::Cuts(CutCommand::Add(state.player.at_secs)));
     }
     let selected = state.selected();
     let proposed = selected

@@ -1,4 +1,4 @@
-//! How long a frame takes to draw: `cargo run --release -p morec-studio --example frame_time`.
+//! Measures of speed: processor time of a frame (example `frame_time`), time to the first frame (example `start_time`).
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -14,7 +14,7 @@ use crate::screenshot::Headless;
 use crate::state::{Command, Panel, PlayCommand, TimelineCommand};
 use crate::store::{Snapshot, Store};
 
-/// What is drawn.
+/// Contents of the picture.
 #[derive(Debug, Clone, Copy)]
 pub struct Load {
     /// Clips in the database.
@@ -30,11 +30,11 @@ pub struct Load {
 /// Processor time of the frames of a scene, without putting triangles onto a screen, milliseconds.
 #[derive(Debug, Clone)]
 pub struct FrameTimes {
-    /// What was drawn.
+    /// Name of the scene.
     pub scene: &'static str,
     /// The median.
     pub p50: f64,
-    /// Of a hundred frames all but one are faster.
+    /// The 99th percentile.
     pub p99: f64,
 }
 
@@ -71,10 +71,10 @@ pub fn frame_times(load: &Load) -> Result<Vec<FrameTimes>, String> {
     Ok(scenes)
 }
 
-/// How long it takes from the start to the first frame with a database, wall-clock seconds.
+/// Time from the start to the first frame with a database, wall-clock seconds.
 pub fn first_frame_secs(database: &std::path::Path) -> f64 {
     let begun = Instant::now();
-    let mut window = Headless::new(&[database.to_owned()], [1400, 860], true);
+    let mut window = Headless::new(&[database.to_owned()], [1400, 860], 1.0, true);
     window.tessellated();
     begun.elapsed().as_secs_f64()
 }

@@ -1,4 +1,4 @@
-//! Pictures of panels in files, for the guide: `--screenshot FILE.png --panel NAME --at SECS`.
+//! Pictures of panels in files: `--screenshot FILE.png --panel NAME --at SECS`.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -15,17 +15,38 @@ use crate::state::{
 };
 use crate::store::Store;
 
-/// What is to be drawn.
+/// A picture of a panel.
 #[derive(Debug, Clone)]
 pub struct Shot {
     pub panel: Panel,
     /// The clip that is shown; the first, if none is named.
     pub clip: Option<String>,
     pub at_secs: f64,
-    /// What is like the clip's first label of this class is searched for, and the nearest stands beside it.
+    /// Class of a label that is searched for, with its nearest hit beside it.
     pub like: Option<String>,
+    /// The panel Train shows the tree of the method of 2009 in place of a cross-validation.
+    pub tree: bool,
+    /// Width and height, pixels.
     pub size: [usize; 2],
+    /// Pixels of a point: 2 is a screen of high density.
+    pub scale: f32,
     pub dark: bool,
+}
+
+impl Default for Shot {
+    /// The library as the window opens, 1280 × 720, dark.
+    fn default() -> Self {
+        Self {
+            panel: Panel::Library,
+            clip: None,
+            at_secs: 0.0,
+            like: None,
+            tree: false,
+            size: [1280, 720],
+            scale: 1.0,
+            dark: true,
+        }
+    }
 }
 
 /// No picture takes longer; what is not there by then is not in it.
@@ -40,12 +61,15 @@ pub struct Headless {
     ctx: egui::Context,
     pub studio: Studio,
     textures: Textures,
+    /// Pixels.
     size: Vec2,
+    /// Pixels of a point.
+    scale: f32,
     now: f64,
 }
 
 impl Headless {
-    pub fn new(paths: &[PathBuf], size: [usize; 2], dark: bool) -> Self {
+    pub fn new(paths: &[PathBuf], size: [usize; 2], scale: f32, dark: bool) -> Self {
         let ctx = egui::Context::default();
         let mut studio = Studio::new(&ctx, paths);
         studio.state.dark = dark;
@@ -54,6 +78,7 @@ impl Headless {
             studio,
             textures: Textures::default(),
             size: Vec2::new(size[0] as f32, size[1] as f32),
+            scale,
             now: 0.0,
         }
     }
@@ -72,6 +97,7 @@ impl Headless {
             studio: Studio::of(state),
             textures: Textures::default(),
             size: Vec2::new(size[0] as f32, size[1] as f32),
+            scale: 1.0,
             now: 0.0,
         }
     }
@@ -85,14 +111,14 @@ impl Headless {
     fn input(&mut self, dt: f64) -> RawInput {
         self.now += dt;
         let mut input = RawInput {
-            screen_rect: Some(Rect::from_min_size(Pos2::ZERO, self.size)),
+            screen_rect: Some(Rect::from_min_size(Pos2::ZERO, self.size / self.scale)),
             time: Some(self.now),
             predicted_dt: dt as f32,
             focused: true,
             ..RawInput::default()
         };
         if let Some(viewport) = input.viewports.get_mut(&input.viewport_id) {
-            viewport.native_pixels_per_point = Some(TIMES as f32);
+            viewport.native_pixels_per_point = Some(TIMES as f32 * self.scale);
         }
         input
     }
@@ -132,6 +158,12 @@ impl Headless {
         self.studio.state.apply(command);
     }
 
+    /// Stops playing, at a moment.
+    fn stop_at(&mut self, secs: f64) {
+        self.command(Command::Play(PlayCommand::Pause));
+        self.command(Command::Play(PlayCommand::Seek(secs)));
+    }
+
     /// The window as it is now.
     pub fn picture(&mut self) -> ColorImage {
         let output = self.frame(0.0);
@@ -150,7 +182,7 @@ impl Headless {
 
 /// Draws a panel with the database or clips at `paths`.
 pub fn draw(paths: &[PathBuf], shot: &Shot) -> Result<ColorImage, String> {
-    let mut window = Headless::new(paths, shot.size, shot.dark);
+    let mut window = Headless::new(paths, shot.size, shot.scale, shot.dark);
     window.settle();
     let state = &window.studio.state;
     let Some(store) = &state.store else {
@@ -187,7 +219,7 @@ fn prepare(window: &mut Headless, shot: &Shot) {
         Panel::Train if has_labels => {
             window.command(Command::Train(TrainCommand::Train));
             window.settle();
-            window.command(Command::Train(TrainCommand::Judge));
+            if shot.tree { tree(window) } else { mistake(window) };
         }
         Panel::Classes if has_labels => window.command(Command::Classes(ClassCommand::Propose)),
         Panel::Live => {
@@ -202,11 +234,39 @@ fn prepare(window: &mut Headless, shot: &Shot) {
         _ => {}
     }
     window.settle();
-    window.command(Command::Play(PlayCommand::Seek(shot.at_secs)));
+    // A moment of the report is shown in place of the one that was asked for.
+    match window.studio.state.player.looped {
+        Some((start, stop)) => window.stop_at(0.5 * (start + stop)),
+        None => window.stop_at(shot.at_secs),
+    }
     // Strips and mistakes load clips of their own.
     window.settle();
     window.frame(1.0);
     window.settle();
+}
+
+/// Cross-validates, and compares the first mistake, if there is one.
+fn mistake(window: &mut Headless) {
+    window.command(Command::Train(TrainCommand::Judge));
+    window.settle();
+    let judged = window.studio.state.train.judged.as_ref();
+    if let Some(first) = judged.and_then(|judged| judged.mistakes().first().copied()) {
+        window.command(Command::Train(TrainCommand::Moment(first)));
+        window.settle();
+        window.command(Command::Compare(CompareCommand::Moment(None)));
+    }
+}
+
+/// Trains the method of 2009, and plays a sample of the branch at the top of its tree.
+fn tree(window: &mut Headless) {
+    window.command(Command::Train(TrainCommand::Thesis));
+    window.settle();
+    let train = &window.studio.state.train;
+    let branch = train.thesis.as_ref().and_then(|t| t.branch(train.branch));
+    if let Some((sample, ..)) = branch.and_then(|branch| branch.points.first()) {
+        let sample = *sample;
+        window.command(Command::Train(TrainCommand::Sample(sample)));
+    }
 }
 
 /// Searches for what is like the first label of a class, and puts the nearest beside it, in the middle of both.
@@ -224,9 +284,7 @@ fn search(window: &mut Headless, class: &str) -> Result<(), String> {
     window.settle();
     window.command(Command::Compare(CompareCommand::Nearest));
     window.settle();
-    window.command(Command::Play(PlayCommand::Pause));
-    let middle = 0.5 * (label.start_secs + label.stop_secs);
-    window.command(Command::Play(PlayCommand::Seek(middle)));
+    window.stop_at(0.5 * (label.start_secs + label.stop_secs));
     window.settle();
     window.frame(1.0);
     window.settle();

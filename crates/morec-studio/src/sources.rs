@@ -8,7 +8,7 @@ pub struct Opened {
     pub source: Box<dyn Source>,
     /// Its address, with the port that was free if any was asked for.
     pub name: String,
-    /// What it finds wrong with what it is sent.
+    /// Faults of the data that it is sent.
     pub notices: Notices,
 }
 

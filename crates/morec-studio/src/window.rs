@@ -1,4 +1,4 @@
-//! The program: what was typed, then a window or a picture.
+//! The program: its arguments, then a window or a picture.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -10,7 +10,7 @@ use crate::screenshot::{self, Shot};
 use crate::state::Panel;
 use crate::state::layout::Layout;
 
-/// See motions, cut them, sort them, teach them, watch them recognised
+/// See motions, cut, sort and label them, train, and watch them recognised live
 ///
 /// A window over a motion database. Without a file it opens an example of made people.
 #[derive(Debug, Clone, Parser)]
@@ -47,9 +47,15 @@ pub struct Args {
     /// Show in a screenshot what is like the clip's first label of this class, the nearest beside it
     #[arg(long, value_name = "CLASS", requires = "screenshot")]
     like: Option<String>,
+    /// Show in a screenshot of the panel train the tree of the method of 2009 in place of a cross-validation
+    #[arg(long, requires = "screenshot")]
+    tree: bool,
     /// Width and height of a screenshot, pixels
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size, requires = "screenshot")]
     size: (usize, usize),
+    /// Pixels of a point in a screenshot, 0.5 to 4: 2 is a screen of high density
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = scale, requires = "screenshot")]
+    scale: f32,
     /// Begin with the light theme
     #[arg(long)]
     light: bool,
@@ -68,6 +74,12 @@ fn size(text: &str) -> Result<(usize, usize), String> {
     parse()
         .filter(|(w, h)| (320..=8000).contains(w) && (240..=8000).contains(h))
         .ok_or_else(|| "expected WIDTHxHEIGHT, as 1280x720".to_owned())
+}
+
+fn scale(text: &str) -> Result<f32, String> {
+    let factor: Option<f32> = text.parse().ok();
+    let fits = factor.filter(|f| (0.5..=4.0).contains(f));
+    fits.ok_or_else(|| "expected a factor from 0.5 to 4".to_owned())
 }
 
 /// Opens the window, or draws the picture.
@@ -91,7 +103,9 @@ fn picture(args: &Args, path: &std::path::Path) -> Result<(), String> {
         clip: args.clip.clone(),
         at_secs: args.at,
         like: args.like.clone(),
+        tree: args.tree,
         size: [args.size.0, args.size.1],
+        scale: args.scale,
         dark: !args.light,
     };
     screenshot::write(&screenshot::draw(&args.paths, &shot)?, path)
@@ -129,7 +143,7 @@ fn window(args: &Args) -> Result<(), String> {
     })
 }
 
-/// What went wrong, for a terminal.
+/// Prints an error to the terminal.
 #[allow(clippy::print_stderr)] // A program's own words, not a library's.
 fn complain(why: &str) {
     eprintln!("morec-studio: {why}");

@@ -1,4 +1,4 @@
-//! Where the performer is looked at from.
+//! The camera of the view.
 
 use egui::{Pos2, Rect, Vec2};
 use morec::math::Vec3;
@@ -15,7 +15,7 @@ pub struct Camera {
     /// Above the horizon.
     pub pitch: f64,
     pub distance: f64,
-    /// Whether the target goes with the performer.
+    /// True if the target follows the performer.
     pub follow: bool,
 }
 
@@ -89,7 +89,7 @@ impl Camera {
 }
 
 impl View {
-    /// Where a point of the world is in the picture, and how far it is; `None` behind the camera.
+    /// Projects a point of the world: its place in the picture and its depth in metres; `None` behind the camera.
     pub fn project(&self, point: &Vec3) -> Option<(Pos2, f64)> {
         let from_eye = point - self.eye;
         let depth = from_eye.dot(&self.forward);
@@ -103,7 +103,7 @@ impl View {
         Some((self.centre + Vec2::new(x as f32, -y as f32), depth))
     }
 
-    /// How far before the camera a point lies.
+    /// Depth of a point before the camera, metres.
     pub fn depth(&self, point: &Vec3) -> f64 {
         (point - self.eye).dot(&self.forward)
     }

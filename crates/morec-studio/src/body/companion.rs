@@ -1,4 +1,4 @@
-//! Where a performer of another clip stands beside the one that is shown.
+//! Places a performer of another clip beside the one that is shown.
 
 use morec::kinematics::WorldPose;
 use morec::math::{Axis, Vec3};

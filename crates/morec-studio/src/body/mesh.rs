@@ -37,7 +37,7 @@ const CAP: usize = 3;
 
 /// A triangle of the picture.
 struct Triangle {
-    /// Of the middle of its limb, then its own: where limbs meet, one lies before the other as a whole.
+    /// Depth of its limb's middle, then its own: where limbs meet, one lies before the other as a whole.
     depth: (f64, f64),
     at: [egui::Pos2; 3],
     colours: [Color32; 3],

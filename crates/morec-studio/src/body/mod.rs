@@ -12,7 +12,7 @@ use morec::roles::{Role, RoleMap};
 
 pub use camera::Camera;
 
-/// Which side of the body a limb belongs to.
+/// Side of the body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BodySide {
     Left,
@@ -30,7 +30,7 @@ pub struct LimbShape {
     pub side: BodySide,
 }
 
-/// What a performer looks like.
+/// Limbs and proportions of a performer.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Body {
     pub limbs: Vec<LimbShape>,
@@ -76,7 +76,7 @@ impl Body {
         Self::new(&parents, roles, &pose)
     }
 
-    /// Of a skeleton whose joints hang from `parents`, measured in `pose`.
+    /// The body of a skeleton with these `parents` of its joints, measured in `pose`.
     pub fn new(parents: &[Option<usize>], roles: &RoleMap, pose: &WorldPose) -> Self {
         let height = height(&pose.positions);
         let flat = parents.iter().all(Option::is_none);
@@ -118,13 +118,13 @@ impl Body {
         }
     }
 
-    /// Where the performer is in `pose`: the hips.
+    /// Position of the hips in `pose`.
     pub fn centre(&self, pose: &WorldPose) -> Option<Vec3> {
         let at = pose.positions.get(self.hips?)?;
         at.iter().all(|v| v.is_finite()).then_some(*at)
     }
 
-    /// Which way the performer faces in `pose`, as an angle about the vertical; 0 is +Z.
+    /// Heading of the performer in `pose`: an angle about the vertical in radians, 0 is +Z.
     pub fn heading(&self, pose: &WorldPose) -> Option<f64> {
         let (left, right) = self.hip_joints?;
         let across = pose.positions.get(left)? - pose.positions.get(right)?;
@@ -144,7 +144,7 @@ fn height(positions: &[Vec3]) -> f64 {
     }
 }
 
-/// What part of the body a limb is.
+/// Part of the body that a limb is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum LimbPart {
     Trunk,

@@ -9,7 +9,7 @@ use morec::train::align as warp;
 use morec_db::{DbError, MotionDb};
 
 use super::load::ClipMotion;
-use super::{JobOutcome, JobProgress, similar};
+use super::{JobOutcome, JobProgress, nearest, similar};
 use crate::stretch::Stretch;
 
 /// The table of the alignment has this many cells at most; longer stretches are compared at the same pace.
@@ -20,7 +20,7 @@ const CELLS: usize = 4_000_000;
 pub struct Aligned {
     pub of: Stretch,
     pub with: Stretch,
-    /// Whether the second is shown in a mirror.
+    /// True if the second is shown in a mirror.
     pub mirrored: bool,
     /// The second's clip.
     pub motion: Arc<ClipMotion>,
@@ -47,16 +47,26 @@ impl Aligned {
     }
 }
 
-/// Aligns `of` with a stretch, or with what is most like it in the database at `path`.
-pub fn align(
-    path: &Path,
-    of: Stretch,
-    with: Option<(Stretch, bool)>,
-    progress: &JobProgress,
-) -> JobOutcome {
+/// The stretch that another one is compared with.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Partner {
+    /// This one; its mirror image if true.
+    Given(Stretch, bool),
+    /// The one most like it in the database.
+    Nearest,
+    /// The nearest accepted label of a class.
+    NearestOf(String),
+}
+
+/// Aligns `of` with another stretch of the database at `path`.
+pub fn align(path: &Path, of: Stretch, with: Partner, progress: &JobProgress) -> JobOutcome {
+    let none = match &with {
+        Partner::NearestOf(class) => format!("There is no other label of {class} to compare with"),
+        _ => "Nothing like it is in the database".to_owned(),
+    };
     match aligned(path, of, with, progress) {
         Ok(Some(aligned)) => JobOutcome::Aligned(Arc::new(aligned)),
-        Ok(None) => JobOutcome::Failed("Nothing like it is in the database".to_owned()),
+        Ok(None) => JobOutcome::Failed(none),
         Err(DbError::Cancelled) => JobOutcome::Cancelled,
         Err(error) => JobOutcome::Failed(format!("Nothing was compared: {error}")),
     }
@@ -65,13 +75,17 @@ pub fn align(
 fn aligned(
     path: &Path,
     of: Stretch,
-    with: Option<(Stretch, bool)>,
+    with: Partner,
     progress: &JobProgress,
 ) -> Result<Option<Aligned>, DbError> {
     let mut db = MotionDb::open(path)?;
     let (with, mirrored) = match with {
-        Some(given) => given,
-        None => {
+        Partner::Given(stretch, mirrored) => (stretch, mirrored),
+        Partner::NearestOf(class) => match nearest::label_of(&mut db, &of, &class, progress)? {
+            Some(stretch) => (stretch, false),
+            None => return Ok(None),
+        },
+        Partner::Nearest => {
             let hits = similar::hits(&mut db, &of, true, 1, progress)?;
             let Some(hit) = hits.into_iter().flatten().next() else {
                 return Ok(None);

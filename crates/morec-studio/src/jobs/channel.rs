@@ -18,7 +18,7 @@ pub struct ChannelCurve {
 }
 
 impl ChannelCurve {
-    /// How many values a moment has.
+    /// Number of values at a moment: 4 of a rotation, 3 of a position.
     pub fn components(&self) -> usize {
         match self.kind {
             ChannelKind::Rotation => 4,

@@ -42,7 +42,7 @@ impl SegmentMethod {
     }
 }
 
-/// What was cut.
+/// Result of cutting clips.
 #[derive(Debug, Clone)]
 pub struct CutSummary {
     pub clips: usize,
@@ -53,7 +53,7 @@ pub struct CutSummary {
     pub left: Vec<(String, String)>,
 }
 
-/// What both methods say of one clip, for the timeline.
+/// Cuts, misfit, stillness and repetitions of one clip, for the timeline.
 #[derive(Debug, Clone, Default)]
 pub struct Curves {
     pub clip: Option<ClipId>,
@@ -68,7 +68,7 @@ pub struct Curves {
     pub still: Vec<(f64, f64, bool)>,
     /// Repetitions between kernel cuts: where each begins and ends.
     pub cycles: Vec<Vec<f64>>,
-    /// What could not be computed, and why.
+    /// Reason why a part could not be computed.
     pub note: Option<String>,
 }
 
@@ -140,7 +140,7 @@ fn still(rows: &ClipRows) -> Vec<(f64, f64, bool)> {
         .collect()
 }
 
-/// What both methods say of one clip. Nothing is written.
+/// Computes what the timeline shows of one clip. Nothing is written.
 pub fn curves(motion: &Arc<ClipMotion>, progress: &JobProgress) -> JobOutcome {
     let params = FeatureParams::default();
     let bones = morec::features::bones_of_clip(&motion.clip, &motion.roles, &motion.rest);
@@ -181,7 +181,7 @@ pub fn curves(motion: &Arc<ClipMotion>, progress: &JobProgress) -> JobOutcome {
     JobOutcome::Curves(curves)
 }
 
-/// Where repetitions begin and end in the segments that repeat at least twice.
+/// Bounds of the repetitions in segments that repeat at least twice, seconds.
 fn repetitions(rows: &ClipRows, cuts: &[f64], end: f64, tick_hz: f64) -> Vec<Vec<f64>> {
     let mut found = Vec::new();
     let mut start = 0.0;

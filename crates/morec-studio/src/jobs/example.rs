@@ -14,10 +14,10 @@ use crate::store::BY;
 
 /// Seed of the people: the year of the thesis, as in the demo.
 const SEED: u64 = 2009;
-/// What they perform.
+/// Gestures of the example.
 pub const GESTURES: [&str; 4] = ["wave", "raise_hands", "clap", "bow"];
 
-/// What the example is made of.
+/// Contents of the example.
 pub fn spec() -> DatabaseSpec {
     DatabaseSpec {
         people: 4,
@@ -69,7 +69,7 @@ fn make_in(folder: &Path, progress: &dyn Progress) -> Result<PathBuf, String> {
     Ok(path)
 }
 
-/// Who is seen, and what all but the last perform.
+/// Adds the person of each clip, and the labels of all clips but the last.
 fn describe(db: &mut MotionDb, takes: &[SyntheticTake]) -> Result<(), morec_db::DbError> {
     let mut labels = Vec::new();
     for (number, take) in takes.iter().enumerate() {

@@ -13,7 +13,7 @@ use morec_db::{ClipFilter, ClipId, MotionDb};
 use super::JobOutcome;
 use crate::format;
 
-/// What is to be written.
+/// A kind of export.
 #[derive(Debug, Clone)]
 pub enum Export {
     /// Accepted labels; forms of one clip into a folder, a file for each.

@@ -26,7 +26,7 @@ pub struct GroupItem {
     pub class: Option<String>,
 }
 
-/// What was grouped and how it hangs together.
+/// The stretches that were grouped, and their hierarchy.
 #[derive(Debug, Clone)]
 pub struct ClusteredItems {
     pub items: Vec<GroupItem>,
@@ -53,7 +53,7 @@ impl ClusteredItems {
         }
     }
 
-    /// So many groups, the largest first; outliers first within each.
+    /// Cuts the hierarchy into `count` groups, the largest first; outliers first within each.
     pub fn at(&self, count: usize) -> Vec<Group> {
         let clusters = self.hierarchy.into_clusters(count);
         let mut groups: Vec<Group> = clusters
@@ -160,7 +160,7 @@ fn items(db: &MotionDb, cuts: bool) -> Result<Vec<GroupItem>, morec_db::DbError>
 }
 
 /// Rows over `bones` as rows over those that all items have.
-fn only(rows: &Rows, bones: BoneSet, common: BoneSet) -> Rows {
+pub(super) fn only(rows: &Rows, bones: BoneSet, common: BoneSet) -> Rows {
     if bones == common {
         return rows.clone();
     }

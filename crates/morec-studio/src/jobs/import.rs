@@ -11,7 +11,7 @@ use morec_db::{ClipFilter, ClipId, ClipUpdate, DbError, ImportLog, ImportOutcome
 use super::{JobOutcome, JobProgress};
 use crate::stretch::Stretch;
 
-/// What became of an import.
+/// Result of an import.
 #[derive(Debug, Clone, Default)]
 pub struct ImportSummary {
     /// Files whose clips are in the database now.
@@ -20,7 +20,7 @@ pub struct ImportSummary {
     pub known: usize,
     /// Files that were refused, with the reason.
     pub refused: Vec<(PathBuf, String)>,
-    /// What was repaired or looks wrong, with its file.
+    /// Repairs and doubts, with their files.
     pub warnings: Vec<(PathBuf, String)>,
     /// Clips that are nearly others.
     pub copies: Vec<CopiedStretch>,
@@ -38,7 +38,7 @@ pub struct CopiedStretch {
 }
 
 impl ImportSummary {
-    /// What it did, in a sentence.
+    /// Summary in a sentence.
     pub fn said(&self) -> String {
         let mut parts = vec![files(self.imported, "imported")];
         if self.known > 0 {
@@ -107,7 +107,7 @@ pub fn import(db: &Path, paths: &[PathBuf], progress: &JobProgress) -> JobOutcom
     JobOutcome::Imported(report)
 }
 
-/// Which of the clips that have just come are nearly others, that somebody may leave one of the two out.
+/// Finds the imported clips that are nearly others, so that one of the two can be left out.
 fn copies(
     db: &mut MotionDb,
     done: &ImportLog,

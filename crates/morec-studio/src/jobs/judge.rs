@@ -1,36 +1,89 @@
-//! How good an index is on what it was not taught: cross-validation, and what became of every label and detection.
+//! Cross-validation of the labels in the database, and the result for every label and every false detection.
 
 use std::collections::BTreeSet;
 use std::path::Path;
 
 use morec::crossval::{CrossvalData as Tested, CrossvalError, CrossvalOptions, FoldBy, crossval};
-use morec::eval::{DetectionVerdict, Evaluation, GroundTruthVerdict, Timeline, timelines};
+use morec::eval::{
+    ClipDetection, DetectionVerdict, Evaluation, GroundTruth, GroundTruthVerdict, Timeline,
+    timelines,
+};
 use morec::explain::Miss;
 use morec::train::TrainError;
 
 use super::{JobOutcome, JobProgress, train};
 
-/// What a cross-validation found.
+/// Result of a cross-validation.
 pub struct CrossvalResult {
     pub evaluation: Evaluation,
     pub timelines: Vec<Timeline>,
-    /// Why labels were missed.
+    /// Reasons of labels that were missed.
     pub misses: Vec<Miss>,
-    /// What was left out in turn: "each person", "each clip", "half of the labels".
-    pub by: &'static str,
+    /// The part that is left out in turn.
+    pub by: LeftOut,
 }
 
-/// A moment in a clip that is worth looking at.
+/// The part of the labels that a cross-validation leaves out in turn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LeftOut {
+    Person,
+    Clip,
+    Half,
+}
+
+impl LeftOut {
+    /// Each person if labels show several, else each clip if there are several, else half of the labels.
+    pub fn of<'a>(people: impl Iterator<Item = &'a str>, clips: usize) -> Self {
+        match people.collect::<BTreeSet<_>>().len() {
+            2.. => LeftOut::Person,
+            _ if clips >= 2 => LeftOut::Clip,
+            _ => LeftOut::Half,
+        }
+    }
+
+    /// Its name in a sentence.
+    pub fn said(self) -> &'static str {
+        match self {
+            LeftOut::Person => "each person in turn",
+            LeftOut::Clip => "each clip in turn",
+            LeftOut::Half => "half of the labels",
+        }
+    }
+
+    /// Its name for `morec crossval --by`.
+    pub fn option(self) -> &'static str {
+        match self {
+            LeftOut::Person => "person",
+            LeftOut::Clip => "clip",
+            LeftOut::Half => "half",
+        }
+    }
+}
+
+impl From<LeftOut> for FoldBy {
+    fn from(part: LeftOut) -> Self {
+        match part {
+            LeftOut::Person => FoldBy::Person,
+            LeftOut::Clip => FoldBy::Clip,
+            LeftOut::Half => FoldBy::Half { seed: 1 },
+        }
+    }
+}
+
+/// A label with what was recognised in its place, or a false detection: the unit of the confusion matrix and of the
+/// list of mistakes.
+///
+/// A false detection is one that matches no label: neither a label of its class, nor one that was taken for its class.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Moment {
     pub clip: String,
     pub start_secs: f64,
     pub stop_secs: f64,
-    /// What is labelled there, if anything.
+    /// Class of the label; `None` for a false detection.
     pub truth: Option<String>,
-    /// What was recognised there, if anything.
+    /// Class that was recognised; `None` for a label that was missed.
     pub found: Option<String>,
-    /// Why it was missed, if it was and that is known.
+    /// Reason of a miss, if it is known.
     pub why: Option<String>,
 }
 
@@ -38,10 +91,30 @@ impl Moment {
     pub fn is_right(&self) -> bool {
         self.truth == self.found
     }
+
+    /// The classes whose nearest label is worth comparing with: the one that was recognised, then the one that is
+    /// labelled.
+    pub fn compared_with(&self) -> Vec<&str> {
+        let mut classes: Vec<&str> = self.found.as_deref().into_iter().collect();
+        classes.extend(self.truth.as_deref());
+        classes.dedup();
+        classes
+    }
+
+    /// Description in a few words: `wave taken for clap`.
+    pub fn said(&self) -> String {
+        match (&self.truth, &self.found) {
+            (Some(truth), Some(found)) if truth == found => truth.clone(),
+            (Some(truth), Some(found)) => format!("{truth} taken for {found}"),
+            (Some(truth), None) => format!("{truth} missed"),
+            (None, Some(found)) => format!("{found} where none is labelled"),
+            (None, None) => String::new(),
+        }
+    }
 }
 
 impl CrossvalResult {
-    /// What became of every label, and the detections that belong to none.
+    /// Every label once, and every false detection once, by stream and time.
     pub fn moments(&self) -> Vec<Moment> {
         let mut moments = Vec::new();
         for timeline in &self.timelines {
@@ -62,11 +135,7 @@ impl CrossvalResult {
                     why: self.why(&timeline.stream.clip, &truth.class, truth.start_secs),
                 });
             }
-            let alarms = timeline
-                .founds
-                .iter()
-                .filter(|(_, verdict)| *verdict == DetectionVerdict::FalseAlarm);
-            moments.extend(alarms.map(|(found, _)| Moment {
+            moments.extend(false_detections(timeline).map(|found| Moment {
                 clip: clip.clone(),
                 start_secs: found.start_secs,
                 stop_secs: found.stop_secs,
@@ -93,6 +162,32 @@ impl CrossvalResult {
     }
 }
 
+/// The detections of a stream that match no label.
+fn false_detections(timeline: &Timeline) -> impl Iterator<Item = &ClipDetection> {
+    // The verdict on a detection does not say which label it was taken for; the verdicts on labels do.
+    let mistaken = move |found: &ClipDetection| {
+        timeline.truths.iter().any(|(truth, verdict)| {
+            matches!(verdict, GroundTruthVerdict::Mistaken(class) if *class == found.class)
+                && is_match(truth, found)
+        })
+    };
+    let founds = timeline.founds.iter();
+    founds.filter_map(move |(found, verdict)| match verdict {
+        DetectionVerdict::Right | DetectionVerdict::Loose => None,
+        DetectionVerdict::WrongClass | DetectionVerdict::FalseAlarm => {
+            (!mistaken(found)).then_some(found)
+        }
+    })
+}
+
+/// True if a label and a detection share more than half of the shorter one, as in [`morec::eval::ThesisAccuracy`].
+fn is_match(truth: &GroundTruth, found: &ClipDetection) -> bool {
+    let shared = truth.stop_secs.min(found.stop_secs) - truth.start_secs.max(found.start_secs);
+    let shorter =
+        (truth.stop_secs - truth.start_secs).min(found.stop_secs - found.start_secs);
+    shared > 0.5 * shorter + 1e-9
+}
+
 fn clip_of(stream: &str) -> String {
     stream.split(" (fold").next().unwrap_or(stream).to_owned()
 }
@@ -112,18 +207,8 @@ fn judged(
     progress: &JobProgress,
 ) -> Result<CrossvalResult, Option<String>> {
     let material = train::material(path, classes).map_err(|e| Some(e.to_string()))?;
-    let people: BTreeSet<&str> = material
-        .samples
-        .iter()
-        .filter_map(|s| s.person.as_deref())
-        .collect();
-    let (by, said) = if people.len() >= 2 {
-        (FoldBy::Person, "each person in turn")
-    } else if material.clips.len() >= 2 {
-        (FoldBy::Clip, "each clip in turn")
-    } else {
-        (FoldBy::Half { seed: 1 }, "half of the labels")
-    };
+    let people = material.samples.iter().filter_map(|s| s.person.as_deref());
+    let by = LeftOut::of(people, material.clips.len());
     let mut clips = material.clips;
     clips.extend_from_slice(train::everyday());
     let tested = Tested {
@@ -135,7 +220,7 @@ fn judged(
     };
     let outcome = crossval(
         &tested,
-        &CrossvalOptions::from(by),
+        &CrossvalOptions::from(FoldBy::from(by)),
         &train::recipe(),
         progress,
     )
@@ -148,11 +233,108 @@ fn judged(
     })?
     .tested;
     let (streams, truths, founds) = (&outcome.streams, &outcome.truths, &outcome.founds);
-    let said_of = |e: morec::eval::EvalError| Some(format!("Not judged: {e}"));
+    let said = |e: morec::eval::EvalError| Some(format!("Not judged: {e}"));
     Ok(CrossvalResult {
         misses: outcome.misses.clone(),
-        evaluation: Evaluation::of(streams, truths, founds).map_err(said_of)?,
-        timelines: timelines(streams, truths, founds).map_err(said_of)?,
-        by: said,
+        evaluation: Evaluation::of(streams, truths, founds).map_err(said)?,
+        timelines: timelines(streams, truths, founds).map_err(said)?,
+        by,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use morec::eval::StreamInfo;
+
+    use super::*;
+
+    fn truth(class: &str, start_secs: f64, stop_secs: f64) -> GroundTruth {
+        GroundTruth {
+            clip: "a".to_owned(),
+            class: class.to_owned(),
+            start_secs,
+            stop_secs,
+        }
+    }
+
+    fn found(class: &str, start_secs: f64, stop_secs: f64) -> ClipDetection {
+        ClipDetection {
+            clip: "a".to_owned(),
+            class: class.to_owned(),
+            start_secs,
+            stop_secs,
+            score: None,
+            reported_secs: None,
+        }
+    }
+
+    fn moments(truths: &[GroundTruth], founds: &[ClipDetection]) -> Vec<Moment> {
+        let streams = [StreamInfo {
+            clip: "a".to_owned(),
+            duration_secs: 60.0,
+            unknown: false,
+        }];
+        let result = CrossvalResult {
+            evaluation: Evaluation::of(&streams, truths, founds).unwrap(),
+            timelines: timelines(&streams, truths, founds).unwrap(),
+            misses: Vec::new(),
+            by: LeftOut::Half,
+        };
+        result.moments()
+    }
+
+    fn pairs(moments: &[Moment]) -> Vec<(Option<&str>, Option<&str>)> {
+        let names = moments.iter().map(|m| (m.truth.as_deref(), m.found.as_deref()));
+        let mut names: Vec<_> = names.collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn every_label_is_counted_once_and_every_false_detection_once() {
+        let truths = [
+            truth("wave", 1.0, 2.0),
+            truth("wave", 5.0, 6.0),
+            truth("clap", 10.0, 11.0),
+            truth("bow", 20.0, 21.0),
+        ];
+        let founds = [
+            found("wave", 1.0, 2.0),
+            // Twice in one unlabelled stretch: the confusion matrix of stretches would count one.
+            found("clap", 30.0, 31.0),
+            found("clap", 33.0, 34.0),
+            // Taken for another class: the label's mistake, not a false detection as well.
+            found("bow", 5.0, 6.0),
+            // Of another class on a label that is recognised, too.
+            found("clap", 10.0, 11.0),
+            found("wave", 10.5, 10.9),
+        ];
+        let (wave, clap, bow) = (Some("wave"), Some("clap"), Some("bow"));
+        let mut expected = vec![
+            (wave, wave),
+            (wave, bow),
+            (clap, clap),
+            (bow, None),
+            (None, clap),
+            (None, clap),
+            (None, wave),
+        ];
+        expected.sort();
+        assert_eq!(pairs(&moments(&truths, &founds)), expected);
+    }
+
+    #[test]
+    fn a_long_detection_that_decides_a_label_is_no_false_detection() {
+        // Most of it lies outside of the label that it is the only match of.
+        let moments = moments(&[truth("wave", 5.0, 6.0)], &[found("bow", 4.9, 9.0)]);
+        assert_eq!(pairs(&moments), [(Some("wave"), Some("bow"))]);
+    }
+
+    #[test]
+    fn what_is_left_out_follows_from_people_and_clips() {
+        let of = |people: &[&'static str], clips| LeftOut::of(people.iter().copied(), clips);
+        assert_eq!(of(&["ada", "ben", "ada"], 3), LeftOut::Person);
+        assert_eq!(of(&["ada", "ada"], 2), LeftOut::Clip);
+        assert_eq!(of(&[], 1), LeftOut::Half);
+    }
 }

@@ -20,7 +20,7 @@ pub struct ClipMotion {
     pub roles: RoleMap,
     pub rest: std::ops::Range<usize>,
     pub body: Body,
-    /// How fast the body's bones turn, at every tick: radians a second; the channel under the timeline.
+    /// Speed at which the bones turn, at every tick: root mean square, saturated, for the track under the timeline.
     pub speed: Vec<f32>,
     pub tick_hz: f64,
     /// Height of the lowest joint over the whole clip, metres.

@@ -9,6 +9,7 @@ pub mod group;
 pub mod import;
 pub mod judge;
 pub mod load;
+pub mod nearest;
 pub mod propose;
 pub mod recognise;
 pub mod similar;
@@ -24,7 +25,7 @@ use morec::progress::Progress;
 
 use crate::store::Wake;
 
-/// How far a job is; shared with the thread that does it.
+/// Progress of a job; shared with its thread.
 pub struct JobProgress {
     state: Mutex<JobStage>,
     cancelled: AtomicBool,
@@ -63,7 +64,7 @@ impl Progress for JobProgress {
     }
 }
 
-/// What a job came to.
+/// Result of a job.
 pub enum JobOutcome {
     Imported(import::ImportSummary),
     Cut(cut::CutSummary),
@@ -74,12 +75,12 @@ pub enum JobOutcome {
     Trained(Box<train::TrainedIndex>),
     Judged(Box<judge::CrossvalResult>),
     Taught(teach::Taught),
-    /// What an index recognises in a clip.
+    /// Detections of an index in a clip.
     Recognised {
         clip: morec_db::ClipId,
         found: Vec<morec::eval::ClipDetection>,
     },
-    /// What would have been recognised at another sensitivity.
+    /// Detections at another sensitivity.
     Resensed(Vec<morec::live::Detection>),
     Similar(similar::Similar),
     Aligned(Arc<align::Aligned>),
@@ -98,9 +99,9 @@ pub enum JobOutcome {
 
 /// A job that is under way.
 pub struct Job {
-    /// What it does, as a person would say it: "Importing clips".
+    /// Name for the status bar: "Importing clips".
     pub name: String,
-    /// Whether it is shown; small jobs are over before anybody could read their name.
+    /// True if the status bar shows it; small jobs are over before anybody could read their name.
     pub shown: bool,
     progress: Arc<JobProgress>,
     outcome: Receiver<JobOutcome>,
@@ -158,7 +159,7 @@ impl Jobs {
         });
     }
 
-    /// What has ended since.
+    /// Takes the results of the jobs that have ended since the last call.
     pub fn poll(&mut self) -> Vec<(String, JobOutcome)> {
         let mut ended = Vec::new();
         self.running.retain(|job| match job.outcome.try_recv() {

@@ -1,4 +1,4 @@
-//! What an index recognises in a clip, or in what was recorded.
+//! Recognition in a clip, and in the recorded minutes of a live stream.
 
 use std::sync::Arc;
 
@@ -31,7 +31,7 @@ pub fn clip(index: &MotionIndex, motion: &Arc<ClipMotion>, _progress: &JobProgre
     }
 }
 
-/// What a model would have found in poses that were recorded.
+/// Recognises with `model` in recorded poses.
 pub fn poses(model: &Model, poses: &[(f64, KeyPose)], _progress: &JobProgress) -> JobOutcome {
     match recognize_poses(model, poses) {
         Ok(found) => JobOutcome::Resensed(found),

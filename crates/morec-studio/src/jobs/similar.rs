@@ -8,16 +8,16 @@ use morec_db::{DbError, MotionDb};
 use super::{JobOutcome, JobProgress};
 use crate::stretch::Stretch;
 
-/// So many are shown.
+/// Number of hits that are shown.
 const MOST: usize = 40;
 
-/// What is like an example.
+/// An example and the stretches most like it.
 #[derive(Debug, Clone)]
 pub struct Similar {
     pub of: Stretch,
     /// The example's class, if it is a label.
     pub class: Option<String>,
-    /// Whether the mirror image was looked for too.
+    /// True if the mirror image was searched for, too.
     pub mirror: bool,
     /// The nearest first.
     pub hits: Vec<Hit>,

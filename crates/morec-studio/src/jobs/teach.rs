@@ -11,7 +11,7 @@ use morec_db::{ClipUpdate, ImportOutcome, MotionDb};
 use super::{JobOutcome, JobProgress};
 use crate::store::BY;
 
-/// What was kept.
+/// A stretch that was kept.
 #[derive(Debug, Clone)]
 pub struct Taught {
     pub name: String,
@@ -20,11 +20,11 @@ pub struct Taught {
     pub class: Option<String>,
 }
 
-/// What is to be kept.
+/// A stretch to keep.
 pub struct Lesson {
     /// The motion, with what came before and after it.
     pub recording: Recording,
-    /// What it shows, and from when to when in the recording, seconds.
+    /// Its class, start and stop in the recording, seconds.
     pub label: Option<(String, f64, f64)>,
     /// Beginning of the new clip's name.
     pub name: String,

@@ -25,6 +25,16 @@ pub struct Thesis {
     pub nodes: Vec<TreeNodeView>,
 }
 
+impl Thesis {
+    /// The branch of this number.
+    pub fn branch(&self, at: usize) -> Option<&Boundary> {
+        match self.nodes.get(at)? {
+            TreeNodeView::Branch(branch) => Some(branch),
+            TreeNodeView::Leaf(_) => None,
+        }
+    }
+}
+
 /// A sample that taught it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrainedSample {
@@ -153,7 +163,7 @@ fn boundary(
     }
 }
 
-/// What of the plane is shown: all points with a quarter of their extent around them.
+/// Edges of the part of the plane that is shown: all points with a quarter of their extent around them.
 fn edges(points: &[(usize, [f64; 2], usize)]) -> [f64; 4] {
     let axis = |k: usize| {
         let values = || points.iter().map(|p| p.1[k]);
@@ -179,7 +189,7 @@ pub struct Map {
     pub chunk_secs: f64,
     /// Chunks of the shortest segment.
     pub shortest: usize,
-    /// How many lengths there are.
+    /// Number of lengths.
     pub lengths: usize,
     /// For each start and then each length from the shortest: confidence (0 none … 255) and class.
     pub cells: Vec<(u8, u8)>,

@@ -19,7 +19,7 @@ use morec_db::{ClipFilter, DbError, MotionDb};
 
 use super::{JobOutcome, JobProgress};
 
-/// What training made.
+/// Result of training.
 pub struct TrainedIndex {
     pub index: Arc<MotionIndex>,
     pub bytes: Vec<u8>,
@@ -97,7 +97,7 @@ pub fn everyday() -> &'static [TrainClip] {
     })
 }
 
-/// How the studio trains: as `morec train` does, with everyday motion that is among the clips already.
+/// Options of training: those of `morec train`, with everyday motion that is among the clips already.
 pub fn recipe() -> Recipe {
     let everyday = Everyday::Never;
     TrainOptions {

@@ -39,7 +39,7 @@ pub fn others<'a>(state: &'a State, motion: &ClipMotion, c: &Colours) -> Vec<Oth
         .collect()
 }
 
-/// What is said at the performer's own feet, where there are companions.
+/// Caption of the performer where there are companions.
 pub fn caption(state: &State, motion: &ClipMotion) -> Option<String> {
     let first = state.companions.all.first()?;
     let start = format::secs(first.of.start_secs);

@@ -9,7 +9,7 @@ use super::{Out, widgets};
 use crate::state::{Command, PlayCommand, State};
 use crate::theme::Colours;
 
-/// What the index recognises in this clip.
+/// Track of the detections in the clip that is shown.
 pub fn detections(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
     let c = Colours::now(ui);
     let rect = track(ui, state, scale, "Recognised", ROW, None, None);
@@ -117,7 +117,7 @@ pub fn misfit(ui: &mut Ui, state: &State, scale: &Scale) {
     }
 }
 
-/// How fast the body turns.
+/// Track of the bones' speed.
 pub fn speed(ui: &mut Ui, state: &State, scale: &Scale) {
     let c = Colours::now(ui);
     let rect = track(ui, state, scale, "Speed", 32.0, None, None);

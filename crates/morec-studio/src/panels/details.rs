@@ -1,4 +1,4 @@
-//! What is known of the chosen clip, and can be changed.
+//! Details of the chosen clip, which can be changed.
 
 use egui::{Grid, TextEdit, Ui, WidgetType};
 use morec_db::{ClipInfo, ClipUpdate};

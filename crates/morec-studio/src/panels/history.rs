@@ -1,6 +1,8 @@
-//! What was changed, by name; everything down to a step can be taken back.
+//! The history: changes by name, each of which can be undone.
 
-use egui::{Align, Context, Frame, Layout, Margin, RichText, ScrollArea, SidePanel};
+use egui::{
+    Align, Context, Frame, Layout, Margin, RichText, ScrollArea, SidePanel, WidgetType,
+};
 
 use super::{Out, widgets};
 use crate::state::{Command, State};
@@ -22,7 +24,8 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
                 }
             });
         });
-        ui.colored_label(c.muted, "The last change is at the top. Any of them can be taken back if no later one depends on it.");
+        let hint = "The last change is at the top. A change is undone if no later one depends on it.";
+        ui.colored_label(c.muted, hint);
         ui.add_space(6.0);
         let steps = &store.snapshot.history;
         if steps.is_empty() {
@@ -36,8 +39,13 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
                     let text = RichText::new(&step.what);
                     let text = if step.undone { text.color(c.muted).strikethrough() } else { text };
                     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                        if !step.undone && ui.small_button("Undo").clicked() {
-                            out.push(Command::Edit(Edit::Undo(Some(step.id))));
+                        if !step.undone {
+                            let response = ui.small_button("Undo");
+                            let name = format!("Undo step {}: {}", step.id, step.what);
+                            widgets::named(&response, WidgetType::Button, name, false);
+                            if response.clicked() {
+                                out.push(Command::Edit(Edit::Undo(Some(step.id))));
+                            }
                         }
                         ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                             ui.add(egui::Label::new(text).truncate());

@@ -1,4 +1,4 @@
-//! What became of the last import: refusals with their reasons, near copies, what was repaired.
+//! The report of the last import: refusals with their reasons, near copies, repairs.
 
 use egui::{RichText, ScrollArea, Ui};
 
@@ -8,7 +8,7 @@ use crate::state::{Command, CompareCommand, LibraryCommand, State};
 use crate::store::Edit;
 use crate::theme::Colours;
 
-/// What became of the last import.
+/// Shows the report of the last import.
 pub fn show(ui: &mut Ui, state: &State, out: Out) {
     let Some(report) = &state.import_report else {
         return;

@@ -115,6 +115,12 @@ fn class(ui: &mut Ui, state: &State, place: usize, out: Out) {
     {
         let mut text = now.clone();
         let response = ui.add(TextEdit::singleline(&mut text).desired_width(180.0));
+        response.widget_info(|| {
+            let name_of = format!("New name of {from}");
+            let mut info = egui::WidgetInfo::labeled(WidgetType::TextEdit, true, name_of);
+            info.current_text_value = Some(now.clone());
+            info
+        });
         response.request_focus();
         if response.lost_focus() || ui.input(|i| i.key_pressed(egui::Key::Enter)) {
             let (from, to) = (from.clone(), text);
@@ -223,7 +229,7 @@ fn add_class(ui: &mut Ui, state: &State, out: Out) {
     });
 }
 
-/// What is selected, and what can be done with it.
+/// The selection and its actions.
 fn selection(ui: &mut Ui, state: &State, out: Out) {
     let c = Colours::now(ui);
     let selected = state.selected();
@@ -285,7 +291,7 @@ fn selection(ui: &mut Ui, state: &State, out: Out) {
     });
 }
 
-/// What is like the selection, and the nearest of it beside the performer.
+/// Buttons that search for what is like the selection and compare it with the nearest.
 pub(super) fn like_this(ui: &mut Ui, out: Out) {
     ui.horizontal(|ui| {
         if ui

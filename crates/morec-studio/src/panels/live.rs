@@ -111,7 +111,7 @@ fn clip_choice(
     let combo = ComboBox::from_id_salt("live clip")
         .width(ui.available_width() - 8.0)
         .selected_text(text);
-    combo.show_ui(ui, |ui| {
+    let combo = combo.show_ui(ui, |ui| {
         for clip in store.snapshot.clips.iter().take(500) {
             let on = now.is_some_and(|n| n.id == clip.id);
             if ui.selectable_label(on, &clip.name).clicked() {
@@ -119,6 +119,7 @@ fn clip_choice(
             }
         }
     });
+    widgets::named(&combo.response, WidgetType::ComboBox, "Clip to play", false);
 }
 
 fn record(ui: &mut Ui, state: &State, live: &mut impl FnMut(LiveCommand)) {
@@ -144,7 +145,7 @@ fn record(ui: &mut Ui, state: &State, live: &mut impl FnMut(LiveCommand)) {
     }
 }
 
-/// Who is seen, and who is watched.
+/// Choice of the performer who is watched.
 fn performers(ui: &mut Ui, state: &State, out: Out) {
     let Some(run) = state.live.run.as_ref().filter(|r| r.performers.len() > 1) else {
         return;
@@ -174,7 +175,7 @@ fn performers(ui: &mut Ui, state: &State, out: Out) {
     });
 }
 
-/// How the stream is, in words.
+/// Health of the stream, in words.
 fn health(ui: &mut Ui, state: &State) {
     let c = Colours::now(ui);
     let Some(run) = &state.live.run else { return };
@@ -280,7 +281,7 @@ fn performer(ui: &mut Ui, state: &State, out: Out) {
     banner(ui, state, rect);
 }
 
-/// What was recognised last, large enough to be read from a few metres.
+/// The last detection, large enough to be read from a few metres.
 fn banner(ui: &Ui, state: &State, rect: Rect) {
     const SHOWN_SECS: f64 = 2.0;
     let c = Colours::now(ui);

@@ -9,7 +9,7 @@ use crate::state::live::Run;
 use crate::state::{Command, LiveCommand, State};
 use crate::theme::Colours;
 
-/// How much is shown, seconds.
+/// Length of the timeline, seconds.
 const SHOWN_SECS: f64 = 60.0;
 const NAMES: f32 = 100.0;
 

@@ -1,4 +1,4 @@
-//! What is drawn: functions of the state that emit commands.
+//! The panels: functions of the state that draw and emit commands.
 
 mod bars;
 mod card;
@@ -17,6 +17,7 @@ mod library;
 mod live;
 mod live_line;
 mod matrix;
+mod moments;
 mod notices;
 mod player;
 mod roles;
@@ -58,7 +59,7 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
     }
 }
 
-/// Nothing is open: what can be done about it.
+/// Shown while no database is open.
 fn empty(ctx: &Context, state: &State, out: Out) {
     CentralPanel::default().show(ctx, |ui| {
         let c = Colours::now(ui);

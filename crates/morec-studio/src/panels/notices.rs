@@ -1,4 +1,4 @@
-//! What went wrong, in place, until it is dismissed.
+//! Notices of errors, shown until they are dismissed.
 
 use egui::{Context, Frame, Margin, TopBottomPanel};
 
@@ -6,7 +6,7 @@ use super::Out;
 use crate::state::{Command, State};
 use crate::theme::Colours;
 
-/// So many are shown at once.
+/// Number of notices that are shown at once.
 const SHOWN: usize = 3;
 
 pub fn show(ctx: &Context, state: &State, out: Out) {

@@ -86,7 +86,7 @@ pub fn transport(ui: &mut Ui, state: &State, out: Out) {
                 PlayCommand::Loop(next),
             );
             ui.add_space(6.0);
-            ComboBox::from_id_salt("speed")
+            let speeds = ComboBox::from_id_salt("speed")
                 .width(64.0)
                 .selected_text(format!("{}×", player.speed))
                 .show_ui(ui, |ui| {
@@ -97,6 +97,10 @@ pub fn transport(ui: &mut Ui, state: &State, out: Out) {
                         }
                     }
                 });
+            speeds.response.widget_info(|| {
+                let kind = egui::WidgetType::ComboBox;
+                egui::WidgetInfo::labeled(kind, true, "Playing speed")
+            });
             ui.add_space(8.0);
             let frame = (player.at_secs * player.rate_hz()).round() as usize;
             ui.label(

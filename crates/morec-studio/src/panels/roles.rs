@@ -1,4 +1,4 @@
-//! Which joint plays which part of the body, beside the skeleton: a click on a part and one on a joint mend it.
+//! Roles of joints beside the skeleton: a click on a part of the body and one on a joint change a role.
 
 use egui::{Grid, Rect, RichText, Sense, Ui, Vec2, WidgetType};
 use morec::kinematics::WorldPose;
@@ -45,7 +45,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
         });
 }
 
-/// What is asked for while a part waits for its joint.
+/// Prompt while a part of the body waits for its joint.
 fn asked(ui: &mut Ui, state: &State, motion: &ClipMotion, out: Out) {
     let c = Colours::now(ui);
     let Some(role) = state.library.role else {

@@ -14,7 +14,7 @@ use crate::theme::Colours;
 const WIDTH: f32 = 236.0;
 const CARD: f32 = STRIP + 48.0;
 
-/// What belongs above the cards.
+/// Title and options above the cards.
 pub fn tools(ui: &mut Ui, state: &State, similar: &Similar, out: Out) {
     let c = Colours::now(ui);
     let name = state
@@ -122,11 +122,14 @@ fn card(ui: &mut Ui, state: &State, similar: &Similar, at: usize, out: Out) {
                 mirrored: hit.mirrored,
             }));
         }
-        if ui
-            .button("More")
-            .on_hover_text("What is like this one")
-            .clicked()
-        {
+        let more = ui.button("More");
+        widgets::named(
+            &more,
+            WidgetType::Button,
+            format!("More like hit {}", at + 1),
+            false,
+        );
+        if more.on_hover_text("Search for what is like this one").clicked() {
             let class = similar.class.clone();
             out.push(Command::Similar(SimilarCommand::Of(stretch, class)));
         }
@@ -152,7 +155,7 @@ fn label(ui: &mut Ui, state: &State, similar: &Similar, at: usize, out: Out) {
             as_class(class);
         }
     }
-    ui.menu_button("Is …", |ui| {
+    let menu = ui.menu_button("Is …", |ui| {
         for class in &state.classes.order {
             if ui.button(class).clicked() {
                 as_class(class);
@@ -160,4 +163,6 @@ fn label(ui: &mut Ui, state: &State, similar: &Similar, at: usize, out: Out) {
             }
         }
     });
+    let name = format!("Hit {} is …", at + 1);
+    widgets::named(&menu.response, WidgetType::Button, name, false);
 }

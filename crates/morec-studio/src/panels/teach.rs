@@ -1,4 +1,4 @@
-//! What was recognised live, and teaching from what just happened.
+//! Detections of a live stream, and marking what just happened.
 
 use egui::{ProgressBar, RichText, ScrollArea, Ui, WidgetType};
 
@@ -74,7 +74,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
     ui.add_space(8.0);
 }
 
-/// What is under way, and what was recognised, the last first.
+/// The motion that may be under way, and the detections, the last first.
 pub fn recognised(ui: &mut Ui, state: &State) {
     let c = Colours::now(ui);
     widgets::section(ui, "RECOGNISED");

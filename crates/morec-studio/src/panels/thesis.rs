@@ -5,7 +5,7 @@ use egui::{Pos2, Rect, RichText, Sense, Shape, Ui, Vec2, WidgetType, pos2};
 
 use super::{Out, widgets};
 use crate::jobs::thesis::{Boundary, GRID, Thesis, TreeNodeView};
-use crate::state::{Command, LibraryCommand, State, TrainCommand};
+use crate::state::{Command, State, TrainCommand};
 use crate::theme::Colours;
 
 /// Size of the picture of a branch, points.
@@ -34,7 +34,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
             ui.set_width((ui.available_width() - SIDE - 24.0).clamp(150.0, 420.0));
             node(ui, state, thesis, 0, 0, out);
         });
-        if let Some(TreeNodeView::Branch(branch)) = thesis.nodes.get(state.train.branch) {
+        if let Some(branch) = thesis.branch(state.train.branch) {
             ui.vertical(|ui| {
                 sides(ui, state, branch);
                 boundary(ui, state, thesis, branch, out);
@@ -83,7 +83,7 @@ fn node(ui: &mut Ui, state: &State, thesis: &Thesis, at: usize, depth: usize, ou
     }
 }
 
-/// What the colours of the regions mean.
+/// Legend of the regions' colours.
 fn sides(ui: &mut Ui, state: &State, branch: &Boundary) {
     ui.horizontal_wrapped(|ui| {
         ui.set_max_width(SIDE);
@@ -124,12 +124,8 @@ fn boundary(ui: &mut Ui, state: &State, thesis: &Thesis, branch: &Boundary, out:
             "{} in {} at {:.2} s",
             taught.class, taught.clip, taught.start_secs
         );
-        widgets::named(
-            &response,
-            WidgetType::Button,
-            format!("Point: {said}"),
-            false,
-        );
+        let on = state.train.sample == Some(*sample);
+        widgets::named(&response, WidgetType::Button, format!("Point: {said}"), on);
         let colour = c.class(state.classes.place(&taught.class));
         let radius = if response.hovered() { 6.0 } else { 4.0 };
         // Sides are told apart by shape too.
@@ -142,13 +138,16 @@ fn boundary(ui: &mut Ui, state: &State, thesis: &Thesis, branch: &Boundary, out:
                     .rect(square, 1.0, colour, (1.0, c.text), inside)
             }
         };
+        if on {
+            ui.painter().circle_stroke(at, 9.0, (2.0, c.text));
+        }
         if response.on_hover_text(said).clicked() {
-            play(state, taught, out);
+            out.push(Command::Train(TrainCommand::Sample(*sample)));
         }
     }
 }
 
-/// Where each side accepts, and where both do.
+/// Regions in which one side accepts, or both do.
 fn regions(rect: Rect, branch: &Boundary, c: &Colours) -> Mesh {
     let mut mesh = Mesh::default();
     let step = rect.width() / GRID as f32;
@@ -167,16 +166,4 @@ fn regions(rect: Rect, branch: &Boundary, c: &Colours) -> Mesh {
         mesh.add_colored_rect(Rect::from_min_size(corner, Vec2::splat(step)), colour);
     }
     mesh
-}
-
-fn play(state: &State, taught: &crate::jobs::thesis::TrainedSample, out: Out) {
-    let Some(store) = &state.store else { return };
-    let clip = store.snapshot.clips.iter().find(|k| k.name == taught.clip);
-    if let Some(clip) = clip {
-        out.push(Command::Library(LibraryCommand::GoTo {
-            clip: clip.id,
-            start_secs: taught.start_secs,
-            stop_secs: taught.stop_secs,
-        }));
-    }
 }

@@ -12,7 +12,7 @@ use crate::theme::Colours;
 pub const NAMES: f32 = 112.0;
 const RULER: f32 = 22.0;
 
-/// How time lies on the screen.
+/// Mapping of time to the screen.
 #[derive(Debug, Clone, Copy)]
 pub struct Scale {
     /// Left and right of the tracks.

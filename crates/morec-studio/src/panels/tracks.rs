@@ -12,7 +12,7 @@ use crate::theme::Colours;
 pub(super) const ROW: f32 = 19.0;
 /// Labels narrower than this cannot be held; those that touch are drawn as one.
 const NARROW: f32 = 6.0;
-/// So near to its end a label is held by the end, points.
+/// Width of the part at each end of a label by which it is held, points.
 const EDGE: f32 = 6.0;
 
 /// Room for a track: its name at the left, and where it lies. Dragging over its ground selects a stretch.

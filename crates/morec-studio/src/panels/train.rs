@@ -2,7 +2,7 @@
 
 use egui::{CentralPanel, Context, Frame, Margin, Rect, RichText, ScrollArea, SidePanel, Ui, Vec2};
 
-use super::{Out, matrix, padded, player, thesis, view, widgets};
+use super::{Out, matrix, moments, padded, player, thesis, view, widgets};
 use crate::format;
 use crate::state::{Command, FileCommand, State, TrainCommand};
 use crate::theme::Colours;
@@ -24,7 +24,7 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
         .default_width(340.0)
         .width_range(280.0..=620.0)
         .show(ctx, |ui| {
-            let height = (ui.available_height() - player::HEIGHT - 8.0).clamp(160.0, 420.0);
+            let height = (0.52 * ui.available_height()).clamp(160.0, 420.0);
             let rect =
                 Rect::from_min_size(ui.cursor().min, Vec2::new(ui.available_width(), height));
             ui.scope_builder(egui::UiBuilder::new().max_rect(rect), |ui| {
@@ -32,7 +32,7 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
             });
             ui.advance_cursor_after_rect(rect);
             player::transport(ui, state, out);
-            matrix::instances(ui, state, out);
+            moments::show(ui, state, out);
         });
     CentralPanel::default().frame(padded(&c)).show(ctx, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -96,7 +96,7 @@ fn choose(ui: &mut Ui, state: &State, out: Out) {
     teach_next(ui, state);
 }
 
-/// What would help most.
+/// Hints about the labels that would help most.
 fn teach_next(ui: &mut Ui, state: &State) {
     let Some(store) = &state.store else { return };
     let c = Colours::now(ui);

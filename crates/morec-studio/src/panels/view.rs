@@ -11,21 +11,21 @@ use crate::jobs::load::ClipMotion;
 use crate::state::{Command, Panel, State, ViewCommand};
 use crate::theme::Colours;
 
-/// So far the floor is drawn from the performer, metres.
+/// Extent of the floor around the performer, metres.
 const FLOOR: i32 = 6;
 /// A trail reaches so far into past and future, seconds.
 const TRAIL_SECS: f64 = 1.0;
 /// Poses of the onion skin, seconds from now.
 const ONION: [f64; 4] = [-0.4, -0.2, 0.2, 0.4];
 
-/// What is drawn.
+/// Contents of the picture.
 pub struct Scene<'a> {
     pub body: &'a Body,
     pub pose: &'a WorldPose,
     pub floor: f64,
     /// The clip, for trail and onion skin.
     pub motion: Option<(&'a ClipMotion, f64)>,
-    /// Who else is seen.
+    /// Other performers.
     pub others: Vec<Other<'a>>,
     /// Said at the performer's feet, where there are others.
     pub caption: Option<String>,
@@ -109,7 +109,7 @@ pub fn draw(ui: &mut Ui, rect: Rect, state: &State, scene: &Scene, out: Out) {
     controls(ui, rect, state, out);
 }
 
-/// Who is who, at everybody's feet.
+/// Captions at the performers' feet.
 fn captions(ui: &Ui, rect: Rect, view: &crate::body::camera::View, scene: &Scene) {
     let c = Colours::now(ui);
     let own = scene

@@ -16,7 +16,7 @@ pub fn section(ui: &mut Ui, text: &str) {
     ui.label(RichText::new(text).color(c.muted).size(11.5).strong());
 }
 
-/// What to say where there is nothing: a sentence, and what to do.
+/// Fills an empty panel: a sentence, and a hint at what to do.
 pub fn nothing(ui: &mut Ui, text: &str, hint: &str) {
     let c = Colours::now(ui);
     ui.add_space(28.0);

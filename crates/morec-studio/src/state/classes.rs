@@ -21,9 +21,9 @@ const ATTRACTED_SECS: f64 = 0.2;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Held {
     pub slot: usize,
-    /// Where in the clip it went down.
+    /// Moment of the clip at which it went down.
     pub since_secs: f64,
-    /// How long it has been down, seconds on the wall.
+    /// Time for which it has been down, seconds on the wall.
     pub wall_secs: f64,
 }
 
@@ -35,14 +35,14 @@ pub struct Classes {
     /// Classes that were named and have no label yet.
     pub added: Vec<String>,
     pub held: Option<Held>,
-    /// Where a key was tapped last: which class, and the moment.
+    /// The last tap of a key: place of its class, and the moment.
     pub tapped: Option<(usize, f64)>,
     /// The samples of each class as they are shown.
     pub columns: ClassColumns,
     pub groups: Option<ClusteredItems>,
-    /// What is like an example, while that is shown.
+    /// The result of a search by example, while it is shown.
     pub similar: Option<Similar>,
-    /// Whether the mirror image of an example is looked for too.
+    /// True if searches look for the mirror image, too.
     pub mirror: bool,
     /// Into how many groups the hierarchy is cut.
     pub depth: usize,

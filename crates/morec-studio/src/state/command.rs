@@ -1,4 +1,4 @@
-//! What a person can ask for. Panels emit these; `State` carries them out.
+//! Commands: panels emit them, `State` carries them out.
 
 use std::path::PathBuf;
 
@@ -129,7 +129,7 @@ pub enum LibraryCommand {
         role: Role,
         joint: Option<usize>,
     },
-    /// Whether roles are given in all clips of the rig.
+    /// Gives roles in all clips of the rig, or in one.
     RolesOfAll(bool),
 }
 
@@ -237,12 +237,16 @@ pub enum TrainCommand {
     },
     Train,
     Judge,
-    /// Shows the cell of the confusion matrix.
+    /// Lists the moments of a cell of the confusion matrix and goes to the first; `None` lists the mistakes.
     Cell(Option<(usize, usize)>),
+    /// Goes to the moment of this place in the cross-validation.
+    Moment(usize),
     Keep(String),
     UseIndex(String),
     /// Trains the method of 2009 on the same labels.
     Thesis,
     /// Shows the boundary of a branch of its tree.
     Branch(usize),
+    /// Plays the sample of this place that taught it.
+    Sample(usize),
 }

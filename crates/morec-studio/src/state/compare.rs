@@ -5,15 +5,15 @@ use std::sync::Arc;
 use morec::math::Vec3;
 
 use super::State;
-use crate::jobs::align::{self, Aligned};
+use crate::jobs::align::{self, Aligned, Partner};
 use crate::stretch::Stretch;
 
 /// Name of the job that aligns.
 pub(super) const ALIGNING: &str = "Comparing";
-/// So many stand beside one another at most.
+/// Most performers beside one another.
 const MOST: usize = 4;
 
-/// Where companions stand.
+/// Placement of companions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Placement {
     #[default]
@@ -21,14 +21,14 @@ pub enum Placement {
     OnTop,
 }
 
-/// Who is seen with the performer of the clip that is shown.
+/// Performers of other clips with the one that is shown.
 #[derive(Default)]
 pub struct Companions {
     pub all: Vec<Arc<Aligned>>,
     pub placement: Placement,
 }
 
-/// What can be asked for.
+/// Commands.
 #[derive(Debug, Clone, PartialEq)]
 pub enum CompareCommand {
     /// A stretch with another, which is its mirror image if `mirrored`.
@@ -39,6 +39,10 @@ pub enum CompareCommand {
     },
     /// The selected stretch or label with what is most like it.
     Nearest,
+    /// A stretch with the nearest label of a class.
+    NearestOf { of: Stretch, class: String },
+    /// The chosen moment of a cross-validation with the nearest label of a class; `None` of the class that was recognised.
+    Moment(Option<String>),
     Place(Placement),
     /// Nobody but the performer.
     Clear,
@@ -47,17 +51,29 @@ pub enum CompareCommand {
 impl State {
     pub(super) fn apply_compare(&mut self, command: CompareCommand) {
         match command {
-            CompareCommand::With { of, with, mirrored } => self.compare(of, Some((with, mirrored))),
+            CompareCommand::With { of, with, mirrored } => {
+                self.command_line.clear();
+                self.compare(of, Partner::Given(with, mirrored));
+            }
             CompareCommand::Nearest => match self.selected_stretch() {
-                Some((of, _)) => self.compare(of, None),
+                Some((of, _)) => {
+                    let line = self.search_line(&of);
+                    self.show_line(line.map(|l| l.flag("--mirror", true).with("--limit", "1")));
+                    self.compare(of, Partner::Nearest);
+                }
                 None => self.say("select a label or a stretch first"),
             },
+            CompareCommand::NearestOf { of, class } => {
+                self.command_line.clear();
+                self.compare(of, Partner::NearestOf(class));
+            }
+            CompareCommand::Moment(class) => self.compare_moment(class),
             CompareCommand::Place(placement) => self.companions.placement = placement,
             CompareCommand::Clear => self.companions.all.clear(),
         }
     }
 
-    fn compare(&mut self, of: Stretch, with: Option<(Stretch, bool)>) {
+    fn compare(&mut self, of: Stretch, with: Partner) {
         let Some(store) = &self.store else { return };
         let db = store.path().to_owned();
         self.jobs
@@ -84,7 +100,7 @@ impl State {
         self.open_clip(of.clip, Some((of.start_secs, of.stop_secs)));
     }
 
-    /// How far beside the performer each companion stands, metres.
+    /// Distance between neighbours, metres.
     pub fn apart(&self) -> f64 {
         let widest = self.player.motion.as_ref().map_or(1.7, |m| m.body.height);
         match self.companions.placement {

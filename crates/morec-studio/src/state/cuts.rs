@@ -8,7 +8,7 @@ use crate::store::Edit;
 /// Cuts nearer than this are one, seconds.
 const SAME_SECS: f64 = 0.02;
 
-/// What can be asked for; moments are seconds of the clip.
+/// Commands for cuts; moments are seconds of the clip.
 #[derive(Debug, Clone, PartialEq)]
 pub enum CutCommand {
     /// Takes hold of the cut at a moment.
@@ -147,21 +147,31 @@ impl State {
     }
 
     fn drop_cut(&mut self) {
-        let Some(held) = self.timeline.held_cut.take() else {
+        if let Some(held) = self.timeline.held_cut.take() {
+            self.move_cut(held.from_secs, held.at_secs);
+        }
+    }
+
+    /// Moves a cut to a moment inside the clip. Nothing happens while the move before is on its way to the database.
+    pub(super) fn move_cut(&mut self, from_secs: f64, to_secs: f64) {
+        if self.timeline.held_cut.is_some() {
             return;
-        };
-        if (held.at_secs - held.from_secs).abs() < 1e-6 {
+        }
+        let (rate, end) = (self.player.rate_hz(), self.player.secs());
+        let frame = 1.0 / rate;
+        let at_secs = to_secs.clamp(frame, (end - frame).max(frame));
+        if (at_secs - from_secs).abs() < 1e-6 {
             return;
         }
         let mut cuts = self.cuts();
-        cuts.retain(|cut| !near(held.from_secs)(cut) && !near(held.at_secs)(cut));
-        cuts.push(held.at_secs);
-        let what = format!("move a cut to {:.2} s", held.at_secs);
-        self.keep_cuts(cuts, what);
-        self.timeline.cut = Some(held.at_secs);
+        cuts.retain(|cut| !near(from_secs)(cut) && !near(at_secs)(cut));
+        cuts.push(at_secs);
+        self.keep_cuts(cuts, format!("move a cut to {at_secs:.2} s"));
+        self.timeline.cut = Some(at_secs);
         self.timeline.held_cut = Some(HeldCut {
+            from_secs,
+            at_secs,
             dropped: true,
-            ..held
         });
     }
 

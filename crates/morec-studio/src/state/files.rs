@@ -3,8 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use morec::player::Mark;
+use morec_db::ClipId;
 use morec_db::exchange::LabelFormat;
 
+use super::lines::Line;
+use super::train::INDEX;
 use super::{Classes, FileCommand, Library, Live, Motions, Player, State, TimelineState, Train};
 use crate::format::file_name;
 use crate::jobs::export::{self, Export};
@@ -52,7 +55,10 @@ impl State {
                     true => "lies in a temporary folder: save a copy to keep it".to_owned(),
                     false => format!("{} opened", file_name(path)),
                 });
-                self.command_line = format!("morec-studio {}", quoted(path));
+                // A file of this run's own is no use to anybody else.
+                if !temporary {
+                    self.show_line(Line::new("morec-studio").word(path));
+                }
                 self.store = Some(store);
                 if let Some(clip) = first {
                     self.open_clip(clip, None);
@@ -62,7 +68,7 @@ impl State {
         }
     }
 
-    /// What belongs to the database that was open.
+    /// Forgets everything of the database that was open.
     fn forget(&mut self) {
         self.jobs.running.iter().for_each(|job| job.cancel());
         self.store = None;
@@ -94,7 +100,7 @@ impl State {
         self.folder.clone()
     }
 
-    /// Where files lie for a moment.
+    /// Folder for files that are kept for a moment.
     pub(super) fn scratch(&mut self) -> PathBuf {
         self.own_folder().unwrap_or_else(std::env::temp_dir)
     }
@@ -103,6 +109,7 @@ impl State {
         let Some(folder) = self.own_folder() else {
             return;
         };
+        self.show_line(Line::new("morec-studio"));
         self.jobs
             .start("Making an example", true, &self.wake, move |progress| {
                 example::make(&folder, progress)
@@ -114,6 +121,8 @@ impl State {
             return;
         };
         let clips = clips.to_vec();
+        let line = Line::new("morec-studio");
+        self.show_line(clips.iter().fold(line, Line::word));
         self.jobs
             .start("Importing clips", true, &self.wake, move |progress| {
                 example::of_clips(&folder, &clips, progress)
@@ -159,8 +168,9 @@ impl State {
             self.open_clips(&paths);
             return;
         };
-        let (db, shown) = (store.path().to_owned(), quoted_all(&paths));
-        self.command_line = format!("morec db import {} {shown}", quoted(&db));
+        let db = store.path().to_owned();
+        let line = Line::new("morec db import").word(&db);
+        self.show_line(paths.iter().fold(line, Line::word));
         self.jobs
             .start("Importing clips", true, &self.wake, move |progress| {
                 import::import(&db, &paths, progress)
@@ -188,23 +198,9 @@ impl State {
 
     fn export(&mut self, what: Export, path: PathBuf) {
         let Some(store) = &self.store else { return };
-        let (db, to) = (quoted(store.path()), quoted(&path));
-        let clip = |id| store.snapshot.clip(id);
-        self.command_line = match &what {
-            Export::Labels(form) => {
-                format!("morec db export {db} {to} --form {}", form.name())
-            }
-            Export::Clip(id) => clip(*id).map_or_else(String::new, |c| {
-                format!(
-                    "morec db export {db} {to} --motion {}",
-                    quoted(c.name.as_ref())
-                )
-            }),
-            Export::Page(id, _) => clip(*id).map_or_else(String::new, |c| {
-                format!("morec play {} -o {to}", quoted(c.path.as_ref()))
-            }),
-        };
+        let line = export_line(store, self.train.index.is_some(), &what, &path);
         let db = store.path().to_owned();
+        self.show_line(line);
         self.jobs.start("Exporting", true, &self.wake, move |_| {
             export::export(&db, &what, &path)
         });
@@ -255,23 +251,24 @@ pub(super) fn is_database(path: &Path) -> bool {
     ["mdb", "db", "sqlite"].iter().any(|known| ending == *known)
 }
 
-/// A path as it is typed in a shell.
-pub(super) fn quoted(path: &Path) -> String {
-    let text = path.display().to_string();
-    let plain = |c: char| c.is_alphanumeric() || "/._-+=:,@".contains(c);
-    match !text.is_empty() && text.chars().all(plain) {
-        true => text,
-        false => format!("'{}'", text.replace('\'', r"'\''")),
-    }
-}
-
-fn quoted_all(paths: &[PathBuf]) -> String {
-    const SHOWN: usize = 3;
-    let mut text: Vec<String> = paths.iter().take(SHOWN).map(|p| quoted(p)).collect();
-    if paths.len() > SHOWN {
-        text.push("…".to_owned());
-    }
-    text.join(" ")
+/// The command that writes the same.
+fn export_line(store: &Store, has_index: bool, what: &Export, path: &Path) -> Option<Line> {
+    let export = Line::new("morec db export").word(store.path());
+    let clip = |id: &ClipId| store.snapshot.clip(*id);
+    Some(match what {
+        Export::Labels(form) => export.word(path).with("--form", form.name()),
+        Export::Clip(id) => export.word(path).with("--motion", &clip(id)?.name),
+        Export::Page(id, _) => {
+            let labels = export.word("labels.tsv").with("--clip", &clip(id)?.name);
+            let play = Line::new("morec play").word(&clip(id)?.path);
+            let play = play.with("--labels", "labels.tsv");
+            let play = match has_index {
+                true => play.with("--index", format!("{INDEX}.index")),
+                false => play,
+            };
+            labels.and(play.with("-o", path))
+        }
+    })
 }
 
 impl Drop for State {

@@ -2,7 +2,7 @@
 
 use morec_db::labels::{DbSample, NewSample, SampleState as Judged};
 
-use super::files::quoted;
+use super::lines::Line;
 use super::{Drag, Grip, State, TimelineCommand};
 use crate::jobs::cut::{self, SegmentMethod};
 use crate::store::Edit;
@@ -10,8 +10,9 @@ use crate::store::Edit;
 impl State {
     /// Sends an edit to the database, and says which command would do it.
     pub(super) fn edit(&mut self, edit: Edit) {
-        // Another action's command would mislead.
-        self.command_line = self.line_of(&edit).unwrap_or_default();
+        // Another action's command would mislead: without one of its own there is none.
+        let line = self.line_of(&edit);
+        self.show_line(line);
         if let Some(store) = &mut self.store {
             store.edit(edit);
         }
@@ -97,10 +98,18 @@ impl State {
             }
             TimelineCommand::Nudge(grip, frames) => {
                 let by = frames as f64 / rate;
+                if let Some(cut) = self.timeline.cut {
+                    self.move_cut(cut, cut + by);
+                    return;
+                }
                 self.change_selected(|start, stop| moved(grip, start, stop, by));
             }
             TimelineCommand::ToPlayhead(grip) => {
                 let at = self.player.at_secs;
+                if let Some(cut) = self.timeline.cut {
+                    self.move_cut(cut, at);
+                    return;
+                }
                 self.change_selected(|start, stop| match grip {
                     Grip::Start => (at, stop),
                     Grip::Stop => (start, at),
@@ -234,7 +243,8 @@ impl State {
     fn cut(&mut self, method: SegmentMethod) {
         let Some(store) = &self.store else { return };
         let db = store.path().to_owned();
-        self.command_line = format!("morec cut {} --method {}", quoted(&db), method.name());
+        let line = Line::new("morec cut").word(&db);
+        self.show_line(line.with("--method", method.name()));
         self.jobs
             .start("Cutting clips", true, &self.wake, move |progress| {
                 cut::cut(&db, method, &[], progress)

@@ -1,4 +1,4 @@
-//! What is remembered from one session to the next: how things are laid out, and what was open.
+//! The layout that is remembered from one session to the next, with the database that was open.
 
 use std::path::PathBuf;
 
@@ -40,7 +40,7 @@ impl Default for Layout {
 }
 
 impl State {
-    /// How things are laid out now.
+    /// The present layout.
     pub fn layout(&self) -> Layout {
         let store = self.store.as_ref().filter(|s| !s.temporary);
         Layout {

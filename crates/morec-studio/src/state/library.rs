@@ -5,7 +5,7 @@ use morec_db::{ClipId, ClipInfo};
 
 use super::{Column, LibraryCommand, State};
 
-/// What the list of shown clips was computed for: snapshot, filter, order.
+/// Key of the list of shown clips: snapshot, filter, order.
 type Order = (u64, String, Option<(Column, bool)>);
 
 /// The library's own state.
@@ -65,7 +65,7 @@ impl Library {
     }
 }
 
-/// Whether a word is in the clip's name, subject, format, source or tags.
+/// True if a word is in the clip's name, subject, format, source or tags.
 fn matches(clip: &ClipInfo, word: &str) -> bool {
     let has = |text: &str| text.to_lowercase().contains(word);
     has(&clip.name)

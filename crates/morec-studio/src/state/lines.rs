@@ -1,143 +1,262 @@
-//! The command line that does what an edit does.
+//! The command line that does what was just done. Tests parse every kind of line with the command's own parser.
+
+use std::path::Path;
 
 use morec::roles::Role;
-use morec_db::labels::SampleState as Judged;
+use morec_db::ClipId;
+use morec_db::labels::{NewSample, SampleId};
 
 use super::State;
-use super::files::quoted;
-use crate::store::Edit;
+use crate::store::{Edit, Snapshot};
 
-/// A word as it is typed in a shell.
-fn word(text: &str) -> String {
-    quoted(std::path::Path::new(text))
+/// Lines for more clips or labels than these would be of no use to anybody.
+const MOST: usize = 50;
+
+/// A command line in the making; values are quoted for a POSIX shell.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Line(String);
+
+impl Line {
+    /// The program and its subcommands, as `morec db clips`.
+    pub fn new(command: &str) -> Self {
+        Self(command.to_owned())
+    }
+
+    /// Adds a value.
+    pub fn word(mut self, value: impl AsRef<Path>) -> Self {
+        self.0 += &format!(" {}", quoted(value.as_ref()));
+        self
+    }
+
+    /// Adds an option with its value.
+    pub fn with(mut self, option: &str, value: impl AsRef<Path>) -> Self {
+        let value = quoted(value.as_ref());
+        // A value that begins like an option would be taken for one.
+        let between = if value.starts_with('-') { '=' } else { ' ' };
+        self.0 += &format!(" {option}{between}{value}");
+        self
+    }
+
+    /// Adds an option with a time in seconds.
+    pub fn secs(self, option: &str, secs: f64) -> Self {
+        self.with(option, format!("{secs:.3}"))
+    }
+
+    /// Adds an option with values separated by commas; nothing if there is none.
+    pub fn list<S: AsRef<str>>(self, option: &str, values: &[S]) -> Self {
+        let values: Vec<&str> = values.iter().map(AsRef::as_ref).collect();
+        match values.is_empty() {
+            true => self,
+            false => self.with(option, values.join(",")),
+        }
+    }
+
+    /// Adds an option without a value, if `on`.
+    pub fn flag(mut self, option: &str, on: bool) -> Self {
+        if on {
+            self.0 += &format!(" {option}");
+        }
+        self
+    }
+
+    /// Another command after this one, if this one succeeds.
+    pub fn and(self, next: Line) -> Self {
+        Self(format!("{} && {}", self.0, next.0))
+    }
+
+    /// Several commands, one after the other; `None` for none and for too many.
+    pub fn all(lines: impl ExactSizeIterator<Item = Line>) -> Option<Line> {
+        (lines.len() <= MOST).then(|| lines.reduce(Line::and))?
+    }
+}
+
+/// A path, or another value, as it is typed in a shell.
+fn quoted(value: &Path) -> String {
+    let text = value.display().to_string();
+    let plain = |c: char| c.is_alphanumeric() || "/._-+=:,@".contains(c);
+    match !text.is_empty() && text.chars().all(plain) {
+        true => text,
+        false => format!("'{}'", text.replace('\'', r"'\''")),
+    }
+}
+
+fn numbers(ids: &[SampleId]) -> Vec<String> {
+    ids.iter().map(|id| id.0.to_string()).collect()
+}
+
+/// The command that sets a label.
+fn label_line(db: &Path, snapshot: &Snapshot, sample: &NewSample) -> Option<Line> {
+    let line = Line::new("morec db label").word(db);
+    Some(
+        line.with("--clip", &snapshot.clip(sample.clip)?.name)
+            .with("--class", &sample.class)
+            .secs("--start", sample.start_secs)
+            .secs("--stop", sample.stop_secs),
+    )
+}
+
+/// The commands that set labels.
+fn label_lines(db: &Path, snapshot: &Snapshot, samples: &[NewSample]) -> Option<Line> {
+    let lines: Option<Vec<Line>> = samples
+        .iter()
+        .map(|sample| label_line(db, snapshot, sample))
+        .collect();
+    Line::all(lines?.into_iter())
+}
+
+/// The commands that do the same to each of several clips: one for all clips of the database, else one for each.
+fn each_clip(
+    db: &Path,
+    snapshot: &Snapshot,
+    clips: impl ExactSizeIterator<Item = ClipId>,
+    rest: impl Fn(Line) -> Line,
+) -> Option<Line> {
+    let line = |name: &str| rest(Line::new("morec db clips").word(db).with("--clip", name));
+    if clips.len() > 1 && clips.len() == snapshot.clips.len() {
+        return Some(line("*"));
+    }
+    let names: Option<Vec<&str>> = clips
+        .map(|id| Some(snapshot.clip(id)?.name.as_str()))
+        .collect();
+    Line::all(names?.into_iter().map(line))
 }
 
 impl State {
-    /// `None` where no command does the same in one line.
-    pub(super) fn line_of(&self, edit: &Edit) -> Option<String> {
+    /// Shows the command line of what was asked for.
+    pub(super) fn show_line(&mut self, line: impl Into<Option<Line>>) {
+        self.command_line = line.into().map_or_else(String::new, |line| line.0);
+    }
+
+    /// The command line of an edit; `None` where no command does the same.
+    pub(super) fn line_of(&self, edit: &Edit) -> Option<Line> {
         let store = self.store.as_ref()?;
-        let db = quoted(store.path());
-        let clip = |id| Some(word(&store.snapshot.clip(id)?.name));
-        let numbers = |ids: &[morec_db::labels::SampleId]| {
-            let numbers: Vec<String> = ids.iter().take(8).map(|id| id.0.to_string()).collect();
-            numbers.join(",")
-        };
+        let (db, snapshot) = (store.path(), &*store.snapshot);
+        let morec = |command: &str| Line::new(&format!("morec {command}")).word(db);
         Some(match edit {
-            Edit::Label(samples) => {
-                let s = samples.first()?;
-                format!(
-                    "morec db label {db} --clip {} --class {} --start {:.3} --stop {:.3}",
-                    clip(s.clip)?,
-                    word(&s.class),
-                    s.start_secs,
-                    s.stop_secs
-                )
-            }
+            Edit::Label(samples) => label_lines(db, snapshot, samples)?,
             Edit::Move {
                 id,
                 start_secs,
                 stop_secs,
-            } => format!(
-                "morec db samples {db} --move {} --start {start_secs:.3} --stop {stop_secs:.3}",
-                id.0
-            ),
+            } => morec("db samples")
+                .with("--move", id.0.to_string())
+                .secs("--start", *start_secs)
+                .secs("--stop", *stop_secs),
             Edit::Replace { old, new, .. } => {
-                let mut line = format!("morec db samples {db} --remove {}", numbers(old));
-                for s in new.iter().take(2) {
-                    line += &format!(
-                        " && morec db label {db} --clip {} --class {} --start {:.3} --stop {:.3}",
-                        clip(s.clip)?,
-                        word(&s.class),
-                        s.start_secs,
-                        s.stop_secs
-                    );
-                }
-                line
+                let remove = morec("db samples").list("--remove", &numbers(old));
+                remove.and(label_lines(db, snapshot, new)?)
             }
+            Edit::Cuts { cuts, .. } if cuts.is_empty() => return None,
             Edit::Cuts { clip, cuts, .. } => {
                 let mut cuts = cuts.clone();
                 cuts.sort_by(f64::total_cmp);
                 let at: Vec<String> = cuts.iter().map(|cut| format!("{cut:.3}")).collect();
-                let name = word(&clip.name);
-                format!("morec cut {db} --name {name} --at {}", at.join(","))
+                morec("cut").with("--clip", &clip.name).list("--at", &at)
             }
             Edit::ForgetCuts(_) => return None,
-            Edit::Roles(clips) => {
-                let (id, roles) = clips.first()?;
-                let before = store.snapshot.roles.get(id)?;
-                let joints = self.player.motion.as_ref().filter(|m| m.id == *id)?;
-                let joints = joints.clip.skeleton.joints();
-                let mut line = format!("morec db clips {db} --name {}", clip(*id)?);
-                for role in Role::ALL {
-                    let joint = roles.joint(role);
-                    if joint != before.joint(role) {
-                        let name = joint.and_then(|j| joints.get(j)).map_or("", |j| &j.name);
-                        line += &format!(" --set-role {}", word(&format!("{role}={name}")));
-                    }
-                }
-                line
-            }
-            Edit::Reclass { ids, class } => format!(
-                "morec db classes {db} --split {} --into {}",
-                numbers(ids),
-                word(class)
-            ),
-            Edit::Remove(ids) => format!("morec db samples {db} --remove {}", numbers(ids)),
+            Edit::Roles(clips) => return self.roles_line(db, snapshot, clips),
+            Edit::Reclass { ids, class } => morec("db classes")
+                .list("--split", &numbers(ids))
+                .with("--into", class),
+            Edit::Remove(ids) => morec("db samples").list("--remove", &numbers(ids)),
             Edit::Judge { ids, state } => {
-                let s = store.snapshot.sample(*ids.first()?)?;
-                let state = match state {
-                    Judged::Accepted => "accepted",
-                    Judged::Proposed => "proposed",
-                    Judged::Rejected => "rejected",
+                let line = |id: &SampleId| {
+                    let s = snapshot.sample(*id)?;
+                    let sample = super::labels::new_of(s);
+                    let line = label_line(db, snapshot, &sample)?;
+                    Some(line.with("--state", state.name()))
                 };
-                format!(
-                    "morec db label {db} --clip {} --class {} --start {:.3} --stop {:.3} --state {state}",
-                    word(&s.clip_name),
-                    word(&s.class),
-                    s.start_secs,
-                    s.stop_secs
-                )
+                let lines: Option<Vec<Line>> = ids.iter().map(line).collect();
+                Line::all(lines?.into_iter())?
             }
             Edit::RenameClass { from, to } => {
-                format!("morec db classes {db} --rename {} {}", word(from), word(to))
+                morec("db classes").with("--rename", from).word(to)
             }
-            Edit::RemoveClass(name) => {
-                format!("morec db classes {db} --forget {}", word(name))
-            }
+            Edit::RemoveClass(name) => morec("db classes").with("--forget", name),
             Edit::Describe { clips, update } => {
-                let name = clip(*clips.first()?)?;
-                let mut line = format!("morec db clips {db} --name {name}");
-                let parts = [
-                    ("--set-subject", &update.subject),
-                    ("--set-source", &update.source),
-                    ("--set-licence", &update.licence),
-                ];
-                for (option, text) in parts {
-                    if let Some(text) = text {
-                        line += &format!(" {option} {}", word(text));
+                let about = |mut line: Line| {
+                    let parts = [
+                        ("--set-subject", &update.subject),
+                        ("--set-source", &update.source),
+                        ("--set-licence", &update.licence),
+                    ];
+                    for (option, text) in parts {
+                        if let Some(text) = text {
+                            line = line.with(option, text);
+                        }
                     }
-                }
-                for tag in &update.add_tags {
-                    line += &format!(" --add-tag {}", word(tag));
-                }
-                for tag in &update.remove_tags {
-                    line += &format!(" --remove-tag {}", word(tag));
-                }
-                line
+                    for tag in &update.add_tags {
+                        line = line.with("--add-tag", tag);
+                    }
+                    for tag in &update.remove_tags {
+                        line = line.with("--remove-tag", tag);
+                    }
+                    line
+                };
+                each_clip(db, snapshot, clips.iter().copied(), about)?
             }
-            Edit::RenameClip { from, to } => {
-                format!("morec db clips {db} --rename {} {}", word(from), word(to))
-            }
+            Edit::RenameClip { from, to } => morec("db clips").with("--rename", from).word(to),
             Edit::RemoveClips(clips) => {
-                let name = clip(*clips.first()?)?;
-                format!("morec db clips {db} --name {name} --remove")
+                let remove = |line: Line| line.flag("--remove", true);
+                each_clip(db, snapshot, clips.iter().copied(), remove)?
             }
             Edit::KeepIndex { name, .. } => {
-                format!("morec train --db {db} -o {}.index", word(name))
+                let line = Line::new("morec train").with("--db", db);
+                line.list("--classes", &self.chosen())
+                    .with("-o", format!("{name}.index"))
             }
-            Edit::Undo(None) => format!("morec db undo {db}"),
-            Edit::Undo(Some(step)) => format!("morec db undo {db} {step}"),
-            Edit::Redo => format!("morec db redo {db}"),
+            Edit::Undo(None) => morec("db undo"),
+            Edit::Undo(Some(step)) => morec("db undo").word(step.to_string()),
+            Edit::Redo => morec("db redo"),
         })
+    }
+
+    /// The command that gives parts of the body to other joints.
+    fn roles_line(
+        &self,
+        db: &Path,
+        snapshot: &Snapshot,
+        clips: &[(ClipId, morec::roles::RoleMap)],
+    ) -> Option<Line> {
+        let (id, roles) = clips.first()?;
+        let before = snapshot.roles.get(id)?;
+        let motion = self.player.motion.as_ref().filter(|m| m.id == *id);
+        let joints = motion.or(self.player.motion.as_ref())?.clip.skeleton.joints();
+        let set = |mut line: Line| {
+            for role in Role::ALL {
+                let joint = roles.joint(role);
+                if joint != before.joint(role) {
+                    let name = joint.and_then(|j| joints.get(j)).map_or("", |j| &j.name);
+                    line = line.with("--set-role", format!("{role}={name}"));
+                }
+            }
+            line
+        };
+        each_clip(db, snapshot, clips.iter().map(|(id, _)| *id), set)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_quoted_where_a_shell_would_read_them_otherwise() {
+        let line = Line::new("morec train")
+            .with("--db", Path::new("my moves.mdb"))
+            .list("--classes", &["gesture 1", "it's"])
+            .with("-o", "-x.index")
+            .flag("--json", false);
+        let said = r"morec train --db 'my moves.mdb' --classes 'gesture 1,it'\''s' -o=-x.index";
+        assert_eq!(line.0, said);
+        assert_eq!(Line::new("morec").list::<&str>("--classes", &[]).0, "morec");
+    }
+
+    #[test]
+    fn lines_follow_one_another_and_too_many_are_none() {
+        let lines = |n: usize| Line::all(vec![Line::new("a"); n].into_iter());
+        assert_eq!(lines(2).unwrap().0, "a && a");
+        assert_eq!(lines(0), None);
+        assert_eq!(lines(MOST + 1), None);
     }
 }

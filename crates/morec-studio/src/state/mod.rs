@@ -4,6 +4,7 @@ mod classes;
 mod columns;
 mod command;
 pub mod compare;
+mod crossval;
 pub mod cuts;
 mod files;
 mod groups;
@@ -18,6 +19,7 @@ mod proposals;
 mod roles;
 mod shown;
 pub mod similar;
+mod thesis;
 pub mod timeline;
 mod train;
 
@@ -64,9 +66,9 @@ pub struct State {
     pub dark: bool,
     pub show_history: bool,
     pub show_keys: bool,
-    /// What went wrong, until it is dismissed.
+    /// Errors, until they are dismissed.
     pub notices: Vec<Notice>,
-    /// What was done last.
+    /// Message about the last action, for the status bar.
     pub said: String,
     /// The command that would do the same.
     pub command_line: String,
@@ -76,14 +78,14 @@ pub struct State {
     /// The joint that leaves a trail.
     pub trail: Option<usize>,
     pub onion: bool,
-    /// Who is seen beside the performer.
+    /// Performers of other clips beside the one that is shown.
     pub companions: Companions,
     pub timeline: TimelineState,
     /// The channel whose curve is shown: joint and kind; and the curve, once it is read.
     pub channel_wanted: Option<(usize, ChannelKind)>,
     pub channel: Option<ChannelCurve>,
     pub curves: Option<Arc<Curves>>,
-    /// What the index recognises in the clip that is shown.
+    /// Detections of the index in the clip that is shown.
     pub detections: Option<(ClipId, Vec<ClipDetection>)>,
     pub classes: Classes,
     pub train: Train,
@@ -113,9 +115,9 @@ pub(crate) struct Motions {
     clock: u64,
 }
 
-/// So much decoded motion is kept: joints times frames, 32 bytes each.
+/// Most decoded motion that is kept: joints times frames, 32 bytes each.
 const MOTION_KEPT: usize = 12_000_000;
-/// So many clips are decoded at once.
+/// Number of clips that are decoded at once.
 const LOADERS: usize = 2;
 
 impl Motions {
@@ -150,7 +152,7 @@ impl Motions {
 }
 
 impl State {
-    /// Nothing is open yet. `wake` calls for a new frame from any thread.
+    /// A state without a database. `wake` calls for a new frame from any thread.
     pub fn new(wake: Wake) -> Self {
         Self {
             store: None,
@@ -204,7 +206,7 @@ impl State {
         self.poll();
     }
 
-    /// Where the shown performer is, at the height of a waist so that the picture does not bob.
+    /// Position of the shown performer, at the height of a waist so that the picture does not bob.
     fn performer_centre(&self) -> Option<morec::math::Vec3> {
         if self.panel == Panel::Live {
             return self.live.centre();
@@ -260,12 +262,12 @@ impl State {
         self.store.as_ref()?.snapshot.clip(id)
     }
 
-    /// Whether anything moves by itself: then the next frame is wanted at once.
+    /// True while something moves by itself: then the next frame is wanted at once.
     pub fn is_moving(&self) -> bool {
         self.player.playing || self.live.is_running()
     }
 
-    /// Whether threads are at work.
+    /// True while threads are at work.
     pub fn is_busy(&self) -> bool {
         !self.jobs.running.is_empty()
             || self.store.as_ref().is_some_and(Store::is_busy)

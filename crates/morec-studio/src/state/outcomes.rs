@@ -1,4 +1,4 @@
-//! What threads have done arrives here, once a frame.
+//! Takes the results of threads, once a frame.
 
 use super::{Panel, State};
 use crate::jobs::JobOutcome;
@@ -139,6 +139,7 @@ impl State {
                 self.say("cross-validation done");
                 self.train.judged = Some((*judged).into());
                 self.train.cell = None;
+                self.train.moment = None;
             }
             JobOutcome::Recognised { clip, found } => self.detections = Some((clip, found)),
             JobOutcome::Resensed(found) => self.live.resensed = Some(found),
@@ -163,7 +164,7 @@ impl State {
                 let quiet = [
                     super::shown::CURVES,
                     super::similar::SEARCHING,
-                    super::train::MAPPING,
+                    super::thesis::MAPPING,
                 ];
                 if !quiet.contains(&name) {
                     self.say(format!("{name}: stopped"));

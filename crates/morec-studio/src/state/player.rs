@@ -1,4 +1,4 @@
-//! What plays, where it is, and how fast.
+//! The player: clip, position, speed, loop.
 
 use std::sync::Arc;
 
@@ -13,13 +13,13 @@ pub struct Player {
     pub motion: Option<Arc<ClipMotion>>,
     pub at_secs: f64,
     pub playing: bool,
-    /// So many times as fast as it was performed; below 0 backwards.
+    /// Speed as a multiple of the performance; below 0 backwards.
     pub speed: f64,
     /// The stretch that is repeated.
     pub looped: Option<(f64, f64)>,
 }
 
-/// What can be done with it.
+/// Commands for the player.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PlayCommand {
     Toggle,

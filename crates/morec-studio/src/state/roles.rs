@@ -1,4 +1,4 @@
-//! Which joint plays which part of the body, put right by somebody.
+//! Roles of joints, changed by hand.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! What is shown: the clip, and where it is looked at from.
+//! The clip that is shown, and the camera.
 
 use std::sync::Arc;
 
@@ -122,7 +122,7 @@ impl State {
         }
     }
 
-    /// Which way the performer faces now.
+    /// Heading of the performer now, radians.
     fn heading(&self) -> f64 {
         if self.panel == Panel::Live {
             return self.live.heading().unwrap_or(0.0);

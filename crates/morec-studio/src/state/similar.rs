@@ -3,7 +3,7 @@
 use morec_db::labels::{NewSample, SampleState as Judged};
 use morec_db::search::Hit;
 
-use super::files::quoted;
+use super::lines::Line;
 use super::{Panel, State};
 use crate::jobs::similar::{self, Similar};
 use crate::store::Edit;
@@ -12,14 +12,14 @@ use crate::stretch::Stretch;
 /// Name of the job that searches.
 pub(super) const SEARCHING: &str = "Searching";
 
-/// What can be asked for.
+/// Commands.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SimilarCommand {
-    /// What is like the selected stretch or label?
+    /// Searches for what is like the selected stretch or label.
     OfSelection,
-    /// What is like this?
+    /// Searches for what is like a stretch, of a class if it is a label.
     Of(Stretch, Option<String>),
-    /// Whether the mirror image is looked for too.
+    /// Searches for the mirror image, too.
     Mirror(bool),
     /// The hit of this place is of a class.
     Label(usize, String),
@@ -70,16 +70,8 @@ impl State {
     fn search(&mut self, of: Stretch, class: Option<String>) {
         let Some(store) = &self.store else { return };
         let (db, mirror) = (store.path().to_owned(), self.classes.mirror);
-        if let Some(clip) = store.snapshot.clip(of.clip) {
-            self.command_line = format!(
-                "morec db search {} {} --start {:.3} --stop {:.3}{}",
-                quoted(&db),
-                quoted(clip.name.as_ref()),
-                of.start_secs,
-                of.stop_secs,
-                if mirror { " --mirror" } else { "" }
-            );
-        }
+        let line = self.search_line(&of);
+        self.show_line(line.map(|line| line.flag("--mirror", mirror)));
         for job in self.jobs.running.iter().filter(|j| j.name == SEARCHING) {
             job.cancel();
         }
@@ -87,6 +79,14 @@ impl State {
             .start(SEARCHING, true, &self.wake, move |progress| {
                 similar::find(&db, of, class, mirror, progress)
             });
+    }
+
+    /// The command that searches for what is like a stretch.
+    pub(super) fn search_line(&self, of: &Stretch) -> Option<Line> {
+        let store = self.store.as_ref()?;
+        let clip = store.snapshot.clip(of.clip)?;
+        let line = Line::new("morec db search").word(store.path()).word(&clip.name);
+        Some(line.secs("--start", of.start_secs).secs("--stop", of.stop_secs))
     }
 
     /// Shows what was found.

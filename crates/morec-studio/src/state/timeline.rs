@@ -1,4 +1,4 @@
-//! What of the clip the timeline shows, what is selected there, what is being dragged.
+//! The timeline: the part of the clip in view, the selection, the label that is dragged.
 
 use std::collections::BTreeSet;
 
@@ -8,10 +8,10 @@ use super::cuts::HeldCut;
 
 /// No view is shorter than this, seconds.
 const SHORTEST: f64 = 0.05;
-/// What is nearer than this to something that can be snapped to is put there, points of the screen.
+/// Distance within which a moment snaps to a mark, points of the screen.
 const SNAP_POINTS: f64 = 7.0;
 
-/// Which end of a label is held.
+/// Part of a label that is held.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Grip {
     Start,
@@ -24,7 +24,7 @@ pub enum Grip {
 pub struct Drag {
     pub id: SampleId,
     pub grip: Grip,
-    /// Where it was held, seconds from its start.
+    /// Place at which it was held, seconds from its start.
     pub held_secs: f64,
     pub start_secs: f64,
     pub stop_secs: f64,
@@ -47,7 +47,7 @@ pub struct TimelineState {
     pub snap: bool,
     /// Width of the tracks, points; known once it was drawn.
     pub width: f32,
-    /// Whether the view goes along with the playhead.
+    /// True if the view follows the playhead.
     pub follow: bool,
 }
 
@@ -124,7 +124,7 @@ impl TimelineState {
             .unwrap_or(on_frame)
     }
 
-    /// Where a label is drawn: where it is dragged to, or where it is.
+    /// Start and stop at which a label is drawn: while it is dragged, those of the drag.
     pub fn extent(&self, sample: &DbSample) -> (f64, f64) {
         match &self.drag {
             Some(drag) if drag.id == sample.id => (drag.start_secs, drag.stop_secs),

@@ -1,4 +1,4 @@
-//! Training, what it reports, and how good the index is.
+//! Training: the classes that are learned, the index, cross-validation, the method of 2009.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -6,21 +6,22 @@ use std::sync::Arc;
 
 use morec::index::MotionIndex;
 use morec::train::TrainingReport;
+use morec_db::labels::DbSample;
 
-use super::files::quoted;
+use super::crossval::CrossvalView;
+use super::lines::Line;
 use super::{Panel, State, TrainCommand};
+use crate::jobs::export::write_whole;
 use crate::jobs::load::ClipMotion;
-use crate::jobs::thesis::{self, Map, Thesis};
-use crate::jobs::{judge, recognise, train};
+use crate::jobs::thesis::{Map, Thesis};
+use crate::jobs::judge::{self, LeftOut};
+use crate::jobs::{recognise, train};
 use crate::store::{Edit, Snapshot};
 
 /// The name under which an index is kept in the database.
 pub const INDEX: &str = "studio";
 const TRAINING: &str = "Training";
 const JUDGING: &str = "Judging";
-const THESIS: &str = "Training the method of 2009";
-/// Name of the job that maps confidences.
-pub(super) const MAPPING: &str = "Mapping confidences";
 
 /// The training panel's own state.
 #[derive(Default)]
@@ -30,49 +31,26 @@ pub struct Train {
     pub index: Option<Arc<MotionIndex>>,
     pub bytes: Vec<u8>,
     pub report: Option<TrainingReport>,
-    /// How long training took.
+    /// Duration of training.
     pub secs: f64,
     /// The labels that taught the index, to know whether they have changed.
     taught: u64,
     now: u64,
     pub judged: Option<CrossvalView>,
-    /// The cell of the confusion matrix that is shown.
+    /// The cell of the confusion matrix whose moments are listed; `None` lists the mistakes.
     pub cell: Option<(usize, usize)>,
+    /// The moment of the list that was chosen, by its place in `CrossvalView::moments`.
+    pub moment: Option<usize>,
     /// The method of 2009, once it is trained; the branch that is shown; its map of the clip that is shown.
     pub thesis: Option<Arc<Thesis>>,
     pub branch: usize,
+    /// The sample that was chosen by its point.
+    pub sample: Option<usize>,
     pub map: Option<Map>,
 }
 
-/// A cross-validation, ready to be shown.
-pub struct CrossvalView {
-    pub evaluation: morec::eval::Evaluation,
-    pub moments: Vec<judge::Moment>,
-    pub by: &'static str,
-}
-
-impl From<judge::CrossvalResult> for CrossvalView {
-    fn from(judged: judge::CrossvalResult) -> Self {
-        Self {
-            moments: judged.moments(),
-            evaluation: judged.evaluation,
-            by: judged.by,
-        }
-    }
-}
-
-impl CrossvalView {
-    /// The moments of a cell; the row after the last class is what nobody labelled, the column after it nothing found.
-    pub fn of_cell(&self, row: usize, column: usize) -> Vec<&judge::Moment> {
-        let confusion = &self.evaluation.confusion;
-        let (truth, found) = (confusion.rows.get(row), confusion.columns.get(column));
-        let wanted = |m: &&judge::Moment| m.truth.as_ref() == truth && m.found.as_ref() == found;
-        self.moments.iter().filter(wanted).collect()
-    }
-}
-
 impl Train {
-    /// Whether labels have changed since the index was trained.
+    /// True if labels have changed since the index was trained.
     pub fn is_stale(&self) -> bool {
         self.index.is_some() && self.taught != self.now
     }
@@ -88,6 +66,12 @@ impl Train {
     }
 }
 
+/// The command that trains an index.
+fn train_line(db: &Path, classes: &[String], output: impl AsRef<Path>) -> Line {
+    let line = Line::new("morec train").with("--db", db);
+    line.list("--classes", classes).with("-o", output.as_ref())
+}
+
 impl State {
     pub(super) fn apply_train(&mut self, command: TrainCommand) {
         match command {
@@ -99,7 +83,8 @@ impl State {
             }
             TrainCommand::Train => self.start_training(),
             TrainCommand::Judge => self.start_judging(),
-            TrainCommand::Cell(cell) => self.train.cell = cell,
+            TrainCommand::Cell(cell) => self.show_cell(cell),
+            TrainCommand::Moment(at) => self.go_to_moment(at),
             TrainCommand::Keep(name) => {
                 let bytes = self.train.bytes.clone();
                 if !bytes.is_empty() {
@@ -109,11 +94,12 @@ impl State {
             TrainCommand::UseIndex(name) => self.use_index(&name),
             TrainCommand::Thesis => self.train_thesis(),
             TrainCommand::Branch(node) => self.train.branch = node,
+            TrainCommand::Sample(at) => self.play_taught(at),
         }
     }
 
     /// The classes that are learned; none means all.
-    fn chosen(&self) -> Vec<String> {
+    pub(super) fn chosen(&self) -> Vec<String> {
         if self.train.without.is_empty() {
             return Vec::new();
         }
@@ -139,11 +125,7 @@ impl State {
         }
         let (db, classes) = (store.path().to_owned(), self.chosen());
         self.train.taught = self.train.now;
-        let chosen = match classes.is_empty() {
-            true => String::new(),
-            false => format!(" --classes {}", classes.join(",")),
-        };
-        self.command_line = format!("morec train --db {}{chosen} -o {INDEX}.index", quoted(&db));
+        self.show_line(train_line(&db, &classes, &format!("{INDEX}.index")));
         self.jobs
             .start(TRAINING, true, &self.wake, move |progress| {
                 train::run(&db, &classes, progress)
@@ -153,61 +135,21 @@ impl State {
     fn start_judging(&mut self) {
         let Some(store) = &self.store else { return };
         let (db, classes) = (store.path().to_owned(), self.chosen());
-        self.command_line = format!("morec crossval --db {}", quoted(&db));
+        let accepted = store.snapshot.accepted();
+        let taught: Vec<&DbSample> = accepted
+            .filter(|s| classes.is_empty() || classes.contains(&s.class))
+            .collect();
+        let people = taught.iter().filter_map(|s| s.subject.as_deref());
+        let clips: BTreeSet<_> = taught.iter().map(|s| s.clip).collect();
+        let by = LeftOut::of(people, clips.len());
+        let line = Line::new("morec crossval").with("--db", &db);
+        self.show_line(line.with("--by", by.option()).list("--classes", &classes));
         self.jobs.start(JUDGING, true, &self.wake, move |progress| {
             judge::judge(&db, &classes, progress)
         });
     }
 
-    fn train_thesis(&mut self) {
-        let Some(store) = &self.store else { return };
-        if store.snapshot.accepted().next().is_none() {
-            self.complain("Nothing to learn from: label a few motions first");
-            return;
-        }
-        let (db, classes) = (store.path().to_owned(), self.chosen());
-        self.command_line = format!(
-            "morec train --db {} --method svrdm -o 2009.index",
-            quoted(&db)
-        );
-        self.jobs.start(THESIS, true, &self.wake, move |progress| {
-            thesis::run(&db, &classes, progress)
-        });
-    }
-
-    pub(super) fn thesis_trained(&mut self, thesis: Arc<Thesis>) {
-        let samples = crate::format::count(thesis.samples.len(), "sample");
-        self.say(format!("the method of 2009 is trained on {samples}"));
-        let mut branches = thesis.nodes.iter();
-        let first = branches.position(|n| matches!(n, thesis::TreeNodeView::Branch(_)));
-        self.train.branch = first.unwrap_or(0);
-        self.train.thesis = Some(thesis);
-        if let Some(motion) = self.player.motion.clone() {
-            self.want_map(&motion);
-        }
-    }
-
-    /// The confidences of the method of 2009 over the clip that is shown.
-    pub(super) fn want_map(&mut self, motion: &Arc<ClipMotion>) {
-        self.train.map = None;
-        let Some(thesis) = self.train.thesis.clone() else {
-            return;
-        };
-        for job in self.jobs.running.iter().filter(|j| j.name == MAPPING) {
-            job.cancel();
-        }
-        let motion = motion.clone();
-        self.jobs
-            .start(MAPPING, false, &self.wake, move |progress| {
-                thesis::map(&thesis.model, &motion, progress)
-            });
-    }
-
-    pub fn is_training_thesis(&self) -> bool {
-        self.jobs.is_running(THESIS)
-    }
-
-    /// Whether an index is being trained.
+    /// True while an index is trained.
     pub fn is_training(&self) -> bool {
         self.jobs.is_running(TRAINING)
     }
@@ -231,7 +173,7 @@ impl State {
         }
     }
 
-    /// What the index recognises in a clip that is shown.
+    /// Starts recognition in the clip that is shown.
     pub(super) fn want_detections(&mut self, motion: &Arc<ClipMotion>) {
         self.detections = None;
         let Some(index) = self.train.index.clone() else {
@@ -260,6 +202,7 @@ impl State {
                 self.train.report = None;
                 self.train.taught = self.train.now;
                 self.say(format!("index {name} is in use"));
+                self.command_line.clear();
                 self.live.follow_index(self.train.index.as_ref());
                 if let Some(motion) = self.player.motion.clone() {
                     self.want_detections(&motion);
@@ -270,16 +213,18 @@ impl State {
     }
 
     pub(super) fn export_index(&mut self, path: &Path) {
+        let name = crate::format::file_name(path);
         if self.train.bytes.is_empty() {
             self.complain("There is no index yet: train first");
             return;
         }
-        match std::fs::write(path, &self.train.bytes) {
-            Ok(()) => self.say(format!("{} written", crate::format::file_name(path))),
-            Err(error) => self.complain(format!(
-                "{}: not written: {error}",
-                crate::format::file_name(path)
-            )),
+        match write_whole(path, &self.train.bytes) {
+            Ok(()) => self.say(format!("{name} written")),
+            Err(why) => self.complain(format!("{name}: not written: {why}")),
+        }
+        if let Some(store) = &self.store {
+            let line = train_line(store.path(), &self.chosen(), path);
+            self.show_line(line);
         }
     }
 }

@@ -4,7 +4,7 @@ use morec::roles::RoleMap;
 use morec_db::labels::{LabelOptions, NewSample, SampleId, SampleState};
 use morec_db::{ClipId, ClipInfo, ClipUpdate, DbError, MotionDb};
 
-/// Who says so, in the database.
+/// Author of the studio's labels in the database.
 pub const BY: &str = "studio";
 
 /// One change of the database.
@@ -31,7 +31,7 @@ pub enum Edit {
     },
     /// Samples that are forgotten.
     Remove(Vec<SampleId>),
-    /// What is thought of samples.
+    /// Another state of samples.
     Judge {
         ids: Vec<SampleId>,
         state: SampleState,
@@ -50,9 +50,9 @@ pub enum Edit {
         to: String,
     },
     RemoveClips(Vec<ClipId>),
-    /// Who plays what in clips.
+    /// Roles of the joints of clips.
     Roles(Vec<(ClipId, RoleMap)>),
-    /// Where somebody cuts a clip, seconds.
+    /// Cuts of a clip by hand, seconds.
     Cuts {
         what: String,
         clip: Box<ClipInfo>,

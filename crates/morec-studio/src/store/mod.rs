@@ -21,7 +21,7 @@ use worker::{Reply, Request};
 /// Calls for a new frame, from any thread.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
-/// What the database thread said since it was asked last.
+/// A message of the database thread.
 #[derive(Debug, Clone, PartialEq)]
 pub enum StoreMessage {
     /// An edit was made.
@@ -33,7 +33,7 @@ pub enum StoreMessage {
 /// An open database.
 pub struct Store {
     path: PathBuf,
-    /// Whether it lies in a temporary folder, to be saved elsewhere.
+    /// True if it lies in a temporary folder, to be saved elsewhere.
     pub temporary: bool,
     requests: Sender<Request>,
     replies: Receiver<Reply>,
@@ -109,7 +109,7 @@ impl Store {
         said
     }
 
-    /// Whether edits are under way.
+    /// True while edits are under way.
     pub fn is_busy(&self) -> bool {
         self.pending > 0
     }

@@ -1,4 +1,4 @@
-//! What the database holds, read at once: what panels draw.
+//! The contents of the database without motion, read at once, for drawing.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -23,7 +23,7 @@ pub struct Snapshot {
     pub segments: Vec<Segment>,
     /// By which method each clip was cut.
     pub cut_methods: BTreeMap<ClipId, String>,
-    /// Who plays what in each clip.
+    /// Roles of the joints of each clip.
     pub roles: BTreeMap<ClipId, RoleMap>,
     place: BTreeMap<ClipId, usize>,
     segments_of: BTreeMap<ClipId, Range<usize>>,
@@ -69,7 +69,7 @@ impl Snapshot {
         }
     }
 
-    /// What a clip is cut into, by time.
+    /// Segments of a clip, by time.
     pub fn segments_of(&self, clip: ClipId) -> &[Segment] {
         let range = self.segments_of.get(&clip).cloned().unwrap_or_default();
         &self.segments[range]
@@ -89,13 +89,13 @@ impl Snapshot {
         self.sample_place.get(&id).map(|&at| &self.samples[at])
     }
 
-    /// What undoing would take back.
+    /// Name of the step that undo would take back.
     pub fn undo_name(&self) -> Option<&str> {
         let step = self.history.iter().find(|s| !s.undone)?;
         Some(&step.what)
     }
 
-    /// What doing again would do: the earliest of the steps that were taken back.
+    /// Name of the step that redo would do again: the earliest of those that were taken back.
     pub fn redo_name(&self) -> Option<&str> {
         let step = self.history.iter().rev().find(|s| s.undone)?;
         Some(&step.what)
@@ -108,7 +108,7 @@ impl Snapshot {
     }
 }
 
-/// Where each number's run lies, in a list that is sorted so that equal ones are together.
+/// Ranges of equal clips in a list in which they lie together.
 fn runs(clips: impl Iterator<Item = ClipId>) -> BTreeMap<ClipId, Range<usize>> {
     let mut runs: BTreeMap<ClipId, Range<usize>> = BTreeMap::new();
     for (at, clip) in clips.enumerate() {

@@ -9,7 +9,7 @@ use morec_db::{DbError, MotionDb};
 
 use super::{Edit, Snapshot, StoreMessage, Wake};
 
-/// How often it is looked whether another program changed the database.
+/// Interval between looks at whether another program changed the database.
 const LOOK: Duration = Duration::from_secs(1);
 
 pub enum Request {
@@ -23,7 +23,7 @@ pub enum Request {
 pub struct Reply {
     pub snapshot: Option<Arc<Snapshot>>,
     pub said: Option<StoreMessage>,
-    /// Whether it answers a request.
+    /// True if it answers a request.
     pub answers: bool,
 }
 

@@ -1,4 +1,4 @@
-//! How many clicks and keys it takes from the start to "recognised live".
+//! Number of clicks and keys from the start to "recognised live".
 
 use egui::Key;
 

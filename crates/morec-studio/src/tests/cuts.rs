@@ -1,6 +1,6 @@
 //! Cuts are dragged into place and kept; a channel is a curve with its keyframes.
 
-use egui::{Key, vec2};
+use egui::{Key, Modifiers, vec2};
 
 use super::{Person, made};
 use crate::state::{Command, CutCommand, Panel, PlayCommand};
@@ -76,6 +76,39 @@ fn a_cut_is_removed_and_another_added() {
     person.settle();
     assert_eq!(person.state().cuts().len(), found.len());
     person.undo();
+    person.undo();
+    assert_eq!(person.state().cuts(), found);
+}
+
+#[test]
+fn a_cut_is_made_at_the_playhead_and_moved_by_keys() {
+    let (_folder, mut person) = labelling();
+    let found = person.state().cuts();
+    let (cut, name) = some_cut(&person);
+    let frame = 1.0 / person.state().player.rate_hz();
+    person.click(&name);
+    for (key, modifiers, by) in [
+        (Key::ArrowRight, Modifiers::COMMAND, frame),
+        (Key::ArrowLeft, Modifiers::COMMAND, -frame),
+    ] {
+        let before = person.state().timeline.cut.unwrap();
+        person.key_with(key, modifiers);
+        person.settle();
+        let now = person.state().timeline.cut.unwrap();
+        assert!((now - before - by).abs() < 1e-6, "{before} {now}");
+        assert!(person.state().cuts().iter().any(|c| (c - now).abs() < 1e-6));
+        assert_eq!(person.state().cuts().len(), found.len());
+    }
+    person.command(Command::Play(PlayCommand::Seek(cut + 1.0)));
+    let at = person.state().player.at_secs;
+    person.key(Key::OpenBracket);
+    person.settle();
+    assert!(person.state().cuts().iter().any(|c| (c - at).abs() < 1e-6));
+    (0..3).for_each(|_| person.undo());
+    assert_eq!(person.state().cuts(), found);
+    person.key(Key::X);
+    person.settle();
+    assert_eq!(person.state().cuts().len(), found.len() + 1);
     person.undo();
     assert_eq!(person.state().cuts(), found);
 }

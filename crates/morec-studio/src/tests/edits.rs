@@ -271,31 +271,6 @@ fn clips_are_cut_and_labels_dragged_between_classes() {
 }
 
 #[test]
-fn groups_follow_the_depth_and_become_classes() {
-    let (_folder, mut person) = labelling(2);
-    person.goes_to(Panel::Classes);
-    person.click("Group labels");
-    person.settle();
-    let groups = person.state().classes.groups.clone().unwrap();
-    assert_eq!(groups.items.len(), 12);
-    assert!(person.sees_part("Group 3"), "as many as there are classes");
-    person.command(Command::Classes(crate::state::ClassCommand::Depth(1)));
-    assert!(
-        person.sees("Group 1") && !person.sees("Group 2"),
-        "regrouped at once"
-    );
-    let before = person.labels();
-    person.click("Name of group 1");
-    person.window.event(egui::Event::Text("all".to_owned()));
-    person.frames(3);
-    person.click("Make it a class");
-    person.settle();
-    assert!(person.labels().iter().all(|l| l.1 == "all"));
-    person.undo();
-    assert_eq!(person.labels(), before);
-}
-
-#[test]
 fn proposals_are_answered_with_two_keys() {
     let (_folder, mut person) = labelling(2);
     let before = person.labels();
@@ -322,6 +297,12 @@ fn proposals_are_answered_with_two_keys() {
     person.undo();
     person.undo();
     assert_eq!(person.labels(), before);
+    // The proposals themselves are a step, too.
+    assert_eq!(person.state().doubtful().len(), open);
+    person.undo();
+    assert!(person.state().doubtful().is_empty());
+    person.redo();
+    assert_eq!(person.state().doubtful().len(), open);
 }
 
 #[test]

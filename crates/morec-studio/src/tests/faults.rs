@@ -1,4 +1,4 @@
-//! What is wrong is said in place, and nothing is lost.
+//! Faults give a sentence in place, and nothing is lost.
 
 use morec_db::labels::{NewSample, SampleState as Judged};
 

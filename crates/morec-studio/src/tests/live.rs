@@ -21,6 +21,8 @@ fn what_just_happened_is_marked_learned_and_recognised_and_undone() {
     }
     person.key(Key::Num1);
     assert_eq!(person.state().live.marks.len(), 1);
+    let line = person.state().command_line.clone();
+    assert!(line.ends_with("--name gesture_1"), "{line}");
     let (start, stop, _) = person.state().live.marks[0].clone();
     assert!(
         (start - wave.start_secs).abs() < 0.8 && (stop - wave.stop_secs).abs() < 0.8,
@@ -47,6 +49,14 @@ fn what_just_happened_is_marked_learned_and_recognised_and_undone() {
     person.click("Stop");
     person.undo();
     assert!(person.labels().is_empty());
+    // The sample's clip is a step of its own.
+    let clips = |person: &Person| person.state().store.as_ref().unwrap().snapshot.clips.len();
+    assert_eq!(clips(&person), 4);
+    person.undo();
+    assert_eq!(clips(&person), 3);
+    person.redo();
+    person.redo();
+    assert_eq!(person.labels().len(), 1);
 }
 
 #[test]
@@ -75,8 +85,14 @@ fn a_take_is_recorded_into_the_database_after_a_countdown() {
         "{}",
         clip.duration_secs()
     );
+    let line = person.state().command_line.clone();
+    assert!(line.starts_with("morec record --listen clip://"), "{line}");
     person.command(Command::Show(Panel::Library));
-    assert!(person.sees("take_001"));
+    assert!(person.offers("take_001"));
+    person.undo();
+    assert!(!person.offers("take_001"));
+    person.redo();
+    assert!(person.offers("take_001"));
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Where live poses come from.
+//! Sources of live poses: a clip, or a device on a thread.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -29,7 +29,7 @@ pub enum Feed {
 }
 
 impl Feed {
-    /// What has come while `dt` seconds passed on the wall.
+    /// Appends what has come while `dt` seconds passed on the wall.
     pub fn poll(&mut self, dt: f64, out: &mut Vec<SourceItem>) {
         match self {
             Feed::Clip(feed) => feed.poll(dt, out),

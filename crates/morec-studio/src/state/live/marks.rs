@@ -1,10 +1,11 @@
-//! What just happened becomes a sample; a take becomes a clip.
+//! Marking: a stretch of the stream becomes a sample, a take becomes a clip.
 
 use super::TEACHING;
+use crate::state::lines::Line;
 use crate::jobs::teach::{Lesson, Taught, teach};
 use crate::state::State;
 
-/// What is kept before and after a marked stretch, seconds.
+/// Margin kept before and after a marked stretch, seconds.
 const AROUND_SECS: f64 = 0.7;
 
 impl State {
@@ -32,10 +33,6 @@ impl State {
             self.complain("That part of the stream is no longer kept");
             return;
         };
-        let source = match run.name.contains("://") {
-            true => run.name.clone(),
-            false => "SOURCE".to_owned(),
-        };
         self.live.marks.push((start, stop, class.to_owned()));
         self.live.range = None;
         self.live.teaching = true;
@@ -45,10 +42,8 @@ impl State {
             label: Some((class.to_owned(), start - origin, stop - origin)),
             name: class.replace(' ', "_"),
         };
-        self.command_line = format!(
-            "morec teach studio.index --name {} --listen {source}",
-            crate::state::files::quoted(class.as_ref())
-        );
+        let line = self.live_line("morec teach");
+        self.show_line(line.map(|line| line.with("--name", class.replace(' ', "_"))));
         self.keep(store, lesson);
     }
 
@@ -101,11 +96,11 @@ impl State {
             label: None,
             name: "take".to_owned(),
         };
-        self.command_line = format!(
-            "morec record --listen {} -o take.bvh && morec db import {} take.bvh",
-            self.live.run.as_ref().map_or("SOURCE", |r| r.name.as_str()),
-            crate::state::files::quoted(&store)
-        );
+        let line = self.live_source();
+        self.show_line(line.map(|source| {
+            let line = Line::new("morec record").with("--listen", source);
+            line.with("-o", &store)
+        }));
         self.keep(store, lesson);
     }
 }

@@ -16,6 +16,7 @@ use morec::math::Vec3;
 use morec_db::ClipId;
 
 use super::State;
+use super::lines::Line;
 use crate::jobs::recognise;
 pub use feed::{ClipFeed, Feed, ThreadFeed};
 pub use run::Run;
@@ -24,7 +25,7 @@ pub use tracked::LivePerformer;
 /// Name of the job that keeps what was marked.
 pub(super) const TEACHING: &str = "Keeping what was marked";
 
-/// Where poses are to come from.
+/// Choice of a source.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Choice {
     /// A clip of the database.
@@ -44,9 +45,9 @@ pub struct Live {
     pub alarms: Option<f64>,
     /// A stretch of the stream that is selected, on its clock.
     pub range: Option<(f64, f64)>,
-    /// What was marked: from when to when, as what.
+    /// Marked stretches: start, stop, class.
     pub marks: Vec<(f64, f64, String)>,
-    /// What the recorded minutes would have held at this sensitivity.
+    /// Detections in the recorded minutes at this sensitivity.
     pub resensed: Option<Vec<Detection>>,
     /// Something that was marked is being kept.
     pub teaching: bool,
@@ -56,7 +57,7 @@ pub struct Live {
     pub countdown: Option<f64>,
     /// The take.
     pub take: Option<Recording>,
-    /// How many motions of each class were recognised.
+    /// Number of detections of each class.
     pub counts: BTreeMap<String, usize>,
 }
 
@@ -80,7 +81,7 @@ impl Default for Live {
     }
 }
 
-/// What can be asked for.
+/// Commands.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LiveCommand {
     Choose(Choice),
@@ -122,7 +123,7 @@ impl Live {
         }
     }
 
-    /// Whether the index can be made more or less sensitive.
+    /// True if the sensitivity of the index can be changed.
     pub fn can_sense(&self) -> bool {
         let index = self.index.as_ref();
         index.is_some_and(|index| index.model.with_sensitivity(0.3).is_ok())
@@ -187,15 +188,9 @@ impl State {
                     self.complain("There is no clip to play: import one first");
                     return;
                 };
-                let path = self
-                    .store
-                    .as_ref()
-                    .and_then(|s| Some(s.snapshot.clip(clip)?.path.clone()));
-                if let Some(path) = path {
-                    let file = super::files::quoted(path.as_ref());
-                    self.command_line = format!("morec recognize studio.index {file}");
-                }
                 self.live.choice = Choice::Clip(Some(clip));
+                let line = self.live_line("morec live");
+                self.show_line(line);
                 self.live.starting = Some(clip);
                 self.want_motion(clip);
             }
@@ -211,14 +206,32 @@ impl State {
         };
         match ThreadFeed::start(opened.source, self.wake.clone()) {
             Ok(feed) => {
-                self.command_line = format!("morec live studio.index --listen {address}");
                 self.run(Feed::Thread(feed), opened.name);
+                let line = self.live_line("morec live");
+                self.show_line(line);
                 if let Some(run) = &mut self.live.run {
                     run.notices = Some(opened.notices);
                 }
             }
             Err(error) => self.complain(format!("{address}: {error}")),
         }
+    }
+
+    /// The address at which the command finds the source that was chosen.
+    fn live_source(&self) -> Option<String> {
+        match &self.live.choice {
+            Choice::Network(address) => Some(address.clone()),
+            Choice::Clip(clip) => {
+                let clip = self.store.as_ref()?.snapshot.clip((*clip)?)?;
+                Some(format!("clip://{}", clip.path))
+            }
+        }
+    }
+
+    /// A command with the index and the source that was chosen.
+    fn live_line(&self, command: &str) -> Option<Line> {
+        let line = Line::new(command).word(format!("{}.index", super::train::INDEX));
+        Some(line.with("--listen", self.live_source()?))
     }
 
     fn run(&mut self, feed: Feed, name: String) {
@@ -288,16 +301,10 @@ impl State {
         let Some(run) = &mut self.live.run else {
             return;
         };
-        self.command_line = match &self.live.choice {
-            Choice::Network(address) => {
-                format!("morec live studio.index --listen {address} --sensitivity {alarms:.2}")
-            }
-            Choice::Clip(_) => {
-                format!("morec recognize studio.index CLIP --sensitivity {alarms:.2}")
-            }
-        };
         run.recognise_with(&model);
         let poses: Vec<(f64, KeyPose)> = run.watched().map(|w| w.key_poses()).unwrap_or_default();
+        let line = self.live_line("morec live");
+        self.show_line(line.map(|line| line.with("--sensitivity", format!("{alarms:.2}"))));
         if poses.len() > 30 && !self.jobs.is_running("Trying the sensitivity") {
             self.jobs.start(
                 "Trying the sensitivity",

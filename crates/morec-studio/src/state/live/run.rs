@@ -7,11 +7,11 @@ use morec::live::{EarlyDetection, Event, Frame, Model, PerformerId, Phase};
 use super::feed::{Feed, SourceItem};
 use super::tracked::LivePerformer;
 
-/// So much of the stream is kept for looking back.
+/// Length of the stream that is kept for looking back, seconds.
 pub const KEPT_SECS: f64 = 300.0;
 /// A stream that says nothing for so long has been lost, seconds on the wall.
 const LOST_SECS: f64 = 1.5;
-/// So many performers are followed; minutes of poses are kept of each.
+/// Most performers that are followed; minutes of poses are kept of each.
 const MOST: usize = 16;
 
 /// Something that was recognised.
@@ -31,17 +31,17 @@ pub struct Run {
     pub name: String,
     /// In the order in which they came.
     pub performers: Vec<LivePerformer>,
-    /// Which of them is watched, taught from and recorded.
+    /// Place of the performer who is watched, taught from and recorded.
     watched: usize,
     pub now_secs: f64,
     pub seen: Vec<LiveDetection>,
     /// Classes of motions that ended since they were asked for.
     pub news: Vec<ClassId>,
     model: Option<Model>,
-    /// How long nothing has come, seconds on the wall.
+    /// Time for which nothing has come, seconds on the wall.
     pub silent_secs: f64,
     pub ended: bool,
-    /// What the source finds wrong with what it is sent, and what it has said so far.
+    /// Faults of the data that the source is sent.
     pub notices: Option<morec_live::Notices>,
     noticed: Vec<String>,
 }
@@ -155,14 +155,14 @@ impl Run {
         }
     }
 
-    /// What seems to be under way with the performer who is watched: class and progress.
+    /// The motion that seems to be under way with the performer who is watched: class and progress.
     pub fn early_detection(&self) -> Option<(String, EarlyDetection)> {
         let early = self.watched()?.early_detection()?;
         let model = self.model.as_ref()?;
         Some((model.class_name(early.class).to_owned(), early))
     }
 
-    /// How the stream is, in sentences, each with whether it is a fault.
+    /// Health of the stream in sentences, each true if it is a fault.
     pub fn health(&self) -> Vec<(String, bool)> {
         let mut said = Vec::new();
         let nothing = self.performers.iter().all(|p| p.frames.is_empty());

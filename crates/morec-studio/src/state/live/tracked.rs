@@ -25,9 +25,9 @@ pub struct LivePerformer {
     pub now_secs: f64,
     /// The last minutes.
     pub frames: VecDeque<Frame>,
-    /// How fast hands and feet move against the hips, for each of them: metres a second.
+    /// Speed of hands and feet against the hips for each frame, metres a second.
     pub speeds: VecDeque<f32>,
-    /// Whether the source has said that the performer left.
+    /// True once the source has said that the performer left.
     pub gone: bool,
     performer: Option<Performer>,
 }
@@ -57,7 +57,7 @@ impl LivePerformer {
         self.performer = Some(performer);
     }
 
-    /// What was under way has ended.
+    /// Ends the motions that are under way.
     pub fn finish(&mut self, events: &mut Vec<Event>) {
         if let Some(performer) = &mut self.performer {
             performer.finish(&mut |event| events.push(event));

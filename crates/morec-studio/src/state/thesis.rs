@@ -1,0 +1,80 @@
+//! The method of 2009: training, the samples of its tree, its map of the clip that is shown.
+
+use std::sync::Arc;
+
+use super::lines::Line;
+use super::{LibraryCommand, State};
+use crate::jobs::load::ClipMotion;
+use crate::jobs::thesis::{self, Thesis};
+
+const THESIS: &str = "Training the method of 2009";
+/// Name of the job that maps confidences.
+pub(super) const MAPPING: &str = "Mapping confidences";
+
+impl State {
+    pub(super) fn train_thesis(&mut self) {
+        let Some(store) = &self.store else { return };
+        if store.snapshot.accepted().next().is_none() {
+            self.complain("Nothing to learn from: label a few motions first");
+            return;
+        }
+        let (db, classes) = (store.path().to_owned(), self.chosen());
+        let line = Line::new("morec train").with("--db", &db);
+        let line = line.with("--method", "svrdm").list("--classes", &classes);
+        self.show_line(line.with("-o", "2009.index"));
+        self.jobs.start(THESIS, true, &self.wake, move |progress| {
+            thesis::run(&db, &classes, progress)
+        });
+    }
+
+    pub(super) fn thesis_trained(&mut self, thesis: Arc<Thesis>) {
+        let samples = crate::format::count(thesis.samples.len(), "sample");
+        self.say(format!("the method of 2009 is trained on {samples}"));
+        let first = (0..thesis.nodes.len()).find(|&at| thesis.branch(at).is_some());
+        self.train.branch = first.unwrap_or(0);
+        self.train.sample = None;
+        self.train.thesis = Some(thesis);
+        if let Some(motion) = self.player.motion.clone() {
+            self.want_map(&motion);
+        }
+    }
+
+    /// The confidences of the method of 2009 over the clip that is shown.
+    pub(super) fn want_map(&mut self, motion: &Arc<ClipMotion>) {
+        self.train.map = None;
+        let Some(thesis) = self.train.thesis.clone() else {
+            return;
+        };
+        for job in self.jobs.running.iter().filter(|j| j.name == MAPPING) {
+            job.cancel();
+        }
+        let motion = motion.clone();
+        self.jobs
+            .start(MAPPING, false, &self.wake, move |progress| {
+                thesis::map(&thesis.model, &motion, progress)
+            });
+    }
+
+    pub fn is_training_thesis(&self) -> bool {
+        self.jobs.is_running(THESIS)
+    }
+
+    /// Plays a sample that taught the tree, in a loop.
+    pub(super) fn play_taught(&mut self, at: usize) {
+        let thesis = self.train.thesis.clone();
+        let Some(sample) = thesis.as_ref().and_then(|t| t.samples.get(at)) else {
+            return;
+        };
+        self.train.sample = Some(at);
+        let clips = self.store.iter().flat_map(|s| &s.snapshot.clips);
+        let clip = clips.filter(|clip| clip.name == sample.clip).map(|clip| clip.id).next();
+        match clip {
+            Some(clip) => self.apply_library(LibraryCommand::GoTo {
+                clip,
+                start_secs: sample.start_secs,
+                stop_secs: sample.stop_secs,
+            }),
+            None => self.say(format!("{} is not in the database any more", sample.clip)),
+        }
+    }
+}

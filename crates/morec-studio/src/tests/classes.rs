@@ -1,0 +1,117 @@
+//! Classes are named, renamed, removed; samples are dragged between them; groups follow a slider.
+
+use super::{Person, made};
+use crate::state::Panel;
+
+fn labelling(labelled: usize) -> (tempfile::TempDir, Person) {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), labelled)]);
+    person.goes_to(Panel::Label);
+    (folder, person)
+}
+
+#[test]
+fn a_class_is_added_renamed_removed_and_what_is_in_the_database_is_undone() {
+    let (_folder, mut person) = labelling(1);
+    let before = person.labels();
+    person.types("New class", "jump");
+    assert!(person.sees("Class jump"));
+    person.wait(0.5);
+    person.right_click("Class jump");
+    person.click("Remove the class and its labels");
+    person.settle();
+    assert!(!person.sees("Class jump"), "it had no label");
+    person.wait(0.5);
+    person.right_click("Class wave");
+    person.click("Rename");
+    person.frames(2);
+    person.types("New name of wave", "greeting");
+    assert!(person.sees("Class greeting") && !person.sees("Class wave"));
+    assert!(person.labels().iter().any(|l| l.1 == "greeting"));
+    person.undo();
+    assert_eq!(person.labels(), before);
+    person.wait(0.5);
+    person.right_click("Class wave");
+    person.click("Remove the class and its labels");
+    person.settle();
+    assert!(!person.labels().iter().any(|l| l.1 == "wave"));
+    person.undo();
+    assert_eq!(person.labels(), before);
+}
+
+#[test]
+fn a_selected_label_gets_another_class_by_its_key() {
+    let (_folder, mut person) = labelling(1);
+    let before = person.labels();
+    let wave = before.iter().find(|l| l.1 == "wave").unwrap().clone();
+    let (start, stop) = (wave.2 as f64 / 100.0, wave.3 as f64 / 100.0);
+    let shown = person.state().shown_samples().iter();
+    let sample = shown
+        .clone()
+        .find(|s| s.class == "wave" && (s.start_secs - start).abs() < 0.02)
+        .unwrap();
+    let name = format!("wave {:.2}–{:.2} s", sample.start_secs, sample.stop_secs);
+    assert!((sample.stop_secs - stop).abs() < 0.02);
+    person.click(&name);
+    person.key(egui::Key::Num1);
+    person.settle();
+    assert_eq!(person.state().classes.order[0], "bow");
+    assert!(!person.labels().contains(&wave));
+    person.undo();
+    assert_eq!(person.labels(), before);
+}
+
+#[test]
+fn groups_follow_the_slider_and_become_classes() {
+    let (_folder, mut person) = labelling(2);
+    person.goes_to(Panel::Classes);
+    person.click("Group labels");
+    person.settle();
+    let groups = person.state().classes.groups.clone().unwrap();
+    assert_eq!(groups.items.len(), 12);
+    assert!(person.sees("Group 3"), "as many as there are classes");
+    assert!(!person.sees("Group 4"));
+    let slider = person.place("Number of groups");
+    let at = |share: f32| {
+        let x = slider.left() + share * slider.width();
+        egui::pos2(x, slider.center().y)
+    };
+    person.drag(at(0.2), at(0.98));
+    let many = person.state().classes.depth;
+    assert!(many > 8 && person.sees("Group 5"), "{many}");
+    person.drag(at(0.5), at(0.0));
+    assert_eq!(person.state().classes.depth, 1);
+    assert!(person.sees("Group 1") && !person.sees("Group 2"));
+    let before = person.labels();
+    person.click("Name of group 1");
+    person.window.event(egui::Event::Text("all".to_owned()));
+    person.frames(3);
+    person.click("Make it a class");
+    person.settle();
+    assert!(person.labels().iter().all(|l| l.1 == "all"));
+    person.undo();
+    assert_eq!(person.labels(), before);
+}
+
+#[test]
+fn cuts_are_grouped_and_a_group_becomes_labels() {
+    let (_folder, mut person) = labelling(0);
+    person.click("Cut all clips");
+    person.click("By kernel change points");
+    person.settle();
+    person.goes_to(Panel::Classes);
+    person.click("Group cuts");
+    person.settle();
+    let groups = person.state().classes.groups.clone().unwrap();
+    assert!(groups.items.iter().all(|item| item.sample.is_none()));
+    let depth = person.state().classes.depth;
+    let members = groups.at(depth)[0].members.len();
+    person.click("Name of group 1");
+    person.window.event(egui::Event::Text("something".to_owned()));
+    person.frames(3);
+    person.click("Make it a class");
+    person.settle();
+    assert_eq!(person.labels().len(), members);
+    person.undo();
+    assert!(person.labels().is_empty());
+}

@@ -1,0 +1,162 @@
+//! Each action behind a file dialog, with the dialog's answer given by the test.
+
+use egui::{Key, Modifiers};
+use morec_db::exchange::LabelFormat;
+
+use super::{Person, made, takes};
+use crate::dialogs::Choice;
+use crate::state::Panel;
+
+fn with_labels(labelled: usize) -> (tempfile::TempDir, Person) {
+    let folder = tempfile::tempdir().unwrap();
+    let person = Person::before(&[made(folder.path(), labelled)]);
+    (folder, person)
+}
+
+impl Person {
+    /// Opens the menu File and clicks an entry.
+    fn file(&mut self, entry: &str) {
+        // Soon after another click it would be a double click.
+        self.wait(0.5);
+        self.click("File");
+        self.click(entry);
+        self.settle();
+    }
+
+    fn database(&self) -> String {
+        let store = self.state().store.as_ref().unwrap();
+        crate::format::file_name(store.path())
+    }
+}
+
+#[test]
+fn a_database_is_opened_made_and_copied() {
+    let (folder, mut person) = with_labels(1);
+    let other = tempfile::tempdir().unwrap();
+    let second = made(other.path(), 2);
+    person.will_choose(&[&second]);
+    person.file("Open … Ctrl O");
+    assert_eq!(person.asked().choice, Choice::File);
+    assert_eq!(person.asked().filter.unwrap().1, "mdb");
+    assert_eq!(person.state().store.as_ref().unwrap().path(), second);
+    let copy = folder.path().join("copy.mdb");
+    person.will_choose(&[&copy]);
+    person.file("Save a copy as … Ctrl S");
+    assert_eq!(person.asked().choice, Choice::Save);
+    assert_eq!(person.database(), "copy.mdb");
+    assert_eq!(person.labels().len(), 12, "with all that was in it");
+    let new = folder.path().join("new.mdb");
+    person.will_choose(&[&new]);
+    person.file("New database …");
+    assert_eq!(person.asked().file_name, "motions.mdb");
+    assert_eq!(person.database(), "new.mdb");
+    assert!(person.sees("No clips yet"));
+    // What is there is not written over by a new one.
+    person.will_choose(&[&copy]);
+    person.file("New database …");
+    assert!(person.sees_part("copy.mdb: there is a file already"));
+    assert_eq!(person.database(), "new.mdb");
+}
+
+#[test]
+fn clips_are_imported_from_files_and_folders() {
+    let (folder, mut person) = with_labels(0);
+    let new = folder.path().join("new.mdb");
+    person.will_choose(&[&new]);
+    person.file("New database …");
+    let file = |name: &str| folder.path().join(format!("{name}.bvh"));
+    person.will_choose(&[&file("ada_1"), &file("ben_1")]);
+    person.click("Import clips");
+    person.settle();
+    assert_eq!(person.asked().choice, Choice::Files);
+    assert!(person.offers("ada_1") && person.offers("ben_1") && !person.offers("cleo_1"));
+    person.undo();
+    assert!(!person.offers("ada_1"));
+    person.will_choose(&[folder.path()]);
+    person.file("Import a folder …");
+    assert_eq!(person.asked().choice, Choice::Folders);
+    assert!(takes().iter().all(|take| person.offers(&take.clip.name)));
+    person.undo();
+    assert!(!person.offers("cleo_1"));
+}
+
+#[test]
+fn labels_of_each_form_a_clip_and_a_page_are_exported() {
+    let (folder, mut person) = with_labels(2);
+    let names = [
+        ("Table (TSV) …", LabelFormat::Tsv, Choice::Save),
+        ("Table (CSV) …", LabelFormat::Csv, Choice::Save),
+        ("JSON …", LabelFormat::Json, Choice::Save),
+        ("ELAN, a file for each clip …", LabelFormat::Eaf, Choice::Folder),
+        ("Audacity, a file for each clip …", LabelFormat::Audacity, Choice::Folder),
+        ("BABEL …", LabelFormat::Babel, Choice::Save),
+        ("Label Studio …", LabelFormat::LabelStudio, Choice::Save),
+    ];
+    assert_eq!(names.len(), LabelFormat::ALL.len());
+    for (entry, form, choice) in names {
+        let path = folder.path().join(format!("out-{}", form.name()));
+        person.will_choose(&[&path]);
+        person.wait(0.5);
+        person.click("File");
+        person.click("Export labels ⏵");
+        person.click(entry);
+        person.settle();
+        assert_eq!(person.asked().choice, choice, "{entry}");
+        assert!(path.exists(), "{entry}");
+        let line = &person.state().command_line;
+        assert!(line.ends_with(&format!("--form {}", form.name())), "{line}");
+    }
+    let clip = folder.path().join("out.bvh");
+    person.will_choose(&[&clip]);
+    person.file("Export this clip …");
+    assert_eq!(person.asked().file_name, "ada_1.bvh");
+    assert!(morec::files::open(&clip).is_ok());
+    let page = folder.path().join("out.html");
+    person.will_choose(&[&page]);
+    person.file("A page of it to send …");
+    assert_eq!(person.asked().file_name, "ada_1.html");
+    assert!(std::fs::read_to_string(&page).unwrap().contains("<canvas"));
+}
+
+#[test]
+fn an_index_is_exported_and_can_be_loaded() {
+    let (folder, mut person) = with_labels(2);
+    person.goes_to(Panel::Train);
+    person.click("Start training");
+    person.settle();
+    let path = folder.path().join("mine.index");
+    for entry in [true, false] {
+        let _ = std::fs::remove_file(&path);
+        person.will_choose(&[&path]);
+        match entry {
+            true => person.file("Export the index …"),
+            false => {
+                person.click("Export …");
+                person.settle();
+            }
+        }
+        assert_eq!(person.asked().filter.unwrap().1, "index");
+        let index = morec::MotionIndex::load(&path).unwrap();
+        assert_eq!(index.model.classes().len(), 3);
+    }
+    let line = &person.state().command_line;
+    assert!(line.ends_with("mine.index"), "{line}");
+}
+
+#[test]
+fn keys_open_dialogs_and_a_dialog_that_is_cancelled_changes_nothing() {
+    let (_folder, mut person) = with_labels(1);
+    let (before, database) = (person.labels(), person.database());
+    for (key, choice) in [
+        (Key::O, Choice::File),
+        (Key::I, Choice::Files),
+        (Key::S, Choice::Save),
+    ] {
+        person.key_with(key, Modifiers::COMMAND);
+        person.settle();
+        assert_eq!(person.asked().choice, choice);
+    }
+    assert_eq!(person.labels(), before);
+    assert_eq!(person.database(), database);
+    assert!(person.state().notices.is_empty());
+}

@@ -1,0 +1,132 @@
+//! The report of a cross-validation: one count of mistakes, and from each to its moment and its nearest label.
+
+use egui::Key;
+use morec_db::labels::{NewSample, SampleState as Judged};
+
+use super::{Person, made};
+use crate::state::{Command, Panel};
+use crate::store::Edit;
+
+/// Cross-validated, with a label that cannot be recognised and a motion without its label.
+fn judged() -> (tempfile::TempDir, Person) {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 3)]);
+    let clip = person.state().player.motion.as_ref().unwrap().id;
+    // A wave of somebody is not labelled: where it is recognised, it matches no label.
+    let snapshot = person.state().store.as_ref().unwrap().snapshot.clone();
+    let forgotten = snapshot.samples.iter().find(|s| s.class == "wave" && s.clip != clip);
+    person.command(Command::Edit(Edit::Remove(vec![forgotten.unwrap().id])));
+    // Nobody moves in the first second: what is labelled there cannot be recognised.
+    person.command(Command::Edit(Edit::Label(vec![NewSample {
+        clip,
+        class: "wave".to_owned(),
+        start_secs: 0.1,
+        stop_secs: 0.9,
+        whole_clip: false,
+        state: Judged::Accepted,
+        score: None,
+    }])));
+    person.goes_to(Panel::Train);
+    person.click("Cross-validate");
+    person.settle();
+    (folder, person)
+}
+
+#[test]
+fn matrix_list_and_figures_count_the_same() {
+    let (_folder, mut person) = judged();
+    let judged = person.state().train.judged.as_ref().unwrap();
+    let (rows, columns) = (judged.rows.len(), judged.columns.len());
+    let sum = |row: usize| judged.counts[row].iter().sum::<usize>();
+    // Each label is in its class's row, once.
+    let labels = judged.evaluation.totals.samples;
+    assert_eq!((0..rows).map(sum).sum::<usize>(), labels);
+    let (missed, wrong) = (judged.missed(), judged.false_detections());
+    assert!(missed >= 1 && wrong >= 1, "{missed} {wrong}");
+    assert_eq!((0..rows).map(|row| judged.counts[row][columns]).sum::<usize>(), missed);
+    assert_eq!(sum(rows), wrong, "the last row is the false detections");
+    assert_eq!(judged.mistakes().len(), labels - judged.recognised() + wrong);
+    // The corner is nothing that could be counted.
+    assert!(!person.offers("no label taken for nothing: 0"));
+    let name = format!("no label taken for wave: {}", judged.counts[rows][2]);
+    let alarms = judged.of_cell(rows, 2).len();
+    person.click(&name);
+    person.settle();
+    assert!(person.sees("IN THIS CELL"));
+    let lines = person.window.query_all_by_label_contains("wave where none is labelled");
+    assert_eq!(lines.count(), alarms);
+    person.click("All mistakes");
+    assert!(person.sees("MISTAKES"));
+}
+
+#[test]
+fn a_line_jumps_to_its_moment_and_offers_the_comparison_with_the_nearest_label() {
+    let (_folder, mut person) = judged();
+    let judged = person.state().train.judged.as_ref().unwrap();
+    let missed = judged
+        .moments
+        .iter()
+        .find(|m| m.found.is_none() && m.start_secs < 0.2);
+    let missed = missed.unwrap().clone();
+    let why = missed.why.clone().unwrap();
+    assert!(why.len() > 10, "{why}");
+    person.click(&format!("wave missed, ada_1 0.10 s: {why}"));
+    person.settle();
+    let player = &person.state().player;
+    assert_eq!(player.motion.as_ref().unwrap().clip.name, "ada_1");
+    assert!(player.playing && player.looped.unwrap().1 >= 0.9);
+    person.click("Compare with the nearest wave");
+    person.settle();
+    let aligned = person.state().companions.all[0].clone();
+    assert_eq!((aligned.of.start_secs, aligned.of.stop_secs), (0.1, 0.9));
+    // What stands beside it is a label of the class, and another one.
+    let store = person.state().store.as_ref().unwrap();
+    let label = store.snapshot.accepted().find(|s| {
+        s.clip == aligned.with.clip && (s.start_secs - aligned.with.start_secs).abs() < 1e-6
+    });
+    assert_eq!(label.unwrap().class, "wave");
+    assert_ne!(aligned.of, aligned.with);
+    assert!(person.sees_part("Seen: ada_1"), "both are seen");
+    assert_eq!(person.state().panel, Panel::Train);
+}
+
+#[test]
+fn a_false_detection_is_compared_with_what_it_was_taken_for() {
+    let (_folder, mut person) = judged();
+    let judged = person.state().train.judged.as_ref().unwrap();
+    let false_one = judged.moments.iter().find(|m| m.truth.is_none()).unwrap().clone();
+    let class = false_one.found.clone().unwrap();
+    person.click(&format!(
+        "{class} where none is labelled, {} {}",
+        false_one.clip,
+        crate::format::secs(false_one.start_secs)
+    ));
+    person.settle();
+    let shown = person.state().player.motion.as_ref().unwrap();
+    assert_eq!(shown.clip.name, false_one.clip);
+    // By the key, too.
+    person.key(Key::C);
+    person.settle();
+    let aligned = person.state().companions.all[0].clone();
+    assert!((aligned.of.start_secs - false_one.start_secs).abs() < 1e-9);
+    let store = person.state().store.as_ref().unwrap();
+    let mut labels = store.snapshot.accepted();
+    assert!(labels.any(|s| s.class == class
+        && s.clip == aligned.with.clip
+        && (s.start_secs - aligned.with.start_secs).abs() < 1e-6));
+}
+
+#[test]
+fn a_class_without_another_label_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 1)]);
+    let clip = person.state().player.motion.as_ref().unwrap().id;
+    let of = crate::stretch::Stretch {
+        clip,
+        start_secs: 1.0,
+        stop_secs: 2.0,
+    };
+    let class = "jump".to_owned();
+    person.command(Command::Compare(crate::state::CompareCommand::NearestOf { of, class }));
+    assert!(person.sees_part("There is no other label of jump to compare with"));
+}

@@ -1,0 +1,286 @@
+//! A person before the window: the hands and eyes of the tests.
+
+use std::collections::VecDeque;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, Rect};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+
+use crate::app::Studio;
+use crate::dialogs::{Chooser, Dialog, Dialogs};
+use crate::state::{Command, Panel, State};
+
+/// Seconds that pass with every frame.
+pub const DT: f32 = 1.0 / 60.0;
+/// No thread works longer than this, even on a busy machine.
+const PATIENCE: Duration = Duration::from_secs(240);
+
+/// Dialogs that are answered by what a test has queued, and noted.
+#[derive(Default)]
+pub struct Answers {
+    queued: Mutex<VecDeque<Vec<PathBuf>>>,
+    asked: Mutex<Vec<Dialog>>,
+}
+
+impl Chooser for Answers {
+    fn choose(&self, dialog: &Dialog) -> Vec<PathBuf> {
+        self.asked.lock().unwrap().push(dialog.clone());
+        // Without an answer the dialog is cancelled.
+        self.queued.lock().unwrap().pop_front().unwrap_or_default()
+    }
+}
+
+/// A person before the window, who looks, clicks and types; clicks and keys are counted.
+pub struct Person {
+    pub window: Harness<'static, Studio>,
+    pub actions: usize,
+    answers: Arc<Answers>,
+}
+
+impl Person {
+    pub fn before(paths: &[PathBuf]) -> Self {
+        let (ctx, paths) = (egui::Context::default(), paths.to_vec());
+        let mut studio = Studio::new(&ctx, &paths);
+        let answers = Arc::new(Answers::default());
+        studio.dialogs = Dialogs::of(answers.clone());
+        let window = Harness::builder()
+            .with_size([1400.0, 860.0])
+            .with_step_dt(DT)
+            .build_state(
+                |ctx, studio: &mut Studio| {
+                    crate::theme::install(ctx);
+                    studio.frame(ctx);
+                },
+                studio,
+            );
+        let mut person = Self {
+            window,
+            actions: 0,
+            answers,
+        };
+        person.settle();
+        person
+    }
+
+    pub fn state(&self) -> &State {
+        &self.window.state().state
+    }
+
+    /// Carries out a command without a click: for what a test begins with.
+    pub fn command(&mut self, command: Command) {
+        self.window.state_mut().state.apply(command);
+        self.settle();
+    }
+
+    /// The next dialog is answered with these paths.
+    pub fn will_choose(&self, paths: &[&Path]) {
+        let paths = paths.iter().map(|path| path.to_path_buf()).collect();
+        self.answers.queued.lock().unwrap().push_back(paths);
+    }
+
+    /// The dialog that was shown last.
+    pub fn asked(&self) -> Dialog {
+        self.answers.asked.lock().unwrap().last().unwrap().clone()
+    }
+
+    pub fn frames(&mut self, count: usize) {
+        for _ in 0..count {
+            self.step();
+        }
+    }
+
+    fn step(&mut self) {
+        self.window.step();
+        super::lines::check(&self.state().command_line);
+    }
+
+    /// Lets time pass.
+    pub fn wait(&mut self, secs: f64) {
+        self.frames((secs / f64::from(DT)).round() as usize);
+    }
+
+    /// Until no thread is at work. Time passes meanwhile in the window too.
+    pub fn settle(&mut self) {
+        let begun = Instant::now();
+        let mut quiet = 0;
+        while quiet < 3 {
+            assert!(begun.elapsed() < PATIENCE, "threads are at work for ever");
+            self.step();
+            let busy = self.state().is_busy() || self.window.state().dialogs.is_open();
+            quiet = if busy { 0 } else { quiet + 1 };
+            std::thread::sleep(Duration::from_millis(2));
+        }
+    }
+
+    pub fn sees(&self, name: &str) -> bool {
+        self.window.query_all_by_label(name).next().is_some()
+    }
+
+    pub fn sees_part(&self, name: &str) -> bool {
+        self.window
+            .query_all_by_label_contains(name)
+            .next()
+            .is_some()
+    }
+
+    /// Place of the widget of this name; of a text only if no other widget has the name.
+    pub fn place(&self, name: &str) -> Rect {
+        let found = self.window.query_all_by_label(name);
+        let is_text = |node: &egui_kittest::Node<'_>| {
+            node.accesskit_node().role() == egui::accesskit::Role::Label
+        };
+        let node = found.min_by_key(is_text);
+        node.unwrap_or_else(|| panic!("nothing is called {name:?}"))
+            .rect()
+    }
+
+    /// True if a widget of this name can be clicked.
+    pub fn offers(&self, name: &str) -> bool {
+        self.window
+            .query_all_by_label(name)
+            .any(|node| node.accesskit_node().role() != egui::accesskit::Role::Label)
+    }
+
+    pub fn click(&mut self, name: &str) {
+        self.actions += 1;
+        let at = self.place(name).center();
+        self.pointer(at, true);
+        self.pointer(at, false);
+        self.frames(2);
+    }
+
+    fn pointer(&mut self, at: Pos2, down: bool) {
+        self.button(PointerButton::Primary, Modifiers::NONE, at, down);
+    }
+
+    fn button(&mut self, button: PointerButton, modifiers: Modifiers, pos: Pos2, pressed: bool) {
+        self.window.input_mut().modifiers = modifiers;
+        self.window.event(Event::PointerMoved(pos));
+        self.window.event(Event::PointerButton {
+            pos,
+            button,
+            pressed,
+            modifiers,
+        });
+        self.frames(1);
+        self.window.input_mut().modifiers = Modifiers::NONE;
+    }
+
+    /// Clicks with the right button, which opens menus.
+    pub fn right_click(&mut self, name: &str) {
+        self.click_with(PointerButton::Secondary, Modifiers::NONE, name);
+    }
+
+    /// Clicks while Ctrl is held.
+    pub fn ctrl_click(&mut self, name: &str) {
+        self.click_with(PointerButton::Primary, Modifiers::COMMAND, name);
+    }
+
+    fn click_with(&mut self, button: PointerButton, modifiers: Modifiers, name: &str) {
+        self.actions += 1;
+        let at = self.place(name).center();
+        self.button(button, modifiers, at, true);
+        self.button(button, modifiers, at, false);
+        self.frames(2);
+    }
+
+    /// Types a text into a field, in place of what is there, and presses Enter.
+    pub fn types(&mut self, field: &str, text: &str) {
+        self.click(field);
+        self.key_with(Key::A, Modifiers::COMMAND);
+        self.window.event(Event::Text(text.to_owned()));
+        self.frames(2);
+        self.key(Key::Enter);
+        self.frames(2);
+        self.settle();
+    }
+
+    /// Clicks twice at a place.
+    pub fn double_click_at(&mut self, at: Pos2) {
+        self.actions += 1;
+        for _ in 0..2 {
+            self.pointer(at, true);
+            self.pointer(at, false);
+        }
+        self.frames(2);
+    }
+
+    /// Presses, moves in steps, lets go.
+    pub fn drag(&mut self, from: Pos2, to: Pos2) {
+        self.actions += 1;
+        self.window.event(Event::PointerMoved(from));
+        self.frames(1);
+        self.pointer(from, true);
+        for step in 1..=8 {
+            let at = from + (to - from) * (step as f32 / 8.0);
+            self.window.event(Event::PointerMoved(at));
+            self.frames(1);
+        }
+        self.pointer(to, false);
+        self.frames(2);
+    }
+
+    fn key_event(&mut self, key: Key, pressed: bool, modifiers: Modifiers) {
+        self.window.event(Event::Key {
+            key,
+            physical_key: None,
+            pressed,
+            repeat: false,
+            modifiers,
+        });
+        self.frames(1);
+    }
+
+    pub fn key(&mut self, key: Key) {
+        self.key_with(key, Modifiers::NONE);
+    }
+
+    pub fn key_with(&mut self, key: Key, modifiers: Modifiers) {
+        self.actions += 1;
+        self.key_event(key, true, modifiers);
+        self.key_event(key, false, modifiers);
+    }
+
+    /// Holds a key down while so many seconds pass.
+    pub fn hold(&mut self, key: Key, secs: f64) {
+        self.actions += 1;
+        self.key_event(key, true, Modifiers::NONE);
+        self.wait(secs);
+        self.key_event(key, false, Modifiers::NONE);
+    }
+
+    pub fn undo(&mut self) {
+        self.key_with(Key::Z, Modifiers::COMMAND);
+        self.settle();
+    }
+
+    pub fn redo(&mut self) {
+        self.key_with(Key::Z, Modifiers::COMMAND | Modifiers::SHIFT);
+        self.settle();
+    }
+
+    pub fn goes_to(&mut self, panel: Panel) {
+        self.click(panel.name());
+        self.settle();
+    }
+
+    /// Clip, class, start and stop in hundredths of a second of every accepted label: what edits change.
+    pub fn labels(&self) -> Vec<(i64, String, i64, i64)> {
+        let store = self.state().store.as_ref().unwrap();
+        let hundredths = |secs: f64| (secs * 100.0).round() as i64;
+        let label = |s: &morec_db::labels::DbSample| {
+            (
+                s.clip.0,
+                s.class.clone(),
+                hundredths(s.start_secs),
+                hundredths(s.stop_secs),
+            )
+        };
+        let mut labels: Vec<_> = store.snapshot.accepted().map(label).collect();
+        labels.sort();
+        labels
+    }
+}
