@@ -15,4 +15,5 @@ draw label_light label 24.2 --light
 draw classes classes 24.2
 draw like classes 24.2 --like wave
 draw train train 24.2
+draw tree train 24.2 --tree
 draw live live 52

@@ -150,12 +150,18 @@ fn dialog(ask: &Ask) -> Dialog {
                 LabelFormat::Csv => "csv",
                 _ => "json",
             };
-            save("Export labels", ("labels", ending), &format!("labels.{ending}"))
+            save(
+                "Export labels",
+                ("labels", ending),
+                &format!("labels.{ending}"),
+            )
         }
         Ask::ExportClip(name) => save("Export the clip", ("BVH", "bvh"), &format!("{name}.bvh")),
-        Ask::ExportPage(name) => {
-            save("A page of the clip", ("pages", "html"), &format!("{name}.html"))
-        }
+        Ask::ExportPage(name) => save(
+            "A page of the clip",
+            ("pages", "html"),
+            &format!("{name}.html"),
+        ),
     }
 }
 

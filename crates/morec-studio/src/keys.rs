@@ -3,8 +3,8 @@
 use egui::{Key, Modifiers};
 
 use crate::state::{
-    ClassCommand, Command, CompareCommand, CutCommand, FileCommand, Grip, LiveCommand, Panel, PlayCommand,
-    SimilarCommand, State, TimelineCommand, TrainCommand,
+    ClassCommand, Command, CompareCommand, CutCommand, FileCommand, Grip, LiveCommand, Panel,
+    PlayCommand, SimilarCommand, State, TimelineCommand, TrainCommand,
 };
 use crate::store::Edit;
 

@@ -219,7 +219,11 @@ fn prepare(window: &mut Headless, shot: &Shot) {
         Panel::Train if has_labels => {
             window.command(Command::Train(TrainCommand::Train));
             window.settle();
-            if shot.tree { tree(window) } else { mistake(window) };
+            if shot.tree {
+                tree(window)
+            } else {
+                mistake(window)
+            };
         }
         Panel::Classes if has_labels => window.command(Command::Classes(ClassCommand::Propose)),
         Panel::Live => {

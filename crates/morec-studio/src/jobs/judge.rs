@@ -183,8 +183,7 @@ fn false_detections(timeline: &Timeline) -> impl Iterator<Item = &ClipDetection>
 /// True if a label and a detection share more than half of the shorter one, as in [`morec::eval::ThesisAccuracy`].
 fn is_match(truth: &GroundTruth, found: &ClipDetection) -> bool {
     let shared = truth.stop_secs.min(found.stop_secs) - truth.start_secs.max(found.start_secs);
-    let shorter =
-        (truth.stop_secs - truth.start_secs).min(found.stop_secs - found.start_secs);
+    let shorter = (truth.stop_secs - truth.start_secs).min(found.stop_secs - found.start_secs);
     shared > 0.5 * shorter + 1e-9
 }
 
@@ -284,7 +283,9 @@ mod tests {
     }
 
     fn pairs(moments: &[Moment]) -> Vec<(Option<&str>, Option<&str>)> {
-        let names = moments.iter().map(|m| (m.truth.as_deref(), m.found.as_deref()));
+        let names = moments
+            .iter()
+            .map(|m| (m.truth.as_deref(), m.found.as_deref()));
         let mut names: Vec<_> = names.collect();
         names.sort();
         names

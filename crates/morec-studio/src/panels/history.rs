@@ -1,8 +1,6 @@
 //! The history: changes by name, each of which can be undone.
 
-use egui::{
-    Align, Context, Frame, Layout, Margin, RichText, ScrollArea, SidePanel, WidgetType,
-};
+use egui::{Align, Context, Frame, Layout, Margin, RichText, ScrollArea, SidePanel, WidgetType};
 
 use super::{Out, widgets};
 use crate::state::{Command, State};
@@ -15,44 +13,57 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
     };
     let c = Colours::of(state.dark);
     let frame = Frame::new().fill(c.ground).inner_margin(Margin::same(12));
-    SidePanel::right("history").frame(frame).exact_width(280.0).show(ctx, |ui| {
-        ui.horizontal(|ui| {
-            ui.label(RichText::new("History").size(15.0).strong());
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                if ui.button("Close").clicked() {
-                    out.push(Command::ShowHistory(false));
-                }
-            });
-        });
-        let hint = "The last change is at the top. A change is undone if no later one depends on it.";
-        ui.colored_label(c.muted, hint);
-        ui.add_space(6.0);
-        let steps = &store.snapshot.history;
-        if steps.is_empty() {
-            widgets::nothing(ui, "Nothing was changed yet", "");
-            return;
-        }
-        ScrollArea::vertical().auto_shrink(false).show_rows(ui, 24.0, steps.len(), |ui, rows| {
-            for step in &steps[rows] {
-                ui.horizontal(|ui| {
-                    ui.set_height(24.0);
-                    let text = RichText::new(&step.what);
-                    let text = if step.undone { text.color(c.muted).strikethrough() } else { text };
-                    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                        if !step.undone {
-                            let response = ui.small_button("Undo");
-                            let name = format!("Undo step {}: {}", step.id, step.what);
-                            widgets::named(&response, WidgetType::Button, name, false);
-                            if response.clicked() {
-                                out.push(Command::Edit(Edit::Undo(Some(step.id))));
-                            }
-                        }
-                        ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                            ui.add(egui::Label::new(text).truncate());
-                        });
-                    });
+    SidePanel::right("history")
+        .frame(frame)
+        .exact_width(280.0)
+        .show(ctx, |ui| {
+            ui.horizontal(|ui| {
+                ui.label(RichText::new("History").size(15.0).strong());
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    if ui.button("Close").clicked() {
+                        out.push(Command::ShowHistory(false));
+                    }
                 });
+            });
+            let hint =
+                "The last change is at the top. A change is undone if no later one depends on it.";
+            ui.colored_label(c.muted, hint);
+            ui.add_space(6.0);
+            let steps = &store.snapshot.history;
+            if steps.is_empty() {
+                widgets::nothing(ui, "Nothing was changed yet", "");
+                return;
             }
+            ScrollArea::vertical().auto_shrink(false).show_rows(
+                ui,
+                24.0,
+                steps.len(),
+                |ui, rows| {
+                    for step in &steps[rows] {
+                        ui.horizontal(|ui| {
+                            ui.set_height(24.0);
+                            let text = RichText::new(&step.what);
+                            let text = if step.undone {
+                                text.color(c.muted).strikethrough()
+                            } else {
+                                text
+                            };
+                            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                                if !step.undone {
+                                    let response = ui.small_button("Undo");
+                                    let name = format!("Undo step {}: {}", step.id, step.what);
+                                    widgets::named(&response, WidgetType::Button, name, false);
+                                    if response.clicked() {
+                                        out.push(Command::Edit(Edit::Undo(Some(step.id))));
+                                    }
+                                }
+                                ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                                    ui.add(egui::Label::new(text).truncate());
+                                });
+                            });
+                        });
+                    }
+                },
+            );
         });
-    });
 }

@@ -315,7 +315,7 @@ fn help(ui: &mut Ui, state: &State, out: Out) {
     let c = Colours::now(ui);
     let Some(store) = &state.store else { return };
     if store.snapshot.accepted().next().is_none() {
-        widgets::section(ui, "HOW");
+        widgets::section(ui, "FIRST LABELS");
         ui.colored_label(c.muted, "Play with Space and hold 1 while the first gesture passes, 2 for the second. Two or three of each are enough to begin with; then Train.");
         return;
     }

@@ -193,7 +193,7 @@ fn health(ui: &mut Ui, state: &State) {
     }
     let said = run.health();
     if said.is_empty() {
-        ui.colored_label(c.good, "✔ Nothing is wrong with it.");
+        ui.colored_label(c.good, "✔ No fault is found.");
     }
     for (text, fault) in said.iter().take(5) {
         let colour = if *fault { c.warn } else { c.muted };
@@ -227,13 +227,13 @@ fn sensitivity(ui: &mut Ui, state: &State, out: Out) {
         out.push(Command::Live(LiveCommand::Sensitivity(alarms)));
     }
     ui.label(
-        RichText::new("false alarms a minute that are put up with")
+        RichText::new("false alarms a minute that are accepted")
             .size(11.0)
             .color(c.muted),
     );
     if let Some(found) = &state.live.resensed {
         let text = format!(
-            "The minutes below would have held {}.",
+            "In the minutes below it would have found {}.",
             format::count(found.len(), "motion")
         );
         ui.label(RichText::new(text).size(12.0));
@@ -248,7 +248,7 @@ fn performer(ui: &mut Ui, state: &State, out: Out) {
         ui.add_space(rect.height() * 0.3);
         widgets::nothing(
             ui,
-            "Nobody performs yet",
+            "No source is running",
             "Choose a source at the left and start it.",
         );
         return;

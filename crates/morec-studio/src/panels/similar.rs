@@ -129,7 +129,10 @@ fn card(ui: &mut Ui, state: &State, similar: &Similar, at: usize, out: Out) {
             format!("More like hit {}", at + 1),
             false,
         );
-        if more.on_hover_text("Search for what is like this one").clicked() {
+        if more
+            .on_hover_text("Search for what is like this one")
+            .clicked()
+        {
             let class = similar.class.clone();
             out.push(Command::Similar(SimilarCommand::Of(stretch, class)));
         }

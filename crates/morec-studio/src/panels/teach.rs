@@ -10,10 +10,10 @@ use crate::theme::Colours;
 /// Marking what just happened.
 pub fn show(ui: &mut Ui, state: &State, out: Out) {
     let c = Colours::now(ui);
-    widgets::section(ui, "WHAT WAS THAT?");
+    widgets::section(ui, "MARK THE LAST MOTION");
     let hint = match (&state.live.run, state.live.range) {
         (None, _) => {
-            "Start a source; then a key or a click says what the last motion was, and it is recognised from then on."
+            "Start a source. Then a key or a click names the last motion, which is recognised from then on."
         }
         (_, Some(_)) => "The selected stretch was …",
         (_, None) => "The last motion was …",

@@ -28,7 +28,7 @@ pub struct Companions {
     pub placement: Placement,
 }
 
-/// Commands.
+/// Commands for comparing.
 #[derive(Debug, Clone, PartialEq)]
 pub enum CompareCommand {
     /// A stretch with another, which is its mirror image if `mirrored`.
@@ -40,7 +40,10 @@ pub enum CompareCommand {
     /// The selected stretch or label with what is most like it.
     Nearest,
     /// A stretch with the nearest label of a class.
-    NearestOf { of: Stretch, class: String },
+    NearestOf {
+        of: Stretch,
+        class: String,
+    },
     /// The chosen moment of a cross-validation with the nearest label of a class; `None` of the class that was recognised.
     Moment(Option<String>),
     Place(Placement),

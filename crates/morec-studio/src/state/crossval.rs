@@ -72,7 +72,10 @@ impl CrossvalView {
 
     fn places(&self, wanted: impl Fn(&Moment) -> bool) -> Vec<usize> {
         let moments = self.moments.iter().enumerate();
-        moments.filter(|(_, m)| wanted(m)).map(|(at, _)| at).collect()
+        moments
+            .filter(|(_, m)| wanted(m))
+            .map(|(at, _)| at)
+            .collect()
     }
 }
 
@@ -86,7 +89,9 @@ impl State {
     pub(super) fn show_cell(&mut self, cell: Option<(usize, usize)>) {
         self.train.cell = cell;
         self.train.moment = None;
-        let Some(judged) = &self.train.judged else { return };
+        let Some(judged) = &self.train.judged else {
+            return;
+        };
         let places = cell.map(|(row, column)| judged.of_cell(row, column));
         if let Some(first) = places.and_then(|places| places.first().copied()) {
             self.go_to_moment(first);
@@ -95,7 +100,9 @@ impl State {
 
     /// Plays a moment in a loop, and offers to compare it.
     pub(super) fn go_to_moment(&mut self, at: usize) {
-        let Some(judged) = &self.train.judged else { return };
+        let Some(judged) = &self.train.judged else {
+            return;
+        };
         let Some(moment) = judged.moments.get(at) else {
             return;
         };
@@ -120,7 +127,10 @@ impl State {
             self.say("choose a line of the list first");
             return;
         };
-        let first = moment.compared_with().first().map(|class| (*class).to_owned());
+        let first = moment
+            .compared_with()
+            .first()
+            .map(|class| (*class).to_owned());
         let Some(class) = class.or(first) else { return };
         let (start_secs, stop_secs) = (moment.start_secs, moment.stop_secs);
         let Some((clip, _)) = self.clip_called(&moment.clip) else {

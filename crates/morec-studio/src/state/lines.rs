@@ -169,9 +169,7 @@ impl State {
                 let lines: Option<Vec<Line>> = ids.iter().map(line).collect();
                 Line::all(lines?.into_iter())?
             }
-            Edit::RenameClass { from, to } => {
-                morec("db classes").with("--rename", from).word(to)
-            }
+            Edit::RenameClass { from, to } => morec("db classes").with("--rename", from).word(to),
             Edit::RemoveClass(name) => morec("db classes").with("--forget", name),
             Edit::Describe { clips, update } => {
                 let about = |mut line: Line| {
@@ -221,7 +219,11 @@ impl State {
         let (id, roles) = clips.first()?;
         let before = snapshot.roles.get(id)?;
         let motion = self.player.motion.as_ref().filter(|m| m.id == *id);
-        let joints = motion.or(self.player.motion.as_ref())?.clip.skeleton.joints();
+        let joints = motion
+            .or(self.player.motion.as_ref())?
+            .clip
+            .skeleton
+            .joints();
         let set = |mut line: Line| {
             for role in Role::ALL {
                 let joint = roles.joint(role);

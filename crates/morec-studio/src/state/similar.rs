@@ -12,7 +12,7 @@ use crate::stretch::Stretch;
 /// Name of the job that searches.
 pub(super) const SEARCHING: &str = "Searching";
 
-/// Commands.
+/// Commands for searching by example.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SimilarCommand {
     /// Searches for what is like the selected stretch or label.
@@ -85,8 +85,13 @@ impl State {
     pub(super) fn search_line(&self, of: &Stretch) -> Option<Line> {
         let store = self.store.as_ref()?;
         let clip = store.snapshot.clip(of.clip)?;
-        let line = Line::new("morec db search").word(store.path()).word(&clip.name);
-        Some(line.secs("--start", of.start_secs).secs("--stop", of.stop_secs))
+        let line = Line::new("morec db search")
+            .word(store.path())
+            .word(&clip.name);
+        Some(
+            line.secs("--start", of.start_secs)
+                .secs("--stop", of.stop_secs),
+        )
     }
 
     /// Shows what was found.

@@ -67,7 +67,10 @@ impl State {
         };
         self.train.sample = Some(at);
         let clips = self.store.iter().flat_map(|s| &s.snapshot.clips);
-        let clip = clips.filter(|clip| clip.name == sample.clip).map(|clip| clip.id).next();
+        let clip = clips
+            .filter(|clip| clip.name == sample.clip)
+            .map(|clip| clip.id)
+            .next();
         match clip {
             Some(clip) => self.apply_library(LibraryCommand::GoTo {
                 clip,

@@ -12,9 +12,9 @@ use super::crossval::CrossvalView;
 use super::lines::Line;
 use super::{Panel, State, TrainCommand};
 use crate::jobs::export::write_whole;
+use crate::jobs::judge::{self, LeftOut};
 use crate::jobs::load::ClipMotion;
 use crate::jobs::thesis::{Map, Thesis};
-use crate::jobs::judge::{self, LeftOut};
 use crate::jobs::{recognise, train};
 use crate::store::{Edit, Snapshot};
 

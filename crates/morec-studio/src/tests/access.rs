@@ -34,7 +34,9 @@ fn reached(person: &mut Person, most: usize) -> BTreeSet<String> {
     for _ in 0..most {
         person.key_with(Key::Tab, Modifiers::NONE);
         let focused = person.window.root().children_recursive();
-        let focused = focused.map(|node| node.accesskit_node()).find(|n| n.is_focused());
+        let focused = focused
+            .map(|node| node.accesskit_node())
+            .find(|n| n.is_focused());
         if let Some(name) = focused.and_then(|n| n.label().or_else(|| n.value())) {
             names.insert(name);
         }
@@ -58,6 +60,9 @@ fn everything_that_can_be_clicked_has_a_name_and_is_reached_by_tab() {
         assert!(names.len() > 10, "{panel:?}: {names:?}");
         let reached = reached(&mut person, names.len() + 40);
         let missing: Vec<_> = names.difference(&reached).collect();
-        assert!(missing.is_empty(), "{panel:?}: Tab does not reach {missing:?}");
+        assert!(
+            missing.is_empty(),
+            "{panel:?}: Tab does not reach {missing:?}"
+        );
     }
 }

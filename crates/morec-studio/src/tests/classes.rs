@@ -107,7 +107,9 @@ fn cuts_are_grouped_and_a_group_becomes_labels() {
     let depth = person.state().classes.depth;
     let members = groups.at(depth)[0].members.len();
     person.click("Name of group 1");
-    person.window.event(egui::Event::Text("something".to_owned()));
+    person
+        .window
+        .event(egui::Event::Text("something".to_owned()));
     person.frames(3);
     person.click("Make it a class");
     person.settle();

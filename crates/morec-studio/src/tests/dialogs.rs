@@ -87,8 +87,16 @@ fn labels_of_each_form_a_clip_and_a_page_are_exported() {
         ("Table (TSV) …", LabelFormat::Tsv, Choice::Save),
         ("Table (CSV) …", LabelFormat::Csv, Choice::Save),
         ("JSON …", LabelFormat::Json, Choice::Save),
-        ("ELAN, a file for each clip …", LabelFormat::Eaf, Choice::Folder),
-        ("Audacity, a file for each clip …", LabelFormat::Audacity, Choice::Folder),
+        (
+            "ELAN, a file for each clip …",
+            LabelFormat::Eaf,
+            Choice::Folder,
+        ),
+        (
+            "Audacity, a file for each clip …",
+            LabelFormat::Audacity,
+            Choice::Folder,
+        ),
         ("BABEL …", LabelFormat::Babel, Choice::Save),
         ("Label Studio …", LabelFormat::LabelStudio, Choice::Save),
     ];

@@ -24,7 +24,12 @@ fn a_clip_is_renamed_described_and_removed_and_each_is_undone() {
     let before = described(&person);
     person.types("Clip name", "ada walks");
     assert!(person.offers("ada walks") && !person.offers("ada_1"));
-    assert!(person.state().command_line.contains("--rename ada_1 'ada walks'"));
+    assert!(
+        person
+            .state()
+            .command_line
+            .contains("--rename ada_1 'ada walks'")
+    );
     person.undo();
     assert_eq!(described(&person), before);
     person.types("Person", "Ada Lovelace");
@@ -55,7 +60,11 @@ fn several_clips_are_described_and_removed_together() {
     person.ctrl_click("cleo_1");
     assert!(person.sees("3 clips are selected"));
     person.types("Person of all", "somebody");
-    assert!(described(&person).iter().all(|c| c.1.as_deref() == Some("somebody")));
+    assert!(
+        described(&person)
+            .iter()
+            .all(|c| c.1.as_deref() == Some("somebody"))
+    );
     assert!(person.state().command_line.contains("--clip '*'"));
     person.undo();
     assert_eq!(described(&person), before);
@@ -97,7 +106,9 @@ fn an_import_is_stopped_and_what_is_imported_stays_whole() {
         std::fs::write(many.join(format!("clip_{number:02}.bvh")), bytes).unwrap();
     }
     let studio = person.window.state_mut();
-    studio.state.apply(Command::File(FileCommand::Import(vec![many])));
+    studio
+        .state
+        .apply(Command::File(FileCommand::Import(vec![many])));
     person.frames(1);
     // The bar at the bottom names the job, with a button that stops it.
     assert!(person.sees_part("Importing clips"));

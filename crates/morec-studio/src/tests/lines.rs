@@ -50,7 +50,10 @@ pub fn check(line: &str) {
     static KNOWN: OnceLock<BTreeSet<Vec<String>>> = OnceLock::new();
     let known = KNOWN.get_or_init(|| {
         let lines = LINES.lines().filter(|line| line.starts_with("morec"));
-        lines.flat_map(commands).map(|words| shape(&words)).collect()
+        lines
+            .flat_map(commands)
+            .map(|words| shape(&words))
+            .collect()
     });
     for words in commands(line) {
         let shape = shape(&words);
@@ -60,7 +63,9 @@ pub fn check(line: &str) {
 
 #[test]
 fn lines_that_start_the_studio_are_parsed_by_it() {
-    let lines = LINES.lines().filter(|line| line.starts_with("morec-studio"));
+    let lines = LINES
+        .lines()
+        .filter(|line| line.starts_with("morec-studio"));
     let mut count = 0;
     for words in lines.flat_map(commands) {
         count += 1;
@@ -164,7 +169,11 @@ fn each_edit_shows_the_command_that_does_the_same() {
     ];
     for (edit, expected) in edits {
         assert_eq!(line_of(&mut person, folder.path(), edit), expected);
-        assert!(person.state().notices.is_empty(), "{:?}", person.state().notices);
+        assert!(
+            person.state().notices.is_empty(),
+            "{:?}",
+            person.state().notices
+        );
     }
     let all = person.state().store.as_ref().unwrap().snapshot.clone();
     assert_eq!(all.clips.len(), 1, "the two are removed again");
@@ -186,6 +195,9 @@ fn an_action_without_a_command_shows_none() {
     ] {
         person.command(Command::Timeline(TimelineCommand::Cut(method)));
         let line = &person.state().command_line;
-        assert!(line.ends_with(&format!("moves.mdb --method {name}")), "{line}");
+        assert!(
+            line.ends_with(&format!("moves.mdb --method {name}")),
+            "{line}"
+        );
     }
 }

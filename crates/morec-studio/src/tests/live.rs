@@ -212,5 +212,5 @@ fn the_sensitivity_shows_what_the_minutes_would_have_held() {
     person.settle();
     let many = person.state().live.resensed.as_ref().unwrap().len();
     assert!(few <= many && many > 0, "{few} {many}");
-    assert!(person.sees_part("would have held"));
+    assert!(person.sees_part("would have found"));
 }

@@ -14,7 +14,10 @@ fn judged() -> (tempfile::TempDir, Person) {
     let clip = person.state().player.motion.as_ref().unwrap().id;
     // A wave of somebody is not labelled: where it is recognised, it matches no label.
     let snapshot = person.state().store.as_ref().unwrap().snapshot.clone();
-    let forgotten = snapshot.samples.iter().find(|s| s.class == "wave" && s.clip != clip);
+    let forgotten = snapshot
+        .samples
+        .iter()
+        .find(|s| s.class == "wave" && s.clip != clip);
     person.command(Command::Edit(Edit::Remove(vec![forgotten.unwrap().id])));
     // Nobody moves in the first second: what is labelled there cannot be recognised.
     person.command(Command::Edit(Edit::Label(vec![NewSample {
@@ -43,9 +46,17 @@ fn matrix_list_and_figures_count_the_same() {
     assert_eq!((0..rows).map(sum).sum::<usize>(), labels);
     let (missed, wrong) = (judged.missed(), judged.false_detections());
     assert!(missed >= 1 && wrong >= 1, "{missed} {wrong}");
-    assert_eq!((0..rows).map(|row| judged.counts[row][columns]).sum::<usize>(), missed);
+    assert_eq!(
+        (0..rows)
+            .map(|row| judged.counts[row][columns])
+            .sum::<usize>(),
+        missed
+    );
     assert_eq!(sum(rows), wrong, "the last row is the false detections");
-    assert_eq!(judged.mistakes().len(), labels - judged.recognised() + wrong);
+    assert_eq!(
+        judged.mistakes().len(),
+        labels - judged.recognised() + wrong
+    );
     // The corner is nothing that could be counted.
     assert!(!person.offers("no label taken for nothing: 0"));
     let name = format!("no label taken for wave: {}", judged.counts[rows][2]);
@@ -53,7 +64,9 @@ fn matrix_list_and_figures_count_the_same() {
     person.click(&name);
     person.settle();
     assert!(person.sees("IN THIS CELL"));
-    let lines = person.window.query_all_by_label_contains("wave where none is labelled");
+    let lines = person
+        .window
+        .query_all_by_label_contains("wave where none is labelled");
     assert_eq!(lines.count(), alarms);
     person.click("All mistakes");
     assert!(person.sees("MISTAKES"));
@@ -94,7 +107,12 @@ fn a_line_jumps_to_its_moment_and_offers_the_comparison_with_the_nearest_label()
 fn a_false_detection_is_compared_with_what_it_was_taken_for() {
     let (_folder, mut person) = judged();
     let judged = person.state().train.judged.as_ref().unwrap();
-    let false_one = judged.moments.iter().find(|m| m.truth.is_none()).unwrap().clone();
+    let false_one = judged
+        .moments
+        .iter()
+        .find(|m| m.truth.is_none())
+        .unwrap()
+        .clone();
     let class = false_one.found.clone().unwrap();
     person.click(&format!(
         "{class} where none is labelled, {} {}",
@@ -127,6 +145,9 @@ fn a_class_without_another_label_is_said() {
         stop_secs: 2.0,
     };
     let class = "jump".to_owned();
-    person.command(Command::Compare(crate::state::CompareCommand::NearestOf { of, class }));
+    person.command(Command::Compare(crate::state::CompareCommand::NearestOf {
+        of,
+        class,
+    }));
     assert!(person.sees_part("There is no other label of jump to compare with"));
 }

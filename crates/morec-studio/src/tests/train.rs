@@ -58,7 +58,12 @@ fn classes_are_chosen_and_a_training_is_stopped() {
     person.click("Start training");
     person.settle();
     let index = person.state().train.index.clone().unwrap();
-    let classes: Vec<String> = index.model.classes().iter().map(|c| c.name.clone()).collect();
+    let classes: Vec<String> = index
+        .model
+        .classes()
+        .iter()
+        .map(|c| c.name.clone())
+        .collect();
     assert_eq!(classes, ["bow", "wave"]);
     let line = person.state().command_line.clone();
     assert!(line.contains("--classes bow,wave"), "{line}");

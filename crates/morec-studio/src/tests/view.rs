@@ -135,7 +135,12 @@ fn panels_pages_and_themes_are_reached_by_keys_and_buttons() {
 fn a_step_in_the_middle_of_the_history_is_undone_by_its_name() {
     let (_folder, mut person) = labelling();
     let before = person.labels();
-    let ids: Vec<_> = person.state().shown_samples().iter().map(|s| s.id).collect();
+    let ids: Vec<_> = person
+        .state()
+        .shown_samples()
+        .iter()
+        .map(|s| s.id)
+        .collect();
     for id in [ids[0], ids[2]] {
         let remove = crate::store::Edit::Remove(vec![id]);
         person.command(Command::Edit(remove));

@@ -1,9 +1,9 @@
 //! Marking: a stretch of the stream becomes a sample, a take becomes a clip.
 
 use super::TEACHING;
-use crate::state::lines::Line;
 use crate::jobs::teach::{Lesson, Taught, teach};
 use crate::state::State;
+use crate::state::lines::Line;
 
 /// Margin kept before and after a marked stretch, seconds.
 const AROUND_SECS: f64 = 0.7;

@@ -81,7 +81,7 @@ impl Default for Live {
     }
 }
 
-/// Commands.
+/// Commands for the live panel.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LiveCommand {
     Choose(Choice),
