@@ -14,7 +14,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
         return;
     };
     let c = Colours::now(ui);
-    let key = egui::Id::new(("groups", groups.items.len(), state.classes.depth));
+    let key = egui::Id::new(("groups", state.classes.grouping, state.classes.depth));
     let all = ui
         .data(|d| d.get_temp::<std::sync::Arc<Vec<crate::jobs::group::Group>>>(key))
         .unwrap_or_else(|| {

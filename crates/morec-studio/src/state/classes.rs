@@ -40,6 +40,8 @@ pub struct Classes {
     /// The samples of each class as they are shown.
     pub columns: ClassColumns,
     pub groups: Option<ClusteredItems>,
+    /// Counts up with every new grouping.
+    pub grouping: u64,
     /// The result of a search by example, while it is shown.
     pub similar: Option<Similar>,
     /// True if searches look for the mirror image, too.
@@ -81,6 +83,7 @@ impl Classes {
             .collect();
         self.depth = classes.len().max(groups.items.len().min(4)).max(1);
         self.groups = Some(groups);
+        self.grouping += 1;
     }
 
     /// A name for the class of a key that has none yet.
