@@ -36,68 +36,56 @@ pub fn top(ctx: &Context, state: &State, out: Out) {
 }
 
 fn file_menu(ui: &mut Ui, state: &State, out: Out) {
+    use FileCommand::*;
     ui.menu_button("File", |ui| {
         let open = state.store.is_some();
-        let mut item = |ui: &mut Ui, text: &str, keys: &str, on: bool, command: FileCommand| {
-            let button = Button::new(text)
-                .shortcut_text(keys)
-                .min_size(Vec2::new(220.0, 24.0));
-            if ui.add_enabled(on, button).clicked() {
-                out.push(Command::File(command));
-                ui.close();
-            }
-        };
-        item(ui, "Open …", "Ctrl O", true, FileCommand::AskOpen);
-        item(ui, "New database …", "", true, FileCommand::AskNew);
+        let shown = open && state.player.motion.is_some();
+        item(ui, ("Open …", "Ctrl O"), true, AskOpen, out);
+        item(ui, ("New database …", ""), true, AskNew, out);
         ui.separator();
-        item(ui, "Import clips …", "Ctrl I", true, FileCommand::AskImport);
-        item(
-            ui,
-            "Import a folder …",
-            "",
-            true,
-            FileCommand::AskImportFolder,
-        );
+        item(ui, ("Import clips …", "Ctrl I"), true, AskImport, out);
+        item(ui, ("Import a folder …", ""), true, AskImportFolder, out);
         ui.separator();
-        item(ui, "Save a copy as …", "Ctrl S", open, FileCommand::AskSave);
+        item(ui, ("Save a copy as …", "Ctrl S"), open, AskSave, out);
         if let Some(last) = state.last.as_ref().filter(|p| p.exists()) {
             let text = format!("Open {} again", crate::format::file_name(last));
-            item(ui, &text, "", true, FileCommand::Open(last.clone()));
+            item(ui, (&text, ""), true, Open(last.clone()), out);
         }
         ui.separator();
-        let shown = state.player.motion.is_some();
-        let clip = FileCommand::AskExportClip;
-        item(ui, "Export this clip …", "", open && shown, clip);
-        let page = FileCommand::AskExportPage;
-        item(ui, "A page of it to send …", "", open && shown, page);
+        item(ui, ("Export this clip …", ""), shown, AskExportClip, out);
+        item(
+            ui,
+            ("A page of it to send …", ""),
+            shown,
+            AskExportPage,
+            out,
+        );
         ui.add_enabled_ui(open, |ui| {
             ui.menu_button("Export labels", |ui| {
                 for form in LabelFormat::ALL {
-                    if ui.button(form_name(form)).clicked() {
-                        out.push(Command::File(FileCommand::AskExportLabels(form)));
-                        ui.close();
-                    }
+                    item(ui, (form_name(form), ""), true, AskExportLabels(form), out);
                 }
             });
         });
-        let mut item = |ui: &mut Ui, text: &str, on: bool, command: FileCommand| {
-            let button = Button::new(text).min_size(Vec2::new(220.0, 24.0));
-            if ui.add_enabled(on, button).clicked() {
-                out.push(Command::File(command));
-                ui.close();
-            }
-        };
         let trained = !state.train.bytes.is_empty();
-        item(
-            ui,
-            "Export the index …",
-            trained,
-            FileCommand::AskExportIndex,
-        );
+        item(ui, ("Export the index …", ""), trained, AskExportIndex, out);
     });
 }
 
-/// A form of labels as people know it.
+/// An entry of the menu, with its keys if it has any.
+fn item(ui: &mut Ui, (text, keys): (&str, &str), on: bool, command: FileCommand, out: Out) {
+    let button = Button::new(text).min_size(Vec2::new(220.0, 24.0));
+    let button = match keys.is_empty() {
+        true => button,
+        false => button.shortcut_text(keys),
+    };
+    if ui.add_enabled(on, button).clicked() {
+        out.push(Command::File(command));
+        ui.close();
+    }
+}
+
+/// Name of a form of labels in the menu.
 fn form_name(form: LabelFormat) -> &'static str {
     match form {
         LabelFormat::Tsv => "Table (TSV) …",
@@ -257,7 +245,7 @@ fn jobs(ui: &mut Ui, state: &State, out: Out) {
     }
 }
 
-/// The command that does what was done last, for who wants to automate it.
+/// The command that does what was done last, which can be copied.
 fn command_line(ui: &mut Ui, state: &State, c: &Colours) {
     if state.command_line.is_empty() || ui.available_width() < 80.0 {
         return;

@@ -19,12 +19,12 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
         return;
     };
     known(ui, clip, out);
-    widgets::section(ui, "Parts of the body");
-    roles::show(ui, state, out);
-    ui.add_space(6.0);
+    ui.add_space(2.0);
     if ui.button("Remove this clip").clicked() {
         out.push(Command::Edit(Edit::RemoveClips(vec![clip.id])));
     }
+    widgets::section(ui, "PARTS OF THE BODY");
+    roles::show(ui, state, out);
 }
 
 fn several(ui: &mut Ui, state: &State, out: Out) {
@@ -77,8 +77,10 @@ fn known(ui: &mut Ui, clip: &ClipInfo, out: Out) {
     let c = Colours::now(ui);
     Grid::new("known")
         .num_columns(2)
-        .spacing([12.0, 5.0])
+        .spacing([12.0, 2.0])
         .show(ui, |ui| {
+            // Facts are lines of text, which need less room than buttons.
+            ui.spacing_mut().interact_size.y = 19.0;
             let name = |ui: &mut Ui, text: &str| ui.colored_label(c.muted, text);
             name(ui, "Name");
             if let Some(to) = committed(ui, "Clip name", &clip.name) {

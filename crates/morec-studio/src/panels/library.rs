@@ -21,7 +21,7 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
         .frame(padded(&c))
         .exact_width(width)
         .show(ctx, |ui| {
-            let height = (ui.available_height() * 0.52).max(200.0);
+            let height = (ui.available_height() * 0.44).max(200.0);
             let rect =
                 Rect::from_min_size(ui.cursor().min, Vec2::new(ui.available_width(), height));
             ui.scope_builder(egui::UiBuilder::new().max_rect(rect), |ui| {

@@ -181,6 +181,7 @@ fn health(ui: &mut Ui, state: &State) {
     let Some(run) = &state.live.run else { return };
     ui.add_space(6.0);
     widgets::section(ui, "STREAM");
+    ui.add(egui::Label::new(RichText::new(&run.name).size(12.5)).truncate());
     if let Some(d) = run.watched().and_then(|w| w.diagnosis()) {
         let rate = d
             .rate_hz

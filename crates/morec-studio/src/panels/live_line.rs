@@ -195,12 +195,12 @@ fn bar(
         rect.top() + 2.0..=rect.bottom() - 2.0,
     );
     painter.rect_filled(bar, 3.0, colour);
-    let galley = painter.layout_no_wrap(
-        name.to_owned(),
-        egui::FontId::proportional(11.0),
-        c.on_class(),
-    );
-    if galley.size().x + 6.0 < bar.width() {
+    let font = egui::FontId::proportional(11.0);
+    let mut job = egui::text::LayoutJob::simple_singleline(name.to_owned(), font, c.on_class());
+    job.wrap = egui::text::TextWrapping::truncate_at_width((bar.width() - 6.0).max(1.0));
+    let galley = painter.layout_job(job);
+    // A letter and the dots say nothing.
+    if bar.width() > 24.0 {
         painter.galley(bar.center() - galley.size() / 2.0, galley, c.on_class());
     }
 }

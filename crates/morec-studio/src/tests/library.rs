@@ -14,7 +14,11 @@ fn described(person: &Person) -> Vec<(String, Option<String>, Vec<String>)> {
     let store = person.state().store.as_ref().unwrap();
     let clips = store.snapshot.clips.iter();
     clips
-        .map(|c| (c.name.clone(), c.subject.clone(), c.tags.clone()))
+        .map(|c| {
+            let mut tags = c.tags.clone();
+            tags.sort();
+            (c.name.clone(), c.subject.clone(), tags)
+        })
         .collect()
 }
 

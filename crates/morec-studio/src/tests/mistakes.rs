@@ -1,6 +1,7 @@
 //! The report of a cross-validation: one count of mistakes, and from each to its moment and its nearest label.
 
 use egui::Key;
+use egui_kittest::kittest::Queryable;
 use morec_db::labels::{NewSample, SampleState as Judged};
 
 use super::{Person, made};
@@ -101,11 +102,7 @@ fn a_line_jumps_to_its_moment_and_offers_the_comparison_with_the_nearest_label()
     assert_ne!(aligned.of, aligned.with);
     assert!(person.sees_part("Seen: ada_1"), "both are seen");
     assert_eq!(person.state().panel, Panel::Train);
-}
-
-#[test]
-fn a_false_detection_is_compared_with_what_it_was_taken_for() {
-    let (_folder, mut person) = judged();
+    // A false detection is compared with a label of what it was taken for.
     let judged = person.state().train.judged.as_ref().unwrap();
     let false_one = judged
         .moments

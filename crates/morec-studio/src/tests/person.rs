@@ -38,6 +38,8 @@ pub struct Person {
     pub window: Harness<'static, Studio>,
     pub actions: usize,
     answers: Arc<Answers>,
+    /// The command line that was shown last.
+    checked: String,
 }
 
 impl Person {
@@ -60,6 +62,7 @@ impl Person {
             window,
             actions: 0,
             answers,
+            checked: String::new(),
         };
         person.settle();
         person
@@ -94,7 +97,11 @@ impl Person {
 
     fn step(&mut self) {
         self.window.step();
-        super::lines::check(&self.state().command_line);
+        let line = &self.window.state().state.command_line;
+        if *line != self.checked {
+            super::lines::check(line);
+            self.checked.clone_from(line);
+        }
     }
 
     /// Lets time pass.
