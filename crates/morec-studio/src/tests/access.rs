@@ -15,7 +15,11 @@ fn clickable(person: &Person) -> (BTreeSet<String>, Vec<String>) {
         let node = node.accesskit_node();
         let data = node.data();
         let acts = data.supports_action(accesskit::Action::Click);
-        if !acts || node.is_disabled() {
+        // The handle of a scroll bar, which a wheel and the keys of what it scrolls stand for.
+        let thin = |b: accesskit::Rect| b.width().min(b.height()) <= 12.0;
+        let is_bar =
+            node.role() == accesskit::Role::Unknown && node.bounding_box().is_some_and(thin);
+        if !acts || node.is_disabled() || is_bar {
             continue;
         }
         match node.label().or_else(|| node.value()) {
