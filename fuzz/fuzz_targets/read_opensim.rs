@@ -3,37 +3,20 @@
 
 use libfuzzer_sys::fuzz_target;
 use morec::formats::opensim::{read_model, read_motion};
-use morec::formats::{Limits, Loaded};
+use morec_fuzz::{LIMITS, check_rotations};
 
 const LEG: &[u8] = include_bytes!("../../crates/morec/testdata/opensim/leg.osim");
 const KICK: &[u8] = include_bytes!("../../crates/morec/testdata/opensim/kick.mot");
 
 fuzz_target!(|bytes: &[u8]| {
-    let limits = Limits {
-        joints: 64,
-        depth: 32,
-        line_bytes: 4096,
-        frames: 4096,
-    };
-    let (leg, _) = read_model(LEG, &limits).expect("the leg is a model");
-    if let Ok(loaded) = read_motion(bytes, "clip", &leg, None, &limits) {
-        check(&loaded);
+    let (leg, _) = read_model(LEG, &LIMITS).expect("the leg is a model");
+    if let Ok(loaded) = read_motion(bytes, "clip", &leg, None, &LIMITS) {
+        check_rotations(&loaded);
     }
-    if let Ok((model, _)) = read_model(bytes, &limits)
-        && let Ok(loaded) = read_motion(KICK, "clip", &model, None, &limits)
+    let model = read_model(bytes, &LIMITS);
+    if let Ok(loaded) =
+        model.and_then(|(model, _)| read_motion(KICK, "clip", &model, None, &LIMITS))
     {
-        check(&loaded);
+        check_rotations(&loaded);
     }
 });
-
-fn check(loaded: &Loaded) {
-    for clip in &loaded.clips {
-        assert_eq!(clip.rotations.len(), clip.frames * clip.skeleton.len());
-        assert!(
-            clip.rotations
-                .iter()
-                .all(|q| (q.coords.norm() - 1.0).abs() < 1e-6)
-        );
-        assert!(clip.tracks.iter().all(|t| t.positions.len() == clip.frames));
-    }
-}
