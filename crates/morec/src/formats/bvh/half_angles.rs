@@ -21,8 +21,7 @@ impl HalfAngles {
         self.sines.resize(angles_deg.len(), 0.0);
         self.cosines.resize(angles_deg.len(), 0.0);
         sin_cos(angles_deg, &mut self.sines, &mut self.cosines);
-        // Also where the comparison with NaN is false.
-        let is_far = |angle: &f64| !(angle.abs() < MOST_DEGREES);
+        let is_far = |angle: &f64| angle.abs() >= MOST_DEGREES;
         if angles_deg.iter().any(is_far) {
             let far = angles_deg.iter().enumerate().filter(|(_, a)| is_far(a));
             for (column, angle) in far {
