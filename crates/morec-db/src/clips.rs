@@ -117,6 +117,35 @@ fn info(row: &Row<'_>) -> rusqlite::Result<ClipInfo> {
 }
 
 impl MotionDb {
+    /// The clips of a filter, by name, where a filter that names what is not there is an error.
+    ///
+    /// # Errors
+    /// [`DbError::Unknown`] with the nearest names: no clip has such a name or matches the pattern, no clip shows this
+    /// person or has this tag, there is no such class.
+    pub fn find_clips(&self, filter: &ClipFilter) -> Result<Vec<ClipInfo>, DbError> {
+        if let Some(class) = &filter.class {
+            self.need_class(class)?;
+        }
+        let parts = [
+            ("clip", &filter.name),
+            ("person", &filter.subject),
+            ("tag", &filter.tag),
+        ];
+        for (kind, name) in parts {
+            let Some(name) = name else { continue };
+            let mut alone = ClipFilter::default();
+            match kind {
+                "clip" => alone.name = Some(name.clone()),
+                "person" => alone.subject = Some(name.clone()),
+                _ => alone.tag = Some(name.clone()),
+            }
+            if self.clips(&alone)?.is_empty() {
+                return Err(names::unknown(&self.conn, kind, name));
+            }
+        }
+        self.clips(filter)
+    }
+
     /// The clips of a filter, by name.
     pub fn clips(&self, filter: &ClipFilter) -> Result<Vec<ClipInfo>, DbError> {
         let sql = format!(

@@ -4,7 +4,7 @@ use std::cmp::Reverse;
 
 use rusqlite::Connection;
 
-use crate::{ClipFilter, ClipInfo, DbError, MotionDb};
+use crate::{DbError, MotionDb};
 
 /// So many names are listed when none is near.
 const LISTED: usize = 8;
@@ -74,35 +74,6 @@ pub(crate) fn unknown(conn: &Connection, kind: &'static str, name: &str) -> DbEr
 }
 
 impl MotionDb {
-    /// The clips of a filter, by name, where a filter that names what is not there is an error.
-    ///
-    /// # Errors
-    /// [`DbError::Unknown`] with the nearest names: no clip has such a name or matches the pattern, no clip shows this
-    /// person or has this tag, there is no such class.
-    pub fn find_clips(&self, filter: &ClipFilter) -> Result<Vec<ClipInfo>, DbError> {
-        if let Some(class) = &filter.class {
-            self.need_class(class)?;
-        }
-        let parts = [
-            ("clip", &filter.name),
-            ("person", &filter.subject),
-            ("tag", &filter.tag),
-        ];
-        for (kind, name) in parts {
-            let Some(name) = name else { continue };
-            let mut alone = ClipFilter::default();
-            match kind {
-                "clip" => alone.name = Some(name.clone()),
-                "person" => alone.subject = Some(name.clone()),
-                _ => alone.tag = Some(name.clone()),
-            }
-            if self.clips(&alone)?.is_empty() {
-                return Err(unknown(&self.conn, kind, name));
-            }
-        }
-        self.clips(filter)
-    }
-
     /// Whether there is a class of this name.
     ///
     /// # Errors

@@ -23,42 +23,17 @@ use crate::{ClipId, DbError, MotionDb};
 mod candidates;
 mod confidence;
 mod material;
+mod options;
 mod questions;
 mod views;
 
+pub use options::ProposeOptions;
 pub use questions::most_informative;
 
 use candidates::{ClassDistances, ProposalCandidate};
 use confidence::{Confidence, Judgement, NEAR_NOTHING};
 use material::{JudgedSpan, ProposalData, overlap};
 use views::{chosen, views};
-
-/// How to propose.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ProposeOptions {
-    /// Only these classes; all if empty. The others still say what a stretch is not.
-    pub classes: Vec<String>,
-    /// Samples of a class that look for others, at most.
-    pub templates_a_class: usize,
-    /// Rejected stretches that speak against others, at most.
-    pub negatives: usize,
-    /// What is less likely than this is proposed only where a class has too few other candidates.
-    pub least: f32,
-    /// So many of a class are proposed however unlikely they are.
-    pub always: usize,
-}
-
-impl Default for ProposeOptions {
-    fn default() -> Self {
-        Self {
-            classes: Vec::new(),
-            templates_a_class: 16,
-            negatives: 120,
-            least: 0.05,
-            always: 5,
-        }
-    }
-}
 
 /// A stretch that may show a class.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]

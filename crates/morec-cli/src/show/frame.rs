@@ -5,7 +5,7 @@ use morec::kinematics::WorldPose;
 use morec::math::Vec3;
 
 use super::picture::{CharGrid, DIM, Dots, PLAIN, Style, class_style};
-use super::{ReportedDetection, ShownClip, event_line, printable};
+use super::shown::{ReportedDetection, ShownClip, event_line, printable};
 
 /// Seconds that the bottom lines look back.
 const BACK_SECS: f64 = 20.0;

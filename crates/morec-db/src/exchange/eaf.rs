@@ -6,7 +6,7 @@ use std::fmt::Write;
 use morec::formats::{ParseError, Place, Warning};
 use roxmltree::{Document, Node, ParsingOptions};
 
-use super::{Annotation, ClipLengths, ReadLabels, secs};
+use super::annotation::{Annotation, ClipLengths, ReadLabels, secs};
 use crate::labels::SampleState;
 
 /// Under this name a header property keeps the clip.

@@ -2,7 +2,7 @@
 
 use rusqlite::{Connection, OptionalExtension, params};
 
-use super::SampleId;
+use super::sample::SampleId;
 use crate::{DbError, MotionDb, names};
 
 /// A class and how many samples it has.

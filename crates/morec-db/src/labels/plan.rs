@@ -4,9 +4,8 @@ use std::collections::BTreeSet;
 
 use rusqlite::{Connection, params};
 
-use super::samples::{Change, add};
-use super::{Added, DbSample, NewSample, SampleFilter, SampleId, SampleState, classes};
-use crate::time::now_secs;
+use super::sample::{Added, DbSample, NewSample, SampleFilter, SampleState};
+use super::write::{Change, add, alter};
 use crate::{DbError, MotionDb};
 
 /// How labels come in.
@@ -226,29 +225,4 @@ fn counterpart(label: &NewSample, left: &[DbSample]) -> Option<usize> {
     let overlapping = of_clip().filter(|(_, s)| s.class == label.class && overlap(s) > 0.0);
     let most = overlapping.max_by(|(_, a), (_, b)| overlap(a).total_cmp(&overlap(b)));
     same.or(most).map(|(at, _)| at)
-}
-
-/// Gives a sample the class and extent of a label; its number stays.
-pub(super) fn alter(
-    conn: &Connection,
-    id: SampleId,
-    label: &NewSample,
-    by: &str,
-) -> Result<(), DbError> {
-    super::samples::check_extent(conn, label)?;
-    let class = classes::find_or_make(conn, &label.class)?;
-    conn.execute(
-        "UPDATE samples SET class = ?2, start_secs = ?3, stop_secs = ?4, whole_clip = ?5, set_by = ?6, set_secs = ?7 \
-         WHERE id = ?1",
-        params![
-            id.0,
-            class,
-            label.start_secs,
-            label.stop_secs,
-            label.whole_clip,
-            by,
-            now_secs()
-        ],
-    )?;
-    Ok(())
 }

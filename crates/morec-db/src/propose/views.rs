@@ -7,8 +7,8 @@ use morec::features::{BoneSet, Rows};
 use morec::templates::{Metric, TemplateBank};
 use morec::train::{LabelledSpan, StreamKind, TrainParams, TrainSet, TrainStream, scatters};
 
-use super::ProposeOptions;
 use super::material::{JudgedSpan, ProposalData};
+use super::options::ProposeOptions;
 use crate::search::layout::shared_columns;
 
 /// Pairs of samples that tell how a class varies: more say the same, and a round must stay quick.

@@ -1,24 +1,16 @@
 //! From a table of points to clips: what C3D, TRC and tables of positions have in common.
 
 mod gaps;
+mod point;
+
+pub(super) use self::point::{Point, SHORT_GAP_SECS, UNSEEN};
 
 use self::gaps::{Filled, union};
+use self::point::{SHOWN, is_seen};
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::clip::{Clip, Points};
 use crate::math::Vec3;
 use crate::roles::points::{recognise_posed, subject_of};
-
-/// Gaps of up to this are filled and trusted: markers hardly leave a straight line in so little time.
-pub(super) const SHORT_GAP_SECS: f64 = 0.25;
-/// Names shown in a warning.
-const SHOWN: usize = 6;
-
-/// One point over time; a position that is not finite was not seen.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Point {
-    pub(super) name: String,
-    pub(super) positions: Vec<Vec3>,
-}
 
 /// What a file of points holds.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,13 +20,6 @@ pub(super) struct PointTable {
     pub(super) metres_per_unit: Option<f64>,
     /// True if a point at the origin was not seen.
     pub(super) zero_is_missing: bool,
-}
-
-/// A position that was not seen.
-pub(super) const UNSEEN: Vec3 = Vec3::new(f64::NAN, f64::NAN, f64::NAN);
-
-fn is_seen(position: &Vec3) -> bool {
-    position.iter().all(|c| c.is_finite())
 }
 
 impl PointTable {

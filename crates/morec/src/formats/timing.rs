@@ -15,6 +15,12 @@ pub(super) struct Clock {
     pub(super) assumed_hz: f64,
 }
 
+/// What is said of a rate given for a file whose keys stand at times.
+pub(super) fn rate_not_used() -> Warning {
+    let text = "its keys stand at times, not frames; the rate given is not used";
+    Warning::new(Place::File, text)
+}
+
 /// A step between frames that differs by more than this from the usual one is irregular, in steps.
 const IRREGULAR: f64 = 0.25;
 /// Share of irregular steps from which on frames are resampled.

@@ -8,7 +8,7 @@ use morec::formats::{bvh, c3d, gltf, jsonl, trc};
 use morec::import::{ImportOptions, Take, normalize};
 use morec::tables::{Content, write_csv, write_npz};
 
-use super::Wanted;
+use super::wanted::Wanted;
 use crate::output;
 
 /// A form of clips.

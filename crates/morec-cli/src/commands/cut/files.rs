@@ -9,7 +9,7 @@ use morec::import::Take;
 use morec::segment::{KernelParams, PpcaParams, Segmentation, kernel_cuts, segment};
 use serde::Serialize;
 
-use super::{Args, CheckedCutter};
+use super::args::{Args, CheckedCutter};
 use crate::json::write_json;
 use crate::output;
 use crate::poses::{PoseReader, PosedClip};

@@ -12,6 +12,7 @@ use morec_db::{ClipFilter, ClipId, MotionDb};
 use serde::Serialize;
 
 use crate::database;
+use crate::print;
 use crate::progress::StageBar;
 use crate::table::TextTable;
 
@@ -96,7 +97,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         split(&mut db, &found)?;
     }
     if args.json {
-        super::print_json(&found)?;
+        print::print_json(&found)?;
     } else {
         print(&found)?;
     }
@@ -229,5 +230,5 @@ fn print(found: &[Counted]) -> Result<()> {
         0 => String::new(),
         all => format!("{right} of {all} stretches of several labels counted right\n"),
     };
-    super::print_table(&table, &last)
+    print::print_table(&table, &last)
 }

@@ -17,6 +17,7 @@ use super::history;
 use crate::database;
 use crate::files::{self, some_of};
 use crate::labels;
+use crate::print;
 use crate::table::TextTable;
 
 /// Read labels from a file, set one by hand, or accept and reject what is there
@@ -138,7 +139,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if let Some(clip) = &args.clip {
         db.find_clip(clip)?;
     }
-    let lengths = super::lengths(&db)?;
+    let lengths = database::lengths(&db)?;
     let mut absent = BTreeMap::new();
     let annotations = match &args.class {
         Some(class) => vec![by_hand(args, class, &lengths)?],
@@ -159,16 +160,16 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             true => Some(named_changes(&db, &done)?),
             false => None,
         };
-        super::print_json(&serde_json::json!({
+        print::print_json(&serde_json::json!({
             "samples": done.counts, "absent_clips": absent, "changes": changes,
         }))?;
         return Ok(code(&samples, &absent));
     }
     say_absent(&db, &absent);
     if args.dry_run {
-        super::print_table(&changes(&db, &done)?, "")?;
+        print::print_table(&changes(&db, &done)?, "")?;
     }
-    super::print(said(&done.counts, args))?;
+    print::print(said(&done.counts, args))?;
     Ok(code(&samples, &absent))
 }
 
@@ -291,9 +292,9 @@ fn undo(db: &mut MotionDb, json: bool) -> Result<ExitCode> {
     }
     let undone = db.undo(None)?;
     if json {
-        super::print_json(&undone)?;
+        print::print_json(&undone)?;
     } else {
-        super::print(match &undone {
+        print::print(match &undone {
             Some(turned) => history::text(turned, "taken back"),
             None => "there is nothing to take back\n".to_owned(),
         })?;

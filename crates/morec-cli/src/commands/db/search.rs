@@ -16,6 +16,7 @@ use serde::Serialize;
 use super::page::{self, Page};
 use crate::database;
 use crate::files::{self, ReadArgs};
+use crate::print;
 use crate::progress::StageBar;
 use crate::table::TextTable;
 
@@ -154,7 +155,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         report(path, &db, &shown, args, &found)?;
     }
     if args.json {
-        super::print_json(&found)?;
+        print::print_json(&found)?;
     } else {
         print(&found, index.tick_hz())?;
     }
@@ -283,5 +284,5 @@ fn print(found: &SearchResult, tick_hz: f64) -> Result<()> {
             learned.samples, learned.classes
         ));
     }
-    super::print_table(&table, &text)
+    print::print_table(&table, &text)
 }

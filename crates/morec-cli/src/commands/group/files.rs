@@ -9,8 +9,8 @@ use morec::features::{BoneSet, FeatureParams, Rows, rows_of_clip};
 use morec::labels::ClipLength;
 use morec::segment::{KernelParams, kernel_cuts};
 
+use super::args::{Args, Grouping};
 use super::members::{GroupList, GroupMember, GroupedSample, labelled, only};
-use super::{Args, Grouping};
 
 /// A clip as feature rows.
 struct RowedClip {

@@ -13,10 +13,10 @@ use morec::labels::ClipLength;
 use morec_db::ClipId;
 use serde::Serialize;
 
-use super::{Args, GroupMethod};
-use crate::commands::db::{print_json, print_table};
+use super::args::{Args, GroupMethod};
 use crate::files::some_of;
 use crate::labels;
+use crate::print::{print_json, print_table};
 use crate::table::TextTable;
 
 /// A stretch of a clip to be grouped.

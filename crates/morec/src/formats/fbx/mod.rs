@@ -44,7 +44,7 @@ pub fn read_stated(
     let fbx = load(bytes, limits)?;
     let mut loaded = read_scene(&fbx, bytes.len(), name, limits)?;
     if rate_hz.is_some() {
-        loaded.warnings.push(super::rate_not_used());
+        loaded.warnings.push(super::timing::rate_not_used());
     }
     Ok((loaded, settings(&fbx)))
 }

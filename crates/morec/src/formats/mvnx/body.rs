@@ -3,7 +3,7 @@
 use roxmltree::Node;
 
 use super::super::{Limits, ParseError, Warning};
-use super::{child, is, place};
+use super::node::{child, is, place};
 use crate::math::Vec3;
 
 /// A segment; its joint is its origin.

@@ -5,10 +5,12 @@
 //! (`identity`, `tpose`, `npose`) stand before the motion and are left out.
 
 mod body;
+mod node;
 
 use roxmltree::{Document, Node, ParsingOptions};
 
 use self::body::MvnxSegment;
+use self::node::{child, is, place};
 use super::builder::{ClipBuilder, check_size, clip_names};
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::clip::{Clip, Joint};
@@ -272,19 +274,6 @@ fn rate(subject: Node<'_, '_>, frames: &[Node<'_, '_>], warnings: &mut Vec<Warni
             ASSUMED_HZ
         }
     }
-}
-
-fn is(node: Node<'_, '_>, tag: &str) -> bool {
-    node.is_element() && node.tag_name().name().eq_ignore_ascii_case(tag)
-}
-
-fn child<'a, 'input>(node: Node<'a, 'input>, tag: &str) -> Option<Node<'a, 'input>> {
-    node.children().find(|n| is(*n, tag))
-}
-
-fn place(node: Node<'_, '_>) -> Place {
-    let at = node.document().text_pos_at(node.range().start);
-    Place::Line(at.row.into())
 }
 
 #[cfg(test)]

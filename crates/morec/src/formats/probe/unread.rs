@@ -1,6 +1,6 @@
 //! Formats that are told by their content or their ending, only to say that they are not read and how to convert them.
 
-use super::Head;
+use super::head::Head;
 
 pub(super) struct Unread {
     pub(super) name: &'static str,

@@ -1,6 +1,6 @@
 //! Which columns are a point's x, y and z, by the rows above them.
 
-use super::{ColumnLayout, TableLine};
+use super::layout::{ColumnLayout, TableLine};
 use crate::formats::cells::{Decimal, number};
 use crate::formats::points::metres_of;
 

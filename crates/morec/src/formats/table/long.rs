@@ -1,7 +1,7 @@
 //! The long form: a row for each joint of each frame.
 
 use super::columns::{is_frame, is_time, seconds_of};
-use super::{ColumnLayout, TableFrames, TableLine, to_seconds};
+use super::layout::{ColumnLayout, TableFrames, TableLine, to_seconds};
 use crate::formats::cells::{Decimal, number};
 use crate::formats::points::{Point, UNSEEN, check_size};
 use crate::formats::{Limits, ParseError, Place};

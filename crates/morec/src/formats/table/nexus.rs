@@ -2,7 +2,7 @@
 //! its rate, the names, the axes and the units, then its frames. Trajectories hold markers; segments of a solved skeleton
 //! serve where there are none.
 
-use super::{ColumnLayout, TableLine};
+use super::layout::{ColumnLayout, TableLine};
 use crate::formats::cells::{Decimal, number};
 use crate::formats::points::metres_of;
 

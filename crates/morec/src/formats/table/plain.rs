@@ -1,6 +1,6 @@
 //! Tables of numbers without names.
 
-use super::{ColumnLayout, TableLine};
+use super::layout::{ColumnLayout, TableLine};
 use crate::formats::cells::{Decimal, number};
 use crate::roles::points::numbered_counts;
 
