@@ -3,7 +3,7 @@
 //! Rows are those of [`morec::features`] over every bone a clip shows. They are made of the stored motion, so that
 //! making them again gives them again.
 
-use morec::features::{BoneSet, FeatureParams, Rows, bones_of_clip, row_dim, rows_of_clip};
+use morec::features::{BoneSet, FeatureParams, RowLayout, Rows, bones_of_clip, rows_of_clip};
 use morec::progress::Progress;
 use rayon::prelude::*;
 use rusqlite::params;
@@ -220,7 +220,8 @@ pub(crate) fn unpacked(
     params: &FeatureParams,
 ) -> Option<ClipRows> {
     let bones = bones_of_bits(bits);
-    let rows = Rows::from_packed(bytes, row_dim(bones), params).filter(|_| !bones.is_empty())?;
+    let rows = Rows::from_packed(bytes, RowLayout::of(bones).dim(), params)
+        .filter(|_| !bones.is_empty())?;
     Some(ClipRows { clip, bones, rows })
 }
 

@@ -8,7 +8,7 @@ use morec::cluster::{
     AffinityParams, Clusters, Hierarchy, KwasParams, PairCounts, Spectrum, adjusted_rand_index,
     affinity_propagation, kwas_clusters, resampled, squared_distance,
 };
-use morec::features::{BoneSet, Rows};
+use morec::features::{BoneSet, RowLayout, Rows};
 use morec::labels::ClipLength;
 use morec_db::ClipId;
 use serde::Serialize;
@@ -96,23 +96,7 @@ impl GroupList {
 
 /// The columns of some of the bones, and of the root.
 pub fn only(rows: &Rows, of: BoneSet, wanted: BoneSet) -> Rows {
-    let b = of.len();
-    let places: Vec<usize> = of
-        .indices()
-        .enumerate()
-        .filter(|(_, bone)| wanted.contains(*bone))
-        .map(|(at, _)| at)
-        .collect();
-    let block = |start: usize| {
-        places
-            .iter()
-            .flat_map(move |at| (0..3).map(move |i| start + 3 * at + i))
-    };
-    let columns: Vec<usize> = block(0)
-        .chain(block(3 * b))
-        .chain(6 * b..6 * b + 4)
-        .collect();
-    rows.columns(&columns)
+    rows.columns(&RowLayout::kept_columns(of, wanted))
 }
 
 fn clusters(items: &[GroupMember], args: &Args) -> Clusters {
