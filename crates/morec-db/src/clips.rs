@@ -206,8 +206,11 @@ impl MotionDb {
             let mut samples = 0;
             for id in clips {
                 let sql = "SELECT count(*) FROM samples WHERE clip = ?1";
-                samples += conn.query_row(sql, params![id.0], |row| row.get::<_, i64>(0))?;
-                conn.execute("DELETE FROM clips WHERE id = ?1", params![id.0])?;
+                samples += conn
+                    .prepare_cached(sql)?
+                    .query_row(params![id.0], |row| row.get::<_, i64>(0))?;
+                conn.prepare_cached("DELETE FROM clips WHERE id = ?1")?
+                    .execute(params![id.0])?;
             }
             conn.execute(
                 "DELETE FROM files WHERE NOT EXISTS (SELECT 1 FROM clips c WHERE c.file = files.id)",
@@ -242,7 +245,7 @@ impl MotionDb {
 /// Changes what is known about a clip; says whether there is such a clip.
 fn describe(conn: &Connection, id: ClipId, update: &ClipUpdate) -> Result<usize, DbError> {
     let sql = "SELECT 1 FROM clips WHERE id = ?1";
-    if !conn.prepare(sql)?.exists(params![id.0])? {
+    if !conn.prepare_cached(sql)?.exists(params![id.0])? {
         return Ok(0);
     }
     let columns = [
@@ -255,16 +258,16 @@ fn describe(conn: &Connection, id: ClipId, update: &ClipUpdate) -> Result<usize,
             let sql = format!(
                 "UPDATE clips SET {column} = nullif(?2, '') WHERE id = ?1 AND {column} IS NOT nullif(?2, '')"
             );
-            conn.prepare(&sql)?.execute(params![id.0, value])?;
+            conn.prepare_cached(&sql)?.execute(params![id.0, value])?;
         }
     }
     for tag in &update.add_tags {
         let sql = "INSERT OR IGNORE INTO tags (clip, tag) VALUES (?1, ?2)";
-        conn.prepare(sql)?.execute(params![id.0, tag])?;
+        conn.prepare_cached(sql)?.execute(params![id.0, tag])?;
     }
     for tag in &update.remove_tags {
         let sql = "DELETE FROM tags WHERE clip = ?1 AND tag = ?2";
-        conn.prepare(sql)?.execute(params![id.0, tag])?;
+        conn.prepare_cached(sql)?.execute(params![id.0, tag])?;
     }
     Ok(1)
 }

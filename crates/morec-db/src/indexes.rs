@@ -76,15 +76,15 @@ impl MotionDb {
     /// All indexes, by name.
     pub fn indexes(&self) -> Result<Vec<IndexInfo>, DbError> {
         let taught = self.taught()?;
-        let sql = "SELECT name, trained_secs, length(bytes), json_array_length(samples), samples FROM indexes ORDER BY name";
+        let sql = "SELECT name, trained_secs, length(bytes) AS bytes, json_array_length(samples) AS count, samples FROM indexes ORDER BY name";
         let mut statement = self.conn.prepare(sql)?;
         let indexes = statement.query_map([], |row| {
             Ok(IndexInfo {
-                name: row.get(0)?,
-                trained_secs: row.get(1)?,
-                bytes: row.get::<_, i64>(2)? as usize,
-                samples: row.get::<_, i64>(3)? as usize,
-                stale: row.get::<_, String>(4)? != taught,
+                name: row.get("name")?,
+                trained_secs: row.get("trained_secs")?,
+                bytes: row.get::<_, i64>("bytes")? as usize,
+                samples: row.get::<_, i64>("count")? as usize,
+                stale: row.get::<_, String>("samples")? != taught,
             })
         })?;
         Ok(indexes.collect::<Result<_, _>>()?)

@@ -108,11 +108,11 @@ impl MotionDb {
         )?;
         let kept = statement.query_map(params![recipe], |row| {
             Ok(Kept {
-                clip: ClipId(row.get(0)?),
-                recipe: row.get(1)?,
-                bits: row.get(2)?,
-                bytes: row.get(3)?,
-                sum: row.get(4)?,
+                clip: ClipId(row.get("clip")?),
+                recipe: row.get("recipe")?,
+                bits: row.get("bones")?,
+                bytes: row.get("bytes")?,
+                sum: row.get("sum")?,
             })
         })?;
         Ok(kept.collect::<Result<_, _>>()?)
@@ -234,7 +234,7 @@ pub(crate) fn keep(
 ) -> Result<(), DbError> {
     let sql = "INSERT OR REPLACE INTO feature_rows (clip, recipe, bones, bytes, sum) VALUES (?1, ?2, ?3, ?4, ?5)";
     let sum = sum(recipe, bones, bytes);
-    conn.prepare(sql)?
+    conn.prepare_cached(sql)?
         .execute(params![clip.0, recipe, bones, bytes, sum])?;
     Ok(())
 }

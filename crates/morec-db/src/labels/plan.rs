@@ -107,7 +107,8 @@ impl MotionDb {
                 take_in(conn, label, &mut left, options, &mut done)?;
             }
             for sample in left {
-                conn.execute("DELETE FROM samples WHERE id = ?1", params![sample.id.0])?;
+                conn.prepare_cached("DELETE FROM samples WHERE id = ?1")?
+                    .execute(params![sample.id.0])?;
                 done.counts.gone += 1;
                 done.changes.push(ChangedLabel {
                     change: LabelChange::Gone,

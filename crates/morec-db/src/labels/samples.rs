@@ -72,7 +72,8 @@ impl MotionDb {
     ) -> Result<(), DbError> {
         self.edit(&format!("propose {} samples", new.len()), |conn| {
             for id in old {
-                conn.execute("DELETE FROM samples WHERE id = ?1", params![id.0])?;
+                conn.prepare_cached("DELETE FROM samples WHERE id = ?1")?
+                    .execute(params![id.0])?;
             }
             new.iter()
                 .try_for_each(|sample| add(conn, sample, by).map(drop))
@@ -94,7 +95,7 @@ impl MotionDb {
         self.edit(what, |conn| {
             for id in old {
                 let sql = "DELETE FROM samples WHERE id = ?1";
-                if conn.execute(sql, params![id.0])? == 0 {
+                if conn.prepare_cached(sql)?.execute(params![id.0])? == 0 {
                     return Err(DbError::unknown("sample", &format!("#{}", id.0)));
                 }
             }

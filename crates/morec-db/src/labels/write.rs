@@ -32,7 +32,7 @@ pub(super) fn add(
         .prepare_cached(
             "SELECT id, state FROM samples WHERE clip = ?1 AND class = ?2 AND start_secs = ?3 AND stop_secs = ?4",
         )?
-        .query_row(extent, |row| Ok((row.get(0)?, row.get(1)?)))
+        .query_row(extent, |row| Ok((row.get("id")?, row.get("state")?)))
         .optional()?;
     let Some((id, state)) = there else {
         conn.prepare_cached(
@@ -87,12 +87,12 @@ fn reject_instead(
         .query_map(given, |row| row.get(0))?
         .collect::<Result<_, _>>()?;
     let sql = format!("DELETE FROM samples WHERE {stretch} AND set_by = ?5");
-    let withdrawn = conn.execute(&sql, given)?;
+    let withdrawn = conn.prepare_cached(&sql)?.execute(given)?;
     for group in groups {
-        conn.execute(
+        conn.prepare_cached(
             "DELETE FROM classes WHERE id = ?1 AND NOT EXISTS (SELECT 1 FROM samples WHERE class = ?1)",
-            params![group],
-        )?;
+        )?
+        .execute(params![group])?;
     }
     let sql = format!(
         "UPDATE samples SET state = 'rejected', set_by = ?5, set_secs = ?6 WHERE {stretch}"
@@ -112,11 +112,11 @@ fn reject_instead(
 }
 
 fn check_extent(conn: &Connection, sample: &NewSample) -> Result<(), DbError> {
-    let sql = "SELECT name, frames / rate_hz, rate_hz FROM clips WHERE id = ?1";
+    let sql = "SELECT name, frames / rate_hz AS secs, rate_hz FROM clips WHERE id = ?1";
     let clip: Option<(String, f64, f64)> = conn
         .prepare_cached(sql)?
         .query_row(params![sample.clip.0], |row| {
-            Ok((row.get(0)?, row.get(1)?, row.get(2)?))
+            Ok((row.get("name")?, row.get("secs")?, row.get("rate_hz")?))
         })
         .optional()?;
     let (name, secs, rate_hz) =
@@ -141,10 +141,11 @@ pub(super) fn alter(
 ) -> Result<(), DbError> {
     check_extent(conn, label)?;
     let class = classes::find_or_make(conn, &label.class)?;
-    conn.execute(
+    conn.prepare_cached(
         "UPDATE samples SET class = ?2, start_secs = ?3, stop_secs = ?4, whole_clip = ?5, set_by = ?6, set_secs = ?7 \
          WHERE id = ?1",
-        params![
+    )?
+    .execute(params![
             id.0,
             class,
             label.start_secs,
@@ -152,7 +153,6 @@ pub(super) fn alter(
             label.whole_clip,
             by,
             now_secs()
-        ],
-    )?;
+        ])?;
     Ok(())
 }
