@@ -11,7 +11,7 @@ use super::performer::EventOptions;
 use super::status::{SessionCounters, Status, StatusHandle};
 use super::waker::Waker;
 use super::worker::{EventReader, RecognizerCache, StreamWorker, TurnOutcome};
-use super::{Frame, Model, OverflowPolicy, SessionError, Source, SourceEvent, stages};
+use super::{Frame, Model, OverflowPolicy, SessionError, Source, SourceEvent, svrdm};
 
 /// Distribution of recognition over threads. Events are the same.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -156,12 +156,12 @@ impl Session {
                 Ok(readers)
             }
             (Threading::Stages, Model::Svrdm(model)) => {
-                let shared = stages::Shared {
+                let shared = svrdm::Shared {
                     cells: &cells,
                     stop: &stop,
                     waker: &waker,
                 };
-                stages::start(&model, feed, options, &shared, &mut |what, job| {
+                svrdm::start(&model, feed, options, &shared, &mut |what, job| {
                     self.spawn(what, job)
                 })
             }
