@@ -30,7 +30,7 @@ pub fn only(inputs: &[PathBuf]) -> Result<Option<&Path>> {
     }
 }
 
-/// Whether a file begins as SQLite's do.
+/// True if a file begins as SQLite's do.
 fn is_database(path: &Path) -> bool {
     let mut head = [0; 16];
     let read = File::open(path).and_then(|mut file| file.read_exact(&mut head));

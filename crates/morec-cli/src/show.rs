@@ -48,7 +48,7 @@ pub fn play(scene: &ShownClip, speed: f64) -> io::Result<()> {
     }
 }
 
-/// What this terminal can show now; asked for every picture, as windows change their size.
+/// Abilities of this terminal now; asked for every picture, as windows change their size.
 pub fn look() -> TerminalStyle {
     let (columns, rows) = match terminal_size::terminal_size() {
         Some((width, height)) => (usize::from(width.0), usize::from(height.0)),

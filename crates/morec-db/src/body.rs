@@ -39,7 +39,7 @@ impl MotionDb {
         })
     }
 
-    /// Who plays what in every clip. A clip whose roles are damaged plays none.
+    /// Roles of every clip; empty for a clip whose stored roles are damaged.
     ///
     /// # Errors
     /// The database cannot be read.

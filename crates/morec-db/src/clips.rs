@@ -28,23 +28,23 @@ pub struct ClipInfo {
     pub repaired_frames: usize,
     /// Joints of its skeleton.
     pub joints: usize,
-    /// Which skeleton: clips of one skeleton share the number.
+    /// Number of its skeleton; clips of one skeleton share it.
     pub skeleton: i64,
-    /// Where its file was.
+    /// Path of its file when it was imported.
     pub path: String,
     /// Its file's format.
     pub format: String,
     /// Bytes of compressed motion.
     pub motion_bytes: usize,
-    /// Where the material is from.
+    /// Origin of the material.
     pub source: Option<String>,
     /// Under which terms.
     pub licence: Option<String>,
-    /// Who is seen.
+    /// Person in it.
     pub subject: Option<String>,
     /// Words attached to it.
     pub tags: Vec<String>,
-    /// How many accepted samples lie in it.
+    /// Number of accepted samples in it.
     pub samples: usize,
 }
 
@@ -55,7 +55,7 @@ impl ClipInfo {
     }
 }
 
-/// Which clips; all conditions must hold.
+/// Conditions on clips; all must hold.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ClipFilter {
     /// The name matches this pattern (`*` any text, `?` one character).
@@ -68,7 +68,7 @@ pub struct ClipFilter {
     pub class: Option<String>,
 }
 
-/// What to change of clips; what is `None` stays.
+/// Changes to clips; `None` leaves a value as it is.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ClipUpdate {
     /// New source; empty takes it away.

@@ -7,7 +7,7 @@ use rusqlite::{Connection, OpenFlags, Transaction, TransactionBehavior};
 
 use crate::{DbError, SCHEMA, schema};
 
-/// How long a writer waits for another before it says [`DbError::Busy`].
+/// Time a writer waits for another before [`DbError::Busy`].
 const WAIT: Duration = Duration::from_secs(5);
 
 /// An open motion database.
@@ -17,7 +17,7 @@ pub struct MotionDb {
     path: PathBuf,
 }
 
-/// How much is in a database.
+/// Contents of a database in numbers.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[allow(missing_docs)] // The names say it.
 pub struct DbSummary {
@@ -134,7 +134,7 @@ impl MotionDb {
         })
     }
 
-    /// Whether it was opened for reading only.
+    /// True if it was opened for reading only.
     pub(crate) fn is_read_only(&self) -> Result<bool, DbError> {
         let query_only: bool = self
             .conn
@@ -142,7 +142,7 @@ impl MotionDb {
         Ok(query_only || self.conn.is_readonly("main")?)
     }
 
-    /// Where it lies.
+    /// Path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -154,7 +154,7 @@ impl MotionDb {
             .transaction_with_behavior(TransactionBehavior::Immediate)?)
     }
 
-    /// How much is in it.
+    /// Contents in numbers.
     pub fn summary(&self) -> Result<DbSummary, DbError> {
         let count = |sql: &str| -> Result<u64, DbError> {
             Ok(self

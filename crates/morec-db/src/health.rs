@@ -7,10 +7,10 @@ use morec::progress::Progress;
 use crate::history::digest;
 use crate::{ClipFilter, DbError, MotionDb};
 
-/// What [`MotionDb::check`] found.
+/// Result of [`MotionDb::check`].
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Health {
-    /// What is wrong, a sentence each; empty if all is well.
+    /// Faults, a sentence each; empty if all is well.
     pub faults: Vec<String>,
     /// Clips whose motion was decoded.
     pub clips: usize,

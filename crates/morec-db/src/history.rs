@@ -22,10 +22,10 @@ pub use turn::{Effect, Turned};
 use crate::time::now_secs;
 use crate::{DbError, MotionDb};
 
-/// So many steps can be taken back.
+/// Number of steps that can be undone.
 pub const STEPS_KEPT: usize = 1000;
 
-/// So many bytes of motion and indexes are kept for taking back, the last step's aside.
+/// Bytes of motion and indexes kept for undoing, apart from the last step's.
 const BYTES_KEPT: i64 = 256 << 20;
 
 /// A change that was done, and can be taken back; or was taken back, and can be done again.
@@ -33,13 +33,13 @@ const BYTES_KEPT: i64 = 256 << 20;
 pub struct HistoryStep {
     /// Its number; later steps have greater ones.
     pub id: i64,
-    /// What it did.
+    /// Description of the step.
     pub what: String,
-    /// When, seconds since 1970.
+    /// Time of the change, seconds since 1970.
     pub set_secs: i64,
     /// True if it has been taken back.
     pub undone: bool,
-    /// How many rows of each table it touched.
+    /// Number of rows it touched, by table.
     pub rows: BTreeMap<String, usize>,
 }
 

@@ -16,7 +16,7 @@ use crate::{ClipId, ClipUpdate, DbError, MotionDb, history, rows};
 /// Files in one transaction: a crash loses the work of so many at most, and nothing that was committed.
 const BATCH: usize = 32;
 
-/// What became of one file.
+/// Outcome of importing one file.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[serde(rename_all = "snake_case", tag = "outcome")]
 pub enum ImportOutcome {
@@ -24,7 +24,7 @@ pub enum ImportOutcome {
     Imported {
         /// Their names.
         clips: Vec<String>,
-        /// What was repaired or looks wrong.
+        /// Repairs and doubts.
         warnings: Vec<String>,
     },
     /// It was there already, from this path.
@@ -38,14 +38,14 @@ pub enum ImportOutcome {
     Refused(Refused),
 }
 
-/// Why a file was refused.
+/// Reason for refusing a file.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct Refused {
     /// The reason in a sentence.
     pub reason: String,
 }
 
-/// What became of every file, in their order.
+/// Outcomes of all files, in their order.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize)]
 pub struct ImportLog {
     /// Path and outcome.
@@ -55,7 +55,7 @@ pub struct ImportLog {
 }
 
 impl ImportLog {
-    /// What it did, for the history.
+    /// Description for the history.
     fn said(&self) -> String {
         let counts = self.counts();
         match counts.refused {
@@ -64,7 +64,7 @@ impl ImportLog {
         }
     }
 
-    /// How many files came to what.
+    /// Number of files by outcome.
     pub fn counts(&self) -> ImportCounts {
         let mut counts = ImportCounts::default();
         for (_, outcome) in &self.files {
@@ -82,7 +82,7 @@ impl ImportLog {
     }
 }
 
-/// How many files of an import came to what.
+/// Number of files of an import, by outcome.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct ImportCounts {
     /// Imported.

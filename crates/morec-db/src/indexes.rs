@@ -10,18 +10,18 @@ use crate::{DbError, MotionDb, names};
 pub struct IndexInfo {
     /// Its name.
     pub name: String,
-    /// When it was trained, seconds since 1970.
+    /// Time of training, seconds since 1970.
     pub trained_secs: i64,
     /// Its size.
     pub bytes: usize,
-    /// How many samples taught it.
+    /// Number of samples it was trained on.
     pub samples: usize,
     /// True if accepted samples have changed since.
     pub stale: bool,
 }
 
 impl MotionDb {
-    /// What an index trained now would be taught: clip, class, start and stop of every accepted sample.
+    /// Training data of an index made now: clip, class, start and stop of every accepted sample.
     fn taught(&self) -> Result<String, DbError> {
         let filter = crate::labels::SampleFilter {
             state: Some(crate::labels::SampleState::Accepted),

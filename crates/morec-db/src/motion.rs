@@ -15,7 +15,7 @@ use crate::{ClipId, DbError, MotionDb};
 pub struct StoredClip {
     /// Skeleton and frames, at the rate of its file.
     pub clip: Clip,
-    /// Who plays what.
+    /// Roles of the joints.
     pub roles: RoleMap,
     /// T-pose frames at the start.
     pub rest: Span,
@@ -42,7 +42,7 @@ impl StoredClip {
     }
 }
 
-/// What goes into the file for one clip.
+/// A clip as it is written to the database.
 pub(crate) struct Packed {
     pub motion: Vec<u8>,
     pub max_angle_rad: f64,

@@ -6,13 +6,13 @@ use rusqlite::Connection;
 
 use crate::{DbError, MotionDb};
 
-/// So many names are listed when none is near.
+/// Most names listed when none is similar.
 const LISTED: usize = 8;
 
-/// So many near names are offered.
+/// Most similar names offered.
 const OFFERED: usize = 3;
 
-/// What to say of a name that is not among `known`, to be put behind a sentence: the nearest ones, or some of them and how
+/// Hint for a name that is not among `known`, to be put behind a sentence: the nearest ones, or some of them and how
 /// many more there are.
 pub fn hint(name: &str, known: &[String]) -> String {
     if known.is_empty() {
@@ -74,7 +74,7 @@ pub(crate) fn unknown(conn: &Connection, kind: &'static str, name: &str) -> DbEr
 }
 
 impl MotionDb {
-    /// Whether there is a class of this name.
+    /// Checks that there is a class of this name.
     ///
     /// # Errors
     /// [`DbError::Unknown`] with the nearest names.
@@ -86,7 +86,7 @@ impl MotionDb {
         }
     }
 
-    /// What to say of a clip that is not there: the nearest names, after a semicolon.
+    /// Hint for a clip that is not there: the nearest names, after a semicolon.
     pub fn hint_of_clip(&self, name: &str) -> String {
         match unknown(&self.conn, "clip", name) {
             DbError::Unknown { hint, .. } => hint,

@@ -41,15 +41,15 @@ pub struct Proposal {
     /// Its clip.
     #[serde(rename = "clip_id")]
     pub clip: ClipId,
-    /// What it may show.
+    /// Its proposed class.
     pub class: String,
-    /// Where it starts, seconds.
+    /// Start, seconds.
     pub start_secs: f64,
-    /// Where it stops.
+    /// Stop, seconds.
     pub stop_secs: f64,
     /// True if the clip as a whole is meant: so where all samples of the class are whole clips.
     pub whole_clip: bool,
-    /// How likely it is right, 0 to 1, as far as the answers so far tell.
+    /// Probability that it is right, 0 to 1, estimated from the answers so far.
     pub score: f32,
 }
 
@@ -74,7 +74,7 @@ impl From<Proposal> for NewSample {
     }
 }
 
-/// Who says what [`MotionDb::propose_and_keep`] proposes.
+/// Author of the proposals of [`MotionDb::propose_and_keep`].
 const PROPOSED_BY: &str = "propose";
 
 impl MotionDb {
@@ -132,7 +132,7 @@ impl MotionDb {
     }
 }
 
-/// What the templates see in every clip.
+/// Distances of every clip to the templates.
 fn look(
     material: &ProposalData,
     options: &ProposeOptions,
@@ -153,7 +153,7 @@ fn look(
     (0..total).into_par_iter().filter_map(see).collect()
 }
 
-/// What the judged stretches of a clip say of right and wrong.
+/// Judgements of the stretches of a clip, as training data of the confidence.
 fn judged(material: &ProposalData, clip: usize, seen: &ClassDistances) -> Vec<Judgement> {
     let mut found = Vec::new();
     for judged in material.judged.iter().filter(|j| j.clip == clip) {

@@ -6,7 +6,7 @@ use rusqlite::params;
 
 use crate::{ClipId, DbError, MotionDb};
 
-/// What a segment is.
+/// Kind of a segment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SegmentKind {
@@ -34,11 +34,11 @@ pub struct Segment {
     /// Its clip.
     #[serde(rename = "clip_id")]
     pub clip: ClipId,
-    /// What it is.
+    /// Its kind.
     pub kind: SegmentKind,
-    /// Where it starts, seconds.
+    /// Start, seconds.
     pub start_secs: f64,
-    /// Where it stops.
+    /// Stop, seconds.
     pub stop_secs: f64,
 }
 
@@ -72,7 +72,7 @@ impl MotionDb {
         })
     }
 
-    /// By which method each clip was cut; clips that were not cut are not in it.
+    /// Method by which each clip was cut; clips that were not cut are not in it.
     pub fn cut_methods(&self) -> Result<BTreeMap<ClipId, String>, DbError> {
         let mut statement = self
             .conn

@@ -71,7 +71,7 @@ pub unsafe extern "C" fn mrSetDataSource(szSourceFile: *const c_char) -> bool {
     })
 }
 
-/// How fast sources are played from now on, also while they are: 1 as they were performed, 2 twice as fast, infinity as
+/// Sets how fast sources are played from now on, also while they are: 1 as they were performed, 2 twice as fast, infinity as
 /// fast as recognition goes. Not one of the eight.
 #[unsafe(no_mangle)]
 #[allow(non_snake_case)]
@@ -86,7 +86,7 @@ pub extern "C" fn mrStopDataSource() -> bool {
     done(|| state().stop_source())
 }
 
-/// Whether nothing more will come from the source: it has played to its end or was stopped, or there is none.
+/// True if nothing more will come from the source: it has played to its end or was stopped, or there is none.
 #[unsafe(no_mangle)]
 #[allow(non_snake_case)]
 pub extern "C" fn mrIsDataSourceDepleted() -> bool {

@@ -19,9 +19,9 @@ pub struct MotionSeg {
     pub stop_frame: u32,
     /// Bytes of `class_name` without the zero.
     pub class_name_bytes: u32,
-    /// When it began, seconds from the beginning of the clip.
+    /// Start, seconds from the beginning of the clip.
     pub start_secs: f64,
-    /// When it ended.
+    /// Stop, seconds.
     pub stop_secs: f64,
     /// 0 just accepted … 1 identical to a sample.
     pub confidence: f64,

@@ -14,7 +14,7 @@ const FRESH_SECS: f64 = 1.2;
 /// Below this width there is no room for a figure.
 const FIGURE_FROM_COLUMNS: usize = 56;
 
-/// What the terminal can show.
+/// Abilities of the terminal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TerminalStyle {
     pub columns: usize,
@@ -24,7 +24,7 @@ pub struct TerminalStyle {
     pub unicode: bool,
 }
 
-/// How large a clip's figure is, so that it keeps its scale throughout.
+/// Scale of a clip's figure, the same throughout.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FigureScale {
     ground: f64,
@@ -190,7 +190,7 @@ fn is_fresh(said: &ReportedDetection, now_secs: f64) -> bool {
     now_secs - said.reported_secs < FRESH_SECS
 }
 
-/// What was performed, what was said, and a line of seconds below.
+/// Labels, detections, and a line of seconds below.
 fn timelines(
     picture: &mut CharGrid,
     scene: &ShownClip,

@@ -20,16 +20,16 @@ pub struct ReportedDetection {
     pub reported_secs: f64,
 }
 
-/// What is shown.
+/// A clip to show, with labels and detections.
 #[derive(Debug, Clone, Copy)]
 pub struct ShownClip<'a> {
     /// Above the picture: who is seen.
     pub title: &'a str,
     /// The stream, Y up.
     pub clip: &'a Clip,
-    /// What was performed, in order.
+    /// Labels, in order.
     pub truth: &'a [KnownSpan],
-    /// What was said about it, in the order of `reported_secs`.
+    /// Detections, in the order of `reported_secs`.
     pub said: &'a [ReportedDetection],
 }
 

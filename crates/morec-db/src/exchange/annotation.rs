@@ -12,15 +12,15 @@ use crate::labels::SampleState;
 pub struct Annotation {
     /// The clip's name.
     pub clip: String,
-    /// What it shows.
+    /// Its class.
     pub class: String,
     /// Start and stop in seconds; `None` for the whole clip.
     pub extent: Option<(f64, f64)>,
-    /// Who is seen.
+    /// Person in it.
     pub person: Option<String>,
-    /// How sure a program was.
+    /// Confidence of the program that proposed it.
     pub score: Option<f64>,
-    /// What is thought of it.
+    /// Its state.
     pub state: SampleState,
 }
 
@@ -81,7 +81,7 @@ impl LabelFormat {
 pub struct ReadLabels {
     /// In file order.
     pub annotations: Vec<Annotation>,
-    /// What was left out or looks wrong.
+    /// Omissions and doubts.
     pub warnings: Vec<Warning>,
     /// Clips that are not known and whose frames can therefore not be told in seconds, with how many labels each had.
     pub absent: BTreeMap<String, usize>,
@@ -137,7 +137,7 @@ pub(super) fn text(bytes: &[u8]) -> Result<&str, ParseError> {
     })
 }
 
-/// What a cell of the column `state` says. Nothing is no judgement: what was judged before stays so.
+/// State in a cell of the column `state`. An empty cell is a proposal, so that earlier judgements stay.
 pub(super) fn state(cell: &str, line: u64) -> Result<SampleState, ParseError> {
     let name = cell.trim().to_ascii_lowercase();
     if name.is_empty() {

@@ -36,7 +36,7 @@ struct JsonRow {
     state: Option<SampleState>,
 }
 
-/// Which of the forms in JSON a file is.
+/// Tells the forms in JSON apart.
 pub fn which(bytes: &[u8]) -> LabelFormat {
     match serde_json::from_slice(bytes) {
         Ok(Value::Array(_)) => LabelFormat::LabelStudio,

@@ -7,7 +7,7 @@ use crate::DbError;
 /// A table of the schema, its columns in the order of its triggers (`migrations/0002.sql`).
 pub struct Tracked {
     pub name: &'static str,
-    /// So many of the columns, from the first, are its key.
+    /// Number of key columns, which stand first.
     pub keys: usize,
     pub columns: &'static [&'static str],
     /// A column that holds much; where it was not changed, the history says NULL.

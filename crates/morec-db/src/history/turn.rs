@@ -6,7 +6,7 @@ use super::tracked::{TRACKED, tracked};
 use super::{HistoryStep, digest, record, step, weigh};
 use crate::{DbError, MotionDb};
 
-/// What taking a step back, or doing it again, does to a table.
+/// Effect of undoing or redoing a step on a table.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct Effect {
     /// The table: clips, samples, classes …
@@ -53,7 +53,7 @@ impl MotionDb {
         self.turn(Way::Redo, step, true)
     }
 
-    /// What [`MotionDb::undo`] would do.
+    /// Effects that [`MotionDb::undo`] would have.
     ///
     /// # Errors
     /// As there.
@@ -61,7 +61,7 @@ impl MotionDb {
         self.turn(Way::Undo, step, false)
     }
 
-    /// What [`MotionDb::redo`] would do.
+    /// Effects that [`MotionDb::redo`] would have.
     ///
     /// # Errors
     /// As there.

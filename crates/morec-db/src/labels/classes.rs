@@ -20,7 +20,7 @@ pub struct ClassCount {
     pub secs: f64,
 }
 
-/// What may be a class's name: it must survive tables, track names and terminals.
+/// Checks a class name, which must survive tables, track names and terminals.
 pub(super) fn check_name(name: &str) -> Result<&str, DbError> {
     let trimmed = name.trim();
     if trimmed.is_empty() || trimmed.len() > 200 || trimmed.chars().any(char::is_control) {

@@ -8,10 +8,10 @@ use super::sample::{Added, DbSample, NewSample, SampleFilter, SampleState};
 use super::write::{Change, add, alter};
 use crate::{DbError, MotionDb};
 
-/// How labels come in.
+/// Options of adding labels.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LabelOptions {
-    /// Who says so.
+    /// Author of the labels.
     pub by: String,
     /// The labels are all there are for the clips they name: accepted samples that are not among them are removed.
     pub replace: bool,
@@ -19,7 +19,7 @@ pub struct LabelOptions {
     pub dry_run: bool,
 }
 
-/// What happens to a sample.
+/// Kind of change of a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum LabelChange {
@@ -38,7 +38,7 @@ pub enum LabelChange {
 /// A change of a sample, as it is afterwards; one that goes, as it was.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct ChangedLabel {
-    /// What happens.
+    /// Kind of change.
     pub change: LabelChange,
     /// Its clip.
     #[serde(rename = "clip_id")]
@@ -49,7 +49,7 @@ pub struct ChangedLabel {
     pub start_secs: f64,
     /// Its stop, seconds.
     pub stop_secs: f64,
-    /// What it was before, if it is moved or renamed: class, start and stop.
+    /// Class, start and stop before the change, if it is moved or renamed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub was: Option<(String, f64, f64)>,
 }
@@ -67,10 +67,10 @@ impl ChangedLabel {
     }
 }
 
-/// What came of labels.
+/// Result of adding labels.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize)]
 pub struct Labelled {
-    /// How many.
+    /// Counts by kind.
     #[serde(flatten)]
     pub counts: Added,
     /// Every change, in the order of the labels; what goes is last.

@@ -19,23 +19,23 @@ pub struct DbSample {
     /// Its clip's name.
     #[serde(rename = "clip")]
     pub clip_name: String,
-    /// Who is seen in the clip.
+    /// Person in the clip.
     pub subject: Option<String>,
-    /// What it shows.
+    /// Its class.
     pub class: String,
-    /// Where it starts, seconds from the clip's beginning.
+    /// Start, seconds from the beginning of the clip.
     pub start_secs: f64,
-    /// Where it stops.
+    /// Stop, seconds.
     pub stop_secs: f64,
     /// True if the clip as a whole was labelled, still ends and all.
     pub whole_clip: bool,
-    /// What is thought of it.
+    /// Its state.
     pub state: SampleState,
-    /// How sure a program was of it.
+    /// Confidence of the program that proposed it.
     pub score: Option<f64>,
-    /// Who said so.
+    /// Author of the last change.
     pub set_by: String,
-    /// When, seconds since 1970.
+    /// Time of the change, seconds since 1970.
     pub set_secs: i64,
     /// Frames a second of its clip.
     pub rate_hz: f64,
@@ -54,21 +54,21 @@ impl DbSample {
 pub struct NewSample {
     /// Its clip.
     pub clip: ClipId,
-    /// What it shows.
+    /// Its class.
     pub class: String,
-    /// Where it starts, seconds.
+    /// Start, seconds.
     pub start_secs: f64,
-    /// Where it stops.
+    /// Stop, seconds.
     pub stop_secs: f64,
     /// True if the clip as a whole is meant.
     pub whole_clip: bool,
-    /// What is thought of it.
+    /// Its state.
     pub state: SampleState,
-    /// How sure a program is of it.
+    /// Confidence of the program that proposes it.
     pub score: Option<f64>,
 }
 
-/// What became of samples that were added.
+/// Counts of added samples, by outcome.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 pub struct Added {
     /// They are new.
@@ -89,7 +89,7 @@ pub struct Added {
     pub withdrawn: usize,
 }
 
-/// Which samples; all conditions must hold.
+/// Conditions on samples; all must hold.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SampleFilter {
     /// In this clip.
@@ -100,10 +100,10 @@ pub struct SampleFilter {
     pub state: Option<SampleState>,
 }
 
-/// Who says what `morec group` proposes: that stretches are alike, under a name of its own making.
+/// Author of the proposals of `morec group`, which say that stretches are alike, under a generated name.
 pub const GROUPED_BY: &str = "group";
 
-/// What is thought of a sample.
+/// State of a sample.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
 )]

@@ -13,7 +13,7 @@ pub(super) enum Change {
     None,
 }
 
-/// What an accepted sample does to proposals of other classes.
+/// Effects of an accepted sample on proposals of other classes.
 #[derive(Default)]
 pub(super) struct Others {
     pub rejected: usize,

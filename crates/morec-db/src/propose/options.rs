@@ -1,6 +1,6 @@
 //! Options of proposals.
 
-/// How to propose.
+/// Options of proposals.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ProposeOptions {
     /// Only these classes; all if empty. The others still say what a stretch is not.
@@ -9,9 +9,9 @@ pub struct ProposeOptions {
     pub templates_a_class: usize,
     /// Rejected stretches that speak against others, at most.
     pub negatives: usize,
-    /// What is less likely than this is proposed only where a class has too few other candidates.
+    /// Least probability; less likely stretches are proposed only where a class has too few other candidates.
     pub least: f32,
-    /// So many of a class are proposed however unlikely they are.
+    /// Number of stretches of a class that are proposed however unlikely they are.
     pub always: usize,
 }
 

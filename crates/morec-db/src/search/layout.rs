@@ -4,7 +4,7 @@ use morec::features::{BoneSet, FeatureParams, RowLayout, Rows, mirrored_rows, op
 
 /// Values in a laid-out row: directions and velocities of every bone, then the root.
 pub const DIM: usize = RowLayout::ALL.dim();
-/// How kept rows weigh root motion.
+/// Weight of root motion in kept rows.
 pub const ROOT_WEIGHT: f64 = FeatureParams::ROOT_WEIGHT;
 
 /// Rows over all bones; those that a clip does not show are 0.
@@ -45,7 +45,7 @@ pub fn shared_columns(bones: BoneSet) -> Vec<usize> {
     RowLayout::kept_columns(BoneSet::ALL, bones)
 }
 
-/// What a mirror beside the performer shows.
+/// Rows of the mirror image of the performer.
 pub fn mirrored(laid: &CanonicalRows) -> CanonicalRows {
     let bones = opposite_bones(laid.bones);
     // Every bone has its opposite among all.
@@ -53,7 +53,7 @@ pub fn mirrored(laid: &CanonicalRows) -> CanonicalRows {
     CanonicalRows { rows, bones }
 }
 
-/// What the mirror image of a skeleton with `bones` shows.
+/// Bones of the mirror image of a skeleton with `bones`.
 pub fn opposite_bones(bones: BoneSet) -> BoneSet {
     bones
         .indices()

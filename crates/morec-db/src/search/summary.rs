@@ -16,9 +16,9 @@ use super::windows::{Sums, TRAVEL, X};
 const PARTS: usize = 16;
 /// Octaves: between halves, quarters, eighths and sixteenths; within sixteenths.
 const OCTAVES: usize = 5;
-/// Where the mean pose begins.
+/// First value of the mean pose.
 const MEAN: usize = OCTAVES * X;
-/// Where the travel begins.
+/// First value of the travel.
 const ROOT: usize = MEAN + X;
 /// Values in a summary.
 pub const SUMMARY: usize = ROOT + TRAVEL;
@@ -26,7 +26,7 @@ pub const SUMMARY: usize = ROOT + TRAVEL;
 /// `[standard deviation by octave and coordinate (5 × 33); mean pose (33); asinh of the mean root motion (4)]`.
 pub type Summary = [f32; SUMMARY];
 
-/// What each part's distance counts: about one over its median among windows of everyday motion, except that the mean
+/// Weight of each part's distance: about one over its median among windows of everyday motion, except that the mean
 /// pose, which tells people and styles apart better than motions, counts a sixth of that.
 const WEIGHTS: Weights = Weights {
     motion: 0.9,

@@ -94,7 +94,7 @@ pub fn distance(a: &[f32; SUMMARY], b: &[f32; SUMMARY], shown: &[bool; X], share
     sum / share + root
 }
 
-/// Which coordinates belong to bones of the set, and the set's share of all.
+/// Coordinates of the bones of the set, and the set's share of all.
 pub fn shown(bones: morec::features::BoneSet) -> ([bool; X], f32) {
     let mut shown = [false; X];
     for bone in bones.indices() {

@@ -3,7 +3,7 @@
 use crate::clip::Clip;
 use crate::parse_error::Warning;
 
-/// What a file declares is believed only up to here.
+/// Limits of what a file may declare.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Limits {
     /// Joints in one file.
@@ -29,11 +29,11 @@ impl Default for Limits {
     }
 }
 
-/// What reading a file gave.
+/// Result of reading a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Loaded {
     /// One clip for each character in the file, in file order.
     pub clips: Vec<Clip>,
-    /// What was repaired or looks wrong.
+    /// Repairs and doubts.
     pub warnings: Vec<Warning>,
 }

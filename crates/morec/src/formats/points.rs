@@ -12,7 +12,7 @@ use crate::clip::{Clip, Points};
 use crate::math::Vec3;
 use crate::roles::points::{recognise_posed, subject_of};
 
-/// What a file of points holds.
+/// Points of a file with their rate and unit.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct PointTable {
     pub(super) points: Vec<Point>,
@@ -144,7 +144,7 @@ impl PointTable {
     }
 }
 
-/// Whether points make a body, by their names and by where they are in some frames that show them all.
+/// True if points make a body, by their names and by where they are in some frames that show them all.
 fn is_body(points: &[&Point]) -> bool {
     const LOOKED_AT: usize = 8;
     let names: Vec<&str> = points.iter().map(|point| point.name.as_str()).collect();
@@ -207,7 +207,7 @@ pub(super) fn check_size(points: usize, frames: usize, bytes: usize) -> Result<(
     Err(ParseError::new(Place::File, expected, found))
 }
 
-/// Whether the point `joint` was not seen at `frame`. O(gaps).
+/// True if the point `joint` was not seen at `frame`. O(gaps).
 pub(crate) fn is_gap_at(clip: &Clip, joint: usize, frame: usize) -> bool {
     let gaps = clip.points.iter().flat_map(|points| &points.gaps);
     gaps.into_iter()
@@ -227,7 +227,7 @@ pub(super) fn named_unit(clip: &Clip) -> (&'static str, f64) {
     }
 }
 
-/// What a unit of length is called in files, in metres.
+/// Metres in a unit of length of this name.
 pub(super) fn metres_of(unit: &str) -> Option<f64> {
     match unit
         .trim_matches(['\0', ' ', '\t'])

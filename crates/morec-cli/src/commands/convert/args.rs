@@ -36,7 +36,7 @@ pub struct Args {
     /// Write into a folder, in this form [default: bvh]
     #[arg(long, value_enum)]
     pub(super) form: Option<ClipForm>,
-    /// What a CSV holds
+    /// Content of a CSV
     #[arg(long, value_enum, default_value_t = CsvContent::Positions)]
     pub(super) table: CsvContent,
     /// Resample to this rate; without it, every frame is kept as it is
@@ -46,7 +46,7 @@ pub struct Args {
     /// points is said on standard error
     #[arg(long)]
     pub(super) fit: bool,
-    /// Which character to write, from 1, of a file that holds several
+    /// Number of the character to write, from 1, of a file that holds several
     #[arg(long, value_name = "N")]
     pub(super) character: Option<usize>,
     /// Roles that override those found: a file of `role<TAB>joint` lines
@@ -56,12 +56,12 @@ pub struct Args {
     pub(super) read: ReadArgs,
 }
 
-/// What a CSV holds.
+/// Content of a CSV.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CsvContent {
-    /// Where the joints are, metres
+    /// Positions of the joints, metres
     Positions,
-    /// How each joint is turned in its parent's frame, quaternions
+    /// Rotation of each joint in its parent's frame, quaternions
     Rotations,
     /// Feature rows, 30 a second
     Features,

@@ -6,7 +6,7 @@ use morec::fitting::fit_skeleton;
 use morec::import::{ImportOptions, normalize};
 use morec::tables::Content;
 
-/// How clips are to be written.
+/// Options of writing clips.
 pub(super) struct Wanted {
     pub(super) content: Content,
     pub(super) import: ImportOptions,

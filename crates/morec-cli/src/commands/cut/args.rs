@@ -33,22 +33,22 @@ pub struct Args {
     /// Cut the one clip that --clip chooses at these moments, seconds separated by commas; cutting again leaves it so
     #[arg(long, value_name = "SECS", value_delimiter = ',', requires = "clip")]
     pub(super) at: Vec<f64>,
-    /// How to cut
+    /// Method of cutting
     #[arg(long, value_enum, default_value = "kernel")]
     pub(super) method: CutMethod,
     /// Length of the windows whose statistics are compared, seconds (kernel)
     #[arg(long, value_name = "SECS", default_value_t = KernelParams::default().window_secs)]
     pub(super) window: f64,
-    /// What a cut costs: more, and there are fewer (kernel)
+    /// Price of a cut: a higher one gives fewer cuts (kernel)
     #[arg(long, value_name = "P", default_value_t = KernelParams::default().penalty)]
     pub(super) penalty: f64,
     /// No segment is shorter, seconds (kernel)
     #[arg(long, value_name = "SECS", default_value_t = KernelParams::default().least_secs)]
     pub(super) least: f64,
-    /// Which way to go through a clip: what begins is found forward, what ceases backward (ppca)
+    /// Direction through a clip: forward finds what begins, backward what ceases (ppca)
     #[arg(long, value_enum, default_value = "both")]
     pub(super) direction: Direction,
-    /// How far the misfit must rise before a cut, in multiples of what fitting poses have: more, and there are fewer
+    /// Rise of the misfit before a cut, in multiples of that of fitting poses: a higher one gives fewer cuts
     /// (ppca)
     #[arg(long, value_name = "R", default_value_t = PpcaParams::default().rise)]
     pub(super) rise: f64,
@@ -85,7 +85,7 @@ pub(super) enum Direction {
     Both,
 }
 
-/// How to cut, checked.
+/// Method of cutting with checked parameters.
 pub(super) enum CheckedCutter {
     Kernel(KernelParams),
     Ppca(PpcaParams),

@@ -29,7 +29,7 @@ struct FoundCut {
     secs: f64,
     /// First frame of what begins here, counted from 0.
     frame: usize,
-    /// Which pass found it (ppca).
+    /// Passes that found it (ppca).
     #[serde(flatten)]
     passes: Option<Passes>,
 }

@@ -36,7 +36,7 @@ pub struct Args {
     /// Move samples to another class, by number
     #[arg(long, value_delimiter = ',', value_name = "NUMBERS", requires = "into")]
     split: Vec<i64>,
-    /// Where --merge and --split move samples; a new class or one that is there
+    /// Class to which --merge and --split move samples, new or existing
     #[arg(long, value_name = "CLASS")]
     into: Option<String>,
     /// Forget a class and its samples, or all whose names match (`*` any text, `?` one character)

@@ -25,7 +25,7 @@ pub struct Args {
     /// The database
     #[arg(value_name = "DB")]
     db: PathBuf,
-    /// What is looked at
+    /// Stretches to look at
     #[arg(long, value_enum, default_value = "cuts")]
     of: CycledSpans,
     /// Labelled stretches of this class only
@@ -42,7 +42,7 @@ pub struct Args {
     json: bool,
 }
 
-/// What is looked at.
+/// Stretches to look at.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 enum CycledSpans {
     /// Segments that morec cut found
@@ -60,7 +60,7 @@ struct Counted {
     class: Option<String>,
     start_secs: f64,
     stop_secs: f64,
-    /// How many labels the stretch was put together from.
+    /// Number of labels that the stretch was put together from.
     labels: usize,
     cycles: Option<Cycles>,
     #[serde(skip)]

@@ -48,13 +48,13 @@ pub struct Args {
         conflicts_with_all = ["source", "licence", "subject", "tags"]
     )]
     in_place_of: Option<String>,
-    /// Where the material is from
+    /// Origin of the material
     #[arg(long, value_name = "TEXT")]
     source: Option<String>,
     /// Under which terms it may be used
     #[arg(long, value_name = "TEXT")]
     licence: Option<String>,
-    /// Who is seen
+    /// Person in the clips
     #[arg(long, value_name = "NAME")]
     subject: Option<String>,
     /// A word to find the clips by; may be given several times
@@ -157,7 +157,7 @@ struct Reported<'a> {
     near_copies: &'a [Copy],
 }
 
-/// Which of the clips that have just come are nearly others.
+/// Clips of this import that are nearly others.
 fn near_copies(db: &mut MotionDb, report: &ImportLog, bar: &StageBar) -> Result<Vec<Copy>> {
     let names = report.files.iter().flat_map(|(_, outcome)| match outcome {
         ImportOutcome::Imported { clips, .. } => clips.as_slice(),

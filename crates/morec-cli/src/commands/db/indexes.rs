@@ -26,7 +26,7 @@ pub struct Args {
     /// Write this index to the file --output
     #[arg(long, value_name = "NAME", requires = "output")]
     write: Option<String>,
-    /// Where to write it
+    /// File to write it to
     #[arg(short, long, value_name = "INDEX", requires = "write")]
     output: Option<PathBuf>,
     /// Remove this index

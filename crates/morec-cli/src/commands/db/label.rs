@@ -43,7 +43,7 @@ pub struct Args {
     /// Files of labels, or folders of them: TSV, CSV, JSON (morec's, BABEL's, Label Studio's), ELAN (.eaf), Audacity (.txt)
     #[arg(value_name = "FILE|DIR")]
     labels: Vec<PathBuf>,
-    /// What form the files are in [default: by their endings and content]
+    /// Form of the files [default: by their endings and content]
     #[arg(long, value_enum)]
     form: Option<FormArg>,
     /// The clip that a file of one clip, or --class, speaks of
@@ -57,16 +57,16 @@ pub struct Args {
         conflicts_with = "labels"
     )]
     class: Option<String>,
-    /// Where it starts, seconds [default: the clip's beginning]
+    /// Start, seconds [default: the clip's beginning]
     #[arg(long, value_name = "SECS", requires = "class")]
     start: Option<f64>,
-    /// Where it stops, seconds [default: the clip's end]
+    /// Stop, seconds [default: the clip's end]
     #[arg(long, value_name = "SECS", requires = "class")]
     stop: Option<f64>,
-    /// What is thought of the samples [default: what the file says, else accepted]
+    /// State of the samples [default: what the file says, else accepted]
     #[arg(long, value_enum)]
     state: Option<StateArg>,
-    /// Who says so
+    /// Author of the change
     #[arg(long, value_name = "NAME", default_value = "user")]
     by: String,
     /// The files are all there is to say about the clips they name: accepted samples that they do not say are moved or
@@ -111,7 +111,7 @@ impl From<FormArg> for LabelFormat {
     }
 }
 
-/// What is thought of a sample.
+/// State of a sample.
 #[derive(ValueEnum, Clone, Copy, Debug)]
 #[allow(missing_docs)]
 pub enum StateArg {

@@ -45,10 +45,10 @@ pub struct Args {
         conflicts_with = "remove"
     )]
     moved: Option<i64>,
-    /// Where it starts, seconds
+    /// Start, seconds
     #[arg(long, value_name = "SECS", requires = "moved")]
     start: Option<f64>,
-    /// Where it stops, seconds
+    /// Stop, seconds
     #[arg(long, value_name = "SECS", requires = "moved")]
     stop: Option<f64>,
     /// List at most so many

@@ -33,16 +33,16 @@ pub struct Args {
     /// start, stop (frames, stop exclusive) or start_secs, stop_secs, or neither: then the whole clip is one sample
     #[arg(long, value_name = "FILE|DIR")]
     pub(super) labels: Option<PathBuf>,
-    /// What is grouped [default: labelled samples if --labels are given, else cuts]
+    /// Stretches to group [default: labelled samples if --labels are given, else cuts]
     #[arg(long, value_enum)]
     pub(super) of: Option<Grouping>,
     /// Samples of these classes only, separated by commas
     #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
     pub(super) classes: Vec<String>,
-    /// How
+    /// Method of grouping
     #[arg(long, value_enum, default_value = "affinity")]
     pub(super) method: GroupMethod,
-    /// How willing a sample is to stand for a group, as a quantile of similarities (affinity)
+    /// Preference of a sample to represent a group, as a quantile of similarities (affinity)
     #[arg(long, value_name = "Q", value_parser = share, default_value_t = AffinityParams::default().preference)]
     pub(super) preference: f64,
     /// Cut the hierarchy into so many groups
@@ -60,7 +60,7 @@ pub struct Args {
     /// Scale similarity so that a sample is 1 like itself, however few directions count (kwas)
     #[arg(long)]
     pub(super) normalised: bool,
-    /// What samples are centred on before they are compared (kwas, clips in files)
+    /// Point on which samples are centred before they are compared (kwas, clips in files)
     #[arg(long, value_enum, default_value = "database")]
     pub(super) centre: Centre,
     /// Share of the variance of all poses that is kept before samples are compared (kwas, clips in files)
@@ -82,7 +82,7 @@ pub struct Args {
     pub(super) poses: PoseArgs,
 }
 
-/// What samples are centred on.
+/// Point on which samples are centred.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Centre {
@@ -92,7 +92,7 @@ pub enum Centre {
     None,
 }
 
-/// What is grouped.
+/// Stretches to group.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Grouping {
     /// Segments that morec cut found

@@ -51,7 +51,7 @@ pub fn run(paths: &[PathBuf], args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What is grouped: labelled samples, whole clips, or what lies between cuts.
+/// Stretches to group: labelled samples, whole clips, or what lies between cuts.
 fn samples(
     clips: &BTreeMap<String, RowedClip>,
     args: &Args,

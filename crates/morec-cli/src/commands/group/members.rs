@@ -29,7 +29,7 @@ pub struct GroupedSample {
     pub class: Option<String>,
 }
 
-/// What is grouped, with its rows.
+/// A stretch to group, with its rows.
 #[derive(Serialize, Clone)]
 pub struct GroupMember {
     pub clip: String,

@@ -29,7 +29,7 @@ fn eight_at(text: &[u8], at: usize) -> Option<u64> {
     Some(u64::from_le_bytes(*bytes) ^ ZEROS)
 }
 
-/// How many of eight such bytes are digits before the first that is none: a byte over 9 carries into its highest bit when
+/// Number of digits among eight such bytes before the first that is none: a byte over 9 carries into its highest bit when
 /// 0x76 is added, and what that spoils lies behind it.
 #[inline]
 fn leading_digits(bytes: u64) -> usize {

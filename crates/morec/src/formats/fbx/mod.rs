@@ -49,12 +49,12 @@ pub fn read_stated(
     Ok((loaded, settings(&fbx)))
 }
 
-/// What the settings of a scene state.
+/// Units and axes in the settings of a scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SceneSettings {
     /// The axis that points up or down.
     pub up: Axis,
-    /// Whether it points down.
+    /// True if it points down.
     pub is_down: bool,
     /// Metres in one unit of length.
     pub metres_per_unit: f64,

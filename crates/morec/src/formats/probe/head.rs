@@ -19,7 +19,7 @@ impl<'a> Head<'a> {
         self.bytes.trim_ascii_start().starts_with(text.as_bytes())
     }
 
-    /// Whether it starts with one of these, in any case.
+    /// True if it starts with one of these, in any case.
     pub(super) fn starts_any(&self, texts: &[&str]) -> bool {
         let start = self.bytes.trim_ascii_start();
         let begins = |text: &&str| {

@@ -214,7 +214,7 @@ const READ: [Readable; 23] = [
     },
 ];
 
-/// Which format `bytes` have; `name` (a file's name or path) decides if they do not say.
+/// Tells the format of `bytes`; `name` (a file's name or path) decides if they do not say.
 ///
 /// # Errors
 /// Content that nothing reads, with the format it looks like if it is known.

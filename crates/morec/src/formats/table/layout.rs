@@ -5,7 +5,7 @@ use crate::formats::points::Point;
 /// A row: its line and its cells.
 pub(super) type TableLine<'a> = (u64, Vec<&'a str>);
 
-/// What the header of a table says.
+/// Layout of a table, from its header.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct ColumnLayout {
     /// Points and the columns of x, y and z.
@@ -20,11 +20,11 @@ pub(super) struct ColumnLayout {
     pub(super) header_rows: usize,
     /// The row behind the last frame, if others follow.
     pub(super) stop_row: Option<usize>,
-    /// What was left out or guessed.
+    /// Omissions and guesses.
     pub(super) notes: Vec<String>,
 }
 
-/// What frames hold: points, times, and the layout they were read by.
+/// Frames: points, times, and the layout they were read by.
 pub(super) type TableFrames = (Vec<Point>, Vec<Option<f64>>, ColumnLayout);
 
 /// Times in their unit to seconds; an unknown unit is told by the usual step.

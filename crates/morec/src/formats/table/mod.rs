@@ -129,7 +129,7 @@ fn header(rows: &[TableLine]) -> Option<TableHeader> {
     columns::layout(rows).map(TableHeader::Wide)
 }
 
-/// What separates cells: of tab, semicolon and comma the one that most rows have; none if no row has any.
+/// Separator of cells: of tab, semicolon and comma the one that most rows have; none if no row has any.
 fn separator(rows: &[(u64, &str)]) -> Option<char> {
     let looked_at = || {
         rows.iter()

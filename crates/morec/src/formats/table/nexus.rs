@@ -16,7 +16,7 @@ const TITLES: [&str; 7] = [
     "analog",
 ];
 
-/// Whether a file begins as such an export does.
+/// True if a file begins as such an export does.
 pub(super) fn begins(rows: &[TableLine]) -> bool {
     let rate = |row: &TableLine| number(row.1[0], Decimal::Either).is_some();
     match rows {

@@ -29,7 +29,7 @@ pub struct Args {
     /// The file to write, `-` for standard output; a folder for forms of one clip, and for the motion of several
     #[arg(value_name = "FILE|DIR")]
     pub(super) output: PathBuf,
-    /// What form to write [default: by the file's ending]
+    /// Form to write [default: by the file's ending]
     #[arg(long, value_enum)]
     pub(super) form: Option<ExportForm>,
     /// Labels of this clip only
@@ -38,14 +38,14 @@ pub struct Args {
     /// Labels of this class only
     #[arg(long, value_name = "CLASS")]
     pub(super) class: Option<String>,
-    /// Which samples
+    /// State of the samples to write
     #[arg(long, value_enum, default_value = "accepted")]
     pub(super) state: StateArg,
     /// Write the motion of this clip instead of labels, or of all clips whose name matches (`*` any text, `?` one
     /// character)
     #[arg(long, value_name = "CLIP", conflicts_with_all = ["clip", "class", "state"])]
     pub(super) motion: Option<String>,
-    /// What a CSV of motion holds
+    /// Content of a CSV of motion
     #[arg(long, value_enum, default_value = "positions", requires = "motion")]
     pub(super) table: CsvContent,
     /// Print one JSON object: what was written
