@@ -24,6 +24,7 @@ pub mod mvnx;
 mod npy;
 pub mod ntu;
 pub mod numpy;
+pub mod opensim;
 pub(crate) mod points;
 pub mod probe;
 mod scene;
@@ -32,6 +33,7 @@ pub mod smpl;
 pub mod table;
 mod timing;
 pub mod trc;
+mod xml;
 
 use crate::math::Vec3;
 pub use crate::parse_error::{ParseError, Place, Warning};
