@@ -13,23 +13,23 @@ use morec::roles::mapping::Mapping;
 
 use crate::output;
 
-/// What files do not say about themselves.
+/// Options of reading, for what files do not say.
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Reading clips")]
 pub struct ReadArgs {
-    /// The ASF skeleton of AMC clips. Without it, the one beside the clip or a folder above is taken: of the same
+    /// The ASF skeleton of AMC clips, or the OSIM model of MOT and STO clips. Without it, the one beside the clip or a folder above is taken: of the same
     /// stem (a.asf for a.amc), of the subject (13.asf for 13_29.amc), or the one that fits.
     #[arg(long, value_name = "ASF")]
     pub skeleton: Option<PathBuf>,
     /// Frames a second, in place of what the file says (AMC files say nothing: 120 is assumed).
     #[arg(long, value_name = "HZ", value_parser = rate)]
     pub file_rate: Option<f64>,
-    /// What BVH position channels below the root mean; decided from the data if not given.
+    /// Meaning of BVH position channels below the root; decided from the data if not given.
     #[arg(long, value_enum)]
     pub positions: Option<Positions>,
 }
 
-/// What BVH position channels below the root mean.
+/// Meaning of BVH position channels below the root.
 #[derive(ValueEnum, Clone, Copy, Debug)]
 pub enum Positions {
     /// The joint's position; OFFSET is not used.
@@ -144,7 +144,7 @@ fn marked(opened: ClipFile) -> Result<ClipFile> {
 }
 
 impl ReadArgs {
-    /// What reads files so, with the roles of a mapping file.
+    /// A reader with these options and the roles of a mapping file.
     pub fn reader_with(&self, mapping: Option<Mapping>) -> FileReader {
         FileReader {
             import: ImportOptions {
@@ -155,7 +155,7 @@ impl ReadArgs {
         }
     }
 
-    /// What reads files so.
+    /// A reader with these options.
     pub fn reader(&self) -> FileReader {
         let positions = self.positions.map(|positions| match positions {
             Positions::Replace => PositionChannels::Replace,

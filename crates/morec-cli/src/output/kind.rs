@@ -5,7 +5,7 @@ use morec::formats::probe::{Format, probe};
 /// An SQLite database, of morec or another program.
 pub const DATABASE: &str = "an SQLite database";
 
-/// What a file that begins so is; `None` for an empty one.
+/// Kind of a file that begins so; `None` for an empty one.
 pub fn of(head: &[u8]) -> Option<&'static str> {
     if head.is_empty() {
         return None;
@@ -38,6 +38,8 @@ pub fn of(head: &[u8]) -> Option<&'static str> {
         Ok(Format::Landmarks) => Some("JSON of landmarks"),
         Ok(Format::Numpy) => Some("a NumPy array"),
         Ok(Format::Smd) => Some("an SMD animation"),
+        Ok(Format::OpenSimMotion) => Some("an OpenSim motion"),
+        Ok(Format::OpenSimModel) => Some("an OpenSim model"),
         Ok(Format::Mocopi) => Some("recorded mocopi packets"),
         Err(_) => Some(text.map_or("a file of another kind", of_text)),
     }

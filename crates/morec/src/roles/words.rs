@@ -1,6 +1,6 @@
 //! The words of joint names: taking names apart, and what each word means.
 
-use super::names::{NameMeaning, Side};
+use super::meaning::{NameMeaning, Side};
 
 /// Lower-case words of a name: cut at anything but letters and where the case changes, digits dropped.
 pub(super) fn words(name: &str) -> Vec<String> {
@@ -136,7 +136,7 @@ const ANIMAL: [&str; 18] = [
 ];
 
 /// In the order in which they are tried: the more telling part of a joined word first.
-const PARTS: [(&str, NameMeaning); 74] = [
+const PARTS: [(&str, NameMeaning); 75] = [
     ("finger", NameMeaning::Finger),
     ("thumb", NameMeaning::Finger),
     ("pinky", NameMeaning::Finger),
@@ -147,6 +147,7 @@ const PARTS: [(&str, NameMeaning); 74] = [
     ("toe", NameMeaning::Toe),
     ("metatarsal", NameMeaning::Toe),
     ("talocrural", NameMeaning::Foot),
+    ("talus", NameMeaning::Foot),
     ("forearm", NameMeaning::Forearm),
     ("lowerarm", NameMeaning::Forearm),
     ("lowarm", NameMeaning::Forearm),

@@ -1,11 +1,5 @@
 //! Numbers as BVH files spell them.
 
-/// Exact powers of ten: every one up to 10^22 is a double.
-const POWERS: [f64; 23] = [
-    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
-    1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
-];
-
 /// No length or angle is larger: what is, is damage, and would overflow further on.
 const LARGEST: f64 = 1e12;
 
@@ -19,133 +13,17 @@ pub(super) fn is_newline(byte: u8) -> bool {
     byte == b'\n' || byte == b'\r'
 }
 
-/// `'0'` eight times.
-const ZEROS: u64 = 0x3030_3030_3030_3030;
-
-/// The eight bytes at `at`, less `'0'` each, the first in the lowest place.
+/// Reads the number at `text[*pos]` that a blank, a line end or the end follows, and moves past it; `None`, without moving,
+/// leaves the token to a closer look.
 #[inline]
-fn eight_at(text: &[u8], at: usize) -> Option<u64> {
-    let bytes = text.get(at..at + 8)?.first_chunk::<8>()?;
-    Some(u64::from_le_bytes(*bytes) ^ ZEROS)
-}
-
-/// How many of eight such bytes are digits before the first that is none: a byte over 9 carries into its highest bit when
-/// 0x76 is added, and what that spoils lies behind it.
-#[inline]
-fn leading_digits(bytes: u64) -> usize {
-    const OVER_9: u64 = 0x7676_7676_7676_7676;
-    const HIGH: u64 = 0x8080_8080_8080_8080;
-    (((bytes.wrapping_add(OVER_9) | bytes) & HIGH).trailing_zeros() / 8) as usize
-}
-
-/// The number that the first `count` (at most 8) of eight such bytes spell: neighbours are joined to pairs, those to
-/// fours, those to eight.
-#[inline]
-fn spelt(bytes: u64, count: usize) -> u64 {
-    if count == 0 {
-        return 0;
-    }
-    // Digits move behind zeros.
-    let digits = bytes << (64 - 8 * count);
-    let pairs = (digits.wrapping_mul(10).wrapping_add(digits >> 8)) & 0x00FF_00FF_00FF_00FF;
-    let fours = (pairs.wrapping_mul(100).wrapping_add(pairs >> 16)) & 0x0000_FFFF_0000_FFFF;
-    (fours.wrapping_mul(10_000).wrapping_add(fours >> 32)) & 0xFFFF_FFFF
-}
-
-/// [`fixed`] for numbers of up to seven digits before and fifteen behind the point, with something behind them in the file: eight
-/// bytes at once.
-#[inline]
-pub(super) fn quick(text: &[u8], pos: &mut usize) -> Option<f64> {
-    let mut p = *pos;
-    let negative = text.get(p) == Some(&b'-');
-    p += usize::from(negative);
-    let bytes = eight_at(text, p)?;
-    let whole = leading_digits(bytes);
-    if whole == 8 {
+pub(super) fn next(text: &[u8], pos: &mut usize) -> Option<f64> {
+    let (value, length) = fast_float2::parse_partial::<f64, _>(&text[*pos..]).ok()?;
+    let end = *pos + length;
+    if text.get(end).is_some_and(|&byte| byte > b' ') {
         return None;
     }
-    let mut mantissa = spelt(bytes, whole);
-    p += whole;
-    let mut fraction = 0;
-    if text.get(p) == Some(&b'.') {
-        p += 1;
-        let bytes = eight_at(text, p)?;
-        fraction = leading_digits(bytes);
-        mantissa = mantissa * WHOLE_POWERS[fraction] + spelt(bytes, fraction);
-        p += fraction;
-        if fraction == 8 {
-            let bytes = eight_at(text, p)?;
-            let more = leading_digits(bytes);
-            if whole + 8 + more > 18 || more == 8 {
-                return None;
-            }
-            mantissa = mantissa * WHOLE_POWERS[more] + spelt(bytes, more);
-            p += more;
-            fraction += more;
-        }
-    }
-    let ends = text.get(p).is_none_or(|&b| b <= b' ');
-    if !ends || whole + fraction == 0 || mantissa >= 1 << 53 {
-        return None;
-    }
-    *pos = p;
-    let magnitude = mantissa as f64 / POWERS[fraction];
-    Some(if negative { -magnitude } else { magnitude })
-}
-
-/// Powers of ten up to eight digits.
-const WHOLE_POWERS: [u64; 9] = [
-    1,
-    10,
-    100,
-    1_000,
-    10_000,
-    100_000,
-    1_000_000,
-    10_000_000,
-    100_000_000,
-];
-
-/// Reads a plain decimal (`-12.0345`) at `text[*pos]` that a blank, a line end or the end follows, and moves past
-/// it; `None`, without moving, leaves the token to [`parse`].
-///
-/// Exact: a mantissa below 2^53 and a power of ten up to 10^22 are both doubles, and one division of doubles
-/// rounds correctly (Clinger, *How to Read Floating Point Numbers Accurately*, 1990).
-#[inline]
-pub(super) fn fixed(text: &[u8], pos: &mut usize) -> Option<f64> {
-    let mut p = *pos;
-    let negative = text.get(p) == Some(&b'-');
-    p += usize::from(negative);
-    let start = p;
-    let mut mantissa = 0u64;
-    let whole = digits(text, &mut p, &mut mantissa);
-    let mut fraction = 0;
-    if text.get(p) == Some(&b'.') {
-        p += 1;
-        fraction = digits(text, &mut p, &mut mantissa);
-    }
-    let ends = text.get(p).is_none_or(|&b| b <= b' ');
-    // Up to 19 digits cannot overflow the mantissa; more were wrapped around and are left to the slow path.
-    if !ends || whole + fraction == 0 || p - start > 19 || mantissa >= 1 << 53 {
-        return None;
-    }
-    *pos = p;
-    let magnitude = mantissa as f64 / POWERS[fraction];
-    Some(usable(if negative { -magnitude } else { magnitude }))
-}
-
-#[inline]
-fn digits(text: &[u8], p: &mut usize, mantissa: &mut u64) -> usize {
-    let start = *p;
-    while let Some(digit) = text
-        .get(*p)
-        .map(|b| b.wrapping_sub(b'0'))
-        .filter(|&d| d < 10)
-    {
-        *mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(digit));
-        *p += 1;
-    }
-    *p - start
+    *pos = end;
+    Some(usable(value))
 }
 
 /// The value of one token; NaN stands for a number that is spelled but has no use: `NaN`, `-nan(ind)`,
@@ -225,45 +103,29 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn read_fixed(text: &str) -> Option<f64> {
-        let mut pos = 0;
-        let value = fixed(text.as_bytes(), &mut pos)?;
-        assert_eq!(pos, text.len());
-        Some(value)
-    }
-
     proptest! {
         #[test]
-        fn plain_decimals_are_read_to_the_last_bit(text in "-?[0-9]{0,9}\\.?[0-9]{0,12}") {
-            if let Some(value) = read_fixed(&text) {
-                prop_assert_eq!(value.to_bits(), usable(text.parse().unwrap()).to_bits());
+        fn a_number_within_a_row_is_the_token(text in "-?[0-9]{0,9}\\.?[0-9]{0,17}[ \n\re.-]?[0-9. -]{0,12}") {
+            let mut at = 0;
+            match next(text.as_bytes(), &mut at) {
+                Some(value) => {
+                    let token = text.split([' ', '\n', '\r']).next().unwrap_or_default();
+                    prop_assert_eq!(Some(value.to_bits()), parse(token.as_bytes()).map(f64::to_bits));
+                    prop_assert_eq!(at, token.len());
+                }
+                None => prop_assert_eq!(at, 0),
             }
         }
 
         #[test]
-        fn eight_digits_at_once_are_the_same_number(text in "-?[0-9]{0,9}\\.?[0-9]{0,17}[ \n\re.-]?[0-9. -]{0,12}") {
-            let (mut at, mut expected_at) = (0, 0);
-            if let Some(value) = quick(text.as_bytes(), &mut at) {
-                prop_assert_eq!(Some(value.to_bits()), fixed(text.as_bytes(), &mut expected_at).map(f64::to_bits));
-                prop_assert_eq!(at, expected_at);
-            } else {
-                prop_assert_eq!(at, 0);
-            }
+        fn decimals_are_read_to_the_last_bit(text in "-?[0-9]{1,9}\\.[0-9]{1,12}") {
+            let mut at = 0;
+            let expected: f64 = text.parse().unwrap();
+            prop_assert_eq!(next(text.as_bytes(), &mut at).map(f64::to_bits), Some(expected.to_bits()));
         }
 
         #[test]
-        fn eight_digits_at_once_are_taken(text in "-?[0-9]{1,7}\\.[0-9]{1,8}") {
-            let text = format!("{text} 0.0 0.0 0.0");
-            prop_assert!(quick(text.as_bytes(), &mut 0).is_some());
-        }
-
-        #[test]
-        fn the_fast_path_takes_what_files_hold(text in "-?[0-9]{1,4}\\.[0-9]{1,10}") {
-            prop_assert!(read_fixed(&text).is_some());
-        }
-
-        #[test]
-        fn the_slow_path_agrees_with_the_standard_library(text in "[-+]?[0-9]{0,30}\\.?[0-9]{0,30}([eE][-+]?[0-9]{1,3})?") {
+        fn a_token_agrees_with_the_standard_library(text in "[-+]?[0-9]{0,30}\\.?[0-9]{0,30}([eE][-+]?[0-9]{1,3})?") {
             let expected = text.parse::<f64>().ok().map(usable);
             prop_assert_eq!(parse(text.as_bytes()).map(f64::to_bits), expected.map(f64::to_bits));
         }
@@ -271,7 +133,7 @@ mod tests {
         #[test]
         fn any_bytes_are_survived(token in proptest::collection::vec(any::<u8>(), 0..20)) {
             let (mut pos, mut out) = (0, Vec::new());
-            let _ = (fixed(&token, &mut pos), parse(&token), parse_with_comma(&token));
+            let _ = (next(&token, &mut pos), parse(&token), parse_with_comma(&token));
             let _ = parse_glued(&token, &mut out);
             prop_assert!(pos <= token.len());
         }

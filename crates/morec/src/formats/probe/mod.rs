@@ -3,8 +3,10 @@
 //! A new format is registered in `READ`; one that is only recognised, to be refused by its name, in
 //! `unread`.
 
+mod head;
 mod unread;
 
+use self::head::Head;
 use self::unread::{UNREAD, UNREAD_ENDINGS, Unread, is_opensim};
 use super::{ParseError, Place, mocopi, table};
 use crate::smooth::MAGIC;
@@ -47,6 +49,10 @@ pub enum Format {
     Numpy,
     /// Skeletal animation of the Source engine, text.
     Smd,
+    /// Joint angles of OpenSim, for a [`Format::OpenSimModel`].
+    OpenSimMotion,
+    /// A model of OpenSim.
+    OpenSimModel,
 }
 
 impl Format {
@@ -70,6 +76,8 @@ impl Format {
             Format::Landmarks => "landmarks",
             Format::Numpy => "numpy",
             Format::Smd => "smd",
+            Format::OpenSimMotion => "opensim_motion",
+            Format::OpenSimModel => "opensim_model",
         }
     }
 }
@@ -81,7 +89,7 @@ struct Readable {
 }
 
 /// Every format that is read, in the order in which its content is asked for.
-const READ: [Readable; 23] = [
+const READ: &[Readable] = &[
     Readable {
         format: Format::Mclip,
         extension: "mclip",
@@ -194,6 +202,21 @@ const READ: [Readable; 23] = [
         },
     },
     Readable {
+        format: Format::OpenSimMotion,
+        extension: "mot",
+        looks_so: |h| !h.is_binary() && is_opensim(h) && !unread::has_markers(h),
+    },
+    Readable {
+        format: Format::OpenSimMotion,
+        extension: "sto",
+        looks_so: |_| false,
+    },
+    Readable {
+        format: Format::OpenSimModel,
+        extension: "osim",
+        looks_so: |h| h.starts("<") && h.contains(b"<OpenSimDocument"),
+    },
+    Readable {
         format: Format::Table,
         extension: "csv",
         looks_so: |h| {
@@ -212,7 +235,7 @@ const READ: [Readable; 23] = [
     },
 ];
 
-/// Which format `bytes` have; `name` (a file's name or path) decides if they do not say.
+/// Tells the format of `bytes`; `name` (a file's name or path) decides if they do not say.
 ///
 /// # Errors
 /// Content that nothing reads, with the format it looks like if it is known.
@@ -260,8 +283,7 @@ pub fn probe(bytes: &[u8], name: &str) -> Result<Format, ParseError> {
     Err(ParseError::new(Place::File, expected, found))
 }
 
-const EXPECTED: &str =
-    "BVH, AMC, FBX, glTF, VRM, MVNX, AMASS, C3D, TRC, MCLIP, JSON lines or a table of positions";
+const EXPECTED: &str = "BVH, AMC, FBX, glTF, VRM, MVNX, AMASS, OpenSim MOT, C3D, TRC, MCLIP, JSON lines or a table of positions";
 
 /// The format that a file's ending promises.
 pub fn format_of_name(name: &str) -> Option<Format> {
@@ -269,60 +291,6 @@ pub fn format_of_name(name: &str) -> Option<Format> {
     READ.iter()
         .find(|r| r.extension.eq_ignore_ascii_case(extension))
         .map(|r| r.format)
-}
-
-/// The beginning of a file.
-struct Head<'a> {
-    bytes: &'a [u8],
-}
-
-impl<'a> Head<'a> {
-    const LONGEST: usize = 64 * 1024;
-
-    fn new(bytes: &'a [u8]) -> Self {
-        let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
-        Self {
-            bytes: &bytes[..bytes.len().min(Self::LONGEST)],
-        }
-    }
-
-    fn starts(&self, text: &str) -> bool {
-        self.bytes.trim_ascii_start().starts_with(text.as_bytes())
-    }
-
-    /// Whether it starts with one of these, in any case.
-    fn starts_any(&self, texts: &[&str]) -> bool {
-        let start = self.bytes.trim_ascii_start();
-        let begins = |text: &&str| {
-            start
-                .get(..text.len())
-                .is_some_and(|s| s.eq_ignore_ascii_case(text.as_bytes()))
-        };
-        texts.iter().any(begins)
-    }
-
-    fn contains(&self, text: &[u8]) -> bool {
-        self.bytes
-            .windows(text.len())
-            .any(|window| window.eq_ignore_ascii_case(text))
-    }
-
-    fn is_markup(&self) -> bool {
-        self.starts("<")
-    }
-
-    fn is_binary(&self) -> bool {
-        self.bytes.contains(&0)
-    }
-
-    /// Lines that are no comment and not empty.
-    fn lines(&self) -> impl Iterator<Item = &'a [u8]> {
-        let lines = self
-            .bytes
-            .split(|b| matches!(b, b'\n' | b'\r'))
-            .map(<[u8]>::trim_ascii);
-        lines.filter(|line| !line.is_empty() && !line.starts_with(b"#"))
-    }
 }
 
 /// `HIERARCHY` at the start of one of the first lines (junk before it is met), or `MOTION` alone.
@@ -469,6 +437,21 @@ mod tests {
                 Format::Smpl,
             ),
             (b"\x23\0\0\0head\x12\0\0\0ftyp", "a", Format::Mocopi),
+            (
+                b"Coordinates\nversion=1\nendheader\ntime\tpelvis_tilt\n",
+                "a",
+                Format::OpenSimMotion,
+            ),
+            (
+                b"Coordinates\nnRows=2\nnColumns=3,,,\n",
+                "a",
+                Format::OpenSimMotion,
+            ),
+            (
+                b"<?xml?>\n<OpenSimDocument Version=\"40000\">",
+                "a",
+                Format::OpenSimModel,
+            ),
         ] {
             assert_eq!(probe(bytes, name), Ok(format), "{name}");
         }
@@ -478,10 +461,6 @@ mod tests {
     fn what_is_not_read_is_named() {
         for (bytes, found) in [
             (b"PK\x03\x04....".as_slice(), "zip"),
-            (
-                b"Coordinates\nversion=1\nendheader\ntime\tpelvis_tilt\n",
-                "OpenSim",
-            ),
             (b"#usda 1.0\n", "USD"),
             (b"Vocaloid Motion Data 0002\0", "VMD"),
             (b"\x80\x04\x95", "pickle"),
@@ -492,7 +471,6 @@ mod tests {
             (b"version https://git-lfs.github.com/spec/v1\n", "Git LFS"),
             (b"<!DOCTYPE html>\n<html>", "HTML"),
             (b"PAR1\0", "Parquet"),
-            (b"Coordinates\nnRows=2\nnColumns=3,,,\n", "OpenSim"),
         ] {
             let error = probe(bytes, "file.dat").unwrap_err();
             assert!(error.found.contains(found), "{error}");

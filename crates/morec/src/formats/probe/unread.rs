@@ -1,10 +1,10 @@
 //! Formats that are told by their content or their ending, only to say that they are not read and how to convert them.
 
-use super::Head;
+use super::head::Head;
 
 pub(super) struct Unread {
     pub(super) name: &'static str,
-    /// How to get what can be read; a sentence without its first letter's case.
+    /// Way to a format that is read; a sentence without its first letter's case.
     pub(super) help: &'static str,
     pub(super) looks_so: fn(&Head) -> bool,
 }
@@ -56,10 +56,6 @@ pub(super) static UNREAD: &[Unread] = &[
     }),
     unread("a gzip file", UNPACK, |h| {
         h.bytes.starts_with(b"\x1f\x8b\x08")
-    }),
-    unread("an OpenSim motion (MOT, STO)", OPENSIM, is_opensim),
-    unread("an OpenSim model", OPENSIM, |h| {
-        h.starts("<") && h.contains(b"<OpenSimDocument")
     }),
     unread("USD", BLENDER, |h| {
         h.starts("PXR-USDC") || h.starts("#usda")
@@ -329,9 +325,6 @@ pub(super) static UNREAD_ENDINGS: &[(&str, &str, &str)] = &[
         "export BVH or FBX from it",
     ),
     ("x", "DirectX (.x)", BLENDER),
-    ("mot", "an OpenSim motion (MOT, STO)", OPENSIM),
-    ("sto", "an OpenSim motion (MOT, STO)", OPENSIM),
-    ("osim", "an OpenSim model", OPENSIM),
     ("pkl", "a pickle of Python", PICKLE),
     ("pickle", "a pickle of Python", PICKLE),
     ("pt", "a PyTorch archive", NUMPY),
@@ -393,8 +386,6 @@ pub(super) static UNREAD_ENDINGS: &[(&str, &str, &str)] = &[
     ("usdz", "USD", BLENDER),
 ];
 
-const OPENSIM: &str = "joint angles mean something only with the model they were made for; give the TRC that they came from, \
-    or the places of joints by OpenSim's PointKinematics as a table";
 const PICKLE: &str = "it can run programs when it is opened; save poses as AMASS does, in an .npz";
 const FLAT: &str = "a direction in space needs three: triangulate several views (Pose2Sim, FreeMoCap) and give TRC, C3D or a table";
 const TABLE: &str = "export the positions of joints as a table";
@@ -422,7 +413,7 @@ pub(super) fn is_opensim(head: &Head) -> bool {
     false
 }
 
-/// Whether such a table holds places of several markers, `R.ASIS_tx`, and no orientations: those of bodies are of their centres of
+/// True if such a table holds places of several markers, `R.ASIS_tx`, and no orientations: those of bodies are of their centres of
 /// mass, which are no joints.
 pub(super) fn has_markers(head: &Head) -> bool {
     const LEAST: usize = 5;
@@ -437,7 +428,7 @@ pub(super) fn has_markers(head: &Head) -> bool {
     ends(b"_tx").max(ends(b"_x")) >= LEAST && ends(b"_ox") == 0
 }
 
-/// Whether an empty list follows `field` wherever it stands.
+/// True if an empty list follows `field` wherever it stands.
 fn is_empty_list(head: &Head, field: &[u8]) -> bool {
     let mut places = head.bytes.windows(field.len()).enumerate();
     places.all(|(at, window)| {
