@@ -88,6 +88,8 @@ pub fn transport(ui: &mut Ui, state: &State, out: Out) {
             ui.add_space(6.0);
             let speeds = ComboBox::from_id_salt("speed")
                 .width(64.0)
+                // All speeds without scrolling.
+                .height(320.0)
                 .selected_text(format!("{}×", player.speed))
                 .show_ui(ui, |ui| {
                     for speed in SPEEDS {

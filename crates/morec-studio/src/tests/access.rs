@@ -19,7 +19,9 @@ fn clickable(person: &Person) -> (BTreeSet<String>, Vec<String>) {
         let thin = |b: accesskit::Rect| b.width().min(b.height()) <= 12.0;
         let is_bar =
             node.role() == accesskit::Role::Unknown && node.bounding_box().is_some_and(thin);
-        if !acts || node.is_disabled() || is_bar {
+        // Text that can be selected with the mouse takes clicks, but does nothing.
+        let is_text = node.role() == accesskit::Role::Label;
+        if !acts || node.is_disabled() || is_bar || is_text {
             continue;
         }
         match node.label().or_else(|| node.value()) {
