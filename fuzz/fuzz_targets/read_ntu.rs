@@ -18,7 +18,10 @@ fuzz_target!(|bytes: &[u8]| {
     for clip in loaded.clips {
         assert_eq!(clip.rotations.len(), clip.frames * clip.skeleton.len());
         assert!(clip.tracks.iter().all(|t| t.positions.len() == clip.frames));
-        let mut values = clip.tracks.iter().flat_map(|t| t.positions.iter().flatten());
+        let mut values = clip
+            .tracks
+            .iter()
+            .flat_map(|t| t.positions.iter().flatten());
         assert!(values.all(|v| v.is_finite()));
         assert!(clip.rate_hz.is_finite() && clip.rate_hz > 0.0);
         normalize(clip, &ImportOptions::default()).expect("no mapping that could be wrong");

@@ -145,8 +145,15 @@ impl PoseLine {
 fn role(key: &str, name: &str) -> Result<Role, String> {
     Role::from_name(name).ok_or_else(|| {
         let names = Role::ALL.map(Role::name).join(", ");
+        let name = shown(name);
         format!("{key}.{name}: no part of the body is called {name}; there are {names}")
     })
+}
+
+/// A sender's text as it may be shown in a terminal: short, and nothing in it that a terminal obeys.
+fn shown(text: &str) -> String {
+    let start: String = text.chars().take(30).collect();
+    start.escape_debug().to_string()
 }
 
 /// Why a line is no pose: the key that is wrong, what was expected and what was found.
@@ -199,7 +206,7 @@ fn parts<'v>(
     parts
         .iter()
         .find(|(_, value)| !value.is_null() && !is_numbers(value, count))
-        .map(|(name, value)| (format!(".{name}"), expected, value))
+        .map(|(name, value)| (format!(".{}", shown(name)), expected, value))
 }
 
 fn is_numbers(value: &Value, count: usize) -> bool {
@@ -214,7 +221,7 @@ fn kind(value: &Value) -> String {
         Value::Null => "null".to_owned(),
         Value::Bool(value) => value.to_string(),
         Value::Number(value) => value.to_string(),
-        Value::String(text) => format!("the text {:?}", text.chars().take(30).collect::<String>()),
+        Value::String(text) => format!("the text \"{}\"", shown(text)),
         Value::Array(list) if list.iter().all(Value::is_number) => {
             format!("{} numbers", list.len())
         }
@@ -332,6 +339,23 @@ mod tests {
         ] {
             let error = PoseLine::of_line(line).unwrap_err();
             assert!(error.contains(said), "{line}: {error}");
+        }
+    }
+
+    /// Names are a stranger's: a terminal would obey them, or scroll for pages.
+    #[test]
+    fn what_a_sender_calls_things_is_shown_short_and_harmless() {
+        let name = format!("\\u001b]0;owned\\u0007{}", "x".repeat(60_000));
+        for line in [
+            format!(r#"{{"positions": {{"{name}": [0,0,0]}}}}"#),
+            format!(r#"{{"rotations": {{"{name}": [0,0,0]}}}}"#),
+            format!(r#"{{"t": "{name}"}}"#),
+        ] {
+            let said = PoseLine::of_line(&line).unwrap_err();
+            assert!(
+                said.len() < 600 && !said.contains(char::is_control),
+                "{said:?}"
+            );
         }
     }
 

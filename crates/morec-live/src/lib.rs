@@ -62,3 +62,5 @@ pub use summary::summary;
 pub use threads::pin_thread;
 pub use vmc::VmcSource;
 pub use websocket::WebSocketSink;
+#[doc(hidden)]
+pub use websocket::greet::heard;

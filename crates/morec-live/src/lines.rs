@@ -11,8 +11,10 @@ use crate::error::Context;
 
 /// A longer line is no pose.
 pub const LONGEST: u64 = 1 << 16;
-/// Lines that may wait; then whoever sends them does.
-const WAITING: usize = 1024;
+/// Lines that may wait, half a second of four senders; then whoever sends them does.
+const WAITING: usize = 128;
+/// However long they are, they take little memory.
+const _: () = assert!(WAITING as u64 * LONGEST <= 8 << 20);
 /// Connections at once.
 const CONNECTIONS: usize = 16;
 /// A connection over which no whole line has come for so long is closed.

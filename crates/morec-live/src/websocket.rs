@@ -4,7 +4,7 @@
 //! for it, messages of a few kilobytes, slow listeners let go. A page in a browser is served only if it comes from this
 //! machine, or from the origin that `?origin=` names: any page that somebody looks at could listen otherwise.
 
-mod greet;
+pub(crate) mod greet;
 #[cfg(test)]
 mod tests;
 

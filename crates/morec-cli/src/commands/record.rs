@@ -24,8 +24,8 @@ use morec_live::Address;
     after_help = "Exit codes: 0 every take that was recorded is kept; 1 nothing was recorded, or something cannot be opened or \
     written; 2 wrong command line.\n\n\
     Examples:\n  \
-    morec record --listen vmc://0.0.0.0:39539 -o take.bvh\n  \
-    morec record --listen vmc://0.0.0.0:39539 -o wave.bvh --takes 3 --secs 4\n  \
+    morec record --listen vmc://127.0.0.1:39539 -o take.bvh\n  \
+    morec record --listen vmc://127.0.0.1:39539 -o wave.bvh --takes 3 --secs 4\n  \
     morec record --listen json:- -o take.jsonl --count-down 0 < poses.jsonl"
 )]
 pub struct Args {

@@ -31,7 +31,7 @@ use morec_live::NamedEvent;
 #[command(
     after_help = "Exit codes: 0 ended by an empty name, Ctrl-C, --for or the end of the source; 1 something cannot be \
     opened, written or trained; 2 wrong command line.\n\n\
-    Example: morec teach gestures.index --listen vmc://0.0.0.0:39539"
+    Example: morec teach gestures.index --listen vmc://127.0.0.1:39539"
 )]
 pub struct Args {
     /// The index to teach; a new one if it is not there

@@ -53,6 +53,19 @@ pub fn greet(stream: TcpStream, origin: Option<&str>) -> Option<Socket> {
         stream,
         until: Some(Instant::now() + PATIENCE),
     };
+    let mut socket = shake_hands(timed, origin)?;
+    // From here on reading is only for pings and goodbyes.
+    let timed = socket.get_mut();
+    timed.until = None;
+    timed
+        .stream
+        .set_read_timeout(Some(Duration::from_millis(1)))
+        .ok()?;
+    Some(socket)
+}
+
+/// The handshake over any stream; `None` if it fails.
+fn shake_hands<S: Read + Write>(stream: S, origin: Option<&str>) -> Option<WebSocket<S>> {
     let config = WebSocketConfig::default()
         .max_message_size(Some(LARGEST_MESSAGE))
         .max_frame_size(Some(LARGEST_MESSAGE));
@@ -66,15 +79,31 @@ pub fn greet(stream: TcpStream, origin: Option<&str>) -> Option<Socket> {
             Err(refusal)
         }
     };
-    let mut socket = accept_hdr_with_config(timed, check, Some(config)).ok()?;
-    // From here on reading is only for pings and goodbyes.
-    let timed = socket.get_mut();
-    timed.until = None;
-    timed
-        .stream
-        .set_read_timeout(Some(Duration::from_millis(1)))
-        .ok()?;
-    Some(socket)
+    accept_hdr_with_config(stream, check, Some(config)).ok()
+}
+
+/// What a listener says, without a network: the lengths of the messages before the first fault or the end.
+#[doc(hidden)] // For fuzzing.
+pub fn heard(bytes: &[u8]) -> Vec<usize> {
+    /// Reads what is there, forgets what is written.
+    struct Said<'a>(&'a [u8]);
+    impl Read for Said<'_> {
+        fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+            self.0.read(buffer)
+        }
+    }
+    impl Write for Said<'_> {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            Ok(bytes.len())
+        }
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+    let Some(mut socket) = shake_hands(Said(bytes), Some("https://studio.example")) else {
+        return Vec::new();
+    };
+    std::iter::from_fn(|| Some(socket.read().ok()?.len())).collect()
 }
 
 /// Browsers name the page's origin, other programs none.

@@ -11,6 +11,7 @@ mod engines;
 #[cfg(feature = "fbx")]
 mod fbx;
 mod for_ever;
+mod fuzz_seeds;
 mod golden;
 mod index_file;
 mod kit;
