@@ -1,5 +1,25 @@
 //! The command `morec`: what was typed becomes arguments, each command's file does the rest.
 
+/// As the standard library's, but a reader that has gone does not end the work: what is to be written is written all the same.
+macro_rules! println {
+    ($($text:tt)*) => { crate::said::out(format_args!("{}\n", format_args!($($text)*))) };
+}
+
+/// See `println`.
+macro_rules! print {
+    ($($text:tt)*) => { crate::said::out(format_args!($($text)*)) };
+}
+
+/// See `println`.
+macro_rules! eprintln {
+    ($($text:tt)*) => { crate::said::err(format_args!("{}\n", format_args!($($text)*))) };
+}
+
+/// See `println`.
+macro_rules! eprint {
+    ($($text:tt)*) => { crate::said::err(format_args!($($text)*)) };
+}
+
 mod commands;
 mod database;
 mod dates;
@@ -15,6 +35,7 @@ mod motion;
 mod output;
 mod poses;
 mod progress;
+mod said;
 mod show;
 mod stats;
 mod table;
@@ -86,7 +107,7 @@ fn main() -> ExitCode {
         Subcommands::Man(args) => commands::complete::man(&args, Cli::command()),
         Subcommands::Studio(args) => commands::studio::run(&args),
     };
-    match outcome {
+    match outcome.and_then(|code| said::whole().map(|()| code)) {
         Ok(code) => code,
         // Whoever reads our output has seen enough: that is not a failure of ours.
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,

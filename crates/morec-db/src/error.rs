@@ -14,7 +14,7 @@ pub enum DbError {
     #[error("{0}: no such file; make a database with `morec db init`")]
     Missing(PathBuf),
     /// The file is no SQLite database.
-    #[error("{0}: expected a motion database, found another kind of file")]
+    #[error("{0}: expected a motion database, found {}", if .0.is_dir() { "a folder" } else { "another kind of file" })]
     NotADatabase(PathBuf),
     /// The file is another program's SQLite database.
     #[error(
