@@ -105,7 +105,8 @@ impl Reel {
              zoom\"></canvas>\n<p id=\"bar\"><button id=\"play\">Pause</button> <input id=\"time\" type=\"range\" min=\"0\" \
              step=\"any\" aria-label=\"Time\"> <output id=\"now\"></output> <label>speed <select id=\"speed\">\
              <option>0.25</option><option>0.5</option><option selected>1</option><option>2</option></select></label></p>\n\
-             <canvas id=\"lanes\" aria-label=\"Labels above, detections below\"></canvas>\n<ul id=\"marks\"></ul>\n\
+             <canvas id=\"lanes\" aria-label=\"Labels above, detections below\"></canvas>\n\
+             <p id=\"legend\">Labels above, detections below. Left limbs are blue, right limbs red.</p>\n<ul id=\"marks\"></ul>\n\
              <noscript>Clips are played by a script, which is switched off.</noscript>\n\
              <script>\nconst clips = [{data}];\n{SCRIPT}</script>\n</section>\n"
         )
