@@ -72,10 +72,10 @@ class Bench:
         for clip in sorted(clips.iterdir())[::2]:
             shutil.copy(clip, half)
         (half / "no-clip.bvh").write_text("nothing")
-        rows = labels.read_text().splitlines()
+        table = labels.read_text().splitlines()
         fixed = folder / "fixed.tsv"
-        fixed.write_text("\n".join([rows[0]] + [row for row in rows[1:] if row.startswith(name + "\t")][1:]) + "\n")
-        classes = sorted({row.split("\t")[3] for row in rows[1:]})
+        fixed.write_text("\n".join([table[0]] + [row for row in table[1:] if row.startswith(name + "\t")][1:]) + "\n")
+        classes = sorted({row.split("\t")[3] for row in table[1:]})
         self.bases = {base: folder / f"{base}.mdb" for base in ["none", "half", "labelled", "full", "undone", "cold"]}
         base = self.bases
         self.must("db", "import", base["half"], half)
@@ -84,7 +84,7 @@ class Bench:
             ("db", "import", base["full"], clips),
             ("db", "label", base["full"], labels),
             ("cut", base["full"]),
-            ("train", "--db", base["full"], "-o", folder / "kept.index"),
+            ("train", "--db", base["full"], "--everyday", "never", "-o", folder / "kept.index"),
             ("group", base["full"], "--name-as", "group"),
             ("db", "propose", base["full"]),
         ]:
@@ -95,7 +95,10 @@ class Bench:
         self.must("db", "vacuum", base["cold"], "--caches")
         shutil.copy(base["half"], base["labelled"])
         self.must("db", "label", base["labelled"], labels)
-        number = sqlite3.connect(base["full"]).execute("SELECT min(id), max(id) FROM samples WHERE state = 'accepted'").fetchone()
+        rows = sqlite3.connect(base["full"])
+        number = rows.execute("SELECT min(id), max(id) FROM samples WHERE state = 'accepted'").fetchone()
+        (step,) = rows.execute("SELECT id FROM edits WHERE what LIKE 'keep the index%'").fetchone()
+        rows.close()
         self.out = folder / "out"
         full, other = "full", classes[-1]
         db = folder / "x.mdb"
@@ -130,7 +133,7 @@ class Bench:
             ("indexes --remove", full, ("db", "indexes", db, "--remove", "kept")),
             ("indexes --write", full, ("db", "indexes", db, "--write", "kept", "-o", self.out.with_suffix(".index"))),
             ("undo", full, ("db", "undo", db)),
-            ("undo of the first import", full, ("db", "undo", db, 1)),
+            ("undo of an older step", full, ("db", "undo", db, step)),
             ("redo", "undone", ("db", "redo", db)),
             ("export", full, ("db", "export", db, self.out.with_suffix(".tsv"))),
             ("export --motion", full, ("db", "export", db, self.out.with_suffix(".npz"), "--motion", name)),
@@ -138,7 +141,7 @@ class Bench:
             ("check --repair", full, ("db", "check", db, "--repair")),
             ("vacuum", full, ("db", "vacuum", db, "--caches", "--history")),
             ("info --forget-refused", full, ("db", "info", db, "--forget-refused")),
-            ("train --db", full, ("train", "--db", db, "-o", self.out.with_suffix(".index"))),
+            ("train --db", full, ("train", "--db", db, "--everyday", "never", "-o", self.out.with_suffix(".index"))),
         ]
 
     def run(self, *args):
