@@ -1,8 +1,9 @@
 //! Lines of text from standard input or from whoever connects, each on a thread of its own.
 
 use std::io::{BufRead, BufReader, ErrorKind, Read};
-use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -19,6 +20,8 @@ const _: () = assert!(WAITING as u64 * LONGEST <= 8 << 20);
 const CONNECTIONS: usize = 16;
 /// A connection over which no whole line has come for so long is closed.
 const SILENCE: Duration = Duration::from_secs(30);
+/// A connection over which none has come for so long makes room for another, if all places are taken.
+const IDLE: Duration = Duration::from_secs(1);
 
 /// Something that came.
 pub enum Came {
@@ -82,59 +85,91 @@ fn spawn(name: &str, job: impl FnOnce() + Send + 'static) -> Result<(), LiveErro
     Ok(())
 }
 
+/// A connection that is open.
+struct Held {
+    number: u64,
+    stream: TcpStream,
+    since: Since,
+}
+
+/// When the line under way began to be waited for.
+type Since = Arc<Mutex<Instant>>;
+
+fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 fn accept(listener: &TcpListener, sender: &SyncSender<Came>) {
-    let open = std::sync::Arc::new(std::sync::atomic::AtomicUsize::new(0));
+    let open: Arc<Mutex<Vec<Held>>> = Arc::default();
     for (number, stream) in (1..).zip(listener.incoming()) {
-        use std::sync::atomic::Ordering::SeqCst;
         let Ok(stream) = stream else {
             // Out of files, most likely; others may close theirs.
             thread::sleep(Duration::from_millis(100));
             continue;
         };
-        if open.fetch_add(1, SeqCst) >= CONNECTIONS {
-            open.fetch_sub(1, SeqCst);
+        let since = Arc::new(Mutex::new(Instant::now()));
+        let Ok(copy) = stream.try_clone() else {
+            continue;
+        };
+        if !make_room(&mut lock(&open)) {
             continue;
         }
-        let (sender, count) = (sender.clone(), open.clone());
+        lock(&open).push(Held {
+            number,
+            stream: copy,
+            since: since.clone(),
+        });
+        let (sender, others) = (sender.clone(), open.clone());
+        let leave = move || lock(&others).retain(|held| held.number != number);
+        let left = leave.clone();
         let job = move || {
-            let patient = Patient::new(stream);
+            let patient = Patient {
+                stream,
+                since,
+                silence: SILENCE,
+            };
             forward(number, BufReader::new(patient), &sender);
-            count.fetch_sub(1, SeqCst);
+            left();
         };
         if spawn("a connection", job).is_err() {
-            open.fetch_sub(1, SeqCst);
+            leave();
         }
     }
+}
+
+/// Whether there is a place: if need be that of the connection that has brought no line for longest.
+fn make_room(open: &mut Vec<Held>) -> bool {
+    if open.len() < CONNECTIONS {
+        return true;
+    }
+    let since = |held: &Held| *lock(&held.since);
+    let idle = (0..open.len()).min_by_key(|at| since(&open[*at]));
+    let Some(idle) = idle.filter(|at| since(&open[*at]).elapsed() > IDLE) else {
+        return false;
+    };
+    // Its thread wakes and ends; if it has ended already, all the better.
+    let _ = open.swap_remove(idle).stream.shutdown(Shutdown::Both);
+    true
 }
 
 /// A connection that must bring a whole line in time: one that sends nothing, or a byte now and then, holds no place.
 struct Patient {
     stream: TcpStream,
-    /// When the line under way began to be waited for.
-    since: Instant,
+    since: Since,
     silence: Duration,
-}
-
-impl Patient {
-    fn new(stream: TcpStream) -> Self {
-        Self {
-            stream,
-            since: Instant::now(),
-            silence: SILENCE,
-        }
-    }
 }
 
 impl Read for Patient {
     fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
-        let left = self.silence.saturating_sub(self.since.elapsed());
+        let waited = lock(&self.since).elapsed();
+        let left = self.silence.saturating_sub(waited);
         if left.is_zero() {
             return Err(ErrorKind::TimedOut.into());
         }
         self.stream.set_read_timeout(Some(left))?;
         let count = self.stream.read(buffer)?;
         if buffer[..count].contains(&b'\n') {
-            self.since = Instant::now();
+            *lock(&self.since) = Instant::now();
         }
         Ok(count)
     }
@@ -184,7 +219,11 @@ mod tests {
     fn a_connection_without_lines_is_closed() {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let mut client = TcpStream::connect(listener.local_addr().unwrap()).unwrap();
-        let mut patient = Patient::new(listener.accept().unwrap().0);
+        let mut patient = Patient {
+            stream: listener.accept().unwrap().0,
+            since: Arc::new(Mutex::new(Instant::now())),
+            silence: SILENCE,
+        };
         let hour = Duration::from_secs(3600);
         let mut byte = [0; 16];
         for (text, buys) in [("x", false), ("y\n", true)] {
@@ -193,12 +232,30 @@ mod tests {
                 // The machine has been up for less than an hour, and its clock began then.
                 return;
             };
-            patient.since = before;
+            *lock(&patient.since) = before;
             client.write_all(text.as_bytes()).unwrap();
             assert_eq!(patient.read(&mut byte).unwrap(), text.len());
-            assert_eq!(patient.since > before, buys, "{text:?}");
+            assert_eq!(*lock(&patient.since) > before, buys, "{text:?}");
         }
         patient.silence = Duration::from_millis(1);
         assert!(patient.read(&mut byte).is_err(), "nothing came in time");
+    }
+
+    /// Whoever holds every place and brings nothing does not keep out who has something to say.
+    #[test]
+    fn idle_connections_make_room() {
+        let (mut lines, at) = Lines::listen("127.0.0.1:0".parse().unwrap()).unwrap();
+        let _idle: Vec<TcpStream> = (0..2 * CONNECTIONS)
+            .map(|_| TcpStream::connect(at).unwrap())
+            .collect();
+        loop {
+            // As long as the others may still bring a line it is refused, and tries again, as senders do.
+            let mut sender = TcpStream::connect(at).unwrap();
+            let _ = sender.write_all(b"hello\n");
+            if let Came::Line { text, .. } = lines.next(Duration::from_millis(100)) {
+                assert_eq!(text.as_deref(), Some("hello"));
+                return;
+            }
+        }
     }
 }
