@@ -17,7 +17,7 @@ use crate::output;
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Reading clips")]
 pub struct ReadArgs {
-    /// The ASF skeleton of AMC clips. Without it, the one beside the clip or a folder above is taken: of the same
+    /// The ASF skeleton of AMC clips, or the OSIM model of MOT and STO clips. Without it, the one beside the clip or a folder above is taken: of the same
     /// stem (a.asf for a.amc), of the subject (13.asf for 13_29.amc), or the one that fits.
     #[arg(long, value_name = "ASF")]
     pub skeleton: Option<PathBuf>,

@@ -50,62 +50,6 @@ pub fn rotation_of_xyzw([x, y, z, w]: [f64; 4]) -> Option<Quat> {
     (length.is_finite() && length > 1e-6).then(|| Quat::new_normalize(q))
 }
 
-/// Sine and cosine of half an angle in degrees, as exact as doubles hold the angle: what reading BVH spends most of its time
-/// on.
-///
-/// The half angle is a whole number of quarter turns and a rest of up to 45°, whose series (to the fifteenth and the
-/// sixteenth power) are exact to the last bit of a double.
-#[inline]
-pub(crate) fn sin_cos_of_half(angle_deg: f64) -> (f64, f64) {
-    /// Adding this leaves no room for a fraction: the sum is rounded, and its lowest bits are those of the whole number.
-    const ROUNDER: f64 = 6_755_399_441_055_744.0;
-    const MOST_QUARTERS: f64 = 1e4;
-    let quarters = angle_deg / 180.0;
-    if quarters.is_nan() || quarters.abs() >= MOST_QUARTERS {
-        return (angle_deg.to_radians() * 0.5).sin_cos();
-    }
-    let sum = quarters + ROUNDER;
-    let rest = (quarters - (sum - ROUNDER)) * std::f64::consts::FRAC_PI_2;
-    let square = rest * rest;
-    let series = |terms: [f64; 7]| {
-        terms
-            .into_iter()
-            .rev()
-            .fold(0.0, |sum, term| sum * square + term)
-    };
-    let sin = rest + rest * square * series(SIN_TERMS);
-    let cos = 1.0 - square * 0.5 + square * square * series(COS_TERMS);
-    let quadrant = sum.to_bits();
-    let (sin, cos) = if quadrant & 1 == 0 {
-        (sin, cos)
-    } else {
-        (cos, sin)
-    };
-    let sign = |value: f64, bits: u64| f64::from_bits(value.to_bits() ^ ((bits & 2) << 62));
-    (sign(sin, quadrant), sign(cos, quadrant.wrapping_add(1)))
-}
-
-/// (-1)ⁿ / (2n + 1)! from n = 1 on.
-const SIN_TERMS: [f64; 7] = [
-    -1.0 / 6.0,
-    1.0 / 120.0,
-    -1.0 / 5_040.0,
-    1.0 / 362_880.0,
-    -1.0 / 39_916_800.0,
-    1.0 / 6_227_020_800.0,
-    -1.0 / 1_307_674_368_000.0,
-];
-/// (-1)ⁿ / (2n)! from n = 2 on.
-const COS_TERMS: [f64; 7] = [
-    1.0 / 24.0,
-    -1.0 / 720.0,
-    1.0 / 40_320.0,
-    -1.0 / 3_628_800.0,
-    1.0 / 479_001_600.0,
-    -1.0 / 87_178_291_200.0,
-    1.0 / 20_922_789_888_000.0,
-];
-
 /// The sign of `q` (it and its negative are one rotation) that lies nearer to `previous`.
 pub fn same_hemisphere(previous: &Quat, q: Quat) -> Quat {
     if previous.coords.dot(&q.coords) < 0.0 {
@@ -169,17 +113,6 @@ mod tests {
     }
 
     proptest! {
-        #[test]
-        fn halves_of_degrees_are_those_of_the_standard_library(angle in -3600.0f64..3600.0, far in -1e12f64..1e12) {
-            for angle in [angle, angle.round(), far] {
-                let (sin, cos) = sin_cos_of_half(angle);
-                let (expected_sin, expected_cos) = (angle.to_radians() * 0.5).sin_cos();
-                let allowed = 2e-15 + angle.abs() * 4e-18;
-                prop_assert!((sin - expected_sin).abs() < allowed, "{angle}: {sin} {expected_sin}");
-                prop_assert!((cos - expected_cos).abs() < allowed, "{angle}: {cos} {expected_cos}");
-            }
-        }
-
         #[test]
         fn slerp_divides_the_angle(a in quat(), b in quat(), t in 0.0f64..1.0) {
             let whole = a.angle_to(&b);

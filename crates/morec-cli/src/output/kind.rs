@@ -38,6 +38,8 @@ pub fn of(head: &[u8]) -> Option<&'static str> {
         Ok(Format::Landmarks) => Some("JSON of landmarks"),
         Ok(Format::Numpy) => Some("a NumPy array"),
         Ok(Format::Smd) => Some("an SMD animation"),
+        Ok(Format::OpenSimMotion) => Some("an OpenSim motion"),
+        Ok(Format::OpenSimModel) => Some("an OpenSim model"),
         Ok(Format::Mocopi) => Some("recorded mocopi packets"),
         Err(_) => Some(text.map_or("a file of another kind", of_text)),
     }

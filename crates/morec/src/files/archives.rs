@@ -191,14 +191,16 @@ fn may_be_needed(path: &str) -> bool {
 /// True if a file of an archive is read for itself: by its name, or if its content says so.
 fn is_motion(member: &Member) -> bool {
     match format_of_name(&member.path) {
-        Some(Format::Asf) => false,
+        Some(Format::Asf | Format::OpenSimModel) => false,
         // Tables and JSON hold labels and lists, too: what is in them decides.
         Some(Format::Table | Format::Jsonl) => probe(&member.bytes, "").is_ok(),
         Some(_) => true,
         None => {
             let bytes = &member.bytes;
             let packed = container::is_gzip(bytes) || container::is_zip(bytes);
-            packed || mocopi::looks_so(bytes) || probe(bytes, "").is_ok_and(|f| f != Format::Asf)
+            packed
+                || mocopi::looks_so(bytes)
+                || probe(bytes, "").is_ok_and(|f| !matches!(f, Format::Asf | Format::OpenSimModel))
         }
     }
 }

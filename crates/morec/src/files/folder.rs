@@ -95,7 +95,7 @@ fn kind_of(path: &Path) -> FileKind {
         return FileKind::Clip;
     }
     match format_of_name(&name) {
-        Some(Format::Asf) => FileKind::Needed,
+        Some(Format::Asf | Format::OpenSimModel) => FileKind::Needed,
         // Tables and JSON hold labels, too: what is in them decides.
         Some(Format::Table | Format::Jsonl) | None => by_content(path),
         Some(_) => FileKind::Clip,
@@ -109,7 +109,7 @@ fn by_content(path: &Path) -> FileKind {
         return FileKind::NotRead(error.into());
     }
     match probe(&head, "") {
-        Ok(Format::Asf) => FileKind::Needed,
+        Ok(Format::Asf | Format::OpenSimModel) => FileKind::Needed,
         Ok(_) => FileKind::Clip,
         Err(error) if error.found.starts_with("what looks like") && !is_media(&error.found) => {
             FileKind::NotRead(FileErrorKind::NotRead(error.found))

@@ -13,7 +13,7 @@ use crate::formats::container::zip_paths;
 use crate::formats::fbx;
 use crate::formats::probe::{Format, probe};
 use crate::formats::{Limits, Loaded, ParseError, Place, Warning, mclip};
-use crate::formats::{c3d, jsonl, numpy, read_scene, table, trc};
+use crate::formats::{c3d, jsonl, numpy, opensim, read_scene, table, trc};
 #[cfg(feature = "fbx")]
 use crate::import::SignedAxis;
 use crate::import::{ImportOptions, Stated, Take, normalize};
@@ -26,7 +26,7 @@ use super::{FileError, FileErrorKind, Takes, list, read_file, read_stream, split
 /// Reads every format that morec knows, as its fields say; the default decides everything from the files.
 #[derive(Debug, Clone, Default)]
 pub struct FileReader {
-    /// The skeleton of AMC motions, in place of looking for one.
+    /// The skeleton of AMC motions, or the model of OpenSim's, in place of looking for one.
     pub skeleton: Option<PathBuf>,
     /// Frames a second, in place of what the file says (AMC files say nothing).
     pub rate_hz: Option<f64>,
@@ -43,7 +43,7 @@ pub struct FileReader {
 pub struct ClipFile {
     /// Format of the file.
     pub format: Format,
-    /// The skeleton file that an AMC motion was read with.
+    /// The skeleton or model that an AMC or OpenSim motion was read with.
     pub skeleton: Option<PathBuf>,
     /// One clip for each character; an ASF file gives one without frames.
     pub clips: Vec<Clip>,
@@ -172,6 +172,11 @@ impl FileReader {
                 let (loaded, skeleton) = self.amc(path, bytes, &stem, around)?;
                 (loaded, Some(skeleton))
             }
+            Format::OpenSimMotion => {
+                let (loaded, model) = self.opensim(path, bytes, &stem, around)?;
+                (loaded, Some(model))
+            }
+            Format::OpenSimModel => return Err(FileErrorKind::OnlyModel),
             Format::Mclip => (self.mclip(bytes, &stem)?, None),
             Format::C3d => (c3d::read(bytes, &stem, self.rate_hz, &self.limits)?, None),
             Format::Trc => (trc::read(bytes, &stem, self.rate_hz, &self.limits)?, None),
@@ -242,46 +247,29 @@ impl FileReader {
         stem: &str,
         around: Around<'_>,
     ) -> Result<(Loaded, PathBuf), FileErrorKind> {
+        let with = |skeleton: &Path, around| self.amc_with(bytes, stem, skeleton, around);
         if let Some(skeleton) = &self.skeleton {
-            let loaded = self.amc_with(bytes, stem, skeleton, Around::Folder)?;
-            return Ok((loaded, skeleton.clone()));
+            return Ok((with(skeleton, Around::Folder)?, skeleton.clone()));
         }
-        let mut candidates = match around {
-            Around::Folder => skeletons_near(path, stem),
-            Around::Archive(members) => skeletons_among(members, stem),
-        };
+        let mut candidates = near(path, stem, Format::Asf, around);
         prefer_stated(&mut candidates, bytes);
-        let mut fitting: Vec<Fitting> = Vec::new();
-        let mut first_error = None;
-        for skeleton in &candidates {
-            // A skeleton whose name says less is asked only where none that says more fits.
-            let says_less = |fits: &Fitting| skeleton.kinship < fits.skeleton.kinship;
-            if fitting.len() == MOST_COMPARED || fitting.first().is_some_and(says_less) {
-                break;
-            }
-            match self.amc_with(bytes, stem, &skeleton.path, around) {
-                Ok(loaded) => fitting.push(Fitting { skeleton, loaded }),
-                Err(error) => _ = first_error.get_or_insert(error),
-            }
+        likeliest(&candidates, |path| with(path, around)).unwrap_or(Err(FileErrorKind::NoSkeleton))
+    }
+
+    /// Joint angles with the model given, or with the one near them that is most likely theirs.
+    fn opensim(
+        &self,
+        path: &Path,
+        bytes: &[u8],
+        stem: &str,
+        around: Around<'_>,
+    ) -> Result<(Loaded, PathBuf), FileErrorKind> {
+        let with = |model: &Path, around| self.opensim_with(bytes, stem, model, around);
+        if let Some(model) = &self.skeleton {
+            return Ok((with(model, Around::Folder)?, model.clone()));
         }
-        let alike = fitting.len();
-        let likeliest = fitting.into_iter().min_by(Fitting::compare);
-        let Some(Fitting {
-            mut loaded,
-            skeleton,
-        }) = likeliest
-        else {
-            return Err(first_error.unwrap_or(FileErrorKind::NoSkeleton));
-        };
-        if skeleton.kinship == 0 && alike > 1 {
-            let note = format!(
-                "{alike} skeletons fit and no name says which is right; {} is taken, with which the feet are nearest to the \
-                 floor (--skeleton names another)",
-                skeleton.path.display()
-            );
-            loaded.warnings.push(Warning::new(Place::File, note));
-        }
-        Ok((loaded, skeleton.path.clone()))
+        let candidates = near(path, stem, Format::OpenSimModel, around);
+        likeliest(&candidates, |path| with(path, around)).unwrap_or(Err(FileErrorKind::NoModel))
     }
 
     fn amc_with(
@@ -295,12 +283,8 @@ impl FileReader {
         let asf = around
             .read(skeleton)
             .map_err(|why| FileErrorKind::OpenSkeleton { path: path(), why })?;
-        let (asf, mut warnings) = acclaim::read_asf(&asf, &self.limits)
+        let (asf, warnings) = acclaim::read_asf(&asf, &self.limits)
             .map_err(|why| FileErrorKind::Skeleton { path: path(), why })?;
-        for warning in &mut warnings {
-            warning.text = format!("{} {}: {}", skeleton.display(), warning.at, warning.text);
-            warning.at = Place::File;
-        }
         let options = AmcOptions {
             rate_hz: self.rate_hz,
         };
@@ -311,9 +295,81 @@ impl FileReader {
                     why,
                 }
             })?;
-        loaded.warnings.splice(0..0, warnings);
+        loaded.warnings.splice(0..0, named(skeleton, warnings));
         Ok(loaded)
     }
+
+    fn opensim_with(
+        &self,
+        bytes: &[u8],
+        stem: &str,
+        model: &Path,
+        around: Around<'_>,
+    ) -> Result<Loaded, FileErrorKind> {
+        let path = || model.to_owned();
+        let xml = around
+            .read(model)
+            .map_err(|why| FileErrorKind::OpenSkeleton { path: path(), why })?;
+        let (read, warnings) = opensim::read_model(&xml, &self.limits)
+            .map_err(|why| FileErrorKind::Skeleton { path: path(), why })?;
+        let motion = opensim::read_motion(bytes, stem, &read, self.rate_hz, &self.limits);
+        let mut loaded = motion.map_err(|why| FileErrorKind::Motion {
+            skeleton: path(),
+            why,
+        })?;
+        loaded.warnings.splice(0..0, named(model, warnings));
+        Ok(loaded)
+    }
+}
+
+/// Warnings about a skeleton's file, which they name.
+fn named(skeleton: &Path, warnings: Vec<Warning>) -> impl Iterator<Item = Warning> {
+    warnings.into_iter().map(move |warning| {
+        let text = format!("{} {}: {}", skeleton.display(), warning.at, warning.text);
+        Warning::new(Place::File, text)
+    })
+}
+
+/// Skeletons or models near a motion, the likeliest first.
+fn near(path: &Path, stem: &str, format: Format, around: Around<'_>) -> Vec<SkeletonFile> {
+    match around {
+        Around::Folder => skeletons_near(path, stem, format),
+        Around::Archive(members) => skeletons_among(members, stem, format),
+    }
+}
+
+/// The motion read with the candidate that fits best, and its path; `None` if there are no candidates.
+fn likeliest(
+    candidates: &[SkeletonFile],
+    read: impl Fn(&Path) -> Result<Loaded, FileErrorKind>,
+) -> Option<Result<(Loaded, PathBuf), FileErrorKind>> {
+    let mut fitting: Vec<Fitting> = Vec::new();
+    let mut first_error = None;
+    for skeleton in candidates {
+        // A skeleton whose name says less is asked only where none that says more fits.
+        let says_less = |fits: &Fitting| skeleton.kinship < fits.skeleton.kinship;
+        if fitting.len() == MOST_COMPARED || fitting.first().is_some_and(says_less) {
+            break;
+        }
+        match read(&skeleton.path) {
+            Ok(loaded) => fitting.push(Fitting { skeleton, loaded }),
+            Err(error) => _ = first_error.get_or_insert(error),
+        }
+    }
+    let alike = fitting.len();
+    let Some(mut best) = fitting.into_iter().min_by(Fitting::compare) else {
+        return first_error.map(Err);
+    };
+    let path = &best.skeleton.path;
+    if best.skeleton.kinship == 0 && alike > 1 {
+        let note = format!(
+            "{alike} skeletons fit and no name says which is right; {} is taken, with which the feet are nearest to the \
+             floor (--skeleton names another)",
+            path.display()
+        );
+        best.loaded.warnings.push(Warning::new(Place::File, note));
+    }
+    Some(Ok((best.loaded, path.clone())))
 }
 
 /// So many skeletons are compared by their bodies.

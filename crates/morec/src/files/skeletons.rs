@@ -1,4 +1,4 @@
-//! The ASF skeleton of an AMC motion: which files near it may be it, the likeliest first.
+//! The ASF skeleton of an AMC motion, or the model of an OpenSim motion: which files near it may be it, the likeliest first.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -18,7 +18,7 @@ pub(super) struct SkeletonFile {
 
 /// Skeletons beside a motion and then those a folder above, in each the likeliest first: of the same stem, of
 /// the longest part of it (`13` for `13_29`), the others.
-pub(super) fn skeletons_near(path: &Path, stem: &str) -> Vec<SkeletonFile> {
+pub(super) fn skeletons_near(path: &Path, stem: &str, format: Format) -> Vec<SkeletonFile> {
     if path == Path::new("-") {
         return Vec::new();
     }
@@ -37,7 +37,7 @@ pub(super) fn skeletons_near(path: &Path, stem: &str) -> Vec<SkeletonFile> {
             .into_iter()
             .flatten()
             .filter_map(|entry| Some(entry.ok()?.path()));
-        let mut here = likeliest_first(paths, stem);
+        let mut here = likeliest_first(paths, stem, format);
         here.truncate(MAX_PER_FOLDER);
         found.append(&mut here);
     }
@@ -45,13 +45,17 @@ pub(super) fn skeletons_near(path: &Path, stem: &str) -> Vec<SkeletonFile> {
 }
 
 /// Skeletons in the archive that a motion is in.
-pub(super) fn skeletons_among(members: &[Member], stem: &str) -> Vec<SkeletonFile> {
-    likeliest_first(members.iter().map(|m| PathBuf::from(&m.path)), stem)
+pub(super) fn skeletons_among(members: &[Member], stem: &str, format: Format) -> Vec<SkeletonFile> {
+    likeliest_first(members.iter().map(|m| PathBuf::from(&m.path)), stem, format)
 }
 
-fn likeliest_first(paths: impl Iterator<Item = PathBuf>, stem: &str) -> Vec<SkeletonFile> {
+fn likeliest_first(
+    paths: impl Iterator<Item = PathBuf>,
+    stem: &str,
+    format: Format,
+) -> Vec<SkeletonFile> {
     let mut found: Vec<SkeletonFile> = paths
-        .filter(|path| format_of_name(&path.to_string_lossy()) == Some(Format::Asf))
+        .filter(|path| format_of_name(&path.to_string_lossy()) == Some(format))
         .map(|path| SkeletonFile {
             kinship: kinship(
                 &path.file_stem().unwrap_or_default().to_string_lossy(),
@@ -120,7 +124,12 @@ fn words(name: &str) -> Vec<&str> {
         }
         rest = after;
     }
-    words.retain(|word| !matches!(*word, "skeleton" | "skel" | "subject" | "actor" | "asf"));
+    words.retain(|word| {
+        !matches!(
+            *word,
+            "skeleton" | "skel" | "subject" | "actor" | "asf" | "model" | "osim"
+        )
+    });
     words
 }
 
@@ -148,6 +157,7 @@ mod tests {
                 .map(PathBuf::from)
                 .into_iter(),
             "walk",
+            Format::Asf,
         );
         assert_eq!(near[0].path, PathBuf::from("walk.asf"));
         prefer_stated(

@@ -23,6 +23,7 @@ pub mod mvnx;
 mod npy;
 pub mod ntu;
 pub mod numpy;
+pub mod opensim;
 pub(crate) mod points;
 pub mod probe;
 mod scene;
@@ -31,6 +32,7 @@ pub mod smpl;
 pub mod table;
 mod timing;
 pub mod trc;
+mod xml;
 
 use crate::clip::Clip;
 use crate::math::Vec3;

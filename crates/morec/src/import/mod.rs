@@ -52,7 +52,7 @@ impl Stated {
     /// What files of `format` state by its specification; `None` for those that leave it to the writer.
     pub fn of(format: Format) -> Option<Self> {
         let up = match format {
-            Format::Gltf | Format::Mocopi => SignedAxis::Y,
+            Format::Gltf | Format::Mocopi | Format::OpenSimMotion => SignedAxis::Y,
             Format::Mvnx => SignedAxis {
                 axis: Axis::Z,
                 negative: false,

@@ -136,7 +136,7 @@ const ANIMAL: [&str; 18] = [
 ];
 
 /// In the order in which they are tried: the more telling part of a joined word first.
-const PARTS: [(&str, NameMeaning); 74] = [
+const PARTS: [(&str, NameMeaning); 75] = [
     ("finger", NameMeaning::Finger),
     ("thumb", NameMeaning::Finger),
     ("pinky", NameMeaning::Finger),
@@ -147,6 +147,7 @@ const PARTS: [(&str, NameMeaning); 74] = [
     ("toe", NameMeaning::Toe),
     ("metatarsal", NameMeaning::Toe),
     ("talocrural", NameMeaning::Foot),
+    ("talus", NameMeaning::Foot),
     ("forearm", NameMeaning::Forearm),
     ("lowerarm", NameMeaning::Forearm),
     ("lowarm", NameMeaning::Forearm),

@@ -357,6 +357,8 @@ fn format_name(format: Format) -> &'static str {
         Format::Landmarks => "landmarks (JSON)",
         Format::Numpy => "positions (NumPy)",
         Format::Smd => "SMD",
+        Format::OpenSimMotion => "OpenSim motion",
+        Format::OpenSimModel => "OpenSim model",
         Format::Mocopi => "mocopi packets",
     }
 }

@@ -1,9 +1,10 @@
 //! One character's share of the motion table, turned into rotations and positions row by row.
 
 use super::gaps::{self, Gaps};
+use super::half_angles::HalfAngles;
 use super::hierarchy::{BvhHierarchy, Channel};
 use crate::clip::{Joint, Span};
-use crate::math::{Axis, Quat, Vec3, same_hemisphere, sin_cos_of_half};
+use crate::math::{Axis, Quat, Vec3, same_hemisphere};
 
 /// What a character's columns gave so far. Only the row at hand is ever held as numbers.
 #[derive(Debug)]
@@ -11,6 +12,7 @@ pub(super) struct Character {
     /// Its joints, parents counted from its root.
     pub joints: Vec<Joint>,
     turns: Vec<Vec<(usize, Axis)>>,
+    half_angles: HalfAngles,
     /// Rotations of all frames, as in [`Clip::rotations`](crate::clip::Clip::rotations).
     pub rotations: Vec<Quat>,
     rotation_gaps: Vec<Gaps>,
@@ -39,6 +41,7 @@ impl Character {
         let mut character = Self {
             joints: hierarchy.joints[range.clone()].to_vec(),
             turns: Vec::with_capacity(range.len()),
+            half_angles: HalfAngles::default(),
             rotations: Vec::new(),
             rotation_gaps: vec![Gaps::default(); range.len()],
             positions: Vec::new(),
@@ -76,12 +79,13 @@ impl Character {
     /// Adds one frame from a whole row of the motion table. O(joints).
     pub fn push(&mut self, row: &[f64]) {
         let joints = self.turns.len();
+        self.half_angles.set(row);
         for j in 0..joints {
             let previous = match self.rotations.len().checked_sub(joints) {
                 Some(before) => self.rotations[before],
                 None => Quat::identity(),
             };
-            let mut rotation = rotation(&self.turns[j], row);
+            let mut rotation = rotation(&self.turns[j], &self.half_angles);
             if rotation.w.is_nan() {
                 self.rotation_gaps[j].add(self.frames);
                 rotation = previous;
@@ -145,10 +149,10 @@ impl JointPositions {
 }
 
 /// The intrinsic product in listed order, R = R1·R2·R3; NaN if an angle is.
-fn rotation(turns: &[(usize, Axis)], row: &[f64]) -> Quat {
+fn rotation(turns: &[(usize, Axis)], halves: &HalfAngles) -> Quat {
     let mut product = nalgebra::Quaternion::identity();
     for &(column, axis) in turns {
-        let (sin, cos) = sin_cos_of_half(row[column]);
+        let (sin, cos) = (halves.sines[column], halves.cosines[column]);
         let [w, x, y, z] = [product.w, product.i, product.j, product.k];
         // The product with (cos, sin·axis), written out: three quarters of a general one would be zeros.
         let [w, x, y, z] = match axis {
@@ -187,7 +191,9 @@ mod tests {
             let listed: Vec<_> = turns.iter().enumerate().map(|(c, t)| (c, Axis::ALL[t.0])).collect();
             let row: Vec<_> = turns.iter().map(|t| t.1).collect();
             let product = turns.iter().fold(Quat::identity(), |q, t| q * Axis::ALL[t.0].rotation(t.1.to_radians()));
-            prop_assert!((rotation(&listed, &row).coords - product.coords).norm() < 1e-12);
+            let mut halves = HalfAngles::default();
+            halves.set(&row);
+            prop_assert!((rotation(&listed, &halves).coords - product.coords).norm() < 1e-12);
         }
     }
 }

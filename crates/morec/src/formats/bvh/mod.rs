@@ -6,6 +6,7 @@
 mod character;
 mod euler;
 mod gaps;
+mod half_angles;
 mod hierarchy;
 mod motion;
 mod notes;

@@ -19,92 +19,79 @@ pub(super) fn is_newline(byte: u8) -> bool {
     byte == b'\n' || byte == b'\r'
 }
 
-/// `'0'` eight times.
-const ZEROS: u64 = 0x3030_3030_3030_3030;
+/// Bytes that are looked at together.
+const WORD: usize = 16;
+/// One in each byte of a word.
+const ONES: u128 = u128::MAX / 255;
+/// The highest bit of each byte.
+const HIGH_BITS: u128 = 0x80 * ONES;
 
-/// The eight bytes at `at`, less `'0'` each, the first in the lowest place.
+/// Index of the first byte of `word` (its lowest is the first) whose highest bit is set in `marks`; [`WORD`] if there is none.
 #[inline]
-fn eight_at(text: &[u8], at: usize) -> Option<u64> {
-    let bytes = text.get(at..at + 8)?.first_chunk::<8>()?;
-    Some(u64::from_le_bytes(*bytes) ^ ZEROS)
+fn first(marks: u128) -> usize {
+    (marks.trailing_zeros() / 8) as usize
 }
 
-/// How many of eight such bytes are digits before the first that is none: a byte over 9 carries into its highest bit when
-/// 0x76 is added, and what that spoils lies behind it.
+/// Marks the blanks and line ends: bytes up to `' '`.
 #[inline]
-fn leading_digits(bytes: u64) -> usize {
-    const OVER_9: u64 = 0x7676_7676_7676_7676;
-    const HIGH: u64 = 0x8080_8080_8080_8080;
-    (((bytes.wrapping_add(OVER_9) | bytes) & HIGH).trailing_zeros() / 8) as usize
+fn blanks(word: u128) -> u128 {
+    // With the highest bit set, no byte borrows from the next; those of 0x80 and more are no blanks.
+    !(((word | HIGH_BITS) - 0x21 * ONES) | word) & HIGH_BITS
 }
 
-/// The number that the first `count` (at most 8) of eight such bytes spell: neighbours are joined to pairs, those to
-/// fours, those to eight.
+/// Marks the bytes that are zero; above the first, others too.
 #[inline]
-fn spelt(bytes: u64, count: usize) -> u64 {
-    if count == 0 {
-        return 0;
-    }
-    // Digits move behind zeros.
-    let digits = bytes << (64 - 8 * count);
+fn zeros(word: u128) -> u128 {
+    word.wrapping_sub(ONES) & !word & HIGH_BITS
+}
+
+/// The number whose digits are these bytes, the first in the lowest place: neighbours are joined to pairs, those to fours, those
+/// to eight.
+#[inline]
+fn spelt(digits: u64) -> u64 {
     let pairs = (digits.wrapping_mul(10).wrapping_add(digits >> 8)) & 0x00FF_00FF_00FF_00FF;
     let fours = (pairs.wrapping_mul(100).wrapping_add(pairs >> 16)) & 0x0000_FFFF_0000_FFFF;
     (fours.wrapping_mul(10_000).wrapping_add(fours >> 32)) & 0xFFFF_FFFF
 }
 
-/// [`fixed`] for numbers of up to seven digits before and fifteen behind the point, with something behind them in the file: eight
-/// bytes at once.
+/// [`fixed`] for numbers of less than sixteen characters with something behind them in the file: their bytes are looked at together,
+/// and where the number ends is known before its value is.
 #[inline]
 pub(super) fn quick(text: &[u8], pos: &mut usize) -> Option<f64> {
-    let mut p = *pos;
-    let negative = text.get(p) == Some(&b'-');
-    p += usize::from(negative);
-    let bytes = eight_at(text, p)?;
-    let whole = leading_digits(bytes);
-    if whole == 8 {
+    let word = u128::from_le_bytes(*text.get(*pos..)?.first_chunk::<WORD>()?);
+    let length = first(blanks(word));
+    if length == WORD || length == 0 {
         return None;
     }
-    let mut mantissa = spelt(bytes, whole);
-    p += whole;
-    let mut fraction = 0;
-    if text.get(p) == Some(&b'.') {
-        p += 1;
-        let bytes = eight_at(text, p)?;
-        fraction = leading_digits(bytes);
-        mantissa = mantissa * WHOLE_POWERS[fraction] + spelt(bytes, fraction);
-        p += fraction;
-        if fraction == 8 {
-            let bytes = eight_at(text, p)?;
-            let more = leading_digits(bytes);
-            if whole + 8 + more > 18 || more == 8 {
-                return None;
-            }
-            mantissa = mantissa * WHOLE_POWERS[more] + spelt(bytes, more);
-            p += more;
-            fraction += more;
+    let is_negative = word as u8 == b'-';
+    // Digits as their values, what stands before them as zeros, the last in the highest byte.
+    let signless = if is_negative {
+        word & !0xFF | u128::from(b'0')
+    } else {
+        word
+    };
+    let digits = (signless ^ (u128::from(b'0') * ONES)) << (8 * (WORD - length));
+    let point = first(zeros(digits ^ (u128::from(b'.' ^ b'0') * ONES)));
+    let (digits, fraction) = match point {
+        WORD => (digits, 0),
+        point => {
+            // What stands before the point moves to its place.
+            let below = (1 << (8 * point)) - 1;
+            let above = !below << 8;
+            (((digits & below) << 8) | (digits & above), WORD - 1 - point)
         }
-    }
-    let ends = text.get(p).is_none_or(|&b| b <= b' ');
-    if !ends || whole + fraction == 0 || mantissa >= 1 << 53 {
+    };
+    let count = length - usize::from(is_negative) - usize::from(point < WORD);
+    let all_digits = (digits.wrapping_add(0x76 * ONES) | digits) & HIGH_BITS == 0;
+    let mantissa = spelt(digits as u64) * 100_000_000 + spelt((digits >> 64) as u64);
+    // Up to twelve digits before the point are below LARGEST; fifteen in all, of which there are never more, below 2^53.
+    if !all_digits || count == 0 || count - fraction > 12 {
         return None;
     }
-    *pos = p;
+    *pos += length;
     let magnitude = mantissa as f64 / POWERS[fraction];
-    Some(if negative { -magnitude } else { magnitude })
+    Some(if is_negative { -magnitude } else { magnitude })
 }
-
-/// Powers of ten up to eight digits.
-const WHOLE_POWERS: [u64; 9] = [
-    1,
-    10,
-    100,
-    1_000,
-    10_000,
-    100_000,
-    1_000_000,
-    10_000_000,
-    100_000_000,
-];
 
 /// Reads a plain decimal (`-12.0345`) at `text[*pos]` that a blank, a line end or the end follows, and moves past
 /// it; `None`, without moving, leaves the token to [`parse`].
@@ -241,7 +228,7 @@ mod tests {
         }
 
         #[test]
-        fn eight_digits_at_once_are_the_same_number(text in "-?[0-9]{0,9}\\.?[0-9]{0,17}[ \n\re.-]?[0-9. -]{0,12}") {
+        fn characters_read_together_are_the_same_number(text in "-?[0-9]{0,9}\\.?[0-9]{0,17}[ \n\re.-]?[0-9. -]{0,12}") {
             let (mut at, mut expected_at) = (0, 0);
             if let Some(value) = quick(text.as_bytes(), &mut at) {
                 prop_assert_eq!(Some(value.to_bits()), fixed(text.as_bytes(), &mut expected_at).map(f64::to_bits));
@@ -252,8 +239,8 @@ mod tests {
         }
 
         #[test]
-        fn eight_digits_at_once_are_taken(text in "-?[0-9]{1,7}\\.[0-9]{1,8}") {
-            let text = format!("{text} 0.0 0.0 0.0");
+        fn characters_read_together_are_taken(text in "-?[0-9]{1,4}\\.[0-9]{1,9}") {
+            let text = format!("{text} 0.0 0.0 0.0 0.0");
             prop_assert!(quick(text.as_bytes(), &mut 0).is_some());
         }
 

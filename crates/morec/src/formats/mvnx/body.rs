@@ -2,8 +2,8 @@
 
 use roxmltree::Node;
 
+use super::super::xml::{child, is, place};
 use super::super::{Limits, ParseError, Warning};
-use super::{child, is, place};
 use crate::math::Vec3;
 
 /// A segment; its joint is its origin.

@@ -6,11 +6,12 @@
 
 mod body;
 
-use roxmltree::{Document, Node, ParsingOptions};
+use roxmltree::{Document, Node};
 
 use self::body::MvnxSegment;
 use super::builder::{ClipBuilder, check_size, clip_names};
-use super::{Limits, Loaded, ParseError, Place, Warning};
+use super::xml::{child, is, parse, place, text_of};
+use super::{Limits, Loaded, ParseError, Warning};
 use crate::clip::{Clip, Joint};
 use crate::math::{Quat, Vec3};
 
@@ -24,14 +25,16 @@ const ASSUMED_HZ: f64 = 60.0;
 /// A file that breaks off is read as far as it goes. O(bytes) time and memory.
 pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseError> {
     let text = text_of(bytes)?;
+    // A frame has some dozen elements.
+    let most_nodes = limits.frames.saturating_mul(64);
     let mut warnings = Vec::new();
-    match parse(&text, limits) {
+    match parse(&text, most_nodes) {
         Ok(document) => read_document(&document, name, bytes.len(), limits, &mut warnings),
         Err(error) => {
             let Some(whole) = whole_frames(&text) else {
                 return Err(error);
             };
-            let document = parse(&whole, limits).map_err(|_| error.clone())?;
+            let document = parse(&whole, most_nodes).map_err(|_| error.clone())?;
             let note = format!(
                 "{}; the file is read up to its last whole frame",
                 error.found
@@ -41,35 +44,6 @@ pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseEr
         }
     }
     .map(|clips| Loaded { clips, warnings })
-}
-
-/// UTF-8; producers of other encodings keep them to names and comments.
-fn text_of(bytes: &[u8]) -> Result<std::borrow::Cow<'_, str>, ParseError> {
-    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
-    if bytes.contains(&0) {
-        return Err(ParseError::new(Place::File, "XML text", "binary content"));
-    }
-    Ok(match std::str::from_utf8(bytes) {
-        Ok(text) => text.into(),
-        Err(_) => encoding_rs::WINDOWS_1252.decode(bytes).0,
-    })
-}
-
-fn parse<'a>(text: &'a str, limits: &Limits) -> Result<Document<'a>, ParseError> {
-    let options = ParsingOptions {
-        allow_dtd: true,
-        // A frame has some dozen elements.
-        nodes_limit: u32::try_from(limits.frames.saturating_mul(64)).unwrap_or(u32::MAX),
-        ..ParsingOptions::default()
-    };
-    Document::parse_with_options(text, options).map_err(|error| {
-        let at = error.pos();
-        ParseError::new(
-            Place::Column(at.row.into(), at.col.into()),
-            "well-formed XML",
-            error.to_string(),
-        )
-    })
 }
 
 /// A file that breaks off, closed behind its last whole frame.
@@ -272,19 +246,6 @@ fn rate(subject: Node<'_, '_>, frames: &[Node<'_, '_>], warnings: &mut Vec<Warni
             ASSUMED_HZ
         }
     }
-}
-
-fn is(node: Node<'_, '_>, tag: &str) -> bool {
-    node.is_element() && node.tag_name().name().eq_ignore_ascii_case(tag)
-}
-
-fn child<'a, 'input>(node: Node<'a, 'input>, tag: &str) -> Option<Node<'a, 'input>> {
-    node.children().find(|n| is(*n, tag))
-}
-
-fn place(node: Node<'_, '_>) -> Place {
-    let at = node.document().text_pos_at(node.range().start);
-    Place::Line(at.row.into())
 }
 
 #[cfg(test)]

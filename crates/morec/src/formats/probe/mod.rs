@@ -47,6 +47,10 @@ pub enum Format {
     Numpy,
     /// Skeletal animation of the Source engine, text.
     Smd,
+    /// Joint angles of OpenSim, for a [`Format::OpenSimModel`].
+    OpenSimMotion,
+    /// A model of OpenSim.
+    OpenSimModel,
 }
 
 impl Format {
@@ -70,6 +74,8 @@ impl Format {
             Format::Landmarks => "landmarks",
             Format::Numpy => "numpy",
             Format::Smd => "smd",
+            Format::OpenSimMotion => "opensim_motion",
+            Format::OpenSimModel => "opensim_model",
         }
     }
 }
@@ -81,7 +87,7 @@ struct Readable {
 }
 
 /// Every format that is read, in the order in which its content is asked for.
-const READ: [Readable; 23] = [
+const READ: [Readable; 26] = [
     Readable {
         format: Format::Mclip,
         extension: "mclip",
@@ -194,6 +200,21 @@ const READ: [Readable; 23] = [
         },
     },
     Readable {
+        format: Format::OpenSimMotion,
+        extension: "mot",
+        looks_so: |h| !h.is_binary() && is_opensim(h) && !unread::has_markers(h),
+    },
+    Readable {
+        format: Format::OpenSimMotion,
+        extension: "sto",
+        looks_so: |_| false,
+    },
+    Readable {
+        format: Format::OpenSimModel,
+        extension: "osim",
+        looks_so: |h| h.starts("<") && h.contains(b"<OpenSimDocument"),
+    },
+    Readable {
         format: Format::Table,
         extension: "csv",
         looks_so: |h| {
@@ -260,8 +281,7 @@ pub fn probe(bytes: &[u8], name: &str) -> Result<Format, ParseError> {
     Err(ParseError::new(Place::File, expected, found))
 }
 
-const EXPECTED: &str =
-    "BVH, AMC, FBX, glTF, VRM, MVNX, AMASS, C3D, TRC, MCLIP, JSON lines or a table of positions";
+const EXPECTED: &str = "BVH, AMC, FBX, glTF, VRM, MVNX, AMASS, OpenSim MOT, C3D, TRC, MCLIP, JSON lines or a table of positions";
 
 /// The format that a file's ending promises.
 pub fn format_of_name(name: &str) -> Option<Format> {
@@ -469,6 +489,21 @@ mod tests {
                 Format::Smpl,
             ),
             (b"\x23\0\0\0head\x12\0\0\0ftyp", "a", Format::Mocopi),
+            (
+                b"Coordinates\nversion=1\nendheader\ntime\tpelvis_tilt\n",
+                "a",
+                Format::OpenSimMotion,
+            ),
+            (
+                b"Coordinates\nnRows=2\nnColumns=3,,,\n",
+                "a",
+                Format::OpenSimMotion,
+            ),
+            (
+                b"<?xml?>\n<OpenSimDocument Version=\"40000\">",
+                "a",
+                Format::OpenSimModel,
+            ),
         ] {
             assert_eq!(probe(bytes, name), Ok(format), "{name}");
         }
@@ -478,10 +513,6 @@ mod tests {
     fn what_is_not_read_is_named() {
         for (bytes, found) in [
             (b"PK\x03\x04....".as_slice(), "zip"),
-            (
-                b"Coordinates\nversion=1\nendheader\ntime\tpelvis_tilt\n",
-                "OpenSim",
-            ),
             (b"#usda 1.0\n", "USD"),
             (b"Vocaloid Motion Data 0002\0", "VMD"),
             (b"\x80\x04\x95", "pickle"),
@@ -492,7 +523,6 @@ mod tests {
             (b"version https://git-lfs.github.com/spec/v1\n", "Git LFS"),
             (b"<!DOCTYPE html>\n<html>", "HTML"),
             (b"PAR1\0", "Parquet"),
-            (b"Coordinates\nnRows=2\nnColumns=3,,,\n", "OpenSim"),
         ] {
             let error = probe(bytes, "file.dat").unwrap_err();
             assert!(error.found.contains(found), "{error}");

@@ -57,10 +57,6 @@ pub(super) static UNREAD: &[Unread] = &[
     unread("a gzip file", UNPACK, |h| {
         h.bytes.starts_with(b"\x1f\x8b\x08")
     }),
-    unread("an OpenSim motion (MOT, STO)", OPENSIM, is_opensim),
-    unread("an OpenSim model", OPENSIM, |h| {
-        h.starts("<") && h.contains(b"<OpenSimDocument")
-    }),
     unread("USD", BLENDER, |h| {
         h.starts("PXR-USDC") || h.starts("#usda")
     }),
@@ -329,9 +325,6 @@ pub(super) static UNREAD_ENDINGS: &[(&str, &str, &str)] = &[
         "export BVH or FBX from it",
     ),
     ("x", "DirectX (.x)", BLENDER),
-    ("mot", "an OpenSim motion (MOT, STO)", OPENSIM),
-    ("sto", "an OpenSim motion (MOT, STO)", OPENSIM),
-    ("osim", "an OpenSim model", OPENSIM),
     ("pkl", "a pickle of Python", PICKLE),
     ("pickle", "a pickle of Python", PICKLE),
     ("pt", "a PyTorch archive", NUMPY),
@@ -393,8 +386,6 @@ pub(super) static UNREAD_ENDINGS: &[(&str, &str, &str)] = &[
     ("usdz", "USD", BLENDER),
 ];
 
-const OPENSIM: &str = "joint angles mean something only with the model they were made for; give the TRC that they came from, \
-    or the places of joints by OpenSim's PointKinematics as a table";
 const PICKLE: &str = "it can run programs when it is opened; save poses as AMASS does, in an .npz";
 const FLAT: &str = "a direction in space needs three: triangulate several views (Pose2Sim, FreeMoCap) and give TRC, C3D or a table";
 const TABLE: &str = "export the positions of joints as a table";
