@@ -70,7 +70,13 @@ fn small_svrdm() -> MotionIndex {
 /// A clip of two joints and three frames.
 fn take() -> Take {
     let bytes = include_bytes!("../../testdata/acclaim/wave.bvh");
-    let clip = bvh::read(bytes, "wave", &Limits::default()).unwrap();
+    let clip = bvh::read(
+        bytes,
+        "wave",
+        &bvh::BvhOptions::default(),
+        &Limits::default(),
+    )
+    .unwrap();
     normalize(
         clip.clips.into_iter().next().unwrap(),
         &ImportOptions::default(),
