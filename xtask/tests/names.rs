@@ -1,38 +1,14 @@
 //! One type, one name; one name, one type: over all crates, private types too.
 
+mod sources;
+
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
-use std::path::{Path, PathBuf};
 
 /// Names that several types may have, and why.
 const SHARED: &[(&str, &str)] = &[(
     "Args",
     "the arguments of a subcommand, in the file of each; nobody sees two at once",
 )];
-
-/// The source files of every crate, without those of tests.
-fn sources() -> Vec<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let mut folders = vec![root.join("xtask/src")];
-    for member in fs::read_dir(root.join("crates")).unwrap() {
-        folders.push(member.unwrap().path().join("src"));
-    }
-    let mut sources = vec![];
-    while let Some(folder) = folders.pop() {
-        for entry in fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.file_stem().is_some_and(|stem| stem == "tests") {
-                continue;
-            }
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|extension| extension == "rs") {
-                sources.push(path);
-            }
-        }
-    }
-    sources
-}
 
 /// The types that `text` declares, up to its module of tests. Associated types are indented and not counted.
 fn declared(text: &str) -> Vec<&str> {
@@ -73,15 +49,18 @@ fn declarations_are_found_wherever_they_stand() {
 
 #[test]
 fn no_name_is_used_for_two_types() {
-    let sources = sources();
-    assert!(sources.len() > 500, "{} files", sources.len());
     let mut places: BTreeMap<String, Vec<String>> = BTreeMap::new();
-    for path in &sources {
-        for name in declared(&fs::read_to_string(path).unwrap()) {
-            let shown = path.to_string_lossy().into_owned();
-            places.entry(name.to_owned()).or_default().push(shown);
+    let mut count = 0;
+    for (folder, files) in sources::by_crate() {
+        count += files.len();
+        for (path, text) in &files {
+            for name in declared(text) {
+                let place = format!("{folder}: {}", path.display());
+                places.entry(name.to_owned()).or_default().push(place);
+            }
         }
     }
+    assert!(count > 500, "{count} files");
     places.retain(|_, files| files.len() > 1);
     let allowed: BTreeSet<&str> = SHARED.iter().map(|(name, _)| *name).collect();
     let unused: Vec<_> = allowed

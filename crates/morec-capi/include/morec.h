@@ -28,7 +28,7 @@
 #define MOREC_ROLE_COUNT 18
 
 /**
- * What became of a call. Numbers stay what they are; later versions may add some.
+ * Result of a call. Numbers stay what they are; later versions may add some.
  */
 enum MorecStatus
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -137,7 +137,7 @@ typedef int32_t MorecRole;
 #endif // __cplusplus
 
 /**
- * Which hand the coordinate axes are like.
+ * Handedness of the coordinate axes.
  */
 enum MorecHandedness
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -166,7 +166,7 @@ typedef int32_t MorecHandedness;
 #endif // __cplusplus
 
 /**
- * Which way is up.
+ * The axis that points up.
  */
 enum MorecUpAxis
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -191,7 +191,7 @@ typedef int32_t MorecUpAxis;
 #endif // __cplusplus
 
 /**
- * Where positions and rotations are seen from.
+ * Frame of reference of positions and rotations.
  */
 enum MorecSpace
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -221,7 +221,7 @@ typedef int32_t MorecSpace;
 #endif // __cplusplus
 
 /**
- * What is being said of a motion.
+ * Phase of a motion.
  */
 enum MorecPhase
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -254,7 +254,7 @@ typedef int32_t MorecPhase;
 #endif // __cplusplus
 
 /**
- * How an index recognises.
+ * Method of recognition of an index.
  */
 enum MorecMethod
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -289,7 +289,7 @@ typedef struct MorecIndex MorecIndex;
 typedef struct MorecRecognizer MorecRecognizer;
 
 /**
- * What is known of a stream. A figure that is not known is NaN. Lengths are metres by a guess of the stream's unit.
+ * Figures of a stream. An unknown figure is NaN. Lengths are metres by a guess of the stream's unit.
  */
 typedef struct MorecDiagnosis {
     /**
@@ -387,11 +387,11 @@ typedef struct MotionSeg {
      */
     uint32_t class_name_bytes;
     /**
-     * When it began, seconds from the beginning of the clip.
+     * Start, seconds from the beginning of the clip.
      */
     double start_secs;
     /**
-     * When it ended.
+     * Stop, seconds.
      */
     double stop_secs;
     /**
@@ -405,7 +405,7 @@ typedef struct MotionSeg {
 } MotionSeg;
 
 /**
- * What an index is.
+ * Facts about an index.
  */
 typedef struct MorecIndexFacts {
     /**
@@ -426,11 +426,11 @@ typedef struct MorecIndexFacts {
      */
     uint64_t sample_count;
     /**
-     * How often a second the stream is compared.
+     * Comparisons of the stream a second.
      */
     double tick_hz;
     /**
-     * How it recognises: a `MorecMethod`. Later releases may know more of them. Not in the first version of this struct.
+     * Method of recognition, a `MorecMethod`. Later releases may add some. Not in the first version of this struct.
      */
     int32_t method;
     /**
@@ -470,7 +470,7 @@ typedef struct MorecSkeleton {
 } MorecSkeleton;
 
 /**
- * How a recogniser is made.
+ * Options of a recogniser.
  */
 typedef struct MorecOptions {
     /**
@@ -525,7 +525,7 @@ typedef struct MorecFrame {
      */
     size_t struct_size;
     /**
-     * When it was, seconds on any clock that does not go back; at any rate, even or uneven. Late and duplicate frames
+     * Time of the frame, seconds on any clock that does not go back; at any rate, even or uneven. Late and duplicate frames
      * are left out; after a gap of more than half a second, or a step back by as much, the stream begins anew.
      */
     double time_secs;
@@ -560,7 +560,7 @@ typedef struct MorecEvent {
      */
     int32_t phase;
     /**
-     * What it is, or seems to be: a class of the index.
+     * Its class in the index, certain or assumed.
      */
     uint32_t class_id;
     /**
@@ -576,15 +576,15 @@ typedef struct MorecEvent {
      */
     double score;
     /**
-     * How much of the motion has been seen, 0 to 1; 1 at its end.
+     * Share of the motion seen so far, 0 to 1; 1 at its end.
      */
     double progress;
     /**
-     * When it began.
+     * Start, seconds of the stream.
      */
     double start_secs;
     /**
-     * When it ended; when it was last seen, if it has not.
+     * Stop, seconds of the stream; if it has not ended, the time at which it was last seen.
      */
     double stop_secs;
     /**
@@ -598,7 +598,7 @@ typedef struct MorecEvent {
 } MorecEvent;
 
 /**
- * What a recogniser has done since it was made or reset.
+ * Counts of a recogniser since it was made or reset.
  */
 typedef struct MorecStats {
     /**
@@ -682,7 +682,7 @@ void mrTerminate(void);
 bool mrSetDataSource(const char *szSourceFile);
 
 /**
- * How fast sources are played from now on, also while they are: 1 as they were performed, 2 twice as fast, infinity as
+ * Sets how fast sources are played from now on, also while they are: 1 as they were performed, 2 twice as fast, infinity as
  * fast as recognition goes. Not one of the eight.
  */
 bool mrSetDataSourceSpeed(double speed);
@@ -693,7 +693,7 @@ bool mrSetDataSourceSpeed(double speed);
 bool mrStopDataSource(void);
 
 /**
- * Whether nothing more will come from the source: it has played to its end or was stopped, or there is none.
+ * True if nothing more will come from the source: it has played to its end or was stopped, or there is none.
  */
 bool mrIsDataSourceDepleted(void);
 
@@ -837,13 +837,13 @@ MorecStatus morec_recognizer_reset(struct MorecRecognizer *recognizer);
 MorecStatus morec_recognizer_stats(const struct MorecRecognizer *recognizer, struct MorecStats *stats);
 
 /**
- * What went wrong in the last call on this thread that did not succeed, in a sentence; empty if none has failed yet.
+ * Message of the last call on this thread that failed, a sentence; empty if none has failed yet.
  * UTF-8. The text stays where it is until the next call on this thread that does not succeed. Never null.
  */
 const char *morec_last_error(void);
 
 /**
- * What a status means, in a few words; null for a number that is no status. The text stays for ever.
+ * Meaning of a status in a few words; null for a number that is no status. The text lives for ever.
  */
 const char *morec_status_text(int32_t status);
 

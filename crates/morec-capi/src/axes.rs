@@ -6,7 +6,7 @@ use morec::math::{Axis, Quat, Vec3};
 
 use crate::status::CallError;
 
-/// Which hand the coordinate axes are like.
+/// Handedness of the coordinate axes.
 #[repr(i32)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MorecHandedness {
@@ -18,7 +18,7 @@ pub enum MorecHandedness {
     Left = 2,
 }
 
-/// Which way is up.
+/// The axis that points up.
 #[repr(i32)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MorecUpAxis {

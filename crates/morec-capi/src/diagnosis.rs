@@ -54,7 +54,7 @@ pub enum MorecFinding {
     HipsFixed = 1 << 19,
 }
 
-/// How much the gravest finding matters.
+/// Severity of the gravest finding.
 #[repr(i32)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MorecSeverity {
@@ -68,7 +68,7 @@ pub enum MorecSeverity {
     Error = 3,
 }
 
-/// What is known of a stream. A figure that is not known is NaN. Lengths are metres by a guess of the stream's unit.
+/// Figures of a stream. An unknown figure is NaN. Lengths are metres by a guess of the stream's unit.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MorecDiagnosis {

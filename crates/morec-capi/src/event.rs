@@ -2,7 +2,7 @@
 
 use morec::live::{Event, Phase};
 
-/// What is being said of a motion.
+/// Phase of a motion.
 #[repr(i32)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MorecPhase {
@@ -22,7 +22,7 @@ pub enum MorecPhase {
 pub struct MorecEvent {
     /// A `MorecPhase`.
     pub phase: i32,
-    /// What it is, or seems to be: a class of the index.
+    /// Its class in the index, certain or assumed.
     pub class_id: u32,
     /// Number of the motion, from 1: its start, updates and end share it.
     pub motion: u64,
@@ -30,11 +30,11 @@ pub struct MorecEvent {
     pub sequence: u64,
     /// Of an end: 0 just accepted … 1 identical to a sample. Tentative: how near what was seen so far is, likewise.
     pub score: f64,
-    /// How much of the motion has been seen, 0 to 1; 1 at its end.
+    /// Share of the motion seen so far, 0 to 1; 1 at its end.
     pub progress: f64,
-    /// When it began.
+    /// Start, seconds of the stream.
     pub start_secs: f64,
-    /// When it ended; when it was last seen, if it has not.
+    /// Stop, seconds of the stream; if it has not ended, the time at which it was last seen.
     pub stop_secs: f64,
     /// The time of the frame that settled it.
     pub reported_secs: f64,

@@ -8,7 +8,7 @@ use crate::memory::{self, Versioned};
 use crate::skeleton::{Declared, is_place};
 use crate::status::CallError;
 
-/// Where positions and rotations are seen from.
+/// Frame of reference of positions and rotations.
 #[repr(i32)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MorecSpace {
@@ -30,7 +30,7 @@ pub enum MorecSpace {
 pub struct MorecFrame {
     /// Set to `sizeof(MorecFrame)`.
     pub struct_size: usize,
-    /// When it was, seconds on any clock that does not go back; at any rate, even or uneven. Late and duplicate frames
+    /// Time of the frame, seconds on any clock that does not go back; at any rate, even or uneven. Late and duplicate frames
     /// are left out; after a gap of more than half a second, or a step back by as much, the stream begins anew.
     pub time_secs: f64,
     /// Number of joints: that of the skeleton; `MOREC_ROLE_COUNT` for a stream of roles.

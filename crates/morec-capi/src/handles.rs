@@ -18,7 +18,7 @@ pub struct MorecIndex(());
 /// A recogniser of one performer's motions.
 pub struct MorecRecognizer(());
 
-/// What a handle stands for.
+/// An object behind a handle.
 #[derive(Clone)]
 enum Object {
     Index(Arc<MotionIndex>),
@@ -38,9 +38,9 @@ static TABLE: RwLock<HandleTable> = RwLock::new(HandleTable {
 
 /// A kind of handle.
 pub(crate) trait Handle: Sized {
-    /// What it stands for.
+    /// Type of the object behind it.
     type Of;
-    /// What messages call it, with its article.
+    /// Its name in messages, with its article.
     const NAME: &'static str;
     #[allow(private_interfaces)]
     fn wrap(of: Arc<Self::Of>) -> Object;
@@ -100,7 +100,7 @@ pub(crate) fn give<H: Handle>(of: H::Of) -> Result<*mut H, CallError> {
     Ok(std::ptr::without_provenance_mut(number))
 }
 
-/// What `handle` stands for. It lives on while it is in use, even if it is destroyed meanwhile.
+/// The object behind `handle`. It lives on while it is in use, even if it is destroyed meanwhile.
 pub(crate) fn find<H: Handle>(handle: *const H) -> Result<Arc<H::Of>, CallError> {
     let table = TABLE.read().unwrap_or_else(PoisonError::into_inner);
     match table.objects.get(&handle.addr()) {

@@ -10,7 +10,7 @@ use crate::handles::{self, MorecIndex};
 use crate::memory::{self, Versioned};
 use crate::status::{CallError, MorecStatus, guard};
 
-/// How an index recognises.
+/// Method of recognition of an index.
 #[repr(i32)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MorecMethod {
@@ -20,7 +20,7 @@ pub enum MorecMethod {
     Svrdm = 1,
 }
 
-/// What an index is.
+/// Facts about an index.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MorecIndexFacts {
@@ -33,9 +33,9 @@ pub struct MorecIndexFacts {
     pub roles: u32,
     /// Number of samples it learned from.
     pub sample_count: u64,
-    /// How often a second the stream is compared.
+    /// Comparisons of the stream a second.
     pub tick_hz: f64,
-    /// How it recognises: a `MorecMethod`. Later releases may know more of them. Not in the first version of this struct.
+    /// Method of recognition, a `MorecMethod`. Later releases may add some. Not in the first version of this struct.
     pub method: i32,
     /// 1 if frames must say how joints are turned, 0 if where they are is enough. Not in the first version of this struct.
     pub needs_rotations: u32,

@@ -213,7 +213,7 @@ impl<T: Copy> Places<T> {
         })
     }
 
-    /// How many there are.
+    /// Number of elements.
     pub(crate) fn capacity(&self) -> usize {
         self.capacity
     }

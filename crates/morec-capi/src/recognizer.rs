@@ -19,7 +19,7 @@ use crate::words;
 /// Say what seems to be under way, too: starts, updates and cancellations beside the ends.
 pub const MOREC_EARLY_EVENTS: u32 = 1;
 
-/// How a recogniser is made.
+/// Options of a recogniser.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct MorecOptions {
@@ -51,7 +51,7 @@ unsafe impl Versioned for MorecOptions {
     const FIRST_SIZE: usize = std::mem::offset_of!(Self, alarms_per_minute);
 }
 
-/// What a recogniser has done since it was made or reset.
+/// Counts of a recogniser since it was made or reset.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MorecStats {

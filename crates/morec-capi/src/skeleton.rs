@@ -46,7 +46,7 @@ pub(crate) struct Declared {
     pub(crate) rig: Rig,
     /// Bones that its frames can be expected to show.
     pub(crate) bones: BoneSet,
-    /// Whether there are offsets: else every frame must say where the joints are.
+    /// True if there are offsets; else every frame must hold positions.
     pub(crate) has_offsets: bool,
 }
 
@@ -172,7 +172,7 @@ fn joints(
 /// Farther away than this is nobody; and lengths of such numbers can still be squared.
 const FARTHEST: f64 = 1e9;
 
-/// Whether it is where something can be.
+/// True for a finite position.
 pub(crate) fn is_place(p: &Vec3) -> bool {
     p.iter().all(|c| c.abs() <= FARTHEST)
 }
@@ -198,7 +198,7 @@ fn given_roles(roles: &[i32]) -> Result<RoleMap, CallError> {
     Ok(map)
 }
 
-/// Where the role joints are if nothing is turned.
+/// Positions of the role joints in the zero pose.
 fn rest(skeleton: &Skeleton, roles: &RoleMap) -> KeyPose {
     let mut pose = WorldPose::default();
     for joint in skeleton.joints() {

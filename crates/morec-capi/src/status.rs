@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use std::ffi::{CStr, CString, c_char};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// What became of a call. Numbers stay what they are; later versions may add some.
+/// Result of a call. Numbers stay what they are; later versions may add some.
 #[repr(i32)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MorecStatus {
@@ -132,7 +132,7 @@ pub(crate) fn guard(call: impl FnOnce() -> Result<(), CallError>) -> MorecStatus
     }
 }
 
-/// What went wrong in the last call on this thread that did not succeed, in a sentence; empty if none has failed yet.
+/// Message of the last call on this thread that failed, a sentence; empty if none has failed yet.
 /// UTF-8. The text stays where it is until the next call on this thread that does not succeed. Never null.
 #[unsafe(no_mangle)]
 pub extern "C" fn morec_last_error() -> *const c_char {
@@ -140,7 +140,7 @@ pub extern "C" fn morec_last_error() -> *const c_char {
     text.unwrap_or(c"".as_ptr())
 }
 
-/// What a status means, in a few words; null for a number that is no status. The text stays for ever.
+/// Meaning of a status in a few words; null for a number that is no status. The text lives for ever.
 #[unsafe(no_mangle)]
 pub extern "C" fn morec_status_text(status: i32) -> *const c_char {
     MorecStatus::of_number(status).map_or(std::ptr::null(), |status| status.text().as_ptr())

@@ -20,7 +20,7 @@ const USUAL_EVENTS: usize = 256;
 /// The fewest, and the most.
 const EVENTS: std::ops::RangeInclusive<usize> = 128..=1 << 20;
 
-/// What can be chosen about a stream.
+/// Options of a stream.
 #[derive(Debug, Clone)]
 pub(crate) struct StreamOptions {
     pub(crate) convention: Convention,
@@ -51,7 +51,7 @@ struct StreamInput {
     sequence: u64,
 }
 
-/// What another performer can be made of.
+/// Parts from which another performer is made.
 struct Made {
     index: Arc<MotionIndex>,
     options: EventOptions,
@@ -75,7 +75,7 @@ struct StreamCounts {
     suppressed: AtomicU64,
 }
 
-/// How a stream stands.
+/// Status of a stream.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct StreamStatus {
     pub(crate) frames: u64,
@@ -138,7 +138,7 @@ impl Stream {
         })
     }
 
-    /// What it shows.
+    /// Its class.
     pub(crate) fn declared(&self) -> &Declared {
         &self.declared
     }
@@ -222,7 +222,7 @@ impl Stream {
         Ok(taken)
     }
 
-    /// How it stands.
+    /// Its status.
     pub(crate) fn status(&self) -> StreamStatus {
         let counts = &self.counts;
         StreamStatus {
@@ -235,7 +235,7 @@ impl Stream {
         }
     }
 
-    /// What is known of the stream; refused while another thread pushes.
+    /// Diagnosis of the stream; refused while another thread pushes.
     pub(crate) fn diagnosis(&self) -> Result<Diagnosis, CallError> {
         let known = turn(&self.input)?.performer.diagnosis();
         Ok(known.unwrap_or_else(|| Diagnoser::live().diagnosis()))
@@ -250,7 +250,7 @@ impl Stream {
     }
 }
 
-/// Where events go.
+/// Output of events.
 struct EventOutput<'a> {
     events: &'a mut rtrb::Producer<Event>,
     sequence: &'a mut u64,

@@ -7,7 +7,9 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
 use morec::features::FeatureParams;
-use morec_db::{DbError, MotionDb};
+use morec::labels::ClipLength;
+use morec_db::exchange::ClipLengths;
+use morec_db::{ClipFilter, ClipInfo, DbError, MotionDb};
 
 use crate::output::mark_database;
 
@@ -28,7 +30,7 @@ pub fn only(inputs: &[PathBuf]) -> Result<Option<&Path>> {
     }
 }
 
-/// Whether a file begins as SQLite's do.
+/// True if a file begins as SQLite's do.
 fn is_database(path: &Path) -> bool {
     let mut head = [0; 16];
     let read = File::open(path).and_then(|mut file| file.read_exact(&mut head));
@@ -52,4 +54,22 @@ pub fn open_read_only(path: &Path) -> Result<MotionDb, DbError> {
         }
         other => other,
     }
+}
+
+/// The lengths of all clips by name.
+pub fn lengths(db: &MotionDb) -> Result<ClipLengths> {
+    let length = |c: ClipInfo| {
+        (
+            c.name,
+            ClipLength {
+                frames: c.frames,
+                rate_hz: c.rate_hz,
+            },
+        )
+    };
+    Ok(db
+        .clips(&ClipFilter::default())?
+        .into_iter()
+        .map(length)
+        .collect())
 }

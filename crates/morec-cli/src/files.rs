@@ -13,7 +13,7 @@ use morec::roles::mapping::Mapping;
 
 use crate::output;
 
-/// What files do not say about themselves.
+/// Options of reading, for what files do not say.
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Reading clips")]
 pub struct ReadArgs {
@@ -24,12 +24,12 @@ pub struct ReadArgs {
     /// Frames a second, in place of what the file says (AMC files say nothing: 120 is assumed).
     #[arg(long, value_name = "HZ", value_parser = rate)]
     pub file_rate: Option<f64>,
-    /// What BVH position channels below the root mean; decided from the data if not given.
+    /// Meaning of BVH position channels below the root; decided from the data if not given.
     #[arg(long, value_enum)]
     pub positions: Option<Positions>,
 }
 
-/// What BVH position channels below the root mean.
+/// Meaning of BVH position channels below the root.
 #[derive(ValueEnum, Clone, Copy, Debug)]
 pub enum Positions {
     /// The joint's position; OFFSET is not used.
@@ -147,7 +147,7 @@ fn marked(opened: ClipFile) -> Result<ClipFile> {
 }
 
 impl ReadArgs {
-    /// What reads files so, with the roles of a mapping file.
+    /// A reader with these options and the roles of a mapping file.
     pub fn reader_with(&self, mapping: Option<Mapping>) -> FileReader {
         FileReader {
             import: ImportOptions {
@@ -158,7 +158,7 @@ impl ReadArgs {
         }
     }
 
-    /// What reads files so.
+    /// A reader with these options.
     pub fn reader(&self) -> FileReader {
         let positions = self.positions.map(|positions| match positions {
             Positions::Replace => PositionChannels::Replace,

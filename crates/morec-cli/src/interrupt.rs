@@ -5,6 +5,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, Result};
 
+/// Exit code of a command that was told to stop by Ctrl-C.
+pub const STOPPED: u8 = 130;
+
 /// Set when somebody wants the program to end.
 pub fn stop_on_ctrl_c() -> Result<Arc<AtomicBool>> {
     let stop = Arc::new(AtomicBool::new(false));

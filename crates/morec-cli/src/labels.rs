@@ -94,7 +94,7 @@ fn one(path: &Path) -> Result<Labels> {
     })
 }
 
-/// Whether text is a table of labels with its header: what Audacity writes has none.
+/// True if text is a table of labels with its header: what Audacity writes has none.
 fn is_table(bytes: &[u8]) -> bool {
     let first = bytes.split(|&byte| byte == b'\n').next().unwrap_or(bytes);
     let mut cells = first.split(|&byte| byte == b'\t');

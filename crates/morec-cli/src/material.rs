@@ -25,7 +25,7 @@ use crate::database;
 use crate::files::{ReadArgs, expand, mapping, read, some_of, takes};
 use crate::labels;
 
-/// Which clips teach what.
+/// Training data: clips, labels, background.
 #[derive(Args, Debug)]
 pub struct MaterialArgs {
     /// Clips, or folders of clips, that the labels speak of
@@ -45,7 +45,7 @@ pub struct MaterialArgs {
     /// Leave these clips out, by file stem, separated by commas
     #[arg(long, value_delimiter = ',', value_name = "CLIPS")]
     pub exclude: Vec<String>,
-    /// Who is seen in which clip: columns clip and person (or give the labels a column person)
+    /// Persons of clips: columns clip and person (or give the labels a column person)
     #[arg(long, value_name = "TSV")]
     pub people: Option<PathBuf>,
     /// Clips or folders that hold none of the classes, also by the file stem of one of --clips: what comes near
@@ -58,14 +58,14 @@ pub struct MaterialArgs {
     /// With --method svrdm: its figures as the thesis has them, or tuned to accept what was not seen
     #[arg(long, value_enum, default_value = "tuned")]
     pub svrdm: ThesisSetting,
-    /// What the unlabelled parts of labelled clips are: motion that is none of the classes, or nothing to go by
+    /// Use of the unlabelled parts of labelled clips: motion that is none of the classes, or nothing to go by
     #[arg(long, value_enum, default_value = "background")]
     pub unlabelled: Unlabelled,
-    /// Whether synthetic everyday motion is background too (templates only); auto: if --background holds less than a
+    /// Synthetic everyday motion as background, too (templates only); auto: if --background holds less than a
     /// minute
     #[arg(long, value_enum, default_value = "always")]
     pub everyday: EverydayArg,
-    /// Whether mirrored copies of samples teach too (templates only). yes: every class is the same on both sides; auto:
+    /// Training on mirrored copies of samples, too (templates only). yes: every class is the same on both sides; auto:
     /// only classes named as two sides of one motion, as wave_left and wave_right, teach each other
     #[arg(long, value_enum, default_value = "auto")]
     pub mirror: MirrorArg,
@@ -73,7 +73,7 @@ pub struct MaterialArgs {
     /// class is not
     #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
     pub one_sided: Vec<String>,
-    /// Which parts of the body count (templates only): all, upper (nothing below the hips: for seated performers), arms,
+    /// Parts of the body that count (templates only): all, upper (nothing below the hips: for seated performers), arms,
     /// or names of bones, separated by commas, as the report of training lists them
     #[arg(long, value_name = "PARTS", default_value = "all")]
     pub bones: BoneSet,
@@ -88,7 +88,7 @@ pub struct MaterialArgs {
     pub read: ReadArgs,
 }
 
-/// What unlabelled parts of labelled clips are.
+/// Use of the unlabelled parts of labelled clips.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unlabelled {
     /// None of the classes.
@@ -182,7 +182,7 @@ impl From<ThesisSetting> for reproduce::Setting {
     }
 }
 
-/// When made everyday motion is background.
+/// Condition for synthetic everyday motion as background.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EverydayArg {
     /// If the clips named as background hold less than a minute.
@@ -193,7 +193,7 @@ pub enum EverydayArg {
     Never,
 }
 
-/// Whether mirrored copies teach.
+/// Training on mirrored copies.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MirrorArg {
     /// Between classes that are named as two sides of one motion.
@@ -225,7 +225,7 @@ pub struct ClipMaterial {
 }
 
 impl MaterialArgs {
-    /// How to train.
+    /// The method of training and its parameters.
     pub fn recipe(&self) -> Result<Recipe> {
         let unlabelled_is_background = self.unlabelled == Unlabelled::Background;
         match self.method {
@@ -242,7 +242,7 @@ impl MaterialArgs {
         }
     }
 
-    /// How to train for the thesis's evaluation: figures that were typed are those of the tuned setting.
+    /// Options of training for the thesis's evaluation: figures that were typed are those of the tuned setting.
     pub fn svrdm_options(&self, setting: reproduce::Setting) -> Result<SvrdmOptions> {
         let params = match setting {
             reproduce::Setting::Faithful => setting.params(),
@@ -271,7 +271,7 @@ impl MaterialArgs {
         })
     }
 
-    /// Where the labels are from.
+    /// Origin of the labels.
     pub fn label_source(&self) -> String {
         self.db
             .as_ref()

@@ -55,7 +55,7 @@ impl<'a> ReportMotion<'a> {
         Ok(())
     }
 
-    /// What the report plays; says how many clips it does not.
+    /// Clips that the report plays; warns about those that it does not.
     pub fn into_reel(self) -> Option<Reel> {
         if self.left_out > 0 {
             eprintln!(

@@ -17,7 +17,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use anyhow::{Context, Result, bail};
 use tempfile::{Builder, NamedTempFile};
 
-/// What this run reads.
+/// Paths that this run reads.
 static READ: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
 /// So much of a file says what kind of file it is.
@@ -41,7 +41,7 @@ pub fn mark_database(path: &Path) {
     }
 }
 
-/// Whether `path` can be an output: what can be known before there is anything to write, so that a long job fails at
+/// Checks that `path` can be an output, as far as that is known before there is anything to write, so that a long job fails at
 /// its beginning.
 ///
 /// # Errors
@@ -135,7 +135,7 @@ pub fn growing(path: &Path) -> Result<File> {
 
 /// An output in the making. Dropped before [`Output::finish`], it leaves nothing behind.
 pub struct Output {
-    /// Where it will lie; links are followed.
+    /// Final path; links are followed.
     target: PathBuf,
     sink: Target,
 }

@@ -12,7 +12,7 @@ use morec::pivots::{PivotMap, PivotSet, PoseParams, pose_rows_of_clip};
 use crate::files::{self, ReadArgs};
 use crate::progress::SlowProgress;
 
-/// How clips become pose rows.
+/// Options of making pose rows.
 #[derive(Args, Debug)]
 #[command(next_help_heading = "Poses")]
 pub struct PoseArgs {
@@ -37,11 +37,11 @@ pub struct PosedClip {
     pub rows: Rows,
 }
 
-/// What [`PoseArgs`] say, read and checked.
+/// [`PoseArgs`], read and checked.
 pub struct PoseReader<'a> {
     /// The pivots.
     pub set: PivotSet,
-    /// How poses become rows.
+    /// Parameters of pose rows.
     pub params: PoseParams,
     options: ImportOptions,
     read: &'a ReadArgs,

@@ -5,67 +5,17 @@
 
 mod frame;
 pub mod picture;
+mod shown;
 
 use std::io::{self, IsTerminal, Write};
 use std::time::{Duration, Instant};
 
-use morec::clip::Clip;
-
 use frame::FigureScale;
 pub use frame::TerminalStyle;
+pub use shown::{KnownSpan, ReportedDetection, ShownClip, event_line};
 
 /// Pictures a second.
 const PICTURES_HZ: f64 = 25.0;
-
-/// A stretch that is known to hold a class.
-#[derive(Debug, Clone, PartialEq)]
-pub struct KnownSpan {
-    pub class: String,
-    pub start_secs: f64,
-    pub stop_secs: f64,
-}
-
-/// A detection, and when it was said.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ReportedDetection {
-    pub class: String,
-    pub start_secs: f64,
-    pub stop_secs: f64,
-    pub score: f64,
-    pub reported_secs: f64,
-}
-
-/// What is shown.
-#[derive(Debug, Clone, Copy)]
-pub struct ShownClip<'a> {
-    /// Above the picture: who is seen.
-    pub title: &'a str,
-    /// The stream, Y up.
-    pub clip: &'a Clip,
-    /// What was performed, in order.
-    pub truth: &'a [KnownSpan],
-    /// What was said about it, in the order of `reported_secs`.
-    pub said: &'a [ReportedDetection],
-}
-
-/// The line of one event: `12.40 s  wave  0.93  (said 0.12 s after its end)`.
-pub fn event_line(said: &ReportedDetection) -> String {
-    let delay = said.reported_secs - said.stop_secs;
-    let (size, side) = (delay.abs(), if delay < 0.0 { "before" } else { "after" });
-    format!(
-        "{:6.2} s  {}  {:.2}  (said {size:.2} s {side} its end)",
-        said.reported_secs,
-        printable(&said.class),
-        said.score
-    )
-}
-
-/// `name` without the characters that would move the cursor.
-fn printable(name: &str) -> String {
-    name.chars()
-        .map(|c| if c.is_control() { '?' } else { c })
-        .collect()
-}
 
 /// Writes the events, a line each: the show where nobody watches.
 pub fn write_events(scene: &ShownClip, out: &mut impl Write) -> io::Result<()> {
@@ -98,7 +48,7 @@ pub fn play(scene: &ShownClip, speed: f64) -> io::Result<()> {
     }
 }
 
-/// What this terminal can show now; asked for every picture, as windows change their size.
+/// Abilities of this terminal now; asked for every picture, as windows change their size.
 pub fn look() -> TerminalStyle {
     let (columns, rows) = match terminal_size::terminal_size() {
         Some((width, height)) => (usize::from(width.0), usize::from(height.0)),

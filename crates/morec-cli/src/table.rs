@@ -91,7 +91,7 @@ impl TextTable {
         widths
     }
 
-    /// Whether a column below its name holds anything but numbers.
+    /// True if a column below its name holds anything but numbers.
     fn is_text(&self, at: usize) -> bool {
         let cells = self.rows.iter().skip(1).filter_map(|row| row.get(at));
         cells
@@ -159,7 +159,7 @@ fn shortened(text: &str, width: usize) -> String {
     format!("{head}…{tail}")
 }
 
-/// As many signs as have room.
+/// The first signs, as many as have room.
 fn beginning(signs: impl Iterator<Item = char>, room: usize) -> String {
     let mut used = 0;
     let fits = |sign: &char| {

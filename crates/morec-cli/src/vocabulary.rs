@@ -40,7 +40,7 @@ const EXCEPTIONS: [(&str, &str); 8] = [
     ),
 ];
 
-/// What the help of an option begins with wherever there is one.
+/// Beginning of the help of an option, wherever there is one.
 const MEANINGS: [(&str, &[&str]); 9] = [
     ("json", &["Print one JSON array", "Print one JSON object"]),
     ("limit", &["At most so many", "List at most so many"]),
@@ -64,10 +64,10 @@ const MEANINGS: [(&str, &[&str]); 9] = [
     (
         "output",
         &[
-            "Where ",
-            "The file to write",
-            "What to write",
+            "File to write",
             "Folder for ",
+            "Output",
+            "The file to write",
         ],
     ),
     ("roles", &["Roles "]),
@@ -83,7 +83,7 @@ const MEANINGS: [(&str, &[&str]); 9] = [
     ),
     (
         "subject",
-        &["Who is seen", "Clips in which this person is seen"],
+        &["Person in the clips", "Clips in which this person is seen"],
     ),
 ];
 

@@ -20,7 +20,8 @@ impl MotionDb {
             for (id, roles) in clips {
                 let sql = "SELECT c.name, k.joints FROM clips c JOIN skeletons k ON k.id = c.skeleton WHERE c.id = ?1";
                 let found: Option<(String, i64)> = conn
-                    .query_row(sql, params![id.0], |row| Ok((row.get(0)?, row.get(1)?)))
+                    .prepare_cached(sql)?
+                    .query_row(params![id.0], |row| Ok((row.get("name")?, row.get("joints")?)))
                     .optional()?;
                 let (name, joints) =
                     found.ok_or_else(|| DbError::unknown("clip", &format!("#{}", id.0)))?;
@@ -31,13 +32,14 @@ impl MotionDb {
                     )));
                 }
                 let sql = "UPDATE clips SET roles = ?2 WHERE id = ?1 AND roles <> ?2";
-                conn.execute(sql, params![id.0, roles_to_json(roles)])?;
+                conn.prepare_cached(sql)?
+                    .execute(params![id.0, roles_to_json(roles)])?;
             }
             Ok(())
         })
     }
 
-    /// Who plays what in every clip. A clip whose roles are damaged plays none.
+    /// Roles of every clip; empty for a clip whose stored roles are damaged.
     ///
     /// # Errors
     /// The database cannot be read.
@@ -46,9 +48,9 @@ impl MotionDb {
             "SELECT c.id, c.roles, k.joints FROM clips c JOIN skeletons k ON k.id = c.skeleton";
         let mut statement = self.conn.prepare(sql)?;
         let rows = statement.query_map([], |row| {
-            let (json, joints): (String, i64) = (row.get(1)?, row.get(2)?);
+            let (json, joints): (String, i64) = (row.get("roles")?, row.get("joints")?);
             let roles = roles_from_json(&json, joints.max(0) as usize).unwrap_or_default();
-            Ok((ClipId(row.get(0)?), roles))
+            Ok((ClipId(row.get("id")?), roles))
         })?;
         Ok(rows.collect::<Result<_, _>>()?)
     }

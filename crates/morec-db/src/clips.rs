@@ -28,23 +28,23 @@ pub struct ClipInfo {
     pub repaired_frames: usize,
     /// Joints of its skeleton.
     pub joints: usize,
-    /// Which skeleton: clips of one skeleton share the number.
+    /// Number of its skeleton; clips of one skeleton share it.
     pub skeleton: i64,
-    /// Where its file was.
+    /// Path of its file when it was imported.
     pub path: String,
     /// Its file's format.
     pub format: String,
     /// Bytes of compressed motion.
     pub motion_bytes: usize,
-    /// Where the material is from.
+    /// Origin of the material.
     pub source: Option<String>,
     /// Under which terms.
     pub licence: Option<String>,
-    /// Who is seen.
+    /// Person in it.
     pub subject: Option<String>,
     /// Words attached to it.
     pub tags: Vec<String>,
-    /// How many accepted samples lie in it.
+    /// Number of accepted samples in it.
     pub samples: usize,
 }
 
@@ -55,7 +55,7 @@ impl ClipInfo {
     }
 }
 
-/// Which clips; all conditions must hold.
+/// Conditions on clips; all must hold.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ClipFilter {
     /// The name matches this pattern (`*` any text, `?` one character).
@@ -68,7 +68,7 @@ pub struct ClipFilter {
     pub class: Option<String>,
 }
 
-/// What to change of clips; what is `None` stays.
+/// Changes to clips; `None` leaves a value as it is.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ClipUpdate {
     /// New source; empty takes it away.
@@ -117,6 +117,35 @@ fn info(row: &Row<'_>) -> rusqlite::Result<ClipInfo> {
 }
 
 impl MotionDb {
+    /// The clips of a filter, by name, where a filter that names what is not there is an error.
+    ///
+    /// # Errors
+    /// [`DbError::Unknown`] with the nearest names: no clip has such a name or matches the pattern, no clip shows this
+    /// person or has this tag, there is no such class.
+    pub fn find_clips(&self, filter: &ClipFilter) -> Result<Vec<ClipInfo>, DbError> {
+        if let Some(class) = &filter.class {
+            self.need_class(class)?;
+        }
+        let parts = [
+            ("clip", &filter.name),
+            ("person", &filter.subject),
+            ("tag", &filter.tag),
+        ];
+        for (kind, name) in parts {
+            let Some(name) = name else { continue };
+            let mut alone = ClipFilter::default();
+            match kind {
+                "clip" => alone.name = Some(name.clone()),
+                "person" => alone.subject = Some(name.clone()),
+                _ => alone.tag = Some(name.clone()),
+            }
+            if self.clips(&alone)?.is_empty() {
+                return Err(names::unknown(&self.conn, kind, name));
+            }
+        }
+        self.clips(filter)
+    }
+
     /// The clips of a filter, by name.
     pub fn clips(&self, filter: &ClipFilter) -> Result<Vec<ClipInfo>, DbError> {
         let sql = format!(
@@ -177,8 +206,11 @@ impl MotionDb {
             let mut samples = 0;
             for id in clips {
                 let sql = "SELECT count(*) FROM samples WHERE clip = ?1";
-                samples += conn.query_row(sql, params![id.0], |row| row.get::<_, i64>(0))?;
-                conn.execute("DELETE FROM clips WHERE id = ?1", params![id.0])?;
+                samples += conn
+                    .prepare_cached(sql)?
+                    .query_row(params![id.0], |row| row.get::<_, i64>(0))?;
+                conn.prepare_cached("DELETE FROM clips WHERE id = ?1")?
+                    .execute(params![id.0])?;
             }
             conn.execute(
                 "DELETE FROM files WHERE NOT EXISTS (SELECT 1 FROM clips c WHERE c.file = files.id)",
@@ -213,7 +245,7 @@ impl MotionDb {
 /// Changes what is known about a clip; says whether there is such a clip.
 fn describe(conn: &Connection, id: ClipId, update: &ClipUpdate) -> Result<usize, DbError> {
     let sql = "SELECT 1 FROM clips WHERE id = ?1";
-    if !conn.prepare(sql)?.exists(params![id.0])? {
+    if !conn.prepare_cached(sql)?.exists(params![id.0])? {
         return Ok(0);
     }
     let columns = [
@@ -226,16 +258,16 @@ fn describe(conn: &Connection, id: ClipId, update: &ClipUpdate) -> Result<usize,
             let sql = format!(
                 "UPDATE clips SET {column} = nullif(?2, '') WHERE id = ?1 AND {column} IS NOT nullif(?2, '')"
             );
-            conn.prepare(&sql)?.execute(params![id.0, value])?;
+            conn.prepare_cached(&sql)?.execute(params![id.0, value])?;
         }
     }
     for tag in &update.add_tags {
         let sql = "INSERT OR IGNORE INTO tags (clip, tag) VALUES (?1, ?2)";
-        conn.prepare(sql)?.execute(params![id.0, tag])?;
+        conn.prepare_cached(sql)?.execute(params![id.0, tag])?;
     }
     for tag in &update.remove_tags {
         let sql = "DELETE FROM tags WHERE clip = ?1 AND tag = ?2";
-        conn.prepare(sql)?.execute(params![id.0, tag])?;
+        conn.prepare_cached(sql)?.execute(params![id.0, tag])?;
     }
     Ok(1)
 }

@@ -27,7 +27,7 @@ pub enum Cutter {
     Ppca(PpcaParams, PivotSet),
 }
 
-/// Where a clip is cut, and where nobody moves.
+/// Cuts of a clip, and the stretches without motion.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct ClipCuts {
     /// The clip's name.
@@ -49,7 +49,7 @@ pub struct Still {
     pub stop_secs: f64,
 }
 
-/// What [`MotionDb::cut`] did.
+/// Result of [`MotionDb::cut`].
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CutReport {
     /// The clips that were cut, in the order in which they were given.
@@ -177,7 +177,7 @@ impl MotionDb {
         self.set_segments(BY_HAND, &[clip.id], &segments)
     }
 
-    /// What each clip is cut into, or why it cannot be.
+    /// Segments of each clip, or the reason why there are none.
     fn look(
         &mut self,
         clips: &[ClipInfo],
@@ -215,7 +215,7 @@ fn nothing(clip: &ClipInfo) -> ClipCuts {
     }
 }
 
-/// What is kept and told of a clip cut at `cuts`.
+/// Segments to keep, and the report, of a clip cut at `cuts`.
 fn stretches(clip: &ClipInfo, rows: &ClipRows, cuts: Vec<f64>) -> Done {
     let features = FeatureParams::default();
     let still = still_stretches(&rows.rows, rows.bones, &features, &StillParams::default());
@@ -255,7 +255,7 @@ fn stretches(clip: &ClipInfo, rows: &ClipRows, cuts: Vec<f64>) -> Done {
     (cuts, segments)
 }
 
-/// What lies between the cuts.
+/// Segments between the cuts.
 fn motions(clip: &ClipInfo, cuts: &[f64]) -> Vec<Segment> {
     let end = clip.duration_secs();
     let mut start_secs = 0.0;

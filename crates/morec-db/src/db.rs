@@ -1,17 +1,13 @@
-//! The file itself: made, opened, checked, shrunk.
+//! The file itself: made, opened, counted, shrunk.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use morec::features::FeatureParams;
-use morec::index::MotionIndex;
-use morec::progress::Progress;
 use rusqlite::{Connection, OpenFlags, Transaction, TransactionBehavior};
 
-use crate::history::digest;
 use crate::{DbError, SCHEMA, schema};
 
-/// How long a writer waits for another before it says [`DbError::Busy`].
+/// Time a writer waits for another before [`DbError::Busy`].
 const WAIT: Duration = Duration::from_secs(5);
 
 /// An open motion database.
@@ -21,7 +17,7 @@ pub struct MotionDb {
     path: PathBuf,
 }
 
-/// How much is in a database.
+/// Contents of a database in numbers.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[allow(missing_docs)] // The names say it.
 pub struct DbSummary {
@@ -48,19 +44,6 @@ pub struct DbSummary {
     pub proposed: u64,
     pub rejected: u64,
     pub indexes: u64,
-}
-
-/// What [`MotionDb::check`] found.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct Health {
-    /// What is wrong, a sentence each; empty if all is well.
-    pub faults: Vec<String>,
-    /// Clips whose motion was decoded.
-    pub clips: usize,
-    /// Clips whose feature rows were compared with their checksums.
-    pub rows: usize,
-    /// Indexes that were read.
-    pub indexes: usize,
 }
 
 impl MotionDb {
@@ -151,7 +134,7 @@ impl MotionDb {
         })
     }
 
-    /// Whether it was opened for reading only.
+    /// True if it was opened for reading only.
     pub(crate) fn is_read_only(&self) -> Result<bool, DbError> {
         let query_only: bool = self
             .conn
@@ -159,7 +142,7 @@ impl MotionDb {
         Ok(query_only || self.conn.is_readonly("main")?)
     }
 
-    /// Where it lies.
+    /// Path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -171,7 +154,7 @@ impl MotionDb {
             .transaction_with_behavior(TransactionBehavior::Immediate)?)
     }
 
-    /// How much is in it.
+    /// Contents in numbers.
     pub fn summary(&self) -> Result<DbSummary, DbError> {
         let count = |sql: &str| -> Result<u64, DbError> {
             Ok(self
@@ -204,75 +187,6 @@ impl MotionDb {
             rejected: count("SELECT count(*) FROM samples WHERE state = 'rejected'")?,
             indexes: count("SELECT count(*) FROM indexes")?,
         })
-    }
-
-    /// Reads everything: the file's structure, references between tables, checksums of all tables, feature rows and
-    /// indexes, and every clip's motion.
-    ///
-    /// # Errors
-    /// The database cannot be read; what is damaged in it is no error but part of the answer.
-    pub fn check(&self) -> Result<Health, DbError> {
-        let mut faults = self.lines("PRAGMA integrity_check")?;
-        faults.retain(|line| line != "ok");
-        faults.extend(self.lines(
-            "SELECT 'a row of ' || \"table\" || ' points to nothing' FROM pragma_foreign_key_check",
-        )?);
-        for table in digest::faults(&self.conn)? {
-            faults.push(format!(
-                "the table of {table} is not as morec left it: damaged, or changed by another program"
-            ));
-        }
-        let clips = self.clips(&crate::ClipFilter::default())?;
-        for info in &clips {
-            if let Err(error) = self.clip(info.id) {
-                faults.push(format!(
-                    "clip {}: {error}; import its file again",
-                    info.name
-                ));
-            }
-        }
-        let (damaged, rows) = self.damaged_rows()?;
-        for id in damaged {
-            let clip = clips.iter().find(|clip| clip.id == id);
-            let name = clip.map_or_else(|| format!("#{}", id.0), |clip| clip.name.clone());
-            faults.push(format!(
-                "clip {name}: its feature rows are damaged; they can be made again"
-            ));
-        }
-        let indexes = self.indexes()?;
-        for index in &indexes {
-            if let Err(error) = MotionIndex::from_bytes(&self.index(&index.name)?) {
-                faults.push(format!("index {}: {error}; train it again", index.name));
-            }
-        }
-        Ok(Health {
-            faults,
-            clips: clips.len(),
-            rows,
-            indexes: indexes.len(),
-        })
-    }
-
-    /// Makes again what can be made again (feature rows, the file's search trees), and takes the tables as they are for
-    /// right: what [`MotionDb::check`] says afterwards is lost. Gives how many clips' rows were made.
-    ///
-    /// # Errors
-    /// The database cannot be written, or a clip's motion is damaged.
-    pub fn repair(&mut self, progress: &dyn Progress) -> Result<usize, DbError> {
-        self.conn.execute_batch("REINDEX")?;
-        let made = self.refresh_rows(&FeatureParams::default(), progress)?;
-        let tx = self.write()?;
-        digest::take_all(&tx)?;
-        tx.commit()?;
-        Ok(made)
-    }
-
-    fn lines(&self, sql: &str) -> Result<Vec<String>, DbError> {
-        let mut statement = self.conn.prepare(sql)?;
-        let lines = statement
-            .query_map([], |row| row.get(0))?
-            .collect::<Result<_, _>>()?;
-        Ok(lines)
     }
 
     /// Lets the file grow to so many bytes at most, until it is closed; what is there already stays. What needs more fails as on a

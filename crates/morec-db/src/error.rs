@@ -70,10 +70,10 @@ pub enum DbError {
         kind: &'static str,
         /// The name.
         name: String,
-        /// What is there instead, after a semicolon; or nothing.
+        /// Names that exist, after a semicolon; may be empty.
         hint: String,
     },
-    /// What was asked for makes no sense.
+    /// A request that makes no sense.
     #[error("{0}")]
     Invalid(String),
     /// The listener said so.

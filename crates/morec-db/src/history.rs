@@ -22,10 +22,10 @@ pub use turn::{Effect, Turned};
 use crate::time::now_secs;
 use crate::{DbError, MotionDb};
 
-/// So many steps can be taken back.
+/// Number of steps that can be undone.
 pub const STEPS_KEPT: usize = 1000;
 
-/// So many bytes of motion and indexes are kept for taking back, the last step's aside.
+/// Bytes of motion and indexes kept for undoing, apart from the last step's.
 const BYTES_KEPT: i64 = 256 << 20;
 
 /// A change that was done, and can be taken back; or was taken back, and can be done again.
@@ -33,13 +33,13 @@ const BYTES_KEPT: i64 = 256 << 20;
 pub struct HistoryStep {
     /// Its number; later steps have greater ones.
     pub id: i64,
-    /// What it did.
+    /// Description of the step.
     pub what: String,
-    /// When, seconds since 1970.
+    /// Time of the change, seconds since 1970.
     pub set_secs: i64,
     /// True if it has been taken back.
     pub undone: bool,
-    /// How many rows of each table it touched.
+    /// Number of rows it touched, by table.
     pub rows: BTreeMap<String, usize>,
 }
 
@@ -125,10 +125,10 @@ fn prune(conn: &Connection) -> Result<(), DbError> {
 
 fn step(row: &Row<'_>) -> rusqlite::Result<HistoryStep> {
     Ok(HistoryStep {
-        id: row.get(0)?,
-        what: row.get(1)?,
-        set_secs: row.get(2)?,
-        undone: row.get(3)?,
+        id: row.get("id")?,
+        what: row.get("what")?,
+        set_secs: row.get("set_secs")?,
+        undone: row.get("undone")?,
         rows: BTreeMap::new(),
     })
 }
@@ -165,14 +165,14 @@ impl MotionDb {
             .query_map([], step)?
             .collect::<Result<_, rusqlite::Error>>()?;
         let mut counts: BTreeMap<i64, BTreeMap<String, usize>> = BTreeMap::new();
-        let sql = "SELECT edit, tab, count(*) FROM (SELECT DISTINCT edit, tab, c0, \
+        let sql = "SELECT edit, tab, count(*) AS rows FROM (SELECT DISTINCT edit, tab, c0, \
              CASE WHEN tab IN ('tags', 'file_copies') THEN c1 END FROM was) GROUP BY edit, tab";
         let mut statement = self.conn.prepare(sql)?;
         let mut rows = statement.query([])?;
         while let Some(row) = rows.next()? {
-            let count: i64 = row.get(2)?;
-            let of = counts.entry(row.get(0)?).or_default();
-            of.insert(row.get(1)?, count.max(0) as usize);
+            let count: i64 = row.get("rows")?;
+            let of = counts.entry(row.get("edit")?).or_default();
+            of.insert(row.get("tab")?, count.max(0) as usize);
         }
         for step in &mut steps {
             step.rows = counts.remove(&step.id).unwrap_or_default();

@@ -16,7 +16,7 @@ use crate::{ClipId, ClipUpdate, DbError, MotionDb, history, rows};
 /// Files in one transaction: a crash loses the work of so many at most, and nothing that was committed.
 const BATCH: usize = 32;
 
-/// What became of one file.
+/// Outcome of importing one file.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[serde(rename_all = "snake_case", tag = "outcome")]
 pub enum ImportOutcome {
@@ -24,7 +24,7 @@ pub enum ImportOutcome {
     Imported {
         /// Their names.
         clips: Vec<String>,
-        /// What was repaired or looks wrong.
+        /// Repairs and doubts.
         warnings: Vec<String>,
     },
     /// It was there already, from this path.
@@ -38,14 +38,14 @@ pub enum ImportOutcome {
     Refused(Refused),
 }
 
-/// Why a file was refused.
+/// Reason for refusing a file.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct Refused {
     /// The reason in a sentence.
     pub reason: String,
 }
 
-/// What became of every file, in their order.
+/// Outcomes of all files, in their order.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize)]
 pub struct ImportLog {
     /// Path and outcome.
@@ -55,7 +55,7 @@ pub struct ImportLog {
 }
 
 impl ImportLog {
-    /// What it did, for the history.
+    /// Description for the history.
     fn said(&self) -> String {
         let counts = self.counts();
         match counts.refused {
@@ -64,7 +64,7 @@ impl ImportLog {
         }
     }
 
-    /// How many files came to what.
+    /// Number of files by outcome.
     pub fn counts(&self) -> ImportCounts {
         let mut counts = ImportCounts::default();
         for (_, outcome) in &self.files {
@@ -82,7 +82,7 @@ impl ImportLog {
     }
 }
 
-/// How many files of an import came to what.
+/// Number of files of an import, by outcome.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct ImportCounts {
     /// Imported.
@@ -188,9 +188,9 @@ impl MotionDb {
         let mut statement = self.conn.prepare(sql)?;
         let rows = statement.query_map([], |row| {
             Ok((
-                row.get(0)?,
-                row.get::<_, i64>(1)?.max(0) as usize,
-                row.get(2)?,
+                row.get("hash")?,
+                row.get::<_, i64>("character")?.max(0) as usize,
+                row.get("name")?,
             ))
         })?;
         Ok(rows.collect::<Result<_, _>>()?)
@@ -201,47 +201,48 @@ impl MotionDb {
     /// # Errors
     /// The database cannot be read, or a clip's motion is damaged.
     pub fn kept_clips(&self) -> Result<Vec<KeptClip>, DbError> {
-        let sql = "SELECT c.id, c.name, c.character, c.subject, c.source, c.licence, c.frames, c.rate_hz, c.rest_frames, \
-             c.repaired_frames, k.joints, k.hash, c.roles, c.facts, c.max_angle_rad, c.max_position_metres, c.motion, \
-             f.hash, f.path, f.format, f.bytes, f.skeleton_path, f.warnings, \
-             (SELECT group_concat(tag, char(10)) FROM tags t WHERE t.clip = c.id), r.bones, r.bytes \
+        let sql = "SELECT c.name, c.character, c.subject, c.source, c.licence, c.frames, c.rate_hz, c.rest_frames, \
+             c.repaired_frames, k.joints, k.hash AS skeleton_hash, c.roles, c.facts, c.max_angle_rad, \
+             c.max_position_metres, c.motion, f.hash, f.path, f.format, f.bytes, f.skeleton_path, f.warnings, \
+             (SELECT group_concat(tag, char(10)) FROM tags t WHERE t.clip = c.id) AS tags, \
+             r.bones, r.bytes AS row_bytes \
              FROM clips c JOIN files f ON f.id = c.file JOIN skeletons k ON k.id = c.skeleton \
              LEFT JOIN feature_rows r ON r.clip = c.id AND r.recipe = ?1 ORDER BY c.id";
         let recipe = rows_recipe();
         let mut statement = self.conn.prepare(sql)?;
-        let count = |row: &Row<'_>, at| -> rusqlite::Result<usize> {
-            Ok(row.get::<_, i64>(at)?.max(0) as usize)
+        let count = |row: &Row<'_>, column: &str| -> rusqlite::Result<usize> {
+            Ok(row.get::<_, i64>(column)?.max(0) as usize)
         };
         let kept = statement.query_map(params![recipe], |row| {
-            let warnings: String = row.get(22)?;
-            let tags: Option<String> = row.get(23)?;
-            let rows: (Option<i64>, Option<Vec<u8>>) = (row.get(24)?, row.get(25)?);
+            let warnings: String = row.get("warnings")?;
+            let tags: Option<String> = row.get("tags")?;
+            let rows: (Option<i64>, Option<Vec<u8>>) = (row.get("bones")?, row.get("row_bytes")?);
             let clip = KeptClip {
-                name: row.get(1)?,
+                name: row.get("name")?,
                 file: KeptFile {
-                    hash: row.get(17)?,
-                    path: row.get(18)?,
-                    format: row.get(19)?,
-                    bytes: row.get::<_, i64>(20)?.max(0) as u64,
-                    skeleton: row.get(21)?,
+                    hash: row.get("hash")?,
+                    path: row.get("path")?,
+                    format: row.get("format")?,
+                    bytes: row.get::<_, i64>("bytes")?.max(0) as u64,
+                    skeleton: row.get("skeleton_path")?,
                     warnings: serde_json::from_str(&warnings).unwrap_or_default(),
                 },
-                character: count(row, 2)?,
-                subject: row.get(3)?,
-                source: row.get(4)?,
-                licence: row.get(5)?,
+                character: count(row, "character")?,
+                subject: row.get("subject")?,
+                source: row.get("source")?,
+                licence: row.get("licence")?,
                 tags: tags.map_or_else(Vec::new, |t| t.lines().map(str::to_owned).collect()),
-                frames: count(row, 6)?,
-                rate_hz: row.get(7)?,
-                rest_frames: count(row, 8)?,
-                repaired_frames: count(row, 9)?,
-                joints: count(row, 10)?,
-                skeleton_hash: row.get(11)?,
-                roles: row.get(12)?,
-                facts: row.get(13)?,
-                max_angle_rad: row.get(14)?,
-                max_position_metres: row.get(15)?,
-                motion: row.get(16)?,
+                frames: count(row, "frames")?,
+                rate_hz: row.get("rate_hz")?,
+                rest_frames: count(row, "rest_frames")?,
+                repaired_frames: count(row, "repaired_frames")?,
+                joints: count(row, "joints")?,
+                skeleton_hash: row.get("skeleton_hash")?,
+                roles: row.get("roles")?,
+                facts: row.get("facts")?,
+                max_angle_rad: row.get("max_angle_rad")?,
+                max_position_metres: row.get("max_position_metres")?,
+                motion: row.get("motion")?,
                 recipe: recipe.clone(),
                 bones: rows.0.unwrap_or(0),
                 rows: rows.1.clone().unwrap_or_default(),
@@ -275,7 +276,7 @@ impl MotionDb {
 
     pub(crate) fn known_hashes(&self) -> Result<std::collections::HashMap<[u8; 32], i64>, DbError> {
         let mut statement = self.conn.prepare("SELECT hash, id FROM files")?;
-        let pairs = statement.query_map([], |row| Ok((row.get(0)?, row.get(1)?)))?;
+        let pairs = statement.query_map([], |row| Ok((row.get("hash")?, row.get("id")?)))?;
         Ok(pairs.collect::<Result<_, _>>()?)
     }
 }
@@ -341,14 +342,12 @@ fn add_file(conn: &Connection, path: &Path, clips: &[KeptClip]) -> Result<Import
         return Ok(ImportOutcome::Refused(Refused { reason }));
     };
     let shown = path.to_string_lossy();
-    conn.execute("DELETE FROM refused WHERE path = ?1", params![shown])?;
+    conn.prepare_cached("DELETE FROM refused WHERE path = ?1")?
+        .execute(params![shown])?;
     // Two files of one batch may hold the same bytes.
     let twin = conn
-        .query_row(
-            "SELECT id FROM files WHERE hash = ?1",
-            params![first.file.hash],
-            |row| row.get(0),
-        )
+        .prepare_cached("SELECT id FROM files WHERE hash = ?1")?
+        .query_row(params![first.file.hash], |row| row.get(0))
         .optional()?;
     match twin {
         Some(file) => known(conn, &shown, file),
@@ -357,18 +356,14 @@ fn add_file(conn: &Connection, path: &Path, clips: &[KeptClip]) -> Result<Import
 }
 
 fn known(conn: &Connection, shown: &str, file: i64) -> Result<ImportOutcome, DbError> {
-    let first: String = conn.query_row(
-        "SELECT path FROM files WHERE id = ?1",
-        params![file],
-        |row| row.get(0),
-    )?;
+    let first: String = conn
+        .prepare_cached("SELECT path FROM files WHERE id = ?1")?
+        .query_row(params![file], |row| row.get(0))?;
     if first == shown {
         return Ok(ImportOutcome::Known);
     }
-    conn.execute(
-        "INSERT OR IGNORE INTO file_copies (file, path) VALUES (?1, ?2)",
-        params![file, shown],
-    )?;
+    conn.prepare_cached("INSERT OR IGNORE INTO file_copies (file, path) VALUES (?1, ?2)")?
+        .execute(params![file, shown])?;
     Ok(ImportOutcome::Copy { of: first.into() })
 }
 

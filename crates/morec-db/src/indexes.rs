@@ -10,18 +10,18 @@ use crate::{DbError, MotionDb, names};
 pub struct IndexInfo {
     /// Its name.
     pub name: String,
-    /// When it was trained, seconds since 1970.
+    /// Time of training, seconds since 1970.
     pub trained_secs: i64,
     /// Its size.
     pub bytes: usize,
-    /// How many samples taught it.
+    /// Number of samples it was trained on.
     pub samples: usize,
     /// True if accepted samples have changed since.
     pub stale: bool,
 }
 
 impl MotionDb {
-    /// What an index trained now would be taught: clip, class, start and stop of every accepted sample.
+    /// Training data of an index made now: clip, class, start and stop of every accepted sample.
     fn taught(&self) -> Result<String, DbError> {
         let filter = crate::labels::SampleFilter {
             state: Some(crate::labels::SampleState::Accepted),
@@ -76,15 +76,15 @@ impl MotionDb {
     /// All indexes, by name.
     pub fn indexes(&self) -> Result<Vec<IndexInfo>, DbError> {
         let taught = self.taught()?;
-        let sql = "SELECT name, trained_secs, length(bytes), json_array_length(samples), samples FROM indexes ORDER BY name";
+        let sql = "SELECT name, trained_secs, length(bytes) AS bytes, json_array_length(samples) AS count, samples FROM indexes ORDER BY name";
         let mut statement = self.conn.prepare(sql)?;
         let indexes = statement.query_map([], |row| {
             Ok(IndexInfo {
-                name: row.get(0)?,
-                trained_secs: row.get(1)?,
-                bytes: row.get::<_, i64>(2)? as usize,
-                samples: row.get::<_, i64>(3)? as usize,
-                stale: row.get::<_, String>(4)? != taught,
+                name: row.get("name")?,
+                trained_secs: row.get("trained_secs")?,
+                bytes: row.get::<_, i64>("bytes")? as usize,
+                samples: row.get::<_, i64>("count")? as usize,
+                stale: row.get::<_, String>("samples")? != taught,
             })
         })?;
         Ok(indexes.collect::<Result<_, _>>()?)

@@ -16,15 +16,15 @@ use crate::{ClipId, DbError, StoredClip};
 /// A clip of a file, kept.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KeptClip {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// Its file.
     pub file: KeptFile,
-    /// Which of the file's clips it is, from 0.
+    /// Its number among the clips of the file, from 0.
     pub character: usize,
-    /// Who is seen.
+    /// Person in it.
     pub subject: Option<String>,
-    /// Where it is from.
+    /// Its origin.
     pub source: Option<String>,
     /// Under which terms.
     pub licence: Option<String>,
@@ -40,11 +40,11 @@ pub struct KeptClip {
     pub repaired_frames: usize,
     /// Number of joints.
     pub joints: usize,
-    /// What makes two clips' skeletons one: names, parents and offsets to a tenth of a millimetre.
+    /// Hash of the skeleton: names, parents, and offsets to a tenth of a millimetre.
     pub skeleton_hash: [u8; 32],
     /// The joint of each role, in the order of [`Role::ALL`](morec::roles::Role::ALL), as JSON.
     pub roles: String,
-    /// What was inferred, as JSON.
+    /// Import report, as JSON.
     pub facts: String,
     /// The furthest that any stored joint rotation is from its file's, radians.
     pub max_angle_rad: f64,
@@ -52,7 +52,7 @@ pub struct KeptClip {
     pub max_position_metres: f64,
     /// The bytes of an `.mclip` file.
     pub motion: Vec<u8>,
-    /// How the rows are made.
+    /// Recipe of the feature rows.
     pub recipe: String,
     /// The bones that rows speak of, a bit each.
     pub bones: i64,
@@ -65,7 +65,7 @@ pub struct KeptClip {
 pub struct KeptFile {
     /// Hash of its content (and of which of its clips was chosen).
     pub hash: [u8; 32],
-    /// Where it was.
+    /// Its path.
     pub path: String,
     /// Its format.
     pub format: String,
@@ -73,7 +73,7 @@ pub struct KeptFile {
     pub bytes: u64,
     /// The skeleton file that an AMC motion was read with.
     pub skeleton: Option<String>,
-    /// What was repaired in reading or looks wrong.
+    /// Repairs and doubts from reading.
     pub warnings: Vec<String>,
 }
 
@@ -243,7 +243,7 @@ pub fn clip_rows(clip: ClipId, bones: i64, rows: &[u8]) -> Option<ClipRows> {
     rows::unpacked(clip, bones, rows, &FeatureParams::default())
 }
 
-/// How feature rows are made at present: rows of another recipe have to be made again.
+/// Recipe of the feature rows made at present; rows of another recipe have to be made again.
 pub fn rows_recipe() -> String {
     rows::recipe(&FeatureParams::default())
 }

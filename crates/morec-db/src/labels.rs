@@ -6,46 +6,13 @@
 
 mod classes;
 mod plan;
+mod sample;
 mod samples;
+mod write;
 
 pub use classes::ClassCount;
 pub use plan::{ChangedLabel, LabelChange, LabelOptions, Labelled};
-pub use samples::{Added, DbSample, NewSample, SampleFilter, SampleId};
-
-/// Who says what `morec group` proposes: that stretches are alike, under a name of its own making.
-pub const GROUPED_BY: &str = "group";
-
-/// What is thought of a sample.
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
-)]
-#[serde(rename_all = "lowercase")]
-pub enum SampleState {
-    /// It shows its class.
-    Accepted,
-    /// It may show its class; nobody has looked yet.
-    Proposed,
-    /// It does not show its class.
-    Rejected,
-}
-
-impl SampleState {
-    /// Its name in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            SampleState::Accepted => "accepted",
-            SampleState::Proposed => "proposed",
-            SampleState::Rejected => "rejected",
-        }
-    }
-
-    /// The state of this name.
-    pub fn from_name(name: &str) -> Option<Self> {
-        [Self::Accepted, Self::Proposed, Self::Rejected]
-            .into_iter()
-            .find(|s| s.name() == name)
-    }
-}
+pub use sample::{Added, DbSample, GROUPED_BY, NewSample, SampleFilter, SampleId, SampleState};
 
 #[cfg(test)]
 mod tests;

@@ -24,6 +24,7 @@ mod cut;
 mod db;
 mod error;
 pub mod exchange;
+mod health;
 mod history;
 mod import;
 mod indexes;
@@ -45,8 +46,9 @@ mod time;
 
 pub use clips::{ClipFilter, ClipId, ClipInfo, ClipUpdate};
 pub use cut::{BY_HAND, ClipCuts, CutReport, Cutter, Still};
-pub use db::{DbSummary, Health, MotionDb};
+pub use db::{DbSummary, MotionDb};
 pub use error::DbError;
+pub use health::Health;
 pub use history::{Effect, HistoryStep, STEPS_KEPT, Turned};
 pub use import::{ImportCounts, ImportLog, ImportOutcome, Refused};
 pub use indexes::IndexInfo;

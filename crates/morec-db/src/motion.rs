@@ -15,7 +15,7 @@ use crate::{ClipId, DbError, MotionDb};
 pub struct StoredClip {
     /// Skeleton and frames, at the rate of its file.
     pub clip: Clip,
-    /// Who plays what.
+    /// Roles of the joints.
     pub roles: RoleMap,
     /// T-pose frames at the start.
     pub rest: Span,
@@ -42,7 +42,7 @@ impl StoredClip {
     }
 }
 
-/// What goes into the file for one clip.
+/// A clip as it is written to the database.
 pub(crate) struct Packed {
     pub motion: Vec<u8>,
     pub max_angle_rad: f64,
@@ -135,8 +135,14 @@ impl MotionDb {
         let sql = "SELECT motion, roles, rest_frames, name FROM clips WHERE id = ?1";
         let row: Option<(Vec<u8>, String, i64, String)> = self
             .conn
-            .query_row(sql, params![id.0], |row| {
-                Ok((row.get(0)?, row.get(1)?, row.get(2)?, row.get(3)?))
+            .prepare_cached(sql)?
+            .query_row(params![id.0], |row| {
+                Ok((
+                    row.get("motion")?,
+                    row.get("roles")?,
+                    row.get("rest_frames")?,
+                    row.get("name")?,
+                ))
             })
             .optional()?;
         let (bytes, roles, rest, name) =
@@ -148,11 +154,8 @@ impl MotionDb {
     pub fn motion_bytes(&self, id: ClipId) -> Result<Vec<u8>, DbError> {
         let found = self
             .conn
-            .query_row(
-                "SELECT motion FROM clips WHERE id = ?1",
-                params![id.0],
-                |row| row.get(0),
-            )
+            .prepare_cached("SELECT motion FROM clips WHERE id = ?1")?
+            .query_row(params![id.0], |row| row.get(0))
             .optional()?;
         found.ok_or_else(|| DbError::unknown("clip", &format!("#{}", id.0)))
     }

@@ -4,15 +4,15 @@ use std::cmp::Reverse;
 
 use rusqlite::Connection;
 
-use crate::{ClipFilter, ClipInfo, DbError, MotionDb};
+use crate::{DbError, MotionDb};
 
-/// So many names are listed when none is near.
+/// Most names listed when none is similar.
 const LISTED: usize = 8;
 
-/// So many near names are offered.
+/// Most similar names offered.
 const OFFERED: usize = 3;
 
-/// What to say of a name that is not among `known`, to be put behind a sentence: the nearest ones, or some of them and how
+/// Hint for a name that is not among `known`, to be put behind a sentence: the nearest ones, or some of them and how
 /// many more there are.
 pub fn hint(name: &str, known: &[String]) -> String {
     if known.is_empty() {
@@ -74,36 +74,7 @@ pub(crate) fn unknown(conn: &Connection, kind: &'static str, name: &str) -> DbEr
 }
 
 impl MotionDb {
-    /// The clips of a filter, by name, where a filter that names what is not there is an error.
-    ///
-    /// # Errors
-    /// [`DbError::Unknown`] with the nearest names: no clip has such a name or matches the pattern, no clip shows this
-    /// person or has this tag, there is no such class.
-    pub fn find_clips(&self, filter: &ClipFilter) -> Result<Vec<ClipInfo>, DbError> {
-        if let Some(class) = &filter.class {
-            self.need_class(class)?;
-        }
-        let parts = [
-            ("clip", &filter.name),
-            ("person", &filter.subject),
-            ("tag", &filter.tag),
-        ];
-        for (kind, name) in parts {
-            let Some(name) = name else { continue };
-            let mut alone = ClipFilter::default();
-            match kind {
-                "clip" => alone.name = Some(name.clone()),
-                "person" => alone.subject = Some(name.clone()),
-                _ => alone.tag = Some(name.clone()),
-            }
-            if self.clips(&alone)?.is_empty() {
-                return Err(unknown(&self.conn, kind, name));
-            }
-        }
-        self.clips(filter)
-    }
-
-    /// Whether there is a class of this name.
+    /// Checks that there is a class of this name.
     ///
     /// # Errors
     /// [`DbError::Unknown`] with the nearest names.
@@ -115,7 +86,7 @@ impl MotionDb {
         }
     }
 
-    /// What to say of a clip that is not there: the nearest names, after a semicolon.
+    /// Hint for a clip that is not there: the nearest names, after a semicolon.
     pub fn hint_of_clip(&self, name: &str) -> String {
         match unknown(&self.conn, "clip", name) {
             DbError::Unknown { hint, .. } => hint,

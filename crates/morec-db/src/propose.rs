@@ -23,9 +23,11 @@ use crate::{ClipId, DbError, MotionDb};
 mod candidates;
 mod confidence;
 mod material;
+mod options;
 mod questions;
 mod views;
 
+pub use options::ProposeOptions;
 pub use questions::most_informative;
 
 use candidates::{ClassDistances, ProposalCandidate};
@@ -33,48 +35,21 @@ use confidence::{Confidence, Judgement, NEAR_NOTHING};
 use material::{JudgedSpan, ProposalData, overlap};
 use views::{chosen, views};
 
-/// How to propose.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ProposeOptions {
-    /// Only these classes; all if empty. The others still say what a stretch is not.
-    pub classes: Vec<String>,
-    /// Samples of a class that look for others, at most.
-    pub templates_a_class: usize,
-    /// Rejected stretches that speak against others, at most.
-    pub negatives: usize,
-    /// What is less likely than this is proposed only where a class has too few other candidates.
-    pub least: f32,
-    /// So many of a class are proposed however unlikely they are.
-    pub always: usize,
-}
-
-impl Default for ProposeOptions {
-    fn default() -> Self {
-        Self {
-            classes: Vec::new(),
-            templates_a_class: 16,
-            negatives: 120,
-            least: 0.05,
-            always: 5,
-        }
-    }
-}
-
 /// A stretch that may show a class.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Proposal {
     /// Its clip.
     #[serde(rename = "clip_id")]
     pub clip: ClipId,
-    /// What it may show.
+    /// Its proposed class.
     pub class: String,
-    /// Where it starts, seconds.
+    /// Start, seconds.
     pub start_secs: f64,
-    /// Where it stops.
+    /// Stop, seconds.
     pub stop_secs: f64,
     /// True if the clip as a whole is meant: so where all samples of the class are whole clips.
     pub whole_clip: bool,
-    /// How likely it is right, 0 to 1, as far as the answers so far tell.
+    /// Probability that it is right, 0 to 1, estimated from the answers so far.
     pub score: f32,
 }
 
@@ -99,7 +74,7 @@ impl From<Proposal> for NewSample {
     }
 }
 
-/// Who says what [`MotionDb::propose_and_keep`] proposes.
+/// Author of the proposals of [`MotionDb::propose_and_keep`].
 const PROPOSED_BY: &str = "propose";
 
 impl MotionDb {
@@ -157,7 +132,7 @@ impl MotionDb {
     }
 }
 
-/// What the templates see in every clip.
+/// Distances of every clip to the templates.
 fn look(
     material: &ProposalData,
     options: &ProposeOptions,
@@ -178,7 +153,7 @@ fn look(
     (0..total).into_par_iter().filter_map(see).collect()
 }
 
-/// What the judged stretches of a clip say of right and wrong.
+/// Judgements of the stretches of a clip, as training data of the confidence.
 fn judged(material: &ProposalData, clip: usize, seen: &ClassDistances) -> Vec<Judgement> {
     let mut found = Vec::new();
     for judged in material.judged.iter().filter(|j| j.clip == clip) {

@@ -10,14 +10,14 @@ use crate::kept::KeptClip;
 use crate::labels::{DbSample, SampleFilter};
 use crate::{ClipId, ClipUpdate, DbError, MotionDb, rows};
 
-/// What became of a clip whose file was replaced.
+/// Result of replacing the file of a clip.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Replaced {
     /// Its name.
     pub clip: String,
-    /// How long it was, seconds.
+    /// Length before, seconds.
     pub before_secs: f64,
-    /// How long it is.
+    /// Length after, seconds.
     pub after_secs: f64,
     /// Samples that are where they were, in seconds, or the whole clip as before.
     pub kept: usize,
@@ -25,7 +25,7 @@ pub struct Replaced {
     pub removed: Vec<DbSample>,
     /// Cuts, which were of the old motion: removed.
     pub cuts: usize,
-    /// What was repaired in reading the file or looks wrong.
+    /// Repairs and doubts from reading the file.
     pub warnings: Vec<String>,
 }
 

@@ -3,7 +3,7 @@
 //! Rows are those of [`morec::features`] over every bone a clip shows. They are made of the stored motion, so that
 //! making them again gives them again.
 
-use morec::features::{BoneSet, FeatureParams, Rows, bones_of_clip, row_dim, rows_of_clip};
+use morec::features::{BoneSet, FeatureParams, RowLayout, Rows, bones_of_clip, rows_of_clip};
 use morec::progress::Progress;
 use rayon::prelude::*;
 use rusqlite::params;
@@ -108,11 +108,11 @@ impl MotionDb {
         )?;
         let kept = statement.query_map(params![recipe], |row| {
             Ok(Kept {
-                clip: ClipId(row.get(0)?),
-                recipe: row.get(1)?,
-                bits: row.get(2)?,
-                bytes: row.get(3)?,
-                sum: row.get(4)?,
+                clip: ClipId(row.get("clip")?),
+                recipe: row.get("recipe")?,
+                bits: row.get("bones")?,
+                bytes: row.get("bytes")?,
+                sum: row.get("sum")?,
             })
         })?;
         Ok(kept.collect::<Result<_, _>>()?)
@@ -220,7 +220,8 @@ pub(crate) fn unpacked(
     params: &FeatureParams,
 ) -> Option<ClipRows> {
     let bones = bones_of_bits(bits);
-    let rows = Rows::from_packed(bytes, row_dim(bones), params).filter(|_| !bones.is_empty())?;
+    let rows = Rows::from_packed(bytes, RowLayout::of(bones).dim(), params)
+        .filter(|_| !bones.is_empty())?;
     Some(ClipRows { clip, bones, rows })
 }
 
@@ -233,7 +234,7 @@ pub(crate) fn keep(
 ) -> Result<(), DbError> {
     let sql = "INSERT OR REPLACE INTO feature_rows (clip, recipe, bones, bytes, sum) VALUES (?1, ?2, ?3, ?4, ?5)";
     let sum = sum(recipe, bones, bytes);
-    conn.prepare(sql)?
+    conn.prepare_cached(sql)?
         .execute(params![clip.0, recipe, bones, bytes, sum])?;
     Ok(())
 }

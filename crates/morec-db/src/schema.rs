@@ -19,7 +19,7 @@ const MIGRATIONS: [&str; 2] = [
 /// The newest schema that this version knows.
 pub const SCHEMA: i32 = MIGRATIONS.len() as i32;
 
-/// Which schema a file has.
+/// Schema version of a file.
 ///
 /// # Errors
 /// It is no motion database, or a newer one.

@@ -48,7 +48,7 @@ struct Indexed {
 #[derive(Debug, Clone)]
 pub struct Example {
     laid: CanonicalRows,
-    /// Where it is from, to leave it out of the hits.
+    /// Its clip and rows, to leave it out of the hits.
     from: Option<(ClipId, std::ops::Range<usize>)>,
     /// True if it is all of its clip.
     whole: bool,

@@ -6,7 +6,7 @@ use rusqlite::params;
 
 use crate::{ClipId, DbError, MotionDb};
 
-/// What a segment is.
+/// Kind of a segment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SegmentKind {
@@ -34,11 +34,11 @@ pub struct Segment {
     /// Its clip.
     #[serde(rename = "clip_id")]
     pub clip: ClipId,
-    /// What it is.
+    /// Its kind.
     pub kind: SegmentKind,
-    /// Where it starts, seconds.
+    /// Start, seconds.
     pub start_secs: f64,
-    /// Where it stops.
+    /// Stop, seconds.
     pub stop_secs: f64,
 }
 
@@ -72,12 +72,13 @@ impl MotionDb {
         })
     }
 
-    /// By which method each clip was cut; clips that were not cut are not in it.
+    /// Method by which each clip was cut; clips that were not cut are not in it.
     pub fn cut_methods(&self) -> Result<BTreeMap<ClipId, String>, DbError> {
         let mut statement = self
             .conn
-            .prepare("SELECT clip, max(method) FROM segments GROUP BY clip")?;
-        let methods = statement.query_map([], |row| Ok((ClipId(row.get(0)?), row.get(1)?)))?;
+            .prepare("SELECT clip, max(method) AS method FROM segments GROUP BY clip")?;
+        let method = |row: &rusqlite::Row<'_>| Ok((ClipId(row.get("clip")?), row.get("method")?));
+        let methods = statement.query_map([], method)?;
         Ok(methods.collect::<Result<_, _>>()?)
     }
 
@@ -101,15 +102,15 @@ impl MotionDb {
 }
 
 fn segment(row: &rusqlite::Row<'_>) -> rusqlite::Result<Segment> {
-    let kind: String = row.get(1)?;
+    let kind: String = row.get("kind")?;
     Ok(Segment {
-        clip: ClipId(row.get(0)?),
+        clip: ClipId(row.get("clip")?),
         kind: match kind.as_str() {
             "still" => SegmentKind::Still,
             "rest" => SegmentKind::Rest,
             _ => SegmentKind::Motion,
         },
-        start_secs: row.get(2)?,
-        stop_secs: row.get(3)?,
+        start_secs: row.get("start_secs")?,
+        stop_secs: row.get("stop_secs")?,
     })
 }

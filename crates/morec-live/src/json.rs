@@ -6,7 +6,8 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use morec::live::{
-    Frame, MAX_PERFORMERS, PerformerId, Rig, Source, SourceCounts, SourceEvent, wall_now_secs,
+    Arrival, Frame, MAX_PERFORMERS, PerformerId, PerformerTable, Rig, Source, SourceCounts,
+    SourceEvent, wall_now_secs,
 };
 use morec::roles::{Role, RoleMap};
 
@@ -21,22 +22,15 @@ const GONE_SECS: f64 = 5.0;
 
 const WAIT: Duration = Duration::from_millis(20);
 
-/// A performer of some connection.
-struct RemotePerformer {
-    connection: u64,
-    number: u16,
-    gone: bool,
-    heard_secs: f64,
-    /// Roles that were seen.
-    known: u32,
-}
-
 /// Poses as lines of JSON.
 pub struct JsonSource {
     lines: Lines,
     /// True if the end of the lines is the end of the source.
     ends: bool,
-    performers: Vec<RemotePerformer>,
+    /// By their connections, and their numbers in these.
+    performers: PerformerTable<(u64, u16)>,
+    /// For each performer, the roles that were seen.
+    known: Vec<u32>,
     /// A pose whose skeleton was announced first.
     waiting: Option<(PerformerId, PoseLine)>,
     leaving: Vec<PerformerId>,
@@ -78,7 +72,8 @@ impl JsonSource {
         Self {
             lines,
             ends,
-            performers: Vec::new(),
+            performers: PerformerTable::new(MAX_PERFORMERS),
+            known: Vec::new(),
             waiting: None,
             leaving: Vec::new(),
             begun_secs: wall_now_secs(),
@@ -93,51 +88,32 @@ impl JsonSource {
     }
 
     /// The performer `number` of `connection`, a new one if there is room.
-    fn performer(&mut self, connection: u64, number: u16) -> Option<usize> {
-        let is = |p: &RemotePerformer| p.connection == connection && p.number == number;
-        if let Some(at) = self.performers.iter().position(is) {
-            let performer = &mut self.performers[at];
-            performer.heard_secs = wall_now_secs();
-            if std::mem::take(&mut performer.gone) {
-                self.counts.interruptions += 1;
-                // Its skeleton is announced anew.
-                performer.known = 0;
-            }
-            return Some(at);
-        }
-        let of_connection = |p: &&RemotePerformer| p.connection == connection && !p.gone;
-        if !self.ends && self.performers.iter().filter(of_connection).count() >= NAMES {
+    fn performer(&mut self, connection: u64, number: u16) -> Option<PerformerId> {
+        let key = (connection, number);
+        let of_connection = |key: &&(u64, u16)| key.0 == connection;
+        let is_full = || self.performers.present().filter(of_connection).count() >= NAMES;
+        if !self.ends && self.performers.find(&key).is_none() && is_full() {
             return None;
         }
-        let new = RemotePerformer {
-            connection,
-            number,
-            gone: false,
-            heard_secs: wall_now_secs(),
-            known: 0,
-        };
-        if let Some(at) = self.performers.iter().position(|p| p.gone) {
-            self.counts.interruptions += 1;
-            self.performers[at] = new;
-            return Some(at);
+        let (actor, arrival) = self.performers.arrive(key, wall_now_secs())?;
+        match arrival {
+            Arrival::Known => {}
+            Arrival::New => self.known.push(0),
+            Arrival::Returned | Arrival::Replaced => {
+                self.counts.interruptions += 1;
+                // The skeleton is announced anew.
+                self.known[actor.index()] = 0;
+            }
         }
-        (self.performers.len() < MAX_PERFORMERS).then(|| {
-            self.performers.push(new);
-            self.performers.len() - 1
-        })
+        Some(actor)
     }
 
     /// Performers of whom nothing comes any more make room; a file on standard input may take its time.
-    fn forget_silent(&mut self) {
-        if self.ends {
-            return;
-        }
-        let now_secs = wall_now_secs();
-        for (at, performer) in self.performers.iter_mut().enumerate() {
-            if !performer.gone && now_secs - performer.heard_secs > GONE_SECS {
-                performer.gone = true;
-                self.leaving.push(PerformerId(at as u16));
-            }
+    fn forget_silent(&mut self, now_secs: f64) {
+        if !self.ends {
+            let leaving = &mut self.leaving;
+            self.performers
+                .leave_silent(now_secs, GONE_SECS, |actor| leaving.push(actor));
         }
     }
 
@@ -160,20 +136,19 @@ impl JsonSource {
                 return SourceEvent::Quiet;
             }
         };
-        let Some(at) = self.performer(connection, pose.actor) else {
+        let Some(actor) = self.performer(connection, pose.actor) else {
             self.counts.refused += 1;
             return SourceEvent::Quiet;
         };
-        let performer = &mut self.performers[at];
-        let actor = PerformerId(at as u16);
+        let known = &mut self.known[actor.index()];
         let seen = pose.known();
-        if seen & !performer.known != 0 {
-            performer.known |= seen;
-            let rig = rig_of(performer.known);
+        if seen & !*known != 0 {
+            *known |= seen;
+            let rig = rig_of(*known);
             self.waiting = Some((actor, pose));
             return SourceEvent::Rig(actor, Arc::new(rig));
         }
-        self.counts.incomplete += u64::from(seen != performer.known);
+        self.counts.incomplete += u64::from(seen != *known);
         self.fill(actor, &pose, frame)
     }
 
@@ -193,7 +168,7 @@ impl Source for JsonSource {
         if let Some((actor, pose)) = self.waiting.take() {
             return self.fill(actor, &pose, frame);
         }
-        self.forget_silent();
+        self.forget_silent(wall_now_secs());
         if let Some(actor) = self.leaving.pop() {
             return SourceEvent::Gone(actor);
         }
@@ -204,12 +179,10 @@ impl Source for JsonSource {
                 text,
             } => self.line(connection, number, text.as_deref(), frame),
             Came::Closed(connection) => {
-                for (at, performer) in self.performers.iter_mut().enumerate() {
-                    if performer.connection == connection && !performer.gone {
-                        performer.gone = true;
-                        self.leaving.push(PerformerId(at as u16));
-                    }
-                }
+                let leaving = &mut self.leaving;
+                let leaves = |key: &(u64, u16)| key.0 == connection;
+                self.performers
+                    .leave_if(leaves, |actor| leaving.push(actor));
                 SourceEvent::Quiet
             }
             Came::Nothing => SourceEvent::Quiet,
@@ -254,10 +227,7 @@ mod tests {
             .count();
         assert_eq!(taken, NAMES);
         assert!(source.performer(2, 0).is_some());
-        for performer in &mut source.performers {
-            performer.heard_secs -= 2.0 * GONE_SECS;
-        }
-        source.forget_silent();
+        source.forget_silent(wall_now_secs() + 2.0 * GONE_SECS);
         assert_eq!(source.leaving.len(), NAMES + 1);
         assert!(source.performer(1, 39).is_some() && source.performer(1, 0).is_some());
     }

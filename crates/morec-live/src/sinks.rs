@@ -4,16 +4,7 @@ use std::io::{self, Write};
 
 use crate::osc::OscSink;
 use crate::websocket::WebSocketSink;
-use crate::{Address, LiveError, NamedEvent};
-
-/// Takes events, one by one, without holding up whoever emits them.
-pub trait Sink: Send {
-    /// Emits one event.
-    ///
-    /// # Errors
-    /// The event could not be written or sent; the next one may.
-    fn emit(&mut self, event: &NamedEvent<'_>) -> io::Result<()>;
-}
+use crate::{Address, LiveError, NamedEvent, Sink};
 
 /// A sink that has been opened.
 pub struct OpenSink {

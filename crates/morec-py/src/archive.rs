@@ -20,11 +20,12 @@ use pyo3::types::{PyBytes, PyDict};
 use rayon::prelude::*;
 
 use crate::arrays::owned;
-use crate::clip::{ClipData, PyClip};
+use crate::clip::PyClip;
+use crate::clip_data::ClipData;
 use crate::database::{db_error, example_of};
 use crate::errors::{MorecError, value_error};
 use crate::index::PyIndex;
-use crate::open::reader;
+use crate::options::reader;
 
 /// A kept clip as a row of an archive's table of clips.
 fn row<'py>(py: Python<'py>, clip: &KeptClip) -> PyResult<Bound<'py, PyDict>> {

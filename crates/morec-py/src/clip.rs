@@ -6,10 +6,10 @@ use std::sync::Arc;
 
 use morec::clip::{Clip, Gap, JointTrack, Points};
 use morec::formats::{Limits, bvh, c3d, from_positions as clip_of_positions, jsonl, trc};
-use morec::import::{Take, normalize};
+use morec::import::normalize;
 use morec::kinematics::WorldPose;
 use morec::math::Vec3;
-use morec::roles::{Role, RoleMap};
+use morec::roles::Role;
 use morec::smooth::{SmoothParams, compress};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -17,42 +17,10 @@ use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PySlice};
 
 use crate::arrays::{motion, owned, shared, wrong_shape};
+use crate::clip_data::ClipData;
 use crate::errors::{MorecError, io_error, morec_error, value_error};
-use crate::open::import_options;
+use crate::options::import_options;
 use crate::tables::plain;
-
-/// A clip and everything that is known of it.
-#[derive(Debug, Clone)]
-pub struct ClipData {
-    /// The motion, in metres and Y up.
-    pub clip: Clip,
-    /// Who plays what.
-    pub roles: RoleMap,
-    /// Frames that a conversion left at the start.
-    pub rest: Range<usize>,
-    /// What was inferred, as JSON.
-    pub facts: String,
-    /// What was repaired or looks wrong.
-    pub warnings: Vec<String>,
-    /// The file it is from.
-    pub path: Option<PathBuf>,
-    /// The file's format.
-    pub format: String,
-}
-
-impl From<Take> for ClipData {
-    fn from(take: Take) -> Self {
-        Self {
-            facts: serde_json::to_string(&take.report).unwrap_or_default(),
-            rest: take.report.rest_frames,
-            warnings: take.warnings.iter().map(ToString::to_string).collect(),
-            clip: take.clip,
-            roles: take.roles,
-            path: None,
-            format: String::new(),
-        }
-    }
-}
 
 /// A motion-capture clip in metres, Y up: a skeleton, its frames, and which joint is which part of the body.
 #[pyclass(frozen, name = "Clip", module = "morec")]
@@ -428,4 +396,10 @@ fn from_positions(
     let mut data = ClipData::from(normalize(clip, &options).map_err(morec_error)?);
     data.warnings = loaded.warnings.iter().map(|w| w.text.clone()).collect();
     Ok(data.into())
+}
+
+/// The clip of a pickled state.
+#[pyfunction]
+pub fn from_state(state: &Bound<'_, PyDict>) -> PyResult<PyClip> {
+    Ok(crate::state::restored(state)?.into())
 }

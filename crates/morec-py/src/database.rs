@@ -19,7 +19,8 @@ use pyo3::exceptions::{PyFileExistsError, PyFileNotFoundError, PyKeyError, PyPer
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::clip::{ClipData, PyClip};
+use crate::clip::PyClip;
+use crate::clip_data::ClipData;
 use crate::errors::{MorecError, file_error, value_error, warn};
 use crate::job;
 use crate::tables::{plain, table};

@@ -1,38 +1,14 @@
 //! Recognition with an index that is divided by classes among workers.
 
-use std::sync::Arc;
-
-use morec::index::{Model, MotionIndex};
 use morec::live::{match_clip, recognize_matched};
-use morec::templates::{ClassMatches, TemplateModel};
-use pyo3::exceptions::PyValueError;
+use morec::templates::ClassMatches;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use rayon::prelude::*;
 
 use crate::archive::{EventTuple, MotionColumns, events, stored_motion, values_or_errors};
 use crate::index::PyIndex;
-
-fn templates(index: &MotionIndex) -> PyResult<&TemplateModel> {
-    match &index.model {
-        Model::Templates(model) => Ok(model),
-        Model::Svrdm(_) => Err(PyValueError::new_err(
-            "an index of the method svrdm cannot be divided: its tree needs all classes",
-        )),
-    }
-}
-
-/// Part `part` of `of` of an index: the templates of every `of`-th class.
-pub fn part_of(index: &MotionIndex, part: usize, of: usize) -> PyResult<MotionIndex> {
-    if part >= of {
-        let message = format!("part: expected a number below {of}, found {part}");
-        return Err(PyValueError::new_err(message));
-    }
-    Ok(MotionIndex {
-        model: Model::Templates(Arc::new(templates(index)?.part(part, of))),
-        ..index.clone()
-    })
-}
+use crate::parts::templates;
 
 /// What a part of an index matches in kept clips, in parallel: for each the bytes of its matches, or why there are none.
 #[pyfunction]

@@ -15,7 +15,8 @@ use pyo3::types::PyBytes;
 use rayon::prelude::*;
 
 use crate::arrays::owned;
-use crate::clip::{ClipData, PyClip};
+use crate::clip::PyClip;
+use crate::clip_data::ClipData;
 use crate::errors::{library_error, morec_error, value_error, warn};
 use crate::job;
 use crate::recognizer::{PointLayout, PyRecognizer};
@@ -123,7 +124,7 @@ impl PyIndex {
 
     /// Part `part` of `of`: the templates of every `of`-th class.
     fn part(&self, part: usize, of: usize) -> PyResult<Self> {
-        Ok(crate::divided::part_of(&self.index, part, of)?.into())
+        Ok(crate::parts::part_of(&self.index, part, of)?.into())
     }
 
     /// Writes the index file, whole or not at all.

@@ -3,6 +3,7 @@
 mod archive;
 mod arrays;
 mod clip;
+mod clip_data;
 mod crossval;
 mod database;
 mod divided;
@@ -13,6 +14,8 @@ mod job;
 mod live;
 mod material;
 mod open;
+mod options;
+mod parts;
 mod recognizer;
 mod segment;
 mod state;
@@ -37,7 +40,7 @@ fn _morec(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(open::read_path, module)?)?;
     module.add_function(wrap_pyfunction!(open::read_bytes, module)?)?;
     module.add_function(wrap_pyfunction!(open::read_folder, module)?)?;
-    module.add_function(wrap_pyfunction!(state::from_state, module)?)?;
+    module.add_function(wrap_pyfunction!(clip::from_state, module)?)?;
     module.add_function(wrap_pyfunction!(features::features, module)?)?;
     module.add_function(wrap_pyfunction!(features::key_positions, module)?)?;
     module.add_function(wrap_pyfunction!(index::load, module)?)?;

@@ -13,7 +13,8 @@ use pyo3::types::{PyBytes, PyDict};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::clip::{ClipData, PyClip};
+use crate::clip::PyClip;
+use crate::clip_data::ClipData;
 use crate::errors::{morec_error, value_error, warn};
 
 /// A label: clip, class, frames, seconds, person. Without both extents, the whole clip.

@@ -15,7 +15,7 @@ use pyo3::types::{PyDict, PyList, PyString};
 use crate::arrays::{doubles, motion, pose, wrong_shape};
 use crate::clip::PyClip;
 use crate::errors::{morec_error, value_error};
-use crate::open::mapping;
+use crate::options::mapping;
 
 /// Recognises motions in one performer's stream of joint positions. Made by `Index.recognizer`.
 ///

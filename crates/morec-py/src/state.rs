@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{doubles, owned};
-use crate::clip::{ClipData, PyClip};
+use crate::clip_data::ClipData;
 use crate::errors::value_error;
 
 type JointState = (String, Option<usize>, [f64; 3], Option<[f64; 3]>);
@@ -69,8 +69,7 @@ pub fn state<'py>(py: Python<'py>, take: &ClipData) -> PyResult<Bound<'py, PyDic
 }
 
 /// The clip of a pickled state.
-#[pyfunction]
-pub fn from_state(state: &Bound<'_, PyDict>) -> PyResult<PyClip> {
+pub fn restored(state: &Bound<'_, PyDict>) -> PyResult<ClipData> {
     let get = |name: &str| -> PyResult<Bound<'_, PyAny>> {
         let value = state.get_item(name)?;
         value.ok_or_else(|| PyKeyError::new_err(format!("a pickled clip without {name}")))
@@ -148,6 +147,5 @@ pub fn from_state(state: &Bound<'_, PyDict>) -> PyResult<PyClip> {
         warnings: get("warnings")?.extract()?,
         path: path.map(PathBuf::from),
         format: get("format")?.extract()?,
-    }
-    .into())
+    })
 }

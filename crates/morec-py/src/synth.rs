@@ -4,7 +4,8 @@ use morec::import::Take;
 use morec::synth::{self, DatabaseSpec, MotionKind, database, everyday, motions_of};
 use pyo3::prelude::*;
 
-use crate::clip::{ClipData, PyClip};
+use crate::clip::PyClip;
+use crate::clip_data::ClipData;
 use crate::errors::{morec_error, value_error};
 
 type LabelTuple = (&'static str, f64, f64);

@@ -9,9 +9,8 @@ use anyhow::{Context, Result};
 use morec::live::Model;
 use morec::live::{Event, EventOptions, OverflowPolicy, Phase, Session, SessionOptions};
 
-use super::ThreadLayout;
+use super::args::{Args, ThreadLayout, stop_on_ctrl_c};
 use super::memory::resident_bytes;
-use super::{Args, stop_on_ctrl_c};
 use morec_live::PlayableClip;
 use morec_live::{ClipSource, PAUSE_SECS};
 

@@ -7,8 +7,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result};
 use morec::live::{EventOptions, LatencyHistogram, Model, OverflowPolicy, Session, SessionOptions};
 
-use super::Args;
-use super::ThreadLayout;
+use super::args::{Args, ThreadLayout};
 use morec_live::ClipSource;
 use morec_live::PlayableClip;
 

@@ -14,8 +14,8 @@ use morec::live::{
 };
 use morec::math::Vec3;
 
+use super::args::{Args, stop_on_ctrl_c};
 use super::memory::resident_bytes;
-use super::{Args, stop_on_ctrl_c};
 use morec_live::PlayableClip;
 
 /// A frame that waited longer than this was not on time.

@@ -14,7 +14,7 @@ use morec::live::Model;
 use morec::live::vmc::{VmcOptions, VmcSender};
 use morec::live::{OverflowPolicy, Phase, Session, SessionOptions, wall_now_secs};
 
-use super::{Args, stop_on_ctrl_c};
+use super::args::{Args, stop_on_ctrl_c};
 use morec_live::NamedEvent;
 use morec_live::Network;
 use morec_live::OscSink;

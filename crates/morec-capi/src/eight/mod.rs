@@ -6,6 +6,7 @@
 
 mod clips;
 mod player;
+mod segment;
 mod state;
 
 use std::ffi::{c_char, c_int};
@@ -14,34 +15,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::memory;
 use crate::status::{CallError, MorecStatus, guard};
+pub use segment::MotionSeg;
 use state::ThesisState;
-
-/// Bytes for the name of a class, with the zero at its end; longer names are cut.
-pub(crate) const NAME_BYTES: usize = 64;
-
-/// A motion that was recognised: a segment of the stream, and what it shows.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MotionSeg {
-    /// Its number, from 1 since `mrStart`.
-    pub number: u64,
-    /// Its class in the index, from 0.
-    pub class_id: u32,
-    /// Frame of the clip at which it began.
-    pub start_frame: u32,
-    /// Frame at which it had ended.
-    pub stop_frame: u32,
-    /// Bytes of `class_name` without the zero.
-    pub class_name_bytes: u32,
-    /// When it began, seconds from the beginning of the clip.
-    pub start_secs: f64,
-    /// When it ended.
-    pub stop_secs: f64,
-    /// 0 just accepted … 1 identical to a sample.
-    pub confidence: f64,
-    /// The name of its class, UTF-8, with a zero at its end; cut if it is longer.
-    pub class_name: [c_char; 64],
-}
 
 static STATE: Mutex<ThesisState> = Mutex::new(ThesisState::new());
 
@@ -96,7 +71,7 @@ pub unsafe extern "C" fn mrSetDataSource(szSourceFile: *const c_char) -> bool {
     })
 }
 
-/// How fast sources are played from now on, also while they are: 1 as they were performed, 2 twice as fast, infinity as
+/// Sets how fast sources are played from now on, also while they are: 1 as they were performed, 2 twice as fast, infinity as
 /// fast as recognition goes. Not one of the eight.
 #[unsafe(no_mangle)]
 #[allow(non_snake_case)]
@@ -111,7 +86,7 @@ pub extern "C" fn mrStopDataSource() -> bool {
     done(|| state().stop_source())
 }
 
-/// Whether nothing more will come from the source: it has played to its end or was stopped, or there is none.
+/// True if nothing more will come from the source: it has played to its end or was stopped, or there is none.
 #[unsafe(no_mangle)]
 #[allow(non_snake_case)]
 pub extern "C" fn mrIsDataSourceDepleted() -> bool {

@@ -10,7 +10,7 @@ use morec::live::{Frame, PerformerId, Rig, Source, SourceEvent, wall_now_secs};
 /// A source must not sleep longer than this.
 const NAP: Duration = Duration::from_millis(10);
 
-/// What others may tell a player, and what it tells them.
+/// State shared between a player and its users.
 #[derive(Debug)]
 pub(super) struct Control {
     /// No further frame, please.
@@ -58,7 +58,7 @@ impl SourcePlayer {
         }
     }
 
-    /// How long it still is until the next frame is due.
+    /// Time until the next frame is due.
     fn wait(&mut self) -> Duration {
         let speed = f64::from_bits(self.control.speed.load(Relaxed));
         if !speed.is_finite() {

@@ -13,8 +13,9 @@ use morec::live::{
     Event, EventOptions, EventReader, OverflowPolicy, Phase, Recognizer, Session, SessionOptions,
 };
 
+use super::clips;
 use super::player::{Control, SourcePlayer};
-use super::{MotionSeg, NAME_BYTES, clips};
+use super::segment::{MotionSeg, NAME_BYTES};
 use crate::MorecStatus;
 use crate::index;
 use crate::status::CallError;

@@ -39,7 +39,7 @@ use crate::table::TextTable;
 pub struct Args {
     #[command(flatten)]
     material: MaterialArgs,
-    /// What is left out of training in turn
+    /// Part that is left out of training in turn
     #[arg(long, value_enum)]
     by: SplitArg,
     /// Other clips to test on, each in the fold of its person; what --clips and --labels name then only teaches
@@ -75,7 +75,7 @@ pub struct Args {
     report: Option<PathBuf>,
 }
 
-/// What is left out.
+/// Part that is left out.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 enum SplitArg {
     /// Half of each class's samples
@@ -324,7 +324,7 @@ fn write_folds(out: &mut impl Write, outcome: &CrossvalOutcome) -> std::io::Resu
     Ok(())
 }
 
-/// How many samples and people each class has, for the report's notes.
+/// Number of samples and people of each class, for the report's notes.
 pub fn trained_classes(samples: &[Sample], classes: &[String]) -> Vec<TrainedClass> {
     let known = samples.iter().any(|s| s.person.is_some());
     let counted = classes.iter().map(|class| {

@@ -33,7 +33,7 @@ use folder::DemoFolder;
     after_help = "Exit codes: 0 all done; 1 something failed, the message says what; 2 wrong command line."
 )]
 pub struct Args {
-    /// Where to put everything; a folder that is not empty must be an earlier demo's
+    /// Folder for everything; one that is not empty must be an earlier demo's
     #[arg(long, value_name = "DIR", default_value = "morec-demo")]
     folder: std::path::PathBuf,
     /// Play the stream so many times as fast as it was performed

@@ -149,7 +149,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 }
 
 impl Args {
-    /// Why samples without an event were missed. The clips are read once more, with their motion.
+    /// Reasons why samples were missed. The clips are read once more, with their motion.
     fn misses(
         &self,
         index: &Path,
@@ -206,12 +206,12 @@ struct EvaluationMeasures<'a> {
     missed: Option<&'a [Miss]>,
 }
 
-/// What is evaluated: the streams and their samples.
+/// Streams to evaluate, and their samples.
 #[derive(Debug)]
 struct Cases {
     streams: Vec<StreamInfo>,
     truths: Vec<GroundTruth>,
-    /// What was left out, for the person at the terminal.
+    /// Omissions, for the person at the terminal.
     notes: Vec<String>,
 }
 

@@ -52,13 +52,13 @@ pub struct Args {
     /// Draw the body as it was understood, left and right in colours of their own
     #[arg(long, conflicts_with = "json")]
     draw: bool,
-    /// Where to write, with --draw: the picture of one clip as SVG, with the names of its joints
+    /// File to write with --draw: the picture of one clip as SVG, with the names of its joints
     #[arg(short, long, value_name = "FILE", requires = "draw")]
     output: Option<PathBuf>,
     /// Roles that override those found: a file of `role<TAB>joint` lines
     #[arg(long, value_name = "FILE")]
     roles: Option<PathBuf>,
-    /// Which way is up in the files: x, y, z, -x, -y or -z
+    /// Axis that is up in the files: x, y, z, -x, -y or -z
     #[arg(long, value_name = "AXIS", allow_hyphen_values = true)]
     up: Option<SignedAxis>,
     /// Metres in the files' unit of length, 0.01 for centimetres

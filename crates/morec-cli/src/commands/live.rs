@@ -59,10 +59,10 @@ pub struct Args {
     index: PathBuf,
     #[command(flatten)]
     sensitivity: SensitivityArgs,
-    /// Where poses come from
+    /// Source of poses
     #[arg(long, required = true, value_name = "SOURCE")]
     listen: Vec<Address>,
-    /// Where events go [default: terminal:-]
+    /// Sink of events [default: terminal:-]
     #[arg(long, value_name = "SINK")]
     emit: Vec<Address>,
     #[command(flatten)]
@@ -73,7 +73,7 @@ pub struct Args {
     /// Tell motions at their end only
     #[arg(long)]
     no_early: bool,
-    /// How recognition is laid out on threads; detections are the same
+    /// Distribution of recognition over threads; detections are the same
     #[arg(long, value_enum, default_value = "inline")]
     layout: LayoutArg,
     /// End after so many seconds

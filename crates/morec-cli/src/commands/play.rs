@@ -38,7 +38,7 @@ pub struct Args {
     /// Show what this index recognises, too
     #[arg(long, value_name = "INDEX")]
     index: Option<PathBuf>,
-    /// How many times as fast as performed, in the terminal
+    /// Speed in the terminal, 1 as performed
     #[arg(long, value_name = "TIMES", default_value_t = 1.0, value_parser = speed)]
     speed: f64,
     /// The file to write: a page of HTML that plays the clips, instead
@@ -127,7 +127,7 @@ fn labels(path: Option<&Path>, takes: &[Take]) -> Result<BTreeMap<String, Vec<Kn
     Ok(of_clip)
 }
 
-/// What the index recognises, in the order in which it is said.
+/// Detections of the index, in the order of their report.
 fn said(take: &mut Take, index: &MotionIndex, complete: bool) -> Result<Vec<ReportedDetection>> {
     if complete {
         index.complete_roles(&mut take.roles, &take.clip.skeleton);

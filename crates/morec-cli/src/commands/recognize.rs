@@ -41,10 +41,10 @@ pub struct Args {
     /// Clips, or folders of clips; - reads one clip from standard input
     #[arg(required = true, value_name = "CLIP")]
     clips: Vec<PathBuf>,
-    /// How to write detections
+    /// Format of detections
     #[arg(long, alias = "format", value_enum, default_value = "tsv")]
     form: OutputFormat,
-    /// Where to write them [default: standard output]
+    /// File to write them to [default: standard output]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Say on standard error how many frames a second one core recognises, as a whole and by stage
@@ -55,13 +55,13 @@ pub struct Args {
     /// Roles of joints, where inference fails: lines of `role<TAB>joint name`
     #[arg(long, value_name = "FILE")]
     roles: Option<PathBuf>,
-    /// How recognition is laid out on threads; detections are the same
+    /// Distribution of recognition over threads; detections are the same
     #[arg(long, value_enum, default_value = "inline")]
     layout: LayoutArg,
     /// Recognise clips as if they had come over VMC at so many frames a second, with the accidents below
     #[arg(long, value_name = "HZ", value_parser = rate)]
     over_vmc: Option<f64>,
-    /// How messages are put into datagrams, for --over-vmc: whole, single or a number of bytes
+    /// Bundling of messages into datagrams, for --over-vmc: whole, single or a number of bytes
     #[arg(long, value_name = "whole|single|BYTES", default_value = "1500", value_parser = bundling)]
     bundle: Bundling,
     #[command(flatten)]
@@ -79,7 +79,7 @@ enum OutputFormat {
     Jsonl,
 }
 
-/// How readily motions are reported.
+/// Readiness to report motions.
 #[derive(clap::Args, Debug, Clone, Copy)]
 pub struct SensitivityArgs {
     /// False alarms a minute that background motion may raise, as in training: 0.1 is strict, 1 is generous [default:
@@ -280,7 +280,7 @@ fn adapt(imported: &mut Take, index: &MotionIndex, path: &Path, complete: bool) 
     }
 }
 
-/// What a clip lacks of the bones `used`.
+/// Roles that a clip lacks for the bones `used`.
 fn missing_roles(imported: &Take, used: BoneSet) -> Vec<String> {
     if imported.bones().and(used) == used {
         return vec![];

@@ -29,10 +29,10 @@ use morec_live::Address;
     morec record --listen json:- -o take.jsonl --count-down 0 < poses.jsonl"
 )]
 pub struct Args {
-    /// Where poses come from
+    /// Source of poses
     #[arg(long, value_name = "SOURCE")]
     listen: Address,
-    /// Where takes go, by the ending: .bvh, .jsonl (lines of JSON as `morec live` reads them), or .mdb, a database (the
+    /// Output of takes, by the ending: .bvh, .jsonl (lines of JSON as `morec live` reads them), or .mdb, a database (the
     /// takes are kept beside it, too). Several takes are numbered
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,

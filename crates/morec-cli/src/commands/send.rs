@@ -37,7 +37,7 @@ pub struct Args {
     /// Clips, or folders of clips
     #[arg(required = true, value_name = "CLIP")]
     clips: Vec<PathBuf>,
-    /// Where to send them
+    /// Receiver to send them to
     #[arg(
         long,
         value_name = "vmc|axis://HOST:PORT",
@@ -53,7 +53,7 @@ pub struct Args {
     /// Begin again at the end, until Ctrl-C
     #[arg(long = "loop")]
     looped: bool,
-    /// How messages are put into datagrams: whole (a bundle for each frame), single (each by itself), or the most
+    /// Bundling of messages into datagrams: whole (a bundle for each frame), single (each by itself), or the most
     /// bytes of a bundle
     #[arg(long, value_name = "whole|single|BYTES", default_value = "1500", value_parser = bundling)]
     pub bundle: Bundling,
@@ -140,17 +140,17 @@ impl Time {
     }
 }
 
-/// What is at the other end.
+/// The other end of the connection.
 trait Receiver {
     /// Sends a frame; `time_secs` of the performance as it is played.
     fn frame(&mut self, time_secs: f64, pose: &WorldPose, roles: &RoleMap) -> std::io::Result<()>;
 
-    /// How late the next frame is to be.
+    /// Delay of the next frame.
     fn delay_secs(&mut self) -> f64 {
         0.0
     }
 
-    /// What to say at the end.
+    /// Last line of the report.
     fn summary(&self) -> String;
 }
 

@@ -45,10 +45,10 @@ pub struct Args {
     /// Clips (BVH, AMC, MCLIP) or folders of clips; - is standard input
     #[arg(required = true, value_name = "CLIP")]
     clips: Vec<PathBuf>,
-    /// What to write: a .bvh or .mclip file for one clip, a folder for several. Without it, nothing is written
+    /// Output: a .bvh or .mclip file for one clip, a folder for several. Without it, nothing is written
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
-    /// What to write into a folder: bvh if not given. A file's ending says it for a file
+    /// Form of the files in a folder: bvh if not given. A file's ending says it for a file
     #[arg(long, value_enum, requires = "output")]
     form: Option<MotionForm>,
     /// Largest angle between a joint's rotation in its parent's frame and its curve, at any frame, in degrees

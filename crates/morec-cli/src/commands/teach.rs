@@ -36,7 +36,7 @@ use morec_live::NamedEvent;
 pub struct Args {
     /// The index to teach; a new one if it is not there
     index: PathBuf,
-    /// Where poses come from
+    /// Source of poses
     #[arg(long, value_name = "SOURCE")]
     listen: Address,
     /// Teach gestures of these names in turn and ask for none
@@ -48,7 +48,7 @@ pub struct Args {
     /// A repetition lasts so many seconds at most
     #[arg(long, value_name = "SECS", default_value = "3", value_parser = secs)]
     secs: f64,
-    /// Where events go, as in `morec live` [default: terminal:-]
+    /// Sink of events, as in `morec live` [default: terminal:-]
     #[arg(long, value_name = "SINK")]
     emit: Vec<Address>,
     /// End after so many seconds

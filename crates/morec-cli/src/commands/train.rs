@@ -27,7 +27,7 @@ use crate::table::TextTable;
 pub struct Args {
     #[command(flatten)]
     material: MaterialArgs,
-    /// Where to write the index
+    /// File to write the index to
     #[arg(short, long, value_name = "INDEX")]
     output: PathBuf,
     /// Print one JSON object: the report of training

@@ -10,7 +10,7 @@ const SILENCE: Duration = Duration::from_secs(2);
 /// Between two looks.
 const EVERY: Duration = Duration::from_millis(200);
 
-/// What one source has been found to be.
+/// Findings about one source.
 struct AdvisedSource {
     name: String,
     /// Bits of the findings of each performer that were there at the last look, and of those that were said.
@@ -43,7 +43,7 @@ impl Advice {
         }
     }
 
-    /// What is new in the sources' statuses, in their order. What only one look has shown waits for the next.
+    /// News in the sources' statuses, in their order. What only one look has shown waits for the next.
     pub fn look(&mut self, statuses: &[Status]) -> Vec<String> {
         let mut lines = Vec::new();
         if self.looked.elapsed() < EVERY {
@@ -97,7 +97,7 @@ fn who(source: &str, actor: usize) -> String {
     }
 }
 
-/// Why nobody is seen at a source that has given no frame.
+/// Likely reason why a source has given no frame.
 fn silence(status: &Status) -> String {
     let counts = &status.source;
     if counts.packets == 0 {

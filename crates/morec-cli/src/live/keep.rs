@@ -11,7 +11,7 @@ use morec_live::write_pose_lines;
 
 use crate::output::write_whole;
 
-/// Where takes go.
+/// Store of takes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum TakeStore {
     /// A BVH file.

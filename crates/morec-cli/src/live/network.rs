@@ -2,7 +2,7 @@
 
 use morec_live::Accidents;
 
-/// How bad it is to be.
+/// Options of a simulated bad network.
 #[derive(clap::Args, Debug, Clone, Copy, PartialEq)]
 #[command(next_help_heading = "Network")]
 pub struct NetworkArgs {
@@ -21,7 +21,7 @@ pub struct NetworkArgs {
 }
 
 impl NetworkArgs {
-    /// What was typed.
+    /// The accidents that the options ask for.
     pub fn accidents(&self) -> Accidents {
         Accidents {
             loss: self.loss,

@@ -10,7 +10,7 @@ use morec_live::{Address, OpenSource, SourceOptions, open_source};
 use crate::files::mapping;
 use crate::output;
 
-/// What can be said of trackers.
+/// Options of trackers.
 #[derive(clap::Args, Debug)]
 pub struct TrackerArgs {
     /// Exchange left and right, for VMC senders that show their performer as a mirror would

@@ -88,7 +88,7 @@ impl CountedSink {
         Ok((self.failures == 1).then(|| format!("{}: {error}", self.address)))
     }
 
-    /// What to say of it at the end, if there is something.
+    /// Closing line about it, if there is one.
     pub fn farewell(&self) -> Option<String> {
         (self.failures > 0).then(|| {
             format!(

@@ -7,7 +7,7 @@ use morec::classes::ClassInfo;
 use morec::diagnosis::{Diagnosis, Severity};
 use morec::live::Status;
 
-/// How often the line is renewed.
+/// Interval between renewals of the line.
 const EVERY: Duration = Duration::from_millis(250);
 
 /// The line; silent where standard error is no terminal.
@@ -108,7 +108,7 @@ fn describe(statuses: &[Status], classes: &[ClassInfo], rate_hz: f64) -> String 
     text
 }
 
-/// What is wrong with a stream in a few words, or how big and how noisy its body is.
+/// Fault of a stream in a few words, or the size and noise of its body.
 fn found(diagnosis: &Diagnosis) -> String {
     let findings = diagnosis.findings();
     let labels: Vec<&str> = findings

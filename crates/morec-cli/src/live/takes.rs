@@ -14,13 +14,13 @@ use morec_live::OpenSource;
 /// A take that is shorter than this is none, seconds.
 pub const SHORTEST_SECS: f64 = 0.3;
 
-/// What can be said of takes.
+/// Options of takes.
 #[derive(clap::Args, Debug)]
 pub struct TakeArgs {
     /// Count down so many seconds before each take
     #[arg(long, value_name = "SECS", default_value = "3", value_parser = secs)]
     pub count_down: f64,
-    /// Which performer of the source, from 0
+    /// Number of the performer of the source, from 0
     #[arg(long, value_name = "N", default_value = "0", value_parser = clap::value_parser!(u16).range(..MAX_PERFORMERS as i64))]
     pub performer: u16,
     /// No bell at the beginning and the end of a take
@@ -36,7 +36,7 @@ pub fn secs(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Why a take ended.
+/// Reason for the end of a take.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ended {
     /// Its time was over.
@@ -82,12 +82,12 @@ impl TakeRecorder {
         }
     }
 
-    /// Whether nothing more will come, or is wanted.
+    /// True if nothing more will come, or is wanted.
     pub fn is_over(&self) -> bool {
         self.ended || self.stop.load(Ordering::Relaxed)
     }
 
-    /// Whether somebody can type something.
+    /// True if somebody can type something.
     pub fn has_keys(&self) -> bool {
         self.keys.is_some()
     }
@@ -123,12 +123,12 @@ impl TakeRecorder {
         self.rig.as_ref()
     }
 
-    /// Who is watched.
+    /// The performer that is watched.
     pub fn actor(&self) -> PerformerId {
         self.actor
     }
 
-    /// What the source is called.
+    /// Name of the source.
     pub fn name(&self) -> &str {
         &self.opened.name
     }

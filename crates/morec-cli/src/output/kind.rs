@@ -5,7 +5,7 @@ use morec::formats::probe::{Format, probe};
 /// An SQLite database, of morec or another program.
 pub const DATABASE: &str = "an SQLite database";
 
-/// What a file that begins so is; `None` for an empty one.
+/// Kind of a file that begins so; `None` for an empty one.
 pub fn of(head: &[u8]) -> Option<&'static str> {
     if head.is_empty() {
         return None;

@@ -5,7 +5,7 @@ use morec::kinematics::WorldPose;
 use morec::math::Vec3;
 
 use super::picture::{CharGrid, DIM, Dots, PLAIN, Style, class_style};
-use super::{ReportedDetection, ShownClip, event_line, printable};
+use super::shown::{ReportedDetection, ShownClip, event_line, printable};
 
 /// Seconds that the bottom lines look back.
 const BACK_SECS: f64 = 20.0;
@@ -14,7 +14,7 @@ const FRESH_SECS: f64 = 1.2;
 /// Below this width there is no room for a figure.
 const FIGURE_FROM_COLUMNS: usize = 56;
 
-/// What the terminal can show.
+/// Abilities of the terminal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TerminalStyle {
     pub columns: usize,
@@ -24,7 +24,7 @@ pub struct TerminalStyle {
     pub unicode: bool,
 }
 
-/// How large a clip's figure is, so that it keeps its scale throughout.
+/// Scale of a clip's figure, the same throughout.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FigureScale {
     ground: f64,
@@ -190,7 +190,7 @@ fn is_fresh(said: &ReportedDetection, now_secs: f64) -> bool {
     now_secs - said.reported_secs < FRESH_SECS
 }
 
-/// What was performed, what was said, and a line of seconds below.
+/// Labels, detections, and a line of seconds below.
 fn timelines(
     picture: &mut CharGrid,
     scene: &ShownClip,

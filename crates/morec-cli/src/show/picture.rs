@@ -1,6 +1,6 @@
 //! Text and fine lines on a grid of characters.
 
-/// How a character looks; 0 is plain, 1 dimmed, from 2 on a colour each.
+/// Style of a character; 0 is plain, 1 dimmed, from 2 on a colour each.
 pub type Style = u8;
 
 /// Plain text.

@@ -2,7 +2,7 @@
 
 use morec::formats::{ParseError, Place};
 
-use super::{Annotation, ClipLengths, ReadLabels, checked, secs};
+use super::annotation::{Annotation, ClipLengths, ReadLabels, checked, secs};
 use crate::labels::SampleState;
 
 pub fn read(text: &str, clip: Option<&str>) -> Result<ReadLabels, ParseError> {

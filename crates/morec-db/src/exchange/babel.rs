@@ -3,7 +3,7 @@
 use morec::formats::{ParseError, Place};
 use serde_json::{Map, Value, json};
 
-use super::{Annotation, ClipLengths, ReadLabels, checked, json_error, secs};
+use super::annotation::{Annotation, ClipLengths, ReadLabels, checked, json_error, secs};
 use crate::labels::SampleState;
 
 pub fn read(bytes: &[u8]) -> Result<ReadLabels, ParseError> {

@@ -2,14 +2,14 @@
 
 use morec::formats::{ParseError, Place, Warning};
 
-use super::{Annotation, ClipLengths, ReadLabels, checked, frames, secs};
+use super::annotation::{Annotation, ClipLengths, ReadLabels, checked, frames, secs};
 use crate::labels::SampleState;
 
 const HEADER: &str =
     "file,label,start_s,end_s,start_frame,end_frame,whole_clip,score,actor,source,state";
 
 pub fn read(bytes: &[u8], lengths: &ClipLengths) -> Result<ReadLabels, ParseError> {
-    let mut records = records(super::text(bytes)?)?.into_iter();
+    let mut records = records(super::annotation::text(bytes)?)?.into_iter();
     let (line, header) = records.next().ok_or_else(|| {
         ParseError::new(
             Place::File,
@@ -56,7 +56,7 @@ pub fn read(bytes: &[u8], lengths: &ClipLengths) -> Result<ReadLabels, ParseErro
         } else if let Some((start, stop)) = seconds.filter(filled) {
             Some((number(start)?, number(stop)?))
         } else if let Some((start, stop)) = framed.filter(filled) {
-            let Some(length) = super::length_of(cell(Some(file)), lengths) else {
+            let Some(length) = super::annotation::length_of(cell(Some(file)), lengths) else {
                 *read.absent.entry(cell(Some(file)).to_owned()).or_default() += 1;
                 continue;
             };
@@ -77,7 +77,7 @@ pub fn read(bytes: &[u8], lengths: &ClipLengths) -> Result<ReadLabels, ParseErro
             })?;
         }
         let state = state.map_or(Ok(SampleState::Accepted), |column| {
-            super::state(cell(Some(column)), line)
+            super::annotation::state(cell(Some(column)), line)
         })?;
         if cell(Some(label)).is_empty() {
             read.warnings.push(Warning::new(

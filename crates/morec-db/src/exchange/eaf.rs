@@ -6,7 +6,7 @@ use std::fmt::Write;
 use morec::formats::{ParseError, Place, Warning};
 use roxmltree::{Document, Node, ParsingOptions};
 
-use super::{Annotation, ClipLengths, ReadLabels, secs};
+use super::annotation::{Annotation, ClipLengths, ReadLabels, secs};
 use crate::labels::SampleState;
 
 /// Under this name a header property keeps the clip.
@@ -15,7 +15,7 @@ const CLIP: &str = "morec:clip";
 /// Under this name a header property keeps the clip's frames a second: times count from its first frame.
 const RATE: &str = "morec:rate_hz";
 
-/// So many elements are read of one file.
+/// Most elements read of one file.
 const MOST_NODES: u32 = 4_000_000;
 
 pub fn read(text: &str, clip: Option<&str>) -> Result<ReadLabels, ParseError> {

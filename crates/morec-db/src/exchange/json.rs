@@ -4,7 +4,9 @@ use morec::formats::{ParseError, Place};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::{Annotation, ClipLengths, LabelFormat, ReadLabels, checked, frames, json_error, secs};
+use super::annotation::{
+    Annotation, ClipLengths, LabelFormat, ReadLabels, checked, frames, json_error, secs,
+};
 use crate::labels::SampleState;
 
 #[derive(Serialize, Deserialize)]
@@ -34,7 +36,7 @@ struct JsonRow {
     state: Option<SampleState>,
 }
 
-/// Which of the forms in JSON a file is.
+/// Tells the forms in JSON apart.
 pub fn which(bytes: &[u8]) -> LabelFormat {
     match serde_json::from_slice(bytes) {
         Ok(Value::Array(_)) => LabelFormat::LabelStudio,
@@ -54,7 +56,7 @@ pub fn read(bytes: &[u8], lengths: &ClipLengths) -> Result<ReadLabels, ParseErro
     let file: File = serde_json::from_slice(bytes).map_err(|error| json_error(&error, expected))?;
     let mut read = ReadLabels::default();
     for (index, row) in file.labels.into_iter().enumerate() {
-        let rate = super::length_of(&row.clip, lengths).map(|length| length.rate_hz);
+        let rate = super::annotation::length_of(&row.clip, lengths).map(|length| length.rate_hz);
         let extent = match (
             row.start_secs.zip(row.stop_secs),
             row.start.zip(row.stop),

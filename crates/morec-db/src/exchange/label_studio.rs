@@ -3,7 +3,7 @@
 use morec::formats::{ParseError, Place};
 use serde_json::{Value, json};
 
-use super::{Annotation, ClipLengths, ReadLabels, checked, json_error, secs};
+use super::annotation::{Annotation, ClipLengths, ReadLabels, checked, json_error, secs};
 use crate::labels::SampleState;
 
 pub fn read(bytes: &[u8]) -> Result<ReadLabels, ParseError> {
@@ -64,7 +64,7 @@ pub fn read(bytes: &[u8]) -> Result<ReadLabels, ParseError> {
     Ok(read)
 }
 
-/// What morec rejected is a prediction of a model that says so; all other predictions are proposals.
+/// State of a prediction: rejected if its model version says so, else proposed.
 fn state_of(prediction: &Value) -> SampleState {
     match prediction["model_version"].as_str() {
         Some(REJECTED) => SampleState::Rejected,

@@ -2,7 +2,11 @@
 
 use proptest::prelude::*;
 
+use morec::labels::ClipLength;
+
+use super::annotation::secs;
 use super::*;
+use crate::labels::SampleState;
 
 fn lengths() -> ClipLengths {
     let length = |frames, rate_hz| ClipLength { frames, rate_hz };

@@ -3,7 +3,7 @@
 use morec::formats::ParseError;
 use morec::labels::{Extent, Labels};
 
-use super::{Annotation, ClipLengths, ReadLabels, frames, secs};
+use super::annotation::{Annotation, ClipLengths, ReadLabels, frames, secs};
 use crate::labels::SampleState;
 
 pub fn read(bytes: &[u8], lengths: &ClipLengths) -> Result<ReadLabels, ParseError> {
@@ -14,7 +14,10 @@ pub fn read(bytes: &[u8], lengths: &ClipLengths) -> Result<ReadLabels, ParseErro
         ..ReadLabels::default()
     };
     for (at, row) in labels.rows.into_iter().enumerate() {
-        let extent = match (&row.extent, super::length_of(&row.clip, lengths)) {
+        let extent = match (
+            &row.extent,
+            super::annotation::length_of(&row.clip, lengths),
+        ) {
             (Extent::Secs(start, stop), _) => Some((*start, *stop)),
             (Extent::WholeClip, _) => None,
             (Extent::Frames(_), Some(length)) => Some(length.secs(&row.extent)),
@@ -30,7 +33,7 @@ pub fn read(bytes: &[u8], lengths: &ClipLengths) -> Result<ReadLabels, ParseErro
             person: row.person,
             score: None,
             state: states.as_ref().map_or(Ok(SampleState::Accepted), |cells| {
-                super::state(&cells[at], row.line)
+                super::annotation::state(&cells[at], row.line)
             })?,
         });
     }

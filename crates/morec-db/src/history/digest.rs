@@ -38,7 +38,7 @@ fn add_all(
     given: impl rusqlite::Params,
     columns: usize,
 ) -> Result<(), DbError> {
-    let mut statement = conn.prepare(sql)?;
+    let mut statement = conn.prepare_cached(sql)?;
     let mut rows = statement.query(given)?;
     while let Some(row) = rows.next()? {
         add(sum, row, columns)?;
@@ -57,7 +57,7 @@ fn of(conn: &Connection, table: &Tracked) -> Result<Sum, DbError> {
 
 fn kept(conn: &Connection, table: &Tracked) -> Result<Option<Vec<u8>>, DbError> {
     let sql = "SELECT sum FROM digests WHERE tab = ?1";
-    let mut statement = conn.prepare(sql)?;
+    let mut statement = conn.prepare_cached(sql)?;
     Ok(statement
         .query_row(params![table.name], |row| row.get(0))
         .optional()?)
@@ -65,7 +65,8 @@ fn kept(conn: &Connection, table: &Tracked) -> Result<Option<Vec<u8>>, DbError> 
 
 fn keep(conn: &Connection, table: &Tracked, sum: &Sum) -> Result<(), DbError> {
     let sql = "INSERT OR REPLACE INTO digests (tab, sum) VALUES (?1, ?2)";
-    conn.prepare(sql)?.execute(params![table.name, sum])?;
+    conn.prepare_cached(sql)?
+        .execute(params![table.name, sum])?;
     Ok(())
 }
 
@@ -81,7 +82,7 @@ pub fn follow(conn: &Connection, step: i64, after: i64) -> Result<(), DbError> {
     for table in &TRACKED {
         let sql = "SELECT 1 FROM was WHERE edit = ?1 AND tab = ?2 AND seq > ?3 LIMIT 1";
         let given = params![step, table.name, after];
-        if !conn.prepare(sql)?.exists(given)? {
+        if !conn.prepare_cached(sql)?.exists(given)? {
             continue;
         }
         let mut sum = Sum::default();

@@ -7,7 +7,7 @@ use crate::DbError;
 /// A table of the schema, its columns in the order of its triggers (`migrations/0002.sql`).
 pub struct Tracked {
     pub name: &'static str,
-    /// So many of the columns, from the first, are its key.
+    /// Number of key columns, which stand first.
     pub keys: usize,
     pub columns: &'static [&'static str],
     /// A column that holds much; where it was not changed, the history says NULL.
@@ -137,7 +137,7 @@ impl Tracked {
             let sql = format!(
                 "DELETE FROM {name} AS t WHERE EXISTS (SELECT 1 FROM was w WHERE w.seq = ?1 AND {same})"
             );
-            conn.prepare(&sql)?.execute(params![seq])?;
+            conn.prepare_cached(&sql)?.execute(params![seq])?;
             return Ok(());
         }
         let values = self.columns.iter().enumerate().skip(self.keys);
@@ -151,7 +151,7 @@ impl Tracked {
             let set = set.join(", ");
             let sql =
                 format!("UPDATE {name} AS t SET {set} FROM was w WHERE w.seq = ?1 AND {same}");
-            if conn.prepare(&sql)?.execute(params![seq])? > 0 {
+            if conn.prepare_cached(&sql)?.execute(params![seq])? > 0 {
                 return Ok(());
             }
         }
@@ -161,7 +161,7 @@ impl Tracked {
             "INSERT INTO {name} ({columns}) SELECT {} FROM was WHERE seq = ?1",
             from.join(", ")
         );
-        conn.prepare(&sql)?.execute(params![seq])?;
+        conn.prepare_cached(&sql)?.execute(params![seq])?;
         Ok(())
     }
 }

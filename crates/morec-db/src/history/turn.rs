@@ -6,7 +6,7 @@ use super::tracked::{TRACKED, tracked};
 use super::{HistoryStep, digest, record, step, weigh};
 use crate::{DbError, MotionDb};
 
-/// What taking a step back, or doing it again, does to a table.
+/// Effect of undoing or redoing a step on a table.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct Effect {
     /// The table: clips, samples, classes …
@@ -53,7 +53,7 @@ impl MotionDb {
         self.turn(Way::Redo, step, true)
     }
 
-    /// What [`MotionDb::undo`] would do.
+    /// Effects that [`MotionDb::undo`] would have.
     ///
     /// # Errors
     /// As there.
@@ -61,7 +61,7 @@ impl MotionDb {
         self.turn(Way::Undo, step, false)
     }
 
-    /// What [`MotionDb::redo`] would do.
+    /// Effects that [`MotionDb::redo`] would have.
     ///
     /// # Errors
     /// As there.
@@ -170,7 +170,7 @@ fn swap(tx: &Transaction<'_>, way: Way, step: &HistoryStep) -> Result<Vec<Effect
         let sql = "SELECT seq, tab, present FROM was WHERE edit = ?1 ORDER BY seq DESC";
         let mut statement = tx.prepare(sql)?;
         let rows = statement.query_map(params![step.id], |row| {
-            Ok((row.get(0)?, row.get(1)?, row.get(2)?))
+            Ok((row.get("seq")?, row.get("tab")?, row.get("present")?))
         })?;
         rows.collect::<Result<_, _>>()?
     };
@@ -227,13 +227,14 @@ fn effects(conn: &Connection, recording: i64) -> Result<Vec<Effect>, DbError> {
         let keys: Vec<String> = (0..table.keys).map(|at| format!("c{at}")).collect();
         // SQLite takes bare columns beside min() from the row that has the minimum.
         let sql = format!(
-            "SELECT coalesce(sum(NOT w.present AND there), 0), coalesce(sum(w.present AND NOT there), 0), \
-             coalesce(sum(w.present AND there), 0) FROM (SELECT w.*, EXISTS (SELECT 1 FROM {name} t WHERE {same}) \
+            "SELECT coalesce(sum(NOT w.present AND there), 0) AS back, \
+             coalesce(sum(w.present AND NOT there), 0) AS gone, \
+             coalesce(sum(w.present AND there), 0) AS changed FROM (SELECT w.*, EXISTS (SELECT 1 FROM {name} t WHERE {same}) \
              AS there FROM (SELECT min(seq), * FROM was WHERE edit = ?1 AND tab = ?2 GROUP BY {}) w) w",
             keys.join(", ")
         );
         let counts: [i64; 3] = conn.query_row(&sql, params![recording, name], |row| {
-            Ok([row.get(0)?, row.get(1)?, row.get(2)?])
+            Ok([row.get("back")?, row.get("gone")?, row.get("changed")?])
         })?;
         let [back, gone, changed] = counts.map(|count| count.max(0) as usize);
         if back + gone + changed > 0 {

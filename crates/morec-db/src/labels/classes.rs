@@ -2,7 +2,7 @@
 
 use rusqlite::{Connection, OptionalExtension, params};
 
-use super::SampleId;
+use super::sample::SampleId;
 use crate::{DbError, MotionDb, names};
 
 /// A class and how many samples it has.
@@ -20,7 +20,7 @@ pub struct ClassCount {
     pub secs: f64,
 }
 
-/// What may be a class's name: it must survive tables, track names and terminals.
+/// Checks a class name, which must survive tables, track names and terminals.
 pub(super) fn check_name(name: &str) -> Result<&str, DbError> {
     let trimmed = name.trim();
     if trimmed.is_empty() || trimmed.len() > 200 || trimmed.chars().any(char::is_control) {
@@ -53,20 +53,17 @@ pub(super) fn find_or_make(conn: &Connection, name: &str) -> Result<i64, DbError
     if let Some(id) = find(conn, name)? {
         return Ok(id);
     }
-    conn.execute("INSERT INTO classes (name) VALUES (?1)", params![name])?;
+    conn.prepare_cached("INSERT INTO classes (name) VALUES (?1)")?
+        .execute(params![name])?;
     Ok(conn.last_insert_rowid())
 }
 
 /// Gives samples another class. One that is there already under that class is dropped instead of kept twice.
 fn move_samples(conn: &Connection, which: &str, of: i64, to: i64) -> Result<usize, DbError> {
-    let moved = conn.execute(
-        &format!("UPDATE OR IGNORE samples SET class = ?2 WHERE {which} = ?1"),
-        params![of, to],
-    )?;
-    conn.execute(
-        &format!("DELETE FROM samples WHERE {which} = ?1 AND class <> ?2"),
-        params![of, to],
-    )?;
+    let sql = format!("UPDATE OR IGNORE samples SET class = ?2 WHERE {which} = ?1");
+    let moved = conn.prepare_cached(&sql)?.execute(params![of, to])?;
+    let sql = format!("DELETE FROM samples WHERE {which} = ?1 AND class <> ?2");
+    conn.prepare_cached(&sql)?.execute(params![of, to])?;
     Ok(moved)
 }
 
@@ -74,21 +71,21 @@ impl MotionDb {
     /// All classes, by name.
     pub fn classes(&self) -> Result<Vec<ClassCount>, DbError> {
         let mut statement = self.conn.prepare(
-            "SELECT n.name, coalesce(sum(s.state = 'accepted'), 0), coalesce(sum(s.state = 'proposed'), 0), \
-             coalesce(sum(s.state = 'rejected'), 0), \
-             coalesce(sum((s.stop_secs - s.start_secs) * (s.state = 'accepted')), 0.0) \
+            "SELECT n.name, coalesce(sum(s.state = 'accepted'), 0) AS accepted, \
+             coalesce(sum(s.state = 'proposed'), 0) AS proposed, coalesce(sum(s.state = 'rejected'), 0) AS rejected, \
+             coalesce(sum((s.stop_secs - s.start_secs) * (s.state = 'accepted')), 0.0) AS secs \
              FROM classes n LEFT JOIN samples s ON s.class = n.id GROUP BY n.id ORDER BY n.name",
         )?;
         let classes = statement.query_map([], |row| {
-            let count = |column| -> rusqlite::Result<usize> {
+            let count = |column: &str| -> rusqlite::Result<usize> {
                 Ok(row.get::<_, i64>(column)?.max(0) as usize)
             };
             Ok(ClassCount {
-                name: row.get(0)?,
-                accepted: count(1)?,
-                proposed: count(2)?,
-                rejected: count(3)?,
-                secs: row.get(4)?,
+                name: row.get("name")?,
+                accepted: count("accepted")?,
+                proposed: count("proposed")?,
+                rejected: count("rejected")?,
+                secs: row.get("secs")?,
             })
         })?;
         Ok(classes.collect::<Result<_, _>>()?)
@@ -127,7 +124,8 @@ impl MotionDb {
             let mut moved = 0;
             for old in olds.into_iter().filter(|old| *old != target) {
                 moved += move_samples(conn, "class", old, target)?;
-                conn.execute("DELETE FROM classes WHERE id = ?1", params![old])?;
+                conn.prepare_cached("DELETE FROM classes WHERE id = ?1")?
+                    .execute(params![old])?;
             }
             Ok(moved)
         })

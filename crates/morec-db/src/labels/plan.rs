@@ -4,15 +4,14 @@ use std::collections::BTreeSet;
 
 use rusqlite::{Connection, params};
 
-use super::samples::{Change, add};
-use super::{Added, DbSample, NewSample, SampleFilter, SampleId, SampleState, classes};
-use crate::time::now_secs;
+use super::sample::{Added, DbSample, NewSample, SampleFilter, SampleState};
+use super::write::{Change, add, alter};
 use crate::{DbError, MotionDb};
 
-/// How labels come in.
+/// Options of adding labels.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LabelOptions {
-    /// Who says so.
+    /// Author of the labels.
     pub by: String,
     /// The labels are all there are for the clips they name: accepted samples that are not among them are removed.
     pub replace: bool,
@@ -20,7 +19,7 @@ pub struct LabelOptions {
     pub dry_run: bool,
 }
 
-/// What happens to a sample.
+/// Kind of change of a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum LabelChange {
@@ -39,7 +38,7 @@ pub enum LabelChange {
 /// A change of a sample, as it is afterwards; one that goes, as it was.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct ChangedLabel {
-    /// What happens.
+    /// Kind of change.
     pub change: LabelChange,
     /// Its clip.
     #[serde(rename = "clip_id")]
@@ -50,7 +49,7 @@ pub struct ChangedLabel {
     pub start_secs: f64,
     /// Its stop, seconds.
     pub stop_secs: f64,
-    /// What it was before, if it is moved or renamed: class, start and stop.
+    /// Class, start and stop before the change, if it is moved or renamed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub was: Option<(String, f64, f64)>,
 }
@@ -68,10 +67,10 @@ impl ChangedLabel {
     }
 }
 
-/// What came of labels.
+/// Result of adding labels.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize)]
 pub struct Labelled {
-    /// How many.
+    /// Counts by kind.
     #[serde(flatten)]
     pub counts: Added,
     /// Every change, in the order of the labels; what goes is last.
@@ -108,7 +107,8 @@ impl MotionDb {
                 take_in(conn, label, &mut left, options, &mut done)?;
             }
             for sample in left {
-                conn.execute("DELETE FROM samples WHERE id = ?1", params![sample.id.0])?;
+                conn.prepare_cached("DELETE FROM samples WHERE id = ?1")?
+                    .execute(params![sample.id.0])?;
                 done.counts.gone += 1;
                 done.changes.push(ChangedLabel {
                     change: LabelChange::Gone,
@@ -226,29 +226,4 @@ fn counterpart(label: &NewSample, left: &[DbSample]) -> Option<usize> {
     let overlapping = of_clip().filter(|(_, s)| s.class == label.class && overlap(s) > 0.0);
     let most = overlapping.max_by(|(_, a), (_, b)| overlap(a).total_cmp(&overlap(b)));
     same.or(most).map(|(at, _)| at)
-}
-
-/// Gives a sample the class and extent of a label; its number stays.
-pub(super) fn alter(
-    conn: &Connection,
-    id: SampleId,
-    label: &NewSample,
-    by: &str,
-) -> Result<(), DbError> {
-    super::samples::check_extent(conn, label)?;
-    let class = classes::find_or_make(conn, &label.class)?;
-    conn.execute(
-        "UPDATE samples SET class = ?2, start_secs = ?3, stop_secs = ?4, whole_clip = ?5, set_by = ?6, set_secs = ?7 \
-         WHERE id = ?1",
-        params![
-            id.0,
-            class,
-            label.start_secs,
-            label.stop_secs,
-            label.whole_clip,
-            by,
-            now_secs()
-        ],
-    )?;
-    Ok(())
 }

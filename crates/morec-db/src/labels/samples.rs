@@ -1,108 +1,12 @@
 //! Samples: added, judged, listed.
 
-use rusqlite::{Connection, OptionalExtension, Row, params};
+use rusqlite::{Connection, Row, params};
 
-use super::{GROUPED_BY, LabelOptions, SampleState, classes};
+use super::plan::LabelOptions;
+use super::sample::{Added, DbSample, NewSample, SampleFilter, SampleId, SampleState};
+use super::write::{add, alter};
 use crate::time::now_secs;
 use crate::{ClipId, DbError, MotionDb};
-
-/// A sample's number in its database.
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
-)]
-pub struct SampleId(pub i64);
-
-/// A sample as it is kept.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct DbSample {
-    /// Its number.
-    pub id: SampleId,
-    /// Its clip.
-    #[serde(rename = "clip_id")]
-    pub clip: ClipId,
-    /// Its clip's name.
-    #[serde(rename = "clip")]
-    pub clip_name: String,
-    /// Who is seen in the clip.
-    pub subject: Option<String>,
-    /// What it shows.
-    pub class: String,
-    /// Where it starts, seconds from the clip's beginning.
-    pub start_secs: f64,
-    /// Where it stops.
-    pub stop_secs: f64,
-    /// True if the clip as a whole was labelled, still ends and all.
-    pub whole_clip: bool,
-    /// What is thought of it.
-    pub state: SampleState,
-    /// How sure a program was of it.
-    pub score: Option<f64>,
-    /// Who said so.
-    pub set_by: String,
-    /// When, seconds since 1970.
-    pub set_secs: i64,
-    /// Frames a second of its clip.
-    pub rate_hz: f64,
-}
-
-impl DbSample {
-    /// Its frames in the clip's file, rounded to whole ones.
-    pub fn frames(&self) -> std::ops::Range<usize> {
-        let frame = |secs: f64| (secs * self.rate_hz).round().max(0.0) as usize;
-        frame(self.start_secs)..frame(self.stop_secs)
-    }
-}
-
-/// A sample to add.
-#[derive(Debug, Clone, PartialEq)]
-pub struct NewSample {
-    /// Its clip.
-    pub clip: ClipId,
-    /// What it shows.
-    pub class: String,
-    /// Where it starts, seconds.
-    pub start_secs: f64,
-    /// Where it stops.
-    pub stop_secs: f64,
-    /// True if the clip as a whole is meant.
-    pub whole_clip: bool,
-    /// What is thought of it.
-    pub state: SampleState,
-    /// How sure a program is of it.
-    pub score: Option<f64>,
-}
-
-/// What became of samples that were added.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
-pub struct Added {
-    /// They are new.
-    pub added: usize,
-    /// They were there and are judged anew.
-    pub changed: usize,
-    /// They were there just so; or a proposal of what had been judged.
-    pub unchanged: usize,
-    /// Samples that start or stop elsewhere now.
-    pub moved: usize,
-    /// Samples that have another class now.
-    pub renamed: usize,
-    /// Samples that were removed, as no label says them.
-    pub gone: usize,
-    /// Proposals of other classes for the same stretch that are rejected now.
-    pub rejected: usize,
-    /// Proposals of groups for the same stretch that are there no more.
-    pub withdrawn: usize,
-}
-
-/// Which samples; all conditions must hold.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct SampleFilter {
-    /// In this clip.
-    pub clip: Option<ClipId>,
-    /// Of this class.
-    pub class: Option<String>,
-    /// In this state.
-    pub state: Option<SampleState>,
-}
 
 fn sample(row: &Row<'_>) -> rusqlite::Result<DbSample> {
     let state: String = row.get("state")?;
@@ -168,7 +72,8 @@ impl MotionDb {
     ) -> Result<(), DbError> {
         self.edit(&format!("propose {} samples", new.len()), |conn| {
             for id in old {
-                conn.execute("DELETE FROM samples WHERE id = ?1", params![id.0])?;
+                conn.prepare_cached("DELETE FROM samples WHERE id = ?1")?
+                    .execute(params![id.0])?;
             }
             new.iter()
                 .try_for_each(|sample| add(conn, sample, by).map(drop))
@@ -190,7 +95,7 @@ impl MotionDb {
         self.edit(what, |conn| {
             for id in old {
                 let sql = "DELETE FROM samples WHERE id = ?1";
-                if conn.execute(sql, params![id.0])? == 0 {
+                if conn.prepare_cached(sql)?.execute(params![id.0])? == 0 {
                     return Err(DbError::unknown("sample", &format!("#{}", id.0)));
                 }
             }
@@ -267,7 +172,7 @@ impl MotionDb {
             score: old.score,
         };
         self.edit(&format!("move sample {}", id.0), |conn| {
-            super::plan::alter(conn, id, &moved, by)
+            alter(conn, id, &moved, by)
         })
     }
 
@@ -298,129 +203,4 @@ fn judge(
         changed += statement.execute(params![id.0, state.name(), by, now_secs()])?;
     }
     Ok(changed)
-}
-
-pub(super) enum Change {
-    New,
-    Judged,
-    None,
-}
-
-/// What an accepted sample does to proposals of other classes.
-#[derive(Default)]
-pub(super) struct Others {
-    pub rejected: usize,
-    pub withdrawn: usize,
-}
-
-pub(super) fn add(
-    conn: &Connection,
-    sample: &NewSample,
-    by: &str,
-) -> Result<(Change, Others), DbError> {
-    check_extent(conn, sample)?;
-    let class = classes::find_or_make(conn, &sample.class)?;
-    let extent = params![sample.clip.0, class, sample.start_secs, sample.stop_secs];
-    let there: Option<(i64, String)> = conn
-        .prepare_cached(
-            "SELECT id, state FROM samples WHERE clip = ?1 AND class = ?2 AND start_secs = ?3 AND stop_secs = ?4",
-        )?
-        .query_row(extent, |row| Ok((row.get(0)?, row.get(1)?)))
-        .optional()?;
-    let Some((id, state)) = there else {
-        conn.prepare_cached(
-            "INSERT INTO samples (clip, class, start_secs, stop_secs, whole_clip, state, score, set_by, set_secs) \
-             VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)",
-        )?
-        .execute(params![
-            sample.clip.0,
-            class,
-            sample.start_secs,
-            sample.stop_secs,
-            sample.whole_clip,
-            sample.state.name(),
-            sample.score,
-            by,
-            now_secs()
-        ])?;
-        let others = match sample.state {
-            SampleState::Accepted => reject_instead(conn, sample, class, by)?,
-            _ => Others::default(),
-        };
-        return Ok((Change::New, others));
-    };
-    if state == sample.state.name() || sample.state == SampleState::Proposed {
-        return Ok((Change::None, Others::default()));
-    }
-    conn.prepare_cached("UPDATE samples SET state = ?2, set_by = ?3, set_secs = ?4 WHERE id = ?1")?
-        .execute(params![id, sample.state.name(), by, now_secs()])?;
-    Ok((Change::Judged, Others::default()))
-}
-
-/// Proposals of other classes for the very stretch that is now known to be of `class` were wrong. Those of groups say
-/// that stretches are alike, not what they are: they are withdrawn, and with the last of them the group's class.
-fn reject_instead(
-    conn: &Connection,
-    sample: &NewSample,
-    class: i64,
-    by: &str,
-) -> Result<Others, DbError> {
-    let stretch =
-        "clip = ?1 AND start_secs = ?2 AND stop_secs = ?3 AND class <> ?4 AND state = 'proposed'";
-    let given = params![
-        sample.clip.0,
-        sample.start_secs,
-        sample.stop_secs,
-        class,
-        GROUPED_BY
-    ];
-    let sql = format!("SELECT class FROM samples WHERE {stretch} AND set_by = ?5");
-    let groups: Vec<i64> = conn
-        .prepare_cached(&sql)?
-        .query_map(given, |row| row.get(0))?
-        .collect::<Result<_, _>>()?;
-    let sql = format!("DELETE FROM samples WHERE {stretch} AND set_by = ?5");
-    let withdrawn = conn.execute(&sql, given)?;
-    for group in groups {
-        conn.execute(
-            "DELETE FROM classes WHERE id = ?1 AND NOT EXISTS (SELECT 1 FROM samples WHERE class = ?1)",
-            params![group],
-        )?;
-    }
-    let sql = format!(
-        "UPDATE samples SET state = 'rejected', set_by = ?5, set_secs = ?6 WHERE {stretch}"
-    );
-    let rejected = conn.prepare_cached(&sql)?.execute(params![
-        sample.clip.0,
-        sample.start_secs,
-        sample.stop_secs,
-        class,
-        by,
-        now_secs()
-    ])?;
-    Ok(Others {
-        rejected,
-        withdrawn,
-    })
-}
-
-pub(super) fn check_extent(conn: &Connection, sample: &NewSample) -> Result<(), DbError> {
-    let sql = "SELECT name, frames / rate_hz, rate_hz FROM clips WHERE id = ?1";
-    let clip: Option<(String, f64, f64)> = conn
-        .prepare_cached(sql)?
-        .query_row(params![sample.clip.0], |row| {
-            Ok((row.get(0)?, row.get(1)?, row.get(2)?))
-        })
-        .optional()?;
-    let (name, secs, rate_hz) =
-        clip.ok_or_else(|| DbError::unknown("clip", &format!("#{}", sample.clip.0)))?;
-    let (start, stop) = (sample.start_secs, sample.stop_secs);
-    // A frame counts for its whole period; half a frame is rounding.
-    if !(start >= 0.0 && stop > start && stop <= secs + 0.5 / rate_hz) {
-        let class = &sample.class;
-        return Err(DbError::Invalid(format!(
-            "{name}: expected a sample of {class} within 0 to {secs:.3} s, found {start:.3} to {stop:.3} s"
-        )));
-    }
-    Ok(())
 }

@@ -17,7 +17,7 @@ const SAME: f64 = 0.5;
 /// Ticks each side that a candidate is the nearest of.
 const PEAK_TICKS: usize = 3;
 
-/// What a match costs that goes at another pace than its template: at half or double it counts as half as far again.
+/// Cost of a match at another pace than its template: at half or double pace the distance counts one and a half times.
 const PACE: f32 = 1.0;
 
 const NOTHING: Match = Match {
@@ -98,7 +98,7 @@ impl ClassDistances {
             .fold(FAR, |best, (_, found)| best.min(found.distance))
     }
 
-    /// How near a stretch comes to a class, to the others and to what was rejected.
+    /// Distances of a stretch to a class, to the others and to the rejected stretches.
     pub fn evidence(&self, class: usize, ticks: &Range<usize>, whole: bool) -> Evidence {
         let others = (0..self.columns - 1).filter(|c| *c != class);
         let other = others
@@ -127,7 +127,7 @@ impl ClassDistances {
         })
     }
 
-    /// Where the class is nearer than before and after.
+    /// Local minima of the distance to the class.
     pub fn peaks(&self, class: usize) -> Vec<ProposalCandidate> {
         let peak = |tick: &usize| {
             let here = self.at(*tick, class).distance;

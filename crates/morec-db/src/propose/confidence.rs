@@ -12,9 +12,9 @@ use morec::templates::Evidence;
 /// Constant, own distance, other classes, rejected stretches.
 const FEATURES: usize = 4;
 const USUAL: [f64; FEATURES] = [-0.5, -1.5, -2.5, -1.5];
-/// How far the weights may stray from the usual ones: standard deviations.
+/// Standard deviations of the weights around the usual ones.
 const STRAY: [f64; FEATURES] = [0.7, 0.5, 0.5, 0.5];
-/// Where a class is not taught twice, its samples are so far apart, as a share of the distance to the next class.
+/// Assumed distance between samples of a class with one sample, as a share of the distance to the next class.
 const APART: f64 = 0.3;
 /// The same where the next class is the nearest anywhere in a clip, not at one place.
 const APART_WHOLE: f64 = 0.7;
@@ -33,7 +33,7 @@ pub struct Judgement {
 }
 
 pub struct Confidence {
-    /// How far samples of each class are from one another.
+    /// Distance between the samples of each class.
     scales: Vec<f64>,
     weights: SVector<f64, FEATURES>,
 }
@@ -63,7 +63,7 @@ impl Confidence {
         confidence
     }
 
-    /// How likely the stretch shows the class.
+    /// Probability that the stretch shows the class.
     pub fn of(&self, class: usize, evidence: &Evidence) -> f64 {
         logistic(self.weights.dot(&self.features(class, evidence)))
     }

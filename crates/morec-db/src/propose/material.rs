@@ -19,7 +19,7 @@ pub struct ClipFeatures {
     pub id: ClipId,
     pub laid: CanonicalRows,
     pub end_secs: f64,
-    /// Who is seen; the clip's name if nobody is named.
+    /// Person in the clip; the clip's name if none is named.
     pub group: String,
 }
 

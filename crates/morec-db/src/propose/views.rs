@@ -7,14 +7,14 @@ use morec::features::{BoneSet, Rows};
 use morec::templates::{Metric, TemplateBank};
 use morec::train::{LabelledSpan, StreamKind, TrainParams, TrainSet, TrainStream, scatters};
 
-use super::ProposeOptions;
 use super::material::{JudgedSpan, ProposalData};
+use super::options::ProposeOptions;
 use crate::search::layout::shared_columns;
 
 /// Pairs of samples that tell how a class varies: more say the same, and a round must stay quick.
 const PAIRS: usize = 40;
 
-/// What clips that show these bones are compared with.
+/// Templates and metric for clips that show these bones.
 pub struct BoneView {
     /// Columns of laid-out rows that count.
     columns: Vec<usize>,

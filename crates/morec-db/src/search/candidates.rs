@@ -24,7 +24,7 @@ const SCALES: [f64; 3] = [0.7, 1.0, 1.4];
 /// Windows of a clip of which only the best is wanted.
 const A_CLIP: usize = 4;
 
-/// What compares the example, or its image, with windows.
+/// Descriptor of the example, or of its mirror image, for comparison with windows.
 pub struct QueryDescriptor<'a> {
     pub look: Descriptor,
     bones: BoneSet,
@@ -91,7 +91,7 @@ impl<'a> QueryDescriptor<'a> {
         }
     }
 
-    /// How far a stretch of a clip is.
+    /// Distance of a stretch of a clip.
     pub fn distance_of(&self, clip: &Indexed, span: &Range<usize>) -> f32 {
         let over = SummaryDistance::over(self.bones.and(clip.laid.bones));
         self.distance(clip, span, &clip.sums.octaves(span), &over)
@@ -116,7 +116,7 @@ impl<'a> QueryDescriptor<'a> {
     }
 }
 
-/// What it costs that `length` is less than `other` by more than a difference in pace explains: 0 to 1.
+/// Cost of `length` being less than `other` by more than a difference in pace explains: 0 to 1.
 pub fn length_cost(length: usize, other: usize, pace: f64) -> f32 {
     (1.0 - pace * length as f64 / other.max(1) as f64).max(0.0) as f32
 }

@@ -17,7 +17,7 @@ pub struct NearCopy {
     pub of: ClipId,
     /// The shorter one; the whole of it lies in the other.
     pub copy: ClipId,
-    /// Where in the longer one, seconds.
+    /// Start in the longer one, seconds.
     pub start_secs: f64,
     /// Until where.
     pub stop_secs: f64,
@@ -113,7 +113,7 @@ fn pair(
     })
 }
 
-/// Where `short` lies in `long` at the same pace, and the mean squared distance there. Warping would forgive a second
+/// Best place of `short` in `long` at the same pace, and the mean squared distance there. Warping would forgive a second
 /// take its timing, and timing is what no second take has in common with the first.
 fn alongside(short: &Rows, long: &Rows, columns: &[usize]) -> Option<(f32, usize)> {
     let limit = SAME * short.len() as f32;

@@ -11,11 +11,11 @@ use rayon::prelude::*;
 
 /// Neighbours of a node: about as many as a class has examples at least; more would link classes.
 const NEIGHBOURS: usize = 15;
-/// Which neighbour's distance is a node's scale (Zelnik-Manor and Perona).
+/// Rank of the neighbour whose distance is a node's scale (Zelnik-Manor and Perona).
 pub const SCALE_NEIGHBOUR: usize = 7;
-/// How far similarity spreads, `α`.
+/// Share of similarity that is passed on, `α`.
 const SPREAD: f32 = 0.8;
-/// What is left after so many rounds is below `α^ROUNDS`, 2 · 10⁻⁵ of the whole.
+/// Rounds of diffusion; the rest is below `α^ROUNDS`, 2 · 10⁻⁵ of the whole.
 const ROUNDS: usize = 50;
 
 /// A symmetric graph: for each node its neighbours and `S`.

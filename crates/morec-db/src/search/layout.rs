@@ -1,10 +1,10 @@
 //! One layout for rows of any set of bones, and its mirror image.
 
-use morec::features::{BONES, BoneSet, FeatureParams, Rows, mirrored_rows, opposite_bone};
+use morec::features::{BoneSet, FeatureParams, RowLayout, Rows, mirrored_rows, opposite_bone};
 
 /// Values in a laid-out row: directions and velocities of every bone, then the root.
-pub const DIM: usize = 6 * BONES + 4;
-/// How kept rows weigh root motion.
+pub const DIM: usize = RowLayout::ALL.dim();
+/// Weight of root motion in kept rows.
 pub const ROOT_WEIGHT: f64 = FeatureParams::ROOT_WEIGHT;
 
 /// Rows over all bones; those that a clip does not show are 0.
@@ -16,19 +16,17 @@ pub struct CanonicalRows {
 
 /// Puts the columns of `bones` where those of all bones lie.
 pub fn to_canonical(rows: &Rows, bones: BoneSet) -> CanonicalRows {
-    let present: Vec<usize> = bones.indices().collect();
-    let b = present.len();
+    let from = RowLayout::of(bones);
+    let to = RowLayout::ALL;
     let mut out = Rows::new(DIM);
     let mut laid = [0f32; DIM];
     for row in rows.iter() {
         laid.fill(0.0);
-        for (at, bone) in present.iter().enumerate() {
-            for block in 0..2 {
-                let (from, to) = (3 * (block * b + at), 3 * (block * BONES + bone));
-                laid[to..to + 3].copy_from_slice(&row[from..from + 3]);
-            }
+        for (slot, bone) in bones.indices().enumerate() {
+            laid[to.direction(bone)].copy_from_slice(&row[from.direction(slot)]);
+            laid[to.velocity(bone)].copy_from_slice(&row[from.velocity(slot)]);
         }
-        laid[6 * BONES..].copy_from_slice(&row[6 * b..]);
+        laid[to.root()].copy_from_slice(&row[from.root()]);
         out.push(&laid);
     }
     CanonicalRows { rows: out, bones }
@@ -36,23 +34,18 @@ pub fn to_canonical(rows: &Rows, bones: BoneSet) -> CanonicalRows {
 
 /// The columns of the directions of `bones`.
 pub fn directions(bones: BoneSet) -> Vec<usize> {
-    bones.indices().flat_map(|b| 3 * b..3 * b + 3).collect()
+    bones
+        .indices()
+        .flat_map(|bone| RowLayout::ALL.direction(bone))
+        .collect()
 }
 
 /// The columns of `bones` and the root: what two clips can be compared by.
 pub fn shared_columns(bones: BoneSet) -> Vec<usize> {
-    let of_block = |block: usize| {
-        bones
-            .indices()
-            .flat_map(move |b| (0..3).map(move |i| 3 * (block * BONES + b) + i))
-    };
-    of_block(0)
-        .chain(of_block(1))
-        .chain(6 * BONES..DIM)
-        .collect()
+    RowLayout::kept_columns(BoneSet::ALL, bones)
 }
 
-/// What a mirror beside the performer shows.
+/// Rows of the mirror image of the performer.
 pub fn mirrored(laid: &CanonicalRows) -> CanonicalRows {
     let bones = opposite_bones(laid.bones);
     // Every bone has its opposite among all.
@@ -60,7 +53,7 @@ pub fn mirrored(laid: &CanonicalRows) -> CanonicalRows {
     CanonicalRows { rows, bones }
 }
 
-/// What the mirror image of a skeleton with `bones` shows.
+/// Bones of the mirror image of a skeleton with `bones`.
 pub fn opposite_bones(bones: BoneSet) -> BoneSet {
     bones
         .indices()

@@ -26,7 +26,7 @@ const SHRINKAGE: f64 = 0.3;
 /// Pairs that say how long learned distances are, at most so many squared.
 const SCALED_ON: usize = 200;
 
-/// What was learned: a projection.
+/// A learned metric: a projection.
 #[derive(Debug, Clone)]
 pub struct LearnedMetric {
     classes: Vec<String>,
@@ -36,7 +36,7 @@ pub struct LearnedMetric {
     projection: DMatrix<f64>,
 }
 
-/// Where a stretch lies in the learned space.
+/// Place of a stretch in the learned space.
 #[derive(Debug, Clone)]
 pub struct Embedding(Vec<f32>);
 
@@ -129,7 +129,7 @@ impl LearnedMetric {
         self.samples
     }
 
-    /// Where a stretch of so many rows lies. Bones that it does not show are taken to be as usual.
+    /// Place of a stretch of so many rows. Bones that it does not show are taken to be average.
     pub fn place(&self, summary: &Summary, rows: usize, bones: BoneSet) -> Embedding {
         let input = input(summary, rows, bones, &self.mean);
         Embedding(
@@ -160,7 +160,7 @@ impl LearnedMetric {
         Some(metric)
     }
 
-    /// What brings the median of learned distances to that of summaries', over pairs of samples.
+    /// Factor that brings the median of learned distances to that of the summaries, over pairs of samples.
     fn length(&self, seen: &[LabelledStretch]) -> Option<f64> {
         let stride = seen.len().div_ceil(SCALED_ON);
         let some: Vec<&LabelledStretch> = seen.iter().step_by(stride).collect();

@@ -16,16 +16,16 @@ use super::windows::shown;
 use super::{Example, SearchIndex};
 use crate::ClipId;
 
-/// How to search.
+/// Options of a search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SearchOptions {
-    /// So many hits at most.
+    /// Most hits.
     pub limit: usize,
     /// Look for the mirror image too.
     pub mirror: bool,
     /// One hit for each clip, its best.
     pub one_a_clip: bool,
-    /// How much the distance along the warping path counts against the summary's and its company's, 0 to 1.
+    /// Weight of the distance along the warping path against that of the summary and its neighbourhood, 0 to 1.
     pub warp_share: f32,
 }
 
@@ -46,9 +46,9 @@ pub struct Hit {
     /// Its clip.
     #[serde(rename = "clip_id")]
     pub clip: ClipId,
-    /// Where it starts, seconds from the clip's beginning.
+    /// Start, seconds from the beginning of the clip.
     pub start_secs: f64,
-    /// Where it stops.
+    /// Stop, seconds.
     pub stop_secs: f64,
     /// 1 for the same motion, towards 0 for another.
     pub score: f32,
@@ -61,10 +61,10 @@ pub struct Hit {
 /// Windows that the graph links at least, as far as there are so many, and at most: distances of all pairs are taken.
 const LINKED: std::ops::RangeInclusive<usize> = 300..=1200;
 
-/// How much what comes over the graph counts, as the logarithm of its share.
+/// Weight of the neighbourhood score, which is the logarithm of its share.
 const COMPANY: f32 = 0.67;
 
-/// What is reached by less than this share is not reached.
+/// Least share of similarity that counts as reached.
 const UNREACHED: f32 = 1e-6;
 
 /// Costs of unlike motion are some times this.
@@ -174,7 +174,7 @@ impl SearchIndex {
         ranked
     }
 
-    /// What comes to each candidate from the example. Mirrored ones stand in the graph as the example sees them.
+    /// Neighbourhood score of each candidate. Mirrored ones stand in the graph as the example sees them.
     fn company(
         &self,
         candidates: &[&WindowDistance],
@@ -214,7 +214,7 @@ impl SearchIndex {
         })
     }
 
-    /// Where within a candidate's surroundings the example lies exactly.
+    /// Exact place of the example near a candidate.
     fn place(
         &self,
         ranked: &Ranked,
@@ -257,7 +257,7 @@ impl SearchIndex {
     }
 }
 
-/// What compares the example, and its image if that is looked for.
+/// Descriptors of the example, and of its mirror image if that is searched for.
 fn probes<'a>(
     example: &Example,
     options: &SearchOptions,
@@ -285,14 +285,14 @@ fn placed(options: &SearchOptions) -> usize {
 /// A candidate and the company it keeps.
 struct Ranked {
     candidate: WindowDistance,
-    /// What came to it over the graph.
+    /// Its neighbourhood score.
     reached: f32,
     /// The distance of the nearest few candidates.
     scale: f32,
 }
 
 impl Ranked {
-    /// What a stretch costs at this distance: that, and how little of the example's company it keeps. What is the
+    /// Cost of a stretch at this distance, with its neighbourhood score. What is the
     /// example over again needs no company.
     fn cost(&self, distance: f32) -> f32 {
         let apart = 1.0 - (-(distance / self.scale).powi(2)).exp();
@@ -300,7 +300,7 @@ impl Ranked {
     }
 }
 
-/// What makes a node: a clip, or a window of it.
+/// Key of a node: a clip, or a window of it.
 fn key(c: &WindowDistance, options: &SearchOptions) -> (usize, usize) {
     (c.clip, if options.one_a_clip { 0 } else { c.span.start })
 }

@@ -7,28 +7,26 @@
 
 use std::ops::Range;
 
-use morec::features::{BONES, BoneSet, opposite_bone, reflected_direction};
+use morec::features::{BONES, BoneSet, RowLayout, opposite_bone, reflected_direction};
 
 use super::layout::ROOT_WEIGHT;
-use super::windows::Sums;
+use super::windows::{Sums, TRAVEL, X};
 
-/// Coordinates of directions.
-const X: usize = 3 * BONES;
 /// Parts that a stretch is divided into.
 const PARTS: usize = 16;
 /// Octaves: between halves, quarters, eighths and sixteenths; within sixteenths.
 const OCTAVES: usize = 5;
-/// Where the mean pose begins.
+/// First value of the mean pose.
 const MEAN: usize = OCTAVES * X;
-/// Where the travel begins.
+/// First value of the travel.
 const ROOT: usize = MEAN + X;
 /// Values in a summary.
-pub const SUMMARY: usize = ROOT + 4;
+pub const SUMMARY: usize = ROOT + TRAVEL;
 
 /// `[standard deviation by octave and coordinate (5 × 33); mean pose (33); asinh of the mean root motion (4)]`.
 pub type Summary = [f32; SUMMARY];
 
-/// What each part's distance counts: about one over its median among windows of everyday motion, except that the mean
+/// Weight of each part's distance: about one over its median among windows of everyday motion, except that the mean
 /// pose, which tells people and styles apart better than motions, counts a sixth of that.
 const WEIGHTS: Weights = Weights {
     motion: 0.9,
@@ -105,11 +103,11 @@ impl Sums {
 }
 
 /// `[standard deviation by coordinate (33); mean pose (33); asinh of the mean root motion (4)]`: a summary without paces.
-pub type MomentVector = [f32; 2 * X + 4];
+pub type MomentVector = [f32; 2 * X + TRAVEL];
 
 /// Those that a summary holds: its octaves add up to the variance.
 pub fn moments_in(summary: &Summary) -> MomentVector {
-    let mut out = [0f32; 2 * X + 4];
+    let mut out = [0f32; 2 * X + TRAVEL];
     for i in 0..X {
         out[i] = (0..OCTAVES)
             .map(|octave| summary[octave * X + i].powi(2))
@@ -124,7 +122,7 @@ impl Sums {
     /// The moments of the rows of `span`, which is not empty.
     pub fn moments_of(&self, span: &Range<usize>) -> MomentVector {
         let (means, variances, root) = self.moments(span);
-        let mut out = [0f32; 2 * X + 4];
+        let mut out = [0f32; 2 * X + TRAVEL];
         for i in 0..X {
             out[i] = variances[i].sqrt() as f32;
             out[X + i] = means[i] as f32;
@@ -172,10 +170,9 @@ impl SummaryDistance {
     /// A lower bound of [`distance`](Self::distance), by the triangle inequality in every coordinate's octaves.
     pub fn by_moments(&self, a: &MomentVector, b: &MomentVector) -> f32 {
         let over = |block: usize| -> f32 {
-            let at = |bone: usize| block * X + 3 * bone;
             self.shared
                 .indices()
-                .map(|bone| squared(&a[at(bone)..at(bone) + 3], &b[at(bone)..at(bone) + 3]))
+                .map(|bone| squared(&a[at(block, bone)], &b[at(block, bone)]))
                 .sum()
         };
         WEIGHTS.motion * (self.scale * over(0)).sqrt()
@@ -185,14 +182,17 @@ impl SummaryDistance {
 
     fn masked(&self, a: &Summary, b: &Summary) -> (f32, f32) {
         let of = |block: usize| -> f32 {
-            let bone = |bone: usize| {
-                let at = block * X + 3 * bone;
-                squared(&a[at..at + 3], &b[at..at + 3])
-            };
+            let bone = |bone: usize| squared(&a[at(block, bone)], &b[at(block, bone)]);
             self.shared.indices().map(bone).sum()
         };
         ((0..OCTAVES).map(of).sum(), of(OCTAVES))
     }
+}
+
+/// Values of one bone in a block of `X`: an octave, or after these the mean pose.
+fn at(block: usize, bone: usize) -> Range<usize> {
+    let place = RowLayout::ALL.direction(bone);
+    block * X + place.start..block * X + place.end
 }
 
 /// Squared Euclidean distance, in eight sums side by side.
@@ -217,15 +217,12 @@ fn squared(a: &[f32], b: &[f32]) -> f32 {
 pub fn mirrored_summary(of: &Summary) -> Summary {
     let mut out = *of;
     for bone in 0..BONES {
-        let (to, from) = (3 * bone, 3 * opposite_bone(bone));
+        let opposite = opposite_bone(bone);
         for octave in 0..OCTAVES {
-            out[octave * X + to..octave * X + to + 3]
-                .copy_from_slice(&of[octave * X + from..octave * X + from + 3]);
+            out[at(octave, bone)].copy_from_slice(&of[at(octave, opposite)]);
         }
-        out[MEAN + to..MEAN + to + 3].copy_from_slice(&reflected_direction(
-            bone,
-            &of[MEAN + from..MEAN + from + 3],
-        ));
+        let pose = reflected_direction(bone, &of[at(OCTAVES, opposite)]);
+        out[at(OCTAVES, bone)].copy_from_slice(&pose);
     }
     out[ROOT] = -of[ROOT];
     out[ROOT + 3] = -of[ROOT + 3];

@@ -2,19 +2,21 @@
 
 use std::ops::Range;
 
-use morec::features::{BONES, Rows};
+use morec::features::{BONES, RowLayout, Rows};
 
-use super::layout::{DIM, ROOT_WEIGHT};
+use super::layout::ROOT_WEIGHT;
 
 /// Coordinates of directions.
-const X: usize = 3 * BONES;
+pub const X: usize = RowLayout::ALL.directions().end;
+/// Values of root motion.
+pub const TRAVEL: usize = RowLayout::ROOT;
 /// Values in a summary: means and standard deviations of directions, mean root motion.
-pub const SUMMARY: usize = 2 * X + 4;
+pub const SUMMARY: usize = 2 * X + TRAVEL;
 
 /// Running sums over rows; entry `i` is over the rows before `i`.
 #[derive(Debug, Clone)]
 pub struct Sums {
-    /// Directions, then root: `X + 4` values for each entry.
+    /// Directions, then root: `X + TRAVEL` values for each entry.
     sums: Vec<f64>,
     /// Squares of directions.
     squares: Vec<f64>,
@@ -22,14 +24,16 @@ pub struct Sums {
 
 impl Sums {
     pub fn of(rows: &Rows) -> Self {
-        let (mut sum, mut square) = ([0f64; X + 4], [0f64; X]);
+        let (mut sum, mut square) = ([0f64; X + TRAVEL], [0f64; X]);
         let mut sums = sum.to_vec();
         let mut squares = square.to_vec();
         for row in rows.iter() {
-            for (i, value) in row[..X].iter().chain(&row[DIM - 4..]).enumerate() {
+            let directions = &row[RowLayout::ALL.directions()];
+            let root = &row[RowLayout::ALL.root()];
+            for (i, value) in directions.iter().chain(root).enumerate() {
                 sum[i] += f64::from(*value);
             }
-            for (i, value) in row[..X].iter().enumerate() {
+            for (i, value) in directions.iter().enumerate() {
                 square[i] += f64::from(*value).powi(2);
             }
             sums.extend(sum);
@@ -40,7 +44,7 @@ impl Sums {
 
     /// Sums of the coordinates of directions over the rows before `at`, which may lie within a row.
     pub fn until(&self, at: f64, out: &mut [f64; X]) {
-        let width = X + 4;
+        let width = X + TRAVEL;
         let row = at.floor() as usize;
         let share = at - at.floor();
         let below = &self.sums[row * width..row * width + X];
@@ -55,8 +59,8 @@ impl Sums {
     }
 
     /// Mean and variance of the coordinates over `span`, not empty, and the root's sums.
-    pub fn moments(&self, span: &Range<usize>) -> ([f64; X], [f64; X], [f64; 4]) {
-        let (width, n) = (X + 4, span.len() as f64);
+    pub fn moments(&self, span: &Range<usize>) -> ([f64; X], [f64; X], [f64; TRAVEL]) {
+        let (width, n) = (X + TRAVEL, span.len() as f64);
         let sum = |i: usize| self.sums[span.end * width + i] - self.sums[span.start * width + i];
         let square = |i: usize| self.squares[span.end * X + i] - self.squares[span.start * X + i];
         let means: [f64; X] = std::array::from_fn(|i| sum(i) / n);
@@ -90,11 +94,11 @@ pub fn distance(a: &[f32; SUMMARY], b: &[f32; SUMMARY], shown: &[bool; X], share
     sum / share + root
 }
 
-/// Which coordinates belong to bones of the set, and the set's share of all.
+/// Coordinates of the bones of the set, and the set's share of all.
 pub fn shown(bones: morec::features::BoneSet) -> ([bool; X], f32) {
     let mut shown = [false; X];
     for bone in bones.indices() {
-        shown[3 * bone..3 * bone + 3].fill(true);
+        shown[RowLayout::ALL.direction(bone)].fill(true);
     }
     (shown, bones.len().max(1) as f32 / BONES as f32)
 }

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
-use morec::features::{FeatureParams, Rows, bones_of_clip, mirrored_rows, rows_of_clip};
+use morec::features::{FeatureParams, RowLayout, Rows, bones_of_clip, mirrored_rows, rows_of_clip};
 use morec::train::align as warp;
 use morec_db::{DbError, MotionDb};
 
@@ -109,7 +109,7 @@ fn path_of(
     let bones = |m: &ClipMotion| bones_of_clip(&m.clip, &m.roles, &m.rest);
     let common = bones(first).and(bones(second));
     // Velocities say how fast, and alignment is to forgive just that.
-    let directions: Vec<usize> = (0..3 * common.len()).collect();
+    let directions: Vec<usize> = RowLayout::of(common).directions().collect();
     let cut = |motion: &ClipMotion, span: Range<f64>| -> Rows {
         let rows = rows_of_clip(&motion.clip, &motion.roles, &motion.rest, common, params);
         let tick = |secs: f64| ((secs * hz).round().max(0.0) as usize).min(rows.len());

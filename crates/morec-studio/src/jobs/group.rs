@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use morec::cluster::{Hierarchy, resampled, squared_distance};
-use morec::features::{BoneSet, FeatureParams, Rows};
+use morec::features::{BoneSet, FeatureParams, RowLayout, Rows};
 use morec_db::labels::{SampleFilter, SampleId, SampleState};
 use morec_db::{ClipId, MotionDb, SegmentKind};
 
@@ -164,16 +164,5 @@ fn only(rows: &Rows, bones: BoneSet, common: BoneSet) -> Rows {
     if bones == common {
         return rows.clone();
     }
-    let n = bones.len();
-    let mut columns = Vec::new();
-    for part in 0..2 {
-        for (place, bone) in bones.indices().enumerate() {
-            if common.contains(bone) {
-                let first = 3 * (part * n + place);
-                columns.extend(first..first + 3);
-            }
-        }
-    }
-    columns.extend(6 * n..6 * n + 4);
-    rows.columns(&columns)
+    rows.columns(&RowLayout::kept_columns(bones, common))
 }

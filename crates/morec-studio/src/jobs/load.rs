@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use morec::clip::Clip;
-use morec::features::{FeatureParams, bones_of_clip, rows_of_clip};
+use morec::features::{FeatureParams, RowLayout, bones_of_clip, rows_of_clip};
 use morec::kinematics::WorldPose;
 use morec::roles::RoleMap;
 use morec_db::{ClipId, MotionDb, StoredClip};
@@ -51,7 +51,7 @@ impl ClipMotion {
             true => Vec::new(),
             false => speeds(
                 &rows_of_clip(&clip, &roles, &rest, bones, &params),
-                bones.len(),
+                RowLayout::of(bones),
             ),
         };
         let body = Body::of(&clip, &roles, rest.end.min(clip.frames.saturating_sub(1)));
@@ -91,10 +91,10 @@ impl ClipMotion {
 }
 
 /// Root mean square of the bones' speeds: rows hold them saturated, which is well for a picture.
-fn speeds(rows: &morec::features::Rows, bones: usize) -> Vec<f32> {
+fn speeds(rows: &morec::features::Rows, layout: RowLayout) -> Vec<f32> {
     let speed = |row: &[f32]| {
-        let velocities = &row[3 * bones..6 * bones];
-        (velocities.iter().map(|v| v * v).sum::<f32>() / bones.max(1) as f32).sqrt()
+        let velocities = &row[layout.velocities()];
+        (velocities.iter().map(|v| v * v).sum::<f32>() / layout.bones().max(1) as f32).sqrt()
     };
     rows.iter().map(speed).collect()
 }

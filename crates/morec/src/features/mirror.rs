@@ -1,6 +1,7 @@
 //! The mirror image of feature rows.
 
 use super::bones::{ALL_BONES, BoneSet};
+use super::layout::RowLayout;
 use super::rows::Rows;
 
 /// The bone of [`ALL_BONES`] on the other side of the body; the same for bones of the middle.
@@ -42,22 +43,18 @@ pub fn mirrored_rows(rows: &Rows, bones: BoneSet) -> Option<Rows> {
         .map(|bone| slot_of(opposite_bone(*bone)))
         .collect();
     let opposite = opposite?;
-    let count = present.len();
+    let layout = RowLayout::of(bones);
     let mut out = Rows::new(rows.dim());
     let mut image = vec![0f32; rows.dim()];
     for row in rows.iter() {
-        for block in 0..2 {
-            for (slot, bone) in present.iter().enumerate() {
-                let from = 3 * (block * count + opposite[slot]);
-                let to = 3 * (block * count + slot);
-                let direction = reflected_direction(*bone, &row[from..from + 3]);
-                image[to..to + 3].copy_from_slice(&direction);
+        for (slot, bone) in present.iter().enumerate() {
+            for place in [RowLayout::direction, RowLayout::velocity] {
+                let seen = reflected_direction(*bone, &row[place(layout, opposite[slot])]);
+                image[place(layout, slot)].copy_from_slice(&seen);
             }
         }
-        let root = 6 * count;
-        image[root..].copy_from_slice(&row[root..]);
-        image[root] = -row[root];
-        image[root + 3] = -row[root + 3];
+        let [lateral, up, forward, turning] = [0, 1, 2, 3].map(|i| row[layout.root()][i]);
+        image[layout.root()].copy_from_slice(&[-lateral, up, forward, -turning]);
         out.push(&image);
     }
     Some(out)

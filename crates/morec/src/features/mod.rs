@@ -4,12 +4,14 @@
 //! velocity with saturated length, then the root's velocity and turning. People of any size, facing anywhere,
 //! on any skeleton come out alike.
 //!
-//! Notation: `b` bones, `d = 6 b + 4` values in a row: `[x (3 b) ; β v (3 b) ; γ root (4)]`, single precision.
+//! Notation: `b` bones, `d = 6 b + 4` values in a row: `[x (3 b) ; β v (3 b) ; γ root (4)]`, single precision; [`RowLayout`]
+//! says where each value stands, and nothing else does.
 //! The same [`FeatureStream`] makes the rows of training clips and of live streams.
 
 mod bones;
 pub(crate) mod grid;
 mod key_pose;
+mod layout;
 mod mirror;
 mod noise;
 mod observe;
@@ -25,11 +27,11 @@ mod stream;
 pub use bones::{ALL_BONES, BONES, Bone, BoneSet};
 pub use grid::MAX_GAP_SECS;
 pub use key_pose::KeyPose;
+pub use layout::RowLayout;
 pub use mirror::{mirrored_rows, opposite_bone, reflected_direction};
 pub use observe::{Observation, Observer};
 pub use of_clip::{bones_of_clip, for_each_pose, rows_of_clip};
 pub use params::FeatureParams;
 pub use retime::retimed_rows;
 pub use rows::Rows;
-pub use smooth::row_dim;
 pub use stream::{FeatureStream, Pushed};

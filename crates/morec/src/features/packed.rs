@@ -8,7 +8,7 @@
 use crate::coder::{Coder, Reader, Whole, Writer};
 
 use super::retime::unsaturated;
-use super::{FeatureParams, Rows};
+use super::{BoneSet, FeatureParams, RowLayout, Rows};
 
 /// Values are whole multiples of this.
 const STEP: f64 = 1.0 / 64.0;
@@ -25,7 +25,8 @@ impl Rows {
     /// must be whole feature rows of `6 b + 4` values. O(values).
     pub fn to_packed(&self, params: &FeatureParams) -> Vec<u8> {
         let mut bytes = (self.len() as u32).to_le_bytes().to_vec();
-        let mut forecast = Forecast::new(self.dim(), params);
+        let layout = RowLayout::from_dim(self.dim()).unwrap_or(RowLayout::of(BoneSet::NONE));
+        let mut forecast = Forecast::new(layout, params);
         let mut coder = Writer::new();
         for row in self.iter() {
             let mut levels: Vec<i64> = row.iter().map(|value| level(f64::from(*value))).collect();
@@ -39,10 +40,7 @@ impl Rows {
     pub fn from_packed(bytes: &[u8], dim: usize, params: &FeatureParams) -> Option<Rows> {
         let (len, codes) = bytes.split_first_chunk::<4>()?;
         let len = u32::from_le_bytes(*len) as usize;
-        if dim < 4 || !(dim - 4).is_multiple_of(6) {
-            return None;
-        }
-        let mut forecast = Forecast::new(dim, params);
+        let mut forecast = Forecast::new(RowLayout::from_dim(dim)?, params);
         let mut coder = Reader::new(codes);
         let mut rows = Rows::new(dim);
         let (mut levels, mut row) = (vec![0i64; dim], vec![0f32; dim]);
@@ -68,8 +66,9 @@ fn level(value: f64) -> i64 {
 
 /// Forecast of the next row, and past errors of forecasts of each kind.
 struct Forecast {
+    layout: RowLayout,
     bones: Vec<BoneHistory>,
-    root: [CoordinateHistory; 4],
+    root: [CoordinateHistory; RowLayout::ROOT],
     tick_secs: f64,
     saturation: f64,
     velocity_weight: f64,
@@ -78,7 +77,7 @@ struct Forecast {
     /// The third, from the direction.
     across: Misses,
     direction: Misses,
-    root_misses: [Misses; 4],
+    root_misses: [Misses; RowLayout::ROOT],
 }
 
 /// A coordinate's last two levels, and how far the last forecast of it was off.
@@ -101,10 +100,11 @@ struct BoneHistory {
 struct Misses([Whole; 12]);
 
 impl Forecast {
-    fn new(dim: usize, params: &FeatureParams) -> Self {
+    fn new(layout: RowLayout, params: &FeatureParams) -> Self {
         let new = || Misses(std::array::from_fn(|_| Whole::of_few_digits()));
         Self {
-            bones: vec![BoneHistory::default(); dim.saturating_sub(4) / 6],
+            layout,
+            bones: vec![BoneHistory::default(); layout.bones()],
             root: Default::default(),
             tick_secs: 1.0 / params.tick_hz(),
             saturation: params.velocity_saturation,
@@ -118,8 +118,8 @@ impl Forecast {
 
     /// Writes a row's levels, or reads them.
     fn row(&mut self, coder: &mut impl Coder, levels: &mut [i64]) {
-        let (directions, rest) = levels.split_at_mut(3 * self.bones.len());
-        let (velocities, root) = rest.split_at_mut(directions.len());
+        let (directions, rest) = levels.split_at_mut(self.layout.directions().len());
+        let (velocities, root) = rest.split_at_mut(self.layout.velocities().len());
         let mut bones = std::mem::take(&mut self.bones);
         let of_bones = directions
             .as_chunks_mut()
@@ -236,7 +236,8 @@ mod tests {
     proptest! {
         #[test]
         fn values_are_within_half_a_step(values in prop::collection::vec(-9f32..9.0, 0..400), bones in 0usize..4) {
-            let rows = Rows::from_values(6 * bones + 4, values);
+            let bones = (0..bones).fold(BoneSet::NONE, BoneSet::with);
+            let rows = Rows::from_values(RowLayout::of(bones).dim(), values);
             let params = FeatureParams::default();
             let again = Rows::from_packed(&rows.to_packed(&params), rows.dim(), &params).unwrap();
             prop_assert_eq!(again.len(), rows.len());

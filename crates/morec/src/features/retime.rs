@@ -1,6 +1,7 @@
 //! Feature rows of the same motion at another speed.
 
 use super::bones::BoneSet;
+use super::layout::RowLayout;
 use super::params::FeatureParams;
 use super::rows::Rows;
 
@@ -15,7 +16,7 @@ pub fn retimed_rows(rows: &Rows, bones: BoneSet, params: &FeatureParams, factor:
     if rows.is_empty() {
         return out;
     }
-    let (velocities, root) = (3 * bones.len(), 6 * bones.len());
+    let layout = RowLayout::of(bones);
     let mut row = vec![0f32; rows.dim()];
     for i in 0..len {
         let at = i as f64 * (rows.len() - 1) as f64 / (len - 1) as f64;
@@ -25,10 +26,10 @@ pub fn retimed_rows(rows: &Rows, bones: BoneSet, params: &FeatureParams, factor:
         for ((out, a), b) in row.iter_mut().zip(rows.row(before)).zip(rows.row(after)) {
             *out = a * (1.0 - share) + b * share;
         }
-        for velocity in row[velocities..root].chunks_exact_mut(3) {
+        for velocity in row[layout.velocities()].chunks_exact_mut(3) {
             slow_down(velocity, params, factor);
         }
-        for value in &mut row[root..] {
+        for value in &mut row[layout.root()] {
             *value /= factor as f32;
         }
         out.push(&row);
@@ -102,7 +103,7 @@ mod tests {
         let retimed = retimed_rows(&usual, BoneSet::ALL, &params, 0.7);
         assert!(retimed.len().abs_diff(fast.len()) <= 1);
         // The same poses at the same velocities: without dividing by the factor velocities are far off.
-        let velocities = 3 * BoneSet::ALL.len()..6 * BoneSet::ALL.len();
+        let velocities = RowLayout::ALL.velocities();
         let slow = FeatureParams {
             velocity_saturation: 1e9,
             ..params

@@ -5,6 +5,7 @@ use nalgebra::Vector4;
 use crate::math::Vec3;
 
 use super::bones::{ALL_BONES, BONES, BoneSet};
+use super::layout::RowLayout;
 use super::noise::{Filter, NoiseMeter, PROBE, WIDEST_FRAMES, filters};
 use super::observe::{Observation, heading_from_world};
 use super::params::FeatureParams;
@@ -121,7 +122,7 @@ impl Smoother {
             pushed: 0,
             next_row_frame: params.frames_per_tick - 1,
             ended: false,
-            row: vec![0.0; row_dim(bones)],
+            row: vec![0.0; RowLayout::of(bones).dim()],
             params: params.clone(),
         }
     }
@@ -185,7 +186,7 @@ impl Smoother {
         }
         let frame = self.next_row_frame as isize;
         let mut row = std::mem::take(&mut self.row);
-        let bones = self.bones.len();
+        let layout = RowLayout::of(self.bones);
         let rate = self.params.rate_hz;
         // np.gradient's convention: central inside, one-sided at an edge.
         let (before, after) = (
@@ -201,14 +202,16 @@ impl Smoother {
             let position = here[bone] * weight;
             let velocity = (soon[bone] - then[bone]) * (weight * per_secs);
             let saturated = velocity / (1.0 + velocity.norm() / self.params.velocity_saturation);
-            for axis in 0..3 {
-                row[3 * slot + axis] = position[axis] as f32;
-                row[3 * (bones + slot) + axis] =
-                    (saturated[axis] * self.params.velocity_weight) as f32;
+            for (out, value) in row[layout.direction(slot)].iter_mut().zip(&position) {
+                *out = *value as f32;
+            }
+            for (out, value) in row[layout.velocity(slot)].iter_mut().zip(&saturated) {
+                *out = (value * self.params.velocity_weight) as f32;
             }
         }
-        for (slot, value) in self.root_motion(frame, &kernels.root).iter().enumerate() {
-            row[6 * bones + slot] = (value * self.params.root_weight) as f32;
+        let root = self.root_motion(frame, &kernels.root);
+        for (out, value) in row[layout.root()].iter_mut().zip(&root) {
+            *out = (value * self.params.root_weight) as f32;
         }
         self.row = row;
         self.next_row_frame += self.params.frames_per_tick;
@@ -267,9 +270,4 @@ impl Smoother {
         );
         velocity.push((b.yaw_rad - a.yaw_rad) * per_secs)
     }
-}
-
-/// Values in a feature row over `bones`: directions, velocities (3 each) and 4 of root motion.
-pub fn row_dim(bones: BoneSet) -> usize {
-    6 * bones.len() + 4
 }

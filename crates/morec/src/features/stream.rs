@@ -6,7 +6,7 @@ use super::observe::{Observation, Observer};
 use super::params::FeatureParams;
 use super::smooth::Smoother;
 use super::spikes::SpikeFilter;
-use super::{KeyPose, row_dim};
+use super::{KeyPose, RowLayout};
 
 /// Effect of a pose on the stream.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,7 +43,7 @@ impl FeatureStream {
             observer: Observer::new(bones),
             smoother: Smoother::new(bones, params),
             grid: Grid::new(params.rate_hz),
-            dim: row_dim(bones),
+            dim: RowLayout::of(bones).dim(),
             bones,
         }
     }

@@ -1,71 +1,20 @@
 //! Files that are packed, in UTF-16, or hold several clips of which one is meant.
 
 use std::borrow::Cow;
-use std::fs::{self, File};
-use std::io::{self, Read, Seek};
-use std::path::{Path, PathBuf};
+use std::fs::File;
+use std::io::{Read, Seek};
+use std::path::Path;
 
-use crate::clip::Clip;
 use crate::formats::container::{self, Member};
 use crate::formats::probe::{Format, format_of_name, probe};
 use crate::formats::{ParseError, Place, Warning, mocopi};
 
+use super::choice::{chosen, split_choice};
+use super::neighbours::Around;
 use super::{ClipFile, FileError, FileErrorKind, FileReader, is_large};
 
 /// Archives in archives are opened so deep.
 const DEEPEST: usize = 3;
-
-/// Place of files that another file needs.
-#[derive(Clone, Copy)]
-pub(super) enum Around<'a> {
-    /// On disk.
-    Folder,
-    /// In the same archive.
-    Archive(&'a [Member]),
-}
-
-impl Around<'_> {
-    /// A file by its path.
-    pub(super) fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
-        match self {
-            Around::Folder => fs::read(path),
-            Around::Archive(members) => members
-                .iter()
-                .find(|member| Path::new(&member.path) == path)
-                .map(|member| member.bytes.clone())
-                .ok_or_else(|| io::Error::from(io::ErrorKind::NotFound)),
-        }
-    }
-
-    /// A file beside another.
-    pub(super) fn file(&self, path: &Path, name: &str) -> Option<Vec<u8>> {
-        match (self, path == Path::new("-")) {
-            (Around::Folder, true) => None,
-            _ => self.read(&path.with_file_name(name)).ok(),
-        }
-    }
-}
-
-/// The file that `path` names and which of its clips: `FILE#2` is the second, `FILE#name` the one of that name. A file whose
-/// own name has a `#` is that file.
-pub fn split_choice(path: &Path) -> (PathBuf, Option<String>) {
-    let text = path.to_string_lossy();
-    if path.exists() {
-        return (path.to_owned(), None);
-    }
-    for (at, _) in text
-        .match_indices('#')
-        .collect::<Vec<_>>()
-        .into_iter()
-        .rev()
-    {
-        let file = Path::new(&text[..at]);
-        if file.is_file() || text[..at] == *"-" {
-            return (file.to_owned(), Some(text[at + 1..].to_owned()));
-        }
-    }
-    (path.to_owned(), None)
-}
 
 impl FileReader {
     /// Reads `bytes`, which are the file at `path` (`FILE#2` and `FILE#name` choose one of its clips); `-` is a stream without
@@ -247,25 +196,6 @@ fn choose(mut file: ClipFile, choice: Option<&str>) -> Result<ClipFile, FileErro
         file.clips = chosen(file.clips, choice)?;
     }
     Ok(file)
-}
-
-/// The clip of number `choice`, from 1, or of that name (all of it or what follows the file's).
-fn chosen(clips: Vec<Clip>, choice: &str) -> Result<Vec<Clip>, ParseError> {
-    let named = |clip: &Clip| {
-        let rest = clip.name.split_once('#').map(|(_, rest)| rest);
-        let last = clip.name.rsplit('#').next();
-        clip.name == choice || rest == Some(choice) || last == Some(choice)
-    };
-    let numbered = choice.parse::<usize>().ok();
-    let numbered = numbered.filter(|n| (1..=clips.len()).contains(n));
-    let place = clips.iter().position(named).or(numbered.map(|n| n - 1));
-    let names: Vec<&str> = clips.iter().take(20).map(|c| c.name.as_str()).collect();
-    let Some(place) = place else {
-        let found = format!("{} clips: {}", clips.len(), names.join(", "));
-        let expected = format!("a clip `{choice}` in the file");
-        return Err(ParseError::new(Place::File, expected, found));
-    };
-    Ok(clips.into_iter().skip(place).take(1).collect())
 }
 
 #[cfg(test)]

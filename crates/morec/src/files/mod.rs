@@ -14,17 +14,19 @@
 
 mod archives;
 mod bounded;
+mod choice;
 mod error;
 mod folder;
+mod neighbours;
 mod reader;
 mod skeletons;
 mod takes;
 
 use std::path::Path;
 
-pub use archives::split_choice;
 pub(crate) use bounded::write_whole;
 pub use bounded::{LARGEST_FILE, LARGEST_STREAM, each_piece, is_large, read_file, read_stream};
+pub use choice::split_choice;
 pub use error::{FileError, FileErrorKind};
 pub use folder::{Listing, list};
 pub use reader::{ClipFile, FileReader};

@@ -19,7 +19,7 @@ use crate::import::SignedAxis;
 use crate::import::{ImportOptions, Stated, Take, normalize};
 use crate::kinematics::WorldPose;
 
-use super::archives::Around;
+use super::neighbours::Around;
 use super::skeletons::{SkeletonFile, prefer_stated, skeletons_among, skeletons_near};
 use super::{FileError, FileErrorKind, Takes, list, read_file, read_stream, split_choice};
 

@@ -2,7 +2,7 @@
 
 use super::{Limits, ParseError, Place};
 
-/// What stands between whole and fraction.
+/// Decimal separator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Decimal {
     Point,

@@ -5,7 +5,7 @@ use std::io::{Cursor, Read};
 
 use super::{ParseError, Place};
 
-/// So many bytes are unpacked however small an archive is,
+/// Bytes that are unpacked however small an archive is,
 const FREE_BYTES: u64 = 64 << 20;
 /// so many for each of its bytes (text of motion has 3 to 20, stillness some hundred),
 const BYTES_A_BYTE: u64 = 256;
@@ -23,7 +23,7 @@ pub struct Member {
     pub bytes: Vec<u8>,
 }
 
-/// What an archive may unpack to.
+/// Most bytes that an archive may unpack to.
 fn budget(packed: usize) -> u64 {
     FREE_BYTES
         .saturating_add((packed as u64).saturating_mul(BYTES_A_BYTE))

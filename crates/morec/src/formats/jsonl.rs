@@ -29,7 +29,7 @@ struct PoseRecord {
     rotations: BTreeMap<String, Option<[f64; 4]>>,
 }
 
-/// What one performer did.
+/// Recorded motion of one performer.
 #[derive(Default)]
 struct RecordedPerformer {
     times: Vec<Option<f64>>,

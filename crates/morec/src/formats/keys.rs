@@ -30,7 +30,7 @@ const ANY_HZ: f64 = 60.0;
 /// Keys farther apart than this were set by hand; motion between them is sampled more finely.
 const SPARSE_SECS: f64 = 0.11;
 
-/// How keys are to be sampled.
+/// Sampling times of keys.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct KeyGrid {
     /// Time of the first frame.

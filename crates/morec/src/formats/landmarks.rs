@@ -153,7 +153,7 @@ fn no_frames(document: &Value) -> ParseError {
     ParseError::new(Place::File, expected, found)
 }
 
-/// Whether somewhere in it are points with x and y, or numbers in threes as detectors in pictures write them.
+/// True if somewhere in it are points with x and y, or numbers in threes as detectors in pictures write them.
 fn is_flat(value: &Value, depth: usize) -> bool {
     let flat = |point: &Value| match point {
         Value::Object(fields) => {
@@ -219,7 +219,7 @@ fn elements(value: &Value) -> Option<Vec<&Value>> {
     }
 }
 
-/// How many bodies stand beside each other in a frame.
+/// Number of bodies in a frame.
 fn people_in(value: &Value, depth: usize) -> usize {
     if depth == 0 || point_list(value).is_some() {
         return usize::from(depth > 0);
@@ -352,7 +352,7 @@ fn name_of(point: &Value, number: usize) -> String {
     said.unwrap_or_else(|| number.to_string())
 }
 
-/// Where a point is; not a number where it says `null`.
+/// Position of a point; NaN where it says `null`.
 fn place_of(point: &Value) -> Option<Vec3> {
     let number = |value: Option<&Value>| match value? {
         Value::Null => Some(f64::NAN),

@@ -3,7 +3,7 @@
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::smooth::CompressedClip;
 
-/// So many rotations are made of a file however small it is: an hour of a body that stands still,
+/// Rotations that are made of a file however small it is: an hour of a body that stands still,
 const FREE_ROTATIONS: usize = 1 << 24;
 /// and so many for each of its bytes. Real motion has ten or so.
 const ROTATIONS_A_BYTE: usize = 24;

@@ -9,7 +9,7 @@ use super::{Limits, Loaded, ParseError, Place, Warning, keys};
 use crate::clip::Joint;
 use crate::math::{Quat, Vec3};
 
-/// When the packets have no times.
+/// Rate if the packets have no times.
 const ASSUMED_HZ: f64 = 50.0;
 
 /// Names and parents by bone number, for packets that carry no skeleton.

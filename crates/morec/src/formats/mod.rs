@@ -15,6 +15,7 @@ pub mod gltf;
 pub mod jsonl;
 mod keys;
 pub mod landmarks;
+mod loaded;
 #[cfg(test)]
 mod mangle;
 pub mod mclip;
@@ -34,44 +35,10 @@ mod timing;
 pub mod trc;
 mod xml;
 
-use crate::clip::Clip;
 use crate::math::Vec3;
 pub use crate::parse_error::{ParseError, Place, Warning};
-
-/// What a file declares is believed only up to here.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Limits {
-    /// Joints in one file.
-    pub joints: usize,
-    /// Joints from a root to a leaf.
-    pub depth: usize,
-    /// Bytes in one line.
-    pub line_bytes: usize,
-    /// Frames in one clip.
-    pub frames: usize,
-}
-
-impl Default for Limits {
-    fn default() -> Self {
-        // The largest files seen in the wild have 173 joints and some ten thousand frames; a day at 120 Hz has
-        // ten million.
-        Self {
-            joints: 4096,
-            depth: 256,
-            line_bytes: 1 << 20,
-            frames: 20_000_000,
-        }
-    }
-}
-
-/// What reading a file gave.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Loaded {
-    /// One clip for each character in the file, in file order.
-    pub clips: Vec<Clip>,
-    /// What was repaired or looks wrong.
-    pub warnings: Vec<Warning>,
-}
+pub use loaded::{Limits, Loaded};
+use timing::rate_not_used;
 
 /// Reads the formats of whole scenes and suits: [MVNX](mvnx), [glTF](gltf), FBX (feature `fbx`), [SMPL](smpl), [SMD](smd), and
 /// [mocopi], and of points that need nothing but the file ([NTU](ntu), [landmarks], [NumPy](numpy)). `rate_hz` replaces the rate where the file holds frames; keys in seconds keep theirs. `None` for
@@ -106,12 +73,6 @@ pub fn read_scene(
         }
         loaded
     }))
-}
-
-/// What is said of a rate given for a file whose keys stand at times.
-fn rate_not_used() -> Warning {
-    let text = "its keys stand at times, not frames; the rate given is not used";
-    Warning::new(Place::File, text)
 }
 
 /// Clips of points whose positions are at hand: one, or one for each subject (`Anna:LFHD`) whose points make a body. For

@@ -10,13 +10,13 @@ pub(super) struct Array {
     pub(super) values: Vec<f64>,
 }
 
-/// What stands before the numbers.
+/// Header before the numbers.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct NpyHeader {
     pub(super) descr: String,
     fortran_order: bool,
     pub(super) shape: Vec<usize>,
-    /// Where the numbers begin.
+    /// Start of the numbers.
     begin: usize,
 }
 
@@ -112,7 +112,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Array, ParseError> {
     })
 }
 
-/// Whether an array holds objects of Python.
+/// True if an array holds objects of Python.
 pub(super) fn is_of_objects(bytes: &[u8]) -> bool {
     header(bytes).is_ok_and(|header| header.descr.contains('O'))
 }

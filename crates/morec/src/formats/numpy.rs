@@ -65,7 +65,7 @@ const RATE: [&str; 7] = [
 /// Models of face and hands beside the body: their points come behind its 33.
 const WITH_HANDS_AND_FACE: [usize; 4] = [75, 543, 553, 1629];
 
-/// Whether an archive with files of these paths may hold positions and no poses of SMPL.
+/// True if an archive with files of these paths may hold positions and no poses of SMPL.
 pub fn has_positions(paths: &[String]) -> bool {
     let has = |key: &str| paths.iter().any(|path| key_of(path) == key);
     POSITIONS.iter().any(|key| has(key)) && !super::smpl::has_poses(paths)
@@ -140,7 +140,7 @@ pub fn read(
     table.into_loaded(name, warnings, limits)
 }
 
-/// What was found in an archive.
+/// Arrays found in an archive.
 #[derive(Default)]
 struct ArrayArchive {
     numbers: BTreeMap<String, Array>,
@@ -170,7 +170,7 @@ impl ArrayArchive {
     }
 }
 
-/// How an array holds its points.
+/// Layout of the points in an array.
 struct PointArray {
     frames: usize,
     people: usize,

@@ -1,26 +1,18 @@
 //! From a table of points to clips: what C3D, TRC and tables of positions have in common.
 
 mod gaps;
+mod point;
+
+pub(super) use self::point::{Point, SHORT_GAP_SECS, UNSEEN};
 
 use self::gaps::{Filled, union};
+use self::point::{SHOWN, is_seen};
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::clip::{Clip, Points};
 use crate::math::Vec3;
 use crate::roles::points::{recognise_posed, subject_of};
 
-/// Gaps of up to this are filled and trusted: markers hardly leave a straight line in so little time.
-pub(super) const SHORT_GAP_SECS: f64 = 0.25;
-/// Names shown in a warning.
-const SHOWN: usize = 6;
-
-/// One point over time; a position that is not finite was not seen.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Point {
-    pub(super) name: String,
-    pub(super) positions: Vec<Vec3>,
-}
-
-/// What a file of points holds.
+/// Points of a file with their rate and unit.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct PointTable {
     pub(super) points: Vec<Point>,
@@ -28,13 +20,6 @@ pub(super) struct PointTable {
     pub(super) metres_per_unit: Option<f64>,
     /// True if a point at the origin was not seen.
     pub(super) zero_is_missing: bool,
-}
-
-/// A position that was not seen.
-pub(super) const UNSEEN: Vec3 = Vec3::new(f64::NAN, f64::NAN, f64::NAN);
-
-fn is_seen(position: &Vec3) -> bool {
-    position.iter().all(|c| c.is_finite())
 }
 
 impl PointTable {
@@ -159,7 +144,7 @@ impl PointTable {
     }
 }
 
-/// Whether points make a body, by their names and by where they are in some frames that show them all.
+/// True if points make a body, by their names and by where they are in some frames that show them all.
 fn is_body(points: &[&Point]) -> bool {
     const LOOKED_AT: usize = 8;
     let names: Vec<&str> = points.iter().map(|point| point.name.as_str()).collect();
@@ -222,7 +207,7 @@ pub(super) fn check_size(points: usize, frames: usize, bytes: usize) -> Result<(
     Err(ParseError::new(Place::File, expected, found))
 }
 
-/// Whether the point `joint` was not seen at `frame`. O(gaps).
+/// True if the point `joint` was not seen at `frame`. O(gaps).
 pub(crate) fn is_gap_at(clip: &Clip, joint: usize, frame: usize) -> bool {
     let gaps = clip.points.iter().flat_map(|points| &points.gaps);
     gaps.into_iter()
@@ -242,7 +227,7 @@ pub(super) fn named_unit(clip: &Clip) -> (&'static str, f64) {
     }
 }
 
-/// What a unit of length is called in files, in metres.
+/// Metres in a unit of length of this name.
 pub(super) fn metres_of(unit: &str) -> Option<f64> {
     match unit
         .trim_matches(['\0', ' ', '\t'])

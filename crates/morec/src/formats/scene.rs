@@ -28,7 +28,7 @@ impl Local {
 pub(super) struct SceneNode {
     pub(super) name: String,
     pub(super) parent: Option<usize>,
-    /// When nothing moves it.
+    /// Rest transform.
     pub(super) rest: Local,
     /// True if it is a joint of a skeleton.
     pub(super) joint: bool,
@@ -56,7 +56,7 @@ impl SceneSkeleton {
         self.joints.len()
     }
 
-    /// Whether a node moves the joints: is one of them or above one. O(log nodes).
+    /// True if a node moves the joints: is one of them or above one. O(log nodes).
     pub(super) fn moved_by(&self, node: usize) -> bool {
         self.sorted.binary_search(&node).is_ok()
     }
@@ -285,11 +285,11 @@ fn only_children(nodes: &[SceneNode]) -> Vec<Option<usize>> {
         .collect()
 }
 
-/// How a rig is sampled.
+/// Sampling of a rig.
 pub(super) struct Sampling<'a> {
     pub(super) nodes: &'a [SceneNode],
     pub(super) grid: KeyGrid,
-    /// What a joint is called, by its node.
+    /// Name of a joint, by its node.
     pub(super) name: &'a dyn Fn(usize) -> String,
     /// Bytes that the keys have, for the limit on frames.
     pub(super) bytes: usize,

@@ -4,7 +4,7 @@ use super::points::{Point, SHORT_GAP_SECS, UNSEEN};
 use super::{Place, Warning};
 use crate::math::Vec3;
 
-/// What is known of a file's rate besides the times of its frames.
+/// Facts about a file's rate besides the times of its frames.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Clock {
     /// Said by the user, in place of everything else.
@@ -13,6 +13,12 @@ pub(super) struct Clock {
     pub(super) stated_hz: Option<f64>,
     /// Taken if nothing says.
     pub(super) assumed_hz: f64,
+}
+
+/// Warning about a rate given for a file whose keys stand at times.
+pub(super) fn rate_not_used() -> Warning {
+    let text = "its keys stand at times, not frames; the rate given is not used";
+    Warning::new(Place::File, text)
 }
 
 /// A step between frames that differs by more than this from the usual one is irregular, in steps.

@@ -1,76 +1,10 @@
 //! Which way is up, and making it Y.
 
-use std::fmt;
-use std::str::FromStr;
-
-use super::Stated;
 use super::body::BodyMeasures;
+use super::options::Stated;
+use super::signed_axis::SignedAxis;
 use crate::clip::Clip;
 use crate::math::{Axis, Quat, Vec3, same_hemisphere};
-
-/// An axis with a direction; written `y`, `-z`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct SignedAxis {
-    /// The axis.
-    pub axis: Axis,
-    /// Against its direction.
-    pub negative: bool,
-}
-
-impl SignedAxis {
-    /// Up in every imported clip.
-    pub const Y: SignedAxis = SignedAxis {
-        axis: Axis::Y,
-        negative: false,
-    };
-
-    /// The unit vector.
-    pub fn unit(self) -> Vec3 {
-        let unit = self.axis.unit().into_inner();
-        if self.negative { -unit } else { unit }
-    }
-
-    /// A rotation by quarter turns that takes this axis to Y.
-    pub fn to_y(self) -> Quat {
-        y_from(self)
-    }
-}
-
-impl fmt::Display for SignedAxis {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let sign = if self.negative { "-" } else { "" };
-        write!(f, "{sign}{}", ["x", "y", "z"][self.axis.index()])
-    }
-}
-
-/// Text that is no axis.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("expected x, y, z, -x, -y or -z, found `{0}`")]
-pub struct NoAxis(String);
-
-impl FromStr for SignedAxis {
-    type Err = NoAxis;
-
-    fn from_str(text: &str) -> Result<Self, NoAxis> {
-        let (negative, letter) = match text.strip_prefix('-') {
-            Some(letter) => (true, letter),
-            None => (false, text.strip_prefix('+').unwrap_or(text)),
-        };
-        let axis = match letter.to_ascii_lowercase().as_str() {
-            "x" => Axis::X,
-            "y" => Axis::Y,
-            "z" => Axis::Z,
-            _ => return Err(NoAxis(text.to_owned())),
-        };
-        Ok(Self { axis, negative })
-    }
-}
-
-impl serde::Serialize for SignedAxis {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_str(self)
-    }
-}
 
 /// The axis that the format states, unless the body clearly stands along another; else the one the body tells.
 pub(super) fn choose(
@@ -194,7 +128,7 @@ pub(super) fn turn_up(clip: &mut Clip, up: SignedAxis) {
     if up == SignedAxis::Y {
         return;
     }
-    let turn = y_from(up);
+    let turn = up.to_y();
     let joints = clip.skeleton.len();
     let roots: Vec<usize> = (0..joints)
         .filter(|&j| clip.skeleton.joints()[j].parent.is_none())
@@ -226,17 +160,4 @@ pub(super) fn turn_up(clip: &mut Clip, up: SignedAxis) {
             offset
         }
     });
-}
-
-/// A rotation by quarter turns that takes `up` to Y.
-fn y_from(up: SignedAxis) -> Quat {
-    use std::f64::consts::{FRAC_PI_2, PI};
-    match (up.axis, up.negative) {
-        (Axis::Y, false) => Quat::identity(),
-        (Axis::Y, true) => Axis::X.rotation(PI),
-        (Axis::Z, false) => Axis::X.rotation(-FRAC_PI_2),
-        (Axis::Z, true) => Axis::X.rotation(FRAC_PI_2),
-        (Axis::X, false) => Axis::Z.rotation(FRAC_PI_2),
-        (Axis::X, true) => Axis::Z.rotation(-FRAC_PI_2),
-    }
 }

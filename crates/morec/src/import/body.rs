@@ -1,6 +1,6 @@
 //! Measurements of the body over a clip, in the file's own units and axes.
 
-use super::SignedAxis;
+use super::signed_axis::SignedAxis;
 use crate::clip::Clip;
 use crate::kinematics::WorldPose;
 use crate::math::Vec3;

@@ -5,10 +5,13 @@ use std::path::{Path, PathBuf};
 use proptest::prelude::*;
 
 use super::*;
+use crate::clip::Clip;
 use crate::clip::{Joint, JointTrack, Skeleton};
 use crate::formats::{Limits, acclaim, bvh};
+use crate::kinematics::WorldPose;
 use crate::math::{Axis, Quat, Vec3};
 use crate::roles::Role;
+use crate::roles::mapping::Mapping;
 
 /// A person of 1.75 m, Y-up, metres, who swings the right arm forward; `walks` metres a frame along Z.
 fn person(frames: usize, walks: f64) -> Clip {

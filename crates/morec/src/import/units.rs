@@ -1,7 +1,8 @@
 //! How long the file's unit of length is, from how tall a body is.
 
 use super::body::BodyMeasures;
-use super::{SignedAxis, Stated};
+use super::options::Stated;
+use super::signed_axis::SignedAxis;
 use crate::clip::Clip;
 use crate::roles::proportions as human;
 

@@ -18,6 +18,7 @@
 //!
 //! A file of a version this program knows opens in every later release; `testdata/index/` keeps one of each.
 
+mod error;
 mod manifest;
 mod model;
 mod read;
@@ -32,10 +33,8 @@ use std::path::Path;
 
 use crate::roles::{Role, RoleMap};
 
+pub use error::{INDEX_VERSION, IndexError};
 pub use model::{Model, SensitivityError};
-
-/// Version of index files that this program writes, and the newest it reads.
-pub const INDEX_VERSION: u32 = 1;
 
 /// Origin of an index.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
@@ -103,32 +102,4 @@ impl MotionIndex {
         }
         filled
     }
-}
-
-/// Why bytes are not a usable index.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum IndexError {
-    /// Another kind of file, or one cut off inside its header.
-    #[error("not a morec index, or cut short: {0}")]
-    Foreign(String),
-    /// Written by a later release.
-    #[error("index version {found}, this morec reads up to {INDEX_VERSION}: use a newer morec")]
-    Newer {
-        /// The file's version.
-        found: u32,
-    },
-    /// Trained by a method this release does not have.
-    #[error("trained by the method {0:?}, which this morec does not have: use a newer morec")]
-    Method(String),
-    /// The bytes are not those that were written.
-    #[error("damaged: the checksum is {found:08x}, the file says {expected:08x}")]
-    Checksum {
-        /// The checksum that the file states.
-        expected: u32,
-        /// The checksum of its bytes.
-        found: u32,
-    },
-    /// Parts that do not fit together.
-    #[error("damaged: {0}")]
-    Content(String),
 }

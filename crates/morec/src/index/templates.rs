@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::features::{Rows, row_dim};
+use crate::features::{RowLayout, Rows};
 use crate::templates::{
     Exemplars, PackedSymmetric, SHAPE_ROWS, TemplateModel, TemplateSample, Verifier,
 };
@@ -104,7 +104,7 @@ fn exemplars(classes: &[Exemplars], dim: usize, step: Option<&[f32]>) -> [(Strin
 
 /// The model of an opened file.
 pub(super) fn read(manifest: &Manifest, tables: &Tables) -> Result<TemplateModel, IndexError> {
-    let dim = row_dim(manifest.bones);
+    let dim = RowLayout::of(manifest.bones).dim();
     let step = if tables.has("rows.step") {
         Some(tables.f32s("rows.step")?)
     } else {

@@ -6,22 +6,18 @@ use crate::features::{BoneSet, KeyPose, Pushed};
 use crate::templates::{ClassMatches, EarlyDetectionParams, TemplateModel};
 
 use super::detection::DetectionBuffer;
-use super::paths::{SvrdmPipeline, TemplatePipeline};
+use super::pipeline::Pipeline;
+use super::svrdm::SvrdmPipeline;
+use super::template_pipeline::TemplatePipeline;
 use super::{Detection, EarlyDetection, Model, RecognizerInput, StartError};
 
 /// Recognises motions in one performer's stream of poses.
 #[derive(Debug, Clone)]
 pub struct Recognizer {
     model: Model,
-    path: Pipeline,
+    pipeline: Box<dyn Pipeline>,
     found: DetectionBuffer,
     now_secs: f64,
-}
-
-#[derive(Debug, Clone)]
-enum Pipeline {
-    Templates(Box<TemplatePipeline>),
-    Svrdm(Box<SvrdmPipeline>),
 }
 
 impl Recognizer {
@@ -32,23 +28,10 @@ impl Recognizer {
     /// # Errors
     /// The model's parts do not fit together, or no bone of a template model is left.
     pub fn new<M: Clone + Into<Model>>(model: &M, bones: BoneSet) -> Result<Self, StartError> {
-        let model = model.clone().into();
-        let (model, path) = match model {
-            Model::Templates(model) => {
-                let path = TemplatePipeline::new(&model, bones)?;
-                (
-                    Model::Templates(path.model.clone()),
-                    Pipeline::Templates(Box::new(path)),
-                )
-            }
-            Model::Svrdm(model) => {
-                let path = SvrdmPipeline::new(&model)?;
-                (Model::Svrdm(model), Pipeline::Svrdm(Box::new(path)))
-            }
-        };
+        let (model, pipeline) = pipeline(model.clone().into(), bones)?;
         Ok(Self {
             model,
-            path,
+            pipeline,
             found: DetectionBuffer::new(),
             now_secs: 0.0,
         })
@@ -64,10 +47,10 @@ impl Recognizer {
         bones: BoneSet,
         matches: ClassMatches,
     ) -> Result<Self, StartError> {
-        let path = TemplatePipeline::replay(&Arc::new(model.clone()), bones, matches)?;
+        let pipeline = TemplatePipeline::replay(&Arc::new(model.clone()), bones, matches)?;
         Ok(Self {
-            model: Model::Templates(path.model.clone()),
-            path: Pipeline::Templates(Box::new(path)),
+            model: Model::Templates(pipeline.model.clone()),
+            pipeline: Box::new(pipeline),
             found: DetectionBuffer::new(),
             now_secs: 0.0,
         })
@@ -80,10 +63,7 @@ impl Recognizer {
 
     /// Seconds from the end of a motion to its report at the earliest: filters, windows, lag.
     pub fn latency_secs(&self) -> f64 {
-        match &self.path {
-            Pipeline::Templates(path) => path.latency_secs(),
-            Pipeline::Svrdm(path) => path.latency_secs(),
-        }
+        self.pipeline.latency_secs()
     }
 
     /// Takes the pose at `time_secs` on the stream's clock and returns what it settled, in order of time.
@@ -96,15 +76,11 @@ impl Recognizer {
         pose: impl Into<RecognizerInput<'p>>,
     ) -> &[Detection] {
         self.found.begin(self.now_secs);
-        if self.breaks_at(time_secs) {
-            self.end_stretch();
+        if self.pipeline.breaks_at(time_secs) {
+            self.pipeline.end_stretch(&mut self.found);
         }
         self.found.reported_secs = time_secs;
-        let (pose, found) = (pose.into(), &mut self.found);
-        let pushed = match &mut self.path {
-            Pipeline::Templates(path) => path.push(time_secs, pose, found),
-            Pipeline::Svrdm(path) => path.push(time_secs, pose, found),
-        };
+        let pushed = self.pipeline.push(time_secs, pose.into(), &mut self.found);
         if matches!(pushed, Pushed::Taken | Pushed::Restarted) {
             self.now_secs = time_secs;
         }
@@ -122,7 +98,7 @@ impl Recognizer {
     /// Ends the stream: returns what its last moments still hold. The next push begins a new stream.
     pub fn finish(&mut self) -> &[Detection] {
         self.found.begin(self.now_secs);
-        self.end_stretch();
+        self.pipeline.end_stretch(&mut self.found);
         &self.found.detections
     }
 
@@ -135,30 +111,26 @@ impl Recognizer {
     /// The motion that seems to be under way after the last push, if any. Tentative: it says nothing about what
     /// [`push`](Self::push) will report, and asking changes nothing of that. Templates only. No allocation.
     pub fn early_detection(&mut self) -> Option<EarlyDetection> {
-        match &mut self.path {
-            Pipeline::Templates(path) => path.early_detection(),
-            Pipeline::Svrdm(_) => None,
-        }
+        self.pipeline.early_detection()
     }
 
     /// Sets the limits of [`early_detection`](Self::early_detection).
     pub fn set_early(&mut self, params: EarlyDetectionParams) {
-        if let Pipeline::Templates(path) = &mut self.path {
-            path.set_early(params);
-        }
+        self.pipeline.set_early(params);
     }
+}
 
-    fn breaks_at(&self, time_secs: f64) -> bool {
-        match &self.path {
-            Pipeline::Templates(path) => path.breaks_at(time_secs),
-            Pipeline::Svrdm(path) => path.breaks_at(time_secs),
+/// The pipeline of a model's method on a stream that shows `bones`, and the model as it is used there.
+fn pipeline(model: Model, bones: BoneSet) -> Result<(Model, Box<dyn Pipeline>), StartError> {
+    Ok(match model {
+        Model::Templates(model) => {
+            let pipeline = TemplatePipeline::new(&model, bones)?;
+            let model = Model::Templates(pipeline.model.clone());
+            (model, Box::new(pipeline))
         }
-    }
-
-    fn end_stretch(&mut self) {
-        match &mut self.path {
-            Pipeline::Templates(path) => path.end_stretch(&mut self.found),
-            Pipeline::Svrdm(path) => path.end_stretch(&mut self.found),
+        Model::Svrdm(model) => {
+            let pipeline = SvrdmPipeline::new(&model)?;
+            (Model::Svrdm(model), Box::new(pipeline))
         }
-    }
+    })
 }

@@ -121,10 +121,11 @@ impl Recording {
         if secs * rate_hz > MOST_FRAMES {
             return Err(RecordingError::TooLong { secs, rate_hz });
         }
-        let tree = RecordedJoints::of(self).ok_or(RecordingError::Nobody { frames })?;
+        let tree =
+            RecordedJoints::of(&self.rig, &self.frames).ok_or(RecordingError::Nobody { frames })?;
         // The last frame counts, even where it lies a little before its place on the grid.
         let count = (secs * rate_hz + 0.5).floor() as usize + 1;
-        Ok(tree.clip(self, name, rate_hz, count))
+        Ok(tree.clip(&self.frames, name, rate_hz, count))
     }
 }
 

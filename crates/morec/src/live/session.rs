@@ -11,7 +11,7 @@ use super::performer::EventOptions;
 use super::status::{SessionCounters, Status, StatusHandle};
 use super::waker::Waker;
 use super::worker::{EventReader, RecognizerCache, StreamWorker, TurnOutcome};
-use super::{Frame, Model, OverflowPolicy, Source, SourceEvent, StartError, stages};
+use super::{Frame, Model, OverflowPolicy, SessionError, Source, SourceEvent, svrdm};
 
 /// Distribution of recognition over threads. Events are the same.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -57,28 +57,6 @@ impl Default for SessionOptions {
             readers: 1,
         }
     }
-}
-
-/// A session that could not begin.
-#[derive(Debug, thiserror::Error)]
-pub enum SessionError {
-    /// The system gave no thread.
-    #[error("no thread for {what}: {error}")]
-    Thread {
-        /// Purpose of the thread.
-        what: &'static str,
-        /// The system's error.
-        error: std::io::Error,
-    },
-    /// Stages on threads of their own were asked for of a method that has none.
-    #[error("layout in stages: expected an index of method svrdm, found {method}")]
-    NoStages {
-        /// The method of the model.
-        method: &'static str,
-    },
-    /// The model's parts do not fit together.
-    #[error(transparent)]
-    Start(#[from] StartError),
 }
 
 /// A source on a thread of its own, recognition on another, joined by bounded wait-free rings.
@@ -178,12 +156,12 @@ impl Session {
                 Ok(readers)
             }
             (Threading::Stages, Model::Svrdm(model)) => {
-                let shared = stages::Shared {
+                let shared = svrdm::Shared {
                     cells: &cells,
                     stop: &stop,
                     waker: &waker,
                 };
-                stages::start(&model, feed, options, &shared, &mut |what, job| {
+                svrdm::start(&model, feed, options, &shared, &mut |what, job| {
                     self.spawn(what, job)
                 })
             }

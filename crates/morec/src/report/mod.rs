@@ -25,18 +25,7 @@ use crate::player::Reel;
 use html::{Text, with_contents};
 use palette::Palette;
 
-pub use notes::learning_notes;
-
-/// Training data of a class, for the notes.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct TrainedClass {
-    /// Its name.
-    pub class: String,
-    /// Number of samples that trained it.
-    pub samples: usize,
-    /// Number of people who made them, if known.
-    pub people: Option<usize>,
-}
+pub use notes::{TrainedClass, learning_notes};
 
 /// Everything a report shows.
 #[derive(Debug, Clone, Copy)]

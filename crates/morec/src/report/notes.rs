@@ -1,12 +1,22 @@
 //! Notes in plain words: what the figures say about what to teach next.
 
-use super::TrainedClass;
 use crate::eval::{Boundaries, ClassFigures, Evaluation};
 
 /// Fewer training samples than this are called few.
 const FEW_SAMPLES: usize = 5;
 /// A median boundary error of at least this is worth a note.
 const NOTABLE_BIAS_SECS: f64 = 0.2;
+
+/// Training data of a class, for the notes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TrainedClass {
+    /// Its name.
+    pub class: String,
+    /// Number of samples that trained it.
+    pub samples: usize,
+    /// Number of people who made them, if known.
+    pub people: Option<usize>,
+}
 
 /// Mistakes and remedies, the most frequent first, a sentence each. Never empty.
 ///

@@ -17,7 +17,7 @@ use crate::train::LabelSet;
 use crate::train::svrdm::{BranchReport, FeatureSample};
 use crate::train::thesis::{Estimated, SvrdmOptions, train_svrdm};
 
-use super::{Picture, ReproduceError, Setting, Study, frames_of, rows_of};
+use super::study::{Picture, ReproduceError, Setting, Study, frames_of, rows_of};
 
 /// Classification rates of samples (Eq. 5.1).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]

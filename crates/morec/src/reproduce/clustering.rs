@@ -10,7 +10,7 @@ use crate::pca::{ComponentCount, Moments, Pca};
 use crate::pivots::{PivotSet, PoseParams};
 use crate::train::StreamKind;
 
-use super::{ReproduceError, Study, frames_of, rows_of};
+use super::study::{ReproduceError, Study, frames_of, rows_of};
 
 /// Clusters at one τ.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -8,7 +8,7 @@ use crate::plot::{Bar, LaneChart};
 use crate::segment::{PpcaParams, segment};
 use crate::train::{StreamKind, TrainClip};
 
-use super::{Picture, ReproduceError, Study, rows_of};
+use super::study::{Picture, ReproduceError, Study, rows_of};
 
 /// A clip and where it was cut.
 #[derive(Debug, Clone, PartialEq, Serialize)]

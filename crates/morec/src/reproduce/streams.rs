@@ -13,7 +13,7 @@ use crate::train::StreamKind;
 
 use crate::train::thesis::SvrdmOptions;
 
-use super::{Picture, ReproduceError, Setting, Study, rows_of};
+use super::study::{Picture, ReproduceError, Setting, Study, rows_of};
 
 /// One half split.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -1,6 +1,7 @@
 //! Role maps that cannot be true: each doubt is a sentence that says what to do.
 
-use super::names::{NameMeaning, read};
+use super::meaning::NameMeaning;
+use super::names::read;
 use super::tree::JointTree;
 use super::{Role, RoleMap, proportions};
 use crate::clip::Skeleton;
@@ -317,7 +318,7 @@ impl PosedBody<'_> {
                     .iter()
                     .any(|r| r.side == Some(side) && fits(r.kind))
             };
-            side(super::names::Side::Left) && side(super::names::Side::Right)
+            side(super::meaning::Side::Left) && side(super::meaning::Side::Right)
         };
         [
             both(&|k| k == NameMeaning::Thigh),

@@ -4,7 +4,7 @@
 //! far the two limbs of the pair begin apart, and by where the chain bends in the poses at hand. Names weigh most, but no
 //! name makes a bone without a length, nor two thighs in one point.
 
-use super::names::{NameMeaning, Side};
+use super::meaning::{NameMeaning, Side};
 use super::proportions as human;
 use super::tree::JointTree;
 

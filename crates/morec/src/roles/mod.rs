@@ -5,7 +5,9 @@ mod find;
 mod languages;
 mod limbs;
 pub mod mapping;
+mod meaning;
 mod names;
+mod pairs;
 pub mod points;
 pub(crate) mod proportions;
 mod sides;
@@ -14,11 +16,10 @@ mod trunk;
 mod words;
 
 pub use check::check;
-pub use find::{RolesFound, find, find_moving};
+pub use find::{find, find_moving};
+pub use pairs::RolesFound;
 
 use std::fmt;
-
-use crate::clip::Skeleton;
 
 /// A body part that recognition knows; played by the joint at its near end (the thigh by the hip joint, the
 /// shin by the knee, the hand by the wrist).
@@ -144,11 +145,6 @@ pub struct RoleMap {
 }
 
 impl RoleMap {
-    /// The roles of `skeleton`, by its tree first and its names second; [`find`] says more.
-    pub fn find(skeleton: &Skeleton) -> Self {
-        find(skeleton).map
-    }
-
     /// The joint that plays `role`.
     pub fn joint(&self, role: Role) -> Option<usize> {
         self.joints[role.index()]

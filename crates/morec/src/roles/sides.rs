@@ -1,7 +1,7 @@
 //! Which limb of a pair is the left one.
 
 use super::limbs::Limb;
-use super::names::Side;
+use super::meaning::Side;
 use super::tree::{JointTree, MirroredPair};
 use super::{Role, RoleMap};
 use crate::math::Vec3;

@@ -5,6 +5,7 @@ use proptest::prelude::*;
 use super::mapping::{self, Mapping};
 use super::*;
 use crate::clip::Joint;
+use crate::clip::Skeleton;
 use crate::formats::Place;
 use crate::math::Vec3;
 

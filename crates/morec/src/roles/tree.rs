@@ -1,6 +1,7 @@
 //! The shape of a skeleton: bone lengths, reaches, and pairs of limbs that mirror each other.
 
-use super::names::{NameMeaning, Reading, Side, read};
+use super::meaning::{NameMeaning, Side};
+use super::names::{Reading, read};
 use crate::clip::Skeleton;
 use crate::math::Vec3;
 

@@ -1,8 +1,8 @@
 //! Hips, torso, neck and head.
 
 use super::Role;
-use super::find::{LimbPairs, RolesFound};
-use super::names::NameMeaning;
+use super::meaning::NameMeaning;
+use super::pairs::{LimbPairs, RolesFound};
 use super::tree::JointTree;
 
 /// A first joint above the shoulders by no more than this share of the legs is the neck's, else the head's.

@@ -1,6 +1,6 @@
 //! The words of joint names: taking names apart, and what each word means.
 
-use super::names::{NameMeaning, Side};
+use super::meaning::{NameMeaning, Side};
 
 /// Lower-case words of a name: cut at anything but letters and where the case changes, digits dropped.
 pub(super) fn words(name: &str) -> Vec<String> {

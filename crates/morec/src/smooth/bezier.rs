@@ -1,6 +1,8 @@
 //! Cubic Bézier segments of one channel.
 
-use nalgebra::{Matrix4x3, Vector3, Vector4};
+use nalgebra::{Matrix4x3, Quaternion, Vector3, Vector4};
+
+use crate::math::Quat;
 
 /// A value of a channel: a quaternion `[x, y, z, w]`, or a position `[x, y, z, 0]`.
 pub(crate) type ChannelValue = Vector4<f64>;
@@ -15,6 +17,11 @@ pub enum ChannelKind {
     Rotation,
     /// Positions of a joint in its parent's frame.
     Position,
+}
+
+/// A curve's value, which has length 1 already.
+pub(super) fn rotation(point: &ChannelValue) -> Quat {
+    Quat::new_unchecked(Quaternion::from(*point))
 }
 
 /// Bernstein polynomials of degree 3 at `t` (thesis, Eq. 3.3).

@@ -1,7 +1,7 @@
 //! A clip to curves.
 
 use super::bound::{self, chord, too_coarse};
-use super::measure::Errors;
+use super::errors::Errors;
 use super::params::{SmoothError, SmoothParams};
 use super::samples::{ChannelSamples, with_continuous_signs};
 use super::split::ChannelFit;

@@ -28,6 +28,7 @@ mod bezier;
 mod bound;
 mod compress;
 mod curve;
+mod errors;
 mod fit;
 mod lattice;
 mod measure;
@@ -43,7 +44,7 @@ pub use bezier::ChannelKind;
 pub(crate) use bezier::ChannelValue;
 pub use compress::compress;
 pub use curve::{Bezier, Curve};
-pub use measure::Errors;
+pub use errors::Errors;
 pub use params::{SmoothError, SmoothParams};
 pub use stored::{MAGIC, VERSION};
 

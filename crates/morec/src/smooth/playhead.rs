@@ -1,7 +1,6 @@
 //! Curves frame by frame: only the frame at hand is held, however long the clip is.
 
-use super::bezier::{ChannelKind, ChannelValue, CurveSegment};
-use super::sample::rotation;
+use super::bezier::{ChannelKind, ChannelValue, CurveSegment, rotation};
 use crate::clip::{Clip, JointTrack, Skeleton};
 use crate::kinematics::WorldPose;
 use crate::math::{Quat, Vec3};

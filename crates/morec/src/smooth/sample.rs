@@ -1,8 +1,6 @@
 //! Curves back to frames, at any rate.
 
-use nalgebra::Quaternion;
-
-use super::bezier::ChannelValue;
+use super::bezier::rotation;
 use super::{CompressedClip, Curve};
 use crate::clip::{Clip, JointTrack};
 use crate::math::{Quat, Vec3, same_hemisphere};
@@ -89,9 +87,4 @@ fn fill_rotations(
         };
         at += joints;
     });
-}
-
-/// A curve's value, which has length 1 already.
-pub(super) fn rotation(point: &ChannelValue) -> Quat {
-    Quat::new_unchecked(Quaternion::from(*point))
 }

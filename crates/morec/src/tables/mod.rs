@@ -11,7 +11,7 @@ pub use csv::{Content, write as write_csv};
 pub use npz::write as write_npz;
 
 use crate::clip::Clip;
-use crate::features::{ALL_BONES, BoneSet, FeatureParams, Rows, bones_of_clip, rows_of_clip};
+use crate::features::{FeatureParams, RowLayout, Rows, bones_of_clip, rows_of_clip};
 use crate::import::Take;
 use crate::kinematics::WorldPose;
 
@@ -43,24 +43,11 @@ impl Features {
         }
         let rows = rows_of_clip(clip, roles, &report.rest_frames, bones, &params);
         (!rows.is_empty()).then(|| Self {
-            names: column_names(bones),
+            names: RowLayout::column_names(bones),
             rows,
             rate_hz: params.tick_hz(),
         })
     }
-}
-
-/// Names of the columns of feature rows over `bones`, in their order.
-fn column_names(bones: BoneSet) -> Vec<String> {
-    let mut names = Vec::with_capacity(6 * bones.len() + 4);
-    for what in ["direction", "velocity"] {
-        for bone in bones.indices() {
-            let bone = ALL_BONES[bone].name;
-            names.extend(["lateral", "up", "forward"].map(|axis| format!("{bone}.{what}.{axis}")));
-        }
-    }
-    names.extend(["lateral", "up", "forward", "turning"].map(|axis| format!("root.{axis}")));
-    names
 }
 
 /// Calls `each` with the number and the world pose of every frame.

@@ -97,7 +97,10 @@ fn every_table_has_as_many_cells_as_names() {
 
 #[test]
 fn features_are_named_one_by_one() {
-    let names = column_names(crate::features::BoneSet::of_roles(&waving().roles));
-    let dim = crate::features::row_dim(crate::features::BoneSet::of_roles(&waving().roles));
+    let names = crate::features::RowLayout::column_names(crate::features::BoneSet::of_roles(
+        &waving().roles,
+    ));
+    let dim =
+        crate::features::RowLayout::of(crate::features::BoneSet::of_roles(&waving().roles)).dim();
     assert_eq!(names.len(), dim);
 }

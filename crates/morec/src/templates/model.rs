@@ -2,7 +2,7 @@
 
 use crate::classes::{ClassId, ClassInfo};
 use crate::decode::{CandidatePolicy, DecodeParams};
-use crate::features::{BoneSet, FeatureParams, Rows, row_dim};
+use crate::features::{BoneSet, FeatureParams, RowLayout, Rows};
 
 use super::{Calibration, Exemplars, OperatingPoint, PackedSymmetric, Verifier, threshold_at};
 
@@ -77,7 +77,7 @@ impl TemplateModel {
     pub fn check(&self) -> Result<(), TemplateModelError> {
         self.features.check().map_err(TemplateModelError::Value)?;
         self.decode.check().map_err(TemplateModelError::Value)?;
-        let expected = row_dim(self.bones);
+        let expected = RowLayout::of(self.bones).dim();
         let tables = self.samples.iter().map(|s| ("a template", s.rows.dim()));
         let tables = tables.chain(self.negatives.iter().map(|r| ("a negative", r.dim())));
         let matrices = [
@@ -189,7 +189,7 @@ impl TemplateModel {
         if bones == self.bones {
             return Ok(self.clone());
         }
-        let keep = kept_columns(self.bones, bones);
+        let keep = RowLayout::kept_columns(self.bones, bones);
         let total = self.total.restricted(&keep);
         let left = total.unpack().trace() / self.total.unpack().trace();
         // A normalised distance has lost that share of its scale already.
@@ -256,24 +256,4 @@ fn restricted_verifier(verifier: &Verifier, share: f32, pick: impl Fn(&Rows) -> 
         classes: verifier.classes.iter().map(restrict).collect(),
         ..verifier.clone()
     }
-}
-
-/// Columns of a row over `all` that a row over `kept` has too.
-fn kept_columns(all: BoneSet, kept: BoneSet) -> Vec<usize> {
-    let slots: Vec<usize> = all
-        .indices()
-        .enumerate()
-        .filter(|(_, b)| kept.contains(*b))
-        .map(|(s, _)| s)
-        .collect();
-    let coordinates = |base: usize| {
-        slots
-            .iter()
-            .flat_map(move |s| (0..3).map(move |axis| base + 3 * s + axis))
-    };
-    let root = 6 * all.len();
-    coordinates(0)
-        .chain(coordinates(3 * all.len()))
-        .chain(root..root + 4)
-        .collect()
 }

@@ -7,8 +7,9 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
 
+use super::args::Args;
 use super::form::{self, ClipForm};
-use super::{Args, Wanted};
+use super::wanted::Wanted;
 use crate::files;
 use crate::progress::SlowProgress;
 

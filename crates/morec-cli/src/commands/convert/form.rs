@@ -8,7 +8,7 @@ use morec::formats::{bvh, c3d, gltf, jsonl, trc};
 use morec::import::{ImportOptions, Take, normalize};
 use morec::tables::{Content, write_csv, write_npz};
 
-use super::Wanted;
+use super::wanted::Wanted;
 use crate::output;
 
 /// A form of clips.
@@ -128,7 +128,7 @@ fn write_points(points: &Clip, form: ClipForm, path: &Path) -> Result<()> {
     })
 }
 
-/// Where the joints are; formats of points name their unit, so one is inferred where the clip says none.
+/// Positions of the joints; formats of points name their unit, so one is inferred where the clip has none.
 fn points_of(clip: Clip, wanted: &Wanted) -> Result<Clip> {
     if !clip.has_rotations() || clip.frames == 0 {
         return Ok(clip);

@@ -9,7 +9,7 @@ use morec::import::Take;
 use morec::segment::{KernelParams, PpcaParams, Segmentation, kernel_cuts, segment};
 use serde::Serialize;
 
-use super::{Args, CheckedCutter};
+use super::args::{Args, CheckedCutter};
 use crate::json::write_json;
 use crate::output;
 use crate::poses::{PoseReader, PosedClip};
@@ -29,7 +29,7 @@ struct FoundCut {
     secs: f64,
     /// First frame of what begins here, counted from 0.
     frame: usize,
-    /// Which pass found it (ppca).
+    /// Passes that found it (ppca).
     #[serde(flatten)]
     passes: Option<Passes>,
 }

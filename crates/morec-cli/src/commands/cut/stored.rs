@@ -6,8 +6,9 @@ use std::process::ExitCode;
 use anyhow::{Result, bail};
 use morec_db::{ClipCuts, ClipFilter, SegmentKind};
 
-use super::{Args, CheckedCutter};
+use super::args::{Args, CheckedCutter};
 use crate::database;
+use crate::print;
 use crate::progress::StageBar;
 use crate::table::TextTable;
 
@@ -32,7 +33,7 @@ pub fn run(path: &Path, cutter: CheckedCutter, args: &Args) -> Result<ExitCode> 
         };
         db.cut_by_hand(clip, &args.at)?;
         let said = format!("{}: {} segments\n", clip.name, args.at.len() + 1);
-        return crate::commands::db::print(said).map(|()| ExitCode::SUCCESS);
+        return print::print(said).map(|()| ExitCode::SUCCESS);
     }
     let report = db.cut(&clips, &cutter, &bar)?;
     drop(bar);
@@ -40,7 +41,7 @@ pub fn run(path: &Path, cutter: CheckedCutter, args: &Args) -> Result<ExitCode> 
         eprintln!("morec: left as it is: {clip}: {reason}");
     }
     if args.json {
-        crate::commands::db::print_json(&report.cuts)?;
+        print::print_json(&report.cuts)?;
     } else {
         print(&report.cuts)?;
     }
@@ -76,7 +77,7 @@ fn print(cuts: &[ClipCuts]) -> Result<()> {
         ]);
     }
     let segments: usize = cuts.iter().map(|c| c.cuts_secs.len() + 1).sum();
-    crate::commands::db::print_table(
+    print::print_table(
         &table,
         &format!("{segments} segments of {} clips\n", cuts.len()),
     )

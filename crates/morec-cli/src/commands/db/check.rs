@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use super::copies::{self, Copy};
 use crate::database;
+use crate::print;
 use crate::progress::StageBar;
 
 /// Read everything in a database and say what is wrong
@@ -58,21 +59,21 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         ExitCode::FAILURE
     };
     if args.json {
-        super::print_json(&Checked { health, copies })?;
+        print::print_json(&Checked { health, copies })?;
         return Ok(code);
     }
     match health.faults.as_slice() {
-        [] => super::print(format_args!(
+        [] => print::print(format_args!(
             "whole: {} clips decoded, {} with feature rows, {} indexes\n",
             health.clips, health.rows, health.indexes
         ))?,
-        faults => super::print(faults.join("\n") + "\n")?,
+        faults => print::print(faults.join("\n") + "\n")?,
     }
     for copy in copies.iter().flatten() {
-        super::print(format_args!("{copy}\n"))?;
+        print::print(format_args!("{copy}\n"))?;
     }
     if copies.is_some_and(|c| c.is_empty()) {
-        super::print("no clip is nearly another\n")?;
+        print::print("no clip is nearly another\n")?;
     }
     Ok(code)
 }

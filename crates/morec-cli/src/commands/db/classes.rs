@@ -9,6 +9,7 @@ use morec_db::labels::SampleId;
 
 use super::samples;
 use crate::database;
+use crate::print;
 use crate::table::TextTable;
 
 /// List the classes, or rename, merge, split and forget them
@@ -35,7 +36,7 @@ pub struct Args {
     /// Move samples to another class, by number
     #[arg(long, value_delimiter = ',', value_name = "NUMBERS", requires = "into")]
     split: Vec<i64>,
-    /// Where --merge and --split move samples; a new class or one that is there
+    /// Class to which --merge and --split move samples, new or existing
     #[arg(long, value_name = "CLASS")]
     into: Option<String>,
     /// Forget a class and its samples, or all whose names match (`*` any text, `?` one character)
@@ -71,7 +72,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     }
     let classes = db.classes()?;
     if args.json {
-        super::print_json(&classes)?;
+        print::print_json(&classes)?;
         return Ok(ExitCode::SUCCESS);
     }
     let mut table = TextTable::new(["class", "samples", "secs", "proposed", "rejected"])
@@ -85,7 +86,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             class.rejected.to_string(),
         ]);
     }
-    super::print_table(&table, &format!("{} classes\n", classes.len()))?;
+    print::print_table(&table, &format!("{} classes\n", classes.len()))?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -99,7 +100,7 @@ fn changed(args: &Args) -> Result<MotionDb> {
     } else if let Some(pattern) = &args.forget {
         let (classes, samples) = db.remove_classes(pattern)?;
         if !args.json {
-            super::print(format_args!(
+            print::print(format_args!(
                 "forgotten: {classes} classes with {samples} samples\n"
             ))?;
         }

@@ -8,6 +8,7 @@ use morec::roles::Role;
 use morec_db::{ClipFilter, ClipId, ClipInfo, ClipUpdate};
 
 use crate::database;
+use crate::print;
 use crate::table::TextTable;
 
 /// List the clips of a database, or change what is known about them
@@ -89,7 +90,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if let [old, new] = args.rename.as_slice() {
         database::open(&args.db)?.rename_clip(old, new)?;
         if !args.json {
-            super::print(format_args!("{old} is called {new} now\n"))?;
+            print::print(format_args!("{old} is called {new} now\n"))?;
             return Ok(ExitCode::SUCCESS);
         }
     }
@@ -111,7 +112,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let all = clips.len();
     clips.truncate(args.limit.unwrap_or(all));
     if args.json {
-        super::print_json(&clips)?;
+        print::print_json(&clips)?;
     } else {
         print(&clips, all)?;
     }
@@ -157,9 +158,9 @@ fn remove(args: &Args, filter: &ClipFilter) -> Result<ExitCode> {
     let samples = db.remove_clips(&ids)?;
     if args.json {
         let names: Vec<&String> = clips.iter().map(|clip| &clip.name).collect();
-        super::print_json(&serde_json::json!({ "removed": names, "samples": samples }))?;
+        print::print_json(&serde_json::json!({ "removed": names, "samples": samples }))?;
     } else {
-        super::print(format_args!(
+        print::print(format_args!(
             "{} clips removed, and {samples} samples with them; morec db undo brings them back\n",
             clips.len()
         ))?;
@@ -184,5 +185,5 @@ fn print(clips: &[ClipInfo], all: usize) -> Result<()> {
             clip.tags.join(" "),
         ]);
     }
-    super::print_table(&table, &super::counted(clips.len(), all, "clips"))
+    print::print_table(&table, &print::counted(clips.len(), all, "clips"))
 }

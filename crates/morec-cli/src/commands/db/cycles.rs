@@ -12,6 +12,7 @@ use morec_db::{ClipFilter, ClipId, MotionDb};
 use serde::Serialize;
 
 use crate::database;
+use crate::print;
 use crate::progress::StageBar;
 use crate::table::TextTable;
 
@@ -24,7 +25,7 @@ pub struct Args {
     /// The database
     #[arg(value_name = "DB")]
     db: PathBuf,
-    /// What is looked at
+    /// Stretches to look at
     #[arg(long, value_enum, default_value = "cuts")]
     of: CycledSpans,
     /// Labelled stretches of this class only
@@ -41,7 +42,7 @@ pub struct Args {
     json: bool,
 }
 
-/// What is looked at.
+/// Stretches to look at.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 enum CycledSpans {
     /// Segments that morec cut found
@@ -59,7 +60,7 @@ struct Counted {
     class: Option<String>,
     start_secs: f64,
     stop_secs: f64,
-    /// How many labels the stretch was put together from.
+    /// Number of labels that the stretch was put together from.
     labels: usize,
     cycles: Option<Cycles>,
     #[serde(skip)]
@@ -96,7 +97,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         split(&mut db, &found)?;
     }
     if args.json {
-        super::print_json(&found)?;
+        print::print_json(&found)?;
     } else {
         print(&found)?;
     }
@@ -229,5 +230,5 @@ fn print(found: &[Counted]) -> Result<()> {
         0 => String::new(),
         all => format!("{right} of {all} stretches of several labels counted right\n"),
     };
-    super::print_table(&table, &last)
+    print::print_table(&table, &last)
 }

@@ -8,6 +8,7 @@ use morec_db::{Effect, Turned};
 
 use crate::database;
 use crate::dates;
+use crate::print;
 use crate::table::TextTable;
 
 /// List the changes of a database, the last one first
@@ -56,7 +57,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let all = steps.len();
     steps.truncate(args.limit);
     if args.json {
-        super::print_json(&steps)?;
+        print::print_json(&steps)?;
         return Ok(ExitCode::SUCCESS);
     }
     let mut table = TextTable::new(["step", "when", "what", "rows", ""]).least(["when", "rows"]);
@@ -78,7 +79,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         0 => String::new(),
         more => format!("; {more} earlier ones not shown (--limit)"),
     };
-    super::print_table(&table, &format!("{all} steps{more}\n"))?;
+    print::print_table(&table, &format!("{all} steps{more}\n"))?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -114,10 +115,10 @@ pub fn redo(args: &TurnArgs) -> Result<ExitCode> {
 
 fn say(args: &TurnArgs, turned: Option<&Turned>, done: &str) -> Result<ExitCode> {
     if args.json {
-        super::print_json(&turned)?;
+        print::print_json(&turned)?;
         return Ok(ExitCode::SUCCESS);
     }
-    super::print(match turned {
+    print::print(match turned {
         Some(turned) => text(turned, done),
         None => format!("there is nothing that can be {done}\n"),
     })?;

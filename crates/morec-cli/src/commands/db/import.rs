@@ -14,6 +14,8 @@ use super::copies::{self, Copy};
 use super::samples;
 use crate::database;
 use crate::files::{self, ReadArgs};
+use crate::interrupt;
+use crate::print;
 use crate::progress::StageBar;
 
 /// Import clips, or folders of clips
@@ -46,13 +48,13 @@ pub struct Args {
         conflicts_with_all = ["source", "licence", "subject", "tags"]
     )]
     in_place_of: Option<String>,
-    /// Where the material is from
+    /// Origin of the material
     #[arg(long, value_name = "TEXT")]
     source: Option<String>,
     /// Under which terms it may be used
     #[arg(long, value_name = "TEXT")]
     licence: Option<String>,
-    /// Who is seen
+    /// Person in the clips
     #[arg(long, value_name = "NAME")]
     subject: Option<String>,
     /// A word to find the clips by; may be given several times
@@ -94,18 +96,18 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let report = db.import(&paths, &reader, &about, &bar)?;
     let near_copies = near_copies(&mut db, &report, &bar)?;
     if args.json {
-        super::print_json(&Reported {
+        print::print_json(&Reported {
             report: &report,
             near_copies: &near_copies,
         })?;
     } else {
-        super::print(text(&report, paths.len(), begun.elapsed().as_secs_f64()))?;
+        print::print(text(&report, paths.len(), begun.elapsed().as_secs_f64()))?;
         for copy in &near_copies {
-            super::print(format_args!("  {copy}\n"))?;
+            print::print(format_args!("  {copy}\n"))?;
         }
     }
     if report.cancelled {
-        return Ok(super::STOPPED.into());
+        return Ok(interrupt::STOPPED.into());
     }
     let refused = report.counts().refused;
     Ok(if refused > 0 || left_out {
@@ -127,13 +129,13 @@ fn replace(
     };
     let replaced = db.replace_clip(clip, path, reader)?;
     if args.json {
-        super::print_json(&replaced)?;
+        print::print_json(&replaced)?;
         return Ok(ExitCode::SUCCESS);
     }
     for warning in &replaced.warnings {
         eprintln!("morec: {}: {warning}", path.display());
     }
-    super::print(format_args!(
+    print::print(format_args!(
         "{}: {:.2} s now, {:.2} s before; {} samples kept, {} removed, {} cuts removed; morec db undo brings it back\n",
         replaced.clip,
         replaced.after_secs,
@@ -155,7 +157,7 @@ struct Reported<'a> {
     near_copies: &'a [Copy],
 }
 
-/// Which of the clips that have just come are nearly others.
+/// Clips of this import that are nearly others.
 fn near_copies(db: &mut MotionDb, report: &ImportLog, bar: &StageBar) -> Result<Vec<Copy>> {
     let names = report.files.iter().flat_map(|(_, outcome)| match outcome {
         ImportOutcome::Imported { clips, .. } => clips.as_slice(),

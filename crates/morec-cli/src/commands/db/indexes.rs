@@ -8,6 +8,7 @@ use anyhow::{Context, Result};
 use crate::database;
 use crate::dates;
 use crate::output;
+use crate::print;
 use crate::table::TextTable;
 
 /// List the indexes that training kept, write one to a file, or remove one
@@ -25,7 +26,7 @@ pub struct Args {
     /// Write this index to the file --output
     #[arg(long, value_name = "NAME", requires = "output")]
     write: Option<String>,
-    /// Where to write it
+    /// File to write it to
     #[arg(short, long, value_name = "INDEX", requires = "write")]
     output: Option<PathBuf>,
     /// Remove this index
@@ -50,7 +51,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     }
     let indexes = db.indexes()?;
     if args.json {
-        super::print_json(&indexes)?;
+        print::print_json(&indexes)?;
         return Ok(ExitCode::SUCCESS);
     }
     let mut table = TextTable::new(["index", "trained", "samples", "kB", ""]).least(["kB"]);
@@ -64,6 +65,6 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             if index.stale { stale } else { "" }.to_owned(),
         ]);
     }
-    super::print_table(&table, &format!("{} indexes\n", indexes.len()))?;
+    print::print_table(&table, &format!("{} indexes\n", indexes.len()))?;
     Ok(ExitCode::SUCCESS)
 }

@@ -6,8 +6,8 @@ use std::process::ExitCode;
 use anyhow::Result;
 use morec_db::DbSummary;
 
-use super::megabytes;
 use crate::database;
+use crate::print::{self, megabytes};
 
 /// Say how much is in a database
 #[derive(clap::Args)]
@@ -30,9 +30,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     }
     let summary = database::open_read_only(&args.db)?.summary()?;
     if args.json {
-        super::print_json(&summary)?;
+        print::print_json(&summary)?;
     } else {
-        super::print(text(&summary))?;
+        print::print(text(&summary))?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use crate::print;
 use anyhow::Result;
 use morec_db::{MotionDb, SCHEMA};
 
@@ -21,9 +22,9 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<ExitCode> {
     MotionDb::create(&args.db)?;
     if args.json {
-        super::print_json(&serde_json::json!({ "path": args.db, "schema": SCHEMA }))?;
+        print::print_json(&serde_json::json!({ "path": args.db, "schema": SCHEMA }))?;
     } else {
-        super::print(format_args!("{}: an empty database\n", args.db.display()))?;
+        print::print(format_args!("{}: an empty database\n", args.db.display()))?;
     }
     Ok(ExitCode::SUCCESS)
 }

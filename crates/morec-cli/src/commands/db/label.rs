@@ -17,6 +17,7 @@ use super::history;
 use crate::database;
 use crate::files::{self, some_of};
 use crate::labels;
+use crate::print;
 use crate::table::TextTable;
 
 /// Read labels from a file, set one by hand, or accept and reject what is there
@@ -42,7 +43,7 @@ pub struct Args {
     /// Files of labels, or folders of them: TSV, CSV, JSON (morec's, BABEL's, Label Studio's), ELAN (.eaf), Audacity (.txt)
     #[arg(value_name = "FILE|DIR")]
     labels: Vec<PathBuf>,
-    /// What form the files are in [default: by their endings and content]
+    /// Form of the files [default: by their endings and content]
     #[arg(long, value_enum)]
     form: Option<FormArg>,
     /// The clip that a file of one clip, or --class, speaks of
@@ -56,16 +57,16 @@ pub struct Args {
         conflicts_with = "labels"
     )]
     class: Option<String>,
-    /// Where it starts, seconds [default: the clip's beginning]
+    /// Start, seconds [default: the clip's beginning]
     #[arg(long, value_name = "SECS", requires = "class")]
     start: Option<f64>,
-    /// Where it stops, seconds [default: the clip's end]
+    /// Stop, seconds [default: the clip's end]
     #[arg(long, value_name = "SECS", requires = "class")]
     stop: Option<f64>,
-    /// What is thought of the samples [default: what the file says, else accepted]
+    /// State of the samples [default: what the file says, else accepted]
     #[arg(long, value_enum)]
     state: Option<StateArg>,
-    /// Who says so
+    /// Author of the change
     #[arg(long, value_name = "NAME", default_value = "user")]
     by: String,
     /// The files are all there is to say about the clips they name: accepted samples that they do not say are moved or
@@ -110,7 +111,7 @@ impl From<FormArg> for LabelFormat {
     }
 }
 
-/// What is thought of a sample.
+/// State of a sample.
 #[derive(ValueEnum, Clone, Copy, Debug)]
 #[allow(missing_docs)]
 pub enum StateArg {
@@ -138,7 +139,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     if let Some(clip) = &args.clip {
         db.find_clip(clip)?;
     }
-    let lengths = super::lengths(&db)?;
+    let lengths = database::lengths(&db)?;
     let mut absent = BTreeMap::new();
     let annotations = match &args.class {
         Some(class) => vec![by_hand(args, class, &lengths)?],
@@ -159,16 +160,16 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             true => Some(named_changes(&db, &done)?),
             false => None,
         };
-        super::print_json(&serde_json::json!({
+        print::print_json(&serde_json::json!({
             "samples": done.counts, "absent_clips": absent, "changes": changes,
         }))?;
         return Ok(code(&samples, &absent));
     }
     say_absent(&db, &absent);
     if args.dry_run {
-        super::print_table(&changes(&db, &done)?, "")?;
+        print::print_table(&changes(&db, &done)?, "")?;
     }
-    super::print(said(&done.counts, args))?;
+    print::print(said(&done.counts, args))?;
     Ok(code(&samples, &absent))
 }
 
@@ -293,9 +294,9 @@ fn undo(db: &mut MotionDb, json: bool) -> Result<ExitCode> {
     }
     let undone = db.undo(None)?;
     if json {
-        super::print_json(&undone)?;
+        print::print_json(&undone)?;
     } else {
-        super::print(match &undone {
+        print::print(match &undone {
             Some(turned) => history::text(turned, "taken back"),
             None => "there is nothing to take back\n".to_owned(),
         })?;

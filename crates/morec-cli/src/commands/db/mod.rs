@@ -20,18 +20,13 @@ mod search;
 mod strip;
 mod vacuum;
 
-use std::io::{IsTerminal, Write};
 use std::process::ExitCode;
 
 use anyhow::Result;
 use clap::Subcommand;
-use morec::labels::ClipLength;
-use morec_db::exchange::ClipLengths;
-use morec_db::{ClipFilter, ClipInfo, DbError, MotionDb};
-use serde::Serialize;
+use morec_db::DbError;
 
-use crate::json::write_json;
-use crate::table::TextTable;
+use crate::interrupt::STOPPED;
 
 /// Keep clips, cuts, classes and labels in one file, and search them
 ///
@@ -76,9 +71,6 @@ enum DbCommand {
     Vacuum(vacuum::Args),
 }
 
-/// Exit code of a command that was told to stop by Ctrl-C.
-const STOPPED: u8 = 130;
-
 /// Does what was asked.
 pub fn run(args: Args) -> Result<ExitCode> {
     match of(args) {
@@ -112,83 +104,5 @@ fn of(args: Args) -> Result<ExitCode> {
         DbCommand::Export(args) => export::run(&args),
         DbCommand::Check(args) => check::run(&args),
         DbCommand::Vacuum(args) => vacuum::run(&args),
-    }
-}
-
-/// The lengths of all clips by name.
-fn lengths(db: &MotionDb) -> Result<ClipLengths> {
-    let length = |c: ClipInfo| {
-        (
-            c.name,
-            ClipLength {
-                frames: c.frames,
-                rate_hz: c.rate_hz,
-            },
-        )
-    };
-    Ok(db
-        .clips(&ClipFilter::default())?
-        .into_iter()
-        .map(length)
-        .collect())
-}
-
-/// One value as JSON on standard output.
-pub fn print_json(value: &impl Serialize) -> Result<()> {
-    let mut out = std::io::stdout().lock();
-    write_json(&mut out, value)?;
-    out.flush()?;
-    Ok(())
-}
-
-/// Text on standard output.
-pub fn print(text: impl std::fmt::Display) -> Result<()> {
-    let mut out = std::io::stdout().lock();
-    write!(out, "{text}")?;
-    out.flush()?;
-    Ok(())
-}
-
-/// A table that fits the terminal, and a last line below it. Whoever reads it through a pipe gets all of it, separated by
-/// tabs, and the last line on standard error.
-pub fn print_table(table: &TextTable, last: &str) -> Result<()> {
-    let mut out = std::io::stdout().lock();
-    if std::io::stdout().is_terminal() {
-        let width = terminal_size::terminal_size().map_or(80, |(width, _)| usize::from(width.0));
-        write!(out, "{}{last}", table.fitted(width))?;
-    } else {
-        write!(out, "{}", table.tabbed())?;
-        eprint!("{last}");
-    }
-    out.flush()?;
-    Ok(())
-}
-
-/// `12 clips`, or `10 of 12 clips` where not all are shown.
-fn counted(shown: usize, all: usize, what: &str) -> String {
-    match shown == all {
-        true => format!("{all} {what}\n"),
-        false => format!("{shown} of {all} {what}\n"),
-    }
-}
-
-/// `12.3 MB`.
-fn megabytes(bytes: u64) -> String {
-    match bytes {
-        0..10_000 => format!("{:.1} kB", bytes as f64 / 1e3),
-        10_000..1_000_000 => format!("{:.0} kB", bytes as f64 / 1e3),
-        _ => format!("{:.1} MB", bytes as f64 / 1e6),
-    }
-}
-
-/// A share on the command line.
-pub fn share(text: &str) -> std::result::Result<f64, String> {
-    let value: f64 = text
-        .parse()
-        .map_err(|_| "expected a number from 0 to 1".to_owned())?;
-    if (0.0..=1.0).contains(&value) {
-        Ok(value)
-    } else {
-        Err("expected a number from 0 to 1".to_owned())
     }
 }

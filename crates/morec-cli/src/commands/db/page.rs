@@ -22,7 +22,7 @@ figcaption{font-size:13px}svg{background:#f4f4f4;border-radius:4px}path{fill:non
 nav.contents{display:flex;flex-wrap:wrap;gap:.2em 1em}nav.contents a{color:inherit}\
 @media(prefers-color-scheme:dark){:root{color-scheme:dark}body{color:#ddd;background:#181818}svg{background:#262626}}";
 
-/// Whether a page can be written there: asked before the work.
+/// Checks that a page can be written there, before the work.
 pub fn check(path: &Path) -> Result<()> {
     output::check_page(path)
 }

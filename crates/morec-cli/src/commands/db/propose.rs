@@ -10,7 +10,9 @@ use morec_db::{ClipFilter, ClipId, MotionDb, Proposal, ProposeOptions, most_info
 use serde::Serialize;
 
 use crate::database;
+use crate::print;
 use crate::progress::StageBar;
+use crate::share::share;
 use crate::table::TextTable;
 
 /// Propose the other samples of the classes that are labelled
@@ -36,10 +38,10 @@ pub struct Args {
     #[arg(long, value_delimiter = ',', value_name = "CLASSES")]
     classes: Vec<String>,
     /// Accept the proposals that are there with at least this score, 0 to 1 (those of groups have 0)
-    #[arg(long, value_name = "SCORE", value_parser = super::share)]
+    #[arg(long, value_name = "SCORE", value_parser = share)]
     accept: Option<f64>,
     /// Reject the proposals that are there with less than this score
-    #[arg(long, value_name = "SCORE", value_parser = super::share)]
+    #[arg(long, value_name = "SCORE", value_parser = share)]
     reject: Option<f64>,
     /// Only list the proposals that are there
     #[arg(long)]
@@ -109,11 +111,11 @@ fn judge(args: &Args) -> Result<ExitCode> {
     let (accepted, rejected) = (accepted.len(), rejected.len());
     let left = all.len() - accepted - rejected;
     if args.json {
-        super::print_json(
+        print::print_json(
             &serde_json::json!({ "accepted": accepted, "rejected": rejected, "left": left }),
         )?;
     } else {
-        super::print(format_args!(
+        print::print(format_args!(
             "{accepted} accepted, {rejected} rejected, {left} left to look at\n"
         ))?;
     }
@@ -163,7 +165,7 @@ fn show(args: &Args, db: &MotionDb, mut proposals: Vec<Proposal>) -> Result<Exit
     if args.json {
         // A new round is printed as a whole; a list is as long as asked for.
         let shown = if args.list { args.limit } else { all.len() };
-        super::print_json(&&all[..shown.min(all.len())])?;
+        print::print_json(&&all[..shown.min(all.len())])?;
         return Ok(ExitCode::SUCCESS);
     }
     let mut table = TextTable::new(["clip", "class", "start", "stop", "score"]).least(["stop"]);
@@ -187,6 +189,6 @@ fn show(args: &Args, db: &MotionDb, mut proposals: Vec<Proposal>) -> Result<Exit
         "{} proposed, {sure} of them likelier right than wrong{more}\n",
         all.len()
     );
-    super::print_table(&table, &last)?;
+    print::print_table(&table, &last)?;
     Ok(ExitCode::SUCCESS)
 }

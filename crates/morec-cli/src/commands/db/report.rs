@@ -7,9 +7,9 @@ use anyhow::Result;
 use morec_db::labels::{DbSample, SampleFilter, SampleState};
 use morec_db::{ClipFilter, ClipInfo, MotionDb, SegmentKind};
 
-use super::megabytes;
 use super::page::{self, Page};
 use crate::database;
+use crate::print::{self, megabytes};
 
 /// Write a page of HTML with a strip of poses for clips, cuts and samples
 ///
@@ -61,9 +61,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     );
     page.write(&args.output, &title, &head)?;
     if args.json {
-        super::print_json(&serde_json::json!({ "path": args.output, "strips": page.strips() }))?;
+        print::print_json(&serde_json::json!({ "path": args.output, "strips": page.strips() }))?;
     } else {
-        super::print(format_args!(
+        print::print(format_args!(
             "{}: {} strips of poses\n",
             args.output.display(),
             page.strips()

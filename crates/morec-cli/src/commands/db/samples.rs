@@ -9,6 +9,7 @@ use morec_db::labels::{DbSample, SampleFilter, SampleId, SampleState};
 
 use super::label::StateArg;
 use crate::database;
+use crate::print;
 use crate::table::TextTable;
 
 /// List samples with their numbers, or remove and move them by number
@@ -44,10 +45,10 @@ pub struct Args {
         conflicts_with = "remove"
     )]
     moved: Option<i64>,
-    /// Where it starts, seconds
+    /// Start, seconds
     #[arg(long, value_name = "SECS", requires = "moved")]
     start: Option<f64>,
-    /// Where it stops, seconds
+    /// Stop, seconds
     #[arg(long, value_name = "SECS", requires = "moved")]
     stop: Option<f64>,
     /// List at most so many
@@ -115,7 +116,7 @@ pub fn print(samples: &[DbSample], json: bool) -> Result<ExitCode> {
 /// The same of some of so many.
 fn print_some(samples: &[DbSample], all: usize, json: bool) -> Result<ExitCode> {
     if json {
-        super::print_json(&samples)?;
+        print::print_json(&samples)?;
         return Ok(ExitCode::SUCCESS);
     }
     let mut table = TextTable::new([
@@ -137,6 +138,6 @@ fn print_some(samples: &[DbSample], all: usize, json: bool) -> Result<ExitCode> 
             s.set_by.clone(),
         ]);
     }
-    super::print_table(&table, &super::counted(samples.len(), all, "samples"))?;
+    print::print_table(&table, &print::counted(samples.len(), all, "samples"))?;
     Ok(ExitCode::SUCCESS)
 }

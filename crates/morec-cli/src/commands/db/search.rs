@@ -16,6 +16,7 @@ use serde::Serialize;
 use super::page::{self, Page};
 use crate::database;
 use crate::files::{self, ReadArgs};
+use crate::print;
 use crate::progress::StageBar;
 use crate::table::TextTable;
 
@@ -38,10 +39,10 @@ pub struct Args {
     /// The example: a clip of the database by name, or a file
     #[arg(value_name = "CLIP|FILE")]
     example: String,
-    /// Where the example starts, seconds [default: the clip's beginning]
+    /// Start of the example, seconds [default: the clip's beginning]
     #[arg(long, value_name = "SECS", default_value_t = 0.0)]
     start: f64,
-    /// Where it stops [default: the clip's end]
+    /// Stop of the example, seconds [default: the clip's end]
     #[arg(long, value_name = "SECS")]
     stop: Option<f64>,
     /// Find what the example's mirror image is like, too
@@ -64,7 +65,7 @@ pub struct Args {
         requires = "learned"
     )]
     classes: Vec<String>,
-    /// How much the exact path counts against the summary of poses and pace, 0 to 1
+    /// Weight of the exact path against the summary of poses and pace, 0 to 1
     #[arg(long, value_name = "SHARE", default_value_t = SearchOptions::default().warp_share)]
     warp_share: f32,
     /// Write a page with a strip of poses for the example and for each hit, too
@@ -87,7 +88,7 @@ struct SearchResult {
     hits: Vec<NamedHit>,
 }
 
-/// What the metric was learned from.
+/// Training data of the metric.
 #[derive(Serialize)]
 struct Learned {
     classes: usize,
@@ -154,7 +155,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         report(path, &db, &shown, args, &found)?;
     }
     if args.json {
-        super::print_json(&found)?;
+        print::print_json(&found)?;
     } else {
         print(&found, index.tick_hz())?;
     }
@@ -172,7 +173,7 @@ fn learn(db: &MotionDb, index: &SearchIndex, args: &Args) -> Result<LearnedMetri
         .context("--learned: label some clips first (morec db label), or search without it")
 }
 
-/// What the example is a stretch of.
+/// Motion that the example is a stretch of.
 enum Shown {
     Kept(Box<ClipInfo>),
     File(Box<StoredClip>),
@@ -283,5 +284,5 @@ fn print(found: &SearchResult, tick_hz: f64) -> Result<()> {
             learned.samples, learned.classes
         ));
     }
-    super::print_table(&table, &text)
+    print::print_table(&table, &text)
 }

@@ -66,14 +66,14 @@ impl Extent {
     }
 }
 
-/// How tall the pose of a frame is; never nothing.
+/// Height of the pose of a frame; never 0.
 fn body_height(clip: &Clip, frame: usize) -> f64 {
     let pose = WorldPose::of(clip, frame);
     let heights = || pose.positions.iter().map(|p| p.y);
     (heights().fold(f64::MIN, f64::max) - heights().fold(f64::MAX, f64::min)).max(0.3)
 }
 
-/// Where the bone begins that ends in `joint`: at its parent; in a clip of points at the role before its own.
+/// Start of the bone that ends in `joint`: its parent; in a clip of points the role before its own.
 fn bone_start(clip: &Clip, roles: &RoleMap, joint: usize) -> Option<usize> {
     use Role::*;
     const BONES: [(Role, Role); 15] = [
@@ -166,7 +166,7 @@ fn view(pose: &WorldPose, roles: &RoleMap) -> (Vec3, Vec3) {
     )
 }
 
-/// Whether a joint belongs to a left limb, a right one, or neither.
+/// Side of the limb that a joint belongs to: left, right, or neither.
 fn side(clip: &Clip, roles: &RoleMap, joint: usize) -> Option<bool> {
     const LEFT: [Role; 3] = [Role::LeftThigh, Role::LeftShoulder, Role::LeftArm];
     const RIGHT: [Role; 3] = [Role::RightThigh, Role::RightShoulder, Role::RightArm];

@@ -5,8 +5,8 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 
-use super::megabytes;
 use crate::database;
+use crate::print::{self, megabytes};
 
 /// Give room that is no longer used back to the disk
 #[derive(clap::Args)]
@@ -35,9 +35,9 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     db.vacuum(args.caches)?;
     let after = db.summary()?.file_bytes;
     if args.json {
-        super::print_json(&serde_json::json!({ "bytes_before": before, "bytes_after": after }))?;
+        print::print_json(&serde_json::json!({ "bytes_before": before, "bytes_after": after }))?;
     } else {
-        super::print(format_args!(
+        print::print(format_args!(
             "{} before, {} now\n",
             megabytes(before),
             megabytes(after)

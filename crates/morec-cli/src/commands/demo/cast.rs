@@ -12,21 +12,21 @@ const SEED: u64 = 2009;
 
 /// Clips, labels, and what to say of them.
 pub struct Cast {
-    /// What is about to be done, for the first step's title.
+    /// Title of the first step.
     pub title: &'static str,
     /// Every file by its path in the demo's folder.
     pub files: Vec<(String, Vec<u8>)>,
-    /// What lies where, for people to read.
+    /// Contents of the folder, for people to read.
     pub contents: Vec<(&'static str, String)>,
     /// Name of the clip that is recognised.
     pub name: String,
     /// Its file, a path in the demo's folder.
     pub clip: String,
-    /// Whose stream it is.
+    /// Performer of the stream.
     pub whose: String,
-    /// Whether there are background clips.
+    /// True if there are background clips.
     pub background: bool,
-    /// What the figures say.
+    /// Meaning of the figures.
     pub caveat: &'static str,
 }
 

@@ -67,12 +67,12 @@ impl DemoFolder {
         self.0.join(name)
     }
 
-    /// Where the detections lie.
+    /// Path of the detections.
     pub fn found(&self) -> PathBuf {
         self.path("found.tsv")
     }
 
-    /// What was written, for people to read.
+    /// Summary of the files, for people to read.
     pub fn contents(&self, cast: &Cast) -> String {
         let mut text = format!("\nWritten to {}:\n", self.0.display());
         for (name, about) in &cast.contents {
@@ -124,7 +124,7 @@ impl DemoFolder {
         std::iter::once(OsString::from(name)).chain(words).collect()
     }
 
-    /// What to make of it all.
+    /// Closing words.
     pub fn farewell(&self, cast: &Cast) -> String {
         format!(
             "{}\n\

@@ -9,8 +9,8 @@ use morec::features::{BoneSet, FeatureParams, Rows, rows_of_clip};
 use morec::labels::ClipLength;
 use morec::segment::{KernelParams, kernel_cuts};
 
+use super::args::{Args, Grouping};
 use super::members::{GroupList, GroupMember, GroupedSample, labelled, only};
-use super::{Args, Grouping};
 
 /// A clip as feature rows.
 struct RowedClip {
@@ -51,7 +51,7 @@ pub fn run(paths: &[PathBuf], args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What is grouped: labelled samples, whole clips, or what lies between cuts.
+/// Stretches to group: labelled samples, whole clips, or what lies between cuts.
 fn samples(
     clips: &BTreeMap<String, RowedClip>,
     args: &Args,

@@ -14,8 +14,8 @@ use morec::pca::{ComponentCount, Moments, Pca};
 use morec::segment::{PpcaParams, segment};
 use serde::Serialize;
 
+use super::args::{Args, Centre};
 use super::members::{GroupedSample, labelled};
-use super::{Args, Centre};
 use crate::json::write_json;
 use crate::poses::{PoseReader, PosedClip};
 use crate::table::TextTable;

@@ -8,15 +8,15 @@ use morec::cluster::{
     AffinityParams, Clusters, Hierarchy, KwasParams, PairCounts, Spectrum, adjusted_rand_index,
     affinity_propagation, kwas_clusters, resampled, squared_distance,
 };
-use morec::features::{BoneSet, Rows};
+use morec::features::{BoneSet, RowLayout, Rows};
 use morec::labels::ClipLength;
 use morec_db::ClipId;
 use serde::Serialize;
 
-use super::{Args, GroupMethod};
-use crate::commands::db::{print_json, print_table};
+use super::args::{Args, GroupMethod};
 use crate::files::some_of;
 use crate::labels;
+use crate::print::{print_json, print_table};
 use crate::table::TextTable;
 
 /// A stretch of a clip to be grouped.
@@ -29,7 +29,7 @@ pub struct GroupedSample {
     pub class: Option<String>,
 }
 
-/// What is grouped, with its rows.
+/// A stretch to group, with its rows.
 #[derive(Serialize, Clone)]
 pub struct GroupMember {
     pub clip: String,
@@ -96,23 +96,7 @@ impl GroupList {
 
 /// The columns of some of the bones, and of the root.
 pub fn only(rows: &Rows, of: BoneSet, wanted: BoneSet) -> Rows {
-    let b = of.len();
-    let places: Vec<usize> = of
-        .indices()
-        .enumerate()
-        .filter(|(_, bone)| wanted.contains(*bone))
-        .map(|(at, _)| at)
-        .collect();
-    let block = |start: usize| {
-        places
-            .iter()
-            .flat_map(move |at| (0..3).map(move |i| start + 3 * at + i))
-    };
-    let columns: Vec<usize> = block(0)
-        .chain(block(3 * b))
-        .chain(6 * b..6 * b + 4)
-        .collect();
-    rows.columns(&columns)
+    rows.columns(&RowLayout::kept_columns(of, wanted))
 }
 
 fn clusters(items: &[GroupMember], args: &Args) -> Clusters {

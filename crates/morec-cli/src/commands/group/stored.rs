@@ -9,8 +9,8 @@ use morec::features::{BoneSet, FeatureParams};
 use morec_db::labels::{GROUPED_BY, NewSample, SampleFilter, SampleState};
 use morec_db::{ClipFilter, ClipId, MotionDb, SegmentKind};
 
+use super::args::{Args, Grouping};
 use super::members::{GroupList, GroupMember, only};
-use super::{Args, Grouping};
 use crate::commands::db::page::{self, Page};
 use crate::database;
 use crate::progress::StageBar;

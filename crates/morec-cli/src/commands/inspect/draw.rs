@@ -9,7 +9,7 @@ use morec::roles::Role;
 
 use crate::show::picture::{CharGrid, DIM, Dots, PLAIN, Style, class_style};
 
-/// Which side of the body a bone is drawn for.
+/// Side of the body that a bone is drawn for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum DrawnSide {
     Left,

@@ -19,9 +19,9 @@ pub enum FileReport {
     Read(Box<InspectReport>),
     /// It was not.
     Failed {
-        /// Where it is.
+        /// Its path.
         path: PathBuf,
-        /// Why.
+        /// The reason.
         error: String,
     },
 }
@@ -61,7 +61,7 @@ struct ClipReport {
     diagnosis: Diagnosed,
 }
 
-/// What the clip would be as a stream.
+/// Diagnosis of the clip as a stream.
 #[derive(Serialize)]
 struct Diagnosed {
     #[serde(flatten)]

@@ -10,7 +10,7 @@ use morec::smooth::CompressedClip;
 use crate::commands::convert::write_clip;
 use crate::output::write_whole;
 
-/// What is written.
+/// Form of the output.
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotionForm {
     /// Frames
@@ -35,7 +35,7 @@ impl MotionForm {
     }
 }
 
-/// Where to.
+/// Target of the output.
 pub enum MotionTarget {
     Nowhere,
     File(PathBuf, MotionForm),
@@ -43,7 +43,7 @@ pub enum MotionTarget {
 }
 
 impl MotionTarget {
-    /// What was meant by `output` for these clips; a folder is made if it is not there.
+    /// The target that `output` means for these clips; a folder is made if it is not there.
     pub fn new(
         output: Option<&Path>,
         form: Option<MotionForm>,

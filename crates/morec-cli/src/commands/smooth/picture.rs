@@ -9,7 +9,7 @@ use morec::smooth::{ChannelKind, CompressedClip};
 use crate::files::some_of;
 use crate::output::{check_picture, write_whole};
 
-/// What can follow a joint's name.
+/// Names of channels, behind that of a joint.
 const CHANNELS: [(&str, ChannelKind, Option<usize>); 8] = [
     ("x", ChannelKind::Rotation, Some(0)),
     ("y", ChannelKind::Rotation, Some(1)),

@@ -30,7 +30,7 @@ struct Training {
 }
 
 impl Lessons {
-    /// What was taught for the index at `path`.
+    /// The lesson for the index at `path`.
     ///
     /// # Errors
     /// The index is there but was not taught: training it anew without its clips would lose what it knows.
@@ -117,7 +117,7 @@ impl Lessons {
         ))
     }
 
-    /// What is where at the end.
+    /// Summary of the files at the end.
     pub fn summary(&self) -> String {
         match self.kept {
             0 => "nothing was taught".to_owned(),

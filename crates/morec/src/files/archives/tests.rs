@@ -1,4 +1,5 @@
 use super::*;
+use std::io;
 use std::io::Write;
 
 const BVH: &str = "HIERARCHY\nROOT A\n{\nOFFSET 0 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\nMOTION\nFrames: 2\nFrame Time: 0.02\n1 2 3\n4 5 6\n";

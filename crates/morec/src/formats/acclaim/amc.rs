@@ -14,10 +14,10 @@ pub const DEFAULT_RATE_HZ: f64 = 120.0;
 const LONGEST_HOLE: u64 = 120;
 /// Joints times frames that a byte may ask for: bounds the memory that a small file with a huge skeleton takes.
 const CELLS_PER_BYTE: usize = 16;
-/// So many warnings of a kind are given one by one.
+/// Most warnings of a kind that are given one by one.
 const SHOWN: usize = 10;
 
-/// What a motion file cannot say itself.
+/// Facts that a motion file cannot hold.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct AmcOptions {
     /// Frames a second; `None` takes a hint in the name (`HDM_dg_01_120`, `walk_60hz`) or

@@ -104,7 +104,7 @@ pub(super) fn assemble(
     Ok(clip)
 }
 
-/// Which frames lack a row that the file otherwise has; an error if that is most of them.
+/// Frames that lack a row which the file otherwise has; an error if that is most of them.
 fn missing_frames(
     asf: &Asf,
     rows: &AmcRows,
@@ -151,7 +151,7 @@ fn missing_frames(
     Ok(spoiled)
 }
 
-/// Where `flags` is set, as half-open ranges.
+/// Stretches where `flags` is set, as half-open ranges.
 fn spans(flags: &[bool]) -> Vec<Span> {
     let mut spans: Vec<Span> = Vec::new();
     for (frame, _) in flags.iter().enumerate().filter(|(_, set)| **set) {
@@ -216,7 +216,7 @@ fn place_slot(clip: &mut Clip, asf: &Asf, rows: &AmcRows, slot: usize) {
     }
 }
 
-/// What one row says: rotation and movement in the parent's frame, and what is added to the length.
+/// One row: rotation and movement in the parent's frame, and the addition to the length.
 #[derive(Debug, Clone, Copy)]
 struct BoneMotion {
     frame: usize,

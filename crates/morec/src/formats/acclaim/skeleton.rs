@@ -45,7 +45,7 @@ pub(super) fn composed(rotations: impl IntoIterator<Item = (Axis, f64)>) -> Quat
         })
 }
 
-/// What `:root` says.
+/// Contents of `:root`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Root {
     /// The numbers of the root's line in a motion file, in their order.
@@ -72,7 +72,7 @@ pub struct AsfBone {
 /// A skeleton file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Asf {
-    /// What `:name` says; empty if nothing.
+    /// Contents of `:name`; may be empty.
     pub name: String,
     /// The `length` of `:units`: what inches were multiplied by.
     pub length_unit: f64,

@@ -6,7 +6,7 @@ use super::hierarchy::{BvhHierarchy, Channel};
 use crate::clip::{Joint, Span};
 use crate::math::{Axis, Quat, Vec3, same_hemisphere};
 
-/// What a character's columns gave so far. Only the row at hand is ever held as numbers.
+/// Motion of a character, read so far. Only the row at hand is ever held as numbers.
 #[derive(Debug)]
 pub(super) struct Character {
     /// Its joints, parents counted from its root.
@@ -16,7 +16,7 @@ pub(super) struct Character {
     /// Rotations of all frames, as in [`Clip::rotations`](crate::clip::Clip::rotations).
     pub rotations: Vec<Quat>,
     rotation_gaps: Vec<Gaps>,
-    /// What the position channels say, for each joint that has any.
+    /// Values of the position channels, for each joint that has any.
     pub positions: Vec<JointPositions>,
     /// Number of frames.
     pub frames: usize,
@@ -25,11 +25,11 @@ pub(super) struct Character {
 /// The position channels of one joint.
 #[derive(Debug)]
 pub(super) struct JointPositions {
-    /// Which joint of the character.
+    /// Number of the joint in the character.
     pub joint: usize,
     /// For each axis its column, if the joint has one.
     pub columns: [Option<usize>; 3],
-    /// What they hold, frame by frame; 0 on axes without a channel.
+    /// Values, frame by frame; 0 on axes without a channel.
     pub values: Vec<Vec3>,
     gaps: Gaps,
 }

@@ -33,10 +33,10 @@ use self::text::{Cursor, Encoding, show};
 use super::{Limits, Loaded, ParseError, Place};
 use crate::clip::{Clip, Skeleton, Span};
 
-/// What a file does not say, or says wrongly.
+/// Facts that a file lacks or has wrong.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BvhOptions {
-    /// What position channels below the root mean; `None`: decided from the file's data.
+    /// Meaning of position channels below the root; `None`: decided from the file's data.
     pub positions: Option<PositionChannels>,
     /// Frames a second, in place of what the file says.
     pub rate_hz: Option<f64>,
@@ -126,7 +126,7 @@ struct BvhHead {
     hierarchy: BvhHierarchy,
     /// The MOTION section's, if there is one.
     header: Option<motion::MotionHeader>,
-    /// Where the head ends, in bytes,
+    /// End of the head, in bytes,
     end: usize,
     /// and on which line.
     line: u64,
@@ -155,7 +155,7 @@ impl BvhHead {
         })
     }
 
-    /// Whether so much of the table lies in `text` that the head surely ends where it seems to.
+    /// True if `text` holds so much of the table that the head surely ends where it seems to.
     fn is_followed(&self, text: &[u8]) -> bool {
         const SURE: usize = 4096;
         self.header.is_some() && self.end + SURE <= text.len()
@@ -356,7 +356,7 @@ fn finish(
     Ok(clips)
 }
 
-/// What the position channels below the roots mean, said in a warning if there are any.
+/// Meaning of the position channels below the roots, with a warning if there are any.
 fn position_channels(
     characters: &[Character],
     options: &BvhOptions,

@@ -8,14 +8,14 @@ use super::source::TableText;
 use super::text::{Cursor, show};
 use crate::formats::{Limits, ParseError, Place};
 
-/// What stands between MOTION and the table.
+/// Lines between MOTION and the table.
 #[derive(Debug)]
 pub(super) struct MotionHeader {
     /// `Frames:`, if it is a count.
     pub frames: Option<u64>,
     /// `Frame Time:`, if it is a number.
     pub frame_time_secs: Option<f64>,
-    /// Where the frame time stands, or would.
+    /// Place of the frame time, present or missing.
     pub at: Place,
 }
 
@@ -163,7 +163,7 @@ fn each_row(
     Ok(())
 }
 
-/// What the file and the caller say about the table.
+/// Facts about the table, from the file and the caller.
 pub(super) struct TableSpec<'a> {
     /// Frames the header declares.
     pub declared: Option<u64>,
@@ -261,7 +261,7 @@ fn note_missing(values: &[f64], line: u64, notes: &mut Notes) {
     }
 }
 
-/// What was counted while reading line by line.
+/// Counts of repairs while reading line by line.
 #[derive(Debug, Default)]
 struct RepairCounts {
     lines: u64,

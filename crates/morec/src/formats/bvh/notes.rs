@@ -2,7 +2,7 @@
 
 use crate::formats::{Place, Warning};
 
-/// What was noticed so far, in the order of first notice.
+/// Findings so far, in the order of first notice.
 #[derive(Debug, Default)]
 pub(super) struct Notes {
     entries: Vec<Entry>,

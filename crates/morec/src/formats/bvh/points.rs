@@ -3,7 +3,7 @@
 use crate::clip::{Clip, Joint, JointTrack, Points, Skeleton};
 use crate::math::{Quat, Vec3};
 
-/// What that root is called; it says that the others are points.
+/// Name of that root; it marks the others as points.
 const ROOT: &str = "points";
 /// Rotations that are none, as far as printed angles tell.
 const NO_TURN_RAD: f64 = 1e-6;

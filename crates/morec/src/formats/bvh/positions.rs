@@ -6,7 +6,7 @@ use super::character::{Character, JointPositions};
 use crate::clip::{Joint, JointTrack};
 use crate::math::Vec3;
 
-/// What the position channels of joints below the root mean. Producers differ and no file says.
+/// Meaning of the position channels of joints below the root. Producers differ, and no file says which it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PositionChannels {
@@ -16,7 +16,7 @@ pub enum PositionChannels {
     Add,
 }
 
-/// How many joints speak for each meaning.
+/// Number of joints in favour of each meaning.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Votes {
     pub replace: usize,
@@ -43,7 +43,7 @@ impl Votes {
         votes
     }
 
-    /// What most joints say; replacing, if they are divided.
+    /// Meaning that most joints favour; replacing, if they are divided.
     pub fn decide(self) -> PositionChannels {
         if self.add > self.replace {
             PositionChannels::Add
@@ -62,7 +62,7 @@ impl fmt::Display for PositionChannels {
     }
 }
 
-/// What a joint says whose positions have this `median`; nothing if its OFFSET is 0.
+/// Vote of a joint whose positions have this `median`; none if its OFFSET is 0.
 pub(super) fn vote(offset: &Vec3, median: &Vec3) -> Option<PositionChannels> {
     if offset.amax() <= 1e-6 {
         return None;

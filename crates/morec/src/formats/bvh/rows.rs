@@ -5,7 +5,7 @@ use super::number::{self, is_newline};
 use super::text::{Cursor, show};
 use crate::formats::ParseError;
 
-/// What a line of the motion table held; its numbers are in the caller's buffer.
+/// Contents of a line of the motion table; its numbers are in the caller's buffer.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum MotionLine {
     /// Numbers only.
@@ -21,7 +21,7 @@ pub(super) struct MotionLines<'t> {
     decimal_comma: Option<bool>,
 }
 
-/// What the lines of a table before others have shown.
+/// Knowledge from the earlier lines of a table.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LinesSoFar {
     line: u64,
@@ -124,7 +124,7 @@ impl<'t> MotionLines<'t> {
         }
     }
 
-    /// What stands up to the next blank or the line's end.
+    /// Bytes up to the next blank or the end of the line.
     fn word(&mut self) -> &'t [u8] {
         let start = self.cursor.pos;
         while self.cursor.peek().is_some_and(|b| b > b' ') {

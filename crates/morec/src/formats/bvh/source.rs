@@ -115,7 +115,7 @@ impl<F: Read + Seek> TableText for InFile<F> {
     }
 }
 
-/// Where the last line ends that is known to be whole. A carriage return at the end may be half of a line end.
+/// End of the last line that is known to be whole. A carriage return at the end may be half of a line end.
 fn end_of_lines(text: &[u8]) -> usize {
     let known = match text {
         [whole @ .., b'\r'] => whole,

@@ -3,7 +3,7 @@
 use super::number::{is_blank, is_newline};
 use crate::formats::{ParseError, Place};
 
-/// How the names in a file are encoded.
+/// Encoding of the names in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Encoding {
     Utf8,

@@ -3,7 +3,7 @@
 use super::number::Processor;
 use super::params::BLOCK;
 
-/// What the header says.
+/// Contents of the header.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct C3dHeader {
     pub(super) points: usize,

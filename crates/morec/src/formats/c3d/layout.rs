@@ -5,7 +5,7 @@ use super::header::C3dHeader;
 use super::params::{BLOCK, Parameters};
 use crate::formats::{ParseError, Place, Warning};
 
-/// Where the frames are and how long.
+/// Place and length of the frames.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct C3dLayout {
     /// Byte of the first frame.
@@ -133,7 +133,7 @@ fn candidates(header: &C3dHeader, parameters: &Parameters, length: usize) -> Vec
     all
 }
 
-/// How many frames there may be. Words of 16 bits overflow in long recordings, so other parameters repeat the count.
+/// Possible numbers of frames. Words of 16 bits overflow in long recordings, so other parameters repeat the count.
 fn frame_counts(header: &C3dHeader, parameters: &Parameters) -> Vec<usize> {
     let span = |first: f64, last: f64| (last - first + 1.0).clamp(0.0, 1e9) as usize;
     let by_header = span(f64::from(header.first_frame), f64::from(header.last_frame));

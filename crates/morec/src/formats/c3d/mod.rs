@@ -23,7 +23,7 @@ use super::{Limits, Loaded, ParseError, Place, Warning};
 
 /// Frames a second of a file that does not say.
 const ASSUMED_HZ: f64 = 100.0;
-/// What integer steps are taken to be if nothing says.
+/// Length of an integer step if the file has none.
 const ASSUMED_SCALE: f64 = 0.1;
 
 /// Reads a C3D file: a clip of points called `name`, one for each subject if several have a body. `rate_hz` replaces
@@ -85,7 +85,7 @@ pub fn read(
     table.into_loaded(name, warnings, limits)
 }
 
-/// Where the parameters begin and which processor's numbers the file has.
+/// Start of the parameters, and the processor whose number format the file uses.
 fn parameter_section(
     bytes: &[u8],
     block: &[u8; BLOCK],
@@ -153,7 +153,7 @@ fn rate(header: &C3dHeader, parameters: &Parameters, warnings: &mut Vec<Warning>
     })
 }
 
-/// What an integer step is long; 1 for floats.
+/// Length of an integer step; 1 for floats.
 fn scale(
     header: &C3dHeader,
     parameters: &Parameters,
@@ -215,7 +215,7 @@ const NO_POSITIONS: [(&str, &[&str]); 6] = [
     ("REACTIONS", &[]),
 ];
 
-/// Which points are positions: their numbers.
+/// Numbers of the points that are positions.
 fn wanted(names: &[String], parameters: &Parameters, warnings: &mut Vec<Warning>) -> Vec<usize> {
     let mut listed: Vec<String> = Vec::new();
     let mut endings: Vec<&str> = Vec::new();

@@ -1,6 +1,6 @@
 //! Numbers as the three processors of C3D files wrote them.
 
-/// Whose byte order and floating point a file uses.
+/// Processor whose byte order and floating point a file uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Processor {
     /// Little-endian, IEEE 754.

@@ -14,7 +14,7 @@ struct Parameter {
     /// −1 text, 1 bytes, 2 integers, 4 floats.
     kind: i8,
     dims: Vec<usize>,
-    /// Where its values begin; as many as `dims` say, cut at the end of the file.
+    /// Start of its values; as many as `dims` say, cut at the end of the file.
     data: usize,
 }
 

@@ -44,17 +44,17 @@ pub fn read_stated(
     let fbx = load(bytes, limits)?;
     let mut loaded = read_scene(&fbx, bytes.len(), name, limits)?;
     if rate_hz.is_some() {
-        loaded.warnings.push(super::rate_not_used());
+        loaded.warnings.push(super::timing::rate_not_used());
     }
     Ok((loaded, settings(&fbx)))
 }
 
-/// What the settings of a scene state.
+/// Units and axes in the settings of a scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SceneSettings {
     /// The axis that points up or down.
     pub up: Axis,
-    /// Whether it points down.
+    /// True if it points down.
     pub is_down: bool,
     /// Metres in one unit of length.
     pub metres_per_unit: f64,

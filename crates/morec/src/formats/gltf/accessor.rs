@@ -7,8 +7,10 @@ use base64::Engine;
 use serde_json::Value;
 
 use super::super::{ParseError, Place};
-use super::Beside;
 use super::document::{Document, index};
+
+/// Gives the bytes of a file that lies beside the one that is read, by its relative address.
+pub type Beside<'a> = &'a dyn Fn(&str) -> Option<Vec<u8>>;
 
 /// The buffers of a document, opened when they are first needed.
 pub(super) struct Buffers<'a> {

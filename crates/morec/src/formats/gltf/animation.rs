@@ -15,7 +15,7 @@ pub(super) struct Animation {
     pub(super) channels: Vec<GltfChannel>,
 }
 
-/// What a channel moves.
+/// Property that a channel animates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum TargetPath {
     Translation,
@@ -23,7 +23,7 @@ enum TargetPath {
     Scale,
 }
 
-/// What lies between two keys.
+/// Interpolation between two keys.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Between {
     Step,
@@ -120,7 +120,7 @@ fn read(
 }
 
 impl GltfChannel {
-    /// As many keys as have both time and value, in order of time; `None` without any.
+    /// Keys that have both time and value, in order of time; `None` without any.
     fn new(
         node: usize,
         path: TargetPath,
@@ -261,7 +261,7 @@ impl Animation {
         format!("animation `{}`", self.name)
     }
 
-    /// Whether a channel moves a joint of `rig` or a node above.
+    /// True if a channel moves a joint of `rig` or a node above.
     pub(super) fn moves(&self, rig: &SceneSkeleton) -> bool {
         self.of(rig).next().is_some()
     }

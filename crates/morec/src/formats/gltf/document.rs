@@ -108,7 +108,7 @@ impl<'a> Document<'a> {
         self.json[key].as_array().map_or(&[], Vec::as_slice)
     }
 
-    /// What kind of file it is, in words.
+    /// Kind of the file, in words.
     pub(super) fn kind(&self) -> &'static str {
         let extensions = &self.json["extensions"];
         match () {

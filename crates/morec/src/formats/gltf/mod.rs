@@ -10,6 +10,7 @@ mod document;
 mod nodes;
 mod write;
 
+pub use self::accessor::Beside;
 pub use self::write::{write, write_vrma};
 
 use self::animation::Animation;
@@ -19,9 +20,6 @@ use super::builder::clip_names;
 use super::scene::{self, Local, Sampling, SceneSkeleton};
 use super::{Limits, Loaded, ParseError, Place, Warning, keys};
 use crate::clip::Clip;
-
-/// Gives the bytes of a file that lies beside the one that is read, by its relative address.
-pub type Beside<'a> = &'a dyn Fn(&str) -> Option<Vec<u8>>;
 
 /// Reads the skeletal animations of a glTF, GLB, VRM or VRMA file: a clip for each animation and each skeleton that it
 /// moves, called `name` (`name#animation` for several). `beside` finds buffers that lie in files of their own.

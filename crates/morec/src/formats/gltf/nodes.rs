@@ -74,7 +74,7 @@ impl GltfScene {
         self.character && !self.rigs.is_empty()
     }
 
-    /// What the joint of a node is called: its humanoid bone, else the node's name.
+    /// Name of a node's joint: its humanoid bone, else the node's name.
     pub(super) fn joint_name(&self, node: usize) -> String {
         match &self.bones[node] {
             Some(bone) => bone.clone(),

@@ -211,7 +211,7 @@ fn humanoid(clip: &Clip, roles: &RoleMap) -> (Clip, Vec<Quat>) {
     (human, rest)
 }
 
-/// Where the joints are when nothing turns them.
+/// Positions of the joints in the zero pose.
 fn zero_pose(clip: &Clip) -> Vec<Vec3> {
     let mut positions: Vec<Vec3> = Vec::with_capacity(clip.skeleton.len());
     for joint in clip.skeleton.joints() {
@@ -220,7 +220,7 @@ fn zero_pose(clip: &Clip) -> Vec<Vec3> {
     positions
 }
 
-/// How each bone is turned in its parent's frame when arms are out to the sides, legs are straight and the body faces +Z:
+/// Rotation of each bone in its parent's frame when arms are out to the sides, legs are straight and the body faces +Z:
 /// the whole body by its trunk and hip joints, then each limb by the least rotation.
 fn t_pose(
     chosen: &[Chosen],

@@ -15,7 +15,7 @@ pub(super) struct MvnxSegment {
     pub(super) column: usize,
     /// From the parent's origin, metres, if the file says.
     pub(super) offset: Vec3,
-    /// Where a segment without children ends.
+    /// End of a segment without children.
     pub(super) tip: Option<Vec3>,
 }
 
@@ -156,7 +156,7 @@ fn connected<'a>(joint: Node<'a, '_>, end: usize) -> Option<&'a str> {
     Some(text.split('/').next().unwrap_or(text).trim())
 }
 
-/// Where the joint between two segments lies in the upper one.
+/// Position of the joint between two segments in the upper one.
 fn joint_point(
     joints: Node<'_, '_>,
     above: &str,

@@ -15,7 +15,7 @@ use super::{Limits, Loaded, ParseError, Warning};
 use crate::clip::{Clip, Joint};
 use crate::math::{Quat, Vec3};
 
-/// When a file does not say its rate.
+/// Rate if a file has none.
 const ASSUMED_HZ: f64 = 60.0;
 
 /// Reads an MVNX file: one clip for each subject, called `name` (`name#subject` for several).
@@ -146,7 +146,7 @@ fn is_motion(frame: Node<'_, '_>) -> bool {
         .is_none_or(|kind| kind.eq_ignore_ascii_case("normal"))
 }
 
-/// What is wrong with a frame; its line is looked up only if it is shown.
+/// Fault of a frame; its line is looked up only if it is shown.
 struct Flaw<'a, 'input> {
     node: Node<'a, 'input>,
     expected: String,

@@ -4,7 +4,7 @@ use roxmltree::Node;
 
 use super::super::xml::{child, is, place};
 use super::super::{ParseError, Warning};
-use super::numbers;
+use super::values::numbers;
 
 /// A function of the values of coordinates.
 #[derive(Debug, Clone, PartialEq)]

@@ -7,7 +7,7 @@ use roxmltree::{Document, Node};
 use super::super::xml::{child, is, place};
 use super::super::{Limits, ParseError, Place, Warning};
 use super::function::{Function, warn_of_smoothing};
-use super::{numbers, vector};
+use super::values::{numbers, shortened, vector};
 use crate::math::{Axis, Quat, Vec3};
 
 /// The bodies of an OpenSim model, parents first, and what moves them.
@@ -446,7 +446,7 @@ fn inputs(
             ParseError::new(
                 place(node),
                 "a coordinate of the model",
-                format!("`{}`", super::shortened(name)),
+                format!("`{}`", shortened(name)),
             )
         })
     };

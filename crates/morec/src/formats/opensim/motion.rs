@@ -5,6 +5,7 @@ use super::super::cells::{Decimal, lines, number, split};
 use super::super::timing::{Clock, Schedule};
 use super::super::{Limits, Loaded, ParseError, Place, Warning};
 use super::model::{JointAxis, OsimBody, OsimModel, Placement};
+use super::values::shortened;
 use crate::clip::Joint;
 use crate::math::{Quat, Vec3};
 use nalgebra::Unit;
@@ -310,7 +311,7 @@ fn coordinates_of(
     if found.is_empty() {
         let names: Vec<&str> = header.columns.iter().take(5).copied().collect();
         let expected = "columns of the model's coordinates";
-        let shown = super::shortened(&names.join(", "));
+        let shown = shortened(&names.join(", "));
         return Err(ParseError::new(Place::Line(header.line), expected, shown));
     }
     let follows = |k: usize| model.couplings.iter().any(|c| c.dependent == k);
@@ -323,7 +324,7 @@ fn coordinates_of(
             "no column for {} of {} coordinates of the model, which keep its default: {}",
             missing.len(),
             model.coordinates.len(),
-            super::shortened(&missing.join(", "))
+            shortened(&missing.join(", "))
         );
         warnings.push(Warning::new(Place::Line(header.line), text));
     }

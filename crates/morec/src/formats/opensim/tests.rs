@@ -1,5 +1,6 @@
 use super::*;
 use crate::kinematics::WorldPose;
+use crate::math::Vec3;
 
 const LEG: &[u8] = include_bytes!("../../../testdata/opensim/leg.osim");
 const LEG_OF_4: &[u8] = include_bytes!("../../../testdata/opensim/leg_of_4.osim");

@@ -1,6 +1,6 @@
 //! Gaps of points: found, filled, told.
 
-use super::{Point, SHORT_GAP_SECS, SHOWN, is_seen};
+use super::point::{Point, SHORT_GAP_SECS, SHOWN, is_seen};
 use crate::clip::{Gap, Span};
 use crate::formats::{Place, Warning};
 use crate::math::Vec3;

@@ -3,8 +3,10 @@
 //! A new format is registered in `READ`; one that is only recognised, to be refused by its name, in
 //! `unread`.
 
+mod head;
 mod unread;
 
+use self::head::Head;
 use self::unread::{UNREAD, UNREAD_ENDINGS, Unread, is_opensim};
 use super::{ParseError, Place, mocopi, table};
 use crate::smooth::MAGIC;
@@ -233,7 +235,7 @@ const READ: [Readable; 26] = [
     },
 ];
 
-/// Which format `bytes` have; `name` (a file's name or path) decides if they do not say.
+/// Tells the format of `bytes`; `name` (a file's name or path) decides if they do not say.
 ///
 /// # Errors
 /// Content that nothing reads, with the format it looks like if it is known.
@@ -289,60 +291,6 @@ pub fn format_of_name(name: &str) -> Option<Format> {
     READ.iter()
         .find(|r| r.extension.eq_ignore_ascii_case(extension))
         .map(|r| r.format)
-}
-
-/// The beginning of a file.
-struct Head<'a> {
-    bytes: &'a [u8],
-}
-
-impl<'a> Head<'a> {
-    const LONGEST: usize = 64 * 1024;
-
-    fn new(bytes: &'a [u8]) -> Self {
-        let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
-        Self {
-            bytes: &bytes[..bytes.len().min(Self::LONGEST)],
-        }
-    }
-
-    fn starts(&self, text: &str) -> bool {
-        self.bytes.trim_ascii_start().starts_with(text.as_bytes())
-    }
-
-    /// Whether it starts with one of these, in any case.
-    fn starts_any(&self, texts: &[&str]) -> bool {
-        let start = self.bytes.trim_ascii_start();
-        let begins = |text: &&str| {
-            start
-                .get(..text.len())
-                .is_some_and(|s| s.eq_ignore_ascii_case(text.as_bytes()))
-        };
-        texts.iter().any(begins)
-    }
-
-    fn contains(&self, text: &[u8]) -> bool {
-        self.bytes
-            .windows(text.len())
-            .any(|window| window.eq_ignore_ascii_case(text))
-    }
-
-    fn is_markup(&self) -> bool {
-        self.starts("<")
-    }
-
-    fn is_binary(&self) -> bool {
-        self.bytes.contains(&0)
-    }
-
-    /// Lines that are no comment and not empty.
-    fn lines(&self) -> impl Iterator<Item = &'a [u8]> {
-        let lines = self
-            .bytes
-            .split(|b| matches!(b, b'\n' | b'\r'))
-            .map(<[u8]>::trim_ascii);
-        lines.filter(|line| !line.is_empty() && !line.starts_with(b"#"))
-    }
 }
 
 /// `HIERARCHY` at the start of one of the first lines (junk before it is met), or `MOTION` alone.

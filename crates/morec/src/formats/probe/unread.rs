@@ -1,10 +1,10 @@
 //! Formats that are told by their content or their ending, only to say that they are not read and how to convert them.
 
-use super::Head;
+use super::head::Head;
 
 pub(super) struct Unread {
     pub(super) name: &'static str,
-    /// How to get what can be read; a sentence without its first letter's case.
+    /// Way to a format that is read; a sentence without its first letter's case.
     pub(super) help: &'static str,
     pub(super) looks_so: fn(&Head) -> bool,
 }
@@ -413,7 +413,7 @@ pub(super) fn is_opensim(head: &Head) -> bool {
     false
 }
 
-/// Whether such a table holds places of several markers, `R.ASIS_tx`, and no orientations: those of bodies are of their centres of
+/// True if such a table holds places of several markers, `R.ASIS_tx`, and no orientations: those of bodies are of their centres of
 /// mass, which are no joints.
 pub(super) fn has_markers(head: &Head) -> bool {
     const LEAST: usize = 5;
@@ -428,7 +428,7 @@ pub(super) fn has_markers(head: &Head) -> bool {
     ends(b"_tx").max(ends(b"_x")) >= LEAST && ends(b"_ox") == 0
 }
 
-/// Whether an empty list follows `field` wherever it stands.
+/// True if an empty list follows `field` wherever it stands.
 fn is_empty_list(head: &Head, field: &[u8]) -> bool {
     let mut places = head.bytes.windows(field.len()).enumerate();
     places.all(|(at, window)| {

@@ -13,7 +13,7 @@ use super::npy::{self, Array};
 use super::{Limits, Loaded, ParseError, Place, Warning, container};
 use crate::math::{Quat, Vec3};
 
-/// When a file does not say its rate; most of AMASS has it.
+/// Rate if a file has none; that of most of AMASS.
 const ASSUMED_HZ: f64 = 120.0;
 
 const POSES: [&str; 8] = [
@@ -115,7 +115,7 @@ fn clip(frames: &SmplFrames<'_>, places: &[Vec3]) -> ClipBuilder {
     builder
 }
 
-/// Whether an archive with these paths has poses.
+/// True if an archive with these paths has poses.
 pub(super) fn has_poses(paths: &[String]) -> bool {
     let has = |keys: &[&str]| paths.iter().any(|path| keys.contains(&key_of(path)));
     has(&POSES) || has(&ROOT) && has(&BODY)
@@ -150,7 +150,7 @@ struct SmplFrames<'a> {
     parts: [(&'a Array, SmplLayout); 2],
 }
 
-/// Where the numbers of a frame are.
+/// Places of the numbers of a frame.
 #[derive(Clone, Copy)]
 struct SmplLayout {
     joints: usize,
@@ -260,7 +260,7 @@ fn rate(stated: Option<&Array>, warnings: &mut Vec<Warning>) -> f64 {
     })
 }
 
-/// Where the hips are.
+/// Positions of the hips.
 fn places(
     trans: Option<&Array>,
     frames: usize,

@@ -1,6 +1,6 @@
 //! Cells that hold a whole point, as Python prints them: `"(0.1, 0.2, 0.3)"`, `[0.1 0.2 0.3]`.
 
-use super::TableLine;
+use super::layout::TableLine;
 use crate::formats::cells::{Decimal, number};
 
 /// The table with such cells spread over three columns each, below a row of their axes; as it is without any.

@@ -1,6 +1,6 @@
 //! Which columns are a point's x, y and z, by the rows above them.
 
-use super::{ColumnLayout, TableLine};
+use super::layout::{ColumnLayout, TableLine};
 use crate::formats::cells::{Decimal, number};
 use crate::formats::points::metres_of;
 
@@ -208,7 +208,7 @@ pub(super) fn axis_of(label: &str) -> Option<(String, usize)> {
     axis_with(label, false)
 }
 
-/// Whether a label is of a point whose name ends in an `l` alone: then an `r` alone is the other side, no rotation.
+/// True if a label is of a point whose name ends in an `l` alone: then an `r` alone is the other side, no rotation.
 fn is_left_alone(label: &str) -> bool {
     axis_of(label).is_some_and(|(name, _)| {
         let bare = name.strip_suffix(['l', 'L']);

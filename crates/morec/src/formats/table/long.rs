@@ -1,7 +1,7 @@
 //! The long form: a row for each joint of each frame.
 
 use super::columns::{is_frame, is_time, seconds_of};
-use super::{ColumnLayout, TableFrames, TableLine, to_seconds};
+use super::layout::{ColumnLayout, TableFrames, TableLine, to_seconds};
 use crate::formats::cells::{Decimal, number};
 use crate::formats::points::{Point, UNSEEN, check_size};
 use crate::formats::{Limits, ParseError, Place};
@@ -13,14 +13,14 @@ pub(super) struct Columns {
     /// The row that names them.
     header: usize,
     name: usize,
-    /// Whose joint it is.
+    /// Column of the person.
     person: Option<usize>,
     axes: [usize; 3],
     time: Option<(usize, Option<f64>)>,
     frame: Option<usize>,
 }
 
-/// What the column of joints' names is called.
+/// Names of the column of joint names.
 const NAMES: [&str; 24] = [
     "joint",
     "jointtype",
@@ -88,7 +88,7 @@ pub(super) fn columns(header: usize, (_, cells): &TableLine) -> Option<Columns> 
     })
 }
 
-/// What a column is called that tells people apart.
+/// Names of the column that tells people apart.
 const PEOPLE: [&str; 14] = [
     "person",
     "person_id",

@@ -8,12 +8,14 @@
 
 mod brackets;
 mod columns;
+mod layout;
 mod long;
 mod motive;
 mod nexus;
 mod plain;
 mod qualisys;
 
+use self::layout::{ColumnLayout, TableFrames, TableLine, to_seconds};
 use super::cells::{Decimal, lines, number, split};
 use super::points::{Point, PointTable, UNSEEN, check_size};
 use super::timing::{self, Clock};
@@ -22,28 +24,6 @@ use crate::math::Vec3;
 
 /// TableFrames a second of a table without times.
 const ASSUMED_HZ: f64 = 30.0;
-
-/// A row: its line and its cells.
-type TableLine<'a> = (u64, Vec<&'a str>);
-
-/// What the header of a table says.
-#[derive(Debug, Clone, PartialEq, Default)]
-struct ColumnLayout {
-    /// Points and the columns of x, y and z.
-    points: Vec<(String, [usize; 3])>,
-    /// The column of times, and seconds in its unit.
-    time: Option<(usize, Option<f64>)>,
-    /// The column of frame numbers.
-    frame: Option<usize>,
-    rate_hz: Option<f64>,
-    metres_per_unit: Option<f64>,
-    /// Rows before the first frame.
-    header_rows: usize,
-    /// The row behind the last frame, if others follow.
-    stop_row: Option<usize>,
-    /// What was left out or guessed.
-    notes: Vec<String>,
-}
 
 /// Reads a table of positions: a clip of points called `name`, one for each subject if several have a body. Blank cells
 /// are points that were not seen. `rate_hz` replaces the rate in the file. O(bytes).
@@ -149,7 +129,7 @@ fn header(rows: &[TableLine]) -> Option<TableHeader> {
     columns::layout(rows).map(TableHeader::Wide)
 }
 
-/// What separates cells: of tab, semicolon and comma the one that most rows have; none if no row has any.
+/// Separator of cells: of tab, semicolon and comma the one that most rows have; none if no row has any.
 fn separator(rows: &[(u64, &str)]) -> Option<char> {
     let looked_at = || {
         rows.iter()
@@ -200,9 +180,6 @@ fn no_columns(rows: &[TableLine]) -> ParseError {
     let more = if named.len() > SHOWN { ", …" } else { "" };
     ParseError::new(Place::Line(*line), expected, format!("`{shown}{more}`"))
 }
-
-/// What frames hold: points, times, and the layout they were read by.
-type TableFrames = (Vec<Point>, Vec<Option<f64>>, ColumnLayout);
 
 /// The frames of a table with three columns for each point.
 fn wide(
@@ -272,25 +249,6 @@ fn wide(
         insert_missing(&numbers, &mut points, &mut times, limits);
     }
     Ok((points, times, layout))
-}
-
-/// Times in their unit to seconds; an unknown unit is told by the usual step.
-fn to_seconds(times: &mut [Option<f64>], secs: Option<f64>) {
-    let known: Vec<f64> = times.iter().copied().flatten().collect();
-    let mut steps: Vec<f64> = known.windows(2).map(|w| w[1] - w[0]).collect();
-    steps.sort_by(f64::total_cmp);
-    let usual = steps.get(steps.len() / 2).copied().unwrap_or(0.0);
-    let secs = secs.unwrap_or(match usual {
-        step if step >= 1e6 => 1e-9,
-        step if step >= 1e3 => 1e-6,
-        step if step >= 2.0 => 1e-3,
-        _ => 1.0,
-    });
-    let first = known.first().copied().unwrap_or(0.0);
-    for time in times.iter_mut().flatten() {
-        // Times since 1970 leave few digits for the fraction.
-        *time = (*time - first) * secs;
-    }
 }
 
 /// Puts frames in which nothing was seen where numbers of frames are left out.

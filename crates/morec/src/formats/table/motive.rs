@@ -1,7 +1,7 @@
 //! OptiTrack Motive's CSV export, after its documentation ("Data Export: CSV"): a row of keys and values, then a row each
 //! of types, names, numbers and properties above the columns.
 
-use super::{ColumnLayout, TableLine};
+use super::layout::{ColumnLayout, TableLine};
 use crate::formats::cells::{Decimal, number};
 use crate::formats::points::metres_of;
 

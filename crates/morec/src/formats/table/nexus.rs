@@ -2,7 +2,7 @@
 //! its rate, the names, the axes and the units, then its frames. Trajectories hold markers; segments of a solved skeleton
 //! serve where there are none.
 
-use super::{ColumnLayout, TableLine};
+use super::layout::{ColumnLayout, TableLine};
 use crate::formats::cells::{Decimal, number};
 use crate::formats::points::metres_of;
 
@@ -16,7 +16,7 @@ const TITLES: [&str; 7] = [
     "analog",
 ];
 
-/// Whether a file begins as such an export does.
+/// True if a file begins as such an export does.
 pub(super) fn begins(rows: &[TableLine]) -> bool {
     let rate = |row: &TableLine| number(row.1[0], Decimal::Either).is_some();
     match rows {

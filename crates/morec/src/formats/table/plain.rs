@@ -1,13 +1,13 @@
 //! Tables of numbers without names.
 
-use super::{ColumnLayout, TableLine};
+use super::layout::{ColumnLayout, TableLine};
 use crate::formats::cells::{Decimal, number};
 use crate::roles::points::numbered_counts;
 
 /// Rows that a table of numbers has at least to be taken for points without its name saying so.
 const LEAST_ROWS: usize = 5;
 
-/// Whether a known set of landmarks has so many points.
+/// True if a known set of landmarks has so many points.
 fn is_known(count: usize) -> bool {
     numbered_counts().any(|known| known == count)
 }
@@ -16,7 +16,7 @@ fn is_number(cell: &str) -> bool {
     number(cell, Decimal::Either).is_some()
 }
 
-/// Whether all rows are numbers, as many as a known set needs.
+/// True if all rows are numbers, as many as a known set needs.
 pub(super) fn is_row_of_points(rows: &[TableLine]) -> bool {
     let width = rows.first().map_or(0, |(_, cells)| cells.len());
     let alike =
@@ -24,7 +24,7 @@ pub(super) fn is_row_of_points(rows: &[TableLine]) -> bool {
     rows.len() >= LEAST_ROWS && rows.iter().all(alike) && layout(rows).is_some()
 }
 
-/// Whether rows hold one point each, and every so many of them the next frame.
+/// True if rows hold one point each, and every so many of them the next frame.
 pub(super) fn is_stacked(rows: &[TableLine]) -> bool {
     stride(rows).is_some()
 }

@@ -1,7 +1,7 @@
 //! Qualisys' export as text: rows of keys and values (`NO_OF_MARKERS`, `FREQUENCY`, `MARKER_NAMES`), perhaps a row that names
 //! columns, then frames in millimetres, with or without their numbers and times.
 
-use super::{ColumnLayout, TableLine};
+use super::layout::{ColumnLayout, TableLine};
 use crate::formats::cells::{Decimal, number};
 
 /// The layout, if the keys name markers.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::clock::FrameClock;
 use super::decoder::{AxisDecoder, AxisError, AxisFrame};
 use super::{AXIS_BONE_COUNT, AxisSkeleton};
-use crate::live::{Frame, MAX_PERFORMERS, PerformerId, Rig, SourceCounts, SourceEvent};
+use crate::live::{Arrival, Frame, PerformerId, PerformerTable, Rig, SourceCounts, SourceEvent};
 use crate::math::{Axis, Quat, Vec3};
 
 /// An avatar that has been silent for so long has stopped, for now.
@@ -21,7 +21,7 @@ const LATE_FRAMES: u32 = 100;
 pub struct AxisOptions {
     /// Parents of the bones, and their lengths where frames have none.
     pub skeleton: AxisSkeleton,
-    /// Performers that are followed at once, at most [`MAX_PERFORMERS`]; frames of others are counted and left.
+    /// Performers that are followed at once, at most [`MAX_PERFORMERS`](crate::live::MAX_PERFORMERS); frames of others are counted and left.
     pub actors: usize,
 }
 
@@ -48,7 +48,9 @@ pub struct AxisReceiver {
 #[derive(Debug)]
 struct Followed {
     rig: Arc<Rig>,
-    actors: usize,
+    /// By the numbers of their avatars.
+    performers: PerformerTable<u32>,
+    /// For each place.
     avatars: Vec<Avatar>,
     items: VecDeque<AxisItem>,
     spare: Vec<Frame>,
@@ -56,14 +58,11 @@ struct Followed {
     begun_secs: Option<f64>,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct Avatar {
-    number: u32,
     /// Number of its last frame.
     frame: Option<u32>,
     clock: FrameClock,
-    heard_secs: f64,
-    gone: bool,
 }
 
 #[derive(Debug)]
@@ -79,7 +78,7 @@ impl AxisReceiver {
         let AxisSkeleton { skeleton, roles } = options.skeleton.clone();
         let followed = Followed {
             rig: Arc::new(Rig { skeleton, roles }),
-            actors: options.actors.clamp(1, MAX_PERFORMERS),
+            performers: PerformerTable::new(options.actors),
             avatars: Vec::new(),
             items: VecDeque::new(),
             spare: Vec::new(),
@@ -137,26 +136,20 @@ impl AxisReceiver {
     /// The connection was lost: everybody has gone for now.
     pub fn lost(&mut self) {
         self.cut();
-        let Followed { avatars, items, .. } = &mut self.followed;
-        for (at, avatar) in avatars
-            .iter_mut()
-            .enumerate()
-            .filter(|(_, avatar)| !avatar.gone)
-        {
-            avatar.gone = true;
-            items.push_back(AxisItem::Gone(PerformerId(at as u16)));
-        }
+        let Followed {
+            performers, items, ..
+        } = &mut self.followed;
+        performers.leave_if(|_| true, |actor| items.push_back(AxisItem::Gone(actor)));
     }
 
     /// Time passes: says who has gone.
     pub fn tick(&mut self, now_secs: f64) {
-        let Followed { avatars, items, .. } = &mut self.followed;
-        for (at, avatar) in avatars.iter_mut().enumerate() {
-            if !avatar.gone && now_secs - avatar.heard_secs > GONE_SECS {
-                avatar.gone = true;
-                items.push_back(AxisItem::Gone(PerformerId(at as u16)));
-            }
-        }
+        let Followed {
+            performers, items, ..
+        } = &mut self.followed;
+        performers.leave_silent(now_secs, GONE_SECS, |actor| {
+            items.push_back(AxisItem::Gone(actor));
+        });
     }
 
     /// The next complete event, oldest first; fills `frame` for [`SourceEvent::Frame`].
@@ -177,19 +170,26 @@ impl Followed {
     fn frame(&mut self, now_secs: f64, frame: &AxisFrame<'_>) {
         self.counts.packets += 1;
         let begun_secs = *self.begun_secs.get_or_insert(now_secs);
-        let Some(at) = self.avatar(frame.avatar) else {
+        let Some((actor, arrival)) = self.performers.arrive(frame.avatar, now_secs) else {
             self.counts.refused += 1;
             return;
         };
-        let avatar = &mut self.avatars[at];
-        avatar.heard_secs = now_secs;
-        if std::mem::take(&mut avatar.gone) {
-            avatar.clock = FrameClock::default();
+        match arrival {
+            Arrival::Known => {}
+            Arrival::Returned | Arrival::Replaced => {
+                self.avatars[actor.index()] = Avatar::default();
+            }
+            Arrival::New => self.avatars.push(Avatar::default()),
+        }
+        if matches!(arrival, Arrival::New | Arrival::Replaced) {
+            self.items.push_back(AxisItem::Rig(actor));
+        }
+        if matches!(arrival, Arrival::Returned | Arrival::Replaced) {
             self.counts.interruptions += 1;
-        } else if avatar
-            .frame
-            .is_some_and(|last| (1..LATE_FRAMES).contains(&last.wrapping_sub(frame.number)))
-        {
+        }
+        let avatar = &mut self.avatars[actor.index()];
+        let is_late = |last: u32| (1..LATE_FRAMES).contains(&last.wrapping_sub(frame.number));
+        if avatar.frame.is_some_and(is_late) {
             self.counts.late += 1;
             return;
         }
@@ -197,38 +197,9 @@ impl Followed {
         let mut full = self.spare.pop().unwrap_or_default();
         full.time_secs = avatar.clock.stamp(frame.number, now_secs - begun_secs);
         full.wall_secs = now_secs;
-        full.actor = PerformerId(at as u16);
+        full.actor = actor;
         pose(&self.rig, frame, &mut full);
         self.items.push_back(AxisItem::Frame(full));
-    }
-
-    /// The place of avatar `number`, a new one if there is room; one that has gone makes room.
-    fn avatar(&mut self, number: u32) -> Option<usize> {
-        if let Some(at) = self
-            .avatars
-            .iter()
-            .position(|avatar| avatar.number == number)
-        {
-            return Some(at);
-        }
-        let new = Avatar {
-            number,
-            frame: None,
-            clock: FrameClock::default(),
-            heard_secs: 0.0,
-            gone: true,
-        };
-        let place = if self.avatars.len() < self.actors {
-            self.avatars.push(Avatar { gone: false, ..new });
-            self.avatars.len() - 1
-        } else {
-            let place = self.avatars.iter().position(|avatar| avatar.gone)?;
-            self.avatars[place] = new;
-            place
-        };
-        self.items
-            .push_back(AxisItem::Rig(PerformerId(place as u16)));
-        Some(place)
     }
 }
 

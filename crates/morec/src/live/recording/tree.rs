@@ -1,11 +1,10 @@
 //! Recorded places and rotations to joints that hang together.
 
 use crate::clip::{Clip, Joint, JointTrack, Skeleton};
-use crate::live::Frame;
 use crate::math::{Quat, Vec3, same_hemisphere, slerp};
 use crate::roles::Role;
 
-use super::Recording;
+use crate::live::{Frame, Rig};
 
 /// A joint whose place in its parent's frame strays by less than this does not move there, in the stream's unit.
 const FIXED: f64 = 1e-4;
@@ -18,23 +17,21 @@ pub(super) struct RecordedJoints {
 }
 
 impl RecordedJoints {
-    /// The joints that `recording` shows; `None` if it shows none.
-    pub(super) fn of(recording: &Recording) -> Option<Self> {
-        let skeleton = &recording.rig.skeleton;
+    /// The joints that `frames` of `rig` show; `None` if they show none.
+    pub(super) fn of(rig: &Rig, frames: &[Frame]) -> Option<Self> {
+        let skeleton = &rig.skeleton;
         let seen = |joint: usize| {
-            let frames = &recording.frames;
             frames
                 .iter()
                 .any(|frame| is_place(&frame.pose.positions[joint]))
         };
         let any = (0..skeleton.len()).any(seen);
         let flat = skeleton.len() > 1 && skeleton.joints().iter().all(|j| j.parent.is_none());
-        let turned = recording
-            .frames
+        let turned = frames
             .iter()
             .all(|frame| frame.pose.rotations.len() == skeleton.len());
         let mut tree = if flat {
-            Self::of_roles(recording, &seen)
+            Self::of_roles(rig, &seen)
         } else {
             Self {
                 from: (0..skeleton.len()).collect(),
@@ -48,8 +45,8 @@ impl RecordedJoints {
     }
 
     /// A body of the roles that were seen.
-    fn of_roles(recording: &Recording, seen: &dyn Fn(usize) -> bool) -> Self {
-        let played = |role: Role| recording.rig.roles.joint(role).filter(|joint| seen(*joint));
+    fn of_roles(rig: &Rig, seen: &dyn Fn(usize) -> bool) -> Self {
+        let played = |role: Role| rig.roles.joint(role).filter(|joint| seen(*joint));
         let mut at = [None; Role::COUNT];
         let (mut from, mut joints) = (Vec::new(), Vec::<Joint>::new());
         for (role, name) in NAMES {
@@ -74,20 +71,14 @@ impl RecordedJoints {
     }
 
     /// `count` frames at `rate_hz` of what was recorded.
-    pub(super) fn clip(
-        self,
-        recording: &Recording,
-        name: &str,
-        rate_hz: f64,
-        count: usize,
-    ) -> Clip {
+    pub(super) fn clip(self, frames: &[Frame], name: &str, rate_hz: f64, count: usize) -> Clip {
         let n = self.joints.len();
         let places: Vec<Option<Vec<Vec3>>> = (0..n)
-            .map(|j| places(&recording.frames, self.from[j], rate_hz, count))
+            .map(|j| places(frames, self.from[j], rate_hz, count))
             .collect();
         let world: Vec<Vec<Quat>> = (0..n)
             .map(|j| match self.turned {
-                true => rotations(&recording.frames, self.from[j], rate_hz, count),
+                true => rotations(frames, self.from[j], rate_hz, count),
                 false => vec![Quat::identity(); count],
             })
             .collect();

@@ -20,7 +20,7 @@ use super::rest::is_t_pose;
 use super::skeleton::{AssumedNeck, assumed_neck, bones_of, local_position, place, rig_of};
 use crate::humanoid::{BoneMask, HUMANOID_BONES, is_body, parent_among};
 use crate::live::osc::{self, Message};
-use crate::live::{Frame, MAX_PERFORMERS, PerformerId, Rig, SourceCounts, SourceEvent};
+use crate::live::{Arrival, Frame, PerformerId, PerformerTable, Rig, SourceCounts, SourceEvent};
 use crate::math::{Quat, Vec3};
 
 /// (d) of the rules.
@@ -43,7 +43,7 @@ const LATE_SECS: f64 = 1.0;
 pub struct VmcOptions {
     /// Exchange left and right: for senders that show their performer as a mirror would.
     pub mirrored: bool,
-    /// Performers that are followed at once, at most [`MAX_PERFORMERS`]; packets of others are counted and left.
+    /// Performers that are followed at once, at most [`MAX_PERFORMERS`](crate::live::MAX_PERFORMERS); packets of others are counted and left.
     pub actors: usize,
     /// Leave out frames that show a T-pose too exact to be a person's.
     pub skip_t_pose: bool,
@@ -70,6 +70,10 @@ impl Default for VmcOptions {
 pub struct VmcReceiver<P> {
     options: VmcOptions,
     senders: Vec<Sender<P>>,
+    /// Senders that show a body, by their serial numbers.
+    performers: PerformerTable<u64>,
+    /// Serial number of the next sender.
+    serial: u64,
     ready: Ready,
     counts: SourceCounts,
     begun_secs: Option<f64>,
@@ -99,6 +103,7 @@ struct BoneState {
 
 #[derive(Debug)]
 struct Sender<P> {
+    serial: u64,
     ports: Ports<P>,
     /// Its place; none before it has shown a body.
     actor: Option<PerformerId>,
@@ -111,11 +116,8 @@ struct Sender<P> {
     sent_secs: Option<f64>,
     clock: SenderClock,
     heard_secs: f64,
-    /// When it last showed a body.
-    shown_secs: f64,
     /// No performer to be seen, it says.
     bad: bool,
-    gone: bool,
     rig: Option<(BoneMask, Arc<Rig>)>,
     /// Since when the bones that come are not the rig's.
     changed_secs: Option<f64>,
@@ -127,6 +129,8 @@ impl<P: Peer> VmcReceiver<P> {
         Self {
             options: options.clone(),
             senders: Vec::new(),
+            performers: PerformerTable::new(options.actors),
+            serial: 0,
             ready: Ready::default(),
             counts: SourceCounts::default(),
             begun_secs: None,
@@ -165,9 +169,10 @@ impl<P: Peer> VmcReceiver<P> {
 
     /// Lets a sender take what came; it may get a place by that.
     fn with(&mut self, at: usize, now_secs: f64, take: impl FnOnce(&mut Taking<'_, P>)) {
-        let place = self.free_place(at);
         let sender = &mut self.senders[at];
         let newcomer = sender.actor.is_none();
+        let performers = &self.performers;
+        let gone = sender.actor.is_some_and(|actor| performers.is_gone(actor));
         let mut taking = Taking {
             sender,
             ready: &mut self.ready,
@@ -175,40 +180,33 @@ impl<P: Peer> VmcReceiver<P> {
             options: &self.options,
             now_secs,
             begun_secs: self.begun_secs.unwrap_or(now_secs),
-            place,
+            place: if newcomer { performers.vacant() } else { None },
+            gone,
+            shown: false,
             crowded: false,
         };
         take(&mut taking);
+        let shown = taking.shown;
         if taking.crowded {
             self.counts.refused += 1;
             self.refused = Some(self.senders[at].ports.now());
         }
-        let Some(actor) = self.senders[at].actor.filter(|_| newcomer) else {
+        let sender = &self.senders[at];
+        let (serial, Some(actor)) = (sender.serial, sender.actor) else {
             return;
         };
-        // Whoever had the place before has gone.
-        let (before, mut index) = (self.senders.len(), 0);
-        self.senders.retain(|sender| {
-            let keep = index == at || sender.actor != Some(actor);
-            index += 1;
-            keep
-        });
-        self.counts.interruptions += u64::from(self.senders.len() < before);
-    }
-
-    /// A place for a sender that has none: one that nobody had, else one of somebody who has gone.
-    fn free_place(&self, at: usize) -> Option<PerformerId> {
-        if self.senders[at].actor.is_some() {
-            return None;
+        if !newcomer {
+            if shown {
+                self.performers.hear(actor, now_secs);
+            }
+            return;
         }
-        let most = self.options.actors.clamp(1, MAX_PERFORMERS) as u16;
-        let taken = |actor: &PerformerId, here: bool| {
-            let mut senders = self.senders.iter();
-            senders.any(|s| s.actor == Some(*actor) && (here || !s.gone))
-        };
-        let mut places = (0..most).map(PerformerId);
-        let unused = places.clone().find(|actor| !taken(actor, true));
-        unused.or_else(|| places.find(|actor| !taken(actor, false)))
+        if let Some((_, Arrival::Replaced)) = self.performers.arrive(serial, now_secs) {
+            // Whoever had the place before has gone.
+            self.senders
+                .retain(|other| other.serial == serial || other.actor != Some(actor));
+            self.counts.interruptions += 1;
+        }
     }
 
     /// Time passes: closes frames after a silence, and says who has gone.
@@ -221,15 +219,10 @@ impl<P: Peer> VmcReceiver<P> {
             }
             at += 1;
         }
-        for sender in &mut self.senders {
-            if let Some(actor) = sender.actor
-                && !sender.gone
-                && now_secs - sender.shown_secs > GONE_SECS
-            {
-                sender.gone = true;
-                self.ready.items.push_back(VmcItem::Gone(actor));
-            }
-        }
+        let items = &mut self.ready.items;
+        self.performers.leave_silent(now_secs, GONE_SECS, |actor| {
+            items.push_back(VmcItem::Gone(actor));
+        });
         let silent = |sender: &Sender<P>| now_secs - sender.heard_secs > GONE_SECS;
         self.senders
             .retain(|sender| sender.actor.is_some() || !silent(sender));
@@ -262,7 +255,9 @@ impl<P: Peer> VmcReceiver<P> {
             .senders
             .iter_mut()
             .any(|sender| sender.ports.part_with(peer));
-        let roams = |sender: &mut Sender<P>| !sender.gone && sender.ports.follow(peer, now_secs);
+        let performers = &self.performers;
+        let gone = |sender: &Sender<P>| sender.actor.is_some_and(|a| performers.is_gone(a));
+        let roams = |sender: &mut Sender<P>| !gone(sender) && sender.ports.follow(peer, now_secs);
         if !parted && let Some(at) = self.senders.iter_mut().position(roams) {
             return Some(at);
         }
@@ -271,7 +266,8 @@ impl<P: Peer> VmcReceiver<P> {
             all.filter(|(_, sender)| sender.actor.is_none())
         };
         if newcomers().count() < NEWCOMERS {
-            self.senders.push(Sender::new(peer, now_secs));
+            let serial = self.next_serial();
+            self.senders.push(Sender::new(serial, peer, now_secs));
             return Some(self.senders.len() - 1);
         }
         // Whoever shows least makes room; those who are about to show a body do not.
@@ -280,19 +276,26 @@ impl<P: Peer> VmcReceiver<P> {
         if is_body(sender.alive(now_secs)) {
             return None;
         }
-        self.senders[least] = Sender::new(peer, now_secs);
+        let serial = self.next_serial();
+        self.senders[least] = Sender::new(serial, peer, now_secs);
         Some(least)
+    }
+
+    fn next_serial(&mut self) -> u64 {
+        self.serial += 1;
+        self.serial
     }
 }
 
 impl<P: Peer> Sender<P> {
-    fn new(peer: P, now_secs: f64) -> Self {
+    fn new(serial: u64, peer: P, now_secs: f64) -> Self {
         let bone = BoneState {
             position: Vec3::zeros(),
             rotation: Quat::identity(),
             seen_secs: f64::NEG_INFINITY,
         };
         Self {
+            serial,
             ports: Ports::new(peer, now_secs),
             actor: None,
             bones: [bone; HUMANOID_BONES],
@@ -302,9 +305,7 @@ impl<P: Peer> Sender<P> {
             sent_secs: None,
             clock: SenderClock::default(),
             heard_secs: now_secs,
-            shown_secs: now_secs,
             bad: false,
-            gone: false,
             rig: None,
             changed_secs: None,
         }
@@ -339,6 +340,10 @@ struct Taking<'a, P> {
     begun_secs: f64,
     /// A place, if it has none and shows a body.
     place: Option<PerformerId>,
+    /// It had gone before this packet.
+    gone: bool,
+    /// It shows a body.
+    shown: bool,
     /// It shows a body, and there is no place.
     crowded: bool,
 }
@@ -363,7 +368,7 @@ impl<P: Peer> Taking<'_, P> {
 
     /// True if the sender stamped this packet earlier than one before it.
     fn was_overtaken(&self, bytes: &[u8]) -> bool {
-        if self.sender.gone {
+        if self.gone {
             // Whoever comes back may have begun its clock anew.
             return false;
         }
@@ -443,7 +448,7 @@ impl<P: Peer> Taking<'_, P> {
             return;
         }
         self.show();
-        if self.sender.gone {
+        if self.gone {
             self.counts.incomplete += 1;
             return;
         }
@@ -480,8 +485,8 @@ impl<P: Peer> Taking<'_, P> {
         if !is_body(self.sender.alive(self.now_secs)) {
             return;
         }
-        self.sender.shown_secs = self.now_secs;
-        if std::mem::take(&mut self.sender.gone) {
+        self.shown = true;
+        if std::mem::take(&mut self.gone) {
             self.sender.clock = SenderClock::default();
             self.counts.interruptions += 1;
         }

@@ -4,7 +4,7 @@
 //! markers on both sides of them, as in the published sets. Sources: the marker guides of Plug-in Gait, Helen Hayes, CAST (Cappozzo et
 //! al. 1995), van Sint Jan (2007), Visual3D and Qualisys.
 
-use super::{LEAST_ROLES, PointSet, Recognised};
+use super::set::{LEAST_ROLES, PointSet, Recognised};
 
 /// What stands for a place on the bone, and how it is spelt, without its side.
 const SPELLINGS: [(&str, &[&str]); 18] = [
@@ -325,7 +325,7 @@ const ANATOMY: PointSet = PointSet {
         ("torso", "t10+strn|t10|strn"),
         ("head", "lhead+rhead|head|headtop|tophead"),
     ],
-    joints_too: false,
+    more_roles: &[],
 };
 
 /// Who plays what among points of these normalised names, if both legs are there.

@@ -1,6 +1,6 @@
 //! Landmarks of pose estimators and depth cameras, and joints by their usual names.
 
-use super::PointSet;
+use super::set::PointSet;
 
 /// Roles among joints by their usual names: of landmark models, of skeletons of every animation program, and morec's
 /// own. Upper arms come before collars, because a shoulder is the one or the other.
@@ -43,7 +43,7 @@ pub(super) const JOINTS: PointSet = PointSet {
         ),
         ("head", "head|headtop|lear+rear|nose|skull"),
     ],
-    joints_too: false,
+    more_roles: &[],
 };
 
 const fn landmarks(
@@ -57,7 +57,7 @@ const fn landmarks(
         numbered: true,
         by_name: true,
         roles,
-        joints_too: true,
+        more_roles: JOINTS.roles,
     }
 }
 

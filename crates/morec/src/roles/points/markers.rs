@@ -3,7 +3,7 @@
 //! Where a joint has markers on both sides, it is their middle; where it has one, the marker stands for it: directions of
 //! bones are then a few degrees off, always alike. Hip joints come from the pelvis ([`PointJoint`](super::PointJoint)).
 
-use super::PointSet;
+use super::set::PointSet;
 
 const fn markers(
     name: &'static str,
@@ -16,7 +16,7 @@ const fn markers(
         numbered: false,
         by_name: true,
         roles,
-        joints_too: false,
+        more_roles: &[],
     }
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::classes::ClassId;
 
-use super::{Branch, Node, TreeParts};
+use super::parts::{Branch, Node, TreeParts};
 
 /// More classes than this are refused: descent is recursive, and a tree may be as deep as it has classes.
 pub const MAX_CLASSES: usize = 1024;

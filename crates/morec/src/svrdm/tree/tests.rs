@@ -1,6 +1,7 @@
 use proptest::prelude::*;
 
 use super::*;
+use crate::classes::ClassId;
 
 /// Exemplars at the corners of a triangle, one for each of three classes: 0 | (1 | 2).
 fn parts() -> TreeParts {

@@ -7,8 +7,10 @@ use serde::Serialize;
 use crate::classes::ClassId;
 use crate::svrdm::tree::{Branch, Node, Tree, TreeError, TreeParts};
 
-use super::branch::{MacroClasses, Space, TrainedBranch, one_width, train};
-use super::cross::{CrossParams, WidthOutcome};
+use super::branch::{Space, TrainedBranch, one_width, train};
+use super::cross::WidthOutcome;
+use super::cross_params::CrossParams;
+use super::machines::MacroClasses;
 use super::params::TreeParams;
 use super::partition::{function_products, partition};
 use super::sigma::SigmaRule;

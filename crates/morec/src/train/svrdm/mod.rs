@@ -6,8 +6,10 @@
 
 mod branch;
 mod cross;
+mod cross_params;
 mod gram;
 mod grow;
+mod machines;
 mod params;
 mod partition;
 mod qp;
@@ -20,10 +22,11 @@ mod svrm;
 #[cfg(test)]
 pub(crate) mod tests;
 
-pub use branch::{Machines, MacroClasses, Plane};
-pub use cross::{CrossParams, Multiples, WidthOutcome};
+pub use cross::WidthOutcome;
+pub use cross_params::{CrossParams, Multiples};
 pub use gram::Distances;
 pub use grow::{BranchReport, FeatureSample, GrowError, Grown, grow};
+pub use machines::{Machines, MacroClasses, Plane};
 pub use params::TreeParams;
 pub use partition::{PartitionParams, Split};
 pub use qp::Stop;

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::cross::CrossParams;
+use super::cross_params::CrossParams;
 use super::gram::{Distances, SAME};
 use super::svrm::{MachineParams, on_boundary, svrm};
 

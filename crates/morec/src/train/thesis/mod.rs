@@ -1,15 +1,16 @@
 //! From clips and labels to a model of the thesis's kind: pose rows, principal components, feature vectors, the tree
 //! ([`train::svrdm`](super::svrdm)), profiles, and the thresholds of recognition.
 
+mod details;
 mod fit;
 mod material;
 mod options;
 mod report;
 mod thresholds;
 
+pub use details::SvrdmReport;
 pub use material::ThesisSample;
 pub use options::{Pivots, SvrdmOptions, SvrdmTrainParams, ThresholdRule};
-pub use report::SvrdmReport;
 pub use thresholds::Estimated;
 
 use crate::progress::Progress;

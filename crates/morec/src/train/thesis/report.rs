@@ -2,41 +2,17 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
-
-use crate::pca::QualityRow;
 use crate::svrdm::SvrdmModel;
 use crate::train::TrainingReport;
 use crate::train::notes::class_notes;
-use crate::train::svrdm::BranchReport;
 
+use super::details::SvrdmReport;
 use super::fit::Fitted;
 use super::material::ThesisTrainingData;
 use super::thresholds::Estimated;
 
 /// Vectors whose product with their sign vector is below this are close to being turned round.
 const CLOSE_TO_FLIPPING: f64 = 0.1;
-
-/// Training results beyond those of every method.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct SvrdmReport {
-    /// Values in a reduced row, `r`.
-    pub dims: usize,
-    /// Share of the variance that they keep (Eq. 3.8).
-    pub quality: f64,
-    /// Variance kept by fewer or more components.
-    pub quality_table: Vec<QualityRow>,
-    /// Of each direction, the share of samples whose sign was close to flipping (Alg. 5).
-    pub unsure_signs: Vec<f64>,
-    /// The branches of the tree, the root first.
-    pub branches: Vec<BranchReport>,
-    /// `T` in recognition.
-    pub accept: f64,
-    /// Least confidence that is reported.
-    pub min_confidence: f64,
-    /// Estimation of these two, if they were estimated.
-    pub estimated: Option<Estimated>,
-}
 
 pub(super) fn of(
     material: &ThesisTrainingData,

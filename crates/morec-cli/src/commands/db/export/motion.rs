@@ -1,18 +1,19 @@
 //! The motion of clips, each in a file of its own.
 
 use std::path::Path;
-use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
 use morec::formats::bvh;
 use morec_db::{ClipFilter, ClipInfo, MotionDb, exchange};
 
-use super::{Args, said};
+use super::args::Args;
 use crate::commands::convert::{ClipForm, CsvContent, write_take};
+use crate::print;
 use crate::progress::SlowProgress;
 
-/// Writes the clips whose names match `pattern`: one as the file that `args` name, several into it as a folder.
-pub(super) fn export(args: &Args, db: &MotionDb, pattern: &str) -> Result<ExitCode> {
+/// Writes the clips whose names match `pattern`: one as the file that `args` name, several into it as a folder. Gives how many
+/// files and frames.
+pub(super) fn export(args: &Args, db: &MotionDb, pattern: &str) -> Result<(usize, usize)> {
     let clips = match pattern.contains(['*', '?']) {
         true => db.find_clips(&ClipFilter {
             name: Some(pattern.to_owned()),
@@ -26,7 +27,7 @@ pub(super) fn export(args: &Args, db: &MotionDb, pattern: &str) -> Result<ExitCo
         [clip] if !args.output.is_dir() => (one(args, db, clip, form)?, 1),
         several => (folder(args, db, several, form)?, several.len()),
     };
-    said(args, files, frames, "frames")
+    Ok((files, frames))
 }
 
 fn one(args: &Args, db: &MotionDb, clip: &ClipInfo, form: Option<ClipForm>) -> Result<usize> {
@@ -48,7 +49,7 @@ fn one(args: &Args, db: &MotionDb, clip: &ClipInfo, form: Option<ClipForm>) -> R
         }
         let mut text = Vec::new();
         bvh::write(&take.clip, &mut text)?;
-        super::super::print(String::from_utf8_lossy(&text))?;
+        print::print(String::from_utf8_lossy(&text))?;
     } else {
         write_take(&take, form, args.table.into(), output).with_context(shown)?;
     }

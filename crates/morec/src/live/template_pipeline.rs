@@ -1,15 +1,14 @@
-//! From poses to detections by each method: what a [`Recognizer`](super::Recognizer) runs inside.
+//! Feature rows and templates on one stream.
 
 use std::sync::Arc;
 
 use crate::features::{BoneSet, FeatureStream, Pushed};
-use crate::pivots::{PivotPose, PoseStream};
-use crate::svrdm::{FrameDetection, SvrdmEngine, SvrdmModel};
 use crate::templates::{
     ClassMatches, EarlyDetectionParams, OngoingMatch, TemplateEngine, TemplateModel,
 };
 
 use super::detection::{DetectionBuffer, Steps};
+use super::pipeline::Pipeline;
 use super::{EarlyDetection, RecognizerInput, StartError};
 
 /// Feature rows and templates.
@@ -68,38 +67,6 @@ impl TemplatePipeline {
         }
     }
 
-    pub(super) fn latency_secs(&self) -> f64 {
-        let features = &self.model.features;
-        // A row stands at its tick's last frame; the tick itself ends one frame later.
-        let filters = (features.look_ahead_frames() - 1) as f64 / features.rate_hz;
-        filters + self.model.decode.look_ahead_ticks(self.model.rule()) as f64 / features.tick_hz()
-    }
-
-    pub(super) fn breaks_at(&self, time_secs: f64) -> bool {
-        self.features.breaks_at(time_secs)
-    }
-
-    pub(super) fn push(
-        &mut self,
-        time_secs: f64,
-        pose: RecognizerInput<'_>,
-        found: &mut DetectionBuffer,
-    ) -> Pushed {
-        let pushed = self.features.take(time_secs, pose.key);
-        self.recognise_rows(found);
-        pushed
-    }
-
-    pub(super) fn end_stretch(&mut self, found: &mut DetectionBuffer) {
-        self.features.end();
-        self.recognise_rows(found);
-        let steps = self.steps();
-        for d in self.engine.finish() {
-            found.add(d.class, steps, d.start, d.stop, d.score);
-        }
-        self.features.reset();
-    }
-
     /// Detections of the rows that are complete.
     fn recognise_rows(&mut self, found: &mut DetectionBuffer) {
         let steps = self.steps();
@@ -117,8 +84,42 @@ impl TemplatePipeline {
             step_secs,
         }
     }
+}
 
-    pub(super) fn early_detection(&mut self) -> Option<EarlyDetection> {
+impl Pipeline for TemplatePipeline {
+    fn latency_secs(&self) -> f64 {
+        let features = &self.model.features;
+        // A row stands at its tick's last frame; the tick itself ends one frame later.
+        let filters = (features.look_ahead_frames() - 1) as f64 / features.rate_hz;
+        filters + self.model.decode.look_ahead_ticks(self.model.rule()) as f64 / features.tick_hz()
+    }
+
+    fn breaks_at(&self, time_secs: f64) -> bool {
+        self.features.breaks_at(time_secs)
+    }
+
+    fn push(
+        &mut self,
+        time_secs: f64,
+        pose: RecognizerInput<'_>,
+        found: &mut DetectionBuffer,
+    ) -> Pushed {
+        let pushed = self.features.take(time_secs, pose.key);
+        self.recognise_rows(found);
+        pushed
+    }
+
+    fn end_stretch(&mut self, found: &mut DetectionBuffer) {
+        self.features.end();
+        self.recognise_rows(found);
+        let steps = self.steps();
+        for d in self.engine.finish() {
+            found.add(d.class, steps, d.start, d.stop, d.score);
+        }
+        self.features.reset();
+    }
+
+    fn early_detection(&mut self) -> Option<EarlyDetection> {
         let ticks = self.engine.ticks();
         if ticks != self.seen.ticks {
             let underway = self.engine.underway(&self.early);
@@ -140,8 +141,12 @@ impl TemplatePipeline {
         })
     }
 
-    pub(super) fn set_early(&mut self, params: EarlyDetectionParams) {
+    fn set_early(&mut self, params: EarlyDetectionParams) {
         self.early = params;
+    }
+
+    fn boxed(&self) -> Box<dyn Pipeline> {
+        Box::new(self.clone())
     }
 }
 
@@ -154,67 +159,4 @@ fn restricted(
         return Ok(model.clone());
     }
     Ok(Arc::new(model.restricted(bones)?))
-}
-
-/// Pose rows and the stages of the thesis.
-#[derive(Debug, Clone)]
-pub(super) struct SvrdmPipeline {
-    rows: PoseStream,
-    engine: SvrdmEngine,
-}
-
-impl SvrdmPipeline {
-    pub(super) fn new(model: &Arc<SvrdmModel>) -> Result<Self, StartError> {
-        let engine = SvrdmEngine::new(model)?;
-        Ok(Self {
-            rows: PoseStream::new(&model.pivots, &model.pose),
-            engine,
-        })
-    }
-
-    /// A segment is compared with those that end a chunk later, and a row waits for the frame after it.
-    pub(super) fn latency_secs(&self) -> f64 {
-        (self.engine.latency_frames() + 1) as f64 / self.engine.model().rate_hz()
-    }
-
-    pub(super) fn breaks_at(&self, time_secs: f64) -> bool {
-        self.rows.breaks_at(time_secs)
-    }
-
-    pub(super) fn push(
-        &mut self,
-        time_secs: f64,
-        pose: RecognizerInput<'_>,
-        found: &mut DetectionBuffer,
-    ) -> Pushed {
-        let (steps, engine) = (self.steps(), &mut self.engine);
-        let unknown;
-        let pivots = match pose.pivots {
-            Some(pivots) => pivots,
-            None => {
-                unknown = PivotPose::default();
-                &unknown
-            }
-        };
-        self.rows.push(time_secs, pivots, &mut |row| {
-            engine.push(row, &mut |d| {
-                found.add(d.class, steps, d.start, d.stop, d.score)
-            });
-        })
-    }
-
-    pub(super) fn end_stretch(&mut self, found: &mut DetectionBuffer) {
-        let (steps, engine) = (self.steps(), &mut self.engine);
-        let mut out = |d: FrameDetection| found.add(d.class, steps, d.start, d.stop, d.score);
-        self.rows.finish(&mut |row| engine.push(row, &mut out));
-        engine.finish(&mut out);
-    }
-
-    fn steps(&self) -> Steps {
-        let step_secs = 1.0 / self.engine.model().rate_hz();
-        Steps {
-            origin_secs: self.rows.origin_secs(),
-            step_secs,
-        }
-    }
 }

@@ -1,4 +1,6 @@
-//! A thread for each stage of the method of 2009, as the thesis laid it out on its processor (§4.6.1, §4.7.3): frames →
+//! The method of 2009 on live streams: on one thread ([`SvrdmPipeline`]), or a thread for each stage.
+//!
+//! The stages are as the thesis laid it out on its processor (§4.6.1, §4.7.3): frames →
 //! input assembly → segment assembly → feature vector extraction → classification → scoring → tracking → events.
 //!
 //! Stages are joined by bounded wait-free rings whose boxes come round again: segments travel in the same boxes from
@@ -10,6 +12,7 @@ mod belt;
 mod between;
 mod input;
 mod message;
+mod pipeline;
 mod tracking;
 
 use std::sync::Arc;
@@ -22,6 +25,7 @@ use self::belt::belt;
 use self::between::{Segments, classify, extract, score};
 use self::input::{Chunks, Fate, PerformerInput};
 use self::message::{Chunk, StageMessage};
+pub(super) use self::pipeline::SvrdmPipeline;
 use self::tracking::Tracking;
 use super::broadcast::WorkerOptions;
 use super::broadcast::{EventBroadcast, EventReader};

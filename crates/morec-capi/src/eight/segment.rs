@@ -1,0 +1,30 @@
+//! A recognised motion, as the eight calls give it.
+
+use std::ffi::c_char;
+
+/// Bytes for the name of a class, with the zero at its end; longer names are cut.
+pub(crate) const NAME_BYTES: usize = 64;
+
+/// A motion that was recognised: a segment of the stream, and what it shows.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MotionSeg {
+    /// Its number, from 1 since `mrStart`.
+    pub number: u64,
+    /// Its class in the index, from 0.
+    pub class_id: u32,
+    /// Frame of the clip at which it began.
+    pub start_frame: u32,
+    /// Frame at which it had ended.
+    pub stop_frame: u32,
+    /// Bytes of `class_name` without the zero.
+    pub class_name_bytes: u32,
+    /// Start, seconds from the beginning of the clip.
+    pub start_secs: f64,
+    /// Stop, seconds.
+    pub stop_secs: f64,
+    /// 0 just accepted … 1 identical to a sample.
+    pub confidence: f64,
+    /// The name of its class, UTF-8, with a zero at its end; cut if it is longer.
+    pub class_name: [c_char; 64],
+}

@@ -1,0 +1,136 @@
+//! Samples as values.
+
+use crate::ClipId;
+
+/// A sample's number in its database.
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
+)]
+pub struct SampleId(pub i64);
+
+/// A sample as it is kept.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct DbSample {
+    /// Its number.
+    pub id: SampleId,
+    /// Its clip.
+    #[serde(rename = "clip_id")]
+    pub clip: ClipId,
+    /// Its clip's name.
+    #[serde(rename = "clip")]
+    pub clip_name: String,
+    /// Person in the clip.
+    pub subject: Option<String>,
+    /// Its class.
+    pub class: String,
+    /// Start, seconds from the beginning of the clip.
+    pub start_secs: f64,
+    /// Stop, seconds.
+    pub stop_secs: f64,
+    /// True if the clip as a whole was labelled, still ends and all.
+    pub whole_clip: bool,
+    /// Its state.
+    pub state: SampleState,
+    /// Confidence of the program that proposed it.
+    pub score: Option<f64>,
+    /// Author of the last change.
+    pub set_by: String,
+    /// Time of the change, seconds since 1970.
+    pub set_secs: i64,
+    /// Frames a second of its clip.
+    pub rate_hz: f64,
+}
+
+impl DbSample {
+    /// Its frames in the clip's file, rounded to whole ones.
+    pub fn frames(&self) -> std::ops::Range<usize> {
+        let frame = |secs: f64| (secs * self.rate_hz).round().max(0.0) as usize;
+        frame(self.start_secs)..frame(self.stop_secs)
+    }
+}
+
+/// A sample to add.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NewSample {
+    /// Its clip.
+    pub clip: ClipId,
+    /// Its class.
+    pub class: String,
+    /// Start, seconds.
+    pub start_secs: f64,
+    /// Stop, seconds.
+    pub stop_secs: f64,
+    /// True if the clip as a whole is meant.
+    pub whole_clip: bool,
+    /// Its state.
+    pub state: SampleState,
+    /// Confidence of the program that proposes it.
+    pub score: Option<f64>,
+}
+
+/// Counts of added samples, by outcome.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+pub struct Added {
+    /// They are new.
+    pub added: usize,
+    /// They were there and are judged anew.
+    pub changed: usize,
+    /// They were there just so; or a proposal of what had been judged.
+    pub unchanged: usize,
+    /// Samples that start or stop elsewhere now.
+    pub moved: usize,
+    /// Samples that have another class now.
+    pub renamed: usize,
+    /// Samples that were removed, as no label says them.
+    pub gone: usize,
+    /// Proposals of other classes for the same stretch that are rejected now.
+    pub rejected: usize,
+    /// Proposals of groups for the same stretch that are there no more.
+    pub withdrawn: usize,
+}
+
+/// Conditions on samples; all must hold.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct SampleFilter {
+    /// In this clip.
+    pub clip: Option<ClipId>,
+    /// Of this class.
+    pub class: Option<String>,
+    /// In this state.
+    pub state: Option<SampleState>,
+}
+
+/// Author of the proposals of `morec group`, which say that stretches are alike, under a generated name.
+pub const GROUPED_BY: &str = "group";
+
+/// State of a sample.
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
+)]
+#[serde(rename_all = "lowercase")]
+pub enum SampleState {
+    /// It shows its class.
+    Accepted,
+    /// It may show its class; nobody has looked yet.
+    Proposed,
+    /// It does not show its class.
+    Rejected,
+}
+
+impl SampleState {
+    /// Its name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            SampleState::Accepted => "accepted",
+            SampleState::Proposed => "proposed",
+            SampleState::Rejected => "rejected",
+        }
+    }
+
+    /// The state of this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        [Self::Accepted, Self::Proposed, Self::Rejected]
+            .into_iter()
+            .find(|s| s.name() == name)
+    }
+}

@@ -1,0 +1,49 @@
+//! What is known of a clip before it is looked at.
+
+use crate::formats::probe::Format;
+use crate::math::Axis;
+use crate::roles::mapping::Mapping;
+
+use super::signed_axis::SignedAxis;
+
+/// What a person knows better than inference.
+#[derive(Debug, Clone, Default)]
+pub struct ImportOptions {
+    /// Which way is up in the file.
+    pub up: Option<SignedAxis>,
+    /// Metres in one of the file's units of length.
+    pub metres_per_unit: Option<f64>,
+    /// Frames at the start that show a rest pose and not the motion.
+    pub rest_frames: Option<usize>,
+    /// Roles that override those found.
+    pub mapping: Option<Mapping>,
+    /// What the file's format states; believed where the body does not say otherwise.
+    pub stated: Option<Stated>,
+}
+
+/// What the specification of a format, or a file itself, states about lengths and axes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stated {
+    /// Which way is up.
+    pub up: SignedAxis,
+    /// Metres in one unit of length.
+    pub metres_per_unit: f64,
+}
+
+impl Stated {
+    /// What files of `format` state by its specification; `None` for those that leave it to the writer.
+    pub fn of(format: Format) -> Option<Self> {
+        let up = match format {
+            Format::Gltf | Format::Mocopi | Format::OpenSimMotion => SignedAxis::Y,
+            Format::Mvnx => SignedAxis {
+                axis: Axis::Z,
+                negative: false,
+            },
+            _ => return None,
+        };
+        Some(Self {
+            up,
+            metres_per_unit: 1.0,
+        })
+    }
+}

@@ -1,0 +1,46 @@
+//! What a method of recognition does with one stream. The [`Recognizer`](super::Recognizer) knows no more of it.
+
+use std::fmt;
+
+use crate::features::Pushed;
+use crate::templates::EarlyDetectionParams;
+
+use super::detection::DetectionBuffer;
+use super::{EarlyDetection, RecognizerInput};
+
+/// From the poses of one stream to detections. Nothing allocates after construction.
+pub(super) trait Pipeline: fmt::Debug + Send + Sync {
+    /// Seconds from the end of a motion to its report at the earliest.
+    fn latency_secs(&self) -> f64;
+
+    /// True if a pose at this time begins a new stretch.
+    fn breaks_at(&self, time_secs: f64) -> bool;
+
+    /// Takes a pose of the present stretch and adds what it settles.
+    fn push(
+        &mut self,
+        time_secs: f64,
+        pose: RecognizerInput<'_>,
+        found: &mut DetectionBuffer,
+    ) -> Pushed;
+
+    /// Ends the stretch and adds what its last moments hold.
+    fn end_stretch(&mut self, found: &mut DetectionBuffer);
+
+    /// The motion that seems to be under way, of methods that can tell.
+    fn early_detection(&mut self) -> Option<EarlyDetection> {
+        None
+    }
+
+    /// Sets the limits of [`early_detection`](Self::early_detection).
+    fn set_early(&mut self, _params: EarlyDetectionParams) {}
+
+    /// A copy with the state of the stream.
+    fn boxed(&self) -> Box<dyn Pipeline>;
+}
+
+impl Clone for Box<dyn Pipeline> {
+    fn clone(&self) -> Self {
+        self.boxed()
+    }
+}
