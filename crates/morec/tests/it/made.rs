@@ -43,11 +43,6 @@ pub fn model() -> Arc<TemplateModel> {
 
 /// Trained on what `spec` makes, with some everyday motion as background.
 pub fn train(spec: &DatabaseSpec, params: TrainParams) -> TemplateModel {
-    train_on(spec, params, BoneSet::ALL)
-}
-
-/// The same, by some bones.
-pub fn train_on(spec: &DatabaseSpec, params: TrainParams, bones: BoneSet) -> TemplateModel {
     let takes = database(71, spec);
     let samples: Vec<Sample> = takes.iter().flat_map(samples_of).collect();
     let mut clips: Vec<TrainClip> = takes
@@ -68,7 +63,6 @@ pub fn train_on(spec: &DatabaseSpec, params: TrainParams, bones: BoneSet) -> Tem
     };
     let options = TrainOptions {
         params,
-        bones,
         everyday: morec::train::Everyday::Never,
         ..TrainOptions::default()
     };

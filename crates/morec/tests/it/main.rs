@@ -11,7 +11,6 @@ mod engines;
 #[cfg(feature = "fbx")]
 mod fbx;
 mod for_ever;
-mod fuzz_seeds;
 mod golden;
 mod index_file;
 mod kit;
