@@ -1,6 +1,8 @@
 //! A clip: a skeleton and its motion, as a file gave it.
 
-use crate::math::{Quat, Vec3, same_hemisphere};
+#[cfg(feature = "formats")]
+use crate::math::same_hemisphere;
+use crate::math::{Quat, Vec3};
 
 /// A half-open range of frames, `start..stop`.
 pub type Span = std::ops::Range<usize>;
@@ -72,6 +74,7 @@ impl Skeleton {
     }
 
     /// Moves the joints in their parents' frames.
+    #[cfg(feature = "formats")]
     pub(crate) fn map_offsets(&mut self, new: impl Fn(&Joint, Vec3) -> Vec3) {
         for joint in &mut self.joints {
             joint.offset = new(joint, joint.offset);
@@ -79,6 +82,7 @@ impl Skeleton {
     }
 
     /// Moves the ends of the chains.
+    #[cfg(feature = "formats")]
     pub(crate) fn map_tips(&mut self, new: impl Fn(Vec3) -> Vec3) {
         for tip in self
             .joints
@@ -195,6 +199,7 @@ impl Clip {
     ///
     /// # Panics
     /// If parents do not come first, or numbers of frames differ.
+    #[cfg(feature = "formats")]
     pub(crate) fn of_chain(
         from: &Clip,
         joints: Vec<Joint>,
@@ -231,6 +236,7 @@ impl Clip {
     ///
     /// # Panics
     /// If there are not as many positions as frames.
+    #[cfg(feature = "formats")]
     pub(crate) fn add_roots(&mut self, roots: Vec<(String, Vec<Vec3>)>) {
         let (before, added) = (self.skeleton.len(), roots.len());
         if added == 0 {

@@ -175,14 +175,17 @@ impl Coder for Reader<'_> {
 }
 
 /// Foresees a flag.
+#[cfg(feature = "formats")]
 pub(crate) struct Flag(Chance);
 
+#[cfg(feature = "formats")]
 impl Default for Flag {
     fn default() -> Self {
         Self(EVEN)
     }
 }
 
+#[cfg(feature = "formats")]
 impl Flag {
     pub fn code(&mut self, coder: &mut impl Coder, bit: bool) -> bool {
         coder.bit(&mut self.0, bit)

@@ -45,6 +45,7 @@ impl<S> Grid<S> {
     }
 
     /// The last pose of the present stretch.
+    #[cfg(feature = "live")]
     pub fn last(&self) -> Option<&S> {
         self.last.as_ref().map(|(_, pose)| pose)
     }

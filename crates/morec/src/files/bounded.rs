@@ -1,7 +1,7 @@
 //! Whole files: into memory up to a limit, and out of it at once.
 
 use std::fs::{self, File};
-use std::io::{self, ErrorKind, Read, Write};
+use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
 /// The largest file that is read, bytes. The largest clips in use are a few hundred megabytes.
@@ -69,7 +69,10 @@ pub fn read_stream(stream: impl Read) -> io::Result<Vec<u8>> {
 ///
 /// # Errors
 /// The file cannot be written.
+#[cfg(feature = "live")]
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    use std::io::Write;
+
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(format!(".{}.partial", std::process::id()));
     let partial = path.with_file_name(name);

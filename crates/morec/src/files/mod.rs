@@ -24,6 +24,7 @@ mod takes;
 
 use std::path::Path;
 
+#[cfg(feature = "live")]
 pub(crate) use bounded::write_whole;
 pub use bounded::{LARGEST_FILE, LARGEST_STREAM, each_piece, is_large, read_file, read_stream};
 pub use choice::split_choice;

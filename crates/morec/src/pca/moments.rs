@@ -130,6 +130,7 @@ impl Moments {
     }
 
     /// `S = M / (m − 1)`, the sample covariance (thesis Eq. 3.14 as corrected: of centred rows).
+    #[cfg(feature = "train")]
     pub(crate) fn covariance(&self) -> DMatrix<f64> {
         self.scatter() / self.count.saturating_sub(1).max(1) as f64
     }

@@ -17,4 +17,5 @@ pub(crate) const BETWEEN_HIPS: f64 = 0.22;
 /// Between the shoulder joints over shoulder to wrist.
 pub(crate) const BETWEEN_SHOULDERS: f64 = 0.7;
 /// Hip to ankle of an adult of 1.70 m, in metres.
+#[cfg(feature = "formats")]
 pub(crate) const LEG: f64 = 0.83;

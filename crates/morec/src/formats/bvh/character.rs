@@ -76,6 +76,14 @@ impl Character {
         }
     }
 
+    /// Makes room for so many frames more.
+    pub fn reserve(&mut self, frames: usize) {
+        self.rotations.reserve(frames * self.turns.len());
+        self.positions
+            .iter_mut()
+            .for_each(|p| p.values.reserve(frames));
+    }
+
     /// Adds one frame from a whole row of the motion table. O(joints).
     pub fn push(&mut self, row: &[f64]) {
         let joints = self.turns.len();

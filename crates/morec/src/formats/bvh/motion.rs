@@ -118,6 +118,12 @@ pub(super) fn table(
     let joints = characters.iter().map(|c| c.joints.len()).sum::<usize>();
     let samples = FREE_SAMPLES + text.bytes().saturating_mul(SAMPLES_PER_BYTE);
     let max_frames = request.limits.frames.min(samples / joints.max(1));
+    // As many frames as are declared, as far as the table has two bytes for each of their numbers.
+    let believed = (text.bytes() / (2 * width)).min(max_frames);
+    let frames = usize::try_from(request.declared.unwrap_or(0)).unwrap_or(believed);
+    characters
+        .iter_mut()
+        .for_each(|c| c.reserve(frames.min(believed)));
     let table = MotionTable {
         width,
         max_frames,

@@ -101,9 +101,7 @@ impl<'t> MotionLines<'t> {
         loop {
             // The common case in a tight loop; whatever it does not understand is looked at closely.
             let text = self.cursor.text;
-            while let Some(value) = number::quick(text, &mut self.cursor.pos)
-                .or_else(|| number::fixed(text, &mut self.cursor.pos))
-            {
+            while let Some(value) = number::next(text, &mut self.cursor.pos) {
                 values.push(value);
                 self.cursor.skip_blanks();
             }

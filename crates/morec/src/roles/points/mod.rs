@@ -32,6 +32,7 @@ pub fn subject_of(name: &str) -> &str {
 }
 
 /// How many points the sets have whose points may come as numbers alone.
+#[cfg(feature = "formats")]
 pub(crate) fn numbered_counts() -> impl Iterator<Item = usize> {
     let numbered = landmarks::SETS.iter().filter(|set| set.numbered);
     numbered.map(PointSet::len)
