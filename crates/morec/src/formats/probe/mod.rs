@@ -89,7 +89,7 @@ struct Readable {
 }
 
 /// Every format that is read, in the order in which its content is asked for.
-const READ: [Readable; 26] = [
+const READ: &[Readable] = &[
     Readable {
         format: Format::Mclip,
         extension: "mclip",
