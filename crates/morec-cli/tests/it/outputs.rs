@@ -213,7 +213,7 @@ fn endings_of_other_formats_are_refused() {
         ("play CLIP -o o.bvh", ".html"),
         ("db report m.mdb -o o.tsv", ".html"),
         ("crossval --db m.mdb --by half --report o.JSON", ".html"),
-        ("inspect CLIP -o o.png", ".svg"),
+        ("inspect CLIP --draw -o o.png", ".svg"),
         ("convert CLIP -o o.fbx", ".bvh"),
     ] {
         let command = command.replace("CLIP", &clip);
