@@ -86,7 +86,7 @@ fn spawn(name: &str, job: impl FnOnce() + Send + 'static) -> Result<(), LiveErro
 }
 
 /// A connection that is open.
-struct Held {
+struct OpenConnection {
     number: u64,
     stream: TcpStream,
     since: Since,
@@ -100,7 +100,7 @@ fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 fn accept(listener: &TcpListener, sender: &SyncSender<Came>) {
-    let open: Arc<Mutex<Vec<Held>>> = Arc::default();
+    let open: Arc<Mutex<Vec<OpenConnection>>> = Arc::default();
     for (number, stream) in (1..).zip(listener.incoming()) {
         let Ok(stream) = stream else {
             // Out of files, most likely; others may close theirs.
@@ -114,7 +114,7 @@ fn accept(listener: &TcpListener, sender: &SyncSender<Came>) {
         if !make_room(&mut lock(&open)) {
             continue;
         }
-        lock(&open).push(Held {
+        lock(&open).push(OpenConnection {
             number,
             stream: copy,
             since: since.clone(),
@@ -138,11 +138,11 @@ fn accept(listener: &TcpListener, sender: &SyncSender<Came>) {
 }
 
 /// Whether there is a place: if need be that of the connection that has brought no line for longest.
-fn make_room(open: &mut Vec<Held>) -> bool {
+fn make_room(open: &mut Vec<OpenConnection>) -> bool {
     if open.len() < CONNECTIONS {
         return true;
     }
-    let since = |held: &Held| *lock(&held.since);
+    let since = |held: &OpenConnection| *lock(&held.since);
     let idle = (0..open.len()).min_by_key(|at| since(&open[*at]));
     let Some(idle) = idle.filter(|at| since(&open[*at]).elapsed() > IDLE) else {
         return false;

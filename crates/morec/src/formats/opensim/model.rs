@@ -25,8 +25,8 @@ pub(super) struct OsimBody {
     /// `None`: the ground.
     pub(super) parent: Option<usize>,
     /// The joint's frame in the parent and in the body.
-    pub(super) in_parent: Placement,
-    pub(super) in_child: Placement,
+    pub(super) in_parent: BodyPlacement,
+    pub(super) in_child: BodyPlacement,
     /// Turns, one after the other about axes that turn along; then slides along axes of the parent's frame.
     pub(super) turns: Vec<JointAxis>,
     pub(super) slides: Vec<JointAxis>,
@@ -34,12 +34,12 @@ pub(super) struct OsimBody {
 
 /// A frame in another.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Placement {
+pub(super) struct BodyPlacement {
     pub(super) rotation: Quat,
     pub(super) position: Vec3,
 }
 
-impl Placement {
+impl BodyPlacement {
     const fn new(rotation: Quat, position: Vec3) -> Self {
         Self { rotation, position }
     }
@@ -89,8 +89,8 @@ struct NamedJoint<'a, 'input> {
     node: Node<'a, 'input>,
     child: String,
     parent: String,
-    in_parent: Placement,
-    in_child: Placement,
+    in_parent: BodyPlacement,
+    in_child: BodyPlacement,
 }
 
 pub(super) fn of_document(
@@ -202,19 +202,19 @@ fn placement(
     node: Node<'_, '_>,
     position: &str,
     orientation: &str,
-) -> Result<Placement, ParseError> {
+) -> Result<BodyPlacement, ParseError> {
     let angles = vector(node, orientation)?.unwrap_or_default();
     // Turns about X, Y and Z of the frame itself, one after the other.
     let turn = |rotation, axis: Axis| rotation * axis.rotation(angles[axis.index()]);
     let rotation = Axis::ALL.into_iter().fold(Quat::identity(), turn);
-    Ok(Placement::new(
+    Ok(BodyPlacement::new(
         rotation,
         vector(node, position)?.unwrap_or_default(),
     ))
 }
 
 /// The body that a joint's socket leads to, and the joint's frame in it.
-fn joint_frame(joint: Node<'_, '_>, socket: &str) -> Result<(String, Placement), ParseError> {
+fn joint_frame(joint: Node<'_, '_>, socket: &str) -> Result<(String, BodyPlacement), ParseError> {
     const DEEPEST: usize = 8;
     let named = |node: Node<'_, '_>, tags: [&str; 2]| {
         let text = tags.into_iter().find_map(|tag| child(node, tag))?.text()?;
@@ -223,7 +223,7 @@ fn joint_frame(joint: Node<'_, '_>, socket: &str) -> Result<(String, Placement),
     let older = format!("{socket}_connectee_name");
     let mut name = named(joint, [socket, &older])
         .ok_or_else(|| ParseError::new(place(joint), format!("<{socket}>"), "none"))?;
-    let mut whole = Placement::new(Quat::identity(), Vec3::zeros());
+    let mut whole = BodyPlacement::new(Quat::identity(), Vec3::zeros());
     for _ in 0..DEEPEST {
         let frames = child(joint, "frames");
         let offset = frames.and_then(|f| f.children().find(|n| n.attribute("name") == Some(&name)));

@@ -4,7 +4,7 @@ use super::super::builder::{ClipBuilder, check_size};
 use super::super::cells::{Decimal, lines, number, split};
 use super::super::timing::{Clock, Schedule};
 use super::super::{Limits, Loaded, ParseError, Place, Warning};
-use super::model::{JointAxis, OsimBody, OsimModel, Placement};
+use super::model::{BodyPlacement, JointAxis, OsimBody, OsimModel};
 use super::values::shortened;
 use crate::clip::Joint;
 use crate::math::{Quat, Vec3};
@@ -73,7 +73,7 @@ impl OsimModel {
     fn joints(&self) -> Vec<Joint> {
         let values: Vec<f64> = self.coordinates.iter().map(|c| c.default).collect();
         let pose = self.pose(&values);
-        let joint = |(body, place): (&OsimBody, &Placement)| Joint {
+        let joint = |(body, place): (&OsimBody, &BodyPlacement)| Joint {
             name: body.name.clone(),
             parent: body.parent,
             offset: place.position,
@@ -83,9 +83,9 @@ impl OsimModel {
     }
 
     /// Where every body is in its parent, given the values of all coordinates.
-    fn pose(&self, values: &[f64]) -> Vec<Placement> {
+    fn pose(&self, values: &[f64]) -> Vec<BodyPlacement> {
         let placed = |body: &OsimBody| {
-            let mut joint = Placement {
+            let mut joint = BodyPlacement {
                 rotation: Quat::identity(),
                 position: Vec3::zeros(),
             };
