@@ -1,24 +1,8 @@
 //! The command `morec`: what was typed becomes arguments, each command's file does the rest.
 
-/// As the standard library's, but a reader that has gone does not end the work: what is to be written is written all the same.
-macro_rules! println {
-    ($($text:tt)*) => { crate::said::out(format_args!("{}\n", format_args!($($text)*))) };
-}
-
-/// See `println`.
-macro_rules! print {
-    ($($text:tt)*) => { crate::said::out(format_args!($($text)*)) };
-}
-
-/// See `println`.
-macro_rules! eprintln {
-    ($($text:tt)*) => { crate::said::err(format_args!("{}\n", format_args!($($text)*))) };
-}
-
-/// See `println`.
-macro_rules! eprint {
-    ($($text:tt)*) => { crate::said::err(format_args!($($text)*)) };
-}
+// First: its macros take the place of the standard library's in all files behind it.
+#[macro_use]
+mod said;
 
 mod commands;
 mod database;
@@ -36,7 +20,6 @@ mod output;
 mod poses;
 mod print;
 mod progress;
-mod said;
 mod share;
 mod show;
 mod stats;

@@ -6,6 +6,26 @@ use std::sync::Mutex;
 
 use anyhow::{Context, Result};
 
+/// As the standard library's, but a reader that has gone does not end the work: what is to be written is written all the same.
+macro_rules! println {
+    ($($text:tt)*) => { crate::said::out(format_args!("{}\n", format_args!($($text)*))) };
+}
+
+/// See `println`.
+macro_rules! print {
+    ($($text:tt)*) => { crate::said::out(format_args!($($text)*)) };
+}
+
+/// See `println`.
+macro_rules! eprintln {
+    ($($text:tt)*) => { crate::said::err(format_args!("{}\n", format_args!($($text)*))) };
+}
+
+/// See `println`.
+macro_rules! eprint {
+    ($($text:tt)*) => { crate::said::err(format_args!($($text)*)) };
+}
+
 /// The first failure of standard output.
 static FAILED: Mutex<Option<std::io::Error>> = Mutex::new(None);
 

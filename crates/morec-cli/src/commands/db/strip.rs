@@ -25,7 +25,7 @@ pub fn strip(stored: &StoredClip, start_secs: f64, stop_secs: f64, poses: usize)
         frame(stop_secs),
     );
     let mut figures = String::new();
-    let mut extent = Extent {
+    let mut extent = PictureBounds {
         left: 0.0,
         right: WIDTH * poses as f64,
         top: 0.0,
@@ -42,7 +42,7 @@ pub fn strip(stored: &StoredClip, start_secs: f64, stop_secs: f64, poses: usize)
             0.75 * HEIGHT / height,
         );
     }
-    let Extent { left, right, top } = extent;
+    let PictureBounds { left, right, top } = extent;
     let (width, height) = (right - left, HEIGHT - top);
     format!(
         "<svg width=\"{width:.0}\" height=\"{height:.0}\" viewBox=\"{left:.1} {top:.1} {width:.1} {height:.1}\" role=\"img\">\
@@ -51,13 +51,13 @@ pub fn strip(stored: &StoredClip, start_secs: f64, stop_secs: f64, poses: usize)
 }
 
 /// What the figures take, pixels: an arm that is stretched out is not cut off.
-struct Extent {
+struct PictureBounds {
     left: f64,
     right: f64,
     top: f64,
 }
 
-impl Extent {
+impl PictureBounds {
     fn add(&mut self, (x, y): (f64, f64)) {
         const MARGIN: f64 = 2.0;
         self.left = self.left.min(x - MARGIN);
@@ -103,7 +103,7 @@ fn bone_start(clip: &Clip, roles: &RoleMap, joint: usize) -> Option<usize> {
 
 fn figure(
     svg: &mut String,
-    extent: &mut Extent,
+    extent: &mut PictureBounds,
     stored: &StoredClip,
     frame: usize,
     x: f64,
@@ -196,14 +196,14 @@ mod tests {
         let mut clip = script.film("wave", 30.0).unwrap().clip;
         let roles = RoleMap::find(&clip.skeleton);
         let hand = roles.joint(Role::LeftHand).unwrap();
-        let arm = clip.skeleton.joints()[hand].parent.unwrap();
-        // An arm of four metres, wherever it points.
-        let joints = clip.skeleton.joints().iter().cloned().enumerate();
-        let long = joints.map(|(j, mut joint)| {
-            joint.offset *= if j == hand || j == arm { 8.0 } else { 1.0 };
-            joint
+        // A hand that flies four metres away after the first frame, which the figures are scaled by.
+        let near = clip.skeleton.joints()[hand].offset;
+        let far = 4.0 * near.normalize();
+        let positions = (0..clip.frames).map(|frame| if frame == 0 { near } else { far });
+        clip.tracks.push(morec::clip::JointTrack {
+            joint: hand,
+            positions: positions.collect(),
         });
-        clip.skeleton = morec::clip::Skeleton::new(long.collect()).unwrap();
         let (start, stop) = (0.0, clip.duration_secs());
         let stored = StoredClip {
             clip,
