@@ -13,6 +13,7 @@ use crate::table::TextTable;
 
 /// Writes the report as a page, and says so on standard error.
 pub fn write_report(path: &Path, report: &Report<'_>) -> anyhow::Result<()> {
+    output::check_page(path)?;
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
     }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 use morec::files::{
     ClipFile, FileError, FileReader, Listing, is_large, list, read_file, read_stream, split_choice,
@@ -51,6 +51,9 @@ pub fn read(path: &Path) -> Result<Vec<u8>> {
     output::mark_read(path);
     let (file, _) = split_choice(path);
     output::mark_read(&file);
+    if file.is_dir() {
+        bail!("{}: expected a file, found a folder", path.display());
+    }
     read_file(&file).with_context(|| path.display().to_string())
 }
 

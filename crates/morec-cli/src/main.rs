@@ -1,5 +1,9 @@
 //! The command `morec`: what was typed becomes arguments, each command's file does the rest.
 
+// First: its macros take the place of the standard library's in all files behind it.
+#[macro_use]
+mod said;
+
 mod commands;
 mod database;
 mod dates;
@@ -88,7 +92,7 @@ fn main() -> ExitCode {
         Subcommands::Man(args) => commands::complete::man(&args, Cli::command()),
         Subcommands::Studio(args) => commands::studio::run(&args),
     };
-    match outcome {
+    match outcome.and_then(|code| said::whole().map(|()| code)) {
         Ok(code) => code,
         // Whoever reads our output has seen enough: that is not a failure of ours.
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,

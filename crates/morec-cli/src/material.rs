@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow, bail};
 use clap::{Args, ValueEnum};
 use morec::features::BoneSet;
 use morec::formats::Warning;
@@ -12,7 +12,8 @@ use morec::labels::{Extent, Label, Labels, read_people};
 use morec::reproduce;
 use morec::train::thesis::SvrdmOptions;
 use morec::train::{
-    Everyday, Mirror, Recipe, StreamKind, TrainClip, TrainOptions, TrainParams, TrainingData,
+    DataError, Everyday, Mirror, Recipe, StreamKind, TrainClip, TrainOptions, TrainParams,
+    TrainingData,
 };
 use morec_db::labels::{DbSample, SampleFilter, SampleState};
 use morec_db::{ClipFilter, MotionDb, hint};
@@ -544,7 +545,14 @@ fn sort_out(
         .map(|c| (c.clip.name.clone(), c.file_bytes))
         .collect();
     let clips = clips.into_iter().map(|loaded| loaded.clip).collect();
-    let mut data = TrainingData::new(clips, labels, classes)?;
+    let mut data = TrainingData::new(clips, labels, classes).map_err(|error| {
+        let DataError::NoSampleOf(name) = &error else {
+            return error.into();
+        };
+        let known: BTreeSet<&String> = labels.rows.iter().map(|row| &row.class).collect();
+        let known: Vec<String> = known.into_iter().cloned().collect();
+        anyhow!("{error}{}", hint(name, &known))
+    })?;
     data.clips.retain(|clip| !tested_only.contains(&clip.name));
     data.notes
         .iter()

@@ -74,6 +74,48 @@ pub fn check(path: &Path) -> Result<()> {
     Ok(())
 }
 
+/// Endings that promise a format.
+const ENDINGS: [&str; 33] = [
+    "amc", "asf", "bvh", "c3d", "csv", "eaf", "fbx", "glb", "gltf", "htm", "html", "index", "jpg",
+    "json", "jsonl", "mclip", "mdb", "mvnx", "npy", "npz", "pdf", "pkl", "png", "skeleton", "smd",
+    "svg", "trc", "tsv", "txt", "vrm", "vrma", "xml", "zip",
+];
+
+/// Refuses a name that promises another format than what is written.
+///
+/// # Errors
+/// The ending is a format's, and not one of `own`.
+pub fn check_ending(path: &Path, written: &str, own: &[&str]) -> Result<()> {
+    let ending = path.extension().unwrap_or_default().to_string_lossy();
+    let ending = ending.to_lowercase();
+    if ENDINGS.contains(&ending.as_str()) && !own.contains(&ending.as_str()) {
+        bail!(
+            "{}: {written} is written, not what .{ending} promises; let the name end in .{}",
+            path.display(),
+            own[0]
+        );
+    }
+    Ok(())
+}
+
+/// As [`check`] and [`check_ending`], for a page of HTML.
+pub fn check_page(path: &Path) -> Result<()> {
+    check(path).with_context(|| path.display().to_string())?;
+    check_ending(path, "a page of HTML", &["html", "htm"])
+}
+
+/// As [`check`] and [`check_ending`], for an index.
+pub fn check_index(path: &Path) -> Result<()> {
+    check(path).with_context(|| path.display().to_string())?;
+    check_ending(path, "an index", &["index"])
+}
+
+/// As [`check`] and [`check_ending`], for a picture.
+pub fn check_picture(path: &Path) -> Result<()> {
+    check(path).with_context(|| path.display().to_string())?;
+    check_ending(path, "an SVG picture", &["svg"])
+}
+
 /// Writes a whole file, or leaves what was there.
 pub fn write_whole(
     path: &Path,

@@ -14,7 +14,7 @@ pub enum DbError {
     #[error("{0}: no such file; make a database with `morec db init`")]
     Missing(PathBuf),
     /// The file is no SQLite database.
-    #[error("{0}: expected a motion database, found another kind of file")]
+    #[error("{}: expected a motion database, found {}", .0.display(), kind_of(.0))]
     NotADatabase(PathBuf),
     /// The file is another program's SQLite database.
     #[error(
@@ -108,5 +108,13 @@ impl DbError {
             name: name.to_owned(),
             hint: String::new(),
         }
+    }
+}
+
+/// What is no database, in words.
+fn kind_of(path: &std::path::Path) -> &'static str {
+    match path.is_dir() {
+        true => "a folder",
+        false => "another kind of file",
     }
 }

@@ -20,6 +20,7 @@ use crate::figures;
 use crate::json;
 use crate::material::MaterialArgs;
 use crate::motion::ReportMotion;
+use crate::output;
 use crate::progress::StageBar;
 use crate::table::TextTable;
 
@@ -89,6 +90,9 @@ enum SplitArg {
 
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    if let Some(path) = &args.report {
+        output::check_ending(path, "a page of HTML", &["html", "htm"])?;
+    }
     if args.by == SplitArg::Own && args.test.is_empty() {
         anyhow::bail!(
             "--by own tests each person in other clips: name them with --test and --test-labels"

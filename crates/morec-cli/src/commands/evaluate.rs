@@ -24,6 +24,7 @@ use crate::labels;
 use crate::lengths::lengths;
 use crate::material::{LoadedClip, load_clips};
 use crate::motion::ReportMotion;
+use crate::output;
 
 /// Measure detections against labels.
 ///
@@ -74,6 +75,9 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    if let Some(path) = &args.report {
+        output::check_ending(path, "a page of HTML", &["html", "htm"])?;
+    }
     let labels = labels::read(&args.labels)?;
     let table =
         read_detections(&read(&args.found)?).with_context(|| args.found.display().to_string())?;

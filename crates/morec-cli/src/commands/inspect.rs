@@ -76,7 +76,7 @@ pub fn run(args: Args) -> Result<ExitCode> {
     let paths = expanded.clips;
     let full = args.full || paths.len() == 1;
     if let Some(output) = &args.output {
-        output::check(output).with_context(|| output.display().to_string())?;
+        output::check_picture(output)?;
         if paths.len() != 1 {
             bail!(
                 "--output writes the picture of one clip; {} are named",

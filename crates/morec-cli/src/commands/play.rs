@@ -61,7 +61,7 @@ fn speed(text: &str) -> Result<f64, String> {
 /// Plays or writes.
 pub fn run(args: &Args) -> Result<ExitCode> {
     if let Some(output) = &args.output {
-        output::check(output).with_context(|| output.display().to_string())?;
+        output::check_page(output)?;
     }
     let options = ImportOptions {
         mapping: files::mapping(args.roles.as_deref())?,

@@ -19,7 +19,7 @@ use crate::files::{ReadArgs, expand, mapping, open, rate, read, say_doubts};
 use crate::live::layout::LayoutArg;
 use crate::live::network::NetworkArgs;
 use crate::live::wire::recognise_over_vmc;
-use crate::output::Output;
+use crate::output::{self, Output};
 use crate::progress::SlowProgress;
 use crate::stats::Stats;
 use morec_live::PlayableClip;
@@ -115,6 +115,14 @@ pub fn run(args: &Args) -> Result<ExitCode> {
         ..ImportOptions::default()
     };
     let paths = expand(&args.clips)?;
+    if let Some(path) = &args.output {
+        let own = match args.form {
+            OutputFormat::Tsv => ["tsv", "txt"],
+            OutputFormat::Jsonl => ["jsonl", "json"],
+        };
+        output::check(path).with_context(|| path.display().to_string())?;
+        output::check_ending(path, "a table of detections (--form)", &own)?;
+    }
     let failed = match &args.output {
         None => recognize_all(
             &mut std::io::stdout().lock(),

@@ -73,6 +73,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let table = pca.quality_table();
     if let Some(path) = &args.plot {
         let svg = quality_chart(&table, pca.dims(), "Dimensions and what they keep").svg();
+        output::check_picture(path)?;
         output::write_whole(path, |out| out.write_all(svg.as_bytes()))
             .with_context(|| path.display().to_string())?;
     }

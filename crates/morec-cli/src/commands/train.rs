@@ -41,8 +41,8 @@ pub fn trained(
     output: &Path,
 ) -> Result<(MotionIndex, TrainingReport, ClipMaterial)> {
     let material = args.load(&[])?;
-    // Before the work, not after it.
-    output::check(output).with_context(|| output.display().to_string())?;
+    // Before the work, not after it, and when it is known what is read.
+    output::check_index(output)?;
     let (index, report) = train_index(&material.data, &args.recipe()?, &StageBar::new())?;
     Ok((index, report, material))
 }

@@ -151,3 +151,111 @@ fn a_closed_pipe_does_not_lose_the_report() {
         std::fs::remove_file(report).unwrap();
     }
 }
+
+/// Nobody hears what is said, on either stream: what is written is written all the same.
+#[cfg(unix)]
+#[test]
+fn closed_pipes_do_not_end_training() {
+    use std::process::{Command, Stdio};
+    let (folder, _) = studio(2);
+    let mut running = Command::new(env!("CARGO_BIN_EXE_morec"))
+        .args(["train", "--clips", "clips", "--labels", "labels.tsv"])
+        .args(["--everyday", "never", "-o", "i.index"])
+        .current_dir(folder.path())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop((running.stdout.take(), running.stderr.take()));
+    assert_eq!(running.wait().unwrap().code(), Some(0));
+    assert!(folder.path().join("i.index").is_file());
+}
+
+/// A disk that is full is no reader that has had enough.
+#[cfg(target_os = "linux")]
+#[test]
+fn output_that_cannot_be_written_is_an_error() {
+    use std::process::{Command, Stdio};
+    let folder = Folder::with(&[("a.bvh", WAVE_BVH)]);
+    let full = std::fs::OpenOptions::new()
+        .write(true)
+        .open("/dev/full")
+        .unwrap();
+    let ran = Command::new(env!("CARGO_BIN_EXE_morec"))
+        .args(["inspect", "a.bvh"])
+        .current_dir(folder.path())
+        .stdout(Stdio::from(full))
+        .output()
+        .unwrap();
+    let said = String::from_utf8(ran.stderr).unwrap();
+    assert!(
+        ran.status.code() == Some(1) && said.contains("space"),
+        "{said}"
+    );
+}
+
+/// An ending says what a file holds.
+#[test]
+fn endings_of_other_formats_are_refused() {
+    let (folder, takes) = studio(2);
+    folder.morec(&["db", "import", "m.mdb", "clips"]).ok();
+    folder.morec(&["db", "label", "m.mdb", "labels.tsv"]).ok();
+    let clip = format!("clips/{}.bvh", takes[0].clip.name);
+    std::fs::write(
+        folder.path().join("v1.index"),
+        include_bytes!("../../../morec/testdata/index/v1.index"),
+    )
+    .unwrap();
+    for (command, right) in [
+        ("train --db m.mdb -o o.fbx", ".index"),
+        ("recognize v1.index CLIP -o o.bvh", ".tsv"),
+        ("recognize v1.index CLIP --form jsonl -o o.tsv", ".jsonl"),
+        ("play CLIP -o o.bvh", ".html"),
+        ("db report m.mdb -o o.tsv", ".html"),
+        ("crossval --db m.mdb --by half --report o.JSON", ".html"),
+        ("inspect CLIP --draw -o o.png", ".svg"),
+        ("convert CLIP -o o.fbx", ".bvh"),
+    ] {
+        let command = command.replace("CLIP", &clip);
+        let ran = folder.morec(&command.split(' ').collect::<Vec<_>>());
+        assert!(
+            ran.code == Some(1) && ran.err.contains(right),
+            "{command}: {ran:?}"
+        );
+        let left = std::fs::read_dir(folder.path()).unwrap();
+        let mut names = left.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+        assert!(!names.any(|name| name.starts_with("o.")), "{command}");
+    }
+}
+
+#[test]
+fn a_folder_where_a_file_is_asked_for_is_called_one() {
+    let (folder, _) = studio(1);
+    for command in [
+        "recognize clips clips",
+        "live clips --listen json:-",
+        "db info clips",
+        "train --clips clips --labels labels.tsv --people clips -o i.index",
+    ] {
+        let ran = folder.morec(&command.split(' ').collect::<Vec<_>>());
+        assert!(
+            ran.code == Some(1) && ran.err.contains("a folder"),
+            "{command}: {ran:?}"
+        );
+    }
+}
+
+#[test]
+fn a_class_that_is_not_there_is_named_with_the_nearest() {
+    let (folder, _) = studio(1);
+    for of in ["--clips clips --labels labels.tsv", "--db m.mdb"] {
+        folder.morec(&["db", "import", "m.mdb", "clips"]);
+        folder.morec(&["db", "label", "m.mdb", "labels.tsv"]);
+        let command = format!("train {of} --classes wvae -o i.index");
+        let ran = folder.morec(&command.split(' ').collect::<Vec<_>>());
+        assert!(
+            ran.code == Some(1) && ran.err.contains("did you mean `wave`?"),
+            "{ran:?}"
+        );
+    }
+}

@@ -57,7 +57,7 @@ fn source(ui: &mut Ui, state: &State, out: Out) {
             live(LiveCommand::Choose(Choice::Clip(None)));
         }
         for (name, address) in [
-            ("VMC", "vmc://0.0.0.0:39539"),
+            ("VMC", "vmc://127.0.0.1:39539"),
             ("Axis", "axis://127.0.0.1:7002"),
             ("JSON", "json+tcp://127.0.0.1:9000"),
         ] {

@@ -1,8 +1,8 @@
 //! Clips that play in a page of HTML which stands alone: a skeleton to turn and zoom, a timeline to scrub, and the labels and
 //! detections of each clip below it.
 //!
-//! Positions are stored in millimetres as 16-bit differences from the clip's middle, at most 30 frames a second, and drawn
-//! on a canvas by a script in the page; nothing is fetched from anywhere.
+//! Positions are stored as 16-bit differences from the clip's middle, in millimetres or, where somebody goes further than 32 m, in
+//! as coarse a unit as that needs, at most 30 frames a second, and drawn on a canvas by a script in the page; nothing is fetched from anywhere.
 
 use std::ops::Range;
 
@@ -11,6 +11,7 @@ use base64::engine::general_purpose::STANDARD;
 use serde_json::json;
 
 use crate::clip::Clip;
+use crate::features::ALL_BONES;
 use crate::kinematics::WorldPose;
 use crate::math::Vec3;
 use crate::roles::{Role, RoleMap};
@@ -104,7 +105,8 @@ impl Reel {
              zoom\"></canvas>\n<p id=\"bar\"><button id=\"play\">Pause</button> <input id=\"time\" type=\"range\" min=\"0\" \
              step=\"any\" aria-label=\"Time\"> <output id=\"now\"></output> <label>speed <select id=\"speed\">\
              <option>0.25</option><option>0.5</option><option selected>1</option><option>2</option></select></label></p>\n\
-             <canvas id=\"lanes\" aria-label=\"Labels above, detections below\"></canvas>\n<ul id=\"marks\"></ul>\n\
+             <canvas id=\"lanes\" aria-label=\"Labels above, detections below\"></canvas>\n\
+             <p id=\"legend\">Labels above, detections below. Left limbs are blue, right limbs red.</p>\n<ul id=\"marks\"></ul>\n\
              <noscript>Clips are played by a script, which is switched off.</noscript>\n\
              <script>\nconst clips = [{data}];\n{SCRIPT}</script>\n</section>\n"
         )
@@ -160,13 +162,13 @@ fn clip(played: &PlayedClip, most: usize) -> serde_json::Value {
         );
         poses.push(places);
     }
-    let middle = middle(&poses);
+    let (middle, reach) = middle(&poses);
+    let unit_metres = (reach / f64::from(i16::MAX)).max(0.001);
     let mut bytes: Vec<u8> = Vec::new();
     for place in poses.iter().flatten() {
         for axis in 0..3 {
-            // Millimetres; a body within 32 m of the middle.
-            let off = ((place[axis] - middle[axis]) * 1000.0).round();
-            bytes.extend((off.clamp(-32768.0, 32767.0) as i16).to_le_bytes());
+            let off = (place[axis] - middle[axis]) / unit_metres;
+            bytes.extend((off.round() as i16).to_le_bytes());
         }
     }
     let joints = clip.skeleton.joints();
@@ -192,7 +194,8 @@ fn clip(played: &PlayedClip, most: usize) -> serde_json::Value {
         "parents": parents,
         "sides": sides,
         "middle": [middle.x, middle.y, middle.z],
-        "points": !clip.has_rotations(),
+        "lines": lines(clip, roles),
+        "unit_metres": unit_metres,
         "places": STANDARD.encode(bytes),
         "labels": marks(&played.labels),
         "detections": marks(&played.detections),
@@ -217,8 +220,23 @@ fn side(clip: &Clip, roles: &RoleMap, joint: usize) -> i8 {
         .unwrap_or(0)
 }
 
-/// The middle of the floor that the clip is on.
-fn middle(poses: &[Vec<Vec3>]) -> Vec3 {
+/// Pairs of points between which a body's bones lie, in a clip whose joints do not hang together.
+fn lines(clip: &Clip, roles: &RoleMap) -> Vec<(usize, usize)> {
+    if clip.has_rotations() {
+        return Vec::new();
+    }
+    let ends = ALL_BONES.iter().map(|bone| (bone.from, bone.to));
+    let hips = [
+        (Role::Hips, Role::LeftThigh),
+        (Role::Hips, Role::RightThigh),
+    ];
+    ends.chain(hips)
+        .filter_map(|(from, to)| Some((roles.joint(from)?, roles.joint(to)?)))
+        .collect()
+}
+
+/// The middle of the floor that the clip is on, and how far it goes from there along any axis.
+fn middle(poses: &[Vec<Vec3>]) -> (Vec3, f64) {
     let (mut low, mut high) = (Vec3::repeat(f64::MAX), Vec3::repeat(f64::MIN));
     for place in poses
         .iter()
@@ -229,9 +247,10 @@ fn middle(poses: &[Vec<Vec3>]) -> Vec3 {
         high = high.sup(place);
     }
     if low.x > high.x {
-        return Vec3::zeros();
+        return (Vec3::zeros(), 0.0);
     }
-    Vec3::new((low.x + high.x) / 2.0, low.y, (low.z + high.z) / 2.0)
+    let middle = Vec3::new((low.x + high.x) / 2.0, low.y, (low.z + high.z) / 2.0);
+    (middle, (high - middle).max())
 }
 
 #[cfg(test)]
@@ -281,6 +300,56 @@ mod tests {
         let x = f64::from(i16::from_le_bytes([bytes[at], bytes[at + 1]])) / 1000.0;
         let place = WorldPose::of(&take.clip, 20).positions[0];
         assert!((x + clip["middle"][0].as_f64().unwrap() - place.x).abs() < 1e-3);
+    }
+
+    /// The places of a clip's joints, frame by frame, as the page's script takes them.
+    fn places(clip: &serde_json::Value) -> Vec<f64> {
+        let bytes = STANDARD.decode(clip["places"].as_str().unwrap()).unwrap();
+        let unit = clip["unit_metres"].as_f64().unwrap();
+        let middle = |i: usize| clip["middle"][i % 3].as_f64().unwrap();
+        let values = bytes.chunks_exact(2).enumerate();
+        values
+            .map(|(i, b)| f64::from(i16::from_le_bytes([b[0], b[1]])) * unit + middle(i))
+            .collect()
+    }
+
+    /// Somebody who runs for a kilometre arrives there, and does not stop at what millimetres in 16 bits can say.
+    #[test]
+    fn a_long_way_is_shown_as_a_whole() {
+        let script = Script::new(3, Person::draw(31, 2)).rest(0.5);
+        let mut take = Take::new(script.film("run", 30.0).unwrap().clip).unwrap();
+        let track = take.clip.tracks.iter_mut().find(|t| t.joint == 0).unwrap();
+        let last = track.positions.len() - 1;
+        track.positions[last].x += 1000.0;
+        let (expected, played) = (track.positions[last].x, whole(&take));
+        let clip = clip(&played, 1000);
+        let joints = clip["parents"].as_array().unwrap().len();
+        let found = places(&clip)[last * joints * 3];
+        assert!((found - expected).abs() < 0.02, "{found}, {expected}");
+    }
+
+    fn whole(take: &Take) -> PlayedClip<'_> {
+        PlayedClip {
+            clip: &take.clip,
+            roles: &take.roles,
+            secs: None,
+            labels: Vec::new(),
+            detections: Vec::new(),
+        }
+    }
+
+    /// Points do not hang together, but those that are parts of a body are joined by lines.
+    #[test]
+    fn points_of_a_body_are_joined() {
+        let script = Script::new(3, Person::draw(31, 2)).rest(0.5);
+        let joints = script.film("stand", 30.0).unwrap().clip;
+        let take = Take::new(joints.to_points(None)).unwrap();
+        let lines = clip(&whole(&take), 1000)["lines"].clone();
+        let forearm = [Role::LeftForearm, Role::LeftHand].map(|role| take.roles.joint(role));
+        assert!(
+            lines.as_array().unwrap().contains(&json!(forearm)),
+            "{lines}"
+        );
     }
 
     /// A stretch holds its own frames, thinned as asked, and its marks begin with it.

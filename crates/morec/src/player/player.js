@@ -11,7 +11,7 @@ function open(number) {
     for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);
     const view16 = new DataView(bytes.buffer);
     clip.xyz = new Float32Array(bytes.length / 2);
-    for (let i = 0; i < clip.xyz.length; i++) clip.xyz[i] = view16.getInt16(2 * i, true) / 1000;
+    for (let i = 0; i < clip.xyz.length; i++) clip.xyz[i] = view16.getInt16(2 * i, true) * clip.unit_metres;
     clip.height = 0.5;
     for (let i = 1; i < clip.xyz.length; i += 3) clip.height = Math.max(clip.height, clip.xyz[i]);
   }
@@ -75,11 +75,18 @@ function draw() {
     }
   }
   const colour = ink();
+  const place = (k) => seen(value(3 * k), value(3 * k + 1), value(3 * k + 2));
+  const sided = (side) => side > 0 ? "#3d7bc8" : side < 0 ? "#c8553d" : colour;
+  pen.lineWidth = 3;
+  for (const [a, b] of clip.lines) {
+    pen.strokeStyle = sided(clip.sides[a] === clip.sides[b] ? clip.sides[a] : 0);
+    pen.beginPath();
+    pen.moveTo(...place(a));
+    pen.lineTo(...place(b));
+    pen.stroke();
+  }
   for (let j = 0; j < joints; j++) {
-    const place = (k) => seen(value(3 * k), value(3 * k + 1), value(3 * k + 2));
-    const side = clip.sides[j] ?? clip.sides[clip.parents[j]] ?? 0;
-    pen.strokeStyle = pen.fillStyle = side > 0 ? "#2b7bd0" : side < 0 ? "#2f9e5a" : colour;
-    pen.lineWidth = 3;
+    pen.strokeStyle = pen.fillStyle = sided(clip.sides[j] ?? clip.sides[clip.parents[j]] ?? 0);
     const [x, y] = place(j);
     if (clip.parents[j] !== null) {
       pen.beginPath();
@@ -91,7 +98,9 @@ function draw() {
     }
   }
   at("time").value = secs;
-  at("now").textContent = `${secs.toFixed(2)} of ${(clip.frames / clip.rate).toFixed(2)} s`;
+  const under = clip.labels.concat(clip.detections).filter(([, start, stop]) => start <= secs && secs < stop);
+  const names = [...new Set(under.map(([name]) => name))].join(", ");
+  at("now").textContent = `${secs.toFixed(2)} of ${(clip.frames / clip.rate).toFixed(2)} s  ${names}`;
   drawLanes();
 }
 
@@ -111,14 +120,11 @@ function drawLanes() {
     for (const [name, start, stop] of list) {
       const x = width * start / whole, w = Math.max(2, width * (stop - start) / whole);
       pen.fillStyle = hue(name);
-      pen.fillRect(x, top, w, tall);
-      pen.save();
-      pen.beginPath();
-      pen.rect(x, top, w, tall);
-      pen.clip();
+      pen.fillRect(x, top, Math.max(1, w - 1), tall);
+      // A name that has no room is in the list, and beside the time while it lasts.
+      if (pen.measureText(name).width + 7 > w) continue;
       pen.fillStyle = "#fff";
       pen.fillText(name, x + 3, top + tall / 2 + 4);
-      pen.restore();
     }
   }
   pen.fillStyle = ink();

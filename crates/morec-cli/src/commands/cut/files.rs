@@ -88,6 +88,7 @@ fn by_ppca(reader: &PoseReader<'_>, params: &PpcaParams, args: &Args) -> Result<
             let svg = segmentation
                 .chart(&format!("{}: misfit and cuts", clip.name), &[])
                 .svg();
+            output::check_picture(path)?;
             output::write_whole(path, |out| out.write_all(svg.as_bytes()))
                 .with_context(|| path.display().to_string())?;
         }

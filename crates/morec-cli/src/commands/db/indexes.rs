@@ -45,6 +45,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let db = database::open_read_only(&args.db)?;
     if let (Some(name), Some(path)) = (&args.write, &args.output) {
         let bytes = db.index(name)?;
+        output::check_index(path)?;
         output::write_whole(path, |out| out.write_all(&bytes))
             .with_context(|| path.display().to_string())?;
     }

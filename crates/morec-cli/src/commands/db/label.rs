@@ -193,8 +193,10 @@ fn say_absent(db: &MotionDb, absent: &Absent) {
         absent.len(),
         some_of(absent.keys())
     );
-    for clip in absent.keys().take(HINTED) {
-        eprintln!("morec: no clip is called {clip:?}{}", db.hint_of_clip(clip));
+    // That there are other names is no help; that one is near is.
+    let near = absent.keys().map(|clip| (clip, db.hint_of_clip(clip)));
+    for (clip, hint) in near.filter(|(_, hint)| hint.contains('?')).take(HINTED) {
+        eprintln!("morec: no clip is called {clip:?}{hint}");
     }
 }
 

@@ -24,7 +24,7 @@ nav.contents{display:flex;flex-wrap:wrap;gap:.2em 1em}nav.contents a{color:inher
 
 /// Checks that a page can be written there, before the work.
 pub fn check(path: &Path) -> Result<()> {
-    output::check(path).with_context(|| path.display().to_string())
+    output::check_page(path)
 }
 
 /// A page in the making.

@@ -24,23 +24,46 @@ pub fn strip(stored: &StoredClip, start_secs: f64, stop_secs: f64, poses: usize)
         frame(start_secs).max(stored.rest.end.min(clip.frames.saturating_sub(1))),
         frame(stop_secs),
     );
-    let mut svg = format!(
-        "<svg width=\"{0}\" height=\"{HEIGHT}\" viewBox=\"0 0 {0} {HEIGHT}\" role=\"img\">",
-        WIDTH * poses as f64
-    );
+    let mut figures = String::new();
+    let mut extent = PictureBounds {
+        left: 0.0,
+        right: WIDTH * poses as f64,
+        top: 0.0,
+    };
     let height = body_height(clip, first);
     for pose in 0..poses {
         let at = first + (last.max(first) - first) * pose / (poses - 1).max(1);
         figure(
-            &mut svg,
+            &mut figures,
+            &mut extent,
             stored,
             at,
             WIDTH * (pose as f64 + 0.5),
             0.75 * HEIGHT / height,
         );
     }
-    svg.push_str("</svg>");
-    svg
+    let PictureBounds { left, right, top } = extent;
+    let (width, height) = (right - left, HEIGHT - top);
+    format!(
+        "<svg width=\"{width:.0}\" height=\"{height:.0}\" viewBox=\"{left:.1} {top:.1} {width:.1} {height:.1}\" role=\"img\">\
+         {figures}</svg>"
+    )
+}
+
+/// What the figures take, pixels: an arm that is stretched out is not cut off.
+struct PictureBounds {
+    left: f64,
+    right: f64,
+    top: f64,
+}
+
+impl PictureBounds {
+    fn add(&mut self, (x, y): (f64, f64)) {
+        const MARGIN: f64 = 2.0;
+        self.left = self.left.min(x - MARGIN);
+        self.right = self.right.max(x + MARGIN);
+        self.top = self.top.min(y - MARGIN);
+    }
 }
 
 /// Height of the pose of a frame; never 0.
@@ -78,7 +101,14 @@ fn bone_start(clip: &Clip, roles: &RoleMap, joint: usize) -> Option<usize> {
     roles.joint(*start)
 }
 
-fn figure(svg: &mut String, stored: &StoredClip, frame: usize, x: f64, scale: f64) {
+fn figure(
+    svg: &mut String,
+    extent: &mut PictureBounds,
+    stored: &StoredClip,
+    frame: usize,
+    x: f64,
+    scale: f64,
+) {
     let pose = WorldPose::of(&stored.clip, frame);
     let (right, hips) = view(&pose, &stored.roles);
     let low = pose.positions.iter().map(|p| p.y).fold(f64::MAX, f64::min);
@@ -97,6 +127,8 @@ fn figure(svg: &mut String, stored: &StoredClip, frame: usize, x: f64, scale: f6
         };
         // Props and worlds: a root's children far away are no bones.
         let (from, to) = (at(&pose.positions[parent]), at(&pose.positions[j]));
+        extent.add(from);
+        extent.add(to);
         let path = match side(&stored.clip, &stored.roles, j) {
             Some(true) => &mut left,
             Some(false) => &mut rights,
@@ -150,4 +182,50 @@ fn side(clip: &Clip, roles: &RoleMap, joint: usize) -> Option<bool> {
         at = bone_start(clip, roles, j);
     }
     None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use morec::synth::{Person, Script};
+
+    /// Who stretches the arms is wider than a pose's place in the strip, and who lifts them taller.
+    #[test]
+    fn nothing_of_a_figure_lies_outside_the_picture() {
+        let script = Script::new(3, Person::draw(31, 2)).rest(0.2).play("wave");
+        let mut clip = script.film("wave", 30.0).unwrap().clip;
+        let roles = RoleMap::find(&clip.skeleton);
+        let hand = roles.joint(Role::LeftHand).unwrap();
+        // A hand that flies four metres away after the first frame, which the figures are scaled by.
+        let near = clip.skeleton.joints()[hand].offset;
+        let far = 4.0 * near.normalize();
+        let positions = (0..clip.frames).map(|frame| if frame == 0 { near } else { far });
+        clip.tracks.push(morec::clip::JointTrack {
+            joint: hand,
+            positions: positions.collect(),
+        });
+        let (start, stop) = (0.0, clip.duration_secs());
+        let stored = StoredClip {
+            clip,
+            roles,
+            rest: 0..0,
+        };
+        let svg = strip(&stored, start, stop, 8);
+        let quoted = |name: &str| svg.split_once(&format!("{name}=\"")).unwrap().1.to_owned();
+        let numbers = |text: &str| -> Vec<f64> {
+            let words = text.split(|c: char| !(c.is_ascii_digit() || "-.".contains(c)));
+            words.filter_map(|word| word.parse().ok()).collect()
+        };
+        let shown = numbers(quoted("viewBox").split_once('"').unwrap().0);
+        assert!(shown[0] < 0.0 || shown[2] > 8.0 * WIDTH || shown[1] < 0.0);
+        for path in svg.split(" d=\"").skip(1) {
+            for at in numbers(path.split_once('"').unwrap().0).chunks(2) {
+                let inside = |value: f64, from: f64, wide: f64| value > from && value < from + wide;
+                assert!(
+                    inside(at[0], shown[0], shown[2]) && inside(at[1], shown[1], shown[3]),
+                    "{at:?} in {shown:?}"
+                );
+            }
+        }
+    }
 }

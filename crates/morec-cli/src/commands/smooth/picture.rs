@@ -7,7 +7,7 @@ use morec::clip::{Clip, Skeleton};
 use morec::smooth::{ChannelKind, CompressedClip};
 
 use crate::files::some_of;
-use crate::output::write_whole;
+use crate::output::{check_picture, write_whole};
 
 /// Names of channels, behind that of a joint.
 const CHANNELS: [(&str, ChannelKind, Option<usize>); 8] = [
@@ -28,6 +28,7 @@ pub fn write(clip: &Clip, compressed: &CompressedClip, channel: &str, path: &Pat
     let chart = compressed
         .chart(clip, joint, kind, axis)
         .ok_or_else(|| anyhow!("--plot {channel}: {name} does not move in its parent's frame"))?;
+    check_picture(path)?;
     write_whole(path, |out| out.write_all(chart.svg().as_bytes()))
         .with_context(|| path.display().to_string())
 }
