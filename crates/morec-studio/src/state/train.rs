@@ -125,7 +125,7 @@ impl State {
         }
         let (db, classes) = (store.path().to_owned(), self.chosen());
         self.train.taught = self.train.now;
-        self.show_line(train_line(&db, &classes, &format!("{INDEX}.index")));
+        self.show_line(train_line(&db, &classes, format!("{INDEX}.index")));
         self.jobs
             .start(TRAINING, true, &self.wake, move |progress| {
                 train::run(&db, &classes, progress)
