@@ -12,7 +12,7 @@ use crate::state::{Ask, Command, FileCommand};
 
 /// Kind of what a dialog chooses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Choice {
+pub enum DialogKind {
     /// One file that exists.
     File,
     /// Files that exist.
@@ -28,7 +28,7 @@ pub enum Choice {
 /// A dialog as it is shown.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Dialog {
-    pub choice: Choice,
+    pub choice: DialogKind,
     pub title: &'static str,
     /// Name and ending of the files that are offered; `None` offers all.
     pub filter: Option<(&'static str, &'static str)>,
@@ -55,11 +55,11 @@ impl Chooser for SystemDialogs {
             shown = shown.set_file_name(&dialog.file_name);
         }
         match dialog.choice {
-            Choice::File => shown.pick_file().into_iter().collect(),
-            Choice::Files => shown.pick_files().unwrap_or_default(),
-            Choice::Folders => shown.pick_folders().unwrap_or_default(),
-            Choice::Folder => shown.pick_folder().into_iter().collect(),
-            Choice::Save => shown.save_file().into_iter().collect(),
+            DialogKind::File => shown.pick_file().into_iter().collect(),
+            DialogKind::Files => shown.pick_files().unwrap_or_default(),
+            DialogKind::Folders => shown.pick_folders().unwrap_or_default(),
+            DialogKind::Folder => shown.pick_folder().into_iter().collect(),
+            DialogKind::Save => shown.save_file().into_iter().collect(),
         }
     }
 }
@@ -133,17 +133,19 @@ fn dialog(ask: &Ask) -> Dialog {
         file_name: name.to_owned(),
     };
     let open = |choice, title, filter| shown(choice, title, filter, "");
-    let save = |title, filter, name: &str| shown(Choice::Save, title, Some(filter), name);
+    let save = |title, filter, name: &str| shown(DialogKind::Save, title, Some(filter), name);
     match ask {
-        Ask::Open => open(Choice::File, "Open a database", Some(DATABASES)),
+        Ask::Open => open(DialogKind::File, "Open a database", Some(DATABASES)),
         Ask::New => save("New database", DATABASES, "motions.mdb"),
-        Ask::Import => open(Choice::Files, "Import clips", None),
-        Ask::ImportFolder => open(Choice::Folders, "Import folders of clips", None),
+        Ask::Import => open(DialogKind::Files, "Import clips", None),
+        Ask::ImportFolder => open(DialogKind::Folders, "Import folders of clips", None),
         Ask::Save => save("Save a copy of the database", DATABASES, "motions.mdb"),
         Ask::ExportIndex => save("Export the index", ("indexes", "index"), "studio.index"),
-        Ask::ExportLabels(form) if form.is_of_one_clip() => {
-            open(Choice::Folder, "A folder for the labels of each clip", None)
-        }
+        Ask::ExportLabels(form) if form.is_of_one_clip() => open(
+            DialogKind::Folder,
+            "A folder for the labels of each clip",
+            None,
+        ),
         Ask::ExportLabels(form) => {
             let ending = match form {
                 LabelFormat::Tsv => "tsv",

@@ -6,7 +6,7 @@ use morec::player::Mark;
 use morec_db::ClipId;
 use morec_db::exchange::LabelFormat;
 
-use super::lines::Line;
+use super::lines::ShownCommand;
 use super::train::INDEX;
 use super::{Classes, FileCommand, Library, Live, Motions, Player, State, TimelineState, Train};
 use crate::format::file_name;
@@ -57,7 +57,7 @@ impl State {
                 });
                 // A file of this run's own is no use to anybody else.
                 if !temporary {
-                    self.show_line(Line::new("morec-studio").word(path));
+                    self.show_line(ShownCommand::new("morec-studio").word(path));
                 }
                 self.store = Some(store);
                 if let Some(clip) = first {
@@ -109,7 +109,7 @@ impl State {
         let Some(folder) = self.own_folder() else {
             return;
         };
-        self.show_line(Line::new("morec-studio"));
+        self.show_line(ShownCommand::new("morec-studio"));
         self.jobs
             .start("Making an example", true, &self.wake, move |progress| {
                 example::make(&folder, progress)
@@ -121,8 +121,8 @@ impl State {
             return;
         };
         let clips = clips.to_vec();
-        let line = Line::new("morec-studio");
-        self.show_line(clips.iter().fold(line, Line::word));
+        let line = ShownCommand::new("morec-studio");
+        self.show_line(clips.iter().fold(line, ShownCommand::word));
         self.jobs
             .start("Importing clips", true, &self.wake, move |progress| {
                 example::of_clips(&folder, &clips, progress)
@@ -169,8 +169,8 @@ impl State {
             return;
         };
         let db = store.path().to_owned();
-        let line = Line::new("morec db import").word(&db);
-        self.show_line(paths.iter().fold(line, Line::word));
+        let line = ShownCommand::new("morec db import").word(&db);
+        self.show_line(paths.iter().fold(line, ShownCommand::word));
         self.jobs
             .start("Importing clips", true, &self.wake, move |progress| {
                 import::import(&db, &paths, progress)
@@ -252,15 +252,15 @@ pub(super) fn is_database(path: &Path) -> bool {
 }
 
 /// The command that writes the same.
-fn export_line(store: &Store, has_index: bool, what: &Export, path: &Path) -> Option<Line> {
-    let export = Line::new("morec db export").word(store.path());
+fn export_line(store: &Store, has_index: bool, what: &Export, path: &Path) -> Option<ShownCommand> {
+    let export = ShownCommand::new("morec db export").word(store.path());
     let clip = |id: &ClipId| store.snapshot.clip(*id);
     Some(match what {
         Export::Labels(form) => export.word(path).with("--form", form.name()),
         Export::Clip(id) => export.word(path).with("--motion", &clip(id)?.name),
         Export::Page(id, _) => {
             let labels = export.word("labels.tsv").with("--clip", &clip(id)?.name);
-            let play = Line::new("morec play").word(&clip(id)?.path);
+            let play = ShownCommand::new("morec play").word(&clip(id)?.path);
             let play = play.with("--labels", "labels.tsv");
             let play = match has_index {
                 true => play.with("--index", format!("{INDEX}.index")),

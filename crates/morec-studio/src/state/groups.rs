@@ -3,7 +3,7 @@
 use morec_db::labels::{NewSample, SampleId, SampleState as Judged};
 
 use super::State;
-use super::lines::Line;
+use super::lines::ShownCommand;
 use crate::jobs::{group, propose};
 use crate::store::Edit;
 
@@ -11,7 +11,7 @@ impl State {
     pub(super) fn propose(&mut self) {
         let Some(store) = &self.store else { return };
         let db = store.path().to_owned();
-        self.show_line(Line::new("morec db propose").word(&db));
+        self.show_line(ShownCommand::new("morec db propose").word(&db));
         self.jobs
             .start("Looking for more", true, &self.wake, move |progress| {
                 propose::propose(&db, progress)
@@ -22,7 +22,7 @@ impl State {
         let Some(store) = &self.store else { return };
         let db = store.path().to_owned();
         let of = if cuts { "cuts" } else { "labels" };
-        let line = Line::new("morec group").word(&db).with("--of", of);
+        let line = ShownCommand::new("morec group").word(&db).with("--of", of);
         self.show_line(line.with("--method", "hierarchy"));
         self.jobs
             .start("Grouping", true, &self.wake, move |progress| {

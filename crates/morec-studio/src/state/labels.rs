@@ -2,7 +2,7 @@
 
 use morec_db::labels::{DbSample, NewSample, SampleState as Judged};
 
-use super::lines::Line;
+use super::lines::ShownCommand;
 use super::{Drag, Grip, State, TimelineCommand};
 use crate::jobs::cut::{self, SegmentMethod};
 use crate::store::Edit;
@@ -243,7 +243,7 @@ impl State {
     fn cut(&mut self, method: SegmentMethod) {
         let Some(store) = &self.store else { return };
         let db = store.path().to_owned();
-        let line = Line::new("morec cut").word(&db);
+        let line = ShownCommand::new("morec cut").word(&db);
         self.show_line(line.with("--method", method.name()));
         self.jobs
             .start("Cutting clips", true, &self.wake, move |progress| {

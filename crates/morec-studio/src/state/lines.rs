@@ -14,9 +14,9 @@ const MOST: usize = 50;
 
 /// A command line in the making; values are quoted for a POSIX shell.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Line(String);
+pub(super) struct ShownCommand(String);
 
-impl Line {
+impl ShownCommand {
     /// The program and its subcommands, as `morec db clips`.
     pub fn new(command: &str) -> Self {
         Self(command.to_owned())
@@ -60,13 +60,13 @@ impl Line {
     }
 
     /// Another command after this one, if this one succeeds.
-    pub fn and(self, next: Line) -> Self {
+    pub fn and(self, next: ShownCommand) -> Self {
         Self(format!("{} && {}", self.0, next.0))
     }
 
     /// Several commands, one after the other; `None` for none and for too many.
-    pub fn all(lines: impl ExactSizeIterator<Item = Line>) -> Option<Line> {
-        (lines.len() <= MOST).then(|| lines.reduce(Line::and))?
+    pub fn all(lines: impl ExactSizeIterator<Item = ShownCommand>) -> Option<ShownCommand> {
+        (lines.len() <= MOST).then(|| lines.reduce(ShownCommand::and))?
     }
 }
 
@@ -85,8 +85,8 @@ fn numbers(ids: &[SampleId]) -> Vec<String> {
 }
 
 /// The command that sets a label.
-fn label_line(db: &Path, snapshot: &Snapshot, sample: &NewSample) -> Option<Line> {
-    let line = Line::new("morec db label").word(db);
+fn label_line(db: &Path, snapshot: &Snapshot, sample: &NewSample) -> Option<ShownCommand> {
+    let line = ShownCommand::new("morec db label").word(db);
     Some(
         line.with("--clip", &snapshot.clip(sample.clip)?.name)
             .with("--class", &sample.class)
@@ -96,12 +96,12 @@ fn label_line(db: &Path, snapshot: &Snapshot, sample: &NewSample) -> Option<Line
 }
 
 /// The commands that set labels.
-fn label_lines(db: &Path, snapshot: &Snapshot, samples: &[NewSample]) -> Option<Line> {
-    let lines: Option<Vec<Line>> = samples
+fn label_lines(db: &Path, snapshot: &Snapshot, samples: &[NewSample]) -> Option<ShownCommand> {
+    let lines: Option<Vec<ShownCommand>> = samples
         .iter()
         .map(|sample| label_line(db, snapshot, sample))
         .collect();
-    Line::all(lines?.into_iter())
+    ShownCommand::all(lines?.into_iter())
 }
 
 /// The commands that do the same to each of several clips: one for all clips of the database, else one for each.
@@ -109,29 +109,35 @@ fn each_clip(
     db: &Path,
     snapshot: &Snapshot,
     clips: impl ExactSizeIterator<Item = ClipId>,
-    rest: impl Fn(Line) -> Line,
-) -> Option<Line> {
-    let line = |name: &str| rest(Line::new("morec db clips").word(db).with("--clip", name));
+    rest: impl Fn(ShownCommand) -> ShownCommand,
+) -> Option<ShownCommand> {
+    let line = |name: &str| {
+        rest(
+            ShownCommand::new("morec db clips")
+                .word(db)
+                .with("--clip", name),
+        )
+    };
     if clips.len() > 1 && clips.len() == snapshot.clips.len() {
         return Some(line("*"));
     }
     let names: Option<Vec<&str>> = clips
         .map(|id| Some(snapshot.clip(id)?.name.as_str()))
         .collect();
-    Line::all(names?.into_iter().map(line))
+    ShownCommand::all(names?.into_iter().map(line))
 }
 
 impl State {
     /// Shows the command line of what was asked for.
-    pub(super) fn show_line(&mut self, line: impl Into<Option<Line>>) {
+    pub(super) fn show_line(&mut self, line: impl Into<Option<ShownCommand>>) {
         self.command_line = line.into().map_or_else(String::new, |line| line.0);
     }
 
     /// The command line of an edit; `None` where no command does the same.
-    pub(super) fn line_of(&self, edit: &Edit) -> Option<Line> {
+    pub(super) fn line_of(&self, edit: &Edit) -> Option<ShownCommand> {
         let store = self.store.as_ref()?;
         let (db, snapshot) = (store.path(), &*store.snapshot);
-        let morec = |command: &str| Line::new(&format!("morec {command}")).word(db);
+        let morec = |command: &str| ShownCommand::new(&format!("morec {command}")).word(db);
         Some(match edit {
             Edit::Label(samples) => label_lines(db, snapshot, samples)?,
             Edit::Move {
@@ -166,13 +172,13 @@ impl State {
                     let line = label_line(db, snapshot, &sample)?;
                     Some(line.with("--state", state.name()))
                 };
-                let lines: Option<Vec<Line>> = ids.iter().map(line).collect();
-                Line::all(lines?.into_iter())?
+                let lines: Option<Vec<ShownCommand>> = ids.iter().map(line).collect();
+                ShownCommand::all(lines?.into_iter())?
             }
             Edit::RenameClass { from, to } => morec("db classes").with("--rename", from).word(to),
             Edit::RemoveClass(name) => morec("db classes").with("--forget", name),
             Edit::Describe { clips, update } => {
-                let about = |mut line: Line| {
+                let about = |mut line: ShownCommand| {
                     let parts = [
                         ("--set-subject", &update.subject),
                         ("--set-source", &update.source),
@@ -195,11 +201,11 @@ impl State {
             }
             Edit::RenameClip { from, to } => morec("db clips").with("--rename", from).word(to),
             Edit::RemoveClips(clips) => {
-                let remove = |line: Line| line.flag("--remove", true);
+                let remove = |line: ShownCommand| line.flag("--remove", true);
                 each_clip(db, snapshot, clips.iter().copied(), remove)?
             }
             Edit::KeepIndex { name, .. } => {
-                let line = Line::new("morec train").with("--db", db);
+                let line = ShownCommand::new("morec train").with("--db", db);
                 line.list("--classes", &self.chosen())
                     .with("-o", format!("{name}.index"))
             }
@@ -215,7 +221,7 @@ impl State {
         db: &Path,
         snapshot: &Snapshot,
         clips: &[(ClipId, morec::roles::RoleMap)],
-    ) -> Option<Line> {
+    ) -> Option<ShownCommand> {
         let (id, roles) = clips.first()?;
         let before = snapshot.roles.get(id)?;
         let motion = self.player.motion.as_ref().filter(|m| m.id == *id);
@@ -224,7 +230,7 @@ impl State {
             .clip
             .skeleton
             .joints();
-        let set = |mut line: Line| {
+        let set = |mut line: ShownCommand| {
             for role in Role::ALL {
                 let joint = roles.joint(role);
                 if joint != before.joint(role) {
@@ -244,19 +250,22 @@ mod tests {
 
     #[test]
     fn values_are_quoted_where_a_shell_would_read_them_otherwise() {
-        let line = Line::new("morec train")
+        let line = ShownCommand::new("morec train")
             .with("--db", Path::new("my moves.mdb"))
             .list("--classes", &["gesture 1", "it's"])
             .with("-o", "-x.index")
             .flag("--json", false);
         let said = r"morec train --db 'my moves.mdb' --classes 'gesture 1,it'\''s' -o=-x.index";
         assert_eq!(line.0, said);
-        assert_eq!(Line::new("morec").list::<&str>("--classes", &[]).0, "morec");
+        assert_eq!(
+            ShownCommand::new("morec").list::<&str>("--classes", &[]).0,
+            "morec"
+        );
     }
 
     #[test]
     fn lines_follow_one_another_and_too_many_are_none() {
-        let lines = |n: usize| Line::all(vec![Line::new("a"); n].into_iter());
+        let lines = |n: usize| ShownCommand::all(vec![ShownCommand::new("a"); n].into_iter());
         assert_eq!(lines(2).unwrap().0, "a && a");
         assert_eq!(lines(0), None);
         assert_eq!(lines(MOST + 1), None);

@@ -3,7 +3,7 @@
 use morec_db::labels::{NewSample, SampleState as Judged};
 use morec_db::search::Hit;
 
-use super::lines::Line;
+use super::lines::ShownCommand;
 use super::{Panel, State};
 use crate::jobs::similar::{self, Similar};
 use crate::store::Edit;
@@ -82,10 +82,10 @@ impl State {
     }
 
     /// The command that searches for what is like a stretch.
-    pub(super) fn search_line(&self, of: &Stretch) -> Option<Line> {
+    pub(super) fn search_line(&self, of: &Stretch) -> Option<ShownCommand> {
         let store = self.store.as_ref()?;
         let clip = store.snapshot.clip(of.clip)?;
-        let line = Line::new("morec db search")
+        let line = ShownCommand::new("morec db search")
             .word(store.path())
             .word(&clip.name);
         Some(

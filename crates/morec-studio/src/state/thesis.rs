@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::lines::Line;
+use super::lines::ShownCommand;
 use super::{LibraryCommand, State};
 use crate::jobs::load::ClipMotion;
 use crate::jobs::thesis::{self, Thesis};
@@ -19,7 +19,7 @@ impl State {
             return;
         }
         let (db, classes) = (store.path().to_owned(), self.chosen());
-        let line = Line::new("morec train").with("--db", &db);
+        let line = ShownCommand::new("morec train").with("--db", &db);
         let line = line.with("--method", "svrdm").list("--classes", &classes);
         self.show_line(line.with("-o", "2009.index"));
         self.jobs.start(THESIS, true, &self.wake, move |progress| {

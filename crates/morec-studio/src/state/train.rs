@@ -9,7 +9,7 @@ use morec::train::TrainingReport;
 use morec_db::labels::DbSample;
 
 use super::crossval::CrossvalView;
-use super::lines::Line;
+use super::lines::ShownCommand;
 use super::{Panel, State, TrainCommand};
 use crate::jobs::export::write_whole;
 use crate::jobs::judge::{self, LeftOut};
@@ -67,8 +67,8 @@ impl Train {
 }
 
 /// The command that trains an index.
-fn train_line(db: &Path, classes: &[String], output: impl AsRef<Path>) -> Line {
-    let line = Line::new("morec train").with("--db", db);
+fn train_line(db: &Path, classes: &[String], output: impl AsRef<Path>) -> ShownCommand {
+    let line = ShownCommand::new("morec train").with("--db", db);
     line.list("--classes", classes).with("-o", output.as_ref())
 }
 
@@ -142,7 +142,7 @@ impl State {
         let people = taught.iter().filter_map(|s| s.subject.as_deref());
         let clips: BTreeSet<_> = taught.iter().map(|s| s.clip).collect();
         let by = LeftOut::of(people, clips.len());
-        let line = Line::new("morec crossval").with("--db", &db);
+        let line = ShownCommand::new("morec crossval").with("--db", &db);
         self.show_line(line.with("--by", by.option()).list("--classes", &classes));
         self.jobs.start(JUDGING, true, &self.wake, move |progress| {
             judge::judge(&db, &classes, progress)

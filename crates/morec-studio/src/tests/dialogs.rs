@@ -4,7 +4,7 @@ use egui::{Key, Modifiers};
 use morec_db::exchange::LabelFormat;
 
 use super::{Person, made, takes};
-use crate::dialogs::Choice;
+use crate::dialogs::DialogKind;
 use crate::state::Panel;
 
 fn with_labels(labelled: usize) -> (tempfile::TempDir, Person) {
@@ -36,13 +36,13 @@ fn a_database_is_opened_made_and_copied() {
     let second = made(other.path(), 2);
     person.will_choose(&[&second]);
     person.file("Open … Ctrl O");
-    assert_eq!(person.asked().choice, Choice::File);
+    assert_eq!(person.asked().choice, DialogKind::File);
     assert_eq!(person.asked().filter.unwrap().1, "mdb");
     assert_eq!(person.state().store.as_ref().unwrap().path(), second);
     let copy = folder.path().join("copy.mdb");
     person.will_choose(&[&copy]);
     person.file("Save a copy as … Ctrl S");
-    assert_eq!(person.asked().choice, Choice::Save);
+    assert_eq!(person.asked().choice, DialogKind::Save);
     assert_eq!(person.database(), "copy.mdb");
     assert_eq!(person.labels().len(), 12, "with all that was in it");
     let new = folder.path().join("new.mdb");
@@ -68,13 +68,13 @@ fn clips_are_imported_from_files_and_folders() {
     person.will_choose(&[&file("ada_1"), &file("ben_1")]);
     person.click("Import clips");
     person.settle();
-    assert_eq!(person.asked().choice, Choice::Files);
+    assert_eq!(person.asked().choice, DialogKind::Files);
     assert!(person.offers("ada_1") && person.offers("ben_1") && !person.offers("cleo_1"));
     person.undo();
     assert!(!person.offers("ada_1"));
     person.will_choose(&[folder.path()]);
     person.file("Import a folder …");
-    assert_eq!(person.asked().choice, Choice::Folders);
+    assert_eq!(person.asked().choice, DialogKind::Folders);
     assert!(takes().iter().all(|take| person.offers(&take.clip.name)));
     person.undo();
     assert!(!person.offers("cleo_1"));
@@ -84,21 +84,21 @@ fn clips_are_imported_from_files_and_folders() {
 fn labels_of_each_form_a_clip_and_a_page_are_exported() {
     let (folder, mut person) = with_labels(2);
     let names = [
-        ("Table (TSV) …", LabelFormat::Tsv, Choice::Save),
-        ("Table (CSV) …", LabelFormat::Csv, Choice::Save),
-        ("JSON …", LabelFormat::Json, Choice::Save),
+        ("Table (TSV) …", LabelFormat::Tsv, DialogKind::Save),
+        ("Table (CSV) …", LabelFormat::Csv, DialogKind::Save),
+        ("JSON …", LabelFormat::Json, DialogKind::Save),
         (
             "ELAN, a file for each clip …",
             LabelFormat::Eaf,
-            Choice::Folder,
+            DialogKind::Folder,
         ),
         (
             "Audacity, a file for each clip …",
             LabelFormat::Audacity,
-            Choice::Folder,
+            DialogKind::Folder,
         ),
-        ("BABEL …", LabelFormat::Babel, Choice::Save),
-        ("Label Studio …", LabelFormat::LabelStudio, Choice::Save),
+        ("BABEL …", LabelFormat::Babel, DialogKind::Save),
+        ("Label Studio …", LabelFormat::LabelStudio, DialogKind::Save),
     ];
     assert_eq!(names.len(), LabelFormat::ALL.len());
     for (entry, form, choice) in names {
@@ -156,9 +156,9 @@ fn keys_open_dialogs_and_a_dialog_that_is_cancelled_changes_nothing() {
     let (_folder, mut person) = with_labels(1);
     let (before, database) = (person.labels(), person.database());
     for (key, choice) in [
-        (Key::O, Choice::File),
-        (Key::I, Choice::Files),
-        (Key::S, Choice::Save),
+        (Key::O, DialogKind::File),
+        (Key::I, DialogKind::Files),
+        (Key::S, DialogKind::Save),
     ] {
         person.key_with(key, Modifiers::COMMAND);
         person.settle();

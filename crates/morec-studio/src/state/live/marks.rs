@@ -3,7 +3,7 @@
 use super::TEACHING;
 use crate::jobs::teach::{Lesson, Taught, teach};
 use crate::state::State;
-use crate::state::lines::Line;
+use crate::state::lines::ShownCommand;
 
 /// Margin kept before and after a marked stretch, seconds.
 const AROUND_SECS: f64 = 0.7;
@@ -98,7 +98,7 @@ impl State {
         };
         let line = self.live_source();
         self.show_line(line.map(|source| {
-            let line = Line::new("morec record").with("--listen", source);
+            let line = ShownCommand::new("morec record").with("--listen", source);
             line.with("-o", &store)
         }));
         self.keep(store, lesson);

@@ -16,7 +16,7 @@ use morec::math::Vec3;
 use morec_db::ClipId;
 
 use super::State;
-use super::lines::Line;
+use super::lines::ShownCommand;
 use crate::jobs::recognise;
 pub use feed::{ClipFeed, Feed, ThreadFeed};
 pub use run::Run;
@@ -229,8 +229,8 @@ impl State {
     }
 
     /// A command with the index and the source that was chosen.
-    fn live_line(&self, command: &str) -> Option<Line> {
-        let line = Line::new(command).word(format!("{}.index", super::train::INDEX));
+    fn live_line(&self, command: &str) -> Option<ShownCommand> {
+        let line = ShownCommand::new(command).word(format!("{}.index", super::train::INDEX));
         Some(line.with("--listen", self.live_source()?))
     }
 
