@@ -68,7 +68,7 @@ pub struct Picture {
     pub caption: String,
     /// The picture.
     pub svg: String,
-    /// Data of the picture, as tab-separated text with a header, where that is not in [`Reproduction`].
+    /// Data of the picture, as tab-separated text with a header, where that is not in [`Reproduction`](super::Reproduction).
     pub table: Option<String>,
 }
 
