@@ -7,7 +7,7 @@ use super::{guide, others, root};
 use crate::kit::Folder;
 
 /// Options of other programs.
-const FOREIGN: [&str; 15] = [
+const FOREIGN: [&str; 16] = [
     "--release",
     "--workspace",
     "--open",
@@ -22,6 +22,7 @@ const FOREIGN: [&str; 15] = [
     "--endpoint",
     "--from-files",
     "--parts",
+    "--scale",
     "--ray",
 ];
 
