@@ -1,7 +1,7 @@
 //! Sines and cosines of half the angles of a row, as the quaternions of its rotations need them.
 //!
 //! Reading BVH spent most of its time on the standard library's `sin_cos`. The loop here has no branches, so that the compiler
-//! makes it work on several angles at once; figures are in `docs/figures.md`, "BVH".
+//! makes it work on several angles at once; figures are in `docs/figures.md`, "Reading and writing BVH".
 
 use multiversion::multiversion;
 
