@@ -18,6 +18,7 @@ mod choice;
 mod error;
 mod folder;
 mod neighbours;
+mod paired;
 mod reader;
 mod skeletons;
 mod takes;

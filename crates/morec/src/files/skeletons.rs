@@ -6,8 +6,36 @@ use std::path::{Path, PathBuf};
 use crate::formats::container::Member;
 use crate::formats::probe::{Format, format_of_name};
 
+use super::FileErrorKind;
+
 /// So many skeletons in one folder are a library's, and trying them all no way to find the right one.
 const MAX_PER_FOLDER: usize = 64;
+
+/// Kind of skeleton file that a motion needs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum SkeletonKind {
+    /// Of AMC motions.
+    Asf,
+    /// Of OpenSim's joint angles.
+    OsimModel,
+}
+
+impl SkeletonKind {
+    fn format(self) -> Format {
+        match self {
+            SkeletonKind::Asf => Format::Asf,
+            SkeletonKind::OsimModel => Format::OpenSimModel,
+        }
+    }
+
+    /// The error of a motion near which there is none.
+    pub(super) fn missing(self) -> FileErrorKind {
+        match self {
+            SkeletonKind::Asf => FileErrorKind::NoSkeleton,
+            SkeletonKind::OsimModel => FileErrorKind::NoModel,
+        }
+    }
+}
 
 /// A skeleton file that may be a motion's.
 pub(super) struct SkeletonFile {
@@ -18,7 +46,7 @@ pub(super) struct SkeletonFile {
 
 /// Skeletons beside a motion and then those a folder above, in each the likeliest first: of the same stem, of
 /// the longest part of it (`13` for `13_29`), the others.
-pub(super) fn skeletons_near(path: &Path, stem: &str, format: Format) -> Vec<SkeletonFile> {
+pub(super) fn skeletons_near(path: &Path, stem: &str, kind: SkeletonKind) -> Vec<SkeletonFile> {
     if path == Path::new("-") {
         return Vec::new();
     }
@@ -37,7 +65,7 @@ pub(super) fn skeletons_near(path: &Path, stem: &str, format: Format) -> Vec<Ske
             .into_iter()
             .flatten()
             .filter_map(|entry| Some(entry.ok()?.path()));
-        let mut here = likeliest_first(paths, stem, format);
+        let mut here = likeliest_first(paths, stem, kind);
         here.truncate(MAX_PER_FOLDER);
         found.append(&mut here);
     }
@@ -45,17 +73,21 @@ pub(super) fn skeletons_near(path: &Path, stem: &str, format: Format) -> Vec<Ske
 }
 
 /// Skeletons in the archive that a motion is in.
-pub(super) fn skeletons_among(members: &[Member], stem: &str, format: Format) -> Vec<SkeletonFile> {
-    likeliest_first(members.iter().map(|m| PathBuf::from(&m.path)), stem, format)
+pub(super) fn skeletons_among(
+    members: &[Member],
+    stem: &str,
+    kind: SkeletonKind,
+) -> Vec<SkeletonFile> {
+    likeliest_first(members.iter().map(|m| PathBuf::from(&m.path)), stem, kind)
 }
 
 fn likeliest_first(
     paths: impl Iterator<Item = PathBuf>,
     stem: &str,
-    format: Format,
+    kind: SkeletonKind,
 ) -> Vec<SkeletonFile> {
     let mut found: Vec<SkeletonFile> = paths
-        .filter(|path| format_of_name(&path.to_string_lossy()) == Some(format))
+        .filter(|path| format_of_name(&path.to_string_lossy()) == Some(kind.format()))
         .map(|path| SkeletonFile {
             kinship: kinship(
                 &path.file_stem().unwrap_or_default().to_string_lossy(),
@@ -157,7 +189,7 @@ mod tests {
                 .map(PathBuf::from)
                 .into_iter(),
             "walk",
-            Format::Asf,
+            SkeletonKind::Asf,
         );
         assert_eq!(near[0].path, PathBuf::from("walk.asf"));
         prefer_stated(
