@@ -35,11 +35,16 @@ pub(super) fn number(cell: &str, decimal: Decimal) -> Option<f64> {
     if has_comma && decimal == Decimal::Point {
         return None;
     }
-    let value = if has_comma {
-        fast_float2::parse::<f64, _>(cell.replacen(',', ".", 1)).ok()
+    if has_comma {
+        finite(&cell.replacen(',', ".", 1))
     } else {
-        fast_float2::parse::<f64, _>(cell).ok()
-    };
+        finite(cell)
+    }
+}
+
+/// The number that `word` is with a decimal point and nothing around it; `None` for what is not finite.
+pub(super) fn finite(word: &str) -> Option<f64> {
+    let value = fast_float2::parse::<f64, _>(word).ok();
     value.filter(|value| value.is_finite())
 }
 

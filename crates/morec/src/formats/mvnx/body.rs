@@ -2,6 +2,7 @@
 
 use roxmltree::Node;
 
+use super::super::cells::finite;
 use super::super::xml::{child, is, place};
 use super::super::{Limits, ParseError, Warning};
 use crate::math::Vec3;
@@ -57,11 +58,7 @@ const TIPS: [(&str, &str); 5] = [
 /// The numbers in a text; `None` if there is something else. Decimal commas are read as points where no comma separates.
 pub(super) fn numbers(text: &str) -> Option<Vec<f64>> {
     text.split_ascii_whitespace()
-        .map(|word| {
-            let value = fast_float2::parse::<f64, _>(word)
-                .or_else(|_| fast_float2::parse::<f64, _>(word.replace(',', ".")));
-            value.ok().filter(|value| value.is_finite())
-        })
+        .map(|word| finite(word).or_else(|| finite(&word.replace(',', "."))))
         .collect()
 }
 

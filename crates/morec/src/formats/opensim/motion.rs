@@ -36,9 +36,9 @@ pub fn read_motion(
     let frames = schedule.places.as_ref().map_or(table.rows.len(), Vec::len);
     check_size(frames, model.bodies.len(), bytes.len(), limits)?;
     let mut builder = ClipBuilder::new(model.joints());
-    let mut push = |row: Option<Vec<f64>>| match row {
+    let mut push = |row: Option<&[f64]>| match row {
         Some(values) => {
-            let pose = model.pose(&values);
+            let pose = model.pose(values);
             builder.push_local(
                 pose.iter().map(|p| p.rotation),
                 pose.iter().map(|p| p.position),
@@ -47,17 +47,17 @@ pub fn read_motion(
         None => builder.push_missing(),
     };
     match &schedule.places {
-        None => table.rows.iter().for_each(|row| push(row.clone())),
+        None => table.rows.iter().for_each(|row| push(row.as_deref())),
         Some(places) => {
             for &(before, t, known) in places {
                 let after = table.rows.get(before + 1).or(table.rows.get(before));
                 let both = table.rows[before]
                     .as_ref()
                     .zip(after.and_then(Option::as_ref));
-                let mix = |(a, b): (&Vec<f64>, &Vec<f64>)| {
+                let mix = |(a, b): (&Vec<f64>, &Vec<f64>)| -> Vec<f64> {
                     a.iter().zip(b).map(|(a, b)| a + t * (b - a)).collect()
                 };
-                push(both.filter(|_| known).map(mix));
+                push(both.filter(|_| known).map(mix).as_deref());
             }
         }
     }
@@ -118,7 +118,7 @@ struct CoordinateTable {
     rows: Vec<Option<Vec<f64>>>,
 }
 
-/// What stands before the table.
+/// Header and column names, which come before the rows of numbers.
 struct Header<'a> {
     in_degrees: Option<bool>,
     columns: Vec<&'a str>,

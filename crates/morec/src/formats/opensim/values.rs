@@ -3,6 +3,7 @@
 use roxmltree::Node;
 
 use super::super::ParseError;
+use super::super::cells::finite;
 use super::super::xml::{child, place};
 use crate::math::Vec3;
 
@@ -30,12 +31,7 @@ pub(super) fn numbers(
             format!("`{}`", shortened(text.trim())),
         )
     };
-    let parse = |word: &str| {
-        fast_float2::parse::<f64, _>(word)
-            .ok()
-            .filter(|v| v.is_finite())
-    };
-    let found: Option<Vec<f64>> = text.split_ascii_whitespace().map(parse).collect();
+    let found: Option<Vec<f64>> = text.split_ascii_whitespace().map(finite).collect();
     let found = found.ok_or_else(wrong)?;
     match count {
         Some(count) if found.len() != count => Err(wrong()),
