@@ -70,6 +70,16 @@ pub(super) struct Steps {
     pub step_secs: f64,
 }
 
+impl Steps {
+    /// Steps from `origin_secs` at `rate_hz` a second.
+    pub(super) fn at_rate(origin_secs: f64, rate_hz: f64) -> Self {
+        Self {
+            origin_secs,
+            step_secs: 1.0 / rate_hz,
+        }
+    }
+}
+
 /// Detections of the present push, with the time at which they are reported.
 #[derive(Debug)]
 pub(super) struct DetectionBuffer {

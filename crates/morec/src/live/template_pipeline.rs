@@ -78,11 +78,8 @@ impl TemplatePipeline {
     }
 
     fn steps(&self) -> Steps {
-        let step_secs = 1.0 / self.model.features.tick_hz();
-        Steps {
-            origin_secs: self.features.origin_secs(),
-            step_secs,
-        }
+        let rate_hz = self.model.features.tick_hz();
+        Steps::at_rate(self.features.origin_secs(), rate_hz)
     }
 }
 

@@ -45,27 +45,22 @@ pub(super) enum Fate {
 #[derive(Debug)]
 pub(super) struct PerformerInput {
     actor: usize,
-    model: Arc<SvrdmModel>,
     known: bool,
     reader: Option<PoseExtractor>,
     rows: PoseStream,
-    reduced: Vec<f32>,
-    chunks: ChunkAssembly,
+    chunks: RowChunker,
     now_secs: f64,
     wall_secs: f64,
 }
 
 impl PerformerInput {
     pub(super) fn new(model: &Arc<SvrdmModel>, actor: usize) -> Self {
-        let dim = model.pca.dims();
         Self {
             actor,
-            model: model.clone(),
             known: false,
             reader: None,
             rows: PoseStream::new(&model.pivots, &model.pose),
-            reduced: vec![0.0; dim],
-            chunks: ChunkAssembly::new(&model.params, dim),
+            chunks: RowChunker::new(model),
             now_secs: 0.0,
             wall_secs: 0.0,
         }
@@ -74,10 +69,10 @@ impl PerformerInput {
     /// Begins with a new skeleton; ends what went on with the old one.
     pub(super) fn set_rig(&mut self, rig: &Rig, to: &mut Chunks) {
         self.finish(to);
-        let model = Model::Svrdm(self.model.clone());
+        let model = self.chunks.model.clone();
         self.known = true;
-        self.reader = PoseExtractor::new(&model, &rig.skeleton, &rig.roles).ok();
-        self.rows = PoseStream::new(&self.model.pivots, &self.model.pose);
+        self.rows = PoseStream::new(&model.pivots, &model.pose);
+        self.reader = PoseExtractor::new(&Model::Svrdm(model), &rig.skeleton, &rig.roles).ok();
         self.now_secs = 0.0;
     }
 
@@ -103,22 +98,14 @@ impl PerformerInput {
             .unwrap_or_default();
         // The first pose of a stretch sets its origin and completes no row: the origin read here is right.
         let mark = self.mark(frame.time_secs);
-        let (model, reduced, chunks) = (&self.model, &mut self.reduced, &mut self.chunks);
-        let mut row = RowSink {
-            model,
-            reduced,
-            chunks,
-            mark,
-            to,
-            sent: false,
-        };
-        let pushed = self
-            .rows
-            .push(frame.time_secs, &pivots, &mut |values| row.push(values));
+        let (chunks, mut sent) = (&mut self.chunks, false);
+        let pushed = self.rows.push(frame.time_secs, &pivots, &mut |row| {
+            sent |= chunks.push(row, mark, to);
+        });
         if matches!(pushed, Pushed::Taken | Pushed::Restarted) {
             self.now_secs = frame.time_secs;
         }
-        if !row.sent {
+        if !sent {
             return Fate::Through;
         }
         to.send(
@@ -132,66 +119,59 @@ impl PerformerInput {
     }
 
     fn mark(&self, reported_secs: f64) -> MessageStamp {
-        let step_secs = 1.0 / self.model.rate_hz();
-        let steps = Steps {
-            origin_secs: self.rows.origin_secs(),
-            step_secs,
-        };
         MessageStamp {
             actor: self.actor,
             reported_secs,
             wall_secs: self.wall_secs,
-            steps,
+            steps: Steps::at_rate(self.rows.origin_secs(), self.chunks.model.rate_hz()),
         }
     }
 
     /// Ends the stretch with the row that still waits.
     fn end(&mut self, end: End, to: &mut Chunks) {
         let mark = self.mark(self.now_secs);
-        let (model, reduced, chunks) = (&self.model, &mut self.reduced, &mut self.chunks);
-        let mut row = RowSink {
-            model,
-            reduced,
-            chunks,
-            mark,
-            to,
-            sent: false,
-        };
-        self.rows.finish(&mut |values| row.push(values));
-        self.chunks.reset();
+        let chunks = &mut self.chunks;
+        self.rows.finish(&mut |row| {
+            chunks.push(row, mark, to);
+        });
+        chunks.assembly.reset();
         to.send(mark, Of::End(end), |_| ());
     }
 }
 
 /// Rows to chunks.
-struct RowSink<'a> {
-    model: &'a SvrdmModel,
-    reduced: &'a mut [f32],
-    chunks: &'a mut ChunkAssembly,
-    mark: MessageStamp,
-    to: &'a mut Chunks,
-    /// True if a chunk has gone.
-    sent: bool,
+#[derive(Debug)]
+struct RowChunker {
+    model: Arc<SvrdmModel>,
+    /// The row at hand, projected: `model.pca.dims()` values.
+    reduced: Vec<f32>,
+    assembly: ChunkAssembly,
 }
 
-impl RowSink<'_> {
-    fn push(&mut self, row: &[f32]) {
-        self.model.pca.project_into(row, self.reduced);
-        if !self.chunks.push(self.reduced) {
-            return;
+impl RowChunker {
+    fn new(model: &Arc<SvrdmModel>) -> Self {
+        let dim = model.pca.dims();
+        Self {
+            model: model.clone(),
+            reduced: vec![0.0; dim],
+            assembly: ChunkAssembly::new(&model.params, dim),
         }
-        self.sent = true;
-        let (chunks, frames) = (&*self.chunks, self.model.params.chunk_frames);
-        self.to.send(self.mark, Of::Chunk, |chunk| {
-            chunk.gram.copy_from(chunks.chunk());
+    }
+
+    /// Takes a pose row; true if it completed a chunk, which has then been sent.
+    fn push(&mut self, row: &[f32], mark: MessageStamp, to: &mut Chunks) -> bool {
+        self.model.pca.project_into(row, &mut self.reduced);
+        if !self.assembly.push(&self.reduced) {
+            return false;
+        }
+        to.send(mark, Of::Chunk, |chunk| {
+            chunk.gram.copy_from(self.assembly.chunk());
             let dim = chunk.gram.dim();
-            for (kept, row) in chunk
-                .rows
-                .chunks_exact_mut(dim)
-                .zip(chunks.last_rows(frames))
-            {
+            let rows = self.assembly.last_rows(self.model.params.chunk_frames);
+            for (kept, row) in chunk.rows.chunks_exact_mut(dim).zip(rows) {
                 kept.copy_from_slice(row);
             }
         });
+        true
     }
 }

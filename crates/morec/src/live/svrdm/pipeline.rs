@@ -26,11 +26,7 @@ impl SvrdmPipeline {
     }
 
     fn steps(&self) -> Steps {
-        let step_secs = 1.0 / self.engine.model().rate_hz();
-        Steps {
-            origin_secs: self.rows.origin_secs(),
-            step_secs,
-        }
+        Steps::at_rate(self.rows.origin_secs(), self.engine.model().rate_hz())
     }
 }
 
