@@ -2,7 +2,7 @@
 
 // First: its macros take the place of the standard library's in all files behind it.
 #[macro_use]
-mod said;
+mod console;
 
 mod commands;
 mod database;
@@ -16,6 +16,7 @@ mod lengths;
 mod live;
 mod material;
 mod motion;
+mod named;
 mod output;
 mod poses;
 mod print;
@@ -92,7 +93,7 @@ fn main() -> ExitCode {
         Subcommands::Man(args) => commands::complete::man(&args, Cli::command()),
         Subcommands::Studio(args) => commands::studio::run(&args),
     };
-    match outcome.and_then(|code| said::whole().map(|()| code)) {
+    match outcome.and_then(|code| console::finish().map(|()| code)) {
         Ok(code) => code,
         // Whoever reads our output has seen enough: that is not a failure of ours.
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,

@@ -68,6 +68,20 @@ pub struct NewSample {
     pub score: Option<f64>,
 }
 
+impl From<&DbSample> for NewSample {
+    fn from(sample: &DbSample) -> Self {
+        Self {
+            clip: sample.clip,
+            class: sample.class.clone(),
+            start_secs: sample.start_secs,
+            stop_secs: sample.stop_secs,
+            whole_clip: sample.whole_clip,
+            state: sample.state,
+            score: sample.score,
+        }
+    }
+}
+
 /// Counts of added samples, by outcome.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 pub struct Added {
@@ -118,6 +132,9 @@ pub enum SampleState {
 }
 
 impl SampleState {
+    /// All of them.
+    pub const ALL: [SampleState; 3] = [Self::Accepted, Self::Proposed, Self::Rejected];
+
     /// Its name in tables.
     pub fn name(self) -> &'static str {
         match self {
@@ -129,8 +146,6 @@ impl SampleState {
 
     /// The state of this name.
     pub fn from_name(name: &str) -> Option<Self> {
-        [Self::Accepted, Self::Proposed, Self::Rejected]
-            .into_iter()
-            .find(|s| s.name() == name)
+        Self::ALL.into_iter().find(|s| s.name() == name)
     }
 }

@@ -8,7 +8,7 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
 use morec_db::exchange::{self, Annotation, LabelFormat};
-use morec_db::labels::{SampleFilter, SampleState};
+use morec_db::labels::SampleFilter;
 
 pub use args::Args;
 
@@ -35,7 +35,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let filter = SampleFilter {
         clip,
         class: args.class.clone(),
-        state: Some(args.state.into()),
+        state: Some(args.state),
     };
     let annotations: Vec<Annotation> = db
         .samples(&filter)?
@@ -46,7 +46,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             class: s.class,
             person: s.subject,
             score: s.score,
-            state: SampleState::from(args.state),
+            state: args.state,
         })
         .collect();
     let shown = args.output.to_string_lossy();
@@ -56,7 +56,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             .with_context(|| format!("{shown}: its ending says no form of labels; give --form"))?,
     };
     if annotations.iter().any(|a| !form.keeps(a.state)) {
-        let (form, state) = (form.name(), SampleState::from(args.state).name());
+        let (form, state) = (form.name(), args.state.name());
         eprintln!(
             "morec: {form} does not say that these are {state}; read back, give --state {state} again"
         );

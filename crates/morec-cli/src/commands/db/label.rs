@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
-use clap::ValueEnum;
 use morec_db::exchange::{self, Annotation, ClipLengths, LabelFormat};
 use morec_db::labels::{
     Added, ChangedLabel, LabelChange, LabelOptions, Labelled, NewSample, SampleState,
@@ -17,6 +16,7 @@ use super::history;
 use crate::database;
 use crate::files::{self, some_of};
 use crate::labels;
+use crate::named::by_name;
 use crate::print;
 use crate::table::TextTable;
 
@@ -44,8 +44,8 @@ pub struct Args {
     #[arg(value_name = "FILE|DIR")]
     labels: Vec<PathBuf>,
     /// Form of the files [default: by their endings and content]
-    #[arg(long, value_enum)]
-    form: Option<FormArg>,
+    #[arg(long, value_parser = by_name(&LabelFormat::ALL, LabelFormat::name))]
+    form: Option<LabelFormat>,
     /// The clip that a file of one clip, or --class, speaks of
     #[arg(long, value_name = "CLIP")]
     clip: Option<String>,
@@ -64,8 +64,8 @@ pub struct Args {
     #[arg(long, value_name = "SECS", requires = "class")]
     stop: Option<f64>,
     /// State of the samples [default: what the file says, else accepted]
-    #[arg(long, value_enum)]
-    state: Option<StateArg>,
+    #[arg(long, value_parser = by_name(&SampleState::ALL, SampleState::name))]
+    state: Option<SampleState>,
     /// Author of the change
     #[arg(long, value_name = "NAME", default_value = "user")]
     by: String,
@@ -82,52 +82,6 @@ pub struct Args {
     /// Print one JSON object
     #[arg(long)]
     json: bool,
-}
-
-/// A form of labels.
-#[derive(ValueEnum, Clone, Copy, Debug)]
-#[allow(missing_docs)]
-pub enum FormArg {
-    Tsv,
-    Csv,
-    Json,
-    Eaf,
-    Audacity,
-    Babel,
-    LabelStudio,
-}
-
-impl From<FormArg> for LabelFormat {
-    fn from(form: FormArg) -> Self {
-        match form {
-            FormArg::Tsv => LabelFormat::Tsv,
-            FormArg::Csv => LabelFormat::Csv,
-            FormArg::Json => LabelFormat::Json,
-            FormArg::Eaf => LabelFormat::Eaf,
-            FormArg::Audacity => LabelFormat::Audacity,
-            FormArg::Babel => LabelFormat::Babel,
-            FormArg::LabelStudio => LabelFormat::LabelStudio,
-        }
-    }
-}
-
-/// State of a sample.
-#[derive(ValueEnum, Clone, Copy, Debug)]
-#[allow(missing_docs)]
-pub enum StateArg {
-    Accepted,
-    Proposed,
-    Rejected,
-}
-
-impl From<StateArg> for SampleState {
-    fn from(state: StateArg) -> Self {
-        match state {
-            StateArg::Accepted => SampleState::Accepted,
-            StateArg::Proposed => SampleState::Proposed,
-            StateArg::Rejected => SampleState::Rejected,
-        }
-    }
 }
 
 /// Reads, sets or takes back.
@@ -332,7 +286,7 @@ fn read(args: &Args, lengths: &ClipLengths, absent: &mut Absent) -> Result<Vec<A
         let shown = path.display().to_string();
         let bytes = files::read(path)?;
         let form = match args.form {
-            Some(form) => form.into(),
+            Some(form) => form,
             None => LabelFormat::of_file(&shown, &bytes).with_context(|| {
                 format!("{shown}: its ending says no form of labels; give --form")
             })?,
@@ -423,7 +377,7 @@ fn resolve(
             start_secs,
             stop_secs,
             whole_clip: a.extent.is_none(),
-            state: args.state.map_or(a.state, SampleState::from),
+            state: args.state.unwrap_or(a.state),
             score: a.score,
         });
     }

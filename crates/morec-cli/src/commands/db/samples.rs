@@ -7,8 +7,8 @@ use anyhow::Result;
 use morec_db::MotionDb;
 use morec_db::labels::{DbSample, SampleFilter, SampleId, SampleState};
 
-use super::label::StateArg;
 use crate::database;
+use crate::named::by_name;
 use crate::print;
 use crate::table::TextTable;
 
@@ -31,8 +31,8 @@ pub struct Args {
     #[arg(long, value_name = "CLASS")]
     class: Option<String>,
     /// Samples in this state
-    #[arg(long, value_enum)]
-    state: Option<StateArg>,
+    #[arg(long, value_parser = by_name(&SampleState::ALL, SampleState::name))]
+    state: Option<SampleState>,
     /// Remove the samples of these numbers, separated by commas
     #[arg(long, value_delimiter = ',', value_name = "NUMBERS")]
     remove: Vec<i64>,
@@ -85,7 +85,7 @@ fn filter(args: &Args, db: &MotionDb) -> Result<SampleFilter> {
     Ok(SampleFilter {
         clip: clip.transpose()?.map(|info| info.id),
         class: args.class.clone(),
-        state: args.state.map(SampleState::from),
+        state: args.state,
     })
 }
 

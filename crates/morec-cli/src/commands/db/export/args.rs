@@ -4,10 +4,12 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result};
 use clap::ValueEnum;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use morec_db::exchange::LabelFormat;
+use morec_db::labels::SampleState;
 
-use crate::commands::convert::{self, CsvContent};
-use crate::commands::db::label::{FormArg, StateArg};
+use crate::commands::convert::{ClipForm, CsvContent};
+use crate::named::by_name;
 
 /// Write labels for other programs, or the motion of clips
 ///
@@ -30,7 +32,7 @@ pub struct Args {
     #[arg(value_name = "FILE|DIR")]
     pub(super) output: PathBuf,
     /// Form to write [default: by the file's ending]
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = ExportForm::parser())]
     pub(super) form: Option<ExportForm>,
     /// Labels of this clip only
     #[arg(long, value_name = "CLIP")]
@@ -39,8 +41,8 @@ pub struct Args {
     #[arg(long, value_name = "CLASS")]
     pub(super) class: Option<String>,
     /// State of the samples to write
-    #[arg(long, value_enum, default_value = "accepted")]
-    pub(super) state: StateArg,
+    #[arg(long, default_value = "accepted", value_parser = by_name(&SampleState::ALL, SampleState::name))]
+    pub(super) state: SampleState,
     /// Write the motion of this clip instead of labels, or of all clips whose name matches (`*` any text, `?` one
     /// character)
     #[arg(long, value_name = "CLIP", conflicts_with_all = ["clip", "class", "state"])]
@@ -53,40 +55,33 @@ pub struct Args {
     pub(super) json: bool,
 }
 
-/// A form of labels or of motion; a CSV may be either.
-#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)]
-pub(super) enum ExportForm {
-    Tsv,
-    Csv,
-    Json,
-    Eaf,
-    Audacity,
-    Babel,
-    LabelStudio,
-    Bvh,
-    C3d,
-    Trc,
-    Jsonl,
-    Glb,
-    Vrma,
-    Npz,
+/// A form by its name: of labels, of motion or, if it is CSV, of both.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ExportForm {
+    labels: Option<LabelFormat>,
+    motion: Option<ClipForm>,
 }
 
 impl ExportForm {
-    /// The value of this name among another set of forms.
-    fn among<Form: ValueEnum>(self) -> Option<Form> {
-        let value = self.to_possible_value()?;
-        Form::from_str(value.get_name(), false).ok()
+    fn parser() -> impl TypedValueParser<Value = Self> {
+        let mut names: Vec<&str> = LabelFormat::ALL.map(LabelFormat::name).to_vec();
+        let of_motion = ClipForm::value_variants().iter().map(|form| form.ending());
+        names.extend(of_motion.filter(|name| *name != LabelFormat::Csv.name()));
+        PossibleValuesParser::new(names).map(|name| Self {
+            labels: LabelFormat::ALL
+                .into_iter()
+                .find(|form| form.name() == name),
+            motion: ClipForm::from_str(&name, false).ok(),
+        })
     }
 
     pub(super) fn of_labels(self) -> Result<LabelFormat> {
-        let form = self.among::<FormArg>().map(LabelFormat::from);
-        form.context("--form: that is a form of motion; say of which clip with --motion")
+        self.labels
+            .context("--form: that is a form of motion; say of which clip with --motion")
     }
 
-    pub(super) fn of_motion(self) -> Result<convert::ClipForm> {
-        self.among()
+    pub(super) fn of_motion(self) -> Result<ClipForm> {
+        self.motion
             .context("--form: that is a form of labels, and --motion writes motion")
     }
 }

@@ -1,4 +1,4 @@
-//! What the command says on standard output and standard error.
+//! Standard output and standard error of the command.
 
 use std::fmt::Arguments;
 use std::io::{ErrorKind, Write};
@@ -8,28 +8,28 @@ use anyhow::{Context, Result};
 
 /// As the standard library's, but a reader that has gone does not end the work: what is to be written is written all the same.
 macro_rules! println {
-    ($($text:tt)*) => { crate::said::out(format_args!("{}\n", format_args!($($text)*))) };
+    ($($text:tt)*) => { crate::console::out(format_args!("{}\n", format_args!($($text)*))) };
 }
 
 /// See `println`.
 macro_rules! print {
-    ($($text:tt)*) => { crate::said::out(format_args!($($text)*)) };
+    ($($text:tt)*) => { crate::console::out(format_args!($($text)*)) };
 }
 
 /// See `println`.
 macro_rules! eprintln {
-    ($($text:tt)*) => { crate::said::err(format_args!("{}\n", format_args!($($text)*))) };
+    ($($text:tt)*) => { crate::console::err(format_args!("{}\n", format_args!($($text)*))) };
 }
 
 /// See `println`.
 macro_rules! eprint {
-    ($($text:tt)*) => { crate::said::err(format_args!($($text)*)) };
+    ($($text:tt)*) => { crate::console::err(format_args!($($text)*)) };
 }
 
 /// The first failure of standard output.
 static FAILED: Mutex<Option<std::io::Error>> = Mutex::new(None);
 
-/// Writes to standard output. A failure is told at the end ([`whole`]): work that is under way is finished first.
+/// Writes to standard output. A failure is reported at the end ([`finish`]): work that is under way is finished first.
 pub fn out(text: Arguments<'_>) {
     if let Err(error) = std::io::stdout().lock().write_fmt(text)
         && error.kind() != ErrorKind::BrokenPipe
@@ -39,16 +39,16 @@ pub fn out(text: Arguments<'_>) {
     }
 }
 
-/// Writes to standard error; if nobody can hear it, nobody does.
+/// Writes to standard error; a failure is ignored, as there is nowhere to report it.
 pub fn err(text: Arguments<'_>) {
     let _ = std::io::stderr().lock().write_fmt(text);
 }
 
-/// Whether all that was said on standard output arrived, or its reader had enough.
+/// Flushes standard output.
 ///
 /// # Errors
-/// The disk is full.
-pub fn whole() -> Result<()> {
+/// The first failure to write to it, such as a full disk; a reader that has gone is none.
+pub fn finish() -> Result<()> {
     let flushed = std::io::stdout().flush();
     let failed = FAILED.lock().ok().and_then(|mut failed| failed.take());
     match failed.or(flushed.err()) {
