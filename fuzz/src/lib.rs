@@ -1,4 +1,4 @@
-//! What the fuzz targets of clip formats share: limits that keep a run fast, and what must hold of anything that was read.
+//! Helpers of the fuzz targets of clip formats: limits that keep a run fast, and checks that hold of every clip that was read.
 
 use morec::clip::Clip;
 use morec::formats::{Limits, Loaded, bvh};

@@ -1,4 +1,4 @@
-//! What is known of a recogniser's stream: figures, and what is wrong with it in words.
+//! Diagnosis of a recogniser's stream: figures, and findings in words.
 
 use std::ffi::c_char;
 

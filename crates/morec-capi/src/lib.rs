@@ -8,7 +8,7 @@
 //! - Eight calls (`mr…`) over one session in the process, as specified by Bucur, *Efficient motion capture database
 //!   indexing on the Cell processor*, 2009, Table 4.3, with a clip played as the source of motion.
 //!
-//! What must hold at the boundary, and where:
+//! Invariants of the boundary, and the modules that hold them:
 //!
 //! - No panic crosses it: every function runs inside `status::guard`.
 //! - Handles are numbers, never followed: null, foreign and destroyed ones are looked up in `handles` and refused.

@@ -1,7 +1,7 @@
 //! Following pointers that a caller gave. All of it is here, but for handing on from the exported functions.
 //!
-//! What can be seen is looked at: null, misaligned, longer than memory can be. That a pointer points to what its
-//! function asks for is the caller's promise; there is no way to look at that.
+//! Pointers that are null, misaligned or longer than memory can be are refused. That a pointer points to the data its
+//! function asks for cannot be checked: the caller must see to it.
 
 use std::ffi::{CStr, c_char};
 use std::mem::size_of;

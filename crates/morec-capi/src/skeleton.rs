@@ -1,4 +1,4 @@
-//! What a caller says about its skeleton.
+//! Skeletons as a caller describes them.
 
 use std::ffi::c_char;
 

@@ -1,4 +1,4 @@
-//! What a call says of itself: a code, and a text for people.
+//! Result of a call: a code, and a text for people.
 
 use std::borrow::Cow;
 use std::cell::RefCell;

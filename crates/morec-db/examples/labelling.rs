@@ -189,7 +189,7 @@ impl User<'_> {
         (best.0 >= 0.5).then_some(best.1)
     }
 
-    /// What this user makes of a proposal.
+    /// The judgement of this user on a proposal.
     fn answer(&self, p: &Proposal) -> NewSample {
         let mut answer = NewSample::from(p.clone());
         match self.under(p.clip, p.start_secs, p.stop_secs) {

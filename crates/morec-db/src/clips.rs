@@ -1,4 +1,4 @@
-//! What is known about clips, without their motion.
+//! Facts about clips, without their motion.
 
 use rusqlite::{Connection, OptionalExtension, Row, params};
 

@@ -1,4 +1,4 @@
-//! What can go wrong with a database, in plain words.
+//! Errors of the database, in plain words.
 
 use std::path::PathBuf;
 
@@ -111,7 +111,7 @@ impl DbError {
     }
 }
 
-/// What is no database, in words.
+/// Kind of a path that is no database, in words.
 fn kind_of(path: &std::path::Path) -> &'static str {
     match path.is_dir() {
         true => "a folder",

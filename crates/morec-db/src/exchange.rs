@@ -1,6 +1,6 @@
 //! Labels in other programs' forms, read and written.
 //!
-//! What all of them come down to is an [`Annotation`]. Times are seconds from the clip's beginning; forms that count in
+//! All of them are read as [`Annotation`]s. Times are seconds from the clip's beginning; forms that count in
 //! less (milliseconds in ELAN) come back to whole frames of the clip ([`snap`]). Forms that know one recording a file (ELAN, Audacity) need to be
 //! told the clip, unless morec wrote them.
 //!

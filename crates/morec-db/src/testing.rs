@@ -1,4 +1,4 @@
-//! What the tests share.
+//! Clips and databases for all tests.
 
 use std::path::{Path, PathBuf};
 

@@ -1,6 +1,6 @@
 //! Poses as lines of JSON, from standard input or over TCP: for trackers that speak nothing else.
 //!
-//! What a line says is in [`json_line`](super::json_line).
+//! The format of a line is described in [`json_line`](super::json_line).
 
 use std::sync::Arc;
 use std::time::Duration;

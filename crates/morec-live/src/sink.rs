@@ -1,4 +1,4 @@
-//! What takes events.
+//! Sinks: receivers of events.
 
 use std::io;
 

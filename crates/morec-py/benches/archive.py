@@ -1,4 +1,4 @@
-"""What an archive costs on this machine, and what that means for many.
+"""Cost of an archive on this machine, and its projection to many.
 
     python archive.py FOLDER INDEX [--command path/of/morec] [--times N] [--ray]
 

@@ -1,4 +1,4 @@
-"""What clusters of 10, 100 and 1,000 cores would need for an archive, computed from what one core is measured to do.
+"""Time that clusters of 10, 100 and 1,000 cores would need for an archive, from the measured speed of one core.
 
     python sizing.py FOLDER INDEX [--hours 100000] [--gigabits 10] [--tasks-a-second 200]
 

@@ -1,4 +1,4 @@
-"""What a pushed frame and an hour of features cost.
+"""Cost of a pushed frame and of an hour of features.
 
     python speed.py INDEX CLIP.bvh
 

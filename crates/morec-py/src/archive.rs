@@ -1,4 +1,4 @@
-//! What `morec.archive` asks of the native part: clips kept in tables, recognised, cut and searched there.
+//! The native part of `morec.archive`: clips kept in tables are recognised, cut and searched.
 
 use std::path::PathBuf;
 
@@ -196,7 +196,7 @@ pub(crate) type EventTuple = (String, f64, f64, f64, f64);
 /// A clip as rows of a table give it: motion, roles and frames of rest; without roles all is inferred.
 pub(crate) type MotionColumns = (Option<Vec<u8>>, Option<String>, Option<usize>);
 
-/// What an index recognises in kept clips, in parallel: for each the class, start, stop, score and report of its motions,
+/// Detections of an index in kept clips, in parallel: for each clip the class, start, stop, score and report of its motions,
 /// or why there is nothing to recognise.
 #[pyfunction]
 pub fn recognize_kept<'py>(

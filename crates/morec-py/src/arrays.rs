@@ -30,7 +30,7 @@ pub fn shared<T: Element>(py: Python<'_>, values: Vec<T>, shape: &[usize]) -> Py
 /// Numbers of any kind as an array of doubles; arrays of doubles are taken as they are.
 ///
 /// # Errors
-/// What NumPy cannot make numbers of.
+/// A value that NumPy cannot make numbers of.
 pub fn doubles<'py>(value: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
     static ASARRAY: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     if let Ok(array) = value.cast::<PyArrayDyn<f64>>() {

@@ -57,7 +57,7 @@ impl PyClip {
         from_positions(positions, names, rate_hz, name, unit, up, roles)
     }
 
-    /// What the clip is called: its file's stem, by default.
+    /// Name of the clip: its file's stem, by default.
     #[getter]
     fn name(&self) -> &str {
         &self.data.clip.name
@@ -132,13 +132,13 @@ impl PyClip {
         Ok(dict)
     }
 
-    /// What was repaired in reading or looks wrong, a sentence each, with the place in the file.
+    /// Repairs made in reading and oddities, a sentence each, with the place in the file.
     #[getter]
     fn warnings(&self) -> Vec<String> {
         self.data.warnings.clone()
     }
 
-    /// What was inferred: the file's up axis and unit, body height, rest pose and doubts.
+    /// Inferred properties: the file's up axis and unit, body height, rest pose and doubts.
     #[getter]
     fn facts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let facts: serde_json::Value = serde_json::from_str(&self.data.facts).unwrap_or_default();

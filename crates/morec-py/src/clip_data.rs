@@ -16,9 +16,9 @@ pub struct ClipData {
     pub roles: RoleMap,
     /// Frames that a conversion left at the start.
     pub rest: Range<usize>,
-    /// What was inferred, as JSON.
+    /// Report of the import, as JSON.
     pub facts: String,
-    /// What was repaired or looks wrong.
+    /// Repairs and oddities, a sentence each.
     pub warnings: Vec<String>,
     /// The file it is from.
     pub path: Option<PathBuf>,

@@ -18,7 +18,7 @@ use crate::job;
 use crate::material::{TrainingInput, recipe};
 use crate::tables::{DETECTION, plain, table};
 
-/// What a cross-validation measured.
+/// Measures of a cross-validation.
 #[pyclass(frozen, name = "Crossval", module = "morec")]
 pub struct PyCrossval {
     tested: Tested,
@@ -161,13 +161,13 @@ impl PyCrossval {
         plain(py, &self.tested.misses)
     }
 
-    /// What was left out in each fold, and how its training went.
+    /// Each fold: the part that was left out, and the report of its training.
     #[getter]
     fn folds<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         plain(py, &self.folds)
     }
 
-    /// What was recognised.
+    /// All detections.
     #[getter]
     fn found<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let mut rows = Vec::new();
@@ -177,7 +177,7 @@ impl PyCrossval {
         table(py, &DETECTION, rows)
     }
 
-    /// What was there.
+    /// All labels.
     #[getter]
     fn truth<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let mut rows = Vec::new();

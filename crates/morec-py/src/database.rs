@@ -34,7 +34,7 @@ pub struct PyDatabase {
     search: Mutex<Option<SearchIndex>>,
 }
 
-/// What a database says, as the exception that Python people expect.
+/// An error of the database, as the usual exception of Python.
 pub fn db_error(error: DbError) -> PyErr {
     let text = error.to_string();
     match error {

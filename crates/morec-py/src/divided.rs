@@ -10,7 +10,7 @@ use crate::archive::{EventTuple, MotionColumns, events, stored_motion, values_or
 use crate::index::PyIndex;
 use crate::parts::templates;
 
-/// What a part of an index matches in kept clips, in parallel: for each the bytes of its matches, or why there are none.
+/// Matches of a part of an index in kept clips, in parallel: for each clip their bytes, or why there are none.
 #[pyfunction]
 pub fn match_kept<'py>(
     py: Python<'py>,
@@ -30,7 +30,7 @@ pub fn match_kept<'py>(
     values_or_errors(py, bytes.collect())
 }
 
-/// What an index recognises in kept clips, decided between the matches of all its parts; `first` is the first part. For
+/// Detections of an index in kept clips, decided between the matches of all its parts; `first` is the first part. For
 /// each the class, start, stop, score and report of its motions, or why there is nothing to recognise.
 #[pyfunction]
 pub fn recognize_matched_kept<'py>(

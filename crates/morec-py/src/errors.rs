@@ -41,7 +41,7 @@ pub fn value_error(error: impl Display) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
-/// What the system said of a file, as the exception that Python itself would raise.
+/// An error of the system about a file, as the exception that Python itself would raise.
 pub fn io_error(path: &Path, error: &std::io::Error) -> PyErr {
     let text = format!("{}: {error}", path.display());
     match error.kind() {

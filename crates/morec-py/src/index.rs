@@ -26,7 +26,7 @@ use crate::tables::{detections, plain};
 #[pyclass(frozen, name = "Index", module = "morec")]
 pub struct PyIndex {
     pub index: Arc<MotionIndex>,
-    /// What training reported, if it was trained here.
+    /// Report of the training, if it was trained here.
     pub report: Option<serde_json::Value>,
 }
 
@@ -55,7 +55,7 @@ pub fn index_from_bytes(bytes: &[u8]) -> PyResult<PyIndex> {
     Ok(MotionIndex::from_bytes(bytes).map_err(morec_error)?.into())
 }
 
-/// What the index uses and a clip does not show, in a sentence.
+/// A sentence about the bones that the index uses and a clip does not show; `None` if it shows all.
 fn lacks(index: &MotionIndex, data: &ClipData) -> Option<String> {
     let Model::Templates(model) = &index.model else {
         return None;
@@ -246,7 +246,7 @@ impl PyIndex {
         plain(py, &self.index.provenance)
     }
 
-    /// What training reported; `None` for an index that was loaded.
+    /// Report of the training; `None` for an index that was loaded.
     #[getter]
     fn report<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         self.report

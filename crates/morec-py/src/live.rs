@@ -97,7 +97,7 @@ impl LiveSession {
         event.map(|event| self.row(py, &event)).transpose()
     }
 
-    /// What the source has noticed of what it is sent since it was last asked, a sentence each.
+    /// Faults of the data that the source received since the last call, a sentence each.
     fn notices(&self) -> Vec<String> {
         self.notices.take()
     }

@@ -76,7 +76,7 @@ fn train_clip(data: &ClipData, source: StreamKind, people: &BTreeMap<String, Str
     }
 }
 
-/// What Python gives to learn from, sorted out.
+/// Clips and labels from Python, sorted out for training.
 pub struct TrainingInput {
     /// Clips, samples and classes that fit together.
     pub data: TrainingData,

@@ -50,7 +50,7 @@ fn channels(word: &str) -> PyResult<PositionChannels> {
     }
 }
 
-/// What a person knows better than inference: the axis that is up, metres in a unit, and roles, as the text of a mapping
+/// Options of the import from Python's arguments: the axis that is up, metres in a unit, and roles, as the text of a mapping
 /// file or a dictionary of role to joint (`"LKNE+LKNM"` for the middle of two, `None` for nobody).
 ///
 /// # Errors

@@ -39,7 +39,7 @@ struct RecognizerState {
 
 /// Which point of an array plays which part of the body.
 pub struct PointLayout {
-    /// What the points are called.
+    /// Names of the points.
     pub joints: Vec<String>,
     places: Vec<(Role, PointJoint)>,
 }
@@ -221,7 +221,7 @@ impl PyRecognizer {
         self.rows(py, &found)
     }
 
-    /// What seems to be under way after the last push, or `None`. Tentative.
+    /// The motion that seems to be under way after the last push, or `None`. Tentative.
     fn early_detection<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
         let early = {
             let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);

@@ -1,4 +1,4 @@
-//! What a pickled clip consists of: every number as it is.
+//! Contents of a pickled clip: every number to the bit.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-"""What MediaPipe and a Kinect would have seen of a clip: landmarks in their order, axes and units."""
+"""Landmarks of a clip as MediaPipe and a Kinect give them: in their order, axes and units."""
 
 from __future__ import annotations
 

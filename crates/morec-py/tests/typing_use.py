@@ -1,4 +1,4 @@
-"""What users write, for the type checkers; it does not run."""
+"""Code of users, for the type checkers; it does not run."""
 
 from __future__ import annotations
 

@@ -63,7 +63,7 @@ fn read(bencher: Bencher) {
         .bench_local(|| parse(&bytes));
 }
 
-/// What `morec inspect` does but for looking at the stream.
+/// The work of `morec inspect` without the diagnosis of the stream.
 #[divan::bench]
 fn read_and_prepare(bencher: Bencher) {
     let bytes = file();

@@ -1,4 +1,4 @@
-//! What the thesis's live stages cost, one by one: `cargo bench -p morec --bench svrdm`.
+//! Cost of each of the thesis's live stages: `cargo bench -p morec --bench svrdm`.
 //!
 //! Items are chunks of 16 frames at 120 Hz, 7.5 of which make a second, wherever a stage works chunk by chunk. The
 //! model is made so that every segment is accepted and scored, which real ones never come near: 64 values a pose row,

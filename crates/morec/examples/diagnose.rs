@@ -1,4 +1,4 @@
-//! What diagnosis finds in real clips: `cargo run --release -p morec --example diagnose -- FOLDER…`.
+//! Findings of the diagnosis in real clips: `cargo run --release -p morec --example diagnose -- FOLDER…`.
 //!
 //! One line for each clip with a finding, then how many clips had which. The clips of the project's data folder are
 //! recordings of people by calibrated devices: a warning or an error there is a false one.

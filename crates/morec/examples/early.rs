@@ -180,7 +180,7 @@ fn train(clips: &[TrainClip], samples: &[Sample]) -> TemplateModel {
     train_clips(clips, &labelling, &options, &()).unwrap().0
 }
 
-/// What is told after every pose.
+/// The early detection after every pose, with the pose's time in seconds.
 fn play(
     model: &Arc<TemplateModel>,
     c: &TrainClip,

@@ -15,7 +15,7 @@ use crate::kinematics::WorldPose;
 use crate::math::{Quat, Vec3};
 use crate::roles::{Role, RoleMap};
 
-/// What was fitted.
+/// A skeleton fitted to points, and how well it fits.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SkeletonFit {
     /// A clip of one skeleton in the take's frames, metres, Y up; a joint for each role that the take knows.

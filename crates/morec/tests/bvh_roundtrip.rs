@@ -1,4 +1,4 @@
-//! What is written as BVH is read back the same.
+//! Clips that are written as BVH are read back the same.
 #![allow(clippy::unwrap_used)]
 
 use morec::clip::{Clip, Joint, JointTrack, Points, Skeleton};

@@ -651,7 +651,7 @@ fn all_files() -> Vec<(String, Vec<u8>)> {
         .collect()
 }
 
-/// What was read is whole: finite, of one length, and with continuous signs.
+/// Checks that clips are whole: finite values, tables of one length, quaternions of continuous sign.
 fn check(context: &str, loaded: &Loaded) {
     for clip in &loaded.clips {
         let joints = clip.skeleton.len();

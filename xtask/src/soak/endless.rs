@@ -19,8 +19,8 @@ const EVERY: Duration = Duration::from_secs(10);
 /// Memory may grow by this share after the first laps: the system's own bookkeeping.
 const GROWTH: f64 = 0.05;
 
-/// What ended in a lap: class, start and stop from the lap's beginning and score, in steps that rounding cannot cross
-/// unnoticed.
+/// Motions that ended in a lap: class, start and stop from the lap's beginning and score, rounded to steps of a
+/// thousandth.
 type Lap = Vec<(u16, i64, i64, i64)>;
 
 pub fn run(
@@ -114,7 +114,7 @@ pub fn run(
     })
 }
 
-/// What every lap found, held against the first.
+/// Detections of the present lap, compared with those of the first.
 struct Laps {
     lap_secs: f64,
     first: Option<Lap>,

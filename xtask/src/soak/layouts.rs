@@ -21,7 +21,7 @@ const TURNS: usize = 3;
 /// The beginning of a turn does not count: buffers go round for the first time.
 const WARM_UP: Duration = Duration::from_millis(500);
 
-/// What a layout did in all its turns.
+/// Measures of a layout over all its turns.
 #[derive(Default)]
 struct Measured {
     frames: u64,

@@ -30,7 +30,7 @@ type Asked = BTreeSet<(ModulePath, bool)>;
 #[derive(Default)]
 pub struct Modules(BTreeMap<ModulePath, Module>);
 
-/// What a path leads to.
+/// The module or item that a path names.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Target {
     Module(ModulePath),
@@ -120,7 +120,7 @@ impl Modules {
         imports.map(|import| &import.path[..])
     }
 
-    /// What `path`, written in module `from`, leads to; `None` for another crate's and for what is declared in a function.
+    /// Target of `path`, written in module `from`; `None` for another crate's and for what is declared in a function.
     pub fn resolve(&self, from: &[String], path: &[String]) -> Option<Target> {
         self.follow(from, path, false, &mut Asked::new())
     }
@@ -151,7 +151,7 @@ impl Modules {
         Some(target)
     }
 
-    /// What `name` stands for in `module`. A module and an item may share it: the module is meant where more follows.
+    /// Target of `name` in `module`. A module and an item may share it: the module is meant where more follows.
     fn member(
         &self,
         module: &[String],

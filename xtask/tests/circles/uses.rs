@@ -1,4 +1,4 @@
-//! What the code of a file uses.
+//! Files and names that the code of a file uses.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,4 +1,4 @@
-//! What the eight calls do, and in which order they may.
+//! Work of the eight calls, and the order in which they are allowed.
 
 use std::collections::VecDeque;
 use std::ffi::c_char;

@@ -1,4 +1,4 @@
-//! What is wrong with a stream, reported to C.
+//! Findings about a stream, reported to C.
 
 use std::ffi::{CStr, c_char};
 use std::mem::zeroed;

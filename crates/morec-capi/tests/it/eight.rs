@@ -13,7 +13,7 @@ use morec_capi::*;
 
 use crate::kit::{self, last_error};
 
-/// What the tests hand to the library by path.
+/// Files that the tests give to the library by path.
 pub struct Files {
     /// Holds what the others name; where Cargo keeps such things, used again by every run.
     pub folder: PathBuf,
@@ -56,7 +56,7 @@ pub fn files() -> &'static Files {
     })
 }
 
-/// What the recogniser itself finds in the clip's file.
+/// Detections of the recogniser itself in the clip's file.
 pub fn expected() -> Vec<Detection> {
     let bytes = std::fs::read(Path::new(files().clip.to_str().unwrap())).unwrap();
     let loaded = bvh::read(&bytes, "clip", &BvhOptions::default(), &Limits::default()).unwrap();

@@ -1,4 +1,4 @@
-//! What is wrong with streams, said once each as soon as it is known.
+//! Findings about streams, each reported once and as soon as it is known.
 
 use std::time::{Duration, Instant};
 

@@ -1,4 +1,4 @@
-//! What kind of file the first bytes of one show, in words for people.
+//! Kind of a file by its first bytes, in words for people.
 
 use morec::formats::probe::{Format, probe};
 

@@ -1,4 +1,4 @@
-//! What is shown: a clip, what is known to be in it, and what was said about it.
+//! Contents of a show: a clip, its labels and its detections.
 
 use morec::clip::Clip;
 

@@ -53,7 +53,7 @@ fn performance() -> Vec<(f64, BTreeMap<Role, Vec3>)> {
     poses
 }
 
-/// What `live` says of lines of JSON.
+/// Output of `live` for lines of JSON.
 fn live(lines: &[String]) -> String {
     let folder = Folder::with(&[("poses.jsonl", &(lines.join("\n") + "\n"))]);
     std::fs::write(folder.path().join("v1.index"), INDEX).unwrap();

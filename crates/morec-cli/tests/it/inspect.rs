@@ -216,7 +216,7 @@ fn a_name_of_any_length_is_printed() {
     assert!(out.contains(&name));
 }
 
-/// What does not end is refused, whoever names it.
+/// Files without an end are refused, whoever names them.
 #[cfg(unix)]
 #[test]
 fn a_device_without_an_end_is_refused() {

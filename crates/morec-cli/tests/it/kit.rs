@@ -1,4 +1,4 @@
-//! What the tests share: a folder with small clips, and the command run in it.
+//! A folder with small clips and the command run in it, for all tests.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -17,7 +17,7 @@ pub use testing::{data, skipped};
 /// A folder that lives as long as the test.
 pub struct Folder(TempDir);
 
-/// What a command did.
+/// Exit code and output of a command.
 #[derive(Debug)]
 pub struct Ran {
     pub code: Option<i32>,

@@ -186,7 +186,7 @@ fn a_wrong_parameter_names_the_nearest() {
     }
 }
 
-/// What `db label` reads, training and measuring read.
+/// Training and measuring read every form of labels that `db label` reads.
 #[test]
 fn every_form_of_labels_teaches() {
     let (folder, _) = labelled();

@@ -1,4 +1,4 @@
-//! What the command writes, and what it must never write over.
+//! Files that the command writes, and those that it must never write over.
 
 use crate::db::studio;
 use crate::kit::{ARM_ASF, Folder, WAVE_AMC, WAVE_BVH};

@@ -1,4 +1,4 @@
-//! What all forms of labels come down to, and what their readers share.
+//! Annotations, which all forms of labels are read as, and helpers that their readers share.
 
 use std::collections::BTreeMap;
 

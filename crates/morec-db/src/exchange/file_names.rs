@@ -1,7 +1,7 @@
 //! Clips' names as names of files, and back.
 //!
-//! What a file's name cannot hold on some system is written as `%` and two hexadecimal digits for each byte, as in
-//! addresses: `x/y` becomes `x%2Fy`. No two clips get one file.
+//! Characters that file names cannot hold on some system are written as `%` and two hexadecimal digits for each byte, as
+//! in addresses: `x/y` becomes `x%2Fy`. No two clips get one file.
 
 use std::collections::BTreeSet;
 

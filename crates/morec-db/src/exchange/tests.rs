@@ -1,4 +1,4 @@
-//! What is written is read back the same, in every form, as far as the form can say it.
+//! Annotations that are written in a form are read back the same, as far as the form can hold them.
 
 use proptest::prelude::*;
 
@@ -111,7 +111,7 @@ fn sorted(mut annotations: Vec<Annotation>) -> Vec<String> {
     annotations.into_iter().map(|a| format!("{a:?}")).collect()
 }
 
-/// What a form can say of an annotation.
+/// Annotations as a form can hold them.
 fn sayable(form: LabelFormat, all: &[Annotation]) -> Vec<Annotation> {
     let says = |a: &Annotation| {
         let mut said = a.clone();
@@ -182,7 +182,7 @@ proptest! {
         }
     }
 
-    /// What was written well and then damaged: pieces of it repeated, lost, changed.
+    /// Files that were written whole and then damaged: pieces repeated, lost, changed.
     #[test]
     fn damaged_files_are_read_or_refused(
         all in prop::collection::vec(annotation(), 1..6),

@@ -25,7 +25,7 @@ pub struct Turned {
     /// Which.
     #[serde(flatten)]
     pub step: HistoryStep,
-    /// What it does.
+    /// Its effects on the database.
     pub effects: Vec<Effect>,
 }
 

@@ -6,7 +6,7 @@ use super::*;
 use crate::testing::database_of_waves;
 use crate::{ClipId, MotionDb};
 
-/// What a user sees: the classes; clip, class, start and state of each sample.
+/// Labels as a user sees them: the classes; clip, class, start and state of each sample.
 type Seen = (Vec<String>, Vec<(i64, String, String, SampleState)>);
 
 fn seen(db: &MotionDb) -> Seen {

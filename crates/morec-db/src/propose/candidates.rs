@@ -1,4 +1,4 @@
-//! What the templates see in a clip, each stretch without the templates that were cut from it.
+//! Matches of the templates in a clip, for each stretch without the templates that were cut from it.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! What proposing works on: rows of all clips, and the stretches that were judged.
+//! Input of proposing: rows of all clips, and the stretches that were judged.
 
 use std::collections::BTreeMap;
 use std::ops::Range;

@@ -1,4 +1,4 @@
-//! What a stretch is like in a few numbers, from prefix sums: how much moves at which pace, the mean pose, the travel.
+//! Summary of a stretch in a few numbers, from prefix sums: variance at each pace, the mean pose, the travel.
 //!
 //! How much: the variance of every coordinate, split by octaves of a Haar transform over the stretch (Mallat, *A theory
 //! for multiresolution signal decomposition*, 1989): between its halves, quarters, eighths, sixteenths, and within these.

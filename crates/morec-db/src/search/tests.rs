@@ -58,7 +58,7 @@ fn a_stretch_finds_its_like_in_other_clips() {
     assert!(hits.windows(2).all(|pair| pair[0].score >= pair[1].score));
 }
 
-/// What is in the database once more, bit for bit, is the first hit, and its mirror image the first mirrored one.
+/// An exact copy of the example is the first hit, and its mirror image the first mirrored one.
 #[test]
 fn an_exact_copy_comes_first() {
     let (_folder, db) = indexed(4);

@@ -82,7 +82,7 @@ fn shake_hands<S: Read + Write>(stream: S, origin: Option<&str>) -> Option<WebSo
     accept_hdr_with_config(stream, check, Some(config)).ok()
 }
 
-/// What a listener says, without a network: the lengths of the messages before the first fault or the end.
+/// Lengths of the messages that a listener sent, up to the first fault or the end; without a network.
 #[doc(hidden)] // For fuzzing.
 pub fn heard(bytes: &[u8]) -> Vec<usize> {
     /// Reads what is there, forgets what is written.

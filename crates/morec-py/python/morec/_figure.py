@@ -23,7 +23,7 @@ BONES = [
 
 
 def lines(clip: Clip) -> tuple[npt.NDArray[np.float64], list[tuple[int, int]]]:
-    """What a drawing of the clip needs.
+    """Data for a drawing of the clip.
 
     Returns
     -------
@@ -75,7 +75,7 @@ def animation(clip: Clip, *, size: int = SIZE, poses: int = POSES) -> str:
 
 
 def html(clip: Clip) -> str:
-    """What a notebook shows of a clip."""
+    """HTML that a notebook shows for a clip."""
     facts = f"{clip.frames} frames at {clip.rate_hz:g} Hz, {len(clip.names)} joints"
     warnings = "".join(f"<li>{escape(text)}</li>" for text in clip.warnings[:5])
     notes = f"<ul>{warnings}</ul>" if warnings else ""

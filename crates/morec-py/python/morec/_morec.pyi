@@ -21,7 +21,7 @@ _Roles = dict[str, str | None] | str | None
 _Array = npt.NDArray[np.float64]
 
 class MorecError(Exception):
-    """What a file, a label or a motion has that morec cannot use, with its place."""
+    """A fault of a file, a label or a motion that morec cannot use, with its place."""
 
 class MorecWarning(UserWarning):
     """Something was repaired, left out or looks wrong; the result is there all the same."""
@@ -78,7 +78,7 @@ class Clip:
         """
     @property
     def name(self) -> str:
-        """What the clip is called: its file's stem, by default."""
+        """Name of the clip: its file's stem, by default."""
     @property
     def path(self) -> os.PathLike[str] | None:
         """The file it was read from, or None."""
@@ -108,10 +108,10 @@ class Clip:
         """For each part of the body that was found, the index of the joint that plays it."""
     @property
     def warnings(self) -> list[str]:
-        """What was repaired in reading or looks wrong, a sentence each, with the place in the file."""
+        """Repairs made in reading and oddities, a sentence each, with the place in the file."""
     @property
     def facts(self) -> dict[str, Any]:
-        """What was inferred: up axis and unit of the file, body height, rest pose, doubts (``notes``)."""
+        """Inferred properties: up axis and unit of the file, body height, rest pose, doubts (``notes``)."""
     @property
     def rest_frames(self) -> int:
         """Frames at the start that show a rest pose and not the motion."""
@@ -234,7 +234,7 @@ class Index:
         """Where the index came from: date, version, clips, samples, background."""
     @property
     def report(self) -> dict[str, Any] | None:
-        """What training reported; None for an index that was loaded."""
+        """Report of the training; None for an index that was loaded."""
 
 class Recognizer:
     """Recognises motions in one performer's stream of joint positions. Made by `Index.recognizer`.
@@ -275,7 +275,7 @@ class Recognizer:
     def finish(self) -> list[dict[str, Any]]:
         """End the stream: the detections that its last moments still hold. The next push begins a new stream."""
     def early_detection(self) -> dict[str, Any] | None:
-        """What seems to be under way after the last push, or None. Tentative.
+        """The motion that seems to be under way after the last push, or None. Tentative.
 
         Keys class, score, progress (0 to 1), start_secs, seen_secs.
         """
@@ -295,7 +295,7 @@ class LiveSession:
     def close(self) -> None: ...
 
 class Crossval:
-    """What a cross-validation measured. Made by `morec.crossval`."""
+    """Measures of a cross-validation. Made by `morec.crossval`."""
 
     @property
     def evaluation(self) -> dict[str, Any]:
@@ -317,13 +317,13 @@ class Crossval:
         """Samples that were missed, and why."""
     @property
     def folds(self) -> list[dict[str, Any]]:
-        """What was left out in each fold, and how its training went."""
+        """Each fold: the part that was left out, and the report of its training."""
     @property
     def found(self) -> Table:
-        """What was recognised: clip, class, start_secs, stop_secs, score, reported_secs."""
+        """All detections: clip, class, start_secs, stop_secs, score, reported_secs."""
     @property
     def truth(self) -> Table:
-        """What was there: clip, class, start_secs, stop_secs."""
+        """All labels: clip, class, start_secs, stop_secs."""
     def report(self, path: _Path, *, title: str = "Cross-validation") -> None:
         """Write the report, one HTML file without outside links."""
 

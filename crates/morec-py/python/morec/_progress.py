@@ -18,7 +18,7 @@ WIDTH = 30
 
 
 def listener(progress: Progress) -> Report | None:
-    """What the native part is to call, or ``None``."""
+    """The callback for the native part, or ``None``."""
     if callable(progress) and not isinstance(progress, bool):
         return progress
     if progress is False or (progress is None and not _is_watched()):

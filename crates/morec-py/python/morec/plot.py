@@ -32,7 +32,7 @@ def _axes(ax: Axes | None, **options: Any) -> Axes:
 
 
 def timeline(found: Rows, truth: Rows = (), *, clip: str | None = None, ax: Axes | None = None) -> Axes:
-    """What was recognised when, below what is labelled.
+    """Detections over time, below the labels.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def skeleton(clip: Clip, secs: float = 0.0, *, view: str = "front", ax: Axes | N
 
 
 def confusion(evaluation: Crossval | Mapping[str, Any], *, ax: Axes | None = None) -> Axes:
-    """What was taken for what.
+    """Confusion matrix.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-//! What recognition needs of one frame: where the role joints are.
+//! Key poses: the positions of the role joints in one frame, all that recognition uses of it.
 
 use crate::kinematics::WorldPose;
 use crate::math::Vec3;

@@ -33,8 +33,8 @@ pub fn reflected_direction(bone: usize, of_opposite: &[f32]) -> [f32; 3] {
     ]
 }
 
-/// What a mirror beside the performer shows, of rows over `bones`: sides exchanged, lateral parts and turning the other
-/// way. `None` if `bones` hold a bone without its opposite. O(values).
+/// Feature rows over `bones` of the mirror image of a motion: left and right exchanged, lateral components and turning
+/// reversed. `None` if `bones` hold a bone without its opposite. O(values).
 pub fn mirrored_rows(rows: &Rows, bones: BoneSet) -> Option<Rows> {
     let present: Vec<usize> = bones.indices().collect();
     let slot_of = |bone: usize| present.iter().position(|b| *b == bone);

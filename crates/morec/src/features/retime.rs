@@ -8,8 +8,8 @@ use super::rows::Rows;
 /// Velocities nearer to saturation than this say no more about their size.
 const MOST_SATURATED: f64 = 0.98;
 
-/// What `rows` over `bones` would be if the motion took `factor` times as long: resampled linearly, velocities divided by the
-/// factor. O(values).
+/// Feature rows over `bones` of the same motion performed in `factor` times the time: `rows` resampled linearly, velocities
+/// divided by the factor; at least 2 rows. O(values).
 pub fn retimed_rows(rows: &Rows, bones: BoneSet, params: &FeatureParams, factor: f64) -> Rows {
     let len = ((rows.len() as f64 * factor).round() as usize).max(2);
     let mut out = Rows::new(rows.dim());

@@ -253,7 +253,7 @@ fn turned(
 /// Writes where a clip's joints (or points) are as lines of JSON; gaps are left out. Lengths and axes stay as they are.
 ///
 /// # Errors
-/// What `out` fails with.
+/// An I/O error of `out`.
 pub fn write(clip: &Clip, out: &mut dyn std::io::Write) -> std::io::Result<()> {
     let clip = clip.to_points(None);
     for frame in 0..clip.frames {

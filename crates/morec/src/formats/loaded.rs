@@ -1,4 +1,4 @@
-//! What every reader of a format takes and gives.
+//! Input limits and results that all readers share.
 
 use crate::clip::Clip;
 use crate::parse_error::Warning;

@@ -9,7 +9,7 @@ use crate::roles::{Role, RoleMap};
 /// Frames looked at, evenly spread: bodies do not change within a clip.
 const FRAMES: usize = 200;
 
-/// What the poses of a clip say about the body.
+/// Lengths and directions of the body in the poses of a clip, in the file's units and axes.
 pub(super) struct BodyMeasures {
     /// From the lower end to the upper end of the body, frame by frame.
     pub(super) feet_to_head: Vec<Vec3>,

@@ -1,4 +1,4 @@
-//! What is known of a clip before it is looked at.
+//! Options of the import, and what formats state about lengths and axes.
 
 use crate::formats::probe::Format;
 use crate::math::Axis;
@@ -6,7 +6,7 @@ use crate::roles::mapping::Mapping;
 
 use super::signed_axis::SignedAxis;
 
-/// What a person knows better than inference.
+/// Values given by the caller in place of inferred ones.
 #[derive(Debug, Clone, Default)]
 pub struct ImportOptions {
     /// Which way is up in the file.
@@ -17,11 +17,11 @@ pub struct ImportOptions {
     pub rest_frames: Option<usize>,
     /// Roles that override those found.
     pub mapping: Option<Mapping>,
-    /// What the file's format states; believed where the body does not say otherwise.
+    /// Unit and axis that the file's format states; used unless the body contradicts them.
     pub stated: Option<Stated>,
 }
 
-/// What the specification of a format, or a file itself, states about lengths and axes.
+/// Unit of length and up axis, as the specification of a format, or a file itself, states them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stated {
     /// Which way is up.
@@ -31,7 +31,7 @@ pub struct Stated {
 }
 
 impl Stated {
-    /// What files of `format` state by its specification; `None` for those that leave it to the writer.
+    /// Unit and axis of all files of `format` by its specification; `None` for those that leave it to the writer.
     pub fn of(format: Format) -> Option<Self> {
         let up = match format {
             Format::Gltf | Format::Mocopi | Format::OpenSimMotion => SignedAxis::Y,

@@ -11,7 +11,7 @@ use crate::roles::{Role, RoleMap};
 /// Frames that settle what names leave open.
 const LOOKED_AT: usize = 8;
 
-/// What to say of points that nothing names.
+/// The doubt about a clip of points that belong to no known set.
 pub(super) const UNKNOWN: &str = "no known set of points, so no body is known: say with --roles which of them are joints, as in \
     `left_knee<TAB>LKNE+LKNM` for the middle of two, or leave the clip out if it shows no person";
 

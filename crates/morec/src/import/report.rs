@@ -1,10 +1,10 @@
-//! What was found out about a clip.
+//! Report of an import.
 
 use crate::clip::Span;
 
 use super::signed_axis::SignedAxis;
 
-/// What was inferred about a clip, or given in the options.
+/// Properties of a clip that were inferred, or given in the options.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct ImportReport {
     /// Which way was up in the file; it is Y in the imported clip.
@@ -28,6 +28,6 @@ pub struct ImportReport {
     pub point_set: Option<&'static str>,
     /// Guesses worth doubting, each in a sentence.
     pub notes: Vec<String>,
-    /// What cannot be true of a person's body: recognition would be misled. Each a sentence with what to do.
+    /// Properties that no person's body has, and which mislead recognition: each a sentence with a remedy.
     pub doubts: Vec<String>,
 }

@@ -14,9 +14,9 @@ pub struct Take {
     pub clip: Clip,
     /// Which joint is which part of the body.
     pub roles: RoleMap,
-    /// What was inferred.
+    /// Report of the import.
     pub report: ImportReport,
-    /// What was repaired or looks wrong in the file it is from; clips of one file share them.
+    /// Repairs and oddities of the file it is from; clips of one file share them.
     pub warnings: Vec<Warning>,
 }
 
@@ -43,7 +43,7 @@ impl Take {
         bones_of_clip(&self.clip, &self.roles, self.rest())
     }
 
-    /// What a live source would have sent: the time of every frame in seconds, and its pose.
+    /// Time of every frame in seconds, and its key pose, as a live source would have sent them.
     pub fn poses(&self) -> Vec<(f64, KeyPose)> {
         let mut poses = Vec::with_capacity(self.clip.frames);
         for_each_pose(&self.clip, &self.roles, self.rest(), |time_secs, pose| {

@@ -55,7 +55,7 @@ fn height(body: &BodyMeasures, up: SignedAxis) -> Option<f64> {
     body.height(up).or(by_leg).filter(|&height| height > 0.0)
 }
 
-/// What the height of most people comes to, measured from the ankles to the top of the head.
+/// Usual height from the ankles to the top of the head, metres.
 const HEIGHT: f64 = 1.65;
 
 /// How many times as large as a usual adult the body is, by one of the file's units a metre.
@@ -100,7 +100,7 @@ pub(super) fn infer(body: &BodyMeasures, up: SignedAxis, notes: &mut Vec<String>
     metres
 }
 
-/// What is wrong with a body whose legs, in this unit, are no person's.
+/// A sentence about legs that, in this unit, are too short or too long for a person; `None` otherwise.
 pub(super) fn doubt(body: &BodyMeasures, metres_per_unit: f64) -> Option<String> {
     let leg = body.leg? * metres_per_unit;
     (!(0.3..=1.3).contains(&leg)).then(|| {

@@ -93,14 +93,14 @@ impl PartMatcher {
             .push(time_secs, pose, &mut |row| steps.take(row));
     }
 
-    /// Ends the stream: what it matched.
+    /// Ends the stream; gives all its matches.
     pub fn finish(mut self) -> ClassMatches {
         self.features.finish(&mut |row| self.steps.take(row));
         self.steps.matches
     }
 }
 
-/// What a [part](TemplateModel::part) matches in a clip. `rest` are the frames that a conversion left at the start, as in
+/// Matches of a [part](TemplateModel::part) in a clip. `rest` are the frames that a conversion left at the start, as in
 /// [`recognize_clip`](super::recognize_clip).
 ///
 /// # Errors
@@ -118,7 +118,7 @@ pub fn match_clip(
     Ok(matcher.finish())
 }
 
-/// What the whole index reports of a clip whose matches with all its parts are `matches`
+/// Detections of the whole index in a clip, from its matches with all parts of the index
 /// ([merged](ClassMatches::merge)); `first` is the first part.
 ///
 /// # Errors

@@ -31,7 +31,7 @@ pub fn recognize_clip<M: Clone + Into<Model>>(
     recognize_with(recognizer, &model, clip, roles, rest)
 }
 
-/// What a new recogniser for `model` reports of a clip.
+/// Detections of `recognizer`, which is a new one for `model`, in a clip.
 pub(super) fn recognize_with(
     mut recognizer: Recognizer,
     model: &Model,

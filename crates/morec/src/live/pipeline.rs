@@ -1,4 +1,4 @@
-//! What a method of recognition does with one stream. The [`Recognizer`](super::Recognizer) knows no more of it.
+//! The interface of a method of recognition on one stream, by which [`Recognizer`](super::Recognizer) uses it.
 
 use std::fmt;
 

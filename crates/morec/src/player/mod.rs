@@ -34,9 +34,9 @@ pub struct PlayedClip<'a> {
     pub clip: &'a Clip,
     /// Who plays what.
     pub roles: &'a RoleMap,
-    /// What is shown of it, in seconds; `None` for all.
+    /// The stretch to show, seconds; `None` for the whole clip.
     pub secs: Option<Range<f64>>,
-    /// What somebody labelled.
+    /// Labels of the clip.
     pub labels: Vec<Mark>,
     /// Detections in the clip.
     pub detections: Vec<Mark>,

@@ -7,7 +7,7 @@ use super::{Role, RoleMap, proportions};
 use crate::clip::Skeleton;
 use crate::math::Vec3;
 
-/// What to do where roles are wrong.
+/// Advice at the end of every sentence about wrong roles.
 const REMEDY: &str = "say with --roles FILE which joints they are";
 
 /// Looks for what cannot be true of a person's body in `map`, in a few poses of it (world positions of each joint, any

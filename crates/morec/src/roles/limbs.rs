@@ -21,7 +21,7 @@ pub(super) struct Limb {
     pub(super) end: Option<usize>,
 }
 
-/// What kind of limb is looked for.
+/// Kind of limb.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Part {
     Leg,
@@ -132,7 +132,7 @@ fn best(joints: usize, cost: impl Fn(ChainSplit) -> Option<f64>) -> (Option<Chai
     best.map_or((None, f64::INFINITY), |(cost, place)| (Some(place), cost))
 }
 
-/// What it costs that the two limbs begin nearer to each other or farther apart than those of people.
+/// Cost of a distance between the upper ends of two limbs that is not that of people.
 fn separation(chains: &[Chain; 2], place: ChainSplit) -> f64 {
     const MOST: f64 = 3.0;
     let tree = chains[0].tree;
@@ -214,7 +214,7 @@ impl<'a> Chain<'a> {
         (0..self.tree.poses.len()).map(bent).fold(0.0, f64::max)
     }
 
-    /// What a choice costs; `None` if its bones have no length.
+    /// Cost of a choice of joints, from proportions, bends and names; `None` if its bones have no length.
     fn cost(&self, place: ChainSplit) -> Option<f64> {
         const SHORTEST: f64 = 0.08;
         let tip = place.end == self.joints.len();

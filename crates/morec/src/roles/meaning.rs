@@ -1,4 +1,4 @@
-//! What the name of a joint can say.
+//! Meanings of joint names: side and part of the body.
 
 /// A side of the body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,7 +16,7 @@ impl Side {
     }
 }
 
-/// What a name could mean.
+/// Part of the body that a name suggests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum NameMeaning {
     /// Pelvis, hips, or a hip without a side.

@@ -1,4 +1,4 @@
-//! What a joint's name says: which side, and which part it could be.
+//! Joint names read as a side and a possible part of the body.
 //!
 //! Names are evidence, not truth: `LeftLeg` is the shin where there is a `LeftUpLeg`, `LeftShoulder` the collar
 //! where there is a `LeftArm`. Such words get a kind of their own here and are settled in [`super::limbs`].

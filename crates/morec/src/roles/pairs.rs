@@ -6,7 +6,7 @@ use super::proportions as human;
 use super::tree::{JointTree, MirroredPair};
 use crate::math::Vec3;
 
-/// What was found, and what is worth saying about it.
+/// Roles that were found, with notes about guesses.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct RolesFound {
     /// Who plays what.

@@ -10,12 +10,12 @@ use crate::math::Vec3;
 const LEAST_BEND: f64 = 0.04;
 /// The same of a zero pose, in which bones need not lie as in any body.
 const LEAST_BEND_AT_ZERO: f64 = 0.12;
-/// What toes weigh beside the bends of both knees, in shares of the legs.
+/// Weight of the toes relative to the bends of both knees, in leg lengths.
 const TOES: f64 = 0.3;
 /// A mean cosine from here on is certain.
 const CERTAIN: f64 = 0.5;
 
-/// What the body says about left and right.
+/// Evidence of left and right from the body's shape and poses.
 pub(super) struct SideCues {
     /// Towards the left, as far as each pose tells: up × forward.
     left: Vec<Vec3>,

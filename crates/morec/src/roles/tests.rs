@@ -275,8 +275,8 @@ fn moving(case: &Case) -> Vec<Vec<Vec3>> {
     (0..8).map(pose).collect()
 }
 
-/// What must be found whatever the joints are called. Collars, and which of several joints in a spine or neck is meant,
-/// only names tell.
+/// Roles that follow from the shape of the tree, whatever the joints are called. Collars, and the choice among several
+/// joints of a spine or neck, need names.
 const STRUCTURAL: [Role; 12] = [
     Role::LeftThigh,
     Role::LeftShin,

@@ -121,7 +121,7 @@ struct Tightening<'w, 'c> {
     bound: f64,
     worst: f64,
     pose: WorldPose,
-    /// What the curves give.
+    /// The local pose of the fitted curves at the present frame.
     fitted: Playhead,
 }
 

@@ -1,4 +1,4 @@
-//! What the curves of a channel are fitted to.
+//! Samples of a channel, to which its curves are fitted.
 
 use std::borrow::Cow;
 

@@ -92,8 +92,8 @@ impl Branch {
     }
 }
 
-/// What two machines of these points and weights say at a place in the plane: `f_j = Σᵢ w_ji K(zᵢ, place)`. O(points),
-/// no allocation.
+/// Outputs of two kernel machines at a place in the plane: `f_j = Σᵢ w_ji K(zᵢ, place)` over `points` `zᵢ`. O(points), no
+/// allocation.
 pub fn outputs_at(
     points: &[[f64; 2]],
     weights: &[Vec<f64>; 2],

@@ -21,7 +21,7 @@ pub enum Content {
 /// Writes one table of `take`; the first column is the time in seconds. Points that were not seen are blank cells.
 ///
 /// # Errors
-/// What `out` fails with; rotations of a clip that has none; features of a body whose hips are not known.
+/// An I/O error of `out`; rotations of a clip that has none; features of a body whose hips are not known.
 pub fn write(take: &Take, content: Content, out: &mut dyn Write) -> io::Result<()> {
     match content {
         Content::Positions => positions(take, out),

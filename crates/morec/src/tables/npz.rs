@@ -25,7 +25,7 @@ use crate::roles::Role;
 /// | `units`, `name`, `format_version` | | `metres, seconds, Y up, right-handed`; the clip's name; 1 |
 ///
 /// # Errors
-/// What `out` fails with.
+/// An I/O error of `out`.
 pub fn write(take: &Take, out: &mut dyn Write) -> io::Result<()> {
     let Take {
         clip,

@@ -141,10 +141,10 @@ impl ClassMatches {
         bytes
     }
 
-    /// What [`to_bytes`](Self::to_bytes) gave.
+    /// Matches from the bytes of [`to_bytes`](Self::to_bytes).
     ///
     /// # Errors
-    /// Bytes that it did not give.
+    /// Bytes that are not those of `to_bytes`.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, ClassMatchesError> {
         let (header, rest) = bytes
             .split_first_chunk::<HEADER_BYTES>()

@@ -14,7 +14,7 @@ use crate::made::Timed;
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Case {
-    /// What it is about, for people.
+    /// Description for people.
     #[allow(dead_code)]
     about: String,
     /// Seed of how the motions vary, and the number of the person that the same seed draws.
@@ -41,7 +41,7 @@ pub enum Line {
     PlayAtSpeed(String, f64),
 }
 
-/// What befalls the poses between the person and the recogniser.
+/// Changes of the poses between the person and the recogniser.
 #[derive(serde::Deserialize, Default)]
 #[serde(default, deny_unknown_fields)]
 pub struct Stream {
@@ -75,7 +75,7 @@ impl Case {
         serde_json::from_str(&text).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
     }
 
-    /// What its person performs.
+    /// The motion of its person at `rate_hz` frames a second.
     pub fn take(&self, rate_hz: f64) -> SyntheticTake {
         let mut person = Person::draw(self.seed, self.person);
         // The people of the model are right-handed, as in every synthetic database unless told otherwise.

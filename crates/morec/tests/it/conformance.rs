@@ -1,5 +1,5 @@
-//! What recognition must find in the streams of `testdata/recognition/`, however it is run: every engine of
-//! [`ENGINES`] goes through every case at every rate.
+//! Expected detections in the streams of `testdata/recognition/`: every engine of [`ENGINES`] goes through every case at
+//! every rate.
 
 use morec::live::Detection;
 use morec::synth::MotionKind;

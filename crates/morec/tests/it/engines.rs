@@ -14,7 +14,7 @@ use crate::made::Timed;
 
 /// One way of running recognition.
 pub struct Engine {
-    /// What failures call it.
+    /// Its name in failures.
     pub name: &'static str,
     /// Recognises a whole stream, which ends with the last pose.
     pub run: fn(&Arc<TemplateModel>, BoneSet, &[Timed]) -> Vec<Detection>,

@@ -164,7 +164,7 @@ fn stream() -> SyntheticTake {
     script.film("compatibility", 60.0).unwrap()
 }
 
-/// What `index` recognises in it: class, start, stop, score; times in hundredths of a second.
+/// Detections of `index` in it: class, start, stop, score; times in hundredths of a second.
 fn recognised(index: &MotionIndex) -> Vec<(String, f64, f64, f64)> {
     let (bones, poses) = made::poses(&stream());
     let Model::Templates(model) = &index.model else {

@@ -1,4 +1,4 @@
-//! What the tests share: finding and loading real clips.
+//! Finding and loading real clips, for all tests.
 
 use morec::clip::Clip;
 use morec::formats::{Limits, acclaim, bvh};

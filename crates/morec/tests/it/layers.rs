@@ -1,4 +1,4 @@
-//! What cargo features cannot say. Layers themselves are features: the compiler holds them apart (`.ci/run`).
+//! Rules about imports that cargo features cannot express; the layers themselves are features (`.ci/run`).
 
 use std::fs;
 use std::path::{Path, PathBuf};

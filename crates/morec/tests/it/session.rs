@@ -1,4 +1,4 @@
-//! What sessions do beside recognising: survive their source, count what they drop, let themselves be watched.
+//! Sessions: faults of their source, counts of dropped frames, status and events.
 
 use std::sync::Arc;
 use std::time::Duration;

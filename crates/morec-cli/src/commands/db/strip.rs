@@ -50,7 +50,7 @@ pub fn strip(stored: &StoredClip, start_secs: f64, stop_secs: f64, poses: usize)
     )
 }
 
-/// What the figures take, pixels: an arm that is stretched out is not cut off.
+/// Bounds of the figures, pixels, so that an arm that is stretched out is not cut off.
 struct PictureBounds {
     left: f64,
     right: f64,

@@ -1,4 +1,4 @@
-//! What is grouped, by whatever is found alike: the part that clips and databases share.
+//! Items to group and their grouping by each method, for clips and databases alike.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;

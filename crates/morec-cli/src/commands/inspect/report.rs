@@ -1,4 +1,4 @@
-//! What `inspect` says about a file, as text and as JSON.
+//! Report of `inspect` on a file, as text and as JSON.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};

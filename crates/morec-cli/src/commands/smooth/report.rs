@@ -1,4 +1,4 @@
-//! What `smooth` says about each clip, as text and as JSON.
+//! Report of `smooth` on each clip, as text and as JSON.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! What was taught so far: takes and labels in a folder beside the index, and the index trained from them.
+//! The lesson so far: takes and labels in a folder beside the index, and the index trained from them.
 
 use std::fs::{self, OpenOptions};
 use std::io::Write;

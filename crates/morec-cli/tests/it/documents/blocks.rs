@@ -1,6 +1,6 @@
 //! Commands in Markdown.
 
-/// What is to be done with a block.
+/// How a block is checked.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Check {
     /// Its commands run.
@@ -24,10 +24,10 @@ pub struct Block {
     pub line: usize,
     /// Its commands, as a shell script.
     pub commands: String,
-    /// What the commands print, line by line, if the block shows it (`console`): without omissions, and without sizes of
+    /// Output of the commands, line by line, if the block shows it (`console`): without omissions, and without sizes of
     /// files, which depend on the names of folders.
     pub output: Vec<String>,
-    /// What is to be done with it.
+    /// How it is checked.
     pub check: Check,
 }
 

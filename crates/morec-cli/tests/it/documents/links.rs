@@ -68,7 +68,7 @@ fn anchor(heading: &str) -> String {
         .collect()
 }
 
-/// What is wrong with a link of the document `from`, if anything is.
+/// The fault of a link of the document `from`; `None` if it is right.
 fn fault(from: &Path, target: &str) -> Option<String> {
     if target.contains("://") {
         return None;

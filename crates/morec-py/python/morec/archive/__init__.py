@@ -135,7 +135,7 @@ def recognize(
     roles: Expression | None = None,
     rest_frames: Expression | None = None,
 ) -> Expression:
-    """What an index recognises in a column of motion, as a list of events: an ordinary Daft expression.
+    """Detections of an index in a column of motion, as a list of events: an ordinary Daft expression.
 
     Parameters
     ----------

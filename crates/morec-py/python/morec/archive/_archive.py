@@ -59,7 +59,7 @@ class Archive:
         return frame.where(col("error").is_null()).exclude("error")
 
     def clips(self) -> DataFrame:
-        """What is known of each clip, without its motion.
+        """Facts about each clip, without its motion.
 
         ``clip`` is its key in all tables: the same for the same content. docs/formats/archive.md lists the columns.
         """
@@ -214,7 +214,7 @@ class Archive:
     # Asking
 
     def recognize(self, index: Index | str | os.PathLike[str], *, parts: int = 1) -> DataFrame:
-        """What an index recognises in every clip.
+        """Detections of an index in every clip.
 
         Parameters
         ----------

@@ -76,7 +76,7 @@ def clip_number(clip: str) -> int:
 
 
 def clip_key(file_hash: bytes, character: int) -> str:
-    """What a clip is called in every table: the same for the same content, wherever it lies."""
+    """Identifier of a clip in every table: the same for the same content, wherever it lies."""
     return hashlib.sha256(file_hash + character.to_bytes(8, "little")).hexdigest()[:16]
 
 

@@ -53,7 +53,7 @@ class Store:
         return IOConfig(s3=S3Config(use_ssl=not endpoint.startswith("http://"), num_tries=10, **known))
 
     def url(self, name: str) -> str:
-        """What Daft calls a file of the store."""
+        """Address of a file of the store for Daft."""
         return f"s3://{self.root}/{name}" if self.is_s3 else os.path.join(self.root, name)
 
     def _fs(self) -> pafs.FileSystem:

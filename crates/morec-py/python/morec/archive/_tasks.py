@@ -1,4 +1,4 @@
-"""What workers do with rows of clips, as Daft expressions."""
+"""Work on rows of clips, as Daft expressions."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ NEAR = DataType.list(DataType.struct({"clip": DataType.int64(), "distance": Data
 
 @dataclass(frozen=True)
 class Example:
-    """What is searched for: a stretch of a clip of the archive, or of one from elsewhere."""
+    """The example of a search: a stretch of a clip of the archive, or of one from elsewhere."""
 
     start: float
     stop: float | None

@@ -1,4 +1,4 @@
-//! What position channels mean: a place of their own, or a step from OFFSET.
+//! Meaning of position channels: they replace OFFSET, or are added to it.
 
 use std::fmt;
 

@@ -358,7 +358,7 @@ fn cut_or_altered_files_never_panic() {
 }
 
 proptest! {
-    /// What is written is read again, gaps and all.
+    /// Reading a written file gives the clip that was written, with its gaps.
     #[test]
     fn written_files_are_read_again(points in 1usize..300, frames in 1usize..40, hole in 0usize..40) {
         let track = |p: usize| -> Vec<Vec3> {

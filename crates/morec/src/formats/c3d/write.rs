@@ -16,7 +16,7 @@ const LABEL: usize = 32;
 /// name that C3D files use, and become millimetres otherwise. Gaps become points that were not seen.
 ///
 /// # Errors
-/// What `out` fails with.
+/// An I/O error of `out`.
 pub fn write(clip: &Clip, out: &mut dyn Write) -> io::Result<()> {
     let made;
     let clip = if clip.has_rotations() {

@@ -18,7 +18,7 @@ const LINES: u32 = 1;
 /// imported clip has them so. O(frames × joints) memory.
 ///
 /// # Errors
-/// What `out` fails with; a clip too large for the format (4 GiB, 65,535 joints).
+/// An I/O error of `out`; a clip too large for the format (4 GiB, 65,535 joints).
 pub fn write(clip: &Clip, out: &mut dyn Write) -> io::Result<()> {
     let rest = vec![Quat::identity(); clip.skeleton.len()];
     Glb::of(clip, &rest)?
@@ -31,7 +31,7 @@ pub fn write(clip: &Clip, out: &mut dyn Write) -> io::Result<()> {
 /// Y-up. O(frames × joints) memory.
 ///
 /// # Errors
-/// What `out` fails with; a clip without rotations, or one in which a bone is missing that the format asks for.
+/// An I/O error of `out`; a clip without rotations, or one in which a bone is missing that the format asks for.
 pub fn write_vrma(clip: &Clip, roles: &RoleMap, out: &mut dyn Write) -> io::Result<()> {
     let refused = |what: String| io::Error::new(io::ErrorKind::InvalidInput, what);
     if !clip.has_rotations() {

@@ -115,7 +115,7 @@ impl Function {
     }
 }
 
-/// What is said of splines whose ends or smoothing differ from those of this reader.
+/// Warns if a joint is moved by a smoothing spline, which is read as an interpolating one.
 pub(super) fn warn_of_smoothing(model: Node<'_, '_>, warnings: &mut Vec<Warning>) {
     let other = model
         .descendants()

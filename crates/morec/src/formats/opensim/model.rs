@@ -336,7 +336,7 @@ fn coordinate_nodes<'a, 'input>(joint: Node<'a, 'input>) -> impl Iterator<Item =
         .flat_map(|list| list.children().filter(|n| is(*n, "Coordinate")))
 }
 
-/// What a joint turns about and slides along.
+/// The axes about which a joint turns, and those along which it slides.
 fn axes(
     joint: Node<'_, '_>,
     numbers_of: &HashMap<String, usize>,

@@ -1,4 +1,4 @@
-//! What the header of a table says, and the rows and frames it is about.
+//! Layout of a table from its header, and its rows and frames.
 
 use crate::formats::points::Point;
 

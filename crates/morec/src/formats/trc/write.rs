@@ -9,7 +9,7 @@ use crate::clip::Clip;
 /// name that TRC files use, and become millimetres otherwise. Gaps become blank cells.
 ///
 /// # Errors
-/// What `out` fails with.
+/// An I/O error of `out`.
 pub fn write(clip: &Clip, out: &mut dyn Write) -> io::Result<()> {
     let made;
     let clip = if clip.has_rotations() {

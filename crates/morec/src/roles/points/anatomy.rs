@@ -6,7 +6,7 @@
 
 use super::set::{LEAST_ROLES, PointSet, Recognised};
 
-/// What stands for a place on the bone, and how it is spelt, without its side.
+/// Abbreviation of each bony landmark, and its spellings, without the side.
 const SPELLINGS: [(&str, &[&str]); 18] = [
     (
         "asi",

@@ -5,7 +5,7 @@ use crate::roles::Role;
 
 /// A set of points that somebody published.
 pub(super) struct PointSet {
-    /// What it is called in reports.
+    /// Its name in reports.
     pub(super) name: &'static str,
     /// Its points, blanks between them; `?` stands for `l` and `r`. In the order of their numbers, where points without
     /// names are numbered.
@@ -20,7 +20,7 @@ pub(super) struct PointSet {
     pub(super) more_roles: &'static [(&'static str, &'static str)],
 }
 
-/// What was recognised.
+/// A known set of points that a clip's points belong to, and the roles in it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recognised {
     /// The set's name.

@@ -34,7 +34,7 @@ pub enum TreeError {
     Node {
         /// Its number.
         node: usize,
-        /// What is wrong with it.
+        /// The fault, as the end of a sentence.
         what: &'static str,
     },
 }

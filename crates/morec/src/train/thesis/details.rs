@@ -1,4 +1,4 @@
-//! What training by the thesis's method tells beyond the report of every method.
+//! Training results that only the thesis's method has.
 
 use serde::Serialize;
 

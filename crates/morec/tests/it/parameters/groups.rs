@@ -138,7 +138,7 @@ fn svrdm() -> Vec<Group> {
     ]
 }
 
-/// What no index holds: cuts, cycles, rests, groups, compression.
+/// Parameters that no index holds: cuts, cycles, rests, groups, compression.
 fn offline() -> Vec<Group> {
     macro_rules! group {
         ($intro:expr, $source:literal, $name:literal, $prefix:literal, $params:expr) => {

@@ -13,13 +13,13 @@ use notes::NOTES;
 
 /// A struct of parameters with the values of its fields.
 pub struct Group {
-    /// What stands above its table.
+    /// The text above its table.
     pub intro: &'static str,
     /// The source file of the struct.
     pub source: &'static str,
     /// The name of the struct.
     pub name: &'static str,
-    /// What stands before a field's name in its path.
+    /// The beginning of its fields' paths.
     pub prefix: &'static str,
     /// Sets of values, each with the title of its column. Where a later set equals the first, its cell is empty.
     pub values: Vec<(&'static str, Fields)>,
