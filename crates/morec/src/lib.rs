@@ -158,13 +158,9 @@ pub mod index;
 #[cfg(feature = "live")]
 pub mod live;
 #[cfg(feature = "live")]
-pub mod pca;
-#[cfg(feature = "live")]
-pub mod pivots;
-#[cfg(feature = "live")]
-pub mod svrdm;
-#[cfg(feature = "live")]
 pub mod templates;
+#[cfg(feature = "live")]
+mod thesis;
 
 #[cfg(feature = "train")]
 pub mod cluster;
@@ -191,8 +187,6 @@ pub mod player;
 pub mod plot;
 #[cfg(feature = "report")]
 pub mod report;
-#[cfg(feature = "report")]
-pub mod reproduce;
 
 #[cfg(test)]
 #[path = "../tests/testing/mod.rs"]
@@ -213,5 +207,9 @@ pub use labels::Labels;
 #[cfg(feature = "live")]
 pub use live::{Detection, Event, Recognizer, Session};
 pub use parse_error::{ParseError, Place, Warning};
+#[cfg(feature = "report")]
+pub use thesis::reproduce;
+#[cfg(feature = "live")]
+pub use thesis::{pca, pivots, svrdm};
 #[cfg(feature = "train")]
 pub use train::{Trainer, TrainingReport};

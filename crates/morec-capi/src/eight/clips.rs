@@ -5,7 +5,6 @@ use std::path::Path;
 use morec::files;
 use morec::import::Take;
 use morec::index::MotionIndex;
-use morec::live::Model;
 use morec::pivots::NoPivots;
 
 use crate::status::{CallError, MorecStatus};
@@ -27,7 +26,7 @@ pub(super) fn load(path: &Path, index: &MotionIndex) -> Result<Take, CallError> 
     let takes = takes.map_err(|error| file_error(&error.path, error.kind))?;
     let take = takes.into_iter().find(|take| take.clip.frames > 0);
     let mut take = take.ok_or_else(|| file_error(path, "no frame of motion in it"))?;
-    if matches!(index.model, Model::Svrdm(_)) && !take.clip.has_rotations() {
+    if index.model.needs_rotations() && !take.clip.has_rotations() {
         return Err(file_error(path, NoPivots::Rotations));
     }
     index.complete_roles(&mut take.roles, &take.clip.skeleton);

@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 
 use crate::features::Rows;
-use crate::pca::Eigen;
+use crate::thesis::pca::Eigen;
 
 /// Scaling of `kWAS`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]

@@ -5,8 +5,9 @@ use std::sync::Arc;
 use crate::classes::{ClassId, ClassInfo};
 use crate::features::{ALL_BONES, BoneSet};
 use crate::roles::Role;
-use crate::svrdm::SvrdmModel;
 use crate::templates::TemplateModel;
+use crate::thesis::pivots::PivotSet;
+use crate::thesis::svrdm::SvrdmModel;
 
 /// A trained model of any method. Cheap to copy: the tables are shared.
 #[derive(Debug, Clone, PartialEq)]
@@ -78,7 +79,15 @@ impl Model {
 
     /// True if poses must say how joints are turned; where they are is enough otherwise.
     pub fn needs_rotations(&self) -> bool {
-        matches!(self, Model::Svrdm(_))
+        self.pivots().is_some()
+    }
+
+    /// The joints whose rotations recognition needs; `None` where positions are enough.
+    pub(crate) fn pivots(&self) -> Option<&PivotSet> {
+        match self {
+            Model::Templates(_) => None,
+            Model::Svrdm(model) => Some(&model.pivots),
+        }
     }
 }
 

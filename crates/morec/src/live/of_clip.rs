@@ -7,8 +7,8 @@ use std::time::Duration;
 use crate::clip::{Clip, Span};
 use crate::features::{BoneSet, KeyPose, bones_of_clip};
 use crate::kinematics::for_each_world_pose;
-use crate::pivots::NoPivots;
 use crate::roles::RoleMap;
+use crate::thesis::pivots::NoPivots;
 
 use super::{
     Detection, Event, EventReader, Frame, Model, PerformerId, Phase, PoseExtractor, Recognizer,
@@ -72,7 +72,7 @@ pub fn recognize_poses<M: Clone + Into<Model>>(
 
 /// A reader of the poses of `clip` for `model`; an error if that asks for rotations and the clip has none.
 fn reader(model: &Model, clip: &Clip, roles: &RoleMap) -> Result<PoseExtractor, StartError> {
-    if matches!(model, Model::Svrdm(_)) && !clip.has_rotations() {
+    if model.needs_rotations() && !clip.has_rotations() {
         return Err(NoPivots::Rotations.into());
     }
     PoseExtractor::new(model, &clip.skeleton, roles)

@@ -3,8 +3,8 @@
 use crate::clip::Skeleton;
 use crate::features::KeyPose;
 use crate::kinematics::WorldPose;
-use crate::pivots::{PivotMap, PivotPose};
 use crate::roles::RoleMap;
+use crate::thesis::pivots::{PivotMap, PivotPose};
 
 use super::{Model, StartError};
 
@@ -40,14 +40,12 @@ impl PoseExtractor {
     /// # Errors
     /// A pivot that the model cannot do without has no joint.
     pub fn new(model: &Model, skeleton: &Skeleton, roles: &RoleMap) -> Result<Self, StartError> {
-        let pivots = match model {
-            Model::Templates(_) => None,
-            Model::Svrdm(model) => Some(PivotMap::resolve(&model.pivots, skeleton, roles)?),
-        };
+        let pivots = model.pivots();
+        let pivots = pivots.map(|set| PivotMap::resolve(set, skeleton, roles));
         let (key, pivot) = (KeyPose::default(), PivotPose::default());
         Ok(Self {
             roles: roles.clone(),
-            pivots,
+            pivots: pivots.transpose()?,
             joints: skeleton.len(),
             key,
             pivot,

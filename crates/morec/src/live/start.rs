@@ -1,7 +1,7 @@
 //! Why a stream cannot be recognised.
 
-use crate::pivots::NoPivots;
 use crate::templates::TemplateModelError;
+use crate::thesis::pivots::NoPivots;
 
 /// Why a stream cannot be recognised with a model.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -11,7 +11,7 @@ pub enum StartError {
     Templates(#[from] TemplateModelError),
     /// The model's parts do not fit together.
     #[error(transparent)]
-    Svrdm(#[from] crate::svrdm::ModelError),
+    Svrdm(#[from] crate::thesis::svrdm::ModelError),
     /// The skeleton lacks the pivot that all others hang from, or its rotations are not known.
     #[error(transparent)]
     Pivots(#[from] NoPivots),

@@ -3,7 +3,7 @@
 use crate::classes::ClassInfo;
 
 /// Notes about classes with few samples.
-pub(super) fn class_notes(classes: &[ClassInfo]) -> Vec<String> {
+pub(crate) fn class_notes(classes: &[ClassInfo]) -> Vec<String> {
     let note = |class: &ClassInfo| match class.samples {
         0 => Some(format!(
             "{}: no sample, it will never be recognised",

@@ -53,7 +53,7 @@ pub enum TrainError {
     Params(String),
     /// Parts came out unusable.
     #[error(transparent)]
-    Svrdm(#[from] crate::svrdm::ModelError),
+    Svrdm(#[from] crate::thesis::svrdm::ModelError),
     /// Parts came out unusable.
     #[error(transparent)]
     Model(#[from] TemplateModelError),

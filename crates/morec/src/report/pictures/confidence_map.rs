@@ -2,7 +2,7 @@
 
 use crate::classes::ClassInfo;
 use crate::plot::HeatMap;
-use crate::svrdm::{ConfidenceMap, SvrdmParams};
+use crate::thesis::svrdm::{ConfidenceMap, SvrdmParams};
 
 impl ConfidenceMap {
     /// The map as a picture: start across, length upwards (Fig. 4.3 has the end there; the map is a narrow band

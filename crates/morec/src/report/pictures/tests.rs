@@ -1,9 +1,9 @@
 use super::{branch_picture, tree_picture};
 use crate::classes::ClassId;
 use crate::rng::Rng;
-use crate::svrdm::Node;
-use crate::train::svrdm::tests::cloud;
-use crate::train::svrdm::{FeatureSample, SigmaRule, TreeParams, grow};
+use crate::thesis::svrdm::Node;
+use crate::thesis::train_tree::tests::cloud;
+use crate::thesis::train_tree::{FeatureSample, SigmaRule, TreeParams, grow};
 
 #[test]
 fn pictures_show_every_class_by_name_and_where_machines_accept() {

@@ -86,34 +86,34 @@ fn svrdm() -> Vec<Group> {
             "## The method of 2009 (`--method svrdm`)\n\n`--svrdm tuned` is the default, `--svrdm faithful` has the \
              values of the thesis. Where the column \"tuned\" is empty, both are the same. The tuned values were chosen \
              on half splits of the referee clips (10 classes, seeds 1 to 6).\n\n### Training (`SvrdmTrainParams`)",
-            "../../../src/train/thesis/options.rs",
+            "../../../src/thesis/train/options.rs",
             "SvrdmTrainParams",
             ""
         ),
         group!(
             "### Pose rows (`PoseParams`)",
-            "../../../src/pivots/params.rs",
+            "../../../src/thesis/pivots/params.rs",
             "PoseParams",
             "pose.",
             pose
         ),
         group!(
             "### Live stages (`SvrdmParams`)",
-            "../../../src/svrdm/params.rs",
+            "../../../src/thesis/svrdm/params.rs",
             "SvrdmParams",
             "stages.",
             stages
         ),
         group!(
             "### The tree (`TreeParams`)",
-            "../../../src/train/svrdm/params.rs",
+            "../../../src/thesis/train_tree/params.rs",
             "TreeParams",
             "tree.",
             tree
         ),
         group!(
             "### Machines (`MachineParams`)",
-            "../../../src/train/svrdm/svrm.rs",
+            "../../../src/thesis/train_tree/svrm.rs",
             "MachineParams",
             "tree.machine.",
             tree,
@@ -121,7 +121,7 @@ fn svrdm() -> Vec<Group> {
         ),
         group!(
             "### Algorithm 4 (`Algorithm4`)",
-            "../../../src/train/svrdm/sigma.rs",
+            "../../../src/thesis/train_tree/sigma.rs",
             "Algorithm4",
             "tree.algorithm4.",
             tree,
@@ -129,7 +129,7 @@ fn svrdm() -> Vec<Group> {
         ),
         group!(
             "### Partition of classes (`PartitionParams`)",
-            "../../../src/train/svrdm/partition.rs",
+            "../../../src/thesis/train_tree/partition.rs",
             "PartitionParams",
             "tree.partition.",
             tree,

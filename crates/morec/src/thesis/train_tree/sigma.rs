@@ -232,7 +232,7 @@ fn mean_radius(vectors: &[&[f64]]) -> f64 {
             .zip(*vector)
             .for_each(|(c, v)| *c += v / count);
     }
-    let far = |v: &&[f64]| crate::svrdm::kernel::squared_distance(v, &centroid).sqrt();
+    let far = |v: &&[f64]| crate::thesis::svrdm::kernel::squared_distance(v, &centroid).sqrt();
     vectors.iter().map(far).sum::<f64>() / count
 }
 

@@ -1,8 +1,8 @@
 //! A trained recogniser of the thesis's kind: what an index file holds for this method.
 
 use crate::classes::{ClassId, ClassInfo};
-use crate::pca::Pca;
-use crate::pivots::{PivotSet, PoseParams};
+use crate::thesis::pca::Pca;
+use crate::thesis::pivots::{PivotSet, PoseParams};
 
 use super::MAX_DIM;
 use super::{MAX_PROFILE_FRAMES, Node, SvrdmParams, Tree};

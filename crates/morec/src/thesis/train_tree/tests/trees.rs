@@ -1,8 +1,8 @@
 use super::super::*;
 use super::cloud;
 use crate::classes::ClassId;
-use crate::svrdm::{ClassCandidates, Descent, Tree};
 use crate::synth::Rng;
+use crate::thesis::svrdm::{ClassCandidates, Descent, Tree};
 
 /// Three people's samples of classes in clouds of their own, people a little apart.
 fn samples(classes: u16, each: usize, dim: usize) -> Vec<FeatureSample> {

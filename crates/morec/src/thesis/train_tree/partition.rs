@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
 use crate::rng::Rng;
-use crate::svrdm::kernel::Gaussian;
+use crate::thesis::svrdm::kernel::Gaussian;
 
 use super::gram::Distances;
 use super::svrm::{MachineParams, svrm};

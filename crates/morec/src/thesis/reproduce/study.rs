@@ -9,9 +9,9 @@ use crate::eval::EvalError;
 use crate::features::Rows;
 use crate::index::IndexError;
 use crate::labels::Sample;
-use crate::pivots::{NoPivots, PivotMap, PivotSet, PoseParams, pose_rows_of_clip};
 use crate::segment::SegmentError;
-use crate::train::thesis::{SvrdmOptions, SvrdmTrainParams};
+use crate::thesis::pivots::{NoPivots, PivotMap, PivotSet, PoseParams, pose_rows_of_clip};
+use crate::thesis::train::{SvrdmOptions, SvrdmTrainParams};
 use crate::train::{TrainClip, TrainError};
 
 /// Data of the study.

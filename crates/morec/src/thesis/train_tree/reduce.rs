@@ -1,6 +1,6 @@
 //! The plane of two centroids in feature space.
 
-use crate::svrdm::kernel::Gaussian;
+use crate::thesis::svrdm::kernel::Gaussian;
 
 /// Lower triangular `L`, as `L₁₁`, `L₂₁`, `L₂₂`, with `L Lᵀ = CᵀC` for the centroids of two sets of exemplars
 /// (Eq. 3.39, as corrected in the lower right). Where the centroids all but coincide, `L₂₂` is kept just above 0.

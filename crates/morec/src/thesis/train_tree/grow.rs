@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use serde::Serialize;
 
 use crate::classes::ClassId;
-use crate::svrdm::tree::{Branch, Node, Tree, TreeError, TreeParts};
+use crate::thesis::svrdm::tree::{Branch, Node, Tree, TreeError, TreeParts};
 
 use super::branch::{Space, TrainedBranch, one_width, train};
 use super::cross::WidthOutcome;

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use crate::pca::QualityRow;
-use crate::train::svrdm::BranchReport;
+use crate::thesis::pca::QualityRow;
+use crate::thesis::train_tree::BranchReport;
 
 use super::thresholds::Estimated;
 

@@ -1,5 +1,5 @@
 //! From clips and labels to a model of the thesis's kind: pose rows, principal components, feature vectors, the tree
-//! ([`train::svrdm`](super::svrdm)), profiles, and the thresholds of recognition.
+//! ([`train::svrdm`](crate::train::svrdm)), profiles, and the thresholds of recognition.
 
 mod details;
 mod fit;
@@ -14,11 +14,8 @@ pub use options::{Pivots, SvrdmOptions, SvrdmTrainParams, ThresholdRule};
 pub use thresholds::Estimated;
 
 use crate::progress::Progress;
-use crate::svrdm::SvrdmModel;
-
-use super::from_clips::{LabelSet, TrainClip};
-use super::report::TrainingReport;
-use super::templates::TrainError;
+use crate::thesis::svrdm::SvrdmModel;
+use crate::train::{LabelSet, TrainClip, TrainError, TrainingReport};
 
 /// Trains the thesis's recogniser on labelled and background clips (§4.2 to §4.5).
 ///

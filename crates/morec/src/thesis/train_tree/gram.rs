@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::svrdm::kernel::{Gaussian, squared_distance};
+use crate::thesis::svrdm::kernel::{Gaussian, squared_distance};
 
 /// Squared distances between `m` vectors, `m × m`, symmetric: computed once, used for every width of the kernel.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::pca::ComponentCount;
-use crate::pivots::{PivotSet, PoseParams};
-use crate::svrdm::{Centring, Descent, Scaling, SegmentDistance, SvrdmParams};
-use crate::train::svrdm::{SigmaRule, SignRule, TreeParams};
+use crate::thesis::pca::ComponentCount;
+use crate::thesis::pivots::{PivotSet, PoseParams};
+use crate::thesis::svrdm::{Centring, Descent, Scaling, SegmentDistance, SvrdmParams};
+use crate::thesis::train_tree::{SigmaRule, SignRule, TreeParams};
 
 /// Origin of the thresholds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

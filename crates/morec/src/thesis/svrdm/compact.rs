@@ -1,6 +1,6 @@
 //! A model in the precision of its file, so that what was trained is what will be read.
 
-use crate::pca::Pca;
+use crate::thesis::pca::Pca;
 
 use super::tree::{Node, Tree};
 use super::{ModelError, SegmentDistance, SvrdmModel};

@@ -8,10 +8,10 @@ use crate::crossval::{CrossvalData, FoldBy, crossval};
 use crate::eval::{Evaluation, Timeline, timelines};
 use crate::live::Model;
 use crate::plot::{Bar, LaneChart};
-use crate::svrdm::{ConfidenceMap, SvrdmEngine, SvrdmModel};
+use crate::thesis::svrdm::{ConfidenceMap, SvrdmEngine, SvrdmModel};
 use crate::train::StreamKind;
 
-use crate::train::thesis::SvrdmOptions;
+use crate::thesis::train::SvrdmOptions;
 
 use super::study::{Picture, ReproduceError, Setting, Study, rows_of};
 

@@ -5,7 +5,7 @@ use serde::Deserialize;
 
 use super::super::*;
 use crate::classes::ClassId;
-use crate::svrdm::{ClassCandidates, Descent, Node};
+use crate::thesis::svrdm::{ClassCandidates, Descent, Node};
 
 type Rows = Vec<Vec<f64>>;
 

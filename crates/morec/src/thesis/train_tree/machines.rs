@@ -1,6 +1,6 @@
 //! The plane of two sides, and the machines in it (thesis, Alg. 8).
 
-use crate::svrdm::tree::{outputs_at, reduce};
+use crate::thesis::svrdm::tree::{outputs_at, reduce};
 
 use super::gram::Distances;
 use super::reduce::centroid_factor;

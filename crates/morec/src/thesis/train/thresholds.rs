@@ -10,9 +10,8 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::progress::Progress;
-use crate::svrdm::{FrameDetection, SampleClassifier, SvrdmEngine, SvrdmModel};
-use crate::train::TrainError;
-use crate::train::set::overlap_share;
+use crate::thesis::svrdm::{FrameDetection, SampleClassifier, SvrdmEngine, SvrdmModel};
+use crate::train::{TrainError, overlap_share};
 
 use super::fit::fit;
 use super::material::{Background, ThesisTrainingData};

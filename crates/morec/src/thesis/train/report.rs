@@ -2,9 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::svrdm::SvrdmModel;
-use crate::train::TrainingReport;
-use crate::train::notes::class_notes;
+use crate::thesis::svrdm::SvrdmModel;
+use crate::train::{TrainingReport, class_notes};
 
 use super::details::SvrdmReport;
 use super::fit::Fitted;
