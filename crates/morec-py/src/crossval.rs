@@ -1,13 +1,11 @@
 //! `morec.Crossval`: how good an index would be on what it has not seen.
 
-use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use morec::crossval::{CrossvalData, CrossvalOptions, FoldBy, Tested, crossval as run_crossval};
 use morec::eval::{
     ClipDetection, Evaluation, GroundTruth, MEASURED_OVERLAP, StreamInfo, timelines,
 };
-use morec::labels::Sample;
 use morec::perturb::Perturbation;
 use morec::report::{Report, TrainedClass};
 use pyo3::prelude::*;
@@ -64,7 +62,7 @@ pub fn crossval(
         perturbed: perturbed.collect::<PyResult<_>>()?,
         sensitivities: rates.collect::<PyResult<_>>()?,
         folds: serde_json::to_value(&outcome.folds).map_err(morec_error)?,
-        training: trained_classes(&given.data.samples, &given.data.classes),
+        training: TrainedClass::count(&given.data.samples, &given.data.classes),
         tested: outcome.tested,
         by,
     })
@@ -98,21 +96,6 @@ fn options(how: &Bound<'_, PyDict>) -> PyResult<(CrossvalOptions, String)> {
             .map_err(|error| value_error(format!("perturb: {error}")))?,
     };
     Ok((options, by))
-}
-
-/// How many samples and people each class has, for the report's notes.
-fn trained_classes(samples: &[Sample], classes: &[String]) -> Vec<TrainedClass> {
-    let known = samples.iter().any(|s| s.person.is_some());
-    let counted = classes.iter().map(|class| {
-        let of_class: Vec<&Sample> = samples.iter().filter(|s| s.class == *class).collect();
-        let people: BTreeSet<&String> = of_class.iter().filter_map(|s| s.person.as_ref()).collect();
-        TrainedClass {
-            class: class.clone(),
-            samples: of_class.len(),
-            people: known.then_some(people.len()),
-        }
-    });
-    counted.collect()
 }
 
 #[pymethods]

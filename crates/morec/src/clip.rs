@@ -63,6 +63,11 @@ impl Skeleton {
         &self.joints
     }
 
+    /// Names of the joints, parents first.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.joints.iter().map(|joint| joint.name.as_str())
+    }
+
     /// Number of joints.
     pub fn len(&self) -> usize {
         self.joints.len()

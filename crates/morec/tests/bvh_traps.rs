@@ -68,11 +68,7 @@ fn turn(angles: &[(Axis, f64)]) -> Quat {
 }
 
 fn names(clip: &Clip) -> Vec<&str> {
-    clip.skeleton
-        .joints()
-        .iter()
-        .map(|j| j.name.as_str())
-        .collect()
+    clip.skeleton.names().collect()
 }
 
 #[test]

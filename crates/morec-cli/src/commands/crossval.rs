@@ -1,6 +1,5 @@
 //! `morec crossval`: how good would an index be on what it has not seen.
 
-use std::collections::BTreeSet;
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -10,7 +9,6 @@ use morec::crossval::Tested;
 use morec::crossval::{CrossvalData, CrossvalOptions, CrossvalOutcome, FoldBy, Tests, crossval};
 use morec::eval::{Evaluation, MEASURED_OVERLAP, timelines};
 use morec::explain::Miss;
-use morec::labels::Sample;
 use morec::perturb::Perturbation;
 use morec::report::{Report, TrainedClass};
 use morec::templates::ALARM_RATES;
@@ -146,7 +144,7 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             about: &about,
             evaluation: &evaluation,
             timelines: &timelines,
-            training: &trained_classes(&material.data.samples, &material.data.classes),
+            training: &TrainedClass::count(&material.data.samples, &material.data.classes),
             misses: &tested.misses,
             sensitivities: &sensitivities,
             perturbed: &perturbed,
@@ -322,19 +320,4 @@ fn write_folds(out: &mut impl Write, outcome: &CrossvalOutcome) -> std::io::Resu
         }
     }
     Ok(())
-}
-
-/// Number of samples and people of each class, for the report's notes.
-pub fn trained_classes(samples: &[Sample], classes: &[String]) -> Vec<TrainedClass> {
-    let known = samples.iter().any(|s| s.person.is_some());
-    let counted = classes.iter().map(|class| {
-        let of_class: Vec<&Sample> = samples.iter().filter(|s| s.class == *class).collect();
-        let people: BTreeSet<&String> = of_class.iter().filter_map(|s| s.person.as_ref()).collect();
-        TrainedClass {
-            class: class.clone(),
-            samples: of_class.len(),
-            people: known.then_some(people.len()),
-        }
-    });
-    counted.collect()
 }

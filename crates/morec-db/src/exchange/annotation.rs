@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use morec::formats::{ParseError, Place, Warning};
 use morec::labels::ClipLength;
 
-use crate::labels::SampleState;
+use crate::labels::{DbSample, SampleState};
 
 /// A labelled stretch as files tell of it.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,6 +22,19 @@ pub struct Annotation {
     pub score: Option<f64>,
     /// Its state.
     pub state: SampleState,
+}
+
+impl From<DbSample> for Annotation {
+    fn from(sample: DbSample) -> Self {
+        Self {
+            extent: (!sample.whole_clip).then_some((sample.start_secs, sample.stop_secs)),
+            clip: sample.clip_name,
+            class: sample.class,
+            person: sample.subject,
+            score: sample.score,
+            state: sample.state,
+        }
+    }
 }
 
 /// A form of labels.
@@ -59,6 +72,17 @@ impl LabelFormat {
             LabelFormat::Audacity => "audacity",
             LabelFormat::Babel => "babel",
             LabelFormat::LabelStudio => "label-studio",
+        }
+    }
+
+    /// The ending of its files, by which [`of_file`](Self::of_file) knows it.
+    pub fn ending(self) -> &'static str {
+        match self {
+            LabelFormat::Tsv => "tsv",
+            LabelFormat::Csv => "csv",
+            LabelFormat::Json | LabelFormat::Babel | LabelFormat::LabelStudio => "json",
+            LabelFormat::Eaf => "eaf",
+            LabelFormat::Audacity => "txt",
         }
     }
 

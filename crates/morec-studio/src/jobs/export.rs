@@ -62,17 +62,7 @@ fn labels(db: &MotionDb, form: LabelFormat, path: &Path) -> Result<String, Strin
         ..SampleFilter::default()
     };
     let samples = db.samples(&filter).map_err(|e| e.to_string())?;
-    let annotations: Vec<Annotation> = samples
-        .into_iter()
-        .map(|s| Annotation {
-            extent: (!s.whole_clip).then_some((s.start_secs, s.stop_secs)),
-            clip: s.clip_name,
-            class: s.class,
-            person: s.subject,
-            score: s.score,
-            state: s.state,
-        })
-        .collect();
+    let annotations: Vec<Annotation> = samples.into_iter().map(Annotation::from).collect();
     let clips = db
         .clips(&ClipFilter::default())
         .map_err(|e| e.to_string())?;

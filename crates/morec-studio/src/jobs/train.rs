@@ -8,11 +8,10 @@ use morec::features::BoneSet;
 use morec::index::{MotionIndex, Provenance};
 use morec::labels::Sample;
 use morec::progress::Progress;
-use morec::roles::RoleMap;
-use morec::synth;
 use morec::train::{
     EVERYDAY_SEED, Everyday, LabelSet, Prepared, Recipe, StreamKind, TrainClip, TrainError,
-    TrainOptions, TrainParams, TrainStream, TrainingData, TrainingReport, build_train_set, train,
+    TrainOptions, TrainParams, TrainStream, TrainingData, TrainingReport, build_train_set,
+    everyday_clips, train,
 };
 use morec_db::labels::{SampleFilter, SampleState};
 use morec_db::{ClipFilter, DbError, MotionDb};
@@ -82,18 +81,10 @@ pub fn material(path: &Path, classes: &[String]) -> Result<TrainingData, DbError
 pub fn everyday() -> &'static [TrainClip] {
     static CLIPS: OnceLock<Vec<TrainClip>> = OnceLock::new();
     CLIPS.get_or_init(|| {
-        let clip = |clip: morec::clip::Clip| TrainClip {
-            name: clip.name.clone(),
-            roles: RoleMap::find(&clip.skeleton),
-            rest: 0..0,
-            source: StreamKind::Everyday,
-            person: None,
-            clip,
-        };
-        let clips = synth::everyday(EVERYDAY_SEED).into_iter();
+        let mut clips = everyday_clips(EVERYDAY_SEED);
         // Tests have ten minutes for everything.
-        let most = if cfg!(test) { 12 } else { usize::MAX };
-        clips.map(clip).take(most).collect()
+        clips.truncate(if cfg!(test) { 12 } else { usize::MAX });
+        clips
     })
 }
 

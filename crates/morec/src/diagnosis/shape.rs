@@ -2,7 +2,7 @@
 
 use crate::features::KeyPose;
 use crate::math::Vec3;
-use crate::roles::Role;
+use crate::roles::{ARMS, LEGS, Role};
 
 use super::figures::SideEvidence;
 
@@ -78,15 +78,6 @@ impl Leg {
         self.knee - self.hip - line * along
     }
 }
-
-const LEGS: [[Role; 3]; 2] = [
-    [Role::LeftThigh, Role::LeftShin, Role::LeftFoot],
-    [Role::RightThigh, Role::RightShin, Role::RightFoot],
-];
-const ARMS: [[Role; 3]; 2] = [
-    [Role::LeftArm, Role::LeftForearm, Role::LeftHand],
-    [Role::RightArm, Role::RightForearm, Role::RightHand],
-];
 
 impl BodyShape {
     pub(super) fn push(&mut self, pose: &KeyPose) {

@@ -2,7 +2,6 @@
 
 use crate::clip::{Clip, Span};
 use crate::import::Take;
-use crate::labels::Sample;
 use crate::live::{Model, recognize_clip};
 use crate::roles::RoleMap;
 use crate::synth::{DatabaseSpec, SyntheticTake, database};
@@ -50,15 +49,7 @@ fn trained(takes: &[SyntheticTake], change: impl Fn(&mut TrainOptions)) -> Model
             source: StreamKind::Labelled,
             person: Some(take.person.clone()),
         });
-        samples.extend(take.labels.iter().map(|label| Sample {
-            clip: take.clip.name.clone(),
-            class: label.class.to_owned(),
-            start_secs: label.start_secs,
-            stop_secs: label.stop_secs,
-            whole_clip: false,
-            person: Some(take.person.clone()),
-            line: 0,
-        }));
+        samples.extend(take.samples());
     }
     let labelling = LabelSet {
         samples: &samples,

@@ -1,5 +1,7 @@
 //! The rate of keys that stand anywhere in time.
 
+use super::{Place, Warning};
+
 /// Rates that producers write, the usual first.
 const USUAL_HZ: [f64; 22] = [
     30.0,
@@ -41,6 +43,19 @@ pub(super) struct KeyGrid {
     pub(super) frames: usize,
     /// True if the keys lie on the grid.
     pub(super) exact: bool,
+}
+
+impl KeyGrid {
+    /// Warns if the keys of clip `name` lie on no grid.
+    pub(super) fn warn_if_uneven(&self, name: &str, warnings: &mut Vec<Warning>) {
+        if !self.exact {
+            let text = format!(
+                "{name}: the keys lie at no steady rate; sampled at {} Hz",
+                self.rate_hz
+            );
+            warnings.push(Warning::new(Place::File, text));
+        }
+    }
 }
 
 /// The grid on which `times` (seconds, in any order) lie: `preferred_hz` if they do, the rate at which they follow each

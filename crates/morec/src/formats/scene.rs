@@ -2,7 +2,7 @@
 
 use super::builder::{ClipBuilder, check_size};
 use super::keys::KeyGrid;
-use super::{Limits, ParseError, Place};
+use super::{Limits, ParseError, Place, Warning};
 use crate::clip::{Clip, Joint};
 use crate::math::{Quat, Vec3};
 use nalgebra::Matrix3;
@@ -340,9 +340,26 @@ pub(super) fn sample(
     builder.finish(clip_name, grid.rate_hz)
 }
 
-/// Skeletons worth reading: those of one or two joints are cameras and props where there is a larger one.
-pub(super) fn worthwhile(rigs: Vec<SceneSkeleton>) -> (Vec<SceneSkeleton>, Vec<SceneSkeleton>) {
+/// Skeletons worth reading: those of one or two joints are cameras and props where there is a larger one. The others are
+/// named in a warning.
+pub(super) fn worthwhile(
+    rigs: Vec<SceneSkeleton>,
+    nodes: &[SceneNode],
+    warnings: &mut Vec<Warning>,
+) -> Vec<SceneSkeleton> {
+    const NAMED: usize = 5;
     let largest = rigs.iter().map(SceneSkeleton::len).max().unwrap_or(0);
-    rigs.into_iter()
-        .partition(|rig| rig.len() > 2 || largest <= 2)
+    let is_worthwhile = |rig: &SceneSkeleton| rig.len() > 2 || largest <= 2;
+    let (rigs, left): (Vec<_>, Vec<_>) = rigs.into_iter().partition(is_worthwhile);
+    if !left.is_empty() {
+        let names = left.iter().take(NAMED);
+        let names: Vec<&str> = names.map(|rig| nodes[rig.root()].name.as_str()).collect();
+        let text = format!(
+            "{} single nodes besides the skeleton are left out: {}",
+            left.len(),
+            names.join(", ")
+        );
+        warnings.push(Warning::new(Place::File, text));
+    }
+    rigs
 }

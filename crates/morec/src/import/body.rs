@@ -4,7 +4,7 @@ use super::signed_axis::SignedAxis;
 use crate::clip::Clip;
 use crate::kinematics::WorldPose;
 use crate::math::Vec3;
-use crate::roles::{Role, RoleMap};
+use crate::roles::{ARMS, LEGS, Role, RoleMap};
 
 /// Frames looked at, evenly spread: bodies do not change within a clip.
 const FRAMES: usize = 200;
@@ -101,15 +101,6 @@ fn extent(clip: &Clip, map: &RoleMap, pose: &WorldPose, tops: &[Role]) -> Option
 fn distance(map: &RoleMap, pose: &WorldPose, a: Role, b: Role) -> Option<f64> {
     Some((pose.positions[map.joint(a)?] - pose.positions[map.joint(b)?]).norm())
 }
-
-const LEGS: [[Role; 3]; 2] = [
-    [Role::LeftThigh, Role::LeftShin, Role::LeftFoot],
-    [Role::RightThigh, Role::RightShin, Role::RightFoot],
-];
-const ARMS: [[Role; 3]; 2] = [
-    [Role::LeftArm, Role::LeftForearm, Role::LeftHand],
-    [Role::RightArm, Role::RightForearm, Role::RightHand],
-];
 
 fn limb_length(map: &RoleMap, pose: &WorldPose, [upper, lower, end]: [Role; 3]) -> Option<f64> {
     Some(distance(map, pose, upper, lower)? + distance(map, pose, lower, end)?)

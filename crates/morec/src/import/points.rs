@@ -17,12 +17,7 @@ pub(super) const UNKNOWN: &str = "no known set of points, so no body is known: s
 
 /// The roles of a clip of points by tables of known sets, and the set's name.
 pub(super) fn find_roles(clip: &mut Clip) -> (RoleMap, Option<&'static str>) {
-    let names: Vec<&str> = clip
-        .skeleton
-        .joints()
-        .iter()
-        .map(|j| j.name.as_str())
-        .collect();
+    let names: Vec<&str> = clip.skeleton.names().collect();
     let step = clip.frames.div_ceil(LOOKED_AT).max(1);
     let poses: Vec<Vec<Vec3>> = (0..clip.frames)
         .step_by(step)
@@ -48,12 +43,7 @@ pub(super) fn apply(
     clip: &mut Clip,
     map: RoleMap,
 ) -> Result<RoleMap, ParseError> {
-    let names: Vec<&str> = clip
-        .skeleton
-        .joints()
-        .iter()
-        .map(|j| j.name.as_str())
-        .collect();
+    let names: Vec<&str> = clip.skeleton.names().collect();
     let places = mapping.places(&names)?;
     Ok(play(clip, map, places))
 }

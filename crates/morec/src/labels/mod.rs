@@ -15,8 +15,6 @@ mod read;
 mod resolve;
 mod table;
 
-use std::collections::BTreeMap;
-
 use crate::clip::Span;
 use crate::formats::Warning;
 
@@ -80,15 +78,6 @@ impl Labels {
             person: None,
             line: self.rows.len() as u64 + 1,
         });
-    }
-
-    /// Number of rows of each class, by class name.
-    pub fn class_counts(&self) -> BTreeMap<&str, usize> {
-        let mut counts = BTreeMap::new();
-        for row in &self.rows {
-            *counts.entry(row.class.as_str()).or_insert(0) += 1;
-        }
-        counts
     }
 
     /// Gives each row without a person the one that `people` names for its clip.

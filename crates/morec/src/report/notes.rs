@@ -1,6 +1,9 @@
 //! Notes in plain words: what the figures say about what to teach next.
 
+use std::collections::BTreeSet;
+
 use crate::eval::{Boundaries, ClassFigures, Evaluation};
+use crate::labels::Sample;
 
 /// Fewer training samples than this are called few.
 const FEW_SAMPLES: usize = 5;
@@ -16,6 +19,24 @@ pub struct TrainedClass {
     pub samples: usize,
     /// Number of people who made them, if known.
     pub people: Option<usize>,
+}
+
+impl TrainedClass {
+    /// Counts the samples of each of `classes`, and their people where any sample names one.
+    pub fn count(samples: &[Sample], classes: &[String]) -> Vec<Self> {
+        let known = samples.iter().any(|s| s.person.is_some());
+        let counted = classes.iter().map(|class| {
+            let of_class: Vec<&Sample> = samples.iter().filter(|s| s.class == *class).collect();
+            let people: BTreeSet<&String> =
+                of_class.iter().filter_map(|s| s.person.as_ref()).collect();
+            Self {
+                class: class.clone(),
+                samples: of_class.len(),
+                people: known.then_some(people.len()),
+            }
+        });
+        counted.collect()
+    }
 }
 
 /// Mistakes and remedies, the most frequent first, a sentence each. Never empty.

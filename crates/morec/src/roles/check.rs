@@ -3,7 +3,7 @@
 use super::meaning::NameMeaning;
 use super::names::read;
 use super::tree::JointTree;
-use super::{Role, RoleMap, proportions};
+use super::{ARMS, LEGS, Role, RoleMap, proportions};
 use crate::clip::Skeleton;
 use crate::math::Vec3;
 
@@ -37,15 +37,6 @@ struct PosedBody<'a> {
     map: &'a RoleMap,
     poses: &'a [Vec<Vec3>],
 }
-
-const LEGS: [[Role; 3]; 2] = [
-    [Role::LeftThigh, Role::LeftShin, Role::LeftFoot],
-    [Role::RightThigh, Role::RightShin, Role::RightFoot],
-];
-const ARMS: [[Role; 3]; 2] = [
-    [Role::LeftArm, Role::LeftForearm, Role::LeftHand],
-    [Role::RightArm, Role::RightForearm, Role::RightHand],
-];
 
 impl PosedBody<'_> {
     fn at(&self, pose: &[Vec3], role: Role) -> Option<Vec3> {

@@ -50,6 +50,17 @@ pub enum Role {
     RightHand,
 }
 
+/// Both legs, left first: thigh, shin, foot.
+pub(crate) const LEGS: [[Role; 3]; 2] = [
+    [Role::LeftThigh, Role::LeftShin, Role::LeftFoot],
+    [Role::RightThigh, Role::RightShin, Role::RightFoot],
+];
+/// Both arms, left first: upper arm, forearm, hand.
+pub(crate) const ARMS: [[Role; 3]; 2] = [
+    [Role::LeftArm, Role::LeftForearm, Role::LeftHand],
+    [Role::RightArm, Role::RightForearm, Role::RightHand],
+];
+
 impl Role {
     /// Number of roles.
     pub const COUNT: usize = 18;

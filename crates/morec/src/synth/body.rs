@@ -266,14 +266,7 @@ fn skeleton(person: &Person, arm: [f64; 2], leg: [f64; 2]) -> Skeleton {
         ),
     ];
     for side in LimbSide::BOTH {
-        let (s, name) = (
-            side.sign(),
-            if side == LimbSide::Left {
-                "Left"
-            } else {
-                "Right"
-            },
-        );
+        let (s, name) = (side.sign(), side.name());
         let at = ARM[side.index()];
         let hand = Vec3::new(s * arm[1], 0.0, 0.0);
         joints.push(joint(
@@ -299,14 +292,7 @@ fn skeleton(person: &Person, arm: [f64; 2], leg: [f64; 2]) -> Skeleton {
         ));
     }
     for side in LimbSide::BOTH {
-        let (s, name) = (
-            side.sign(),
-            if side == LimbSide::Left {
-                "Left"
-            } else {
-                "Right"
-            },
-        );
+        let (s, name) = (side.sign(), side.name());
         let at = LEG[side.index()];
         let toes = Vec3::new(0.0, -0.03 * h, 0.09 * h);
         joints.push(joint(

@@ -37,6 +37,7 @@ pub use script::{Script, UnknownMotion};
 pub use timeline::LimbSide;
 
 use crate::clip::{Clip, Span};
+use crate::labels::Sample;
 
 /// A labelled stretch of a take.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,4 +66,19 @@ pub struct SyntheticTake {
     pub labels: Vec<SyntheticLabel>,
     /// The person.
     pub person: String,
+}
+
+impl SyntheticTake {
+    /// Its labels as samples to train from, of the person who performs.
+    pub fn samples(&self) -> impl Iterator<Item = Sample> {
+        self.labels.iter().map(|label| Sample {
+            clip: self.clip.name.clone(),
+            class: label.class.to_owned(),
+            start_secs: label.start_secs,
+            stop_secs: label.stop_secs,
+            whole_clip: false,
+            person: Some(self.person.clone()),
+            line: 0,
+        })
+    }
 }

@@ -24,6 +24,14 @@ impl LimbSide {
         self as usize
     }
 
+    /// `Left` or `Right`, as names of joints begin.
+    pub fn name(self) -> &'static str {
+        match self {
+            LimbSide::Left => "Left",
+            LimbSide::Right => "Right",
+        }
+    }
+
     /// The other one.
     pub fn other(self) -> LimbSide {
         match self {

@@ -57,7 +57,8 @@ fn adds_everyday(clips: &[TrainClip], everyday: Everyday) -> bool {
     }
 }
 
-fn everyday_clips(seed: u64) -> Vec<TrainClip> {
+/// The clips of [`synth::everyday`] to train from.
+pub fn everyday_clips(seed: u64) -> Vec<TrainClip> {
     let made = synth::everyday(seed).into_iter();
     made.map(|clip| TrainClip {
         name: clip.name.clone(),

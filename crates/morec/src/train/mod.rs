@@ -24,7 +24,7 @@ mod verifier;
 
 pub use crate::thesis::{train as thesis, train_tree as svrdm};
 pub use align::align;
-pub use clips::train_clips;
+pub use clips::{everyday_clips, train_clips};
 pub use data::{DataError, TrainingData};
 pub use from_clips::{LabelSet, Prepared, TrainClip, build_train_set};
 pub use mirror::Mirror;

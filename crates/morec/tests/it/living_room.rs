@@ -7,7 +7,6 @@ use std::collections::BTreeMap;
 
 use morec::eval::{ClipDetection, Evaluation, GroundTruth, StreamInfo};
 use morec::import::Take;
-use morec::labels::Sample;
 use morec::live::{Model, recognize_poses};
 use morec::perturb::{Device, perturb};
 use morec::synth::{DatabaseSpec, SyntheticLabel, database, living_room};
@@ -42,15 +41,7 @@ fn trained() -> Model {
     let (mut clips, mut samples) = (Vec::new(), Vec::new());
     for take in database(3, &spec) {
         let imported = Take::new(take.clip.clone()).unwrap();
-        samples.extend(take.labels.iter().map(|label| Sample {
-            clip: take.clip.name.clone(),
-            class: label.class.to_owned(),
-            start_secs: label.start_secs,
-            stop_secs: label.stop_secs,
-            whole_clip: false,
-            person: Some(take.person.clone()),
-            line: 0,
-        }));
+        samples.extend(take.samples());
         clips.push(TrainClip {
             name: take.clip.name.clone(),
             rest: imported.rest().clone(),

@@ -44,7 +44,7 @@ pub fn model() -> Arc<TemplateModel> {
 /// Trained on what `spec` makes, with some everyday motion as background.
 pub fn train(spec: &DatabaseSpec, params: TrainParams) -> TemplateModel {
     let takes = database(71, spec);
-    let samples: Vec<Sample> = takes.iter().flat_map(samples_of).collect();
+    let samples: Vec<Sample> = takes.iter().flat_map(SyntheticTake::samples).collect();
     let mut clips: Vec<TrainClip> = takes
         .into_iter()
         .map(|t| train_clip(t.clip, Some(t.person), StreamKind::Labelled))
@@ -67,19 +67,6 @@ pub fn train(spec: &DatabaseSpec, params: TrainParams) -> TemplateModel {
         ..TrainOptions::default()
     };
     train_clips(&clips, &labelling, &options, &()).unwrap().0
-}
-
-fn samples_of(take: &SyntheticTake) -> Vec<Sample> {
-    let sample = |l: &morec::synth::SyntheticLabel| Sample {
-        clip: take.clip.name.clone(),
-        class: l.class.to_owned(),
-        start_secs: l.start_secs,
-        stop_secs: l.stop_secs,
-        whole_clip: false,
-        person: Some(take.person.clone()),
-        line: 0,
-    };
-    take.labels.iter().map(sample).collect()
 }
 
 fn train_clip(clip: Clip, person: Option<String>, source: StreamKind) -> TrainClip {

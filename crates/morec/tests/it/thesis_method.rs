@@ -41,17 +41,7 @@ fn clips(takes: &[SyntheticTake]) -> (Vec<TrainClip>, Vec<Sample>) {
         source: StreamKind::Labelled,
         person: Some(take.person.clone()),
     };
-    let samples = takes.iter().flat_map(|take| {
-        take.labels.iter().map(|label| Sample {
-            clip: take.clip.name.clone(),
-            class: label.class.to_owned(),
-            start_secs: label.start_secs,
-            stop_secs: label.stop_secs,
-            whole_clip: false,
-            person: Some(take.person.clone()),
-            line: 0,
-        })
-    });
+    let samples = takes.iter().flat_map(SyntheticTake::samples);
     (takes.iter().map(clip).collect(), samples.collect())
 }
 

@@ -40,14 +40,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     let annotations: Vec<Annotation> = db
         .samples(&filter)?
         .into_iter()
-        .map(|s| Annotation {
-            extent: (!s.whole_clip).then_some((s.start_secs, s.stop_secs)),
-            clip: s.clip_name,
-            class: s.class,
-            person: s.subject,
-            score: s.score,
-            state: args.state,
-        })
+        .map(Annotation::from)
         .collect();
     let shown = args.output.to_string_lossy();
     let form = match args.form {
@@ -102,11 +95,7 @@ fn a_file_a_clip(
         );
     }
     std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
-    let ending = if form == LabelFormat::Eaf {
-        "eaf"
-    } else {
-        "txt"
-    };
+    let ending = form.ending();
     let mut files = 0;
     let of_clips: Vec<&[Annotation]> = annotations.chunk_by(|a, b| a.clip == b.clip).collect();
     let names = exchange::file_names(of_clips.iter().map(|of_clip| of_clip[0].clip.as_str()));

@@ -70,16 +70,8 @@ fn samples(
                 kernel_cuts(&clip.rows, params, &KernelParams::default()).context(name.clone())?
             }
         };
-        let mut start_secs = 0.0;
-        for stop_secs in cuts.into_iter().chain([clip.length.duration_secs()]) {
-            samples.push(GroupedSample {
-                clip: name.clone(),
-                start_secs,
-                stop_secs,
-                class: None,
-            });
-            start_secs = stop_secs;
-        }
+        let end_secs = clip.length.duration_secs();
+        samples.extend(GroupedSample::between(name, cuts, end_secs));
     }
     Ok(samples)
 }

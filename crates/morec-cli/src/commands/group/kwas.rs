@@ -125,17 +125,9 @@ fn cut(reader: &PoseReader<'_>, clips: &BTreeMap<String, PosedClip>) -> Result<V
     for (name, clip) in clips {
         let found =
             segment(&clip.rows, reader.rate_hz(), &PpcaParams::default()).context(name.clone())?;
-        let mut start_secs = 0.0;
         let end_secs = clip.length.duration_secs();
-        for stop_secs in found.cuts.iter().map(|c| c.secs).chain([end_secs]) {
-            samples.push(GroupedSample {
-                clip: name.clone(),
-                start_secs,
-                stop_secs,
-                class: None,
-            });
-            start_secs = stop_secs;
-        }
+        let cuts = found.cuts.iter().map(|cut| cut.secs);
+        samples.extend(GroupedSample::between(name, cuts, end_secs));
     }
     Ok(samples)
 }

@@ -29,6 +29,26 @@ pub struct GroupedSample {
     pub class: Option<String>,
 }
 
+impl GroupedSample {
+    /// The stretches of a clip between its beginning, `cuts_secs` and `end_secs`, without classes.
+    pub fn between(
+        clip: &str,
+        cuts_secs: impl IntoIterator<Item = f64>,
+        end_secs: f64,
+    ) -> impl Iterator<Item = Self> {
+        let mut start_secs = 0.0;
+        cuts_secs
+            .into_iter()
+            .chain([end_secs])
+            .map(move |stop_secs| Self {
+                clip: clip.to_owned(),
+                start_secs: std::mem::replace(&mut start_secs, stop_secs),
+                stop_secs,
+                class: None,
+            })
+    }
+}
+
 /// A stretch to group, with its rows.
 #[derive(Serialize, Clone)]
 pub struct GroupMember {

@@ -42,7 +42,7 @@ fn two_bones(axis: &str, dof: &str) -> Asf {
 #[test]
 fn joints_sit_at_the_far_end_of_their_parent_bone() {
     let skeleton = asf(ARM).skeleton();
-    let names: Vec<_> = skeleton.joints().iter().map(|j| j.name.as_str()).collect();
+    let names: Vec<_> = skeleton.names().collect();
     assert_eq!(names, ["root", "spine", "upper", "lower", "palm"]);
     let offsets: Vec<_> = skeleton.joints().iter().map(|j| j.offset).collect();
     assert_eq!(offsets[1], Vec3::zeros());

@@ -86,20 +86,7 @@ fn read_scene(fbx: &Fbx, bytes: usize, name: &str, limits: &Limits) -> Result<Lo
     let mut nodes = nodes(fbx, limits)?;
     let order = scene::parents_first(&mut nodes, limits)?;
     mark_joints(fbx, &order, &mut nodes);
-    let (rigs, left) = scene::worthwhile(scene::rigs(&nodes, &order));
-    if !left.is_empty() {
-        let names: Vec<&str> = left
-            .iter()
-            .take(5)
-            .map(|rig| nodes[rig.root()].name.as_str())
-            .collect();
-        let text = format!(
-            "{} single nodes besides the skeleton are left out: {}",
-            left.len(),
-            names.join(", ")
-        );
-        warnings.push(Warning::new(Place::File, text));
-    }
+    let rigs = scene::worthwhile(scene::rigs(&nodes, &order), &nodes, &mut warnings);
     let takes = takes(fbx, &rigs, &mut warnings);
     if takes.is_empty() {
         let joints: usize = rigs.iter().map(SceneSkeleton::len).sum();
@@ -363,13 +350,7 @@ fn grid(
         frames: 0,
         exact: true,
     });
-    if !grid.exact {
-        let text = format!(
-            "{clip_name}: the keys lie at no steady rate; sampled at {} Hz",
-            grid.rate_hz
-        );
-        warnings.push(Warning::new(Place::File, text));
-    }
+    grid.warn_if_uneven(clip_name, warnings);
     grid
 }
 

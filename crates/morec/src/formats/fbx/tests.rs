@@ -15,12 +15,7 @@ fn open(bytes: &[u8]) -> Result<Loaded, ParseError> {
 fn rotations_follow_the_pre_rotation() {
     let loaded = open(KNEE.as_bytes()).unwrap();
     let clip = &loaded.clips[0];
-    let names: Vec<&str> = clip
-        .skeleton
-        .joints()
-        .iter()
-        .map(|j| j.name.as_str())
-        .collect();
+    let names: Vec<&str> = clip.skeleton.names().collect();
     assert_eq!(names, ["Hips", "Knee", "Foot"]);
     assert_eq!(
         (clip.frames, clip.rate_hz),

@@ -142,13 +142,7 @@ fn clip(
         frames: 1,
         exact: true,
     });
-    if !grid.exact {
-        let text = format!(
-            "{clip_name}: the keys lie at no steady rate; sampled at {} Hz",
-            grid.rate_hz
-        );
-        warnings.push(Warning::new(Place::File, text));
-    }
+    grid.warn_if_uneven(&clip_name, warnings);
     let sampling = Sampling {
         nodes: &stage.nodes,
         grid,

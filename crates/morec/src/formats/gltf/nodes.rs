@@ -47,20 +47,7 @@ impl GltfScene {
         mark_animated(document, &order, character, &mut nodes);
         let rigs = scene::rigs(&nodes, &order);
         let rigs = one_a_skin(rigs, &skins, warnings);
-        let (rigs, left) = scene::worthwhile(rigs);
-        if !left.is_empty() {
-            let names: Vec<&str> = left
-                .iter()
-                .take(5)
-                .map(|rig| nodes[rig.root()].name.as_str())
-                .collect();
-            let text = format!(
-                "{} single nodes besides the skeleton are left out: {}",
-                left.len(),
-                names.join(", ")
-            );
-            warnings.push(Warning::new(Place::File, text));
-        }
+        let rigs = scene::worthwhile(rigs, &nodes, warnings);
         Ok(Self {
             nodes,
             rigs,

@@ -165,12 +165,7 @@ fn humanoids_have_their_bone_names() {
         let mut json = bent("LINEAR", &mut keys);
         json["extensions"] = extension;
         let clip = open(&keys.file(json)).unwrap().clips.remove(0);
-        let names: Vec<&str> = clip
-            .skeleton
-            .joints()
-            .iter()
-            .map(|j| j.name.as_str())
-            .collect();
+        let names: Vec<&str> = clip.skeleton.names().collect();
         assert_eq!(names, ["hips", "spine", "c"]);
     }
 }

@@ -96,12 +96,7 @@ fn archives_say_names_and_rate() {
         ("fps", npy(&[1], |_| 50.0)),
     ]);
     let clip = open(&bytes).unwrap().clips.remove(0);
-    let found: Vec<&str> = clip
-        .skeleton
-        .joints()
-        .iter()
-        .map(|j| j.name.as_str())
-        .collect();
+    let found: Vec<&str> = clip.skeleton.names().collect();
     assert_eq!((found.as_slice(), clip.rate_hz), (&labels[..], 50.0));
 }
 

@@ -15,12 +15,7 @@ fn read(model: &[u8], motion: &[u8]) -> Result<super::super::Loaded, ParseError>
 fn a_leg_swings_about_its_joints() {
     let loaded = read(LEG, KICK).unwrap();
     let clip = &loaded.clips[0];
-    let names: Vec<&str> = clip
-        .skeleton
-        .joints()
-        .iter()
-        .map(|j| j.name.as_str())
-        .collect();
+    let names: Vec<&str> = clip.skeleton.names().collect();
     assert_eq!(names, ["pelvis", "femur_r", "tibia_r", "foot_r"]);
     assert_eq!((clip.frames, clip.rate_hz), (3, 100.0));
     // Upright: everything hangs straight down.

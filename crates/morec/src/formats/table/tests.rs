@@ -14,11 +14,7 @@ fn fail(text: &str) -> String {
 }
 
 fn names(clip: &Clip) -> Vec<&str> {
-    clip.skeleton
-        .joints()
-        .iter()
-        .map(|j| j.name.as_str())
-        .collect()
+    clip.skeleton.names().collect()
 }
 
 /// Two points, three frames at 20 Hz: hips at (1 + f, 2, 3), head at (4, 5, 6).
@@ -209,12 +205,7 @@ fn exports_of_motive_without_words_before_their_rows() {
         0,0.0,9,9,9,1,2,3,4,5,6\n1,0.008333,9,9,9,1,2,4,4,5,7\n";
     let loaded = read(text.as_bytes(), "t", None, &Limits::default()).unwrap();
     let clip = &loaded.clips[0];
-    let names: Vec<&str> = clip
-        .skeleton
-        .joints()
-        .iter()
-        .map(|j| j.name.as_str())
-        .collect();
+    let names: Vec<&str> = clip.skeleton.names().collect();
     assert_eq!(names, ["S:M1", "S:M2"]);
     assert_eq!(clip.tracks[0].positions[1], Vec3::new(1.0, 2.0, 4.0));
     assert_eq!(clip.rate_hz, 120.0);

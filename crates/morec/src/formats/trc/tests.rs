@@ -24,12 +24,7 @@ fn fail(text: &str) -> String {
 }
 
 fn check(clip: &Clip) {
-    let names: Vec<&str> = clip
-        .skeleton
-        .joints()
-        .iter()
-        .map(|j| j.name.as_str())
-        .collect();
+    let names: Vec<&str> = clip.skeleton.names().collect();
     assert_eq!(names, ["R.ASIS", "L.ASIS"]);
     assert_eq!((clip.frames, clip.rate_hz), (3, 60.0));
     assert_eq!(clip.tracks[0].positions[1], Vec3::new(1.5, 2.0, 3.0));

@@ -245,16 +245,6 @@ impl SvrdmModel {
     }
 
     fn check_values(&self) -> Result<(), ModelError> {
-        if let Some(length) = self
-            .profiles
-            .lengths
-            .iter()
-            .find(|l| !(1..=MAX_PROFILE_FRAMES).contains(*l))
-        {
-            return Err(value(format!(
-                "a profile must have 1 to {MAX_PROFILE_FRAMES} frames, found {length}"
-            )));
-        }
         if self.signs.iter().any(|v| !v.is_finite())
             || self.profiles.values.iter().any(|v| !v.is_finite())
         {

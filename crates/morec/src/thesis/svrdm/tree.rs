@@ -38,11 +38,6 @@ impl Tree {
         &self.parts
     }
 
-    /// Its parts, to keep.
-    pub fn into_parts(self) -> TreeParts {
-        self.parts
-    }
-
     /// Values in a feature vector.
     pub fn dim(&self) -> usize {
         self.parts.dim
