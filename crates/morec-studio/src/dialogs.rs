@@ -6,8 +6,6 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 
-use morec_db::exchange::LabelFormat;
-
 use crate::state::{Ask, Command, FileCommand};
 
 /// Kind of what a dialog chooses.
@@ -147,11 +145,7 @@ fn dialog(ask: &Ask) -> Dialog {
             None,
         ),
         Ask::ExportLabels(form) => {
-            let ending = match form {
-                LabelFormat::Tsv => "tsv",
-                LabelFormat::Csv => "csv",
-                _ => "json",
-            };
+            let ending = form.ending();
             save(
                 "Export labels",
                 ("labels", ending),

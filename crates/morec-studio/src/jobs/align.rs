@@ -9,7 +9,8 @@ use morec::train::align as warp;
 use morec_db::{DbError, MotionDb};
 
 use super::load::ClipMotion;
-use super::{JobOutcome, JobProgress, nearest, similar};
+use super::progress::{JobError, JobProgress};
+use super::{nearest, similar};
 use crate::stretch::Stretch;
 
 /// The table of the alignment has this many cells at most; longer stretches are compared at the same pace.
@@ -59,16 +60,20 @@ pub enum Partner {
 }
 
 /// Aligns `of` with another stretch of the database at `path`.
-pub fn align(path: &Path, of: Stretch, with: Partner, progress: &JobProgress) -> JobOutcome {
+pub fn align(
+    path: &Path,
+    of: Stretch,
+    with: Partner,
+    progress: &JobProgress,
+) -> Result<Arc<Aligned>, JobError> {
     let none = match &with {
         Partner::NearestOf(class) => format!("There is no other label of {class} to compare with"),
         _ => "Nothing like it is in the database".to_owned(),
     };
     match aligned(path, of, with, progress) {
-        Ok(Some(aligned)) => JobOutcome::Aligned(Arc::new(aligned)),
-        Ok(None) => JobOutcome::Failed(none),
-        Err(DbError::Cancelled) => JobOutcome::Cancelled,
-        Err(error) => JobOutcome::Failed(format!("Nothing was compared: {error}")),
+        Ok(Some(aligned)) => Ok(Arc::new(aligned)),
+        Ok(None) => Err(JobError::Failed(none)),
+        Err(error) => Err(JobError::of_db("Nothing was compared", &error)),
     }
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use morec::smooth::{Bezier, ChannelKind, CompressedClip};
 use morec_db::{ClipId, MotionDb};
 
-use super::JobOutcome;
+use super::progress::JobError;
 
 /// The curves of a joint's rotation (x, y, z, w of a quaternion) or position (x, y, z, metres).
 #[derive(Debug, Clone, PartialEq)]
@@ -58,7 +58,12 @@ impl ChannelCurve {
 }
 
 /// Reads a channel of a clip in the database at `path`.
-pub fn read(path: &Path, clip: ClipId, joint: usize, kind: ChannelKind) -> JobOutcome {
+pub fn read(
+    path: &Path,
+    clip: ClipId,
+    joint: usize,
+    kind: ChannelKind,
+) -> Result<ChannelCurve, JobError> {
     let read = MotionDb::open_read_only(path)
         .and_then(|db| db.motion_bytes(clip))
         .map_err(|error| error.to_string())
@@ -66,14 +71,16 @@ pub fn read(path: &Path, clip: ClipId, joint: usize, kind: ChannelKind) -> JobOu
     match read {
         Ok(compressed) => {
             let curve = compressed.curve(joint, kind);
-            JobOutcome::Channel(ChannelCurve {
+            Ok(ChannelCurve {
                 clip,
                 joint,
                 kind,
                 curves: curve.map_or_else(Vec::new, |c| compressed.beziers(c).collect()),
             })
         }
-        Err(why) => JobOutcome::Failed(format!("The channel cannot be read: {why}")),
+        Err(why) => Err(JobError::Failed(format!(
+            "The channel cannot be read: {why}"
+        ))),
     }
 }
 

@@ -14,7 +14,7 @@ use morec_db::rows::ClipRows;
 use morec_db::{BY_HAND, ClipFilter, ClipId, ClipInfo, Cutter, DbError, MotionDb};
 
 use super::load::ClipMotion;
-use super::{JobOutcome, JobProgress};
+use super::progress::{JobError, JobProgress};
 
 /// A method of segmentation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -78,12 +78,8 @@ pub fn cut(
     method: SegmentMethod,
     only: &[ClipId],
     progress: &JobProgress,
-) -> JobOutcome {
-    match cut_all(db, method, only, progress) {
-        Ok(Some(report)) => JobOutcome::Cut(report),
-        Ok(None) => JobOutcome::Cancelled,
-        Err(error) => JobOutcome::Failed(format!("Cutting stopped: {error}")),
-    }
+) -> Result<CutSummary, JobError> {
+    cut_all(db, method, only, progress).map_err(|e| JobError::of_db("Cutting stopped", &e))
 }
 
 fn cut_all(
@@ -91,7 +87,7 @@ fn cut_all(
     method: SegmentMethod,
     only: &[ClipId],
     progress: &JobProgress,
-) -> Result<Option<CutSummary>, morec_db::DbError> {
+) -> Result<CutSummary, DbError> {
     let mut db = MotionDb::open(path)?;
     let methods = db.cut_methods()?;
     let by_hand = |c: &ClipInfo| methods.get(&c.id).is_some_and(|m| m == BY_HAND);
@@ -100,16 +96,13 @@ fn cut_all(
         .into_iter()
         .filter(|c| only.is_empty() || only.contains(&c.id))
         .partition(by_hand);
-    let report = match db.cut(&clips, &method.cutter(), progress) {
-        Err(DbError::Cancelled) => return Ok(None),
-        report => report?,
-    };
-    Ok(Some(CutSummary {
+    let report = db.cut(&clips, &method.cutter(), progress)?;
+    Ok(CutSummary {
         clips: report.cuts.len(),
         by_hand: kept.len(),
         segments: report.cuts.iter().map(|c| c.cuts_secs.len() + 1).sum(),
         left: report.left,
-    }))
+    })
 }
 
 fn kernel(rows: &ClipRows) -> Result<Vec<f64>, String> {
@@ -141,7 +134,7 @@ fn still(rows: &ClipRows) -> Vec<(f64, f64, bool)> {
 }
 
 /// Computes what the timeline shows of one clip. Nothing is written.
-pub fn curves(motion: &Arc<ClipMotion>, progress: &JobProgress) -> JobOutcome {
+pub fn curves(motion: &Arc<ClipMotion>, progress: &JobProgress) -> Result<Curves, JobError> {
     let params = FeatureParams::default();
     let bones = morec::features::bones_of_clip(&motion.clip, &motion.roles, &motion.rest);
     let mut curves = Curves {
@@ -150,7 +143,7 @@ pub fn curves(motion: &Arc<ClipMotion>, progress: &JobProgress) -> JobOutcome {
     };
     if bones.is_empty() {
         curves.note = Some("no body part is known, so nothing can be cut".to_owned());
-        return JobOutcome::Curves(curves);
+        return Ok(curves);
     }
     let rows = ClipRows {
         clip: motion.id,
@@ -170,7 +163,7 @@ pub fn curves(motion: &Arc<ClipMotion>, progress: &JobProgress) -> JobOutcome {
     }
     curves.cycles = repetitions(&rows, &curves.kernel, motion.secs(), params.tick_hz());
     if progress.cancelled() {
-        return JobOutcome::Cancelled;
+        return Err(JobError::Cancelled);
     }
     match ppca(motion) {
         Ok((cuts, forward, backward)) => {
@@ -178,7 +171,7 @@ pub fn curves(motion: &Arc<ClipMotion>, progress: &JobProgress) -> JobOutcome {
         }
         Err(why) => curves.note = Some(format!("no misfit curve: {why}")),
     }
-    JobOutcome::Curves(curves)
+    Ok(curves)
 }
 
 /// Bounds of the repetitions in segments that repeat at least twice, seconds.

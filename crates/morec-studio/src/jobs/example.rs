@@ -9,7 +9,7 @@ use morec::synth::{DatabaseSpec, SyntheticTake, database};
 use morec_db::labels::{NewSample, SampleState};
 use morec_db::{ClipUpdate, MotionDb};
 
-use super::{JobOutcome, JobProgress};
+use super::progress::{JobError, JobProgress};
 use crate::store::BY;
 
 /// Seed of the people: the year of the thesis, as in the demo.
@@ -38,11 +38,9 @@ pub fn temporary_folder() -> std::io::Result<PathBuf> {
 }
 
 /// Makes the example in `folder`; all but the last person's gestures are labelled.
-pub fn make(folder: &Path, progress: &JobProgress) -> JobOutcome {
-    match make_in(folder, progress) {
-        Ok(path) => JobOutcome::Made(path),
-        Err(error) => JobOutcome::Failed(format!("The example cannot be made: {error}")),
-    }
+pub fn make(folder: &Path, progress: &JobProgress) -> Result<PathBuf, JobError> {
+    make_in(folder, progress)
+        .map_err(|why| JobError::Failed(format!("The example cannot be made: {why}")))
 }
 
 fn make_in(folder: &Path, progress: &dyn Progress) -> Result<PathBuf, String> {
@@ -97,17 +95,19 @@ fn describe(db: &mut MotionDb, takes: &[SyntheticTake]) -> Result<(), morec_db::
 }
 
 /// A database in `folder` that holds clips which were named instead of one.
-pub fn of_clips(folder: &Path, clips: &[PathBuf], progress: &JobProgress) -> JobOutcome {
+pub fn of_clips(
+    folder: &Path,
+    clips: &[PathBuf],
+    progress: &JobProgress,
+) -> Result<PathBuf, JobError> {
     let path = folder.join("clips.mdb");
-    if let Err(error) = MotionDb::create(&path) {
-        return JobOutcome::Failed(error.to_string());
-    }
-    match super::import::import(&path, clips, progress) {
-        JobOutcome::Imported(report) if report.imported == 0 && !report.refused.is_empty() => {
-            let (file, why) = &report.refused[0];
-            JobOutcome::Failed(format!("{}: {why}", crate::format::file_name(file)))
+    MotionDb::create(&path).map_err(|error| JobError::Failed(error.to_string()))?;
+    let report = super::import::import(&path, clips, progress)?;
+    match report.refused.first() {
+        Some((file, why)) if report.imported == 0 => {
+            let file = crate::format::file_name(file);
+            Err(JobError::Failed(format!("{file}: {why}")))
         }
-        JobOutcome::Imported(_) => JobOutcome::Made(path),
-        other => other,
+        _ => Ok(path),
     }
 }

@@ -10,7 +10,7 @@ use morec_db::exchange::{self, Annotation, ClipLengths, LabelFormat};
 use morec_db::labels::{SampleFilter, SampleState};
 use morec_db::{ClipFilter, ClipId, MotionDb};
 
-use super::JobOutcome;
+use super::progress::JobError;
 use crate::format;
 
 /// A kind of export.
@@ -24,12 +24,12 @@ pub enum Export {
     Page(ClipId, Vec<Mark>),
 }
 
-/// Writes what is asked for of the database at `db` to `path`.
-pub fn export(db: &Path, what: &Export, path: &Path) -> JobOutcome {
+/// Writes what is asked for of the database at `db` to `path`; gives a sentence about what was written.
+pub fn export(db: &Path, what: &Export, path: &Path) -> Result<String, JobError> {
     let name = format::file_name(path);
     match written(db, what, path) {
-        Ok(said) => JobOutcome::Written(format!("{name}: {said}")),
-        Err(why) => JobOutcome::Failed(format!("{name}: not written: {why}")),
+        Ok(said) => Ok(format!("{name}: {said}")),
+        Err(why) => Err(JobError::Failed(format!("{name}: not written: {why}"))),
     }
 }
 
@@ -82,11 +82,7 @@ fn labels(db: &MotionDb, form: LabelFormat, path: &Path) -> Result<String, Strin
     std::fs::create_dir_all(path).map_err(|e| e.to_string())?;
     let of_clips: Vec<&[Annotation]> = annotations.chunk_by(|a, b| a.clip == b.clip).collect();
     let names = exchange::file_names(of_clips.iter().map(|all| all[0].clip.as_str()));
-    let ending = if form == LabelFormat::Eaf {
-        "eaf"
-    } else {
-        "txt"
-    };
+    let ending = form.ending();
     for (of_clip, name) in of_clips.iter().zip(&names) {
         let text = exchange::write(form, of_clip, &lengths)?;
         write_whole(&path.join(format!("{name}.{ending}")), text.as_bytes())?;

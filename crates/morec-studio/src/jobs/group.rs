@@ -8,7 +8,7 @@ use morec::features::{BoneSet, FeatureParams, RowLayout, Rows};
 use morec_db::labels::{SampleFilter, SampleId, SampleState};
 use morec_db::{ClipId, MotionDb, SegmentKind};
 
-use super::{JobOutcome, JobProgress};
+use super::progress::{JobError, JobProgress};
 
 /// Rows that a sample of any length becomes.
 const POINTS: usize = 16;
@@ -80,17 +80,17 @@ impl ClusteredItems {
 }
 
 /// Groups the accepted samples, or the cuts if `cuts`, of the database at `path`.
-pub fn group(path: &Path, cuts: bool, progress: &JobProgress) -> JobOutcome {
+pub fn group(path: &Path, cuts: bool, progress: &JobProgress) -> Result<ClusteredItems, JobError> {
     match grouped(path, cuts, progress) {
-        Ok(groups) if groups.items.is_empty() => JobOutcome::Failed(
+        Ok(groups) if groups.items.is_empty() => Err(JobError::Failed(
             match cuts {
                 true => "Nothing to group: cut the clips first",
                 false => "Nothing to group: label a few motions first",
             }
             .to_owned(),
-        ),
-        Ok(groups) => JobOutcome::Grouped(groups),
-        Err(error) => JobOutcome::Failed(format!("Grouping stopped: {error}")),
+        )),
+        Ok(groups) => Ok(groups),
+        Err(error) => Err(JobError::Failed(format!("Grouping stopped: {error}"))),
     }
 }
 

@@ -8,7 +8,7 @@ use morec::progress::Progress;
 use morec_db::search::{SearchIndex, near_duplicates_of};
 use morec_db::{ClipFilter, ClipId, ClipUpdate, DbError, ImportLog, ImportOutcome, MotionDb};
 
-use super::{JobOutcome, JobProgress};
+use super::progress::{JobError, JobProgress};
 use crate::stretch::Stretch;
 
 /// Result of an import.
@@ -65,7 +65,11 @@ fn files(n: usize, what: &str) -> String {
 }
 
 /// Imports files, and those in folders, into the database at `db`.
-pub fn import(db: &Path, paths: &[PathBuf], progress: &JobProgress) -> JobOutcome {
+pub fn import(
+    db: &Path,
+    paths: &[PathBuf],
+    progress: &JobProgress,
+) -> Result<ImportSummary, JobError> {
     let mut report = ImportSummary::default();
     let mut clips = Vec::new();
     for path in paths {
@@ -90,7 +94,7 @@ pub fn import(db: &Path, paths: &[PathBuf], progress: &JobProgress) -> JobOutcom
             report.copies = copies;
             done
         }
-        Err(error) => return JobOutcome::Failed(format!("Import stopped: {error}")),
+        Err(error) => return Err(JobError::Failed(format!("Import stopped: {error}"))),
     };
     report.cancelled = done.cancelled || progress.cancelled();
     for (path, outcome) in done.files {
@@ -104,7 +108,7 @@ pub fn import(db: &Path, paths: &[PathBuf], progress: &JobProgress) -> JobOutcom
             ImportOutcome::Refused(why) => report.refused.push((path, why.reason)),
         }
     }
-    JobOutcome::Imported(report)
+    Ok(report)
 }
 
 /// Finds the imported clips that are nearly others, so that one of the two can be left out.

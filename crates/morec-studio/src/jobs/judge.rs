@@ -11,7 +11,8 @@ use morec::eval::{
 use morec::explain::Miss;
 use morec::train::TrainError;
 
-use super::{JobOutcome, JobProgress, train};
+use super::progress::{JobError, JobProgress};
+use super::train;
 
 /// Result of a cross-validation.
 pub struct CrossvalResult {
@@ -192,20 +193,12 @@ fn clip_of(stream: &str) -> String {
 }
 
 /// Trains and tests every fold of the database at `path`.
-pub fn judge(path: &Path, classes: &[String], progress: &JobProgress) -> JobOutcome {
-    match judged(path, classes, progress) {
-        Ok(judged) => JobOutcome::Judged(Box::new(judged)),
-        Err(None) => JobOutcome::Cancelled,
-        Err(Some(why)) => JobOutcome::Failed(why),
-    }
-}
-
-fn judged(
+pub fn judge(
     path: &Path,
     classes: &[String],
     progress: &JobProgress,
-) -> Result<CrossvalResult, Option<String>> {
-    let material = train::material(path, classes).map_err(|e| Some(e.to_string()))?;
+) -> Result<Box<CrossvalResult>, JobError> {
+    let material = train::material(path, classes).map_err(|e| JobError::Failed(e.to_string()))?;
     let people = material.samples.iter().filter_map(|s| s.person.as_deref());
     let by = LeftOut::of(people, material.clips.len());
     let mut clips = material.clips;
@@ -227,18 +220,18 @@ fn judged(
         CrossvalError::Train {
             source: TrainError::Cancelled,
             ..
-        } => None,
-        other => Some(format!("Not judged: {other}")),
+        } => JobError::Cancelled,
+        other => JobError::Failed(format!("Not judged: {other}")),
     })?
     .tested;
     let (streams, truths, founds) = (&outcome.streams, &outcome.truths, &outcome.founds);
-    let said = |e: morec::eval::EvalError| Some(format!("Not judged: {e}"));
-    Ok(CrossvalResult {
+    let said = |e: morec::eval::EvalError| JobError::Failed(format!("Not judged: {e}"));
+    Ok(Box::new(CrossvalResult {
         misses: outcome.misses.clone(),
         evaluation: Evaluation::of(streams, truths, founds).map_err(said)?,
         timelines: timelines(streams, truths, founds).map_err(said)?,
         by,
-    })
+    }))
 }
 
 #[cfg(test)]

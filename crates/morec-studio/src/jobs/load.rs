@@ -9,7 +9,6 @@ use morec::kinematics::WorldPose;
 use morec::roles::RoleMap;
 use morec_db::{ClipId, MotionDb, StoredClip};
 
-use super::{JobOutcome, JobProgress};
 use crate::body::Body;
 
 /// A clip as the view and the timeline need it.
@@ -34,12 +33,12 @@ pub struct DecodedClip {
 }
 
 /// Decodes clip `id` of the database at `path`.
-pub fn load(path: &Path, id: ClipId, _progress: &JobProgress) -> JobOutcome {
+pub fn load(path: &Path, id: ClipId) -> DecodedClip {
     let motion = MotionDb::open_read_only(path)
         .and_then(|db| db.clip(id))
         .map(|stored| Arc::new(ClipMotion::of(id, stored)))
         .map_err(|error| error.to_string());
-    JobOutcome::Loaded(DecodedClip { id, motion })
+    DecodedClip { id, motion }
 }
 
 impl ClipMotion {

@@ -10,6 +10,7 @@ pub mod import;
 pub mod judge;
 pub mod load;
 pub mod nearest;
+mod progress;
 pub mod propose;
 pub mod recognise;
 pub mod similar;
@@ -17,52 +18,13 @@ pub mod teach;
 pub mod thesis;
 pub mod train;
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
-use std::sync::{Arc, Mutex, PoisonError};
 
 use morec::progress::Progress;
 
 use crate::store::Wake;
-
-/// Progress of a job; shared with its thread.
-pub struct JobProgress {
-    state: Mutex<JobStage>,
-    cancelled: AtomicBool,
-    wake: Wake,
-}
-
-/// A stage of a job.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct JobStage {
-    pub name: String,
-    pub done: usize,
-    pub total: usize,
-}
-
-impl JobStage {
-    /// 0 to 1, if it is known.
-    pub fn share(&self) -> Option<f32> {
-        (self.total > 0).then(|| (self.done as f32 / self.total as f32).min(1.0))
-    }
-}
-
-impl Progress for JobProgress {
-    fn report(&self, stage: &str, done: usize, total: usize) {
-        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-        *state = JobStage {
-            name: stage.to_owned(),
-            done,
-            total,
-        };
-        drop(state);
-        (self.wake)();
-    }
-
-    fn cancelled(&self) -> bool {
-        self.cancelled.load(Ordering::Relaxed)
-    }
-}
+pub use progress::{JobError, JobProgress, JobStage};
 
 /// Result of a job.
 pub enum JobOutcome {
@@ -76,10 +38,7 @@ pub enum JobOutcome {
     Judged(Box<judge::CrossvalResult>),
     Taught(teach::Taught),
     /// Detections of an index in a clip.
-    Recognised {
-        clip: morec_db::ClipId,
-        found: Vec<morec::eval::ClipDetection>,
-    },
+    Recognised((morec_db::ClipId, Vec<morec::eval::ClipDetection>)),
     /// Detections at another sensitivity.
     Resensed(Vec<morec::live::Detection>),
     Similar(similar::Similar),
@@ -92,9 +51,7 @@ pub enum JobOutcome {
     Written(String),
     /// An example, or clips that were named, lie in a database of this path now.
     Made(std::path::PathBuf),
-    /// It could not be done, and why.
-    Failed(String),
-    Cancelled,
+    Stopped(JobError),
 }
 
 /// A job that is under way.
@@ -109,12 +66,11 @@ pub struct Job {
 
 impl Job {
     pub fn stage(&self) -> JobStage {
-        let state = self.progress.state.lock();
-        state.unwrap_or_else(PoisonError::into_inner).clone()
+        self.progress.stage()
     }
 
     pub fn cancel(&self) {
-        self.progress.cancelled.store(true, Ordering::Relaxed);
+        self.progress.cancel();
     }
 
     pub fn is_cancelled(&self) -> bool {
@@ -129,24 +85,22 @@ pub struct Jobs {
 }
 
 impl Jobs {
-    /// Starts `work` on a thread of its own.
-    pub fn start(
+    /// Starts `work` on a thread of its own; `outcome` is what its result is reported as.
+    pub fn start<T: 'static>(
         &mut self,
         name: &str,
         shown: bool,
         wake: &Wake,
-        work: impl FnOnce(&JobProgress) -> JobOutcome + Send + 'static,
+        outcome: fn(T) -> JobOutcome,
+        work: impl FnOnce(&JobProgress) -> Result<T, JobError> + Send + 'static,
     ) {
-        let progress = Arc::new(JobProgress {
-            state: Mutex::default(),
-            cancelled: AtomicBool::new(false),
-            wake: wake.clone(),
-        });
-        let (sender, outcome) = channel();
+        let progress = Arc::new(JobProgress::new(wake.clone()));
+        let (sender, ended) = channel();
         let (theirs, wake) = (progress.clone(), wake.clone());
         let job = move || {
+            let done = work(&theirs).map_or_else(JobOutcome::Stopped, outcome);
             // Nobody may listen any more: the window was closed.
-            let _ = sender.send(work(&theirs));
+            let _ = sender.send(done);
             wake();
         };
         // Without a thread the sender is dropped, which is a failure like any other.
@@ -155,7 +109,7 @@ impl Jobs {
             name: name.to_owned(),
             shown,
             progress,
-            outcome,
+            outcome: ended,
         });
     }
 
@@ -170,7 +124,10 @@ impl Jobs {
             Err(TryRecvError::Empty) => true,
             Err(TryRecvError::Disconnected) => {
                 let failed = format!("{}: ended without an answer", job.name);
-                ended.push((job.name.clone(), JobOutcome::Failed(failed)));
+                ended.push((
+                    job.name.clone(),
+                    JobOutcome::Stopped(JobError::Failed(failed)),
+                ));
                 false
             }
         });

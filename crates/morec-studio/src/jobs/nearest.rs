@@ -8,8 +8,8 @@ use morec::train::align as warp;
 use morec_db::labels::{SampleFilter, SampleState};
 use morec_db::{ClipId, DbError, MotionDb};
 
-use super::JobProgress;
 use super::group::only;
+use super::progress::JobProgress;
 use crate::stretch::Stretch;
 
 /// Rows that a stretch of any length becomes where it is compared at an even pace.

@@ -2,21 +2,14 @@
 
 use std::path::Path;
 
-use morec_db::{DbError, MotionDb, ProposeOptions};
+use morec_db::{MotionDb, ProposeOptions};
 
-use super::{JobOutcome, JobProgress};
+use super::progress::{JobError, JobProgress};
 
-/// Proposes anew, in place of proposals that nobody judged.
-pub fn propose(path: &Path, progress: &JobProgress) -> JobOutcome {
-    match proposed(path, progress) {
-        Ok(count) => JobOutcome::Proposed(count),
-        Err(DbError::Cancelled) => JobOutcome::Cancelled,
-        Err(error) => JobOutcome::Failed(format!("Nothing was proposed: {error}")),
-    }
-}
-
-fn proposed(path: &Path, progress: &JobProgress) -> Result<usize, DbError> {
-    let mut db = MotionDb::open(path)?;
-    let kept = db.propose_and_keep(&ProposeOptions::default(), progress)?;
-    Ok(kept.len())
+/// Proposes anew, in place of proposals that nobody judged; gives their number.
+pub fn propose(path: &Path, progress: &JobProgress) -> Result<usize, JobError> {
+    let kept = MotionDb::open(path)
+        .and_then(|mut db| db.propose_and_keep(&ProposeOptions::default(), progress));
+    kept.map(|kept| kept.len())
+        .map_err(|e| JobError::of_db("Nothing was proposed", &e))
 }

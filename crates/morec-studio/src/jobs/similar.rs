@@ -5,7 +5,7 @@ use std::path::Path;
 use morec_db::search::{Hit, SearchIndex, SearchOptions};
 use morec_db::{DbError, MotionDb};
 
-use super::{JobOutcome, JobProgress};
+use super::progress::{JobError, JobProgress};
 use crate::stretch::Stretch;
 
 /// Number of hits that are shown.
@@ -30,21 +30,20 @@ pub fn find(
     class: Option<String>,
     mirror: bool,
     progress: &JobProgress,
-) -> JobOutcome {
+) -> Result<Similar, JobError> {
     let found = MotionDb::open(path).and_then(|mut db| hits(&mut db, &of, mirror, MOST, progress));
     match found {
-        Ok(Some(hits)) => JobOutcome::Similar(Similar {
+        Ok(Some(hits)) => Ok(Similar {
             of,
             class,
             mirror,
             hits,
         }),
-        Ok(None) => JobOutcome::Failed(
+        Ok(None) => Err(JobError::Failed(
             "Nothing was searched: the stretch is too short, or no body part of its clip is known"
                 .to_owned(),
-        ),
-        Err(DbError::Cancelled) => JobOutcome::Cancelled,
-        Err(error) => JobOutcome::Failed(format!("Nothing was searched: {error}")),
+        )),
+        Err(error) => Err(JobError::of_db("Nothing was searched", &error)),
     }
 }
 

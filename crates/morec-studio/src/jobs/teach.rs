@@ -8,7 +8,7 @@ use morec::live::Recording;
 use morec_db::labels::{LabelOptions, NewSample, SampleState};
 use morec_db::{ClipUpdate, ImportOutcome, MotionDb};
 
-use super::{JobOutcome, JobProgress};
+use super::progress::JobError;
 use crate::store::BY;
 
 /// A stretch that was kept.
@@ -31,11 +31,8 @@ pub struct Lesson {
 }
 
 /// Keeps a lesson in the database at `db`; its file lies in `folder` for as long as that takes.
-pub fn teach(db: &Path, folder: &Path, lesson: &Lesson, _progress: &JobProgress) -> JobOutcome {
-    match taught(db, folder, lesson) {
-        Ok(taught) => JobOutcome::Taught(taught),
-        Err(why) => JobOutcome::Failed(format!("Not kept: {why}")),
-    }
+pub fn teach(db: &Path, folder: &Path, lesson: &Lesson) -> Result<Taught, JobError> {
+    taught(db, folder, lesson).map_err(|why| JobError::Failed(format!("Not kept: {why}")))
 }
 
 fn taught(path: &Path, folder: &Path, lesson: &Lesson) -> Result<Taught, String> {

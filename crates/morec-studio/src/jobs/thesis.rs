@@ -10,7 +10,8 @@ use morec::train::{LabelSet, TrainError};
 use morec_db::ClipId;
 
 use super::load::ClipMotion;
-use super::{JobOutcome, JobProgress, train};
+use super::progress::{JobError, JobProgress};
+use super::train;
 
 /// Places along each side of a picture of a branch.
 pub const GRID: usize = 72;
@@ -65,12 +66,16 @@ pub struct Boundary {
 }
 
 /// Trains on the accepted samples of the database at `path`.
-pub fn run(path: &Path, classes: &[String], progress: &JobProgress) -> JobOutcome {
-    match trained(path, classes, progress) {
-        Ok(thesis) => JobOutcome::Thesis(Arc::new(thesis)),
-        Err(None) => JobOutcome::Cancelled,
-        Err(Some(why)) => JobOutcome::Failed(format!("The method of 2009 was not trained: {why}")),
-    }
+pub fn run(
+    path: &Path,
+    classes: &[String],
+    progress: &JobProgress,
+) -> Result<Arc<Thesis>, JobError> {
+    let trained = trained(path, classes, progress).map(Arc::new);
+    trained.map_err(|why| match why {
+        None => JobError::Cancelled,
+        Some(why) => JobError::Failed(format!("The method of 2009 was not trained: {why}")),
+    })
 }
 
 fn trained(
@@ -197,17 +202,16 @@ pub struct Map {
 }
 
 /// Looks at every segment of a clip.
-pub fn map(model: &Arc<SvrdmModel>, motion: &ClipMotion, progress: &JobProgress) -> JobOutcome {
+pub fn map(
+    model: &Arc<SvrdmModel>,
+    motion: &ClipMotion,
+    progress: &JobProgress,
+) -> Result<Map, JobError> {
     use morec::progress::Progress;
-    let why = |why: String| JobOutcome::Failed(format!("No map of confidences: {why}"));
-    let pivots = match PivotMap::of_clip(&model.pivots, &motion.clip, &motion.roles) {
-        Ok(map) => map,
-        Err(error) => return why(error.to_string()),
-    };
-    let mut engine = match SvrdmEngine::new(model) {
-        Ok(engine) => engine,
-        Err(error) => return why(error.to_string()),
-    };
+    let failed = |why: String| JobError::Failed(format!("No map of confidences: {why}"));
+    let pivots = PivotMap::of_clip(&model.pivots, &motion.clip, &motion.roles)
+        .map_err(|error| failed(error.to_string()))?;
+    let mut engine = SvrdmEngine::new(model).map_err(|error| failed(error.to_string()))?;
     let rows = pose_rows_of_clip(
         &motion.clip,
         &model.pivots,
@@ -219,7 +223,7 @@ pub fn map(model: &Arc<SvrdmModel>, motion: &ClipMotion, progress: &JobProgress)
     let mut cells = vec![(0u8, 0u8); (rows.len() / params.chunk_frames + 1) * lengths];
     for (at, row) in rows.iter().enumerate() {
         if at % 4096 == 0 && progress.cancelled() {
-            return JobOutcome::Cancelled;
+            return Err(JobError::Cancelled);
         }
         engine.push_with_observer(
             row,
@@ -234,7 +238,7 @@ pub fn map(model: &Arc<SvrdmModel>, motion: &ClipMotion, progress: &JobProgress)
             &mut |_| (),
         );
     }
-    JobOutcome::Map(Map {
+    Ok(Map {
         clip: motion.id,
         chunk_secs: params.chunk_frames as f64 / model.rate_hz(),
         shortest: params.min_chunks,

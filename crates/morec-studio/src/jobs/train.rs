@@ -16,7 +16,7 @@ use morec::train::{
 use morec_db::labels::{SampleFilter, SampleState};
 use morec_db::{ClipFilter, DbError, MotionDb};
 
-use super::{JobOutcome, JobProgress};
+use super::progress::{JobError, JobProgress};
 
 /// Result of training.
 pub struct TrainedIndex {
@@ -99,39 +99,40 @@ pub fn recipe() -> Recipe {
 }
 
 /// Trains an index of the database at `path`.
-pub fn run(path: &Path, classes: &[String], progress: &JobProgress) -> JobOutcome {
+pub fn run(
+    path: &Path,
+    classes: &[String],
+    progress: &JobProgress,
+) -> Result<Box<TrainedIndex>, JobError> {
     let begun = std::time::Instant::now();
-    match trained(path, classes, progress) {
-        Ok(mut trained) => {
-            trained.secs = begun.elapsed().as_secs_f64();
-            JobOutcome::Trained(Box::new(trained))
-        }
-        Err(None) => JobOutcome::Cancelled,
-        Err(Some(why)) => JobOutcome::Failed(why),
-    }
+    let mut trained = trained(path, classes, progress)?;
+    trained.secs = begun.elapsed().as_secs_f64();
+    Ok(Box::new(trained))
 }
 
-/// Why there is nothing; `None` if it was cancelled.
-type Why = Option<String>;
-
-fn trained(path: &Path, classes: &[String], progress: &JobProgress) -> Result<TrainedIndex, Why> {
-    let data = material(path, classes).map_err(|e| Some(e.to_string()))?;
+fn trained(
+    path: &Path,
+    classes: &[String],
+    progress: &JobProgress,
+) -> Result<TrainedIndex, JobError> {
+    let data = material(path, classes).map_err(|e| JobError::Failed(e.to_string()))?;
     if data.samples.is_empty() {
-        return Err(Some(
+        return Err(JobError::Failed(
             "Nothing to learn from: label a few motions first".to_owned(),
         ));
     }
     let params = TrainParams::default();
     let prepared = prepared(&data, &params, progress);
     if progress.cancelled() {
-        return Err(None);
+        return Err(JobError::Cancelled);
     }
     if prepared.bones == BoneSet::NONE {
-        return Err(Some(format!("Training stopped: {}", TrainError::NoSamples)));
+        let why = TrainError::NoSamples;
+        return Err(JobError::Failed(format!("Training stopped: {why}")));
     }
     let done = train(&prepared.set, prepared.bones, &params, progress).map_err(|e| match e {
-        TrainError::Cancelled => None,
-        other => Some(format!("Training stopped: {other}")),
+        TrainError::Cancelled => JobError::Cancelled,
+        other => JobError::Failed(format!("Training stopped: {other}")),
     })?;
     let report = TrainingReport::of(&prepared, &done, params.features.tick_hz());
     let index = MotionIndex {
@@ -145,7 +146,9 @@ fn trained(path: &Path, classes: &[String], progress: &JobProgress) -> Result<Tr
         },
         model: done.model.into(),
     };
-    let bytes = index.to_bytes().map_err(|e| Some(e.to_string()))?;
+    let bytes = index
+        .to_bytes()
+        .map_err(|e| JobError::Failed(e.to_string()))?;
     Ok(TrainedIndex {
         index: Arc::new(index),
         bytes,

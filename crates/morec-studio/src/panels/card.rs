@@ -3,12 +3,14 @@
 use egui::{Button, Rect, RichText, Sense, Ui, Vec2, WidgetType};
 use morec_db::labels::{DbSample, SampleId, SampleState as Judged};
 
-use super::classes::{COLUMN, STRIP, go};
+use super::strips::{STRIP, go};
 use super::{Out, strips, widgets};
 use crate::format;
 use crate::state::{ClassCommand, Command, Panel, State};
 use crate::theme::Colours;
 
+/// Width of a column of cards, points.
+pub const COLUMN: f32 = 214.0;
 pub const HEIGHT: f32 = STRIP + 18.0;
 /// Room for the answers to a proposal.
 const ANSWERS: f32 = 46.0;

@@ -6,7 +6,7 @@ use egui::epaint::Mesh;
 use egui::{Color32, Pos2, Rect, Shape, Stroke, Ui, Vec2, WidgetType, pos2};
 use morec::smooth::ChannelKind;
 
-use super::timeline::Scale;
+use super::scale::Scale;
 use super::tracks::track;
 use super::{Out, widgets};
 use crate::jobs::channel::ChannelCurve;

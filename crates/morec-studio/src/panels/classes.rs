@@ -1,19 +1,15 @@
 //! Classes side by side, each with strips of its samples; segments are dragged from one to another.
 
 use egui::{
-    CentralPanel, Context, DragAndDrop, Frame, Margin, Rect, RichText, ScrollArea, SidePanel, Ui,
-    Vec2, WidgetType,
+    CentralPanel, Context, DragAndDrop, Frame, Margin, RichText, ScrollArea, SidePanel, Ui,
+    WidgetType,
 };
-use morec_db::ClipId;
 use morec_db::labels::{DbSample, SampleId, SampleState as Judged};
 
-use super::{Out, card, groups, label, padded, player, similar, view, widgets};
+use super::{Out, card, groups, label, padded, similar, view, widgets};
 use crate::format;
-use crate::state::{ClassCommand, Command, LibraryCommand, State};
+use crate::state::{ClassCommand, Command, State};
 use crate::theme::Colours;
-
-pub(super) const COLUMN: f32 = 214.0;
-pub(super) const STRIP: f32 = 62.0;
 
 pub fn show(ctx: &Context, state: &State, out: Out) {
     let c = Colours::of(state.dark);
@@ -23,13 +19,7 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
         .width_range(260.0..=620.0)
         .show(ctx, |ui| {
             let height = (ui.available_height() * 0.55).max(160.0);
-            let rect =
-                Rect::from_min_size(ui.cursor().min, Vec2::new(ui.available_width(), height));
-            ui.scope_builder(egui::UiBuilder::new().max_rect(rect), |ui| {
-                view::clip(ui, state, out)
-            });
-            ui.advance_cursor_after_rect(rect);
-            player::transport(ui, state, out);
+            view::clip_over_transport(ui, state, height, out);
             chosen(ui, state, out);
         });
     CentralPanel::default().frame(padded(&c)).show(ctx, |ui| {
@@ -147,7 +137,7 @@ fn column(
         .corner_radius(6.0)
         .inner_margin(Margin::same(8));
     let inner = |ui: &mut Ui| {
-        ui.set_width(COLUMN);
+        ui.set_width(card::COLUMN);
         ui.set_height(height - 16.0);
         ui.vertical(|ui| {
             ui.horizontal(|ui| {
@@ -210,26 +200,6 @@ fn dropzone(
     }
     let payload = response.dnd_release_payload::<SampleId>();
     (response, payload)
-}
-
-pub(super) fn go(
-    clip: ClipId,
-    start_secs: f64,
-    stop_secs: f64,
-    sample: Option<SampleId>,
-    out: Out,
-) {
-    out.push(Command::Library(LibraryCommand::GoTo {
-        clip,
-        start_secs,
-        stop_secs,
-    }));
-    if let Some(id) = sample {
-        out.push(Command::Timeline(crate::state::TimelineCommand::Select {
-            id: Some(id),
-            add: false,
-        }));
-    }
 }
 
 /// The sample that is shown, with what can be done.

@@ -1,15 +1,25 @@
 //! Companions of the performer: where they stand, and the buttons that say so.
 
 use egui::Ui;
+use morec::kinematics::WorldPose;
 
 use super::Out;
-use super::view::Other;
-use crate::body::companion;
+use crate::body::mesh::BodyColours;
+use crate::body::{Body, companion};
 use crate::format;
 use crate::jobs::load::ClipMotion;
 use crate::state::compare::Placement;
 use crate::state::{Command, CompareCommand, State};
 use crate::theme::Colours;
+
+/// Somebody beside the performer.
+pub struct Other<'a> {
+    pub body: &'a Body,
+    pub pose: WorldPose,
+    pub palette: BodyColours,
+    /// Said at their feet.
+    pub caption: String,
+}
 
 /// The companions at the present moment.
 pub fn others<'a>(state: &'a State, motion: &ClipMotion, c: &Colours) -> Vec<Other<'a>> {

@@ -3,7 +3,7 @@
 use egui::epaint::Mesh;
 use egui::{Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, WidgetType, pos2};
 
-use super::timeline::Scale;
+use super::scale::Scale;
 use super::tracks::{ROW, track};
 use super::{Out, widgets};
 use crate::state::{Command, PlayCommand, State};

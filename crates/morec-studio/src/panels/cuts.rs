@@ -4,7 +4,7 @@ use egui::{CursorIcon, Rect, Sense, Shape, Ui, Vec2, WidgetType, pos2};
 
 use morec_db::BY_HAND;
 
-use super::timeline::Scale;
+use super::scale::Scale;
 use super::tracks::{ROW, track};
 use super::{Out, widgets};
 use crate::jobs::cut::Curves;

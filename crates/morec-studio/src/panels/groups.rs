@@ -2,7 +2,7 @@
 
 use egui::{Button, Rect, RichText, ScrollArea, Sense, TextEdit, Ui, Vec2, WidgetType};
 
-use super::classes::{STRIP, go};
+use super::strips::{STRIP, go};
 use super::{Out, strips, widgets};
 use crate::format;
 use crate::state::{ClassCommand, Command, State};

@@ -1,12 +1,12 @@
 //! The clips as a table, and the chosen one beside it.
 
 use egui::{
-    CentralPanel, Context, Key, Rect, RichText, ScrollArea, Sense, SidePanel, TextEdit, Ui, Vec2,
-    WidgetType,
+    CentralPanel, Context, Key, Rect, Response, RichText, ScrollArea, Sense, SidePanel, TextEdit,
+    Ui, Vec2, WidgetType,
 };
 use morec_db::ClipInfo;
 
-use super::{Out, details, import_report, padded, player, strips, view, widgets};
+use super::{Out, details, import_report, padded, strips, view, widgets};
 use crate::format;
 use crate::state::{Column, Command, FileCommand, LibraryCommand, State};
 use crate::theme::Colours;
@@ -22,13 +22,7 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
         .exact_width(width)
         .show(ctx, |ui| {
             let height = (ui.available_height() * 0.44).max(200.0);
-            let rect =
-                Rect::from_min_size(ui.cursor().min, Vec2::new(ui.available_width(), height));
-            ui.scope_builder(egui::UiBuilder::new().max_rect(rect), |ui| {
-                view::clip(ui, state, out)
-            });
-            ui.advance_cursor_after_rect(rect);
-            player::transport(ui, state, out);
+            view::clip_over_transport(ui, state, height, out);
             scrub(ui, state, out);
             ScrollArea::vertical()
                 .auto_shrink(false)
@@ -161,6 +155,17 @@ fn table(ui: &mut Ui, state: &State, out: Out) {
         });
 }
 
+/// The ground of a row: of the selected ones, and of the one under the pointer.
+fn ground(ui: &Ui, rect: Rect, response: &Response, selected: bool) {
+    let c = Colours::now(ui);
+    let fill = match (selected, response.hovered()) {
+        (true, _) => ui.visuals().selection.bg_fill,
+        (false, true) => c.tint(c.accent, 0.10),
+        (false, false) => return,
+    };
+    ui.painter().rect_filled(rect, 3.0, fill);
+}
+
 /// A clip as a strip of poses over its whole length, with its name at the left.
 fn strip(ui: &mut Ui, state: &State, clip: &ClipInfo, out: Out) {
     let c = Colours::now(ui);
@@ -168,12 +173,7 @@ fn strip(ui: &mut Ui, state: &State, clip: &ClipInfo, out: Out) {
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     let on = state.library.selected.contains(&clip.id);
     widgets::named(&response, WidgetType::SelectableLabel, &clip.name, on);
-    if on {
-        ui.painter()
-            .rect_filled(rect, 3.0, ui.visuals().selection.bg_fill);
-    } else if response.hovered() {
-        ui.painter().rect_filled(rect, 3.0, c.tint(c.accent, 0.10));
-    }
+    ground(ui, rect, &response, on);
     let names = (0.26 * rect.width()).clamp(90.0, 190.0);
     let text = rect
         .with_max_x(rect.left() + names)
@@ -243,12 +243,7 @@ fn row(ui: &mut Ui, state: &State, clip: &ClipInfo, out: Out) {
         ui.allocate_exact_size(Vec2::new(ui.available_width(), ROW), Sense::click());
     let on = state.library.selected.contains(&clip.id);
     widgets::named(&response, WidgetType::SelectableLabel, &clip.name, on);
-    if on {
-        ui.painter()
-            .rect_filled(rect, 3.0, ui.visuals().selection.bg_fill);
-    } else if response.hovered() {
-        ui.painter().rect_filled(rect, 3.0, c.tint(c.accent, 0.10));
-    }
+    ground(ui, rect, &response, on);
     let labels = match clip.samples {
         0 => String::new(),
         n => n.to_string(),

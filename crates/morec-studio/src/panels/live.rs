@@ -6,6 +6,7 @@ use egui::{
 };
 use morec::kinematics::WorldPose;
 
+use super::compare::Other;
 use super::{Out, live_line, padded, teach, view, widgets};
 use crate::body::Body;
 use crate::format;
@@ -264,7 +265,7 @@ fn performer(ui: &mut Ui, state: &State, out: Out) {
         .iter()
         .filter(|p| !p.gone && !p.body.limbs.is_empty())
         .filter(|p| watched.is_none_or(|w| w.actor != p.actor))
-        .map(|p| view::Other {
+        .map(|p| Other {
             body: &p.body,
             pose: p.pose.clone(),
             palette,

@@ -2,7 +2,7 @@
 
 use egui::{Rect, RichText, Sense, Ui, WidgetType, pos2};
 
-use super::timeline::Scale;
+use super::scale::Scale;
 use super::{Out, curves, widgets};
 use crate::format;
 use crate::state::live::Run;

@@ -21,6 +21,7 @@ mod moments;
 mod notices;
 mod player;
 mod roles;
+mod scale;
 mod similar;
 mod strips;
 mod teach;
@@ -31,17 +32,17 @@ mod train;
 mod view;
 mod widgets;
 
-use egui::{CentralPanel, Context, Frame, Id, Margin};
-use morec_db::ClipId;
+use egui::{CentralPanel, Context};
 
-use crate::state::{Command, Panel, State};
+use crate::state::{Panel, State};
 use crate::theme::Colours;
-
-pub type Out<'a> = &'a mut Vec<Command>;
+pub use strips::wanted_clips;
+pub use widgets::Out;
+use widgets::padded;
 
 /// Draws the whole window.
 pub fn show(ctx: &Context, state: &State, out: Out) {
-    ctx.data_mut(|data| data.insert_temp(wanted_id(), Vec::<ClipId>::new()));
+    strips::want_nothing(ctx);
     bars::top(ctx, state, out);
     bars::bottom(ctx, state, out);
     notices::show(ctx, state, out);
@@ -83,29 +84,4 @@ fn empty(ctx: &Context, state: &State, out: Out) {
             widgets::file_buttons(ui, out);
         });
     });
-}
-
-fn wanted_id() -> Id {
-    Id::new("clips that strips are drawn of")
-}
-
-/// Says that a clip's motion is needed to draw what is seen.
-fn want(ctx: &Context, clip: ClipId) {
-    ctx.data_mut(|data| {
-        let wanted = data.get_temp_mut_or_default::<Vec<ClipId>>(wanted_id());
-        if !wanted.contains(&clip) && wanted.len() < 64 {
-            wanted.push(clip);
-        }
-    });
-}
-
-/// The clips that were needed and are not decoded.
-pub fn wanted_clips(ctx: &Context) -> Vec<ClipId> {
-    ctx.data(|data| data.get_temp(wanted_id()))
-        .unwrap_or_default()
-}
-
-/// The frame of panels' contents.
-fn padded(c: &Colours) -> Frame {
-    Frame::new().fill(c.panel).inner_margin(Margin::same(12))
 }

@@ -3,7 +3,7 @@
 use egui::{Rect, RichText, ScrollArea, Sense, Ui, Vec2, WidgetType};
 use morec_db::search::Hit;
 
-use super::classes::{STRIP, go};
+use super::strips::{STRIP, go};
 use super::{Out, strips, widgets};
 use crate::format;
 use crate::jobs::similar::Similar;

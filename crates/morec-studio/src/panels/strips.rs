@@ -3,12 +3,17 @@
 use std::sync::Arc;
 
 use egui::epaint::{Mesh, Vertex, WHITE_UV};
-use egui::{Color32, Id, Rect, Shape, Ui, Vec2, pos2};
+use egui::{Color32, Context, Id, Rect, Shape, Ui, Vec2, pos2};
 use morec_db::ClipId;
+use morec_db::labels::SampleId;
 
+use super::Out;
 use crate::body::strip::strip;
-use crate::state::State;
+use crate::state::{Command, LibraryCommand, State, TimelineCommand};
 use crate::theme::Colours;
+
+/// Height of a strip of a sample, points.
+pub const STRIP: f32 = 62.0;
 
 /// Draws the strip of a stretch of a clip, or says that it is coming.
 pub fn draw(ui: &Ui, state: &State, clip: ClipId, start_secs: f64, stop_secs: f64, rect: Rect) {
@@ -20,7 +25,7 @@ pub fn draw(ui: &Ui, state: &State, clip: ClipId, start_secs: f64, stop_secs: f6
     let Some(motion) = state.motions.get(clip) else {
         let text = state.motions.failure(clip).unwrap_or("…");
         super::widgets::text_in(ui, rect.shrink(6.0), text, 11.0, c.muted, false);
-        super::want(ui.ctx(), clip);
+        want(ui.ctx(), clip);
         return;
     };
     let size = rect.size();
@@ -43,6 +48,46 @@ pub fn draw(ui: &Ui, state: &State, clip: ClipId, start_secs: f64, stop_secs: f6
     let mut mesh = Mesh::clone(&mesh);
     mesh.translate(rect.min - pos2(0.0, 0.0));
     ui.painter_at(rect).add(Shape::mesh(mesh));
+}
+
+/// Shows the stretch of a strip, and selects the sample that it is.
+pub fn go(clip: ClipId, start_secs: f64, stop_secs: f64, sample: Option<SampleId>, out: Out) {
+    out.push(Command::Library(LibraryCommand::GoTo {
+        clip,
+        start_secs,
+        stop_secs,
+    }));
+    if let Some(id) = sample {
+        out.push(Command::Timeline(TimelineCommand::Select {
+            id: Some(id),
+            add: false,
+        }));
+    }
+}
+
+/// Forgets which clips were needed: a new frame is drawn.
+pub fn want_nothing(ctx: &Context) {
+    ctx.data_mut(|data| data.insert_temp(wanted_id(), Vec::<ClipId>::new()));
+}
+
+fn wanted_id() -> Id {
+    Id::new("clips that strips are drawn of")
+}
+
+/// Says that a clip's motion is needed to draw what is seen.
+fn want(ctx: &Context, clip: ClipId) {
+    ctx.data_mut(|data| {
+        let wanted = data.get_temp_mut_or_default::<Vec<ClipId>>(wanted_id());
+        if !wanted.contains(&clip) && wanted.len() < 64 {
+            wanted.push(clip);
+        }
+    });
+}
+
+/// The clips that were needed and are not decoded.
+pub fn wanted_clips(ctx: &Context) -> Vec<ClipId> {
+    ctx.data(|data| data.get_temp(wanted_id()))
+        .unwrap_or_default()
 }
 
 /// Lines and discs as one mesh.

@@ -2,44 +2,14 @@
 
 use egui::{Rect, RichText, ScrollArea, Sense, Ui, Vec2, WidgetType, pos2};
 
+use super::scale::{NAMES, Scale};
 use super::{Out, channel, curves, cuts, tracks, widgets};
 use crate::format;
 use crate::jobs::cut::SegmentMethod;
 use crate::state::{Command, PlayCommand, State, TimelineCommand};
 use crate::theme::Colours;
 
-/// Room for the names of tracks.
-pub const NAMES: f32 = 112.0;
 const RULER: f32 = 22.0;
-
-/// Mapping of time to the screen.
-#[derive(Debug, Clone, Copy)]
-pub struct Scale {
-    /// Left and right of the tracks.
-    pub left: f32,
-    pub width: f32,
-    pub from: f64,
-    pub to: f64,
-}
-
-impl Scale {
-    pub fn x(&self, secs: f64) -> f32 {
-        let share = (secs - self.from) / (self.to - self.from);
-        self.left + (share * f64::from(self.width)) as f32
-    }
-
-    pub fn secs(&self, x: f32) -> f64 {
-        self.from + f64::from((x - self.left) / self.width.max(1.0)) * (self.to - self.from)
-    }
-
-    pub fn points_per_sec(&self) -> f64 {
-        f64::from(self.width) / (self.to - self.from)
-    }
-
-    pub fn right(&self) -> f32 {
-        self.left + self.width
-    }
-}
 
 pub fn show(ui: &mut Ui, state: &State, out: Out) {
     if state.player.motion.is_none() {

@@ -4,7 +4,7 @@ use egui::epaint::Mesh;
 use egui::{Color32, Rect, Response, Sense, Shape, Stroke, StrokeKind, Ui, Vec2, WidgetType, pos2};
 use morec_db::labels::{DbSample, SampleState as Judged};
 
-use super::timeline::{NAMES, Scale};
+use super::scale::{NAMES, Scale};
 use super::{Out, widgets};
 use crate::state::{Command, Drag, Grip, PlayCommand, State, TimelineCommand};
 use crate::theme::Colours;

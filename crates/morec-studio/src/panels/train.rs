@@ -1,8 +1,8 @@
 //! Training: what is learned, how it went, how good it is on what it was not taught.
 
-use egui::{CentralPanel, Context, Frame, Margin, Rect, RichText, ScrollArea, SidePanel, Ui, Vec2};
+use egui::{CentralPanel, Context, Frame, Margin, RichText, ScrollArea, SidePanel, Ui};
 
-use super::{Out, matrix, moments, padded, player, thesis, view, widgets};
+use super::{Out, matrix, moments, padded, thesis, view, widgets};
 use crate::format;
 use crate::state::{Command, FileCommand, State, TrainCommand};
 use crate::theme::Colours;
@@ -25,13 +25,7 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
         .width_range(280.0..=620.0)
         .show(ctx, |ui| {
             let height = (0.52 * ui.available_height()).clamp(160.0, 420.0);
-            let rect =
-                Rect::from_min_size(ui.cursor().min, Vec2::new(ui.available_width(), height));
-            ui.scope_builder(egui::UiBuilder::new().max_rect(rect), |ui| {
-                view::clip(ui, state, out)
-            });
-            ui.advance_cursor_after_rect(rect);
-            player::transport(ui, state, out);
+            view::clip_over_transport(ui, state, height, out);
             moments::show(ui, state, out);
         });
     CentralPanel::default().frame(padded(&c)).show(ctx, |ui| {

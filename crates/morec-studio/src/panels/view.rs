@@ -4,8 +4,9 @@ use egui::{Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, WidgetType};
 use morec::kinematics::WorldPose;
 use morec::math::Vec3;
 
-use super::{Out, widgets};
-use crate::body::mesh::{BodyColours, Painter};
+use super::compare::Other;
+use super::{Out, player, widgets};
+use crate::body::mesh::Painter;
 use crate::body::{Body, Camera};
 use crate::jobs::load::ClipMotion;
 use crate::state::{Command, Panel, State, ViewCommand};
@@ -31,13 +32,15 @@ pub struct Scene<'a> {
     pub caption: Option<String>,
 }
 
-/// Somebody beside the performer.
-pub struct Other<'a> {
-    pub body: &'a Body,
-    pub pose: WorldPose,
-    pub palette: BodyColours,
-    /// Said at their feet.
-    pub caption: String,
+/// The performer of the clip that is shown, `height` points high, with the buttons of the player below.
+pub fn clip_over_transport(ui: &mut Ui, state: &State, height: f32, out: Out) {
+    let size = Vec2::new(ui.available_width(), height);
+    let rect = Rect::from_min_size(ui.cursor().min, size);
+    ui.scope_builder(egui::UiBuilder::new().max_rect(rect), |ui| {
+        clip(ui, state, out)
+    });
+    ui.advance_cursor_after_rect(rect);
+    player::transport(ui, state, out);
 }
 
 /// Draws the performer of the clip that is shown.

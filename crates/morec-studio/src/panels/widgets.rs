@@ -1,13 +1,20 @@
 //! Small parts that several panels draw.
 
 use egui::{
-    Align2, Button, Color32, FontId, Rect, Response, RichText, Sense, Stroke, StrokeKind, Ui, Vec2,
-    WidgetInfo, WidgetType,
+    Align2, Button, Color32, FontId, Frame, Margin, Rect, Response, RichText, Sense, Stroke,
+    StrokeKind, Ui, Vec2, WidgetInfo, WidgetType,
 };
 
-use super::Out;
 use crate::state::{Command, FileCommand};
 use crate::theme::Colours;
+
+/// Commands that a panel emits.
+pub type Out<'a> = &'a mut Vec<Command>;
+
+/// The frame of panels' contents.
+pub fn padded(c: &Colours) -> Frame {
+    Frame::new().fill(c.panel).inner_margin(Margin::same(12))
+}
 
 /// A heading of a section.
 pub fn section(ui: &mut Ui, text: &str) {

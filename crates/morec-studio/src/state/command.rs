@@ -250,3 +250,17 @@ pub enum TrainCommand {
     /// Plays the sample of this place that taught it.
     Sample(usize),
 }
+
+/// A file dialog.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Ask {
+    Open,
+    New,
+    Import,
+    ImportFolder,
+    Save,
+    ExportIndex,
+    ExportLabels(LabelFormat),
+    ExportClip(String),
+    ExportPage(String),
+}

@@ -1,25 +1,17 @@
 //! Everything the window shows, without a widget: tests apply commands to it without a window.
 
+mod actions;
 mod classes;
 mod columns;
 mod command;
 pub mod compare;
 mod crossval;
 pub mod cuts;
-mod files;
-mod groups;
-mod labels;
 pub mod layout;
 mod library;
-mod lines;
 pub mod live;
-mod outcomes;
 pub mod player;
-mod proposals;
-mod roles;
-mod shown;
 pub mod similar;
-mod thesis;
 pub mod timeline;
 mod train;
 
@@ -33,17 +25,16 @@ use morec::smooth::ChannelKind;
 use morec_db::{ClipId, ClipInfo};
 
 use crate::body::Camera;
-use crate::jobs::{Jobs, channel::ChannelCurve, cut::Curves, import, load::ClipMotion};
+use crate::jobs::{JobOutcome, Jobs, channel::ChannelCurve, cut::Curves, import, load::ClipMotion};
 use crate::store::{Store, Wake};
 
 pub use classes::Classes;
 pub use command::{
-    ClassCommand, Column, Command, FileCommand, LibraryCommand, Panel, TimelineCommand,
+    Ask, ClassCommand, Column, Command, FileCommand, LibraryCommand, Panel, TimelineCommand,
     TrainCommand, ViewCommand,
 };
 pub use compare::{Companions, CompareCommand};
 pub use cuts::CutCommand;
-pub use files::Ask;
 pub use library::Library;
 pub use live::{Live, LiveCommand};
 pub use player::{PlayCommand, Player, SPEEDS};
@@ -287,10 +278,13 @@ impl State {
         }
         self.motions.loading.push(clip);
         let path = store.path().to_owned();
-        self.jobs
-            .start("Reading a clip", false, &self.wake, move |progress| {
-                crate::jobs::load::load(&path, clip, progress)
-            });
+        self.jobs.start(
+            "Reading a clip",
+            false,
+            &self.wake,
+            JobOutcome::Loaded,
+            move |_| Ok(crate::jobs::load::load(&path, clip)),
+        );
     }
 
     pub(crate) fn complain(&mut self, text: impl Into<String>) {

@@ -1,27 +1,14 @@
 //! Training: the classes that are learned, the index, cross-validation, the method of 2009.
 
 use std::collections::BTreeSet;
-use std::path::Path;
 use std::sync::Arc;
 
 use morec::index::MotionIndex;
 use morec::train::TrainingReport;
-use morec_db::labels::DbSample;
 
 use super::crossval::CrossvalView;
-use super::lines::ShownCommand;
-use super::{Panel, State, TrainCommand};
-use crate::jobs::export::write_whole;
-use crate::jobs::judge::{self, LeftOut};
-use crate::jobs::load::ClipMotion;
 use crate::jobs::thesis::{Map, Thesis};
-use crate::jobs::{recognise, train};
-use crate::store::{Edit, Snapshot};
-
-/// The name under which an index is kept in the database.
-pub const INDEX: &str = "studio";
-const TRAINING: &str = "Training";
-const JUDGING: &str = "Judging";
+use crate::store::Snapshot;
 
 /// The training panel's own state.
 #[derive(Default)]
@@ -34,8 +21,8 @@ pub struct Train {
     /// Duration of training.
     pub secs: f64,
     /// The labels that taught the index, to know whether they have changed.
-    taught: u64,
-    now: u64,
+    pub(super) taught: u64,
+    pub(super) now: u64,
     pub judged: Option<CrossvalView>,
     /// The cell of the confusion matrix whose moments are listed; `None` lists the mistakes.
     pub cell: Option<(usize, usize)>,
@@ -63,168 +50,5 @@ impl Train {
             (s.clip, &s.class, extent).hash(&mut hasher);
         }
         self.now = hasher.finish();
-    }
-}
-
-/// The command that trains an index.
-fn train_line(db: &Path, classes: &[String], output: impl AsRef<Path>) -> ShownCommand {
-    let line = ShownCommand::new("morec train").with("--db", db);
-    line.list("--classes", classes).with("-o", output.as_ref())
-}
-
-impl State {
-    pub(super) fn apply_train(&mut self, command: TrainCommand) {
-        match command {
-            TrainCommand::Choose { class, on } => {
-                match on {
-                    true => self.train.without.remove(&class),
-                    false => self.train.without.insert(class),
-                };
-            }
-            TrainCommand::Train => self.start_training(),
-            TrainCommand::Judge => self.start_judging(),
-            TrainCommand::Cell(cell) => self.show_cell(cell),
-            TrainCommand::Moment(at) => self.go_to_moment(at),
-            TrainCommand::Keep(name) => {
-                let bytes = self.train.bytes.clone();
-                if !bytes.is_empty() {
-                    self.edit(Edit::KeepIndex { name, bytes });
-                }
-            }
-            TrainCommand::UseIndex(name) => self.use_index(&name),
-            TrainCommand::Thesis => self.train_thesis(),
-            TrainCommand::Branch(node) => self.train.branch = node,
-            TrainCommand::Sample(at) => self.play_taught(at),
-        }
-    }
-
-    /// The classes that are learned; none means all.
-    pub(super) fn chosen(&self) -> Vec<String> {
-        if self.train.without.is_empty() {
-            return Vec::new();
-        }
-        let Some(store) = &self.store else {
-            return Vec::new();
-        };
-        let names = store.snapshot.classes.iter().map(|c| &c.name);
-        names
-            .filter(|name| !self.train.without.contains(*name))
-            .cloned()
-            .collect()
-    }
-
-    /// Trains with what is labelled now; a training that is under way starts again.
-    pub(super) fn start_training(&mut self) {
-        let Some(store) = &self.store else { return };
-        if store.snapshot.accepted().next().is_none() {
-            self.complain("Nothing to learn from: label a few motions first");
-            return;
-        }
-        for job in self.jobs.running.iter().filter(|j| j.name == TRAINING) {
-            job.cancel();
-        }
-        let (db, classes) = (store.path().to_owned(), self.chosen());
-        self.train.taught = self.train.now;
-        self.show_line(train_line(&db, &classes, format!("{INDEX}.index")));
-        self.jobs
-            .start(TRAINING, true, &self.wake, move |progress| {
-                train::run(&db, &classes, progress)
-            });
-    }
-
-    fn start_judging(&mut self) {
-        let Some(store) = &self.store else { return };
-        let (db, classes) = (store.path().to_owned(), self.chosen());
-        let accepted = store.snapshot.accepted();
-        let taught: Vec<&DbSample> = accepted
-            .filter(|s| classes.is_empty() || classes.contains(&s.class))
-            .collect();
-        let people = taught.iter().filter_map(|s| s.subject.as_deref());
-        let clips: BTreeSet<_> = taught.iter().map(|s| s.clip).collect();
-        let by = LeftOut::of(people, clips.len());
-        let line = ShownCommand::new("morec crossval").with("--db", &db);
-        self.show_line(line.with("--by", by.option()).list("--classes", &classes));
-        self.jobs.start(JUDGING, true, &self.wake, move |progress| {
-            judge::judge(&db, &classes, progress)
-        });
-    }
-
-    /// True while an index is trained.
-    pub fn is_training(&self) -> bool {
-        self.jobs.is_running(TRAINING)
-    }
-
-    pub fn is_judging(&self) -> bool {
-        self.jobs.is_running(JUDGING)
-    }
-
-    pub(super) fn trained(&mut self, trained: train::TrainedIndex) {
-        let classes = crate::format::count(trained.report.classes.len(), "class");
-        self.say(format!("trained on {classes} in {:.1} s", trained.secs));
-        self.train.secs = trained.secs;
-        self.train.index = Some(trained.index);
-        self.train.bytes = trained.bytes;
-        self.train.report = Some(trained.report);
-        self.live.follow_index(self.train.index.as_ref());
-        if self.panel != Panel::Live
-            && let Some(motion) = self.player.motion.clone()
-        {
-            self.want_detections(&motion);
-        }
-    }
-
-    /// Starts recognition in the clip that is shown.
-    pub(super) fn want_detections(&mut self, motion: &Arc<ClipMotion>) {
-        self.detections = None;
-        let Some(index) = self.train.index.clone() else {
-            return;
-        };
-        let motion = motion.clone();
-        self.jobs
-            .start("Recognising", false, &self.wake, move |progress| {
-                recognise::clip(&index, &motion, progress)
-            });
-    }
-
-    fn use_index(&mut self, name: &str) {
-        let Some(store) = &self.store else { return };
-        let read = morec_db::MotionDb::open_read_only(store.path())
-            .and_then(|db| db.index(name))
-            .map_err(|e| e.to_string())
-            .and_then(|bytes| {
-                let index = MotionIndex::from_bytes(&bytes).map_err(|e| e.to_string())?;
-                Ok((index, bytes))
-            });
-        match read {
-            Ok((index, bytes)) => {
-                self.train.index = Some(Arc::new(index));
-                self.train.bytes = bytes;
-                self.train.report = None;
-                self.train.taught = self.train.now;
-                self.say(format!("index {name} is in use"));
-                self.command_line.clear();
-                self.live.follow_index(self.train.index.as_ref());
-                if let Some(motion) = self.player.motion.clone() {
-                    self.want_detections(&motion);
-                }
-            }
-            Err(why) => self.complain(format!("Index {name}: {why}")),
-        }
-    }
-
-    pub(super) fn export_index(&mut self, path: &Path) {
-        let name = crate::format::file_name(path);
-        if self.train.bytes.is_empty() {
-            self.complain("There is no index yet: train first");
-            return;
-        }
-        match write_whole(path, &self.train.bytes) {
-            Ok(()) => self.say(format!("{name} written")),
-            Err(why) => self.complain(format!("{name}: not written: {why}")),
-        }
-        if let Some(store) = &self.store {
-            let line = train_line(store.path(), &self.chosen(), path);
-            self.show_line(line);
-        }
     }
 }

@@ -4,6 +4,7 @@
 //! a later frame. What another program changes arrives likewise, within a second.
 
 mod edit;
+mod message;
 mod snapshot;
 mod worker;
 
@@ -14,21 +15,10 @@ use std::sync::mpsc::{Receiver, Sender};
 use morec_db::DbError;
 
 pub use edit::{BY, Edit};
+pub use message::{StoreMessage, Wake};
 pub use snapshot::Snapshot;
 pub use worker::sentence;
 use worker::{Reply, Request};
-
-/// Calls for a new frame, from any thread.
-pub type Wake = Arc<dyn Fn() + Send + Sync>;
-
-/// A message of the database thread.
-#[derive(Debug, Clone, PartialEq)]
-pub enum StoreMessage {
-    /// An edit was made.
-    Done(String),
-    /// An edit was not made, and why.
-    Failed(String),
-}
 
 /// An open database.
 pub struct Store {

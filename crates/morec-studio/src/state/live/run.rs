@@ -7,8 +7,6 @@ use morec::live::{EarlyDetection, Event, Frame, Model, PerformerId, Phase};
 use super::feed::{Feed, SourceItem};
 use super::tracked::LivePerformer;
 
-/// Length of the stream that is kept for looking back, seconds.
-pub const KEPT_SECS: f64 = 300.0;
 /// A stream that says nothing for so long has been lost, seconds on the wall.
 const LOST_SECS: f64 = 1.5;
 /// Most performers that are followed; minutes of poses are kept of each.

@@ -12,8 +12,10 @@ use morec::live::{
 use morec::math::Vec3;
 
 use super::moved;
-use super::run::KEPT_SECS;
 use crate::body::Body;
+
+/// Length of the stream that is kept for looking back, seconds.
+pub const KEPT_SECS: f64 = 300.0;
 
 /// A performer.
 pub struct LivePerformer {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use morec::roles::{Role, RoleMap};
 use morec_db::ClipId;
 
-use super::State;
+use crate::state::State;
 use crate::store::{Edit, Snapshot};
 
 impl State {
@@ -27,7 +27,7 @@ impl State {
     }
 
     /// A joint plays a part of the body, in place of what it played before.
-    pub(super) fn give_role(&mut self, role: Role, joint: Option<usize>) {
+    pub(in crate::state) fn give_role(&mut self, role: Role, joint: Option<usize>) {
         let Some(motion) = &self.player.motion else {
             return;
         };
@@ -50,7 +50,7 @@ impl State {
     }
 
     /// Clips whose roles have changed are decoded anew; the one that is shown stays where it is.
-    pub(super) fn roles_changed(&mut self, snapshot: &Snapshot) {
+    pub(in crate::state) fn roles_changed(&mut self, snapshot: &Snapshot) {
         self.motions.forget_changed(&snapshot.roles);
         let Some(shown) = self.player.motion.clone() else {
             return;
@@ -64,7 +64,7 @@ impl State {
     }
 
     /// A clip that was decoded anew takes the place of what is shown of it.
-    pub(super) fn reopened(&mut self, motion: &Arc<crate::jobs::load::ClipMotion>) {
+    pub(in crate::state) fn reopened(&mut self, motion: &Arc<crate::jobs::load::ClipMotion>) {
         if self.reopening.take_if(|id| *id == motion.id).is_none() {
             return;
         }

@@ -1,16 +1,18 @@
 //! Marking: a stretch of the stream becomes a sample, a take becomes a clip.
 
-use super::TEACHING;
+use super::lines::ShownCommand;
+use super::live::TEACHING;
+use crate::jobs::JobOutcome;
 use crate::jobs::teach::{Lesson, Taught, teach};
 use crate::state::State;
-use crate::state::lines::ShownCommand;
+use crate::state::live::LivePerformer;
 
 /// Margin kept before and after a marked stretch, seconds.
 const AROUND_SECS: f64 = 0.7;
 
 impl State {
     /// Keeps the selected stretch, or the last motion, as a sample of a class, and trains anew.
-    pub(super) fn mark(&mut self, class: &str) {
+    pub(in crate::state) fn mark(&mut self, class: &str) {
         let Some(store) = self.store.as_ref().map(|s| s.path().to_owned()) else {
             return;
         };
@@ -26,9 +28,8 @@ impl State {
             self.say("nothing has moved yet that could be marked");
             return;
         };
-        let cut = |performer: &super::LivePerformer| {
-            performer.cut_out(start - AROUND_SECS, stop + AROUND_SECS)
-        };
+        let cut =
+            |performer: &LivePerformer| performer.cut_out(start - AROUND_SECS, stop + AROUND_SECS);
         let Some((recording, origin)) = run.watched().and_then(cut) else {
             self.complain("That part of the stream is no longer kept");
             return;
@@ -50,8 +51,8 @@ impl State {
     fn keep(&mut self, db: std::path::PathBuf, lesson: Lesson) {
         let folder = self.scratch();
         self.jobs
-            .start(TEACHING, false, &self.wake, move |progress| {
-                teach(&db, &folder, &lesson, progress)
+            .start(TEACHING, false, &self.wake, JobOutcome::Taught, move |_| {
+                teach(&db, &folder, &lesson)
             });
     }
 
@@ -72,7 +73,7 @@ impl State {
         }
     }
 
-    pub(super) fn record(&mut self) {
+    pub(in crate::state) fn record(&mut self) {
         if self.live.take.is_some() {
             self.keep_take();
         } else if self.live.countdown.take().is_some() {
@@ -84,7 +85,7 @@ impl State {
         }
     }
 
-    pub(super) fn keep_take(&mut self) {
+    pub(in crate::state) fn keep_take(&mut self) {
         let Some(recording) = self.live.take.take() else {
             return;
         };

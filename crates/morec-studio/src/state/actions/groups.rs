@@ -2,36 +2,42 @@
 
 use morec_db::labels::{NewSample, SampleId, SampleState as Judged};
 
-use super::State;
 use super::lines::ShownCommand;
-use crate::jobs::{group, propose};
+use crate::jobs::{JobOutcome, group, propose};
+use crate::state::State;
 use crate::store::Edit;
 
 impl State {
-    pub(super) fn propose(&mut self) {
+    pub(in crate::state) fn propose(&mut self) {
         let Some(store) = &self.store else { return };
         let db = store.path().to_owned();
         self.show_line(ShownCommand::new("morec db propose").word(&db));
-        self.jobs
-            .start("Looking for more", true, &self.wake, move |progress| {
-                propose::propose(&db, progress)
-            });
+        self.jobs.start(
+            "Looking for more",
+            true,
+            &self.wake,
+            JobOutcome::Proposed,
+            move |progress| propose::propose(&db, progress),
+        );
     }
 
-    pub(super) fn group(&mut self, cuts: bool) {
+    pub(in crate::state) fn group(&mut self, cuts: bool) {
         let Some(store) = &self.store else { return };
         let db = store.path().to_owned();
         let of = if cuts { "cuts" } else { "labels" };
         let line = ShownCommand::new("morec group").word(&db).with("--of", of);
         self.show_line(line.with("--method", "hierarchy"));
-        self.jobs
-            .start("Grouping", true, &self.wake, move |progress| {
-                group::group(&db, cuts, progress)
-            });
+        self.jobs.start(
+            "Grouping",
+            true,
+            &self.wake,
+            JobOutcome::Grouped,
+            move |progress| group::group(&db, cuts, progress),
+        );
     }
 
     /// A group's samples become a class; cuts in it become labels of the class.
-    pub(super) fn name_group(&mut self, group: usize, name: &str) {
+    pub(in crate::state) fn name_group(&mut self, group: usize, name: &str) {
         let Some(groups) = &self.classes.groups else {
             return;
         };

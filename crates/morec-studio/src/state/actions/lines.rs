@@ -6,7 +6,7 @@ use morec::roles::Role;
 use morec_db::ClipId;
 use morec_db::labels::{NewSample, SampleId};
 
-use super::State;
+use crate::state::State;
 use crate::store::{Edit, Snapshot};
 
 /// Lines for more clips or labels than these would be of no use to anybody.
@@ -14,7 +14,7 @@ const MOST: usize = 50;
 
 /// A command line in the making; values are quoted for a POSIX shell.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct ShownCommand(String);
+pub(in crate::state) struct ShownCommand(String);
 
 impl ShownCommand {
     /// The program and its subcommands, as `morec db clips`.
@@ -129,12 +129,12 @@ fn each_clip(
 
 impl State {
     /// Shows the command line of what was asked for.
-    pub(super) fn show_line(&mut self, line: impl Into<Option<ShownCommand>>) {
+    pub(in crate::state) fn show_line(&mut self, line: impl Into<Option<ShownCommand>>) {
         self.command_line = line.into().map_or_else(String::new, |line| line.0);
     }
 
     /// The command line of an edit; `None` where no command does the same.
-    pub(super) fn line_of(&self, edit: &Edit) -> Option<ShownCommand> {
+    pub(in crate::state) fn line_of(&self, edit: &Edit) -> Option<ShownCommand> {
         let store = self.store.as_ref()?;
         let (db, snapshot) = (store.path(), &*store.snapshot);
         let morec = |command: &str| ShownCommand::new(&format!("morec {command}")).word(db);
@@ -168,8 +168,7 @@ impl State {
             Edit::Judge { ids, state } => {
                 let line = |id: &SampleId| {
                     let s = snapshot.sample(*id)?;
-                    let sample = super::labels::new_of(s);
-                    let line = label_line(db, snapshot, &sample)?;
+                    let line = label_line(db, snapshot, &NewSample::from(s))?;
                     Some(line.with("--state", state.name()))
                 };
                 let lines: Option<Vec<ShownCommand>> = ids.iter().map(line).collect();

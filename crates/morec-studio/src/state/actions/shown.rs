@@ -5,13 +5,14 @@ use std::sync::Arc;
 use morec::smooth::ChannelKind;
 use morec_db::ClipId;
 
-use super::{Panel, State, ViewCommand};
 use crate::body::Camera;
+use crate::jobs::JobOutcome;
 use crate::jobs::load::ClipMotion;
+use crate::state::{Panel, PlayCommand, State, ViewCommand};
 
 impl State {
     /// Shows a clip, and a stretch of it in a loop if one is named, once it is decoded.
-    pub(super) fn open_clip(&mut self, clip: ClipId, stretch: Option<(f64, f64)>) {
+    pub(in crate::state) fn open_clip(&mut self, clip: ClipId, stretch: Option<(f64, f64)>) {
         self.library.selected = vec![clip];
         if let Some(motion) = self.motions.get(clip).cloned() {
             self.show_motion(motion, stretch);
@@ -26,7 +27,11 @@ impl State {
     }
 
     /// Shows a clip that is decoded.
-    pub(super) fn show_motion(&mut self, motion: Arc<ClipMotion>, stretch: Option<(f64, f64)>) {
+    pub(in crate::state) fn show_motion(
+        &mut self,
+        motion: Arc<ClipMotion>,
+        stretch: Option<(f64, f64)>,
+    ) {
         self.pending = None;
         let same = self
             .player
@@ -51,7 +56,7 @@ impl State {
             self.look_anew(&motion);
         }
         if let Some((start, stop)) = stretch {
-            self.player.apply(&super::PlayCommand::Stretch(start, stop));
+            self.player.apply(&PlayCommand::Stretch(start, stop));
             let margin = (stop - start).max(1.0);
             self.timeline.from_secs = (start - 2.0 * margin).max(0.0);
             self.timeline.to_secs = stop + 2.0 * margin;
@@ -60,7 +65,7 @@ impl State {
     }
 
     /// Asks for all that is computed of the clip that is shown.
-    pub(super) fn look_anew(&mut self, motion: &Arc<ClipMotion>) {
+    pub(in crate::state) fn look_anew(&mut self, motion: &Arc<ClipMotion>) {
         self.curves = None;
         self.want_curves(motion);
         self.want_detections(motion);
@@ -74,13 +79,17 @@ impl State {
             job.cancel();
         }
         let motion = motion.clone();
-        self.jobs.start(CURVES, false, &self.wake, move |progress| {
-            crate::jobs::cut::curves(&motion, progress)
-        });
+        self.jobs.start(
+            CURVES,
+            false,
+            &self.wake,
+            JobOutcome::Curves,
+            move |progress| crate::jobs::cut::curves(&motion, progress),
+        );
     }
 
     /// Reads a channel of the clip that is shown.
-    pub(super) fn want_channel(&mut self, wanted: Option<(usize, ChannelKind)>) {
+    pub(in crate::state) fn want_channel(&mut self, wanted: Option<(usize, ChannelKind)>) {
         self.channel = None;
         self.channel_wanted = wanted;
         let (Some((joint, kind)), Some(motion)) = (wanted, &self.player.motion) else {
@@ -92,13 +101,16 @@ impl State {
         }
         let Some(store) = &self.store else { return };
         let (db, clip) = (store.path().to_owned(), motion.id);
-        self.jobs
-            .start("Reading a channel", false, &self.wake, move |_| {
-                crate::jobs::channel::read(&db, clip, joint, kind)
-            });
+        self.jobs.start(
+            "Reading a channel",
+            false,
+            &self.wake,
+            JobOutcome::Channel,
+            move |_| crate::jobs::channel::read(&db, clip, joint, kind),
+        );
     }
 
-    pub(super) fn look(&mut self, look: ViewCommand) {
+    pub(in crate::state) fn look(&mut self, look: ViewCommand) {
         let heading = self.heading();
         let camera = &mut self.camera;
         match look {
@@ -137,4 +149,4 @@ impl State {
 }
 
 /// Name of the job that computes cuts and misfit of the clip that is shown.
-pub(super) const CURVES: &str = "Looking at the clip";
+pub(in crate::state) const CURVES: &str = "Looking at the clip";

@@ -1,7 +1,7 @@
 //! Takes the results of threads, once a frame.
 
-use super::{Panel, State};
-use crate::jobs::JobOutcome;
+use crate::jobs::{JobError, JobOutcome};
+use crate::state::{Panel, Player, State};
 use crate::store::StoreMessage;
 
 impl State {
@@ -58,7 +58,7 @@ impl State {
             .as_ref()
             .is_some_and(|m| snapshot.clip(m.id).is_none());
         if gone {
-            self.player = super::Player::new();
+            self.player = Player::new();
             self.curves = None;
         }
         if self.player.motion.is_none()
@@ -141,7 +141,7 @@ impl State {
                 self.train.cell = None;
                 self.train.moment = None;
             }
-            JobOutcome::Recognised { clip, found } => self.detections = Some((clip, found)),
+            JobOutcome::Recognised((clip, found)) => self.detections = Some((clip, found)),
             JobOutcome::Resensed(found) => self.live.resensed = Some(found),
             JobOutcome::Taught(taught) => {
                 self.taught(&taught);
@@ -153,13 +153,13 @@ impl State {
             JobOutcome::Thesis(thesis) => self.thesis_trained(thesis),
             JobOutcome::Map(map) => self.train.map = Some(map),
             JobOutcome::Written(said) => self.say(said),
-            JobOutcome::Failed(why) => {
+            JobOutcome::Stopped(JobError::Failed(why)) => {
                 if name == super::live::TEACHING {
                     self.live.teaching = false;
                 }
                 self.complain(why);
             }
-            JobOutcome::Cancelled => {
+            JobOutcome::Stopped(JobError::Cancelled) => {
                 // What looks at a clip is cancelled whenever another is shown.
                 let quiet = [
                     super::shown::CURVES,

@@ -4,29 +4,16 @@ use std::path::{Path, PathBuf};
 
 use morec::player::Mark;
 use morec_db::ClipId;
-use morec_db::exchange::LabelFormat;
 
 use super::lines::ShownCommand;
 use super::train::INDEX;
-use super::{Classes, FileCommand, Library, Live, Motions, Player, State, TimelineState, Train};
 use crate::format::file_name;
 use crate::jobs::export::{self, Export};
-use crate::jobs::{Jobs, example, import};
+use crate::jobs::{JobOutcome, Jobs, example, import};
+use crate::state::{
+    Ask, Classes, FileCommand, Library, Live, Motions, Player, State, TimelineState, Train,
+};
 use crate::store::Store;
-
-/// A file dialog.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Ask {
-    Open,
-    New,
-    Import,
-    ImportFolder,
-    Save,
-    ExportIndex,
-    ExportLabels(LabelFormat),
-    ExportClip(String),
-    ExportPage(String),
-}
 
 impl State {
     /// Opens what was named on the command line: a database, clips, or nothing, which is the example.
@@ -46,7 +33,7 @@ impl State {
         self.open_store(path, false);
     }
 
-    pub(super) fn open_store(&mut self, path: &Path, temporary: bool) {
+    pub(in crate::state) fn open_store(&mut self, path: &Path, temporary: bool) {
         match Store::open(path, temporary, self.wake.clone()) {
             Ok(store) => {
                 let first = store.snapshot.clips.first().map(|c| c.id);
@@ -101,7 +88,7 @@ impl State {
     }
 
     /// Folder for files that are kept for a moment.
-    pub(super) fn scratch(&mut self) -> PathBuf {
+    pub(in crate::state) fn scratch(&mut self) -> PathBuf {
         self.own_folder().unwrap_or_else(std::env::temp_dir)
     }
 
@@ -110,10 +97,13 @@ impl State {
             return;
         };
         self.show_line(ShownCommand::new("morec-studio"));
-        self.jobs
-            .start("Making an example", true, &self.wake, move |progress| {
-                example::make(&folder, progress)
-            });
+        self.jobs.start(
+            "Making an example",
+            true,
+            &self.wake,
+            JobOutcome::Made,
+            move |progress| example::make(&folder, progress),
+        );
     }
 
     fn open_clips(&mut self, clips: &[PathBuf]) {
@@ -123,13 +113,16 @@ impl State {
         let clips = clips.to_vec();
         let line = ShownCommand::new("morec-studio");
         self.show_line(clips.iter().fold(line, ShownCommand::word));
-        self.jobs
-            .start("Importing clips", true, &self.wake, move |progress| {
-                example::of_clips(&folder, &clips, progress)
-            });
+        self.jobs.start(
+            "Importing clips",
+            true,
+            &self.wake,
+            JobOutcome::Made,
+            move |progress| example::of_clips(&folder, &clips, progress),
+        );
     }
 
-    pub(super) fn apply_file(&mut self, command: FileCommand) {
+    pub(in crate::state) fn apply_file(&mut self, command: FileCommand) {
         match command {
             FileCommand::AskOpen => self.ask = Some(Ask::Open),
             FileCommand::AskNew => self.ask = Some(Ask::New),
@@ -171,10 +164,13 @@ impl State {
         let db = store.path().to_owned();
         let line = ShownCommand::new("morec db import").word(&db);
         self.show_line(paths.iter().fold(line, ShownCommand::word));
-        self.jobs
-            .start("Importing clips", true, &self.wake, move |progress| {
-                import::import(&db, &paths, progress)
-            });
+        self.jobs.start(
+            "Importing clips",
+            true,
+            &self.wake,
+            JobOutcome::Imported,
+            move |progress| import::import(&db, &paths, progress),
+        );
     }
 
     fn shown_name(&self) -> Option<String> {
@@ -201,9 +197,13 @@ impl State {
         let line = export_line(store, self.train.index.is_some(), &what, &path);
         let db = store.path().to_owned();
         self.show_line(line);
-        self.jobs.start("Exporting", true, &self.wake, move |_| {
-            export::export(&db, &what, &path)
-        });
+        self.jobs.start(
+            "Exporting",
+            true,
+            &self.wake,
+            JobOutcome::Written,
+            move |_| export::export(&db, &what, &path),
+        );
     }
 
     /// A copy of the database somewhere else, which is then the one that is open.
@@ -246,7 +246,7 @@ fn copy_whole(from: &Path, to: &Path) -> Result<(), String> {
     })
 }
 
-pub(super) fn is_database(path: &Path) -> bool {
+pub(in crate::state) fn is_database(path: &Path) -> bool {
     let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
     ["mdb", "db", "sqlite"].iter().any(|known| ending == *known)
 }

@@ -3,16 +3,17 @@
 use std::sync::Arc;
 
 use super::lines::ShownCommand;
-use super::{LibraryCommand, State};
+use crate::jobs::JobOutcome;
 use crate::jobs::load::ClipMotion;
 use crate::jobs::thesis::{self, Thesis};
+use crate::state::{LibraryCommand, State};
 
 const THESIS: &str = "Training the method of 2009";
 /// Name of the job that maps confidences.
-pub(super) const MAPPING: &str = "Mapping confidences";
+pub(in crate::state) const MAPPING: &str = "Mapping confidences";
 
 impl State {
-    pub(super) fn train_thesis(&mut self) {
+    pub(in crate::state) fn train_thesis(&mut self) {
         let Some(store) = &self.store else { return };
         if store.snapshot.accepted().next().is_none() {
             self.complain("Nothing to learn from: label a few motions first");
@@ -22,12 +23,16 @@ impl State {
         let line = ShownCommand::new("morec train").with("--db", &db);
         let line = line.with("--method", "svrdm").list("--classes", &classes);
         self.show_line(line.with("-o", "2009.index"));
-        self.jobs.start(THESIS, true, &self.wake, move |progress| {
-            thesis::run(&db, &classes, progress)
-        });
+        self.jobs.start(
+            THESIS,
+            true,
+            &self.wake,
+            JobOutcome::Thesis,
+            move |progress| thesis::run(&db, &classes, progress),
+        );
     }
 
-    pub(super) fn thesis_trained(&mut self, thesis: Arc<Thesis>) {
+    pub(in crate::state) fn thesis_trained(&mut self, thesis: Arc<Thesis>) {
         let samples = crate::format::count(thesis.samples.len(), "sample");
         self.say(format!("the method of 2009 is trained on {samples}"));
         let first = (0..thesis.nodes.len()).find(|&at| thesis.branch(at).is_some());
@@ -40,7 +45,7 @@ impl State {
     }
 
     /// The confidences of the method of 2009 over the clip that is shown.
-    pub(super) fn want_map(&mut self, motion: &Arc<ClipMotion>) {
+    pub(in crate::state) fn want_map(&mut self, motion: &Arc<ClipMotion>) {
         self.train.map = None;
         let Some(thesis) = self.train.thesis.clone() else {
             return;
@@ -49,10 +54,13 @@ impl State {
             job.cancel();
         }
         let motion = motion.clone();
-        self.jobs
-            .start(MAPPING, false, &self.wake, move |progress| {
-                thesis::map(&thesis.model, &motion, progress)
-            });
+        self.jobs.start(
+            MAPPING,
+            false,
+            &self.wake,
+            JobOutcome::Map,
+            move |progress| thesis::map(&thesis.model, &motion, progress),
+        );
     }
 
     pub fn is_training_thesis(&self) -> bool {
@@ -60,7 +68,7 @@ impl State {
     }
 
     /// Plays a sample that taught the tree, in a loop.
-    pub(super) fn play_taught(&mut self, at: usize) {
+    pub(in crate::state) fn play_taught(&mut self, at: usize) {
         let thesis = self.train.thesis.clone();
         let Some(sample) = thesis.as_ref().and_then(|t| t.samples.get(at)) else {
             return;

@@ -3,11 +3,11 @@
 use morec_db::labels::{DbSample, SampleId, SampleState as Judged};
 use morec_db::{Proposal, most_informative};
 
-use super::{Panel, State};
+use crate::state::{Panel, State};
 use crate::store::Edit;
 
 impl State {
-    pub(super) fn judge(&mut self, id: SampleId, state: Judged) {
+    pub(in crate::state) fn judge(&mut self, id: SampleId, state: Judged) {
         self.edit(Edit::Judge {
             ids: vec![id],
             state,
@@ -42,7 +42,7 @@ impl State {
     }
 
     /// Shows the next proposal, other than one that was just judged.
-    pub(super) fn next_doubtful(&mut self, not: Option<SampleId>) {
+    pub(in crate::state) fn next_doubtful(&mut self, not: Option<SampleId>) {
         let next = self.doubtful().into_iter().find(|s| Some(s.id) != not);
         let Some((id, clip, start, stop)) = next.map(|s| (s.id, s.clip, s.start_secs, s.stop_secs))
         else {

@@ -3,13 +3,14 @@
 use morec_db::labels::{DbSample, NewSample, SampleState as Judged};
 
 use super::lines::ShownCommand;
-use super::{Drag, Grip, State, TimelineCommand};
+use crate::jobs::JobOutcome;
 use crate::jobs::cut::{self, SegmentMethod};
+use crate::state::{CutCommand, Drag, Grip, State, TimelineCommand};
 use crate::store::Edit;
 
 impl State {
     /// Sends an edit to the database, and says which command would do it.
-    pub(super) fn edit(&mut self, edit: Edit) {
+    pub(in crate::state) fn edit(&mut self, edit: Edit) {
         // Another action's command would mislead: without one of its own there is none.
         let line = self.line_of(&edit);
         self.show_line(line);
@@ -54,7 +55,7 @@ impl State {
         marks
     }
 
-    pub(super) fn apply_timeline(&mut self, command: TimelineCommand) {
+    pub(in crate::state) fn apply_timeline(&mut self, command: TimelineCommand) {
         let (end, rate) = (self.player.secs(), self.player.rate_hz());
         let timeline = &mut self.timeline;
         match command {
@@ -88,7 +89,7 @@ impl State {
             TimelineCommand::Merge => self.merge(),
             TimelineCommand::Remove => {
                 if let Some(cut) = self.timeline.cut {
-                    self.apply_cuts(super::CutCommand::Remove(cut));
+                    self.apply_cuts(CutCommand::Remove(cut));
                     return;
                 }
                 let ids: Vec<_> = self.selected().iter().map(|s| s.id).collect();
@@ -185,7 +186,7 @@ impl State {
             start_secs,
             stop_secs,
             whole_clip: false,
-            ..new_of(sample)
+            ..NewSample::from(sample)
         };
         let edit = Edit::Replace {
             what: format!("split {} of {}", sample.class, sample.clip_name),
@@ -212,14 +213,14 @@ impl State {
             new: vec![NewSample {
                 stop_secs,
                 whole_clip: false,
-                ..new_of(first)
+                ..NewSample::from(*first)
             }],
         };
         self.edit(edit);
     }
 
     /// Labels a stretch of the clip that is shown.
-    pub(super) fn label(&mut self, class: &str, start_secs: f64, stop_secs: f64) {
+    pub(in crate::state) fn label(&mut self, class: &str, start_secs: f64, stop_secs: f64) {
         let Some(motion) = &self.player.motion else {
             return;
         };
@@ -245,10 +246,13 @@ impl State {
         let db = store.path().to_owned();
         let line = ShownCommand::new("morec cut").word(&db);
         self.show_line(line.with("--method", method.name()));
-        self.jobs
-            .start("Cutting clips", true, &self.wake, move |progress| {
-                cut::cut(&db, method, &[], progress)
-            });
+        self.jobs.start(
+            "Cutting clips",
+            true,
+            &self.wake,
+            JobOutcome::Cut,
+            move |progress| cut::cut(&db, method, &[], progress),
+        );
     }
 }
 
@@ -257,18 +261,5 @@ fn moved(grip: Grip, start: f64, stop: f64, by: f64) -> (f64, f64) {
         Grip::Start => (start + by, stop),
         Grip::Stop => (start, stop + by),
         Grip::Whole => (start + by, stop + by),
-    }
-}
-
-/// A sample as a new one.
-pub(super) fn new_of(sample: &DbSample) -> NewSample {
-    NewSample {
-        clip: sample.clip,
-        class: sample.class.clone(),
-        start_secs: sample.start_secs,
-        stop_secs: sample.stop_secs,
-        whole_clip: sample.whole_clip,
-        state: sample.state,
-        score: sample.score,
     }
 }

@@ -1,0 +1,177 @@
+//! Classes: labels by their keys, classes added, renamed, merged.
+
+use morec_db::labels::{SampleId, SampleState as Judged};
+
+use crate::state::classes::Held;
+use crate::state::{ClassCommand, State, TimelineCommand};
+use crate::store::Edit;
+
+/// A key that is held for less is a tap, seconds on the wall.
+const TAP_SECS: f64 = 0.22;
+/// Taps further apart than this are no repetitions of one another, seconds of the clip.
+const TAPS_SECS: f64 = 6.0;
+/// Cuts, ends of stillness nearer than this attract labels made while playing, seconds.
+const ATTRACTED_SECS: f64 = 0.2;
+
+impl State {
+    pub(in crate::state) fn apply_classes(&mut self, command: ClassCommand) {
+        match command {
+            ClassCommand::Add(name) => self.add_class(&name),
+            ClassCommand::Rename { from, to } => self.rename_class(&from, to.trim()),
+            ClassCommand::Remove(name) => match self.classes.added.contains(&name) {
+                true => {
+                    self.classes.added.retain(|n| *n != name);
+                    self.classes.order.retain(|n| *n != name);
+                }
+                false => self.edit(Edit::RemoveClass(name)),
+            },
+            ClassCommand::Key { slot, down: true } => self.key_down(slot),
+            ClassCommand::Key { slot, down: false } => self.key_up(slot),
+            ClassCommand::Propose => self.propose(),
+            ClassCommand::Group { cuts } => self.group(cuts),
+            ClassCommand::Depth(depth) => self.classes.depth = depth.max(1),
+            ClassCommand::CloseGroups => self.classes.groups = None,
+            ClassCommand::NameGroup { group, name } => self.name_group(group, &name),
+            ClassCommand::Move { id, class } => {
+                let other = self
+                    .store
+                    .as_ref()
+                    .and_then(|s| s.snapshot.sample(id))
+                    .is_some_and(|s| s.class != class);
+                if other {
+                    self.edit(Edit::Reclass {
+                        ids: vec![id],
+                        class,
+                    });
+                }
+            }
+            ClassCommand::Accept(id) => self.judge(id, Judged::Accepted),
+            ClassCommand::Reject(id) => self.judge(id, Judged::Rejected),
+            ClassCommand::NextDoubtful => self.next_doubtful(None),
+            ClassCommand::Renaming(now) => self.classes.renaming = now,
+            ClassCommand::Adding(name) => self.classes.adding = name,
+        }
+    }
+
+    fn add_class(&mut self, name: &str) {
+        let name = name.trim();
+        self.classes.adding.clear();
+        if name.is_empty() || self.classes.order.iter().any(|n| n == name) {
+            return;
+        }
+        self.classes.added.push(name.to_owned());
+        self.classes.order.push(name.to_owned());
+    }
+
+    fn rename_class(&mut self, from: &str, to: &str) {
+        self.classes.renaming = None;
+        if to.is_empty() || from == to {
+            return;
+        }
+        if self.classes.order.iter().any(|n| n == to) {
+            self.complain(format!("There is a class {to} already"));
+            return;
+        }
+        // It keeps its place, its key and its colour.
+        for name in self.classes.order.iter_mut().filter(|n| *n == from) {
+            to.clone_into(name);
+        }
+        match self.classes.added.iter_mut().find(|n| *n == from) {
+            Some(added) => to.clone_into(added),
+            None => self.edit(Edit::RenameClass {
+                from: from.to_owned(),
+                to: to.to_owned(),
+            }),
+        }
+    }
+
+    /// The class of a key; a key beyond the classes there are makes one.
+    pub(in crate::state) fn class_of_key(&mut self, slot: usize) -> String {
+        if slot >= self.classes.order.len() {
+            let name = self.classes.free_name();
+            self.add_class(&name);
+            return name;
+        }
+        self.classes.order[slot].clone()
+    }
+
+    fn key_down(&mut self, slot: usize) {
+        if self.player.motion.is_none() || self.classes.held.is_some() {
+            return;
+        }
+        let (held, slot) = (
+            self.class_of_key(slot),
+            slot.min(self.classes.order.len() - 1),
+        );
+        // With a selection and nothing playing a key says what the selection is.
+        if !self.player.playing {
+            if self.timeline.range.is_some() {
+                self.apply_timeline(TimelineCommand::LabelRange(held));
+                return;
+            }
+            let ids: Vec<SampleId> = self.selected().iter().map(|s| s.id).collect();
+            if !ids.is_empty() {
+                self.edit(Edit::Reclass { ids, class: held });
+                return;
+            }
+            self.say("play (Space) and hold the key while the motion passes, or select a stretch");
+            return;
+        }
+        self.classes.held = Some(Held {
+            slot,
+            since_secs: self.player.at_secs,
+            wall_secs: 0.0,
+        });
+    }
+
+    fn key_up(&mut self, slot: usize) {
+        let Some(held) = self.classes.held.take_if(|h| h.slot == slot) else {
+            return;
+        };
+        let class = self.class_of_key(slot);
+        let (start, stop) = (held.since_secs, self.player.at_secs);
+        if held.wall_secs >= TAP_SECS {
+            self.classes.tapped = None;
+            // Hands are slow: an end near a cut or near stillness is meant to be there.
+            let (start, stop) = (self.attracted(start), self.attracted(stop));
+            self.label(&class, start, stop);
+            return;
+        }
+        // Each tap begins a repetition and ends the one before.
+        let at = start;
+        match self.classes.tapped {
+            Some((same, last)) if same == slot && at > last && at - last <= TAPS_SECS => {
+                self.label(&class, last, at);
+            }
+            _ => self.say(format!(
+                "{class}: tap again where the next repetition begins"
+            )),
+        }
+        self.classes.tapped = Some((slot, at));
+    }
+
+    fn attracted(&self, secs: f64) -> f64 {
+        let Some(curves) = self.curves.as_ref().filter(|_| self.timeline.snap) else {
+            return secs;
+        };
+        let still = curves.still.iter().flat_map(|s| [s.0, s.1]);
+        let marks = self.cuts().into_iter().chain(still);
+        marks
+            .filter(|m| (m - secs).abs() <= ATTRACTED_SECS)
+            .min_by(|a, b| (a - secs).abs().total_cmp(&(b - secs).abs()))
+            .unwrap_or(secs)
+    }
+
+    /// A key that is down when another clip or panel is shown labels nothing.
+    pub(in crate::state) fn release_keys(&mut self) {
+        self.classes.held = None;
+        self.classes.tapped = None;
+    }
+
+    /// Counts how long a key has been down.
+    pub fn tick_keys(&mut self, dt: f64) {
+        if let Some(held) = &mut self.classes.held {
+            held.wall_secs += dt;
+        }
+    }
+}

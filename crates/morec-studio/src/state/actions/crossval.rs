@@ -1,0 +1,81 @@
+//! The result of a cross-validation: cells and moments chosen, compared, played.
+
+use crate::jobs::judge::Moment;
+use crate::state::{CompareCommand, LibraryCommand, State};
+use crate::stretch::Stretch;
+
+/// A loop around a moment begins so long before it and ends so long after it, seconds.
+const AROUND_SECS: f64 = 0.3;
+
+impl State {
+    /// The moment of the list that was chosen.
+    pub fn chosen_moment(&self) -> Option<&Moment> {
+        self.train.judged.as_ref()?.moments.get(self.train.moment?)
+    }
+
+    /// Lists the moments of a cell and goes to the first; `None` lists the mistakes.
+    pub(in crate::state) fn show_cell(&mut self, cell: Option<(usize, usize)>) {
+        self.train.cell = cell;
+        self.train.moment = None;
+        let Some(judged) = &self.train.judged else {
+            return;
+        };
+        let places = cell.map(|(row, column)| judged.of_cell(row, column));
+        if let Some(first) = places.and_then(|places| places.first().copied()) {
+            self.go_to_moment(first);
+        }
+    }
+
+    /// Plays a moment in a loop, and offers to compare it.
+    pub(in crate::state) fn go_to_moment(&mut self, at: usize) {
+        let Some(judged) = &self.train.judged else {
+            return;
+        };
+        let Some(moment) = judged.moments.get(at) else {
+            return;
+        };
+        let clip = moment.clip.clone();
+        let (start, stop) = (moment.start_secs, moment.stop_secs);
+        self.train.moment = Some(at);
+        self.companions.all.clear();
+        let Some((id, end)) = self.clip_called(&clip) else {
+            self.say(format!("{clip} is not in the database any more"));
+            return;
+        };
+        self.apply_library(LibraryCommand::GoTo {
+            clip: id,
+            start_secs: (start - AROUND_SECS).max(0.0),
+            stop_secs: (stop + AROUND_SECS).min(end),
+        });
+    }
+
+    /// Compares the chosen moment with the nearest label of a class; of the first that is worth it, if none is named.
+    pub(in crate::state) fn compare_moment(&mut self, class: Option<String>) {
+        let Some(moment) = self.chosen_moment() else {
+            self.say("choose a line of the list first");
+            return;
+        };
+        let first = moment
+            .compared_with()
+            .first()
+            .map(|class| (*class).to_owned());
+        let Some(class) = class.or(first) else { return };
+        let (start_secs, stop_secs) = (moment.start_secs, moment.stop_secs);
+        let Some((clip, _)) = self.clip_called(&moment.clip) else {
+            return;
+        };
+        let of = Stretch {
+            clip,
+            start_secs,
+            stop_secs,
+        };
+        self.apply_compare(CompareCommand::NearestOf { of, class });
+    }
+
+    /// Number and length in seconds of a clip by name.
+    fn clip_called(&self, name: &str) -> Option<(morec_db::ClipId, f64)> {
+        let clips = &self.store.as_ref()?.snapshot.clips;
+        let clip = clips.iter().find(|clip| clip.name == name)?;
+        Some((clip.id, clip.duration_secs()))
+    }
+}

@@ -1,0 +1,179 @@
+//! A live stream: started, stopped, its sensitivity and takes.
+
+use morec::features::KeyPose;
+use morec::live::Recording;
+
+use super::lines::ShownCommand;
+use super::train::INDEX;
+use crate::jobs::{JobOutcome, recognise};
+use crate::state::live::{Choice, ClipFeed, Feed, Run, ThreadFeed};
+use crate::state::{LiveCommand, State};
+
+/// Name of the job that keeps what was marked.
+pub(in crate::state) const TEACHING: &str = "Keeping what was marked";
+
+impl State {
+    pub(in crate::state) fn apply_live(&mut self, command: LiveCommand) {
+        match command {
+            LiveCommand::Choose(choice) => self.live.choice = choice,
+            LiveCommand::Start => self.start_live(),
+            LiveCommand::Stop => self.stop_live(),
+            LiveCommand::Sensitivity(alarms) => self.set_sensitivity(alarms),
+            LiveCommand::Range(range) => self.live.range = range.filter(|r| r.1 - r.0 > 0.05),
+            LiveCommand::Mark(slot) => {
+                if self.live.run.is_some() {
+                    let class = self.class_of_key(slot);
+                    self.mark(&class);
+                }
+            }
+            LiveCommand::MarkAs(class) => self.mark(&class),
+            LiveCommand::Record => self.record(),
+            LiveCommand::Watch(actor) => {
+                // A take is of one performer.
+                if self.live.take.is_some() {
+                    self.say("end the take first");
+                } else if let Some(run) = &mut self.live.run {
+                    run.watch(actor);
+                    self.live.range = None;
+                }
+            }
+        }
+    }
+
+    fn start_live(&mut self) {
+        self.stop_live();
+        match self.live.choice.clone() {
+            Choice::Clip(chosen) => {
+                let shown = self.player.motion.as_ref().map(|m| m.id);
+                let Some(clip) = chosen.or(shown) else {
+                    self.complain("There is no clip to play: import one first");
+                    return;
+                };
+                self.live.choice = Choice::Clip(Some(clip));
+                let line = self.live_line("morec live");
+                self.show_line(line);
+                self.live.starting = Some(clip);
+                self.want_motion(clip);
+            }
+            Choice::Network(address) => self.listen(&address),
+        }
+        self.live.follow_index(self.train.index.as_ref());
+    }
+
+    fn listen(&mut self, address: &str) {
+        let opened = match crate::sources::open(address) {
+            Ok(opened) => opened,
+            Err(why) => return self.complain(crate::store::sentence(&why)),
+        };
+        match ThreadFeed::start(opened.source, self.wake.clone()) {
+            Ok(feed) => {
+                self.run(Feed::Thread(feed), opened.name);
+                let line = self.live_line("morec live");
+                self.show_line(line);
+                if let Some(run) = &mut self.live.run {
+                    run.notices = Some(opened.notices);
+                }
+            }
+            Err(error) => self.complain(format!("{address}: {error}")),
+        }
+    }
+
+    /// The address at which the command finds the source that was chosen.
+    pub(super) fn live_source(&self) -> Option<String> {
+        match &self.live.choice {
+            Choice::Network(address) => Some(address.clone()),
+            Choice::Clip(clip) => {
+                let clip = self.store.as_ref()?.snapshot.clip((*clip)?)?;
+                Some(format!("clip://{}", clip.path))
+            }
+        }
+    }
+
+    /// A command with the index and the source that was chosen.
+    pub(super) fn live_line(&self, command: &str) -> Option<ShownCommand> {
+        let line = ShownCommand::new(command).word(format!("{}.index", INDEX));
+        Some(line.with("--listen", self.live_source()?))
+    }
+
+    fn run(&mut self, feed: Feed, name: String) {
+        let mut run = Run::new(feed, name);
+        if let Some(model) = self.live.model() {
+            run.recognise_with(&model);
+        }
+        self.live.run = Some(run);
+        self.live.marks.clear();
+        self.live.counts.clear();
+        self.live.range = None;
+        self.live.resensed = None;
+        self.player.playing = false;
+    }
+
+    fn stop_live(&mut self) {
+        if self.live.take.is_some() {
+            self.keep_take();
+        }
+        self.live.run = None;
+        self.live.starting = None;
+        self.live.countdown = None;
+    }
+
+    /// Time passes on the stream.
+    pub(in crate::state) fn tick_live(&mut self, dt: f64) {
+        if let Some(clip) = self.live.starting {
+            if let Some(motion) = self.motions.get(clip).cloned() {
+                self.live.starting = None;
+                let name = motion.clip.name.clone();
+                self.run(Feed::Clip(ClipFeed::new(motion)), name);
+            } else if let Some(why) = self.motions.failure(clip).map(str::to_owned) {
+                self.live.starting = None;
+                self.complain(why);
+            } else {
+                self.want_motion(clip);
+            }
+        }
+        let live = &mut self.live;
+        let Some(run) = &mut live.run else { return };
+        let frames = run.tick(dt);
+        if let Some(take) = &mut live.take {
+            frames.iter().for_each(|frame| take.push(frame));
+        }
+        if let Some(index) = &live.index {
+            for class in run.news.drain(..) {
+                let name = index.model.class_name(class).to_owned();
+                *live.counts.entry(name).or_default() += 1;
+            }
+        }
+        if let Some(left) = &mut live.countdown {
+            *left -= dt;
+            if *left <= 0.0 {
+                live.countdown = None;
+                live.take = run
+                    .watched()
+                    .and_then(|w| Some(Recording::new(w.rig.as_ref()?)));
+            }
+        }
+    }
+
+    fn set_sensitivity(&mut self, alarms: f64) {
+        self.live.alarms = Some(alarms);
+        let Some(model) = self.live.model() else {
+            return;
+        };
+        let Some(run) = &mut self.live.run else {
+            return;
+        };
+        run.recognise_with(&model);
+        let poses: Vec<(f64, KeyPose)> = run.watched().map(|w| w.key_poses()).unwrap_or_default();
+        let line = self.live_line("morec live");
+        self.show_line(line.map(|line| line.with("--sensitivity", format!("{alarms:.2}"))));
+        if poses.len() > 30 && !self.jobs.is_running("Trying the sensitivity") {
+            self.jobs.start(
+                "Trying the sensitivity",
+                false,
+                &self.wake,
+                JobOutcome::Resensed,
+                move |_| recognise::poses(&model, &poses),
+            );
+        }
+    }
+}

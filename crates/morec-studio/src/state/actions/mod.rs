@@ -1,0 +1,22 @@
+//! Effects of commands and of threads' results on the state: methods of [`State`], a file for each area.
+//!
+//! [`State`]: crate::state::State
+
+mod classes;
+mod compare;
+mod crossval;
+mod cuts;
+mod files;
+mod groups;
+mod labels;
+mod library;
+mod lines;
+mod live;
+mod marks;
+mod outcomes;
+mod proposals;
+mod roles;
+mod shown;
+mod similar;
+mod thesis;
+mod train;

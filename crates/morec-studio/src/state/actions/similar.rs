@@ -1,0 +1,116 @@
+//! Search by example, and labels from its hits.
+
+use morec_db::labels::{NewSample, SampleState as Judged};
+use morec_db::search::Hit;
+
+use super::lines::ShownCommand;
+use crate::jobs::JobOutcome;
+use crate::jobs::similar::{self, Similar};
+use crate::state::{Panel, SimilarCommand, State};
+use crate::store::Edit;
+use crate::stretch::Stretch;
+
+/// Name of the job that searches.
+pub(in crate::state) const SEARCHING: &str = "Searching";
+
+impl State {
+    pub(in crate::state) fn apply_similar(&mut self, command: SimilarCommand) {
+        match command {
+            SimilarCommand::OfSelection => match self.selected_stretch() {
+                Some((of, class)) => self.search(of, class),
+                None => self.say("select a label or a stretch first"),
+            },
+            SimilarCommand::Of(of, class) => self.search(of, class),
+            SimilarCommand::Mirror(on) => {
+                self.classes.mirror = on;
+                if let Some(similar) = &self.classes.similar {
+                    let (of, class) = (similar.of, similar.class.clone());
+                    self.search(of, class);
+                }
+            }
+            SimilarCommand::Label(at, class) => self.label_hit(at, class),
+            SimilarCommand::Close => self.classes.similar = None,
+        }
+    }
+
+    /// The selected stretch of the clip that is shown, or the selected label with its class.
+    pub fn selected_stretch(&self) -> Option<(Stretch, Option<String>)> {
+        let clip = self.player.motion.as_ref()?.id;
+        if let Some((start_secs, stop_secs)) = self.timeline.range {
+            let stretch = Stretch {
+                clip,
+                start_secs,
+                stop_secs,
+            };
+            return Some((stretch, None));
+        }
+        let selected = self.selected();
+        let sample = selected.first()?;
+        let stretch = Stretch {
+            clip,
+            start_secs: sample.start_secs,
+            stop_secs: sample.stop_secs,
+        };
+        Some((stretch, Some(sample.class.clone())))
+    }
+
+    fn search(&mut self, of: Stretch, class: Option<String>) {
+        let Some(store) = &self.store else { return };
+        let (db, mirror) = (store.path().to_owned(), self.classes.mirror);
+        let line = self.search_line(&of);
+        self.show_line(line.map(|line| line.flag("--mirror", mirror)));
+        for job in self.jobs.running.iter().filter(|j| j.name == SEARCHING) {
+            job.cancel();
+        }
+        self.jobs.start(
+            SEARCHING,
+            true,
+            &self.wake,
+            JobOutcome::Similar,
+            move |progress| similar::find(&db, of, class, mirror, progress),
+        );
+    }
+
+    /// The command that searches for what is like a stretch.
+    pub(in crate::state) fn search_line(&self, of: &Stretch) -> Option<ShownCommand> {
+        let store = self.store.as_ref()?;
+        let clip = store.snapshot.clip(of.clip)?;
+        let line = ShownCommand::new("morec db search")
+            .word(store.path())
+            .word(&clip.name);
+        Some(
+            line.secs("--start", of.start_secs)
+                .secs("--stop", of.stop_secs),
+        )
+    }
+
+    /// Shows what was found.
+    pub(in crate::state) fn found_similar(&mut self, similar: Similar) {
+        self.say(format!(
+            "{} like it",
+            crate::format::count(similar.hits.len(), "stretch")
+        ));
+        self.classes.similar = Some(similar);
+        self.classes.groups = None;
+        self.panel = Panel::Classes;
+    }
+
+    fn label_hit(&mut self, at: usize, class: String) {
+        let Some(similar) = &mut self.classes.similar else {
+            return;
+        };
+        if at >= similar.hits.len() {
+            return;
+        }
+        let hit: Hit = similar.hits.remove(at);
+        self.edit(Edit::Label(vec![NewSample {
+            clip: hit.clip,
+            class,
+            start_secs: hit.start_secs,
+            stop_secs: hit.stop_secs,
+            whole_clip: false,
+            state: Judged::Accepted,
+            score: None,
+        }]));
+    }
+}
