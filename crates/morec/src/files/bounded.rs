@@ -4,18 +4,28 @@ use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
+use super::sequence::FrameFiles;
+
 /// The largest file that is read, bytes. The largest clips in use are a few hundred megabytes.
 pub const LARGEST_FILE: u64 = 2 << 30;
 
 /// The most that is read of something without a length: a pipe, a device, standard input.
 pub const LARGEST_STREAM: u64 = 512 << 20;
 
-/// A file's bytes.
+/// A file's bytes; of one frame of a clip whose frames are files (`walk_000000000012_keypoints.json`), those of all its frames.
 ///
 /// # Errors
 /// The file cannot be read, or is larger than [`LARGEST_FILE`] or [`LARGEST_STREAM`]; nothing of a file that is too large
 /// is read.
 pub fn read_file(path: &Path) -> io::Result<Vec<u8>> {
+    match FrameFiles::around(path) {
+        Some(frames) => frames.read(),
+        None => read_whole(path),
+    }
+}
+
+/// The bytes of this file alone.
+pub(super) fn read_whole(path: &Path) -> io::Result<Vec<u8>> {
     let file = File::open(path)?;
     let about = file.metadata()?;
     if about.is_file() {
@@ -93,7 +103,7 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     written
 }
 
-fn too_large(most: u64) -> io::Error {
+pub(super) fn too_large(most: u64) -> io::Error {
     let text = format!("expected at most {} MB, found more", most >> 20);
     io::Error::new(ErrorKind::FileTooLarge, text)
 }

@@ -8,7 +8,8 @@
 //! # Ok::<(), morec::Error>(())
 //! ```
 //!
-//! A file may hold several clips; `FILE#2` and `FILE#name` choose one of them. Zip archives and gzip files are unpacked.
+//! A file may hold several clips; `FILE#2` and `FILE#name` choose one of them. Files of one frame each are one clip, which the
+//! first of them stands for. Zip archives and gzip files are unpacked.
 //! An AMC motion is read with the ASF skeleton that lies beside it or a folder above. [`FileReader`] has what can be
 //! set; [`open`] and [`open_all`] are its defaults.
 
@@ -19,6 +20,7 @@ mod error;
 mod folder;
 mod neighbours;
 mod reader;
+mod sequence;
 mod skeletons;
 mod takes;
 

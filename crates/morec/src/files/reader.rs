@@ -20,6 +20,7 @@ use crate::import::{ImportOptions, Stated, Take, normalize};
 use crate::kinematics::WorldPose;
 
 use super::neighbours::Around;
+use super::sequence::FrameFiles;
 use super::skeletons::{SkeletonFile, prefer_stated, skeletons_among, skeletons_near};
 use super::{FileError, FileErrorKind, Takes, list, read_file, read_stream, split_choice};
 
@@ -146,7 +147,7 @@ impl FileReader {
         bytes: &[u8],
         around: Around<'_>,
     ) -> Result<ClipFile, FileErrorKind> {
-        let stem = stem(path);
+        let mut stem = stem(path);
         let format = match probe(bytes, &path.to_string_lossy())? {
             // Archives of poses and of positions look alike at their beginning.
             Format::Smpl if numpy::has_positions(&zip_paths(bytes).unwrap_or_default()) => {
@@ -154,6 +155,11 @@ impl FileReader {
             }
             format => format,
         };
+        if let (Format::Landmarks, Around::Folder) = (format, around)
+            && let Some(name) = FrameFiles::around(path).and_then(|frames| frames.name())
+        {
+            stem = name;
+        }
         #[cfg_attr(not(feature = "fbx"), allow(unused_mut))]
         let mut stated = Stated::of(format);
         let (loaded, skeleton) = match format {

@@ -16,6 +16,8 @@ use crate::roles::points::numbered_counts;
 const ASSUMED_HZ: f64 = 30.0;
 /// Fewer points are no body.
 const LEAST_POINTS: usize = 5;
+/// Elements of a list that tell whether it is one of frames.
+const LOOKED_AT: usize = 40;
 /// Lists and objects within each other, down to the points.
 const DEEPEST: usize = 6;
 
@@ -44,6 +46,23 @@ pub(super) fn looks_so(head: &[u8]) -> bool {
         && numbers
         && words.iter().any(|word| contains(word))
         && !others.iter().any(|word| contains(word))
+}
+
+/// Lists of more are frames, not bodies.
+const MOST_BODIES: usize = 6;
+
+/// True if a document holds bodies of one moment, or says that nobody was there.
+pub(crate) fn is_one_frame(bytes: &[u8]) -> bool {
+    let Ok(document) = serde_json::from_slice::<Value>(bytes) else {
+        return false;
+    };
+    let empty = |list: &Value| list.as_array().is_some_and(Vec::is_empty);
+    let nobody = ["people", "bodies"]
+        .iter()
+        .any(|field| document.get(field).is_some_and(empty));
+    let holds = points_in(&document, DEEPEST).is_some() || is_flat(&document, DEEPEST);
+    let lists = frames_in(&document, DEEPEST).map_or(0, |frames| frames.len());
+    nobody || empty(&document) || looks_so(bytes) && holds && lists <= MOST_BODIES
 }
 
 /// Reads the landmarks of a document: a clip of points called `name`. `rate_hz` replaces the rate in the file. O(bytes);
@@ -187,11 +206,13 @@ fn frames_in(value: &Value, depth: usize) -> Option<Vec<&Value>> {
         return None;
     }
     let list = elements(value).filter(|list| {
-        let looked_at = list.len().min(20);
         let holds = |frame: &&&Value| points_in(frame, depth - 1).is_some();
+        // All over the list: nobody may be there for long.
+        let step = list.len().div_ceil(LOOKED_AT).max(1);
+        let looked_at = list.len().div_ceil(step);
         // A list of points is no list of frames, nor is one of people.
         point_list(value).is_none()
-            && list.iter().take(looked_at).filter(holds).count() * 2 > looked_at
+            && list.iter().step_by(step).filter(holds).count() * 4 > looked_at
     });
     list.or_else(|| children(value).find_map(|child| frames_in(child, depth - 1)))
 }
@@ -298,13 +319,17 @@ fn points_in(value: &Value, depth: usize) -> Option<Vec<(String, Vec3)>> {
 /// the tracker was.
 fn points_in_a_row(value: &Value) -> Option<Vec<(String, Vec3)>> {
     let fields = value.as_object()?;
-    let in_space = |key: &String| {
+    let in_space = |key: &str, list: &Value| {
         let key = key.to_lowercase();
+        // The Panoptic Studio's `joints19` has four numbers for each of 19.
+        let count = key.strip_prefix("joints").and_then(|n| n.parse().ok());
+        let length = list.as_array().map(Vec::len);
         ["3d", "world"].iter().any(|word| key.contains(word))
+            || count.is_some_and(|count: usize| length == count.checked_mul(4))
     };
     fields
         .iter()
-        .filter(|(key, _)| in_space(key))
+        .filter(|(key, list)| in_space(key, list))
         .find_map(|(_, list)| {
             let numbers: Option<Vec<f64>> = list.as_array()?.iter().map(Value::as_f64).collect();
             let numbers = numbers?;
@@ -316,7 +341,10 @@ fn points_in_a_row(value: &Value) -> Option<Vec<(String, Vec3)>> {
                 .filter(|_| known(3).is_none())
                 .or_else(|| known(3))?;
             let point = |(number, at): (usize, &[f64])| {
-                (number.to_string(), Vec3::new(at[0], at[1], at[2]))
+                // A tracker that is not sure at all has seen nothing.
+                let seen = at.get(3) != Some(&0.0);
+                let place = Vec3::new(at[0], at[1], at[2]);
+                (number.to_string(), if seen { place } else { UNSEEN })
             };
             Some(numbers.chunks_exact(width).enumerate().map(point).collect())
         })
@@ -361,18 +389,22 @@ fn place_of(point: &Value) -> Option<Vec3> {
     let at = |key: &str| number(point.get(key).or_else(|| point.get(key.to_uppercase())));
     match point {
         Value::Object(_) => Some(Vec3::new(at("x")?, at("y")?, at("z")?)),
-        Value::Array(list) if (3..=5).contains(&list.len()) => Some(Vec3::new(
-            number(list.first())?,
-            number(list.get(1))?,
-            number(list.get(2))?,
-        )),
+        Value::Array(list) if (3..=5).contains(&list.len()) => {
+            let place = [
+                number(list.first())?,
+                number(list.get(1))?,
+                number(list.get(2))?,
+            ];
+            let seen = list.len() != 4 || number(list.get(3)) != Some(0.0);
+            Some(if seen { place.into() } else { UNSEEN })
+        }
         _ => None,
     }
 }
 
 /// The time of a frame in seconds.
 fn time_of(frame: &Value) -> Option<f64> {
-    const KEYS: [(&str, f64); 10] = [
+    const KEYS: [(&str, f64); 11] = [
         ("t", 1.0),
         ("time", 1.0),
         ("timestamp", 1.0),
@@ -383,6 +415,7 @@ fn time_of(frame: &Value) -> Option<f64> {
         ("timestamp_usec", 1e-6),
         ("timestamp_ns", 1e-9),
         ("timestampMs", 1e-3),
+        ("univTime", 1e-3),
     ];
     KEYS.iter()
         .find_map(|(key, unit)| Some(frame.get(key)?.as_f64()? * unit))

@@ -5,7 +5,7 @@ use crate::formats::bvh::{self, BvhOptions};
 use crate::formats::{Limits, ParseError, Place, Warning};
 use crate::kinematics::WorldPose;
 use crate::math::Vec3;
-use crate::roles::{self, RoleMap};
+use crate::roles::{self, JointNames, RoleMap};
 
 use super::body::BodyMeasures;
 use super::options::ImportOptions;
@@ -21,8 +21,9 @@ use super::{axes, points, travel, units};
 /// A mapping in `options` that names a joint which `clip` does not have.
 pub fn normalize(mut clip: Clip, options: &ImportOptions) -> Result<Take, ParseError> {
     let mut notes = Vec::new();
+    let mut names = JointNames::of(&clip.skeleton);
     let (map, point_set) = match clip.has_rotations() {
-        true => (find_roles(&clip, &mut notes), None),
+        true => (find_roles(&clip, &names, &mut notes), None),
         false => points::find_roles(&mut clip),
     };
     let map = match &options.mapping {
@@ -39,7 +40,10 @@ pub fn normalize(mut clip: Clip, options: &ImportOptions) -> Result<Take, ParseE
     let unknown = !clip.has_rotations() && point_set.is_none() && options.mapping.is_none();
     let mut doubts = match unknown {
         true => vec![points::UNKNOWN.to_owned()],
-        false => roles::check(&clip.skeleton, &map, &poses(&clip)),
+        false => {
+            names.extend(&clip.skeleton);
+            roles::check_named(&clip.skeleton, &names, &map, &poses(&clip))
+        }
     };
     doubts.extend(units::doubt(&body, metres_per_unit));
     axes::turn_up(&mut clip, up);
@@ -70,11 +74,12 @@ pub fn normalize(mut clip: Clip, options: &ImportOptions) -> Result<Take, ParseE
 }
 
 /// The roles, judged in frames spread over the clip.
-fn find_roles(clip: &Clip, notes: &mut Vec<String>) -> RoleMap {
-    let found = match clip.frames {
-        0 => roles::find(&clip.skeleton),
-        _ => roles::find_moving(&clip.skeleton, &poses(clip)),
+fn find_roles(clip: &Clip, names: &JointNames, notes: &mut Vec<String>) -> RoleMap {
+    let poses = match clip.frames {
+        0 => vec![roles::zero_pose(&clip.skeleton)],
+        _ => poses(clip),
     };
+    let found = roles::find_named(&clip.skeleton, names, &poses);
     notes.extend(found.notes);
     found.map
 }

@@ -138,3 +138,46 @@ fn other_documents_are_refused() {
     }
     assert!(read(b"{\"landmarks\": [", "f", None, &Limits::default()).is_err());
 }
+
+/// The CMU Panoptic Studio: four numbers for each joint, times in milliseconds.
+#[test]
+fn joints_in_a_row_by_their_count() {
+    let row = |f: usize| -> Vec<f64> {
+        let point = |j: usize| {
+            let sure = if (j, f) == (2, 3) { 0.0 } else { 0.8 };
+            [j as f64, f as f64, 1.0, sure]
+        };
+        (0..19).flat_map(point).collect()
+    };
+    let frames: Value = (0..6)
+        .map(|f| json!({"univTime": 1e5 + 40.0 * f as f64, "bodies": [{"id": 0, "joints19": row(f)}]}))
+        .collect();
+    let loaded = open(&frames).unwrap();
+    let clip = &loaded.clips[0];
+    assert_eq!((clip.frames, clip.skeleton.len()), (6, 19));
+    assert!((clip.rate_hz - 25.0).abs() < 1e-6, "{}", clip.rate_hz);
+    // What was not seen is interpolated.
+    assert_eq!(clip.repaired, [3..4]);
+    assert_eq!(clip.tracks[2].positions[3], Vec3::new(2.0, 3.0, 1.0));
+}
+
+#[test]
+fn a_frame_is_told_from_a_clip() {
+    let one = |document: Value| is_one_frame(document.to_string().as_bytes());
+    let row: Vec<f64> = (0..75).map(f64::from).collect();
+    for frame in [
+        json!({"people": []}),
+        json!({"people": [{"pose_keypoints_2d": row}]}),
+        json!([{"id": 0, "keypoints3d": vec![[1.0, 2.0, 3.0, 0.5]; 25]}]),
+        json!({"landmarks": landmarks(0)}),
+        json!([]),
+    ] {
+        assert!(one(frame.clone()), "{frame}");
+    }
+    let clip: Value = (0..20)
+        .map(|f| json!({"landmarks": landmarks(f)}))
+        .collect();
+    for other in [clip, json!({"a": 1}), json!([1, 2, 3]), json!("x")] {
+        assert!(!one(other.clone()), "{other}");
+    }
+}

@@ -101,7 +101,7 @@ pub(super) static UNREAD: &[Unread] = &[
     ),
     unread(
         "one frame of OpenPose's keypoints (JSON)",
-        "each file holds a frame: gather them in one list, [{\u{2026}}, {\u{2026}}], in their order",
+        "each file holds a frame: give the folder that holds all of them",
         |h| {
             h.starts("{")
                 && h.contains(b"\"pose_keypoints_3d\"")
@@ -141,10 +141,8 @@ pub(super) static UNREAD: &[Unread] = &[
         .iter()
         .any(|begin| h.bytes.starts_with(begin))
     }),
-    unread("HTR of Motion Analysis", SCENE, |h| {
-        h.contains(b"FileType htr")
-            || h.contains(b"FileType gtr")
-            || h.contains(b"[SegmentNames&Hierarchy]")
+    unread("GTR of Motion Analysis", "export HTR, TRC or C3D", |h| {
+        h.contains(b"FileType gtr") || h.contains(b"FileType GTR")
     }),
     unread("a Vicon or Nexus XML file", "export C3D", |h| {
         h.starts("<") && (h.contains(b"<KinematicModel") || h.contains(b"<ViconModel"))
@@ -307,8 +305,7 @@ pub(super) static UNREAD_ENDINGS: &[(&str, &str, &str)] = &[
         "a Motion Analysis capture",
         "export TRC or C3D from Cortex",
     ),
-    ("gtr", "GTR of Motion Analysis", SCENE),
-    ("htr", "HTR of Motion Analysis", SCENE),
+    ("gtr", "GTR of Motion Analysis", "export HTR, TRC or C3D"),
     (
         "tak",
         "a Motive take",

@@ -204,7 +204,7 @@ const NO_POSITION: [&str; 28] = [
 ];
 
 /// The point and the axis (0 to 2) that a column's label names.
-pub(super) fn axis_of(label: &str) -> Option<(String, usize)> {
+pub(in crate::formats) fn axis_of(label: &str) -> Option<(String, usize)> {
     axis_with(label, false)
 }
 

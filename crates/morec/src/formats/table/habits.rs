@@ -205,3 +205,97 @@ fn right_sides_are_no_rotations() {
     );
     assert_eq!(axis.clips[0].skeleton.joints()[0].name, "Hips");
 }
+
+/// FreeMoCap's tables have the body, its hands, centres of mass and a second solution one below the other, some under the same names.
+#[test]
+fn the_body_among_other_parts() {
+    let mut text = "frame,keypoint,x,y,z,model,trajectory,reprojection_error\n".to_owned();
+    let mut types = "frame,row_id,type,landmark_index,x,y,z\n".to_owned();
+    for frame in 0..5 {
+        for (p, name) in ["nose", "left_hip", "right_hip"].iter().enumerate() {
+            let place = moving(frame, p, ",");
+            text += &format!("{frame},{name},{place},rtmpose.body,3d_xyz,\n");
+        }
+        text += &format!("{frame},nose,9,9,9,rtmpose.body,rigid_3d_xyz,\n");
+        text += &format!("{frame},head,9,9,9,rtmpose.body,segment_center_of_mass,\n");
+        text += &format!("{frame},thumb1,9,9,9,rtmpose.left_hand,3d_xyz,\n");
+        for (part, point) in [("face", 0), ("pose", 0), ("pose", 1), ("left_hand", 0)] {
+            let place = moving(frame, point, ",");
+            types += &format!("{frame},{frame}-{part}-{point},{part},{point},{place}\n");
+        }
+    }
+    for (text, points) in [(text, 3), (types, 2)] {
+        let loaded = open(&text);
+        let clip = &loaded.clips[0];
+        assert_eq!((clip.frames, clip.skeleton.len()), (5, points), "{text}");
+        assert_eq!(clip.tracks[0].positions[1], Vec3::new(0.02, 1.0, 0.0));
+        let told = |w: &Warning| w.text.contains("hand") && w.text.contains("left out");
+        assert!(loaded.warnings.iter().any(told), "{:?}", loaded.warnings);
+    }
+}
+
+/// Words that are no parts leave no row out.
+#[test]
+fn types_of_something_else() {
+    let mut text = "time,joint,x,y,z,type\n".to_owned();
+    for frame in 0..4 {
+        for (p, state) in ["tracked", "inferred"].iter().enumerate() {
+            text += &format!("{}.0,j{p},{},{state}\n", frame, moving(frame, p, ","));
+        }
+    }
+    assert_eq!(open(&text).clips[0].skeleton.len(), 2);
+}
+
+#[test]
+fn axes_after_a_word() {
+    let mut text =
+        "Timestamp, JointID, Position.X, Position.Y, Position.Z, Orientation.X, State\n".to_owned();
+    for frame in 0..4 {
+        for p in 0..3 {
+            text += &format!("{}, {p}, {}, 0, 2\n", 33 * frame, moving(frame, p, ", "));
+        }
+    }
+    assert!(looks_so(text.as_bytes()));
+    let clip = &open(&text).clips[0];
+    assert_eq!((clip.frames, clip.skeleton.len()), (4, 3));
+    assert_eq!(clip.tracks[2].positions[3], Vec3::new(0.26, 1.2, 0.6));
+}
+
+/// MediaPipe's holistic model: 33 points of the body, then those of the face and the hands.
+#[test]
+fn a_face_behind_the_body() {
+    let names = |count: usize| -> Vec<String> {
+        { 1..=count }
+            .flat_map(|n| ["x", "y", "z", "v"].map(|axis| format!("{axis}{n}")))
+            .collect()
+    };
+    let row = |frame: usize, points: usize| -> Vec<String> {
+        { 0..points }
+            .map(|p| format!("{},0.9", moving(frame, p, ",")))
+            .collect()
+    };
+    let holistic = |frame: usize| format!("wave,{}", row(frame, 501).join(","));
+    let mut text = format!("class,{}\n", names(501).join(","));
+    let words = [("Head", 468), ("Pose", 33), ("Hand", 21)];
+    let labels = words.iter().flat_map(|&(word, count)| {
+        { 0..count }
+            .flat_map(move |n| ["x", "y", "z", "v"].map(|axis| format!("{word}_{n}_{axis}")))
+    });
+    let mut worded = format!("{}\n", labels.collect::<Vec<String>>().join(","));
+    for frame in 0..5 {
+        text += &(holistic(frame) + "\n");
+        worded += &(row(frame, 522).join(",") + "\n");
+    }
+    for text in [text, worded] {
+        let loaded = open(&text);
+        assert_eq!(
+            (loaded.clips[0].frames, loaded.clips[0].skeleton.len()),
+            (5, 33)
+        );
+        let told = loaded
+            .warnings
+            .iter()
+            .any(|w| w.text.contains("hands and face left out"));
+        assert!(told, "{:?}", loaded.warnings);
+    }
+}

@@ -15,6 +15,7 @@ mod nexus;
 mod plain;
 mod qualisys;
 
+pub(super) use self::columns::axis_of;
 use self::layout::{ColumnLayout, TableFrames, TableLine, to_seconds};
 use super::cells::{Decimal, lines, number, split};
 use super::points::{Point, PointTable, UNSEEN, check_size};
