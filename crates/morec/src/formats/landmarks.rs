@@ -14,6 +14,8 @@ use crate::roles::points::numbered_counts;
 
 /// Frames a second of a document without times.
 const ASSUMED_HZ: f64 = 30.0;
+/// Fewer places of a point are no motion.
+const LEAST_FRAMES: usize = 2;
 /// Fewer points are no body.
 const LEAST_POINTS: usize = 5;
 /// Elements of a list that tell whether it is one of frames.
@@ -37,15 +39,25 @@ pub(super) fn looks_so(head: &[u8]) -> bool {
     ];
     // Scenes of suits and glTF have words in common with these.
     let others: [&[u8]; 2] = [b"\"asset\"", b"\"actors\""];
-    let numbers = contains(b"\"z\"")
-        || contains(b"\"y\"")
+    let numbers = contains(b"z\"")
+        || contains(b"y\"")
         || head
             .windows(2)
             .any(|at| at[0] == b'[' && matches!(at[1], b'[' | b'-' | b'0'..=b'9'));
-    matches!(head.trim_ascii_start(), [b'{' | b'[', ..])
+    let text = head.trim_ascii_start();
+    matches!(text, [b'{' | b'[', ..])
         && numbers
-        && words.iter().any(|word| contains(word))
+        && (words.iter().any(|word| contains(word)) || is_list_of_lists(text))
         && !others.iter().any(|word| contains(word))
+}
+
+/// Frames without a word: `[[[0.1, 0.9, 0.0], …`.
+fn is_list_of_lists(text: &[u8]) -> bool {
+    let mut marks = text.iter().filter(|b| !b.is_ascii_whitespace());
+    (0..3).all(|_| marks.next() == Some(&b'['))
+        && marks
+            .next()
+            .is_some_and(|b| matches!(b, b'-' | b'0'..=b'9'))
 }
 
 /// Lists of more are frames, not bodies.
@@ -77,7 +89,10 @@ pub fn read(
     limits: &Limits,
 ) -> Result<Loaded, ParseError> {
     let document = parse(bytes)?;
-    let frames = frames_in(&document, DEEPEST).ok_or_else(|| no_frames(&document))?;
+    let by_name = tracks_in(&document, DEEPEST);
+    let frames = frames_in(&document, DEEPEST)
+        .or_else(|| by_name.as_ref().map(|frames| frames.iter().collect()))
+        .ok_or_else(|| no_frames(&document))?;
     let mut warnings = Vec::new();
     let people = frames.iter().map(|frame| people_in(frame, DEEPEST)).max();
     if let Some(people @ 2..) = people {
@@ -215,6 +230,33 @@ fn frames_in(value: &Value, depth: usize) -> Option<Vec<&Value>> {
             && list.iter().step_by(step).filter(holds).count() * 4 > looked_at
     });
     list.or_else(|| children(value).find_map(|child| frames_in(child, depth - 1)))
+}
+
+/// The frames of an object whose fields are points, each with a list of its places: `{"nose": [[0.1, 0.9, 0.0], …], …}`.
+fn tracks_in(value: &Value, depth: usize) -> Option<Vec<Value>> {
+    if depth == 0 {
+        return None;
+    }
+    let tracks = |fields: &Map<String, Value>| -> Option<Vec<Value>> {
+        let track = |(name, list): (&String, &Value)| {
+            let list = list.as_array().filter(|list| list.len() >= LEAST_FRAMES)?;
+            list.iter()
+                .all(|place| place_of(place).is_some())
+                .then(|| (name.clone(), list.clone()))
+        };
+        let tracks: Vec<(String, Vec<Value>)> = fields.iter().filter_map(track).collect();
+        let frames = tracks.iter().map(|(_, list)| list.len()).max()?;
+        let alike = tracks.iter().all(|(_, list)| list.len() == frames);
+        let frame = |at: usize| {
+            let points = tracks
+                .iter()
+                .map(|(name, list)| (name.clone(), list[at].clone()));
+            Value::Object(points.collect())
+        };
+        (alike && tracks.len() >= LEAST_POINTS).then(|| (0..frames).map(frame).collect())
+    };
+    let own = value.as_object().and_then(tracks);
+    own.or_else(|| children(value).find_map(|child| tracks_in(child, depth - 1)))
 }
 
 /// The elements of a list, or of an object whose fields are numbers, in their order.
@@ -370,13 +412,22 @@ fn point_list(value: &Value) -> Option<Vec<(String, Vec3)>> {
 }
 
 fn name_of(point: &Value, number: usize) -> String {
-    let said = ["name", "part", "joint", "label", "id"]
-        .iter()
-        .find_map(|key| match point.get(key)? {
-            Value::String(text) => Some(text.clone()),
-            Value::Number(number) => Some(number.to_string()),
-            _ => None,
-        });
+    let said = [
+        "name",
+        "part",
+        "joint",
+        "label",
+        "jointName",
+        "jointType",
+        "JointType",
+        "id",
+    ]
+    .iter()
+    .find_map(|key| match point.get(key)? {
+        Value::String(text) => Some(text.clone()),
+        Value::Number(number) => Some(number.to_string()),
+        _ => None,
+    });
     said.unwrap_or_else(|| number.to_string())
 }
 
@@ -386,9 +437,29 @@ fn place_of(point: &Value) -> Option<Vec3> {
         Value::Null => Some(f64::NAN),
         value => value.as_f64(),
     };
-    let at = |key: &str| number(point.get(key).or_else(|| point.get(key.to_uppercase())));
     match point {
-        Value::Object(_) => Some(Vec3::new(at("x")?, at("y")?, at("z")?)),
+        Value::Object(fields) => {
+            // In picture, camera and world there may be a place each: the names of axes come first.
+            const AXES: [[&str; 3]; 5] = [
+                ["x", "y", "z"],
+                ["cameraX", "cameraY", "cameraZ"],
+                ["px", "py", "pz"],
+                ["posX", "posY", "posZ"],
+                ["pos_x", "pos_y", "pos_z"],
+            ];
+            const WITHIN: [&str; 4] = ["position", "pos", "location", "translation"];
+            let at =
+                |key: &str| number(fields.get(key).or_else(|| fields.get(&key.to_uppercase())));
+            let own = AXES
+                .iter()
+                .find_map(|[x, y, z]| Some(Vec3::new(at(x)?, at(y)?, at(z)?)));
+            own.or_else(|| {
+                let within = fields
+                    .iter()
+                    .find(|(key, _)| WITHIN.iter().any(|known| key.eq_ignore_ascii_case(known)));
+                within.and_then(|(_, place)| place_of(place))
+            })
+        }
         Value::Array(list) if (3..=5).contains(&list.len()) => {
             let place = [
                 number(list.first())?,

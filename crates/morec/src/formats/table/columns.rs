@@ -7,9 +7,11 @@ use crate::formats::points::metres_of;
 /// The layout of a table whose header names its columns, in one row or several.
 pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
     let header_rows = header_rows(rows)?;
-    let labels = labels(&rows[..header_rows]);
+    let (header, units) = without_units(&rows[..header_rows]);
+    let labels = labels(header);
     let mut found = ColumnLayout {
         header_rows,
+        rate_hz: rate_above(header),
         ..ColumnLayout::default()
     };
     let mut open: Vec<(String, [Option<usize>; 3])> = Vec::new();
@@ -24,7 +26,9 @@ pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
                     open.push((name, columns));
                 }
             }
-            found.metres_per_unit = found.metres_per_unit.or(unit_of(label));
+            let below = || metres_of(units?.get(column)?);
+            let unit = unit_of(label).or_else(below);
+            found.metres_per_unit = found.metres_per_unit.or(unit);
         } else if found.time.is_none() && is_time(label) {
             found.time = Some((column, seconds_of(label)));
         } else if found.frame.is_none() && is_frame(label, column) {
@@ -47,19 +51,83 @@ pub(super) fn is_flat(rows: &[TableLine]) -> bool {
     let Some(header_rows) = header_rows(rows) else {
         return false;
     };
-    let axes: Vec<usize> = labels(&rows[..header_rows])
+    let axes: Vec<usize> = labels(without_units(&rows[..header_rows]).0)
         .iter()
         .filter_map(|label| Some(axis_of(label)?.1))
         .collect();
     axes.contains(&0) && axes.contains(&1) && !axes.contains(&2)
 }
 
+/// The header without a last row of units (`mm`, `s`, `-`), and that row's cells.
+fn without_units<'a, 'b>(
+    header: &'a [TableLine<'b>],
+) -> (&'a [TableLine<'b>], Option<&'a [&'b str]>) {
+    let Some(((_, last), above)) = header.split_last().filter(|(_, above)| !above.is_empty())
+    else {
+        return (header, None);
+    };
+    let bare = |cell: &&str| cell.trim_matches(['(', ')', '[', ']']).to_owned();
+    let mut filled = last.iter().filter(|cell| !cell.is_empty());
+    let lengths = last.iter().filter(|cell| metres_of(&bare(cell)).is_some());
+    let is_unit = |cell: &&str| {
+        const OTHERS: [&str; 9] = ["-", "s", "sec", "ms", "hz", "deg", "rad", "px", "1"];
+        let cell = bare(cell).to_ascii_lowercase();
+        metres_of(&cell).is_some() || OTHERS.contains(&cell.as_str())
+    };
+    match lengths.count() > 2 && filled.all(is_unit) {
+        true => (above, Some(last)),
+        false => (header, None),
+    }
+}
+
+/// The rate that a row above the names states, `# fps: 60` or `Frame Rate,120`.
+fn rate_above(header: &[TableLine]) -> Option<f64> {
+    const KEYS: [&str; 7] = [
+        "fps",
+        "framerate",
+        "samplingrate",
+        "samplerate",
+        "capturerate",
+        "frequency",
+        "datarate",
+    ];
+    let (_, above) = header.split_last()?;
+    let stated = |text: &str| {
+        let key_ends = text.find([':', '=', ','])?;
+        let (key, value) = (&text[..key_ends], &text[key_ends + 1..]);
+        let key: String = { key.split(['(', '[']).next().unwrap_or_default().chars() }
+            .filter(|c| c.is_alphanumeric())
+            .collect();
+        let value = value.trim().split([' ', ',']).next()?;
+        let known = KEYS.contains(&key.to_ascii_lowercase().as_str());
+        let rate = number(value, Decimal::Either).filter(|_| known)?;
+        (rate > 0.0 && rate < 1e5).then_some(rate)
+    };
+    above.iter().find_map(|(_, cells)| {
+        let pairs = cells
+            .windows(2)
+            .map(|pair| format!("{},{}", pair[0], pair[1]));
+        { cells.iter() }
+            .find_map(|cell| stated(cell))
+            .or_else(|| { pairs }.find_map(|pair| stated(&pair)))
+    })
+}
+
 /// Rows before the first of numbers; `None` if there is none, or no row of numbers.
 fn header_rows(rows: &[TableLine]) -> Option<usize> {
-    // A frame may begin with words (a class, a track) below names that are certain.
-    let names_axes = |(_, cells): &TableLine| {
-        let named = cells.iter().filter(|cell| axis_of(cell).is_some());
-        named.count() >= 6
+    // A frame may begin with words (a class, a track) and hold others (`Tracked`) below names that are certain.
+    let is_below_axes = |above: &TableLine, cells: &[&str]| {
+        let named = |&(_, label): &(usize, &&str)| axis_of(label).is_some();
+        let axes: Vec<usize> = { above.1.iter().enumerate() }
+            .filter(named)
+            .map(|(column, _)| column)
+            .collect();
+        let is_number = |column: &&usize| {
+            let cell = cells.get(**column).copied().unwrap_or_default();
+            number(cell, Decimal::Either).is_some() || is_nan(cell)
+        };
+        let numbers = axes.iter().filter(is_number).count();
+        axes.len() >= 6 && numbers > 0 && numbers * 5 >= axes.len() * 4
     };
     let is_frame = |row: &usize| {
         let (_, cells) = &rows[*row];
@@ -70,9 +138,8 @@ fn header_rows(rows: &[TableLine]) -> Option<usize> {
         let first = filled.clone().next();
         let (filled, numbers) = (filled.count(), numbers.count());
         let starts = first.is_some_and(|c| number(c, Decimal::Either).is_some() || is_nan(c));
-        filled > 0
-            && numbers * 5 >= filled * 4
-            && (starts || *row > 0 && names_axes(&rows[row - 1]))
+        filled > 0 && starts && numbers * 5 >= filled * 4
+            || *row > 0 && is_below_axes(&rows[row - 1], cells)
     };
     let first = (0..rows.len())
         .position(|row| is_frame(&row))

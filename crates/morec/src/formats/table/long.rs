@@ -2,7 +2,7 @@
 
 use super::columns::{is_frame, is_time, seconds_of};
 use super::layout::{ColumnLayout, TableFrames, TableLine, to_seconds};
-use crate::formats::cells::{Decimal, number};
+use crate::formats::cells::{Decimal, clock, number};
 use crate::formats::points::{Point, UNSEEN, check_size};
 use crate::formats::{Limits, ParseError, Place};
 use crate::math::Vec3;
@@ -26,8 +26,14 @@ pub(super) struct Columns {
 const PARTS: [&str; 5] = ["model", "trajectory", "type", "landmark_type", "category"];
 
 /// Names of the column of joint names.
-const NAMES: [&str; 24] = [
+const NAMES: [&str; 30] = [
     "joint",
+    "jointid",
+    "jointindex",
+    "landmarkid",
+    "keypointid",
+    "boneid",
+    "markerid",
     "jointtype",
     "joint_type",
     "joint type",
@@ -80,7 +86,7 @@ pub(super) fn columns(header: usize, (_, cells): &TableLine) -> Option<Columns> 
             "_id", "_index", "_idx", " id", " index", "_no", "_num", "_number",
         ];
         let others = [
-            "frame", "time", "sample", "image", "video", "file", "trial", "clip",
+            "frame", "time", "sample", "image", "video", "file", "trial", "clip", "row",
         ];
         let numbered = ends.iter().any(|end| cell.ends_with(end)) || cell == "id";
         numbered && !PEOPLE.contains(&cell) && !others.iter().any(|other| cell.starts_with(other))
@@ -135,7 +141,9 @@ pub(super) fn frames(
     for (line, cells) in body {
         let cell = |column: usize| cells.get(column).copied().unwrap_or_default();
         let value = |column: usize| number(cell(column), decimal);
-        let time = columns.time.and_then(|(column, _)| value(column));
+        let time = columns
+            .time
+            .and_then(|(column, _)| value(column).or_else(|| clock(cell(column))));
         let key = columns.frame.or(columns.time.map(|t| t.0)).map_or("", cell);
         let name = cell(columns.name);
         let whose = columns.person.map_or("", cell);

@@ -17,7 +17,7 @@ mod qualisys;
 
 pub(super) use self::columns::axis_of;
 use self::layout::{ColumnLayout, TableFrames, TableLine, to_seconds};
-use super::cells::{Decimal, lines, number, split};
+use super::cells::{Decimal, clock, lines, number, split};
 use super::points::{Point, PointTable, UNSEEN, check_size};
 use super::timing::{self, Clock};
 use super::{Limits, Loaded, ParseError, Place, Warning};
@@ -157,6 +157,11 @@ fn no_columns(rows: &[TableLine]) -> ParseError {
         let found = "x and y alone: two dimensions are not enough";
         return ParseError::new(Place::Line(*line), expected, found);
     }
+    if motive::begins(rows) {
+        let expected = "positions of bones, rigid bodies or markers in the export of Motive";
+        let found = "none: export positions, too, in global coordinates";
+        return ParseError::new(Place::Line(*line), expected, found);
+    }
     if nexus::begins(rows) {
         let expected = "a section `Trajectories` or `Segments` in the export of Vicon";
         let found = format!("`{}` without it: export trajectories, too", first[0]);
@@ -225,7 +230,9 @@ fn wide(
             let expected = format!("at most {} frames", limits.frames);
             return Err(ParseError::new(Place::Line(*line), expected, "more"));
         }
-        times.push(layout.time.and_then(|(column, _)| value(column)));
+        let clock = |column: usize| cells.get(column).and_then(|cell| clock(cell));
+        let time = |(column, _)| value(column).or_else(|| clock(column));
+        times.push(layout.time.and_then(time));
         numbers.push(layout.frame.and_then(value));
         for ((_, [x, y, z]), point) in layout.points.iter().zip(&mut points) {
             point
