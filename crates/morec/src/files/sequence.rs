@@ -266,7 +266,8 @@ mod tests {
     #[test]
     fn two_dimensions_are_refused_once() {
         let folder = folder(2);
-        let error = list(&[folder.path().to_owned()]).unwrap_err().to_string();
+        let all = FileReader::default().open_all(&[folder.path().to_owned()]);
+        let error = all.unwrap_err().to_string();
         assert_eq!(error.matches("two dimensions").count(), 1, "{error}");
     }
 

@@ -266,6 +266,14 @@ fn elements(value: &Value) -> Option<Vec<&Value>> {
         Value::Object(fields) => {
             let mut numbered: Option<Vec<(u64, &Value)>> = Some(Vec::with_capacity(fields.len()));
             for (key, child) in fields {
+                // `joint_3` is a point, not a frame.
+                let lower = key.to_lowercase();
+                if ["joint", "point", "landmark", "marker"]
+                    .iter()
+                    .any(|word| lower.contains(word))
+                {
+                    return None;
+                }
                 let digits: String = key.chars().filter(char::is_ascii_digit).collect();
                 match (digits.parse(), &mut numbered) {
                     (Ok(number), Some(numbered)) => numbered.push((number, child)),

@@ -105,7 +105,10 @@ impl PointTable {
         let (first, _) = &numbered[0];
         let least = numbered.iter().map(|n| n.1).min().unwrap_or(0);
         let alike = numbered.iter().all(|(word, _)| word == first);
-        let known = alike && WITH_HANDS_AND_FACE.contains(&numbered.len());
+        // Markers are numbered, too: `M1` to `M75` are no landmarks.
+        let landmarks = ["landmark", "keypoint", "pose", "point", "lm", "kp"];
+        let unworded = first.is_empty() || landmarks.iter().any(|word| first.starts_with(word));
+        let known = alike && unworded && WITH_HANDS_AND_FACE.contains(&numbered.len());
         let kept: Vec<bool> = numbered
             .iter()
             .map(|(word, number)| match known {

@@ -181,3 +181,46 @@ fn a_frame_is_told_from_a_clip() {
         assert!(!one(other.clone()), "{other}");
     }
 }
+
+/// Points that have several places, places within a field, a list for each point, and lists without a word.
+#[test]
+fn places_of_every_spelling() {
+    let place = |f: usize, j: usize| [0.1 * f as f64, 0.1 * j as f64, 2.0];
+    let list = |each: &dyn Fn(usize, usize) -> Value| -> Value {
+        (0..6)
+            .map(|f| json!({"joints": (0..20).map(|j| each(f, j)).collect::<Value>()}))
+            .collect()
+    };
+    let kinect = list(&|f, j| {
+        let [x, y, z] = place(f, j);
+        json!({"depthX": 0.5, "depthY": 0.5, "cameraX": x, "cameraY": y, "cameraZ": z})
+    });
+    let within = list(&|f, j| {
+        let [x, y, z] = place(f, j);
+        json!({"name": format!("j{j}a"), "Position": {"X": x, "Y": y, "Z": z}, "State": "Tracked"})
+    });
+    let unity = list(&|f, j| {
+        let [x, y, z] = place(f, j);
+        json!({"jointName": format!("j{j}a"), "px": x, "py": y, "pz": z})
+    });
+    let tracks: Map<String, Value> = (0..20)
+        .map(|j| {
+            (
+                format!("joint_{j}"),
+                (0..6).map(|f| json!(place(f, j))).collect(),
+            )
+        })
+        .collect();
+    let bare: Value = (0..6)
+        .map(|f| (0..20).map(|j| json!(place(f, j))).collect::<Value>())
+        .collect();
+    for document in [kinect, within, unity, Value::Object(tracks), bare] {
+        assert!(looks_so(document.to_string().as_bytes()), "{document}");
+        let clip = &open(&document).unwrap().clips[0];
+        assert_eq!((clip.frames, clip.skeleton.len()), (6, 20));
+        let is_there = |point: &crate::clip::JointTrack| {
+            (point.positions[3] - Vec3::new(0.3, 0.7, 2.0)).norm() < 1e-9
+        };
+        assert!(clip.tracks.iter().any(is_there), "{document}");
+    }
+}

@@ -465,6 +465,11 @@ mod tests {
                 Format::OpenSimMotion,
             ),
             (
+                b"#a\n[Header]\n[SegmentNames&Hierarchy]\n",
+                "a",
+                Format::Htr,
+            ),
+            (
                 b"Coordinates\nnRows=2\nnColumns=3,,,\n",
                 "a",
                 Format::OpenSimMotion,
@@ -493,6 +498,10 @@ mod tests {
             (b"version https://git-lfs.github.com/spec/v1\n", "Git LFS"),
             (b"<!DOCTYPE html>\n<html>", "HTML"),
             (b"PAR1\0", "Parquet"),
+            (b"[Header]\nFileType gtr\n", "GTR"),
+            (b"{\"poses\": [[0]], \"shapes\": [[0]]}", "SMPL as JSON"),
+            (b"{\"file_version\": 1, \"asset_info\": {}}", "DUF"),
+            (b"<?xml?><MMM>", "Master Motor Map"),
         ] {
             let error = probe(bytes, "file.dat").unwrap_err();
             assert!(error.found.contains(found), "{error}");

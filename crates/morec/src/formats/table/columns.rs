@@ -113,6 +113,26 @@ fn rate_above(header: &[TableLine]) -> Option<f64> {
     })
 }
 
+/// True if most columns have angles, rotations or what sensors measure, by their labels.
+pub(super) fn is_turned(rows: &[TableLine]) -> bool {
+    let Some(header_rows) = header_rows(rows) else {
+        return false;
+    };
+    let says = |label: &String| {
+        let lower = label.to_lowercase();
+        let mut parts = lower.split(|c: char| !c.is_alphanumeric());
+        parts.any(|part| {
+            let bare = part.trim_end_matches(['x', 'y', 'z', 'w', 's']);
+            NO_POSITION.contains(&part) || !bare.is_empty() && NO_POSITION.contains(&bare)
+        }) || ["angle", "flexion", "rotation"]
+            .iter()
+            .any(|word| lower.contains(word))
+    };
+    let labels = labels(without_units(&rows[..header_rows]).0);
+    let turned = labels.iter().filter(|label| says(label)).count();
+    turned > 0 && turned * 2 > labels.len()
+}
+
 /// Rows before the first of numbers; `None` if there is none, or no row of numbers.
 fn header_rows(rows: &[TableLine]) -> Option<usize> {
     // A frame may begin with words (a class, a track) and hold others (`Tracked`) below names that are certain.
@@ -239,7 +259,12 @@ const POSITION: [&str; 11] = [
     "t",
 ];
 /// Words that say that something else is meant.
-const NO_POSITION: [&str; 28] = [
+const NO_POSITION: [&str; 33] = [
+    "gyr",
+    "linacc",
+    "velo",
+    "grf",
+    "cop",
     "rotation",
     "rot",
     "r",

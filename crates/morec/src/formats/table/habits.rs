@@ -299,3 +299,98 @@ fn a_face_behind_the_body() {
         assert!(told, "{:?}", loaded.warnings);
     }
 }
+
+/// A row of units below the names, clocks for times, a rate in a comment, words among the numbers, and no brackets around points.
+#[test]
+fn what_spreadsheets_and_cameras_write() {
+    let names = ["nose", "hip"];
+    let axes = |between: &str| {
+        names
+            .map(|n| ["x", "y", "z"].map(|a| format!("{n}_{a}")).join(between))
+            .join(between)
+    };
+    let units = format!("Frame,Time,{}\n-,s,mm,mm,mm,mm,mm,mm\n", axes(","));
+    let clocks = format!("time,{}\n", axes(","));
+    let rate = format!("# made by hand\n# fps: 50\nframe,{}\n", axes(","));
+    let keys = format!("Frame Rate,50\nframe,{}\n", axes(","));
+    let states = names.map(|n| format!("{n}_x,{n}_y,{n}_z,{n}_state,{n}_kind"));
+    let states = format!("frame,{}\n", states.join(","));
+    let row = |f: usize| row(f, 2, ",");
+    let with = |head: &str, line: &dyn Fn(usize) -> String| {
+        head.to_owned() + &{ 0..6 }.map(|f| line(f) + "\n").collect::<String>()
+    };
+    let worded = |f: usize| {
+        let point = |p| format!("{},Tracked,Good", moving(f, p, ","));
+        format!("{f},{},{}", point(0), point(1))
+    };
+    let bare = |f: usize| format!("{f}\t{}\t{}", moving(f, 0, " "), moving(f, 1, " "));
+    for (text, rate_hz, unit) in [
+        (
+            with(&units, &|f| {
+                format!("{f},{:.2},{}", f as f64 / 50.0, row(f))
+            }),
+            50.0,
+            Some(0.001),
+        ),
+        (
+            with(&clocks, &|f| {
+                format!("2024-02-01 10:59:59.{:03},{}", 20 * f, row(f))
+            }),
+            50.0,
+            None,
+        ),
+        (with(&rate, &|f| format!("{f},{}", row(f))), 50.0, None),
+        (with(&keys, &|f| format!("{f},{}", row(f))), 50.0, None),
+        (with(&states, &worded), 30.0, None),
+        (with("frame\tnose\thip\n", &bare), 30.0, None),
+    ] {
+        assert!(looks_so(text.as_bytes()), "{text}");
+        let clip = &open(&text).clips[0];
+        assert_eq!((clip.frames, clip.skeleton.len()), (6, 2), "{text}");
+        assert!(
+            (clip.rate_hz - rate_hz).abs() < 1e-6,
+            "{} {text}",
+            clip.rate_hz
+        );
+        assert_eq!(
+            clip.points.as_ref().unwrap().metres_per_unit,
+            unit,
+            "{text}"
+        );
+        assert_eq!(
+            clip.tracks[1].positions[2],
+            Vec3::new(0.14, 1.1, 0.3),
+            "{text}"
+        );
+    }
+}
+
+#[test]
+fn names_above_every_third_column() {
+    let names: Vec<String> = { 0..20 }.map(|p| format!("joint{}", 19 - p)).collect();
+    let mut text = format!("Frame,{},,\n", names.join(",,,"));
+    for frame in 0..6 {
+        text += &format!("{frame},{}\n", row(frame, 20, ","));
+    }
+    let clip = &open(&text).clips[0];
+    assert_eq!(clip.skeleton.joints()[0].name, "joint19");
+    assert_eq!(clip.skeleton.len(), 20);
+}
+
+#[test]
+fn what_is_no_position_is_said() {
+    for (head, said) in [
+        ("time,Knee_angle,Hip_angle\n", "angles"),
+        ("time,a_qx,a_qy,a_qz,a_qw\n", "rotations"),
+        ("time,Acc_X,Acc_Y,Acc_Z,Gyr_X,Gyr_Y,Gyr_Z\n", "sensors"),
+        (
+            "Format Version,1.25,Take Name,a\n\n,Type,Bone,Bone\n,Name,a,a\n,,Rotation,Rotation\nFrame,Time,X,Y\n",
+            "export positions",
+        ),
+    ] {
+        let rows: String = (0..6).map(|f| format!("{f},1,2,3,4,5,6\n")).collect();
+        let text = format!("{head}{rows}");
+        let error = read(text.as_bytes(), "x", None, &Limits::default()).unwrap_err();
+        assert!(error.found.contains(said), "{head}: {error}");
+    }
+}

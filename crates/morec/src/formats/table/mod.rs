@@ -153,13 +153,17 @@ fn no_columns(rows: &[TableLine]) -> ParseError {
     let Some((line, first)) = rows.first() else {
         return ParseError::new(Place::Line(1), expected, "an empty file");
     };
+    if motive::begins(rows) {
+        let expected = "positions of bones, rigid bodies or markers in the export of Motive";
+        let found = "none: export positions, too, in global coordinates";
+        return ParseError::new(Place::Line(*line), expected, found);
+    }
     if columns::is_flat(rows) {
         let found = "x and y alone: two dimensions are not enough";
         return ParseError::new(Place::Line(*line), expected, found);
     }
-    if motive::begins(rows) {
-        let expected = "positions of bones, rigid bodies or markers in the export of Motive";
-        let found = "none: export positions, too, in global coordinates";
+    if columns::is_turned(rows) {
+        let found = "angles, rotations or what sensors measure: without a skeleton they place nothing (give positions, or BVH)";
         return ParseError::new(Place::Line(*line), expected, found);
     }
     if nexus::begins(rows) {
