@@ -7,6 +7,7 @@
 use serde_json::{Map, Value};
 
 use super::points::{Point, PointTable, UNSEEN, check_size};
+use super::table::{axis_of, to_seconds};
 use super::timing::{self, Clock};
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::math::Vec3;
@@ -29,13 +30,14 @@ pub(super) fn looks_so(head: &[u8]) -> bool {
         head.windows(word.len())
             .any(|at| at.eq_ignore_ascii_case(word))
     };
-    let words: [&[u8]; 6] = [
+    let words: [&[u8]; 7] = [
         b"landmark",
         b"keypoint",
         b"joints",
         b"joint_",
         b"left_shoulder",
         b"leftShoulder",
+        b"nose_x",
     ];
     // Scenes of suits and glTF have words in common with these.
     let others: [&[u8]; 2] = [b"\"asset\"", b"\"actors\""];
@@ -136,6 +138,8 @@ pub fn read(
     for point in &mut points {
         point.positions.resize(frames.len(), UNSEEN);
     }
+    // A field of times need not say its unit.
+    to_seconds(&mut times, None);
     let clock = Clock {
         given_hz: rate_hz,
         stated_hz: rate_in(&document),
@@ -362,6 +366,7 @@ fn points_in(value: &Value, depth: usize) -> Option<Vec<(String, Vec3)>> {
     }
     point_list(value)
         .or_else(|| points_in_a_row(value))
+        .or_else(|| points_in_fields(value))
         .or_else(|| children(value).find_map(|child| points_in(child, depth - 1)))
 }
 
@@ -398,6 +403,31 @@ fn points_in_a_row(value: &Value) -> Option<Vec<(String, Vec3)>> {
             };
             Some(numbers.chunks_exact(width).enumerate().map(point).collect())
         })
+}
+
+/// A record as tables have it: `{"nose_x": 0.1, "nose_y": 0.9, "nose_z": 0.0, …}`.
+fn points_in_fields(value: &Value) -> Option<Vec<(String, Vec3)>> {
+    let fields = value
+        .as_object()
+        .filter(|fields| fields.len() >= 3 * LEAST_POINTS)?;
+    let mut points: Vec<(String, [Option<f64>; 3])> = Vec::new();
+    for (key, value) in fields {
+        let known = axis_of(key).filter(|_| value.is_number() || value.is_null());
+        let Some((name, axis)) = known else { continue };
+        let at = match points.iter().position(|(known, _)| *known == name) {
+            Some(at) => at,
+            None => {
+                points.push((name, [None; 3]));
+                points.len() - 1
+            }
+        };
+        points[at].1[axis] = Some(value.as_f64().unwrap_or(f64::NAN));
+    }
+    let whole = points
+        .into_iter()
+        .filter_map(|(name, [x, y, z])| Some((name, Vec3::new(x?, y?, z?))));
+    let whole: Vec<(String, Vec3)> = whole.collect();
+    (whole.len() >= LEAST_POINTS).then_some(whole)
 }
 
 fn point_list(value: &Value) -> Option<Vec<(String, Vec3)>> {
@@ -483,7 +513,8 @@ fn place_of(point: &Value) -> Option<Vec3> {
 
 /// The time of a frame in seconds.
 fn time_of(frame: &Value) -> Option<f64> {
-    const KEYS: [(&str, f64); 11] = [
+    const KEYS: [(&str, f64); 12] = [
+        ("ts", 1.0),
         ("t", 1.0),
         ("time", 1.0),
         ("timestamp", 1.0),

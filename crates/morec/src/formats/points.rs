@@ -45,6 +45,7 @@ impl PointTable {
             return Err(ParseError::new(Place::File, expected, found));
         }
         self.mark_unseen();
+        self.name_subjects();
         self.keep_body(&mut warnings);
         self.leave_out(&mut warnings);
         if self.points.is_empty() {
@@ -90,6 +91,47 @@ impl PointTable {
         } else {
             note_left_out(&unnamed, "without a label", warnings);
             self.points = named;
+        }
+    }
+
+    /// `person0_nose` and `P2_nose` become `person0:nose` and `P2:nose` where several people have points of the same names.
+    fn name_subjects(&mut self) {
+        const PEOPLE: [&str; 11] = [
+            "p",
+            "person",
+            "people",
+            "subject",
+            "participant",
+            "body",
+            "skeleton",
+            "player",
+            "actor",
+            "user",
+            "id",
+        ];
+        fn split(name: &str) -> Option<(&str, &str)> {
+            let (whose, rest) = name.split_once(['_', ' ', '.', '-'])?;
+            let word = whose.trim_end_matches(|c: char| c.is_ascii_digit());
+            let known = PEOPLE.iter().any(|known| word.eq_ignore_ascii_case(known));
+            (known && word.len() < whose.len()).then_some((whose, rest))
+        }
+        let split: Option<Vec<(&str, &str)>> = self.points.iter().map(|p| split(&p.name)).collect();
+        let Some(split) = split else { return };
+        let mut people: Vec<(&str, Vec<&str>)> = Vec::new();
+        for &(whose, rest) in &split {
+            match people.iter_mut().find(|(known, _)| *known == whose) {
+                Some((_, names)) => names.push(rest),
+                None => people.push((whose, vec![rest])),
+            }
+        }
+        if people.len() < 2 || people.iter().any(|(_, names)| *names != people[0].1) {
+            return;
+        }
+        let names: Vec<String> = { split.iter() }
+            .map(|(whose, rest)| format!("{whose}:{rest}"))
+            .collect();
+        for (point, name) in self.points.iter_mut().zip(names) {
+            point.name = name;
         }
     }
 

@@ -224,3 +224,27 @@ fn places_of_every_spelling() {
         assert!(clip.tracks.iter().any(is_there), "{document}");
     }
 }
+
+/// Records of a table, with times in milliseconds.
+#[test]
+fn records_of_a_table() {
+    let record = |f: usize| -> Value {
+        let axes = (0..6).flat_map(|j| ["x", "y", "z"].map(|axis| (j, axis)));
+        let mut record: Map<String, Value> = axes
+            .map(|(j, axis)| (format!("nose{j}_{axis}"), json!(0.1 * f as f64)))
+            .collect();
+        record.insert("nose_x_confidence".into(), json!(0.9));
+        record.insert(
+            "timestamp".into(),
+            json!(1_700_000_000_000u64 + 40 * f as u64),
+        );
+        Value::Object(record)
+    };
+    let document: Value = (0..6).map(record).collect();
+    let text = document.to_string().replace("nose0_", "nose_");
+    assert!(looks_so(text.as_bytes()));
+    let loaded = read(text.as_bytes(), "f", None, &Limits::default()).unwrap();
+    let clip = &loaded.clips[0];
+    assert_eq!((clip.frames, clip.skeleton.len()), (6, 6));
+    assert!((clip.rate_hz - 25.0).abs() < 1e-6, "{}", clip.rate_hz);
+}

@@ -310,6 +310,9 @@ fn is_left_alone(label: &str) -> bool {
 
 /// [`axis_of`]; with `has_sides`, a name that ends in `_r` is a right one.
 fn axis_with(label: &str, has_sides: bool) -> Option<(String, usize)> {
+    if let Some(found) = in_brackets(label) {
+        return Some(found);
+    }
     let label = without_unit(label).trim();
     let (name, axis) = suffix(label).or_else(|| prefix(label))?;
     let mut name = name.trim_end_matches(is_mark);
@@ -333,6 +336,23 @@ fn axis_with(label: &str, has_sides: bool) -> Option<(String, usize)> {
     let lower = name.to_ascii_lowercase();
     let is_name = !name.is_empty() && !NO_POSITION.contains(&lower.as_str());
     is_name.then(|| (name.to_owned(), axis))
+}
+
+/// `Hips(x)`, `Hips[X]`, `Hips[0]`.
+fn in_brackets(label: &str) -> Option<(String, usize)> {
+    let pair = ["()", "[]"];
+    let (name, axis) = pair.iter().find_map(|pair| {
+        let rest = label.trim().strip_suffix(&pair[1..])?;
+        rest.rsplit_once(&pair[..1])
+    })?;
+    let axis = match axis.trim() {
+        "0" => 0,
+        "1" => 1,
+        "2" => 2,
+        letter => axis_number(letter.chars().next()?).filter(|_| letter.len() == 1)?,
+    };
+    let name = name.trim_end_matches(is_mark);
+    (!name.is_empty() && !is_time(name) && !is_frame(name, 1)).then(|| (name.to_owned(), axis))
 }
 
 fn is_mark(c: char) -> bool {

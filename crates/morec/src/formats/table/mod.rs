@@ -16,7 +16,8 @@ mod plain;
 mod qualisys;
 
 pub(super) use self::columns::axis_of;
-use self::layout::{ColumnLayout, TableFrames, TableLine, to_seconds};
+pub(super) use self::layout::to_seconds;
+use self::layout::{ColumnLayout, TableFrames, TableLine};
 use super::cells::{Decimal, clock, lines, number, split};
 use super::points::{Point, PointTable, UNSEEN, check_size};
 use super::timing::{self, Clock};
