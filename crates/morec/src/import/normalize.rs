@@ -22,8 +22,12 @@ use super::{axes, points, travel, units};
 pub fn normalize(mut clip: Clip, options: &ImportOptions) -> Result<Take, ParseError> {
     let mut notes = Vec::new();
     let mut names = JointNames::of(&clip.skeleton);
+    let mut posed = Vec::new();
     let (map, point_set) = match clip.has_rotations() {
-        true => (find_roles(&clip, &names, &mut notes), None),
+        true => {
+            posed = poses(&clip);
+            (find_roles(&clip, &names, &posed, &mut notes), None)
+        }
         false => points::find_roles(&mut clip),
     };
     let map = match &options.mapping {
@@ -42,7 +46,11 @@ pub fn normalize(mut clip: Clip, options: &ImportOptions) -> Result<Take, ParseE
         true => vec![points::UNKNOWN.to_owned()],
         false => {
             names.extend(&clip.skeleton);
-            roles::check_named(&clip.skeleton, &names, &map, &poses(&clip))
+            // A mapping adds joints in places between others.
+            if posed.first().map(Vec::len) != Some(clip.skeleton.len()) {
+                posed = poses(&clip);
+            }
+            roles::check_named(&clip.skeleton, &names, &map, &posed)
         }
     };
     doubts.extend(units::doubt(&body, metres_per_unit));
@@ -74,12 +82,16 @@ pub fn normalize(mut clip: Clip, options: &ImportOptions) -> Result<Take, ParseE
 }
 
 /// The roles, judged in frames spread over the clip.
-fn find_roles(clip: &Clip, names: &JointNames, notes: &mut Vec<String>) -> RoleMap {
-    let poses = match clip.frames {
-        0 => vec![roles::zero_pose(&clip.skeleton)],
-        _ => poses(clip),
+fn find_roles(
+    clip: &Clip,
+    names: &JointNames,
+    posed: &[Vec<Vec3>],
+    notes: &mut Vec<String>,
+) -> RoleMap {
+    let found = match posed {
+        [] => roles::find_named(&clip.skeleton, names, &[roles::zero_pose(&clip.skeleton)]),
+        posed => roles::find_named(&clip.skeleton, names, posed),
     };
-    let found = roles::find_named(&clip.skeleton, names, &poses);
     notes.extend(found.notes);
     found.map
 }

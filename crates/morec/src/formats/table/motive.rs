@@ -9,7 +9,7 @@ use crate::formats::points::metres_of;
 pub(super) fn begins(rows: &[TableLine]) -> bool {
     let is_key = |cell: &&str| matches!(*cell, "Format Version" | "Take Name");
     rows.first()
-        .is_some_and(|(_, cells)| cells.iter().any(|cell| is_key(&cell)))
+        .is_some_and(|(_, cells)| cells.iter().any(is_key))
 }
 
 /// The layout, if this is such an export. Bones are taken if there are any, else rigid bodies and markers.
