@@ -4,27 +4,17 @@ use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
-use super::sequence::FrameFiles;
-
 /// The largest file that is read, bytes. The largest clips in use are a few hundred megabytes.
 pub const LARGEST_FILE: u64 = 2 << 30;
 
 /// The most that is read of something without a length: a pipe, a device, standard input.
 pub const LARGEST_STREAM: u64 = 512 << 20;
 
-/// A file's bytes; of one frame of a clip whose frames are files (`walk_000000000012_keypoints.json`), those of all its frames.
+/// The bytes of this file alone.
 ///
 /// # Errors
 /// The file cannot be read, or is larger than [`LARGEST_FILE`] or [`LARGEST_STREAM`]; nothing of a file that is too large
 /// is read.
-pub fn read_file(path: &Path) -> io::Result<Vec<u8>> {
-    match FrameFiles::around(path) {
-        Some(frames) => frames.read(),
-        None => read_whole(path),
-    }
-}
-
-/// The bytes of this file alone.
 pub(super) fn read_whole(path: &Path) -> io::Result<Vec<u8>> {
     let file = File::open(path)?;
     let about = file.metadata()?;
@@ -140,7 +130,7 @@ mod tests {
         if file.set_len(3 << 30).is_err() {
             return;
         }
-        let error = read_file(&path).unwrap_err();
+        let error = read_whole(&path).unwrap_err();
         assert_eq!(error.kind(), ErrorKind::FileTooLarge);
     }
 }

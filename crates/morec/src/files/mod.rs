@@ -28,11 +28,12 @@ use std::path::Path;
 
 #[cfg(feature = "live")]
 pub(crate) use bounded::write_whole;
-pub use bounded::{LARGEST_FILE, LARGEST_STREAM, each_piece, is_large, read_file, read_stream};
+pub use bounded::{LARGEST_FILE, LARGEST_STREAM, each_piece, is_large, read_stream};
 pub use choice::split_choice;
 pub use error::{FileError, FileErrorKind};
 pub use folder::{Listing, list};
 pub use reader::{ClipFile, FileReader};
+pub use sequence::read_file;
 pub use takes::Takes;
 
 use crate::import::Take;

@@ -13,6 +13,18 @@ use crate::formats::landmarks::is_one_frame;
 
 use super::bounded::{LARGEST_FILE, read_whole, too_large};
 
+/// A file's bytes; of one frame of a clip whose frames are files (`walk_000000000012_keypoints.json`), those of all its frames.
+///
+/// # Errors
+/// The file cannot be read, or is larger than [`LARGEST_FILE`] or [`LARGEST_STREAM`](super::LARGEST_STREAM); nothing of a file that is too large
+/// is read.
+pub fn read_file(path: &Path) -> io::Result<Vec<u8>> {
+    match FrameFiles::around(path) {
+        Some(frames) => frames.read(),
+        None => read_whole(path),
+    }
+}
+
 /// Fewer numbered files have their numbers by chance.
 const LEAST_FILES: usize = 3;
 /// A file of one frame is no larger, bytes.
@@ -22,14 +34,14 @@ const MOST_MISSING: u64 = 10;
 
 /// The name of a file around its number.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Series {
+pub(super) struct FrameSeries {
     before: String,
     after: String,
 }
 
 /// The series that a file's name belongs to, and its number there: the longest run of digits, the last of several, that does
 /// not say how many dimensions there are.
-fn numbered(path: &Path) -> Option<(Series, u64)> {
+fn numbered(path: &Path) -> Option<(FrameSeries, u64)> {
     let name = path.file_name()?.to_str()?;
     let stem = name.strip_suffix(".json").or(name.strip_suffix(".JSON"))?;
     let digits = |c: char| c.is_ascii_digit();
@@ -45,7 +57,7 @@ fn numbered(path: &Path) -> Option<(Series, u64)> {
         }
     }
     let (start, end) = best?;
-    let series = Series {
+    let series = FrameSeries {
         before: name[..start].to_owned(),
         after: name[end..].to_owned(),
     };
@@ -72,8 +84,8 @@ impl FrameFiles {
     }
 
     /// Every such clip among the files of one folder.
-    pub(super) fn among(paths: impl Iterator<Item = PathBuf>) -> Vec<(Series, Self)> {
-        let mut all: BTreeMap<Series, BTreeMap<u64, PathBuf>> = BTreeMap::new();
+    pub(super) fn among(paths: impl Iterator<Item = PathBuf>) -> Vec<(FrameSeries, Self)> {
+        let mut all: BTreeMap<FrameSeries, BTreeMap<u64, PathBuf>> = BTreeMap::new();
         for path in paths {
             if let Some((series, number)) = numbered(&path) {
                 all.entry(series).or_default().insert(number, path);
@@ -152,7 +164,7 @@ pub(super) fn join(members: Vec<Member>) -> Vec<Member> {
             .map_or("", |(folder, _)| folder)
             .to_owned()
     };
-    let mut all: BTreeMap<(String, Series), BTreeMap<u64, usize>> = BTreeMap::new();
+    let mut all: BTreeMap<(String, FrameSeries), BTreeMap<u64, usize>> = BTreeMap::new();
     for (at, member) in members.iter().enumerate() {
         if let Some((series, number)) = numbered(Path::new(&member.path)) {
             let key = (folder(&member.path), series);

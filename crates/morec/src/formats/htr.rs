@@ -28,7 +28,7 @@ const FRAMES_A_ROW: usize = 16;
 pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseError> {
     let rows = lines(bytes, limits)?;
     let mut htr = HtrFile::default();
-    let mut section = Section::Header;
+    let mut section = HtrSection::Header;
     for (line, text) in rows {
         let text = text.split('#').next().unwrap_or_default().trim();
         if text.is_empty() {
@@ -45,12 +45,12 @@ pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseEr
             ParseError::new(Place::Line(line), expected, format!("`{}`", shown(text)))
         };
         match section {
-            Section::Header => htr.set(text).map_err(at)?,
-            Section::Hierarchy => htr.add_segment(text, limits).map_err(at)?,
-            Section::Base => htr.set_base(text).map_err(at)?,
-            Section::Segment(segment) => htr.add_row(Some(segment), text).map_err(at)?,
-            Section::Frame => htr.add_row(None, text).map_err(at)?,
-            Section::End => {}
+            HtrSection::Header => htr.set(text).map_err(at)?,
+            HtrSection::Hierarchy => htr.add_segment(text, limits).map_err(at)?,
+            HtrSection::Base => htr.set_base(text).map_err(at)?,
+            HtrSection::Segment(segment) => htr.add_row(Some(segment), text).map_err(at)?,
+            HtrSection::Frame => htr.add_row(None, text).map_err(at)?,
+            HtrSection::End => {}
         }
     }
     htr.into_loaded(name, bytes.len(), limits)
@@ -61,7 +61,7 @@ fn shown(text: &str) -> String {
 }
 
 #[derive(Clone, Copy)]
-enum Section {
+enum HtrSection {
     Header,
     Hierarchy,
     Base,
@@ -71,7 +71,7 @@ enum Section {
 }
 
 #[derive(Default)]
-struct Segment {
+struct HtrSegment {
     name: String,
     parent: String,
     place: Vec3,
@@ -87,7 +87,7 @@ struct HtrFile {
     order: Option<[Axis; 3]>,
     radians: bool,
     bone_axis: Option<Axis>,
-    segments: Vec<Segment>,
+    segments: Vec<HtrSegment>,
     of_name: HashMap<String, usize>,
     /// The frame of the rows to come, in HTR2.
     frame: i64,
@@ -95,18 +95,18 @@ struct HtrFile {
 }
 
 impl HtrFile {
-    fn section(&mut self, title: &str) -> Section {
+    fn section(&mut self, title: &str) -> HtrSection {
         let lower = title.to_ascii_lowercase();
         match lower.as_str() {
-            "header" => Section::Header,
-            "baseposition" => Section::Base,
-            "endoffile" => Section::End,
-            _ if lower.starts_with("segmentnames") => Section::Hierarchy,
+            "header" => HtrSection::Header,
+            "baseposition" => HtrSection::Base,
+            "endoffile" => HtrSection::End,
+            _ if lower.starts_with("segmentnames") => HtrSection::Hierarchy,
             _ => match self.of_name.get(title) {
-                Some(&segment) => Section::Segment(segment),
+                Some(&segment) => HtrSection::Segment(segment),
                 None => {
                     self.frame += 1;
-                    Section::Frame
+                    HtrSection::Frame
                 }
             },
         }
@@ -148,10 +148,10 @@ impl HtrFile {
         if self.of_name.insert(name.to_owned(), next).is_some() {
             return Err("a segment of another name");
         }
-        self.segments.push(Segment {
+        self.segments.push(HtrSegment {
             name: name.to_owned(),
             parent: parent.to_owned(),
-            ..Segment::default()
+            ..HtrSegment::default()
         });
         Ok(())
     }
@@ -329,7 +329,7 @@ impl HtrFile {
     }
 }
 
-impl Segment {
+impl HtrSegment {
     /// Place and rotation in the parent's frame; the base position where the segment has no rows at all.
     fn pose(&self, frame: i64) -> Option<(Vec3, Quat)> {
         if self.rows.is_empty() {
