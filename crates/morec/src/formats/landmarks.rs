@@ -63,9 +63,11 @@ fn is_list_of_lists(text: &[u8]) -> bool {
 }
 
 /// Lists of more are frames, not bodies.
+#[cfg(feature = "files")]
 const MOST_BODIES: usize = 6;
 
 /// True if a document holds bodies of one moment, or says that nobody was there.
+#[cfg(feature = "files")]
 pub(crate) fn is_one_frame(bytes: &[u8]) -> bool {
     let Ok(document) = serde_json::from_slice::<Value>(bytes) else {
         return false;

@@ -161,6 +161,7 @@ fn joints_in_a_row_by_their_count() {
     assert_eq!(clip.tracks[2].positions[3], Vec3::new(2.0, 3.0, 1.0));
 }
 
+#[cfg(feature = "files")]
 #[test]
 fn a_frame_is_told_from_a_clip() {
     let one = |document: Value| is_one_frame(document.to_string().as_bytes());
