@@ -60,6 +60,19 @@ impl WorldPose {
     }
 }
 
+/// World position of one joint: that of [`WorldPose`] without the others. O(depth of the joint).
+#[cfg(feature = "formats")]
+pub(crate) fn position_of(clip: &Clip, frame: usize, joint: usize) -> Vec3 {
+    let rotations = clip.frame_rotations(frame);
+    let mut position = clip.local_position(frame, joint);
+    let mut above = clip.skeleton.joints()[joint].parent;
+    while let Some(parent) = above {
+        position = clip.local_position(frame, parent) + rotations[parent] * position;
+        above = clip.skeleton.joints()[parent].parent;
+    }
+    position
+}
+
 impl Clip {
     /// Positions of the joints in the world, as a clip of points; `metres_per_unit` becomes its unit. A
     /// clip of points stays what it is. O(joints × frames).

@@ -11,7 +11,7 @@ use crate::formats::{ParseError, Place, Warning, mocopi};
 
 use super::choice::{chosen, split_choice};
 use super::neighbours::Around;
-use super::{ClipFile, FileError, FileErrorKind, FileReader, is_large};
+use super::{ClipFile, FileError, FileErrorKind, FileReader, is_large, sequence};
 
 /// Archives in archives are opened so deep.
 const DEEPEST: usize = 3;
@@ -86,7 +86,7 @@ impl FileReader {
         bytes: &[u8],
         depth: usize,
     ) -> Result<ClipFile, FileErrorKind> {
-        let members = container::unzip(bytes, &may_be_needed)?;
+        let members = sequence::join(container::unzip(bytes, &may_be_needed)?);
         let mut all: Option<ClipFile> = None;
         let mut first_error = None;
         let mut refused = Vec::new();

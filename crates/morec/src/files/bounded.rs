@@ -10,12 +10,12 @@ pub const LARGEST_FILE: u64 = 2 << 30;
 /// The most that is read of something without a length: a pipe, a device, standard input.
 pub const LARGEST_STREAM: u64 = 512 << 20;
 
-/// A file's bytes.
+/// The bytes of this file alone.
 ///
 /// # Errors
 /// The file cannot be read, or is larger than [`LARGEST_FILE`] or [`LARGEST_STREAM`]; nothing of a file that is too large
 /// is read.
-pub fn read_file(path: &Path) -> io::Result<Vec<u8>> {
+pub(super) fn read_whole(path: &Path) -> io::Result<Vec<u8>> {
     let file = File::open(path)?;
     let about = file.metadata()?;
     if about.is_file() {
@@ -93,7 +93,7 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     written
 }
 
-fn too_large(most: u64) -> io::Error {
+pub(super) fn too_large(most: u64) -> io::Error {
     let text = format!("expected at most {} MB, found more", most >> 20);
     io::Error::new(ErrorKind::FileTooLarge, text)
 }
@@ -130,7 +130,7 @@ mod tests {
         if file.set_len(3 << 30).is_err() {
             return;
         }
-        let error = read_file(&path).unwrap_err();
+        let error = read_whole(&path).unwrap_err();
         assert_eq!(error.kind(), ErrorKind::FileTooLarge);
     }
 }

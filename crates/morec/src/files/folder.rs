@@ -1,11 +1,13 @@
 //! Clips among the files of a folder.
 
+use std::collections::HashSet;
 use std::fs::{self, File};
-use std::io::Read;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use crate::formats::probe::{Format, format_of_name, probe};
 
+use super::sequence::FrameFiles;
 use super::{FileError, FileErrorKind};
 
 /// So much of a file is looked at to tell its format.
@@ -51,9 +53,17 @@ pub fn list(paths: &[PathBuf]) -> Result<Listing, FileError> {
 
 fn collect(folder: &Path, all: &mut Listing) -> Result<(), FileError> {
     let failed = |error| FileErrorKind::Io(error).at(folder);
-    for entry in fs::read_dir(folder).map_err(failed)? {
-        let entry = entry.map_err(failed)?;
+    let entries: Vec<fs::DirEntry> = fs::read_dir(folder)
+        .and_then(Iterator::collect)
+        .map_err(failed)?;
+    let clips = FrameFiles::among(entries.iter().map(fs::DirEntry::path));
+    // The first of them stands for the clip.
+    let later: HashSet<&PathBuf> = clips.iter().flat_map(|(_, f)| f.paths().skip(1)).collect();
+    for entry in entries {
         let path = entry.path();
+        if later.contains(&path) {
+            continue;
+        }
         // A link to a folder could lead back here; links to files cannot.
         if entry.file_type().is_ok_and(|kind| kind.is_dir()) {
             // A folder that cannot be read is left out alone.
@@ -61,7 +71,9 @@ fn collect(folder: &Path, all: &mut Listing) -> Result<(), FileError> {
                 all.left_out.push(error);
             }
         } else if path.is_file() {
-            match kind_of(&path) {
+            let frames = clips.iter().map(|(_, frames)| frames);
+            let frames = { frames }.find(|frames| frames.paths().next() == Some(&path));
+            match kind_of(&path, frames) {
                 FileKind::Clip => all.clips.push(path),
                 FileKind::NotRead(why) => all.left_out.push(why.at(&path)),
                 FileKind::Other => all.others += 1,
@@ -82,7 +94,7 @@ enum FileKind {
     Other,
 }
 
-fn kind_of(path: &Path) -> FileKind {
+fn kind_of(path: &Path, frames: Option<&FrameFiles>) -> FileKind {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     if name.starts_with('.') {
         return FileKind::Needed;
@@ -97,17 +109,20 @@ fn kind_of(path: &Path) -> FileKind {
     match format_of_name(&name) {
         Some(Format::Asf | Format::OpenSimModel) => FileKind::Needed,
         // Tables and JSON hold labels, too: what is in them decides.
-        Some(Format::Table | Format::Jsonl) | None => by_content(path),
+        Some(Format::Table | Format::Jsonl) | None => by_content(path, frames),
         Some(_) => FileKind::Clip,
     }
 }
 
-fn by_content(path: &Path) -> FileKind {
-    let mut head = Vec::new();
-    let read = File::open(path).and_then(|file| file.take(HEAD_BYTES).read_to_end(&mut head));
-    if let Err(error) = read {
-        return FileKind::NotRead(error.into());
-    }
+fn by_content(path: &Path, frames: Option<&FrameFiles>) -> FileKind {
+    let head = match frames {
+        Some(frames) => frames.read(),
+        None => head_of(path),
+    };
+    let head = match head {
+        Ok(head) => head,
+        Err(error) => return FileKind::NotRead(error.into()),
+    };
     match probe(&head, "") {
         Ok(Format::Asf | Format::OpenSimModel) => FileKind::Needed,
         Ok(_) => FileKind::Clip,
@@ -116,6 +131,12 @@ fn by_content(path: &Path) -> FileKind {
         }
         Err(_) => FileKind::Other,
     }
+}
+
+fn head_of(path: &Path) -> io::Result<Vec<u8>> {
+    let mut head = Vec::new();
+    File::open(path)?.take(HEAD_BYTES).read_to_end(&mut head)?;
+    Ok(head)
 }
 
 /// Pictures and videos lie beside motion without being any.

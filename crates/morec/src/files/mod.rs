@@ -8,7 +8,8 @@
 //! # Ok::<(), morec::Error>(())
 //! ```
 //!
-//! A file may hold several clips; `FILE#2` and `FILE#name` choose one of them. Zip archives and gzip files are unpacked.
+//! A file may hold several clips; `FILE#2` and `FILE#name` choose one of them. Files of one frame each are one clip, which the
+//! first of them stands for. Zip archives and gzip files are unpacked.
 //! An AMC motion is read with the ASF skeleton that lies beside it or a folder above. [`FileReader`] has what can be
 //! set; [`open`] and [`open_all`] are its defaults.
 
@@ -20,6 +21,7 @@ mod folder;
 mod neighbours;
 mod paired;
 mod reader;
+mod sequence;
 mod skeletons;
 mod takes;
 
@@ -27,11 +29,12 @@ use std::path::Path;
 
 #[cfg(feature = "live")]
 pub(crate) use bounded::write_whole;
-pub use bounded::{LARGEST_FILE, LARGEST_STREAM, each_piece, is_large, read_file, read_stream};
+pub use bounded::{LARGEST_FILE, LARGEST_STREAM, each_piece, is_large, read_stream};
 pub use choice::split_choice;
 pub use error::{FileError, FileErrorKind};
 pub use folder::{Listing, list};
 pub use reader::{ClipFile, FileReader};
+pub use sequence::read_file;
 pub use takes::Takes;
 
 use crate::import::Take;

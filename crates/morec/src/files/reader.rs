@@ -19,6 +19,7 @@ use crate::import::SignedAxis;
 use crate::import::{ImportOptions, Stated, Take, normalize};
 
 use super::neighbours::Around;
+use super::sequence::FrameFiles;
 use super::skeletons::SkeletonKind;
 use super::{FileError, FileErrorKind, Takes, list, read_file, read_stream, split_choice};
 
@@ -145,7 +146,7 @@ impl FileReader {
         bytes: &[u8],
         around: Around<'_>,
     ) -> Result<ClipFile, FileErrorKind> {
-        let stem = stem(path);
+        let mut stem = stem(path);
         let format = match probe(bytes, &path.to_string_lossy())? {
             // Archives of poses and of positions look alike at their beginning.
             Format::Smpl if numpy::has_positions(&zip_paths(bytes).unwrap_or_default()) => {
@@ -153,6 +154,11 @@ impl FileReader {
             }
             format => format,
         };
+        if let (Format::Landmarks, Around::Folder) = (format, around)
+            && let Some(name) = FrameFiles::around(path).and_then(|frames| frames.name())
+        {
+            stem = name;
+        }
         #[cfg_attr(not(feature = "fbx"), allow(unused_mut))]
         let mut stated = Stated::of(format);
         let (loaded, skeleton) = match format {

@@ -48,6 +48,21 @@ pub(super) fn finite(word: &str) -> Option<f64> {
     value.filter(|value| value.is_finite())
 }
 
+/// Seconds in a cell that shows a clock, `10:05:07.25`, with a date before it or without; the date is not looked at.
+pub(super) fn clock(cell: &str) -> Option<f64> {
+    let cell = cell.trim().trim_end_matches(['Z', 'z']);
+    let time = cell.rsplit(['T', ' ']).next()?;
+    // Without what says how far this is from UTC.
+    let time = time.split('+').next()?;
+    let mut parts = time.split(':');
+    let [hours, minutes] = [parts.next()?, parts.next()?].map(|part| part.parse::<u32>().ok());
+    let secs = number(parts.next()?, Decimal::Either)?;
+    // A fourth part may count frames or milliseconds.
+    let none_behind = parts.next().is_none();
+    let secs = (f64::from(hours?) * 60.0 + f64::from(minutes?)) * 60.0 + secs;
+    (none_behind && (0.0..=90_000.0).contains(&secs)).then_some(secs)
+}
+
 /// Rows that are not blank, with their line numbers from 1. The text is UTF-8 but for single bytes in names, with or
 /// without a byte order mark.
 ///
@@ -142,6 +157,21 @@ mod tests {
         assert_eq!(Decimal::of(["2,5", "0.5"].into_iter()), Decimal::Point);
         for none in ["", "nan", "inf", "x", "1 2"] {
             assert_eq!(number(none, Decimal::Either), None, "{none}");
+        }
+    }
+
+    #[test]
+    fn clocks() {
+        for (cell, secs) in [
+            ("10:00:07.25", Some(36_007.25)),
+            ("2023-01-01 00:01:00", Some(60.0)),
+            ("2023-01-01T00:00:01.5Z", Some(1.5)),
+            ("2023-01-01T00:00:01.5+02:00", Some(1.5)),
+            ("15:26:46:12.02", None),
+            ("99999999999:1:1", None),
+            ("12.5", None),
+        ] {
+            assert_eq!(clock(cell), secs, "{cell}");
         }
     }
 

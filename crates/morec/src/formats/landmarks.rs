@@ -7,6 +7,7 @@
 use serde_json::{Map, Value};
 
 use super::points::{Point, PointTable, UNSEEN, check_size};
+use super::table::{axis_of, to_seconds};
 use super::timing::{self, Clock};
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::math::Vec3;
@@ -14,8 +15,12 @@ use crate::roles::points::numbered_counts;
 
 /// Frames a second of a document without times.
 const ASSUMED_HZ: f64 = 30.0;
+/// Fewer places of a point are no motion.
+const LEAST_FRAMES: usize = 2;
 /// Fewer points are no body.
 const LEAST_POINTS: usize = 5;
+/// Elements of a list that tell whether it is one of frames.
+const LOOKED_AT: usize = 40;
 /// Lists and objects within each other, down to the points.
 const DEEPEST: usize = 6;
 
@@ -25,25 +30,55 @@ pub(super) fn looks_so(head: &[u8]) -> bool {
         head.windows(word.len())
             .any(|at| at.eq_ignore_ascii_case(word))
     };
-    let words: [&[u8]; 6] = [
+    let words: [&[u8]; 7] = [
         b"landmark",
         b"keypoint",
         b"joints",
         b"joint_",
         b"left_shoulder",
         b"leftShoulder",
+        b"nose_x",
     ];
     // Scenes of suits and glTF have words in common with these.
     let others: [&[u8]; 2] = [b"\"asset\"", b"\"actors\""];
-    let numbers = contains(b"\"z\"")
-        || contains(b"\"y\"")
+    let numbers = contains(b"z\"")
+        || contains(b"y\"")
         || head
             .windows(2)
             .any(|at| at[0] == b'[' && matches!(at[1], b'[' | b'-' | b'0'..=b'9'));
-    matches!(head.trim_ascii_start(), [b'{' | b'[', ..])
+    let text = head.trim_ascii_start();
+    matches!(text, [b'{' | b'[', ..])
         && numbers
-        && words.iter().any(|word| contains(word))
+        && (words.iter().any(|word| contains(word)) || is_list_of_lists(text))
         && !others.iter().any(|word| contains(word))
+}
+
+/// Frames without a word: `[[[0.1, 0.9, 0.0], …`.
+fn is_list_of_lists(text: &[u8]) -> bool {
+    let mut marks = text.iter().filter(|b| !b.is_ascii_whitespace());
+    (0..3).all(|_| marks.next() == Some(&b'['))
+        && marks
+            .next()
+            .is_some_and(|b| matches!(b, b'-' | b'0'..=b'9'))
+}
+
+/// Lists of more are frames, not bodies.
+#[cfg(feature = "files")]
+const MOST_BODIES: usize = 6;
+
+/// True if a document holds bodies of one moment, or says that nobody was there.
+#[cfg(feature = "files")]
+pub(crate) fn is_one_frame(bytes: &[u8]) -> bool {
+    let Ok(document) = serde_json::from_slice::<Value>(bytes) else {
+        return false;
+    };
+    let empty = |list: &Value| list.as_array().is_some_and(Vec::is_empty);
+    let nobody = ["people", "bodies"]
+        .iter()
+        .any(|field| document.get(field).is_some_and(empty));
+    let holds = points_in(&document, DEEPEST).is_some() || is_flat(&document, DEEPEST);
+    let lists = frames_in(&document, DEEPEST).map_or(0, |frames| frames.len());
+    nobody || empty(&document) || looks_so(bytes) && holds && lists <= MOST_BODIES
 }
 
 /// Reads the landmarks of a document: a clip of points called `name`. `rate_hz` replaces the rate in the file. O(bytes);
@@ -58,7 +93,10 @@ pub fn read(
     limits: &Limits,
 ) -> Result<Loaded, ParseError> {
     let document = parse(bytes)?;
-    let frames = frames_in(&document, DEEPEST).ok_or_else(|| no_frames(&document))?;
+    let by_name = tracks_in(&document, DEEPEST);
+    let frames = frames_in(&document, DEEPEST)
+        .or_else(|| by_name.as_ref().map(|frames| frames.iter().collect()))
+        .ok_or_else(|| no_frames(&document))?;
     let mut warnings = Vec::new();
     let people = frames.iter().map(|frame| people_in(frame, DEEPEST)).max();
     if let Some(people @ 2..) = people {
@@ -102,6 +140,8 @@ pub fn read(
     for point in &mut points {
         point.positions.resize(frames.len(), UNSEEN);
     }
+    // A field of times need not say its unit.
+    to_seconds(&mut times, None);
     let clock = Clock {
         given_hz: rate_hz,
         stated_hz: rate_in(&document),
@@ -187,13 +227,42 @@ fn frames_in(value: &Value, depth: usize) -> Option<Vec<&Value>> {
         return None;
     }
     let list = elements(value).filter(|list| {
-        let looked_at = list.len().min(20);
         let holds = |frame: &&&Value| points_in(frame, depth - 1).is_some();
+        // All over the list: nobody may be there for long.
+        let step = list.len().div_ceil(LOOKED_AT).max(1);
+        let looked_at = list.len().div_ceil(step);
         // A list of points is no list of frames, nor is one of people.
         point_list(value).is_none()
-            && list.iter().take(looked_at).filter(holds).count() * 2 > looked_at
+            && list.iter().step_by(step).filter(holds).count() * 4 > looked_at
     });
     list.or_else(|| children(value).find_map(|child| frames_in(child, depth - 1)))
+}
+
+/// The frames of an object whose fields are points, each with a list of its places: `{"nose": [[0.1, 0.9, 0.0], …], …}`.
+fn tracks_in(value: &Value, depth: usize) -> Option<Vec<Value>> {
+    if depth == 0 {
+        return None;
+    }
+    let tracks = |fields: &Map<String, Value>| -> Option<Vec<Value>> {
+        let track = |(name, list): (&String, &Value)| {
+            let list = list.as_array().filter(|list| list.len() >= LEAST_FRAMES)?;
+            list.iter()
+                .all(|place| place_of(place).is_some())
+                .then(|| (name.clone(), list.clone()))
+        };
+        let tracks: Vec<(String, Vec<Value>)> = fields.iter().filter_map(track).collect();
+        let frames = tracks.iter().map(|(_, list)| list.len()).max()?;
+        let alike = tracks.iter().all(|(_, list)| list.len() == frames);
+        let frame = |at: usize| {
+            let points = tracks
+                .iter()
+                .map(|(name, list)| (name.clone(), list[at].clone()));
+            Value::Object(points.collect())
+        };
+        (alike && tracks.len() >= LEAST_POINTS).then(|| (0..frames).map(frame).collect())
+    };
+    let own = value.as_object().and_then(tracks);
+    own.or_else(|| children(value).find_map(|child| tracks_in(child, depth - 1)))
 }
 
 /// The elements of a list, or of an object whose fields are numbers, in their order.
@@ -203,6 +272,14 @@ fn elements(value: &Value) -> Option<Vec<&Value>> {
         Value::Object(fields) => {
             let mut numbered: Option<Vec<(u64, &Value)>> = Some(Vec::with_capacity(fields.len()));
             for (key, child) in fields {
+                // `joint_3` is a point, not a frame.
+                let lower = key.to_lowercase();
+                if ["joint", "point", "landmark", "marker"]
+                    .iter()
+                    .any(|word| lower.contains(word))
+                {
+                    return None;
+                }
                 let digits: String = key.chars().filter(char::is_ascii_digit).collect();
                 match (digits.parse(), &mut numbered) {
                     (Ok(number), Some(numbered)) => numbered.push((number, child)),
@@ -291,6 +368,7 @@ fn points_in(value: &Value, depth: usize) -> Option<Vec<(String, Vec3)>> {
     }
     point_list(value)
         .or_else(|| points_in_a_row(value))
+        .or_else(|| points_in_fields(value))
         .or_else(|| children(value).find_map(|child| points_in(child, depth - 1)))
 }
 
@@ -298,13 +376,17 @@ fn points_in(value: &Value, depth: usize) -> Option<Vec<(String, Vec3)>> {
 /// the tracker was.
 fn points_in_a_row(value: &Value) -> Option<Vec<(String, Vec3)>> {
     let fields = value.as_object()?;
-    let in_space = |key: &String| {
+    let in_space = |key: &str, list: &Value| {
         let key = key.to_lowercase();
+        // The Panoptic Studio's `joints19` has four numbers for each of 19.
+        let count = key.strip_prefix("joints").and_then(|n| n.parse().ok());
+        let length = list.as_array().map(Vec::len);
         ["3d", "world"].iter().any(|word| key.contains(word))
+            || count.is_some_and(|count: usize| length == count.checked_mul(4))
     };
     fields
         .iter()
-        .filter(|(key, _)| in_space(key))
+        .filter(|(key, list)| in_space(key, list))
         .find_map(|(_, list)| {
             let numbers: Option<Vec<f64>> = list.as_array()?.iter().map(Value::as_f64).collect();
             let numbers = numbers?;
@@ -316,10 +398,38 @@ fn points_in_a_row(value: &Value) -> Option<Vec<(String, Vec3)>> {
                 .filter(|_| known(3).is_none())
                 .or_else(|| known(3))?;
             let point = |(number, at): (usize, &[f64])| {
-                (number.to_string(), Vec3::new(at[0], at[1], at[2]))
+                // A tracker that is not sure at all has seen nothing.
+                let seen = at.get(3) != Some(&0.0);
+                let place = Vec3::new(at[0], at[1], at[2]);
+                (number.to_string(), if seen { place } else { UNSEEN })
             };
             Some(numbers.chunks_exact(width).enumerate().map(point).collect())
         })
+}
+
+/// A record as tables have it: `{"nose_x": 0.1, "nose_y": 0.9, "nose_z": 0.0, …}`.
+fn points_in_fields(value: &Value) -> Option<Vec<(String, Vec3)>> {
+    let fields = value
+        .as_object()
+        .filter(|fields| fields.len() >= 3 * LEAST_POINTS)?;
+    let mut points: Vec<(String, [Option<f64>; 3])> = Vec::new();
+    for (key, value) in fields {
+        let known = axis_of(key).filter(|_| value.is_number() || value.is_null());
+        let Some((name, axis)) = known else { continue };
+        let at = match points.iter().position(|(known, _)| *known == name) {
+            Some(at) => at,
+            None => {
+                points.push((name, [None; 3]));
+                points.len() - 1
+            }
+        };
+        points[at].1[axis] = Some(value.as_f64().unwrap_or(f64::NAN));
+    }
+    let whole = points
+        .into_iter()
+        .filter_map(|(name, [x, y, z])| Some((name, Vec3::new(x?, y?, z?))));
+    let whole: Vec<(String, Vec3)> = whole.collect();
+    (whole.len() >= LEAST_POINTS).then_some(whole)
 }
 
 fn point_list(value: &Value) -> Option<Vec<(String, Vec3)>> {
@@ -342,13 +452,22 @@ fn point_list(value: &Value) -> Option<Vec<(String, Vec3)>> {
 }
 
 fn name_of(point: &Value, number: usize) -> String {
-    let said = ["name", "part", "joint", "label", "id"]
-        .iter()
-        .find_map(|key| match point.get(key)? {
-            Value::String(text) => Some(text.clone()),
-            Value::Number(number) => Some(number.to_string()),
-            _ => None,
-        });
+    let said = [
+        "name",
+        "part",
+        "joint",
+        "label",
+        "jointName",
+        "jointType",
+        "JointType",
+        "id",
+    ]
+    .iter()
+    .find_map(|key| match point.get(key)? {
+        Value::String(text) => Some(text.clone()),
+        Value::Number(number) => Some(number.to_string()),
+        _ => None,
+    });
     said.unwrap_or_else(|| number.to_string())
 }
 
@@ -358,21 +477,46 @@ fn place_of(point: &Value) -> Option<Vec3> {
         Value::Null => Some(f64::NAN),
         value => value.as_f64(),
     };
-    let at = |key: &str| number(point.get(key).or_else(|| point.get(key.to_uppercase())));
     match point {
-        Value::Object(_) => Some(Vec3::new(at("x")?, at("y")?, at("z")?)),
-        Value::Array(list) if (3..=5).contains(&list.len()) => Some(Vec3::new(
-            number(list.first())?,
-            number(list.get(1))?,
-            number(list.get(2))?,
-        )),
+        Value::Object(fields) => {
+            // In picture, camera and world there may be a place each: the names of axes come first.
+            const AXES: [[&str; 3]; 5] = [
+                ["x", "y", "z"],
+                ["cameraX", "cameraY", "cameraZ"],
+                ["px", "py", "pz"],
+                ["posX", "posY", "posZ"],
+                ["pos_x", "pos_y", "pos_z"],
+            ];
+            const WITHIN: [&str; 4] = ["position", "pos", "location", "translation"];
+            let at =
+                |key: &str| number(fields.get(key).or_else(|| fields.get(&key.to_uppercase())));
+            let own = AXES
+                .iter()
+                .find_map(|[x, y, z]| Some(Vec3::new(at(x)?, at(y)?, at(z)?)));
+            own.or_else(|| {
+                let within = fields
+                    .iter()
+                    .find(|(key, _)| WITHIN.iter().any(|known| key.eq_ignore_ascii_case(known)));
+                within.and_then(|(_, place)| place_of(place))
+            })
+        }
+        Value::Array(list) if (3..=5).contains(&list.len()) => {
+            let place = [
+                number(list.first())?,
+                number(list.get(1))?,
+                number(list.get(2))?,
+            ];
+            let seen = list.len() != 4 || number(list.get(3)) != Some(0.0);
+            Some(if seen { place.into() } else { UNSEEN })
+        }
         _ => None,
     }
 }
 
 /// The time of a frame in seconds.
 fn time_of(frame: &Value) -> Option<f64> {
-    const KEYS: [(&str, f64); 10] = [
+    const KEYS: [(&str, f64); 12] = [
+        ("ts", 1.0),
         ("t", 1.0),
         ("time", 1.0),
         ("timestamp", 1.0),
@@ -383,6 +527,7 @@ fn time_of(frame: &Value) -> Option<f64> {
         ("timestamp_usec", 1e-6),
         ("timestamp_ns", 1e-9),
         ("timestampMs", 1e-3),
+        ("univTime", 1e-3),
     ];
     KEYS.iter()
         .find_map(|(key, unit)| Some(frame.get(key)?.as_f64()? * unit))

@@ -12,6 +12,7 @@ pub mod container;
 #[cfg(feature = "fbx")]
 pub mod fbx;
 pub mod gltf;
+pub mod htr;
 pub mod jsonl;
 mod keys;
 pub mod landmarks;
@@ -40,8 +41,8 @@ pub use crate::parse_error::{ParseError, Place, Warning};
 pub use loaded::{Limits, Loaded};
 use timing::rate_not_used;
 
-/// Reads the formats of whole scenes and suits: [MVNX](mvnx), [glTF](gltf), FBX (feature `fbx`), [SMPL](smpl), [SMD](smd), and
-/// [mocopi], and of points that need nothing but the file ([NTU](ntu), [landmarks], [NumPy](numpy)). `rate_hz` replaces the rate where the file holds frames; keys in seconds keep theirs. `None` for
+/// Reads the formats of whole scenes and suits: [MVNX](mvnx), [glTF](gltf), FBX (feature `fbx`), [SMPL](smpl), [SMD](smd),
+/// [HTR](htr) and [mocopi], and of points that need nothing but the file ([NTU](ntu), [landmarks], [NumPy](numpy)). `rate_hz` replaces the rate where the file holds frames; keys in seconds keep theirs. `None` for
 /// other formats.
 pub fn read_scene(
     format: probe::Format,
@@ -56,6 +57,7 @@ pub fn read_scene(
         Format::Mvnx => mvnx::read(bytes, name, limits),
         Format::Smpl => smpl::read(bytes, name, limits),
         Format::Smd => smd::read(bytes, name, limits),
+        Format::Htr => htr::read(bytes, name, limits),
         Format::Numpy => numpy::read(bytes, name, rate_hz, limits),
         Format::Mocopi => mocopi::read(bytes, name, limits),
         Format::Gltf => gltf::read(bytes, name, beside, limits),

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use super::builder::ClipBuilder;
 use super::npy::{self, Array};
-use super::points::{Point, PointTable, UNSEEN, check_size};
+use super::points::{BODY_OF_THESE, Point, PointTable, UNSEEN, WITH_HANDS_AND_FACE, check_size};
 use super::timing::{self, Clock};
 use super::{Limits, Loaded, ParseError, Place, Warning, container};
 use crate::clip::Joint;
@@ -62,9 +62,6 @@ const RATE: [&str; 7] = [
     "mocap_frame_rate",
     "rate",
 ];
-/// Models of face and hands beside the body: their points come behind its 33.
-const WITH_HANDS_AND_FACE: [usize; 4] = [75, 543, 553, 1629];
-
 /// True if an archive with files of these paths may hold positions and no poses of SMPL.
 pub fn has_positions(paths: &[String]) -> bool {
     let has = |key: &str| paths.iter().any(|path| key_of(path) == key);
@@ -238,7 +235,7 @@ impl PointArray {
         let names = names.filter(|names| names.len() == points);
         let mut kept = points;
         if names.is_none() && WITH_HANDS_AND_FACE.contains(&points) {
-            kept = 33;
+            kept = BODY_OF_THESE;
             let text = format!(
                 "{points} points; the first {kept} are read as the body's, those of hands and face left out"
             );

@@ -10,7 +10,12 @@ use self::point::{SHOWN, is_seen};
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::clip::{Clip, Points};
 use crate::math::Vec3;
-use crate::roles::points::{recognise_posed, subject_of};
+use crate::roles::points::{numbered_counts, recognise_posed, subject_of};
+
+/// Models of face and hands beside the body: their points come behind its 33.
+pub(super) const WITH_HANDS_AND_FACE: [usize; 5] = [75, 501, 543, 553, 1629];
+/// Points of the body in these.
+pub(super) const BODY_OF_THESE: usize = 33;
 
 /// Points of a file with their rate and unit.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,6 +45,8 @@ impl PointTable {
             return Err(ParseError::new(Place::File, expected, found));
         }
         self.mark_unseen();
+        self.name_subjects();
+        self.keep_body(&mut warnings);
         self.leave_out(&mut warnings);
         if self.points.is_empty() {
             return Err(ParseError::new(
@@ -85,6 +92,83 @@ impl PointTable {
             note_left_out(&unnamed, "without a label", warnings);
             self.points = named;
         }
+    }
+
+    /// `person0_nose` and `P2_nose` become `person0:nose` and `P2:nose` where several people have points of the same names.
+    fn name_subjects(&mut self) {
+        const PEOPLE: [&str; 11] = [
+            "p",
+            "person",
+            "people",
+            "subject",
+            "participant",
+            "body",
+            "skeleton",
+            "player",
+            "actor",
+            "user",
+            "id",
+        ];
+        fn split(name: &str) -> Option<(&str, &str)> {
+            let (whose, rest) = name.split_once(['_', ' ', '.', '-'])?;
+            let word = whose.trim_end_matches(|c: char| c.is_ascii_digit());
+            let known = PEOPLE.iter().any(|known| word.eq_ignore_ascii_case(known));
+            (known && word.len() < whose.len()).then_some((whose, rest))
+        }
+        let split: Option<Vec<(&str, &str)>> = self.points.iter().map(|p| split(&p.name)).collect();
+        let Some(split) = split else { return };
+        let mut people: Vec<(&str, Vec<&str>)> = Vec::new();
+        for &(whose, rest) in &split {
+            match people.iter_mut().find(|(known, _)| *known == whose) {
+                Some((_, names)) => names.push(rest),
+                None => people.push((whose, vec![rest])),
+            }
+        }
+        if people.len() < 2 || people.iter().any(|(_, names)| *names != people[0].1) {
+            return;
+        }
+        let names: Vec<String> = { split.iter() }
+            .map(|(whose, rest)| format!("{whose}:{rest}"))
+            .collect();
+        for (point, name) in self.points.iter_mut().zip(names) {
+            point.name = name;
+        }
+    }
+
+    /// Of numbered points of a body, a face and hands (MediaPipe's holistic model), those of the body: by their word, `pose_12`, or as
+    /// the first of a known number.
+    fn keep_body(&mut self, warnings: &mut Vec<Warning>) {
+        let numbered: Option<Vec<(String, usize)>> =
+            self.points.iter().map(|p| numbered(&p.name)).collect();
+        let Some(numbered) = numbered.filter(|numbered| !numbered.is_empty()) else {
+            return;
+        };
+        let says_body = |word: &str| ["pose", "body"].iter().any(|body| word.contains(body));
+        let (first, _) = &numbered[0];
+        let least = numbered.iter().map(|n| n.1).min().unwrap_or(0);
+        let alike = numbered.iter().all(|(word, _)| word == first);
+        // Markers are numbered, too: `M1` to `M75` are no landmarks.
+        let landmarks = ["landmark", "keypoint", "pose", "point", "lm", "kp"];
+        let unworded = first.is_empty() || landmarks.iter().any(|word| first.starts_with(word));
+        let known = alike && unworded && WITH_HANDS_AND_FACE.contains(&numbered.len());
+        let kept: Vec<bool> = numbered
+            .iter()
+            .map(|(word, number)| match known {
+                true => number - least < BODY_OF_THESE,
+                false => says_body(word),
+            })
+            .collect();
+        let count = kept.iter().filter(|kept| **kept).count();
+        if count == numbered.len() || !numbered_counts().any(|known| known == count) {
+            return;
+        }
+        let text = format!(
+            "{} points; {count} are read as the body's, those of hands and face left out",
+            numbered.len()
+        );
+        warnings.push(Warning::new(Place::File, text));
+        let mut kept = kept.into_iter();
+        self.points.retain(|_| kept.next().unwrap_or(true));
     }
 
     /// Points by subject, if at least two subjects have a body of their own.
@@ -142,6 +226,12 @@ impl PointTable {
         clip.repaired = union(filled.short);
         clip
     }
+}
+
+/// A name's word in lower case and the number behind it.
+fn numbered(name: &str) -> Option<(String, usize)> {
+    let word = name.trim_end_matches(|c: char| c.is_ascii_digit());
+    Some((word.to_lowercase(), name[word.len()..].parse().ok()?))
 }
 
 /// True if points make a body, by their names and by where they are in some frames that show them all.

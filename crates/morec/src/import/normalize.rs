@@ -5,7 +5,7 @@ use crate::formats::bvh::{self, BvhOptions};
 use crate::formats::{Limits, ParseError, Place, Warning};
 use crate::kinematics::WorldPose;
 use crate::math::Vec3;
-use crate::roles::{self, RoleMap};
+use crate::roles::{self, JointNames, RoleMap};
 
 use super::body::BodyMeasures;
 use super::options::ImportOptions;
@@ -21,8 +21,13 @@ use super::{axes, points, travel, units};
 /// A mapping in `options` that names a joint which `clip` does not have.
 pub fn normalize(mut clip: Clip, options: &ImportOptions) -> Result<Take, ParseError> {
     let mut notes = Vec::new();
+    let mut names = JointNames::of(&clip.skeleton);
+    let mut posed = Vec::new();
     let (map, point_set) = match clip.has_rotations() {
-        true => (find_roles(&clip, &mut notes), None),
+        true => {
+            posed = poses(&clip);
+            (find_roles(&clip, &names, &posed, &mut notes), None)
+        }
         false => points::find_roles(&mut clip),
     };
     let map = match &options.mapping {
@@ -39,7 +44,14 @@ pub fn normalize(mut clip: Clip, options: &ImportOptions) -> Result<Take, ParseE
     let unknown = !clip.has_rotations() && point_set.is_none() && options.mapping.is_none();
     let mut doubts = match unknown {
         true => vec![points::UNKNOWN.to_owned()],
-        false => roles::check(&clip.skeleton, &map, &poses(&clip)),
+        false => {
+            names.extend(&clip.skeleton);
+            // A mapping adds joints in places between others.
+            if posed.first().map(Vec::len) != Some(clip.skeleton.len()) {
+                posed = poses(&clip);
+            }
+            roles::check_named(&clip.skeleton, &names, &map, &posed)
+        }
     };
     doubts.extend(units::doubt(&body, metres_per_unit));
     axes::turn_up(&mut clip, up);
@@ -70,10 +82,15 @@ pub fn normalize(mut clip: Clip, options: &ImportOptions) -> Result<Take, ParseE
 }
 
 /// The roles, judged in frames spread over the clip.
-fn find_roles(clip: &Clip, notes: &mut Vec<String>) -> RoleMap {
-    let found = match clip.frames {
-        0 => roles::find(&clip.skeleton),
-        _ => roles::find_moving(&clip.skeleton, &poses(clip)),
+fn find_roles(
+    clip: &Clip,
+    names: &JointNames,
+    posed: &[Vec<Vec3>],
+    notes: &mut Vec<String>,
+) -> RoleMap {
+    let found = match posed {
+        [] => roles::find_named(&clip.skeleton, names, &[roles::zero_pose(&clip.skeleton)]),
+        posed => roles::find_named(&clip.skeleton, names, posed),
     };
     notes.extend(found.notes);
     found.map

@@ -102,6 +102,18 @@ fn a_plain_person_is_left_alone() {
 }
 
 #[test]
+fn one_joint_is_where_the_whole_pose_has_it() {
+    let clip = person(50, 0.02);
+    for frame in [0, 49] {
+        let pose = WorldPose::of(&clip, frame);
+        for joint in 0..clip.skeleton.len() {
+            let alone = crate::kinematics::position_of(&clip, frame, joint);
+            assert!((alone - pose.positions[joint]).norm() < 1e-12);
+        }
+    }
+}
+
+#[test]
 fn whoever_walks_travels() {
     assert!(ready(person(50, 0.02)).report.travels);
     assert!(!ready(person(50, 0.001)).report.travels);

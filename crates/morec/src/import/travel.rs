@@ -1,7 +1,7 @@
 //! Whether the body moves along the floor.
 
 use crate::clip::{Clip, Span};
-use crate::kinematics::WorldPose;
+use crate::kinematics::position_of;
 use crate::math::Vec3;
 use crate::roles::{Role, RoleMap};
 
@@ -14,11 +14,9 @@ pub(super) fn travels(clip: &Clip, map: &RoleMap, rest: &Span) -> bool {
     if clip.skeleton.is_empty() {
         return false;
     }
-    let mut pose = WorldPose::default();
     let mut first: Option<Vec3> = None;
     (rest.end..clip.frames).step_by(8).any(|frame| {
-        pose.set(clip, frame);
-        let mut floor = pose.positions[hips];
+        let mut floor = position_of(clip, frame, hips);
         floor.y = 0.0;
         (floor - *first.get_or_insert(floor)).norm() > IN_PLACE
     })

@@ -1,7 +1,7 @@
 //! Role maps that cannot be true: each doubt is a sentence that says what to do.
 
 use super::meaning::NameMeaning;
-use super::names::read;
+use super::names::JointNames;
 use super::tree::JointTree;
 use super::{ARMS, LEGS, Role, RoleMap, proportions};
 use crate::clip::Skeleton;
@@ -15,11 +15,22 @@ const REMEDY: &str = "say with --roles FILE which joints they are";
 ///
 /// Nothing is changed: a doubtful map may still be the best there is.
 pub fn check(skeleton: &Skeleton, map: &RoleMap, poses: &[Vec<Vec3>]) -> Vec<String> {
+    check_named(skeleton, &JointNames::of(skeleton), map, poses)
+}
+
+/// [`check`] with the names as they were read.
+pub(crate) fn check_named(
+    skeleton: &Skeleton,
+    names: &JointNames,
+    map: &RoleMap,
+    poses: &[Vec<Vec3>],
+) -> Vec<String> {
     let Some(first) = poses.first().filter(|_| !skeleton.is_empty()) else {
         return Vec::new();
     };
     let body = PosedBody {
         skeleton,
+        names,
         map,
         poses,
     };
@@ -34,6 +45,7 @@ pub fn check(skeleton: &Skeleton, map: &RoleMap, poses: &[Vec<Vec3>]) -> Vec<Str
 
 struct PosedBody<'a> {
     skeleton: &'a Skeleton,
+    names: &'a JointNames,
     map: &'a RoleMap,
     poses: &'a [Vec<Vec3>],
 }
@@ -205,7 +217,7 @@ impl PosedBody<'_> {
     /// Whether this is a body of something else than a person.
     fn not_human(&self, first: &[Vec3]) -> Option<String> {
         let poses = [first.to_vec()];
-        let tree = JointTree::new(self.skeleton, &poses);
+        let tree = JointTree::new(self.skeleton, self.names, &poses);
         let why = self
             .other_limbs(&tree)
             .or_else(|| self.on_all_fours())
@@ -239,11 +251,11 @@ impl PosedBody<'_> {
             ));
         }
         let human = self.human_words();
-        let animal = self.skeleton.joints().iter().find(|joint| {
-            read(&joint.name).kind == NameMeaning::Animal && read(&joint.name).side.is_some()
-        });
+        let mut readings = self.names.readings().iter();
+        let animal = readings.position(|r| r.kind == NameMeaning::Animal && r.side.is_some());
         if let Some(joint) = animal.filter(|_| human < 4) {
-            return Some(format!("it has a joint `{}`", joint.name));
+            let name = &self.skeleton.joints()[joint].name;
+            return Some(format!("it has a joint `{name}`"));
         }
         if human >= 4 || !self.skeleton.joints().iter().any(|j| j.parent.is_some()) {
             return None;
@@ -297,12 +309,7 @@ impl PosedBody<'_> {
 
     /// How many parts of human limbs the names tell, on both sides.
     fn human_words(&self) -> usize {
-        let readings: Vec<_> = self
-            .skeleton
-            .joints()
-            .iter()
-            .map(|j| read(&j.name))
-            .collect();
+        let readings = self.names.readings();
         let both = |fits: &dyn Fn(NameMeaning) -> bool| {
             let side = |side| {
                 readings

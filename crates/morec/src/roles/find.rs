@@ -2,6 +2,7 @@
 
 use super::limbs::{self, Limb, Part};
 use super::meaning::{NameMeaning, Side};
+use super::names::JointNames;
 use super::pairs::{LimbPairs, RolesFound};
 use super::sides::SideCues;
 use super::tree::JointTree;
@@ -14,11 +15,16 @@ use crate::math::Vec3;
 /// Names that say nothing (`joint_7`) leave the tree and the lengths: two pairs of limbs that mirror each other, in
 /// the proportions of people. Left and right are then told by where the toes point in the zero pose.
 pub fn find(skeleton: &Skeleton) -> RolesFound {
+    find_moving(skeleton, &[zero_pose(skeleton)])
+}
+
+/// Where the joints are with no rotations.
+pub(crate) fn zero_pose(skeleton: &Skeleton) -> Vec<Vec3> {
     let mut positions: Vec<Vec3> = Vec::with_capacity(skeleton.len());
     for joint in skeleton.joints() {
         positions.push(joint.offset + joint.parent.map_or_else(Vec3::zeros, |p| positions[p]));
     }
-    find_moving(skeleton, &[positions])
+    positions
 }
 
 /// [`find`] with the joints where `poses` says, as in frames of a clip (a position for each joint, any unit): better
@@ -28,6 +34,15 @@ pub fn find(skeleton: &Skeleton) -> RolesFound {
 /// # Panics
 /// If there is no pose, or one that is not as long as the skeleton.
 pub fn find_moving(skeleton: &Skeleton, poses: &[Vec<Vec3>]) -> RolesFound {
+    find_named(skeleton, &JointNames::of(skeleton), poses)
+}
+
+/// [`find_moving`] with the names as they were read.
+pub(crate) fn find_named(
+    skeleton: &Skeleton,
+    names: &JointNames,
+    poses: &[Vec<Vec3>],
+) -> RolesFound {
     assert!(!poses.is_empty(), "at least one pose");
     assert!(
         poses.iter().all(|pose| pose.len() == skeleton.len()),
@@ -37,7 +52,7 @@ pub fn find_moving(skeleton: &Skeleton, poses: &[Vec<Vec3>]) -> RolesFound {
     if skeleton.is_empty() {
         return found;
     }
-    let tree = JointTree::new(skeleton, poses);
+    let tree = JointTree::new(skeleton, names, poses);
     let pairs = LimbPairs::choose(&tree);
     trunk::find(&tree, &pairs, &mut found);
     let sides = SideCues::of(&tree, &found.map, pairs.leg_limbs());

@@ -16,7 +16,13 @@ mod trunk;
 mod words;
 
 pub use check::check;
+#[cfg(feature = "formats")]
+pub(crate) use check::check_named;
 pub use find::{find, find_moving};
+#[cfg(feature = "formats")]
+pub(crate) use find::{find_named, zero_pose};
+#[cfg(feature = "formats")]
+pub(crate) use names::JointNames;
 pub use pairs::RolesFound;
 
 use std::fmt;

@@ -6,12 +6,38 @@
 use super::languages::{in_english, words_in_english};
 use super::meaning::{NameMeaning, Side};
 use super::words::{glued_side, is_side_word, kind_of, spelt_side, words};
+use crate::clip::Skeleton;
 
 /// A name taken apart.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Reading {
     pub(super) side: Option<Side>,
     pub(super) kind: NameMeaning,
+}
+
+/// What the names of a skeleton's joints say. Reading them takes longer than all else about roles: once does.
+#[derive(Debug, Clone)]
+pub(crate) struct JointNames(Vec<Reading>);
+
+impl JointNames {
+    /// Reads all names of `skeleton`. O(joints).
+    pub(crate) fn of(skeleton: &Skeleton) -> Self {
+        let mut names = Self(Vec::with_capacity(skeleton.len()));
+        names.extend(skeleton);
+        names
+    }
+
+    /// Reads the names of joints that `skeleton` got since. O(new joints).
+    pub(crate) fn extend(&mut self, skeleton: &Skeleton) {
+        let known = self.0.len().min(skeleton.len());
+        let new = &skeleton.joints()[known..];
+        self.0.extend(new.iter().map(|joint| read(&joint.name)));
+    }
+
+    /// One for each joint.
+    pub(super) fn readings(&self) -> &[Reading] {
+        &self.0
+    }
 }
 
 /// Reads a name; namespaces (`mixamorig7:`), prefixes and case do not matter.

@@ -1,7 +1,7 @@
 //! The shape of a skeleton: bone lengths, reaches, and pairs of limbs that mirror each other.
 
 use super::meaning::{NameMeaning, Side};
-use super::names::{Reading, read};
+use super::names::{JointNames, Reading};
 use crate::clip::Skeleton;
 use crate::math::Vec3;
 
@@ -48,10 +48,10 @@ fn keep_bodies(skeleton: &Skeleton, readings: &mut [Reading]) {
 const UNLIKE: f64 = 0.25;
 
 impl<'a> JointTree<'a> {
-    pub(super) fn new(skeleton: &'a Skeleton, poses: &'a [Vec<Vec3>]) -> Self {
+    pub(super) fn new(skeleton: &'a Skeleton, names: &JointNames, poses: &'a [Vec<Vec3>]) -> Self {
         let joints = skeleton.joints();
         let positions: &[Vec3] = &poses[0];
-        let mut readings: Vec<Reading> = joints.iter().map(|j| read(&j.name)).collect();
+        let mut readings = names.readings().to_vec();
         keep_bodies(skeleton, &mut readings);
         let mut children = vec![Vec::new(); joints.len()];
         let mut reach: Vec<f64> = joints

@@ -357,6 +357,7 @@ fn format_name(format: Format) -> &'static str {
         Format::Landmarks => "landmarks (JSON)",
         Format::Numpy => "positions (NumPy)",
         Format::Smd => "SMD",
+        Format::Htr => "HTR",
         Format::OpenSimMotion => "OpenSim motion",
         Format::OpenSimModel => "OpenSim model",
         Format::Mocopi => "mocopi packets",

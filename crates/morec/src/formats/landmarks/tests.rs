@@ -138,3 +138,114 @@ fn other_documents_are_refused() {
     }
     assert!(read(b"{\"landmarks\": [", "f", None, &Limits::default()).is_err());
 }
+
+/// The CMU Panoptic Studio: four numbers for each joint, times in milliseconds.
+#[test]
+fn joints_in_a_row_by_their_count() {
+    let row = |f: usize| -> Vec<f64> {
+        let point = |j: usize| {
+            let sure = if (j, f) == (2, 3) { 0.0 } else { 0.8 };
+            [j as f64, f as f64, 1.0, sure]
+        };
+        (0..19).flat_map(point).collect()
+    };
+    let frames: Value = (0..6)
+        .map(|f| json!({"univTime": 1e5 + 40.0 * f as f64, "bodies": [{"id": 0, "joints19": row(f)}]}))
+        .collect();
+    let loaded = open(&frames).unwrap();
+    let clip = &loaded.clips[0];
+    assert_eq!((clip.frames, clip.skeleton.len()), (6, 19));
+    assert!((clip.rate_hz - 25.0).abs() < 1e-6, "{}", clip.rate_hz);
+    // What was not seen is interpolated.
+    assert_eq!(clip.repaired, [3..4]);
+    assert_eq!(clip.tracks[2].positions[3], Vec3::new(2.0, 3.0, 1.0));
+}
+
+#[cfg(feature = "files")]
+#[test]
+fn a_frame_is_told_from_a_clip() {
+    let one = |document: Value| is_one_frame(document.to_string().as_bytes());
+    let row: Vec<f64> = (0..75).map(f64::from).collect();
+    for frame in [
+        json!({"people": []}),
+        json!({"people": [{"pose_keypoints_2d": row}]}),
+        json!([{"id": 0, "keypoints3d": vec![[1.0, 2.0, 3.0, 0.5]; 25]}]),
+        json!({"landmarks": landmarks(0)}),
+        json!([]),
+    ] {
+        assert!(one(frame.clone()), "{frame}");
+    }
+    let clip: Value = (0..20)
+        .map(|f| json!({"landmarks": landmarks(f)}))
+        .collect();
+    for other in [clip, json!({"a": 1}), json!([1, 2, 3]), json!("x")] {
+        assert!(!one(other.clone()), "{other}");
+    }
+}
+
+/// Points that have several places, places within a field, a list for each point, and lists without a word.
+#[test]
+fn places_of_every_spelling() {
+    let place = |f: usize, j: usize| [0.1 * f as f64, 0.1 * j as f64, 2.0];
+    let list = |each: &dyn Fn(usize, usize) -> Value| -> Value {
+        (0..6)
+            .map(|f| json!({"joints": (0..20).map(|j| each(f, j)).collect::<Value>()}))
+            .collect()
+    };
+    let kinect = list(&|f, j| {
+        let [x, y, z] = place(f, j);
+        json!({"depthX": 0.5, "depthY": 0.5, "cameraX": x, "cameraY": y, "cameraZ": z})
+    });
+    let within = list(&|f, j| {
+        let [x, y, z] = place(f, j);
+        json!({"name": format!("j{j}a"), "Position": {"X": x, "Y": y, "Z": z}, "State": "Tracked"})
+    });
+    let unity = list(&|f, j| {
+        let [x, y, z] = place(f, j);
+        json!({"jointName": format!("j{j}a"), "px": x, "py": y, "pz": z})
+    });
+    let tracks: Map<String, Value> = (0..20)
+        .map(|j| {
+            (
+                format!("joint_{j}"),
+                (0..6).map(|f| json!(place(f, j))).collect(),
+            )
+        })
+        .collect();
+    let bare: Value = (0..6)
+        .map(|f| (0..20).map(|j| json!(place(f, j))).collect::<Value>())
+        .collect();
+    for document in [kinect, within, unity, Value::Object(tracks), bare] {
+        assert!(looks_so(document.to_string().as_bytes()), "{document}");
+        let clip = &open(&document).unwrap().clips[0];
+        assert_eq!((clip.frames, clip.skeleton.len()), (6, 20));
+        let is_there = |point: &crate::clip::JointTrack| {
+            (point.positions[3] - Vec3::new(0.3, 0.7, 2.0)).norm() < 1e-9
+        };
+        assert!(clip.tracks.iter().any(is_there), "{document}");
+    }
+}
+
+/// Records of a table, with times in milliseconds.
+#[test]
+fn records_of_a_table() {
+    let record = |f: usize| -> Value {
+        let axes = (0..6).flat_map(|j| ["x", "y", "z"].map(|axis| (j, axis)));
+        let mut record: Map<String, Value> = axes
+            .map(|(j, axis)| (format!("nose{j}_{axis}"), json!(0.1 * f as f64)))
+            .collect();
+        record.insert("nose_x_confidence".into(), json!(0.9));
+        record.insert(
+            "timestamp".into(),
+            json!(1_700_000_000_000u64 + 40 * f as u64),
+        );
+        Value::Object(record)
+    };
+    let document: Value = (0..6).map(record).collect();
+    let text = document.to_string().replace("nose0_", "nose_");
+    assert!(looks_so(text.as_bytes()));
+    let loaded = read(text.as_bytes(), "f", None, &Limits::default()).unwrap();
+    let clip = &loaded.clips[0];
+    assert_eq!((clip.frames, clip.skeleton.len()), (6, 6));
+    assert!((clip.rate_hz - 25.0).abs() < 1e-6, "{}", clip.rate_hz);
+}

@@ -107,3 +107,34 @@ fn each_body_is_a_clip() {
     assert_eq!(loaded.clips[1].name, "take.2");
     assert!(loaded.warnings.iter().any(|w| w.text.contains("Ball:1")));
 }
+
+#[test]
+fn people_before_the_names_of_points_are_subjects() {
+    let named = |names: &[&str]| {
+        let point = |name: &&str| Point {
+            name: (*name).to_owned(),
+            positions: vec![Vec3::new(1.0, 1.0, 1.0); 2],
+        };
+        let mut table = PointTable {
+            points: names.iter().map(point).collect(),
+            rate_hz: 30.0,
+            metres_per_unit: None,
+            zero_is_missing: true,
+        };
+        table.name_subjects();
+        table
+            .points
+            .into_iter()
+            .map(|p| p.name)
+            .collect::<Vec<String>>()
+    };
+    let two = ["P1_nose", "P1_hip", "P2_nose", "P2_hip"];
+    assert_eq!(named(&two), ["P1:nose", "P1:hip", "P2:nose", "P2:hip"]);
+    for none in [
+        ["P1_nose", "P1_hip", "P1_knee", "P1_foot"],
+        ["P1_nose", "P1_hip", "P2_nose", "P2_knee"],
+        ["L1_nose", "L1_hip", "L2_nose", "L2_hip"],
+    ] {
+        assert_eq!(named(&none), none);
+    }
+}

@@ -49,6 +49,8 @@ pub enum Format {
     Numpy,
     /// Skeletal animation of the Source engine, text.
     Smd,
+    /// Skeletal motion of Motion Analysis, text.
+    Htr,
     /// Joint angles of OpenSim, for a [`Format::OpenSimModel`].
     OpenSimMotion,
     /// A model of OpenSim.
@@ -76,6 +78,7 @@ impl Format {
             Format::Landmarks => "landmarks",
             Format::Numpy => "numpy",
             Format::Smd => "smd",
+            Format::Htr => "htr",
             Format::OpenSimMotion => "opensim_motion",
             Format::OpenSimModel => "opensim_model",
         }
@@ -202,6 +205,19 @@ const READ: &[Readable] = &[
         },
     },
     Readable {
+        format: Format::Htr,
+        extension: "htr",
+        looks_so: |h| {
+            let says = |word: &str| h.lines().take(200).any(|l| holds(l, word));
+            !h.is_binary() && says("[segmentnames&hierarchy]") && !says("filetype gtr")
+        },
+    },
+    Readable {
+        format: Format::Htr,
+        extension: "htr2",
+        looks_so: |_| false,
+    },
+    Readable {
         format: Format::OpenSimMotion,
         extension: "mot",
         looks_so: |h| !h.is_binary() && is_opensim(h) && !unread::has_markers(h),
@@ -315,6 +331,12 @@ fn is_trc(head: &Head) -> bool {
     };
     let opens = |line: &[u8]| begins(line, b"PathFileType") || begins(line, b"DataRate");
     !head.is_binary() && head.lines().take(3).any(opens)
+}
+
+/// Whether a line holds a word in lower case, however it is written there.
+fn holds(line: &[u8], word: &str) -> bool {
+    let window = |at: &[u8]| at.eq_ignore_ascii_case(word.as_bytes());
+    line.windows(word.len()).any(window)
 }
 
 /// An object with poses on the first line.
@@ -443,6 +465,11 @@ mod tests {
                 Format::OpenSimMotion,
             ),
             (
+                b"#a\n[Header]\n[SegmentNames&Hierarchy]\n",
+                "a",
+                Format::Htr,
+            ),
+            (
                 b"Coordinates\nnRows=2\nnColumns=3,,,\n",
                 "a",
                 Format::OpenSimMotion,
@@ -471,6 +498,10 @@ mod tests {
             (b"version https://git-lfs.github.com/spec/v1\n", "Git LFS"),
             (b"<!DOCTYPE html>\n<html>", "HTML"),
             (b"PAR1\0", "Parquet"),
+            (b"[Header]\nFileType gtr\n", "GTR"),
+            (b"{\"poses\": [[0]], \"shapes\": [[0]]}", "SMPL as JSON"),
+            (b"{\"file_version\": 1, \"asset_info\": {}}", "DUF"),
+            (b"<?xml?><MMM>", "Master Motor Map"),
         ] {
             let error = probe(bytes, "file.dat").unwrap_err();
             assert!(error.found.contains(found), "{error}");

@@ -75,6 +75,14 @@ pub(super) static UNREAD: &[Unread] = &[
         "load it on a Biped in 3ds Max and save BVH or FBX",
         |h| h.starts("BIPF"),
     ),
+    unread(
+        "an Excel workbook (XLS)",
+        "save the sheet of positions as CSV",
+        |h| {
+            let name: Vec<u8> = "Workbook".bytes().flat_map(|b| [b, 0]).collect();
+            h.bytes.starts_with(b"\xD0\xCF\x11\xE0") && h.contains(&name)
+        },
+    ),
     unread("a 3ds Max or other OLE file", SCENE, |h| {
         h.bytes.starts_with(b"\xD0\xCF\x11\xE0")
     }),
@@ -101,7 +109,7 @@ pub(super) static UNREAD: &[Unread] = &[
     ),
     unread(
         "one frame of OpenPose's keypoints (JSON)",
-        "each file holds a frame: gather them in one list, [{\u{2026}}, {\u{2026}}], in their order",
+        "each file holds a frame: give the folder that holds all of them",
         |h| {
             h.starts("{")
                 && h.contains(b"\"pose_keypoints_3d\"")
@@ -141,10 +149,8 @@ pub(super) static UNREAD: &[Unread] = &[
         .iter()
         .any(|begin| h.bytes.starts_with(begin))
     }),
-    unread("HTR of Motion Analysis", SCENE, |h| {
-        h.contains(b"FileType htr")
-            || h.contains(b"FileType gtr")
-            || h.contains(b"[SegmentNames&Hierarchy]")
+    unread("GTR of Motion Analysis", "export HTR, TRC or C3D", |h| {
+        h.contains(b"FileType gtr") || h.contains(b"FileType GTR")
     }),
     unread("a Vicon or Nexus XML file", "export C3D", |h| {
         h.starts("<") && (h.contains(b"<KinematicModel") || h.contains(b"<ViconModel"))
@@ -157,6 +163,36 @@ pub(super) static UNREAD: &[Unread] = &[
         "export BVH or FBX from Rokoko Studio",
         |h| h.starts("{") && h.contains(b"\"actors\"") && h.contains(b"\"scene\""),
     ),
+    unread(
+        "poses of SMPL as JSON",
+        "save them as AMASS does, in an .npz",
+        |h| {
+            (h.starts("{") || h.starts("["))
+                && h.contains(b"\"poses\"")
+                && (h.contains(b"\"shapes\"") || h.contains(b"\"betas\""))
+        },
+    ),
+    unread(
+        "poses of sign.mt (.pose)",
+        "save their points as a NumPy array, or as a table",
+        |h| h.contains(b"POSE_LANDMARKS") && h.is_binary(),
+    ),
+    unread(
+        "a scene of DAZ Studio (DUF)",
+        "export BVH or FBX from DAZ Studio",
+        |h| h.starts("{") && h.contains(b"\"asset_info\"") && h.contains(b"\"file_version\""),
+    ),
+    unread("a pose of Poser (PZ2)", "export BVH from Poser", |h| {
+        h.starts("{") && h.contains(b"actor ") && h.contains(b"version")
+    }),
+    unread(
+        "a motion of the Master Motor Map (MMM)",
+        "its database (KIT) has the same motions as C3D",
+        |h| h.is_markup() && h.contains(b"<MMM"),
+    ),
+    unread("a cache of a mesh's points (PC2)", SCENE, |h| {
+        h.starts("POINTCACHE2")
+    }),
     unread("Biovision's BVA", "save BVH", |h| {
         h.starts("Segment:") && h.contains(b"Frames:")
     }),
@@ -307,8 +343,7 @@ pub(super) static UNREAD_ENDINGS: &[(&str, &str, &str)] = &[
         "a Motion Analysis capture",
         "export TRC or C3D from Cortex",
     ),
-    ("gtr", "GTR of Motion Analysis", SCENE),
-    ("htr", "HTR of Motion Analysis", SCENE),
+    ("gtr", "GTR of Motion Analysis", "export HTR, TRC or C3D"),
     (
         "tak",
         "a Motive take",
@@ -366,6 +401,24 @@ pub(super) static UNREAD_ENDINGS: &[(&str, &str, &str)] = &[
         "an Xsens MVN session",
         "export MVNX, BVH or FBX from MVN",
     ),
+    ("casc", "a scene of Cascadeur", "export FBX from Cascadeur"),
+    (
+        "rlmotion",
+        "a motion of iClone",
+        "export FBX or BVH from iClone or 3DXchange",
+    ),
+    (
+        "imotion",
+        "a motion of iClone",
+        "export FBX or BVH from iClone or 3DXchange",
+    ),
+    (
+        "imotionplus",
+        "a motion of iClone",
+        "export FBX or BVH from iClone or 3DXchange",
+    ),
+    ("mdd", "a cache of a mesh's points (MDD)", SCENE),
+    ("qca", "a Qualisys calibration", "it holds no motion"),
     ("motion", "a motion of an application", SCENE),
     ("nmd", "a MikuMikuMoving motion", SCENE),
     ("usd", "USD", BLENDER),

@@ -1,4 +1,5 @@
-//! Cells that hold a whole point, as Python prints them: `"(0.1, 0.2, 0.3)"`, `[0.1 0.2 0.3]`.
+//! Cells that hold a whole point, as Python prints them: `"(0.1, 0.2, 0.3)"`, `[0.1 0.2 0.3]`; or without brackets, with tabs
+//! between the cells: `0.1 0.2 0.3`.
 
 use super::layout::TableLine;
 use crate::formats::cells::{Decimal, number};
@@ -34,12 +35,13 @@ pub(super) fn spread(rows: Vec<TableLine<'_>>) -> Vec<TableLine<'_>> {
     spread
 }
 
-/// The three numbers of a bracketed cell; a fourth is how sure they are.
+/// The three numbers of a cell; a fourth is how sure they are.
 fn point(cell: &str) -> Option<[&str; 3]> {
     let inner = cell.trim_matches(['"', '\'', ' ']);
     let inner = ["()", "[]"]
         .iter()
-        .find_map(|pair| inner.strip_prefix(&pair[..1])?.strip_suffix(&pair[1..]))?;
+        .find_map(|pair| inner.strip_prefix(&pair[..1])?.strip_suffix(&pair[1..]))
+        .unwrap_or(inner);
     let mut parts = inner.split([',', ' ', ';']).filter(|part| !part.is_empty());
     let point = [parts.next()?, parts.next()?, parts.next()?];
     let numbers = point

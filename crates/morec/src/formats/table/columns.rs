@@ -7,9 +7,11 @@ use crate::formats::points::metres_of;
 /// The layout of a table whose header names its columns, in one row or several.
 pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
     let header_rows = header_rows(rows)?;
-    let labels = labels(&rows[..header_rows]);
+    let (header, units) = without_units(&rows[..header_rows]);
+    let labels = labels(header);
     let mut found = ColumnLayout {
         header_rows,
+        rate_hz: rate_above(header),
         ..ColumnLayout::default()
     };
     let mut open: Vec<(String, [Option<usize>; 3])> = Vec::new();
@@ -24,7 +26,9 @@ pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
                     open.push((name, columns));
                 }
             }
-            found.metres_per_unit = found.metres_per_unit.or(unit_of(label));
+            let below = || metres_of(units?.get(column)?);
+            let unit = unit_of(label).or_else(below);
+            found.metres_per_unit = found.metres_per_unit.or(unit);
         } else if found.time.is_none() && is_time(label) {
             found.time = Some((column, seconds_of(label)));
         } else if found.frame.is_none() && is_frame(label, column) {
@@ -47,19 +51,103 @@ pub(super) fn is_flat(rows: &[TableLine]) -> bool {
     let Some(header_rows) = header_rows(rows) else {
         return false;
     };
-    let axes: Vec<usize> = labels(&rows[..header_rows])
+    let axes: Vec<usize> = labels(without_units(&rows[..header_rows]).0)
         .iter()
         .filter_map(|label| Some(axis_of(label)?.1))
         .collect();
     axes.contains(&0) && axes.contains(&1) && !axes.contains(&2)
 }
 
+/// The header without a last row of units (`mm`, `s`, `-`), and that row's cells.
+fn without_units<'a, 'b>(
+    header: &'a [TableLine<'b>],
+) -> (&'a [TableLine<'b>], Option<&'a [&'b str]>) {
+    let Some(((_, last), above)) = header.split_last().filter(|(_, above)| !above.is_empty())
+    else {
+        return (header, None);
+    };
+    let bare = |cell: &&str| cell.trim_matches(['(', ')', '[', ']']).to_owned();
+    let mut filled = last.iter().filter(|cell| !cell.is_empty());
+    let lengths = last.iter().filter(|cell| metres_of(&bare(cell)).is_some());
+    let is_unit = |cell: &&str| {
+        const OTHERS: [&str; 9] = ["-", "s", "sec", "ms", "hz", "deg", "rad", "px", "1"];
+        let cell = bare(cell).to_ascii_lowercase();
+        metres_of(&cell).is_some() || OTHERS.contains(&cell.as_str())
+    };
+    match lengths.count() > 2 && filled.all(is_unit) {
+        true => (above, Some(last)),
+        false => (header, None),
+    }
+}
+
+/// The rate that a row above the names states, `# fps: 60` or `Frame Rate,120`.
+fn rate_above(header: &[TableLine]) -> Option<f64> {
+    const KEYS: [&str; 7] = [
+        "fps",
+        "framerate",
+        "samplingrate",
+        "samplerate",
+        "capturerate",
+        "frequency",
+        "datarate",
+    ];
+    let (_, above) = header.split_last()?;
+    let stated = |text: &str| {
+        let key_ends = text.find([':', '=', ','])?;
+        let (key, value) = (&text[..key_ends], &text[key_ends + 1..]);
+        let key: String = { key.split(['(', '[']).next().unwrap_or_default().chars() }
+            .filter(|c| c.is_alphanumeric())
+            .collect();
+        let value = value.trim().split([' ', ',']).next()?;
+        let known = KEYS.contains(&key.to_ascii_lowercase().as_str());
+        let rate = number(value, Decimal::Either).filter(|_| known)?;
+        (rate > 0.0 && rate < 1e5).then_some(rate)
+    };
+    above.iter().find_map(|(_, cells)| {
+        let pairs = cells
+            .windows(2)
+            .map(|pair| format!("{},{}", pair[0], pair[1]));
+        { cells.iter() }
+            .find_map(|cell| stated(cell))
+            .or_else(|| { pairs }.find_map(|pair| stated(&pair)))
+    })
+}
+
+/// True if most columns have angles, rotations or what sensors measure, by their labels.
+pub(super) fn is_turned(rows: &[TableLine]) -> bool {
+    let Some(header_rows) = header_rows(rows) else {
+        return false;
+    };
+    let says = |label: &String| {
+        let lower = label.to_lowercase();
+        let mut parts = lower.split(|c: char| !c.is_alphanumeric());
+        parts.any(|part| {
+            let bare = part.trim_end_matches(['x', 'y', 'z', 'w', 's']);
+            NO_POSITION.contains(&part) || !bare.is_empty() && NO_POSITION.contains(&bare)
+        }) || ["angle", "flexion", "rotation"]
+            .iter()
+            .any(|word| lower.contains(word))
+    };
+    let labels = labels(without_units(&rows[..header_rows]).0);
+    let turned = labels.iter().filter(|label| says(label)).count();
+    turned > 0 && turned * 2 > labels.len()
+}
+
 /// Rows before the first of numbers; `None` if there is none, or no row of numbers.
 fn header_rows(rows: &[TableLine]) -> Option<usize> {
-    // A frame may begin with words (a class, a track) below names that are certain.
-    let names_axes = |(_, cells): &TableLine| {
-        let named = cells.iter().filter(|cell| axis_of(cell).is_some());
-        named.count() >= 6
+    // A frame may begin with words (a class, a track) and hold others (`Tracked`) below names that are certain.
+    let is_below_axes = |above: &TableLine, cells: &[&str]| {
+        let named = |&(_, label): &(usize, &&str)| axis_of(label).is_some();
+        let axes: Vec<usize> = { above.1.iter().enumerate() }
+            .filter(named)
+            .map(|(column, _)| column)
+            .collect();
+        let is_number = |column: &&usize| {
+            let cell = cells.get(**column).copied().unwrap_or_default();
+            number(cell, Decimal::Either).is_some() || is_nan(cell)
+        };
+        let numbers = axes.iter().filter(is_number).count();
+        axes.len() >= 6 && numbers > 0 && numbers * 5 >= axes.len() * 4
     };
     let is_frame = |row: &usize| {
         let (_, cells) = &rows[*row];
@@ -70,9 +158,8 @@ fn header_rows(rows: &[TableLine]) -> Option<usize> {
         let first = filled.clone().next();
         let (filled, numbers) = (filled.count(), numbers.count());
         let starts = first.is_some_and(|c| number(c, Decimal::Either).is_some() || is_nan(c));
-        filled > 0
-            && numbers * 5 >= filled * 4
-            && (starts || *row > 0 && names_axes(&rows[row - 1]))
+        filled > 0 && starts && numbers * 5 >= filled * 4
+            || *row > 0 && is_below_axes(&rows[row - 1], cells)
     };
     let first = (0..rows.len())
         .position(|row| is_frame(&row))
@@ -172,7 +259,12 @@ const POSITION: [&str; 11] = [
     "t",
 ];
 /// Words that say that something else is meant.
-const NO_POSITION: [&str; 28] = [
+const NO_POSITION: [&str; 33] = [
+    "gyr",
+    "linacc",
+    "velo",
+    "grf",
+    "cop",
     "rotation",
     "rot",
     "r",
@@ -204,7 +296,7 @@ const NO_POSITION: [&str; 28] = [
 ];
 
 /// The point and the axis (0 to 2) that a column's label names.
-pub(super) fn axis_of(label: &str) -> Option<(String, usize)> {
+pub(in crate::formats) fn axis_of(label: &str) -> Option<(String, usize)> {
     axis_with(label, false)
 }
 
@@ -218,6 +310,9 @@ fn is_left_alone(label: &str) -> bool {
 
 /// [`axis_of`]; with `has_sides`, a name that ends in `_r` is a right one.
 fn axis_with(label: &str, has_sides: bool) -> Option<(String, usize)> {
+    if let Some(found) = in_brackets(label) {
+        return Some(found);
+    }
     let label = without_unit(label).trim();
     let (name, axis) = suffix(label).or_else(|| prefix(label))?;
     let mut name = name.trim_end_matches(is_mark);
@@ -241,6 +336,23 @@ fn axis_with(label: &str, has_sides: bool) -> Option<(String, usize)> {
     let lower = name.to_ascii_lowercase();
     let is_name = !name.is_empty() && !NO_POSITION.contains(&lower.as_str());
     is_name.then(|| (name.to_owned(), axis))
+}
+
+/// `Hips(x)`, `Hips[X]`, `Hips[0]`.
+fn in_brackets(label: &str) -> Option<(String, usize)> {
+    let pair = ["()", "[]"];
+    let (name, axis) = pair.iter().find_map(|pair| {
+        let rest = label.trim().strip_suffix(&pair[1..])?;
+        rest.rsplit_once(&pair[..1])
+    })?;
+    let axis = match axis.trim() {
+        "0" => 0,
+        "1" => 1,
+        "2" => 2,
+        letter => axis_number(letter.chars().next()?).filter(|_| letter.len() == 1)?,
+    };
+    let name = name.trim_end_matches(is_mark);
+    (!name.is_empty() && !is_time(name) && !is_frame(name, 1)).then(|| (name.to_owned(), axis))
 }
 
 fn is_mark(c: char) -> bool {

@@ -205,3 +205,192 @@ fn right_sides_are_no_rotations() {
     );
     assert_eq!(axis.clips[0].skeleton.joints()[0].name, "Hips");
 }
+
+/// FreeMoCap's tables have the body, its hands, centres of mass and a second solution one below the other, some under the same names.
+#[test]
+fn the_body_among_other_parts() {
+    let mut text = "frame,keypoint,x,y,z,model,trajectory,reprojection_error\n".to_owned();
+    let mut types = "frame,row_id,type,landmark_index,x,y,z\n".to_owned();
+    for frame in 0..5 {
+        for (p, name) in ["nose", "left_hip", "right_hip"].iter().enumerate() {
+            let place = moving(frame, p, ",");
+            text += &format!("{frame},{name},{place},rtmpose.body,3d_xyz,\n");
+        }
+        text += &format!("{frame},nose,9,9,9,rtmpose.body,rigid_3d_xyz,\n");
+        text += &format!("{frame},head,9,9,9,rtmpose.body,segment_center_of_mass,\n");
+        text += &format!("{frame},thumb1,9,9,9,rtmpose.left_hand,3d_xyz,\n");
+        for (part, point) in [("face", 0), ("pose", 0), ("pose", 1), ("left_hand", 0)] {
+            let place = moving(frame, point, ",");
+            types += &format!("{frame},{frame}-{part}-{point},{part},{point},{place}\n");
+        }
+    }
+    for (text, points) in [(text, 3), (types, 2)] {
+        let loaded = open(&text);
+        let clip = &loaded.clips[0];
+        assert_eq!((clip.frames, clip.skeleton.len()), (5, points), "{text}");
+        assert_eq!(clip.tracks[0].positions[1], Vec3::new(0.02, 1.0, 0.0));
+        let told = |w: &Warning| w.text.contains("hand") && w.text.contains("left out");
+        assert!(loaded.warnings.iter().any(told), "{:?}", loaded.warnings);
+    }
+}
+
+/// Words that are no parts leave no row out.
+#[test]
+fn types_of_something_else() {
+    let mut text = "time,joint,x,y,z,type\n".to_owned();
+    for frame in 0..4 {
+        for (p, state) in ["tracked", "inferred"].iter().enumerate() {
+            text += &format!("{}.0,j{p},{},{state}\n", frame, moving(frame, p, ","));
+        }
+    }
+    assert_eq!(open(&text).clips[0].skeleton.len(), 2);
+}
+
+#[test]
+fn axes_after_a_word() {
+    let mut text =
+        "Timestamp, JointID, Position.X, Position.Y, Position.Z, Orientation.X, State\n".to_owned();
+    for frame in 0..4 {
+        for p in 0..3 {
+            text += &format!("{}, {p}, {}, 0, 2\n", 33 * frame, moving(frame, p, ", "));
+        }
+    }
+    assert!(looks_so(text.as_bytes()));
+    let clip = &open(&text).clips[0];
+    assert_eq!((clip.frames, clip.skeleton.len()), (4, 3));
+    assert_eq!(clip.tracks[2].positions[3], Vec3::new(0.26, 1.2, 0.6));
+}
+
+/// MediaPipe's holistic model: 33 points of the body, then those of the face and the hands.
+#[test]
+fn a_face_behind_the_body() {
+    let names = |count: usize| -> Vec<String> {
+        { 1..=count }
+            .flat_map(|n| ["x", "y", "z", "v"].map(|axis| format!("{axis}{n}")))
+            .collect()
+    };
+    let row = |frame: usize, points: usize| -> Vec<String> {
+        { 0..points }
+            .map(|p| format!("{},0.9", moving(frame, p, ",")))
+            .collect()
+    };
+    let holistic = |frame: usize| format!("wave,{}", row(frame, 501).join(","));
+    let mut text = format!("class,{}\n", names(501).join(","));
+    let words = [("Head", 468), ("Pose", 33), ("Hand", 21)];
+    let labels = words.iter().flat_map(|&(word, count)| {
+        { 0..count }
+            .flat_map(move |n| ["x", "y", "z", "v"].map(|axis| format!("{word}_{n}_{axis}")))
+    });
+    let mut worded = format!("{}\n", labels.collect::<Vec<String>>().join(","));
+    for frame in 0..5 {
+        text += &(holistic(frame) + "\n");
+        worded += &(row(frame, 522).join(",") + "\n");
+    }
+    for text in [text, worded] {
+        let loaded = open(&text);
+        assert_eq!(
+            (loaded.clips[0].frames, loaded.clips[0].skeleton.len()),
+            (5, 33)
+        );
+        let told = loaded
+            .warnings
+            .iter()
+            .any(|w| w.text.contains("hands and face left out"));
+        assert!(told, "{:?}", loaded.warnings);
+    }
+}
+
+/// A row of units below the names, clocks for times, a rate in a comment, words among the numbers, and no brackets around points.
+#[test]
+fn what_spreadsheets_and_cameras_write() {
+    let names = ["nose", "hip"];
+    let axes = |between: &str| {
+        names
+            .map(|n| ["x", "y", "z"].map(|a| format!("{n}_{a}")).join(between))
+            .join(between)
+    };
+    let units = format!("Frame,Time,{}\n-,s,mm,mm,mm,mm,mm,mm\n", axes(","));
+    let clocks = format!("time,{}\n", axes(","));
+    let rate = format!("# made by hand\n# fps: 50\nframe,{}\n", axes(","));
+    let keys = format!("Frame Rate,50\nframe,{}\n", axes(","));
+    let states = names.map(|n| format!("{n}_x,{n}_y,{n}_z,{n}_state,{n}_kind"));
+    let states = format!("frame,{}\n", states.join(","));
+    let row = |f: usize| row(f, 2, ",");
+    let with = |head: &str, line: &dyn Fn(usize) -> String| {
+        head.to_owned() + &{ 0..6 }.map(|f| line(f) + "\n").collect::<String>()
+    };
+    let worded = |f: usize| {
+        let point = |p| format!("{},Tracked,Good", moving(f, p, ","));
+        format!("{f},{},{}", point(0), point(1))
+    };
+    let bare = |f: usize| format!("{f}\t{}\t{}", moving(f, 0, " "), moving(f, 1, " "));
+    for (text, rate_hz, unit) in [
+        (
+            with(&units, &|f| {
+                format!("{f},{:.2},{}", f as f64 / 50.0, row(f))
+            }),
+            50.0,
+            Some(0.001),
+        ),
+        (
+            with(&clocks, &|f| {
+                format!("2024-02-01 10:59:59.{:03},{}", 20 * f, row(f))
+            }),
+            50.0,
+            None,
+        ),
+        (with(&rate, &|f| format!("{f},{}", row(f))), 50.0, None),
+        (with(&keys, &|f| format!("{f},{}", row(f))), 50.0, None),
+        (with(&states, &worded), 30.0, None),
+        (with("frame\tnose\thip\n", &bare), 30.0, None),
+    ] {
+        assert!(looks_so(text.as_bytes()), "{text}");
+        let clip = &open(&text).clips[0];
+        assert_eq!((clip.frames, clip.skeleton.len()), (6, 2), "{text}");
+        assert!(
+            (clip.rate_hz - rate_hz).abs() < 1e-6,
+            "{} {text}",
+            clip.rate_hz
+        );
+        assert_eq!(
+            clip.points.as_ref().unwrap().metres_per_unit,
+            unit,
+            "{text}"
+        );
+        assert_eq!(
+            clip.tracks[1].positions[2],
+            Vec3::new(0.14, 1.1, 0.3),
+            "{text}"
+        );
+    }
+}
+
+#[test]
+fn names_above_every_third_column() {
+    let names: Vec<String> = { 0..20 }.map(|p| format!("joint{}", 19 - p)).collect();
+    let mut text = format!("Frame,{},,\n", names.join(",,,"));
+    for frame in 0..6 {
+        text += &format!("{frame},{}\n", row(frame, 20, ","));
+    }
+    let clip = &open(&text).clips[0];
+    assert_eq!(clip.skeleton.joints()[0].name, "joint19");
+    assert_eq!(clip.skeleton.len(), 20);
+}
+
+#[test]
+fn what_is_no_position_is_said() {
+    for (head, said) in [
+        ("time,Knee_angle,Hip_angle\n", "angles"),
+        ("time,a_qx,a_qy,a_qz,a_qw\n", "rotations"),
+        ("time,Acc_X,Acc_Y,Acc_Z,Gyr_X,Gyr_Y,Gyr_Z\n", "sensors"),
+        (
+            "Format Version,1.25,Take Name,a\n\n,Type,Bone,Bone\n,Name,a,a\n,,Rotation,Rotation\nFrame,Time,X,Y\n",
+            "export positions",
+        ),
+    ] {
+        let rows: String = (0..6).map(|f| format!("{f},1,2,3,4,5,6\n")).collect();
+        let text = format!("{head}{rows}");
+        let error = read(text.as_bytes(), "x", None, &Limits::default()).unwrap_err();
+        assert!(error.found.contains(said), "{head}: {error}");
+    }
+}

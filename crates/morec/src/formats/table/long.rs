@@ -2,7 +2,7 @@
 
 use super::columns::{is_frame, is_time, seconds_of};
 use super::layout::{ColumnLayout, TableFrames, TableLine, to_seconds};
-use crate::formats::cells::{Decimal, number};
+use crate::formats::cells::{Decimal, clock, number};
 use crate::formats::points::{Point, UNSEEN, check_size};
 use crate::formats::{Limits, ParseError, Place};
 use crate::math::Vec3;
@@ -15,14 +15,25 @@ pub(super) struct Columns {
     name: usize,
     /// Column of the person.
     person: Option<usize>,
+    /// Columns of what a point is part of: body, face, hand, by which method.
+    parts: Vec<usize>,
     axes: [usize; 3],
     time: Option<(usize, Option<f64>)>,
     frame: Option<usize>,
 }
 
+/// Names of the columns of what a point is part of: FreeMoCap's, and those of tables of MediaPipe's holistic model.
+const PARTS: [&str; 5] = ["model", "trajectory", "type", "landmark_type", "category"];
+
 /// Names of the column of joint names.
-const NAMES: [&str; 24] = [
+const NAMES: [&str; 30] = [
     "joint",
+    "jointid",
+    "jointindex",
+    "landmarkid",
+    "keypointid",
+    "boneid",
+    "markerid",
     "jointtype",
     "joint_type",
     "joint type",
@@ -55,7 +66,12 @@ pub(super) fn columns(header: usize, (_, cells): &TableLine) -> Option<Columns> 
     let axis = |axis: &str| {
         find(&|cell| {
             let cell = cell.split(['(', '[']).next().unwrap_or_default().trim();
+            // Unity's and Kinect's `Position.X`, and `pos_x`.
+            let words = ["position", "pos", "world", "camera"];
+            let bare = words.iter().find_map(|word| cell.strip_prefix(word));
+            let bare = bare.map(|rest| rest.trim_start_matches(['.', '_', ' ']));
             cell == axis
+                || bare == Some(axis)
                 || ["_m", "_mm", "_cm", " pos", "_pos"]
                     .iter()
                     .any(|end| cell.strip_suffix(end) == Some(axis))
@@ -70,7 +86,7 @@ pub(super) fn columns(header: usize, (_, cells): &TableLine) -> Option<Columns> 
             "_id", "_index", "_idx", " id", " index", "_no", "_num", "_number",
         ];
         let others = [
-            "frame", "time", "sample", "image", "video", "file", "trial", "clip",
+            "frame", "time", "sample", "image", "video", "file", "trial", "clip", "row",
         ];
         let numbered = ends.iter().any(|end| cell.ends_with(end)) || cell == "id";
         numbered && !PEOPLE.contains(&cell) && !others.iter().any(|other| cell.starts_with(other))
@@ -78,10 +94,13 @@ pub(super) fn columns(header: usize, (_, cells): &TableLine) -> Option<Columns> 
     let name = name.or_else(|| find(&numbers))?;
     let time = find(&|cell| is_time(cell)).map(|column| (column, seconds_of(&lower[column])));
     let frame = find(&|cell| !cell.is_empty() && is_frame(cell, 1));
+    let parts = lower.iter().enumerate();
+    let parts = parts.filter(|(at, cell)| *at != name && PARTS.contains(&cell.as_str()));
     (time.is_some() || frame.is_some()).then_some(Columns {
         header,
         name,
         person,
+        parts: parts.map(|(at, _)| at).collect(),
         axes,
         time,
         frame,
@@ -113,6 +132,7 @@ pub(super) fn frames(
     limits: &Limits,
 ) -> Result<TableFrames, ParseError> {
     let body = &rows[columns.header + 1..];
+    let (kept, notes) = columns.body_part(body);
     let decimal = Decimal::of(body.iter().flat_map(|(_, cells)| cells).copied());
     let mut points: Vec<Point> = Vec::new();
     let mut times: Vec<Option<f64>> = Vec::new();
@@ -121,11 +141,14 @@ pub(super) fn frames(
     for (line, cells) in body {
         let cell = |column: usize| cells.get(column).copied().unwrap_or_default();
         let value = |column: usize| number(cell(column), decimal);
-        let time = columns.time.and_then(|(column, _)| value(column));
+        let time = columns
+            .time
+            .and_then(|(column, _)| value(column).or_else(|| clock(cell(column))));
         let key = columns.frame.or(columns.time.map(|t| t.0)).map_or("", cell);
         let name = cell(columns.name);
         let whose = columns.person.map_or("", cell);
-        if key.is_empty() || name.is_empty() {
+        let other = |part: &Vec<&str>| columns.part(cells) != *part;
+        if key.is_empty() || name.is_empty() || kept.as_ref().is_some_and(other) {
             continue;
         }
         let next = times.len();
@@ -177,5 +200,51 @@ pub(super) fn frames(
     if let Some((_, secs)) = columns.time {
         to_seconds(&mut times, secs);
     }
-    Ok((points, times, ColumnLayout::default()))
+    let layout = ColumnLayout {
+        notes,
+        ..ColumnLayout::default()
+    };
+    Ok((points, times, layout))
 }
+
+impl Columns {
+    /// What the point of a row is part of.
+    fn part<'a>(&self, cells: &[&'a str]) -> Vec<&'a str> {
+        let cell = |column: &usize| cells.get(*column).copied().unwrap_or_default();
+        self.parts.iter().map(cell).collect()
+    }
+
+    /// The part that is the body, if points are parts of several things, and what is left out then. Other parts have
+    /// points of the same names, or none of a body.
+    fn body_part<'a>(&self, rows: &[TableLine<'a>]) -> (Option<Vec<&'a str>>, Vec<String>) {
+        let mut parts: Vec<Vec<&str>> = Vec::new();
+        for (_, cells) in rows {
+            let part = self.part(cells);
+            if !parts.contains(&part) && parts.len() < MOST_PARTS {
+                parts.push(part);
+            }
+        }
+        let says = |part: &[&str], words: &[&str]| {
+            let lower = part.join(" ").to_lowercase();
+            words.iter().any(|word| lower.contains(word))
+        };
+        let body = |part: &&Vec<&str>| says(part, &["body", "pose"]) && !says(part, &["mass"]);
+        let bodies = || parts.iter().filter(body);
+        let world = bodies().find(|part| says(part, &["world"]));
+        let Some(kept) = world
+            .or_else(|| bodies().next())
+            .filter(|_| parts.len() > 1)
+        else {
+            return (None, Vec::new());
+        };
+        let others: Vec<String> = { parts.iter() }
+            .filter(|part| *part != kept)
+            .map(|part| part.join(" "))
+            .collect();
+        let note = format!("points of `{}` left out", others.join("`, `"));
+        (Some(kept.clone()), vec![note])
+    }
+}
+
+/// Words of more kinds are no parts.
+const MOST_PARTS: usize = 64;

@@ -15,8 +15,10 @@ mod nexus;
 mod plain;
 mod qualisys;
 
-use self::layout::{ColumnLayout, TableFrames, TableLine, to_seconds};
-use super::cells::{Decimal, lines, number, split};
+pub(super) use self::columns::axis_of;
+pub(super) use self::layout::to_seconds;
+use self::layout::{ColumnLayout, TableFrames, TableLine};
+use super::cells::{Decimal, clock, lines, number, split};
 use super::points::{Point, PointTable, UNSEEN, check_size};
 use super::timing::{self, Clock};
 use super::{Limits, Loaded, ParseError, Place, Warning};
@@ -152,8 +154,17 @@ fn no_columns(rows: &[TableLine]) -> ParseError {
     let Some((line, first)) = rows.first() else {
         return ParseError::new(Place::Line(1), expected, "an empty file");
     };
+    if motive::begins(rows) {
+        let expected = "positions of bones, rigid bodies or markers in the export of Motive";
+        let found = "none: export positions, too, in global coordinates";
+        return ParseError::new(Place::Line(*line), expected, found);
+    }
     if columns::is_flat(rows) {
         let found = "x and y alone: two dimensions are not enough";
+        return ParseError::new(Place::Line(*line), expected, found);
+    }
+    if columns::is_turned(rows) {
+        let found = "angles, rotations or what sensors measure: without a skeleton they place nothing (give positions, or BVH)";
         return ParseError::new(Place::Line(*line), expected, found);
     }
     if nexus::begins(rows) {
@@ -224,7 +235,9 @@ fn wide(
             let expected = format!("at most {} frames", limits.frames);
             return Err(ParseError::new(Place::Line(*line), expected, "more"));
         }
-        times.push(layout.time.and_then(|(column, _)| value(column)));
+        let clock = |column: usize| cells.get(column).and_then(|cell| clock(cell));
+        let time = |(column, _)| value(column).or_else(|| clock(column));
+        times.push(layout.time.and_then(time));
         numbers.push(layout.frame.and_then(value));
         for ((_, [x, y, z]), point) in layout.points.iter().zip(&mut points) {
             point

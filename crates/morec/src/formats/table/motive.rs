@@ -5,12 +5,17 @@ use super::layout::{ColumnLayout, TableLine};
 use crate::formats::cells::{Decimal, number};
 use crate::formats::points::metres_of;
 
+/// True if the first row has the keys of such an export.
+pub(super) fn begins(rows: &[TableLine]) -> bool {
+    let is_key = |cell: &&str| matches!(*cell, "Format Version" | "Take Name");
+    rows.first()
+        .is_some_and(|(_, cells)| cells.iter().any(is_key))
+}
+
 /// The layout, if this is such an export. Bones are taken if there are any, else rigid bodies and markers.
 pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
     let keys = &rows.first()?.1;
-    let is_motive = keys
-        .iter()
-        .any(|cell| matches!(*cell, "Format Version" | "Take Name"));
+    let is_motive = begins(rows);
     let frame_row = rows.iter().position(|(_, cells)| cells[0] == "Frame")?;
     let named = |name: &str| {
         let is = |(_, cells): &&TableLine| cells.iter().take(2).any(|cell| *cell == name);
@@ -78,5 +83,5 @@ pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
         let name = names.get(x).copied().unwrap_or_default();
         found.points.push((name.to_owned(), [x, x + 1, x + 2]));
     }
-    Some(found)
+    (!found.points.is_empty()).then_some(found)
 }

@@ -88,9 +88,14 @@ pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
         .or_else(|| fits(1, 3))
         .or_else(|| fits(0, 4))
         .or_else(|| fits(1, 4))?;
+    let named = names_above(&rows[..header_rows], before, width, count);
     let point = |number: usize| {
         let x = before + width * number;
-        (number.to_string(), [x, x + 1, x + 2])
+        let name = named.as_ref().map(|names| names[number].to_owned());
+        (
+            name.unwrap_or_else(|| number.to_string()),
+            [x, x + 1, x + 2],
+        )
     };
     let value = |(_, cells): &TableLine| number(cells[0], Decimal::Either);
     let counts = rows[header_rows..]
@@ -98,12 +103,32 @@ pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
         .filter_map(value)
         .all(|v| v.fract() == 0.0);
     let text = format!("no names of columns; read as x, y and z of {count} points");
+    let notes = if named.is_some() {
+        Vec::new()
+    } else {
+        vec![text]
+    };
     Some(ColumnLayout {
         points: (0..count).map(point).collect(),
         time: (before == 1 && !counts).then_some((0, None)),
         frame: (before == 1 && counts).then_some(0),
         header_rows,
-        notes: vec![text],
+        notes,
         ..ColumnLayout::default()
     })
+}
+
+/// The names that a row has above the first column of each point and nowhere else: `SpineBase,,,SpineMid,,`.
+fn names_above<'a>(
+    header: &[TableLine<'a>],
+    before: usize,
+    width: usize,
+    count: usize,
+) -> Option<Vec<&'a str>> {
+    let (_, cells) = header.first()?;
+    let cell = |column: usize| cells.get(column).copied().unwrap_or_default();
+    let name = |point: usize| Some(cell(before + point * width)).filter(|name| !name.is_empty());
+    let names: Option<Vec<&str>> = (0..count).map(name).collect();
+    let filled = cells.iter().skip(before).filter(|cell| !cell.is_empty());
+    names.filter(|names| filled.count() == names.len())
 }

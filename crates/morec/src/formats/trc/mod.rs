@@ -9,6 +9,7 @@ pub use write::write;
 
 use super::cells::{Decimal, lines, number, split};
 use super::points::{Point, PointTable, UNSEEN, check_size, metres_of};
+use super::table::axis_of;
 use super::timing::{self, Clock};
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::math::Vec3;
@@ -142,7 +143,8 @@ impl Heading {
 /// A name and the column of its x.
 type MarkerColumn = (String, usize);
 
-/// Points stand above every third column, or in neighbouring cells. Before them are the frame's number and its time.
+/// Points stand above every third column, in neighbouring cells, or above each of their columns. Before them are the frame's
+/// number and its time.
 fn columns(names: &[&str]) -> Vec<MarkerColumn> {
     let first = match names.get(1) {
         Some(second) if second.to_ascii_lowercase().starts_with("time") => 2,
@@ -155,6 +157,9 @@ fn columns(names: &[&str]) -> Vec<MarkerColumn> {
         .skip(first)
         .filter(|(_, name)| !name.is_empty())
         .collect();
+    if let Some(columns) = columns_of_axes(&named) {
+        return columns;
+    }
     let above = named.iter().all(|(column, _)| (column - first) % 3 == 0);
     let place = |(k, &(column, name)): (usize, &(usize, &str))| {
         let column = if above && named.len() > 1 {
@@ -165,6 +170,28 @@ fn columns(names: &[&str]) -> Vec<MarkerColumn> {
         (name.to_owned(), column)
     };
     named.iter().enumerate().map(place).collect()
+}
+
+/// A name above each of a point's three columns: `Nose_x`, `Nose_y`, `Nose_z`, or `Nose` three times.
+fn columns_of_axes(named: &[(usize, &str)]) -> Option<Vec<MarkerColumn>> {
+    if named.is_empty() || !named.len().is_multiple_of(3) {
+        return None;
+    }
+    let point = |triple: &[(usize, &str)]| {
+        let [(x, name), (y, second), (z, third)] = *triple else {
+            return None;
+        };
+        if (y, z) != (x + 1, x + 2) {
+            return None;
+        }
+        if name == second && name == third {
+            return Some((name.to_owned(), x));
+        }
+        let (point, axis) = axis_of(name)?;
+        let same = |other: &str, number: usize| axis_of(other) == Some((point.clone(), number));
+        (axis == 0 && same(second, 1) && same(third, 2)).then(|| (point.clone(), x))
+    };
+    named.chunks_exact(3).map(point).collect()
 }
 
 /// `X1 Y1 Z1` below the names.

@@ -134,3 +134,19 @@ fn written_files_are_read_again() {
         clip.tracks[1].positions[..12]
     );
 }
+
+/// A name above each column, as Pose2Sim's documentation and spreadsheets have it.
+#[test]
+fn names_above_each_column() {
+    for names in [
+        "R.ASIS_x\tR.ASIS_y\tR.ASIS_z\tL.ASIS_x\tL.ASIS_y\tL.ASIS_z",
+        "R.ASIS X\tR.ASIS Y\tR.ASIS Z\tL.ASIS X\tL.ASIS Y\tL.ASIS Z",
+        "R.ASIS\tR.ASIS\tR.ASIS\tL.ASIS\tL.ASIS\tL.ASIS",
+    ] {
+        let text = TEXT.replace("R.ASIS\t\t\tL.ASIS\t\t\t", names);
+        check(&load(&text).0);
+    }
+    // Three points whose names look so by chance are three points.
+    let text = TEXT.replace("R.ASIS\t\t\tL.ASIS\t\t\t", "Px\tQy");
+    assert_eq!(load(&text).0.skeleton.len(), 2);
+}
