@@ -167,7 +167,7 @@ impl TemplateModel {
     /// The calibration of scores in use. Indexes from before verified scores were calibrated hold the map of plain margins beside a
     /// verifier, where it never held: they report the verifier's scores.
     pub(super) fn calibration_in_use(&self) -> Option<Calibration> {
-        let stale = self.verifier.is_some() && self.calibration == Some(Calibration::MEASURED);
+        let stale = self.verifier.is_some() && self.calibration == Some(Calibration::OF_MARGINS);
         self.calibration.filter(|_| !stale)
     }
 
