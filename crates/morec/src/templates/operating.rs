@@ -5,7 +5,8 @@
 pub struct OperatingPoint {
     /// False alarms a minute of background motion in training.
     pub alarms_per_minute: f64,
-    /// The distance below which background motion came that often, within the bounds of training.
+    /// The distance below which background motion came that often, within the bounds of training; of a verifier, the score
+    /// above which it came.
     pub threshold: f32,
 }
 
