@@ -120,11 +120,13 @@ fn print_templates(report: &TrainingReport) {
         .iter()
         .map(|p| format!("{} → {:.2}", p.alarms_per_minute, p.threshold))
         .collect();
-    if !report.verified && !points.is_empty() {
-        println!(
-            "sensitivity, alarms a minute → threshold: {}",
-            points.join(", ")
-        );
+    if !points.is_empty() {
+        let of = if report.verified {
+            "score"
+        } else {
+            "threshold"
+        };
+        println!("sensitivity, alarms a minute → {of}: {}", points.join(", "));
     }
     let negatives: Vec<String> = report
         .negatives

@@ -27,6 +27,7 @@ struct Ending {
     class: ClassId,
     score: f64,
     spread: f32,
+    separation: f32,
 }
 
 /// The last report of a class.
@@ -221,10 +222,11 @@ impl Decoder {
         let verifies = matches!(self.rule, CandidatePolicy::Verify { .. });
         for scored in &self.candidates {
             let ScoredCandidate {
-                candidate: Candidate { class, age, .. },
+                candidate,
                 score,
                 spread,
             } = *scored;
+            let Candidate { class, age, .. } = candidate;
             if verifies && score <= 0.0 {
                 continue;
             }
@@ -237,6 +239,7 @@ impl Decoder {
                         class,
                         score,
                         spread,
+                        separation: candidate.separation(),
                     });
                     cell = PathCell {
                         total,
@@ -278,40 +281,48 @@ impl Decoder {
     fn gated(&self, tick: i64, class: usize) -> Option<(Candidate, f64)> {
         let ClassDistance { distance, age, .. } = self.near(tick, class);
         let threshold = self.thresholds[class];
-        if distance >= threshold || distance >= self.gate(tick) || self.has_rival(tick, class) {
+        if distance >= threshold || distance >= self.gate(tick) {
             return None;
         }
         let beaten = self.around(tick).any(|t| {
             let there = self.near(t, class).distance;
             there < distance && there < self.gate(t)
         });
+        if beaten {
+            return None;
+        }
+        let other = self.nearest_rival(tick, class);
+        if other < distance * self.params.rival_share {
+            return None;
+        }
         let candidate = Candidate {
             class: ClassId(class as u16),
             tick,
             age,
             distance,
-            other: FAR,
+            other,
             negative: FAR,
         };
-        (!beaten).then(|| (candidate, 1.0 - f64::from(distance) / f64::from(threshold)))
+        let score = 1.0 - f64::from(distance) / f64::from(threshold);
+        Some((candidate, score))
     }
 
-    /// True if another class has a nearer match that ends around `tick` and covers enough of the candidate.
-    fn has_rival(&self, tick: i64, class: usize) -> bool {
-        if self.params.rival_share <= 0.0 {
-            return false;
-        }
-        let ClassDistance { distance, age, .. } = self.near(tick, class);
-        let bar = distance * self.params.rival_share;
+    /// The distance of the nearest match of another class that ends around `tick` and covers enough of the candidate.
+    fn nearest_rival(&self, tick: i64, class: usize) -> f32 {
+        let age = self.near(tick, class).age;
         let least = self.params.rival_overlap * (age + 1) as f32;
         let reach = self.params.rival_ticks as i64;
-        let beats = |t: i64, rival: usize| {
-            let other = self.near(t, rival);
+        let covers = |t: i64, other: &ClassDistance| {
             let start = (tick - age as i64).max(t - other.age as i64);
-            other.distance < bar && (tick.min(t) - start + 1) as f32 >= least
+            (tick.min(t) - start + 1) as f32 >= least
         };
         ((tick - reach).max(0)..=(tick + reach).min(self.ticks - 1))
-            .any(|t| (0..self.classes).any(|rival| rival != class && beats(t, rival)))
+            .flat_map(|t| (0..self.classes).map(move |rival| (t, rival)))
+            .filter(|(_, rival)| *rival != class)
+            .map(|(t, rival)| (t, self.near(t, rival)))
+            .filter(|(t, other)| covers(*t, other))
+            .map(|(_, other)| other.distance)
+            .fold(FAR, f32::min)
     }
 
     /// The candidate of a class at `tick`, without a score yet.
@@ -415,6 +426,7 @@ impl Decoder {
                 start,
                 stop: tick,
                 score: ending.score,
+                separation: ending.separation,
             });
             // What begins before the oldest tick that is kept has nothing before it that could still be reported.
             tick = if start > oldest {

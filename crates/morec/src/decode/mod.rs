@@ -45,10 +45,19 @@ pub struct Candidate {
     pub age: usize,
     /// The class's distance there.
     pub distance: f32,
-    /// Smallest distance of another class within [`DecodeParams::peak_ticks`]; [`FAR`] if there is none.
+    /// Smallest distance of another class: under [`CandidatePolicy::Verify`] within [`DecodeParams::peak_ticks`], under
+    /// [`CandidatePolicy::Gate`] of a rival within [`DecodeParams::rival_ticks`]. [`FAR`] if there is none.
     pub other: f32,
     /// Smallest negative distance within the same ticks.
     pub negative: f32,
+}
+
+impl Candidate {
+    /// See [`TickDetection::separation`].
+    pub fn separation(&self) -> f32 {
+        let nearest = self.distance.max(f32::MIN_POSITIVE);
+        (self.other.max(nearest) / nearest).ln().min(1.0)
+    }
 }
 
 /// A motion recognised, in ticks of the present stretch.
@@ -62,6 +71,10 @@ pub struct TickDetection {
     pub stop: i64,
     /// 0 just accepted … 1 certain.
     pub score: f64,
+    /// How clearly it is this class and no other: the logarithm of the nearest other class's distance over its own, from 0
+    /// (as near) to 1 (e times as far, or farther), as the nearest neighbour distance ratio of Mendes Júnior et al., *Nearest neighbors
+    /// distance ratio open-set classifier*, 2017.
+    pub separation: f32,
 }
 
 /// A stretch of fewer ticks than this after its first is no motion.

@@ -200,7 +200,12 @@ impl ComparedStream<'_> {
                 self.model.bones,
             ),
         };
-        (reason, least_rate(&self.model.operating, distance))
+        // Under a verifier, other rates move its bar; what is too far to be looked at stays so.
+        let rate = match self.model.verifier {
+            Some(_) => None,
+            None => least_rate(&self.model.operating, distance),
+        };
+        (reason, rate)
     }
 
     /// Background motion, or another class, that is nearer at the end of the match.

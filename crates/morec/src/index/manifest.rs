@@ -62,6 +62,9 @@ pub struct VerifierWords {
     pub reach: f32,
     /// Scores must be above this.
     pub bar: f64,
+    /// See [`Verifier::operating`](crate::templates::Verifier::operating).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub operating: Vec<OperatingPoint>,
     /// The part common to all classes.
     pub generic: LinearScore,
 }

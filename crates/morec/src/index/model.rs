@@ -65,7 +65,7 @@ impl Model {
     ///
     /// # Errors
     /// A rate that is not above 0, or a model that was trained without noting rates: the method of the thesis, an
-    /// index of an older version, one that verifies candidates.
+    /// index of an older version.
     pub fn with_sensitivity(&self, alarms_per_minute: f64) -> Result<Self, SensitivityError> {
         if !(alarms_per_minute.is_finite() && alarms_per_minute > 0.0) {
             return Err(SensitivityError::Rate(alarms_per_minute));
@@ -123,7 +123,7 @@ pub enum SensitivityError {
     Rate(f64),
     /// The model does not note rates.
     #[error(
-        "this index has one sensitivity only: train it again with templates and without a verifier to choose"
+        "this index notes no rates of false alarms: train it again, with templates, to choose a sensitivity"
     )]
     Fixed,
 }

@@ -29,6 +29,7 @@ pub(super) fn manifest(model: &TemplateModel, index: &MotionIndex) -> Manifest {
         verifier: model.verifier.as_ref().map(|v| VerifierWords {
             reach: v.reach,
             bar: v.bar,
+            operating: v.operating.clone(),
             generic: v.generic.clone(),
         }),
         roles: index.roles.clone(),
@@ -207,11 +208,13 @@ fn verifier(
     let VerifierWords {
         reach,
         bar,
+        operating,
         generic,
     } = words.clone();
     Ok(Some(Verifier {
         reach,
         bar,
+        operating,
         generic,
         classes,
     }))

@@ -184,7 +184,7 @@ impl TemplateEngine {
 fn calibrated(calibration: Option<Calibration>, found: TickDetection) -> TickDetection {
     match calibration {
         Some(calibration) => TickDetection {
-            score: calibration.probability(found.score),
+            score: calibration.probability(found.score, found.separation),
             ..found
         },
         None => found,

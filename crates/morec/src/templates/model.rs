@@ -149,10 +149,21 @@ impl TemplateModel {
     }
 
     /// The model with the threshold for this rate of false alarms a minute, as background motion raised them in
-    /// training. With a verifier, or in an index that notes no rates, nothing changes: `None`.
+    /// training; with a verifier, with the bar for it. `None` if the model notes no rates.
     pub fn with_sensitivity(&self, alarms_per_minute: f64) -> Option<Self> {
-        if self.verifier.is_some() || alarms_per_minute.is_nan() || alarms_per_minute <= 0.0 {
+        if alarms_per_minute.is_nan() || alarms_per_minute <= 0.0 {
             return None;
+        }
+        if let Some(verifier) = &self.verifier {
+            let bar = threshold_at(&verifier.operating, alarms_per_minute)?;
+            let verifier = Some(Verifier {
+                bar: bar.into(),
+                ..verifier.clone()
+            });
+            return Some(Self {
+                verifier,
+                ..self.clone()
+            });
         }
         let threshold = threshold_at(&self.operating, alarms_per_minute)?;
         let scale = threshold / self.threshold;
@@ -167,7 +178,7 @@ impl TemplateModel {
     /// The calibration of scores in use. Indexes from before verified scores were calibrated hold the map of plain margins beside a
     /// verifier, where it never held: they report the verifier's scores.
     pub(super) fn calibration_in_use(&self) -> Option<Calibration> {
-        let stale = self.verifier.is_some() && self.calibration == Some(Calibration::MEASURED);
+        let stale = self.verifier.is_some() && self.calibration == Some(Calibration::OF_MARGINS);
         self.calibration.filter(|_| !stale)
     }
 

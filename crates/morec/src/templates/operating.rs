@@ -5,7 +5,8 @@
 pub struct OperatingPoint {
     /// False alarms a minute of background motion in training.
     pub alarms_per_minute: f64,
-    /// The distance below which background motion came that often, within the bounds of training.
+    /// The distance below which background motion came that often, within the bounds of training; of a verifier, the score
+    /// above which it came.
     pub threshold: f32,
 }
 
@@ -29,22 +30,34 @@ pub fn threshold_at(points: &[OperatingPoint], alarms_per_minute: f64) -> Option
     Some(a.threshold + (b.threshold - a.threshold) * share as f32)
 }
 
-/// Turns the margin of a detection into the probability that it is right: `σ(slope · logit(margin) + offset)`
-/// (Platt 1999, on the logit of the margin).
+/// Turns the margin of a detection and its [separation](crate::decode::TickDetection::separation) from other classes into
+/// the probability that it is right: `σ(slope · logit(margin) + separation_weight · separation + offset)` (Platt 1999, on the
+/// logit of the margin and one more covariate).
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Calibration {
     /// Weight of the margin's logit.
     pub slope: f64,
-    /// Logit of the probability at a margin of one half.
+    /// Logit of the probability at a margin of one half and a separation of 0.
     pub offset: f64,
+    /// Weight of the separation; 0 in indexes that were written before it was measured.
+    #[serde(default)]
+    pub separation_weight: f64,
 }
 
 impl Calibration {
     /// For models in which distances alone decide. Fitted on detections of referee signals by clip and by person and of Kinect sessions by the same person and by
     /// others, each set with the same weight; `docs/figures.md` says how well it holds on each.
     pub const MEASURED: Self = Self {
+        slope: 0.15,
+        offset: 0.8,
+        separation_weight: 1.5,
+    };
+
+    /// The map of distances alone that indexes hold which were trained before separations were measured.
+    pub(crate) const OF_MARGINS: Self = Self {
         slope: 0.33,
         offset: 1.9,
+        separation_weight: 0.0,
     };
 
     /// The same where candidates are verified, on the verifier's scores: gestures by person, and Kinect sessions by others
@@ -52,13 +65,15 @@ impl Calibration {
     pub const VERIFIED: Self = Self {
         slope: 0.6,
         offset: 1.5,
+        separation_weight: 0.0,
     };
 
-    /// The probability for a margin from 0 (just accepted) to 1 (identical).
-    pub fn probability(&self, margin: f64) -> f64 {
+    /// The probability for a margin from 0 (just accepted) to 1 (identical), and a separation from 0 to 1.
+    pub fn probability(&self, margin: f64, separation: f32) -> f64 {
         let margin = margin.clamp(1e-3, 1.0 - 1e-3);
         let logit = (margin / (1.0 - margin)).ln();
-        1.0 / (1.0 + (-(self.slope * logit + self.offset)).exp())
+        let clear = self.separation_weight * f64::from(separation);
+        1.0 / (1.0 + (-(self.slope * logit + clear + self.offset)).exp())
     }
 }
 
@@ -81,8 +96,9 @@ mod tests {
     }
 
     #[test]
-    fn probability_grows_with_the_margin_and_stays_inside_0_and_1() {
-        let p = |margin| Calibration::MEASURED.probability(margin);
-        assert!(0.0 < p(0.0) && p(0.0) < p(0.5) && p(0.5) < p(1.0) && p(1.0) < 1.0);
+    fn probability_grows_with_margin_and_separation_and_stays_inside_0_and_1() {
+        let p = |margin, separation| Calibration::MEASURED.probability(margin, separation);
+        assert!(0.0 < p(0.0, 0.0) && p(0.0, 0.0) < p(0.5, 0.0) && p(0.5, 0.0) < p(1.0, 0.0));
+        assert!(p(0.5, 0.0) < p(0.5, 1.0) && p(1.0, 1.0) < 1.0);
     }
 }

@@ -11,6 +11,7 @@ use crate::decode::Candidate;
 use crate::features::Rows;
 
 use super::Metric;
+use super::OperatingPoint;
 use super::kernel::{self, LANES, Lanes, interleaved};
 
 /// Rows that a stretch is resampled to.
@@ -154,6 +155,8 @@ pub struct Verifier {
     pub reach: f32,
     /// Scores must be above this.
     pub bar: f64,
+    /// The bar for other rates of false alarms: each point's threshold is a score. Empty in indexes of older versions.
+    pub operating: Vec<OperatingPoint>,
     /// The part common to all classes.
     pub generic: LinearScore,
     /// The parts of single classes.

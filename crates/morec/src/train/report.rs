@@ -26,7 +26,7 @@ pub struct TrainingReport {
     pub threshold: Option<f32>,
     /// Origin of the threshold.
     pub threshold_from: String,
-    /// Thresholds for other rates of false alarms.
+    /// Thresholds for other rates of false alarms: distances, or the scores of a verifier.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub operating: Vec<OperatingPoint>,
     /// Hard negatives found, by the same sources.
@@ -92,7 +92,10 @@ impl TrainingReport {
             background_secs,
             threshold: Some(trained.model.threshold),
             threshold_from: trained.threshold_from.clone(),
-            operating: trained.model.operating.clone(),
+            operating: match &trained.model.verifier {
+                Some(verifier) => verifier.operating.clone(),
+                None => trained.model.operating.clone(),
+            },
             negatives,
             verified: trained.model.verifier.is_some(),
             notes,

@@ -8,17 +8,20 @@ use rayon::prelude::*;
 use crate::classes::ClassId;
 use crate::features::Rows;
 use crate::templates::{
-    Exemplars, LinearScore, Metric, SHAPE_ROWS, Verifier, shape_distance, shape_of,
-    squared_distance,
+    ALARM_RATES, Exemplars, LinearScore, Metric, OperatingPoint, SHAPE_ROWS, Verifier,
+    shape_distance, shape_of, squared_distance,
 };
 
 use super::examples::VerifierExample;
 use super::params::TrainParams;
 use super::ridge::{balanced, kernel, linear};
-use super::set::{StreamKind, TrainSet};
+use super::set::{StreamKind, TrainSet, TrainStream};
 
 /// No example weighs more than this times the mean: three samples against hundreds of near misses.
 const MOST_WEIGHT: f64 = 20.0;
+
+/// No rate of false alarms accepts scores below this: examples are +1 and -1.
+const LEAST_BAR: f64 = -0.5;
 
 /// Learns a verifier from `examples`, or `None` if there are too few samples, or too few near misses in clips that
 /// the user calls background: with none but the unlabelled parts of the labelled clips and made motion to learn
@@ -107,9 +110,48 @@ pub fn learn(
     Some(Verifier {
         reach,
         bar,
+        operating: operating(examples, &scores, set, params),
         generic,
         classes,
     })
+}
+
+/// The score above which background motion came at each of [`ALARM_RATES`], of each two seconds the highest. Cross-fitted scores, as
+/// new motion would get. Empty without background.
+fn operating(
+    examples: &[VerifierExample],
+    scores: &[f64],
+    set: &TrainSet,
+    params: &TrainParams,
+) -> Vec<OperatingPoint> {
+    let counts = |stream: &TrainStream| stream.source != StreamKind::Labelled;
+    let ticks: usize = set
+        .streams
+        .iter()
+        .filter(|s| counts(s))
+        .map(|s| s.rows.len())
+        .sum();
+    let minutes = ticks as f64 / (60.0 * params.features.tick_hz());
+    let mut highest: BTreeMap<(usize, usize), f64> = BTreeMap::new();
+    for (example, score) in examples.iter().zip(scores) {
+        if !example.positive && counts(&set.streams[example.stream]) {
+            let of_piece = highest
+                .entry(example.piece(false))
+                .or_insert(f64::NEG_INFINITY);
+            *of_piece = of_piece.max(*score);
+        }
+    }
+    let mut highest: Vec<f64> = highest.into_values().collect();
+    highest.sort_by(|a, b| b.total_cmp(a));
+    let point = |alarms_per_minute: f64| {
+        let allowed = (alarms_per_minute * minutes) as usize;
+        let score = highest.get(allowed).or(highest.last())?;
+        Some(OperatingPoint {
+            alarms_per_minute,
+            threshold: score.max(LEAST_BAR) as f32,
+        })
+    };
+    ALARM_RATES.into_iter().filter_map(point).collect()
 }
 
 fn group_numbers<K: Ord>(

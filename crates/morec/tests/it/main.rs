@@ -20,6 +20,7 @@ mod made;
 mod parameters;
 mod pose_golden;
 mod positions;
+mod sensitivity;
 mod session;
 mod smooth_real;
 mod stages;
