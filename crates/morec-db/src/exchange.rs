@@ -50,7 +50,7 @@ impl LabelFormat {
 /// Reads labels. `clip` is the clip that a file of one clip speaks of.
 ///
 /// # Errors
-/// Where and why the file cannot be read; frames of a clip that `lengths` does not know are not an error but counted.
+/// The place and the reason why the file cannot be read; frames of a clip that `lengths` does not know are not an error but counted.
 pub fn read(
     form: LabelFormat,
     bytes: &[u8],

@@ -31,7 +31,7 @@ pub enum ImportOutcome {
     Known,
     /// The same bytes are there from another path.
     Copy {
-        /// Which.
+        /// Path from which they were read first.
         of: PathBuf,
     },
     /// It could not be used.

@@ -137,7 +137,7 @@ fn accept(listener: &TcpListener, sender: &SyncSender<Came>) {
     }
 }
 
-/// Whether there is a place: if need be that of the connection that has brought no line for longest.
+/// True if there is a place: if need be that of the connection that has brought no line for longest.
 fn make_room(open: &mut Vec<OpenConnection>) -> bool {
     if open.len() < CONNECTIONS {
         return true;

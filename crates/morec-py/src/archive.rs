@@ -305,7 +305,7 @@ pub fn rows_kept<'py>(
     }
 }
 
-/// How feature rows are made at present.
+/// The present recipe of feature rows.
 #[pyfunction]
 pub fn present_recipe() -> String {
     rows_recipe()

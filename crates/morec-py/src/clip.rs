@@ -109,7 +109,7 @@ impl PyClip {
         Ok(owned(py, parents, &shape)?.into_any())
     }
 
-    /// Where each joint is in its parent's frame when nothing moves it, metres; shape (joints, 3).
+    /// Position of each joint in its parent's frame when nothing moves it, metres; shape (joints, 3).
     #[getter]
     fn offsets<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let joints = self.data.clip.skeleton.joints().iter();
@@ -151,13 +151,13 @@ impl PyClip {
         self.data.rest.len()
     }
 
-    /// Whether joints are known to turn; a clip of points has positions alone.
+    /// True if joints are known to turn; a clip of points has positions alone.
     #[getter]
     fn has_rotations(&self) -> bool {
         self.data.clip.has_rotations()
     }
 
-    /// Where each joint is in the world, metres, Y up; float64 of shape (frames, joints, 3), read-only.
+    /// Position of each joint in the world, metres, Y up; float64 of shape (frames, joints, 3), read-only.
     #[getter]
     fn positions(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         let made = self.positions.get_or_try_init(py, || {
@@ -169,7 +169,7 @@ impl PyClip {
         Ok(made.clone_ref(py))
     }
 
-    /// How each joint is turned in its parent's frame, quaternions x, y, z, w; float64 of shape (frames, joints, 4),
+    /// Rotation of each joint in its parent's frame, quaternions x, y, z, w; float64 of shape (frames, joints, 4),
     /// read-only. `None` for a clip of points.
     #[getter]
     fn rotations(&self, py: Python<'_>) -> PyResult<Option<Py<PyAny>>> {

@@ -12,7 +12,7 @@ use morec::roles::RoleMap;
 pub struct ClipData {
     /// The motion, in metres and Y up.
     pub clip: Clip,
-    /// Who plays what.
+    /// The joint of each role.
     pub roles: RoleMap,
     /// Frames that a conversion left at the start.
     pub rest: Range<usize>,

@@ -115,7 +115,7 @@ impl PyDatabase {
         })
     }
 
-    /// Where the file lies.
+    /// Path of the file.
     #[getter]
     fn path(&self) -> &Path {
         &self.path
@@ -136,7 +136,7 @@ impl PyDatabase {
         self.close();
     }
 
-    /// How much is in it.
+    /// Counts of its contents.
     fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let summary = self.with(py, |db| db.summary())?;
         plain(py, &summary)

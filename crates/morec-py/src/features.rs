@@ -67,7 +67,7 @@ fn columns(bones: BoneSet) -> Vec<String> {
     columns
 }
 
-/// Where the parts of the body are, frame by frame: float64 of shape (frames, 18, 3), NaN where unknown.
+/// Positions of the parts of the body, frame by frame: float64 of shape (frames, 18, 3), NaN where unknown.
 #[pyfunction]
 pub fn key_positions<'py>(py: Python<'py>, clip: &PyClip) -> PyResult<Bound<'py, PyAny>> {
     let data = clip.data.clone();

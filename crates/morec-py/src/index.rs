@@ -194,7 +194,7 @@ impl PyIndex {
         PyRecognizer::new(py, &index.model, layout, up)
     }
 
-    /// How far each clip is from each class: float32 of shape (clips, classes), and the distance from which on nothing is
+    /// Distance of each clip from each class: float32 of shape (clips, classes), and the distance from which on nothing is
     /// reported. Of the method `templates` only.
     fn distances<'py>(
         &self,
@@ -240,7 +240,7 @@ impl PyIndex {
         self.index.model.method()
     }
 
-    /// Where the index came from: date, version, clips, samples, background.
+    /// Origin of the index: date, version, clips, samples, background.
     #[getter]
     fn provenance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         plain(py, &self.index.provenance)

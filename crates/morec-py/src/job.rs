@@ -10,10 +10,10 @@ use pyo3::prelude::*;
 
 use crate::errors::morec_error;
 
-/// How often signals and progress are looked at while a job runs.
+/// Interval at which signals and progress are looked at while a job runs.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// How far a job is, and whether it is to go on.
+/// Progress of a job, and the wish to stop it.
 #[derive(Default)]
 pub struct JobState {
     last: Mutex<Option<(String, usize, usize)>>,

@@ -102,7 +102,7 @@ impl LiveSession {
         self.notices.take()
     }
 
-    /// Whether nothing more can come.
+    /// True if nothing more can come.
     fn is_ended(&self, py: Python<'_>) -> bool {
         py.detach(|| held(&self.open).is_none() || held(&self.reader).is_ended())
     }

@@ -53,7 +53,7 @@ pub fn labels(given: &Bound<'_, PyAny>) -> PyResult<Labels> {
     })
 }
 
-/// Who is seen in which clip.
+/// The person of each clip.
 fn people(given: &Bound<'_, PyAny>) -> PyResult<People> {
     if let Ok(bytes) = given.cast::<PyBytes>() {
         let table = read_people(bytes.as_bytes());
@@ -147,7 +147,7 @@ impl TrainingInput {
     }
 }
 
-/// How to train, from the words of the command.
+/// Options of training, from the words of the command.
 ///
 /// # Errors
 /// A word that is none of them, a figure that there is not.

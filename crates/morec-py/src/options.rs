@@ -9,7 +9,7 @@ use pyo3::types::PyDict;
 
 use crate::errors::value_error;
 
-/// How to read, as the keyword arguments of `morec.read` say.
+/// Options of reading, as the keyword arguments of `morec.read` say.
 ///
 /// # Errors
 /// A value that says nothing: another word for `positions`, an axis that is none, roles that are none.

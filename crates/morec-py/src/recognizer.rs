@@ -37,7 +37,7 @@ struct RecognizerState {
     key: KeyPose,
 }
 
-/// Which point of an array plays which part of the body.
+/// The part of the body that each point of an array plays.
 pub struct PointLayout {
     /// Names of the points.
     pub joints: Vec<String>,

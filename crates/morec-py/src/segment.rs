@@ -12,7 +12,7 @@ use crate::arrays::owned;
 use crate::clip::PyClip;
 use crate::errors::{morec_error, value_error};
 
-/// Where a clip's behaviour changes, and the misfit over time.
+/// Changes of behaviour in a clip, and the misfit over time.
 #[pyfunction]
 #[pyo3(signature = (clip, rise=None, quality=None, direction="both"))]
 pub fn cut_ppca<'py>(

@@ -20,7 +20,7 @@ use crate::roles::{Role, RoleMap};
 pub struct SkeletonFit {
     /// A clip of one skeleton in the take's frames, metres, Y up; a joint for each role that the take knows.
     pub clip: Clip,
-    /// Which of its joints plays what.
+    /// The joint of each role.
     pub roles: RoleMap,
     /// Root of the mean squared distance between joints and points, metres.
     pub rms_metres: f64,
@@ -97,7 +97,7 @@ const BONES: [FittedBone; Role::COUNT] = {
 const ROUNDS: usize = 30;
 /// A round that lowers the sum of squares by less than this share is the last.
 const GAIN: f64 = 1e-3;
-/// How much a joint holds on to its rotation, as a share of the weight of what hangs on it: it decides only what the points
+/// Weight of a joint's present rotation, as a share of the weight of what hangs on it: it decides only what the points
 /// leave open.
 const HOLD: f64 = 1e-3;
 
@@ -125,12 +125,12 @@ pub fn fit_skeleton(take: &Take) -> Result<SkeletonFit, FitError> {
     Ok(fit.run(&frames))
 }
 
-/// Where the joints were measured in a frame; `None` where they were not.
+/// Measured positions of the joints in a frame; `None` where they were not.
 type MeasuredJoints = Vec<Option<Vec3>>;
 
 struct SkeletonSolver<'a> {
     take: &'a Take,
-    /// Which of [`BONES`] are there, parents first, and the parent of each among these.
+    /// Those of [`BONES`] that are there, parents first, and the parent of each among these.
     bones: Vec<usize>,
     parents: Vec<Option<usize>>,
     offsets: Vec<Vec3>,

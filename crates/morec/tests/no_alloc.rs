@@ -23,7 +23,7 @@ use morec::synth::{LimbSide, Person, Script};
 #[global_allocator]
 static ALLOCATOR: AllocDisabler = AllocDisabler;
 
-/// How often `job` asks for memory or gives it back. Counts are of the whole process: one at a time.
+/// Number of times that `job` asks for memory or gives it back. Counts are of the whole process: one at a time.
 fn allocations(job: impl FnOnce()) -> u32 {
     static ONE: Mutex<()> = Mutex::new(());
     let _one = ONE.lock().unwrap_or_else(PoisonError::into_inner);

@@ -70,7 +70,7 @@ impl Compiler {
         succeed(command.arg("-o").arg(program)).map(|_| ())
     }
 
-    /// Whether programs with sanitizers can be built and run here.
+    /// True if programs with sanitizers can be built and run here.
     pub fn sanitizes(&self, folder: &Path) -> bool {
         let (source, program) = (
             folder.join("empty.c"),
@@ -84,7 +84,7 @@ impl Compiler {
     }
 }
 
-/// How a program is linked with the library.
+/// Way in which a program is linked with the library.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Link {
     Nothing,
@@ -123,7 +123,7 @@ impl Link {
     }
 }
 
-/// Where the library lies that was built with these tests: beside them.
+/// Path of the library that was built with these tests: beside them.
 fn libraries() -> PathBuf {
     std::env::current_exe()
         .unwrap()

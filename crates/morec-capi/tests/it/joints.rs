@@ -68,7 +68,7 @@ impl Caller {
     }
 }
 
-/// How the caller tells its frames.
+/// Form in which the caller tells its frames.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Telling {
     /// Local rotations, local positions of the roots; the rest is in the skeleton.

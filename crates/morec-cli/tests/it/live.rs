@@ -33,7 +33,7 @@ fn folder() -> Folder {
 struct Live {
     child: Child,
     err: BufReader<ChildStderr>,
-    /// Where it listens: host and port.
+    /// Host and port at which it listens.
     at: String,
 }
 

@@ -90,7 +90,7 @@ pub fn group(path: &Path, cuts: bool, progress: &JobProgress) -> Result<Clustere
             .to_owned(),
         )),
         Ok(groups) => Ok(groups),
-        Err(error) => Err(JobError::Failed(format!("Grouping stopped: {error}"))),
+        Err(error) => Err(JobError::of_db("Grouping stopped", &error)),
     }
 }
 

@@ -71,7 +71,7 @@ pub struct TickDetection {
     pub stop: i64,
     /// 0 just accepted … 1 certain.
     pub score: f64,
-    /// How clearly it is this class and no other: the logarithm of the nearest other class's distance over its own, from 0
+    /// Distinctness from other classes: the logarithm of the nearest other class's distance over its own, from 0
     /// (as near) to 1 (e times as far, or farther), as the nearest neighbour distance ratio of Mendes Júnior et al., *Nearest neighbors
     /// distance ratio open-set classifier*, 2017.
     pub separation: f32,

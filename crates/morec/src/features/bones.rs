@@ -10,11 +10,11 @@ use super::KeyPose;
 pub struct Bone {
     /// Name in reports and index files.
     pub name: &'static str,
-    /// Where it begins.
+    /// Joint at its beginning.
     pub from: Role,
-    /// Where it ends.
+    /// Joint at its end.
     pub to: Role,
-    /// How much its direction counts in a distance between poses.
+    /// Weight of its direction in a distance between poses.
     pub weight: f64,
 }
 

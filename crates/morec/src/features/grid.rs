@@ -56,7 +56,7 @@ impl<S> Grid<S> {
         last.is_some_and(|last| time_secs > last + MAX_GAP_SECS || time_secs < last - MAX_GAP_SECS)
     }
 
-    /// Whether a pose at `time_secs` comes too late to count, or at no time at all.
+    /// True if a pose at `time_secs` comes too late to count, or at no time at all.
     pub fn ignores(&self, time_secs: f64) -> bool {
         !time_secs.is_finite()
             || self

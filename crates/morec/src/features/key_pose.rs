@@ -34,7 +34,7 @@ impl KeyPose {
         key
     }
 
-    /// Where `role` is, if the source knows.
+    /// Position of `role`, if the source knows it.
     pub fn get(&self, role: Role) -> Option<Vec3> {
         (self.present >> role.index() & 1 == 1).then(|| self.positions[role.index()])
     }

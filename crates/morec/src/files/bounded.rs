@@ -27,7 +27,7 @@ pub(super) fn read_whole(path: &Path) -> io::Result<Vec<u8>> {
 /// A file of so many bytes is not held as a whole where there is another way.
 const LARGE_FILE: u64 = 8 << 20;
 
-/// Whether `path` is a file on disk so large that it is better not held as a whole, and not too large to be read.
+/// True if `path` is a file on disk so large that it is better not held as a whole, and not too large to be read.
 pub fn is_large(path: &Path) -> bool {
     fs::metadata(path)
         .is_ok_and(|about| about.is_file() && (LARGE_FILE..=LARGEST_FILE).contains(&about.len()))

@@ -40,7 +40,7 @@ struct RecordedPerformer {
 /// positions, of a standard skeleton if they hold rotations. Frames at irregular times are interpolated. O(bytes).
 ///
 /// # Errors
-/// Where and what: no line that holds a pose, or more frames or joints than `limits` allow.
+/// The place and the cause: no line that holds a pose, or more frames or joints than `limits` allow.
 pub fn read(
     bytes: &[u8],
     name: &str,

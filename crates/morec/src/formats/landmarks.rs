@@ -85,7 +85,7 @@ pub(crate) fn is_one_frame(bytes: &[u8]) -> bool {
 /// the document takes several times its bytes in memory.
 ///
 /// # Errors
-/// Where and what: no JSON, no list of frames with points in three dimensions, more than `limits` allow.
+/// The place and the cause: no JSON, no list of frames with points in three dimensions, more than `limits` allow.
 pub fn read(
     bytes: &[u8],
     name: &str,

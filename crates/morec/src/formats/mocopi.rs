@@ -51,7 +51,7 @@ pub fn looks_so(bytes: &[u8]) -> bool {
 /// Reads packets: one clip called `name`.
 ///
 /// # Errors
-/// Where and what: a box that ends behind its parent, no frame, more than `limits` allow. Packets that break off at the end
+/// The place and the cause: a box that ends behind its parent, no frame, more than `limits` allow. Packets that break off at the end
 /// are left out with a warning. O(bytes).
 pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseError> {
     let mut warnings = Vec::new();

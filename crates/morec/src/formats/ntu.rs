@@ -56,7 +56,7 @@ pub(super) fn looks_so(head: &[u8]) -> bool {
 /// `rate_hz` says otherwise. O(bytes).
 ///
 /// # Errors
-/// Where and what: a line that is missing or holds something else, no body at all, more than `limits` allow.
+/// The place and the cause: a line that is missing or holds something else, no body at all, more than `limits` allow.
 pub fn read(
     bytes: &[u8],
     name: &str,

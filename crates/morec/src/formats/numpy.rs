@@ -75,7 +75,7 @@ fn key_of(path: &str) -> &str {
 /// Reads an array or an archive: a clip of points called `name`, or, of an archive that morec wrote, of the skeleton. O(bytes).
 ///
 /// # Errors
-/// Where and what: arrays of another shape or of two dimensions, no frames, more than `limits` allow.
+/// The place and the cause: arrays of another shape or of two dimensions, no frames, more than `limits` allow.
 pub fn read(
     bytes: &[u8],
     name: &str,

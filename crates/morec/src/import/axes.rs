@@ -61,7 +61,7 @@ fn standing(body: &BodyMeasures) -> Option<SignedAxis> {
     })
 }
 
-/// Which way is up where somebody lies, crawls or turns over: along which axis the body stands at its straightest, and
+/// The direction that is up where somebody lies, crawls or turns over: along which axis the body stands at its straightest, and
 /// where the floor is, which its lowest point never leaves.
 fn lying(body: &BodyMeasures, notes: &mut Vec<String>) -> SignedAxis {
     const UNSURE: f64 = 0.25;

@@ -15,7 +15,7 @@ pub(super) struct BodyMeasures {
     pub(super) feet_to_head: Vec<Vec3>,
     /// The same, with the highest part that is known where head and neck are not: it says which way is up.
     pub(super) upwards: Vec<Vec3>,
-    /// Where the joints that play roles are, in the same frames.
+    /// Positions of the joints that play roles, in the same frames.
     pub(super) poses: Vec<Vec<Vec3>>,
     /// Thigh and shin together.
     pub(super) leg: Option<f64>,

@@ -9,7 +9,7 @@ use super::signed_axis::SignedAxis;
 /// Values given by the caller in place of inferred ones.
 #[derive(Debug, Clone, Default)]
 pub struct ImportOptions {
-    /// Which way is up in the file.
+    /// The direction that is up in the file.
     pub up: Option<SignedAxis>,
     /// Metres in one of the file's units of length.
     pub metres_per_unit: Option<f64>,
@@ -24,7 +24,7 @@ pub struct ImportOptions {
 /// Unit of length and up axis, as the specification of a format, or a file itself, states them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stated {
-    /// Which way is up.
+    /// The direction that is up.
     pub up: SignedAxis,
     /// Metres in one unit of length.
     pub metres_per_unit: f64,

@@ -7,7 +7,7 @@ use super::signed_axis::SignedAxis;
 /// Properties of a clip that were inferred, or given in the options.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct ImportReport {
-    /// Which way was up in the file; it is Y in the imported clip.
+    /// The direction that was up in the file; it is Y in the imported clip.
     pub up: SignedAxis,
     /// Metres in one of the file's units.
     pub metres_per_unit: f64,

@@ -12,7 +12,7 @@ use super::report::ImportReport;
 pub struct Take {
     /// The motion, in metres and Y up. No frame is taken away.
     pub clip: Clip,
-    /// Which joint is which part of the body.
+    /// The joint of each part of the body.
     pub roles: RoleMap,
     /// Report of the import.
     pub report: ImportReport,

@@ -8,7 +8,7 @@ use crate::roles::{Role, RoleMap};
 /// Hips that stay within this circle, metres, stay in place: swaying takes less, a step more.
 const IN_PLACE: f64 = 0.25;
 
-/// Whether the hips leave the place where they began, in a clip in metres and Y-up.
+/// True if the hips leave the place where they began, in a clip in metres and Y-up.
 pub(super) fn travels(clip: &Clip, map: &RoleMap, rest: &Span) -> bool {
     let hips = map.joint(Role::Hips).unwrap_or(0);
     if clip.skeleton.is_empty() {

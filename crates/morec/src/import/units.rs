@@ -58,7 +58,7 @@ fn height(body: &BodyMeasures, up: SignedAxis) -> Option<f64> {
 /// Usual height from the ankles to the top of the head, metres.
 const HEIGHT: f64 = 1.65;
 
-/// How many times as large as a usual adult the body is, by one of the file's units a metre.
+/// Size of the body as a multiple of a usual adult's, by one of the file's units a metre.
 ///
 /// Legs, arms and trunk belong to the skeleton: they are the same in every clip of it, however somebody crouches. The
 /// one in the middle is taken, so that a cartoon's legs or long arms do not decide; only a body of which they are not

@@ -19,7 +19,7 @@ struct OccupiedPlace<K> {
     gone: bool,
 }
 
-/// How a sender comes to its place.
+/// The way in which a sender comes to its place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Arrival {
     /// It has been there all the time.

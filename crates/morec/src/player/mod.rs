@@ -32,7 +32,7 @@ pub struct Mark {
 pub struct PlayedClip<'a> {
     /// The motion, in metres and Y up.
     pub clip: &'a Clip,
-    /// Who plays what.
+    /// The joint of each role.
     pub roles: &'a RoleMap,
     /// The stretch to show, seconds; `None` for the whole clip.
     pub secs: Option<Range<f64>>,
@@ -78,7 +78,7 @@ impl Reel {
         self.bytes
     }
 
-    /// Whether there is no clip.
+    /// True if there is no clip.
     pub fn is_empty(&self) -> bool {
         self.clips.is_empty()
     }

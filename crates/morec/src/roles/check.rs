@@ -214,7 +214,7 @@ impl PosedBody<'_> {
         ))
     }
 
-    /// Whether this is a body of something else than a person.
+    /// True if this is a body of something else than a person.
     fn not_human(&self, first: &[Vec3]) -> Option<String> {
         let poses = [first.to_vec()];
         let tree = JointTree::new(self.skeleton, self.names, &poses);
@@ -307,7 +307,7 @@ impl PosedBody<'_> {
         Some(&self.skeleton.joints()[pair.members[0]].name)
     }
 
-    /// How many parts of human limbs the names tell, on both sides.
+    /// Number of parts of human limbs that the names tell, on both sides.
     fn human_words(&self) -> usize {
         let readings = self.names.readings();
         let both = |fits: &dyn Fn(NameMeaning) -> bool| {

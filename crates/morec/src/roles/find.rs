@@ -18,7 +18,7 @@ pub fn find(skeleton: &Skeleton) -> RolesFound {
     find_moving(skeleton, &[zero_pose(skeleton)])
 }
 
-/// Where the joints are with no rotations.
+/// Positions of the joints without rotations.
 pub(crate) fn zero_pose(skeleton: &Skeleton) -> Vec<Vec3> {
     let mut positions: Vec<Vec3> = Vec::with_capacity(skeleton.len());
     for joint in skeleton.joints() {

@@ -202,7 +202,7 @@ impl<'a> Chain<'a> {
         self.bone(place.upper, place.lower) + self.bone(place.lower, place.end)
     }
 
-    /// How much longer the way over the joints between is than the bone, at most, as a share of it.
+    /// Excess of the way over the joints between over the bone, at most, as a share of it.
     fn bent(&self, a: usize, b: usize) -> f64 {
         if b - a < 2 {
             return 0.0;

@@ -9,7 +9,7 @@ use crate::math::Vec3;
 /// Roles that were found, with notes about guesses.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct RolesFound {
-    /// Who plays what.
+    /// The joint of each role.
     pub map: RoleMap,
     /// Guesses and oddities, each in a sentence.
     pub notes: Vec<String>,
@@ -131,7 +131,7 @@ fn length(tree: &JointTree, legs: &FoundPair) -> Option<f64> {
     Some((one(&legs.limbs[0])? + one(&legs.limbs[1])?) / 2.0)
 }
 
-/// How far these legs and arms are from making a person: the length of the trunk, and that it leads away from the feet.
+/// Deviation of these legs and arms from a person's: the length of the trunk, and that it leads away from the feet.
 fn person(tree: &JointTree, legs: &FoundPair, arms: &FoundPair) -> f64 {
     const UNKNOWN: f64 = 2.0;
     let lengths = || {

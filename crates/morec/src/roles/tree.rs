@@ -9,7 +9,7 @@ use crate::math::Vec3;
 pub(super) struct JointTree<'a> {
     pub(super) skeleton: &'a Skeleton,
     pub(super) readings: Vec<Reading>,
-    /// Where the joints are, in the zero pose or any others; never empty.
+    /// Positions of the joints, in the zero pose or any others; never empty.
     pub(super) poses: &'a [Vec<Vec3>],
     /// The first of these.
     pub(super) positions: &'a [Vec3],
@@ -106,7 +106,7 @@ impl<'a> JointTree<'a> {
         self.reach.iter().copied().fold(0.0, f64::max)
     }
 
-    /// Whether two joints are in one place, seen against the size of the body.
+    /// True if two joints are in one place, seen against the size of the body.
     pub(super) fn coincide(&self, a: usize, b: usize) -> bool {
         self.distance(a, b) <= 1e-4 * self.size()
     }
@@ -224,7 +224,7 @@ impl<'a> JointTree<'a> {
         best.map(|(_, a, b)| (a, b))
     }
 
-    /// How far two subtrees are from mirroring each other; `None` if they are no pair of limbs.
+    /// Deviation of two subtrees from mirror images of each other; `None` if they are no pair of limbs.
     fn unlikeness(&self, a: usize, b: usize) -> Option<f64> {
         let named = match (self.side(a), self.side(b)) {
             (Some(a), Some(b)) if a == b => return None,

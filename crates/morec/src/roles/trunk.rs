@@ -52,7 +52,7 @@ impl Trunk<'_> {
         Some(above.unwrap_or(legs))
     }
 
-    /// Where legs and arms meet, or what is called hips next to it.
+    /// The joint at which legs and arms meet, or what is called hips next to it.
     fn hips(&self) -> usize {
         let is_hips = |j: &usize| self.tree.kind(*j) == NameMeaning::Hips;
         let met = || {

@@ -20,7 +20,7 @@ pub struct TemplateEngine {
     calibration: Option<Calibration>,
 }
 
-/// Where the nearest matches of the classes come from.
+/// Source of the classes' nearest matches.
 #[derive(Debug, Clone)]
 enum Matches {
     Computed(Box<ClassMatcher>),

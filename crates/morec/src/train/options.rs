@@ -24,9 +24,9 @@ pub struct TrainOptions {
     pub params: TrainParams,
     /// True if unlabelled parts of labelled clips are background.
     pub unlabelled_is_background: bool,
-    /// Whether made everyday motion is background.
+    /// Use of synthetic everyday motion as background.
     pub everyday: Everyday,
-    /// Whether mirrored copies of samples teach too.
+    /// Use of mirrored copies of samples.
     pub mirror: Mirror,
     /// Classes whose mirror image is another motion, with [`Mirror::Yes`].
     pub one_sided: Vec<String>,

@@ -61,7 +61,7 @@ fn trained() -> Model {
     model.into()
 }
 
-/// Whether the middle of a detection lies in one of `idle`.
+/// True if the middle of a detection lies in one of `idle`.
 fn is_idle(found: &ClipDetection, idle: &[SyntheticLabel]) -> bool {
     let middle = (found.start_secs + found.stop_secs) / 2.0;
     idle.iter()

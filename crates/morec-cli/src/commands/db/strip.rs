@@ -189,7 +189,7 @@ mod tests {
     use super::*;
     use morec::synth::{Person, Script};
 
-    /// Who stretches the arms is wider than a pose's place in the strip, and who lifts them taller.
+    /// A body with stretched arms is wider than a pose's place in the strip, one with lifted arms taller.
     #[test]
     fn nothing_of_a_figure_lies_outside_the_picture() {
         let script = Script::new(3, Person::draw(31, 2)).rest(0.2).play("wave");

@@ -271,7 +271,7 @@ mod tests {
         Take::new(clip).unwrap()
     }
 
-    /// Where the circle of a role is: in the front view, then from the left.
+    /// Centre of a role's circle: in the front view, then from the left.
     fn circles(svg: &str, role: &str) -> Vec<[f64; 2]> {
         let number = |line: &str, key: &str| {
             let (_, rest) = line.split_once(&format!("{key}=\"")).unwrap();

@@ -1,6 +1,6 @@
 //! Commands in Markdown.
 
-/// How a block is checked.
+/// Kind of check of a block.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Check {
     /// Its commands run.
@@ -27,7 +27,7 @@ pub struct Block {
     /// Output of the commands, line by line, if the block shows it (`console`): without omissions, and without sizes of
     /// files, which depend on the names of folders.
     pub output: Vec<String>,
-    /// How it is checked.
+    /// Its kind of check.
     pub check: Check,
 }
 

@@ -55,7 +55,7 @@ fn others() -> Vec<PathBuf> {
     paths
 }
 
-/// How commands of a block are run.
+/// Way in which the commands of a block are run.
 #[derive(Clone, Copy, PartialEq)]
 enum Mode {
     /// All but those that wait for the network or do not end.

@@ -65,7 +65,7 @@ const LONG_GAP_SECS: f64 = 0.5;
 /// unless they stay at 0. Lengths and axes are the file's own. A file without frames gives a clip without frames.
 ///
 /// # Errors
-/// Where and what: no HIERARCHY, a broken one, more than `limits` allow, or too many broken lines in the motion
+/// The place and the cause: no HIERARCHY, a broken one, more than `limits` allow, or too many broken lines in the motion
 /// table. O(bytes); beside the result, the memory of one line.
 pub fn read(
     bytes: &[u8],

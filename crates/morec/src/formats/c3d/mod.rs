@@ -31,7 +31,7 @@ const ASSUMED_SCALE: f64 = 0.1;
 /// warning. O(bytes).
 ///
 /// # Errors
-/// Where and what: no C3D file, no points, no frames, more of either than `limits` allow.
+/// The place and the cause: no C3D file, no points, no frames, more of either than `limits` allow.
 pub fn read(
     bytes: &[u8],
     name: &str,

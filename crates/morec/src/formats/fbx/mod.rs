@@ -23,7 +23,7 @@ const MEMORY_A_BYTE: usize = 64;
 /// rate). Scales are worked into the positions. Axes and lengths are the file's.
 ///
 /// # Errors
-/// Where and what: no FBX, a version before 3.0 or one that cannot be read, no animation of a skeleton, more than
+/// The place and the cause: no FBX, a version before 3.0 or one that cannot be read, no animation of a skeleton, more than
 /// `limits` allow. O(bytes + frames × nodes).
 pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseError> {
     let fbx = load(bytes, limits)?;

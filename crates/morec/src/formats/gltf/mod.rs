@@ -29,7 +29,7 @@ use crate::clip::Clip;
 /// positions. Axes and lengths are the file's: by the specification Y up and metres.
 ///
 /// # Errors
-/// Where and what: no glTF, another version, no animation of a skeleton, a buffer that is not there, more than `limits`
+/// The place and the cause: no glTF, another version, no animation of a skeleton, a buffer that is not there, more than `limits`
 /// allow. O(bytes + frames × nodes).
 pub fn read(
     bytes: &[u8],

@@ -21,7 +21,7 @@ const ASSUMED_HZ: f64 = 60.0;
 /// Reads an MVNX file: one clip for each subject, called `name` (`name#subject` for several).
 ///
 /// # Errors
-/// Where and what: no well-formed XML, no segments, no frame with orientations and positions, more than `limits` allow.
+/// The place and the cause: no well-formed XML, no segments, no frame with orientations and positions, more than `limits` allow.
 /// A file that breaks off is read as far as it goes. O(bytes) time and memory.
 pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseError> {
     let text = text_of(bytes)?;

@@ -47,7 +47,7 @@ fn open(bytes: &[u8]) -> Result<Loaded, ParseError> {
     read(bytes, "f", None, &Limits::default())
 }
 
-/// Where number `i` of a whole array is: frame, point, axis.
+/// Place of number `i` of a whole array: frame, point, axis.
 fn place(i: usize, points: usize, width: usize) -> f64 {
     let (axis, point, frame) = (i % width, i / width % points, i / width / points);
     if axis == 3 {

@@ -17,7 +17,7 @@ use super::{Limits, ParseError, Warning};
 /// Reads a model, as OpenSim 2 to 4 write it. Muscles, markers, masses and shapes are skipped.
 ///
 /// # Errors
-/// Where and what: no well-formed XML, no bodies, a joint or function of a kind that is not read, a joint between bodies that are not
+/// The place and the cause: no well-formed XML, no bodies, a joint or function of a kind that is not read, a joint between bodies that are not
 /// there, more than `limits` allow. O(bytes).
 pub fn read_model(bytes: &[u8], limits: &Limits) -> Result<(OsimModel, Vec<Warning>), ParseError> {
     // Elements that a model has for each of its joints, muscles and shapes among them.

@@ -57,7 +57,7 @@ impl BodyPlacement {
     }
 }
 
-/// How far a joint turns about an axis, or slides along it.
+/// Angle by which a joint turns about an axis, or distance by which it slides along it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct JointAxis {
     pub(super) axis: Vec3,
@@ -71,7 +71,7 @@ pub(super) struct JointAxis {
 pub(super) struct Coordinate {
     pub(super) name: String,
     pub(super) default: f64,
-    /// Whether motions give it in degrees if they give angles so.
+    /// True if motions give it in degrees if they give angles so.
     pub(super) is_angle: bool,
 }
 

@@ -17,7 +17,7 @@ const ASSUMED_HZ: f64 = 60.0;
 /// or follow others as the model says. O(rows × bodies).
 ///
 /// # Errors
-/// Where and what: no header, no column that is a coordinate of the model, no rows, more than `limits` allow.
+/// The place and the cause: no header, no column that is a coordinate of the model, no rows, more than `limits` allow.
 pub fn read_motion(
     bytes: &[u8],
     name: &str,
@@ -82,7 +82,7 @@ impl OsimModel {
         self.bodies.iter().zip(&pose).map(joint).collect()
     }
 
-    /// Where every body is in its parent, given the values of all coordinates.
+    /// Place of every body in its parent, given the values of all coordinates.
     fn pose(&self, values: &[f64]) -> Vec<BodyPlacement> {
         let placed = |body: &OsimBody| {
             let mut joint = BodyPlacement {

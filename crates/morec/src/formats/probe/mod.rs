@@ -333,7 +333,7 @@ fn is_trc(head: &Head) -> bool {
     !head.is_binary() && head.lines().take(3).any(opens)
 }
 
-/// Whether a line holds a word in lower case, however it is written there.
+/// True if a line holds a word in lower case, however it is written there.
 fn holds(line: &[u8], word: &str) -> bool {
     let window = |at: &[u8]| at.eq_ignore_ascii_case(word.as_bytes());
     line.windows(word.len()).any(window)
@@ -498,6 +498,10 @@ mod tests {
             (b"version https://git-lfs.github.com/spec/v1\n", "Git LFS"),
             (b"<!DOCTYPE html>\n<html>", "HTML"),
             (b"PAR1\0", "Parquet"),
+            (
+                b"\x20\0\0\0\0\0\0\0{\"__metadata__\":{\"morec\":\"morec-index\"}}",
+                "an index of morec",
+            ),
             (b"[Header]\nFileType gtr\n", "GTR"),
             (b"{\"poses\": [[0]], \"shapes\": [[0]]}", "SMPL as JSON"),
             (b"{\"file_version\": 1, \"asset_info\": {}}", "DUF"),

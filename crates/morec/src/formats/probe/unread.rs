@@ -285,6 +285,11 @@ pub(super) static UNREAD: &[Unread] = &[
     }),
     unread("an OpenNI recording (ONI)", TABLE, |h| h.starts("NI10")),
     unread(
+        "an index of morec",
+        "`morec recognize` and `morec live` take it as their first argument",
+        |h| h.bytes.get(8..).is_some_and(|b| b.starts_with(b"{")) && h.contains(b"morec-index"),
+    ),
+    unread(
         "an SQLite database",
         "a database of morec is opened with `morec db`",
         |h| h.bytes.starts_with(b"SQLite format 3\0"),

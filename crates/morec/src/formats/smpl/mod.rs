@@ -50,7 +50,7 @@ const RATE: [&str; 6] = [
 /// Reads an archive of one motion, called `name`.
 ///
 /// # Errors
-/// Where and what: no archive, no poses in it (with the arrays that are), arrays of other shapes, more than `limits`
+/// The place and the cause: no archive, no poses in it (with the arrays that are), arrays of other shapes, more than `limits`
 /// allow. O(bytes).
 pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseError> {
     let wanted = |path: &str| {

@@ -31,7 +31,7 @@ const ASSUMED_HZ: f64 = 30.0;
 /// are points that were not seen. `rate_hz` replaces the rate in the file. O(bytes).
 ///
 /// # Errors
-/// Where and what: no columns of positions, only two dimensions, no frames, more of either than `limits` allow.
+/// The place and the cause: no columns of positions, only two dimensions, no frames, more of either than `limits` allow.
 pub fn read(
     bytes: &[u8],
     name: &str,

@@ -26,7 +26,7 @@ struct Heading {
 /// that were not seen. `rate_hz` replaces the rate in the file. O(bytes).
 ///
 /// # Errors
-/// Where and what: no row that begins with `Frame#`, no points, no frames, more of either than `limits` allow.
+/// The place and the cause: no row that begins with `Frame#`, no points, no frames, more of either than `limits` allow.
 pub fn read(
     bytes: &[u8],
     name: &str,

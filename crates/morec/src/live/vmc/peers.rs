@@ -59,7 +59,7 @@ impl<P: Peer> Ports<P> {
         }
     }
 
-    /// Whether the sender is at `peer`.
+    /// True if the sender is at `peer`.
     pub(super) fn is_at(&self, peer: P) -> bool {
         self.now == peer
     }

@@ -328,7 +328,7 @@ const ANATOMY: PointSet = PointSet {
     more_roles: &[],
 };
 
-/// Who plays what among points of these normalised names, if both legs are there.
+/// The roles of points of these normalised names, if both legs are there.
 pub(super) fn assign(names: &[String]) -> Option<Recognised> {
     let mut known: Vec<String> = Vec::with_capacity(names.len());
     for name in names {

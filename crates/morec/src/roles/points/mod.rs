@@ -31,7 +31,7 @@ pub fn subject_of(name: &str) -> &str {
     name.rsplit_once(':').map_or("", |(subject, _)| subject)
 }
 
-/// How many points the sets have whose points may come as numbers alone.
+/// Numbers of points of the sets whose points may come as numbers alone.
 #[cfg(feature = "formats")]
 pub(crate) fn numbered_counts() -> impl Iterator<Item = usize> {
     let numbered = landmarks::SETS.iter().filter(|set| set.numbered);
@@ -80,7 +80,7 @@ pub fn recognise_posed(names: &[&str], poses: &[Vec<Vec3>]) -> Option<Recognised
     })
 }
 
-/// Whether a numbered point is called after something that is no body: `brow7`, `hand_3`.
+/// True if a numbered point is called after something that is no body: `brow7`, `hand_3`.
 fn is_no_body(name: &str) -> bool {
     const OTHERS: [&str; 12] = [
         "face", "hand", "finger", "brow", "lip", "mouth", "cheek", "jaw", "eye", "rigid", "camera",
@@ -118,7 +118,7 @@ const LIMBS: [[Role; 4]; 4] = [
     ],
 ];
 
-/// Whether bones keep their lengths from pose to pose, as far as a depth camera sees them: what is numbered at random does
+/// True if bones keep their lengths from pose to pose, as far as a depth camera sees them: what is numbered at random does
 /// not.
 fn is_steady(found: &Recognised, poses: &[Vec<Vec3>]) -> bool {
     const MOST: f64 = 0.35;
@@ -144,7 +144,7 @@ fn is_steady(found: &Recognised, poses: &[Vec<Vec3>]) -> bool {
         .is_none_or(|&spread| spread < MOST)
 }
 
-/// How unlike left and right limbs are, 0 to 1; 1 without poses.
+/// Dissimilarity of left and right limbs, 0 to 1; 1 without poses.
 fn asymmetry(found: &Recognised, poses: &[Vec<Vec3>]) -> f64 {
     let (mut apart, mut sum) = (0.0, 0.0);
     for pose in poses {

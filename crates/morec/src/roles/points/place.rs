@@ -23,7 +23,7 @@ pub enum PointJoint {
 }
 
 impl PointJoint {
-    /// Where it is, `point` being where the points are; `None` if the pelvis has no direction. O(points in it).
+    /// Its position, `point` giving those of the points; `None` if the pelvis has no direction. O(points in it).
     pub fn at(&self, point: impl Fn(usize) -> Vec3 + Copy) -> Option<Vec3> {
         match self {
             PointJoint::Point(index) => Some(point(*index)),

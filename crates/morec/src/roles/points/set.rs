@@ -14,9 +14,9 @@ pub(super) struct PointSet {
     pub(super) numbered: bool,
     /// True if points are recognised by these names; false where the names are everybody's, and only numbers tell.
     pub(super) by_name: bool,
-    /// Who plays what: [`Expression`]s.
+    /// The point or points of each role: [`Expression`]s.
     pub(super) roles: &'static [(&'static str, &'static str)],
-    /// Where roles that `roles` leaves open are looked for: the same for other names.
+    /// The places at which roles that `roles` leaves open are looked for: the same for other names.
     pub(super) more_roles: &'static [(&'static str, &'static str)],
 }
 
@@ -25,7 +25,7 @@ pub(super) struct PointSet {
 pub struct Recognised {
     /// The set's name.
     pub set: &'static str,
-    /// Who plays what, in the order of [`Role::ALL`].
+    /// The point of each role, in the order of [`Role::ALL`].
     pub roles: Vec<(Role, PointJoint)>,
 }
 
@@ -71,7 +71,7 @@ impl PointSet {
         2.0 * common as f64 / (own + names.len()) as f64
     }
 
-    /// Who plays what among points of these normalised names, if that makes a body.
+    /// The roles of points of these normalised names, if that makes a body.
     pub(super) fn assign(&self, names: &[String]) -> Option<Recognised> {
         let mut roles: Vec<(Role, PointJoint)> = Vec::new();
         for table in [self.roles, self.more_roles] {

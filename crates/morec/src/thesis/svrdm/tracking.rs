@@ -96,7 +96,7 @@ impl MaximumState {
 /// than the allowed share, the most certain is kept; then those that overlap it go, and so on down. A detection is
 /// given out as soon as nothing that can still come changes that, which follows from how certain a segment of a
 /// length can be at most (the length prior), and never taken back: the outcome is that of the whole map seen at once.
-/// Where chains of ever better overlapping maxima drag on, the wait ends
+/// If chains of ever better overlapping maxima drag on, the wait ends
 /// [`wait_chunks`](SvrdmParams::wait_chunks) after a segment's end, and what is known then decides.
 ///
 /// Memory is fixed at construction. A column costs O(p²) for p maxima of the last few seconds, a handful.

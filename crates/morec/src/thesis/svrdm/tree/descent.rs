@@ -7,7 +7,7 @@ use super::{Node, Tree};
 /// Classes that a descent gives at most (thesis, §4.7.4).
 pub const MAX_CANDIDATES: usize = 4;
 
-/// Which way to go where both machines accept.
+/// The branch that is taken where both machines accept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Descent {
