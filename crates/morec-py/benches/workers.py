@@ -9,6 +9,7 @@ each a program of its own that recognises a few clips first. Printed are the sec
 from __future__ import annotations
 
 import argparse
+import os
 import statistics
 import subprocess
 import sys
@@ -57,7 +58,9 @@ def main() -> None:
         for _ in range(args.repeats):
             for workers, found in secs.items():
                 command = [sys.executable, __file__, path, args.index, "--workers", str(workers)]
-                done = subprocess.run(command, check=True, capture_output=True, text=True)
+                # One processor for each worker: the library would use all that it finds.
+                env = {**os.environ, "RAYON_NUM_THREADS": "1"}
+                done = subprocess.run(command, check=True, capture_output=True, text=True, env=env)
                 taken, events = done.stdout.split()[-2:]
                 found.append(float(taken))
                 print(f"{workers} workers: {taken} s, {events} events", flush=True)
