@@ -183,11 +183,13 @@ pub(super) fn join(members: Vec<Member>) -> Vec<Member> {
             .map(|(&number, &at)| (number, PathBuf::from(&members[at].path)))
             .collect();
         let known = FrameFiles(known);
+        let of = |&at: &usize| (Path::new(&members[at].path), at);
+        let places: BTreeMap<&Path, usize> = files.values().map(of).collect();
         let mut bytes = Vec::new();
         // Nothing fails here: all is in memory.
         let _ = known.each(|path| {
-            let member = path.and_then(|path| members.iter().find(|m| Path::new(&m.path) == path));
-            bytes.extend(member.map_or(&b"null"[..], |member| &member.bytes));
+            let at = path.and_then(|path| places.get(path.as_path()));
+            bytes.extend(at.map_or(&b"null"[..], |&at| &members[at].bytes));
             bytes.push(b'\n');
             Ok(())
         });
