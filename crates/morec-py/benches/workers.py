@@ -24,6 +24,7 @@ from archive import multiplied
 
 def recognise(archive: str, index: str, workers: int) -> None:
     """One measurement; prints seconds and the number of events."""
+    import ray
     from ray.cluster_utils import Cluster
 
     cluster = Cluster(initialize_head=True, head_node_args={"num_cpus": 0, "include_dashboard": False})
@@ -36,6 +37,9 @@ def recognise(archive: str, index: str, workers: int) -> None:
     begun = time.perf_counter()
     events = opened.recognize(index).count_rows()
     print(f"{time.perf_counter() - begun:.2f} {events}")
+    ray.shutdown()
+    # Also forgets the address, which programs that start later would connect to.
+    cluster.shutdown()
 
 
 def main() -> None:

@@ -22,7 +22,7 @@ PROGRAM = """
 import json, os, signal, sys, threading, time
 from pathlib import Path
 import ray
-ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False, configure_logging=False)
+ray.init(address="local", num_cpus=2, include_dashboard=False, log_to_driver=False, configure_logging=False)
 import morec.archive as ma
 from morec.archive import _create
 ma.use_ray()
