@@ -1,6 +1,6 @@
 //! Clips among the files of a folder.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -58,6 +58,10 @@ fn collect(folder: &Path, all: &mut Listing) -> Result<(), FileError> {
         .map_err(failed)?;
     let clips = FrameFiles::among(entries.iter().map(fs::DirEntry::path));
     // The first of them stands for the clip.
+    let firsts: HashMap<&PathBuf, &FrameFiles> = clips
+        .iter()
+        .filter_map(|(_, frames)| Some((frames.paths().next()?, frames)))
+        .collect();
     let later: HashSet<&PathBuf> = clips.iter().flat_map(|(_, f)| f.paths().skip(1)).collect();
     for entry in entries {
         let path = entry.path();
@@ -71,9 +75,7 @@ fn collect(folder: &Path, all: &mut Listing) -> Result<(), FileError> {
                 all.left_out.push(error);
             }
         } else if path.is_file() {
-            let frames = clips.iter().map(|(_, frames)| frames);
-            let frames = { frames }.find(|frames| frames.paths().next() == Some(&path));
-            match kind_of(&path, frames) {
+            match kind_of(&path, firsts.get(&path).copied()) {
                 FileKind::Clip => all.clips.push(path),
                 FileKind::NotRead(why) => all.left_out.push(why.at(&path)),
                 FileKind::Other => all.others += 1,

@@ -4,6 +4,8 @@
 //! There is no common form, so the first list is taken that looks so; fields called `world` come first, as the others hold
 //! places in the picture.
 
+use std::collections::HashMap;
+
 use serde_json::{Map, Value};
 
 use super::points::{Point, PointTable, UNSEEN, check_size};
@@ -413,16 +415,14 @@ fn points_in_fields(value: &Value) -> Option<Vec<(String, Vec3)>> {
         .as_object()
         .filter(|fields| fields.len() >= 3 * LEAST_POINTS)?;
     let mut points: Vec<(String, [Option<f64>; 3])> = Vec::new();
+    let mut places: HashMap<String, usize> = HashMap::new();
     for (key, value) in fields {
         let known = axis_of(key).filter(|_| value.is_number() || value.is_null());
         let Some((name, axis)) = known else { continue };
-        let at = match points.iter().position(|(known, _)| *known == name) {
-            Some(at) => at,
-            None => {
-                points.push((name, [None; 3]));
-                points.len() - 1
-            }
-        };
+        let at = *places.entry(name).or_insert_with_key(|name| {
+            points.push((name.clone(), [None; 3]));
+            points.len() - 1
+        });
         points[at].1[axis] = Some(value.as_f64().unwrap_or(f64::NAN));
     }
     let whole = points

@@ -5,6 +5,8 @@ mod point;
 
 pub(super) use self::point::{Point, SHORT_GAP_SECS, UNSEEN};
 
+use std::collections::BTreeMap;
+
 use self::gaps::{Filled, union};
 use self::point::{SHOWN, is_seen};
 use super::{Limits, Loaded, ParseError, Place, Warning};
@@ -117,17 +119,17 @@ impl PointTable {
         }
         let split: Option<Vec<(&str, &str)>> = self.points.iter().map(|p| split(&p.name)).collect();
         let Some(split) = split else { return };
-        let mut people: Vec<(&str, Vec<&str>)> = Vec::new();
+        let mut people: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
         for &(whose, rest) in &split {
-            match people.iter_mut().find(|(known, _)| *known == whose) {
-                Some((_, names)) => names.push(rest),
-                None => people.push((whose, vec![rest])),
-            }
+            people.entry(whose).or_default().push(rest);
         }
-        if people.len() < 2 || people.iter().any(|(_, names)| *names != people[0].1) {
+        let mut lists = people.values();
+        let first = lists.next();
+        if people.len() < 2 || lists.any(|names| Some(names) != first) {
             return;
         }
-        let names: Vec<String> = { split.iter() }
+        let names: Vec<String> = split
+            .iter()
             .map(|(whose, rest)| format!("{whose}:{rest}"))
             .collect();
         for (point, name) in self.points.iter_mut().zip(names) {
