@@ -23,6 +23,16 @@ impl Axis {
     /// All three, in coordinate order.
     pub const ALL: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
 
+    /// The axis that `x`, `y`, `z` (either case) names.
+    pub(crate) fn from_letter(letter: char) -> Option<Self> {
+        match letter.to_ascii_lowercase() {
+            'x' => Some(Axis::X),
+            'y' => Some(Axis::Y),
+            'z' => Some(Axis::Z),
+            _ => None,
+        }
+    }
+
     /// 0, 1 or 2.
     pub fn index(self) -> usize {
         self as usize

@@ -1,5 +1,6 @@
 //! Errors and warnings with their place in a file: shared by everything that reads bytes.
 
+use std::borrow::Cow;
 use std::fmt;
 
 /// Place in a file.
@@ -47,6 +48,15 @@ impl ParseError {
             expected: expected.into(),
             found: found.into(),
         }
+    }
+}
+
+/// At most 60 characters of `text` for an error message, with `…` for the rest.
+pub(crate) fn shortened(text: &str) -> Cow<'_, str> {
+    const LONGEST: usize = 60;
+    match text.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{}…", &text[..end]).into(),
+        None => text.into(),
     }
 }
 

@@ -12,6 +12,7 @@ use super::cells::{Decimal, lines, number};
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::clip::Joint;
 use crate::math::{Axis, Quat, Vec3};
+use crate::parse_error::shortened;
 
 /// Frames a second of a file that does not say.
 const ASSUMED_HZ: f64 = 60.0;
@@ -42,7 +43,11 @@ pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseEr
             continue;
         }
         let at = |expected: &str| {
-            ParseError::new(Place::Line(line), expected, format!("`{}`", shown(text)))
+            ParseError::new(
+                Place::Line(line),
+                expected,
+                format!("`{}`", shortened(text)),
+            )
         };
         match section {
             HtrSection::Header => htr.set(text).map_err(at)?,
@@ -54,10 +59,6 @@ pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseEr
         }
     }
     htr.into_loaded(name, bytes.len(), limits)
-}
-
-fn shown(text: &str) -> String {
-    text.chars().take(60).collect()
 }
 
 #[derive(Clone, Copy)]
@@ -122,12 +123,12 @@ impl HtrFile {
                 self.rate_hz = Some(rate.ok_or("a rate above 0")?);
             }
             "eulerrotationorder" => {
-                let axes: Option<Vec<Axis>> = value.chars().map(axis).collect();
+                let axes: Option<Vec<Axis>> = value.chars().map(Axis::from_letter).collect();
                 let axes = axes.and_then(|axes| <[Axis; 3]>::try_from(axes).ok());
                 self.order = Some(axes.ok_or("an order of rotations, as in `ZYX`")?);
             }
             "rotationunits" => self.radians = value.to_ascii_lowercase().starts_with("rad"),
-            "bonelengthaxis" => self.bone_axis = value.chars().next().and_then(axis),
+            "bonelengthaxis" => self.bone_axis = value.chars().next().and_then(Axis::from_letter),
             _ => {}
         }
         Ok(())
@@ -269,7 +270,8 @@ impl HtrFile {
         let mut builder = ClipBuilder::new(self.joints(&ordered));
         let mut missing = 0;
         for frame in first..=last {
-            let pose: Option<Vec<(Vec3, Quat)>> = { ordered.iter() }
+            let pose: Option<Vec<(Vec3, Quat)>> = ordered
+                .iter()
                 .map(|&(at, _)| self.segments[at].pose(frame))
                 .collect();
             match pose {
@@ -340,15 +342,6 @@ impl HtrSegment {
     }
 }
 
-fn axis(letter: char) -> Option<Axis> {
-    match letter.to_ascii_lowercase() {
-        'x' => Some(Axis::X),
-        'y' => Some(Axis::Y),
-        'z' => Some(Axis::Z),
-        _ => None,
-    }
-}
-
 fn numbers(text: &str) -> Option<Vec<f64>> {
     let cells = text.split(|c: char| c.is_whitespace() || c == ',');
     let cells = cells.filter(|cell| !cell.is_empty());
@@ -390,7 +383,10 @@ mod tests {
             let loaded = open(&text).unwrap();
             let clip = &loaded.clips[0];
             assert_eq!((clip.frames, clip.rate_hz), (2, 50.0));
-            let names: Vec<&str> = { clip.skeleton.joints().iter() }
+            let names: Vec<&str> = clip
+                .skeleton
+                .joints()
+                .iter()
                 .map(|joint| joint.name.as_str())
                 .collect();
             assert_eq!(names, ["Hips", "Thigh", "Shin"]);
@@ -483,7 +479,7 @@ mod tests {
                 * Axis::Z.rotation(-0.1 * (f * j) as f64)
         };
         for order in ["XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"] {
-            let axes: Vec<Axis> = order.chars().filter_map(axis).collect();
+            let axes: Vec<Axis> = order.chars().filter_map(Axis::from_letter).collect();
             let head = HEAD.replace("ZYX", order).replace("0 0 90 10", "0 0 0 10");
             let mut text = head;
             for (j, name) in ["Hips", "Thigh", "Shin"].iter().enumerate() {

@@ -61,13 +61,11 @@ impl FromStr for SignedAxis {
             Some(letter) => (true, letter),
             None => (false, text.strip_prefix('+').unwrap_or(text)),
         };
-        let axis = match letter.to_ascii_lowercase().as_str() {
-            "x" => Axis::X,
-            "y" => Axis::Y,
-            "z" => Axis::Z,
-            _ => return Err(NoAxis(text.to_owned())),
-        };
-        Ok(Self { axis, negative })
+        let mut letters = letter.chars();
+        match (letters.next().and_then(Axis::from_letter), letters.next()) {
+            (Some(axis), None) => Ok(Self { axis, negative }),
+            _ => Err(NoAxis(text.to_owned())),
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Tables of tab-separated text: the part that all of them share.
 
 use crate::formats::{ParseError, Place, Warning};
+use crate::parse_error::shortened;
 
 /// A table whose header has been read.
 pub(super) struct Table<'a> {
@@ -117,7 +118,7 @@ impl<'a> Table<'a> {
             {
                 let text = format!(
                     "`{}` stands beyond the last column; left out",
-                    shorten(cell)
+                    shortened(cell)
                 );
                 warnings.push(Warning::new(Place::Column(line, *column), text));
             }
@@ -130,7 +131,7 @@ impl<'a> Table<'a> {
         let header = self.header.join(", ");
         let commas = self.header.len() == 1 && (header.contains(',') || header.contains(';'));
         let hint = if commas { " (separated by tabs?)" } else { "" };
-        format!("the columns `{}`{hint}", shorten(&header))
+        format!("the columns `{}`{hint}", shortened(&header))
     }
 }
 
@@ -169,7 +170,7 @@ impl<'a> Row<'a> {
         let found = if cell.is_empty() {
             "nothing".to_owned()
         } else {
-            format!("`{}`", shorten(cell))
+            format!("`{}`", shortened(cell))
         };
         ParseError::new(self.place(column), expected, found)
     }
@@ -254,12 +255,4 @@ fn numbered_lines(text: &str) -> impl Iterator<Item = (u64, &str)> {
         Some(&text[..end])
     });
     (1..).zip(lines)
-}
-
-/// At most 60 characters, for messages.
-fn shorten(text: &str) -> String {
-    match text.char_indices().nth(60) {
-        Some((end, _)) => format!("{}…", &text[..end]),
-        None => text.to_owned(),
-    }
 }

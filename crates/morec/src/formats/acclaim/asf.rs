@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::skeleton::{AmcChannel, Asf, AsfBone, Root, axis_from_letter, composed};
+use super::skeleton::{AmcChannel, Asf, AsfBone, Root, composed};
 use super::text::{AsfLines, number, quoted, text, tokens};
 use crate::formats::{Limits, ParseError, Place, Warning};
 use crate::math::{Axis, Quat, Vec3};
@@ -456,7 +456,7 @@ fn axis_order(line: u64, token: Option<&[u8]>) -> Result<Vec<Axis>, ParseError> 
     };
     let axes: Option<Vec<Axis>> = token
         .iter()
-        .map(|&letter| axis_from_letter(letter))
+        .map(|&letter| Axis::from_letter(char::from(letter)))
         .collect();
     axes.filter(|axes| axes.len() == 3).ok_or_else(|| {
         ParseError::new(

@@ -18,21 +18,11 @@ impl AmcChannel {
     /// Reads `rx`, `TY`, `l` and the like.
     pub(super) fn from_token(token: &[u8]) -> Option<Self> {
         match token.to_ascii_lowercase().as_slice() {
-            [b't', axis] => axis_from_letter(*axis).map(AmcChannel::Translation),
-            [b'r', axis] => axis_from_letter(*axis).map(AmcChannel::Rotation),
+            [b't', axis] => Axis::from_letter(char::from(*axis)).map(AmcChannel::Translation),
+            [b'r', axis] => Axis::from_letter(char::from(*axis)).map(AmcChannel::Rotation),
             b"l" => Some(AmcChannel::Length),
             _ => None,
         }
-    }
-}
-
-/// The axis that `x`, `y`, `z` (either case) names.
-pub(super) fn axis_from_letter(letter: u8) -> Option<Axis> {
-    match letter.to_ascii_lowercase() {
-        b'x' => Some(Axis::X),
-        b'y' => Some(Axis::Y),
-        b'z' => Some(Axis::Z),
-        _ => None,
     }
 }
 

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use crate::formats::{Limits, ParseError, Place};
+use crate::parse_error::shortened;
 
 /// Lines of `bytes` without comments, numbered from 1. LF, CRLF and CR end a line.
 pub(super) struct AsfLines<'a> {
@@ -76,12 +77,7 @@ pub(super) fn text(token: &[u8]) -> Cow<'_, str> {
 
 /// A token or a line for an error message: quoted, and cut where it is long.
 pub(super) fn quoted(token: &[u8]) -> String {
-    const SHOWN: usize = 40;
-    let text = text(token.trim_ascii());
-    match text.char_indices().nth(SHOWN) {
-        Some((cut, _)) => format!("`{}…`", &text[..cut]),
-        None => format!("`{text}`"),
-    }
+    format!("`{}`", shortened(&text(token.trim_ascii())))
 }
 
 /// A number that a length or an angle can be: sums and products of such stay finite.

@@ -369,12 +369,7 @@ fn is_keyword(token: &[u8]) -> bool {
 
 fn channel(token: &[u8]) -> Option<Channel> {
     let (first, rest) = token.split_first()?;
-    let axis = match first.to_ascii_lowercase() {
-        b'x' => Axis::X,
-        b'y' => Axis::Y,
-        b'z' => Axis::Z,
-        _ => return None,
-    };
+    let axis = Axis::from_letter(char::from(*first))?;
     if rest.eq_ignore_ascii_case(b"position") {
         Some(Channel::Position(axis))
     } else {

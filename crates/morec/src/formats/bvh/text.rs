@@ -2,6 +2,7 @@
 
 use super::number::{is_blank, is_newline};
 use crate::formats::{ParseError, Place};
+use crate::parse_error::shortened;
 
 /// Encoding of the names in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -198,11 +199,7 @@ pub(super) fn show(token: Option<&[u8]>) -> String {
     let Some(token) = token else {
         return "the end of the file".into();
     };
-    let text = String::from_utf8_lossy(token);
-    if text.chars().count() <= 40 {
-        return format!("`{text}`");
-    }
-    format!("`{}…`", text.chars().take(40).collect::<String>())
+    format!("`{}`", shortened(&String::from_utf8_lossy(token)))
 }
 
 #[cfg(test)]

@@ -7,8 +7,9 @@ use roxmltree::{Document, Node};
 use super::super::xml::{child, is, place};
 use super::super::{Limits, ParseError, Place, Warning};
 use super::function::{Function, warn_of_smoothing};
-use super::values::{numbers, shortened, vector};
+use super::values::{numbers, vector};
 use crate::math::{Axis, Quat, Vec3};
+use crate::parse_error::shortened;
 
 /// The bodies of an OpenSim model, parents first, and what moves them.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,9 +5,9 @@ use super::super::cells::{Decimal, lines, number, split};
 use super::super::timing::{Clock, Schedule};
 use super::super::{Limits, Loaded, ParseError, Place, Warning};
 use super::model::{BodyPlacement, JointAxis, OsimBody, OsimModel};
-use super::values::shortened;
 use crate::clip::Joint;
 use crate::math::{Quat, Vec3};
+use crate::parse_error::shortened;
 use nalgebra::Unit;
 
 /// When the times say nothing.
@@ -310,9 +310,11 @@ fn coordinates_of(
         .collect();
     if found.is_empty() {
         let names: Vec<&str> = header.columns.iter().take(5).copied().collect();
-        let expected = "columns of the model's coordinates";
-        let shown = shortened(&names.join(", "));
-        return Err(ParseError::new(Place::Line(header.line), expected, shown));
+        return Err(ParseError::new(
+            Place::Line(header.line),
+            "columns of the model's coordinates",
+            shortened(&names.join(", ")),
+        ));
     }
     let follows = |k: usize| model.couplings.iter().any(|c| c.dependent == k);
     let missing: Vec<&str> = (0..model.coordinates.len())

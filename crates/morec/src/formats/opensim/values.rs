@@ -6,6 +6,7 @@ use super::super::ParseError;
 use super::super::cells::finite;
 use super::super::xml::{child, place};
 use crate::math::Vec3;
+use crate::parse_error::shortened;
 
 /// The numbers in the child `tag` of `node`; none without it.
 ///
@@ -45,13 +46,5 @@ pub(super) fn vector(node: Node<'_, '_>, tag: &str) -> Result<Option<Vec3>, Pars
     match child(node, tag) {
         Some(_) => Ok(Some(Vec3::from_column_slice(&found?))),
         None => Ok(None),
-    }
-}
-
-pub(super) fn shortened(text: &str) -> String {
-    const LONGEST: usize = 40;
-    match text.char_indices().nth(LONGEST) {
-        Some((end, _)) => format!("{}…", &text[..end]),
-        None => text.to_owned(),
     }
 }

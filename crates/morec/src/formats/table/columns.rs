@@ -3,6 +3,7 @@
 use super::layout::{ColumnLayout, TableLine};
 use crate::formats::cells::{Decimal, number};
 use crate::formats::points::metres_of;
+use crate::math::Axis;
 
 /// The layout of a table whose header names its columns, in one row or several.
 pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
@@ -95,7 +96,11 @@ fn rate_above(header: &[TableLine]) -> Option<f64> {
     let stated = |text: &str| {
         let key_ends = text.find([':', '=', ','])?;
         let (key, value) = (&text[..key_ends], &text[key_ends + 1..]);
-        let key: String = { key.split(['(', '[']).next().unwrap_or_default().chars() }
+        let key: String = key
+            .split(['(', '['])
+            .next()
+            .unwrap_or_default()
+            .chars()
             .filter(|c| c.is_alphanumeric())
             .collect();
         let value = value.trim().split([' ', ',']).next()?;
@@ -104,12 +109,13 @@ fn rate_above(header: &[TableLine]) -> Option<f64> {
         (rate > 0.0 && rate < 1e5).then_some(rate)
     };
     above.iter().find_map(|(_, cells)| {
-        let pairs = cells
+        let mut pairs = cells
             .windows(2)
             .map(|pair| format!("{},{}", pair[0], pair[1]));
-        { cells.iter() }
+        cells
+            .iter()
             .find_map(|cell| stated(cell))
-            .or_else(|| { pairs }.find_map(|pair| stated(&pair)))
+            .or_else(|| pairs.find_map(|pair| stated(&pair)))
     })
 }
 
@@ -138,26 +144,24 @@ fn header_rows(rows: &[TableLine]) -> Option<usize> {
     // A frame may begin with words (a class, a track) and hold others (`Tracked`) below names that are certain.
     let is_below_axes = |above: &TableLine, cells: &[&str]| {
         let named = |&(_, label): &(usize, &&str)| axis_of(label).is_some();
-        let axes: Vec<usize> = { above.1.iter().enumerate() }
+        let axes: Vec<usize> = above
+            .1
+            .iter()
+            .enumerate()
             .filter(named)
             .map(|(column, _)| column)
             .collect();
-        let is_number = |column: &&usize| {
-            let cell = cells.get(**column).copied().unwrap_or_default();
-            number(cell, Decimal::Either).is_some() || is_nan(cell)
-        };
+        let is_number = |column: &&usize| cells.get(**column).is_some_and(|cell| is_value(cell));
         let numbers = axes.iter().filter(is_number).count();
         axes.len() >= 6 && numbers > 0 && numbers * 5 >= axes.len() * 4
     };
     let is_frame = |row: &usize| {
         let (_, cells) = &rows[*row];
         let filled = cells.iter().filter(|cell| !cell.is_empty());
-        let numbers = filled
-            .clone()
-            .filter(|c| number(c, Decimal::Either).is_some() || is_nan(c));
+        let numbers = filled.clone().filter(|cell| is_value(cell));
         let first = filled.clone().next();
         let (filled, numbers) = (filled.count(), numbers.count());
-        let starts = first.is_some_and(|c| number(c, Decimal::Either).is_some() || is_nan(c));
+        let starts = first.is_some_and(|cell| is_value(cell));
         filled > 0 && starts && numbers * 5 >= filled * 4
             || *row > 0 && is_below_axes(&rows[row - 1], cells)
     };
@@ -165,6 +169,11 @@ fn header_rows(rows: &[TableLine]) -> Option<usize> {
         .position(|row| is_frame(&row))
         .unwrap_or(rows.len());
     (first > 0).then_some(first)
+}
+
+/// A number, or that there is none.
+fn is_value(cell: &str) -> bool {
+    number(cell, Decimal::Either).is_some() || is_nan(cell)
 }
 
 fn is_nan(cell: &str) -> bool {
@@ -359,13 +368,8 @@ fn is_mark(c: char) -> bool {
     matches!(c, '_' | '.' | ' ' | '-' | ':' | '/' | '|')
 }
 
-fn axis_number(c: char) -> Option<usize> {
-    match c.to_ascii_lowercase() {
-        'x' => Some(0),
-        'y' => Some(1),
-        'z' => Some(2),
-        _ => None,
-    }
+fn axis_number(letter: char) -> Option<usize> {
+    Axis::from_letter(letter).map(Axis::index)
 }
 
 /// `hips_x`, `Hips.X`, `Hips Tx`, `HipsX`, `12x`.

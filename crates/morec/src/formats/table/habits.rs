@@ -265,12 +265,12 @@ fn axes_after_a_word() {
 #[test]
 fn a_face_behind_the_body() {
     let names = |count: usize| -> Vec<String> {
-        { 1..=count }
+        (1..=count)
             .flat_map(|n| ["x", "y", "z", "v"].map(|axis| format!("{axis}{n}")))
             .collect()
     };
     let row = |frame: usize, points: usize| -> Vec<String> {
-        { 0..points }
+        (0..points)
             .map(|p| format!("{},0.9", moving(frame, p, ",")))
             .collect()
     };
@@ -278,8 +278,7 @@ fn a_face_behind_the_body() {
     let mut text = format!("class,{}\n", names(501).join(","));
     let words = [("Head", 468), ("Pose", 33), ("Hand", 21)];
     let labels = words.iter().flat_map(|&(word, count)| {
-        { 0..count }
-            .flat_map(move |n| ["x", "y", "z", "v"].map(|axis| format!("{word}_{n}_{axis}")))
+        (0..count).flat_map(move |n| ["x", "y", "z", "v"].map(|axis| format!("{word}_{n}_{axis}")))
     });
     let mut worded = format!("{}\n", labels.collect::<Vec<String>>().join(","));
     for frame in 0..5 {
@@ -317,7 +316,7 @@ fn what_spreadsheets_and_cameras_write() {
     let states = format!("frame,{}\n", states.join(","));
     let row = |f: usize| row(f, 2, ",");
     let with = |head: &str, line: &dyn Fn(usize) -> String| {
-        head.to_owned() + &{ 0..6 }.map(|f| line(f) + "\n").collect::<String>()
+        head.to_owned() + &(0..6).map(|f| line(f) + "\n").collect::<String>()
     };
     let worded = |f: usize| {
         let point = |p| format!("{},Tracked,Good", moving(f, p, ","));
@@ -367,7 +366,7 @@ fn what_spreadsheets_and_cameras_write() {
 
 #[test]
 fn names_above_every_third_column() {
-    let names: Vec<String> = { 0..20 }.map(|p| format!("joint{}", 19 - p)).collect();
+    let names: Vec<String> = (0..20).map(|p| format!("joint{}", 19 - p)).collect();
     let mut text = format!("Frame,{},,\n", names.join(",,,"));
     for frame in 0..6 {
         text += &format!("{frame},{}\n", row(frame, 20, ","));

@@ -237,7 +237,8 @@ impl Columns {
         else {
             return (None, Vec::new());
         };
-        let others: Vec<String> = { parts.iter() }
+        let others: Vec<String> = parts
+            .iter()
             .filter(|part| *part != kept)
             .map(|part| part.join(" "))
             .collect();
