@@ -38,6 +38,7 @@ pub fn of(head: &[u8]) -> Option<&'static str> {
         Ok(Format::Landmarks) => Some("JSON of landmarks"),
         Ok(Format::Numpy) => Some("a NumPy array"),
         Ok(Format::Htr) => Some("an HTR motion"),
+        Ok(Format::Csm) => Some("a CSM recording"),
         Ok(Format::Smd) => Some("an SMD animation"),
         Ok(Format::OpenSimMotion) => Some("an OpenSim motion"),
         Ok(Format::OpenSimModel) => Some("an OpenSim model"),

@@ -358,6 +358,7 @@ fn format_name(format: Format) -> &'static str {
         Format::Numpy => "positions (NumPy)",
         Format::Smd => "SMD",
         Format::Htr => "HTR",
+        Format::Csm => "CSM",
         Format::OpenSimMotion => "OpenSim motion",
         Format::OpenSimModel => "OpenSim model",
         Format::Mocopi => "mocopi packets",

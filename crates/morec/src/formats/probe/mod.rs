@@ -51,6 +51,8 @@ pub enum Format {
     Smd,
     /// Skeletal motion of Motion Analysis, text.
     Htr,
+    /// Markers of Character Studio, text.
+    Csm,
     /// Joint angles of OpenSim, for a [`Format::OpenSimModel`].
     OpenSimMotion,
     /// A model of OpenSim.
@@ -79,6 +81,7 @@ impl Format {
             Format::Numpy => "numpy",
             Format::Smd => "smd",
             Format::Htr => "htr",
+            Format::Csm => "csm",
             Format::OpenSimMotion => "opensim_motion",
             Format::OpenSimModel => "opensim_model",
         }
@@ -216,6 +219,14 @@ const READ: &[Readable] = &[
         format: Format::Htr,
         extension: "htr2",
         looks_so: |_| false,
+    },
+    Readable {
+        format: Format::Csm,
+        extension: "csm",
+        looks_so: |h| {
+            let says = |word: &str| h.lines().take(200).any(|l| holds(l, word));
+            !h.is_binary() && says("$order") && says("$points")
+        },
     },
     Readable {
         format: Format::OpenSimMotion,
@@ -469,6 +480,7 @@ mod tests {
                 "a",
                 Format::Htr,
             ),
+            (b"$Rate 120\n$Order\nLFHD\n$Points\n", "a", Format::Csm),
             (
                 b"Coordinates\nnRows=2\nnColumns=3,,,\n",
                 "a",
