@@ -25,7 +25,7 @@ pub fn read(
     limits: &Limits,
 ) -> Result<Loaded, ParseError> {
     let rows = lines(bytes, limits)?;
-    let heading = Heading::read(&rows);
+    let heading = CsmHeading::read(&rows);
     if heading.markers.is_empty() {
         let expected = "names of markers below `$Order` in the CSM file";
         return Err(ParseError::new(Place::File, expected, "none"));
@@ -51,7 +51,7 @@ pub fn read(
 
 /// Everything above the frames.
 #[derive(Default)]
-struct Heading<'a> {
+struct CsmHeading<'a> {
     rate_hz: Option<f64>,
     first: Option<f64>,
     last: Option<f64>,
@@ -60,7 +60,7 @@ struct Heading<'a> {
     rows: usize,
 }
 
-impl<'a> Heading<'a> {
+impl<'a> CsmHeading<'a> {
     fn read(rows: &[(u64, &'a str)]) -> Self {
         let mut heading = Self::default();
         let mut keyword = String::new();
