@@ -7,7 +7,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use crate::error::Context;
-use crate::places::{CONNECTIONS, Places};
+use crate::places::{CONNECTIONS, ConnectionPlaces};
 use crate::{LiveError, Notices};
 
 /// A longer line is no pose.
@@ -41,7 +41,7 @@ pub enum Came {
 /// A source of lines.
 pub struct Lines {
     came: Receiver<Came>,
-    places: Places,
+    places: ConnectionPlaces,
 }
 
 impl Lines {
@@ -51,7 +51,7 @@ impl Lines {
         spawn("standard input", move || {
             forward(0, std::io::stdin().lock(), &sender)
         })?;
-        let places = Places::default();
+        let places = ConnectionPlaces::default();
         Ok(Self { came, places })
     }
 
@@ -62,7 +62,7 @@ impl Lines {
             .with_context(|| format!("cannot listen at {address} (TCP)"))?;
         let at = listener.local_addr().context("TCP socket")?;
         let (sender, came) = sync_channel(WAITING);
-        let places = Places::default();
+        let places = ConnectionPlaces::default();
         let (open, notices) = (places.clone(), notices.clone());
         spawn("connections", move || {
             accept(&listener, &sender, &open, &notices)
@@ -93,7 +93,12 @@ fn spawn(name: &str, job: impl FnOnce() + Send + 'static) -> Result<(), LiveErro
     Ok(())
 }
 
-fn accept(listener: &TcpListener, sender: &SyncSender<Came>, places: &Places, notices: &Notices) {
+fn accept(
+    listener: &TcpListener,
+    sender: &SyncSender<Came>,
+    places: &ConnectionPlaces,
+    notices: &Notices,
+) {
     for (number, stream) in (1..).zip(listener.incoming()) {
         let Ok(stream) = stream else {
             // Out of files, most likely; others may close theirs.

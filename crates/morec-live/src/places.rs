@@ -1,4 +1,4 @@
-//! Places of connections over TCP, and the rule by which one is given up when all are taken.
+//! ConnectionPlaces of connections over TCP, and the rule by which one is given up when all are taken.
 
 use std::net::{Shutdown, TcpStream};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -33,11 +33,11 @@ impl OpenConnection {
 
 /// The connections that are open; copies share them.
 #[derive(Clone, Default)]
-pub struct Places {
+pub struct ConnectionPlaces {
     open: Arc<Mutex<Vec<OpenConnection>>>,
 }
 
-impl Places {
+impl ConnectionPlaces {
     fn open(&self) -> MutexGuard<'_, Vec<OpenConnection>> {
         self.open.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -85,7 +85,11 @@ mod tests {
     use super::*;
 
     /// Takes places for connections of these numbers; gives the far ends, too.
-    fn fill(places: &Places, numbers: std::ops::Range<u64>, now: Instant) -> Vec<TcpStream> {
+    fn fill(
+        places: &ConnectionPlaces,
+        numbers: std::ops::Range<u64>,
+        now: Instant,
+    ) -> Vec<TcpStream> {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let at = listener.local_addr().unwrap();
         let connect = |number| {
@@ -96,7 +100,7 @@ mod tests {
         numbers.map(connect).collect()
     }
 
-    fn numbers(places: &Places) -> Vec<u64> {
+    fn numbers(places: &ConnectionPlaces) -> Vec<u64> {
         let mut numbers: Vec<u64> = places.open().iter().map(|open| open.number).collect();
         numbers.sort_unstable();
         numbers
@@ -104,7 +108,7 @@ mod tests {
 
     #[test]
     fn who_shows_no_body_makes_room_first_and_who_shows_one_stays() {
-        let (places, begun) = (Places::default(), Instant::now());
+        let (places, begun) = (ConnectionPlaces::default(), Instant::now());
         let secs = |secs: f64| begun + Duration::from_secs_f64(secs);
         let _open = fill(&places, 0..16, secs(0.0));
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
@@ -133,7 +137,7 @@ mod tests {
     #[test]
     fn a_place_that_is_lost_is_a_connection_that_is_closed() {
         use std::io::Read;
-        let (places, begun) = (Places::default(), Instant::now());
+        let (places, begun) = (ConnectionPlaces::default(), Instant::now());
         let mut first = fill(&places, 0..16, begun);
         let _next = fill(&places, 16..17, begun + 2 * UNKNOWN);
         assert_eq!(first[0].read(&mut [0]).unwrap(), 0);

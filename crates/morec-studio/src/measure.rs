@@ -3,7 +3,7 @@
 
 mod teaching;
 
-pub use teaching::{Lessons, teaching};
+pub use teaching::{TeachingTimes, teaching};
 
 use std::sync::Arc;
 use std::time::Instant;

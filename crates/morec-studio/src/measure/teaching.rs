@@ -14,7 +14,7 @@ const FRAME_SECS: f64 = 1.0 / 60.0;
 
 /// Times of marks on a live stream, wall-clock seconds.
 #[derive(Debug, Clone, Default)]
-pub struct Lessons {
+pub struct TeachingTimes {
     /// Accepted samples before the first mark.
     pub samples: usize,
     /// The training before the first mark, with everything that is made once.
@@ -31,7 +31,7 @@ pub struct Lessons {
 ///
 /// # Errors
 /// No database, no label in it, or an index that is not trained in two minutes.
-pub fn teaching(database: &Path, times: usize) -> Result<Lessons, String> {
+pub fn teaching(database: &Path, times: usize) -> Result<TeachingTimes, String> {
     let mut window = Headless::new(&[database.to_owned()], [1400, 860], 1.0, true);
     window.settle();
     let store = window.studio.state.store.as_ref();
@@ -49,10 +49,10 @@ pub fn teaching(database: &Path, times: usize) -> Result<Lessons, String> {
     while now(&window) < label.stop_secs + 1.0 {
         window.frame(FRAME_SECS);
     }
-    let mut lessons = Lessons {
+    let mut lessons = TeachingTimes {
         samples,
         first_secs,
-        ..Lessons::default()
+        ..TeachingTimes::default()
     };
     for number in 0..times {
         // The same stretch twice is a duplicate: each begins a little earlier.

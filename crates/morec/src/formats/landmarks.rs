@@ -344,14 +344,6 @@ fn names_in(value: &Value, depth: usize) -> Option<Vec<String>> {
     fields.iter().find_map(list).or_else(below)
 }
 
-/// True if a field of this name in lower case holds something else than places in space.
-fn is_no_place(key: &str) -> bool {
-    const OTHERS: [&str; 8] = [
-        "orient", "rotation", "quat", "euler", "angle", "velocit", "accel", "2d",
-    ];
-    OTHERS.iter().any(|word| key.contains(word))
-}
-
 /// Values within a list or an object, those that say `world` first, without those that say how something is turned.
 fn children(value: &Value) -> impl Iterator<Item = &Value> {
     let (list, object) = match value {
@@ -366,7 +358,7 @@ fn children(value: &Value) -> impl Iterator<Item = &Value> {
             let in_space = ["world", "3d", "position"]
                 .iter()
                 .any(|word| key.contains(word));
-            in_space == world && !is_no_place(&key)
+            in_space == world && !rows::is_no_place(&key)
         });
         fields.map(|(_, child)| child)
     };

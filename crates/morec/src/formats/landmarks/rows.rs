@@ -2,7 +2,6 @@
 
 use serde_json::Value;
 
-use super::is_no_place;
 use crate::roles::points::numbered_counts;
 
 /// Brackets the points of all rows of numbers in fields that say that they are in space (`pose_keypoints_3d`), whether a
@@ -74,4 +73,12 @@ fn row_in(value: &Value) -> Option<usize> {
         true => Some(list.len()),
         false => list.iter().find_map(row_in),
     }
+}
+
+/// True if a field of this name in lower case holds something else than places in space.
+pub(super) fn is_no_place(key: &str) -> bool {
+    const OTHERS: [&str; 8] = [
+        "orient", "rotation", "quat", "euler", "angle", "velocit", "accel", "2d",
+    ];
+    OTHERS.iter().any(|word| key.contains(word))
 }
