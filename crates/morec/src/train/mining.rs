@@ -59,14 +59,16 @@ fn spans(wanted: &[bool], lead: usize) -> Vec<Range<usize>> {
 }
 
 impl TemplateDistances {
-    /// Runs the templates of all `parts`, in their order, over rows that are already in their metric. Parts of templates
-    /// whose rows fit the processor's cache take less time than one of all. O(ticks · template rows · d).
+    /// Matches at every tick.
+    #[cfg(test)]
     pub fn of(parts: &mut [Matcher], rows: &Rows) -> Self {
         Self::at_ticks(parts, rows, &vec![true; rows.len()])
     }
 
-    /// The matches of [`of`](Self::of) at the ticks that are `wanted`; at the others nothing comes near. Costs those ticks and
-    /// the longest match before each.
+    /// Runs the templates of all `parts`, in their order, over rows that are already in their metric: the matches at the
+    /// ticks that are `wanted`; at the others nothing comes near. Parts of templates whose rows fit the processor's cache
+    /// take less time than one of all. O(ticks · template rows · d), of the ticks that are wanted and the longest match before
+    /// each.
     pub fn at_ticks(parts: &mut [Matcher], rows: &Rows, wanted: &[bool]) -> Self {
         let longest = parts.iter().map(Matcher::longest_match).max().unwrap_or(0);
         let templates = parts.iter().map(|part| part.bank().len()).sum();
