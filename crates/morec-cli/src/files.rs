@@ -89,12 +89,16 @@ pub fn say_left_out(listing: &Listing) -> bool {
 }
 
 /// Folders become the clips in them, however deep, in the order of their paths; files stay where they are named. No
-/// output of this run may take the place of any of them.
+/// output of this run may take the place of any of them. What folders hold that cannot be read is said.
 pub fn expand(paths: &[PathBuf]) -> Result<Vec<PathBuf>> {
-    Ok(expand_all(paths)?.clips)
+    let listing = expand_all(paths)?;
+    for FileError { path, kind } in &listing.left_out {
+        eprintln!("morec: {}: left out: {kind}", path.display());
+    }
+    Ok(listing.clips)
 }
 
-/// [`expand`] with what is left out.
+/// [`expand`] with what is left out, which is not said.
 pub fn expand_all(paths: &[PathBuf]) -> Result<Listing> {
     let all = list(paths)?;
     all.clips.iter().for_each(|clip| output::mark_read(clip));

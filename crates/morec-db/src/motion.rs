@@ -6,6 +6,7 @@ use morec::import::{ImportOptions, ImportReport, SignedAxis, Take, normalize};
 use morec::progress::Progress;
 use morec::roles::{Role, RoleMap};
 use morec::smooth::{CompressedClip, SmoothError, SmoothParams, compress};
+use rayon::prelude::*;
 use rusqlite::{OptionalExtension, params};
 
 use crate::{ClipId, DbError, MotionDb};
@@ -132,22 +133,34 @@ impl MotionDb {
     /// # Errors
     /// There is no such clip; its bytes are damaged.
     pub fn clip(&self, id: ClipId) -> Result<StoredClip, DbError> {
+        self.packed(id)?.unpack()
+    }
+
+    /// Several clips' motions, roles and rest poses, unpacked in parallel, in the order of `ids`.
+    ///
+    /// # Errors
+    /// As [`clip`](Self::clip), for the first that fails.
+    pub fn stored_clips(&self, ids: &[ClipId]) -> Result<Vec<StoredClip>, DbError> {
+        let packed: Result<Vec<PackedClip>, DbError> =
+            ids.iter().map(|id| self.packed(*id)).collect();
+        packed?.par_iter().map(PackedClip::unpack).collect()
+    }
+
+    fn packed(&self, id: ClipId) -> Result<PackedClip, DbError> {
         let sql = "SELECT motion, roles, rest_frames, name FROM clips WHERE id = ?1";
-        let row: Option<(Vec<u8>, String, i64, String)> = self
+        let found = self
             .conn
             .prepare_cached(sql)?
             .query_row(params![id.0], |row| {
-                Ok((
-                    row.get("motion")?,
-                    row.get("roles")?,
-                    row.get("rest_frames")?,
-                    row.get("name")?,
-                ))
-            })
-            .optional()?;
-        let (bytes, roles, rest, name) =
-            row.ok_or_else(|| DbError::unknown("clip", &format!("#{}", id.0)))?;
-        unpack(&bytes, &roles, rest, &name)
+                Ok(PackedClip {
+                    motion: row.get("motion")?,
+                    roles: row.get("roles")?,
+                    rest: row.get("rest_frames")?,
+                    name: row.get("name")?,
+                })
+            });
+        let unknown = || DbError::unknown("clip", &format!("#{}", id.0));
+        found.optional()?.ok_or_else(unknown)
     }
 
     /// A clip's motion as it is kept, the bytes of an `.mclip` file.
@@ -158,6 +171,20 @@ impl MotionDb {
             .query_row(params![id.0], |row| row.get(0))
             .optional()?;
         found.ok_or_else(|| DbError::unknown("clip", &format!("#{}", id.0)))
+    }
+}
+
+/// A clip as its row has it.
+struct PackedClip {
+    motion: Vec<u8>,
+    roles: String,
+    rest: i64,
+    name: String,
+}
+
+impl PackedClip {
+    fn unpack(&self) -> Result<StoredClip, DbError> {
+        unpack(&self.motion, &self.roles, self.rest, &self.name)
     }
 }
 

@@ -3,6 +3,8 @@
 //! Rows are those of [`morec::features`] over every bone a clip shows. They are made of the stored motion, so that
 //! making them again gives them again.
 
+use std::time::Duration;
+
 use morec::features::{BoneSet, FeatureParams, RowLayout, Rows, bones_of_clip, rows_of_clip};
 use morec::progress::Progress;
 use rayon::prelude::*;
@@ -84,22 +86,54 @@ impl MotionDb {
         params: &FeatureParams,
         progress: &dyn Progress,
     ) -> Result<Vec<ClipRows>, DbError> {
+        let (whole, missing) = self.rows_at_hand(params)?;
+        let made = match self.is_read_only()? {
+            true => self.make_rows(params, &missing)?,
+            false => self.keep_rows(params, &missing, progress)?,
+        };
+        Ok(in_order(whole, made))
+    }
+
+    /// [`rows`](Self::rows) of a database that is opened for reading only: what has to be made is kept all the same, for the
+    /// next who reads it, by a writer of its own. Where none may write (a file that is read-only, another writer at work, a full
+    /// disk), rows are made and not kept.
+    pub fn rows_kept_if_writable(
+        &self,
+        params: &FeatureParams,
+        progress: &dyn Progress,
+    ) -> Result<Vec<ClipRows>, DbError> {
+        let (whole, missing) = self.rows_at_hand(params)?;
+        let keep = || {
+            let mut writer = Self::open(self.path())?;
+            // Rows are made sooner than another writer ends.
+            writer.conn.busy_timeout(Duration::ZERO)?;
+            writer.keep_rows(params, &missing, progress)
+        };
+        let made = match missing.is_empty() {
+            true => Vec::new(),
+            false => match keep() {
+                Err(DbError::Cancelled) => return Err(DbError::Cancelled),
+                kept => kept.or_else(|_| self.make_rows(params, &missing))?,
+            },
+        };
+        Ok(in_order(whole, made))
+    }
+
+    /// The rows that are kept ready and whole, and the clips whose rows have to be made.
+    fn rows_at_hand(
+        &self,
+        params: &FeatureParams,
+    ) -> Result<(Vec<ClipRows>, Vec<ClipId>), DbError> {
         let recipe = recipe(params);
         let mut missing = self.stale(&recipe)?;
         let kept = self.kept(&recipe)?;
         let (whole, damaged): (Vec<Kept>, Vec<Kept>) =
             kept.into_par_iter().partition(Kept::is_whole);
         missing.extend(damaged.iter().map(|kept| kept.clip));
-        let made = match self.is_read_only()? {
-            true => self.make_rows(params, &missing)?,
-            false => self.keep_rows(params, &missing, progress)?,
-        };
         let unpacked = whole
             .into_par_iter()
             .filter_map(|kept| unpacked(kept.clip, kept.bits, &kept.bytes, params));
-        let mut all: Vec<ClipRows> = unpacked.chain(made).collect();
-        all.sort_by_key(|rows| rows.clip);
-        Ok(all)
+        Ok((unpacked.collect(), missing))
     }
 
     fn kept(&self, recipe: &str) -> Result<Vec<Kept>, DbError> {
@@ -212,6 +246,13 @@ impl MotionDb {
     }
 }
 
+/// Rows of all clips, by their numbers.
+fn in_order(mut some: Vec<ClipRows>, others: Vec<ClipRows>) -> Vec<ClipRows> {
+    some.extend(others);
+    some.sort_by_key(|rows| rows.clip);
+    some
+}
+
 /// Rows as they are read; none of a clip that shows no bone.
 pub(crate) fn unpacked(
     clip: ClipId,
@@ -248,5 +289,36 @@ mod tests {
         for set in [BoneSet::ALL, BoneSet::NONE, BoneSet::NONE.with(0).with(10)] {
             assert_eq!(bones_of_bits(bits(set)), set);
         }
+    }
+
+    /// A database whose kept rows are damaged, and what they were.
+    fn damaged() -> (tempfile::TempDir, MotionDb, Vec<ClipRows>) {
+        let (folder, mut db) = crate::testing::database_of_waves(2);
+        let whole = db.rows(&FeatureParams::default(), &()).unwrap();
+        let sql = "UPDATE feature_rows SET bytes = zeroblob(length(bytes))";
+        db.conn.execute(sql, []).unwrap();
+        assert_eq!(db.check().unwrap().faults.len(), 2);
+        (folder, db, whole)
+    }
+
+    #[test]
+    fn a_reader_keeps_the_rows_it_had_to_make() {
+        let (_folder, db, whole) = damaged();
+        let reader = MotionDb::open_read_only(db.path()).unwrap();
+        let params = FeatureParams::default();
+        assert_eq!(reader.rows_kept_if_writable(&params, &()).unwrap(), whole);
+        assert_eq!(db.check().unwrap().faults, [""; 0]);
+        assert_eq!(reader.rows_at_hand(&params).unwrap(), (whole, Vec::new()));
+    }
+
+    #[test]
+    fn a_reader_beside_a_writer_makes_rows_and_keeps_none() {
+        let (_folder, mut db, whole) = damaged();
+        let reader = MotionDb::open_read_only(db.path()).unwrap();
+        let params = FeatureParams::default();
+        let writing = db.write().unwrap();
+        assert_eq!(reader.rows_kept_if_writable(&params, &()).unwrap(), whole);
+        drop(writing);
+        assert_eq!(db.check().unwrap().faults.len(), 2);
     }
 }

@@ -92,6 +92,13 @@ impl SearchIndex {
         Ok(Self::new(&db.rows(&params, progress)?, params.tick_hz()))
     }
 
+    /// Of a database that is opened for reading only: as [`MotionDb::rows_kept_if_writable`].
+    pub fn of_reader(db: &MotionDb, progress: &dyn Progress) -> Result<Self, DbError> {
+        let params = FeatureParams::default();
+        let rows = db.rows_kept_if_writable(&params, progress)?;
+        Ok(Self::new(&rows, params.tick_hz()))
+    }
+
     /// Rows a second.
     pub fn tick_hz(&self) -> f64 {
         self.tick_hz

@@ -60,8 +60,12 @@ impl JsonSource {
     /// An address without a port, a port that is taken.
     pub fn listen(address: &Address) -> Result<(Self, std::net::SocketAddr), LiveError> {
         address.allow(&[])?;
-        let (lines, at) = Lines::listen(address.socket()?)?;
-        let source = Self::new(lines, false);
+        let notices = Notices::default();
+        let (lines, at) = Lines::listen(address.socket()?, &notices)?;
+        let source = Self {
+            notices,
+            ..Self::new(lines, false)
+        };
         openness(at)
             .into_iter()
             .for_each(|text| source.notices.tell(text));
@@ -136,6 +140,9 @@ impl JsonSource {
                 return SourceEvent::Quiet;
             }
         };
+        if pose.shows_body() {
+            self.lines.showed_body(connection);
+        }
         let Some(actor) = self.performer(connection, pose.actor) else {
             self.counts.refused += 1;
             return SourceEvent::Quiet;
@@ -215,13 +222,19 @@ fn rig_of(known: u32) -> Rig {
 
 #[cfg(test)]
 mod tests {
+    use std::io::Write;
+    use std::net::TcpStream;
+    use std::sync::atomic::{AtomicBool, Ordering};
+
+    use crate::places::CONNECTIONS;
+
     use super::*;
 
     /// One connection cannot take every place, and a place of whom nothing comes is free again.
     #[test]
     fn one_connection_does_not_take_all_places() {
-        let lines = Lines::listen("127.0.0.1:0".parse().unwrap()).unwrap().0;
-        let mut source = JsonSource::new(lines, false);
+        let address: Address = "json+tcp://127.0.0.1:0".parse().unwrap();
+        let mut source = JsonSource::listen(&address).unwrap().0;
         let taken = (0..40)
             .filter_map(|number| source.performer(1, number))
             .count();
@@ -230,5 +243,54 @@ mod tests {
         source.forget_silent(wall_now_secs() + 2.0 * GONE_SECS);
         assert_eq!(source.leaving.len(), NAMES + 1);
         assert!(source.performer(1, 39).is_some() && source.performer(1, 0).is_some());
+    }
+
+    /// Sends `line` over and over, and connects anew when it is turned away, until it is told to stop.
+    fn busy(at: std::net::SocketAddr, line: &str, stop: &AtomicBool) {
+        while !stop.load(Ordering::Relaxed) {
+            let Ok(mut stream) = TcpStream::connect(at) else {
+                continue;
+            };
+            while !stop.load(Ordering::Relaxed) && stream.write_all(line.as_bytes()).is_ok() {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+        }
+    }
+
+    /// Connections that are busy with what is no body do not keep out for ever who shows one, and who shows one stays.
+    #[test]
+    fn busy_connections_that_show_no_body_make_room_for_one_that_does() {
+        let address: Address = "json+tcp://127.0.0.1:0".parse().unwrap();
+        let (mut source, at) = JsonSource::listen(&address).unwrap();
+        let stop = AtomicBool::new(false);
+        let rubbish = ["rubbish\n", "{\"positions\": {\"head\": [0, 1, 0]}}\n"];
+        let names = "hips left_thigh left_shin left_foot right_thigh right_shin right_foot";
+        let places: Vec<String> = (names.split(' '))
+            .map(|name| format!("\"{name}\": [0, 1, 0]"))
+            .collect();
+        let body = format!("{{\"positions\": {{{}}}}}\n", places.join(", "));
+        let mut shown = 0;
+        std::thread::scope(|scope| {
+            for number in 0..2 * CONNECTIONS {
+                let (line, stop) = (rubbish[number % 2], &stop);
+                scope.spawn(move || busy(at, line, stop));
+            }
+            scope.spawn(|| busy(at, &body, &stop));
+            let mut frame = Frame::default();
+            while shown < 100 {
+                if let SourceEvent::Frame = source.next(&mut frame) {
+                    let hips = frame.pose.positions[Role::Hips.index()];
+                    shown += u32::from(hips.x.is_finite());
+                }
+            }
+            stop.store(true, Ordering::Relaxed);
+            // Lines that wait are taken, or their senders would not end.
+            while !matches!(source.lines.next(WAIT), Came::Nothing) {}
+        });
+        let told = source.notices().take().join("\n");
+        assert!(
+            told.contains("a connection from 127.0.0.1 is refused"),
+            "{told}"
+        );
     }
 }

@@ -132,6 +132,12 @@ impl PoseLine {
         Ok(())
     }
 
+    /// True if it shows the hips and five other joints at least: a body that can be recognised.
+    pub fn shows_body(&self) -> bool {
+        let known = self.known();
+        known >> Role::Hips.index() & 1 == 1 && known.count_ones() > 5
+    }
+
     /// The roles whose joints have a place: bit `r` for role `r`.
     pub fn known(&self) -> u32 {
         let known = |p: &Vec3| p.iter().all(|c| c.is_finite());

@@ -36,6 +36,7 @@ mod lines;
 mod network;
 mod notices;
 mod osc;
+mod places;
 mod playable;
 mod sink;
 mod sinks;

@@ -1,14 +1,14 @@
 //! Lines of text from standard input or from whoever connects, each on a thread of its own.
 
 use std::io::{BufRead, BufReader, ErrorKind, Read};
-use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
+use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use crate::LiveError;
 use crate::error::Context;
+use crate::places::{CONNECTIONS, ConnectionPlaces};
+use crate::{LiveError, Notices};
 
 /// A longer line is no pose.
 pub const LONGEST: u64 = 1 << 16;
@@ -16,12 +16,8 @@ pub const LONGEST: u64 = 1 << 16;
 const WAITING: usize = 128;
 /// However long they are, they take little memory.
 const _: () = assert!(WAITING as u64 * LONGEST <= 8 << 20);
-/// Connections at once.
-const CONNECTIONS: usize = 16;
 /// A connection over which no whole line has come for so long is closed.
 const SILENCE: Duration = Duration::from_secs(30);
-/// A connection over which none has come for so long makes room for another, if all places are taken.
-const IDLE: Duration = Duration::from_secs(1);
 
 /// Something that came.
 pub enum Came {
@@ -45,6 +41,7 @@ pub enum Came {
 /// A source of lines.
 pub struct Lines {
     came: Receiver<Came>,
+    places: ConnectionPlaces,
 }
 
 impl Lines {
@@ -54,17 +51,28 @@ impl Lines {
         spawn("standard input", move || {
             forward(0, std::io::stdin().lock(), &sender)
         })?;
-        Ok(Self { came })
+        let places = ConnectionPlaces::default();
+        Ok(Self { came, places })
     }
 
-    /// Whoever connects to `address` over TCP. Returns where it listens, too.
-    pub fn listen(address: SocketAddr) -> Result<(Self, SocketAddr), LiveError> {
+    /// Whoever connects to `address` over TCP. Returns where it listens, too; connections that find no place are named in
+    /// `notices`.
+    pub fn listen(address: SocketAddr, notices: &Notices) -> Result<(Self, SocketAddr), LiveError> {
         let listener = TcpListener::bind(address)
             .with_context(|| format!("cannot listen at {address} (TCP)"))?;
         let at = listener.local_addr().context("TCP socket")?;
         let (sender, came) = sync_channel(WAITING);
-        spawn("connections", move || accept(&listener, &sender))?;
-        Ok((Self { came }, at))
+        let places = ConnectionPlaces::default();
+        let (open, notices) = (places.clone(), notices.clone());
+        spawn("connections", move || {
+            accept(&listener, &sender, &open, &notices)
+        })?;
+        Ok((Self { came, places }, at))
+    }
+
+    /// Notes that a line of `connection` showed a body: it keeps its place by that.
+    pub fn showed_body(&self, connection: u64) {
+        self.places.keep(connection, Instant::now());
     }
 
     /// The next arrival; waits for it a little.
@@ -85,83 +93,55 @@ fn spawn(name: &str, job: impl FnOnce() + Send + 'static) -> Result<(), LiveErro
     Ok(())
 }
 
-/// A connection that is open.
-struct OpenConnection {
-    number: u64,
-    stream: TcpStream,
-    since: Since,
-}
-
-/// When the line under way began to be waited for.
-type Since = Arc<Mutex<Instant>>;
-
-fn lock<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
-    shared.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-fn accept(listener: &TcpListener, sender: &SyncSender<Came>) {
-    let open: Arc<Mutex<Vec<OpenConnection>>> = Arc::default();
+fn accept(
+    listener: &TcpListener,
+    sender: &SyncSender<Came>,
+    places: &ConnectionPlaces,
+    notices: &Notices,
+) {
     for (number, stream) in (1..).zip(listener.incoming()) {
         let Ok(stream) = stream else {
             // Out of files, most likely; others may close theirs.
             thread::sleep(Duration::from_millis(100));
             continue;
         };
-        let since = Arc::new(Mutex::new(Instant::now()));
-        let Ok(copy) = stream.try_clone() else {
+        let (Ok(copy), Ok(from)) = (stream.try_clone(), stream.peer_addr()) else {
             continue;
         };
-        if !make_room(&mut lock(&open)) {
+        if !places.take(number, copy, Instant::now()) {
+            notices.tell(format!(
+                "a connection from {} is refused: {CONNECTIONS} others show bodies or have just come",
+                from.ip()
+            ));
             continue;
         }
-        lock(&open).push(OpenConnection {
-            number,
-            stream: copy,
-            since: since.clone(),
-        });
-        let (sender, others) = (sender.clone(), open.clone());
-        let leave = move || lock(&others).retain(|held| held.number != number);
-        let left = leave.clone();
+        let (sender, open) = (sender.clone(), places.clone());
         let job = move || {
             let patient = Patient {
                 stream,
-                since,
+                since: Instant::now(),
                 silence: SILENCE,
             };
             forward(number, BufReader::new(patient), &sender);
-            left();
+            open.leave(number);
         };
         if spawn("a connection", job).is_err() {
-            leave();
+            places.leave(number);
         }
     }
-}
-
-/// True if there is a place: if need be that of the connection that has brought no line for longest.
-fn make_room(open: &mut Vec<OpenConnection>) -> bool {
-    if open.len() < CONNECTIONS {
-        return true;
-    }
-    let since = |held: &OpenConnection| *lock(&held.since);
-    let idle = (0..open.len()).min_by_key(|at| since(&open[*at]));
-    let Some(idle) = idle.filter(|at| since(&open[*at]).elapsed() > IDLE) else {
-        return false;
-    };
-    // Its thread wakes and ends; if it has ended already, all the better.
-    let _ = open.swap_remove(idle).stream.shutdown(Shutdown::Both);
-    true
 }
 
 /// A connection that must bring a whole line in time: one that sends nothing, or a byte now and then, holds no place.
 struct Patient {
     stream: TcpStream,
-    since: Since,
+    /// When the line under way began to be waited for.
+    since: Instant,
     silence: Duration,
 }
 
 impl Read for Patient {
     fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
-        let waited = lock(&self.since).elapsed();
+        let waited = self.since.elapsed();
         let left = self.silence.saturating_sub(waited);
         if left.is_zero() {
             return Err(ErrorKind::TimedOut.into());
@@ -169,7 +149,7 @@ impl Read for Patient {
         self.stream.set_read_timeout(Some(left))?;
         let count = self.stream.read(buffer)?;
         if buffer[..count].contains(&b'\n') {
-            *lock(&self.since) = Instant::now();
+            self.since = Instant::now();
         }
         Ok(count)
     }
@@ -221,7 +201,7 @@ mod tests {
         let mut client = TcpStream::connect(listener.local_addr().unwrap()).unwrap();
         let mut patient = Patient {
             stream: listener.accept().unwrap().0,
-            since: Arc::new(Mutex::new(Instant::now())),
+            since: Instant::now(),
             silence: SILENCE,
         };
         let hour = Duration::from_secs(3600);
@@ -232,10 +212,10 @@ mod tests {
                 // The machine has been up for less than an hour, and its clock began then.
                 return;
             };
-            *lock(&patient.since) = before;
+            patient.since = before;
             client.write_all(text.as_bytes()).unwrap();
             assert_eq!(patient.read(&mut byte).unwrap(), text.len());
-            assert_eq!(*lock(&patient.since) > before, buys, "{text:?}");
+            assert_eq!(patient.since > before, buys, "{text:?}");
         }
         patient.silence = Duration::from_millis(1);
         assert!(patient.read(&mut byte).is_err(), "nothing came in time");
@@ -244,7 +224,8 @@ mod tests {
     /// Whoever holds every place and brings nothing does not keep out who has something to say.
     #[test]
     fn idle_connections_make_room() {
-        let (mut lines, at) = Lines::listen("127.0.0.1:0".parse().unwrap()).unwrap();
+        let (address, notices) = ("127.0.0.1:0".parse().unwrap(), Notices::default());
+        let (mut lines, at) = Lines::listen(address, &notices).unwrap();
         let _idle: Vec<TcpStream> = (0..2 * CONNECTIONS)
             .map(|_| TcpStream::connect(at).unwrap())
             .collect();

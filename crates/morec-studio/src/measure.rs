@@ -1,4 +1,9 @@
-//! Measures of speed: processor time of a frame (example `frame_time`), time to the first frame (example `start_time`).
+//! Measures of speed: processor time of a frame (example `frame_time`), time to the first frame (example `start_time`),
+//! time from a mark on the live stream to the index trained with it (example `teach_time`).
+
+mod teaching;
+
+pub use teaching::{TeachingTimes, teaching};
 
 use std::sync::Arc;
 use std::time::Instant;

@@ -142,6 +142,10 @@ pub fn install(ctx: &Context) {
             style.spacing.button_padding = Vec2::new(9.0, 4.0);
             style.spacing.interact_size = Vec2::new(28.0, 24.0);
             style.spacing.indent = 14.0;
+            // What is out of sight must show that it is there.
+            style.spacing.scroll.dormant_handle_opacity = 0.5;
+            style.spacing.scroll.floating_width = 4.0;
+            style.spacing.scroll.floating_allocated_width = 6.0;
             style.interaction.tooltip_delay = 0.4;
             style.animation_time = 0.08;
             style.text_styles = [

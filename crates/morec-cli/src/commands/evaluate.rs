@@ -157,7 +157,8 @@ impl Args {
         founds: &[ClipDetection],
     ) -> anyhow::Result<Vec<Miss>> {
         let model = open_index(index)?.model;
-        let paths = files::expand(&self.clips)?;
+        // What is left out was said when they were recognised.
+        let paths = files::expand_all(&self.clips)?.clips;
         let clips = load_clips(&paths, &self.read, &ImportOptions::default())?;
         let misses_in = |loaded: &LoadedClip| {
             let clip = &loaded.clip;

@@ -7,6 +7,7 @@ mod devices;
 #[cfg(unix)]
 mod documents;
 mod evaluate;
+mod folders;
 mod inspect;
 mod kit;
 mod labels;

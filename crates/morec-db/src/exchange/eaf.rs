@@ -81,7 +81,9 @@ pub fn read(text: &str, clip: Option<&str>) -> Result<ReadLabels, ParseError> {
             let value = annotation
                 .descendants()
                 .find(|n| n.has_tag_name("ANNOTATION_VALUE"));
-            let class = value.and_then(|v| v.text()).unwrap_or("").trim().to_owned();
+            // Blanks about what somebody typed mean nothing; in what morec wrote they are part of the name.
+            let text = value.and_then(|v| v.text()).unwrap_or("");
+            let class = if ours { text } else { text.trim() }.to_owned();
             let extent = slot("TIME_SLOT_REF1").zip(slot("TIME_SLOT_REF2"));
             let Some((start, stop)) = extent.filter(|(start, stop)| *start >= 0.0 && stop > start)
             else {
@@ -152,6 +154,8 @@ fn clip_of(root: Node) -> Option<String> {
     )
 }
 
+/// A text as XML has it, in elements and in attributes: readers make spaces of line ends and tabs that are not written
+/// as numbers.
 fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -160,15 +164,33 @@ fn escaped(text: &str) -> String {
             '<' => out.push_str("&lt;"),
             '>' => out.push_str("&gt;"),
             '"' => out.push_str("&quot;"),
+            '\n' | '\r' | '\t' => {
+                let _ = write!(out, "&#{};", u32::from(c));
+            }
             c => out.push(c),
         }
     }
     out
 }
 
+/// An error for a text with a character that XML 1.0 does not have (section 2.2).
+fn writable(text: &str) -> Result<(), String> {
+    let fits = |c: &char| !matches!(c, '\0'..='\x08' | '\x0b' | '\x0c' | '\x0e'..='\x1f' | '\u{fffe}' | '\u{ffff}');
+    match text.chars().find(|c| !fits(c)) {
+        Some(c) => Err(format!(
+            "{text:?}: ELAN files are XML, which cannot hold the character {c:?}"
+        )),
+        None => Ok(()),
+    }
+}
+
 pub fn write(annotations: &[Annotation], lengths: &ClipLengths) -> Result<String, String> {
     let mut tiers: Vec<Tier> = Vec::new();
     for a in annotations {
+        [Some(&a.clip), Some(&a.class), a.person.as_ref()]
+            .into_iter()
+            .flatten()
+            .try_for_each(|text| writable(text))?;
         let (start, stop) = secs(a, lengths)?;
         let millis = |secs: f64| (secs * 1000.0).round() as i64;
         let (start, stop) = (millis(start), millis(stop).max(millis(start) + 1));
@@ -198,7 +220,8 @@ struct Tier<'a> {
 }
 
 fn document(clip: &str, rate_hz: Option<f64>, tiers: &[Tier<'_>]) -> String {
-    let (mut slots, mut body) = (String::new(), String::new());
+    let mut slots: Vec<(i64, usize)> = Vec::new();
+    let mut body = String::new();
     let mut number = 0;
     for (index, tier) in tiers.iter().enumerate() {
         let name = tier_name(tier.state);
@@ -220,11 +243,7 @@ fn document(clip: &str, rate_hz: Option<f64>, tiers: &[Tier<'_>]) -> String {
         for (start, stop, class) in &tier.rows {
             number += 1;
             let (a, b) = (2 * number - 1, 2 * number);
-            let slot = "        <TIME_SLOT TIME_SLOT_ID";
-            let _ = writeln!(
-                slots,
-                "{slot}=\"ts{a}\" TIME_VALUE=\"{start}\"/>\n{slot}=\"ts{b}\" TIME_VALUE=\"{stop}\"/>"
-            );
+            slots.extend([(*start, a), (*stop, b)]);
             let _ = writeln!(
                 body,
                 "        <ANNOTATION><ALIGNABLE_ANNOTATION ANNOTATION_ID=\"a{number}\" TIME_SLOT_REF1=\"ts{a}\" \
@@ -234,6 +253,12 @@ fn document(clip: &str, rate_hz: Option<f64>, tiers: &[Tier<'_>]) -> String {
         }
         body.push_str("    </TIER>\n");
     }
+    // ELAN has them in the order of their times, whatever tiers they are of.
+    slots.sort_unstable();
+    let slot = |(millis, id): (i64, usize)| {
+        format!("        <TIME_SLOT TIME_SLOT_ID=\"ts{id}\" TIME_VALUE=\"{millis}\"/>\n")
+    };
+    let slots: String = slots.into_iter().map(slot).collect();
     let rate = rate_hz.map_or_else(String::new, |rate| {
         format!("        <PROPERTY NAME=\"{RATE}\">{rate}</PROPERTY>\n")
     });
@@ -251,3 +276,6 @@ fn document(clip: &str, rate_hz: Option<f64>, tiers: &[Tier<'_>]) -> String {
         escaped(clip)
     )
 }
+
+#[cfg(test)]
+mod tests;

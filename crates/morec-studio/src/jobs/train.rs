@@ -14,7 +14,7 @@ use morec::train::{
     everyday_clips, train,
 };
 use morec_db::labels::{SampleFilter, SampleState};
-use morec_db::{ClipFilter, DbError, MotionDb};
+use morec_db::{ClipFilter, ClipId, ClipInfo, DbError, MotionDb, StoredClip};
 
 use super::progress::{JobError, JobProgress};
 
@@ -52,20 +52,19 @@ pub fn material(path: &Path, classes: &[String]) -> Result<TrainingData, DbError
     let mut names: Vec<&str> = samples.iter().map(|s| s.clip.as_str()).collect();
     names.sort_unstable();
     names.dedup();
-    let mut clips = Vec::new();
-    for info in db.clips(&ClipFilter::default())? {
-        if names.binary_search(&info.name.as_str()).is_ok() {
-            let stored = db.clip(info.id)?;
-            clips.push(TrainClip {
-                name: info.name,
-                clip: stored.clip,
-                roles: stored.roles,
-                rest: stored.rest,
-                source: StreamKind::Labelled,
-                person: info.subject,
-            });
-        }
-    }
+    let mut infos = db.clips(&ClipFilter::default())?;
+    infos.retain(|info| names.binary_search(&info.name.as_str()).is_ok());
+    let ids: Vec<ClipId> = infos.iter().map(|info| info.id).collect();
+    let stored = db.stored_clips(&ids)?;
+    let clip = |(info, stored): (ClipInfo, StoredClip)| TrainClip {
+        name: info.name,
+        clip: stored.clip,
+        roles: stored.roles,
+        rest: stored.rest,
+        source: StreamKind::Labelled,
+        person: info.subject,
+    };
+    let clips = infos.into_iter().zip(stored).map(clip).collect();
     let mut classes: Vec<String> = samples.iter().map(|s| s.class.clone()).collect();
     classes.sort();
     classes.dedup();

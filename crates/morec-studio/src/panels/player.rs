@@ -9,9 +9,22 @@ use crate::theme::Colours;
 
 pub const HEIGHT: f32 = 34.0;
 
+/// Width below which the clip's name has no room beside the time.
+const NARROW: f32 = 480.0;
+
+/// The name of the clip that is shown, on a line of its own where [`transport`] has no room for it.
+pub fn name_below(ui: &mut Ui, state: &State) {
+    if let Some(clip) = state.shown_clip()
+        && ui.available_width() < NARROW
+    {
+        ui.add(egui::Label::new(RichText::new(&clip.name).strong()).truncate());
+    }
+}
+
 pub fn transport(ui: &mut Ui, state: &State, out: Out) {
     let c = Colours::now(ui);
     let player = &state.player;
+    let wide = ui.available_width() >= NARROW;
     ui.allocate_ui_with_layout(
         Vec2::new(ui.available_width(), HEIGHT),
         Layout::left_to_right(Align::Center),
@@ -118,8 +131,7 @@ pub fn transport(ui: &mut Ui, state: &State, out: Out) {
                 ui.label(frame.color(c.muted).size(12.0));
             }
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                let room = ui.available_width() > 50.0;
-                if let Some(clip) = state.shown_clip().filter(|_| room) {
+                if let Some(clip) = state.shown_clip().filter(|_| wide) {
                     ui.add(egui::Label::new(RichText::new(&clip.name).strong()).truncate());
                 }
             });

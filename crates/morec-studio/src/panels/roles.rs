@@ -30,14 +30,16 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
     }
     asked(ui, state, motion, out);
     let joints = motion.clip.skeleton.joints();
+    const BETWEEN: f32 = 8.0;
+    let width = (0.5 * (ui.available_width() - BETWEEN)).clamp(150.0, 280.0);
     Grid::new("roles")
         .num_columns(2)
-        .spacing([8.0, 1.0])
+        .spacing([BETWEEN, 1.0])
         .show(ui, |ui| {
             for (at, role) in Role::ALL.into_iter().enumerate() {
                 let joint = motion.roles.joint(role).and_then(|j| joints.get(j));
                 let name = joint.map_or("—", |j| j.name.as_str());
-                part(ui, state, role, name, out);
+                part(ui, state, role, name, width, out);
                 if at % 2 == 1 {
                     ui.end_row();
                 }
@@ -90,10 +92,9 @@ fn asked(ui: &mut Ui, state: &State, motion: &ClipMotion, out: Out) {
     });
 }
 
-fn part(ui: &mut Ui, state: &State, role: Role, joint: &str, out: Out) {
+fn part(ui: &mut Ui, state: &State, role: Role, joint: &str, width: f32, out: Out) {
     let c = Colours::now(ui);
     let on = state.library.role == Some(role);
-    let width = (0.5 * ui.available_width()).clamp(150.0, 240.0);
     let (rect, response) = ui.allocate_exact_size(Vec2::new(width, 19.0), Sense::click());
     let name = role.name().replace('_', " ");
     widgets::named(

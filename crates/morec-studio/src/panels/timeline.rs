@@ -36,11 +36,14 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
     let ruler = Rect::from_min_size(area.min, Vec2::new(area.width(), RULER));
     draw_ruler(ui, ruler, state, &scale, out);
     let body = Rect::from_min_max(pos2(area.left(), ruler.bottom() + 2.0), area.max);
+    let pointer = ui.input(|i| i.pointer.hover_pos());
+    let on_names = pointer.is_some_and(|at| body.contains(at) && at.x < scale.left);
     ui.scope_builder(egui::UiBuilder::new().max_rect(body), |ui| {
         ScrollArea::vertical()
             .auto_shrink(false)
             .scroll_source(egui::scroll_area::ScrollSource {
-                mouse_wheel: false,
+                // Over the tracks the wheel zooms.
+                mouse_wheel: on_names,
                 ..Default::default()
             })
             .show(ui, |ui| {
@@ -104,11 +107,11 @@ fn tools(ui: &mut Ui, state: &State, out: Out) {
     });
 }
 
-/// Wheel and pinch zoom, sideways wheel and Shift pan.
+/// Wheel and pinch zoom, sideways wheel and Shift pan; over the names of the tracks the wheel scrolls these.
 fn navigate(ui: &Ui, area: Rect, scale: &Scale, out: Out) {
     let Some(pointer) = ui
         .input(|i| i.pointer.hover_pos())
-        .filter(|p| area.contains(*p))
+        .filter(|p| area.contains(*p) && p.x >= scale.left)
     else {
         return;
     };

@@ -41,6 +41,7 @@ pub fn clip_over_transport(ui: &mut Ui, state: &State, height: f32, out: Out) {
     });
     ui.advance_cursor_after_rect(rect);
     player::transport(ui, state, out);
+    player::name_below(ui, state);
 }
 
 /// Draws the performer of the clip that is shown.

@@ -241,6 +241,10 @@ impl State {
     }
 
     fn show(&mut self, panel: Panel) {
+        if panel != self.panel {
+            // What was said of the panel before says nothing of this one.
+            self.said.clear();
+        }
         self.panel = panel;
         if panel != Panel::Label {
             self.release_keys();

@@ -118,8 +118,12 @@ impl StoreWorker {
     }
 }
 
-/// An error as a sentence: with a capital, without a full stop.
+/// An error as a sentence: with a capital, without a full stop. A name that it begins with (`moves.mdb: …`) stays as it is.
 pub fn sentence(text: &str) -> String {
+    let first = text.split(' ').next().unwrap_or_default();
+    if first.ends_with(':') {
+        return text.to_owned();
+    }
     let mut letters = text.chars();
     match letters.next() {
         Some(first) => first.to_uppercase().chain(letters).collect(),

@@ -17,8 +17,14 @@ fn a_file_that_is_no_database_gives_a_sentence() {
     .unwrap();
     let person = Person::before(&[path]);
     assert!(person.state().store.is_none());
-    assert!(person.sees_part("another kind of file"));
+    assert!(person.sees_part("text.mdb: expected a motion database, found another kind of file"));
     assert!(person.sees("Open a database …"), "and what to do");
+    let broken = folder.path().join("broken.mdb");
+    let whole = std::fs::read(made(folder.path(), 1)).unwrap();
+    std::fs::write(&broken, &whole[..whole.len() / 3]).unwrap();
+    let person = Person::before(&[broken]);
+    assert!(person.sees_part("broken.mdb: the database is damaged"));
+    assert!(person.sees_part("import its clips again"), "and what to do");
     let person = Person::before(&[folder.path().join("nowhere.mdb")]);
     assert!(person.sees_part("there is no such file"));
 }

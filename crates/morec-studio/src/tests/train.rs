@@ -83,6 +83,39 @@ fn classes_are_chosen_and_changed_labels_are_said() {
 }
 
 #[test]
+fn a_cross_validation_is_stopped_and_leaves_what_was_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 3)]);
+    person.goes_to(Panel::Train);
+    person.click("Cross-validate");
+    assert!(person.state().is_judging() && person.sees("Judging …"));
+    person.click("Stop");
+    person.settle();
+    assert!(!person.state().is_judging());
+    assert!(person.state().train.judged.is_none());
+    assert!(person.sees("Judging: stopped"));
+    // It can be begun again, and stopping another leaves the result of the first.
+    person.click("Cross-validate");
+    person.settle();
+    let moments = |person: &Person| {
+        person
+            .state()
+            .train
+            .judged
+            .as_ref()
+            .unwrap()
+            .moments
+            .clone()
+    };
+    let judged = moments(&person);
+    person.click("Cross-validate");
+    person.click("Stop");
+    person.settle();
+    assert!(person.sees("Judging: stopped"));
+    assert_eq!(moments(&person), judged);
+}
+
+#[test]
 fn classes_with_few_labels_are_named_to_be_taught_next() {
     let folder = tempfile::tempdir().unwrap();
     let mut person = Person::before(&[made(folder.path(), 1)]);

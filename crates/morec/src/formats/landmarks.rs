@@ -4,6 +4,8 @@
 //! There is no common form, so the first list is taken that looks so; fields called `world` come first, as the others hold
 //! places in the picture.
 
+mod rows;
+
 use std::collections::HashMap;
 
 use serde_json::{Map, Value};
@@ -13,7 +15,6 @@ use super::table::{axis_of, to_seconds};
 use super::timing::{self, Clock};
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::math::Vec3;
-use crate::roles::points::numbered_counts;
 
 /// Frames a second of a document without times.
 const ASSUMED_HZ: f64 = 30.0;
@@ -71,9 +72,10 @@ const MOST_BODIES: usize = 6;
 /// True if a document holds bodies of one moment, or says that nobody was there.
 #[cfg(feature = "files")]
 pub(crate) fn is_one_frame(bytes: &[u8]) -> bool {
-    let Ok(document) = serde_json::from_slice::<Value>(bytes) else {
+    let Ok(mut document) = serde_json::from_slice::<Value>(bytes) else {
         return false;
     };
+    rows::into_points(&mut document, None);
     let empty = |list: &Value| list.as_array().is_some_and(Vec::is_empty);
     let nobody = ["people", "bodies"]
         .iter()
@@ -94,7 +96,9 @@ pub fn read(
     rate_hz: Option<f64>,
     limits: &Limits,
 ) -> Result<Loaded, ParseError> {
-    let document = parse(bytes)?;
+    let mut document = parse(bytes)?;
+    let names = names_in(&document, DEEPEST);
+    rows::into_points(&mut document, names.as_ref().map(Vec::len));
     let by_name = tracks_in(&document, DEEPEST);
     let frames = frames_in(&document, DEEPEST)
         .or_else(|| by_name.as_ref().map(|frames| frames.iter().collect()))
@@ -107,7 +111,6 @@ pub fn read(
         );
         warnings.push(Warning::new(Place::File, text));
     }
-    let names = names_in(&document, DEEPEST);
     let mut points: Vec<Point> = Vec::new();
     let mut times = Vec::with_capacity(frames.len());
     for (at, frame) in frames.iter().enumerate() {
@@ -186,6 +189,13 @@ fn parse(bytes: &[u8]) -> Result<Value, ParseError> {
 
 fn no_frames(document: &Value) -> ParseError {
     let expected = "a list of frames, each with at least 5 points that have x, y and z";
+    if let Some(count) = rows::unknown(document) {
+        let found = format!(
+            "{count} numbers in a row, which are no set of points that is known: give each point as [x, y, z], or the names of \
+             all in a list `joint_names`"
+        );
+        return ParseError::new(Place::File, expected, found);
+    }
     let found = match is_flat(document, DEEPEST) {
         true => {
             "points in two dimensions: a direction in space needs three (triangulate several views and give TRC, C3D or a table)"
@@ -338,9 +348,6 @@ fn names_in(value: &Value, depth: usize) -> Option<Vec<String>> {
 
 /// Values within a list or an object, those that say `world` first, without those that say how something is turned.
 fn children(value: &Value) -> impl Iterator<Item = &Value> {
-    const TURNED: [&str; 8] = [
-        "orient", "rotation", "quat", "euler", "angle", "velocit", "accel", "2d",
-    ];
     let (list, object) = match value {
         Value::Array(list) => (Some(list.iter()), None),
         Value::Object(object) => (None, Some(object)),
@@ -353,7 +360,7 @@ fn children(value: &Value) -> impl Iterator<Item = &Value> {
             let in_space = ["world", "3d", "position"]
                 .iter()
                 .any(|word| key.contains(word));
-            in_space == world && !TURNED.iter().any(|word| key.contains(word))
+            in_space == world && !rows::is_no_place(&key)
         });
         fields.map(|(_, child)| child)
     };
@@ -369,44 +376,8 @@ fn points_in(value: &Value, depth: usize) -> Option<Vec<(String, Vec3)>> {
         return None;
     }
     point_list(value)
-        .or_else(|| points_in_a_row(value))
         .or_else(|| points_in_fields(value))
         .or_else(|| children(value).find_map(|child| points_in(child, depth - 1)))
-}
-
-/// Numbers without brackets between the points, in a field that says that they are in space: x, y, z, or these and how sure
-/// the tracker was.
-fn points_in_a_row(value: &Value) -> Option<Vec<(String, Vec3)>> {
-    let fields = value.as_object()?;
-    let in_space = |key: &str, list: &Value| {
-        let key = key.to_lowercase();
-        // The Panoptic Studio's `joints19` has four numbers for each of 19.
-        let count = key.strip_prefix("joints").and_then(|n| n.parse().ok());
-        let length = list.as_array().map(Vec::len);
-        ["3d", "world"].iter().any(|word| key.contains(word))
-            || count.is_some_and(|count: usize| length == count.checked_mul(4))
-    };
-    fields
-        .iter()
-        .filter(|(key, list)| in_space(key, list))
-        .find_map(|(_, list)| {
-            let numbers: Option<Vec<f64>> = list.as_array()?.iter().map(Value::as_f64).collect();
-            let numbers = numbers?;
-            let known = |width: usize| {
-                let fits = |count: usize| count * width == numbers.len();
-                numbered_counts().any(fits).then_some(width)
-            };
-            let width = known(4)
-                .filter(|_| known(3).is_none())
-                .or_else(|| known(3))?;
-            let point = |(number, at): (usize, &[f64])| {
-                // A tracker that is not sure at all has seen nothing.
-                let seen = at.get(3) != Some(&0.0);
-                let place = Vec3::new(at[0], at[1], at[2]);
-                (number.to_string(), if seen { place } else { UNSEEN })
-            };
-            Some(numbers.chunks_exact(width).enumerate().map(point).collect())
-        })
 }
 
 /// A record as tables have it: `{"nose_x": 0.1, "nose_y": 0.9, "nose_z": 0.0, …}`.

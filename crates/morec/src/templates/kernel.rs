@@ -164,6 +164,44 @@ pub fn combination(lines: &[f32], row: &[f32], out: &mut [f32]) {
     }
 }
 
+/// Numbers whose squares are summed side by side, each place in a sum of its own.
+const SUMS: usize = 4;
+
+/// `|m|²` of the mean `m = (end − start) · share`, in [`SUMS`] partial sums.
+#[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
+pub fn square_of_mean(end: &[f64], start: &[f64], share: f64) -> f64 {
+    let mut sums = [0.0; SUMS];
+    let (mut ends, mut starts) = (end.chunks_exact(SUMS), start.chunks_exact(SUMS));
+    for (end, start) in ends.by_ref().zip(starts.by_ref()) {
+        for lane in 0..SUMS {
+            let value = (end[lane] - start[lane]) * share;
+            sums[lane] += value * value;
+        }
+    }
+    let rest = ends.remainder().iter().zip(starts.remainder());
+    let rest = rest.map(|(end, start)| (end - start) * share);
+    sums.iter().sum::<f64>() + rest.map(|value| value * value).sum::<f64>()
+}
+
+/// `|m − point|²` of the mean `m = (end − start) · share`, in [`SUMS`] partial sums.
+#[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
+pub fn offset_of_mean(end: &[f64], start: &[f64], share: f64, point: &[f32]) -> f64 {
+    let mut sums = [0.0; SUMS];
+    let (mut ends, mut starts) = (end.chunks_exact(SUMS), start.chunks_exact(SUMS));
+    let mut points = point.chunks_exact(SUMS);
+    for ((end, start), point) in ends.by_ref().zip(starts.by_ref()).zip(points.by_ref()) {
+        for lane in 0..SUMS {
+            let value = (end[lane] - start[lane]) * share - f64::from(point[lane]);
+            sums[lane] += value * value;
+        }
+    }
+    let rest = ends.remainder().iter().zip(starts.remainder());
+    let rest = rest
+        .zip(points.remainder())
+        .map(|((end, start), point)| (end - start) * share - f64::from(*point));
+    sums.iter().sum::<f64>() + rest.map(|value| value * value).sum::<f64>()
+}
+
 /// The place of the smallest `total[i] / (rows + i)`, the first of equals, and that quotient; infinite of nothing.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 pub fn least_mean(total: &[f32], rows: usize) -> (usize, f32) {
@@ -236,6 +274,23 @@ mod tests {
             let square = |row: &&[f32]| row.iter().zip(&z).fold(0.0, |sum, (t, v)| sum + (t - v) * (t - v));
             let plain: Vec<f32> = rows.iter().map(square).collect();
             prop_assert_eq!(bits(&out.as_flattened()[..rows.len()]), bits(&plain));
+        }
+
+        #[test]
+        fn means_are_apart_by_four_partial_sums(values in values(3 * 23), dim in 0usize..23, share in 0.01f64..1.0) {
+            let of = |part: usize| -> Vec<f64> { values[23 * part..][..dim].iter().map(|v| f64::from(*v) * 1.7).collect() };
+            let (end, start, point) = (of(0), of(1), &values[46..46 + dim]);
+            let sum = |term: &dyn Fn(usize) -> f64| {
+                let mut sums = [0.0f64; SUMS];
+                let whole = dim - dim % SUMS;
+                (0..whole).for_each(|i| sums[i % SUMS] += term(i) * term(i));
+                sums.iter().sum::<f64>() + (whole..dim).map(|i| term(i) * term(i)).sum::<f64>()
+            };
+            let mean = |i: usize| (end[i] - start[i]) * share;
+            let square = square_of_mean(&end, &start, share);
+            prop_assert_eq!(square.to_bits(), sum(&mean).to_bits());
+            let offset = offset_of_mean(&end, &start, share, point);
+            prop_assert_eq!(offset.to_bits(), sum(&|i| mean(i) - f64::from(point[i])).to_bits());
         }
 
         #[test]

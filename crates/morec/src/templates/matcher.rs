@@ -92,10 +92,19 @@ impl Matcher {
     /// Match of template `index` to a stretch that ends with the last tick; `stretches` has taken the same rows.
     /// O(d).
     pub fn compare(&self, index: usize, stretches: &mut Stretches) -> NormalizedMatch {
-        let near = self.nearness(index, stretches);
+        self.compare_match(index, self.bank.matched(index), stretches)
+    }
+
+    /// [`compare`](Self::compare) with the match as [`TemplateBank::matched`] gave it, whatever the bank has gone on to.
+    pub fn compare_match(
+        &self,
+        index: usize,
+        matched: Match,
+        stretches: &mut Stretches,
+    ) -> NormalizedMatch {
         NormalizedMatch {
-            rest_share: self.rest_share(index, near.age, stretches),
-            ..near
+            rest_share: self.rest_share(index, matched, stretches),
+            ..self.nearness(index, matched, stretches)
         }
     }
 
@@ -108,20 +117,25 @@ impl Matcher {
         share: f32,
         stretches: &mut Stretches,
     ) -> Option<NormalizedMatch> {
-        let near = self.nearness(index, stretches);
+        let matched = self.bank.matched(index);
+        let near = self.nearness(index, matched, stretches);
         if near.distance >= distance {
             return None;
         }
         let found = NormalizedMatch {
-            rest_share: self.rest_share(index, near.age, stretches),
+            rest_share: self.rest_share(index, matched, stretches),
             ..near
         };
         found.moves(share).then_some(found)
     }
 
     /// A match that is not compared with a body at rest.
-    fn nearness(&self, index: usize, stretches: &mut Stretches) -> NormalizedMatch {
-        let Match { distance, age } = self.bank.matched(index);
+    fn nearness(
+        &self,
+        index: usize,
+        Match { distance, age }: Match,
+        stretches: &mut Stretches,
+    ) -> NormalizedMatch {
         let mut found = NormalizedMatch {
             distance: FAR,
             age,
@@ -136,8 +150,12 @@ impl Matcher {
     }
 
     /// The distance of template `index` as a share of a motionless body's.
-    fn rest_share(&self, index: usize, age: usize, stretches: &Stretches) -> f32 {
-        let distance = self.bank.matched(index).distance;
+    fn rest_share(
+        &self,
+        index: usize,
+        Match { distance, age }: Match,
+        stretches: &Stretches,
+    ) -> f32 {
         if distance >= FAR {
             return f32::MAX;
         }

@@ -1,5 +1,7 @@
 //! Means and spreads of the stretches of a stream that end now.
 
+use super::kernel;
+
 /// Sums of a stream's rows at each of its last ticks, from which the mean and the spread of any stretch that ends now
 /// follow. Two sets of templates that are matched against the same stream share one.
 ///
@@ -65,7 +67,7 @@ impl Stretches {
         let (end, start, share) = self.of(age);
         let last = self.width - 1;
         let square = (end[last] - start[last]) * share;
-        let mean = sum_of_squares(last, |i| (end[i] - start[i]) * share);
+        let mean = kernel::square_of_mean(&end[..last], &start[..last], share);
         (square - mean).max(0.0) as f32
     }
 
@@ -73,7 +75,7 @@ impl Stretches {
     pub fn mean_offset(&self, age: usize, point: &[f32]) -> f32 {
         let (end, start, share) = self.of(age);
         let dim = self.width - 1;
-        sum_of_squares(dim, |i| (end[i] - start[i]) * share - f64::from(point[i])) as f32
+        kernel::offset_of_mean(&end[..dim], &start[..dim], share, point) as f32
     }
 
     /// Sums at the end and before the start of the last `age + 1` rows, and one over their number.
@@ -83,20 +85,4 @@ impl Stretches {
         let share = 1.0 / (self.ticks - start).max(1) as f64;
         (at(self.ticks), at(start), share)
     }
-}
-
-/// Sum of `term(i)²` for `i` in `0..count`, in four partial sums, so that the order of additions does not keep them from
-/// running side by side.
-fn sum_of_squares(count: usize, term: impl Fn(usize) -> f64) -> f64 {
-    const LANES: usize = 4;
-    let mut sums = [0.0; LANES];
-    let whole = count - count % LANES;
-    for first in (0..whole).step_by(LANES) {
-        for (lane, sum) in sums.iter_mut().enumerate() {
-            let value = term(first + lane);
-            *sum += value * value;
-        }
-    }
-    let rest: f64 = (whole..count).map(|i| term(i) * term(i)).sum();
-    sums.iter().sum::<f64>() + rest
 }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::decode::FAR;
 use crate::features::Rows;
-use crate::templates::{Match, Matcher, Stretches};
+use crate::templates::{Match, Matcher, NormalizedMatch, Stretches};
 
 use super::params::TrainParams;
 use super::set::{StreamKind, TrainSample, TrainStream, overlap_share};
@@ -25,30 +25,102 @@ struct Compared {
     rest_share: f32,
 }
 
+impl Compared {
+    const NOTHING: Self = Self {
+        distance: FAR,
+        age: 0,
+        rest_share: f32::MAX,
+    };
+
+    fn of(found: NormalizedMatch) -> Self {
+        Self {
+            distance: found.distance,
+            age: found.age as u32,
+            rest_share: found.rest_share,
+        }
+    }
+}
+
+/// Ticks that one part of the templates takes before the next: its rows come from the cache after the first of them.
+const TICKS_AT_ONCE: usize = 32;
+
+/// Ticks to step through so that those that are `wanted` have the matches of the whole stream: a path is at most `lead`
+/// ticks long.
+fn spans(wanted: &[bool], lead: usize) -> Vec<Range<usize>> {
+    let mut spans: Vec<Range<usize>> = Vec::new();
+    for tick in (0..wanted.len()).filter(|tick| wanted[*tick]) {
+        let start = tick.saturating_sub(lead);
+        match spans.last_mut() {
+            Some(last) if start <= last.end => last.end = tick + 1,
+            _ => spans.push(start..tick + 1),
+        }
+    }
+    spans
+}
+
 impl TemplateDistances {
-    /// Runs `matcher` over rows that are already in its metric. O(ticks · template rows · d).
-    pub fn of(matcher: &mut Matcher, rows: &Rows) -> Self {
-        matcher.reset();
-        let mut stretches = Stretches::new(rows.dim(), matcher.longest_match());
-        let templates = matcher.bank().len();
-        let mut matches = Vec::with_capacity(rows.len() * templates);
-        for row in rows.iter() {
-            matcher.step(row);
-            stretches.push(row);
-            matches.extend((0..templates).map(|template| {
-                let found = matcher.compare(template, &mut stretches);
-                Compared {
-                    distance: found.distance,
-                    age: found.age as u32,
-                    rest_share: found.rest_share,
+    /// Matches at every tick.
+    #[cfg(test)]
+    pub fn of(parts: &mut [Matcher], rows: &Rows) -> Self {
+        Self::at_ticks(parts, rows, &vec![true; rows.len()])
+    }
+
+    /// Runs the templates of all `parts`, in their order, over rows that are already in their metric: the matches at the
+    /// ticks that are `wanted`; at the others nothing comes near. Parts of templates whose rows fit the processor's cache
+    /// take less time than one of all. O(ticks · template rows · d), of the ticks that are wanted and the longest match before
+    /// each.
+    pub fn at_ticks(parts: &mut [Matcher], rows: &Rows, wanted: &[bool]) -> Self {
+        let longest = parts.iter().map(Matcher::longest_match).max().unwrap_or(0);
+        let templates = parts.iter().map(|part| part.bank().len()).sum();
+        let mut stretches = Stretches::new(rows.dim(), longest);
+        let mut matches = vec![Compared::NOTHING; rows.len() * templates];
+        let mut matched = vec![Vec::new(); parts.len()];
+        let mut pushed = 0;
+        // Transitions look two ticks back.
+        for span in spans(wanted, longest + 2) {
+            parts.iter_mut().for_each(Matcher::reset);
+            for first in span.clone().step_by(TICKS_AT_ONCE) {
+                let ticks = first..(first + TICKS_AT_ONCE).min(span.end);
+                for (part, matched) in parts.iter_mut().zip(&mut matched) {
+                    matched.clear();
+                    for tick in ticks.clone() {
+                        part.step(rows.row(tick));
+                        let bank = part.bank();
+                        matched.extend((0..bank.len()).map(|template| bank.matched(template)));
+                    }
                 }
-            }));
+                for tick in ticks {
+                    // Sums run over the whole stream, or they would round otherwise.
+                    while pushed <= tick {
+                        stretches.push(rows.row(pushed));
+                        pushed += 1;
+                    }
+                    if !wanted[tick] {
+                        continue;
+                    }
+                    let mut here = matches[tick * templates..][..templates].iter_mut();
+                    for (part, matched) in parts.iter().zip(&matched) {
+                        let count = part.bank().len();
+                        let found = &matched[(tick - first) * count..][..count];
+                        for ((template, found), out) in found.iter().enumerate().zip(&mut here) {
+                            *out =
+                                Compared::of(part.compare_match(template, *found, &mut stretches));
+                        }
+                    }
+                }
+            }
         }
         Self {
             templates,
             matches,
             rest_share: 0.0,
         }
+    }
+
+    /// For each tick, whether some match that counts is nearer than `distance`.
+    pub fn ticks_within(&self, distance: f64) -> Vec<bool> {
+        let is_near = |tick| f64::from(self.nearest(tick, |_| true).distance) < distance;
+        (0..self.len()).map(is_near).collect()
     }
 
     /// Lets matches count below this share of a motionless body's distance only.
@@ -166,4 +238,54 @@ fn keep_apart(mut found: Vec<NearMiss>) -> Vec<NearMiss> {
         }
     }
     kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn rows(len: std::ops::Range<usize>) -> impl Strategy<Value = Rows> {
+        len.prop_flat_map(|n| prop::collection::vec((-3.0f32..3.0).prop_map(|v| v * 1.1), 2 * n))
+            .prop_map(|v| Rows::from_values(2, v))
+    }
+
+    fn bits(distances: &TemplateDistances, tick: usize) -> Vec<(u32, u32, u32)> {
+        let here = &distances.matches[tick * distances.templates..][..distances.templates];
+        let bits = |m: &Compared| (m.distance.to_bits(), m.age, m.rest_share.to_bits());
+        here.iter().map(bits).collect()
+    }
+
+    proptest! {
+        /// Parts and spans change no bit of what is asked for, against one matcher that takes tick after tick.
+        #[test]
+        fn parts_and_spans_give_the_matches_of_the_whole(
+            templates in prop::collection::vec(rows(1..7), 1..6),
+            stream in rows(1..120),
+            wanted in prop::collection::vec(prop::bool::weighted(0.05), 120),
+            cut in 0usize..6,
+        ) {
+            let (dim, exponent) = (2, 0.85);
+            let mut whole = Matcher::new(&templates, dim, exponent);
+            let mut stretches = Stretches::new(dim, whole.longest_match());
+            let (before, behind) = templates.split_at(cut.min(templates.len()));
+            let mut parts = [before, behind].map(|part| Matcher::new(part, dim, exponent));
+            let all = TemplateDistances::of(&mut parts, &stream);
+            let some = TemplateDistances::at_ticks(&mut parts, &stream, &wanted[..stream.len()]);
+            for (tick, row) in stream.iter().enumerate() {
+                whole.step(row);
+                stretches.push(row);
+                let plain: Vec<_> = (0..templates.len())
+                    .map(|template| Compared::of(whole.compare(template, &mut stretches)))
+                    .map(|m| (m.distance.to_bits(), m.age, m.rest_share.to_bits()))
+                    .collect();
+                prop_assert_eq!(&bits(&all, tick), &plain);
+                let nothing = |m: &(u32, u32, u32)| f32::from_bits(m.0) >= FAR;
+                match wanted[tick] {
+                    true => prop_assert_eq!(&bits(&some, tick), &plain),
+                    false => prop_assert!(bits(&some, tick).iter().all(nothing)),
+                }
+            }
+        }
+    }
 }

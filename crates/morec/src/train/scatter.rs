@@ -1,6 +1,7 @@
 //! Scatter of samples within a class, and of rows at all.
 
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
 use crate::features::Rows;
 use crate::templates::PackedSymmetric;
@@ -49,8 +50,12 @@ fn sum_over_classes(
         let stride = pairs.len().div_ceil(max_pairs).max(1);
         let chosen: Vec<_> = pairs.into_iter().step_by(stride).collect();
         let mut of_pairs = DMatrix::zeros(dim, dim);
-        for &(i, j) in &chosen {
-            of_pairs += residual_scatter(&of_class[i].rows, &of_class[j].rows);
+        let scatters = chosen
+            .par_iter()
+            .map(|&(i, j)| residual_scatter(&of_class[i].rows, &of_class[j].rows));
+        // Added up one after the other: another order would round otherwise.
+        for scatter in scatters.collect::<Vec<_>>() {
+            of_pairs += scatter;
         }
         if !chosen.is_empty() {
             sum += of_pairs / (2 * chosen.len()) as f64;

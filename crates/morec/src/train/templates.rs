@@ -109,8 +109,10 @@ pub fn train(
         params,
         progress,
     };
-    let matcher = step.matcher(samples.iter().map(|s| &s.rows));
-    let mut distances = step.distances(&matcher, "comparing clips")?;
+    let matchers = step.matchers(samples.iter().map(|s| &s.rows));
+    let mut distances = step.distances(&matchers, "comparing clips", |stream| {
+        vec![true; set.streams[stream].rows.len()]
+    })?;
     let plain = params.decode.rest_gate;
     set_rest_share(&mut distances, plain);
     let near_enough = step.operating(&distances, None);
@@ -122,8 +124,20 @@ pub fn train(
         params,
     );
     let rows: Vec<Rows> = negatives.iter().map(|n| negative_rows(set, n)).collect();
-    let matcher = step.matcher(rows.iter());
-    let near_negatives = step.distances(&matcher, "comparing with near misses")?;
+    let gate = verified_gate(&classes, &samples, params);
+    let gate = gate.filter(|_| params.verify);
+    let verifies = gate.is_some() && verifier::has_background(set, params);
+    let most = step.largest_threshold();
+    let wanted = |stream: usize| {
+        // The threshold looks at background only, and not beyond its bound; a verifier learns from everything.
+        let is_background = set.streams[stream].source != StreamKind::Labelled;
+        match is_background && !verifies {
+            true => distances[stream].ticks_within(most),
+            false => vec![verifies; set.streams[stream].rows.len()],
+        }
+    };
+    let matchers = step.matchers(rows.iter());
+    let near_negatives = step.distances(&matchers, "comparing with near misses", wanted)?;
     let seen = LeaveOneOutView {
         set,
         samples: &samples,
@@ -133,15 +147,15 @@ pub fn train(
     let operating = step.operating(&distances, Some(&seen));
     let threshold = operating.threshold;
     let mut decode = params.decode.clone();
-    let verifier = match verified_gate(&classes, &samples, params) {
-        Some(gate) if params.verify => {
-            decode.rest_gate_verified = gate;
+    let mut verifier = None;
+    if let Some(gate) = gate {
+        decode.rest_gate_verified = gate;
+        if verifies {
             set_rest_share(&mut distances, gate);
-            step.verifier(&seen, &distances, threshold)
+            verifier = step.verifier(&seen, &distances, threshold);
+            set_rest_share(&mut distances, plain);
         }
-        _ => None,
-    };
-    set_rest_share(&mut distances, plain);
+    }
     let class_thresholds = match verifier {
         None if params.class_share > 0.0 => {
             thresholds::of_classes(set, &samples, &distances, threshold, params)
@@ -204,6 +218,9 @@ struct Operating {
     points: Vec<OperatingPoint>,
 }
 
+/// Values of templates' rows that are matched together, 192 kB of them: a core's own cache has room for twice that and more.
+const VALUES_OF_PART: usize = 48 << 10;
+
 /// State common to the steps of a training.
 struct TrainingContext<'a> {
     set: &'a TrainSet,
@@ -213,31 +230,63 @@ struct TrainingContext<'a> {
 }
 
 impl TrainingContext<'_> {
-    /// Lays out templates that are not mapped yet.
-    fn matcher<'r>(&self, rows: impl Iterator<Item = &'r Rows>) -> Matcher {
+    /// Lays out templates that are not mapped yet, in parts whose rows fit the processor's cache.
+    fn matchers<'r>(&self, rows: impl Iterator<Item = &'r Rows>) -> Vec<Matcher> {
         let mapped: Vec<Rows> = rows.map(|r| self.metric.apply_all(r)).collect();
-        let exponent = self.params.decode.spread_exponent;
-        Matcher::new(&mapped, self.metric.dim(), exponent)
+        let (dim, exponent) = (self.metric.dim(), self.params.decode.spread_exponent);
+        let mut parts = Vec::new();
+        let mut rest = mapped.as_slice();
+        while !rest.is_empty() {
+            let mut values = 0;
+            let fitting = rest.iter().take_while(|rows| {
+                values += rows.values().len();
+                values <= VALUES_OF_PART
+            });
+            let (part, others) = rest.split_at(fitting.count().max(1));
+            parts.push(Matcher::new(part, dim, exponent));
+            rest = others;
+        }
+        parts
     }
 
-    /// Every stream against every template, in parallel, in the order of the set.
+    /// The ticks that are wanted of each stream against every template, in parallel, in the order of the set; at the others
+    /// nothing comes near.
     fn distances(
         &self,
-        matcher: &Matcher,
+        matchers: &[Matcher],
         stage: &str,
+        wanted: impl Fn(usize) -> Vec<bool> + Sync,
     ) -> Result<Vec<TemplateDistances>, TrainError> {
         let (done, total) = (AtomicUsize::new(0), self.set.streams.len());
-        let compare = |matcher: &mut Matcher, stream: &TrainStream| {
+        let compare = |matchers: &mut Vec<Matcher>, (place, stream): (usize, &TrainStream)| {
             if self.progress.cancelled() {
                 return Err(TrainError::Cancelled);
             }
-            let distances = TemplateDistances::of(matcher, &self.metric.apply_all(&stream.rows));
+            let mapped = self.metric.apply_all(&stream.rows);
+            let distances = TemplateDistances::at_ticks(matchers, &mapped, &wanted(place));
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
             self.progress.report(stage, done, total);
             Ok(distances)
         };
-        let streams = self.set.streams.par_iter();
-        streams.map_init(|| matcher.clone(), compare).collect()
+        let streams = self.set.streams.par_iter().enumerate();
+        streams.map_init(|| matchers.to_vec(), compare).collect()
+    }
+
+    /// Bound of the threshold at a rate of false alarms. It moves with the rate, or it would be all there is where no
+    /// background comes near.
+    fn most_at(&self, rate: f64) -> f64 {
+        let params = self.params;
+        params.max_threshold * (rate / params.alarms_per_minute).powf(CAP_EXPONENT)
+    }
+
+    /// Bound of all thresholds; 0 where none comes from a rate of false alarms.
+    fn largest_threshold(&self) -> f64 {
+        let usual = self.params.alarms_per_minute;
+        if usual <= 0.0 {
+            return 0.0;
+        }
+        let rates = ALARM_RATES.into_iter().chain([usual]);
+        rates.map(|rate| self.most_at(rate)).fold(0.0, f64::max)
     }
 
     /// The threshold; `seen` adds what negatives of other people and clips keep out.
@@ -258,8 +307,7 @@ impl TrainingContext<'_> {
         }
         let curve = AlarmCurve::of(self.set, distances, seen, params);
         let at = |rate: f64| {
-            // The bound moves with the rate, or it would be all there is where no background comes near.
-            let most = params.max_threshold * (rate / params.alarms_per_minute).powf(CAP_EXPONENT);
+            let most = self.most_at(rate);
             let set_by = curve.distance_at(rate);
             set_by
                 .filter(|(distance, _)| f64::from(*distance) < most)
@@ -275,7 +323,7 @@ impl TrainingContext<'_> {
         Operating {
             threshold,
             from: stream.map_or_else(
-                || "no background comes near: the largest".to_owned(),
+                || "its upper bound, as no background comes near".to_owned(),
                 |stream| format!("background clip {}", self.set.streams[stream].name),
             ),
             points: ALARM_RATES.map(point).to_vec(),

@@ -195,7 +195,7 @@ mod tests {
         let distances: Vec<_> = set
             .streams
             .iter()
-            .map(|s| TemplateDistances::of(&mut bank, &s.rows))
+            .map(|s| TemplateDistances::of(std::slice::from_mut(&mut bank), &s.rows))
             .collect();
         let params = TrainParams {
             class_share: 0.5,

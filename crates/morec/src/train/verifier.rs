@@ -23,6 +23,16 @@ const MOST_WEIGHT: f64 = 20.0;
 /// No rate of false alarms accepts scores below this: examples are +1 and -1.
 const LEAST_BAR: f64 = -0.5;
 
+/// True for a clip that the user calls background.
+fn is_given(stream: &TrainStream) -> bool {
+    stream.source == StreamKind::Background
+}
+
+/// True if a set may have the near misses that [`learn`] needs.
+pub fn has_background(set: &TrainSet, params: &TrainParams) -> bool {
+    params.min_negatives == 0 || set.streams.iter().any(is_given)
+}
+
 /// Learns a verifier from `examples`, or `None` if there are too few samples, or too few near misses in clips that
 /// the user calls background: with none but the unlabelled parts of the labelled clips and made motion to learn
 /// from, a verifier lets more unknown motion pass than the plain rule (measured on referee clips).
@@ -45,9 +55,7 @@ pub fn learn(
         .map(|e| if e.positive { 1.0 } else { -1.0 })
         .collect();
     let positives = targets.iter().filter(|t| **t > 0.0).count();
-    let given = |e: &&VerifierExample| {
-        !e.positive && set.streams[e.stream].source == StreamKind::Background
-    };
+    let given = |e: &&VerifierExample| !e.positive && is_given(&set.streams[e.stream]);
     if positives < params.min_positives
         || examples.iter().filter(given).count() < params.min_negatives
     {

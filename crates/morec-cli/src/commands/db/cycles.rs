@@ -78,7 +78,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
     };
     let params = FeatureParams::default();
     let rows: BTreeMap<ClipId, _> = db
-        .rows(&params, &StageBar::stoppable()?)?
+        .rows_kept_if_writable(&params, &StageBar::stoppable()?)?
         .into_iter()
         .map(|r| (r.clip, r.rows))
         .collect();

@@ -106,14 +106,14 @@ struct NamedHit {
 /// Searches and prints.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let begun = Instant::now();
-    let mut db = database::open_read_only(&args.db)?;
+    let db = database::open_read_only(&args.db)?;
     if let Some(path) = &args.report {
         page::check(path)?;
     }
     args.classes
         .iter()
         .try_for_each(|class| db.need_class(class))?;
-    let index = SearchIndex::of_db(&mut db, &StageBar::stoppable()?)?;
+    let index = SearchIndex::of_reader(&db, &StageBar::stoppable()?)?;
     let (example, shown) = example(&db, &index, args)?;
     let metric = if args.learned {
         Some(learn(&db, &index, args)?)

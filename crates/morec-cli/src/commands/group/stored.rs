@@ -32,7 +32,7 @@ pub fn run(path: &Path, args: &Args) -> Result<ExitCode> {
         .iter()
         .try_for_each(|class| db.need_class(class))?;
     let of = args.of.unwrap_or(Grouping::Cuts);
-    let items = items(&mut db, of, args)?;
+    let items = items(&db, of, args)?;
     if items.is_empty() {
         bail!("nothing to group (morec cut finds segments, morec db label sets samples)");
     }
@@ -47,9 +47,9 @@ pub fn run(path: &Path, args: &Args) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn items(db: &mut MotionDb, of: Grouping, args: &Args) -> Result<Vec<GroupMember>> {
+fn items(db: &MotionDb, of: Grouping, args: &Args) -> Result<Vec<GroupMember>> {
     let params = FeatureParams::default();
-    let rows = db.rows(&params, &StageBar::stoppable()?)?;
+    let rows = db.rows_kept_if_writable(&params, &StageBar::stoppable()?)?;
     let clips = db.clips(&ClipFilter::default())?;
     let names: BTreeMap<ClipId, &str> = clips.iter().map(|c| (c.id, c.name.as_str())).collect();
     let spans: Vec<(ClipId, f64, f64, Option<String>)> = match of {

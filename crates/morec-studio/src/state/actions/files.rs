@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use morec::player::Mark;
-use morec_db::ClipId;
+use morec_db::{ClipId, DbError};
 
 use super::lines::ShownCommand;
 use super::train::INDEX;
@@ -51,7 +51,20 @@ impl State {
                     self.open_clip(clip, None);
                 }
             }
-            Err(error) => self.complain(crate::store::sentence(&error.to_string())),
+            Err(error) => {
+                let (name, said) = (file_name(path), error.to_string());
+                let named = said.contains(&name);
+                self.complain(match error {
+                    DbError::Damaged(_) => {
+                        format!("{name}: {said}; open a copy of it, or import its clips again")
+                    }
+                    DbError::Disk(_) => {
+                        format!("{name}: {said}; is the disk full, or its folder closed to you?")
+                    }
+                    _ if named => crate::store::sentence(&said),
+                    _ => format!("{name}: {said}"),
+                });
+            }
         }
     }
 

@@ -53,6 +53,8 @@ pub struct ClipFeed {
     origin_secs: f64,
     now_secs: f64,
     next_frame: usize,
+    /// Time of day at which the first lap began.
+    begun_wall_secs: f64,
 }
 
 impl ClipFeed {
@@ -63,6 +65,7 @@ impl ClipFeed {
             announced: false,
             origin_secs: 0.0,
             now_secs: 0.0,
+            begun_wall_secs: wall_now_secs(),
         }
     }
 
@@ -87,9 +90,11 @@ impl ClipFeed {
                 out.push(SourceItem::Gone(PerformerId(0)));
                 continue;
             }
+            let time_secs = time(self);
             let mut frame = Frame {
-                time_secs: time(self),
-                wall_secs: wall_now_secs(),
+                time_secs,
+                // A clip comes evenly, however seldom the window draws.
+                wall_secs: self.begun_wall_secs + time_secs,
                 ..Frame::default()
             };
             frame.pose.set(clip, self.next_frame);

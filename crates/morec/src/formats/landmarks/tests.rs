@@ -161,6 +161,47 @@ fn joints_in_a_row_by_their_count() {
     assert_eq!(clip.tracks[2].positions[3], Vec3::new(2.0, 3.0, 1.0));
 }
 
+/// A row of numbers for each frame, in a field that says that they are in space: a frame's own, those of all frames, those of
+/// its bodies.
+#[test]
+fn rows_of_numbers_in_space_are_points() {
+    let row = |f: usize, width: usize| -> Vec<f64> {
+        let point = |j: usize| [j as f64, f as f64, 2.0, 0.9].into_iter().take(width);
+        (0..17).flat_map(point).collect()
+    };
+    let frames = |frame: &dyn Fn(usize) -> Value| -> Value { (0..6).map(frame).collect() };
+    for width in [3, 4] {
+        for document in [
+            json!({"keypoints3d": frames(&|f| json!(row(f, width)))}),
+            json!({"fps": 30, "data": {"keypoints_3d": frames(&|f| json!([row(f, width)]))}}),
+            frames(&|f| json!({"id": f, "keypoints3d": [row(f, width)]})),
+            frames(&|f| json!({"people": [{"pose_keypoints_3d": row(f, width)}]})),
+        ] {
+            let clip = open(&document).unwrap().clips.remove(0);
+            assert_eq!((clip.frames, clip.skeleton.len()), (6, 17), "{document}");
+            assert_eq!(clip.tracks[3].positions[4], Vec3::new(3.0, 4.0, 2.0));
+        }
+    }
+}
+
+#[test]
+fn rows_of_other_lengths_are_points_if_there_are_names_and_else_are_told() {
+    let rows: Vec<Vec<usize>> = (0..6).map(|f| (0..33).map(|i| i * f).collect()).collect();
+    let names: Vec<String> = (0..11).map(|j| format!("part {j}")).collect();
+    let named = json!({"joint_names": names, "positions_3d": rows});
+    let clip = open(&named).unwrap().clips.remove(0);
+    assert_eq!((clip.frames, clip.skeleton.len()), (6, 11));
+    assert_eq!(clip.skeleton.joints()[10].name, "part 10");
+    let unknown: Vec<&[usize]> = rows.iter().map(|row| &row[..32]).collect();
+    let error = open(&json!({"keypoints3d": unknown})).unwrap_err();
+    assert!(error.found.starts_with("32 numbers in a row"), "{error}");
+    // Angles are not places, and what says nothing may be in a picture.
+    for other in ["rotations_3d", "keypoints"] {
+        let rows = vec![(0..51).collect::<Vec<usize>>(); 6];
+        assert!(open(&json!({other: rows})).is_err(), "{other}");
+    }
+}
+
 #[cfg(feature = "files")]
 #[test]
 fn a_frame_is_told_from_a_clip() {

@@ -26,6 +26,10 @@ const UNLIKE: f64 = 0.25;
 /// So much of a set must be there; points beside it do not matter.
 const LEAST_COVERAGE: f64 = 0.5;
 
+/// So much of a set of landmarks must be there for its name to be said. Their words are those of every skeleton: a suit's
+/// hip, spine, neck, head, shoulders and feet are half of the 17 joints of Human3.6M.
+const LEAST_NAMED: f64 = 0.75;
+
 /// The part of a point's name that says whose it is: `Anna` of `Anna:LFHD`, else nothing.
 pub fn subject_of(name: &str) -> &str {
     name.rsplit_once(':').map_or("", |(subject, _)| subject)
@@ -71,7 +75,12 @@ pub fn recognise_posed(names: &[&str], poses: &[Vec<Vec3>]) -> Option<Recognised
     let best = fitting
         .iter()
         .filter(|(_, set)| set.coverage(&names) >= LEAST_COVERAGE)
-        .find_map(|(_, set)| set.assign(&names));
+        .find_map(|(_, set)| {
+            let found = set.assign(&names)?;
+            let is_named = !set.numbered || set.coverage(&names) >= LEAST_NAMED;
+            let name = if is_named { set } else { &landmarks::JOINTS }.name;
+            Some(Recognised { set: name, ..found })
+        });
     let joints = landmarks::JOINTS.assign(&names);
     // Words for joints say more than those of bones that markers are stuck to.
     best.or_else(|| match joints {

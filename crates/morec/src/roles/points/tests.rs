@@ -121,6 +121,30 @@ fn joints_of_any_skeleton_by_name() {
     }
 }
 
+/// Suits and motion-capture programs have words of their own for a skeleton; half of them are those of some landmark set.
+#[test]
+fn skeletons_of_suits_are_no_landmarks() {
+    let rokoko = "Hip Spine Thorax Neck Head LeftScapula LeftShoulder LeftElbow LeftHand RightScapula RightShoulder \
+        RightElbow RightHand LeftThigh LeftShin LeftFoot LeftToe RightThigh RightShin RightFoot RightToe";
+    let qualisys = "Hips Spine Spine1 Spine2 Neck Head LeftShoulder LeftArm LeftForeArm LeftForeArmRoll LeftHand RightShoulder \
+        RightArm RightForeArm RightForeArmRoll RightHand LeftUpLeg LeftLeg LeftFoot LeftToeBase RightUpLeg RightLeg \
+        RightFoot RightToeBase";
+    for names in [rokoko, qualisys] {
+        let names: Vec<&str> = names.split_whitespace().collect();
+        let found = recognise(&names).unwrap();
+        assert_eq!(found.set, "joint names", "{names:?}");
+        let joint = |role: Role| {
+            let (_, place) = found.roles.iter().find(|(r, _)| *r == role).unwrap();
+            names[place.single().unwrap()]
+        };
+        assert!(["LeftThigh", "LeftUpLeg"].contains(&joint(Role::LeftThigh)));
+        assert!(["LeftShin", "LeftLeg"].contains(&joint(Role::LeftShin)));
+        assert_eq!(joint(Role::LeftFoot), "LeftFoot");
+        assert!(["LeftElbow", "LeftForeArm"].contains(&joint(Role::LeftForearm)));
+        assert_eq!(joint(Role::RightHand), "RightHand");
+    }
+}
+
 #[test]
 fn numbers_are_told_apart_by_the_lengths_of_limbs() {
     // A person's joints by COCO's names, left and right alike.
