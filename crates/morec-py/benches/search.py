@@ -29,6 +29,8 @@ import morec.archive as ma
 from morec import _morec
 from morec.archive import _layout as layout
 from morec.archive._search import Wanted, search
+from morec.archive._sketches import SKETCHES, Part, made_of
+from morec.archive._store import Store
 
 HZ = 30.0
 #: Seconds of motion by which cuts are counted: what `morec cut` finds on average in the clips of signals.
@@ -60,13 +62,23 @@ def perturbed(rows: Any, rng: np.random.Generator) -> Any:
     return np.ascontiguousarray(made[first : count - last], dtype=np.float32)
 
 
-def part(task: tuple[str, int, str, int, float]) -> int:
-    """Writes one part of about so many hours; how many clips it holds."""
-    uri, number, base, seed, hours = task
-    archive, rng = ma.open(uri), np.random.default_rng([seed, number])
-    clips = _BASE[base]
-    rows, ticks = [], 0.0
-    while ticks < hours * 3600 * HZ:
+def parts(task: tuple[str, range, str, int]) -> int:
+    """Writes parts of an hour each, and their sketches; how many clips they hold."""
+    uri, numbers, base, seed = task
+    store = ma.open(uri).store
+    if base not in _BASE:
+        _BASE[base] = base_rows(ma.open(base))
+    done = [part(store, number, _BASE[base], seed) for number in numbers]
+    content = made_of(store, [one for one, _ in done])
+    store.write(layout.part_name(SKETCHES, [f"{numbers} {seed}"]), content)
+    return sum(clips for _, clips in done)
+
+
+def part(store: Store, number: int, clips: list[dict[str, Any]], seed: int) -> tuple[Part, int]:
+    rng = np.random.default_rng([seed, number])
+    rows: list[dict[str, Any]] = []
+    ticks = 0
+    while ticks < 3600 * HZ:
         row = clips[rng.integers(len(clips))]
         values = perturbed(row["values"], rng)
         ticks += len(values)
@@ -74,8 +86,9 @@ def part(task: tuple[str, int, str, int, float]) -> int:
         fields = {name: value for name, value in row.items() if name != "values"}
         packed = _morec.rows_packed(values)
         rows.append(fields | {"clip": key, "rows": packed, "secs": len(values) / HZ, "file_path": f"{key}.bvh"})
-    archive.store.write(layout.part_name(layout.CLIPS, [f"{number} {seed}"]), layout.parquet(rows, layout.CLIP_SCHEMA))
-    return len(rows)
+    name, content = layout.part_name(layout.CLIPS, [f"{number} {seed}"]), layout.parquet(rows, layout.CLIP_SCHEMA)
+    store.write(name, content)
+    return (name, len(content)), len(rows)
 
 
 _BASE: dict[str, list[dict[str, Any]]] = {}
@@ -93,12 +106,13 @@ def base_rows(archive: ma.Archive) -> list[dict[str, Any]]:
 
 
 def make(uri: str, base: ma.Archive, hours: float, seed: int) -> None:
-    _BASE[base.store.uri] = base_rows(base)
     ma.create(uri)
-    tasks = [(uri, number, base.store.uri, seed, min(1.0, hours)) for number in range(max(round(hours), 1))]
+    count = max(round(hours), 1)
+    # As many parts to a table of sketches as `create` gives it.
+    tasks = [(uri, range(at, min(at + 10, count)), base.store.uri, seed) for at in range(0, count, 10)]
     begun = time.perf_counter()
-    with multiprocessing.get_context("fork").Pool() as pool:
-        clips = sum(pool.imap_unordered(part, tasks))
+    with multiprocessing.get_context("spawn").Pool() as pool:
+        clips = sum(pool.imap_unordered(parts, tasks))
     print(f"{clips} clips made in {time.perf_counter() - begun:.0f} s", flush=True)
 
 
@@ -165,7 +179,7 @@ def report(archive: ma.Archive, base: ma.Archive, compare: int, seed: int, count
     for number, (name, clip, start, stop, options) in enumerate(examples(base, seed, count)):
         wanted = Wanted(options.get("limit", 20), options.get("mirror", False), options.get("one_a_clip", False))
         shown = base.clip(clip)
-        asked = archive._example(shown, start, min(stop, shown.secs))
+        asked = archive._example(shown, start, min(stop, shown.duration_secs))
         times = []
         # As a new process would, with the sketches to read; then with them in memory.
         archive = ma.open(archive.store.uri)

@@ -261,8 +261,8 @@ impl PySearchPlan {
     }
 
     /// Places of clips that have to be bound by eighths now.
-    fn to_bound<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        places(py, &self.plan.to_bound())
+    fn next_to_bound<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+        places(py, &self.plan.next_to_bound())
     }
 
     /// Takes the bounds of the clips at these places.
@@ -280,8 +280,8 @@ impl PySearchPlan {
     }
 
     /// Places of clips that have to be read now; none if enough has been read.
-    fn to_read<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        places(py, &self.plan.to_read())
+    fn next_to_read<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+        places(py, &self.plan.next_to_read())
     }
 
     /// Takes the nearest windows of clips that were read: their clips and distances.

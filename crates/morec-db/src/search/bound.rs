@@ -13,13 +13,15 @@ use rayon::prelude::*;
 use super::candidates::{QueryDescriptor, length_cost, pace_range, spans};
 use super::layout::ROOT_WEIGHT;
 use super::rank::probes;
-use super::sketch::{LANES, PLACES, Prefix, ROOT_LANE, Sketch, SketchTables, UNIT};
+use super::sketch::{LANES, PLACES, ROOT_LANE, Sketch, SketchTables, UNIT};
 use super::summary::{MEAN, ROOT, Summary, SummaryDistance, WEIGHTS};
 use super::windows::{TRAVEL, X};
 use super::{Example, SearchOptions};
 
 /// Octaves that a sketch speaks of.
 const OCTAVES: usize = 3;
+/// Parts of a window in the last of these.
+const PARTS: usize = 1 << OCTAVES;
 
 /// What a bound may lose to rounding: it is computed in single precision in another order than the distance.
 const ROUNDING: (f32, f32) = (0.9999, 1e-3);
@@ -128,21 +130,19 @@ impl SketchQuery {
             return f32::INFINITY;
         }
         let shared: Vec<SharedLanes> = shared.into_iter().map(SharedLanes::of).collect();
-        let least = match depth {
-            BoundDepth::Halves => least_by_halves(self, &shared, sketch, clip.sketch),
-            BoundDepth::Eighths => least_by_eighths(self, &shared, sketch, clip.sketch),
-        };
+        let least = least_bound(self, &shared, sketch, clip.sketch, depth);
         // No rows are a clip that is not searched; no sketch says nothing.
         least.map_or(0.0, |least| (ROUNDING.0 * least - ROUNDING.1).max(0.0))
     }
 
     /// The least bound over all windows and probes; `None` without a sketch.
     #[inline(always)]
-    fn least_of<const PARTS: usize>(
+    fn least_of(
         &self,
         shared: &[SharedLanes],
         sketch: &mut Sketch,
         bytes: &[u8],
+        depth: BoundDepth,
     ) -> Option<f32> {
         if !sketch.read(bytes, &self.tables) {
             return None;
@@ -155,141 +155,176 @@ impl SketchQuery {
         };
         let whole = self.whole.then_some(0..rows);
         let mut least = f32::INFINITY;
+        let mut window = WindowSketch::new();
         for span in spans(self.rows, rows).chain(whole) {
             let length = length_cost(span.len(), self.rows, pace_range()) + excess;
-            let window = Window::<PARTS>::of(sketch, &self.tables, span.start, span.len());
+            window.set(sketch, &self.tables, span.start, span.len());
             for (probe, shared) in self.probes.iter().zip(shared) {
-                least = least.min(window.bound(probe, shared) + length);
+                // Each part of the distance is a bound of the whole: as soon as they exceed what is known, the rest is idle.
+                let scale = shared.scale.sqrt();
+                let mut motion = WEIGHTS.motion * scale * window.halves(probe, shared) + length;
+                if motion >= least {
+                    continue;
+                }
+                if depth == BoundDepth::Eighths {
+                    window.complete(sketch, &self.tables);
+                    motion = WEIGHTS.motion * scale * window.eighths(probe, shared) + length;
+                }
+                let bound = motion + WEIGHTS.pose * scale * window.pose(probe, shared);
+                if bound < least {
+                    least = least.min(bound + WEIGHTS.travel * window.travel(probe));
+                }
             }
         }
         Some(least)
     }
 }
 
+/// The least bound of a clip over all windows and probes; `None` without a sketch.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-fn least_by_halves(
+fn least_bound(
     query: &SketchQuery,
     shared: &[SharedLanes],
     sketch: &mut Sketch,
     bytes: &[u8],
+    depth: BoundDepth,
 ) -> Option<f32> {
-    query.least_of::<2>(shared, sketch, bytes)
+    query.least_of(shared, sketch, bytes, depth)
 }
 
-#[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-fn least_by_eighths(
-    query: &SketchQuery,
-    shared: &[SharedLanes],
-    sketch: &mut Sketch,
-    bytes: &[u8],
-) -> Option<f32> {
-    query.least_of::<8>(shared, sketch, bytes)
+/// What a sketch says of a window: prefix sums at the ends of its eighths, in units, and their errors, in rows.
+struct WindowSketch {
+    start: usize,
+    rows: usize,
+    per_row: f32,
+    ends: [[f32; LANES]; PARTS + 1],
+    errors: [[f32; 2]; PARTS + 1],
+    /// True if all ends are there; else those of its halves.
+    complete: bool,
 }
 
-/// What a sketch says of a window: prefix sums at the ends of its `PARTS` parts, 2 or 8.
-struct Window<const PARTS: usize> {
-    first: Prefix,
-    /// Those at the end of each part.
-    ends: [Prefix; PARTS],
-    rows: f32,
-}
-
-impl<const PARTS: usize> Window<PARTS> {
-    #[inline(always)]
-    fn of(sketch: &Sketch, tables: &SketchTables, start: usize, rows: usize) -> Self {
-        let base = sketch.block(start * PLACES);
-        let at = |part: usize| {
-            let place = start * PLACES + rows * part * (PLACES / PARTS);
-            sketch.until(place, base, tables)
-        };
+impl WindowSketch {
+    fn new() -> Self {
         Self {
-            first: at(0),
-            ends: std::array::from_fn(|part| at(part + 1)),
-            rows: rows as f32,
+            start: 0,
+            rows: 1,
+            per_row: 1.0,
+            ends: [[0.0; LANES]; PARTS + 1],
+            errors: [[0.0; 2]; PARTS + 1],
+            complete: false,
         }
     }
 
+    /// Turns to another window, of which only the halves are looked at.
     #[inline(always)]
-    fn end(&self, part: usize) -> &Prefix {
-        if part == 0 {
-            &self.first
-        } else {
-            &self.ends[part - 1]
+    fn set(&mut self, sketch: &Sketch, tables: &SketchTables, start: usize, rows: usize) {
+        (self.start, self.rows, self.per_row) = (start, rows, 1.0 / rows as f32);
+        self.complete = false;
+        for part in [0, PARTS / 2, PARTS] {
+            self.end(sketch, tables, part);
         }
     }
 
-    /// A bound of the distance of the window from a probe.
+    /// Takes the ends of the other parts.
     #[inline(always)]
-    fn bound(&self, probe: &SketchProbe, shared: &SharedLanes) -> f32 {
-        let scale = shared.scale.sqrt();
-        WEIGHTS.motion * scale * self.motion(probe, shared)
-            + WEIGHTS.pose * scale * self.pose(probe, shared)
-            + WEIGHTS.travel * self.travel(probe)
-    }
-
-    /// Of the deviations in the upper octaves, of as many as give most.
-    #[inline(always)]
-    fn motion(&self, probe: &SketchProbe, shared: &SharedLanes) -> f32 {
-        let (mut squares, mut errors, mut most) = ([0f32; LANES], 0f32, 0f32);
-        for octave in 0..PARTS.ilog2() as usize {
-            let (pairs, width) = (1 << octave, PARTS >> octave);
-            let per_row = pairs as f32 / self.rows;
-            let mut energy = [0f32; LANES];
-            let mut moved = 0f32;
-            for pair in 0..pairs {
-                let [a, b, c] = [0, width / 2, width].map(|part| self.end(pair * width + part));
-                for lane in 0..LANES {
-                    // Half of what the means of the two halves differ by.
-                    let h = (2.0 * b.sums[lane] - a.sums[lane] - c.sums[lane]) * (UNIT * per_row);
-                    energy[lane] += h * h;
-                }
-                moved += ((a.errors[0] + 2.0 * b.errors[0] + c.errors[0]) * per_row).powi(2);
+    fn complete(&mut self, sketch: &Sketch, tables: &SketchTables) {
+        if !self.complete {
+            for part in [1, 2, 3, 5, 6, 7] {
+                self.end(sketch, tables, part);
             }
-            let share = 1.0 / pairs as f32;
+            self.complete = true;
+        }
+    }
+
+    #[inline(always)]
+    fn end(&mut self, sketch: &Sketch, tables: &SketchTables, part: usize) {
+        let base = sketch.block(self.start * PLACES);
+        let place = self.start * PLACES + self.rows * part;
+        self.errors[part] = sketch.until(place, base, tables, &mut self.ends[part]);
+    }
+
+    /// Squares of what the deviations in an octave differ by, and of what they may be off.
+    #[inline(always)]
+    fn octave(&self, octave: usize, probe: &SketchProbe, squares: &mut [f32; LANES]) -> f32 {
+        let (pairs, width) = (1 << octave, PARTS >> octave);
+        let per_row = pairs as f32 * self.per_row;
+        let mut energy = [0f32; LANES];
+        let mut moved = 0f32;
+        for pair in 0..pairs {
+            let [a, b, c] = [0, width / 2, width].map(|part| pair * width + part);
+            let [left, middle, right] = [&self.ends[a], &self.ends[b], &self.ends[c]];
             for lane in 0..LANES {
-                let apart = probe.octaves[octave][lane] - (energy[lane] * share).sqrt();
-                squares[lane] += shared.mask[lane] * apart * apart;
+                // Half of what the means of the two halves differ by.
+                let h = (2.0 * middle[lane] - left[lane] - right[lane]) * (UNIT * per_row);
+                energy[lane] += h * h;
             }
-            errors += moved * share;
-            most = most.max(sum(&squares).sqrt() - errors.sqrt());
+            let error = self.errors[a][0] + 2.0 * self.errors[b][0] + self.errors[c][0];
+            moved += (error * per_row).powi(2);
+        }
+        let share = 1.0 / pairs as f32;
+        for lane in 0..LANES {
+            let apart = probe.octaves[octave][lane] - (energy[lane] * share).sqrt();
+            squares[lane] += apart * apart;
+        }
+        moved * share
+    }
+
+    /// Distance of the deviations between the halves, at least.
+    #[inline(always)]
+    fn halves(&self, probe: &SketchProbe, shared: &SharedLanes) -> f32 {
+        let mut squares = [0f32; LANES];
+        let moved = self.octave(0, probe, &mut squares);
+        (masked_sum(&squares, shared).sqrt() - moved.sqrt()).max(0.0)
+    }
+
+    /// Distance of the deviations in the upper octaves, at least: of as many as give most.
+    #[inline(always)]
+    fn eighths(&self, probe: &SketchProbe, shared: &SharedLanes) -> f32 {
+        let (mut squares, mut moved, mut most) = ([0f32; LANES], 0f32, 0f32);
+        for octave in 0..OCTAVES {
+            moved += self.octave(octave, probe, &mut squares);
+            most = most.max(masked_sum(&squares, shared).sqrt() - moved.sqrt());
         }
         most
     }
 
-    /// Of the mean pose.
+    /// Distance of the mean pose, at least.
     #[inline(always)]
     fn pose(&self, probe: &SketchProbe, shared: &SharedLanes) -> f32 {
-        let (first, last) = (&self.first, self.end(PARTS));
+        let (first, last) = (&self.ends[0], &self.ends[PARTS]);
         let mut squares = [0f32; LANES];
         for lane in 0..LANES {
-            let mean = (last.sums[lane] - first.sums[lane]) * (UNIT / self.rows);
+            let mean = (last[lane] - first[lane]) * (UNIT * self.per_row);
             let apart = probe.pose[lane] - mean;
-            squares[lane] = shared.mask[lane] * apart * apart;
+            squares[lane] = apart * apart;
         }
-        (sum(&squares).sqrt() - (first.errors[0] + last.errors[0]) / self.rows).max(0.0)
+        let moved = (self.errors[0][0] + self.errors[PARTS][0]) * self.per_row;
+        (masked_sum(&squares, shared).sqrt() - moved).max(0.0)
     }
 
-    /// Of the travel.
+    /// Distance of the travel, at least.
     #[inline(always)]
     fn travel(&self, probe: &SketchProbe) -> f32 {
-        let (first, last) = (&self.first, self.end(PARTS));
-        let per_row = 1.0 / (self.rows * ROOT_WEIGHT as f32);
+        let (first, last) = (&self.ends[0], &self.ends[PARTS]);
+        let per_row = self.per_row / ROOT_WEIGHT as f32;
         let mut squares = 0f32;
         for (i, wanted) in probe.travel.iter().enumerate() {
-            let mean = (last.sums[ROOT_LANE + i] - first.sums[ROOT_LANE + i]) * (UNIT * per_row);
+            let mean = (last[ROOT_LANE + i] - first[ROOT_LANE + i]) * (UNIT * per_row);
             squares += (wanted - mean.asinh()).powi(2);
         }
         // The inverse hyperbolic sine is nowhere steeper than 1.
-        (squares.sqrt() - (first.errors[1] + last.errors[1]) * per_row).max(0.0)
+        let moved = (self.errors[0][1] + self.errors[PARTS][1]) * per_row;
+        (squares.sqrt() - moved).max(0.0)
     }
 }
 
-/// The sum of all lanes, by halves.
+/// The sum of the lanes of shared bones, by halves.
 #[inline(always)]
-fn sum(lanes: &[f32; LANES]) -> f32 {
+fn masked_sum(lanes: &[f32; LANES], shared: &SharedLanes) -> f32 {
+    let mask = &shared.mask;
     let mut sixteen = [0f32; 16];
     for (i, sum) in sixteen.iter_mut().enumerate() {
-        *sum = lanes[i] + lanes[16 + i] + lanes[32 + i];
+        *sum = lanes[i] * mask[i] + lanes[16 + i] * mask[16 + i] + lanes[32 + i] * mask[32 + i];
     }
     let eight: [f32; 8] = std::array::from_fn(|i| sixteen[i] + sixteen[8 + i]);
     let four: [f32; 4] = std::array::from_fn(|i| eight[i] + eight[4 + i]);

@@ -57,7 +57,7 @@ impl SearchPlan {
     }
 
     /// Clips, by their places, of which bounds by eighths are wanted now.
-    pub fn to_bound(&self) -> Vec<usize> {
+    pub fn next_to_bound(&self) -> Vec<usize> {
         let reach = self.reach();
         let within = |at: &usize| {
             let (bound, depth) = self.bounds[*at];
@@ -79,7 +79,7 @@ impl SearchPlan {
     }
 
     /// Clips, by their places, that have to be read now; none if enough has been read. They count as read.
-    pub fn to_read(&mut self) -> Vec<usize> {
+    pub fn next_to_read(&mut self) -> Vec<usize> {
         let reach = self.reach();
         let within = |at: &usize| {
             let (bound, depth) = self.bounds[*at];

@@ -19,17 +19,19 @@ pub const LANES: usize = 48;
 pub const ROOT_LANE: usize = 40;
 /// Prefix sums are whole multiples of this: the largest for which a block's share of a direction fits into a byte.
 pub const UNIT: f32 = 1.0 / 30.0;
+/// Whole numbers below this are exact in single precision; more than four hours of a direction that stays as it is.
+const EXACT: f64 = 16_777_216.0;
 /// Bytes of a block: directions, root, errors of both.
 const BLOCK_BYTES: usize = X + 2 * TRAVEL + 2;
 /// Bytes before the first block: the number of rows.
 const HEAD: usize = 4;
 
 /// Weights of the block before, of the block and of the next in a prefix sum within the block.
-pub type Weights = [f32; 3];
+pub type BlockWeights = [f32; 3];
 
 /// Weights at each place of a block, its end too.
-pub fn weights() -> [Weights; PLACES * BLOCK + 1] {
-    let at_row = |row: usize| -> Weights {
+pub fn weights() -> [BlockWeights; PLACES * BLOCK + 1] {
+    let at_row = |row: usize| -> BlockWeights {
         let f = row as f32 / BLOCK as f32;
         let (f2, f3) = (f * f, f * f * f);
         let (slope, rise, next) = (f3 - 2.0 * f2 + f, 3.0 * f2 - 2.0 * f3, f3 - f2);
@@ -43,8 +45,8 @@ pub fn weights() -> [Weights; PLACES * BLOCK + 1] {
     })
 }
 
-/// The sketch of a clip's rows in the layout of all bones: 43 bytes for 4 rows. `None` of rows that no recognition makes: root
-/// motion of more than 270 leg lengths a second, directions longer than 1. O(values).
+/// The sketch of a clip's rows in the layout of all bones: 43 bytes for 4 rows. `None` of rows that no recognition makes (root
+/// motion of more than 900 leg lengths a second, directions longer than 1) and of more than four hours. O(values).
 pub fn sketch(rows: &Rows) -> Option<Vec<u8>> {
     let sums = prefix_sums(rows);
     let blocks = rows.len().div_ceil(BLOCK);
@@ -59,7 +61,8 @@ pub fn sketch(rows: &Rows) -> Option<Vec<u8>> {
         let root = lanes[ROOT_LANE..]
             .iter()
             .all(|d| d.abs() <= f32::from(i16::MAX));
-        if !directions || !root {
+        let exact = (0..LANES).all(|lane| at_block(block + 1, lane).abs() < EXACT);
+        if !directions || !root || !exact {
             return None;
         }
         deltas.push(lanes);
@@ -137,23 +140,15 @@ fn error_code(error: f32) -> Option<u8> {
 pub struct Sketch {
     /// Rows of the clip.
     pub rows: usize,
-    /// What each block adds to the prefix sums, in units.
-    deltas: Vec<[f32; LANES]>,
-    /// Prefix sums before each block.
-    sums: Vec<[i32; LANES]>,
+    /// Prefix sums before each block and after the last, in units: whole numbers.
+    sums: Vec<[f32; LANES]>,
     /// Error of prefix sums within each block, Euclidean over directions and over the root.
     errors: Vec<[f32; 2]>,
 }
 
-/// Prefix sums at one place, in units, and their errors in rows.
-pub struct Prefix {
-    pub sums: [f32; LANES],
-    pub errors: [f32; 2],
-}
-
 /// Constants of reading sketches.
 pub struct SketchTables {
-    weights: [Weights; PLACES * BLOCK + 1],
+    weights: [BlockWeights; PLACES * BLOCK + 1],
     errors: [f32; 256],
 }
 
@@ -178,56 +173,62 @@ impl Sketch {
         if self.rows == 0 || blocks.len() != self.rows.div_ceil(BLOCK) || !rest.is_empty() {
             return false;
         }
-        self.deltas.clear();
         self.sums.clear();
         self.errors.clear();
-        let mut sum = [0i32; LANES];
+        self.sums.reserve(blocks.len() + 1);
+        self.errors.reserve(blocks.len());
+        let mut sum = [0f32; LANES];
+        self.sums.push(sum);
         for block in blocks {
-            let mut delta = [0i32; LANES];
-            for (delta, byte) in delta.iter_mut().zip(&block[..X]) {
-                *delta = i32::from(i8::from_le_bytes([*byte]));
+            for lane in 0..X {
+                sum[lane] += f32::from(block[lane].cast_signed());
             }
-            for (i, delta) in delta[ROOT_LANE..][..TRAVEL].iter_mut().enumerate() {
-                *delta = i32::from(i16::from_le_bytes([block[X + 2 * i], block[X + 2 * i + 1]]));
+            for i in 0..TRAVEL {
+                let delta = i16::from_le_bytes([block[X + 2 * i], block[X + 2 * i + 1]]);
+                sum[ROOT_LANE + i] += f32::from(delta);
             }
             self.sums.push(sum);
-            self.deltas.push(delta.map(|d| d as f32));
-            for (sum, delta) in sum.iter_mut().zip(&delta) {
-                *sum = sum.wrapping_add(*delta);
-            }
-            let errors = &block[BLOCK_BYTES - 2..];
+            let [directions, root] = [block[BLOCK_BYTES - 2], block[BLOCK_BYTES - 1]];
             self.errors.push([
-                tables.errors[usize::from(errors[0])],
-                tables.errors[usize::from(errors[1])],
+                tables.errors[usize::from(directions)],
+                tables.errors[usize::from(root)],
             ]);
         }
         true
     }
 
-    /// Prefix sums before `place`, in eighths of rows, less those before the block `base`.
+    /// Prefix sums before `place`, in eighths of rows, less those before the block `base`, in units; and their errors in rows.
     #[inline(always)]
-    pub fn until(&self, place: usize, base: usize, tables: &SketchTables) -> Prefix {
+    pub fn until(
+        &self,
+        place: usize,
+        base: usize,
+        tables: &SketchTables,
+        out: &mut [f32; LANES],
+    ) -> [f32; 2] {
         let block = self.block(place);
-        let weights = &tables.weights[place - PLACES * BLOCK * block];
-        let near = neighbours(&self.deltas, block);
-        let (here, base) = (&self.sums[block], &self.sums[base]);
-        let mut sums = [0f32; LANES];
+        let [before, within, next] = tables.weights[place - PLACES * BLOCK * block];
+        let last = self.sums.len() - 2;
+        // At the ends the block stands for those that are not there.
+        let (first, third) = (block.saturating_sub(1), (block + 1).min(last));
+        let (a, b) = (&self.sums[first], &self.sums[first + 1]);
+        let (c, d) = (&self.sums[block], &self.sums[block + 1]);
+        let (e, f) = (&self.sums[third], &self.sums[third + 1]);
+        let base = &self.sums[base];
         for lane in 0..LANES {
-            sums[lane] = here[lane].wrapping_sub(base[lane]) as f32
-                + weights[0] * near[0][lane]
-                + weights[1] * near[1][lane]
-                + weights[2] * near[2][lane];
+            // Differences of whole numbers are exact.
+            out[lane] = (c[lane] - base[lane])
+                + before * (b[lane] - a[lane])
+                + within * (d[lane] - c[lane])
+                + next * (f[lane] - e[lane]);
         }
-        Prefix {
-            sums,
-            errors: self.errors[block],
-        }
+        self.errors[block]
     }
 
     /// The block of a place in eighths of rows.
     #[inline(always)]
     pub fn block(&self, place: usize) -> usize {
-        (place / (PLACES * BLOCK)).min(self.deltas.len() - 1)
+        (place / (PLACES * BLOCK)).min(self.errors.len() - 1)
     }
 }
 
@@ -262,14 +263,15 @@ mod tests {
             let lanes: Vec<(usize, usize)> = RowLayout::ALL.directions().enumerate()
                 .chain(RowLayout::ALL.root().enumerate().map(|(i, c)| (ROOT_LANE + i, c))).collect();
             for place in 0..=length * PLACES {
-                let found = read.until(place, base, &tables);
+                let mut found = [0f32; LANES];
+                let errors = read.until(place, base, &tables, &mut found);
                 let mut squares = [0f64; 2];
                 for (lane, column) in &lanes {
-                    let there = f64::from(read.sums[base][*lane]) + f64::from(found.sums[*lane]);
+                    let there = f64::from(read.sums[base][*lane]) + f64::from(found[*lane]);
                     let error = there * f64::from(UNIT) - slowly(&rows, place, *column);
                     squares[usize::from(*lane >= ROOT_LANE)] += error * error;
                 }
-                for (square, stated) in squares.iter().zip(found.errors) {
+                for (square, stated) in squares.iter().zip(errors) {
                     prop_assert!(square.sqrt() <= f64::from(stated), "{} {}", square.sqrt(), stated);
                 }
             }
@@ -283,7 +285,7 @@ mod tests {
             }
             let (mut read, tables) = (Sketch::default(), SketchTables::new());
             if read.read(&bytes, &tables) {
-                read.until(rows as usize * PLACES, 0, &tables);
+                read.until(rows as usize * PLACES, 0, &tables, &mut [0f32; LANES]);
             }
         }
     }

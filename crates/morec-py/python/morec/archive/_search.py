@@ -61,11 +61,11 @@ def search(
     firsts = np.cumsum([0, *(len(table.clip) for table in tables)])
     found = Found([], int(firsts[-1]), 0, 0)
     while True:
-        places = plan.to_bound()
+        places = plan.next_to_bound()
         if len(places):
             plan.bound(places, _morec.sketch_bounds(asked, columns, *how, True, places))
             found.bound += len(places)
-        places = plan.to_read()
+        places = plan.next_to_read()
         if not len(places):
             break
         read = _rows_at(store, tables, firsts, places)

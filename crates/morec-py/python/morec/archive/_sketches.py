@@ -95,7 +95,7 @@ def parts_in(metadata: dict[bytes, bytes] | None) -> list[Part] | None:
 
 def _read(store: Store, name: str) -> SketchTable | None:
     try:
-        table = patiently(lambda: pq.read_table(store.open(name)))
+        table = patiently(lambda: pq.ParquetFile(store.open(name)).read(use_threads=False))
     except (FileNotFoundError, pa.ArrowInvalid):
         return None
     parts = parts_in(table.schema.metadata)
@@ -184,6 +184,8 @@ def add_sketches(store: Store) -> int:
                 del left[part]
         else:
             stale.append(name)
+    for name in stale:
+        store.delete(name)
     new = list(tasks(list(left)))
     if new:
         frame = daft.from_pydict(
@@ -196,10 +198,11 @@ def add_sketches(store: Store) -> int:
             frame = frame.into_partitions(len(new))
         sketcher: Any = Sketcher(store)
         frame.select(sketcher.run(frame["parts"], frame["sizes"]).alias("done")).collect()
-    for name in stale:
-        store.delete(name)
     return len(left)
 
 
 def _parts_of(store: Store, name: str) -> list[Part] | None:
-    return parts_in(patiently(lambda: pq.read_schema(store.open(name))).metadata)
+    try:
+        return parts_in(patiently(lambda: pq.read_schema(store.open(name))).metadata)
+    except pa.ArrowInvalid:
+        return None
