@@ -180,22 +180,27 @@ def report(archive: ma.Archive, base: ma.Archive, compare: int, seed: int, count
         wanted = Wanted(options.get("limit", 20), options.get("mirror", False), options.get("one_a_clip", False))
         shown = base.clip(clip)
         asked = archive._example(shown, start, min(stop, shown.duration_secs))
-        times = []
+        times, processor = [], []
         # As a new process would, with the sketches to read; then with them in memory.
         archive = ma.open(archive.store.uri)
         for _ in range(2):
-            begun = time.perf_counter()
+            begun, used = time.perf_counter(), time.process_time()
             found = archive._search(asked, wanted)
             times.append(time.perf_counter() - begun)
-        secs.append(times)
+            processor.append(time.process_time() - used)
+        secs.append([*times, *processor])
         said = f"{found.bound} bound closely, {found.read} clips read"
         if number < compare:
             begun = time.perf_counter()
             slow = search(archive.store, [], archive._clips("name", "bones", "rows"), asked, wanted)
             said += f"; all rows: {time.perf_counter() - begun:.1f} s, the same hits: {slow.hits == found.hits}"
         best = found.hits[0][4] if found.hits else 0.0
-        print(f"{name}: {times[0]:.2f} s, again {times[1]:.2f} s; best score {best:.2f}; {said}", flush=True)
-    for what, at in (("first", 0), ("again", 1)):
+        print(
+            f"{name}: {times[0]:.2f} s, again {times[1]:.2f} s (of processor time {processor[0]:.2f}, {processor[1]:.2f}); best score {best:.2f}; {said}",
+            flush=True,
+        )
+    whats = ("first", "again", "processor time, first", "processor time, again")
+    for at, what in enumerate(whats):
         values = sorted(one[at] for one in secs)
         print(f"{what}: median {values[len(values) // 2]:.2f} s, most {values[-1]:.2f} s")
     print(f"{resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6:.1f} GB of memory at most")
