@@ -171,9 +171,9 @@ type SketchColumns<'py> = (
 );
 
 /// For clips of tables of sketches, one after the other, a bound below the distance of all their windows. `which` are places
-/// in all tables together; by default all. `closely` is by eighths of windows, else by halves.
+/// in all tables together; by default all. `closely` is by eighths of windows, else by halves. Of clips beyond `reach` it is said only that they are.
 #[pyfunction]
-#[pyo3(signature = (example, tables, limit, mirror, one_a_clip, closely, which=None))]
+#[pyo3(signature = (example, tables, limit, mirror, one_a_clip, closely, reach, which=None))]
 #[expect(
     clippy::too_many_arguments,
     reason = "those of a search, and what it is done in"
@@ -186,6 +186,7 @@ pub fn sketch_bounds<'py>(
     mirror: bool,
     one_a_clip: bool,
     closely: bool,
+    reach: f32,
     which: Option<PyReadonlyArray1<'py, i64>>,
 ) -> PyResult<Bound<'py, PyArray1<f32>>> {
     let mut clips: Vec<SketchedClip<'_>> = Vec::new();
@@ -225,7 +226,7 @@ pub fn sketch_bounds<'py>(
         BoundDepth::Halves
     };
     let example = &example.example;
-    let bounds = py.detach(|| lower_bounds(example, &options, depth, clips.into_par_iter()));
+    let bounds = py.detach(|| lower_bounds(example, &options, depth, reach, clips.into_par_iter()));
     Ok(PyArray1::from_vec(py, bounds))
 }
 
@@ -277,6 +278,11 @@ impl PySearchPlan {
         let which = which.ok_or_else(|| value_error("no such clip in the plan"))?;
         self.plan.bound(&which, bounds.as_slice()?);
         Ok(())
+    }
+
+    /// The distance beyond which no window counts, as far as it is known.
+    fn reach(&self) -> f32 {
+        self.plan.reach()
     }
 
     /// Places of clips that have to be read now; none if enough has been read.

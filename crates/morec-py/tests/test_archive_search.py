@@ -78,6 +78,17 @@ def test_the_hits_are_those_of_all_rows(many: ma.Archive, base: ma.Archive, clip
     assert fast.read < 900, "some clips are not read"
 
 
+def test_some_of_many_clips_are_searched_first(
+    many: ma.Archive, clips: list[morec.Clip], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    many.add_sketches()
+    monkeypatch.setattr("morec.archive._search.GLANCED_AT", 100)
+    monkeypatch.setattr("morec.archive._search.SOME", 2)
+    for wanted in HOW:
+        fast, slow = found(many, clips[0], 2.0, 3.5, wanted)
+        assert fast.hits == slow.hits and len(fast.hits) > 0
+
+
 def test_sketches_are_missing_stale_or_damaged(many: ma.Archive, base: ma.Archive, clips: list[morec.Clip]) -> None:
     def same(sketched: int) -> None:
         for one in (many, ma.open(many.store.uri)):
@@ -126,9 +137,9 @@ def test_mistakes_are_plain_errors(clips: list[morec.Clip]) -> None:
     example = _morec.search_example(clips[0], 0.0, 1.0)
     table = (np.zeros(2, np.int64), np.array([0, 4, 9], np.int32), np.zeros(4, np.uint8))
     with pytest.raises(ValueError, match="beyond the bytes"):
-        _morec.sketch_bounds(example, [table], 20, False, False, False)
+        _morec.sketch_bounds(example, [table], 20, False, False, False, 9.0)
     with pytest.raises(ValueError, match="expected 3, found 2"):
-        _morec.sketch_bounds(example, [(table[0], table[1][:2], table[2])], 20, False, False, False)
+        _morec.sketch_bounds(example, [(table[0], table[1][:2], table[2])], 20, False, False, False, 9.0)
     plan = _morec.SearchPlan(np.zeros(3, np.float32), 20, False, False)
     with pytest.raises(ValueError, match="no such clip"):
         plan.bound(np.array([3]), np.zeros(1, np.float32))

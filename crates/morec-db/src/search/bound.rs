@@ -20,6 +20,8 @@ use super::{Example, SearchOptions};
 
 /// Octaves that a sketch speaks of.
 const OCTAVES: usize = 3;
+/// Lanes that are looked at before the others.
+const GLANCE: usize = 16;
 /// Parts of a window in the last of these.
 const PARTS: usize = 1 << OCTAVES;
 
@@ -45,12 +47,14 @@ pub struct SketchedClip<'a> {
 }
 
 /// For each clip a lower bound of the distance of every window that a [search](super::SearchIndex::search) would compare with
-/// the example (or its mirror image): infinite if there is none, 0 if the clip has no sketch. O(rows / example rows) for each
+/// the example (or its mirror image): infinite if there is none, 0 if the clip has no sketch. Of clips beyond `reach` it is said only
+/// that they are. O(rows / example rows) for each
 /// clip, in parallel.
 pub fn lower_bounds<'a>(
     example: &Example,
     options: &SearchOptions,
     depth: BoundDepth,
+    reach: f32,
     clips: impl IndexedParallelIterator<Item = SketchedClip<'a>>,
 ) -> Vec<f32> {
     let probes = probes(example, options, None);
@@ -60,9 +64,11 @@ pub fn lower_bounds<'a>(
         whole: probes.iter().any(|probe| probe.whole),
         tables: SketchTables::new(),
     };
+    // What is beyond it stays so after rounding.
+    let beyond = 1.01 * reach + 2.0 * ROUNDING.1;
     clips
         .map_init(Sketch::default, |sketch, clip| {
-            query.least(sketch, &clip, depth)
+            query.least(sketch, &clip, depth, beyond)
         })
         .collect()
 }
@@ -120,7 +126,13 @@ impl SharedLanes {
 }
 
 impl SketchQuery {
-    fn least(&self, sketch: &mut Sketch, clip: &SketchedClip<'_>, depth: BoundDepth) -> f32 {
+    fn least(
+        &self,
+        sketch: &mut Sketch,
+        clip: &SketchedClip<'_>,
+        depth: BoundDepth,
+        beyond: f32,
+    ) -> f32 {
         let shared: Vec<BoneSet> = self
             .probes
             .iter()
@@ -130,7 +142,7 @@ impl SketchQuery {
             return f32::INFINITY;
         }
         let shared: Vec<SharedLanes> = shared.into_iter().map(SharedLanes::of).collect();
-        let least = least_bound(self, &shared, sketch, clip.sketch, depth);
+        let least = least_bound(self, &shared, sketch, clip.sketch, depth, beyond);
         // No rows are a clip that is not searched; no sketch says nothing.
         least.map_or(0.0, |least| (ROUNDING.0 * least - ROUNDING.1).max(0.0))
     }
@@ -143,6 +155,7 @@ impl SketchQuery {
         sketch: &mut Sketch,
         bytes: &[u8],
         depth: BoundDepth,
+        beyond: f32,
     ) -> Option<f32> {
         if !sketch.read(bytes, &self.tables) {
             return None;
@@ -154,21 +167,32 @@ impl SketchQuery {
             0.0
         };
         let whole = self.whole.then_some(0..rows);
-        let mut least = f32::INFINITY;
+        let mut least = beyond;
         let mut window = WindowSketch::new();
         for span in spans(self.rows, rows).chain(whole) {
             let length = length_cost(span.len(), self.rows, pace_range()) + excess;
-            window.set(sketch, &self.tables, span.start, span.len());
+            window.turn(span.start, span.len());
             for (probe, shared) in self.probes.iter().zip(shared) {
                 // Each part of the distance is a bound of the whole: as soon as they exceed what is known, the rest is idle.
                 let scale = shared.scale.sqrt();
-                let mut motion = WEIGHTS.motion * scale * window.halves(probe, shared) + length;
+                let weight = WEIGHTS.motion * scale;
+                // Most windows are far from most examples in every few bones.
+                let first = window.glance(sketch, &self.tables, probe, shared, 0);
+                if weight * first + length >= least {
+                    continue;
+                }
+                let second = window.glance(sketch, &self.tables, probe, shared, GLANCE);
+                if weight * second + length >= least {
+                    continue;
+                }
+                window.set(sketch, &self.tables);
+                let mut motion = weight * window.halves(probe, shared) + length;
                 if motion >= least {
                     continue;
                 }
                 if depth == BoundDepth::Eighths {
                     window.complete(sketch, &self.tables);
-                    motion = WEIGHTS.motion * scale * window.eighths(probe, shared) + length;
+                    motion = weight * window.eighths(probe, shared) + length;
                 }
                 let bound = motion + WEIGHTS.pose * scale * window.pose(probe, shared);
                 if bound < least {
@@ -188,8 +212,9 @@ fn least_bound(
     sketch: &mut Sketch,
     bytes: &[u8],
     depth: BoundDepth,
+    beyond: f32,
 ) -> Option<f32> {
-    query.least_of(shared, sketch, bytes, depth)
+    query.least_of(shared, sketch, bytes, depth, beyond)
 }
 
 /// What a sketch says of a window: prefix sums at the ends of its eighths, in units, and their errors, in rows.
@@ -199,7 +224,9 @@ struct WindowSketch {
     per_row: f32,
     ends: [[f32; LANES]; PARTS + 1],
     errors: [[f32; 2]; PARTS + 1],
-    /// True if all ends are there; else those of its halves.
+    /// True if the ends of its halves are there.
+    halved: bool,
+    /// True if all are.
     complete: bool,
 }
 
@@ -211,18 +238,60 @@ impl WindowSketch {
             per_row: 1.0,
             ends: [[0.0; LANES]; PARTS + 1],
             errors: [[0.0; 2]; PARTS + 1],
+            halved: false,
             complete: false,
         }
     }
 
-    /// Turns to another window, of which only the halves are looked at.
+    /// Turns to another window.
     #[inline(always)]
-    fn set(&mut self, sketch: &Sketch, tables: &SketchTables, start: usize, rows: usize) {
+    fn turn(&mut self, start: usize, rows: usize) {
         (self.start, self.rows, self.per_row) = (start, rows, 1.0 / rows as f32);
-        self.complete = false;
-        for part in [0, PARTS / 2, PARTS] {
-            self.end(sketch, tables, part);
+        (self.halved, self.complete) = (false, false);
+    }
+
+    /// Distance of the deviations between the halves, at least, by a few lanes alone; nothing is kept.
+    #[inline(always)]
+    fn glance(
+        &self,
+        sketch: &Sketch,
+        tables: &SketchTables,
+        probe: &SketchProbe,
+        shared: &SharedLanes,
+        from: usize,
+    ) -> f32 {
+        let places = [0, PARTS / 2, PARTS].map(|part| self.place(part));
+        let base = sketch.block(places[0]);
+        let left = sketch.until::<GLANCE>(places[0], base, tables, from);
+        let middle = sketch.until::<GLANCE>(places[1], base, tables, from);
+        let right = sketch.until::<GLANCE>(places[2], base, tables, from);
+        let wanted = &probe.octaves[0][from..from + GLANCE];
+        let mask = &shared.mask[from..from + GLANCE];
+        let mut squares = [0f32; GLANCE];
+        for lane in 0..GLANCE {
+            let h = (2.0 * middle[lane] - left[lane] - right[lane]) * (UNIT * self.per_row);
+            let apart = (wanted[lane] - h.abs()) * mask[lane];
+            squares[lane] = apart * apart;
         }
+        let [a, b, c] = places.map(|place| sketch.errors(place)[0]);
+        sum(&squares).sqrt() - (a + 2.0 * b + c) * self.per_row
+    }
+
+    /// Takes the ends of the halves.
+    #[inline(always)]
+    fn set(&mut self, sketch: &Sketch, tables: &SketchTables) {
+        if !self.halved {
+            for part in [0, PARTS / 2, PARTS] {
+                self.end(sketch, tables, part);
+            }
+            self.halved = true;
+        }
+    }
+
+    /// Where a part begins, in eighths of rows.
+    #[inline(always)]
+    fn place(&self, part: usize) -> usize {
+        self.start * PLACES + self.rows * part
     }
 
     /// Takes the ends of the other parts.
@@ -238,9 +307,9 @@ impl WindowSketch {
 
     #[inline(always)]
     fn end(&mut self, sketch: &Sketch, tables: &SketchTables, part: usize) {
-        let base = sketch.block(self.start * PLACES);
-        let place = self.start * PLACES + self.rows * part;
-        self.errors[part] = sketch.until(place, base, tables, &mut self.ends[part]);
+        let (base, place) = (sketch.block(self.place(0)), self.place(part));
+        self.errors[part] = sketch.errors(place);
+        self.ends[part] = sketch.until(place, base, tables, 0);
     }
 
     /// Squares of what the deviations in an octave differ by, and of what they may be off.
@@ -322,10 +391,16 @@ impl WindowSketch {
 #[inline(always)]
 fn masked_sum(lanes: &[f32; LANES], shared: &SharedLanes) -> f32 {
     let mask = &shared.mask;
-    let mut sixteen = [0f32; 16];
+    let mut sixteen = [0f32; GLANCE];
     for (i, sum) in sixteen.iter_mut().enumerate() {
         *sum = lanes[i] * mask[i] + lanes[16 + i] * mask[16 + i] + lanes[32 + i] * mask[32 + i];
     }
+    sum(&sixteen)
+}
+
+/// The sum, by halves.
+#[inline(always)]
+fn sum(sixteen: &[f32; GLANCE]) -> f32 {
     let eight: [f32; 8] = std::array::from_fn(|i| sixteen[i] + sixteen[8 + i]);
     let four: [f32; 4] = std::array::from_fn(|i| eight[i] + eight[4 + i]);
     (four[0] + four[2]) + (four[1] + four[3])

@@ -5,7 +5,7 @@ use super::{BoundDepth, SearchOptions};
 use crate::ClipId;
 
 /// Clips of which the bound by eighths is taken before anything has been found.
-const LOOKED_AT_FIRST: usize = 1 << 15;
+const LOOKED_AT_FIRST: usize = 1 << 13;
 
 /// Clips that are read at once, after the first time.
 const BATCH: usize = 1024;

@@ -59,6 +59,7 @@ fn bounds(
     example: &Example,
     options: &SearchOptions,
     depth: BoundDepth,
+    reach: f32,
     clips: &[ClipRows],
 ) -> Vec<f32> {
     let sketches: Vec<Vec<u8>> = clips
@@ -70,6 +71,7 @@ fn bounds(
         example,
         options,
         depth,
+        reach,
         sketches.par_iter().zip(clips).map(clip),
     )
 }
@@ -85,10 +87,10 @@ fn sketched<'a>(sketch: &'a Vec<u8>, clip: &ClipRows) -> SketchedClip<'a> {
 fn pruned(example: &Example, options: &SearchOptions, clips: &[ClipRows]) -> (Vec<Hit>, usize) {
     let by_number: BTreeMap<ClipId, &ClipRows> = clips.iter().map(|c| (c.clip, c)).collect();
     let mut plan = SearchPlan::new(
-        &bounds(example, options, BoundDepth::Halves, clips),
+        &bounds(example, options, BoundDepth::Halves, f32::INFINITY, clips),
         options,
     );
-    let closely = bounds(example, options, BoundDepth::Eighths, clips);
+    let closely = bounds(example, options, BoundDepth::Eighths, f32::INFINITY, clips);
     let mut read = 0;
     loop {
         let which = plan.next_to_bound();
@@ -134,7 +136,18 @@ fn check_bounds(example: &Example, clips: &[ClipRows]) {
     for options in all_options(20) {
         let probes = probes(example, &options, None);
         let [halves, eighths] = [BoundDepth::Halves, BoundDepth::Eighths]
-            .map(|depth| bounds(example, &options, depth, clips));
+            .map(|depth| bounds(example, &options, depth, f32::INFINITY, clips));
+        let mut order = eighths.clone();
+        order.sort_by(f32::total_cmp);
+        let reach = order[order.len() / 3];
+        let near = bounds(example, &options, BoundDepth::Eighths, reach, clips);
+        for (near, far) in near.iter().zip(&eighths) {
+            assert!(if *far <= reach {
+                near == far
+            } else {
+                *near > reach && near <= far
+            });
+        }
         for clip in &index.clips {
             let at = clips.iter().position(|c| c.clip == clip.clip).unwrap();
             let rows = clip.laid.rows.len();

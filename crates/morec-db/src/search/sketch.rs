@@ -197,32 +197,40 @@ impl Sketch {
         true
     }
 
-    /// Prefix sums before `place`, in eighths of rows, less those before the block `base`, in units; and their errors in rows.
+    /// Prefix sums before `place`, in eighths of rows, less those before the block `base`, in units: `N` lanes from `from` on.
     #[inline(always)]
-    pub fn until(
+    pub fn until<const N: usize>(
         &self,
         place: usize,
         base: usize,
         tables: &SketchTables,
-        out: &mut [f32; LANES],
-    ) -> [f32; 2] {
+        from: usize,
+    ) -> [f32; N] {
         let block = self.block(place);
         let [before, within, next] = tables.weights[place - PLACES * BLOCK * block];
         let last = self.sums.len() - 2;
         // At the ends the block stands for those that are not there.
         let (first, third) = (block.saturating_sub(1), (block + 1).min(last));
-        let (a, b) = (&self.sums[first], &self.sums[first + 1]);
-        let (c, d) = (&self.sums[block], &self.sums[block + 1]);
-        let (e, f) = (&self.sums[third], &self.sums[third + 1]);
-        let base = &self.sums[base];
-        for lane in 0..LANES {
+        let lanes = |at: usize| &self.sums[at][from..from + N];
+        let (a, b) = (lanes(first), lanes(first + 1));
+        let (c, d) = (lanes(block), lanes(block + 1));
+        let (e, f) = (lanes(third), lanes(third + 1));
+        let base = lanes(base);
+        let mut out = [0f32; N];
+        for lane in 0..N {
             // Differences of whole numbers are exact.
             out[lane] = (c[lane] - base[lane])
                 + before * (b[lane] - a[lane])
                 + within * (d[lane] - c[lane])
                 + next * (f[lane] - e[lane]);
         }
-        self.errors[block]
+        out
+    }
+
+    /// Errors of the prefix sums at a place, in rows: of directions and of the root.
+    #[inline(always)]
+    pub fn errors(&self, place: usize) -> [f32; 2] {
+        self.errors[self.block(place)]
     }
 
     /// The block of a place in eighths of rows.
@@ -263,8 +271,8 @@ mod tests {
             let lanes: Vec<(usize, usize)> = RowLayout::ALL.directions().enumerate()
                 .chain(RowLayout::ALL.root().enumerate().map(|(i, c)| (ROOT_LANE + i, c))).collect();
             for place in 0..=length * PLACES {
-                let mut found = [0f32; LANES];
-                let errors = read.until(place, base, &tables, &mut found);
+                let found = read.until::<LANES>(place, base, &tables, 0);
+                let errors = read.errors(place);
                 let mut squares = [0f64; 2];
                 for (lane, column) in &lanes {
                     let there = f64::from(read.sums[base][*lane]) + f64::from(found[*lane]);
@@ -285,7 +293,7 @@ mod tests {
             }
             let (mut read, tables) = (Sketch::default(), SketchTables::new());
             if read.read(&bytes, &tables) {
-                read.until(rows as usize * PLACES, 0, &tables, &mut [0f32; LANES]);
+                read.until::<LANES>(rows as usize * PLACES, 0, &tables, 0);
             }
         }
     }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -18,6 +19,9 @@ from ._layout import clip_number
 from ._sketches import SketchTable
 from ._store import Store, patiently
 from ._tasks import Example, Nearest
+
+#: Archives of more clips are searched in one of so many clips first.
+GLANCED_AT, SOME = 1 << 16, 16
 
 #: A clip's number, name, key, bones and packed rows.
 KeptRows = tuple[int, str, str, int, bytes]
@@ -51,33 +55,63 @@ def search(
 ) -> Found:
     """The hits among the clips of tables of sketches and those of a frame (clip, name, bones, rows) that have none."""
     asked, how = example.native(), wanted.native()
-    columns = [table.native() for table in tables]
-    plan = _morec.SearchPlan(_morec.sketch_bounds(asked, columns, *how, False), *how)
+    sketched = Sketched(store, tables, asked, wanted)
+    found = Found([], int(sketched.firsts[-1]), 0, 0)
     rows: dict[int, KeptRows] = {}
+    reach = math.inf
+    if found.sketched > GLANCED_AT:
+        # Among some of the clips the nearest windows are further, but so near that of most others a glance is enough.
+        some = np.arange(0, found.sketched, SOME)
+        plan = _morec.SearchPlan(sketched.bounds(False, reach, some), *how)
+        sketched.read(plan, some, found, once=True)
+        reach = plan.reach()
+    plan = _morec.SearchPlan(sketched.bounds(False, reach, None), *how)
     if unsketched is not None:
-        for row in _nearest_of(unsketched, example, wanted):
-            rows[row[0]] = row
+        rows = {row[0]: row for row in _nearest_of(unsketched, example, wanted)}
         plan.found(_part(list(rows.values())).nearest_windows(asked, *how))
-    firsts = np.cumsum([0, *(len(table.clip) for table in tables)])
-    found = Found([], int(firsts[-1]), 0, 0)
-    while True:
-        places = plan.next_to_bound()
-        if len(places):
-            plan.bound(places, _morec.sketch_bounds(asked, columns, *how, True, places))
-            found.bound += len(places)
-        places = plan.next_to_read()
-        if not len(places):
-            break
-        read = _rows_at(store, tables, firsts, places)
-        found.read += len(read)
-        plan.found(_part(read).nearest_windows(asked, *how))
-        # No more is held than may be needed.
-        rows.update({row[0]: row for row in read})
-        rows = {number: rows[number] for number in plan.chosen()}
+    rows |= sketched.read(plan, np.arange(found.sketched), found)
     few = {number: rows[number] for number in plan.chosen()}
     hits = _part([few[number] for number in sorted(few)]).search(asked, *how)
     found.hits = [(few[hit[0]][2], few[hit[0]][1], *hit[1:]) for hit in hits]
     return found
+
+
+@dataclass
+class Sketched:
+    """Clips of which there are sketches, and an example."""
+
+    store: Store
+    tables: Sequence[SketchTable]
+    asked: _morec.SearchExample
+    wanted: Wanted
+
+    def __post_init__(self) -> None:
+        self.columns = [table.native() for table in self.tables]
+        self.firsts = np.cumsum([0, *(len(table.clip) for table in self.tables)])
+
+    def bounds(self, closely: bool, reach: float, places: Any) -> Any:
+        return _morec.sketch_bounds(self.asked, self.columns, *self.wanted.native(), closely, reach, places)
+
+    def read(self, plan: _morec.SearchPlan, places: Any, found: Found, once: bool = False) -> dict[int, KeptRows]:
+        """Reads what a plan for the clips at these places asks for, until it has enough or `once`; clips that may be needed."""
+        rows: dict[int, KeptRows] = {}
+        while True:
+            which = plan.next_to_bound()
+            if len(which):
+                plan.bound(which, self.bounds(True, plan.reach(), places[which]))
+                found.bound += len(which)
+            which = plan.next_to_read()
+            if not len(which):
+                return rows
+            read = _rows_at(self.store, self.tables, self.firsts, places[which])
+            found.read += len(read)
+            plan.found(_part(read).nearest_windows(self.asked, *self.wanted.native()))
+            # No more is held than may be needed.
+            chosen = set(plan.chosen())
+            rows = {number: row for number, row in rows.items() if number in chosen}
+            rows |= {row[0]: row for row in read if row[0] in chosen}
+            if once:
+                return rows
 
 
 def _part(rows: Sequence[KeptRows]) -> _morec.SearchPart:
