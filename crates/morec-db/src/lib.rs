@@ -57,5 +57,6 @@ pub use motion::StoredClip;
 pub use names::hint;
 pub use propose::{Proposal, ProposeOptions, most_informative};
 pub use replace::Replaced;
+pub use rows::bones_of_bits;
 pub use schema::{APPLICATION_ID, SCHEMA};
 pub use segments::{Segment, SegmentKind};

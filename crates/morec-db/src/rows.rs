@@ -46,7 +46,8 @@ pub(crate) fn bits(bones: BoneSet) -> i64 {
     bones.indices().fold(0, |bits, bone| bits | 1 << bone)
 }
 
-fn bones_of_bits(bits: i64) -> BoneSet {
+/// The bones of a set kept as a number, a bit each.
+pub fn bones_of_bits(bits: i64) -> BoneSet {
     (0..morec::features::BONES)
         .filter(|b| bits >> b & 1 == 1)
         .fold(BoneSet::NONE, BoneSet::with)

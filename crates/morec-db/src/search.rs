@@ -7,23 +7,31 @@
 //! of those between. The first are placed exactly by subsequence dynamic time warping ([`morec::templates::TemplateBank`]). Where
 //! samples are labelled, a [`LearnedMetric`] says which differences matter.
 
+mod bound;
 mod candidates;
 mod copies;
 mod graph;
 pub(crate) mod layout;
 mod learned;
+mod plan;
+#[cfg(test)]
+mod pruned_tests;
 mod rank;
+mod sketch;
 mod summary;
 #[cfg(test)]
 mod tests;
 mod windows;
 
+pub use bound::{BoundDepth, SketchedClip, lower_bounds};
 pub use copies::{NearCopy, near_duplicates, near_duplicates_of};
 pub use learned::LearnedMetric;
-pub use rank::{Hit, SearchOptions};
+pub use plan::SearchPlan;
+pub use rank::{Hit, SearchOptions, windows_wanted};
 
 use morec::features::FeatureParams;
 use morec::progress::Progress;
+use rayon::prelude::*;
 
 use crate::rows::ClipRows;
 use crate::{ClipId, DbError, MotionDb};
@@ -78,7 +86,7 @@ impl SearchIndex {
         };
         Self {
             clips: rows
-                .iter()
+                .par_iter()
                 .filter(|clip| !clip.rows.is_empty())
                 .map(index)
                 .collect(),
@@ -143,4 +151,10 @@ impl SearchIndex {
             whole: true,
         })
     }
+}
+
+/// The sketch of a clip for [`lower_bounds`]: 43 bytes for four rows; `None` without rows, or of rows out of all measure.
+pub fn sketch_of(clip: &ClipRows) -> Option<Vec<u8>> {
+    let laid = to_canonical(&clip.rows, clip.bones);
+    sketch::sketch(&laid.rows).filter(|_| !clip.rows.is_empty())
 }

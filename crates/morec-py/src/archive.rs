@@ -2,13 +2,11 @@
 
 use std::path::PathBuf;
 
-use morec::features::FeatureParams;
 use morec::formats::{Limits, mclip};
 use morec::import::Take;
 use morec::index::MotionIndex;
 use morec::live::{Detection, recognize_clip};
 use morec::segment::KernelParams;
-use morec_db::search::{Example, SearchIndex, SearchOptions};
 use morec_db::{
     ClipId, Cutter, ImportOutcome, KeptClip, KeptFile, MotionDb, StoredClip, clip_rows,
     rows_recipe, stored_clip,
@@ -22,7 +20,7 @@ use rayon::prelude::*;
 use crate::arrays::owned;
 use crate::clip::PyClip;
 use crate::clip_data::ClipData;
-use crate::database::{db_error, example_of};
+use crate::database::db_error;
 use crate::errors::{MorecError, value_error};
 use crate::index::PyIndex;
 use crate::options::reader;
@@ -311,113 +309,8 @@ pub fn present_recipe() -> String {
     rows_recipe()
 }
 
-/// Clips of a part of an archive, laid out for searching.
-#[pyclass(frozen, module = "morec")]
-pub struct SearchPart {
-    index: SearchIndex,
-}
-
-/// An example to search for.
-#[pyclass(frozen, module = "morec")]
-pub struct SearchExample {
-    example: Example,
-}
-
-/// A stretch of a clip from elsewhere as an example.
-#[pyfunction]
-#[pyo3(signature = (clip, start, stop=None))]
-pub fn search_example(clip: &PyClip, start: f64, stop: Option<f64>) -> PyResult<SearchExample> {
-    let example = example_of(&clip.data, start, stop);
-    let short = || value_error("the example must hold at least 0.1 s of motion");
-    Ok(SearchExample {
-        example: example.ok_or_else(short)?,
-    })
-}
-
-fn options(limit: usize, mirror: bool, one_a_clip: bool) -> SearchOptions {
-    SearchOptions {
-        limit,
-        mirror,
-        one_a_clip,
-        ..SearchOptions::default()
-    }
-}
-
-#[pymethods]
-impl SearchPart {
-    /// For each clip its number, bones and packed rows.
-    #[new]
-    fn new(py: Python<'_>, clips: Vec<(i64, i64, Vec<u8>)>) -> Self {
-        let index = py.detach(|| {
-            let rows = clips
-                .iter()
-                .filter_map(|(id, bones, rows)| clip_rows(ClipId(*id), *bones, rows));
-            let rows: Vec<_> = rows.collect();
-            SearchIndex::new(&rows, FeatureParams::default().tick_hz())
-        });
-        Self { index }
-    }
-
-    /// A stretch of one of the clips as an example, which is then no hit itself.
-    fn example(&self, clip: i64, start: f64, stop: f64) -> PyResult<SearchExample> {
-        let example = self.index.example(ClipId(clip), start, stop);
-        let short = || value_error("the example must hold at least 0.1 s of motion");
-        Ok(SearchExample {
-            example: example.ok_or_else(short)?,
-        })
-    }
-
-    /// The nearest clips and how near they are: what a search in parts has to look at.
-    fn nearest(
-        &self,
-        py: Python<'_>,
-        example: &SearchExample,
-        limit: usize,
-        mirror: bool,
-        one_a_clip: bool,
-    ) -> Vec<(i64, f32)> {
-        let options = options(limit, mirror, one_a_clip);
-        let near = py.detach(|| self.index.nearest_clips(&example.example, &options));
-        near.into_iter()
-            .map(|(clip, distance)| (clip.0, distance))
-            .collect()
-    }
-
-    /// The hits, best first: clip, start, stop, score, warp distance, mirrored.
-    fn search(
-        &self,
-        py: Python<'_>,
-        example: &SearchExample,
-        limit: usize,
-        mirror: bool,
-        one_a_clip: bool,
-    ) -> Vec<(i64, f64, f64, f32, f32, bool)> {
-        let options = options(limit, mirror, one_a_clip);
-        let hits = py.detach(|| self.index.search(&example.example, &options));
-        let hit = |h: morec_db::search::Hit| {
-            (
-                h.clip.0,
-                h.start_secs,
-                h.stop_secs,
-                h.score,
-                h.warp_distance,
-                h.mirrored,
-            )
-        };
-        hits.into_iter().map(hit).collect()
-    }
-
-    /// Rows in all.
-    #[getter]
-    fn ticks(&self) -> usize {
-        self.index.ticks()
-    }
-}
-
 /// Adds what this module has.
 pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    module.add_class::<SearchPart>()?;
-    module.add_class::<SearchExample>()?;
     module.add_function(wrap_pyfunction!(keep_file, module)?)?;
     module.add_function(wrap_pyfunction!(kept_of_database, module)?)?;
     module.add_function(wrap_pyfunction!(kept_to_database, module)?)?;
@@ -427,5 +320,5 @@ pub fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(cut_kept, module)?)?;
     module.add_function(wrap_pyfunction!(rows_kept, module)?)?;
     module.add_function(wrap_pyfunction!(present_recipe, module)?)?;
-    module.add_function(wrap_pyfunction!(search_example, module)?)
+    Ok(())
 }

@@ -1,6 +1,7 @@
 //! The native part of the Python package `morec`. What is easier said in Python lies in `python/morec`.
 
 mod archive;
+mod archive_search;
 mod arrays;
 mod clip;
 mod clip_data;
@@ -49,6 +50,7 @@ fn _morec(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(material::resolve_labels, module)?)?;
     module.add_function(wrap_pyfunction!(material::rows_of_table, module)?)?;
     archive::register(module)?;
+    archive_search::register(module)?;
     module.add_function(wrap_pyfunction!(divided::match_kept, module)?)?;
     module.add_function(wrap_pyfunction!(divided::recognize_matched_kept, module)?)?;
     module.add_function(wrap_pyfunction!(crossval::crossval, module)?)?;

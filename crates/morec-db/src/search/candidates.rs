@@ -27,7 +27,7 @@ const A_CLIP: usize = 4;
 /// Descriptor of the example, or of its mirror image, for comparison with windows.
 pub struct QueryDescriptor<'a> {
     pub look: Descriptor,
-    bones: BoneSet,
+    pub bones: BoneSet,
     mirrored: bool,
     metric: Option<&'a LearnedMetric>,
     rows: usize,
@@ -110,10 +110,13 @@ impl<'a> QueryDescriptor<'a> {
         } else {
             0.0
         };
-        self.look.distance(&look, over)
-            + length_cost(span.len(), self.rows, 1.0 / SCALES[0])
-            + excess
+        self.look.distance(&look, over) + length_cost(span.len(), self.rows, pace_range()) + excess
     }
+}
+
+/// By how much a stretch may be shorter than the example without a cost.
+pub fn pace_range() -> f64 {
+    1.0 / SCALES[0]
 }
 
 /// Cost of `length` being less than `other` by more than a difference in pace explains: 0 to 1.
@@ -175,14 +178,8 @@ fn windows(
     {
         return Vec::new();
     }
-    let spans = SCALES.iter().flat_map(|scale| {
-        let length = ((n as f64 * scale).round() as usize).clamp(3, rows);
-        (0..=rows - length)
-            .step_by((length / 4).max(1))
-            .map(move |start| start..start + length)
-    });
     let whole = probes.first().filter(|probe| probe.whole).map(|_| 0..rows);
-    let mut spans: Vec<Range<usize>> = spans.chain(whole).collect();
+    let mut spans: Vec<Range<usize>> = spans(n, rows).chain(whole).collect();
     if !probes.iter().any(|probe| probe.whole) {
         spans = nearest_by_moments(clip, probes, &over, spans);
     }
@@ -210,6 +207,19 @@ fn windows(
     found
 }
 
+/// Windows of a clip of `rows` rows for an example of `n`; none of less than three.
+pub fn spans(n: usize, rows: usize) -> impl Iterator<Item = Range<usize>> {
+    let lengths = SCALES
+        .iter()
+        .filter(move |_| rows >= 3)
+        .map(move |scale| ((n as f64 * scale).round() as usize).clamp(3, rows));
+    lengths.flat_map(move |length| {
+        (0..=rows - length)
+            .step_by((length / 4).max(1))
+            .map(move |start| start..start + length)
+    })
+}
+
 /// Of windows in the same surroundings those that are nearest by their moments, for each probe. These cost a tenth of a
 /// summary, and what they say is never more than what that says: what its octaves add is at least as long as the
 /// standard deviations.
@@ -228,7 +238,7 @@ fn nearest_by_moments(
         let wanted = moments_in(&probe.look.summary);
         let distance = |at: usize| {
             over.by_moments(&wanted, &moments[at])
-                + length_cost(spans[at].len(), probe.rows, 1.0 / SCALES[0])
+                + length_cost(spans[at].len(), probe.rows, pace_range())
         };
         let mut order: Vec<(f32, usize)> = (0..spans.len()).map(|at| (distance(at), at)).collect();
         order.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -118,8 +118,7 @@ impl SearchIndex {
     pub fn nearest_clips(&self, example: &Example, options: &SearchOptions) -> Vec<(ClipId, f32)> {
         let probes = probes(example, options, None);
         let candidates = self.candidates(example, &probes, options.one_a_clip);
-        // What the graph links, and beyond it what is ranked by distance alone.
-        let wanted = linked(options) + placed(options);
+        let wanted = windows_wanted(options);
         let mut seen = BTreeSet::new();
         let mut nearest = Vec::new();
         for candidate in candidates {
@@ -131,6 +130,24 @@ impl SearchIndex {
             }
         }
         nearest
+    }
+
+    /// The clips of the nearest windows, and how near these are, nearest first: as many as a search looks at, and of one hit
+    /// for each clip its nearest alone. A clip of which no window is as near as the last of these says nothing to the search,
+    /// whatever part of the archive each was found in.
+    pub fn nearest_windows(
+        &self,
+        example: &Example,
+        options: &SearchOptions,
+    ) -> Vec<(ClipId, f32)> {
+        let probes = probes(example, options, None);
+        let mut seen = BTreeSet::new();
+        self.candidates(example, &probes, options.one_a_clip)
+            .into_iter()
+            .filter(|window| !options.one_a_clip || seen.insert(window.clip))
+            .take(windows_wanted(options))
+            .map(|window| (self.clips[window.clip].clip, window.distance))
+            .collect()
     }
 
     /// Candidates with the company they keep, cheapest first.
@@ -258,7 +275,7 @@ impl SearchIndex {
 }
 
 /// Descriptors of the example, and of its mirror image if that is searched for.
-fn probes<'a>(
+pub fn probes<'a>(
     example: &Example,
     options: &SearchOptions,
     metric: Option<&'a LearnedMetric>,
@@ -275,6 +292,11 @@ fn probes<'a>(
 /// Candidates that the graph links.
 fn linked(options: &SearchOptions) -> usize {
     (8 * options.limit).clamp(*LINKED.start(), *LINKED.end())
+}
+
+/// Windows that a search looks at: what the graph links, and beyond it what is ranked by distance alone.
+pub fn windows_wanted(options: &SearchOptions) -> usize {
+    linked(options) + placed(options)
 }
 
 /// Candidates that are placed exactly.

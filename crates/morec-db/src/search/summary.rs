@@ -17,9 +17,9 @@ const PARTS: usize = 16;
 /// Octaves: between halves, quarters, eighths and sixteenths; within sixteenths.
 const OCTAVES: usize = 5;
 /// First value of the mean pose.
-const MEAN: usize = OCTAVES * X;
+pub const MEAN: usize = OCTAVES * X;
 /// First value of the travel.
-const ROOT: usize = MEAN + X;
+pub const ROOT: usize = MEAN + X;
 /// Values in a summary.
 pub const SUMMARY: usize = ROOT + TRAVEL;
 
@@ -28,16 +28,17 @@ pub type Summary = [f32; SUMMARY];
 
 /// Weight of each part's distance: about one over its median among windows of everyday motion, except that the mean
 /// pose, which tells people and styles apart better than motions, counts a sixth of that.
-const WEIGHTS: Weights = Weights {
+pub const WEIGHTS: Weights = Weights {
     motion: 0.9,
     pose: 0.1,
     travel: 1.6,
 };
 
-struct Weights {
-    motion: f32,
-    pose: f32,
-    travel: f32,
+/// Weights of the parts of a summary in a distance.
+pub struct Weights {
+    pub motion: f32,
+    pub pose: f32,
+    pub travel: f32,
 }
 
 impl Sums {
@@ -149,6 +150,11 @@ impl SummaryDistance {
             shared,
             scale: BONES as f32 / shared.len().max(1) as f32,
         }
+    }
+
+    /// All bones over those that are compared.
+    pub fn scale(&self) -> f32 {
+        self.scale
     }
 
     /// 0 for the same, around 3 for unlike motion.

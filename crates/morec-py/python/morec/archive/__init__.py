@@ -84,6 +84,7 @@ def create(
         _add_files(made, os.fspath(from_files), about, raw_s3 if raw_s3 is not None else s3 or {})
     if from_database is not None:
         made.add_database(from_database)
+    made.add_sketches()
     return made
 
 

@@ -19,8 +19,10 @@ from .._tables import Table
 from . import _layout as layout
 from ._divided import divided_events
 from ._group import group
+from ._search import Found, Wanted, search
+from ._sketches import Sketches, add_sketches, used
 from ._store import Store
-from ._tasks import Example, Nearest, cuts_of, events_of
+from ._tasks import Example, cuts_of, events_of
 
 #: Rows that do not travel unless they are asked for.
 LIGHT = [name for name in layout.CLIP_SCHEMA.names if name not in ("motion", "rows", "error")]
@@ -35,6 +37,7 @@ class Archive:
 
     def __init__(self, store: Store) -> None:
         self.store = store
+        self._sketches = Sketches()
 
     def __repr__(self) -> str:
         return f"<morec.archive.Archive {self.store.uri}>"
@@ -44,16 +47,18 @@ class Archive:
     def _parts(self, table: str) -> list[str]:
         return [name for name, _ in self.store.list(table) if name.endswith(".parquet")]
 
-    def _frame(self, table: str, columns: Sequence[str]) -> DataFrame | None:
-        parts = self._parts(table)
+    def _frame(
+        self, table: str, columns: Sequence[str], parts: Sequence[str] | None = None
+    ) -> DataFrame | None:
+        parts = self._parts(table) if parts is None else parts
         if not parts:
             return None
         urls = [self.store.url(name) for name in parts]
         frame = daft.read_parquet(urls, io_config=self.store.io_config())
         return frame.select(*columns)
 
-    def _clips(self, *columns: str) -> DataFrame:
-        frame = self._frame(layout.CLIPS, [*dict.fromkeys(["clip", *columns, "error"])])
+    def _clips(self, *columns: str, parts: Sequence[str] | None = None) -> DataFrame:
+        frame = self._frame(layout.CLIPS, [*dict.fromkeys(["clip", *columns, "error"])], parts)
         if frame is None:
             raise ValueError(f"{self.store.uri}: the archive holds no clip yet")
         return frame.where(col("error").is_null()).exclude("error")
@@ -176,6 +181,13 @@ class Archive:
     def _keys(self) -> list[str]:
         return [] if not self._parts(layout.CLIPS) else [row["clip"] for row in self._clips().to_pylist()]
 
+    def add_sketches(self) -> int:
+        """Sketch clips that were added without; `create` does it. How many parts of the archive were new.
+
+        Searching reads the sketches of all clips and the rows of a few; without sketches it reads all rows.
+        """
+        return add_sketches(self.store)
+
     def drop_copies(self) -> int:
         """Turn rows whose content is there from another path into rows with an error that says so. How many."""
         first: dict[str, tuple[str, str]] = {}
@@ -266,28 +278,15 @@ class Archive:
             Columns clip, name, start_secs, stop_secs, score, warp_distance, mirrored.
         """
         asked = self._example(example, start, stop)
-        frame = self._clips("bones", "rows")
-        numbered = frame.select(_number(col("clip")).alias("number"), col("bones"), col("rows"))
-        worker: Any = Nearest(asked, limit, mirror, one_a_clip)
-        near = worker.run(col("number"), col("bones"), col("rows"))
-        answers = numbered.select(near.alias("near")).explode("near").where(~col("near").is_null())
-        rows = answers.select(
-            col("near").get("clip").alias("clip"), col("near").get("distance").alias("distance")
-        ).to_pylist()
-        # Of all parts together as many of the nearest as of each.
-        wanted = min(max(8 * limit, 300), 1200) + 4 * max(limit, 8)
-        rows.sort(key=lambda row: (row["distance"], row["clip"]))
-        chosen = {row["clip"] for row in rows[:wanted]}
-        if asked.kept is not None:
-            chosen.add(asked.kept[0])
-        few = daft.from_pydict({"number": sorted(chosen)})
-        kept = self._clips("name", "bones", "rows").with_column("number", _number(col("clip"))).join(few, on="number")
-        clips = sorted(kept.to_pylist(), key=lambda row: int(row["number"]))
-        part = _morec.SearchPart([(row["number"], row["bones"], row["rows"]) for row in clips])
-        by_number = {row["number"]: row for row in clips}
-        hits = part.search(asked.native(), limit, mirror, one_a_clip)
-        made = [(by_number[hit[0]]["clip"], by_number[hit[0]]["name"], *hit[1:]) for hit in hits]
-        return Table([dict(zip(HITS, hit)) for hit in made], HITS)
+        return Table([dict(zip(HITS, hit)) for hit in self._search(asked, Wanted(limit, mirror, one_a_clip)).hits], HITS)
+
+    def _search(self, asked: Example, wanted: Wanted) -> Found:
+        parts = [(name, size) for name, size in self.store.list(layout.CLIPS) if name.endswith(".parquet")]
+        tables, left = used(self._sketches.of(self.store), parts)
+        unsketched = None
+        if left or not parts:
+            unsketched = self._clips("name", "bones", "rows", parts=[name for name, _ in left])
+        return search(self.store, tables, unsketched, asked, wanted)
 
     def _example(self, example: Clip | str | os.PathLike[str], start: float, stop: float | None) -> Example:
         if isinstance(example, str) and not os.path.exists(example):
@@ -408,11 +407,6 @@ class Sample:
             for (state, by), labels in by_state.items():
                 db.label(labels, state=state, by=by)
         return int(new)
-
-
-@daft.func(return_dtype=DataType.int64())
-def _number(clip: str) -> int:
-    return layout.clip_number(clip)
 
 
 @daft.func.batch(

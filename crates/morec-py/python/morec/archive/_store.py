@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
+import pyarrow as pa
 import pyarrow.fs as pafs
 from daft.io import IOConfig, S3Config
 
@@ -68,6 +69,12 @@ class Store:
             scheme, _, host = endpoint.partition("://")
             options |= {"endpoint_override": host.rstrip("/"), "scheme": scheme}
         return pafs.S3FileSystem(**options)
+
+    def open(self, name: str) -> pa.NativeFile:
+        """A file to read some of; FileNotFoundError if there is none. Of a local one nothing is copied."""
+        if not self.is_s3:
+            return pa.memory_map(self.url(name))
+        return patiently(lambda: self._fs().open_input_file(f"{self.root}/{name}"))
 
     def read(self, name: str) -> bytes:
         """The bytes of a file; FileNotFoundError if there is none."""

@@ -1,0 +1,311 @@
+//! Sketches of clips: prefix sums of their rows at every fourth row, in a byte a value, with the error of what lies between.
+//!
+//! Windows of whatever place and length are compared by means over their parts ([`summary`](super::summary)), which are
+//! differences of prefix sums. A sketch gives these to within an error that it states, so that the distance of a window is
+//! bounded from below ([`bound`](super::bound)) without its rows. Between its blocks a prefix sum is a cubic with the slopes of
+//! central differences (Catmull and Rom, *A class of local interpolating splines*, 1974).
+
+use morec::features::{RowLayout, Rows};
+
+use super::windows::{TRAVEL, X};
+
+/// Rows in a block.
+pub const BLOCK: usize = 4;
+/// Places between two rows at which prefix sums are asked for: parts of a window are eighths of it.
+pub const PLACES: usize = 8;
+/// Coordinates of directions, filled up to whole vectors, then those of the root, filled up.
+pub const LANES: usize = 48;
+/// The first lane of the root.
+pub const ROOT_LANE: usize = 40;
+/// Prefix sums are whole multiples of this: the largest for which a block's share of a direction fits into a byte.
+pub const UNIT: f32 = 1.0 / 30.0;
+/// Whole numbers below this are exact in single precision; more than four hours of a direction that stays as it is.
+const EXACT: f64 = 16_777_216.0;
+/// Bytes of a block: directions, root, errors of both.
+const BLOCK_BYTES: usize = X + 2 * TRAVEL + 2;
+/// Bytes before the first block: the number of rows.
+const HEAD: usize = 4;
+
+/// Weights of the block before, of the block and of the next in a prefix sum within the block.
+pub type BlockWeights = [f32; 3];
+
+/// Weights at each place of a block, its end too.
+pub fn weights() -> [BlockWeights; PLACES * BLOCK + 1] {
+    let at_row = |row: usize| -> BlockWeights {
+        let f = row as f32 / BLOCK as f32;
+        let (f2, f3) = (f * f, f * f * f);
+        let (slope, rise, next) = (f3 - 2.0 * f2 + f, 3.0 * f2 - 2.0 * f3, f3 - f2);
+        [0.5 * slope, 0.5 * slope + rise + 0.5 * next, 0.5 * next]
+    };
+    std::array::from_fn(|place| {
+        // Between rows prefix sums are straight lines, and so is what stands for them.
+        let (row, share) = (place / PLACES, (place % PLACES) as f32 / PLACES as f32);
+        let (here, there) = (at_row(row), at_row((row + 1).min(BLOCK)));
+        std::array::from_fn(|i| here[i] + share * (there[i] - here[i]))
+    })
+}
+
+/// The sketch of a clip's rows in the layout of all bones: 43 bytes for 4 rows. `None` of rows that no recognition makes (root
+/// motion of more than 900 leg lengths a second, directions longer than 1) and of more than four hours. O(values).
+pub fn sketch(rows: &Rows) -> Option<Vec<u8>> {
+    let sums = prefix_sums(rows);
+    let blocks = rows.len().div_ceil(BLOCK);
+    let at_block =
+        |block: usize, lane: usize| (sums[block * BLOCK][lane] / f64::from(UNIT)).round();
+    let mut deltas = Vec::with_capacity(blocks);
+    let mut out = u32::try_from(rows.len()).ok()?.to_le_bytes().to_vec();
+    for block in 0..blocks {
+        let delta = |lane: usize| at_block(block + 1, lane) - at_block(block, lane);
+        let lanes: [f32; LANES] = std::array::from_fn(|lane| delta(lane) as f32);
+        let directions = lanes[..X].iter().all(|d| d.abs() <= f32::from(i8::MAX));
+        let root = lanes[ROOT_LANE..]
+            .iter()
+            .all(|d| d.abs() <= f32::from(i16::MAX));
+        let exact = (0..LANES).all(|lane| at_block(block + 1, lane).abs() < EXACT);
+        if !directions || !root || !exact {
+            return None;
+        }
+        deltas.push(lanes);
+    }
+    let table = weights();
+    for block in 0..blocks {
+        let near = neighbours(&deltas, block);
+        let mut errors = [0f64; 2];
+        for row in 0..=BLOCK {
+            let mut squares = [0f64; 2];
+            for (lane, exact) in sums[block * BLOCK + row].iter().enumerate() {
+                let within: f32 = (0..3).map(|i| table[row * PLACES][i] * near[i][lane]).sum();
+                let value = (at_block(block, lane) + f64::from(within)) * f64::from(UNIT);
+                squares[usize::from(lane >= ROOT_LANE)] += (value - exact).powi(2);
+            }
+            errors = std::array::from_fn(|i| errors[i].max(squares[i]));
+        }
+        out.extend(
+            deltas[block][..X]
+                .iter()
+                .map(|d| (*d as i8).to_le_bytes()[0]),
+        );
+        out.extend(
+            deltas[block][ROOT_LANE..][..TRAVEL]
+                .iter()
+                .flat_map(|d| (*d as i16).to_le_bytes()),
+        );
+        for error in errors {
+            out.push(error_code(error.sqrt() as f32)?);
+        }
+    }
+    Some(out)
+}
+
+/// Running sums of the lanes before each row; the last row goes on until its block ends.
+fn prefix_sums(rows: &Rows) -> Vec<[f64; LANES]> {
+    let mut sum = [0f64; LANES];
+    let mut sums = vec![sum];
+    for t in 0..rows.len().next_multiple_of(BLOCK) {
+        let row = rows.row(t.min(rows.len() - 1));
+        for (sum, value) in sum.iter_mut().zip(&row[RowLayout::ALL.directions()]) {
+            *sum += f64::from(*value);
+        }
+        for (sum, value) in sum[ROOT_LANE..].iter_mut().zip(&row[RowLayout::ALL.root()]) {
+            *sum += f64::from(*value);
+        }
+        sums.push(sum);
+    }
+    sums
+}
+
+/// The block before, the block and the next; at the ends the block itself.
+fn neighbours(deltas: &[[f32; LANES]], block: usize) -> [&[f32; LANES]; 3] {
+    [
+        &deltas[block.saturating_sub(1)],
+        &deltas[block],
+        &deltas[(block + 1).min(deltas.len() - 1)],
+    ]
+}
+
+/// What a code says of an error: from 0.0002 in steps of a sixteenth of an octave.
+fn error_of(code: u8) -> f32 {
+    (f32::from(code) / 16.0 - 12.0).exp2()
+}
+
+/// The least code that does not understate an error.
+fn error_code(error: f32) -> Option<u8> {
+    // More than is lost in computing prefix sums in single precision, here and where they are read.
+    let error = 1.0001 * error + 1e-4;
+    (0..=u8::MAX).find(|code| error_of(*code) >= error)
+}
+
+/// A sketch as it is computed with.
+#[derive(Debug, Default)]
+pub struct Sketch {
+    /// Rows of the clip.
+    pub rows: usize,
+    /// Prefix sums before each block and after the last, in units: whole numbers.
+    sums: Vec<[f32; LANES]>,
+    /// Error of prefix sums within each block, Euclidean over directions and over the root.
+    errors: Vec<[f32; 2]>,
+}
+
+/// Constants of reading sketches.
+pub struct SketchTables {
+    weights: [BlockWeights; PLACES * BLOCK + 1],
+    errors: [f32; 256],
+}
+
+impl SketchTables {
+    pub fn new() -> Self {
+        Self {
+            weights: weights(),
+            errors: std::array::from_fn(|code| error_of(code as u8)),
+        }
+    }
+}
+
+impl Sketch {
+    /// Reads a sketch into this one, whose memory is used again; false for bytes that are none.
+    #[inline(always)]
+    pub fn read(&mut self, bytes: &[u8], tables: &SketchTables) -> bool {
+        let Some((rows, blocks)) = bytes.split_first_chunk::<HEAD>() else {
+            return false;
+        };
+        self.rows = u32::from_le_bytes(*rows) as usize;
+        let (blocks, rest) = blocks.as_chunks::<BLOCK_BYTES>();
+        if self.rows == 0 || blocks.len() != self.rows.div_ceil(BLOCK) || !rest.is_empty() {
+            return false;
+        }
+        self.sums.clear();
+        self.errors.clear();
+        self.sums.reserve(blocks.len() + 1);
+        self.errors.reserve(blocks.len());
+        let mut sum = [0f32; LANES];
+        self.sums.push(sum);
+        for block in blocks {
+            for lane in 0..X {
+                sum[lane] += f32::from(block[lane].cast_signed());
+            }
+            for i in 0..TRAVEL {
+                let delta = i16::from_le_bytes([block[X + 2 * i], block[X + 2 * i + 1]]);
+                sum[ROOT_LANE + i] += f32::from(delta);
+            }
+            self.sums.push(sum);
+            let [directions, root] = [block[BLOCK_BYTES - 2], block[BLOCK_BYTES - 1]];
+            self.errors.push([
+                tables.errors[usize::from(directions)],
+                tables.errors[usize::from(root)],
+            ]);
+        }
+        true
+    }
+
+    /// Prefix sums before `place`, in eighths of rows, less those before the block `base`, in units: `N` lanes from `from` on.
+    #[inline(always)]
+    pub fn until<const N: usize>(
+        &self,
+        place: usize,
+        base: usize,
+        tables: &SketchTables,
+        from: usize,
+    ) -> [f32; N] {
+        let block = self.block(place);
+        let [before, within, next] = tables.weights[place - PLACES * BLOCK * block];
+        let last = self.sums.len() - 2;
+        // At the ends the block stands for those that are not there.
+        let (first, third) = (block.saturating_sub(1), (block + 1).min(last));
+        let lanes = |at: usize| &self.sums[at][from..from + N];
+        let (a, b) = (lanes(first), lanes(first + 1));
+        let (c, d) = (lanes(block), lanes(block + 1));
+        let (e, f) = (lanes(third), lanes(third + 1));
+        let base = lanes(base);
+        let mut out = [0f32; N];
+        for lane in 0..N {
+            // Differences of whole numbers are exact.
+            out[lane] = (c[lane] - base[lane])
+                + before * (b[lane] - a[lane])
+                + within * (d[lane] - c[lane])
+                + next * (f[lane] - e[lane]);
+        }
+        out
+    }
+
+    /// Errors of the prefix sums at a place, in rows: of directions and of the root.
+    #[inline(always)]
+    pub fn errors(&self, place: usize) -> [f32; 2] {
+        self.errors[self.block(place)]
+    }
+
+    /// The block of a place in eighths of rows.
+    #[inline(always)]
+    pub fn block(&self, place: usize) -> usize {
+        (place / (PLACES * BLOCK)).min(self.errors.len() - 1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::search::layout::DIM;
+    use proptest::prelude::*;
+
+    /// Any place between two blocks, by adding up rows.
+    fn slowly(rows: &Rows, place: usize, column: usize) -> f64 {
+        let (row, share) = (place / PLACES, (place % PLACES) as f64 / PLACES as f64);
+        let value = |t: usize| f64::from(rows.row(t)[column]);
+        (0..row).map(value).sum::<f64>() + if share > 0.0 { share * value(row) } else { 0.0 }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 32, failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn prefix_sums_are_within_the_error_that_is_stated(
+            values in prop::collection::vec(-1f32..1.0, 40 * DIM),
+            length in 1usize..40,
+            base in 0usize..40,
+        ) {
+            let rows = Rows::from_values(DIM, values[..length * DIM].to_vec());
+            let bytes = sketch(&rows).unwrap();
+            let (mut read, tables) = (Sketch::default(), SketchTables::new());
+            prop_assert!(read.read(&bytes, &tables));
+            prop_assert_eq!(read.rows, length);
+            let base = read.block(base.min(length) * PLACES);
+            let lanes: Vec<(usize, usize)> = RowLayout::ALL.directions().enumerate()
+                .chain(RowLayout::ALL.root().enumerate().map(|(i, c)| (ROOT_LANE + i, c))).collect();
+            for place in 0..=length * PLACES {
+                let found = read.until::<LANES>(place, base, &tables, 0);
+                let errors = read.errors(place);
+                let mut squares = [0f64; 2];
+                for (lane, column) in &lanes {
+                    let there = f64::from(read.sums[base][*lane]) + f64::from(found[*lane]);
+                    let error = there * f64::from(UNIT) - slowly(&rows, place, *column);
+                    squares[usize::from(*lane >= ROOT_LANE)] += error * error;
+                }
+                for (square, stated) in squares.iter().zip(errors) {
+                    prop_assert!(square.sqrt() <= f64::from(stated), "{} {}", square.sqrt(), stated);
+                }
+            }
+        }
+
+        #[test]
+        fn any_bytes_are_a_sketch_or_none(bytes in prop::collection::vec(any::<u8>(), 0..200), rows in 0u32..20) {
+            let mut bytes = bytes;
+            if let Some(head) = bytes.first_chunk_mut::<4>() {
+                *head = rows.to_le_bytes();
+            }
+            let (mut read, tables) = (Sketch::default(), SketchTables::new());
+            if read.read(&bytes, &tables) {
+                read.until::<LANES>(rows as usize * PLACES, 0, &tables, 0);
+            }
+        }
+    }
+
+    #[test]
+    fn rows_beyond_what_bytes_hold_have_no_sketch() {
+        let mut row = [0f32; DIM];
+        row[DIM - 1] = 1e4;
+        assert!(sketch(&Rows::from_values(DIM, row.to_vec())).is_none());
+        row = [0f32; DIM];
+        row[0] = 3.0;
+        assert!(sketch(&Rows::from_values(DIM, row.to_vec())).is_none());
+        assert!(!Sketch::default().read(&[], &SketchTables::new()));
+    }
+}

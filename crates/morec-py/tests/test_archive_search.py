@@ -1,0 +1,147 @@
+"""Searching an archive by the sketches of its clips: the hits of reading all rows, of few."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import morec
+from morec import _morec
+
+pytest.importorskip("daft")
+import morec.archive as ma
+from morec.archive import _layout as layout
+from morec.archive._search import Found, Wanted, search
+
+
+def slices(archive: ma.Archive, count: int, name: str) -> list[dict[str, Any]]:
+    """Stretches of the archive's clips as clips, none quite like another but for every tenth, which is there twice."""
+    rng = np.random.default_rng(len(name))
+    (part,) = archive._parts("clips")
+    rows = [row for row in archive._read_part(part).to_pylist() if row["clip"] is not None]
+    values = [_morec.rows_kept(row["bones"], row["rows"]) for row in rows]
+    made: list[dict[str, Any]] = []
+    for number in range(count):
+        at = int(rng.integers(len(rows)))
+        start, length = int(rng.integers(0, 200)), int(rng.integers(20, 120))
+        cut = values[at][start : start + length]
+        moved = np.ascontiguousarray(cut + rng.normal(0, 0.02, cut.shape).astype(np.float32))
+        packed = _morec.rows_packed(moved)
+        if number % 10 == 9:
+            packed = made[-1]["rows"]
+        key = hashlib.sha256(f"{name} {number}".encode()).hexdigest()[:16]
+        secs = len(moved) / 30
+        made.append(rows[at] | {"clip": key, "name": key, "rows": packed, "secs": secs, "file_path": f"{key}.bvh"})
+    return made
+
+
+@pytest.fixture(scope="module")
+def base(tmp_path_factory: pytest.TempPathFactory, clips: list[morec.Clip]) -> ma.Archive:
+    folder = tmp_path_factory.mktemp("search")
+    for clip in clips:
+        clip[:14.0].save(folder / f"{clip.name}.bvh")
+    return ma.create(folder / "base", from_files=f"{folder}/*.bvh")
+
+
+@pytest.fixture()
+def many(tmp_path: Path, base: ma.Archive) -> ma.Archive:
+    made = ma.create(tmp_path / "many")
+    for name in ("one", "other", "third"):
+        content = layout.parquet(slices(base, 400, name), layout.CLIP_SCHEMA)
+        made.store.write(layout.part_name("clips", [name]), content)
+    return made
+
+
+HOW = [Wanted(1, False, False), Wanted(20, True, False), Wanted(5, False, True), Wanted(200, True, True)]
+
+
+def found(archive: ma.Archive, example: Any, start: float, stop: float, wanted: Wanted) -> tuple[Found, Found]:
+    """By sketches, and by all rows."""
+    asked = archive._example(example, start, stop)
+    slow = search(archive.store, [], archive._clips("name", "bones", "rows"), asked, wanted)
+    return archive._search(asked, wanted), slow
+
+
+def test_the_hits_are_those_of_all_rows(many: ma.Archive, base: ma.Archive, clips: list[morec.Clip]) -> None:
+    assert many.add_sketches() == 3 and many.add_sketches() == 0
+    own = many.clips().to_pylist()[7]["clip"]
+    for example, start, stop in [(clips[0], 2.0, 3.5), (clips[1], 4.0, 4.6), (own, 0.0, 1e6), (clips[2], 0.0, 1e6)]:
+        for wanted in HOW:
+            fast, slow = found(many, example, start, min(stop, 14.0), wanted)
+            assert fast.hits == slow.hits and len(fast.hits) > 0
+            assert (fast.sketched, slow.sketched) == (1200, 0) and fast.read <= 1200
+    fast, _ = found(many, clips[0], 2.0, 3.5, HOW[0])
+    assert fast.read < 900, "some clips are not read"
+
+
+def test_some_of_many_clips_are_searched_first(
+    many: ma.Archive, clips: list[morec.Clip], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    many.add_sketches()
+    monkeypatch.setattr("morec.archive._search.GLANCED_AT", 100)
+    monkeypatch.setattr("morec.archive._search.SOME", 2)
+    for wanted in HOW:
+        fast, slow = found(many, clips[0], 2.0, 3.5, wanted)
+        assert fast.hits == slow.hits and len(fast.hits) > 0
+
+
+def test_sketches_are_missing_stale_or_damaged(many: ma.Archive, base: ma.Archive, clips: list[morec.Clip]) -> None:
+    def same(sketched: int) -> None:
+        for one in (many, ma.open(many.store.uri)):
+            fast, slow = found(one, clips[0], 2.0, 3.5, HOW[1])
+            assert fast.hits == slow.hits and fast.sketched == sketched
+
+    same(0)
+    many.add_sketches()
+    same(1200)
+    # A part that came later, without: it is read whole.
+    late = slices(base, 30, "late")
+    many.store.write(layout.part_name("clips", ["late"]), layout.parquet(late, layout.CLIP_SCHEMA))
+    same(1200)
+    ma.create(many.store.uri)
+    same(1230)
+    # A part that is written again with less in it: sketches of what was there do not count.
+    many.store.write(layout.part_name("clips", ["late"]), layout.parquet(late[:20], layout.CLIP_SCHEMA))
+    same(1200)
+    assert many.add_sketches() == 1
+    same(1220)
+    for name, _ in many.store.list("sketches"):
+        many.store.write(name, b"PAR1 no table")
+    same(0)
+    assert many.add_sketches() == 4
+    same(1220)
+    for name, _ in many.store.list("sketches"):
+        many.store.delete(name)
+    same(0)
+
+
+def test_clips_that_show_nothing_are_no_hits(many: ma.Archive, base: ma.Archive, clips: list[morec.Clip]) -> None:
+    """No bones, no rows, rows that are none, rows beyond what a sketch holds."""
+    rows = slices(base, 4, "odd")
+    rows[0] |= {"bones": 0, "rows": b"\0\0\0\0"}
+    rows[1] |= {"rows": _morec.rows_packed(np.zeros((0, 70), np.float32))}
+    rows[2] |= {"rows": b"no rows"}
+    rows[3] |= {"rows": _morec.rows_packed(np.full((40, 70), 900, np.float32))}
+    many.store.write(layout.part_name("clips", ["odd"]), layout.parquet(rows, layout.CLIP_SCHEMA))
+    many.add_sketches()
+    for wanted in HOW:
+        fast, slow = found(many, clips[0], 2.0, 3.5, wanted)
+        assert fast.hits == slow.hits and fast.sketched == 1204
+
+
+def test_mistakes_are_plain_errors(clips: list[morec.Clip]) -> None:
+    example = _morec.search_example(clips[0], 0.0, 1.0)
+    table = (np.zeros(2, np.int64), np.array([0, 4, 9], np.int32), np.zeros(4, np.uint8))
+    with pytest.raises(ValueError, match="beyond the bytes"):
+        _morec.sketch_bounds(example, [table], 20, False, False, False, 9.0)
+    with pytest.raises(ValueError, match="expected 3, found 2"):
+        _morec.sketch_bounds(example, [(table[0], table[1][:2], table[2])], 20, False, False, False, 9.0)
+    plan = _morec.SearchPlan(np.zeros(3, np.float32), 20, False, False)
+    with pytest.raises(ValueError, match="no such clip"):
+        plan.bound(np.array([3]), np.zeros(1, np.float32))
+    with pytest.raises(ValueError, match="6 columns for each bone"):
+        _morec.rows_packed(np.zeros((3, 8), np.float32))
