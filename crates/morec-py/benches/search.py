@@ -117,7 +117,7 @@ def make(uri: str, base: ma.Archive, hours: float, seed: int) -> None:
 
 
 def examples(base: ma.Archive, seed: int, count: int) -> list[tuple[str, str, float, float, dict[str, Any]]]:
-    """What to search for: name, clip, start, stop, options."""
+    """The example and the options: name, clip, start, stop, options."""
     rng = np.random.default_rng(seed)
     found, moved = [], []
     clips = _BASE.get(base.store.uri) or base_rows(base)

@@ -236,7 +236,7 @@ pub fn search_windows(limit: usize) -> usize {
     windows_wanted(&options(limit, false, false))
 }
 
-/// What a search reads, and when it has read enough.
+/// Clips that a search reads in their order, and the point at which it has read enough.
 #[pyclass(name = "SearchPlan", module = "morec")]
 pub struct PySearchPlan {
     plan: SearchPlan,

@@ -25,10 +25,10 @@ const GLANCE: usize = 16;
 /// Parts of a window in the last of these.
 const PARTS: usize = 1 << OCTAVES;
 
-/// What a bound may lose to rounding: it is computed in single precision in another order than the distance.
+/// Factor and offset that a bound may lose to rounding: it is computed in single precision in another order than the distance.
 const ROUNDING: (f32, f32) = (0.9999, 1e-3);
 
-/// How closely clips are looked at.
+/// Detail of a bound.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BoundDepth {
     /// By the halves of windows.
@@ -106,7 +106,7 @@ impl SketchProbe {
     }
 }
 
-/// What is compared of a clip: 1 in the lanes of shared bones, and their scale.
+/// Lanes of bones that the example and a clip share, 1 in a mask, and their scale.
 struct SharedLanes {
     mask: [f32; LANES],
     scale: f32,
@@ -217,7 +217,7 @@ fn least_bound(
     query.least_of(shared, sketch, bytes, depth, beyond)
 }
 
-/// What a sketch says of a window: prefix sums at the ends of its eighths, in units, and their errors, in rows.
+/// A window in a sketch: prefix sums at the ends of its eighths, in units, and their errors, in rows.
 struct WindowSketch {
     start: usize,
     rows: usize,
@@ -288,7 +288,7 @@ impl WindowSketch {
         }
     }
 
-    /// Where a part begins, in eighths of rows.
+    /// Place at which a part begins, in eighths of rows.
     #[inline(always)]
     fn place(&self, part: usize) -> usize {
         self.start * PLACES + self.rows * part

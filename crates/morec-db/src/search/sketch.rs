@@ -123,7 +123,7 @@ fn neighbours(deltas: &[[f32; LANES]], block: usize) -> [&[f32; LANES]; 3] {
     ]
 }
 
-/// What a code says of an error: from 0.0002 in steps of a sixteenth of an octave.
+/// The error that a code stands for: from 0.0002 in steps of a sixteenth of an octave.
 fn error_of(code: u8) -> f32 {
     (f32::from(code) / 16.0 - 12.0).exp2()
 }

@@ -1,4 +1,4 @@
-//! What is written keeps the rules of the schema (EAFv3.0.xsd, in words), and comes back as it was.
+//! Written files keep the rules of the schema (EAFv3.0.xsd, in words), and come back as they were.
 
 use std::collections::BTreeSet;
 

@@ -29,7 +29,7 @@ KeptRows = tuple[int, str, str, int, bytes]
 
 @dataclass(frozen=True)
 class Wanted:
-    """How a search is asked for."""
+    """Options of a search, as the native part takes them."""
 
     limit: int
     mirror: bool
