@@ -1,6 +1,5 @@
 //! Errors and warnings with their place in a file: shared by everything that reads bytes.
 
-use std::borrow::Cow;
 use std::fmt;
 
 /// Place in a file.
@@ -52,7 +51,8 @@ impl ParseError {
 }
 
 /// At most 60 characters of `text` for an error message, with `…` for the rest.
-pub(crate) fn shortened(text: &str) -> Cow<'_, str> {
+#[cfg(feature = "formats")]
+pub(crate) fn shortened(text: &str) -> std::borrow::Cow<'_, str> {
     const LONGEST: usize = 60;
     match text.char_indices().nth(LONGEST) {
         Some((end, _)) => format!("{}…", &text[..end]).into(),
