@@ -192,10 +192,10 @@ fn numbers(v: &Vec3) -> String {
     format!("{:.7} {:.7} {:.7}", v.x, v.y, v.z)
 }
 
-/// One number as [`numbers`] writes it, and a blank. The formatting of the standard library decides every digit by exact
-/// arithmetic, which takes several times as long as a table of millions of numbers is worth.
+/// One number as [`numbers`] writes it, without the last three decimals where they are 0 (most files hold four), and a
+/// blank. The formatting of the standard library decides every digit by exact arithmetic, which takes several times as long
+/// as a table of millions of numbers is worth.
 fn push_number(line: &mut Vec<u8>, value: f64) {
-    const DECIMALS: usize = 7;
     const ONE: u64 = 10_000_000;
     let scaled = (value * ONE as f64).abs();
     // Whole numbers up to 2^53 are doubles.
@@ -208,10 +208,16 @@ fn push_number(line: &mut Vec<u8>, value: f64) {
         line.push(b'-');
     }
     let (mut whole, mut fraction) = (steps / ONE, steps % ONE);
+    let decimals = if fraction.is_multiple_of(1000) {
+        fraction /= 1000;
+        4
+    } else {
+        7
+    };
     let mut digits = [b'0'; 24];
     digits[23] = b' ';
     let mut at = 23;
-    for _ in 0..DECIMALS {
+    for _ in 0..decimals {
         at -= 1;
         digits[at] = b'0' + (fraction % 10) as u8;
         fraction /= 10;
@@ -265,15 +271,17 @@ mod tests {
                 // A tie may fall to the other side.
                 prop_assert!((read - expected).abs() <= 1.01e-7 + value.abs() * 1e-15, "{value} {text}");
                 prop_assert!((read - value).abs() <= 5.01e-8 + value.abs() * 1e-15, "{value} {text}");
-                prop_assert_eq!(trimmed.split_once('.').unwrap().1.len(), 7);
+                let decimals = trimmed.split_once('.').unwrap().1;
+                prop_assert!(decimals.len() == 4 || decimals.len() == 7 && (!decimals.ends_with("000") || value.abs() > 1e8));
             }
         }
     }
 
     #[test]
     fn zero_has_no_sign_and_what_is_too_large_is_written_all_the_same() {
-        assert_eq!(written(-1e-9), "0.0000000 ");
-        assert_eq!(written(-0.5), "-0.5000000 ");
+        assert_eq!(written(-1e-9), "0.0000 ");
+        assert_eq!(written(-0.5), "-0.5000 ");
+        assert_eq!(written(0.12345), "0.1234500 ");
         assert_eq!(written(1e15), "1000000000000000.0000000 ");
         assert_eq!(written(f64::NAN), "NaN ");
     }
