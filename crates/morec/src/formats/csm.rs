@@ -242,6 +242,14 @@ mod tests {
         }
     }
 
+    #[test]
+    fn numbers_of_frames_may_be_absurd() {
+        let row = |frame: &str| format!("{frame} 1 2 3 4 5 6 7 8 9\n");
+        let frames = ["1", "2", &"9".repeat(80)];
+        let loaded = load(&frames.map(row).concat());
+        assert!((3..=60).contains(&loaded.clips[0].frames));
+    }
+
     proptest! {
         #[test]
         fn damage_never_panics(at in 0usize..150, byte: u8) {

@@ -144,7 +144,9 @@ fn places(times: &[f64], rate_hz: f64) -> Vec<(usize, f64, bool)> {
     let duration = times[times.len() - 1] - times[0];
     // Times with a hole of days must not make endless frames.
     let most = times.len().saturating_mul(20);
-    let frames = ((duration * rate_hz + 1e-6).floor() as usize + 1).min(most);
+    let frames = ((duration * rate_hz + 1e-6).floor() as usize)
+        .saturating_add(1)
+        .min(most);
     let mut before = 0;
     let mut place = |frame: usize| {
         let at = times[0] + frame as f64 / rate_hz;
