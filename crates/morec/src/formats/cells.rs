@@ -101,7 +101,7 @@ pub(super) fn lines<'a>(
             Err(error) => std::str::from_utf8(&row[..error.valid_up_to()]).unwrap_or_default(),
         };
         if !text
-            .trim_matches([' ', '\t', ',', ';', '\r', '"'])
+            .trim_matches(|c: char| c.is_whitespace() || matches!(c, ',' | ';' | '"'))
             .is_empty()
         {
             rows.push((line, text.trim_end_matches('\r')));

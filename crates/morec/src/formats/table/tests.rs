@@ -225,3 +225,10 @@ fn numbers_alone_may_say_how_sure_they_are() {
         .clips[0];
     assert_eq!((clip.frames, clip.skeleton.len()), (8, 20));
 }
+
+#[test]
+fn a_row_of_nothing_but_a_vertical_tab_is_blank() {
+    for text in ["\x0b\n", "\x0b\u{3000}\n1 2 3\n4 5 6\n"] {
+        fail(text);
+    }
+}
