@@ -1,4 +1,4 @@
-//! ConnectionPlaces of connections over TCP, and the rule by which one is given up when all are taken.
+//! Places of connections over TCP, and the rule by which one is given up when all are taken.
 
 use std::net::{Shutdown, TcpStream};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};

@@ -47,6 +47,13 @@ fn options(limit: usize, mirror: bool, one_a_clip: bool) -> SearchOptions {
     }
 }
 
+/// Clips by their numbers, with distances.
+fn numbered(near: Vec<(ClipId, f32)>) -> Vec<(i64, f32)> {
+    near.into_iter()
+        .map(|(clip, distance)| (clip.0, distance))
+        .collect()
+}
+
 #[pymethods]
 impl SearchPart {
     /// For each clip its number, bones and packed rows.
@@ -81,10 +88,7 @@ impl SearchPart {
         one_a_clip: bool,
     ) -> Vec<(i64, f32)> {
         let options = options(limit, mirror, one_a_clip);
-        let near = py.detach(|| self.index.nearest_clips(&example.example, &options));
-        near.into_iter()
-            .map(|(clip, distance)| (clip.0, distance))
-            .collect()
+        numbered(py.detach(|| self.index.nearest_clips(&example.example, &options)))
     }
 
     /// The clips of the nearest windows and how near these are, as `SearchPlan.found` takes them.
@@ -97,10 +101,7 @@ impl SearchPart {
         one_a_clip: bool,
     ) -> Vec<(i64, f32)> {
         let options = options(limit, mirror, one_a_clip);
-        let near = py.detach(|| self.index.nearest_windows(&example.example, &options));
-        near.into_iter()
-            .map(|(clip, distance)| (clip.0, distance))
-            .collect()
+        numbered(py.detach(|| self.index.nearest_windows(&example.example, &options)))
     }
 
     /// The hits, best first: clip, start, stop, score, warp distance, mirrored.
@@ -171,7 +172,8 @@ type SketchColumns<'py> = (
 );
 
 /// For clips of tables of sketches, one after the other, a bound below the distance of all their windows. `which` are places
-/// in all tables together; by default all. `closely` is by eighths of windows, else by halves. Of clips beyond `reach` it is said only that they are.
+/// in all tables together; by default all. `closely` is by eighths of windows, else by halves. A bound above `reach` says only
+/// that the clip is farther than that.
 #[pyfunction]
 #[pyo3(signature = (example, tables, limit, mirror, one_a_clip, closely, reach, which=None))]
 #[expect(

@@ -20,9 +20,9 @@ use super::{Example, SearchOptions};
 
 /// Octaves that a sketch speaks of.
 const OCTAVES: usize = 3;
-/// Lanes that are looked at before the others.
+/// Lanes that are compared before the others.
 const GLANCE: usize = 16;
-/// Parts of a window in the last of these.
+/// Parts of a window in the last octave.
 const PARTS: usize = 1 << OCTAVES;
 
 /// Factor and offset that a bound may lose to rounding: it is computed in single precision in another order than the distance.
@@ -47,9 +47,8 @@ pub struct SketchedClip<'a> {
 }
 
 /// For each clip a lower bound of the distance of every window that a [search](super::SearchIndex::search) would compare with
-/// the example (or its mirror image): infinite if there is none, 0 if the clip has no sketch. Of clips beyond `reach` it is said only
-/// that they are. O(rows / example rows) for each
-/// clip, in parallel.
+/// the example (or its mirror image): infinite if there is none, 0 if the clip has no sketch. A bound above `reach` says only
+/// that the clip is farther than that. O(rows / example rows) for each clip, in parallel.
 pub fn lower_bounds<'a>(
     example: &Example,
     options: &SearchOptions,
@@ -173,7 +172,7 @@ impl SketchQuery {
             let length = length_cost(span.len(), self.rows, pace_range()) + excess;
             window.turn(span.start, span.len());
             for (probe, shared) in self.probes.iter().zip(shared) {
-                // Each part of the distance is a bound of the whole: as soon as they exceed what is known, the rest is idle.
+                // Each part of the distance is a bound of the whole: as soon as they exceed what is known, the rest is not computed.
                 let scale = shared.scale.sqrt();
                 let weight = WEIGHTS.motion * scale;
                 // Most windows are far from most examples in every few bones.
@@ -185,13 +184,13 @@ impl SketchQuery {
                 if weight * second + length >= least {
                     continue;
                 }
-                window.set(sketch, &self.tables);
+                window.take_halves(sketch, &self.tables);
                 let mut motion = weight * window.halves(probe, shared) + length;
                 if motion >= least {
                     continue;
                 }
                 if depth == BoundDepth::Eighths {
-                    window.complete(sketch, &self.tables);
+                    window.take_eighths(sketch, &self.tables);
                     motion = weight * window.eighths(probe, shared) + length;
                 }
                 let bound = motion + WEIGHTS.pose * scale * window.pose(probe, shared);
@@ -279,7 +278,7 @@ impl WindowSketch {
 
     /// Takes the ends of the halves.
     #[inline(always)]
-    fn set(&mut self, sketch: &Sketch, tables: &SketchTables) {
+    fn take_halves(&mut self, sketch: &Sketch, tables: &SketchTables) {
         if !self.halved {
             for part in [0, PARTS / 2, PARTS] {
                 self.end(sketch, tables, part);
@@ -296,7 +295,7 @@ impl WindowSketch {
 
     /// Takes the ends of the other parts.
     #[inline(always)]
-    fn complete(&mut self, sketch: &Sketch, tables: &SketchTables) {
+    fn take_eighths(&mut self, sketch: &Sketch, tables: &SketchTables) {
         if !self.complete {
             for part in [1, 2, 3, 5, 6, 7] {
                 self.end(sketch, tables, part);

@@ -182,7 +182,7 @@ class Archive:
         return [] if not self._parts(layout.CLIPS) else [row["clip"] for row in self._clips().to_pylist()]
 
     def add_sketches(self) -> int:
-        """Sketch clips that were added without; `create` does it. How many parts of the archive were new.
+        """Make sketches of clips that have none, as `create` does. Returns the number of parts that were sketched.
 
         Searching reads the sketches of all clips and the rows of a few; without sketches it reads all rows.
         """

@@ -16,9 +16,7 @@ pub(super) fn begins(rows: &[TableLine]) -> bool {
 pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
     let keys = &rows.first()?.1;
     let is_motive = begins(rows);
-    let frame_row = rows
-        .iter()
-        .position(|(_, cells)| cells.first() == Some(&"Frame"))?;
+    let frame_row = rows.iter().position(|(_, cells)| cells[0] == "Frame")?;
     let named = |name: &str| {
         let is = |(_, cells): &&TableLine| cells.iter().take(2).any(|cell| *cell == name);
         rows[..frame_row].iter().find(is).map(|(_, cells)| cells)
