@@ -304,7 +304,7 @@ fn class_distances(index: &MotionIndex, data: &Arc<ClipData>) -> Result<Vec<f32>
         .iter()
         .map(|s| metric.apply_all(&s.rows))
         .collect();
-    let mut matcher = Matcher::new(&templates, metric.dim(), model.decode.spread_exponent);
+    let mut matcher = Matcher::new(&templates, metric.dim(), &model.decode);
     let mut stretches = Stretches::new(metric.dim(), matcher.longest_match());
     let rest_share = model.decode.rest_share(model.rule());
     let mut least = vec![f32::INFINITY; model.classes.len()];

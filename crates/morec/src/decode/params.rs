@@ -34,6 +34,10 @@ pub struct DecodeParams {
     /// The same under [`CandidatePolicy::Verify`], where motion is evidence besides.
     #[serde(default)]
     pub rest_gate_verified: f32,
+    /// Share of the matched stretch's own spread that is added to that distance, 0 … 1: a body that moves is not held against
+    /// standing still alone.
+    #[serde(default)]
+    pub rest_spread: f32,
     /// True if a candidate may reach only [`overlap_ticks`](Self::overlap_ticks) into the last detection of its own
     /// class, so that a motion out and the same motion out and back are not two detections.
     #[serde(default)]
@@ -73,8 +77,9 @@ impl Default for DecodeParams {
             overlap_share: 0.5,
             hold_ticks: 2,
             spread_exponent: 0.85,
-            rest_gate: 0.77,
-            rest_gate_verified: 1.0,
+            rest_gate: 0.62,
+            rest_gate_verified: 0.85,
+            rest_spread: 0.5,
             once: true,
             rival_share: 1.0,
             rival_ticks: 15,
@@ -100,6 +105,7 @@ impl DecodeParams {
             spread_exponent: 0.0,
             rest_gate: 0.0,
             rest_gate_verified: 0.0,
+            rest_spread: 0.0,
             once: false,
             rival_share: 0.0,
             rival_ticks: 0,
@@ -148,6 +154,7 @@ impl DecodeParams {
             ("spread_exponent", self.spread_exponent, 1.0),
             ("rest_gate", self.rest_gate, 2.0),
             ("rest_gate_verified", self.rest_gate_verified, 2.0),
+            ("rest_spread", self.rest_spread, 1.0),
             ("rival_share", self.rival_share, 2.0),
             ("rival_overlap", self.rival_overlap, 1.0),
             ("tail_spread", self.tail_spread, 1.0),

@@ -23,9 +23,9 @@ pub enum Reason {
         /// The bones that differ most from the nearest template.
         bones: Vec<BoneOff>,
     },
-    /// It moves too little to be told from a body that stands still.
+    /// It moves too little, or too differently, to be told from a body that stands still.
     Still {
-        /// Its distance as a share of that of a motionless body.
+        /// Its distance as a share of that of a motionless body, or of one in other motion.
         share: f32,
         /// Shares at or above this are not reported.
         most: f32,
@@ -120,7 +120,7 @@ impl fmt::Display for Reason {
             }
             Self::Still { share, most } => write!(
                 f,
-                "hardly moves: {share:.2} of the distance of a body that stands still, below {most:.2} counts"
+                "hardly moves, or moves otherwise: {share:.2} of the distance of a body that stands still, below {most:.2} counts"
             ),
             Self::Background { distance, negative } => write!(
                 f,

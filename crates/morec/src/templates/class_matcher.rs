@@ -17,7 +17,7 @@ pub struct ClassMatcher {
     /// Of the mapped rows.
     stretches: Stretches,
     template_classes: Arc<[ClassId]>,
-    /// Matches count below this share of a motionless body's distance.
+    /// Matches count below this share: see [`Matcher`].
     rest_share: f32,
     near: Vec<ClassDistance>,
     negative: f32,
@@ -29,9 +29,9 @@ impl ClassMatcher {
         let map = |rows: &Rows| metric.apply_all(rows);
         let templates: Vec<Rows> = model.samples.iter().map(|s| map(&s.rows)).collect();
         let negatives: Vec<Rows> = model.negatives.iter().map(map).collect();
-        let (dim, exponent) = (metric.dim(), model.decode.spread_exponent);
-        let matcher = Matcher::new(&templates, dim, exponent);
-        let negatives = Matcher::new(&negatives, dim, exponent);
+        let dim = metric.dim();
+        let matcher = Matcher::new(&templates, dim, &model.decode);
+        let negatives = Matcher::new(&negatives, dim, &model.decode);
         let longest_match = matcher.longest_match().max(negatives.longest_match());
         Self {
             stretches: Stretches::new(dim, longest_match),

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::decode::FAR;
+use crate::decode::{DecodeParams, FAR};
 use crate::features::Rows;
 
 use super::bank::{Match, PartialMatch, TemplateBank};
@@ -12,10 +12,14 @@ use super::stretches::Stretches;
 ///
 /// For template rows `T` with mean `m_T` and spread `V_T = mean |T_j − m_T|²`, and a matched stretch of the stream
 /// with mean `m_S`, a performer frozen in the stretch's mean pose is at the distance `V_T + |m_T − m_S|²`. A match
-/// that is hardly nearer than that says nothing of motion: standing still is near every template of small spread.
+/// that is hardly nearer than that says nothing of motion: standing still is near every template of small spread. A stretch
+/// with a spread `V_S` of its own moves, if not as the template does: two motions that have nothing to do with each other are at
+/// `V_T + V_S + |m_T − m_S|²` on average. Matches are held against `V_T + w V_S + |m_T − m_S|²`, `w` =
+/// [`DecodeParams::rest_spread`]; with `w` = 1 the share of it is one minus the concordance coefficient of Lin, *A concordance
+/// correlation coefficient to evaluate reproducibility*, 1989, Eq. 1.
 ///
-/// Distances `D` are normalised to `D / ((V_T + V_S) / 2 V_0)^b` with the stretch's spread `V_S`, an exponent `b` from 0
-/// (plain) to 1 (a share of the motion that is not explained) and `V_0` = [`TYPICAL_SPREAD`], which keeps their
+/// Distances `D` are normalised to `D / ((V_T + V_S) / 2 V_0)^b` with an exponent `b`
+/// ([`DecodeParams::spread_exponent`]) from 0 (plain) to 1 (a share of the motion that is not explained) and `V_0` = [`TYPICAL_SPREAD`], which keeps their
 /// scale: a small gesture must be met more exactly than a large one.
 ///
 /// Means and spreads of stretches come from [`Stretches`].
@@ -23,6 +27,7 @@ use super::stretches::Stretches;
 pub struct Matcher {
     bank: TemplateBank,
     exponent: f32,
+    rest_spread: f32,
     spreads: Arc<[f32]>,
     /// `m_T` of each template.
     means: Arc<Rows>,
@@ -38,22 +43,22 @@ pub struct NormalizedMatch {
     pub distance: f32,
     /// Ticks since the match began.
     pub age: usize,
-    /// Distance as a share of a motionless body's: below 1 the motion counts.
+    /// Distance as a share of what a body that stands still, or moves otherwise, is at: see [`Matcher`].
     pub rest_share: f32,
     /// Spread of the matched stretch.
     pub spread: f32,
 }
 
 impl NormalizedMatch {
-    /// True if the match is nearer than `share` of a motionless body's distance; 0 admits all.
+    /// True if the match is nearer than `share` of that distance; 0 admits all.
     pub fn moves(&self, share: f32) -> bool {
         share <= 0.0 || self.rest_share < share
     }
 }
 
 impl Matcher {
-    /// Lays out `templates`, all of rows of `dim` values; `exponent` normalises distances, 0 leaves them as they are.
-    pub fn new(templates: &[Rows], dim: usize, exponent: f32) -> Self {
+    /// Lays out `templates`, all of rows of `dim` values; of `decode` only what concerns spreads counts.
+    pub fn new(templates: &[Rows], dim: usize, decode: &DecodeParams) -> Self {
         let mut means = Rows::new(dim);
         let mut spreads = Vec::with_capacity(templates.len());
         for template in templates {
@@ -63,7 +68,8 @@ impl Matcher {
         }
         Self {
             bank: TemplateBank::new(templates, dim),
-            exponent,
+            exponent: decode.spread_exponent,
+            rest_spread: decode.rest_spread,
             spreads: spreads.into(),
             means: Arc::new(means),
         }
@@ -102,9 +108,10 @@ impl Matcher {
         matched: Match,
         stretches: &mut Stretches,
     ) -> NormalizedMatch {
+        let near = self.nearness(index, matched, stretches);
         NormalizedMatch {
-            rest_share: self.rest_share(index, matched, stretches),
-            ..self.nearness(index, matched, stretches)
+            rest_share: self.rest_share(index, matched, near.spread, stretches),
+            ..near
         }
     }
 
@@ -123,7 +130,7 @@ impl Matcher {
             return None;
         }
         let found = NormalizedMatch {
-            rest_share: self.rest_share(index, matched, stretches),
+            rest_share: self.rest_share(index, matched, near.spread, stretches),
             ..near
         };
         found.moves(share).then_some(found)
@@ -149,17 +156,19 @@ impl Matcher {
         found
     }
 
-    /// The distance of template `index` as a share of a motionless body's.
+    /// The distance of template `index` as a share of that of a body at rest, or in other motion of this `spread`.
     fn rest_share(
         &self,
         index: usize,
         Match { distance, age }: Match,
+        spread: f32,
         stretches: &Stretches,
     ) -> f32 {
         if distance >= FAR {
             return f32::MAX;
         }
-        distance / self.at_rest(index, age, stretches).max(f32::MIN_POSITIVE)
+        let other = self.at_rest(index, age, stretches) + self.rest_spread * spread;
+        distance / other.max(f32::MIN_POSITIVE)
     }
 
     /// Divisor of a distance where the mean spread is `spread`.
@@ -212,6 +221,14 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    fn by_half() -> DecodeParams {
+        DecodeParams {
+            spread_exponent: 0.5,
+            rest_spread: 0.5,
+            ..DecodeParams::reference()
+        }
+    }
+
     fn rows(len: std::ops::Range<usize>) -> impl Strategy<Value = Rows> {
         len.prop_flat_map(|n| prop::collection::vec(-3.0f32..3.0, 3 * n))
             .prop_map(|v| Rows::from_values(3, v))
@@ -220,7 +237,7 @@ mod tests {
     proptest! {
         #[test]
         fn running_sums_agree_with_the_stretch_itself(template in rows(2..9), stream in rows(1..60)) {
-            let mut matcher = Matcher::new(std::slice::from_ref(&template), 3, 0.5);
+            let mut matcher = Matcher::new(std::slice::from_ref(&template), 3, &by_half());
             let mut stretches = Stretches::new(3, matcher.longest_match());
             let (mean_t, spread_t) = mean_and_spread(&template, 3);
             for (t, row) in stream.iter().enumerate() {
@@ -235,6 +252,9 @@ mod tests {
                 let offset: f32 = mean_t.iter().zip(&mean_s).map(|(a, b)| (a - b) * (a - b)).sum();
                 prop_assert!((matcher.at_rest(0, found.age, &stretches) - (spread_t + offset)).abs() < 1e-3);
                 prop_assert!((stretches.spread(found.age) - spread_s).abs() < 1e-3);
+                let other = spread_t + 0.5 * spread_s + offset;
+                let share = matcher.compare(0, &mut stretches).rest_share;
+                prop_assert!((share * other - found.distance).abs() < 1e-2 * (1.0 + share));
                 let compared = matcher.compare(0, &mut stretches);
                 prop_assert!(matcher.nearer(0, FAR, 0.0, &mut stretches) == Some(compared));
                 prop_assert!(matcher.nearer(0, compared.distance, 0.0, &mut stretches).is_none());
@@ -246,7 +266,7 @@ mod tests {
             template in rows(4..12),
             pose in prop::collection::vec(-3.0f32..3.0, 3),
         ) {
-            let mut matcher = Matcher::new(std::slice::from_ref(&template), 3, 0.5);
+            let mut matcher = Matcher::new(std::slice::from_ref(&template), 3, &by_half());
             let mut stretches = Stretches::new(3, matcher.longest_match());
             for _ in 0..40 {
                 matcher.step(&pose);

@@ -52,8 +52,7 @@ impl<'a> Trace<'a> {
     pub fn of(model: &'a TemplateModel, rows: &'a Rows) -> Result<Self, TemplateModelError> {
         model.check()?;
         let metric = Metric::new(&model.ridged, &model.total);
-        let exponent = model.decode.spread_exponent;
-        let lay_out = |rows: Vec<Rows>| Matcher::new(&rows, metric.dim(), exponent);
+        let lay_out = |rows: Vec<Rows>| Matcher::new(&rows, metric.dim(), &model.decode);
         let samples = model.samples.iter().map(|s| metric.apply_all(&s.rows));
         let mut templates = lay_out(samples.collect());
         let negatives = model.negatives.iter().map(|r| metric.apply_all(r));

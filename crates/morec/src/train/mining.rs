@@ -13,7 +13,7 @@ use super::set::{StreamKind, TrainSample, TrainStream, overlap_share};
 pub struct TemplateDistances {
     templates: usize,
     matches: Vec<Compared>,
-    /// Matches count below this share of a motionless body's distance; 0 admits all.
+    /// Matches count below this [`rest_share`](NormalizedMatch::rest_share); 0 admits all.
     rest_share: f32,
 }
 
@@ -123,7 +123,7 @@ impl TemplateDistances {
         (0..self.len()).map(is_near).collect()
     }
 
-    /// Lets matches count below this share of a motionless body's distance only.
+    /// Lets matches count below this [`rest_share`](NormalizedMatch::rest_share) only.
     pub fn set_rest_share(&mut self, share: f32) {
         self.rest_share = share;
     }
@@ -243,6 +243,7 @@ fn keep_apart(mut found: Vec<NearMiss>) -> Vec<NearMiss> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::decode::DecodeParams;
     use proptest::prelude::*;
 
     fn rows(len: std::ops::Range<usize>) -> impl Strategy<Value = Rows> {
@@ -265,11 +266,11 @@ mod tests {
             wanted in prop::collection::vec(prop::bool::weighted(0.05), 120),
             cut in 0usize..6,
         ) {
-            let (dim, exponent) = (2, 0.85);
-            let mut whole = Matcher::new(&templates, dim, exponent);
+            let (dim, decode) = (2, DecodeParams::default());
+            let mut whole = Matcher::new(&templates, dim, &decode);
             let mut stretches = Stretches::new(dim, whole.longest_match());
             let (before, behind) = templates.split_at(cut.min(templates.len()));
-            let mut parts = [before, behind].map(|part| Matcher::new(part, dim, exponent));
+            let mut parts = [before, behind].map(|part| Matcher::new(part, dim, &decode));
             let all = TemplateDistances::of(&mut parts, &stream);
             let some = TemplateDistances::at_ticks(&mut parts, &stream, &wanted[..stream.len()]);
             for (tick, row) in stream.iter().enumerate() {

@@ -130,7 +130,7 @@ impl TrainParams {
             verify: false,
             verify_samples: 5,
             many_samples: 25,
-            rest_gate_few: 0.8,
+            rest_gate_few: 0.64,
             verify_people: 3,
             reach: 2.0,
             examples_per_piece: 3,

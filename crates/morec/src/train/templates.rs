@@ -233,7 +233,7 @@ impl TrainingContext<'_> {
     /// Lays out templates that are not mapped yet, in parts whose rows fit the processor's cache.
     fn matchers<'r>(&self, rows: impl Iterator<Item = &'r Rows>) -> Vec<Matcher> {
         let mapped: Vec<Rows> = rows.map(|r| self.metric.apply_all(r)).collect();
-        let (dim, exponent) = (self.metric.dim(), self.params.decode.spread_exponent);
+        let dim = self.metric.dim();
         let mut parts = Vec::new();
         let mut rest = mapped.as_slice();
         while !rest.is_empty() {
@@ -243,7 +243,7 @@ impl TrainingContext<'_> {
                 values <= VALUES_OF_PART
             });
             let (part, others) = rest.split_at(fitting.count().max(1));
-            parts.push(Matcher::new(part, dim, exponent));
+            parts.push(Matcher::new(part, dim, &self.params.decode));
             rest = others;
         }
         parts

@@ -134,6 +134,7 @@ fn nearest_on_others(
 mod tests {
     use super::*;
     use crate::classes::ClassId;
+    use crate::decode::DecodeParams;
     use crate::features::Rows;
     use crate::templates::Matcher;
     use crate::train::LabelledSpan;
@@ -190,7 +191,7 @@ mod tests {
         let mut bank = Matcher::new(
             &samples.iter().map(|s| s.rows.clone()).collect::<Vec<_>>(),
             1,
-            0.0,
+            &DecodeParams::reference(),
         );
         let distances: Vec<_> = set
             .streams
