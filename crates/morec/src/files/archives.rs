@@ -175,9 +175,10 @@ fn nothing_in(bytes: &[u8], refused: &[String]) -> ParseError {
         let mut paths = container::zip_paths(bytes).unwrap_or_default();
         let more = paths.len().saturating_sub(5);
         paths.truncate(5);
-        match paths.is_empty() {
-            true => "an empty one".to_owned(),
-            false => format!("{} and {more} more", paths.join(", ")),
+        match (paths.is_empty(), more) {
+            (true, _) => "an empty one".to_owned(),
+            (false, 0) => paths.join(", "),
+            (false, more) => format!("{} and {more} more", paths.join(", ")),
         }
     } else {
         let shown: Vec<&str> = refused.iter().take(5).map(String::as_str).collect();

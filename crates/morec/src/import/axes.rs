@@ -17,7 +17,8 @@ pub(super) fn choose(
         return infer_up(clip, body, notes);
     };
     match standing(body) {
-        Some(up) if up != stated => {
+        // Who crawls or lies through the whole clip is on the floor of the axis that is stated.
+        Some(up) if up != stated && !(is_on_floor(body, stated) && !is_on_floor(body, up)) => {
             notes.push(format!(
                 "by the file's format {stated} is up, but the body stands along {up}, which is taken"
             ));
@@ -66,22 +67,13 @@ fn standing(body: &BodyMeasures) -> Option<SignedAxis> {
 fn lying(body: &BodyMeasures, notes: &mut Vec<String>) -> SignedAxis {
     const UNSURE: f64 = 0.25;
     let size = body.upwards.iter().map(|v| v.norm()).fold(0.0, f64::max);
-    let quantile = |mut values: Vec<f64>, share: f64| -> f64 {
-        values.sort_by(f64::total_cmp);
-        let at = (values.len().saturating_sub(1)) as f64 * share;
-        values.get(at.round() as usize).copied().unwrap_or(0.0)
-    };
     let mut scores: Vec<(f64, SignedAxis)> = Vec::with_capacity(6);
     for axis in Axis::ALL {
         for negative in [false, true] {
             let up = SignedAxis { axis, negative };
             let along = |v: &Vec3| v.dot(&up.unit());
             let stands = quantile(body.upwards.iter().map(along).collect(), 0.95) / size;
-            let lowest: Vec<f64> = body
-                .poses
-                .iter()
-                .map(|pose| pose.iter().map(along).fold(f64::MAX, f64::min))
-                .collect();
+            let lowest = lowest(body, up);
             let spread = (quantile(lowest.clone(), 0.9) - quantile(lowest, 0.1)) / size;
             let usual = match (axis, negative) {
                 (Axis::Y, false) => 0.2,
@@ -99,6 +91,30 @@ fn lying(body: &BodyMeasures, notes: &mut Vec<String>) -> SignedAxis {
         ));
     }
     up
+}
+
+/// How high the lowest point of the body is in each pose, in the file's units.
+fn lowest(body: &BodyMeasures, up: SignedAxis) -> Vec<f64> {
+    let up = up.unit();
+    let lowest = |pose: &Vec<Vec3>| pose.iter().map(|v| v.dot(&up)).fold(f64::MAX, f64::min);
+    body.poses.iter().map(lowest).collect()
+}
+
+/// True if through nearly all of the clip the lowest point of the body is at height 0, or a foot's height above.
+fn is_on_floor(body: &BodyMeasures, up: SignedAxis) -> bool {
+    const BELOW: f64 = -0.025;
+    const ABOVE: f64 = 0.15;
+    let size = body.upwards.iter().map(|v| v.norm()).fold(0.0, f64::max);
+    let lowest = lowest(body, up);
+    !lowest.is_empty()
+        && quantile(lowest.clone(), 0.1) > BELOW * size
+        && quantile(lowest, 0.9) < ABOVE * size
+}
+
+fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let at = (values.len().saturating_sub(1)) as f64 * share;
+    values.get(at.round() as usize).copied().unwrap_or(0.0)
 }
 
 /// The one axis, Y or Z, along which no point of a clip of points is ever below the floor of the room.

@@ -392,6 +392,15 @@ fn what_a_format_states_counts_where_the_body_does_not_say_otherwise() {
     });
     let report = normalize(lying, &stated("y", 1.0)).unwrap().report;
     assert_eq!((report.up, report.unit), (SignedAxis::Y, Some("m")));
+    // Somebody who lies on the floor all the time.
+    let mut lying = turned(person(40, 0.0), |_| Axis::Z.rotation(-1.57));
+    for frame in 0..lying.frames {
+        let pose = WorldPose::of(&lying, frame).positions;
+        let lowest = pose.iter().map(|p| p.y).fold(f64::MAX, f64::min);
+        lying.tracks[0].positions[frame].y -= lowest;
+    }
+    let report = normalize(lying, &stated("y", 1.0)).unwrap().report;
+    assert_eq!(report.up, SignedAxis::Y, "{:?}", report.notes);
     // Somebody who stands along Y in a file that says Z and millimetres.
     let report = normalize(person(40, 0.0), &stated("z", 0.001))
         .unwrap()

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use morec::clip::{Clip, Span};
-use morec::diagnosis::{Diagnosis, Findings, diagnose_clip};
+use morec::diagnosis::{Diagnosis, Finding, Findings, diagnose_clip};
 use morec::formats::Warning;
 use morec::formats::probe::Format;
 use morec::import::{ImportReport, Take};
@@ -215,7 +215,7 @@ impl ClipReport {
         for note in &facts.notes {
             writeln!(out, "  note       {note}")?;
         }
-        for finding in self.diagnosis.findings.iter() {
+        for finding in self.findings() {
             writeln!(out, "  {:<10} {finding}", finding.severity().to_string())?;
         }
         Ok(())
@@ -265,10 +265,17 @@ impl ClipReport {
         for note in &self.facts.notes {
             writeln!(out, "  note: {note}")?;
         }
-        for finding in self.diagnosis.findings.iter() {
+        for finding in self.findings() {
             writeln!(out, "  {}: {finding}", finding.severity())?;
         }
         Ok(())
+    }
+
+    /// What is found, but for what a clip without any role says by itself: that no frame shows a body.
+    fn findings(&self) -> impl Iterator<Item = &Finding> {
+        let is_body = self.missing_roles.len() < Role::COUNT;
+        let said = move |finding: &&Finding| is_body || !matches!(finding, Finding::Nobody { .. });
+        self.diagnosis.findings.iter().filter(said)
     }
 
     fn length(&self) -> String {
@@ -361,6 +368,7 @@ fn format_name(format: Format) -> &'static str {
         Format::Csm => "CSM",
         Format::OpenSimMotion => "OpenSim motion",
         Format::OpenSimModel => "OpenSim model",
+        Format::DeepMimic => "DeepMimic motion",
         Format::Mocopi => "mocopi packets",
     }
 }
