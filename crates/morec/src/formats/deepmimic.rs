@@ -6,7 +6,7 @@
 use serde_json::Value;
 
 use super::builder::{ClipBuilder, check_size};
-use super::{Limits, Loaded, ParseError, Place, Warning};
+use super::{Limits, Loaded, ParseError, Place, Warning, json};
 use crate::clip::Joint;
 use crate::math::{Axis, Quat, Vec3, rotation_of_xyzw};
 
@@ -94,10 +94,8 @@ pub(super) fn looks_so(head: &[u8]) -> bool {
 /// The place and the cause: no JSON, no list of frames, frames of another body, more than `limits` allow.
 pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseError> {
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
-    let document: Value = serde_json::from_slice(bytes).map_err(|error| {
-        let line = u64::try_from(error.line()).unwrap_or(0);
-        ParseError::new(Place::Line(line), "JSON", error.to_string())
-    })?;
+    let mut warnings = Vec::new();
+    let document = json::read(bytes, &mut warnings)?;
     let frames = document.get("Frames").and_then(Value::as_array);
     let frames = frames.filter(|frames| !frames.is_empty());
     let Some(frames) = frames else {
@@ -111,7 +109,6 @@ pub fn read(bytes: &[u8], name: &str, limits: &Limits) -> Result<Loaded, ParseEr
         _ => return Err(another_body(width)),
     };
     check_size(frames.len(), JOINTS.len(), bytes.len(), limits)?;
-    let mut warnings = Vec::new();
     let mut durations = Vec::with_capacity(frames.len());
     let mut builder = ClipBuilder::new(joints());
     let mut spoiled = 0;

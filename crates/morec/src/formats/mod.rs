@@ -15,6 +15,7 @@ pub mod deepmimic;
 pub mod fbx;
 pub mod gltf;
 pub mod htr;
+mod json;
 pub mod jsonl;
 mod keys;
 pub mod landmarks;

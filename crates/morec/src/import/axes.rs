@@ -40,7 +40,27 @@ fn infer_up(clip: &Clip, body: &BodyMeasures, notes: &mut Vec<String>) -> Signed
         notes.push("no head above feet to tell which way is up; Y is assumed".to_owned());
         return SignedAxis::Y;
     }
-    standing(body).unwrap_or_else(|| lying(body, notes))
+    let Some(up) = standing(body) else {
+        return lying(body, notes);
+    };
+    // Who starts a sprint or crawls lies along an axis on the floor of another.
+    let usual = [Axis::Y, Axis::Z].map(|axis| SignedAxis {
+        axis,
+        negative: false,
+    });
+    if usual.contains(&up) || is_on_floor(body, up) {
+        return up;
+    }
+    let mut floors = usual.into_iter().filter(|axis| is_on_floor(body, *axis));
+    match (floors.next(), floors.next()) {
+        (Some(floor), None) => {
+            notes.push(format!(
+                "the body is longest along {up}, but stays on the floor along {floor}, which is taken to be up (--up AXIS says otherwise)"
+            ));
+            floor
+        }
+        _ => up,
+    }
 }
 
 /// The axis along which the body stands through most of the clip; `None` where it lies, turns over or is not known.

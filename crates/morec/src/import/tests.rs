@@ -399,8 +399,11 @@ fn what_a_format_states_counts_where_the_body_does_not_say_otherwise() {
         let lowest = pose.iter().map(|p| p.y).fold(f64::MAX, f64::min);
         lying.tracks[0].positions[frame].y -= lowest;
     }
-    let report = normalize(lying, &stated("y", 1.0)).unwrap().report;
+    let report = normalize(lying.clone(), &stated("y", 1.0)).unwrap().report;
     assert_eq!(report.up, SignedAxis::Y, "{:?}", report.notes);
+    // Where nothing is stated, the floor tells.
+    let facts = ready(lying).report;
+    assert_eq!(facts.up, SignedAxis::Y, "{:?}", facts.notes);
     // Somebody who stands along Y in a file that says Z and millimetres.
     let report = normalize(person(40, 0.0), &stated("z", 0.001))
         .unwrap()

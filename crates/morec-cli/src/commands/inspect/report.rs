@@ -216,7 +216,8 @@ impl ClipReport {
             writeln!(out, "  note       {note}")?;
         }
         for finding in self.findings() {
-            writeln!(out, "  {:<10} {finding}", finding.severity().to_string())?;
+            let (severity, text) = of_file(finding);
+            writeln!(out, "  {severity:<10} {text}")?;
         }
         Ok(())
     }
@@ -266,7 +267,8 @@ impl ClipReport {
             writeln!(out, "  note: {note}")?;
         }
         for finding in self.findings() {
-            writeln!(out, "  {}: {finding}", finding.severity())?;
+            let (severity, text) = of_file(finding);
+            writeln!(out, "  {severity}: {text}")?;
         }
         Ok(())
     }
@@ -344,6 +346,20 @@ fn depth_first(joints: &[JointReport]) -> Vec<usize> {
         left.extend(&children[j]);
     }
     order
+}
+
+/// A finding as it is said of a file: which way is up was inferred and can be given, and nothing is sent.
+fn of_file(finding: &Finding) -> (String, String) {
+    let text = match finding {
+        Finding::UpIsNotY { .. } => {
+            "the body lies for most of the clip; if it stands, say which way is up with --up AXIS"
+        }
+        Finding::UpsideDown { .. } => {
+            "the head is below the feet for most of the clip; if nobody stands on the hands, say which way is up with --up AXIS"
+        }
+        finding => return (finding.severity().to_string(), finding.to_string()),
+    };
+    ("warning".to_owned(), text.to_owned())
 }
 
 fn format_name(format: Format) -> &'static str {
