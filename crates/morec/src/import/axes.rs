@@ -18,7 +18,7 @@ pub(super) fn choose(
     };
     match standing(body) {
         // Who crawls or lies through the whole clip is on the floor of the axis that is stated.
-        Some(up) if up != stated && !(is_on_floor(body, stated) && !is_on_floor(body, up)) => {
+        Some(up) if up != stated && !lies(body, stated, up) => {
             notes.push(format!(
                 "by the file's format {stated} is up, but the body stands along {up}, which is taken"
             ));
@@ -43,14 +43,15 @@ fn infer_up(clip: &Clip, body: &BodyMeasures, notes: &mut Vec<String>) -> Signed
     let Some(up) = standing(body) else {
         return lying(body, notes);
     };
-    // Who starts a sprint or crawls lies along an axis on the floor of another.
+    // Who starts a sprint or crawls lies along an axis on the floor of another. X is up nowhere; places in pictures,
+    // where Y points down, may begin at 0 with the head.
+    if up.axis != Axis::X || is_on_floor(body, up) {
+        return up;
+    }
     let usual = [Axis::Y, Axis::Z].map(|axis| SignedAxis {
         axis,
         negative: false,
     });
-    if usual.contains(&up) || is_on_floor(body, up) {
-        return up;
-    }
     let mut floors = usual.into_iter().filter(|axis| is_on_floor(body, *axis));
     match (floors.next(), floors.next()) {
         (Some(floor), None) => {
@@ -120,10 +121,15 @@ fn lowest(body: &BodyMeasures, up: SignedAxis) -> Vec<f64> {
     body.poses.iter().map(lowest).collect()
 }
 
-/// True if through nearly all of the clip the lowest point of the body is at height 0, or a foot's height above.
+/// True if the body, which is longest along one axis, stays on the floor of another.
+fn lies(body: &BodyMeasures, up: SignedAxis, along: SignedAxis) -> bool {
+    is_on_floor(body, up) && !is_on_floor(body, along)
+}
+
+/// True if through nearly all of the clip the lowest point of the body is at height 0, or a bent leg's foot above.
 fn is_on_floor(body: &BodyMeasures, up: SignedAxis) -> bool {
     const BELOW: f64 = -0.025;
-    const ABOVE: f64 = 0.15;
+    const ABOVE: f64 = 0.25;
     let size = body.upwards.iter().map(|v| v.norm()).fold(0.0, f64::max);
     let lowest = lowest(body, up);
     !lowest.is_empty()
