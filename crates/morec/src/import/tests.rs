@@ -401,6 +401,8 @@ fn what_a_format_states_counts_where_the_body_does_not_say_otherwise() {
     }
     let report = normalize(lying.clone(), &stated("y", 1.0)).unwrap().report;
     assert_eq!(report.up, SignedAxis::Y, "{:?}", report.notes);
+    let of_unit = report.notes.iter().any(|note| note.contains("unit"));
+    assert!(!of_unit, "{:?}", report.notes);
     // Where nothing is stated, the floor tells.
     let facts = ready(lying).report;
     assert_eq!(facts.up, SignedAxis::Y, "{:?}", facts.notes);

@@ -39,6 +39,10 @@ pub(super) fn choose(
         return stated;
     }
     let inferred = infer(body, up, notes);
+    // Who crawls is low, and no other unit fits the limbs better.
+    if (inferred / stated - 1.0).abs() < 1e-6 {
+        return stated;
+    }
     notes.push(format!(
         "the file's unit is {}, but in it the body is {:.3} m tall; {} is taken (--unit {} keeps the file's)",
         name(stated).unwrap_or("stated"),

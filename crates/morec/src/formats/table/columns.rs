@@ -1,7 +1,7 @@
 //! Which columns are a point's x, y and z, by the rows above them.
 
 use super::layout::{ColumnLayout, TableLine};
-use super::quantities::{is_other, is_other_unit, is_plate, is_position};
+use super::quantities::{is_other, is_other_unit, is_plate, is_position, unit_in};
 use crate::formats::cells::{Decimal, number};
 use crate::formats::points::metres_of;
 use crate::math::Axis;
@@ -52,12 +52,15 @@ pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
     (!found.points.is_empty()).then_some(found)
 }
 
+/// The words above each column, if there is a header.
+pub(super) fn header_labels(rows: &[TableLine]) -> Option<Vec<String>> {
+    let header_rows = header_rows(rows)?;
+    Some(labels(without_units(&rows[..header_rows]).0))
+}
+
 /// True if the columns have x and y, and z nowhere.
-pub(super) fn is_flat(rows: &[TableLine]) -> bool {
-    let Some(header_rows) = header_rows(rows) else {
-        return false;
-    };
-    let axes: Vec<usize> = labels(without_units(&rows[..header_rows]).0)
+pub(super) fn is_flat(labels: &[String]) -> bool {
+    let axes: Vec<usize> = labels
         .iter()
         .filter_map(|label| Some(axis_of(label)?.1))
         .collect();
@@ -65,7 +68,7 @@ pub(super) fn is_flat(rows: &[TableLine]) -> bool {
 }
 
 /// The header without a last row of units (`mm`, `s`, `-`), and that row's cells.
-pub(super) fn without_units<'a, 'b>(
+fn without_units<'a, 'b>(
     header: &'a [TableLine<'b>],
 ) -> (&'a [TableLine<'b>], Option<&'a [&'b str]>) {
     let Some(((_, last), above)) = header.split_last().filter(|(_, above)| !above.is_empty())
@@ -125,7 +128,7 @@ fn rate_above(header: &[TableLine]) -> Option<f64> {
 }
 
 /// Rows before the first of numbers; `None` if there is none, or no row of numbers.
-pub(super) fn header_rows(rows: &[TableLine]) -> Option<usize> {
+fn header_rows(rows: &[TableLine]) -> Option<usize> {
     // A frame may begin with words (a class, a track) and hold others (`Tracked`) below names that are certain.
     let is_below_axes = |above: &TableLine, cells: &[&str]| {
         let named = |&(_, label): &(usize, &&str)| axis_of(label).is_some();
@@ -167,7 +170,7 @@ fn is_nan(cell: &str) -> bool {
 
 /// The words above each column. In a row with blanks, a word holds for the columns up to the next; a last row of axes
 /// gets the name that changes above it.
-pub(super) fn labels(header: &[TableLine]) -> Vec<String> {
+fn labels(header: &[TableLine]) -> Vec<String> {
     let width = header
         .iter()
         .map(|(_, cells)| cells.len())
@@ -345,12 +348,6 @@ fn without_unit(label: &str) -> &str {
 
 fn unit_of(label: &str) -> Option<f64> {
     metres_of(unit_in(label)?)
-}
-
-/// What stands in brackets in a label.
-pub(super) fn unit_in(label: &str) -> Option<&str> {
-    let start = label.find(['(', '['])?;
-    Some(label[start..].trim_matches(['(', ')', '[', ']']))
 }
 
 /// The label of x in whose place this one has w: `hips_w`, `W Element`.

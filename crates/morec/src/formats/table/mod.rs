@@ -190,10 +190,11 @@ fn no_columns(rows: &[TableLine]) -> ParseError {
 
 /// What a table measures in place of positions, as far as its header tells.
 fn measured(rows: &[TableLine]) -> Option<&'static str> {
-    if columns::is_flat(rows) {
+    let labels = columns::header_labels(rows)?;
+    if columns::is_flat(&labels) {
         return Some("x and y alone: two dimensions are not enough");
     }
-    quantities::is_turned(rows).then_some(
+    quantities::is_turned(&labels).then_some(
         "angles, rotations or what sensors measure: without a skeleton they place nothing (give positions, or BVH)",
     )
 }

@@ -1,8 +1,5 @@
 //! What columns hold besides positions: words and units that say so.
 
-use super::columns::{header_rows, labels, unit_in, without_units};
-use super::layout::TableLine;
-
 /// Words behind a name that say that its position is meant.
 const POSITION: [&str; 11] = [
     "position",
@@ -89,11 +86,14 @@ pub(super) fn is_plate(name: &str) -> bool {
     behind.len() < rest.len() && behind.starts_with(['.', '_', ' '])
 }
 
+/// What stands in brackets in a label.
+pub(super) fn unit_in(label: &str) -> Option<&str> {
+    let start = label.find(['(', '['])?;
+    Some(label[start..].trim_matches(['(', ')', '[', ']']))
+}
+
 /// True if most columns have angles, rotations or what sensors measure, by their labels.
-pub(super) fn is_turned(rows: &[TableLine]) -> bool {
-    let Some(header_rows) = header_rows(rows) else {
-        return false;
-    };
+pub(super) fn is_turned(labels: &[String]) -> bool {
     let says = |label: &String| {
         let lower = label.to_lowercase();
         let mut parts = lower.split(|c: char| !c.is_alphanumeric());
@@ -105,7 +105,6 @@ pub(super) fn is_turned(rows: &[TableLine]) -> bool {
             .any(|word| lower.contains(word))
             || unit_in(label).is_some_and(is_other_unit)
     };
-    let labels = labels(without_units(&rows[..header_rows]).0);
     let turned = labels.iter().filter(|label| says(label)).count();
     turned > 0 && turned * 2 > labels.len()
 }
