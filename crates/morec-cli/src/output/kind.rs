@@ -41,6 +41,7 @@ pub fn of(head: &[u8]) -> Option<&'static str> {
         Ok(Format::Csm) => Some("a CSM recording"),
         Ok(Format::Smd) => Some("an SMD animation"),
         Ok(Format::OpenSimMotion) => Some("an OpenSim motion"),
+        Ok(Format::DeepMimic) => Some("a motion of DeepMimic"),
         Ok(Format::OpenSimModel) => Some("an OpenSim model"),
         Ok(Format::Mocopi) => Some("recorded mocopi packets"),
         Err(_) => Some(text.map_or("a file of another kind", of_text)),

@@ -70,8 +70,16 @@ impl FileReader {
         if depth < DEEPEST && is_archive {
             return self.parse_archive(path, bytes, depth);
         }
-        let text: Cow<'_, [u8]> = container::utf8(bytes);
+        let bare = container::without_padding(bytes);
+        let text: Cow<'_, [u8]> = container::utf8(bare);
         let mut opened = self.parse_bare(path, &text, around)?;
+        if bare.len() < bytes.len() {
+            let note = format!(
+                "{} zero bytes behind the text left out",
+                bytes.len() - bare.len()
+            );
+            opened.warnings.push(Warning::new(Place::File, note));
+        }
         if let Cow::Owned(_) = text {
             let note = "UTF-16 text";
             opened.warnings.push(Warning::new(Place::File, note));
@@ -129,7 +137,10 @@ fn may_be_needed(path: &str) -> bool {
     let name = path.rsplit('/').next().unwrap_or(path);
     let hidden = name.starts_with('.') || path.starts_with("__MACOSX/");
     let ending = name.rsplit('.').next().unwrap_or_default();
-    let packed = ["bin", "gz", "zip", "txt", "json"].iter();
+    let packed = [
+        "bin", "gz", "zip", "txt", "json", "emt", "asc", "dat", "prn", "xyz",
+    ]
+    .iter();
     !hidden
         && (format_of_name(name).is_some()
             || packed
@@ -175,9 +186,10 @@ fn nothing_in(bytes: &[u8], refused: &[String]) -> ParseError {
         let mut paths = container::zip_paths(bytes).unwrap_or_default();
         let more = paths.len().saturating_sub(5);
         paths.truncate(5);
-        match paths.is_empty() {
-            true => "an empty one".to_owned(),
-            false => format!("{} and {more} more", paths.join(", ")),
+        match (paths.is_empty(), more) {
+            (true, _) => "an empty one".to_owned(),
+            (false, 0) => paths.join(", "),
+            (false, more) => format!("{} and {more} more", paths.join(", ")),
         }
     } else {
         let shown: Vec<&str> = refused.iter().take(5).map(String::as_str).collect();

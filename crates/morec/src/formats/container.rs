@@ -144,6 +144,18 @@ pub fn utf8(bytes: &[u8]) -> Cow<'_, [u8]> {
     text.into_owned().into_bytes().into()
 }
 
+/// Text without the zero bytes behind its end, which a disk or a crash leaves there; other bytes as they are.
+pub fn without_padding(bytes: &[u8]) -> &[u8] {
+    let end = bytes
+        .iter()
+        .rposition(|b| *b != 0)
+        .map_or(0, |last| last + 1);
+    match end > 0 && end < bytes.len() && !bytes[..end].contains(&0) {
+        true => &bytes[..end],
+        false => bytes,
+    }
+}
+
 /// True if the first 32 bytes are printable ASCII with zeros between, those at `zero` and every other behind.
 fn every_other_is_zero(bytes: &[u8], zero: usize) -> bool {
     let Some(head) = bytes.get(..32) else {
@@ -212,6 +224,19 @@ mod tests {
             let _ = unzip(bytes, &|_| true);
         });
         crate::formats::mangle::each(&gz(b"abc"), 100, |bytes| _ = gunzip(bytes));
+    }
+
+    #[test]
+    fn zeros_behind_text_are_left_out() {
+        for (bytes, kept) in [
+            (&b"a b\0\0"[..], 3),
+            (b"a b", 3),
+            (b"a\0b\0", 4),
+            (b"\0\0", 2),
+            (b"", 0),
+        ] {
+            assert_eq!(without_padding(bytes).len(), kept, "{bytes:?}");
+        }
     }
 
     #[test]

@@ -4,6 +4,7 @@
 //! There is no common form, so the first list is taken that looks so; fields called `world` come first, as the others hold
 //! places in the picture.
 
+mod matrix;
 mod rows;
 
 use std::collections::HashMap;
@@ -13,7 +14,7 @@ use serde_json::{Map, Value};
 use super::points::{Point, PointTable, UNSEEN, check_size};
 use super::table::{axis_of, to_seconds};
 use super::timing::{self, Clock};
-use super::{Limits, Loaded, ParseError, Place, Warning};
+use super::{Limits, Loaded, ParseError, Place, Warning, json};
 use crate::math::Vec3;
 
 /// Frames a second of a document without times.
@@ -96,14 +97,14 @@ pub fn read(
     rate_hz: Option<f64>,
     limits: &Limits,
 ) -> Result<Loaded, ParseError> {
-    let mut document = parse(bytes)?;
+    let mut warnings = Vec::new();
+    let mut document = parse(bytes, &mut warnings)?;
     let names = names_in(&document, DEEPEST);
     rows::into_points(&mut document, names.as_ref().map(Vec::len));
     let by_name = tracks_in(&document, DEEPEST);
     let frames = frames_in(&document, DEEPEST)
         .or_else(|| by_name.as_ref().map(|frames| frames.iter().collect()))
         .ok_or_else(|| no_frames(&document))?;
-    let mut warnings = Vec::new();
     let people = frames.iter().map(|frame| people_in(frame, DEEPEST)).max();
     if let Some(people @ 2..) = people {
         let text = format!(
@@ -163,7 +164,7 @@ pub fn read(
 }
 
 /// The document; several one behind the other, as in lines of JSON, are a list.
-fn parse(bytes: &[u8]) -> Result<Value, ParseError> {
+fn parse(bytes: &[u8], warnings: &mut Vec<Warning>) -> Result<Value, ParseError> {
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     let mut values = Vec::new();
     for value in serde_json::Deserializer::from_slice(bytes).into_iter::<Value>() {
@@ -171,14 +172,10 @@ fn parse(bytes: &[u8]) -> Result<Value, ParseError> {
             Ok(value) => values.push(value),
             // What breaks off behind frames is left out.
             Err(error) if values.len() > 1 && error.is_eof() => break,
-            Err(error) => {
-                let line = u64::try_from(error.line()).unwrap_or(0);
-                return Err(ParseError::new(
-                    Place::Line(line),
-                    "JSON",
-                    error.to_string(),
-                ));
+            Err(error) if values.is_empty() && error.is_eof() => {
+                return json::read(bytes, warnings);
             }
+            Err(error) => return Err(json::located(&error)),
         }
     }
     Ok(match values.len() {
@@ -470,7 +467,13 @@ fn place_of(point: &Value) -> Option<Vec3> {
                     .find(|(key, _)| WITHIN.iter().any(|known| key.eq_ignore_ascii_case(known)));
                 within.and_then(|(_, place)| place_of(place))
             })
+            .or_else(|| {
+                matrix::FIELDS
+                    .iter()
+                    .find_map(|key| matrix::place(fields.get(*key)?))
+            })
         }
+        Value::Array(list) if list.len() == 4 && list[0].is_array() => matrix::place(point),
         Value::Array(list) if (3..=5).contains(&list.len()) => {
             let place = [
                 number(list.first())?,
@@ -480,14 +483,17 @@ fn place_of(point: &Value) -> Option<Vec3> {
             let seen = list.len() != 4 || number(list.get(3)) != Some(0.0);
             Some(if seen { place.into() } else { UNSEEN })
         }
+        Value::Array(list) if list.len() == 16 => matrix::place(point),
         _ => None,
     }
 }
 
 /// The time of a frame in seconds.
 fn time_of(frame: &Value) -> Option<f64> {
-    const KEYS: [(&str, f64); 12] = [
+    const KEYS: [(&str, f64); 14] = [
         ("ts", 1.0),
+        ("Timestamp", 1.0),
+        ("RelativeTime", 1e-7),
         ("t", 1.0),
         ("time", 1.0),
         ("timestamp", 1.0),

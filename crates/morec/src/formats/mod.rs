@@ -10,10 +10,12 @@ pub mod c3d;
 mod cells;
 pub mod container;
 pub mod csm;
+pub mod deepmimic;
 #[cfg(feature = "fbx")]
 pub mod fbx;
 pub mod gltf;
 pub mod htr;
+mod json;
 pub mod jsonl;
 mod keys;
 pub mod landmarks;
@@ -43,7 +45,7 @@ pub use loaded::{Limits, Loaded};
 use timing::rate_not_used;
 
 /// Reads the formats of whole scenes and suits: [MVNX](mvnx), [glTF](gltf), FBX (feature `fbx`), [SMPL](smpl), [SMD](smd),
-/// [HTR](htr) and [mocopi], and of points that need nothing but the file ([CSM](csm), [NTU](ntu), [landmarks], [NumPy](numpy)). `rate_hz` replaces the rate where the file holds frames; keys in seconds keep theirs. `None` for
+/// [HTR](htr), [DeepMimic](deepmimic) and [mocopi], and of points that need nothing but the file ([CSM](csm), [NTU](ntu), [landmarks], [NumPy](numpy)). `rate_hz` replaces the rate where the file holds frames; keys in seconds keep theirs. `None` for
 /// other formats.
 pub fn read_scene(
     format: probe::Format,
@@ -60,6 +62,7 @@ pub fn read_scene(
         Format::Smd => smd::read(bytes, name, limits),
         Format::Htr => htr::read(bytes, name, limits),
         Format::Csm => csm::read(bytes, name, rate_hz, limits),
+        Format::DeepMimic => deepmimic::read(bytes, name, limits),
         Format::Numpy => numpy::read(bytes, name, rate_hz, limits),
         Format::Mocopi => mocopi::read(bytes, name, limits),
         Format::Gltf => gltf::read(bytes, name, beside, limits),

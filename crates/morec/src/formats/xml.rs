@@ -31,6 +31,11 @@ pub(super) fn parse(text: &str, most_nodes: usize) -> Result<Document<'_>, Parse
         nodes_limit: u32::try_from(most_nodes).unwrap_or(u32::MAX),
         ..ParsingOptions::default()
     };
+    // Blank lines above the declaration are a fault that producers leave.
+    let text = match text.trim_start().starts_with("<?xml") {
+        true => text.trim_start(),
+        false => text,
+    };
     Document::parse_with_options(text, options).map_err(|error| {
         let at = error.pos();
         ParseError::new(

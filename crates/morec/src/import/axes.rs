@@ -17,7 +17,8 @@ pub(super) fn choose(
         return infer_up(clip, body, notes);
     };
     match standing(body) {
-        Some(up) if up != stated => {
+        // Who crawls or lies through the whole clip is on the floor of the axis that is stated.
+        Some(up) if up != stated && !lies(body, stated, up) => {
             notes.push(format!(
                 "by the file's format {stated} is up, but the body stands along {up}, which is taken"
             ));
@@ -39,7 +40,28 @@ fn infer_up(clip: &Clip, body: &BodyMeasures, notes: &mut Vec<String>) -> Signed
         notes.push("no head above feet to tell which way is up; Y is assumed".to_owned());
         return SignedAxis::Y;
     }
-    standing(body).unwrap_or_else(|| lying(body, notes))
+    let Some(up) = standing(body) else {
+        return lying(body, notes);
+    };
+    // Who starts a sprint or crawls lies along an axis on the floor of another. X is up nowhere; places in pictures,
+    // where Y points down, may begin at 0 with the head.
+    if up.axis != Axis::X || is_on_floor(body, up) {
+        return up;
+    }
+    let usual = [Axis::Y, Axis::Z].map(|axis| SignedAxis {
+        axis,
+        negative: false,
+    });
+    let mut floors = usual.into_iter().filter(|axis| is_on_floor(body, *axis));
+    match (floors.next(), floors.next()) {
+        (Some(floor), None) => {
+            notes.push(format!(
+                "the body is longest along {up}, but stays on the floor along {floor}, which is taken to be up (--up AXIS says otherwise)"
+            ));
+            floor
+        }
+        _ => up,
+    }
 }
 
 /// The axis along which the body stands through most of the clip; `None` where it lies, turns over or is not known.
@@ -66,22 +88,13 @@ fn standing(body: &BodyMeasures) -> Option<SignedAxis> {
 fn lying(body: &BodyMeasures, notes: &mut Vec<String>) -> SignedAxis {
     const UNSURE: f64 = 0.25;
     let size = body.upwards.iter().map(|v| v.norm()).fold(0.0, f64::max);
-    let quantile = |mut values: Vec<f64>, share: f64| -> f64 {
-        values.sort_by(f64::total_cmp);
-        let at = (values.len().saturating_sub(1)) as f64 * share;
-        values.get(at.round() as usize).copied().unwrap_or(0.0)
-    };
     let mut scores: Vec<(f64, SignedAxis)> = Vec::with_capacity(6);
     for axis in Axis::ALL {
         for negative in [false, true] {
             let up = SignedAxis { axis, negative };
             let along = |v: &Vec3| v.dot(&up.unit());
             let stands = quantile(body.upwards.iter().map(along).collect(), 0.95) / size;
-            let lowest: Vec<f64> = body
-                .poses
-                .iter()
-                .map(|pose| pose.iter().map(along).fold(f64::MAX, f64::min))
-                .collect();
+            let lowest = lowest(body, up);
             let spread = (quantile(lowest.clone(), 0.9) - quantile(lowest, 0.1)) / size;
             let usual = match (axis, negative) {
                 (Axis::Y, false) => 0.2,
@@ -99,6 +112,35 @@ fn lying(body: &BodyMeasures, notes: &mut Vec<String>) -> SignedAxis {
         ));
     }
     up
+}
+
+/// How high the lowest point of the body is in each pose, in the file's units.
+fn lowest(body: &BodyMeasures, up: SignedAxis) -> Vec<f64> {
+    let up = up.unit();
+    let lowest = |pose: &Vec<Vec3>| pose.iter().map(|v| v.dot(&up)).fold(f64::MAX, f64::min);
+    body.poses.iter().map(lowest).collect()
+}
+
+/// True if the body, which is longest along one axis, stays on the floor of another.
+fn lies(body: &BodyMeasures, up: SignedAxis, along: SignedAxis) -> bool {
+    is_on_floor(body, up) && !is_on_floor(body, along)
+}
+
+/// True if through nearly all of the clip the lowest point of the body is at height 0, or a bent leg's foot above.
+fn is_on_floor(body: &BodyMeasures, up: SignedAxis) -> bool {
+    const BELOW: f64 = -0.025;
+    const ABOVE: f64 = 0.25;
+    let size = body.upwards.iter().map(|v| v.norm()).fold(0.0, f64::max);
+    let lowest = lowest(body, up);
+    !lowest.is_empty()
+        && quantile(lowest.clone(), 0.1) > BELOW * size
+        && quantile(lowest, 0.9) < ABOVE * size
+}
+
+fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let at = (values.len().saturating_sub(1)) as f64 * share;
+    values.get(at.round() as usize).copied().unwrap_or(0.0)
 }
 
 /// The one axis, Y or Z, along which no point of a clip of points is ever below the floor of the room.

@@ -34,7 +34,9 @@ impl Stated {
     /// Unit and axis of all files of `format` by its specification; `None` for those that leave it to the writer.
     pub fn of(format: Format) -> Option<Self> {
         let up = match format {
-            Format::Gltf | Format::Mocopi | Format::OpenSimMotion => SignedAxis::Y,
+            Format::Gltf | Format::Mocopi | Format::OpenSimMotion | Format::DeepMimic => {
+                SignedAxis::Y
+            }
             Format::Mvnx => SignedAxis {
                 axis: Axis::Z,
                 negative: false,

@@ -392,6 +392,28 @@ fn what_a_format_states_counts_where_the_body_does_not_say_otherwise() {
     });
     let report = normalize(lying, &stated("y", 1.0)).unwrap().report;
     assert_eq!((report.up, report.unit), (SignedAxis::Y, Some("m")));
+    // Somebody who lies on the floor all the time.
+    let mut lying = turned(person(40, 0.0), |_| Axis::Z.rotation(-1.57));
+    for frame in 0..lying.frames {
+        let pose = WorldPose::of(&lying, frame).positions;
+        let lowest = pose.iter().map(|p| p.y).fold(f64::MAX, f64::min);
+        lying.tracks[0].positions[frame].y -= lowest;
+    }
+    let report = normalize(lying.clone(), &stated("y", 1.0)).unwrap().report;
+    assert_eq!(report.up, SignedAxis::Y, "{:?}", report.notes);
+    let of_unit = report.notes.iter().any(|note| note.contains("unit"));
+    assert!(!of_unit, "{:?}", report.notes);
+    // Where nothing is stated, the floor tells.
+    let facts = ready(lying).report;
+    assert_eq!(facts.up, SignedAxis::Y, "{:?}", facts.notes);
+    // In a picture Y points down, and the head is near its upper edge.
+    let mut picture = turned(person(40, 0.0), |_| Axis::X.rotation(std::f64::consts::PI));
+    for frame in 0..picture.frames {
+        let pose = WorldPose::of(&picture, frame).positions;
+        let lowest = pose.iter().map(|p| p.y).fold(f64::MAX, f64::min);
+        picture.tracks[0].positions[frame] += Vec3::new(0.0, 0.1 - lowest, 0.5);
+    }
+    assert_eq!(ready(picture).report.up, signed(Axis::Y, true));
     // Somebody who stands along Y in a file that says Z and millimetres.
     let report = normalize(person(40, 0.0), &stated("z", 0.001))
         .unwrap()

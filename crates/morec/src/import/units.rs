@@ -39,11 +39,16 @@ pub(super) fn choose(
         return stated;
     }
     let inferred = infer(body, up, notes);
+    // Who crawls is low, and no other unit fits the limbs better.
+    if (inferred / stated - 1.0).abs() < 1e-6 {
+        return stated;
+    }
     notes.push(format!(
-        "the file's unit is {}, but in it the body is {:.3} m tall; {} is taken",
+        "the file's unit is {}, but in it the body is {:.3} m tall; {} is taken (--unit {} keeps the file's)",
         name(stated).unwrap_or("stated"),
         height * stated,
-        name(inferred).unwrap_or("another")
+        name(inferred).unwrap_or("another"),
+        stated
     ));
     inferred
 }
@@ -94,7 +99,7 @@ pub(super) fn infer(body: &BodyMeasures, up: SignedAxis, notes: &mut Vec<String>
     let tall = size * metres * HEIGHT;
     if !(1.0..=2.3).contains(&tall) {
         notes.push(format!(
-            "in {unit}, the nearest known unit, the body is {tall:.2} m tall"
+            "in {unit}, the nearest known unit, limbs and trunk are those of a person {tall:.2} m tall"
         ));
     }
     metres

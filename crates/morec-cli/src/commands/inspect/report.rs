@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use morec::clip::{Clip, Span};
-use morec::diagnosis::{Diagnosis, Findings, diagnose_clip};
+use morec::diagnosis::{Diagnosis, Finding, Findings, diagnose_clip};
 use morec::formats::Warning;
 use morec::formats::probe::Format;
 use morec::import::{ImportReport, Take};
@@ -215,8 +215,9 @@ impl ClipReport {
         for note in &facts.notes {
             writeln!(out, "  note       {note}")?;
         }
-        for finding in self.diagnosis.findings.iter() {
-            writeln!(out, "  {:<10} {finding}", finding.severity().to_string())?;
+        for finding in self.findings() {
+            let (severity, text) = of_file(finding);
+            writeln!(out, "  {severity:<10} {text}")?;
         }
         Ok(())
     }
@@ -265,10 +266,18 @@ impl ClipReport {
         for note in &self.facts.notes {
             writeln!(out, "  note: {note}")?;
         }
-        for finding in self.diagnosis.findings.iter() {
-            writeln!(out, "  {}: {finding}", finding.severity())?;
+        for finding in self.findings() {
+            let (severity, text) = of_file(finding);
+            writeln!(out, "  {severity}: {text}")?;
         }
         Ok(())
+    }
+
+    /// What is found, but for what a clip without any role says by itself: that no frame shows a body.
+    fn findings(&self) -> impl Iterator<Item = &Finding> {
+        let is_body = self.missing_roles.len() < Role::COUNT;
+        let said = move |finding: &&Finding| is_body || !matches!(finding, Finding::Nobody { .. });
+        self.diagnosis.findings.iter().filter(said)
     }
 
     fn length(&self) -> String {
@@ -339,6 +348,20 @@ fn depth_first(joints: &[JointReport]) -> Vec<usize> {
     order
 }
 
+/// A finding as it is said of a file: which way is up was inferred and can be given, and nothing is sent.
+fn of_file(finding: &Finding) -> (String, String) {
+    let text = match finding {
+        Finding::UpIsNotY { .. } => {
+            "the body lies for most of the clip; if it stands, say which way is up with --up AXIS"
+        }
+        Finding::UpsideDown { .. } => {
+            "the head is below the feet for most of the clip; if nobody stands on the hands, say which way is up with --up AXIS"
+        }
+        finding => return (finding.severity().to_string(), finding.to_string()),
+    };
+    ("warning".to_owned(), text.to_owned())
+}
+
 fn format_name(format: Format) -> &'static str {
     match format {
         Format::Bvh => "BVH",
@@ -361,6 +384,7 @@ fn format_name(format: Format) -> &'static str {
         Format::Csm => "CSM",
         Format::OpenSimMotion => "OpenSim motion",
         Format::OpenSimModel => "OpenSim model",
+        Format::DeepMimic => "DeepMimic motion",
         Format::Mocopi => "mocopi packets",
     }
 }

@@ -290,3 +290,57 @@ fn records_of_a_table() {
     assert_eq!((clip.frames, clip.skeleton.len()), (6, 6));
     assert!((clip.rate_hz - 25.0).abs() < 1e-6, "{}", clip.rate_hz);
 }
+
+/// ARKit's matrices, columns first, and those of engines, rows first; as lists of lists or 16 numbers.
+#[test]
+fn joints_as_matrices() {
+    let names = [
+        "hips_joint",
+        "left_leg_joint",
+        "right_leg_joint",
+        "head_joint",
+        "neck_1_joint",
+    ];
+    let place = |frame: usize, point: usize| [0.1 * frame as f64, 0.2 * point as f64, 0.5];
+    let columns =
+        |[x, y, z]: [f64; 3]| json!([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [x, y, z, 1]]);
+    let rows = |[x, y, z]: [f64; 3]| json!([1, 0, 0, x, 0, 0, -1, y, 0, 1, 0, z, 0, 0, 0, 1]);
+    let written: [&dyn Fn(usize, usize) -> Value; 3] = [
+        &|f, p| json!({"name": names[p], "transform": columns(place(f, p))}),
+        &|f, p| json!({"name": names[p], "modelTransform": {"columns": columns(place(f, p))}}),
+        &|f, p| json!({"name": names[p], "matrix": rows(place(f, p))}),
+    ];
+    for joint in written {
+        let frame = |f: usize| {
+            let joints: Vec<Value> = (0..5).map(|p| joint(f, p)).collect();
+            json!({"Timestamp": 0.05 * f as f64, "joints": joints})
+        };
+        let document = json!({"frames": (0..8).map(frame).collect::<Vec<Value>>()});
+        assert!(looks_so(document.to_string().as_bytes()));
+        let loaded = read(
+            document.to_string().as_bytes(),
+            "x",
+            None,
+            &Limits::default(),
+        );
+        let clip = &loaded.unwrap().clips[0];
+        assert_eq!((clip.frames, clip.skeleton.len()), (8, 5), "{document}");
+        assert!((clip.rate_hz - 20.0).abs() < 1e-6, "{}", clip.rate_hz);
+        let known = |f: usize, p: usize| Vec3::from(place(f, p));
+        assert!((clip.tracks[3].positions[2] - known(2, 3)).norm() < 1e-9);
+    }
+    let named = |f: usize| -> Value {
+        let joints = (0..5).map(|p| (names[p].to_owned(), rows(place(f, p))));
+        Value::Object(joints.collect())
+    };
+    let document =
+        json!({"frames": (0..8).map(|f| json!({"joints": named(f)})).collect::<Vec<Value>>()});
+    let loaded = read(
+        document.to_string().as_bytes(),
+        "x",
+        None,
+        &Limits::default(),
+    )
+    .unwrap();
+    assert_eq!(loaded.clips[0].skeleton.len(), 5);
+}

@@ -57,6 +57,8 @@ pub enum Format {
     OpenSimMotion,
     /// A model of OpenSim.
     OpenSimModel,
+    /// Motion of DeepMimic's humanoid, JSON.
+    DeepMimic,
 }
 
 impl Format {
@@ -84,6 +86,7 @@ impl Format {
             Format::Csm => "csm",
             Format::OpenSimMotion => "opensim_motion",
             Format::OpenSimModel => "opensim_model",
+            Format::DeepMimic => "deepmimic",
         }
     }
 }
@@ -184,6 +187,12 @@ const READ: &[Readable] = &[
         format: Format::NtuSkeleton,
         extension: "skeleton",
         looks_so: |h| !h.is_binary() && super::ntu::looks_so(h.bytes),
+    },
+    Readable {
+        format: Format::DeepMimic,
+        // Its files end in .txt or .json: content alone decides.
+        extension: "deepmimic",
+        looks_so: |h| super::deepmimic::looks_so(h.bytes),
     },
     Readable {
         format: Format::Landmarks,
@@ -300,7 +309,7 @@ pub fn probe(bytes: &[u8], name: &str) -> Result<Format, ParseError> {
         _ if head.is_binary() => "unknown binary content",
         _ if head.is_markup() => "XML of an unknown kind",
         _ if head.starts("{") || head.starts("[") => "JSON without points, poses or joints",
-        _ => "unknown text",
+        _ => table::what_it_measures(head.bytes).unwrap_or("unknown text"),
     };
     let expected = match format_of_name(name) {
         // What it is called and is not.

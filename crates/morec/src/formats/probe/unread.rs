@@ -65,6 +65,14 @@ pub(super) static UNREAD: &[Unread] = &[
     unread("COLLADA", BLENDER, |h| {
         h.starts("<") && h.contains(b"<COLLADA")
     }),
+    unread("a model of Panda3D (EGG)", BLENDER, |h| {
+        h.starts("<CoordinateSystem>")
+            || h.starts("<Comment>") && h.contains(b"{") && h.contains(b"<")
+    }),
+    unread("a model of Panda3D (BAM)", BLENDER, |h| {
+        h.bytes.starts_with(b"pbj\0")
+    }),
+    unread("VRML", BLENDER, |h| h.bytes.starts_with(b"#VRML")),
     unread("X3D", BLENDER, |h| h.starts("<") && h.contains(b"<X3D")),
     unread("Maya ASCII", SCENE, |h| h.starts("//Maya ASCII")),
     unread("Maya binary", SCENE, |h| {

@@ -1,6 +1,7 @@
 //! Which columns are a point's x, y and z, by the rows above them.
 
 use super::layout::{ColumnLayout, TableLine};
+use super::quantities::{is_other, is_other_unit, is_plate, is_position, unit_in};
 use crate::formats::cells::{Decimal, number};
 use crate::formats::points::metres_of;
 use crate::math::Axis;
@@ -38,6 +39,10 @@ pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
     }
     for (name, columns) in open {
         match columns {
+            [Some(x), Some(y), Some(z)] if is_quaternion(&labels, &name, [x, y, z], rows) => {
+                let text = format!("`{name}` has w beside x, y and z, a rotation; left out");
+                found.notes.push(text);
+            }
             [Some(x), Some(y), Some(z)] => found.points.push((name, [x, y, z])),
             _ => found
                 .notes
@@ -47,12 +52,15 @@ pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
     (!found.points.is_empty()).then_some(found)
 }
 
+/// The words above each column, if there is a header.
+pub(super) fn header_labels(rows: &[TableLine]) -> Option<Vec<String>> {
+    let header_rows = header_rows(rows)?;
+    Some(labels(without_units(&rows[..header_rows]).0))
+}
+
 /// True if the columns have x and y, and z nowhere.
-pub(super) fn is_flat(rows: &[TableLine]) -> bool {
-    let Some(header_rows) = header_rows(rows) else {
-        return false;
-    };
-    let axes: Vec<usize> = labels(without_units(&rows[..header_rows]).0)
+pub(super) fn is_flat(labels: &[String]) -> bool {
+    let axes: Vec<usize> = labels
         .iter()
         .filter_map(|label| Some(axis_of(label)?.1))
         .collect();
@@ -117,26 +125,6 @@ fn rate_above(header: &[TableLine]) -> Option<f64> {
             .find_map(|cell| stated(cell))
             .or_else(|| pairs.find_map(|pair| stated(&pair)))
     })
-}
-
-/// True if most columns have angles, rotations or what sensors measure, by their labels.
-pub(super) fn is_turned(rows: &[TableLine]) -> bool {
-    let Some(header_rows) = header_rows(rows) else {
-        return false;
-    };
-    let says = |label: &String| {
-        let lower = label.to_lowercase();
-        let mut parts = lower.split(|c: char| !c.is_alphanumeric());
-        parts.any(|part| {
-            let bare = part.trim_end_matches(['x', 'y', 'z', 'w', 's']);
-            NO_POSITION.contains(&part) || !bare.is_empty() && NO_POSITION.contains(&bare)
-        }) || ["angle", "flexion", "rotation"]
-            .iter()
-            .any(|word| lower.contains(word))
-    };
-    let labels = labels(without_units(&rows[..header_rows]).0);
-    let turned = labels.iter().filter(|label| says(label)).count();
-    turned > 0 && turned * 2 > labels.len()
 }
 
 /// Rows before the first of numbers; `None` if there is none, or no row of numbers.
@@ -253,57 +241,6 @@ fn carried<'a>(cells: &[&'a str], width: usize) -> Vec<&'a str> {
         .collect()
 }
 
-/// Words behind a name that say that its position is meant.
-const POSITION: [&str; 11] = [
-    "position",
-    "positions",
-    "posi",
-    "pos",
-    "translation",
-    "translate",
-    "trans",
-    "location",
-    "loc",
-    "coord",
-    "t",
-];
-/// Words that say that something else is meant.
-const NO_POSITION: [&str; 33] = [
-    "gyr",
-    "linacc",
-    "velo",
-    "grf",
-    "cop",
-    "rotation",
-    "rot",
-    "r",
-    "q",
-    "quat",
-    "quaternion",
-    "euler",
-    "angle",
-    "vel",
-    "velocity",
-    "acc",
-    "acceleration",
-    "force",
-    "moment",
-    "orientation",
-    "error",
-    "gyro",
-    "torque",
-    "power",
-    "momentum",
-    "emg",
-    "mag",
-    "magnetic",
-    "magnetometer",
-    "accel",
-    "angular",
-    "omega",
-    "gravity",
-];
-
 /// The point and the axis (0 to 2) that a column's label names.
 pub(in crate::formats) fn axis_of(label: &str) -> Option<(String, usize)> {
     axis_with(label, false)
@@ -322,6 +259,9 @@ fn axis_with(label: &str, has_sides: bool) -> Option<(String, usize)> {
     if let Some(found) = in_brackets(label) {
         return Some(found);
     }
+    if unit_in(label).is_some_and(is_other_unit) {
+        return None;
+    }
     let label = without_unit(label).trim();
     let (name, axis) = suffix(label).or_else(|| prefix(label))?;
     let mut name = name.trim_end_matches(is_mark);
@@ -330,10 +270,10 @@ fn axis_with(label: &str, has_sides: bool) -> Option<(String, usize)> {
         (start, name[start..].to_ascii_lowercase())
     };
     let (start, word) = last(name);
-    if NO_POSITION.contains(&word.as_str()) && start > 0 && !(has_sides && word == "r") {
+    if is_other(&word) && start > 0 && !(has_sides && word == "r") || is_plate(name) {
         return None;
     }
-    if POSITION.contains(&word.as_str()) && start > 0 {
+    if is_position(&word) && start > 0 {
         name = name[..start].trim_end_matches(is_mark);
         // Axis Studio writes `Hips-Joint-Posi-x`.
         let (start, word) = last(name);
@@ -343,7 +283,7 @@ fn axis_with(label: &str, has_sides: bool) -> Option<(String, usize)> {
     }
     // A point has a name; `rotation x` alone has none.
     let lower = name.to_ascii_lowercase();
-    let is_name = !name.is_empty() && !NO_POSITION.contains(&lower.as_str());
+    let is_name = !name.is_empty() && !is_other(&lower);
     is_name.then(|| (name.to_owned(), axis))
 }
 
@@ -407,8 +347,36 @@ fn without_unit(label: &str) -> &str {
 }
 
 fn unit_of(label: &str) -> Option<f64> {
-    let start = label.find(['(', '['])?;
-    metres_of(label[start..].trim_matches(['(', ')', '[', ']']))
+    metres_of(unit_in(label)?)
+}
+
+/// The label of x in whose place this one has w: `hips_w`, `W Element`.
+fn as_x(label: &str) -> Option<String> {
+    let last = |w: &str, x: &str| label.strip_suffix(w).map(|rest| format!("{rest}{x}"));
+    let first = |w: &str, x: &str| label.strip_prefix(w).map(|rest| format!("{x}{rest}"));
+    let named = |label: &String| axis_of(label).is_some();
+    last("w", "x")
+        .or(last("W", "X"))
+        .filter(named)
+        .or(first("w", "x").or(first("W", "X")).filter(named))
+}
+
+/// True if columns of x, y and z have a fourth of w, and the first rows of numbers are rotations.
+fn is_quaternion(labels: &[String], name: &str, axes: [usize; 3], rows: &[TableLine]) -> bool {
+    let is_w = |label: &String| {
+        let found = as_x(label).and_then(|label| axis_of(&label));
+        found.is_some_and(|(known, _)| known == name)
+    };
+    let Some(w) = labels.iter().position(is_w) else {
+        return false;
+    };
+    let squared = |(_, cells): &TableLine| {
+        let value = |column: usize| number(cells.get(column)?, Decimal::Either);
+        let squares = [axes[0], axes[1], axes[2], w].map(|column| Some(value(column)?.powi(2)));
+        squares.into_iter().sum::<Option<f64>>()
+    };
+    let mut lengths = rows.iter().filter_map(squared).peekable();
+    lengths.peek().is_some() && lengths.all(|length| (length - 1.0).abs() < 0.02)
 }
 
 pub(super) fn is_time(label: &str) -> bool {

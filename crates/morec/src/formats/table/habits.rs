@@ -393,3 +393,85 @@ fn what_is_no_position_is_said() {
         assert!(error.found.contains(said), "{head}: {error}");
     }
 }
+
+/// Exports of inertial units: their readings have x, y and z, but are no places.
+#[test]
+fn readings_of_sensors_are_no_positions() {
+    let rows = |values: &str| -> String { (0..6).map(|f| format!("{f},{values}\n")).collect() };
+    let inertial = "Timestamp (us),Gyroscope X (deg/s),Gyroscope Y (deg/s),Gyroscope Z (deg/s),\
+        Accelerometer X (g),Accelerometer Y (g),Accelerometer Z (g)\n";
+    let magnetic = "Timestamp (us),X Axis (a.u.),Y Axis (a.u.),Z Axis (a.u.)\n";
+    let turned = "Timestamp (us),W Element,X Element,Y Element,Z Element\n";
+    let limbs = "t,foot_w,foot_x,foot_y,foot_z,hand_w,hand_x,hand_y,hand_z\n";
+    for text in [
+        inertial.to_owned() + &rows("1,2,3,4,5,6"),
+        magnetic.to_owned() + &rows("1,2,3"),
+        turned.to_owned() + &rows("0.6,0,0.8,0"),
+        limbs.to_owned() + &rows("1,0,0,0,0.6,0,0.8,0"),
+    ] {
+        assert!(!looks_so(text.as_bytes()), "{text}");
+        let error = read(text.as_bytes(), "x", None, &Limits::default()).unwrap_err();
+        assert!(error.at == Place::Line(1), "{error}");
+    }
+    // A fourth number that makes no rotation is none of ours.
+    let sure = limbs.to_owned() + &rows("0.9,1,2,3,0.9,4,5,6");
+    assert_eq!(open(&sure).clips[0].skeleton.len(), 2);
+    let both =
+        "t,hip_x,hip_y,hip_z,hip_rot_w,hip_rot_x,hip_rot_y,hip_rot_z,foot_w,foot_x,foot_y,foot_z\n";
+    let loaded = open(&(both.to_owned() + &rows("1,2,3,1,0,0,0,0.6,0,0.8,0")));
+    assert_eq!(loaded.clips[0].skeleton.len(), 1);
+    assert!(
+        loaded
+            .warnings
+            .iter()
+            .any(|w| w.text.contains("`foot` has w")),
+        "{:?}",
+        loaded.warnings
+    );
+}
+
+/// D-Flow writes the plates' forces beside the markers.
+#[test]
+fn channels_of_plates_are_no_markers() {
+    let head = "TimeStamp\tFrameNumber\tLHEE.PosX\tLHEE.PosY\tLHEE.PosZ\tRHEE.PosX\tRHEE.PosY\tRHEE.PosZ\t\
+        FP1.CopX\tFP1.CopY\tFP1.CopZ\tFP1.ForX\tFP1.ForY\tFP1.ForZ\tFP1.MomX\tFP1.MomY\tFP1.MomZ\n";
+    let line = |f: usize| {
+        format!(
+            "{:.2}\t{f}\t{}\t0\t0\t0\t1\t2\t700\t3\t2\t1\n",
+            0.01 * f as f64,
+            row(f, 2, "\t")
+        )
+    };
+    let text = head.to_owned() + &(0..6).map(line).collect::<String>();
+    let clip = &open(&text).clips[0];
+    assert_eq!(clip.skeleton.names().collect::<Vec<_>>(), ["LHEE", "RHEE"]);
+    assert!((clip.rate_hz - 100.0).abs() < 1e-6);
+}
+
+/// Columns whose names say what they are do not become points because there are as many as a set of landmarks needs.
+#[test]
+fn names_are_not_left_out_for_numbers_alone() {
+    let named = ["nose", "tail", "paw", "ear", "back", "neck", "hip", "toe"];
+    let cameras = |name: &str| format!("{name}_cam1_X,{name}_cam1_Y,{name}_cam2_X,{name}_cam2_Y");
+    let views: Vec<String> = (0..12)
+        .map(|n| cameras(&format!("{}{n}", named[n % 8])))
+        .collect();
+    let other: Vec<String> = (0..48).map(|n| format!("{} {n}", named[n % 8])).collect();
+    let bare: Vec<String> = (0..51).map(|n| format!("col_{n}")).collect();
+    for (head, columns, said) in [
+        (views.join(","), 48, Some("two dimensions")),
+        (other.join(","), 48, Some("nose 0, tail 1")),
+        (bare.join(","), 51, None),
+    ] {
+        let line = |f: usize| {
+            let cells: Vec<String> = (0..columns).map(|c| format!("{}.5", c + f)).collect();
+            cells.join(",") + "\n"
+        };
+        let text = format!("{head}\n{}", (0..6).map(line).collect::<String>());
+        match (read(text.as_bytes(), "x", None, &Limits::default()), said) {
+            (Err(error), Some(said)) => assert!(error.found.contains(said), "{error}"),
+            (Ok(loaded), None) => assert_eq!(loaded.clips[0].skeleton.len(), 17),
+            (other, _) => panic!("{head}: {other:?}"),
+        }
+    }
+}

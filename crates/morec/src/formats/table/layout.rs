@@ -35,6 +35,8 @@ pub(in crate::formats) fn to_seconds(times: &mut [Option<f64>], secs: Option<f64
     let usual = steps.get(steps.len() / 2).copied().unwrap_or(0.0);
     let secs = secs.unwrap_or(match usual {
         step if step >= 1e6 => 1e-9,
+        // Ticks of 100 ns, as Windows and Kinect count.
+        step if step >= 1e5 => 1e-7,
         step if step >= 1e3 => 1e-6,
         step if step >= 2.0 => 1e-3,
         _ => 1.0,

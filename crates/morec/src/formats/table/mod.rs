@@ -14,6 +14,7 @@ mod motive;
 mod nexus;
 mod plain;
 mod qualisys;
+mod quantities;
 
 pub(super) use self::columns::axis_of;
 pub(super) use self::layout::to_seconds;
@@ -159,12 +160,7 @@ fn no_columns(rows: &[TableLine]) -> ParseError {
         let found = "none: export positions, too, in global coordinates";
         return ParseError::new(Place::Line(*line), expected, found);
     }
-    if columns::is_flat(rows) {
-        let found = "x and y alone: two dimensions are not enough";
-        return ParseError::new(Place::Line(*line), expected, found);
-    }
-    if columns::is_turned(rows) {
-        let found = "angles, rotations or what sensors measure: without a skeleton they place nothing (give positions, or BVH)";
+    if let Some(found) = measured(rows) {
         return ParseError::new(Place::Line(*line), expected, found);
     }
     if nexus::begins(rows) {
@@ -190,6 +186,32 @@ fn no_columns(rows: &[TableLine]) -> ParseError {
     let shown = named[..named.len().min(SHOWN)].join(", ");
     let more = if named.len() > SHOWN { ", …" } else { "" };
     ParseError::new(Place::Line(*line), expected, format!("`{shown}{more}`"))
+}
+
+/// What a table measures in place of positions, as far as its header tells.
+fn measured(rows: &[TableLine]) -> Option<&'static str> {
+    let labels = columns::header_labels(rows)?;
+    if columns::is_flat(&labels) {
+        return Some("x and y alone: two dimensions are not enough");
+    }
+    quantities::is_turned(&labels).then_some(
+        "angles, rotations or what sensors measure: without a skeleton they place nothing (give positions, or BVH)",
+    )
+}
+
+/// [`measured`] of the beginning of a text that may be a table.
+pub(super) fn what_it_measures(head: &[u8]) -> Option<&'static str> {
+    let limits = Limits {
+        line_bytes: usize::MAX,
+        ..Limits::default()
+    };
+    let rows = lines(head, &limits).ok()?;
+    let separator = separator(&rows);
+    let cells = rows
+        .iter()
+        .take(HEAD_ROWS)
+        .map(|(line, row)| (*line, split(row, separator)));
+    measured(&cells.collect::<Vec<TableLine>>())
 }
 
 /// The frames of a table with three columns for each point.

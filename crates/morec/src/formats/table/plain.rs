@@ -89,6 +89,9 @@ pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
         .or_else(|| fits(0, 4))
         .or_else(|| fits(1, 4))?;
     let named = names_above(&rows[..header_rows], before, width, count);
+    if named.is_none() && header_rows > 0 && is_telling(first) {
+        return None;
+    }
     let point = |number: usize| {
         let x = before + width * number;
         let name = named.as_ref().map(|names| names[number].to_owned());
@@ -116,6 +119,20 @@ pub(super) fn layout(rows: &[TableLine]) -> Option<ColumnLayout> {
         notes,
         ..ColumnLayout::default()
     })
+}
+
+/// True if a row names its columns by more than numbers: then they are not x, y and z of a point each.
+fn is_telling(header: &[&str]) -> bool {
+    const STEMS: usize = 4;
+    let stem = |cell: &&str| {
+        let letters = cell.chars().filter(|c| c.is_alphabetic());
+        letters.collect::<String>().to_lowercase()
+    };
+    let filled = header.iter().filter(|cell| !cell.is_empty());
+    let mut stems: Vec<String> = filled.skip(1).map(stem).collect();
+    stems.sort_unstable();
+    stems.dedup();
+    stems.len() > STEMS
 }
 
 /// The names that a row has above the first column of each point and nowhere else: `SpineBase,,,SpineMid,,`.

@@ -167,6 +167,7 @@ fn times_of_every_unit() {
     for (header, scale) in [
         ("time_ms", 1e3),
         ("timestamp", 1e9),
+        ("timestamp", 1e7),
         ("timestamp", 1e6),
         ("time", 1e3),
     ] {

@@ -62,7 +62,7 @@ const fn landmarks(
 }
 
 /// Each with the order of its points.
-pub(super) const SETS: [PointSet; 18] = [
+pub(super) const SETS: [PointSet; 20] = [
     // BlazePose; developers.google.com/mediapipe, "Pose landmark detection".
     landmarks(
         "MediaPipe pose (33)",
@@ -141,6 +141,35 @@ pub(super) const SETS: [PointSet; 18] = [
             ("head", "head"),
         ],
     ),
+    // Body tracking of Stereolabs' ZED SDK, BODY_34 and BODY_38.
+    PointSet {
+        by_name: false,
+        ..landmarks(
+            "ZED (34)",
+            "pelvis spinenavel spinechest neck lclavicle lshoulder lelbow lwrist lhand lhandtip lthumb rclavicle \
+             rshoulder relbow rwrist rhand rhandtip rthumb lhip lknee lankle lfoot rhip rknee rankle rfoot head nose \
+             leye lear reye rear lheel rheel",
+            &[
+                ("?_shoulder", "?clavicle"),
+                ("torso", "spinenavel|spinechest"),
+                ("head", "head"),
+            ],
+        )
+    },
+    PointSet {
+        by_name: false,
+        ..landmarks(
+            "ZED (38)",
+            "pelvis spine1 spine2 spine3 neck nose leye reye lear rear lclavicle rclavicle lshoulder rshoulder lelbow \
+             relbow lwrist rwrist lhip rhip lknee rknee lankle rankle lbigtoe rbigtoe lsmalltoe rsmalltoe lheel rheel \
+             lthumb rthumb lindex rindex lmiddle rmiddle lpinky rpinky",
+            &[
+                ("?_shoulder", "?clavicle"),
+                ("torso", "spine1|spine2"),
+                ("head", "lear+rear|nose"),
+            ],
+        )
+    },
     // MSR-Action3D (Li, Zhang and Liu 2010), in the order of the files of its joints.
     PointSet {
         by_name: false,

@@ -1,7 +1,7 @@
 //! Names of points in one spelling.
 
 /// Names without subject and marks, in lower case, a side in front: `lshoulder` for `LEFT_SHOULDER`, `ShoulderLeft`,
-/// `L.Shoulder`, `Anna:LShoulder`. A first word that all names share is dropped.
+/// `L.Shoulder`, `Anna:LShoulder`. A first word that all names share is dropped, and a last one that says what all are.
 pub(super) fn normalised(names: &[&str]) -> Vec<String> {
     let mut words: Vec<Vec<String>> = names.iter().map(|name| words(name)).collect();
     let shared = words.first().and_then(|w| w.first()).cloned();
@@ -9,6 +9,16 @@ pub(super) fn normalised(names: &[&str]) -> Vec<String> {
     if words.len() > 3 && words.iter().all(is_shared) {
         for name in &mut words {
             name.remove(0);
+        }
+    }
+    // ARKit calls all of them joints, `left_leg_joint`.
+    let says_kind = |w: &Vec<String>| {
+        let last = w.last().map_or("", String::as_str);
+        w.len() > 1 && ["joint", "jnt", "bone", "marker"].contains(&last)
+    };
+    if words.len() > 3 && words.iter().all(says_kind) {
+        for name in &mut words {
+            name.pop();
         }
     }
     words.into_iter().map(joined).collect()
@@ -117,6 +127,13 @@ mod tests {
         ] {
             assert_eq!(normalised_one(name), expected, "{name}");
         }
+        let kinds = [
+            "root_joint",
+            "left_upLeg_joint",
+            "head_joint",
+            "neck_1_joint",
+        ];
+        assert_eq!(normalised(&kinds), ["root", "lupleg", "head", "neck1"]);
         let shared = ["Bip01 L Thigh", "Bip01 R Thigh", "Bip01 Head", "Bip01 Neck"];
         assert_eq!(normalised(&shared), ["lthigh", "rthigh", "head", "neck"]);
     }

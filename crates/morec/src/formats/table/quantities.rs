@@ -1,0 +1,110 @@
+//! What columns hold besides positions: words and units that say so.
+
+/// Words behind a name that say that its position is meant.
+const POSITION: [&str; 11] = [
+    "position",
+    "positions",
+    "posi",
+    "pos",
+    "translation",
+    "translate",
+    "trans",
+    "location",
+    "loc",
+    "coord",
+    "t",
+];
+/// Words that say that something else is meant.
+const NO_POSITION: [&str; 39] = [
+    "gyr",
+    "gyroscope",
+    "accelerometer",
+    "compass",
+    "axis",
+    "element",
+    "mom",
+    "linacc",
+    "velo",
+    "grf",
+    "cop",
+    "rotation",
+    "rot",
+    "r",
+    "q",
+    "quat",
+    "quaternion",
+    "euler",
+    "angle",
+    "vel",
+    "velocity",
+    "acc",
+    "acceleration",
+    "force",
+    "moment",
+    "orientation",
+    "error",
+    "gyro",
+    "torque",
+    "power",
+    "momentum",
+    "emg",
+    "mag",
+    "magnetic",
+    "magnetometer",
+    "accel",
+    "angular",
+    "omega",
+    "gravity",
+];
+
+/// True if a word behind a name says that its position is meant.
+pub(super) fn is_position(word: &str) -> bool {
+    POSITION.contains(&word)
+}
+
+/// True if a word in lower case says that something else is meant.
+pub(super) fn is_other(word: &str) -> bool {
+    NO_POSITION.contains(&word)
+}
+
+/// True if a unit is one of angles, speeds, forces or of what sensors measure.
+pub(super) fn is_other_unit(unit: &str) -> bool {
+    const OTHERS: [&str; 24] = [
+        "deg", "degree", "degrees", "°", "rad", "radians", "g", "a.u.", "n", "kn", "nm", "n.m",
+        "n*m", "nmm", "n.mm", "v", "mv", "uv", "t", "ut", "µt", "mt", "gauss", "%",
+    ];
+    let unit = unit.trim().to_lowercase();
+    let per_time = unit.contains("/s") || unit.ends_with("dps");
+    per_time || OTHERS.contains(&unit.as_str())
+}
+
+/// True for channels of a force plate, `FP1.For` of D-Flow.
+pub(super) fn is_plate(name: &str) -> bool {
+    let rest = name.strip_prefix("FP").or_else(|| name.strip_prefix("fp"));
+    let Some(rest) = rest else { return false };
+    let behind = rest.trim_start_matches(|c: char| c.is_ascii_digit());
+    behind.len() < rest.len() && behind.starts_with(['.', '_', ' '])
+}
+
+/// What stands in brackets in a label.
+pub(super) fn unit_in(label: &str) -> Option<&str> {
+    let start = label.find(['(', '['])?;
+    Some(label[start..].trim_matches(['(', ')', '[', ']']))
+}
+
+/// True if most columns have angles, rotations or what sensors measure, by their labels.
+pub(super) fn is_turned(labels: &[String]) -> bool {
+    let says = |label: &String| {
+        let lower = label.to_lowercase();
+        let mut parts = lower.split(|c: char| !c.is_alphanumeric());
+        parts.any(|part| {
+            let bare = part.trim_end_matches(['x', 'y', 'z', 'w', 's']);
+            is_other(part) || !bare.is_empty() && is_other(bare)
+        }) || ["angle", "flexion", "rotation"]
+            .iter()
+            .any(|word| lower.contains(word))
+            || unit_in(label).is_some_and(is_other_unit)
+    };
+    let turned = labels.iter().filter(|label| says(label)).count();
+    turned > 0 && turned * 2 > labels.len()
+}
