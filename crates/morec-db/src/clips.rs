@@ -233,12 +233,27 @@ impl MotionDb {
                 "expected a text without tabs, line ends or other control characters, found {text:?}"
             )));
         }
-        let what = format!("describe {} clips", clips.len());
-        self.edit(&what, |conn| {
+        self.edit(&step_name(clips.len(), update), |conn| {
             clips
                 .iter()
                 .try_fold(0, |changed, id| Ok(changed + describe(conn, *id, update)?))
         })
+    }
+}
+
+/// Name of a change of clips in the history.
+fn step_name(clips: usize, update: &ClipUpdate) -> String {
+    let clips = match clips {
+        1 => "1 clip".to_owned(),
+        n => format!("{n} clips"),
+    };
+    let texts = [&update.source, &update.licence, &update.subject];
+    match (&update.add_tags[..], &update.remove_tags[..]) {
+        (tags @ [_, ..], []) if texts == [&None; 3] => format!("tag {clips} {}", tags.join(", ")),
+        ([], tags @ [_, ..]) if texts == [&None; 3] => {
+            format!("take the tag {} off {clips}", tags.join(", "))
+        }
+        _ => format!("describe {clips}"),
     }
 }
 

@@ -53,6 +53,14 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
         if ui.add_enabled(on, egui::Button::new(text)).clicked() {
             out.push(Command::Live(LiveCommand::Mark(next)));
         }
+        let response = ui.add_enabled(on, egui::Button::new("0  none of these"));
+        widgets::named(&response, WidgetType::Button, "Mark as background", false);
+        let response = response.on_hover_text(
+            "Background: kept as motion that is none of the classes, so that it is not recognised again",
+        );
+        if response.clicked() {
+            out.push(Command::Live(LiveCommand::MarkBackground));
+        }
     });
     if state.live.teaching || state.is_training() {
         ui.horizontal(|ui| {

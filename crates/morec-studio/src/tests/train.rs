@@ -75,10 +75,10 @@ fn classes_are_chosen_and_changed_labels_are_said() {
     // Changed labels are said, and the index is trained again by a click.
     let label = person.state().shown_samples()[0].id;
     person.command(Command::Edit(Edit::Remove(vec![label])));
-    assert!(person.sees("Labels have changed since."));
+    assert!(person.sees("Labels or background have changed since."));
     person.click("Train again");
     person.settle();
-    assert!(!person.sees("Labels have changed since."));
+    assert!(!person.sees("Labels or background have changed since."));
     assert!(person.state().detections.is_some());
 }
 
