@@ -62,7 +62,8 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
             out.push(Command::Live(LiveCommand::MarkBackground));
         }
     });
-    if state.live.teaching || state.is_training() {
+    let busy = state.live.teaching || state.is_training();
+    if busy {
         ui.horizontal(|ui| {
             ui.add(egui::Spinner::new().size(14.0));
             ui.label(if state.live.teaching {
@@ -71,6 +72,9 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
                 "training …"
             });
         });
+    }
+    if state.live.index().is_some() && state.train.is_stale() && !busy {
+        widgets::train_again(ui, out);
     }
     if state.live.index().is_none() && !state.is_training() {
         ui.add_space(4.0);

@@ -193,12 +193,7 @@ fn trained(ui: &mut Ui, state: &State, out: Out) {
         });
         if state.train.is_stale() {
             ui.add_space(4.0);
-            ui.horizontal(|ui| {
-                ui.colored_label(c.warn, "Labels or background have changed since.");
-                if ui.button("Train again").clicked() {
-                    out.push(Command::Train(TrainCommand::Train));
-                }
-            });
+            widgets::train_again(ui, out);
         }
         if let Some(report) = &state.train.report {
             ui.add_space(4.0);

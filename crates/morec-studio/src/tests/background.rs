@@ -8,7 +8,7 @@ use morec::synth::{DatabaseSpec, database};
 use morec_db::{BACKGROUND, ClipUpdate, MotionDb};
 
 use super::{Person, made, takes};
-use crate::state::{Command, LiveCommand, Panel};
+use crate::state::{Command, FileCommand, LiveCommand, Panel};
 use crate::store::Edit;
 
 /// The database of [`made`], and in it two clips `other_…` of other gestures.
@@ -224,6 +224,11 @@ fn what_was_nothing_is_marked_live_learned_and_undone() {
     // One undo takes it back, and then it can.
     person.undo();
     assert!(marked(&person).is_empty() && person.state().live.marks.is_empty());
+    person.click("Train again");
+    person.settle();
+    assert!(!person.offers("Train again"));
+    let index = person.state().live.index().unwrap();
+    assert!(!index.provenance.background_secs.contains_key("clips"));
     let labels = person.labels().len();
     person.key(Key::Num1);
     person.settle();
@@ -288,4 +293,21 @@ fn the_tag_of_the_command_is_the_mark_of_the_window() {
     drop(db);
     let person = Person::before(&[path]);
     assert!(person.offers("other_2, background"));
+}
+
+#[test]
+fn what_was_imported_is_marked_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 1)]);
+    let more = tempfile::tempdir().unwrap();
+    with_other_motion(more.path(), 0);
+    let files = [1, 2].map(|n| more.path().join(format!("other_{n}.bvh")));
+    person.command(Command::File(FileCommand::Import(files.to_vec())));
+    person.click("Use them as background");
+    person.settle();
+    assert_eq!(marked(&person), ["other_1", "other_2"]);
+    assert!(!person.offers("Use them as background"));
+    person.undo();
+    assert!(marked(&person).is_empty() && person.offers("other_1"));
+    assert!(person.offers("Use them as background"));
 }
