@@ -2,6 +2,7 @@
 
 use rusqlite::{Connection, OptionalExtension, Row, params};
 
+use crate::history::counted;
 use crate::{DbError, MotionDb, names};
 
 /// A clip's number in its database.
@@ -202,7 +203,7 @@ impl MotionDb {
     /// # Errors
     /// The database cannot be written.
     pub fn remove_clips(&mut self, clips: &[ClipId]) -> Result<usize, DbError> {
-        self.edit(&format!("remove {} clips", clips.len()), |conn| {
+        self.edit(&format!("remove {}", counted(clips.len(), "clip")), |conn| {
             let mut samples = 0;
             for id in clips {
                 let sql = "SELECT count(*) FROM samples WHERE clip = ?1";
@@ -243,10 +244,7 @@ impl MotionDb {
 
 /// Name of a change of clips in the history.
 fn step_name(clips: usize, update: &ClipUpdate) -> String {
-    let clips = match clips {
-        1 => "1 clip".to_owned(),
-        n => format!("{n} clips"),
-    };
+    let clips = counted(clips, "clip");
     let texts = [&update.source, &update.licence, &update.subject];
     match (&update.add_tags[..], &update.remove_tags[..]) {
         (tags @ [_, ..], []) if texts == [&None; 3] => format!("tag {clips} {}", tags.join(", ")),

@@ -375,6 +375,7 @@ fn clips_are_background_by_their_tag_unless_they_hold_samples_of_the_classes() {
     db.add_samples(&[sample(SampleState::Proposed)], "me")
         .unwrap();
     db.store_index("i", b"bytes").unwrap();
+    let last = |db: &MotionDb| db.last_step().unwrap().unwrap().what;
     let tag = ClipUpdate {
         add_tags: vec![BACKGROUND.to_owned()],
         ..ClipUpdate::default()
@@ -384,7 +385,6 @@ fn clips_are_background_by_their_tag_unless_they_hold_samples_of_the_classes() {
         ..ClipUpdate::default()
     };
     db.update_clips(&ids[..2], &tag).unwrap();
-    let last = |db: &MotionDb| db.last_step().unwrap().unwrap().what;
     assert_eq!(last(&db), "tag 2 clips background");
     let names = |clips: Vec<ClipInfo>| clips.into_iter().map(|c| c.name).collect::<Vec<_>>();
     let parts = |db: &MotionDb, classes: &[&str]| {
@@ -398,6 +398,7 @@ fn clips_are_background_by_their_tag_unless_they_hold_samples_of_the_classes() {
     assert!(index(&db).stale && index(&db).samples == 0);
     db.add_samples(&[sample(SampleState::Accepted)], "me")
         .unwrap();
+    assert_eq!(last(&db), "add 1 sample of wave");
     assert_eq!(parts(&db, &[]), (1, vec![clips[0].name.clone()]));
     assert_eq!(parts(&db, &["wave"]), (1, vec![clips[0].name.clone()]));
     assert_eq!(parts(&db, &["bow"]), (2, vec![]));

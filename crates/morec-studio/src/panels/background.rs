@@ -12,7 +12,6 @@ use crate::state::{Command, State};
 use crate::store::Edit;
 use crate::theme::Colours;
 
-const ROW: f32 = 20.0;
 /// Most rows that are seen at once.
 const ROWS: f32 = 8.0;
 
@@ -83,11 +82,12 @@ pub fn list(ui: &mut Ui, state: &State, out: Out) {
         false => "Tick clips in which none of the classes is seen: they make recognition surer.",
     };
     ui.label(RichText::new(text).size(12.0).color(c.muted));
+    let row = ui.spacing().interact_size.y;
     ScrollArea::vertical()
         .id_salt("background")
-        .max_height(ROWS * (ROW + ui.spacing().item_spacing.y))
+        .max_height(ROWS * (row + ui.spacing().item_spacing.y))
         .auto_shrink([false, true])
-        .show_rows(ui, ROW, clips.len(), |ui, rows| {
+        .show_rows(ui, row, clips.len(), |ui, rows| {
             for clip in &clips[rows] {
                 tick(ui, clip, out);
             }
@@ -103,7 +103,7 @@ fn tick(ui: &mut Ui, clip: &ClipInfo, out: Out) {
             c.warn,
         ),
     };
-    let size = Vec2::new(ui.available_width(), ROW);
+    let size = Vec2::new(ui.available_width(), ui.spacing().interact_size.y);
     ui.allocate_ui_with_layout(size, Layout::right_to_left(Align::Center), |ui| {
         ui.label(RichText::new(text).size(11.5).color(colour));
         ui.with_layout(Layout::left_to_right(Align::Center), |ui| {

@@ -166,6 +166,18 @@ fn ground(ui: &Ui, rect: Rect, response: &Response, selected: bool) {
     ui.painter().rect_filled(rect, 3.0, fill);
 }
 
+/// A click on a clip, with Ctrl or Shift or neither.
+fn chosen(ui: &Ui, clip: &ClipInfo) -> LibraryCommand {
+    let (clip, held) = (clip.id, ui.input(|i| i.modifiers));
+    match held.shift {
+        true => LibraryCommand::SelectTo(clip),
+        false => LibraryCommand::Select {
+            clip,
+            add: held.command,
+        },
+    }
+}
+
 /// Name of a clip's row for screen readers and tests.
 fn called(clip: &ClipInfo) -> String {
     match clip.is_background() {
@@ -207,9 +219,7 @@ fn strip(ui: &mut Ui, state: &State, clip: &ClipInfo, out: Out) {
     let picture = rect.with_min_x(rect.left() + names).shrink(3.0);
     strips::draw(ui, state, clip.id, 0.0, clip.duration_secs(), picture);
     if response.clicked() {
-        let add = ui.input(|i| i.modifiers.command);
-        let clip = clip.id;
-        out.push(Command::Library(LibraryCommand::Select { clip, add }));
+        out.push(Command::Library(chosen(ui, clip)));
     }
 }
 
@@ -272,8 +282,6 @@ fn row(ui: &mut Ui, state: &State, clip: &ClipInfo, out: Out) {
         widgets::text_in(ui, cell, text, 13.0, colour, COLUMNS[at].3);
     }
     if response.clicked() {
-        let add = ui.input(|i| i.modifiers.command);
-        let clip = clip.id;
-        out.push(Command::Library(LibraryCommand::Select { clip, add }));
+        out.push(Command::Library(chosen(ui, clip)));
     }
 }

@@ -6,7 +6,7 @@ use super::{Out, background, matrix, moments, padded, thesis, view, widgets};
 use morec::train::TrainingReport;
 
 use crate::format;
-use crate::state::{Command, FileCommand, State, TrainCommand};
+use crate::state::{Command, CrossvalView, FileCommand, State, TrainCommand};
 use crate::theme::Colours;
 
 pub fn show(ctx: &Context, state: &State, out: Out) {
@@ -119,6 +119,9 @@ fn teach_next(ui: &mut Ui, state: &State) {
                 class.class, class.missed, class.samples
             ));
         }
+        if let Some(hint) = unlabelled(judged) {
+            hints.push(hint);
+        }
     }
     if hints.is_empty() {
         return;
@@ -128,6 +131,17 @@ fn teach_next(ui: &mut Ui, state: &State) {
     for hint in hints.iter().take(5) {
         ui.label(RichText::new(hint).size(12.0).color(c.muted));
     }
+}
+
+/// A hint at detections where nothing is labelled, which may be right.
+fn unlabelled(judged: &CrossvalView) -> Option<String> {
+    let found = judged.false_detections();
+    (found > 0).then(|| {
+        format!(
+            "{} where nothing is labelled: look at them, and label those that are right",
+            format::count(found, "detection")
+        )
+    })
 }
 
 fn indexes(ui: &mut Ui, state: &State, out: Out) {

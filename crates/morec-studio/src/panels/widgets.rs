@@ -135,7 +135,7 @@ pub fn file_buttons(ui: &mut Ui, out: Out) {
 pub fn train_again(ui: &mut Ui, out: Out) {
     let c = Colours::now(ui);
     ui.horizontal_wrapped(|ui| {
-        ui.colored_label(c.warn, "Labels or background have changed since.");
+        ui.colored_label(c.warn, "Labels or background have changed since training.");
         if ui.button("Train again").clicked() {
             out.push(Command::Train(TrainCommand::Train));
         }

@@ -107,7 +107,7 @@ fn background_teaches_a_verifier_which_recognises_live() {
     person.settle();
     person.click("Background other_2");
     person.settle();
-    assert!(person.sees("Labels or background have changed since."));
+    assert!(person.sees("Labels or background have changed since training."));
     person.click("Train again");
     person.settle();
     let report = person.state().train.report.clone().unwrap();
