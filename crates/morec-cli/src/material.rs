@@ -16,7 +16,7 @@ use morec::train::{
     TrainingData,
 };
 use morec_db::labels::{DbSample, SampleFilter, SampleState};
-use morec_db::{ClipFilter, MotionDb, hint};
+use morec_db::{BACKGROUND, ClipFilter, ClipInfo, MotionDb, hint};
 use rayon::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -31,8 +31,8 @@ pub struct MaterialArgs {
     /// Clips, or folders of clips, that the labels speak of
     #[arg(long, value_name = "DIR|CLIP", num_args = 1.., required_unless_present = "db")]
     pub clips: Vec<PathBuf>,
-    /// Clips and accepted samples of this database, in place of --clips and --labels; --background then also names its
-    /// clips. See `morec db`
+    /// Clips and accepted samples of this database, in place of --clips and --labels; its clips with the tag `background` are
+    /// background (`morec db clips --add-tag background`), and --background also names its clips. See `morec db`
     #[arg(long, value_name = "DB", conflicts_with_all = ["clips", "labels"])]
     pub db: Option<PathBuf>,
     /// Labels, in a form that `morec db label` reads; of tables columns clip (file stem), class, and start, stop (frames,
@@ -328,8 +328,8 @@ impl MaterialArgs {
         sort_out(clips, &text, classes, &none, &none)
     }
 
-    /// The same from a database: its clips that hold samples, and those named as background or unknown. A clip's
-    /// path is its name here.
+    /// The same from a database: its clips that hold samples, and those marked or named as background, or named as unknown.
+    /// A clip's path is its name here.
     fn load_db(&self, path: &Path, unknown: &[PathBuf]) -> Result<ClipMaterial> {
         let db = database::open_read_only(path)?;
         let infos = db.clips(&ClipFilter::default())?;
@@ -348,7 +348,11 @@ impl MaterialArgs {
             }
             Ok(set)
         };
-        let (background, unknown) = (aside(&self.background)?, aside(unknown)?);
+        let (mut background, unknown) = (aside(&self.background)?, aside(unknown)?);
+        for name in self.marked(&db)? {
+            background.insert(PathBuf::from(&name));
+            names.insert(name);
+        }
         let labels = database_labels(&db)?;
         names.extend(labels.rows.iter().map(|row| row.clip.clone()));
         let excluded = |name: &String| self.exclude.contains(name);
@@ -377,6 +381,22 @@ impl MaterialArgs {
             clips.extend(load_clips(&files, &self.read, &self.import_options()?)?);
         }
         sort_out(clips, &labels, &self.classes, &background, &unknown)
+    }
+
+    /// Names of the clips of a database that are marked as background. Those that hold samples of the classes are said on
+    /// standard error and left out.
+    fn marked(&self, db: &MotionDb) -> Result<Vec<String>> {
+        let name = |info: ClipInfo| info.name;
+        let marked = db.background(&self.classes)?;
+        if !marked.labelled.is_empty() {
+            let names: Vec<String> = marked.labelled.into_iter().map(name).collect();
+            eprintln!(
+                "morec: {} clips have the tag {BACKGROUND}, but hold samples of the classes: they are used as labelled clips: {}",
+                names.len(),
+                some_of(names.iter())
+            );
+        }
+        Ok(marked.clips.into_iter().map(name).collect())
     }
 
     /// The labels, and who is seen in which clip, labelled or not.
@@ -540,6 +560,7 @@ fn sort_out(
             clip.source = StreamKind::Background;
         }
     }
+    say_ignored(&clips, labels, classes);
     let bytes: BTreeMap<String, u64> = clips
         .iter()
         .map(|c| (c.clip.name.clone(), c.file_bytes))
@@ -570,6 +591,29 @@ fn sort_out(
         unknown: unknown_clips,
         labelled_bytes,
     })
+}
+
+/// Says which labels do not count because their clip is background.
+fn say_ignored(clips: &[LoadedClip], labels: &Labels, classes: &[String]) {
+    let background: BTreeSet<&str> = clips
+        .iter()
+        .filter(|loaded| loaded.clip.source == StreamKind::Background)
+        .map(|loaded| loaded.clip.name.as_str())
+        .collect();
+    let wanted = |row: &&Label| classes.is_empty() || classes.contains(&row.class);
+    let ignored = labels.rows.iter().filter(wanted);
+    let ignored: Vec<&String> = ignored
+        .map(|row| &row.clip)
+        .filter(|clip| background.contains(clip.as_str()))
+        .collect();
+    if !ignored.is_empty() {
+        let clips: BTreeSet<&String> = ignored.iter().copied().collect();
+        eprintln!(
+            "morec: {} labels do not count, because their clips are named as background or unknown: {}",
+            ignored.len(),
+            some_of(clips.into_iter())
+        );
+    }
 }
 
 fn set_of(paths: &[PathBuf]) -> BTreeSet<PathBuf> {

@@ -2,6 +2,7 @@
 
 use rusqlite::{Connection, OptionalExtension, Row, params};
 
+use crate::history::counted;
 use crate::{DbError, MotionDb, names};
 
 /// A clip's number in its database.
@@ -202,7 +203,7 @@ impl MotionDb {
     /// # Errors
     /// The database cannot be written.
     pub fn remove_clips(&mut self, clips: &[ClipId]) -> Result<usize, DbError> {
-        self.edit(&format!("remove {} clips", clips.len()), |conn| {
+        self.edit(&format!("remove {}", counted(clips.len(), "clip")), |conn| {
             let mut samples = 0;
             for id in clips {
                 let sql = "SELECT count(*) FROM samples WHERE clip = ?1";
@@ -233,12 +234,24 @@ impl MotionDb {
                 "expected a text without tabs, line ends or other control characters, found {text:?}"
             )));
         }
-        let what = format!("describe {} clips", clips.len());
-        self.edit(&what, |conn| {
+        self.edit(&step_name(clips.len(), update), |conn| {
             clips
                 .iter()
                 .try_fold(0, |changed, id| Ok(changed + describe(conn, *id, update)?))
         })
+    }
+}
+
+/// Name of a change of clips in the history.
+fn step_name(clips: usize, update: &ClipUpdate) -> String {
+    let clips = counted(clips, "clip");
+    let texts = [&update.source, &update.licence, &update.subject];
+    match (&update.add_tags[..], &update.remove_tags[..]) {
+        (tags @ [_, ..], []) if texts == [&None; 3] => format!("tag {clips} {}", tags.join(", ")),
+        ([], tags @ [_, ..]) if texts == [&None; 3] => {
+            format!("take the tag {} off {clips}", tags.join(", "))
+        }
+        _ => format!("describe {clips}"),
     }
 }
 

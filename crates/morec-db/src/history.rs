@@ -43,6 +43,14 @@ pub struct HistoryStep {
     pub rows: BTreeMap<String, usize>,
 }
 
+/// A number of things in the name of a step: `1 clip`, `2 clips`.
+pub(crate) fn counted(n: usize, what: &str) -> String {
+    match n {
+        1 => format!("1 {what}"),
+        n => format!("{n} {what}s"),
+    }
+}
+
 /// A step while its changes are written down.
 pub(crate) struct StepRecorder {
     pub(crate) step: i64,

@@ -9,6 +9,7 @@ use morec::progress::Progress;
 use rayon::prelude::*;
 use rusqlite::{Connection, OptionalExtension, Row, params};
 
+use crate::history::counted;
 use crate::kept::{FileContent, KeptClip, KeptFile, packed_rows, rows_recipe};
 use crate::time::now_secs;
 use crate::{ClipId, ClipUpdate, DbError, MotionDb, history, rows};
@@ -58,9 +59,10 @@ impl ImportLog {
     /// Description for the history.
     fn said(&self) -> String {
         let counts = self.counts();
+        let files = counted(counts.imported, "file");
         match counts.refused {
-            0 => format!("import {} files", counts.imported),
-            refused => format!("import {} files, {refused} refused", counts.imported),
+            0 => format!("import {files}"),
+            refused => format!("import {files}, {refused} refused"),
         }
     }
 
@@ -163,7 +165,7 @@ impl MotionDb {
     /// The database cannot be written.
     pub fn add_kept(&mut self, clips: &[KeptClip]) -> Result<ImportLog, DbError> {
         let files: Vec<&[KeptClip]> = clips.chunk_by(|a, b| a.file.hash == b.file.hash).collect();
-        let what = format!("add {} kept files", files.len());
+        let what = format!("add {}", counted(files.len(), "kept file"));
         let added = self.edit(&what, |conn| {
             let add = |clips: &&[KeptClip]| {
                 let path = PathBuf::from(&clips[0].file.path);

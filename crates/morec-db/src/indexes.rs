@@ -16,23 +16,24 @@ pub struct IndexInfo {
     pub bytes: usize,
     /// Number of samples it was trained on.
     pub samples: usize,
-    /// True if accepted samples have changed since.
+    /// True if accepted samples or the clips that are background have changed since.
     pub stale: bool,
 }
 
 impl MotionDb {
-    /// Training data of an index made now: clip, class, start and stop of every accepted sample.
+    /// Training data of an index made now: clip, class, start and stop of every accepted sample, then the name alone of every
+    /// clip that is background.
     fn taught(&self) -> Result<String, DbError> {
         let filter = crate::labels::SampleFilter {
             state: Some(crate::labels::SampleState::Accepted),
             ..Default::default()
         };
-        let rows: Vec<(String, String, f64, f64)> = self
-            .samples(&filter)?
-            .into_iter()
-            .map(|s| (s.clip_name, s.class, s.start_secs, s.stop_secs))
-            .collect();
-        Ok(serde_json::to_string(&rows).unwrap_or_default())
+        let samples = self.samples(&filter)?.into_iter();
+        let rows =
+            samples.map(|s| serde_json::json!((s.clip_name, s.class, s.start_secs, s.stop_secs)));
+        let background = self.background(&[])?.clips.into_iter();
+        let rows = rows.chain(background.map(|clip| serde_json::json!([clip.name])));
+        Ok(serde_json::Value::Array(rows.collect()).to_string())
     }
 
     /// Keeps an index that the accepted samples of now have taught, in place of one of the same name.
@@ -76,7 +77,8 @@ impl MotionDb {
     /// All indexes, by name.
     pub fn indexes(&self) -> Result<Vec<IndexInfo>, DbError> {
         let taught = self.taught()?;
-        let sql = "SELECT name, trained_secs, length(bytes) AS bytes, json_array_length(samples) AS count, samples FROM indexes ORDER BY name";
+        let sql = "SELECT name, trained_secs, length(bytes) AS bytes, samples, (SELECT count(*) FROM json_each(samples) \
+                   WHERE json_array_length(value) > 1) AS count FROM indexes ORDER BY name";
         let mut statement = self.conn.prepare(sql)?;
         let indexes = statement.query_map([], |row| {
             Ok(IndexInfo {

@@ -13,11 +13,13 @@
 //! | clips in | [`MotionDb::import`] |
 //! | classes and samples | [`labels`] |
 //! | what was changed, taking it back | [`MotionDb::history`], [`MotionDb::undo`] |
+//! | clips that are none of the classes | [`MotionDb::background`] |
 //! | labels in other programs' forms | [`exchange`] |
 //! | cuts where behaviour changes | [`MotionDb::cut`] |
 //! | rows, search by example, near copies | [`rows`], [`search`] |
 //! | the other samples of classes that a few are labelled of | [`MotionDb::propose`], [`most_informative`] |
 
+mod background;
 mod body;
 mod clips;
 mod cut;
@@ -44,6 +46,7 @@ mod testing;
 mod tests;
 mod time;
 
+pub use background::{BACKGROUND, BackgroundClips};
 pub use clips::{ClipFilter, ClipId, ClipInfo, ClipUpdate};
 pub use cut::{BY_HAND, ClipCuts, CutReport, Cutter, Still};
 pub use db::{DbSummary, MotionDb};

@@ -8,7 +8,7 @@ use tempfile::TempDir;
 use morec::files::FileReader;
 
 use crate::testing::{database_of_waves, waves, write_bvh};
-use crate::{ClipFilter, ClipUpdate, DbError, ImportOutcome, MotionDb};
+use crate::{ClipFilter, ClipInfo, ClipUpdate, DbError, ImportOutcome, MotionDb};
 
 #[test]
 fn other_files_are_plain_errors() {
@@ -354,4 +354,59 @@ fn names_that_are_not_there_are_errors_with_the_nearest_ones() {
             .contains("no person")
     );
     assert!(db.need_class("walk").is_err() && db.index("i").is_err());
+}
+
+#[test]
+fn clips_are_background_by_their_tag_unless_they_hold_samples_of_the_classes() {
+    use crate::BACKGROUND;
+    use crate::labels::{NewSample, SampleState};
+    let (_folder, mut db) = database_of_waves(3);
+    let clips = db.clips(&ClipFilter::default()).unwrap();
+    let ids: Vec<_> = clips.iter().map(|clip| clip.id).collect();
+    let sample = |state| NewSample {
+        clip: ids[0],
+        class: "wave".into(),
+        start_secs: 0.0,
+        stop_secs: 1.0,
+        whole_clip: false,
+        state,
+        score: None,
+    };
+    db.add_samples(&[sample(SampleState::Proposed)], "me")
+        .unwrap();
+    db.store_index("i", b"bytes").unwrap();
+    let last = |db: &MotionDb| db.last_step().unwrap().unwrap().what;
+    let tag = ClipUpdate {
+        add_tags: vec![BACKGROUND.to_owned()],
+        ..ClipUpdate::default()
+    };
+    let untag = ClipUpdate {
+        remove_tags: vec![BACKGROUND.to_owned()],
+        ..ClipUpdate::default()
+    };
+    db.update_clips(&ids[..2], &tag).unwrap();
+    assert_eq!(last(&db), "tag 2 clips background");
+    let names = |clips: Vec<ClipInfo>| clips.into_iter().map(|c| c.name).collect::<Vec<_>>();
+    let parts = |db: &MotionDb, classes: &[&str]| {
+        let classes: Vec<String> = classes.iter().map(|c| c.to_string()).collect();
+        let found = db.background(&classes).unwrap();
+        (names(found.clips).len(), names(found.labelled))
+    };
+    // A proposal is no sample.
+    assert_eq!(parts(&db, &[]), (2, vec![]));
+    let index = |db: &MotionDb| db.indexes().unwrap()[0].clone();
+    assert!(index(&db).stale && index(&db).samples == 0);
+    db.add_samples(&[sample(SampleState::Accepted)], "me")
+        .unwrap();
+    assert_eq!(last(&db), "add 1 sample of wave");
+    assert_eq!(parts(&db, &[]), (1, vec![clips[0].name.clone()]));
+    assert_eq!(parts(&db, &["wave"]), (1, vec![clips[0].name.clone()]));
+    assert_eq!(parts(&db, &["bow"]), (2, vec![]));
+    db.store_index("i", b"bytes").unwrap();
+    assert!(!index(&db).stale && index(&db).samples == 1);
+    db.update_clips(&ids[1..2], &untag).unwrap();
+    assert_eq!(last(&db), "take the tag background off 1 clip");
+    assert!(index(&db).stale);
+    db.undo(None).unwrap();
+    assert!(!index(&db).stale);
 }

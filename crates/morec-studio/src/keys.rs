@@ -36,6 +36,11 @@ pub const HELP: &[(&str, &str, &str)] = &[
     ),
     ("Anywhere", "Ctrl T", "train"),
     ("Anywhere", "Ctrl H, F1", "history, this page"),
+    (
+        "Library",
+        "B",
+        "use the selected clips as background, or no longer",
+    ),
     ("Playing", "Space", "play, stop"),
     (
         "Playing",
@@ -93,6 +98,7 @@ pub const HELP: &[(&str, &str, &str)] = &[
         "1 … 9",
         "the last motion, or the selected stretch, was this class",
     ),
+    ("Live", "0", "it was none of the classes: background"),
     ("Live", "Space, R", "start or stop, record a take"),
 ];
 
@@ -111,6 +117,9 @@ pub fn read(ctx: &egui::Context, state: &State, out: &mut Vec<Command>) {
         match state.panel {
             Panel::Live => live(i, state, out),
             _ => {
+                if state.panel == Panel::Library {
+                    library(i, state, out);
+                }
                 playing(i, state, out);
                 labels(i, state, out);
             }
@@ -154,6 +163,20 @@ fn commands(i: &mut egui::InputState, out: &mut Vec<Command>) {
     if i.key_pressed(Key::Escape) {
         out.push(Command::ShowKeys(false));
         out.push(Command::ShowHistory(false));
+    }
+}
+
+fn library(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
+    if !i.consume_key(Modifiers::NONE, Key::B) {
+        return;
+    }
+    let Some(store) = &state.store else { return };
+    let selected = state.library.selected.iter();
+    let clips: Vec<_> = selected.filter_map(|id| store.snapshot.clip(*id)).collect();
+    if !clips.is_empty() {
+        let on = !clips.iter().all(|clip| clip.is_background());
+        let clips = clips.iter().map(|clip| clip.id).collect();
+        out.push(Command::Edit(Edit::Background { clips, on }));
     }
 }
 
@@ -282,6 +305,9 @@ fn live(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
         if i.consume_key(Modifiers::NONE, key) {
             out.push(Command::Live(LiveCommand::Mark(slot)));
         }
+    }
+    if i.consume_key(Modifiers::NONE, Key::Num0) {
+        out.push(Command::Live(LiveCommand::MarkBackground));
     }
     if i.consume_key(Modifiers::NONE, Key::Space) {
         out.push(Command::Live(match state.live.is_running() {

@@ -26,6 +26,7 @@ use morec_live::Address;
     Examples:\n  \
     morec record --listen vmc://127.0.0.1:39539 -o take.bvh\n  \
     morec record --listen vmc://127.0.0.1:39539 -o wave.bvh --takes 3 --secs 4\n  \
+    morec record --listen vmc://127.0.0.1:39539 -o moves.mdb --secs 60 --tag background\n  \
     morec record --listen json:- -o take.jsonl --count-down 0 < poses.jsonl"
 )]
 pub struct Args {
@@ -36,6 +37,10 @@ pub struct Args {
     /// takes are kept beside it, too). Several takes are numbered
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
+    /// Attach a tag to the takes in a database; may be given several times. `background`: `morec train --db` learns from them
+    /// what is none of the classes
+    #[arg(long = "tag", value_name = "WORD")]
+    tags: Vec<String>,
     /// Record so many takes, one after the other
     #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u32).range(1..=9999))]
     takes: u32,
@@ -54,6 +59,12 @@ pub struct Args {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode> {
     let store = TakeStore::of(&args.output)?;
+    if !args.tags.is_empty() && !matches!(store, TakeStore::Database(_)) {
+        bail!(
+            "--tag: tags are kept in a database only, and {} is none",
+            args.output.display()
+        );
+    }
     let files: Vec<PathBuf> = (1..=args.takes)
         .map(|n| store.file(n, args.takes))
         .collect();
@@ -74,7 +85,7 @@ pub fn run(args: &Args) -> Result<ExitCode> {
             Some(recording) => {
                 // By now others may have been kept.
                 let file = store.file(number, args.takes);
-                store.keep(&recording, &file)?;
+                store.keep(&recording, &file, &args.tags)?;
                 kept += 1;
                 eprintln!(
                     "morec: {}: {:.1} s, {} frames",

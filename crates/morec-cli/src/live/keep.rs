@@ -64,8 +64,8 @@ impl TakeStore {
         }
     }
 
-    /// Writes a take into `file`; into the database as well, if it is one.
-    pub fn keep(&self, recording: &Recording, file: &Path) -> Result<()> {
+    /// Writes a take into `file`; into the database as well, with `tags`, if it is one.
+    pub fn keep(&self, recording: &Recording, file: &Path, tags: &[String]) -> Result<()> {
         match self {
             Self::JsonLines(_) => write_lines(recording, file),
             Self::Bvh(_) => write_bvh(recording, file),
@@ -75,7 +75,7 @@ impl TakeStore {
                         .with_context(|| folder.display().to_string())?;
                 }
                 write_bvh(recording, file)?;
-                import(path, file)
+                import(path, file, tags)
             }
         }
     }
@@ -95,14 +95,17 @@ fn write_lines(recording: &Recording, file: &Path) -> Result<()> {
         .with_context(|| file.display().to_string())
 }
 
-fn import(database: &Path, file: &Path) -> Result<()> {
+fn import(database: &Path, file: &Path, tags: &[String]) -> Result<()> {
     let mut db = if database.exists() {
         MotionDb::open(database)?
     } else {
         MotionDb::create(database)?
     };
-    let (reader, about) = (FileReader::default(), ClipUpdate::default());
-    let report = db.import(&[file.to_owned()], &reader, &about, &())?;
+    let about = ClipUpdate {
+        add_tags: tags.to_vec(),
+        ..ClipUpdate::default()
+    };
+    let report = db.import(&[file.to_owned()], &FileReader::default(), &about, &())?;
     for (_, outcome) in &report.files {
         match outcome {
             ImportOutcome::Refused(refused) => bail!("{}: {}", file.display(), refused.reason),

@@ -258,6 +258,51 @@ fn a_database_trains_an_index_and_keeps_it() {
 }
 
 #[test]
+fn clips_with_the_tag_background_are_what_a_database_has_of_it() {
+    let (folder, takes) = studio(4);
+    let names: Vec<&str> = takes.iter().map(|take| take.clip.name.as_str()).collect();
+    json(&folder, &["db", "import", "m.mdb", "clips"]);
+    let text = std::fs::read_to_string(folder.path().join("labels.tsv")).unwrap();
+    let others = text.lines().filter(|line| !line.starts_with(names[3]));
+    let others: Vec<&str> = others.collect();
+    std::fs::write(folder.path().join("three.tsv"), others.join("\n")).unwrap();
+    json(&folder, &["db", "label", "m.mdb", "three.tsv"]);
+    let trained = |more: &[&str]| {
+        let train = ["train", "--db", "m.mdb", "-o", "i.index", "--json"];
+        let ran = folder.morec(&[&train[..], more].concat());
+        assert_eq!(ran.code, Some(0), "{ran:?}");
+        let report: Value = serde_json::from_str(&ran.out).unwrap();
+        (report, ran.err)
+    };
+    let secs = |report: &Value| report["background_secs"]["clips"].as_f64();
+    assert_eq!(secs(&trained(&[]).0), None);
+    let tag = ["db", "clips", "m.mdb", "--add-tag", "background", "--clip"];
+    json(&folder, &[&tag[..], &[names[3]]].concat());
+    // The tag is what --background says.
+    let (report, err) = trained(&[]);
+    assert!(secs(&report).unwrap() > 1.0, "{report}");
+    assert!(!err.contains("background"), "{err}");
+    assert_eq!(trained(&["--background", names[3]]).0, report);
+    assert_eq!(secs(&trained(&["--exclude", names[3]]).0), None);
+    // A clip that holds samples of the classes is none, and it is said.
+    json(&folder, &[&tag[..], &[names[0]]].concat());
+    let (report, err) = trained(&[]);
+    let samples: u64 = report["classes"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|class| class["samples"].as_u64().unwrap())
+        .sum();
+    assert_eq!(samples as usize, others.len() - 1);
+    let said = format!("used as labelled clips: {}", names[0]);
+    assert!(err.contains(&said), "{err}");
+    // Named on the command line it is background, and its labels are said not to count.
+    let (_, err) = trained(&["--background", names[0]]);
+    let said = "labels do not count, because their clips are named as background";
+    assert!(err.contains(said), "{err}");
+}
+
+#[test]
 fn proposals_are_judged_in_bulk() {
     let (folder, takes) = studio(3);
     json(&folder, &["db", "import", "m.mdb", "clips"]);

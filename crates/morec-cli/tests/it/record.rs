@@ -127,6 +127,29 @@ fn lines_of_json_are_what_live_reads_and_become_bvh_and_clips_of_a_database() {
         clips.contains("take_001") && clips.contains("take_002"),
         "{clips}"
     );
+    let tagged = [
+        "clip://person.bvh?speed=0",
+        "--secs",
+        "4",
+        "--tag",
+        "background",
+        "-o",
+    ];
+    let ran = folder.morec(&[&record[..], &tagged[..], &["moves.mdb"]].concat());
+    assert_eq!(ran.code, Some(0), "{ran:?}");
+    let clips = folder.morec(&["db", "clips", "moves.mdb", "--tag", "background"]);
+    let clips = clips.ok();
+    assert!(
+        clips.contains("take_004") && !clips.contains("take_001"),
+        "{clips}"
+    );
+    let ran = folder.morec(&[&record[..], &tagged[..], &["other.bvh"]].concat());
+    assert_eq!(ran.code, Some(1), "{ran:?}");
+    assert!(
+        ran.err.contains("tags are kept in a database only"),
+        "{ran:?}"
+    );
+    assert!(!folder.path().join("other.bvh").exists());
 }
 
 #[test]

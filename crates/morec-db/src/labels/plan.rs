@@ -6,6 +6,7 @@ use rusqlite::{Connection, params};
 
 use super::sample::{Added, DbSample, NewSample, SampleFilter, SampleState};
 use super::write::{Change, add, alter};
+use crate::history::counted;
 use crate::{DbError, MotionDb};
 
 /// Options of adding labels.
@@ -77,6 +78,17 @@ pub struct Labelled {
     pub changes: Vec<ChangedLabel>,
 }
 
+/// Name of the step that adds labels, with their class if they have one class.
+fn added(labels: &[NewSample]) -> String {
+    let samples = counted(labels.len(), "sample");
+    match labels {
+        [first, rest @ ..] if rest.iter().all(|l| l.class == first.class) => {
+            format!("add {samples} of {}", first.class)
+        }
+        _ => format!("add {samples}"),
+    }
+}
+
 impl MotionDb {
     /// Takes labels in, all or none, as one step. A label that is there already (clip, class and extent) is judged anew;
     /// but a proposal changes nothing that was accepted or rejected. A new accepted label rejects what other classes were
@@ -98,7 +110,7 @@ impl MotionDb {
         };
         let what = match options.replace {
             true => format!("replace labels by {}", labels.len()),
-            false => format!("add {} samples", labels.len()),
+            false => added(labels),
         };
         let change = |conn: &Connection| {
             let mut done = Labelled::default();

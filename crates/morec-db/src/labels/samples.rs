@@ -5,6 +5,7 @@ use rusqlite::{Connection, Row, params};
 use super::plan::LabelOptions;
 use super::sample::{Added, DbSample, NewSample, SampleFilter, SampleId, SampleState};
 use super::write::{add, alter};
+use crate::history::counted;
 use crate::time::now_secs;
 use crate::{ClipId, DbError, MotionDb};
 
@@ -70,14 +71,17 @@ impl MotionDb {
         new: &[NewSample],
         by: &str,
     ) -> Result<(), DbError> {
-        self.edit(&format!("propose {} samples", new.len()), |conn| {
-            for id in old {
-                conn.prepare_cached("DELETE FROM samples WHERE id = ?1")?
-                    .execute(params![id.0])?;
-            }
-            new.iter()
-                .try_for_each(|sample| add(conn, sample, by).map(drop))
-        })
+        self.edit(
+            &format!("propose {}", counted(new.len(), "sample")),
+            |conn| {
+                for id in old {
+                    conn.prepare_cached("DELETE FROM samples WHERE id = ?1")?
+                        .execute(params![id.0])?;
+                }
+                new.iter()
+                    .try_for_each(|sample| add(conn, sample, by).map(drop))
+            },
+        )
     }
 
     /// Puts samples in place of others, as one step called `what`: how a label is split or several become one. New
@@ -111,7 +115,7 @@ impl MotionDb {
         state: SampleState,
         by: &str,
     ) -> Result<usize, DbError> {
-        let what = format!("{} {} samples", state.name(), samples.len());
+        let what = format!("{} {}", state.name(), counted(samples.len(), "sample"));
         self.edit(&what, |conn| judge(conn, samples, state, by))
     }
 
@@ -126,9 +130,9 @@ impl MotionDb {
         by: &str,
     ) -> Result<(), DbError> {
         let what = format!(
-            "accept {} and reject {} samples",
+            "accept {} and reject {}",
             accepted.len(),
-            rejected.len()
+            counted(rejected.len(), "sample")
         );
         self.edit(&what, |conn| {
             judge(conn, accepted, SampleState::Accepted, by)?;
@@ -178,14 +182,17 @@ impl MotionDb {
 
     /// Forgets samples. Gives how many there were.
     pub fn remove_samples(&mut self, samples: &[SampleId]) -> Result<usize, DbError> {
-        self.edit(&format!("remove {} samples", samples.len()), |conn| {
-            let mut statement = conn.prepare_cached("DELETE FROM samples WHERE id = ?1")?;
-            let mut removed = 0;
-            for id in samples {
-                removed += statement.execute(params![id.0])?;
-            }
-            Ok(removed)
-        })
+        self.edit(
+            &format!("remove {}", counted(samples.len(), "sample")),
+            |conn| {
+                let mut statement = conn.prepare_cached("DELETE FROM samples WHERE id = ?1")?;
+                let mut removed = 0;
+                for id in samples {
+                    removed += statement.execute(params![id.0])?;
+                }
+                Ok(removed)
+            },
+        )
     }
 }
 

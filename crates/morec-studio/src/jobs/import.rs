@@ -16,6 +16,8 @@ use crate::stretch::Stretch;
 pub struct ImportSummary {
     /// Files whose clips are in the database now.
     pub imported: usize,
+    /// Names of their clips.
+    pub clips: BTreeSet<String>,
     /// Files that were there already.
     pub known: usize,
     /// Files that were refused, with the reason.
@@ -99,8 +101,9 @@ pub fn import(
     report.cancelled = done.cancelled || progress.cancelled();
     for (path, outcome) in done.files {
         match outcome {
-            ImportOutcome::Imported { warnings, .. } => {
+            ImportOutcome::Imported { warnings, clips } => {
                 report.imported += 1;
+                report.clips.extend(clips);
                 let named = warnings.into_iter().map(|w| (path.clone(), w));
                 report.warnings.extend(named);
             }

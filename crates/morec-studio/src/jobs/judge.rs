@@ -200,7 +200,7 @@ pub fn judge(
 ) -> Result<Box<CrossvalResult>, JobError> {
     let material = train::material(path, classes).map_err(|e| JobError::Failed(e.to_string()))?;
     let people = material.samples.iter().filter_map(|s| s.person.as_deref());
-    let by = LeftOut::of(people, material.clips.len());
+    let by = LeftOut::of(people, material.labelled().count());
     let mut clips = material.clips;
     clips.extend_from_slice(train::everyday());
     let tested = Tested {

@@ -1,4 +1,4 @@
-//! A stretch of a live stream becomes a clip of the database, with a label if it has one.
+//! A stretch of a live stream becomes a clip of the database, with a label or as background.
 
 use std::path::{Path, PathBuf};
 
@@ -6,26 +6,53 @@ use morec::files::FileReader;
 use morec::formats::bvh;
 use morec::live::Recording;
 use morec_db::labels::{LabelOptions, NewSample, SampleState};
-use morec_db::{ClipUpdate, ImportOutcome, MotionDb};
+use morec_db::{BACKGROUND, ClipId, ClipUpdate, ImportOutcome, MotionDb};
 
 use super::progress::JobError;
-use crate::store::BY;
+use crate::store::{BY, background};
 
 /// A stretch that was kept.
 #[derive(Debug, Clone)]
 pub struct Taught {
     pub name: String,
     pub secs: f64,
-    /// The class it was marked as.
-    pub class: Option<String>,
+    pub clip: ClipId,
+    /// What it was marked as; `None` for a take.
+    pub meaning: Option<Meaning>,
+}
+
+/// What a stretch of motion is said to be.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Meaning {
+    /// A sample of a class.
+    Class(String),
+    /// None of the classes.
+    Background,
+}
+
+impl Meaning {
+    /// The class, or the word for none.
+    pub fn name(&self) -> &str {
+        match self {
+            Meaning::Class(class) => class,
+            Meaning::Background => BACKGROUND,
+        }
+    }
+
+    /// True if the same motion cannot be both: as background it would teach what its class is not.
+    pub fn contradicts(&self, other: &Meaning) -> bool {
+        (*self == Meaning::Background) != (*other == Meaning::Background)
+    }
 }
 
 /// A stretch to keep.
 pub struct Lesson {
     /// The motion, with what came before and after it.
     pub recording: Recording,
-    /// Its class, start and stop in the recording, seconds.
-    pub label: Option<(String, f64, f64)>,
+    /// `None` for a take, of which nothing is said.
+    pub meaning: Option<Meaning>,
+    /// Start and stop of the marked stretch in the recording, seconds.
+    pub extent_secs: (f64, f64),
     /// Beginning of the new clip's name.
     pub name: String,
 }
@@ -45,10 +72,14 @@ fn taught(path: &Path, folder: &Path, lesson: &Lesson) -> Result<Taught, String>
     bvh::write(&clip, &mut bytes).map_err(|e| e.to_string())?;
     std::fs::write(&file, bytes)
         .map_err(|e| format!("{}: {e}", crate::format::file_name(&file)))?;
+    let about = match lesson.meaning {
+        Some(Meaning::Background) => background(true),
+        _ => ClipUpdate::default(),
+    };
     let report = db.import(
         std::slice::from_ref(&file),
         &FileReader::default(),
-        &ClipUpdate::default(),
+        &about,
         &(),
     );
     // It is in the database, or it never was a clip.
@@ -60,12 +91,12 @@ fn taught(path: &Path, folder: &Path, lesson: &Lesson) -> Result<Taught, String>
         _ => return Err("the same motion is in the database already".to_owned()),
     };
     let id = db.find_clip(&name).map_err(|e| e.to_string())?.id;
-    if let Some((class, start, stop)) = &lesson.label {
+    if let Some(Meaning::Class(class)) = &lesson.meaning {
         let sample = NewSample {
             clip: id,
             class: class.clone(),
-            start_secs: start.max(0.0),
-            stop_secs: stop.min(secs),
+            start_secs: lesson.extent_secs.0.max(0.0),
+            stop_secs: lesson.extent_secs.1.min(secs),
             whole_clip: false,
             state: SampleState::Accepted,
             score: None,
@@ -79,7 +110,8 @@ fn taught(path: &Path, folder: &Path, lesson: &Lesson) -> Result<Taught, String>
     Ok(Taught {
         name,
         secs,
-        class: lesson.label.as_ref().map(|l| l.0.clone()),
+        clip: id,
+        meaning: lesson.meaning.clone(),
     })
 }
 

@@ -99,7 +99,7 @@ fn trained(
     let model = Arc::new(model);
     let mut classifier = SampleClassifier::new(&model).map_err(|e| Some(e.to_string()))?;
     let (mut samples, mut vectors) = (Vec::new(), Vec::new());
-    for clip in &data.clips {
+    for clip in data.labelled() {
         let Ok(map) = PivotMap::of_clip(&model.pivots, &clip.clip, &clip.roles) else {
             continue;
         };

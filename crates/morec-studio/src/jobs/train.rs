@@ -1,6 +1,6 @@
 //! Training in the background.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
@@ -10,8 +10,8 @@ use morec::labels::Sample;
 use morec::progress::Progress;
 use morec::train::{
     EVERYDAY_SEED, Everyday, LabelSet, Prepared, Recipe, StreamKind, TrainClip, TrainError,
-    TrainOptions, TrainParams, TrainStream, TrainingData, TrainingReport, build_train_set,
-    everyday_clips, train,
+    TrainOptions, TrainParams, TrainStream, TrainingData, TrainingReport, add_mirrored,
+    build_train_set, everyday_clips, train,
 };
 use morec_db::labels::{SampleFilter, SampleState};
 use morec_db::{ClipFilter, ClipId, ClipInfo, DbError, MotionDb, StoredClip};
@@ -26,7 +26,7 @@ pub struct TrainedIndex {
     pub secs: f64,
 }
 
-/// The accepted samples of `classes` (all, if none are named) and the clips they lie in.
+/// The accepted samples of `classes` (all, if none are named), the clips they lie in, and those that are marked as background.
 pub fn material(path: &Path, classes: &[String]) -> Result<TrainingData, DbError> {
     let db = MotionDb::open_read_only(path)?;
     let filter = SampleFilter {
@@ -49,19 +49,22 @@ pub fn material(path: &Path, classes: &[String]) -> Result<TrainingData, DbError
             line,
         })
         .collect();
-    let mut names: Vec<&str> = samples.iter().map(|s| s.clip.as_str()).collect();
-    names.sort_unstable();
-    names.dedup();
+    let labelled: BTreeSet<&str> = samples.iter().map(|s| s.clip.as_str()).collect();
+    let background = db.background(classes)?.clips;
+    let background: BTreeSet<ClipId> = background.iter().map(|info| info.id).collect();
     let mut infos = db.clips(&ClipFilter::default())?;
-    infos.retain(|info| names.binary_search(&info.name.as_str()).is_ok());
+    infos.retain(|info| labelled.contains(info.name.as_str()) || background.contains(&info.id));
     let ids: Vec<ClipId> = infos.iter().map(|info| info.id).collect();
     let stored = db.stored_clips(&ids)?;
     let clip = |(info, stored): (ClipInfo, StoredClip)| TrainClip {
+        source: match background.contains(&info.id) {
+            true => StreamKind::Background,
+            false => StreamKind::Labelled,
+        },
         name: info.name,
         clip: stored.clip,
         roles: stored.roles,
         rest: stored.rest,
-        source: StreamKind::Labelled,
         person: info.subject,
     };
     let clips = infos.into_iter().zip(stored).map(clip).collect();
@@ -88,13 +91,16 @@ pub fn everyday() -> &'static [TrainClip] {
 }
 
 /// Options of training: those of `morec train`, with everyday motion that is among the clips already.
-pub fn recipe() -> Recipe {
-    let everyday = Everyday::Never;
+fn options() -> TrainOptions {
     TrainOptions {
-        everyday,
+        everyday: Everyday::Never,
         ..TrainOptions::default()
     }
-    .into()
+}
+
+/// The same as a recipe.
+pub fn recipe() -> Recipe {
+    options().into()
 }
 
 /// Trains an index of the database at `path`.
@@ -120,8 +126,13 @@ fn trained(
             "Nothing to learn from: label a few motions first".to_owned(),
         ));
     }
-    let params = TrainParams::default();
-    let prepared = prepared(&data, &params, progress);
+    let TrainOptions {
+        params,
+        mirror,
+        one_sided,
+        ..
+    } = options();
+    let mut prepared = prepared(&data, &params, progress);
     if progress.cancelled() {
         return Err(JobError::Cancelled);
     }
@@ -129,6 +140,8 @@ fn trained(
         let why = TrainError::NoSamples;
         return Err(JobError::Failed(format!("Training stopped: {why}")));
     }
+    let bones = prepared.bones;
+    add_mirrored(&mut prepared.set, bones, mirror, &one_sided);
     let done = train(&prepared.set, prepared.bones, &params, progress).map_err(|e| match e {
         TrainError::Cancelled => JobError::Cancelled,
         other => JobError::Failed(format!("Training stopped: {other}")),

@@ -3,7 +3,7 @@
 use egui::{Grid, TextEdit, Ui, WidgetType};
 use morec_db::{ClipInfo, ClipUpdate};
 
-use super::{Out, roles, widgets};
+use super::{Out, background, roles, widgets};
 use crate::format;
 use crate::state::{Command, State};
 use crate::store::Edit;
@@ -42,6 +42,17 @@ fn several(ui: &mut Ui, state: &State, out: Out) {
                 update,
             }));
         }
+    });
+    let clips: Vec<&ClipInfo> = match &state.store {
+        Some(store) => selected
+            .iter()
+            .filter_map(|id| store.snapshot.clip(*id))
+            .collect(),
+        None => Vec::new(),
+    };
+    ui.horizontal(|ui| {
+        ui.label("Background");
+        background::mark(ui, &clips, out);
     });
     if ui.button("Remove these clips").clicked() {
         out.push(Command::Edit(Edit::RemoveClips(selected.clone())));
@@ -117,6 +128,9 @@ fn known(ui: &mut Ui, clip: &ClipInfo, out: Out) {
                     ..ClipUpdate::default()
                 });
             }
+            ui.end_row();
+            name(ui, "Background");
+            ui.vertical(|ui| background::mark(ui, &[clip], out));
             ui.end_row();
             let fact = |ui: &mut Ui, what: &str, text: String| {
                 ui.colored_label(c.muted, what);

@@ -33,6 +33,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
                     if ui.small_button("Close").clicked() {
                         out.push(Command::Library(LibraryCommand::DismissReport));
                     }
+                    as_background(ui, state, report, out);
                 });
             });
             let lines = report.refused.iter().map(|line| (line, "refused"));
@@ -50,6 +51,24 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
                 });
         });
     ui.add_space(6.0);
+}
+
+/// What was imported is motion that is none of the classes.
+fn as_background(ui: &mut Ui, state: &State, report: &ImportSummary, out: Out) {
+    let Some(store) = &state.store else { return };
+    let clips = store.snapshot.clips.iter();
+    let clips: Vec<_> = clips
+        .filter(|clip| !clip.is_background() && report.clips.contains(&clip.name))
+        .map(|clip| clip.id)
+        .collect();
+    if clips.is_empty() {
+        return;
+    }
+    let response = ui.small_button("Use them as background");
+    let response = response.on_hover_text("None of the classes is seen in these clips");
+    if response.clicked() {
+        out.push(Command::Edit(Edit::Background { clips, on: true }));
+    }
 }
 
 /// Clips that are nearly others: compared, or left out again.

@@ -80,7 +80,12 @@ fn clips(ui: &mut Ui, state: &State, out: Out) {
                 let inner = rect.shrink2(Vec2::new(6.0, 0.0));
                 let left =
                     Rect::from_min_max(inner.min, egui::pos2(inner.right() - 34.0, inner.bottom()));
-                widgets::text_in(ui, left, &clip.name, 13.0, c.text, false);
+                // Clips that are background hold nothing to label.
+                let colour = match clip.is_background() {
+                    true => c.muted,
+                    false => c.text,
+                };
+                widgets::text_in(ui, left, &clip.name, 13.0, colour, false);
                 if clip.samples > 0 {
                     widgets::text_in(ui, inner, &clip.samples.to_string(), 12.0, c.muted, true);
                 }

@@ -4,9 +4,9 @@ use egui::{
     CentralPanel, Context, Key, Rect, Response, RichText, ScrollArea, Sense, SidePanel, TextEdit,
     Ui, Vec2, WidgetType,
 };
-use morec_db::ClipInfo;
+use morec_db::{BACKGROUND, ClipInfo};
 
-use super::{Out, details, import_report, padded, strips, view, widgets};
+use super::{Out, background, details, import_report, padded, strips, view, widgets};
 use crate::format;
 use crate::state::{Column, Command, FileCommand, LibraryCommand, State};
 use crate::theme::Colours;
@@ -92,11 +92,11 @@ fn tools(ui: &mut Ui, state: &State, out: Out) {
 
 /// A column: what it is, its heading, its share of the width, whether it is a number.
 const COLUMNS: [(Column, &str, f32, bool); 5] = [
-    (Column::Name, "Clip", 0.42, false),
-    (Column::Subject, "Person", 0.20, false),
-    (Column::Length, "Length", 0.14, true),
-    (Column::Labels, "Labels", 0.11, true),
-    (Column::Format, "Format", 0.13, true),
+    (Column::Name, "Clip", 0.40, false),
+    (Column::Subject, "Person", 0.19, false),
+    (Column::Length, "Length", 0.13, true),
+    (Column::Labels, "Labels", 0.16, true),
+    (Column::Format, "Format", 0.12, true),
 ];
 
 fn cells(rect: Rect) -> [Rect; 5] {
@@ -166,13 +166,34 @@ fn ground(ui: &Ui, rect: Rect, response: &Response, selected: bool) {
     ui.painter().rect_filled(rect, 3.0, fill);
 }
 
+/// A click on a clip, with Ctrl or Shift or neither.
+fn chosen(ui: &Ui, clip: &ClipInfo) -> LibraryCommand {
+    let (clip, held) = (clip.id, ui.input(|i| i.modifiers));
+    match held.shift {
+        true => LibraryCommand::SelectTo(clip),
+        false => LibraryCommand::Select {
+            clip,
+            add: held.command,
+        },
+    }
+}
+
+/// Name of a clip's row for screen readers and tests.
+fn called(clip: &ClipInfo) -> String {
+    match clip.is_background() {
+        true => format!("{}, {BACKGROUND}", clip.name),
+        false => clip.name.clone(),
+    }
+}
+
 /// A clip as a strip of poses over its whole length, with its name at the left.
 fn strip(ui: &mut Ui, state: &State, clip: &ClipInfo, out: Out) {
     let c = Colours::now(ui);
     let size = Vec2::new(ui.available_width(), STRIP);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     let on = state.library.selected.contains(&clip.id);
-    widgets::named(&response, WidgetType::SelectableLabel, &clip.name, on);
+    widgets::named(&response, WidgetType::SelectableLabel, called(clip), on);
+    response.context_menu(|ui| background::menu(ui, state, clip, out));
     ground(ui, rect, &response, on);
     let names = (0.26 * rect.width()).clamp(90.0, 190.0);
     let text = rect
@@ -186,6 +207,7 @@ fn strip(ui: &mut Ui, state: &State, clip: &ClipInfo, out: Out) {
         )
     };
     let labels = match clip.samples {
+        0 if clip.is_background() => format!(", {BACKGROUND}"),
         0 => String::new(),
         n => format!(", {}", format::count(n, "label")),
     };
@@ -197,9 +219,7 @@ fn strip(ui: &mut Ui, state: &State, clip: &ClipInfo, out: Out) {
     let picture = rect.with_min_x(rect.left() + names).shrink(3.0);
     strips::draw(ui, state, clip.id, 0.0, clip.duration_secs(), picture);
     if response.clicked() {
-        let add = ui.input(|i| i.modifiers.command);
-        let clip = clip.id;
-        out.push(Command::Library(LibraryCommand::Select { clip, add }));
+        out.push(Command::Library(chosen(ui, clip)));
     }
 }
 
@@ -242,9 +262,11 @@ fn row(ui: &mut Ui, state: &State, clip: &ClipInfo, out: Out) {
     let (rect, response) =
         ui.allocate_exact_size(Vec2::new(ui.available_width(), ROW), Sense::click());
     let on = state.library.selected.contains(&clip.id);
-    widgets::named(&response, WidgetType::SelectableLabel, &clip.name, on);
+    widgets::named(&response, WidgetType::SelectableLabel, called(clip), on);
+    response.context_menu(|ui| background::menu(ui, state, clip, out));
     ground(ui, rect, &response, on);
     let labels = match clip.samples {
+        0 if clip.is_background() => BACKGROUND.to_owned(),
         0 => String::new(),
         n => n.to_string(),
     };
@@ -260,8 +282,6 @@ fn row(ui: &mut Ui, state: &State, clip: &ClipInfo, out: Out) {
         widgets::text_in(ui, cell, text, 13.0, colour, COLUMNS[at].3);
     }
     if response.clicked() {
-        let add = ui.input(|i| i.modifiers.command);
-        let clip = clip.id;
-        out.push(Command::Library(LibraryCommand::Select { clip, add }));
+        out.push(Command::Library(chosen(ui, clip)));
     }
 }

@@ -5,6 +5,7 @@ use egui::{Rect, RichText, Sense, Ui, WidgetType, pos2};
 use super::scale::Scale;
 use super::{Out, curves, widgets};
 use crate::format;
+use crate::jobs::teach::Meaning;
 use crate::state::live::Run;
 use crate::state::{Command, LiveCommand, State};
 use crate::theme::Colours;
@@ -167,15 +168,20 @@ fn draw_seen(ui: &Ui, state: &State, run: &Run, rect: Rect, scale: &Scale, c: &C
 
 fn draw_marks(ui: &Ui, state: &State, rect: Rect, scale: &Scale, c: &Colours) {
     let painter = ui.painter_at(rect);
-    for (start, stop, class) in state.live.marks.iter().filter(|m| m.1 > scale.from) {
-        let place = state.classes.place(class);
+    let marks = state.live.marks.iter();
+    for mark in marks.filter(|m| m.stop_secs > scale.from) {
+        let colour = match &mark.meaning {
+            Meaning::Class(class) => c.class(state.classes.place(class)),
+            Meaning::Background => c.muted,
+        };
+        let extent = (mark.start_secs, mark.stop_secs);
         bar(
             &painter,
             rect,
             scale,
-            (*start, *stop),
-            class,
-            c.class(place),
+            extent,
+            mark.meaning.name(),
+            colour,
             c,
         );
     }

@@ -1,5 +1,6 @@
 //! The panels: functions of the state that draw and emit commands.
 
+mod background;
 mod bars;
 mod card;
 mod channel;

@@ -53,8 +53,17 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
         if ui.add_enabled(on, egui::Button::new(text)).clicked() {
             out.push(Command::Live(LiveCommand::Mark(next)));
         }
+        let response = ui.add_enabled(on, egui::Button::new("0  none of these"));
+        widgets::named(&response, WidgetType::Button, "Mark as background", false);
+        let response = response.on_hover_text(
+            "Background: kept as motion that is none of the classes, so that it is not recognised again",
+        );
+        if response.clicked() {
+            out.push(Command::Live(LiveCommand::MarkBackground));
+        }
     });
-    if state.live.teaching || state.is_training() {
+    let busy = state.live.teaching || state.is_training();
+    if busy {
         ui.horizontal(|ui| {
             ui.add(egui::Spinner::new().size(14.0));
             ui.label(if state.live.teaching {
@@ -63,6 +72,9 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
                 "training …"
             });
         });
+    }
+    if state.live.index().is_some() && state.train.is_stale() && !busy {
+        widgets::train_again(ui, out);
     }
     if state.live.index().is_none() && !state.is_training() {
         ui.add_space(4.0);

@@ -2,9 +2,11 @@
 
 use egui::{CentralPanel, Context, Frame, Margin, RichText, ScrollArea, SidePanel, Ui};
 
-use super::{Out, matrix, moments, padded, thesis, view, widgets};
+use super::{Out, background, matrix, moments, padded, thesis, view, widgets};
+use morec::train::TrainingReport;
+
 use crate::format;
-use crate::state::{Command, FileCommand, State, TrainCommand};
+use crate::state::{Command, CrossvalView, FileCommand, State, TrainCommand};
 use crate::theme::Colours;
 
 pub fn show(ctx: &Context, state: &State, out: Out) {
@@ -63,6 +65,7 @@ fn choose(ui: &mut Ui, state: &State, out: Out) {
             ui.colored_label(colour, class.accepted.to_string());
         });
     }
+    background::list(ui, state, out);
     ui.add_space(6.0);
     let label = if state.is_training() {
         "Training …"
@@ -116,6 +119,9 @@ fn teach_next(ui: &mut Ui, state: &State) {
                 class.class, class.missed, class.samples
             ));
         }
+        if let Some(hint) = unlabelled(judged) {
+            hints.push(hint);
+        }
     }
     if hints.is_empty() {
         return;
@@ -125,6 +131,17 @@ fn teach_next(ui: &mut Ui, state: &State) {
     for hint in hints.iter().take(5) {
         ui.label(RichText::new(hint).size(12.0).color(c.muted));
     }
+}
+
+/// A hint at detections where nothing is labelled, which may be right.
+fn unlabelled(judged: &CrossvalView) -> Option<String> {
+    let found = judged.false_detections();
+    (found > 0).then(|| {
+        format!(
+            "{} where nothing is labelled: look at them, and label those that are right",
+            format::count(found, "detection")
+        )
+    })
 }
 
 fn indexes(ui: &mut Ui, state: &State, out: Out) {
@@ -142,7 +159,7 @@ fn indexes(ui: &mut Ui, state: &State, out: Out) {
             }
             ui.label(&index.name);
             let text = if index.stale {
-                "labels changed since"
+                "labels or background changed since"
             } else {
                 "up to date"
             };
@@ -190,18 +207,12 @@ fn trained(ui: &mut Ui, state: &State, out: Out) {
         });
         if state.train.is_stale() {
             ui.add_space(4.0);
-            ui.horizontal(|ui| {
-                ui.colored_label(c.warn, "Labels have changed since.");
-                if ui.button("Train again").clicked() {
-                    out.push(Command::Train(TrainCommand::Train));
-                }
-            });
+            widgets::train_again(ui, out);
         }
         if let Some(report) = &state.train.report {
             ui.add_space(4.0);
-            if let Some(threshold) = report.threshold {
-                let text = format!("Threshold {threshold:.2}, set by {}", report.threshold_from);
-                ui.label(RichText::new(text).size(12.0).color(c.muted));
+            for line in said(report) {
+                ui.label(RichText::new(line).size(12.0).color(c.muted));
             }
             for note in &report.notes {
                 ui.label(RichText::new(format!("• {note}")).size(12.0));
@@ -209,4 +220,26 @@ fn trained(ui: &mut Ui, state: &State, out: Out) {
         }
     });
     ui.add_space(10.0);
+}
+
+/// The threshold, the background and the verifier in sentences.
+fn said(report: &TrainingReport) -> Vec<String> {
+    let mut lines = Vec::new();
+    if let Some(threshold) = report.threshold {
+        lines.push(format!(
+            "Threshold {threshold:.2}, set by {}",
+            report.threshold_from
+        ));
+    }
+    let secs = report.background_secs.iter();
+    let secs: Vec<String> = secs.map(|(of, secs)| format!("{of} {secs:.0} s")).collect();
+    if !secs.is_empty() {
+        lines.push(format!("Background: {}", secs.join(", ")));
+    }
+    lines.push(match report.verified {
+        true => "Candidates are verified.".to_owned(),
+        false => "Candidates are not verified: that takes five labels of a class by three people, and background."
+            .to_owned(),
+    });
+    lines
 }

@@ -5,7 +5,7 @@ use egui::{
     StrokeKind, Ui, Vec2, WidgetInfo, WidgetType,
 };
 
-use crate::state::{Command, FileCommand};
+use crate::state::{Command, FileCommand, TrainCommand};
 use crate::theme::Colours;
 
 /// Commands that a panel emits.
@@ -129,4 +129,15 @@ pub fn file_buttons(ui: &mut Ui, out: Out) {
             out.push(Command::File(command));
         }
     }
+}
+
+/// The index in use is not that of the labels of now.
+pub fn train_again(ui: &mut Ui, out: Out) {
+    let c = Colours::now(ui);
+    ui.horizontal_wrapped(|ui| {
+        ui.colored_label(c.warn, "Labels or background have changed since training.");
+        if ui.button("Train again").clicked() {
+            out.push(Command::Train(TrainCommand::Train));
+        }
+    });
 }

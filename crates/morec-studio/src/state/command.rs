@@ -111,6 +111,8 @@ pub enum LibraryCommand {
         clip: ClipId,
         add: bool,
     },
+    /// Selects the clips of the list from the first that is selected to this one.
+    SelectTo(ClipId),
     /// Shows a clip.
     Open(ClipId),
     /// Shows a stretch of a clip of this name, in a loop.

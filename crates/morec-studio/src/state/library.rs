@@ -54,7 +54,9 @@ impl Library {
                 Column::Subject => self
                     .shown
                     .sort_by(|a, b| key(a).subject.cmp(&key(b).subject)),
-                Column::Labels => self.shown.sort_by_key(|a| key(a).samples),
+                Column::Labels => self
+                    .shown
+                    .sort_by_key(|a| (key(a).samples, key(a).is_background())),
                 Column::Format => self.shown.sort_by(|a, b| key(a).format.cmp(&key(b).format)),
             }
             if down {

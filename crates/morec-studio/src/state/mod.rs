@@ -34,6 +34,7 @@ pub use command::{
     TrainCommand, ViewCommand,
 };
 pub use compare::{Companions, CompareCommand};
+pub use crossval::CrossvalView;
 pub use cuts::CutCommand;
 pub use library::Library;
 pub use live::{Live, LiveCommand};

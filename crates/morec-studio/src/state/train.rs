@@ -20,7 +20,7 @@ pub struct Train {
     pub report: Option<TrainingReport>,
     /// Duration of training.
     pub secs: f64,
-    /// The labels that taught the index, to know whether they have changed.
+    /// The labels and background that taught the index, to know whether they have changed.
     pub(super) taught: u64,
     pub(super) now: u64,
     pub judged: Option<CrossvalView>,
@@ -37,7 +37,7 @@ pub struct Train {
 }
 
 impl Train {
-    /// True if labels have changed since the index was trained.
+    /// True if labels or background have changed since the index was trained.
     pub fn is_stale(&self) -> bool {
         self.index.is_some() && self.taught != self.now
     }
@@ -48,6 +48,9 @@ impl Train {
         for s in snapshot.accepted() {
             let extent = (s.start_secs.to_bits(), s.stop_secs.to_bits());
             (s.clip, &s.class, extent).hash(&mut hasher);
+        }
+        for clip in snapshot.clips.iter().filter(|clip| clip.is_background()) {
+            clip.id.hash(&mut hasher);
         }
         self.now = hasher.finish();
     }

@@ -2,7 +2,7 @@
 
 use morec::roles::RoleMap;
 use morec_db::labels::{LabelOptions, NewSample, SampleId, SampleState};
-use morec_db::{ClipId, ClipInfo, ClipUpdate, DbError, MotionDb};
+use morec_db::{BACKGROUND, ClipId, ClipInfo, ClipUpdate, DbError, MotionDb};
 
 /// Author of the studio's labels in the database.
 pub const BY: &str = "studio";
@@ -45,6 +45,11 @@ pub enum Edit {
         clips: Vec<ClipId>,
         update: ClipUpdate,
     },
+    /// Clips are motion that is none of the classes, or no longer.
+    Background {
+        clips: Vec<ClipId>,
+        on: bool,
+    },
     RenameClip {
         from: String,
         to: String,
@@ -67,6 +72,18 @@ pub enum Edit {
     /// Takes a step back: that of this number, or the last.
     Undo(Option<i64>),
     Redo,
+}
+
+/// The change that marks clips as background, or takes the mark away.
+pub fn background(on: bool) -> ClipUpdate {
+    let (mut add_tags, mut remove_tags) = (Vec::new(), Vec::new());
+    let tags = if on { &mut add_tags } else { &mut remove_tags };
+    tags.push(BACKGROUND.to_owned());
+    ClipUpdate {
+        add_tags,
+        remove_tags,
+        ..ClipUpdate::default()
+    }
 }
 
 impl Edit {
@@ -120,7 +137,15 @@ impl Edit {
             }
             Edit::Describe { clips, update } => {
                 let n = db.update_clips(clips, update)?;
-                Ok(format!("{n} clips described"))
+                Ok(format!("{} described", crate::format::count(n, "clip")))
+            }
+            Edit::Background { clips, on } => {
+                let n = db.update_clips(clips, &background(*on))?;
+                let clips = crate::format::count(n, "clip");
+                Ok(match on {
+                    true => format!("{clips} marked as background"),
+                    false => format!("{clips} no longer background"),
+                })
             }
             Edit::RenameClip { from, to } => {
                 db.rename_clip(from, to)?;
@@ -128,10 +153,11 @@ impl Edit {
             }
             Edit::RemoveClips(clips) => {
                 let labels = db.remove_clips(clips)?;
-                Ok(format!(
-                    "{} clips removed, {labels} labels with them",
-                    clips.len()
-                ))
+                let gone = crate::format::count(clips.len(), "clip");
+                Ok(match labels {
+                    0 => format!("{gone} removed"),
+                    n => format!("{gone} removed, {} with them", samples(n)),
+                })
             }
             Edit::Roles(clips) => {
                 db.set_roles(clips)?;

@@ -14,7 +14,7 @@ use std::sync::mpsc::{Receiver, Sender};
 
 use morec_db::DbError;
 
-pub use edit::{BY, Edit};
+pub use edit::{BY, Edit, background};
 pub use message::{StoreMessage, Wake};
 pub use snapshot::Snapshot;
 pub use worker::sentence;

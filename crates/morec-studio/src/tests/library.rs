@@ -81,6 +81,23 @@ fn several_clips_are_described_and_removed_together() {
 }
 
 #[test]
+fn a_click_with_shift_selects_all_clips_between() {
+    let (_folder, mut person) = library();
+    let selected = |person: &Person| person.state().library.selected.len();
+    person.shift_click("cleo_1");
+    assert!(person.sees("3 clips are selected"));
+    person.shift_click("ben_1");
+    assert_eq!(selected(&person), 2, "from the first one again");
+    person.click("cleo_1");
+    person.settle();
+    person.shift_click("ada_1");
+    assert_eq!(selected(&person), 3, "upwards");
+    person.click("ben_1");
+    person.settle();
+    assert_eq!(selected(&person), 1);
+}
+
+#[test]
 fn clips_are_sorted_by_a_click_on_a_column_and_the_other_way_round_by_another() {
     let (_folder, mut person) = library();
     let first = |person: &Person| person.state().library.shown()[0];

@@ -136,6 +136,22 @@ fn each_edit_shows_the_command_that_does_the_same() {
             "morec db clips moves.mdb --clip ada_1 --remove-tag old".to_owned(),
         ),
         (
+            Edit::Background {
+                clips: vec![clip, second],
+                on: true,
+            },
+            "morec db clips moves.mdb --clip ada_1 --add-tag background && morec db clips moves.mdb --clip ben_1 \
+             --add-tag background"
+                .to_owned(),
+        ),
+        (
+            Edit::Background {
+                clips: vec![second],
+                on: false,
+            },
+            "morec db clips moves.mdb --clip ben_1 --remove-tag background".to_owned(),
+        ),
+        (
             Edit::Judge {
                 ids: vec![a],
                 state: Judged::Rejected,

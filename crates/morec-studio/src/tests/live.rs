@@ -23,7 +23,8 @@ fn what_just_happened_is_marked_learned_and_recognised_and_undone() {
     assert_eq!(person.state().live.marks.len(), 1);
     let line = person.state().command_line.clone();
     assert!(line.ends_with("--name gesture_1"), "{line}");
-    let (start, stop, _) = person.state().live.marks[0].clone();
+    let mark = person.state().live.marks[0].clone();
+    let (start, stop) = (mark.start_secs, mark.stop_secs);
     assert!(
         (start - wave.start_secs).abs() < 0.8 && (stop - wave.stop_secs).abs() < 0.8,
         "{start} {stop} {wave:?}"

@@ -1,6 +1,7 @@
 //! Tests of the window without a display, through the accessibility tree.
 
 mod access;
+mod background;
 mod classes;
 mod compare;
 mod counted;

@@ -186,6 +186,11 @@ impl Person {
         self.click_with(PointerButton::Primary, Modifiers::COMMAND, name);
     }
 
+    /// Clicks while Shift is held.
+    pub fn shift_click(&mut self, name: &str) {
+        self.click_with(PointerButton::Primary, Modifiers::SHIFT, name);
+    }
+
     fn click_with(&mut self, button: PointerButton, modifiers: Modifiers, name: &str) {
         self.actions += 1;
         let at = self.place(name).center();

@@ -29,6 +29,9 @@ fn an_index_is_trained_kept_and_its_mistakes_are_found() {
         .filter(|m| m.truth.as_deref() == Some("wave") && m.is_right())
         .count();
     assert!(waves > 0, "made people wave alike");
+    let wrong = judged.false_detections();
+    let said = person.sees_part("where nothing is labelled: look at them");
+    assert_eq!(said, wrong > 0, "{wrong} false detections");
     let first = judged
         .moments
         .iter()
@@ -75,10 +78,10 @@ fn classes_are_chosen_and_changed_labels_are_said() {
     // Changed labels are said, and the index is trained again by a click.
     let label = person.state().shown_samples()[0].id;
     person.command(Command::Edit(Edit::Remove(vec![label])));
-    assert!(person.sees("Labels have changed since."));
+    assert!(person.sees("Labels or background have changed since training."));
     person.click("Train again");
     person.settle();
-    assert!(!person.sees("Labels have changed since."));
+    assert!(!person.sees("Labels or background have changed since training."));
     assert!(person.state().detections.is_some());
 }
 

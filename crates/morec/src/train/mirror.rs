@@ -29,8 +29,9 @@ enum Image {
     Unknown,
 }
 
-/// Adds mirrored copies of the samples of `set`, whose rows hold `bones`, as streams of their own. Returns how many.
-pub(super) fn add_mirrored(
+/// Adds mirrored copies of the samples of `set`, whose rows hold `bones`, as streams of their own, as
+/// [`train_clips`](super::train_clips) does. Returns how many.
+pub fn add_mirrored(
     set: &mut TrainSet,
     bones: BoneSet,
     mirror: Mirror,

@@ -27,7 +27,7 @@ pub use align::align;
 pub use clips::{everyday_clips, train_clips};
 pub use data::{DataError, TrainingData};
 pub use from_clips::{LabelSet, Prepared, TrainClip, build_train_set};
-pub use mirror::Mirror;
+pub use mirror::{Mirror, add_mirrored};
 pub(crate) use notes::class_notes;
 pub use options::{ENOUGH_BACKGROUND_SECS, EVERYDAY_SEED, Everyday, TrainOptions};
 pub use params::TrainParams;

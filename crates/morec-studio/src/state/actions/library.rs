@@ -1,5 +1,7 @@
 //! The table of clips: searched, sorted, selected.
 
+use morec_db::ClipId;
+
 use crate::state::{LibraryCommand, State};
 
 impl State {
@@ -20,6 +22,7 @@ impl State {
                     (false, _) => self.open_clip(clip, None),
                 }
             }
+            LibraryCommand::SelectTo(clip) => self.select_to(clip),
             LibraryCommand::Open(clip) => self.open_clip(clip, None),
             LibraryCommand::GoTo {
                 clip,
@@ -33,6 +36,23 @@ impl State {
             LibraryCommand::RolesOfAll(all) => self.library.roles_of_one = !all,
         }
         self.refresh_library();
+    }
+
+    fn select_to(&mut self, clip: ClipId) {
+        let Some(store) = &self.store else { return };
+        let clips = &store.snapshot.clips;
+        let shown = self.library.shown().iter().filter_map(|&at| clips.get(at));
+        let shown: Vec<ClipId> = shown.map(|c| c.id).collect();
+        let place = |id: ClipId| shown.iter().position(|s| *s == id);
+        let from = self.library.selected.first().and_then(|id| place(*id));
+        let (Some(from), Some(to)) = (from, place(clip)) else {
+            return self.open_clip(clip, None);
+        };
+        // The first stays the first, from which another click with Shift begins.
+        self.library.selected = match from <= to {
+            true => shown[from..=to].to_vec(),
+            false => shown[to..=from].iter().rev().copied().collect(),
+        };
     }
 
     pub(in crate::state) fn refresh_library(&mut self) {

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use morec::roles::Role;
-use morec_db::ClipId;
 use morec_db::labels::{NewSample, SampleId};
+use morec_db::{ClipId, ClipUpdate};
 
 use crate::state::State;
 use crate::store::{Edit, Snapshot};
@@ -127,6 +127,35 @@ fn each_clip(
     ShownCommand::all(names?.into_iter().map(line))
 }
 
+/// The commands that change what is known about clips.
+fn describe_line(
+    db: &Path,
+    snapshot: &Snapshot,
+    clips: &[ClipId],
+    update: &ClipUpdate,
+) -> Option<ShownCommand> {
+    let about = |mut line: ShownCommand| {
+        let parts = [
+            ("--set-subject", &update.subject),
+            ("--set-source", &update.source),
+            ("--set-licence", &update.licence),
+        ];
+        for (option, text) in parts {
+            if let Some(text) = text {
+                line = line.with(option, text);
+            }
+        }
+        for tag in &update.add_tags {
+            line = line.with("--add-tag", tag);
+        }
+        for tag in &update.remove_tags {
+            line = line.with("--remove-tag", tag);
+        }
+        line
+    };
+    each_clip(db, snapshot, clips.iter().copied(), about)
+}
+
 impl State {
     /// Shows the command line of what was asked for.
     pub(in crate::state) fn show_line(&mut self, line: impl Into<Option<ShownCommand>>) {
@@ -176,27 +205,9 @@ impl State {
             }
             Edit::RenameClass { from, to } => morec("db classes").with("--rename", from).word(to),
             Edit::RemoveClass(name) => morec("db classes").with("--forget", name),
-            Edit::Describe { clips, update } => {
-                let about = |mut line: ShownCommand| {
-                    let parts = [
-                        ("--set-subject", &update.subject),
-                        ("--set-source", &update.source),
-                        ("--set-licence", &update.licence),
-                    ];
-                    for (option, text) in parts {
-                        if let Some(text) = text {
-                            line = line.with(option, text);
-                        }
-                    }
-                    for tag in &update.add_tags {
-                        line = line.with("--add-tag", tag);
-                    }
-                    for tag in &update.remove_tags {
-                        line = line.with("--remove-tag", tag);
-                    }
-                    line
-                };
-                each_clip(db, snapshot, clips.iter().copied(), about)?
+            Edit::Describe { clips, update } => describe_line(db, snapshot, clips, update)?,
+            Edit::Background { clips, on } => {
+                describe_line(db, snapshot, clips, &crate::store::background(*on))?
             }
             Edit::RenameClip { from, to } => morec("db clips").with("--rename", from).word(to),
             Edit::RemoveClips(clips) => {

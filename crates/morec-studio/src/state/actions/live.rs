@@ -5,6 +5,7 @@ use morec::live::Recording;
 
 use super::lines::ShownCommand;
 use super::train::INDEX;
+use crate::jobs::teach::Meaning;
 use crate::jobs::{JobOutcome, recognise};
 use crate::state::live::{Choice, ClipFeed, Feed, Run, ThreadFeed};
 use crate::state::{LiveCommand, State};
@@ -23,10 +24,11 @@ impl State {
             LiveCommand::Mark(slot) => {
                 if self.live.run.is_some() {
                     let class = self.class_of_key(slot);
-                    self.mark(&class);
+                    self.mark(Meaning::Class(class));
                 }
             }
-            LiveCommand::MarkAs(class) => self.mark(&class),
+            LiveCommand::MarkAs(class) => self.mark(Meaning::Class(class)),
+            LiveCommand::MarkBackground => self.mark(Meaning::Background),
             LiveCommand::Record => self.record(),
             LiveCommand::Watch(actor) => {
                 // A take is of one performer.

@@ -1,18 +1,23 @@
-//! Marking: a stretch of the stream becomes a sample, a take becomes a clip.
+//! Marking: a stretch of the stream becomes a sample or background, a take becomes a clip.
+
+use std::path::Path;
+
+use morec::live::PerformerId;
+use morec_db::BACKGROUND;
 
 use super::lines::ShownCommand;
 use super::live::TEACHING;
 use crate::jobs::JobOutcome;
-use crate::jobs::teach::{Lesson, Taught, teach};
+use crate::jobs::teach::{Lesson, Meaning, Taught, teach};
 use crate::state::State;
-use crate::state::live::LivePerformer;
+use crate::state::live::{LiveMark, labelled_there};
 
 /// Margin kept before and after a marked stretch, seconds.
 const AROUND_SECS: f64 = 0.7;
 
 impl State {
-    /// Keeps the selected stretch, or the last motion, as a sample of a class, and trains anew.
-    pub(in crate::state) fn mark(&mut self, class: &str) {
+    /// Keeps the selected stretch, or the last motion, as a sample of a class or as background, and trains anew.
+    pub(in crate::state) fn mark(&mut self, meaning: Meaning) {
         let Some(store) = self.store.as_ref().map(|s| s.path().to_owned()) else {
             return;
         };
@@ -24,28 +29,98 @@ impl State {
             self.say("the mark before this one is still being kept");
             return;
         }
-        let Some((start, stop)) = self.live.range.or_else(|| run.watched()?.last_motion()) else {
+        let Some((actor, stretch)) = run.watched().and_then(|watched| {
+            let stretch = self.live.range.or_else(|| watched.last_motion())?;
+            Some((watched.actor, stretch))
+        }) else {
             self.say("nothing has moved yet that could be marked");
             return;
         };
-        let cut =
-            |performer: &LivePerformer| performer.cut_out(start - AROUND_SECS, stop + AROUND_SECS);
-        let Some((recording, origin)) = run.watched().and_then(cut) else {
+        if let Some(why) = self.contradiction(actor, stretch, &meaning) {
+            return self.complain(why);
+        }
+        let Some(lesson) = self.lesson(stretch, &meaning) else {
             self.complain("That part of the stream is no longer kept");
             return;
         };
-        self.live.marks.push((start, stop, class.to_owned()));
+        let line = match &meaning {
+            Meaning::Class(_) => {
+                let line = self.live_line("morec teach");
+                line.map(|line| line.with("--name", &lesson.name))
+            }
+            Meaning::Background => {
+                let line = self.record_line(&store);
+                line.map(|line| line.with("--tag", BACKGROUND))
+            }
+        };
+        self.show_line(line);
+        // Background alone teaches nothing.
+        let labelled = self
+            .store
+            .iter()
+            .any(|s| s.snapshot.accepted().next().is_some());
+        self.live.retrain = labelled || meaning != Meaning::Background;
+        self.live.marks.push(LiveMark::new(actor, stretch, meaning));
         self.live.range = None;
         self.live.teaching = true;
-        self.live.retrain = true;
-        let lesson = Lesson {
-            recording,
-            label: Some((class.to_owned(), start - origin, stop - origin)),
-            name: class.replace(' ', "_"),
-        };
-        let line = self.live_line("morec teach");
-        self.show_line(line.map(|line| line.with("--name", class.replace(' ', "_"))));
         self.keep(store, lesson);
+    }
+
+    /// What a stretch becomes in the database; `None` if the stream no longer has it.
+    fn lesson(&self, (start, stop): (f64, f64), meaning: &Meaning) -> Option<Lesson> {
+        // What came before and after background may be a motion of a class.
+        let around = match meaning {
+            Meaning::Class(_) => AROUND_SECS,
+            Meaning::Background => 0.0,
+        };
+        let watched = self.live.run.as_ref()?.watched()?;
+        let (recording, origin) = watched.cut_out(start - around, stop + around)?;
+        Some(Lesson {
+            recording,
+            name: meaning.name().replace(' ', "_"),
+            meaning: Some(meaning.clone()),
+            extent_secs: (start - origin, stop - origin),
+        })
+    }
+
+    /// Reason why a stretch cannot be marked so: the same motion would teach a class and be background too.
+    fn contradiction(
+        &self,
+        actor: PerformerId,
+        stretch: (f64, f64),
+        meaning: &Meaning,
+    ) -> Option<String> {
+        let marks = self.live.marks.iter();
+        let met = marks
+            .filter(|mark| mark.meets(actor, stretch))
+            .find(|mark| mark.meaning.contradicts(meaning));
+        if let Some(mark) = met {
+            return Some(format!(
+                "Not marked: that motion is marked as {} already; undo that first",
+                mark.meaning.name()
+            ));
+        }
+        let snapshot = &self.store.as_ref()?.snapshot;
+        let (clip, start) = self.live.run.as_ref()?.moment(stretch.0)?;
+        let played = snapshot.clip(clip)?;
+        let name = &played.name;
+        match meaning {
+            Meaning::Class(_) if played.is_background() && played.samples == 0 => Some(format!(
+                "Not marked: {name} is background, in which none of the classes is seen; take that mark from it first"
+            )),
+            Meaning::Class(_) => None,
+            Meaning::Background => {
+                let there = (start, start + stretch.1 - stretch.0);
+                let class = labelled_there(snapshot, clip, there)?;
+                Some(format!("Not marked: {name} has a label {class} there"))
+            }
+        }
+    }
+
+    /// The command that records the source into the database.
+    fn record_line(&self, db: &Path) -> Option<ShownCommand> {
+        let line = ShownCommand::new("morec record").with("--listen", self.live_source()?);
+        Some(line.with("-o", db))
     }
 
     fn keep(&mut self, db: std::path::PathBuf, lesson: Lesson) {
@@ -59,10 +134,25 @@ impl State {
     pub(in crate::state) fn taught(&mut self, taught: &Taught) {
         self.live.teaching = false;
         let secs = crate::format::duration(taught.secs);
-        self.say(match &taught.class {
-            Some(class) => format!("{class}: kept as {}", taught.name),
+        self.say(match &taught.meaning {
+            Some(meaning) => format!("{}: kept as {}", meaning.name(), taught.name),
             None => format!("take {} kept, {secs}", taught.name),
         });
+        if taught.meaning.is_some()
+            && let Some(mark) = self.live.marks.iter_mut().rfind(|mark| mark.clip.is_none())
+        {
+            mark.clip = Some(taught.clip);
+        }
+    }
+
+    /// What was to be kept could not be: its mark goes.
+    pub(in crate::state) fn not_taught(&mut self) {
+        if self.live.teaching {
+            let at = self.live.marks.iter().rposition(|mark| mark.clip.is_none());
+            at.map(|at| self.live.marks.remove(at));
+        }
+        self.live.teaching = false;
+        self.live.retrain = false;
     }
 
     /// Trains with what was marked, once it is in the database.
@@ -94,14 +184,12 @@ impl State {
         };
         let lesson = Lesson {
             recording,
-            label: None,
+            meaning: None,
+            extent_secs: (0.0, 0.0),
             name: "take".to_owned(),
         };
-        let line = self.live_source();
-        self.show_line(line.map(|source| {
-            let line = ShownCommand::new("morec record").with("--listen", source);
-            line.with("-o", &store)
-        }));
+        let line = self.record_line(&store);
+        self.show_line(line);
         self.keep(store, lesson);
     }
 }

@@ -52,6 +52,7 @@ impl State {
             .retain(|id| snapshot.clip(*id).is_some());
         self.classes.follow(&snapshot);
         self.train.follow(&snapshot);
+        self.live.marks.retain_mut(|mark| mark.follow(&snapshot));
         let gone = self
             .player
             .motion
@@ -155,7 +156,7 @@ impl State {
             JobOutcome::Written(said) => self.say(said),
             JobOutcome::Stopped(JobError::Failed(why)) => {
                 if name == super::live::TEACHING {
-                    self.live.teaching = false;
+                    self.not_taught();
                 }
                 self.complain(why);
             }

@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, sync_channel};
 
 use morec::live::{Frame, PerformerId, Rig, Source, SourceCounts, SourceEvent, wall_now_secs};
+use morec_db::ClipId;
 
 use crate::jobs::load::ClipMotion;
 use crate::store::Wake;
@@ -34,6 +35,14 @@ impl Feed {
         match self {
             Feed::Clip(feed) => feed.poll(dt, out),
             Feed::Thread(feed) => feed.poll(out),
+        }
+    }
+
+    /// See [`ClipFeed::moment`]; `None` for a device.
+    pub fn moment(&self, stream_secs: f64) -> Option<(ClipId, f64)> {
+        match self {
+            Feed::Clip(feed) => Some(feed.moment(stream_secs)),
+            Feed::Thread(_) => None,
         }
     }
 
@@ -67,6 +76,18 @@ impl ClipFeed {
             now_secs: 0.0,
             begun_wall_secs: wall_now_secs(),
         }
+    }
+
+    /// The clip, and the moment of it that a moment of the stream shows; both in seconds.
+    pub fn moment(&self, stream_secs: f64) -> (ClipId, f64) {
+        let clip = &self.motion.clip;
+        let secs = |frames: usize| frames as f64 / clip.rate_hz;
+        let begin = first(&self.motion);
+        let lap_secs = secs(clip.frames - begin) + PAUSE_SECS;
+        (
+            self.motion.id,
+            secs(begin) + stream_secs.rem_euclid(lap_secs),
+        )
     }
 
     fn poll(&mut self, dt: f64, out: &mut Vec<SourceItem>) {

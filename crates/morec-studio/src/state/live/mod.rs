@@ -1,6 +1,7 @@
 //! A live stream: who performs, what is recognised, what is taught from what just happened.
 
 mod feed;
+mod marked;
 mod moved;
 mod run;
 mod tracked;
@@ -14,8 +15,8 @@ use morec::math::Vec3;
 use morec_db::ClipId;
 
 pub use feed::{ClipFeed, Feed, ThreadFeed};
+pub use marked::{LiveMark, labelled_there};
 pub use run::Run;
-pub use tracked::LivePerformer;
 
 /// Choice of a source.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,8 +38,8 @@ pub struct Live {
     pub alarms: Option<f64>,
     /// A stretch of the stream that is selected, on its clock.
     pub range: Option<(f64, f64)>,
-    /// Marked stretches: start, stop, class.
-    pub marks: Vec<(f64, f64, String)>,
+    /// Marked stretches.
+    pub marks: Vec<LiveMark>,
     /// Detections in the recorded minutes at this sensitivity.
     pub resensed: Option<Vec<Detection>>,
     /// Something that was marked is being kept.
@@ -86,6 +87,8 @@ pub enum LiveCommand {
     Mark(usize),
     /// Likewise, of this class.
     MarkAs(String),
+    /// Likewise, none of the classes.
+    MarkBackground,
     /// Watches another performer.
     Watch(PerformerId),
     /// Begins a take after a countdown, or ends it.

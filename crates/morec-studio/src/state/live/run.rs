@@ -3,6 +3,7 @@
 use morec::classes::ClassId;
 use morec::diagnosis::Severity;
 use morec::live::{EarlyDetection, Event, Frame, Model, PerformerId, Phase};
+use morec_db::ClipId;
 
 use super::feed::{Feed, SourceItem};
 use super::tracked::LivePerformer;
@@ -65,6 +66,11 @@ impl Run {
     /// The performer who is watched.
     pub fn watched(&self) -> Option<&LivePerformer> {
         self.performers.get(self.watched)
+    }
+
+    /// The clip of the database that is played, and the moment of it that a moment of the stream shows.
+    pub fn moment(&self, stream_secs: f64) -> Option<(ClipId, f64)> {
+        self.feed.moment(stream_secs)
     }
 
     /// Watches another performer.

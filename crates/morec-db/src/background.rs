@@ -1,0 +1,56 @@
+//! Clips that are marked as background: motion that is none of the classes.
+
+use std::collections::BTreeSet;
+
+use crate::labels::{SampleFilter, SampleState};
+use crate::{ClipFilter, ClipInfo, DbError, MotionDb};
+
+/// The tag of clips that are background: training learns from them what is none of the classes.
+pub const BACKGROUND: &str = "background";
+
+/// The clips of a database that are marked as background.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct BackgroundClips {
+    /// Clips without a sample of the classes, by name: training uses all of their motion as background.
+    pub clips: Vec<ClipInfo>,
+    /// Clips with accepted samples of the classes, by name. They are labelled clips for training, whatever their mark, so that
+    /// no sample is learned as what its class is not.
+    pub labelled: Vec<ClipInfo>,
+}
+
+impl ClipInfo {
+    /// True if the clip has the tag [`BACKGROUND`].
+    pub fn is_background(&self) -> bool {
+        self.tags.iter().any(|tag| tag == BACKGROUND)
+    }
+}
+
+impl MotionDb {
+    /// The clips with the tag [`BACKGROUND`], apart by whether they hold accepted samples of `classes` (of any class, if none
+    /// is named).
+    ///
+    /// # Errors
+    /// The database cannot be read.
+    pub fn background(&self, classes: &[String]) -> Result<BackgroundClips, DbError> {
+        let tagged = self.clips(&ClipFilter {
+            tag: Some(BACKGROUND.to_owned()),
+            ..ClipFilter::default()
+        })?;
+        if tagged.is_empty() {
+            return Ok(BackgroundClips::default());
+        }
+        let accepted = self.samples(&SampleFilter {
+            state: Some(SampleState::Accepted),
+            ..SampleFilter::default()
+        })?;
+        let with_samples: BTreeSet<_> = accepted
+            .iter()
+            .filter(|s| classes.is_empty() || classes.contains(&s.class))
+            .map(|s| s.clip)
+            .collect();
+        let (labelled, clips) = tagged
+            .into_iter()
+            .partition(|clip| with_samples.contains(&clip.id));
+        Ok(BackgroundClips { clips, labelled })
+    }
+}
