@@ -111,13 +111,13 @@ fn changes_of_every_kind_are_taken_back_by_number() {
         .as_u64()
         .unwrap();
     assert!(labels > 0);
-    assert_eq!(steps[0], "remove 1 clips");
+    assert_eq!(steps[0], "remove 1 clip");
     assert_eq!(steps[1], "cut 2 clips by kernel");
     assert_eq!(steps[3], "import 2 files");
     let number = history[1]["id"].to_string();
     let needed = folder.morec(&["db", "undo", "m.mdb", &number]);
     assert!(
-        needed.code == Some(1) && needed.err.contains("remove 1 clips"),
+        needed.code == Some(1) && needed.err.contains("remove 1 clip"),
         "{needed:?}"
     );
     let would = folder.morec(&["db", "undo", "m.mdb", "--dry-run"]).ok();
