@@ -26,7 +26,7 @@ use morec_live::Address;
     Examples:\n  \
     morec record --listen vmc://127.0.0.1:39539 -o take.bvh\n  \
     morec record --listen vmc://127.0.0.1:39539 -o wave.bvh --takes 3 --secs 4\n  \
-    morec record --listen vmc://127.0.0.1:39539 -o db.mdb --secs 60 --tag background\n  \
+    morec record --listen vmc://127.0.0.1:39539 -o moves.mdb --tag background\n  \
     morec record --listen json:- -o take.jsonl --count-down 0 < poses.jsonl"
 )]
 pub struct Args {
