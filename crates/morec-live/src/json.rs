@@ -2,6 +2,7 @@
 //!
 //! The format of a line is described in [`json_line`](super::json_line).
 
+use std::net::IpAddr;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -13,6 +14,7 @@ use morec::roles::{Role, RoleMap};
 
 use crate::address::openness;
 use crate::lines::{Came, Lines};
+use crate::places::largest_holder;
 use crate::{Address, LiveError, Notices, PoseLine};
 
 /// Performers of one connection over TCP; others shall find places, too.
@@ -33,6 +35,8 @@ pub struct JsonSource {
     known: Vec<u32>,
     /// A pose whose skeleton was announced first.
     waiting: Option<(PerformerId, PoseLine)>,
+    /// A pose of a connection whose performer got the place of another, which is announced to have gone first.
+    newcomer: Option<(u64, PoseLine)>,
     leaving: Vec<PerformerId>,
     begun_secs: f64,
     counts: SourceCounts,
@@ -79,6 +83,7 @@ impl JsonSource {
             performers: PerformerTable::new(MAX_PERFORMERS),
             known: Vec::new(),
             waiting: None,
+            newcomer: None,
             leaving: Vec::new(),
             begun_secs: wall_now_secs(),
             counts: SourceCounts::default(),
@@ -112,6 +117,22 @@ impl JsonSource {
         Some(actor)
     }
 
+    /// Takes a performer's place from the machine that holds too many of them beside that of `connection`; it is free then.
+    fn share(&mut self, connection: u64) -> Option<PerformerId> {
+        if self.performers.vacant().is_some() {
+            return None;
+        }
+        let machine_of = |key: &(u64, u16)| self.lines.machine(key.0);
+        let held: Vec<IpAddr> = self.performers.present().filter_map(machine_of).collect();
+        let largest = largest_holder(&held, self.lines.machine(connection)?)?;
+        let its = |key: &&(u64, u16)| machine_of(key) == Some(largest);
+        let newest = *self.performers.present().filter(its).max()?;
+        let mut gone = None;
+        self.performers
+            .leave_if(|key| *key == newest, |actor| gone = Some(actor));
+        gone
+    }
+
     /// Performers of whom nothing comes any more make room; a file on standard input may take its time.
     fn forget_silent(&mut self, now_secs: f64) {
         if !self.ends {
@@ -143,7 +164,16 @@ impl JsonSource {
         if pose.shows_body() {
             self.lines.showed_body(connection);
         }
+        self.pose(connection, pose, frame)
+    }
+
+    fn pose(&mut self, connection: u64, pose: PoseLine, frame: &mut Frame) -> SourceEvent {
         let Some(actor) = self.performer(connection, pose.actor) else {
+            let shared = pose.shows_body().then(|| self.share(connection));
+            if let Some(gone) = shared.flatten() {
+                self.newcomer = Some((connection, pose));
+                return SourceEvent::Gone(gone);
+            }
             self.counts.refused += 1;
             return SourceEvent::Quiet;
         };
@@ -174,6 +204,9 @@ impl Source for JsonSource {
     fn next(&mut self, frame: &mut Frame) -> SourceEvent {
         if let Some((actor, pose)) = self.waiting.take() {
             return self.fill(actor, &pose, frame);
+        }
+        if let Some((connection, pose)) = self.newcomer.take() {
+            return self.pose(connection, pose, frame);
         }
         self.forget_silent(wall_now_secs());
         if let Some(actor) = self.leaving.pop() {
@@ -245,6 +278,49 @@ mod tests {
         assert!(source.performer(1, 39).is_some() && source.performer(1, 0).is_some());
     }
 
+    /// Two connections of one machine can show sixteen performers; another machine finds a place all the same.
+    #[test]
+    fn one_machine_does_not_take_the_places_of_all_performers() {
+        let address: Address = "json+tcp://127.0.0.1:0".parse().unwrap();
+        let (mut source, at) = JsonSource::listen(&address).unwrap();
+        let (far, mut frame) = (TcpStream::connect(at).unwrap(), Frame::default());
+        for (connection, machine) in [(101, "192.0.2.1"), (102, "192.0.2.1"), (103, "192.0.2.2")] {
+            let (stream, from) = (far.try_clone().unwrap(), machine.parse().unwrap());
+            source.lines.place(connection, stream, from);
+        }
+        let body = |actor| PoseLine::of_line(&body_line(actor)).unwrap();
+        for connection in [101, 102] {
+            for actor in 0..NAMES as u16 {
+                source.pose(connection, body(actor), &mut frame);
+            }
+        }
+        source.waiting = None;
+        assert_eq!(source.performers.present().count(), MAX_PERFORMERS);
+        let Some(victim) = source.performers.find(&(102, NAMES as u16 - 1)) else {
+            panic!("everybody has a place");
+        };
+        let gone = source.pose(103, body(0), &mut frame);
+        assert!(matches!(gone, SourceEvent::Gone(actor) if actor == victim));
+        let rig = source.next(&mut frame);
+        assert!(matches!(rig, SourceEvent::Rig(actor, _) if actor == victim));
+        assert!(matches!(source.next(&mut frame), SourceEvent::Frame));
+        assert_eq!(frame.actor, victim);
+        // Whoever had the place before does not come back to it.
+        let refused = source.pose(102, body(NAMES as u16 - 1), &mut frame);
+        assert!(matches!(refused, SourceEvent::Quiet));
+        assert_eq!(source.counts.refused, 1);
+    }
+
+    /// A line that shows a whole body.
+    fn body_line(actor: u16) -> String {
+        let names = "hips left_thigh left_shin left_foot right_thigh right_shin right_foot";
+        let places: Vec<String> = (names.split(' '))
+            .map(|name| format!("\"{name}\": [0, 1, 0]"))
+            .collect();
+        let places = places.join(", ");
+        format!("{{\"actor\": {actor}, \"positions\": {{{places}}}}}\n")
+    }
+
     /// Sends `line` over and over, and connects anew when it is turned away, until it is told to stop.
     fn busy(at: std::net::SocketAddr, line: &str, stop: &AtomicBool) {
         while !stop.load(Ordering::Relaxed) {
@@ -264,11 +340,7 @@ mod tests {
         let (mut source, at) = JsonSource::listen(&address).unwrap();
         let stop = AtomicBool::new(false);
         let rubbish = ["rubbish\n", "{\"positions\": {\"head\": [0, 1, 0]}}\n"];
-        let names = "hips left_thigh left_shin left_foot right_thigh right_shin right_foot";
-        let places: Vec<String> = (names.split(' '))
-            .map(|name| format!("\"{name}\": [0, 1, 0]"))
-            .collect();
-        let body = format!("{{\"positions\": {{{}}}}}\n", places.join(", "));
+        let body = body_line(0);
         let mut shown = 0;
         std::thread::scope(|scope| {
             for number in 0..2 * CONNECTIONS {

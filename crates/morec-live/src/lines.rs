@@ -1,7 +1,7 @@
 //! Lines of text from standard input or from whoever connects, each on a thread of its own.
 
 use std::io::{BufRead, BufReader, ErrorKind, Read};
-use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::net::{IpAddr, SocketAddr, TcpListener, TcpStream};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -75,6 +75,17 @@ impl Lines {
         self.places.keep(connection, Instant::now());
     }
 
+    /// The machine of a connection, if it is open.
+    pub fn machine(&self, connection: u64) -> Option<IpAddr> {
+        self.places.machine(connection)
+    }
+
+    /// Gives a connection a place without listening for its lines.
+    #[cfg(test)]
+    pub fn place(&self, connection: u64, stream: TcpStream, from: IpAddr) {
+        assert!(self.places.take(connection, stream, from, Instant::now()));
+    }
+
     /// The next arrival; waits for it a little.
     pub fn next(&mut self, most: Duration) -> Came {
         match self.came.recv_timeout(most) {
@@ -108,7 +119,7 @@ fn accept(
         let (Ok(copy), Ok(from)) = (stream.try_clone(), stream.peer_addr()) else {
             continue;
         };
-        if !places.take(number, copy, Instant::now()) {
+        if !places.take(number, copy, from.ip(), Instant::now()) {
             notices.tell(format!(
                 "a connection from {} is refused: {CONNECTIONS} others show bodies or have just come",
                 from.ip()

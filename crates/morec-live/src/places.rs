@@ -1,6 +1,6 @@
 //! Places of connections over TCP, and the rule by which one is given up when all are taken.
 
-use std::net::{Shutdown, TcpStream};
+use std::net::{IpAddr, Ipv6Addr, Shutdown, TcpStream};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -14,6 +14,7 @@ const SILENT: Duration = Duration::from_secs(5);
 /// A connection that is open.
 struct OpenConnection {
     number: u64,
+    machine: IpAddr,
     stream: TcpStream,
     opened: Instant,
     /// When it showed a body last.
@@ -31,6 +32,22 @@ impl OpenConnection {
     }
 }
 
+/// The machine at an address. One machine has as many IPv6 addresses as it likes that share the first 64 bits.
+pub fn machine_at(address: IpAddr) -> IpAddr {
+    match address.to_canonical() {
+        IpAddr::V6(v6) => Ipv6Addr::from_bits(v6.to_bits() >> 64 << 64).into(),
+        v4 => v4,
+    }
+}
+
+/// The machine that holds the most of the places that `held` lists, if `newcomer` would still hold fewer than it with one
+/// of them: nobody takes all places by taking many.
+pub fn largest_holder(held: &[IpAddr], newcomer: IpAddr) -> Option<IpAddr> {
+    let count = |machine: IpAddr| held.iter().filter(|other| **other == machine).count();
+    let largest = held.iter().copied().max_by_key(|machine| count(*machine))?;
+    (count(largest) >= count(newcomer) + 2).then_some(largest)
+}
+
 /// The connections that are open; copies share them.
 #[derive(Clone, Default)]
 pub struct ConnectionPlaces {
@@ -43,13 +60,16 @@ impl ConnectionPlaces {
     }
 
     /// Gives connection `number` a place, if need be that of another: of one that has shown no body before that of one
-    /// that has, and among them of the one for which that is longest. False if none has to give its place up.
-    pub fn take(&self, number: u64, stream: TcpStream, now: Instant) -> bool {
+    /// that has, and among them of the one for which that is longest; else of the newest of the machine that holds the most,
+    /// at least two more than `from` does. False if none has to give its place up.
+    pub fn take(&self, number: u64, stream: TcpStream, from: IpAddr, now: Instant) -> bool {
+        let machine = machine_at(from);
         let mut open = self.open();
         if open.len() >= CONNECTIONS {
             let candidates = (0..open.len()).filter(|at| open[*at].gives_way(now));
             let key = |at: &usize| (open[*at].body, open[*at].opened);
-            let Some(at) = candidates.min_by_key(key) else {
+            let at = candidates.min_by_key(key);
+            let Some(at) = at.or_else(|| newest_of_largest(&open, machine)) else {
                 return false;
             };
             // Its thread wakes and ends; if it has ended already, all the better.
@@ -57,6 +77,7 @@ impl ConnectionPlaces {
         }
         open.push(OpenConnection {
             number,
+            machine,
             stream,
             opened: now,
             body: None,
@@ -72,10 +93,25 @@ impl ConnectionPlaces {
         }
     }
 
+    /// The machine of connection `number`, if it is open.
+    pub fn machine(&self, number: u64) -> Option<IpAddr> {
+        let open = self.open();
+        let connection = open.iter().find(|open| open.number == number)?;
+        Some(connection.machine)
+    }
+
     /// Connection `number` has ended.
     pub fn leave(&self, number: u64) {
         self.open().retain(|open| open.number != number);
     }
+}
+
+/// The newest connection of the machine that holds too many beside `newcomer`, if one does.
+fn newest_of_largest(open: &[OpenConnection], newcomer: IpAddr) -> Option<usize> {
+    let held: Vec<IpAddr> = open.iter().map(|open| open.machine).collect();
+    let largest = largest_holder(&held, newcomer)?;
+    let its = (0..open.len()).filter(|at| open[*at].machine == largest);
+    its.max_by_key(|at| open[*at].opened)
 }
 
 #[cfg(test)]
@@ -83,6 +119,8 @@ mod tests {
     use std::net::TcpListener;
 
     use super::*;
+
+    const NEAR: IpAddr = IpAddr::V4(std::net::Ipv4Addr::LOCALHOST);
 
     /// Takes places for connections of these numbers; gives the far ends, too.
     fn fill(
@@ -94,7 +132,7 @@ mod tests {
         let at = listener.local_addr().unwrap();
         let connect = |number| {
             let far = TcpStream::connect(at).unwrap();
-            assert!(places.take(number, listener.accept().unwrap().0, now));
+            assert!(places.take(number, listener.accept().unwrap().0, NEAR, now));
             far
         };
         numbers.map(connect).collect()
@@ -115,7 +153,7 @@ mod tests {
         let mut far = Vec::new();
         let mut comes = |number, now| {
             far.push(TcpStream::connect(listener.local_addr().unwrap()).unwrap());
-            places.take(number, listener.accept().unwrap().0, now)
+            places.take(number, listener.accept().unwrap().0, NEAR, now)
         };
         assert!(!comes(16, secs(0.9)), "each may still show one");
         (0..15).for_each(|number| places.keep(number, secs(0.9)));
@@ -141,5 +179,32 @@ mod tests {
         let mut first = fill(&places, 0..16, begun);
         let _next = fill(&places, 16..17, begun + 2 * UNKNOWN);
         assert_eq!(first[0].read(&mut [0]).unwrap(), 0);
+    }
+
+    /// However many bodies one machine shows, others get their share of the places, and no more.
+    #[test]
+    fn a_machine_that_holds_most_places_makes_room_for_others() {
+        let (places, begun) = (ConnectionPlaces::default(), Instant::now());
+        let _open = fill(&places, 0..16, begun);
+        (0..16).for_each(|number| places.keep(number, begun));
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let mut far = Vec::new();
+        let mut comes = |number, from: &str| {
+            far.push(TcpStream::connect(listener.local_addr().unwrap()).unwrap());
+            let near = listener.accept().unwrap().0;
+            let taken = places.take(number, near, from.parse().unwrap(), begun);
+            places.keep(number, begun);
+            taken
+        };
+        assert!(!comes(16, "127.0.0.1"), "it holds them all already");
+        let shared = (17..40).filter(|number| comes(*number, &format!("2001:db8::{number}")));
+        assert_eq!(
+            shared.count(),
+            CONNECTIONS / 2,
+            "one machine by its first 64 bits"
+        );
+        assert!(comes(40, "192.0.2.1"), "a third one has a share as well");
+        assert_eq!(numbers(&places).len(), CONNECTIONS);
+        assert_eq!(places.machine(0), Some(NEAR), "the first of all stays");
     }
 }
