@@ -1,26 +1,26 @@
 //! How well motions are known at half of their length: `cargo run --release -p morec --example early`.
 //!
-//! Trains on two of the three referee clips with signals, plays the third, and goes round. At the middle of every
-//! sample: is its class being told? And of all that is told as half done or more: how much is right? Needs the clips
-//! (`MOREC_DATA`). Arguments `name=value` set a figure of `EarlyDetectionParams`.
+//! Two sets of real clips (`MOREC_DATA`): the three referee clips with signals, each by an index of the others and background; and
+//! sessions before a Kinect, each by an index of two samples of each gesture by the same person. At the middle of every sample:
+//! is its class being told? And of all that is told as half done or more: how much is right? Arguments `name=value` set a
+//! figure of `EarlyDetectionParams`.
 
-// What tests share lies outside of test functions, where the lint looks for it.
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::print_stderr)]
 
-#[path = "../tests/it/kit.rs"]
-#[allow(dead_code)]
-mod kit;
-
-use std::sync::Arc;
+use std::path::Path;
 
 use morec::features::{bones_of_clip, for_each_pose};
+use morec::files::{open, open_all};
 use morec::labels::{ClipLength, Labels, Sample};
 use morec::live::{EarlyDetection, Recognizer};
-use morec::templates::{EarlyDetectionParams, TemplateModel};
-use morec::train::{Everyday, LabelSet, StreamKind, TrainClip, TrainOptions, train_clips};
+use morec::templates::EarlyDetectionParams;
+use morec::{MotionIndex, Take, Trainer};
 
-const SIGNALS: [&str; 3] = ["signals_1", "signals_2", "signals_3"];
-const CLASSES: [&str; 7] = [
+#[path = "../tests/testing/mod.rs"]
+#[allow(dead_code)]
+mod testing;
+
+const SIGNALS: [&str; 7] = [
     "traveling",
     "illegal_dribble",
     "visible_count",
@@ -31,124 +31,14 @@ const CLASSES: [&str; 7] = [
 ];
 
 fn main() {
-    let Some(data) = kit::data() else { return };
+    let Some(data) = testing::data() else { return };
     let mut params = EarlyDetectionParams::default();
     std::env::args()
         .skip(1)
         .for_each(|arg| set(&mut params, &arg));
     println!("{params:?}");
-    let names: Vec<String> = std::fs::read_dir(data.join("referee/clips"))
-        .unwrap()
-        .filter_map(|e| {
-            e.unwrap()
-                .path()
-                .file_stem()
-                .map(|s| s.to_string_lossy().into_owned())
-        })
-        .collect();
-    let of = |prefixes: &[&str]| -> Vec<&String> {
-        let mut found: Vec<&String> = names
-            .iter()
-            .filter(|n| prefixes.iter().any(|p| n.starts_with(p)))
-            .collect();
-        found.sort();
-        found
-    };
-    let load = |names: Vec<&String>, source| -> Vec<TrainClip> {
-        names
-            .into_iter()
-            .map(|n| kit::referee(&data, n, source))
-            .collect()
-    };
-    let background = load(
-        of(&["jumping_", "soccer_", "running_"]),
-        StreamKind::Background,
-    );
-    let unknown = load(
-        of(&["walking_", "basketball_", "traffic_4"]),
-        StreamKind::Background,
-    );
-    let signals: Vec<TrainClip> = SIGNALS
-        .iter()
-        .map(|n| kit::referee(&data, n, StreamKind::Labelled))
-        .collect();
-    let labels = Labels::read(&std::fs::read(data.join("referee/labels.tsv")).unwrap()).unwrap();
-    let lengths = signals.iter().map(|c| {
-        (
-            c.name.clone(),
-            ClipLength {
-                frames: c.clip.frames,
-                rate_hz: c.clip.rate_hz,
-            },
-        )
-    });
-    let mut samples = labels.resolve(&lengths.collect()).samples;
-    samples.retain(|s| CLASSES.contains(&s.class.as_str()));
-
-    let (mut all, mut known, mut told, mut right, mut false_unknown) =
-        (0usize, 0usize, 0usize, 0usize, 0usize);
-    for test in 0..signals.len() {
-        let mut clips: Vec<TrainClip> = background.clone();
-        clips.extend(
-            signals
-                .iter()
-                .enumerate()
-                .filter(|(i, _)| *i != test)
-                .map(|(_, c)| c.clone()),
-        );
-        let taught: Vec<Sample> = samples
-            .iter()
-            .filter(|s| s.clip != SIGNALS[test])
-            .cloned()
-            .collect();
-        let model = Arc::new(train(&clips, &taught));
-        let name = |h: &EarlyDetection| model.classes[h.class.index()].name.clone();
-        let hunches = play(&model, &signals[test], params);
-        for s in samples.iter().filter(|s| s.clip == SIGNALS[test]) {
-            all += 1;
-            let middle_secs = 0.5 * (s.start_secs + s.stop_secs);
-            let at = hunches
-                .iter()
-                .rev()
-                .find(|(t, _)| *t <= middle_secs)
-                .and_then(|(_, h)| *h);
-            // One that began well before the sample is another motion's, perhaps of the same class.
-            let length_secs = s.stop_secs - s.start_secs;
-            let of_it = |h: EarlyDetection| {
-                name(&h) == s.class && h.start_secs > s.start_secs - 0.25 * length_secs
-            };
-            known += usize::from(at.is_some_and(of_it));
-        }
-        for h in half_done(&hunches) {
-            told += 1;
-            let is = |s: &&Sample| {
-                s.clip == SIGNALS[test]
-                    && s.class == name(&h)
-                    && s.start_secs < h.seen_secs
-                    && h.start_secs < s.stop_secs
-            };
-            right += usize::from(samples.iter().any(|s| is(&s)));
-        }
-        if test == 0 {
-            false_unknown = unknown
-                .iter()
-                .map(|c| half_done(&play(&model, c, params)).len())
-                .sum();
-        }
-    }
-    println!(
-        "known at the middle of {all} samples: {known}, recall {:.2}",
-        known as f64 / all as f64
-    );
-    println!(
-        "told as half done or more: {told}, right {right}, precision {:.2}",
-        right as f64 / told as f64
-    );
-    let secs: f64 = unknown.iter().map(|c| c.clip.duration_secs()).sum();
-    println!(
-        "in {:.1} min without the signals: {false_unknown} told",
-        secs / 60.0
-    );
+    println!("referee, by clip: {}", referee(&data, params));
+    println!("sessions, the same person: {}", sessions(&data, params));
 }
 
 fn set(params: &mut EarlyDetectionParams, arg: &str) {
@@ -165,56 +55,176 @@ fn set(params: &mut EarlyDetectionParams, arg: &str) {
     }
 }
 
-fn train(clips: &[TrainClip], samples: &[Sample]) -> TemplateModel {
-    let classes = CLASSES.map(str::to_owned);
-    let labelling = LabelSet {
-        samples,
-        held_back: &[],
-        classes: &classes,
-        unlabelled_is_background: true,
+fn referee(data: &Path, params: EarlyDetectionParams) -> Counts {
+    let labels = Labels::from_path(data.join("referee/labels.tsv")).unwrap();
+    let takes = open_all(data.join("referee/clips")).unwrap().takes;
+    let of = |prefixes: &[&str]| -> Vec<Take> {
+        let is = |take: &&Take| prefixes.iter().any(|p| take.name().starts_with(p));
+        takes.iter().filter(is).cloned().collect()
     };
-    let options = TrainOptions {
-        everyday: Everyday::Auto,
-        ..TrainOptions::default()
-    };
-    train_clips(clips, &labelling, &options, &()).unwrap().0
+    let background = of(&["jumping_", "soccer_", "running_"]);
+    let unknown = of(&["walking_", "basketball_", "traffic_4"]);
+    let signals = of(&["signals_"]);
+    let mut counts = Counts::default();
+    for (number, test) in signals.iter().enumerate() {
+        let others = signals.iter().filter(|take| take.name() != test.name());
+        let others: Vec<Take> = others.cloned().collect();
+        let trainer = Trainer::new().labels(&labels).background(&background);
+        let index = trainer.classes(SIGNALS).train(&others).unwrap();
+        counts.clip(&index, test, &labels, params);
+        for take in unknown.iter().filter(|_| number == 0) {
+            counts.clip(&index, take, &Labels::default(), params);
+        }
+    }
+    counts
+}
+
+fn sessions(data: &Path, params: EarlyDetectionParams) -> Counts {
+    let taught = Labels::from_path(data.join("sessions/teach.tsv")).unwrap();
+    let labels = Labels::from_path(data.join("sessions/labels.tsv")).unwrap();
+    let mut counts = Counts::default();
+    for test in open_all(data.join("sessions/clips")).unwrap().takes {
+        let person = test.name().trim_start_matches("session_");
+        let mut of_person = taught.clone();
+        of_person
+            .rows
+            .retain(|row| row.person.as_deref() == Some(person));
+        let clips = of_person
+            .rows
+            .iter()
+            .flat_map(|row| open(data.join(format!("gestures/clips/{}.bvh", row.clip))).unwrap());
+        let clips: Vec<Take> = clips.collect();
+        let index = Trainer::new().labels(&of_person).train(&clips).unwrap();
+        counts.clip(&index, &test, &labels, params);
+    }
+    counts
+}
+
+/// Sums over clips.
+#[derive(Default)]
+struct Counts {
+    samples: usize,
+    /// Samples whose class is told at their middle.
+    known: usize,
+    /// Motions told as half done, and those of them that are.
+    told: usize,
+    right: usize,
+    /// Those told in clips that hold none of the classes, and the length of these.
+    told_elsewhere: usize,
+    elsewhere_secs: f64,
+}
+
+impl std::fmt::Display for Counts {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let share = |part: usize, of: usize| part as f64 / of.max(1) as f64;
+        write!(
+            f,
+            "{} of {} samples known at the middle (recall {:.2}); {} of {} told as half done are right (precision {:.2})",
+            self.known,
+            self.samples,
+            share(self.known, self.samples),
+            self.right,
+            self.told,
+            share(self.right, self.told)
+        )?;
+        if self.elsewhere_secs > 0.0 {
+            let minutes = self.elsewhere_secs / 60.0;
+            write!(
+                f,
+                "; {} told in {minutes:.1} min without any",
+                self.told_elsewhere
+            )?;
+        }
+        Ok(())
+    }
+}
+
+impl Counts {
+    fn clip(
+        &mut self,
+        index: &MotionIndex,
+        take: &Take,
+        labels: &Labels,
+        params: EarlyDetectionParams,
+    ) {
+        let (clip, name) = (&take.clip, take.name().to_owned());
+        let (frames, rate_hz) = (clip.frames, clip.rate_hz);
+        let lengths = [(name, ClipLength { frames, rate_hz })];
+        let classes = index.model.classes();
+        let mut samples = labels.resolve(&lengths.into()).samples;
+        samples.retain(|sample| classes.iter().any(|class| class.name == sample.class));
+        let early = play(index, take, params);
+        let is = |told: &EarlyDetection, sample: &Sample| {
+            classes[told.class.index()].name == sample.class
+        };
+        let half = half_done(&early);
+        if samples.is_empty() {
+            self.told_elsewhere += half.len();
+            self.elsewhere_secs += clip.duration_secs();
+            return;
+        }
+        for sample in &samples {
+            let middle_secs = 0.5 * (sample.start_secs + sample.stop_secs);
+            let at = early.iter().rev().find(|(t, _)| *t <= middle_secs);
+            // One that began well before the sample is another motion's, perhaps of the same class.
+            let slack_secs = 0.25 * (sample.stop_secs - sample.start_secs);
+            let known = at.and_then(|(_, told)| *told).is_some_and(|told| {
+                is(&told, sample) && told.start_secs > sample.start_secs - slack_secs
+            });
+            self.known += usize::from(known);
+        }
+        self.samples += samples.len();
+        let right = half.iter().filter(|told| {
+            samples.iter().any(|sample| {
+                is(told, sample)
+                    && sample.start_secs < told.seen_secs
+                    && told.start_secs < sample.stop_secs
+            })
+        });
+        self.right += right.count();
+        self.told += half.len();
+    }
 }
 
 /// The early detection after every pose, with the pose's time in seconds.
 fn play(
-    model: &Arc<TemplateModel>,
-    c: &TrainClip,
+    index: &MotionIndex,
+    take: &Take,
     params: EarlyDetectionParams,
 ) -> Vec<(f64, Option<EarlyDetection>)> {
-    let mut recognizer = Recognizer::new(model, bones_of_clip(&c.clip, &c.roles, &c.rest)).unwrap();
+    let Take {
+        clip,
+        roles,
+        report,
+        ..
+    } = take;
+    let bones = bones_of_clip(clip, roles, &report.rest_frames);
+    let mut recognizer = Recognizer::new(&index.model, bones).unwrap();
     recognizer.set_early(params);
     let mut told = Vec::new();
-    for_each_pose(&c.clip, &c.roles, &c.rest, |time_secs, pose| {
+    for_each_pose(clip, roles, &report.rest_frames, |time_secs, pose| {
         recognizer.push(time_secs, pose);
         told.push((time_secs, recognizer.early_detection()));
     });
     told
 }
 
-/// One hunch for every row of hunches of a class, at the moment it is half done.
-fn half_done(hunches: &[(f64, Option<EarlyDetection>)]) -> Vec<EarlyDetection> {
+/// One early detection for every run of them of a class, at the moment it is half done.
+fn half_done(early: &[(f64, Option<EarlyDetection>)]) -> Vec<EarlyDetection> {
     let mut found: Vec<EarlyDetection> = Vec::new();
-    for hunch in hunches
-        .iter()
-        .filter_map(|(_, h)| *h)
-        .filter(|h| h.progress >= 0.5)
-    {
+    let told = early.iter().filter_map(|(_, told)| *told);
+    for told in told.filter(|told| told.progress >= 0.5) {
         let same = |last: &EarlyDetection| {
-            last.class == hunch.class && hunch.seen_secs - last.seen_secs < 0.3
+            last.class == told.class && told.seen_secs - last.seen_secs < 0.3
         };
         match found.last_mut() {
             Some(last) if same(last) => {
                 *last = EarlyDetection {
                     start_secs: last.start_secs,
-                    ..hunch
+                    ..told
                 }
             }
-            _ => found.push(hunch),
+            _ => found.push(told),
         }
     }
     found

@@ -20,16 +20,15 @@ pub struct EarlyDetectionParams {
 }
 
 impl Default for EarlyDetectionParams {
-    /// Chosen on referee signals by `examples/early.rs`: at half of a motion it is known nine times in ten, and of what is
-    /// told as half done an eighth is wrong. With a reach of 1.2 and gates of 1 (0.84 known, 0.04 wrong) other motion
-    /// is hardly ever taken for the beginning of a class.
+    /// Chosen on referee signals and on sessions before a Kinect by `examples/early.rs`; `docs/figures.md` has what they give.
+    /// With a reach of 1.8 and gates of 1.1 no more motions are known at their middle, and more are told that are not there.
     fn default() -> Self {
         Self {
             least_progress: 0.2,
             least_ticks: 2,
-            reach: 1.8,
-            gate: 1.1,
-            rival: 1.1,
+            reach: 0.85,
+            gate: 0.9,
+            rival: 0.9,
             streak: 1,
         }
     }

@@ -55,7 +55,7 @@ fn templates() -> Vec<Group> {
         },
         Group {
             intro: "### Tentative events (`EarlyDetectionParams`)\n\nThese are not stored in the index and cannot be set with \
-                    `--param`. Chosen with `examples/early.rs` on referee signals.",
+                    `--param`. Chosen with `examples/early.rs` on referee signals and sessions before a Kinect.",
             source: include_str!("../../../src/templates/early.rs"),
             name: "EarlyDetectionParams",
             prefix: "EarlyDetectionParams.",
