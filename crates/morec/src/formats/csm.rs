@@ -4,8 +4,8 @@
 //! frame: its number, then x, y and z of every marker. `DROPOUT` stands for a coordinate or a marker that was not seen.
 
 use super::cells::{Decimal, lines, number};
-use super::points::{Point, PointTable, UNSEEN, check_size};
-use super::timing::{self, Clock};
+use super::points::{Point, UNSEEN, check_size};
+use super::timing::{Clock, TimedPoints};
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::math::Vec3;
 use crate::parse_error::shortened;
@@ -33,20 +33,19 @@ pub fn read(
     let body = &rows[heading.rows..];
     check_size(heading.markers.len(), body.len(), bytes.len())?;
     let mut warnings = Vec::new();
-    let (mut points, times) = heading.frames(body, limits, &mut warnings)?;
+    let (points, times) = heading.frames(body, limits, &mut warnings)?;
     let clock = Clock {
         given_hz: rate_hz,
         stated_hz: heading.rate_hz,
         assumed_hz: ASSUMED_HZ,
     };
-    let rate_hz = timing::regular(&times, &clock, &mut points, &mut warnings);
-    let table = PointTable {
+    let timed = TimedPoints {
         points,
-        rate_hz,
+        times_secs: times,
+        clock,
         metres_per_unit: None,
-        zero_is_missing: true,
     };
-    table.into_loaded(name, warnings, limits)
+    timed.into_loaded(name, warnings, limits)
 }
 
 /// Everything above the frames.

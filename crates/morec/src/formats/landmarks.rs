@@ -11,9 +11,9 @@ use std::collections::HashMap;
 
 use serde_json::{Map, Value};
 
-use super::points::{Point, PointTable, UNSEEN, check_size};
+use super::points::{Point, UNSEEN, check_size};
 use super::table::{axis_of, to_seconds};
-use super::timing::{self, Clock};
+use super::timing::{Clock, TimedPoints};
 use super::{Limits, Loaded, ParseError, Place, Warning, json};
 use crate::math::Vec3;
 
@@ -153,14 +153,13 @@ pub fn read(
         stated_hz: rate_in(&document),
         assumed_hz: ASSUMED_HZ,
     };
-    let rate_hz = timing::regular(&times, &clock, &mut points, &mut warnings);
-    let table = PointTable {
+    let timed = TimedPoints {
         points,
-        rate_hz,
+        times_secs: times,
+        clock,
         metres_per_unit: None,
-        zero_is_missing: true,
     };
-    table.into_loaded(name, warnings, limits)
+    timed.into_loaded(name, warnings, limits)
 }
 
 /// The document; several one behind the other, as in lines of JSON, are a list.

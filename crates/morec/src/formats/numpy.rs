@@ -8,8 +8,8 @@ use std::collections::BTreeMap;
 
 use super::builder::ClipBuilder;
 use super::npy::{self, Array};
-use super::points::{BODY_OF_THESE, Point, PointTable, UNSEEN, WITH_HANDS_AND_FACE, check_size};
-use super::timing::{self, Clock};
+use super::points::{BODY_OF_THESE, Point, UNSEEN, WITH_HANDS_AND_FACE, check_size};
+use super::timing::{Clock, TimedPoints};
 use super::{Limits, Loaded, ParseError, Place, Warning, container};
 use crate::clip::Joint;
 use crate::math::{Quat, Vec3, rotation_of_xyzw};
@@ -113,7 +113,7 @@ pub fn read(
     }
     let mut warnings = Vec::new();
     let names = NAMES.iter().find_map(|key| archive.texts.get(*key));
-    let mut points = shape.points(array, names.map(Vec::as_slice), &mut warnings);
+    let points = shape.points(array, names.map(Vec::as_slice), &mut warnings);
     let stated = archive
         .first(&RATE)
         .and_then(|rate| rate.values.first().copied());
@@ -122,19 +122,13 @@ pub fn read(
         stated_hz: stated,
         assumed_hz: ASSUMED_HZ,
     };
-    let rate_hz = timing::regular(
-        &vec![None; shape.frames],
-        &clock,
-        &mut points,
-        &mut warnings,
-    );
-    let table = PointTable {
+    let timed = TimedPoints {
         points,
-        rate_hz,
+        times_secs: vec![None; shape.frames],
+        clock,
         metres_per_unit: None,
-        zero_is_missing: true,
     };
-    table.into_loaded(name, warnings, limits)
+    timed.into_loaded(name, warnings, limits)
 }
 
 /// Arrays found in an archive.

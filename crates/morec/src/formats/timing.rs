@@ -1,7 +1,7 @@
-//! From the times of frames to a fixed rate.
+//! From the times of frames to a fixed rate, and points at these times to clips.
 
-use super::points::{Point, SHORT_GAP_SECS, UNSEEN};
-use super::{Place, Warning};
+use super::points::{Point, PointTable, SHORT_GAP_SECS, UNSEEN};
+use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::math::Vec3;
 
 /// Facts about a file's rate besides the times of its frames.
@@ -13,6 +13,40 @@ pub(super) struct Clock {
     pub(super) stated_hz: Option<f64>,
     /// Taken if nothing says.
     pub(super) assumed_hz: f64,
+}
+
+/// Points of a file in which each frame may have a time.
+#[derive(Debug, Clone)]
+pub(super) struct TimedPoints {
+    pub(super) points: Vec<Point>,
+    /// Time of each frame in seconds, where the file has one.
+    pub(super) times_secs: Vec<Option<f64>>,
+    pub(super) clock: Clock,
+    pub(super) metres_per_unit: Option<f64>,
+}
+
+impl TimedPoints {
+    /// Clips of the points at the rate that times and clock say; a point at the origin was not seen. As
+    /// [`PointTable::into_loaded`].
+    ///
+    /// # Errors
+    /// No point was ever seen, or there are more points than `limits` allow.
+    pub(super) fn into_loaded(
+        mut self,
+        name: &str,
+        mut warnings: Vec<Warning>,
+        limits: &Limits,
+    ) -> Result<Loaded, ParseError> {
+        let (times, points) = (&self.times_secs, &mut self.points);
+        let rate_hz = regular(times, &self.clock, points, &mut warnings);
+        let table = PointTable {
+            points: self.points,
+            rate_hz,
+            metres_per_unit: self.metres_per_unit,
+            zero_is_missing: true,
+        };
+        table.into_loaded(name, warnings, limits)
+    }
 }
 
 /// Warning about a rate given for a file whose keys stand at times.
@@ -107,7 +141,7 @@ impl Schedule {
 
 /// The rate of frames at `times_secs`. Where the times are irregular, `points` are interpolated at regular ones.
 /// O(points × frames).
-pub(super) fn regular(
+fn regular(
     times_secs: &[Option<f64>],
     clock: &Clock,
     points: &mut [Point],

@@ -20,8 +20,8 @@ pub(super) use self::columns::axis_of;
 pub(super) use self::layout::to_seconds;
 use self::layout::{ColumnLayout, TableFrames, TableLine};
 use super::cells::{Decimal, clock, lines, number, split};
-use super::points::{Point, PointTable, UNSEEN, check_size};
-use super::timing::{self, Clock};
+use super::points::{Point, UNSEEN, check_size};
+use super::timing::{Clock, TimedPoints};
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::math::Vec3;
 
@@ -51,7 +51,7 @@ pub fn read(
     let mut warnings = Vec::new();
     // Sections of other measurements may stand above that of positions.
     let section = nexus::layout(&cells).map(TableHeader::Wide);
-    let (mut points, times, layout) = match section.or_else(|| header(head)) {
+    let (points, times, layout) = match section.or_else(|| header(head)) {
         Some(TableHeader::Long(columns)) => long::frames(&columns, &cells, limits)?,
         Some(TableHeader::Wide(layout)) => {
             check_size(layout.points.len(), cells.len(), bytes.len())?;
@@ -71,14 +71,13 @@ pub fn read(
         stated_hz: layout.rate_hz,
         assumed_hz: ASSUMED_HZ,
     };
-    let rate_hz = timing::regular(&times, &clock, &mut points, &mut warnings);
-    let table = PointTable {
+    let timed = TimedPoints {
         points,
-        rate_hz,
+        times_secs: times,
+        clock,
         metres_per_unit: layout.metres_per_unit,
-        zero_is_missing: true,
     };
-    table.into_loaded(name, warnings, limits)
+    timed.into_loaded(name, warnings, limits)
 }
 
 /// Rows among which a header is looked for.

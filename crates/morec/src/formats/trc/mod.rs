@@ -8,9 +8,9 @@ mod write;
 pub use write::write;
 
 use super::cells::{Decimal, lines, number, split};
-use super::points::{Point, PointTable, UNSEEN, check_size, metres_of};
+use super::points::{Point, UNSEEN, check_size, metres_of};
 use super::table::axis_of;
-use super::timing::{self, Clock};
+use super::timing::{Clock, TimedPoints};
 use super::{Limits, Loaded, ParseError, Place, Warning};
 use crate::math::Vec3;
 
@@ -68,7 +68,7 @@ pub fn read(
         .filter(|(_, cells)| !is_axes_row(cells))
         .collect();
     check_size(columns.len(), body.len(), bytes.len())?;
-    let mut table = frames(&columns, &body, limits, &mut warnings)?;
+    let table = frames(&columns, &body, limits, &mut warnings)?;
     if let Some(stated) = heading.frames.filter(|&n| n != table.times.len() as f64) {
         let text = format!(
             "{} frames are there, the header says {stated}",
@@ -81,19 +81,18 @@ pub fn read(
         stated_hz: heading.rate_hz,
         assumed_hz: 60.0,
     };
-    let rate_hz = timing::regular(&table.times, &clock, &mut table.points, &mut warnings);
     let unit = heading.unit.as_deref().and_then(metres_of);
     if unit.is_none() {
         let text = "no known unit of length in the header; the body's height tells it";
         warnings.push(Warning::new(Place::File, text));
     }
-    let table = PointTable {
+    let timed = TimedPoints {
         points: table.points,
-        rate_hz,
+        times_secs: table.times,
+        clock,
         metres_per_unit: unit,
-        zero_is_missing: true,
     };
-    table.into_loaded(name, warnings, limits)
+    timed.into_loaded(name, warnings, limits)
 }
 
 /// The row that names the points, and what separates its cells.
