@@ -81,7 +81,7 @@ impl Default for DecodeParams {
             rest_gate_verified: 0.85,
             rest_spread: 0.5,
             once: true,
-            rival_share: 1.0,
+            rival_share: 1.05,
             rival_ticks: 15,
             rival_overlap: 0.3,
             tail_spread: 0.7,

@@ -240,12 +240,12 @@ fn a_motion_that_overlaps_the_one_before_is_cut_not_lost() {
 
 #[test]
 fn classes_may_have_thresholds_of_their_own() {
-    let mut decoder = Decoder::new(
-        &DecodeParams::default(),
-        CandidatePolicy::Gate { threshold: 1.0 },
-        2,
-        20,
-    );
+    // Two classes at one distance would be rivals.
+    let params = DecodeParams {
+        rival_share: 0.0,
+        ..DecodeParams::default()
+    };
+    let mut decoder = Decoder::new(&params, CandidatePolicy::Gate { threshold: 1.0 }, 2, 20);
     decoder.set_thresholds(&[1.0, 3.0]);
     let mut found = vec![];
     for d in [9.0, 9.0, 9.0, 9.0, 9.0, 2.5, 2.0, 2.5, 9.0, 9.0, 9.0] {

@@ -37,7 +37,7 @@ pub enum Reason {
         /// Distance of the nearest negative template.
         negative: f32,
     },
-    /// Another class is nearer.
+    /// Another class is nearer, or so nearly as near that nothing tells them apart.
     OtherClass {
         /// Name of the class.
         class: String,
@@ -89,7 +89,7 @@ impl Reason {
             Self::Far { .. } => "not near enough",
             Self::Still { .. } => "hardly moves",
             Self::Background { .. } => "background is nearer",
-            Self::OtherClass { .. } => "another class is nearer",
+            Self::OtherClass { .. } => "another class is as near or nearer",
             Self::Refused { .. } => "refused by the verifier",
             Self::Neighbour { .. } => "taken by a neighbour",
             Self::Elsewhere => "ends elsewhere",
@@ -130,7 +130,14 @@ impl fmt::Display for Reason {
                 class,
                 distance,
                 other,
-            } => write!(f, "{class} is nearer: {other:.2} against {distance:.2}"),
+            } => {
+                let near = if other < distance {
+                    "nearer"
+                } else {
+                    "about as near"
+                };
+                write!(f, "{class} is {near}: {other:.2} against {distance:.2}")
+            }
             Self::Refused {
                 score,
                 other,
