@@ -104,6 +104,11 @@ pub const HELP: &[(&str, &str, &str)] = &[
     ),
     ("Live", "0", "it was none of the classes: background"),
     ("Live", "Space, R", "start or stop, record a take"),
+    (
+        "Live",
+        "Left Right, End",
+        "look back in the last minutes, look on, to the present",
+    ),
 ];
 
 /// Reads the keyboard into commands.
@@ -305,6 +310,16 @@ fn zoom(state: &State, factor: f64) -> TimelineCommand {
 }
 
 fn live(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
+    let half = 0.5 * state.live.looking.span_secs;
+    for (key, secs) in [
+        (Key::ArrowLeft, -half),
+        (Key::ArrowRight, half),
+        (Key::End, f64::MAX),
+    ] {
+        if i.consume_key(Modifiers::NONE, key) {
+            out.push(Command::Live(LiveCommand::Back(secs)));
+        }
+    }
     for (slot, key) in CLASS_KEYS.into_iter().enumerate() {
         if i.consume_key(Modifiers::NONE, key) {
             out.push(Command::Live(LiveCommand::Mark(slot)));

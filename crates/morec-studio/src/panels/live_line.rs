@@ -200,7 +200,7 @@ fn draw_seen(ui: &Ui, state: &State, run: &Run, rect: Rect, scale: &Scale, out: 
         let response = ui.interact(bar.intersect(rect), id, Sense::click());
         let name = format!("{} at {:.1} s", seen.class, seen.start_secs);
         widgets::named(&response, WidgetType::Button, name, false);
-        if response.clicked() {
+        if response.on_hover_text(&seen.class).clicked() {
             out.push(Command::Live(LiveCommand::GoTo(extent.0, extent.1)));
         }
     }

@@ -224,6 +224,13 @@ fn the_last_minutes_are_looked_back_at_and_a_detection_is_selected_by_a_click() 
     assert_eq!(person.state().live.range, Some(at));
     person.click("Now");
     assert!(extent(&person).1 >= now(&person));
+    // Keys do the same.
+    person.key(Key::ArrowLeft);
+    person.wait(0.5);
+    assert!(extent(&person).1 < now(&person) - 9.0);
+    person.key(Key::ArrowRight);
+    person.key(Key::End);
+    assert!(extent(&person).1 >= now(&person));
     // The last line of the list is out of view until it is clicked.
     person.click("5 min");
     assert_eq!(extent(&person).1 - extent(&person).0, 300.0);
