@@ -25,6 +25,7 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
             let room = ctx.content_rect().size();
             ScrollArea::vertical()
                 .max_height(room.y - 120.0)
+                .min_scrolled_height(room.y - 120.0)
                 .show(ui, |ui| {
                     ui.spacing_mut().interact_size.y = 0.0;
                     let (first, second) = HELP.split_at(half());
