@@ -47,8 +47,8 @@ pub const HELP: &[(&str, &str, &str)] = &[
         "J  K  L",
         "backwards, stop, forwards; again is faster",
     ),
-    ("Playing", "← →  , .", "a frame back, a frame on"),
-    ("Playing", "Shift ← →", "a second back, a second on"),
+    ("Playing", "Left Right  , .", "a frame back, a frame on"),
+    ("Playing", "Shift Left Right", "a second back, a second on"),
     ("Playing", "Home, End", "to the beginning, to the end"),
     ("Playing", "O", "loop the selected stretch or label"),
     ("Playing", "I", "stay inside the segment between the cuts"),
@@ -69,9 +69,13 @@ pub const HELP: &[(&str, &str, &str)] = &[
         "[  ]",
         "start, stop of the selected label to the playhead",
     ),
-    ("Labels", "Ctrl ← →", "move the selected label by a frame"),
-    ("Labels", "Alt ← →", "move its start by a frame"),
-    ("Labels", "Alt Shift ← →", "move its stop by a frame"),
+    (
+        "Labels",
+        "Ctrl Left Right",
+        "move the selected label by a frame",
+    ),
+    ("Labels", "Alt Left Right", "move its start by a frame"),
+    ("Labels", "Alt Shift Left Right", "move its stop by a frame"),
     ("Labels", "Delete", "remove the selected labels"),
     ("Labels", "Tab, Enter", "go to a label, select it"),
     (
@@ -88,7 +92,7 @@ pub const HELP: &[(&str, &str, &str)] = &[
     ("Cuts", "X", "cut at the playhead"),
     (
         "Cuts",
-        "Ctrl ← →  [ ]",
+        "Ctrl Left Right  [ ]",
         "move the selected cut by a frame, to the playhead",
     ),
     ("Cuts", "Delete", "remove the selected cut"),
@@ -100,6 +104,11 @@ pub const HELP: &[(&str, &str, &str)] = &[
     ),
     ("Live", "0", "it was none of the classes: background"),
     ("Live", "Space, R", "start or stop, record a take"),
+    (
+        "Live",
+        "Left Right, End",
+        "look back in the last minutes, look on, to the present",
+    ),
 ];
 
 /// Reads the keyboard into commands.
@@ -301,6 +310,16 @@ fn zoom(state: &State, factor: f64) -> TimelineCommand {
 }
 
 fn live(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
+    let half = 0.5 * state.live.looking.span_secs;
+    for (key, secs) in [
+        (Key::ArrowLeft, -half),
+        (Key::ArrowRight, half),
+        (Key::End, f64::MAX),
+    ] {
+        if i.consume_key(Modifiers::NONE, key) {
+            out.push(Command::Live(LiveCommand::Back(secs)));
+        }
+    }
     for (slot, key) in CLASS_KEYS.into_iter().enumerate() {
         if i.consume_key(Modifiers::NONE, key) {
             out.push(Command::Live(LiveCommand::Mark(slot)));

@@ -43,17 +43,17 @@ impl ChannelCurve {
         value
     }
 
-    /// The lowest and the highest value that a key or a control point has.
-    pub fn range(&self) -> (f64, f64) {
-        let components = self.components();
-        let all = || {
-            let points = self.curves.iter().flat_map(|c| c.points);
-            points.flat_map(move |p| p.into_iter().take(components))
-        };
-        (
-            all().fold(f64::MAX, f64::min),
-            all().fold(f64::MIN, f64::max),
-        )
+    /// The middle of each component, and the extent of the one that varies most, over keys and control points.
+    pub fn middles(&self) -> ([f64; 4], f64) {
+        let (mut middles, mut extent) = ([0.0; 4], 0.0f64);
+        for (component, middle) in middles.iter_mut().enumerate().take(self.components()) {
+            let points = || self.curves.iter().flat_map(|c| c.points);
+            let low = points().map(|p| p[component]).fold(f64::MAX, f64::min);
+            let high = points().map(|p| p[component]).fold(f64::MIN, f64::max);
+            *middle = 0.5 * (low + high);
+            extent = extent.max(high - low);
+        }
+        (middles, extent)
     }
 }
 
@@ -109,6 +109,8 @@ mod tests {
         };
         assert_eq!(channel.value(&curve, 0.0)[..3], curve.points[0][..3]);
         assert_eq!(channel.value(&curve, 1.0)[..3], curve.points[3][..3]);
-        assert_eq!(channel.range(), (-1.0, 2.0));
+        let (middles, extent) = channel.middles();
+        assert_eq!(middles, [0.5, 1.5, -0.5, 0.0]);
+        assert_eq!(extent, 1.0, "of the one that varies most");
     }
 }

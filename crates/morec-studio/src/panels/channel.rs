@@ -63,10 +63,11 @@ pub fn curve(ui: &mut Ui, state: &State, scale: &Scale) {
 
 fn draw(ui: &Ui, rect: Rect, scale: &Scale, channel: &ChannelCurve, c: &Colours) {
     let painter = ui.painter_at(rect);
-    let (low, high) = channel.range();
-    let y = |value: f64| {
-        let share = (value - low) / (high - low).max(1e-9);
-        rect.bottom() - 5.0 - share as f32 * (rect.height() - 10.0)
+    // Each component about its middle, all on one scale: a quaternion has one near 1 and others near 0.
+    let (middles, extent) = channel.middles();
+    let y = |component: usize, value: f64| {
+        let share = (value - middles[component]) / extent.max(1e-9);
+        rect.center().y - share as f32 * (rect.height() - 10.0)
     };
     let colours = [c.bad, c.good, c.accent, c.muted];
     let seen = channel
@@ -82,14 +83,15 @@ fn draw(ui: &Ui, rect: Rect, scale: &Scale, channel: &ChannelCurve, c: &Colours)
             let t = step as f64 / steps as f64;
             let value = channel.value(curve, t);
             let x = left + (right - left) * t as f32;
-            for (line, value) in lines.iter_mut().zip(value).take(channel.components()) {
-                line.push(pos2(x, y(value)));
+            let components = lines.iter_mut().zip(value).enumerate();
+            for (component, (line, value)) in components.take(channel.components()) {
+                line.push(pos2(x, y(component, value)));
             }
         }
         for (component, colour) in colours.iter().enumerate().take(channel.components()) {
             let at = |place: usize| {
                 let x = left + (right - left) * place as f32 / 3.0;
-                pos2(x, y(curve.points[place][component]))
+                pos2(x, y(component, curve.points[place][component]))
             };
             if right - left > HANDLES {
                 let thin = Stroke::new(0.7, colour.gamma_multiply(0.6));

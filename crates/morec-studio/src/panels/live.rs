@@ -14,6 +14,9 @@ use crate::state::live::Choice;
 use crate::state::{Command, LiveCommand, State};
 use crate::theme::Colours;
 
+/// Clips in the list of sources.
+const LISTED: usize = 500;
+
 pub fn show(ctx: &Context, state: &State, out: Out) {
     let c = Colours::of(state.dark);
     TopBottomPanel::bottom("minutes")
@@ -40,7 +43,7 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
         .width_range(230.0..=380.0)
         .show(ctx, |ui| {
             teach::show(ui, state, out);
-            teach::recognised(ui, state);
+            teach::recognised(ui, state, out);
         });
     CentralPanel::default()
         .frame(padded(&c))
@@ -113,7 +116,14 @@ fn clip_choice(
         .width(ui.available_width() - 8.0)
         .selected_text(text);
     let combo = combo.show_ui(ui, |ui| {
-        for clip in store.snapshot.clips.iter().take(500) {
+        if ui
+            .selectable_label(chosen.is_none(), "The clip that is shown")
+            .clicked()
+        {
+            live(LiveCommand::Choose(Choice::Clip(None)));
+        }
+        // More would have no place in a list: the library finds them.
+        for clip in store.snapshot.clips.iter().take(LISTED) {
             let on = now.is_some_and(|n| n.id == clip.id);
             if ui.selectable_label(on, &clip.name).clicked() {
                 live(LiveCommand::Choose(Choice::Clip(Some(clip.id))));
@@ -121,6 +131,11 @@ fn clip_choice(
         }
     });
     widgets::named(&combo.response, WidgetType::ComboBox, "Clip to play", false);
+    if store.snapshot.clips.len() > LISTED {
+        let more = store.snapshot.clips.len() - LISTED;
+        let text = format!("{} more: show one in the library", format::grouped(more));
+        ui.colored_label(Colours::now(ui).muted, text);
+    }
 }
 
 fn record(ui: &mut Ui, state: &State, live: &mut impl FnMut(LiveCommand)) {
@@ -233,10 +248,11 @@ fn sensitivity(ui: &mut Ui, state: &State, out: Out) {
             .size(11.0)
             .color(c.muted),
     );
-    if let Some(found) = &state.live.resensed {
+    if let Some(resensed) = &state.live.resensed {
         let text = format!(
-            "In the minutes below it would have found {}.",
-            format::count(found.len(), "motion")
+            "At {:.2} it would have found {} in the minutes below.",
+            resensed.alarms,
+            format::count(resensed.found.len(), "motion")
         );
         ui.label(RichText::new(text).size(12.0));
     }

@@ -6,12 +6,10 @@ use super::scale::Scale;
 use super::{Out, curves, widgets};
 use crate::format;
 use crate::jobs::teach::Meaning;
-use crate::state::live::Run;
+use crate::state::live::{Run, SPANS};
 use crate::state::{Command, LiveCommand, State};
 use crate::theme::Colours;
 
-/// Length of the timeline, seconds.
-const SHOWN_SECS: f64 = 60.0;
 const NAMES: f32 = 100.0;
 
 pub fn show(ui: &mut Ui, state: &State, out: Out) {
@@ -24,7 +22,8 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
         return;
     };
     ui.horizontal(|ui| {
-        widgets::section(ui, "THE LAST MINUTE");
+        widgets::section(ui, "THE LAST MINUTES");
+        spans(ui, state, out);
         if let Some((start, stop)) = state.live.range {
             ui.label(RichText::new(format!("{:.2} s selected", stop - start)).color(c.muted));
             if ui.small_button("Clear").clicked() {
@@ -41,14 +40,15 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
         }
     });
     let area = ui.available_rect_before_wrap();
-    let to = run.now_secs.max(SHOWN_SECS);
+    let (from, to) = state.live.looking.extent(run.now_secs);
     let scale = Scale {
         left: area.left() + NAMES,
         width: area.width() - NAMES - 8.0,
-        from: to - SHOWN_SECS,
+        from,
         to,
     };
     ground(ui, area, &scale, out);
+    navigate(ui, area, state, &scale, out);
     let height = area.height() - 20.0;
     let band = |from: f32, to: f32| {
         Rect::from_min_max(
@@ -70,7 +70,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
         widgets::text_in(ui, text, name, 12.0, c.muted, false);
     }
     draw_movement(ui, run, movement, &scale, &c);
-    draw_seen(ui, state, run, seen, &scale, &c);
+    draw_seen(ui, state, run, seen, &scale, out);
     draw_marks(ui, state, marks, &scale, &c);
     ruler(ui, area, &scale, run.now_secs, &c);
     if let Some((start, stop)) = state.live.range {
@@ -83,13 +83,56 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
     }
 }
 
+/// How much is shown, and buttons that look back.
+fn spans(ui: &mut Ui, state: &State, out: Out) {
+    let looking = &state.live.looking;
+    let mut live = |command| out.push(Command::Live(command));
+    for (secs, name) in SPANS {
+        let on = (looking.span_secs - secs).abs() < 0.5;
+        if ui.selectable_label(on, name).clicked() {
+            live(LiveCommand::Span(secs));
+        }
+    }
+    let half = 0.5 * looking.span_secs;
+    let moves = [
+        ("◀", "Look back", -half, true),
+        ("▶", "Look on", half, looking.until_secs.is_some()),
+        ("▶|", "Now", f64::MAX, looking.until_secs.is_some()),
+    ];
+    for (text, name, secs, on) in moves {
+        let response = ui.add_enabled(on, egui::Button::new(text).small());
+        response.widget_info(|| egui::WidgetInfo::labeled(WidgetType::Button, on, name));
+        if response.on_hover_text(name).clicked() {
+            live(LiveCommand::Back(secs));
+        }
+    }
+    ui.separator();
+}
+
+/// The wheel shows more or less, Shift and the wheel look back.
+fn navigate(ui: &Ui, area: Rect, state: &State, scale: &Scale, out: Out) {
+    let pointer = ui.input(|i| i.pointer.hover_pos());
+    if !pointer.is_some_and(|at| area.contains(at)) {
+        return;
+    }
+    let (scroll, shift) = ui.input(|i| (i.smooth_scroll_delta, i.modifiers.shift));
+    let sideways = scroll.x + if shift { scroll.y } else { 0.0 };
+    if sideways != 0.0 {
+        let secs = -f64::from(sideways) / scale.points_per_sec();
+        out.push(Command::Live(LiveCommand::Back(secs)));
+    } else if scroll.y != 0.0 {
+        let span = state.live.looking.span_secs * (-f64::from(scroll.y) * 0.004).exp();
+        out.push(Command::Live(LiveCommand::Span(span)));
+    }
+}
+
 fn ground(ui: &mut Ui, area: Rect, scale: &Scale, out: Out) {
     let rect = Rect::from_min_max(
         pos2(scale.left, area.top()),
         pos2(scale.right(), area.bottom()),
     );
     let response = ui.allocate_rect(rect, Sense::click_and_drag());
-    widgets::named(&response, WidgetType::Other, "The last minute", false);
+    widgets::named(&response, WidgetType::Other, "The last minutes", false);
     // The ground moves under the pointer: where the drag began is remembered as a time.
     let id = response.id.with("begun");
     let at = response.interact_pointer_pos().map(|p| scale.secs(p.x));
@@ -111,13 +154,14 @@ fn ground(ui: &mut Ui, area: Rect, scale: &Scale, out: Out) {
 
 fn draw_movement(ui: &Ui, run: &Run, rect: Rect, scale: &Scale, c: &Colours) {
     // Frames of live sources come unevenly: each second has as many values as came in it.
-    let mut values = Vec::with_capacity((SHOWN_SECS * 30.0) as usize);
+    let ticks = ((scale.to - scale.from) * 30.0) as usize;
+    let mut values = Vec::with_capacity(ticks);
     let Some(performer) = run.watched() else {
         return;
     };
     let (frames, speeds) = (&performer.frames, &performer.speeds);
     let mut frame = frames.partition_point(|f| f.time_secs < scale.from);
-    for tick in 0..(SHOWN_SECS * 30.0) as usize {
+    for tick in 0..ticks {
         let until = scale.from + (tick + 1) as f64 / 30.0;
         let mut most = 0f32;
         while frame < frames.len() && frames[frame].time_secs < until {
@@ -137,7 +181,8 @@ fn draw_movement(ui: &Ui, run: &Run, rect: Rect, scale: &Scale, c: &Colours) {
     );
 }
 
-fn draw_seen(ui: &Ui, state: &State, run: &Run, rect: Rect, scale: &Scale, c: &Colours) {
+fn draw_seen(ui: &Ui, state: &State, run: &Run, rect: Rect, scale: &Scale, out: Out) {
+    let c = &Colours::now(ui);
     let painter = ui.painter_at(rect);
     let watched = run.watched().map(|w| w.actor);
     let shown = run
@@ -145,14 +190,22 @@ fn draw_seen(ui: &Ui, state: &State, run: &Run, rect: Rect, scale: &Scale, c: &C
         .iter()
         .rev()
         .filter(|s| Some(s.actor) == watched)
-        .take_while(|s| s.stop_secs > scale.from - 10.0);
+        .take_while(|s| s.stop_secs > scale.from - 10.0)
+        .filter(|s| s.start_secs < scale.to && s.stop_secs > scale.from);
     for seen in shown {
         let colour = c.class(state.classes.place(&seen.class));
         let extent = (seen.start_secs, seen.stop_secs);
-        bar(&painter, rect, scale, extent, &seen.class, colour, c);
+        let bar = bar(&painter, rect, scale, extent, &seen.class, colour, c);
+        let id = ui.id().with(("seen", extent.0.to_bits(), &seen.class));
+        let response = ui.interact(bar.intersect(rect), id, Sense::click());
+        let name = format!("{} at {:.1} s", seen.class, seen.start_secs);
+        widgets::named(&response, WidgetType::Button, name, false);
+        if response.on_hover_text(&seen.class).clicked() {
+            out.push(Command::Live(LiveCommand::GoTo(extent.0, extent.1)));
+        }
     }
     // What another sensitivity would have found, as outlines around it.
-    let would = state.live.resensed.iter().flatten();
+    let would = state.live.resensed.iter().flat_map(|r| &r.found);
     let index = state.live.index();
     for found in would.filter(|d| d.stop_secs > scale.from) {
         let name = index.map_or("", |index| index.model.class_name(found.class));
@@ -195,7 +248,7 @@ fn bar(
     name: &str,
     colour: egui::Color32,
     c: &Colours,
-) {
+) -> Rect {
     let bar = Rect::from_x_y_ranges(
         scale.x(at.0)..=scale.x(at.1).max(scale.x(at.0) + 2.0),
         rect.top() + 2.0..=rect.bottom() - 2.0,
@@ -206,16 +259,23 @@ fn bar(
     job.wrap = egui::text::TextWrapping::truncate_at_width((bar.width() - 6.0).max(1.0));
     let galley = painter.layout_job(job);
     // A letter and the dots say nothing.
-    if bar.width() > 24.0 {
+    if !galley.elided || bar.width() > 48.0 {
         painter.galley(bar.center() - galley.size() / 2.0, galley, c.on_class());
     }
+    bar
 }
 
 fn ruler(ui: &Ui, area: Rect, scale: &Scale, now: f64, c: &Colours) {
     let painter = ui.painter_at(area);
-    for ago in [0.0, 10.0, 20.0, 30.0, 40.0, 50.0] {
+    // Six marks or so, whatever is shown.
+    let every = ((scale.to - scale.from) / 6.0).max(1.0).round();
+    for place in 0..400 {
+        let ago = every * f64::from(place);
         let x = scale.x(now - ago);
         if x < scale.left {
+            break;
+        }
+        if x > scale.right() + 1.0 {
             continue;
         }
         let text = if ago == 0.0 {

@@ -87,7 +87,7 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
 }
 
 /// The motion that may be under way, and the detections, the last first.
-pub fn recognised(ui: &mut Ui, state: &State) {
+pub fn recognised(ui: &mut Ui, state: &State, out: Out) {
     let c = Colours::now(ui);
     widgets::section(ui, "RECOGNISED");
     let Some(run) = &state.live.run else {
@@ -130,13 +130,17 @@ pub fn recognised(ui: &mut Ui, state: &State) {
                 ui.horizontal(|ui| {
                     ui.set_height(24.0);
                     widgets::chip(ui, state.classes.place(&seen.class), &seen.class);
-                    let name = ui.label(&seen.class);
-                    widgets::named(
-                        &name,
-                        WidgetType::Label,
-                        format!("Recognised {}", seen.class),
-                        false,
-                    );
+                    let name = ui.add(egui::Button::new(&seen.class).frame(false));
+                    let called = format!("Recognised {}", seen.class);
+                    widgets::named(&name, WidgetType::Button, called, false);
+                    if name
+                        .on_hover_text("Select it in the last minutes")
+                        .clicked()
+                    {
+                        out.push(Command::Live(LiveCommand::Watch(seen.actor)));
+                        let extent = (seen.start_secs, seen.stop_secs);
+                        out.push(Command::Live(LiveCommand::GoTo(extent.0, extent.1)));
+                    }
                     let who = match run.performers.len() > 1 {
                         true => format!("{} · ", seen.actor.0 + 1),
                         false => String::new(),

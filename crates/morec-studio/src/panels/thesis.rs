@@ -67,9 +67,10 @@ fn node(ui: &mut Ui, state: &State, thesis: &Thesis, at: usize, depth: usize, ou
                     branch.sides[0].join(", "),
                     branch.sides[1].join(", ")
                 );
-                let response = ui.add(egui::Button::selectable(on, text).truncate());
+                let response = ui.add(egui::Button::selectable(on, &text).truncate());
                 widgets::named(&response, WidgetType::Button, format!("Branch {at}"), on);
-                if response.clicked() {
+                // Names of many classes are cut off.
+                if response.on_hover_text(text).clicked() {
                     out.push(Command::Train(TrainCommand::Branch(at)));
                 }
             });

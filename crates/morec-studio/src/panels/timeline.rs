@@ -84,6 +84,14 @@ fn tools(ui: &mut Ui, state: &State, out: Out) {
         {
             timeline(TimelineCommand::Snap(!state.timeline.snap));
         }
+        if tracks::are_many(state)
+            && ui
+                .selectable_label(state.timeline.all_classes, "All classes")
+                .on_hover_text("A track for each class, not only for those in this clip")
+                .clicked()
+        {
+            timeline(TimelineCommand::AllClasses(!state.timeline.all_classes));
+        }
         ui.separator();
         ui.menu_button("Cut all clips", |ui| {
             if ui.button("By kernel change points").clicked() {

@@ -10,6 +10,8 @@ use crate::state::{Command, Drag, Grip, PlayCommand, State, TimelineCommand};
 use crate::theme::Colours;
 
 pub(super) const ROW: f32 = 19.0;
+/// More classes than these do not all have a track.
+const MANY: usize = 8;
 /// Labels narrower than this cannot be held; those that touch are drawn as one.
 const NARROW: f32 = 6.0;
 /// Width of the part at each end of a label by which it is held, points.
@@ -100,7 +102,12 @@ pub fn labels(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
         track(ui, state, scale, "Labels", ROW, None, Some(out));
         return;
     }
+    let mut drawn = 0;
     for (place, class) in state.classes.order.iter().enumerate() {
+        if !has_track(state, place, class) {
+            continue;
+        }
+        drawn += 1;
         let colour = c.class(Some(place));
         let tracks = track(ui, state, scale, class, ROW, Some(colour), Some(out));
         if !ui.is_rect_visible(tracks) {
@@ -118,6 +125,24 @@ pub fn labels(ui: &mut Ui, state: &State, scale: &Scale, out: Out) {
         row.flush();
         ui.painter_at(tracks).add(Shape::mesh(row.mesh));
     }
+    if drawn == 0 {
+        track(ui, state, scale, "Labels", ROW, None, Some(out));
+    }
+}
+
+/// True if so many classes leave no room for the other tracks.
+pub(super) fn are_many(state: &State) -> bool {
+    state.classes.order.len() > MANY
+}
+
+/// True if a class has a track: of many, those that the clip shows, and the one whose key is held.
+fn has_track(state: &State, place: usize, class: &str) -> bool {
+    let held = state.classes.held.as_ref().is_some_and(|h| h.slot == place);
+    let shows = |s: &DbSample| s.class == class && s.state != Judged::Rejected;
+    !are_many(state)
+        || state.timeline.all_classes
+        || held
+        || state.shown_samples().iter().any(shows)
 }
 
 /// The narrow labels of a row, drawn as one mesh; those that touch as one.

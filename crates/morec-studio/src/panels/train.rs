@@ -16,6 +16,8 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
         .default_width(220.0)
         .width_range(180.0..=320.0)
         .show(ctx, |ui| {
+            // Above the lists, which scroll when there are many classes.
+            buttons(ui, state, out);
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 choose(ui, state, out);
                 indexes(ui, state, out);
@@ -47,26 +49,11 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
     });
 }
 
-fn choose(ui: &mut Ui, state: &State, out: Out) {
+fn buttons(ui: &mut Ui, state: &State, out: Out) {
     let c = Colours::now(ui);
-    let Some(store) = &state.store else { return };
-    widgets::section(ui, "LEARN");
-    if store.snapshot.classes.is_empty() {
-        ui.colored_label(c.muted, "No class has a label yet.");
+    if state.store.is_none() {
+        return;
     }
-    for class in &store.snapshot.classes {
-        let mut on = !state.train.without.contains(&class.name);
-        ui.horizontal(|ui| {
-            if ui.checkbox(&mut on, &class.name).changed() {
-                let class = class.name.clone();
-                out.push(Command::Train(TrainCommand::Choose { class, on }));
-            }
-            let colour = if class.accepted < 3 { c.warn } else { c.muted };
-            ui.colored_label(colour, class.accepted.to_string());
-        });
-    }
-    background::list(ui, state, out);
-    ui.add_space(6.0);
     let label = if state.is_training() {
         "Training …"
     } else {
@@ -90,6 +77,28 @@ fn choose(ui: &mut Ui, state: &State, out: Out) {
     {
         out.push(Command::Train(TrainCommand::Judge));
     }
+    ui.add_space(4.0);
+}
+
+fn choose(ui: &mut Ui, state: &State, out: Out) {
+    let c = Colours::now(ui);
+    let Some(store) = &state.store else { return };
+    widgets::section(ui, "LEARN");
+    if store.snapshot.classes.is_empty() {
+        ui.colored_label(c.muted, "No class has a label yet.");
+    }
+    for class in &store.snapshot.classes {
+        let mut on = !state.train.without.contains(&class.name);
+        ui.horizontal(|ui| {
+            if ui.checkbox(&mut on, &class.name).changed() {
+                let class = class.name.clone();
+                out.push(Command::Train(TrainCommand::Choose { class, on }));
+            }
+            let colour = if class.accepted < 3 { c.warn } else { c.muted };
+            ui.colored_label(colour, class.accepted.to_string());
+        });
+    }
+    background::list(ui, state, out);
     teach_next(ui, state);
 }
 

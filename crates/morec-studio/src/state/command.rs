@@ -172,6 +172,8 @@ pub enum TimelineCommand {
     },
     Range(Option<(f64, f64)>),
     Snap(bool),
+    /// A track for each class.
+    AllClasses(bool),
     /// Takes hold of a label.
     Grab(super::timeline::Drag),
     /// The pointer that holds it is at a moment.

@@ -14,6 +14,7 @@ pub struct Layout {
     pub dark: bool,
     pub strips: bool,
     pub snap: bool,
+    pub all_classes: bool,
     pub onion: bool,
     pub follow: bool,
     pub mirror: bool,
@@ -30,6 +31,7 @@ impl Default for Layout {
             dark: true,
             strips: false,
             snap: true,
+            all_classes: false,
             onion: false,
             follow: true,
             mirror: false,
@@ -48,6 +50,7 @@ impl State {
             dark: self.dark,
             strips: self.library.strips,
             snap: self.timeline.snap,
+            all_classes: self.timeline.all_classes,
             onion: self.onion,
             follow: self.camera.follow,
             mirror: self.classes.mirror,
@@ -63,6 +66,7 @@ impl State {
         self.dark = layout.dark;
         self.library.strips = layout.strips;
         self.timeline.snap = layout.snap;
+        self.timeline.all_classes = layout.all_classes;
         self.onion = layout.onion;
         self.camera.follow = layout.follow;
         self.classes.mirror = layout.mirror;

@@ -45,6 +45,8 @@ pub struct TimelineState {
     pub cut: Option<f64>,
     pub held_cut: Option<HeldCut>,
     pub snap: bool,
+    /// A track for each class, though there are many; else for those that the clip shows.
+    pub all_classes: bool,
     /// Width of the tracks, points; known once it was drawn.
     pub width: f32,
     /// True if the view follows the playhead.
@@ -62,6 +64,7 @@ impl Default for TimelineState {
             cut: None,
             held_cut: None,
             snap: true,
+            all_classes: false,
             width: 800.0,
             follow: true,
         }

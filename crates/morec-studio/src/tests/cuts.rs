@@ -3,7 +3,7 @@
 use egui::{Key, Modifiers, vec2};
 
 use super::{Person, made};
-use crate::state::{Command, CutCommand, Panel, PlayCommand};
+use crate::state::{ClassCommand, Command, CutCommand, Panel, PlayCommand};
 
 fn labelling() -> (tempfile::TempDir, Person) {
     let folder = tempfile::tempdir().unwrap();
@@ -111,6 +111,29 @@ fn a_cut_is_made_at_the_playhead_and_moved_by_keys() {
     assert_eq!(person.state().cuts().len(), found.len() + 1);
     person.undo();
     assert_eq!(person.state().cuts(), found);
+}
+
+#[test]
+fn of_many_classes_those_of_the_clip_have_a_track() {
+    let (_folder, mut person) = labelling();
+    let class = |n: usize| Command::Classes(ClassCommand::Add(format!("other {n}")));
+    let few = person.state().classes.order.len();
+    assert!((1..=8).contains(&few));
+    (few..8).for_each(|n| person.command(class(n)));
+    assert!(person.offers("Track other 7") && !person.offers("All classes"));
+    person.command(class(8));
+    let labelled = person.state().shown_samples()[0].class.clone();
+    assert!(!person.offers("Track other 7") && person.offers(&format!("Track {labelled}")));
+    person.click("All classes");
+    assert!(person.offers("Track other 7") && person.offers("Track other 8"));
+    person.click("All classes");
+    assert!(!person.offers("Track other 8"));
+    // A label in the clip brings the track of its class.
+    person.key(Key::Space);
+    person.hold(Key::Num8, 0.6);
+    person.key(Key::K);
+    person.settle();
+    assert!(person.offers("Track other 7"));
 }
 
 #[test]

@@ -4,7 +4,7 @@ use egui::Key;
 
 use super::{Person, made, takes};
 use crate::state::live::Choice;
-use crate::state::{Command, LiveCommand, Panel};
+use crate::state::{Command, LiveCommand, Panel, TrainCommand};
 
 #[test]
 fn what_just_happened_is_marked_learned_and_recognised_and_undone() {
@@ -190,6 +190,92 @@ fn two_performers_are_seen_either_is_watched_and_a_lost_sender_is_said() {
 }
 
 #[test]
+fn the_last_minutes_are_looked_back_at_and_a_detection_is_selected_by_a_click() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 2)]);
+    person.command(Command::Train(TrainCommand::Train));
+    person.goes_to(Panel::Live);
+    person.key(Key::Space);
+    person.settle();
+    let now = |person: &Person| person.state().live.now_secs();
+    while now(&person) < 65.0 {
+        person.frames(1);
+    }
+    let extent = |person: &Person| person.state().live.looking.extent(now(person));
+    assert!(extent(&person).0 > 4.0, "{:?}", extent(&person));
+    // The first detection is no longer in view: its line in the list brings it there.
+    let run = person.state().live.run.as_ref().unwrap();
+    let seen: Vec<_> = run
+        .seen
+        .iter()
+        .map(|s| (s.start_secs, s.stop_secs))
+        .collect();
+    person.click("20 s");
+    person.click("Look back");
+    let held = extent(&person);
+    person.wait(1.0);
+    assert_eq!(extent(&person), held, "the view stands still");
+    let inside = |at: &(f64, f64)| held.0 < at.0 && at.1 < held.1;
+    let at = seen.iter().find(|at| inside(at)).copied().unwrap();
+    let run = person.state().live.run.as_ref().unwrap();
+    let found = run.seen.iter().find(|s| s.start_secs == at.0).unwrap();
+    let name = format!("{} at {:.1} s", found.class, found.start_secs);
+    person.click(&name);
+    assert_eq!(person.state().live.range, Some(at));
+    person.click("Now");
+    assert!(extent(&person).1 >= now(&person));
+    // Keys do the same.
+    person.key(Key::ArrowLeft);
+    person.wait(0.5);
+    assert!(extent(&person).1 < now(&person) - 9.0);
+    person.key(Key::ArrowRight);
+    person.key(Key::End);
+    assert!(extent(&person).1 >= now(&person));
+    // The last line of the list is out of view until it is clicked.
+    person.click("5 min");
+    assert_eq!(extent(&person).1 - extent(&person).0, 300.0);
+    let last = person
+        .state()
+        .live
+        .run
+        .as_ref()
+        .unwrap()
+        .seen
+        .last()
+        .cloned()
+        .unwrap();
+    person.click(&format!("Recognised {}", last.class));
+    let range = person.state().live.range.unwrap();
+    let run = person.state().live.run.as_ref().unwrap();
+    assert!(
+        run.seen
+            .iter()
+            .any(|s| (s.start_secs, s.stop_secs) == range && s.class == last.class)
+    );
+    person.click("Stop");
+}
+
+#[test]
+fn the_sensitivity_that_is_shown_last_is_the_one_that_is_tried() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 2)]);
+    person.command(Command::Train(TrainCommand::Train));
+    person.goes_to(Panel::Live);
+    person.key(Key::Space);
+    person.settle();
+    while person.state().live.now_secs() < takes()[0].clip.duration_secs() - 0.5 {
+        person.frames(1);
+    }
+    let sense = |alarms| Command::Live(LiveCommand::Sensitivity(alarms));
+    // Two values at once: the first is still being tried when the second is chosen.
+    person.window.state_mut().state.apply(sense(0.03));
+    person.command(sense(2.0));
+    let alarms = person.state().live.resensed.as_ref().map(|r| r.alarms);
+    assert_eq!(alarms, Some(2.0));
+    assert!(person.sees_part("At 2.00 it would have found"));
+}
+
+#[test]
 fn the_sensitivity_shows_what_the_minutes_would_have_held() {
     let folder = tempfile::tempdir().unwrap();
     let mut person = Person::before(&[made(folder.path(), 2)]);
@@ -208,10 +294,10 @@ fn the_sensitivity_shows_what_the_minutes_would_have_held() {
     let at = |share: f32| egui::pos2(slider.left() + share * slider.width(), slider.center().y);
     person.drag(at(0.5), at(0.05));
     person.settle();
-    let few = person.state().live.resensed.as_ref().unwrap().len();
+    let few = person.state().live.resensed.as_ref().unwrap().found.len();
     person.drag(at(0.1), at(0.95));
     person.settle();
-    let many = person.state().live.resensed.as_ref().unwrap().len();
+    let many = person.state().live.resensed.as_ref().unwrap().found.len();
     assert!(few <= many && many > 0, "{few} {many}");
     assert!(person.sees_part("would have found"));
 }

@@ -133,6 +133,15 @@ impl Person {
             .is_some()
     }
 
+    /// True if the fonts have a shape for every letter.
+    pub fn can_draw(&self, text: &str) -> bool {
+        let font = egui::FontId::proportional(13.0);
+        let letters = text.replace('\n', "");
+        self.window
+            .ctx
+            .fonts_mut(|fonts| fonts.has_glyphs(&font, &letters))
+    }
+
     /// Place of the widget of this name; of a text only if no other widget has the name.
     pub fn place(&self, name: &str) -> Rect {
         let found = self.window.query_all_by_label(name);

@@ -2,7 +2,7 @@
 
 use super::{Person, made};
 use crate::jobs::thesis::{GRID, TreeNodeView};
-use crate::state::{Command, Panel};
+use crate::state::{Command, LibraryCommand, Panel, TimelineCommand};
 use crate::store::Edit;
 
 #[test]
@@ -166,4 +166,25 @@ fn the_method_of_2009_shows_its_branches_and_its_map() {
     assert!(person.sees("Map of confidences"));
     let map = person.state().train.map.as_ref().unwrap();
     assert!(map.cells.iter().any(|cell| cell.0 > 0));
+}
+
+#[test]
+fn training_is_in_reach_in_a_small_window_with_many_classes() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 1)]);
+    let clip = person.state().player.motion.as_ref().unwrap().id;
+    for n in 0..20 {
+        let range = (f64::from(n), f64::from(n) + 0.5);
+        person.command(Command::Library(LibraryCommand::Open(clip)));
+        person.command(Command::Timeline(TimelineCommand::Range(Some(range))));
+        let class = format!("class {n:02}");
+        person.command(Command::Timeline(TimelineCommand::LabelRange(class)));
+    }
+    person.window.set_size(egui::vec2(1280.0, 720.0));
+    person.goes_to(Panel::Train);
+    person.frames(5);
+    for name in ["Start training", "Cross-validate"] {
+        let place = person.place(name);
+        assert!(place.bottom() < 690.0, "{name}: {place}");
+    }
 }

@@ -1,9 +1,10 @@
 //! The view and the player, by buttons and keys.
 
 use egui::{Key, Modifiers};
+use egui_kittest::kittest::NodeT;
 
 use super::{Person, made};
-use crate::state::{Command, Panel, PlayCommand};
+use crate::state::{Command, Panel, PlayCommand, TrainCommand};
 
 fn labelling() -> (tempfile::TempDir, Person) {
     let folder = tempfile::tempdir().unwrap();
@@ -129,6 +130,43 @@ fn panels_pages_and_themes_are_reached_by_keys_and_buttons() {
     assert!(!person.state().dark);
     person.click("Dark theme");
     assert!(person.state().dark);
+}
+
+#[test]
+fn the_page_of_keys_has_room_in_a_small_window_and_a_shape_for_each_letter() {
+    let (_folder, mut person) = labelling();
+    person.window.set_size(egui::vec2(1280.0, 720.0));
+    person.key(Key::F1);
+    person.frames(10);
+    let page = person.window.ctx.memory(|m| m.area_rect("Keys")).unwrap();
+    assert!(page.width() < 1280.0 && page.height() < 720.0, "{page}");
+    for (area, keys, what) in crate::keys::HELP {
+        for text in [area, keys, what] {
+            assert!(person.can_draw(text), "{text} has a letter without a shape");
+        }
+        let place = person.place(what);
+        assert!(page.contains_rect(place), "{what}: {place} in {page}");
+    }
+}
+
+#[test]
+fn each_letter_that_is_shown_has_a_shape() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[super::made(folder.path(), 2)]);
+    person.command(Command::Train(TrainCommand::Train));
+    // Signs on buttons and in painted texts, whose names are others.
+    assert!(person.can_draw("⏷⏶⏺⏮⏸▶◀🔁☀🌙⟳⟲✔✖⚠•−×…“”–·"));
+    for panel in Panel::ALL {
+        person.goes_to(panel);
+        person.frames(3);
+        let shown = person.window.root().children_recursive();
+        let texts = shown.filter_map(|node| node.accesskit_node().label());
+        let texts: Vec<String> = texts.collect();
+        assert!(texts.len() > 10);
+        for text in texts {
+            assert!(person.can_draw(&text), "{panel:?}: {text}");
+        }
+    }
 }
 
 #[test]

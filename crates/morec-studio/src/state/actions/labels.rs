@@ -63,6 +63,7 @@ impl State {
             TimelineCommand::Pan(secs) => timeline.pan(secs, end),
             TimelineCommand::Whole => timeline.whole(end),
             TimelineCommand::Snap(on) => timeline.snap = on,
+            TimelineCommand::AllClasses(on) => timeline.all_classes = on,
             TimelineCommand::Width(width) => timeline.width = width,
             TimelineCommand::Range(range) => timeline.range = range.filter(|r| r.1 - r.0 > 1e-3),
             TimelineCommand::Select { id, add } => {

@@ -1,17 +1,20 @@
 //! A live stream: started, stopped, its sensitivity and takes.
 
 use morec::features::KeyPose;
-use morec::live::Recording;
+use morec::live::{Detection, Recording};
 
 use super::lines::ShownCommand;
 use super::train::INDEX;
 use crate::jobs::teach::Meaning;
 use crate::jobs::{JobOutcome, recognise};
-use crate::state::live::{Choice, ClipFeed, Feed, Run, ThreadFeed};
+use crate::state::live::{Choice, ClipFeed, Feed, Resensed, Run, ThreadFeed};
 use crate::state::{LiveCommand, State};
 
 /// Name of the job that keeps what was marked.
 pub(in crate::state) const TEACHING: &str = "Keeping what was marked";
+
+/// Name of the job that tries a sensitivity on the recorded minutes.
+const TRYING: &str = "Trying the sensitivity";
 
 impl State {
     pub(in crate::state) fn apply_live(&mut self, command: LiveCommand) {
@@ -21,6 +24,12 @@ impl State {
             LiveCommand::Stop => self.stop_live(),
             LiveCommand::Sensitivity(alarms) => self.set_sensitivity(alarms),
             LiveCommand::Range(range) => self.live.range = range.filter(|r| r.1 - r.0 > 0.05),
+            LiveCommand::GoTo(start, stop) => {
+                self.live.range = Some((start, stop));
+                self.live.looking.bring((start, stop), self.live.now_secs());
+            }
+            LiveCommand::Span(secs) => self.live.looking.show(secs, self.live.now_secs()),
+            LiveCommand::Back(secs) => self.live.looking.move_by(secs, self.live.now_secs()),
             LiveCommand::Mark(slot) => {
                 if self.live.run.is_some() {
                     let class = self.class_of_key(slot);
@@ -34,7 +43,9 @@ impl State {
                 // A take is of one performer.
                 if self.live.take.is_some() {
                     self.say("end the take first");
-                } else if let Some(run) = &mut self.live.run {
+                } else if let Some(run) = &mut self.live.run
+                    && run.watched().is_none_or(|w| w.actor != actor)
+                {
                     run.watch(actor);
                     self.live.range = None;
                 }
@@ -107,6 +118,7 @@ impl State {
         self.live.counts.clear();
         self.live.range = None;
         self.live.resensed = None;
+        self.live.looking.until_secs = None;
         self.player.playing = false;
     }
 
@@ -165,17 +177,38 @@ impl State {
             return;
         };
         run.recognise_with(&model);
-        let poses: Vec<(f64, KeyPose)> = run.watched().map(|w| w.key_poses()).unwrap_or_default();
         let line = self.live_line("morec live");
         self.show_line(line.map(|line| line.with("--sensitivity", format!("{alarms:.2}"))));
-        if poses.len() > 30 && !self.jobs.is_running("Trying the sensitivity") {
-            self.jobs.start(
-                "Trying the sensitivity",
-                false,
-                &self.wake,
-                JobOutcome::Resensed,
-                move |_| recognise::poses(&model, &poses),
-            );
+        self.try_sensitivity();
+    }
+
+    /// Looks for what the sensitivity that is set would have found in the recorded minutes.
+    fn try_sensitivity(&mut self) {
+        if self.jobs.is_running(TRYING) {
+            return; // What comes of it is tried again if the slider has moved on.
+        }
+        let (Some(model), Some(run)) = (self.live.model(), &self.live.run) else {
+            return;
+        };
+        let poses: Vec<(f64, KeyPose)> = run.watched().map(|w| w.key_poses()).unwrap_or_default();
+        if poses.len() > 30 {
+            self.live.trying = self.live.alarms;
+            self.jobs
+                .start(TRYING, false, &self.wake, JobOutcome::Resensed, move |_| {
+                    recognise::poses(&model, &poses)
+                });
+        }
+    }
+
+    /// What a sensitivity would have found has come.
+    pub(in crate::state) fn take_resensed(&mut self, found: Vec<Detection>) {
+        // Another index was taken meanwhile: its classes have other numbers.
+        let Some(alarms) = self.live.trying.take() else {
+            return;
+        };
+        self.live.resensed = Some(Resensed { alarms, found });
+        if self.live.alarms != Some(alarms) {
+            self.try_sensitivity();
         }
     }
 }

@@ -143,7 +143,7 @@ impl State {
                 self.train.moment = None;
             }
             JobOutcome::Recognised((clip, found)) => self.detections = Some((clip, found)),
-            JobOutcome::Resensed(found) => self.live.resensed = Some(found),
+            JobOutcome::Resensed(found) => self.take_resensed(found),
             JobOutcome::Taught(taught) => {
                 self.taught(&taught);
                 self.reload();

@@ -1,6 +1,7 @@
 //! A live stream: who performs, what is recognised, what is taught from what just happened.
 
 mod feed;
+mod looking;
 mod marked;
 mod moved;
 mod run;
@@ -15,6 +16,7 @@ use morec::math::Vec3;
 use morec_db::ClipId;
 
 pub use feed::{ClipFeed, Feed, ThreadFeed};
+pub use looking::{Looking, SPANS};
 pub use marked::{LiveMark, labelled_there};
 pub use run::Run;
 
@@ -25,6 +27,14 @@ pub enum Choice {
     Clip(Option<ClipId>),
     /// `vmc://…`, `axis://…`, `json+tcp://…`.
     Network(String),
+}
+
+/// Detections in the recorded minutes at a sensitivity.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Resensed {
+    /// False alarms a minute.
+    pub alarms: f64,
+    pub found: Vec<Detection>,
 }
 
 /// The live panel's own state.
@@ -38,10 +48,14 @@ pub struct Live {
     pub alarms: Option<f64>,
     /// A stretch of the stream that is selected, on its clock.
     pub range: Option<(f64, f64)>,
+    /// The part of the last minutes that is in view.
+    pub looking: Looking,
     /// Marked stretches.
     pub marks: Vec<LiveMark>,
-    /// Detections in the recorded minutes at this sensitivity.
-    pub resensed: Option<Vec<Detection>>,
+    /// What a sensitivity would have found in the recorded minutes.
+    pub resensed: Option<Resensed>,
+    /// False alarms a minute at which the recorded minutes are being tried.
+    pub(super) trying: Option<f64>,
     /// Something that was marked is being kept.
     pub teaching: bool,
     /// The index is to be trained anew once the mark is in the database.
@@ -63,8 +77,10 @@ impl Default for Live {
             index: None,
             alarms: None,
             range: None,
+            looking: Looking::default(),
             marks: Vec::new(),
             resensed: None,
+            trying: None,
             teaching: false,
             retrain: false,
             countdown: None,
@@ -83,6 +99,12 @@ pub enum LiveCommand {
     /// False alarms a minute.
     Sensitivity(f64),
     Range(Option<(f64, f64)>),
+    /// Selects a stretch and brings it into view.
+    GoTo(f64, f64),
+    /// Shows so many seconds of the last minutes.
+    Span(f64),
+    /// Looks so many seconds back (negative) or on.
+    Back(f64),
     /// The selected stretch, or the last motion, shows the class of this key.
     Mark(usize),
     /// Likewise, of this class.
@@ -98,6 +120,11 @@ pub enum LiveCommand {
 impl Live {
     pub fn is_running(&self) -> bool {
         self.run.is_some() || self.starting.is_some()
+    }
+
+    /// The stream's clock.
+    pub fn now_secs(&self) -> f64 {
+        self.run.as_ref().map_or(0.0, |run| run.now_secs)
     }
 
     pub fn centre(&self) -> Option<Vec3> {
@@ -139,6 +166,9 @@ impl Live {
             return;
         }
         self.index = Some(index.clone());
+        // Classes have other numbers in another index.
+        self.resensed = None;
+        self.trying = None;
         let model = self.model();
         if let (Some(run), Some(model)) = (&mut self.run, model) {
             run.recognise_with(&model);
