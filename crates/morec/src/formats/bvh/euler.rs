@@ -30,6 +30,10 @@ pub(super) fn zyx_near(rotation: &Quat, previous: [f64; 3]) -> [f64; 3] {
     let yaw = first[1].atan2(first[0]);
     let roll = last[0].atan2(last[1]);
     let first = nearest([yaw, pitch, roll], previous);
+    // Yaw and roll of the other solution lie half a turn from these: it is not nearer.
+    if distance(&first, &previous) < 0.5 * PI * PI {
+        return first;
+    }
     let second = nearest([yaw + PI, PI - pitch, roll + PI], previous);
     if distance(&second, &previous) < distance(&first, &previous) {
         second
@@ -39,7 +43,15 @@ pub(super) fn zyx_near(rotation: &Quat, previous: [f64; 3]) -> [f64; 3] {
 }
 
 fn nearest(angles: [f64; 3], previous: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|k| angles[k] - TAU * ((angles[k] - previous[k]) / TAU).round())
+    std::array::from_fn(|k| {
+        let turns = (angles[k] - previous[k]) / TAU;
+        // Most are there already, and rounding is slow.
+        if turns.abs() < 0.5 {
+            angles[k]
+        } else {
+            angles[k] - TAU * turns.round()
+        }
+    })
 }
 
 fn distance(a: &[f64; 3], b: &[f64; 3]) -> f64 {

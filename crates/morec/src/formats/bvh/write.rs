@@ -207,32 +207,57 @@ fn push_number(line: &mut Vec<u8>, value: f64) {
     if value < 0.0 && steps > 0 {
         line.push(b'-');
     }
-    let (mut whole, mut fraction) = (steps / ONE, steps % ONE);
-    let decimals = if fraction.is_multiple_of(1000) {
-        fraction /= 1000;
-        4
-    } else {
-        7
-    };
-    let mut digits = [b'0'; 24];
-    digits[23] = b' ';
-    let mut at = 23;
-    for _ in 0..decimals {
-        at -= 1;
-        digits[at] = b'0' + (fraction % 10) as u8;
-        fraction /= 10;
-    }
-    at -= 1;
+    let (mut whole, fraction) = ((steps / ONE) as u32, (steps % ONE) as u32);
+    // The fraction begins in the middle; a copy of fixed length takes less than one of the digits' length.
+    let mut digits = [b' '; 2 * HALF];
+    let mut at = HALF - 1;
     digits[at] = b'.';
-    loop {
-        at -= 1;
-        digits[at] = b'0' + (whole % 10) as u8;
-        whole /= 10;
-        if whole == 0 {
-            break;
-        }
+    while whole >= 100 {
+        at -= 2;
+        put_pair(&mut digits, at, whole % 100);
+        whole /= 100;
     }
-    line.extend_from_slice(&digits[at..]);
+    if whole >= 10 {
+        at -= 2;
+        put_pair(&mut digits, at, whole);
+    } else {
+        at -= 1;
+        digits[at] = b'0' + whole as u8;
+    }
+    let (four, three) = (fraction / 1000, fraction % 1000);
+    put_pair(&mut digits, HALF, four / 100);
+    put_pair(&mut digits, HALF + 2, four % 100);
+    let mut end = HALF + 4;
+    if three > 0 {
+        put_pair(&mut digits, end, three / 10);
+        digits[end + 2] = b'0' + (three % 10) as u8;
+        end += 3;
+    }
+    let start = line.len();
+    line.extend_from_slice(&digits[at..at + LONGEST]);
+    line.truncate(start + end + 1 - at);
+}
+
+/// Where the fraction of a number begins: behind at most nine digits and the point.
+const HALF: usize = 16;
+/// Nine digits, the point, seven decimals and a blank.
+const LONGEST: usize = 18;
+
+/// The two digits of each number below 100.
+const PAIRS: [[u8; 2]; 100] = {
+    let mut pairs = [[b'0'; 2]; 100];
+    let mut n = 0;
+    while n < 100 {
+        pairs[n] = [b'0' + (n / 10) as u8, b'0' + (n % 10) as u8];
+        n += 1;
+    }
+    pairs
+};
+
+/// The digits of `number`, below 100, at `at`.
+#[inline(always)]
+fn put_pair(digits: &mut [u8; 2 * HALF], at: usize, number: u32) {
+    digits[at..at + 2].copy_from_slice(&PAIRS[number as usize]);
 }
 
 /// A joint's name as it survives reading.
