@@ -35,7 +35,7 @@ pub struct JsonSource {
     known: Vec<u32>,
     /// A pose whose skeleton was announced first.
     waiting: Option<(PerformerId, PoseLine)>,
-    /// A pose of a connection whose performer got the place of another, which is announced to have gone first.
+    /// A connection and its pose for which a place was freed. The end of the performer that had the place is announced first.
     newcomer: Option<(u64, PoseLine)>,
     leaving: Vec<PerformerId>,
     begun_secs: f64,
@@ -117,8 +117,9 @@ impl JsonSource {
         Some(actor)
     }
 
-    /// Takes a performer's place from the machine that holds too many of them beside that of `connection`; it is free then.
-    fn share(&mut self, connection: u64) -> Option<PerformerId> {
+    /// Frees the newest place of the machine that holds the most performers, if all places are taken and it holds at least two more
+    /// than the machine of `connection`. Gives the performer that had the place.
+    fn free_place_for(&mut self, connection: u64) -> Option<PerformerId> {
         if self.performers.vacant().is_some() {
             return None;
         }
@@ -169,8 +170,9 @@ impl JsonSource {
 
     fn pose(&mut self, connection: u64, pose: PoseLine, frame: &mut Frame) -> SourceEvent {
         let Some(actor) = self.performer(connection, pose.actor) else {
-            let shared = pose.shows_body().then(|| self.share(connection));
-            if let Some(gone) = shared.flatten() {
+            if pose.shows_body()
+                && let Some(gone) = self.free_place_for(connection)
+            {
                 self.newcomer = Some((connection, pose));
                 return SourceEvent::Gone(gone);
             }

@@ -33,15 +33,15 @@ impl OpenConnection {
 }
 
 /// The machine at an address. One machine has as many IPv6 addresses as it likes that share the first 64 bits.
-pub fn machine_at(address: IpAddr) -> IpAddr {
+fn machine_at(address: IpAddr) -> IpAddr {
     match address.to_canonical() {
         IpAddr::V6(v6) => Ipv6Addr::from_bits(v6.to_bits() >> 64 << 64).into(),
         v4 => v4,
     }
 }
 
-/// The machine that holds the most of the places that `held` lists, if `newcomer` would still hold fewer than it with one
-/// of them: nobody takes all places by taking many.
+/// The machine that holds the most places (`held` has the machine of each place), if it holds at least two more than
+/// `newcomer`.
 pub fn largest_holder(held: &[IpAddr], newcomer: IpAddr) -> Option<IpAddr> {
     let count = |machine: IpAddr| held.iter().filter(|other| **other == machine).count();
     let largest = held.iter().copied().max_by_key(|machine| count(*machine))?;

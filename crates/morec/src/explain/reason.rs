@@ -37,7 +37,7 @@ pub enum Reason {
         /// Distance of the nearest negative template.
         negative: f32,
     },
-    /// Another class is nearer, or so nearly as near that nothing tells them apart.
+    /// Another class is nearer than [`DecodeParams::rival_share`](crate::decode::DecodeParams::rival_share) times the distance.
     OtherClass {
         /// Name of the class.
         class: String,

@@ -21,7 +21,8 @@ pub struct EarlyDetectionParams {
 
 impl Default for EarlyDetectionParams {
     /// Chosen on referee signals and on sessions before a Kinect by `examples/early.rs`; `docs/figures.md` has what they give.
-    /// With a reach of 1.8 and gates of 1.1 no more motions are known at their middle, and more are told that are not there.
+    /// With a reach of 1.8 and gates of 1.1, recall is 0.86 for 0.86 on the signals and 0.96 for 0.94 in the sessions, and precision
+    /// 0.68 for 0.96 and 0.53 for 0.67.
     fn default() -> Self {
         Self {
             least_progress: 0.2,
