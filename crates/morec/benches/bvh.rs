@@ -156,11 +156,19 @@ fn print_shares(files: &[Vec<u8>]) {
             bvh::write(clip, &mut out).unwrap();
         }
     });
+    let convert = each(&|file| {
+        let mut out = Vec::with_capacity(2 * file.len());
+        for clip in parse(file).clips {
+            bvh::write(&clip, &mut out).unwrap();
+        }
+        std::hint::black_box(out);
+    });
     let runs = [
         ("count_lines", lines, bytes),
         ("read", read, bytes),
         ("read and prepare", prepare, bytes),
         ("write", write, out.len()),
+        ("read and write", convert, bytes),
     ];
     for (name, time, bytes) in runs {
         println!(

@@ -3,6 +3,7 @@
 //! There is no specification that producers keep to. What differs between them and can be understood is read,
 //! with a [`Warning`](super::Warning) where something had to be guessed or repaired; what cannot is refused.
 
+mod arctangent;
 mod character;
 mod euler;
 mod gaps;
@@ -11,6 +12,7 @@ mod hierarchy;
 mod motion;
 mod notes;
 mod number;
+mod number_line;
 mod points;
 mod positions;
 mod rate;

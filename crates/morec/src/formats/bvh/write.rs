@@ -2,8 +2,10 @@
 
 use std::io::{self, Write};
 
+use super::euler::RunningZyx;
+use super::number_line::NumberLine;
+use super::points;
 use super::positions::{self, PositionChannels};
-use super::{euler, points};
 use crate::clip::{Clip, JointTrack};
 use crate::math::Vec3;
 
@@ -155,28 +157,21 @@ impl<'a> Plan<'a> {
 
     fn table(&self, out: &mut dyn Write) -> io::Result<()> {
         let order = self.depth_first();
-        let mut angles = vec![[0.0; 3]; order.len()];
-        let mut line: Vec<u8> = Vec::new();
+        let mut angles = RunningZyx::new(order.len());
+        let mut line = NumberLine::default();
         for frame in 0..self.clip.frames {
-            line.clear();
             let rotations = self.clip.frame_rotations(frame);
-            for &j in &order {
+            let angles = angles.next(order.iter().map(|&j| &rotations[j]));
+            for (&j, angles) in order.iter().zip(angles) {
                 if self.has_positions(j) {
                     let fixed = &self.clip.skeleton.joints()[j].offset;
                     let position = self.tracks[j].map_or(fixed, |t| &t.positions[frame]);
-                    position
-                        .iter()
-                        .for_each(|value| push_number(&mut line, *value));
+                    position.iter().for_each(|value| line.push(*value));
                 }
-                angles[j] = euler::zyx_near(&rotations[j], angles[j]);
-                let degrees = angles[j].map(f64::to_degrees);
-                degrees
-                    .iter()
-                    .for_each(|value| push_number(&mut line, *value));
+                let degrees = angles.map(f64::to_degrees);
+                degrees.iter().for_each(|value| line.push(*value));
             }
-            line.pop();
-            line.push(b'\n');
-            out.write_all(&line)?;
+            out.write_all(line.ended())?;
         }
         Ok(())
     }
@@ -187,77 +182,9 @@ fn close(text: &mut String, depth: usize) {
     text.push_str("}\n");
 }
 
-/// Seven decimals: an error of 1e-9 rad for angles, 5e-8 units for lengths.
+/// As many decimals as the table has at most.
 fn numbers(v: &Vec3) -> String {
     format!("{:.7} {:.7} {:.7}", v.x, v.y, v.z)
-}
-
-/// One number as [`numbers`] writes it, without the last three decimals where they are 0 (most files hold four), and a
-/// blank. The formatting of the standard library decides every digit by exact arithmetic, which takes several times as long
-/// as a table of millions of numbers is worth.
-fn push_number(line: &mut Vec<u8>, value: f64) {
-    const ONE: u64 = 10_000_000;
-    let scaled = (value * ONE as f64).abs();
-    // Whole numbers up to 2^53 are doubles.
-    if scaled.is_nan() || scaled >= 9e15 {
-        line.extend_from_slice(format!("{value:.7} ").as_bytes());
-        return;
-    }
-    let steps = (scaled + 0.5) as u64;
-    if value < 0.0 && steps > 0 {
-        line.push(b'-');
-    }
-    let (mut whole, fraction) = ((steps / ONE) as u32, (steps % ONE) as u32);
-    // The fraction begins in the middle; a copy of fixed length takes less than one of the digits' length.
-    let mut digits = [b' '; 2 * HALF];
-    let mut at = HALF - 1;
-    digits[at] = b'.';
-    while whole >= 100 {
-        at -= 2;
-        put_pair(&mut digits, at, whole % 100);
-        whole /= 100;
-    }
-    if whole >= 10 {
-        at -= 2;
-        put_pair(&mut digits, at, whole);
-    } else {
-        at -= 1;
-        digits[at] = b'0' + whole as u8;
-    }
-    let (four, three) = (fraction / 1000, fraction % 1000);
-    put_pair(&mut digits, HALF, four / 100);
-    put_pair(&mut digits, HALF + 2, four % 100);
-    let mut end = HALF + 4;
-    if three > 0 {
-        put_pair(&mut digits, end, three / 10);
-        digits[end + 2] = b'0' + (three % 10) as u8;
-        end += 3;
-    }
-    let start = line.len();
-    line.extend_from_slice(&digits[at..at + LONGEST]);
-    line.truncate(start + end + 1 - at);
-}
-
-/// Where the fraction of a number begins: behind at most nine digits and the point.
-const HALF: usize = 16;
-/// Nine digits, the point, seven decimals and a blank.
-const LONGEST: usize = 18;
-
-/// The two digits of each number below 100.
-const PAIRS: [[u8; 2]; 100] = {
-    let mut pairs = [[b'0'; 2]; 100];
-    let mut n = 0;
-    while n < 100 {
-        pairs[n] = [b'0' + (n / 10) as u8, b'0' + (n % 10) as u8];
-        n += 1;
-    }
-    pairs
-};
-
-/// The digits of `number`, below 100, at `at`.
-#[inline(always)]
-fn put_pair(digits: &mut [u8; 2 * HALF], at: usize, number: u32) {
-    digits[at..at + 2].copy_from_slice(&PAIRS[number as usize]);
 }
 
 /// A joint's name as it survives reading.
@@ -271,43 +198,5 @@ fn written_name(name: &str, joint: usize) -> String {
     match name.trim_matches(' ') {
         "" => format!("joint{joint}"),
         trimmed => trimmed.to_owned(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    fn written(value: f64) -> String {
-        let mut line = Vec::new();
-        push_number(&mut line, value);
-        String::from_utf8(line).unwrap()
-    }
-
-    proptest! {
-        #[test]
-        fn numbers_are_those_of_the_standard_library(small in -400.0f64..400.0, large in -1e12f64..1e12) {
-            for value in [small, large, small.round(), small / 1e6] {
-                let text = written(value);
-                let trimmed = text.strip_suffix(' ').unwrap();
-                let expected: f64 = format!("{value:.7}").parse().unwrap();
-                let read: f64 = trimmed.parse().unwrap();
-                // A tie may fall to the other side.
-                prop_assert!((read - expected).abs() <= 1.01e-7 + value.abs() * 1e-15, "{value} {text}");
-                prop_assert!((read - value).abs() <= 5.01e-8 + value.abs() * 1e-15, "{value} {text}");
-                let decimals = trimmed.split_once('.').unwrap().1;
-                prop_assert!(decimals.len() == 4 || decimals.len() == 7 && (!decimals.ends_with("000") || value.abs() > 1e8));
-            }
-        }
-    }
-
-    #[test]
-    fn zero_has_no_sign_and_what_is_too_large_is_written_all_the_same() {
-        assert_eq!(written(-1e-9), "0.0000 ");
-        assert_eq!(written(-0.5), "-0.5000 ");
-        assert_eq!(written(0.12345), "0.1234500 ");
-        assert_eq!(written(1e15), "1000000000000000.0000000 ");
-        assert_eq!(written(f64::NAN), "NaN ");
     }
 }
