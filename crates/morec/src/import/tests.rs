@@ -364,6 +364,30 @@ fn the_unit_is_that_of_the_skeleton_however_somebody_crouches() {
 }
 
 #[test]
+fn lengths_that_a_program_took_for_metres_and_wrote_in_centimetres_are_understood() {
+    let mut clip = person(50, 0.0);
+    units::scale(&mut clip, 100.0 * 0.45 / 0.0254);
+    let stated = ImportOptions {
+        stated: Some(Stated {
+            up: "y".parse().unwrap(),
+            metres_per_unit: 0.01,
+        }),
+        ..ImportOptions::default()
+    };
+    let report = normalize(clip, &stated).unwrap().report;
+    assert!(
+        (report.metres_per_unit / (0.01 * 0.0254 / 0.45) - 1.0).abs() < 1e-9,
+        "{report:?}"
+    );
+    assert!(report.doubts.is_empty(), "{:?}", report.doubts);
+    assert!(
+        report.notes[0].contains("took them for metres"),
+        "{:?}",
+        report.notes
+    );
+}
+
+#[test]
 fn legs_of_nobody_are_doubted() {
     let options = ImportOptions {
         metres_per_unit: Some(10.0),

@@ -1,5 +1,7 @@
 //! How long the file's unit of length is, from how tall a body is.
 
+use std::ops::RangeInclusive;
+
 use super::body::BodyMeasures;
 use super::options::Stated;
 use super::signed_axis::SignedAxis;
@@ -37,6 +39,15 @@ pub(super) fn choose(
     };
     if (0.5..=2.6).contains(&(height * stated)) {
         return stated;
+    }
+    if let Some((unit, metres)) = taken_for_metres(body, up, stated) {
+        notes.push(format!(
+            "the file's unit is {}, but in it the body is {:.3} m tall; its lengths are those of a person if they were in {unit} and \
+             a program took them for metres, which is assumed (--unit {stated} keeps the file's)",
+            name(stated).unwrap_or("stated"),
+            height * stated,
+        ));
+        return metres;
     }
     let inferred = infer(body, up, notes);
     // Who crawls is low, and no other unit fits the limbs better.
@@ -87,17 +98,44 @@ fn size(body: &BodyMeasures, up: SignedAxis) -> Option<f64> {
     }
 }
 
+/// How tall a person with limbs and trunk of this size is, metres; what lies outside is doubted.
+const TALL: RangeInclusive<f64> = 1.0..=2.3;
+
+/// The known unit whose lengths a program took for metres and wrote in the stated unit, and what the file's unit then is in metres.
+///
+/// Blender reads BVH, which names no unit, as metres and writes FBX in centimetres. `None` if a known unit by itself makes a
+/// person of the body, or none makes one in this way either.
+fn taken_for_metres(
+    body: &BodyMeasures,
+    up: SignedAxis,
+    stated: f64,
+) -> Option<(&'static str, f64)> {
+    let size = size(body, up)?;
+    let makes_a_person = |metres: f64| TALL.contains(&(size * metres * HEIGHT));
+    let (_, known) = nearest_known(size);
+    if makes_a_person(known) {
+        return None;
+    }
+    let (unit, metres) = nearest_known(size * stated);
+    makes_a_person(stated * metres).then_some((unit, stated * metres))
+}
+
+/// The known unit, and its metres, in which a body of this size comes nearest to an adult's.
+fn nearest_known(size: f64) -> (&'static str, f64) {
+    let away = |metres: f64| (size * metres).ln().abs();
+    let nearest = |a: &&(&str, f64), b: &&(&str, f64)| away(a.1).total_cmp(&away(b.1));
+    UNITS.iter().min_by(nearest).copied().unwrap_or(("m", 1.0))
+}
+
 /// The known unit in which the body comes nearest to a person's size.
 pub(super) fn infer(body: &BodyMeasures, up: SignedAxis, notes: &mut Vec<String>) -> f64 {
     let Some(size) = size(body, up) else {
         notes.push("no body to measure; lengths are taken as metres".to_owned());
         return 1.0;
     };
-    let away = |metres: f64| (size * metres).ln().abs();
-    let nearest = |a: &&(&str, f64), b: &&(&str, f64)| away(a.1).total_cmp(&away(b.1));
-    let (unit, metres) = UNITS.iter().min_by(nearest).copied().unwrap_or(("m", 1.0));
+    let (unit, metres) = nearest_known(size);
     let tall = size * metres * HEIGHT;
-    if !(1.0..=2.3).contains(&tall) {
+    if !TALL.contains(&tall) {
         notes.push(format!(
             "in {unit}, the nearest known unit, limbs and trunk are those of a person {tall:.2} m tall"
         ));
