@@ -1,10 +1,10 @@
 """Positions as morec reads them beside those of other readers, on files of your own.
 
-    python3 -m venv v && v/bin/pip install numpy ezc3d c3d bvh
+    python3 -m venv v && v/bin/pip install numpy ezc3d c3d bvh nimblephysics mvnx_parser
     v/bin/python docs/scripts/readers.py target/release/morec FILE...
 
 Each file is converted to TRC by morec (positions, in the file's own axes and a named unit) and compared with what ezc3d
-and c3d (C3D) or bvh with forward kinematics in NumPy (BVH) make of it. The figure is the largest distance of any point
+and c3d (C3D), bvh with forward kinematics in NumPy (BVH), nimblephysics (TRC) or mvnx_parser (MVNX) make of it. The figure is the largest distance of any point
 that both see, as a share of the size of the recording.
 """
 
@@ -92,7 +92,26 @@ def of_bvh(path):
     return names, np.stack([world[name] for name in names], axis=1)
 
 
-READERS = {".c3d": [("ezc3d", of_ezc3d), ("c3d", of_c3d)], ".bvh": [("bvh", of_bvh)]}
+def of_nimblephysics(path):
+    import nimblephysics
+
+    trc = nimblephysics.biomechanics.OpenSimParser.loadTRC(str(path))
+    frames = list(trc.markerTimesteps)
+    names = sorted({name for frame in frames for name in frame})
+    nowhere = np.full(3, np.nan)
+    return names, np.array([[frame.get(name, nowhere) for name in names] for frame in frames], float)
+
+
+def of_mvnx_parser(path):
+    import mvnx_parser.parser
+
+    file = mvnx_parser.parser.Mvnx_p(str(path))
+    names = [thing.get("label") for thing in file.root.iter() if thing.tag.endswith("}segment") or thing.tag == "segment"]
+    return names, np.array(file.position, float).reshape(len(file.frames), -1, 3)
+
+
+READERS = {".trc": [("nimblephysics", of_nimblephysics)], ".mvnx": [("mvnx_parser", of_mvnx_parser)],
+           ".c3d": [("ezc3d", of_ezc3d), ("c3d", of_c3d)], ".bvh": [("bvh", of_bvh)]}
 
 
 def compare(ours, theirs, scaled):

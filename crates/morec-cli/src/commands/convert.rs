@@ -49,6 +49,7 @@ pub fn run(args: Args) -> Result<ExitCode> {
     for warning in &opened.warnings {
         eprintln!("morec: {}: {warning}", path.display());
     }
+    let wanted = wanted.of_file(opened.stated);
     let clip = one_of(opened.clips, args.character).with_context(|| path.display().to_string())?;
     let clip = wanted
         .prepared(clip)

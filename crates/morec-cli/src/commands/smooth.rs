@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use anyhow::{Context, Result, bail};
 use morec::clip::Clip;
-use morec::import::{ImportOptions, normalize};
+use morec::import::{ImportOptions, Stated, normalize};
 use morec::progress::Progress as _;
 use morec::smooth::{SmoothParams, compress};
 use rayon::prelude::*;
@@ -148,7 +148,8 @@ fn smooth(path: &Path, args: &Args, target: &MotionTarget) -> Result<Vec<Compres
         if clip.frames == 0 {
             bail!("{}: no frames to smooth", path.display());
         }
-        let compressed = compress(&clip, &params(&clip, args)?, &()).with_context(shown)?;
+        let compressed =
+            compress(&clip, &params(&clip, opened.stated, args)?, &()).with_context(shown)?;
         let bytes = compressed.to_bytes();
         let character = several.then_some(i + 1);
         let written = target.path(path, character);
@@ -173,13 +174,15 @@ fn smooth(path: &Path, args: &Args, target: &MotionTarget) -> Result<Vec<Compres
 }
 
 /// Thresholds in the clip's own unit of length.
-fn params(clip: &Clip, args: &Args) -> Result<SmoothParams> {
+fn params(clip: &Clip, stated: Option<Stated>, args: &Args) -> Result<SmoothParams> {
     let metres_per_unit = match args.unit {
         Some(unit) => unit,
         None => {
-            normalize(clip.clone(), &ImportOptions::default())?
-                .report
-                .metres_per_unit
+            let options = ImportOptions {
+                stated,
+                ..ImportOptions::default()
+            };
+            normalize(clip.clone(), &options)?.report.metres_per_unit
         }
     };
     Ok(SmoothParams {

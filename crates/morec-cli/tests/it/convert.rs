@@ -1,4 +1,4 @@
-use crate::kit::{ARM_ASF, Folder, WAVE_AMC, WAVE_BVH};
+use crate::kit::{ARM_ASF, Folder, KNEE_FBX, WAVE_AMC, WAVE_BVH};
 
 #[test]
 fn a_motion_becomes_bvh_and_stays_the_same() {
@@ -157,4 +157,27 @@ fn clips_of_one_name_do_not_replace_each_other() {
             .count(),
         2
     );
+}
+
+#[test]
+fn the_unit_that_a_file_states_is_the_one_that_is_written() {
+    // Three joints are no body: their lengths say nothing of the unit, the file says centimetres.
+    let folder = Folder::with(&[("knee.fbx", KNEE_FBX)]);
+    for (args, table) in [
+        (vec!["convert", "knee.fbx", "-o", "knee.trc"], "knee.trc"),
+        (
+            vec!["convert", "knee.fbx", "-o", "all", "--form", "trc"],
+            "all/knee.trc",
+        ),
+    ] {
+        folder.morec(&args).ok();
+        let text = std::fs::read_to_string(folder.path().join(table)).unwrap();
+        let facts = text.lines().nth(2).unwrap();
+        assert_eq!(facts.split('\t').nth(4), Some("cm"), "{text}");
+    }
+    folder
+        .morec(&["convert", "knee.fbx", "-o", "knee.csv"])
+        .ok();
+    let text = std::fs::read_to_string(folder.path().join("knee.csv")).unwrap();
+    assert!(text.contains(",0.6"), "{text}");
 }

@@ -76,6 +76,7 @@ fn one(
     for warning in &opened.warnings {
         eprintln!("morec: {}: {warning}", path.display());
     }
+    let wanted = &wanted.of_file(opened.stated);
     let several = opened.clips.len() > 1;
     for (number, clip) in (1..).zip(opened.clips) {
         if clip.frames == 0 {

@@ -3,10 +3,11 @@
 use anyhow::{Context, Result};
 use morec::clip::Clip;
 use morec::fitting::fit_skeleton;
-use morec::import::{ImportOptions, normalize};
+use morec::import::{ImportOptions, Stated, normalize};
 use morec::tables::Content;
 
 /// Options of writing clips.
+#[derive(Clone)]
 pub(super) struct Wanted {
     pub(super) content: Content,
     pub(super) import: ImportOptions,
@@ -15,6 +16,13 @@ pub(super) struct Wanted {
 }
 
 impl Wanted {
+    /// The same for the clips of a file that states its unit and axis, or whose format does.
+    pub(super) fn of_file(&self, stated: Option<Stated>) -> Self {
+        let mut wanted = self.clone();
+        wanted.import.stated = stated;
+        wanted
+    }
+
     /// The clip at the rate, and with the rotations, that are asked for.
     pub(super) fn prepared(&self, clip: Clip) -> Result<Clip> {
         let clip = match self.rate_hz {
