@@ -1,6 +1,7 @@
 //! Training from labelled samples and background motion, by either method.
 
 mod align;
+mod alike;
 mod clips;
 mod data;
 mod examples;
@@ -24,6 +25,7 @@ mod verifier;
 
 pub use crate::thesis::{train as thesis, train_tree as svrdm};
 pub use align::align;
+pub use alike::AlikeClasses;
 pub use clips::{everyday_clips, train_clips};
 pub use data::{DataError, TrainingData};
 pub use from_clips::{LabelSet, Prepared, TrainClip, build_train_set};

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use crate::classes::ClassInfo;
 use crate::templates::OperatingPoint;
 
+use super::alike::AlikeClasses;
 use super::from_clips::Prepared;
 use super::notes::class_notes;
 use super::set::{StreamKind, TrainSample};
@@ -79,6 +80,7 @@ impl TrainingReport {
                 .iter()
                 .map(|s| quiet_note(s, prepared, tick_hz)),
         );
+        notes.extend(trained.alike.iter().map(|pair| alike_note(pair, &classes)));
         if streams.iter().all(|s| s.source == StreamKind::Labelled) {
             notes.push(
                 "no background clips and no everyday motion: the threshold is a general value; name clips that \
@@ -112,6 +114,19 @@ fn quiet_note(sample: &TrainSample, prepared: &Prepared, tick_hz: f64) -> String
         prepared.set.streams[sample.stream].name,
         sample.ticks.start as f64 / tick_hz,
         sample.ticks.end as f64 / tick_hz,
+    )
+}
+
+/// Note about two classes that keep each other from being reported.
+fn alike_note(pair: &AlikeClasses, classes: &[ClassInfo]) -> String {
+    let (class, other) = (
+        &classes[pair.class.index()].name,
+        &classes[pair.other.index()].name,
+    );
+    format!(
+        "{class} and {other} are taught with much the same motion: {} of {} samples of {class} are as near to {other}; where both \
+         are about as near neither is reported. Check the labels, or make one class of the two",
+        pair.samples, pair.of
     )
 }
 

@@ -13,6 +13,7 @@ use crate::templates::{
     TemplateModelError, TemplateSample, Verifier, mean_and_spread,
 };
 
+use super::alike::{AlikeClasses, alike_classes};
 use super::examples::{self, CandidateFinder, LeaveOneOutView, VerifierExample};
 use super::mining::{NearMiss, TemplateDistances, hard_negatives};
 use super::operating::AlarmCurve;
@@ -73,6 +74,8 @@ pub struct TrainedTemplates {
     pub threshold_from: String,
     /// Samples that hardly move, and so are no templates.
     pub quiet: Vec<TrainSample>,
+    /// Classes that keep each other from being reported; none where candidates are verified.
+    pub alike: Vec<AlikeClasses>,
 }
 
 /// Trains templates for `set`, whose rows hold `bones`.
@@ -162,6 +165,10 @@ pub fn train(
         }
         _ => Vec::new(),
     };
+    let alike = match verifier {
+        None => alike_classes(set, &samples, &distances, threshold, params),
+        Some(_) => Vec::new(),
+    };
     let calibration = match verifier {
         Some(_) => Calibration::VERIFIED,
         None => Calibration::MEASURED,
@@ -199,6 +206,7 @@ pub fn train(
         negatives,
         threshold_from: operating.from,
         quiet,
+        alike,
     })
 }
 

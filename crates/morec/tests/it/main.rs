@@ -3,6 +3,7 @@
 // What tests share lies outside of test functions, where the lint looks for it.
 #![allow(clippy::unwrap_used, clippy::print_stderr)]
 
+mod alike;
 mod cases;
 mod conformance;
 mod cuts;
