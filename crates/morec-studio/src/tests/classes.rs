@@ -1,6 +1,11 @@
 //! Classes are named, renamed, removed; samples are dragged between them; groups follow a slider.
 
+use egui::Key;
+use morec_db::MotionDb;
+use morec_db::labels::{NewSample, SampleState as Judged};
+
 use super::{Person, made};
+use crate::jobs::group::ClusteredItems;
 use crate::state::Panel;
 
 fn labelling(labelled: usize) -> (tempfile::TempDir, Person) {
@@ -119,4 +124,79 @@ fn cuts_are_grouped_and_a_group_becomes_labels() {
     assert_eq!(person.labels().len(), members);
     person.undo();
     assert!(person.labels().is_empty());
+}
+
+#[test]
+fn a_group_is_shown_from_its_outliers_to_what_is_usual() {
+    let (_folder, mut person) = labelling(2);
+    person.goes_to(Panel::Classes);
+    person.click("Group labels");
+    person.settle();
+    let items = person.state().classes.groups.clone().unwrap().items;
+    // Every shape is near 0, but that of the sixth stretch and, the other way, that of the third.
+    let place = |at: usize| match at {
+        5 => 9.0,
+        2 => -6.0,
+        _ => 0.01 * at as f32,
+    };
+    let shapes = (0..items.len()).map(|at| vec![place(at); 16]).collect();
+    let classes = &mut person.window.state_mut().state.classes;
+    classes.groups = Some(ClusteredItems::of(items.clone(), shapes, 0));
+    classes.grouping += 1;
+    classes.depth = 1;
+    person.frames(3);
+    let left = |person: &Person, at: usize| {
+        let name = format!("Stretch {at} of group 1");
+        person.place(&name).left()
+    };
+    let mut shown: Vec<usize> = (0..items.len()).collect();
+    shown.sort_by(|a, b| left(&person, *a).total_cmp(&left(&person, *b)));
+    assert_eq!(shown[..2], [5, 2]);
+    // The first that is seen is the one that a click plays.
+    person.click("Stretch 5 of group 1");
+    person.settle();
+    let looped = person.state().player.looped.unwrap();
+    assert_eq!(looped, (items[5].start_secs, items[5].stop_secs));
+}
+
+#[test]
+fn the_most_doubtful_proposal_is_shown_first_and_the_next_after_each_answer() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = made(folder.path(), 1);
+    let mut db = MotionDb::open(&path).unwrap();
+    let clip = db.find_clip("ben_1").unwrap().id;
+    let proposal = |(start_secs, score): (f64, f64)| NewSample {
+        clip,
+        class: "wave".to_owned(),
+        start_secs,
+        stop_secs: start_secs + 1.0,
+        whole_clip: false,
+        state: Judged::Proposed,
+        score: Some(score),
+    };
+    // Neither the first in time nor the likeliest is the one that tells most.
+    let proposals = [(1.0, 0.97), (3.0, 0.12), (5.0, 0.55), (7.0, 0.75)].map(proposal);
+    db.add_samples(&proposals, "test").unwrap();
+    drop(db);
+    let mut person = Person::before(&[path]);
+    person.goes_to(Panel::Label);
+    let selected = |person: &Person| {
+        let selected = person.state().selected();
+        let score = selected.first().and_then(|s| s.score);
+        score.map(|s| (s * 100.0).round() as i64)
+    };
+    person.key(Key::N);
+    person.settle();
+    assert_eq!(selected(&person), Some(55));
+    assert!(person.sees("Proposed, score 0.55"));
+    assert_eq!(person.state().player.looped, Some((5.0, 6.0)));
+    for (answer, next) in [(Key::R, Some(75)), (Key::A, Some(12)), (Key::R, Some(97))] {
+        person.key(answer);
+        person.settle();
+        assert_eq!(selected(&person), next, "after {answer:?}");
+    }
+    person.key(Key::A);
+    person.settle();
+    person.key(Key::N);
+    assert!(person.sees_part("no proposal is left to look at"));
 }
