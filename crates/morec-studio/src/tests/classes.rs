@@ -6,7 +6,7 @@ use morec_db::labels::{NewSample, SampleState as Judged};
 
 use super::{Person, made};
 use crate::jobs::group::ClusteredItems;
-use crate::state::Panel;
+use crate::state::{ClassCommand, Command, Panel};
 
 fn labelling(labelled: usize) -> (tempfile::TempDir, Person) {
     let folder = tempfile::tempdir().unwrap();
@@ -199,4 +199,86 @@ fn the_most_doubtful_proposal_is_shown_first_and_the_next_after_each_answer() {
     person.settle();
     person.key(Key::N);
     assert!(person.sees_part("no proposal is left to look at"));
+}
+
+#[test]
+fn columns_scroll_while_a_sample_is_dragged_near_their_left_or_right_edge() {
+    let (_folder, mut person) = labelling(1);
+    for number in 1..=12 {
+        let class = ClassCommand::Add(format!("other {number}"));
+        person.command(Command::Classes(class));
+    }
+    person.goes_to(Panel::Classes);
+    let before = person.labels();
+    let wave = person.state().shown_samples().iter();
+    let wave = wave.clone().find(|s| s.class == "wave").unwrap().clone();
+    let card = |class: &str| format!("{class} in ada_1 at {:.2} s", wave.start_secs);
+    let from = person.place(&card("wave")).center();
+    let right = person.place("Performer").left() - 20.0;
+    let last = |person: &Person| person.place("Column other 12").center();
+    assert!(last(&person).x > 1400.0);
+    let edge = egui::pos2(right, from.y);
+    person.drag_over(from, edge, 4.0, last);
+    person.settle();
+    assert!(last(&person).x < right, "it has come into sight");
+    let moved = person.labels();
+    assert_eq!(moved.iter().filter(|l| l.1 == "other 12").count(), 1);
+    // And back, over the left edge.
+    let from = person.place(&card("other 12")).center();
+    let first = |person: &Person| person.place("Column wave").center();
+    assert!(first(&person).x < 0.0);
+    person.drag_over(from, egui::pos2(12.0, from.y), 4.0, first);
+    person.settle();
+    assert_eq!(person.labels(), before);
+    // Without anything that is dragged, the edge is a place as any other.
+    person.window.event(egui::Event::PointerMoved(edge));
+    person.wait(1.0);
+    assert!(first(&person).x > 0.0);
+}
+
+#[test]
+fn a_column_scrolls_while_a_sample_is_dragged_near_its_lower_or_upper_edge() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = made(folder.path(), 1);
+    let mut db = MotionDb::open(&path).unwrap();
+    let clip = db.find_clip("ben_1").unwrap().id;
+    let step = |at: usize| NewSample {
+        clip,
+        class: "step".to_owned(),
+        start_secs: 0.5 * at as f64,
+        stop_secs: 0.5 * at as f64 + 0.4,
+        whole_clip: false,
+        state: Judged::Accepted,
+        score: None,
+    };
+    let steps: Vec<NewSample> = (0..40).map(step).collect();
+    db.add_samples(&steps, "test").unwrap();
+    drop(db);
+    let mut person = Person::before(&[path]);
+    person.goes_to(Panel::Classes);
+    let (first, last) = ("step in ben_1 at 0.00 s", "step in ben_1 at 19.50 s");
+    assert!(person.sees(first) && !person.sees(last));
+    let from = person.place(first).center();
+    let column = person.place("Column step");
+    let lower = egui::pos2(from.x, column.bottom() - 14.0);
+    // Dropped on another column, though its own place is out of sight by then.
+    person.drag_over(from, lower, 5.0, |person| {
+        assert!(person.sees(last) && !person.sees(first));
+        person.place("Column wave").center()
+    });
+    person.settle();
+    let waves = |person: &Person| {
+        let labels = person.labels();
+        let waves = labels.iter().filter(|l| l.1 == "wave" && l.0 == clip.0);
+        waves.count()
+    };
+    assert_eq!(waves(&person), 1);
+    let from = person.place(last).center();
+    let upper = egui::pos2(from.x, column.top() + 50.0);
+    person.drag_over(from, upper, 5.0, |person| {
+        assert!(person.sees("step in ben_1 at 0.50 s") && !person.sees(last));
+        person.place("Column wave").center()
+    });
+    person.settle();
+    assert_eq!(waves(&person), 2);
 }
