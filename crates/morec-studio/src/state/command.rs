@@ -154,7 +154,8 @@ pub enum ViewCommand {
     Top,
     Reset,
     Follow(bool),
-    Trail(Option<usize>),
+    /// The part of the body that leaves a trail.
+    Trail(Option<Role>),
     Onion(bool),
 }
 
@@ -190,8 +191,8 @@ pub enum TimelineCommand {
     /// Labels the selected stretch.
     LabelRange(String),
     Cut(SegmentMethod),
-    /// The curve of a joint with its keyframes.
-    Channel(Option<(usize, ChannelKind)>),
+    /// The curve of the joint of this name with its keyframes.
+    Channel(Option<(String, ChannelKind)>),
     /// Width of the tracks, as drawn.
     Width(f32),
 }
