@@ -232,6 +232,10 @@ pub enum ClassCommand {
     NextDoubtful,
     Renaming(Option<(String, String)>),
     Adding(String),
+    /// The first letters of the class that shall have the key Q; `None` ends choosing.
+    Choosing(Option<String>),
+    /// This class has the key Q from now on.
+    Choose(String),
 }
 
 #[derive(Debug, Clone, PartialEq)]

@@ -6,7 +6,7 @@ use morec_db::labels::{NewSample, SampleState as Judged};
 
 use super::{Person, made};
 use crate::jobs::group::ClusteredItems;
-use crate::state::{ClassCommand, Command, Panel};
+use crate::state::{ClassCommand, Command, Panel, PlayCommand};
 
 fn labelling(labelled: usize) -> (tempfile::TempDir, Person) {
     let folder = tempfile::tempdir().unwrap();
@@ -199,6 +199,96 @@ fn the_most_doubtful_proposal_is_shown_first_and_the_next_after_each_answer() {
     person.settle();
     person.key(Key::N);
     assert!(person.sees_part("no proposal is left to look at"));
+}
+
+/// Twelve classes without labels, the last of them `throw` and `turn`.
+fn many_classes() -> (tempfile::TempDir, Person) {
+    let (folder, mut person) = labelling(0);
+    let names = (1..=10).map(|n| format!("other {n}"));
+    for name in names.chain(["throw".to_owned(), "turn".to_owned()]) {
+        person.command(Command::Classes(ClassCommand::Add(name)));
+    }
+    (folder, person)
+}
+
+/// Types the first letters of a class, after a key has opened the chooser, and presses Enter.
+fn choose(person: &mut Person, letters: &str) {
+    person.window.event(egui::Event::Text(letters.to_owned()));
+    person.frames(2);
+    person.key(Key::Enter);
+    person.frames(2);
+}
+
+#[test]
+fn a_class_beyond_the_ninth_is_labelled_by_the_key_it_is_given() {
+    let (_folder, mut person) = many_classes();
+    // Q asks for its class as long as it has none.
+    person.key(Key::Q);
+    assert!(person.sees("Class of the key Q"));
+    assert!(person.sees("Choose other 1") && person.sees_part("and 3 more"));
+    choose(&mut person, "TH");
+    assert!(!person.sees("Class of the key Q"));
+    assert_eq!(person.state().classes.quick.as_deref(), Some("throw"));
+    // Held while playing.
+    person.command(Command::Play(PlayCommand::Seek(2.0)));
+    person.key(Key::Space);
+    person.hold(Key::Q, 0.8);
+    person.settle();
+    let labels = person.labels();
+    assert_eq!(labels.len(), 1);
+    assert_eq!(labels[0].1, "throw");
+    assert!(labels[0].3 - labels[0].2 > 40, "{labels:?}");
+    // Tapped, for the next class.
+    person.key(Key::W);
+    choose(&mut person, "tu");
+    for _ in 0..3 {
+        person.hold(Key::Q, 0.05);
+        person.wait(0.7);
+    }
+    person.key(Key::K);
+    person.settle();
+    let turns = person.labels().iter().filter(|l| l.1 == "turn").count();
+    assert_eq!(turns, 2, "from tap to tap");
+    // Stopped, it says what the selected label is.
+    let sample = person.state().shown_samples().iter();
+    let thrown = sample.clone().find(|s| s.class == "throw").unwrap();
+    let name = format!("throw {:.2}–{:.2} s", thrown.start_secs, thrown.stop_secs);
+    person.wait(1.0);
+    person.click(&name);
+    person.key(Key::Q);
+    person.settle();
+    assert_eq!(person.labels().iter().filter(|l| l.1 == "turn").count(), 3);
+    person.undo();
+    assert_eq!(person.labels().iter().filter(|l| l.1 == "turn").count(), 2);
+}
+
+#[test]
+fn a_class_has_its_number_and_the_key_q_and_the_chooser_is_left_by_escape() {
+    let (_folder, mut person) = many_classes();
+    person.wait(0.5);
+    person.right_click("Class other 2");
+    person.click("Give it the key Q");
+    person.command(Command::Play(PlayCommand::Seek(2.0)));
+    person.key(Key::Space);
+    for key in [Key::Num2, Key::Q] {
+        person.hold(key, 0.6);
+        person.wait(0.3);
+    }
+    person.key(Key::K);
+    person.settle();
+    let labels = person.labels();
+    assert_eq!(labels.len(), 2, "{labels:?}");
+    assert!(labels.iter().all(|l| l.1 == "other 2"));
+    person.key(Key::W);
+    person.window.event(egui::Event::Text("nobody".to_owned()));
+    person.frames(2);
+    assert!(person.sees("No class is called so."));
+    person.key(Key::Enter);
+    assert!(person.sees("Class of the key Q"), "nothing is chosen");
+    person.key(Key::Escape);
+    person.frames(2);
+    assert!(!person.sees("Class of the key Q"));
+    assert_eq!(person.state().classes.quick.as_deref(), Some("other 2"));
 }
 
 #[test]
