@@ -158,7 +158,7 @@ fn class(ui: &mut Ui, state: &State, place: usize, out: Out) {
         egui::Align2::CENTER_CENTER,
         state.classes.key_of(place),
         font,
-        c.on_class(),
+        c.text_on(c.class(Some(place))),
     );
     let info = state
         .store
