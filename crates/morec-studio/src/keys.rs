@@ -21,6 +21,9 @@ pub const CLASS_KEYS: [Key; 9] = [
     Key::Num9,
 ];
 
+/// The key of whichever class it was given to, beyond the ninth, too.
+const QUICK_KEY: Key = Key::Q;
+
 /// Entries of the page of keys: area, keys, effect.
 pub const HELP: &[(&str, &str, &str)] = &[
     (
@@ -62,6 +65,11 @@ pub const HELP: &[(&str, &str, &str)] = &[
         "Labels",
         "1 … 9 stopped",
         "label the selected stretch, or change the selected label's class",
+    ),
+    (
+        "Labels, live",
+        "Q, W",
+        "like 1 … 9, for any class; W chooses it by the beginning of its name",
     ),
     ("Labels", "S, M", "split at the playhead, merge"),
     (
@@ -172,6 +180,7 @@ fn commands(i: &mut egui::InputState, out: &mut Vec<Command>) {
     if i.key_pressed(Key::Escape) {
         out.push(Command::ShowKeys(false));
         out.push(Command::ShowHistory(false));
+        out.push(Command::Classes(ClassCommand::Choosing(None)));
     }
 }
 
@@ -241,18 +250,41 @@ fn playing(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
     }
 }
 
+/// Places of classes with their keys. A class among the first nine may have the key Q beside its own.
+fn slots(state: &State) -> Vec<(usize, Vec<Key>)> {
+    let keys = CLASS_KEYS.into_iter().enumerate();
+    let mut slots: Vec<(usize, Vec<Key>)> = keys.map(|(slot, key)| (slot, vec![key])).collect();
+    match state.classes.quick_place() {
+        Some(place) if place < slots.len() => slots[place].1.push(QUICK_KEY),
+        Some(place) => slots.push((place, vec![QUICK_KEY])),
+        None => {}
+    }
+    slots
+}
+
+/// The keys that choose the class of the key Q; Q itself does so while it has none.
+fn choosing(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
+    let asked = i.consume_key(Modifiers::NONE, Key::W);
+    let without = state.classes.quick_place().is_none();
+    if asked || (without && i.consume_key(Modifiers::NONE, QUICK_KEY)) {
+        let begun = Some(String::new());
+        out.push(Command::Classes(ClassCommand::Choosing(begun)));
+    }
+}
+
 fn labels(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
-    for (slot, key) in CLASS_KEYS.into_iter().enumerate() {
+    choosing(i, state, out);
+    for (slot, keys) in slots(state) {
         // Keys repeat while they are held; going down is what counts.
         let went_down = i.events.iter().any(|event| {
-            matches!(event, egui::Event::Key { key: k, pressed: true, repeat: false, modifiers, .. }
-                if *k == key && modifiers.is_none())
+            matches!(event, egui::Event::Key { key, pressed: true, repeat: false, modifiers, .. }
+                if keys.contains(key) && modifiers.is_none())
         });
         let held = state.classes.held.as_ref().is_some_and(|h| h.slot == slot);
         if went_down && !held {
             out.push(class_key(slot, true));
         }
-        if (held || went_down) && !i.key_down(key) {
+        if (held || went_down) && !keys.iter().any(|key| i.key_down(*key)) {
             out.push(class_key(slot, false));
         }
     }
@@ -320,9 +352,12 @@ fn live(i: &mut egui::InputState, state: &State, out: &mut Vec<Command>) {
             out.push(Command::Live(LiveCommand::Back(secs)));
         }
     }
-    for (slot, key) in CLASS_KEYS.into_iter().enumerate() {
-        if i.consume_key(Modifiers::NONE, key) {
-            out.push(Command::Live(LiveCommand::Mark(slot)));
+    choosing(i, state, out);
+    for (slot, keys) in slots(state) {
+        for key in keys {
+            if i.consume_key(Modifiers::NONE, key) {
+                out.push(Command::Live(LiveCommand::Mark(slot)));
+            }
         }
     }
     if i.consume_key(Modifiers::NONE, Key::Num0) {

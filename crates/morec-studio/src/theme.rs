@@ -79,6 +79,16 @@ const CLASSES: [(u8, u8, u8); 8] = [
     (0x9a, 0xa3, 0xae),
 ];
 
+/// Ratio of the luminances of two colours, from 1 to 21, as WCAG 2 defines it. 4.5 is enough for text.
+fn contrast(a: Color32, b: Color32) -> f32 {
+    let luminance = |colour: Color32| {
+        let [r, g, b, _] = egui::Rgba::from(colour).to_array();
+        0.2126 * r + 0.7152 * g + 0.0722 * b
+    };
+    let (a, b) = (luminance(a) + 0.05, luminance(b) + 0.05);
+    a.max(b) / a.min(b)
+}
+
 impl Colours {
     pub fn of(dark: bool) -> Self {
         if dark { DARK } else { LIGHT }
@@ -103,9 +113,13 @@ impl Colours {
         }
     }
 
-    /// Text on a class's colour.
-    pub fn on_class(&self) -> Color32 {
-        Color32::from_rgb(0x10, 0x14, 0x1a)
+    /// Text on a colour: black, or white where that is read better. One of the two always has a contrast of 4.5.
+    pub fn text_on(&self, fill: Color32) -> Color32 {
+        let (black, white) = (Color32::BLACK, Color32::WHITE);
+        match contrast(black, fill) >= contrast(white, fill) {
+            true => black,
+            false => white,
+        }
     }
 
     /// Colours of a performer: left blue, right orange, as on the pages of reports.
@@ -212,4 +226,25 @@ fn visuals(dark: bool) -> Visuals {
         state.expansion = 0.0;
     }
     v
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_can_be_read_on_the_colour_of_every_class_in_both_themes() {
+        for colours in [DARK, LIGHT] {
+            for place in 0..40 {
+                let fill = colours.class(Some(place));
+                let ratio = contrast(colours.text_on(fill), fill);
+                assert!(
+                    ratio >= 4.5,
+                    "class {place}, dark {}: {ratio}",
+                    colours.dark
+                );
+            }
+        }
+        assert_eq!(contrast(Color32::BLACK, Color32::WHITE).round(), 21.0);
+    }
 }

@@ -43,10 +43,17 @@ pub struct View {
 }
 
 impl Camera {
+    /// Steepest look from above or below, radians.
+    pub const STEEPEST: f64 = 1.5;
+    /// Least and greatest distance, metres.
+    pub const NEAREST: f64 = 0.6;
+    pub const FARTHEST: f64 = 40.0;
+
     /// Turns by a drag over so many points.
     pub fn orbit(&mut self, drag: Vec2) {
         self.yaw -= f64::from(drag.x) * 0.008;
-        self.pitch = (self.pitch + f64::from(drag.y) * 0.008).clamp(-1.5, 1.5);
+        self.pitch =
+            (self.pitch + f64::from(drag.y) * 0.008).clamp(-Self::STEEPEST, Self::STEEPEST);
     }
 
     /// Moves the target by a drag over so many points of a picture of this height.
@@ -61,7 +68,7 @@ impl Camera {
     /// Nearer for factors above 1.
     pub fn zoom(&mut self, factor: f64) {
         if factor.is_finite() && factor > 0.0 {
-            self.distance = (self.distance / factor).clamp(0.6, 40.0);
+            self.distance = (self.distance / factor).clamp(Self::NEAREST, Self::FARTHEST);
         }
     }
 

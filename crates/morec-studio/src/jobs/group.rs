@@ -31,7 +31,7 @@ pub struct GroupItem {
 pub struct ClusteredItems {
     pub items: Vec<GroupItem>,
     pub hierarchy: Hierarchy,
-    /// Distance of each item from all others of its group would depend on the depth; this is from all there are.
+    /// The poses of each item, brought to one length: outliers are far from the mean of their group.
     shapes: Vec<Vec<f32>>,
     pub left_out: usize,
 }
@@ -165,4 +165,37 @@ pub(super) fn only(rows: &Rows, bones: BoneSet, common: BoneSet) -> Rows {
         return rows.clone();
     }
     rows.columns(&RowLayout::kept_columns(bones, common))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Items whose shapes differ from one another by these numbers.
+    fn grouped(places: &[f32]) -> ClusteredItems {
+        let item = |at: usize| GroupItem {
+            clip: ClipId(1),
+            start_secs: at as f64,
+            stop_secs: at as f64 + 1.0,
+            sample: None,
+            class: None,
+        };
+        let shapes = places.iter().map(|&place| vec![place; POINTS]).collect();
+        ClusteredItems::of((0..places.len()).map(item).collect(), shapes, 0)
+    }
+
+    fn members(groups: &[Group]) -> Vec<Vec<usize>> {
+        groups.iter().map(|g| g.members.clone()).collect()
+    }
+
+    #[test]
+    fn each_group_begins_with_what_is_farthest_from_its_own_mean() {
+        let all = grouped(&[0.0, 0.1, 9.0, -0.8, 9.5, 0.4]);
+        // The means are -0.075 and 9.25: within a group, distance from everything else does not count.
+        let two = members(&all.at(2));
+        assert_eq!(two[0], [3, 5, 1, 0]);
+        assert_eq!(two[1].len(), 2);
+        // As one group the mean is 3.03.
+        assert_eq!(members(&all.at(1)), [[4, 2, 3, 0, 1, 5]]);
+    }
 }

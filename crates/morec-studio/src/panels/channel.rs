@@ -22,25 +22,23 @@ const STEP: f32 = 2.0;
 
 /// The curve that was chosen.
 pub fn curve(ui: &mut Ui, state: &State, scale: &Scale) {
-    let Some((joint, kind)) = state.channel_wanted else {
+    let Some((joint_name, kind)) = &state.channel_wanted else {
         return;
     };
     let Some(motion) = &state.player.motion else {
         return;
     };
     let c = Colours::now(ui);
-    let joint_name = motion
-        .clip
-        .skeleton
-        .joints()
-        .get(joint)
-        .map_or("?", |j| &j.name);
     let rect = track(ui, state, scale, joint_name, HEIGHT, None, None);
+    let inner = rect.shrink2(Vec2::new(8.0, 0.0));
+    let Some(joint) = motion.clip.skeleton.find(joint_name) else {
+        let text = "no joint of this clip is called so";
+        return widgets::text_in(ui, inner, text, 11.0, c.muted, false);
+    };
     let shown = state
         .channel
         .as_ref()
-        .filter(|k| k.clip == motion.id && k.joint == joint && k.kind == kind);
-    let inner = rect.shrink2(Vec2::new(8.0, 0.0));
+        .filter(|k| k.clip == motion.id && k.joint == joint && k.kind == *kind);
     let Some(channel) = shown else {
         return widgets::text_in(ui, inner, "…", 11.0, c.muted, false);
     };
@@ -121,8 +119,8 @@ pub fn menu(ui: &mut Ui, state: &State, out: Out) {
     };
     let joints = motion.clip.skeleton.joints();
     let mut choose = |wanted| out.push(Command::Timeline(TimelineCommand::Channel(wanted)));
-    let text = match state.channel_wanted.and_then(|(j, _)| joints.get(j)) {
-        Some(joint) => format!("Channel: {}", joint.name),
+    let text = match &state.channel_wanted {
+        Some((joint, _)) => format!("Channel: {joint}"),
         None => "Channel".to_owned(),
     };
     ui.menu_button(text, |ui| {
@@ -133,14 +131,14 @@ pub fn menu(ui: &mut Ui, state: &State, out: Out) {
         egui::ScrollArea::vertical()
             .max_height(360.0)
             .show(ui, |ui| {
-                for (at, joint) in joints.iter().enumerate() {
+                for joint in joints {
                     let moves = joint.parent.is_none();
                     if moves && ui.button(format!("{}: position", joint.name)).clicked() {
-                        choose(Some((at, ChannelKind::Position)));
+                        choose(Some((joint.name.clone(), ChannelKind::Position)));
                         ui.close();
                     }
                     if ui.button(format!("{}: rotation", joint.name)).clicked() {
-                        choose(Some((at, ChannelKind::Rotation)));
+                        choose(Some((joint.name.clone(), ChannelKind::Rotation)));
                         ui.close();
                     }
                 }

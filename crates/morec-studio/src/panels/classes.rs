@@ -1,8 +1,8 @@
 //! Classes side by side, each with strips of its samples; segments are dragged from one to another.
 
 use egui::{
-    CentralPanel, Context, DragAndDrop, Frame, Margin, RichText, ScrollArea, SidePanel, Ui,
-    WidgetType,
+    CentralPanel, Context, DragAndDrop, Frame, Margin, Rangef, RichText, ScrollArea, SidePanel, Ui,
+    Vec2, WidgetType, style::ScrollAnimation,
 };
 use morec_db::labels::{DbSample, SampleId, SampleState as Judged};
 
@@ -10,6 +10,11 @@ use super::{Out, card, groups, label, padded, similar, view, widgets};
 use crate::format;
 use crate::state::{ClassCommand, Command, State};
 use crate::theme::Colours;
+
+/// Nearer than this to an edge, points, what is dragged scrolls.
+const EDGE: f32 = 44.0;
+/// Speed of that at the edge itself, points a second.
+const EDGE_SPEED: f32 = 1100.0;
 
 pub fn show(ctx: &Context, state: &State, out: Out) {
     let c = Colours::of(state.dark);
@@ -119,7 +124,36 @@ fn columns(ui: &mut Ui, state: &State, out: Out) {
                 column(ui, state, place, class, samples, height - 14.0, out);
             }
         });
+        // After the columns: each scroll area takes what has been asked for inside it.
+        scroll_at_edge(ui, Vec2::X);
     });
+}
+
+/// Scrolls the area around `ui` along `axis` while a sample is dragged near one of its edges.
+fn scroll_at_edge(ui: &Ui, axis: Vec2) {
+    let area = ui.clip_rect();
+    let Some(at) = ui.ctx().pointer_latest_pos() else {
+        return;
+    };
+    if !DragAndDrop::has_payload_of_type::<SampleId>(ui.ctx()) {
+        return;
+    }
+    let (along, across) = match axis == Vec2::X {
+        true => (push(area.x_range(), at.x), area.y_range().contains(at.y)),
+        false => (push(area.y_range(), at.y), area.x_range().contains(at.x)),
+    };
+    if across && along != 0.0 {
+        let secs = ui.input(|i| i.stable_dt).min(0.1);
+        let content = -along * EDGE_SPEED * secs;
+        ui.scroll_with_delta_animation(axis * content, ScrollAnimation::none());
+        ui.ctx().request_repaint();
+    }
+}
+
+/// How strongly a place in a range, or outside, pushes on: -1 at the lower end and below, 1 at the upper and above.
+fn push(range: Rangef, at: f32) -> f32 {
+    let near = |distance: f32| (1.0 - distance / EDGE).clamp(0.0, 1.0);
+    near(range.max - at) - near(at - range.min)
 }
 
 fn column(
@@ -164,6 +198,7 @@ fn column(
                     for sample in &samples[rows] {
                         card::show(ui, state, sample, out);
                     }
+                    scroll_at_edge(ui, Vec2::Y);
                 });
         });
     };

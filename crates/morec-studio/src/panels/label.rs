@@ -152,17 +152,14 @@ fn class(ui: &mut Ui, state: &State, place: usize, out: Out) {
     let square =
         Rect::from_center_size(rect.left_center() + Vec2::new(14.0, 0.0), Vec2::splat(18.0));
     ui.painter().rect_filled(square, 3.0, c.class(Some(place)));
-    if place < 9 {
-        let font = egui::FontId::proportional(12.0);
-        let key = (place + 1).to_string();
-        ui.painter().text(
-            square.center(),
-            egui::Align2::CENTER_CENTER,
-            key,
-            font,
-            c.on_class(),
-        );
-    }
+    let font = egui::FontId::proportional(12.0);
+    ui.painter().text(
+        square.center(),
+        egui::Align2::CENTER_CENTER,
+        state.classes.key_of(place),
+        font,
+        c.text_on(c.class(Some(place))),
+    );
     let info = state
         .store
         .as_ref()
@@ -198,6 +195,10 @@ fn class(ui: &mut Ui, state: &State, place: usize, out: Out) {
         if ui.button("Rename").clicked() {
             let now = Some((name.clone(), name.clone()));
             out.push(Command::Classes(ClassCommand::Renaming(now)));
+            ui.close();
+        }
+        if ui.button("Give it the key Q").clicked() {
+            out.push(Command::Classes(ClassCommand::Choose(name.clone())));
             ui.close();
         }
         if ui.button("Remove the class and its labels").clicked() {

@@ -322,14 +322,11 @@ fn banner(ui: &Ui, state: &State, rect: Rect) {
     let Some(seen) = fresh else { return };
     let age = ((run.now_secs - seen.reported_secs) / SHOWN_SECS) as f32;
     let place = state.classes.place(&seen.class);
-    let galley = painter.layout_no_wrap(
-        seen.class.clone(),
-        egui::FontId::proportional(30.0),
-        c.on_class(),
-    );
+    let text = c.text_on(c.class(place));
+    let galley = painter.layout_no_wrap(seen.class.clone(), egui::FontId::proportional(30.0), text);
     let size = galley.size() + Vec2::new(40.0, 18.0);
     let at = Rect::from_center_size(rect.center_bottom() - Vec2::new(0.0, 46.0), size);
     let fill = c.class(place).gamma_multiply((1.4 - age).clamp(0.0, 1.0));
     painter.rect_filled(at, 8.0, fill);
-    painter.galley(at.center() - galley.size() / 2.0, galley, c.on_class());
+    painter.galley(at.center() - galley.size() / 2.0, galley, text);
 }

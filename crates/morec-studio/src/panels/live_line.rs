@@ -255,12 +255,17 @@ fn bar(
     );
     painter.rect_filled(bar, 3.0, colour);
     let font = egui::FontId::proportional(11.0);
-    let mut job = egui::text::LayoutJob::simple_singleline(name.to_owned(), font, c.on_class());
+    let mut job =
+        egui::text::LayoutJob::simple_singleline(name.to_owned(), font, c.text_on(colour));
     job.wrap = egui::text::TextWrapping::truncate_at_width((bar.width() - 6.0).max(1.0));
     let galley = painter.layout_job(job);
     // A letter and the dots say nothing.
     if !galley.elided || bar.width() > 48.0 {
-        painter.galley(bar.center() - galley.size() / 2.0, galley, c.on_class());
+        painter.galley(
+            bar.center() - galley.size() / 2.0,
+            galley,
+            c.text_on(colour),
+        );
     }
     bar
 }

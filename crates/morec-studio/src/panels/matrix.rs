@@ -62,7 +62,7 @@ fn matrix(ui: &mut Ui, state: &State, out: Out) {
     let names = 128.0;
     let room = ui.available_width() - names - 16.0;
     let cell = (room / columns as f32).clamp(34.0, 64.0);
-    let head = 74.0;
+    let head = 92.0;
     let tall = cell.min(40.0);
     ScrollArea::horizontal().id_salt("matrix").show(ui, |ui| {
         let size = Vec2::new(names + cell * columns as f32, head + tall * rows as f32);
@@ -95,7 +95,7 @@ fn matrix(ui: &mut Ui, state: &State, out: Out) {
 }
 
 fn slanted(ui: &Ui, at: egui::Pos2, text: &str, c: &Colours) {
-    let mut short: String = text.chars().take(14).collect();
+    let mut short: String = text.chars().take(16).collect();
     if short.len() < text.len() {
         short.push('…');
     }
@@ -142,7 +142,7 @@ fn one(ui: &Ui, state: &State, rect: Rect, row: usize, column: usize, out: Out) 
             Align2::CENTER_CENTER,
             count.to_string(),
             FontId::proportional(13.0),
-            c.text,
+            c.text_on(fill),
         );
     }
     if on {

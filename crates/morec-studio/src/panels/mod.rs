@@ -4,6 +4,7 @@ mod background;
 mod bars;
 mod card;
 mod channel;
+mod chooser;
 mod classes;
 mod compare;
 mod curves;
@@ -48,6 +49,7 @@ pub fn show(ctx: &Context, state: &State, out: Out) {
     bars::bottom(ctx, state, out);
     notices::show(ctx, state, out);
     help::show(ctx, state, out);
+    chooser::show(ctx, state, out);
     history::show(ctx, state, out);
     if state.store.is_none() {
         return empty(ctx, state, out);

@@ -85,19 +85,24 @@ fn line(ui: &mut Ui, moment: &Moment, height: f32, on: bool) -> bool {
     } else if response.hovered() {
         ui.painter().rect_filled(rect, 3.0, c.tint(c.accent, 0.12));
     }
+    // On the colour of the selection only the colour of plain text is read well.
+    let (strong, weak) = match (on, moment.is_right()) {
+        (true, _) => (c.text, c.text),
+        (false, true) => (c.text, c.muted),
+        (false, false) => (c.bad, c.muted),
+    };
     let mut inner = rect.shrink2(Vec2::new(4.0, 0.0));
     if let Some(why) = &moment.why {
         let below = inner.with_min_y(inner.center().y);
-        widgets::text_in(ui, below, why, 11.5, c.muted, false);
+        widgets::text_in(ui, below, why, 11.5, weak, false);
         inner = inner.with_max_y(inner.center().y);
         response = response.on_hover_text(why);
     }
     let middle = inner.left() + inner.width() * 0.58;
     let left = Rect::from_min_max(inner.min, pos2(middle, inner.bottom()));
     let right = Rect::from_min_max(pos2(middle + 8.0, inner.top()), inner.max);
-    let colour = if moment.is_right() { c.text } else { c.bad };
-    widgets::text_in(ui, left, &said, 12.5, colour, false);
+    widgets::text_in(ui, left, &said, 12.5, strong, false);
     let place = format!("{}  {start}", moment.clip);
-    widgets::text_in(ui, right, &place, 11.5, c.muted, true);
+    widgets::text_in(ui, right, &place, 11.5, weak, true);
     response.clicked()
 }

@@ -23,13 +23,13 @@ pub fn show(ui: &mut Ui, state: &State, out: Out) {
     ui.horizontal_wrapped(|ui| {
         let order = &state.classes.order;
         for (place, class) in order.iter().enumerate() {
-            let key = if place < 9 {
-                format!("{}  ", place + 1)
-            } else {
-                String::new()
-            };
+            let key = state.classes.key_of(place);
             let fill = c.panel.lerp_to_gamma(c.class(Some(place)), 0.35);
-            let button = egui::Button::new(format!("{key}{class}")).fill(fill);
+            let text = match key.is_empty() {
+                true => class.clone(),
+                false => format!("{key}  {class}"),
+            };
+            let button = egui::Button::new(text).fill(fill);
             let response = ui.add_enabled(on, button);
             widgets::named(
                 &response,

@@ -3,6 +3,7 @@
 use egui::{Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, WidgetType};
 use morec::kinematics::WorldPose;
 use morec::math::Vec3;
+use morec::roles::Role;
 
 use super::compare::Other;
 use super::{Out, player, widgets};
@@ -85,7 +86,7 @@ pub fn draw(ui: &mut Ui, rect: Rect, state: &State, scene: &Scene, out: Out) {
         if state.onion {
             painter.extend(onion(motion, at, &view, &c));
         }
-        if let Some(joint) = state.trail {
+        if let Some(joint) = state.trail.and_then(|role| motion.roles.joint(role)) {
             painter.extend(trail(motion, at, joint, &view, &c));
         }
     }
@@ -309,16 +310,14 @@ fn controls(ui: &mut Ui, rect: Rect, state: &State, out: Out) {
 }
 
 fn trail_menu(ui: &mut Ui, state: &State, motion: &ClipMotion, look: &mut impl FnMut(ViewCommand)) {
-    let joints = motion.clip.skeleton.joints();
-    let text = match state.trail.and_then(|j| joints.get(j)) {
-        Some(joint) => format!("Trail: {}", joint.name),
+    let text = match state.trail {
+        Some(role) => format!("Trail: {}", spoken(role)),
         None => "Trail".to_owned(),
     };
     ui.menu_button(text, |ui| {
         if ui.button("None").clicked() {
             look(ViewCommand::Trail(None));
         }
-        use morec::roles::Role;
         for role in [
             Role::LeftHand,
             Role::RightHand,
@@ -327,11 +326,13 @@ fn trail_menu(ui: &mut Ui, state: &State, motion: &ClipMotion, look: &mut impl F
             Role::Head,
             Role::Hips,
         ] {
-            if let Some(joint) = motion.roles.joint(role)
-                && ui.button(role.name().replace('_', " ")).clicked()
-            {
-                look(ViewCommand::Trail(Some(joint)));
+            if motion.roles.joint(role).is_some() && ui.button(spoken(role)).clicked() {
+                look(ViewCommand::Trail(Some(role)));
             }
         }
     });
+}
+
+fn spoken(role: Role) -> String {
+    role.name().replace('_', " ")
 }

@@ -65,7 +65,7 @@ pub fn chip(ui: &mut Ui, place: Option<usize>, name: &str) -> Response {
             Align2::CENTER_CENTER,
             key,
             font,
-            c.on_class(),
+            c.text_on(c.class(Some(place))),
         );
     }
     response.on_hover_text(name)

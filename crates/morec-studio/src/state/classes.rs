@@ -42,6 +42,10 @@ pub struct Classes {
     pub renaming: Option<(String, String)>,
     /// The name of a new class so far.
     pub adding: String,
+    /// The class of the key Q.
+    pub quick: Option<String>,
+    /// The first letters of the class that shall have the key Q, while it is chosen.
+    pub choosing: Option<String>,
 }
 
 impl Classes {
@@ -63,6 +67,34 @@ impl Classes {
     /// The place of a class, which its colour and its key go by.
     pub fn place(&self, class: &str) -> Option<usize> {
         self.order.iter().position(|name| name == class)
+    }
+
+    /// The place of the class of the key Q.
+    pub fn quick_place(&self) -> Option<usize> {
+        self.place(self.quick.as_deref()?)
+    }
+
+    /// The key of the class at a place, as it is written on it; nothing if it has none.
+    pub fn key_of(&self, place: usize) -> String {
+        match place {
+            0..9 => (place + 1).to_string(),
+            _ if self.quick_place() == Some(place) => "Q".to_owned(),
+            _ => String::new(),
+        }
+    }
+
+    /// The classes whose names begin with `text`, whatever its case, then those that only contain it.
+    pub fn matching(&self, text: &str) -> Vec<&str> {
+        let text = text.trim().to_lowercase();
+        let names = self.order.iter().map(String::as_str);
+        let mut found: Vec<(bool, &str)> = names
+            .filter_map(|name| {
+                let at = name.to_lowercase().find(&text)?;
+                Some((at > 0, name))
+            })
+            .collect();
+        found.sort_by_key(|(inside, _)| *inside);
+        found.into_iter().map(|(_, name)| name).collect()
     }
 
     pub(super) fn show_groups(&mut self, groups: ClusteredItems) {

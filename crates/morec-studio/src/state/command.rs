@@ -154,7 +154,8 @@ pub enum ViewCommand {
     Top,
     Reset,
     Follow(bool),
-    Trail(Option<usize>),
+    /// The part of the body that leaves a trail.
+    Trail(Option<Role>),
     Onion(bool),
 }
 
@@ -190,8 +191,8 @@ pub enum TimelineCommand {
     /// Labels the selected stretch.
     LabelRange(String),
     Cut(SegmentMethod),
-    /// The curve of a joint with its keyframes.
-    Channel(Option<(usize, ChannelKind)>),
+    /// The curve of the joint of this name with its keyframes.
+    Channel(Option<(String, ChannelKind)>),
     /// Width of the tracks, as drawn.
     Width(f32),
 }
@@ -231,6 +232,10 @@ pub enum ClassCommand {
     NextDoubtful,
     Renaming(Option<(String, String)>),
     Adding(String),
+    /// The first letters of the class that shall have the key Q; `None` ends choosing.
+    Choosing(Option<String>),
+    /// This class has the key Q from now on.
+    Choose(String),
 }
 
 #[derive(Debug, Clone, PartialEq)]

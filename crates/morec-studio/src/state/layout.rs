@@ -2,9 +2,13 @@
 
 use std::path::PathBuf;
 
+use morec::math::Vec3;
+use morec::roles::Role;
+use morec::smooth::ChannelKind;
 use serde::{Deserialize, Serialize};
 
 use super::{Panel, State};
+use crate::body::Camera;
 
 /// A session's layout. Sizes of panels and of the window are remembered by the window system's side.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -17,11 +21,89 @@ pub struct Layout {
     pub all_classes: bool,
     pub onion: bool,
     pub follow: bool,
+    /// The camera's angles, distance and target.
+    pub camera: Option<CameraLayout>,
+    /// Name of the part of the body that leaves a trail.
+    pub trail: Option<String>,
+    /// The channel whose curve is shown.
+    pub channel: Option<ChannelLayout>,
     pub mirror: bool,
     /// The database that was open, unless it lay in a temporary folder.
     pub database: Option<PathBuf>,
     /// The clip that was shown.
     pub clip: Option<String>,
+}
+
+/// Where the camera stands, without whether it follows.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct CameraLayout {
+    pub yaw: f64,
+    pub pitch: f64,
+    /// Metres.
+    pub distance: f64,
+    /// Metres.
+    pub target: [f64; 3],
+}
+
+/// A channel: name of the joint, and `rotation` or `position`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ChannelLayout {
+    pub joint: String,
+    pub kind: String,
+}
+
+impl From<&Camera> for CameraLayout {
+    fn from(camera: &Camera) -> Self {
+        Self {
+            yaw: camera.yaw,
+            pitch: camera.pitch,
+            distance: camera.distance,
+            target: camera.target.into(),
+        }
+    }
+}
+
+impl CameraLayout {
+    /// The camera; `None` if a number is none that a camera can have.
+    fn camera(&self, follow: bool) -> Option<Camera> {
+        let all = [self.yaw, self.pitch, self.distance].into_iter();
+        let finite = all.chain(self.target).all(f64::is_finite);
+        finite.then(|| Camera {
+            target: Vec3::from(self.target),
+            yaw: self.yaw,
+            pitch: self.pitch.clamp(-Camera::STEEPEST, Camera::STEEPEST),
+            distance: self.distance.clamp(Camera::NEAREST, Camera::FARTHEST),
+            follow,
+        })
+    }
+}
+
+const ROTATION: &str = "rotation";
+const POSITION: &str = "position";
+
+impl From<&(String, ChannelKind)> for ChannelLayout {
+    fn from((joint, kind): &(String, ChannelKind)) -> Self {
+        let kind = match kind {
+            ChannelKind::Rotation => ROTATION,
+            ChannelKind::Position => POSITION,
+        };
+        Self {
+            joint: joint.clone(),
+            kind: kind.to_owned(),
+        }
+    }
+}
+
+impl ChannelLayout {
+    /// The channel; `None` for a kind that is not known.
+    fn channel(&self) -> Option<(String, ChannelKind)> {
+        let kind = match self.kind.as_str() {
+            ROTATION => ChannelKind::Rotation,
+            POSITION => ChannelKind::Position,
+            _ => return None,
+        };
+        Some((self.joint.clone(), kind))
+    }
 }
 
 impl Default for Layout {
@@ -34,6 +116,9 @@ impl Default for Layout {
             all_classes: false,
             onion: false,
             follow: true,
+            camera: None,
+            trail: None,
+            channel: None,
             mirror: false,
             database: None,
             clip: None,
@@ -53,6 +138,9 @@ impl State {
             all_classes: self.timeline.all_classes,
             onion: self.onion,
             follow: self.camera.follow,
+            camera: Some((&self.camera).into()),
+            trail: self.trail.map(|role| role.name().to_owned()),
+            channel: self.channel_wanted.as_ref().map(ChannelLayout::from),
             mirror: self.classes.mirror,
             database: store.map(|s| s.path().to_owned()),
             clip: self.shown_clip().map(|c| c.name.clone()),
@@ -68,7 +156,13 @@ impl State {
         self.timeline.snap = layout.snap;
         self.timeline.all_classes = layout.all_classes;
         self.onion = layout.onion;
-        self.camera.follow = layout.follow;
+        let camera = layout.camera.and_then(|c| c.camera(layout.follow));
+        self.camera = camera.unwrap_or(Camera {
+            follow: layout.follow,
+            ..self.camera
+        });
+        self.trail = layout.trail.as_deref().and_then(Role::from_name);
+        self.want_channel(layout.channel.as_ref().and_then(ChannelLayout::channel));
         self.classes.mirror = layout.mirror;
     }
 

@@ -20,7 +20,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use morec::eval::ClipDetection;
-use morec::roles::RoleMap;
+use morec::roles::{Role, RoleMap};
 use morec::smooth::ChannelKind;
 use morec_db::{ClipId, ClipInfo};
 
@@ -67,14 +67,14 @@ pub struct State {
     pub library: Library,
     pub player: Player,
     pub camera: Camera,
-    /// The joint that leaves a trail.
-    pub trail: Option<usize>,
+    /// The part of the body that leaves a trail, whichever joint plays it in the clip that is shown.
+    pub trail: Option<Role>,
     pub onion: bool,
     /// Performers of other clips beside the one that is shown.
     pub companions: Companions,
     pub timeline: TimelineState,
-    /// The channel whose curve is shown: joint and kind; and the curve, once it is read.
-    pub channel_wanted: Option<(usize, ChannelKind)>,
+    /// The channel whose curve is shown: name of the joint, and kind; and the curve, once it is read.
+    pub channel_wanted: Option<(String, ChannelKind)>,
     pub channel: Option<ChannelCurve>,
     pub curves: Option<Arc<Curves>>,
     /// Detections of the index in the clip that is shown.

@@ -58,6 +58,19 @@ fn what_is_like_a_label_becomes_labels_and_back() {
     assert_eq!(person.labels().len(), before.len() + 1);
     person.undo();
     assert_eq!(person.labels(), before);
+    // A hit that is compared is found by a search for the example.
+    let of = person.state().classes.similar.as_ref().unwrap().of;
+    person.click("Compare with hit 1");
+    let line = person.state().command_line.clone();
+    let example = format!(
+        "ada_1 --start {:.3} --stop {:.3}",
+        of.start_secs, of.stop_secs
+    );
+    assert!(
+        line.starts_with("morec db search ") && line.contains(&example),
+        "{line}"
+    );
+    person.settle();
     person.click("Mirror image too");
     person.settle();
     assert!(person.state().classes.similar.as_ref().unwrap().mirror);

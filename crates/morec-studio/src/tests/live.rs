@@ -4,7 +4,7 @@ use egui::Key;
 
 use super::{Person, made, takes};
 use crate::state::live::Choice;
-use crate::state::{Command, LiveCommand, Panel, TrainCommand};
+use crate::state::{ClassCommand, Command, LiveCommand, Panel, TrainCommand};
 
 #[test]
 fn what_just_happened_is_marked_learned_and_recognised_and_undone() {
@@ -300,4 +300,31 @@ fn the_sensitivity_shows_what_the_minutes_would_have_held() {
     let many = person.state().live.resensed.as_ref().unwrap().found.len();
     assert!(few <= many && many > 0, "{few} {many}");
     assert!(person.sees_part("would have found"));
+}
+
+#[test]
+fn a_class_beyond_the_ninth_is_marked_by_the_key_that_it_was_given() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut person = Person::before(&[made(folder.path(), 0)]);
+    for number in 1..=11 {
+        let class = ClassCommand::Add(format!("other {number}"));
+        person.command(Command::Classes(class));
+    }
+    person.goes_to(Panel::Live);
+    person.key(Key::W);
+    person
+        .window
+        .event(egui::Event::Text("other 11".to_owned()));
+    person.frames(2);
+    person.key(Key::Enter);
+    person.click("Start");
+    person.settle();
+    let stop = takes()[0].labels[0].stop_secs;
+    while person.state().live.run.as_ref().unwrap().now_secs < stop + 0.4 {
+        person.frames(1);
+    }
+    person.key(Key::Q);
+    person.settle();
+    assert_eq!(person.labels().len(), 1);
+    assert_eq!(person.labels()[0].1, "other 11");
 }

@@ -36,6 +36,12 @@ fn judged() -> (tempfile::TempDir, Person) {
     (folder, person)
 }
 
+/// True if the command line that is shown searches for this.
+fn shows_search(person: &Person, what: &str) -> bool {
+    let line = &person.state().command_line;
+    line.starts_with("morec db search ") && line.ends_with(what)
+}
+
 #[test]
 fn matrix_list_and_figures_count_the_same() {
     let (_folder, mut person) = judged();
@@ -90,6 +96,8 @@ fn a_line_jumps_to_its_moment_and_offers_the_comparison_with_the_nearest_label()
     assert_eq!(player.motion.as_ref().unwrap().clip.name, "ada_1");
     assert!(player.playing && player.looped.unwrap().1 >= 0.9);
     person.click("Compare with the nearest wave");
+    let line = "moves.mdb ada_1 --start 0.100 --stop 0.900";
+    assert!(shows_search(&person, line));
     person.settle();
     let aligned = person.state().companions.all[0].clone();
     assert_eq!((aligned.of.start_secs, aligned.of.stop_secs), (0.1, 0.9));
@@ -121,6 +129,9 @@ fn a_line_jumps_to_its_moment_and_offers_the_comparison_with_the_nearest_label()
     assert_eq!(shown.clip.name, false_one.clip);
     // By the key, too.
     person.key(Key::C);
+    let (start, stop) = (false_one.start_secs, false_one.stop_secs);
+    let line = format!("{} --start {start:.3} --stop {stop:.3}", false_one.clip);
+    assert!(shows_search(&person, &line));
     person.settle();
     let aligned = person.state().companions.all[0].clone();
     assert!((aligned.of.start_secs - false_one.start_secs).abs() < 1e-9);

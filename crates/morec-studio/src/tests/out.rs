@@ -1,10 +1,11 @@
 //! Out of the studio: labels in every form, a clip, a page; and what a session leaves for the next.
 
+use morec::roles::Role;
 use morec_db::exchange::{self, ClipLengths, LabelFormat};
 
 use super::{Person, made, takes};
-use crate::state::layout::Layout;
-use crate::state::{Command, FileCommand, LibraryCommand, Panel, State};
+use crate::state::layout::{CameraLayout, Layout};
+use crate::state::{Command, FileCommand, LibraryCommand, Panel, State, ViewCommand};
 
 #[test]
 fn labels_go_out_in_every_form() {
@@ -125,6 +126,22 @@ fn a_layout_comes_back_with_the_next_session() {
     person.settle();
     person.command(Command::Dark(false));
     person.command(Command::Library(LibraryCommand::Strips(true)));
+    person.click("Channel");
+    person.click("Hips: position");
+    person.click("Trail");
+    person.click("left hand");
+    person.key(egui::Key::Escape);
+    person.click("Side");
+    let middle = person.place("Performer").center();
+    person.drag(middle, middle + egui::vec2(50.0, 40.0));
+    let zoomed = crate::body::Camera {
+        distance: 1.9,
+        ..person.state().camera
+    };
+    person.command(Command::Look(ViewCommand::Camera(zoomed)));
+    person.click("Follow");
+    let (camera, channel) = (person.state().camera, person.state().channel.clone());
+    assert!(!camera.follow && channel.is_some());
     let kept = serde_json::to_string(&person.state().layout()).unwrap();
     let layout: Layout = serde_json::from_str(&kept).unwrap();
     let mut state = State::new(std::sync::Arc::new(|| {}));
@@ -139,8 +156,31 @@ fn a_layout_comes_back_with_the_next_session() {
         std::thread::sleep(std::time::Duration::from_millis(2));
     }
     assert_eq!(state.layout().clip.as_deref(), Some("ben_1"));
+    assert_eq!(state.camera, camera);
+    assert_eq!(state.trail, Some(Role::LeftHand));
+    assert_eq!(state.channel, channel, "its curve is read again");
     // A layout of another version lacks what this one knows.
     let old: Layout = serde_json::from_str(r#"{"panel": "Nowhere"}"#).unwrap();
     state.lay_out(&old);
     assert_eq!(state.panel, Panel::Library);
+    assert!(state.camera.follow && state.trail.is_none() && state.channel_wanted.is_none());
+}
+
+#[test]
+fn a_layout_with_parts_that_cannot_be_is_used_as_far_as_it_can() {
+    let mut state = State::new(std::sync::Arc::new(|| {}));
+    let strange = r#"{"panel": "Train", "trail": "third hand", "channel": {"joint": "Hips", "kind": "colour"},
+        "camera": {"yaw": 0.2, "pitch": 7.0, "distance": -3.0, "target": [0.0, 1.0, 0.0]}}"#;
+    let strange: Layout = serde_json::from_str(strange).unwrap();
+    state.lay_out(&strange);
+    assert_eq!((state.panel, state.trail), (Panel::Train, None));
+    assert_eq!(state.channel_wanted, None);
+    let camera = state.camera;
+    assert_eq!((camera.yaw, camera.pitch, camera.distance), (0.2, 1.5, 0.6));
+    let endless = Layout {
+        camera: strange.camera.map(|c| CameraLayout { yaw: f64::NAN, ..c }),
+        ..strange
+    };
+    state.lay_out(&endless);
+    assert_eq!(state.camera, camera, "left as it was");
 }

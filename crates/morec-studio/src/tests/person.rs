@@ -244,6 +244,22 @@ impl Person {
         self.frames(2);
     }
 
+    /// Drags to a place, waits there, and lets go at another, which is looked for after the wait.
+    pub fn drag_over(&mut self, from: Pos2, by: Pos2, secs: f64, to: impl Fn(&Self) -> Pos2) {
+        self.actions += 1;
+        self.pointer(from, true);
+        for at in [from + (by - from) * 0.5, by] {
+            self.window.event(Event::PointerMoved(at));
+            self.frames(1);
+        }
+        self.wait(secs);
+        let to = to(self);
+        self.window.event(Event::PointerMoved(to));
+        self.frames(1);
+        self.pointer(to, false);
+        self.frames(2);
+    }
+
     fn key_event(&mut self, key: Key, pressed: bool, modifiers: Modifiers) {
         self.window.event(Event::Key {
             key,

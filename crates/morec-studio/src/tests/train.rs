@@ -18,6 +18,14 @@ fn an_index_is_trained_kept_and_its_mistakes_are_found() {
     person.click("Keep");
     person.settle();
     assert!(person.sees("up to date"), "the database has it");
+    person.click("Use");
+    let line = &person.state().command_line;
+    let written = "moves.mdb --write studio -o studio.index";
+    assert!(
+        line.starts_with("morec db indexes ") && line.ends_with(written),
+        "{line}"
+    );
+    person.settle();
     person.undo();
     assert!(person.sees_part("None is kept yet"));
     person.click("Cross-validate");

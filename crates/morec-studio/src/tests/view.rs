@@ -1,10 +1,14 @@
 //! The view and the player, by buttons and keys.
 
-use egui::{Key, Modifiers};
-use egui_kittest::kittest::NodeT;
+use std::collections::BTreeSet;
 
-use super::{Person, made};
-use crate::state::{Command, Panel, PlayCommand, TrainCommand};
+use egui::{Color32, Key, Modifiers, Pos2, Shape};
+use egui_kittest::kittest::NodeT;
+use morec::roles::Role;
+
+use super::{Person, made, takes};
+use crate::body::LimbShape;
+use crate::state::{Command, FileCommand, Panel, PlayCommand, TrainCommand};
 
 fn labelling() -> (tempfile::TempDir, Person) {
     let folder = tempfile::tempdir().unwrap();
@@ -46,7 +50,123 @@ fn the_performer_is_seen_from_each_side_nearer_and_farther() {
     assert!(person.state().onion);
     person.click("Trail");
     person.click("left hand");
-    assert!(person.state().trail.is_some());
+    assert_eq!(person.state().trail, Some(Role::LeftHand));
+    assert!(person.sees("Trail: left hand"));
+}
+
+/// Lines of this width that the view hands to the painter, with their colours.
+fn drawn(person: &Person, width: f32) -> Vec<([Pos2; 2], Color32)> {
+    let view = person.place("Performer").expand(1.0);
+    let shapes = person.window.output().shapes.iter();
+    let shapes = shapes.filter(|s| view.contains_rect(s.clip_rect));
+    let lines = shapes.filter_map(|s| match &s.shape {
+        Shape::LineSegment { points, stroke } if stroke.width == width => {
+            Some((*points, stroke.color))
+        }
+        _ => None,
+    });
+    lines.collect()
+}
+
+fn same(a: &[Pos2; 2], b: &[Pos2; 2]) -> bool {
+    a.iter().zip(b).all(|(a, b)| a.distance(*b) < 0.1)
+}
+
+/// The limbs of the shown clip at a moment, as the camera sees them.
+fn limbs(person: &Person, secs: f64) -> Vec<[Pos2; 2]> {
+    let view = person.state().camera.view(person.place("Performer"));
+    let motion = person.state().player.motion.as_ref().unwrap();
+    let pose = motion.pose(secs);
+    let limbs = motion.body.limbs.iter();
+    let line = |l: &LimbShape| view.line(&pose.positions[l.from], &pose.positions[l.to]);
+    limbs.filter_map(line).collect()
+}
+
+/// Panics unless the onion skin is the poses 0.4 and 0.2 s ago in one colour, and those to come in another.
+fn onion_is_right(person: &Person, at: f64) {
+    let mut left = drawn(person, 3.0);
+    let mut colours = Vec::new();
+    for offset in [-0.4, -0.2, 0.2, 0.4] {
+        let mut of_pose = BTreeSet::new();
+        for line in limbs(person, at + offset) {
+            let found = left.iter().position(|(drawn, _)| same(drawn, &line));
+            let (_, colour) = left.remove(found.unwrap_or_else(|| panic!("{offset}: {line:?}")));
+            of_pose.insert(colour.to_array());
+        }
+        assert_eq!(of_pose.len(), 1, "a pose has one colour");
+        colours.push(of_pose.pop_first().unwrap());
+    }
+    assert!(left.is_empty(), "{} lines more", left.len());
+    let blue = |colour: &[u8; 4]| i32::from(colour[2]) - i32::from(colour[0]);
+    // What was is blue, what comes is orange; what is nearer in time is stronger.
+    assert!(blue(&colours[1]) > blue(&colours[0]) && blue(&colours[0]) > blue(&colours[3]));
+    assert!(blue(&colours[3]) > blue(&colours[2]), "{colours:?}");
+}
+
+/// Panics unless the trail is the path of this part of the body from a second ago to a second ahead.
+fn trail_is_right(person: &Person, at: f64, role: Role) {
+    let view = person.state().camera.view(person.place("Performer"));
+    let motion = person.state().player.motion.as_ref().unwrap();
+    let joint = motion.roles.joint(role).unwrap();
+    let place = |step: i32| {
+        let secs = at + f64::from(step) / 60.0;
+        view.project(&motion.pose(secs).positions[joint]).unwrap().0
+    };
+    let drawn = drawn(person, 2.5);
+    assert_eq!(drawn.len(), 120);
+    for (step, (line, _)) in (-60..60).zip(&drawn) {
+        let expected = [place(step), place(step + 1)];
+        assert!(same(line, &expected), "{step}: {line:?} {expected:?}");
+    }
+    let longest = drawn.iter().map(|(l, _)| l[0].distance(l[1]));
+    assert!(longest.fold(0.0, f32::max) > 1.0, "the part moves");
+}
+
+#[test]
+fn onion_skin_and_trail_are_of_the_right_moments_and_part_in_each_clip() {
+    let (folder, mut person) = labelling();
+    // A clip of another rig, in which every joint but the root has another number.
+    let text = std::fs::read_to_string(folder.path().join("ben_1.bvh")).unwrap();
+    let channels = text.find("CHANNELS").unwrap();
+    let end = channels + text[channels..].find('\n').unwrap() + 1;
+    let tail = "JOINT Tail\n{\nOFFSET 0 0 -0.1\nCHANNELS 0\nEnd Site\n{\nOFFSET 0 0 -0.1\n}\n}\n";
+    let tailed = folder.path().join("tailed.bvh");
+    std::fs::write(&tailed, format!("{}{tail}{}", &text[..end], &text[end..])).unwrap();
+    person.command(Command::File(FileCommand::Import(vec![tailed])));
+    person.click("Onion skin");
+    person.click("Trail");
+    person.click("right hand");
+    person.key(Key::Escape);
+    let mut joints = BTreeSet::new();
+    for clip in ["ada_1", "cleo_1", "tailed"] {
+        person.click(&format!("Show {clip}"));
+        person.settle();
+        let motion = person.state().player.motion.as_ref().unwrap();
+        assert_eq!(motion.clip.name, clip);
+        joints.insert(motion.roles.joint(Role::RightHand));
+        // A moment at which the hand moves, and one at which it stood elsewhere.
+        let wave = takes()[0].labels[0].start_secs;
+        for at in [wave + 0.5, wave + 1.5] {
+            person.command(Command::Play(PlayCommand::Seek(at)));
+            person.frames(2);
+            let at = person.state().player.at_secs;
+            onion_is_right(&person, at);
+            trail_is_right(&person, at, Role::RightHand);
+        }
+    }
+    assert_eq!(
+        joints.len(),
+        2,
+        "the hand is another joint in the last clip"
+    );
+    // At the beginning nothing was before.
+    person.key(Key::Home);
+    person.frames(2);
+    assert_eq!(drawn(&person, 2.5).len(), 60);
+    let ahead = limbs(&person, 0.2).len() + limbs(&person, 0.4).len();
+    assert_eq!(drawn(&person, 3.0).len(), ahead);
+    person.click("Onion skin");
+    assert!(drawn(&person, 3.0).is_empty());
 }
 
 #[test]

@@ -50,6 +50,18 @@ impl State {
             ClassCommand::NextDoubtful => self.next_doubtful(None),
             ClassCommand::Renaming(now) => self.classes.renaming = now,
             ClassCommand::Adding(name) => self.classes.adding = name,
+            ClassCommand::Choosing(Some(_)) if self.classes.order.is_empty() => {
+                self.say("there is no class yet: 1 makes one");
+            }
+            ClassCommand::Choosing(text) => {
+                self.release_keys();
+                self.classes.choosing = text;
+            }
+            ClassCommand::Choose(class) => {
+                self.say(format!("Q is {class}"));
+                self.classes.choosing = None;
+                self.classes.quick = Some(class);
+            }
         }
     }
 
@@ -74,6 +86,9 @@ impl State {
         }
         // It keeps its place, its key and its colour.
         for name in self.classes.order.iter_mut().filter(|n| *n == from) {
+            to.clone_into(name);
+        }
+        for name in self.classes.quick.iter_mut().filter(|n| *n == from) {
             to.clone_into(name);
         }
         match self.classes.added.iter_mut().find(|n| *n == from) {

@@ -19,7 +19,8 @@ impl State {
     pub(in crate::state) fn apply_compare(&mut self, command: CompareCommand) {
         match command {
             CompareCommand::With { of, with, mirrored } => {
-                self.command_line.clear();
+                let line = self.search_line(&of);
+                self.show_line(line.map(|line| line.flag("--mirror", mirrored)));
                 self.compare(of, Partner::Given(with, mirrored));
             }
             CompareCommand::Nearest => match self.selected_stretch() {
@@ -31,7 +32,8 @@ impl State {
                 None => self.say("select a label or a stretch first"),
             },
             CompareCommand::NearestOf { of, class } => {
-                self.command_line.clear();
+                // The command searches among all stretches, not only among the labels of a class.
+                self.show_line(self.search_line(&of));
                 self.compare(of, Partner::NearestOf(class));
             }
             CompareCommand::Moment(class) => self.compare_moment(class),

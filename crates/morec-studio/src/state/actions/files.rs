@@ -86,7 +86,6 @@ impl State {
         self.pending = None;
         self.companions.all.clear();
         self.channel = None;
-        self.channel_wanted = None;
         self.seen_version = 0;
     }
 

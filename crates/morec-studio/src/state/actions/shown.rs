@@ -70,7 +70,7 @@ impl State {
         self.want_curves(motion);
         self.want_detections(motion);
         self.want_map(motion);
-        self.want_channel(self.channel_wanted);
+        self.want_channel(self.channel_wanted.clone());
     }
 
     /// Computes what both methods of cutting say of a clip.
@@ -88,17 +88,17 @@ impl State {
         );
     }
 
-    /// Reads a channel of the clip that is shown.
-    pub(in crate::state) fn want_channel(&mut self, wanted: Option<(usize, ChannelKind)>) {
+    /// Reads a channel of the clip that is shown. A clip without the joint has none; the next one may.
+    pub(in crate::state) fn want_channel(&mut self, wanted: Option<(String, ChannelKind)>) {
         self.channel = None;
         self.channel_wanted = wanted;
-        let (Some((joint, kind)), Some(motion)) = (wanted, &self.player.motion) else {
+        let (Some((joint, kind)), Some(motion)) = (&self.channel_wanted, &self.player.motion)
+        else {
             return;
         };
-        if joint >= motion.clip.skeleton.len() {
-            self.channel_wanted = None;
+        let (Some(joint), kind) = (motion.clip.skeleton.find(joint), *kind) else {
             return;
-        }
+        };
         let Some(store) = &self.store else { return };
         let (db, clip) = (store.path().to_owned(), motion.id);
         self.jobs.start(
@@ -129,7 +129,7 @@ impl State {
                 };
             }
             ViewCommand::Follow(on) => camera.follow = on,
-            ViewCommand::Trail(joint) => self.trail = joint,
+            ViewCommand::Trail(role) => self.trail = role,
             ViewCommand::Onion(on) => self.onion = on,
         }
     }

@@ -152,6 +152,10 @@ impl State {
 
     fn use_index(&mut self, name: &str) {
         let Some(store) = &self.store else { return };
+        let line = ShownCommand::new("morec db indexes").word(store.path());
+        let line = line
+            .with("--write", name)
+            .with("-o", format!("{name}.index"));
         let read = morec_db::MotionDb::open_read_only(store.path())
             .and_then(|db| db.index(name))
             .map_err(|e| e.to_string())
@@ -166,7 +170,7 @@ impl State {
                 self.train.report = None;
                 self.train.taught = self.train.now;
                 self.say(format!("index {name} is in use"));
-                self.command_line.clear();
+                self.show_line(line);
                 self.live.follow_index(self.train.index.as_ref());
                 if let Some(motion) = self.player.motion.clone() {
                     self.want_detections(&motion);
