@@ -15,6 +15,16 @@ pub const BLOCK: usize = 4;
 pub const PLACES: usize = 8;
 /// Coordinates of directions, filled up to whole vectors, then those of the root, filled up.
 pub const LANES: usize = 48;
+/// A value for each lane, where vector loads want it.
+#[derive(Debug, Clone, Copy)]
+#[repr(C, align(64))]
+pub struct Lanes(pub [f32; LANES]);
+
+impl Lanes {
+    /// All zero.
+    pub const ZERO: Self = Self([0.0; LANES]);
+}
+
 /// The first lane of the root.
 pub const ROOT_LANE: usize = 40;
 /// Prefix sums are whole multiples of this: the largest for which a block's share of a direction fits into a byte.
@@ -141,7 +151,7 @@ pub struct Sketch {
     /// Rows of the clip.
     pub rows: usize,
     /// Prefix sums before each block and after the last, in units: whole numbers.
-    sums: Vec<[f32; LANES]>,
+    sums: Vec<Lanes>,
     /// Error of prefix sums within each block, Euclidean over directions and over the root.
     errors: Vec<[f32; 2]>,
 }
@@ -173,53 +183,43 @@ impl Sketch {
         if self.rows == 0 || blocks.len() != self.rows.div_ceil(BLOCK) || !rest.is_empty() {
             return false;
         }
-        self.sums.clear();
-        self.errors.clear();
-        self.sums.reserve(blocks.len() + 1);
-        self.errors.reserve(blocks.len());
-        let mut sum = [0f32; LANES];
-        self.sums.push(sum);
-        for block in blocks {
+        self.sums.resize(blocks.len() + 1, Lanes::ZERO);
+        self.errors.resize(blocks.len(), [0.0; 2]);
+        let mut sum = Lanes::ZERO;
+        self.sums[0] = sum;
+        let read = self.sums[1..].iter_mut().zip(&mut self.errors);
+        for (block, (sums, errors)) in blocks.iter().zip(read) {
             for lane in 0..X {
-                sum[lane] += f32::from(block[lane].cast_signed());
+                sum.0[lane] += f32::from(block[lane].cast_signed());
             }
             for i in 0..TRAVEL {
                 let delta = i16::from_le_bytes([block[X + 2 * i], block[X + 2 * i + 1]]);
-                sum[ROOT_LANE + i] += f32::from(delta);
+                sum.0[ROOT_LANE + i] += f32::from(delta);
             }
-            self.sums.push(sum);
-            let [directions, root] = [block[BLOCK_BYTES - 2], block[BLOCK_BYTES - 1]];
-            self.errors.push([
-                tables.errors[usize::from(directions)],
-                tables.errors[usize::from(root)],
-            ]);
+            *sums = sum;
+            errors[0] = tables.errors[usize::from(block[BLOCK_BYTES - 2])];
+            errors[1] = tables.errors[usize::from(block[BLOCK_BYTES - 1])];
         }
         true
     }
 
-    /// Prefix sums before `place`, in eighths of rows, less those before the block `base`, in units: `N` lanes from `from` on.
+    /// Prefix sums before `place`, in eighths of rows, less those before the block `base`, in units.
     #[inline(always)]
-    pub fn until<const N: usize>(
-        &self,
-        place: usize,
-        base: usize,
-        tables: &SketchTables,
-        from: usize,
-    ) -> [f32; N] {
+    pub fn until(&self, place: usize, base: usize, tables: &SketchTables) -> Lanes {
         let block = self.block(place);
         let [before, within, next] = tables.weights[place - PLACES * BLOCK * block];
         let last = self.sums.len() - 2;
         // At the ends the block stands for those that are not there.
         let (first, third) = (block.saturating_sub(1), (block + 1).min(last));
-        let lanes = |at: usize| &self.sums[at][from..from + N];
+        let lanes = |at: usize| &self.sums[at].0;
         let (a, b) = (lanes(first), lanes(first + 1));
         let (c, d) = (lanes(block), lanes(block + 1));
         let (e, f) = (lanes(third), lanes(third + 1));
         let base = lanes(base);
-        let mut out = [0f32; N];
-        for lane in 0..N {
+        let mut out = Lanes::ZERO;
+        for lane in 0..LANES {
             // Differences of whole numbers are exact.
-            out[lane] = (c[lane] - base[lane])
+            out.0[lane] = (c[lane] - base[lane])
                 + before * (b[lane] - a[lane])
                 + within * (d[lane] - c[lane])
                 + next * (f[lane] - e[lane]);
@@ -271,11 +271,11 @@ mod tests {
             let lanes: Vec<(usize, usize)> = RowLayout::ALL.directions().enumerate()
                 .chain(RowLayout::ALL.root().enumerate().map(|(i, c)| (ROOT_LANE + i, c))).collect();
             for place in 0..=length * PLACES {
-                let found = read.until::<LANES>(place, base, &tables, 0);
+                let found = read.until(place, base, &tables);
                 let errors = read.errors(place);
                 let mut squares = [0f64; 2];
                 for (lane, column) in &lanes {
-                    let there = f64::from(read.sums[base][*lane]) + f64::from(found[*lane]);
+                    let there = f64::from(read.sums[base].0[*lane]) + f64::from(found.0[*lane]);
                     let error = there * f64::from(UNIT) - slowly(&rows, place, *column);
                     squares[usize::from(*lane >= ROOT_LANE)] += error * error;
                 }
@@ -293,7 +293,7 @@ mod tests {
             }
             let (mut read, tables) = (Sketch::default(), SketchTables::new());
             if read.read(&bytes, &tables) {
-                read.until::<LANES>(rows as usize * PLACES, 0, &tables, 0);
+                read.until(rows as usize * PLACES, 0, &tables);
             }
         }
     }
