@@ -15,7 +15,7 @@ from morec import _morec
 pytest.importorskip("daft")
 import morec.archive as ma
 from morec.archive import _layout as layout
-from morec.archive._search import Found, Wanted, search
+from morec.archive._search import Found, Sketched, Wanted, search
 
 
 def slices(archive: ma.Archive, count: int, name: str) -> list[dict[str, Any]]:
@@ -62,7 +62,7 @@ HOW = [Wanted(1, False, False), Wanted(20, True, False), Wanted(5, False, True),
 def found(archive: ma.Archive, example: Any, start: float, stop: float, wanted: Wanted) -> tuple[Found, Found]:
     """By sketches, and by all rows."""
     asked = archive._example(example, start, stop)
-    slow = search(archive.store, [], archive._clips("name", "bones", "rows"), asked, wanted)
+    slow = search(archive.store, Sketched([]), archive._clips("name", "bones", "rows"), asked, wanted)
     return archive._search(asked, wanted), slow
 
 
@@ -83,7 +83,7 @@ def test_some_of_many_clips_are_searched_first(
 ) -> None:
     many.add_sketches()
     monkeypatch.setattr("morec.archive._search.GLANCED_AT", 100)
-    monkeypatch.setattr("morec.archive._search.SOME", 2)
+    monkeypatch.setattr("morec.archive._search.SOME", 3)
     for wanted in HOW:
         fast, slow = found(many, clips[0], 2.0, 3.5, wanted)
         assert fast.hits == slow.hits and len(fast.hits) > 0
@@ -137,10 +137,13 @@ def test_mistakes_are_plain_errors(clips: list[morec.Clip]) -> None:
     example = _morec.search_example(clips[0], 0.0, 1.0)
     table = (np.zeros(2, np.int64), np.array([0, 4, 9], np.int32), np.zeros(4, np.uint8))
     with pytest.raises(ValueError, match="beyond the bytes"):
-        _morec.sketch_bounds(example, [table], 20, False, False, False, 9.0)
+        _morec.SketchedClips([table])
     with pytest.raises(ValueError, match="expected 3, found 2"):
-        _morec.sketch_bounds(example, [(table[0], table[1][:2], table[2])], 20, False, False, False, 9.0)
-    plan = _morec.SearchPlan(np.zeros(3, np.float32), 20, False, False)
+        _morec.SketchedClips([(table[0], table[1][:2], table[2])])
+    clips_of = _morec.SketchedClips([(table[0], table[1], np.zeros(9, np.uint8))])
+    with pytest.raises(ValueError, match="no such clip"):
+        clips_of.bounds(example, 20, False, False, False, 9.0, np.array([2]))
+    plan = _morec.SearchPlan(np.zeros(3, np.float32), 20, False, False, False)
     with pytest.raises(ValueError, match="no such clip"):
         plan.bound(np.array([3]), np.zeros(1, np.float32))
     with pytest.raises(ValueError, match="6 columns for each bone"):

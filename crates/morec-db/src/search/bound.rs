@@ -10,10 +10,11 @@ use morec::features::{BoneSet, RowLayout};
 use multiversion::multiversion;
 use rayon::prelude::*;
 
+use super::boxes::{BoxView, roots};
 use super::candidates::{QueryDescriptor, length_cost, pace_range, step, window_lengths};
 use super::layout::ROOT_WEIGHT;
 use super::rank::probes;
-use super::sketch::{LANES, Lanes, PLACES, ROOT_LANE, Sketch, SketchTables, UNIT};
+use super::sketch::{LANES, Lanes, PLACES, ROOT_LANE, Sketch, SketchBytes, SketchTables, UNIT};
 use super::summary::{MEAN, ROOT, Summary, SummaryDistance, WEIGHTS};
 use super::windows::{TRAVEL, X};
 use super::{Example, SearchOptions};
@@ -86,6 +87,8 @@ struct SketchProbe {
     octaves: [Lanes; OCTAVES],
     pose: Lanes,
     travel: [f32; TRAVEL],
+    /// Lengths of the octaves of each bone.
+    roots: [f32; SIDE],
 }
 
 impl SketchProbe {
@@ -101,6 +104,7 @@ impl SketchProbe {
             octaves: std::array::from_fn(|octave| lanes(octave * X)),
             pose: lanes(MEAN),
             travel: std::array::from_fn(|i| summary[ROOT + i]),
+            roots: roots(summary),
         }
     }
 }
@@ -109,18 +113,21 @@ impl SketchProbe {
 struct SharedLanes {
     bones: BoneSet,
     mask: Lanes,
+    bone_mask: [f32; SIDE],
     scale: f32,
 }
 
 impl SharedLanes {
     fn of(bones: BoneSet) -> Self {
-        let mut mask = Lanes::ZERO;
+        let (mut mask, mut bone_mask) = (Lanes::ZERO, [0f32; SIDE]);
         for bone in bones.indices() {
+            bone_mask[bone] = 1.0;
             mask.0[RowLayout::ALL.direction(bone)].fill(1.0);
         }
         Self {
             bones,
             mask,
+            bone_mask,
             scale: SummaryDistance::over(bones).scale().sqrt(),
         }
     }
@@ -157,31 +164,69 @@ impl SketchQuery {
         depth: BoundDepth,
         beyond: f32,
     ) -> Option<f32> {
-        if !work.sketch.read(bytes, &self.tables) {
-            return None;
-        }
-        let rows = work.sketch.rows;
+        let bytes = SketchBytes::of(bytes)?;
+        let rows = bytes.rows;
         let excess = if self.whole {
             length_cost(self.rows, rows, 1.4)
         } else {
             0.0
         };
-        let mut least = beyond;
+        // The lengths of all windows.
+        let mut lengths = [0; 4];
+        let mut count = 0;
         if rows >= 3 {
-            for length in window_lengths(self.rows, rows) {
-                let cost = length_cost(length, self.rows, pace_range()) + excess;
-                for start in (0..=rows - length).step_by(step(length)) {
-                    work.window.turn(start, length);
-                    self.compare(work, depth, cost, &mut least);
+            lengths[..3].copy_from_slice(&window_lengths(self.rows, rows));
+            count = 3;
+        }
+        if self.whole {
+            lengths[count] = rows;
+            count += 1;
+        }
+        let lengths = &lengths[..count];
+        let mut least = beyond;
+        if beyond < f32::INFINITY && self.is_beyond(work, &bytes, lengths, excess, beyond) {
+            return Some(least);
+        }
+        work.sketch.read(&bytes, &self.tables);
+        for length in lengths {
+            let cost = length_cost(*length, self.rows, pace_range()) + excess;
+            for start in (0..=rows - length).step_by(step(*length)) {
+                work.window.turn(start, *length);
+                self.compare(work, depth, cost, &mut least);
+            }
+        }
+        Some(least)
+    }
+
+    /// True if no window of these lengths can be as near as `beyond`, by what all windows lie within.
+    #[inline(always)]
+    fn is_beyond(
+        &self,
+        work: &Workspace,
+        bytes: &SketchBytes<'_>,
+        lengths: &[usize],
+        excess: f32,
+        beyond: f32,
+    ) -> bool {
+        let within = BoxView::new(bytes.within);
+        for at in 0..self.probes.len() {
+            let (probe, shared) = (&self.probes[at], &work.shared[at]);
+            let pose = within.pose(&probe.pose.0, &shared.mask.0).sqrt();
+            let travel = within.travel(&probe.travel).sqrt();
+            let still = excess + WEIGHTS.pose * shared.scale * pose + WEIGHTS.travel * travel;
+            if still >= beyond {
+                continue;
+            }
+            for length in lengths {
+                let cost = length_cost(*length, self.rows, pace_range());
+                let octaves = within.octaves(*length, &probe.roots, &shared.bone_mask);
+                let motion = WEIGHTS.motion * shared.scale * octaves.sqrt();
+                if still + cost + motion < beyond {
+                    return false;
                 }
             }
         }
-        if self.whole {
-            let cost = length_cost(rows, self.rows, pace_range()) + excess;
-            work.window.turn(0, rows);
-            self.compare(work, depth, cost, &mut least);
-        }
-        Some(least)
+        true
     }
 
     /// Lowers `least` to the bound of the window that is turned to, at a cost of its length, if that is less.

@@ -7,6 +7,7 @@
 
 use morec::features::{RowLayout, Rows};
 
+use super::boxes::{BOX_BYTES, boxed};
 use super::windows::{TRAVEL, X};
 
 /// Rows in a block.
@@ -33,7 +34,7 @@ pub const UNIT: f32 = 1.0 / 30.0;
 const EXACT: f64 = 16_777_216.0;
 /// Bytes of a block: directions, root, errors of both.
 const BLOCK_BYTES: usize = X + 2 * TRAVEL + 2;
-/// Bytes before the first block: the number of rows.
+/// Bytes before the box and the first block: the number of rows.
 const HEAD: usize = 4;
 
 /// Weights of the block before, of the block and of the next in a prefix sum within the block.
@@ -77,6 +78,7 @@ pub fn sketch(rows: &Rows) -> Option<Vec<u8>> {
         }
         deltas.push(lanes);
     }
+    out.extend(boxed(rows)?);
     let table = weights();
     for block in 0..blocks {
         let near = neighbours(&deltas, block);
@@ -171,18 +173,36 @@ impl SketchTables {
     }
 }
 
-impl Sketch {
-    /// Reads a sketch into this one, whose memory is used again; false for bytes that are none.
+/// Parts of the bytes of a sketch.
+pub struct SketchBytes<'a> {
+    pub rows: usize,
+    pub within: &'a [u8; BOX_BYTES],
+    blocks: &'a [[u8; BLOCK_BYTES]],
+}
+
+impl<'a> SketchBytes<'a> {
+    /// `None` for bytes that are no sketch.
     #[inline(always)]
-    pub fn read(&mut self, bytes: &[u8], tables: &SketchTables) -> bool {
-        let Some((rows, blocks)) = bytes.split_first_chunk::<HEAD>() else {
-            return false;
-        };
-        self.rows = u32::from_le_bytes(*rows) as usize;
-        let (blocks, rest) = blocks.as_chunks::<BLOCK_BYTES>();
-        if self.rows == 0 || blocks.len() != self.rows.div_ceil(BLOCK) || !rest.is_empty() {
-            return false;
-        }
+    pub fn of(bytes: &'a [u8]) -> Option<Self> {
+        let (rows, bytes) = bytes.split_first_chunk::<HEAD>()?;
+        let (within, bytes) = bytes.split_first_chunk::<BOX_BYTES>()?;
+        let rows = u32::from_le_bytes(*rows) as usize;
+        let (blocks, rest) = bytes.as_chunks::<BLOCK_BYTES>();
+        let fits = rows > 0 && blocks.len() == rows.div_ceil(BLOCK) && rest.is_empty();
+        fits.then_some(Self {
+            rows,
+            within,
+            blocks,
+        })
+    }
+}
+
+impl Sketch {
+    /// Reads a sketch into this one, whose memory is used again.
+    #[inline(always)]
+    pub fn read(&mut self, bytes: &SketchBytes<'_>, tables: &SketchTables) {
+        let blocks = bytes.blocks;
+        self.rows = bytes.rows;
         self.sums.resize(blocks.len() + 1, Lanes::ZERO);
         self.errors.resize(blocks.len(), [0.0; 2]);
         let mut sum = Lanes::ZERO;
@@ -200,7 +220,6 @@ impl Sketch {
             errors[0] = tables.errors[usize::from(block[BLOCK_BYTES - 2])];
             errors[1] = tables.errors[usize::from(block[BLOCK_BYTES - 1])];
         }
-        true
     }
 
     /// Prefix sums before `place`, in eighths of rows, less those before the block `base`, in units.
@@ -265,7 +284,7 @@ mod tests {
             let rows = Rows::from_values(DIM, values[..length * DIM].to_vec());
             let bytes = sketch(&rows).unwrap();
             let (mut read, tables) = (Sketch::default(), SketchTables::new());
-            prop_assert!(read.read(&bytes, &tables));
+            read.read(&SketchBytes::of(&bytes).unwrap(), &tables);
             prop_assert_eq!(read.rows, length);
             let base = read.block(base.min(length) * PLACES);
             let lanes: Vec<(usize, usize)> = RowLayout::ALL.directions().enumerate()
@@ -286,13 +305,18 @@ mod tests {
         }
 
         #[test]
-        fn any_bytes_are_a_sketch_or_none(bytes in prop::collection::vec(any::<u8>(), 0..200), rows in 0u32..20) {
+        fn any_bytes_are_a_sketch_or_none(bytes in prop::collection::vec(any::<u8>(), 0..400), blocks in prop::option::of(0u32..5)) {
             let mut bytes = bytes;
+            let rows = blocks.unwrap_or(7) * 4;
+            if let Some(blocks) = blocks {
+                bytes.resize(HEAD + BOX_BYTES + blocks as usize * BLOCK_BYTES, 3);
+            }
             if let Some(head) = bytes.first_chunk_mut::<4>() {
                 *head = rows.to_le_bytes();
             }
             let (mut read, tables) = (Sketch::default(), SketchTables::new());
-            if read.read(&bytes, &tables) {
+            if let Some(bytes) = SketchBytes::of(&bytes) {
+                read.read(&bytes, &tables);
                 read.until(rows as usize * PLACES, 0, &tables);
             }
         }
@@ -306,6 +330,6 @@ mod tests {
         row = [0f32; DIM];
         row[0] = 3.0;
         assert!(sketch(&Rows::from_values(DIM, row.to_vec())).is_none());
-        assert!(!Sketch::default().read(&[], &SketchTables::new()));
+        assert!(SketchBytes::of(&[]).is_none());
     }
 }

@@ -75,6 +75,11 @@ def clip_number(clip: str) -> int:
     return int(clip, 16) - (1 << 63)
 
 
+def clip_of(number: int) -> str:
+    """The key of a clip of which this is the number."""
+    return f"{number + (1 << 63):016x}"
+
+
 def clip_key(file_hash: bytes, character: int) -> str:
     """Identifier of a clip in every table: the same for the same content, wherever it lies."""
     return hashlib.sha256(file_hash + character.to_bytes(8, "little")).hexdigest()[:16]
