@@ -97,7 +97,7 @@ class Sketched:
 
     def names(self, numbers: Sequence[int]) -> dict[int, Names]:
         """Keys and names of clips by their numbers."""
-        places = np.flatnonzero(np.isin(self.numbers, numbers))
+        places: list[int] = np.flatnonzero(np.isin(self.numbers, numbers)).tolist()
         return {int(self.numbers[place]): self._name(place) for place in places}
 
     def _name(self, place: int) -> Names:
@@ -141,9 +141,11 @@ def _packed(store: Store, part: str, places: list[Place]) -> list[bytes]:
     if spans[0][0] >= 0:
         return store.ranges(part, spans)
     file = patiently(lambda: pq.ParquetFile(store.open(part)))
-    groups: dict[int, Any] = {}
-    for group in {int(place.table.row_group[place.row]) for place in places}:
-        groups[group] = patiently(lambda group=group: file.read_row_group(group, columns=["rows"])).column(0)
+
+    def rows_of(group: int) -> Any:
+        return patiently(lambda: file.read_row_group(group, columns=["rows"])).column(0)
+
+    groups = {group: rows_of(group) for group in {int(place.table.row_group[place.row]) for place in places}}
     return [groups[int(p.table.row_group[p.row])][int(p.table.row[p.row])].as_py() or b"" for p in places]
 
 
@@ -171,7 +173,9 @@ class Asked:
 
         `rows` holds those of clips that may be needed.
         """
-        at = (lambda which: which) if places is None else (lambda which: places[which])
+        def at(which: Any) -> Any:
+            return which if places is None else places[which]
+
         which = plan.next_to_bound()
         if len(which):
             plan.bound(which, self.bounds(True, plan.reach(), at(which)))
