@@ -4,8 +4,8 @@ use super::rank::windows_wanted;
 use super::{BoundDepth, SearchOptions};
 use crate::ClipId;
 
-/// Clips of which the bound by eighths is taken before anything has been found.
-const LOOKED_AT_FIRST: usize = 1 << 13;
+/// Clips for each window that is wanted of which the bound by eighths is taken before anything has been found.
+const LOOKED_AT_FIRST: usize = 4;
 
 /// Clips that are read at once, after the first time: so many may be read in vain.
 const BATCH: usize = 256;
@@ -74,8 +74,8 @@ impl SearchPlan {
     pub fn next_to_bound(&self) -> Vec<usize> {
         let reach = self.reach();
         let mut clips = self.left_within(reach, BoundDepth::Halves);
-        if reach == f32::INFINITY && clips.len() > LOOKED_AT_FIRST {
-            self.least(&mut clips, LOOKED_AT_FIRST);
+        if reach == f32::INFINITY {
+            self.least(&mut clips, LOOKED_AT_FIRST * self.wanted);
         }
         clips
     }
