@@ -11,7 +11,6 @@
 use morec::features::{BONES, RowLayout, Rows};
 
 use super::layout::ROOT_WEIGHT;
-use super::sketch::LANES;
 use super::summary::{MEAN, Summary};
 use super::windows::{TRAVEL, X};
 
@@ -120,11 +119,12 @@ impl<'a> BoxView<'a> {
         Self { bytes }
     }
 
-    /// Of the mean pose, in lanes of which `mask` is 1.
+    /// Of the mean pose, in coordinates of which `mask` is 1; what follows these is not looked at.
     #[inline(always)]
-    pub fn pose(&self, pose: &[f32; LANES], mask: &[f32; LANES]) -> f32 {
+    pub fn pose(&self, pose: &[f32], mask: &[f32]) -> f32 {
+        let (pose, mask) = (&pose[..X], &mask[..X]);
         let (least, greatest) = self.bytes[..2 * X].split_at(X);
-        let mut gaps = [0f32; LANES];
+        let mut gaps = [0f32; X.next_multiple_of(16)];
         for lane in 0..X {
             let least = f32::from(least[lane].cast_signed()) * POSE_UNIT;
             let greatest = f32::from(greatest[lane].cast_signed()) * POSE_UNIT;
@@ -232,8 +232,7 @@ mod tests {
             let within = BoxView::new(bytes.as_slice().try_into().unwrap());
             let example = Sums::of(&walked(&of_example)).octaves(&(0..20));
             let sums = Sums::of(&rows);
-            let mut pose = [0f32; LANES];
-            pose[..X].copy_from_slice(&example[MEAN..ROOT]);
+            let pose = &example[MEAN..ROOT];
             let travel: [f32; TRAVEL] = example[ROOT..].try_into().unwrap();
             let roots = roots(&example);
             for start in 0..rows.len() {
@@ -244,7 +243,7 @@ mod tests {
                     };
                     let lengths = within.octaves(stop - start, &roots, &[1.0; 16]);
                     for (bound, exact) in [
-                        (within.pose(&pose, &[1.0; LANES]), squares(MEAN, ROOT)),
+                        (within.pose(pose, &[1.0; X]), squares(MEAN, ROOT)),
                         (within.travel(&travel), squares(ROOT, ROOT + TRAVEL)),
                         (lengths, squares(0, MEAN)),
                     ] {
